@@ -1,0 +1,22 @@
+# How every target of the project is compiled.
+#
+# Contraction is off so that a*b+c has one result on every processor: the same messages give the
+# same bytes. For the same reason there is no -ffast-math and no -march=native anywhere.
+function(wellgyro_compile target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE
+    $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion
+      -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual>
+    $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<BOOL:${WELLGYRO_WERROR}>>:-Werror>)
+endfunction()
+
+# A room of a library: its sources and its public headers, named relative to the room.
+#   wellgyro_room(wellgyro noise SOURCES allan.cpp HEADERS allan.h)
+function(wellgyro_room target room)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;HEADERS" ${ARGN})
+  list(TRANSFORM ROOM_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/lib/wellgyro/${room}/)
+  list(TRANSFORM ROOM_HEADERS PREPEND ${PROJECT_SOURCE_DIR}/lib/wellgyro/${room}/)
+  target_sources(${target}
+    PRIVATE ${ROOM_SOURCES}
+    PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/lib FILES ${ROOM_HEADERS})
+endfunction()

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/export.h"
+
+namespace wellgyro {
+
+/// Right-handed rotations about one axis by `angle` [rad].
+WELLGYRO_EXPORT Eigen::Matrix3d RotationX(double angle);
+WELLGYRO_EXPORT Eigen::Matrix3d RotationY(double angle);
+WELLGYRO_EXPORT Eigen::Matrix3d RotationZ(double angle);
+
+/// R_LT = Rz(azimuth) Ry(inclination) Rz(toolface): tool T to local level L (north, east, down).
+WELLGYRO_EXPORT Eigen::Matrix3d AttitudeMatrix(double azimuth, double inclination, double toolface);
+
+/// Unit tangent of the hole in L: (sin I cos A, sin I sin A, cos I).
+WELLGYRO_EXPORT Eigen::Vector3d Tangent(double inclination, double azimuth);
+
+}  // namespace wellgyro

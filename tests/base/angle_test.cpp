@@ -1,0 +1,25 @@
+#include "wellgyro/base/angle.h"
+
+#include <gtest/gtest.h>
+
+namespace wellgyro {
+namespace {
+
+TEST(Angle, WrapsIntoItsHalfOpenRange) {
+  EXPECT_EQ(WrapTwoPi(0), 0);
+  EXPECT_EQ(WrapTwoPi(kTwoPi), 0);
+  EXPECT_DOUBLE_EQ(WrapTwoPi(-0.25), kTwoPi - 0.25);
+  EXPECT_LT(WrapTwoPi(-1e-20), kTwoPi);
+  EXPECT_EQ(WrapPi(-kPi), kPi);
+  EXPECT_EQ(WrapPi(kPi), kPi);
+  EXPECT_NEAR(WrapPi(7 * kTwoPi + 1), 1, 1e-14);
+}
+
+TEST(Angle, DegreesAndBackKeepTheTurnsQuarters) {
+  EXPECT_EQ(FromDegrees(180), kPi);
+  EXPECT_EQ(FromDegrees(90), kPi / 2);
+  EXPECT_EQ(ToDegrees(kPi), 180);
+}
+
+}  // namespace
+}  // namespace wellgyro
