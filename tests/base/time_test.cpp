@@ -8,7 +8,9 @@ namespace wellgyro {
 namespace {
 
 template <class A, class B>
-concept Subtractable = requires(A a, B b) { a - b; };
+concept Subtractable = requires(A a, B b) {
+  a - b;
+};
 
 TEST(Time, TheTwoClocksDoNotMix) {
   static_assert(Subtractable<ToolTime, ToolTime>);

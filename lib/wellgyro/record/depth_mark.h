@@ -20,9 +20,9 @@ struct DepthMark {
   std::optional<double> tension;  ///< [N]
   std::optional<double> sigma;    ///< [m]
   bool stopped = false;
-  bool corrected = false;         ///< corrections are already in `md`
-  bool manual = false;            ///< typed by a person
-  bool magnetic_mark = false;     ///< a magnetic mark passed the counter
+  bool corrected = false;      ///< corrections are already in `md`
+  bool manual = false;         ///< typed by a person
+  bool magnetic_mark = false;  ///< a magnetic mark passed the counter
 };
 
 }  // namespace wellgyro

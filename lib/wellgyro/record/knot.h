@@ -22,46 +22,46 @@ namespace wellgyro {
 struct Knot {
   /// Sensor errors whose effect on the azimuth turn is kept, in this order.
   enum Source {
-    kGyroBiasX,         ///< [rad/s]
-    kGyroBiasY,         ///< [rad/s]
-    kMassUnbalance,     ///< drift of x by m f_x, of y by m f_y [rad/s per m/s^2]
-    kQuadrature,        ///< drift of x by q f_y, of y by -q f_x [rad/s per m/s^2]
-    kGyroScaleX,        ///< [1]
-    kGyroScaleY,        ///< [1]
-    kMisalignmentX,     ///< rate about z seen by x [rad]
-    kMisalignmentY,     ///< rate about z seen by y [rad]
-    kToolfaceOffset,    ///< toolface read too large [rad]
-    kTimeSkew,          ///< toolface read too late, so that T reads T + T' skew [s]
-    kAccelBiasX,        ///< [m/s^2]
-    kAccelBiasY,        ///< [m/s^2]
-    kAccelBiasZ,        ///< [m/s^2]
+    kGyroBiasX,       ///< [rad/s]
+    kGyroBiasY,       ///< [rad/s]
+    kMassUnbalance,   ///< drift of x by m f_x, of y by m f_y [rad/s per m/s^2]
+    kQuadrature,      ///< drift of x by q f_y, of y by -q f_x [rad/s per m/s^2]
+    kGyroScaleX,      ///< [1]
+    kGyroScaleY,      ///< [1]
+    kMisalignmentX,   ///< rate about z seen by x [rad]
+    kMisalignmentY,   ///< rate about z seen by y [rad]
+    kToolfaceOffset,  ///< toolface read too large [rad]
+    kTimeSkew,        ///< toolface read too late, so that T reads T + T' skew [s]
+    kAccelBiasX,      ///< [m/s^2]
+    kAccelBiasY,      ///< [m/s^2]
+    kAccelBiasZ,      ///< [m/s^2]
     kSources
   };
   using SourceVector = Eigen::Matrix<double, kSources, 1>;
 
-  ToolTime time;            ///< end of the interval, to the nanosecond below
-  UtcTime utc;              ///< the same instant by the clock tie
-  AlongHole along;          ///< at `time`
-  double seconds = 0;       ///< length of the interval
-  double inclination = 0;   ///< at `time`, gyro-aided [rad]
-  double toolface = 0;      ///< at `time` [rad], (-pi, pi]
-  double turn = 0;          ///< integral of -Re(W e^{iT}) / sin I [rad]
-  double cot = 0;           ///< integral of cot I [s]
-  double lift = 0;          ///< integral of Im(W e^{iT}), the inertial inclination change [rad]
-  double roll = 0;          ///< change of the unwrapped toolface [rad]
-  double inclination_accel = 0;        ///< mean over the interval of accelerometer inclination [rad]
-  double sigma_inclination = 0;        ///< of `inclination`, from noise alone [rad]
-  double sigma_inclination_accel = 0;  ///< of `inclination_accel`, from noise alone [rad]
+  ToolTime time;           ///< end of the interval, to the nanosecond below
+  UtcTime utc;             ///< the same instant by the clock tie
+  AlongHole along;         ///< at `time`
+  double seconds = 0;      ///< length of the interval
+  double inclination = 0;  ///< at `time`, gyro-aided [rad]
+  double toolface = 0;     ///< at `time` [rad], (-pi, pi]
+  double turn = 0;         ///< integral of -Re(W e^{iT}) / sin I [rad]
+  double cot = 0;          ///< integral of cot I [s]
+  double lift = 0;         ///< integral of Im(W e^{iT}), the inertial inclination change [rad]
+  double roll = 0;         ///< change of the unwrapped toolface [rad]
+  double inclination_accel = 0;  ///< mean over the interval of accelerometer inclination [rad]
+  double sigma_inclination = 0;  ///< of `inclination`, from noise alone [rad]
+  double sigma_inclination_accel = 0;          ///< of `inclination_accel`, from noise alone [rad]
   SourceVector d_turn = SourceVector::Zero();  ///< d turn / d source
   SourceVector d_lift = SourceVector::Zero();  ///< d lift / d source
   SourceVector d_inclination = SourceVector::Zero();  ///< d inclination (at `time`) / d source
-  double white_turn = 0;    ///< integral of 1 / sin^2 I [s]: times N^2 the variance of `turn`
+  double white_turn = 0;  ///< integral of 1 / sin^2 I [s]: times N^2 the variance of `turn`
   double toolface_noise_turn = 0;  ///< variance of `turn` from accelerometer noise [rad^2]
-  bool still = false;       ///< the whole interval was at rest
-  bool vertical = false;    ///< nowhere in it was the inclination enough for this form to hold
-  double gap_seconds = 0;   ///< of the interval, without samples
-  std::int64_t seq_begin = 0;     ///< first sample
-  std::int64_t seq_end = 0;       ///< exclusive
+  bool still = false;              ///< the whole interval was at rest
+  bool vertical = false;       ///< nowhere in it was the inclination enough for this form to hold
+  double gap_seconds = 0;      ///< of the interval, without samples
+  std::int64_t seq_begin = 0;  ///< first sample
+  std::int64_t seq_end = 0;    ///< exclusive
   std::int64_t samples_lost = 0;  ///< in that range
   Quality quality = Quality::kGood;
 };

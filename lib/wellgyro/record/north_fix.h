@@ -12,30 +12,30 @@ namespace wellgyro {
 
 /// The tool's attitude at one stop, north found from the Earth's rotation or given from outside.
 struct NorthFix {
-  ToolTime begin, end;           ///< of the window or windows it rests on
+  ToolTime begin, end;  ///< of the window or windows it rests on
   UtcTime utc_begin, utc_end;
   std::int64_t seq_begin = 0;
-  std::int64_t seq_end = 0;      ///< exclusive
+  std::int64_t seq_end = 0;  ///< exclusive
   std::int32_t run = 0;
   std::int32_t tool = 0;
-  std::optional<double> md;      ///< measured depth [m]
-  bool external = false;         ///< the azimuth was given, not found
-  bool from_samples = true;      ///< false: a window that the tool averaged itself
-  double azimuth = 0;            ///< true azimuth of the tool axis [rad]
-  double inclination = 0;        ///< [rad]
-  double toolface = 0;           ///< from the high side to the reference mark [rad]
+  std::optional<double> md;  ///< measured depth [m]
+  bool external = false;     ///< the azimuth was given, not found
+  bool from_samples = true;  ///< false: a window that the tool averaged itself
+  double azimuth = 0;        ///< true azimuth of the tool axis [rad]
+  double inclination = 0;    ///< [rad]
+  double toolface = 0;       ///< from the high side to the reference mark [rad]
   /// Of (inclination, azimuth, toolface) [rad^2].
   Eigen::Matrix3d cov_attitude = Eigen::Matrix3d::Zero();
   /// Second minimum of the cost, kept whenever the data cannot exclude it.
   std::optional<double> mirror_azimuth;
-  double mirror_cost = 0;        ///< cost of the mirror less cost of the solution, chi-square units
-  double gravity = 0;            ///< measured |f| [m/s^2]
-  double gravity_ref = 0;        ///< of the Earth model at the place [m/s^2]
-  double sigma_gravity = 0;      ///< [m/s^2]
+  double mirror_cost = 0;    ///< cost of the mirror less cost of the solution, chi-square units
+  double gravity = 0;        ///< measured |f| [m/s^2]
+  double gravity_ref = 0;    ///< of the Earth model at the place [m/s^2]
+  double sigma_gravity = 0;  ///< [m/s^2]
   /// Rate at rest against the Earth's, in the direction the axes can still see.
   std::optional<double> earth_rate;
-  double earth_rate_ref = 0;     ///< [rad/s]
-  double sigma_earth_rate = 0;   ///< [rad/s]
+  double earth_rate_ref = 0;    ///< [rad/s]
+  double sigma_earth_rate = 0;  ///< [rad/s]
   Quality quality = Quality::kGood;
 };
 

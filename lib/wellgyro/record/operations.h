@@ -38,10 +38,10 @@ struct ToolInfo {
   std::int32_t session = 0;
   std::int32_t run = 0;
   std::int32_t tool = 0;
-  std::int32_t string_position = 0;     ///< from the bottom, 1
-  double sensor_below_reference = 0;    ///< sensor point below the depth reference, along hole [m]
+  std::int32_t string_position = 0;   ///< from the bottom, 1
+  double sensor_below_reference = 0;  ///< sensor point below the depth reference, along hole [m]
   std::string asset_serial;
-  std::string sensor_serials;           ///< separated by ;
+  std::string sensor_serials;  ///< separated by ;
   std::string firmware;
   std::string calibration_sha256;
 };
@@ -83,7 +83,7 @@ struct Event {
   UtcTime utc;  ///< when it holds
   std::int64_t seq = 0;
   std::int32_t session = 0;
-  std::int32_t run = 0;       ///< 0: the run at that time
+  std::int32_t run = 0;  ///< 0: the run at that time
   Kind kind = Kind::kRemark;
   std::int32_t event_id = 0;  ///< the same event sent again has the same id; 0: none
   bool has_value = false;

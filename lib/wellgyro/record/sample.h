@@ -11,12 +11,12 @@ namespace wellgyro {
 
 /// Where a sample stands. A sample is the mean over the period that begins at its times.
 struct SampleStamp {
-  ToolTime tool_time;         ///< begin, on the tool's free-running clock
-  UtcTime utc;                ///< begin, as the surface estimates it
-  std::int64_t seq = 0;       ///< number of the sample in its session
-  std::int32_t session = 0;   ///< changes whenever the source restarts
-  std::int32_t run = 0;       ///< run of the job, from 1; 0 when the source does not know
-  std::int32_t tool = 0;      ///< tool in the string
+  ToolTime tool_time;        ///< begin, on the tool's free-running clock
+  UtcTime utc;               ///< begin, as the surface estimates it
+  std::int64_t seq = 0;      ///< number of the sample in its session
+  std::int32_t session = 0;  ///< changes whenever the source restarts
+  std::int32_t run = 0;      ///< run of the job, from 1; 0 when the source does not know
+  std::int32_t tool = 0;     ///< tool in the string
   std::int32_t period_ns = 0;
   bool gyro_saturated = false;
   bool accel_saturated = false;

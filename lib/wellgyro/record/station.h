@@ -26,27 +26,27 @@ enum class Pass : std::int32_t { kStationary = 0, kIn = 1, kOut = 2, kRepeat = 3
 struct Station {
   std::int32_t run = 0;
   Pass pass = Pass::kStationary;
-  std::int32_t pass_number = 0;    ///< counts the run's passes from 1, in time
-  std::int32_t number = 0;         ///< in the survey, from 1
-  std::int32_t revision = 0;       ///< counts up each time the station is sent again
+  std::int32_t pass_number = 0;  ///< counts the run's passes from 1, in time
+  std::int32_t number = 0;       ///< in the survey, from 1
+  std::int32_t revision = 0;     ///< counts up each time the station is sent again
   std::int32_t tool = 0;
   StationStatus status = StationStatus::kProvisional;
   StationKind kind = StationKind::kContinuous;
   Quality quality = Quality::kGood;
-  UtcTime utc;                     ///< when the tool was there
+  UtcTime utc;  ///< when the tool was there
   ToolTime tool_time;
-  double md = 0;                   ///< measured depth [m]
-  double inclination = 0;          ///< [rad]
-  double azimuth = 0;              ///< true [rad], [0, 2 pi)
-  double toolface = 0;             ///< of the tool, high side to reference mark [rad]
+  double md = 0;           ///< measured depth [m]
+  double inclination = 0;  ///< [rad]
+  double azimuth = 0;      ///< true [rad], [0, 2 pi)
+  double toolface = 0;     ///< of the tool, high side to reference mark [rad]
   /// Of (md, inclination, azimuth) [m, rad].
   Eigen::Matrix3d cov_md_inc_azi = Eigen::Matrix3d::Zero();
   Eigen::Vector3d p_WT_W = Eigen::Vector3d::Zero();      ///< north, east, TVD in the well frame [m]
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< [m^2]
-  double dogleg_severity = 0;      ///< over the leg that ends here [rad/m]
-  double gravity = 0;              ///< measured [m/s^2]; 0 where not
-  double gravity_ref = 0;          ///< [m/s^2]
-  std::optional<double> earth_rate;  ///< see NorthFix [rad/s]
+  double dogleg_severity = 0;                            ///< over the leg that ends here [rad/m]
+  double gravity = 0;                                    ///< measured [m/s^2]; 0 where not
+  double gravity_ref = 0;                                ///< [m/s^2]
+  std::optional<double> earth_rate;                      ///< see NorthFix [rad/s]
   double earth_rate_ref = 0;
   std::int64_t imu_seq_begin = 0;  ///< the samples it rests on
   std::int64_t imu_seq_end = 0;    ///< exclusive

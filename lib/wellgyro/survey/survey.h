@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/time.h"
+#include "wellgyro/record/check.h"
+#include "wellgyro/record/north_fix.h"
+#include "wellgyro/record/station.h"
+
+namespace wellgyro {
+
+/// What one run came to.
+struct RunSummary {
+  std::int32_t run = 0;
+  std::int32_t tool = 0;
+  bool misrun = false;
+  std::string remark;
+  UtcTime begin, end;
+  std::int64_t samples = 0;       ///< accepted
+  std::int64_t samples_lost = 0;  ///< by sequence number
+  std::int64_t duplicates = 0;    ///< sent again and skipped
+  std::vector<NorthFix> fixes;
+};
+
+/// Everything a survey is at one moment, for those who write files.
+struct Survey {
+  std::vector<Station> chosen;  ///< the tie-in, then one station per depth, depth increasing
+  std::vector<Station> passes;  ///< every station of every run and pass, as last revised, in time
+  std::vector<Check> checks;
+  std::vector<RunSummary> runs;
+  bool accepted = false;  ///< someone accepted a station: never to be written over
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+#include "wellgyro/record/check.h"
+#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/north_fix.h"
+#include "wellgyro/record/operations.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/record/station.h"
+#include "wellgyro/record/still_window.h"
+#include "wellgyro/survey/job.h"
+#include "wellgyro/survey/survey.h"
+
+namespace wellgyro {
+
+/// Where results go while they are made. Override what you want to hear.
+class WELLGYRO_EXPORT Sink {
+ public:
+  virtual ~Sink();
+  virtual void Take(const Station&) {}  ///< and again, with a higher revision, when better known
+  virtual void Take(const NorthFix&) {}
+  virtual void Take(const Check&) {}
+  virtual void Take(const Fault&) {}  ///< what was dropped, where, and why
+  virtual void Acknowledge(std::int32_t /*command_id*/) {}
+};
+
+/// From sensor samples to stations: the one place that knows the order of the rooms.
+///
+///     samples -> in order -> still? -> north fix -+
+///                         -> attitude <-----------+-> knots -> azimuth -+-> stations -> positions
+///     depth marks -> depth against time ------------------------------- +
+///
+/// Rig, log and vendor code differ only in who calls Push. Two laws hold, and tests keep them:
+/// (1) in one build the same messages give the same stations, bit for bit; (2) how the streams
+/// interleave does not matter within job.depth.latency. A sample waits until the depth that belongs
+/// to it is known, or until samples a latency later have come.
+///
+/// Data never make Push throw: what cannot be used reaches the sink as a Fault, hard physics as
+/// Quality. Memory grows with stations and knots only (one knot a second, about 1 kB).
+class WELLGYRO_EXPORT Surveyor {
+ public:
+  /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` must outlive
+  /// this object.
+  Surveyor(const Job& job, Sink& sink);
+  ~Surveyor();
+  Surveyor(Surveyor&&) noexcept;
+  Surveyor& operator=(Surveyor&&) noexcept;
+
+  void Push(std::span<const ImuSample> batch);
+  void Push(const ImuSample& sample);
+  void Push(const StillWindow& window);
+  void Push(const DepthMark& mark);
+  void Push(const ToolMode& mode);
+  void Push(const ToolInfo& info);
+  void Push(const Command& command);
+  void Push(const Event& event);
+
+  /// Sends revisions from all that is known so far; changes nothing that follows.
+  void Adjust();
+  /// The last Adjust: works off what still waits, then revises every station. Pushes after it are
+  /// faults.
+  void Finish();
+
+  /// All stations, checks and runs as they are now.
+  Survey Current() const;
+
+ private:
+  struct Rooms;
+  std::unique_ptr<Rooms> rooms_;
+};
+
+}  // namespace wellgyro
