@@ -21,6 +21,7 @@ struct SampleStamp {
   bool gyro_saturated = false;
   bool accel_saturated = false;
   bool utc_unsynced = false;  ///< the surface doubts `utc`
+  bool simulated = false;
   float temperature = 0;      ///< [degC]
 };
 
