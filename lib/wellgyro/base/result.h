@@ -26,8 +26,8 @@ enum class FaultCode {
 /// Something foreign that could not be used, with its place. Unset places are -1 or 0.
 struct Fault {
   FaultCode code = FaultCode::kForeign;
-  std::string text;          ///< one sentence: what is wrong and, where known, what to do
-  std::string source;        ///< file or channel
+  std::string text = {};     ///< one sentence: what is wrong and, where known, what to do
+  std::string source = {};   ///< file or channel
   std::int64_t offset = -1;  ///< byte in the source
   int line = 0;              ///< from 1
   int column = 0;            ///< from 1
