@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/time.h"
+#include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/noise.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/record/still_window.h"
+
+namespace wellgyro {
+
+struct StillSetup {
+  NoiseCoefficients gyro;
+  ErrorPriors errors;  ///< gyro_bias_sigma and accel_noise are used
+  /// A stop of this length gives a window. Its ragged ends, up to 4 s each, stay out of the means
+  /// and are not held against it.
+  Duration min_still = Duration::Seconds(60);
+  /// Along-hole speed above which the tool is not still [m/s]. One count of a 1 cm encoder reads
+  /// as at most 0.005 m/s in a DepthTrack.
+  double speed_limit = 0.006;
+  double travel_limit = 0.1;  ///< along-hole way within one window [m]
+};
+
+/// Finds the stretches at rest in a stream of samples, causally and in constant memory.
+///
+/// The tool clock is cut into blocks of one second. A block is at rest when the scatter of its
+/// samples is that of the sensors' noise (with floors for a tool hanging in a live hole), its mean
+/// rate can be the Earth's with the gyros' bias, its mean rate and specific force agree with those
+/// of the stretch so far, the specific force shows no slope over the stretch (creep, roll), and the
+/// depth, where known, does not move: a tool sliding in a straight hole looks still to its sensors.
+/// Partial blocks, and the first and last whole one of a stretch, are not averaged. Gaps, another
+/// session and a change of the sample period end the stretch; saturation flags it.
+///
+/// Results depend on the samples and Cuts alone, not on how they come in batches.
+class WELLGYRO_EXPORT StillDetector {
+ public:
+  /// Throws std::invalid_argument for a negative sigma or limit, or min_still not above 2 s.
+  explicit StillDetector(const StillSetup& setup);
+
+  /// Takes the next sample and the motion along the hole at its time; duplicates of seq are
+  /// ignored. Returns the window that this sample ended, if one was long enough.
+  [[nodiscard]] std::optional<StillWindow> Push(const ImuSample& sample, const AlongHole& along);
+  /// The mode or the index position changes before the next sample: no window spans it. Windows
+  /// from now on carry `index_position`.
+  [[nodiscard]] std::optional<StillWindow> Cut(std::optional<std::int32_t> index_position);
+  /// End of the stream; returns the open window if it is long enough.
+  [[nodiscard]] std::optional<StillWindow> Flush();
+
+  /// At rest as far as whole blocks and the speed at the last sample tell; true from the third
+  /// block of a stretch on.
+  bool still() const;
+  /// First instant of the stretch's means; meaningful while still().
+  ToolTime still_since() const { return first_.stamp.tool_time; }
+  /// The means so far of the open stretch, of whatever length, for a provisional fix.
+  std::optional<StillWindow> OpenWindow() const;
+
+ private:
+  struct Edge {
+    SampleStamp stamp;
+    std::int64_t block = 0;  ///< number of the block on the tool clock
+  };
+  /// Sums over the samples of one block, relative to its first sample.
+  struct Block {
+    std::int64_t index = 0;
+    SampleStamp first, last;
+    std::int64_t samples = 0;
+    Eigen::Vector3d w0, f0;  ///< the first sample
+    Eigen::Vector3d sum_w, sum_f, sum_b, square_w, square_f;
+    double sum_temperature = 0, sum_md = 0, sum_speed = 0;
+    std::int64_t depths = 0;
+    bool gz = false, mag = false, saturated = false;
+  };
+  /// What remains of a finished block.
+  struct Means {
+    std::int64_t samples = 0;
+    SampleStamp first, last;
+    Eigen::Vector3d w, f, b, var_w, var_f;  ///< means, and scatter of one sample
+    double temperature = 0, md = 0, speed = 0, seconds = 0;
+    bool md_known = false, gz = false, mag = false, saturated = false;
+  };
+  /// Sums over the whole blocks of the stretch that are averaged.
+  struct Stretch {
+    std::int64_t blocks = 0, samples = 0, depths = 0;
+    Eigen::Vector3d w, f, b, square_w, square_f;  ///< running means, sums of squared differences
+    double temperature = 0, md = 0;
+    double sum_t = 0, sum_tt = 0;  ///< for the slope of f, seconds since the first block
+    Eigen::Vector3d sum_f, sum_tf;
+    bool gz = false, mag = false, saturated = false;
+  };
+
+  bool Continues(const SampleStamp& stamp) const;
+  void Add(const ImuSample& sample, const AlongHole& along);
+  std::optional<StillWindow> CloseBlock();
+  bool Whole(const Block& block) const;
+  bool StillAlone(const Means& block) const;
+  bool StillTogether(const Means& block) const;
+  bool Creeps(const Means& newest) const;
+  void Average(const Means& block);
+  std::optional<StillWindow> EndStretch();
+  StillWindow Window() const;
+
+  StillSetup setup_;
+  std::optional<std::int32_t> index_position_;
+  std::optional<SampleStamp> previous_;
+  bool broken_ = true;  ///< the block in progress does not begin at its boundary
+  std::optional<Block> block_;
+  std::optional<Means> pending_;  ///< newest still block, averaged when the next one is still too
+  bool guarded_ = false;          ///< the stretch's first block has passed
+  Stretch stretch_;
+  Edge first_, last_;
+  double md_begin_ = 0;
+  bool md_begin_known_ = false;
+  bool sliding_ = false;  ///< the last sample was above the speed limit
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/time.h"
+#include "wellgyro/record/sample.h"
+
+namespace wellgyro {
+
+struct ClockTieSetup {
+  double sigma_pair = 2e-3;      ///< first guess of the pairs' jitter, per second of pairs [s]
+  double sigma_drift = 1e-4;     ///< of the tool clock's rate before any pair [1]
+  double walk_drift = 1e-8;      ///< of that rate in use [1/sqrt(s)]
+  double unsynced_factor = 100;  ///< times sigma_pair where the surface doubts its UTC
+};
+
+/// Offset and drift of UTC against the tool's clock, from the samples' own pairs of both.
+///
+/// Pairs are averaged over whole seconds of the tool clock and filtered (offset and rate, random
+/// walk of the rate); the jitter is learnt. A second of pairs far out is left out; five in a row
+/// that agree are a step of UTC, which the offset follows and `steps` counts. All sums are integers
+/// relative to the first pair, so that days cost no digits. A new session starts afresh.
+///
+/// Causal: what it says depends on the samples pushed so far, so convert a sample's time when it
+/// is pushed. Only the first sample of a batch carries a pair of its own, the others follow at the
+/// nominal period: batch size moves the tie by less than the drift times the batch's length.
+class WELLGYRO_EXPORT ClockTie {
+ public:
+  explicit ClockTie(const ClockTieSetup& setup = {});
+
+  /// Takes a pair; times that do not advance within a session are ignored.
+  void Push(const SampleStamp& stamp);
+
+  /// True from the first pair on; the conversions need it.
+  bool known() const { return known_; }
+  /// Both straight lines, one the other's inverse within 1 ns, in a session's own times.
+  UtcTime ToUtc(ToolTime time) const;
+  ToolTime ToTool(UtcTime utc) const;
+  double Sigma(ToolTime time) const;       ///< of ToUtc(time) [s]
+  double drift() const { return drift_; }  ///< UTC seconds per tool second, less one
+  double sigma_drift() const;
+  /// No synchronised pair in the last minute, or pairs just now contradict the tie.
+  bool doubtful() const;
+  int steps() const { return steps_; }  ///< of UTC, in this session
+  std::int32_t session() const { return session_; }
+
+ private:
+  void Restart(const SampleStamp& stamp);
+  void CloseCell();
+  void Predict(std::int64_t cell);
+  void Update(double offset, double variance);
+  void Refuse(double offset, double variance);
+  double CellVariance(bool synced, std::int64_t pairs) const;
+
+  ClockTieSetup setup_;
+  bool known_ = false;
+  std::int32_t session_ = 0;
+  ToolTime tool0_;  ///< first pair: all below counts from it
+  UtcTime utc0_;
+  std::int64_t last_tool_ns_ = 0;
+  // Pairs of the second in progress: (utc - utc0) - (tool - tool0) [ns].
+  std::int64_t cell_ = 0, pairs_ = 0, synced_ = 0, sum_ = 0, sum_synced_ = 0;
+  std::int64_t mid_ns_ = 0;  ///< where offset_ holds, since tool0
+  double offset_ = 0;        ///< utc less tool, both from the first pair [s]
+  double drift_ = 0;
+  double p00_ = 0, p01_ = 0, p11_ = 0;
+  double scale_ = 1;  ///< learnt jitter variance over the first guess
+  std::int64_t cells_ = 0;
+  std::optional<std::int64_t> synced_ns_;  ///< the last synchronised second taken, since tool0
+  int refused_ = 0;
+  double refused_first_ = 0, refused_sum_ = 0;
+  int steps_ = 0;
+};
+
+}  // namespace wellgyro
