@@ -35,11 +35,14 @@ struct GridPoint {
   double scale = 1;
 };
 
-/// A UTM zone such as "31N" or "60S". Throws std::invalid_argument for anything else.
+/// A UTM zone on WGS 84 such as "31N" or "60S"; the letter is the hemisphere, not a latitude band.
+/// Throws std::invalid_argument for anything else.
 WELLGYRO_EXPORT GridSpec UtmGrid(const std::string& zone);
 
 /// Projects latitude and longitude [rad]; convergence and scale are the projection's own, whatever
-/// the operator states. Throws std::domain_error outside the projection.
+/// the operator states. Transverse Mercator is good to 5 nm within 35 deg of its central meridian
+/// and ends there. Throws std::domain_error outside the projection, std::invalid_argument when the
+/// grid's parameters make no projection.
 WELLGYRO_EXPORT GridPoint ProjectToGrid(const GridSpec& grid, double latitude, double longitude);
 
 /// Latitude and longitude [rad] of the point `north`, `east` metres from a well head, along the

@@ -1,0 +1,163 @@
+#include "wellgyro/earth/grid.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double Dms(double d, double m, double s) { return FromDegrees(d + m / 60 + s / 3600); }
+
+// The worked examples of IOGP Publication 373-7-2 (EPSG Guidance Note 7-2).
+
+TEST(ProjectToGrid, TransverseMercatorAsPublished) {  // British National Grid
+  GridSpec grid;
+  grid.semi_major = 6377563.396;
+  grid.inverse_flattening = 299.32496;
+  grid.latitude_origin = FromDegrees(49);
+  grid.longitude_origin = FromDegrees(-2);
+  grid.scale_origin = 0.9996012717;
+  grid.false_easting = 400'000;
+  grid.false_northing = -100'000;
+  const GridPoint p = ProjectToGrid(grid, Dms(50, 30, 0), Dms(0, 30, 0));
+  EXPECT_NEAR(p.easting, 577274.99, 0.01);
+  EXPECT_NEAR(p.northing, 69740.50, 0.01);
+}
+
+TEST(ProjectToGrid, LambertConeWithTwoParallelsAsPublished) {  // NAD27 / Texas South Central
+  GridSpec grid;
+  grid.projection = GridSpec::Projection::kLambertConformalConic;
+  grid.semi_major = 6378206.4;
+  grid.inverse_flattening = 294.97870;
+  grid.latitude_origin = Dms(27, 50, 0);
+  grid.longitude_origin = FromDegrees(-99);
+  grid.parallel_1 = Dms(28, 23, 0);
+  grid.parallel_2 = Dms(30, 17, 0);
+  grid.false_easting = 2'000'000 * units::kUsSurveyFoot;
+  const GridPoint p = ProjectToGrid(grid, Dms(28, 30, 0), FromDegrees(-96));
+  EXPECT_NEAR(p.easting / units::kUsSurveyFoot, 2963503.91, 0.01);
+  EXPECT_NEAR(p.northing / units::kUsSurveyFoot, 254759.80, 0.01);
+}
+
+TEST(ProjectToGrid, LambertConeWithOneParallelAsPublished) {  // JAD69 / Jamaica National Grid
+  GridSpec grid;
+  grid.projection = GridSpec::Projection::kLambertConformalConic;
+  grid.semi_major = 6378206.4;
+  grid.inverse_flattening = 294.97870;
+  grid.latitude_origin = grid.parallel_1 = grid.parallel_2 = FromDegrees(18);
+  grid.longitude_origin = FromDegrees(-77);
+  grid.false_easting = 250'000;
+  grid.false_northing = 150'000;
+  const GridPoint p = ProjectToGrid(grid, Dms(17, 55, 55.80), -Dms(76, 56, 37.26));
+  EXPECT_NEAR(p.easting, 255966.58, 0.01);
+  EXPECT_NEAR(p.northing, 142493.51, 0.01);
+}
+
+TEST(ProjectToGrid, PolarStereographicAsPublished) {  // WGS 84 / UPS North
+  GridSpec grid;
+  grid.projection = GridSpec::Projection::kPolarStereographic;
+  grid.scale_origin = 0.994;
+  grid.false_easting = grid.false_northing = 2'000'000;
+  const GridPoint p = ProjectToGrid(grid, FromDegrees(73), FromDegrees(44));
+  EXPECT_NEAR(p.easting, 3320416.75, 0.01);
+  EXPECT_NEAR(p.northing, 632668.43, 0.01);
+}
+
+GridSpec SouthPole() {
+  GridSpec grid;
+  grid.projection = GridSpec::Projection::kPolarStereographic;
+  grid.north_pole = false;
+  grid.longitude_origin = FromDegrees(20);
+  return grid;
+}
+
+GridSpec Cone() {
+  GridSpec grid;
+  grid.projection = GridSpec::Projection::kLambertConformalConic;
+  grid.parallel_1 = FromDegrees(44);
+  grid.parallel_2 = FromDegrees(49);
+  grid.longitude_origin = FromDegrees(3);
+  return grid;
+}
+
+// Convergence and scale by what they mean: where a step to true north goes on the grid.
+TEST(ProjectToGrid, ConvergenceAndScaleAreThoseOfAStepToTrueNorth) {
+  struct Case {
+    GridSpec grid;
+    double latitude_deg, longitude_deg;
+  };
+  for (const Case& c :
+       {Case{UtmGrid("31N"), 60, 5.9}, Case{UtmGrid("31N"), 52, 0.3},
+        Case{UtmGrid("21S"), -33, -55}, Case{SouthPole(), -77, -100}, Case{Cone(), 47, -1}}) {
+    const double latitude = FromDegrees(c.latitude_deg);
+    const double longitude = FromDegrees(c.longitude_deg);
+    const double step = 1e-6;
+    const GridPoint south = ProjectToGrid(c.grid, latitude - step, longitude);
+    const GridPoint north = ProjectToGrid(c.grid, latitude + step, longitude);
+    const GridPoint here = ProjectToGrid(c.grid, latitude, longitude);
+    const double de = north.easting - south.easting, dn = north.northing - south.northing;
+    // The grid azimuth of true north is less the convergence.
+    EXPECT_NEAR(WrapPi(std::atan2(de, dn) + here.convergence), 0, 1e-8) << c.grid.name;
+    EXPECT_NEAR(std::hypot(de, dn) / (2 * step * SiteAt(latitude, 0).radius_north), here.scale,
+                1e-8)
+        << c.grid.name;
+  }
+}
+
+TEST(ProjectToGrid, EastOfTheMeridianInTheNorthConvergenceIsPositive) {
+  EXPECT_GT(ProjectToGrid(UtmGrid("31N"), 1.0, FromDegrees(4)).convergence, 0);
+  EXPECT_LT(ProjectToGrid(UtmGrid("31S"), -1.0, FromDegrees(4)).convergence, 0);
+}
+
+TEST(ProjectToGrid, WorksAcrossTheDateLine) {
+  const GridPoint p = ProjectToGrid(UtmGrid("60N"), 0.7, FromDegrees(-179.5));
+  EXPECT_GT(p.easting, 700'000);
+  EXPECT_LT(p.easting, 800'000);
+}
+
+TEST(ProjectToGrid, RefusesWhatIsOutside) {
+  EXPECT_THROW((void)ProjectToGrid(UtmGrid("31N"), 1.0, FromDegrees(60)), std::domain_error);
+  EXPECT_THROW((void)ProjectToGrid(UtmGrid("31N"), 1.6, 0), std::domain_error);
+  EXPECT_THROW((void)ProjectToGrid(UtmGrid("31N"), 1.0, std::numeric_limits<double>::infinity()),
+               std::domain_error);
+  EXPECT_THROW((void)ProjectToGrid(SouthPole(), kPi / 2, 0), std::domain_error);
+  EXPECT_THROW((void)ProjectToGrid(Cone(), -kPi / 2, 0), std::domain_error);
+  GridSpec odd = UtmGrid("31N");
+  odd.semi_major = -1;
+  EXPECT_THROW((void)ProjectToGrid(odd, 1.0, FromDegrees(3)), std::invalid_argument);
+}
+
+TEST(UtmGrid, KnowsItsZones) {
+  EXPECT_EQ(UtmGrid("31N").name, "UTM 31N");
+  EXPECT_DOUBLE_EQ(UtmGrid("31N").longitude_origin, FromDegrees(3));
+  EXPECT_DOUBLE_EQ(UtmGrid("1S").longitude_origin, FromDegrees(-177));
+  EXPECT_EQ(UtmGrid("60S").false_northing, 1e7);
+  for (const char* odd :
+       {"", "N", "31", "31n", "0N", "61N", "31NN", "-1N", "31X", " 31N", "3 1N"}) {
+    EXPECT_THROW((void)UtmGrid(odd), std::invalid_argument) << odd;
+  }
+}
+
+// Against the radii of curvature for a short step, and back along the geodesic for a long one.
+TEST(OffsetGeodetic, FollowsTheGeodesic) {
+  const GeodeticPoint head{FromDegrees(60), FromDegrees(5)};
+  const Site site = SiteAt(head.latitude, 0);
+  const GeodeticPoint near = OffsetGeodetic(head, 30, -40);
+  EXPECT_NEAR(near.latitude - head.latitude, 30 / site.radius_north, 1e-10);
+  EXPECT_NEAR(near.longitude - head.longitude, -40 / (site.radius_east * 0.5), 2e-10);
+  // Due east the geodesic bends towards the equator by s^2 tan(latitude) / (2 R N).
+  const GeodeticPoint far = OffsetGeodetic(head, 0, 10000);
+  EXPECT_NEAR(far.latitude - head.latitude,
+              -1e8 * std::tan(head.latitude) / (2 * site.radius_north * site.radius_east), 1e-10);
+  EXPECT_EQ(OffsetGeodetic(head, 0, 0).longitude, head.longitude);
+}
+
+}  // namespace
+}  // namespace wellgyro
