@@ -4,6 +4,9 @@
 
 namespace wellgyro {
 
+// g++ takes the enumerator kEarthRate for a shadow of earth/'s constant, which it cannot be.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
 /// Why a value is worth less than its sigma says, as a set of bits that travels with the value to
 /// the survey file. The bits are those of survey_station_t.quality.
 enum class Quality : std::uint32_t {
@@ -20,6 +23,7 @@ enum class Quality : std::uint32_t {
   kEarthRate = 1u << 9,    ///< the rate at rest differs from the Earth's beyond its limit
   kClock = 1u << 10,       ///< the tie between the tool's clock and UTC is doubtful
 };
+#pragma GCC diagnostic pop
 
 constexpr Quality operator|(Quality a, Quality b) {
   return static_cast<Quality>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
