@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/simulate/simulation.h"
+
+namespace wellgyro {
+
+/// Direction of the hole at one depth, in L at that place.
+struct HoleDirection {
+  Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();   ///< unit, down-hole
+  Eigen::Vector3d curvature = Eigen::Vector3d::Zero();  ///< d tangent / d md, in L [1/m]
+};
+
+/// Direction along the hole, twice differentiable: by laws of inclination and azimuth, or as the
+/// normalised natural cubic spline of the stations' tangents, which is regular at vertical. The
+/// spline meets each station's direction; between stations it is the truth by definition.
+class WELLGYRO_EXPORT HoleShape {
+ public:
+  /// Throws std::invalid_argument, naming the field and the value: fewer than two stations, depths
+  /// not increasing, more than 60 deg between neighbours, a term without the ramp it needs, a hole
+  /// within 1 deg of straight up.
+  explicit HoleShape(const SimulatedWell& well);
+
+  double begin_md() const { return begin_md_; }  ///< [m]
+  double end_md() const { return end_md_; }      ///< [m]
+  /// Shortest length along the hole over which its direction has structure of its own [m].
+  double detail() const { return detail_; }
+  HoleDirection At(double md) const;
+
+ private:
+  struct Angle {
+    double value, slope;
+  };
+  // w(md) of one term, with what else it takes.
+  struct Term {
+    double begin, length, ramp_in, ramp_out;
+    double rate, amplitude, wave_number, phase;
+  };
+  struct Law {
+    double start = 0;
+    std::vector<Term> terms;
+  };
+  struct Knot {
+    double md;
+    Eigen::Vector3d value, bend;  // tangent and second derivative of the spline
+  };
+  Law MakeLaw(const AngleLaw& law, const char* name);
+  void MakeSpline(const std::vector<WellPoint>& stations);
+  static Angle Evaluate(const Law& law, double md);
+  HoleDirection OnSpline(double md) const;
+
+  double begin_md_ = 0;
+  double end_md_ = 0;
+  double detail_ = 0;
+  Law inclination_;
+  Law azimuth_;
+  std::vector<Knot> knots_;
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,162 @@
+#include "wellgyro/simulate/run_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/simulate/smooth_window.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kTurnPerShortTime = 0.1;  // [rad]
+constexpr double kWavePerShortTime = 0.5;  // [rad]
+
+void Require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+double CommandedRoll(double toolface, double md, RollReference reference, const TruthWell& well) {
+  return reference == RollReference::kHighSide ? toolface : toolface + well.PointAt(md).azimuth;
+}
+
+}  // namespace
+
+RunPlan::RunPlan(const SimulatedRun& run, const TruthWell& well) {
+  Require(run.start_md >= well.begin_md() && run.start_md <= well.end_md(),
+          fmt::format("run.start_md {} m is outside the well, {} to {} m", run.start_md,
+                      well.begin_md(), well.end_md()));
+  end_.md = run.start_md;
+  end_.roll = CommandedRoll(run.start_toolface, run.start_md, run.roll_reference, well);
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    if (const auto* stop = std::get_if<RunStop>(&run.steps[i])) {
+      AddStop(*stop, run, well, i);
+    } else {
+      AddMove(std::get<RunMove>(run.steps[i]), well, i);
+    }
+  }
+  std::sort(breaks_.begin(), breaks_.end());
+}
+
+void RunPlan::AddLeg(Leg leg) {
+  leg.begin = seconds_;
+  leg.md = end_.md;
+  leg.roll = end_.roll;
+  breaks_.insert(breaks_.end(), {leg.begin, leg.begin + leg.seconds});
+  if (leg.ramp > 0) {
+    breaks_.insert(breaks_.end(), {leg.begin + leg.ramp, leg.begin + leg.seconds - leg.ramp});
+  }
+  seconds_ += leg.seconds;
+  legs_.push_back(leg);
+}
+
+void RunPlan::AddTurn(double angle, double turn_seconds) {
+  if (angle == 0) return;
+  modes_.push_back({.time = seconds_, .mode = ToolMode::Mode::kMoving, .index_position = {}});
+  AddLeg({.seconds = turn_seconds, .turn = angle, .wave = {}});
+  end_.roll += angle;
+  // The quintic step's greatest slope is 15/8 of its mean.
+  short_time_ = std::min(short_time_, kTurnPerShortTime * turn_seconds / (1.875 * std::abs(angle)));
+}
+
+void RunPlan::AddStop(const RunStop& stop, const SimulatedRun& run, const TruthWell& well,
+                      std::size_t number) {
+  Require(stop.seconds >= 0 && std::isfinite(stop.seconds),
+          fmt::format("run.steps[{}].seconds {} is no length of time", number, stop.seconds));
+  Require(stop.turn_seconds > 0,
+          fmt::format("run.steps[{}].turn_seconds {} is not positive", number, stop.turn_seconds));
+  if (stop.toolface) {
+    const double target = CommandedRoll(*stop.toolface, end_.md, run.roll_reference, well);
+    AddTurn(WrapPi(target - end_.roll), stop.turn_seconds);
+  }
+  const std::vector<double> single(1, 0.0);
+  const bool indexed = !stop.index_angles.empty();
+  const std::vector<double>& angles = indexed ? stop.index_angles : single;
+  const double base = end_.roll;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    AddTurn(base + angles[i] - end_.roll, stop.turn_seconds);
+    end_.roll = base + angles[i];
+    ModeChange change{.time = seconds_, .mode = stop.mode, .index_position = {}};
+    if (indexed) {
+      change.index_position = static_cast<std::int32_t>(i);
+      change.index_angle = angles[i];
+    }
+    modes_.push_back(change);
+    AddLeg({.seconds = stop.seconds, .wave = {}});
+  }
+}
+
+void RunPlan::AddMove(const RunMove& move, const TruthWell& well, std::size_t number) {
+  const auto field = [number](const char* name, double value) {
+    return fmt::format("run.steps[{}].{} {}", number, name, value);
+  };
+  Require(move.to_md >= well.begin_md() && move.to_md <= well.end_md(),
+          field("to_md", move.to_md) +
+              fmt::format(" m is outside the well, {} to {} m", well.begin_md(), well.end_md()));
+  Require(move.speed > 0, field("speed", move.speed) + " m/s is not positive");
+  Require(move.ramp > 0, field("ramp", move.ramp) + " s is not positive");
+  const bool waves = move.roll.amplitude != 0;
+  Require(!waves || move.roll.period > 0,
+          field("roll.period", move.roll.period) + " s is not positive");
+  const double distance = move.to_md - end_.md;
+  if (distance == 0) return;
+  const double whole = std::max(std::abs(distance) / move.speed, move.ramp);
+  modes_.push_back({.time = seconds_, .mode = ToolMode::Mode::kContinuous, .index_position = {}});
+  AddLeg({.seconds = whole + move.ramp,
+          .ramp = move.ramp,
+          .speed = distance / whole,
+          .wave = move.roll});
+  end_.md = move.to_md;
+  end_.roll += move.roll.rate * whole;
+  if (move.roll.rate != 0) {
+    short_time_ = std::min(short_time_, kTurnPerShortTime / std::abs(move.roll.rate));
+  }
+  if (waves) {
+    short_time_ = std::min(short_time_, kWavePerShortTime * move.roll.period / kTwoPi);
+  }
+  short_time_ = std::min(
+      {short_time_, move.ramp / 4, well.shape().detail() / 4 / std::abs(legs_.back().speed)});
+}
+
+RunMotion RunPlan::At(double time) const {
+  if (legs_.empty() || time >= seconds_) return end_;
+  const auto after = std::upper_bound(legs_.begin() + 1, legs_.end(), time,
+                                      [](double t, const Leg& leg) { return t < leg.begin; });
+  const Leg& leg = *(after - 1);
+  RunMotion motion{.md = leg.md, .roll = leg.roll};
+  const double x = std::max(time - leg.begin, 0.0);
+  if (leg.turn != 0) {
+    const SmoothWindow s = SmoothStep(std::min(x / leg.seconds, 1.0));
+    motion.roll += leg.turn * s.value;
+    motion.roll_rate = leg.turn * s.slope / leg.seconds;
+    motion.still = false;
+  } else if (leg.speed != 0) {
+    const SmoothWindow w = SmoothWindowAt(x, leg.seconds, leg.ramp, leg.ramp);
+    motion.md += leg.speed * w.integral;
+    motion.speed = leg.speed * w.value;
+    motion.acceleration = leg.speed * w.slope;
+    motion.roll += leg.wave.rate * w.integral;
+    motion.roll_rate = leg.wave.rate * w.value;
+    motion.still = false;
+    if (leg.wave.amplitude != 0) {
+      const double frequency = kTwoPi / leg.wave.period;
+      const double s = std::sin(frequency * x + leg.wave.phase);
+      const double c = std::cos(frequency * x + leg.wave.phase);
+      motion.roll += leg.wave.amplitude * w.value * s;
+      motion.roll_rate += leg.wave.amplitude * (w.slope * s + w.value * frequency * c);
+    }
+  }
+  return motion;
+}
+
+double RunPlan::NextBreak(double time) const {
+  const auto next = std::upper_bound(breaks_.begin(), breaks_.end(), time);
+  return next == breaks_.end() ? std::numeric_limits<double>::infinity() : *next;
+}
+
+}  // namespace wellgyro
