@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "wellgyro/attitude/filter_state.h"
+#include "wellgyro/base/export.h"
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/record/attitude_sample.h"
+#include "wellgyro/record/knot.h"
+#include "wellgyro/record/noise.h"
+#include "wellgyro/record/north_fix.h"
+
+namespace wellgyro {
+
+/// What the filter must know before the first knot.
+struct FilterSetup {
+  NoiseCoefficients gyro;  ///< of both axes
+  ErrorPriors errors;
+  Site site;  ///< where the run starts; latitude and height are carried along the hole
+  /// True azimuth of the axis at the begin of the first knot [rad]; absent: unknown.
+  std::optional<double> start_azimuth;
+  double start_sigma = 0;  ///< of start_azimuth [rad]
+  /// How much the hole may bend while samples are missing: 1-sigma dogleg where the speed is known
+  /// [rad/m], and 1-sigma transverse rate where it is not [rad/s].
+  double gap_dogleg = 1.7e-3;
+  double gap_rate = 1.7e-3;
+};
+
+/// One knot as the filter left it.
+struct FilterEpoch {
+  Knot knot;
+  double azimuth = 0;        ///< at knot.time, from what was known then [rad], not wrapped
+  double sigma_azimuth = 0;  ///< [rad]
+  bool azimuth_known = false;
+  bool station = false;
+};
+
+/// What became of a north fix.
+enum class FixUse {
+  kUsed,       ///< its azimuth, or the rates of its still knots, entered
+  kMirror,     ///< the same with its mirror azimuth, which continuity chose
+  kAmbiguous,  ///< not used: nothing tells the azimuth from its mirror
+  kNoKnot,     ///< not used: no knot covers its time
+};
+
+struct FilterFix {
+  NorthFix fix;
+  FixUse use = FixUse::kUsed;
+  double azimuth = 0;           ///< the branch that was used [rad]
+  double chi_square = 0;        ///< of that branch against the azimuth before; 0 where unknown
+  bool rates = false;           ///< the still knots of its window entered instead of its azimuth
+  std::size_t epoch_begin = 0;  ///< first epoch of the window, and the one at which a plain azimuth
+  std::size_t epoch_end = 0;    ///< holds is epoch_end - 1; both 0: before the first knot
+};
+
+/// All that a run left: what Smooth() works on. Grows by one epoch a knot.
+struct FilterHistory {
+  FilterSetup setup;
+  std::vector<FilterEpoch> epochs;
+  std::vector<FilterFix> fixes;  ///< in the order in which they came, the unused included
+};
+
+/// Azimuth with an honest covariance, from knots and north fixes in the order of time.
+///
+/// An extended Kalman filter on azimuth, drift and the tool's constant errors (notes of Knot give
+/// the signs: the azimuth grows by turn - d_turn . errors + Earth + transport). The azimuth is
+/// unknown until a start azimuth or a fix gives it, and again after a vertical stretch or when its
+/// sigma passes that of a flat distribution, pi/sqrt(3): then azimuth_known is false. At rest the
+/// azimuth is held. A fix found in samples enters by the mean rates of its still knots, about its
+/// azimuth, so that gyro bias, mass unbalance and the rest correlate it rightly with the drift and
+/// with other fixes; any other fix enters as azimuth and cov_attitude(1, 1), taken as independent.
+///
+/// A first knot with zero `seconds` only says where the run begins. One filter for one run.
+class WELLGYRO_EXPORT AzimuthFilter {
+ public:
+  /// Throws std::invalid_argument naming the field when the setup has a negative or non-finite
+  /// number or no site.
+  explicit AzimuthFilter(const FilterSetup& setup);
+  ~AzimuthFilter();
+  AzimuthFilter(AzimuthFilter&&) noexcept;
+  AzimuthFilter& operator=(AzimuthFilter&&) noexcept;
+
+  /// Carries the state to knot.time; the result is what is known there now. Throws
+  /// std::invalid_argument when the knot does not end after the one before.
+  const AttitudeSample& Step(const Knot& knot);
+
+  /// Takes a fix that holds at any time up to the last knot, an external one also between knots or
+  /// at the start; later knots are worked again. Returns what became of it.
+  FilterFix Update(const NorthFix& fix);
+
+  /// Makes the last knot a station, for position covariance and for Smooth().
+  /// Throws std::logic_error before the first knot.
+  const StationState& MarkStation();
+
+  /// After the last Step or Update.
+  const AttitudeSample& attitude() const;
+  /// The marked stations as the filter knew them when it passed (later fixes do not change a
+  /// station, except one that comes after the station it precedes).
+  const std::vector<StationState>& stations() const;
+  const FilterHistory& history() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wellgyro
