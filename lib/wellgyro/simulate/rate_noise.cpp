@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/simulate/random_stream.h"
 
 namespace wellgyro {
 namespace {
@@ -54,14 +55,15 @@ double GaussMarkov::Mean(double seconds) {
 RateNoise::RateNoise(const NoiseCoefficients& noise, bool flicker, std::uint64_t seed,
                      std::uint64_t stream)
     : noise_(noise),
-      white_(seed, stream * kStreamsPerAxis + kWhite),
-      walk_random_(seed, stream * kStreamsPerAxis + kWalk) {
-  Random drawn(seed, stream * kStreamsPerAxis + kDrawn);
+      white_(RandomStream(seed, stream * kStreamsPerAxis + kWhite)),
+      walk_random_(RandomStream(seed, stream * kStreamsPerAxis + kWalk)) {
+  Random drawn = RandomStream(seed, stream * kStreamsPerAxis + kDrawn);
   const double constant = drawn.Normal();
   ramp_ = drawn.Uniform() < 0.5 ? -noise.rate_ramp : noise.rate_ramp;
   if (noise.bias_instability == 0) return;
   const auto random = [&](int i) {
-    return Random(seed, stream * kStreamsPerAxis + kInstability + static_cast<std::uint64_t>(i));
+    return RandomStream(seed,
+                        stream * kStreamsPerAxis + kInstability + static_cast<std::uint64_t>(i));
   };
   if (flicker) {
     const double sigma = noise.bias_instability * std::sqrt(std::log(kFlickerRatio) / kPi);

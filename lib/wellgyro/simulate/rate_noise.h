@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/math/random.h"
 #include "wellgyro/record/noise.h"
-#include "wellgyro/simulate/random.h"
 
 namespace wellgyro {
 

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/simulate/random_stream.h"
+
 namespace wellgyro {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr std::uint64_t kLossStream = 3000;
 }  // namespace
 
 SampleBatcher::SampleBatcher(const SimulatedStreams& streams, std::uint64_t seed)
-    : streams_(streams), loss_(seed, kLossStream) {
+    : streams_(streams), loss_(RandomStream(seed, kLossStream)) {
   if (streams.batch < 1) {
     throw std::invalid_argument(fmt::format("streams.batch {} is not positive", streams.batch));
   }

@@ -8,6 +8,8 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/simulate/random_stream.h"
+
 namespace wellgyro {
 namespace {
 
@@ -33,8 +35,8 @@ Simulator::Simulator(const Simulation& simulation)
       tool_(simulation.tool),
       truth_(simulation),
       sensor_errors_(simulation.tool, simulation.seed),
-      jitter_(simulation.seed, kJitter),
-      depth_noise_(simulation.seed, kDepthNoise),
+      jitter_(RandomStream(simulation.seed, kJitter)),
+      depth_noise_(RandomStream(simulation.seed, kDepthNoise)),
       period_ns_(PeriodNs(simulation.streams.imu_hz)) {
   const double drift = tool_.errors.clock_drift;
   if (!(std::abs(drift) < 0.5)) {

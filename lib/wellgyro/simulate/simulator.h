@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/math/random.h"
 #include "wellgyro/record/depth_mark.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/sample.h"
-#include "wellgyro/simulate/random.h"
 #include "wellgyro/simulate/simulation.h"
 #include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/simulate/truth.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wellgyro/simulate/random_stream.h"
+
 namespace wellgyro {
 namespace {
 
@@ -20,7 +22,7 @@ double Clip(double value, double full_scale, bool& saturated) {
 ToolErrors DrawToolErrors(const ErrorPriors& priors, const NoiseCoefficients& noise,
                           std::uint64_t seed) {
   std::uint64_t stream = kDrawn;
-  const auto draw = [&](double sigma) { return sigma * Random(seed, stream++).Normal(); };
+  const auto draw = [&](double sigma) { return sigma * RandomStream(seed, stream++).Normal(); };
   ToolErrors errors;
   for (double& bias : errors.gyro_bias) bias = draw(priors.gyro_bias_sigma);
   for (double& scale : errors.gyro_scale) scale = draw(priors.gyro_scale_sigma);
@@ -49,9 +51,9 @@ SensorErrors::SensorErrors(const SimulatedTool& tool, std::uint64_t seed)
       gyro_noise_{RateNoise(tool.errors.gyro_noise, tool.errors.flicker, seed, 0),
                   RateNoise(tool.errors.gyro_noise, tool.errors.flicker, seed, 1),
                   RateNoise(tool.errors.gyro_noise, tool.errors.flicker, seed, 2)},
-      accel_noise_{Random(seed, kAccelNoise), Random(seed, kAccelNoise + 1),
-                   Random(seed, kAccelNoise + 2)},
-      mag_noise_(seed, kMagNoise),
+      accel_noise_{RandomStream(seed, kAccelNoise), RandomStream(seed, kAccelNoise + 1),
+                   RandomStream(seed, kAccelNoise + 2)},
+      mag_noise_(RandomStream(seed, kMagNoise)),
       // Rounding to steps of d has the Allan variance of Q = d / sqrt(12).
       gyro_quantizer_{Quantizer(std::sqrt(12.0) * tool.errors.gyro_noise.quantization),
                       Quantizer(std::sqrt(12.0) * tool.errors.gyro_noise.quantization),
