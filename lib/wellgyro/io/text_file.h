@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+
+namespace wellgyro {
+
+/// A file that a result rests on.
+struct InputFile {
+  std::string role;            ///< job, noise, tie_in, ...
+  std::string name;            ///< as the user wrote it
+  std::filesystem::path path;  ///< where it was found
+  std::string sha256;          ///< of the very bytes that were used
+};
+
+/// The bytes of the file at `path`. Fault kIo when it cannot be opened or read or is a directory,
+/// kForeign when it is larger than `limit` bytes.
+WELLGYRO_EXPORT Result<std::string> ReadTextFile(const std::filesystem::path& path,
+                                                 std::int64_t limit = 1 << 26);
+
+}  // namespace wellgyro
