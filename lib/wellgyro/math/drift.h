@@ -31,8 +31,8 @@ struct DriftStep {
 };
 
 /// The standard deviation of a Gauss-Markov process whose Allan deviation has the same maximum as a
-/// flicker floor 0.6643 B: sigma = 1.0749 B (with the maximum at 1.89 correlation times).
-inline constexpr double kMarkovSigmaPerInstability = 1.0749;
+/// flicker floor 0.6643 B: sigma = 1.0760 B (with the maximum at 1.89 correlation times).
+inline constexpr double kMarkovSigmaPerInstability = 1.0760;
 
 /// Exact over `seconds` >= 0 while the gain [1] is constant: steps may be split at will. With a
 /// zero gain the rate goes on and the integral rests. Throws std::domain_error when seconds is
