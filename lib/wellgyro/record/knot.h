@@ -19,6 +19,9 @@ namespace wellgyro {
 ///   turn + integral of [cos A cot I (W_e cos L + ...) + W_e sin L + transport],
 /// and by the sensitivities below times the errors of the sensors (estimate = truth + error, and
 /// the sensitivity is d(azimuth turn)/d(sensor error) with the error left uncorrected).
+///
+/// turn, cot, lift and everything derived from them cover the sampled time, seconds - gap_seconds:
+/// how the hole turned during a gap is unknown, with the Earth's part of it.
 struct Knot {
   /// Sensor errors whose effect on the azimuth turn is kept, in this order.
   enum Source {
