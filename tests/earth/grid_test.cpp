@@ -159,5 +159,46 @@ TEST(OffsetGeodetic, FollowsTheGeodesic) {
   EXPECT_EQ(OffsetGeodetic(head, 0, 0).longitude, head.longitude);
 }
 
+TEST(WellGrid, WithoutAStatementIsTheProjection) {
+  const GeodeticPoint head{FromDegrees(60), FromDegrees(5.5)};
+  const WellGrid well(UtmGrid("31N"), head);
+  const GeodeticPoint place = OffsetGeodetic(head, 1500, -900);
+  const GridPoint truth = ProjectToGrid(UtmGrid("31N"), place.latitude, place.longitude);
+  const GridPoint point = well.At(1500, -900);
+  EXPECT_NEAR(point.northing, truth.northing, 1e-8);
+  EXPECT_NEAR(point.easting, truth.easting, 1e-8);
+  EXPECT_NEAR(point.convergence, truth.convergence, 1e-15);
+}
+
+TEST(WellGrid, WhatTheOperatorStatesHolds) {
+  const GeodeticPoint head{FromDegrees(60), FromDegrees(5.5)};
+  GridSpec grid = UtmGrid("31N");
+  grid.convergence = FromDegrees(1.9);
+  grid.scale = 0.99975;
+  const WellGrid well(grid, head);
+  const GridPoint start = well.At(0, 0);
+  EXPECT_EQ(start.northing, well.projected_head().northing);
+  EXPECT_NEAR(start.convergence, *grid.convergence, 1e-15);
+  EXPECT_NEAR(start.scale, *grid.scale, 1e-15);
+  // A step of true azimuth 70 deg has grid azimuth 68.1 deg and the stated scale.
+  const double azimuth = FromDegrees(70);
+  const GridPoint step = well.At(10 * std::cos(azimuth), 10 * std::sin(azimuth));
+  const double dn = step.northing - start.northing, de = step.easting - start.easting;
+  EXPECT_NEAR(std::atan2(de, dn), azimuth - *grid.convergence, 1e-6);
+  EXPECT_NEAR(std::hypot(dn, de), 10 * *grid.scale, 1e-5);
+  // Along the well convergence changes as the projection's own.
+  const GridPoint own = WellGrid(UtmGrid("31N"), head).At(0, 4000);
+  EXPECT_NEAR(well.At(0, 4000).convergence - own.convergence,
+              *grid.convergence - well.projected_head().convergence, 1e-15);
+  EXPECT_GT(own.convergence, well.projected_head().convergence + FromDegrees(0.05));
+}
+
+TEST(WellGrid, RefusesStatementsThatMakeNoSense) {
+  GridSpec grid = UtmGrid("31N");
+  grid.scale = 0;
+  EXPECT_THROW(WellGrid(grid, {1, 0.05}), std::invalid_argument);
+  EXPECT_THROW(WellGrid(UtmGrid("31N"), {1, 2}), std::domain_error);
+}
+
 }  // namespace
 }  // namespace wellgyro

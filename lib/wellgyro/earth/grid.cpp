@@ -132,4 +132,33 @@ GeodeticPoint OffsetGeodetic(GeodeticPoint head, double north, double east) {
   return {.latitude = FromDegrees(latitude), .longitude = FromDegrees(longitude)};
 }
 
+WellGrid::WellGrid(const GridSpec& grid, GeodeticPoint head)
+    : grid_(grid),
+      head_(head),
+      projected_head_(ProjectToGrid(grid, head.latitude, head.longitude)) {
+  if (grid.scale && !(*grid.scale > 0 && std::isfinite(*grid.scale))) {
+    throw std::invalid_argument(fmt::format("WellGrid: stated scale {}", *grid.scale));
+  }
+  if (grid.convergence && !std::isfinite(*grid.convergence)) {
+    throw std::invalid_argument("WellGrid: stated convergence is not finite");
+  }
+}
+
+GridPoint WellGrid::At(double north, double east) const {
+  const GeodeticPoint place = OffsetGeodetic(head_, north, east);
+  GridPoint point = ProjectToGrid(grid_, place.latitude, place.longitude);
+  const double turn =
+      grid_.convergence.value_or(projected_head_.convergence) - projected_head_.convergence;
+  const double stretch = grid_.scale.value_or(projected_head_.scale) / projected_head_.scale;
+  const double dn = point.northing - projected_head_.northing;
+  const double de = point.easting - projected_head_.easting;
+  // More convergence means a smaller grid azimuth.
+  const double c = std::cos(turn), s = std::sin(turn);
+  point.northing = projected_head_.northing + stretch * (c * dn + s * de);
+  point.easting = projected_head_.easting + stretch * (c * de - s * dn);
+  point.convergence += turn;
+  point.scale *= stretch;
+  return point;
+}
+
 }  // namespace wellgyro

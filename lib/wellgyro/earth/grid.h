@@ -45,11 +45,38 @@ WELLGYRO_EXPORT GridSpec UtmGrid(const std::string& zone);
 /// grid's parameters make no projection.
 WELLGYRO_EXPORT GridPoint ProjectToGrid(const GridSpec& grid, double latitude, double longitude);
 
-/// Latitude and longitude [rad] of the point `north`, `east` metres from a well head, along the
-/// geodesic of WGS 84 with the azimuth and length of (north, east).
+/// A place on WGS 84.
 struct GeodeticPoint {
-  double latitude = 0, longitude = 0;
+  double latitude = 0;   ///< [rad]
+  double longitude = 0;  ///< [rad]
 };
+
+/// The place `north`, `east` metres from a well head, along the geodesic of WGS 84 with the azimuth
+/// and length of (north, east). Lengths count on the ellipsoid: depth and elevation, which change
+/// them by 0.016 % per kilometre, are left out as the trade does.
 WELLGYRO_EXPORT GeodeticPoint OffsetGeodetic(GeodeticPoint head, double north, double east);
+
+/// The grid around one well, with what the operator states about it.
+///
+/// Where the operator states convergence or scale, both hold at the well head: grid offsets from
+/// the head are turned and stretched as a whole, so that they hold there, and change along the well
+/// as the projection's own do. The head's coordinates stay the projection's.
+class WELLGYRO_EXPORT WellGrid {
+ public:
+  /// Throws as ProjectToGrid, and std::invalid_argument when the stated scale is not positive or
+  /// the stated convergence not finite.
+  WellGrid(const GridSpec& grid, GeodeticPoint head);
+
+  /// The point `north`, `east` metres from the well head. Throws std::domain_error outside the
+  /// projection.
+  GridPoint At(double north, double east) const;
+
+  const GridPoint& projected_head() const { return projected_head_; }  ///< nothing stated applied
+
+ private:
+  GridSpec grid_;
+  GeodeticPoint head_;
+  GridPoint projected_head_;
+};
 
 }  // namespace wellgyro

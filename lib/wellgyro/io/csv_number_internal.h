@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace wellgyro {
+
+/// Number texts for files: locale-free, never a negative zero.
+std::string Fixed(double value, int decimals);
+std::string Significant(double value);   ///< 9 significant digits
+std::string Metres(double value);        ///< to 1e-4
+std::string AngleDeg(double radians);    ///< degrees to 1e-6
+std::string AzimuthDeg(double radians);  ///< degrees to 1e-6, from 0 up to 359.999999
+
+}  // namespace wellgyro

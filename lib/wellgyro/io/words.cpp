@@ -1,0 +1,85 @@
+#include "wellgyro/io/words.h"
+
+#include <array>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace wellgyro {
+namespace {
+
+using Words = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 4> kKinds{"tie_in", "gyrocompass", "continuous", "still"};
+constexpr std::array<std::string_view, 5> kStatuses{"provisional", "field", "definitive",
+                                                    "rejected", "superseded"};
+constexpr std::array<std::string_view, 4> kPasses{"stationary", "in", "out", "repeat"};
+constexpr std::array<std::string_view, 4> kVerdicts{"pass", "warn", "fail", "not_done"};
+constexpr std::array<std::string_view, 5> kDepths{"indicated", "wireline", "drill_pipe", "tubing",
+                                                  "other"};
+constexpr std::array<std::string_view, 11> kEvents{
+    "",          "depth_zero", "depth_rezero", "depth_tie", "return_to_zero", "foresight",
+    "run_begin", "run_end",    "accept",       "reject",    "remark"};
+constexpr std::array<std::string_view, 11> kFlags{
+    "moved",       "mirror",  "vertical", "saturated",  "gap",  "depth",
+    "temperature", "aliased", "gravity",  "earth_rate", "clock"};
+
+template <class Enum>
+std::string_view WordAt(Words words, Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  assert(index < words.size());
+  return index < words.size() ? words[index] : "unknown";
+}
+
+template <class Enum>
+std::optional<Enum> Find(Words words, std::string_view word) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!word.empty() && words[i] == word) return static_cast<Enum>(i);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view WordOf(StationKind kind) { return WordAt(kKinds, kind); }
+std::string_view WordOf(StationStatus status) { return WordAt(kStatuses, status); }
+std::string_view WordOf(Pass pass) { return WordAt(kPasses, pass); }
+std::string_view WordOf(Verdict verdict) { return WordAt(kVerdicts, verdict); }
+std::string_view WordOf(Event::Kind kind) { return WordAt(kEvents, kind); }
+std::string_view WordOf(DepthKind kind) { return WordAt(kDepths, kind); }
+
+std::optional<StationKind> StationKindOf(std::string_view word) {
+  return Find<StationKind>(kKinds, word);
+}
+std::optional<Event::Kind> EventKindOf(std::string_view word) {
+  return Find<Event::Kind>(kEvents, word);
+}
+std::optional<DepthKind> DepthKindOf(std::string_view word) {
+  return Find<DepthKind>(kDepths, word);
+}
+
+std::string QualityText(Quality quality) {
+  std::string text;
+  for (std::size_t i = 0; i < kFlags.size(); ++i) {
+    if (!Has(quality, static_cast<Quality>(1u << i))) continue;
+    if (!text.empty()) text += '+';
+    text += kFlags[i];
+  }
+  return text.empty() ? "good" : text;
+}
+
+std::optional<Quality> QualityOf(std::string_view text) {
+  if (text == "good") return Quality::kGood;
+  Quality quality = Quality::kGood;
+  for (;;) {
+    const std::size_t plus = text.find('+');
+    const auto bit = Find<std::uint32_t>(kFlags, text.substr(0, plus));
+    if (!bit) return std::nullopt;
+    quality |= static_cast<Quality>(1u << *bit);
+    if (plus == std::string_view::npos) return quality;
+    text.remove_prefix(plus + 1);
+  }
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "wellgyro/base/depth.h"
+#include "wellgyro/base/export.h"
+#include "wellgyro/record/check.h"
+#include "wellgyro/record/operations.h"
+#include "wellgyro/record/quality.h"
+#include "wellgyro/record/station.h"
+
+/// The words that files use for what records hold, one list for reading and writing.
+namespace wellgyro {
+
+WELLGYRO_EXPORT std::string_view WordOf(StationKind kind);      ///< tie_in, gyrocompass, ...
+WELLGYRO_EXPORT std::string_view WordOf(StationStatus status);  ///< provisional, field, ...
+WELLGYRO_EXPORT std::string_view WordOf(Pass pass);             ///< stationary, in, out, repeat
+WELLGYRO_EXPORT std::string_view WordOf(Verdict verdict);       ///< pass, warn, fail, not_done
+WELLGYRO_EXPORT std::string_view WordOf(Event::Kind kind);      ///< depth_zero, depth_rezero, ...
+WELLGYRO_EXPORT std::string_view WordOf(DepthKind kind);        ///< indicated, wireline, ...
+
+/// `good`, or the names of the set flags joined by `+`: moved mirror vertical saturated gap depth
+/// temperature aliased gravity earth_rate clock.
+WELLGYRO_EXPORT std::string QualityText(Quality quality);
+
+/// Back from the word; nothing for any other word.
+WELLGYRO_EXPORT std::optional<StationKind> StationKindOf(std::string_view word);
+WELLGYRO_EXPORT std::optional<Event::Kind> EventKindOf(std::string_view word);
+WELLGYRO_EXPORT std::optional<DepthKind> DepthKindOf(std::string_view word);
+WELLGYRO_EXPORT std::optional<Quality> QualityOf(std::string_view text);
+
+}  // namespace wellgyro
