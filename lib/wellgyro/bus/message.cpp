@@ -1,0 +1,66 @@
+#include "wellgyro/bus/message.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace wellgyro {
+namespace {
+
+struct Place {
+  std::string Channels::*name;
+  const char* field;
+};
+
+// In the order of MessageType.
+constexpr std::array<Place, kMessageTypes> kPlaces = {{
+    {&Channels::raw, "raw"},
+    {&Channels::imu, "imu"},
+    {&Channels::still, "still"},
+    {&Channels::depth, "depth"},
+    {&Channels::mode, "mode"},
+    {&Channels::tool, "tool"},
+    {&Channels::event, "event"},
+    {&Channels::command, "command"},
+    {&Channels::station, "station"},
+    {&Channels::status, "status"},
+}};
+
+constexpr std::size_t kLongestName = 63;
+
+bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+}  // namespace
+
+const std::string& NameOf(const Channels& channels, MessageType type) {
+  return channels.*kPlaces.at(static_cast<std::size_t>(type)).name;
+}
+
+std::optional<MessageType> TypeOn(const Channels& channels, std::string_view name) {
+  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+    if (channels.*kPlaces[i].name == name) return static_cast<MessageType>(i);
+  }
+  return std::nullopt;
+}
+
+void Validate(const Channels& channels) {
+  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+    const std::string& name = channels.*kPlaces[i].name;
+    if (name.empty() || name.size() > kLongestName ||
+        std::any_of(name.begin(), name.end(), IsControl)) {
+      throw std::invalid_argument(
+          fmt::format("channels.{} = \"{}\": a channel name has 1 to {} bytes and no control "
+                      "characters",
+                      kPlaces[i].field, name, kLongestName));
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (channels.*kPlaces[k].name != name) continue;
+      throw std::invalid_argument(fmt::format("channels.{} and channels.{} are both \"{}\"",
+                                              kPlaces[k].field, kPlaces[i].field, name));
+    }
+  }
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/record/channels.h"
+#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/operations.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/record/station.h"
+#include "wellgyro/record/status.h"
+#include "wellgyro/record/still_window.h"
+
+namespace wellgyro {
+
+/// The types of proto/, in the order of Message's alternatives.
+enum class MessageType {
+  kRawBatch,
+  kImuBatch,
+  kStillWindow,
+  kDepth,
+  kToolMode,
+  kToolInfo,
+  kEvent,
+  kCommand,
+  kStation,
+  kStatus,
+};
+inline constexpr int kMessageTypes = 10;
+
+struct RawBatch {
+  std::vector<RawSample> samples;
+};
+
+struct ImuBatch {
+  std::vector<ImuSample> samples;
+};
+
+/// A station as it travels. `tool`, `tool_time`, `pass_number` and `dogleg_severity` of the record
+/// do not; they are zero on arrival.
+struct SentStation {
+  Station station;
+  std::int64_t seq = 0;
+  std::int32_t session = 0;
+};
+
+/// Any message of proto/ as a record. Of a StillWindow that travelled, `seq_begin` and `seq_end`
+/// are the message's number and `samples` is zero.
+using Message = std::variant<RawBatch, ImuBatch, StillWindow, DepthMark, ToolMode, ToolInfo, Event,
+                             Command, SentStation, Status>;
+
+/// The struct's name in proto/, as "imu_batch_t".
+WELLGYRO_EXPORT std::string_view TypeName(MessageType type);
+
+/// The first eight bytes of every message of the type: LCM's hash over field names, types, order
+/// and dimensions.
+WELLGYRO_EXPORT std::uint64_t Fingerprint(MessageType type);
+
+/// What the bytes say they are by their fingerprint; nothing when it is none of ours.
+WELLGYRO_EXPORT std::optional<MessageType> TypeOf(std::span<const std::byte> message);
+
+/// The channel's name for a type.
+WELLGYRO_EXPORT const std::string& NameOf(const Channels& channels, MessageType type);
+
+/// The type that belongs on a channel; nothing when the channel is none of ours.
+WELLGYRO_EXPORT std::optional<MessageType> TypeOn(const Channels& channels, std::string_view name);
+
+/// Throws std::invalid_argument, naming the field, when a name is empty, longer than the 63 bytes
+/// that LCM takes, holds a control character, or stands twice.
+WELLGYRO_EXPORT void Validate(const Channels& channels);
+
+}  // namespace wellgyro

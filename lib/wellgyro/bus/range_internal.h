@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+/// What fields may hold beyond what their type says; the same on the way in and out.
+namespace wellgyro {
+
+inline constexpr std::int32_t kBatchMax = 1000;  ///< N_MAX of imu_batch_t and raw_batch_t
+
+// Differences and sums of two times, or of two sample numbers, stay inside 64 bits.
+inline constexpr std::int64_t kUtcMaxUs = std::int64_t{4'000'000'000'000'000};  ///< year 2096
+inline constexpr std::int64_t kToolTimeMax = std::int64_t{1} << 61;             ///< [ns] 73 years
+inline constexpr std::int64_t kCountMax = std::int64_t{1} << 61;
+
+constexpr bool IsUtc(std::int64_t us) { return us >= 0 && us <= kUtcMaxUs; }
+constexpr bool IsToolTime(std::int64_t ns) { return ns >= -kToolTimeMax && ns <= kToolTimeMax; }
+constexpr bool IsCount(std::int64_t n) { return n >= 0 && n <= kCountMax; }
+
+}  // namespace wellgyro

@@ -1,0 +1,329 @@
+#include <gtest/gtest.h>
+
+#include "wellgyro/bus/decode.h"
+#include "wellgyro/bus/encode.h"
+
+#include "bus/generated_messages.h"
+
+// Both directions against the classes that lcm-gen writes: our reader must give every field of
+// what they wrote, and our writer the same bytes again.
+namespace wellgyro::test {
+namespace {
+
+template <class Record>
+Record Decoded(MessageType type, const Bytes& bytes) {
+  const Result<Message> message = Decode(type, bytes, "CHANNEL");
+  if (!message) {
+    ADD_FAILURE() << message.fault().text;
+    return {};
+  }
+  Bytes again;
+  Encode(*message, again);
+  EXPECT_EQ(again, bytes) << "the same bytes again";
+  return std::get<Record>(*message);
+}
+
+void ExpectTriangle(const Eigen::Matrix3d& cov, const double (&triangle)[6]) {
+  EXPECT_EQ(cov, cov.transpose());
+  int i = 0;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) EXPECT_EQ(cov(row, column), triangle[i++]);
+  }
+}
+
+void ExpectStamp(const SampleStamp& stamp, const auto& m, int k) {
+  EXPECT_EQ(stamp.tool_time.ns, m.tool_ns + std::int64_t{k} * m.period_ns);
+  EXPECT_EQ(stamp.utc.ns, m.utime_us * 1000 + std::int64_t{k} * m.period_ns);
+  EXPECT_EQ(stamp.seq, m.seq + k);
+  EXPECT_EQ(stamp.session, m.session);
+  EXPECT_EQ(stamp.run, m.run);
+  EXPECT_EQ(stamp.tool, m.tool);
+  EXPECT_EQ(stamp.period_ns, m.period_ns);
+}
+
+class ImuWire : public testing::TestWithParam<std::tuple<int, bool, bool>> {};
+
+TEST_P(ImuWire, EveryFieldBothWays) {
+  const auto [n, gz, mag] = GetParam();
+  const imu_batch_t m = GeneratedImu(n, gz, mag);
+  const auto samples = Decoded<ImuBatch>(MessageType::kImuBatch, BytesOf(m)).samples;
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const ImuSample& s = samples[i];
+    ExpectStamp(s.stamp, m, k);
+    EXPECT_FALSE(s.stamp.gyro_saturated);
+    EXPECT_TRUE(s.stamp.accel_saturated);
+    EXPECT_EQ(s.stamp.temperature, m.temperature_degc);
+    EXPECT_EQ(s.has_gz, gz);
+    EXPECT_EQ(s.has_mag, mag);
+    EXPECT_EQ(s.w_IT_T, Eigen::Vector3d(m.gx_rps[i], m.gy_rps[i], gz ? m.gz_rps[i] : 0));
+    EXPECT_EQ(s.f_T, Eigen::Vector3d(m.ax_mps2[i], m.ay_mps2[i], m.az_mps2[i]));
+    EXPECT_EQ(s.b_T, mag ? Eigen::Vector3d(m.mx_t[i], m.my_t[i], m.mz_t[i])
+                         : Eigen::Vector3d(Eigen::Vector3d::Zero()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, ImuWire,
+                         testing::Combine(testing::Values(1, 2, 32, 1000), testing::Bool(),
+                                          testing::Bool()));
+
+class RawWire : public testing::TestWithParam<std::tuple<int, int, int>> {};
+
+TEST_P(RawWire, EveryFieldBothWays) {
+  const auto [n, channels, temperatures] = GetParam();
+  const raw_batch_t m = GeneratedRaw(n, channels, temperatures);
+  const auto samples = Decoded<RawBatch>(MessageType::kRawBatch, BytesOf(m)).samples;
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    const RawSample& s = samples[static_cast<std::size_t>(k)];
+    ExpectStamp(s.stamp, m, k);
+    EXPECT_TRUE(s.stamp.gyro_saturated);
+    EXPECT_FALSE(s.stamp.accel_saturated);
+    EXPECT_EQ(s.n_channels, channels);
+    EXPECT_EQ(s.n_temperatures, temperatures);
+    for (int c = 0; c < channels; ++c) {
+      EXPECT_EQ(s.counts.at(static_cast<std::size_t>(c)),
+                m.counts[static_cast<std::size_t>(c * n + k)]);
+    }
+    for (std::size_t t = 0; t < m.temperature_raw.size(); ++t) {
+      EXPECT_EQ(s.temperature_raw.at(t), m.temperature_raw[t]);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, RawWire,
+                         testing::Combine(testing::Values(1, 7, 1000), testing::Values(1, 9, 16),
+                                          testing::Values(0, 1, 8)));
+
+TEST(Wire, EachStatusBitOfABatch) {
+  const auto decoded = [](std::int32_t status) {
+    imu_batch_t m = GeneratedImu(1, false, false);
+    m.status = status;
+    return Decoded<ImuBatch>(MessageType::kImuBatch, BytesOf(m)).samples.at(0).stamp;
+  };
+  EXPECT_TRUE(decoded(1).gyro_saturated);
+  EXPECT_TRUE(decoded(2).accel_saturated);
+  EXPECT_TRUE(decoded(4).utc_unsynced);
+  EXPECT_TRUE(decoded(8).simulated);
+  const SampleStamp none = decoded(0);
+  EXPECT_FALSE(none.gyro_saturated || none.accel_saturated || none.utc_unsynced || none.simulated);
+}
+
+TEST(Wire, StillWindow) {
+  const still_window_t m = GeneratedStill();
+  const auto w = Decoded<StillWindow>(MessageType::kStillWindow, BytesOf(m));
+  EXPECT_EQ(w.utc_begin.ns, m.utime_us * 1000);
+  EXPECT_EQ(w.utc_end - w.utc_begin, Duration{m.duration_ns});
+  EXPECT_EQ(w.seconds(), 90.0000005);
+  EXPECT_EQ(w.seq_begin, m.seq);
+  EXPECT_EQ(w.seq_end, m.seq);
+  EXPECT_EQ(w.samples, 0);
+  EXPECT_EQ(w.session, m.session);
+  EXPECT_EQ(w.run, m.run);
+  EXPECT_EQ(w.tool, m.tool);
+  EXPECT_TRUE(w.has_gz && w.has_mag);
+  EXPECT_EQ(w.index_position, m.index_position);
+  EXPECT_EQ(w.w_IT_T, Eigen::Vector3d(m.w_rps));
+  EXPECT_EQ(w.sigma_w_IT_T, Eigen::Vector3d(m.sigma_w_rps));
+  EXPECT_EQ(w.f_T, Eigen::Vector3d(m.f_mps2));
+  EXPECT_EQ(w.sigma_f_T, Eigen::Vector3d(m.sigma_f_mps2));
+  EXPECT_EQ(w.b_T, Eigen::Vector3d(m.m_t));
+  EXPECT_EQ(w.temperature, m.temperature_degc);
+  EXPECT_EQ(w.md, m.md_m);
+}
+
+TEST(Wire, StillWindowThatRestsOnSamplesSendsTheToolsDuration) {
+  StillWindow window;
+  window.utc_begin.ns = 5'000'000'000;
+  window.utc_end.ns = 6'000'000'000;
+  window.begin.ns = -1;
+  window.end.ns = 2'000'000'002;
+  window.samples = 100;
+  Bytes bytes;
+  Encode(window, bytes);
+  still_window_t m{};
+  ASSERT_EQ(m.decode(bytes.data(), 0, static_cast<int>(bytes.size())),
+            static_cast<int>(bytes.size()));
+  EXPECT_EQ(m.duration_ns, 2'000'000'003);
+  EXPECT_EQ(m.status, 0);
+}
+
+TEST(Wire, Depth) {
+  const depth_t m = GeneratedDepth();
+  const auto d = Decoded<DepthMark>(MessageType::kDepth, BytesOf(m));
+  EXPECT_EQ(d.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(d.seq, m.seq);
+  EXPECT_EQ(d.session, m.session);
+  EXPECT_EQ(d.run, m.run);
+  EXPECT_EQ(d.kind, DepthKind::kDrillPipe);
+  EXPECT_EQ(d.md, m.md_m);
+  EXPECT_EQ(d.speed, m.speed_mps);
+  EXPECT_EQ(d.tension, m.tension_n);
+  EXPECT_EQ(d.sigma, m.sigma_m);
+  EXPECT_TRUE(d.corrected);
+  EXPECT_FALSE(d.stopped || d.manual || d.magnetic_mark);
+}
+
+TEST(Wire, DepthWithoutItsOptionalFields) {
+  depth_t m = GeneratedDepth();
+  m.status = depth_t::STOPPED | depth_t::MANUAL | depth_t::MARK;
+  m.speed_mps = m.tension_n = m.sigma_m = 0;
+  const auto d = Decoded<DepthMark>(MessageType::kDepth, BytesOf(m));
+  EXPECT_FALSE(d.speed || d.tension || d.sigma || d.corrected);
+  EXPECT_TRUE(d.stopped && d.manual && d.magnetic_mark);
+}
+
+TEST(Wire, ToolMode) {
+  const tool_mode_t m = GeneratedMode();
+  const auto r = Decoded<ToolMode>(MessageType::kToolMode, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.seq, m.seq);
+  EXPECT_EQ(r.session, m.session);
+  EXPECT_EQ(r.run, m.run);
+  EXPECT_EQ(r.mode, ToolMode::Mode::kGyrocompass);
+  EXPECT_EQ(r.imu_seq, m.imu_seq);
+  EXPECT_EQ(r.command_id, m.command_id);
+  EXPECT_EQ(r.index_position, m.index_position);
+  EXPECT_EQ(r.index_angle, m.index_angle_rad);
+}
+
+TEST(Wire, ToolInfo) {
+  const tool_info_t m = GeneratedTool();
+  const auto r = Decoded<ToolInfo>(MessageType::kToolInfo, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.seq, m.seq);
+  EXPECT_EQ(r.session, m.session);
+  EXPECT_EQ(r.run, m.run);
+  EXPECT_EQ(r.tool, m.tool);
+  EXPECT_EQ(r.string_position, m.string_position);
+  EXPECT_EQ(r.sensor_below_reference, m.sensor_below_reference_m);
+  EXPECT_EQ(r.asset_serial, m.asset_serial);
+  EXPECT_EQ(r.sensor_serials, m.sensor_serials);
+  EXPECT_EQ(r.firmware, "");
+  EXPECT_EQ(r.calibration_sha256, m.calibration_sha256);
+}
+
+TEST(Wire, Event) {
+  const event_t m = GeneratedEvent();
+  const auto r = Decoded<wellgyro::Event>(MessageType::kEvent, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.seq, m.seq);
+  EXPECT_EQ(r.session, m.session);
+  EXPECT_EQ(r.run, m.run);
+  EXPECT_EQ(r.kind, wellgyro::Event::Kind::kDepthTie);
+  EXPECT_EQ(r.event_id, m.event_id);
+  EXPECT_TRUE(r.has_value);
+  EXPECT_EQ(r.value_m, m.value_m);
+  EXPECT_EQ(r.sigma_m, m.sigma_m);
+  EXPECT_EQ(r.value_rad, m.value_rad);
+  EXPECT_EQ(r.sigma_rad, m.sigma_rad);
+  EXPECT_EQ(r.what, m.what);
+  EXPECT_EQ(r.who, "");
+  EXPECT_EQ(r.text, m.text);
+}
+
+TEST(Wire, Command) {
+  const survey_cmd_t m = GeneratedCommand();
+  const auto r = Decoded<Command>(MessageType::kCommand, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.seq, m.seq);
+  EXPECT_EQ(r.session, m.session);
+  EXPECT_EQ(r.command_id, m.command_id);
+  EXPECT_EQ(r.kind, Command::Kind::kTakeStation);
+  EXPECT_EQ(r.duration, m.duration_s);
+  EXPECT_EQ(r.md, m.md_m);
+}
+
+TEST(Wire, Station) {
+  const survey_station_t m = GeneratedStation();
+  const auto sent = Decoded<SentStation>(MessageType::kStation, BytesOf(m));
+  const Station& r = sent.station;
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(sent.seq, m.seq);
+  EXPECT_EQ(sent.session, m.session);
+  EXPECT_EQ(r.run, m.run);
+  EXPECT_EQ(r.pass, Pass::kOut);
+  EXPECT_EQ(r.number, m.station);
+  EXPECT_EQ(r.revision, m.revision);
+  EXPECT_EQ(r.status, StationStatus::kDefinitive);
+  EXPECT_EQ(r.kind, StationKind::kStill);
+  EXPECT_EQ(r.quality, Quality::kMoved | Quality::kTemperature);
+  EXPECT_EQ(r.md, m.md_m);
+  EXPECT_EQ(r.inclination, m.inclination_rad);
+  EXPECT_EQ(r.azimuth, m.azimuth_true_rad);
+  EXPECT_EQ(r.toolface, m.toolface_rad);
+  ExpectTriangle(r.cov_md_inc_azi, m.cov_md_inc_azi);
+  EXPECT_EQ(r.p_WT_W, Eigen::Vector3d(m.north_m, m.east_m, m.tvd_m));
+  ExpectTriangle(r.cov_p_WT_W, m.cov_ned_m2);
+  EXPECT_EQ(r.gravity, m.gravity_mps2);
+  EXPECT_EQ(r.gravity_ref, m.gravity_ref_mps2);
+  EXPECT_EQ(r.earth_rate, m.earth_rate_rps);
+  EXPECT_EQ(r.earth_rate_ref, m.earth_rate_ref_rps);
+  EXPECT_EQ(r.imu_seq_begin, m.imu_seq_begin);
+  EXPECT_EQ(r.imu_seq_end, m.imu_seq_end);
+  EXPECT_EQ(r.samples_lost, m.samples_lost);
+}
+
+TEST(Wire, Status) {
+  const status_t m = GeneratedStatus();
+  const auto r = Decoded<Status>(MessageType::kStatus, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.seq, m.seq);
+  EXPECT_EQ(r.session, m.session);
+  EXPECT_EQ(r.state, Status::State::kDegraded);
+  EXPECT_EQ(r.last_command_id, m.last_command_id);
+  EXPECT_EQ(r.samples_received, m.samples_received);
+  EXPECT_EQ(r.samples_lost, m.samples_lost);
+  EXPECT_EQ(r.gaps, m.gaps);
+  EXPECT_EQ(r.duplicates, m.duplicates);
+  EXPECT_EQ(r.malformed, m.malformed);
+  EXPECT_EQ(r.kernel_drops, m.kernel_drops);
+  EXPECT_EQ(r.latency_p99, m.latency_p99_s);
+  EXPECT_EQ(r.data_age, m.data_age_s);
+  EXPECT_EQ(r.text, m.text);
+}
+
+TEST(Wire, EveryEnumeratorStandsForItsConstant) {
+  EXPECT_EQ(static_cast<int>(DepthKind::kOther), int{depth_t::OTHER});
+  EXPECT_EQ(static_cast<int>(DepthKind::kWireline), int{depth_t::WIRELINE});
+  EXPECT_EQ(static_cast<int>(ToolMode::Mode::kIdle), int{tool_mode_t::IDLE});
+  EXPECT_EQ(static_cast<int>(ToolMode::Mode::kContinuous), int{tool_mode_t::CONTINUOUS});
+  EXPECT_EQ(static_cast<int>(wellgyro::Event::Kind::kDepthZero), int{event_t::DEPTH_ZERO});
+  EXPECT_EQ(static_cast<int>(wellgyro::Event::Kind::kForesight), int{event_t::FORESIGHT});
+  EXPECT_EQ(static_cast<int>(wellgyro::Event::Kind::kRemark), int{event_t::REMARK});
+  EXPECT_EQ(static_cast<int>(Command::Kind::kAbort), int{survey_cmd_t::ABORT});
+  EXPECT_EQ(static_cast<int>(Command::Kind::kFinish), int{survey_cmd_t::FINISH});
+  EXPECT_EQ(static_cast<int>(StationKind::kStill), int{survey_station_t::STILL});
+  EXPECT_EQ(static_cast<int>(StationStatus::kSuperseded), int{survey_station_t::SUPERSEDED});
+  EXPECT_EQ(static_cast<int>(Status::State::kFault), int{status_t::FAULT});
+}
+
+TEST(Wire, TimesTravelInWholeMicroseconds) {
+  DepthMark mark;
+  mark.utc.ns = 1'999;
+  Bytes bytes;
+  Encode(mark, bytes);
+  EXPECT_EQ(std::get<DepthMark>(*Decode(MessageType::kDepth, bytes)).utc.ns, 1'000);
+}
+
+TEST(Wire, ABatchBufferIsAllocatedOnce) {
+  std::vector<ImuSample> buffer;
+  const Bytes large = BytesOf(GeneratedImu(100, true, false));
+  const Bytes small = BytesOf(GeneratedImu(10, false, true));
+  ASSERT_TRUE(DecodeImuBatch(large, buffer));
+  const ImuSample* place = buffer.data();
+  const auto few = DecodeImuBatch(small, buffer);
+  ASSERT_TRUE(few);
+  EXPECT_EQ(few->size(), 10U);
+  EXPECT_EQ(few->data(), place);
+  EXPECT_EQ((*few)[9].w_IT_T[2], 0) << "nothing remains of the batch before";
+  EXPECT_FALSE((*few)[9].has_gz);
+  const auto many = DecodeImuBatch(large, buffer);
+  ASSERT_TRUE(many);
+  EXPECT_EQ(many->data(), place);
+  EXPECT_EQ((*many)[99].b_T, Eigen::Vector3d(0, 0, 0));
+}
+
+}  // namespace
+}  // namespace wellgyro::test
