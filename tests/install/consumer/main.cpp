@@ -1,0 +1,23 @@
+// A vendor's program: one sample into a surveyor, and a message decoded, with installed headers.
+#include <cstdio>
+
+#include <wellgyro/base/angle.h>
+#include <wellgyro/bus/decode.h>
+#include <wellgyro/earth/earth.h>
+#include <wellgyro/survey/surveyor.h>
+
+int main() {
+  wellgyro::Job job;
+  job.well.latitude = wellgyro::FromDegrees(60);
+  wellgyro::Sink sink;
+  wellgyro::Surveyor surveyor(job, sink);
+  wellgyro::ImuSample sample;
+  sample.stamp.period_ns = 10'000'000;
+  sample.f_T = {0, 0, -9.82};
+  surveyor.Push(sample);
+  surveyor.Finish();
+  const wellgyro::Survey survey = surveyor.Current(0);
+  std::printf("%.6f m/s2; %s\n", wellgyro::SiteAt(job.well.latitude, 0).gravity,
+              survey.unusable.c_str());
+  return survey.unusable.empty() ? 1 : 0;
+}

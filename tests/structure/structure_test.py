@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+"""Holds the tree to the house's rules: who may include whom, what public headers may show, and what
+lib never does. Each failure names file and line. Standard library only."""
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
+LIB = os.path.join(TOP, "lib", "wellgyro")
+
+STAGES = {"calibration", "noise", "alignment", "attitude", "depth", "trajectory", "uncertainty"}
+LOW = {"base", "math", "earth", "record"}
+ALLOWED = {
+    "base": set(),
+    "math": {"base"},
+    "earth": {"base", "math"},
+    "record": {"base", "math", "earth"},
+    "simulate": {"base", "math", "record"},
+    "survey": LOW | STAGES,
+    "io": LOW | STAGES | {"survey", "simulate"},
+    "fit": LOW | STAGES | {"survey"},
+    "bus": LOW | STAGES | {"survey"},
+}
+ALLOWED.update({stage: set(LOW) for stage in STAGES})
+
+STD = set("""algorithm array atomic bit cassert cctype cerrno cfloat charconv cinttypes climits cmath
+compare complex condition_variable concepts csignal cstddef cstdint cstdio cstdlib cstring deque
+exception filesystem fstream functional initializer_list iomanip iosfwd iterator istream limits list
+locale map memory mutex new numbers numeric optional ostream queue random ratio regex set span sstream
+stack stdexcept streambuf string string_view system_error thread tuple type_traits unordered_map
+unordered_set utility valarray variant vector version""".split())
+
+BANS = [
+    (r"\b(system_clock|steady_clock|high_resolution_clock)\b|\bclock_gettime\b|\bgettimeofday\b"
+     r"|\bstd::time\s*\(|[^_\w.>:]time\s*\(\s*(NULL|nullptr|0)\s*\)", "reads a clock"),
+    (r"\brandom_device\b|[^_\w]s?rand\s*\(|\bdrand48\b", "reads a random device"),
+    (r"\b(secure_)?getenv\b", "reads the environment"),
+    (r"\bM_PI\b", "M_PI: use wellgyro/base/angle.h"),
+    (r"\busing namespace\b", "using namespace"),
+    (r"^\s*#\s*define\s+(?!WELLGYRO_EXPORT\b)", "defines a macro"),
+    (r"TODO|FIXME|XXX", "unfinished"),
+]
+
+
+def Sources(folder, endings=(".h", ".cpp")):
+    for where, _, names in os.walk(folder):
+        for name in sorted(names):
+            if name.endswith(endings):
+                yield os.path.join(where, name)
+
+
+def Lines(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read().splitlines()
+
+
+def Code(path):
+    """Numbered lines without comments and string contents."""
+    text = "\n".join(Lines(path))
+    text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m.group().count("\n"), text, flags=re.S)
+    for number, line in enumerate(text.split("\n"), 1):
+        if not line.lstrip().startswith("#include"):
+            line = re.sub(r'"(\\.|[^"\\])*"', '""', line)
+        yield number, re.sub(r"//.*", "", line)
+
+
+def Includes(path):
+    for number, line in Code(path):
+        found = re.match(r'\s*#\s*include\s+([<"])([^>"]+)[>"]', line)
+        if found:
+            yield number, found.group(1), found.group(2)
+
+
+def Room(path):
+    return os.path.relpath(path, LIB).split(os.sep)[0]
+
+
+def Place(path, number):
+    return f"{os.path.relpath(path, TOP)}:{number}"
+
+
+class Structure(unittest.TestCase):
+    def Report(self, problems):
+        self.assertFalse(problems, "\n" + "\n".join(problems))
+
+    def test_rooms_include_only_along_the_arrows(self):
+        problems = []
+        for path in Sources(LIB):
+            room = Room(path)
+            for number, _, target in Includes(path):
+                found = re.match(r"wellgyro/(\w+)/", target)
+                if found and found.group(1) != room and found.group(1) not in ALLOWED[room]:
+                    problems.append(f"{Place(path, number)}: {room} may not include {target}")
+        self.Report(problems)
+
+    def test_every_room_is_known(self):
+        self.assertEqual(sorted(d for d in os.listdir(LIB) if os.path.isdir(os.path.join(LIB, d))),
+                         sorted(ALLOWED))
+
+    def test_public_headers_show_only_std_eigen_and_ours(self):
+        problems = []
+        for path in Sources(LIB, (".h",)):
+            if path.endswith("_internal.h"):
+                continue
+            for number, kind, target in Includes(path):
+                ours = kind == '"' and target.startswith("wellgyro/")
+                eigen = kind == "<" and target.startswith("Eigen/")
+                if not (ours or eigen or (kind == "<" and target in STD)):
+                    problems.append(f"{Place(path, number)}: a header may not include {target}")
+        self.Report(problems)
+
+    def test_internal_headers_stay_inside(self):
+        problems = []
+        for path in Sources(LIB, (".h",)):
+            for number, _, target in Includes(path):
+                if target.endswith("_internal.h") and not path.endswith("_internal.h"):
+                    problems.append(f"{Place(path, number)}: shows {target}")
+        self.Report(problems)
+
+    def test_lib_keeps_the_bans(self):
+        problems = []
+        for path in Sources(LIB):
+            for number, line in Code(path):
+                for pattern, why in BANS:
+                    if re.search(pattern, line):
+                        problems.append(f"{Place(path, number)}: {why}")
+        self.Report(problems)
+
+    def test_third_parties_stay_in_their_rooms(self):
+        homes = {"ceres/": {"fit"}, "lcm/": {"bus"}, "GeographicLib/": {"earth"},
+                 "toml++/": {"io"}, "pugixml": {"io"}, "openssl/": {"io"}}
+        problems = []
+        for path in Sources(LIB):
+            for number, kind, target in Includes(path):
+                for start, rooms in homes.items():
+                    if kind == "<" and target.startswith(start) and Room(path) not in rooms:
+                        problems.append(f"{Place(path, number)}: {target} belongs to {rooms}")
+        self.Report(problems)
+
+    def test_posix_only_in_bus_and_one_file_of_io(self):
+        posix = re.compile(r"^(unistd\.h|fcntl\.h|poll\.h|pthread\.h|sys/.*|netinet/.*|arpa/.*)$")
+        io_files, problems = set(), []
+        for path in Sources(LIB):
+            for number, _, target in Includes(path):
+                if not posix.match(target):
+                    continue
+                if Room(path) == "io":
+                    io_files.add(os.path.relpath(path, TOP))
+                elif Room(path) != "bus":
+                    problems.append(f"{Place(path, number)}: POSIX outside bus/")
+        if len(io_files) > 1:
+            problems.append(f"POSIX in more than one file of io/: {sorted(io_files)}")
+        self.Report(problems)
+
+    def test_headers_are_small(self):
+        problems, sizes = [], []
+        for path in Sources(LIB, (".h",)):
+            lines = Lines(path)
+            sizes.append(len(lines))
+            if len(lines) > 300:
+                problems.append(f"{os.path.relpath(path, TOP)}: {len(lines)} lines, 300 is the stop")
+            if "#pragma once" not in lines:
+                problems.append(f"{os.path.relpath(path, TOP)}: no #pragma once")
+        self.Report(problems)
+        self.assertLessEqual(sorted(sizes)[len(sizes) // 2], 110, "median length of a header")
+
+    def test_every_source_is_built(self):
+        problems = []
+        for path in Sources(LIB, (".cpp",)):
+            lists = os.path.join(LIB, Room(path), "CMakeLists.txt")
+            name = os.path.relpath(path, os.path.dirname(lists))
+            if not re.search(rf"(?<![\w/]){re.escape(name)}\b", "\n".join(Lines(lists))):
+                problems.append(f"{os.path.relpath(path, TOP)}: stands in no CMakeLists.txt")
+        self.Report(problems)
+
+    def test_apps_do_no_arithmetic_rooms(self):
+        problems = []
+        for path in Sources(os.path.join(TOP, "apps")):
+            for number, line in Code(path):
+                if re.search(r"std::(sin|cos|tan|atan2?|sqrt|exp|log)\s*\(", line):
+                    problems.append(f"{Place(path, number)}: arithmetic belongs to lib")
+        self.Report(problems)
+
+    def test_top_level_holds_nothing_else(self):
+        listed = subprocess.run(["git", "ls-tree", "--name-only", "HEAD"], cwd=TOP, text=True,
+                                capture_output=True, check=False).stdout.split()
+        allowed = {"CMakeLists.txt", "CMakePresets.json", "lib", "apps", "proto", "tests", "data",
+                   "README.md", "LICENSE"}
+        self.Report([name for name in listed if name not in allowed and not name.startswith(".")])
+
+    def test_no_path_of_a_machine(self):
+        files = subprocess.run(["git", "ls-files"], cwd=TOP, text=True, capture_output=True,
+                               check=False).stdout.split("\n")
+        pattern = re.compile(r"/(work|home|root|Users|farm)/\w")
+        problems = []
+        for name in files:
+            path = os.path.join(TOP, name)
+            if not name or not os.path.isfile(path) or name == "tests/structure/structure_test.py":
+                continue
+            try:
+                for number, line in enumerate(Lines(path), 1):
+                    if pattern.search(line):
+                        problems.append(f"{name}:{number}: {line.strip()[:80]}")
+            except UnicodeDecodeError:
+                continue
+        self.Report(problems)
+
+
+if __name__ == "__main__":
+    sys.exit(0 if unittest.main(verbosity=1, exit=False).result.wasSuccessful() else 1)
