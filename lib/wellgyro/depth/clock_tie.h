@@ -10,7 +10,7 @@
 namespace wellgyro {
 
 struct ClockTieSetup {
-  double sigma_pair = 2e-3;      ///< first guess of the pairs' jitter, per second of pairs [s]
+  double sigma_pair = 2e-3;      ///< first guess of the jitter of a second's pairs [s]
   double sigma_drift = 1e-4;     ///< of the tool clock's rate before any pair [1]
   double walk_drift = 1e-8;      ///< of that rate in use [1/sqrt(s)]
   double unsynced_factor = 100;  ///< times sigma_pair where the surface doubts its UTC
@@ -25,7 +25,8 @@ struct ClockTieSetup {
 ///
 /// Causal: what it says depends on the samples pushed so far, so convert a sample's time when it
 /// is pushed. Only the first sample of a batch carries a pair of its own, the others follow at the
-/// nominal period: batch size moves the tie by less than the drift times the batch's length.
+/// nominal period: a pair is taken where utc - tool_time changes (or has not for ten seconds), so
+/// that batch size moves the tie by no more than the pairs' own jitter.
 class WELLGYRO_EXPORT ClockTie {
  public:
   explicit ClockTie(const ClockTieSetup& setup = {});
@@ -47,30 +48,43 @@ class WELLGYRO_EXPORT ClockTie {
   std::int32_t session() const { return session_; }
 
  private:
+  /// Pairs of the second in progress: sums relative to its first.
+  struct Cell {
+    std::int64_t index = 0;                   ///< second of the tool clock
+    std::int64_t tool_ns = 0;                 ///< first pair, since tool0_
+    std::int64_t difference = 0;              ///< its (utc - utc0_) - (tool - tool0_) [ns]
+    std::int64_t pairs = 0, synced = 0;       ///< unsynced ones only until a synced one comes
+    double sum_tool = 0, sum_difference = 0;  ///< [s]
+  };
+
   void Restart(const SampleStamp& stamp);
+  void AddPair(std::int64_t tool_ns, std::int64_t difference, bool synced);
   void CloseCell();
-  void Predict(std::int64_t cell);
-  void Update(double offset, double variance);
-  void Refuse(double offset, double variance);
-  double CellVariance(bool synced, std::int64_t pairs) const;
+  void Predict(std::int64_t tool_ns);
+  void Update(double innovation, double variance);
+  void Refuse(double innovation, double variance, bool synced);
+  void Learn(double surprise);
+  void Rescale(double factor);
+  double CellVariance(bool synced) const;
 
   ClockTieSetup setup_;
   bool known_ = false;
   std::int32_t session_ = 0;
   ToolTime tool0_;  ///< first pair: all below counts from it
-  UtcTime utc0_;
-  std::int64_t last_tool_ns_ = 0;
-  // Pairs of the second in progress: (utc - utc0) - (tool - tool0) [ns].
-  std::int64_t cell_ = 0, pairs_ = 0, synced_ = 0, sum_ = 0, sum_synced_ = 0;
-  std::int64_t mid_ns_ = 0;  ///< where offset_ holds, since tool0
-  double offset_ = 0;        ///< utc less tool, both from the first pair [s]
+  UtcTime utc0_;    ///< of the first pair, moved along by steps
+  std::int64_t last_ns_ = 0;
+  std::int64_t difference_ = 0;  ///< of the last sample
+  std::int64_t fresh_ns_ = 0;    ///< last pair taken
+  Cell cell_;
+  std::int64_t cells_ = 0;   ///< taken
+  std::int64_t mid_ns_ = 0;  ///< where offset_ holds, since tool0_
+  double offset_ = 0;        ///< (utc - utc0_) - (tool - tool0_) [s]
   double drift_ = 0;
   double p00_ = 0, p01_ = 0, p11_ = 0;
-  double scale_ = 1;  ///< learnt jitter variance over the first guess
-  std::int64_t cells_ = 0;
-  std::optional<std::int64_t> synced_ns_;  ///< the last synchronised second taken, since tool0
-  int refused_ = 0;
-  double refused_first_ = 0, refused_sum_ = 0;
+  double scale_ = 1;                       ///< learnt jitter variance over the first guess
+  std::optional<std::int64_t> synced_ns_;  ///< the last synchronised second taken, since tool0_
+  int refused_ = 0;                        ///< seconds in a row that agree with each other
+  double refused_sum_ = 0;
   int steps_ = 0;
 };
 

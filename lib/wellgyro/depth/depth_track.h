@@ -18,21 +18,25 @@ struct DepthTrackSetup {
   Duration half_window = Duration::Seconds(2);  ///< marks this far on both sides are fitted
   Duration latency = Duration::Seconds(1);      ///< how far behind the newest a mark may come in
   Duration max_gap = Duration::Seconds(5);      ///< between marks, above which depth is unknown
-  double sigma_reading = 0.003;                 ///< of one mark, rounding of the encoder [m]
-  double sigma_md = 0;                          ///< of marks that bring no sigma of their own [m]
+  double speed_limit = 10;       ///< faster steps between marks are jumps of the counter [m/s]
+  double sigma_reading = 0.003;  ///< of one mark, rounding of the encoder [m]
+  double sigma_md = 0;           ///< of marks that bring no sigma of their own [m]
 };
 
 /// Depth of the string's reference point against UTC, from the marks of the depth system.
 ///
 /// Depth, speed and acceleration at an instant t are a local quadratic with weights 1 - u^2 over
-/// the marks within `half_window` of t (a straight line where fewer than four marks are there): a
-/// function of these marks alone. It is never extrapolated beyond the last mark; between marks
-/// further apart than `max_gap` depth is unknown, unless the first says `stopped` and both agree
-/// within 2 cm. With a 1 cm encoder the speed is good to 2 mm/s and the acceleration to 2 mm/s^2
-/// (rms, 10 Hz); at 1 Hz to 4 mm/s and 8 mm/s^2. A change of speed is smeared over the window.
+/// the marks nearer to t than `half_window` (the line between the two neighbours where fewer than
+/// three are): a function of these marks alone. It is never extrapolated beyond the last mark.
+/// Between marks further apart than `max_gap` depth is unknown, unless the first says `stopped` and
+/// both agree within 2 cm; across a jump of the counter it is unknown, and no fit spans one.
+/// A 1 cm encoder on a winch that swings by 4 cm/s gives speed and acceleration to 1 mm/s and
+/// 2 mm/s^2 rms at 10 Hz, to 2 mm/s and 5 mm/s^2 at 1 Hz; one count at rest reads as 5 mm/s. A
+/// sudden change of speed is smeared over the window. Marks rarer than 1 Hz give lines only.
 ///
 /// Depth events cut the track: from a DEPTH_ZERO, DEPTH_REZERO or DEPTH_TIE on depths read value_m
 /// there, whether or not the depth system itself was set; earlier depths stay. No fit spans one.
+/// Without marks about an event the system is taken to have been set.
 class WELLGYRO_EXPORT DepthTrack {
  public:
   /// Throws std::invalid_argument when a duration or sigma is not positive as it must be.
@@ -46,7 +50,7 @@ class WELLGYRO_EXPORT DepthTrack {
   [[nodiscard]] std::optional<Fault> Push(const Event& event);
 
   AlongHole At(UtcTime utc) const;
-  /// At(utc) is final: no mark that may still come in changes it.
+  /// At(utc) is final: no mark that may still come in changes it. Events must be in by then.
   bool Covers(UtcTime utc) const;
   /// How far behind the newest mark Covers() stays.
   Duration lag() const { return setup_.half_window + setup_.latency; }
@@ -63,10 +67,11 @@ class WELLGYRO_EXPORT DepthTrack {
     std::int64_t seq;
     std::int32_t session;
     bool stopped;
+    bool jumps;  ///< the counter jumped between the mark before and this one
     double md;
     double sigma;
   };
-  /// A stretch between depth events, as marks and limits.
+  /// Marks [begin, end) that one fit may use.
   struct Span {
     std::size_t begin, end;
   };
@@ -75,22 +80,25 @@ class WELLGYRO_EXPORT DepthTrack {
     std::int64_t seq;
     double value, sigma;
     std::int32_t event_id;
-    bool settled;
-    double offset;  ///< to add to the marks; where settled
+    std::optional<double> offset;  ///< to add to the marks, once it is final
   };
 
+  std::size_t After(UtcTime utc) const;
   Span SpanAt(UtcTime utc) const;
-  const Shift* ShiftAt(UtcTime utc) const;
   double Offset(const Shift& shift) const;
   bool Bracketed(UtcTime utc, Span span) const;
   bool Seen(const DepthMark& mark) const;
-  void Settle();
+  bool Settled(UtcTime utc) const;
+  void NoteJump(std::size_t i);
+  AlongHole Line(UtcTime utc, Span span) const;
 
   DepthTrackSetup setup_;
-  std::vector<Mark> marks_;    // by time
-  std::vector<Shift> shifts_;  // by time
+  std::vector<Mark> marks_;    ///< by time
+  std::vector<Shift> shifts_;  ///< by time
   UtcTime newest_;
-  std::optional<UtcTime> forgotten_;  // marks before it are gone
+  std::optional<UtcTime> forgotten_;  ///< marks before it are gone
+  std::int32_t session_ = 0;          ///< of the newest mark
+  std::int64_t seq_ = 0;              ///< highest of that session
 };
 
 }  // namespace wellgyro

@@ -31,8 +31,9 @@ struct PassState {
 /// Stationary until the tool leaves its starting depth, then in or out. A new pass begins when the
 /// tool has come back by `reversal` from the furthest point; smaller steps back are ignored, so
 /// that the way between the turn and its discovery belongs to the old pass and `md` starts at the
-/// depth of discovery. Going in above the deepest point already reached going in is a repeat; at
-/// that point an in pass begins again. Stops do not end a pass.
+/// depth of discovery; after the stationary pass, the way from `md_turn` on belongs to the new one.
+/// Going in above the deepest point already reached going in is a repeat; at that point an in pass
+/// begins again. Stops do not end a pass.
 class WELLGYRO_EXPORT PassTracker {
  public:
   /// Throws std::invalid_argument unless 0 < first_move <= reversal.
@@ -47,7 +48,10 @@ class WELLGYRO_EXPORT PassTracker {
   const PassState& state() const { return state_; }
 
  private:
+  void Start(UtcTime utc, double md);
+  void LeaveStationary(UtcTime utc, double md);
   void Begin(Pass pass, UtcTime utc, double md);
+  Pass Inward(double md) const;
 
   PassSetup setup_;
   PassState state_;

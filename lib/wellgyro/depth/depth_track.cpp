@@ -1,0 +1,265 @@
+#include "wellgyro/depth/depth_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+#include "wellgyro/math/interpolation.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kHold = 0.02;      // [m] between marks of a tool that stands
+constexpr double kJumpAtLeast = 1;  // [m]
+
+double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
+
+std::string Place(UtcTime utc) { return " at utime_us " + std::to_string(utc.ns / 1000); }
+
+bool IsTime(UtcTime utc) {
+  constexpr std::int64_t kMost = 4'000'000'000'000'000'000;  // year 2096; sums stay inside int64
+  return utc.ns > -kMost && utc.ns < kMost;
+}
+
+}  // namespace
+
+DepthTrack::DepthTrack(const DepthTrackSetup& setup) : setup_(setup) {
+  const auto require = [](bool good, const char* what) {
+    if (!good) throw std::invalid_argument(std::string("DepthTrack: ") + what);
+  };
+  require(setup.half_window.ns > 0, "half_window must be positive");
+  require(setup.latency.ns >= 0, "latency must not be negative");
+  require(setup.max_gap.ns > 0, "max_gap must be positive");
+  require(setup.speed_limit > 0, "speed_limit must be positive");
+  require(setup.sigma_reading >= 0, "sigma_reading must not be negative");
+  require(setup.sigma_md >= 0, "sigma_md must not be negative");
+}
+
+/// Index of the first mark later than `utc`.
+std::size_t DepthTrack::After(UtcTime utc) const {
+  const auto it = std::upper_bound(marks_.begin(), marks_.end(), utc,
+                                   [](UtcTime t, const Mark& m) { return t < m.utc; });
+  return static_cast<std::size_t>(it - marks_.begin());
+}
+
+bool DepthTrack::Seen(const DepthMark& mark) const {
+  if (forgotten_ && mark.utc < *forgotten_ && mark.session == session_ && mark.seq <= seq_) {
+    return true;
+  }
+  const auto same = std::ranges::equal_range(marks_, mark.utc, {}, &Mark::utc);
+  return std::ranges::any_of(
+      same, [&](const Mark& m) { return m.session == mark.session && m.seq == mark.seq; });
+}
+
+std::optional<Fault> DepthTrack::Push(const DepthMark& mark) {
+  if (!IsTime(mark.utc) || !std::isfinite(mark.md)) {
+    return Fault{.code = FaultCode::kRange,
+                 .text = "depth mark that is no depth" + Place(mark.utc)};
+  }
+  if (Seen(mark)) return std::nullopt;
+  if (!marks_.empty() && mark.utc <= newest_ - setup_.latency) {
+    return Fault{.code = FaultCode::kLate,
+                 .text = "depth mark" + Place(mark.utc) +
+                         " came later than the depth latency allows and was left out"};
+  }
+  const Mark entry{.utc = mark.utc,
+                   .seq = mark.seq,
+                   .session = mark.session,
+                   .stopped = mark.stopped,
+                   .jumps = false,
+                   .md = mark.md,
+                   .sigma = mark.sigma.value_or(setup_.sigma_md)};
+  const auto key = [](const Mark& m) { return std::tuple(m.utc, m.session, m.seq); };
+  const auto it = std::ranges::upper_bound(marks_, key(entry), {}, key);
+  const auto i = static_cast<std::size_t>(it - marks_.begin());
+  marks_.insert(it, entry);
+  NoteJump(i);
+  if (i + 1 < marks_.size()) NoteJump(i + 1);
+  if (marks_.size() == 1 || newest_ <= mark.utc) {
+    newest_ = mark.utc;
+    seq_ = mark.session == session_ ? std::max(seq_, mark.seq) : mark.seq;
+    session_ = mark.session;
+  }
+  for (Shift& shift : shifts_) {
+    if (!shift.offset && Settled(shift.utc)) shift.offset = Offset(shift);
+  }
+  return std::nullopt;
+}
+
+void DepthTrack::NoteJump(std::size_t i) {
+  if (i == 0) return;
+  const Mark& before = marks_[i - 1];
+  Mark& mark = marks_[i];
+  const double way = std::abs(mark.md - before.md);
+  mark.jumps = way > kJumpAtLeast + setup_.speed_limit * Seconds(mark.utc, before.utc);
+}
+
+std::optional<Fault> DepthTrack::Push(const Event& event) {
+  const bool zero = event.kind == Event::Kind::kDepthZero;
+  if (!zero && event.kind != Event::Kind::kDepthRezero && event.kind != Event::Kind::kDepthTie) {
+    return std::nullopt;
+  }
+  const auto same = [&](const Shift& s) {
+    return event.event_id != 0 ? s.event_id == event.event_id
+                               : s.event_id == 0 && s.utc == event.utc && s.seq == event.seq;
+  };
+  if (std::ranges::any_of(shifts_, same)) return std::nullopt;
+  if ((!event.has_value && !zero) || !IsTime(event.utc) || !std::isfinite(event.value_m)) {
+    return Fault{.code = FaultCode::kRange,
+                 .text = "depth event without a depth" + Place(event.utc)};
+  }
+  if (forgotten_ && event.utc < *forgotten_) {
+    return Fault{.code = FaultCode::kLate,
+                 .text = "depth event" + Place(event.utc) +
+                         " came after the depths at its time had been used"};
+  }
+  const Shift entry{.utc = event.utc,
+                    .seq = event.seq,
+                    .value = event.has_value ? event.value_m : 0,
+                    .sigma = std::abs(event.sigma_m),
+                    .event_id = event.event_id,
+                    .offset = std::nullopt};
+  const auto key = [](const Shift& s) { return std::tuple(s.utc, s.seq, s.event_id); };
+  const auto it = shifts_.insert(std::ranges::upper_bound(shifts_, key(entry), {}, key), entry);
+  if (!marks_.empty() && Settled(it->utc)) it->offset = Offset(*it);
+  return std::nullopt;
+}
+
+/// No mark can come in any more within the window about `utc`, nor before the next one after it.
+bool DepthTrack::Settled(UtcTime utc) const {
+  if (marks_.empty()) return false;
+  const UtcTime final = newest_ - setup_.latency;
+  if (final < utc + setup_.half_window) return false;
+  const std::size_t after = After(utc);
+  return after < marks_.size() && marks_[after].utc <= final;
+}
+
+bool DepthTrack::Covers(UtcTime utc) const { return IsTime(utc) && Settled(utc); }
+
+std::int32_t DepthTrack::Segment(UtcTime utc) const {
+  const auto it = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
+  return static_cast<std::int32_t>(it - shifts_.begin());
+}
+
+/// The marks of the segment and of the counter's unbroken way about `utc`, from the last one at or
+/// before the window to the first one at or after it.
+DepthTrack::Span DepthTrack::SpanAt(UtcTime utc) const {
+  const auto first = [&](UtcTime t) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(marks_, t, {}, &Mark::utc) -
+                                    marks_.begin());
+  };
+  const auto next = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
+  const std::size_t begin = next == shifts_.begin() ? 0 : first(std::prev(next)->utc);
+  const std::size_t end = next == shifts_.end() ? marks_.size() : first(next->utc);
+  const std::size_t middle = std::clamp(After(utc), begin, std::max(begin, end));
+  Span span{middle, middle};
+  while (span.begin > begin) {
+    const Mark& mark = marks_[--span.begin];
+    if (mark.jumps || mark.utc <= utc - setup_.half_window) break;
+  }
+  while (span.end < end) {
+    const Mark& mark = marks_[span.end];
+    if (mark.jumps && span.end > begin) break;
+    ++span.end;
+    if (mark.utc >= utc + setup_.half_window) break;
+  }
+  return span;
+}
+
+/// Marks on both sides, near enough to speak for `utc`. Beside a depth event one of the two may be
+/// of the other segment.
+bool DepthTrack::Bracketed(UtcTime utc, Span span) const {
+  const std::size_t after = After(utc);
+  if (span.begin == span.end || after == 0) return false;
+  const Mark& a = marks_[after - 1];
+  if (a.utc == utc) return true;
+  if (after == marks_.size()) return false;
+  const Mark& b = marks_[after];
+  if (Segment(a.utc) != Segment(b.utc)) return b.utc - a.utc <= setup_.max_gap;
+  if (b.jumps) return false;
+  return b.utc - a.utc <= setup_.max_gap || (a.stopped && std::abs(b.md - a.md) < kHold);
+}
+
+/// What to add to the marks from `shift` on. The reading at the event is taken from marks after it
+/// alone, because the system may have been set there.
+double DepthTrack::Offset(const Shift& shift) const {
+  const Span span = SpanAt(shift.utc);
+  LocalFit fit;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    const double u = Seconds(marks_[i].utc, shift.utc) / setup_.half_window.seconds();
+    fit.Add(u, marks_[i].md, 1 - u * u);
+  }
+  if (fit.count() > 0) return shift.value - fit.Fit(1).value;
+  if (span.begin == span.end) return 0;
+  const Mark& next = marks_[span.begin];
+  if (next.utc - shift.utc <= setup_.max_gap) return shift.value - next.md;
+  const bool held = span.begin > 0 && marks_[span.begin - 1].stopped &&
+                    std::abs(marks_[span.begin - 1].md - next.md) < kHold;
+  return held ? shift.value - next.md : 0;
+}
+
+/// The line between the two neighbours, or the mark itself where it is alone.
+AlongHole DepthTrack::Line(UtcTime utc, Span span) const {
+  std::size_t i = std::clamp(After(utc), span.begin + 1, span.end) - 1;
+  if (i + 1 == span.end && i > span.begin) --i;
+  const Mark& a = marks_[i];
+  const Mark& b = marks_[std::min(i + 1, span.end - 1)];
+  const double seconds = Seconds(b.utc, a.utc);
+  const double speed = seconds > 0 ? (b.md - a.md) / seconds : 0;
+  return {.md = a.md + speed * Seconds(utc, a.utc),
+          .speed = speed,
+          .acceleration = 0,
+          .sigma_md = setup_.sigma_reading,
+          .known = true};
+}
+
+AlongHole DepthTrack::At(UtcTime utc) const {
+  if (!IsTime(utc)) return {};
+  const Span span = SpanAt(utc);
+  if (!Bracketed(utc, span)) return {};
+  const double w = setup_.half_window.seconds();
+  const double md0 = marks_[span.begin].md;
+  LocalFit fit;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    const double u = Seconds(marks_[i].utc, utc) / w;
+    fit.Add(u, marks_[i].md - md0, 1 - u * u);
+  }
+  AlongHole along;
+  if (fit.count() < 3) {
+    along = Line(utc, span);
+  } else {
+    // The encoder's rounding repeats from mark to mark: it does not average.
+    const LocalFit::Value y = fit.Fit(2);
+    along = {.md = md0 + y.value,
+             .speed = y.slope / w,
+             .acceleration = y.curvature / (w * w),
+             .sigma_md = setup_.sigma_reading * std::max(1.0, std::sqrt(y.variance_value)),
+             .known = true};
+  }
+  const Mark& nearest = marks_[std::clamp(After(utc), span.begin + 1, span.end) - 1];
+  double sigma_event = 0;
+  const auto next = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
+  if (next != shifts_.begin()) {
+    const Shift& shift = *std::prev(next);
+    along.md += shift.offset ? *shift.offset : Offset(shift);
+    sigma_event = shift.sigma;
+  }
+  along.sigma_md = std::hypot(along.sigma_md, nearest.sigma, sigma_event);
+  return along;
+}
+
+void DepthTrack::Forget(UtcTime utc) {
+  UtcTime keep = utc - setup_.half_window;
+  for (const Shift& shift : shifts_) {
+    if (!shift.offset) keep = std::min(keep, shift.utc);
+  }
+  // The last mark at or before stays, to bracket what follows.
+  const std::size_t after = After(keep);
+  if (after < 2) return;
+  marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(after - 1));
+  forgotten_ = std::max(forgotten_.value_or(marks_.front().utc), marks_.front().utc);
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,69 @@
+#include "wellgyro/math/interpolation.h"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "wellgyro/base/angle.h"
+
+namespace wellgyro {
+namespace {
+
+/// Moments of points that all but coincide determine no slope: the determinant, scaled to the
+/// product of the diagonal, is then rounding.
+template <int n>
+bool Determined(const Eigen::Matrix<double, n, n>& moments) {
+  return moments.determinant() > 1e-10 * moments.diagonal().prod();
+}
+
+template <int n>
+LocalFit::Value Solve(const double* s, const double* w2, const double* y, bool& determined) {
+  Eigen::Matrix<double, n, n> m, squares;
+  Eigen::Matrix<double, n, 1> right;
+  for (int i = 0; i < n; ++i) {
+    right[i] = y[i];
+    for (int j = 0; j < n; ++j) {
+      m(i, j) = s[i + j];
+      squares(i, j) = w2[i + j];
+    }
+  }
+  determined = Determined<n>(m);
+  if (!determined) return {};
+  const Eigen::Matrix<double, n, n> inverse = m.inverse();
+  const Eigen::Matrix<double, n, 1> c = inverse * right;
+  LocalFit::Value value;
+  value.value = c[0];
+  if constexpr (n > 1) value.slope = c[1];
+  if constexpr (n > 2) value.curvature = 2 * c[2];
+  value.variance_value = (inverse * squares * inverse)(0, 0);
+  return value;
+}
+
+}  // namespace
+
+double LerpAngle(double a, double b, double u) { return WrapTwoPi(a + u * WrapPi(b - a)); }
+
+void LocalFit::Add(double t, double y, double weight) {
+  if (!(weight > 0)) return;
+  ++count_;
+  double power = weight;
+  for (int k = 0; k < 5; ++k, power *= t) {
+    s_[k] += power;
+    w2_[k] += power * weight;
+    if (k < 3) y_[k] += power * y;
+  }
+}
+
+LocalFit::Value LocalFit::Fit(int degree) const {
+  bool determined = false;
+  if (degree >= 2 && count_ >= 3) {
+    const Value value = Solve<3>(s_, w2_, y_, determined);
+    if (determined) return value;
+  }
+  if (degree >= 1 && count_ >= 2) {
+    const Value value = Solve<2>(s_, w2_, y_, determined);
+    if (determined) return value;
+  }
+  return count_ > 0 ? Solve<1>(s_, w2_, y_, determined) : Value{};
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,278 @@
+#include "wellgyro/depth/depth_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/math/random.h"
+
+namespace wellgyro {
+namespace {
+
+UtcTime Utc(double seconds) { return {1'700'000'000'000'000'000 + Duration::Seconds(seconds).ns}; }
+
+DepthMark Mark(double seconds, double md, std::int64_t seq, std::int32_t session = 1) {
+  DepthMark mark;
+  mark.utc = Utc(seconds);
+  mark.seq = seq;
+  mark.session = session;
+  mark.md = md;
+  return mark;
+}
+
+Event DepthEvent(Event::Kind kind, double seconds, double value, std::int32_t id) {
+  Event event;
+  event.kind = kind;
+  event.utc = Utc(seconds);
+  event.has_value = true;
+  event.value_m = value;
+  event.event_id = id;
+  return event;
+}
+
+/// Marks of an encoder of 1 cm counts.
+std::vector<DepthMark> Encoder(double seconds, double rate,
+                               const std::function<double(double)>& md) {
+  std::vector<DepthMark> marks;
+  for (int i = 0; i <= std::lround(seconds * rate); ++i) {
+    const double t = i / rate;
+    marks.push_back(Mark(t, std::floor(md(t) * 100) / 100 + 0.005, i));
+  }
+  return marks;
+}
+
+DepthTrack Track(const std::vector<DepthMark>& marks) {
+  DepthTrack track;
+  for (const auto& mark : marks) EXPECT_FALSE(track.Push(mark).has_value());
+  return track;
+}
+
+bool Same(const AlongHole& a, const AlongHole& b) {
+  return a.md == b.md && a.speed == b.speed && a.acceleration == b.acceleration &&
+         a.sigma_md == b.sigma_md && a.known == b.known;
+}
+
+// Half a metre a second with a slow swing of the winch: what the header promises, rms.
+TEST(DepthTrack, CentimetreCountsGiveQuietSpeedAndAcceleration) {
+  const auto md = [](double t) { return 1000 + 0.5 * t + 0.2 * std::sin(0.2 * t); };
+  struct Case {
+    double rate, speed, acceleration;
+  };
+  for (const auto& c : {Case{20, 1e-3, 2e-3}, Case{10, 1e-3, 2e-3}, Case{1, 2e-3, 5e-3}}) {
+    const DepthTrack track = Track(Encoder(300, c.rate, md));
+    double depth2 = 0, speed2 = 0, acceleration2 = 0, nees = 0;
+    int n = 0;
+    for (double t = 3; t < 297; t += 0.0437, ++n) {
+      const AlongHole along = track.At(Utc(t));
+      ASSERT_TRUE(along.known);
+      const double v = 0.5 + 0.04 * std::cos(0.2 * t), a = -0.008 * std::sin(0.2 * t);
+      depth2 += std::pow(along.md - md(t), 2);
+      nees += std::pow((along.md - md(t)) / along.sigma_md, 2);
+      speed2 += std::pow(along.speed - v, 2);
+      acceleration2 += std::pow(along.acceleration - a, 2);
+    }
+    EXPECT_LT(std::sqrt(depth2 / n), 0.0035) << c.rate;
+    EXPECT_LT(std::sqrt(speed2 / n), c.speed) << c.rate;
+    EXPECT_LT(std::sqrt(acceleration2 / n), c.acceleration) << c.rate;
+    EXPECT_LT(nees / n, 1.2) << c.rate;
+  }
+}
+
+// What the still detector relies on.
+TEST(DepthTrack, OneCountWhileStandingReadsAsAtMostFiveMillimetresASecond) {
+  for (const double rate : {1.0, 2.0, 5.0, 20.0}) {
+    const DepthTrack track =
+        Track(Encoder(60, rate, [](double t) { return t < 30.01 ? 10 : 10.01; }));
+    double worst = 0;
+    for (double t = 20; t < 40; t += 0.013)
+      worst = std::max(worst, std::abs(track.At(Utc(t)).speed));
+    EXPECT_LT(worst, 0.0052) << rate;
+    EXPECT_GT(worst, 0.003) << rate;
+  }
+}
+
+TEST(DepthTrack, AConstantAccelerationIsExact) {
+  std::vector<DepthMark> marks;
+  const auto md = [](double t) { return 3000 - 0.3 * t + 0.05 * t * t; };
+  for (int i = 0; i <= 100; ++i) marks.push_back(Mark(0.1 * i, md(0.1 * i), i));
+  const DepthTrack track = Track(marks);
+  for (double t = 0; t <= 10; t += 0.17) {
+    const AlongHole along = track.At(Utc(t));
+    EXPECT_NEAR(along.md, md(t), 1e-9);
+    EXPECT_NEAR(along.speed, -0.3 + 0.1 * t, 1e-8);
+    EXPECT_NEAR(along.acceleration, 0.1, 1e-7);
+  }
+}
+
+TEST(DepthTrack, UnknownOutsideAndInGaps) {
+  EXPECT_FALSE(DepthTrack().At(Utc(0)).known);
+  EXPECT_FALSE(DepthTrack().Covers(Utc(0)));
+  auto marks = Encoder(10, 5, [](double t) { return 100 + t; });
+  for (auto mark : Encoder(10, 5, [](double t) { return 120 + t; })) {
+    mark.utc = mark.utc + Duration::Seconds(20);
+    mark.seq += 1000;
+    marks.push_back(mark);
+  }
+  const DepthTrack track = Track(marks);
+  EXPECT_FALSE(track.At(Utc(-0.001)).known);
+  EXPECT_TRUE(track.At(Utc(0)).known);
+  EXPECT_TRUE(track.At(Utc(10)).known);
+  EXPECT_FALSE(track.At(Utc(10.001)).known);
+  EXPECT_FALSE(track.At(Utc(15)).known);
+  EXPECT_TRUE(track.At(Utc(20)).known);
+  EXPECT_TRUE(track.At(Utc(30)).known);
+  EXPECT_FALSE(track.At(Utc(30.001)).known);
+}
+
+TEST(DepthTrack, AStoppedToolMayKeepItsDepthThroughAGap) {
+  for (const double moved : {0.0, 0.01, 0.5}) {
+    auto stop = Mark(0, 700, 0);
+    stop.stopped = true;
+    const DepthTrack track = Track({stop, Mark(600, 700 + moved, 1), Mark(601, 700 + moved, 2)});
+    const AlongHole along = track.At(Utc(300));
+    EXPECT_EQ(along.known, moved < 0.02);
+    if (along.known) {
+      EXPECT_NEAR(along.md, 700, 0.01);
+      EXPECT_NEAR(along.speed, 0, 1e-4);
+    }
+  }
+}
+
+TEST(DepthTrack, AJumpOfTheCounterIsNoSpeed) {
+  const DepthTrack track =
+      Track(Encoder(60, 10, [](double t) { return (t < 30.05 ? 500 : 800) + 0.2 * t; }));
+  EXPECT_FALSE(track.At(Utc(30.05)).known);
+  for (double t = 1; t < 59; t += 0.0731) {
+    const AlongHole along = track.At(Utc(t));
+    if (!along.known) continue;
+    EXPECT_NEAR(along.speed, 0.2, 0.02) << t;
+    EXPECT_NEAR(along.md, (t < 30.05 ? 500 : 800) + 0.2 * t, 0.02);
+  }
+}
+
+// The law of interleaving: what was covered does not change, whatever comes later or out of order.
+TEST(DepthTrack, WhatIsCoveredIsFinalWhateverTheOrderWithinTheLatency) {
+  const auto marks = Encoder(120, 4, [](double t) { return 1000 + 0.4 * t + 0.3 * std::sin(t); });
+  const auto event = DepthEvent(Event::Kind::kDepthRezero, 61.3, 500, 9);
+  DepthTrack reference = Track(marks);
+  EXPECT_FALSE(reference.Push(event).has_value());
+  Random random(5);
+  for (int trial = 0; trial < 5; ++trial) {
+    // Each mark arrives up to just less than the latency late.
+    std::vector<std::pair<double, DepthMark>> arrivals;
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+      arrivals.emplace_back(0.25 * static_cast<double>(i) + 0.99 * random.Uniform(), marks[i]);
+      if (random.Uniform() < 0.2) arrivals.push_back(arrivals.back());  // sent twice
+    }
+    std::ranges::stable_sort(arrivals, {}, [](const auto& a) { return a.first; });
+    DepthTrack track;
+    EXPECT_FALSE(track.Push(event).has_value());
+    double asked = 0;
+    for (const auto& [when, mark] : arrivals) {
+      EXPECT_FALSE(track.Push(mark).has_value());
+      for (; track.Covers(Utc(asked)); asked += 0.0711) {
+        EXPECT_TRUE(Same(track.At(Utc(asked)), reference.At(Utc(asked)))) << asked;
+      }
+      track.Forget(Utc(asked));
+    }
+    EXPECT_GT(asked, 116);
+  }
+}
+
+TEST(DepthTrack, LateMarksAreRefusedAndRepeatedOnesSkipped) {
+  DepthTrack track = Track(Encoder(10, 10, [](double t) { return 100 + t; }));
+  const auto before = track.At(Utc(8.33));
+  EXPECT_FALSE(track.Push(Mark(5, 0, 50)).has_value()) << "seen: same session and seq";
+  EXPECT_FALSE(track.Push(Mark(9.5, 109.5, 1001)).has_value()) << "within the latency";
+  const auto fault = track.Push(Mark(9, 109, 1000));
+  ASSERT_TRUE(fault.has_value());
+  EXPECT_EQ(fault->code, FaultCode::kLate);
+  EXPECT_NE(fault->text.find("1700000009000000"), std::string::npos);
+  track.Forget(Utc(8));
+  EXPECT_FALSE(track.Push(Mark(1, 101, 10)).has_value()) << "forgotten, but seen";
+  EXPECT_EQ(track.Push(Mark(1, 101, 0, 2))->code, FaultCode::kLate);
+  EXPECT_EQ(track.Push(Mark(20, std::nan(""), 2000))->code, FaultCode::kRange);
+  DepthMark never = Mark(0, 1, 3000);
+  never.utc = {std::numeric_limits<std::int64_t>::max()};
+  EXPECT_EQ(track.Push(never)->code, FaultCode::kRange);
+  EXPECT_FALSE(track.Covers(never.utc));
+  EXPECT_FALSE(track.At(never.utc).known);
+  EXPECT_NEAR(track.At(Utc(8.33)).md, before.md, 0.01);
+}
+
+// An operator says at 30 s that the depth is 800 m. Whether the counter was set then (it reads 800
+// from there on) or not (it goes on), depths from 30 s on are the same and earlier ones stay.
+TEST(DepthTrack, RezeroHoldsFromItsTimeOnWhetherOrNotTheCounterWasSet) {
+  for (const bool set : {false, true}) {
+    for (const bool first : {false, true}) {
+      DepthTrack track;
+      const auto event = DepthEvent(Event::Kind::kDepthRezero, 30, 800, 4);
+      if (first) {
+        EXPECT_FALSE(track.Push(event).has_value());
+      }
+      for (const auto& mark : Encoder(60, 10, [set](double t) {
+             return (set && t >= 30 ? 800.0 - 30 * 0.2 : 500.0) + 0.2 * t;
+           })) {
+        EXPECT_FALSE(track.Push(mark).has_value());
+      }
+      if (!first) {
+        EXPECT_FALSE(track.Push(event).has_value());
+      }
+      EXPECT_FALSE(track.Push(event).has_value()) << "sent again";
+      EXPECT_NEAR(track.At(Utc(10)).md, 502, 0.01);
+      EXPECT_NEAR(track.At(Utc(29.97)).md, 505.994, 0.02);
+      EXPECT_NEAR(track.At(Utc(30)).md, 800, 0.01);
+      EXPECT_NEAR(track.At(Utc(50)).md, 804, 0.015);
+      EXPECT_NEAR(track.At(Utc(30.5)).speed, 0.2, 0.02);
+      EXPECT_EQ(track.Segment(Utc(29.9)), 0);
+      EXPECT_EQ(track.Segment(Utc(30)), 1);
+      track.Forget(Utc(55));
+      EXPECT_NEAR(track.At(Utc(55)).md, 805, 0.015);
+    }
+  }
+}
+
+TEST(DepthTrack, ZeroTieAndTheirSigma) {
+  DepthTrack track = Track(Encoder(100, 2, [](double t) { return 12.34 + t; }));
+  auto zero = DepthEvent(Event::Kind::kDepthZero, 4.2, 0, 1);
+  zero.has_value = false;
+  EXPECT_FALSE(track.Push(zero).has_value());
+  auto tie = DepthEvent(Event::Kind::kDepthTie, 50, 51, 2);
+  tie.sigma_m = 0.3;
+  EXPECT_FALSE(track.Push(tie).has_value());
+  EXPECT_NEAR(track.At(Utc(20)).md, 15.8, 0.02);
+  EXPECT_NEAR(track.At(Utc(3)).md, 15.34, 0.02);
+  EXPECT_NEAR(track.At(Utc(60)).md, 61, 0.02);
+  EXPECT_LT(track.At(Utc(20)).sigma_md, 0.01);
+  EXPECT_NEAR(track.At(Utc(60)).sigma_md, 0.3, 0.001);
+  auto empty = DepthEvent(Event::Kind::kDepthTie, 70, 0, 3);
+  empty.has_value = false;
+  EXPECT_EQ(track.Push(empty)->code, FaultCode::kRange);
+  EXPECT_FALSE(track.Push(DepthEvent(Event::Kind::kRemark, 70, 7, 5)).has_value());
+  EXPECT_EQ(track.Segment(Utc(100)), 2);
+  track.Forget(Utc(80));
+  EXPECT_EQ(track.Push(DepthEvent(Event::Kind::kDepthTie, 60, 7, 6))->code, FaultCode::kLate);
+}
+
+TEST(DepthTrack, AnEventWithoutMarksAboutItMovesNothing) {
+  DepthTrack track;
+  EXPECT_FALSE(track.Push(DepthEvent(Event::Kind::kDepthZero, -1000, 0, 1)).has_value());
+  for (const auto& mark : Encoder(20, 10, [](double t) { return 100 + t; })) {
+    EXPECT_FALSE(track.Push(mark).has_value());
+  }
+  EXPECT_NEAR(track.At(Utc(10)).md, 110, 0.01);
+}
+
+TEST(DepthTrack, RefusesASetUpThatCannotBe) {
+  EXPECT_THROW(DepthTrack({.half_window = {}}), std::invalid_argument);
+  EXPECT_THROW(DepthTrack({.latency = Duration{-1}}), std::invalid_argument);
+  EXPECT_THROW(DepthTrack({.sigma_md = -1}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace wellgyro
