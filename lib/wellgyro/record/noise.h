@@ -15,7 +15,7 @@ struct NoiseCoefficients {
   double rate_random_walk = 0;   ///< K [rad/s/sqrt(s)]
   double rate_ramp = 0;          ///< R [rad/s^2]
   /// Of B as a Gauss-Markov process [s]; absent, B is a constant.
-  std::optional<double> bias_instability_correlation_time;
+  std::optional<double> bias_instability_correlation_time = {};
 };
 
 /// What Allan coefficients do not carry: 1-sigma priors of a tool's other errors. Zero: none.

@@ -14,7 +14,7 @@ struct EllipsoidPlace {
 /// WGS 84 at the sine of a geodetic latitude and a height [m].
 ///
 /// Gravity: Somigliana on the ellipsoid, above it the second-order series in height (NIMA TR8350.2,
-/// eq. 4-3; 1e-8 m/s^2 below 3 km), below it growing by 0.85e-6 m/s^2 per metre of depth.
+/// eq. 4-3; good to 1e-10 m/s^2 per metre), below it growing by 0.85e-6 m/s^2 per metre of depth.
 WELLGYRO_EXPORT EllipsoidPlace EllipsoidAt(double sin_latitude, double height);
 
 }  // namespace wellgyro

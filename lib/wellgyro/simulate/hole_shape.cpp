@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <stdexcept>
+#include <string>
 
+#include <Eigen/Geometry>
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
@@ -22,6 +23,13 @@ void Require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);
 }
 
+// The direction `u` of the way from `a` to `b` along their great circle, also beyond either.
+Eigen::Vector3d OnArc(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double u) {
+  const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+  if (angle < 1e-9) return ((1 - u) * a + u * b).normalized();
+  return (std::sin((1 - u) * angle) * a + std::sin(u * angle) * b) / std::sin(angle);
+}
+
 }  // namespace
 
 HoleShape::HoleShape(const SimulatedWell& well) {
@@ -34,7 +42,7 @@ HoleShape::HoleShape(const SimulatedWell& well) {
     inclination_ = MakeLaw(well.inclination, "inclination");
     azimuth_ = MakeLaw(well.azimuth, "azimuth");
   } else {
-    MakeSpline(well.stations);
+    MakeSpline(well);
   }
   // The frame that rolls with kNorth is singular straight up.
   const double step = std::min(detail_ / 4, 5.0);
@@ -48,7 +56,7 @@ HoleShape::HoleShape(const SimulatedWell& well) {
 
 HoleDirection HoleShape::At(double md) const {
   const double inside = std::clamp(md, begin_md_, end_md_);
-  if (!knots_.empty()) return OnSpline(inside);
+  if (!controls_.empty()) return OnSpline(inside);
   const Angle inclination = Evaluate(inclination_, inside);
   const Angle azimuth = Evaluate(azimuth_, inside);
   const double si = std::sin(inclination.value), ci = std::cos(inclination.value);
@@ -106,50 +114,49 @@ HoleShape::Angle HoleShape::Evaluate(const Law& law, double md) {
   return sum;
 }
 
-void HoleShape::MakeSpline(const std::vector<WellPoint>& stations) {
+void HoleShape::MakeSpline(const SimulatedWell& well) {
+  const std::vector<WellPoint>& stations = well.stations;
   const std::size_t n = stations.size();
   Require(n >= 2, "well.stations: one station makes no hole");
+  Require(well.smoothing > 0, fmt::format("well.smoothing {} m is not positive", well.smoothing));
+  std::vector<Eigen::Vector3d> tangents;
+  for (std::size_t i = 0; i < n; ++i) {
+    tangents.push_back(Tangent(stations[i].inclination, stations[i].azimuth));
+    if (i == 0) continue;
+    Require(
+        stations[i].md > stations[i - 1].md,
+        fmt::format("well.stations[{}].md {} m is not below the one before", i, stations[i].md));
+    Require(tangents[i].dot(tangents[i - 1]) > std::cos(kLargestBend),
+            fmt::format("well.stations[{}]: more than 60 deg from the station before", i));
+  }
   begin_md_ = stations.front().md;
   end_md_ = stations.back().md;
-  detail_ = end_md_ - begin_md_;
-  for (std::size_t i = 0; i < n; ++i) {
-    const WellPoint& station = stations[i];
-    knots_.push_back({.md = station.md,
-                      .value = Tangent(station.inclination, station.azimuth),
-                      .bend = Eigen::Vector3d::Zero()});
-    if (i == 0) continue;
-    const double length = station.md - stations[i - 1].md;
-    Require(length > 0,
-            fmt::format("well.stations[{}].md {} m is not below the one before", i, station.md));
-    Require(knots_[i].value.dot(knots_[i - 1].value) > std::cos(kLargestBend),
-            fmt::format("well.stations[{}]: more than 60 deg from the station before", i));
-    detail_ = std::min(detail_, length);
+  const double length = end_md_ - begin_md_;
+  const double knots = std::max(std::ceil(length / well.smoothing), 1.0);
+  spacing_ = length / knots;
+  detail_ = spacing_;
+  // One control point before the begin, one at each knot, one past the end.
+  std::size_t leg = 1;
+  for (double k = -1; k <= knots + 1; ++k) {
+    const double md = begin_md_ + k * spacing_;
+    while (leg + 1 < n && md > stations[leg].md) ++leg;
+    const double u = (md - stations[leg - 1].md) / (stations[leg].md - stations[leg - 1].md);
+    controls_.push_back(OnArc(tangents[leg - 1], tangents[leg], u));
   }
-  // Natural cubic spline: second derivatives by elimination of the tridiagonal system.
-  std::vector<double> upper(n, 0.0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double before = knots_[i].md - knots_[i - 1].md;
-    const double after = knots_[i + 1].md - knots_[i].md;
-    const Eigen::Vector3d turn = (knots_[i + 1].value - knots_[i].value) / after -
-                                 (knots_[i].value - knots_[i - 1].value) / before;
-    const double pivot = 2 * (before + after) - before * upper[i - 1];
-    upper[i] = after / pivot;
-    knots_[i].bend = (6 * turn - before * knots_[i - 1].bend) / pivot;
-  }
-  for (std::size_t i = n - 1; i-- > 1;) knots_[i].bend -= upper[i] * knots_[i + 1].bend;
 }
 
 HoleDirection HoleShape::OnSpline(double md) const {
-  const auto after = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, md,
-                                      [](double depth, const Knot& k) { return depth < k.md; });
-  const Knot& b = *after;
-  const Knot& a = *(after - 1);
-  const double h = b.md - a.md;
-  const double u = (md - a.md) / h, v = 1 - u;
-  const Eigen::Vector3d value = v * a.value + u * b.value +
-                                (h * h / 6) * ((v * v * v - v) * a.bend + (u * u * u - u) * b.bend);
+  const double x = (md - begin_md_) / spacing_;
+  const std::size_t i = std::min(static_cast<std::size_t>(x), controls_.size() - 4);
+  const double u = x - static_cast<double>(i), v = 1 - u;
+  const Eigen::Vector3d &a = controls_[i], &b = controls_[i + 1], &c = controls_[i + 2],
+                        &d = controls_[i + 3];
+  // Uniform cubic B-spline.
+  const Eigen::Vector3d value = (v * v * v * a + (4 - 3 * u * u * (1 + v)) * b +
+                                 (4 - 3 * v * v * (1 + u)) * c + u * u * u * d) /
+                                6;
   const Eigen::Vector3d slope =
-      (b.value - a.value) / h + (h / 6) * ((1 - 3 * v * v) * a.bend + (3 * u * u - 1) * b.bend);
+      (v * v * (b - a) + (1 + 2 * u * v) * (c - b) + u * u * (d - c)) / (2 * spacing_);
   const double length = value.norm();
   const Eigen::Vector3d tangent = value / length;
   return {.tangent = tangent, .curvature = (slope - tangent * tangent.dot(slope)) / length};

@@ -15,9 +15,11 @@ struct HoleDirection {
   Eigen::Vector3d curvature = Eigen::Vector3d::Zero();  ///< d tangent / d md, in L [1/m]
 };
 
-/// Direction along the hole, twice differentiable: by laws of inclination and azimuth, or as the
-/// normalised natural cubic spline of the stations' tangents, which is regular at vertical. The
-/// spline meets each station's direction; between stations it is the truth by definition.
+/// Direction along the hole, twice differentiable and regular at vertical: by laws of inclination
+/// and azimuth, or along stations. Those are joined by arcs, and the arcs' directions smoothed by
+/// a uniform cubic B-spline of knots `smoothing` apart: no overshoot, an arc longer than four knots
+/// is kept, and a station where the curvature changes by J is passed at J smoothing / 6. Where the
+/// hole is straight and vertical, it stays so.
 class WELLGYRO_EXPORT HoleShape {
  public:
   /// Throws std::invalid_argument, naming the field and the value: fewer than two stations, depths
@@ -44,12 +46,8 @@ class WELLGYRO_EXPORT HoleShape {
     double start = 0;
     std::vector<Term> terms;
   };
-  struct Knot {
-    double md;
-    Eigen::Vector3d value, bend;  // tangent and second derivative of the spline
-  };
   Law MakeLaw(const AngleLaw& law, const char* name);
-  void MakeSpline(const std::vector<WellPoint>& stations);
+  void MakeSpline(const SimulatedWell& well);
   static Angle Evaluate(const Law& law, double md);
   HoleDirection OnSpline(double md) const;
 
@@ -58,7 +56,8 @@ class WELLGYRO_EXPORT HoleShape {
   double detail_ = 0;
   Law inclination_;
   Law azimuth_;
-  std::vector<Knot> knots_;
+  double spacing_ = 0;
+  std::vector<Eigen::Vector3d> controls_;
 };
 
 }  // namespace wellgyro

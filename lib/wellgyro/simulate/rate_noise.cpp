@@ -13,7 +13,8 @@ namespace {
 // Of a Gauss-Markov process whose Allan deviation peaks at the floor 0.6643 B of flicker noise.
 constexpr double kSigmaOfB = 1.075;
 constexpr double kFlickerRatio = 4;
-constexpr int kFlickerProcesses = 10;
+constexpr double kFlickerShortest = 0.25;  // [s]
+constexpr int kFlickerProcesses = 11;
 
 // Streams of one axis, apart from every other axis' by the caller's stream number.
 enum Stream : std::uint64_t { kWhite, kWalk, kDrawn, kInstability, kStreamsPerAxis = 32 };
@@ -68,7 +69,7 @@ RateNoise::RateNoise(const NoiseCoefficients& noise, bool flicker, std::uint64_t
   if (flicker) {
     const double sigma = noise.bias_instability * std::sqrt(std::log(kFlickerRatio) / kPi);
     for (int i = 0; i < kFlickerProcesses; ++i) {
-      instability_.emplace_back(sigma, std::pow(kFlickerRatio, i), random(i));
+      instability_.emplace_back(sigma, kFlickerShortest * std::pow(kFlickerRatio, i), random(i));
     }
   } else if (noise.bias_instability_correlation_time) {
     instability_.emplace_back(kSigmaOfB * noise.bias_instability,

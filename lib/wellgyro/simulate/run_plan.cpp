@@ -57,8 +57,8 @@ void RunPlan::AddLeg(Leg leg) {
 
 void RunPlan::AddTurn(double angle, double turn_seconds) {
   if (angle == 0) return;
-  modes_.push_back({.time = seconds_, .mode = ToolMode::Mode::kMoving, .index_position = {}});
-  AddLeg({.seconds = turn_seconds, .turn = angle, .wave = {}});
+  modes_.push_back({.time = seconds_, .mode = ToolMode::Mode::kMoving});
+  AddLeg({.seconds = turn_seconds, .turn = angle});
   end_.roll += angle;
   // The quintic step's greatest slope is 15/8 of its mean.
   short_time_ = std::min(short_time_, kTurnPerShortTime * turn_seconds / (1.875 * std::abs(angle)));
@@ -81,13 +81,13 @@ void RunPlan::AddStop(const RunStop& stop, const SimulatedRun& run, const TruthW
   for (std::size_t i = 0; i < angles.size(); ++i) {
     AddTurn(base + angles[i] - end_.roll, stop.turn_seconds);
     end_.roll = base + angles[i];
-    ModeChange change{.time = seconds_, .mode = stop.mode, .index_position = {}};
+    ModeChange change{.time = seconds_, .mode = stop.mode};
     if (indexed) {
       change.index_position = static_cast<std::int32_t>(i);
       change.index_angle = angles[i];
     }
     modes_.push_back(change);
-    AddLeg({.seconds = stop.seconds, .wave = {}});
+    AddLeg({.seconds = stop.seconds});
   }
 }
 
@@ -106,7 +106,7 @@ void RunPlan::AddMove(const RunMove& move, const TruthWell& well, std::size_t nu
   const double distance = move.to_md - end_.md;
   if (distance == 0) return;
   const double whole = std::max(std::abs(distance) / move.speed, move.ramp);
-  modes_.push_back({.time = seconds_, .mode = ToolMode::Mode::kContinuous, .index_position = {}});
+  modes_.push_back({.time = seconds_, .mode = ToolMode::Mode::kContinuous});
   AddLeg({.seconds = whole + move.ramp,
           .ramp = move.ramp,
           .speed = distance / whole,

@@ -25,7 +25,7 @@ struct RunMotion {
 struct ModeChange {
   double time = 0;  ///< since the begin of the run [s]
   ToolMode::Mode mode = ToolMode::Mode::kUnknown;
-  std::optional<std::int32_t> index_position;
+  std::optional<std::int32_t> index_position = {};
   double index_angle = 0;  ///< [rad]
 };
 
@@ -48,7 +48,7 @@ class WELLGYRO_EXPORT RunPlan {
     double begin = 0, seconds = 0, ramp = 0;  // [s]
     double md = 0, speed = 0;                 // at begin [m]; signed, at full window [m/s]
     double roll = 0, turn = 0;                // at begin; of an index turn [rad]
-    RunRoll wave;
+    RunRoll wave = {};
   };
   void AddStop(const RunStop& stop, const SimulatedRun& run, const TruthWell& well,
                std::size_t number);

@@ -26,29 +26,30 @@ struct WellPoint {
 /// `end_md`, zero outside and rises and falls over `ramp` inside that stretch, twice
 /// differentiable.
 struct AngleTerm {
-  std::optional<double> begin_md;  ///< absent: from the begin of the well, without a ramp [m]
-  std::optional<double> end_md;    ///< absent: to the end of the well, without a ramp [m]
-  double ramp = 0;                 ///< positive wherever begin_md or end_md is given [m]
-  double rate = 0;                 ///< added to the angle's slope, times w [rad/m]
-  double amplitude = 0;            ///< of the wave added to the angle, times w [rad]
-  double period = 0;               ///< of the wave, along hole [m]
-  double phase = 0;                ///< of the wave's sine at begin_md [rad]
+  std::optional<double> begin_md = {};  ///< absent: from the begin of the well, without a ramp [m]
+  std::optional<double> end_md = {};    ///< absent: to the end of the well, without a ramp [m]
+  double ramp = 0;                      ///< positive wherever begin_md or end_md is given [m]
+  double rate = 0;                      ///< added to the angle's slope, times w [rad/m]
+  double amplitude = 0;                 ///< of the wave added to the angle, times w [rad]
+  double period = 0;                    ///< of the wave, along hole [m]
+  double phase = 0;                     ///< of the wave's sine at begin_md [rad]
 };
 
 /// An angle along the hole: start + sum of terms.
 struct AngleLaw {
   double start = 0;  ///< [rad]
-  std::vector<AngleTerm> terms;
+  std::vector<AngleTerm> terms = {};
 };
 
 /// The hole, by stations or, when there are none, by laws of its angles. The curve laid through
-/// the stations is the truth, not the stations: it is twice differentiable and regular at vertical.
+/// the stations is the truth, not the stations: see HoleShape.
 struct SimulatedWell {
-  std::vector<WellPoint> stations;  ///< at least two, md increasing
-  double begin_md = 0;              ///< of a well by laws [m]
-  double end_md = 0;                ///< of a well by laws [m]
-  AngleLaw inclination;             ///< negative values pass through vertical
-  AngleLaw azimuth;
+  std::vector<WellPoint> stations = {};  ///< at least two, md increasing
+  double smoothing = 10;      ///< length over which a kink between stations is rounded [m]
+  double begin_md = 0;        ///< of a well by laws [m]
+  double end_md = 0;          ///< of a well by laws [m]
+  AngleLaw inclination = {};  ///< negative values pass through vertical
+  AngleLaw azimuth = {};
   Eigen::Vector3d begin_p_WT_W = Eigen::Vector3d::Zero();  ///< where it begins [m]
 };
 
@@ -60,10 +61,10 @@ enum class RollReference {
 
 /// The tool at rest at one place; with several index angles it stays `seconds` at each.
 struct RunStop {
-  double seconds = 0;                ///< at rest, at each index position [s]
-  std::vector<double> index_angles;  ///< roll from the stop's first position [rad]
-  double turn_seconds = 10;          ///< of each turn, twice differentiable [s]
-  std::optional<double> toolface;    ///< turn here first, the shorter way [rad]
+  double seconds = 0;                     ///< at rest, at each index position [s]
+  std::vector<double> index_angles = {};  ///< roll from the stop's first position [rad]
+  double turn_seconds = 10;               ///< of each turn, twice differentiable [s]
+  std::optional<double> toolface = {};    ///< turn here first, the shorter way [rad]
   ToolMode::Mode mode = ToolMode::Mode::kGyrocompass;  ///< announced while at rest
 };
 
@@ -81,7 +82,7 @@ struct RunMove {
   double to_md = 0;  ///< of the sensor point [m]
   double speed = 1;  ///< positive, in either direction [m/s]
   double ramp = 10;  ///< [s]
-  RunRoll roll;
+  RunRoll roll = {};
 };
 
 using RunStep = std::variant<RunStop, RunMove>;
@@ -90,7 +91,7 @@ struct SimulatedRun {
   double start_md = 0;        ///< of the sensor point [m]
   double start_toolface = 0;  ///< [rad]; in a vertical hole counted from north
   RollReference roll_reference = RollReference::kNorth;
-  std::vector<RunStep> steps;
+  std::vector<RunStep> steps = {};
 };
 
 /// The Earth at the origin of W (TVD 0).
@@ -112,7 +113,7 @@ struct ToolErrors {
   /// Of every gyro axis. Q rounds the accumulated angle to sqrt(12) Q. B without a correlation time
   /// is a constant drawn with sigma B; with one a Gauss-Markov process of sigma 1.075 B. The ramp
   /// has either sign.
-  NoiseCoefficients gyro_noise;
+  NoiseCoefficients gyro_noise = {};
   bool flicker = false;        ///< B as 1/f noise, Allan-flat from 4 s to 1e5 s, instead
   double gyro_full_scale = 0;  ///< [rad/s]; 0: none
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();   ///< [m/s^2]
@@ -138,7 +139,7 @@ struct SimulatedTool {
   bool has_mag = false;
   double sensor_below_reference = 0;  ///< along hole [m]
   float temperature = 20;             ///< [degC]
-  ToolErrors errors;
+  ToolErrors errors = {};
 };
 
 /// Messages that never arrive: those whose last sample or mark lies in [begin, end).
@@ -153,7 +154,7 @@ struct SimulatedStreams {
   std::int32_t batch = 100;                      ///< new samples per message
   std::int32_t overlap = 0;                      ///< samples of the message before, sent again
   double loss_probability = 0;                   ///< of each message of samples
-  std::vector<Outage> outages;                   ///< of the messages of samples
+  std::vector<Outage> outages = {};              ///< of the messages of samples
   UtcTime begin_utc{1'767'225'600'000'000'000};  ///< of the run; 2026-01-01 by default
   std::int32_t session = 1;
   std::int32_t run = 1;
