@@ -16,7 +16,7 @@ void ReadOne(TomlTable& table, const std::string& key, double unit, double& valu
                  FaultCode::kConflict);
   }
   if (measured && !table.Has(key)) {
-    table.Refuse(key + "_sigma", "stands without its coefficient", FaultCode::kConflict);
+    table.RefuseAbsent(key, "is missing while its sigma is there");
   }
 }
 

@@ -118,7 +118,7 @@ void TomlTable::Refuse(std::string_view key, std::string_view why, FaultCode cod
         (node ? node : table_)->source().begin);
 }
 
-void TomlTable::RefuseMissing(std::string_view key) const {
+void TomlTable::RefuseAbsent(std::string_view key, std::string_view why) const {
   for (const auto& [name, node] : *table_) {
     if (!document_->read_.contains(&node) && Alike(name.str(), key)) {
       Throw(FaultCode::kSyntax,
@@ -126,7 +126,7 @@ void TomlTable::RefuseMissing(std::string_view key) const {
             document_->source_, name.source().begin);
     }
   }
-  Refuse(key, "is missing");
+  Refuse(key, why);
 }
 
 void TomlTable::RefuseWord(std::string_view key, const std::string& word,

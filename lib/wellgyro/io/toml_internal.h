@@ -101,6 +101,8 @@ class TomlTable {
   /// Complains about `key`, which may be absent, or about the whole table where it is empty.
   [[noreturn]] void Refuse(std::string_view key, std::string_view why,
                            FaultCode code = FaultCode::kRange) const;
+  /// Complains that `key` is absent, or about the unknown key that seems to be meant for it.
+  [[noreturn]] void RefuseAbsent(std::string_view key, std::string_view why) const;
 
  private:
   TomlTable(TomlDocument& document, const toml::table& table, std::string name)
@@ -109,7 +111,6 @@ class TomlTable {
   const toml::node* Ask(std::string_view key);
   double NumberOf(const toml::node& node, std::string_view key, TomlRange range) const;
   std::string Named(std::string_view key) const;
-  [[noreturn]] void RefuseMissing(std::string_view key) const;
   [[noreturn]] void RefuseWord(std::string_view key, const std::string& word,
                                const std::vector<std::string_view>& words) const;
 
@@ -147,7 +148,7 @@ std::optional<T> TomlTable::FindWord(std::string_view key, TomlWords<T> words) {
 
 template <class T>
 T TomlTable::Need(std::string_view key, std::optional<T> found) {
-  if (!found) RefuseMissing(key);
+  if (!found) RefuseAbsent(key, "is missing");
   return *std::move(found);
 }
 

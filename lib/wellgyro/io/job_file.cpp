@@ -1,0 +1,157 @@
+#include "wellgyro/io/job_file.h"
+
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/io/coefficients_internal.h"
+#include "wellgyro/io/job_sections_internal.h"
+#include "wellgyro/io/sha256.h"
+#include "wellgyro/io/survey_csv.h"
+#include "wellgyro/io/toml_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::string_view kFormat = "wellgyro.job/1";
+constexpr std::string_view kNoiseFormat = "wellgyro.noise/1";
+
+// The file that `key` of `table` names, noted among those the result rests on. When it cannot be
+// read the Fault is about that file.
+std::string NamedFile(const std::string& name, std::string_view role,
+                      const std::filesystem::path& folder, std::vector<InputFile>& files) {
+  const std::filesystem::path path = folder / name;
+  Result<std::string> text = ReadTextFile(path);
+  if (!text) throw TomlError{text.fault()};
+  files.push_back(
+      {.role = std::string(role), .name = name, .path = path, .sha256 = Sha256Hex(*text)});
+  return *std::move(text);
+}
+
+TieIn TieInOfSurvey(const std::string& text, const std::string& source) {
+  const auto stations = ParseSurveyCsv(text, source);
+  if (!stations) throw TomlError{stations.fault()};
+  if (stations->empty()) {
+    throw TomlError{{.code = FaultCode::kRange,
+                     .text = "has no station to tie on to",
+                     .source = source,
+                     .line = 1}};
+  }
+  const Station& last = stations->back();
+  return {.md = last.md,
+          .north = last.p_WT_W.x(),
+          .east = last.p_WT_W.y(),
+          .tvd = last.p_WT_W.z(),
+          .inclination = last.inclination,
+          .azimuth = last.azimuth,
+          .cov_p_WT_W = last.cov_p_WT_W};
+}
+
+NoiseCoefficients NoiseOfFile(const std::string& text, const std::string& source) {
+  const auto noise =
+      ReadTomlText<NoiseCoefficients>(text, source, kNoiseFormat, [](TomlTable& root) {
+        TomlTable table = root.Need("coefficients", root.FindTable("coefficients"));
+        return ReadCoefficients(table);
+      });
+  if (!noise) throw TomlError{noise.fault()};
+  return *noise;
+}
+
+class JobReader {
+ public:
+  explicit JobReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  JobFile Read(TomlTable& root) {
+    Job& job = file_.job;
+    const TomlTable well = root.Need("well", root.FindTable("well"));
+    job.well = ReadWell(well);
+    if (auto table = root.FindTable("identity")) job.identity = table->Verbatim();
+    if (auto table = root.FindTable("grid")) {
+      if (!well.Has("longitude_deg"))
+        well.RefuseAbsent("longitude_deg", "is missing; [grid] needs it");
+      TakeGrid(*table);
+    }
+    if (auto table = root.FindTable("tie_in")) TakeTieIn(*table);
+    if (auto table = root.FindTable("noise")) TakeNoise(*table);
+    if (auto table = root.FindTable("errors")) job.errors = ReadPriors(*table);
+    if (auto table = root.FindTable("channels")) job.channels = ReadChannels(*table);
+    if (auto table = root.FindTable("alignment")) job.alignment = ReadAlignment(*table);
+    if (auto table = root.FindTable("stations")) job.stations = ReadStations(*table);
+    if (auto table = root.FindTable("depth")) job.depth = ReadDepth(*table);
+    if (auto table = root.FindTable("string")) job.string = ReadString(*table);
+    if (auto table = root.FindTable("acceptance")) job.acceptance = ReadAcceptance(*table);
+    TakeRuns(root);
+    for (const TomlTable& table : root.FindTables("event")) job.events.push_back(ReadEvent(table));
+    return std::move(file_);
+  }
+
+ private:
+  void TakeGrid(TomlTable& table) {
+    const Job::Well& well = file_.job.well;
+    GridSpec grid = ReadGrid(table);
+    try {
+      const WellGrid probe(grid, {.latitude = well.latitude, .longitude = well.longitude});
+    } catch (const std::exception& error) {
+      table.Refuse("", fmt::format("the well head has no place on it: {}", error.what()));
+    }
+    file_.job.grid = std::move(grid);
+  }
+
+  void TakeTieIn(TomlTable& table) {
+    if (const auto name = table.FindString("survey")) {
+      const std::string text = NamedFile(*name, "tie_in", folder_, file_.files);
+      file_.job.tie_in = TieInOfSurvey(text, (folder_ / *name).string());
+    } else {
+      file_.job.tie_in = ReadTieIn(table);
+    }
+  }
+
+  void TakeNoise(TomlTable& table) {
+    if (const auto name = table.FindString("file")) {
+      const std::string text = NamedFile(*name, "noise", folder_, file_.files);
+      file_.job.noise = NoiseOfFile(text, (folder_ / *name).string());
+    } else {
+      file_.job.noise = ReadCoefficients(table);
+    }
+  }
+
+  void TakeRuns(TomlTable& root) {
+    std::set<std::int32_t> numbers;
+    for (TomlTable& table : root.FindTables("run")) {
+      file_.job.runs.push_back(ReadRun(table));
+      if (numbers.insert(file_.job.runs.back().number).second) continue;
+      table.Refuse("number", fmt::format("{} stands twice", file_.job.runs.back().number),
+                   FaultCode::kConflict);
+    }
+  }
+
+  std::filesystem::path folder_;
+  JobFile file_;
+};
+
+}  // namespace
+
+Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& source,
+                         const std::filesystem::path& folder) {
+  Result<JobFile> file =
+      ReadTomlText<JobFile>(text, source.string(), kFormat,
+                            [&](TomlTable& root) { return JobReader(folder).Read(root); });
+  if (file) {
+    file->files.insert(file->files.begin(), {.role = "job",
+                                             .name = source.filename().string(),
+                                             .path = source,
+                                             .sha256 = Sha256Hex(text)});
+  }
+  return file;
+}
+
+Result<JobFile> ReadJob(const std::filesystem::path& path) {
+  const Result<std::string> text = ReadTextFile(path);
+  if (!text) return text.fault();
+  return ParseJob(*text, path, path.parent_path());
+}
+
+}  // namespace wellgyro
