@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,8 +27,10 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in, double depth_sigma, TimeAlongHole order);
 
   /// The next station of the survey in the order of depth. Returns cov_p_WT_W [m^2].
-  /// Stations of one filter or smoother come without a hole, each the neighbour in time of the one
-  /// before; std::invalid_argument when depths do not increase.
+  /// The stations of one filter or smoother must come one after the other, each the neighbour in
+  /// time of the one before; one without `cov_with_previous`, the first of a run, is taken as
+  /// independent of its neighbour. Throws std::invalid_argument when depths do not increase or
+  /// time runs the wrong way.
   Eigen::Matrix3d Add(const StationState& station);
 
   /// The same for a station that the survey leaves out: it only carries the correlations on. Its
@@ -35,19 +38,20 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   void Skip(const StationState& station);
 
  private:
-  using Gain = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kFilterStatesMax>;
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kFilterStatesMax>;
   void Advance(const StationState& station);
 
   TimeAlongHole order_;
   double depth_sigma_;
-  bool empty_ = true;
-  bool any_added_ = false;
-  double md_ = 0;                           // of the last station added
-  Eigen::Matrix3d cov_;                     // of r, the position there less its own depth error
-  Eigen::Matrix3d cov_slope_;               // of s = g x + g white there, [m^2/m^2]
-  Eigen::Matrix3d cov_with_slope_;          // E[r s']
-  Gain cov_with_state_, slope_with_state_;  // E[r x'], E[s x'], x of the station passed last
-  FilterMatrix cov_last_, cross_last_;      // of that station
+  bool any_ = false;
+  double md_ = 0;                   // of the last station added, and there:
+  Eigen::Matrix3d cov_;             // of r, the position less the station's own depth error
+  Eigen::Matrix3d cov_slope_;       // of s, the error of the tangent
+  Eigen::Matrix3d cov_with_slope_;  // E[r s']
+  Rows cov_with_state_;             // E[r x'], x of the station last seen, added or skipped
+  Rows slope_with_state_;           // E[s x']
+  std::size_t epoch_ = 0;           // of that station
+  FilterMatrix state_cov_, state_cov_with_previous_;
 };
 
 /// The same for all stations at once, in the order of depth.

@@ -36,6 +36,7 @@ struct FilterEpoch {
   double sigma_azimuth = 0;  ///< [rad]
   bool azimuth_known = false;
   bool station = false;
+  int fix = -1;  ///< index of the fix whose window this still knot serves; -1: none
 };
 
 /// What became of a north fix.
@@ -87,8 +88,10 @@ class WELLGYRO_EXPORT AzimuthFilter {
   /// std::invalid_argument when the knot does not end after the one before.
   const AttitudeSample& Step(const Knot& knot);
 
-  /// Takes a fix that holds at any time up to the last knot, an external one also between knots or
-  /// at the start; later knots are worked again. Returns what became of it.
+  /// Takes a fix once the knots up to its end have been stepped, also much later, between knots, or
+  /// (external) at the start; the knots since are worked again, their stations with them. Never
+  /// rejects: chi_square says how well it agrees. A fix with a mirror azimuth is used when the
+  /// costs of its two branches against the azimuth known before differ by more than 9.
   FilterFix Update(const NorthFix& fix);
 
   /// Makes the last knot a station, for position covariance and for Smooth().
@@ -97,8 +100,7 @@ class WELLGYRO_EXPORT AzimuthFilter {
 
   /// After the last Step or Update.
   const AttitudeSample& attitude() const;
-  /// The marked stations as the filter knew them when it passed (later fixes do not change a
-  /// station, except one that comes after the station it precedes).
+  /// The marked stations, in the order of time, from knots and fixes up to each.
   const std::vector<StationState>& stations() const;
   const FilterHistory& history() const;
 

@@ -1,0 +1,323 @@
+#include "wellgyro/attitude/filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "wellgyro/attitude/filter_core_internal.h"
+#include "wellgyro/base/angle.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr Duration kClockGrain{1000};  // knots and windows cut at the same sample
+constexpr double kBranchMargin = 9;    // chi-square by which one branch must beat the other
+constexpr std::size_t kSnapshotsMax = 256;
+
+void RequireNotNegative(const char* name, double value) {
+  if (std::isfinite(value) && value >= 0) return;
+  throw std::invalid_argument(std::string("FilterSetup: ") + name + " is " + std::to_string(value));
+}
+
+void Validate(const FilterSetup& s) {
+  const NoiseCoefficients& n = s.gyro;
+  const ErrorPriors& e = s.errors;
+  const std::pair<const char*, double> numbers[] = {
+      {"gyro.quantization", n.quantization},
+      {"gyro.angle_random_walk", n.angle_random_walk},
+      {"gyro.bias_instability", n.bias_instability},
+      {"gyro.rate_random_walk", n.rate_random_walk},
+      {"gyro.rate_ramp", n.rate_ramp},
+      {"gyro.bias_instability_correlation_time",
+       n.bias_instability_correlation_time.value_or(1) > 0
+           ? n.bias_instability_correlation_time.value_or(1)
+           : -1},
+      {"errors.gyro_bias_sigma", e.gyro_bias_sigma},
+      {"errors.mass_unbalance_sigma", e.mass_unbalance_sigma},
+      {"errors.quadrature_sigma", e.quadrature_sigma},
+      {"errors.gyro_scale_sigma", e.gyro_scale_sigma},
+      {"errors.gyro_misalignment_sigma", e.gyro_misalignment_sigma},
+      {"errors.accel_bias_sigma", e.accel_bias_sigma},
+      {"errors.roll_offset_sigma", e.roll_offset_sigma},
+      {"errors.time_skew_sigma", e.time_skew_sigma},
+      {"errors.latitude_sigma", e.latitude_sigma},
+      {"start_sigma", s.start_sigma},
+      {"gap_dogleg", s.gap_dogleg},
+      {"gap_rate", s.gap_rate},
+      {"start_azimuth", std::abs(s.start_azimuth.value_or(0))},
+      {"site.latitude", std::abs(s.site.latitude)},
+      {"site.height", std::abs(s.site.height)},
+  };
+  for (const auto& [name, value] : numbers) RequireNotNegative(name, value);
+  if (!(s.site.radius_north > 0 && s.site.radius_east > 0 && s.site.gravity > 0)) {
+    throw std::invalid_argument("FilterSetup: site has no radii or gravity; use SiteAt()");
+  }
+}
+
+ToolTime BeginOf(const Knot& knot) { return knot.time - Duration::Seconds(knot.seconds); }
+
+// A still knot that lies in the fix's window: what the fix rests on.
+bool Serves(const Knot& knot, const NorthFix& fix) {
+  return knot.still && knot.seconds > 0 && knot.gap_seconds <= 0 &&
+         !Has(knot.quality, Quality::kVertical) && !knot.vertical &&
+         fix.begin <= BeginOf(knot) + kClockGrain && knot.time <= fix.end + kClockGrain;
+}
+
+double ChiSquare(double azimuth, double predicted, double variance) {
+  const double d = WrapPi(azimuth - predicted);
+  return variance > 0 ? d * d / variance : 0;
+}
+
+}  // namespace
+
+struct AzimuthFilter::Impl {
+  struct Snapshot {
+    std::size_t epochs;  // worked before it was taken
+    FilterCore core;
+  };
+
+  explicit Impl(const FilterSetup& setup) : core(setup) { history.setup = setup; }
+
+  void Work(std::size_t i);
+  void TakePlainFixes(std::size_t worked, double growth);
+  void TakeStill(const FilterEpoch& epoch);
+  void TakeAzimuth(double azimuth, double variance);
+  void Observe(const Knot& knot);
+  void Station(std::size_t i);
+  void Remember(std::size_t epochs);
+  void Rewind(std::size_t epochs);
+  void Locate(FilterFix* f) const;
+  // A plain fix enters when its epoch is worked, one at the start before all of them.
+  static std::size_t FirstToWork(const FilterFix& f) {
+    return f.rates || f.epoch_end == 0 ? f.epoch_begin : f.epoch_end - 1;
+  }
+  void ChooseBranch(FilterFix* f, double azimuth, double variance) const;
+
+  FilterHistory history;
+  FilterCore core;
+  AttitudeSample attitude;
+  std::vector<StationState> stations;
+  std::vector<Snapshot> snapshots;
+};
+
+void AzimuthFilter::Impl::Remember(std::size_t epochs) {
+  if (!snapshots.empty() && snapshots.back().epochs == epochs) snapshots.pop_back();
+  if (snapshots.size() >= kSnapshotsMax) {  // thin out; the first stays
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < snapshots.size(); i += 2) snapshots[kept++] = snapshots[i];
+    snapshots.erase(snapshots.begin() + static_cast<std::ptrdiff_t>(kept), snapshots.end());
+  }
+  snapshots.push_back({epochs, core});
+}
+
+// Back to the state after the first `epochs` epochs.
+void AzimuthFilter::Impl::Rewind(std::size_t epochs) {
+  while (!snapshots.empty() && snapshots.back().epochs > epochs) snapshots.pop_back();
+  std::size_t at = 0;
+  if (snapshots.empty()) {
+    core = FilterCore(history.setup);
+    TakePlainFixes(0, 0);
+  } else {
+    core = snapshots.back().core;
+    at = snapshots.back().epochs;
+  }
+  while (!stations.empty() && stations.back().epoch >= at) stations.pop_back();
+  for (; at < epochs; ++at) Work(at);
+}
+
+void AzimuthFilter::Impl::TakeAzimuth(double azimuth, double variance) {
+  if (core.azimuth_diffuse()) core.SetAzimuth(azimuth);
+  FilterMeasurement m;
+  m.h = FilterVector::Zero(core.layout().size);
+  m.h[0] = 1;
+  m.value = core.azimuth() + WrapPi(azimuth - core.azimuth());
+  m.variance = variance;
+  core.Take(&m);
+}
+
+// The fixes that enter as azimuths once `worked` epochs are worked; 0: before the first knot.
+void AzimuthFilter::Impl::TakePlainFixes(std::size_t worked, double growth) {
+  for (const FilterFix& f : history.fixes) {
+    const bool used = f.use == FixUse::kUsed || f.use == FixUse::kMirror;
+    if (!used || f.rates || f.epoch_end != worked) continue;
+    const double since =
+        worked > 0 ? GrowthSince(history.epochs[worked - 1].knot, f.fix, growth) : 0;
+    TakeAzimuth(f.azimuth + since, f.fix.cov_attitude(1, 1));
+  }
+}
+
+void AzimuthFilter::Impl::TakeStill(const FilterEpoch& epoch) {
+  const double azimuth = history.fixes[static_cast<std::size_t>(epoch.fix)].azimuth;
+  if (core.azimuth_diffuse()) core.SetAzimuth(azimuth);
+  // Every knot of a window is made linear about the same azimuth, so that together they weigh as
+  // one measurement.
+  const double about = core.azimuth() + WrapPi(azimuth - core.azimuth());
+  StillMeasurements m = core.AtRest(epoch.knot, about);
+  core.Take(&m.turn);
+  core.Take(&m.lift);
+}
+
+void AzimuthFilter::Impl::Observe(const Knot& knot) {
+  const AttitudeRows rows = RowsOf(core.layout(), knot, history.setup.site.gravity);
+  attitude = AttitudeOf(knot, rows * core.state(), rows * core.covariance() * rows.transpose(),
+                        history.setup.gyro);
+}
+
+void AzimuthFilter::Impl::Work(std::size_t i) {
+  FilterEpoch& epoch = history.epochs[i];
+  const Knot& knot = epoch.knot;
+  const bool stops = knot.still && (i == 0 || !history.epochs[i - 1].knot.still);
+  if (stops || i == 0) Remember(i);
+  const double before = core.azimuth();
+  core.Step(knot, before, std::nullopt);
+  if (epoch.fix >= 0) TakeStill(epoch);
+  TakePlainFixes(i + 1, core.azimuth() - before);
+  epoch.azimuth = core.azimuth();
+  epoch.azimuth_known = core.azimuth_known();
+  epoch.sigma_azimuth = std::sqrt(std::min(core.variance(), kFlatAzimuthVariance));
+  Observe(knot);
+  if (epoch.station) Station(i);
+}
+
+void AzimuthFilter::Impl::Station(std::size_t i) {
+  const Knot& knot = history.epochs[i].knot;
+  stations.push_back(StationOf(i, knot, attitude,
+                               RowsOf(core.layout(), knot, history.setup.site.gravity),
+                               core.covariance(), core.cross(), history.setup.gyro));
+  core.BeginStation();
+  Remember(i + 1);
+}
+
+// Which epochs a fix concerns, and whether it enters by rates.
+void AzimuthFilter::Impl::Locate(FilterFix* f) const {
+  const auto& epochs = history.epochs;
+  const NorthFix& fix = f->fix;
+  f->use = FixUse::kUsed;
+  const auto ends_before = [](const FilterEpoch& e, ToolTime t) { return e.knot.time < t; };
+  const auto at = static_cast<std::size_t>(
+      std::lower_bound(epochs.begin(), epochs.end(), fix.end - kClockGrain, ends_before) -
+      epochs.begin());
+  if (!fix.external && fix.from_samples) {
+    double covered = 0;
+    std::size_t begin = epochs.size(), end = 0;
+    for (std::size_t i = std::min(at + 1, epochs.size());
+         i-- > 0 && fix.begin < epochs[i].knot.time;) {
+      if (!Serves(epochs[i].knot, fix)) continue;
+      covered += epochs[i].knot.seconds;
+      begin = i;
+      end = std::max(end, i + 1);
+    }
+    if (covered > 0 && covered >= 0.5 * (fix.end - fix.begin).seconds()) {
+      f->rates = true;
+      f->epoch_begin = begin;
+      f->epoch_end = end;
+      return;
+    }
+  }
+  if (epochs.empty() || fix.end <= BeginOf(epochs.front().knot) + kClockGrain) return;  // start
+  std::size_t last = at;
+  if (at == epochs.size()) {  // beyond the last knot: the same direction only if at rest since
+    if (!epochs.back().knot.still || epochs.back().knot.time < fix.begin) {
+      f->use = FixUse::kNoKnot;
+      return;
+    }
+    last = epochs.size() - 1;
+  }
+  f->epoch_begin = last;
+  f->epoch_end = last + 1;
+}
+
+void AzimuthFilter::Impl::ChooseBranch(FilterFix* f, double azimuth, double variance) const {
+  const NorthFix& fix = f->fix;
+  f->azimuth = fix.azimuth;
+  const bool known = variance < kFlatAzimuthVariance;
+  if (!known) {
+    if (fix.mirror_azimuth && fix.mirror_cost <= kBranchMargin) f->use = FixUse::kAmbiguous;
+    return;
+  }
+  const double sum = variance + fix.cov_attitude(1, 1);
+  f->chi_square = ChiSquare(fix.azimuth, azimuth, sum);
+  if (!fix.mirror_azimuth) return;
+  const double mirror = ChiSquare(*fix.mirror_azimuth, azimuth, sum);
+  const double difference = mirror + fix.mirror_cost - f->chi_square;
+  if (std::abs(difference) <= kBranchMargin) f->use = FixUse::kAmbiguous;
+  if (difference < -kBranchMargin) {
+    f->use = FixUse::kMirror;
+    f->azimuth = *fix.mirror_azimuth;
+    f->chi_square = mirror;
+  }
+}
+
+AzimuthFilter::AzimuthFilter(const FilterSetup& setup) {
+  Validate(setup);
+  impl_ = std::make_unique<Impl>(setup);
+}
+AzimuthFilter::~AzimuthFilter() = default;
+AzimuthFilter::AzimuthFilter(AzimuthFilter&&) noexcept = default;
+AzimuthFilter& AzimuthFilter::operator=(AzimuthFilter&&) noexcept = default;
+
+const AttitudeSample& AzimuthFilter::Step(const Knot& knot) {
+  auto& epochs = impl_->history.epochs;
+  if (!epochs.empty() && knot.time <= epochs.back().knot.time) {
+    throw std::invalid_argument("AzimuthFilter::Step: knot.time " + std::to_string(knot.time.ns) +
+                                " ns is not after the knot before");
+  }
+  if (!(knot.seconds >= 0)) {
+    throw std::invalid_argument("AzimuthFilter::Step: knot.seconds is " +
+                                std::to_string(knot.seconds));
+  }
+  epochs.emplace_back();
+  epochs.back().knot = knot;
+  impl_->Work(epochs.size() - 1);
+  return impl_->attitude;
+}
+
+FilterFix AzimuthFilter::Update(const NorthFix& fix) {
+  Impl& m = *impl_;
+  FilterFix f;
+  f.fix = fix;
+  m.Locate(&f);
+  const std::size_t all = m.history.epochs.size();
+  if (f.use != FixUse::kNoKnot) {
+    const std::size_t from = m.FirstToWork(f);
+    m.Rewind(from);
+    double since = 0;
+    if (!f.rates && f.epoch_end > 0) {
+      const double before = m.core.azimuth();
+      m.Work(from);
+      since = GrowthSince(m.history.epochs[from].knot, fix, m.core.azimuth() - before);
+    }
+    m.ChooseBranch(&f, m.core.azimuth() - since, m.core.variance());
+  }
+  m.history.fixes.push_back(f);
+  if (f.use == FixUse::kNoKnot) return f;
+  if (f.rates && f.use != FixUse::kAmbiguous) {
+    for (std::size_t i = f.epoch_begin; i < f.epoch_end; ++i) {
+      FilterEpoch& e = m.history.epochs[i];
+      if (Serves(e.knot, fix)) e.fix = static_cast<int>(m.history.fixes.size()) - 1;
+    }
+  }
+  const std::size_t from = m.FirstToWork(f);
+  if (f.epoch_end == 0) m.snapshots.clear();
+  m.Rewind(from);
+  for (std::size_t i = from; i < all; ++i) m.Work(i);
+  return f;
+}
+
+const StationState& AzimuthFilter::MarkStation() {
+  auto& epochs = impl_->history.epochs;
+  if (epochs.empty()) throw std::logic_error("AzimuthFilter::MarkStation: no knot yet");
+  if (!epochs.back().station) {
+    epochs.back().station = true;
+    impl_->Station(epochs.size() - 1);
+  }
+  return impl_->stations.back();
+}
+
+const AttitudeSample& AzimuthFilter::attitude() const { return impl_->attitude; }
+const std::vector<StationState>& AzimuthFilter::stations() const { return impl_->stations; }
+const FilterHistory& AzimuthFilter::history() const { return impl_->history; }
+
+}  // namespace wellgyro
