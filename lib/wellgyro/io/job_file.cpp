@@ -113,6 +113,7 @@ class JobReader {
     if (const auto name = table.FindString("file")) {
       const std::string text = NamedFile(*name, "noise", folder_, file_.files);
       file_.job.noise = NoiseOfFile(text, (folder_ / *name).string());
+      file_.files.back().text = text;
     } else {
       file_.job.noise = ReadCoefficients(table);
     }
@@ -143,7 +144,8 @@ Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& sou
     file->files.insert(file->files.begin(), {.role = "job",
                                              .name = source.filename().string(),
                                              .path = source,
-                                             .sha256 = Sha256Hex(text)});
+                                             .sha256 = Sha256Hex(text),
+                                             .text = std::string(text)});
   }
   return file;
 }

@@ -15,6 +15,7 @@ struct InputFile {
   std::string name;            ///< as the user wrote it
   std::filesystem::path path;  ///< where it was found
   std::string sha256;          ///< of the very bytes that were used
+  std::string text = {};       ///< those bytes, where they go into run.toml whole
 };
 
 /// The bytes of the file at `path`. Fault kIo when it cannot be opened or read or is a directory,

@@ -25,6 +25,10 @@ constexpr std::array<std::string_view, 11> kFlags{
     "moved",       "mirror",  "vertical", "saturated",  "gap",  "depth",
     "temperature", "aliased", "gravity",  "earth_rate", "clock"};
 
+constexpr std::array<std::string_view, 11> kFaults{"io",    "foreign", "fingerprint", "size",
+                                                   "range", "syntax",  "damaged",     "lost",
+                                                   "late",  "order",   "conflict"};
+
 template <class Enum>
 std::string_view WordAt(Words words, Enum value) {
   const auto index = static_cast<std::size_t>(value);
@@ -48,6 +52,7 @@ std::string_view WordOf(Pass pass) { return WordAt(kPasses, pass); }
 std::string_view WordOf(Verdict verdict) { return WordAt(kVerdicts, verdict); }
 std::string_view WordOf(Event::Kind kind) { return WordAt(kEvents, kind); }
 std::string_view WordOf(DepthKind kind) { return WordAt(kDepths, kind); }
+std::string_view WordOf(FaultCode code) { return WordAt(kFaults, code); }
 
 std::optional<StationKind> StationKindOf(std::string_view word) {
   return Find<StationKind>(kKinds, word);

@@ -6,6 +6,7 @@
 
 #include "wellgyro/base/depth.h"
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/quality.h"
@@ -20,6 +21,7 @@ WELLGYRO_EXPORT std::string_view WordOf(Pass pass);             ///< stationary,
 WELLGYRO_EXPORT std::string_view WordOf(Verdict verdict);       ///< pass, warn, fail, not_done
 WELLGYRO_EXPORT std::string_view WordOf(Event::Kind kind);      ///< depth_zero, depth_rezero, ...
 WELLGYRO_EXPORT std::string_view WordOf(DepthKind kind);        ///< indicated, wireline, ...
+WELLGYRO_EXPORT std::string_view WordOf(FaultCode code);        ///< io, foreign, fingerprint, ...
 
 /// `good`, or the names of the set flags joined by `+`: moved mirror vertical saturated gap depth
 /// temperature aliased gravity earth_rate clock.

@@ -1,0 +1,142 @@
+#include "wellgyro/io/atomic_file.h"
+
+#include <cerrno>
+#include <cstddef>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "wellgyro/io/text_file.h"
+#include "wellgyro/io/toml_internal.h"
+
+namespace wellgyro {
+namespace {
+
+Fault Refused(const std::filesystem::path& path, std::string_view what, int error) {
+  return {.code = FaultCode::kIo,
+          .text = fmt::format("cannot {}: {}", what, std::generic_category().message(error)),
+          .source = path.string()};
+}
+
+std::optional<Fault> WriteAll(int file, std::string_view bytes, const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return Refused(path, "write", errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (::fsync(file) != 0) return Refused(path, "write to disk", errno);
+  return std::nullopt;
+}
+
+// A whole file on disk under its temporary name, removed again unless it is put in place.
+class Partial {
+ public:
+  explicit Partial(std::filesystem::path target) : target_(std::move(target)) {
+    temporary_ = target_.parent_path() /
+                 fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid());
+  }
+  ~Partial() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+  Partial(Partial&& other) noexcept
+      : target_(std::move(other.target_)), temporary_(std::exchange(other.temporary_, {})) {}
+  Partial& operator=(Partial&&) = delete;
+
+  std::optional<Fault> Write(std::string_view bytes) const {
+    const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0) return Refused(target_, "make a file beside it", errno);
+    std::optional<Fault> fault = WriteAll(file, bytes, target_);
+    if (::close(file) != 0 && !fault) fault = Refused(target_, "close", errno);
+    return fault;
+  }
+
+  std::optional<Fault> PutInPlace() {
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+      return Refused(target_, "put the new file in place", errno);
+    }
+    temporary_.clear();
+    return std::nullopt;
+  }
+
+ private:
+  std::filesystem::path target_, temporary_;
+};
+
+// So that the renames themselves survive a loss of power. Some file systems know no such thing.
+void SyncFolder(const std::filesystem::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  ::fsync(file);
+  ::close(file);
+}
+
+}  // namespace
+
+std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
+                                std::span<const OutputFile> files) {
+  std::vector<Partial> partials;
+  for (const OutputFile& file : files) {
+    const std::filesystem::path target = folder / file.name;
+    std::error_code error;
+    std::filesystem::create_directories(target.parent_path(), error);
+    if (error) return Refused(target.parent_path(), "make this folder", error.value());
+    partials.emplace_back(target);
+    if (auto fault = partials.back().Write(file.bytes)) return fault;
+  }
+  for (Partial& partial : partials) {
+    if (auto fault = partial.PutInPlace()) return fault;
+  }
+  for (const OutputFile& file : files) SyncFolder((folder / file.name).parent_path());
+  return std::nullopt;
+}
+
+Result<bool> HoldsAcceptedResult(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  const std::filesystem::path run_file = folder / "run.toml";
+  if (std::filesystem::exists(run_file, ignored)) {
+    const Result<std::string> text = ReadTextFile(run_file);
+    if (!text) return text.fault();
+    try {
+      const toml::table run = toml::parse(*text);
+      if (run["accepted"].value_or(false)) return true;
+    } catch (const toml::parse_error& error) {
+      return Fault{.code = FaultCode::kSyntax,
+                   .text = std::string(error.description()),
+                   .source = run_file.string(),
+                   .line = static_cast<int>(error.source().begin.line),
+                   .column = static_cast<int>(error.source().begin.column)};
+    }
+  }
+  const std::filesystem::path passes = folder / "passes.csv";
+  if (!std::filesystem::exists(passes, ignored)) return false;
+  const Result<std::string> text = ReadTextFile(passes, std::int64_t{1} << 36);
+  if (!text) return text.fault();
+  return text->find(",definitive,") != std::string::npos;
+}
+
+std::optional<Fault> WriteResult(const std::filesystem::path& folder,
+                                 std::span<const OutputFile> files) {
+  const Result<bool> accepted = HoldsAcceptedResult(folder);
+  if (!accepted) {
+    Fault fault = accepted.fault();
+    fault.text += "; whether a result there was accepted cannot be told: choose a new --out";
+    return fault;
+  }
+  if (*accepted) {
+    return Fault{.code = FaultCode::kConflict,
+                 .text =
+                     "holds a survey that someone accepted, which is never written over: "
+                     "choose a new --out",
+                 .source = folder.string()};
+  }
+  return WriteFiles(folder, files);
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,194 @@
+#include "wellgyro/io/run_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/io/sha256.h"
+#include "wellgyro/io/survey_csv.h"
+#include "wellgyro/io/toml_writer_internal.h"
+#include "wellgyro/io/words.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::size_t kFaultsListed = 100;
+
+void WriteInputs(TomlWriter& toml, const std::vector<InputFile>& inputs) {
+  for (const InputFile& input : inputs) {
+    toml.Element("input");
+    toml.Text("role", input.role);
+    toml.Text("name", input.name);
+    toml.Text("sha256", input.sha256);
+    if (!input.text.empty()) toml.Lines("text", input.text);
+  }
+}
+
+void WriteChannels(TomlWriter& toml, const std::vector<ChannelRecord>& channels) {
+  for (const ChannelRecord& channel : channels) {
+    toml.Element("channel");
+    toml.Text("name", channel.channel);
+    toml.Text("type", channel.type);
+    toml.Whole("messages", channel.messages);
+    toml.Text("sha256", channel.sha256);
+  }
+}
+
+void WriteTools(TomlWriter& toml, const std::vector<ToolInfo>& tools) {
+  for (const ToolInfo& tool : tools) {
+    toml.Element("tool");
+    toml.Whole("tool", tool.tool);
+    toml.Whole("run", tool.run);
+    toml.Text("asset_serial", tool.asset_serial);
+    toml.Text("sensor_serials", tool.sensor_serials);
+    toml.Text("firmware", tool.firmware);
+    toml.Text("calibration_sha256", tool.calibration_sha256);
+    toml.Whole("string_position", tool.string_position);
+    toml.Number("sensor_below_reference_m", tool.sensor_below_reference);
+  }
+}
+
+void WriteFix(TomlWriter& toml, const NorthFix& fix) {
+  const auto deg = [&](std::string_view key, double v) { toml.Number(key, ToDegrees(v)); };
+  toml.Element("run.north_fix");
+  if (fix.md) toml.Number("md_m", *fix.md);
+  toml.Whole("begin_utime_us", fix.utc_begin.ns / 1000);
+  toml.Whole("end_utime_us", fix.utc_end.ns / 1000);
+  if (fix.from_samples) {
+    toml.Whole("seq_begin", fix.seq_begin);
+    toml.Whole("seq_end", fix.seq_end);
+  }
+  toml.Flag("external", fix.external);
+  deg("azimuth_true_deg", WrapTwoPi(fix.azimuth));
+  deg("inclination_deg", fix.inclination);
+  deg("toolface_deg", WrapTwoPi(fix.toolface));
+  deg("sigma_inclination_deg", std::sqrt(fix.cov_attitude(0, 0)));
+  deg("sigma_azimuth_deg", std::sqrt(fix.cov_attitude(1, 1)));
+  deg("sigma_toolface_deg", std::sqrt(fix.cov_attitude(2, 2)));
+  if (fix.mirror_azimuth) {
+    deg("mirror_azimuth_true_deg", WrapTwoPi(*fix.mirror_azimuth));
+    toml.Number("mirror_cost", fix.mirror_cost);
+  }
+  toml.Number("gravity_mps2", fix.gravity);
+  toml.Number("gravity_ref_mps2", fix.gravity_ref);
+  toml.Number("sigma_gravity_mps2", fix.sigma_gravity);
+  if (fix.earth_rate) {
+    toml.Number("earth_rate_deg_per_h", *fix.earth_rate / units::kDegPerHour);
+    toml.Number("earth_rate_ref_deg_per_h", fix.earth_rate_ref / units::kDegPerHour);
+    toml.Number("sigma_earth_rate_deg_per_h", fix.sigma_earth_rate / units::kDegPerHour);
+  }
+  toml.Text("quality", QualityText(fix.quality));
+}
+
+void WriteRuns(TomlWriter& toml, const std::vector<RunSummary>& runs) {
+  for (const RunSummary& run : runs) {
+    toml.Element("run");
+    toml.Whole("number", run.run);
+    toml.Whole("tool", run.tool);
+    toml.Text("verdict", run.misrun ? "misrun" : "ok");
+    if (!run.remark.empty()) toml.Text("remark", run.remark);
+    toml.Whole("begin_utime_us", run.begin.ns / 1000);
+    toml.Whole("end_utime_us", run.end.ns / 1000);
+    toml.Whole("samples", run.samples);
+    toml.Whole("samples_lost", run.samples_lost);
+    toml.Whole("duplicates", run.duplicates);
+    for (const NorthFix& fix : run.fixes) WriteFix(toml, fix);
+  }
+}
+
+void WriteChecks(TomlWriter& toml, const std::vector<Check>& checks) {
+  toml.Table("checks");
+  for (const Verdict verdict :
+       {Verdict::kPass, Verdict::kWarn, Verdict::kFail, Verdict::kNotDone}) {
+    toml.Whole(WordOf(verdict), std::count_if(checks.begin(), checks.end(), [&](const Check& c) {
+                 return c.verdict == verdict;
+               }));
+  }
+}
+
+void WriteFaultCounts(TomlWriter& toml, const std::vector<Fault>& faults) {
+  std::map<FaultCode, std::int64_t> counts;
+  for (const Fault& fault : faults) ++counts[fault.code];
+  toml.Table("faults");
+  for (const auto& [code, count] : counts) toml.Whole(WordOf(code), count);
+}
+
+void WriteFault(TomlWriter& toml, const Fault& fault) {
+  toml.Element("fault");
+  toml.Text("code", WordOf(fault.code));
+  if (!fault.source.empty()) toml.Text("source", fault.source);
+  toml.Text("text", fault.text);
+}
+
+}  // namespace
+
+std::string RunToml(const RunRecord& record, const Job& job, const Survey& survey,
+                    const std::vector<OutputFile>& outputs) {
+  TomlWriter toml;
+  toml.Text("format", "wellgyro.run/1");
+  toml.Text("program", record.program);
+  toml.Text("adjuster", record.adjuster.empty() ? "none" : record.adjuster);
+  toml.Flag("accepted", survey.accepted);
+  toml.Whole("stations", std::ssize(survey.chosen));
+  toml.Whole("stations_of_all_passes", std::ssize(survey.passes));
+  toml.Text("md_kind", WordOf(job.depth.kind));
+  toml.Table("well");
+  toml.Text("name", job.well.name);
+  toml.Number("latitude_deg", ToDegrees(job.well.latitude));
+  toml.Number("longitude_deg", ToDegrees(job.well.longitude));
+  toml.Number("datum_elevation_m", job.well.datum_elevation);
+  toml.Table("identity");
+  for (const auto& [key, value] : job.identity) toml.Text(key, value);
+  WriteChecks(toml, survey.checks);
+  WriteFaultCounts(toml, record.faults);
+  WriteRuns(toml, survey.runs);
+  WriteTools(toml, record.tools);
+  WriteChannels(toml, record.channels);
+  for (const OutputFile& output : outputs) {
+    toml.Element("output");
+    toml.Text("name", output.name);
+    toml.Text("sha256", Sha256Hex(output.bytes));
+  }
+  for (std::size_t i = 0; i < std::min(record.faults.size(), kFaultsListed); ++i) {
+    WriteFault(toml, record.faults[i]);
+  }
+  WriteInputs(toml, record.inputs);
+  return toml.text();
+}
+
+std::string SourceToml(const SourceRecord& record) {
+  TomlWriter toml;
+  toml.Text("format", "wellgyro.source/1");
+  toml.Text("name", record.name);
+  toml.Table("counts");
+  for (const auto& [name, count] : record.counts) toml.Whole(name, count);
+  for (const Fault& fault : record.faults) {
+    WriteFault(toml, fault);
+    if (fault.offset >= 0) toml.Whole("offset", fault.offset);
+  }
+  return toml.text();
+}
+
+std::vector<OutputFile> ResultFiles(const RunRecord& record, const SourceRecord& source,
+                                    const Job& job, const Survey& survey) {
+  std::optional<WellGrid> grid;
+  if (job.grid) {
+    grid.emplace(*job.grid,
+                 GeodeticPoint{.latitude = job.well.latitude, .longitude = job.well.longitude});
+  }
+  const WellGrid* const columns = grid ? &*grid : nullptr;
+  std::vector<OutputFile> files{{"survey.csv", SurveyCsv(survey.chosen, columns)},
+                                {"passes.csv", PassesCsv(survey.passes, columns)},
+                                {"checks.csv", ChecksCsv(survey.checks)}};
+  std::string run = RunToml(record, job, survey, files);
+  files.push_back({"source.toml", SourceToml(source)});
+  files.push_back({"run.toml", std::move(run)});
+  return files;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace wellgyro {
+
+/// Writes TOML line by line, the same bytes for the same values everywhere.
+class TomlWriter {
+ public:
+  void Table(std::string_view name);    ///< [name], after an empty line
+  void Element(std::string_view name);  ///< [[name]], after an empty line
+
+  void Text(std::string_view key, std::string_view value);
+  void Lines(std::string_view key, std::string_view value);  ///< text over several lines
+  void Whole(std::string_view key, std::int64_t value);
+  void Flag(std::string_view key, bool value);
+  /// The shortest text that reads back as `value`, with a dot or exponent.
+  void Number(std::string_view key, double value);
+
+  const std::string& text() const { return text_; }
+
+ private:
+  void Key(std::string_view key);
+  std::string text_;
+};
+
+}  // namespace wellgyro
