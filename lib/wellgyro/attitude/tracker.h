@@ -55,9 +55,9 @@ class WELLGYRO_EXPORT HighSideTracker {
   explicit HighSideTracker(const TrackerOptions& options);
 
   /// Takes the next sample; `along` at the begin of it. Returns false and changes nothing where the
-  /// sample begins before the last one ended (late, or sent twice) or has no period. A jump in
-  /// time, number or session is a gap: the window closes before it and opens after it, nothing is
-  /// invented for it. A change of period only breaks the window. Allocates nothing.
+  /// sample begins before the last one ended (late, or sent twice), has no period or is not finite.
+  /// A jump in time, number or session is a gap: the window closes before it and opens after it,
+  /// nothing is invented for it. A change of period only breaks the window. Allocates nothing.
   bool Push(const ImuSample& sample, const AlongHole& along, const Site& site);
 
   /// Sums the sample that still waits for its successor. At the end of a run; a Push may follow,
@@ -70,12 +70,14 @@ class WELLGYRO_EXPORT HighSideTracker {
   /// specific force by v We cos L (3e-6 g per m/s). A value held for minutes is good enough.
   void SetAzimuth(std::optional<double> azimuth);
 
-  bool ready() const { return ready_; }                ///< a sample has been summed
-  ToolTime time() const { return end_; }               ///< end of the last summed sample
-  ToolTime sample_begin() const { return begin_; }     ///< begin of it
-  double inclination() const { return inclination_; }  ///< at time() [rad], [0, pi]
-  double toolface() const;                             ///< at time() [rad], (-pi, pi]
-  Quality quality() const { return sample_quality_; }  ///< of the last summed sample
+  bool ready() const { return ready_; }  ///< a sample has been summed
+  ToolTime time() const {
+    return sample_begin() + Duration{last().stamp.period_ns};
+  }  ///< end of the last summed sample
+  ToolTime sample_begin() const { return last().stamp.tool_time; }  ///< begin of it
+  double inclination() const { return inclination_; }               ///< at time() [rad], [0, pi]
+  double toolface() const;                                          ///< at time() [rad], (-pi, pi]
+  Quality quality() const { return sample_quality_; }               ///< of the last summed sample
 
   /// Ends the interval at time(), or at `fraction` in (0, 1] of the last summed sample, whose
   /// remainder then stays for the next interval. Sums over adjoining intervals add up to those
@@ -87,16 +89,28 @@ class WELLGYRO_EXPORT HighSideTracker {
   Knot CutKnot(double fraction);
 
  private:
-  static constexpr int kStates = 12;  // inclination errors followed through the observer
-  static constexpr int kSums = 29 + kStates;
-  using Sums = std::array<double, kSums>;  // see enum Sum in the source
+  // Summed over samples, V = W e^{iT} over the period: what Evaluate() makes errors from.
+  enum Sum {
+    kTurn,     // V_h / sin I
+    kAccel,    // accelerometers' inclination dt
+    kLift,     // V_r
+    kLiftH,    // V_h
+    kRoll,     // of the toolface
+    kCot,      // cot I dt
+    kUnitC,    // cos T dt
+    kUnitS,    // sin T dt
+    kSpin,     // rotation about z where has_gz, else zero
+    kSeconds,  // dt
+    kSums
+  };
+  using Sums = std::array<double, kSums>;
 
   struct Seen {  // a sample made ready: the rate turned to the high side, force of gravity alone
     SampleStamp stamp;
     AlongHole along;
     double dt, ux, uy;          // e^{iT}, T the phase of the mean
     double vh, vr;              // (W dt) e^{iT}
-    double ax, ay, az;          // rotation over the period in T; az where has_gz
+    double spin;                // rotation about z where has_gz, else zero
     double across, fz;          // |f_x + i f_y|, f_z [m/s^2]
     double e_r;                 // the Earth's part of the inclination rate [rad/s]
     std::int64_t gap_ns, lost;  // before it
@@ -106,23 +120,42 @@ class WELLGYRO_EXPORT HighSideTracker {
   struct Slopes {  // over u in [-1/2, 1/2]: T = c0 + c1 u + c2 u^2, W e^{iT} period = a0 + a1 u
     double c1 = 0, c2 = 0, a1h = 0, a1r = 0;
   };
-  struct Mean {  // inclination over a sample
-    double accel, sine, cosine, csc, rise;
+  struct Mean {  // inclination over a sample; csc and cot held below the threshold
+    double accel, csc, cot;
+    bool vertical;
+  };
+  struct Gains {  // of the observer, on inclination and on its rate times the step
+    double level, rate;
+  };
+  struct Observed {  // errors of inclination by source, as the observer carries them on
+    Knot::SourceVector level = Knot::SourceVector::Zero();
+    Knot::SourceVector rate = Knot::SourceVector::Zero();
+  };
+  struct Errors {  // what a Knot says of errors
+    Knot::SourceVector turn = Knot::SourceVector::Zero();
+    Knot::SourceVector lift = Knot::SourceVector::Zero();
+    double white = 0, jitter = 0;
+    void Add(const Errors& other, double sign);
   };
 
   bool Follows(const SampleStamp& next, bool& breaks, std::int64_t& gap_ns,
                std::int64_t& lost) const;
-  void Prepare(const ImuSample& sample, const AlongHole& along, Seen& s);
   void TakeSite(const Site& site, double dt);
   void TakeFirst(const ImuSample& sample);
+  void TakeReference();
+  void Prepare(const ImuSample& sample, const AlongHole& along, Seen& s);
   void TakeLeverArm(const ImuSample& sample, double dt, double& fx, double& fy, double& fz);
   void Integrate(const Seen& s, const Slopes& slopes);
   Mean Level(const Seen& s, double rise, double curve, double across);
-  void TakeGains(double dt);
+  Gains Steady(double dt) const;
+  Gains GainsFor(double dt, double memory) const;
   double Roll(const Seen& s, const Slopes& slopes) const;
-  void FollowErrors(const Seen& s, const Slopes& slopes, const Mean& mean, double vh, double vr);
   void AddSample(const Seen& s, bool vertical);
-  void FillErrors(const Sums& sums, Knot& knot) const;
+  void CloseBlock();
+  Errors Evaluate(const Sums& block, Observed& observed) const;
+  void FillErrors(const Sums& block, Knot& knot);
+  void FillStamps(const Seen& s, Duration into, Knot& knot) const;
+  void OpenInterval(const Seen& s, double fraction, std::int64_t rest_ns);
 
   const Seen& last() const { return seen_[waiting_ ? 1 - newest_ : newest_]; }
 
@@ -131,12 +164,12 @@ class WELLGYRO_EXPORT HighSideTracker {
   double cos_azimuth_ = 0, sin_azimuth_ = 0;
   double latitude_ = 0, earth_cos_ = 0, earth_sin_ = 0, inverse_radius_ = 0;
   double gravity_ = 0, inverse_gravity_ = 0;
-  double dt_ = 0, alpha_steady_ = 0, beta_steady_ = 0, sin_min_ = 1;
-  // Observer of inclination and of its errors.
-  double inclination_ = 0, sin_i_ = 0, cos_i_ = 1, csc_ = 1, rate_bias_ = 0;
-  double memory_ = 0, alpha_ = 1, beta_ = 0;
-  int since_exact_ = 0;
-  std::array<double, kStates> error_{}, error_rate_{};
+  double dt_ = 0, inverse_dt_ = 0, sin_min_ = 1;
+  Gains steady_{};
+  // Observer of inclination.
+  double inclination_ = 0, rate_bias_ = 0, memory_ = 0;
+  double reference_ = 0, reference_sin_ = 0, reference_cos_ = 1, reference_cot_ = 0;
+  double reference_reach_ = 0;
   // Roll rate, twice smoothed, for the lever arm.
   double roll_rate_1_ = 0, roll_rate_2_ = 0, raw_x_ = 0, raw_y_ = 0;
   // The window: the sample that waits, and what is left of the one before it.
@@ -145,13 +178,18 @@ class WELLGYRO_EXPORT HighSideTracker {
   bool started_ = false, waiting_ = false, has_before_ = false, ready_ = false;
   double before_vh_ = 0, before_vr_ = 0, delta_in_ = 0;
   // The last summed sample.
-  ToolTime begin_, end_;
   Slopes slopes_;
   Sums part_{};
-  double end_x_ = 1, end_y_ = 0, cut_ = 1, rise_ = 0;
+  double end_toolface_ = 0, cut_ = 1, rise_ = 0;
   Quality sample_quality_ = Quality::kGood;
-  bool sample_vertical_ = false;
-  // The open interval.
+  bool sample_vertical_ = false, has_gz_ = false;
+  // Errors are followed by blocks of samples, whose bounds do not depend on where knots are cut:
+  // what a cut takes out of an open block is taken off when the block closes.
+  Sums block_{};
+  double block_memory_ = 0;
+  Observed observed_;
+  Errors errors_, given_;
+  // The open interval, without the open block.
   Sums sums_{};
   std::int64_t ns_ = 0, gap_ns_ = 0, lost_ = 0, seq_begin_ = 0;
   bool empty_ = true, all_vertical_ = true;

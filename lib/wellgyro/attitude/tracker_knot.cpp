@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "wellgyro/attitude/tracker.h"
+
+namespace wellgyro {
+
+void HighSideTracker::Errors::Add(const Errors& other, double sign) {
+  turn += sign * other.turn;
+  lift += sign * other.lift;
+  white += sign * other.white;
+  jitter += sign * other.jitter;
+}
+
+// Over a block all angles stand at their means: it turns by 0.2 rad at most, or is one sample.
+HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& block, Observed& observed) const {
+  Errors errors;
+  const double seconds = block[kSeconds];
+  if (seconds <= 0) return errors;
+  const double cot = block[kCot] / seconds, csc = std::sqrt(1 + cot * cot);
+  const double sine = 1 / csc, cosine = cot * sine;
+  const double cs = block[kUnitC] / seconds, sn = block[kUnitS] / seconds;
+  const double vh = block[kLiftH], vr = block[kLift];
+  const double roll_rate = block[kRoll] / seconds;
+  // w_z dt = T' + A' cos I + e_t, with A' from the gyros; of the Earth cos L cos A / sin I is left.
+  const double spin =
+      has_gz_ ? block[kSpin] : block[kRoll] - cot * vh + earth_cos_ * cos_azimuth_ * csc * seconds;
+  const double angle_x = vh * cs + vr * sn, angle_y = vr * cs - vh * sn;
+  const double per_force = csc * inverse_gravity_;
+
+  // What each error adds to V_h and to V_r; turn is -V_h / sin I.
+  Knot::SourceVector across = Knot::SourceVector::Zero();
+  Knot::SourceVector& rise = errors.lift;
+  across(Knot::kGyroBiasX) = cs * seconds;
+  rise(Knot::kGyroBiasX) = sn * seconds;
+  across(Knot::kGyroBiasY) = -sn * seconds;
+  rise(Knot::kGyroBiasY) = cs * seconds;
+  across(Knot::kMassUnbalance) = gravity_ * sine * seconds;
+  rise(Knot::kQuadrature) = -gravity_ * sine * seconds;
+  across(Knot::kGyroScaleX) = angle_x * cs;
+  rise(Knot::kGyroScaleX) = angle_x * sn;
+  across(Knot::kGyroScaleY) = -angle_y * sn;
+  rise(Knot::kGyroScaleY) = angle_y * cs;
+  across(Knot::kMisalignmentX) = spin * cs;
+  rise(Knot::kMisalignmentX) = spin * sn;
+  across(Knot::kMisalignmentY) = -spin * sn;
+  rise(Knot::kMisalignmentY) = spin * cs;
+  // A toolface too large by d turns V by d.
+  const auto by_toolface = [&](Knot::Source source, double toolface) {
+    across(source) = -vr * toolface;
+    rise(source) = vh * toolface;
+  };
+  by_toolface(Knot::kToolfaceOffset, 1);
+  by_toolface(Knot::kTimeSkew, roll_rate);
+  by_toolface(Knot::kAccelBiasX, -sn * per_force);
+  by_toolface(Knot::kAccelBiasY, -cs * per_force);
+
+  Knot::SourceVector level = Knot::SourceVector::Zero();
+  level(Knot::kAccelBiasX) = cosine * inverse_gravity_ * cs;
+  level(Knot::kAccelBiasY) = -cosine * inverse_gravity_ * sn;
+  level(Knot::kAccelBiasZ) = sine * inverse_gravity_;
+
+  const Gains gains = GainsFor(seconds, block_memory_);
+  const Knot::SourceVector climb = rise + seconds * observed.rate;
+  const Knot::SourceVector middle = observed.level + 0.5 * climb;
+  const Knot::SourceVector off = level - middle;
+  observed.level += climb + gains.level * off;
+  observed.rate += gains.rate / seconds * off;
+
+  errors.turn = -csc * across + vh * csc * cot * middle;
+  errors.white = csc * csc * seconds;
+  const double jitter = vr * csc * csc;
+  errors.jitter = jitter * jitter / seconds;
+  return errors;
+}
+
+void HighSideTracker::CloseBlock() {
+  errors_.Add(Evaluate(block_, observed_), 1);
+  errors_.Add(given_, -1);
+  given_ = {};
+  for (int i = 0; i < kSums; ++i) sums_[i] += block_[i];
+  block_ = {};
+}
+
+// `block` is the open block up to the cut; the observer's own errors stay where the block began.
+void HighSideTracker::FillErrors(const Sums& block, Knot& knot) {
+  Observed observed = observed_;
+  const Errors here = Evaluate(block, observed);
+  errors_.Add(here, 1);
+  errors_.Add(given_, -1);
+  knot.d_turn = errors_.turn;
+  knot.d_lift = errors_.lift;
+  knot.d_inclination = observed.level;
+  knot.white_turn = errors_.white;
+  const double noise = options_.accel_noise * inverse_gravity_;
+  knot.toolface_noise_turn = noise * noise * errors_.jitter;
+  errors_ = {};
+  given_ = here;
+}
+
+void HighSideTracker::FillStamps(const Seen& s, Duration into, Knot& knot) const {
+  knot.time = s.stamp.tool_time + into;
+  knot.utc = s.stamp.utc + into;
+  knot.along = s.along;
+  if (s.along.known) {
+    const double t = into.seconds();
+    knot.along.md += t * (s.along.speed + 0.5 * t * s.along.acceleration);
+    knot.along.speed += t * s.along.acceleration;
+  }
+  knot.gap_seconds = 1e-9 * static_cast<double>(gap_ns_);
+  knot.vertical = !empty_ && all_vertical_;
+  knot.seq_begin = empty_ ? s.stamp.seq + 1 : seq_begin_;
+  knot.seq_end = s.stamp.seq + 1;
+  knot.samples_lost = lost_;
+  knot.quality = quality_;
+}
+
+void HighSideTracker::OpenInterval(const Seen& s, double fraction, std::int64_t rest_ns) {
+  cut_ = fraction;
+  empty_ = fraction >= 1;
+  ns_ = rest_ns;
+  gap_ns_ = lost_ = 0;
+  seq_begin_ = s.stamp.seq;
+  all_vertical_ = empty_ || sample_vertical_;
+  quality_ = empty_ ? Quality::kGood : sample_quality_;
+}
+
+Knot HighSideTracker::CutKnot(double fraction) {
+  if (!ready_) throw std::invalid_argument("CutKnot before the first sample has been summed");
+  if (!(fraction > 0 && fraction <= 1 && fraction >= cut_)) {
+    throw std::invalid_argument("CutKnot: fraction must lie in (0, 1] and not before " +
+                                std::to_string(cut_) + ", is " + std::to_string(fraction));
+  }
+  const Seen& s = last();
+  const double rest = 1 - fraction, u = fraction - 0.5;
+  const double roll_left = slopes_.c1 * (0.5 - u) + slopes_.c2 * (0.25 - u * u);
+  const std::int64_t rest_ns = std::llround(rest * s.stamp.period_ns);
+  Sums block;
+  for (int i = 0; i < kSums; ++i) block[i] = block_[i] - rest * part_[i];
+  block[kRoll] = block_[kRoll] - roll_left;
+  Sums sums;
+  for (int i = 0; i < kSums; ++i) sums[i] = sums_[i] + block[i];
+
+  Knot knot;
+  FillStamps(s, Duration{s.stamp.period_ns - rest_ns}, knot);
+  knot.seconds = 1e-9 * static_cast<double>(ns_ - rest_ns);
+  knot.inclination = inclination_ - rest * rise_;
+  knot.toolface = WrapPi(toolface() - roll_left);
+  knot.turn = -sums[kTurn];
+  knot.cot = sums[kCot];
+  knot.lift = sums[kLift];
+  knot.roll = sums[kRoll];
+  FillErrors(block, knot);
+
+  const double noise = options_.accel_noise * inverse_gravity_;
+  const double walk = options_.angle_random_walk;
+  const double sampled = knot.seconds - knot.gap_seconds, level = options_.level_seconds;
+  knot.inclination_accel = sampled > 0 ? sums[kAccel] / sampled : knot.inclination;
+  knot.sigma_inclination_accel = noise / std::sqrt(std::max(sampled, s.dt));
+  // A line fitted to the time seen, later the observer; the gyros' walk through the observer.
+  const double accel_var = noise * noise * std::max(4 / std::max(memory_, s.dt), 1.25 / level);
+  knot.sigma_inclination = std::sqrt(accel_var + walk * walk * level / 4);
+
+  for (int i = 0; i < kSums; ++i) sums_[i] = -block[i];
+  OpenInterval(s, fraction, rest_ns);
+  return knot;
+}
+
+}  // namespace wellgyro
