@@ -1,5 +1,6 @@
 #include "wellgyro/simulate/truth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -39,7 +40,8 @@ double AngleBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 }
 
 // Magnus, fourth order: exp of the integral of the rate and its first commutator, at two Gauss
-// points. Over 0.02 s the rest is below 1e-16 rad for what turns here.
+// points. What is left of it over an hour, 1e-11 rad at 5 ms, falls to 1e-12 at 2.5 ms: it comes
+// from steps across the joints of the run and of the spline, not from the truth.
 QuaternionL Step(const Truth& truth, double begin, double h, const QuaternionL& q) {
   const double apart = h * std::sqrt(3.0) / 6, middle = begin + h / 2;
   const Vector3L w1 = truth.SensorsAt(middle - apart).w_IT_T.cast<long double>();
@@ -50,16 +52,17 @@ QuaternionL Step(const Truth& truth, double begin, double h, const QuaternionL& 
 
 void ExpectRatesLeadToAttitudes(const Simulation& simulation, double tolerance) {
   const Truth truth(simulation);
-  const double h = 0.02, rate = simulation.earth.rate;
+  const double h = 0.005, rate = simulation.earth.rate;
   const TruthState begin = truth.At(0);
   QuaternionL q(R_IL(begin, rate) * begin.R_LT.cast<long double>());
   const auto steps = static_cast<int>(truth.seconds() / h);
   double worst = 0;
   for (int i = 0; i < steps; ++i) {
     q = Step(truth, i * h, h, q);
-    if (i % 500 != 499) continue;
+    if (i % 2000 != 1999) continue;
     const TruthState at = truth.At((i + 1) * h);
-    const auto R_LT = R_IL(at, rate).transpose() * q.normalized().toRotationMatrix();
+    const Eigen::Matrix<long double, 3, 3> R_LT =
+        R_IL(at, rate).transpose() * q.normalized().toRotationMatrix();
     worst = std::max(worst, AngleBetween(R_LT.cast<double>(), at.R_LT));
   }
   EXPECT_LT(worst, tolerance);
@@ -67,13 +70,13 @@ void ExpectRatesLeadToAttitudes(const Simulation& simulation, double tolerance) 
 }
 
 TEST(Truth, RatesIntegratedInSpaceGiveTheAttitude) {
-  ExpectRatesLeadToAttitudes(WeavingRun(), 1e-10);
+  ExpectRatesLeadToAttitudes(WeavingRun(), 2e-11);
 }
 
 TEST(Truth, RatesGiveTheAttitudeWithRollFromTheHighSide) {
   Simulation s = WeavingRun();
   s.run.roll_reference = RollReference::kHighSide;
-  ExpectRatesLeadToAttitudes(s, 1e-10);
+  ExpectRatesLeadToAttitudes(s, 2e-11);
 }
 
 TEST(Truth, RatesGiveTheAttitudeThroughVertical) {
@@ -83,7 +86,7 @@ TEST(Truth, RatesGiveTheAttitudeThroughVertical) {
   const RunRoll roll{.rate = 0.2, .amplitude = 0.3, .period = 15};
   s.run.steps = {RunMove{.to_md = 1400, .speed = 0.6, .roll = roll},
                  RunMove{.to_md = 20, .speed = 1, .roll = roll}};
-  ExpectRatesLeadToAttitudes(s, 1e-10);
+  ExpectRatesLeadToAttitudes(s, 2e-11);
 }
 
 TEST(Truth, AttitudeIsOfItsAngles) {
@@ -212,6 +215,28 @@ TEST(Truth, AnHoursAnglesAreRightToTenToTheMinusTen) {
   }
   EXPECT_LT((sum - simpson).norm(), 1e-10L);
   EXPECT_GT(simpson.norm(), 100);
+}
+
+// The spline of a well by stations has a jump in its third derivative at every knot; neither that
+// nor the length of the samples shows.
+TEST(Truth, AnHoursAnglesDoNotDependOnTheSampleRate) {
+  Simulation s = WeavingRun();
+  s.well = StationWell();
+  s.run.start_md = 10;
+  const RunRoll roll{.rate = 0.3, .amplitude = 0.2, .period = 9};
+  s.run.steps = {RunMove{.to_md = 1390, .speed = 0.75, .roll = roll},
+                 RunMove{.to_md = 50, .speed = 0.75, .roll = roll}};
+  const Truth truth(s);
+  Vector3L sum = Vector3L::Zero(), fine = Vector3L::Zero();
+  double worst = 0;
+  for (int i = 0; i < 3600; ++i) {
+    sum += truth.MeanOver(i, i + 1).w_IT_T.cast<long double>();
+    for (int k = 0; k < 100; ++k) {
+      fine += 0.01L * truth.MeanOver(i + k * 0.01, i + (k + 1) * 0.01).w_IT_T.cast<long double>();
+    }
+    worst = std::max(worst, static_cast<double>((sum - fine).norm()));
+  }
+  EXPECT_LT(worst, 1e-10);
 }
 
 TEST(Truth, LeverArmIsTheMotionOfThatPoint) {
