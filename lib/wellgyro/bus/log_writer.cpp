@@ -1,0 +1,128 @@
+#include "wellgyro/bus/log_writer.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "wellgyro/bus/bytes_internal.h"
+#include "wellgyro/bus/log_format_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::size_t kChannelSent = 63;  // what LCM itself allows
+
+}  // namespace
+
+void LogWriter::Closer::operator()(std::FILE* file) const {
+  if (file != stdout) std::fclose(file);
+}
+
+LogWriter::LogWriter(std::string path, std::FILE* file) : path_(std::move(path)), file_(file) {
+  // Ours is the only buffer, so that a write to the file ends with an event.
+  std::setvbuf(file, nullptr, _IONBF, 0);
+}
+
+LogWriter::LogWriter(LogWriter&&) noexcept = default;
+
+LogWriter::~LogWriter() { static_cast<void>(Close()); }
+
+Result<LogWriter> LogWriter::Open(const std::string& path, IfExists if_exists) {
+  if (path == "-") return LogWriter(path, stdout);
+  std::FILE* file = std::fopen(path.c_str(), if_exists == IfExists::kRefuse ? "wbx" : "wb");
+  if (file != nullptr) return LogWriter(path, file);
+  if (errno == EEXIST) {
+    return Fault{FaultCode::kIo, fmt::format("{} exists; choose another name", path), path};
+  }
+  return Fault{FaultCode::kIo, fmt::format("{}: cannot create: {}", path, std::strerror(errno)),
+               path};
+}
+
+std::optional<Fault> LogWriter::Write(std::string_view channel, std::span<const std::byte> data,
+                                      std::int64_t received_us) {
+  if (channel.empty() || channel.size() > kChannelSent) {
+    throw std::invalid_argument(
+        fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, kChannelSent));
+  }
+  if (data.size() > log_format::kDataMax) {
+    throw std::invalid_argument(fmt::format("channel \"{}\": {} bytes of data are more than {}",
+                                            channel, data.size(), log_format::kDataMax));
+  }
+  if (!file_ || fault_) return fault_;
+  const std::size_t at = gathered_.size();
+  gathered_.resize(at + log_format::kHeadSize + channel.size() + data.size());
+  std::byte* to = gathered_.data() + at;
+  Store(to, log_format::kSync);
+  Store(to + log_format::kNumberAt, events_);
+  Store(to + log_format::kTimeAt, received_us);
+  Store(to + log_format::kChannelAt, static_cast<std::uint32_t>(channel.size()));
+  Store(to + log_format::kDataAt, static_cast<std::uint32_t>(data.size()));
+  std::memcpy(to + log_format::kHeadSize, channel.data(), channel.size());
+  if (!data.empty()) {
+    std::memcpy(to + log_format::kHeadSize + channel.size(), data.data(), data.size());
+  }
+  ++events_;
+  return gathered_.size() >= kBlock ? Flush() : std::nullopt;
+}
+
+void LogWriter::Fail(const char* doing) {
+  fault_ = Fault{FaultCode::kIo,
+                 fmt::format("{}: cannot {}: {}; the log holds {} bytes of whole events", path_,
+                             doing, std::strerror(errno), written_),
+                 path_, written_};
+}
+
+/// Of the first `written` gathered bytes, those of whole events.
+std::size_t LogWriter::WholeEvents(std::size_t written) const {
+  std::size_t whole = 0;
+  while (whole < written) {
+    const std::byte* head = gathered_.data() + whole;
+    const std::size_t next = whole + log_format::kHeadSize +
+                             Load<std::uint32_t>(head + log_format::kChannelAt) +
+                             Load<std::uint32_t>(head + log_format::kDataAt);
+    if (next > written) break;
+    whole = next;
+  }
+  return whole;
+}
+
+std::optional<Fault> LogWriter::Flush() {
+  if (!file_ || fault_) return fault_;
+  std::size_t done = 0;
+  errno = 0;
+  while (done < gathered_.size()) {
+    done += std::fwrite(gathered_.data() + done, 1, gathered_.size() - done, file_.get());
+    if (done == gathered_.size()) break;
+    if (errno != EINTR) break;
+    std::clearerr(file_.get());
+  }
+  const std::size_t whole = WholeEvents(done);
+  written_ += static_cast<std::int64_t>(whole);
+  if (done < gathered_.size()) {
+    Fail("write");
+    std::error_code ignored;  // a pipe cannot be cut
+    if (file_.get() != stdout && whole < done) {
+      std::filesystem::resize_file(path_, static_cast<std::uintmax_t>(written_), ignored);
+    }
+  }
+  gathered_.clear();
+  return fault_;
+}
+
+std::optional<Fault> LogWriter::Close() {
+  std::optional<Fault> fault = Flush();
+  if (std::FILE* file = file_.release(); file != nullptr && file != stdout) {
+    if (std::fclose(file) != 0 && !fault_) Fail("close");
+  }
+  return fault ? fault : fault_;
+}
+
+std::int64_t LogWriter::bytes() const {
+  return written_ + static_cast<std::int64_t>(gathered_.size());
+}
+
+}  // namespace wellgyro
