@@ -2,30 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/math/rotation.h"
+#include "wellgyro/uncertainty/hole_arc_internal.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr double kSmallestFactor = 0.01;  // of sin I or cos I: 0.6 deg from where it vanishes
 
-/// Azimuth at which the arc from `a` to `b` first reaches `inclination`, which lies between theirs.
+/// Azimuth at which the arc from `a` to `b` reaches `inclination`, which lies between theirs.
 double AzimuthOnArc(const SurveyPoint& a, const SurveyPoint& b, double inclination) {
-  const Eigen::Vector3d from = Tangent(a.inclination, a.azimuth);
-  const Eigen::Vector3d to = Tangent(b.inclination, b.azimuth);
-  const Eigen::Vector3d across = to - from.dot(to) * from;
-  if (across.norm() < 1e-12) return b.azimuth;
-  const Eigen::Vector3d side = across.normalized();
-  // cos(inclination) = from.z cos(x) + side.z sin(x), on its way down.
-  const double reach = std::hypot(from.z(), side.z());
-  const double wanted = std::cos(inclination);
-  const double x = std::atan2(side.z(), from.z()) +
-                   std::atan2(std::sqrt(std::max(0.0, reach * reach - wanted * wanted)), wanted);
-  const Eigen::Vector3d t = std::cos(x) * from + std::sin(x) * side;
+  const HoleArc arc(a, b);
+  std::vector<double> places;
+  arc.Crossings(inclination, places);
+  if (places.empty()) return a.inclination < inclination ? b.azimuth : a.azimuth;
+  const Eigen::Vector3d t = arc.Tangent(places.back());
   return WrapTwoPi(std::atan2(t.y(), t.x()));
 }
 
@@ -56,29 +51,28 @@ void GyroModeTracker::Open(double inclination, double azimuth) {
   mode_.init_azimuth = azimuth;
 }
 
-const GyroMode& GyroModeTracker::Begin(const SurveyPoint& first) {
+void GyroModeTracker::Begin(const SurveyPoint& first) {
   last_initialised_ = first.md;
-  if (model_.continuous.empty()) return mode_;
+  if (model_.continuous.empty()) return;
   if (initialise_ < 0) {
     Open(first.inclination, first.azimuth);
   } else if (first.inclination > initialise_) {
     began_above_ = true;
     Open(initialise_, first.azimuth);
   }
-  return mode_;
 }
 
-const GyroMode& GyroModeTracker::Advance(const SurveyPoint& previous, const SurveyPoint& point) {
-  if (model_.continuous.empty()) return mode_;
+void GyroModeTracker::Advance(const SurveyPoint& previous, const SurveyPoint& point) {
+  if (model_.continuous.empty()) return;
   if (initialise_ >= 0 && point.inclination <= initialise_) {
     if (returns_to_rest_) {
       mode_ = {};
-      return mode_;
+      return;
     }
     if (mode_.section > 0 && point.md - last_initialised_ > *model_.stationary->min_distance) {
       last_initialised_ = point.md;
       Open(point.inclination, point.azimuth);
-      return mode_;
+      return;
     }
   } else if (mode_.section == 0) {
     const GyroMode before = mode_;
@@ -87,7 +81,6 @@ const GyroMode& GyroModeTracker::Advance(const SurveyPoint& previous, const Surv
     mode_.walk_time = before.walk_time;
   }
   Gather(previous, point);
-  return mode_;
 }
 
 void GyroModeTracker::Gather(const SurveyPoint& previous, const SurveyPoint& point) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 
 #include "wellgyro/base/export.h"
@@ -42,8 +43,10 @@ class WELLGYRO_EXPORT GyroModeTracker {
   /// `model` must outlive this object and have no complaint.
   explicit GyroModeTracker(const ErrorModel& model);
 
-  const GyroMode& Begin(const SurveyPoint& first);
-  const GyroMode& Advance(const SurveyPoint& previous, const SurveyPoint& point);
+  void Begin(const SurveyPoint& first);
+  void Advance(const SurveyPoint& previous, const SurveyPoint& point);
+  /// At the last point given.
+  const GyroMode& mode() const { return mode_; }
 
   /// The survey began above the inclination at which the model initialises.
   bool began_above() const { return began_above_; }

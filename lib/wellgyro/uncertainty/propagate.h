@@ -79,12 +79,12 @@ struct PropagateOptions {
 /// not increase, values that are not finite or out of range, a model with a complaint, legs that
 /// do not cover the stations, |latitude| above 89 deg with gyro terms, or missing magnetics.
 WELLGYRO_EXPORT PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,
-                                                    const Surroundings& place,
+                                                    const Surroundings& surroundings,
                                                     const ErrorModel& model,
                                                     const PropagateOptions& options = {});
 
 WELLGYRO_EXPORT PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,
-                                                    const Surroundings& place,
+                                                    const Surroundings& surroundings,
                                                     std::span<const ToolLeg> legs,
                                                     const PropagateOptions& options = {});
 

@@ -1,0 +1,73 @@
+#include <utility>
+
+#include "wellgyro/uncertainty/error_sources_internal.h"
+
+namespace wellgyro {
+
+using Eigen::Matrix3d;
+
+std::size_t ErrorSources::SourceOf(const ErrorTerm& term, const ToolLeg& leg) {
+  const bool within_leg =
+      term.propagation == Propagation::kRandom || term.propagation == Propagation::kSystematic;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Source& s = sources_[i];
+    if (s.name != term.name || s.propagation != term.propagation) continue;
+    if (!within_leg || (s.run == leg.run && s.model == leg.model)) return i;
+  }
+  Source source;
+  source.name = term.name;
+  source.propagation = term.propagation;
+  source.run = leg.run;
+  source.model = leg.model;
+  sources_.push_back(std::move(source));
+  return sources_.size() - 1;
+}
+
+void ErrorSources::Open(std::size_t stations, PositionUncertainty& result) {
+  result.cov_p.reserve(stations);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Source& source = sources_[i];
+    if (source.propagation == Propagation::kWell || source.propagation == Propagation::kGlobal) {
+      shared_.push_back(i);
+      result.shared.push_back({source.name, source.propagation, {}});
+      result.shared.back().error_p.reserve(stations);
+    }
+    if (!options_.terms) continue;
+    result.terms.push_back({source.name, {}});
+    result.terms.back().cov_p.reserve(stations);
+  }
+}
+
+void ErrorSources::StartLeg(const std::vector<std::size_t>& sources) {
+  active_ = sources;
+  idle_ = options_.cov_tie_in;
+  std::vector<bool> is_active(sources_.size(), false);
+  for (const std::size_t i : active_) is_active[i] = true;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    if (is_active[i]) continue;
+    Source& source = sources_[i];
+    source.error = source.sum;
+    idle_ += source.sum * source.sum.transpose();
+  }
+}
+
+void ErrorSources::Close(Source& source, std::int64_t group) {
+  const Matrix3d cov = source.sum * source.sum.transpose();
+  ended_ += cov;
+  if (options_.terms) source.closed += cov;
+  source.sum.setZero();
+  source.group = group;
+}
+
+void ErrorSources::Give(PositionUncertainty& result) const {
+  Matrix3d& total = result.cov_p.emplace_back(ended_ + idle_);
+  for (const std::size_t i : active_) total += sources_[i].error * sources_[i].error.transpose();
+  for (std::size_t i = 0; i < shared_.size(); ++i)
+    result.shared[i].error_p.push_back(sources_[shared_[i]].error);
+  for (std::size_t i = 0; i < result.terms.size(); ++i) {
+    const Source& s = sources_[i];
+    result.terms[i].cov_p.push_back(s.closed + s.error * s.error.transpose());
+  }
+}
+
+}  // namespace wellgyro

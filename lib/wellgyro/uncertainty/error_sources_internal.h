@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/uncertainty/propagate.h"
+
+namespace wellgyro {
+
+/// The independent error sources of a well and what each has done to the position so far.
+///
+/// A source adds up, as a vector, while its group lasts; its groups are independent of each other.
+/// A random error begins a group at every station, a systematic one never does. Terms that several
+/// legs share are one source.
+class ErrorSources {
+ public:
+  explicit ErrorSources(const PropagateOptions& options) : options_(options) {}
+
+  /// The source of `term` in `leg`, which may be that of an earlier leg.
+  std::size_t SourceOf(const ErrorTerm& term, const ToolLeg& leg);
+  /// To be called once, when every source is known.
+  void Open(std::size_t stations, PositionUncertainty& result);
+
+  /// Only `sources` change from here on.
+  void StartLeg(const std::vector<std::size_t>& sources);
+  /// The error of this station: `at` moves its own position, `through` that of all deeper ones.
+  void Add(std::size_t source, std::int64_t group, const Eigen::Vector3d& at,
+           const Eigen::Vector3d& through) {
+    Source& s = sources_[source];
+    if (group != s.group) Close(s, group);
+    s.error = s.sum + at;
+    s.sum += through;
+  }
+  /// Writes this station's covariances.
+  void Give(PositionUncertainty& result) const;
+
+ private:
+  struct Source {
+    std::string name;
+    Propagation propagation = Propagation::kSystematic;
+    int run = 0;                        ///< of those within a leg
+    const ErrorModel* model = nullptr;  ///< likewise
+    std::int64_t group = 0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< at this station
+    Eigen::Matrix3d closed =
+        Eigen::Matrix3d::Zero();  ///< of ended groups, where terms are asked for
+  };
+
+  void Close(Source& source, std::int64_t group);
+
+  const PropagateOptions& options_;
+  std::vector<Source> sources_;
+  std::vector<std::size_t> active_;
+  std::vector<std::size_t> shared_;                  ///< sources of result.shared
+  Eigen::Matrix3d ended_ = Eigen::Matrix3d::Zero();  ///< of all ended groups
+  Eigen::Matrix3d idle_ = Eigen::Matrix3d::Zero();   ///< of sources that this leg does not have
+};
+
+}  // namespace wellgyro
