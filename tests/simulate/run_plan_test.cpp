@@ -101,6 +101,8 @@ TEST(RunPlan, NamesWhatMakesNoSense) {
   ExpectRefused("run.steps[1].to_md 2601",
                 [](auto& r) { std::get<RunMove>(r.steps[1]).to_md = 2601; });
   ExpectRefused("run.steps[1].speed", [](auto& r) { std::get<RunMove>(r.steps[1]).speed = -1; });
+  ExpectRefused("run.steps take inf",
+                [](auto& r) { std::get<RunMove>(r.steps[3]).ramp = HUGE_VAL; });
   ExpectRefused("run.steps[3].ramp", [](auto& r) { std::get<RunMove>(r.steps[3]).ramp = 0; });
   ExpectRefused("run.steps[3].roll.period",
                 [](auto& r) { std::get<RunMove>(r.steps[3]).roll.period = 0; });

@@ -17,6 +17,7 @@ namespace wellgyro {
 namespace {
 
 constexpr double kLargestBend = FromDegrees(60);  // between stations
+constexpr double kLeastDetail = 0.1;              // [m]
 constexpr double kStraightUp = FromDegrees(1);
 
 void Require(bool holds, const std::string& what) {
@@ -44,6 +45,9 @@ HoleShape::HoleShape(const SimulatedWell& well) {
   } else {
     MakeSpline(well);
   }
+  Require(detail_ >= kLeastDetail,
+          fmt::format("well: ramps, periods / 4 and smoothing must be {} m or more, not {} m",
+                      kLeastDetail, detail_));
   // The frame that rolls with kNorth is singular straight up.
   const double step = std::min(detail_ / 4, 5.0);
   const double count = std::ceil((end_md_ - begin_md_) / step);

@@ -23,7 +23,8 @@ struct HoleDirection {
 class WELLGYRO_EXPORT HoleShape {
  public:
   /// Throws std::invalid_argument, naming the field and the value: fewer than two stations, depths
-  /// not increasing, more than 60 deg between neighbours, a term without the ramp it needs, a hole
+  /// not increasing, more than 60 deg between neighbours, a term without the ramp it needs,
+  /// ramps, quarter periods or smoothing below 0.1 m, a hole
   /// within 1 deg of straight up.
   explicit HoleShape(const SimulatedWell& well);
 

@@ -40,6 +40,7 @@ RunPlan::RunPlan(const SimulatedRun& run, const TruthWell& well) {
       AddMove(std::get<RunMove>(run.steps[i]), well, i);
     }
   }
+  Require(std::isfinite(seconds_), fmt::format("run.steps take {} s", seconds_));
   std::sort(breaks_.begin(), breaks_.end());
 }
 

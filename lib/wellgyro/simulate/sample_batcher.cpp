@@ -28,7 +28,8 @@ SampleBatcher::SampleBatcher(const SimulatedStreams& streams, std::uint64_t seed
     throw std::invalid_argument(
         fmt::format("streams.loss_probability {} is no probability", streams.loss_probability));
   }
-  held_.reserve(static_cast<std::size_t>(streams.batch + streams.overlap));
+  held_.reserve(static_cast<std::size_t>(streams.batch) +
+                static_cast<std::size_t>(streams.overlap));
 }
 
 bool SampleBatcher::Push(const ImuSample& sample, SampleBatch& batch) {

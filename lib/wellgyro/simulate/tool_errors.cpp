@@ -91,8 +91,9 @@ Eigen::Vector3d SensorErrors::Force(const Eigen::Vector3d& f_T, double seconds, 
   f += e.accel_scale.cwiseProduct(f) + e.accel_bias;
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<std::size_t>(i);
-    if (e.accel_noise != 0)
+    if (e.accel_noise != 0) {
       f[i] += e.accel_noise / std::sqrt(seconds) * accel_noise_[axis].Normal();
+    }
     f[i] = Clip(f[i], e.accel_full_scale, saturated);
     f[i] = accel_quantizer_[axis].Mean(f[i], seconds);
   }
