@@ -130,6 +130,7 @@ TEST(HoleShape, NamesWhatMakesNoSense) {
   ExpectRefused(StationWell(), "one station", [](auto& w) { w.stations.resize(1); });
   ExpectRefused(StationWell(), "smoothing", [](auto& w) { w.smoothing = 0; });
   ExpectRefused(StationWell(), "smoothing", [](auto& w) { w.smoothing = 1e-6; });
+  ExpectRefused(WeavingWell(), "quarter periods", [](auto& w) { w.azimuth.terms[1].period = 0.2; });
   ExpectRefused(WeavingWell(), "end_md", [](auto& w) { w.end_md = 100; });
   ExpectRefused(WeavingWell(), "terms[0].ramp", [](auto& w) { w.inclination.terms[0].ramp = 0; });
   ExpectRefused(WeavingWell(), "too short", [](auto& w) { w.inclination.terms[0].ramp = 700; });

@@ -42,12 +42,12 @@ HoleShape::HoleShape(const SimulatedWell& well) {
     detail_ = end_md_ - begin_md_;
     inclination_ = MakeLaw(well.inclination, "inclination");
     azimuth_ = MakeLaw(well.azimuth, "azimuth");
+    Require(detail_ >= kLeastDetail,
+            fmt::format("well: ramps and quarter periods go down to {} m, below {} m", detail_,
+                        kLeastDetail));
   } else {
     MakeSpline(well);
   }
-  Require(detail_ >= kLeastDetail,
-          fmt::format("well: ramps, periods / 4 and smoothing must be {} m or more, not {} m",
-                      kLeastDetail, detail_));
   // The frame that rolls with kNorth is singular straight up.
   const double step = std::min(detail_ / 4, 5.0);
   const double count = std::ceil((end_md_ - begin_md_) / step);
@@ -122,7 +122,8 @@ void HoleShape::MakeSpline(const SimulatedWell& well) {
   const std::vector<WellPoint>& stations = well.stations;
   const std::size_t n = stations.size();
   Require(n >= 2, "well.stations: one station makes no hole");
-  Require(well.smoothing > 0, fmt::format("well.smoothing {} m is not positive", well.smoothing));
+  Require(well.smoothing >= kLeastDetail,
+          fmt::format("well.smoothing {} m is below {} m", well.smoothing, kLeastDetail));
   std::vector<Eigen::Vector3d> tangents;
   for (std::size_t i = 0; i < n; ++i) {
     tangents.push_back(Tangent(stations[i].inclination, stations[i].azimuth));

@@ -24,8 +24,7 @@ class WELLGYRO_EXPORT HoleShape {
  public:
   /// Throws std::invalid_argument, naming the field and the value: fewer than two stations, depths
   /// not increasing, more than 60 deg between neighbours, a term without the ramp it needs,
-  /// ramps, quarter periods or smoothing below 0.1 m, a hole
-  /// within 1 deg of straight up.
+  /// ramps, quarter periods or smoothing below 0.1 m, a hole within 1 deg of straight up.
   explicit HoleShape(const SimulatedWell& well);
 
   double begin_md() const { return begin_md_; }  ///< [m]
