@@ -16,59 +16,15 @@
 namespace wellgyro {
 namespace {
 
+using truth::Flight;
+using truth::Fly;
+using truth::Hour;
 using truth::Motion;
-
-// 0.6 m/s through a hole that undulates by 1.8 deg and swings by 50 deg in an hour, turning at
-// 3 rpm with a roll wave of 25 deg in 23 s.
-truth::Path Hour(double inclination_deg) {
-  return [i0 = FromDegrees(inclination_deg)](double t) {
-    const double wi = kTwoPi / 600, wa = kTwoPi / 3600, wt = kTwoPi / 23;
-    const double ai = FromDegrees(1.8), aa = FromDegrees(50), at = FromDegrees(25);
-    Motion m;
-    m.inclination = i0 + ai * std::sin(wi * t);
-    m.inclination_rate = ai * wi * std::cos(wi * t);
-    m.azimuth = FromDegrees(70) + aa * std::sin(wa * t);
-    m.azimuth_rate = aa * wa * std::cos(wa * t);
-    m.toolface = 0.3 + kTwoPi / 20 * t + at * std::sin(wt * t);
-    m.toolface_rate = kTwoPi / 20 + at * wt * std::cos(wt * t);
-    m.toolface_acceleration = -at * wt * wt * std::sin(wt * t);
-    m.md = 100 + 0.6 * t;
-    m.speed = 0.6;
-    return m;
-  };
-}
+using truth::Slide;
 
 struct Errors {
   double azimuth = 0, inclination = 0, toolface = 0;  // worst over all knots [deg]
 };
-
-struct Flight {
-  TrackerOptions options;
-  truth::Sensors sensors;
-  double rate = 10;      // [Hz]
-  double seconds = 600;  // [s]
-  double every = 1;      // length of a knot [s]
-  bool azimuth = true;   // given to the tracker every second
-  Site site = truth::SiteOf(FromDegrees(60));
-};
-
-std::vector<Knot> Fly(const truth::Path& path, const Flight& flight) {
-  HighSideTracker tracker(flight.options);
-  std::vector<Knot> knots;
-  const auto n = static_cast<std::int64_t>(flight.seconds * flight.rate);
-  const auto every = static_cast<std::int64_t>(flight.every * flight.rate);
-  for (std::int64_t k = 0; k < n; ++k) {
-    const double t = static_cast<double>(k) / flight.rate;
-    if (flight.azimuth && k % static_cast<std::int64_t>(flight.rate) == 0)
-      tracker.SetAzimuth(path(t).azimuth);
-    EXPECT_TRUE(tracker.Push(truth::SampleAt(path, flight.sensors, flight.site, k, flight.rate),
-                             truth::AlongAt(path, t), flight.site));
-    if (k > 0 && k % every == 0) knots.push_back(tracker.CutKnot());
-  }
-  tracker.Flush();
-  knots.push_back(tracker.CutKnot());
-  return knots;
-}
 
 Errors Compare(const truth::Path& path, const std::vector<Knot>& knots, const Site& site) {
   const Motion first = path(0);
@@ -86,7 +42,7 @@ Errors Compare(const truth::Path& path, const std::vector<Knot>& knots, const Si
   return worst;
 }
 
-Errors Fly(const truth::Path& path, double rate, TrackerOptions::Order order, double seconds) {
+Errors FlyHour(const truth::Path& path, double rate, TrackerOptions::Order order, double seconds) {
   Flight flight;
   flight.options.order = order;
   flight.rate = rate;
@@ -144,8 +100,8 @@ class HourOfTurning : public testing::TestWithParam<Law> {};
 TEST_P(HourOfTurning, KeepsAzimuthWithoutSensorErrors) {
   const Law law = GetParam();
   const truth::Path path = Hour(law.inclination_deg);
-  const Errors third = Fly(path, law.rate, TrackerOptions::kThird, 3600);
-  const Errors second = Fly(path, law.rate, TrackerOptions::kSecond, 3600);
+  const Errors third = FlyHour(path, law.rate, TrackerOptions::kThird, 3600);
+  const Errors second = FlyHour(path, law.rate, TrackerOptions::kSecond, 3600);
   EXPECT_LT(third.azimuth, law.third_deg);
   EXPECT_LT(second.azimuth, law.second_deg);
   EXPECT_LT(third.inclination, 2e-4);
@@ -159,15 +115,19 @@ INSTANTIATE_TEST_SUITE_P(HighSideTracker, HourOfTurning,
                                          Law{30, 10, 2e-4, 2e-4}, Law{60, 10, 2e-4, 2e-4},
                                          Law{90, 10, 2e-4, 2e-4}, Law{110, 10, 2e-4, 2e-4}));
 
-// A tool that slides without turning while the hole builds and swings.
-truth::Path Slide(double inclination_deg) {
-  return [turning = Hour(inclination_deg)](double t) {
-    Motion m = turning(t);
-    m.toolface = 0.6 + 0.2 * std::sin(kTwoPi / 300 * t);
-    m.toolface_rate = 0.2 * kTwoPi / 300 * std::cos(kTwoPi / 300 * t);
-    m.toolface_acceleration = 0;
-    return m;
-  };
+// What is left at 1, 2 and 4 Hz, where the roll wave and the turn between samples are large.
+TEST(HighSideTracker, ErrorFallsWithTheOrderOfTheScheme) {
+  const truth::Path path = Hour(60);
+  double second[3], third[3];
+  for (int i = 0; i < 3; ++i) {
+    second[i] = FlyHour(path, 1 << i, TrackerOptions::kSecond, 1200).azimuth;
+    third[i] = FlyHour(path, 1 << i, TrackerOptions::kThird, 1200).azimuth;
+  }
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_GT(second[i] / second[i + 1], 3.5) << i;
+    EXPECT_GT(third[i] / third[i + 1], 7.5) << i;
+    EXPECT_LT(third[i], second[i] / 5) << i;
+  }
 }
 
 class Sensitivities : public testing::TestWithParam<truth::Path> {};

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro::truth {
@@ -80,6 +81,52 @@ ImuSample SampleAt(const Path& path, const Sensors& sensors, const Site& site, s
 AlongHole AlongAt(const Path& path, double t) {
   const Motion m = path(t);
   return {m.md, m.speed, m.acceleration, 0, true};
+}
+
+Path Hour(double inclination_deg) {
+  return [i0 = FromDegrees(inclination_deg)](double t) {
+    const double wi = kTwoPi / 600, wa = kTwoPi / 3600, wt = kTwoPi / 23;
+    const double ai = FromDegrees(1.8), aa = FromDegrees(50), at = FromDegrees(25);
+    Motion m;
+    m.inclination = i0 + ai * std::sin(wi * t);
+    m.inclination_rate = ai * wi * std::cos(wi * t);
+    m.azimuth = FromDegrees(70) + aa * std::sin(wa * t);
+    m.azimuth_rate = aa * wa * std::cos(wa * t);
+    m.toolface = 0.3 + kTwoPi / 20 * t + at * std::sin(wt * t);
+    m.toolface_rate = kTwoPi / 20 + at * wt * std::cos(wt * t);
+    m.toolface_acceleration = -at * wt * wt * std::sin(wt * t);
+    m.md = 100 + 0.6 * t;
+    m.speed = 0.6;
+    return m;
+  };
+}
+
+Path Slide(double inclination_deg) {
+  return [turning = Hour(inclination_deg)](double t) {
+    Motion m = turning(t);
+    m.toolface = 0.6 + 0.2 * std::sin(kTwoPi / 300 * t);
+    m.toolface_rate = 0.2 * kTwoPi / 300 * std::cos(kTwoPi / 300 * t);
+    m.toolface_acceleration = 0;
+    return m;
+  };
+}
+
+std::vector<Knot> Fly(const Path& path, const Flight& flight) {
+  HighSideTracker tracker(flight.options);
+  std::vector<Knot> knots;
+  const auto n = static_cast<std::int64_t>(flight.seconds * flight.rate);
+  const auto every = static_cast<std::int64_t>(flight.every * flight.rate);
+  for (std::int64_t k = 0; k < n; ++k) {
+    const double t = static_cast<double>(k) / flight.rate;
+    if (flight.azimuth && k % static_cast<std::int64_t>(flight.rate) == 0)
+      tracker.SetAzimuth(path(t).azimuth);
+    tracker.Push(SampleAt(path, flight.sensors, flight.site, k, flight.rate), AlongAt(path, t),
+                 flight.site);
+    if (k > 0 && k % every == 0) knots.push_back(tracker.CutKnot());
+  }
+  tracker.Flush();
+  knots.push_back(tracker.CutKnot());
+  return knots;
 }
 
 std::vector<double> Propagate(double azimuth, double inclination, const std::vector<Knot>& knots,

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/attitude/tracker.h"
+#include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/record/along_hole.h"
 #include "wellgyro/record/knot.h"
@@ -41,6 +43,25 @@ void SenseAt(const Path& path, const Sensors& sensors, const Site& site, double 
 ImuSample SampleAt(const Path& path, const Sensors& sensors, const Site& site, std::int64_t k,
                    double rate);
 AlongHole AlongAt(const Path& path, double t);
+
+/// 0.6 m/s through a hole that undulates by 1.8 deg in ten minutes and swings by 50 deg in an hour,
+/// turning at 3 rpm with a roll wave of 25 deg in 23 s.
+Path Hour(double inclination_deg);
+/// The same with a tool that slides without turning.
+Path Slide(double inclination_deg);
+
+struct Flight {
+  TrackerOptions options;
+  Sensors sensors;
+  double rate = 10;      // [Hz]
+  double seconds = 600;  // [s]
+  double every = 1;      // length of a knot [s]
+  bool azimuth = true;   // given to the tracker every second
+  Site site = SiteOf(FromDegrees(60));
+};
+
+/// The knots of a run along `path`, the last one shorter where `seconds` asks for it.
+std::vector<Knot> Fly(const Path& path, const Flight& flight);
 
 /// Azimuth through a row of knots from a known start: each knot's turn, and the Earth's and the
 /// transport rate's part from its cot. The reference for what a filter has to make of knots.

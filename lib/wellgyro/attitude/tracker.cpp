@@ -215,7 +215,7 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
   double fx = sample.f_T.x(), fy = sample.f_T.y(), fz = sample.f_T.z();
   s.e_r = -earth_cos_ * sin_azimuth_;
   if (along.known) {
-    v = along.speed + 0.5 * dt * along.acceleration;
+    v = along.speed;
     fx -= v * wy;
     fy += v * wx;
     fz -= along.acceleration;
@@ -272,7 +272,7 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
   const double raised = inclination_ + rise + gains.level * off;
   rate_bias_ += gains.rate * off * inverse_dt_;
   const double bounded = std::clamp(raised, 0.0, kPi);
-  rise_ = bounded - inclination_;
+  rise_ = rise;
   inclination_ = bounded;
   if (std::abs(inclination_ - reference_) > reference_reach_) TakeReference();
   return mean;

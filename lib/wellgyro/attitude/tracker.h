@@ -21,7 +21,7 @@ namespace wellgyro {
 struct TrackerOptions {
   enum Order {
     kSecond,  ///< each sample by itself: error of the turn falls as period^2
-    kThird,   ///< the slopes across the sample too, from its neighbours: as period^4
+    kThird,   ///< the slopes across the sample too, from its neighbours: as period^3
   };
   Order order = kThird;
   double accel_noise = 0;        ///< of the mean over t seconds: this / sqrt(t) [m/s^2 sqrt(s)]
@@ -54,10 +54,11 @@ class WELLGYRO_EXPORT HighSideTracker {
   /// Throws std::invalid_argument for an option outside its domain.
   explicit HighSideTracker(const TrackerOptions& options);
 
-  /// Takes the next sample; `along` at the begin of it. Returns false and changes nothing where the
-  /// sample begins before the last one ended (late, or sent twice), has no period or is not finite.
-  /// A jump in time, number or session is a gap: the window closes before it and opens after it,
-  /// nothing is invented for it. A change of period only breaks the window. Allocates nothing.
+  /// Takes the next sample; `along` at the middle of it. Returns false and changes nothing where
+  /// the sample begins before the last one ended (late, or sent twice), has no period or is not
+  /// finite. A jump in time, number or session is a gap: the window closes before it and opens
+  /// after it, nothing is invented for it. A change of period only breaks the window. Allocates
+  /// nothing.
   bool Push(const ImuSample& sample, const AlongHole& along, const Site& site);
 
   /// Sums the sample that still waits for its successor. At the end of a run; a Push may follow,

@@ -71,8 +71,10 @@ HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& block, Observed& o
 
   errors.turn = -csc * across + vh * csc * cot * middle;
   errors.white = csc * csc * seconds;
-  const double jitter = vr * csc * csc;
-  errors.jitter = jitter * jitter / seconds;
+  // By toolface, and by inclination, whose noise the observer only makes slow: over times long
+  // against it their integrals are as large as if it were white.
+  const double by_roll = vr * csc * csc, by_inclination = vh * csc * cot;
+  errors.jitter = (by_roll * by_roll + by_inclination * by_inclination) / seconds;
   return errors;
 }
 
@@ -105,7 +107,7 @@ void HighSideTracker::FillStamps(const Seen& s, Duration into, Knot& knot) const
   knot.utc = s.stamp.utc + into;
   knot.along = s.along;
   if (s.along.known) {
-    const double t = into.seconds();
+    const double t = into.seconds() - 0.5 * s.dt;
     knot.along.md += t * (s.along.speed + 0.5 * t * s.along.acceleration);
     knot.along.speed += t * s.along.acceleration;
   }
