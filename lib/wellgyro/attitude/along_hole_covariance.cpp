@@ -14,7 +14,7 @@ namespace {
 
 // Eigenvalues of a correlation matrix below this are rounding of zero: states that determine each
 // other, or that are known.
-constexpr double kSingular = 1e-12;
+constexpr double kSingular = 1e-11;
 
 // The X with E[x1 x2'] = cov X, so that E[r x2'] = E[r x1'] X for every r that depends on x2 by x1
 // alone. Where cov is singular any solution will do; the smallest is taken.

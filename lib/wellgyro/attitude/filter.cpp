@@ -149,7 +149,7 @@ void AzimuthFilter::Impl::TakePlainFixes(std::size_t worked, double growth) {
 }
 
 void AzimuthFilter::Impl::TakeStill(const FilterEpoch& epoch) {
-  const double azimuth = history.fixes[static_cast<std::size_t>(epoch.fix)].azimuth;
+  const double azimuth = history.fixes[static_cast<std::size_t>(epoch.fix)].about;
   if (core.azimuth_diffuse()) core.SetAzimuth(azimuth);
   // Every knot of a window is made linear about the same azimuth, so that together they weigh as
   // one measurement.
@@ -285,11 +285,17 @@ FilterFix AzimuthFilter::Update(const NorthFix& fix) {
     m.Rewind(from);
     double since = 0;
     if (!f.rates && f.epoch_end > 0) {
-      const double before = m.core.azimuth();
+      const double begin = m.core.azimuth();
       m.Work(from);
-      since = GrowthSince(m.history.epochs[from].knot, fix, m.core.azimuth() - before);
+      since = GrowthSince(m.history.epochs[from].knot, fix, m.core.azimuth() - begin);
     }
-    m.ChooseBranch(&f, m.core.azimuth() - since, m.core.variance());
+    const double before = m.core.azimuth() - since, variance = m.core.variance();
+    m.ChooseBranch(&f, before, variance);
+    // Near east-west and horizontal a fix by itself may lie far off: the rates are hardly linear
+    // there, so that the place matters.
+    const double weight =
+        variance < kFlatAzimuthVariance ? variance / (variance + f.fix.cov_attitude(1, 1)) : 1;
+    f.about = weight < 1 ? before + weight * WrapPi(f.azimuth - before) : f.azimuth;
   }
   m.history.fixes.push_back(f);
   if (f.use == FixUse::kNoKnot) return f;
@@ -302,6 +308,14 @@ FilterFix AzimuthFilter::Update(const NorthFix& fix) {
   const std::size_t from = m.FirstToWork(f);
   if (f.epoch_end == 0) m.snapshots.clear();
   m.Rewind(from);
+  if (f.rates) {  // linear about what the window itself gives, as in an iterated Kalman filter
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t i = from; i < f.epoch_end; ++i) m.Work(i);
+      f.about = m.core.azimuth();
+      m.history.fixes.back().about = f.about;
+      m.Rewind(from);
+    }
+  }
   for (std::size_t i = from; i < all; ++i) m.Work(i);
   return f;
 }

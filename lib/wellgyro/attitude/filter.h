@@ -52,6 +52,8 @@ struct FilterFix {
   FixUse use = FixUse::kUsed;
   double azimuth = 0;           ///< the branch that was used [rad]
   double chi_square = 0;        ///< of that branch against the azimuth before; 0 where unknown
+  double about = 0;             ///< where the rates are made linear: `azimuth`, weighed with the
+                                ///< azimuth known before [rad]
   bool rates = false;           ///< the still knots of its window entered instead of its azimuth
   std::size_t epoch_begin = 0;  ///< first epoch of the window, and the one at which a plain azimuth
   std::size_t epoch_end = 0;    ///< holds is epoch_end - 1; both 0: before the first knot
@@ -74,6 +76,8 @@ struct FilterHistory {
 /// azimuth, so that gyro bias, mass unbalance and the rest correlate it rightly with the drift and
 /// with other fixes; any other fix enters as azimuth and cov_attitude(1, 1), taken as independent.
 ///
+/// Never looks back: where one fix by itself is uncertain by several degrees, as near horizontal
+/// and east-west, the variance is short by up to 2 until Smooth(), which makes all linear afresh.
 /// A first knot with zero `seconds` only says where the run begins. One filter for one run.
 class WELLGYRO_EXPORT AzimuthFilter {
  public:

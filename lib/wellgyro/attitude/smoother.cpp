@@ -60,7 +60,7 @@ Path FirstPath(const FilterHistory& history) {
     const FilterEpoch& e = epochs[i];
     if (e.fix >= 0) {
       // Of a window all epochs are alike, its first ones not yet good in the filter.
-      const double azimuth = history.fixes[static_cast<std::size_t>(e.fix)].azimuth;
+      const double azimuth = history.fixes[static_cast<std::size_t>(e.fix)].about;
       next = leads ? next + WrapPi(azimuth - next) : azimuth;
     } else if (e.azimuth_known || !leads) {
       next = leads ? next + WrapPi(e.azimuth - next) : e.azimuth;
