@@ -9,7 +9,7 @@
 
 #include "wellgyro/io/coefficients_internal.h"
 #include "wellgyro/io/job_sections_internal.h"
-#include "wellgyro/io/sha256.h"
+#include "wellgyro/io/named_file_internal.h"
 #include "wellgyro/io/survey_csv.h"
 #include "wellgyro/io/toml_internal.h"
 
@@ -17,19 +17,6 @@ namespace wellgyro {
 namespace {
 
 constexpr std::string_view kFormat = "wellgyro.job/1";
-constexpr std::string_view kNoiseFormat = "wellgyro.noise/1";
-
-// The file that `key` of `table` names, noted among those the result rests on. When it cannot be
-// read the Fault is about that file.
-std::string NamedFile(const std::string& name, std::string_view role,
-                      const std::filesystem::path& folder, std::vector<InputFile>& files) {
-  const std::filesystem::path path = folder / name;
-  Result<std::string> text = ReadTextFile(path);
-  if (!text) throw TomlError{text.fault()};
-  files.push_back(
-      {.role = std::string(role), .name = name, .path = path, .sha256 = Sha256Hex(*text)});
-  return *std::move(text);
-}
 
 TieIn TieInOfSurvey(const std::string& text, const std::string& source) {
   const auto stations = ParseSurveyCsv(text, source);
@@ -50,19 +37,9 @@ TieIn TieInOfSurvey(const std::string& text, const std::string& source) {
           .cov_p_WT_W = last.cov_p_WT_W};
 }
 
-NoiseCoefficients NoiseOfFile(const std::string& text, const std::string& source) {
-  const auto noise =
-      ReadTomlText<NoiseCoefficients>(text, source, kNoiseFormat, [](TomlTable& root) {
-        TomlTable table = root.Need("coefficients", root.FindTable("coefficients"));
-        return ReadCoefficients(table);
-      });
-  if (!noise) throw TomlError{noise.fault()};
-  return *noise;
-}
-
 class JobReader {
  public:
-  explicit JobReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit JobReader(NamedFiles& files) : files_(files) {}
 
   JobFile Read(TomlTable& root) {
     Job& job = file_.job;
@@ -102,8 +79,8 @@ class JobReader {
 
   void TakeTieIn(TomlTable& table) {
     if (const auto name = table.FindString("survey")) {
-      const std::string text = NamedFile(*name, "tie_in", folder_, file_.files);
-      file_.job.tie_in = TieInOfSurvey(text, (folder_ / *name).string());
+      const std::string text = files_.Take("tie_in", *name);
+      file_.job.tie_in = TieInOfSurvey(text, files_.PathOf(*name).string());
     } else {
       file_.job.tie_in = ReadTieIn(table);
     }
@@ -111,9 +88,7 @@ class JobReader {
 
   void TakeNoise(TomlTable& table) {
     if (const auto name = table.FindString("file")) {
-      const std::string text = NamedFile(*name, "noise", folder_, file_.files);
-      file_.job.noise = NoiseOfFile(text, (folder_ / *name).string());
-      file_.files.back().text = text;
+      file_.job.noise = NoiseOfFile(*name, files_);
     } else {
       file_.job.noise = ReadCoefficients(table);
     }
@@ -129,7 +104,7 @@ class JobReader {
     }
   }
 
-  std::filesystem::path folder_;
+  NamedFiles& files_;
   JobFile file_;
 };
 
@@ -137,16 +112,11 @@ class JobReader {
 
 Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& source,
                          const std::filesystem::path& folder) {
-  Result<JobFile> file =
-      ReadTomlText<JobFile>(text, source.string(), kFormat,
-                            [&](TomlTable& root) { return JobReader(folder).Read(root); });
-  if (file) {
-    file->files.insert(file->files.begin(), {.role = "job",
-                                             .name = source.filename().string(),
-                                             .path = source,
-                                             .sha256 = Sha256Hex(text),
-                                             .text = std::string(text)});
-  }
+  NamedFiles files(folder);
+  files.Note("job", source, text);
+  Result<JobFile> file = ReadTomlText<JobFile>(
+      text, source.string(), kFormat, [&](TomlTable& root) { return JobReader(files).Read(root); });
+  if (file) file->files = files.all();
   return file;
 }
 

@@ -11,7 +11,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
-#include "wellgyro/io/csv_number_internal.h"
+#include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/words.h"
 

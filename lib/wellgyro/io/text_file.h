@@ -23,4 +23,8 @@ struct InputFile {
 WELLGYRO_EXPORT Result<std::string> ReadTextFile(const std::filesystem::path& path,
                                                  std::int64_t limit = 1 << 26);
 
+/// Its first `size` bytes, or all when there are fewer.
+WELLGYRO_EXPORT Result<std::string> ReadTextHead(const std::filesystem::path& path,
+                                                 std::int64_t size);
+
 }  // namespace wellgyro

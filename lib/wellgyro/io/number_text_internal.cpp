@@ -1,4 +1,4 @@
-#include "wellgyro/io/csv_number_internal.h"
+#include "wellgyro/io/number_text_internal.h"
 
 #include <cassert>
 #include <cmath>
@@ -31,9 +31,11 @@ std::string Metres(double value) { return Fixed(value, 4); }
 
 std::string AngleDeg(double radians) { return Fixed(ToDegrees(radians), 6); }
 
-std::string AzimuthDeg(double radians) {
-  std::string text = AngleDeg(WrapTwoPi(radians));
-  return text == "360.000000" ? "0.000000" : text;
+std::string AzimuthDeg(double radians) { return AzimuthText(radians, 6); }
+
+std::string AzimuthText(double radians, int decimals) {
+  std::string text = Fixed(ToDegrees(WrapTwoPi(radians)), decimals);
+  return text.starts_with("360") ? Fixed(0, decimals) : text;
 }
 
 }  // namespace wellgyro

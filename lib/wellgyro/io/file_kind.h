@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+
+namespace wellgyro {
+
+enum class FileKind {
+  kEmpty,
+  kJob,
+  kSimulation,
+  kNoise,
+  kCalibration,
+  kTool,
+  kErrorModel,
+  kRun,     ///< run.toml
+  kSource,  ///< source.toml
+  kLcmLog,
+  kSurveyCsv,
+  kPassesCsv,
+  kChecksCsv,
+  kForeign,
+};
+
+/// What a file is, by its first bytes.
+struct FileIdentity {
+  FileKind kind = FileKind::kForeign;
+  std::string text;  ///< to follow "this is": "a wellgyro job", "an empty file", "a PDF document"
+};
+
+/// TOML files of ours are told by their format line, logs by LCM's sync word, which may come late
+/// where a log is damaged, tables by their header. 64 KiB are enough.
+WELLGYRO_EXPORT FileIdentity IdentifyBytes(std::string_view head);
+
+/// The same of the file at `path`. Fault kIo when it cannot be read.
+WELLGYRO_EXPORT Result<FileIdentity> IdentifyFile(const std::filesystem::path& path);
+
+}  // namespace wellgyro
