@@ -1,0 +1,212 @@
+#include "wellgyro/bus/lcm_live.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <list>
+#include <stdexcept>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "wellgyro/bus/lcm_url_internal.h"
+#include "wellgyro/bus/log_format_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::size_t kChannelMax = 63;
+
+/// LCM takes channels as regular expressions.
+std::string Escaped(std::string_view channel) {
+  std::string escaped;
+  for (const char c : channel) {
+    if (std::strchr(R"(\^$.|?*+()[]{})", c) != nullptr) escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+void RequireChannel(std::string_view channel) {
+  if (!channel.empty() && channel.size() <= kChannelMax) return;
+  throw std::invalid_argument(
+      fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, kChannelMax));
+}
+
+}  // namespace
+
+struct LiveBus::Core {
+  explicit Core(LcmUrl parsed) : url(std::move(parsed)) {}
+  ~Core() {
+    if (lcm != nullptr) lcm_destroy(lcm);
+    for (const int end : stop_pipe) {
+      if (end >= 0) ::close(end);
+    }
+  }
+  Core(const Core&) = delete;
+  Core& operator=(const Core&) = delete;
+
+  struct Subscription {
+    Core* core;
+    Handler handler;
+  };
+
+  /// Called by liblcm, through which no exception may pass.
+  static void OnMessage(const lcm_recv_buf_t* message, const char* channel, void* subscription) {
+    auto& [core, handler] = *static_cast<Subscription*>(subscription);
+    // A datagram without the channel's NUL comes with a size of nearly 4 GiB.
+    if (message->data_size > log_format::kDataMax) {
+      ++core->refused;
+      return;
+    }
+    if (core->thrown) return;  // one more message of the same lcm_handle
+    try {
+      const auto* data = static_cast<const std::byte*>(message->data);
+      handler(channel, {data, message->data_size}, message->recv_utime);
+    } catch (...) {
+      core->thrown = std::current_exception();
+    }
+  }
+
+  Fault Gone(const char* what) const {
+    return {FaultCode::kIo, fmt::format("{}: {}", url.full, what), url.full};
+  }
+
+  bool Readable() const {
+    pollfd bus{lcm_get_fileno(lcm), POLLIN, 0};
+    return bus.fd >= 0 && ::poll(&bus, 1, 0) > 0 && (bus.revents & POLLIN) != 0;
+  }
+
+  /// One message, which must be there: liblcm's own waiting breaks on signals.
+  bool HandleOne() {
+    const int result = lcm_handle(lcm);
+    if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+    return result >= 0;
+  }
+
+  LcmUrl url;
+  lcm_t* lcm = nullptr;
+  std::array<int, 2> stop_pipe = {-1, -1};
+  std::list<Subscription> subscriptions;
+  std::exception_ptr thrown;
+  std::int64_t refused = 0;
+  int receive_buffer = 0;
+};
+
+LiveBus::LiveBus(std::unique_ptr<Core> core) : core_(std::move(core)) {}
+LiveBus::~LiveBus() = default;
+LiveBus::LiveBus(LiveBus&&) noexcept = default;
+LiveBus& LiveBus::operator=(LiveBus&&) noexcept = default;
+
+Result<LiveBus> LiveBus::Open(const std::string& url, int receive_buffer) {
+  Result<LcmUrl> parsed = ParseLcmUrl(url, receive_buffer);
+  if (!parsed) return parsed.fault();
+  if (parsed->provider == "udpm") {
+    if (auto fault = CheckMulticastRoute(*parsed)) return *std::move(fault);
+  }
+  auto core = std::make_unique<Core>(std::move(*parsed));
+  core->receive_buffer = receive_buffer;
+  if (::pipe2(core->stop_pipe.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
+    return core->Gone(std::strerror(errno));
+  }
+  core->lcm = lcm_create(core->url.full.c_str());
+  const bool tcpq = core->url.provider == "tcpq";
+  // LCM 1.3 makes a bus even where no broker answers, and ends the process when it is used.
+  if (core->lcm == nullptr || (tcpq && lcm_get_fileno(core->lcm) < 0)) {
+    return core->Gone(tcpq ? "no broker answers; start one, as "
+                             "java -cp lcm.jar lcm.lcm.TCPService 7700"
+                           : "LCM cannot use this URL");
+  }
+  return LiveBus(std::move(core));
+}
+
+std::optional<Fault> LiveBus::Subscribe(const std::vector<std::string>& channels, Handler handler) {
+  std::vector<std::string> patterns;
+  for (const std::string& channel : channels) {
+    RequireChannel(channel);
+    patterns.push_back(Escaped(channel));
+  }
+  if (channels.empty()) patterns.emplace_back(".*");
+  std::sort(patterns.begin(), patterns.end());
+  patterns.erase(std::unique(patterns.begin(), patterns.end()), patterns.end());
+  core_->subscriptions.push_back({core_.get(), std::move(handler)});
+  for (const std::string& pattern : patterns) {
+    auto* subscription =
+        lcm_subscribe(core_->lcm, pattern.c_str(), &Core::OnMessage, &core_->subscriptions.back());
+    if (subscription == nullptr) return core_->Gone("LCM refuses to subscribe");
+    lcm_subscription_set_queue_capacity(subscription, 0);
+  }
+  // The first use of the descriptor makes LCM join the group and test it with a message of its own.
+  if (lcm_get_fileno(core_->lcm) < 0) {
+    return core_->Gone("LCM hears none of its own messages; a firewall may drop multicast");
+  }
+  return std::nullopt;
+}
+
+Result<LiveBus::Woken> LiveBus::Wait(int timeout_ms) {
+  std::array<pollfd, 2> ends = {
+      {{core_->stop_pipe[0], POLLIN, 0}, {lcm_get_fileno(core_->lcm), POLLIN, 0}}};
+  const nfds_t count = ends[1].fd < 0 ? 1 : 2;
+  int ready = ::poll(ends.data(), count, timeout_ms);
+  while (ready < 0 && errno == EINTR) ready = ::poll(ends.data(), count, timeout_ms);
+  if (ready < 0) return core_->Gone(std::strerror(errno));
+  if (ends[0].revents != 0) return Woken::kStopped;
+  if ((ends[1].revents & POLLIN) != 0) {
+    const Result<std::int64_t> handled = Drain(kBurst);
+    if (!handled) return handled.fault();
+    return Woken::kMessages;
+  }
+  if (ends[1].revents != 0) return core_->Gone("the connection is lost");
+  return Woken::kIdle;
+}
+
+Result<std::int64_t> LiveBus::Drain(std::int64_t most) {
+  std::int64_t handled = 0;
+  while (handled < most && core_->Readable()) {
+    if (!core_->HandleOne()) return core_->Gone("the connection is lost");
+    ++handled;
+  }
+  return handled;
+}
+
+void LiveBus::Stop() noexcept {
+  // Only write(2): this may run in a signal handler. A full pipe says the same as one byte.
+  const int before = errno;
+  [[maybe_unused]] const ssize_t written = ::write(core_->stop_pipe[1], "x", 1);
+  errno = before;
+}
+
+std::optional<Fault> LiveBus::Publish(std::string_view channel, std::span<const std::byte> data) {
+  RequireChannel(channel);
+  if (data.size() > log_format::kDataMax) {
+    throw std::invalid_argument(fmt::format("channel \"{}\": {} bytes of data are more than {}",
+                                            channel, data.size(), log_format::kDataMax));
+  }
+  const std::string name(channel);
+  const int result =
+      lcm_publish(core_->lcm, name.c_str(), data.data(), static_cast<unsigned int>(data.size()));
+  if (result >= 0) return std::nullopt;
+  return core_->Gone("a message could not be sent");
+}
+
+const std::string& LiveBus::url() const { return core_->url.full; }
+
+std::optional<int> LiveBus::granted_receive_buffer() const {
+  if (core_->url.provider != "udpm") return std::nullopt;
+  return GrantedReceiveBuffer(core_->receive_buffer);
+}
+
+std::optional<std::int64_t> LiveBus::kernel_drops() const {
+  if (core_->url.provider != "udpm") return std::nullopt;
+  return UdpDrops(core_->url.port);
+}
+
+std::int64_t LiveBus::refused() const { return core_->refused; }
+
+}  // namespace wellgyro

@@ -1,0 +1,229 @@
+#include "wellgyro/bus/lcm_live.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "wellgyro/bus/feed.h"
+
+#include "bus/generated_messages.h"
+
+namespace wellgyro::test {
+namespace {
+
+using testing::HasSubstr;
+using Woken = LiveBus::Woken;
+
+struct Got {
+  std::string channel;
+  Bytes data;
+};
+
+LiveBus::Handler Into(std::vector<Got>& got) {
+  return [&got](std::string_view channel, std::span<const std::byte> data, std::int64_t) {
+    got.push_back({std::string(channel), Bytes(data.begin(), data.end())});
+  };
+}
+
+LiveBus Memory() {
+  Result<LiveBus> bus = LiveBus::Open("memq://");
+  if (!bus) throw std::runtime_error(bus.fault().text);
+  return std::move(*bus);
+}
+
+Woken Waited(LiveBus& bus, int timeout_ms) {
+  const Result<Woken> woken = bus.Wait(timeout_ms);
+  if (!woken) throw std::runtime_error(woken.fault().text);
+  return *woken;
+}
+
+TEST(LcmLive, PublishThenHearInOneThread) {
+  LiveBus bus = Memory();
+  std::vector<Got> got;
+  ASSERT_FALSE(bus.Subscribe({}, Into(got)));
+  EXPECT_EQ(Waited(bus, 0), Woken::kIdle);
+  for (int i = 0; i < 300; ++i) ASSERT_FALSE(bus.Publish("A", Bytes(static_cast<std::size_t>(i))));
+  EXPECT_EQ(Waited(bus, 0), Woken::kMessages);
+  ASSERT_EQ(got.size(), 300U) << "more than LCM's own queue of 30";
+  EXPECT_EQ(got[299].data.size(), 299U);
+  EXPECT_EQ(Waited(bus, 0), Woken::kIdle);
+}
+
+TEST(LcmLive, OneWaitHandsOnABurstAndDrainTheRest) {
+  LiveBus bus = Memory();
+  std::vector<Got> got;
+  ASSERT_FALSE(bus.Subscribe({}, Into(got)));
+  for (int i = 0; i < LiveBus::kBurst + 50; ++i) ASSERT_FALSE(bus.Publish("A", {}));
+  EXPECT_EQ(Waited(bus, 0), Woken::kMessages);
+  EXPECT_EQ(got.size(), std::size_t{LiveBus::kBurst});
+  EXPECT_EQ(*bus.Drain(), 50);
+  EXPECT_EQ(*bus.Drain(), 0);
+}
+
+TEST(LcmLive, ChannelsAreTakenLiterally) {
+  LiveBus bus = Memory();
+  std::vector<Got> got;
+  ASSERT_FALSE(bus.Subscribe({"A.B", "C+", "A.B"}, Into(got)));
+  for (const char* channel : {"A.B", "AxB", "A.BB", "C+", "CC"}) {
+    ASSERT_FALSE(bus.Publish(channel, {}));
+  }
+  EXPECT_EQ(Waited(bus, 0), Woken::kMessages);
+  ASSERT_EQ(got.size(), 2U);
+  EXPECT_EQ(got[0].channel, "A.B");
+  EXPECT_EQ(got[1].channel, "C+");
+}
+
+TEST(LcmLive, WhatAHandlerThrowsComesOutAndTheBusGoesOn) {
+  LiveBus bus = Memory();
+  int calls = 0;
+  ASSERT_FALSE(bus.Subscribe({}, [&calls](auto&&...) {
+    if (++calls == 1) throw std::domain_error("from the handler");
+  }));
+  ASSERT_FALSE(bus.Publish("A", {}));
+  ASSERT_FALSE(bus.Publish("A", {}));
+  EXPECT_THROW(Waited(bus, 0), std::domain_error);
+  EXPECT_EQ(Waited(bus, 0), Woken::kMessages);
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(LcmLive, StopEndsEveryWaitAndDrainGivesWhatHadCome) {
+  LiveBus bus = Memory();
+  std::vector<Got> got;
+  ASSERT_FALSE(bus.Subscribe({}, Into(got)));
+  ASSERT_FALSE(bus.Publish("A", {}));
+  bus.Stop();
+  EXPECT_EQ(Waited(bus, -1), Woken::kStopped);
+  EXPECT_EQ(Waited(bus, -1), Woken::kStopped);
+  EXPECT_EQ(*bus.Drain(), 1);
+  EXPECT_EQ(got.size(), 1U);
+}
+
+LiveBus* to_stop = nullptr;
+
+TEST(LcmLive, ASignalHandlerMayStopAWaitThatHasBegun) {
+  LiveBus bus = Memory();
+  std::vector<Got> got;
+  ASSERT_FALSE(bus.Subscribe({}, Into(got)));
+  to_stop = &bus;
+  struct sigaction action {};
+  action.sa_flags = SA_RESTART;  // what signal(2) gives, and what liblcm alone never wakes from
+  action.sa_handler = [](int) { to_stop->Stop(); };
+  struct sigaction before {};
+  ASSERT_EQ(sigaction(SIGUSR1, &action, &before), 0);
+  const pthread_t waiting = pthread_self();
+  std::thread killer([waiting] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    pthread_kill(waiting, SIGUSR1);
+  });
+  EXPECT_EQ(Waited(bus, -1), Woken::kStopped);
+  killer.join();
+  sigaction(SIGUSR1, &before, nullptr);
+}
+
+TEST(LcmLive, UrlsThatCannotBe) {
+  const auto said = [](const char* url) {
+    const Result<LiveBus> bus = LiveBus::Open(url);
+    return bus ? std::string("opened") : bus.fault().text;
+  };
+  EXPECT_THAT(said(""), HasSubstr("udpm://239.255.76.67:7667?ttl=0"));
+  EXPECT_THAT(said("log.lcm"), HasSubstr("no LCM URL"));
+  EXPECT_THAT(said("file://log.lcm"), HasSubstr("by its path"));
+  EXPECT_THAT(said("http://x"), HasSubstr("udpm, tcpq and memq"));
+  EXPECT_THAT(said("udpm://239.255.76.67:0"), HasSubstr("port"));
+  EXPECT_THAT(said("udpm://239.255.76.67:99999"), HasSubstr("port"));
+  EXPECT_THAT(said("udpm://127.0.0.1:7667"), HasSubstr("no multicast group"));
+  EXPECT_THAT(said("udpm://somewhere:7667"), HasSubstr("no multicast group"));
+}
+
+TEST(LcmLive, NoBroker) {
+  const Result<LiveBus> bus = LiveBus::Open("tcpq://127.0.0.1:9");
+  ASSERT_FALSE(bus);
+  EXPECT_THAT(bus.fault().text, HasSubstr("no broker answers"));
+}
+
+TEST(LcmLive, ChannelsOfWrongLength) {
+  LiveBus bus = Memory();
+  EXPECT_THROW(static_cast<void>(bus.Publish("", {})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(bus.Publish(std::string(64, 'A'), {})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(bus.Subscribe({""}, [](auto&&...) {})), std::invalid_argument);
+}
+
+/// In a process that ends with it: whether it can have a network of its own, with nothing up.
+bool LeaveTheNetwork() { return unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0; }
+
+TEST(LcmLive, AMissingRouteIsNamedWithTheCommandThatAddsIt) {
+  const pid_t child = fork();
+  if (child == 0) _exit(LeaveTheNetwork() ? 0 : 1);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  if (status != 0) GTEST_SKIP() << "no network namespaces here";
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto open_without_network = [] {
+    LeaveTheNetwork();
+    const Result<LiveBus> bus = LiveBus::Open("udpm://239.255.76.67:7667");
+    if (!bus) std::fputs(bus.fault().text.c_str(), stderr);
+    std::exit(bus ? 1 : 0);
+  };
+  EXPECT_EXIT(open_without_network(), testing::ExitedWithCode(0),
+              "ip route add 224.0.0.0/4 dev lo");
+}
+
+TEST(LcmLive, MulticastOnThisMachineLosesNothingAtARestingListener) {
+  // A port of its own: LCM 1.3 hears every group on its port.
+  const std::string url = "udpm://239.255.76.67:" + std::to_string(20'000 + getpid() % 20'000);
+  Result<LiveBus> listening = LiveBus::Open(url);
+  if (!listening) GTEST_SKIP() << listening.fault().text;
+  EXPECT_THAT(listening->url(), HasSubstr("ttl=0&recv_buf_size=4194304"));
+  std::vector<Got> got;
+  if (auto fault = listening->Subscribe({"WELLGYRO_DEPTH"}, Into(got))) GTEST_SKIP() << fault->text;
+  Result<LiveBus> speaking = LiveBus::Open(url);
+  ASSERT_TRUE(speaking);
+  const Bytes depth = BytesOf(GeneratedDepth());
+  // Nobody listens meanwhile; LCM's own 30 messages and a small kernel buffer must not matter.
+  constexpr std::size_t kCount = 200;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    ASSERT_FALSE(speaking->Publish("WELLGYRO_DEPTH", depth));
+  }
+  while (got.size() < kCount && Waited(*listening, 2000) == Woken::kMessages) continue;
+  EXPECT_EQ(got.size(), kCount);
+  EXPECT_EQ(got.back().data, depth);
+  EXPECT_EQ(listening->kernel_drops(), 0);
+  ASSERT_TRUE(listening->granted_receive_buffer());
+  EXPECT_GT(*listening->granted_receive_buffer(), 100'000);
+  EXPECT_EQ(listening->refused(), 0);
+}
+
+// Datagrams that LCM takes for messages and that no sender of LCM makes.
+TEST(LcmLive, HostileMessagesThroughTheWholeWayIn) {
+  struct Count : Listener {
+    void OnDepth(const DepthMark&) override { ++good; }
+    void OnFault(const Fault&) override { ++faults; }
+    int good = 0;
+    int faults = 0;
+  } count;
+  LiveBus bus = Memory();
+  Feed feed({}, count);
+  ASSERT_FALSE(bus.Subscribe({}, [&feed](std::string_view channel, std::span<const std::byte> data,
+                                         std::int64_t) { feed.Take(channel, data); }));
+  const Bytes depth = BytesOf(GeneratedDepth());
+  for (std::size_t size = 0; size <= depth.size(); ++size) {
+    ASSERT_FALSE(bus.Publish("WELLGYRO_DEPTH", std::span(depth).first(size)));
+  }
+  EXPECT_EQ(Waited(bus, 0), Woken::kMessages);
+  EXPECT_EQ(count.good, 1);
+  EXPECT_EQ(count.faults, Feed::kFaultsHeard);
+  EXPECT_EQ(feed.malformed(), static_cast<std::int64_t>(depth.size()));
+}
+
+}  // namespace
+}  // namespace wellgyro::test
