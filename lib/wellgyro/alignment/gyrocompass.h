@@ -11,8 +11,8 @@
 namespace wellgyro {
 
 struct GyrocompassSetup {
-  NoiseCoefficients gyro;
-  ErrorPriors errors;
+  NoiseCoefficients gyro = {};
+  ErrorPriors errors = {};
   double sigma_gravity_ref = 5e-4;  ///< of Site::gravity against the true one [m/s^2]
 };
 

@@ -15,13 +15,13 @@
 namespace wellgyro {
 
 struct StillSetup {
-  NoiseCoefficients gyro;
-  ErrorPriors errors;  ///< gyro_bias_sigma and accel_noise are used
+  NoiseCoefficients gyro = {};
+  ErrorPriors errors = {};  ///< gyro_bias_sigma and accel_noise are used
   /// A stop of this length gives a window. Its ragged ends, up to 4 s each, stay out of the means
   /// and are not held against it.
   Duration min_still = Duration::Seconds(60);
   /// Along-hole speed above which the tool is not still [m/s]. One count of a 1 cm encoder reads
-  /// as at most 0.005 m/s in a DepthTrack.
+  /// as at most 0.0052 m/s in a DepthTrack.
   double speed_limit = 0.006;
   double travel_limit = 0.1;  ///< along-hole way within one window [m]
 };
@@ -53,68 +53,65 @@ class WELLGYRO_EXPORT StillDetector {
 
   /// At rest as far as whole blocks and the speed at the last sample tell; true from the third
   /// block of a stretch on.
-  bool still() const;
+  bool still() const { return stretch_.blocks > 0 && !sliding_; }
   /// First instant of the stretch's means; meaningful while still().
-  ToolTime still_since() const { return first_.stamp.tool_time; }
+  ToolTime still_since() const { return stretch_.first.tool_time; }
   /// The means so far of the open stretch, of whatever length, for a provisional fix.
   std::optional<StillWindow> OpenWindow() const;
 
  private:
-  struct Edge {
-    SampleStamp stamp;
-    std::int64_t block = 0;  ///< number of the block on the tool clock
-  };
-  /// Sums over the samples of one block, relative to its first sample.
+  /// Sums over the samples of the block in progress, relative to its first sample.
   struct Block {
-    std::int64_t index = 0;
+    std::int64_t index = 0;  ///< of the second on the tool clock
     SampleStamp first, last;
-    std::int64_t samples = 0;
-    Eigen::Vector3d w0, f0;  ///< the first sample
-    Eigen::Vector3d sum_w, sum_f, sum_b, square_w, square_f;
+    std::int64_t samples = 0, depths = 0;
+    Eigen::Vector3d w0 = Eigen::Vector3d::Zero(), f0 = w0;  ///< the first sample
+    Eigen::Vector3d sum_w = w0, sum_f = w0, sum_b = w0, square_w = w0, square_f = w0;
     double sum_temperature = 0, sum_md = 0, sum_speed = 0;
-    std::int64_t depths = 0;
-    bool gz = false, mag = false, saturated = false;
+    bool gz = true, mag = true, saturated = false;
   };
   /// What remains of a finished block.
   struct Means {
-    std::int64_t samples = 0;
     SampleStamp first, last;
-    Eigen::Vector3d w, f, b, var_w, var_f;  ///< means, and scatter of one sample
-    double temperature = 0, md = 0, speed = 0, seconds = 0;
+    std::int64_t samples = 0;
+    Eigen::Vector3d w, f, b, var_w, var_f;  ///< means, and variances of one sample
+    double temperature = 0, md = 0, speed = 0;
     bool md_known = false, gz = false, mag = false, saturated = false;
+
+    double seconds() const { return static_cast<double>(samples * first.period_ns) * 1e-9; }
   };
-  /// Sums over the whole blocks of the stretch that are averaged.
+  /// The averaged blocks of the stretch.
   struct Stretch {
-    std::int64_t blocks = 0, samples = 0, depths = 0;
-    Eigen::Vector3d w, f, b, square_w, square_f;  ///< running means, sums of squared differences
-    double temperature = 0, md = 0;
-    double sum_t = 0, sum_tt = 0;  ///< for the slope of f, seconds since the first block
-    Eigen::Vector3d sum_f, sum_tf;
-    bool gz = false, mag = false, saturated = false;
+    SampleStamp first, last;
+    std::int64_t blocks = 0, samples = 0;
+    Eigen::Vector3d sum_w = Eigen::Vector3d::Zero(), sum_f = sum_w, sum_b = sum_w;
+    Eigen::Vector3d mean_w = sum_w, mean_f = sum_w;      ///< of block means
+    Eigen::Vector3d square_w = sum_w, square_f = sum_w;  ///< of their differences from the mean
+    Eigen::Vector3d sum_var_w = sum_w, sum_var_f = sum_w;
+    double sum_temperature = 0, sum_md = 0;
+    double sum_t = 0, sum_tt = 0;  ///< for the slope of f [s] since the first block
+    Eigen::Vector3d sum_tf = sum_w;
+    double md_begin = 0;
+    bool md_known = true, gz = true, mag = true, saturated = false;
   };
 
   bool Continues(const SampleStamp& stamp) const;
   void Add(const ImuSample& sample, const AlongHole& along);
   std::optional<StillWindow> CloseBlock();
-  bool Whole(const Block& block) const;
   bool StillAlone(const Means& block) const;
   bool StillTogether(const Means& block) const;
-  bool Creeps(const Means& newest) const;
+  bool Creeps() const;
   void Average(const Means& block);
-  std::optional<StillWindow> EndStretch();
-  StillWindow Window() const;
+  std::optional<StillWindow> EndStretch(Quality quality);
+  StillWindow Window(Quality quality) const;
 
   StillSetup setup_;
   std::optional<std::int32_t> index_position_;
   std::optional<SampleStamp> previous_;
-  bool broken_ = true;  ///< the block in progress does not begin at its boundary
   std::optional<Block> block_;
   std::optional<Means> pending_;  ///< newest still block, averaged when the next one is still too
-  bool guarded_ = false;          ///< the stretch's first block has passed
+  bool guarded_ = false;          ///< the stretch's first block has been left out
   Stretch stretch_;
-  Edge first_, last_;
-  double md_begin_ = 0;
-  bool md_begin_known_ = false;
   bool sliding_ = false;  ///< the last sample was above the speed limit
 };
 

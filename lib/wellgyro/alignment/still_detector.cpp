@@ -1,0 +1,343 @@
+#include "wellgyro/alignment/still_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::int64_t kBlockNs = 1'000'000'000;
+constexpr double kGate = 5;          // sigmas
+constexpr double kRagged = 4;        // [s] of either end of a stop that may stay out of the means
+constexpr double kCreepBlocks = 10;  // from which a slope says something
+// Floors: what a tool hanging in a live hole, and sensors a little worse than their data sheet, do.
+constexpr double kScatterRate = 0.1 * units::kDeg;     // of one sample [rad/s]
+constexpr double kScatterForce = 0.05;                 // of one sample [m/s^2]
+constexpr double kMeanRate = 20 * units::kDegPerHour;  // beyond the Earth's
+constexpr double kChangeRate = units::kDegPerHour;     // block against stretch
+constexpr double kChangeForce = 1e-3;                  // block against stretch [m/s^2]
+constexpr double kCreep = 0.1 * units::kDegPerHour;    // rotation of gravity in the tool
+
+std::int64_t BlockOf(ToolTime time) {
+  const std::int64_t block = time.ns / kBlockNs;
+  return block * kBlockNs > time.ns ? block - 1 : block;
+}
+
+// Variance of a mean over `seconds`, by the coefficients [rad^2/s^2].
+double RateVariance(const NoiseCoefficients& gyro, double seconds) {
+  const double n = gyro.angle_random_walk, q = gyro.quantization / seconds;
+  return n * n / seconds + 2 * q * q;
+}
+
+double ForceVariance(const ErrorPriors& errors, double seconds) {
+  return errors.accel_noise * errors.accel_noise / seconds;
+}
+
+// Variance of a block's mean: as the coefficients say, or as its samples scatter if that is more.
+// One or two samples say nothing of their scatter.
+double BlockVariance(double model, double scatter, double samples, double floor) {
+  if (samples < 3) return model > 0 ? model : floor * floor;
+  return std::max(model, scatter / samples);
+}
+
+bool Whole(std::int64_t index, const SampleStamp& first, const SampleStamp& last) {
+  const std::int64_t begin = index * kBlockNs;
+  return first.tool_time.ns - begin < first.period_ns &&
+         begin + kBlockNs - last.tool_time.ns <= last.period_ns;
+}
+
+// Sigma of a mean over blocks: by the coefficients unless the blocks scatter beyond four sigmas of
+// what these allow, or there are none.
+double SigmaOfMean(double model, double block_model, double square, double blocks) {
+  if (blocks < 2) return std::sqrt(model);
+  const double scatter = square / (blocks - 1);
+  const bool explained = scatter <= block_model * (1 + 4 * std::sqrt(2 / (blocks - 1)));
+  return std::sqrt(explained ? model : std::max(model, scatter / blocks));
+}
+
+}  // namespace
+
+StillDetector::StillDetector(const StillSetup& setup) : setup_(setup) {
+  const auto require = [](bool good, const char* what) {
+    if (!good) throw std::invalid_argument(std::string("StillDetector: ") + what);
+  };
+  require(setup.min_still > Duration::Seconds(2), "min_still must be above 2 s");
+  require(setup.speed_limit > 0, "speed_limit must be positive");
+  require(setup.travel_limit > 0, "travel_limit must be positive");
+  require(setup.gyro.angle_random_walk >= 0, "gyro.angle_random_walk must not be negative");
+  require(setup.gyro.quantization >= 0, "gyro.quantization must not be negative");
+  require(setup.errors.accel_noise >= 0, "errors.accel_noise must not be negative");
+  require(setup.errors.gyro_bias_sigma >= 0, "errors.gyro_bias_sigma must not be negative");
+}
+
+bool StillDetector::Continues(const SampleStamp& stamp) const {
+  if (!previous_ || stamp.session != previous_->session || stamp.seq != previous_->seq + 1 ||
+      stamp.period_ns != previous_->period_ns) {
+    return false;
+  }
+  const std::int64_t late = stamp.tool_time.ns - previous_->tool_time.ns - stamp.period_ns;
+  return 2 * std::abs(late) <= stamp.period_ns;
+}
+
+std::optional<StillWindow> StillDetector::Push(const ImuSample& sample, const AlongHole& along) {
+  const SampleStamp& stamp = sample.stamp;
+  if (previous_ && stamp.session == previous_->session && stamp.seq <= previous_->seq) {
+    return std::nullopt;
+  }
+  std::optional<StillWindow> window;
+  if (block_ && !Continues(stamp)) {
+    // The gap may lie exactly at the end of a block, which is then whole and counts.
+    window = CloseBlock();
+    auto rest = EndStretch(Quality::kGood);
+    if (rest) window = rest;
+    block_.reset();
+  } else if (block_ && BlockOf(stamp.tool_time) != block_->index) {
+    window = CloseBlock();
+    block_.reset();
+  }
+  Add(sample, along);
+  previous_ = stamp;
+  sliding_ = along.known && std::abs(along.speed) > setup_.speed_limit;
+  return window;
+}
+
+void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
+  if (!block_) {
+    block_.emplace();
+    block_->index = BlockOf(sample.stamp.tool_time);
+    block_->first = sample.stamp;
+    block_->w0 = sample.w_IT_T;
+    block_->f0 = sample.f_T;
+  }
+  Block& block = *block_;
+  block.last = sample.stamp;
+  ++block.samples;
+  const Vector3d w = sample.w_IT_T - block.w0;
+  const Vector3d f = sample.f_T - block.f0;
+  block.sum_w += w;
+  block.sum_f += f;
+  block.sum_b += sample.b_T;
+  block.square_w += w.cwiseAbs2();
+  block.square_f += f.cwiseAbs2();
+  block.sum_temperature += static_cast<double>(sample.stamp.temperature);
+  block.gz = block.gz && sample.has_gz;
+  block.mag = block.mag && sample.has_mag;
+  block.saturated = block.saturated || sample.stamp.gyro_saturated || sample.stamp.accel_saturated;
+  if (!along.known) return;
+  ++block.depths;
+  block.sum_md += along.md;
+  block.sum_speed += std::abs(along.speed);
+}
+
+/// Judges the finished block; returns the window that its motion ends.
+std::optional<StillWindow> StillDetector::CloseBlock() {
+  const Block& block = *block_;
+  if (!Whole(block.index, block.first, block.last)) return EndStretch(Quality::kGood);
+  const double n = static_cast<double>(block.samples);
+  const double depths = static_cast<double>(std::max<std::int64_t>(block.depths, 1));
+  const double free = std::max(n - 1, 1.0);
+  const Means means{.first = block.first,
+                    .last = block.last,
+                    .samples = block.samples,
+                    .w = block.w0 + block.sum_w / n,
+                    .f = block.f0 + block.sum_f / n,
+                    .b = block.sum_b / n,
+                    .var_w = (block.square_w - block.sum_w.cwiseAbs2() / n) / free,
+                    .var_f = (block.square_f - block.sum_f.cwiseAbs2() / n) / free,
+                    .temperature = block.sum_temperature / n,
+                    .md = block.sum_md / depths,
+                    .speed = block.sum_speed / depths,
+                    .md_known = block.depths == block.samples,
+                    .gz = block.gz,
+                    .mag = block.mag,
+                    .saturated = block.saturated};
+  if (!StillAlone(means)) return EndStretch(Quality::kGood);
+  std::optional<StillWindow> window;
+  if (pending_ && !StillTogether(means)) {
+    window = EndStretch(Quality::kGood);
+  } else if (pending_) {
+    if (guarded_) Average(*pending_);
+    guarded_ = true;
+    if (Creeps()) window = EndStretch(Quality::kMoved);
+  }
+  pending_ = means;
+  return window;
+}
+
+bool StillDetector::StillAlone(const Means& block) const {
+  if (block.speed > setup_.speed_limit) return false;
+  const double period = static_cast<double>(block.first.period_ns) * 1e-9;
+  const double n = static_cast<double>(block.samples);
+  const double rate_model = RateVariance(setup_.gyro, period);
+  const double rate_scatter = 9 * rate_model + kScatterRate * kScatterRate;
+  const double force_scatter =
+      9 * ForceVariance(setup_.errors, period) + kScatterForce * kScatterForce;
+  const int axes = block.gz ? 3 : 2;
+  if (block.var_w.head(axes).maxCoeff() > rate_scatter || block.var_f.maxCoeff() > force_scatter) {
+    return false;
+  }
+  const ErrorPriors& errors = setup_.errors;
+  const double bias = std::hypot(errors.gyro_bias_sigma, setup_.gyro.bias_instability) +
+                      (errors.mass_unbalance_sigma + errors.quadrature_sigma) * block.f.norm();
+  const double noise =
+      BlockVariance(rate_model / n, block.var_w.head(axes).maxCoeff(), n, kScatterRate);
+  const double limit = kEarthRate + kMeanRate + kGate * (bias + std::sqrt(noise));
+  return block.w.head(axes).norm() <= limit;
+}
+
+/// Against the means of the stretch, or of its first block while that is all there is.
+bool StillDetector::StillTogether(const Means& block) const {
+  const bool young = stretch_.blocks == 0;
+  const double n = young ? 1 : static_cast<double>(stretch_.blocks);
+  const Vector3d& w = young ? pending_->w : stretch_.mean_w;
+  const Vector3d& f = young ? pending_->f : stretch_.mean_f;
+  const Vector3d var_w = ((young ? pending_->var_w : stretch_.sum_var_w) + block.var_w) / (n + 1);
+  const Vector3d var_f = ((young ? pending_->var_f : stretch_.sum_var_f) + block.var_f) / (n + 1);
+  const double seconds = block.seconds();
+  const double samples = static_cast<double>(block.samples);
+  const auto agree = [&](double a, double b, double model, double scatter, double floor,
+                         double change) {
+    const double variance = BlockVariance(model, scatter, samples, floor);
+    return std::abs(a - b) <= kGate * std::sqrt(variance * (1 + 1 / n)) + change;
+  };
+  for (int i = 0; i < 3; ++i) {
+    if (!agree(block.f[i], f[i], ForceVariance(setup_.errors, seconds), var_f[i], kScatterForce,
+               kChangeForce)) {
+      return false;
+    }
+    if (i == 2 && !block.gz) break;
+    if (!agree(block.w[i], w[i], RateVariance(setup_.gyro, seconds), var_w[i], kScatterRate,
+               kChangeRate)) {
+      return false;
+    }
+  }
+  return !(block.md_known && stretch_.md_known && !young &&
+           std::abs(block.md - stretch_.md_begin) > setup_.travel_limit);
+}
+
+/// A slope of the specific force over the stretch, too much for the accelerometers' noise: gravity
+/// turns in the tool.
+bool StillDetector::Creeps() const {
+  const double n = static_cast<double>(stretch_.blocks);
+  if (n < kCreepBlocks) return false;
+  const double seconds = static_cast<double>(stretch_.samples * stretch_.first.period_ns) * 1e-9;
+  const double samples = static_cast<double>(stretch_.samples) / n;
+  const double spread = stretch_.sum_tt - stretch_.sum_t * stretch_.sum_t / n;
+  for (int i = 0; i < 3; ++i) {
+    const double slope = (stretch_.sum_tf[i] - stretch_.sum_t * stretch_.mean_f[i]) / spread;
+    const double variance = BlockVariance(ForceVariance(setup_.errors, seconds / n),
+                                          stretch_.sum_var_f[i] / n, samples, kScatterForce);
+    const double limit = kGate * std::sqrt(variance / spread) + kCreep * stretch_.mean_f.norm();
+    if (std::abs(slope) > limit) return true;
+  }
+  return false;
+}
+
+void StillDetector::Average(const Means& block) {
+  Stretch& s = stretch_;
+  if (s.blocks == 0) {
+    s.first = block.first;
+    s.md_begin = block.md;
+  }
+  s.last = block.last;
+  ++s.blocks;
+  s.samples += block.samples;
+  const double n = static_cast<double>(s.blocks);
+  const double samples = static_cast<double>(block.samples);
+  s.sum_w += samples * block.w;
+  s.sum_f += samples * block.f;
+  s.sum_b += samples * block.b;
+  s.sum_temperature += samples * block.temperature;
+  s.sum_md += samples * block.md;
+  const Vector3d dw = block.w - s.mean_w, df = block.f - s.mean_f;
+  s.mean_w += dw / n;
+  s.mean_f += df / n;
+  s.square_w += dw.cwiseProduct(block.w - s.mean_w);
+  s.square_f += df.cwiseProduct(block.f - s.mean_f);
+  s.sum_var_w += block.var_w;
+  s.sum_var_f += block.var_f;
+  const double t = (block.first.tool_time - s.first.tool_time).seconds();
+  s.sum_t += t;
+  s.sum_tt += t * t;
+  s.sum_tf += t * block.f;
+  s.md_known = s.md_known && block.md_known;
+  s.gz = s.gz && block.gz;
+  s.mag = s.mag && block.mag;
+  s.saturated = s.saturated || block.saturated;
+}
+
+std::optional<StillWindow> StillDetector::EndStretch(Quality quality) {
+  std::optional<StillWindow> window;
+  const double least = setup_.min_still.seconds();
+  if (stretch_.blocks > 0) {
+    window = Window(quality);
+    if (window->seconds() < std::max(least - 2 * kRagged, least / 2)) window.reset();
+  }
+  stretch_ = Stretch{};
+  pending_.reset();
+  guarded_ = false;
+  return window;
+}
+
+StillWindow StillDetector::Window(Quality quality) const {
+  const Stretch& s = stretch_;
+  const double n = static_cast<double>(s.samples), blocks = static_cast<double>(s.blocks);
+  const Duration period{s.last.period_ns};
+  StillWindow window;
+  window.begin = s.first.tool_time;
+  window.end = s.last.tool_time + period;
+  window.utc_begin = s.first.utc;
+  window.utc_end = s.last.utc + period;
+  window.seq_begin = s.first.seq;
+  window.seq_end = s.last.seq + 1;
+  window.session = s.first.session;
+  window.run = s.first.run;
+  window.tool = s.first.tool;
+  window.samples = s.samples;
+  window.w_IT_T = s.sum_w / n;
+  window.f_T = s.sum_f / n;
+  if (s.mag) window.b_T = s.sum_b / n;
+  window.has_gz = s.gz;
+  window.has_mag = s.mag;
+  window.index_position = index_position_;
+  if (s.md_known) window.md = s.sum_md / n;
+  window.temperature = s.sum_temperature / n;
+  window.quality = quality | (s.saturated ? Quality::kSaturated : Quality::kGood);
+  const double seconds = window.seconds(), block = seconds / blocks;
+  const double rate = RateVariance(setup_.gyro, seconds), rate1 = RateVariance(setup_.gyro, block);
+  const double force = ForceVariance(setup_.errors, seconds);
+  for (int i = 0; i < 3; ++i) {
+    window.sigma_w_IT_T[i] = SigmaOfMean(rate, rate1, s.square_w[i], blocks);
+    window.sigma_f_T[i] = SigmaOfMean(force, force * blocks, s.square_f[i], blocks);
+  }
+  if (!s.gz) window.w_IT_T[2] = window.sigma_w_IT_T[2] = 0;
+  return window;
+}
+
+std::optional<StillWindow> StillDetector::Cut(std::optional<std::int32_t> index_position) {
+  std::optional<StillWindow> window = Flush();
+  index_position_ = index_position;
+  return window;
+}
+
+std::optional<StillWindow> StillDetector::Flush() {
+  if (!block_) return EndStretch(Quality::kGood);
+  std::optional<StillWindow> window = CloseBlock();
+  auto rest = EndStretch(Quality::kGood);
+  block_.reset();
+  return rest ? rest : window;
+}
+
+std::optional<StillWindow> StillDetector::OpenWindow() const {
+  if (stretch_.blocks == 0) return std::nullopt;
+  return Window(Quality::kGood);
+}
+
+}  // namespace wellgyro
