@@ -14,6 +14,7 @@ namespace {
 
 constexpr Duration kClockGrain{1000};  // knots and windows cut at the same sample
 constexpr double kBranchMargin = 9;    // chi-square by which one branch must beat the other
+constexpr double kVagueVariance = 1;   // of a fix that is no place to start from [rad^2]
 constexpr std::size_t kSnapshotsMax = 256;
 
 void RequireNotNegative(const char* name, double value) {
@@ -81,7 +82,7 @@ struct AzimuthFilter::Impl {
   explicit Impl(const FilterSetup& setup) : core(setup) { history.setup = setup; }
 
   void Work(std::size_t i);
-  void TakePlainFixes(std::size_t worked, double growth);
+  void TakePlainFixes(std::size_t worked, double growth, const FilterPlace& place);
   void TakeStill(const FilterEpoch& epoch);
   void TakeAzimuth(double azimuth, double variance);
   void Observe(const Knot& knot);
@@ -118,7 +119,7 @@ void AzimuthFilter::Impl::Rewind(std::size_t epochs) {
   std::size_t at = 0;
   if (snapshots.empty()) {
     core = FilterCore(history.setup);
-    TakePlainFixes(0, 0);
+    TakePlainFixes(0, 0, core.place());
   } else {
     core = snapshots.back().core;
     at = snapshots.back().epochs;
@@ -138,12 +139,20 @@ void AzimuthFilter::Impl::TakeAzimuth(double azimuth, double variance) {
 }
 
 // The fixes that enter as azimuths once `worked` epochs are worked; 0: before the first knot.
-void AzimuthFilter::Impl::TakePlainFixes(std::size_t worked, double growth) {
+void AzimuthFilter::Impl::TakePlainFixes(std::size_t worked, double growth,
+                                         const FilterPlace& place) {
   for (const FilterFix& f : history.fixes) {
     const bool used = f.use == FixUse::kUsed || f.use == FixUse::kMirror;
     if (!used || f.rates || f.epoch_end != worked) continue;
-    const double since =
-        worked > 0 ? GrowthSince(history.epochs[worked - 1].knot, f.fix, growth) : 0;
+    double since = 0;
+    if (worked > 0) {
+      const Knot& knot = history.epochs[worked - 1].knot;
+      // From an unknown azimuth the Earth's share of the growth was anything.
+      if (core.azimuth_diffuse() && !knot.still && !knot.vertical) {
+        growth = GrowthOver(knot, place, history.setup.site, f.azimuth, false).growth;
+      }
+      since = GrowthSince(knot, f.fix, growth);
+    }
     TakeAzimuth(f.azimuth + since, f.fix.cov_attitude(1, 1));
   }
 }
@@ -171,9 +180,10 @@ void AzimuthFilter::Impl::Work(std::size_t i) {
   const bool stops = knot.still && (i == 0 || !history.epochs[i - 1].knot.still);
   if (stops || i == 0) Remember(i);
   const double before = core.azimuth();
+  const FilterPlace place = core.place();
   core.Step(knot, before, std::nullopt);
   if (epoch.fix >= 0) TakeStill(epoch);
-  TakePlainFixes(i + 1, core.azimuth() - before);
+  TakePlainFixes(i + 1, core.azimuth() - before, place);
   epoch.azimuth = core.azimuth();
   epoch.azimuth_known = core.azimuth_known();
   epoch.sigma_azimuth = std::sqrt(std::min(core.variance(), kFlatAzimuthVariance));
@@ -234,7 +244,8 @@ void AzimuthFilter::Impl::ChooseBranch(FilterFix* f, double azimuth, double vari
   f->azimuth = fix.azimuth;
   const bool known = variance < kFlatAzimuthVariance;
   if (!known) {
-    if (fix.mirror_azimuth && fix.mirror_cost <= kBranchMargin) f->use = FixUse::kAmbiguous;
+    const bool mirrored = fix.mirror_azimuth && fix.mirror_cost <= kBranchMargin;
+    if (mirrored || fix.cov_attitude(1, 1) > kVagueVariance) f->use = FixUse::kAmbiguous;
     return;
   }
   const double sum = variance + fix.cov_attitude(1, 1);

@@ -43,7 +43,7 @@ struct FilterEpoch {
 enum class FixUse {
   kUsed,       ///< its azimuth, or the rates of its still knots, entered
   kMirror,     ///< the same with its mirror azimuth, which continuity chose
-  kAmbiguous,  ///< not used: nothing tells the azimuth from its mirror
+  kAmbiguous,  ///< not used: nothing tells the azimuth from its mirror, or it is as good as none
   kNoKnot,     ///< not used: no knot covers its time
 };
 
