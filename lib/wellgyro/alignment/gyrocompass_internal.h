@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "wellgyro/alignment/gyrocompass.h"
+#include "wellgyro/base/angle.h"
+#include "wellgyro/math/rotation.h"
+
+/// The least-squares problem behind Gyrocompass().
+namespace wellgyro::gyrocompass {
+
+inline constexpr double kVarianceMost = kPi * kPi / 3;  ///< of a direction not known at all [rad^2]
+
+/// Errors of the sensors and the place that are estimated by their priors.
+enum Error {
+  kBiasX,
+  kBiasY,
+  kBiasZ,
+  kMass,
+  kQuadrature,
+  kAccelX,
+  kAccelY,
+  kAccelZ,
+  kGravity,
+  kLatitude,
+  kRoll,
+  kScaleX,
+  kScaleY,
+  kMisX,
+  kMisY,
+  kErrors
+};
+
+/// Attitude of the first window, toolfaces of the others against it, and the errors.
+struct State {
+  Eigen::Matrix3d R_LT = Eigen::Matrix3d::Identity();
+  std::vector<double> roll;             ///< of every window, first 0 [rad]
+  std::array<double, kErrors> error{};  ///< in SI
+
+  Eigen::Matrix3d R(std::size_t k) const { return R_LT * RotationZ(roll[k]); }
+};
+
+struct Solution {
+  State state;
+  double cost = 0;
+  Eigen::MatrixXd cov;  ///< of the unknowns
+};
+
+/// Whitened least squares over: rotation of the first attitude in L (north, east, down), rolls of
+/// the further windows, and the errors that have a prior, each in units of it.
+class Problem {
+ public:
+  Problem(std::span<const StillWindow> windows, const Site& site, const GyrocompassSetup& setup);
+
+  Eigen::Index unknowns() const { return errors_at_ + static_cast<Eigen::Index>(free_.size()); }
+  State Start(double azimuth) const;
+  /// Cost least over all but the heading, by one linear step.
+  double Profile(double azimuth) const;
+  Solution Descend(State state) const;
+  /// The Earth's rate as the data would have it over its reference, and sigma of that.
+  std::pair<double, double> RateRatio(const State& state) const;
+
+ private:
+  struct System {
+    Eigen::MatrixXd J;
+    Eigen::VectorXd r;
+  };
+  System Linear(const State& state) const;
+  Eigen::VectorXd Residual(const State& state) const { return Linear(state).r; }
+  Eigen::MatrixXd Normal(const Eigen::MatrixXd& J) const;
+  void Rates(const State& state, System& system) const;
+  void Forces(const State& state, System& system) const;
+  Eigen::MatrixXd RateCovariance(int axis, const NoiseCoefficients& gyro) const;
+  void ChooseErrors(const GyrocompassSetup& setup);
+  bool Separated() const;
+  State Moved(const State& state, const Eigen::VectorXd& step) const;
+
+  std::span<const StillWindow> windows_;
+  double latitude_, gravity_;
+  int axes_;
+  std::array<Eigen::LLT<Eigen::MatrixXd>, 3> whiten_rate_;
+  std::vector<Eigen::Vector3d> sigma_f_;
+  std::array<double, kErrors> sigma_{};
+  std::vector<Error> free_;
+  std::array<Eigen::Index, kErrors> column_{};  ///< -1: not estimated
+  Eigen::Index count_, errors_at_;
+};
+
+/// Heading of a against b, their tilts being alike; regular at the vertical.
+double HeadingFrom(const State& b, const State& a);
+
+}  // namespace wellgyro::gyrocompass
