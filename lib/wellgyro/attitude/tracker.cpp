@@ -42,9 +42,9 @@ double FirstMoment(double x) {
 // (s, c) turned by d.
 void Turn(double d, double& s, double& c) {
   double sd, cd;
-  if (std::abs(d) < 0.02) {
+  if (std::abs(d) < 0.02) {  // to 3e-11
     const double q = d * d;
-    sd = d * (1 - q * (1. / 6 - q * (1. / 120)));
+    sd = d - d * q * (1. / 6);
     cd = 1 - q * (0.5 - q * (1. / 24));
   } else {
     sd = std::sin(d);
@@ -90,6 +90,7 @@ HighSideTracker::HighSideTracker(const TrackerOptions& options) : options_(optio
 void HighSideTracker::SetAzimuth(std::optional<double> azimuth) {
   cos_azimuth_ = azimuth ? std::cos(*azimuth) : 0;
   sin_azimuth_ = azimuth ? std::sin(*azimuth) : 0;
+  TakeEarth();
 }
 
 double HighSideTracker::toolface() const {
@@ -103,15 +104,12 @@ HighSideTracker::Gains HighSideTracker::Steady(double dt) const {
   return {1 - left * (1 - part), left * part * part};
 }
 
-// Those of a line fitted to all that was seen, until they fall to those of two equal time
-// constants.
-HighSideTracker::Gains HighSideTracker::GainsFor(double dt, double memory) const {
-  Gains gains = Steady(dt);
-  if (memory >= 2 * options_.level_seconds) return gains;
-  const double n = std::max(1.0, memory / dt);
-  gains.level = std::min(1.0, std::max(gains.level, 2 * (2 * n - 1) / (n * (n + 1))));
-  gains.rate = n < 1.5 ? 0 : std::max(gains.rate, 6 / (n * (n + 1)));
-  return gains;
+// Those of a line fitted to all that was seen, until they fall to `steady`.
+HighSideTracker::Gains HighSideTracker::Fitted(Gains steady, double dt, double memory) const {
+  if (memory >= 2 * options_.level_seconds) return steady;
+  const double n = std::max(1.0, memory / dt), part = 2 / (n * (n + 1));
+  return {std::min(1.0, std::max(steady.level, part * (2 * n - 1))),
+          n < 1.5 ? 0 : std::max(steady.rate, 3 * part)};
 }
 
 // False: the sample is late. Otherwise says whether the window breaks before it, and the gap.
@@ -141,6 +139,7 @@ inline void HighSideTracker::TakeSite(const Site& site, double dt) {
     earth_sin_ = kEarthRate * std::sin(latitude_);
     const double radius = 0.5 * (site.radius_north + site.radius_east);
     inverse_radius_ = radius > 0 ? 1 / radius : 0;
+    TakeEarth();
   }
   if (site.gravity != gravity_) {
     if (!(site.gravity > 0)) {
@@ -175,6 +174,14 @@ void HighSideTracker::TakeReference() {
   const double bounded = std::max(reference_sin_, sin_min_);
   reference_cot_ = reference_cos_ / bounded;
   reference_reach_ = std::min(0.015, 0.05 * bounded);
+  TakeEarth();
+}
+
+// The Earth's rate on high side and right, close enough at the reference.
+void HighSideTracker::TakeEarth() {
+  earth_h_ = earth_cos_ * cos_azimuth_ * reference_cos_ + earth_sin_ * reference_sin_;
+  earth_r_ = -earth_cos_ * sin_azimuth_;
+  carried_ = reference_sin_ * inverse_radius_;
 }
 
 // Rolling at p about an axis rho = x + iy away adds (i p' - p^2) rho across and 2 p Re(W rho*)
@@ -205,7 +212,7 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
   s.along = along;
   s.has_gz = sample.has_gz;
   s.quality = Quality::kGood;
-  if (sample.stamp.gyro_saturated || sample.stamp.accel_saturated) s.quality |= Quality::kSaturated;
+  if (sample.stamp.gyro_saturated | sample.stamp.accel_saturated) s.quality |= Quality::kSaturated;
   if (sample.stamp.utc_unsynced) s.quality |= Quality::kClock;
   if (!along.known) s.quality |= Quality::kDepth;
 
@@ -213,13 +220,13 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
   double v = 0;
   const double wx = sample.w_IT_T.x(), wy = sample.w_IT_T.y();
   double fx = sample.f_T.x(), fy = sample.f_T.y(), fz = sample.f_T.z();
-  s.e_r = -earth_cos_ * sin_azimuth_;
+  s.e_r = earth_r_;
   if (along.known) {
     v = along.speed;
     fx -= v * wy;
     fy += v * wx;
     fz -= along.acceleration;
-    s.e_r -= v * reference_sin_ * inverse_radius_;
+    s.e_r -= v * carried_;
   }
   if (options_.p_accel_T.x() != 0 || options_.p_accel_T.y() != 0) {
     TakeLeverArm(sample, dt, fx, fy, fz);
@@ -229,10 +236,9 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
   s.spin = sample.has_gz ? sample.w_IT_T.z() * dt : 0;
   s.fz = fz;
   // v times the Earth's rate adds -v e_r + i v e_h to the force seen from the high side.
-  const double e_h = earth_cos_ * cos_azimuth_ * reference_cos_ + earth_sin_ * reference_sin_;
   const double across = std::sqrt(fx * fx + fy * fy);
   if (across > 0) {
-    const double inverse = 1 / across, late = v * e_h * inverse;
+    const double inverse = 1 / across, late = v * earth_h_ * inverse;
     s.ux = (fx - fy * late) * inverse;
     s.uy = (-fy - fx * late) * inverse;
   } else {
@@ -265,7 +271,7 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
   Gains gains = steady_;
   if (memory_ < 2 * options_.level_seconds) {
     memory_ += s.dt;
-    gains = GainsFor(s.dt, memory_);
+    gains = Fitted(steady_, s.dt, memory_);
   }
   if (s.stamp.accel_saturated) gains = {0, 0};
   const double off = accel - from_reference;
@@ -315,7 +321,24 @@ inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
   ready_ = true;
 }
 
-inline void HighSideTracker::Integrate(const Seen& s, const Slopes& slopes) {
+// Slopes across the waiting sample, central where it has both neighbours.
+inline HighSideTracker::Slopes HighSideTracker::Across(const Seen& s, const Seen* next) {
+  if (next == nullptr) {
+    if (!has_before_) return {};
+    return {delta_in_, 0, s.vh - before_vh_, s.vr - before_vr_};
+  }
+  const double delta = Phase(next->uy * s.ux - next->ux * s.uy, next->ux * s.ux + next->uy * s.uy);
+  Slopes slopes{delta, 0, next->vh - s.vh, next->vr - s.vr};
+  if (has_before_) {
+    slopes = {0.5 * (delta + delta_in_), 0.5 * (delta - delta_in_), 0.5 * (next->vh - before_vh_),
+              0.5 * (next->vr - before_vr_)};
+  }
+  delta_out_ = delta;
+  return slopes;
+}
+
+void HighSideTracker::Integrate(const Seen& s, const Seen* next) {
+  const Slopes slopes = Across(s, next);
   if (s.gap_ns > 0) {
     // Four seconds without samples are as good as a new start.
     memory_ = std::max(0.0, memory_ - 1e-8 * static_cast<double>(s.gap_ns));
@@ -352,6 +375,10 @@ inline void HighSideTracker::Integrate(const Seen& s, const Slopes& slopes) {
     sample_quality_ |= Quality::kAliased;
   }
   AddSample(s, mean.vertical);
+  before_vh_ = s.vh;
+  before_vr_ = s.vr;
+  delta_in_ = delta_out_;
+  has_before_ = true;
 }
 
 // Private members are inline: exported and position-independent, they could not be otherwise.
@@ -370,20 +397,7 @@ bool HighSideTracker::Push(const ImuSample& sample, const AlongHole& along, cons
   next.gap_ns = gap_ns;
   next.lost = lost;
 
-  if (waiting_) {
-    const double delta =
-        Phase(next.uy * now.ux - next.ux * now.uy, next.ux * now.ux + next.uy * now.uy);
-    Slopes slopes{delta, 0, next.vh - now.vh, next.vr - now.vr};
-    if (has_before_) {
-      slopes = {0.5 * (delta + delta_in_), 0.5 * (delta - delta_in_), 0.5 * (next.vh - before_vh_),
-                0.5 * (next.vr - before_vr_)};
-    }
-    Integrate(now, slopes);
-    before_vh_ = now.vh;
-    before_vr_ = now.vr;
-    delta_in_ = delta;
-    has_before_ = true;
-  }
+  if (waiting_) Integrate(now, &next);
   newest_ = 1 - newest_;
   waiting_ = true;
   started_ = true;
@@ -392,10 +406,7 @@ bool HighSideTracker::Push(const ImuSample& sample, const AlongHole& along, cons
 
 void HighSideTracker::Flush() {
   if (!waiting_) return;
-  const Seen& now = seen_[newest_];
-  Slopes slopes;
-  if (has_before_) slopes = {delta_in_, 0, now.vh - before_vh_, now.vr - before_vr_};
-  Integrate(now, slopes);
+  Integrate(seen_[newest_], nullptr);
   waiting_ = false;
   has_before_ = false;
   end_toolface_ = toolface();

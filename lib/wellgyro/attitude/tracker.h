@@ -67,14 +67,13 @@ class WELLGYRO_EXPORT HighSideTracker {
 
   /// The azimuth of the axis [rad], where known, for the Earth's part in the inclination rate and
   /// in the Coriolis force. Both are small: unset, or wrong by d, inclination errs after a change
-  /// by at most min(d, 1) We cos L level_seconds / e (7 s of Earth rate) and settles to zero, and
+  /// by at most min(d, 2) We cos L level_seconds / e (7 s of Earth rate) and settles to zero, and
   /// specific force by v We cos L (3e-6 g per m/s). A value held for minutes is good enough.
   void SetAzimuth(std::optional<double> azimuth);
 
   bool ready() const { return ready_; }  ///< a sample has been summed
-  ToolTime time() const {
-    return sample_begin() + Duration{last().stamp.period_ns};
-  }  ///< end of the last summed sample
+  /// End of the last summed sample.
+  ToolTime time() const { return sample_begin() + Duration{last().stamp.period_ns}; }
   ToolTime sample_begin() const { return last().stamp.tool_time; }  ///< begin of it
   double inclination() const { return inclination_; }               ///< at time() [rad], [0, pi]
   double toolface() const;                                          ///< at time() [rad], (-pi, pi]
@@ -144,12 +143,14 @@ class WELLGYRO_EXPORT HighSideTracker {
   void TakeSite(const Site& site, double dt);
   void TakeFirst(const ImuSample& sample);
   void TakeReference();
+  void TakeEarth();
   void Prepare(const ImuSample& sample, const AlongHole& along, Seen& s);
   void TakeLeverArm(const ImuSample& sample, double dt, double& fx, double& fy, double& fz);
-  void Integrate(const Seen& s, const Slopes& slopes);
+  Slopes Across(const Seen& s, const Seen* next);
+  void Integrate(const Seen& s, const Seen* next);
   Mean Level(const Seen& s, double rise, double curve, double across);
   Gains Steady(double dt) const;
-  Gains GainsFor(double dt, double memory) const;
+  Gains Fitted(Gains steady, double dt, double memory) const;
   double Roll(const Seen& s, const Slopes& slopes) const;
   void AddSample(const Seen& s, bool vertical);
   void CloseBlock();
@@ -170,14 +171,14 @@ class WELLGYRO_EXPORT HighSideTracker {
   // Observer of inclination.
   double inclination_ = 0, rate_bias_ = 0, memory_ = 0;
   double reference_ = 0, reference_sin_ = 0, reference_cos_ = 1, reference_cot_ = 0;
-  double reference_reach_ = 0;
+  double reference_reach_ = 0, earth_h_ = 0, earth_r_ = 0, carried_ = 0;
   // Roll rate, twice smoothed, for the lever arm.
   double roll_rate_1_ = 0, roll_rate_2_ = 0, raw_x_ = 0, raw_y_ = 0;
   // The window: the sample that waits, and what is left of the one before it.
   std::array<Seen, 2> seen_{};
   int newest_ = 0;
   bool started_ = false, waiting_ = false, has_before_ = false, ready_ = false;
-  double before_vh_ = 0, before_vr_ = 0, delta_in_ = 0;
+  double before_vh_ = 0, before_vr_ = 0, delta_in_ = 0, delta_out_ = 0;
   // The last summed sample.
   Slopes slopes_;
   Sums part_{};

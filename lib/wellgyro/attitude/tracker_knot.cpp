@@ -62,7 +62,7 @@ HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& block, Observed& o
   level(Knot::kAccelBiasY) = -cosine * inverse_gravity_ * sn;
   level(Knot::kAccelBiasZ) = sine * inverse_gravity_;
 
-  const Gains gains = GainsFor(seconds, block_memory_);
+  const Gains gains = Fitted(Steady(seconds), seconds, block_memory_);
   const Knot::SourceVector climb = rise + seconds * observed.rate;
   const Knot::SourceVector middle = observed.level + 0.5 * climb;
   const Knot::SourceVector off = level - middle;
