@@ -138,6 +138,10 @@ class WELLGYRO_EXPORT HighSideTracker {
     void Add(const Errors& other, double sign);
   };
 
+  struct Block {  // means of angles and sums of turns over a block
+    double seconds, cot, csc, cs, sn, vh, vr, roll, spin;
+  };
+
   bool Follows(const SampleStamp& next, bool& breaks, std::int64_t& gap_ns,
                std::int64_t& lost) const;
   void TakeSite(const Site& site, double dt);
@@ -154,7 +158,9 @@ class WELLGYRO_EXPORT HighSideTracker {
   double Roll(const Seen& s, const Slopes& slopes) const;
   void AddSample(const Seen& s, bool vertical);
   void CloseBlock();
-  Errors Evaluate(const Sums& block, Observed& observed) const;
+  Block Means(const Sums& sums) const;
+  void AddedTo(const Block& b, Knot::SourceVector& across, Knot::SourceVector& rise) const;
+  Errors Evaluate(const Sums& sums, Observed& observed) const;
   void FillErrors(const Sums& block, Knot& knot);
   void FillStamps(const Seen& s, Duration into, Knot& knot) const;
   void OpenInterval(const Seen& s, double fraction, std::int64_t rest_ns);

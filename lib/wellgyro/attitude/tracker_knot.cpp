@@ -15,66 +15,79 @@ void HighSideTracker::Errors::Add(const Errors& other, double sign) {
 }
 
 // Over a block all angles stand at their means: it turns by 0.2 rad at most, or is one sample.
-HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& block, Observed& observed) const {
-  Errors errors;
-  const double seconds = block[kSeconds];
-  if (seconds <= 0) return errors;
-  const double cot = block[kCot] / seconds, csc = std::sqrt(1 + cot * cot);
-  const double sine = 1 / csc, cosine = cot * sine;
-  const double cs = block[kUnitC] / seconds, sn = block[kUnitS] / seconds;
-  const double vh = block[kLiftH], vr = block[kLift];
-  const double roll_rate = block[kRoll] / seconds;
+HighSideTracker::Block HighSideTracker::Means(const Sums& sums) const {
+  Block b;
+  b.seconds = sums[kSeconds];
+  b.cot = sums[kCot] / b.seconds;
+  b.csc = std::sqrt(1 + b.cot * b.cot);
+  b.cs = sums[kUnitC] / b.seconds;
+  b.sn = sums[kUnitS] / b.seconds;
+  b.vh = sums[kLiftH];
+  b.vr = sums[kLift];
+  b.roll = sums[kRoll];
   // w_z dt = T' + A' cos I + e_t, with A' from the gyros; of the Earth cos L cos A / sin I is left.
-  const double spin =
-      has_gz_ ? block[kSpin] : block[kRoll] - cot * vh + earth_cos_ * cos_azimuth_ * csc * seconds;
-  const double angle_x = vh * cs + vr * sn, angle_y = vr * cs - vh * sn;
-  const double per_force = csc * inverse_gravity_;
+  b.spin =
+      has_gz_ ? sums[kSpin] : b.roll - b.cot * b.vh + earth_cos_ * cos_azimuth_ * b.csc * b.seconds;
+  return b;
+}
 
-  // What each error adds to V_h and to V_r; turn is -V_h / sin I.
-  Knot::SourceVector across = Knot::SourceVector::Zero();
-  Knot::SourceVector& rise = errors.lift;
-  across(Knot::kGyroBiasX) = cs * seconds;
-  rise(Knot::kGyroBiasX) = sn * seconds;
-  across(Knot::kGyroBiasY) = -sn * seconds;
-  rise(Knot::kGyroBiasY) = cs * seconds;
-  across(Knot::kMassUnbalance) = gravity_ * sine * seconds;
-  rise(Knot::kQuadrature) = -gravity_ * sine * seconds;
-  across(Knot::kGyroScaleX) = angle_x * cs;
-  rise(Knot::kGyroScaleX) = angle_x * sn;
-  across(Knot::kGyroScaleY) = -angle_y * sn;
-  rise(Knot::kGyroScaleY) = angle_y * cs;
-  across(Knot::kMisalignmentX) = spin * cs;
-  rise(Knot::kMisalignmentX) = spin * sn;
-  across(Knot::kMisalignmentY) = -spin * sn;
-  rise(Knot::kMisalignmentY) = spin * cs;
+// What each error adds to V_h and to V_r.
+void HighSideTracker::AddedTo(const Block& b, Knot::SourceVector& across,
+                              Knot::SourceVector& rise) const {
+  const double sine = 1 / b.csc, per_force = b.csc * inverse_gravity_;
+  const double angle_x = b.vh * b.cs + b.vr * b.sn, angle_y = b.vr * b.cs - b.vh * b.sn;
+  const auto by_x = [&](Knot::Source source, double angle) {
+    across(source) = angle * b.cs;
+    rise(source) = angle * b.sn;
+  };
+  const auto by_y = [&](Knot::Source source, double angle) {
+    across(source) = -angle * b.sn;
+    rise(source) = angle * b.cs;
+  };
   // A toolface too large by d turns V by d.
   const auto by_toolface = [&](Knot::Source source, double toolface) {
-    across(source) = -vr * toolface;
-    rise(source) = vh * toolface;
+    across(source) = -b.vr * toolface;
+    rise(source) = b.vh * toolface;
   };
+  by_x(Knot::kGyroBiasX, b.seconds);
+  by_y(Knot::kGyroBiasY, b.seconds);
+  across(Knot::kMassUnbalance) = gravity_ * sine * b.seconds;
+  rise(Knot::kQuadrature) = -gravity_ * sine * b.seconds;
+  by_x(Knot::kGyroScaleX, angle_x);
+  by_y(Knot::kGyroScaleY, angle_y);
+  by_x(Knot::kMisalignmentX, b.spin);
+  by_y(Knot::kMisalignmentY, b.spin);
   by_toolface(Knot::kToolfaceOffset, 1);
-  by_toolface(Knot::kTimeSkew, roll_rate);
-  by_toolface(Knot::kAccelBiasX, -sn * per_force);
-  by_toolface(Knot::kAccelBiasY, -cs * per_force);
+  by_toolface(Knot::kTimeSkew, b.roll / b.seconds);
+  by_toolface(Knot::kAccelBiasX, -b.sn * per_force);
+  by_toolface(Knot::kAccelBiasY, -b.cs * per_force);
+}
 
+HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& sums, Observed& observed) const {
+  Errors errors;
+  if (sums[kSeconds] <= 0) return errors;
+  const Block b = Means(sums);
+  Knot::SourceVector across = Knot::SourceVector::Zero();
+  AddedTo(b, across, errors.lift);
+
+  // Through the observer, as the inclination goes.
   Knot::SourceVector level = Knot::SourceVector::Zero();
-  level(Knot::kAccelBiasX) = cosine * inverse_gravity_ * cs;
-  level(Knot::kAccelBiasY) = -cosine * inverse_gravity_ * sn;
-  level(Knot::kAccelBiasZ) = sine * inverse_gravity_;
-
-  const Gains gains = Fitted(Steady(seconds), seconds, block_memory_);
-  const Knot::SourceVector climb = rise + seconds * observed.rate;
+  level(Knot::kAccelBiasX) = b.cot / b.csc * inverse_gravity_ * b.cs;
+  level(Knot::kAccelBiasY) = -b.cot / b.csc * inverse_gravity_ * b.sn;
+  level(Knot::kAccelBiasZ) = inverse_gravity_ / b.csc;
+  const Gains gains = Fitted(Steady(b.seconds), b.seconds, block_memory_);
+  const Knot::SourceVector climb = errors.lift + b.seconds * observed.rate;
   const Knot::SourceVector middle = observed.level + 0.5 * climb;
   const Knot::SourceVector off = level - middle;
   observed.level += climb + gains.level * off;
-  observed.rate += gains.rate / seconds * off;
+  observed.rate += gains.rate / b.seconds * off;
 
-  errors.turn = -csc * across + vh * csc * cot * middle;
-  errors.white = csc * csc * seconds;
+  errors.turn = -b.csc * across + b.vh * b.csc * b.cot * middle;
+  errors.white = b.csc * b.csc * b.seconds;
   // By toolface, and by inclination, whose noise the observer only makes slow: over times long
   // against it their integrals are as large as if it were white.
-  const double by_roll = vr * csc * csc, by_inclination = vh * csc * cot;
-  errors.jitter = (by_roll * by_roll + by_inclination * by_inclination) / seconds;
+  const double by_roll = b.vr * b.csc * b.csc, by_inclination = b.vh * b.csc * b.cot;
+  errors.jitter = (by_roll * by_roll + by_inclination * by_inclination) / b.seconds;
   return errors;
 }
 
