@@ -99,7 +99,7 @@ class WELLGYRO_EXPORT AzimuthFilter {
   FilterFix Update(const NorthFix& fix);
 
   /// Makes the last knot a station, for position covariance and for Smooth().
-  /// Throws std::logic_error before the first knot.
+  /// Throws std::logic_error before the first knot. The reference holds until the next call.
   const StationState& MarkStation();
 
   /// After the last Step or Update.
