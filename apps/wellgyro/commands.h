@@ -4,10 +4,18 @@
 
 namespace wellgyro::apps {
 
-/// What the program tells its caller; see the README's table.
-enum ExitCode { kDone = 0, kUsage = 1, kUnusable = 2, kDoneWithLosses = 3 };
+/// What the program tells its caller.
+enum ExitCode {
+  kDone = 0,
+  kUsage = 1,           ///< the command line is wrong
+  kUnusable = 2,        ///< nothing usable, or a named file is not
+  kDoneWithLosses = 3,  ///< done, but damage, losses or values out of range were met
+};
 
-// Each command adds its subcommand with its options; when that subcommand was given, its callback
-// runs it and stores the exit code.
+// One function a command: adds the subcommand with its options to `app`; when it is the one that
+// was given, its callback runs it and puts the exit code into `exit_code`.
+void AddSurvey(CLI::App& app, int& exit_code);
+void AddSimulate(CLI::App& app, int& exit_code);
+void AddCheck(CLI::App& app, int& exit_code);
 
 }  // namespace wellgyro::apps

@@ -326,16 +326,34 @@ TEST(TrackerAzimuth, AWrongOneBarelyMovesInclination) {
     const double t = Begin(sample), azimuth = path(t).azimuth;
     right.SetAzimuth(azimuth);
     if (t < 200) wrong.SetAzimuth(azimuth);
-    if (t >= 200) wrong.SetAzimuth(std::nullopt);
+    if (t >= 200) wrong.SetAzimuth(azimuth + kPi);
     Push(right, path, sample);
     Push(wrong, path, sample);
     const double off = std::abs(wrong.inclination() - right.inclination());
     worst = std::max(worst, off);
     if (t > 380) settled = std::max(settled, off);
   }
-  EXPECT_GT(worst, 0.5 * bound);
-  EXPECT_LT(worst, 1.05 * bound);
-  EXPECT_LT(settled, 0.05 * bound);
+  EXPECT_GT(worst, bound);
+  EXPECT_LT(worst, 2.1 * bound);
+  EXPECT_LT(settled, 0.1 * bound);
+}
+
+TEST(TrackerAzimuth, LearningItMakesNoStepInInclination) {
+  const truth::Path path = truth::Slide(30);
+  const double bound = kEarthRate * std::cos(kSite.latitude) * 20 / std::exp(1);
+  double worst = 0;
+  HighSideTracker known({}), learns({});
+  for (const ImuSample& sample : Samples(path, 10, 400)) {
+    const double t = Begin(sample), azimuth = path(t).azimuth;
+    known.SetAzimuth(azimuth);
+    if (t >= 200) learns.SetAzimuth(azimuth);
+    Push(known, path, sample);
+    Push(learns, path, sample);
+    if (t >= 200) {
+      worst = std::max(worst, std::abs(learns.inclination() - known.inclination()));
+    }
+  }
+  EXPECT_LT(worst, 0.05 * bound);
 }
 
 TEST(TrackerDynamics, StartsAndStopsAlongTheHoleAreTakenOut) {

@@ -10,6 +10,9 @@
 namespace wellgyro {
 namespace {
 
+// Until the observer has seen this long a level it takes what it gets [s].
+constexpr double kFirstLevel = 2;
+
 // atan2(s, c) where s^2 + c^2 = 1, to 1e-12 of it.
 double Phase(double s, double c) {
   if (c <= 0 || std::abs(s) > 0.05) return std::atan2(s, c);
@@ -78,6 +81,7 @@ HighSideTracker::HighSideTracker(const TrackerOptions& options) : options_(optio
   CheckNotNegative("accel_noise", options.accel_noise);
   CheckNotNegative("angle_random_walk", options.angle_random_walk);
   CheckPositive("level_seconds", options.level_seconds);
+  CheckPositive("acceleration_doubt", options.acceleration_doubt);
   CheckPositive("inclination_min", options.inclination_min);
   CheckPositive("sigma_toolface_max", options.sigma_toolface_max);
   CheckPositive("roll_limit", options.roll_limit);
@@ -88,9 +92,13 @@ HighSideTracker::HighSideTracker(const TrackerOptions& options) : options_(optio
 }
 
 void HighSideTracker::SetAzimuth(std::optional<double> azimuth) {
+  const bool was_set = cos_azimuth_ != 0 || sin_azimuth_ != 0;
+  const double earth_before = earth_r_;
   cos_azimuth_ = azimuth ? std::cos(*azimuth) : 0;
   sin_azimuth_ = azimuth ? std::sin(*azimuth) : 0;
   TakeEarth();
+  // While the azimuth was unknown the observer took the Earth's rate for a bias of the gyros.
+  if (was_set != azimuth.has_value() && memory_ > 0) rate_bias_ += earth_r_ - earth_before;
 }
 
 double HighSideTracker::toolface() const {
@@ -274,6 +282,12 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
     gains = Fitted(steady_, s.dt, memory_);
   }
   if (s.stamp.accel_saturated) gains = {0, 0};
+  if (s.along.known && memory_ > kFirstLevel) {
+    const double doubt = s.along.acceleration / options_.acceleration_doubt;
+    const double trust = 1 / (1 + doubt * doubt);
+    gains.level *= trust;
+    gains.rate *= trust;
+  }
   const double off = accel - from_reference;
   const double raised = inclination_ + rise + gains.level * off;
   rate_bias_ += gains.rate * off * inverse_dt_;

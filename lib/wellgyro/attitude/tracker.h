@@ -27,6 +27,9 @@ struct TrackerOptions {
   double accel_noise = 0;        ///< of the mean over t seconds: this / sqrt(t) [m/s^2 sqrt(s)]
   double angle_random_walk = 0;  ///< of the transverse gyros [rad/sqrt(s)]
   double level_seconds = 20;     ///< over which accelerometers correct the gyros' inclination [s]
+  /// Acceleration along the hole at which they do so at half weight: depth tells a changing one
+  /// late and smeared, and what is left of it would pass for inclination [m/s^2].
+  double acceleration_doubt = 0.01;
   double inclination_min = FromDegrees(0.5);  ///< below it, or above pi less it: vertical [rad]
   double sigma_toolface_max = 0.1;            ///< of one sample, beyond it: vertical [rad]
   double roll_limit = kPi / 2;                ///< per sample, beyond it: aliased [rad]
@@ -66,9 +69,10 @@ class WELLGYRO_EXPORT HighSideTracker {
   void Flush();
 
   /// The azimuth of the axis [rad], where known, for the Earth's part in the inclination rate and
-  /// in the Coriolis force. Both are small: unset, or wrong by d, inclination errs after a change
-  /// by at most min(d, 2) We cos L level_seconds / e (7 s of Earth rate) and settles to zero, and
-  /// specific force by v We cos L (3e-6 g per m/s). A value held for minutes is good enough.
+  /// in the Coriolis force. Both are small: wrong by d, inclination errs after a change by at most
+  /// min(d, 2) We cos L level_seconds / e (7 s of Earth rate) and settles to zero, and specific
+  /// force by v We cos L (3e-6 g per m/s). A value held for minutes is good enough. Setting or
+  /// unsetting it makes no step in inclination.
   void SetAzimuth(std::optional<double> azimuth);
 
   bool ready() const { return ready_; }  ///< a sample has been summed

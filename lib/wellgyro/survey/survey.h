@@ -32,6 +32,7 @@ struct Survey {
   std::vector<Check> checks;
   std::vector<RunSummary> runs;
   bool accepted = false;  ///< someone accepted a station: never to be written over
+  std::string unusable;   ///< why there is no survey, in a sentence; empty: there is one
 };
 
 }  // namespace wellgyro

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
@@ -21,11 +23,12 @@ namespace wellgyro {
 class WELLGYRO_EXPORT Sink {
  public:
   virtual ~Sink();
-  virtual void Take(const Station&) {}  ///< and again, with a higher revision, when better known
-  virtual void Take(const NorthFix&) {}
-  virtual void Take(const Check&) {}
-  virtual void Take(const Fault&) {}  ///< what was dropped, where, and why
-  virtual void Acknowledge(std::int32_t /*command_id*/) {}
+  virtual void OnStation(const Station&) {
+  }  ///< and again, with a higher revision, when better known
+  virtual void OnNorthFix(const NorthFix&) {}
+  virtual void OnCheck(const Check&) {}
+  virtual void OnFault(const Fault&) {}  ///< what was dropped, where, and why
+  virtual void OnAcknowledged(std::int32_t /*command_id*/) {}
 };
 
 /// From sensor samples to stations: the one place that knows the order of the rooms.
@@ -65,8 +68,10 @@ class WELLGYRO_EXPORT Surveyor {
   /// faults.
   void Finish();
 
-  /// All stations, checks and runs as they are now.
-  Survey Current() const;
+  /// Tools of the string that have been heard of.
+  std::vector<std::int32_t> tools() const;
+  /// All stations, checks and runs of one tool as they are now.
+  Survey Current(std::int32_t tool) const;
 
  private:
   struct Rooms;

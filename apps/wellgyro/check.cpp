@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "wellgyro/bus/feed.h"
+#include "wellgyro/bus/log_reader.h"
+#include "wellgyro/io/error_model_file.h"
+#include "wellgyro/io/file_kind.h"
+#include "wellgyro/io/job_file.h"
+#include "wellgyro/io/simulation_file.h"
+#include "wellgyro/io/survey_csv.h"
+#include "wellgyro/survey/job.h"
+
+#include "commands.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+namespace {
+
+constexpr std::size_t kFaultsShown = 10;
+
+/// Says what is wrong with a file, or that nothing is.
+int Tell(const std::string& name, const std::string& what, const std::vector<Fault>& faults,
+         ExitCode if_any) {
+  fmt::print("{}: {}{}\n", name, what, faults.empty() ? ", whole" : "");
+  for (std::size_t i = 0; i < std::min(faults.size(), kFaultsShown); ++i) {
+    fmt::print("  {}\n", Sentence(faults[i]));
+  }
+  if (faults.size() > kFaultsShown) fmt::print("  and {} more\n", faults.size() - kFaultsShown);
+  return faults.empty() ? kDone : if_any;
+}
+
+template <class T>
+std::vector<Fault> FaultOf(const Result<T>& result) {
+  if (result) return {};
+  return {result.fault()};
+}
+
+std::vector<Fault> FaultsOfJob(const std::string& name) {
+  const Result<JobFile> job = ReadJob(name);
+  if (!job) return {job.fault()};
+  try {
+    CheckJob(job->job);
+  } catch (const std::invalid_argument& error) {
+    return {Fault{FaultCode::kConflict, error.what(), name}};
+  }
+  return {};
+}
+
+struct FaultList : Listener {
+  void OnFault(const Fault& fault) override { faults.push_back(fault); }
+  std::vector<Fault> faults;
+};
+
+int CheckLog(const std::string& name) {
+  Result<LogReader> reader = LogReader::Open(name);
+  if (!reader) return Tell(name, "an LCM log", {reader.fault()}, kUnusable);
+  FaultList list;
+  Feed feed(Channels{}, list);
+  LogEvent event;
+  while (reader->Next(event)) feed.Take(event.channel, event.data, event.data_offset);
+  std::vector<Fault> faults = reader->Faults();
+  faults.insert(faults.end(), list.faults.begin(), list.faults.end());
+  std::string what = fmt::format("an LCM log of {} events", reader->health().events);
+  for (int i = 0; i < kMessageTypes; ++i) {
+    const auto type = static_cast<MessageType>(i);
+    const std::int64_t messages = feed.count(type).messages;
+    if (messages > 0) what += fmt::format(", {} {}", messages, TypeName(type));
+  }
+  for (const auto& [channel, foreign] : feed.foreign()) {
+    what += fmt::format(", {} on {}{}", foreign.messages, channel,
+                        foreign.type ? fmt::format(" ({})", TypeName(*foreign.type)) : "");
+  }
+  return Tell(name, what, faults, kDoneWithLosses);
+}
+
+int CheckFile(const std::string& name) {
+  const Result<FileIdentity> identity = IdentifyFile(name);
+  if (!identity) {
+    Complain(identity.fault());
+    return kUnusable;
+  }
+  const std::string& what = identity->text;
+  switch (identity->kind) {
+    case FileKind::kJob:
+      return Tell(name, what, FaultsOfJob(name), kUnusable);
+    case FileKind::kSimulation:
+      return Tell(name, what, FaultOf(ReadSimulation(name)), kUnusable);
+    case FileKind::kErrorModel:
+      return Tell(name, what, FaultOf(ReadErrorModelFile(name)), kUnusable);
+    case FileKind::kSurveyCsv:
+      return Tell(name, what, FaultOf(ReadSurveyCsv(name)), kUnusable);
+    case FileKind::kLcmLog:
+      return CheckLog(name);
+    case FileKind::kEmpty:
+    case FileKind::kForeign:
+      fmt::print("{}: {}, not one of wellgyro's\n", name, what);
+      return kUnusable;
+    default:
+      fmt::print("{}: {}\n", name, what);
+      return kDone;
+  }
+}
+
+}  // namespace
+
+void AddCheck(CLI::App& app, int& exit_code) {
+  auto files = std::make_shared<std::vector<std::string>>();
+  CLI::App* command = app.add_subcommand("check", "Says what files are and whether they are whole");
+  command->add_option("files", *files, "Jobs, logs, surveys, models ...")->required();
+  command->footer("Example:\n  wellgyro check data/demo/job.toml data/demo/run.lcm");
+  command->callback([files, &exit_code] {
+    for (const std::string& name : *files) {
+      const int one = CheckFile(name);
+      // A file that cannot be used weighs more than one with losses.
+      if (exit_code != kUnusable && one != kDone) exit_code = one;
+    }
+  });
+}
+
+}  // namespace wellgyro::apps

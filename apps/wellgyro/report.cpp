@@ -1,0 +1,48 @@
+#include "report.h"
+
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+namespace wellgyro::apps {
+namespace {
+
+std::int64_t NowMs() {
+  using std::chrono::duration_cast, std::chrono::milliseconds, std::chrono::steady_clock;
+  return duration_cast<milliseconds>(steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+std::string Sentence(const Fault& fault) {
+  std::string place = fault.source;
+  if (fault.line > 0) place += fmt::format(":{}", fault.line);
+  if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
+  if (fault.offset >= 0) place += fmt::format("{}byte {}", place.empty() ? "" : ", ", fault.offset);
+  return place.empty() ? fault.text : place + ": " + fault.text;
+}
+
+void Complain(std::string_view sentence) { fmt::print(stderr, "wellgyro: {}\n", sentence); }
+
+void Complain(const Fault& fault) { Complain(Sentence(fault)); }
+
+Progress::Progress(std::string_view doing)
+    : doing_(doing), terminal_(isatty(STDERR_FILENO) != 0), begin_ms_(NowMs()), last_ms_(0) {}
+
+Progress::~Progress() {
+  if (shown_) fmt::print(stderr, "\r{:{}}\r", "", doing_.size() + 8);
+}
+
+void Progress::Show(std::int64_t done, std::int64_t all) {
+  if (!terminal_ || all <= 0) return;
+  const std::int64_t now = NowMs();
+  if (now - begin_ms_ < 1000 || now - last_ms_ < 100) return;
+  last_ms_ = now;
+  shown_ = true;
+  fmt::print(stderr, "\r{} {:3} %", doing_, 100 * done / all);
+  std::fflush(stderr);
+}
+
+}  // namespace wellgyro::apps

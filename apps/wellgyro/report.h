@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "wellgyro/base/result.h"
+
+namespace wellgyro::apps {
+
+/// "job.toml:12:3: sentence", as far as the place is known.
+std::string Sentence(const Fault& fault);
+
+/// Says what is wrong on standard error, after the program's name.
+void Complain(std::string_view sentence);
+void Complain(const Fault& fault);
+
+/// Share of a long piece of work, on standard error where that is a terminal, and nothing
+/// elsewhere. Shown from the first second on, ten times a second at most.
+class Progress {
+ public:
+  explicit Progress(std::string_view doing);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Show(std::int64_t done, std::int64_t all);
+
+ private:
+  std::string doing_;
+  bool terminal_;
+  bool shown_ = false;
+  std::int64_t begin_ms_;
+  std::int64_t last_ms_;
+};
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,283 @@
+#include "wellgyro/survey/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/attitude/along_hole_covariance.h"
+#include "wellgyro/base/angle.h"
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/math/rotation.h"
+#include "wellgyro/survey/choose.h"
+#include "wellgyro/survey/station_of.h"
+#include "wellgyro/trajectory/path.h"
+
+namespace wellgyro {
+namespace {
+
+/// A station of one pass on its way to a position.
+struct Item {
+  Station station;
+  const StationState* state = nullptr;  ///< nullptr: from a window of its own
+  bool listed = true;
+};
+using PassItems = std::vector<Item>;  ///< in the order of depth
+
+std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
+  std::map<std::int32_t, PassItems> passes;
+  for (const Draft& draft : run.drafts) {
+    const StationState* state = draft.state ? &run.states[*draft.state] : nullptr;
+    passes[draft.station.pass_number].push_back(
+        {StationOf(job, draft, state), state, draft.listed});
+  }
+  std::vector<PassItems> result;
+  for (auto& [number, items] : passes) {
+    std::stable_sort(items.begin(), items.end(),
+                     [](const Item& a, const Item& b) { return a.station.md < b.station.md; });
+    result.push_back(std::move(items));
+  }
+  return result;
+}
+
+/// Where a sum of legs starts.
+struct Start {
+  PathPoint point;
+  Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();
+};
+
+/// The survey as far as it is placed, to start deeper passes from.
+struct Line {
+  std::vector<PathPoint> points;
+  std::vector<Eigen::Matrix3d> covs;
+};
+
+std::optional<Start> StartOnLine(const Site& head, const Line& line, double md) {
+  const auto below = std::find_if(line.points.begin(), line.points.end(),
+                                  [md](const PathPoint& p) { return p.station.md >= md; });
+  if (below == line.points.end() || below == line.points.begin()) return std::nullopt;
+  const auto i = static_cast<std::size_t>(below - line.points.begin());
+  return Start{Interpolate(head, line.points[i - 1], line.points[i], md), line.covs[i]};
+}
+
+/// Azimuth and inclination errors taken as one and the same at all stations: for stations of their
+/// own windows, whose shared instrument errors dominate. Never smaller than what they really are.
+class SystematicCovariance {
+ public:
+  explicit SystematicCovariance(const Eigen::Matrix3d& cov_tie_in) : cov_tie_in_(cov_tie_in) {}
+
+  Eigen::Matrix3d Add(const Station& station) {
+    const double si = std::sin(station.inclination), ci = std::cos(station.inclination);
+    const double sa = std::sin(station.azimuth), ca = std::cos(station.azimuth);
+    Eigen::Matrix<double, 3, 2> turn;
+    turn.col(0) = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::sqrt(station.cov_md_inc_azi(1, 1));
+    turn.col(1) = Eigen::Vector3d(-si * sa, si * ca, 0) * std::sqrt(station.cov_md_inc_azi(2, 2));
+    const Eigen::Vector3d tangent(si * ca, si * sa, ci);
+    if (last_) sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
+    last_ = station;
+    last_turn_ = turn;
+    return cov_tie_in_ + sum_ * sum_.transpose() +
+           station.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
+  }
+
+ private:
+  Eigen::Matrix3d cov_tie_in_;
+  Eigen::Matrix<double, 3, 2> sum_ = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Matrix<double, 3, 2> last_turn_ = Eigen::Matrix<double, 3, 2>::Zero();
+  std::optional<Station> last_;
+};
+
+std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pass,
+                                             const Start& start) {
+  std::vector<Eigen::Matrix3d> covs;
+  const bool windows =
+      std::any_of(pass.begin(), pass.end(), [](const Item& item) { return item.state == nullptr; });
+  // The first leg runs from the start to the first station with the first station's error.
+  Station origin = pass.front().station;
+  origin.md = start.point.station.md;
+  if (windows) {
+    SystematicCovariance sum(start.cov_p_WT_W);
+    sum.Add(origin);
+    for (const Item& item : pass) covs.push_back(sum.Add(item.station));
+    return covs;
+  }
+  const bool out = pass.size() > 1 && pass.front().station.utc > pass.back().station.utc;
+  const auto order = out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth;
+  // Its depth error is left to the sum over the stations, which has it too.
+  Station entry = pass.front().station;
+  origin.cov_md_inc_azi(0, 0) = entry.cov_md_inc_azi(0, 0) = 0;
+  SystematicCovariance first(start.cov_p_WT_W);
+  first.Add(origin);
+  AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
+  for (const Item& item : pass) covs.push_back(sum.Add(*item.state));
+  return covs;
+}
+
+void Place(const Site& head, const Job& job, const Start& start, PassItems& pass, Line& line) {
+  const std::vector<Eigen::Matrix3d> covs = PassCovariances(job, pass, start);
+  Path path(head, start.point.station, start.point.p_WT_W);
+  line.points.push_back(start.point);
+  line.covs.push_back(start.cov_p_WT_W);
+  for (std::size_t i = 0; i < pass.size(); ++i) {
+    Station& s = pass[i].station;
+    s.cov_p_WT_W = covs[i];
+    if (s.md <= start.point.station.md) {
+      s.p_WT_W = start.point.p_WT_W;
+      continue;
+    }
+    const auto point = path.Add({s.md, s.inclination, s.azimuth});
+    if (!point) continue;  // opposite directions: the station stays where the one before is
+    s.p_WT_W = point->p_WT_W;
+    s.dogleg_severity = point->dogleg_severity;
+    line.points.push_back(*point);
+    line.covs.push_back(covs[i]);
+  }
+}
+
+/// The attitude that opens the first leg: the tie-in's own, or that of the station at its depth.
+std::optional<PathStation> OpeningAttitude(const TieIn& tie, const std::vector<PassItems>& passes) {
+  if (tie.inclination) return PathStation{tie.md, *tie.inclination, *tie.azimuth};
+  const Station* best = nullptr;
+  for (const PassItems& pass : passes) {
+    for (const Item& item : pass) {
+      const Station& s = item.station;
+      if (std::abs(s.md - tie.md) > kSameDepth) continue;
+      if (!best || s.cov_md_inc_azi(2, 2) < best->cov_md_inc_azi(2, 2)) best = &s;
+    }
+  }
+  if (!best) return std::nullopt;
+  return PathStation{tie.md, best->inclination, best->azimuth};
+}
+
+Station TieInStation(const Job& job, const PathStation& opening, const Eigen::Matrix2d& cov) {
+  Station s;
+  s.kind = StationKind::kTieIn;
+  s.status = StationStatus::kField;
+  s.md = job.tie_in.md;
+  s.inclination = opening.inclination;
+  s.azimuth = WrapTwoPi(opening.azimuth);
+  s.cov_md_inc_azi.bottomRightCorner<2, 2>() = cov;
+  s.p_WT_W = {job.tie_in.north, job.tie_in.east, job.tie_in.tvd};
+  s.cov_p_WT_W = job.tie_in.cov_p_WT_W;
+  return s;
+}
+
+double ShallowestDepth(const std::vector<PassItems>& passes) {
+  double md = HUGE_VAL;
+  for (const PassItems& pass : passes) md = std::min(md, pass.front().station.md);
+  return md;
+}
+
+void PlaceAll(const Site& head, const Job& job, const PathStation& opening,
+              std::vector<PassItems>& passes) {
+  Start tie;
+  tie.point.station = opening;
+  tie.point.p_WT_W = {job.tie_in.north, job.tie_in.east, job.tie_in.tvd};
+  tie.point.tangent_W = Tangent(opening.inclination, opening.azimuth);
+  tie.cov_p_WT_W = job.tie_in.cov_p_WT_W;
+  // The pass that reaches deepest from the tie-in comes first: others may have to start on it.
+  std::vector<std::size_t> order(passes.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const double top = ShallowestDepth(passes) + kSameDepth;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const bool a_top = passes[a].front().station.md <= top;
+    const bool b_top = passes[b].front().station.md <= top;
+    if (a_top != b_top) return a_top;
+    return passes[a].back().station.md > passes[b].back().station.md;
+  });
+  Line main_line;
+  for (std::size_t i : order) {
+    const double first = passes[i].front().station.md;
+    std::optional<Start> start = StartOnLine(head, main_line, first);
+    Line line;
+    Place(head, job, start && first > top ? *start : tie, passes[i], line);
+    if (main_line.points.empty() ||
+        line.points.back().station.md > main_line.points.back().station.md) {
+      main_line = std::move(line);
+    }
+  }
+}
+
+void PlaceChosen(const Site& head, const PathStation& opening, Placed& placed) {
+  Path path(head, opening, placed.chosen.front().p_WT_W);
+  for (std::size_t i = 1; i < placed.chosen.size(); ++i) {
+    Station& s = placed.chosen[i];
+    const auto point = path.Add({s.md, s.inclination, s.azimuth});
+    if (!point) continue;
+    s.p_WT_W = point->p_WT_W;
+    s.dogleg_severity = point->dogleg_severity;
+  }
+}
+
+void List(const std::vector<PassItems>& passes, double tie_md, bool misrun, Placed& placed) {
+  for (const PassItems& pass : passes) {
+    std::vector<Station> stations;
+    for (const Item& item : pass) {
+      if (!item.listed || item.station.md <= tie_md + kSameDepth) continue;
+      stations.push_back(item.station);
+      if (misrun && stations.back().status != StationStatus::kRejected) {
+        stations.back().status = StationStatus::kSuperseded;
+      }
+    }
+    std::stable_sort(stations.begin(), stations.end(),
+                     [](const Station& a, const Station& b) { return a.utc < b.utc; });
+    placed.passes.insert(placed.passes.end(), stations.begin(), stations.end());
+  }
+}
+
+void Choose(const Site& head, const Job& job, const PathStation& opening, Placed& placed) {
+  const std::vector<std::size_t> chosen = ChooseStations(placed.passes);
+  placed.chosen.push_back(TieInStation(job, opening, Eigen::Matrix2d::Zero()));
+  std::vector<bool> is_chosen(placed.passes.size());
+  for (std::size_t i : chosen) is_chosen[i] = true;
+  for (std::size_t i = 0; i < placed.passes.size(); ++i) {
+    Station& s = placed.passes[i];
+    if (!is_chosen[i] && s.status != StationStatus::kRejected)
+      s.status = StationStatus::kSuperseded;
+  }
+  for (std::size_t i : chosen) {
+    placed.passes[i].number = static_cast<std::int32_t>(placed.chosen.size());
+    placed.chosen.push_back(placed.passes[i]);
+  }
+  PlaceChosen(head, opening, placed);
+}
+
+}  // namespace
+
+Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
+  const Site head = SiteAt(job.well.latitude, job.well.datum_elevation);
+  Placed placed;
+  std::vector<std::vector<PassItems>> by_run;
+  std::vector<PassItems> good;
+  for (const DraftedRun& run : runs) {
+    by_run.push_back(SplitPasses(job, run));
+    if (!run.misrun) good.insert(good.end(), by_run.back().begin(), by_run.back().end());
+  }
+  if (good.empty()) {
+    placed.unusable = "no station was made: no run has both depth and an azimuth";
+    return placed;
+  }
+  std::optional<PathStation> opening = OpeningAttitude(job.tie_in, good);
+  if (!opening) {
+    placed.unusable = fmt::format(
+        "the survey begins at {:.2f} m, below the tie-in at {:.2f} m: give [tie_in] "
+        "inclination_deg and azimuth_true_deg for the {:.2f} m between, or md_m = {:.2f}",
+        ShallowestDepth(good), job.tie_in.md, ShallowestDepth(good) - job.tie_in.md,
+        ShallowestDepth(good));
+    return placed;
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (by_run[i].empty()) continue;
+    PlaceAll(head, job, *opening, by_run[i]);
+    List(by_run[i], job.tie_in.md, runs[i].misrun, placed);
+  }
+  Choose(head, job, *opening, placed);
+  return placed;
+}
+
+}  // namespace wellgyro

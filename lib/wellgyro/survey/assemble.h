@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/survey/draft.h"
+#include "wellgyro/survey/job.h"
+
+namespace wellgyro {
+
+/// Stations with positions, of one tool.
+struct Placed {
+  std::vector<Station> passes;  ///< all listed stations, by run, pass and time
+  std::vector<Station> chosen;  ///< the tie-in and one station per depth; empty: see `unusable`
+  std::string unusable;         ///< why there is no survey, in a sentence; empty: there is one
+};
+
+/// From drafts to positions: turns tool attitude to hole attitude, sums each pass from the tie-in
+/// (or, where it begins deeper, from the pass above it), chooses one station per depth and sums the
+/// chosen. Position covariances are those of each station's own pass.
+WELLGYRO_EXPORT Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs);
+
+}  // namespace wellgyro

@@ -1,0 +1,208 @@
+#include "wellgyro/survey/checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/grid.h"
+#include "wellgyro/survey/choose.h"
+
+namespace wellgyro {
+namespace {
+
+struct Measured {
+  double value = 0, sigma = 0;
+};
+
+/// A check in SI units; `unit` divides what is written.
+Check Compare(std::string code, std::int32_t run, Measured measured, std::optional<double> accepted,
+              double unit, std::string unit_name) {
+  Check check;
+  check.code = std::move(code);
+  check.run = run;
+  const double limit = accepted ? *accepted : 3 * measured.sigma;
+  check.value = measured.value / unit;
+  check.sigma = measured.sigma / unit;
+  check.limit = limit / unit;
+  check.unit = std::move(unit_name);
+  check.limit_source = accepted ? "acceptance" : "3 sigma";
+  check.verdict = Judge(measured.value, limit);
+  return check;
+}
+
+Check NotDone(std::string code, std::int32_t run, std::string why) {
+  Check check;
+  check.code = std::move(code);
+  check.run = run;
+  check.limit_source = std::move(why);
+  return check;
+}
+
+void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
+  bool earth_rate = false;
+  for (const NorthFix& fix : run.fixes) {
+    if (fix.external) continue;
+    Check gravity = Compare("gravity", run.run, {fix.gravity - fix.gravity_ref, fix.sigma_gravity},
+                            job.acceptance.gravity, 1, "m/s2");
+    gravity.md = fix.md;
+    checks.push_back(gravity);
+    if (!fix.earth_rate) continue;
+    earth_rate = true;
+    Check rate =
+        Compare("earth_rate", run.run, {*fix.earth_rate - fix.earth_rate_ref, fix.sigma_earth_rate},
+                job.acceptance.earth_rate, units::kDegPerHour, "deg/h");
+    rate.md = fix.md;
+    checks.push_back(rate);
+  }
+  const bool none = std::all_of(run.fixes.begin(), run.fixes.end(),
+                                [](const NorthFix& fix) { return fix.external; });
+  if (none) checks.push_back(NotDone("gravity", run.run, "no stop long enough"));
+  if (!earth_rate) checks.push_back(NotDone("earth_rate", run.run, "no stop long enough"));
+}
+
+/// The pairs of stations of one run at one depth, one of pass `a` and one of pass `b`.
+template <class Take>
+void ForPairs(std::span<const Station> stations, std::int32_t run, Pass a, Pass b, Take take) {
+  std::vector<const Station*> first, second;
+  for (const Station& s : stations) {
+    if (s.run != run || s.status == StationStatus::kRejected) continue;
+    if (s.pass == a) first.push_back(&s);
+    if (s.pass == b) second.push_back(&s);
+  }
+  const auto by_md = [](const Station* x, const Station* y) { return x->md < y->md; };
+  std::stable_sort(second.begin(), second.end(), by_md);
+  for (const Station* s : first) {
+    const auto at = std::lower_bound(second.begin(), second.end(), s->md - kSameDepth,
+                                     [](const Station* x, double md) { return x->md < md; });
+    if (at != second.end() && (*at)->md <= s->md + kSameDepth) take(*s, **at);
+  }
+}
+
+/// Variance of a station's angle (1: inclination, 2: azimuth), with what its depth error adds to it
+/// where the hole turns.
+double AngleVariance(const Station& s, int angle) {
+  const double sine = angle == 2 ? std::max(std::sin(s.inclination), 1e-3) : 1.0;
+  const double slope = s.dogleg_severity / sine;
+  return s.cov_md_inc_azi(angle, angle) + slope * slope * s.cov_md_inc_azi(0, 0);
+}
+
+/// The pair that differs most for its sigma. The sigma is that of independent errors, which two
+/// passes of one tool exceed at most by what they share.
+void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t run, Pass other,
+                 const std::string& name, std::vector<Check>& checks) {
+  struct Worst {
+    Measured difference;
+    double md = 0;
+    void Take(double value, double variance, double at) {
+      const double sigma = std::sqrt(variance);
+      if (std::abs(value) * difference.sigma < std::abs(difference.value) * sigma) return;
+      difference = {value, sigma};
+      md = at;
+    }
+  };
+  Worst inclination, azimuth;
+  int pairs = 0;
+  ForPairs(stations, run, Pass::kIn, other, [&](const Station& a, const Station& b) {
+    ++pairs;
+    inclination.Take(b.inclination - a.inclination, AngleVariance(a, 1) + AngleVariance(b, 1),
+                     a.md);
+    azimuth.Take(WrapPi(b.azimuth - a.azimuth), AngleVariance(a, 2) + AngleVariance(b, 2), a.md);
+  });
+  if (pairs == 0) {
+    checks.push_back(NotDone("inclination_" + name, run, "no depth seen in both passes"));
+    checks.push_back(NotDone("azimuth_" + name, run, "no depth seen in both passes"));
+    return;
+  }
+  checks.push_back(Compare("inclination_" + name, run, inclination.difference,
+                           job.acceptance.inclination_difference, units::kDeg, "deg"));
+  checks.back().md = inclination.md;
+  checks.push_back(Compare("azimuth_" + name, run, azimuth.difference,
+                           job.acceptance.azimuth_difference, units::kDeg, "deg"));
+  checks.back().md = azimuth.md;
+}
+
+void CheckForesights(const Job& job, const CheckInputs& inputs, std::vector<Check>& checks) {
+  if (inputs.foresights.empty()) {
+    checks.push_back(NotDone("foresight", 0, "no foresight taken"));
+  }
+  for (const Foresight& foresight : inputs.foresights) {
+    if (!foresight.measured) {
+      checks.push_back(NotDone("foresight", foresight.run,
+                               "the run has no azimuth at the time of the foresight"));
+      continue;
+    }
+    const Measured difference{WrapPi(*foresight.measured - foresight.stated),
+                              std::hypot(foresight.sigma_measured, foresight.sigma_stated)};
+    checks.push_back(Compare("foresight", foresight.run, difference, job.acceptance.foresight,
+                             units::kDeg, "deg"));
+  }
+}
+
+void CheckReturns(const Job& job, const CheckInputs& inputs, std::vector<Check>& checks) {
+  if (inputs.returns.empty()) {
+    checks.push_back(NotDone("depth_closure", 0, "no return to zero noted"));
+  }
+  for (const ReturnToZero& back : inputs.returns) {
+    const Measured difference{back.read_md - back.value_md,
+                              std::hypot(back.sigma, job.errors.depth_sigma)};
+    if (difference.sigma > 0 || job.acceptance.depth_closure) {
+      checks.push_back(
+          Compare("depth_closure", back.run, difference, job.acceptance.depth_closure, 1, "m"));
+    } else {
+      checks.push_back(NotDone("depth_closure", back.run,
+                               "no limit: give acceptance.depth_closure_m or depth_sigma_m"));
+      checks.back().value = difference.value;
+      checks.back().unit = "m";
+    }
+  }
+}
+
+void CheckGrid(const Job& job, std::vector<Check>& checks) {
+  if (!job.grid || (!job.grid->convergence && !job.grid->scale)) {
+    checks.push_back(NotDone("grid_convergence", 0, "the job states no convergence"));
+    return;
+  }
+  const GridPoint head = ProjectToGrid(*job.grid, job.well.latitude, job.well.longitude);
+  if (job.grid->convergence) {
+    Check check = Compare("grid_convergence", 0, {*job.grid->convergence - head.convergence, 0},
+                          0.01 * units::kDeg, units::kDeg, "deg");
+    check.limit_source = "stated against the projection's own at the well head";
+    checks.push_back(check);
+  }
+  if (job.grid->scale) {
+    Check check = Compare("grid_scale", 0, {*job.grid->scale - head.scale, 0}, 1e-5, 1, "1");
+    check.limit_source = "stated against the projection's own at the well head";
+    checks.push_back(check);
+  }
+}
+
+}  // namespace
+
+Verdict Judge(double value, double limit) {
+  const double size = std::abs(value);
+  if (!(size <= limit)) return Verdict::kFail;
+  return size <= limit * (2.0 / 3.0) ? Verdict::kPass : Verdict::kWarn;
+}
+
+std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
+  std::vector<Check> checks;
+  for (const RunSummary& run : inputs.runs) {
+    CheckFixes(job, run, checks);
+    CheckPasses(job, inputs.passes, run.run, Pass::kOut, "in_out", checks);
+    CheckPasses(job, inputs.passes, run.run, Pass::kRepeat, "repeat", checks);
+    Check lost =
+        Compare("samples_lost", run.run, {static_cast<double>(run.samples_lost), 0}, 0.0, 1, "1");
+    lost.limit_source = "none may be lost";
+    checks.push_back(lost);
+  }
+  CheckReturns(job, inputs, checks);
+  CheckForesights(job, inputs, checks);
+  CheckGrid(job, checks);
+  return checks;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/record/check.h"
+#include "wellgyro/record/north_fix.h"
+#include "wellgyro/record/station.h"
+#include "wellgyro/survey/job.h"
+#include "wellgyro/survey/survey.h"
+
+namespace wellgyro {
+
+/// A foresight, and what the run's attitude says of the same direction.
+struct Foresight {
+  std::int32_t run = 0;
+  double stated = 0;               ///< true direction of the reference mark [rad]
+  double sigma_stated = 0;         ///< [rad]
+  std::optional<double> measured;  ///< absent: the run has no azimuth at that time [rad]
+  double sigma_measured = 0;       ///< [rad]
+};
+
+/// The depth read when the tool was back at zero.
+struct ReturnToZero {
+  std::int32_t run = 0;
+  double read_md = 0;   ///< what the depth system said [m]
+  double value_md = 0;  ///< what it should have said [m]
+  double sigma = 0;     ///< [m]
+};
+
+/// What can be checked of one job.
+struct CheckInputs {
+  std::span<const RunSummary> runs;
+  std::span<const Station> passes;
+  std::span<const Foresight> foresights;
+  std::span<const ReturnToZero> returns;
+};
+
+/// `value` against `limit`: passes up to two thirds of it, warns up to it, fails beyond.
+WELLGYRO_EXPORT Verdict Judge(double value, double limit);
+
+/// All checks of a job, in a fixed order; those that could not be made say not_done. Limits come
+/// from [acceptance] or are three sigma of the check's own error.
+WELLGYRO_EXPORT std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs);
+
+}  // namespace wellgyro

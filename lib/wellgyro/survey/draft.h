@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "wellgyro/attitude/filter_state.h"
+#include "wellgyro/record/attitude_sample.h"
+#include "wellgyro/record/station.h"
+
+namespace wellgyro {
+
+/// A station before it has a position: who and when it is, and where its attitude comes from.
+struct Draft {
+  Station station;  ///< run, pass, depth, time, status; attitude and position come later
+  /// Index among the marked stations of the run's filter; absent: `attitude` holds.
+  std::optional<std::size_t> state;
+  AttitudeSample attitude;  ///< of the tool, where it does not come from the filter
+  bool listed = true;       ///< false: only ties others together, or not asked for after all
+};
+
+/// One run of one tool, ready to be placed.
+struct DraftedRun {
+  std::int32_t run = 0;
+  bool misrun = false;
+  std::vector<Draft> drafts;         ///< in the order of time
+  std::vector<StationState> states;  ///< of the filter, or smoothed: whichever is to be told
+};
+
+}  // namespace wellgyro

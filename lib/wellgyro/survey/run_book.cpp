@@ -1,0 +1,66 @@
+#include "wellgyro/survey/run_book.h"
+
+#include <algorithm>
+
+namespace wellgyro {
+
+RunBook::RunBook(const std::vector<RunSpec>& runs) : specs_(runs) {
+  for (const RunSpec& run : runs) {
+    if (run.begin) begins_.push_back({*run.begin, run.number, {}});
+  }
+  std::stable_sort(begins_.begin(), begins_.end(),
+                   [](const Begin& a, const Begin& b) { return a.utc < b.utc; });
+}
+
+void RunBook::Take(const Event& event) {
+  if (event.kind == Event::Kind::kRunBegin) {
+    const auto after = std::upper_bound(begins_.begin(), begins_.end(), event.utc,
+                                        [](UtcTime utc, const Begin& b) { return utc < b.utc; });
+    begins_.insert(after, {event.utc, event.run, event.text});
+  } else if (event.kind == Event::Kind::kRunEnd) {
+    ends_.push_back({event.utc, event.run, event.what == "misrun", event.text});
+  }
+}
+
+void RunBook::HeardAt(UtcTime utc) {
+  if (!heard_ || utc < *heard_) heard_ = utc;
+}
+
+std::int32_t RunBook::RunAt(UtcTime utc, std::int32_t told) const {
+  if (told > 0) return told;
+  if (begins_.empty()) return 1;
+  const bool before_first = heard_ && *heard_ < begins_.front().utc;
+  // The job says of its runs when they begin: what is earlier still belongs to the first of them.
+  std::int32_t number = before_first && begins_.front().number == 0 ? 1 : 0;
+  const std::int32_t first = begins_.front().number > 0 ? begins_.front().number : 1;
+  if (utc < begins_.front().utc) return first;
+  for (const Begin& begin : begins_) {
+    if (utc < begin.utc) break;
+    number = begin.number > 0 ? begin.number : number + 1;
+  }
+  return number;
+}
+
+bool RunBook::misrun(std::int32_t run) const {
+  const bool by_job = std::any_of(specs_.begin(), specs_.end(), [run](const RunSpec& spec) {
+    return spec.number == run && spec.misrun;
+  });
+  return by_job || std::any_of(ends_.begin(), ends_.end(), [&](const End& end) {
+           return end.misrun && RunAt(end.utc, end.told) == run;
+         });
+}
+
+std::string RunBook::remark(std::int32_t run) const {
+  for (const RunSpec& spec : specs_) {
+    if (spec.number == run && !spec.remark.empty()) return spec.remark;
+  }
+  for (const End& end : ends_) {
+    if (!end.remark.empty() && RunAt(end.utc, end.told) == run) return end.remark;
+  }
+  for (const Begin& begin : begins_) {
+    if (!begin.remark.empty() && RunAt(begin.utc, 0) == run) return begin.remark;
+  }
+  return {};
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "wellgyro/alignment/still_detector.h"
+#include "wellgyro/attitude/filter.h"
+#include "wellgyro/attitude/tracker.h"
+#include "wellgyro/depth/passes.h"
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/record/north_fix.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/survey/draft.h"
+#include "wellgyro/survey/job.h"
+#include "wellgyro/survey/station_plan.h"
+#include "wellgyro/survey/survey.h"
+
+namespace wellgyro {
+
+/// One run of one tool: samples with their depth in, drafts of stations out.
+///
+/// Every second, at every station and at rest the tracker's sums become a knot. Knots wait until
+/// the still detector has made up its mind about their time, three seconds, and then step the
+/// filter; a stop's north fix enters the filter when the tool has left the place, because until
+/// then another index position may still join it.
+class RunSurvey {
+ public:
+  /// `job` must outlive this object.
+  RunSurvey(const Job& job, std::int32_t run, std::int32_t tool);
+
+  /// The next sample, in order; `along` is the sensor point's at the sample's begin, `middle` at
+  /// its middle.
+  void Push(const ImuSample& sample, UtcTime utc, const AlongHole& along, const AlongHole& middle);
+  /// Averages at rest, from a tool that sends no samples. `along` at their middle.
+  void Push(const StillWindow& window, const AlongHole& along);
+  /// Mode or index position changes before the next sample.
+  void Cut(std::optional<std::int32_t> index_position);
+  /// The depth scale changes before the next sample.
+  void RestartDepth() { passes_.Restart(); }
+  /// Asks for a station at the next sample; `md`: depth to give it.
+  void TakeStation(std::optional<double> md);
+  /// No more samples for now: works off all that waits.
+  void Flush();
+
+  /// Drafts that have become ready to be told since the last call: indices into drafts().
+  std::vector<std::size_t> News();
+  const std::vector<Draft>& drafts() const { return drafts_; }
+  std::vector<Draft>& drafts() { return drafts_; }
+  /// Those of drafts() that are from samples stand in this order in the filter.
+  const AzimuthFilter* filter() const { return filter_ ? &*filter_ : nullptr; }
+  const RunSummary& summary() const { return summary_; }
+  RunSummary& summary() { return summary_; }
+  /// Lists the deepest station of the in-runs, which closes the survey.
+  void ListLastDepth();
+
+ private:
+  /// The sample that the tracker has just summed, or is about to.
+  struct Current {
+    SampleStamp stamp;
+    UtcTime utc, utc_end;
+    AlongHole along;
+    PassState pass;
+  };
+  /// A knot that waits for the still detector.
+  struct Waiting {
+    Knot knot;
+    ToolTime begin;
+    std::optional<Draft> draft;
+    bool external = false;  ///< the job's azimuth holds here
+  };
+
+  void Summed(const AlongHole& end, const PassState& pass_end);
+  void CutAt(double fraction, const AlongHole& end, std::optional<Draft> draft, bool external);
+  std::optional<Draft> RestDraft(const AlongHole& end) const;
+  Draft NewDraft(double md) const;
+  void TakeWindow(const StillWindow& window);
+  void CloseGroup();
+  void Release(bool all);
+  void StepFilter(const Waiting& waiting);
+  void StartFilter(const Knot& knot);
+  double AxisAzimuth(double inclination, double toolface) const;
+  void SetTrackerAzimuth();
+  void UseFix(const NorthFix& fix);
+  void MoveSite(const Knot& knot);
+  void ListStop(const NorthFix& fix);
+
+  const Job& job_;
+  Site site_;
+  double north_ = 0, tvd_ = 0;
+  std::optional<double> site_md_;
+  StationPlan plan_;
+  std::vector<StationPlan::Target> targets_;  ///< scratch
+  HighSideTracker tracker_;
+  StillDetector still_;
+  PassTracker passes_;
+  std::optional<AzimuthFilter> filter_;
+  std::optional<Current> current_;
+  std::optional<ToolTime> last_knot_;
+  double last_mark_md_ = 0;
+  bool marked_ = false;
+  bool external_pending_ = false;
+  std::optional<double> asked_md_;
+  bool asked_ = false;
+  std::vector<Waiting> waiting_;
+  std::vector<StillWindow> group_;  ///< windows at one place
+  std::vector<Draft> drafts_;
+  std::vector<std::size_t> unheard_;  ///< drafts whose azimuth was not known when they were made
+  std::vector<std::size_t> news_;
+  RunSummary summary_;
+};
+
+}  // namespace wellgyro

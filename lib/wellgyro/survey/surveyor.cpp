@@ -1,0 +1,161 @@
+#include "wellgyro/survey/surveyor.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "wellgyro/depth/depth_track.h"
+#include "wellgyro/survey/run_book.h"
+#include "wellgyro/survey/tool_survey.h"
+
+namespace wellgyro {
+namespace {
+
+const Job& Checked(const Job& job) {
+  CheckJob(job);
+  return job;
+}
+
+DepthTrackSetup TrackSetup(const Job& job) {
+  DepthTrackSetup setup;
+  setup.latency = std::max(Duration::Seconds(job.depth.latency), Duration::Seconds(0.001));
+  setup.sigma_md = job.errors.depth_sigma;
+  return setup;
+}
+
+}  // namespace
+
+Sink::~Sink() = default;
+
+struct Surveyor::Rooms {
+  Rooms(const Job& the_job, Sink& the_sink)
+      : job(Checked(the_job)), sink(the_sink), track(TrackSetup(job)), book(job.runs) {
+    for (const Event& event : job.events) Take(event);
+  }
+
+  Job job;
+  Sink& sink;
+  DepthTrack track;
+  RunBook book;
+  std::map<std::int32_t, ToolSurvey> tools;
+  std::vector<Operation> operations;  ///< all so far, for a tool that is heard of later
+  std::vector<ToolInfo> infos;
+  bool finished = false;
+
+  ToolSurvey& Tool(std::int32_t number) {
+    const auto found = tools.find(number);
+    if (found != tools.end()) return found->second;
+    ToolSurvey& tool = tools.try_emplace(number, job, number, track, book, sink).first->second;
+    for (const ToolInfo& info : infos) {
+      if (info.tool == number) tool.Push(info);
+    }
+    for (const Operation& operation : operations) tool.Push(operation);
+    return tool;
+  }
+
+  void Take(const Operation& operation) {
+    if (const auto* event = std::get_if<Event>(&operation)) {
+      if (const auto fault = track.Push(*event)) sink.OnFault(*fault);
+      book.Take(*event);
+    }
+    operations.push_back(operation);
+    for (auto& [number, tool] : tools) tool.Push(operation);
+  }
+
+  bool Open() {
+    if (finished) {
+      sink.OnFault(Fault{FaultCode::kOrder, "a message came after the survey was finished"});
+    }
+    return !finished;
+  }
+
+  void Work() {
+    std::optional<UtcTime> needed;
+    for (auto& [number, tool] : tools) {
+      if (tool.finish_asked()) {
+        Finish();
+        return;
+      }
+      if (!needed || tool.Needs() < *needed) needed = tool.Needs();
+    }
+    if (needed) track.Forget(*needed - track.lag());
+  }
+
+  void Finish() {
+    if (finished) return;
+    finished = true;
+    std::optional<UtcTime> until;
+    for (auto& [number, tool] : tools) {
+      const auto asked = tool.finish_asked_at();
+      if (asked && (!until || *asked < *until)) until = asked;
+    }
+    for (auto& [number, tool] : tools) tool.Finish(until);
+  }
+};
+
+Surveyor::Surveyor(const Job& job, Sink& sink) : rooms_(std::make_unique<Rooms>(job, sink)) {}
+Surveyor::~Surveyor() = default;
+Surveyor::Surveyor(Surveyor&&) noexcept = default;
+Surveyor& Surveyor::operator=(Surveyor&&) noexcept = default;
+
+void Surveyor::Push(std::span<const ImuSample> batch) {
+  if (!rooms_->Open()) return;
+  for (const ImuSample& sample : batch) {
+    if (rooms_->finished) return;
+    rooms_->Tool(sample.stamp.tool).Push(sample);
+  }
+  rooms_->Work();
+}
+
+void Surveyor::Push(const ImuSample& sample) { Push({&sample, 1}); }
+
+void Surveyor::Push(const StillWindow& window) {
+  if (rooms_->Open()) rooms_->Tool(window.tool).Push(window);
+}
+
+void Surveyor::Push(const DepthMark& mark) {
+  if (!rooms_->Open()) return;
+  if (const auto fault = rooms_->track.Push(mark)) rooms_->sink.OnFault(*fault);
+}
+
+void Surveyor::Push(const ToolMode& mode) {
+  if (rooms_->Open()) rooms_->Take(mode);
+}
+
+void Surveyor::Push(const ToolInfo& info) {
+  if (!rooms_->Open()) return;
+  rooms_->infos.push_back(info);
+  const auto tool = rooms_->tools.find(info.tool);
+  if (tool != rooms_->tools.end()) tool->second.Push(info);
+}
+
+void Surveyor::Push(const Command& command) {
+  if (rooms_->Open()) rooms_->Take(command);
+}
+
+void Surveyor::Push(const Event& event) {
+  if (rooms_->Open()) rooms_->Take(event);
+}
+
+void Surveyor::Adjust() {
+  for (auto& [number, tool] : rooms_->tools) tool.Adjust();
+}
+
+void Surveyor::Finish() { rooms_->Finish(); }
+
+std::vector<std::int32_t> Surveyor::tools() const {
+  std::vector<std::int32_t> numbers;
+  for (const auto& [number, tool] : rooms_->tools) numbers.push_back(number);
+  return numbers;
+}
+
+Survey Surveyor::Current(std::int32_t tool) const {
+  const auto found = rooms_->tools.find(tool);
+  if (found != rooms_->tools.end()) return found->second.Current();
+  Survey none;
+  none.unusable = "no samples came, and no averages at rest";
+  return none;
+}
+
+}  // namespace wellgyro

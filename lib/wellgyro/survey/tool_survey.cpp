@@ -1,0 +1,375 @@
+#include "wellgyro/survey/tool_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/attitude/smoother.h"
+#include "wellgyro/survey/choose.h"
+#include "wellgyro/survey/hole_attitude.h"
+#include "wellgyro/survey/station_of.h"
+
+namespace wellgyro {
+namespace {
+
+// An accepted or rejected depth is typed by hand, to the decimetre at best.
+constexpr double kTypedDepth = 0.5;  // [m]
+// A foresight holds at a knot no further away than this.
+constexpr double kForesightSeconds = 2;
+
+/// Depth marks of a second and more after a sample decide its depth; so long it waits for them.
+Duration Hold(const Job& job, const DepthTrack& track) {
+  return Duration::Seconds(job.depth.latency) + track.lag();
+}
+
+UtcTime TimeOf(const Operation& operation) {
+  return std::visit([](const auto& record) { return record.utc; }, operation);
+}
+
+/// Near vertical the hole's direction is known without an azimuth.
+bool HasDirection(const AttitudeSample& attitude) {
+  return attitude.azimuth_known || Has(attitude.quality, Quality::kVertical);
+}
+
+double Correction(const std::vector<std::pair<double, double>>& table, double md) {
+  if (table.empty()) return 0;
+  const auto after = std::upper_bound(table.begin(), table.end(), md,
+                                      [](double x, const auto& row) { return x < row.first; });
+  if (after == table.begin()) return table.front().second;
+  if (after == table.end()) return table.back().second;
+  const auto& [x1, y1] = *after;
+  const auto& [x0, y0] = *std::prev(after);
+  return y0 + (md - x0) / (x1 - x0) * (y1 - y0);
+}
+
+}  // namespace
+
+ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, RunBook& book,
+                       Sink& sink)
+    : job_(job),
+      tool_(tool),
+      track_(track),
+      book_(book),
+      sink_(sink),
+      sensor_below_reference_(job.string.sensor_below_reference),
+      queue_(Hold(job, track)) {}
+
+void ToolSurvey::Push(const ImuSample& sample) {
+  if (queue_.Push(sample) == SampleQueue::Verdict::kLate) {
+    sink_.OnFault(Fault{FaultCode::kLate,
+                        fmt::format("sample {} of session {} came after its time had been used",
+                                    sample.stamp.seq, sample.stamp.session)});
+  }
+  Work();
+}
+
+void ToolSurvey::Push(const Operation& operation) {
+  const Due due{TimeOf(operation), operation};
+  const auto after = std::upper_bound(due_.begin(), due_.end(), due.utc,
+                                      [](UtcTime utc, const Due& d) { return utc < d.utc; });
+  due_.insert(after, due);
+}
+
+void ToolSurvey::Push(const StillWindow& window) {
+  RunState& run = RunFor(book_.RunAt(window.utc_begin, window.run));
+  const UtcTime middle = window.utc_begin + Duration{(window.utc_end - window.utc_begin).ns / 2};
+  run.survey->Push(window, SensorDepth(middle));
+  Tell(run);
+}
+
+void ToolSurvey::Work() {
+  while (const ImuSample* sample = queue_.Front()) {
+    if (!finish_asked_) Use(*sample);
+    queue_.Pop();
+  }
+}
+
+bool ToolSurvey::IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const {
+  if (const auto* mode = std::get_if<ToolMode>(&due.operation)) {
+    if (mode->imu_seq && mode->session == stamp.session) return *mode->imu_seq <= stamp.seq;
+  }
+  return due.utc <= utc;
+}
+
+void ToolSurvey::Use(const ImuSample& sample) {
+  const SampleStamp& stamp = sample.stamp;
+  tie_.Push(stamp);
+  const UtcTime utc = tie_.ToUtc(stamp.tool_time);
+  for (std::size_t i = 0; i < due_.size();) {
+    if (!IsDue(due_[i], stamp, utc)) {
+      // A mode may wait for its sample longer than its time says; nothing else does.
+      if (due_[i].utc > utc) break;
+      ++i;
+      continue;
+    }
+    const Operation operation = due_[i].operation;
+    due_.erase(due_.begin() + static_cast<std::ptrdiff_t>(i));
+    Obey(operation);
+    if (finish_asked_) return;
+  }
+  if (!last_) book_.HeardAt(utc);
+  RunState& run = RunFor(book_.RunAt(utc, stamp.run));
+  if (last_ && stamp.session == last_->session && stamp.seq > last_->seq + 1) {
+    run.survey->summary().samples_lost += stamp.seq - last_->seq - 1;
+    sink_.OnFault(
+        Fault{FaultCode::kLost, fmt::format("samples {} to {} of session {} are missing",
+                                            last_->seq + 1, stamp.seq - 1, stamp.session)});
+  }
+  last_ = stamp;
+  const std::int32_t segment = track_.Segment(utc);
+  if (segment != depth_segment_) run.survey->RestartDepth();
+  depth_segment_ = segment;
+  run.survey->Push(sample, utc, SensorDepth(utc), SensorDepth(utc + Duration{stamp.period_ns / 2}));
+  newest_used_ = utc;
+  Tell(run);
+}
+
+AlongHole ToolSurvey::SensorDepth(UtcTime utc) const {
+  AlongHole along = track_.At(utc);
+  if (along.known)
+    along.md += Correction(job_.depth.corrections, along.md) + sensor_below_reference_;
+  return along;
+}
+
+ToolSurvey::RunState& ToolSurvey::RunFor(std::int32_t run) {
+  for (RunState& state : runs_) {
+    if (state.survey->summary().run != run) continue;
+    // Another run may have begun since and ended; its samples are not mixed with these.
+    return state;
+  }
+  if (!runs_.empty()) {
+    runs_.back().survey->Flush();
+    Tell(runs_.back());
+  }
+  RunState state;
+  state.survey = std::make_unique<RunSurvey>(job_, run, tool_);
+  state.provisional = std::make_unique<ProvisionalPath>(job_);
+  runs_.push_back(std::move(state));
+  return runs_.back();
+}
+
+void ToolSurvey::Obey(const Operation& operation) {
+  std::visit([this](const auto& record) { Obey(record); }, operation);
+}
+
+void ToolSurvey::Obey(const ToolMode& mode) {
+  const bool changes =
+      !mode_ || mode_->mode != mode.mode || mode_->index_position != mode.index_position;
+  mode_ = mode;
+  if (changes && !runs_.empty()) runs_.back().survey->Cut(mode.index_position);
+}
+
+void ToolSurvey::Obey(const Event& event) {
+  if (event.event_id != 0 && !events_.insert(event.event_id).second) return;
+  const std::int32_t run = book_.RunAt(event.utc, event.run);
+  switch (event.kind) {
+    case Event::Kind::kAccept:
+    case Event::Kind::kReject:
+      verdicts_.push_back(event);
+      break;
+    case Event::Kind::kForesight:
+      foresights_.push_back(event);
+      foresights_.back().run = run;
+      break;
+    case Event::Kind::kReturnToZero: {
+      const AlongHole along = track_.At(event.utc);
+      if (along.known) {
+        returns_.push_back({run, along.md, event.has_value ? event.value_m : 0, event.sigma_m});
+      }
+      break;
+    }
+    default:
+      break;  // depth events work in the depth track, run events in the run book
+  }
+}
+
+void ToolSurvey::Obey(const Command& command) {
+  if (command.command_id != 0 && !commands_.insert(command.command_id).second) return;
+  switch (command.kind) {
+    case Command::Kind::kTakeStation:
+      if (!runs_.empty()) runs_.back().survey->TakeStation(command.md);
+      break;
+    case Command::Kind::kAdjust:
+      Adjust();
+      break;
+    case Command::Kind::kFinish:
+      finish_asked_ = command.utc;
+      break;
+    default:
+      break;  // the others are for the tool
+  }
+  sink_.OnAcknowledged(command.command_id);
+}
+
+void ToolSurvey::Tell(RunState& run) {
+  RunSurvey& survey = *run.survey;
+  std::vector<std::size_t> news = survey.News();
+  if (news.empty()) return;
+  std::sort(news.begin(), news.end());
+  const std::vector<StationState>* states =
+      survey.filter() ? &survey.filter()->stations() : nullptr;
+  SmoothedRun smoothed;
+  // Stations from before the first north get their azimuth from it.
+  const bool backwards = std::any_of(news.begin(), news.end(), [&](std::size_t i) {
+    const Draft& draft = survey.drafts()[i];
+    return draft.state && !(*states)[*draft.state].attitude.azimuth_known;
+  });
+  if (backwards) {
+    smoothed = Smooth(survey.filter()->history());
+    states = &smoothed.stations;
+  }
+  for (std::size_t i : news) {
+    Draft& draft = survey.drafts()[i];
+    const StationState* state = draft.state ? &(*states)[*draft.state] : nullptr;
+    if (std::optional<Station> station = run.provisional->Place(draft, state)) {
+      station->status = StatusOf(draft, false);
+      sink_.OnStation(*station);
+    }
+  }
+}
+
+StationStatus ToolSurvey::StatusOf(const Draft& draft, bool adjusted) const {
+  StationStatus status = adjusted ? StationStatus::kField : StationStatus::kProvisional;
+  const Station& s = draft.station;
+  for (const Event& event : verdicts_) {
+    if (event.run != 0 && event.run != s.run) continue;
+    if (event.has_value && std::abs(event.value_m - s.md) > kTypedDepth) continue;
+    status =
+        event.kind == Event::Kind::kAccept ? StationStatus::kDefinitive : StationStatus::kRejected;
+  }
+  return status;
+}
+
+void ToolSurvey::Adjust() {
+  for (RunState& run : runs_) {
+    run.survey->ListLastDepth();
+    if (const AzimuthFilter* filter = run.survey->filter()) {
+      SmoothedRun smoothed = Smooth(filter->history());
+      run.adjusted = std::move(smoothed.stations);
+      run.attitude = std::move(smoothed.attitude);
+    }
+    run.adjusted_drafts = run.survey->drafts().size();
+    for (Draft& draft : run.survey->drafts()) ++draft.station.revision;
+  }
+  SendRevisions();
+}
+
+void ToolSurvey::SendRevisions() {
+  const Placed placed = Assemble(job_, Drafted());
+  for (const Station& station : placed.passes) sink_.OnStation(station);
+}
+
+void ToolSurvey::Finish(std::optional<UtcTime> until) {
+  if (finished_) return;
+  if (!finish_asked_) finish_asked_ = std::nullopt;
+  queue_.Flush();
+  while (const ImuSample* sample = queue_.Front()) {
+    if (!until || sample->stamp.utc < *until) Use(*sample);
+    queue_.Pop();
+  }
+  for (RunState& run : runs_) {
+    run.survey->Flush();
+    Tell(run);
+  }
+  const std::vector<Due> rest = std::exchange(due_, {});
+  for (const Due& due : rest) {
+    if (!std::holds_alternative<Command>(due.operation)) Obey(due.operation);
+  }
+  Adjust();
+  finished_ = true;
+  for (const Check& check : Current().checks) sink_.OnCheck(check);
+}
+
+std::vector<DraftedRun> ToolSurvey::Drafted() const {
+  std::vector<DraftedRun> drafted;
+  for (const RunState& run : runs_) {
+    DraftedRun d;
+    d.run = run.survey->summary().run;
+    d.misrun = book_.misrun(d.run);
+    if (const AzimuthFilter* filter = run.survey->filter()) {
+      d.states = run.adjusted;
+      const auto& stations = filter->stations();
+      d.states.insert(d.states.end(),
+                      stations.begin() + static_cast<std::ptrdiff_t>(run.adjusted.size()),
+                      stations.end());
+    }
+    for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
+      Draft draft = run.survey->drafts()[i];
+      if (draft.state && !HasDirection(d.states[*draft.state].attitude)) continue;
+      draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
+      d.drafts.push_back(std::move(draft));
+    }
+    drafted.push_back(std::move(d));
+  }
+  return drafted;
+}
+
+std::vector<Foresight> ToolSurvey::Foresights() const {
+  std::vector<Foresight> result;
+  for (const Event& event : foresights_) {
+    Foresight foresight{event.run, event.value_rad, event.sigma_rad, std::nullopt, 0};
+    for (const RunState& run : runs_) {
+      if (run.survey->summary().run != event.run || !run.survey->filter()) continue;
+      const auto& epochs = run.survey->filter()->history().epochs;
+      const auto at = std::lower_bound(
+          epochs.begin(), epochs.end(), event.utc,
+          [](const FilterEpoch& epoch, UtcTime utc) { return epoch.knot.utc < utc; });
+      const auto i = static_cast<std::size_t>(at - epochs.begin());
+      if (at == epochs.end() || i >= run.attitude.size()) continue;
+      if (std::abs((at->knot.utc - event.utc).seconds()) > kForesightSeconds) continue;
+      const AttitudeSample& attitude = run.attitude[i];
+      if (!attitude.azimuth_known) continue;
+      foresight.measured = DirectionOfMark(attitude);
+      foresight.sigma_measured = std::sqrt(attitude.cov_attitude(1, 1));
+    }
+    result.push_back(foresight);
+  }
+  return result;
+}
+
+std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const {
+  std::vector<RunSummary> summaries;
+  for (const RunState& run : runs_) summaries.push_back(run.survey->summary());
+  const std::vector<Foresight> foresights = Foresights();
+  return MakeChecks(job_, {summaries, passes, foresights, returns_});
+}
+
+Survey ToolSurvey::Current() const {
+  Survey survey;
+  for (const RunState& run : runs_) {
+    survey.runs.push_back(run.survey->summary());
+    RunSummary& summary = survey.runs.back();
+    summary.misrun = book_.misrun(summary.run);
+    summary.remark = book_.remark(summary.run);
+    summary.duplicates = queue_.counts().duplicates;
+  }
+  if (runs_.empty()) {
+    survey.unusable = "no samples came, and no averages at rest";
+    return survey;
+  }
+  Placed placed = Assemble(job_, Drafted());
+  survey.checks = Checks(placed.passes);
+  survey.passes = std::move(placed.passes);
+  survey.chosen = std::move(placed.chosen);
+  survey.unusable = std::move(placed.unusable);
+  survey.accepted = std::any_of(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
+    return s.status == StationStatus::kDefinitive;
+  });
+  const bool north = std::any_of(runs_.begin(), runs_.end(), [](const RunState& run) {
+    const auto& drafts = run.survey->drafts();
+    const AzimuthFilter* filter = run.survey->filter();
+    return (filter && filter->attitude().azimuth_known) ||
+           std::any_of(drafts.begin(), drafts.end(), [](const Draft& d) { return !d.state; });
+  });
+  if (survey.chosen.empty() && !north) {
+    survey.unusable = fmt::format(
+        "no north was found: no stop of {:.0f} s at an inclination the gyros can see, and the job "
+        "gives no azimuth; log a stop, or use [alignment] method = \"external\"",
+        job_.alignment.min_still);
+  }
+  return survey;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <variant>
+#include <vector>
+
+#include "wellgyro/depth/clock_tie.h"
+#include "wellgyro/depth/depth_track.h"
+#include "wellgyro/record/operations.h"
+#include "wellgyro/survey/assemble.h"
+#include "wellgyro/survey/checks.h"
+#include "wellgyro/survey/provisional.h"
+#include "wellgyro/survey/run_book.h"
+#include "wellgyro/survey/run_survey.h"
+#include "wellgyro/survey/sample_queue.h"
+#include "wellgyro/survey/surveyor.h"
+
+namespace wellgyro {
+
+/// What holds from an instant on, for the tool's stream to obey when it gets there.
+using Operation = std::variant<ToolMode, Event, Command>;
+
+/// The survey of one tool of the string: orders its samples, joins them with depth, splits them
+/// into runs and tells the sink of every station.
+class ToolSurvey {
+ public:
+  /// All references must outlive this object. `track` and `book` are the string's.
+  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, RunBook& book, Sink& sink);
+
+  void Push(const ImuSample& sample);
+  void Push(const StillWindow& window);
+  void Push(const ToolInfo& info) { sensor_below_reference_ = info.sensor_below_reference; }
+  void Push(const Operation& operation);
+
+  void Adjust();
+  /// `until`: samples that begin later are not used.
+  void Finish(std::optional<UtcTime> until);
+  bool finish_asked() const { return finish_asked_.has_value(); }
+  std::optional<UtcTime> finish_asked_at() const { return finish_asked_; }
+
+  Survey Current() const;
+  /// Depth before this instant is no longer needed.
+  UtcTime Needs() const { return newest_used_; }
+
+ private:
+  struct RunState {
+    std::unique_ptr<RunSurvey> survey;
+    std::unique_ptr<ProvisionalPath> provisional;
+    std::size_t placed = 0;              ///< drafts that have gone through `provisional`
+    std::vector<StationState> adjusted;  ///< as of the last Adjust
+    std::size_t adjusted_drafts = 0;
+    std::vector<AttitudeSample> attitude;  ///< smoothed, of every knot, as of the last Adjust
+  };
+  struct Due {
+    UtcTime utc;
+    Operation operation;
+  };
+
+  void Work();
+  void Use(const ImuSample& sample);
+  void Obey(const Operation& operation);
+  void Obey(const ToolMode& mode);
+  void Obey(const Event& event);
+  void Obey(const Command& command);
+  bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
+  AlongHole SensorDepth(UtcTime utc) const;
+  RunState& RunFor(std::int32_t run);
+  void Tell(RunState& run);
+  StationStatus StatusOf(const Draft& draft, bool adjusted) const;
+  std::vector<DraftedRun> Drafted() const;
+  std::vector<Foresight> Foresights() const;
+  std::vector<Check> Checks(const std::vector<Station>& passes) const;
+  void SendRevisions();
+
+  const Job& job_;
+  std::int32_t tool_;
+  const DepthTrack& track_;
+  RunBook& book_;
+  Sink& sink_;
+  double sensor_below_reference_;
+  SampleQueue queue_;
+  ClockTie tie_;
+  std::vector<Due> due_;                      ///< not yet obeyed, by time
+  std::set<std::int32_t> commands_, events_;  ///< ids obeyed
+  std::vector<RunState> runs_;
+  std::optional<SampleStamp> last_;
+  std::int32_t depth_segment_ = 0;
+  std::optional<ToolMode> mode_;
+  UtcTime newest_used_;
+  std::optional<UtcTime> finish_asked_;
+  bool finished_ = false;
+  bool accepted_ = false;
+  std::vector<Event> verdicts_;  ///< accepts and rejects, in the order in which they came
+  std::vector<Event> foresights_;
+  std::vector<ReturnToZero> returns_;
+};
+
+}  // namespace wellgyro

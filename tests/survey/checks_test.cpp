@@ -1,0 +1,117 @@
+#include "wellgyro/survey/checks.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+
+namespace wellgyro {
+namespace {
+
+Station At(double md, Pass pass, double azimuth_deg, double sigma_deg) {
+  Station s;
+  s.run = 1;
+  s.md = md;
+  s.pass = pass;
+  s.inclination = FromDegrees(40);
+  s.azimuth = FromDegrees(azimuth_deg);
+  s.cov_md_inc_azi(1, 1) = std::pow(FromDegrees(0.01), 2);
+  s.cov_md_inc_azi(2, 2) = std::pow(FromDegrees(sigma_deg), 2);
+  return s;
+}
+
+std::vector<Check> Checks(const Job& job, const std::vector<Station>& passes,
+                          const std::vector<NorthFix>& fixes = {}) {
+  RunSummary run;
+  run.run = 1;
+  run.fixes = fixes;
+  const std::vector<RunSummary> runs = {run};
+  return MakeChecks(job, {runs, passes, {}, {}});
+}
+
+const Check& Find(const std::vector<Check>& checks, const std::string& code) {
+  for (const Check& check : checks) {
+    if (check.code == code) return check;
+  }
+  static const Check kNone;
+  ADD_FAILURE() << code << " is missing";
+  return kNone;
+}
+
+TEST(Checks, VerdictsFollowTheLimit) {
+  EXPECT_EQ(Judge(-1.9, 3), Verdict::kPass);
+  EXPECT_EQ(Judge(-2.1, 3), Verdict::kWarn);
+  EXPECT_EQ(Judge(3.1, 3), Verdict::kFail);
+  EXPECT_EQ(Judge(0, 0), Verdict::kPass);
+  EXPECT_EQ(Judge(std::nan(""), 3), Verdict::kFail);
+}
+
+TEST(Checks, TakesTheWorstPairOfPassesForItsSigma) {
+  const std::vector<Station> passes = {At(100, Pass::kIn, 359.9, 0.1), At(200, Pass::kIn, 10, 1),
+                                       At(200.05, Pass::kOut, 10.5, 1),
+                                       At(100, Pass::kOut, 0.3, 0.1), At(900, Pass::kOut, 0, 0.1)};
+  const Check& check = Find(Checks({}, passes), "azimuth_in_out");
+  ASSERT_TRUE(check.value && check.sigma && check.md);
+  EXPECT_NEAR(*check.value, 0.4, 1e-9) << "across north, the short way";
+  EXPECT_NEAR(*check.sigma, 0.1 * std::sqrt(2), 1e-9);
+  EXPECT_EQ(*check.md, 100);
+  EXPECT_EQ(check.limit_source, "3 sigma");
+  EXPECT_EQ(check.verdict, Verdict::kWarn);
+}
+
+TEST(Checks, TheJobsLimitWins) {
+  Job job;
+  job.acceptance.azimuth_difference = FromDegrees(0.2);
+  const std::vector<Station> passes = {At(100, Pass::kIn, 0, 1), At(100, Pass::kOut, 0.3, 1)};
+  const Check& check = Find(Checks(job, passes), "azimuth_in_out");
+  EXPECT_EQ(check.verdict, Verdict::kFail);
+  EXPECT_EQ(check.limit_source, "acceptance");
+  EXPECT_NEAR(check.limit.value_or(0), 0.2, 1e-12);
+}
+
+TEST(Checks, WhatCouldNotBeDoneIsListed) {
+  const std::vector<Check> checks = Checks({}, {});
+  for (const char* code : {"gravity", "earth_rate", "azimuth_in_out", "inclination_repeat",
+                           "foresight", "depth_closure", "grid_convergence"}) {
+    const Check& check = Find(checks, code);
+    EXPECT_EQ(check.verdict, Verdict::kNotDone) << code;
+    EXPECT_FALSE(check.value) << code;
+    EXPECT_NE(check.limit_source, "") << code << " says why";
+  }
+}
+
+TEST(Checks, AStopIsHeldToGravityAndEarthRate) {
+  NorthFix fix;
+  fix.md = 750;
+  fix.gravity = 9.82;
+  fix.gravity_ref = 9.81;
+  fix.sigma_gravity = 0.002;
+  fix.earth_rate = 8 * units::kDegPerHour;
+  fix.earth_rate_ref = 7.9 * units::kDegPerHour;
+  fix.sigma_earth_rate = 0.1 * units::kDegPerHour;
+  const std::vector<Check> checks = Checks({}, {}, {fix});
+  EXPECT_EQ(Find(checks, "gravity").verdict, Verdict::kFail);
+  EXPECT_NEAR(Find(checks, "gravity").value.value_or(0), 0.01, 1e-12);
+  EXPECT_EQ(Find(checks, "earth_rate").verdict, Verdict::kPass);
+  EXPECT_NEAR(Find(checks, "earth_rate").value.value_or(0), 0.1, 1e-9);
+  EXPECT_EQ(Find(checks, "earth_rate").md.value_or(0), 750);
+}
+
+TEST(Checks, AStatedConvergenceIsComparedWithTheProjections) {
+  Job job;
+  job.well.latitude = FromDegrees(60);
+  job.well.longitude = FromDegrees(5);
+  job.grid = UtmGrid("31N");
+  // Two degrees east of the central meridian: 2 sin 60 deg to first order.
+  job.grid->convergence = FromDegrees(2 * std::sin(FromDegrees(60)));
+  EXPECT_EQ(Find(Checks(job, {}), "grid_convergence").verdict, Verdict::kPass);
+  job.grid->convergence = -*job.grid->convergence;
+  EXPECT_EQ(Find(Checks(job, {}), "grid_convergence").verdict, Verdict::kFail);
+}
+
+}  // namespace
+}  // namespace wellgyro

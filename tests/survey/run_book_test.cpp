@@ -1,0 +1,63 @@
+#include "wellgyro/survey/run_book.h"
+
+#include <gtest/gtest.h>
+
+namespace wellgyro {
+namespace {
+
+Event RunEvent(Event::Kind kind, std::int64_t seconds, std::int32_t run = 0) {
+  Event event;
+  event.kind = kind;
+  event.utc = UtcTime{seconds * 1'000'000'000};
+  event.run = run;
+  return event;
+}
+
+UtcTime Utc(std::int64_t seconds) { return UtcTime{seconds * 1'000'000'000}; }
+
+TEST(RunBook, EverythingIsRunOneWhereNobodySaysOtherwise) {
+  const RunBook book({});
+  EXPECT_EQ(book.RunAt(Utc(5), 0), 1);
+  EXPECT_EQ(book.RunAt(Utc(5), 3), 3) << "a source that knows its run is believed";
+}
+
+TEST(RunBook, EventsOpenAndCloseRuns) {
+  RunBook book({});
+  book.HeardAt(Utc(101));
+  book.Take(RunEvent(Event::Kind::kRunBegin, 200));
+  book.Take(RunEvent(Event::Kind::kRunBegin, 100));
+  EXPECT_EQ(book.RunAt(Utc(150), 0), 1);
+  EXPECT_EQ(book.RunAt(Utc(250), 0), 2);
+  EXPECT_EQ(book.RunAt(Utc(50), 0), 1);
+  Event end = RunEvent(Event::Kind::kRunEnd, 190);
+  end.what = "misrun";
+  end.text = "clutch slipped";
+  book.Take(end);
+  EXPECT_TRUE(book.misrun(1));
+  EXPECT_FALSE(book.misrun(2));
+  EXPECT_EQ(book.remark(1), "clutch slipped");
+}
+
+TEST(RunBook, WhatWasLoggedBeforeTheFirstBeginIsRunOne) {
+  RunBook book({});
+  book.Take(RunEvent(Event::Kind::kRunBegin, 200));
+  book.HeardAt(Utc(10));
+  EXPECT_EQ(book.RunAt(Utc(20), 0), 1);
+  EXPECT_EQ(book.RunAt(Utc(201), 0), 2);
+}
+
+TEST(RunBook, TheJobsRunsHoldFromTheirBegin) {
+  RunSpec first, second;
+  first.number = 4;
+  first.begin = Utc(10);
+  first.misrun = true;
+  second.number = 5;
+  second.begin = Utc(20);
+  const RunBook book({second, first});
+  EXPECT_EQ(book.RunAt(Utc(15), 0), 4);
+  EXPECT_EQ(book.RunAt(Utc(20), 0), 5);
+  EXPECT_TRUE(book.misrun(4));
+}
+
+}  // namespace
+}  // namespace wellgyro

@@ -1,0 +1,96 @@
+#include "wellgyro/survey/sample_queue.h"
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace wellgyro {
+namespace {
+
+using Verdict = SampleQueue::Verdict;
+
+ImuSample At(std::int64_t seq, std::int32_t session = 1) {
+  ImuSample sample;
+  sample.stamp.seq = seq;
+  sample.stamp.session = session;
+  sample.stamp.period_ns = 10'000'000;
+  sample.stamp.tool_time.ns = 1'000 + seq * 10'000'000;
+  return sample;
+}
+
+std::vector<std::int64_t> Drain(SampleQueue& queue) {
+  std::vector<std::int64_t> seqs;
+  while (const ImuSample* front = queue.Front()) {
+    seqs.push_back(front->stamp.seq);
+    queue.Pop();
+  }
+  return seqs;
+}
+
+TEST(SampleQueue, HoldsASampleUntilOneSoMuchYoungerHasCome) {
+  SampleQueue queue(Duration::Seconds(0.05));
+  for (int k = 0; k < 5; ++k) queue.Push(At(k));
+  EXPECT_EQ(queue.Front(), nullptr);
+  queue.Push(At(5));
+  EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0}));
+  queue.Flush();
+  EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{1, 2, 3, 4, 5}));
+}
+
+TEST(SampleQueue, OrderAndRepetitionOfWhatComesWithinTheHoldDoNotMatter) {
+  SampleQueue queue(Duration::Seconds(1));
+  for (std::int64_t k : {0, 3, 1, 1, 2, 5, 4, 0, 5}) queue.Push(At(k));
+  queue.Flush();
+  EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(queue.counts().accepted, 6);
+  EXPECT_EQ(queue.counts().duplicates, 3);
+}
+
+TEST(SampleQueue, TellsALateSampleFromARepeatedOne) {
+  SampleQueue queue(Duration::Seconds(0.05));
+  for (std::int64_t k : {0, 1, 4, 5, 6, 7, 8, 20}) queue.Push(At(k));
+  EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0, 1, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(queue.Push(At(2)), Verdict::kLate);
+  EXPECT_EQ(queue.Push(At(4)), Verdict::kDuplicate);
+  EXPECT_EQ(queue.Push(At(10)), Verdict::kTaken);
+  EXPECT_EQ(queue.counts().late, 1);
+}
+
+TEST(SampleQueue, ANewSessionFlushesTheOldOne) {
+  SampleQueue queue(Duration::Seconds(10));
+  queue.Push(At(7, 1));
+  queue.Push(At(8, 1));
+  queue.Push(At(0, 2));
+  EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{7, 8}));
+  EXPECT_EQ(queue.waiting(), 1u);
+}
+
+TEST(SampleQueue, RefusesWhatMakesNoSense) {
+  SampleQueue queue(Duration::Seconds(1));
+  EXPECT_EQ(queue.Push(At(0)), Verdict::kTaken);
+  ImuSample nan = At(1);
+  nan.f_T.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(queue.Push(nan), Verdict::kRefused);
+  ImuSample jumped = At(1);
+  jumped.stamp.tool_time.ns += 3'600'000'000'000;  // an hour by time, one sample by number
+  EXPECT_EQ(queue.Push(jumped), Verdict::kRefused);
+  ImuSample timeless = At(1);
+  timeless.stamp.period_ns = 0;
+  EXPECT_EQ(queue.Push(timeless), Verdict::kRefused);
+  EXPECT_EQ(queue.Push(At(1)), Verdict::kTaken);
+  EXPECT_EQ(queue.counts().refused, 3);
+}
+
+TEST(SampleQueue, GrowsPastItsFirstBufferInOrder) {
+  SampleQueue queue(Duration::Seconds(1000));
+  for (std::int64_t k = 0; k < 5000; ++k) queue.Push(At(k ^ 1));
+  queue.Flush();
+  const std::vector<std::int64_t> seqs = Drain(queue);
+  ASSERT_EQ(seqs.size(), 5000u);
+  for (std::int64_t k = 0; k < 5000; ++k) ASSERT_EQ(seqs[static_cast<std::size_t>(k)], k);
+}
+
+}  // namespace
+}  // namespace wellgyro
