@@ -47,8 +47,9 @@ class JobReader {
     job.well = ReadWell(well);
     if (auto table = root.FindTable("identity")) job.identity = table->Verbatim();
     if (auto table = root.FindTable("grid")) {
-      if (!well.Has("longitude_deg"))
+      if (!well.Has("longitude_deg")) {
         well.RefuseAbsent("longitude_deg", "is missing; [grid] needs it");
+      }
       TakeGrid(*table);
     }
     if (auto table = root.FindTable("tie_in")) TakeTieIn(*table);

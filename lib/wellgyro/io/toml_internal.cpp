@@ -245,8 +245,9 @@ std::vector<std::pair<std::string, std::string>> TomlTable::Verbatim() {
       entry.value = node.as_string()->get();
       continue;
     }
-    if (node.is_table() || node.is_array())
+    if (node.is_table() || node.is_array()) {
       Refuse(name.str(), "must be one value, not a list or table");
+    }
     std::ostringstream text;
     node.visit([&](const auto& value) { text << value; });
     entry.value = text.str();
@@ -254,6 +255,7 @@ std::vector<std::pair<std::string, std::string>> TomlTable::Verbatim() {
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.at < b.at; });
   std::vector<std::pair<std::string, std::string>> verbatim;
+  verbatim.reserve(entries.size());
   for (Entry& e : entries) verbatim.emplace_back(std::move(e.key), std::move(e.value));
   return verbatim;
 }
