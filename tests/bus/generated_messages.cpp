@@ -4,8 +4,8 @@ namespace wellgyro::test {
 namespace {
 
 std::vector<double> Ramp(int n, double first, double step) {
-  std::vector<double> values;
-  for (int k = 0; k < n; ++k) values.push_back(first + step * k);
+  std::vector<double> values(static_cast<std::size_t>(n), first);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] += step * static_cast<double>(k);
   return values;
 }
 

@@ -1,8 +1,6 @@
 #include "wellgyro/bus/log_reader.h"
 
 #include <algorithm>
-#include <cstring>
-#include <map>
 #include <random>
 #include <set>
 #include <thread>
@@ -28,7 +26,8 @@ std::vector<Kept> SomeEvents(int count, std::uint32_t seed, std::size_t longest 
   std::mt19937 random(seed);
   std::vector<Kept> events;
   for (int i = 0; i < count; ++i) {
-    Kept event{i, 1'760'000'000'000'000 + 1000 * i, i % 3 == 0 ? "WELLGYRO_DEPTH" : "X", {}};
+    Kept event{
+        i, 1'760'000'000'000'000 + std::int64_t{1000} * i, i % 3 == 0 ? "WELLGYRO_DEPTH" : "X", {}};
     event.data.resize(random() % (longest + 1));
     for (std::byte& b : event.data) b = static_cast<std::byte>(random());
     events.push_back(event);
@@ -215,6 +214,7 @@ TEST(LogReader, EveryFlippedBitCostsAtMostItsOwnEvent) {
 // the length then leads to the end of the next event, which must not be swallowed.
 TEST(LogReader, ALengthThatLeadsToALaterEventSwallowsNone) {
   std::vector<Kept> events;
+  events.reserve(6);
   for (int i = 0; i < 6; ++i) events.push_back({i, i, "WELLGYRO_IMU", Bytes(4056)});
   const Log log = LogOf(events);
   ASSERT_EQ(log.begins[1], 4096U);
@@ -263,10 +263,9 @@ TEST(LogReader, DamageOfManyKindsIsTheSameFromFileAndPipe) {
     std::mt19937 random(seed);
     const Log log = LogOf(SomeEvents(40, seed, 300));
     Bytes bytes = log.bytes;
-    const std::set<std::size_t> boundaries(log.begins.begin(), log.begins.end());
     // Cut out, put in, overwrite: from the back, so that the places before keep their meaning.
-    std::vector<std::size_t> hits;
-    for (int i = 0; i < 4; ++i) hits.push_back(random() % (bytes.size() - 200));
+    std::vector<std::size_t> hits(4);
+    for (std::size_t& hit : hits) hit = random() % (bytes.size() - 200);
     std::sort(hits.rbegin(), hits.rend());
     std::set<std::int64_t> damaged;
     for (const std::size_t at : hits) {

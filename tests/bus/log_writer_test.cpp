@@ -13,8 +13,9 @@ namespace {
 
 Bytes Data(std::size_t size, int first) {
   Bytes data(size);
-  for (std::size_t i = 0; i < size; ++i)
-    data[i] = static_cast<std::byte>(first + static_cast<int>(i));
+  for (std::size_t i = 0; i < size; ++i) {
+    data[i] = static_cast<std::byte>(static_cast<std::size_t>(first) + i);
+  }
   return data;
 }
 

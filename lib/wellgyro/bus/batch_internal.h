@@ -28,7 +28,10 @@ struct ImuHead {
   std::int32_t n_gz = 0;
   std::int32_t n_mag = 0;
 
-  std::size_t values() const { return static_cast<std::size_t>(5 * n + n_gz + 3 * n_mag); }
+  std::size_t values() const {
+    return 5 * static_cast<std::size_t>(n) + static_cast<std::size_t>(n_gz) +
+           3 * static_cast<std::size_t>(n_mag);
+  }
   std::size_t size() const { return kArraysAt + values() * sizeof(double); }
 };
 
@@ -39,7 +42,9 @@ struct RawHead {
   std::int32_t n_values = 0;
   std::int32_t n_temperatures = 0;
 
-  std::size_t values() const { return static_cast<std::size_t>(n_values + n_temperatures); }
+  std::size_t values() const {
+    return static_cast<std::size_t>(n_values) + static_cast<std::size_t>(n_temperatures);
+  }
   std::size_t size() const { return kArraysAt + values() * sizeof(std::int32_t); }
 };
 
