@@ -41,6 +41,19 @@ void Require(bool good) {
   if (!good) std::abort();
 }
 
+void Check(int choice, std::span<const std::byte> bytes) {
+  const auto type = static_cast<MessageType>(choice % kMessageTypes);
+  const Result<Message> message = Decode(type, bytes, "CHANNEL");
+  if (!message) return Require(!message.fault().text.empty() && message.fault().offset >= 0);
+  Bytes again;
+  Encode(*message, again);
+  const Result<Message> twice = Decode(type, again, "CHANNEL");
+  Require(twice.has_value());
+  Bytes thrice;
+  Encode(*twice, thrice);
+  Require(again == thrice && again.size() == bytes.size());
+}
+
 }  // namespace
 
 namespace fuzz {
@@ -60,21 +73,6 @@ std::vector<std::vector<std::uint8_t>> Seeds() {
 }  // namespace wellgyro
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace wellgyro;  // NOLINT(google-build-using-namespace)
-  if (size == 0) return 0;
-  const auto type = static_cast<MessageType>(data[0] % kMessageTypes);
-  const auto bytes = std::as_bytes(std::span(data, size)).subspan(1);
-  const Result<Message> message = Decode(type, bytes, "CHANNEL");
-  if (!message) {
-    Require(!message.fault().text.empty() && message.fault().offset >= 0);
-    return 0;
-  }
-  Bytes again;
-  Encode(*message, again);
-  const Result<Message> twice = Decode(type, again, "CHANNEL");
-  Require(twice.has_value());
-  Bytes thrice;
-  Encode(*twice, thrice);
-  Require(again == thrice && again.size() == bytes.size());
+  if (size > 0) wellgyro::Check(data[0], std::as_bytes(std::span(data, size)).subspan(1));
   return 0;
 }

@@ -14,7 +14,15 @@
 namespace wellgyro {
 namespace {
 
-using namespace log_format;  // NOLINT(google-build-using-namespace)
+using log_format::kChannelAt;
+using log_format::kChannelMax;
+using log_format::kDataAt;
+using log_format::kDataMax;
+using log_format::kHeadSize;
+using log_format::kNumberAt;
+using log_format::kSync;
+using log_format::kSyncSize;
+using log_format::kTimeAt;
 
 // How far to look for a first event before calling a file foreign.
 constexpr std::int64_t kSearchMax = std::int64_t{1} << 29;
