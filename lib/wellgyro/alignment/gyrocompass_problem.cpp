@@ -45,7 +45,9 @@ double Inclination(const Vector3d& f) { return std::atan2(std::hypot(f.x(), f.y(
 std::array<Vector3d, kErrors> Effects(const Vector3d& e, const Vector3d& f) {
   std::array<Vector3d, kErrors> effect;
   effect.fill(Vector3d::Zero());
-  for (int i = 0; i < 3; ++i) effect[static_cast<std::size_t>(kBiasX + i)][i] = 1;
+  effect[kBiasX] = Vector3d::UnitX();
+  effect[kBiasY] = Vector3d::UnitY();
+  effect[kBiasZ] = Vector3d::UnitZ();
   effect[kMass] = Vector3d(f.x(), f.y(), 0);
   effect[kQuadrature] = Vector3d(f.y(), -f.x(), 0);
   effect[kRoll] = Vector3d(e.y(), -e.x(), 0);
@@ -178,9 +180,8 @@ void Problem::Forces(const State& state, System& system) const {
     J.leftCols<3>() = to_tool * Skew(up);
     if (k > 0) J.col(k + 2) = Vector3d(f.y(), -f.x(), 0);
     J.col(column_[kGravity]) = f / g * sigma_[kGravity];
-    for (int i = 0; i < 3; ++i) {
-      const auto e = static_cast<std::size_t>(kAccelX + i);
-      if (column_[e] >= 0) J(i, column_[e]) = sigma_[e];
+    for (const Error e : {kAccelX, kAccelY, kAccelZ}) {
+      if (column_[e] >= 0) J(e - kAccelX, column_[e]) = sigma_[e];
     }
     J = weight.asDiagonal() * J;
   }

@@ -92,15 +92,15 @@ std::optional<StillWindow> StillDetector::Push(const ImuSample& sample, const Al
     return std::nullopt;
   }
   std::optional<StillWindow> window;
-  if (block_ && !Continues(stamp)) {
+  if (block_.samples > 0 && !Continues(stamp)) {
     // The gap may lie exactly at the end of a block, which is then whole and counts.
     window = CloseBlock();
     auto rest = EndStretch(Quality::kGood);
     if (rest) window = rest;
-    block_.reset();
-  } else if (block_ && BlockOf(stamp.tool_time) != block_->index) {
+    block_ = Block{};
+  } else if (block_.samples > 0 && BlockOf(stamp.tool_time) != block_.index) {
     window = CloseBlock();
-    block_.reset();
+    block_ = Block{};
   }
   Add(sample, along);
   previous_ = stamp;
@@ -109,14 +109,13 @@ std::optional<StillWindow> StillDetector::Push(const ImuSample& sample, const Al
 }
 
 void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
-  if (!block_) {
-    block_.emplace();
-    block_->index = BlockOf(sample.stamp.tool_time);
-    block_->first = sample.stamp;
-    block_->w0 = sample.w_IT_T;
-    block_->f0 = sample.f_T;
+  if (block_.samples == 0) {
+    block_.index = BlockOf(sample.stamp.tool_time);
+    block_.first = sample.stamp;
+    block_.w0 = sample.w_IT_T;
+    block_.f0 = sample.f_T;
   }
-  Block& block = *block_;
+  Block& block = block_;
   block.last = sample.stamp;
   ++block.samples;
   const Vector3d w = sample.w_IT_T - block.w0;
@@ -138,7 +137,7 @@ void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
 
 /// Judges the finished block; returns the window that its motion ends.
 std::optional<StillWindow> StillDetector::CloseBlock() {
-  const Block& block = *block_;
+  const Block& block = block_;
   if (!Whole(block.index, block.first, block.last)) return EndStretch(Quality::kGood);
   const double n = static_cast<double>(block.samples);
   const double depths = static_cast<double>(std::max<std::int64_t>(block.depths, 1));
@@ -160,10 +159,10 @@ std::optional<StillWindow> StillDetector::CloseBlock() {
                     .saturated = block.saturated};
   if (!StillAlone(means)) return EndStretch(Quality::kGood);
   std::optional<StillWindow> window;
-  if (pending_ && !StillTogether(means)) {
+  if (pending_.samples > 0 && !StillTogether(means)) {
     window = EndStretch(Quality::kGood);
-  } else if (pending_) {
-    if (guarded_) Average(*pending_);
+  } else if (pending_.samples > 0) {
+    if (guarded_) Average(pending_);
     guarded_ = true;
     if (Creeps()) window = EndStretch(Quality::kMoved);
   }
@@ -196,10 +195,10 @@ bool StillDetector::StillAlone(const Means& block) const {
 bool StillDetector::StillTogether(const Means& block) const {
   const bool young = stretch_.blocks == 0;
   const double n = young ? 1 : static_cast<double>(stretch_.blocks);
-  const Vector3d& w = young ? pending_->w : stretch_.mean_w;
-  const Vector3d& f = young ? pending_->f : stretch_.mean_f;
-  const Vector3d var_w = ((young ? pending_->var_w : stretch_.sum_var_w) + block.var_w) / (n + 1);
-  const Vector3d var_f = ((young ? pending_->var_f : stretch_.sum_var_f) + block.var_f) / (n + 1);
+  const Vector3d& w = young ? pending_.w : stretch_.mean_w;
+  const Vector3d& f = young ? pending_.f : stretch_.mean_f;
+  const Vector3d var_w = ((young ? pending_.var_w : stretch_.sum_var_w) + block.var_w) / (n + 1);
+  const Vector3d var_f = ((young ? pending_.var_f : stretch_.sum_var_f) + block.var_f) / (n + 1);
   const double seconds = block.seconds();
   const double samples = static_cast<double>(block.samples);
   const auto agree = [&](double a, double b, double model, double scatter, double floor,
@@ -281,7 +280,7 @@ std::optional<StillWindow> StillDetector::EndStretch(Quality quality) {
     if (window->seconds() < std::max(least - 2 * kRagged, least / 2)) window.reset();
   }
   stretch_ = Stretch{};
-  pending_.reset();
+  pending_ = Means{};
   guarded_ = false;
   return window;
 }
@@ -328,10 +327,10 @@ std::optional<StillWindow> StillDetector::Cut(std::optional<std::int32_t> index_
 }
 
 std::optional<StillWindow> StillDetector::Flush() {
-  if (!block_) return EndStretch(Quality::kGood);
+  if (block_.samples == 0) return EndStretch(Quality::kGood);
   std::optional<StillWindow> window = CloseBlock();
   auto rest = EndStretch(Quality::kGood);
-  block_.reset();
+  block_ = Block{};
   return rest ? rest : window;
 }
 

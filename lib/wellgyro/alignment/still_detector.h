@@ -74,7 +74,8 @@ class WELLGYRO_EXPORT StillDetector {
   struct Means {
     SampleStamp first, last;
     std::int64_t samples = 0;
-    Eigen::Vector3d w, f, b, var_w, var_f;  ///< means, and variances of one sample
+    Eigen::Vector3d w = Eigen::Vector3d::Zero(), f = w, b = w;  ///< means
+    Eigen::Vector3d var_w = w, var_f = w;                       ///< of one sample
     double temperature = 0, md = 0, speed = 0;
     bool md_known = false, gz = false, mag = false, saturated = false;
 
@@ -108,9 +109,9 @@ class WELLGYRO_EXPORT StillDetector {
   StillSetup setup_;
   std::optional<std::int32_t> index_position_;
   std::optional<SampleStamp> previous_;
-  std::optional<Block> block_;
-  std::optional<Means> pending_;  ///< newest still block, averaged when the next one is still too
-  bool guarded_ = false;          ///< the stretch's first block has been left out
+  Block block_;           ///< without samples: none
+  Means pending_;         ///< newest still block, averaged when the next one is still too; or none
+  bool guarded_ = false;  ///< the stretch's first block has been left out
   Stretch stretch_;
   bool sliding_ = false;  ///< the last sample was above the speed limit
 };

@@ -88,8 +88,9 @@ void ClockTie::Push(const SampleStamp& stamp) {
 void ClockTie::AddPair(std::int64_t tool_ns, std::int64_t difference, bool synced) {
   if (synced && cell_.synced == 0) cell_.pairs = 0;  // these alone count
   if (!synced && cell_.synced > 0) return;
-  if (cell_.pairs == 0)
+  if (cell_.pairs == 0) {
     cell_ = {.index = cell_.index, .tool_ns = tool_ns, .difference = difference};
+  }
   ++cell_.pairs;
   if (synced) ++cell_.synced;
   cell_.sum_tool += Seconds(tool_ns - cell_.tool_ns);

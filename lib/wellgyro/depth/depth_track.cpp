@@ -48,9 +48,10 @@ bool DepthTrack::Seen(const DepthMark& mark) const {
   if (forgotten_ && mark.utc < *forgotten_ && mark.session == session_ && mark.seq <= seq_) {
     return true;
   }
-  const auto same = std::ranges::equal_range(marks_, mark.utc, {}, &Mark::utc);
-  return std::ranges::any_of(
-      same, [&](const Mark& m) { return m.session == mark.session && m.seq == mark.seq; });
+  for (std::size_t i = After(mark.utc); i > 0 && marks_[i - 1].utc == mark.utc; --i) {
+    if (marks_[i - 1].session == mark.session && marks_[i - 1].seq == mark.seq) return true;
+  }
+  return false;
 }
 
 std::optional<Fault> DepthTrack::Push(const DepthMark& mark) {
