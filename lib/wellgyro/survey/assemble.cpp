@@ -45,6 +45,8 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
   return result;
 }
 
+PathStation PathOf(const Station& s) { return {s.md, s.inclination, s.azimuth}; }
+
 /// Where a sum of legs starts.
 struct Start {
   PathPoint point;
@@ -130,7 +132,7 @@ void Place(const Site& head, const Job& job, const Start& start, PassItems& pass
       s.p_WT_W = start.point.p_WT_W;
       continue;
     }
-    const auto point = path.Add({s.md, s.inclination, s.azimuth});
+    const auto point = path.Add(PathOf(s));
     if (!point) continue;  // opposite directions: the station stays where the one before is
     s.p_WT_W = point->p_WT_W;
     s.dogleg_severity = point->dogleg_severity;
@@ -139,32 +141,34 @@ void Place(const Site& head, const Job& job, const Start& start, PassItems& pass
   }
 }
 
-/// The attitude that opens the first leg: the tie-in's own, or that of the station at its depth.
-std::optional<PathStation> OpeningAttitude(const TieIn& tie, const std::vector<PassItems>& passes) {
-  if (tie.inclination) return PathStation{tie.md, *tie.inclination, *tie.azimuth};
-  const Station* best = nullptr;
-  for (const PassItems& pass : passes) {
-    for (const Item& item : pass) {
-      const Station& s = item.station;
-      if (std::abs(s.md - tie.md) > kSameDepth) continue;
-      if (!best || s.cov_md_inc_azi(2, 2) < best->cov_md_inc_azi(2, 2)) best = &s;
+/// The tie-in as the first row of the survey. Its attitude opens the first leg: the tie-in's own,
+/// or that of the best station at its depth.
+std::optional<Station> OpeningStation(const Job& job, const std::vector<PassItems>& passes) {
+  const TieIn& tie = job.tie_in;
+  Station opening;
+  if (tie.inclination) {
+    opening.inclination = *tie.inclination;
+    opening.azimuth = WrapTwoPi(*tie.azimuth);
+  } else {
+    const Station* best = nullptr;
+    for (const PassItems& pass : passes) {
+      for (const Item& item : pass) {
+        const Station& s = item.station;
+        if (std::abs(s.md - tie.md) > TieInReach(job)) continue;
+        if (!best || s.cov_md_inc_azi(2, 2) < best->cov_md_inc_azi(2, 2)) best = &s;
+      }
     }
+    if (!best) return std::nullopt;
+    opening = *best;
   }
-  if (!best) return std::nullopt;
-  return PathStation{tie.md, best->inclination, best->azimuth};
-}
-
-Station TieInStation(const Job& job, const PathStation& opening, const Eigen::Matrix2d& cov) {
-  Station s;
-  s.kind = StationKind::kTieIn;
-  s.status = StationStatus::kField;
-  s.md = job.tie_in.md;
-  s.inclination = opening.inclination;
-  s.azimuth = WrapTwoPi(opening.azimuth);
-  s.cov_md_inc_azi.bottomRightCorner<2, 2>() = cov;
-  s.p_WT_W = {job.tie_in.north, job.tie_in.east, job.tie_in.tvd};
-  s.cov_p_WT_W = job.tie_in.cov_p_WT_W;
-  return s;
+  opening.kind = StationKind::kTieIn;
+  opening.status = StationStatus::kField;
+  opening.md = tie.md;
+  opening.cov_md_inc_azi.row(0).setZero();
+  opening.cov_md_inc_azi.col(0).setZero();
+  opening.p_WT_W = {tie.north, tie.east, tie.tvd};
+  opening.cov_p_WT_W = tie.cov_p_WT_W;
+  return opening;
 }
 
 double ShallowestDepth(const std::vector<PassItems>& passes) {
@@ -173,13 +177,13 @@ double ShallowestDepth(const std::vector<PassItems>& passes) {
   return md;
 }
 
-void PlaceAll(const Site& head, const Job& job, const PathStation& opening,
+void PlaceAll(const Site& head, const Job& job, const Station& opening,
               std::vector<PassItems>& passes) {
   Start tie;
-  tie.point.station = opening;
-  tie.point.p_WT_W = {job.tie_in.north, job.tie_in.east, job.tie_in.tvd};
+  tie.point.station = PathOf(opening);
+  tie.point.p_WT_W = opening.p_WT_W;
   tie.point.tangent_W = Tangent(opening.inclination, opening.azimuth);
-  tie.cov_p_WT_W = job.tie_in.cov_p_WT_W;
+  tie.cov_p_WT_W = opening.cov_p_WT_W;
   // The pass that reaches deepest from the tie-in comes first: others may have to start on it.
   std::vector<std::size_t> order(passes.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -203,11 +207,12 @@ void PlaceAll(const Site& head, const Job& job, const PathStation& opening,
   }
 }
 
-void PlaceChosen(const Site& head, const PathStation& opening, Placed& placed) {
-  Path path(head, opening, placed.chosen.front().p_WT_W);
+void PlaceChosen(const Site& head, Placed& placed) {
+  const Station& opening = placed.chosen.front();
+  Path path(head, PathOf(opening), opening.p_WT_W);
   for (std::size_t i = 1; i < placed.chosen.size(); ++i) {
     Station& s = placed.chosen[i];
-    const auto point = path.Add({s.md, s.inclination, s.azimuth});
+    const auto point = path.Add(PathOf(s));
     if (!point) continue;
     s.p_WT_W = point->p_WT_W;
     s.dogleg_severity = point->dogleg_severity;
@@ -230,9 +235,9 @@ void List(const std::vector<PassItems>& passes, double tie_md, bool misrun, Plac
   }
 }
 
-void Choose(const Site& head, const Job& job, const PathStation& opening, Placed& placed) {
+void Choose(const Site& head, const Station& opening, Placed& placed) {
   const std::vector<std::size_t> chosen = ChooseStations(placed.passes);
-  placed.chosen.push_back(TieInStation(job, opening, Eigen::Matrix2d::Zero()));
+  placed.chosen.push_back(opening);
   std::vector<bool> is_chosen(placed.passes.size());
   for (std::size_t i : chosen) is_chosen[i] = true;
   for (std::size_t i = 0; i < placed.passes.size(); ++i) {
@@ -244,10 +249,12 @@ void Choose(const Site& head, const Job& job, const PathStation& opening, Placed
     placed.passes[i].number = static_cast<std::int32_t>(placed.chosen.size());
     placed.chosen.push_back(placed.passes[i]);
   }
-  PlaceChosen(head, opening, placed);
+  PlaceChosen(head, placed);
 }
 
 }  // namespace
+
+double TieInReach(const Job& job) { return std::max(0.5, 3 * job.errors.depth_sigma); }
 
 Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
   const Site head = SiteAt(job.well.latitude, job.well.datum_elevation);
@@ -262,7 +269,7 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
     placed.unusable = "no station was made: no run has both depth and an azimuth";
     return placed;
   }
-  std::optional<PathStation> opening = OpeningAttitude(job.tie_in, good);
+  const std::optional<Station> opening = OpeningStation(job, good);
   if (!opening) {
     placed.unusable = fmt::format(
         "the survey begins at {:.2f} m, below the tie-in at {:.2f} m: give [tie_in] "
@@ -276,7 +283,7 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
     PlaceAll(head, job, *opening, by_run[i]);
     List(by_run[i], job.tie_in.md, runs[i].misrun, placed);
   }
-  Choose(head, job, *opening, placed);
+  Choose(head, *opening, placed);
   return placed;
 }
 

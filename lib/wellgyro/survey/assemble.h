@@ -16,6 +16,10 @@ struct Placed {
   std::string unusable;         ///< why there is no survey, in a sentence; empty: there is one
 };
 
+/// How far below the tie-in a run may begin and still take the tie-in's attitude from its own first
+/// station [m]: what the depth of a tool at zero is out by.
+WELLGYRO_EXPORT double TieInReach(const Job& job);
+
 /// From drafts to positions: turns tool attitude to hole attitude, sums each pass from the tie-in
 /// (or, where it begins deeper, from the pass above it), chooses one station per depth and sums the
 /// chosen. Position covariances are those of each station's own pass.

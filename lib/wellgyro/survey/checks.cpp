@@ -110,6 +110,7 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
     ++pairs;
     inclination.Take(b.inclination - a.inclination, AngleVariance(a, 1) + AngleVariance(b, 1),
                      a.md);
+    if (Has(a.quality | b.quality, Quality::kVertical)) return;
     azimuth.Take(WrapPi(b.azimuth - a.azimuth), AngleVariance(a, 2) + AngleVariance(b, 2), a.md);
   });
   if (pairs == 0) {

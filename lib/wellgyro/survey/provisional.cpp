@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/survey/assemble.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/station_of.h"
 
@@ -12,7 +13,7 @@ namespace wellgyro {
 
 bool ProvisionalPath::Start(const Station& first) {
   const TieIn& tie = job_.tie_in;
-  const bool at_tie = std::abs(first.md - tie.md) <= kSameDepth;
+  const bool at_tie = std::abs(first.md - tie.md) <= TieInReach(job_);
   if (!tie.inclination && !at_tie) return false;
   const PathStation opening = tie.inclination
                                   ? PathStation{tie.md, *tie.inclination, *tie.azimuth}

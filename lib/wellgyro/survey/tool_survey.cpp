@@ -349,7 +349,8 @@ Survey ToolSurvey::Current() const {
     survey.unusable = "no samples came, and no averages at rest";
     return survey;
   }
-  Placed placed = Assemble(job_, Drafted());
+  const std::vector<DraftedRun> drafted = Drafted();
+  Placed placed = Assemble(job_, drafted);
   survey.checks = Checks(placed.passes);
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);
@@ -357,11 +358,10 @@ Survey ToolSurvey::Current() const {
   survey.accepted = std::any_of(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
     return s.status == StationStatus::kDefinitive;
   });
-  const bool north = std::any_of(runs_.begin(), runs_.end(), [](const RunState& run) {
-    const auto& drafts = run.survey->drafts();
-    const AzimuthFilter* filter = run.survey->filter();
-    return (filter && filter->attitude().azimuth_known) ||
-           std::any_of(drafts.begin(), drafts.end(), [](const Draft& d) { return !d.state; });
+  const bool north = std::any_of(drafted.begin(), drafted.end(), [](const DraftedRun& run) {
+    return std::any_of(run.drafts.begin(), run.drafts.end(), [&run](const Draft& draft) {
+      return !draft.state || run.states[*draft.state].attitude.azimuth_known;
+    });
   });
   if (survey.chosen.empty() && !north) {
     survey.unusable = fmt::format(
