@@ -7,6 +7,27 @@
 namespace wellgyro {
 namespace {
 
+struct Prior {
+  std::string_view key;
+  double ErrorPriors::*member;
+  double unit;
+};
+
+constexpr Prior kPriors[] = {
+    {"gyro_bias_sigma_deg_per_h", &ErrorPriors::gyro_bias_sigma, units::kDegPerHour},
+    {"mass_unbalance_sigma_deg_per_h_per_g", &ErrorPriors::mass_unbalance_sigma,
+     units::kDegPerHourPerG},
+    {"quadrature_sigma_deg_per_h_per_g", &ErrorPriors::quadrature_sigma, units::kDegPerHourPerG},
+    {"gyro_scale_sigma", &ErrorPriors::gyro_scale_sigma, 1},
+    {"gyro_misalignment_sigma_rad", &ErrorPriors::gyro_misalignment_sigma, 1},
+    {"accel_bias_sigma_mps2", &ErrorPriors::accel_bias_sigma, 1},
+    {"accel_noise_mps2_per_sqrt_hz", &ErrorPriors::accel_noise, 1},
+    {"roll_offset_sigma_deg", &ErrorPriors::roll_offset_sigma, units::kDeg},
+    {"time_skew_sigma_s", &ErrorPriors::time_skew_sigma, 1},
+    {"depth_sigma_m", &ErrorPriors::depth_sigma, 1},
+    {"latitude_sigma_deg", &ErrorPriors::latitude_sigma, units::kDeg},
+};
+
 void ReadOne(TomlTable& table, const std::string& key, double unit, double& value) {
   table.Read(key, value, unit, kNotNegative);
   const bool bounded = table.FindNumber(key + "_upper95", kNotNegative).has_value();
@@ -36,22 +57,16 @@ NoiseCoefficients ReadCoefficients(TomlTable& table) {
 }
 
 ErrorPriors ReadPriors(TomlTable& table) {
-  ErrorPriors p;
-  const auto read = [&](std::string_view key, double& value, double unit) {
-    table.Read(key, value, unit, kNotNegative);
-  };
-  read("gyro_bias_sigma_deg_per_h", p.gyro_bias_sigma, units::kDegPerHour);
-  read("mass_unbalance_sigma_deg_per_h_per_g", p.mass_unbalance_sigma, units::kDegPerHourPerG);
-  read("quadrature_sigma_deg_per_h_per_g", p.quadrature_sigma, units::kDegPerHourPerG);
-  read("gyro_scale_sigma", p.gyro_scale_sigma, 1);
-  read("gyro_misalignment_sigma_rad", p.gyro_misalignment_sigma, 1);
-  read("accel_bias_sigma_mps2", p.accel_bias_sigma, 1);
-  read("accel_noise_mps2_per_sqrt_hz", p.accel_noise, 1);
-  read("roll_offset_sigma_deg", p.roll_offset_sigma, units::kDeg);
-  read("time_skew_sigma_s", p.time_skew_sigma, 1);
-  read("depth_sigma_m", p.depth_sigma, 1);
-  read("latitude_sigma_deg", p.latitude_sigma, units::kDeg);
-  return p;
+  ErrorPriors priors;
+  for (const Prior& prior : kPriors)
+    table.Read(prior.key, priors.*prior.member, prior.unit, kNotNegative);
+  return priors;
+}
+
+void WritePriors(TomlWriter& out, const ErrorPriors& priors) {
+  for (const Prior& prior : kPriors) {
+    if (priors.*prior.member != 0) out.Number(prior.key, priors.*prior.member / prior.unit);
+  }
 }
 
 }  // namespace wellgyro

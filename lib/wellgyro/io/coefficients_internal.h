@@ -1,6 +1,7 @@
 #pragma once
 
 #include "wellgyro/io/toml_internal.h"
+#include "wellgyro/io/toml_writer_internal.h"
 #include "wellgyro/record/noise.h"
 
 namespace wellgyro {
@@ -12,5 +13,7 @@ NoiseCoefficients ReadCoefficients(TomlTable& table);
 
 /// Priors under the names of `[errors]`.
 ErrorPriors ReadPriors(TomlTable& table);
+/// Those of them that are not zero.
+void WritePriors(TomlWriter& out, const ErrorPriors& priors);
 
 }  // namespace wellgyro

@@ -194,6 +194,21 @@ std::optional<std::vector<double>> TomlTable::FindNumbers(std::string_view key, 
   return numbers;
 }
 
+std::optional<std::vector<std::string>> TomlTable::FindStrings(std::string_view key) {
+  const toml::node* const node = Ask(key);
+  if (!node) return std::nullopt;
+  const auto refuse = [&] {
+    Refuse(key, "must be a list of texts, as [\"a\", \"b\"]", FaultCode::kSyntax);
+  };
+  if (!node->is_array()) refuse();
+  std::vector<std::string> texts;
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) refuse();
+    texts.push_back(element.as_string()->get());
+  }
+  return texts;
+}
+
 std::optional<std::vector<std::vector<double>>> TomlTable::FindRows(std::string_view key,
                                                                     std::size_t width) {
   const toml::node* const node = Ask(key);

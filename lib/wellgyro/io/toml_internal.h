@@ -80,6 +80,7 @@ class TomlTable {
   std::optional<bool> FindBool(std::string_view key);
   std::optional<std::string> FindString(std::string_view key);
   std::optional<std::vector<double>> FindNumbers(std::string_view key, TomlRange range);
+  std::optional<std::vector<std::string>> FindStrings(std::string_view key);
   /// Rows of equal length, as a matrix or a list of pairs.
   std::optional<std::vector<std::vector<double>>> FindRows(std::string_view key, std::size_t width);
   std::optional<TomlTable> FindTable(std::string_view key);

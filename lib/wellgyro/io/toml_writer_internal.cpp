@@ -1,10 +1,12 @@
 #include "wellgyro/io/toml_writer_internal.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 namespace wellgyro {
 namespace {
@@ -55,6 +57,14 @@ bool IsBareKey(std::string_view key) {
                              "abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string_view::npos;
 }
 
+std::string NumberText(double value) {
+  assert(std::isfinite(value));
+  // Adding zero turns a negative zero positive.
+  std::string number = fmt::format("{}", value + 0.0);
+  if (number.find_first_of(".en") == std::string::npos) number += ".0";
+  return number;
+}
+
 }  // namespace
 
 void TomlWriter::Table(std::string_view name) { text_ += fmt::format("\n[{}]\n", name); }
@@ -88,12 +98,51 @@ void TomlWriter::Flag(std::string_view key, bool value) {
 }
 
 void TomlWriter::Number(std::string_view key, double value) {
-  assert(std::isfinite(value));
   Key(key);
-  // Adding zero turns a negative zero positive.
-  std::string number = fmt::format("{}", value + 0.0);
-  if (number.find_first_of(".en") == std::string::npos) number += ".0";
-  text_ += number + '\n';
+  text_ += NumberText(value) + '\n';
+}
+
+void TomlWriter::Numbers(std::string_view key, std::span<const double> values) {
+  Key(key);
+  text_ += '[';
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text_ += (i > 0 ? ", " : "") + NumberText(values[i]);
+  text_ += "]\n";
+}
+
+void TomlWriter::Wholes(std::string_view key, std::span<const int> values) {
+  Key(key);
+  text_ += fmt::format("[{}]\n", fmt::join(values, ", "));
+}
+
+void TomlWriter::Rows(std::string_view key, const Eigen::MatrixXd& rows) {
+  Key(key);
+  text_ += '[';
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    text_ += rows.rows() > 1 ? "\n  [" : "[";
+    for (Eigen::Index j = 0; j < rows.cols(); ++j)
+      text_ += (j > 0 ? ", " : "") + NumberText(rows(i, j));
+    text_ += rows.rows() > 1 ? "]," : "]";
+  }
+  text_ += rows.rows() > 1 ? "\n]\n" : "]\n";
+}
+
+void TomlWriter::Texts(std::string_view key, std::span<const std::string> values) {
+  Key(key);
+  text_ += '[';
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text_ += fmt::format("{}\"{}\"", i > 0 ? ", " : "", Escaped(values[i], false));
+  text_ += "]\n";
+}
+
+void TomlWriter::Comment(std::string_view lines) {
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    text_ += fmt::format("# {}", lines.substr(0, end));
+    while (text_.back() == ' ') text_.pop_back();
+    text_ += '\n';
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
 }
 
 }  // namespace wellgyro

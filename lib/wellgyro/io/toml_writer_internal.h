@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+
+#include <Eigen/Core>
 
 namespace wellgyro {
 
@@ -18,6 +21,13 @@ class TomlWriter {
   void Flag(std::string_view key, bool value);
   /// The shortest text that reads back as `value`, with a dot or exponent.
   void Number(std::string_view key, double value);
+
+  void Numbers(std::string_view key, std::span<const double> values);
+  void Wholes(std::string_view key, std::span<const int> values);
+  /// A matrix by rows, each on a line of its own where there are several.
+  void Rows(std::string_view key, const Eigen::MatrixXd& rows);
+  void Texts(std::string_view key, std::span<const std::string> values);
+  void Comment(std::string_view lines);  ///< each line behind "# "
 
   const std::string& text() const { return text_; }
 

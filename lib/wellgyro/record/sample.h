@@ -22,6 +22,7 @@ struct SampleStamp {
   bool accel_saturated = false;
   bool utc_unsynced = false;  ///< the surface doubts `utc`
   bool simulated = false;
+  bool temperature_outside = false;  ///< beyond the calibrated temperatures
   float temperature = 0;      ///< [degC]
 };
 

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/record/tool_calibration.h"
+
+namespace wellgyro {
+
+/// What makes `tool` unusable, in one sentence that names group and member; nothing when it is
+/// whole.
+WELLGYRO_EXPORT std::optional<std::string> FindComplaint(const ToolCalibration& tool);
+
+/// Turns a tool's counts into SI units and tool axes by the formula of SensorGroup, solved for u:
+/// three channels exactly, four by least squares, two for the rates across the tool (has_gz is then
+/// false and what the channels see of w_z stays in the rates). Exact to rounding; second-order
+/// terms by fixed point to the last bits, while |K u| stays below 0.2 |S|.
+///
+/// Polynomials in temperature are evaluated where a thermometer's value changes, that is once a
+/// batch; beyond the calibrated range they stay at its end and `temperature_outside` is set. The
+/// result does not depend on how samples are cut into batches. Nothing is allocated.
+class WELLGYRO_EXPORT SampleCalibrator {
+ public:
+  /// Throws std::invalid_argument with FindComplaint's sentence.
+  explicit SampleCalibrator(const ToolCalibration& tool);
+  ~SampleCalibrator();
+  SampleCalibrator(SampleCalibrator&&) noexcept;
+  SampleCalibrator& operator=(SampleCalibrator&&) noexcept;
+
+  /// Calibrates raw[i] into out[i] and gives how many: raw.size(), or less where a sample has fewer
+  /// channels or thermometers than the model names; it stands at that sample. `out` holds at least
+  /// as many as `raw`, else std::invalid_argument. Samples come in their order, for the term in the
+  /// heating rate.
+  std::size_t Apply(std::span<const RawSample> raw, std::span<ImuSample> out);
+
+  /// By how much four gyro channels contradict each other: the component of what they read along
+  /// the one direction in which no rate moves them, in the channels' unit; at the temperature of
+  /// the sample that Apply saw last. Nothing for fewer channels or a sample that does not fit.
+  std::optional<double> Parity(const RawSample& raw) const;
+
+  /// Why Apply stopped at this sample: a sentence for the Fault.
+  std::string WhyNot(const RawSample& raw) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,71 @@
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "wellgyro/calibration/apply.h"
+#include "wellgyro/simulate/raw_counts.h"
+
+#include "calibration/random_tool.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr int kBatch = 100;
+
+std::vector<RawSample> Counts(const ToolCalibration& tool) {
+  Random random(2);
+  RawCounter counter(tool);
+  std::vector<RawSample> raw;
+  for (int i = 0; i < kBatch; ++i)
+    raw.push_back(counter.Count(test::RandomSample(random, true), 80));
+  return raw;
+}
+
+// The measure: three bare 3x3 multiply-adds a sample over the same arrays.
+void BareMultiplyAdd(benchmark::State& state) {
+  const std::vector<RawSample> raw = Counts(test::RandomTool(1, {}));
+  std::vector<ImuSample> out(raw.size());
+  Eigen::Matrix3d A[3];
+  Eigen::Vector3d b[3];
+  for (int g = 0; g < 3; ++g) {
+    A[g] = Eigen::Matrix3d::Random();
+    b[g] = Eigen::Vector3d::Random();
+  }
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      const auto& n = raw[i].counts;
+      const auto at = [&](std::size_t g) {
+        return Eigen::Vector3d(n[3 * g], n[3 * g + 1], n[3 * g + 2]);
+      };
+      out[i].stamp = raw[i].stamp;
+      out[i].w_IT_T = A[0] * at(0) + b[0];
+      out[i].f_T = A[1] * at(1) + b[1];
+      out[i].b_T = A[2] * at(2) + b[2];
+    }
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * kBatch);
+}
+BENCHMARK(BareMultiplyAdd);
+
+void Apply(benchmark::State& state, const test::ToolShape& shape) {
+  const ToolCalibration tool = test::RandomTool(1, shape);
+  const std::vector<RawSample> raw = Counts(tool);
+  std::vector<ImuSample> out(raw.size());
+  SampleCalibrator calibrator(tool);
+  for (auto _ : state) {
+    calibrator.Apply(raw, out);
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * kBatch);
+}
+BENCHMARK_CAPTURE(Apply, linear, test::ToolShape{});
+BENCHMARK_CAPTURE(Apply, temperature, test::ToolShape{.temperature = true});
+BENCHMARK_CAPTURE(Apply, g_terms, test::ToolShape{.temperature = true, .g_terms = true});
+BENCHMARK_CAPTURE(Apply, second_order,
+                  test::ToolShape{.temperature = true, .second_order = true, .g_terms = true});
+
+}  // namespace
+}  // namespace wellgyro
