@@ -1,5 +1,6 @@
 #include "wellgyro/io/error_model_file.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -49,34 +50,40 @@ double SiPer(TomlTable& table, const ErrorTerm& term, const std::string& unit) {
     if (known.name == unit) return known.si;
     fitting.push_back(known.name);
   }
-  table.Refuse("unit",
-               fmt::format("\"{}\" does not fit term {}, weight {}, whose magnitude is in {}", unit,
-                           term.name, term.weight->code, fmt::join(fitting, " or ")));
+  table.Refuse("unit", fmt::format("\"{}\" does not fit weight {}, whose magnitude is in {}", unit,
+                                   term.weight->code, fmt::join(fitting, " or ")));
 }
 
-ErrorTerm ReadTerm(TomlTable& table) {
-  ErrorTerm term;
-  term.name = table.Need("name", table.FindString("name"));
-  const auto of = [&](std::string_view what) {
-    return fmt::format("term {}: {}", term.name, what);
-  };
-  const auto code = table.FindString("weight");
-  if (!code) table.Refuse("", of("'weight' is missing, the code of its weighting function"));
-  term.weight = FindWeight(*code);
+void ReadRest(TomlTable& table, ErrorTerm& term) {
+  const std::string code = table.Need("weight", table.FindString("weight"));
+  term.weight = FindWeight(code);
   if (!term.weight)
-    table.Refuse("weight", of(fmt::format("no weighting function has the code \"{}\"", *code)));
-  const auto magnitude = table.FindNumber("magnitude", kNotNegative);
-  if (!magnitude) table.Refuse("", of("'magnitude' is missing"));
+    table.Refuse("weight", fmt::format("no weighting function has the code \"{}\"", code));
+  const double magnitude = table.Need("magnitude", table.FindNumber("magnitude", kNotNegative));
   const auto unit = table.FindString("unit");
-  if (!unit) table.Refuse("magnitude", of("the magnitude stands without its 'unit'"));
-  term.magnitude = *magnitude * SiPer(table, term, *unit);
-  const auto propagation =
+  if (!unit) table.Refuse("magnitude", "stands without its 'unit'");
+  term.magnitude = magnitude * SiPer(table, term, *unit);
+  term.propagation = table.Need(
+      "propagation",
       table.FindWord<Propagation>("propagation", {{"random", Propagation::kRandom},
                                                   {"systematic", Propagation::kSystematic},
                                                   {"well", Propagation::kWell},
-                                                  {"global", Propagation::kGlobal}});
-  if (!propagation) table.Refuse("", of("'propagation' is missing"));
-  term.propagation = *propagation;
+                                                  {"global", Propagation::kGlobal}}));
+}
+
+/// Every complaint about a term names it.
+ErrorTerm ReadTerm(TomlTable& table) {
+  ErrorTerm term;
+  term.name = table.Need("name", table.FindString("name"));
+  const auto foreign = [](unsigned char c) { return c <= ' ' || c == ',' || c == '"' || c >= 127; };
+  if (term.name.empty() || std::ranges::any_of(term.name, foreign))
+    table.Refuse("name", "must be plain characters without blanks, commas and quotes");
+  try {
+    ReadRest(table, term);
+  } catch (TomlError& error) {
+    error.fault.text = fmt::format("term {}: {}", term.name, error.fault.text);
+    throw;
+  }
   return term;
 }
 

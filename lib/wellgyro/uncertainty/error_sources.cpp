@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "wellgyro/uncertainty/error_sources_internal.h"
@@ -6,7 +7,8 @@ namespace wellgyro {
 
 using Eigen::Matrix3d;
 
-std::size_t ErrorSources::SourceOf(const ErrorTerm& term, const ToolLeg& leg) {
+std::size_t ErrorSources::SourceOf(const ErrorTerm& term, const ToolLeg& leg,
+                                   std::size_t leg_number) {
   const bool within_leg =
       term.propagation == Propagation::kRandom || term.propagation == Propagation::kSystematic;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -17,6 +19,7 @@ std::size_t ErrorSources::SourceOf(const ErrorTerm& term, const ToolLeg& leg) {
   Source source;
   source.name = term.name;
   source.propagation = term.propagation;
+  source.leg = leg_number;
   source.run = leg.run;
   source.model = leg.model;
   sources_.push_back(std::move(source));
@@ -33,7 +36,10 @@ void ErrorSources::Open(std::size_t stations, PositionUncertainty& result) {
       result.shared.back().error_p.reserve(stations);
     }
     if (!options_.terms) continue;
-    result.terms.push_back({source.name, {}});
+    const auto same = [&](const Source& s) { return s.name == source.name; };
+    const bool alone = std::ranges::count_if(sources_, same) == 1;
+    result.terms.push_back(
+        {alone ? source.name : source.name + "/" + std::to_string(source.leg + 1), {}});
     result.terms.back().cov_p.reserve(stations);
   }
 }

@@ -21,7 +21,7 @@ class ErrorSources {
   explicit ErrorSources(const PropagateOptions& options) : options_(options) {}
 
   /// The source of `term` in `leg`, which may be that of an earlier leg.
-  std::size_t SourceOf(const ErrorTerm& term, const ToolLeg& leg);
+  std::size_t SourceOf(const ErrorTerm& term, const ToolLeg& leg, std::size_t leg_number);
   /// To be called once, when every source is known.
   void Open(std::size_t stations, PositionUncertainty& result);
 
@@ -42,6 +42,7 @@ class ErrorSources {
   struct Source {
     std::string name;
     Propagation propagation = Propagation::kSystematic;
+    std::size_t leg = 0;                ///< the first that has it, from 0
     int run = 0;                        ///< of those within a leg
     const ErrorModel* model = nullptr;  ///< likewise
     std::int64_t group = 0;

@@ -56,8 +56,8 @@ WeightPlace PlaceIn(const Surroundings& surroundings, const SurveyPoint& first) 
   WeightPlace p;
   p.sin_convergence = std::sin(surroundings.convergence);
   p.cos_convergence = std::cos(surroundings.convergence);
-  p.cos_latitude = std::cos(surroundings.latitude);
-  p.tan_latitude = std::tan(surroundings.latitude);
+  p.cos_latitude = std::cos(surroundings.latitude.value_or(0));
+  p.tan_latitude = std::tan(surroundings.latitude.value_or(0));
   p.horizontal_earth_rate = kEarthRate * p.cos_latitude;
   p.gravity = surroundings.gravity;
   if (surroundings.field && surroundings.dip) {
@@ -114,7 +114,8 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
   for (const ToolLeg& leg : legs) {
     legs_.emplace_back(*leg.model, surroundings);
     std::vector<std::size_t>& of_leg = leg_sources_.emplace_back();
-    for (const ErrorTerm& term : leg.model->terms) of_leg.push_back(sources_.SourceOf(term, leg));
+    for (const ErrorTerm& term : leg.model->terms)
+      of_leg.push_back(sources_.SourceOf(term, leg, legs_.size() - 1));
   }
   sources_.Open(survey.size(), result_);
 }

@@ -16,7 +16,7 @@ namespace wellgyro {
 
 /// Where the well is. Absent values are an error only for terms that need them.
 struct Surroundings {
-  double latitude = 0;                ///< [rad]
+  std::optional<double> latitude;     ///< [rad]
   double gravity = 9.80665;           ///< [m/s^2]
   double convergence = 0;             ///< true azimuth = survey azimuth + convergence [rad]
   std::optional<double> field;        ///< total magnetic field [T]
@@ -41,7 +41,7 @@ struct Refusal {
 
 /// One error source along the well; covariances as those of PositionUncertainty.
 struct TermUncertainty {
-  std::string term;
+  std::string term;  ///< its name; with "/" and its first leg's number where several have that name
   std::vector<Eigen::Matrix3d> cov_p;  ///< [m^2]
 };
 
@@ -77,7 +77,8 @@ struct PropagateOptions {
 ///
 /// Throws std::invalid_argument, naming what and where, for fewer than two points, depths that do
 /// not increase, values that are not finite or out of range, a model with a complaint, legs that
-/// do not cover the stations, |latitude| above 89 deg with gyro terms, or missing magnetics.
+/// do not cover the stations, gyrocompass terms without a latitude or beyond 89 deg, or missing
+/// magnetics.
 WELLGYRO_EXPORT PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,
                                                     const Surroundings& surroundings,
                                                     const ErrorModel& model,

@@ -16,8 +16,11 @@ std::string At(std::size_t k, const SurveyPoint& point) {
   return "station " + std::to_string(k + 1) + ", MD " + std::to_string(point.md) + " m: ";
 }
 
-bool NeedsGyro(const ErrorModel& model) {
-  return std::ranges::any_of(model.terms, [](const auto& t) { return t.weight->axes.has_value(); });
+bool NeedsLatitude(const ErrorModel& model) {
+  return std::ranges::any_of(model.terms, [](const auto& t) {
+    return t.weight->role == WeightRole::kStationary ||
+           t.weight->role == WeightRole::kStationaryNoise;
+  });
 }
 
 bool NeedsMagnetics(const ErrorModel& model) {
@@ -46,8 +49,8 @@ void CheckSurvey(std::span<const SurveyPoint> survey) {
 }
 
 void CheckSurroundings(const Surroundings& place) {
-  if (!(std::abs(place.latitude) <= kPi / 2))
-    Throw("latitude " + std::to_string(ToDegrees(place.latitude)) + " deg is not within 90");
+  if (place.latitude && !(std::abs(*place.latitude) <= kPi / 2))
+    Throw("latitude " + std::to_string(ToDegrees(*place.latitude)) + " deg is not within 90");
   if (!(place.gravity > 9.7 && place.gravity < 9.9))
     Throw("gravity " + std::to_string(place.gravity) + " m/s2 is not the Earth's");
   if (!(std::abs(place.convergence) <= kPi)) Throw("the convergence is not within 180 deg");
@@ -67,7 +70,9 @@ void CheckLegs(std::span<const ToolLeg> legs, std::size_t stations, const Surrou
     if (leg.begin != expected || leg.end <= leg.begin)
       Throw("tool legs must follow each other: station " + std::to_string(expected + 1));
     expected = leg.end;
-    if (NeedsGyro(*leg.model) && !(std::abs(place.latitude) <= 89 * kPi / 180))
+    if (NeedsLatitude(*leg.model) && !place.latitude)
+      Throw(name + " has gyrocompass terms: the latitude is needed");
+    if (NeedsLatitude(*leg.model) && std::abs(*place.latitude) > 89 * kPi / 180)
       Throw(name + ": no gyrocompass works above 89 deg of latitude");
     if (NeedsMagnetics(*leg.model) && !(place.field && place.dip && place.declination))
       Throw(name + " has magnetic terms: field, dip and declination are needed");

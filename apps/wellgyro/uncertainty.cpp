@@ -1,0 +1,128 @@
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/io/uncertainty_files.h"
+
+#include "commands.h"
+
+namespace wellgyro::apps {
+namespace {
+
+struct Options {
+  UncertaintyRequest request;
+  std::string allan;
+  std::string out;
+  bool same_hole = false;
+};
+
+/// An option whose number, in a unit of the trade, is held in SI.
+template <class T>
+CLI::Option* AddNumber(CLI::App& command, const std::string& name, T& held, double unit,
+                       const std::string& help) {
+  return command.add_option_function<double>(
+      name, [&held, unit](const double& value) { held = value * unit; }, help);
+}
+
+void AddFiles(CLI::App& command, Options& o) {
+  UncertaintySources& s = o.request.sources;
+  command.add_option("--survey", s.survey,
+                     "survey CSV: MD, INC, AZI; metres or feet by its header");
+  command.add_option("--model", s.model, "error model (TOML), as data/models/GYRO-NS-CT.toml");
+  command.add_option("--noise", s.noise, "noise file of a gyro, from 'wellgyro allan'");
+  command.add_option("--program", s.program, "survey program (TOML): legs of survey, model, run");
+  command.add_option("--other", o.request.other, "another survey: write the separation from it");
+  command.add_option("--other-model", o.request.other_model, "its error model, if not the same");
+  command.add_flag("--same-hole", o.same_hole,
+                   "the other survey is of the same hole: compare at equal MD");
+  command.add_option("--out", o.out, "folder for the results")->required();
+}
+
+void AddNumbers(CLI::App& command, Options& o) {
+  UncertaintyRequest& r = o.request;
+  Surroundings& place = r.surroundings;
+  AddNumber(command, "--latitude-deg", place.latitude, units::kDeg, "of the well")
+      ->check(CLI::Range(-90.0, 90.0));
+  AddNumber(command, "--convergence-deg", r.convergence, units::kDeg,
+            "the azimuths are grid; true = grid + this; results are in the grid's frame")
+      ->check(CLI::Range(-180.0, 180.0));
+  AddNumber(command, "--gravity-mps2", place.gravity, 1, "default 9.80665");
+  AddNumber(command, "--field-nt", place.field, units::kNanotesla,
+            "total field, for magnetic terms");
+  AddNumber(command, "--dip-deg", place.dip, units::kDeg, "of the field");
+  AddNumber(command, "--declination-deg", place.declination, units::kDeg, "of the field");
+  AddNumber(command, "--speed-mps", r.speed, 1, "of the tool along hole, with --noise");
+  AddNumber(command, "--initialise-deg", r.initialise, units::kDeg,
+            "inclination where the continuous survey starts; below 0: at the first station "
+            "(default: the model's, else 15)");
+  AddNumber(command, "--sigma-azimuth-deg", r.sigma_azimuth, units::kDeg,
+            "1 sigma of the fix that starts it, with --noise alone");
+  command.add_option("--confidence", r.confidence, "of the ellipses, default 0.95")
+      ->check(CLI::Range(1e-6, 1 - 1e-9));
+}
+
+int Refuse(const std::string& text) {
+  fmt::print(stderr, "wellgyro uncertainty: {}\n", text);
+  return kUnusable;
+}
+
+std::string Where(const Fault& fault) {
+  std::string place = fault.source;
+  if (fault.line > 0) place += fmt::format(":{}", fault.line);
+  if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
+  return place.empty() ? fault.text : place + ": " + fault.text;
+}
+
+int Run(Options& o) {
+  o.request.form = o.allan == "printed" ? AllanForm::kPrinted : AllanForm::kExact;
+  o.request.pairing = o.same_hole ? Pairing::kSameHole : Pairing::kTwoWells;
+  const Result<UncertaintyAnswer> answer = AnswerUncertainty(o.request);
+  if (!answer) return Refuse(Where(answer.fault()));
+  if (const auto fault = WriteFiles(o.out, answer->files)) return Refuse(Where(*fault));
+  for (const std::string& note : answer->notes) fmt::print(stderr, "note: {}\n", note);
+  for (const OutputFile& file : answer->files) fmt::print("{}/{}\n", o.out, file.name);
+  fmt::print("{}\n", answer->summary);
+  for (const std::string& why : answer->refusals)
+    fmt::print(stderr, "wellgyro uncertainty: ends before {}\n", why);
+  return answer->refusals.empty() ? kDone : kDoneWithLosses;
+}
+
+}  // namespace
+
+void AddUncertainty(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "uncertainty", "survey and error model -> position covariances and ellipses");
+  const auto options = std::make_shared<Options>();
+  AddFiles(*command, *options);
+  AddNumbers(*command, *options);
+  command
+      ->add_option("--allan", options->allan,
+                   "how the noise file enters: the exact covariance, or the printed recursion")
+      ->check(CLI::IsMember({"exact", "printed"}));
+  command->add_flag("--terms", options->request.terms, "write every term's part, terms.csv");
+  command->add_flag("--plot", options->request.plot, "plan and vertical section, uncertainty.svg");
+  command->footer(
+      "Example:\n  wellgyro uncertainty --survey survey.csv --model data/models/GYRO-NS-CT.toml "
+      "\\\n"
+      "      --latitude-deg 60 --terms --plot --out results\n"
+      "Noise: --noise N.toml --allan exact --speed-mps 0.75, alone or beside --model, where it\n"
+      "takes the place of the model's drift and random walk.");
+  command->callback([options, &exit_code] {
+    if (options->request.sources.noise && options->allan.empty())
+      throw CLI::RequiredError("--allan exact or --allan printed beside --noise");
+    if (!options->request.sources.noise && !options->allan.empty())
+      throw CLI::RequiredError("--noise beside --allan");
+    try {
+      exit_code = Run(*options);
+    } catch (const std::invalid_argument& error) {
+      Refuse(error.what());
+      exit_code = kUsage;
+    }
+  });
+}
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/well_uncertainty.h"
+
+/// Position uncertainty as plain CSV: one header line, UTF-8, LF, a dot for decimals. Lengths to
+/// 1e-4, angles to 1e-6, covariances to 9 significant digits.
+namespace wellgyro {
+
+/// covariance.csv: per station the covariance of north, east, vertical and that of high side,
+/// lateral, along hole, 1 sigma, and the horizontal ellipse at `confidence`. As many rows as there
+/// are covariances. Throws std::domain_error for a confidence outside (0, 1).
+WELLGYRO_EXPORT std::string CovarianceCsv(const SurveyedWell& well,
+                                          const PositionUncertainty& errors, double confidence);
+
+/// terms.csv: MD[m],TERM and the six columns of north, east, vertical, for every term at every
+/// station.
+WELLGYRO_EXPORT std::string TermsCsv(const SurveyedWell& well, const PositionUncertainty& errors);
+
+/// separation.csv: MD[m],OTHER_MD[m],DISTANCE[m],N[m],E[m],V[m],SIGMA[m],SIGMAS; the last is empty
+/// where sigma is zero.
+WELLGYRO_EXPORT std::string SeparationCsv(std::span<const Separation> separations);
+
+}  // namespace wellgyro

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+#include "wellgyro/io/atomic_file.h"
+#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/well_uncertainty.h"
+
+namespace wellgyro {
+
+/// A survey with the error model of its tool, its gyro's noise, or both; or a program of legs.
+struct UncertaintySources {
+  std::optional<std::filesystem::path> survey, model, noise, program;
+};
+
+/// What the position uncertainty of a well is asked of.
+struct UncertaintyRequest {
+  UncertaintySources sources;
+  AllanForm form = AllanForm::kExact;
+  std::optional<double> speed;        ///< see UncertaintyBasis
+  std::optional<double> initialise;   ///< likewise
+  double sigma_azimuth = 0;           ///< likewise
+  Surroundings surroundings;          ///< its convergence is that of `convergence`
+  std::optional<double> convergence;  ///< given: azimuths are grid [rad]
+  double confidence = 0.95;
+  bool terms = false;
+  bool plot = false;
+  /// For the separation from another survey, with the model of the first where none is named.
+  std::optional<std::filesystem::path> other, other_model;
+  Pairing pairing = Pairing::kTwoWells;
+};
+
+/// Its answer.
+struct UncertaintyAnswer {
+  std::vector<OutputFile> files;      ///< covariance.csv and what was asked for beside, then
+                                      ///< uncertainty.toml: inputs, mode and notes
+  std::vector<std::string> notes;     ///< assumptions that were made
+  std::vector<std::string> refusals;  ///< where a model ends before its survey does
+  std::string summary;                ///< a line on the deepest station
+};
+
+/// Reads the files of `request` and answers it. Faults name file and line; the caller's mistakes
+/// (options that are missing or contradict a file) are std::invalid_argument.
+WELLGYRO_EXPORT Result<UncertaintyAnswer> AnswerUncertainty(const UncertaintyRequest& request);
+
+}  // namespace wellgyro

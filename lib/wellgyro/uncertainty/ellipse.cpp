@@ -1,0 +1,73 @@
+#include "wellgyro/uncertainty/ellipse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+double ConfidenceFactor(double confidence, int dimensions) {
+  if (!(confidence > 0 && confidence < 1))
+    throw std::domain_error("confidence " + std::to_string(confidence) + " is not within 0 and 1");
+  return std::sqrt(ChiSquareQuantile(confidence, dimensions));
+}
+
+ErrorEllipse HorizontalEllipse(const Matrix3d& cov, double confidence) {
+  const double k = ConfidenceFactor(confidence, 2);
+  const double mean = (cov(0, 0) + cov(1, 1)) / 2;
+  const double half = (cov(0, 0) - cov(1, 1)) / 2;
+  const double radius = std::hypot(half, cov(0, 1));
+  ErrorEllipse ellipse;
+  ellipse.semi_major = k * std::sqrt(std::max(0.0, mean + radius));
+  ellipse.semi_minor = k * std::sqrt(std::max(0.0, mean - radius));
+  if (radius > 0) {
+    const double azimuth = std::atan2(cov(0, 1), half) / 2;
+    ellipse.azimuth_major = azimuth < 0 ? azimuth + kPi : azimuth;
+    if (ellipse.azimuth_major >= kPi) ellipse.azimuth_major = 0;
+  }
+  return ellipse;
+}
+
+SeenEllipse EllipseSeenAlong(const Matrix3d& cov, const Vector3d& sight, double sigmas) {
+  const Vector3d u = sight.unitOrthogonal();
+  const Vector3d v = sight.cross(u);
+  const double uu = u.dot(cov * u), vv = v.dot(cov * v), uv = u.dot(cov * v);
+  const double radius = std::hypot((uu - vv) / 2, uv);
+  const double turn = radius > 0 ? std::atan2(uv, (uu - vv) / 2) / 2 : 0;
+  const double major = std::sqrt(std::max(0.0, (uu + vv) / 2 + radius));
+  const double minor = std::sqrt(std::max(0.0, (uu + vv) / 2 - radius));
+  return {sigmas * major * (std::cos(turn) * u + std::sin(turn) * v),
+          sigmas * minor * (std::cos(turn) * v - std::sin(turn) * u)};
+}
+
+ErrorEllipsoid Ellipsoid(const Matrix3d& cov, double confidence) {
+  const double k = ConfidenceFactor(confidence, 3);
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(cov);
+  ErrorEllipsoid ellipsoid;
+  for (int i = 0; i < 3; ++i) {
+    ellipsoid.semi_axes(i) = k * std::sqrt(std::max(0.0, solver.eigenvalues()(2 - i)));
+    ellipsoid.axes.col(i) = solver.eigenvectors().col(2 - i);
+  }
+  ellipsoid.axes.col(2) = ellipsoid.axes.col(0).cross(ellipsoid.axes.col(1));
+  return ellipsoid;
+}
+
+Matrix3d ToHighSide(const Matrix3d& cov, double inclination, double azimuth) {
+  const double si = std::sin(inclination), ci = std::cos(inclination);
+  const double sa = std::sin(azimuth), ca = std::cos(azimuth);
+  Matrix3d turn;
+  turn << ci * ca, ci * sa, -si, -sa, ca, 0, si * ca, si * sa, ci;
+  return turn * cov * turn.transpose();
+}
+
+}  // namespace wellgyro

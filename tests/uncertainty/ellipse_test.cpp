@@ -1,0 +1,74 @@
+#include "wellgyro/uncertainty/ellipse.h"
+
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Tabulated: 95 % in one, two, three dimensions; two dimensions are sqrt(-2 ln(1 - p)).
+TEST(Ellipse, ConfidenceFactors) {
+  EXPECT_NEAR(ConfidenceFactor(0.95, 1), 1.959964, 1e-6);
+  EXPECT_NEAR(ConfidenceFactor(0.95, 2), 2.447747, 1e-6);
+  EXPECT_NEAR(ConfidenceFactor(0.95, 3), 2.795483, 1e-6);
+  EXPECT_NEAR(ConfidenceFactor(0.6, 2), std::sqrt(-2 * std::log(0.4)), 1e-12);
+  for (const double bad : {0.0, 1.0, -1.0, 2.0, std::nan("")})
+    EXPECT_THROW(ConfidenceFactor(bad, 2), std::domain_error);
+}
+
+/// Axes of 5, 3 and 2 m at one sigma, turned.
+Matrix3d Turned(const Matrix3d& r) { return r * Vector3d(25, 9, 4).asDiagonal() * r.transpose(); }
+
+TEST(Ellipse, GivesBackAxesAndAzimuthInAllQuadrants) {
+  const double k = ConfidenceFactor(0.9, 2);
+  for (double azimuth = 0; azimuth < kPi; azimuth += 0.1) {
+    for (const double whole : {0.0, kPi}) {
+      const ErrorEllipse e = HorizontalEllipse(Turned(RotationZ(azimuth + whole)), 0.9);
+      EXPECT_NEAR(e.semi_major, 5 * k, 1e-9);
+      EXPECT_NEAR(e.semi_minor, 3 * k, 1e-9);
+      EXPECT_NEAR(std::remainder(e.azimuth_major - azimuth, kPi), 0, 1e-9);
+      EXPECT_GE(e.azimuth_major, 0);
+      EXPECT_LT(e.azimuth_major, kPi);
+    }
+  }
+  const ErrorEllipse line = HorizontalEllipse(Vector3d(1, 0, 0).asDiagonal(), 0.95);
+  EXPECT_EQ(line.semi_minor, 0);
+}
+
+TEST(Ellipse, EllipsoidAndItsShadow) {
+  const Matrix3d r = RotationZ(0.7) * RotationY(0.4) * RotationX(1.1);
+  const Matrix3d cov = Turned(r);
+  const ErrorEllipsoid e = Ellipsoid(cov, 0.95);
+  EXPECT_NEAR(e.semi_axes(0), 5 * ConfidenceFactor(0.95, 3), 1e-9);
+  EXPECT_NEAR(e.semi_axes(2), 2 * ConfidenceFactor(0.95, 3), 1e-9);
+  EXPECT_NEAR(std::abs(e.axes.col(0).dot(r.col(0))), 1, 1e-12);
+  EXPECT_NEAR(e.axes.determinant(), 1, 1e-12);
+  // Along the longest axis the other two are seen.
+  const SeenEllipse seen = EllipseSeenAlong(cov, r.col(0), 2);
+  EXPECT_NEAR(seen.major.norm(), 6, 1e-9);
+  EXPECT_NEAR(seen.minor.norm(), 4, 1e-9);
+  EXPECT_NEAR(std::abs(seen.major.normalized().dot(r.col(1))), 1, 1e-12);
+}
+
+// High side, lateral and along are directions of the hole: a unit error along each comes out there.
+TEST(Ellipse, HighSideFrame) {
+  const double inclination = 0.8, azimuth = 2.5;
+  const Matrix3d axes = AttitudeMatrix(azimuth, inclination, 0);  // columns: high, right, along
+  for (int i = 0; i < 3; ++i) {
+    Matrix3d expected = Matrix3d::Zero();
+    expected(i, i) = 1;
+    const Matrix3d cov = axes.col(i) * axes.col(i).transpose();
+    EXPECT_LT((ToHighSide(cov, inclination, azimuth) - expected).norm(), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace wellgyro
