@@ -9,6 +9,7 @@
 #include "wellgyro/io/uncertainty_files.h"
 
 #include "commands.h"
+#include "report.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -65,29 +66,22 @@ void AddNumbers(CLI::App& command, Options& o) {
       ->check(CLI::Range(1e-6, 1 - 1e-9));
 }
 
-int Refuse(const std::string& text) {
-  fmt::print(stderr, "wellgyro uncertainty: {}\n", text);
-  return kUnusable;
-}
-
-std::string Where(const Fault& fault) {
-  std::string place = fault.source;
-  if (fault.line > 0) place += fmt::format(":{}", fault.line);
-  if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
-  return place.empty() ? fault.text : place + ": " + fault.text;
-}
-
 int Run(Options& o) {
   o.request.form = o.allan == "printed" ? AllanForm::kPrinted : AllanForm::kExact;
   o.request.pairing = o.same_hole ? Pairing::kSameHole : Pairing::kTwoWells;
   const Result<UncertaintyAnswer> answer = AnswerUncertainty(o.request);
-  if (!answer) return Refuse(Where(answer.fault()));
-  if (const auto fault = WriteFiles(o.out, answer->files)) return Refuse(Where(*fault));
+  if (!answer) {
+    Complain(answer.fault());
+    return kUnusable;
+  }
+  if (const auto fault = WriteFiles(o.out, answer->files)) {
+    Complain(*fault);
+    return kUnusable;
+  }
   for (const std::string& note : answer->notes) fmt::print(stderr, "note: {}\n", note);
   for (const OutputFile& file : answer->files) fmt::print("{}/{}\n", o.out, file.name);
   fmt::print("{}\n", answer->summary);
-  for (const std::string& why : answer->refusals)
-    fmt::print(stderr, "wellgyro uncertainty: ends before {}\n", why);
+  for (const std::string& why : answer->refusals) Complain("the result ends before " + why);
   return answer->refusals.empty() ? kDone : kDoneWithLosses;
 }
 
@@ -119,7 +113,7 @@ void AddUncertainty(CLI::App& app, int& exit_code) {
     try {
       exit_code = Run(*options);
     } catch (const std::invalid_argument& error) {
-      Refuse(error.what());
+      Complain(fmt::format("{}; see wellgyro uncertainty --help", error.what()));
       exit_code = kUsage;
     }
   });
