@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "wellgyro/math/random.h"
+#include "wellgyro/noise/allan_stream.h"
 #include "wellgyro/noise/allan_variance.h"
 
 namespace wellgyro {
@@ -61,9 +62,21 @@ void ExactOctaves(benchmark::State& state) {
   Count(state);
 }
 
+void StreamOctaves(benchmark::State& state) {
+  const auto& rate = Log(state.range(0));
+  for (auto _ : state) {
+    AllanStream stream(0.01);
+    stream.Push(rate);
+    auto result = stream.Result();
+    benchmark::DoNotOptimize(result);
+  }
+  Count(state);
+}
+
 BENCHMARK(PlainRead)->Arg(10'000'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(FastestRead)->Arg(10'000'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(ExactOctaves)->Arg(1'000'000)->Arg(10'000'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(StreamOctaves)->Arg(10'000'000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace wellgyro
