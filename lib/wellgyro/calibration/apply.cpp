@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -14,6 +15,23 @@
 
 namespace wellgyro {
 
+namespace {
+
+// Adds what the linear part of a group leaves out.
+void Complete(const GroupSolution& group, std::span<const RawSample> raw, std::span<ImuSample> out,
+              Eigen::Vector3d ImuSample::*u) {
+  if (!group.has_fourth() && !group.feels_force() && !group.has_second_order()) return;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    Eigen::Vector3d value = out[i].*u;
+    if (group.has_fourth()) value += group.Fourth(raw[i]);
+    if (group.feels_force()) value += group.OfForce(out[i].f_T);
+    if (group.has_second_order()) value = group.Refine(value);
+    out[i].*u = value;
+  }
+}
+
+}  // namespace
+
 struct SampleCalibrator::State {
   explicit State(const ToolCalibration& model);
 
@@ -23,8 +41,10 @@ struct SampleCalibrator::State {
   bool Changed(const RawSample& raw) const;
   void Prepare(const RawSample& raw);
   void PrepareGroup(const SensorGroup& group, double seconds, GroupSolution& solution);
+  void Meet(const RawSample& raw);
   void Heat(const RawSample& raw);
-  void Calibrate(const RawSample& raw, ImuSample& out) const;
+  void CalibrateRun(std::span<const RawSample> raw, std::span<ImuSample> out) const;
+  void Stamp(std::span<const RawSample> raw, std::span<ImuSample> out) const;
 
   ToolCalibration tool;
   std::int32_t channels_needed = 0, thermometers_needed = 0;
@@ -36,6 +56,7 @@ struct SampleCalibrator::State {
   std::vector<double> temperature;      ///< true, of each thermometer [degC]
   std::vector<char> temperature_known;  ///< inside the thermometer's own range
   bool outside = false;
+  float shown_temperature = 0;  ///< of the gyros' thermometer, or the first [degC]
 
   bool heats = false, heating = false;
   std::int32_t session = 0;
@@ -56,11 +77,10 @@ SampleCalibrator::State::State(const ToolCalibration& model)
 }
 
 bool SampleCalibrator::State::Changed(const RawSample& raw) const {
-  if (!prepared || raw.stamp.period_ns != period_ns) return true;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(thermometers_needed); ++i) {
-    if (raw.temperature_raw[i] != raw_temperature[i]) return true;
-  }
-  return false;
+  // By bits: a reading that is no number is the same as itself.
+  return raw.stamp.period_ns != period_ns || !prepared ||
+         std::memcmp(raw.temperature_raw.data(), raw_temperature.data(), sizeof raw_temperature) !=
+             0;
 }
 
 void SampleCalibrator::State::PrepareGroup(const SensorGroup& group, double seconds,
@@ -92,6 +112,9 @@ void SampleCalibrator::State::Prepare(const RawSample& raw) {
   PrepareGroup(tool.gyro, seconds, gyro);
   PrepareGroup(tool.accel, seconds, accel);
   PrepareGroup(tool.mag, seconds, mag);
+  const int shown = std::max(tool.gyro.thermometer, 0);
+  shown_temperature =
+      temperature.empty() ? 0 : static_cast<float>(temperature[static_cast<std::size_t>(shown)]);
 }
 
 void SampleCalibrator::State::Heat(const RawSample& raw) {
@@ -114,18 +137,42 @@ void SampleCalibrator::State::Heat(const RawSample& raw) {
   heating = true;
 }
 
-void SampleCalibrator::State::Calibrate(const RawSample& raw, ImuSample& out) const {
-  out.stamp = raw.stamp;
-  out.stamp.temperature_outside = raw.stamp.temperature_outside || outside;
-  if (!temperature.empty()) {
-    const int of_gyro = std::max(tool.gyro.thermometer, 0);
-    out.stamp.temperature = static_cast<float>(temperature[static_cast<std::size_t>(of_gyro)]);
+// Makes ready for a sample at its temperature and time.
+void SampleCalibrator::State::Meet(const RawSample& raw) {
+  const bool changed = Changed(raw);
+  // A temperature holds from the sample that brings it: the time before it was the old one's.
+  if (heats && prepared) Heat(raw);
+  if (changed) Prepare(raw);
+  if (heats && !heating) Heat(raw);
+}
+
+void SampleCalibrator::State::Stamp(std::span<const RawSample> raw,
+                                    std::span<ImuSample> out) const {
+  const bool has_gz = gyro.n_channels() > 2, has_mag = mag.n_channels() > 0, flag = outside;
+  const float shown = shown_temperature;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    SampleStamp& stamp = out[i].stamp = raw[i].stamp;
+    stamp.temperature_outside = stamp.temperature_outside || flag;
+    stamp.temperature = shown;
+    out[i].has_gz = has_gz;
+    out[i].has_mag = has_mag;
   }
-  out.f_T = accel.n_channels() > 0 ? accel.Solve(raw) : Eigen::Vector3d::Zero();
-  out.w_IT_T = gyro.n_channels() > 0 ? gyro.Solve(raw, out.f_T) : Eigen::Vector3d::Zero();
-  out.b_T = mag.n_channels() > 0 ? mag.Solve(raw) : Eigen::Vector3d::Zero();
-  out.has_gz = gyro.n_channels() > 2;
-  out.has_mag = mag.n_channels() > 0;
+}
+
+// Samples at one temperature.
+void SampleCalibrator::State::CalibrateRun(std::span<const RawSample> raw,
+                                           std::span<ImuSample> out) const {
+  Stamp(raw, out);
+  const LinearPart of_gyro = gyro.linear(), of_accel = accel.linear(), of_mag = mag.linear();
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    out[i].f_T = of_accel(raw[i]);
+    out[i].w_IT_T = of_gyro(raw[i]);
+    out[i].b_T = of_mag(raw[i]);
+  }
+  // The force first: the gyros feel it.
+  Complete(accel, raw, out, &ImuSample::f_T);
+  Complete(gyro, raw, out, &ImuSample::w_IT_T);
+  Complete(mag, raw, out, &ImuSample::b_T);
 }
 
 SampleCalibrator::SampleCalibrator(const ToolCalibration& tool) {
@@ -143,23 +190,24 @@ std::size_t SampleCalibrator::Apply(std::span<const RawSample> raw, std::span<Im
         fmt::format("out holds {} samples where {} are to be calibrated", out.size(), raw.size()));
   }
   State& state = *state_;
-  for (std::size_t i = 0; i < raw.size(); ++i) {
-    if (!state.Fits(raw[i])) return i;
-    const bool changed = state.Changed(raw[i]);
-    // A temperature holds from the sample that brings it: the time before it was the old one's.
-    if (state.heats && state.prepared) state.Heat(raw[i]);
-    if (changed) state.Prepare(raw[i]);
-    if (state.heats && !state.heating) state.Heat(raw[i]);
-    state.Calibrate(raw[i], out[i]);
+  std::size_t done = 0;
+  while (done < raw.size() && state.Fits(raw[done])) {
+    state.Meet(raw[done]);
+    std::size_t end = done + 1;
+    if (!state.heats) {
+      while (end < raw.size() && state.Fits(raw[end]) && !state.Changed(raw[end])) ++end;
+    }
+    state.CalibrateRun(raw.subspan(done, end - done), out.subspan(done, end - done));
+    done = end;
   }
-  return raw.size();
+  return done;
 }
 
 std::optional<double> SampleCalibrator::Parity(const RawSample& raw) const {
   const State& state = *state_;
   if (state.tool.gyro.n_channels != 4 || !state.prepared || !state.Fits(raw)) return std::nullopt;
   ImuSample sample;
-  state.Calibrate(raw, sample);
+  state.CalibrateRun({&raw, 1}, {&sample, 1});
   return state.gyro.Parity(raw, sample.w_IT_T, sample.f_T);
 }
 

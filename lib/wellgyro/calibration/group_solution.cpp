@@ -22,6 +22,20 @@ Eigen::Matrix<double, 6, 1> SquaresOf(const Eigen::Vector3d& a) {
   return q;
 }
 
+// q(R a) = OfSquares(R) q(a).
+Eigen::Matrix<double, 6, 6> OfSquares(const Eigen::Matrix3d& R) {
+  constexpr int kFirst[] = {0, 1, 2, 0, 1, 2}, kSecond[] = {0, 1, 2, 1, 2, 0};
+  Eigen::Matrix<double, 6, 6> M;
+  for (int row = 0; row < 6; ++row) {
+    const int i = kFirst[row], j = kSecond[row];
+    for (int column = 0; column < 6; ++column) {
+      const int k = kFirst[column], l = kSecond[column];
+      M(row, column) = R(i, k) * R(j, l) + (k == l ? 0 : R(i, l) * R(j, k));
+    }
+  }
+  return M;
+}
+
 // u in T from what the channels read; S in T.
 Eigen::Matrix<double, 3, 4> Inverse(const SensorGroup::Rows& S, int n_channels) {
   Eigen::Matrix<double, 3, 4> inverse = Eigen::Matrix<double, 3, 4>::Zero();
@@ -52,23 +66,24 @@ bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double
     channel_[c] =
         static_cast<std::size_t>(group.channel[static_cast<int>(c) < n_channels_ ? c : 0]);
 
-  R_ST_ = group.R_TS.transpose();
-  const SensorGroup::Rows S_T = Polynomial(group.sensitivity, tau) * R_ST_;
+  const Eigen::Matrix3d R_ST = group.R_TS.transpose();
+  const Eigen::Matrix<double, 6, 6> squares_ST = OfSquares(R_ST);
+  const SensorGroup::Rows S_T = Polynomial(group.sensitivity, tau) * R_ST;
   unit_per_count_ = group.unit_per_count;
   if (group.per_second) unit_per_count_ /= seconds;
   bias_ = Polynomial(group.bias, tau);
   heating_ = group.heating;
-  g_dependence_T_ = Polynomial(group.g_dependence, tau) * R_ST_;
-  second_order_terms_ = group.second_order;
-  g_squared_terms_ = group.g_squared;
+  g_dependence_ = Polynomial(group.g_dependence, tau) * R_ST;
+  squares_ = group.second_order * squares_ST;
+  g_squares_ = group.g_squared * squares_ST;
 
   from_units_ = Inverse(S_T, n_channels_);
   from_counts_ = from_units_ * unit_per_count_.asDiagonal();
-  from_force_ = from_units_ * g_dependence_T_;
-  from_squares_ = from_units_ * second_order_terms_;
-  from_force_squares_ = from_units_ * g_squared_terms_;
+  from_force_ = from_units_ * g_dependence_;
+  from_squares_ = from_units_ * squares_;
+  from_force_squares_ = from_units_ * g_squares_;
   second_order_ = !from_squares_.isZero(0);
-  g_dependent_ = !from_force_.isZero(0);
+  feels_force_ = !from_force_.isZero(0) || !from_force_squares_.isZero(0);
   g_squared_ = !from_force_squares_.isZero(0);
   parity_ = n_channels_ == 4 ? wellgyro::Parity(S_T) : Eigen::Vector4d::Zero();
   if (!settled_) Settle();
@@ -91,36 +106,32 @@ void GroupSolution::Heat(const SensorGroup& group, double seconds) {
   Offset();
 }
 
-Eigen::Vector3d GroupSolution::Linear(const RawSample& raw) const {
-  // Channels that the group does not have are the first one again, with a gain of zero.
-  Eigen::Vector3d u = offset_;
-  for (int c = 0; c < 3; ++c)
-    u += from_counts_.col(c) *
-         static_cast<double>(raw.counts[channel_[static_cast<std::size_t>(c)]]);
-  if (n_channels_ == 4) u += from_counts_.col(3) * static_cast<double>(raw.counts[channel_[3]]);
-  return u;
+LinearPart GroupSolution::linear() const {
+  return {from_counts_.leftCols<3>(), offset_, channel_[0], channel_[1], channel_[2]};
+}
+
+Eigen::Vector3d GroupSolution::Fourth(const RawSample& raw) const {
+  return from_counts_.col(3) * static_cast<double>(raw.counts[channel_[3]]);
+}
+
+Eigen::Vector3d GroupSolution::OfForce(const Eigen::Vector3d& f_T) const {
+  Eigen::Vector3d u = from_force_ * f_T;
+  if (g_squared_) u += from_force_squares_ * SquaresOf(f_T);
+  return -u;
 }
 
 Eigen::Vector3d GroupSolution::Refine(const Eigen::Vector3d& linear) const {
-  if (!second_order_) return linear;
   // Contracts by 2 |K u| / |S| a turn.
   constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
   constexpr int kTurns = 40;
   Eigen::Vector3d u = linear;
   for (int turn = 0; turn < kTurns; ++turn) {
-    const Eigen::Vector3d next = linear - from_squares_ * SquaresOf(R_ST_ * u);
+    const Eigen::Vector3d next = linear - from_squares_ * SquaresOf(u);
     const double change = (next - u).cwiseAbs().maxCoeff();
     u = next;
     if (!(change > kRounding * u.cwiseAbs().maxCoeff())) break;
   }
   return u;
-}
-
-Eigen::Vector3d GroupSolution::Solve(const RawSample& raw, const Eigen::Vector3d& f_T) const {
-  Eigen::Vector3d u = Linear(raw);
-  if (g_dependent_) u -= from_force_ * f_T;
-  if (g_squared_) u -= from_force_squares_ * SquaresOf(R_ST_ * f_T);
-  return Refine(u);
 }
 
 double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
@@ -129,8 +140,7 @@ double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
   for (int c = 0; c < 4; ++c)
     units[c] = static_cast<double>(raw.counts[channel_[static_cast<std::size_t>(c)]]);
   units = units.cwiseProduct(unit_per_count_) - bias_ - heating_ * heating_rate_;
-  units -= g_dependence_T_ * f_T + g_squared_terms_ * SquaresOf(R_ST_ * f_T) +
-           second_order_terms_ * SquaresOf(R_ST_ * u_T);
+  units -= g_dependence_ * f_T + g_squares_ * SquaresOf(f_T) + squares_ * SquaresOf(u_T);
   return parity_.dot(units);
 }
 
