@@ -73,7 +73,7 @@ int CheckLog(const std::string& name) {
     if (messages > 0) what += fmt::format(", {} {}", messages, TypeName(type));
   }
   for (const auto& [channel, foreign] : feed.foreign()) {
-    what += fmt::format(", {} on {}{}", foreign.messages, channel,
+    what += fmt::format(", {} on {}{}", foreign.messages, Printable(channel),
                         foreign.type ? fmt::format(" ({})", TypeName(*foreign.type)) : "");
   }
   return Tell(name, what, faults, kDoneWithLosses);

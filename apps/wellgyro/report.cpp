@@ -24,6 +24,15 @@ std::string Sentence(const Fault& fault) {
   return place.empty() ? fault.text : place + ": " + fault.text;
 }
 
+std::string Printable(std::string_view text) {
+  std::string printable;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    printable += byte >= 0x20 && byte < 0x7f ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+  }
+  return printable;
+}
+
 void Complain(std::string_view sentence) { fmt::print(stderr, "wellgyro: {}\n", sentence); }
 
 void Complain(const Fault& fault) { Complain(Sentence(fault)); }

@@ -103,7 +103,7 @@ void HintAtChannels(const Feed& feed) {
     Complain(
         fmt::format("channel {} carries {} messages; if they are the tool's, name it under "
                     "[channels] in the job",
-                    channel, TypeName(*foreign.type)));
+                    Printable(channel), TypeName(*foreign.type)));
   }
 }
 

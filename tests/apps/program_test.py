@@ -1,0 +1,269 @@
+#!/usr/bin/env python3
+"""Runs the program as a user does: results, exit codes, sentences. program_test.py PROGRAM"""
+import csv
+import filecmp
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
+DEMO = os.path.join(TOP, "data", "demo")
+
+SIMULATION = """format = "wellgyro.simulation/1"
+seed = 3
+[well]
+name = "slant"
+inclination_deg = 25.0
+azimuth_true_deg = 300.0
+end_md_m = 400.0
+[earth]
+latitude_deg = 61.0
+[run]
+[[run.step]]
+stop_s = 120.0
+[[run.step]]
+to_md_m = 300.0
+speed_mps = 1.0
+roll_rpm = 1.0
+[[run.step]]
+stop_s = 20.0
+[tool]
+angle_random_walk_deg_per_sqrt_h = 0.005
+[streams]
+imu_hz = 20.0
+depth_hz = 4.0
+batch = 20
+"""
+JOB = """format = "wellgyro.job/1"
+[well]
+name = "Slant"
+latitude_deg = 61.0
+longitude_deg = 3.0
+[noise]
+angle_random_walk_deg_per_sqrt_h = 0.005
+[stations]
+every_m = 25.0
+"""
+
+
+def Run(*arguments, **options):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False,
+                          timeout=120, **options)
+
+
+class Program(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        cls.Write("simulation.toml", SIMULATION)
+        cls.job = cls.Write("job.toml", JOB)
+        cls.log = cls.Path("run.lcm")
+        made = Run("simulate", "--job", cls.Path("simulation.toml"), "--out", cls.log)
+        assert made.returncode == 0, made.stderr
+        with open(cls.log, "rb") as file:
+            cls.bytes = file.read()
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def Path(cls, name):
+        return os.path.join(cls.folder, name)
+
+    @classmethod
+    def Write(cls, name, content):
+        with open(cls.Path(name), "wb" if isinstance(content, bytes) else "w") as file:
+            file.write(content)
+        return cls.Path(name)
+
+    def Survey(self, log, out, job=None):
+        return Run("survey", "--job", job or self.job, "--from", log, "--out", self.Path(out))
+
+    def Rows(self, out, name="survey.csv"):
+        with open(os.path.join(self.Path(out), name), newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_a_survey_of_the_truth(self):
+        done = self.Survey(self.log, "good")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        rows = self.Rows("good")
+        self.assertEqual([float(r["MD[m]"]) for r in rows], [25.0 * k for k in range(13)])
+        for row in rows[1:]:
+            self.assertAlmostEqual(float(row["INC[deg]"]), 25.0, delta=0.01)
+            sigma = float(row["SIG_AZI[deg]"])
+            self.assertGreater(sigma, 0.01)
+            self.assertAlmostEqual(float(row["AZI_TRUE[deg]"]), 300.0, delta=5 * sigma)
+        self.assertEqual(rows[0]["KIND"], "tie_in")
+
+    def test_the_same_log_twice_gives_the_same_bytes(self):
+        for out in ("one", "two"):
+            self.assertEqual(self.Survey(self.log, out).returncode, 0)
+        names = sorted(os.listdir(self.Path("one")))
+        self.assertEqual(names, ["checks.csv", "passes.csv", "run.toml", "source.toml",
+                                 "survey.csv"])
+        same, differ, odd = filecmp.cmpfiles(self.Path("one"), self.Path("two"), names,
+                                             shallow=False)
+        self.assertEqual((len(same), differ, odd), (len(names), [], []))
+
+    def test_a_pipe_is_as_good_as_a_file(self):
+        self.assertEqual(self.Survey(self.log, "file").returncode, 0)
+        with open(self.log, "rb") as log:
+            done = Run("survey", "--job", self.job, "--from", "-", "--out", self.Path("pipe"),
+                       stdin=log)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("survey.csv", "passes.csv", "checks.csv", "run.toml"):
+            self.assertTrue(filecmp.cmp(os.path.join(self.Path("file"), name),
+                                        os.path.join(self.Path("pipe"), name), shallow=False), name)
+
+    def test_a_log_cut_at_any_byte_is_a_shorter_survey(self):
+        whole = self.Survey(self.log, "whole")
+        self.assertEqual(whole.returncode, 0)
+        chance = random.Random(1)
+        ends = [k for k in range(len(self.bytes)) if self.bytes[k:k + 4] == b"\xed\xa1\xda\x01"]
+        cuts = [chance.randrange(1, len(self.bytes)) for _ in range(25)]
+        for cut in cuts + [ends[len(ends) // 2], ends[-1]]:
+            with self.subTest(cut=cut):
+                log = self.Write("cut.lcm", self.bytes[:cut])
+                shutil.rmtree(self.Path("cut"), ignore_errors=True)
+                done = self.Survey(log, "cut")
+                self.assertIn(done.returncode, (0, 2, 3), done.stderr)
+                if done.returncode == 2:
+                    self.assertTrue(done.stderr.startswith("wellgyro: "), done.stderr)
+                    continue
+                self.assertEqual(done.returncode, 0 if cut in ends else 3)
+                rows, all_rows = self.Rows("cut"), self.Rows("whole")
+                for row, full in zip(rows[:-2], all_rows):
+                    self.assertEqual(row["MD[m]"], full["MD[m]"])
+                    self.assertAlmostEqual(float(row["INC[deg]"]), float(full["INC[deg]"]),
+                                           delta=0.02)
+
+    def test_flipped_bytes_never_crash_and_are_told(self):
+        chance = random.Random(2)
+        told = 0
+        for round_ in range(25):
+            damaged = bytearray(self.bytes)
+            for _ in range(8):
+                damaged[chance.randrange(len(damaged))] ^= 1 << chance.randrange(8)
+            log = self.Write("flipped.lcm", bytes(damaged))
+            shutil.rmtree(self.Path("flipped"), ignore_errors=True)
+            done = self.Survey(log, "flipped")
+            self.assertIn(done.returncode, (0, 2, 3), f"{round_}: {done.stderr}")
+            if done.returncode == 3:
+                told += 1
+                with open(os.path.join(self.Path("flipped"), "source.toml")) as file:
+                    source = file.read()
+                with open(os.path.join(self.Path("flipped"), "run.toml")) as file:
+                    run = file.read()
+                self.assertTrue("[[fault]]" in source or "fault" in run)
+        self.assertGreater(told, 0)
+
+    def test_what_is_no_log_is_named(self):
+        for name, content, word in (("empty.lcm", b"", "empty"), ("text.lcm", b"hello " * 50, "text"),
+                                    ("zip.lcm", b"PK\x03\x04" + bytes(range(256)), "")):
+            done = self.Survey(self.Write(name, content), "nothing")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(name, done.stderr)
+            self.assertIn(word, done.stderr)
+            self.assertFalse(os.path.exists(self.Path("nothing")))
+        done = self.Survey(self.Path("missing.lcm"), "nothing")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("No such file", done.stderr)
+
+    def test_no_north_is_a_sentence(self):
+        quick = SIMULATION.replace("stop_s = 120.0", "stop_s = 20.0")
+        self.Write("quick.toml", quick)
+        self.assertEqual(Run("simulate", "--job", self.Path("quick.toml"), "--out",
+                             self.Path("quick.lcm")).returncode, 0)
+        done = self.Survey(self.Path("quick.lcm"), "quick")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no north", done.stderr)
+
+    def test_a_gap_above_the_survey_is_named(self):
+        deep = SIMULATION.replace("[run]\n", "[run]\nstart_md_m = 60.0\n")
+        self.Write("deep.toml", deep)
+        self.assertEqual(Run("simulate", "--job", self.Path("deep.toml"), "--out",
+                             self.Path("deep.lcm")).returncode, 0)
+        done = self.Survey(self.Path("deep.lcm"), "deep")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("60.0", done.stderr)
+        tied = self.Write("tied.toml", JOB + "[tie_in]\ninclination_deg = 25.0\n"
+                          "azimuth_true_deg = 300.0\n")
+        done = self.Survey(self.Path("deep.lcm"), "deep", tied)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(float(self.Rows("deep")[1]["MD[m]"]), 75.0)
+
+    def test_mistakes_in_the_job_name_their_line(self):
+        for text, line, word in ((JOB + "[typo]\n", 10, "typo"),
+                                 (JOB.replace("61.0", "'north'"), 4, "latitude_deg"),
+                                 (JOB.replace("25.0", "-1"), 9, "every_m")):
+            job = self.Write("bad.toml", text)
+            done = self.Survey(self.log, "bad", job)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"bad.toml:{line}:", done.stderr)
+            self.assertIn(word, done.stderr)
+
+    def test_an_accepted_survey_is_never_written_over(self):
+        job = self.Write("accepted.toml", JOB + "[[event]]\nevent = \"accept\"\n"
+                         "utime_us = 1767225900000000\n")
+        self.assertEqual(self.Survey(self.log, "accepted", job).returncode, 0)
+        rows = self.Rows("accepted", "passes.csv")
+        self.assertEqual({row["STATUS"] for row in rows}, {"definitive"})
+        before = os.stat(os.path.join(self.Path("accepted"), "survey.csv")).st_mtime_ns
+        done = self.Survey(self.log, "accepted")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("choose a new --out", done.stderr)
+        self.assertEqual(os.stat(os.path.join(self.Path("accepted"), "survey.csv")).st_mtime_ns,
+                         before)
+
+    def test_check_says_what_files_are(self):
+        done = Run("check", self.job, self.log, self.Path("simulation.toml"))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("a wellgyro job", done.stdout)
+        self.assertIn("imu_batch_t", done.stdout)
+        cut = self.Write("cut_for_check.lcm", self.bytes[:-7])
+        done = Run("check", cut)
+        self.assertEqual(done.returncode, 3, done.stdout)
+        done = Run("check", self.Write("empty", b""))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("empty", done.stdout)
+
+    def test_the_command_line(self):
+        self.assertEqual(Run().returncode, 1)
+        self.assertEqual(Run("survey", "--no-such-option").returncode, 1)
+        self.assertEqual(Run("--version").stdout.split()[0], "wellgyro")
+        listed = Run("--help").stdout.split("Subcommands:")[1]
+        commands = [line.split()[0] for line in listed.splitlines() if line.startswith("  ")
+                    and line[2] != " "]
+        self.assertGreaterEqual(len(commands), 3)
+        for command in commands:
+            done = Run(command, "--help")
+            self.assertEqual(done.returncode, 0)
+            self.assertIn(f"wellgyro {command}", done.stdout, "an example")
+
+    def test_the_demonstration(self):
+        done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                   os.path.join(DEMO, "run.lcm"), "--out", self.Path("demo"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(os.path.join(DEMO, "truth.csv"), newline="") as file:
+            truth = list(csv.DictReader(file))
+        deepest = max(truth, key=lambda row: float(row["MD[m]"]))
+        last = self.Rows("demo")[-1]
+        for column, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]"),
+                                 ("TVD[m]", "VAR_VV[m2]")):
+            sigma = float(last[variance]) ** 0.5
+            self.assertLess(sigma, 2)
+            self.assertLess(abs(float(last[column]) - float(deepest[column])), 3 * sigma, column)
+        made = self.Path("again.lcm")
+        self.assertEqual(Run("simulate", "--job", os.path.join(DEMO, "simulation.toml"), "--out",
+                             made, "--truth", self.Path("again.csv")).returncode, 0)
+        self.assertEqual(os.path.getsize(made), os.path.getsize(os.path.join(DEMO, "run.lcm")))
+
+
+if __name__ == "__main__":
+    unittest.main()
