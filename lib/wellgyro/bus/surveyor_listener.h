@@ -16,6 +16,7 @@ class WELLGYRO_EXPORT SurveyorListener : public Listener {
   SurveyorListener(Surveyor& surveyor, Sink& faults) : surveyor_(surveyor), faults_(faults) {}
 
   void OnImu(std::span<const ImuSample> batch) override { surveyor_.Push(batch); }
+  void OnRaw(std::span<const RawSample> batch) override { surveyor_.Push(batch); }
   void OnStill(const StillWindow& window) override { surveyor_.Push(window); }
   void OnDepth(const DepthMark& mark) override { surveyor_.Push(mark); }
   void OnMode(const ToolMode& mode) override { surveyor_.Push(mode); }

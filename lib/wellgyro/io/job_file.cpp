@@ -8,10 +8,12 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/coefficients_internal.h"
+#include "wellgyro/io/error_model_file.h"
 #include "wellgyro/io/job_sections_internal.h"
 #include "wellgyro/io/named_file_internal.h"
 #include "wellgyro/io/survey_csv.h"
 #include "wellgyro/io/toml_internal.h"
+#include "wellgyro/io/tool_file.h"
 
 namespace wellgyro {
 namespace {
@@ -54,7 +56,10 @@ class JobReader {
     }
     if (auto table = root.FindTable("tie_in")) TakeTieIn(*table);
     if (auto table = root.FindTable("noise")) TakeNoise(*table);
+    if (auto table = root.FindTable("tool")) TakeTool(*table);
+    if (job.tool && job.tool->errors) job.errors = *job.tool->errors;
     if (auto table = root.FindTable("errors")) job.errors = ReadPriors(*table);
+    if (auto table = root.FindTable("error_model")) TakeErrorModel(*table);
     if (auto table = root.FindTable("channels")) job.channels = ReadChannels(*table);
     if (auto table = root.FindTable("alignment")) job.alignment = ReadAlignment(*table);
     if (auto table = root.FindTable("stations")) job.stations = ReadStations(*table);
@@ -93,6 +98,22 @@ class JobReader {
     } else {
       file_.job.noise = ReadCoefficients(table);
     }
+  }
+
+  void TakeTool(TomlTable& table) {
+    const std::string name = table.Need("file", table.FindString("file"));
+    const std::string text = files_.Take("tool", name, true);
+    Result<ToolCalibration> tool = ParseTool(text, files_.PathOf(name).string());
+    if (!tool) throw TomlError{tool.fault()};
+    file_.job.tool = *std::move(tool);
+  }
+
+  void TakeErrorModel(TomlTable& table) {
+    const std::string name = table.Need("file", table.FindString("file"));
+    const std::string text = files_.Take("error_model", name, true);
+    Result<ErrorModel> model = ReadErrorModel(text, files_.PathOf(name).string());
+    if (!model) throw TomlError{model.fault()};
+    file_.job.error_model = *std::move(model);
   }
 
   void TakeRuns(TomlTable& root) {

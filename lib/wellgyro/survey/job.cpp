@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/calibration/apply.h"
 
 namespace wellgyro {
 namespace {
@@ -121,6 +122,11 @@ void CheckJob(const Job& job) {
   CheckAlignment(job.alignment);
   CheckDepth(job.depth);
   CheckErrors(job.noise, job.errors);
+  if (job.tool) {
+    if (const auto complaint = FindComplaint(*job.tool)) {
+      throw std::invalid_argument("job: tool: " + *complaint);
+    }
+  }
   CheckRuns(job.runs);
   if (job.stations.every != 0) RequireWithin("stations.every_m", job.stations.every, 0.01, 1e5);
   for (double md : job.stations.at) RequireFinite("stations.at_m", md);

@@ -15,6 +15,8 @@
 #include "wellgyro/record/channels.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/operations.h"
+#include "wellgyro/record/tool_calibration.h"
+#include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {
 
@@ -92,8 +94,10 @@ struct Job {
   std::vector<std::pair<std::string, std::string>> identity;  ///< free keys, in the file's order
   std::optional<GridSpec> grid;
   TieIn tie_in;
+  std::optional<ToolCalibration> tool;  ///< absent: samples come in SI units
   NoiseCoefficients noise;
   ErrorPriors errors;
+  std::optional<ErrorModel> error_model;  ///< absent: covariance from the run itself alone
   Channels channels;
   AlignmentSpec alignment;
   StationSpec stations;

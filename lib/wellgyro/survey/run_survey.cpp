@@ -68,6 +68,7 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   PassState pass = passes_.state();
   if (along.known) pass = passes_.Push(utc, along.md);
   const bool taken = tracker_.Push(sample, middle, site_);
+  if (sample.stamp.temperature_outside) temperature_outside_ = true;
   if (current_ && tracker_.ready() && tracker_.sample_begin() == current_->stamp.tool_time) {
     const bool contiguous = sample.stamp.seq == current_->stamp.seq + 1 &&
                             sample.stamp.session == current_->stamp.session;
@@ -193,6 +194,8 @@ void RunSurvey::CutAt(double fraction, const AlongHole& end, std::optional<Draft
   if (again && (waiting_.empty() || waiting_.back().draft)) return;
   if (!again) {
     last_knot_ = knot.time;
+    if (temperature_outside_) knot.quality |= Quality::kTemperature;
+    temperature_outside_ = false;
     knot.utc = c.utc + Duration::Seconds(fraction * (c.utc_end - c.utc).seconds());
     knot.along = Between(c.along, end, fraction);
     waiting_.push_back({knot, begin, std::nullopt, false});

@@ -103,6 +103,7 @@ class RunSurvey {
   bool external_pending_ = false;
   std::optional<double> asked_md_;
   bool asked_ = false;
+  bool temperature_outside_ = false;  ///< since the last knot
   std::vector<Waiting> waiting_;
   std::vector<StillWindow> group_;  ///< windows at one place
   std::vector<Draft> drafts_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "wellgyro/calibration/apply.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/survey/run_book.h"
 #include "wellgyro/survey/tool_survey.h"
@@ -41,6 +42,8 @@ struct Surveyor::Rooms {
   std::map<std::int32_t, ToolSurvey> tools;
   std::vector<Operation> operations;  ///< all so far, for a tool that is heard of later
   std::vector<ToolInfo> infos;
+  std::map<std::int32_t, SampleCalibrator> calibrators;  ///< of each tool
+  std::vector<ImuSample> calibrated;                     ///< scratch
   bool finished = false;
 
   ToolSurvey& Tool(std::int32_t number) {
@@ -106,6 +109,26 @@ void Surveyor::Push(std::span<const ImuSample> batch) {
     rooms_->Tool(sample.stamp.tool).Push(sample);
   }
   rooms_->Work();
+}
+
+void Surveyor::Push(std::span<const RawSample> batch) {
+  if (!rooms_->Open() || batch.empty()) return;
+  if (!rooms_->job.tool) {
+    rooms_->sink.OnFault(Fault{FaultCode::kConflict,
+                               "counts came, but the job does not say what they mean: give [tool] "
+                               "file"});
+    return;
+  }
+  const std::int32_t tool = batch.front().stamp.tool;
+  SampleCalibrator& calibrator =
+      rooms_->calibrators.try_emplace(tool, *rooms_->job.tool).first->second;
+  std::vector<ImuSample>& samples = rooms_->calibrated;
+  if (samples.size() < batch.size()) samples.resize(batch.size());
+  const std::size_t done = calibrator.Apply(batch, samples);
+  if (done < batch.size()) {
+    rooms_->sink.OnFault(Fault{FaultCode::kConflict, calibrator.WhyNot(batch[done])});
+  }
+  Push(std::span<const ImuSample>(samples.data(), done));
 }
 
 void Surveyor::Push(const ImuSample& sample) { Push({&sample, 1}); }

@@ -54,6 +54,8 @@ class WELLGYRO_EXPORT Surveyor {
   Surveyor& operator=(Surveyor&&) noexcept;
 
   void Push(std::span<const ImuSample> batch);
+  /// Counts, made SI by job.tool; a Fault where the job has none.
+  void Push(std::span<const RawSample> batch);
   void Push(const ImuSample& sample);
   void Push(const StillWindow& window);
   void Push(const DepthMark& mark);

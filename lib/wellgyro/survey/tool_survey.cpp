@@ -9,6 +9,7 @@
 #include "wellgyro/attitude/smoother.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/hole_attitude.h"
+#include "wellgyro/survey/model_covariance.h"
 #include "wellgyro/survey/station_of.h"
 
 namespace wellgyro {
@@ -355,6 +356,7 @@ Survey ToolSurvey::Current() const {
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);
   survey.unusable = std::move(placed.unusable);
+  if (survey.unusable.empty()) survey.unusable = TakeModelCovariance(job_, survey.chosen);
   survey.accepted = std::any_of(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
     return s.status == StationStatus::kDefinitive;
   });
