@@ -1,0 +1,346 @@
+#include "wellgyro/noise/static_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace wellgyro {
+namespace {
+
+using Kind = LogFinding::Kind;
+
+constexpr std::size_t kFindingsMax = 100;
+constexpr double kUnusual = 8;           // times the robust sigma
+constexpr double kExplained = 0.9;       // share of the slow variance
+constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double RobustSigma(const std::vector<double>& values) {
+  const double median = Median(values);
+  std::vector<double> away;
+  for (const double v : values) away.push_back(std::abs(v - median));
+  return kSigmaPerMad * Median(std::move(away));
+}
+
+// Means over equal stretches, those with missing samples left out.
+struct Stretch {
+  std::int64_t begin = 0;
+  double mean = 0;
+  double log_scatter = 0;  // logarithm of the variance of successive differences
+  double temperature = 0;
+};
+
+class Inspector {
+ public:
+  Inspector(std::span<const double> rate, std::span<const SampleGap> gaps,
+            const StaticLogOptions& options)
+      : rate_(rate),
+        gaps_(gaps),
+        options_(options),
+        samples_(static_cast<std::int64_t>(rate.size())),
+        length_(std::max<std::int64_t>(16, samples_ / 2000)) {}
+
+  std::vector<LogFinding> Inspect() {
+    FindRuns();
+    if (!findings_.empty() && findings_.front().kind == Kind::kConstant) return findings_;
+    FillStretches();
+    FindMovements();
+    FindDrift();
+    return findings_;
+  }
+
+ private:
+  struct Extreme {
+    double value;
+    std::int64_t count = 0;
+    double next_value;
+    std::int64_t next_count = 0;
+
+    // `sign` +1 for the largest, -1 for the smallest.
+    void Take(double y, double sign) {
+      if (count > 0 && y == value) {
+        ++count;
+      } else if (count == 0 || sign * y > sign * value) {
+        next_value = value;
+        next_count = count;
+        value = y;
+        count = 1;
+      } else if (next_count > 0 && y == next_value) {
+        ++next_count;
+      } else if (next_count == 0 || sign * y > sign * next_value) {
+        next_value = y;
+        next_count = 1;
+      }
+    }
+    bool IsPile() const { return count >= 3 && count > 2 * next_count; }
+  };
+
+  // Calls `see` with every present sample, in order.
+  template <class See>
+  void ForEachPresent(See see) const {
+    std::size_t gap = 0;
+    for (std::int64_t i = 0; i < samples_; ++i) {
+      while (gap < gaps_.size() && gaps_[gap].end <= i) ++gap;
+      if (gap < gaps_.size() && gaps_[gap].begin <= i) {
+        i = gaps_[gap].end - 1;
+      } else {
+        see(i, rate_[static_cast<std::size_t>(i)]);
+      }
+    }
+  }
+
+  void Add(const LogFinding& finding) {
+    const auto same = std::count_if(findings_.begin(), findings_.end(),
+                                    [&](const LogFinding& f) { return f.kind == finding.kind; });
+    if (static_cast<std::size_t>(same) < kFindingsMax) findings_.push_back(finding);
+  }
+
+  // Stretches of one value: constant logs, piles at an extreme, readings that stood still.
+  void FindRuns() {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    Extreme high{kNone, 0, kNone, 0};
+    Extreme low{kNone, 0, kNone, 0};
+    std::int64_t present = 0;
+    std::int64_t repeats = 0;
+    double last = kNone;
+    ForEachPresent([&](std::int64_t, double y) {
+      high.Take(y, 1);
+      low.Take(y, -1);
+      repeats += y == last;
+      last = y;
+      ++present;
+    });
+    if (present > 1 && high.value == low.value) {
+      Add({.kind = Kind::kConstant,
+           .where = {0, samples_},
+           .size = high.value,
+           .samples = present});
+      return;
+    }
+    // A run that coarse readings make by chance once in a million logs.
+    const double repeat =
+        static_cast<double>(repeats) / static_cast<double>(std::max<std::int64_t>(1, present));
+    const double chance = std::log(1e-6 / static_cast<double>(present + 1));
+    const double stuck = repeat < 1 ? std::max(32., chance / std::log(std::max(repeat, 1e-3)))
+                                    : static_cast<double>(samples_);
+    const auto at_end = [&](double y) {
+      return (options_.highest && y >= *options_.highest) ||
+             (options_.lowest && y <= *options_.lowest);
+    };
+    std::int64_t begin = 0;
+    std::int64_t end = 0;
+    double value = kNone;
+    const auto close = [&] {
+      const std::int64_t length = end - begin;
+      const bool piled =
+          (high.IsPile() && value == high.value) || (low.IsPile() && value == low.value);
+      if (length > 0 && (at_end(value) || (piled && length >= 3))) {
+        AddSaturated({begin, end}, value);
+      } else if (static_cast<double>(length) > stuck) {
+        Add({.kind = Kind::kStuck, .where = {begin, end}, .size = value, .samples = length});
+      }
+    };
+    ForEachPresent([&](std::int64_t i, double y) {
+      if (y != value || i != end) {
+        close();
+        begin = i;
+        value = y;
+      }
+      end = i + 1;
+    });
+    close();
+  }
+
+  // Runs that follow each other closely are told as one.
+  void AddSaturated(SampleGap where, double value) {
+    for (auto& finding : findings_) {
+      if (finding.kind == Kind::kSaturated && finding.size == value &&
+          where.begin - finding.where.end < length_) {
+        finding.samples += where.end - where.begin;
+        finding.where.end = where.end;
+        return;
+      }
+    }
+    Add({.kind = Kind::kSaturated,
+         .where = where,
+         .size = value,
+         .samples = where.end - where.begin});
+  }
+
+  void FillStretches() {
+    std::size_t gap = 0;
+    for (std::int64_t begin = 0; begin + length_ <= samples_; begin += length_) {
+      while (gap < gaps_.size() && gaps_[gap].end <= begin) ++gap;
+      if (gap < gaps_.size() && gaps_[gap].begin < begin + length_) continue;
+      const auto y =
+          rate_.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(length_));
+      Stretch stretch{.begin = begin};
+      double sum = 0;
+      double squares = 0;
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        sum += y[i] - y[0];
+        if (i > 0) squares += (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
+      }
+      stretch.mean = y[0] + sum / static_cast<double>(length_);
+      stretch.log_scatter =
+          std::log(squares / static_cast<double>(length_ - 1) + std::numeric_limits<double>::min());
+      if (options_.temperature.size() == rate_.size()) {
+        double t = 0;
+        for (std::int64_t i = begin; i < begin + length_; ++i) {
+          t += static_cast<double>(options_.temperature[static_cast<std::size_t>(i)]);
+        }
+        stretch.temperature = t / static_cast<double>(length_);
+      }
+      stretches_.push_back(stretch);
+    }
+  }
+
+  void FindMovements() {
+    if (stretches_.size() < 16) return;
+    std::vector<double> steps;
+    std::vector<double> scatters;
+    for (std::size_t i = 0; i < stretches_.size(); ++i) {
+      if (i > 0) steps.push_back(stretches_[i].mean - stretches_[i - 1].mean);
+      scatters.push_back(stretches_[i].log_scatter);
+    }
+    const double step = RobustSigma(steps);
+    const double middle = Median(scatters);
+    // Differences of normal noise scatter by sqrt(3/length) in the logarithm of their variance.
+    const double spread =
+        std::max(RobustSigma(scatters), std::sqrt(3 / static_cast<double>(length_)));
+    std::vector<bool> moved(stretches_.size(), false);
+    std::vector<double> size(stretches_.size(), 0);
+    for (std::size_t i = 0; i < stretches_.size(); ++i) {
+      const double excess = stretches_[i].log_scatter - middle;
+      if (excess > kUnusual * spread) {
+        moved[i] = true;
+        size[i] = std::exp(stretches_[i].log_scatter / 2);
+      }
+      if (i > 0 && step > 0 && std::abs(steps[i - 1]) > kUnusual * step) {
+        moved[i] = true;
+        size[i] = std::max(size[i], std::abs(steps[i - 1]));
+      }
+    }
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      if (!moved[i]) continue;
+      std::size_t last = i;
+      double largest = size[i];
+      for (std::size_t j = i + 1; j < moved.size() && j <= last + 3; ++j) {
+        if (!moved[j]) continue;
+        last = j;
+        largest = std::max(largest, size[j]);
+      }
+      const std::int64_t begin = stretches_[i > 0 ? i - 1 : 0].begin;
+      const std::int64_t end = stretches_[last].begin + length_;
+      Add({.kind = Kind::kMoved,
+           .where = {begin, end},
+           .size = largest,
+           .typical = step,
+           .samples = end - begin});
+      i = last;
+    }
+  }
+
+  struct Line {
+    double slope = 0;
+    double explained = 0;  // share of the variance
+  };
+  template <class X>
+  Line FitLine(X x_of) const {
+    double mean_x = 0;
+    double mean_y = 0;
+    const auto n = static_cast<double>(stretches_.size());
+    for (const auto& s : stretches_) {
+      mean_x += x_of(s) / n;
+      mean_y += s.mean / n;
+    }
+    double xx = 0;
+    double xy = 0;
+    double yy = 0;
+    for (const auto& s : stretches_) {
+      const double x = x_of(s) - mean_x;
+      const double y = s.mean - mean_y;
+      xx += x * x;
+      xy += x * y;
+      yy += y * y;
+    }
+    if (xx == 0 || yy == 0) return {};
+    return {xy / xx, xy * xy / (xx * yy)};
+  }
+
+  // Slow changes show in means over a fortieth of the log, where noise has averaged out.
+  void FindDrift() {
+    constexpr std::size_t kParts = 40;
+    if (stretches_.size() < 4 * kParts) return;
+    std::vector<Stretch> parts;
+    const std::size_t each = stretches_.size() / kParts;
+    for (std::size_t p = 0; p < kParts; ++p) {
+      Stretch part{.begin = stretches_[p * each].begin};
+      for (std::size_t i = p * each; i < (p + 1) * each; ++i) {
+        part.mean += stretches_[i].mean / static_cast<double>(each);
+        part.temperature += stretches_[i].temperature / static_cast<double>(each);
+      }
+      parts.push_back(part);
+    }
+    stretches_ = std::move(parts);
+    if (options_.temperature.size() == rate_.size()) {
+      const auto temperature = [](const Stretch& s) { return s.temperature; };
+      const Line line = FitLine(temperature);
+      if (line.explained > kExplained) {
+        Add(DriftAlong(Kind::kTemperature, line.slope, temperature));
+        findings_.back().per_degree = line.slope;
+        return;
+      }
+    }
+    const auto time = [](const Stretch& s) { return static_cast<double>(s.begin); };
+    const Line line = FitLine(time);
+    if (line.explained > kExplained) Add(DriftAlong(Kind::kDrift, line.slope, time));
+  }
+
+  // The span of the log's change along x, and the tenth with the most of it.
+  template <class X>
+  LogFinding DriftAlong(Kind kind, double slope, X x_of) const {
+    double least = x_of(stretches_.front());
+    double most = least;
+    for (const auto& s : stretches_) {
+      least = std::min(least, x_of(s));
+      most = std::max(most, x_of(s));
+    }
+    const std::size_t tenth = stretches_.size() / 10;
+    std::size_t fastest = 0;
+    for (std::size_t i = 0; i + tenth < stretches_.size(); ++i) {
+      const auto change = [&](std::size_t at) {
+        return std::abs(stretches_[at + tenth].mean - stretches_[at].mean);
+      };
+      if (change(i) > change(fastest)) fastest = i;
+    }
+    return {.kind = kind,
+            .where = {stretches_[fastest].begin, stretches_[fastest + tenth].begin},
+            .size = std::abs(slope) * (most - least),
+            .samples = samples_};
+  }
+
+  std::span<const double> rate_;
+  std::span<const SampleGap> gaps_;
+  const StaticLogOptions& options_;
+  std::int64_t samples_;
+  std::int64_t length_;
+  std::vector<Stretch> stretches_;
+  std::vector<LogFinding> findings_;
+};
+
+}  // namespace
+
+std::vector<LogFinding> InspectStaticLog(std::span<const double> rate,
+                                         std::span<const SampleGap> gaps,
+                                         const StaticLogOptions& options) {
+  return Inspector(rate, gaps, options).Inspect();
+}
+
+}  // namespace wellgyro
