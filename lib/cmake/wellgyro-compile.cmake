@@ -5,7 +5,7 @@
 function(wellgyro_compile target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
-    $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion
+    $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
       -Wno-missing-field-initializers -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual>
     $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<BOOL:${WELLGYRO_WERROR}>>:-Werror>)
 endfunction()
