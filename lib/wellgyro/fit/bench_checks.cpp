@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/fit/bench_checks_internal.h"
+
+namespace wellgyro {
+namespace {
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Fault BenchFault(const BenchTable& data, std::string text, int line, FaultCode code) {
+  return {.code = code, .text = std::move(text), .source = data.source, .line = line};
+}
+
+Result<std::vector<int>> FindColumns(const BenchTable& data,
+                                     const std::vector<std::string>& names) {
+  std::vector<int> places;
+  std::vector<std::string> missing;
+  for (const std::string& name : names) {
+    const auto place = data.Find(name);
+    if (place) places.push_back(*place);
+    if (!place) missing.push_back(name);
+  }
+  if (missing.empty()) return places;
+  return BenchFault(data,
+                    fmt::format("the table has no column {}; it has {}", fmt::join(missing, ", "),
+                                fmt::join(data.columns, ", ")),
+                    1, FaultCode::kForeign);
+}
+
+std::string LinesText(const std::vector<int>& lines) {
+  constexpr std::size_t kShown = 6;
+  const std::size_t shown = std::min(lines.size(), kShown);
+  std::string text = lines.size() == 1 ? "line " : "lines ";
+  text +=
+      fmt::format("{}", fmt::join(lines.begin(), lines.begin() + static_cast<int>(shown), ", "));
+  if (lines.size() > shown) text += fmt::format(" and {} more", lines.size() - shown);
+  return text;
+}
+
+std::optional<Fault> TooFew(const BenchTable& data, int least, std::string_view what,
+                            std::string_view advice) {
+  if (data.rows() >= least) return std::nullopt;
+  return BenchFault(
+      data, fmt::format("{} {} are too few, {} are needed: {}", data.rows(), what, least, advice));
+}
+
+std::optional<Fault> Repeated(const BenchTable& data) {
+  std::map<std::vector<double>, int> seen;
+  for (int row = 0; row < data.rows(); ++row) {
+    const Eigen::VectorXd values = data.values.row(row).transpose();
+    const auto [first, is_new] =
+        seen.emplace(std::vector<double>(values.begin(), values.end()), row);
+    if (is_new) continue;
+    const int line = data.lines[static_cast<std::size_t>(row)];
+    return BenchFault(data,
+                      fmt::format("line {} repeats line {} to the last digit in every column: two "
+                                  "readings never do; delete the copy, or measure again",
+                                  line, data.lines[static_cast<std::size_t>(first->second)]),
+                      line, FaultCode::kConflict);
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> Frozen(const BenchTable& data, const std::vector<int>& columns) {
+  if (data.rows() < 3) return std::nullopt;
+  for (const int column : columns) {
+    const auto values = data.values.col(column);
+    if (values.maxCoeff() != values.minCoeff()) continue;
+    return BenchFault(
+        data,
+        fmt::format("column {} reads {} in all {} rows: the channel is frozen or not "
+                    "connected; mend it and measure all positions again",
+                    data.columns[static_cast<std::size_t>(column)], values[0], data.rows()),
+        data.lines[0]);
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> MixedUnits(const BenchTable& data, const std::vector<int>& columns,
+                                double expected, std::string_view what, std::string_view units) {
+  std::vector<double> lengths;
+  for (int row = 0; row < data.rows(); ++row) {
+    double square = 0;
+    for (const int column : columns) square += std::pow(data.values(row, column), 2);
+    lengths.push_back(std::sqrt(square));
+  }
+  if (lengths.empty()) return std::nullopt;
+  const double middle = Median(lengths);
+  std::vector<int> lines;
+  double example = 0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    if (lengths[i] < 3 * middle && lengths[i] > middle / 3) continue;
+    lines.push_back(data.lines[i]);
+    example = lengths[i];
+  }
+  // One row alone is a bad reading, and outliers are found later.
+  if (lines.size() > 1)
+    return BenchFault(data,
+                      fmt::format("{}: {} is {:.4g} where the other rows have {:.4g}: units are "
+                                  "mixed; give every row in {}",
+                                  LinesText(lines), what, example, middle, units),
+                      lines.front(), FaultCode::kConflict);
+  if (expected > 0 && (middle > 2 * expected || middle < expected / 2))
+    return BenchFault(
+        data,
+        fmt::format("{} is {:.4g} in the middle of the rows where {:.4g} is expected: "
+                    "give the reference in the unit of the readings, {}",
+                    what, middle, expected, units),
+        data.lines[0]);
+  return std::nullopt;
+}
+
+std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector<int>& columns) {
+  if (data.rows() < 6) return std::nullopt;
+  double largest = 0;
+  for (const int column : columns)
+    largest = std::max(largest, data.values.col(column).cwiseAbs().maxCoeff());
+  if (largest == 0 || largest > kTwoPi + 0.01) return std::nullopt;
+  return BenchFault(data,
+                    fmt::format("no angle in the table is larger than {:.4g}: they look like "
+                                "radians; give degrees",
+                                largest),
+                    data.lines[0]);
+}
+
+std::optional<Fault> WrongAxes(const BenchTable& data, const Eigen::Matrix3d& sensitivity,
+                               const std::vector<std::string>& channels) {
+  static constexpr std::string_view kAxes = "xyz";
+  for (int c = 0; c < 3; ++c) {
+    Eigen::Index most = 0;
+    const double value = sensitivity.row(c).cwiseAbs().maxCoeff(&most);
+    const std::string& channel = channels[static_cast<std::size_t>(c)];
+    if (most != c)
+      return BenchFault(
+          data,
+          fmt::format("channel {} follows {}{}: its axis is not {}; exchange the columns, or "
+                      "mend the names of the positions",
+                      channel, sensitivity(c, most) < 0 ? "-" : "",
+                      kAxes[static_cast<std::size_t>(most)], kAxes[static_cast<std::size_t>(c)]));
+    if (sensitivity(c, c) < 0)
+      return BenchFault(
+          data,
+          fmt::format("channel {} falls by {:.4g} where {} rises by one: its sign is wrong, or "
+                      "up and down of {} are swapped",
+                      channel, value, kAxes[static_cast<std::size_t>(c)],
+                      kAxes[static_cast<std::size_t>(c)]));
+  }
+  return std::nullopt;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "wellgyro/base/result.h"
+#include "wellgyro/calibration/bench_table.h"
+
+namespace wellgyro {
+
+/// The complaint about a table of readings; `advice` says what to measure next.
+Fault BenchFault(const BenchTable& data, std::string text, int line = 0,
+                 FaultCode code = FaultCode::kRange);
+
+/// Places of the named columns; a Fault that names those that are missing.
+Result<std::vector<int>> FindColumns(const BenchTable& data, const std::vector<std::string>& names);
+
+/// "lines 3, 7 and 12 more".
+std::string LinesText(const std::vector<int>& lines);
+
+// Each gives the Fault, if any.
+
+/// Fewer rows than `least`.
+std::optional<Fault> TooFew(const BenchTable& data, int least, std::string_view what,
+                            std::string_view advice);
+/// Two rows alike to the last digit in every column.
+std::optional<Fault> Repeated(const BenchTable& data);
+/// A column that reads the same in every row.
+std::optional<Fault> Frozen(const BenchTable& data, const std::vector<int>& columns);
+/// Rows whose vector (of three columns) is longer or shorter than the others' by more than a factor
+/// of three; and all of them against `expected` where it is above zero. `units` as "g, or m/s2".
+std::optional<Fault> MixedUnits(const BenchTable& data, const std::vector<int>& columns,
+                                double expected, std::string_view what, std::string_view units);
+/// Angles that look like radians.
+std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector<int>& columns);
+/// A square sensitivity whose diagonal is not what dominates its rows: axes or signs.
+std::optional<Fault> WrongAxes(const BenchTable& data, const Eigen::Matrix3d& sensitivity,
+                               const std::vector<std::string>& channels);
+
+}  // namespace wellgyro

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+void AddResiduals(FitReport& report, const LinearSolution& solution) {
+  const double scale = report.sigma_given || !(report.scatter > 0) ? 1 : report.scatter;
+  for (std::size_t i = 0; i < solution.rows.size(); ++i) {
+    const FitRow& row = solution.rows[i];
+    if (row.line <= 0) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    FitResidual residual;
+    residual.line = row.line;
+    residual.channel = row.channel;
+    residual.value = solution.residual[at] * row.unit;
+    residual.leverage = solution.leverage[at];
+    const double rest = 1 - residual.leverage;
+    if (rest > 1e-9 && solution.dof > 0)
+      residual.studentised = solution.residual[at] / (scale * std::sqrt(rest));
+    report.half_square_sum += residual.value * residual.value / 2;
+    report.residuals.push_back(std::move(residual));
+  }
+  report.readings = static_cast<int>(report.residuals.size());
+  if (solution.dof < 1) return;
+  constexpr double kFalseAlarm = 0.01;
+  const double each = kFalseAlarm / 2 / std::max(1, report.readings);
+  report.studentised_limit =
+      report.sigma_given ? -NormalQuantile(each) : StudentLimit(each, solution.dof);
+}
+
+void AddCorrelations(FitReport& report) {
+  for (Eigen::Index i = 0; i < report.cov.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double r = report.cov(i, j) / std::sqrt(report.cov(i, i) * report.cov(j, j));
+      if (!(std::abs(r) > 0.95)) continue;
+      report.correlations.push_back(fmt::format("{} and {}: {:+.3f}",
+                                                report.parameters[static_cast<std::size_t>(j)],
+                                                report.parameters[static_cast<std::size_t>(i)], r));
+    }
+  }
+}
+
+void Add(FitReport& report, std::string name, FitQuantity::Shape shape, int first, int rows,
+         int columns) {
+  FitQuantity quantity{std::move(name), shape, Eigen::MatrixXd(rows, columns), {}};
+  const bool known = report.cov.size() > 0;
+  if (known) quantity.sigma.resize(rows, columns);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const int at = first + i * columns + j;
+      quantity.value(i, j) = report.values[at];
+      if (known) quantity.sigma(i, j) = std::sqrt(std::max(0.0, report.cov(at, at)));
+    }
+  }
+  report.result.push_back(std::move(quantity));
+}
+
+}  // namespace
+
+FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution) {
+  FitReport report;
+  report.parameters = problem.parameters;
+  report.values = solution.x;
+  report.cov = solution.cov;
+  report.dof = solution.dof;
+  report.sigma_given = problem.sigma_given;
+  report.chi_square = solution.chi_square;
+  report.condition = solution.condition;
+  report.outlier_lines = solution.outlier_lines;
+  if (solution.dof > 0) {
+    report.chi_low = ChiSquareQuantile(0.025, solution.dof);
+    report.chi_high = ChiSquareQuantile(0.975, solution.dof);
+    report.scatter = std::sqrt(solution.chi_square / solution.dof);
+  }
+  AddResiduals(report, solution);
+  AddCorrelations(report);
+  if (report.cov.size() == 0)
+    report.remarks.push_back(
+        "there are as many parameters as readings: no uncertainty can be stated; repeat the "
+        "positions, or give the readings' sigma");
+  if (report.sigma_given && report.dof > 0 && report.chi_square > report.chi_high)
+    report.remarks.push_back(fmt::format(
+        "the residuals are {:.2f} times what the given sigma lets expect: the uncertainties are "
+        "too small by that, or the model lacks something",
+        report.scatter));
+  return report;
+}
+
+void Reparametrise(FitReport& report, std::vector<std::string> names,
+                   const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& of) {
+  const Eigen::VectorXd value = of(report.values);
+  if (report.cov.size() > 0) {
+    Eigen::MatrixXd D(value.size(), report.values.size());
+    for (Eigen::Index i = 0; i < report.values.size(); ++i) {
+      const double sigma = std::sqrt(std::max(0.0, report.cov(i, i)));
+      const double step = std::max({1e-6 * std::abs(report.values[i]), 1e-3 * sigma, 1e-12});
+      Eigen::VectorXd above = report.values, below = report.values;
+      above[i] += step;
+      below[i] -= step;
+      D.col(i) = (of(above) - of(below)) / (above[i] - below[i]);
+    }
+    report.cov = D * report.cov * D.transpose();
+  }
+  report.values = value;
+  report.parameters = std::move(names);
+  report.correlations.clear();
+  AddCorrelations(report);
+}
+
+void AddNumber(FitReport& report, std::string name, int first) {
+  Add(report, std::move(name), FitQuantity::Shape::kNumber, first, 1, 1);
+}
+
+void AddVector(FitReport& report, std::string name, int first, int size) {
+  Add(report, std::move(name), FitQuantity::Shape::kVector, first, size, 1);
+}
+
+void AddMatrix(FitReport& report, std::string name, int first, int rows, int columns) {
+  Add(report, std::move(name), FitQuantity::Shape::kMatrix, first, rows, columns);
+}
+
+void AddFixed(FitReport& report, std::string name, FitQuantity::Shape shape,
+              Eigen::MatrixXd value) {
+  report.result.push_back({std::move(name), shape, std::move(value), {}});
+}
+
+double StudentLimit(double probability, double dof) {
+  // Cornish and Fisher's expansion, Abramowitz and Stegun 26.7.5.
+  const double z = -NormalQuantile(probability), z2 = z * z;
+  const double g1 = z * (z2 + 1) / 4;
+  const double g2 = z * ((5 * z2 + 16) * z2 + 3) / 96;
+  const double g3 = z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / 384;
+  const double g4 = z * ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / 92160;
+  return z + (g1 + (g2 + (g3 + g4 / dof) / dof) / dof) / dof;
+}
+
+std::vector<std::string> VectorNames(std::string_view name, int size) {
+  std::vector<std::string> names;
+  for (int i = 0; i < size; ++i) names.push_back(fmt::format("{}[{}]", name, i));
+  return names;
+}
+
+std::vector<std::string> MatrixNames(std::string_view name, int rows, int columns) {
+  std::vector<std::string> names;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) names.push_back(fmt::format("{}[{},{}]", name, i, j));
+  }
+  return names;
+}
+
+}  // namespace wellgyro

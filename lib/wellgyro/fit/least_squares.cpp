@@ -1,0 +1,219 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include <Eigen/Dense>
+#include <fmt/core.h>
+
+#include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kRankTolerance = 1e-8;
+
+struct Whitened {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd y;
+};
+
+Whitened Whiten(const LinearProblem& problem) {
+  const Eigen::VectorXd weight = problem.sigma.cwiseInverse();
+  return {weight.asDiagonal() * problem.A, weight.cwiseProduct(problem.y)};
+}
+
+struct Decomposition {
+  Eigen::VectorXd scale;  ///< lengths of the columns
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd;
+  int rank = 0;
+};
+
+Decomposition Decompose(const Eigen::MatrixXd& A) {
+  Decomposition d;
+  d.scale = A.colwise().norm().transpose();
+  for (double& s : d.scale) s = s > 0 ? s : 1;
+  Eigen::MatrixXd scaled = A * d.scale.cwiseInverse().asDiagonal();
+  // Fewer rows than parameters: rows of zeros keep every right singular vector.
+  if (scaled.rows() < scaled.cols()) {
+    const Eigen::Index rows = scaled.rows();
+    scaled.conservativeResize(scaled.cols(), Eigen::NoChange);
+    scaled.bottomRows(scaled.rows() - rows).setZero();
+  }
+  d.svd.compute(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd& values = d.svd.singularValues();
+  for (const double value : values) d.rank += value > kRankTolerance * values[0] ? 1 : 0;
+  return d;
+}
+
+Eigen::VectorXd Apply(const Decomposition& d, const Eigen::VectorXd& y) {
+  Eigen::VectorXd padded = Eigen::VectorXd::Zero(d.svd.matrixU().rows());
+  padded.head(y.size()) = y;
+  const Eigen::VectorXd along = (d.svd.matrixU().transpose() * padded).head(d.rank);
+  const Eigen::VectorXd scaled =
+      d.svd.matrixV().leftCols(d.rank) * along.cwiseQuotient(d.svd.singularValues().head(d.rank));
+  return scaled.cwiseQuotient(d.scale);
+}
+
+// "0.71 b[0] - 0.70 G[0,0]": a direction in which nothing changes.
+std::string Words(const Eigen::VectorXd& direction, const std::vector<std::string>& names) {
+  const double largest = direction.cwiseAbs().maxCoeff();
+  std::string words;
+  for (Eigen::Index i = 0; i < direction.size(); ++i) {
+    const double part = direction[i] / largest;
+    if (std::abs(part) < 0.05) continue;
+    words += words.empty() ? (part < 0 ? "-" : "") : (part < 0 ? " - " : " + ");
+    words += fmt::format("{:.2f} {}", std::abs(part), names[static_cast<std::size_t>(i)]);
+  }
+  return words;
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+LinearSolution SolvePlain(const LinearProblem& problem) {
+  const Whitened w = Whiten(problem);
+  const Decomposition d = Decompose(w.A);
+  LinearSolution solution;
+  solution.x = Apply(d, w.y);
+  // Once more on what is left: small residuals to the last digits.
+  solution.x += Apply(d, w.y - w.A * solution.x);
+  solution.residual = w.y - w.A * solution.x;
+  solution.rank = d.rank;
+  const Eigen::VectorXd& values = d.svd.singularValues();
+  solution.condition = d.rank > 0 ? values[0] / values[d.rank - 1] : 1;
+  const auto U = d.svd.matrixU().leftCols(d.rank).topRows(w.y.size());
+  solution.leverage = U.rowwise().squaredNorm();
+  solution.chi_square = solution.residual.squaredNorm();
+  solution.dof = static_cast<int>(w.y.size()) - d.rank;
+  solution.rows = problem.rows;
+  for (int i = d.rank; i < problem.size(); ++i)
+    solution.unseen.push_back(Words(d.svd.matrixV().col(i), problem.parameters));
+  const Eigen::MatrixXd root = d.scale.cwiseInverse().asDiagonal() *
+                               d.svd.matrixV().leftCols(d.rank) *
+                               values.head(d.rank).cwiseInverse().asDiagonal();
+  if (problem.sigma_given) {
+    solution.cov = root * root.transpose();
+  } else if (solution.dof > 0) {
+    solution.cov = root * root.transpose() * (solution.chi_square / solution.dof);
+  }
+  return solution;
+}
+
+// Weights of Cauchy's loss, all rows of a line together.
+Eigen::VectorXd CauchyWeights(const LinearProblem& problem, const Eigen::VectorXd& residual,
+                              double scale) {
+  Eigen::VectorXd weight = Eigen::VectorXd::Ones(residual.size());
+  for (std::size_t begin = 0; begin < problem.rows.size();) {
+    std::size_t end = begin;
+    double square = 0;
+    while (end < problem.rows.size() && problem.rows[end].line == problem.rows[begin].line) {
+      square += std::pow(residual[static_cast<Eigen::Index>(end++)], 2);
+    }
+    const double mean = square / static_cast<double>(end - begin) / (4 * scale * scale);
+    if (problem.rows[begin].line > 0) {
+      for (std::size_t i = begin; i < end; ++i)
+        weight[static_cast<Eigen::Index>(i)] = 1 / std::sqrt(1 + mean);
+    }
+    begin = end;
+  }
+  return weight;
+}
+
+double RobustScale(const LinearProblem& problem, const Eigen::VectorXd& residual, int rank) {
+  if (problem.sigma_given) return 1;
+  std::vector<double> sizes;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    if (problem.rows[static_cast<std::size_t>(i)].line > 0) sizes.push_back(std::abs(residual[i]));
+  }
+  const double n = static_cast<double>(sizes.size());
+  return 1.4826 * Median(sizes) * std::sqrt(n / std::max(1.0, n - rank));
+}
+
+LinearProblem Without(const LinearProblem& problem, const std::set<int>& lines) {
+  LinearProblem rest(problem.parameters, 0);
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+    if (lines.count(problem.rows[i].line) > 0) continue;
+    kept.push_back(static_cast<Eigen::Index>(i));
+    rest.rows.push_back(problem.rows[i]);
+  }
+  rest.A = problem.A(kept, Eigen::all);
+  rest.y = problem.y(kept);
+  rest.sigma = problem.sigma(kept);
+  rest.sigma_given = problem.sigma_given;
+  return rest;
+}
+
+// Lines that do not belong, by a fit that they cannot draw to them.
+std::set<int> Outliers(const LinearProblem& problem) {
+  constexpr double kSigmas = 6;
+  constexpr double kRounding = 1e-9;  // of the readings: what no bench calls an outlier
+  LinearProblem weighted = problem;
+  LinearSolution solution = SolvePlain(problem);
+  const Whitened w = Whiten(problem);
+  double scale = 0;
+  for (int turn = 0; turn < 30; ++turn) {
+    const Eigen::VectorXd residual = w.y - w.A * solution.x;
+    scale = std::max(RobustScale(problem, residual, solution.rank),
+                     kRounding * w.y.cwiseAbs().maxCoeff() / kSigmas);
+    weighted.sigma = problem.sigma.cwiseQuotient(CauchyWeights(problem, residual, scale));
+    const Eigen::VectorXd before = solution.x;
+    solution = SolvePlain(weighted);
+    if ((solution.x - before).norm() <= 1e-9 * before.norm()) break;
+  }
+  const Eigen::VectorXd residual = w.y - w.A * solution.x;
+  std::set<int> lines;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    const int line = problem.rows[static_cast<std::size_t>(i)].line;
+    if (line > 0 && std::abs(residual[i]) > kSigmas * scale) lines.insert(line);
+  }
+  return lines;
+}
+
+std::size_t CountLines(const LinearProblem& problem) {
+  std::set<int> lines;
+  for (const FitRow& row : problem.rows) {
+    if (row.line > 0) lines.insert(row.line);
+  }
+  return lines.size();
+}
+
+}  // namespace
+
+LinearProblem::LinearProblem(std::vector<std::string> names, int n_rows)
+    : parameters(std::move(names)),
+      A(Eigen::MatrixXd::Zero(n_rows, static_cast<Eigen::Index>(parameters.size()))),
+      y(Eigen::VectorXd::Zero(n_rows)),
+      sigma(Eigen::VectorXd::Ones(n_rows)),
+      rows(static_cast<std::size_t>(n_rows)) {}
+
+LinearSolution Solve(const LinearProblem& problem) {
+  LinearSolution plain = SolvePlain(problem);
+  // Where half of the readings serve to fix the parameters, none can be told to be wrong.
+  if (!problem.robust || problem.y.size() < 2 * problem.size() || !plain.unseen.empty())
+    return plain;
+  const std::set<int> lines = Outliers(problem);
+  if (lines.empty() || 4 * lines.size() > CountLines(problem)) return plain;
+  LinearSolution rest = SolvePlain(Without(problem, lines));
+  if (!rest.unseen.empty()) return plain;
+  rest.outlier_lines.assign(lines.begin(), lines.end());
+  return rest;
+}
+
+Result<LinearSolution> SolveWhole(const LinearProblem& problem, std::string_view advice) {
+  LinearSolution solution = Solve(problem);
+  if (solution.unseen.empty()) return solution;
+  std::string text = "the readings do not determine";
+  for (std::size_t i = 0; i < solution.unseen.size() && i < 3; ++i)
+    text += fmt::format("{} {}", i > 0 ? ", nor" : "", solution.unseen[i]);
+  if (solution.unseen.size() > 3) text += fmt::format(", nor {} more", solution.unseen.size() - 3);
+  return Fault{.code = FaultCode::kRange, .text = fmt::format("{}: {}", text, advice)};
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/result.h"
+#include "wellgyro/calibration/fit_report.h"
+
+namespace wellgyro {
+
+/// A row of a fit: which reading it is. Line 0 is a prior.
+struct FitRow {
+  int line = 0;
+  std::string channel;
+  double unit = 1;  ///< the data's unit in one of the whitened residual, for reports
+};
+
+/// y = A x + noise of `sigma`, row by row.
+struct LinearProblem {
+  std::vector<std::string> parameters;
+  Eigen::MatrixXd A;
+  Eigen::VectorXd y;
+  Eigen::VectorXd sigma;  ///< relative to each other where not sigma_given
+  bool sigma_given = false;
+  std::vector<FitRow> rows;
+  bool robust = true;  ///< look for outliers, all rows of a line together
+
+  LinearProblem(std::vector<std::string> names, int n_rows);
+  int size() const { return static_cast<int>(parameters.size()); }
+};
+
+struct LinearSolution {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd cov;       ///< empty where it cannot be known
+  Eigen::VectorXd residual;  ///< (y - A x) / sigma, of the rows that were used
+  Eigen::VectorXd leverage;
+  std::vector<FitRow> rows;  ///< that were used
+  int rank = 0;
+  double condition = 1;
+  double chi_square = 0;
+  int dof = 0;
+  std::vector<std::string> unseen;  ///< combinations of parameters that the rows do not determine
+  std::vector<int> outlier_lines;
+};
+
+/// Least squares by singular values of the scaled design; what it cannot see is left at zero and
+/// named in `unseen`. Where robust and there are enough rows, outliers are found by Cauchy's loss,
+/// left out, and the rest solved without it.
+LinearSolution Solve(const LinearProblem& problem);
+
+/// Solve, for problems that must determine everything: the Fault names what they do not, and says
+/// `advice`.
+Result<LinearSolution> SolveWhole(const LinearProblem& problem, std::string_view advice);
+
+/// What people read of a solution.
+FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution);
+
+/// Takes the report from its parameters to functions of them; the covariance by differences.
+void Reparametrise(FitReport& report, std::vector<std::string> names,
+                   const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& of);
+
+/// Adds the parameters from `first` on as one quantity of the result.
+void AddNumber(FitReport& report, std::string name, int first);
+void AddVector(FitReport& report, std::string name, int first, int size);
+void AddMatrix(FitReport& report, std::string name, int first, int rows, int columns);
+/// A quantity that is no parameter.
+void AddFixed(FitReport& report, std::string name, FitQuantity::Shape shape, Eigen::MatrixXd value);
+
+/// The t that Student's distribution passes with `probability` below 1/2, dof > 0; to 1 % for
+/// dof > 3.
+double StudentLimit(double probability, double dof);
+
+/// "bias[0]", "sensitivity[1,2]".
+std::vector<std::string> VectorNames(std::string_view name, int size);
+std::vector<std::string> MatrixNames(std::string_view name, int rows, int columns);
+
+}  // namespace wellgyro

@@ -1,0 +1,140 @@
+#include "wellgyro/fit/thermometer_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/least_squares_internal.h"
+
+namespace wellgyro {
+namespace {
+
+struct Readings {
+  Eigen::VectorXd t, error;
+  std::vector<int> lines;
+  double spread = 0;  ///< of the references about their mean, 1-sigma
+};
+
+Result<Readings> Read(const BenchTable& data) {
+  const auto place = FindColumns(data, {"t_m"});
+  if (!place) return place.fault();
+  std::vector<int> refs;
+  for (std::size_t i = 0; i < data.columns.size(); ++i) {
+    if (data.columns[i].rfind("ref", 0) == 0) refs.push_back(static_cast<int>(i));
+  }
+  if (refs.empty())
+    return BenchFault(data, "the table has no reference thermometer, a column ref1", 1,
+                      FaultCode::kForeign);
+  if (auto fault = TooFew(data, 4, "temperatures", "read the thermometers at more of them"))
+    return *fault;
+  if (auto fault = Repeated(data)) return *fault;
+  std::vector<int> all = refs;
+  all.push_back(place->front());
+  if (auto fault = Frozen(data, all)) return *fault;
+  Readings readings{data.values.col(place->front()), {}, data.lines, 0};
+  const Eigen::MatrixXd references = data.values(Eigen::all, refs);
+  const Eigen::VectorXd mean = references.rowwise().mean();
+  readings.error = mean - readings.t;
+  if (refs.size() > 1)
+    readings.spread = std::sqrt((references.colwise() - mean).squaredNorm() /
+                                static_cast<double>(references.size() - references.rows()));
+  return readings;
+}
+
+LinearProblem Problem(const Readings& readings, const ThermometerFitSetup& setup, double knee,
+                      bool bends) {
+  const int n = static_cast<int>(readings.t.size());
+  LinearProblem problem(VectorNames("c", bends ? 3 : 2), n);
+  problem.y = readings.error;
+  problem.sigma.setConstant(setup.sigma.value_or(1));
+  problem.sigma_given = setup.sigma.has_value();
+  for (int i = 0; i < n; ++i) {
+    const double t = readings.t[i], above = std::max(0.0, t - knee);
+    problem.A(i, 0) = 1;
+    problem.A(i, 1) = t;
+    if (bends) problem.A(i, 2) = above * above;
+    problem.rows[static_cast<std::size_t>(i)] = {readings.lines[static_cast<std::size_t>(i)], "t_m",
+                                                 problem.sigma[i]};
+  }
+  return problem;
+}
+
+// The knee with the least sum of squares, between the third reading from either end.
+double FindKnee(const Readings& readings, const ThermometerFitSetup& setup) {
+  std::vector<double> t(readings.t.begin(), readings.t.end());
+  std::sort(t.begin(), t.end());
+  const auto cost = [&](double knee) {
+    LinearProblem problem = Problem(readings, setup, knee, true);
+    problem.robust = false;
+    return Solve(problem).chi_square;
+  };
+  double low = t[1], high = t[t.size() - 3];
+  double best = low;
+  constexpr int kGrid = 60;
+  const double step = (high - low) / kGrid;
+  for (int i = 0; i <= kGrid; ++i) {
+    if (cost(low + i * step) < cost(best)) best = low + i * step;
+  }
+  // Golden section about the best of the grid.
+  low = best - step;
+  high = best + step;
+  constexpr double kGolden = 0.6180339887498949;
+  while (high - low > 1e-9 * (1 + std::abs(best))) {
+    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+    if (cost(a) < cost(b))
+      high = b;
+    else
+      low = a;
+  }
+  return (low + high) / 2;
+}
+
+}  // namespace
+
+Result<BenchCalibration> FitThermometer(const BenchTable& data, const ThermometerFitSetup& setup) {
+  const Result<Readings> readings = Read(data);
+  if (!readings) return readings.fault();
+  const auto beyond = [&](double knee) { return (readings->t.array() > knee).count(); };
+  double knee = setup.knee;
+  if (setup.fit_knee) {
+    if (auto fault = TooFew(data, 7, "temperatures", "read on both sides of the knee"))
+      return *fault;
+    knee = FindKnee(*readings, setup);
+  }
+  const bool bends = beyond(knee) > 0;
+  const LinearProblem problem = Problem(*readings, setup, knee, bends);
+  const auto solution = SolveWhole(problem, "read the thermometers at more temperatures");
+  if (!solution) return BenchFault(data, solution.fault().text);
+  BenchCalibration out;
+  out.report = ReportOf(problem, *solution);
+  FitReport& report = out.report;
+  report.method = "thermometer";
+  Reparametrise(report, VectorNames("c", 3), [](const Eigen::VectorXd& c) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(3);
+    all.head(c.size()) = c;
+    return all;
+  });
+  AddVector(report, "c", 0, 3);
+  AddFixed(report, "knee_C", FitQuantity::Shape::kNumber, Eigen::MatrixXd::Constant(1, 1, knee));
+  if (!bends)
+    report.remarks.push_back(fmt::format(
+        "no reading beyond the knee at {:.4g} degC: c[2] is left at zero, and the range ends at "
+        "{:.4g} degC",
+        knee, readings->t.maxCoeff()));
+  if (readings->spread > 0)
+    report.remarks.push_back(
+        fmt::format("the reference thermometers differ by {:.3g} degC (1 sigma) among themselves",
+                    readings->spread));
+  out.thermometer = ThermometerCalibration{.c0 = report.values[0],
+                                           .c1 = report.values[1],
+                                           .c2 = report.values[2],
+                                           .knee = knee,
+                                           .min = readings->t.minCoeff(),
+                                           .max = readings->t.maxCoeff()};
+  return out;
+}
+
+}  // namespace wellgyro
