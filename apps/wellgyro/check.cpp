@@ -12,6 +12,7 @@
 #include "wellgyro/io/error_model_file.h"
 #include "wellgyro/io/file_kind.h"
 #include "wellgyro/io/job_file.h"
+#include "wellgyro/io/program_file.h"
 #include "wellgyro/io/simulation_file.h"
 #include "wellgyro/io/survey_csv.h"
 #include "wellgyro/survey/job.h"
@@ -93,6 +94,8 @@ int CheckFile(const std::string& name) {
       return Tell(name, what, FaultOf(ReadSimulation(name)), kUnusable);
     case FileKind::kErrorModel:
       return Tell(name, what, FaultOf(ReadErrorModelFile(name)), kUnusable);
+    case FileKind::kProgram:
+      return Tell(name, what, FaultOf(ReadSurveyProgram(name)), kUnusable);
     case FileKind::kSurveyCsv:
       return Tell(name, what, FaultOf(ReadSurveyCsv(name)), kUnusable);
     case FileKind::kLcmLog:

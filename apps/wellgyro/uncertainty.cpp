@@ -1,6 +1,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -62,6 +63,15 @@ void AddNumbers(CLI::App& command, Options& o) {
             "(default: the model's, else 15)");
   AddNumber(command, "--sigma-azimuth-deg", r.sigma_azimuth, units::kDeg,
             "1 sigma of the fix that starts it, with --noise alone");
+  command
+      .add_option_function<std::vector<double>>(
+          "--tie-in-sigma-m",
+          [&r](const std::vector<double>& v) {
+            r.sigma_tie_in = {v[0], v[1], v[2]};
+          },
+          "1 sigma of the first station's place: north, east, down")
+      ->expected(3)
+      ->check(CLI::Range(0.0, 1e5));
   command.add_option("--confidence", r.confidence, "of the ellipses, default 0.95")
       ->check(CLI::Range(1e-6, 1 - 1e-9));
 }
@@ -106,10 +116,12 @@ void AddUncertainty(CLI::App& app, int& exit_code) {
       "Noise: --noise N.toml --allan exact --speed-mps 0.75, alone or beside --model, where it\n"
       "takes the place of the model's drift and random walk.");
   command->callback([options, &exit_code] {
-    if (options->request.sources.noise && options->allan.empty())
+    if (options->request.sources.noise && options->allan.empty()) {
       throw CLI::RequiredError("--allan exact or --allan printed beside --noise");
-    if (!options->request.sources.noise && !options->allan.empty())
+    }
+    if (!options->request.sources.noise && !options->allan.empty()) {
       throw CLI::RequiredError("--noise beside --allan");
+    }
     try {
       exit_code = Run(*options);
     } catch (const std::invalid_argument& error) {

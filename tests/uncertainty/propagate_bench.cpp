@@ -6,6 +6,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/error_model_file.h"
+#include "wellgyro/uncertainty/allan_error.h"
 #include "wellgyro/uncertainty/propagate.h"
 
 namespace wellgyro {
@@ -45,6 +46,26 @@ void Run(benchmark::State& state, const std::string& name, bool terms) {
   state.SetComplexityN(state.range(0));
 }
 
+void RunAllan(benchmark::State& state) {
+  const std::vector<SurveyPoint> survey = Well(state.range(0));
+  AllanRun run;
+  run.speed = 0.75;
+  run.initialise = 15 * units::kDeg;
+  run.noise.angle_random_walk = 0.1 * units::kDegPerSqrtHour;
+  run.noise.bias_instability = 0.1 * units::kDegPerHour;
+  run.noise.bias_instability_correlation_time = 0.5 * units::kHour;
+  run.noise.rate_random_walk = 0.1 * units::kDegPerHourSqrtHour;
+  run.noise.rate_ramp = 0.1 * units::kDegPerHour2;
+  for (auto _ : state) {
+    const AllanUncertainty result = AllanErrors(survey, run);
+    if (result.refusal) return state.SkipWithError("refused");
+    benchmark::DoNotOptimize(result.cov_p.back());
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+  state.SetComplexityN(state.range(0));
+}
+
+BENCHMARK(RunAllan)->RangeMultiplier(10)->Range(1000, 100000)->Complexity(benchmark::oN);
 BENCHMARK_CAPTURE(Run, GyroNsCt, "GYRO-NS-CT", false)
     ->RangeMultiplier(10)
     ->Range(1000, 100000)

@@ -116,6 +116,30 @@ TEST_P(MwdRev51, EverySourceAtTotalDepth) {
 }
 
 // The workbook's own sheet, 16 digits, at four depths of wells 1 and 3.
+// Rev 4, where the tie-on is single and XYM3 and XYM4 are systematic: 27 sources, four decimals.
+TEST(MwdRev4, EverySourceAtTwoDepths) {
+  const CaseWell well = StandardWell(1, "iscwsa-mwd-rev4.txt");
+  PropagateOptions options;
+  options.terms = true;
+  const auto result =
+      PropagateErrors(well.survey, well.place, test::Model("ISCWSA-MWD-Rev4"), options);
+  ASSERT_EQ(result.terms.size(), 27u);
+  int seen = 0;
+  for (const auto& words : CaseValues("iscwsa-mwd-rev4.txt")) {
+    const Sources sources = AtStation(result, well.StationAt(std::stod(words.at(1))));
+    ASSERT_TRUE(sources.contains(words.at(2))) << words.at(2);
+    const Eigen::Matrix3d& c = sources.at(words.at(2));
+    const double ours[] = {c(0, 0), c(1, 1), c(2, 2), c(0, 1), c(0, 2), c(1, 2)};
+    const bool total = words.at(2) == "TOTAL" || words.at(2) == "DSTG";
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_NEAR(ours[i], std::stod(words.at(3 + i)), total ? 1.5e-4 : 0.51e-4)
+          << words.at(1) << " " << words.at(2);
+    }
+    ++seen;
+  }
+  EXPECT_EQ(seen, 56);
+}
+
 class MwdRev51Workbook : public testing::TestWithParam<int> {};
 
 TEST_P(MwdRev51Workbook, EverySourceAtEveryDepth) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/uncertainty/ellipse.h"
@@ -18,16 +20,21 @@ constexpr std::string_view kHla =
     "VAR_HH[m2],COV_HL[m2],COV_HA[m2],VAR_LL[m2],COV_LA[m2],VAR_AA[m2]";
 
 void AddUpper(std::string& text, const Matrix3d& c) {
-  for (int row = 0; row < 3; ++row)
-    for (int column = row; column < 3; ++column) text += "," + Significant(c(row, column));
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      text.append(",").append(Significant(c(row, column)));
+    }
+  }
 }
 
 /// What rounding leaves of a zero is written as one.
 Matrix3d WithoutDust(Matrix3d c) {
   const double dust = 1e-13 * c.trace();
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column)
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
       if (std::abs(c(row, column)) < dust) c(row, column) = 0;
+    }
+  }
   return c;
 }
 
@@ -45,8 +52,8 @@ std::string CovarianceCsv(const SurveyedWell& well, const PositionUncertainty& e
     text += Metres(p.md);
     AddUpper(text, cov);
     AddUpper(text, WithoutDust(ToHighSide(cov, p.inclination, p.azimuth)));
-    text += "," + Metres(ellipse.semi_major) + "," + Metres(ellipse.semi_minor) + "," +
-            AngleDeg(ellipse.azimuth_major) + "\n";
+    text += fmt::format(",{},{},{}\n", Metres(ellipse.semi_major), Metres(ellipse.semi_minor),
+                        AngleDeg(ellipse.azimuth_major));
   }
   return text;
 }
@@ -57,7 +64,7 @@ std::string TermsCsv(const SurveyedWell& well, const PositionUncertainty& errors
   for (std::size_t k = 0; k < errors.cov_p.size(); ++k) {
     const std::string md = Metres(well.survey[k].md);
     for (const TermUncertainty& term : errors.terms) {
-      text += md + "," + term.term;
+      text.append(md).append(",").append(term.term);
       AddUpper(text, WithoutDust(term.cov_p[k]));
       text += "\n";
     }
@@ -68,9 +75,10 @@ std::string TermsCsv(const SurveyedWell& well, const PositionUncertainty& errors
 std::string SeparationCsv(std::span<const Separation> separations) {
   std::string text = "MD[m],OTHER_MD[m],DISTANCE[m],N[m],E[m],V[m],SIGMA[m],SIGMAS\n";
   for (const Separation& s : separations) {
-    text += Metres(s.md) + "," + Metres(s.other_md) + "," + Metres(s.distance);
-    for (int i = 0; i < 3; ++i) text += "," + Metres(s.vector(i));
-    text += "," + Metres(s.sigma) + "," + (s.sigmas ? Significant(*s.sigmas) : "") + "\n";
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", Metres(s.md), Metres(s.other_md),
+                        Metres(s.distance), Metres(s.vector.x()), Metres(s.vector.y()),
+                        Metres(s.vector.z()), Metres(s.sigma),
+                        s.sigmas ? Significant(*s.sigmas) : std::string());
   }
   return text;
 }

@@ -57,8 +57,9 @@ double SiPer(TomlTable& table, const ErrorTerm& term, const std::string& unit) {
 void ReadRest(TomlTable& table, ErrorTerm& term) {
   const std::string code = table.Need("weight", table.FindString("weight"));
   term.weight = FindWeight(code);
-  if (!term.weight)
+  if (!term.weight) {
     table.Refuse("weight", fmt::format("no weighting function has the code \"{}\"", code));
+  }
   const double magnitude = table.Need("magnitude", table.FindNumber("magnitude", kNotNegative));
   const auto unit = table.FindString("unit");
   if (!unit) table.Refuse("magnitude", "stands without its 'unit'");
@@ -76,8 +77,9 @@ ErrorTerm ReadTerm(TomlTable& table) {
   ErrorTerm term;
   term.name = table.Need("name", table.FindString("name"));
   const auto foreign = [](unsigned char c) { return c <= ' ' || c == ',' || c == '"' || c >= 127; };
-  if (term.name.empty() || std::ranges::any_of(term.name, foreign))
+  if (term.name.empty() || std::ranges::any_of(term.name, foreign)) {
     table.Refuse("name", "must be plain characters without blanks, commas and quotes");
+  }
   try {
     ReadRest(table, term);
   } catch (TomlError& error) {
@@ -129,11 +131,13 @@ ErrorModel ReadModel(TomlTable& root) {
                 root.FindWord<bool>("surface_tie_on", {{"doubled", true}, {"single", false}}));
   model.cant = FindDegrees(root, "cant_deg", {.min = -90, .max = 90});
   model.min_course_length = root.FindNumber("min_course_length_m", kPositive);
-  if (const auto t = root.FindNumber("tortuosity_deg_per_100ft", kPositive))
+  if (const auto t = root.FindNumber("tortuosity_deg_per_100ft", kPositive)) {
     model.tortuosity = *t * units::kDegPer100ft;
+  }
   if (auto table = root.FindTable("stationary")) model.stationary = ReadStationary(*table);
-  for (TomlTable& table : root.FindTables("continuous"))
+  for (TomlTable& table : root.FindTables("continuous")) {
     model.continuous.push_back(ReadZone(table));
+  }
   std::vector<TomlTable> terms = root.FindTables("term");
   for (TomlTable& table : terms) model.terms.push_back(ReadTerm(table));
   if (const auto complaint = FindComplaint(model)) {

@@ -25,6 +25,9 @@ constexpr std::array kFormats{
     Format{"wellgyro.calibration/1", FileKind::kCalibration, "a wellgyro calibration"},
     Format{"wellgyro.tool/1", FileKind::kTool, "a wellgyro tool file"},
     Format{"wellgyro.error-model/1", FileKind::kErrorModel, "a wellgyro error model"},
+    Format{"wellgyro.program/1", FileKind::kProgram, "a wellgyro survey program"},
+    Format{"wellgyro.uncertainty/1", FileKind::kUncertainty,
+           "the summary of a wellgyro position uncertainty"},
     Format{"wellgyro.run/1", FileKind::kRun, "the run file of a wellgyro result"},
     Format{"wellgyro.source/1", FileKind::kSource, "the source file of a wellgyro result"},
 };

@@ -17,6 +17,8 @@ enum class FileKind {
   kCalibration,
   kTool,
   kErrorModel,
+  kProgram,
+  kUncertainty,  ///< uncertainty.toml
   kRun,     ///< run.toml
   kSource,  ///< source.toml
   kLcmLog,

@@ -22,8 +22,9 @@ class ProgramReader {
     if (legs.empty()) root.Refuse("", "a program needs at least one [[leg]]");
     if (auto table = root.FindTable("tie_in")) ReadTieIn(*table);
     for (std::size_t i = 0; i < legs.size(); ++i) ReadLeg(legs[i], static_cast<int>(i) + 1);
-    if (program_.survey.stations.size() < 2)
+    if (program_.survey.stations.size() < 2) {
       root.Refuse("", "the legs hold fewer than two stations");
+    }
     program_.inputs = files_.all();
     return std::move(program_);
   }
@@ -46,8 +47,9 @@ class ProgramReader {
     const auto tvd = table.FindNumber("tvd_m", kAnyNumber);
     start.z() = tvd.value_or(0);
     if (tvd) program_.survey.start = start;
-    if (!tvd && (table.Has("north_m") || table.Has("east_m")))
+    if (!tvd && (table.Has("north_m") || table.Has("east_m"))) {
       table.Refuse("", "a place needs tvd_m too");
+    }
     const char* keys[] = {"sigma_north_m", "sigma_east_m", "sigma_tvd_m"};
     for (int i = 0; i < 3; ++i) {
       const double sigma = table.FindNumber(keys[i], kNotNegative).value_or(0);

@@ -87,6 +87,19 @@ std::vector<Cell> Cells(std::string_view line, char separator) {
   return cells;
 }
 
+/// "md" and "ft" of "md[ft]", "md (ft)" and "md_ft".
+std::pair<std::string_view, std::string_view> SplitUnit(std::string_view name) {
+  if (const auto open = name.find_first_of("[("); open != std::string_view::npos) {
+    const std::string_view unit = name.substr(open + 1);
+    return {Trimmed(name.substr(0, open)), unit.substr(0, unit.find_first_of("])"))};
+  }
+  for (const std::string_view ending : {"_deg", "_m", "_ft"}) {
+    if (!name.ends_with(ending)) continue;
+    return {name.substr(0, name.size() - ending.size()), ending.substr(1)};
+  }
+  return {name, {}};
+}
+
 bool TurnsBack(const SurveyPoint& a, const SurveyPoint& b) {
   constexpr double kOpposite = -0.999;  // cosine; no arc joins opposite directions
   return Tangent(a.inclination, a.azimuth).dot(Tangent(b.inclination, b.azimuth)) < kOpposite;
@@ -109,8 +122,9 @@ class TableReader {
       headed = true;
     }
     if (!headed) return Wrong(FaultCode::kForeign, "is empty", 1);
-    if (table_.stations.size() < 2)
+    if (table_.stations.size() < 2) {
       return Wrong(FaultCode::kRange, "a survey needs at least two stations", 1);
+    }
     return std::move(table_);
   }
 
@@ -139,11 +153,14 @@ class TableReader {
       if (line.find(c) != std::string_view::npos) break;
     }
     const std::vector<Cell> cells = Cells(line, header_.separator);
-    for (std::size_t i = 0; i < cells.size(); ++i)
+    for (std::size_t i = 0; i < cells.size(); ++i) {
       if (auto fault = TakeColumn(cells[i], i)) return fault;
-    for (const auto& [quantity, name] : {std::pair(kMd, "MD"), {kInc, "INC"}, {kAzi, "AZI"}})
-      if (!header_.columns[quantity])
+    }
+    for (const auto& [quantity, name] : {std::pair(kMd, "MD"), {kInc, "INC"}, {kAzi, "AZI"}}) {
+      if (!header_.columns[quantity]) {
         return Wrong(FaultCode::kForeign, fmt::format("no column {} in the header", name), 1);
+      }
+    }
     table_.north = header_.north;
     table_.depth_unit_stated = header_.columns[kMd]->unit_stated;
     return std::nullopt;
@@ -151,31 +168,22 @@ class TableReader {
 
   std::optional<Fault> TakeColumn(const Cell& cell, std::size_t index) {
     std::string name;
-    for (const char c : cell.text)
+    for (const char c : cell.text) {
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    std::string unit;
-    if (const auto open = name.find_first_of("[("); open != std::string::npos) {
-      unit = name.substr(open + 1, name.find_first_of("])", open) - open - 1);
-      name = std::string(Trimmed(std::string_view(name).substr(0, open)));
-    } else {
-      for (const std::string_view ending : {"_deg", "_m", "_ft"}) {
-        if (!name.ends_with(ending)) continue;
-        unit = ending.substr(1);
-        name.resize(name.size() - ending.size());
-        break;
-      }
     }
-    const auto known = std::ranges::find(kColumns, name, &ColumnName::name);
+    const auto [bare, unit] = SplitUnit(name);
+    const auto known = std::ranges::find(kColumns, bare, &ColumnName::name);
     if (known == std::end(kColumns)) return std::nullopt;
     const bool angle = known->quantity == kInc || known->quantity == kAzi;
     Column column{index, angle ? units::kDeg : 1, !unit.empty()};
     if (!angle && unit == "ft") column.si = units::kFoot;
     const bool fits = unit.empty() || (angle ? unit == "deg" : unit == "m" || unit == "ft");
-    if (!fits)
+    if (!fits) {
       return Wrong(FaultCode::kForeign,
                    fmt::format("unit '{}' of column {} is not {}", unit, cell.text,
                                angle ? "deg" : "m or ft"),
                    cell.column);
+    }
     return Keep(*known, column, cell);
   }
 
@@ -184,9 +192,10 @@ class TableReader {
     if (known.quantity == kAzi && place) {
       const bool differ = header_.north != known.north;
       if (differ && known.north != wanted_) return std::nullopt;
-      if (!differ)
+      if (!differ) {
         return Wrong(FaultCode::kForeign, fmt::format("column {} stands twice", cell.text),
                      cell.column);
+      }
     } else if (place) {
       return Wrong(FaultCode::kForeign, fmt::format("column {} stands twice", cell.text),
                    cell.column);
@@ -199,17 +208,20 @@ class TableReader {
   std::optional<Fault> ReadNumber(const std::vector<Cell>& cells, Quantity quantity,
                                   double& value) {
     const Column& column = *header_.columns[quantity];
-    if (column.index >= cells.size())
+    if (column.index >= cells.size()) {
       return Wrong(FaultCode::kSyntax, "the row has fewer cells than the header", 1);
+    }
     const Cell& cell = cells[column.index];
     std::string_view text = cell.text;
     if (text.starts_with('+')) text.remove_prefix(1);
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || rest != text.data() + text.size())
+    if (error != std::errc() || rest != text.data() + text.size()) {
       return Wrong(FaultCode::kSyntax, fmt::format("'{}' is no number", cell.text), cell.column);
+    }
     constexpr double kFarthest = 1e6;  // of any unit
-    if (!std::isfinite(value) || std::abs(value) > kFarthest)
+    if (!std::isfinite(value) || std::abs(value) > kFarthest) {
       return Wrong(FaultCode::kRange, fmt::format("'{}' cannot be", cell.text), cell.column);
+    }
     value *= column.si;
     return std::nullopt;
   }
@@ -220,24 +232,29 @@ class TableReader {
     if (auto fault = ReadNumber(cells, kMd, p.md)) return fault;
     if (auto fault = ReadNumber(cells, kInc, p.inclination)) return fault;
     if (auto fault = ReadNumber(cells, kAzi, p.azimuth)) return fault;
-    if (p.inclination < 0 || p.inclination > kPi)
+    if (p.inclination < 0 || p.inclination > kPi) {
       return Wrong(FaultCode::kRange, "the inclination is not within 0 and 180 deg",
                    cells[header_.columns[kInc]->index].column);
+    }
     p.azimuth = WrapTwoPi(p.azimuth);
-    if (!table_.stations.empty() && p.md <= table_.stations.back().md)
+    if (!table_.stations.empty() && p.md <= table_.stations.back().md) {
       return Wrong(FaultCode::kOrder, "measured depth does not increase",
                    cells[header_.columns[kMd]->index].column);
-    if (!table_.stations.empty() && TurnsBack(table_.stations.back(), p))
+    }
+    if (!table_.stations.empty() && TurnsBack(table_.stations.back(), p)) {
       return Wrong(FaultCode::kRange, "the hole points back the way it came", 1);
-    if (table_.stations.empty())
+    }
+    if (table_.stations.empty()) {
       if (auto fault = ReadStart(cells)) return fault;
+    }
     table_.stations.push_back(p);
     return std::nullopt;
   }
 
   std::optional<Fault> ReadStart(const std::vector<Cell>& cells) {
-    if (!header_.columns[kNorth] || !header_.columns[kEast] || !header_.columns[kTvd])
+    if (!header_.columns[kNorth] || !header_.columns[kEast] || !header_.columns[kTvd]) {
       return std::nullopt;
+    }
     Eigen::Vector3d start;
     if (auto fault = ReadNumber(cells, kNorth, start.x())) return fault;
     if (auto fault = ReadNumber(cells, kEast, start.y())) return fault;

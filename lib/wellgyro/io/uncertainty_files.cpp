@@ -36,13 +36,16 @@ struct Case {
 
 void CheckNorth(const SurveyTable& table, const std::optional<double>& convergence,
                 std::vector<std::string>& notes) {
-  if (table.north == NorthReference::kGrid && !convergence)
+  if (table.north == NorthReference::kGrid && !convergence) {
     throw std::invalid_argument("the survey's azimuths are grid: the convergence is needed");
-  if (table.north == NorthReference::kTrue && convergence && *convergence != 0)
+  }
+  if (table.north == NorthReference::kTrue && convergence && *convergence != 0) {
     throw std::invalid_argument(
         "the survey's azimuths are true by its header; with a convergence they would be grid");
-  if (table.north == NorthReference::kUnstated)
+  }
+  if (table.north == NorthReference::kUnstated) {
     notes.emplace_back(convergence ? "azimuths taken as grid" : "azimuths taken as true");
+  }
   if (!table.depth_unit_stated) notes.emplace_back("the header names no unit of depth: metres");
 }
 
@@ -95,14 +98,17 @@ void ReadSurvey(Case& c, const UncertaintySources& sources, const UncertaintyReq
 Case ReadCase(const UncertaintySources& sources, const UncertaintyRequest& request) {
   Case c;
   if (sources.program) {
-    if (sources.survey || sources.model || sources.noise)
+    if (sources.survey || sources.model || sources.noise) {
       throw std::invalid_argument("a program names surveys and models itself");
+    }
     ReadProgram(c, *sources.program, request);
   } else {
     if (!sources.survey) throw std::invalid_argument("a survey or a program is needed");
-    if (!sources.model && !sources.noise)
+    if (!sources.model && !sources.noise) {
       throw std::invalid_argument("an error model, the noise of a gyro or a program is needed");
+    }
     ReadSurvey(c, sources, request);
+    c.cov_tie_in = request.sigma_tie_in.cwiseAbs2().asDiagonal();
   }
   c.basis.form = request.form;
   c.basis.speed = request.speed;
@@ -144,6 +150,11 @@ std::string SummaryToml(const UncertaintyRequest& request, const std::vector<Inp
   if (place.field) toml.Number("field_nt", Tidy(*place.field / units::kNanotesla));
   if (place.dip) toml.Number("dip_deg", Degrees(*place.dip));
   if (place.declination) toml.Number("declination_deg", Degrees(*place.declination));
+  if (!request.sigma_tie_in.isZero(0)) {
+    toml.Number("tie_in_sigma_north_m", request.sigma_tie_in.x());
+    toml.Number("tie_in_sigma_east_m", request.sigma_tie_in.y());
+    toml.Number("tie_in_sigma_tvd_m", request.sigma_tie_in.z());
+  }
   if (request.speed) toml.Number("speed_mps", *request.speed);
   if (request.initialise) toml.Number("initialise_deg", Degrees(*request.initialise));
   for (const std::string& note : answer.notes) toml.Element("note"), toml.Text("text", note);
@@ -162,15 +173,17 @@ void AddSeparation(const UncertaintyRequest& request, const Case& c, Uncertainty
   UncertaintySources sources = request.sources;
   sources.survey = request.other;
   if (request.other_model) sources.model = request.other_model;
-  if (sources.program && !request.other_model)
+  if (sources.program && !request.other_model) {
     throw std::invalid_argument("beside a program the other survey needs a model of its own");
+  }
   sources.program.reset();
   const Case other = ReadCase(sources, request);
   const auto separations =
       Separations({&c.well, &c.errors}, {&other.well, &other.errors}, request.pairing);
   answer.files.push_back({"separation.csv", SeparationCsv(separations)});
-  if (other.errors.refusal)
+  if (other.errors.refusal) {
     answer.refusals.push_back("other survey: " + other.errors.refusal->text);
+  }
   for (InputFile input : other.inputs) {
     input.role = "other " + input.role;
     inputs.push_back(std::move(input));

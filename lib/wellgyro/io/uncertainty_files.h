@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/atomic_file.h"
@@ -27,6 +29,8 @@ struct UncertaintyRequest {
   double sigma_azimuth = 0;           ///< likewise
   Surroundings surroundings;          ///< its convergence is that of `convergence`
   std::optional<double> convergence;  ///< given: azimuths are grid [rad]
+  /// 1 sigma of the first station's place: north, east, down [m]; a program names its own.
+  Eigen::Vector3d sigma_tie_in = Eigen::Vector3d::Zero();
   double confidence = 0.95;
   bool terms = false;
   bool plot = false;

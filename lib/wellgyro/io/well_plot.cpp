@@ -22,16 +22,17 @@ constexpr double kPanel = 460, kMargin = 64, kTop = 56, kGap = 84;  // pixels
 std::string Escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&')
+    if (c == '&') {
       out += "&amp;";
-    else if (c == '<')
+    } else if (c == '<') {
       out += "&lt;";
-    else if (c == '>')
+    } else if (c == '>') {
       out += "&gt;";
-    else if (static_cast<unsigned char>(c) < 0x20)
+    } else if (static_cast<unsigned char>(c) < 0x20) {
       out += ' ';
-    else
+    } else {
       out += c;
+    }
   }
   return out;
 }
@@ -39,8 +40,9 @@ std::string Escaped(const std::string& text) {
 /// The next of 1, 2, 5, 10, ... not below `x`.
 double RoundUp(double x) {
   const double decade = std::pow(10, std::floor(std::log10(x)));
-  for (const double m : {1.0, 2.0, 5.0})
+  for (const double m : {1.0, 2.0, 5.0}) {
     if (m * decade >= x * (1 - 1e-9)) return m * decade;
+  }
   return 10 * decade;
 }
 

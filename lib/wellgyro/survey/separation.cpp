@@ -83,9 +83,10 @@ void Weigh(Separation& s) {
 
 std::vector<Separation> Separations(const UncertainWell& first, const UncertainWell& second,
                                     Pairing pairing) {
-  if (Known(first) < 2 || Known(second) < 2)
+  if (Known(first) < 2 || Known(second) < 2) {
     throw std::invalid_argument(
         "a separation needs two stations with covariances on either survey");
+  }
   const auto pairs = Pairs(*first.errors, *second.errors, pairing);
   std::vector<Separation> all;
   for (std::size_t k = 0; k < Known(first); ++k) {
@@ -97,8 +98,9 @@ std::vector<Separation> Separations(const UncertainWell& first, const UncertainW
     if (!place) continue;
     const auto& other = second.well->survey;
     s.other_md = other[place->from].md;
-    if (place->fraction > 0)
+    if (place->fraction > 0) {
       s.other_md += place->fraction * (other[place->from + 1].md - other[place->from].md);
+    }
     s.vector = At(second.well->position, *place) - here;
     s.cov = first.errors->cov_p[k] + At(second.errors->cov_p, *place);
     for (const auto& [i, j] : pairs) {

@@ -19,15 +19,18 @@ bool IsContinuous(const ErrorTerm& term) {
 const ErrorModel* OnlyModel(std::span<const ToolLeg> legs) {
   if (legs.empty()) return nullptr;
   const ErrorModel* model = legs.front().model;
-  for (const ToolLeg& leg : legs)
-    if (leg.model != model || leg.run != legs.front().run)
+  for (const ToolLeg& leg : legs) {
+    if (leg.model != model || leg.run != legs.front().run) {
       throw std::invalid_argument(
           "Allan coefficients are those of one tool in one run, not of "
           "several legs");
-  if (model->continuous.size() != 1)
+    }
+  }
+  if (model->continuous.size() != 1) {
     throw std::invalid_argument("model " + model->name + " has " +
                                 std::to_string(model->continuous.size()) +
                                 " continuous gyros; Allan coefficients are of one");
+  }
   return model;
 }
 
@@ -56,15 +59,18 @@ ErrorModel WithoutDrift(const ErrorModel& model) {
 /// The shorter of both, term lists joined.
 void Join(PositionUncertainty& total, PositionUncertainty&& part) {
   const std::size_t n = std::min(total.cov_p.size(), part.cov_p.size());
-  if (part.refusal && (!total.refusal || part.refusal->station < total.refusal->station))
+  if (part.refusal && (!total.refusal || part.refusal->station < total.refusal->station)) {
     total.refusal = std::move(part.refusal);
+  }
   total.cov_p.resize(n);
   for (std::size_t k = 0; k < n; ++k) total.cov_p[k] += part.cov_p[k];
   std::ranges::move(part.terms, std::back_inserter(total.terms));
   std::ranges::move(part.shared, std::back_inserter(total.shared));
-  for (std::string& note : part.notes)
-    if (std::ranges::find(total.notes, note) == total.notes.end())
+  for (std::string& note : part.notes) {
+    if (std::ranges::find(total.notes, note) == total.notes.end()) {
       total.notes.push_back(std::move(note));
+    }
+  }
   for (auto& term : total.terms) term.cov_p.resize(n);
   for (auto& shared : total.shared) shared.error_p.resize(n);
 }
@@ -77,8 +83,9 @@ PositionUncertainty ExactPart(const SurveyedWell& well, const AllanRun& run,
   part.refusal = std::move(allan.refusal);
   part.notes.push_back("Allan terms: exact");
   if (!options.terms) return part;
-  for (AllanTerm& term : allan.terms)
+  for (AllanTerm& term : allan.terms) {
     part.terms.push_back({std::move(term.term), std::move(term.cov_p)});
+  }
   return part;
 }
 
@@ -89,8 +96,9 @@ PositionUncertainty PrintedPart(const SurveyedWell& well, const Surroundings& su
   of_part.cov_tie_in.setZero();
   PositionUncertainty part = PropagateErrors(well.survey, surroundings, printed.model, of_part);
   part.notes.push_back("Allan terms: printed");
-  for (const std::string& name : printed.left_out)
+  for (const std::string& name : printed.left_out) {
     part.notes.push_back("the printed form has no term for " + name + ": left out");
+  }
   return part;
 }
 

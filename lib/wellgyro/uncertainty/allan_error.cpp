@@ -189,8 +189,9 @@ class AllanPropagator {
 
   bool Piece(const HoleArc& arc, double from, double to, bool above, std::size_t k) {
     if (!above) {
-      if (open_)
+      if (open_) {
         for (Process& p : processes_) Leave(p);
+      }
       open_ = false;
       for (Process& p : processes_) Rest(p, (to - from) / run_.speed);
       return true;
@@ -209,8 +210,9 @@ class AllanPropagator {
       };
       const double gain = mean([](double a) { return a; });
       const double square = mean([](double a) { return a * a; });
-      for (Process& p : processes_)
+      for (Process& p : processes_) {
         ::wellgyro::Run(p, begin, end, gain, square, length, run_.speed);
+      }
       begin = end;
     }
     return true;
@@ -239,8 +241,9 @@ class AllanPropagator {
       last = factor;
     }
     double steps = std::max(change / kGainChange, arc.Dogleg(to - from) / kDogleg);
-    if (const auto tc = run_.noise.bias_instability_correlation_time)
+    if (const auto tc = run_.noise.bias_instability_correlation_time) {
       steps = std::max(steps, 4 * (to - from) / run_.speed / *tc);
+    }
     return static_cast<int>(std::clamp(std::ceil(steps), 1.0, double{kMost}));
   }
 
@@ -281,8 +284,9 @@ class AllanPropagator {
 
 void CheckRun(const AllanRun& run) {
   const auto check = [](const char* name, double value, bool good) {
-    if (!std::isfinite(value) || !good)
+    if (!std::isfinite(value) || !good) {
       throw std::invalid_argument(std::string(name) + ": " + std::to_string(value));
+    }
   };
   const NoiseCoefficients& n = run.noise;
   check("speed", run.speed, run.speed > 0);

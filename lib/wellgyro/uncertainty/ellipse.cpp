@@ -17,8 +17,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 double ConfidenceFactor(double confidence, int dimensions) {
-  if (!(confidence > 0 && confidence < 1))
+  if (!(confidence > 0 && confidence < 1)) {
     throw std::domain_error("confidence " + std::to_string(confidence) + " is not within 0 and 1");
+  }
   return std::sqrt(ChiSquareQuantile(confidence, dimensions));
 }
 

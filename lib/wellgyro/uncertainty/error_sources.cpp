@@ -68,8 +68,9 @@ void ErrorSources::Close(Source& source, std::int64_t group) {
 void ErrorSources::Give(PositionUncertainty& result) const {
   Matrix3d& total = result.cov_p.emplace_back(ended_ + idle_);
   for (const std::size_t i : active_) total += sources_[i].error * sources_[i].error.transpose();
-  for (std::size_t i = 0; i < shared_.size(); ++i)
+  for (std::size_t i = 0; i < shared_.size(); ++i) {
     result.shared[i].error_p.push_back(sources_[shared_[i]].error);
+  }
   for (std::size_t i = 0; i < result.terms.size(); ++i) {
     const Source& s = sources_[i];
     result.terms[i].cov_p.push_back(s.closed + s.error * s.error.transpose());

@@ -40,8 +40,9 @@ void HoleArc::Crossings(double inclination, std::vector<double>& places) const {
   const double away = std::atan2(std::sqrt(reach * reach - wanted * wanted), wanted);
   double found[] = {WrapTwoPi(peak - away) / curvature_, WrapTwoPi(peak + away) / curvature_};
   if (found[0] > found[1]) std::swap(found[0], found[1]);
-  for (const double s : found)
+  for (const double s : found) {
     if (s > 0 && s < length_) places.push_back(s);
+  }
 }
 
 }  // namespace wellgyro

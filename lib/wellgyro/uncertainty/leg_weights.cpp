@@ -37,14 +37,16 @@ LegWeights::LegWeights(const ErrorModel& model, const Surroundings& surroundings
 }
 
 std::string LegWeights::WhyNot(const SurveyPoint& point) const {
-  if (point.inclination > model_.max_inclination + kRounding)
+  if (point.inclination > model_.max_inclination + kRounding) {
     return "above the greatest inclination of model " + model_.name + ", " +
            Degrees(model_.max_inclination);
+  }
   if (!mode().refusal.empty()) return "model " + model_.name + ": " + mode().refusal;
   if (model_.stationary && model_.continuous.empty() &&
-      point.inclination > model_.stationary->end + kRounding)
+      point.inclination > model_.stationary->end + kRounding) {
     return "above the end of the stationary range of model " + model_.name + ", " +
            Degrees(model_.stationary->end);
+  }
   return {};
 }
 
@@ -61,8 +63,9 @@ double LegWeights::CarriedAzimuth(std::size_t term, const WeightPlace& place) {
   fix.cos_azi = std::cos(azimuth);
   const WeightFunction& weight = *model_.terms[term].weight;
   carried = {mode().section, weight.at(fix).azimuth};
-  if (weight.role == WeightRole::kStationaryNoise)
+  if (weight.role == WeightRole::kStationaryNoise) {
     carried.azimuth *= model_.stationary->noise_reduction.value_or(1);
+  }
   return carried.azimuth;
 }
 
@@ -70,8 +73,9 @@ std::optional<Weights> LegWeights::Weigh(std::size_t term, const WeightPlace& pl
                                          std::string& why) {
   const WeightFunction& weight = *model_.terms[term].weight;
   if (weight.role == WeightRole::kDrift) return Weights{0, 0, mode().drift_time[zones_[term]]};
-  if (weight.role == WeightRole::kWalk)
+  if (weight.role == WeightRole::kWalk) {
     return Weights{0, 0, std::sqrt(mode().walk_time[zones_[term]])};
+  }
   const bool carried = mode().section > 0 && IsStationary(weight.role);
   if (weight.denominator) {
     const double denominator =
@@ -84,8 +88,10 @@ std::optional<Weights> LegWeights::Weigh(std::size_t term, const WeightPlace& pl
   }
   if (carried) return Weights{0, 0, CarriedAzimuth(term, place)};
   Weights w = weight.at(place);
-  if (weight.role == WeightRole::kStationaryNoise && model_.stationary->noise_reduction_at_stations)
+  if (weight.role == WeightRole::kStationaryNoise &&
+      model_.stationary->noise_reduction_at_stations) {
     w.azimuth *= model_.stationary->noise_reduction.value_or(1);
+  }
   return w;
 }
 

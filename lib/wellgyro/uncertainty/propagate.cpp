@@ -90,7 +90,6 @@ class Propagator {
 
   std::span<const SurveyPoint> survey_;
   std::span<const ToolLeg> tool_legs_;
-  const PropagateOptions& options_;
   std::vector<LegWeights> legs_;
   std::vector<std::vector<std::size_t>> leg_sources_;
   ErrorSources sources_;
@@ -105,7 +104,7 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
                        std::span<const ToolLeg> legs, const PropagateOptions& options)
     : survey_(survey),
       tool_legs_(legs),
-      options_(options),
+
       sources_(options),
       place_(PlaceIn(surroundings, survey.front())) {
   const double to_magnetic = surroundings.convergence - surroundings.declination.value_or(0);
@@ -114,8 +113,9 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
   for (const ToolLeg& leg : legs) {
     legs_.emplace_back(*leg.model, surroundings);
     std::vector<std::size_t>& of_leg = leg_sources_.emplace_back();
-    for (const ErrorTerm& term : leg.model->terms)
+    for (const ErrorTerm& term : leg.model->terms) {
       of_leg.push_back(sources_.SourceOf(term, leg, legs_.size() - 1));
+    }
   }
   sources_.Open(survey.size(), result_);
 }
@@ -204,27 +204,31 @@ bool Propagator::Station(std::size_t k) {
   const Sensitivity s =
       SensitivityAt(above.t, here_, Tangent(next.inclination, next.azimuth),
                     whole ? place_.course : place_.course / 2, next.md - survey_[k].md);
-  for (std::size_t i = 0; i < leg.model().terms.size(); ++i)
+  for (std::size_t i = 0; i < leg.model().terms.size(); ++i) {
     if (!AddTerm(i, k, s)) return false;
+  }
   sources_.Give(result_);
   return true;
 }
 
 void Propagator::Note() {
   const auto began_above = [](const LegWeights& leg) { return leg.tracker().began_above(); };
-  if (std::ranges::any_of(legs_, began_above))
+  if (std::ranges::any_of(legs_, began_above)) {
     result_.notes.emplace_back(
         "the survey begins above the inclination at which the tool is initialised: taken as "
         "initialised at the first station");
-  if (survey_[0].md != 0)
+  }
+  if (survey_[0].md != 0) {
     result_.notes.emplace_back(
         "the survey begins below MD 0: its first station has the tie-in's covariance only");
+  }
 }
 
 PositionUncertainty Propagator::Run() {
   First();
-  for (std::size_t k = 1; k < survey_.size(); ++k)
+  for (std::size_t k = 1; k < survey_.size(); ++k) {
     if (!Station(k)) break;
+  }
   Note();
   return std::move(result_);
 }
@@ -233,9 +237,11 @@ PositionUncertainty Propagator::Run() {
 std::vector<SurveyPoint> WithoutVerticalAzimuths(std::span<const SurveyPoint> survey,
                                                  std::span<const ToolLeg> legs) {
   std::vector<SurveyPoint> points(survey.begin(), survey.end());
-  for (const ToolLeg& leg : legs)
-    for (std::size_t k = leg.begin; k < leg.end; ++k)
+  for (const ToolLeg& leg : legs) {
+    for (std::size_t k = leg.begin; k < leg.end; ++k) {
       if (points[k].inclination < leg.model->vertical_limit) points[k].azimuth = 0;
+    }
+  }
   return points;
 }
 
