@@ -28,15 +28,21 @@ DepthTrackSetup TrackSetup(const Job& job) {
 }  // namespace
 
 Sink::~Sink() = default;
+RunAdjuster::~RunAdjuster() = default;
 
 struct Surveyor::Rooms {
-  Rooms(const Job& the_job, Sink& the_sink)
-      : job(Checked(the_job)), sink(the_sink), track(TrackSetup(job)), book(job.runs) {
+  Rooms(const Job& the_job, Sink& the_sink, const RunAdjuster* the_adjuster)
+      : job(Checked(the_job)),
+        sink(the_sink),
+        adjuster(the_adjuster),
+        track(TrackSetup(job)),
+        book(job.runs) {
     for (const Event& event : job.events) Take(event);
   }
 
   Job job;
   Sink& sink;
+  const RunAdjuster* adjuster;
   DepthTrack track;
   RunBook book;
   std::map<std::int32_t, ToolSurvey> tools;
@@ -49,7 +55,8 @@ struct Surveyor::Rooms {
   ToolSurvey& Tool(std::int32_t number) {
     const auto found = tools.find(number);
     if (found != tools.end()) return found->second;
-    ToolSurvey& tool = tools.try_emplace(number, job, number, track, book, sink).first->second;
+    ToolSurvey& tool =
+        tools.try_emplace(number, job, number, track, book, sink, adjuster).first->second;
     for (const ToolInfo& info : infos) {
       if (info.tool == number) tool.Push(info);
     }
@@ -97,7 +104,8 @@ struct Surveyor::Rooms {
   }
 };
 
-Surveyor::Surveyor(const Job& job, Sink& sink) : rooms_(std::make_unique<Rooms>(job, sink)) {}
+Surveyor::Surveyor(const Job& job, Sink& sink, const RunAdjuster* adjuster)
+    : rooms_(std::make_unique<Rooms>(job, sink, adjuster)) {}
 Surveyor::~Surveyor() = default;
 Surveyor::Surveyor(Surveyor&&) noexcept = default;
 Surveyor& Surveyor::operator=(Surveyor&&) noexcept = default;

@@ -15,6 +15,7 @@
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/still_window.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/survey.h"
 
 namespace wellgyro {
@@ -46,9 +47,9 @@ class WELLGYRO_EXPORT Sink {
 /// Quality. Memory grows with stations and knots only (one knot a second, about 1 kB).
 class WELLGYRO_EXPORT Surveyor {
  public:
-  /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` must outlive
-  /// this object.
-  Surveyor(const Job& job, Sink& sink);
+  /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` and
+  /// `adjuster` must outlive this object; without an adjuster the smoothed run is final.
+  Surveyor(const Job& job, Sink& sink, const RunAdjuster* adjuster = nullptr);
   ~Surveyor();
   Surveyor(Surveyor&&) noexcept;
   Surveyor& operator=(Surveyor&&) noexcept;

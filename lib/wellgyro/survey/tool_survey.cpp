@@ -48,12 +48,13 @@ double Correction(const std::vector<std::pair<double, double>>& table, double md
 }  // namespace
 
 ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, RunBook& book,
-                       Sink& sink)
+                       Sink& sink, const RunAdjuster* adjuster)
     : job_(job),
       tool_(tool),
       track_(track),
       book_(book),
       sink_(sink),
+      adjuster_(adjuster),
       sensor_below_reference_(job.string.sensor_below_reference),
       queue_(Hold(job, track)) {}
 
@@ -247,7 +248,9 @@ void ToolSurvey::Adjust() {
   for (RunState& run : runs_) {
     run.survey->ListLastDepth();
     if (const AzimuthFilter* filter = run.survey->filter()) {
-      SmoothedRun smoothed = Smooth(filter->history());
+      SmoothedRun smoothed =
+          adjuster_ ? adjuster_->Adjust(filter->history(), job_.string.sigma_misalignment)
+                    : Smooth(filter->history());
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);
     }

@@ -14,6 +14,7 @@
 #include "wellgyro/survey/assemble.h"
 #include "wellgyro/survey/checks.h"
 #include "wellgyro/survey/provisional.h"
+#include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/run_book.h"
 #include "wellgyro/survey/run_survey.h"
 #include "wellgyro/survey/sample_queue.h"
@@ -28,8 +29,10 @@ using Operation = std::variant<ToolMode, Event, Command>;
 /// into runs and tells the sink of every station.
 class ToolSurvey {
  public:
-  /// All references must outlive this object. `track` and `book` are the string's.
-  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, RunBook& book, Sink& sink);
+  /// All references must outlive this object. `track` and `book` are the string's; `adjuster` may
+  /// be null.
+  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, RunBook& book, Sink& sink,
+             const RunAdjuster* adjuster);
 
   void Push(const ImuSample& sample);
   void Push(const StillWindow& window);
@@ -81,6 +84,7 @@ class ToolSurvey {
   const DepthTrack& track_;
   RunBook& book_;
   Sink& sink_;
+  const RunAdjuster* adjuster_;
   double sensor_below_reference_;
   SampleQueue queue_;
   ClockTie tie_;

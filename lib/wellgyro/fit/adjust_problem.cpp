@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <ceres/ceres.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/fit/adjust_cost_internal.h"
+#include "wellgyro/fit/adjust_problem_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr int kIterationsMax = 30;
+
+bool Used(const FilterFix& f) { return f.use == FixUse::kUsed || f.use == FixUse::kMirror; }
+
+// The node at the end of each epoch that ends a span.
+std::optional<std::size_t> NodeAt(const AdjustProblem& p, std::size_t epoch) {
+  const auto after = std::lower_bound(
+      p.spans.begin(), p.spans.end(), epoch + 1,
+      [](const AdjustSpan& span, std::size_t end) { return span.epoch_end < end; });
+  if (after == p.spans.end() || after->epoch_end != epoch + 1) return std::nullopt;
+  return static_cast<std::size_t>(after - p.spans.begin()) + 1;
+}
+
+class Builder {
+ public:
+  explicit Builder(AdjustProblem* p) : p_(*p) {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    problem_ = std::make_unique<ceres::Problem>(options);
+    loss_ = std::make_unique<ceres::HuberLoss>(p_.huber);
+    for (std::size_t k = 0; k < p_.node_count(); ++k) {
+      problem_->AddParameterBlock(p_.node(k), p_.layout.node);
+    }
+    problem_->AddParameterBlock(p_.common.data(), p_.layout.common);
+    AddSpans();
+    AddAzimuths();
+    for (const AdjustProblem::Repeat& r : p_.repeats) {
+      Add(RepeatCost(p_.layout, {r.sigma_azimuth, r.sigma_inclination, r.sine}), loss_.get(),
+          {p_.node(r.first), p_.node(r.second), p_.common.data()});
+    }
+    if (p_.layout.drift() > 0) Add(DriftPriorCost(p_.layout), nullptr, {p_.node(0)});
+    Add(CommonPriorCost(p_.layout), nullptr, {p_.common.data()});
+  }
+
+  ceres::Problem& problem() { return *problem_; }
+
+ private:
+  void Add(std::unique_ptr<ceres::CostFunction> cost, ceres::LossFunction* loss,
+           const std::vector<double*>& blocks) {
+    problem_->AddResidualBlock(cost.release(), loss, blocks);
+  }
+
+  void AddSpans() {
+    for (std::size_t k = 0; k < p_.spans.size(); ++k) {
+      const AdjustSpan& span = p_.spans[k];
+      const std::vector<double*> blocks{p_.node(k), p_.node(k + 1), p_.common.data()};
+      Add(SpanCost(p_.layout, span), nullptr, blocks);
+      if (span.still) Add(StillCost(p_.layout, span), loss_.get(), blocks);
+      if (span.levelled) Add(LevelCost(p_.layout, span), loss_.get(), blocks);
+    }
+  }
+
+  void AddAzimuths() {
+    const FilterSetup& setup = p_.history->setup;
+    if (setup.start_azimuth) {
+      Add(AzimuthCost(p_.layout, *setup.start_azimuth, setup.start_sigma), nullptr, {p_.node(0)});
+    }
+    for (const FilterFix& f : p_.history->fixes) {
+      if (!Used(f) || f.rates) continue;
+      std::size_t node = 0;
+      double since = 0;
+      if (f.epoch_end > 0) {
+        const auto found = NodeAt(p_, f.epoch_end - 1);
+        if (!found) continue;
+        node = *found;
+        const Knot& knot = p_.history->epochs[f.epoch_end - 1].knot;
+        const double after = (knot.time - f.fix.end).seconds() / knot.seconds;
+        if (!knot.still) since = knot.turn * std::clamp(after, 0.0, 1.0);
+      }
+      Add(AzimuthCost(p_.layout, f.azimuth + since, std::sqrt(f.fix.cov_attitude(1, 1))),
+          loss_.get(), {p_.node(node)});
+    }
+  }
+
+  AdjustProblem& p_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  std::unique_ptr<ceres::Problem> problem_;
+};
+
+Eigen::SparseMatrix<double> InformationAt(const AdjustProblem& p, ceres::Problem& problem) {
+  ceres::Problem::EvaluateOptions options;
+  for (std::size_t k = 0; k < p.node_count(); ++k) {
+    options.parameter_blocks.push_back(const_cast<double*>(p.node(k)));
+  }
+  options.parameter_blocks.push_back(const_cast<double*>(p.common.data()));
+  ceres::CRSMatrix crs;
+  problem.Evaluate(options, nullptr, nullptr, nullptr, &crs);
+  const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(
+      crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()), crs.rows.data(),
+      crs.cols.data(), crs.values.data());
+  const Eigen::SparseMatrix<double> by_column = jacobian;
+  return by_column.transpose() * by_column;
+}
+
+}  // namespace
+
+void StartFrom(const std::vector<double>& azimuths, AdjustProblem* p) {
+  p->nodes.assign(p->node_count() * static_cast<std::size_t>(p->layout.node), 0.0);
+  p->common.assign(static_cast<std::size_t>(p->layout.common), 0.0);
+  const auto& epochs = p->history->epochs;
+  for (std::size_t k = 0; k < p->node_count(); ++k) {
+    double inclination = 0;
+    if (k > 0) {
+      inclination = epochs[p->spans[k - 1].epoch_end - 1].knot.inclination;
+    } else {
+      const AdjustSpan& first = p->spans.front();
+      inclination = epochs[first.epoch_end - 1].knot.inclination - first.lift;
+    }
+    p->node(k)[AdjustLayout::kAzimuth] = azimuths[k];
+    p->node(k)[AdjustLayout::kInclination] = inclination;
+  }
+}
+
+AdjustOutcome Solve(AdjustProblem* p, Eigen::SparseMatrix<double>* information) {
+  Builder builder(p);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = kIterationsMax;
+  options.num_threads = 1;
+  options.initial_trust_region_radius = 1e8;
+  options.function_tolerance = 1e-9;
+  options.parameter_tolerance = 1e-12;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &builder.problem(), &summary);
+  if (information != nullptr) *information = InformationAt(*p, builder.problem());
+  return {2 * summary.final_cost, summary.num_residuals,
+          static_cast<int>(summary.iterations.size()),
+          summary.termination_type == ceres::CONVERGENCE};
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "wellgyro/attitude/filter.h"
+#include "wellgyro/fit/adjust_layout_internal.h"
+#include "wellgyro/fit/adjust_span_internal.h"
+
+namespace wellgyro {
+
+/// A run's adjustment as a whole: nodes at the ends of the spans, and what ties them.
+struct AdjustProblem {
+  const FilterHistory* history = nullptr;
+  AdjustLayout layout;
+  std::vector<AdjustSpan> spans;
+  /// Pairs of nodes at one depth.
+  struct Repeat {
+    std::size_t first, second;
+    double sigma_azimuth, sigma_inclination, sine;
+  };
+  std::vector<Repeat> repeats;
+  double huber = 4;  ///< residuals beyond so many sigma count less
+
+  // The unknowns.
+  std::vector<double> nodes;   ///< layout.node each, one more than spans
+  std::vector<double> common;  ///< layout.common
+
+  std::size_t node_count() const { return spans.size() + 1; }
+  double* node(std::size_t k) { return &nodes[k * static_cast<std::size_t>(layout.node)]; }
+  const double* node(std::size_t k) const {
+    return &nodes[k * static_cast<std::size_t>(layout.node)];
+  }
+  double azimuth(std::size_t k) const { return node(k)[AdjustLayout::kAzimuth]; }
+};
+
+struct AdjustOutcome {
+  double chi_square = 0;  ///< sum of the squared residuals, as the loss counts them
+  int residuals = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Starts every unknown from the azimuth of each node and the tracker's inclination.
+void StartFrom(const std::vector<double>& azimuths, AdjustProblem* problem);
+
+/// Least squares from where the unknowns stand. With `information`, also J'J there, nodes first,
+/// the common unknowns last.
+AdjustOutcome Solve(AdjustProblem* problem, Eigen::SparseMatrix<double>* information);
+
+}  // namespace wellgyro

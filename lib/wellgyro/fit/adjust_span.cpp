@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <cmath>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/fit/adjust_span_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kBrokenVariance = 100;     // of the azimuth across a vertical stretch [rad^2]
+constexpr double kVerticalVariance = 1e-2;  // of the inclination's growth there [rad^2]
+constexpr double kVerticalLevel = 5e-4;     // of the accelerometers' inclination there [rad]
+constexpr double kSpeedSigma = 1e-3;        // of a depth track's speed, 1 cm encoder [m/s]
+constexpr double kUnknownForce = 1e-3;      // of inclination while moving without depth [rad]
+// Acceleration at which depth tells too late by half of it: see TrackerOptions.
+constexpr double kAccelerationDoubt = 0.01;  // [m/s^2]
+constexpr double kFloor = 1e-18;             // against a setup without noise [rad^2]
+
+double Square(double x) { return x * x; }
+
+double Sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
+
+// One epoch with what it needs of the one before.
+struct Step {
+  const Knot& knot;
+  double sampled, speed, inclination;
+};
+
+Step StepAt(const FilterHistory& history, std::size_t i) {
+  const Knot& knot = history.epochs[i].knot;
+  const Knot* before = i > 0 ? &history.epochs[i - 1].knot : nullptr;
+  double speed = 0;
+  if (knot.along.known && knot.seconds > 0) {
+    const bool two = before != nullptr && before->along.known;
+    speed = two ? (knot.along.md - before->along.md) / knot.seconds : knot.along.speed;
+  }
+  const double inclination =
+      before != nullptr ? (knot.inclination + before->inclination) / 2 : knot.inclination;
+  return {knot, knot.seconds - knot.gap_seconds, speed, inclination};
+}
+
+// Sums that a span's means are made of.
+struct Sums {
+  double sampled = 0, level = 0, path = 0, turned = 0, white_turn = 0, jitter = 0;
+  double sine_time = 0, cosine_time = 0;  // of the inclination
+  double acceleration = 0;                // the largest
+  double gap_turn = 0, gap_lift = 0;      // variances [rad^2]
+};
+
+void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double begin, double grown,
+              AdjustSpan* span) {
+  const double north = kEarthRate * std::cos(place.latitude);
+  const double up = kEarthRate * std::sin(place.latitude);
+  const double radius = (site.radius_north + site.radius_east) / 2 + place.height - site.height;
+  const double across = s.speed * std::sin(s.inclination) / radius;
+  const std::complex<double> to =
+      std::polar(Sinc(grown / 2), begin + grown / 2);  // mean direction from the span's begin
+  const std::complex<double> i(0, 1);
+  const double cot = s.sampled > 0 ? s.knot.cot / s.sampled : 0;
+  span->earth_turn += to * (s.knot.cot * north - i * s.sampled * across * std::tan(place.latitude));
+  span->earth_lift += to * (s.sampled * north);
+  span->up += s.sampled * up;
+  span->carried += s.sampled * across;
+  span->turn_by_latitude -= to * (s.knot.cot * up);
+  span->lift_by_latitude -= to * (s.sampled * up);
+  span->up_by_latitude += s.sampled * north;
+  span->by_inclination -= to * (north * (1 + cot * cot) * s.sampled);
+}
+
+void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& place,
+             AdjustSpan* span, Sums* sums) {
+  const Knot& knot = s.knot;
+  const FilterSetup& setup = history.setup;
+  const double up = s.sampled * kEarthRate * std::sin(place.latitude);
+  const double grown = span->still ? 0 : knot.turn + up;
+  AddEarth(s, place, setup.site, sums->turned, grown, span);
+  sums->turned += grown;
+  sums->path += s.sampled * (span->lift + knot.lift / 2);
+  sums->level += s.sampled * knot.inclination_accel;
+  sums->sampled += s.sampled;
+  sums->white_turn += knot.white_turn;
+  sums->jitter += knot.toolface_noise_turn;
+  sums->sine_time += s.sampled * std::sin(s.inclination);
+  sums->cosine_time += s.sampled * std::cos(s.inclination);
+  sums->acceleration = std::max(sums->acceleration, std::abs(knot.along.acceleration));
+  span->turn += knot.turn;
+  span->lift += knot.lift;
+  span->d_turn += knot.d_turn;
+  span->d_lift += knot.d_lift;
+  span->d_inclination +=
+      s.sampled * knot.d_inclination.segment<3>(static_cast<int>(Knot::kAccelBiasX));
+  span->seconds += knot.seconds;
+  const double blind = Has(knot.quality, Quality::kSaturated) ? knot.seconds : knot.gap_seconds;
+  if (blind > 0) {
+    const double rate = knot.along.known ? setup.gap_dogleg * std::abs(s.speed) : setup.gap_rate;
+    const double sine = std::max(std::sin(s.inclination), 1e-6);
+    sums->gap_lift += Square(rate * blind);
+    sums->gap_turn += Square(rate * blind / sine);
+  }
+}
+
+// Where the knot's errors know it, the mean of the toolface's direction too: the lift of a bias of
+// x is the integral of sin T, that of y of cos T.
+void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, AdjustSpan* span) {
+  const double g = setup.site.gravity, time = sums.sampled;
+  if (!(time > 0)) return;
+  span->levelled = !Has(last.quality, Quality::kSaturated) && !(last.gap_seconds > 0);
+  span->d_inclination /= time;
+  const double sine = sums.sine_time / time, cosine = sums.cosine_time / time;
+  span->d_level = {cosine * span->d_lift[Knot::kGyroBiasY] / (g * time),
+                   -cosine * span->d_lift[Knot::kGyroBiasX] / (g * time), sine / g};
+  span->level = sums.level / time;
+  span->bow = span->still ? 0 : sums.path / time - span->lift / 2;
+
+  double var = Square(setup.errors.accel_noise / g) / time + kFloor;
+  if (!span->still) {
+    var += Square(setup.gyro.angle_random_walk) * time / 12;
+    var += last.along.known ? 2 * Square(sine * kSpeedSigma / (g * time)) : Square(kUnknownForce);
+    var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
+  }
+  if (span->broken) var += Square(kVerticalLevel);
+  span->var_level = var;
+}
+
+void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
+  const FilterSetup& setup = history.setup;
+  const Knot& last = history.epochs[span->epoch_end - 1].knot;
+  const double walk2 = Square(setup.gyro.angle_random_walk);
+  span->var_turn = walk2 * sums.white_turn + sums.jitter + sums.gap_turn + kFloor;
+  span->var_lift = walk2 * sums.sampled + sums.gap_lift + kFloor;
+  if (sums.sampled > 0) {
+    const double noise = setup.errors.accel_noise / setup.site.gravity;
+    span->var_lift += Square(noise * span->turn) / sums.sampled;
+  }
+  if (span->still && sums.sampled > 0) {  // of both ends; on the way it does not add up
+    const double quantum = 2 * Square(setup.gyro.quantization);
+    span->var_turn += quantum * sums.white_turn / sums.sampled;
+    span->var_lift += quantum;
+  }
+  if (span->broken) {
+    span->var_turn = kBrokenVariance;
+    span->var_lift = kVerticalVariance;
+  }
+  FinishLevel(last, setup, sums, span);
+}
+
+bool Used(const FilterFix& f) { return f.use == FixUse::kUsed || f.use == FixUse::kMirror; }
+
+bool Lone(const Knot& knot) {
+  return knot.gap_seconds > 0 || Has(knot.quality, Quality::kSaturated);
+}
+
+}  // namespace
+
+std::vector<AdjustPlace> PlacesAlong(const FilterHistory& history,
+                                     const std::vector<double>& azimuth) {
+  const Site& site = history.setup.site;
+  std::vector<AdjustPlace> places;
+  places.reserve(history.epochs.size());
+  AdjustPlace place{site.latitude, site.height};
+  for (std::size_t i = 0; i < history.epochs.size(); ++i) {
+    places.push_back(place);
+    if (azimuth.empty()) continue;
+    const Step s = StepAt(history, i);
+    const double way = s.speed * s.knot.seconds;
+    place.latitude += way * std::sin(s.inclination) * std::cos(azimuth[i]) /
+                      (site.radius_north + place.height - site.height);
+    place.height -= way * std::cos(s.inclination);
+  }
+  return places;
+}
+
+std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
+                                const std::vector<AdjustPlace>& places,
+                                const SpanOptions& options) {
+  const auto& epochs = history.epochs;
+  std::vector<bool> ends(epochs.size(), false);
+  for (const FilterFix& f : history.fixes) {
+    if (Used(f) && !f.rates && f.epoch_end > 0) ends[f.epoch_end - 1] = true;
+  }
+  std::vector<AdjustSpan> spans;
+  Sums sums;
+  bool open = false;
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    const Knot& knot = epochs[i].knot;
+    if (!(knot.seconds > 0)) continue;
+    if (!open) {
+      spans.emplace_back();
+      spans.back().epoch_begin = i;
+      spans.back().still = knot.still;
+      sums = {};
+    }
+    AdjustSpan& span = spans.back();
+    span.broken = knot.vertical && !knot.still;
+    AddKnot(history, StepAt(history, i), places[i], &span, &sums);
+    span.epoch_end = i + 1;
+    const bool last = i + 1 == epochs.size();
+    const Knot* next = last ? nullptr : &epochs[i + 1].knot;
+    open = !last && !ends[i] && !(epochs[i].station && options.at_stations) && !Lone(knot) &&
+           !Lone(*next) && next->still == knot.still && next->vertical == knot.vertical &&
+           span.seconds + next->seconds <= options.seconds * (1 + 1e-9);
+    if (!open) Finish(history, sums, &span);
+  }
+  return spans;
+}
+
+}  // namespace wellgyro

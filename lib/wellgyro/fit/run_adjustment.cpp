@@ -1,0 +1,245 @@
+#include "wellgyro/fit/run_adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/fit/adjust_problem_internal.h"
+#include "wellgyro/fit/adjust_result_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kCoarseSeconds = 60;  // nodes of the search for north
+constexpr int kTries = 12;             // azimuths to start it from
+constexpr double kMargin = 9;          // chi-square by which one must beat another
+constexpr double kApart = 0.2;         // closer than this two are one [rad]
+constexpr double kSameDepth = 0.05;    // of two passes of one station [m]
+
+// Consecutive nodes whose azimuths hang together.
+struct Segment {
+  std::size_t begin, end;  // nodes
+};
+
+std::vector<Segment> SegmentsOf(const std::vector<AdjustSpan>& spans) {
+  std::vector<Segment> segments{{0, 1}};
+  for (std::size_t k = 0; k < spans.size(); ++k) {
+    if (spans[k].broken) segments.push_back({k + 1, k + 1});
+    segments.back().end = k + 2;
+  }
+  return segments;
+}
+
+// Azimuths of nodes from the growth of the spans alone, each segment from `start`.
+std::vector<double> ReckonedFrom(double start, const std::vector<AdjustSpan>& spans) {
+  std::vector<double> azimuths{start};
+  for (const AdjustSpan& span : spans) {
+    double next = azimuths.back();
+    if (!span.still && !span.broken) {
+      next += span.turn + (std::polar(1.0, next) * span.earth_turn).real() + span.up;
+    }
+    azimuths.push_back(next);
+  }
+  return azimuths;
+}
+
+// The smoothed azimuths of the nodes, counted on through whole turns.
+std::vector<double> SmoothedAt(const SmoothedRun& smoothed, const std::vector<AdjustSpan>& spans) {
+  std::vector<double> azimuths = ReckonedFrom(0, spans);
+  double turns = 0;
+  for (std::size_t k = 0; k < spans.size(); ++k) {
+    const double there = smoothed.attitude[spans[k].epoch_end - 1].azimuth;
+    const double reckoned = azimuths[k + 1] + turns;
+    const double next = reckoned + WrapPi(there - reckoned);
+    turns += next - reckoned;
+    if (k == 0) azimuths[0] += turns;
+    azimuths[k + 1] = next;
+  }
+  return azimuths;
+}
+
+// Depths that stations of different passes share.
+void FindRepeats(const FilterHistory& history, double sigma_lie, AdjustProblem* p) {
+  const double sigma_md = history.setup.errors.depth_sigma;
+  std::multimap<double, std::size_t> nodes;  // by depth, of the passes so far
+  for (std::size_t k = 0; k < p->spans.size(); ++k) {
+    const AdjustSpan& span = p->spans[k];
+    const FilterEpoch& epoch = history.epochs[span.epoch_end - 1];
+    if (!epoch.station || !epoch.knot.along.known || span.still || epoch.knot.vertical) continue;
+    const double md = epoch.knot.along.md;
+    const auto near = nodes.lower_bound(md - kSameDepth);
+    if (near != nodes.end() && near->first < md + kSameDepth) {
+      // How much the direction changes over the error of depth, from this span.
+      const double way = std::max(std::abs(epoch.knot.along.speed) * span.seconds, 0.1);
+      const double sine = std::max(std::sin(epoch.knot.inclination), 1e-3);
+      const double depth = std::sqrt(2.0) * sigma_md / way, floor = 1e-6;
+      p->repeats.push_back({near->second, k + 1,
+                            std::hypot(depth * span.turn, sigma_lie / sine, floor),
+                            std::hypot(depth * span.lift, sigma_lie, floor), sine});
+    }
+    nodes.emplace(md, k + 1);
+  }
+}
+
+AdjustProblem MakeProblem(const FilterHistory& history, const std::vector<AdjustPlace>& places,
+                          const SpanOptions& spans, const AdjustmentOptions& options,
+                          double sigma_lie) {
+  AdjustProblem p;
+  p.history = &history;
+  p.huber = options.huber;
+  p.spans = SpansOf(history, places, spans);
+  if (p.spans.empty()) return p;
+  if (options.use_repeats && spans.at_stations) FindRepeats(history, sigma_lie, &p);
+  p.layout = AdjustLayoutOf(history.setup, sigma_lie, !p.repeats.empty());
+  return p;
+}
+
+// What the search for north came to, for one segment.
+struct North {
+  double azimuth = 0;  // at the end of the segment's last span
+  std::size_t epoch = 0;
+  bool ambiguous = false;
+};
+
+// Tries azimuths for the nodes of a segment that has none, others as they are.
+North FindNorth(const Segment& segment, const std::vector<double>& azimuths, AdjustProblem* p) {
+  struct Minimum {
+    double chi_square, azimuth;
+  };
+  std::vector<Minimum> minima;
+  const std::size_t last = segment.end - 1;
+  for (int i = 0; i < kTries; ++i) {
+    std::vector<double> tried = azimuths;
+    for (std::size_t k = segment.begin; k < segment.end; ++k) tried[k] += i * kTwoPi / kTries;
+    StartFrom(tried, p);
+    const AdjustOutcome outcome = Solve(p, nullptr);
+    minima.push_back({outcome.chi_square, p->azimuth(last)});
+  }
+  std::sort(minima.begin(), minima.end(),
+            [](const Minimum& a, const Minimum& b) { return a.chi_square < b.chi_square; });
+  const Minimum& best = minima.front();
+  const auto other = std::find_if(minima.begin(), minima.end(), [&](const Minimum& m) {
+    return std::abs(WrapPi(m.azimuth - best.azimuth)) > kApart;
+  });
+  const bool ambiguous = other != minima.end() && other->chi_square - best.chi_square < kMargin;
+  return {best.azimuth, last > 0 ? p->spans[last - 1].epoch_end - 1 : 0, ambiguous};
+}
+
+// Azimuth at the end of every epoch.
+std::vector<double> PathOf(const AdjustProblem& p) {
+  std::vector<double> path(p.spans.front().epoch_begin, p.azimuth(0));
+  for (std::size_t k = 0; k < p.spans.size(); ++k) {
+    const std::vector<double> within = AzimuthsWithin(p, k);
+    path.insert(path.end(), within.begin(), within.end());
+  }
+  return path;
+}
+
+// Before the first fit: azimuths of every epoch, and epochs whose segment stays without north.
+struct Beginning {
+  std::vector<double> path;
+  std::vector<bool> ambiguous;
+};
+
+Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, double sigma_lie) {
+  const SmoothedRun smoothed = Smooth(history);
+  Beginning begin;
+  begin.ambiguous.assign(history.epochs.size(), false);
+  AdjustProblem p =
+      MakeProblem(history, PlacesAlong(history, {}), {kCoarseSeconds, false}, options, sigma_lie);
+  std::vector<double> azimuths = SmoothedAt(smoothed, p.spans);
+  for (const Segment& segment : SegmentsOf(p.spans)) {
+    if (segment.end < 2) continue;
+    const auto epoch_of = [&](std::size_t node) {
+      return node > 0 ? p.spans[node - 1].epoch_end - 1 : p.spans.front().epoch_begin;
+    };
+    const std::size_t last = epoch_of(segment.end - 1);
+    if (smoothed.attitude[last].azimuth_known) continue;
+    const North north = FindNorth(segment, azimuths, &p);
+    const double off = north.azimuth - azimuths[segment.end - 1];
+    for (std::size_t k = segment.begin; k < segment.end; ++k) azimuths[k] += off;
+    if (!north.ambiguous) continue;
+    for (std::size_t i = segment.begin > 0 ? epoch_of(segment.begin) : 0; i <= last; ++i) {
+      begin.ambiguous[i] = true;
+    }
+  }
+  StartFrom(azimuths, &p);
+  begin.path = PathOf(p);
+  return begin;
+}
+
+std::vector<double> AtNodes(const AdjustProblem& p, const std::vector<double>& path) {
+  const std::size_t first = p.spans.front().epoch_begin;
+  const AdjustSpan& span = p.spans.front();
+  double turned = 0;
+  for (std::size_t i = first; i < span.epoch_end; ++i) {
+    if (!span.still && !span.broken) turned += p.history->epochs[i].knot.turn;
+  }
+  std::vector<double> azimuths{first > 0 ? path[first - 1] : path[span.epoch_end - 1] - turned};
+  for (const AdjustSpan& s : p.spans) azimuths.push_back(path[s.epoch_end - 1]);
+  return azimuths;
+}
+
+void FillErrors(const AdjustProblem& p, const SelectedInverse& inverse, Adjustment* result) {
+  const int first = static_cast<int>(p.nodes.size());
+  const auto fill = [&](int source, int place) {
+    if (place < 0) return;
+    result->errors[source] = p.common[static_cast<std::size_t>(place)];
+    result->sigma_errors[source] = std::sqrt(inverse.At(first + place, first + place));
+  };
+  for (int source = 0; source < Knot::kSources; ++source) {
+    fill(source, p.layout.source[static_cast<std::size_t>(source)]);
+  }
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto& at = p.layout.axis[static_cast<std::size_t>(axis)];
+    fill(axis, at.level_common);
+    if (at.level < 0) continue;  // the drift's level where the run ends
+    const int place = first - p.layout.node + at.level;
+    result->errors[axis] = p.nodes[static_cast<std::size_t>(place)];
+    result->sigma_errors[axis] = std::sqrt(inverse.At(place, place));
+  }
+}
+
+}  // namespace
+
+Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
+                     const AdjustmentOptions& options) {
+  Adjustment result;
+  const bool any = std::any_of(history.epochs.begin(), history.epochs.end(),
+                               [](const FilterEpoch& e) { return e.knot.seconds > 0; });
+  if (!any) {
+    result.run = Smooth(history);
+    return result;
+  }
+  const Beginning begin = Begin(history, options, sigma_lie);
+  AdjustProblem p = MakeProblem(history, PlacesAlong(history, begin.path),
+                                {options.knot_seconds, true}, options, sigma_lie);
+  StartFrom(AtNodes(p, begin.path), &p);
+  Eigen::SparseMatrix<double> information;
+  const AdjustOutcome outcome = Solve(&p, &information);
+  const SelectedInverse inverse(information);
+  if (!outcome.converged || !inverse.ok()) {  // what the smoother makes of it is still true
+    result.run = Smooth(history);
+    return result;
+  }
+  std::vector<bool> known{!begin.ambiguous.front()};
+  for (const AdjustSpan& span : p.spans) known.push_back(!begin.ambiguous[span.epoch_end - 1]);
+  result.run = ResultOf(p, inverse, known);
+  result.chi_square = outcome.chi_square;
+  result.degrees_of_freedom =
+      outcome.residuals - static_cast<int>(p.nodes.size() + p.common.size());
+  result.converged = true;
+  result.ambiguous = std::find(known.begin(), known.end(), false) != known.end();
+  FillErrors(p, inverse, &result);
+  return result;
+}
+
+LeastSquaresAdjuster::LeastSquaresAdjuster(const AdjustmentOptions& options) : options_(options) {}
+
+SmoothedRun LeastSquaresAdjuster::Adjust(const FilterHistory& history, double sigma_lie) const {
+  return AdjustRun(history, sigma_lie, options_).run;
+}
+
+}  // namespace wellgyro

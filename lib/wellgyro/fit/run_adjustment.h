@@ -1,0 +1,53 @@
+#pragma once
+
+#include "wellgyro/attitude/filter.h"
+#include "wellgyro/attitude/smoother.h"
+#include "wellgyro/base/export.h"
+#include "wellgyro/record/knot.h"
+#include "wellgyro/survey/run_adjuster.h"
+
+namespace wellgyro {
+
+struct AdjustmentOptions {
+  double knot_seconds = 10;  ///< knots between stations are merged up to this length [s]
+  double huber = 4;          ///< ties and readings beyond so many sigma count less
+  bool use_repeats = true;   ///< depths passed more than once have one direction
+};
+
+/// A run adjusted as a whole, with what tells how well it fits.
+struct Adjustment {
+  SmoothedRun run;
+  double chi_square = 0;       ///< of all residuals, priors included
+  int degrees_of_freedom = 0;  ///< residuals less unknowns
+  bool converged = false;
+  /// Two azimuths fit nearly as well, differing by less than 9 in chi-square: none is given.
+  bool ambiguous = false;
+  Knot::SourceVector errors = Knot::SourceVector::Zero();        ///< of the tool, as found
+  Knot::SourceVector sigma_errors = Knot::SourceVector::Zero();  ///< of these, likewise
+};
+
+/// Least squares over all that a run measured: azimuth, inclination and drift at nodes every
+/// `knot_seconds` and at every station, and the tool's constant errors.
+///
+/// Residuals: growth of azimuth between nodes (turn), growth of inclination (lift) against that of
+/// the accelerometers, at rest both as the Earth's rate and no growth, azimuths from outside,
+/// directions at depths passed twice, priors of all errors. The drift goes on as in the filter. The
+/// Earth's rate in `lift` makes the motion itself find north, so that a run without fix or external
+/// azimuth gets one wherever it is observable; where no azimuth is known to start from, twelve are
+/// tried on a coarse problem. Everything is linear but the Earth's share, so the covariance is that
+/// of the solution, from its normal equations. Time and memory are proportional to the nodes.
+/// `sigma_lie`: see RunAdjuster.
+WELLGYRO_EXPORT Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
+                                     const AdjustmentOptions& options = {});
+
+/// The same, to hand to a Surveyor.
+class WELLGYRO_EXPORT LeastSquaresAdjuster : public RunAdjuster {
+ public:
+  explicit LeastSquaresAdjuster(const AdjustmentOptions& options = {});
+  SmoothedRun Adjust(const FilterHistory& history, double sigma_lie) const override;
+
+ private:
+  AdjustmentOptions options_;
+};
+
+}  // namespace wellgyro
