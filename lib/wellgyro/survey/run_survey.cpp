@@ -18,6 +18,7 @@ constexpr Duration kMakeUpMind = Duration::Seconds(3);
 constexpr double kRestSpeed = 0.006;       // [m/s], that of the still detector
 constexpr double kSamePlace = 0.2;         // [m], between windows of one stop
 constexpr double kSamePlaceSeconds = 120;  // the same where there is no depth
+constexpr double kLeastFraction = 1e-9;    // of a sample, at which it can be cut
 constexpr double kJump = 50;  // [m] in one sample: no hole is logged so fast, the depth is wrong
 
 TrackerOptions TrackerOptionsOf(const Job& job) {
@@ -127,52 +128,68 @@ Draft RunSurvey::NewDraft(double md) const {
 
 /// The sample in current_ has been summed: makes the knots that fall into it.
 void RunSurvey::Summed(const AlongHole& end, const PassState& pass_end) {
-  struct Cut {
-    double fraction;
-    std::optional<Draft> draft;
-    bool external;
-  };
-  std::vector<Cut> cuts;
+  cuts_.clear();
   const Current& c = *current_;
-  const double way = pass_end.md - c.pass.md;
-  const bool moves = c.along.known && end.known && pass_end.number == c.pass.number &&
-                     c.pass.pass != Pass::kStationary && std::abs(way) < kJump;
-  if (moves && (way != 0 || c.pass.begins)) {
-    // A first pass begins where the tool stood; between any other turn and its discovery the depths
-    // belong to the pass before.
-    const bool first = c.pass.begins && std::abs(c.pass.md_turn - c.pass.md) <= 2 * kSameDepth;
-    plan_.Between(first ? c.pass.md_turn : c.pass.md, pass_end.md, first, targets_);
-    for (const StationPlan::Target& target : targets_) {
-      const bool standing = first && marked_ && std::abs(target.md - last_mark_md_) <= kSameDepth;
-      if (standing) continue;  // the station of the stop is there already
-      const double fraction = way != 0 ? std::clamp((target.md - c.pass.md) / way, 1e-9, 1.0) : 1.0;
-      Draft draft = NewDraft(target.md);
-      draft.listed = target.listed;
-      const bool external =
-          job_.alignment.at_md && std::abs(target.md - *job_.alignment.at_md) <= kSameDepth;
-      cuts.push_back({fraction, draft, external});
-    }
+  if (c.along.known && end.known && pass_end.number == c.pass.number &&
+      c.pass.pass != Pass::kStationary) {
+    AddTargets(pass_end.md);
   }
   const double period = static_cast<double>(c.stamp.period_ns);
   const std::int64_t begin = c.stamp.tool_time.ns;
   const std::int64_t second = (begin / kKnotNs + 1) * kKnotNs;
   if (second <= begin + c.stamp.period_ns) {
-    cuts.push_back({static_cast<double>(second - begin) / period, std::nullopt, false});
+    cuts_.push_back({static_cast<double>(second - begin) / period, std::nullopt, false});
   }
-  if (job_.alignment.at_utc && *job_.alignment.at_utc >= c.utc &&
-      *job_.alignment.at_utc < c.utc_end) {
-    const double fraction = (*job_.alignment.at_utc - c.utc).seconds() / (period * 1e-9);
-    cuts.push_back({std::clamp(fraction, 1e-9, 1.0), std::nullopt, true});
+  const std::optional<UtcTime>& at_utc = job_.alignment.at_utc;
+  if (at_utc && *at_utc >= c.utc && *at_utc < c.utc_end) {
+    const double fraction = (*at_utc - c.utc).seconds() / (period * 1e-9);
+    cuts_.push_back({std::clamp(fraction, kLeastFraction, 1.0), std::nullopt, true});
   }
-  if (asked_) {
-    asked_ = false;
-    if (asked_md_ || end.known) cuts.push_back({1.0, NewDraft(asked_md_.value_or(end.md)), false});
+  if (asked_ && (asked_md_ || end.known)) {
+    cuts_.push_back({1.0, NewDraft(asked_md_.value_or(end.md)), false});
   }
-  if (const auto rest = RestDraft(end)) cuts.push_back({1.0, rest, false});
-  std::stable_sort(cuts.begin(), cuts.end(),
-                   [](const Cut& a, const Cut& b) { return a.fraction < b.fraction; });
-  for (const Cut& cut : cuts) CutAt(cut.fraction, end, cut.draft, cut.external);
-  if (!cuts.empty()) Release(false);
+  asked_ = false;
+  if (const auto rest = RestDraft(end)) cuts_.push_back({1.0, rest, false});
+  std::stable_sort(cuts_.begin(), cuts_.end(),
+                   [](const KnotAt& a, const KnotAt& b) { return a.fraction < b.fraction; });
+  for (const KnotAt& cut : cuts_) CutAt(cut, end);
+  if (!cuts_.empty()) Release(false);
+}
+
+/// The asked depths that the tool passes within the sample, up to `md_end`.
+void RunSurvey::AddTargets(double md_end) {
+  const PassState& pass = current_->pass;
+  const double way = md_end - pass.md;
+  if (std::abs(way) > kJump || (way == 0 && !pass.begins)) return;
+  // A first pass begins where the tool stood; between any other turn and its discovery the depths
+  // belong to the pass before.
+  const bool first = pass.begins && std::abs(pass.md_turn - pass.md) <= 2 * kSameDepth;
+  plan_.Between(first ? pass.md_turn : pass.md, md_end, first, targets_);
+  for (const StationPlan::Target& target : targets_) {
+    if (first && marked_ && std::abs(target.md - last_mark_md_) <= kSameDepth) {
+      // The station of the stop is there already.
+      if (target.listed) ListLastMark();
+      continue;
+    }
+    const double fraction =
+        way != 0 ? std::clamp((target.md - pass.md) / way, kLeastFraction, 1.0) : 1.0;
+    Draft draft = NewDraft(target.md);
+    draft.listed = target.listed;
+    const bool external =
+        job_.alignment.at_md && std::abs(target.md - *job_.alignment.at_md) <= kSameDepth;
+    cuts_.push_back({fraction, draft, external});
+  }
+}
+
+void RunSurvey::ListLastMark() {
+  for (auto waiting = waiting_.rbegin(); waiting != waiting_.rend(); ++waiting) {
+    if (!waiting->draft) continue;
+    waiting->draft->listed = true;
+    return;
+  }
+  if (drafts_.empty() || drafts_.back().listed) return;
+  drafts_.back().listed = true;
+  news_.push_back(drafts_.size() - 1);
 }
 
 /// A tool that comes to rest makes a station, listed only if the job asks for stops or if it turns
@@ -185,8 +202,8 @@ std::optional<Draft> RunSurvey::RestDraft(const AlongHole& end) const {
   return draft;
 }
 
-void RunSurvey::CutAt(double fraction, const AlongHole& end, std::optional<Draft> draft,
-                      bool external) {
+void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& end) {
+  const auto& [fraction, draft, external] = cut;
   const Current& c = *current_;
   const ToolTime begin = last_knot_.value_or(c.stamp.tool_time);
   Knot knot = tracker_.CutKnot(fraction);
@@ -207,12 +224,13 @@ void RunSurvey::CutAt(double fraction, const AlongHole& end, std::optional<Draft
     last.knot.along.md = draft->station.md;
     last_mark_md_ = draft->station.md;
     marked_ = true;
-    draft->station.utc = last.knot.utc;
-    draft->station.tool_time = last.knot.time;
-    draft->station.imu_seq_begin = last.knot.seq_begin;
-    draft->station.imu_seq_end = last.knot.seq_end;
-    draft->station.samples_lost = last.knot.samples_lost;
-    last.draft = std::move(draft);
+    last.draft = draft;
+    Station& s = last.draft->station;
+    s.utc = last.knot.utc;
+    s.tool_time = last.knot.time;
+    s.imu_seq_begin = last.knot.seq_begin;
+    s.imu_seq_end = last.knot.seq_end;
+    s.samples_lost = last.knot.samples_lost;
   }
 }
 

@@ -71,8 +71,17 @@ class RunSurvey {
     bool external = false;  ///< the job's azimuth holds here
   };
 
+  /// Where a knot is wanted within the summed sample.
+  struct KnotAt {
+    double fraction = 1;
+    std::optional<Draft> draft;
+    bool external = false;
+  };
+
   void Summed(const AlongHole& end, const PassState& pass_end);
-  void CutAt(double fraction, const AlongHole& end, std::optional<Draft> draft, bool external);
+  void AddTargets(double md_end);
+  void ListLastMark();
+  void CutAt(const KnotAt& cut, const AlongHole& end);
   std::optional<Draft> RestDraft(const AlongHole& end) const;
   Draft NewDraft(double md) const;
   void TakeWindow(const StillWindow& window);
@@ -92,6 +101,7 @@ class RunSurvey {
   std::optional<double> site_md_;
   StationPlan plan_;
   std::vector<StationPlan::Target> targets_;  ///< scratch
+  std::vector<KnotAt> cuts_;                  ///< scratch
   HighSideTracker tracker_;
   StillDetector still_;
   PassTracker passes_;
