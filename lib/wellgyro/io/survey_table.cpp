@@ -158,7 +158,11 @@ class TableReader {
     }
     for (const auto& [quantity, name] : {std::pair(kMd, "MD"), {kInc, "INC"}, {kAzi, "AZI"}}) {
       if (!header_.columns[quantity]) {
-        return Wrong(FaultCode::kForeign, fmt::format("no column {} in the header", name), 1);
+        return Wrong(FaultCode::kForeign,
+                     fmt::format("no column {}; the header must have MD, INC and AZI, as "
+                                 "MD[m],INC[deg],AZI_TRUE[deg]",
+                                 name),
+                     1);
       }
     }
     table_.north = header_.north;
