@@ -170,7 +170,8 @@ TEST_F(UncertaintyFiles, AllanModesSayWhichWasUsed) {
   request.sources.noise = Write("noise.toml",
                                 "format = \"wellgyro.noise/1\"\n[coefficients]\n"
                                 "angle_random_walk_deg_per_sqrt_h = 0.1\n"
-                                "rate_random_walk_deg_per_h_sqrt_h = 0.2\n");
+                                "rate_random_walk_deg_per_h_sqrt_h = 0.2\n"
+                                "rate_ramp_deg_per_h2_upper95 = 0.7\n");
   EXPECT_THROW(static_cast<void>(AnswerUncertainty(request)), std::invalid_argument);  // no speed
   request.speed = 0.75;
   request.terms = true;
@@ -178,6 +179,8 @@ TEST_F(UncertaintyFiles, AllanModesSayWhichWasUsed) {
   ASSERT_TRUE(exact);
   EXPECT_THAT(Bytes(*exact, "uncertainty.toml"), HasSubstr("allan = \"exact\""));
   EXPECT_THAT(Bytes(*exact, "terms.csv"), HasSubstr("ALLAN-K"));
+  EXPECT_THAT(Bytes(*exact, "uncertainty.toml"),
+              HasSubstr("rate_ramp_deg_per_h2 was not observed"));
   request.form = AllanForm::kPrinted;
   const auto printed = AnswerUncertainty(request);
   ASSERT_TRUE(printed);

@@ -76,6 +76,21 @@ void ReadProgram(Case& c, const std::filesystem::path& path, const UncertaintyRe
   Place(c, std::move(program.survey));
 }
 
+/// Of coefficients that a log could not show there is a bound only; what is left out is said.
+void NoteUnobserved(std::string_view noise_file, std::vector<std::string>& notes) {
+  constexpr std::string_view kBound = "_upper95";
+  const toml::table file = toml::parse(noise_file);  // read before: it is sound
+  const toml::table* const coefficients = file["coefficients"].as_table();
+  if (!coefficients) return;
+  for (const auto& [key, node] : *coefficients) {
+    const std::string_view name = key.str();
+    if (!name.ends_with(kBound) || !node.is_number()) continue;
+    notes.push_back(fmt::format("{} was not observed, at most {:g} at 95 %: left out",
+                                name.substr(0, name.size() - kBound.size()),
+                                *node.value<double>()));
+  }
+}
+
 void ReadSurvey(Case& c, const UncertaintySources& sources, const UncertaintyRequest& request) {
   NamedFiles files{std::filesystem::path()};
   const std::string survey = sources.survey->string();
@@ -90,7 +105,10 @@ void ReadSurvey(Case& c, const UncertaintySources& sources, const UncertaintyReq
     c.models.push_back(std::make_unique<const ErrorModel>(*std::move(model)));
     c.basis.legs = {{c.models.back().get(), 0, table->stations.size(), 1}};
   }
-  if (sources.noise) c.basis.noise = NoiseOfFile(sources.noise->string(), files);
+  if (sources.noise) {
+    c.basis.noise = NoiseOfFile(sources.noise->string(), files);
+    NoteUnobserved(files.all().back().text, c.notes);
+  }
   c.inputs = files.all();
   Place(c, *std::move(table));
 }
