@@ -12,6 +12,7 @@
 #include "wellgyro/io/error_model_file.h"
 #include "wellgyro/io/file_kind.h"
 #include "wellgyro/io/job_file.h"
+#include "wellgyro/io/noise_file.h"
 #include "wellgyro/io/program_file.h"
 #include "wellgyro/io/simulation_file.h"
 #include "wellgyro/io/survey_csv.h"
@@ -92,6 +93,8 @@ int CheckFile(const std::string& name) {
       return Tell(name, what, FaultsOfJob(name), kUnusable);
     case FileKind::kSimulation:
       return Tell(name, what, FaultOf(ReadSimulation(name)), kUnusable);
+    case FileKind::kNoise:
+      return Tell(name, what, FaultOf(ReadNoiseFile(name)), kUnusable);
     case FileKind::kErrorModel:
       return Tell(name, what, FaultOf(ReadErrorModelFile(name)), kUnusable);
     case FileKind::kProgram:

@@ -16,6 +16,7 @@ enum ExitCode {
 // was given, its callback runs it and puts the exit code into `exit_code`.
 void AddSurvey(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code);
+void AddAllan(CLI::App& app, int& exit_code);
 void AddUncertainty(CLI::App& app, int& exit_code);
 void AddCheck(CLI::App& app, int& exit_code);
 

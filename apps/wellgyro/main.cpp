@@ -16,6 +16,7 @@ int Run(int argc, char** argv) {
   int exit_code = kDone;
   AddSurvey(app, exit_code);
   AddSimulate(app, exit_code);
+  AddAllan(app, exit_code);
   AddUncertainty(app, exit_code);
   AddCheck(app, exit_code);
   try {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "wellgyro/io/coefficients_internal.h"
+#include "wellgyro/io/noise_file.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/toml_internal.h"
 
@@ -30,11 +30,7 @@ void NamedFiles::Note(std::string_view role, const std::filesystem::path& path,
 
 NoiseCoefficients NoiseOfFile(const std::string& name, NamedFiles& files) {
   const std::string text = files.Take("noise", name, true);
-  const auto noise = ReadTomlText<NoiseCoefficients>(
-      text, files.PathOf(name).string(), "wellgyro.noise/1", [](TomlTable& root) {
-        TomlTable table = root.Need("coefficients", root.FindTable("coefficients"));
-        return ReadCoefficients(table);
-      });
+  const Result<NoiseCoefficients> noise = ParseNoiseFile(text, files.PathOf(name).string());
   if (!noise) throw TomlError{noise.fault()};
   return *noise;
 }

@@ -284,4 +284,19 @@ VarianceInterval ChiSquareInterval(double variance, double edf, double confidenc
           edf * variance / ChiSquareQuantile(tail, edf)};
 }
 
+std::vector<AllanRow> AllanTable(const AllanResult& result, const NoiseModel& model) {
+  std::vector<AllanRow> rows;
+  for (const auto& point : result.points) {
+    if (point.terms < 1 || !(point.variance > 0)) continue;
+    AllanRow row;
+    row.point = point;
+    row.edf = EquivalentDof(model, result.period, point.factor, point.terms, result.deviation);
+    row.interval95 = ChiSquareInterval(point.variance, row.edf, 0.95);
+    row.model = ModelAllanVariance(model, point.tau);
+    row.dominant = DominantTerm(model, point.tau);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 }  // namespace wellgyro

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -35,5 +36,19 @@ struct VarianceInterval {
 /// edf s2/chi2, by the chi-square law. Throws std::domain_error for edf <= 0 or confidence outside
 /// (0, 1).
 WELLGYRO_EXPORT VarianceInterval ChiSquareInterval(double variance, double edf, double confidence);
+
+/// A line of a table of Allan variances.
+struct AllanRow {
+  AllanPoint point;
+  double edf = 0;
+  VarianceInterval interval95;
+  double model = 0;  ///< variance of the model there
+  NoiseTerm dominant = NoiseTerm::kAngleRandomWalk;
+};
+
+/// The points that have terms and a variance above zero, with the degrees of freedom, bounds and
+/// dominant term that `model` gives them.
+WELLGYRO_EXPORT std::vector<AllanRow> AllanTable(const AllanResult& result,
+                                                 const NoiseModel& model);
 
 }  // namespace wellgyro

@@ -11,6 +11,7 @@ using Kind = LogFinding::Kind;
 
 constexpr std::size_t kFindingsMax = 100;
 constexpr double kUnusual = 8;           // times the robust sigma
+constexpr std::size_t kAway = 100;       // stretches it may stand away and come back
 constexpr double kExplained = 0.9;       // share of the slow variance
 constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
 
@@ -123,6 +124,9 @@ class Inspector {
            .samples = present});
       return;
     }
+    // What most readings are is no end of the range, but a signal finer than its steps.
+    const bool high_pile = high.IsPile() && high.count < present / 2;
+    const bool low_pile = low.IsPile() && low.count < present / 2;
     // A run that coarse readings make by chance once in a million logs.
     const double repeat =
         static_cast<double>(repeats) / static_cast<double>(std::max<std::int64_t>(1, present));
@@ -138,8 +142,7 @@ class Inspector {
     double value = kNone;
     const auto close = [&] {
       const std::int64_t length = end - begin;
-      const bool piled =
-          (high.IsPile() && value == high.value) || (low.IsPile() && value == low.value);
+      const bool piled = (high_pile && value == high.value) || (low_pile && value == low.value);
       if (length > 0 && (at_end(value) || (piled && length >= 3))) {
         AddSaturated({begin, end}, value);
       } else if (static_cast<double>(length) > stuck) {
@@ -231,10 +234,16 @@ class Inspector {
       if (!moved[i]) continue;
       std::size_t last = i;
       double largest = size[i];
-      for (std::size_t j = i + 1; j < moved.size() && j <= last + 3; ++j) {
-        if (!moved[j]) continue;
-        last = j;
-        largest = std::max(largest, size[j]);
+      double level = i > 0 ? steps[i - 1] : 0;  // against before the movement
+      // Up to where it has been quiet for a while at the level it had.
+      for (std::size_t j = i + 1; j < moved.size(); ++j) {
+        level += steps[j - 1];
+        if (moved[j]) {
+          last = j;
+          largest = std::max(largest, size[j]);
+        } else if (j > last + 3 && (std::abs(level) < kUnusual * step || j > last + kAway)) {
+          break;
+        }
       }
       const std::int64_t begin = stretches_[i > 0 ? i - 1 : 0].begin;
       const std::int64_t end = stretches_[last].begin + length_;
