@@ -109,7 +109,14 @@ int Simulate(const SimulateOptions& options) {
     Complain(file.fault());
     return kUnusable;
   }
+  const std::string truth = options.truth.empty() ? options.out + ".truth.csv" : options.truth;
+  if (options.out == options.job || truth == options.job || options.out == truth) {
+    Complain("--job, --out and --truth must be three different files");
+    return kUnusable;
+  }
+  // What the simulation refuses is refused before a file is touched.
   Simulator simulator(file->simulation);
+  const SampleBatcher batcher(file->simulation.streams, file->simulation.seed);
   Result<LogWriter> log = LogWriter::Open(options.out, IfExists::kReplace);
   if (!log) {
     Complain(log.fault());
@@ -120,7 +127,6 @@ int Simulate(const SimulateOptions& options) {
     Complain(*fault);
     return kUnusable;
   }
-  const std::string truth = options.truth.empty() ? options.out + ".truth.csv" : options.truth;
   if (const auto fault = WriteTruth(truth, simulator.truth())) {
     Complain(*fault);
     return kUnusable;

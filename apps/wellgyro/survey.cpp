@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -137,21 +138,25 @@ bool HasLosses(const SourceRecord& source, const Survey& survey) {
   return false;
 }
 
+/// One folder for each tool where several tools have surveys. A tool without one, which may be no
+/// more than a damaged number in a message, is told and takes no folder.
 int DeliverAll(const SurveyOptions& options, const JobFile& job, const Surveyor& surveyor,
-               RunRecord record, const SourceRecord& source) {
-  const std::vector<std::int32_t> tools = surveyor.tools();
-  if (tools.empty()) return Deliver(options.out, record, source, job.job, surveyor.Current(0));
-  int code = kDone;
-  for (const std::int32_t tool : tools) {
+               const RunRecord& record, const SourceRecord& source) {
+  std::vector<std::pair<std::int32_t, Survey>> surveys;
+  for (const std::int32_t tool : surveyor.tools())
+    surveys.emplace_back(tool, surveyor.Current(tool));
+  const auto usable = std::count_if(surveys.begin(), surveys.end(),
+                                    [](const auto& s) { return s.second.unusable.empty(); });
+  if (surveys.empty()) surveys.emplace_back(0, surveyor.Current(0));
+  int code = usable > 0 ? kDone : kUnusable;
+  for (const auto& [tool, survey] : surveys) {
+    if (surveys.size() > 1) fmt::print("tool {}\n", tool);
     std::filesystem::path folder = options.out;
-    if (tools.size() > 1) folder /= fmt::format("tool-{}", tool);
-    const Survey survey = surveyor.Current(tool);
+    if (usable > 1) folder /= fmt::format("tool-{}", tool);
     const int one = Deliver(folder, record, source, job.job, survey);
-    if (one == kUnusable || code == kUnusable) {
-      code = kUnusable;
-    } else if (HasLosses(source, survey)) {
+    if (one == kUnusable && survey.unusable.empty()) return kUnusable;
+    if (code != kUnusable && (one == kUnusable || HasLosses(source, survey)))
       code = kDoneWithLosses;
-    }
   }
   return code;
 }

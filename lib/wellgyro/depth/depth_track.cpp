@@ -11,8 +11,9 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kHold = 0.02;      // [m] between marks of a tool that stands
-constexpr double kJumpAtLeast = 1;  // [m]
+constexpr double kHold = 0.02;         // [m] between marks of a tool that stands
+constexpr double kSpikeAtLeast = 0.3;  // [m]
+constexpr double kJumpAtLeast = 1;     // [m]
 
 double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
 
@@ -83,10 +84,30 @@ std::optional<Fault> DepthTrack::Push(const DepthMark& mark) {
     seq_ = mark.session == session_ ? std::max(seq_, mark.seq) : mark.seq;
     session_ = mark.session;
   }
+  std::optional<Fault> spike = i + 1 == marks_.size() ? DropSpike(i) : std::nullopt;
   for (Shift& shift : shifts_) {
     if (!shift.offset && Settled(shift.utc)) shift.offset = Offset(shift);
   }
-  return std::nullopt;
+  return spike;
+}
+
+/// The mark before `last` against those on both its sides: one reading far off two that agree.
+std::optional<Fault> DepthTrack::DropSpike(std::size_t last) {
+  if (last < 2) return std::nullopt;
+  const Mark &a = marks_[last - 2], &b = marks_[last - 1], &c = marks_[last];
+  const double all = Seconds(c.utc, a.utc), part = Seconds(b.utc, a.utc);
+  if (!(all > 0) || b.stopped != a.stopped) return std::nullopt;
+  const double way = std::abs(c.md - a.md);
+  if (way > kSpikeAtLeast + setup_.speed_limit * all) return std::nullopt;
+  const double off = b.md - (a.md + (c.md - a.md) * part / all);
+  // An acceleration of 1 m/s^2 between them is none of it.
+  if (!(std::abs(off) > kSpikeAtLeast + 0.5 * all * all + 0.5 * way)) return std::nullopt;
+  Fault fault{.code = FaultCode::kRange,
+              .text = "depth mark" + Place(b.utc) + " reads " + std::to_string(off) +
+                      " m off its neighbours and was left out"};
+  marks_.erase(marks_.begin() + static_cast<std::ptrdiff_t>(last - 1));
+  NoteJump(last - 1);
+  return fault;
 }
 
 void DepthTrack::NoteJump(std::size_t i) {

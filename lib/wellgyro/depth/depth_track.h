@@ -90,6 +90,7 @@ class WELLGYRO_EXPORT DepthTrack {
   bool Seen(const DepthMark& mark) const;
   bool Settled(UtcTime utc) const;
   void NoteJump(std::size_t i);
+  std::optional<Fault> DropSpike(std::size_t last);
   AlongHole Line(UtcTime utc, Span span) const;
 
   DepthTrackSetup setup_;

@@ -28,7 +28,9 @@ struct NorthFix {
   Eigen::Matrix3d cov_attitude = Eigen::Matrix3d::Zero();
   /// Second minimum of the cost, kept whenever the data cannot exclude it.
   std::optional<double> mirror_azimuth;
-  double mirror_cost = 0;    ///< cost of the mirror less cost of the solution, chi-square units
+  double mirror_cost = 0;  ///< cost of the mirror less cost of the solution, chi-square units
+  /// Of the azimuth against what was known before it came; absent where nothing was.
+  std::optional<double> chi_square;
   double gravity = 0;        ///< measured |f| [m/s^2]
   double gravity_ref = 0;    ///< of the Earth model at the place [m/s^2]
   double sigma_gravity = 0;  ///< [m/s^2]

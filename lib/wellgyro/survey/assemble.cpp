@@ -26,22 +26,37 @@ struct Item {
   Station station;
   const StationState* state = nullptr;  ///< nullptr: from a window of its own
   bool listed = true;
+  bool on_line = true;  ///< deeper than the one before
 };
 using PassItems = std::vector<Item>;  ///< in the order of depth
+
+/// The pass in the order of depth. Stations are met in the order of time, down or up; one at which
+/// the tool, or its depth counter, was on its way back lies on no leg and is only carried along.
+PassItems InDepthOrder(PassItems items) {
+  const Pass pass = items.front().station.pass;
+  if (items.front().state == nullptr) {
+    std::stable_sort(items.begin(), items.end(),
+                     [](const Item& a, const Item& b) { return a.station.md < b.station.md; });
+  } else if (pass == Pass::kOut) {
+    std::reverse(items.begin(), items.end());
+  }
+  double last = -HUGE_VAL;
+  for (Item& item : items) {
+    item.on_line = item.station.md > last;
+    if (item.on_line) last = item.station.md;
+  }
+  return items;
+}
 
 std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
   std::map<std::int32_t, PassItems> passes;
   for (const Draft& draft : run.drafts) {
     const StationState* state = draft.state ? &run.states[*draft.state] : nullptr;
     passes[draft.station.pass_number].push_back(
-        {StationOf(job, draft, state), state, draft.listed});
+        {StationOf(job, draft, state), state, draft.listed, true});
   }
   std::vector<PassItems> result;
-  for (auto& [number, items] : passes) {
-    std::stable_sort(items.begin(), items.end(),
-                     [](const Item& a, const Item& b) { return a.station.md < b.station.md; });
-    result.push_back(std::move(items));
-  }
+  for (auto& [number, items] : passes) result.push_back(InDepthOrder(std::move(items)));
   return result;
 }
 
@@ -108,7 +123,7 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
     for (const Item& item : pass) covs.push_back(sum.Add(item.station));
     return covs;
   }
-  const bool out = pass.size() > 1 && pass.front().station.utc > pass.back().station.utc;
+  const bool out = pass.front().station.pass == Pass::kOut;
   const auto order = out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth;
   // Its depth error is left to the sum over the stations, which has it too.
   Station entry = pass.front().station;
@@ -116,7 +131,14 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
   SystematicCovariance first(start.cov_p_WT_W);
   first.Add(origin);
   AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
-  for (const Item& item : pass) covs.push_back(sum.Add(*item.state));
+  for (const Item& item : pass) {
+    if (item.on_line) {
+      covs.push_back(sum.Add(*item.state));
+    } else {
+      sum.Skip(*item.state);
+      covs.push_back(covs.back());
+    }
+  }
   return covs;
 }
 
@@ -128,8 +150,8 @@ void Place(const Site& head, const Job& job, const Start& start, PassItems& pass
   for (std::size_t i = 0; i < pass.size(); ++i) {
     Station& s = pass[i].station;
     s.cov_p_WT_W = covs[i];
-    if (s.md <= start.point.station.md) {
-      s.p_WT_W = start.point.p_WT_W;
+    if (!pass[i].on_line || s.md <= start.point.station.md) {
+      s.p_WT_W = path.last().p_WT_W;
       continue;
     }
     const auto point = path.Add(PathOf(s));
@@ -223,7 +245,7 @@ void List(const std::vector<PassItems>& passes, double tie_md, bool misrun, Plac
   for (const PassItems& pass : passes) {
     std::vector<Station> stations;
     for (const Item& item : pass) {
-      if (!item.listed || item.station.md <= tie_md + kSameDepth) continue;
+      if (!item.listed || !item.on_line || item.station.md <= tie_md + kSameDepth) continue;
       stations.push_back(item.station);
       if (misrun && stations.back().status != StationStatus::kRejected) {
         stations.back().status = StationStatus::kSuperseded;
@@ -266,7 +288,10 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
     if (!run.misrun) good.insert(good.end(), by_run.back().begin(), by_run.back().end());
   }
   if (good.empty()) {
-    placed.unusable = "no station was made: no run has both depth and an azimuth";
+    const bool misruns = std::any_of(by_run.begin(), by_run.end(),
+                                     [](const auto& passes) { return !passes.empty(); });
+    placed.unusable = misruns ? "every run with stations is a misrun"
+                              : "no station was made: no run has both depth and an azimuth";
     return placed;
   }
   const std::optional<Station> opening = OpeningStation(job, good);

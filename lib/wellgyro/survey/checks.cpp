@@ -43,8 +43,16 @@ Check NotDone(std::string code, std::int32_t run, std::string why) {
 }
 
 void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
-  bool earth_rate = false;
+  bool earth_rate = false, compared = false;
   for (const NorthFix& fix : run.fixes) {
+    if (fix.chi_square && !Has(fix.quality, Quality::kVertical)) {
+      compared = true;
+      Check closure =
+          Compare("azimuth_closure", run.run, {std::sqrt(*fix.chi_square), 1}, 3.0, 1, "1");
+      closure.md = fix.md;
+      closure.limit_source = "3 sigma of the run against the fix";
+      checks.push_back(closure);
+    }
     if (fix.external) continue;
     Check gravity = Compare("gravity", run.run, {fix.gravity - fix.gravity_ref, fix.sigma_gravity},
                             job.acceptance.gravity, 1, "m/s2");
@@ -58,6 +66,7 @@ void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& check
     rate.md = fix.md;
     checks.push_back(rate);
   }
+  if (!compared) checks.push_back(NotDone("azimuth_closure", run.run, "no two independent norths"));
   const bool none = std::all_of(run.fixes.begin(), run.fixes.end(),
                                 [](const NorthFix& fix) { return fix.external; });
   if (none) checks.push_back(NotDone("gravity", run.run, "no stop long enough"));

@@ -31,15 +31,15 @@ void RequireFinite(std::string_view field, double value) {
 
 void RequireSigmas(std::initializer_list<std::pair<std::string_view, double>> sigmas) {
   for (const auto& [field, value] : sigmas) {
-    if (!(value >= 0) || !std::isfinite(value)) Refuse(field, value, "is not a sigma (>= 0)");
+    if (!(value >= 0) || !(value < 1e3)) Refuse(field, value, "is not a sigma (0 to 1000 SI)");
   }
 }
 
 void CheckTieIn(const TieIn& tie) {
-  RequireFinite("tie_in.md_m", tie.md);
-  RequireFinite("tie_in.north_m", tie.north);
-  RequireFinite("tie_in.east_m", tie.east);
-  RequireFinite("tie_in.tvd_m", tie.tvd);
+  RequireWithin("tie_in.md_m", tie.md, -1e5, 1e5);
+  RequireWithin("tie_in.north_m", tie.north, -1e6, 1e6);
+  RequireWithin("tie_in.east_m", tie.east, -1e6, 1e6);
+  RequireWithin("tie_in.tvd_m", tie.tvd, -1e5, 1e5);
   if (tie.inclination.has_value() != tie.azimuth.has_value()) {
     throw std::invalid_argument(
         "job: tie_in has one of inclination_deg and azimuth_true_deg; give both or none");
@@ -54,7 +54,7 @@ void CheckTieIn(const TieIn& tie) {
 }
 
 void CheckAlignment(const AlignmentSpec& alignment) {
-  RequireWithin("alignment.min_still_s", alignment.min_still, 1, 86400);
+  RequireWithin("alignment.min_still_s", alignment.min_still, 3, 86400);
   if (alignment.method != AlignmentSpec::Method::kExternal) return;
   RequireFinite("alignment.azimuth_true [rad]", alignment.azimuth);
   if (!(alignment.sigma_azimuth > 0) || !(alignment.sigma_azimuth < kPi)) {
@@ -68,7 +68,7 @@ void CheckAlignment(const AlignmentSpec& alignment) {
 void CheckDepth(const DepthSpec& depth) {
   RequireWithin("depth.latency_s", depth.latency, 0, 600);
   for (std::size_t i = 0; i < depth.corrections.size(); ++i) {
-    RequireFinite("depth.corrections", depth.corrections[i].second);
+    RequireWithin("depth.corrections", depth.corrections[i].second, -1e4, 1e4);
     if (i > 0 && !(depth.corrections[i].first > depth.corrections[i - 1].first)) {
       Refuse("depth.corrections", depth.corrections[i].first, "m does not increase");
     }
@@ -128,7 +128,7 @@ void CheckJob(const Job& job) {
     }
   }
   CheckRuns(job.runs);
-  if (job.stations.every != 0) RequireWithin("stations.every_m", job.stations.every, 0.01, 1e5);
+  if (job.stations.every != 0) RequireWithin("stations.every_m", job.stations.every, 0.2, 1e5);
   for (double md : job.stations.at) RequireFinite("stations.at_m", md);
   if (job.stations.every == 0 && job.stations.at.empty() && !job.stations.at_stops) {
     throw std::invalid_argument(

@@ -64,9 +64,11 @@ std::optional<Station> ProvisionalPath::Place(const Draft& draft, const StationS
   if (!path_ && !Start(station)) return std::nullopt;
   const bool in = station.pass == Pass::kIn;
   if (in && pass_number_ == 0) pass_number_ = station.pass_number;
-  if (in && station.pass_number == pass_number_ && station.md > points_.back().station.md) {
+  const bool extends = in && station.pass_number == pass_number_;
+  if (extends && station.md > points_.back().station.md) {
     Extend(station, state);
   } else {
+    if (extends && state && covariance_) covariance_->Skip(*state);
     LayOn(station);
   }
   if (!draft.listed || station.md <= job_.tie_in.md + kSameDepth) return std::nullopt;

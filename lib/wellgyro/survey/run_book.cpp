@@ -6,7 +6,7 @@ namespace wellgyro {
 
 RunBook::RunBook(const std::vector<RunSpec>& runs) : specs_(runs) {
   for (const RunSpec& run : runs) {
-    if (run.begin) begins_.push_back({*run.begin, run.number, {}});
+    if (run.begin) begins_.push_back({*run.begin, run.number, true, {}});
   }
   std::stable_sort(begins_.begin(), begins_.end(),
                    [](const Begin& a, const Begin& b) { return a.utc < b.utc; });
@@ -16,7 +16,7 @@ void RunBook::Take(const Event& event) {
   if (event.kind == Event::Kind::kRunBegin) {
     const auto after = std::upper_bound(begins_.begin(), begins_.end(), event.utc,
                                         [](UtcTime utc, const Begin& b) { return utc < b.utc; });
-    begins_.insert(after, {event.utc, event.run, event.text});
+    begins_.insert(after, {event.utc, event.run, false, event.text});
   } else if (event.kind == Event::Kind::kRunEnd) {
     ends_.push_back({event.utc, event.run, event.what == "misrun", event.text});
   }
@@ -29,11 +29,10 @@ void RunBook::HeardAt(UtcTime utc) {
 std::int32_t RunBook::RunAt(UtcTime utc, std::int32_t told) const {
   if (told > 0) return told;
   if (begins_.empty()) return 1;
-  const bool before_first = heard_ && *heard_ < begins_.front().utc;
   // The job says of its runs when they begin: what is earlier still belongs to the first of them.
-  std::int32_t number = before_first && begins_.front().number == 0 ? 1 : 0;
-  const std::int32_t first = begins_.front().number > 0 ? begins_.front().number : 1;
-  if (utc < begins_.front().utc) return first;
+  const bool before_first = heard_ && *heard_ < begins_.front().utc;
+  if (utc < begins_.front().utc) return begins_.front().of_job ? begins_.front().number : 1;
+  std::int32_t number = before_first ? 1 : 0;
   for (const Begin& begin : begins_) {
     if (utc < begin.utc) break;
     number = begin.number > 0 ? begin.number : number + 1;

@@ -37,6 +37,7 @@ class WELLGYRO_EXPORT RunBook {
   struct Begin {
     UtcTime utc;
     std::int32_t number = 0;  ///< 0: the next
+    bool of_job = false;
     std::string remark;
   };
   struct End {

@@ -66,6 +66,7 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
                      const AlongHole& middle) {
   if (summary_.samples == 0) summary_.begin = utc;
   ++summary_.samples;
+  depth_seen_ = depth_seen_ || along.known;
   PassState pass = passes_.state();
   if (along.known) pass = passes_.Push(utc, along.md);
   const bool taken = tracker_.Push(sample, middle, site_);
@@ -369,7 +370,9 @@ void RunSurvey::UseFix(const NorthFix& fix) {
   const bool wanted = fix.external || job_.alignment.use_fixes ||
                       job_.alignment.method == AlignmentSpec::Method::kGyrocompass;
   if (wanted && filter_) {
+    const bool known_before = filter_->attitude().azimuth_known;
     const FilterFix used = filter_->Update(kept);
+    if (known_before && used.use != FixUse::kNoKnot) kept.chi_square = used.chi_square;
     if (used.use == FixUse::kAmbiguous) kept.quality |= Quality::kMirror;
     if (filter_->attitude().azimuth_known) {
       news_.insert(news_.end(), unheard_.begin(), unheard_.end());

@@ -46,6 +46,8 @@ class RunSurvey {
 
   /// Drafts that have become ready to be told since the last call: indices into drafts().
   std::vector<std::size_t> News();
+  /// Some sample had a depth.
+  bool depth_seen() const { return depth_seen_; }
   const std::vector<Draft>& drafts() const { return drafts_; }
   std::vector<Draft>& drafts() { return drafts_; }
   /// Those of drafts() that are from samples stand in this order in the filter.
@@ -110,6 +112,7 @@ class RunSurvey {
   std::optional<ToolTime> last_knot_;
   double last_mark_md_ = 0;
   bool marked_ = false;
+  bool depth_seen_ = false;
   bool external_pending_ = false;
   std::optional<double> asked_md_;
   bool asked_ = false;

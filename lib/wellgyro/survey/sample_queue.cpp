@@ -8,9 +8,17 @@
 namespace wellgyro {
 namespace {
 
-bool IsFinite(const ImuSample& sample) {
-  return sample.w_IT_T.allFinite() && sample.f_T.allFinite() &&
-         (!sample.has_mag || sample.b_T.allFinite());
+// No tool turns or falls like that: a hundred turns a second, a thousand g, ten times a magnet.
+constexpr double kRateLimit = 700;   // [rad/s]
+constexpr double kForceLimit = 1e4;  // [m/s^2]
+constexpr double kFieldLimit = 10;   // [T]
+
+bool Within(const Eigen::Vector3d& v, double limit) { return v.cwiseAbs().maxCoeff() <= limit; }
+
+bool IsPossible(const ImuSample& sample) {
+  return sample.w_IT_T.allFinite() && Within(sample.w_IT_T, kRateLimit) && sample.f_T.allFinite() &&
+         Within(sample.f_T, kForceLimit) &&
+         (!sample.has_mag || (sample.b_T.allFinite() && Within(sample.b_T, kFieldLimit)));
 }
 
 // Sequence numbers and tool time tell the same story if the step in time is the step in number
@@ -55,7 +63,7 @@ bool SampleQueue::Contradicts(const ImuSample& sample) const {
 }
 
 SampleQueue::Verdict SampleQueue::Push(const ImuSample& sample) {
-  if (!IsFinite(sample) || sample.stamp.period_ns <= 0) return Count(Verdict::kRefused);
+  if (!IsPossible(sample) || sample.stamp.period_ns <= 0) return Count(Verdict::kRefused);
   const std::int32_t session = sample.stamp.session;
   const std::int32_t current = size_ > 0 ? At(size_ - 1).stamp.session
                                : popped_ ? last_.session

@@ -24,7 +24,7 @@ class WELLGYRO_EXPORT SampleQueue {
     std::int64_t accepted = 0;
     std::int64_t duplicates = 0;
     std::int64_t late = 0;     ///< came after a younger sample had been used
-    std::int64_t refused = 0;  ///< not finite, or time and number contradict each other
+    std::int64_t refused = 0;  ///< impossible values, or time against number
   };
 
   explicit SampleQueue(Duration hold) : hold_(hold) {}

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "wellgyro/calibration/apply.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/survey/run_book.h"
@@ -12,6 +14,9 @@
 
 namespace wellgyro {
 namespace {
+
+// A depth mark with a time so far ahead of the samples would make all others late.
+constexpr Duration kAhead = Duration::Seconds(600);
 
 const Job& Checked(const Job& job) {
   CheckJob(job);
@@ -51,6 +56,7 @@ struct Surveyor::Rooms {
   std::map<std::int32_t, SampleCalibrator> calibrators;  ///< of each tool
   std::vector<ImuSample> calibrated;                     ///< scratch
   bool finished = false;
+  std::optional<UtcTime> newest;  ///< begin of the last sample that came
 
   ToolSurvey& Tool(std::int32_t number) {
     const auto found = tools.find(number);
@@ -115,6 +121,7 @@ void Surveyor::Push(std::span<const ImuSample> batch) {
   for (const ImuSample& sample : batch) {
     if (rooms_->finished) return;
     rooms_->Tool(sample.stamp.tool).Push(sample);
+    rooms_->newest = sample.stamp.utc;
   }
   rooms_->Work();
 }
@@ -147,6 +154,13 @@ void Surveyor::Push(const StillWindow& window) {
 
 void Surveyor::Push(const DepthMark& mark) {
   if (!rooms_->Open()) return;
+  if (rooms_->newest && mark.utc - *rooms_->newest > kAhead) {
+    rooms_->sink.OnFault(Fault{FaultCode::kRange,
+                               fmt::format("a depth mark is stamped {:.0f} s ahead of the samples "
+                                           "and was left out",
+                                           (mark.utc - *rooms_->newest).seconds())});
+    return;
+  }
   if (const auto fault = rooms_->track.Push(mark)) rooms_->sink.OnFault(*fault);
 }
 

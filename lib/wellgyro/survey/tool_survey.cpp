@@ -340,6 +340,33 @@ std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const 
   return MakeChecks(job_, {summaries, passes, foresights, returns_});
 }
 
+/// Stations that were asked for and passed, but at which no azimuth is known.
+std::int64_t ToolSurvey::WithoutAzimuth() const {
+  std::int64_t count = 0;
+  for (const RunState& run : runs_) {
+    const AzimuthFilter* filter = run.survey->filter();
+    for (const Draft& draft : run.survey->drafts()) {
+      if (!draft.listed || !draft.state || !filter) continue;
+      const std::size_t i = *draft.state;
+      const StationState& state = i < run.adjusted.size() ? run.adjusted[i] : filter->stations()[i];
+      count += HasDirection(state.attitude) ? 0 : 1;
+    }
+  }
+  return count;
+}
+
+Check ToolSurvey::CheckAzimuths() const {
+  Check check;
+  check.code = "stations_without_azimuth";
+  const auto count = static_cast<double>(WithoutAzimuth());
+  check.value = count;
+  check.sigma = check.limit = 0;
+  check.unit = "1";
+  check.limit_source = "every station passed has an azimuth";
+  check.verdict = Judge(count, 0);
+  return check;
+}
+
 Survey ToolSurvey::Current() const {
   Survey survey;
   for (const RunState& run : runs_) {
@@ -356,6 +383,7 @@ Survey ToolSurvey::Current() const {
   const std::vector<DraftedRun> drafted = Drafted();
   Placed placed = Assemble(job_, drafted);
   survey.checks = Checks(placed.passes);
+  survey.checks.push_back(CheckAzimuths());
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);
   survey.unusable = std::move(placed.unusable);
@@ -368,12 +396,23 @@ Survey ToolSurvey::Current() const {
       return !draft.state || run.states[*draft.state].attitude.azimuth_known;
     });
   });
-  if (survey.chosen.empty() && !north) {
+  const bool depth = std::any_of(runs_.begin(), runs_.end(), [](const RunState& run) {
+    return run.survey->depth_seen() || run.survey->summary().samples == 0;
+  });
+  if (!depth) {
     survey.unusable = fmt::format(
-        "no north was found: no stop of {:.0f} s at an inclination the gyros can see, and the job "
-        "gives no azimuth; log a stop, or use [alignment] method = \"external\"",
-        job_.alignment.min_still);
+        "samples came but no depth with them: no marks on {} at their times", job_.channels.depth);
+  } else if (!north && (survey.chosen.empty() || WithoutAzimuth() > 0)) {
+    survey.unusable = job_.alignment.method == AlignmentSpec::Method::kExternal
+                          ? "no north was found: the depth or time at which the job's external "
+                            "azimuth holds was never reached"
+                          : fmt::format(
+                                "no north was found: no stop of {:.0f} s at which the gyros tell "
+                                "one azimuth from its mirror, and the job gives no azimuth; log a "
+                                "stop, or use [alignment] method = \"external\"",
+                                job_.alignment.min_still);
   }
+  if (!survey.unusable.empty()) survey.chosen.clear();
   return survey;
 }
 

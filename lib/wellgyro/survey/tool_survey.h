@@ -78,6 +78,8 @@ class ToolSurvey {
   std::vector<Foresight> Foresights() const;
   std::vector<Check> Checks(const std::vector<Station>& passes) const;
   void SendRevisions();
+  std::int64_t WithoutAzimuth() const;
+  Check CheckAzimuths() const;
 
   const Job& job_;
   std::int32_t tool_;
