@@ -13,7 +13,6 @@
 
 #include <gtest/gtest.h>
 
-#include "support/scratch.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/bus/encode.h"
@@ -24,6 +23,8 @@
 #include "wellgyro/io/run_file.h"
 #include "wellgyro/simulate/sample_batcher.h"
 #include "wellgyro/simulate/simulator.h"
+
+#include "support/scratch.h"
 
 namespace wellgyro {
 namespace {

@@ -30,11 +30,11 @@ struct KeepingAdjuster : RunAdjuster {
 struct Hour {
   double inclination_deg = 60;
   double azimuth_deg = 40, swing_deg = 50;
-  double rpm = 3;              ///< with 25 deg in 23 s on it; zero: slides, roll wandering slowly
+  double rpm = 3;  ///< with 25 deg in 23 s on it; zero: slides, roll wandering slowly
   double latitude_deg = 60;
-  int stops = 3;               ///< of 180 s each, spread over the run, the first at its begin
+  int stops = 3;  ///< of 180 s each, spread over the run, the first at its begin
   double stop_seconds = 180;
-  bool and_back = false;       ///< the same way out, sliding
+  bool and_back = false;  ///< the same way out, sliding
   double imu_hz = 10;
   double speed = 0.6;
   double minutes = 60;

@@ -19,8 +19,8 @@ enum class FileKind {
   kErrorModel,
   kProgram,
   kUncertainty,  ///< uncertainty.toml
-  kRun,     ///< run.toml
-  kSource,  ///< source.toml
+  kRun,          ///< run.toml
+  kSource,       ///< source.toml
   kLcmLog,
   kSurveyCsv,
   kPassesCsv,

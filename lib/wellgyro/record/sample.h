@@ -23,7 +23,7 @@ struct SampleStamp {
   bool utc_unsynced = false;  ///< the surface doubts `utc`
   bool simulated = false;
   bool temperature_outside = false;  ///< beyond the calibrated temperatures
-  float temperature = 0;      ///< [degC]
+  float temperature = 0;             ///< [degC]
 };
 
 /// One sample in SI units and tool axes T: z down-hole along the axis, x to the housing's reference
