@@ -18,6 +18,7 @@ constexpr Duration kMakeUpMind = Duration::Seconds(3);
 constexpr double kRestSpeed = 0.006;       // [m/s], that of the still detector
 constexpr double kSamePlace = 0.2;         // [m], between windows of one stop
 constexpr double kSamePlaceSeconds = 120;  // the same where there is no depth
+constexpr double kVague = FromDegrees(2);  // [rad], sigma of a fix's azimuth
 constexpr double kLeastFraction = 1e-9;    // of a sample, at which it can be cut
 constexpr double kJump = 50;  // [m] in one sample: no hole is logged so fast, the depth is wrong
 
@@ -371,7 +372,11 @@ void RunSurvey::UseFix(const NorthFix& fix) {
                       job_.alignment.method == AlignmentSpec::Method::kGyrocompass;
   if (wanted && filter_) {
     const bool known_before = filter_->attitude().azimuth_known;
-    const FilterFix used = filter_->Update(kept);
+    NorthFix given = kept;
+    // Near east-west and horizontal the cost of azimuth is no parabola: the filter, which is
+    // linear, would take the rates of such a stop for far more than the fix itself says.
+    if (std::sqrt(fix.cov_attitude(1, 1)) > kVague) given.from_samples = false;
+    const FilterFix used = filter_->Update(given);
     if (known_before && used.use != FixUse::kNoKnot) kept.chi_square = used.chi_square;
     if (used.use == FixUse::kAmbiguous) kept.quality |= Quality::kMirror;
     if (filter_->attitude().azimuth_known) {
