@@ -14,6 +14,8 @@ endfunction()
 # wellgyro_pkgconfig(name "what it is" REQUIRES ... PRIVATE ... LIBS ...)
 function(wellgyro_pkgconfig name description)
   cmake_parse_arguments(PC "" "LIBS_PRIVATE" "REQUIRES;REQUIRES_PRIVATE" ${ARGN})
+  # Relative, so that the installed tree may be moved.
+  file(RELATIVE_PATH PC_UP /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   set(PC_NAME ${name})
   set(PC_DESCRIPTION ${description})
   list(JOIN PC_REQUIRES " " PC_REQUIRES)
