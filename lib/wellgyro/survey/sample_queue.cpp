@@ -55,6 +55,10 @@ bool SampleQueue::Contradicts(const ImuSample& sample) const {
                                  : popped_            ? &last_
                                                       : nullptr;
   if (neighbour == nullptr || neighbour->session != sample.stamp.session) return false;
+  const bool next = sample.stamp.seq == neighbour->seq + 1 &&
+                    (sample.stamp.tool_time - neighbour->tool_time).ns == neighbour->period_ns &&
+                    neighbour->period_ns == sample.stamp.period_ns;
+  if (next) return false;
   // A tool that changes its sampling rate starts its numbers and times anew from there.
   if (neighbour->period_ns != sample.stamp.period_ns) {
     return (sample.stamp.seq > neighbour->seq) != (neighbour->tool_time < sample.stamp.tool_time);
@@ -83,6 +87,7 @@ SampleQueue::Verdict SampleQueue::Push(const ImuSample& sample) {
     --position;
   }
   Insert(position, sample);
+  newest_ = counts_.accepted == 0 ? sample.stamp.utc : std::max(newest_, sample.stamp.utc);
   return Count(Verdict::kTaken);
 }
 
@@ -101,7 +106,7 @@ void SampleQueue::Insert(std::size_t position, const ImuSample& sample) {
 const ImuSample* SampleQueue::Front() const {
   if (size_ == 0) return nullptr;
   const ImuSample& front = At(0);
-  if (flushing_ || old_session_ > 0) return &front;
+  if (flushing_ || old_session_ > 0 || size_ > kWaitingMax) return &front;
   return At(size_ - 1).stamp.tool_time - front.stamp.tool_time >= hold_ ? &front : nullptr;
 }
 

@@ -17,9 +17,11 @@ namespace wellgyro {
 /// Overlapping and repeated samples are skipped, late ones sorted in. A sample that comes after a
 /// younger one was handed out is refused. A new session flushes the old one. What comes out depends
 /// only on the set of samples and never on how they were batched. Nothing is allocated per sample
-/// once the buffer has grown to `hold`.
+/// once the buffer has grown to `hold`; of more than kWaitingMax the oldest no longer wait.
 class WELLGYRO_EXPORT SampleQueue {
  public:
+  static constexpr std::size_t kWaitingMax = std::size_t{1} << 21;  ///< 20 s at 100 kHz
+
   struct Counts {
     std::int64_t accepted = 0;
     std::int64_t duplicates = 0;
@@ -42,6 +44,8 @@ class WELLGYRO_EXPORT SampleQueue {
   void Flush() { flushing_ = true; }
 
   const Counts& counts() const { return counts_; }
+  /// Latest begin of any sample taken.
+  UtcTime newest() const { return newest_; }
   std::size_t waiting() const { return size_; }
 
  private:
@@ -59,6 +63,7 @@ class WELLGYRO_EXPORT SampleQueue {
   std::size_t old_session_ = 0;  ///< waiting samples, from the front, of sessions that have ended
   bool flushing_ = false;
   bool popped_ = false;
+  UtcTime newest_;
   SampleStamp last_;  ///< of the sample handed out last
   /// Numbers that were missing when younger samples were handed out: [first, second), the latest
   /// kGapsKept of this session.

@@ -58,16 +58,23 @@ struct Surveyor::Rooms {
   bool finished = false;
   std::optional<UtcTime> newest;  ///< begin of the last sample that came
 
-  ToolSurvey& Tool(std::int32_t number) {
+  /// nullptr: one tool too many.
+  ToolSurvey* Tool(std::int32_t number) {
     const auto found = tools.find(number);
-    if (found != tools.end()) return found->second;
+    if (found != tools.end()) return &found->second;
+    if (tools.size() >= kToolsMax) {
+      sink.OnFault(Fault{FaultCode::kRange, fmt::format("tool {} is one more than {}: its messages "
+                                                        "are left out",
+                                                        number, kToolsMax)});
+      return nullptr;
+    }
     ToolSurvey& tool =
         tools.try_emplace(number, job, number, track, book, sink, adjuster).first->second;
     for (const ToolInfo& info : infos) {
       if (info.tool == number) tool.Push(info);
     }
     for (const Operation& operation : operations) tool.Push(operation);
-    return tool;
+    return &tool;
   }
 
   void Take(const Operation& operation) {
@@ -95,7 +102,7 @@ struct Surveyor::Rooms {
       }
       if (!needed || tool.Needs() < *needed) needed = tool.Needs();
     }
-    if (needed) track.Forget(*needed - track.lag());
+    if (needed) track.Forget(*needed - track.lag() - DepthGrid::kStep);
   }
 
   void Finish() {
@@ -120,7 +127,9 @@ void Surveyor::Push(std::span<const ImuSample> batch) {
   if (!rooms_->Open()) return;
   for (const ImuSample& sample : batch) {
     if (rooms_->finished) return;
-    rooms_->Tool(sample.stamp.tool).Push(sample);
+    ToolSurvey* tool = rooms_->Tool(sample.stamp.tool);
+    if (tool == nullptr) return;
+    tool->Push(sample);
     rooms_->newest = sample.stamp.utc;
   }
   rooms_->Work();
@@ -149,7 +158,8 @@ void Surveyor::Push(std::span<const RawSample> batch) {
 void Surveyor::Push(const ImuSample& sample) { Push({&sample, 1}); }
 
 void Surveyor::Push(const StillWindow& window) {
-  if (rooms_->Open()) rooms_->Tool(window.tool).Push(window);
+  if (!rooms_->Open()) return;
+  if (ToolSurvey* tool = rooms_->Tool(window.tool)) tool->Push(window);
 }
 
 void Surveyor::Push(const DepthMark& mark) {
@@ -188,6 +198,21 @@ void Surveyor::Adjust() {
 }
 
 void Surveyor::Finish() { rooms_->Finish(); }
+
+bool Surveyor::finished() const { return rooms_->finished; }
+
+SampleTally Surveyor::tally() const {
+  SampleTally sum;
+  for (const auto& [number, tool] : rooms_->tools) {
+    const SampleTally one = tool.tally();
+    sum.received += one.received;
+    sum.lost += one.lost;
+    sum.gaps += one.gaps;
+    sum.duplicates += one.duplicates;
+    if (one.newest && (!sum.newest || *sum.newest < *one.newest)) sum.newest = one.newest;
+  }
+  return sum;
+}
 
 std::vector<std::int32_t> Surveyor::tools() const {
   std::vector<std::int32_t> numbers;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +34,15 @@ class WELLGYRO_EXPORT Sink {
   virtual void OnAcknowledged(std::int32_t /*command_id*/) {}
 };
 
+/// How the samples of all tools came, since the begin.
+struct SampleTally {
+  std::int64_t received = 0;      ///< accepted
+  std::int64_t lost = 0;          ///< by sequence number
+  std::int64_t gaps = 0;          ///< places where some were lost
+  std::int64_t duplicates = 0;    ///< sent again and skipped
+  std::optional<UtcTime> newest;  ///< begin of the newest sample
+};
+
 /// From sensor samples to stations: the one place that knows the order of the rooms.
 ///
 ///     samples -> in order -> still? -> north fix -+
@@ -47,6 +58,8 @@ class WELLGYRO_EXPORT Sink {
 /// Quality. Memory grows with stations and knots only (one knot a second, about 1 kB).
 class WELLGYRO_EXPORT Surveyor {
  public:
+  static constexpr std::size_t kToolsMax = 256;  ///< messages of further ones are Faults
+
   /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` and
   /// `adjuster` must outlive this object; without an adjuster the smoothed run is final.
   Surveyor(const Job& job, Sink& sink, const RunAdjuster* adjuster = nullptr);
@@ -70,6 +83,10 @@ class WELLGYRO_EXPORT Surveyor {
   /// The last Adjust: works off what still waits, then revises every station. Pushes after it are
   /// faults.
   void Finish();
+
+  /// Finish was called, or a FINISH obeyed.
+  bool finished() const;
+  SampleTally tally() const;
 
   /// Tools of the string that have been heard of.
   std::vector<std::int32_t> tools() const;

@@ -22,7 +22,7 @@ constexpr double kForesightSeconds = 2;
 
 /// Depth marks of a second and more after a sample decide its depth; so long it waits for them.
 Duration Hold(const Job& job, const DepthTrack& track) {
-  return Duration::Seconds(job.depth.latency) + track.lag();
+  return Duration::Seconds(job.depth.latency) + track.lag() + DepthGrid::kStep;
 }
 
 UtcTime TimeOf(const Operation& operation) {
@@ -52,6 +52,7 @@ ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& trac
     : job_(job),
       tool_(tool),
       track_(track),
+      grid_(track),
       book_(book),
       sink_(sink),
       adjuster_(adjuster),
@@ -77,7 +78,7 @@ void ToolSurvey::Push(const Operation& operation) {
 void ToolSurvey::Push(const StillWindow& window) {
   RunState& run = RunFor(book_.RunAt(window.utc_begin, window.run));
   const UtcTime middle = window.utc_begin + Duration{(window.utc_end - window.utc_begin).ns / 2};
-  run.survey->Push(window, SensorDepth(middle));
+  run.survey->Push(window, OfSensor(track_.At(middle)));
   Tell(run);
 }
 
@@ -114,7 +115,10 @@ void ToolSurvey::Use(const ImuSample& sample) {
   if (!last_) book_.HeardAt(utc);
   RunState& run = RunFor(book_.RunAt(utc, stamp.run));
   if (last_ && stamp.session == last_->session && stamp.seq > last_->seq + 1) {
-    run.survey->summary().samples_lost += stamp.seq - last_->seq - 1;
+    const std::int64_t lost = stamp.seq - last_->seq - 1;
+    run.survey->summary().samples_lost += lost;
+    lost_ += lost;
+    ++gaps_;
     sink_.OnFault(
         Fault{FaultCode::kLost, fmt::format("samples {} to {} of session {} are missing",
                                             last_->seq + 1, stamp.seq - 1, stamp.session)});
@@ -123,13 +127,13 @@ void ToolSurvey::Use(const ImuSample& sample) {
   const std::int32_t segment = track_.Segment(utc);
   if (segment != depth_segment_) run.survey->RestartDepth();
   depth_segment_ = segment;
-  run.survey->Push(sample, utc, SensorDepth(utc), SensorDepth(utc + Duration{stamp.period_ns / 2}));
+  run.survey->Push(sample, utc, OfSensor(grid_.At(utc)),
+                   OfSensor(grid_.At(utc + Duration{stamp.period_ns / 2})));
   newest_used_ = utc;
   Tell(run);
 }
 
-AlongHole ToolSurvey::SensorDepth(UtcTime utc) const {
-  AlongHole along = track_.At(utc);
+AlongHole ToolSurvey::OfSensor(AlongHole along) const {
   if (along.known)
     along.md += Correction(job_.depth.corrections, along.md) + sensor_below_reference_;
   return along;
@@ -220,6 +224,7 @@ void ToolSurvey::Tell(RunState& run) {
   });
   if (backwards) {
     smoothed = Smooth(survey.filter()->history());
+    run.backwards = smoothed.stations;
     states = &smoothed.stations;
   }
   for (std::size_t i : news) {
@@ -267,10 +272,10 @@ void ToolSurvey::SendRevisions() {
 
 void ToolSurvey::Finish(std::optional<UtcTime> until) {
   if (finished_) return;
-  if (!finish_asked_) finish_asked_ = std::nullopt;
   queue_.Flush();
   while (const ImuSample* sample = queue_.Front()) {
-    if (!until || sample->stamp.utc < *until) Use(*sample);
+    const bool after = (until && sample->stamp.utc >= *until) || finish_asked_;
+    if (!after) Use(*sample);
     queue_.Pop();
   }
   for (RunState& run : runs_) {
@@ -286,6 +291,24 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
   for (const Check& check : Current().checks) sink_.OnCheck(check);
 }
 
+SampleTally ToolSurvey::tally() const {
+  const SampleQueue::Counts& counts = queue_.counts();
+  SampleTally tally{counts.accepted, lost_, gaps_, counts.duplicates, std::nullopt};
+  if (counts.accepted > 0) tally.newest = queue_.newest();
+  return tally;
+}
+
+/// As the last Adjust found them, and since then as the filter did, or as the first north showed.
+std::vector<StationState> ToolSurvey::StatesOf(const RunState& run, const AzimuthFilter& filter) {
+  std::vector<StationState> states = run.adjusted;
+  const std::vector<StationState>& stations = filter.stations();
+  for (std::size_t i = states.size(); i < stations.size(); ++i) {
+    const bool backwards = !stations[i].attitude.azimuth_known && i < run.backwards.size();
+    states.push_back(backwards ? run.backwards[i] : stations[i]);
+  }
+  return states;
+}
+
 std::vector<DraftedRun> ToolSurvey::Drafted() const {
   std::vector<DraftedRun> drafted;
   for (const RunState& run : runs_) {
@@ -293,11 +316,7 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
     d.run = run.survey->summary().run;
     d.misrun = book_.misrun(d.run);
     if (const AzimuthFilter* filter = run.survey->filter()) {
-      d.states = run.adjusted;
-      const auto& stations = filter->stations();
-      d.states.insert(d.states.end(),
-                      stations.begin() + static_cast<std::ptrdiff_t>(run.adjusted.size()),
-                      stations.end());
+      d.states = StatesOf(run, *filter);
     }
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
       Draft draft = run.survey->drafts()[i];

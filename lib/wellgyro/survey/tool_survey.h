@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "wellgyro/depth/clock_tie.h"
+#include "wellgyro/depth/depth_grid.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/survey/assemble.h"
@@ -46,6 +47,7 @@ class ToolSurvey {
   std::optional<UtcTime> finish_asked_at() const { return finish_asked_; }
 
   Survey Current() const;
+  SampleTally tally() const;
   /// Depth before this instant is no longer needed.
   UtcTime Needs() const { return newest_used_; }
 
@@ -53,8 +55,9 @@ class ToolSurvey {
   struct RunState {
     std::unique_ptr<RunSurvey> survey;
     std::unique_ptr<ProvisionalPath> provisional;
-    std::size_t placed = 0;              ///< drafts that have gone through `provisional`
-    std::vector<StationState> adjusted;  ///< as of the last Adjust
+    std::size_t placed = 0;               ///< drafts that have gone through `provisional`
+    std::vector<StationState> adjusted;   ///< as of the last Adjust
+    std::vector<StationState> backwards;  ///< as the first north showed those before it
     std::size_t adjusted_drafts = 0;
     std::vector<AttitudeSample> attitude;  ///< smoothed, of every knot, as of the last Adjust
   };
@@ -70,10 +73,11 @@ class ToolSurvey {
   void Obey(const Event& event);
   void Obey(const Command& command);
   bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
-  AlongHole SensorDepth(UtcTime utc) const;
+  AlongHole OfSensor(AlongHole along) const;
   RunState& RunFor(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
+  static std::vector<StationState> StatesOf(const RunState& run, const AzimuthFilter& filter);
   std::vector<DraftedRun> Drafted() const;
   std::vector<Foresight> Foresights() const;
   std::vector<Check> Checks(const std::vector<Station>& passes) const;
@@ -84,6 +88,7 @@ class ToolSurvey {
   const Job& job_;
   std::int32_t tool_;
   const DepthTrack& track_;
+  DepthGrid grid_;
   RunBook& book_;
   Sink& sink_;
   const RunAdjuster* adjuster_;
@@ -94,6 +99,7 @@ class ToolSurvey {
   std::set<std::int32_t> commands_, events_;  ///< ids obeyed
   std::vector<RunState> runs_;
   std::optional<SampleStamp> last_;
+  std::int64_t lost_ = 0, gaps_ = 0;  ///< samples, and places
   std::int32_t depth_segment_ = 0;
   std::optional<ToolMode> mode_;
   UtcTime newest_used_;
