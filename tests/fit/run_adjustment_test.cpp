@@ -2,11 +2,12 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <vector>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "wellgyro/base/angle.h"
+#include "wellgyro/math/statistics.h"
 
 #include "support/hour.h"
 
@@ -17,78 +18,229 @@ using testing::Flown;
 using testing::Fly;
 using testing::Hour;
 using testing::JobOf;
-using testing::StrongDrift;
+using testing::SimulationOf;
 
-struct Tally {
-  double squared = 0, sigma = 0, worst = 0;
-  int runs = 0, unknown = 0;
+// Shorter than an hour, the same in kind.
+Hour HalfHour() {
+  Hour hour = testing::StrongDrift();
+  hour.minutes = 30;
+  hour.stop_seconds = 120;
+  return hour;
+}
+
+Job ExternalJob(const Hour& hour, std::uint64_t seed, double sigma_deg) {
+  Job job = JobOf(hour);
+  Random random(1000 + seed);
+  job.alignment.method = AlignmentSpec::Method::kExternal;
+  job.alignment.sigma_azimuth = FromDegrees(sigma_deg);
+  job.alignment.azimuth = Truth(SimulationOf(hour, seed)).At(0).azimuth;
+  if (seed != 0) job.alignment.azimuth += job.alignment.sigma_azimuth * random.Normal();
+  return job;
+}
+
+double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size_t i) {
+  return WrapPi(run.attitude[i].azimuth - flown.truth[i].azimuth);
+}
+
+// Errors against what they claim, and the claims.
+struct Claims {
+  double squares = 0, variance = 0;
+  int count = 0;
+  void Add(double error, double var) {
+    squares += error * error / var;
+    variance += var;
+    ++count;
+  }
+  double sigma_deg() const { return ToDegrees(std::sqrt(variance / count)); }
+  void ExpectTrue(const char* what) const {
+    EXPECT_GT(squares, ChiSquareQuantile(1e-4, count)) << what << ": mean " << squares / count;
+    EXPECT_LT(squares, ChiSquareQuantile(1 - 1e-4, count)) << what << ": mean " << squares / count;
+  }
 };
 
-/// The azimuth at the end of each of several hours, against its own sigma.
-Tally EndOfHours(const Hour& hour, const Job& job, int seeds) {
-  Tally tally;
-  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
-    const Flown flown = Fly(hour, job, seed);
+TEST(RunAdjustment, OfAPerfectToolIsTheTruth) {
+  for (const double inclination : {5., 10., 60., 90.}) {
+    Hour hour = HalfHour();
+    hour.inclination_deg = inclination;
+    const Flown flown = Fly(hour, ExternalJob(hour, 0, 0.001), 0);
     const Adjustment adjusted = AdjustRun(flown.history, 0);
-    const AttitudeSample& end = adjusted.run.attitude.back();
-    if (!adjusted.converged || adjusted.ambiguous || !end.azimuth_known) {
-      ++tally.unknown;
-      continue;
+    ASSERT_TRUE(adjusted.converged);
+    ASSERT_EQ(adjusted.run.attitude.size(), flown.truth.size());
+    double worst_azimuth = 0, worst_inclination = 0;
+    for (std::size_t i = 0; i < flown.truth.size(); ++i) {
+      worst_azimuth = std::max(worst_azimuth, std::abs(AzimuthError(flown, adjusted.run, i)));
+      worst_inclination =
+          std::max(worst_inclination,
+                   std::abs(adjusted.run.attitude[i].inclination - flown.truth[i].inclination));
     }
-    const double error = WrapPi(end.azimuth - flown.truth.back().azimuth);
-    const double variance = end.cov_attitude(1, 1);
-    tally.squared += error * error / variance;
-    tally.sigma += std::sqrt(variance);
-    tally.worst = std::max(tally.worst, std::abs(error));
-    ++tally.runs;
+    EXPECT_LT(ToDegrees(worst_azimuth), 0.003) << inclination;
+    EXPECT_LT(ToDegrees(worst_inclination), 2e-4) << inclination;
+    EXPECT_LT(adjusted.chi_square, 1e-3 * adjusted.degrees_of_freedom) << inclination;
   }
-  tally.sigma /= std::max(1, tally.runs);
-  std::printf("%d runs: mean squared normalised error %.2f, sigma %.3f deg, worst %.3f deg\n",
-              tally.runs, tally.squared / tally.runs, ToDegrees(tally.sigma),
-              ToDegrees(tally.worst));
-  return tally;
 }
 
-// 24 degrees of freedom: the 0.0005 and 0.9995 quantiles of chi-square are 7.45 and 52.6.
-TEST(RunAdjustment, NorthFromThreeStopsAndTheMotionIsAsGoodAsItSays) {
-  const Hour hour = StrongDrift();
-  const Tally tally = EndOfHours(hour, JobOf(hour), 24);
-  EXPECT_EQ(tally.unknown, 0);
-  EXPECT_GT(tally.squared, 7.45);
-  EXPECT_LT(tally.squared, 52.6);
-  EXPECT_LT(ToDegrees(tally.sigma), 0.35);
+// Bias, drift and g-dependent errors as in a worn tool, no azimuth from outside, one position at
+// each stop: the motion itself finds north.
+TEST(RunAdjustment, FindsNorthFromTheMotionAndSaysHowWell) {
+  for (const double rpm : {3., 0.}) {
+    Claims end, inclination;
+    double smoothed_variance = 0;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+      Hour hour = testing::StrongDrift();
+      hour.rpm = rpm;
+      const Flown flown = Fly(hour, JobOf(hour), seed);
+      const Adjustment adjusted = AdjustRun(flown.history, 0);
+      ASSERT_TRUE(adjusted.converged);
+      const AttitudeSample& last = adjusted.run.attitude.back();
+      ASSERT_TRUE(last.azimuth_known);
+      end.Add(AzimuthError(flown, adjusted.run, flown.truth.size() - 1), last.cov_attitude(1, 1));
+      inclination.Add(last.inclination - flown.truth.back().inclination, last.cov_attitude(0, 0));
+      smoothed_variance += Smooth(flown.history).attitude.back().cov_attitude(1, 1);
+    }
+    end.ExpectTrue("azimuth");
+    inclination.ExpectTrue("inclination");
+    EXPECT_LT(end.sigma_deg(), rpm > 0 ? 0.22 : 0.33) << rpm << " rpm";
+    EXPECT_LT(4 * end.variance, smoothed_variance) << "without the lift it is far worse";
+  }
 }
 
-TEST(RunAdjustment, AnExternalAzimuthAtTheStartIsAsGoodAsItSays) {
-  Hour hour = StrongDrift();
+TEST(RunAdjustment, FromAnExternalAzimuthAtTheStartIsAsGoodAsItSays) {
+  Claims end, middle;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    Hour hour = testing::StrongDrift();
+    hour.stops = 0;
+    const Flown flown = Fly(hour, ExternalJob(hour, seed, 0.001), seed);
+    const Adjustment adjusted = AdjustRun(flown.history, 0);
+    ASSERT_TRUE(adjusted.converged);
+    const std::size_t last = flown.truth.size() - 1;
+    for (const std::size_t i : {last, last / 2}) {
+      (i == last ? end : middle)
+          .Add(AzimuthError(flown, adjusted.run, i), adjusted.run.attitude[i].cov_attitude(1, 1));
+    }
+  }
+  end.ExpectTrue("at the end");
+  middle.ExpectTrue("half-way");
+  EXPECT_LT(end.sigma_deg(), 0.2);
+}
+
+// Without a stop or an azimuth nothing but the lift knows north, and along a straight horizontal
+// hole it only knows its sine.
+TEST(RunAdjustment, NamesNoAzimuthWhereTheMirrorFitsAsWell) {
+  Hour hour = testing::StrongDrift();
+  hour.inclination_deg = 90;
+  hour.swing_deg = 0;
   hour.stops = 0;
-  Job job = JobOf(hour);
-  job.alignment.method = AlignmentSpec::Method::kExternal;
-  job.alignment.azimuth = Truth(testing::SimulationOf(hour, 0)).well().PointAt(5).azimuth;
-  job.alignment.sigma_azimuth = FromDegrees(1e-3);
-  const Tally tally = EndOfHours(hour, job, 24);
-  EXPECT_EQ(tally.unknown, 0);
-  EXPECT_GT(tally.squared, 7.45);
-  EXPECT_LT(tally.squared, 52.6);
-  EXPECT_LT(ToDegrees(tally.sigma), 0.2);
+  hour.minutes = 20;
+  const Flown flown = Fly(hour, JobOf(hour), 3);
+  const Adjustment adjusted = AdjustRun(flown.history, 0);
+  ASSERT_TRUE(adjusted.converged);
+  EXPECT_TRUE(adjusted.ambiguous);
+  EXPECT_FALSE(adjusted.run.attitude.back().azimuth_known);
+  EXPECT_NEAR(adjusted.run.attitude.back().cov_attitude(1, 1), kPi * kPi / 3, 1e-6);
 }
 
-TEST(RunAdjustment, ASurveyorTakesIt) {
-  Hour hour = StrongDrift();
-  hour.minutes = 20;
+TEST(RunAdjustment, FindsNorthWithoutAnyStopWhereTheHoleSwings) {
+  Claims end;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Hour hour = testing::StrongDrift();
+    hour.stops = 0;
+    const Flown flown = Fly(hour, JobOf(hour), seed);
+    ASSERT_FALSE(Smooth(flown.history).attitude.back().azimuth_known);
+    const Adjustment adjusted = AdjustRun(flown.history, 0);
+    ASSERT_TRUE(adjusted.run.attitude.back().azimuth_known) << seed;
+    end.Add(AzimuthError(flown, adjusted.run, flown.truth.size() - 1),
+            adjusted.run.attitude.back().cov_attitude(1, 1));
+  }
+  end.ExpectTrue("azimuth");
+  EXPECT_LT(end.sigma_deg(), 1);
+}
+
+TEST(RunAdjustment, OfTwoPassesIsSurerThanOfOneAndTrue) {
+  Claims once, twice;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    Hour hour = testing::StrongDrift();
+    hour.and_back = true;
+    hour.rpm = 0;
+    hour.stops = 1;
+    const Flown flown = Fly(hour, JobOf(hour), seed);
+    const Adjustment with = AdjustRun(flown.history, 0);
+    AdjustmentOptions apart;
+    apart.use_repeats = false;
+    const Adjustment without = AdjustRun(flown.history, 0, apart);
+    const std::size_t i = flown.truth.size() / 4;
+    once.Add(AzimuthError(flown, without.run, i), without.run.attitude[i].cov_attitude(1, 1));
+    twice.Add(AzimuthError(flown, with.run, i), with.run.attitude[i].cov_attitude(1, 1));
+  }
+  once.ExpectTrue("passes apart");
+  twice.ExpectTrue("passes together");
+  EXPECT_LT(twice.variance, 0.97 * once.variance);
+}
+
+TEST(RunAdjustment, DoesNotDependOnHowKnotsAreMerged) {
+  const Hour hour = HalfHour();
+  const Flown flown = Fly(hour, ExternalJob(hour, 5, 0.1), 5);
+  AdjustmentOptions fine, coarse;
+  fine.knot_seconds = 3;
+  coarse.knot_seconds = 10;
+  const Adjustment a = AdjustRun(flown.history, 0, fine), b = AdjustRun(flown.history, 0, coarse);
+  for (std::size_t i = 0; i < a.run.stations.size(); ++i) {
+    const AttitudeSample &x = a.run.stations[i].attitude, &y = b.run.stations[i].attitude;
+    const double sigma = std::sqrt(y.cov_attitude(1, 1));
+    EXPECT_LT(std::abs(WrapPi(x.azimuth - y.azimuth)), 0.15 * sigma) << i;
+    EXPECT_NEAR(std::sqrt(x.cov_attitude(1, 1)) / sigma, 1, 0.02) << i;
+  }
+}
+
+TEST(RunAdjustment, FindsTheToolsErrors) {
+  Claims errors;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Hour hour = HalfHour();
+    hour.noise.rate_random_walk = 0;
+    const Simulation simulation = SimulationOf(hour, seed);
+    const Flown flown = Fly(hour, ExternalJob(hour, seed, 0.1), seed);
+    const Adjustment a = AdjustRun(flown.history, 0);
+    const ToolErrors& tool = simulation.tool.errors;
+    const auto add = [&](Knot::Source source, double truth) {
+      errors.Add(a.errors[source] - truth, a.sigma_errors[source] * a.sigma_errors[source]);
+    };
+    add(Knot::kGyroBiasX, tool.gyro_bias.x());
+    add(Knot::kGyroBiasY, tool.gyro_bias.y());
+    add(Knot::kMassUnbalance, tool.mass_unbalance);
+    add(Knot::kQuadrature, tool.quadrature);
+    EXPECT_LT(a.sigma_errors[Knot::kGyroBiasX], 0.2 * hour.errors.gyro_bias_sigma);
+  }
+  errors.ExpectTrue("errors of the tool");
+}
+
+TEST(RunAdjustment, OfNothingIsNothing) {
+  FilterHistory history;
+  history.setup.site = SiteAt(1, 0);
+  EXPECT_TRUE(AdjustRun(history, 0).run.attitude.empty());
+  history.epochs.emplace_back();  // says where the run begins
+  history.epochs.back().knot.inclination = 0.5;
+  EXPECT_EQ(AdjustRun(history, 0).run.attitude.size(), 1u);
+}
+
+TEST(RunAdjustment, IsSentOutByASurveyor) {
+  Hour hour = HalfHour();
+  Simulation simulation = SimulationOf(hour, 4);
   const LeastSquaresAdjuster adjuster;
-  Sink sink;
+  testing::CollectingSink sink;
+  Simulator simulator(simulation);
   Surveyor surveyor(JobOf(hour), sink, &adjuster);
-  Simulator simulator(testing::SimulationOf(hour, 3));
+  surveyor.Push(simulator.tool_info());
   SimulatedStep step;
   while (simulator.Next(step)) {
     std::visit([&](const auto& record) { surveyor.Push(record); }, step);
   }
   surveyor.Finish();
-  const Survey survey = surveyor.Current(0);
-  ASSERT_EQ(survey.unusable, "");
-  EXPECT_GT(survey.chosen.size(), 10u);
-  for (const Station& s : survey.chosen) EXPECT_TRUE(s.cov_p_WT_W.allFinite());
+  const Survey adjusted = surveyor.Current(0);
+  testing::CollectingSink other;
+  const Survey smoothed = testing::SurveyOf(simulation, JobOf(hour), other);
+  ASSERT_EQ(adjusted.chosen.size(), smoothed.chosen.size());
+  const double variance = adjusted.chosen.back().cov_md_inc_azi(2, 2);
+  EXPECT_GT(variance, 0);
+  EXPECT_LT(variance, 0.5 * smoothed.chosen.back().cov_md_inc_azi(2, 2));
 }
 
 }  // namespace

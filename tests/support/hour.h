@@ -38,6 +38,7 @@ struct Hour {
   double imu_hz = 10;
   double speed = 0.6;
   double minutes = 60;
+  double depth_resolution = 0.01;
   NoiseCoefficients noise;
   ErrorPriors errors;
 };
@@ -100,7 +101,7 @@ inline Simulation SimulationOf(const Hour& hour, std::uint64_t seed) {
   s.seed = seed;
   if (seed != 0) {
     s.tool.errors = DrawToolErrors(hour.errors, hour.noise, seed);
-    s.tool.errors.depth_resolution = 0.01;
+    s.tool.errors.depth_resolution = hour.depth_resolution;
   }
   return s;
 }

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "wellgyro/base/angle.h"

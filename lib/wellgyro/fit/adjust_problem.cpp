@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <memory>
+#include <optional>
 
 #include <ceres/ceres.h>
 

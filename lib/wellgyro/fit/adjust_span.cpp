@@ -15,6 +15,7 @@ constexpr double kSpeedSigma = 1e-3;        // of a depth track's speed, 1 cm en
 constexpr double kUnknownForce = 1e-3;      // of inclination while moving without depth [rad]
 // Acceleration at which depth tells too late by half of it: see TrackerOptions.
 constexpr double kAccelerationDoubt = 0.01;  // [m/s^2]
+constexpr double kSmear = 2.5;               // of the depth track, and half a knot [s]
 constexpr double kFloor = 1e-18;             // against a setup without noise [rad^2]
 
 double Square(double x) { return x * x; }
@@ -69,11 +70,10 @@ void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double 
 }
 
 void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& place,
-             AdjustSpan* span, Sums* sums) {
+             double acceleration, AdjustSpan* span, Sums* sums) {
   const Knot& knot = s.knot;
   const FilterSetup& setup = history.setup;
-  const double up = s.sampled * kEarthRate * std::sin(place.latitude);
-  const double grown = span->still ? 0 : knot.turn + up;
+  const double grown = span->still ? 0 : place.grown;
   AddEarth(s, place, setup.site, sums->turned, grown, span);
   sums->turned += grown;
   sums->path += s.sampled * (span->lift + knot.lift / 2);
@@ -83,7 +83,7 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   sums->jitter += knot.toolface_noise_turn;
   sums->sine_time += s.sampled * std::sin(s.inclination);
   sums->cosine_time += s.sampled * std::cos(s.inclination);
-  sums->acceleration = std::max(sums->acceleration, std::abs(knot.along.acceleration));
+  sums->acceleration = std::max(sums->acceleration, acceleration);
   span->turn += knot.turn;
   span->lift += knot.lift;
   span->d_turn += knot.d_turn;
@@ -145,6 +145,23 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   FinishLevel(last, setup, sums, span);
 }
 
+// The largest of each knot and those near it: a change of speed is smeared over so long.
+std::vector<double> AccelerationsAbout(const FilterHistory& history) {
+  const auto& epochs = history.epochs;
+  std::vector<double> largest(epochs.size(), 0);
+  std::size_t begin = 0, end = 0;
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    const ToolTime time = epochs[i].knot.time;
+    const double length = epochs[i].knot.seconds;
+    while ((time - epochs[begin].knot.time).seconds() > kSmear + length) ++begin;
+    while (end < epochs.size() && (epochs[end].knot.time - time).seconds() <= kSmear) ++end;
+    for (std::size_t j = begin; j < end; ++j) {
+      largest[i] = std::max(largest[i], std::abs(epochs[j].knot.along.acceleration));
+    }
+  }
+  return largest;
+}
+
 bool Used(const FilterFix& f) { return f.use == FixUse::kUsed || f.use == FixUse::kMirror; }
 
 bool Lone(const Knot& knot) {
@@ -160,9 +177,13 @@ std::vector<AdjustPlace> PlacesAlong(const FilterHistory& history,
   places.reserve(history.epochs.size());
   AdjustPlace place{site.latitude, site.height};
   for (std::size_t i = 0; i < history.epochs.size(); ++i) {
+    const Step s = StepAt(history, i);
+    // A span's share of the Earth turns with the azimuth, near vertical much by that share itself.
+    place.grown = !azimuth.empty()
+                      ? (i > 0 ? azimuth[i] - azimuth[i - 1] : s.knot.turn)
+                      : s.knot.turn + s.sampled * kEarthRate * std::sin(place.latitude);
     places.push_back(place);
     if (azimuth.empty()) continue;
-    const Step s = StepAt(history, i);
     const double way = s.speed * s.knot.seconds;
     place.latitude += way * std::sin(s.inclination) * std::cos(azimuth[i]) /
                       (site.radius_north + place.height - site.height);
@@ -179,6 +200,7 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
   for (const FilterFix& f : history.fixes) {
     if (Used(f) && !f.rates && f.epoch_end > 0) ends[f.epoch_end - 1] = true;
   }
+  const std::vector<double> accelerations = AccelerationsAbout(history);
   std::vector<AdjustSpan> spans;
   Sums sums;
   bool open = false;
@@ -193,7 +215,7 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
     }
     AdjustSpan& span = spans.back();
     span.broken = knot.vertical && !knot.still;
-    AddKnot(history, StepAt(history, i), places[i], &span, &sums);
+    AddKnot(history, StepAt(history, i), places[i], accelerations[i], &span, &sums);
     span.epoch_end = i + 1;
     const bool last = i + 1 == epochs.size();
     const Knot* next = last ? nullptr : &epochs[i + 1].knot;

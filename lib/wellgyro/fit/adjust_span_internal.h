@@ -43,12 +43,14 @@ struct SpanOptions {
   bool at_stations = true;  ///< every marked station ends a span
 };
 
-/// Place of the tool at the begin of every epoch.
+/// Place of the tool at the begin of an epoch, and how its azimuth grows over it.
 struct AdjustPlace {
   double latitude = 0, height = 0;
+  double grown = 0;  ///< [rad]
 };
 
-/// Along the azimuths at the end of every epoch (empty: unknown, the place stays).
+/// Along the azimuths at the end of every epoch (empty: unknown, the place stays, and the azimuth
+/// grows as the gyros say).
 std::vector<AdjustPlace> PlacesAlong(const FilterHistory& history,
                                      const std::vector<double>& azimuth);
 

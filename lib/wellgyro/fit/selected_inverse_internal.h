@@ -5,12 +5,14 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "wellgyro/base/export.h"
+
 namespace wellgyro {
 
 /// Those elements of the inverse of a symmetric positive definite sparse matrix where its Cholesky
 /// factor has one, in time and memory of the factorisation. Takahashi, Fagan, Chen, "Formation of a
 /// sparse bus impedance matrix", PICA (1973); Erisman and Tinney, CACM 18 (1975).
-class SelectedInverse {
+class WELLGYRO_EXPORT SelectedInverse {
  public:
   /// `matrix`: both triangles. Not positive definite, or singular to rounding: ok() is false.
   explicit SelectedInverse(const Eigen::SparseMatrix<double>& matrix);
