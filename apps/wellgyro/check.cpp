@@ -61,7 +61,10 @@ struct FaultList : Listener {
 
 int CheckLog(const std::string& name) {
   Result<LogReader> reader = LogReader::Open(name);
-  if (!reader) return Tell(name, "an LCM log", {reader.fault()}, kUnusable);
+  if (!reader) {
+    Complain(reader.fault());
+    return kUnusable;
+  }
   FaultList list;
   Feed feed(Channels{}, list);
   LogEvent event;

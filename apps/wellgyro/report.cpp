@@ -17,7 +17,9 @@ std::int64_t NowMs() {
 }  // namespace
 
 std::string Sentence(const Fault& fault) {
-  std::string place = fault.source;
+  // Some texts name their file themselves.
+  const bool named = !fault.source.empty() && fault.text.starts_with(fault.source);
+  std::string place = named ? std::string() : fault.source;
   if (fault.line > 0) place += fmt::format(":{}", fault.line);
   if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
   if (fault.offset >= 0) place += fmt::format("{}byte {}", place.empty() ? "" : ", ", fault.offset);

@@ -232,6 +232,17 @@ class Program(unittest.TestCase):
         done = Run("check", self.Write("empty", b""))
         self.assertEqual(done.returncode, 2)
         self.assertIn("empty", done.stdout)
+        # A log of which nothing can be read is either a log or not, and is named once.
+        stub = self.Write("stub.lcm", self.bytes[:20])
+        for arguments in (("check", stub), ("survey", "--job", self.job, "--from", stub, "--out",
+                                            self.Path("from_stub")),
+                          ("survey", "--job", self.job, "--from", self.Path("no_such.lcm"),
+                           "--out", self.Path("from_nothing"))):
+            done = Run(*arguments)
+            self.assertEqual(done.returncode, 2)
+            said = done.stdout + done.stderr
+            self.assertEqual(said.count(arguments[1 if len(arguments) == 2 else 4]), 1, said)
+            self.assertFalse("an LCM log" in said and "no LCM log" in said, said)
 
     def test_the_command_line(self):
         self.assertEqual(Run().returncode, 1)

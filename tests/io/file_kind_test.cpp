@@ -57,6 +57,13 @@ TEST(IdentifyBytes, SaysWhatAForeignFileIs) {
   }
 }
 
+TEST(IdentifyBytes, KnowsTheTruthOfASimulation) {
+  const FileIdentity truth =
+      IdentifyBytes("T[s],MD[m],INC[deg],AZI_TRUE[deg],GTF[deg],TVD[m],N[m],E[m]\n0.000,1\n");
+  EXPECT_EQ(truth.kind, FileKind::kTruthCsv);
+  EXPECT_EQ(truth.text, "the truth of a wellgyro simulation");
+}
+
 TEST(IdentifyFile, ReadsNoMoreThanTheHead) {
   const support::Scratch scratch;
   scratch.Write("big", "format = \"wellgyro.job/1\"\n" + std::string(1 << 20, '#'));

@@ -108,6 +108,16 @@ TEST(RunPlan, NamesWhatMakesNoSense) {
                 [](auto& r) { std::get<RunMove>(r.steps[3]).roll.period = 0; });
   ExpectRefused("run.steps[0].seconds",
                 [](auto& r) { std::get<RunStop>(r.steps[0]).seconds = -1; });
+  // Each once kept the simulator busy for good, 2026-11-21.
+  ExpectRefused("a speed is too low",
+                [](auto& r) { std::get<RunMove>(r.steps[1]).speed = 1e-300; });
+  ExpectRefused("a stop too long", [](auto& r) { std::get<RunStop>(r.steps[0]).seconds = 1e300; });
+  ExpectRefused("a roll rate is too high",
+                [](auto& r) { std::get<RunMove>(r.steps[1]).roll.rate = 1e300; });
+  ExpectRefused("a ramp", [](auto& r) {
+    std::get<RunMove>(r.steps[1]).ramp = 1e-300;
+    std::get<RunMove>(r.steps[1]).speed = 1e300;
+  });
   ExpectRefused("run.steps[0].turn_seconds",
                 [](auto& r) { std::get<RunStop>(r.steps[0]).turn_seconds = 0; });
 }

@@ -101,6 +101,54 @@ TEST(Checks, AStopIsHeldToGravityAndEarthRate) {
   EXPECT_EQ(Find(checks, "earth_rate").md.value_or(0), 750);
 }
 
+TEST(Checks, InAndOutRunAreHeldToFieldPracticeFromTenPairsOn) {
+  std::vector<Station> passes;
+  for (int i = 1; i <= 9; ++i) {
+    passes.push_back(At(100.0 * i, Pass::kIn, 50, 1));
+    passes.push_back(At(100.0 * i, Pass::kOut, 50.9, 1));
+  }
+  EXPECT_EQ(Find(Checks({}, passes), "azimuth_in_out_practice").verdict, Verdict::kNotDone);
+  passes.push_back(At(1000, Pass::kIn, 50, 1));
+  passes.push_back(At(1000, Pass::kOut, 51.2, 1));
+  const std::vector<Check> at_40 = Checks({}, passes);
+  const Check& steep = Find(at_40, "azimuth_in_out_practice");
+  EXPECT_EQ(steep.verdict, Verdict::kFail);
+  EXPECT_NEAR(steep.value.value_or(0), 1.2, 1e-9);
+  EXPECT_NEAR(steep.limit.value_or(0), 1.0, 1e-12);
+  EXPECT_EQ(steep.md.value_or(0), 1000);
+  for (Station& s : passes) s.inclination = FromDegrees(9);
+  passes.back().inclination = FromDegrees(9.24);
+  const std::vector<Check> at_9 = Checks({}, passes);
+  EXPECT_NEAR(Find(at_9, "azimuth_in_out_practice").limit.value_or(0), 5.0, 1e-12);
+  EXPECT_EQ(Find(at_9, "azimuth_in_out_practice").verdict, Verdict::kPass);
+  EXPECT_EQ(Find(at_9, "inclination_in_out_practice").verdict, Verdict::kFail);
+}
+
+TEST(Checks, SlippageIsPerKilometreThereAndBack) {
+  const std::vector<Station> passes = {At(2000, Pass::kIn, 50, 1)};
+  RunSummary run;
+  run.run = 1;
+  const std::vector<RunSummary> runs = {run};
+  const auto check = [&](double read) {
+    const std::vector<ReturnToZero> returns = {{1, read, 0, 0.1}};
+    const std::vector<Check> checks = MakeChecks({}, {runs, passes, {}, returns});
+    return Find(checks, "depth_slippage");
+  };
+  EXPECT_NEAR(check(2).value.value_or(0), 0.5, 1e-12) << "2 m in 4 km";
+  EXPECT_EQ(check(2).verdict, Verdict::kPass);
+  EXPECT_EQ(check(-4.1).verdict, Verdict::kFail);
+}
+
+TEST(Checks, AskedDepthsWithoutAStationAreCounted) {
+  Job job;
+  job.stations.at = {0, 100, 200, 300};
+  const std::vector<Station> chosen = {At(100.05, Pass::kIn, 0, 1)};
+  const Check check = CheckAsked(job, chosen);
+  EXPECT_EQ(check.value.value_or(0), 2) << "200 and 300; the tie-in is the station of 0";
+  EXPECT_EQ(check.md.value_or(0), 200);
+  EXPECT_EQ(check.verdict, Verdict::kFail);
+}
+
 TEST(Checks, AStatedConvergenceIsComparedWithTheProjections) {
   Job job;
   job.well.latitude = FromDegrees(60);

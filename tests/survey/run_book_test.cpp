@@ -59,5 +59,17 @@ TEST(RunBook, TheJobsRunsHoldFromTheirBegin) {
   EXPECT_TRUE(book.misrun(4));
 }
 
+TEST(RunBook, OnlyTheJobEndsARunBeforeTheNextBegins) {
+  RunSpec first;
+  first.number = 1;
+  first.begin = Utc(100);
+  first.end = Utc(200);
+  RunBook book({first});
+  book.Take(RunEvent(Event::Kind::kRunEnd, 150));
+  EXPECT_FALSE(book.Ended(1, Utc(199)));
+  EXPECT_TRUE(book.Ended(1, Utc(200)));
+  EXPECT_FALSE(book.Ended(2, Utc(200)));
+}
+
 }  // namespace
 }  // namespace wellgyro

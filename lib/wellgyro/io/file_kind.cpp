@@ -126,6 +126,9 @@ FileIdentity IdentifyBytes(std::string_view head) {
   if (line.starts_with("CODE,RUN,PASS,MD[m],VALUE")) {
     return {FileKind::kChecksCsv, "the checks of a wellgyro survey"};
   }
+  if (line.starts_with("T[s],MD[m],INC[deg],AZI_TRUE[deg],GTF[deg]")) {
+    return {FileKind::kTruthCsv, "the truth of a wellgyro simulation"};
+  }
   return ByContent(head);
 }
 

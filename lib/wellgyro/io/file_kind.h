@@ -25,6 +25,7 @@ enum class FileKind {
   kSurveyCsv,
   kPassesCsv,
   kChecksCsv,
+  kTruthCsv,
   kForeign,
 };
 

@@ -96,6 +96,7 @@ void WriteRuns(TomlWriter& toml, const std::vector<RunSummary>& runs) {
     toml.Whole("end_utime_us", run.end.ns / 1000);
     toml.Whole("samples", run.samples);
     toml.Whole("samples_lost", run.samples_lost);
+    if (run.samples_after_end > 0) toml.Whole("samples_after_end", run.samples_after_end);
     toml.Whole("duplicates", run.duplicates);
     for (const NorthFix& fix : run.fixes) WriteFix(toml, fix);
   }

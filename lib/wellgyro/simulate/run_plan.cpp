@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kTurnPerShortTime = 0.1;  // [rad]
 constexpr double kWavePerShortTime = 0.5;  // [rad]
+constexpr double kLongest = 1e7;           // [s], of a run: nothing would ever come of a longer one
+constexpr double kShortest = 1e-5;         // [s], which the truth is integrated by
 
 void Require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);
@@ -40,7 +42,13 @@ RunPlan::RunPlan(const SimulatedRun& run, const TruthWell& well) {
       AddMove(std::get<RunMove>(run.steps[i]), well, i);
     }
   }
-  Require(std::isfinite(seconds_), fmt::format("run.steps take {} s", seconds_));
+  Require(seconds_ <= kLongest,
+          fmt::format("run.steps take {} s, more than {} s: a speed is too low or a stop too long",
+                      seconds_, kLongest));
+  Require(short_time_ >= kShortest,
+          fmt::format("run.steps change within {} s, less than {} s: a speed or a roll rate is too "
+                      "high, or a ramp, a turn or a roll period too short",
+                      short_time_, kShortest));
   std::sort(breaks_.begin(), breaks_.end());
 }
 

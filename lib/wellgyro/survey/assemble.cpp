@@ -71,7 +71,7 @@ struct Start {
 /// The survey as far as it is placed, to start deeper passes from.
 struct Line {
   std::vector<PathPoint> points;
-  std::vector<Eigen::Matrix3d> covs;
+  std::vector<Eigen::Matrix3d> covs;  ///< without the point's own depth error
 };
 
 std::optional<Start> StartOnLine(const Site& head, const Line& line, double md) {
@@ -142,6 +142,15 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
   return covs;
 }
 
+/// What starts from a station has a depth error of its own, and must not have the station's too.
+Eigen::Matrix3d WithoutDepthError(const Eigen::Matrix3d& cov, const Station& s,
+                                  const StationState* state) {
+  const Eigen::Vector3d tangent =
+      state ? Tangent(state->attitude.inclination, state->attitude.azimuth)
+            : Tangent(s.inclination, s.azimuth);
+  return cov - s.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
+}
+
 void Place(const Site& head, const Job& job, const Start& start, PassItems& pass, Line& line) {
   const std::vector<Eigen::Matrix3d> covs = PassCovariances(job, pass, start);
   Path path(head, start.point.station, start.point.p_WT_W);
@@ -159,7 +168,7 @@ void Place(const Site& head, const Job& job, const Start& start, PassItems& pass
     s.p_WT_W = point->p_WT_W;
     s.dogleg_severity = point->dogleg_severity;
     line.points.push_back(*point);
-    line.covs.push_back(covs[i]);
+    line.covs.push_back(WithoutDepthError(covs[i], s, pass[i].state));
   }
 }
 
@@ -274,6 +283,26 @@ void Choose(const Site& head, const Station& opening, Placed& placed) {
   PlaceChosen(head, placed);
 }
 
+/// Why the tie-in is all that there is.
+std::string WhyNothing(const Job& job, const std::vector<PassItems>& passes, const Placed& placed) {
+  double deepest = -HUGE_VAL;
+  for (const PassItems& pass : passes) {
+    for (const Item& item : pass) deepest = std::max(deepest, item.station.md);
+  }
+  if (deepest <= job.tie_in.md + kSameDepth) {
+    return fmt::format("the survey ends at {:.2f} m, no deeper than the tie-in at {:.2f} m",
+                       deepest, job.tie_in.md);
+  }
+  const bool rejected =
+      std::any_of(placed.passes.begin(), placed.passes.end(),
+                  [](const Station& s) { return s.status == StationStatus::kRejected; });
+  if (rejected) return "every station was rejected";
+  return fmt::format(
+      "none of the depths that [stations] asks for was passed: the run went from {:.2f} to {:.2f} "
+      "m, the tie-in is at {:.2f} m",
+      ShallowestDepth(passes), deepest, job.tie_in.md);
+}
+
 }  // namespace
 
 double TieInReach(const Job& job) { return std::max(0.5, 3 * job.errors.depth_sigma); }
@@ -309,6 +338,7 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
     List(by_run[i], job.tie_in.md, runs[i].misrun, placed);
   }
   Choose(head, *opening, placed);
+  if (placed.chosen.size() == 1) placed.unusable = WhyNothing(job, good, placed);
   return placed;
 }
 

@@ -135,6 +135,61 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
   checks.back().md = azimuth.md;
 }
 
+/// What operators ask of an in-run against its out-run, whatever the error model says.
+/// Source: drillingforgas.com, "Gyro surveys QA/QC".
+void CheckPractice(std::span<const Station> stations, std::int32_t run,
+                   std::vector<Check>& checks) {
+  constexpr int kPairs = 10;
+  constexpr double kInclination = FromDegrees(0.23);
+  constexpr double kLow = FromDegrees(10);  // inclination below which azimuth may differ more
+  struct Worst {
+    double value = 0, limit = 0, md = 0;
+    void Take(double v, double l, double at) {
+      if (limit > 0 && std::abs(v) * limit <= std::abs(value) * l) return;
+      *this = {v, l, at};
+    }
+  };
+  Worst inclination, azimuth;
+  int pairs = 0;
+  ForPairs(stations, run, Pass::kIn, Pass::kOut, [&](const Station& a, const Station& b) {
+    ++pairs;
+    inclination.Take(b.inclination - a.inclination, kInclination, a.md);
+    if (Has(a.quality | b.quality, Quality::kVertical)) return;
+    azimuth.Take(WrapPi(b.azimuth - a.azimuth), FromDegrees(a.inclination < kLow ? 5.0 : 1.0),
+                 a.md);
+  });
+  const auto add = [&](const char* code, const Worst& worst) {
+    if (pairs < kPairs || worst.limit == 0) {
+      checks.push_back(NotDone(code, run, "fewer than 10 depths seen in both passes"));
+      return;
+    }
+    checks.push_back(Compare(code, run, {worst.value, 0}, worst.limit, units::kDeg, "deg"));
+    checks.back().sigma.reset();
+    checks.back().limit_source = "field practice";
+    checks.back().md = worst.md;
+  };
+  add("inclination_in_out_practice", inclination);
+  add("azimuth_in_out_practice", azimuth);
+}
+
+/// Depth lost on the way there and back, per kilometre of way. Source as above: 1 ft in 1000 ft.
+void CheckSlippage(const CheckInputs& inputs, const ReturnToZero& back,
+                   std::vector<Check>& checks) {
+  double deepest = 0;
+  for (const Station& s : inputs.passes) {
+    if (s.run == back.run) deepest = std::max(deepest, s.md);
+  }
+  const double way = 2 * (deepest - back.value_md);
+  if (!back.read_md || !(way > 0)) {
+    checks.push_back(NotDone("depth_slippage", back.run, "no way known from zero and back"));
+    return;
+  }
+  const double slip = (*back.read_md - back.value_md) / way;
+  checks.push_back(
+      Compare("depth_slippage", back.run, {slip, back.sigma / way}, 1e-3, 1e-3, "m/km"));
+  checks.back().limit_source = "field practice";
+}
+
 void CheckForesights(const Job& job, const CheckInputs& inputs, std::vector<Check>& checks) {
   if (inputs.foresights.empty()) {
     checks.push_back(NotDone("foresight", 0, "no foresight taken"));
@@ -157,7 +212,12 @@ void CheckReturns(const Job& job, const CheckInputs& inputs, std::vector<Check>&
     checks.push_back(NotDone("depth_closure", 0, "no return to zero noted"));
   }
   for (const ReturnToZero& back : inputs.returns) {
-    const Measured difference{back.read_md - back.value_md,
+    if (!back.read_md) {
+      checks.push_back(NotDone("depth_closure", back.run, "no depth at the return to zero"));
+      continue;
+    }
+    CheckSlippage(inputs, back, checks);
+    const Measured difference{*back.read_md - back.value_md,
                               std::hypot(back.sigma, job.errors.depth_sigma)};
     if (difference.sigma > 0 || job.acceptance.depth_closure) {
       checks.push_back(
@@ -198,11 +258,30 @@ Verdict Judge(double value, double limit) {
   return size <= limit * (2.0 / 3.0) ? Verdict::kPass : Verdict::kWarn;
 }
 
+Check CheckAsked(const Job& job, std::span<const Station> chosen) {
+  int missing = 0;
+  std::optional<double> first;
+  for (double md : job.stations.at) {
+    if (md <= job.tie_in.md + kSameDepth) continue;
+    const bool there = std::any_of(chosen.begin(), chosen.end(), [md](const Station& s) {
+      return s.kind != StationKind::kTieIn && std::abs(s.md - md) <= kSameDepth;
+    });
+    if (there) continue;
+    ++missing;
+    if (!first) first = md;
+  }
+  Check check = Compare("stations_asked", 0, {static_cast<double>(missing), 0}, 0.0, 1, "1");
+  check.limit_source = "every depth asked for has a station";
+  check.md = first;
+  return check;
+}
+
 std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
   std::vector<Check> checks;
   for (const RunSummary& run : inputs.runs) {
     CheckFixes(job, run, checks);
     CheckPasses(job, inputs.passes, run.run, Pass::kOut, "in_out", checks);
+    CheckPractice(inputs.passes, run.run, checks);
     CheckPasses(job, inputs.passes, run.run, Pass::kRepeat, "repeat", checks);
     Check lost =
         Compare("samples_lost", run.run, {static_cast<double>(run.samples_lost), 0}, 0.0, 1, "1");

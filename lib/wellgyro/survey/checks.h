@@ -25,9 +25,9 @@ struct Foresight {
 /// The depth read when the tool was back at zero.
 struct ReturnToZero {
   std::int32_t run = 0;
-  double read_md = 0;   ///< what the depth system said [m]
-  double value_md = 0;  ///< what it should have said [m]
-  double sigma = 0;     ///< [m]
+  std::optional<double> read_md;  ///< what the depth system said [m]; absent: no depth at that time
+  double value_md = 0;            ///< what it should have said [m]
+  double sigma = 0;               ///< [m]
 };
 
 /// What can be checked of one job.
@@ -40,6 +40,10 @@ struct CheckInputs {
 
 /// `value` against `limit`: passes up to two thirds of it, warns up to it, fails beyond.
 WELLGYRO_EXPORT Verdict Judge(double value, double limit);
+
+/// The depths of stations.at below the tie-in of which `chosen` has no station; as many as there
+/// are. Depth in the hole that the run did not reach is the commonest reason.
+WELLGYRO_EXPORT Check CheckAsked(const Job& job, std::span<const Station> chosen);
 
 /// All checks of a job, in a fixed order; those that could not be made say not_done. Limits come
 /// from [acceptance] or are three sigma of the check's own error.

@@ -40,6 +40,12 @@ std::int32_t RunBook::RunAt(UtcTime utc, std::int32_t told) const {
   return number;
 }
 
+bool RunBook::Ended(std::int32_t run, UtcTime utc) const {
+  return std::any_of(specs_.begin(), specs_.end(), [&](const RunSpec& spec) {
+    return spec.number == run && spec.end && utc >= *spec.end;
+  });
+}
+
 bool RunBook::misrun(std::int32_t run) const {
   const bool by_job = std::any_of(specs_.begin(), specs_.end(), [run](const RunSpec& spec) {
     return spec.number == run && spec.misrun;

@@ -30,6 +30,10 @@ class WELLGYRO_EXPORT RunBook {
   /// `told` where the source knows its run (> 0), else the run that began last.
   std::int32_t RunAt(UtcTime utc, std::int32_t told) const;
 
+  /// The job says that the run had ended by then: samples from there to the next run's begin are
+  /// no run's. A RUN_END of a person ends none, because what follows on deck still belongs to it.
+  bool Ended(std::int32_t run, UtcTime utc) const;
+
   bool misrun(std::int32_t run) const;
   std::string remark(std::int32_t run) const;
 

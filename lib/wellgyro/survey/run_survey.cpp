@@ -218,6 +218,7 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& end) {
     knot.utc = c.utc + Duration::Seconds(fraction * (c.utc_end - c.utc).seconds());
     knot.along = Between(c.along, end, fraction);
     waiting_.push_back({knot, begin, std::nullopt, false});
+    lost_since_listed_ = lost_since_listed_ || knot.samples_lost > 0;
   }
   // Two cuts within one nanosecond are one knot.
   Waiting& last = waiting_.back();
@@ -233,6 +234,8 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& end) {
     s.imu_seq_begin = last.knot.seq_begin;
     s.imu_seq_end = last.knot.seq_end;
     s.samples_lost = last.knot.samples_lost;
+    if (lost_since_listed_) s.quality |= Quality::kGap;
+    if (draft->listed) lost_since_listed_ = false;
   }
 }
 

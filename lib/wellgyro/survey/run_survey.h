@@ -117,6 +117,7 @@ class RunSurvey {
   std::optional<double> asked_md_;
   bool asked_ = false;
   bool temperature_outside_ = false;  ///< since the last knot
+  bool lost_since_listed_ = false;    ///< samples, since the last station that is listed
   std::vector<Waiting> waiting_;
   std::vector<StillWindow> group_;  ///< windows at one place
   std::vector<Draft> drafts_;

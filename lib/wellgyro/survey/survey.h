@@ -19,9 +19,10 @@ struct RunSummary {
   bool misrun = false;
   std::string remark;
   UtcTime begin, end;
-  std::int64_t samples = 0;       ///< accepted
-  std::int64_t samples_lost = 0;  ///< by sequence number
-  std::int64_t duplicates = 0;    ///< sent again and skipped
+  std::int64_t samples = 0;            ///< accepted
+  std::int64_t samples_lost = 0;       ///< by sequence number
+  std::int64_t samples_after_end = 0;  ///< left out, because the job ends the run before them
+  std::int64_t duplicates = 0;         ///< sent again and skipped
   std::vector<NorthFix> fixes;
 };
 

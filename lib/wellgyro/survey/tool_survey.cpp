@@ -19,6 +19,9 @@ namespace {
 constexpr double kTypedDepth = 0.5;  // [m]
 // A foresight holds at a knot no further away than this.
 constexpr double kForesightSeconds = 2;
+// So long after the last sample or mark a tool that was at rest then still hangs as it did.
+constexpr Duration kHeld = Duration::Seconds(600);
+constexpr double kHeldSpeed = 0.006;  // [m/s], that of the still detector
 
 /// Depth marks of a second and more after a sample decide its depth; so long it waits for them.
 Duration Hold(const Job& job, const DepthTrack& track) {
@@ -124,6 +127,11 @@ void ToolSurvey::Use(const ImuSample& sample) {
                                             last_->seq + 1, stamp.seq - 1, stamp.session)});
   }
   last_ = stamp;
+  if (book_.Ended(run.survey->summary().run, utc)) {
+    ++run.survey->summary().samples_after_end;
+    newest_used_ = utc;
+    return;
+  }
   const std::int32_t segment = track_.Segment(utc);
   if (segment != depth_segment_) run.survey->RestartDepth();
   depth_segment_ = segment;
@@ -131,6 +139,16 @@ void ToolSurvey::Use(const ImuSample& sample) {
                    OfSensor(grid_.At(utc + Duration{stamp.period_ns / 2})));
   newest_used_ = utc;
   Tell(run);
+}
+
+/// The track's depth; after its last mark, that of a string which stood when it came.
+AlongHole ToolSurvey::DepthHeldAt(UtcTime utc) const {
+  const AlongHole along = track_.At(utc);
+  if (along.known || track_.empty()) return along;
+  const UtcTime last = track_.newest();
+  if (utc < last || utc - last > kHeld) return along;
+  const AlongHole end = track_.At(last);
+  return std::abs(end.speed) <= kHeldSpeed ? end : along;
 }
 
 AlongHole ToolSurvey::OfSensor(AlongHole along) const {
@@ -180,10 +198,10 @@ void ToolSurvey::Obey(const Event& event) {
       foresights_.back().run = run;
       break;
     case Event::Kind::kReturnToZero: {
-      const AlongHole along = track_.At(event.utc);
-      if (along.known) {
-        returns_.push_back({run, along.md, event.has_value ? event.value_m : 0, event.sigma_m});
-      }
+      const AlongHole along = DepthHeldAt(event.utc);
+      ReturnToZero back{run, {}, event.has_value ? event.value_m : 0, event.sigma_m};
+      if (along.known) back.read_md = along.md;
+      returns_.push_back(back);
       break;
     }
     default:
@@ -336,12 +354,19 @@ std::vector<Foresight> ToolSurvey::Foresights() const {
     for (const RunState& run : runs_) {
       if (run.survey->summary().run != event.run || !run.survey->filter()) continue;
       const auto& epochs = run.survey->filter()->history().epochs;
-      const auto at = std::lower_bound(
+      if (epochs.empty()) continue;
+      auto at = std::lower_bound(
           epochs.begin(), epochs.end(), event.utc,
           [](const FilterEpoch& epoch, UtcTime utc) { return epoch.knot.utc < utc; });
+      const bool after = at == epochs.end();
+      if (after) --at;
       const auto i = static_cast<std::size_t>(at - epochs.begin());
-      if (at == epochs.end() || i >= run.attitude.size()) continue;
-      if (std::abs((at->knot.utc - event.utc).seconds()) > kForesightSeconds) continue;
+      if (i >= run.attitude.size()) continue;
+      const double away = std::abs((at->knot.utc - event.utc).seconds());
+      const AlongHole& along = at->knot.along;
+      const bool rests = at->knot.still || (along.known && std::abs(along.speed) <= kHeldSpeed);
+      const bool held = after && rests && away <= kHeld.seconds();
+      if (away > kForesightSeconds && !held) continue;
       const AttitudeSample& attitude = run.attitude[i];
       if (!attitude.azimuth_known) continue;
       foresight.measured = DirectionOfMark(attitude);
@@ -403,6 +428,7 @@ Survey ToolSurvey::Current() const {
   Placed placed = Assemble(job_, drafted);
   survey.checks = Checks(placed.passes);
   survey.checks.push_back(CheckAzimuths());
+  if (!job_.stations.at.empty()) survey.checks.push_back(CheckAsked(job_, placed.chosen));
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);
   survey.unusable = std::move(placed.unusable);

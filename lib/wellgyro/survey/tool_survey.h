@@ -73,6 +73,7 @@ class ToolSurvey {
   void Obey(const Event& event);
   void Obey(const Command& command);
   bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
+  AlongHole DepthHeldAt(UtcTime utc) const;
   AlongHole OfSensor(AlongHole along) const;
   RunState& RunFor(std::int32_t run);
   void Tell(RunState& run);

@@ -1,0 +1,204 @@
+// Where a run begins and ends, and what is said when nothing is left of it. Cases from reports of
+// 2026-11-21.
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/math/rotation.h"
+#include "wellgyro/simulate/truth.h"
+
+#include "support/simulated_survey.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::CollectingSink;
+
+Simulation Slant() {
+  Simulation simulation;
+  simulation.well.end_md = 400;
+  simulation.well.inclination.start = FromDegrees(30);
+  simulation.well.azimuth.start = FromDegrees(45);
+  simulation.earth.latitude = FromDegrees(55);
+  simulation.tool.errors.gyro_noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+  RunStop stop;
+  stop.seconds = 90;
+  RunMove move;
+  move.to_md = 300;
+  simulation.run.steps = {stop, move, stop};
+  simulation.streams.imu_hz = 20;
+  simulation.streams.depth_hz = 4;
+  return simulation;
+}
+
+Job SlantJob() {
+  Job job;
+  job.well.latitude = FromDegrees(55);
+  job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+  job.stations.every = 20;
+  return job;
+}
+
+TEST(RunLimits, ATieInBelowTheRunIsNoSurvey) {
+  Job job = SlantJob();
+  job.tie_in.md = 350;
+  job.tie_in.inclination = FromDegrees(30);
+  job.tie_in.azimuth = FromDegrees(45);
+  Sink sink;
+  const Survey survey = testing::SurveyOf(Slant(), job, sink);
+  EXPECT_NE(survey.unusable.find("no deeper than the tie-in at 350.00 m"), std::string::npos)
+      << survey.unusable;
+  EXPECT_TRUE(survey.chosen.empty());
+}
+
+TEST(RunLimits, DepthsOutsideTheRunAreNoSurvey) {
+  Job job = SlantJob();
+  job.stations.every = 0;
+  job.stations.at = {1000, 2000};
+  Sink sink;
+  EXPECT_NE(testing::SurveyOf(Slant(), job, sink).unusable.find("none of the depths"),
+            std::string::npos);
+  job.stations.at = {100, 1000};
+  const Survey part = testing::SurveyOf(Slant(), job, sink);
+  EXPECT_EQ(part.unusable, "");
+  EXPECT_EQ(part.chosen.size(), 2u);
+  bool told = false;
+  for (const Check& check : part.checks) {
+    if (check.code != "stations_asked") continue;
+    told = true;
+    EXPECT_EQ(check.verdict, Verdict::kFail);
+    EXPECT_EQ(check.md.value_or(0), 1000);
+  }
+  EXPECT_TRUE(told);
+}
+
+TEST(RunLimits, RejectingEverythingLeavesNoSurvey) {
+  Job job = SlantJob();
+  Event reject;
+  reject.utc = Slant().streams.begin_utc;
+  reject.kind = Event::Kind::kReject;
+  job.events.push_back(reject);
+  Sink sink;
+  EXPECT_EQ(testing::SurveyOf(Slant(), job, sink).unusable, "every station was rejected");
+}
+
+TEST(RunLimits, SamplesAfterTheJobsEndOfARunAreLeftOut) {
+  const Simulation simulation = Slant();
+  const Truth truth(simulation);
+  double at_200 = 0;
+  while (truth.At(at_200).md < 200) at_200 += 0.5;
+  Job job = SlantJob();
+  RunSpec run;
+  run.number = simulation.streams.run > 0 ? simulation.streams.run : 1;
+  run.end = simulation.streams.begin_utc + Duration::Seconds(at_200);
+  job.runs = {run};
+  Sink sink;
+  const Survey survey = testing::SurveyOf(simulation, job, sink);
+  ASSERT_EQ(survey.unusable, "");
+  ASSERT_EQ(survey.runs.size(), 1u);
+  EXPECT_LE(survey.chosen.back().md, 200.5);
+  EXPECT_GE(survey.chosen.back().md, 199.0);
+  const double all = truth.seconds() * simulation.streams.imu_hz;
+  EXPECT_NEAR(static_cast<double>(survey.runs[0].samples), at_200 * simulation.streams.imu_hz, 2);
+  EXPECT_NEAR(static_cast<double>(survey.runs[0].samples + survey.runs[0].samples_after_end), all,
+              2);
+}
+
+TEST(RunLimits, ReturnToZeroAndForesightCountAfterTheLastSample) {
+  Simulation simulation = Slant();
+  RunMove up;
+  up.to_md = 1;
+  RunStop stop;
+  stop.seconds = 30;
+  simulation.run.steps.push_back(up);
+  simulation.run.steps.push_back(stop);
+  const Truth truth(simulation);
+  const TruthState end = truth.At(truth.seconds() - 1);
+  Job job = SlantJob();
+  Event back;
+  back.utc = simulation.streams.begin_utc + Duration::Seconds(truth.seconds() + 120);
+  back.kind = Event::Kind::kReturnToZero;
+  back.has_value = true;
+  back.value_m = 0.8;
+  back.sigma_m = 0.05;
+  Event foresight = back;
+  foresight.kind = Event::Kind::kForesight;
+  foresight.value_rad = std::atan2(end.R_LT(1, 0), end.R_LT(0, 0)) + FromDegrees(0.05);
+  foresight.sigma_rad = FromDegrees(0.05);
+  job.events = {back, foresight};
+  Sink sink;
+  const Survey survey = testing::SurveyOf(simulation, job, sink);
+  int done = 0;
+  for (const Check& check : survey.checks) {
+    if (check.code == "depth_closure") {
+      ++done;
+      ASSERT_TRUE(check.value);
+      EXPECT_NEAR(*check.value, 0.2, 0.02);
+    }
+    if (check.code == "foresight") {
+      ++done;
+      ASSERT_TRUE(check.value);
+      EXPECT_NEAR(*check.value, -0.05, 4 * *check.sigma);
+    }
+  }
+  EXPECT_EQ(done, 2);
+}
+
+TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
+  Simulator simulator(Slant());
+  CollectingSink sink;
+  Surveyor surveyor(SlantJob(), sink);
+  SimulatedStep step;
+  double lost_md = 0;
+  int lost = 0;
+  const Truth& truth = simulator.truth();
+  while (simulator.Next(step)) {
+    if (const auto* sample = std::get_if<ImuSample>(&step)) {
+      const double md = truth.At(static_cast<double>(sample->stamp.seq) / 20.0).md;
+      // Half a second, five metres before the station at 120 m.
+      if (md > 115 && lost < 10) {
+        ++lost;
+        lost_md = md;
+        continue;
+      }
+    }
+    std::visit([&](const auto& record) { surveyor.Push(record); }, step);
+  }
+  surveyor.Finish();
+  EXPECT_NEAR(lost_md, 115, 2);
+  for (const Station& s : surveyor.Current(0).chosen) {
+    EXPECT_EQ(Has(s.quality, Quality::kGap), std::abs(s.md - 120) < 1) << s.md;
+  }
+}
+
+TEST(RunLimits, ADepthErrorCountsOnceInAPassThatBeginsBelowTheTieIn) {
+  // An hour of stops makes the depth error the largest by far.
+  Simulation simulation = Slant();
+  RunMove up;
+  up.to_md = 150;
+  RunMove down;
+  down.to_md = 250;
+  simulation.run.steps.push_back(up);
+  simulation.run.steps.push_back(down);
+  Job job = SlantJob();
+  job.errors.depth_sigma = 2;
+  Sink sink;
+  const Survey survey = testing::SurveyOf(simulation, job, sink);
+  ASSERT_EQ(survey.unusable, "");
+  int seen = 0;
+  for (const Station& s : survey.passes) {
+    const Eigen::Vector3d t = Tangent(s.inclination, s.azimuth);
+    const double along = std::sqrt(t.dot(s.cov_p_WT_W * t));
+    seen += s.pass != Pass::kIn;
+    EXPECT_NEAR(along, 2, 0.02) << s.md << " of pass " << static_cast<int>(s.pass);
+  }
+  EXPECT_GE(seen, 10);
+}
+
+}  // namespace
+}  // namespace wellgyro
