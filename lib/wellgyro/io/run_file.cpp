@@ -126,6 +126,11 @@ void WriteFault(TomlWriter& toml, const Fault& fault) {
   toml.Text("text", fault.text);
 }
 
+bool Sampled(const Survey& survey) {
+  return std::any_of(survey.runs.begin(), survey.runs.end(),
+                     [](const RunSummary& run) { return run.samples > 0; });
+}
+
 }  // namespace
 
 std::string RunToml(const RunRecord& record, const Job& job, const Survey& survey,
@@ -138,6 +143,8 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   toml.Whole("stations", std::ssize(survey.chosen));
   toml.Whole("stations_of_all_passes", std::ssize(survey.passes));
   toml.Text("md_kind", WordOf(job.depth.kind));
+  // Whoever sums the stations of survey.csv again gets other positions where the run was seen.
+  toml.Text("positions_summed_over", Sampled(survey) ? "run, every second" : "stations");
   toml.Table("well");
   toml.Text("name", job.well.name);
   toml.Number("latitude_deg", ToDegrees(job.well.latitude));

@@ -12,10 +12,13 @@
 
 #include "wellgyro/attitude/along_hole_covariance.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/station_of.h"
+#include "wellgyro/survey/way.h"
+#include "wellgyro/trajectory/minimum_curvature.h"
 #include "wellgyro/trajectory/path.h"
 
 namespace wellgyro {
@@ -26,7 +29,8 @@ struct Item {
   Station station;
   const StationState* state = nullptr;  ///< nullptr: from a window of its own
   bool listed = true;
-  bool on_line = true;  ///< deeper than the one before
+  bool on_line = true;                ///< deeper than the one before
+  std::vector<PathStation> way = {};  ///< from the one before on the line
 };
 using PassItems = std::vector<Item>;  ///< in the order of depth
 
@@ -56,7 +60,19 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
         {StationOf(job, draft, state), state, draft.listed, true});
   }
   std::vector<PassItems> result;
-  for (auto& [number, items] : passes) result.push_back(InDepthOrder(std::move(items)));
+  for (auto& [number, items] : passes) {
+    result.push_back(InDepthOrder(std::move(items)));
+    const Item* above = nullptr;
+    for (Item& item : result.back()) {
+      if (!item.on_line) continue;
+      if (above == nullptr && item.state != nullptr) {
+        item.way = WayAbove(run.way, item.station, item.station.pass == Pass::kOut);
+      } else if (above != nullptr && above->state != nullptr && item.state != nullptr) {
+        item.way = WayBetween(run.way, above->station, item.station);
+      }
+      above = &item;
+    }
+  }
   return result;
 }
 
@@ -68,25 +84,20 @@ struct Start {
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();
 };
 
-/// The survey as far as it is placed, to start deeper passes from.
-struct Line {
-  std::vector<PathPoint> points;
-  std::vector<Eigen::Matrix3d> covs;  ///< without the point's own depth error
-};
-
-std::optional<Start> StartOnLine(const Site& head, const Line& line, double md) {
-  const auto below = std::find_if(line.points.begin(), line.points.end(),
-                                  [md](const PathPoint& p) { return p.station.md >= md; });
-  if (below == line.points.end() || below == line.points.begin()) return std::nullopt;
-  const auto i = static_cast<std::size_t>(below - line.points.begin());
-  return Start{Interpolate(head, line.points[i - 1], line.points[i], md), line.covs[i]};
+std::optional<Start> StartOnLine(const Site& head, const PassLine& line, double md) {
+  const auto i = line.Below(md);
+  if (!i) return std::nullopt;
+  return Start{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs[*i]};
 }
 
 /// Azimuth and inclination errors taken as one and the same at all stations: for stations of their
 /// own windows, whose shared instrument errors dominate. Never smaller than what they really are.
+/// What the hole does where nobody saw it, between two stations, is in course-length terms, random
+/// from leg to leg: XCLA and XCLH of the ISCWSA error model, SPE 187249.
 class SystematicCovariance {
  public:
-  explicit SystematicCovariance(const Eigen::Matrix3d& cov_tie_in) : cov_tie_in_(cov_tie_in) {}
+  SystematicCovariance(const Eigen::Matrix3d& cov_tie_in, bool legs_unseen)
+      : cov_tie_in_(cov_tie_in), legs_unseen_(legs_unseen) {}
 
   Eigen::Matrix3d Add(const Station& station) {
     const double si = std::sin(station.inclination), ci = std::cos(station.inclination);
@@ -95,15 +106,38 @@ class SystematicCovariance {
     turn.col(0) = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::sqrt(station.cov_md_inc_azi(1, 1));
     turn.col(1) = Eigen::Vector3d(-si * sa, si * ca, 0) * std::sqrt(station.cov_md_inc_azi(2, 2));
     const Eigen::Vector3d tangent(si * ca, si * sa, ci);
-    if (last_) sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
+    if (last_) {
+      sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
+      if (legs_unseen_) AddCourse(*last_, station);
+    }
     last_ = station;
     last_turn_ = turn;
-    return cov_tie_in_ + sum_ * sum_.transpose() +
+    return cov_tie_in_ + sum_ * sum_.transpose() + course_ +
            station.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
   }
 
  private:
+  void AddCourse(const Station& above, const Station& below) {
+    constexpr double kRatio = 0.167;
+    constexpr double kTortuosity = units::kDegPer100ft;  // the least that a hole turns
+    const double length = below.md - above.md;
+    const double inclination = 0.5 * (above.inclination + below.inclination);
+    const double turn = WrapPi(below.azimuth - above.azimuth);
+    const double azimuth = above.azimuth + 0.5 * turn;
+    const double si = std::sin(inclination), ci = std::cos(inclination);
+    const double sa = std::sin(azimuth), ca = std::cos(azimuth);
+    const double least = kTortuosity * length;
+    const double build = std::abs(below.inclination - above.inclination);
+    const Eigen::Vector3d high = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::max(build, least);
+    const Eigen::Vector3d right =
+        Eigen::Vector3d(-sa, ca, 0) * std::max(std::abs(si * turn), least);
+    const double ratio = kRatio * length;
+    course_ += ratio * ratio * (high * high.transpose() + right * right.transpose());
+  }
+
   Eigen::Matrix3d cov_tie_in_;
+  bool legs_unseen_;
+  Eigen::Matrix3d course_ = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, 2> sum_ = Eigen::Matrix<double, 3, 2>::Zero();
   Eigen::Matrix<double, 3, 2> last_turn_ = Eigen::Matrix<double, 3, 2>::Zero();
   std::optional<Station> last_;
@@ -118,7 +152,7 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
   Station origin = pass.front().station;
   origin.md = start.point.station.md;
   if (windows) {
-    SystematicCovariance sum(start.cov_p_WT_W);
+    SystematicCovariance sum(start.cov_p_WT_W, true);
     sum.Add(origin);
     for (const Item& item : pass) covs.push_back(sum.Add(item.station));
     return covs;
@@ -128,7 +162,7 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
   // Its depth error is left to the sum over the stations, which has it too.
   Station entry = pass.front().station;
   origin.cov_md_inc_azi(0, 0) = entry.cov_md_inc_azi(0, 0) = 0;
-  SystematicCovariance first(start.cov_p_WT_W);
+  SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty());
   first.Add(origin);
   AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
   for (const Item& item : pass) {
@@ -151,11 +185,21 @@ Eigen::Matrix3d WithoutDepthError(const Eigen::Matrix3d& cov, const Station& s,
   return cov - s.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
 }
 
-void Place(const Site& head, const Job& job, const Start& start, PassItems& pass, Line& line) {
+/// Of the leg from one direction to another [rad/m].
+double SeverityOf(double length, const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
+  const auto leg = MinimumCurvatureLeg(length, t1, t2);
+  return leg ? leg->dogleg / length : 0;
+}
+
+/// Sums a pass over its way, from station to station.
+PassLine Place(const Site& head, const Job& job, const Start& start, PassItems& pass) {
   const std::vector<Eigen::Matrix3d> covs = PassCovariances(job, pass, start);
   Path path(head, start.point.station, start.point.p_WT_W);
-  line.points.push_back(start.point);
-  line.covs.push_back(start.cov_p_WT_W);
+  PassLine line{pass.front().station.run,
+                pass.front().station.pass_number,
+                {start.point},
+                {start.cov_p_WT_W}};
+  PathPoint above = start.point;
   for (std::size_t i = 0; i < pass.size(); ++i) {
     Station& s = pass[i].station;
     s.cov_p_WT_W = covs[i];
@@ -163,13 +207,23 @@ void Place(const Site& head, const Job& job, const Start& start, PassItems& pass
       s.p_WT_W = path.last().p_WT_W;
       continue;
     }
-    const auto point = path.Add(PathOf(s));
-    if (!point) continue;  // opposite directions: the station stays where the one before is
-    s.p_WT_W = point->p_WT_W;
-    s.dogleg_severity = point->dogleg_severity;
-    line.points.push_back(*point);
-    line.covs.push_back(WithoutDepthError(covs[i], s, pass[i].state));
+    const Eigen::Matrix3d cov = WithoutDepthError(covs[i], s, pass[i].state);
+    const auto add = [&](const PathStation& station) {
+      const auto point = path.Add(station);
+      if (!point) return false;  // opposite directions: it stays where the one before is
+      line.points.push_back(*point);
+      line.covs.push_back(cov);
+      return true;
+    };
+    for (const PathStation& station : pass[i].way) {
+      if (station.md > path.last().station.md) add(station);
+    }
+    if (!add(PathOf(s))) continue;
+    s.p_WT_W = path.last().p_WT_W;
+    s.dogleg_severity = SeverityOf(s.md - above.station.md, above.tangent_W, path.last().tangent_W);
+    above = path.last();
   }
+  return line;
 }
 
 /// The tie-in as the first row of the survey. Its attitude opens the first leg: the tie-in's own,
@@ -209,7 +263,7 @@ double ShallowestDepth(const std::vector<PassItems>& passes) {
 }
 
 void PlaceAll(const Site& head, const Job& job, const Station& opening,
-              std::vector<PassItems>& passes) {
+              std::vector<PassItems>& passes, std::vector<PassLine>& lines) {
   Start tie;
   tie.point.station = PathOf(opening);
   tie.point.p_WT_W = opening.p_WT_W;
@@ -225,28 +279,29 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
     if (a_top != b_top) return a_top;
     return passes[a].back().station.md > passes[b].back().station.md;
   });
-  Line main_line;
+  std::size_t main_line = lines.size();  // the deepest so far, of this run
+  const auto depth = [&](std::size_t i) { return lines[i].points.back().station.md; };
   for (std::size_t i : order) {
     const double first = passes[i].front().station.md;
-    std::optional<Start> start = StartOnLine(head, main_line, first);
-    Line line;
-    Place(head, job, start && first > top ? *start : tie, passes[i], line);
-    if (main_line.points.empty() ||
-        line.points.back().station.md > main_line.points.back().station.md) {
-      main_line = std::move(line);
-    }
+    std::optional<Start> start;
+    if (main_line < lines.size()) start = StartOnLine(head, lines[main_line], first);
+    lines.push_back(Place(head, job, start && first > top ? *start : tie, passes[i]));
+    if (depth(lines.size() - 1) > depth(main_line)) main_line = lines.size() - 1;
   }
 }
 
-void PlaceChosen(const Site& head, Placed& placed) {
-  const Station& opening = placed.chosen.front();
-  Path path(head, PathOf(opening), opening.p_WT_W);
+/// Sums the chosen stations, of whatever passes: each leg by their own directions, and what the
+/// hole does between them as a pass saw it.
+void PlaceChosen(const Site& head, const std::vector<PassLine>& lines, Placed& placed) {
+  const Station* above = &placed.chosen.front();
   for (std::size_t i = 1; i < placed.chosen.size(); ++i) {
     Station& s = placed.chosen[i];
-    const auto point = path.Add(PathOf(s));
+    Path leg(head, PathOf(*above), above->p_WT_W);
+    const auto point = leg.Add(PathOf(s));
     if (!point) continue;
-    s.p_WT_W = point->p_WT_W;
+    s.p_WT_W = point->p_WT_W + Bulge(head, lines, *above, s);
     s.dogleg_severity = point->dogleg_severity;
+    above = &s;
   }
 }
 
@@ -266,7 +321,8 @@ void List(const std::vector<PassItems>& passes, double tie_md, bool misrun, Plac
   }
 }
 
-void Choose(const Site& head, const Station& opening, Placed& placed) {
+void Choose(const Site& head, const Station& opening, const std::vector<PassLine>& lines,
+            Placed& placed) {
   const std::vector<std::size_t> chosen = ChooseStations(placed.passes);
   placed.chosen.push_back(opening);
   std::vector<bool> is_chosen(placed.passes.size());
@@ -280,7 +336,7 @@ void Choose(const Site& head, const Station& opening, Placed& placed) {
     placed.passes[i].number = static_cast<std::int32_t>(placed.chosen.size());
     placed.chosen.push_back(placed.passes[i]);
   }
-  PlaceChosen(head, placed);
+  PlaceChosen(head, lines, placed);
 }
 
 /// Why the tie-in is all that there is.
@@ -332,12 +388,13 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
         ShallowestDepth(good));
     return placed;
   }
+  std::vector<PassLine> lines, misruns;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (by_run[i].empty()) continue;
-    PlaceAll(head, job, *opening, by_run[i]);
+    PlaceAll(head, job, *opening, by_run[i], runs[i].misrun ? misruns : lines);
     List(by_run[i], job.tie_in.md, runs[i].misrun, placed);
   }
-  Choose(head, *opening, placed);
+  Choose(head, *opening, lines, placed);
   if (placed.chosen.size() == 1) placed.unusable = WhyNothing(job, good, placed);
   return placed;
 }

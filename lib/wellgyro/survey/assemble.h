@@ -22,7 +22,8 @@ WELLGYRO_EXPORT double TieInReach(const Job& job);
 
 /// From drafts to positions: turns tool attitude to hole attitude, sums each pass from the tie-in
 /// (or, where it begins deeper, from the pass above it), chooses one station per depth and sums the
-/// chosen. Position covariances are those of each station's own pass.
+/// chosen. Between stations the run's own way is summed, so that positions do not depend on the
+/// stations' spacing. Position covariances are those of each station's own pass.
 WELLGYRO_EXPORT Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs);
 
 }  // namespace wellgyro

@@ -8,6 +8,7 @@
 #include "wellgyro/attitude/filter_state.h"
 #include "wellgyro/record/attitude_sample.h"
 #include "wellgyro/record/station.h"
+#include "wellgyro/survey/way.h"
 
 namespace wellgyro {
 
@@ -26,6 +27,7 @@ struct DraftedRun {
   bool misrun = false;
   std::vector<Draft> drafts;         ///< in the order of time
   std::vector<StationState> states;  ///< of the filter, or smoothed: whichever is to be told
+  std::vector<Waypoint> way;         ///< of the hole, in the order of time
 };
 
 }  // namespace wellgyro

@@ -327,6 +327,29 @@ std::vector<StationState> ToolSurvey::StatesOf(const RunState& run, const Azimut
   return states;
 }
 
+/// Where the hole points at every knot that has a depth and a direction.
+std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
+  std::vector<Waypoint> way;
+  const std::vector<FilterEpoch>& epochs = run.survey->filter()->history().epochs;
+  way.reserve(epochs.size());
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    const FilterEpoch& epoch = epochs[i];
+    AttitudeSample attitude;
+    if (i < run.attitude.size()) {
+      attitude = run.attitude[i];
+    } else {
+      attitude.inclination = epoch.knot.inclination;
+      attitude.azimuth = epoch.azimuth;
+      attitude.toolface = epoch.knot.toolface;
+      attitude.azimuth_known = epoch.azimuth_known;
+    }
+    if (!epoch.knot.along.known || !attitude.azimuth_known) continue;
+    const HoleAttitude hole = AttitudeOfHole(attitude, job_.string);
+    way.push_back({epoch.knot.utc, {epoch.knot.along.md, hole.inclination, hole.azimuth}});
+  }
+  return way;
+}
+
 std::vector<DraftedRun> ToolSurvey::Drafted() const {
   std::vector<DraftedRun> drafted;
   for (const RunState& run : runs_) {
@@ -335,6 +358,7 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
     d.misrun = book_.misrun(d.run);
     if (const AzimuthFilter* filter = run.survey->filter()) {
       d.states = StatesOf(run, *filter);
+      d.way = WayOf(run);
     }
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
       Draft draft = run.survey->drafts()[i];

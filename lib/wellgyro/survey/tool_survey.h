@@ -79,6 +79,7 @@ class ToolSurvey {
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
   static std::vector<StationState> StatesOf(const RunState& run, const AzimuthFilter& filter);
+  std::vector<Waypoint> WayOf(const RunState& run) const;
   std::vector<DraftedRun> Drafted() const;
   std::vector<Foresight> Foresights() const;
   std::vector<Check> Checks(const std::vector<Station>& passes) const;
