@@ -15,6 +15,7 @@ enum ExitCode {
 // One function a command: adds the subcommand with its options to `app`; when it is the one that
 // was given, its callback runs it and puts the exit code into `exit_code`.
 void AddSurvey(CLI::App& app, int& exit_code);
+void AddRecord(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code);
 void AddAllan(CLI::App& app, int& exit_code);
 void AddUncertainty(CLI::App& app, int& exit_code);

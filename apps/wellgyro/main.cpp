@@ -15,6 +15,7 @@ int Run(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::help);
   int exit_code = kDone;
   AddSurvey(app, exit_code);
+  AddRecord(app, exit_code);
   AddSimulate(app, exit_code);
   AddAllan(app, exit_code);
   AddUncertainty(app, exit_code);

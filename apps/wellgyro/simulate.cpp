@@ -11,7 +11,6 @@
 #include <fmt/core.h>
 
 #include "wellgyro/bus/encode.h"
-#include "wellgyro/bus/log_writer.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/simulation_file.h"
 #include "wellgyro/io/truth_csv.h"
@@ -19,6 +18,7 @@
 #include "wellgyro/simulate/simulator.h"
 
 #include "commands.h"
+#include "outlet.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -26,15 +26,15 @@ namespace {
 
 struct SimulateOptions {
   std::string job, out, truth;
+  double speed = 1;
+  bool finish = false;
 };
 
-/// Encodes what the simulator plays and writes it to a log.
+/// Encodes what the simulator plays and sends it on.
 class Recorder {
  public:
-  Recorder(const SimulationFile& file, LogWriter log)
-      : file_(file),
-        log_(std::move(log)),
-        batcher_(file.simulation.streams, file.simulation.seed) {}
+  Recorder(const SimulationFile& file, Outlet& outlet)
+      : file_(file), outlet_(outlet), batcher_(file.simulation.streams, file.simulation.seed) {}
 
   std::optional<Fault> Take(const ImuSample& sample) {
     now_us_ = Microseconds(sample.stamp.utc + Duration{sample.stamp.period_ns});
@@ -52,48 +52,62 @@ class Recorder {
     now_us_ = Microseconds(info.utc);
     return Write(file_.channels.tool, info);
   }
-  std::optional<Fault> Close() {
+  /// Asks surveys to finish here, three times as the network may lose one.
+  std::optional<Fault> Finish() {
+    Command command;
+    command.utc = UtcTime{now_us_ * 1000};
+    command.command_id = 1;
+    command.kind = Command::Kind::kFinish;
+    for (int i = 0; i < 3; ++i) {
+      if (auto fault = Write(file_.channels.command, command)) return fault;
+    }
+    return std::nullopt;
+  }
+  std::optional<Fault> Flush() {
     if (batcher_.Flush(batch_)) {
       if (auto fault = WriteBatch()) return fault;
     }
-    return log_.Close();
+    return std::nullopt;
   }
-  std::int64_t events() const { return log_.events(); }
-  std::int64_t bytes() const { return log_.bytes(); }
 
  private:
   static std::int64_t Microseconds(UtcTime utc) { return utc.ns / 1000; }
   std::optional<Fault> WriteBatch() {
     Encode(std::span<const ImuSample>(batch_.samples), bytes_);
-    return log_.Write(file_.channels.imu, bytes_, now_us_);
+    outlet_.CountSamples(batch_.samples.back().stamp.seq + 1);
+    return outlet_.Write(file_.channels.imu, bytes_, now_us_);
   }
   template <class Record>
   std::optional<Fault> Write(const std::string& channel, const Record& record) {
     Encode(record, bytes_);
-    return log_.Write(channel, bytes_, now_us_);
+    return outlet_.Write(channel, bytes_, now_us_);
   }
 
   const SimulationFile& file_;
-  LogWriter log_;
+  Outlet& outlet_;
   SampleBatcher batcher_;
   SampleBatch batch_;
   std::vector<std::byte> bytes_;
   std::int64_t now_us_ = 0;
 };
 
-std::optional<Fault> Play(Simulator& simulator, Recorder& recorder) {
+std::optional<Fault> Play(Simulator& simulator, Recorder& recorder, Outlet& outlet, bool finish) {
   Progress progress("simulating");
   if (auto fault = recorder.Take(simulator.tool_info())) return fault;
   SimulatedStep step;
   std::int64_t samples = 0;
-  while (simulator.Next(step)) {
+  while (!outlet.stopped() && simulator.Next(step)) {
     if (auto fault = std::visit([&](const auto& record) { return recorder.Take(record); }, step)) {
       return fault;
     }
     samples += std::holds_alternative<ImuSample>(step) ? 1 : 0;
     progress.Show(samples, simulator.sample_count());
   }
-  return recorder.Close();
+  if (auto fault = recorder.Flush()) return fault;
+  if (finish && !outlet.stopped()) {
+    if (auto fault = recorder.Finish()) return fault;
+  }
+  return outlet.Close();
 }
 
 std::optional<Fault> WriteTruth(const std::string& name, const Truth& truth) {
@@ -109,7 +123,9 @@ int Simulate(const SimulateOptions& options) {
     Complain(file.fault());
     return kUnusable;
   }
-  const std::string truth = options.truth.empty() ? options.out + ".truth.csv" : options.truth;
+  const bool live = options.out.find("://") != std::string::npos;
+  const std::string truth =
+      options.truth.empty() && !live ? options.out + ".truth.csv" : options.truth;
   if (options.out == options.job || truth == options.job || options.out == truth) {
     Complain("--job, --out and --truth must be three different files");
     return kUnusable;
@@ -117,22 +133,25 @@ int Simulate(const SimulateOptions& options) {
   // What the simulation refuses is refused before a file is touched.
   Simulator simulator(file->simulation);
   const SampleBatcher batcher(file->simulation.streams, file->simulation.seed);
-  Result<LogWriter> log = LogWriter::Open(options.out, IfExists::kReplace);
-  if (!log) {
-    Complain(log.fault());
+  auto outlet = live ? OpenLiveOutlet(options.out, file->channels, options.speed)
+                     : OpenLogOutlet(options.out);
+  if (!outlet) {
+    Complain(outlet.fault());
     return kUnusable;
   }
-  Recorder recorder(*file, std::move(*log));
-  if (const auto fault = Play(simulator, recorder)) {
+  Recorder recorder(*file, **outlet);
+  if (const auto fault = Play(simulator, recorder, **outlet, options.finish)) {
     Complain(*fault);
     return kUnusable;
   }
-  if (const auto fault = WriteTruth(truth, simulator.truth())) {
+  const auto fault = truth.empty() ? std::nullopt : WriteTruth(truth, simulator.truth());
+  if (fault) {
     Complain(*fault);
     return kUnusable;
   }
-  fmt::print("simulated {:.0f} s: {} events, {} bytes\nwrote {}\nwrote {}\n",
-             simulator.truth().seconds(), recorder.events(), recorder.bytes(), options.out, truth);
+  fmt::print("simulated {:.0f} s: {} events, {} bytes\n{} {}\n", simulator.truth().seconds(),
+             (*outlet)->events(), (*outlet)->bytes(), live ? "sent to" : "wrote", options.out);
+  if (!truth.empty()) fmt::print("wrote {}\n", truth);
   return kDone;
 }
 
@@ -145,12 +164,23 @@ void AddSimulate(CLI::App& app, int& exit_code) {
   command->add_option("--job", options->job, "Simulation file, wellgyro.simulation/1")
       ->required()
       ->type_name("FILE");
-  command->add_option("--out", options->out, "LCM log to write")->required()->type_name("LOG");
+  command->add_option("--out", options->out, "LCM log to write, or LCM URL to send to")
+      ->required()
+      ->type_name("LOG|URL");
+  command
+      ->add_option("--speed", options->speed,
+                   "With a URL: simulated seconds a second; 0: as fast as receivers keep up")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--finish", options->finish, "End with the command FINISH to the survey");
   command
       ->add_option("--truth", options->truth,
-                   "Truth second by second, CSV; by default the log's name with .truth.csv")
+                   "Truth second by second, CSV; by default the log's name with .truth.csv, "
+                   "and none with a URL")
       ->type_name("FILE");
-  command->footer("Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm");
+  command->footer(
+      "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
+      "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "
+      "--speed 10");
   command->callback([options, &exit_code] { exit_code = Simulate(*options); });
 }
 

@@ -72,6 +72,38 @@ TEST(LogWriter, ExistingFilesStayUnlessAsked) {
   EXPECT_EQ(std::filesystem::file_size(file.path()), 0U);
 }
 
+TEST(LogWriter, AppendsBehindTheLastWholeEventWhereverTheLogWasCut) {
+  const TestFile file;
+  {
+    auto writer = LogWriter::Open(file.path(), IfExists::kAppend);
+    ASSERT_TRUE(writer);
+    for (int i = 0; i < 3; ++i) ASSERT_FALSE(writer->Write("A", Data(11, i), i));
+  }
+  const Bytes whole = file.Contents();
+  ASSERT_EQ(whole.size(), 120u);
+  for (std::size_t size = 0; size <= whole.size(); ++size) {
+    file.Fill(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
+    auto writer = LogWriter::Open(file.path(), IfExists::kAppend);
+    ASSERT_TRUE(writer) << size << ": " << writer.fault().text;
+    ASSERT_FALSE(writer->Write("A", Data(11, 7), 7));
+    ASSERT_FALSE(writer->Close());
+    auto reader = LogReader::Open(file.path());
+    ASSERT_TRUE(reader) << size;
+    const Read read = ReadAll(*reader);
+    ASSERT_EQ(read.events.size(), size / 40 + 1) << size;
+    EXPECT_TRUE(read.faults.empty()) << size;
+    EXPECT_EQ(read.events.back().data, Data(11, 7));
+    EXPECT_EQ(read.events.back().number, static_cast<std::int64_t>(size / 40));
+  }
+}
+
+TEST(LogWriter, NothingIsAppendedToWhatIsNoLog) {
+  const TestFile file;
+  file.Fill(Data(500, 1));
+  EXPECT_FALSE(LogWriter::Open(file.path(), IfExists::kAppend));
+  EXPECT_EQ(file.Contents(), Data(500, 1));
+}
+
 TEST(LogWriter, AFullDiskIsSaidOnceAndForAll) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   auto writer = LogWriter::Open("/dev/full", IfExists::kReplace);

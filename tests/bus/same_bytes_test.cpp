@@ -1,5 +1,5 @@
-// One build, the same messages: the same survey, bit for bit, live and from the log; and how the
-// streams interleave does not matter within the job's latency.
+// One build, the same messages: the same survey, bit for bit, live over every transport and from
+// the log; and how the streams interleave does not matter within the job's latency.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
@@ -24,6 +25,7 @@
 #include "wellgyro/simulate/sample_batcher.h"
 #include "wellgyro/simulate/simulator.h"
 
+#include "bus/broker.h"
 #include "support/scratch.h"
 
 namespace wellgyro {
@@ -138,25 +140,9 @@ std::string FromLog(const std::vector<Sent>& messages) {
   return surveyed.Files();
 }
 
-TEST(SameBytes, LiveAndFromTheLog) {
-  const std::vector<Sent> messages = Messages(NoisyRun());
-  auto bus = LiveBus::Open("memq://");
-  ASSERT_TRUE(bus);
-  Surveyed live;
-  ASSERT_FALSE(bus->Subscribe({}, [&](std::string_view channel, std::span<const std::byte> data,
-                                      std::int64_t) { live.Take(channel, data); }));
-  for (const Sent& m : messages) {
-    ASSERT_FALSE(bus->Publish(m.channel, m.bytes));
-    ASSERT_TRUE(bus->Drain());
-  }
-  const std::string files = live.Files();
-  EXPECT_GT(files.size(), 5000u);
-  EXPECT_EQ(files, FromLog(messages));
-}
-
-TEST(SameBytes, HowTheStreamsInterleaveDoesNotMatter) {
-  const std::vector<Sent> messages = Messages(NoisyRun());
-  // Depth comes 1.5 s later than it was sent, modes 1 s, against a latency of 2 s.
+/// The messages in the order in which they come when depth comes 1.5 s later than it was sent and
+/// modes 1 s, against a latency of 2 s.
+std::vector<Sent> Late(const std::vector<Sent>& messages) {
   std::vector<std::pair<std::int64_t, const Sent*>> order;
   for (const Sent& m : messages) {
     const std::int64_t late = m.channel == Channels{}.depth  ? 1'500'000
@@ -166,11 +152,71 @@ TEST(SameBytes, HowTheStreamsInterleaveDoesNotMatter) {
   }
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  Surveyed straight, late;
-  for (const Sent& m : messages) straight.Take(m.channel, m.bytes);
-  for (const auto& [time, m] : order) late.Take(m->channel, m->bytes);
-  EXPECT_EQ(straight.Files(), late.Files());
+  std::vector<Sent> result;
+  for (const auto& [time, m] : order) result.push_back(*m);
+  return result;
 }
+
+/// One bus sends, another hears; of memq only one object can do both.
+std::string FromBus(const std::string& url, const std::vector<Sent>& messages) {
+  auto hearing = LiveBus::Open(url);
+  EXPECT_TRUE(hearing) << hearing.fault().text;
+  const bool memory = url == "memq://";
+  auto speaking = memory ? Result<LiveBus>(Fault{}) : LiveBus::Open(url);
+  EXPECT_TRUE(memory || speaking);
+  LiveBus& out = memory ? *hearing : *speaking;
+  Surveyed live;
+  std::size_t heard = 0;
+  EXPECT_FALSE(hearing->Subscribe(
+      {}, [&](std::string_view channel, std::span<const std::byte> data, std::int64_t) {
+        ++heard;
+        live.Take(channel, data);
+      }));
+  std::size_t sent = 0;
+  for (const Sent& m : messages) {
+    EXPECT_FALSE(out.Publish(m.channel, m.bytes));
+    ++sent;
+    // The smallest buffer holds thirty such messages.
+    while (sent - heard > 15) {
+      const auto woken = hearing->Wait(2000);
+      if (!woken || *woken != LiveBus::Woken::kMessages) {
+        ADD_FAILURE() << "after " << sent << " messages " << heard << " came";
+        return {};
+      }
+    }
+  }
+  while (heard < sent && hearing->Wait(2000) && hearing->Drain()) continue;
+  EXPECT_EQ(heard, sent);
+  return live.Files();
+}
+
+/// On tcpq a subscription takes effect when the broker has it.
+class SameBytes : public ::testing::TestWithParam<std::string> {
+ protected:
+  std::string Url() {
+    if (GetParam() == "tcpq") return broker_.url();
+    // A port of its own: LCM 1.3 hears every group on its port.
+    if (GetParam() == "udpm") {
+      return "udpm://239.255.76.67:" + std::to_string(40'000 + getpid() % 20'000);
+    }
+    return "memq://";
+  }
+  test::Broker broker_;
+};
+
+TEST_P(SameBytes, LiveAndFromTheLogInTwoInterleavings) {
+  const std::string url = Url();
+  if (const auto bus = LiveBus::Open(url); !bus) GTEST_SKIP() << bus.fault().text;
+  const std::vector<Sent> messages = Messages(NoisyRun());
+  const std::string log = FromLog(messages);
+  EXPECT_GT(log.size(), 5000u);
+  EXPECT_EQ(FromBus(url, messages), log);
+  EXPECT_EQ(FromBus(url, Late(messages)), log);
+  EXPECT_EQ(FromLog(Late(messages)), log);
+}
+
+INSTANTIATE_TEST_SUITE_P(Transports, SameBytes, ::testing::Values("memq", "udpm", "tcpq"),
+                         [](const auto& transport) { return transport.param; });
 
 }  // namespace
 }  // namespace wellgyro

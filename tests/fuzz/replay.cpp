@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,7 +13,7 @@ namespace {
 using Input = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t kSeed = 20260101;
-constexpr int kChanges = 3000;  // of each input
+constexpr std::size_t kChanges = 3000;  // of each input
 
 /// An allocation of exactly the input's size, so that the sanitizers see what lies behind it.
 void Run(const Input& input) {
@@ -57,6 +58,7 @@ void Change(Input& input, const Input& other, std::mt19937& random) {
 
 }  // namespace
 
+/// replay-NAME [CORPUS [RUNS [BYTES]]]: at least so many inputs, of so many bytes in all.
 int main(int argc, char** argv) {
   std::vector<Input> inputs = wellgyro::fuzz::Seeds();
   if (argc > 1 && std::filesystem::is_directory(argv[1])) {
@@ -66,19 +68,25 @@ int main(int argc, char** argv) {
     }
   }
   std::sort(inputs.begin(), inputs.end());
-  std::printf("%zu inputs, %d changes of each, seed %u\n", inputs.size(), kChanges, kSeed);
+  const double runs_wanted =
+      argc > 2 ? std::atof(argv[2]) : static_cast<double>(kChanges * inputs.size());
+  const double bytes_wanted = argc > 3 ? std::atof(argv[3]) : 0;
   std::mt19937 random(kSeed);
   Run({});
-  for (const Input& input : inputs) {
-    Run(input);
-    for (int i = 0; i < kChanges; ++i) {
+  double runs = 0, bytes = 0;
+  while (runs < runs_wanted || bytes < bytes_wanted) {
+    for (const Input& input : inputs) {
       Input changed = input;
-      const std::size_t times = 1 + random() % 4;
+      const std::size_t times = runs < static_cast<double>(inputs.size()) ? 0 : 1 + random() % 4;
       for (std::size_t k = 0; k < times; ++k) {
         Change(changed, inputs[Below(random, inputs.size())], random);
       }
       Run(changed);
+      ++runs;
+      bytes += static_cast<double>(changed.size());
     }
   }
+  std::printf("%zu inputs, changed and run %.0f times, %.0f bytes, seed %u\n", inputs.size(), runs,
+              bytes, kSeed);
   return 0;
 }

@@ -71,7 +71,7 @@ TEST(SampleBatcher, LosesAsOftenAsTold) {
 
 TEST(SampleBatcher, RefusesWhatMakesNoMessage) {
   EXPECT_THROW(SampleBatcher({.batch = 0}, 0), std::invalid_argument);
-  EXPECT_THROW(SampleBatcher({.batch = 10, .overlap = 10}, 0), std::invalid_argument);
+  EXPECT_THROW(SampleBatcher({.batch = 10, .overlap = 11}, 0), std::invalid_argument);
   EXPECT_THROW(SampleBatcher({.loss_probability = 1.5}, 0), std::invalid_argument);
 }
 

@@ -294,6 +294,16 @@ Result<LogReader> LogReader::Open(const std::string& path) {
   return LogReader(std::move(parser));
 }
 
+Result<LogReader> LogReader::OpenAt(const std::string& path, std::int64_t from) {
+  Result<LogSource> source = LogSource::Open(path);
+  if (!source) return source.fault();
+  if (static_cast<std::int64_t>(source->view().size()) < from) {
+    return Fault{FaultCode::kDamaged, fmt::format("{} has become shorter", path), path, from};
+  }
+  source->Drop(static_cast<std::size_t>(from));
+  return LogReader(std::make_unique<Parser>(path, std::move(*source)));
+}
+
 bool LogReader::Next(LogEvent& event) { return parser_->Next(event); }
 
 const LogHealth& LogReader::health() const { return parser_->health(); }

@@ -60,6 +60,9 @@ class WELLGYRO_EXPORT LogReader {
   /// `path`: a file, a FIFO, or "-" for standard input. Looks for the first event; where there is
   /// none the Fault says what the file is instead.
   static Result<LogReader> Open(const std::string& path);
+  /// The same of a regular file from byte `from` on, where an event ends: what has been added since
+  /// it was read so far. Nothing added is no Fault.
+  static Result<LogReader> OpenAt(const std::string& path, std::int64_t from);
   ~LogReader();
   LogReader(LogReader&&) noexcept;
   LogReader& operator=(LogReader&&) noexcept;

@@ -10,6 +10,7 @@
 
 #include "wellgyro/bus/bytes_internal.h"
 #include "wellgyro/bus/log_format_internal.h"
+#include "wellgyro/bus/log_reader.h"
 
 namespace wellgyro {
 namespace {
@@ -33,6 +34,10 @@ LogWriter::~LogWriter() { static_cast<void>(Close()); }
 
 Result<LogWriter> LogWriter::Open(const std::string& path, IfExists if_exists) {
   if (path == "-") return LogWriter(path, stdout);
+  std::error_code absent;
+  if (if_exists == IfExists::kAppend && std::filesystem::file_size(path, absent) > 0 && !absent) {
+    return Append(path);
+  }
   std::FILE* file = std::fopen(path.c_str(), if_exists == IfExists::kRefuse ? "wbx" : "wb");
   if (file != nullptr) return LogWriter(path, file);
   if (errno == EEXIST) {
@@ -40,6 +45,33 @@ Result<LogWriter> LogWriter::Open(const std::string& path, IfExists if_exists) {
   }
   return Fault{FaultCode::kIo, fmt::format("{}: cannot create: {}", path, std::strerror(errno)),
                path};
+}
+
+Result<LogWriter> LogWriter::Append(const std::string& path) {
+  const auto refused = [&path] {
+    return Fault{FaultCode::kIo, fmt::format("{}: cannot append: {}", path, std::strerror(errno)),
+                 path};
+  };
+  std::int64_t next = 0, whole = 0;
+  {
+    Result<LogReader> reader = LogReader::Open(path);
+    // Cut inside its very first event: nothing is worth keeping.
+    if (!reader && reader.fault().code != FaultCode::kDamaged) return reader.fault();
+    LogEvent event;
+    while (reader && reader->Next(event)) {
+      next = event.number + 1;
+      whole = event.data_offset + static_cast<std::int64_t>(event.data.size());
+    }
+  }
+  std::error_code error;
+  std::filesystem::resize_file(path, static_cast<std::uintmax_t>(whole), error);
+  std::FILE* file = error ? nullptr : std::fopen(path.c_str(), "ab");
+  if (error) errno = error.value();
+  if (file == nullptr) return refused();
+  LogWriter writer(path, file);
+  writer.events_ = next;
+  writer.written_ = whole;
+  return writer;
 }
 
 std::optional<Fault> LogWriter::Write(std::string_view channel, std::span<const std::byte> data,

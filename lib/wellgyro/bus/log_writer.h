@@ -15,7 +15,9 @@
 
 namespace wellgyro {
 
-enum class IfExists { kRefuse, kReplace };
+/// kAppend: continue behind the last whole event; what a lost power supply left after it is cut
+/// off.
+enum class IfExists { kRefuse, kReplace, kAppend };
 
 /// Writes an LCM log as lcm-logger does; format with LogReader. Events are gathered in memory and
 /// go to the file in whole events only: when Flush is called, when kBlock bytes have gathered, and
@@ -30,7 +32,8 @@ class WELLGYRO_EXPORT LogWriter {
   LogWriter(LogWriter&&) noexcept;
   LogWriter& operator=(LogWriter&&) = delete;
 
-  /// `received_us`: microseconds since 1970 when the message came. Events are numbered from 0.
+  /// `received_us`: microseconds since 1970 when the message came. Events are numbered from 0,
+  /// or on from what was there.
   /// A channel of 1 to 63 bytes and at most 2^28 bytes of data, otherwise std::invalid_argument.
   /// After a Fault nothing more is written, and every call gives that Fault again.
   [[nodiscard]] std::optional<Fault> Write(std::string_view channel,
@@ -48,6 +51,7 @@ class WELLGYRO_EXPORT LogWriter {
     void operator()(std::FILE* file) const;
   };
   LogWriter(std::string path, std::FILE* file);
+  static Result<LogWriter> Append(const std::string& path);
   void Fail(const char* doing);
   std::size_t WholeEvents(std::size_t written) const;
 

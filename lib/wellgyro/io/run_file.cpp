@@ -173,6 +173,7 @@ std::string SourceToml(const SourceRecord& record) {
   TomlWriter toml;
   toml.Text("format", "wellgyro.source/1");
   toml.Text("name", record.name);
+  if (!record.ended.empty()) toml.Text("ended", record.ended);
   toml.Table("counts");
   for (const auto& [name, count] : record.counts) toml.Whole(name, count);
   for (const Fault& fault : record.faults) {

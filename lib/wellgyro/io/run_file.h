@@ -36,6 +36,7 @@ struct RunRecord {
 /// How the messages came: what may differ between two sources of the same messages.
 struct SourceRecord {
   std::string name;                            ///< URL or log, as the user wrote it
+  std::string ended = {};                      ///< how a live stream ended; empty: it was a log
   std::map<std::string, std::int64_t> counts;  ///< by name, as bytes_lost
   std::vector<Fault> faults;                   ///< with their offsets
 };

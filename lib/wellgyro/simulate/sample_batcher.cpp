@@ -20,7 +20,7 @@ SampleBatcher::SampleBatcher(const SimulatedStreams& streams, std::uint64_t seed
   if (streams.batch < 1) {
     throw std::invalid_argument(fmt::format("streams.batch {} is not positive", streams.batch));
   }
-  if (streams.overlap < 0 || streams.overlap >= streams.batch) {
+  if (streams.overlap < 0 || streams.overlap > streams.batch) {
     throw std::invalid_argument(fmt::format("streams.overlap {} is not within 0 and batch {}",
                                             streams.overlap, streams.batch));
   }

@@ -18,8 +18,9 @@ struct SampleBatch {
 /// Makes messages of a Simulator's samples, with the streams' batch size, overlap and losses.
 class WELLGYRO_EXPORT SampleBatcher {
  public:
-  /// Throws std::invalid_argument for a batch size below 1, an overlap that is negative or not
-  /// smaller than the batch, or a probability outside [0, 1].
+  /// Throws std::invalid_argument for a batch size below 1, an overlap that is negative or larger
+  /// than the batch, or a probability outside [0, 1]. An overlap as large as the batch sends every
+  /// sample twice, so that no single lost message loses a sample.
   SampleBatcher(const SimulatedStreams& streams, std::uint64_t seed);
 
   /// True when `sample` completes a message that arrives; `batch` is then that message.

@@ -1,0 +1,171 @@
+#include "catch_up.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/bus/log_reader.h"
+
+#include "live.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+namespace {
+
+constexpr std::int64_t kPatienceUs = 10'000'000;  // for a recorder's log to reach the live stream
+constexpr std::int64_t kQuietUs = 2'000'000;      // neither log nor bus says anything: joined
+constexpr int kPollMs = 50;
+// A recorder that began after the own log ended has all that came since, or it is lost.
+constexpr std::size_t kLookedBackAt = Splice::kKept;
+
+}  // namespace
+
+/// A log that may still be growing.
+struct CatchUp::Follower {
+  std::string path;
+  std::int64_t at = 0;
+
+  /// How many events were new.
+  Result<std::int64_t> Read(const std::function<void(const LogEvent&)>& use) {
+    Result<LogReader> reader = LogReader::OpenAt(path, at);
+    if (!reader) return reader.fault();
+    std::int64_t count = 0;
+    LogEvent event;
+    while (reader->Next(event)) {
+      use(event);
+      ++count;
+      at = event.data_offset + static_cast<std::int64_t>(event.data.size());
+    }
+    return count;
+  }
+};
+
+MessageKey CatchUp::Key(std::string_view channel, std::span<const std::byte> bytes) const {
+  const auto type = TypeOn(channels_, channel);
+  const bool once = type == MessageType::kImuBatch || type == MessageType::kRawBatch ||
+                    type == MessageType::kDepth || type == MessageType::kStillWindow;
+  return KeyOf(channel, bytes, once);
+}
+
+void CatchUp::UseOne(const HeldMessage& message, bool fresh) {
+  splice_.Used(Key(message.channel, message.bytes));
+  last_received_us_ = message.received_us;
+  use_(message.channel, message.bytes, message.received_us, fresh);
+}
+
+std::optional<Fault> CatchUp::OwnLog(const std::string& path, std::int64_t begun_us) {
+  begun_us_ = begun_us;
+  Result<LogReader> reader = LogReader::Open(path);
+  // Killed before its first whole event: there is nothing to continue from.
+  if (!reader) {
+    std::error_code absent;
+    const auto size = std::filesystem::file_size(path, absent);
+    if (absent || size == 0 || reader.fault().code == FaultCode::kDamaged) return std::nullopt;
+    return reader.fault();
+  }
+  LogEvent event;
+  while (reader->Next(event)) {
+    splice_.Used(Key(event.channel, event.data));
+    use_(event.channel, event.data, event.received_us, false);
+    last_received_us_ = event.received_us;
+  }
+  return std::nullopt;
+}
+
+void CatchUp::Hold(std::string_view channel, std::span<const std::byte> bytes,
+                   std::int64_t received_us) {
+  held_.push_back({std::string(channel), {bytes.begin(), bytes.end()}, received_us});
+}
+
+void CatchUp::TakeFill(const HeldMessage& message) {
+  if (message.received_us < begun_us_) return;
+  const MessageKey key = Key(message.channel, message.bytes);
+  if (joined_fill_) {
+    if (!splice_.WasUsed(key)) UseOne(message, true);
+    return;
+  }
+  // Whether this is behind what was used shows when the last one used comes by.
+  if (splice_.Find({&key, 1})) {
+    joined_fill_ = true;
+    before_.clear();
+    return;
+  }
+  before_.push_back(message);
+  // A recorder that began later never brings it.
+  const bool later = splice_.empty() || message.received_us > last_received_us_ + kQuietUs;
+  if (!later) {
+    if (before_.size() > kLookedBackAt) before_.erase(before_.begin());
+    return;
+  }
+  joined_fill_ = true;
+  for (const HeldMessage& since : std::exchange(before_, {})) {
+    if (splice_.empty() || since.received_us > last_received_us_) UseOne(since, true);
+  }
+}
+
+std::optional<std::size_t> CatchUp::Joint() const {
+  std::vector<MessageKey> keys;
+  for (const HeldMessage& m : held_) keys.push_back(Key(m.channel, m.bytes));
+  return splice_.Find(keys);
+}
+
+void CatchUp::Join() {
+  splice_.Turn();
+  if (const auto joint = Joint()) {
+    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(*joint) + 1);
+  }
+  for (const HeldMessage& message : std::exchange(held_, {})) {
+    if (!splice_.WasUsed(Key(message.channel, message.bytes))) UseOne(message, true);
+  }
+}
+
+Result<std::int64_t> CatchUp::ReadOn(Follower& log) {
+  return log.Read([this](const LogEvent& event) {
+    TakeFill(
+        {std::string(event.channel), {event.data.begin(), event.data.end()}, event.received_us});
+  });
+}
+
+Result<bool> CatchUp::Follow(LiveBus& bus, Follower& log) {
+  const std::int64_t begin = MonotonicUs();
+  std::int64_t last_news = begin;
+  for (;;) {
+    const auto count = ReadOn(log);
+    if (!count) return count.fault();
+    const std::size_t held_before = held_.size();
+    const auto woken = bus.Wait(kPollMs);
+    if (!woken) return woken.fault();
+    if (*woken == LiveBus::Woken::kStopped) return true;
+    if (Joint()) return false;
+    const std::int64_t now = MonotonicUs();
+    if (*count > 0 || held_.size() > held_before) last_news = now;
+    if (held_.empty() && now - last_news > kQuietUs) return false;
+    if (now - begin < kPatienceUs) continue;
+    Complain(fmt::format("{} does not reach the live stream: what was sent between may be lost",
+                         log.path));
+    return false;
+  }
+}
+
+Result<bool> CatchUp::FillAndJoin(LiveBus& bus, const std::vector<std::string>& logs) {
+  bool stopped = false;
+  for (std::size_t i = 0; i < logs.size() && !stopped; ++i) {
+    splice_.Turn();
+    joined_fill_ = false;
+    before_.clear();
+    Follower log{logs[i]};
+    if (i + 1 < logs.size()) {
+      if (const auto count = ReadOn(log); !count) return count.fault();
+      continue;
+    }
+    const auto followed = Follow(bus, log);
+    if (!followed) return followed.fault();
+    stopped = *followed;
+  }
+  Join();
+  return stopped;
+}
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "wellgyro/bus/lcm_live.h"
+#include "wellgyro/bus/message.h"
+#include "wellgyro/bus/splice.h"
+#include "wellgyro/record/channels.h"
+
+namespace wellgyro::apps {
+
+/// A message with its own storage.
+struct HeldMessage {
+  std::string channel;
+  std::vector<std::byte> bytes;
+  std::int64_t received_us = 0;
+};
+
+/// Brings a survey that was cut off up to the live stream: its own log first, then what other
+/// recorders have beyond that, then what the bus has brought meanwhile, each message once.
+class CatchUp {
+ public:
+  /// `fresh`: the message is in no log of ours yet.
+  using Use = std::function<void(std::string_view channel, std::span<const std::byte> bytes,
+                                 std::int64_t received_us, bool fresh)>;
+
+  /// `channels` must outlive this object.
+  CatchUp(const Channels& channels, Use use) : channels_(channels), use_(std::move(use)) {}
+
+  /// The log that the survey itself wrote. Of other logs what they heard before `begun_us` is left
+  /// out: the survey did not listen yet.
+  [[nodiscard]] std::optional<Fault> OwnLog(const std::string& path, std::int64_t begun_us);
+
+  /// A live message that comes while the logs are read.
+  void Hold(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us);
+
+  /// Other recorders' logs, the oldest first; the last may still grow, and is followed until it
+  /// reaches the live stream, or ten seconds. Then uses what was held. True when it was stopped.
+  Result<bool> FillAndJoin(LiveBus& bus, const std::vector<std::string>& logs);
+
+ private:
+  struct Follower;
+  MessageKey Key(std::string_view channel, std::span<const std::byte> bytes) const;
+  void UseOne(const HeldMessage& message, bool fresh);
+  void TakeFill(const HeldMessage& message);
+  Result<std::int64_t> ReadOn(Follower& log);
+  Result<bool> Follow(LiveBus& bus, Follower& log);
+  std::optional<std::size_t> Joint() const;
+  void Join();
+
+  const Channels& channels_;
+  Use use_;
+  Splice splice_;
+  std::int64_t begun_us_ = 0;
+  std::int64_t last_received_us_ = 0;  ///< of what was used
+  bool joined_fill_ = false;           ///< behind the place where the log before ended
+  std::vector<HeldMessage> before_;    ///< of a fill log, as long as that place has not come
+  std::deque<HeldMessage> held_;
+};
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wellgyro/io/job_file.h"
+
+namespace wellgyro::apps {
+
+struct SurveyOptions {
+  std::string job, from, out;
+  std::string record;  ///< log that gets what is heard live
+  bool resume = false;
+  std::vector<std::string> fill;  ///< other recorders' logs
+};
+
+/// Surveys a live stream until FINISH, a signal or the loss of the bus; the exit code.
+int SurveyLive(const SurveyOptions& options, const JobFile& job);
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "wellgyro/io/run_file.h"
+#include "wellgyro/survey/job.h"
+
+#include "delivery.h"
+
+namespace wellgyro::apps {
+
+/// A survey at one moment, for its files.
+struct Snapshot {
+  std::filesystem::path folder;
+  std::vector<ToolResult> tools;
+  RunRecord record;
+  SourceRecord source;
+};
+
+/// Keeps the files of a running survey up to date from a thread of its own, so that neither a slow
+/// disk nor a full one holds up the stream. Every file is whole at every moment.
+class ResultKeeper {
+ public:
+  /// `job` must outlive this object.
+  explicit ResultKeeper(const Job& job);
+  ~ResultKeeper();
+  ResultKeeper(const ResultKeeper&) = delete;
+  ResultKeeper& operator=(const ResultKeeper&) = delete;
+
+  /// Writes `snapshot` when what is being written is done; the newest wins.
+  void Keep(Snapshot snapshot);
+  /// Nothing is being written or waits to be, and the last writing went well.
+  bool idle() const;
+  bool failing() const;
+
+  /// Ends the thread after what it is writing, leaving out what waits.
+  void End();
+
+  /// Writes at once, in the caller's thread. Tools without a survey yet are left out.
+  static std::optional<Fault> Write(const Job& job, const Snapshot& snapshot);
+
+ private:
+  void Work();
+
+  const Job& job_;
+  mutable std::mutex mutex_;
+  std::condition_variable woken_;
+  std::optional<Snapshot> waiting_;
+  bool writing_ = false;
+  bool failing_ = false;
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace wellgyro::apps
