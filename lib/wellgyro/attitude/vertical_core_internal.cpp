@@ -1,0 +1,252 @@
+#include "wellgyro/attitude/vertical_core_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro::vertical {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kSineLeast = 1e-6;
+constexpr double kAxialFirst = 0.5;  // what a tool may turn at when the filter meets it [rad/s]
+constexpr double kTiltFirst = 0.03;  // before the first force is taken [rad]
+
+double Square(double x) { return x * x; }
+
+Matrix3d Skew(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+// Rotation by v, to 1e-12 for the turns of one sample.
+Matrix3d Exp(const Vector3d& v) {
+  const double n = v.squaredNorm();
+  double a = 1 - n / 6 + n * n / 120, b = 0.5 - n / 24 + n * n / 720;
+  if (n > 0.01) {
+    const double angle = std::sqrt(n);
+    a = std::sin(angle) / angle;
+    b = (1 - std::cos(angle)) / n;
+  }
+  const Matrix3d k = Skew(v);
+  return Matrix3d::Identity() + a * k + b * k * k;
+}
+
+double InverseSinc(double x) {
+  const double half = x / 2;
+  return std::abs(half) < 1e-3 ? 1 + half * half / 6 : half / std::sin(half);
+}
+
+// Rounding of thousands of products, once a block.
+void Orthonormalize(Matrix3d& R) {
+  R.col(0).normalize();
+  R.col(1) = (R.col(1) - R.col(0) * R.col(0).dot(R.col(1))).normalized();
+  R.col(2) = R.col(0).cross(R.col(1));
+}
+
+}  // namespace
+
+Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& site,
+                const Matrix3d& R_LT) {
+  Sensed s;
+  s.seconds = 1e-9 * sample.stamp.period_ns;
+  s.has_gz = sample.has_gz;
+  s.w_IT_T = sample.w_IT_T;
+  if (!s.has_gz) s.w_IT_T.z() = 0;
+  s.gravity = site.gravity;
+  s.accel_good = !sample.stamp.accel_saturated;
+  const double north = kEarthRate * std::cos(site.latitude);
+  const double up = kEarthRate * std::sin(site.latitude);
+  s.w_IL_L = Vector3d(north, 0, -up);
+  s.gravity_T = sample.f_T;
+  if (along.known) {
+    const Vector3d v_L = along.speed * R_LT.col(2);
+    const double east = v_L.y() / site.radius_east;
+    const Vector3d carried(east, -v_L.x() / site.radius_north, -east * std::tan(site.latitude));
+    const Vector3d w = s.w_IT_T + R_LT.transpose() * s.w_IL_L;
+    s.gravity_T -= along.speed * Vector3d(w.y(), -w.x(), 0);
+    s.gravity_T.z() -= along.acceleration;
+    s.w_IL_L += carried;
+  }
+  return s;
+}
+
+Matrix3d EulerSlopes(const Matrix3d& R_LT) {
+  const Vector3d t = R_LT.col(2);
+  const double across = std::hypot(t.x(), t.y());
+  const double sine = std::max(across, kSineLeast);
+  const double ca = across > 0 ? t.x() / across : 1, sa = across > 0 ? t.y() / across : 0;
+  const Vector3d h(t.z() * ca, t.z() * sa, -across), r(-sa, ca, 0);
+  Matrix3d slopes;
+  slopes.row(0) = r.transpose();
+  slopes.row(1) = -h.transpose() / sine;
+  slopes.row(2) = t.transpose() + h.transpose() * (t.z() / sine);
+  return slopes;
+}
+
+void Core::Start(const Sensed& s, const Matrix3d& R_LT, const Noise& noise,
+                 const ErrorPriors& errors, double bias_sigma) {
+  *this = Core();
+  R_ = R_LT;
+  has_gz_ = s.has_gz;
+  Eigen::Matrix<double, kStates, 1> sigma;
+  sigma << kTiltFirst, kTiltFirst, 0, s.has_gz ? std::max(bias_sigma, noise.rate) : kAxialFirst,
+      bias_sigma, bias_sigma, errors.accel_bias_sigma, errors.accel_bias_sigma;
+  cov_ = sigma.cwiseAbs2().asDiagonal();
+  cov_noise_ = cov_;
+  for (int i = kGyro; i < kStates; ++i) cov_noise_(i, i) = 0;
+  sources_(kGyro, Knot::kGyroBiasX) = sources_(kGyro + 1, Knot::kGyroBiasY) = -1;
+  sources_(kAccel, Knot::kAccelBiasX) = sources_(kAccel + 1, Knot::kAccelBiasY) = -1;
+}
+
+void Core::Predict(const Sensed& s) {
+  const double spin = (s.w_IT_T.z() + axial_) * s.seconds;
+  const double regain = InverseSinc(spin);
+  const Vector2d across = (s.w_IT_T.head<2>() - gyro_) * (s.seconds * regain);
+  const Matrix3d half = RotationZ(spin / 2);
+  const Vector3d step(across.x() / 2, across.y() / 2, 0);
+  const Matrix3d tilt = Exp(step);
+  R_ = Exp(-0.5 * s.seconds * s.w_IL_L) * R_ * half * tilt;
+  R_sum_ += s.seconds * R_;
+  if (s.accel_good) {
+    const Vector3d f(s.gravity_T.x() * regain, s.gravity_T.y() * regain, s.gravity_T.z());
+    force_L_ += s.seconds * (R_ * f);
+    force_T_ += s.seconds * f;
+    R_accel_ += s.seconds * R_;
+    accel_seconds_ += s.seconds;
+  }
+  R_ = Exp(-0.5 * s.seconds * s.w_IL_L) * R_ * tilt * half;
+  w_sum_ += s.seconds * s.w_IT_T;
+  spin_ += spin;
+  w_IL_L_ += s.seconds * s.w_IL_L;
+  gravity_ = s.gravity;
+  has_gz_ = s.has_gz;
+  seconds_ += s.seconds;
+}
+
+void Core::Carry(const Noise& noise) {
+  const double T = seconds_;
+  const Matrix3d R = R_sum_ / T;
+  const Vector3d w = w_sum_ / T, f = force_T_ / std::max(accel_seconds_, 1e-9);
+  const double spin = spin_ / T;
+  Covariance phi = Covariance::Identity();
+  phi.topLeftCorner<3, 3>() -= Skew(w_IL_L_);
+  phi.block<3, 1>(kTurn, kAxial) = T * R.col(2);
+  phi.block<3, 2>(kTurn, kGyro) = -T * R.leftCols<2>();
+
+  Covariance added = Covariance::Zero();
+  const Vector3d z = R.col(2);
+  const Matrix3d along = z * z.transpose();
+  const double white = Square(noise.rate) * T;
+  added.topLeftCorner<3, 3>() = white * (Matrix3d::Identity() - (has_gz_ ? 0 : 1) * along);
+  const double walk = Square(has_gz_ ? noise.bias_walk : noise.axial_walk);
+  added.topLeftCorner<3, 3>() += walk * T * T * T / 3 * along;
+  added.block<3, 1>(kTurn, kAxial) = walk * T * T / 2 * z;
+  added.block<1, 3>(kAxial, kTurn) = added.block<3, 1>(kTurn, kAxial).transpose();
+  added(kAxial, kAxial) = walk * T;
+  const double changed = Square(noise.skewed * (spin - last_spin_));
+  if (has_gz_) added(kAxial, kAxial) += changed;
+  last_spin_ = spin;
+
+  for (int i = kGyro; i < kAccel; ++i) added(i, i) = Square(noise.bias_walk) * T;
+  cov_noise_ = phi * cov_noise_ * phi.transpose() + added;
+  for (int i = kGyro; i < kAccel; ++i) added(i, i) += changed;
+  cov_ = phi * cov_ * phi.transpose() + added;
+
+  Eigen::Matrix<double, 2, Knot::kSources> rate = Eigen::Matrix<double, 2, Knot::kSources>::Zero();
+  rate.col(Knot::kMassUnbalance) = f.head<2>();
+  rate.col(Knot::kQuadrature) = Vector2d(f.y(), -f.x());
+  rate(0, Knot::kGyroScaleX) = w.x();
+  rate(1, Knot::kGyroScaleY) = w.y();
+  rate(0, Knot::kMisalignmentX) = rate(1, Knot::kMisalignmentY) = spin;
+  sources_ = (phi * sources_).eval();
+  sources_.topRows<3>() += T * R.leftCols<2>() * rate;
+}
+
+double Core::Take(const Noise& noise) {
+  if (!(accel_seconds_ > 0)) return 0;
+  const Matrix3d R = R_accel_ / accel_seconds_;
+  const Vector3d f = force_T_ / accel_seconds_;
+  const Matrix2d turn = R.topLeftCorner<2, 2>();
+  Eigen::Matrix<double, 2, kStates> C = Eigen::Matrix<double, 2, kStates>::Zero();
+  C(0, 1) = -gravity_;
+  C(1, 0) = gravity_;
+  C.block<2, 2>(0, kAccel) = -turn;
+  const Vector2d y = (force_L_ / accel_seconds_).head<2>() - turn * accel_;
+  const Matrix2d white = Matrix2d::Identity() *
+                         std::max(Square(noise.force) / accel_seconds_, Square(1e-8 * gravity_));
+  const Matrix2d S = C * cov_ * C.transpose() + white;
+  const Matrix2d inverse = S.inverse();
+  const Gain K = cov_ * C.transpose() * inverse;
+  const Eigen::Matrix<double, kStates, 1> error = K * y;
+  R_ = Exp(-error.head<3>()) * R_;
+  Orthonormalize(R_);
+  axial_ -= error[kAxial];
+  gyro_ -= error.segment<2>(kGyro);
+  accel_ -= error.segment<2>(kAccel);
+
+  const Covariance left = Covariance::Identity() - K * C;
+  const Covariance of_white = K * white * K.transpose();
+  cov_ = left * cov_ * left.transpose() + of_white;
+  cov_noise_ = left * cov_noise_ * left.transpose() + of_white;
+  // What the constant errors put into the mean force, turned to L.
+  Eigen::Matrix<double, 2, Knot::kSources> force = Eigen::Matrix<double, 2, Knot::kSources>::Zero();
+  const Vector2d rolled = turn * Vector2d(f.y(), -f.x());
+  force.col(Knot::kToolfaceOffset) = rolled;
+  force.col(Knot::kTimeSkew) = rolled * (spin_ / seconds_);
+  force.col(Knot::kAccelBiasZ) = R.block<2, 1>(0, 2);
+  sources_ = (left * sources_ - K * force).eval();
+  return -0.5 * (y.dot(inverse * y) + std::log(S.determinant()));
+}
+
+double Core::Close(const Noise& noise) {
+  if (!(seconds_ > 0)) return 0;
+  Carry(noise);
+  const double likelihood = Take(noise);
+  seconds_ = accel_seconds_ = spin_ = 0;
+  R_sum_.setZero();
+  R_accel_.setZero();
+  force_L_.setZero();
+  force_T_.setZero();
+  w_sum_.setZero();
+  w_IL_L_.setZero();
+  return likelihood;
+}
+
+void Core::Widen(double seconds, double sigma_tilt, double sigma_axial) {
+  for (Covariance* cov : {&cov_, &cov_noise_}) {
+    (*cov)(0, 0) += Square(sigma_tilt);
+    (*cov)(1, 1) += Square(sigma_tilt);
+    // Over the gap the rate stood anywhere between its two ends.
+    (*cov)(2, 2) += Square(sigma_axial * seconds);
+    if (!has_gz_) (*cov)(kAxial, kAxial) += Square(sigma_axial);
+  }
+}
+
+void Core::SetHeading(double azimuth, double variance) {
+  const Vector3d t = R_.col(2);
+  const Matrix3d turn = RotationZ(WrapPi(azimuth - std::atan2(t.y(), t.x())));
+  Covariance set = Covariance::Identity();
+  set.block<1, 3>(2, 0) -= EulerSlopes(R_).row(1);  // to no error of azimuth at all
+  Covariance turned = Covariance::Identity();
+  turned.topLeftCorner<3, 3>() = turn;
+  set = (turned * set).eval();
+  R_ = turn * R_;
+  cov_ = (set * cov_ * set.transpose()).eval();
+  cov_noise_ = (set * cov_noise_ * set.transpose()).eval();
+  sources_ = (set * sources_).eval();
+  cov_(2, 2) += variance;
+  cov_noise_(2, 2) += variance;
+}
+
+}  // namespace wellgyro::vertical

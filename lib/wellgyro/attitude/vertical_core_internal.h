@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/knot.h"
+#include "wellgyro/record/noise.h"
+#include "wellgyro/record/sample.h"
+
+/// The error-state filter behind VerticalFilter.
+namespace wellgyro::vertical {
+
+/// Errors, estimate less truth: R_LT_estimated = exp([phi]) R_LT, phi in L.
+enum State {
+  kTurn = 0,   ///< phi: north, east, down [rad]
+  kAxial = 3,  ///< rate about z, or of a measured one the bias with its sign turned [rad/s]
+  kGyro = 4,   ///< bias of x, y [rad/s]
+  kAccel = 6,  ///< bias of x, y [m/s^2]
+  kStates = 8
+};
+using Covariance = Eigen::Matrix<double, kStates, kStates>;
+using Sensitivity = Eigen::Matrix<double, kStates, Knot::kSources>;
+using Gain = Eigen::Matrix<double, kStates, 2>;
+
+/// What one sample says, and where.
+struct Sensed {
+  double seconds = 0;
+  Eigen::Vector3d w_IT_T = Eigen::Vector3d::Zero();     ///< z zero where not measured
+  Eigen::Vector3d gravity_T = Eigen::Vector3d::Zero();  ///< specific force less that of travel
+  Eigen::Vector3d w_IL_L = Eigen::Vector3d::Zero();
+  double gravity = 0;
+  bool has_gz = false;
+  bool accel_good = true;
+};
+
+/// Gravity's and the Earth's share of a sample at `heading` (sine and cosine of the azimuth are
+/// taken from `R_LT`).
+Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& site,
+                const Eigen::Matrix3d& R_LT);
+
+/// Slopes of (inclination, azimuth, toolface) against phi; sine bounded from below.
+Eigen::Matrix3d EulerSlopes(const Eigen::Matrix3d& R_LT);
+
+/// White noise and walks of the model [SI].
+struct Noise {
+  double rate = 0;        ///< of the gyros [rad/sqrt(s)]
+  double force = 0;       ///< [m/s^2 sqrt(s)]
+  double bias_walk = 0;   ///< [rad/s/sqrt(s)]
+  double axial_walk = 0;  ///< of the rate about z where it is not measured [rad/s/sqrt(s)]
+  double skewed = 0;      ///< rate about z seen by x and y, and scale of a measured z [rad], [1]
+};
+
+/// One filter with one walk of the axial rate.
+class Core {
+ public:
+  void Start(const Sensed& s, const Eigen::Matrix3d& R_LT, const Noise& noise,
+             const ErrorPriors& errors, double bias_sigma);
+  /// Carries the attitude over one sample.
+  void Predict(const Sensed& s);
+  /// Ends the block: carries the covariance over it and takes its mean force. Returns the
+  /// logarithm of the likelihood.
+  double Close(const Noise& noise);
+  /// Time without samples: what the tool did in it is unknown.
+  void Widen(double seconds, double sigma_tilt, double sigma_axial);
+  void SetHeading(double azimuth, double variance);
+
+  const Eigen::Matrix3d& R_LT() const { return R_; }
+  double axial() const { return axial_; }
+  bool has_gz() const { return has_gz_; }
+  double block_seconds() const { return seconds_; }
+  const Covariance& cov() const { return cov_; }
+  /// Of the noise alone, and what the tool's constant errors do.
+  const Covariance& cov_noise() const { return cov_noise_; }
+  const Sensitivity& sources() const { return sources_; }
+
+ private:
+  void Carry(const Noise& noise);
+  double Take(const Noise& noise);
+
+  Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity();
+  double axial_ = 0;
+  Eigen::Vector2d gyro_ = Eigen::Vector2d::Zero(), accel_ = Eigen::Vector2d::Zero();
+  Covariance cov_ = Covariance::Zero(), cov_noise_ = Covariance::Zero();
+  Sensitivity sources_ = Sensitivity::Zero();
+  // The open block.
+  double seconds_ = 0, accel_seconds_ = 0, gravity_ = 0, spin_ = 0, last_spin_ = 0;
+  bool has_gz_ = false;
+  Eigen::Matrix3d R_sum_ = Eigen::Matrix3d::Zero(), R_accel_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d force_L_ = Eigen::Vector3d::Zero(), w_sum_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force_T_ = Eigen::Vector3d::Zero(), w_IL_L_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace wellgyro::vertical
