@@ -114,7 +114,7 @@ TEST(ToolFile, NamesLineAndKeyOfWhatIsWrong) {
   EXPECT_THAT(fault("[3, 4, 5]", "[3, 4]").text, HasSubstr("one for each of 2 channels"));
   EXPECT_THAT(fault("[3, 4, 5]", "[3, 4, 4]").text, HasSubstr("named twice"));
   EXPECT_EQ(fault("bias = [0.1, 0.2, 0.3]", "bias = [0.1, 0.2]").line, 5);
-  EXPECT_THAT(fault("-x", "-u").text, HasSubstr("no axis"));
+  EXPECT_THAT(fault("-x", "-u").text, HasSubstr("names no axes"));
   EXPECT_THAT(fault("\"-x\"", "\"-y\"").text, HasSubstr("right angles"));
   EXPECT_THAT(fault("sensitivity_per_mps2", "sensitivity_per_mp2").text,
               HasSubstr("sensitivity_per_mp2"));

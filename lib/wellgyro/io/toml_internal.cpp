@@ -226,6 +226,29 @@ std::optional<std::vector<std::vector<double>>> TomlTable::FindRows(std::string_
   return rows;
 }
 
+std::vector<std::string> TomlTable::Keys() const {
+  std::vector<std::pair<toml::source_position, std::string>> found;
+  for (const auto& [key, value] : *table_)
+    found.emplace_back(key.source().begin, std::string(key.str()));
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> keys;
+  for (auto& [at, key] : found) keys.push_back(std::move(key));
+  return keys;
+}
+
+int TomlTable::Depth(std::string_view key) const {
+  int depth = 0;
+  for (const toml::node* node = table_->get(key); node != nullptr && node->is_array(); ++depth)
+    node = node->as_array()->get(0);
+  return depth;
+}
+
+std::size_t TomlTable::Width(std::string_view key) const {
+  if (Depth(key) < 2) return 0;
+  const toml::array& rows = *table_->get(key)->as_array();
+  return rows.get(0)->as_array()->size();
+}
+
 std::optional<TomlTable> TomlTable::FindTable(std::string_view key) {
   const toml::node* const node = Ask(key);
   if (!node) return std::nullopt;

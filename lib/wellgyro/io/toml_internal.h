@@ -96,6 +96,12 @@ class TomlTable {
   template <class T>
   void Read(std::string_view key, T& value, double unit = 1, TomlRange range = kAnyNumber);
 
+  /// Every key, in the file's order; none counts as read by it.
+  std::vector<std::string> Keys() const;
+  /// How deep the value of `key` is nested in lists: 0 for a number or text.
+  int Depth(std::string_view key) const;
+  /// Length of the first list in the list `key`; 0 where it is none.
+  std::size_t Width(std::string_view key) const;
   /// Every key and its value as text, in the file's order.
   std::vector<std::pair<std::string, std::string>> Verbatim();
 

@@ -1,11 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
+#include "wellgyro/base/time.h"
 #include "wellgyro/record/tool_calibration.h"
 
 namespace wellgyro {
@@ -21,5 +26,12 @@ WELLGYRO_EXPORT Result<ToolCalibration> ReadToolFile(const std::filesystem::path
 /// sentence when it cannot be used. Reading it back gives the same model, but for the last bit of
 /// what is converted to the units of files.
 WELLGYRO_EXPORT std::string ToolToml(const ToolCalibration& tool);
+
+/// R_TS of three words as "+y", "-x", "+z": x, y and z of the tool along these axes of the sensors.
+/// Nothing for other words, or axes that are not at right angles.
+WELLGYRO_EXPORT std::optional<Eigen::Matrix3d> AxesOf(const std::vector<std::string>& words);
+
+/// "2026-01-31" as its first moment; nothing for any other text.
+WELLGYRO_EXPORT std::optional<UtcTime> DateOf(std::string_view text);
 
 }  // namespace wellgyro

@@ -8,6 +8,8 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/tool_file.h"
+
 namespace wellgyro {
 namespace {
 
@@ -54,18 +56,6 @@ void ReadChannels(TomlTable& table, SensorGroup& group) {
   }
 }
 
-// "+y": row of R_TS.
-Eigen::Vector3d AxisOf(TomlTable& table, const std::string& word) {
-  static constexpr std::string_view kAxes = "xyz";
-  if (word.size() == 2 && (word[0] == '+' || word[0] == '-')) {
-    const std::size_t axis = kAxes.find(word[1]);
-    if (axis != std::string_view::npos)
-      return (word[0] == '+' ? 1.0 : -1.0) * Eigen::Vector3d::Unit(static_cast<int>(axis));
-  }
-  table.Refuse("axes",
-               fmt::format("\"{}\" is no axis: +x, -x, +y, -y, +z or -z of the sensors", word));
-}
-
 void ReadAxes(TomlTable& table, SensorGroup& group) {
   const auto words = table.FindStrings("axes");
   const auto rows = table.FindRows("axes_rows", 3);
@@ -73,11 +63,16 @@ void ReadAxes(TomlTable& table, SensorGroup& group) {
   if (words && words->size() != 3)
     table.Refuse("axes", "must name three axes of the sensors, for x, y and z of the tool");
   if (rows && rows->size() != 3) table.Refuse("axes_rows", "must be three rows of three numbers");
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (words) group.R_TS.row(row) = AxisOf(table, (*words)[i]).transpose();
-    if (rows) group.R_TS.row(row) = Eigen::Map<const Eigen::RowVector3d>((*rows)[i].data());
+  if (words) {
+    const auto R_TS = AxesOf(*words);
+    if (!R_TS)
+      table.Refuse("axes",
+                   "names no axes at right angles: +x, -x, +y, -y, +z or -z, each axis once");
+    group.R_TS = *R_TS;
   }
+  for (std::size_t i = 0; rows && i < 3; ++i)
+    group.R_TS.row(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::RowVector3d>((*rows)[i].data());
 }
 
 void ReadTemperature(TomlTable& table, SensorGroup& group) {
@@ -132,6 +127,21 @@ SensorGroup ReadGroup(TomlTable& table, const GroupWords& words) {
   ReadTemperature(table, group);
   group.covariance = ReadCovariance(table);
   return group;
+}
+
+std::optional<Eigen::Matrix3d> AxesOf(const std::vector<std::string>& words) {
+  static constexpr std::string_view kAxes = "xyz";
+  if (words.size() != 3) return std::nullopt;
+  Eigen::Matrix3d R_TS = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string& word = words[i];
+    if (word.size() != 2 || (word[0] != '+' && word[0] != '-')) return std::nullopt;
+    const std::size_t axis = kAxes.find(word[1]);
+    if (axis == std::string_view::npos) return std::nullopt;
+    R_TS(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis)) = word[0] == '+' ? 1 : -1;
+  }
+  if ((R_TS * R_TS.transpose()).isIdentity()) return R_TS;
+  return std::nullopt;
 }
 
 std::optional<UtcTime> DateOf(std::string_view text) {

@@ -33,8 +33,6 @@ inline constexpr std::string_view kPowerWords[] = {"", "_tau", "_tau2", "_tau3"}
 
 SensorGroup ReadGroup(TomlTable& table, const GroupWords& words);
 
-/// "2026-01-31" as its first moment; nothing for any other text.
-std::optional<UtcTime> DateOf(std::string_view text);
 std::string DateText(UtcTime time);
 
 }  // namespace wellgyro

@@ -28,9 +28,8 @@ struct ThermometerCalibration {
 
 /// Estimated parameters of one group of sensors and how well they are known.
 struct ParameterCovariance {
-  std::vector<std::string>
-      names;            ///< in the file's words and units, as bias[0] or sensitivity[2,1]
-  Eigen::MatrixXd cov;  ///< in those units, squared
+  std::vector<std::string> names;  ///< and units, as the calibration's [result] has them
+  Eigen::MatrixXd cov;             ///< in those units, squared
 };
 
 /// Sensors of one kind, two to four channels that sense one vector u: the rate, the specific force
