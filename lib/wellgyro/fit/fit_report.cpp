@@ -14,11 +14,11 @@ void AddResiduals(FitReport& report, const LinearSolution& solution) {
   const double scale = report.sigma_given || !(report.scatter > 0) ? 1 : report.scatter;
   for (std::size_t i = 0; i < solution.rows.size(); ++i) {
     const FitRow& row = solution.rows[i];
-    if (row.line <= 0) continue;
+    if (row.line == 0) continue;
     const auto at = static_cast<Eigen::Index>(i);
     FitResidual residual;
-    residual.line = row.line;
-    residual.channel = row.channel;
+    residual.line = std::abs(row.line);
+    residual.channel = row.line < 0 ? "table " + row.channel : row.channel;
     residual.value = solution.residual[at] * row.unit;
     residual.leverage = solution.leverage[at];
     const double rest = 1 - residual.leverage;
@@ -39,7 +39,8 @@ void AddCorrelations(FitReport& report) {
   for (Eigen::Index i = 0; i < report.cov.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       const double r = report.cov(i, j) / std::sqrt(report.cov(i, i) * report.cov(j, j));
-      if (!(std::abs(r) > 0.95)) continue;
+      // One and the same estimate under two names is no news.
+      if (!(std::abs(r) > 0.95) || std::abs(r) > 1 - 1e-9) continue;
       report.correlations.push_back(fmt::format("{} and {}: {:+.3f}",
                                                 report.parameters[static_cast<std::size_t>(j)],
                                                 report.parameters[static_cast<std::size_t>(i)], r));
@@ -73,7 +74,11 @@ FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution)
   report.sigma_given = problem.sigma_given;
   report.chi_square = solution.chi_square;
   report.condition = solution.condition;
-  report.outlier_lines = solution.outlier_lines;
+  for (const int line : solution.outlier_lines) {
+    if (line > 0) report.outlier_lines.push_back(line);
+    if (line < 0)
+      report.remarks.push_back(fmt::format("line {} of the second table is left out", -line));
+  }
   if (solution.dof > 0) {
     report.chi_low = ChiSquareQuantile(0.025, solution.dof);
     report.chi_high = ChiSquareQuantile(0.975, solution.dof);

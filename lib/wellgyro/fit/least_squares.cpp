@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <utility>
@@ -116,7 +117,7 @@ Eigen::VectorXd CauchyWeights(const LinearProblem& problem, const Eigen::VectorX
       square += std::pow(residual[static_cast<Eigen::Index>(end++)], 2);
     }
     const double mean = square / static_cast<double>(end - begin) / (4 * scale * scale);
-    if (problem.rows[begin].line > 0) {
+    if (problem.rows[begin].line != 0) {
       for (std::size_t i = begin; i < end; ++i)
         weight[static_cast<Eigen::Index>(i)] = 1 / std::sqrt(1 + mean);
     }
@@ -129,7 +130,7 @@ double RobustScale(const LinearProblem& problem, const Eigen::VectorXd& residual
   if (problem.sigma_given) return 1;
   std::vector<double> sizes;
   for (Eigen::Index i = 0; i < residual.size(); ++i) {
-    if (problem.rows[static_cast<std::size_t>(i)].line > 0) sizes.push_back(std::abs(residual[i]));
+    if (problem.rows[static_cast<std::size_t>(i)].line != 0) sizes.push_back(std::abs(residual[i]));
   }
   const double n = static_cast<double>(sizes.size());
   return 1.4826 * Median(sizes) * std::sqrt(n / std::max(1.0, n - rank));
@@ -150,28 +151,54 @@ LinearProblem Without(const LinearProblem& problem, const std::set<int>& lines) 
   return rest;
 }
 
+constexpr double kOutlierSigmas = 6;
+
+// Lines with a residual beyond the limit.
+std::set<int> Beyond(const LinearProblem& problem, const Eigen::VectorXd& residual, double scale) {
+  std::set<int> lines;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    const int line = problem.rows[static_cast<std::size_t>(i)].line;
+    if (line != 0 && std::abs(residual[i]) > kOutlierSigmas * scale) lines.insert(line);
+  }
+  return lines;
+}
+
+// What no bench calls an outlier: rounding of the readings.
+double LeastScale(const Whitened& w) {
+  constexpr double kRounding = 1e-9;
+  return kRounding * w.y.cwiseAbs().maxCoeff() / kOutlierSigmas;
+}
+
 // Lines that do not belong, by a fit that they cannot draw to them.
 std::set<int> Outliers(const LinearProblem& problem) {
-  constexpr double kSigmas = 6;
-  constexpr double kRounding = 1e-9;  // of the readings: what no bench calls an outlier
   LinearProblem weighted = problem;
   LinearSolution solution = SolvePlain(problem);
   const Whitened w = Whiten(problem);
   double scale = 0;
   for (int turn = 0; turn < 30; ++turn) {
     const Eigen::VectorXd residual = w.y - w.A * solution.x;
-    scale = std::max(RobustScale(problem, residual, solution.rank),
-                     kRounding * w.y.cwiseAbs().maxCoeff() / kSigmas);
+    scale = std::max(RobustScale(problem, residual, solution.rank), LeastScale(w));
     weighted.sigma = problem.sigma.cwiseQuotient(CauchyWeights(problem, residual, scale));
     const Eigen::VectorXd before = solution.x;
     solution = SolvePlain(weighted);
     if ((solution.x - before).norm() <= 1e-9 * before.norm()) break;
   }
-  const Eigen::VectorXd residual = w.y - w.A * solution.x;
-  std::set<int> lines;
-  for (Eigen::Index i = 0; i < residual.size(); ++i) {
-    const int line = problem.rows[static_cast<std::size_t>(i)].line;
-    if (line > 0 && std::abs(residual[i]) > kSigmas * scale) lines.insert(line);
+  return Beyond(problem, w.y - w.A * solution.x, scale);
+}
+
+// Of lines that were left out, those that do not belong to what the others say either.
+std::set<int> Confirmed(const LinearProblem& problem, std::set<int> lines) {
+  const Whitened w = Whiten(problem);
+  for (int turn = 0; turn < 10 && !lines.empty(); ++turn) {
+    const LinearSolution rest = SolvePlain(Without(problem, lines));
+    const double scatter =
+        rest.dof > 0 && !problem.sigma_given ? std::sqrt(rest.chi_square / rest.dof) : 1;
+    std::set<int> next = Beyond(problem, w.y - w.A * rest.x, std::max(scatter, LeastScale(w)));
+    std::set<int> both;
+    std::set_intersection(lines.begin(), lines.end(), next.begin(), next.end(),
+                          std::inserter(both, both.end()));
+    if (both == lines) break;
+    lines = std::move(both);
   }
   return lines;
 }
@@ -179,7 +206,7 @@ std::set<int> Outliers(const LinearProblem& problem) {
 std::size_t CountLines(const LinearProblem& problem) {
   std::set<int> lines;
   for (const FitRow& row : problem.rows) {
-    if (row.line > 0) lines.insert(row.line);
+    if (row.line != 0) lines.insert(row.line);
   }
   return lines.size();
 }
@@ -198,7 +225,7 @@ LinearSolution Solve(const LinearProblem& problem) {
   // Where half of the readings serve to fix the parameters, none can be told to be wrong.
   if (!problem.robust || problem.y.size() < 2 * problem.size() || !plain.unseen.empty())
     return plain;
-  const std::set<int> lines = Outliers(problem);
+  const std::set<int> lines = Confirmed(problem, Outliers(problem));
   if (lines.empty() || 4 * lines.size() > CountLines(problem)) return plain;
   LinearSolution rest = SolvePlain(Without(problem, lines));
   if (!rest.unseen.empty()) return plain;

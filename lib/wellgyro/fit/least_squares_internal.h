@@ -13,7 +13,7 @@
 
 namespace wellgyro {
 
-/// A row of a fit: which reading it is. Line 0 is a prior.
+/// A row of a fit: which reading it is. Line 0 is a prior; of a second table it is negative.
 struct FitRow {
   int line = 0;
   std::string channel;

@@ -1,0 +1,133 @@
+#include "wellgyro/fit/affine_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/affine_internal.h"
+#include "wellgyro/fit/attitude_table_internal.h"
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/sensor_groups_internal.h"
+
+namespace wellgyro {
+namespace {
+
+using Order = AffineSetup::Order;
+
+AffineReadings Readings(const AttitudeTable& table, const AffineSetup& setup, bool mag) {
+  AffineReadings readings;
+  readings.suffix = mag ? "M" : "G";
+  readings.channels = mag ? table.mag_channels : table.accel_channels;
+  readings.v = mag ? table.mag : table.accel;
+  readings.u.resize(table.rows(), 3);
+  readings.sigma = mag ? setup.sigma_mag : setup.sigma_accel;
+  for (int i = 0; i < table.rows(); ++i)
+    readings.u.row(i) =
+        (mag ? table.IdealMag(i, setup.reference) : table.IdealAccel(i, setup.reference))
+            .transpose();
+  return readings;
+}
+
+Eigen::Matrix3d MatrixAt(const Eigen::VectorXd& x, int first) {
+  const Eigen::VectorXd nine = x.segment(first, 9);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nine.data());
+}
+
+SecondOrder OrderOf(Order order) {
+  if (order == Order::kNone) return SecondOrder::kNone;
+  return order == Order::kOwn ? SecondOrder::kOwn : SecondOrder::kFull;
+}
+
+std::vector<AffineReadings> Groups(const AttitudeTable& table, const AffineSetup& setup) {
+  std::vector<AffineReadings> groups;
+  if (table.accel.rows() > 0) {
+    groups.push_back(Readings(table, setup, false));
+    groups.back().order = OrderOf(setup.order);
+  }
+  if (table.mag.rows() > 0 && setup.reference.field && setup.reference.dip)
+    groups.push_back(Readings(table, setup, true));
+  return groups;
+}
+
+// Groups of unlike units without sigmas are weighed by their own scatter. Gives whether all sigmas
+// were given.
+bool Weigh(const std::vector<int>& lines, std::vector<AffineReadings>& groups) {
+  bool given = true;
+  for (AffineReadings& group : groups) {
+    if (group.sigma) continue;
+    given = false;
+    if (groups.size() == 1) continue;
+    const LinearSolution alone = Solve(AffineProblem({group}, lines, 0));
+    const double scatter = alone.dof > 0 ? std::sqrt(alone.chi_square / alone.dof) : 0;
+    group.sigma = std::max(scatter, 1e-12 * group.v.cwiseAbs().maxCoeff());
+  }
+  return given;
+}
+
+void AddGroup(const AffineReadings& readings, const AttitudeTable& table,
+              const BenchReference& reference, int first, BenchCalibration& out) {
+  const bool is_mag = readings.suffix == "M";
+  FitReport& report = out.report;
+  const Eigen::VectorXd& x = report.values;
+  AddMatrix(report, "S_" + readings.suffix, first + 3, 3, 3);
+  AddVector(report, is_mag ? "b_M_nT" : "b_G", first, 3);
+  const double si = is_mag ? units::kNanotesla : reference.gravity_mps2 / reference.gravity;
+  SensorGroup& group = is_mag ? out.mag : out.accel;
+  group = ThreeChannels(x.segment<3>(first), MatrixAt(x, first + 3), si, reference.axes,
+                        !is_mag && table.gravity_signed, is_mag ? "nT" : "g");
+  const int at = first + 12;
+  if (readings.order == SecondOrder::kOwn) {
+    AddVector(report, "K2_" + readings.suffix, at, 3);
+    for (int c = 0; c < 3; ++c) group.second_order(c, c) = x[at + c] / (si * si);
+  } else if (readings.order == SecondOrder::kFull) {
+    AddMatrix(report, "K2_" + readings.suffix, at, 3, 6);
+    for (int c = 0; c < 3; ++c)
+      group.second_order.row(c) = x.segment<6>(at + 6 * c).transpose() / (si * si);
+  }
+}
+
+std::optional<Fault> BadTable(const BenchTable& data, const AttitudeTable& table,
+                              const AffineSetup& setup) {
+  if (table.accel.rows() == 0 && table.mag.rows() == 0)
+    return BenchFault(data, "the table has no columns of accelerometers or magnetometers", 1,
+                      FaultCode::kForeign);
+  const int least = setup.order == Order::kNone ? 4 : setup.order == Order::kOwn ? 5 : 10;
+  if (auto fault = TooFew(data, least, "attitudes", "measure more, not all in one plane"))
+    return fault;
+  return BadReadings(data, table);
+}
+
+}  // namespace
+
+Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& setup) {
+  const auto table = ReadAttitudeTable(data, {.attitude = true});
+  if (!table) return table.fault();
+  if (auto fault = BadTable(data, *table, setup)) return *fault;
+  std::vector<AffineReadings> groups = Groups(*table, setup);
+  if (groups.empty()) throw std::invalid_argument("the magnetometers need the field and its dip");
+  const bool given = Weigh(table->lines, groups);
+  if (setup.tilt_sigma > 0 && !given)
+    throw std::invalid_argument("the tilt's sigma needs the sigmas of the readings beside it");
+  LinearProblem problem = AffineProblem(groups, table->lines, setup.tilt_sigma);
+  problem.sigma_given = given;
+  const auto solution =
+      SolveWhole(problem, "measure attitudes that are not all in one plane or on one cone");
+  if (!solution) return BenchFault(data, solution.fault().text);
+
+  BenchCalibration out;
+  out.report = ReportOf(problem, *solution);
+  out.report.method = "affine";
+  int first = 0;
+  for (const AffineReadings& group : groups) {
+    if (auto fault = WrongAxes(data, MatrixAt(solution->x, first + 3), group.channels))
+      return *fault;
+    AddGroup(group, *table, setup.reference, first, out);
+    first += group.size();
+  }
+  return out;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "wellgyro/fit/affine_internal.h"
+
+namespace wellgyro {
+namespace {
+
+Eigen::Matrix3d Cross(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d C;
+  C << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return C;
+}
+
+// The three rows of one group at one position.
+void Fill(const Eigen::Vector3d& u, SecondOrder order, int first, int row, Eigen::MatrixXd& A) {
+  Eigen::Matrix<double, 6, 1> q;
+  q << u.x() * u.x(), u.y() * u.y(), u.z() * u.z(), u.x() * u.y(), u.y() * u.z(), u.z() * u.x();
+  for (int c = 0; c < 3; ++c) {
+    A(row + c, first + c) = 1;
+    A.block<1, 3>(row + c, first + 3 + 3 * c) = u.transpose();
+    if (order == SecondOrder::kOwn) A(row + c, first + 12 + c) = u[c] * u[c];
+    if (order == SecondOrder::kFull) A.block<1, 6>(row + c, first + 12 + 6 * c) = q.transpose();
+  }
+}
+
+// Sensitivity by plain least squares, for the weights alone.
+Eigen::Matrix3d Rough(const AffineReadings& readings) {
+  Eigen::MatrixXd A(readings.u.rows(), 4);
+  A << Eigen::VectorXd::Ones(readings.u.rows()), readings.u;
+  const Eigen::MatrixXd x = A.colPivHouseholderQr().solve(Eigen::MatrixXd(readings.v));
+  return x.bottomRows<3>().transpose();
+}
+
+std::vector<std::string> Names(const std::vector<AffineReadings>& groups) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::vector<std::string>& more) {
+    names.insert(names.end(), more.begin(), more.end());
+  };
+  for (const AffineReadings& group : groups) {
+    add(VectorNames("b_" + group.suffix, 3));
+    add(MatrixNames("S_" + group.suffix, 3, 3));
+    if (group.order == SecondOrder::kOwn) add(VectorNames("K2_" + group.suffix, 3));
+    if (group.order == SecondOrder::kFull) add(MatrixNames("K2_" + group.suffix, 3, 6));
+  }
+  return names;
+}
+
+// Whitens one position's rows by the Cholesky factor of 1 + tilt tilt', in units of their sigmas.
+void Whiten(const Eigen::MatrixXd& tilt, int row, LinearProblem& problem) {
+  const Eigen::Index width = tilt.rows();
+  const Eigen::MatrixXd cov = Eigen::MatrixXd::Identity(width, width) + tilt * tilt.transpose();
+  const Eigen::MatrixXd L = cov.llt().matrixL();
+  const Eigen::VectorXd weight = problem.sigma.segment(row, width).cwiseInverse();
+  const Eigen::MatrixXd A = weight.asDiagonal() * problem.A.middleRows(row, width);
+  const Eigen::VectorXd y = weight.cwiseProduct(problem.y.segment(row, width));
+  problem.A.middleRows(row, width) = L.triangularView<Eigen::Lower>().solve(A);
+  problem.y.segment(row, width) = L.triangularView<Eigen::Lower>().solve(y);
+  problem.sigma.segment(row, width).setOnes();
+}
+
+}  // namespace
+
+LinearProblem AffineProblem(const std::vector<AffineReadings>& groups,
+                            const std::vector<int>& lines, double tilt_sigma) {
+  const int n = static_cast<int>(lines.size()), width = 3 * static_cast<int>(groups.size());
+  LinearProblem problem(Names(groups), n * width);
+  problem.sigma_given = std::all_of(groups.begin(), groups.end(),
+                                    [](const AffineReadings& g) { return g.sigma.has_value(); });
+  std::vector<Eigen::Matrix3d> rough;
+  for (const AffineReadings& group : groups) rough.push_back(Rough(group));
+  for (int i = 0; i < n; ++i) {
+    Eigen::MatrixXd tilt(width, 3);
+    int first = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const int row = i * width + 3 * static_cast<int>(g);
+      const Eigen::Vector3d u = groups[g].u.row(i).transpose();
+      Fill(u, groups[g].order, first, row, problem.A);
+      first += groups[g].size();
+      problem.y.segment<3>(row) = groups[g].v.row(i).transpose();
+      const double sigma = groups[g].sigma.value_or(1);
+      problem.sigma.segment<3>(row).setConstant(sigma);
+      tilt.middleRows<3>(3 * static_cast<int>(g)) = tilt_sigma / sigma * rough[g] * Cross(u);
+      for (int c = 0; c < 3; ++c)
+        problem.rows[static_cast<std::size_t>(row + c)] = {
+            lines[static_cast<std::size_t>(i)], groups[g].channels[static_cast<std::size_t>(c)],
+            sigma};
+    }
+    if (tilt_sigma > 0) Whiten(tilt, i * width, problem);
+  }
+  return problem;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,341 @@
+#include "wellgyro/fit/gyro_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/QR>
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/gyro_readings_internal.h"
+#include "wellgyro/fit/least_squares_internal.h"
+
+namespace wellgyro {
+namespace {
+
+// Where the parameters stand: for every channel b and U (3); then the force's terms; then N; then
+// the north offset.
+struct Layout {
+  GyroForceModel force = GyroForceModel::kFull;
+  bool aniso = false, north = false;
+  int channels = 0, rotors = 0;
+
+  int force_first() const { return 4 * channels; }
+  int force_size() const {
+    if (force == GyroForceModel::kNone) return 0;
+    return force == GyroForceModel::kFull ? 3 * channels : 2 * rotors;
+  }
+  int aniso_first() const { return force_first() + force_size(); }
+  int north_first() const { return aniso_first() + (aniso ? channels : 0); }
+  int size() const { return north_first() + (north ? 1 : 0); }
+};
+
+std::vector<std::string> Names(const Layout& layout) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::vector<std::string>& more) {
+    names.insert(names.end(), more.begin(), more.end());
+  };
+  for (int c = 0; c < layout.channels; ++c) {
+    names.push_back(fmt::format("b_degh[{}]", c));
+    for (int j = 0; j < 3; ++j) names.push_back(fmt::format("U[{},{}]", c, j));
+  }
+  if (layout.force == GyroForceModel::kFull) add(MatrixNames("G_degh_per_g", layout.channels, 3));
+  if (layout.force == GyroForceModel::kDualAxis) add(VectorNames("MQ", 2 * layout.rotors));
+  if (layout.aniso) add(VectorNames("aniso_degh_per_g2", layout.channels));
+  if (layout.north) names.emplace_back("north_rad");
+  return names;
+}
+
+// Coefficients of the force's parameters in one row.
+void FillForce(const GyroReadings& readings, const Layout& layout, int i, int c,
+               Eigen::MatrixXd::RowXpr row) {
+  const Eigen::Vector3d f = readings.f.row(i).transpose();
+  if (layout.force == GyroForceModel::kFull)
+    row.segment<3>(layout.force_first() + 3 * c) = f.transpose();
+  for (std::size_t k = 0; k < readings.rotors.size(); ++k) {
+    const Rotor& rotor = readings.rotors[k];
+    if (c != rotor.a && c != rotor.c) continue;
+    const double f_a = f[readings.channels[static_cast<std::size_t>(rotor.a)].axis];
+    const double f_c = f[readings.channels[static_cast<std::size_t>(rotor.c)].axis];
+    const int at = layout.force_first() + 2 * static_cast<int>(k);
+    if (layout.force == GyroForceModel::kDualAxis) {
+      row[at] = c == rotor.a ? f_a : f_c;
+      row[at + 1] = c == rotor.a ? f_c : -f_a;
+    }
+    if (layout.aniso) row[layout.aniso_first() + c] = (c == rotor.a ? f_a : f_c) * f[rotor.spin];
+  }
+}
+
+// Negative on the rate table: its lines are those of another file.
+int LineOf(const GyroReadings& readings, int i) {
+  const auto at = static_cast<std::size_t>(i);
+  return readings.on_table[at] != 0 ? -readings.lines[at] : readings.lines[at];
+}
+
+// About a fixture turned by `north` [rad], with the sensitivities U of the last turn.
+LinearProblem Problem(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout,
+                      double north, const Eigen::MatrixX3d& U, double on_table) {
+  LinearProblem problem(Names(layout), readings.rows() * layout.channels);
+  problem.sigma_given = setup.sigma.has_value();
+  const double at_rest = setup.sigma.value_or(1);
+  const double cosine = std::cos(north), sine = std::sin(north);
+  for (int i = 0; i < readings.rows(); ++i) {
+    const Eigen::Vector3d level = readings.w_level.row(i).transpose();
+    const Eigen::Vector3d across = readings.w_north.row(i).transpose();
+    const Eigen::Vector3d w = readings.w.row(i).transpose() + (cosine - 1) * level + sine * across;
+    const Eigen::Vector3d slope = cosine * across - sine * level;
+    for (int c = 0; c < layout.channels; ++c) {
+      const int row = i * layout.channels + c;
+      problem.A(row, 4 * c) = 1;
+      problem.A.block<1, 3>(row, 4 * c + 1) = w.transpose();
+      FillForce(readings, layout, i, c, problem.A.row(row));
+      problem.y[row] = readings.m(i, c);
+      if (layout.north) {
+        problem.A(row, layout.north_first()) = U.row(c).dot(slope);
+        problem.y[row] += U.row(c).dot(slope) * north;
+      }
+      problem.sigma[row] = readings.on_table[static_cast<std::size_t>(i)] != 0 ? on_table : at_rest;
+      problem.rows[static_cast<std::size_t>(row)] = {
+          LineOf(readings, i), readings.channels[static_cast<std::size_t>(c)].name,
+          problem.sigma[row]};
+    }
+  }
+  return problem;
+}
+
+struct Fitted {
+  LinearProblem problem;
+  LinearSolution solution;
+};
+
+Fitted FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout,
+               double on_table) {
+  Eigen::MatrixX3d U = Eigen::MatrixX3d::Zero(layout.channels, 3);
+  for (int c = 0; c < layout.channels; ++c)
+    U(c, readings.channels[static_cast<std::size_t>(c)].axis) = 1;
+  double north = 0;
+  Fitted fitted{Problem(readings, setup, layout, north, U, on_table), {}};
+  fitted.solution = Solve(fitted.problem);
+  // Bilinear in U and the north offset: Gauss and Newton.
+  for (int turn = 0; layout.north && turn < 50; ++turn) {
+    const double next = fitted.solution.x[layout.north_first()];
+    for (int c = 0; c < layout.channels; ++c)
+      U.row(c) = fitted.solution.x.segment<3>(4 * c + 1).transpose();
+    const bool still = std::abs(next - north) < 1e-14;
+    north = next;
+    fitted.problem = Problem(readings, setup, layout, north, U, on_table);
+    fitted.solution = Solve(fitted.problem);
+    if (still) break;
+  }
+  return fitted;
+}
+
+// The table's own scatter where no sigma of it is given: Helmert's variance components.
+Fitted Fit(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout) {
+  double on_table = setup.sigma_table.value_or(setup.sigma.value_or(1));
+  Fitted fitted = FitWith(readings, setup, layout, on_table);
+  const auto& flags = readings.on_table;
+  const bool joined = std::find(flags.begin(), flags.end(), char{0}) != flags.end() &&
+                      std::find(flags.begin(), flags.end(), char{1}) != flags.end();
+  if (setup.sigma_table || !joined) return fitted;
+  for (int turn = 0; turn < 30; ++turn) {
+    double square[2] = {}, redundancy[2] = {};
+    const LinearSolution& s = fitted.solution;
+    for (std::size_t i = 0; i < s.rows.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const int table = s.rows[i].line < 0 ? 1 : 0;
+      square[table] += s.residual[at] * s.residual[at];
+      redundancy[table] += 1 - s.leverage[at];
+    }
+    constexpr double kEnough = 6;
+    if (redundancy[0] < kEnough || redundancy[1] < kEnough || !(square[1] > 0)) break;
+    const double rest = setup.sigma ? 1 : square[0] / redundancy[0];
+    if (!(rest > 0)) break;
+    const double ratio = std::sqrt(square[1] / redundancy[1] / rest);
+    on_table *= ratio;
+    fitted = FitWith(readings, setup, layout, on_table);
+    if (std::abs(ratio - 1) < 1e-3) break;
+  }
+  return fitted;
+}
+
+Layout LayoutOf(const GyroReadings& readings, const GyroFitSetup& setup) {
+  Layout layout;
+  layout.channels = static_cast<int>(readings.channels.size());
+  layout.rotors = static_cast<int>(readings.rotors.size());
+  const bool paired = 2 * layout.rotors == layout.channels;
+  layout.force = setup.force.value_or(paired ? GyroForceModel::kDualAxis : GyroForceModel::kFull);
+  layout.aniso = layout.force == GyroForceModel::kDualAxis;
+  layout.north = setup.fit_north;
+  return layout;
+}
+
+std::optional<Fault> WrongChannels(const BenchTable& data, const GyroReadings& readings,
+                                   const Eigen::VectorXd& x) {
+  for (std::size_t c = 0; c < readings.channels.size(); ++c) {
+    const GyroChannel& channel = readings.channels[c];
+    const Eigen::Vector3d U = x.segment<3>(4 * static_cast<Eigen::Index>(c) + 1);
+    Eigen::Index most = 0;
+    U.cwiseAbs().maxCoeff(&most);
+    if (most != channel.axis)
+      return BenchFault(data, fmt::format("channel {} follows {}{}: its axis is not {}; exchange "
+                                          "the columns, or mend their names",
+                                          channel.name, U[most] < 0 ? "-" : "", "xyz"[most],
+                                          "xyz"[channel.axis]));
+    if (U[most] < 0)
+      return BenchFault(data,
+                        fmt::format("channel {} falls where the rate about {} rises: its sign "
+                                    "is wrong, or up and down of the positions are swapped",
+                                    channel.name, "xyz"[most]));
+    if (U[most] < 0.2 || U[most] > 5)
+      return BenchFault(data,
+                        fmt::format("channel {} reads {:.4g} for one deg/h: give the readings "
+                                    "in deg/h, all in one unit",
+                                    channel.name, U[most]));
+  }
+  return std::nullopt;
+}
+
+// From the layout to b, U, G by channel, M and Q, N.
+void TakeResult(const GyroReadings& readings, const Layout& layout, FitReport& report) {
+  const int n = layout.channels, rotors = layout.rotors;
+  const bool dual = layout.force == GyroForceModel::kDualAxis;
+  std::vector<std::string> names = VectorNames("b_degh", n);
+  const auto add = [&](const std::vector<std::string>& more) {
+    names.insert(names.end(), more.begin(), more.end());
+  };
+  add(MatrixNames("U", n, 3));
+  add(MatrixNames("G_degh_per_g", n, 3));
+  if (dual) add(VectorNames("MQ", 2 * rotors));
+  if (layout.aniso) add(VectorNames("aniso_degh_per_g2", n));
+  if (layout.north) names.emplace_back("north_deg");
+  Reparametrise(report, names, [&](const Eigen::VectorXd& x) {
+    Eigen::VectorXd to = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
+    for (int c = 0; c < n; ++c) {
+      to[c] = x[4 * c];
+      to.segment<3>(n + 3 * c) = x.segment<3>(4 * c + 1);
+      if (layout.force == GyroForceModel::kFull)
+        to.segment<3>(4 * n + 3 * c) = x.segment<3>(layout.force_first() + 3 * c);
+    }
+    for (int k = 0; dual && k < rotors; ++k) {
+      const Rotor& rotor = readings.rotors[static_cast<std::size_t>(k)];
+      const int a = readings.channels[static_cast<std::size_t>(rotor.a)].axis;
+      const int c = readings.channels[static_cast<std::size_t>(rotor.c)].axis;
+      const double M = x[layout.force_first() + 2 * k], Q = x[layout.force_first() + 2 * k + 1];
+      to[4 * n + 3 * rotor.a + a] = M;
+      to[4 * n + 3 * rotor.a + c] = Q;
+      to[4 * n + 3 * rotor.c + c] = M;
+      to[4 * n + 3 * rotor.c + a] = -Q;
+    }
+    int at = 7 * n;
+    if (dual) {
+      to.segment(at, 2 * rotors) = x.segment(layout.force_first(), 2 * rotors);
+      at += 2 * rotors;
+    }
+    if (layout.aniso) to.segment(at, n) = x.segment(layout.aniso_first(), n);
+    if (layout.north) to[to.size() - 1] = ToDegrees(x[layout.north_first()]);
+    return to;
+  });
+  AddVector(report, "b_degh", 0, n);
+  AddMatrix(report, "U", n, n, 3);
+  if (layout.force != GyroForceModel::kNone) AddMatrix(report, "G_degh_per_g", 4 * n, n, 3);
+  int at = 7 * n;
+  if (dual) {
+    AddVector(report, "MQ", at, 2 * rotors);
+    at += 2 * rotors;
+  }
+  if (layout.aniso) AddVector(report, "aniso_degh_per_g2", at, n);
+  if (layout.north) AddNumber(report, "north_deg", static_cast<int>(names.size()) - 1);
+}
+
+SensorGroup Group(const GyroReadings& readings, const Layout& layout,
+                  const BenchReference& reference, const Eigen::VectorXd& values) {
+  const int n = layout.channels;
+  SensorGroup group;
+  group.n_channels = n;
+  group.unit = "deg/h";
+  group.R_TS = ToolFromBench(reference.axes);
+  const double g = reference.gravity_mps2;
+  const bool dual = layout.force == GyroForceModel::kDualAxis;
+  for (int c = 0; c < n; ++c) {
+    group.channel[static_cast<std::size_t>(c)] = c;
+    group.bias[0][c] = values[c];
+    group.sensitivity[0].row(c) = values.segment<3>(n + 3 * c).transpose() / units::kDegPerHour;
+    group.g_dependence[0].row(c) = values.segment<3>(4 * n + 3 * c).transpose() / g;
+  }
+  if (!layout.aniso) return group;
+  const int first = 7 * n + (dual ? 2 * layout.rotors : 0);
+  for (const Rotor& rotor : readings.rotors) {
+    for (const int c : {rotor.a, rotor.c}) {
+      // q(f) holds xy, yz, zx behind the squares.
+      const int axis = readings.channels[static_cast<std::size_t>(c)].axis;
+      const int place = axis + rotor.spin == 1 ? 3 : axis + rotor.spin == 3 ? 4 : 5;
+      group.g_squared(c, place) = values[first + c] / (g * g);
+    }
+  }
+  return group;
+}
+
+// What four channels contradict each other by, of the residuals of every attitude.
+void AddParity(const SensorGroup& group, FitReport& report) {
+  if (group.n_channels != 4) return;
+  const Eigen::Matrix4d Q = group.sensitivity[0].householderQr().householderQ();
+  const Eigen::Vector4d direction = Q.col(3);
+  double square = 0;
+  int rows = 0;
+  for (std::size_t i = 0; i + 3 < report.residuals.size(); i += 4) {
+    if (report.residuals[i].line != report.residuals[i + 3].line) continue;
+    double parity = 0;
+    for (int c = 0; c < 4; ++c)
+      parity += direction[c] * report.residuals[i + static_cast<std::size_t>(c)].value;
+    square += parity * parity;
+    ++rows;
+  }
+  AddFixed(report, "parity_rms_degh", FitQuantity::Shape::kNumber,
+           Eigen::MatrixXd::Constant(1, 1, std::sqrt(square / std::max(1, rows))));
+}
+
+}  // namespace
+
+Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table,
+                                 const GyroFitSetup& setup) {
+  const auto readings = ReadGyros(rest, table, setup.reference);
+  if (!readings) return readings.fault();
+  const BenchTable& data = rest.rows() > 0 ? rest : table;
+  Layout layout = LayoutOf(*readings, setup);
+  Fitted fitted = Fit(*readings, setup, layout);
+  std::vector<std::string> remarks;
+  if (layout.aniso && !fitted.solution.unseen.empty()) {
+    layout.aniso = false;
+    fitted = Fit(*readings, setup, layout);
+    remarks.emplace_back(
+        "the anisoelastic terms are left out: no attitude has force along input and spin axis at "
+        "once; add inclinations of 45 deg and toolfaces that are no multiples of 90 deg");
+  }
+  const auto whole = SolveWhole(
+      fitted.problem,
+      "measure inclinations every 45 deg, four azimuths and toolfaces every 60 deg, or join a rate "
+      "table's readings");
+  if (!whole) return BenchFault(data, whole.fault().text);
+  if (auto fault = WrongChannels(data, *readings, whole->x)) return *fault;
+
+  BenchCalibration out;
+  out.report = ReportOf(fitted.problem, *whole);
+  FitReport& report = out.report;
+  report.method = table.rows() > 0 && rest.rows() == 0 ? "gyro-rate-table" : "gyro-multi-position";
+  report.remarks.insert(report.remarks.end(), remarks.begin(), remarks.end());
+  if (rest.rows() > 0 && table.rows() == 0)
+    report.remarks.push_back(
+        "a wrong latitude would not show in these residuals: 0.1 deg of it is 3e-3 in U and 0.05 "
+        "deg/h/g in G; a rate table's readings break that");
+  TakeResult(*readings, layout, report);
+  out.gyro = Group(*readings, layout, setup.reference, report.values);
+  AddParity(out.gyro, report);
+  return out;
+}
+
+}  // namespace wellgyro

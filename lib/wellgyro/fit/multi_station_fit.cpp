@@ -1,0 +1,184 @@
+#include "wellgyro/fit/multi_station_fit.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/attitude_table_internal.h"
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/nonlinear_internal.h"
+
+namespace wellgyro {
+namespace {
+
+using Setup = MultiStationSetup;
+
+constexpr std::string_view kAdvice =
+    "add stations at other toolfaces and inclinations, or give priors of the biases and scales";
+
+template <class T>
+T Length(const T (&a)[3]) {
+  using std::sqrt;
+  return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/// |M| and the dip of one station; parameters b (3), s (3).
+struct FieldResidual {
+  Eigen::Vector3d down, raw;
+  double field, dip, sigma_field, sigma_dip;
+  template <class T>
+  bool operator()(const T* const* parameters, T* r) const {
+    using std::asin;
+    const T* p = parameters[0];
+    T m[3];
+    for (int i = 0; i < 3; ++i) m[i] = (raw[i] - p[i]) / (1.0 + p[3 + i]);
+    const T length = Length(m);
+    const T sine = (m[0] * down[0] + m[1] * down[1] + m[2] * down[2]) / length;
+    r[0] = (length - field) / sigma_field;
+    r[1] = (asin(sine) - dip) / sigma_dip;
+    return true;
+  }
+};
+
+/// Level and vertical part of w at one station, which noise moves independently; parameters b (3).
+struct RateResidual {
+  Eigen::Vector3d down, raw;
+  double level, up, sigma;
+  template <class T>
+  bool operator()(const T* const* parameters, T* r) const {
+    const T* p = parameters[0];
+    const T w[3] = {raw[0] - p[0], raw[1] - p[1], raw[2] - p[2]};
+    const T along = w[0] * down[0] + w[1] * down[1] + w[2] * down[2];
+    const T across[3] = {w[0] - along * down[0], w[1] - along * down[1], w[2] - along * down[2]};
+    r[0] = (Length(across) - level) / sigma;
+    r[1] = (-along - up) / sigma;
+    return true;
+  }
+};
+
+struct PriorResidual {
+  int parameter;
+  double sigma;
+  template <class T>
+  bool operator()(const T* const* parameters, T* r) const {
+    r[0] = parameters[0][parameter] / sigma;
+    return true;
+  }
+};
+
+Eigen::Vector3d DownOf(const AttitudeTable& table, int i) {
+  const Eigen::Vector3d a = table.accel.row(i).transpose().normalized();
+  return table.gravity_signed ? a : Eigen::Vector3d(-a);
+}
+
+void AddPriors(const Setup& setup, bool scales, NonlinearProblem& problem) {
+  for (int i = 0; i < 3; ++i) {
+    if (setup.prior_bias) problem.Add({{0, "prior", 1}}, PriorResidual{i, *setup.prior_bias});
+    if (scales && setup.prior_scale)
+      problem.Add({{0, "prior", 1}}, PriorResidual{3 + i, *setup.prior_scale});
+  }
+}
+
+NonlinearProblem Magnetic(const AttitudeTable& table, const Setup& setup) {
+  std::vector<std::string> names = VectorNames("bm_nT", 3);
+  for (const std::string& name : VectorNames("sm", 3)) names.push_back(name);
+  NonlinearProblem problem(names, Eigen::VectorXd::Zero(6));
+  // Without sigmas only their ratio matters.
+  constexpr double kUsualField = 50, kUsualDip = 0.1 * units::kDeg;
+  problem.sigma_given = setup.sigma_field && setup.sigma_dip;
+  const double sigma_field = setup.sigma_field.value_or(kUsualField);
+  const double sigma_dip = setup.sigma_dip.value_or(kUsualDip);
+  for (int i = 0; i < table.rows(); ++i) {
+    const int line = table.lines[static_cast<std::size_t>(i)];
+    problem.Add(
+        {{line, "field", sigma_field}, {line, "dip", sigma_dip}},
+        FieldResidual{DownOf(table, i), table.mag.row(i).transpose(), *setup.reference.field,
+                      *setup.reference.dip, sigma_field, sigma_dip});
+  }
+  AddPriors(setup, true, problem);
+  return problem;
+}
+
+NonlinearProblem Gyros(const BenchTable& data, const std::vector<int>& columns,
+                       const AttitudeTable& table, const Setup& setup) {
+  NonlinearProblem problem(VectorNames("bg_degh", 3), Eigen::VectorXd::Zero(3));
+  problem.sigma_given = setup.sigma_rate.has_value();
+  const double sigma = setup.sigma_rate.value_or(1);
+  const double rate = kBenchEarthRate / units::kDegPerHour;
+  for (int i = 0; i < table.rows(); ++i) {
+    const int line = table.lines[static_cast<std::size_t>(i)];
+    problem.Add({{line, "level", sigma}, {line, "vertical", sigma}},
+                RateResidual{DownOf(table, i), data.values(i, columns).transpose(),
+                             rate * std::cos(*setup.reference.latitude),
+                             rate * std::sin(*setup.reference.latitude), sigma});
+  }
+  AddPriors(setup, false, problem);
+  return problem;
+}
+
+void RemarkPriors(const Setup& setup, FitReport& report) {
+  for (Eigen::Index i = 0; i < report.values.size() && report.cov.size() > 0; ++i) {
+    const auto& prior = i < 3 ? setup.prior_bias : setup.prior_scale;
+    if (prior && std::sqrt(report.cov(i, i)) > 0.7 * *prior)
+      report.remarks.push_back(
+          fmt::format("the stations say next to nothing of {}: it rests on "
+                      "its prior",
+                      report.parameters[static_cast<std::size_t>(i)]));
+  }
+}
+
+std::optional<Fault> BadStations(const BenchTable& data, const AttitudeTable& table,
+                                 const Setup& setup) {
+  if (auto fault = TooFew(data, 4, "stations", kAdvice)) return fault;
+  if (auto fault = BadReadings(data, table)) return fault;
+  std::vector<int> accel;
+  for (const std::string& name : table.accel_channels) accel.push_back(*data.Find(name));
+  return MixedUnits(data, accel, setup.reference.gravity, "the length of the accelerometers",
+                    "g, or m/s2");
+}
+
+}  // namespace
+
+Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& setup) {
+  const bool gyros = data.Find("wx").has_value();
+  const auto table = ReadAttitudeTable(data, {.accel = true, .mag = !gyros});
+  if (!table) return table.fault();
+  if (auto fault = BadStations(data, *table, setup)) return *fault;
+  if (!gyros && (!setup.reference.field || !setup.reference.dip))
+    throw std::invalid_argument("magnetometers need the field and its dip");
+  if (gyros && !setup.reference.latitude) throw std::invalid_argument("gyros need the latitude");
+  std::vector<int> rates;
+  if (gyros) {
+    auto found = FindColumns(data, {"wx", "wy", "wz"});
+    if (!found) return found.fault();
+    rates = *std::move(found);
+    const double rate = kBenchEarthRate / units::kDegPerHour;
+    if (auto fault = MixedUnits(data, rates, rate, "the length of (wx, wy, wz)", "deg/h"))
+      return *fault;
+  } else {
+    std::vector<int> mag;
+    for (const std::string& name : table->mag_channels) mag.push_back(*data.Find(name));
+    if (auto fault =
+            MixedUnits(data, mag, *setup.reference.field, "the length of the magnetometers", "nT"))
+      return *fault;
+  }
+  const NonlinearProblem problem =
+      gyros ? Gyros(data, rates, *table, setup) : Magnetic(*table, setup);
+  const auto solution = problem.Solve();
+  if (!solution) return BenchFault(data, solution.fault().text);
+  const auto linear = SolveWhole(*solution, kAdvice);
+  if (!linear) return BenchFault(data, linear.fault().text);
+  BenchCalibration out;
+  out.report = ReportOf(solution->linear, *linear);
+  FitReport& report = out.report;
+  report.method = "multi-station";
+  AddVector(report, gyros ? "bg_degh" : "bm_nT", 0, 3);
+  if (!gyros) AddVector(report, "sm", 3, 3);
+  RemarkPriors(setup, report);
+  return out;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,166 @@
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/position_readings_internal.h"
+#include "wellgyro/fit/settled_run.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::string_view kAxes = "xyz";
+
+std::string PositionText(std::size_t at) {
+  const std::size_t quarter = at / 3 % 4, down = at / 12 % 2, axis = at / 24;
+  return fmt::format("{} {} at {} deg", kAxes[axis], down != 0 ? "down" : "up", quarter * 90);
+}
+
+struct Series {
+  std::vector<double> volts;
+  int line = 0;
+};
+
+struct RawRun {
+  std::map<std::size_t, Series> series;
+  double temperature_sum = 0;
+  int rows = 0;
+};
+
+// Places of the columns.
+struct Columns {
+  int axis = 0, dir = 0, rot = 0, channel = 0, volt = 0;
+  std::optional<int> temperature;
+};
+
+std::optional<Fault> Place(const BenchTable& data, const Columns& columns, int row,
+                           std::size_t* at) {
+  const auto value = [&](int column) { return data.values(row, column); };
+  const int line = data.lines[static_cast<std::size_t>(row)];
+  const double axis = value(columns.axis), channel = value(columns.channel);
+  const double quarter = std::fmod(std::fmod(value(columns.rot), 360.0) + 360.0, 360.0) / 90;
+  if (axis != 0 && axis != 1 && axis != 2)
+    return BenchFault(data, "column axis must be x, y or z", line);
+  if (channel != 0 && channel != 1 && channel != 2)
+    return BenchFault(data, "column channel must be x, y or z", line);
+  if (std::abs(value(columns.dir)) != 1)
+    return BenchFault(data, "column dir must be up or down", line);
+  if (quarter != std::floor(quarter))
+    return BenchFault(
+        data,
+        fmt::format("rotation {} deg: the four rotations are 0, 90, 180, 270", value(columns.rot)),
+        line);
+  *at = PositionRun::At(static_cast<int>(axis), value(columns.dir) < 0 ? 1 : 0,
+                        static_cast<int>(quarter), static_cast<int>(channel));
+  return std::nullopt;
+}
+
+std::optional<Fault> Gather(const BenchTable& data, const Columns& columns,
+                            std::vector<RawRun>* runs) {
+  std::set<std::size_t> visited;
+  std::optional<std::size_t> here;
+  runs->emplace_back();
+  for (int row = 0; row < data.rows(); ++row) {
+    std::size_t at = 0;
+    if (auto fault = Place(data, columns, row, &at)) return fault;
+    const std::size_t position = at / 3;
+    if (here != position) {
+      if (visited.count(position) > 0) {
+        runs->emplace_back();
+        visited.clear();
+      }
+      visited.insert(position);
+      here = position;
+    }
+    RawRun& run = runs->back();
+    Series& series = run.series[at];
+    if (series.volts.empty()) series.line = data.lines[static_cast<std::size_t>(row)];
+    series.volts.push_back(data.values(row, columns.volt));
+    if (columns.temperature) run.temperature_sum += data.values(row, *columns.temperature);
+    ++run.rows;
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> Missing(const BenchTable& data, const RawRun& run) {
+  std::string text;
+  int missing = 0;
+  for (std::size_t at = 0; at < 72; ++at) {
+    if (run.series.count(at) > 0) continue;
+    if (++missing > 4) continue;
+    text +=
+        fmt::format("{}{}, channel {}", missing > 1 ? "; " : "", PositionText(at), kAxes[at % 3]);
+  }
+  if (missing == 0) return std::nullopt;
+  if (missing > 4) text += fmt::format("; and {} more", missing - 4);
+  return BenchFault(data,
+                    fmt::format("readings are missing: {}; measure these positions, all three axes "
+                                "up and down at four rotations",
+                                text),
+                    run.series.empty() ? 0 : run.series.begin()->second.line);
+}
+
+Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double tolerance) {
+  if (auto fault = Missing(data, raw)) return *fault;
+  PositionRun run;
+  run.temperature = raw.temperature_sum / raw.rows;
+  for (const auto& [at, series] : raw.series) {
+    const SettledRun settled = Settle(series.volts, tolerance);
+    if (!settled.settled)
+      return BenchFault(
+          data,
+          series.volts.size() < 3
+              ? fmt::format("{}, channel {}: {} readings, three that repeat are needed",
+                            PositionText(at), kAxes[at % 3], series.volts.size())
+              : fmt::format("{}, channel {}: the readings have not settled, the last three differ "
+                            "by {:.3g} V; read on until they repeat, or give the tolerance",
+                            PositionText(at), kAxes[at % 3], settled.spread),
+          series.line);
+    run.readings[at] = {settled.value, series.line};
+  }
+  return run;
+}
+
+}  // namespace
+
+double PositionRun::P(int axis, int down, int channel) const {
+  double sum = 0;
+  for (int q = 0; q < 4; ++q) sum += Of(axis, down, q, channel).volt;
+  return sum / 4;
+}
+
+double PositionRun::Alternating(int axis, int down, int channel) const {
+  const auto v = [&](int q) { return Of(axis, down, q, channel).volt; };
+  return ((v(0) + v(2)) - (v(1) + v(3))) / 4;
+}
+
+Eigen::Vector2d PositionRun::Harmonic(int axis, int down, int channel) const {
+  const auto v = [&](int q) { return Of(axis, down, q, channel).volt; };
+  return {(v(1) - v(3)) / 2, (v(0) - v(2)) / 2};
+}
+
+Result<std::vector<PositionRun>> ReadPositionRuns(const BenchTable& data, double tolerance) {
+  const auto places = FindColumns(data, {"axis", "dir", "rot_deg", "channel", "volt"});
+  if (!places) return places.fault();
+  const std::vector<int>& p = *places;
+  const Columns columns{p[0], p[1], p[2], p[3], p[4], data.Find("T_C")};
+  if (data.Find("sample")) {
+    if (auto fault = Repeated(data)) return *fault;
+  }
+  std::vector<RawRun> raw;
+  if (auto fault = Gather(data, columns, &raw)) return *fault;
+  std::vector<PositionRun> runs;
+  for (const RawRun& run : raw) {
+    auto settled = Settled(data, run, tolerance);
+    if (!settled) return settled.fault();
+    settled->has_temperature = columns.temperature.has_value();
+    runs.push_back(*std::move(settled));
+  }
+  return runs;
+}
+
+}  // namespace wellgyro

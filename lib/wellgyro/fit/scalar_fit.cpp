@@ -1,0 +1,159 @@
+#include "wellgyro/fit/scalar_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+#include <fmt/core.h>
+
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/scalar_internal.h"
+#include "wellgyro/fit/scalar_start_internal.h"
+#include "wellgyro/fit/sensor_groups_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::string_view kAdvice =
+    "faces alone, or one cone, do not do: add attitudes with gravity between the axes, 18 to 24 in "
+    "all";
+
+struct LengthResidual {
+  Eigen::Vector3d v;
+  double length, weight;
+  template <class T>
+  bool operator()(const T* const* p, T* r) const {
+    using std::sqrt;
+    const T* m = p[0];
+    const T x = v[0] - m[6], y = v[1] - m[7], z = v[2] - m[8];
+    const T fx = m[0] * x, fy = m[1] * x + m[2] * y, fz = m[3] * x + m[4] * y + m[5] * z;
+    r[0] = (sqrt(fx * fx + fy * fy + fz * fz) - length) * weight;
+    return true;
+  }
+};
+
+std::vector<std::string> Names() {
+  std::vector<std::string> names = {"M[0,0]", "M[1,0]", "M[1,1]", "M[2,0]", "M[2,1]", "M[2,2]"};
+  for (const std::string& name : VectorNames("b", 3)) names.push_back(name);
+  return names;
+}
+
+// What a reading's sigma comes to in the length, at row i.
+double SigmaOf(const ScalarReadings& readings, const Eigen::VectorXd& x, Eigen::Index i) {
+  if (!readings.sigma) return 1;
+  const Eigen::Matrix3d M = LowerOf(x);
+  const Eigen::Vector3d f = M * (readings.v.row(i).transpose() - x.tail<3>());
+  return *readings.sigma * (M.transpose() * f.normalized()).norm();
+}
+
+NonlinearProblem Problem(const ScalarReadings& readings, const Eigen::VectorXd& start) {
+  NonlinearProblem problem(Names(), start);
+  problem.sigma_given = readings.sigma.has_value();
+  for (Eigen::Index i = 0; i < readings.v.rows(); ++i) {
+    const double sigma = SigmaOf(readings, start, i);
+    problem.Add({{readings.lines[static_cast<std::size_t>(i)], "length", sigma}},
+                LengthResidual{readings.v.row(i).transpose(), readings.length, 1 / sigma});
+  }
+  return problem;
+}
+
+}  // namespace
+
+Result<NonlinearProblem::Solution> SolveScalar(const ScalarReadings& readings) {
+  std::optional<NonlinearProblem::Solution> best;
+  std::optional<Fault> fault;
+  for (const Eigen::VectorXd& start : ScalarStarts(readings.v, readings.length)) {
+    auto solution = Problem(readings, start).Solve();
+    if (!solution) {
+      fault = solution.fault();
+      continue;
+    }
+    // Fewer outliers first, then the smaller cost.
+    if (!best || std::pair(solution->outlier_lines.size(), solution->cost) <
+                     std::pair(best->outlier_lines.size(), best->cost))
+      best = *std::move(solution);
+  }
+  if (!best) return *fault;
+  // Signs of rows of M are free; a sensor's own axis reads upwards.
+  Eigen::VectorXd& x = best->x;
+  if (x[0] < 0) x[0] = -x[0];
+  if (x[2] < 0) x.segment<2>(1) *= -1;
+  if (x[5] < 0) x.segment<3>(3) *= -1;
+  if (!readings.sigma) {
+    // About x again, with its signs.
+    NonlinearProblem problem = Problem(readings, x);
+    return problem.Solve();
+  }
+  // The weights were those of the start.
+  return Problem(readings, x).Solve();
+}
+
+std::optional<Fault> BadVectors(const BenchTable& data, const Eigen::MatrixX3d& v,
+                                const std::vector<std::string>& channels, std::string_view units) {
+  BenchTable about{data.source, channels, v, data.lines};
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double> column(v.col(c).begin(), v.col(c).end());
+    const auto middle = column.begin() + static_cast<std::ptrdiff_t>(column.size() / 2);
+    std::nth_element(column.begin(), middle, column.end());
+    about.values.col(c).array() -= *middle;
+  }
+  // A quarter of the readings may lie close to the middle by chance; three times too long is never.
+  std::vector<double> lengths;
+  for (const auto& row : about.values.rowwise()) lengths.push_back(row.norm());
+  std::vector<double> sorted = lengths;
+  std::sort(sorted.begin(), sorted.end());
+  const double middle = sorted[sorted.size() / 2];
+  std::vector<int> lines;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    if (lengths[i] > 5 * middle) lines.push_back(data.lines[i]);
+  }
+  if (lines.size() < 2) return std::nullopt;
+  return BenchFault(data,
+                    fmt::format("{}: the readings are more than five times as large as those of "
+                                "the other rows: units are mixed; give every row in {}",
+                                LinesText(lines), units),
+                    lines.front(), FaultCode::kConflict);
+}
+
+Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& setup) {
+  const auto table = ReadAttitudeTable(data, {.accel = true});
+  if (!table) return table.fault();
+  if (auto fault = TooFew(data, 12, "attitudes", kAdvice)) return *fault;
+  if (auto fault = BadReadings(data, *table)) return *fault;
+  if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
+  const auto solution =
+      SolveScalar({table->lines, table->accel, setup.reference.gravity, setup.sigma_accel});
+  if (!solution) return BenchFault(data, solution.fault().text);
+  const auto linear = SolveWhole(*solution, kAdvice);
+  if (!linear) return BenchFault(data, linear.fault().text);
+
+  BenchCalibration out;
+  out.report = ReportOf(solution->linear, *linear);
+  FitReport& report = out.report;
+  report.method = "scalar";
+  const Eigen::Matrix3d M = LowerOf(report.values);
+  std::vector<std::string> names = MatrixNames("Ka", 3, 3);
+  for (const std::string& name : VectorNames("ba", 3)) names.push_back(name);
+  Reparametrise(report, names, [](const Eigen::VectorXd& x) {
+    const Eigen::Matrix3d K = LowerOf(x).inverse();
+    Eigen::VectorXd to(12);
+    to << K.row(0).transpose(), K.row(1).transpose(), K.row(2).transpose(), x.tail<3>();
+    return to;
+  });
+  AddMatrix(report, "Ka", 0, 3, 3);
+  AddVector(report, "ba", 9, 3);
+  AddFixed(report, "MtM", FitQuantity::Shape::kMatrix, M.transpose() * M);
+  if (data.rows() < 18)
+    report.remarks.push_back(
+        fmt::format("{} attitudes are few for nine parameters: 18 to 24, some with gravity between "
+                    "the axes, halve the uncertainty",
+                    data.rows()));
+  report.remarks.push_back("the frame is the sensors' own: tie it to the housing by a roll test");
+  const double si = setup.reference.gravity_mps2 / setup.reference.gravity;
+  out.accel = ThreeChannels(report.values.tail<3>(), M.inverse(), si, setup.reference.axes,
+                            table->gravity_signed, "as read");
+  return out;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,111 @@
+#include "wellgyro/fit/settled_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace wellgyro {
+namespace {
+
+constexpr std::size_t kFewest = 3;
+constexpr std::size_t kForTransient = 8;
+
+double Spread(std::span<const double> readings) {
+  const auto [low, high] = std::minmax_element(readings.begin(), readings.end());
+  return *high - *low;
+}
+
+double Mean(std::span<const double> readings) {
+  // About the first: readings of some volts that differ by microvolts.
+  const double first = readings.front();
+  double sum = 0;
+  for (const double reading : readings) sum += reading - first;
+  return first + sum / static_cast<double>(readings.size());
+}
+
+struct Decay {
+  double value = 0, amplitude = 0;  ///< value + amplitude exp(-i / readings)
+  double readings = 1;              ///< time constant
+  double squares = 0;               ///< of the residuals
+};
+
+// Straight line against e = exp(-i / readings).
+Decay FitDecay(std::span<const double> v, double readings) {
+  const double n = static_cast<double>(v.size());
+  const double mean = Mean(v);
+  double e_sum = 0, ee = 0, ev = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) e_sum += std::exp(-static_cast<double>(i) / readings);
+  const double e_mean = e_sum / n;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double e = std::exp(-static_cast<double>(i) / readings) - e_mean;
+    ee += e * e;
+    ev += e * (v[i] - mean);
+  }
+  Decay decay{.readings = readings};
+  decay.amplitude = ee > 0 ? ev / ee : 0;
+  decay.value = mean - decay.amplitude * e_mean;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double r =
+        v[i] - decay.value - decay.amplitude * std::exp(-static_cast<double>(i) / readings);
+    decay.squares += r * r;
+  }
+  return decay;
+}
+
+Decay BestDecay(std::span<const double> v) {
+  constexpr int kGrid = 40, kTurns = 40;
+  const double low = std::log(0.3), high = std::log(static_cast<double>(v.size()));
+  const auto at = [&](double log_readings) { return FitDecay(v, std::exp(log_readings)); };
+  const double step = (high - low) / kGrid;
+  double best = low;
+  for (int i = 1; i <= kGrid; ++i) {
+    if (at(low + i * step).squares < at(best).squares) best = low + i * step;
+  }
+  constexpr double kGolden = 0.6180339887498949;
+  double a = best - step, b = best + step;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
+    if (at(c).squares < at(d).squares)
+      b = d;
+    else
+      a = c;
+  }
+  return at((a + b) / 2);
+}
+
+}  // namespace
+
+SettledRun Settle(std::span<const double> readings, double tolerance) {
+  SettledRun run;
+  const std::size_t n = readings.size();
+  if (n > 0) run.value = Mean(readings.last(std::min(n, kFewest)));
+  if (n < kFewest) return run;
+  run.spread = Spread(readings.last(kFewest));
+  if (n < kForTransient) {
+    std::size_t used = kFewest;
+    while (used < n && Spread(readings.last(used + 1)) <= tolerance) ++used;
+    run.used = static_cast<int>(used);
+    run.value = Mean(readings.last(used));
+    run.settled = run.spread <= tolerance;
+    return run;
+  }
+  run.used = static_cast<int>(n);
+  run.value = Mean(readings);
+  run.settled = true;
+  double squares = 0;
+  for (const double reading : readings) squares += std::pow(reading - run.value, 2);
+  const Decay decay = BestDecay(readings);
+  // Two parameters more; the F distribution of 2 and nu has this quantile in closed form.
+  const double nu = static_cast<double>(n) - 3;
+  const double limit = nu / 2 * (std::pow(1e-3, -2 / nu) - 1);
+  const double rounding = std::pow(1e-12 * std::abs(run.value), 2);
+  if ((squares - decay.squares) / 2 > limit * (decay.squares / nu + rounding)) {
+    run.value = decay.value;
+    const double left =
+        std::abs(decay.amplitude) * std::exp(-static_cast<double>(n - 1) / decay.readings);
+    run.settled = left <= tolerance;
+  }
+  return run;
+}
+
+}  // namespace wellgyro
