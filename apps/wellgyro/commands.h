@@ -18,6 +18,7 @@ void AddSurvey(CLI::App& app, int& exit_code);
 void AddRecord(CLI::App& app, int& exit_code);
 void AddSimulate(CLI::App& app, int& exit_code);
 void AddAllan(CLI::App& app, int& exit_code);
+void AddCalibrate(CLI::App& app, int& exit_code);
 void AddUncertainty(CLI::App& app, int& exit_code);
 void AddCheck(CLI::App& app, int& exit_code);
 

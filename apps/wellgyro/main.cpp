@@ -18,6 +18,7 @@ int Run(int argc, char** argv) {
   AddRecord(app, exit_code);
   AddSimulate(app, exit_code);
   AddAllan(app, exit_code);
+  AddCalibrate(app, exit_code);
   AddUncertainty(app, exit_code);
   AddCheck(app, exit_code);
   try {
