@@ -15,6 +15,7 @@
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/loss_watch.h"
+#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "broadcast.h"
@@ -48,7 +49,7 @@ class LiveSurvey {
         job_(job),
         bus_(bus),
         broadcast_(bus, job.job.channels),
-        surveyor_(job.job, broadcast_),
+        surveyor_(job.job, broadcast_, &adjuster_),
         intake_(job.job, surveyor_),
         watch_([this](const Fault& fault) { losses_.Tell(fault); }),
         catch_up_(job.job.channels,
@@ -82,6 +83,7 @@ class LiveSurvey {
   LiveBus& bus_;
   FaultTeller losses_;
   Broadcast broadcast_;
+  LeastSquaresAdjuster adjuster_;
   Surveyor surveyor_;
   Intake intake_;
   LossWatch watch_;

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/bus/log_reader.h"
+#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/job_file.h"
 #include "wellgyro/io/run_file.h"
 #include "wellgyro/survey/surveyor.h"
@@ -44,7 +45,8 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
     return kUnusable;
   }
   FaultBook faults;
-  Surveyor surveyor(job.job, faults);
+  const LeastSquaresAdjuster adjuster;
+  Surveyor surveyor(job.job, faults, &adjuster);
   Intake intake(job.job, surveyor);
   {
     Progress progress("surveying");

@@ -175,8 +175,22 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("No such file", done.stderr)
 
-    def test_no_north_is_a_sentence(self):
+    def test_the_motion_itself_finds_north(self):
         quick = SIMULATION.replace("stop_s = 120.0", "stop_s = 20.0")
+        self.Write("moving.toml", quick)
+        self.assertEqual(Run("simulate", "--job", self.Path("moving.toml"), "--out",
+                             self.Path("moving.lcm")).returncode, 0)
+        done = self.Survey(self.Path("moving.lcm"), "moving")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        last = self.Rows("moving")[-1]
+        sigma = float(last["SIG_AZI[deg]"])
+        self.assertLess(sigma, 1)
+        self.assertAlmostEqual(float(last["AZI_TRUE[deg]"]), 300.0, delta=4 * sigma)
+
+    def test_no_north_is_a_sentence(self):
+        # A straight horizontal hole turns alike under an azimuth and under its mirror.
+        quick = SIMULATION.replace("stop_s = 120.0", "stop_s = 20.0")
+        quick = quick.replace("inclination_deg = 25.0", "inclination_deg = 90.0")
         self.Write("quick.toml", quick)
         self.assertEqual(Run("simulate", "--job", self.Path("quick.toml"), "--out",
                              self.Path("quick.lcm")).returncode, 0)

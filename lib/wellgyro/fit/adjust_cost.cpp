@@ -11,9 +11,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kHold = 1e-8;         // between nodes at rest [rad]
-constexpr double kDriftFloor = 1e-13;  // of a drift that does not walk over a span [rad/s]
-constexpr double kNoFixSigma = 1e-7;   // of an azimuth that is given as exact [rad]
+constexpr double kHold = 1e-7;          // between nodes at rest [rad]
+constexpr double kVerticalHold = 1e-5;  // the same where the azimuth may be quite unknown [rad]
+constexpr double kDriftFloor = 1e-13;   // of a drift that does not walk over a span [rad/s]
+constexpr double kNoFixSigma = 1e-7;    // of an azimuth that is given as exact [rad]
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Jacobian = Eigen::Map<RowMajor>;
@@ -132,8 +133,9 @@ class SpanFunction : public Three {
       const double x = d[Knot::kGyroBiasX], y = d[Knot::kGyroBiasY];
       return within * (x * x + y * y);
     };
-    weight_turn_ = 1 / (span.still ? kHold : std::sqrt(span.var_turn + wander(span.d_turn)));
-    weight_lift_ = 1 / (span.still ? kHold : std::sqrt(span.var_lift + wander(span.d_lift)));
+    const double hold = span.vertical ? kVerticalHold : kHold;
+    weight_turn_ = 1 / (span.still ? hold : std::sqrt(span.var_turn + wander(span.d_turn)));
+    weight_lift_ = 1 / (span.still ? hold : std::sqrt(span.var_lift + wander(span.d_lift)));
     weight_level_ = 1 / std::hypot(layout.level_walk * std::sqrt(span.seconds), kDriftFloor);
     decay_ = std::exp(-span.seconds / layout.markov_seconds);
     weight_markov_ =

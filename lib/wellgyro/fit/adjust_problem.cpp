@@ -12,7 +12,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kIterationsMax = 30;
+constexpr int kIterationsMax = 50;
+constexpr double kNothingKnown = 10;  // sigma of an azimuth [rad]
 
 bool Used(const FilterFix& f) { return f.use == FixUse::kUsed || f.use == FixUse::kMirror; }
 
@@ -60,7 +61,7 @@ class Builder {
       const AdjustSpan& span = p_.spans[k];
       const std::vector<double*> blocks{p_.node(k), p_.node(k + 1), p_.common.data()};
       Add(SpanCost(p_.layout, span), nullptr, blocks);
-      if (span.still) Add(StillCost(p_.layout, span), loss_.get(), blocks);
+      if (span.still && !span.vertical) Add(StillCost(p_.layout, span), loss_.get(), blocks);
       if (span.levelled) Add(LevelCost(p_.layout, span), loss_.get(), blocks);
     }
   }
@@ -69,6 +70,8 @@ class Builder {
     const FilterSetup& setup = p_.history->setup;
     if (setup.start_azimuth) {
       Add(AzimuthCost(p_.layout, *setup.start_azimuth, setup.start_sigma), nullptr, {p_.node(0)});
+    } else {  // a matrix that can be inverted even if nothing ever tells
+      Add(AzimuthCost(p_.layout, p_.azimuth(0), kNothingKnown), nullptr, {p_.node(0)});
     }
     for (const FilterFix& f : p_.history->fixes) {
       if (!Used(f) || f.rates) continue;

@@ -119,7 +119,7 @@ void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, A
     var += last.along.known ? 2 * Square(sine * kSpeedSigma / (g * time)) : Square(kUnknownForce);
     var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
   }
-  if (span->broken) var += Square(kVerticalLevel);
+  if (span->vertical) var += Square(kVerticalLevel);
   span->var_level = var;
 }
 
@@ -214,6 +214,7 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
       sums = {};
     }
     AdjustSpan& span = spans.back();
+    span.vertical = knot.vertical;
     span.broken = knot.vertical && !knot.still;
     AddKnot(history, StepAt(history, i), places[i], accelerations[i], &span, &sums);
     span.epoch_end = i + 1;

@@ -20,7 +20,8 @@ struct AdjustSpan {
   std::size_t epoch_begin = 0, epoch_end = 0;  ///< [begin, end) of FilterHistory::epochs
   double seconds = 0;                          ///< gaps included [s]
   bool still = false;
-  bool broken = false;        ///< vertical: nothing links the azimuths of its two ends
+  bool vertical = false;      ///< the form below does not hold
+  bool broken = false;        ///< vertical and moving: nothing links the azimuths of its two ends
   bool levelled = false;      ///< has samples whose accelerometers count
   double turn = 0, lift = 0;  ///< [rad]
   std::complex<double> earth_turn, earth_lift;

@@ -17,6 +17,8 @@ constexpr int kTries = 12;             // azimuths to start it from
 constexpr double kMargin = 9;          // chi-square by which one must beat another
 constexpr double kApart = 0.2;         // closer than this two are one [rad]
 constexpr double kSameDepth = 0.05;    // of two passes of one station [m]
+constexpr double kLeastBend = 6e-6;    // of a hole, 0.01 deg in 30 m [rad/m]
+constexpr double kLeastLie = 1e-6;     // by which passes differ in any case [rad]
 
 // Consecutive nodes whose azimuths hang together.
 struct Segment {
@@ -30,6 +32,13 @@ std::vector<Segment> SegmentsOf(const std::vector<AdjustSpan>& spans) {
     segments.back().end = k + 2;
   }
   return segments;
+}
+
+bool TellsOfNorth(const Segment& segment, const std::vector<AdjustSpan>& spans) {
+  for (std::size_t k = segment.begin; k + 1 < segment.end; ++k) {
+    if (!spans[k].vertical) return true;
+  }
+  return false;
 }
 
 // Azimuths of nodes from the growth of the spans alone, each segment from `start`.
@@ -60,10 +69,32 @@ std::vector<double> SmoothedAt(const SmoothedRun& smoothed, const std::vector<Ad
   return azimuths;
 }
 
-// Depths that stations of different passes share.
-void FindRepeats(const FilterHistory& history, double sigma_lie, AdjustProblem* p) {
-  const double sigma_md = history.setup.errors.depth_sigma;
+// How fast the direction changes along the hole about a station [rad/m].
+struct Bend {
+  double azimuth = 0, inclination = 0;
+};
+
+Bend BendAt(const FilterHistory& history, const AdjustProblem& p, std::size_t span,
+            const std::vector<double>& path) {
+  Bend bend{kLeastBend, kLeastBend};
+  for (const std::size_t k : {span, span + 1}) {
+    if (k >= p.spans.size() || k == 0) continue;
+    const std::size_t a = p.spans[k].epoch_begin - 1, b = p.spans[k].epoch_end - 1;
+    const Knot &from = history.epochs[a].knot, &to = history.epochs[b].knot;
+    const double way = std::max(std::abs(to.along.md - from.along.md), 1.0);
+    bend.azimuth = std::max(bend.azimuth, std::abs(path[b] - path[a]) / way);
+    bend.inclination =
+        std::max(bend.inclination, std::abs(to.inclination - from.inclination) / way);
+  }
+  return bend;
+}
+
+// Depths that stations of different passes share. Errors of depth are alike over a whole pass, so
+// that many stations tell no more of them than one.
+void FindRepeats(const FilterHistory& history, const std::vector<double>& path, double sigma_lie,
+                 AdjustProblem* p) {
   std::multimap<double, std::size_t> nodes;  // by depth, of the passes so far
+  std::vector<Bend> bends;
   for (std::size_t k = 0; k < p->spans.size(); ++k) {
     const AdjustSpan& span = p->spans[k];
     const FilterEpoch& epoch = history.epochs[span.epoch_end - 1];
@@ -71,27 +102,31 @@ void FindRepeats(const FilterHistory& history, double sigma_lie, AdjustProblem* 
     const double md = epoch.knot.along.md;
     const auto near = nodes.lower_bound(md - kSameDepth);
     if (near != nodes.end() && near->first < md + kSameDepth) {
-      // How much the direction changes over the error of depth, from this span.
-      const double way = std::max(std::abs(epoch.knot.along.speed) * span.seconds, 0.1);
       const double sine = std::max(std::sin(epoch.knot.inclination), 1e-3);
-      const double depth = std::sqrt(2.0) * sigma_md / way, floor = 1e-6;
-      p->repeats.push_back({near->second, k + 1,
-                            std::hypot(depth * span.turn, sigma_lie / sine, floor),
-                            std::hypot(depth * span.lift, sigma_lie, floor), sine});
+      p->repeats.push_back({near->second, k + 1, 0, 0, sine});
+      bends.push_back(BendAt(history, *p, k, path));
     }
     nodes.emplace(md, k + 1);
   }
+  const double depth =
+      history.setup.errors.depth_sigma * std::sqrt(2.0 * static_cast<double>(bends.size()));
+  for (std::size_t i = 0; i < bends.size(); ++i) {
+    AdjustProblem::Repeat& r = p->repeats[i];
+    r.sigma_azimuth = std::hypot(depth * bends[i].azimuth, sigma_lie / r.sine, kLeastLie / r.sine);
+    r.sigma_inclination = std::hypot(depth * bends[i].inclination, sigma_lie, kLeastLie);
+  }
 }
 
-AdjustProblem MakeProblem(const FilterHistory& history, const std::vector<AdjustPlace>& places,
+// `path`: azimuth at the end of every epoch; empty: not yet known.
+AdjustProblem MakeProblem(const FilterHistory& history, const std::vector<double>& path,
                           const SpanOptions& spans, const AdjustmentOptions& options,
                           double sigma_lie) {
   AdjustProblem p;
   p.history = &history;
   p.huber = options.huber;
-  p.spans = SpansOf(history, places, spans);
+  p.spans = SpansOf(history, PlacesAlong(history, path), spans);
   if (p.spans.empty()) return p;
-  if (options.use_repeats && spans.at_stations) FindRepeats(history, sigma_lie, &p);
+  if (options.use_repeats && !path.empty()) FindRepeats(history, path, sigma_lie, &p);
   p.layout = AdjustLayoutOf(history.setup, sigma_lie, !p.repeats.empty());
   return p;
 }
@@ -147,11 +182,10 @@ Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, 
   const SmoothedRun smoothed = Smooth(history);
   Beginning begin;
   begin.ambiguous.assign(history.epochs.size(), false);
-  AdjustProblem p =
-      MakeProblem(history, PlacesAlong(history, {}), {kCoarseSeconds, false}, options, sigma_lie);
+  AdjustProblem p = MakeProblem(history, {}, {kCoarseSeconds, false}, options, sigma_lie);
   std::vector<double> azimuths = SmoothedAt(smoothed, p.spans);
   for (const Segment& segment : SegmentsOf(p.spans)) {
-    if (segment.end < 2) continue;
+    if (!TellsOfNorth(segment, p.spans)) continue;
     const auto epoch_of = [&](std::size_t node) {
       return node > 0 ? p.spans[node - 1].epoch_end - 1 : p.spans.front().epoch_begin;
     };
@@ -214,8 +248,8 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
     return result;
   }
   const Beginning begin = Begin(history, options, sigma_lie);
-  AdjustProblem p = MakeProblem(history, PlacesAlong(history, begin.path),
-                                {options.knot_seconds, true}, options, sigma_lie);
+  AdjustProblem p =
+      MakeProblem(history, begin.path, {options.knot_seconds, true}, options, sigma_lie);
   StartFrom(AtNodes(p, begin.path), &p);
   Eigen::SparseMatrix<double> information;
   const AdjustOutcome outcome = Solve(&p, &information);
