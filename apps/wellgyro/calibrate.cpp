@@ -1,10 +1,12 @@
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -26,6 +28,7 @@
 #include "wellgyro/io/calibration_file.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/tool_file.h"
+#include "wellgyro/record/sample.h"
 
 #include "commands.h"
 #include "report.h"
@@ -67,45 +70,61 @@ Result<Outcome> Plain(Result<BenchCalibration> fitted) {
   return Outcome{*std::move(fitted), std::nullopt};
 }
 
-/// An option whose number, in the unit of its name, is held in another.
+/// Numbers from `low` to `high`; no other word is one.
+CLI::Validator Within(double low, double high) {
+  return {[low, high](std::string& word) -> std::string {
+            double value = 0;
+            if (CLI::detail::lexical_cast(word, value) && value >= low && value <= high) return {};
+            return fmt::format("{} is no number from {:g} to {:g}", word, low, high);
+          },
+          {}};
+}
+constexpr double kLeast = 1e-15, kMost = 1e15;
+
+/// An option whose number above zero, in the unit of its name, is held in another.
 template <class T>
 CLI::Option* AddNumber(CLI::App& command, const std::string& name, T& held, double unit,
                        const std::string& help) {
-  return command.add_option_function<double>(
-      name, [&held, unit](const double& value) { held = value * unit; }, help);
+  return command
+      .add_option_function<double>(
+          name, [&held, unit](const double& value) { held = value * unit; }, help)
+      ->check(Within(kLeast, kMost));
 }
 
 void AddReference(CLI::App& command, Options& o, const std::string& name, const std::string& help,
-                  const std::function<void(double)>& take) {
-  command.add_option_function<double>(
-      name,
-      [&o, name, take](const double& value) {
-        o.said.push_back(fmt::format("{} {}", name.substr(2), value));
-        take(value);
-      },
-      help);
+                  const CLI::Validator& range, const std::function<void(double)>& take) {
+  command
+      .add_option_function<double>(
+          name,
+          [&o, name, take](const double& value) {
+            o.said.push_back(fmt::format("{} {}", name.substr(2), value));
+            take(value);
+          },
+          help)
+      ->check(range);
 }
 
 void AddGravity(CLI::App& command, Options& o) {
   BenchReference& r = o.reference;
   AddReference(command, o, "--gravity-g", "local gravity; readings are in g (default 1)",
-               [&r](double g) {
+               Within(0.97, 1.03), [&r](double g) {
                  r.gravity = g;
                  r.gravity_mps2 = g * units::kStandardGravity;
                });
   AddReference(command, o, "--gravity-mps2", "local gravity; readings are in m/s2",
-               [&r](double g) { r.gravity = r.gravity_mps2 = g; });
+               Within(9.5, 10.1), [&r](double g) { r.gravity = r.gravity_mps2 = g; });
 }
 
 void AddField(CLI::App& command, Options& o) {
   BenchReference& r = o.reference;
-  AddReference(command, o, "--field-nt", "total magnetic field", [&r](double v) { r.field = v; });
-  AddReference(command, o, "--dip-deg", "of the field, downwards",
+  AddReference(command, o, "--field-nt", "total magnetic field", Within(1e3, 2e5),
+               [&r](double v) { r.field = v; });
+  AddReference(command, o, "--dip-deg", "of the field, downwards", Within(-90, 90),
                [&r](double v) { r.dip = v * units::kDeg; });
 }
 
 void AddLatitude(CLI::App& command, Options& o) {
-  AddReference(command, o, "--latitude-deg", "of the bench, or the well",
+  AddReference(command, o, "--latitude-deg", "of the bench, or the well", Within(-90, 90),
                [&o](double v) { o.reference.latitude = v * units::kDeg; });
 }
 
@@ -121,8 +140,10 @@ void AddAxes(CLI::App& command, Options& o) {
 
 void AddTool(CLI::App& command, Options& o) {
   const std::string group = "Tool file";
-  const auto add = [&](CLI::Option* option) { option->group(group); };
-  add(command.add_option("--tool", o.tool, "tool file (TOML) to make or bring up to date"));
+  CLI::Option* const tool =
+      command.add_option("--tool", o.tool, "tool file (TOML) to make or bring up to date");
+  tool->group(group);
+  const auto add = [&](CLI::Option* option) { option->group(group)->needs(tool); };
   add(command
           .add_option("--channels", o.update.channels,
                       "places of the channels in raw_batch_t, as 3,4,5")
@@ -136,9 +157,12 @@ void AddTool(CLI::App& command, Options& o) {
                       "axes of the sensors along x, y, z of the tool, as +y,-x,+z, in place of "
                       "the bench's")
           ->delimiter(','));
-  add(command.add_option("--thermometer", o.update.thermometer, "number of it in the tool file"));
-  add(command.add_option("--thermometer-channel", o.update.thermometer_channel,
-                         "its place in raw_batch_t"));
+  add(command.add_option("--thermometer", o.update.thermometer, "number of it in the tool file")
+          ->check(CLI::Range(0, RawSample::kTemperaturesMax - 1)));
+  add(command
+          .add_option("--thermometer-channel", o.update.thermometer_channel,
+                      "its place in raw_batch_t")
+          ->check(CLI::Range(0, RawSample::kTemperaturesMax - 1)));
   add(command.add_option("--asset-serial", o.update.asset_serial, "of the tool"));
   add(command.add_option("--sensor-serials", o.update.sensor_serials, "separated by ;"));
   add(command.add_option("--date", o.date, "of the calibration, as 2026-01-31"));
@@ -153,10 +177,31 @@ std::optional<UtcTime> Date(const std::string& text, const char* option) {
   return date;
 }
 
+// Nothing is written over what it came from, nor two files in one place.
+void RequireDistinct(const Options& o) {
+  const std::pair<const char*, const std::string*> all[] = {{"--data", &o.data},
+                                                            {"the readings to join", &o.rate_table},
+                                                            {"--out", &o.out},
+                                                            {"--tool", &o.tool}};
+  for (std::size_t i = 0; i < std::size(all); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code ignored;
+      if (all[i].second->empty() || all[j].second->empty()) continue;
+      if (*all[i].second == *all[j].second ||
+          std::filesystem::equivalent(*all[i].second, *all[j].second, ignored))
+        throw std::invalid_argument(
+            fmt::format("{} and {} must be different files", all[j].first, all[i].first));
+    }
+  }
+}
+
 void Complete(Options& o) {
+  RequireDistinct(o);
   o.update.axes = o.reference.axes;
   o.update.calibrated = Date(o.date, "--date");
   o.update.expires = Date(o.expires, "--expires");
+  if (o.update.calibrated && o.update.expires && !(*o.update.calibrated < *o.update.expires))
+    throw std::invalid_argument("--expires must come after --date");
   if (o.axes.empty()) return;
   o.update.R_TS = AxesOf(o.axes);
   if (!o.update.R_TS)
@@ -179,14 +224,14 @@ std::optional<Fault> WriteFile(const std::filesystem::path& path, const std::str
   return std::nullopt;
 }
 
-std::optional<Fault> WriteTool(const Options& o, const BenchCalibration& calibration) {
+Result<std::string> ToolText(const Options& o, const BenchCalibration& calibration) {
   ToolCalibration tool;
   if (std::filesystem::exists(o.tool)) {
     auto known = ReadToolFile(o.tool);
     if (!known) return known.fault();
     tool = *std::move(known);
   }
-  return WriteFile(o.tool, ToolToml(Updated(std::move(tool), calibration, o.update)));
+  return ToolToml(Updated(std::move(tool), calibration, o.update));
 }
 
 int Run(Options& o, const Fit& fit) {
@@ -210,10 +255,17 @@ int Run(Options& o, const Fit& fit) {
   if (!outcome) return unusable(outcome.fault());
   file.report = outcome->calibration.report;
   file.check = outcome->check;
+  // What cannot be written is told before anything is.
+  std::string tool;
+  if (!o.tool.empty()) {
+    Result<std::string> text = ToolText(o, outcome->calibration);
+    if (!text) return unusable(text.fault());
+    tool = *std::move(text);
+  }
   fmt::print("{}", CalibrationSummary(file));
   if (auto fault = WriteFile(o.out, CalibrationToml(file))) return unusable(*fault);
   if (o.tool.empty()) return kDone;
-  if (auto fault = WriteTool(o, outcome->calibration)) return unusable(*fault);
+  if (auto fault = WriteFile(o.tool, tool)) return unusable(*fault);
   return kDone;
 }
 
@@ -254,8 +306,10 @@ void AddPositions(CLI::App& calibrate, int& exit_code, const Shared& o) {
   AddNumber(twenty_four, "--sigma-v", o->twenty_four.sigma, 1, "of a settled mean");
   AddNumber(twenty_four, "--settle-v", o->twenty_four.settle_tolerance, 1,
             "readings that agree within it have settled, default 1e-4");
-  twenty_four.add_option("--max-degree", o->twenty_four.max_degree,
-                         "of the polynomials in temperature, default 3");
+  twenty_four
+      .add_option("--max-degree", o->twenty_four.max_degree,
+                  "of the polynomials in temperature, default 3")
+      ->check(CLI::Range(0, 3));
   AddTool(twenty_four, *o);
   CLI::App& six = AddMethod(calibrate, exit_code, o, "six-position",
                             "three accelerometers with pulse outputs, each axis up and down",
@@ -282,7 +336,8 @@ void AddThermometer(CLI::App& calibrate, int& exit_code, const Shared& o) {
                                 [](const BenchTable& data, const BenchTable&, Options& options) {
                                   return Plain(FitThermometer(data, options.thermometer));
                                 });
-  command.add_option("--knee-degc", o->thermometer.knee, "where the readings bend, default 175");
+  command.add_option("--knee-degc", o->thermometer.knee, "where the readings bend, default 175")
+      ->check(Within(-273, 1000));
   command.add_flag("--fit-knee", o->thermometer.fit_knee, "find the knee");
   AddNumber(command, "--sigma-degc", o->thermometer.sigma, 1, "of a reading");
   AddTool(command, *o);
@@ -326,7 +381,7 @@ void AddAttitudes(CLI::App& calibrate, int& exit_code, const Shared& o) {
     AddGravity(*command, *o);
     AddField(*command, *o);
     AddReference(*command, *o, "--declination-deg", "of the field against the table's azimuths",
-                 [o](double v) { o->reference.declination = v * units::kDeg; });
+                 Within(-180, 180), [o](double v) { o->reference.declination = v * units::kDeg; });
     AddAxes(*command, *o);
     AddTool(*command, *o);
   }

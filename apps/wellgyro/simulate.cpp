@@ -1,5 +1,6 @@
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,7 +14,9 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/simulation_file.h"
+#include "wellgyro/io/tool_file.h"
 #include "wellgyro/io/truth_csv.h"
+#include "wellgyro/simulate/raw_counts.h"
 #include "wellgyro/simulate/sample_batcher.h"
 #include "wellgyro/simulate/simulator.h"
 
@@ -25,7 +28,8 @@ namespace wellgyro::apps {
 namespace {
 
 struct SimulateOptions {
-  std::string job, out, truth;
+  std::string job, out, truth, tool;
+  double temperature = 20;
   double speed = 1;
   bool finish = false;
 };
@@ -36,8 +40,20 @@ class Recorder {
   Recorder(const SimulationFile& file, Outlet& outlet)
       : file_(file), outlet_(outlet), batcher_(file.simulation.streams, file.simulation.seed) {}
 
+  /// From here on samples go out as the counts of `tool`, at `temperature` [degC].
+  void CountAs(const ToolCalibration& tool, double temperature) {
+    counter_.emplace(tool);
+    temperature_ = temperature;
+  }
+
   std::optional<Fault> Take(const ImuSample& sample) {
     now_us_ = Microseconds(sample.stamp.utc + Duration{sample.stamp.period_ns});
+    if (counter_) {
+      counted_.push_back(counter_->Count(sample, temperature_));
+      const auto kept = static_cast<std::size_t>(file_.simulation.streams.batch +
+                                                 file_.simulation.streams.overlap);
+      while (counted_.size() > kept) counted_.pop_front();
+    }
     return batcher_.Push(sample, batch_) ? WriteBatch() : std::nullopt;
   }
   std::optional<Fault> Take(const DepthMark& mark) {
@@ -73,9 +89,19 @@ class Recorder {
  private:
   static std::int64_t Microseconds(UtcTime utc) { return utc.ns / 1000; }
   std::optional<Fault> WriteBatch() {
-    Encode(std::span<const ImuSample>(batch_.samples), bytes_);
     outlet_.CountSamples(batch_.samples.back().stamp.seq + 1);
-    return outlet_.Write(file_.channels.imu, bytes_, now_us_);
+    if (!counter_) {
+      Encode(std::span<const ImuSample>(batch_.samples), bytes_);
+      return outlet_.Write(file_.channels.imu, bytes_, now_us_);
+    }
+    // Each sample was counted once; a batch may repeat some.
+    const auto behind =
+        static_cast<std::ptrdiff_t>(counted_.back().stamp.seq - batch_.samples.front().stamp.seq);
+    const auto first = counted_.end() - 1 - behind;
+    const std::vector<RawSample> raw(first,
+                                     first + static_cast<std::ptrdiff_t>(batch_.samples.size()));
+    Encode(std::span<const RawSample>(raw), bytes_);
+    return outlet_.Write(file_.channels.raw, bytes_, now_us_);
   }
   template <class Record>
   std::optional<Fault> Write(const std::string& channel, const Record& record) {
@@ -87,6 +113,9 @@ class Recorder {
   Outlet& outlet_;
   SampleBatcher batcher_;
   SampleBatch batch_;
+  std::optional<RawCounter> counter_;
+  double temperature_ = 20;
+  std::deque<RawSample> counted_;
   std::vector<std::byte> bytes_;
   std::int64_t now_us_ = 0;
 };
@@ -123,6 +152,22 @@ int Simulate(const SimulateOptions& options) {
     Complain(file.fault());
     return kUnusable;
   }
+  std::optional<ToolCalibration> tool;
+  if (!options.tool.empty()) {
+    auto read = ReadToolFile(options.tool);
+    if (!read) {
+      Complain(read.fault());
+      return kUnusable;
+    }
+    tool = *std::move(read);
+    const SimulatedTool& simulated = file->simulation.tool;
+    if (!simulated.has_gz || (tool->mag.n_channels > 0 && !simulated.has_mag)) {
+      Complain(
+          fmt::format("{}: counts need what their channels may feel: set {} = true under [tool]",
+                      options.job, simulated.has_gz ? "has_mag" : "has_gz"));
+      return kUnusable;
+    }
+  }
   const bool live = options.out.find("://") != std::string::npos;
   const std::string truth =
       options.truth.empty() && !live ? options.out + ".truth.csv" : options.truth;
@@ -140,6 +185,7 @@ int Simulate(const SimulateOptions& options) {
     return kUnusable;
   }
   Recorder recorder(*file, **outlet);
+  if (tool) recorder.CountAs(*tool, options.temperature);
   if (const auto fault = Play(simulator, recorder, **outlet, options.finish)) {
     Complain(*fault);
     return kUnusable;
@@ -177,6 +223,12 @@ void AddSimulate(CLI::App& app, int& exit_code) {
                    "Truth second by second, CSV; by default the log's name with .truth.csv, "
                    "and none with a URL")
       ->type_name("FILE");
+  command
+      ->add_option("--tool", options->tool,
+                   "Tool file, wellgyro.tool/1: samples go out as its counts (raw_batch_t)")
+      ->type_name("FILE");
+  command->add_option("--temperature-degc", options->temperature,
+                      "Of that tool's sensors, default 20");
   command->footer(
       "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
       "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "

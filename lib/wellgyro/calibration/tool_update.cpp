@@ -112,17 +112,34 @@ double Largest(const FitReport& report, std::string_view name, Part part = Part:
   return largest;
 }
 
+// Of an accelerometer anywhere, its bias's and, at one g, its sensitivity's [m/s^2]: the priors
+// have no scale of accelerometers.
+double AccelSigma(const BenchCalibration& bench) {
+  const FitReport& report = bench.report;
+  const double S = bench.accel.sensitivity[0].topRows<3>().cwiseAbs().maxCoeff();
+  double bias = Largest(report, "a0_mps2");
+  for (const char* name : {"Vb_V", "b_G", "ba"}) bias = std::max(bias, Largest(report, name) / S);
+  double relative = std::max(Largest(report, "E_G"), Largest(report, "E_rad"));
+  for (const char* name : {"S_V_per_g", "S_G", "Ka", "k_pulse_per_s_per_mps2"}) {
+    for (const FitQuantity& quantity : report.result) {
+      if (quantity.name == name)
+        relative = std::max(relative, Largest(report, name) / quantity.value.cwiseAbs().maxCoeff());
+    }
+  }
+  return std::hypot(bias, relative * units::kStandardGravity);
+}
+
 void TakeErrors(const BenchCalibration& bench, ToolCalibration& tool) {
   const FitReport& report = bench.report;
   ErrorPriors errors = tool.errors.value_or(ErrorPriors{});
   if (bench.accel.n_channels > 0) {
-    double bias = Largest(report, "a0_mps2");
-    const double S = bench.accel.sensitivity[0].topRows<3>().cwiseAbs().maxCoeff();
-    for (const char* name : {"Vb_V", "b_G", "ba"}) bias = std::max(bias, Largest(report, name) / S);
-    errors.accel_bias_sigma = bias;
+    errors.accel_bias_sigma = AccelSigma(bench);
   }
   if (bench.gyro.n_channels > 0) {
-    errors.gyro_bias_sigma = Largest(report, "b_degh") * units::kDegPerHour;
+    // The priors have no anisoelasticity: it goes with the bias, a half of it at 45 deg.
+    errors.gyro_bias_sigma =
+        std::hypot(Largest(report, "b_degh"), Largest(report, "aniso_degh_per_g2") / 2) *
+        units::kDegPerHour;
     errors.gyro_scale_sigma = Largest(report, "U", Part::kDiagonal);
     errors.gyro_misalignment_sigma = Largest(report, "U", Part::kBeside);
     const double force = Largest(report, "G_degh_per_g") * units::kDegPerHourPerG;

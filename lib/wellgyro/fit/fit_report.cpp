@@ -56,7 +56,7 @@ void Add(FitReport& report, std::string name, FitQuantity::Shape shape, int firs
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
       const int at = first + i * columns + j;
-      quantity.value(i, j) = report.values[at];
+      quantity.value(i, j) = report.values[at] + 0.0;  // not -0
       if (known) quantity.sigma(i, j) = std::sqrt(std::max(0.0, report.cov(at, at)));
     }
   }

@@ -70,10 +70,10 @@ void FillForce(const GyroReadings& readings, const Layout& layout, int i, int c,
   }
 }
 
-// Negative on the rate table: its lines are those of another file.
+// Negative on a joined rate table: its lines are those of another file.
 int LineOf(const GyroReadings& readings, int i) {
   const auto at = static_cast<std::size_t>(i);
-  return readings.on_table[at] != 0 ? -readings.lines[at] : readings.lines[at];
+  return readings.joined && readings.on_table[at] != 0 ? -readings.lines[at] : readings.lines[at];
 }
 
 // About a fixture turned by `north` [rad], with the sensitivities U of the last turn.
@@ -138,10 +138,7 @@ Fitted FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const La
 Fitted Fit(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout) {
   double on_table = setup.sigma_table.value_or(setup.sigma.value_or(1));
   Fitted fitted = FitWith(readings, setup, layout, on_table);
-  const auto& flags = readings.on_table;
-  const bool joined = std::find(flags.begin(), flags.end(), char{0}) != flags.end() &&
-                      std::find(flags.begin(), flags.end(), char{1}) != flags.end();
-  if (setup.sigma_table || !joined) return fitted;
+  if (setup.sigma_table || !readings.joined) return fitted;
   for (int turn = 0; turn < 30; ++turn) {
     double square[2] = {}, redundancy[2] = {};
     const LinearSolution& s = fitted.solution;

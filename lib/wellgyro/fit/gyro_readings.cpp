@@ -143,6 +143,7 @@ Result<GyroReadings> ReadGyros(const BenchTable& rest, const BenchTable& table,
   if (!channels) return channels.fault();
   GyroReadings readings;
   readings.channels = *channels;
+  readings.joined = rest.rows() > 0 && table.rows() > 0;
   readings.rotors = RotorsOf(*channels);
   readings.lines = rest.lines;
   readings.lines.insert(readings.lines.end(), table.lines.begin(), table.lines.end());

@@ -31,6 +31,7 @@ struct GyroReadings {
   std::vector<Rotor> rotors;
   std::vector<int> lines;  ///< those of the table behind those at rest
   std::vector<char> on_table;
+  bool joined = false;       ///< some at rest, some on the table
   Eigen::MatrixX3d w;        ///< true rate [deg/h], bench axes
   Eigen::MatrixX3d w_level;  ///< its level part, which turns with the fixture's north offset
   Eigen::MatrixX3d w_north;  ///< its change with that offset [deg/h per rad]

@@ -1,0 +1,299 @@
+#!/usr/bin/env python3
+"""From a bench to a survey by the program, and benches that cannot give a calibration: files, exit
+codes, sentences. calibrate_test.py PROGRAM"""
+import csv
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+EARTH = 15.041067178669  # deg/h
+G = 9.80665
+LATITUDE = 61.0
+
+SIMULATION = """format = "wellgyro.simulation/1"
+seed = 3
+[well]
+name = "slant"
+inclination_deg = 25.0
+azimuth_true_deg = 300.0
+end_md_m = 400.0
+[earth]
+latitude_deg = 61.0
+[run]
+[[run.step]]
+stop_s = 120.0
+[[run.step]]
+to_md_m = 300.0
+speed_mps = 1.0
+roll_rpm = 1.0
+[[run.step]]
+stop_s = 120.0
+[tool]
+has_gz = true
+angle_random_walk_deg_per_sqrt_h = 0.002
+[streams]
+imu_hz = 20.0
+depth_hz = 4.0
+batch = 20
+overlap = 5
+"""
+JOB = """format = "wellgyro.job/1"
+[well]
+name = "Slant"
+latitude_deg = 61.0
+longitude_deg = 3.0
+[noise]
+angle_random_walk_deg_per_sqrt_h = 0.002
+[stations]
+every_m = 25.0
+"""
+
+# The tool as it is. Axes of the bench: x is -y of the tool, y its x.
+B = [1.35, -0.82, 0.57, -1.1]  # deg/h
+U = [[1.0008, 0.003, -0.002], [-0.0025, 0.9995, 0.0015], [0.0012, -0.0031, 1.0011],
+     [0.9991, -0.0017, 0.0022]]
+FORCE = [[3.2, 0.45, 0], [-0.45, 3.2, 0], [0.31, 0, -2.6], [-2.6, 0, -0.31]]  # deg/h/g
+VOLT = [0.0123, -0.0087, 0.021]
+PER_G = [[3.02, 0.012, -0.018], [0.009, 2.97, 0.015], [-0.021, 0.007, 3.05]]
+
+
+def Dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def Level(north, down, inc, az, tf):
+    """North and down of a vector in the axes of the bench, toolface measured to y."""
+    i, a, t = (math.radians(x) for x in (inc, az, tf))
+    high = north * math.cos(i) * math.cos(a) - down * math.sin(i)
+    right = -north * math.sin(a)
+    along = north * math.sin(i) * math.cos(a) + down * math.cos(i)
+    return [math.sin(t) * high - math.cos(t) * right, math.cos(t) * high + math.sin(t) * right,
+            along]
+
+
+def Table(columns, rows):
+    return "\n".join([columns] + [",".join(str(x) for x in row) for row in rows]) + "\n"
+
+
+def Gyros(w, f, noise):
+    return [B[c] + Dot(U[c], w) + Dot(FORCE[c], f) + noise() for c in range(4)]
+
+
+def AtRest(source):
+    rows = []
+    latitude = math.radians(LATITUDE)
+    for inc in range(0, 181, 45):
+        for az in range(0, 360, 90):
+            for tf in range(0, 360, 60):
+                w = Level(EARTH * math.cos(latitude), -EARTH * math.sin(latitude), inc, az, tf)
+                f = [-x for x in Level(0, 1, inc, az, tf)]
+                rows.append([inc, az, tf] + f + Gyros(w, f, lambda: source.gauss(0, 0.02)))
+    return Table("inc,az,tf,fx,fy,fz,m_x1,m_y1,m_z2,m_x2", rows)
+
+
+def OnTable(source):
+    rows = []
+    up = EARTH * math.sin(math.radians(LATITUDE))
+    for axis in range(3):
+        for rate in (-100, -50, -20, 20, 50, 100):
+            f = [1 if k == axis else 0 for k in range(3)]
+            w = [(3600 * rate + up) * x for x in f]
+            rows.append(["xyz"[axis], rate] + Gyros(w, f, lambda: source.gauss(0, 0.5)))
+    return Table("axis,rate_deg_s,m_x1,m_y1,m_z2,m_x2", rows)
+
+
+def Volts(source, sigma=1e-5, tilt=0.2):
+    rows = []
+    for axis in range(3):
+        for sign in (1, -1):
+            for q in range(4):
+                lean = math.tan(math.radians(tilt))
+                u = [0.0, 0.0, 0.0]
+                u[axis] = sign
+                u[(axis + 1) % 3] = lean * (1, 0, -1, 0)[q]
+                u[(axis + 2) % 3] = -sign * lean * (0, 1, 0, -1)[q]
+                length = math.sqrt(Dot(u, u))
+                u = [x / length for x in u]
+                for c in range(3):
+                    for sample in range(3):
+                        volt = VOLT[c] + Dot(PER_G[c], u) + source.gauss(0, sigma)
+                        rows.append(["xyz"[axis], "up" if sign > 0 else "down", 90 * q, "xyz"[c],
+                                     sample, volt])
+    return Table("axis,dir,rot_deg,channel,sample,volt", rows)
+
+
+def Toml(rows):
+    return "[" + ", ".join("[" + ", ".join(repr(float(x)) for x in row) + "]" for row in rows) + "]"
+
+
+def TrueTool():
+    axes = 'axes = ["+y", "-x", "+z"]\n'
+    return ('format = "wellgyro.tool/1"\n[gyro]\nchannels = [3, 4, 5, 6]\nunit = "deg/h"\n'
+            'unit_per_count = [1e-4, 1e-4, 1e-4, 1e-4]\n' + axes
+            + "bias = " + repr(B) + "\nsensitivity_per_deg_per_h = " + Toml(U)
+            + "\ng_dependence_per_g = " + Toml(FORCE)
+            + '\n[accel]\nchannels = [0, 1, 2]\nunit = "V"\nunit_per_count = [1e-7, 1e-7, 1e-7]\n'
+            + axes + "bias = " + repr(VOLT)
+            + "\nsensitivity_per_mps2 = " + Toml([[x / G for x in row] for row in PER_G]) + "\n")
+
+
+class Calibrate(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+
+    def tearDown(self):
+        shutil.rmtree(self.folder)
+
+    def Path(self, name):
+        return os.path.join(self.folder, name)
+
+    def Write(self, name, content):
+        with open(self.Path(name), "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode())
+        return self.Path(name)
+
+    def Run(self, *arguments):
+        return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False,
+                              timeout=300)
+
+    def Done(self, *arguments):
+        result = self.Run(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+    def Survey(self, job, log, out):
+        self.Done("survey", "--job", job, "--from", log, "--out", self.Path(out))
+        with open(self.Path(out + "/survey.csv")) as file:
+            return list(csv.DictReader(file))
+
+    def test_from_the_bench_to_the_survey(self):
+        source = random.Random(5)
+        tool = self.Path("tool.toml")
+        self.Done("calibrate", "24-position", "--data", self.Write("volts.csv", Volts(source)),
+                  "--settle-v", "1e-3", "--out", self.Path("accel.toml"), "--tool", tool,
+                  "--channels", "0,1,2", "--unit-per-count", "1e-7", "--date", "2025-12-01",
+                  "--expires", "2026-12-01", "--asset-serial", "A-7")
+        self.Done("calibrate", "gyro-multi-position", "--data",
+                  self.Write("rest.csv", AtRest(source)), "--rate-table",
+                  self.Write("table.csv", OnTable(source)), "--latitude-deg", str(LATITUDE),
+                  "--out", self.Path("gyro.toml"), "--tool", tool, "--channels", "3,4,5,6",
+                  "--unit-per-count", "1e-4")
+        for name in ("accel.toml", "gyro.toml", "tool.toml"):
+            self.Done("check", self.Path(name))
+        simulation = self.Write("simulation.toml", SIMULATION)
+        true_tool = self.Write("true.toml", TrueTool())
+        self.Done("simulate", "--job", simulation, "--out", self.Path("perfect.lcm"))
+        self.Done("simulate", "--job", simulation, "--out", self.Path("raw.lcm"), "--tool",
+                  true_tool)
+        perfect = self.Survey(self.Write("perfect.toml", JOB), self.Path("perfect.lcm"), "perfect")
+        job = self.Write("job.toml", JOB + '[tool]\nfile = "tool.toml"\n')
+        rows = self.Survey(job, self.Path("raw.lcm"), "calibrated")
+        self.assertEqual(len(rows), len(perfect))
+        worst = 0
+        for a, b in zip(rows[1:], perfect[1:]):
+            turned = (float(a["AZI_TRUE[deg]"]) - float(b["AZI_TRUE[deg]"]) + 180) % 360 - 180
+            worst = max(worst, abs(turned))
+            self.assertLess(abs(turned), 3.5 * float(a["SIG_AZI[deg]"]))
+            self.assertLess(abs(float(a["INC[deg]"]) - float(b["INC[deg]"])),
+                            3.5 * float(a["SIG_INC[deg]"]) + 1e-6)
+            for axis, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]")):
+                self.assertLess(abs(float(a[axis]) - float(b[axis])),
+                                3.5 * math.sqrt(float(a[variance])) + 2e-4)
+        self.assertGreater(worst, 0)
+        self.assertLess(worst, 0.2)
+        # Without what the bench found, the same counts are far away.
+        blank = self.Write("blank.toml", TrueTool().replace(repr(B), "[0.0, 0.0, 0.0, 0.0]"))
+        far = self.Survey(self.Write("far.toml", JOB + f'[tool]\nfile = "{blank}"\n'),
+                          self.Path("raw.lcm"), "far")
+        turned = float(far[-1]["AZI_TRUE[deg]"]) - float(perfect[-1]["AZI_TRUE[deg]"])
+        self.assertGreater(abs((turned + 180) % 360 - 180), 10 * worst)
+
+    def Refused(self, method, text, words, *options, code=2):
+        data = self.Write("data.csv", text)
+        out = self.Path("out.toml")
+        result = self.Run("calibrate", method, "--data", data, "--out", out, *options)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, result.stderr)
+        self.assertFalse(os.path.exists(out))
+        return result
+
+    def test_files_that_are_no_bench(self):
+        source = random.Random(6)
+        volts = Volts(source)
+        for text, word in (("", "header"), ("\n\n# nothing\n", "header"),
+                           ("axis,dir,rot_deg,channel,volt\n", "no readings"),
+                           (b"\x00\xff\xfe\x01" * 50, ""), ("a" * 100000, ""),
+                           (volts.replace("volt", "mV"), "no column volt"),
+                           (volts.replace(",up,", ",sideways,", 1), ":2:3: \"sideways\""),
+                           (volts.replace("\n", ",7\n", 3).replace(",7\n", "\n", 1), ":2:1: 7 cells"),
+                           ("axis,axis,dir,rot_deg,channel,volt\nx,x,up,0,x,3\n", "twice")):
+            with self.subTest(word=word, begin=text[:30]):
+                self.Refused("24-position", text, word)
+        self.Refused("24-position", volts.rsplit("\n", 2)[0] + "\nz,down,270", ":217:1: 3 cells")
+
+    def test_numbers_that_are_none(self):
+        head = "t_m,ref1\n"
+        rows = "".join(f"{t},{t + 0.5}\n" for t in range(20, 160, 10))
+        for cell in ("nan", "inf", "-inf", "1e999", "0x10", "1,5", "--3", "", "1e", "twelve"):
+            with self.subTest(cell=cell):
+                self.Refused("thermometer", head + rows + f"170,{cell}\n", ":16:")
+        # Two hundred digits are a number; so are other ends of lines, blanks and a mark at the front.
+        long = "170." + "0" * 200
+        for text in (head + rows + f"{long},170.5\n", (head + rows).replace("\n", "\r\n"),
+                     head.replace(",", " , ") + rows, "\ufeff" + head + rows,
+                     head.replace(",", ";") + rows.replace(",", ";")):
+            self.Done("calibrate", "thermometer", "--data", self.Write("d.csv", text), "--out",
+                      self.Path("c.toml"))
+        self.Refused("thermometer", head + rows + "1e300,1e300\n", "")
+
+    def test_command_lines_that_are_wrong(self):
+        volts = Volts(random.Random(7))
+        for options in (["--gravity-g", "0"], ["--gravity-g", "-1"], ["--gravity-g", "nan"],
+                        ["--gravity-mps2", "98"], ["--sigma-v", "0"], ["--sigma-v", "-1"],
+                        ["--settle-v", "-1"], ["--max-degree", "9"], ["--max-degree", "-1"],
+                        ["--bench-axes", "left"], ["--tool", "t.toml", "--channels", "1,1,2"],
+                        ["--tool", "t.toml", "--channels", "1,2"],
+                        ["--tool", "t.toml", "--channels", "1,2,99"],
+                        ["--tool", "t.toml", "--axes", "+x,+x,+z"],
+                        ["--tool", "t.toml", "--unit-per-count", "0"],
+                        ["--tool", "t.toml", "--date", "2026-13-01"],
+                        ["--tool", "t.toml", "--date", "2026-06-01", "--expires", "2026-01-01"],
+                        ["--tool", "t.toml", "--thermometer", "-1"],
+                        ["--channels", "1,2,3"], ["--volume", "11"]):
+            with self.subTest(options=options):
+                options = [self.Path(x) if x == "t.toml" else x for x in options]
+                self.Refused("24-position", volts, "", "--settle-v", "1e-3", *options, code=1) \
+                    if "--settle-v" not in options else \
+                    self.Refused("24-position", volts, "", *options, code=1)
+                self.assertFalse(os.path.exists(self.Path("t.toml")))
+        self.assertEqual(self.Run("calibrate").returncode, 1)
+        self.assertEqual(self.Run("calibrate", "guess").returncode, 1)
+        rest = AtRest(random.Random(8))
+        for latitude in ("95", "-91", "nan"):
+            self.Refused("gyro-multi-position", rest, "latitude", "--latitude-deg", latitude, code=1)
+        self.Refused("gyro-multi-position", rest, "latitude", code=1)
+        missing = self.Run("calibrate", "scalar", "--data", self.Path("none.csv"), "--out",
+                           self.Path("c.toml"))
+        self.assertEqual(missing.returncode, 2)
+        self.assertIn("none.csv", missing.stderr)
+
+    def test_nothing_is_written_over_what_it_came_from(self):
+        data = self.Write("d.csv", Volts(random.Random(9)))
+        for options in (["--out", data], ["--out", self.Path("c.toml"), "--tool", data],
+                        ["--out", self.Path("c.toml"), "--tool", self.Path("c.toml")]):
+            result = self.Run("calibrate", "24-position", "--data", data, "--settle-v", "1e-3",
+                              *options)
+            self.assertIn(result.returncode, (1, 2), options)
+        with open(data) as file:
+            self.assertTrue(file.read().startswith("axis,"))
+
+
+if __name__ == "__main__":
+    unittest.main()
