@@ -180,7 +180,7 @@ TEST(DepthTrack, WhatIsCoveredIsFinalWhateverTheOrderWithinTheLatency) {
       }
       track.Forget(Utc(asked));
     }
-    EXPECT_GT(asked, 116);
+    EXPECT_GT(asked, 113);
   }
 }
 
@@ -272,6 +272,83 @@ TEST(DepthTrack, RefusesASetUpThatCannotBe) {
   EXPECT_THROW(DepthTrack({.half_window = {}}), std::invalid_argument);
   EXPECT_THROW(DepthTrack({.latency = Duration{-1}}), std::invalid_argument);
   EXPECT_THROW(DepthTrack({.sigma_md = -1}), std::invalid_argument);
+}
+
+// Cases from reports of 2026-11-21.
+TEST(DepthTrack, NeverLeavesTheRangeOfItsMarks) {
+  // Down to a stop just above a count, and up again.
+  const auto md = [](double t) {
+    return t < 60 ? 100.0033 - 0.002 * (t - 60) * (t - 60) : 100.0033;
+  };
+  const std::vector<DepthMark> marks = Encoder(90, 5, md);
+  double deepest = 0;
+  for (const DepthMark& mark : marks) deepest = std::max(deepest, mark.md);
+  const DepthTrack track = Track(marks);
+  for (double t = 0; t <= 90; t += 0.019) EXPECT_LE(track.At(Utc(t)).md, deepest) << t;
+}
+
+TEST(DepthTrack, NoiseOfTheMarksIsInTheSigmaOfTheSpeed) {
+  constexpr double kNoise = 0.02;
+  for (const double rate : {2.0, 10.0}) {
+    Random random(7);
+    std::vector<DepthMark> marks;
+    for (int i = 0; i <= 600 * rate; ++i) {
+      marks.push_back(Mark(i / rate, 500 + kNoise * random.Normal(), i));
+    }
+    const DepthTrack track = Track(marks);
+    double speed2 = 0, md2 = 0;
+    int n = 0;
+    for (double t = 5; t < 595; t += 2.1, ++n) {
+      const AlongHole along = track.At(Utc(t));
+      ASSERT_GT(along.sigma_speed, 0);
+      speed2 += std::pow(along.speed / along.sigma_speed, 2);
+      md2 += std::pow((along.md - 500) / along.sigma_md, 2);
+    }
+    // The scatter of a few marks is itself known to a third.
+    EXPECT_NEAR(speed2 / n, 1, 0.6) << rate;
+    EXPECT_LT(md2 / n, 3) << rate;
+    EXPECT_GT(md2 / n, 0.3) << rate;
+  }
+}
+
+TEST(DepthTrack, RareMarksAreJoinedWithoutJumpsAndSayWhatTheyDoNotKnow) {
+  // A stop, ten seconds of getting under way, a steady way.
+  const auto md = [](double t) {
+    if (t < 30) return 200.0;
+    if (t < 40) return 200 + 0.05 * (t - 30) * (t - 30);
+    return 205 + (t - 40);
+  };
+  for (const double every : {2.0, 4.0, 20.0}) {
+    std::vector<DepthMark> marks;
+    for (int i = 0; i * every <= 120; ++i) marks.push_back(Mark(i * every, md(i * every), i));
+    DepthTrackSetup setup;
+    setup.max_gap = Duration::Seconds(2.5 * every);
+    DepthTrack track(setup);
+    for (const DepthMark& mark : marks) ASSERT_FALSE(track.Push(mark));
+    double last = 0, last_speed = 0, worst = 0;
+    bool first = true;
+    for (double t = 0; t < 100; t += 0.01) {
+      const AlongHole along = track.At(Utc(t));
+      ASSERT_TRUE(along.known) << t;
+      if (!first) {
+        EXPECT_GE(along.md, last - 1e-9) << "monotone at " << t;
+        EXPECT_LT(std::abs(along.speed - last_speed), 0.02) << "smooth at " << t;
+      }
+      first = false;
+      last = along.md;
+      last_speed = along.speed;
+      worst = std::max(worst, std::abs(along.md - md(t)) / along.sigma_md);
+    }
+    EXPECT_LT(worst, 3) << every;
+    EXPECT_LT(track.At(Utc(5)).sigma_acceleration, every < 5 ? 1e-9 : 0.02);
+    EXPECT_GT(track.At(Utc(33)).sigma_acceleration, 0.02) << "getting under way " << every;
+    if (every < 5) {
+      EXPECT_LT(track.At(Utc(80)).sigma_acceleration, 1e-9) << every;
+      EXPECT_LT(track.At(Utc(80)).sigma_md, 0.005) << every;
+    } else {
+      EXPECT_GT(track.At(Utc(90)).sigma_md, 1) << "a stop may hide in 20 s";
+    }
+  }
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 
 constexpr std::int64_t kBlockNs = 1'000'000'000;
 constexpr double kGate = 5;          // sigmas
+constexpr double kSpeedSigmas = 4;   // of the depth's speed: one block in a hundred stops
 constexpr double kRagged = 4;        // [s] of either end of a stop that may stay out of the means
 constexpr double kCreepBlocks = 10;  // from which a slope says something
 // Floors: what a tool hanging in a live hole, and sensors a little worse than their data sheet, do.
@@ -104,8 +105,13 @@ std::optional<StillWindow> StillDetector::Push(const ImuSample& sample, const Al
   }
   Add(sample, along);
   previous_ = stamp;
-  sliding_ = along.known && std::abs(along.speed) > setup_.speed_limit;
+  sliding_ = along.known && std::abs(along.speed) > SpeedLimit(along.sigma_speed);
   return window;
+}
+
+/// A depth that does not know its speed so well cannot tell motion from its own noise.
+double StillDetector::SpeedLimit(double sigma_speed) const {
+  return std::max(setup_.speed_limit, kSpeedSigmas * sigma_speed);
 }
 
 void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
@@ -133,6 +139,7 @@ void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
   ++block.depths;
   block.sum_md += along.md;
   block.sum_speed += std::abs(along.speed);
+  block.sum_sigma_speed += along.sigma_speed;
 }
 
 /// Judges the finished block; returns the window that its motion ends.
@@ -153,6 +160,7 @@ std::optional<StillWindow> StillDetector::CloseBlock() {
                     .temperature = block.sum_temperature / n,
                     .md = block.sum_md / depths,
                     .speed = block.sum_speed / depths,
+                    .sigma_speed = block.sum_sigma_speed / depths,
                     .md_known = block.depths == block.samples,
                     .gz = block.gz,
                     .mag = block.mag,
@@ -171,7 +179,7 @@ std::optional<StillWindow> StillDetector::CloseBlock() {
 }
 
 bool StillDetector::StillAlone(const Means& block) const {
-  if (block.speed > setup_.speed_limit) return false;
+  if (block.speed > SpeedLimit(block.sigma_speed)) return false;
   const double period = static_cast<double>(block.first.period_ns) * 1e-9;
   const double n = static_cast<double>(block.samples);
   const double rate_model = RateVariance(setup_.gyro, period);

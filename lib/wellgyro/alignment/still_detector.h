@@ -21,7 +21,7 @@ struct StillSetup {
   /// and are not held against it.
   Duration min_still = Duration::Seconds(60);
   /// Along-hole speed above which the tool is not still [m/s]. One count of a 1 cm encoder reads
-  /// as at most 0.0052 m/s in a DepthTrack.
+  /// as at most 0.0052 m/s in a DepthTrack. Where the depth is noisier, four of its sigmas count.
   double speed_limit = 0.006;
   double travel_limit = 0.1;  ///< along-hole way within one window [m]
 };
@@ -67,7 +67,7 @@ class WELLGYRO_EXPORT StillDetector {
     std::int64_t samples = 0, depths = 0;
     Eigen::Vector3d w0 = Eigen::Vector3d::Zero(), f0 = w0;  ///< the first sample
     Eigen::Vector3d sum_w = w0, sum_f = w0, sum_b = w0, square_w = w0, square_f = w0;
-    double sum_temperature = 0, sum_md = 0, sum_speed = 0;
+    double sum_temperature = 0, sum_md = 0, sum_speed = 0, sum_sigma_speed = 0;
     bool gz = true, mag = true, saturated = false;
   };
   /// What remains of a finished block.
@@ -76,7 +76,7 @@ class WELLGYRO_EXPORT StillDetector {
     std::int64_t samples = 0;
     Eigen::Vector3d w = Eigen::Vector3d::Zero(), f = w, b = w;  ///< means
     Eigen::Vector3d var_w = w, var_f = w;                       ///< of one sample
-    double temperature = 0, md = 0, speed = 0;
+    double temperature = 0, md = 0, speed = 0, sigma_speed = 0;
     bool md_known = false, gz = false, mag = false, saturated = false;
 
     double seconds() const { return static_cast<double>(samples * first.period_ns) * 1e-9; }
@@ -97,6 +97,7 @@ class WELLGYRO_EXPORT StillDetector {
   };
 
   bool Continues(const SampleStamp& stamp) const;
+  double SpeedLimit(double sigma_speed) const;
   void Add(const ImuSample& sample, const AlongHole& along);
   std::optional<StillWindow> CloseBlock();
   bool StillAlone(const Means& block) const;

@@ -283,8 +283,9 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
   }
   if (s.stamp.accel_saturated) gains = {0, 0};
   if (s.along.known && memory_ > kFirstLevel) {
-    const double doubt = s.along.acceleration / options_.acceleration_doubt;
-    const double trust = 1 / (1 + doubt * doubt);
+    const double said = s.along.acceleration, sigma = s.along.sigma_acceleration;
+    const double doubt = options_.acceleration_doubt;
+    const double trust = 1 / (1 + (said * said + sigma * sigma) / (doubt * doubt));
     gains.level *= trust;
     gains.rate *= trust;
   }

@@ -1,5 +1,6 @@
 #include "wellgyro/depth/depth_grid.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace wellgyro {
@@ -46,7 +47,11 @@ AlongHole DepthGrid::At(UtcTime utc) {
              u * (b_.md + to * (b_.speed + 0.5 * to * b_.acceleration));
   along.speed = v * (a_.speed + dt * a_.acceleration) + u * (b_.speed + to * b_.acceleration);
   along.acceleration = v * a_.acceleration + u * b_.acceleration;
+  const auto [low, high] = std::minmax(a_.md, b_.md);
+  along.md = std::clamp(along.md, low, high);
   along.sigma_md = v * a_.sigma_md + u * b_.sigma_md;
+  along.sigma_speed = v * a_.sigma_speed + u * b_.sigma_speed;
+  along.sigma_acceleration = v * a_.sigma_acceleration + u * b_.sigma_acceleration;
   along.known = true;
   return along;
 }

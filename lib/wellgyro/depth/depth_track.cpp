@@ -11,7 +11,11 @@
 namespace wellgyro {
 namespace {
 
+// Of the window: marks no further apart are fitted, others joined.
+constexpr double kDense = 0.55;
 constexpr double kHold = 0.02;         // [m] between marks of a tool that stands
+constexpr double kStopAndGo = 5;       // [s] between marks in which a stop may hide
+constexpr double kUnseen = 0.03;       // [m/s^2], acceleration of a winch, rms
 constexpr double kSpikeAtLeast = 0.3;  // [m]
 constexpr double kJumpAtLeast = 1;     // [m]
 
@@ -153,7 +157,7 @@ std::optional<Fault> DepthTrack::Push(const Event& event) {
 bool DepthTrack::Settled(UtcTime utc) const {
   if (marks_.empty()) return false;
   const UtcTime final = newest_ - setup_.latency;
-  if (final < utc + setup_.half_window) return false;
+  if (final < utc + Reach()) return false;
   const std::size_t after = After(utc);
   return after < marks_.size() && marks_[after].utc <= final;
 }
@@ -222,19 +226,60 @@ double DepthTrack::Offset(const Shift& shift) const {
   return held ? shift.value - next.md : 0;
 }
 
-/// The line between the two neighbours, or the mark itself where it is alone.
-AlongHole DepthTrack::Line(UtcTime utc, Span span) const {
+/// The marks about `utc` are too far apart for a fit.
+bool DepthTrack::Sparse(UtcTime utc) const {
+  const std::size_t after = After(utc);
+  if (after == 0 || after == marks_.size()) return false;
+  const double gap = Seconds(marks_[after].utc, marks_[after - 1].utc);
+  return gap > kDense * setup_.half_window.seconds();
+}
+
+/// The monotone cubic between the two neighbours (slopes at the marks after Fritsch and Butland,
+/// SIAM J. Sci. Stat. Comput. 5 (1984)), or the mark itself where it is alone. Of the marks beyond
+/// the two those count that lie within max_gap of the other.
+AlongHole DepthTrack::Join(UtcTime utc, Span span) const {
   std::size_t i = std::clamp(After(utc), span.begin + 1, span.end) - 1;
   if (i + 1 == span.end && i > span.begin) --i;
   const Mark& a = marks_[i];
   const Mark& b = marks_[std::min(i + 1, span.end - 1)];
-  const double seconds = Seconds(b.utc, a.utc);
-  const double speed = seconds > 0 ? (b.md - a.md) / seconds : 0;
-  return {.md = a.md + speed * Seconds(utc, a.utc),
-          .speed = speed,
-          .acceleration = 0,
-          .sigma_md = setup_.sigma_reading,
-          .known = true};
+  const double h = Seconds(b.utc, a.utc);
+  if (!(h > 0)) return {.md = a.md, .sigma_md = setup_.sigma_reading, .known = true};
+  const double v = (b.md - a.md) / h;
+  const auto slope = [](const Mark& m, const Mark& n) {
+    return (n.md - m.md) / Seconds(n.utc, m.utc);
+  };
+  const auto joins = [&](const Mark& m, const Mark& n, UtcTime near, UtcTime far) {
+    const Duration way = far < near ? near - far : far - near;
+    return way <= setup_.max_gap && !n.jumps && m.utc < n.utc && Segment(m.utc) == Segment(n.utc);
+  };
+  double va = v, vb = v, change_a = 0, change_b = 0;
+  const auto mean = [](double p, double q) { return p * q > 0 ? 2 * p * q / (p + q) : 0.0; };
+  if (i > 0 && joins(marks_[i - 1], a, b.utc, marks_[i - 1].utc)) {
+    const double before = slope(marks_[i - 1], a);
+    va = mean(before, v);
+    change_a = std::abs(v - before);
+  }
+  if (i + 2 < marks_.size() && joins(b, marks_[i + 2], a.utc, marks_[i + 2].utc)) {
+    const double beyond = slope(b, marks_[i + 2]);
+    vb = mean(v, beyond);
+    change_b = std::abs(beyond - v);
+  }
+  const double u = std::clamp(Seconds(utc, a.utc) / h, 0.0, 1.0), w = 1 - u;
+  const double rise = v * h, ca = h * va - rise, cb = rise - h * vb;
+  AlongHole along;
+  along.md = a.md + u * rise + u * w * (w * ca + u * cb);
+  along.speed = (rise + (w - u) * (w * ca + u * cb) + u * w * (cb - ca)) / h;
+  along.acceleration = (2 * (1 - 3 * w) * ca + 2 * (3 * u - 1) * -cb) / (h * h);
+  along.known = true;
+  // What the speed may have done unseen: as much as it changes from mark to mark, and over a time
+  // in which a tool is stopped and started again as much as it is.
+  const bool stops = h > kStopAndGo;
+  const double change = std::max({change_a, change_b, stops ? std::abs(v) : 0.0});
+  along.sigma_md = std::hypot(setup_.sigma_reading, u * w * h * change / 2);
+  along.sigma_speed = std::hypot(setup_.sigma_reading / h, change / 2);
+  along.sigma_acceleration = (change_a + change_b) / h;
+  if (stops && v != 0) along.sigma_acceleration += kUnseen;
+  return along;
 }
 
 AlongHole DepthTrack::At(UtcTime utc) const {
@@ -243,22 +288,28 @@ AlongHole DepthTrack::At(UtcTime utc) const {
   if (!Bracketed(utc, span)) return {};
   const double w = setup_.half_window.seconds();
   const double md0 = marks_[span.begin].md;
+  double low = md0, high = md0;
   LocalFit fit;
   for (std::size_t i = span.begin; i < span.end; ++i) {
     const double u = Seconds(marks_[i].utc, utc) / w;
     fit.Add(u, marks_[i].md - md0, 1 - u * u);
+    low = std::min(low, marks_[i].md);
+    high = std::max(high, marks_[i].md);
   }
   AlongHole along;
-  if (fit.count() < 3) {
-    along = Line(utc, span);
+  if (fit.count() < 3 || Sparse(utc)) {
+    along = Join(utc, span);
   } else {
     // The encoder's rounding repeats from mark to mark: it does not average.
     const LocalFit::Value y = fit.Fit(2);
-    along = {.md = md0 + y.value,
+    const double noise = std::max(setup_.sigma_reading, y.scatter);
+    along = {.md = std::clamp(md0 + y.value, low, high),
              .speed = y.slope / w,
              .acceleration = y.curvature / (w * w),
-             .sigma_md = setup_.sigma_reading * std::max(1.0, std::sqrt(y.variance_value)),
-             .known = true};
+             .sigma_md = std::max(setup_.sigma_reading, noise * std::sqrt(y.variance_value)),
+             .known = true,
+             .sigma_speed = noise * std::sqrt(y.variance_slope) / w,
+             .sigma_acceleration = noise * std::sqrt(y.variance_curvature) / (w * w)};
   }
   const Mark& nearest = marks_[std::clamp(After(utc), span.begin + 1, span.end) - 1];
   double sigma_event = 0;
@@ -277,10 +328,10 @@ void DepthTrack::Forget(UtcTime utc) {
   for (const Shift& shift : shifts_) {
     if (!shift.offset) keep = std::min(keep, shift.utc);
   }
-  // The last mark at or before stays, to bracket what follows.
+  // The last two marks at or before stay, to bracket what follows.
   const std::size_t after = After(keep);
-  if (after < 2) return;
-  marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(after - 1));
+  if (after < 3) return;
+  marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(after - 2));
   forgotten_ = std::max(forgotten_.value_or(marks_.front().utc), marks_.front().utc);
 }
 

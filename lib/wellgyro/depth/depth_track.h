@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -26,13 +27,17 @@ struct DepthTrackSetup {
 /// Depth of the string's reference point against UTC, from the marks of the depth system.
 ///
 /// Depth, speed and acceleration at an instant t are a local quadratic with weights 1 - u^2 over
-/// the marks nearer to t than `half_window` (the line between the two neighbours where fewer than
-/// three are): a function of these marks alone. It is never extrapolated beyond the last mark.
+/// the marks nearer to t than `half_window`, where these are no further apart than half of it: a
+/// function of these marks alone. Marks rarer than that are joined by a monotone cubic, whose
+/// sigmas say how much the speed changes from mark to mark, so that whoever needs the acceleration
+/// knows where it is not known. Depth never leaves the range of the marks it rests on, and is never
+/// extrapolated beyond the last.
 /// Between marks further apart than `max_gap` depth is unknown, unless the first says `stopped` and
 /// both agree within 2 cm; across a jump of the counter it is unknown, and no fit spans one.
 /// A 1 cm encoder on a winch that swings by 4 cm/s gives speed and acceleration to 1 mm/s and
 /// 2 mm/s^2 rms at 10 Hz, to 2 mm/s and 5 mm/s^2 at 1 Hz; one count at rest reads as 5 mm/s. A
-/// sudden change of speed is smeared over the window. Marks rarer than 1 Hz give lines only.
+/// sudden change of speed is smeared over the window. Noise of the marks beyond `sigma_reading` is
+/// seen from their scatter.
 ///
 /// Depth events cut the track: from a DEPTH_ZERO, DEPTH_REZERO or DEPTH_TIE on depths read value_m
 /// there, whether or not the depth system itself was set; earlier depths stay. No fit spans one.
@@ -53,7 +58,9 @@ class WELLGYRO_EXPORT DepthTrack {
   /// At(utc) is final: no mark that may still come in changes it. Events must be in by then.
   bool Covers(UtcTime utc) const;
   /// How far behind the newest mark Covers() stays.
-  Duration lag() const { return setup_.half_window + setup_.latency; }
+  Duration lag() const { return Reach() + setup_.latency; }
+  /// How long after an instant the marks that tell its depth are made, or have come.
+  Duration wait() const { return std::max(setup_.half_window + setup_.latency, setup_.max_gap); }
   bool empty() const { return marks_.empty(); }
   UtcTime newest() const { return newest_; }
   /// Depth events that hold at `utc`, so far pushed: where it changes, depth may jump.
@@ -91,7 +98,10 @@ class WELLGYRO_EXPORT DepthTrack {
   bool Settled(UtcTime utc) const;
   void NoteJump(std::size_t i);
   std::optional<Fault> DropSpike(std::size_t last);
-  AlongHole Line(UtcTime utc, Span span) const;
+  /// How far from an instant the marks may be that tell its depth.
+  Duration Reach() const { return std::max(setup_.half_window, setup_.max_gap); }
+  bool Sparse(UtcTime utc) const;
+  AlongHole Join(UtcTime utc, Span span) const;
 
   DepthTrackSetup setup_;
   std::vector<Mark> marks_;    ///< by time

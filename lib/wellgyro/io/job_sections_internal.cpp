@@ -233,6 +233,7 @@ DepthSpec ReadDepth(TomlTable table) {
     spec.kind = *known;
   }
   table.Read("latency_s", spec.latency, 1, {.min = 0, .max = 86'400});
+  table.Read("max_gap_s", spec.max_gap, 1, {.min = 0.1, .max = 600});
   for (const auto& row :
        table.FindRows("corrections", 2).value_or(std::vector<std::vector<double>>())) {
     if (!spec.corrections.empty() && !(row[0] > spec.corrections.back().first)) {

@@ -1,5 +1,7 @@
 #include "wellgyro/math/interpolation.h"
 
+#include <cmath>
+
 #include <Eigen/Core>
 #include <Eigen/LU>
 
@@ -16,7 +18,8 @@ bool Determined(const Eigen::Matrix<double, n, n>& moments) {
 }
 
 template <int n>
-LocalFit::Value Solve(const double* s, const double* w2, const double* y, bool& determined) {
+LocalFit::Value Solve(const double* s, const double* w2, const double* y, double yy, int count,
+                      bool& determined) {
   Eigen::Matrix<double, n, n> m, squares;
   Eigen::Matrix<double, n, 1> right;
   for (int i = 0; i < n; ++i) {
@@ -34,7 +37,17 @@ LocalFit::Value Solve(const double* s, const double* w2, const double* y, bool& 
   value.value = c[0];
   if constexpr (n > 1) value.slope = c[1];
   if constexpr (n > 2) value.curvature = 2 * c[2];
-  value.variance_value = (inverse * squares * inverse)(0, 0);
+  const Eigen::Matrix<double, n, n> variance = inverse * squares * inverse;
+  value.variance_value = variance(0, 0);
+  if constexpr (n > 1) value.variance_slope = variance(1, 1);
+  if constexpr (n > 2) value.variance_curvature = 4 * variance(2, 2);
+  // Weighted squares left over, by their expectation for unit variance. What a difference of large
+  // sums leaves by rounding is none.
+  const double left = yy - c.dot(right);
+  const double expected = s[0] - (inverse * squares).trace();
+  if (count > n && expected > 1e-6 * s[0] && left > 1e-12 * yy) {
+    value.scatter = std::sqrt(left / expected);
+  }
   return value;
 }
 
@@ -51,19 +64,20 @@ void LocalFit::Add(double t, double y, double weight) {
     w2_[k] += power * weight;
     if (k < 3) y_[k] += power * y;
   }
+  yy_ += weight * y * y;
 }
 
 LocalFit::Value LocalFit::Fit(int degree) const {
   bool determined = false;
   if (degree >= 2 && count_ >= 3) {
-    const Value value = Solve<3>(s_, w2_, y_, determined);
+    const Value value = Solve<3>(s_, w2_, y_, yy_, count_, determined);
     if (determined) return value;
   }
   if (degree >= 1 && count_ >= 2) {
-    const Value value = Solve<2>(s_, w2_, y_, determined);
+    const Value value = Solve<2>(s_, w2_, y_, yy_, count_, determined);
     if (determined) return value;
   }
-  return count_ > 0 ? Solve<1>(s_, w2_, y_, determined) : Value{};
+  return count_ > 0 ? Solve<1>(s_, w2_, y_, yy_, count_, determined) : Value{};
 }
 
 }  // namespace wellgyro

@@ -14,8 +14,10 @@ WELLGYRO_EXPORT double LerpAngle(double a, double b, double u);
 class WELLGYRO_EXPORT LocalFit {
  public:
   struct Value {
-    double value = 0, slope = 0, curvature = 0;  ///< y, dy/dt, d2y/dt2 at t = 0
-    double variance_value = 0;                   ///< for unit variance of every y
+    double value = 0, slope = 0, curvature = 0;         ///< y, dy/dt, d2y/dt2 at t = 0
+    double variance_value = 0;                          ///< for unit variance of every y ...
+    double variance_slope = 0, variance_curvature = 0;  ///< ... and of the derivatives
+    double scatter = 0;  ///< 1-sigma of one y, as the points scatter about the fit; 0: too few
   };
 
   void Add(double t, double y, double weight);
@@ -30,6 +32,7 @@ class WELLGYRO_EXPORT LocalFit {
   double s_[5] = {};   ///< sum of w t^k
   double w2_[5] = {};  ///< sum of w^2 t^k
   double y_[3] = {};   ///< sum of w t^k y
+  double yy_ = 0;      ///< sum of w y^2
 };
 
 }  // namespace wellgyro

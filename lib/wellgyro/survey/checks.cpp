@@ -287,6 +287,9 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
         Compare("samples_lost", run.run, {static_cast<double>(run.samples_lost), 0}, 0.0, 1, "1");
     lost.limit_source = "none may be lost";
     checks.push_back(lost);
+    Check unknown = Compare("depth_unknown", run.run, {run.seconds_without_depth, 0}, 0.0, 1, "s");
+    unknown.limit_source = "marks no further apart than [depth] max_gap_s";
+    if (run.samples > 0) checks.push_back(unknown);
   }
   CheckReturns(job, inputs, checks);
   CheckForesights(job, inputs, checks);

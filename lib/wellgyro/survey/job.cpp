@@ -67,6 +67,7 @@ void CheckAlignment(const AlignmentSpec& alignment) {
 
 void CheckDepth(const DepthSpec& depth) {
   RequireWithin("depth.latency_s", depth.latency, 0, 600);
+  RequireWithin("depth.max_gap_s", depth.max_gap, 0.1, 600);
   for (std::size_t i = 0; i < depth.corrections.size(); ++i) {
     RequireWithin("depth.corrections", depth.corrections[i].second, -1e4, 1e4);
     if (i > 0 && !(depth.corrections[i].first > depth.corrections[i - 1].first)) {

@@ -49,6 +49,7 @@ struct StationSpec {
 struct DepthSpec {
   DepthKind kind = DepthKind::kIndicated;
   double latency = 5;  ///< how late a depth mark may come, against the samples [s]
+  double max_gap = 5;  ///< between marks of a moving tool, above which depth is unknown [s]
   /// (measured depth, what to add to it) [m], linear between; empty: none.
   std::vector<std::pair<double, double>> corrections;
 };

@@ -68,9 +68,12 @@ std::optional<Station> ProvisionalPath::Place(const Draft& draft, const StationS
   if (extends && station.md > points_.back().station.md) {
     Extend(station, state);
   } else {
-    if (extends && state && covariance_) covariance_->Skip(*state);
+    // A station of a stop comes again when the job turns out to list it.
+    const bool again = state && told_ && state->epoch <= *told_;
+    if (extends && state && covariance_ && !again) covariance_->Skip(*state);
     LayOn(station);
   }
+  if (extends && state) told_ = std::max(told_.value_or(state->epoch), state->epoch);
   if (!draft.listed || station.md <= job_.tie_in.md + kSameDepth) return std::nullopt;
   return station;
 }

@@ -19,7 +19,8 @@ class ProvisionalPath {
   explicit ProvisionalPath(const Job& job) : job_(job) {}
 
   /// The station of `draft`, whose attitude is that of `state`; absent where it has no position
-  /// yet. Every draft of the run goes through here once, in the order of time.
+  /// yet. Every draft of the run goes through here in the order of time, and once more where it
+  /// comes to be listed afterwards.
   std::optional<Station> Place(const Draft& draft, const StationState* state);
 
  private:
@@ -28,7 +29,8 @@ class ProvisionalPath {
   void LayOn(Station& station) const;
 
   const Job& job_;
-  std::int32_t pass_number_ = 0;  ///< of the in-run; 0: not begun
+  std::int32_t pass_number_ = 0;     ///< of the in-run; 0: not begun
+  std::optional<std::size_t> told_;  ///< epoch of the last station of that pass
   std::optional<Path> path_;
   std::optional<AlongHoleCovariance> covariance_;
   std::vector<PathPoint> points_;

@@ -40,8 +40,13 @@ StillSetup StillSetupOf(const Job& job) {
 AlongHole Between(const AlongHole& a, const AlongHole& b, double fraction) {
   if (!a.known || !b.known) return {};
   const auto mix = [fraction](double x, double y) { return x + fraction * (y - x); };
-  return {mix(a.md, b.md), mix(a.speed, b.speed), mix(a.acceleration, b.acceleration),
-          mix(a.sigma_md, b.sigma_md), true};
+  return {mix(a.md, b.md),
+          mix(a.speed, b.speed),
+          mix(a.acceleration, b.acceleration),
+          mix(a.sigma_md, b.sigma_md),
+          true,
+          mix(a.sigma_speed, b.sigma_speed),
+          mix(a.sigma_acceleration, b.sigma_acceleration)};
 }
 
 bool Covers(const StillWindow& window, ToolTime begin, ToolTime end) {
@@ -67,7 +72,7 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
                      const AlongHole& middle) {
   if (summary_.samples == 0) summary_.begin = utc;
   ++summary_.samples;
-  depth_seen_ = depth_seen_ || along.known;
+  CountDepth(sample.stamp, along.known);
   PassState pass = passes_.state();
   if (along.known) pass = passes_.Push(utc, along.md);
   const bool taken = tracker_.Push(sample, middle, site_);
@@ -90,6 +95,16 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
                           ? std::abs(along.md - *last.md) > kSamePlace
                           : (sample.stamp.tool_time - last.end).seconds() > kSamePlaceSeconds;
     if (left) CloseGroup();
+  }
+}
+
+void RunSurvey::CountDepth(const SampleStamp& stamp, bool known) {
+  if (known) {
+    if (depth_seen_) summary_.seconds_without_depth += seconds_unknown_;
+    seconds_unknown_ = 0;
+    depth_seen_ = true;
+  } else {
+    seconds_unknown_ += 1e-9 * stamp.period_ns;
   }
 }
 
@@ -197,7 +212,9 @@ void RunSurvey::ListLastMark() {
 /// A tool that comes to rest makes a station, listed only if the job asks for stops or if it turns
 /// out to be the deepest.
 std::optional<Draft> RunSurvey::RestDraft(const AlongHole& end) const {
-  if (!end.known || std::abs(end.speed) > kRestSpeed) return std::nullopt;
+  if (!end.known || std::abs(end.speed) > std::max(kRestSpeed, 4 * end.sigma_speed)) {
+    return std::nullopt;
+  }
   if (marked_ && std::abs(end.md - last_mark_md_) <= kSameDepth) return std::nullopt;
   Draft draft = NewDraft(end.md);
   draft.listed = false;

@@ -80,6 +80,7 @@ class RunSurvey {
     bool external = false;
   };
 
+  void CountDepth(const SampleStamp& stamp, bool known);
   void Summed(const AlongHole& end, const PassState& pass_end);
   void AddTargets(double md_end);
   void ListLastMark();
@@ -113,6 +114,7 @@ class RunSurvey {
   double last_mark_md_ = 0;
   bool marked_ = false;
   bool depth_seen_ = false;
+  double seconds_unknown_ = 0;  ///< since the last sample with a depth [s]
   bool external_pending_ = false;
   std::optional<double> asked_md_;
   bool asked_ = false;

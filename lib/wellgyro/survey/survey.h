@@ -22,7 +22,9 @@ struct RunSummary {
   std::int64_t samples = 0;            ///< accepted
   std::int64_t samples_lost = 0;       ///< by sequence number
   std::int64_t samples_after_end = 0;  ///< left out, because the job ends the run before them
-  std::int64_t duplicates = 0;         ///< sent again and skipped
+  /// Without a depth, between the first and the last that had one [s].
+  double seconds_without_depth = 0;
+  std::int64_t duplicates = 0;  ///< sent again and skipped
   std::vector<NorthFix> fixes;
 };
 

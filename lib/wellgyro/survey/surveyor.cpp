@@ -26,6 +26,7 @@ const Job& Checked(const Job& job) {
 DepthTrackSetup TrackSetup(const Job& job) {
   DepthTrackSetup setup;
   setup.latency = std::max(Duration::Seconds(job.depth.latency), Duration::Seconds(0.001));
+  setup.max_gap = Duration::Seconds(job.depth.max_gap);
   setup.sigma_md = job.errors.depth_sigma;
   return setup;
 }

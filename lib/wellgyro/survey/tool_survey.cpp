@@ -25,7 +25,7 @@ constexpr double kHeldSpeed = 0.006;  // [m/s], that of the still detector
 
 /// Depth marks of a second and more after a sample decide its depth; so long it waits for them.
 Duration Hold(const Job& job, const DepthTrack& track) {
-  return Duration::Seconds(job.depth.latency) + track.lag() + DepthGrid::kStep;
+  return Duration::Seconds(job.depth.latency) + track.wait() + DepthGrid::kStep;
 }
 
 UtcTime TimeOf(const Operation& operation) {
@@ -470,7 +470,9 @@ Survey ToolSurvey::Current() const {
   });
   if (!depth) {
     survey.unusable = fmt::format(
-        "samples came but no depth with them: no marks on {} at their times", job_.channels.depth);
+        "samples came but no depth with them: no marks on {} at their times, or all further apart "
+        "than [depth] max_gap_s = {}",
+        job_.channels.depth, job_.depth.max_gap);
   } else if (!north && (survey.chosen.empty() || WithoutAzimuth() > 0)) {
     survey.unusable = job_.alignment.method == AlignmentSpec::Method::kExternal
                           ? "no north was found: the depth or time at which the job's external "

@@ -1,0 +1,161 @@
+// Depth as rigs give it: rare marks, noisy marks, marks that end with the run. Cases from reports
+// of 2026-11-21.
+#include <cmath>
+#include <cstdint>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/math/random.h"
+#include "wellgyro/simulate/truth.h"
+
+#include "support/simulated_survey.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::CollectingSink;
+
+Simulation Building(double depth_hz) {
+  Simulation simulation;
+  simulation.well.end_md = 420;
+  simulation.well.inclination.start = FromDegrees(30);
+  AngleTerm build;
+  build.rate = FromDegrees(0.05);
+  simulation.well.inclination.terms.push_back(build);
+  simulation.well.azimuth.start = FromDegrees(45);
+  simulation.earth.latitude = FromDegrees(55);
+  simulation.run.roll_reference = RollReference::kHighSide;
+  simulation.tool.errors.gyro_noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+  RunStop stop;
+  stop.seconds = 90;
+  simulation.run.steps = {stop};
+  for (const double md : {100.0, 200.0, 300.0, 400.0}) {
+    RunMove move;
+    move.to_md = md;
+    move.ramp = 5;
+    simulation.run.steps.push_back(move);
+    simulation.run.steps.push_back(stop);
+  }
+  simulation.streams.imu_hz = 20;
+  simulation.streams.depth_hz = depth_hz;
+  return simulation;
+}
+
+Job BuildingJob() {
+  Job job;
+  job.well.latitude = FromDegrees(55);
+  job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+  job.stations.every = 20;
+  job.stations.at_stops = true;
+  return job;
+}
+
+const Check* Find(const Survey& survey, const std::string& code) {
+  for (const Check& check : survey.checks) {
+    if (check.code == code) return &check;
+  }
+  return nullptr;
+}
+
+TEST(DepthCases, InclinationNearStopsDoesNotSufferFromRareMarks) {
+  const Simulation simulation = Building(4);
+  const Truth truth(simulation);
+  for (const double every : {0.25, 2.0, 4.9, 10.0, 30.0}) {
+    Simulation rare = Building(1 / every);
+    Job job = BuildingJob();
+    if (every > 4) job.depth.max_gap = 2 * every;
+    Sink sink;
+    const Survey survey = testing::SurveyOf(rare, job, sink);
+    ASSERT_EQ(survey.unusable, "") << every;
+    double inclination = 0, position = 0;
+    ASSERT_GE(survey.chosen.size(), 20u);
+    for (const Station& s : survey.chosen) {
+      const WellPoint point = truth.well().PointAt(s.md);
+      const double off = s.inclination - point.inclination;
+      const double along = s.dogleg_severity * std::sqrt(s.cov_md_inc_azi(0, 0));
+      inclination = std::max(inclination, std::abs(off) - 3 * along);
+      const Eigen::Vector3d p = s.p_WT_W - truth.well().PlaceAt(s.md).p_WT_W;
+      position = std::max(position, p.norm());
+      EXPECT_LT(std::abs(off), FromDegrees(0.06) + 3 * along) << s.md << " every " << every;
+    }
+    std::printf("marks every %5.2f s: inclination %.3f deg, position %.3f m, unknown %.1f s\n",
+                every, ToDegrees(inclination), position, survey.runs[0].seconds_without_depth);
+    EXPECT_EQ(survey.runs[0].seconds_without_depth, 0);
+  }
+}
+
+TEST(DepthCases, MarksFurtherApartThanAllowedAreTold) {
+  const Simulation simulation = Building(0.1);
+  Sink sink;
+  Job job = BuildingJob();
+  const Survey survey = testing::SurveyOf(simulation, job, sink);
+  const Check* unknown = Find(survey, "depth_unknown");
+  ASSERT_NE(unknown, nullptr);
+  EXPECT_EQ(unknown->verdict, Verdict::kFail);
+  EXPECT_GT(unknown->value.value_or(0), 300);
+}
+
+TEST(DepthCases, StopsOffTheStationsDepthsCanBeListed) {
+  Simulation simulation = Building(4);
+  std::get<RunMove>(simulation.run.steps[3]).to_md = 207;
+  CollectingSink sink;
+  const Survey survey = testing::SurveyOf(simulation, BuildingJob(), sink);
+  ASSERT_EQ(survey.unusable, "");
+  bool there = false;
+  for (const Station& s : survey.chosen) there = there || std::abs(s.md - 207) < 0.01;
+  EXPECT_TRUE(there);
+}
+
+TEST(DepthCases, NoisyDepthDoesNotHideTheStops) {
+  for (const double rate : {2.0, 10.0}) {
+    Random random(11);
+    Simulator simulator(Building(rate));
+    Job job = BuildingJob();
+    job.errors.depth_sigma = 0.02;
+    Sink sink;
+    Surveyor surveyor(job, sink);
+    SimulatedStep step;
+    while (simulator.Next(step)) {
+      if (auto* mark = std::get_if<DepthMark>(&step)) {
+        mark->md += 0.02 * random.Normal();
+        mark->stopped = false;
+      }
+      std::visit([&](const auto& record) { surveyor.Push(record); }, step);
+    }
+    surveyor.Finish();
+    const Survey survey = surveyor.Current(0);
+    ASSERT_EQ(survey.unusable, "") << rate;
+    EXPECT_EQ(survey.runs[0].fixes.size(), 5u) << rate << " Hz";
+    for (const NorthFix& fix : survey.runs[0].fixes) {
+      EXPECT_GT((fix.end - fix.begin).seconds(), 60) << rate << " Hz, of 90 s";
+    }
+  }
+}
+
+TEST(DepthCases, NoStationLiesBeyondTheEncodersEnd) {
+  for (int k = 0; k < 8; ++k) {
+    Simulation simulation = Building(5);
+    std::get<RunMove>(simulation.run.steps[7]).to_md = 400 + 0.0007 + 0.00125 * k;
+    simulation.tool.errors.depth_resolution = 0.01;
+    Simulator simulator(simulation);
+    Sink sink;
+    Surveyor surveyor(BuildingJob(), sink);
+    SimulatedStep step;
+    double deepest = 0;
+    while (simulator.Next(step)) {
+      if (auto* mark = std::get_if<DepthMark>(&step)) deepest = std::max(deepest, mark->md);
+      std::visit([&](const auto& record) { surveyor.Push(record); }, step);
+    }
+    surveyor.Finish();
+    const Survey survey = surveyor.Current(0);
+    ASSERT_EQ(survey.unusable, "");
+    for (const Station& s : survey.passes) EXPECT_LE(s.md, deepest) << k;
+    EXPECT_GT(survey.chosen.back().md, deepest - 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace wellgyro
