@@ -1,11 +1,14 @@
 // Readings that cannot give a calibration: the sentence says which rows, and what to do.
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "wellgyro/fit/affine_fit.h"
 #include "wellgyro/fit/gyro_fit.h"
+#include "wellgyro/fit/multi_station_fit.h"
 #include "wellgyro/fit/position_fit.h"
 #include "wellgyro/fit/scalar_fit.h"
 #include "wellgyro/fit/thermometer_fit.h"
@@ -161,6 +164,54 @@ TEST(BenchRefusals, ReadingsThatHaveNotSettled) {
       {.sigma = 1e-5, .readings = 20, .transient = 5e-3, .transient_readings = 15}, random);
   EXPECT_THAT(FaultOf(FitTwentyFourPositions(drifting, {})).text,
               HasSubstr("x up at 0 deg, channel x: the readings have not settled"));
+}
+
+TEST(BenchRefusals, SwappedInSomePositionsOnly) {
+  BenchTable volts = Volts();
+  std::vector<int> swapped;
+  for (int i = 0; i < volts.rows(); ++i) {
+    if (volts.values(i, 0) == 0 && volts.values(i, 2) == 90) {
+      volts.values(i, 1) *= -1;
+      if (volts.values(i, 3) == 0 && volts.values(i, 4) == 0)
+        swapped.push_back(volts.lines[static_cast<std::size_t>(i)]);
+    }
+  }
+  const Fault fault = FaultOf(FitTwentyFourPositions(volts, {.settle_tolerance = 1e-3}));
+  EXPECT_THAT(fault.text, AllOf(HasSubstr("up and down are swapped in these positions"),
+                                HasSubstr(std::to_string(swapped.at(1)))));
+  EXPECT_EQ(fault.line, swapped.at(0));
+}
+
+TEST(BenchRefusals, HalfOfTheGyrosRowsInAnotherUnit) {
+  Random random(8);
+  BenchTable gyros = GyrosAtRest(GyroTool::Any(random), 45, 0.01, random);
+  gyros.values.bottomRightCorner(60, 4) /= 3600;
+  EXPECT_THAT(FaultOf(FitGyro(gyros, {}, {.reference = {.latitude = 45 * kRad}})).text,
+              AllOf(HasSubstr("the readings do not fit"), HasSubstr("mixed units")));
+}
+
+TEST(BenchRefusals, SignsAndColumnsOfTwoSensorsThatMustAgree) {
+  BenchTable both = Anywhere();
+  const ScalarSetup setup{.reference = {.field = 50'000, .dip = 60 * kRad}};
+  ASSERT_TRUE(FitScalarDip(both, setup).has_value());
+  both.values.middleCols(3, 3) *= -1;
+  EXPECT_THAT(FaultOf(FitScalarDip(both, setup)).text, HasSubstr("sign"));
+  both = Anywhere();
+  both.values.col(6).swap(both.values.col(7));
+  EXPECT_THAT(FaultOf(FitScalarDip(both, setup)).text, HasSubstr("exchange the columns"));
+  Random random(9);
+  BenchTable run = Stations({20, 30, 40}, {0, 0, 0}, {50'500, 71}, 5, 1e-4, random);
+  const MultiStationSetup stations{.reference = {.field = 50'500, .dip = 71 * kRad}};
+  ASSERT_TRUE(FitMultiStation(run, stations).has_value());
+  run.values.leftCols(3) *= -1;
+  EXPECT_THAT(FaultOf(FitMultiStation(run, stations)).text,
+              HasSubstr("the sign of the accelerometers is wrong"));
+}
+
+TEST(BenchRefusals, ThermometersInAnotherUnit) {
+  TableMaker table({"t_m", "ref1"});
+  for (int i = 0; i < 10; ++i) table.Add({20.0 + 15 * i, 68.0 + 27 * i + 0.1 * (i % 3)});
+  EXPECT_THAT(FaultOf(FitThermometer(table.Finish(), {})).text, HasSubstr("degC"));
 }
 
 TEST(BenchRefusals, MissingColumns) {

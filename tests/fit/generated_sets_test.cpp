@@ -182,6 +182,26 @@ TEST(GeneratedSets, Gyros) {
   }
 }
 
+TEST(GeneratedSets, GyrosWeighTheTableByItsOwnScatter) {
+  // Neither sigma given; the table's readings are 25 times as noisy.
+  double square = 0;
+  int n = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(20'000 + seed);
+    const GyroTool tool = GyroTool::Any(random);
+    const BenchTable rest = GyrosAtRest(tool, 60, 0.02, random);
+    const auto fit =
+        FitGyro(rest, GyrosOnTable(tool, 60, 0.5, random), {.reference = {.latitude = 60 * kRad}});
+    ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+    for (const std::string& remark : fit->report.remarks)
+      EXPECT_EQ(remark.find("left out"), std::string::npos) << remark;
+    const Eigen::VectorXd truth = Joined({tool.b, Rows(tool.U)});
+    for (Eigen::Index i = 0; i < truth.size(); ++i, ++n)
+      square += std::pow(fit->report.values[i] - truth[i], 2) / fit->report.cov(i, i);
+  }
+  EXPECT_NEAR(square / n, 1, 0.2);
+}
+
 TEST(GeneratedSets, MultiStation) {
   ExpectFamily("multi-station", 10'000, [](Random& random) {
     const Eigen::Vector3d bm = Noise(random, 70), sm = Noise(random, 1.6e-3);

@@ -120,6 +120,11 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   BenchCalibration out;
   out.report = ReportOf(problem, *solution);
   out.report.method = "affine";
+  std::vector<ChannelSignal> signals;
+  for (const std::string& channel : table->accel_channels)
+    signals.push_back({channel, setup.reference.gravity});
+  for (const std::string& channel : table->mag_channels)
+    signals.push_back({channel, setup.reference.field.value_or(0)});
   int first = 0;
   for (const AffineReadings& group : groups) {
     if (auto fault = WrongAxes(data, MatrixAt(solution->x, first + 3), group.channels))
@@ -127,6 +132,7 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
     AddGroup(group, *table, setup.reference, first, out);
     first += group.size();
   }
+  if (auto fault = DoesNotFit(data, signals, out.report)) return *fault;
   return out;
 }
 

@@ -136,6 +136,64 @@ std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector
                     data.lines[0]);
 }
 
+std::optional<Fault> SwappedPositions(const BenchTable& data,
+                                      const std::vector<UprightReading>& readings) {
+  std::vector<int> lines;
+  for (int c = 0; c < 3; ++c) {
+    double up = 0, down = 0, n_up = 0, n_down = 0;
+    for (const UprightReading& reading : readings) {
+      if (reading.channel != c) continue;
+      (reading.sign > 0 ? up : down) += reading.value;
+      (reading.sign > 0 ? n_up : n_down) += 1;
+    }
+    if (n_up == 0 || n_down == 0) continue;
+    const double middle = (up / n_up + down / n_down) / 2, half = up / n_up - middle;
+    for (const UprightReading& reading : readings) {
+      if (reading.channel == c && (reading.value - middle) * reading.sign * half < 0)
+        lines.push_back(reading.line);
+    }
+  }
+  if (lines.empty()) return std::nullopt;
+  std::sort(lines.begin(), lines.end());
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+  return BenchFault(data,
+                    fmt::format("{}: the upright axis reads as the others do upside down: up and "
+                                "down are swapped in these positions; measure them again",
+                                LinesText(lines)),
+                    lines.front(), FaultCode::kConflict);
+}
+
+std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<ChannelSignal>& signals,
+                                FitReport& report) {
+  constexpr double kRefused = 0.2, kRemarked = 0.02;
+  std::map<std::string, std::vector<const FitResidual*>> of;
+  for (const FitResidual& residual : report.residuals) of[residual.channel].push_back(&residual);
+  for (auto& [channel, residuals] : of) {
+    const auto known = std::find_if(signals.begin(), signals.end(), [&](const ChannelSignal& s) {
+      return channel.rfind(s.channel, 0) == 0;
+    });
+    if (known == signals.end() || !(known->signal > 0)) continue;
+    double square = 0;
+    for (const FitResidual* residual : residuals) square += residual->value * residual->value;
+    const double rms = std::sqrt(square / static_cast<double>(residuals.size()));
+    if (!(rms > kRemarked * known->signal)) continue;
+    std::sort(residuals.begin(), residuals.end(), [](const FitResidual* a, const FitResidual* b) {
+      return std::abs(a->value) > std::abs(b->value);
+    });
+    std::vector<int> worst;
+    for (std::size_t i = 0; i < residuals.size() && i < 3; ++i) worst.push_back(residuals[i]->line);
+    const std::string text = fmt::format(
+        "channel {} scatters about the fit by {:.3g}, {:.0f} % of what it should vary by, worst in "
+        "{}: look there for swapped positions, wrong signs, mixed units or a wrong reference, or "
+        "average longer",
+        channel, rms, 100 * rms / known->signal, LinesText(worst));
+    if (rms > kRefused * known->signal)
+      return BenchFault(data, "the readings do not fit: " + text, worst.front());
+    report.remarks.push_back(text);
+  }
+  return std::nullopt;
+}
+
 std::optional<Fault> WrongAxes(const BenchTable& data, const Eigen::Matrix3d& sensitivity,
                                const std::vector<std::string>& channels) {
   static constexpr std::string_view kAxes = "xyz";

@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/result.h"
 #include "wellgyro/calibration/bench_table.h"
+#include "wellgyro/calibration/fit_report.h"
 
 namespace wellgyro {
 
@@ -35,6 +36,26 @@ std::optional<Fault> MixedUnits(const BenchTable& data, const std::vector<int>& 
                                 double expected, std::string_view what, std::string_view units);
 /// Angles that look like radians.
 std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector<int>& columns);
+/// A reading of the axis that stands upright.
+struct UprightReading {
+  int channel = 0;
+  double sign = 1;  ///< +1 up, -1 down
+  double value = 0;
+  int line = 0;
+};
+/// Readings on the wrong side of their channel's middle: up and down swapped in some positions.
+/// Where all of a channel are, WrongAxes says so.
+std::optional<Fault> SwappedPositions(const BenchTable& data,
+                                      const std::vector<UprightReading>& readings);
+/// What a channel (by the begin of its name) varies by, in its unit.
+struct ChannelSignal {
+  std::string channel;
+  double signal = 0;
+};
+/// Residuals so large that the model is none of these readings (a fifth of the signal); a remark
+/// from a fiftieth on. Names the worst lines.
+std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<ChannelSignal>& signals,
+                                FitReport& report);
 /// A square sensitivity whose diagonal is not what dominates its rows: axes or signs.
 std::optional<Fault> WrongAxes(const BenchTable& data, const Eigen::Matrix3d& sensitivity,
                                const std::vector<std::string>& channels);

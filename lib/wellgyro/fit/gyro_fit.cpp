@@ -113,12 +113,13 @@ struct Fitted {
 };
 
 Fitted FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout,
-               double on_table) {
+               double on_table, bool robust) {
   Eigen::MatrixX3d U = Eigen::MatrixX3d::Zero(layout.channels, 3);
   for (int c = 0; c < layout.channels; ++c)
     U(c, readings.channels[static_cast<std::size_t>(c)].axis) = 1;
   double north = 0;
   Fitted fitted{Problem(readings, setup, layout, north, U, on_table), {}};
+  fitted.problem.robust = robust;
   fitted.solution = Solve(fitted.problem);
   // Bilinear in U and the north offset: Gauss and Newton.
   for (int turn = 0; layout.north && turn < 50; ++turn) {
@@ -128,34 +129,53 @@ Fitted FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const La
     const bool still = std::abs(next - north) < 1e-14;
     north = next;
     fitted.problem = Problem(readings, setup, layout, north, U, on_table);
+    fitted.problem.robust = robust;
     fitted.solution = Solve(fitted.problem);
     if (still) break;
   }
   return fitted;
 }
 
+// By how much the table's readings scatter more than those at rest, over their sigmas: by median or
+// by squares, each residual freed of what the fit took of it.
+double TableRatio(const LinearSolution& s, bool sigma_given, bool by_median) {
+  std::vector<double> sizes[2];
+  double square[2] = {}, redundancy[2] = {};
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const int table = s.rows[i].line < 0 ? 1 : 0;
+    const double rest = std::max(1e-9, 1 - s.leverage[at]);
+    square[table] += s.residual[at] * s.residual[at];
+    redundancy[table] += rest;
+    sizes[table].push_back(std::abs(s.residual[at]) / std::sqrt(rest));
+  }
+  constexpr double kEnough = 6;
+  if (redundancy[0] < kEnough || redundancy[1] < kEnough) return 1;
+  double scatter[2];
+  for (int table = 0; table < 2; ++table) {
+    std::vector<double>& all = sizes[table];
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    scatter[table] = by_median ? 1.4826 * *middle : std::sqrt(square[table] / redundancy[table]);
+  }
+  if (sigma_given) scatter[0] = 1;
+  return scatter[0] > 0 && scatter[1] > 0 ? scatter[1] / scatter[0] : 1;
+}
+
 // The table's own scatter where no sigma of it is given: Helmert's variance components.
 Fitted Fit(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout) {
   double on_table = setup.sigma_table.value_or(setup.sigma.value_or(1));
-  Fitted fitted = FitWith(readings, setup, layout, on_table);
-  if (setup.sigma_table || !readings.joined) return fitted;
-  for (int turn = 0; turn < 30; ++turn) {
-    double square[2] = {}, redundancy[2] = {};
-    const LinearSolution& s = fitted.solution;
-    for (std::size_t i = 0; i < s.rows.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      const int table = s.rows[i].line < 0 ? 1 : 0;
-      square[table] += s.residual[at] * s.residual[at];
-      redundancy[table] += 1 - s.leverage[at];
+  const bool robust = setup.sigma_table || !readings.joined;
+  Fitted fitted = FitWith(readings, setup, layout, on_table, robust);
+  if (robust) return fitted;
+  // All readings first, their medians; then without the outliers, their squares.
+  for (const bool last : {false, true}) {
+    for (int turn = 0; turn < 30; ++turn) {
+      const double ratio = TableRatio(fitted.solution, setup.sigma.has_value(), !last);
+      on_table *= ratio;
+      fitted = FitWith(readings, setup, layout, on_table, last);
+      if (std::abs(ratio - 1) < 1e-3) break;
     }
-    constexpr double kEnough = 6;
-    if (redundancy[0] < kEnough || redundancy[1] < kEnough || !(square[1] > 0)) break;
-    const double rest = setup.sigma ? 1 : square[0] / redundancy[0];
-    if (!(rest > 0)) break;
-    const double ratio = std::sqrt(square[1] / redundancy[1] / rest);
-    on_table *= ratio;
-    fitted = FitWith(readings, setup, layout, on_table);
-    if (std::abs(ratio - 1) < 1e-3) break;
   }
   return fitted;
 }
@@ -323,6 +343,10 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
   BenchCalibration out;
   out.report = ReportOf(fitted.problem, *whole);
   FitReport& report = out.report;
+  constexpr double kEarth = kBenchEarthRate / units::kDegPerHour;
+  const double largest = readings->w.cwiseAbs().maxCoeff();
+  const double at_rest = rest.rows() > 0 ? kEarth : largest;
+  if (auto fault = DoesNotFit(data, {{"m_", at_rest}, {"table", largest}}, report)) return *fault;
   report.method = table.rows() > 0 && rest.rows() == 0 ? "gyro-rate-table" : "gyro-multi-position";
   report.remarks.insert(report.remarks.end(), remarks.begin(), remarks.end());
   if (rest.rows() > 0 && table.rows() == 0)

@@ -1,5 +1,6 @@
 #include "wellgyro/fit/multi_station_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -140,6 +141,24 @@ std::optional<Fault> BadStations(const BenchTable& data, const AttitudeTable& ta
                     "g, or m/s2");
 }
 
+// The dip as read, of the wrong sign: the accelerometers give the force where gravity is asked for.
+std::optional<Fault> WrongDip(const BenchTable& data, const AttitudeTable& table, double dip) {
+  std::vector<double> dips;
+  for (int i = 0; i < table.rows(); ++i) {
+    const Eigen::Vector3d m = table.mag.row(i).transpose(), down = DownOf(table, i);
+    dips.push_back(std::atan2(m.dot(down), (m - m.dot(down) * down).norm()));
+  }
+  const auto middle = dips.begin() + static_cast<std::ptrdiff_t>(dips.size() / 2);
+  std::nth_element(dips.begin(), middle, dips.end());
+  if (std::abs(*middle + dip) > std::abs(*middle - dip) / 2) return std::nullopt;
+  return BenchFault(data,
+                    fmt::format("the readings dip by {:.1f} deg where {:.1f} deg is expected: the "
+                                "sign of the accelerometers is wrong (Gx, Gy, Gz show gravity, fx, "
+                                "fy, fz the force against it), or that of the magnetometers",
+                                *middle / units::kDeg, dip / units::kDeg),
+                    data.lines[0]);
+}
+
 }  // namespace
 
 Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& setup) {
@@ -164,6 +183,7 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
     if (auto fault =
             MixedUnits(data, mag, *setup.reference.field, "the length of the magnetometers", "nT"))
       return *fault;
+    if (auto fault = WrongDip(data, *table, *setup.reference.dip)) return *fault;
   }
   const NonlinearProblem problem =
       gyros ? Gyros(data, rates, *table, setup) : Magnetic(*table, setup);
@@ -175,6 +195,14 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   out.report = ReportOf(solution->linear, *linear);
   FitReport& report = out.report;
   report.method = "multi-station";
+  const double rate = kBenchEarthRate / units::kDegPerHour;
+  if (auto fault = DoesNotFit(data,
+                              {{"field", setup.reference.field.value_or(0)},
+                               {"dip", 1},
+                               {"level", rate},
+                               {"vertical", rate}},
+                              report))
+    return *fault;
   AddVector(report, gyros ? "bg_degh" : "bm_nT", 0, 3);
   if (!gyros) AddVector(report, "sm", 3, 3);
   RemarkPriors(setup, report);

@@ -128,6 +128,12 @@ std::vector<int> NonlinearProblem::Outliers(const Eigen::VectorXd& x, double sca
 }
 
 Result<NonlinearProblem::Solution> NonlinearProblem::Solve() const {
+  const Fault unsettled{
+      .code = FaultCode::kRange,
+      .text =
+          "the iteration does not settle, the readings do not fit the model: look for wrong "
+          "signs, exchanged columns, mixed units or a wrong reference"};
+  if (!start_.allFinite() || !Residuals(start_).allFinite()) return unsettled;
   Minimum minimum = Minimise(start_, 0, {});
   std::vector<int> outliers;
   std::set<int> lines;
@@ -163,9 +169,7 @@ Result<NonlinearProblem::Solution> NonlinearProblem::Solve() const {
       if (outliers.empty()) minimum = Minimise(x, 0, outliers);
     }
   }
-  if (!minimum.converged)
-    return Fault{.code = FaultCode::kRange,
-                 .text = "the iteration does not settle: the readings do not fit the model"};
+  if (!minimum.converged) return unsettled;
   return Solution{minimum.x, Linearise(minimum.x, outliers), minimum.cost, outliers};
 }
 

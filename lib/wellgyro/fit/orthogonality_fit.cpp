@@ -166,6 +166,18 @@ Result<OrthogonalityFit> FitOrthogonality(const BenchTable& data, const Setup& s
     throw std::invalid_argument("the orthogonality method needs the field and its dip");
   const auto seq = FindColumns(data, {"seq"});
   if (!seq) return seq.fault();
+  for (int i = 0; i < data.rows(); ++i) {
+    const double number = data.values(i, seq->front());
+    if (number != 0 && number != 1 && number != 2 && number != 3)
+      return BenchFault(data,
+                        fmt::format("sequence {:g}: 1, 2 and 3 calibrate, 0 verifies", number),
+                        data.lines[static_cast<std::size_t>(i)]);
+  }
+  const auto accel = FindColumns(data, {"Gx", "Gy", "Gz"});
+  if (!accel) return accel.fault();
+  if (auto fault = MixedUnits(data, *accel, setup.reference.gravity, "the length of (Gx, Gy, Gz)",
+                              "g, or give --gravity-mps2"))
+    return *fault;
   const BenchTable sequences = Rows(data, seq->front(), 1, 3);
   const auto waves = FitWaves(sequences, seq->front(), setup);
   if (!waves) return waves.fault();

@@ -86,7 +86,7 @@ std::optional<Fault> Gather(const BenchTable& data, const Columns& columns,
   return std::nullopt;
 }
 
-std::optional<Fault> Missing(const BenchTable& data, const RawRun& run) {
+std::optional<Fault> Missing(const BenchTable& data, const RawRun& run, bool alone) {
   std::string text;
   int missing = 0;
   for (std::size_t at = 0; at < 72; ++at) {
@@ -97,15 +97,17 @@ std::optional<Fault> Missing(const BenchTable& data, const RawRun& run) {
   }
   if (missing == 0) return std::nullopt;
   if (missing > 4) text += fmt::format("; and {} more", missing - 4);
-  return BenchFault(data,
-                    fmt::format("readings are missing: {}; measure these positions, all three axes "
-                                "up and down at four rotations",
-                                text),
-                    run.series.empty() ? 0 : run.series.begin()->second.line);
+  return BenchFault(
+      data,
+      fmt::format("readings are missing: {}; measure these positions, all three axes "
+                  "up and down at four rotations{}",
+                  text, alone ? "" : "; rows stand in the order of time, a position's together"),
+      run.series.empty() ? 0 : run.series.begin()->second.line);
 }
 
-Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double tolerance) {
-  if (auto fault = Missing(data, raw)) return *fault;
+Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double tolerance,
+                            bool alone) {
+  if (auto fault = Missing(data, raw, alone)) return *fault;
   PositionRun run;
   run.temperature = raw.temperature_sum / raw.rows;
   for (const auto& [at, series] : raw.series) {
@@ -155,7 +157,7 @@ Result<std::vector<PositionRun>> ReadPositionRuns(const BenchTable& data, double
   if (auto fault = Gather(data, columns, &raw)) return *fault;
   std::vector<PositionRun> runs;
   for (const RawRun& run : raw) {
-    auto settled = Settled(data, run, tolerance);
+    auto settled = Settled(data, run, tolerance, raw.size() == 1);
     if (!settled) return settled.fault();
     settled->has_temperature = columns.temperature.has_value();
     runs.push_back(*std::move(settled));

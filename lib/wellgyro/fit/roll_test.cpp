@@ -5,6 +5,7 @@
 #include <map>
 
 #include <Eigen/Dense>
+#include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/fit/attitude_table_internal.h"
@@ -61,6 +62,13 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
   const int n_sets = 1 + *std::max_element(sets.begin(), sets.end());
   const Eigen::Matrix3d V = Directions(table->accel, sets, n_sets);
   const Eigen::Vector3d axis = (V(2, 2) < 0 ? -1 : 1) * V.col(2);
+  const double off = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
+  if (off > kPi / 6)
+    return BenchFault(data,
+                      fmt::format("the axis of the rolls lies {:.0f} deg from the sensors' z: "
+                                  "exchange the columns, or the tool was not rolled about itself",
+                                  ToDegrees(off)),
+                      data.lines[0]);
   const Eigen::Vector3d e1 = V.col(0), e2 = axis.cross(e1);
 
   // About it: axis + alpha e1 + beta e2, and what each set reads along it.
@@ -86,6 +94,8 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
   out.report = ReportOf(problem, *solution);
   FitReport& report = out.report;
   report.method = "roll-test";
+  const double length = table->accel.rowwise().norm().maxCoeff();
+  if (auto fault = DoesNotFit(data, {{"along", length}}, report)) return *fault;
   Reparametrise(report, VectorNames("axis_in_sensor", 3), [&](const Eigen::VectorXd& x) {
     return Eigen::VectorXd((axis + x[0] * e1 + x[1] * e2).normalized());
   });

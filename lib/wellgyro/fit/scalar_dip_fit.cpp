@@ -200,9 +200,19 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
 
   BenchCalibration out;
   out.report = ReportOf(solution->linear, *linear);
+  if (auto fault = DoesNotFit(
+          data,
+          {{"gravity", setup.reference.gravity}, {"field", *setup.reference.field}, {"dip", 1}},
+          out.report))
+    return *fault;
   FitReport& report = out.report;
   report.method = "scalar-dip";
   const Eigen::Matrix3d A = LowerOf(report.values).inverse(), M = FullOf(report.values).inverse();
+  // A frame that mirrors or turns the accelerometers' own comes from signs or columns.
+  if (auto fault = WrongAxes(data, M, table->mag_channels)) {
+    fault->text += ", against the accelerometers' axes, or a sign of theirs is wrong";
+    return *fault;
+  }
   const Eigen::Vector3d ba = report.values.segment<3>(6), bm = report.values.segment<3>(kMagBias);
   TakeResult(report, setup.free_dip);
   report.remarks.push_back(

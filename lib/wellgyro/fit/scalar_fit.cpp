@@ -132,6 +132,7 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   out.report = ReportOf(solution->linear, *linear);
   FitReport& report = out.report;
   report.method = "scalar";
+  if (auto fault = DoesNotFit(data, {{"length", setup.reference.gravity}}, report)) return *fault;
   const Eigen::Matrix3d M = LowerOf(report.values);
   std::vector<std::string> names = MatrixNames("Ka", 3, 3);
   for (const std::string& name : VectorNames("ba", 3)) names.push_back(name);

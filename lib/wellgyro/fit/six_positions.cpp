@@ -85,6 +85,10 @@ std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Posi
   }
   forces.lines = rates.lines;
   if (auto fault = Frozen(rates, {0, 1, 2})) return fault;
+  std::vector<UprightReading> upright;
+  for (const Position& position : positions)
+    upright.push_back({position.axis, position.sign, position.rate[position.axis], position.line});
+  if (auto fault = SwappedPositions(rates, upright)) return fault;
   if (auto fault = MixedUnits(rates, {0, 1, 2}, 0, "the length of N/T_s", "pulses and seconds"))
     return fault;
   return MixedUnits(forces, {0, 1, 2}, setup.gravity, "the length of (axb, ayb, azb)", "m/s2");
@@ -204,6 +208,9 @@ Result<BenchCalibration> FitSixPositions(const BenchTable& data, const Setup& se
   BenchCalibration out;
   out.report = ReportOf(problem, *solution);
   FitReport& report = out.report;
+  if (auto fault =
+          DoesNotFit(data, {{"", S.diagonal().cwiseAbs().minCoeff() * setup.gravity}}, report))
+    return *fault;
   report.method = "six-position";
   // The own pair's offset is k (a0 + k2 g^2), with k2 in 1/(m/s^2); files have it in g/g^2.
   const double g = Mean(*positions, [](const Position& p) { return p.u.norm(); });

@@ -38,6 +38,17 @@ Result<Readings> Read(const BenchTable& data) {
   const Eigen::MatrixXd references = data.values(Eigen::all, refs);
   const Eigen::VectorXd mean = references.rowwise().mean();
   readings.error = mean - readings.t;
+  std::vector<double> sizes;
+  for (const double error : readings.error) sizes.push_back(std::abs(error));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  constexpr double kLargest = 20;  // degC; a thermometer further off is not read in degC
+  if (*middle > kLargest)
+    return BenchFault(data,
+                      fmt::format("the references differ from t_m by {:.1f} in the middle of the "
+                                  "rows: give all of them in degC",
+                                  *middle),
+                      data.lines[0]);
   if (refs.size() > 1)
     readings.spread = std::sqrt((references.colwise() - mean).squaredNorm() /
                                 static_cast<double>(references.size() - references.rows()));
@@ -112,6 +123,8 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   out.report = ReportOf(problem, *solution);
   FitReport& report = out.report;
   report.method = "thermometer";
+  const double range = readings->t.maxCoeff() - readings->t.minCoeff();
+  if (auto fault = DoesNotFit(data, {{"t_m", range}}, report)) return *fault;
   Reparametrise(report, VectorNames("c", 3), [](const Eigen::VectorXd& c) {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(3);
     all.head(c.size()) = c;

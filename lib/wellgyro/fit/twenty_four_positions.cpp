@@ -194,6 +194,8 @@ Result<Fitted> Fit(const BenchTable& data, const std::vector<PositionRun>& runs,
   Fitted fitted{ReportOf(problem, *solution), 0};
   const Eigen::Matrix3d S = SensitivityOf(fitted.report.values, 0);
   if (auto fault = WrongAxes(data, S, {"x", "y", "z"})) return *fault;
+  const double volts_per_g = S.diagonal().cwiseAbs().minCoeff() * setup.gravity;
+  if (auto fault = DoesNotFit(data, {{"", volts_per_g}}, fitted.report)) return *fault;
   const double sigma_M = setup.sigma.value_or(fitted.report.scatter);
   fitted.tilt = Tilt(runs, S, setup.gravity, sigma_M);
   FreeOfTilt(fitted.report, degree, fitted.tilt);
@@ -210,6 +212,15 @@ std::optional<Fault> BadReadings(const BenchTable& data, const std::vector<Posit
     }
   }
   if (auto fault = Frozen(positions, {0, 1, 2})) return fault;
+  std::vector<UprightReading> upright;
+  for (const PositionRun& run : runs) {
+    for (int at = 0; at < 24; ++at) {
+      const int axis = at / 8, down = at / 4 % 2;
+      const PositionReading& reading = run.Of(axis, down, at % 4, axis);
+      upright.push_back({axis, down != 0 ? -1.0 : 1.0, reading.volt, reading.line});
+    }
+  }
+  if (auto fault = SwappedPositions(positions, upright)) return fault;
   return MixedUnits(positions, {0, 1, 2}, 0, "the length of (x, y, z)", "volts");
 }
 

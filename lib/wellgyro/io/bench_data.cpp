@@ -116,6 +116,12 @@ class Reader {
                   fmt::format("\"{}\" in column {} is no number", cells[i], table_.columns[i]),
                   number,
                   cells[i].empty() ? 1 : static_cast<int>(cells[i].data() - line.data()) + 1);
+      constexpr double kLargest = 1e15;
+      if (std::abs(*value) > kLargest)
+        return At(FaultCode::kRange,
+                  fmt::format("\"{}\" in column {}: no reading is that large", cells[i],
+                              table_.columns[i]),
+                  number, static_cast<int>(cells[i].data() - line.data()) + 1);
       values_.push_back(*value);
     }
     table_.lines.push_back(number);
