@@ -12,6 +12,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.path.abspath(sys.argv.pop(1))
+TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
 EARTH = 15.041067178669  # deg/h
 G = 9.80665
 LATITUDE = 61.0
@@ -213,6 +214,14 @@ class Calibrate(unittest.TestCase):
                           self.Path("raw.lcm"), "far")
         turned = float(far[-1]["AZI_TRUE[deg]"]) - float(perfect[-1]["AZI_TRUE[deg]"])
         self.assertGreater(abs((turned + 180) % 360 - 180), 10 * worst)
+
+    def test_readme_shows_what_the_demonstration_gives(self):
+        out = self.Path("accel.toml")
+        result = self.Done("calibrate", "six-position", "--data",
+                           os.path.join(TOP, "data", "demo", "bench.csv"), "--gravity-mps2",
+                           "9.81234", "--out", out)
+        with open(os.path.join(TOP, "README.md")) as file:
+            self.assertIn(result.stdout.replace(out, "accel.toml"), file.read())
 
     def Refused(self, method, text, words, *options, code=2):
         data = self.Write("data.csv", text)

@@ -34,13 +34,29 @@ std::string Quantity(const FitQuantity& quantity) {
   return text;
 }
 
+// "Gx 0.001, Gy 0.002": root mean square of each channel's residuals, in its unit.
+std::string Scatters(const FitReport& report) {
+  std::vector<std::pair<std::string, std::pair<double, int>>> sums;
+  for (const FitResidual& r : report.residuals) {
+    auto at = std::find_if(sums.begin(), sums.end(),
+                           [&](const auto& sum) { return sum.first == r.channel; });
+    if (at == sums.end()) at = sums.insert(at, {r.channel, {0.0, 0}});
+    at->second.first += r.value * r.value;
+    ++at->second.second;
+  }
+  std::string text;
+  for (const auto& [channel, sum] : sums)
+    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", channel,
+                        std::sqrt(sum.first / sum.second));
+  return text;
+}
+
 std::string Fit(const FitReport& report) {
   if (report.dof == 0) return fmt::format("{} readings, none to spare\n", report.readings);
   if (!report.sigma_given)
     return fmt::format(
-        "{} readings, {} to spare; they scatter by {:.3g} (1 sigma, which the "
-        "uncertainties rest on)\n",
-        report.readings, report.dof, report.scatter);
+        "{} readings, {} to spare; the uncertainties rest on their residuals, rms {}\n",
+        report.readings, report.dof, Scatters(report));
   const bool inside = report.chi_square >= report.chi_low && report.chi_square <= report.chi_high;
   return fmt::format("{} readings, {} to spare; chi-square {:.1f}, {} 95 % of {:.1f} to {:.1f}\n",
                      report.readings, report.dof, report.chi_square, inside ? "inside" : "OUTSIDE",
