@@ -58,13 +58,13 @@ void SayHowHeard(const LiveBus& bus) {
   fmt::print(stderr, "listening on {}\n", bus.url());
   const std::optional<int> granted = bus.granted_receive_buffer();
   if (!granted) return;
-  fmt::print(stderr, "receive buffer: {} bytes asked, {} granted\n", LiveBus::kReceiveBuffer,
-             *granted);
-  if (*granted >= LiveBus::kReceiveBuffer) return;
+  const int asked = bus.asked_receive_buffer();
+  fmt::print(stderr, "receive buffer: {} bytes asked, {} granted\n", asked, *granted);
+  if (*granted >= asked) return;
   fmt::print(stderr,
              "a longer stall than that buffer lasts loses messages; as root: "
              "sysctl -w net.core.rmem_max={}\n",
-             LiveBus::kReceiveBuffer);
+             asked);
 }
 
 StopOnSignals::StopOnSignals(LiveBus& bus) {

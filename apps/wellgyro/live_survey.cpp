@@ -90,7 +90,7 @@ class LiveSurvey {
   CatchUp catch_up_;
   ResultKeeper keeper_;
   std::optional<LogWriter> log_;
-  bool record_failed_ = false;
+  bool record_failed_ = false, record_moved_ = false;
   bool resuming_ = false;
   Latency message_latency_, station_latency_;
   std::int64_t next_status_ = 0, next_keep_ = 0;
@@ -250,9 +250,17 @@ void LiveSurvey::SendStatus(std::int64_t now) {
         fmt::format("the system has thrown away {} datagrams: its receive buffer was full", drops));
     kernel_drops_said_ = drops;
   }
+  if (on_time && log_ && !record_moved_ && !log_->InPlace()) {
+    record_moved_ = true;
+    Complain(
+        fmt::format("{} was moved or removed: recording goes on in it, and --resume needs it back "
+                    "under that name",
+                    options_.record));
+  }
   if (tally.lost > 0) status.text = "samples were lost";
   if (drops > 0) status.text = "the receive buffer overflowed";
   if (keeper_.failing()) status.text = "the survey's files cannot be written";
+  if (record_moved_) status.text = "the recording was moved or removed";
   if (record_failed_) status.text = "the recording has stopped";
   if (!status.text.empty()) status.state = Status::State::kDegraded;
   if (record_failed_ || keeper_.failing()) status.state = Status::State::kFault;

@@ -125,6 +125,12 @@ void Recording::Housekeeping() {
   const std::int64_t now = MonotonicUs();
   if (now < next_second_) return;
   next_second_ = now + kSecondUs;
+  if (!fault_ && !log_->InPlace()) {
+    Complain(
+        fmt::format("{} was moved or removed: a new one begins", Numbered(options_.out, number_)));
+    fault_ = log_->Close();
+    if (!fault_) fault_ = Open();
+  }
   const std::int64_t drops = bus_.kernel_drops().value_or(0);
   if (drops > drops_) {
     Complain(

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Runs the program on live buses: the same bytes as from the log, signals, kill -9, damage.
 live_test.py PROGRAM [--kills N]     in a network of its own where the machine allows it"""
+import concurrent.futures
 import filecmp
 import heapq
 import os
@@ -18,7 +19,7 @@ import time
 import unittest
 
 PROGRAM = os.path.abspath(sys.argv.pop(1))
-KILLS = 2
+KILLS = 10
 if "--kills" in sys.argv:
     at = sys.argv.index("--kills")
     KILLS = int(sys.argv[at + 1])
@@ -62,6 +63,7 @@ every_m = 10.0
 [depth]
 latency_s = 2.0
 """
+BEGIN_US = 1_767_225_600_000_000  # of the simulation's time
 RESULT = ("survey.csv", "passes.csv", "checks.csv", "run.toml")
 
 
@@ -107,6 +109,56 @@ class Broker(threading.Thread):
                 self.clients.remove(client)
 
 
+def Join(port):
+    """A socket that hears the group on `port`."""
+    joined = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    joined.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    joined.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
+    joined.bind(("239.255.76.67", port))
+    member = struct.pack("4s4s", socket.inet_aton("239.255.76.67"), socket.inet_aton("0.0.0.0"))
+    joined.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+    return joined
+
+
+def Speaker():
+    speaker = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    speaker.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+    return speaker
+
+
+def Datagram(channel, payload):
+    """LCM's own framing of a small message."""
+    return struct.pack(">II", 0x4c433032, 0) + channel.encode() + b"\0" + payload
+
+
+class Ear(threading.Thread):
+    """What is said on each channel, as long as it listens."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.socket, self.heard, self.ending = Join(port), [], False
+        self.socket.settimeout(0.1)
+        self.start()
+
+    def run(self):
+        while not self.ending:
+            try:
+                data = self.socket.recv(65536)
+            except TimeoutError:
+                continue
+            if data[:4] == b"LC02":
+                channel, payload = data[8:].split(b"\0", 1)
+                self.heard.append((channel.decode(), payload))
+        self.socket.close()
+
+    def On(self, channel):
+        return [payload for name, payload in list(self.heard) if name == channel]
+
+    def Statuses(self):
+        """(state, last command, samples) of each status_t."""
+        return [struct.unpack_from(">iiq", payload, 28) for payload in self.On("WELLGYRO_STATUS")]
+
+
 class Relay(threading.Thread):
     """Carries multicast from one port to another as a bad network does: some is lost, all is
     delayed, and some therefore overtaken."""
@@ -115,14 +167,7 @@ class Relay(threading.Thread):
         super().__init__(daemon=True)
         self.to, self.loss, self.jitter = ("239.255.76.67", port_to), loss, jitter
         self.chance, self.lost = random.Random(4), 0
-        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
-        self.socket.bind(("239.255.76.67", port_from))
-        member = struct.pack("4s4s", socket.inet_aton("239.255.76.67"), socket.inet_aton("0.0.0.0"))
-        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
-        self.out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        self.socket, self.out = Join(port_from), Speaker()
 
     def run(self):
         held = []
@@ -183,7 +228,7 @@ class Live(unittest.TestCase):
     @staticmethod
     def Run(*arguments, **options):
         return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False,
-                              timeout=120, **options)
+                              timeout=60, **options)
 
     def Start(self, *arguments):
         process = subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.PIPE,
@@ -283,12 +328,14 @@ class Live(unittest.TestCase):
 
     def test_killed_at_any_instant_it_ends_with_the_same_bytes(self):
         chance = random.Random(7)
-        for kill in range(KILLS):
-            with self.subTest(kill=kill):
-                self.KilledOnce(f"kill{kill}", chance.uniform(0, 4.0))
+        with concurrent.futures.ThreadPoolExecutor(5) as pool:
+            kills = [pool.submit(self.KilledOnce, f"kill{kill}", self.Udpm(), chance.uniform(0, 6))
+                     for kill in range(KILLS)]
+            for number, kill in enumerate(kills):
+                with self.subTest(kill=number):
+                    kill.result()
 
-    def KilledOnce(self, out, delay):
-        url = self.Udpm()
+    def KilledOnce(self, out, url, delay):
         full, heard = self.Path(out + ".lcm"), self.Path(out + ".heard.lcm")
         recorder = self.Listening("record", "--from", url, "--out", full)
         command = ["survey", "--job", self.job, "--from", url, "--out", self.Path(out), "--record",
@@ -368,6 +415,47 @@ class Live(unittest.TestCase):
             self.assertTrue(filecmp.cmp(os.path.join(self.Path("straight"), name),
                                         os.path.join(out, name), shallow=False), name)
 
+    def Command(self, number, kind, utime_us):
+        """The bytes of a survey_cmd_t, by the one that simulate sends."""
+        with open(self.Path("straight.lcm"), "rb") as file:
+            log = file.read()
+        name = b"WELLGYRO_CMD"
+        at = log.index(name) + len(name)
+        return log[at:at + 8] + struct.pack(">qqiiiidid", utime_us, 1, 1, number, kind, 0, 0.0, 0,
+                                            0.0)
+
+    def test_commands_are_obeyed_once_and_acknowledged(self):
+        url, out = self.Udpm(), self.Path("commands")
+        ear = Ear(self.port)
+        self.addCleanup(setattr, ear, "ending", True)
+        survey = self.Listening("survey", "--job", self.job, "--from", url, "--out", out)
+        sender = self.Start("simulate", "--job", self.simulation, "--out", url, "--speed", "40")
+        adjust = Datagram("WELLGYRO_CMD", self.Command(7, 5, BEGIN_US + 200_000_000))
+        speaker = Speaker()
+        self.addCleanup(speaker.close)
+        begin = time.monotonic()
+        for _ in range(3):
+            speaker.sendto(adjust, ("239.255.76.67", self.port))
+        while not any(command == 7 for _, command, _ in ear.Statuses()):
+            self.assertLess(time.monotonic() - begin, 30)
+            time.sleep(0.05)
+        before = len(ear.On("WELLGYRO_STATION"))
+        sender.communicate(timeout=60)
+        time.sleep(0.7)
+        seconds = time.monotonic() - begin
+        survey.send_signal(signal.SIGTERM)
+        self.assertEqual(survey.wait(timeout=20), 0)
+        # By the second, one more for the acknowledgement.
+        self.assertLess(abs(len(ear.Statuses()) - seconds), 4)
+        self.assertEqual(ear.Statuses()[-1][2], 39000)
+        self.assertGreater(before, 10)
+        with open(os.path.join(out, "passes.csv")) as file:
+            rows = [row.split(",") for row in file.read().splitlines()[1:]]
+        field = [row for row in rows if row[2] == "field"]
+        self.assertGreater(len(field), 5, "ADJUST makes field stations")
+        self.assertEqual({row[3] for row in field}, {"1"}, "ADJUST was obeyed once")
+        self.assertGreater(len([row for row in rows if row[2] == "provisional"]), 5)
+
     def test_a_bad_network_is_borne_and_a_recorder_beside_the_sender_has_it_all(self):
         near, far = self.Udpm(), self.Udpm()
         relay = Relay(self.port - 1, self.port, loss=0.02, jitter=0.03)
@@ -410,22 +498,172 @@ class Live(unittest.TestCase):
         with open(self.Path("overlap/run.toml")) as file:
             self.assertIn("samples_lost = 0", file.read(), text + errors)
 
-    def test_netem(self):
+    def test_two_namespaces_with_a_bad_cable_between(self):
         if not os.environ.get("WELLGYRO_OWN_NETWORK"):
             self.skipTest("no network namespaces here")
-        made = subprocess.run("tc qdisc add dev lo root netem loss 2% delay 10ms 8ms", shell=True,
-                              check=False, capture_output=True, text=True)
+        far = subprocess.Popen(["unshare", "-n", "sleep", "600"])
+        self.addCleanup(lambda: (far.kill(), far.wait()))
+        time.sleep(0.3)
+        there = f"nsenter -t {far.pid} -n "
+        self.addCleanup(subprocess.run, "ip link del near", shell=True, check=False)
+        made = subprocess.run(
+            f"ip link add near type veth peer name far netns {far.pid} && "
+            "ip addr add 10.77.0.1/24 dev near && ip link set near up && "
+            f"{there}ip addr add 10.77.0.2/24 dev far && {there}ip link set far up && "
+            f"{there}ip link set lo up && {there}ip route add 224.0.0.0/4 dev far && "
+            "ip route replace 239.255.76.68 dev near", shell=True, check=False,
+            capture_output=True, text=True)
         if made.returncode != 0:
-            self.skipTest("the kernel has no netem: " + made.stderr.strip())
-        self.addCleanup(subprocess.run, "tc qdisc del dev lo root", shell=True, check=False)
-        url = self.Udpm()
+            self.skipTest("no cable between namespaces here: " + made.stderr.strip())
+        netem = subprocess.run(
+            f"{there}tc qdisc add dev far root netem loss 1% delay 10ms 8ms reorder 5%",
+            shell=True, check=False, capture_output=True, text=True)
+        if netem.returncode != 0:
+            print("the kernel has no netem: the cable is a good one")
+        type(self).port += 1
+        url = f"udpm://239.255.76.68:{self.port}?ttl=1"
         survey = self.Listening("survey", "--job", self.job, "--from", url, "--out",
-                                self.Path("netem"))
-        sent = self.Run("simulate", "--job", self.simulation, "--out", url, "--speed", "40",
-                        "--finish")
+                                self.Path("cable"))
+        sent = subprocess.run([*there.split(), PROGRAM, "simulate", "--job", self.simulation,
+                               "--out", url, "--speed", "40", "--finish"], capture_output=True,
+                              text=True, check=False, timeout=60)
         self.assertEqual(sent.returncode, 0, sent.stderr)
         text, errors = survey.communicate(timeout=60)
-        self.assertIn(survey.returncode, (0, 3), text + errors)
+        if netem.returncode == 0:
+            self.assertIn(survey.returncode, (0, 3), text + errors)
+        else:
+            self.assertEqual(survey.returncode, 0, text + errors)
+            self.SameAs("straight", "cable")
+
+    def test_two_tools_in_one_string(self):
+        url, out = self.Udpm(), self.Path("string")
+        survey = self.Listening("survey", "--job", self.job, "--from", url, "--out", out)
+        senders = []
+        for tool in (1, 2):
+            job = self.Write(f"tool{tool}.toml", SIMULATION.replace("seed = 5", f"seed = {tool}") +
+                             f"tool = {tool}\nsession = {tool}\n")
+            log = self.Path(f"tool{tool}.lcm")
+            self.assertEqual(self.Run("simulate", "--job", job, "--out", log).returncode, 0)
+            done = self.Run("survey", "--job", self.job, "--from", log, "--out",
+                            self.Path(f"alone{tool}"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            senders.append(self.Start("simulate", "--job", job, "--out", url, "--speed", "40"))
+        for sender in senders:
+            sender.communicate(timeout=60)
+        time.sleep(1)
+        survey.send_signal(signal.SIGTERM)
+        text, errors = survey.communicate(timeout=20)
+        self.assertEqual(survey.returncode, 0, text + errors)
+        self.assertNotIn("two senders", errors)
+        self.assertFalse(os.path.exists(os.path.join(out, "survey.csv")))
+        for tool in (1, 2):
+            with open(os.path.join(out, f"tool-{tool}", "run.toml")) as file:
+                self.assertIn("samples_lost = 0", file.read())
+            with open(os.path.join(out, f"tool-{tool}", "survey.csv")) as file:
+                depths = [float(row.split(",")[0]) for row in file.read().splitlines()[1:]]
+            self.assertEqual(depths[:20], [10.0 * i for i in range(20)])
+
+    def test_a_full_disk_is_borne(self):
+        disk = self.Path("disk")
+        os.mkdir(disk)
+        made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=600k", "tmpfs", disk],
+                              check=False, capture_output=True)
+        if made.returncode != 0:
+            self.skipTest("no small disk can be made here")
+        self.addCleanup(subprocess.run, ["umount", disk], check=False)
+        url, out, heard = self.Udpm(), os.path.join(disk, "out"), os.path.join(disk, "heard.lcm")
+        survey = self.Listening("survey", "--job", self.job, "--from", url, "--out", out,
+                                "--record", heard)
+        recorder = self.Listening("record", "--from", url, "--out", os.path.join(disk, "all.lcm"))
+        sender = self.Start("simulate", "--job", self.simulation, "--out", url, "--speed", "40",
+                            "--finish")
+        text, errors = recorder.communicate(timeout=60)
+        self.assertEqual(recorder.returncode, 2, "a recorder ends where its disk is full")
+        self.assertIn("No space left", errors)
+        time.sleep(1)
+        for log in (heard, os.path.join(disk, "all.lcm")):
+            self.assertEqual(self.Run("check", log).returncode, 0, "whole events only")
+            os.remove(log)
+        sender.communicate(timeout=60)
+        text, errors = survey.communicate(timeout=60)
+        self.assertEqual(survey.returncode, 0, text + errors)
+        self.assertIn("goes on without recording", errors)
+        for name in RESULT:
+            self.assertTrue(filecmp.cmp(os.path.join(self.Path("straight"), name),
+                                        os.path.join(out, name), shallow=False), name)
+
+    def test_a_log_that_is_rotated_away(self):
+        url, log = self.Udpm(), self.Path("away.lcm")
+        recorder = self.Listening("record", "--from", url, "--out", log)
+        sender = self.Start("simulate", "--job", self.simulation, "--out", url, "--speed", "60")
+        time.sleep(2)
+        os.rename(log, self.Path("away.1.lcm"))
+        sender.communicate(timeout=60)
+        recorder.send_signal(signal.SIGTERM)
+        text, errors = recorder.communicate(timeout=20)
+        self.assertEqual(recorder.returncode, 0, text + errors)
+        self.assertIn("was moved or removed", errors)
+        with open(self.Path("both.lcm"), "wb") as both:
+            for part in ("away.1.lcm", "away.lcm"):
+                with open(self.Path(part), "rb") as file:
+                    both.write(file.read())
+        with open(self.Path("both.lcm"), "rb") as file:
+            self.assertEqual(file.read().count(b"WELLGYRO_IMU"), 1219)
+
+    def test_resume_refuses_a_journal_that_is_damaged(self):
+        url, out, heard = self.Udpm(), self.Path("journal"), self.Path("journal.lcm")
+        survey = self.Listening("survey", "--job", self.job, "--from", url, "--out", out,
+                                "--record", heard)
+        survey.kill()
+        survey.communicate()
+        again = ["survey", "--job", self.job, "--from", url, "--out", out, "--record", heard]
+        self.assertEqual(self.Run(*again).returncode, 2, "the log is there already")
+        journal = os.path.join(out, "journal.toml")
+        with open(journal, "rb") as file:
+            whole = file.read()
+        for size in (0, 10, len(whole) // 2, len(whole) - 5, len(whole) - 1):
+            with open(journal, "wb") as file:
+                file.write(whole[:size])
+            done = self.Run(*again, "--resume")
+            self.assertEqual(done.returncode, 2, size)
+            self.assertIn("damaged", done.stderr)
+        missing = self.Run(*again, "--resume", "--fill", self.Path("no.lcm"))
+        self.assertEqual(missing.returncode, 2)
+        self.assertIn("no.lcm", missing.stderr)
+
+    def test_what_cannot_be_is_refused_at_once(self):
+        url = self.Udpm()
+        survey = ["survey", "--job", self.job, "--out", self.Path("never")]
+        blocked = self.Write("blocked", "no folder")
+        for arguments, code, words in (
+                ([*survey, "--from", "udp://239.255.76.67:7667"], 2, "udp"),
+                ([*survey, "--from", "udpm://10.0.0.1:7667"], 2, "10.0.0.1"),
+                ([*survey, "--from", "udpm://239.255.76.67:99999"], 2, "99999"),
+                ([*survey, "--from", url + "?ttl=x"], 2, "ttl"),
+                ([*survey, "--from", "tcpq://no.such.host.invalid:1"], 2, "broker"),
+                ([*survey, "--from", url, "--resume"], 1, "--record"),
+                ([*survey, "--from", url, "--record", "/no/such/folder/x.lcm"], 2, "/no/such"),
+                (["survey", "--job", self.job, "--from", url, "--out", blocked, "--record",
+                  self.Path("x.lcm")], 2, "blocked"),
+                (["record", "--from", "a.lcm", "--out", self.Path("x.lcm")], 1, "a.lcm"),
+                (["record", "--from", url, "--out", "/no/such/folder/x.lcm"], 2, "/no/such"),
+                (["record", "--from", url, "--out", blocked], 2, "exists"),
+                (["simulate", "--job", self.simulation, "--out", url, "--speed", "-1"], 1,
+                 "speed")):
+            done = self.Run(*arguments)
+            self.assertEqual(done.returncode, code, (arguments, done.stderr))
+            self.assertIn(words, done.stderr, arguments)
+
+    def test_a_signal_at_the_very_start(self):
+        url = self.Udpm()
+        for delay in (0.0, 0.005, 0.01, 0.02, 0.04, 0.08):
+            out = self.Path(f"early{delay}")
+            survey = self.Start("survey", "--job", self.job, "--from", url, "--out", out)
+            time.sleep(delay)
+            survey.send_signal(signal.SIGINT)
+            self.assertIn(survey.wait(timeout=10), (2, -signal.SIGINT))
+            if os.path.isdir(out):
+                self.assertEqual(os.listdir(out), [])
 
     def test_a_recorder_rotates_and_says_what_did_not_come(self):
         url = self.Udpm()
@@ -451,7 +689,7 @@ def InOwnNetwork():
     script = ("ip link set lo up && ip route add 224.0.0.0/4 dev lo && "
               "sysctl -qw net.core.rmem_max=4194304 2>/dev/null; exec \"$@\"")
     try:
-        probe = subprocess.run(["unshare", "-rn", "sh", "-c", script, "sh", "true"], check=False,
+        probe = subprocess.run(["unshare", "-rnm", "sh", "-c", script, "sh", "true"], check=False,
                                capture_output=True)
     except FileNotFoundError:
         return
@@ -459,7 +697,7 @@ def InOwnNetwork():
         print("no network namespaces here: the tests use this machine's network")
         return
     os.environ["WELLGYRO_OWN_NETWORK"] = "1"
-    os.execvp("unshare", ["unshare", "-rn", "sh", "-c", script, "sh", sys.executable, __file__,
+    os.execvp("unshare", ["unshare", "-rnm", "sh", "-c", script, "sh", sys.executable, __file__,
                           PROGRAM, "--kills", str(KILLS), *sys.argv[1:]])
 
 

@@ -143,6 +143,11 @@ TEST(LcmLive, UrlsThatCannotBe) {
   EXPECT_THAT(said("udpm://239.255.76.67:99999"), HasSubstr("port"));
   EXPECT_THAT(said("udpm://127.0.0.1:7667"), HasSubstr("no multicast group"));
   EXPECT_THAT(said("udpm://somewhere:7667"), HasSubstr("no multicast group"));
+  EXPECT_THAT(said("udpm://239.255.76.67:7667?ttl=x"), HasSubstr("ttl=x"));
+  EXPECT_THAT(said("udpm://239.255.76.67:7667?ttl=256"), HasSubstr("255"));
+  EXPECT_THAT(said("udpm://239.255.76.67:7667?ttl"), HasSubstr("number"));
+  EXPECT_THAT(said("udpm://239.255.76.67:7667?ttl=0&recv_buf_size=-1"), HasSubstr("recv_buf"));
+  EXPECT_THAT(said("udpm://239.255.76.67:7667?tll=1"), HasSubstr("tll"));
 }
 
 TEST(LcmLive, NoBroker) {

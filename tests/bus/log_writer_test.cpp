@@ -117,6 +117,22 @@ TEST(LogWriter, AFullDiskIsSaidOnceAndForAll) {
   EXPECT_TRUE(writer->Close());
 }
 
+TEST(LogWriter, KnowsWhenItsFileIsNoLongerUnderItsName) {
+  const TestFile file;
+  const std::string moved = file.path() + ".moved";
+  auto writer = LogWriter::Open(file.path());
+  ASSERT_TRUE(writer);
+  EXPECT_TRUE(writer->InPlace());
+  std::filesystem::rename(file.path(), moved);
+  EXPECT_FALSE(writer->InPlace());
+  ASSERT_FALSE(writer->Write("A", Data(10, 0), 1));
+  EXPECT_FALSE(writer->Close());
+  auto reader = LogReader::Open(moved);
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(ReadAll(*reader).events.size(), 1u) << "what was moved is whole";
+  std::filesystem::remove(moved);
+}
+
 TEST(LogWriter, ChannelsThatLcmWouldNotTake) {
   const TestFile file;
   auto writer = LogWriter::Open(file.path());

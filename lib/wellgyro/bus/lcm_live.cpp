@@ -96,7 +96,6 @@ struct LiveBus::Core {
   std::list<Subscription> subscriptions;
   std::exception_ptr thrown;
   std::int64_t refused = 0;
-  int receive_buffer = 0;
 };
 
 LiveBus::LiveBus(std::unique_ptr<Core> core) : core_(std::move(core)) {}
@@ -111,7 +110,6 @@ Result<LiveBus> LiveBus::Open(const std::string& url, int receive_buffer) {
     if (auto fault = CheckMulticastRoute(*parsed)) return *std::move(fault);
   }
   auto core = std::make_unique<Core>(std::move(*parsed));
-  core->receive_buffer = receive_buffer;
   if (::pipe2(core->stop_pipe.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
     return core->Gone(std::strerror(errno));
   }
@@ -199,8 +197,10 @@ const std::string& LiveBus::url() const { return core_->url.full; }
 
 std::optional<int> LiveBus::granted_receive_buffer() const {
   if (core_->url.provider != "udpm") return std::nullopt;
-  return GrantedReceiveBuffer(core_->receive_buffer);
+  return GrantedReceiveBuffer(core_->url.receive_buffer);
 }
+
+int LiveBus::asked_receive_buffer() const { return core_->url.receive_buffer; }
 
 std::optional<std::int64_t> LiveBus::kernel_drops() const {
   if (core_->url.provider != "udpm") return std::nullopt;

@@ -68,6 +68,8 @@ class WELLGYRO_EXPORT LiveBus {
 
   /// As handed to LCM.
   const std::string& url() const;
+  /// Of the system, in the URL or by default [bytes]; 0 where the transport is not udpm.
+  int asked_receive_buffer() const;
   /// What the system grants of the receive buffer asked for [bytes]; nothing where the transport is
   /// not udpm. Less than asked: raise net.core.rmem_max.
   std::optional<int> granted_receive_buffer() const;

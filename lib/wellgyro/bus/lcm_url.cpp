@@ -53,13 +53,44 @@ std::optional<Parts> Split(std::string_view url) {
   return parts;
 }
 
-bool HasOption(std::string_view options, std::string_view name) {
+/// Takes the first option off `options`.
+std::string_view TakeOption(std::string_view& options) {
+  const std::string_view option = options.substr(0, options.find('&'));
+  options.remove_prefix(std::min(options.size(), option.size() + 1));
+  return option;
+}
+
+/// The value of the last `name` among `options`.
+std::optional<int> Option(std::string_view options, std::string_view name) {
+  std::optional<int> number;
   while (!options.empty()) {
-    const std::string_view option = options.substr(0, options.find('&'));
-    if (option.substr(0, option.find('=')) == name) return true;
-    options.remove_prefix(std::min(options.size(), option.size() + 1));
+    const std::string_view option = TakeOption(options);
+    if (!option.starts_with(name) || option.substr(name.size(), 1) != "=") continue;
+    int value = 0;
+    std::from_chars(option.data() + name.size() + 1, option.data() + option.size(), value);
+    number = value;
   }
-  return false;
+  return number;
+}
+
+/// What is wrong with the options of a udpm URL, which LCM would pass over with a warning at most.
+std::string WrongOption(std::string_view options) {
+  while (!options.empty()) {
+    const std::string_view option = TakeOption(options);
+    const std::string_view name = option.substr(0, option.find('='));
+    const std::string_view value = option.substr(std::min(option.size(), name.size() + 1));
+    const bool ttl = name == "ttl";
+    if (!ttl && name != "recv_buf_size" && name != "transmit_only") {
+      return fmt::format("the options are ttl and recv_buf_size, not \"{}\"", name);
+    }
+    int number = 0;
+    const char* end = value.data() + value.size();
+    const auto [stop, error] = std::from_chars(value.data(), end, number);
+    if (error != std::errc() || stop != end || number < 0 || (ttl && number > 255)) {
+      return fmt::format("{} is no number{}", option, ttl ? " from 0 to 255" : "");
+    }
+  }
+  return {};
 }
 
 /// HOST:PORT into `parsed`, with defaults for what is left out.
@@ -107,12 +138,16 @@ Result<LcmUrl> ParseLcmUrl(const std::string& url, int receive_buffer) {
                          : SplitAddress(parts->address, "127.0.0.1", 7700, parsed);
   if (!good) return BadUrl(url, "the port must be 1 to 65535");
   if (!udpm) return parsed;
+  if (const std::string wrong = WrongOption(parts->options); !wrong.empty()) {
+    return BadUrl(url, wrong);
+  }
   std::string options(parts->options);
   const auto add = [&options](const std::string& option) {
     options += (options.empty() ? "" : "&") + option;
   };
-  if (!HasOption(options, "ttl")) add("ttl=0");
-  if (!HasOption(options, "recv_buf_size")) add(fmt::format("recv_buf_size={}", receive_buffer));
+  if (!Option(options, "ttl")) add("ttl=0");
+  if (!Option(options, "recv_buf_size")) add(fmt::format("recv_buf_size={}", receive_buffer));
+  parsed.receive_buffer = Option(options, "recv_buf_size").value_or(receive_buffer);
   parsed.full = fmt::format("udpm://{}:{}?{}", parsed.host, parsed.port, options);
   return parsed;
 }

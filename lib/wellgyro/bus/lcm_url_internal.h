@@ -13,7 +13,8 @@ struct LcmUrl {
   std::string provider;  ///< udpm, tcpq or memq
   std::string host;
   std::uint16_t port = 0;
-  std::string full;  ///< with our defaults added
+  std::string full;        ///< with our defaults added
+  int receive_buffer = 0;  ///< asked for [bytes]; udpm only
 };
 
 /// `receive_buffer` [bytes] goes into a udpm URL that asks for none.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "wellgyro/bus/bytes_internal.h"
 #include "wellgyro/bus/log_format_internal.h"
@@ -155,6 +156,14 @@ std::optional<Fault> LogWriter::Close() {
 
 std::int64_t LogWriter::bytes() const {
   return written_ + static_cast<std::int64_t>(gathered_.size());
+}
+
+bool LogWriter::InPlace() const {
+  if (!file_ || file_.get() == stdout) return true;
+  struct stat ours {
+  }, named{};
+  return ::fstat(::fileno(file_.get()), &ours) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+         ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
 }
 
 }  // namespace wellgyro

@@ -43,6 +43,9 @@ class WELLGYRO_EXPORT LogWriter {
   [[nodiscard]] std::optional<Fault> Flush();
   [[nodiscard]] std::optional<Fault> Close();
 
+  /// Whether the path still names the file that is written: false once it was moved or removed.
+  bool InPlace() const;
+
   std::int64_t events() const { return events_; }
   std::int64_t bytes() const;  ///< of all events, those still in memory included
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace wellgyro {
 namespace {
@@ -24,36 +25,41 @@ const AlongHole& DepthGrid::NodeAt(std::int64_t index) {
   return node.along;
 }
 
-AlongHole DepthGrid::At(UtcTime utc) {
+void DepthGrid::Enter(UtcTime utc) {
   const std::int64_t cell = CellOf(utc);
   const UtcTime begin{cell * kStep.ns};
-  if (cell != cell_) {
-    a_ = NodeAt(cell);
-    b_ = NodeAt(cell + 1);
-    cell_ = cell;
-    const double way = 0.5 * kSeconds * (a_.speed + b_.speed);
-    smooth_ = a_.known && b_.known && std::abs(b_.md - a_.md - way) < kDisagree &&
-              track_->Segment(begin) == track_->Segment(begin + kStep);
-  }
-  if (!smooth_) return a_.known || b_.known ? track_->At(utc) : AlongHole{};
-  // Each end's own quadratic, carried to the instant. A track's speed is that of a fit over seconds
-  // and not the slope of its depths, so that no cubic goes through both.
-  const double dt = static_cast<double>((utc - begin).ns) * 1e-9;
-  const double u = dt * (1 / kSeconds);
-  const double v = 1 - u;
-  const double to = dt - kSeconds;
-  AlongHole along;
-  along.md = v * (a_.md + dt * (a_.speed + 0.5 * dt * a_.acceleration)) +
-             u * (b_.md + to * (b_.speed + 0.5 * to * b_.acceleration));
-  along.speed = v * (a_.speed + dt * a_.acceleration) + u * (b_.speed + to * b_.acceleration);
-  along.acceleration = v * a_.acceleration + u * b_.acceleration;
-  const auto [low, high] = std::minmax(a_.md, b_.md);
-  along.md = std::clamp(along.md, low, high);
-  along.sigma_md = v * a_.sigma_md + u * b_.sigma_md;
-  along.sigma_speed = v * a_.sigma_speed + u * b_.sigma_speed;
-  along.sigma_acceleration = v * a_.sigma_acceleration + u * b_.sigma_acceleration;
-  along.known = true;
-  return along;
+  const AlongHole a = NodeAt(cell), b = NodeAt(cell + 1);
+  begin_ns_ = begin.ns;
+  known_ = a.known || b.known;
+  const double way = 0.5 * kSeconds * (a.speed + b.speed);
+  smooth_ = a.known && b.known && std::abs(b.md - a.md - way) < kDisagree &&
+            track_->Segment(begin) == track_->Segment(begin + kStep);
+  if (smooth_) blend_ = BlendOf(a, b);
+}
+
+AlongHole DepthGrid::Asked(UtcTime utc) const { return known_ ? track_->At(utc) : AlongHole{}; }
+
+/// Each end's own quadratic, carried to the instant, by its nearness. A track's speed is that of a
+/// fit over seconds and not the slope of its depths, so that no cubic goes through both.
+DepthGrid::Blend DepthGrid::BlendOf(const AlongHole& a, const AlongHole& b) {
+  constexpr double h = kSeconds;
+  const double bend = 0.5 * a.acceleration;
+  // What b's quadratic says more than a's, by powers of the time since a.
+  const double d0 = b.md - h * (b.speed - 0.5 * h * b.acceleration) - a.md;
+  const double d1 = b.speed - h * b.acceleration - a.speed;
+  const double d2 = 0.5 * b.acceleration - bend;
+  Blend blend;
+  blend.md = {a.md, a.speed + d0 / h, bend + d1 / h, d2 / h};
+  blend.speed = {a.speed, a.acceleration + d1 / h, 2 * d2 / h};
+  blend.acceleration = {a.acceleration, 2 * d2 / h};
+  const auto line = [](double at_a, double at_b) {
+    return std::array<double, 2>{at_a, (at_b - at_a) / kSeconds};
+  };
+  blend.sigma_md = line(a.sigma_md, b.sigma_md);
+  blend.sigma_speed = line(a.sigma_speed, b.sigma_speed);
+  blend.sigma_acceleration = line(a.sigma_acceleration, b.sigma_acceleration);
+  std::tie(blend.md_low, blend.md_high) = std::minmax(a.md, b.md);
+  return blend;
 }
 
 }  // namespace wellgyro

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -25,20 +26,49 @@ class WELLGYRO_EXPORT DepthGrid {
   explicit DepthGrid(const DepthTrack& track) : track_(&track) {}
 
   /// The track must be final (Covers) up to kStep after `utc`: nodes are kept.
-  AlongHole At(UtcTime utc);
+  AlongHole At(UtcTime utc) {
+    // Unsigned, so that no nonsense overflows.
+    const auto since = static_cast<std::uint64_t>(utc.ns) - static_cast<std::uint64_t>(begin_ns_);
+    if (since >= static_cast<std::uint64_t>(kStep.ns)) Enter(utc);
+    return smooth_ ? Smooth(static_cast<double>(utc.ns - begin_ns_) * 1e-9) : Asked(utc);
+  }
 
  private:
   struct Node {
     std::int64_t index = INT64_MIN;
     AlongHole along;
   };
+  /// Coefficients of the blend, of powers of the seconds since the cell began.
+  struct Blend {
+    std::array<double, 4> md{};
+    std::array<double, 3> speed{};
+    std::array<double, 2> acceleration{}, sigma_md{}, sigma_speed{}, sigma_acceleration{};
+    double md_low = 0, md_high = 0;  ///< the ends': a blend never turns back
+  };
+
+  void Enter(UtcTime utc);
+  AlongHole Asked(UtcTime utc) const;
   const AlongHole& NodeAt(std::int64_t index);
+  static Blend BlendOf(const AlongHole& a, const AlongHole& b);
+  AlongHole Smooth(double t) const {
+    const Blend& c = blend_;
+    const auto line = [t](const std::array<double, 2>& l) { return l[0] + t * l[1]; };
+    const double md = c.md[0] + t * (c.md[1] + t * (c.md[2] + t * c.md[3]));
+    const double speed = c.speed[0] + t * (c.speed[1] + t * c.speed[2]);
+    return {.md = std::clamp(md, c.md_low, c.md_high),
+            .speed = speed,
+            .acceleration = line(c.acceleration),
+            .sigma_md = line(c.sigma_md),
+            .known = true,
+            .sigma_speed = line(c.sigma_speed),
+            .sigma_acceleration = line(c.sigma_acceleration)};
+  }
 
   const DepthTrack* track_;
-  std::array<Node, 4> nodes_;      ///< the latest asked, by index modulo 4
-  std::int64_t cell_ = INT64_MIN;  ///< whose ends are a_ and b_
-  bool smooth_ = false;            ///< between them
-  AlongHole a_, b_;
+  std::array<Node, 4> nodes_;            ///< the latest asked, by index modulo 4
+  std::int64_t begin_ns_ = -kStep.ns;    ///< of the present cell, UTC
+  bool known_ = false, smooth_ = false;  ///< anywhere in it; all over it
+  Blend blend_;
 };
 
 }  // namespace wellgyro

@@ -46,6 +46,7 @@ class RunSurvey {
 
   /// Drafts that have become ready to be told since the last call: indices into drafts().
   std::vector<std::size_t> News();
+  bool has_news() const { return !news_.empty(); }
   /// Some sample had a depth.
   bool depth_seen() const { return depth_seen_; }
   const std::vector<Draft>& drafts() const { return drafts_; }

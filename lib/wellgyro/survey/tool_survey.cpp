@@ -81,7 +81,9 @@ void ToolSurvey::Push(const Operation& operation) {
 void ToolSurvey::Push(const StillWindow& window) {
   RunState& run = RunFor(book_.RunAt(window.utc_begin, window.run));
   const UtcTime middle = window.utc_begin + Duration{(window.utc_end - window.utc_begin).ns / 2};
-  run.survey->Push(window, OfSensor(track_.At(middle)));
+  AlongHole along = track_.At(middle);
+  ShiftToSensor(along);
+  run.survey->Push(window, along);
   Tell(run);
 }
 
@@ -135,10 +137,12 @@ void ToolSurvey::Use(const ImuSample& sample) {
   const std::int32_t segment = track_.Segment(utc);
   if (segment != depth_segment_) run.survey->RestartDepth();
   depth_segment_ = segment;
-  run.survey->Push(sample, utc, OfSensor(grid_.At(utc)),
-                   OfSensor(grid_.At(utc + Duration{stamp.period_ns / 2})));
+  AlongHole begin = grid_.At(utc), middle = grid_.At(utc + Duration{stamp.period_ns / 2});
+  ShiftToSensor(begin);
+  ShiftToSensor(middle);
+  run.survey->Push(sample, utc, begin, middle);
   newest_used_ = utc;
-  Tell(run);
+  if (run.survey->has_news()) Tell(run);
 }
 
 /// The track's depth; after its last mark, that of a string which stood when it came.
@@ -151,10 +155,10 @@ AlongHole ToolSurvey::DepthHeldAt(UtcTime utc) const {
   return std::abs(end.speed) <= kHeldSpeed ? end : along;
 }
 
-AlongHole ToolSurvey::OfSensor(AlongHole along) const {
-  if (along.known)
-    along.md += Correction(job_.depth.corrections, along.md) + sensor_below_reference_;
-  return along;
+inline void ToolSurvey::ShiftToSensor(AlongHole& along) const {
+  if (!along.known) return;
+  const auto& table = job_.depth.corrections;
+  along.md += (table.empty() ? 0 : Correction(table, along.md)) + sensor_below_reference_;
 }
 
 ToolSurvey::RunState& ToolSurvey::RunFor(std::int32_t run) {
@@ -302,7 +306,13 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
   }
   const std::vector<Due> rest = std::exchange(due_, {});
   for (const Due& due : rest) {
-    if (!std::holds_alternative<Command>(due.operation)) Obey(due.operation);
+    const auto* command = std::get_if<Command>(&due.operation);
+    if (command == nullptr) Obey(due.operation);
+    // One that no sample reached any more is obeyed by ending.
+    if (command != nullptr && command->kind == Command::Kind::kFinish &&
+        (command->command_id == 0 || commands_.insert(command->command_id).second)) {
+      sink_.OnAcknowledged(command->command_id);
+    }
   }
   Adjust();
   finished_ = true;

@@ -74,7 +74,7 @@ class ToolSurvey {
   void Obey(const Command& command);
   bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
   AlongHole DepthHeldAt(UtcTime utc) const;
-  AlongHole OfSensor(AlongHole along) const;
+  void ShiftToSensor(AlongHole& along) const;
   RunState& RunFor(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
