@@ -444,7 +444,8 @@ class Live(unittest.TestCase):
         time.sleep(0.7)
         seconds = time.monotonic() - begin
         survey.send_signal(signal.SIGTERM)
-        self.assertEqual(survey.wait(timeout=20), 0)
+        text, errors = survey.communicate(timeout=20)
+        self.assertEqual(survey.returncode, 0, text + errors)
         # By the second, one more for the acknowledgement.
         self.assertLess(abs(len(ear.Statuses()) - seconds), 4)
         self.assertEqual(ear.Statuses()[-1][2], 39000)

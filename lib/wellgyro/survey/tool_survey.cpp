@@ -9,6 +9,7 @@
 #include "wellgyro/attitude/smoother.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/hole_attitude.h"
+#include "wellgyro/survey/joined_states.h"
 #include "wellgyro/survey/model_covariance.h"
 #include "wellgyro/survey/station_of.h"
 
@@ -326,17 +327,6 @@ SampleTally ToolSurvey::tally() const {
   return tally;
 }
 
-/// As the last Adjust found them, and since then as the filter did, or as the first north showed.
-std::vector<StationState> ToolSurvey::StatesOf(const RunState& run, const AzimuthFilter& filter) {
-  std::vector<StationState> states = run.adjusted;
-  const std::vector<StationState>& stations = filter.stations();
-  for (std::size_t i = states.size(); i < stations.size(); ++i) {
-    const bool backwards = !stations[i].attitude.azimuth_known && i < run.backwards.size();
-    states.push_back(backwards ? run.backwards[i] : stations[i]);
-  }
-  return states;
-}
-
 /// Where the hole points at every knot that has a depth and a direction.
 std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
   std::vector<Waypoint> way;
@@ -367,7 +357,7 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
     d.run = run.survey->summary().run;
     d.misrun = book_.misrun(d.run);
     if (const AzimuthFilter* filter = run.survey->filter()) {
-      d.states = StatesOf(run, *filter);
+      d.states = JoinStates(run.adjusted, run.backwards, filter->stations());
       d.way = WayOf(run);
     }
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {

@@ -78,7 +78,6 @@ class ToolSurvey {
   RunState& RunFor(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
-  static std::vector<StationState> StatesOf(const RunState& run, const AzimuthFilter& filter);
   std::vector<Waypoint> WayOf(const RunState& run) const;
   std::vector<DraftedRun> Drafted() const;
   std::vector<Foresight> Foresights() const;
