@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -10,6 +11,7 @@
 #include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/job_file.h"
 #include "wellgyro/io/run_file.h"
+#include "wellgyro/io/sensor_files.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "commands.h"
@@ -71,7 +73,37 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   return code;
 }
 
-int SurveyAny(const SurveyOptions& options) {
+/// From tables of sensor data: samples, averages at rest, depth.
+int SurveyTables(const SurveyOptions& options, const JobFile& job) {
+  FaultBook faults;
+  const LeastSquaresAdjuster adjuster;
+  Surveyor surveyor(job.job, faults, &adjuster);
+  const std::vector<std::filesystem::path> files(options.sources.begin(), options.sources.end());
+  const Result<SensorReport> report = PushSensorFiles(files, job.job, surveyor, faults);
+  if (!report) {
+    Complain(report.fault());
+    return kUnusable;
+  }
+  surveyor.Finish();
+  RunRecord record;
+  record.program = "wellgyro " WELLGYRO_VERSION;
+  record.inputs = job.files;
+  record.inputs.insert(record.inputs.end(), report->files.begin(), report->files.end());
+  record.faults = faults.faults();
+  record.clock = report->clock;
+  record.stamps_less_stops = report->stamps_less_stops;
+  SourceRecord source;
+  for (const std::string& name : options.sources) {
+    source.name += (source.name.empty() ? "" : ", ") + name;
+  }
+  source.counts["samples"] = report->samples;
+  source.counts["still_windows"] = report->windows;
+  source.counts["depth_marks"] = report->marks;
+  return DeliverAll(options.out, job, surveyor, record, source);
+}
+
+int SurveyAny(SurveyOptions options) {
+  if (!options.sources.empty()) options.from = options.sources.front();
   const Result<JobFile> job = ReadJob(options.job);
   if (!job) {
     Complain(job.fault());
@@ -82,7 +114,9 @@ int SurveyAny(const SurveyOptions& options) {
     Complain("--record, --resume and --fill are for a live stream: --from URL");
     return kUsage;
   }
-  return MayWriteTo(options.out) ? SurveyLog(options, *job) : kUnusable;
+  if (!MayWriteTo(options.out)) return kUnusable;
+  const bool tables = options.sources.size() > 1 || IsSensorTable(options.from);
+  return tables ? SurveyTables(options, *job) : SurveyLog(options, *job);
 }
 
 }  // namespace
@@ -97,10 +131,12 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--from", options->from,
+      ->add_option("--from", options->sources,
                    "LCM log, - for standard input, or an LCM URL as udpm://239.255.76.67:7667; "
-                   "by default LCM_DEFAULT_URL, or LCM's own default")
-      ->type_name("LOG|URL");
+                   "by default LCM_DEFAULT_URL, or LCM's own default. Or tables of samples, of "
+                   "averages at rest and of depth, each with its own --from")
+      ->allow_extra_args(false)
+      ->type_name("LOG|URL|CSV");
   command->add_option("--out", options->out, "Folder for the survey files")
       ->required()
       ->type_name("DIR");
@@ -115,6 +151,7 @@ void AddSurvey(CLI::App& app, int& exit_code) {
   command->footer(
       "Example:\n  wellgyro survey --job data/demo/job.toml --from data/demo/run.lcm "
       "--out result\n"
+      "  wellgyro survey --job job.toml --from tool.csv --from tally.csv --out result\n"
       "  wellgyro survey --job job.toml --from udpm://239.255.76.67:7667 --record heard.lcm "
       "--out result");
   command->callback([options, &exit_code] { exit_code = SurveyAny(*options); });

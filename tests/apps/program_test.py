@@ -2,6 +2,7 @@
 """Runs the program as a user does: results, exit codes, sentences. program_test.py PROGRAM"""
 import csv
 import filecmp
+import math
 import os
 import random
 import shutil
@@ -234,6 +235,40 @@ class Program(unittest.TestCase):
         self.assertIn("choose a new --out", done.stderr)
         self.assertEqual(os.stat(os.path.join(self.Path("accepted"), "survey.csv")).st_mtime_ns,
                          before)
+
+    def test_tables_of_averages_make_a_survey(self):
+        latitude, inclination, toolface = math.radians(61.0), math.radians(30.0), math.radians(20.0)
+        rate, gravity = 15.0410672, 9.8192
+        rows = ["UTC[s],DURATION[s],MD[m],GX[deg/h],GY[deg/h],GZ[deg/h],AX[m/s2],AY[m/s2],"
+                "AZ[m/s2],SIG_GX[deg/h],SIG_GY[deg/h],SIG_GZ[deg/h]"]
+        ci, si = math.cos(inclination), math.sin(inclination)
+        ct, st = math.cos(toolface), math.sin(toolface)
+        for k, azimuth in enumerate((100.0, 102.0, 105.0)):
+            ca, sa = math.cos(math.radians(azimuth)), math.sin(math.radians(azimuth))
+            north, down = rate * math.cos(latitude), -rate * math.sin(latitude)
+            high = north * ca * ci - down * si  # of the Earth's rate; right is -north sin A
+            right = -north * sa
+            w = (high * ct + right * st, -high * st + right * ct, north * ca * si + down * ci)
+            f = (gravity * si * ct, -gravity * si * st, -gravity * ci)
+            rows.append(",".join(f"{value:.9g}" for value in (
+                1700000000 + 600 * k, 60, 100 + 30 * k, *w, *f, 0.02, 0.02, 0.02)))
+        table = self.Write("still.csv", "\n".join(rows) + "\n")
+        job = self.Write("points.toml", JOB.replace("every_m = 25.0", "every_m = 0\nat_stops = true")
+                         + "[tie_in]\nmd_m = 90.0\ninclination_deg = 30.0\n"
+                           "azimuth_true_deg = 100.0\n")
+        done = Run("survey", "--job", job, "--from", table, "--out", self.Path("points"))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        stations = self.Rows("points", "survey.csv")
+        self.assertEqual([row["KIND"] for row in stations], ["tie_in", "still", "still", "still"])
+        for row, azimuth in zip(stations[1:], (100.0, 102.0, 105.0)):
+            self.assertAlmostEqual(float(row["INC[deg]"]), 30.0, delta=0.001)
+            self.assertAlmostEqual(float(row["AZI_TRUE[deg]"]), azimuth, delta=0.05)
+        with open(os.path.join(self.Path("points"), "run.toml"), encoding="utf-8") as file:
+            self.assertIn("still.csv", file.read())
+        broken = self.Write("broken.csv", "\n".join([rows[0], rows[1].replace("100", "a", 1)]))
+        done = Run("survey", "--job", job, "--from", broken, "--out", self.Path("broken"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("broken.csv:2:", done.stderr)
 
     def test_check_says_what_files_are(self):
         done = Run("check", self.job, self.log, self.Path("simulation.toml"))

@@ -12,6 +12,7 @@ namespace {
 
 // Until the observer has seen this long a level it takes what it gets [s].
 constexpr double kFirstLevel = 2;
+constexpr double kUnknown = 0.03;  // [m/s^2], rms acceleration of a tool whose depth nobody knows
 
 // atan2(s, c) where s^2 + c^2 = 1, to 1e-12 of it.
 double Phase(double s, double c) {
@@ -282,8 +283,9 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
     gains = Fitted(steady_, s.dt, memory_);
   }
   if (s.stamp.accel_saturated) gains = {0, 0};
-  if (s.along.known && memory_ > kFirstLevel) {
-    const double said = s.along.acceleration, sigma = s.along.sigma_acceleration;
+  if (memory_ > kFirstLevel) {
+    const double said = s.along.known ? s.along.acceleration : 0;
+    const double sigma = s.along.known ? s.along.sigma_acceleration : kUnknown;
     const double doubt = options_.acceleration_doubt;
     const double trust = 1 / (1 + (said * said + sigma * sigma) / (doubt * doubt));
     gains.level *= trust;

@@ -28,7 +28,8 @@ struct TrackerOptions {
   double angle_random_walk = 0;  ///< of the transverse gyros [rad/sqrt(s)]
   double level_seconds = 20;     ///< over which accelerometers correct the gyros' inclination [s]
   /// Acceleration along the hole at which they do so at half weight: depth tells a changing one
-  /// late and smeared, and what is left of it would pass for inclination [m/s^2].
+  /// late and smeared, and what is left of it would pass for inclination [m/s^2]. Where depth does
+  /// not tell it at all, they count for a tenth.
   double acceleration_doubt = 0.01;
   double inclination_min = FromDegrees(0.5);  ///< below it, or above pi less it: vertical [rad]
   double sigma_toolface_max = 0.1;            ///< of one sample, beyond it: vertical [rad]

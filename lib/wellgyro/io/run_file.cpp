@@ -126,6 +126,19 @@ void WriteFault(TomlWriter& toml, const Fault& fault) {
   toml.Text("text", fault.text);
 }
 
+void WriteClock(TomlWriter& toml, const RunRecord& record) {
+  const StopMatch& clock = *record.clock;
+  toml.Table("clock_by_stops");
+  toml.Whole("tool_ns", clock.tool.ns);
+  toml.Whole("utime_us", clock.utc.ns / 1000);
+  toml.Number("drift", clock.drift);
+  toml.Number("sigma_offset_s", std::sqrt(clock.cov(0, 0)));
+  toml.Number("sigma_drift", std::sqrt(clock.cov(1, 1)));
+  toml.Number("sigma_edge_s", clock.sigma_edge);
+  toml.Whole("stops", clock.matched);
+  if (record.stamps_less_stops) toml.Number("stamps_less_stops_s", *record.stamps_less_stops);
+}
+
 bool Sampled(const Survey& survey) {
   return std::any_of(survey.runs.begin(), survey.runs.end(),
                      [](const RunSummary& run) { return run.samples > 0; });
@@ -155,6 +168,7 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   WriteChecks(toml, survey.checks);
   WriteFaultCounts(toml, record.faults);
   WriteRuns(toml, survey.runs);
+  if (record.clock) WriteClock(toml, record);
   WriteTools(toml, record.tools);
   WriteChannels(toml, record.channels);
   for (const OutputFile& output : outputs) {

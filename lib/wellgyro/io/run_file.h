@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
+#include "wellgyro/depth/stop_match.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/record/operations.h"
@@ -25,9 +27,11 @@ struct ChannelRecord {
 
 /// What a survey rests on besides its messages.
 struct RunRecord {
-  std::string program;            ///< name and version
-  std::string adjuster;           ///< what adjusted the whole run; empty: nothing
-  std::vector<InputFile> inputs;  ///< the job first
+  std::string program;                      ///< name and version
+  std::string adjuster;                     ///< what adjusted the whole run; empty: nothing
+  std::vector<InputFile> inputs;            ///< the job first
+  std::optional<StopMatch> clock;           ///< of the tool, by its stops
+  std::optional<double> stamps_less_stops;  ///< the samples' own UTC less that [s]
   std::vector<ChannelRecord> channels;
   std::vector<ToolInfo> tools;  ///< as the tools said
   std::vector<Fault> faults;    ///< of the surveyor, none of the source
