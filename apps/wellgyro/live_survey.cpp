@@ -35,8 +35,8 @@ constexpr std::int64_t kSecondUs = 1'000'000;
 constexpr std::int64_t kKeepUs = 500'000;
 // A FINISH that no sample reaches, because the tool is off, holds after so long without samples.
 constexpr std::int64_t kFinishPatienceUs = 5 * kSecondUs;
-// A share of the stream's thread at most for making snapshots.
-constexpr std::int64_t kSnapshotShare = 20;
+// Snapshots take at most this share of the stream's thread, so that few stations wait for one.
+constexpr std::int64_t kSnapshotShare = 200;
 // What is still used of a backlog when a signal comes.
 constexpr std::int64_t kDrainUs = 20'000;
 

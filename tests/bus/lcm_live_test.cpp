@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -206,6 +207,37 @@ TEST(LcmLive, MulticastOnThisMachineLosesNothingAtARestingListener) {
   ASSERT_TRUE(listening->granted_receive_buffer());
   EXPECT_GT(*listening->granted_receive_buffer(), 100'000);
   EXPECT_EQ(listening->refused(), 0);
+}
+
+// 10 kHz in batches of 32. LCM's own thread goes on reading while the consumer stands.
+TEST(LcmLive, AConsumerThatStandsForASecondLosesNothing) {
+  const std::string url = "udpm://239.255.76.67:" + std::to_string(40'000 + getpid() % 20'000);
+  Result<LiveBus> listening = LiveBus::Open(url);
+  if (!listening) GTEST_SKIP() << listening.fault().text;
+  constexpr std::int64_t kCount = 625;
+  std::int64_t heard = 0, wrong = 0;
+  const auto handler = [&](std::string_view, std::span<const std::byte> data, std::int64_t) {
+    std::int64_t number = -1;
+    std::memcpy(&number, data.data(), sizeof number);
+    wrong += number == heard++ ? 0 : 1;
+    if (heard == 100) std::this_thread::sleep_for(std::chrono::seconds(1));
+  };
+  if (auto fault = listening->Subscribe({"BATCH"}, handler)) GTEST_SKIP() << fault->text;
+  std::thread speaker([&url] {
+    Result<LiveBus> speaking = LiveBus::Open(url);
+    if (!speaking) return;
+    Bytes bytes(1336);
+    auto due = std::chrono::steady_clock::now();
+    for (std::int64_t i = 0; i < kCount; ++i) {
+      std::memcpy(bytes.data(), &i, sizeof i);
+      static_cast<void>(speaking->Publish("BATCH", bytes));
+      std::this_thread::sleep_until(due += std::chrono::microseconds(3200));
+    }
+  });
+  while (heard < kCount && Waited(*listening, 3000) == Woken::kMessages) continue;
+  speaker.join();
+  EXPECT_EQ(heard, kCount);
+  EXPECT_EQ(wrong, 0) << "each once and in order";
 }
 
 // Datagrams that LCM takes for messages and that no sender of LCM makes.

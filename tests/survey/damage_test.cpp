@@ -124,5 +124,42 @@ TEST(Damage, WithoutNorthThereIsNoSurvey) {
   EXPECT_TRUE(survey.chosen.empty());
 }
 
+TEST(Damage, FloodsAreBounded) {
+  CollectingSink sink;
+  Surveyor surveyor(SlantJob(), sink);
+  std::vector<ImuSample> batch(1);
+  ImuSample& sample = batch[0];
+  sample.stamp.period_ns = 10'000'000;
+  sample.f_T = {4.9, 0, -8.5};
+  // Three thousand runs, tools and sessions, of which nobody has so many.
+  for (std::int32_t i = 0; i < 3000; ++i) {
+    sample.stamp.seq = i;
+    sample.stamp.session = i;
+    sample.stamp.run = i + 1;
+    sample.stamp.tool_time = ToolTime{10'000'000LL * i};
+    sample.stamp.utc = UtcTime{1'700'000'000'000'000'000 + 10'000'000LL * i};
+    sample.stamp.tool = 0;
+    surveyor.Push(std::span<const ImuSample>(batch));
+    sample.stamp.tool = i;
+    surveyor.Push(std::span<const ImuSample>(batch));
+    Event event;
+    event.kind = Event::Kind::kRunBegin;
+    event.utc = sample.stamp.utc;
+    event.run = i;
+    surveyor.Push(event);
+  }
+  Command command;
+  command.kind = Command::Kind::kStartContinuous;
+  for (std::int64_t i = 0; i < 3000; ++i) {
+    command.utc = UtcTime{1'800'000'000'000'000'000 - i};
+    surveyor.Push(command);
+  }
+  EXPECT_EQ(surveyor.tools().size(), Surveyor::kToolsMax);
+  surveyor.Finish();
+  EXPECT_LE(surveyor.Current(0).runs.size(), Surveyor::kRunsMax);
+  EXPECT_NE(surveyor.Current(0).unusable, "");
+  EXPECT_GT(sink.faults.size(), 100u);
+}
+
 }  // namespace
 }  // namespace wellgyro

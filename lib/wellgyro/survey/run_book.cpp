@@ -1,8 +1,15 @@
 #include "wellgyro/survey/run_book.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace wellgyro {
+namespace {
+
+// Every sample looks them through; more come from a broken sender alone.
+constexpr std::size_t kEventsMax = 2000;
+
+}  // namespace
 
 RunBook::RunBook(const std::vector<RunSpec>& runs) : specs_(runs) {
   for (const RunSpec& run : runs) {
@@ -13,6 +20,7 @@ RunBook::RunBook(const std::vector<RunSpec>& runs) : specs_(runs) {
 }
 
 void RunBook::Take(const Event& event) {
+  if (begins_.size() + ends_.size() >= kEventsMax) return;
   if (event.kind == Event::Kind::kRunBegin) {
     const auto after = std::upper_bound(begins_.begin(), begins_.end(), event.utc,
                                         [](UtcTime utc, const Begin& b) { return utc < b.utc; });

@@ -79,6 +79,12 @@ struct Surveyor::Rooms {
   }
 
   void Take(const Operation& operation) {
+    if (operations.size() >= kOperationsMax) {
+      sink.OnFault(Fault{FaultCode::kRange, fmt::format("one command, mode or event more than {}: "
+                                                        "it is left out",
+                                                        kOperationsMax)});
+      return;
+    }
     if (const auto* event = std::get_if<Event>(&operation)) {
       if (const auto fault = track.Push(*event)) sink.OnFault(*fault);
       book.Take(*event);
@@ -181,7 +187,7 @@ void Surveyor::Push(const ToolMode& mode) {
 
 void Surveyor::Push(const ToolInfo& info) {
   if (!rooms_->Open()) return;
-  rooms_->infos.push_back(info);
+  if (rooms_->infos.size() < kOperationsMax) rooms_->infos.push_back(info);
   const auto tool = rooms_->tools.find(info.tool);
   if (tool != rooms_->tools.end()) tool->second.Push(info);
 }

@@ -58,7 +58,10 @@ struct SampleTally {
 /// Quality. Memory grows with stations and knots only (one knot a second, about 1 kB).
 class WELLGYRO_EXPORT Surveyor {
  public:
-  static constexpr std::size_t kToolsMax = 256;  ///< messages of further ones are Faults
+  /// What comes beyond these is left out with a Fault.
+  static constexpr std::size_t kToolsMax = 256;
+  static constexpr std::size_t kRunsMax = 1000;           ///< of one tool
+  static constexpr std::size_t kOperationsMax = 100'000;  ///< commands, modes and events
 
   /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` and
   /// `adjuster` must outlive this object; without an adjuster the smoothed run is final.

@@ -16,6 +16,8 @@
 namespace wellgyro {
 namespace {
 
+// Commands, modes and events that wait for their time; more come from a broken sender alone.
+constexpr std::size_t kDueMax = 2000;
 // An accepted or rejected depth is typed by hand, to the decimetre at best.
 constexpr double kTypedDepth = 0.5;  // [m]
 // A foresight holds at a knot no further away than this.
@@ -73,6 +75,13 @@ void ToolSurvey::Push(const ImuSample& sample) {
 }
 
 void ToolSurvey::Push(const Operation& operation) {
+  if (due_.size() >= kDueMax) {
+    sink_.OnFault(Fault{FaultCode::kRange, fmt::format("more than {} commands, modes and events "
+                                                       "wait for samples of tool {}: one is left "
+                                                       "out",
+                                                       kDueMax, tool_)});
+    return;
+  }
   const Due due{TimeOf(operation), operation};
   const auto after = std::upper_bound(due_.begin(), due_.end(), due.utc,
                                       [](UtcTime utc, const Due& d) { return utc < d.utc; });
@@ -80,7 +89,9 @@ void ToolSurvey::Push(const Operation& operation) {
 }
 
 void ToolSurvey::Push(const StillWindow& window) {
-  RunState& run = RunFor(book_.RunAt(window.utc_begin, window.run));
+  RunState* found = RunFor(book_.RunAt(window.utc_begin, window.run));
+  if (found == nullptr) return;
+  RunState& run = *found;
   const UtcTime middle = window.utc_begin + Duration{(window.utc_end - window.utc_begin).ns / 2};
   AlongHole along = track_.At(middle);
   ShiftToSensor(along);
@@ -119,7 +130,9 @@ void ToolSurvey::Use(const ImuSample& sample) {
     if (finish_asked_) return;
   }
   if (!last_) book_.HeardAt(utc);
-  RunState& run = RunFor(book_.RunAt(utc, stamp.run));
+  RunState* found = RunFor(book_.RunAt(utc, stamp.run));
+  if (found == nullptr) return;
+  RunState& run = *found;
   if (last_ && stamp.session == last_->session && stamp.seq > last_->seq + 1) {
     const std::int64_t lost = stamp.seq - last_->seq - 1;
     run.survey->summary().samples_lost += lost;
@@ -162,11 +175,17 @@ inline void ToolSurvey::ShiftToSensor(AlongHole& along) const {
   along.md += (table.empty() ? 0 : Correction(table, along.md)) + sensor_below_reference_;
 }
 
-ToolSurvey::RunState& ToolSurvey::RunFor(std::int32_t run) {
+/// nullptr, and a Fault: one run too many.
+ToolSurvey::RunState* ToolSurvey::RunFor(std::int32_t run) {
   for (RunState& state : runs_) {
     if (state.survey->summary().run != run) continue;
     // Another run may have begun since and ended; its samples are not mixed with these.
-    return state;
+    return &state;
+  }
+  if (runs_.size() >= Surveyor::kRunsMax) {
+    sink_.OnFault(Fault{FaultCode::kRange, fmt::format("run {} is one more than {}: it is left out",
+                                                       run, Surveyor::kRunsMax)});
+    return nullptr;
   }
   if (!runs_.empty()) {
     runs_.back().survey->Flush();
@@ -176,7 +195,7 @@ ToolSurvey::RunState& ToolSurvey::RunFor(std::int32_t run) {
   state.survey = std::make_unique<RunSurvey>(job_, run, tool_);
   state.provisional = std::make_unique<ProvisionalPath>(job_);
   runs_.push_back(std::move(state));
-  return runs_.back();
+  return &runs_.back();
 }
 
 void ToolSurvey::Obey(const Operation& operation) {

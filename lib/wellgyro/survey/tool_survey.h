@@ -75,7 +75,7 @@ class ToolSurvey {
   bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
   AlongHole DepthHeldAt(UtcTime utc) const;
   void ShiftToSensor(AlongHole& along) const;
-  RunState& RunFor(std::int32_t run);
+  RunState* RunFor(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
   std::vector<Waypoint> WayOf(const RunState& run) const;
