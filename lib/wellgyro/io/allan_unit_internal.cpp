@@ -52,7 +52,8 @@ TermText TextOf(NoiseTerm term, const AllanUnit& unit) {
     return acc ? std::pair<std::string, double>(accelerometer, 1)
                : std::pair<std::string, double>(gyro, gyro_si);
   };
-  const auto text = [](const char* name, const char* letter, std::pair<std::string, double> u) {
+  const auto text = [](const char* name, const char* letter,
+                       const std::pair<std::string, double>& u) {
     return TermText{name, letter, u.first, u.second};
   };
   switch (term) {

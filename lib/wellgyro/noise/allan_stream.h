@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,6 +32,9 @@ class WELLGYRO_EXPORT AllanStream {
   void Skip(std::int64_t samples);
 
   std::int64_t samples() const { return samples_; }  ///< so far, missing ones included
+
+  /// Memory it holds beside itself.
+  std::size_t state_bytes() const { return levels_.capacity() * sizeof(Level); }
 
   /// The variances so far. `terms` counts the differences of full overlap that the ones taken
   /// stand for, so that intervals and fits take it as it is. Octaves without one are left out.

@@ -16,8 +16,9 @@ std::vector<std::int64_t> OctaveFactors(std::int64_t samples) {
 std::vector<std::int64_t> DecadeFactors(std::int64_t samples) {
   std::vector<std::int64_t> factors;
   for (std::int64_t decade = 1; decade <= samples / 2; decade *= 10) {
-    for (std::int64_t k = 1; k < 10 && k * decade <= samples / 2; ++k)
+    for (std::int64_t k = 1; k < 10 && k * decade <= samples / 2; ++k) {
       factors.push_back(k * decade);
+    }
   }
   return factors;
 }
@@ -32,7 +33,8 @@ std::vector<std::int64_t> FactorsOf(std::span<const double> taus, double period,
                                   std::to_string(tau));
     }
     const double m = std::max(1., std::round(tau / period));
-    if (m <= static_cast<double>(samples / 2)) factors.push_back(static_cast<std::int64_t>(m));
+    const std::int64_t longest = samples / 2;
+    if (m <= static_cast<double>(longest)) factors.push_back(static_cast<std::int64_t>(m));
   }
   std::sort(factors.begin(), factors.end());
   factors.erase(std::unique(factors.begin(), factors.end()), factors.end());

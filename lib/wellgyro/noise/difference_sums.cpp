@@ -22,7 +22,7 @@ template <class Vector, int kOctaves>
   for (; i + kLanes <= n; i += kLanes) {
 #pragma GCC unroll 4
     for (int part = 0; part < kParts; ++part) {
-      const std::int64_t at = i + part * kWidth;
+      const std::int64_t at = i + std::int64_t{part} * kWidth;
       Vector here;
       Vector lag;
       std::memcpy(&here, x + at, sizeof here);

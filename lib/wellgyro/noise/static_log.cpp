@@ -25,6 +25,7 @@ double Median(std::vector<double> values) {
 double RobustSigma(const std::vector<double>& values) {
   const double median = Median(values);
   std::vector<double> away;
+  away.reserve(values.size());
   for (const double v : values) away.push_back(std::abs(v - median));
   return kSigmaPerMad * Median(std::move(away));
 }
