@@ -102,6 +102,16 @@ at_stops = true
 kind = "drill_pipe"
 latency_s = 2.5
 corrections = [[0.0, 0.0], [1000, 0.5]]
+max_gap_s = 12.5
+[depth.cable]
+stretch_m_per_km_kn = 0.135
+weight_n_per_m = 4.2
+tool_weight_n = 1200.0
+measuring_tension_n = 2000.0
+expansion_per_degc = 1.2e-5
+gradient_degc_per_km = 30.0
+mark_spacing_m = 25.0
+first_mark_m = 12.5
 [string]
 sensor_below_reference_m = 4.5
 sag_deg = 0.05
@@ -234,6 +244,15 @@ TEST(ReadJob, TakesWhatTheRunIsLike) {
   EXPECT_TRUE(job.stations.at_stops);
   EXPECT_EQ(job.depth.kind, DepthKind::kDrillPipe);
   EXPECT_EQ(job.depth.latency, 2.5);
+  EXPECT_EQ(job.depth.max_gap, 12.5);
+  EXPECT_DOUBLE_EQ(job.depth.cable.stretch, 0.135e-6);
+  EXPECT_EQ(job.depth.cable.weight, 4.2);
+  EXPECT_EQ(job.depth.cable.tool_weight, 1200);
+  EXPECT_EQ(job.depth.cable.measuring_tension, 2000);
+  EXPECT_EQ(job.depth.cable.expansion, 1.2e-5);
+  EXPECT_DOUBLE_EQ(job.depth.cable.gradient, 0.03);
+  EXPECT_EQ(job.depth.cable.mark_spacing, 25);
+  EXPECT_EQ(job.depth.cable.first_mark.value_or(0), 12.5);
   EXPECT_THAT(job.depth.corrections,
               testing::ElementsAre(testing::Pair(0, 0), testing::Pair(1000, 0.5)));
   EXPECT_EQ(job.string.sensor_below_reference, 4.5);

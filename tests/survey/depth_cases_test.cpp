@@ -135,6 +135,50 @@ TEST(DepthCases, NoisyDepthDoesNotHideTheStops) {
   }
 }
 
+TEST(DepthCases, MagneticMarksAndStretchHoldTheStationsToTheHole) {
+  const Simulation simulation = Building(4);
+  Job job = BuildingJob();
+  job.depth.cable.mark_spacing = 25;
+  job.depth.cable.first_mark = 0;
+  job.depth.cable.stretch = 1e-6;  // of a very soft cable
+  job.depth.cable.tool_weight = 2000;
+  CollectingSink sink;
+  Simulator simulator(simulation);
+  Surveyor surveyor(job, sink);
+  SimulatedStep step;
+  const Truth& truth = simulator.truth();
+  double last = 0;
+  while (simulator.Next(step)) {
+    if (auto* mark = std::get_if<DepthMark>(&step)) {
+      const double md = mark->md;
+      mark->md *= 0.997 / 1.002;  // 0.3 % of slip and 0.2 % of stretch
+      mark->tension = 2000;
+      if (std::floor(md / 25) > std::floor(last / 25)) {
+        // The mark passed a little before this reading.
+        double t = (mark->utc - simulation.streams.begin_utc).seconds();
+        while (truth.At(t).md > std::floor(md / 25) * 25) t -= 0.001;
+        DepthMark magnetic = *mark;
+        magnetic.magnetic_mark = true;
+        magnetic.seq += 1'000'000;
+        magnetic.utc = simulation.streams.begin_utc + Duration::Seconds(t);
+        magnetic.md = truth.At(t).md * 0.997 / 1.002;
+        surveyor.Push(magnetic);
+      }
+      last = md;
+    }
+    std::visit([&](const auto& record) { surveyor.Push(record); }, step);
+  }
+  surveyor.Finish();
+  const Survey survey = surveyor.Current(0);
+  ASSERT_EQ(survey.unusable, "");
+  EXPECT_TRUE(sink.faults.empty());
+  EXPECT_NEAR(survey.chosen.back().md, 400, 0.06) << "read as 398";
+  const Check* marks = Find(survey, "magnetic_marks");
+  ASSERT_NE(marks, nullptr);
+  EXPECT_NEAR(marks->value.value_or(0), 0.075, 0.02);
+  EXPECT_EQ(Find(survey, "magnetic_marks_left_out"), nullptr);
+}
+
 TEST(DepthCases, NoStationLiesBeyondTheEncodersEnd) {
   for (int k = 0; k < 8; ++k) {
     Simulation simulation = Building(5);

@@ -149,6 +149,23 @@ TEST(RunLimits, ReturnToZeroAndForesightCountAfterTheLastSample) {
   EXPECT_EQ(done, 2);
 }
 
+TEST(RunLimits, AnExternalAzimuthThatTheStopsContradictIsToldAtEveryStation) {
+  const Simulation simulation = Slant();
+  for (const double wrong : {0.0, 8.0}) {
+    Job job = SlantJob();
+    job.alignment.method = AlignmentSpec::Method::kExternal;
+    job.alignment.azimuth = simulation.well.azimuth.start + FromDegrees(wrong);
+    job.alignment.sigma_azimuth = FromDegrees(0.5);
+    CollectingSink sink;
+    const Survey survey = testing::SurveyOf(simulation, job, sink);
+    ASSERT_EQ(survey.unusable, "");
+    EXPECT_EQ(sink.faults.empty(), wrong == 0) << wrong;
+    for (const Station& s : survey.chosen) {
+      EXPECT_EQ(Has(s.quality, Quality::kEarthRate), wrong != 0) << s.md;
+    }
+  }
+}
+
 TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
   Simulator simulator(Slant());
   CollectingSink sink;

@@ -105,6 +105,24 @@ void ReadExternalAzimuth(TomlTable& table, AlignmentSpec& spec) {
   table.Read("use_fixes", spec.use_fixes);
 }
 
+Cable ReadCable(TomlTable table) {
+  constexpr double kPerKmKn = 1e-6;  // m per km and kN, in 1/N
+  Cable cable;
+  table.Read("stretch_m_per_km_kn", cable.stretch, kPerKmKn, kNotNegative);
+  table.Read("weight_n_per_m", cable.weight, 1, kNotNegative);
+  table.Read("tool_weight_n", cable.tool_weight, 1, kNotNegative);
+  table.Read("measuring_tension_n", cable.measuring_tension, 1, kNotNegative);
+  table.Read("expansion_per_degc", cable.expansion, 1, kNotNegative);
+  table.Read("measuring_temperature_degc", cable.measuring_temperature);
+  table.Read("surface_temperature_degc", cable.surface_temperature);
+  table.Read("gradient_degc_per_km", cable.gradient, 1e-3);
+  table.Read("stretch_sigma_ratio", cable.ratio_sigma, 1, {.min = 0, .max = 1});
+  table.Read("mark_spacing_m", cable.mark_spacing, 1, kPositive);
+  table.Read("first_mark_m", cable.first_mark);
+  table.Read("mark_sigma_m", cable.sigma_mark, 1, kNotNegative);
+  return cable;
+}
+
 }  // namespace
 
 Job::Well ReadWell(TomlTable table) {
@@ -233,6 +251,7 @@ DepthSpec ReadDepth(TomlTable table) {
     spec.kind = *known;
   }
   table.Read("latency_s", spec.latency, 1, {.min = 0, .max = 86'400});
+  if (auto cable = table.FindTable("cable")) spec.cable = ReadCable(*std::move(cable));
   table.Read("max_gap_s", spec.max_gap, 1, {.min = 0.1, .max = 600});
   for (const auto& row :
        table.FindRows("corrections", 2).value_or(std::vector<std::vector<double>>())) {

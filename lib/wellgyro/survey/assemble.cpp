@@ -24,6 +24,9 @@
 namespace wellgyro {
 namespace {
 
+// A leg so long without a depth in it was not seen: marks at stands of pipe.
+constexpr double kUnseenLeg = 5;  // [m]
+
 /// A station of one pass on its way to a position.
 struct Item {
   Station station;
@@ -90,10 +93,28 @@ std::optional<Start> StartOnLine(const Site& head, const PassLine& line, double 
   return Start{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs[*i]};
 }
 
+/// What the hole may do in a leg that nobody saw: course-length terms XCLA and XCLH of the ISCWSA
+/// error model, SPE 187249.
+Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
+  constexpr double kRatio = 0.167;
+  constexpr double kTortuosity = units::kDegPer100ft;  // the least that a hole turns
+  const double length = below.md - above.md;
+  const double inclination = 0.5 * (above.inclination + below.inclination);
+  const double turn = WrapPi(below.azimuth - above.azimuth);
+  const double azimuth = above.azimuth + 0.5 * turn;
+  const double si = std::sin(inclination), ci = std::cos(inclination);
+  const double sa = std::sin(azimuth), ca = std::cos(azimuth);
+  const double least = kTortuosity * length;
+  const double build = std::abs(below.inclination - above.inclination);
+  const Eigen::Vector3d high = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::max(build, least);
+  const Eigen::Vector3d right = Eigen::Vector3d(-sa, ca, 0) * std::max(std::abs(si * turn), least);
+  const double ratio = kRatio * length;
+  return ratio * ratio * (high * high.transpose() + right * right.transpose());
+}
+
 /// Azimuth and inclination errors taken as one and the same at all stations: for stations of their
 /// own windows, whose shared instrument errors dominate. Never smaller than what they really are.
-/// What the hole does where nobody saw it, between two stations, is in course-length terms, random
-/// from leg to leg: XCLA and XCLH of the ISCWSA error model, SPE 187249.
+/// What the hole does between two stations, where nobody saw it, is random from leg to leg.
 class SystematicCovariance {
  public:
   SystematicCovariance(const Eigen::Matrix3d& cov_tie_in, bool legs_unseen)
@@ -108,7 +129,7 @@ class SystematicCovariance {
     const Eigen::Vector3d tangent(si * ca, si * sa, ci);
     if (last_) {
       sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
-      if (legs_unseen_) AddCourse(*last_, station);
+      if (legs_unseen_) course_ += UnseenCourse(*last_, station);
     }
     last_ = station;
     last_turn_ = turn;
@@ -117,24 +138,6 @@ class SystematicCovariance {
   }
 
  private:
-  void AddCourse(const Station& above, const Station& below) {
-    constexpr double kRatio = 0.167;
-    constexpr double kTortuosity = units::kDegPer100ft;  // the least that a hole turns
-    const double length = below.md - above.md;
-    const double inclination = 0.5 * (above.inclination + below.inclination);
-    const double turn = WrapPi(below.azimuth - above.azimuth);
-    const double azimuth = above.azimuth + 0.5 * turn;
-    const double si = std::sin(inclination), ci = std::cos(inclination);
-    const double sa = std::sin(azimuth), ca = std::cos(azimuth);
-    const double least = kTortuosity * length;
-    const double build = std::abs(below.inclination - above.inclination);
-    const Eigen::Vector3d high = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::max(build, least);
-    const Eigen::Vector3d right =
-        Eigen::Vector3d(-sa, ca, 0) * std::max(std::abs(si * turn), least);
-    const double ratio = kRatio * length;
-    course_ += ratio * ratio * (high * high.transpose() + right * right.transpose());
-  }
-
   Eigen::Matrix3d cov_tie_in_;
   bool legs_unseen_;
   Eigen::Matrix3d course_ = Eigen::Matrix3d::Zero();
@@ -165,9 +168,16 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
   SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty());
   first.Add(origin);
   AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
+  Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
+  const Item* above = nullptr;
   for (const Item& item : pass) {
     if (item.on_line) {
-      covs.push_back(sum.Add(*item.state));
+      const bool leg = above != nullptr && item.way.empty();
+      if (leg && item.station.md - above->station.md > kUnseenLeg) {
+        unseen += UnseenCourse(above->station, item.station);
+      }
+      above = &item;
+      covs.push_back(sum.Add(*item.state) + unseen);
     } else {
       sum.Skip(*item.state);
       covs.push_back(covs.back());

@@ -231,6 +231,24 @@ void CheckReturns(const Job& job, const CheckInputs& inputs, std::vector<Check>&
   }
 }
 
+/// What the counter loses or gains between two magnetic marks.
+void CheckMarks(const Job& job, const CableMarks* marks, std::vector<Check>& checks) {
+  const Cable& cable = job.depth.cable;
+  if (cable.mark_spacing <= 0 || marks == nullptr || marks->passed() < 2) {
+    checks.push_back(NotDone("magnetic_marks", 0, "no two magnetic marks passed"));
+    return;
+  }
+  const double sigma = std::sqrt(2.0) * cable.sigma_mark;
+  const double limit = 1e-3 * cable.mark_spacing + 3 * sigma;
+  checks.push_back(Compare("magnetic_marks", 0, {marks->largest_change(), sigma}, limit, 1, "m"));
+  checks.back().limit_source = "3 sigma of two marks and 1 in 1000 of slip between them";
+  if (marks->left_out() > 0) {
+    checks.push_back(Compare("magnetic_marks_left_out", 0,
+                             {static_cast<double>(marks->left_out()), 0}, 0.0, 1, "1"));
+    checks.back().limit_source = "every mark within a quarter of the spacing";
+  }
+}
+
 void CheckGrid(const Job& job, std::vector<Check>& checks) {
   if (!job.grid || (!job.grid->convergence && !job.grid->scale)) {
     checks.push_back(NotDone("grid_convergence", 0, "the job states no convergence"));
@@ -292,6 +310,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     if (run.samples > 0) checks.push_back(unknown);
   }
   CheckReturns(job, inputs, checks);
+  CheckMarks(job, inputs.marks, checks);
   CheckForesights(job, inputs, checks);
   CheckGrid(job, checks);
   return checks;

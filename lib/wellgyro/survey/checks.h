@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/depth/cable.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/station.h"
@@ -36,6 +37,7 @@ struct CheckInputs {
   std::span<const Station> passes;
   std::span<const Foresight> foresights;
   std::span<const ReturnToZero> returns;
+  const CableMarks* marks = nullptr;
 };
 
 /// `value` against `limit`: passes up to two thirds of it, warns up to it, fails beyond.

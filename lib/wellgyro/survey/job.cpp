@@ -68,6 +68,21 @@ void CheckAlignment(const AlignmentSpec& alignment) {
 void CheckDepth(const DepthSpec& depth) {
   RequireWithin("depth.latency_s", depth.latency, 0, 600);
   RequireWithin("depth.max_gap_s", depth.max_gap, 0.1, 600);
+  const Cable& cable = depth.cable;
+  RequireWithin("depth.cable stretch [1/N]", cable.stretch, 0, 1e-5);
+  RequireWithin("depth.cable.weight_n_per_m", cable.weight, 0, 1e3);
+  RequireWithin("depth.cable.tool_weight_n", cable.tool_weight, 0, 1e6);
+  RequireWithin("depth.cable.measuring_tension_n", cable.measuring_tension, 0, 1e6);
+  RequireWithin("depth.cable.expansion_per_degc", cable.expansion, 0, 1e-3);
+  RequireWithin("depth.cable gradient [K/m]", cable.gradient, -1, 1);
+  RequireWithin("depth.cable.measuring_temperature_degc", cable.measuring_temperature, -100, 300);
+  RequireWithin("depth.cable.surface_temperature_degc", cable.surface_temperature, -100, 300);
+  RequireWithin("depth.cable.stretch_sigma_ratio", cable.ratio_sigma, 0, 1);
+  if (cable.mark_spacing != 0) {
+    RequireWithin("depth.cable.mark_spacing_m", cable.mark_spacing, 1, 1e3);
+  }
+  RequireWithin("depth.cable.mark_sigma_m", cable.sigma_mark, 0, 10);
+  if (cable.first_mark) RequireWithin("depth.cable.first_mark_m", *cable.first_mark, -1e5, 1e5);
   for (std::size_t i = 0; i < depth.corrections.size(); ++i) {
     RequireWithin("depth.corrections", depth.corrections[i].second, -1e4, 1e4);
     if (i > 0 && !(depth.corrections[i].first > depth.corrections[i - 1].first)) {

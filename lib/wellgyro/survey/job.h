@@ -11,6 +11,7 @@
 #include "wellgyro/base/depth.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
+#include "wellgyro/depth/cable.h"
 #include "wellgyro/earth/grid.h"
 #include "wellgyro/record/channels.h"
 #include "wellgyro/record/noise.h"
@@ -49,6 +50,7 @@ struct StationSpec {
 struct DepthSpec {
   DepthKind kind = DepthKind::kIndicated;
   double latency = 5;  ///< how late a depth mark may come, against the samples [s]
+  Cable cable;         ///< of a wireline
   double max_gap = 5;  ///< between marks of a moving tool, above which depth is unknown [s]
   /// (measured depth, what to add to it) [m], linear between; empty: none.
   std::vector<std::pair<double, double>> corrections;

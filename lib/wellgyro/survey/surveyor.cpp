@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/calibration/apply.h"
+#include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/survey/run_book.h"
 #include "wellgyro/survey/tool_survey.h"
@@ -42,6 +43,7 @@ struct Surveyor::Rooms {
         sink(the_sink),
         adjuster(the_adjuster),
         track(TrackSetup(job)),
+        marks(job.depth.cable, track),
         book(job.runs) {
     for (const Event& event : job.events) Take(event);
   }
@@ -50,6 +52,7 @@ struct Surveyor::Rooms {
   Sink& sink;
   const RunAdjuster* adjuster;
   DepthTrack track;
+  CableMarks marks;
   RunBook book;
   std::map<std::int32_t, ToolSurvey> tools;
   std::vector<Operation> operations;  ///< all so far, for a tool that is heard of later
@@ -70,7 +73,7 @@ struct Surveyor::Rooms {
       return nullptr;
     }
     ToolSurvey& tool =
-        tools.try_emplace(number, job, number, track, book, sink, adjuster).first->second;
+        tools.try_emplace(number, job, number, track, marks, book, sink, adjuster).first->second;
     for (const ToolInfo& info : infos) {
       if (info.tool == number) tool.Push(info);
     }
@@ -178,7 +181,14 @@ void Surveyor::Push(const DepthMark& mark) {
                                            (mark.utc - *rooms_->newest).seconds())});
     return;
   }
-  if (const auto fault = rooms_->track.Push(mark)) rooms_->sink.OnFault(*fault);
+  DepthMark told = mark;
+  if (!told.sigma) told.sigma = rooms_->job.errors.depth_sigma;
+  told = Stretched(rooms_->job.depth.cable, told);
+  if (const auto fault = rooms_->track.Push(told)) {
+    rooms_->sink.OnFault(*fault);
+  } else {
+    rooms_->marks.Push(told);
+  }
 }
 
 void Surveyor::Push(const ToolMode& mode) {

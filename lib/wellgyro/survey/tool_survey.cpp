@@ -22,6 +22,8 @@ constexpr std::size_t kDueMax = 2000;
 constexpr double kTypedDepth = 0.5;  // [m]
 // A foresight holds at a knot no further away than this.
 constexpr double kForesightSeconds = 2;
+// From so many sigmas on two norths are not both right.
+constexpr double kContradiction = 4;
 // So long after the last sample or mark a tool that was at rest then still hangs as it did.
 constexpr Duration kHeld = Duration::Seconds(600);
 constexpr double kHeldSpeed = 0.006;  // [m/s], that of the still detector
@@ -40,6 +42,18 @@ bool HasDirection(const AttitudeSample& attitude) {
   return attitude.azimuth_known || Has(attitude.quality, Quality::kVertical);
 }
 
+/// The north fix that contradicts the job's external azimuth most, where one does.
+const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
+  if (job.alignment.method != AlignmentSpec::Method::kExternal) return nullptr;
+  const NorthFix* worst = nullptr;
+  for (const NorthFix& fix : run.fixes) {
+    if (fix.external || !fix.chi_square || Has(fix.quality, Quality::kVertical)) continue;
+    if (*fix.chi_square < kContradiction * kContradiction) continue;
+    if (worst == nullptr || *fix.chi_square > *worst->chi_square) worst = &fix;
+  }
+  return worst;
+}
+
 double Correction(const std::vector<std::pair<double, double>>& table, double md) {
   if (table.empty()) return 0;
   const auto after = std::upper_bound(table.begin(), table.end(), md,
@@ -53,12 +67,13 @@ double Correction(const std::vector<std::pair<double, double>>& table, double md
 
 }  // namespace
 
-ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, RunBook& book,
-                       Sink& sink, const RunAdjuster* adjuster)
+ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track,
+                       CableMarks& marks, RunBook& book, Sink& sink, const RunAdjuster* adjuster)
     : job_(job),
       tool_(tool),
       track_(track),
       grid_(track),
+      marks_(marks),
       book_(book),
       sink_(sink),
       adjuster_(adjuster),
@@ -94,7 +109,7 @@ void ToolSurvey::Push(const StillWindow& window) {
   RunState& run = *found;
   const UtcTime middle = window.utc_begin + Duration{(window.utc_end - window.utc_begin).ns / 2};
   AlongHole along = track_.At(middle);
-  ShiftToSensor(along);
+  ShiftToSensor(middle, along);
   run.survey->Push(window, along);
   Tell(run);
 }
@@ -151,9 +166,10 @@ void ToolSurvey::Use(const ImuSample& sample) {
   const std::int32_t segment = track_.Segment(utc);
   if (segment != depth_segment_) run.survey->RestartDepth();
   depth_segment_ = segment;
-  AlongHole begin = grid_.At(utc), middle = grid_.At(utc + Duration{stamp.period_ns / 2});
-  ShiftToSensor(begin);
-  ShiftToSensor(middle);
+  const UtcTime utc_middle = utc + Duration{stamp.period_ns / 2};
+  AlongHole begin = grid_.At(utc), middle = grid_.At(utc_middle);
+  ShiftToSensor(utc, begin);
+  ShiftToSensor(utc_middle, middle);
   run.survey->Push(sample, utc, begin, middle);
   newest_used_ = utc;
   if (run.survey->has_news()) Tell(run);
@@ -169,8 +185,9 @@ AlongHole ToolSurvey::DepthHeldAt(UtcTime utc) const {
   return std::abs(end.speed) <= kHeldSpeed ? end : along;
 }
 
-inline void ToolSurvey::ShiftToSensor(AlongHole& along) const {
+inline void ToolSurvey::ShiftToSensor(UtcTime utc, AlongHole& along) const {
   if (!along.known) return;
+  along.md += marks_.At(utc, along.md);
   const auto& table = job_.depth.corrections;
   along.md += (table.empty() ? 0 : Correction(table, along.md)) + sensor_below_reference_;
 }
@@ -336,6 +353,16 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
   }
   Adjust();
   finished_ = true;
+  for (const RunState& run : runs_) {
+    const NorthFix* fix = Contradiction(job_, run.survey->summary());
+    if (fix == nullptr) continue;
+    sink_.OnFault(
+        Fault{FaultCode::kConflict,
+              fmt::format(
+                  "run {}: the job's azimuth is {:.1f} sigmas from the north found at MD {:.2f} m: "
+                  "one of them is wrong, and every station of the run with it",
+                  run.survey->summary().run, std::sqrt(*fix->chi_square), fix->md.value_or(0))});
+  }
   for (const Check& check : Current().checks) sink_.OnCheck(check);
 }
 
@@ -361,8 +388,9 @@ std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
       attitude.azimuth = epoch.azimuth;
       attitude.toolface = epoch.knot.toolface;
       attitude.azimuth_known = epoch.azimuth_known;
+      if (epoch.knot.vertical) attitude.quality |= Quality::kVertical;
     }
-    if (!epoch.knot.along.known || !attitude.azimuth_known) continue;
+    if (!epoch.knot.along.known || !HasDirection(attitude)) continue;
     const HoleAttitude hole = AttitudeOfHole(attitude, job_.string);
     way.push_back({epoch.knot.utc, {epoch.knot.along.md, hole.inclination, hole.azimuth}});
   }
@@ -379,8 +407,10 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
       d.states = JoinStates(run.adjusted, run.backwards, filter->stations());
       d.way = WayOf(run);
     }
+    const bool contradicted = Contradiction(job_, run.survey->summary()) != nullptr;
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
       Draft draft = run.survey->drafts()[i];
+      if (contradicted) draft.station.quality |= Quality::kEarthRate;
       if (draft.state && !HasDirection(d.states[*draft.state].attitude)) continue;
       draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
       d.drafts.push_back(std::move(draft));
@@ -424,7 +454,7 @@ std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const 
   std::vector<RunSummary> summaries;
   for (const RunState& run : runs_) summaries.push_back(run.survey->summary());
   const std::vector<Foresight> foresights = Foresights();
-  return MakeChecks(job_, {summaries, passes, foresights, returns_});
+  return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_});
 }
 
 /// Stations that were asked for and passed, but at which no azimuth is known.

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/clock_tie.h"
 #include "wellgyro/depth/depth_grid.h"
 #include "wellgyro/depth/depth_track.h"
@@ -32,8 +33,8 @@ class ToolSurvey {
  public:
   /// All references must outlive this object. `track` and `book` are the string's; `adjuster` may
   /// be null.
-  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, RunBook& book, Sink& sink,
-             const RunAdjuster* adjuster);
+  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, CableMarks& marks,
+             RunBook& book, Sink& sink, const RunAdjuster* adjuster);
 
   void Push(const ImuSample& sample);
   void Push(const StillWindow& window);
@@ -74,7 +75,7 @@ class ToolSurvey {
   void Obey(const Command& command);
   bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
   AlongHole DepthHeldAt(UtcTime utc) const;
-  void ShiftToSensor(AlongHole& along) const;
+  void ShiftToSensor(UtcTime utc, AlongHole& along) const;
   RunState* RunFor(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
@@ -90,6 +91,7 @@ class ToolSurvey {
   std::int32_t tool_;
   const DepthTrack& track_;
   DepthGrid grid_;
+  CableMarks& marks_;
   RunBook& book_;
   Sink& sink_;
   const RunAdjuster* adjuster_;
