@@ -28,15 +28,16 @@ double RatioFactor(double q2) {
 }
 
 void CheckSizes(std::size_t n, std::span<const double> inclination, std::span<const double> azimuth,
-                std::span<Eigen::Vector3d> position, std::span<double> severity) {
+                std::span<Eigen::Vector3d> position, std::span<double> severity,
+                std::span<Eigen::Vector3d> tangent) {
   if (inclination.size() == n && azimuth.size() == n && position.size() == n &&
-      (severity.empty() || severity.size() == n)) {
+      (severity.empty() || severity.size() == n) && (tangent.empty() || tangent.size() == n)) {
     return;
   }
-  throw std::invalid_argument(
-      fmt::format("MinimumCurvature: {} depths but {} inclinations, {} azimuths, {} positions, {} "
-                  "severities",
-                  n, inclination.size(), azimuth.size(), position.size(), severity.size()));
+  throw std::invalid_argument(fmt::format(
+      "MinimumCurvature: {} depths but {} inclinations, {} azimuths, {} positions, {} "
+      "severities, {} tangents",
+      n, inclination.size(), azimuth.size(), position.size(), severity.size(), tangent.size()));
 }
 
 }  // namespace
@@ -67,9 +68,10 @@ Eigen::Vector3d TangentOnArc(const Eigen::Vector3d& t1, const Eigen::Vector3d& t
 
 void MinimumCurvature(std::span<const double> md, std::span<const double> inclination,
                       std::span<const double> azimuth, const Eigen::Vector3d& start,
-                      std::span<Eigen::Vector3d> position, std::span<double> severity) {
-  CheckSizes(md.size(), inclination, azimuth, position, severity);
-  Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
+                      std::span<Eigen::Vector3d> position, std::span<double> severity,
+                      std::span<Eigen::Vector3d> tangent) {
+  CheckSizes(md.size(), inclination, azimuth, position, severity, tangent);
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
   Eigen::Vector3d at = start;
   for (std::size_t i = 0; i < md.size(); ++i) {
     const Eigen::Vector3d next = Tangent(inclination[i], azimuth[i]);
@@ -78,13 +80,14 @@ void MinimumCurvature(std::span<const double> md, std::span<const double> inclin
     if (i > 0) {
       const double length = md[i] - md[i - 1];
       if (!(length > 0)) Refuse(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
-      const std::optional<ArcLeg> leg = MinimumCurvatureLeg(length, tangent, next);
+      const std::optional<ArcLeg> leg = MinimumCurvatureLeg(length, before, next);
       if (!leg) Refuse(i, "it points opposite to the one before, which leaves no arc");
       at += leg->displacement;
       dls = leg->dogleg / length;
     }
-    tangent = next;
+    before = next;
     position[i] = at;
+    if (!tangent.empty()) tangent[i] = next;
     if (!severity.empty()) severity[i] = dls;
   }
 }

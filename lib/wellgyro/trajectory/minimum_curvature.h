@@ -38,14 +38,15 @@ WELLGYRO_EXPORT Eigen::Vector3d TangentOnArc(const Eigen::Vector3d& t1, const Ei
 ///
 /// `md` [m], `inclination` and `azimuth` [rad] per station; `position` receives (north, east, TVD)
 /// [m], the first being `start`; `severity`, unless empty, the dogleg severity [rad/m] of the leg
-/// that ends at each station, the first zero. Nothing is allocated.
-/// Throws std::invalid_argument, naming the station counted from 0, when sizes differ, a value is
-/// not finite, depth does not increase, or a dogleg reaches kDoglegLimit; stations before it are
-/// written.
+/// that ends at each station, the first zero; `tangent`, unless empty, the unit tangents. Nothing
+/// is allocated. Throws std::invalid_argument, naming the station counted from 0, when sizes
+/// differ, a value is not finite, depth does not increase, or a dogleg reaches kDoglegLimit;
+/// stations before it are written.
 WELLGYRO_EXPORT void MinimumCurvature(std::span<const double> md,
                                       std::span<const double> inclination,
                                       std::span<const double> azimuth, const Eigen::Vector3d& start,
                                       std::span<Eigen::Vector3d> position,
-                                      std::span<double> severity = {});
+                                      std::span<double> severity = {},
+                                      std::span<Eigen::Vector3d> tangent = {});
 
 }  // namespace wellgyro

@@ -63,16 +63,13 @@ Trajectory::Trajectory(std::span<const double> md, std::span<const double> incli
     : md_(md.begin(), md.end()),
       inclination_(inclination.begin(), inclination.end()),
       severity_(md.size()),
-      position_(md.size()) {
+      position_(md.size()),
+      tangent_(md.size()) {
   if (md.empty()) throw std::invalid_argument("Trajectory: no station");
   if (!start.allFinite()) throw std::invalid_argument("Trajectory: the start is not finite");
-  MinimumCurvature(md, inclination, azimuth, start, position_, severity_);
+  MinimumCurvature(md, inclination, azimuth, start, position_, severity_, tangent_);
   azimuth_.reserve(md.size());
-  tangent_.reserve(md.size());
-  for (std::size_t i = 0; i < md.size(); ++i) {
-    azimuth_.push_back(WrapTwoPi(azimuth[i]));
-    tangent_.push_back(Tangent(inclination[i], azimuth[i]));
-  }
+  for (const double a : azimuth) azimuth_.push_back(WrapTwoPi(a));
   Index();
 }
 
