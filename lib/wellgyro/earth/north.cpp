@@ -1,0 +1,35 @@
+#include "wellgyro/earth/north.h"
+
+#include <stdexcept>
+
+#include "wellgyro/base/angle.h"
+
+namespace wellgyro {
+namespace {
+
+// True azimuth less azimuth from `north`.
+double Offset(const AzimuthReference& reference, North north) {
+  switch (north) {
+    case North::kTrue:
+      return 0;
+    case North::kGrid:
+      if (reference.convergence) return *reference.convergence;
+      throw std::invalid_argument("AzimuthFrom: the grid's convergence is not given");
+    case North::kMagnetic:
+      if (reference.declination) return *reference.declination;
+      throw std::invalid_argument("AzimuthFrom: the declination is not given");
+    case North::kUnknown:
+      break;
+  }
+  throw std::invalid_argument("AzimuthFrom: which north the azimuths count from is not known");
+}
+
+}  // namespace
+
+double AzimuthFrom(const AzimuthReference& reference, double azimuth, North from, North to) {
+  if (from == to && from != North::kUnknown) return WrapTwoPi(azimuth);
+  const double true_azimuth = azimuth + Offset(reference, from);
+  return WrapTwoPi(true_azimuth - Offset(reference, to));
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+#include "wellgyro/io/atomic_file.h"
+#include "wellgyro/record/survey_table.h"
+
+/// Surveys in the files that people exchange. Every format reads into a SurveyTable and writes from
+/// one; what the format can hold comes back to the last bit.
+namespace wellgyro {
+
+enum class SurveyFormat {
+  kCsv,         ///< one header line, as survey.csv; read: any table, by the names of its columns
+  kLas,         ///< CWLS LAS 2.0; step fixed where the depths allow it, else 0
+  kP717,        ///< IOGP P7/17 v1.0 with G7 records
+  kWitsml1411,  ///< WITSML 1.4.1.1 trajectory
+  kWitsml20,    ///< read only
+  kWitsml21,
+  kPetrel,   ///< "WELL TRACE FROM PETREL"
+  kCompass,  ///< text report in the manner of Landmark Compass
+  kOsdu,     ///< manifest WellboreTrajectory 1.4.0; write only: its stations go by CSV
+};
+
+/// csv, las, p717, witsml (1.4.1.1), witsml20, witsml21, petrel, compass, osdu.
+WELLGYRO_EXPORT std::optional<SurveyFormat> SurveyFormatOf(std::string_view word);
+WELLGYRO_EXPORT std::string_view WordOf(SurveyFormat format);
+/// File name for `stem`, as "survey.las" or "survey-1411.xml".
+WELLGYRO_EXPORT std::string FileNameOf(SurveyFormat format, const std::string& stem);
+
+/// What the caller knows and the file may not say. Where both say different things, that is a
+/// Fault.
+struct ReadOptions {
+  std::optional<SurveyFormat> format;  ///< else by the file's own first lines
+  /// Columns of a table: canonical name (MD, INC, AZI_TRUE, TVD ...) and the file's heading or its
+  /// number from 1. Those named here win over what the headings look like.
+  std::vector<std::pair<std::string, std::string>> columns;
+  std::optional<LengthUnit> depth_unit;
+  std::optional<North> north;         ///< from which azimuths count
+  std::optional<double> convergence;  ///< [rad]
+  std::optional<double> declination;  ///< [rad]
+  std::string declination_source, declination_date;
+  std::string datum;
+  std::optional<double> datum_elevation;  ///< above mean sea level [m]
+};
+
+/// Reads a survey, as a stream where the format is text by lines. Faults name the file with line
+/// or element: kForeign when it is none of the formats, kSyntax, kRange, kOrder when depth does not
+/// increase, kConflict with the options, kSize beyond 2^27 numbers or, for XML, 2^28 bytes.
+WELLGYRO_EXPORT Result<SurveyTable> ReadSurvey(const std::filesystem::path& path,
+                                               const ReadOptions& options = {});
+/// The same of text in memory; `source` names it.
+WELLGYRO_EXPORT Result<SurveyTable> ParseSurvey(std::string_view text, const std::string& source,
+                                                const ReadOptions& options = {});
+
+struct WriteOptions {
+  /// CSV: a preamble of "# key: value" lines with what its header cannot say. pandas reads past it
+  /// when told, wellpathpy does not.
+  bool preamble = false;
+  bool variable_step = false;  ///< LAS: step 0 even where the depths are even
+};
+
+/// The text of a file. Numbers have as many digits as give them back. Throws std::invalid_argument
+/// saying what the format needs and the table lacks; north is never guessed.
+WELLGYRO_EXPORT std::string WriteSurvey(const SurveyTable& table, SurveyFormat format,
+                                        const WriteOptions& options = {});
+
+/// A file of each format named after `stem`, ready for WriteFiles: angles to 1e-6 deg, lengths to
+/// 1e-4, as survey.csv has them.
+WELLGYRO_EXPORT std::vector<OutputFile> ExportFormats(const SurveyTable& table,
+                                                      std::span<const SurveyFormat> formats,
+                                                      const std::string& stem);
+
+}  // namespace wellgyro

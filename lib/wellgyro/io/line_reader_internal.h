@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "wellgyro/base/result.h"
+
+namespace wellgyro {
+
+/// Thrown inside io/ where text cannot be used; caught where a Result goes out.
+struct TextError {
+  Fault fault;
+};
+
+/// Lines of foreign text as UTF-8, one block in memory at a time: byte order mark and CR taken off,
+/// Latin-1 turned into UTF-8 where a line is not UTF-8. Throws TextError for UTF-16, for NUL bytes,
+/// for lines beyond 1 MiB and when the system fails.
+class LineReader {
+ public:
+  LineReader(std::istream& bytes, std::string source);
+
+  /// The next line, good until the next call; false at the end.
+  bool Next(std::string_view& line);
+  /// The line last given will be given again.
+  void Back() { again_ = true; }
+  int number() const { return number_; }  ///< of the line last given, from 1
+  const std::string& source() const { return source_; }
+
+  [[noreturn]] void Complain(FaultCode code, std::string text, int column = 0) const;
+
+ private:
+  bool Fill();
+
+  std::istream& bytes_;
+  std::string source_;
+  std::string block_, line_;
+  std::size_t at_ = 0;
+  int number_ = 0;
+  bool again_ = false;
+};
+
+std::string_view Trim(std::string_view text);
+std::string Lower(std::string_view text);
+bool EqualNoCase(std::string_view a, std::string_view b);
+
+/// `text` if it is UTF-8, else as Latin-1.
+std::string ToUtf8(std::string_view text);
+
+/// Fields between `delimiter`, quotes as in RFC 4180; with ' ' for any run of blanks. The last
+/// quote is missing: nothing.
+std::optional<std::vector<std::string>> SplitQuoted(std::string_view line, char delimiter);
+/// The same without quotes, and without copies.
+void Split(std::string_view line, char delimiter, std::vector<std::string_view>& fields);
+
+/// A finite number, whole, with blanks around it; any number of digits is rounded right, what does
+/// not fit a double is none.
+std::optional<double> NumberOf(std::string_view text);
+/// With a comma for the decimal point.
+std::optional<double> NumberWithComma(std::string_view text);
+std::optional<int> IntegerOf(std::string_view text);
+
+}  // namespace wellgyro
