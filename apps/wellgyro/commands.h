@@ -20,6 +20,7 @@ void AddSimulate(CLI::App& app, int& exit_code);
 void AddAllan(CLI::App& app, int& exit_code);
 void AddCalibrate(CLI::App& app, int& exit_code);
 void AddUncertainty(CLI::App& app, int& exit_code);
+void AddConvert(CLI::App& app, int& exit_code);
 void AddCheck(CLI::App& app, int& exit_code);
 
 }  // namespace wellgyro::apps

@@ -20,6 +20,7 @@ int Run(int argc, char** argv) {
   AddAllan(app, exit_code);
   AddCalibrate(app, exit_code);
   AddUncertainty(app, exit_code);
+  AddConvert(app, exit_code);
   AddCheck(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -76,7 +76,7 @@ TEST(ReferenceWells, IscwsaStandardPaths) {
   }
 }
 
-// A Compass report of 86 stations, printed to two decimals: angles rounded so gather centimetres.
+// A Compass report of 80 stations, printed to two decimals: angles rounded so gather centimetres.
 TEST(ReferenceWells, ACompassReport) {
   const Rows rows = Numbers("wellpathpy/Well_Surveys_Projected_to_TD.csv", ',', 7);
   if (rows.empty()) GTEST_SKIP() << "the reference data are not here";

@@ -25,7 +25,7 @@ constexpr std::array<ColumnInfo, kColumns> kInfo{{
     {C::kEast, Q::kLength, "E", "EWDR", "east offset from the well head"},
     {C::kNorthing, Q::kGridLength, "NORTHING", "NORTHING", "northing"},
     {C::kEasting, Q::kGridLength, "EASTING", "EASTING", "easting"},
-    {C::kDown, Q::kLength, "DOWN", "DOWN", "depth below the vertical reference"},
+    {C::kDown, Q::kGridLength, "DOWN", "DOWN", "depth below the vertical reference"},
     {C::kLatitude, Q::kAngle, "LAT", "LATI", "latitude"},
     {C::kLongitude, Q::kAngle, "LON", "LONG", "longitude"},
     {C::kTvdSubSea, Q::kLength, "TVDSS", "TVDSS", "true vertical depth below mean sea level"},

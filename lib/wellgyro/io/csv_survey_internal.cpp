@@ -262,7 +262,7 @@ class CsvReader {
                         fmt::format("'{}' is no unit of {}", unit, InfoOf(*c.column).text));
       }
       c.factor = *factor;
-      if (c.column == Column::kNorthing) {
+      if (c.column == Column::kNorthing || c.column == Column::kDown) {
         if (const auto length = LengthUnitOf(unit)) head().grid_unit = *length;
       }
       if (c.column == Column::kDogleg) {

@@ -214,7 +214,9 @@ class LasReader {
   void TakeUnits(Column column, const std::string& unit) {
     const auto length = LengthUnitOf(unit);
     if (column == Column::kMd && length) head().md_unit = *length;
-    if (column == Column::kNorthing && length) head().grid_unit = *length;
+    if ((column == Column::kNorthing || column == Column::kDown) && length) {
+      head().grid_unit = *length;
+    }
     const auto curvature = column == Column::kDogleg ? CurvatureUnitOf(unit) : std::nullopt;
     if (curvature) head().curvature_unit = *curvature;
   }

@@ -129,12 +129,13 @@ std::string WriteOsdu(const SurveyTable& table) {
       "  \"acl\": {{\"owners\": [\"data.default.owners@example.com\"], "
       "\"viewers\": [\"data.default.viewers@example.com\"]}},\n"
       "  \"legal\": {{\"legaltags\": [\"to-be-set\"], "
-      "\"otherRelevantDataCountries\": [\"NO\"]}},\n"
+      "\"otherRelevantDataCountries\": [{}]}},\n"
       "  \"meta\": [{{\"kind\": \"Unit\", \"name\": \"{}\", \"persistableReference\": {}, "
       "\"unitOfMeasureID\": {}, \"propertyNames\": [\"TopDepthMeasuredDepth\", "
       "\"BaseDepthMeasuredDepth\", \"VerticalMeasurement.VerticalMeasurement\"]}}],\n"
       "  \"data\": {{{}\n    }}\n}}\n",
-      unit, Quoted(reference), Reference("UnitOfMeasure", unit_key), data);
+      head.names.country_code.empty() ? "" : Quoted(head.names.country_code), unit,
+      Quoted(reference), Reference("UnitOfMeasure", unit_key), data);
 }
 
 }  // namespace wellgyro

@@ -265,7 +265,10 @@ class WitsmlReader {
       if (info.csv == key) return build_.Set(info.column, TextOf(value));
     }
     for (const ColumnInfo& info : AllColumns()) {
-      if (info.csv == key) return Keep(info.column, Number(value, info.quantity));
+      if (info.csv != key) continue;
+      const auto unit = LengthUnitOf(value.attribute("uom").value());
+      if (info.column == Column::kDown && unit) head().grid_unit = *unit;
+      return Keep(info.column, Number(value, info.quantity));
     }
   }
 

@@ -108,6 +108,13 @@ std::string Or(const std::string& text, std::string_view otherwise) {
   return text.empty() ? std::string(otherwise) : text;
 }
 
+// Identifiers of 1.4.1.1 have no blanks and 64 characters at most.
+std::string Uid(const std::string& text, std::string_view otherwise) {
+  std::string uid = Or(text, otherwise).substr(0, 64);
+  for (char& c : uid) c = c > ' ' && c < 0x7F && c != ',' ? c : '-';
+  return uid;
+}
+
 // xsd:dateTime of a day or an instant; nothing when it is neither.
 std::string DateTime(const std::string& text) {
   if (UtcOf(text)) return text;
@@ -213,7 +220,7 @@ std::string WitsmlWriter::TypeOf(RowStatus status) const {
 }
 
 void WitsmlWriter::StationStart(std::size_t row) {
-  const std::string uid = Or(table_.Get(TextColumn::kUid, row), fmt::format("s-{:06}", row));
+  const std::string uid = Uid(table_.Get(TextColumn::kUid, row), fmt::format("s-{:06}", row));
   xml_.Open(Tag("trajectoryStation"), {{"uid", uid}});
   const auto utc = table_.Get(Column::kUtc, row);
   if (version_2_) {
@@ -260,7 +267,7 @@ void WitsmlWriter::Model(std::size_t row) {
   if (version_2_) {
     Reference("ToolErrorModel", "witsml21.ToolErrorModel", uid, model);
   } else {
-    xml_.Leaf("iscwsaToolErrorModel", model, {{"uidRef", Or(uid, model)}});
+    xml_.Leaf("iscwsaToolErrorModel", model, {{"uidRef", Uid(uid, model)}});
   }
 }
 
@@ -360,9 +367,9 @@ std::string WitsmlWriter::Write1411() {
   xml_.Open("trajectorys",
             {{"xmlns", "http://www.witsml.org/schemas/1series"}, {"version", "1.4.1.1"}});
   const SurveyIdentity& names = head_.names;
-  xml_.Open("trajectory", {{"uidWell", Or(names.uid_well, Or(names.well, "well"))},
-                           {"uidWellbore", Or(names.uid_wellbore, Or(names.wellbore, "wellbore"))},
-                           {"uid", Or(names.uid_survey, "survey")}});
+  xml_.Open("trajectory", {{"uidWell", Uid(names.uid_well, Or(names.well, "well"))},
+                           {"uidWellbore", Uid(names.uid_wellbore, Or(names.wellbore, "wellbore"))},
+                           {"uid", Uid(names.uid_survey, "survey")}});
   xml_.Leaf("nameWell", Or(names.well, "unknown"));
   xml_.Leaf("nameWellbore", Or(names.wellbore, Or(names.well, "unknown")));
   xml_.Leaf("name", Or(names.survey, "survey"));

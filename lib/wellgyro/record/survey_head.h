@@ -94,7 +94,7 @@ struct SurveyHead {
   std::string vertical_reference;         ///< as "MSL"
   DepthKind md_kind = DepthKind::kIndicated;
   LengthUnit md_unit = LengthUnit::kMetre;    ///< of MD, TVD and offsets, in the file
-  LengthUnit grid_unit = LengthUnit::kMetre;  ///< of northing and easting, in the file
+  LengthUnit grid_unit = LengthUnit::kMetre;  ///< of the CRS: northing, easting, down
   CurvatureUnit curvature_unit = CurvatureUnit::kDegPer30m;
   std::string crs;                             ///< of northing and easting, as "EPSG:23031"
   std::optional<double> scale;                 ///< of the grid, at the well head

@@ -1,0 +1,167 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/io/exchange.h"
+#include "wellgyro/io/survey_tables.h"
+
+#include "commands.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+namespace {
+
+struct ConvertOptions {
+  std::string in, out, from, to, units, north, azimuth_reference, depth_unit, datum;
+  std::string well, declination_source, declination_date;
+  std::vector<std::string> columns;
+  std::optional<double> convergence_deg, declination_deg, datum_elevation_m, section_azimuth_deg;
+  bool preamble = false, variable_step = false, derived = false, keep = false;
+};
+
+std::optional<North> NorthOf(const std::string& word) {
+  if (word == "true") return North::kTrue;
+  if (word == "grid") return North::kGrid;
+  if (word == "magnetic") return North::kMagnetic;
+  return std::nullopt;
+}
+
+std::optional<LengthUnit> LengthOf(const std::string& word) {
+  if (word == "m" || word == "metric") return LengthUnit::kMetre;
+  if (word == "ft" || word == "field") return LengthUnit::kFoot;
+  if (word == "ftUS") return LengthUnit::kUsFoot;
+  return std::nullopt;
+}
+
+std::optional<double> Radians(const std::optional<double>& degrees) {
+  if (!degrees) return std::nullopt;
+  return FromDegrees(*degrees);
+}
+
+/// What the file's ending means where --to does not say it.
+std::optional<SurveyFormat> FormatByName(const std::string& name) {
+  const std::string ending = std::filesystem::path(name).extension().string();
+  if (ending == ".csv") return SurveyFormat::kCsv;
+  if (ending == ".las") return SurveyFormat::kLas;
+  if (ending == ".p717" || ending == ".p7") return SurveyFormat::kP717;
+  if (ending == ".xml") return SurveyFormat::kWitsml1411;
+  if (ending == ".dev") return SurveyFormat::kPetrel;
+  if (ending == ".txt") return SurveyFormat::kCompass;
+  if (ending == ".json") return SurveyFormat::kOsdu;
+  return std::nullopt;
+}
+
+ReadOptions ReadingOf(const ConvertOptions& o) {
+  ReadOptions reading;
+  if (!o.from.empty()) reading.format = SurveyFormatOf(o.from);
+  for (const std::string& pair : o.columns) {
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string::npos) {
+      throw std::invalid_argument("--columns " + pair + ": write NAME=HEADING or NAME=NUMBER");
+    }
+    reading.columns.emplace_back(pair.substr(0, equals), pair.substr(equals + 1));
+  }
+  reading.depth_unit = LengthOf(o.depth_unit);
+  reading.north = NorthOf(o.azimuth_reference);
+  reading.convergence = Radians(o.convergence_deg);
+  reading.declination = Radians(o.declination_deg);
+  reading.declination_source = o.declination_source;
+  reading.declination_date = o.declination_date;
+  reading.datum = o.datum;
+  reading.datum_elevation = o.datum_elevation_m;
+  return reading;
+}
+
+void Prepare(SurveyTable& table, const ConvertOptions& o) {
+  if (!o.well.empty()) table.head.names.well = o.well;
+  if (const auto azimuth = Radians(o.section_azimuth_deg)) table.head.section_azimuth = azimuth;
+  if (!o.keep) FillPositions(table);
+  if (const auto north = NorthOf(o.north)) TurnTo(table, *north);
+  if (const auto unit = LengthOf(o.units)) SetUnits(table, *unit);
+  if (o.derived) FillDerived(table);
+}
+
+int Convert(const ConvertOptions& o) {
+  const auto format = o.to.empty() ? FormatByName(o.out) : SurveyFormatOf(o.to);
+  if (!format) {
+    Complain(fmt::format("{}: the name does not say which format: add --to", o.out));
+    return kUsage;
+  }
+  try {
+    Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
+    if (!table) {
+      Complain(table.fault());
+      return kUnusable;
+    }
+    Prepare(*table, o);
+    const OutputFile file{
+        std::filesystem::path(o.out).filename().string(),
+        WriteSurvey(*table, *format, {.preamble = o.preamble, .variable_step = o.variable_step})};
+    if (const auto fault = WriteFiles(std::filesystem::path(o.out).parent_path(), {&file, 1})) {
+      Complain(*fault);
+      return kUnusable;
+    }
+  } catch (const std::invalid_argument& error) {
+    Complain(fmt::format("{}: {}", o.in, error.what()));
+    return kUnusable;
+  }
+  return kDone;
+}
+
+void AddReading(CLI::App& command, ConvertOptions& o) {
+  command.add_option("--from", o.from, "Format of IN, where its first lines do not tell");
+  command.add_option("--columns", o.columns, "Columns of a table: MD=1 or INC=Neigung ...")
+      ->delimiter(',');
+  command.add_option("--depth-unit", o.depth_unit, "Unit of IN's depths, where it does not say")
+      ->check(CLI::IsMember({"m", "ft", "ftUS"}));
+  command.add_option("--azimuth-reference", o.azimuth_reference, "North of IN's azimuths")
+      ->check(CLI::IsMember({"true", "grid", "magnetic"}));
+  command.add_option("--convergence-deg", o.convergence_deg, "True less grid azimuth");
+  command.add_option("--declination-deg", o.declination_deg, "True less magnetic azimuth");
+  command.add_option("--declination-source", o.declination_source, "Its model");
+  command.add_option("--declination-date", o.declination_date, "Day it holds for, YYYY-MM-DD");
+  command.add_option("--datum", o.datum, "Name of the depth datum, as RT");
+  command.add_option("--datum-elevation-m", o.datum_elevation_m, "Above mean sea level");
+  command.add_option("--well", o.well, "Name of the well");
+}
+
+void AddWriting(CLI::App& command, ConvertOptions& o) {
+  command.add_option("--to", o.to, "Format of OUT, where its name does not tell")
+      ->check(
+          CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu"}));
+  command.add_option("--units", o.units, "Units of OUT; those of IN unless given")
+      ->check(CLI::IsMember({"metric", "field"}));
+  command.add_option("--north", o.north, "Turn azimuths, offsets and covariances to this north")
+      ->check(CLI::IsMember({"true", "grid", "magnetic"}));
+  command.add_option("--section-azimuth-deg", o.section_azimuth_deg, "Plane of vertical section");
+  command.add_flag("--derived", o.derived, "Add closure, TVD sub-sea and vertical section");
+  command.add_flag("--as-it-is", o.keep, "Do not sum positions where IN has none");
+  command.add_flag("--preamble", o.preamble, "CSV: lines of '# key: value' before the header");
+  command.add_flag("--variable-step", o.variable_step, "LAS: step 0 even where depths are even");
+}
+
+}  // namespace
+
+void AddConvert(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command = app.add_subcommand("convert", "Between the survey formats");
+  command->add_option("in", options->in, "Survey to read")->required();
+  command->add_option("out", options->out, "File to write")->required();
+  AddReading(*command, *options);
+  AddWriting(*command, *options);
+  command->footer(
+      "Formats: csv, las, p717, witsml (1.4.1.1), witsml21, petrel, compass, osdu; by the ending\n"
+      "of OUT .csv .las .p717 .xml .dev .txt .json. WITSML 2.0 is read too.\n"
+      "Example: wellgyro convert survey.csv survey.las\n"
+      "         wellgyro convert raw.txt well.xml --columns MD[ft]=1,INC=2,AZI=3 \\\n"
+      "             --azimuth-reference grid --well A-1");
+  command->callback([options, &exit_code] { exit_code = Convert(*options); });
+}
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Runs `wellgyro convert` as a user does. convert_test.py PROGRAM"""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+SURVEY = "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,1.5,350\n60,3,355.25\n"
+
+
+class Convert(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.Write("in.csv", SURVEY)
+
+    def Path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def Write(self, name, text):
+        with open(self.Path(name), "wb") as file:
+            file.write(text if isinstance(text, bytes) else text.encode())
+
+    def Read(self, name):
+        with open(self.Path(name), encoding="utf-8") as file:
+            return file.read()
+
+    def Run(self, source, target, *options):
+        return subprocess.run([PROGRAM, "convert", self.Path(source), self.Path(target), *options],
+                              capture_output=True, text=True, check=False, timeout=60)
+
+    def Done(self, source, target, *options):
+        done = self.Run(source, target, *options)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def Refused(self, source, target, *options):
+        done = self.Run(source, target, *options)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertFalse(os.path.exists(self.Path(target)))
+        return done.stderr
+
+    def test_every_format_there_and_back(self):
+        datum = ("--datum", "RT", "--datum-elevation-m", "25", "--convergence-deg", "1.25")
+        for name in ("out.las", "out.p717", "out.xml", "out.dev", "out.txt", "out.csv"):
+            self.Done("in.csv", name, *datum)
+            self.Done(name, "back.csv", "--as-it-is")
+            rows = [line.split(",")[:3] for line in self.Read("back.csv").split("\n")[:4]]
+            self.assertEqual(rows, [["MD[m]", "INC[deg]", "AZI_TRUE[deg]"], ["0", "0", "0"],
+                                    ["30", "1.5", "350"], ["60", "3", "355.25"]], name)
+        self.Done("in.csv", "out21.xml", "--to", "witsml21")
+        self.Done("in.csv", "out.json", *datum)
+
+    def test_units_and_north(self):
+        self.Done("in.csv", "out.csv", "--units", "field", "--north", "grid", "--convergence-deg",
+                  "-1.5")
+        header, _, row = self.Read("out.csv").split("\n")[:3]
+        self.assertTrue(header.startswith("MD[ft],INC[deg],AZI_GRID[deg],TVD[ft],N[ft],E[ft]"))
+        fields = row.split(",")
+        self.assertAlmostEqual(float(fields[0]), 30 / 0.3048, places=12)
+        self.assertAlmostEqual(float(fields[2]), 351.5, places=12)
+
+    def test_refusals_say_what_to_do(self):
+        self.Write("plain.csv", "md,inc,azi\n0,0,0\n10,1,2\n")
+        self.assertIn("--depth-unit", self.Refused("plain.csv", "out.las"))
+        self.assertIn("north", self.Refused("plain.csv", "out.las", "--depth-unit", "m"))
+        self.assertIn("convergence", self.Refused("in.csv", "out.las", "--north", "grid"))
+        self.assertIn("elevation", self.Refused("in.csv", "out.dev"))
+        self.Write("bad.csv", SURVEY + "50,1,2\n")
+        self.assertIn("bad.csv:5", self.Refused("bad.csv", "out.las"))
+        self.Write("empty.csv", "")
+        self.assertIn("empty", self.Refused("empty.csv", "out.las"))
+        self.assertIn("open", self.Refused("missing.csv", "out.las"))
+        self.Write("opposite.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,180,0\n")
+        self.assertIn("station 1", self.Refused("opposite.csv", "out.las"))
+
+    def test_command_line(self):
+        self.assertEqual(self.Run("in.csv", "out.unknown").returncode, 1)
+        self.assertEqual(self.Run("in.csv", "out.csv", "--to", "docx").returncode, 1)
+        help_text = subprocess.run([PROGRAM, "convert", "--help"], capture_output=True, text=True,
+                                   check=False)
+        self.assertEqual(help_text.returncode, 0)
+        self.assertIn("Example: wellgyro convert", help_text.stdout)
+
+
+if __name__ == "__main__":
+    sys.exit(0 if unittest.main(verbosity=1, exit=False).result.wasSuccessful() else 1)
