@@ -62,13 +62,15 @@ bool MayWriteTo(const std::filesystem::path& folder) {
   return true;
 }
 
-RunRecord RecordOf(const JobFile& job, const Intake& intake, const FaultBook& surveyor_faults) {
+RunRecord RecordOf(const JobFile& job, const std::vector<SurveyFormat>& formats,
+                   const Intake& intake, const FaultBook& surveyor_faults) {
   RunRecord record;
   record.program = "wellgyro " WELLGYRO_VERSION;
   record.inputs = job.files;
   record.channels = intake.Channels();
   record.tools = intake.tools();
   record.faults = surveyor_faults.faults();
+  record.formats = formats;
   return record;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "wellgyro/io/atomic_file.h"
+#include "wellgyro/io/exchange.h"
 #include "wellgyro/io/job_file.h"
 #include "wellgyro/io/run_file.h"
 #include "wellgyro/survey/surveyor.h"
@@ -17,7 +18,8 @@ namespace wellgyro::apps {
 bool MayWriteTo(const std::filesystem::path& folder);
 
 /// What is written about a survey besides the survey.
-RunRecord RecordOf(const JobFile& job, const Intake& intake, const FaultBook& surveyor_faults);
+RunRecord RecordOf(const JobFile& job, const std::vector<SurveyFormat>& formats,
+                   const Intake& intake, const FaultBook& surveyor_faults);
 
 /// One tool's survey, and the folder that its files go to: the one given where a single tool has a
 /// survey, tool-N in it for several. A tool without a survey, which may be no more than a damaged

@@ -296,7 +296,7 @@ Snapshot LiveSurvey::Take() const {
   Snapshot snapshot;
   snapshot.folder = options_.out;
   snapshot.tools = ResultsOf(surveyor_, options_.out);
-  snapshot.record = RecordOf(job_, intake_, broadcast_);
+  snapshot.record = RecordOf(job_, options_.formats, intake_, broadcast_);
   snapshot.source = Source();
   snapshot.source.ended = "not yet";
   return snapshot;
@@ -309,8 +309,8 @@ int LiveSurvey::End(Ended ended) {
     keeper_.End();
     SourceRecord source = Source();
     source.ended = "adjusted";
-    const int code =
-        DeliverAll(options_.out, job_, surveyor_, RecordOf(job_, intake_, broadcast_), source);
+    const int code = DeliverAll(options_.out, job_, surveyor_,
+                                RecordOf(job_, options_.formats, intake_, broadcast_), source);
     HintAtChannels(intake_.feed());
     if (code == kDoneWithLosses) {
       Complain("done, with losses or damage: see source.toml and run.toml");

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "wellgyro/io/exchange.h"
 #include "wellgyro/io/job_file.h"
 
 namespace wellgyro::apps {
@@ -13,6 +14,7 @@ struct SurveyOptions {
   std::string record;                ///< log that gets what is heard live
   bool resume = false;
   std::vector<std::string> fill;  ///< other recorders' logs
+  std::vector<SurveyFormat> formats;
 };
 
 /// Surveys a live stream until FINISH, a signal or the loss of the bus; the exit code.

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/fit/run_adjustment.h"
+#include "wellgyro/io/exchange.h"
 #include "wellgyro/io/job_file.h"
 #include "wellgyro/io/run_file.h"
 #include "wellgyro/io/sensor_files.h"
@@ -63,7 +65,8 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   }
   HintAtChannels(intake.feed());
   const SourceRecord source = Describe(options.from, intake, *reader);
-  const int code = DeliverAll(options.out, job, surveyor, RecordOf(job, intake, faults), source);
+  const int code = DeliverAll(options.out, job, surveyor,
+                              RecordOf(job, options.formats, intake, faults), source);
   if (code == kDoneWithLosses) {
     Complain("done, with losses or damage: see source.toml and run.toml");
     for (std::size_t i = 0; i < std::min<std::size_t>(source.faults.size(), 5); ++i) {
@@ -91,6 +94,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   record.inputs.insert(record.inputs.end(), report->files.begin(), report->files.end());
   record.faults = faults.faults();
   record.clock = report->clock;
+  record.formats = options.formats;
   record.stamps_less_stops = report->stamps_less_stops;
   SourceRecord source;
   for (const std::string& name : options.sources) {
@@ -102,6 +106,17 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   return DeliverAll(options.out, job, surveyor, record, source);
 }
 
+/// Says what the job lacks for one of the formats, before the work rather than after it.
+bool CanExport(const Job& job, const std::vector<SurveyFormat>& formats) {
+  try {
+    RequireFormats(job, formats);
+  } catch (const std::exception& error) {
+    Complain(fmt::format("--formats: {}", error.what()));
+    return false;
+  }
+  return true;
+}
+
 int SurveyAny(SurveyOptions options) {
   if (!options.sources.empty()) options.from = options.sources.front();
   const Result<JobFile> job = ReadJob(options.job);
@@ -109,6 +124,7 @@ int SurveyAny(SurveyOptions options) {
     Complain(job.fault());
     return kUnusable;
   }
+  if (!CanExport(job->job, options.formats)) return kUnusable;
   if (IsLive(options.from)) return SurveyLive(options, *job);
   if (!options.record.empty() || options.resume || !options.fill.empty()) {
     Complain("--record, --resume and --fill are for a live stream: --from URL");
@@ -148,6 +164,20 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       ->add_option("--fill", options->fill,
                    "With --resume: another recorder's log, for what was sent meanwhile")
       ->type_name("LOG");
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--formats",
+          [options](const std::vector<std::string>& words) {
+            for (const std::string& word : words) {
+              options->formats.push_back(*SurveyFormatOf(word));
+            }
+          },
+          "Files for others, beside survey.csv: las, p717, witsml (1.4.1.1), witsml21, petrel, "
+          "compass, osdu")
+      ->delimiter(',')
+      ->check(
+          CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu"}))
+      ->type_name("LIST");
   command->footer(
       "Example:\n  wellgyro survey --job data/demo/job.toml --from data/demo/run.lcm "
       "--out result\n"

@@ -57,7 +57,7 @@ std::vector<Column> Held(SurveyFormat format) {
       add(covariance);
       add({C::kToolface, C::kVerticalSection, C::kGravity, C::kGravityRef, C::kLatitude,
            C::kLongitude, C::kUtc, C::kNorthing, C::kEasting, C::kDown, C::kSigmaInclination,
-           C::kSigmaAzimuth, C::kEarthRate, C::kEarthRateRef});
+           C::kSigmaAzimuth, C::kEarthRateMeasured, C::kEarthRateReference});
   }
   return held;
 }

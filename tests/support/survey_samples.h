@@ -91,8 +91,8 @@ inline SurveyTable FullSurvey(LengthUnit unit = LengthUnit::kMetre) {
     t.Set(Column::kSigmaAzimuth, r, 0.31 * units::kDeg);
     t.Set(Column::kGravity, r, 9.81229);
     t.Set(Column::kGravityRef, r, 9.81234);
-    t.Set(Column::kEarthRate, r, 15.0213 * units::kDegPerHour);
-    t.Set(Column::kEarthRateRef, r, 15.041 * units::kDegPerHour);
+    t.Set(Column::kEarthRateMeasured, r, 15.0213 * units::kDegPerHour);
+    t.Set(Column::kEarthRateReference, r, 15.041 * units::kDegPerHour);
     t.Set(Column::kUtc, r, 1768457520 + 300.125 * i);
     t.Set(TextColumn::kKind, r, i == 0 ? "tie_in" : "continuous");
     t.Set(TextColumn::kQuality, r, i == 3 ? "moved+gap" : "good");

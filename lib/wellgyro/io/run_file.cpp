@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/survey_csv.h"
+#include "wellgyro/io/survey_tables.h"
 #include "wellgyro/io/toml_writer_internal.h"
 #include "wellgyro/io/words.h"
 
@@ -144,6 +146,24 @@ bool Sampled(const Survey& survey) {
                      [](const RunSummary& run) { return run.samples > 0; });
 }
 
+constexpr const char* kExportStem = "survey";
+
+std::optional<WellGrid> GridOf(const Job& job) {
+  if (!job.grid) return std::nullopt;
+  return WellGrid(*job.grid,
+                  GeodeticPoint{.latitude = job.well.latitude, .longitude = job.well.longitude});
+}
+
+// survey.csv is there always.
+std::vector<SurveyFormat> BesidesCsv(std::span<const SurveyFormat> formats) {
+  std::vector<SurveyFormat> others;
+  for (const SurveyFormat format : formats) {
+    const bool twice = std::find(others.begin(), others.end(), format) != others.end();
+    if (format != SurveyFormat::kCsv && !twice) others.push_back(format);
+  }
+  return others;
+}
+
 }  // namespace
 
 std::string RunToml(const RunRecord& record, const Job& job, const Survey& survey,
@@ -199,19 +219,29 @@ std::string SourceToml(const SourceRecord& record) {
 
 std::vector<OutputFile> ResultFiles(const RunRecord& record, const SourceRecord& source,
                                     const Job& job, const Survey& survey) {
-  std::optional<WellGrid> grid;
-  if (job.grid) {
-    grid.emplace(*job.grid,
-                 GeodeticPoint{.latitude = job.well.latitude, .longitude = job.well.longitude});
-  }
+  const std::optional<WellGrid> grid = GridOf(job);
   const WellGrid* const columns = grid ? &*grid : nullptr;
   std::vector<OutputFile> files{{"survey.csv", SurveyCsv(survey.chosen, columns)},
                                 {"passes.csv", PassesCsv(survey.passes, columns)},
                                 {"checks.csv", ChecksCsv(survey.checks)}};
+  const SurveyTable table = TableOfSurvey(job, survey.chosen, columns);
+  for (OutputFile& file : ExportFormats(table, BesidesCsv(record.formats), kExportStem)) {
+    files.push_back(std::move(file));
+  }
   std::string run = RunToml(record, job, survey, files);
   files.push_back({"source.toml", SourceToml(source)});
   files.push_back({"run.toml", std::move(run)});
   return files;
+}
+
+void RequireFormats(const Job& job, std::span<const SurveyFormat> formats) {
+  const std::optional<WellGrid> grid = GridOf(job);
+  Station deep;
+  deep.md = 1;
+  deep.p_WT_W.z() = 1;
+  const std::array<Station, 2> stations{Station{}, deep};
+  ExportFormats(TableOfSurvey(job, stations, grid ? &*grid : nullptr), BesidesCsv(formats),
+                kExportStem);
 }
 
 }  // namespace wellgyro

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/depth/stop_match.h"
 #include "wellgyro/io/atomic_file.h"
+#include "wellgyro/io/exchange.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/survey/job.h"
@@ -35,6 +37,8 @@ struct RunRecord {
   std::vector<ChannelRecord> channels;
   std::vector<ToolInfo> tools;  ///< as the tools said
   std::vector<Fault> faults;    ///< of the surveyor, none of the source
+  /// Files of the chosen survey that others read, besides survey.csv.
+  std::vector<SurveyFormat> formats;
 };
 
 /// How the messages came: what may differ between two sources of the same messages.
@@ -55,11 +59,16 @@ WELLGYRO_EXPORT std::string RunToml(const RunRecord& record, const Job& job, con
 /// source.toml: name, counts, and every fault with its place.
 WELLGYRO_EXPORT std::string SourceToml(const SourceRecord& record);
 
-/// All files of a result, run.toml last: survey.csv, passes.csv, checks.csv, source.toml, run.toml;
-/// with grid columns when the job has a grid. Throws std::domain_error when a station lies outside
-/// the grid's projection.
+/// All files of a result, run.toml last: survey.csv, passes.csv, checks.csv, those of
+/// `record.formats`, source.toml, run.toml; with grid columns when the job has a grid. Throws
+/// std::domain_error when a station lies outside the grid's projection, std::invalid_argument as
+/// RequireFormats.
 WELLGYRO_EXPORT std::vector<OutputFile> ResultFiles(const RunRecord& record,
                                                     const SourceRecord& source, const Job& job,
                                                     const Survey& survey);
+
+/// Throws std::invalid_argument when a survey of `job` cannot be written in one of `formats`,
+/// saying what the job lacks. To be asked before the survey, which should not end in that sentence.
+WELLGYRO_EXPORT void RequireFormats(const Job& job, std::span<const SurveyFormat> formats);
 
 }  // namespace wellgyro

@@ -115,8 +115,8 @@ SurveyTable TableOfSurvey(const Job& job, std::span<const Station> stations, con
     if (s.gravity > 0) table.Set(Column::kGravity, row, s.gravity);
     if (s.gravity_ref > 0) table.Set(Column::kGravityRef, row, s.gravity_ref);
     if (s.earth_rate) {
-      table.Set(Column::kEarthRate, row, *s.earth_rate);
-      table.Set(Column::kEarthRateRef, row, s.earth_rate_ref);
+      table.Set(Column::kEarthRateMeasured, row, *s.earth_rate);
+      table.Set(Column::kEarthRateReference, row, s.earth_rate_ref);
     }
     table.Set(TextColumn::kKind, row, std::string(WordOf(s.kind)));
     table.Set(TextColumn::kQuality, row, QualityText(s.quality));

@@ -252,7 +252,8 @@ class WitsmlReader {
   void Extension(pugi::xml_node extension) {
     const std::string name = TextOf(ChildOf(extension, "name"));
     const pugi::xml_node value = ChildOf(extension, "value");
-    if (name == "c_earthRateCalc") return Keep(Column::kEarthRate, Number(value, Quantity::kRate));
+    if (name == "c_earthRateCalc")
+      return Keep(Column::kEarthRateMeasured, Number(value, Quantity::kRate));
     if (!name.starts_with(kExtension)) return;
     const std::string_view key = std::string_view(name).substr(kExtension.size());
     if (key == "STATUS") {

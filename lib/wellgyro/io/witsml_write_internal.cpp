@@ -313,12 +313,12 @@ void WitsmlWriter::Location(std::size_t row) {
 
 // 2.1 allows a station one extension only, so that these are for 1.4.1.1.
 void WitsmlWriter::StationExtensions(std::size_t row) {
-  if (const auto rate = table_.Get(Column::kEarthRate, row)) {
+  if (const auto rate = table_.Get(Column::kEarthRateMeasured, row)) {
     Extension("c_earthRateCalc", units_.Text(Quantity::kRate, *rate), "dega/h", "double");
   }
   for (const ColumnInfo& info : AllColumns()) {
     const auto value = table_.Get(info.column, row);
-    if (!value || IsElement(info.column) || info.column == Column::kEarthRate ||
+    if (!value || IsElement(info.column) || info.column == Column::kEarthRateMeasured ||
         info.column == Column::kNorthing || info.column == Column::kEasting) {
       continue;
     }

@@ -50,8 +50,8 @@ enum class Column : std::uint8_t {
   kSigmaAzimuth,
   kGravity,
   kGravityRef,
-  kEarthRate,
-  kEarthRateRef,
+  kEarthRateMeasured,
+  kEarthRateReference,
   kConvergence,
   kScale,
   kTemperature,  ///< [degC]
