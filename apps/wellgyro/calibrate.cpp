@@ -172,8 +172,9 @@ void AddTool(CLI::App& command, Options& o) {
 std::optional<UtcTime> Date(const std::string& text, const char* option) {
   if (text.empty()) return std::nullopt;
   const auto date = DateOf(text);
-  if (!date)
+  if (!date) {
     throw std::invalid_argument(fmt::format("{}: \"{}\" is no date, as 2026-01-31", option, text));
+  }
   return date;
 }
 
@@ -188,9 +189,10 @@ void RequireDistinct(const Options& o) {
       std::error_code ignored;
       if (all[i].second->empty() || all[j].second->empty()) continue;
       if (*all[i].second == *all[j].second ||
-          std::filesystem::equivalent(*all[i].second, *all[j].second, ignored))
+          std::filesystem::equivalent(*all[i].second, *all[j].second, ignored)) {
         throw std::invalid_argument(
             fmt::format("{} and {} must be different files", all[j].first, all[i].first));
+      }
     }
   }
 }
@@ -200,12 +202,14 @@ void Complete(Options& o) {
   o.update.axes = o.reference.axes;
   o.update.calibrated = Date(o.date, "--date");
   o.update.expires = Date(o.expires, "--expires");
-  if (o.update.calibrated && o.update.expires && !(*o.update.calibrated < *o.update.expires))
+  if (o.update.calibrated && o.update.expires && !(*o.update.calibrated < *o.update.expires)) {
     throw std::invalid_argument("--expires must come after --date");
+  }
   if (o.axes.empty()) return;
   o.update.R_TS = AxesOf(o.axes);
-  if (!o.update.R_TS)
+  if (!o.update.R_TS) {
     throw std::invalid_argument("--axes takes three axes at right angles, as +y,-x,+z");
+  }
 }
 
 Result<BenchTable> Read(const std::string& name, const std::string& role,

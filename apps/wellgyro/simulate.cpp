@@ -50,8 +50,9 @@ class Recorder {
     now_us_ = Microseconds(sample.stamp.utc + Duration{sample.stamp.period_ns});
     if (counter_) {
       counted_.push_back(counter_->Count(sample, temperature_));
-      const auto kept = static_cast<std::size_t>(file_.simulation.streams.batch +
-                                                 file_.simulation.streams.overlap);
+      const SimulatedStreams& streams = file_.simulation.streams;
+      const std::size_t kept =
+          static_cast<std::size_t>(streams.batch) + static_cast<std::size_t>(streams.overlap);
       while (counted_.size() > kept) counted_.pop_front();
     }
     return batcher_.Push(sample, batch_) ? WriteBatch() : std::nullopt;

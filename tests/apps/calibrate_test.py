@@ -206,6 +206,10 @@ class Calibrate(unittest.TestCase):
             for axis, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]")):
                 self.assertLess(abs(float(a[axis]) - float(b[axis])),
                                 3.5 * math.sqrt(float(a[variance])) + 2e-4)
+        with open(self.Path("calibrated/checks.csv")) as file:
+            checks = {row["CODE"]: row for row in csv.DictReader(file)}
+        self.assertEqual(checks["calibration_date"]["VERDICT"], "pass")
+        self.assertIn(checks["earth_rate_vertical"]["VERDICT"], ("pass", "warn"))
         self.assertGreater(worst, 0)
         self.assertLess(worst, 0.2)
         # Without what the bench found, the same counts are far away.

@@ -1,6 +1,8 @@
 #include "wellgyro/survey/checks.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -99,6 +101,24 @@ TEST(Checks, AStopIsHeldToGravityAndEarthRate) {
   EXPECT_EQ(Find(checks, "earth_rate").verdict, Verdict::kPass);
   EXPECT_NEAR(Find(checks, "earth_rate").value.value_or(0), 0.1, 1e-9);
   EXPECT_EQ(Find(checks, "earth_rate").md.value_or(0), 750);
+}
+
+TEST(Checks, ACalibrationThatHasExpiredIsTold) {
+  Job job;
+  EXPECT_TRUE(std::none_of(Checks(job, {}).begin(), Checks(job, {}).end(),
+                           [](const Check& check) { return check.code == "calibration_date"; }));
+  constexpr std::int64_t kDay = 86'400'000'000'000;
+  job.tool.emplace();
+  job.tool->expires = UtcTime{10 * kDay};
+  // The run begins at the epoch.
+  const std::vector<Check> valid = Checks(job, {});
+  EXPECT_EQ(Find(valid, "calibration_date").verdict, Verdict::kPass);
+  EXPECT_NEAR(Find(valid, "calibration_date").value.value_or(0), 10, 1e-9);
+  EXPECT_EQ(Find(valid, "calibration_date").run, 1);
+  job.tool->expires = UtcTime{-3 * kDay};
+  const std::vector<Check> expired = Checks(job, {});
+  EXPECT_EQ(Find(expired, "calibration_date").verdict, Verdict::kFail);
+  EXPECT_NEAR(Find(expired, "calibration_date").value.value_or(0), -3, 1e-9);
 }
 
 TEST(Checks, InAndOutRunAreHeldToFieldPracticeFromTenPairsOn) {

@@ -52,8 +52,9 @@ Eigen::Matrix3d RateCovariance(const StillWindow& window, const FieldCheckSetup&
   const ErrorPriors& e = setup.errors;
   const double seconds = window.seconds();
   Eigen::Vector3d variance = window.sigma_w_IT_T.cwiseAbs2();
-  if (window.sigma_w_IT_T.isZero(0) && seconds > 0)
+  if (window.sigma_w_IT_T.isZero(0) && seconds > 0) {
     variance.setConstant(setup.gyro.angle_random_walk * setup.gyro.angle_random_walk / seconds);
+  }
   const double across = std::hypot(window.f_T.x(), window.f_T.y());
   variance.array() += e.gyro_bias_sigma * e.gyro_bias_sigma +
                       setup.gyro.bias_instability * setup.gyro.bias_instability +
@@ -67,8 +68,9 @@ Eigen::Matrix3d RateCovariance(const StillWindow& window, const FieldCheckSetup&
 Eigen::Matrix3d ForceCovariance(const StillWindow& window, const FieldCheckSetup& setup) {
   Eigen::Vector3d variance = window.sigma_f_T.cwiseAbs2();
   const double seconds = window.seconds();
-  if (window.sigma_f_T.isZero(0) && seconds > 0)
+  if (window.sigma_f_T.isZero(0) && seconds > 0) {
     variance.setConstant(setup.errors.accel_noise * setup.errors.accel_noise / seconds);
+  }
   variance.array() += setup.errors.accel_bias_sigma * setup.errors.accel_bias_sigma;
   return variance.asDiagonal();
 }
@@ -173,22 +175,25 @@ std::vector<Check> CheckWindow(const StillWindow& window, const FieldCheckSetup&
   const double force = window.f_T.norm();
   if (!(force > 0)) {
     for (const auto& [code, unit] : {std::pair("gravity", "m/s2"), std::pair("earth_rate", "deg/h"),
-                                     std::pair("field", "nT"), std::pair("dip", "deg")})
+                                     std::pair("field", "nT"), std::pair("dip", "deg")}) {
       checks.NotDone(code, unit);
+    }
     return checks.Take();
   }
   checks.Add(
       "gravity", "m/s2", force - setup.reference.gravity,
       Root(window.f_T / force, ForceCovariance(window, setup), setup.reference.sigma_gravity), 1);
-  if (window.has_gz)
+  if (window.has_gz) {
     CheckThreeAxes(window, setup, checks);
-  else
+  } else {
     CheckTwoAxes(window, setup, checks);
+  }
   CheckField(window, setup, checks);
-  if (setup.parity)
+  if (setup.parity) {
     checks.Add("parity", "deg/h", setup.parity->value, setup.parity->sigma, 1);
-  else
+  } else {
     checks.NotDone("parity", "deg/h");
+  }
   return checks.Take();
 }
 

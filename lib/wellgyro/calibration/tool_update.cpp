@@ -18,8 +18,9 @@ std::vector<int> FreeChannels(const ToolCalibration& tool, const SensorGroup& bu
   std::set<int> taken;
   for (const SensorGroup* group : {&tool.gyro, &tool.accel, &tool.mag}) {
     if (group == &but) continue;
-    for (int c = 0; c < group->n_channels; ++c)
+    for (int c = 0; c < group->n_channels; ++c) {
       taken.insert(group->channel[static_cast<std::size_t>(c)]);
+    }
   }
   std::vector<int> free;
   for (int place = 0; static_cast<int>(free.size()) < n && place < RawSample::kChannelsMax;
@@ -31,9 +32,10 @@ std::vector<int> FreeChannels(const ToolCalibration& tool, const SensorGroup& bu
 
 template <class T>
 void RequireLength(const std::vector<T>& list, int n, std::string_view what) {
-  if (static_cast<int>(list.size()) != n)
+  if (static_cast<int>(list.size()) != n) {
     throw std::invalid_argument(
         fmt::format("{} names {}, the calibration has {} channels", what, list.size(), n));
+  }
 }
 
 void TakeGroup(const ToolCalibration& tool, const SensorGroup& found, const FitReport& report,
@@ -70,8 +72,9 @@ void TakeThermometer(const BenchCalibration& bench, const ToolUpdate& update,
   const bool wanted = bench.thermometer || bench.accel.thermometer >= 0;
   const auto place = static_cast<std::size_t>(update.thermometer);
   if (wanted && tool.thermometers.size() <= place) tool.thermometers.resize(place + 1);
-  if (wanted && update.thermometer_channel)
+  if (wanted && update.thermometer_channel) {
     tool.thermometers[place].channel = *update.thermometer_channel;
+  }
   if (!bench.thermometer) return;
   ThermometerCalibration& t = tool.thermometers[place];
   const ThermometerCalibration before = t;
@@ -83,10 +86,11 @@ void TakeThermometer(const BenchCalibration& bench, const ToolUpdate& update,
 
 // The housing's axis becomes z of the tool, by the least turn.
 void TakeAxis(const Eigen::Vector3d& axis, BenchAxes axes, ToolCalibration& tool) {
-  if (tool.accel.n_channels == 0)
+  if (tool.accel.n_channels == 0) {
     throw std::invalid_argument(
         "the roll test turns the accelerometers' axes: calibrate them first, into the same tool "
         "file");
+  }
   const Eigen::Vector3d in_tool = ToolFromBench(axes) * axis.normalized();
   const Eigen::Matrix3d R =
       Eigen::Quaterniond::FromTwoVectors(in_tool, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -104,8 +108,9 @@ double Largest(const FitReport& report, std::string_view name, Part part = Part:
       for (Eigen::Index j = 0; j < quantity.sigma.cols(); ++j) {
         // Of a gyro's channels the nominal axis is where the sensitivity is about one.
         const bool own = std::abs(quantity.value(i, j)) > 0.5;
-        if (part == Part::kAll || (part == Part::kDiagonal) == own)
+        if (part == Part::kAll || (part == Part::kDiagonal) == own) {
           largest = std::max(largest, quantity.sigma(i, j));
+        }
       }
     }
   }
@@ -122,8 +127,9 @@ double AccelSigma(const BenchCalibration& bench) {
   double relative = std::max(Largest(report, "E_G"), Largest(report, "E_rad"));
   for (const char* name : {"S_V_per_g", "S_G", "Ka", "k_pulse_per_s_per_mps2"}) {
     for (const FitQuantity& quantity : report.result) {
-      if (quantity.name == name)
+      if (quantity.name == name) {
         relative = std::max(relative, Largest(report, name) / quantity.value.cwiseAbs().maxCoeff());
+      }
     }
   }
   return std::hypot(bias, relative * units::kStandardGravity);

@@ -62,8 +62,9 @@ CorrectedReading Correct(const TrigonometricModel& model, const Eigen::Vector3d&
     reading.M = M_raw - errors.tail<3>();
     TakeAngles(reading);
     if (std::abs(reading.inclination - inclination) > kStill ||
-        std::abs(WrapPi(reading.toolface - toolface)) > kStill)
+        std::abs(WrapPi(reading.toolface - toolface)) > kStill) {
       continue;
+    }
     if (std::sin(reading.inclination) < 5 * largest) break;
     return reading;
   }

@@ -24,10 +24,11 @@ AffineReadings Readings(const AttitudeTable& table, const AffineSetup& setup, bo
   readings.v = mag ? table.mag : table.accel;
   readings.u.resize(table.rows(), 3);
   readings.sigma = mag ? setup.sigma_mag : setup.sigma_accel;
-  for (int i = 0; i < table.rows(); ++i)
+  for (int i = 0; i < table.rows(); ++i) {
     readings.u.row(i) =
         (mag ? table.IdealMag(i, setup.reference) : table.IdealAccel(i, setup.reference))
             .transpose();
+  }
   return readings;
 }
 
@@ -47,8 +48,9 @@ std::vector<AffineReadings> Groups(const AttitudeTable& table, const AffineSetup
     groups.push_back(Readings(table, setup, false));
     groups.back().order = OrderOf(setup.order);
   }
-  if (table.mag.rows() > 0 && setup.reference.field && setup.reference.dip)
+  if (table.mag.rows() > 0 && setup.reference.field && setup.reference.dip) {
     groups.push_back(Readings(table, setup, true));
+  }
   return groups;
 }
 
@@ -84,19 +86,22 @@ void AddGroup(const AffineReadings& readings, const AttitudeTable& table,
     for (int c = 0; c < 3; ++c) group.second_order(c, c) = x[at + c] / (si * si);
   } else if (readings.order == SecondOrder::kFull) {
     AddMatrix(report, "K2_" + readings.suffix, at, 3, 6);
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
       group.second_order.row(c) = x.segment<6>(at + 6 * c).transpose() / (si * si);
+    }
   }
 }
 
 std::optional<Fault> BadTable(const BenchTable& data, const AttitudeTable& table,
                               const AffineSetup& setup) {
-  if (table.accel.rows() == 0 && table.mag.rows() == 0)
+  if (table.accel.rows() == 0 && table.mag.rows() == 0) {
     return BenchFault(data, "the table has no columns of accelerometers or magnetometers", 1,
                       FaultCode::kForeign);
+  }
   const int least = setup.order == Order::kNone ? 4 : setup.order == Order::kOwn ? 5 : 10;
-  if (auto fault = TooFew(data, least, "attitudes", "measure more, not all in one plane"))
+  if (auto fault = TooFew(data, least, "attitudes", "measure more, not all in one plane")) {
     return fault;
+  }
   return BadReadings(data, table);
 }
 
@@ -109,8 +114,9 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   std::vector<AffineReadings> groups = Groups(*table, setup);
   if (groups.empty()) throw std::invalid_argument("the magnetometers need the field and its dip");
   const bool given = Weigh(table->lines, groups);
-  if (setup.tilt_sigma > 0 && !given)
+  if (setup.tilt_sigma > 0 && !given) {
     throw std::invalid_argument("the tilt's sigma needs the sigmas of the readings beside it");
+  }
   LinearProblem problem = AffineProblem(groups, table->lines, setup.tilt_sigma);
   problem.sigma_given = given;
   const auto solution =
@@ -121,14 +127,17 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   out.report = ReportOf(problem, *solution);
   out.report.method = "affine";
   std::vector<ChannelSignal> signals;
-  for (const std::string& channel : table->accel_channels)
+  for (const std::string& channel : table->accel_channels) {
     signals.push_back({channel, setup.reference.gravity});
-  for (const std::string& channel : table->mag_channels)
+  }
+  for (const std::string& channel : table->mag_channels) {
     signals.push_back({channel, setup.reference.field.value_or(0)});
+  }
   int first = 0;
   for (const AffineReadings& group : groups) {
-    if (auto fault = WrongAxes(data, MatrixAt(solution->x, first + 3), group.channels))
+    if (auto fault = WrongAxes(data, MatrixAt(solution->x, first + 3), group.channels)) {
       return *fault;
+    }
     AddGroup(group, *table, setup.reference, first, out);
     first += group.size();
   }

@@ -70,6 +70,7 @@ LinearProblem AffineProblem(const std::vector<AffineReadings>& groups,
   problem.sigma_given = std::all_of(groups.begin(), groups.end(),
                                     [](const AffineReadings& g) { return g.sigma.has_value(); });
   std::vector<Eigen::Matrix3d> rough;
+  rough.reserve(groups.size());
   for (const AffineReadings& group : groups) rough.push_back(Rough(group));
   for (int i = 0; i < n; ++i) {
     Eigen::MatrixXd tilt(width, 3);
@@ -82,11 +83,13 @@ LinearProblem AffineProblem(const std::vector<AffineReadings>& groups,
       problem.y.segment<3>(row) = groups[g].v.row(i).transpose();
       const double sigma = groups[g].sigma.value_or(1);
       problem.sigma.segment<3>(row).setConstant(sigma);
-      tilt.middleRows<3>(3 * static_cast<int>(g)) = tilt_sigma / sigma * rough[g] * Cross(u);
-      for (int c = 0; c < 3; ++c)
-        problem.rows[static_cast<std::size_t>(row + c)] = {
+      tilt.middleRows<3>(row - i * width) = tilt_sigma / sigma * rough[g] * Cross(u);
+      for (int c = 0; c < 3; ++c) {
+        const int at = row + c;
+        problem.rows[static_cast<std::size_t>(at)] = {
             lines[static_cast<std::size_t>(i)], groups[g].channels[static_cast<std::size_t>(c)],
             sigma};
+      }
     }
     if (tilt_sigma > 0) Whiten(tilt, i * width, problem);
   }

@@ -62,14 +62,16 @@ std::optional<Fault> ReadSensors(const BenchTable& data, const AttitudeNeeds& ne
     table.mag_channels = names;
     break;
   }
-  if (needs.accel && table.accel.rows() == 0)
+  if (needs.accel && table.accel.rows() == 0) {
     return BenchFault(data,
                       "the table has no accelerometers: columns Gx, Gy, Gz or ax, ay, az "
                       "(gravity-signed), or fx, fy, fz or vx, vy, vz (specific force)",
                       1, FaultCode::kForeign);
-  if (needs.mag && table.mag.rows() == 0)
+  }
+  if (needs.mag && table.mag.rows() == 0) {
     return BenchFault(data, "the table has no magnetometers: columns Mx, My, Mz or mx, my, mz", 1,
                       FaultCode::kForeign);
+  }
   return std::nullopt;
 }
 

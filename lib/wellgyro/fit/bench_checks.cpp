@@ -168,7 +168,9 @@ std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<Channe
   constexpr double kRefused = 0.2, kRemarked = 0.02;
   std::map<std::string, std::vector<const FitResidual*>> of;
   for (const FitResidual& residual : report.residuals) of[residual.channel].push_back(&residual);
-  for (auto& [channel, residuals] : of) {
+  for (auto& entry : of) {
+    const std::string& channel = entry.first;
+    std::vector<const FitResidual*>& residuals = entry.second;
     const auto known = std::find_if(signals.begin(), signals.end(), [&](const ChannelSignal& s) {
       return channel.rfind(s.channel, 0) == 0;
     });

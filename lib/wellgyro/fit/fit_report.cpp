@@ -22,8 +22,9 @@ void AddResiduals(FitReport& report, const LinearSolution& solution) {
     residual.value = solution.residual[at] * row.unit;
     residual.leverage = solution.leverage[at];
     const double rest = 1 - residual.leverage;
-    if (rest > 1e-9 && solution.dof > 0)
+    if (rest > 1e-9 && solution.dof > 0) {
       residual.studentised = solution.residual[at] / (scale * std::sqrt(rest));
+    }
     report.half_square_sum += residual.value * residual.value / 2;
     report.residuals.push_back(std::move(residual));
   }
@@ -76,8 +77,9 @@ FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution)
   report.condition = solution.condition;
   for (const int line : solution.outlier_lines) {
     if (line > 0) report.outlier_lines.push_back(line);
-    if (line < 0)
+    if (line < 0) {
       report.remarks.push_back(fmt::format("line {} of the second table is left out", -line));
+    }
   }
   if (solution.dof > 0) {
     report.chi_low = ChiSquareQuantile(0.025, solution.dof);
@@ -86,15 +88,17 @@ FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution)
   }
   AddResiduals(report, solution);
   AddCorrelations(report);
-  if (report.cov.size() == 0)
+  if (report.cov.size() == 0) {
     report.remarks.push_back(
         "there are as many parameters as readings: no uncertainty can be stated; repeat the "
         "positions, or give the readings' sigma");
-  if (report.sigma_given && report.dof > 0 && report.chi_square > report.chi_high)
+  }
+  if (report.sigma_given && report.dof > 0 && report.chi_square > report.chi_high) {
     report.remarks.push_back(fmt::format(
         "the residuals are {:.2f} times what the given sigma lets expect: the uncertainties are "
         "too small by that, or the model lacks something",
         report.scatter));
+  }
   return report;
 }
 
@@ -148,6 +152,7 @@ double StudentLimit(double probability, double dof) {
 
 std::vector<std::string> VectorNames(std::string_view name, int size) {
   std::vector<std::string> names;
+  names.reserve(static_cast<std::size_t>(size));
   for (int i = 0; i < size; ++i) names.push_back(fmt::format("{}[{}]", name, i));
   return names;
 }

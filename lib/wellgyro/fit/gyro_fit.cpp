@@ -54,8 +54,9 @@ std::vector<std::string> Names(const Layout& layout) {
 void FillForce(const GyroReadings& readings, const Layout& layout, int i, int c,
                Eigen::MatrixXd::RowXpr row) {
   const Eigen::Vector3d f = readings.f.row(i).transpose();
-  if (layout.force == GyroForceModel::kFull)
+  if (layout.force == GyroForceModel::kFull) {
     row.segment<3>(layout.force_first() + 3 * c) = f.transpose();
+  }
   for (std::size_t k = 0; k < readings.rotors.size(); ++k) {
     const Rotor& rotor = readings.rotors[k];
     if (c != rotor.a && c != rotor.c) continue;
@@ -90,8 +91,9 @@ LinearProblem Problem(const GyroReadings& readings, const GyroFitSetup& setup, c
     const Eigen::Vector3d slope = cosine * across - sine * level;
     for (int c = 0; c < layout.channels; ++c) {
       const int row = i * layout.channels + c;
-      problem.A(row, 4 * c) = 1;
-      problem.A.block<1, 3>(row, 4 * c + 1) = w.transpose();
+      const Eigen::Index first = Eigen::Index{4} * c;
+      problem.A(row, first) = 1;
+      problem.A.block<1, 3>(row, first + 1) = w.transpose();
       FillForce(readings, layout, i, c, problem.A.row(row));
       problem.y[row] = readings.m(i, c);
       if (layout.north) {
@@ -115,8 +117,9 @@ struct Fitted {
 Fitted FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout,
                double on_table, bool robust) {
   Eigen::MatrixX3d U = Eigen::MatrixX3d::Zero(layout.channels, 3);
-  for (int c = 0; c < layout.channels; ++c)
+  for (int c = 0; c < layout.channels; ++c) {
     U(c, readings.channels[static_cast<std::size_t>(c)].axis) = 1;
+  }
   double north = 0;
   Fitted fitted{Problem(readings, setup, layout, north, U, on_table), {}};
   fitted.problem.robust = robust;
@@ -124,8 +127,9 @@ Fitted FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const La
   // Bilinear in U and the north offset: Gauss and Newton.
   for (int turn = 0; layout.north && turn < 50; ++turn) {
     const double next = fitted.solution.x[layout.north_first()];
-    for (int c = 0; c < layout.channels; ++c)
+    for (int c = 0; c < layout.channels; ++c) {
       U.row(c) = fitted.solution.x.segment<3>(4 * c + 1).transpose();
+    }
     const bool still = std::abs(next - north) < 1e-14;
     north = next;
     fitted.problem = Problem(readings, setup, layout, north, U, on_table);
@@ -198,21 +202,24 @@ std::optional<Fault> WrongChannels(const BenchTable& data, const GyroReadings& r
     const Eigen::Vector3d U = x.segment<3>(4 * static_cast<Eigen::Index>(c) + 1);
     Eigen::Index most = 0;
     U.cwiseAbs().maxCoeff(&most);
-    if (most != channel.axis)
+    if (most != channel.axis) {
       return BenchFault(data, fmt::format("channel {} follows {}{}: its axis is not {}; exchange "
                                           "the columns, or mend their names",
                                           channel.name, U[most] < 0 ? "-" : "", "xyz"[most],
                                           "xyz"[channel.axis]));
-    if (U[most] < 0)
+    }
+    if (U[most] < 0) {
       return BenchFault(data,
                         fmt::format("channel {} falls where the rate about {} rises: its sign "
                                     "is wrong, or up and down of the positions are swapped",
                                     channel.name, "xyz"[most]));
-    if (U[most] < 0.2 || U[most] > 5)
+    }
+    if (U[most] < 0.2 || U[most] > 5) {
       return BenchFault(data,
                         fmt::format("channel {} reads {:.4g} for one deg/h: give the readings "
                                     "in deg/h, all in one unit",
                                     channel.name, U[most]));
+    }
   }
   return std::nullopt;
 }
@@ -233,10 +240,11 @@ void TakeResult(const GyroReadings& readings, const Layout& layout, FitReport& r
   Reparametrise(report, names, [&](const Eigen::VectorXd& x) {
     Eigen::VectorXd to = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
     for (int c = 0; c < n; ++c) {
-      to[c] = x[4 * c];
+      to[c] = x[Eigen::Index{4} * c];
       to.segment<3>(n + 3 * c) = x.segment<3>(4 * c + 1);
-      if (layout.force == GyroForceModel::kFull)
+      if (layout.force == GyroForceModel::kFull) {
         to.segment<3>(4 * n + 3 * c) = x.segment<3>(layout.force_first() + 3 * c);
+      }
     }
     for (int k = 0; dual && k < rotors; ++k) {
       const Rotor& rotor = readings.rotors[static_cast<std::size_t>(k)];
@@ -307,8 +315,9 @@ void AddParity(const SensorGroup& group, FitReport& report) {
   for (std::size_t i = 0; i + 3 < report.residuals.size(); i += 4) {
     if (report.residuals[i].line != report.residuals[i + 3].line) continue;
     double parity = 0;
-    for (int c = 0; c < 4; ++c)
+    for (int c = 0; c < 4; ++c) {
       parity += direction[c] * report.residuals[i + static_cast<std::size_t>(c)].value;
+    }
     square += parity * parity;
     ++rows;
   }
@@ -349,10 +358,11 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
   if (auto fault = DoesNotFit(data, {{"m_", at_rest}, {"table", largest}}, report)) return *fault;
   report.method = table.rows() > 0 && rest.rows() == 0 ? "gyro-rate-table" : "gyro-multi-position";
   report.remarks.insert(report.remarks.end(), remarks.begin(), remarks.end());
-  if (rest.rows() > 0 && table.rows() == 0)
+  if (rest.rows() > 0 && table.rows() == 0) {
     report.remarks.push_back(
         "a wrong latitude would not show in these residuals: 0.1 deg of it is 3e-3 in U and 0.05 "
         "deg/h/g in G; a rate table's readings break that");
+  }
   TakeResult(*readings, layout, report);
   out.gyro = Group(*readings, layout, setup.reference, report.values);
   AddParity(out.gyro, report);

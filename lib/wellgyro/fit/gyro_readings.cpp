@@ -20,21 +20,23 @@ Result<std::vector<GyroChannel>> ChannelsOf(const BenchTable& data) {
   for (const std::string& column : data.columns) {
     if (column.rfind("m_", 0) != 0) continue;
     const std::size_t axis = column.size() > 2 ? std::string("xyz").find(column[2]) : 9;
-    if (axis > 2 || column.size() > 4)
+    if (axis > 2 || column.size() > 4) {
       return BenchFault(data,
                         fmt::format("column {} names no channel, as m_x1: its input axis, and its "
                                     "rotor where two channels share one",
                                     column),
                         1, FaultCode::kForeign);
+    }
     const int rotor = column.size() == 4 ? column[3] - '0' : -1;
     channels.push_back({column, static_cast<int>(axis), rotor});
   }
-  if (channels.size() < 2 || channels.size() > 4)
+  if (channels.size() < 2 || channels.size() > 4) {
     return BenchFault(data,
                       fmt::format("the table has {} gyro channels, columns m_x1, m_y1 ...: two to "
                                   "four are needed",
                                   channels.size()),
                       1, FaultCode::kForeign);
+  }
   return channels;
 }
 
@@ -56,6 +58,7 @@ std::vector<Rotor> RotorsOf(const std::vector<GyroChannel>& channels) {
 
 std::vector<std::string> NamesOf(const std::vector<GyroChannel>& channels) {
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const GyroChannel& channel : channels) names.push_back(channel.name);
   return names;
 }
@@ -73,13 +76,15 @@ std::optional<Fault> Columns(const BenchTable& data, const std::vector<GyroChann
 std::optional<Fault> TakeForces(const BenchTable& data, GyroReadings& readings) {
   const auto fx = data.Find("fx"), fy = data.Find("fy"), fz = data.Find("fz");
   if (!fx || !fy || !fz) return std::nullopt;
-  if (auto fault = MixedUnits(data, {*fx, *fy, *fz}, 1, "the length of (fx, fy, fz)", "g"))
+  if (auto fault = MixedUnits(data, {*fx, *fy, *fz}, 1, "the length of (fx, fy, fz)", "g")) {
     return fault;
+  }
   std::vector<int> wrong;
   for (int i = 0; i < data.rows(); ++i) {
     const Eigen::Vector3d f(data.values(i, *fx), data.values(i, *fy), data.values(i, *fz));
-    if ((f - readings.f.row(i).transpose()).norm() > 0.05)
+    if ((f - readings.f.row(i).transpose()).norm() > 0.05) {
       wrong.push_back(data.lines[static_cast<std::size_t>(i)]);
+    }
     // What is at right angles is so to the last digit: rounding shall not pass for a signal.
     readings.f.row(i) = (f.array().abs() < 1e-12).select(0, f).transpose();
   }
@@ -123,9 +128,10 @@ std::optional<Fault> ReadTable(const BenchTable& data, const BenchReference& ref
   const double up = kEarthDegPerHour * std::sin(*reference.latitude);
   for (int i = 0; i < data.rows(); ++i) {
     const double axis = data.values(i, (*found)[0]);
-    if (axis != 0 && axis != 1 && axis != 2)
+    if (axis != 0 && axis != 1 && axis != 2) {
       return BenchFault(data, "column axis must be x, y or z",
                         data.lines[static_cast<std::size_t>(i)]);
+    }
     const Eigen::Vector3d n = Eigen::Vector3d::Unit(static_cast<int>(axis));
     readings.w.row(first + i) = (data.values(i, (*found)[1]) * units::kHour + up) * n.transpose();
     readings.f.row(first + i) = n.transpose();

@@ -93,8 +93,9 @@ LinearSolution SolvePlain(const LinearProblem& problem) {
   solution.chi_square = solution.residual.squaredNorm();
   solution.dof = static_cast<int>(w.y.size()) - d.rank;
   solution.rows = problem.rows;
-  for (int i = d.rank; i < problem.size(); ++i)
+  for (int i = d.rank; i < problem.size(); ++i) {
     solution.unseen.push_back(Words(d.svd.matrixV().col(i), problem.parameters));
+  }
   const Eigen::MatrixXd root = d.scale.cwiseInverse().asDiagonal() *
                                d.svd.matrixV().leftCols(d.rank) *
                                values.head(d.rank).cwiseInverse().asDiagonal();
@@ -118,8 +119,9 @@ Eigen::VectorXd CauchyWeights(const LinearProblem& problem, const Eigen::VectorX
     }
     const double mean = square / static_cast<double>(end - begin) / (4 * scale * scale);
     if (problem.rows[begin].line != 0) {
-      for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t i = begin; i < end; ++i) {
         weight[static_cast<Eigen::Index>(i)] = 1 / std::sqrt(1 + mean);
+      }
     }
     begin = end;
   }
@@ -223,8 +225,10 @@ LinearProblem::LinearProblem(std::vector<std::string> names, int n_rows)
 LinearSolution Solve(const LinearProblem& problem) {
   LinearSolution plain = SolvePlain(problem);
   // Where half of the readings serve to fix the parameters, none can be told to be wrong.
-  if (!problem.robust || problem.y.size() < 2 * problem.size() || !plain.unseen.empty())
+  if (!problem.robust || problem.y.size() < Eigen::Index{2} * problem.size() ||
+      !plain.unseen.empty()) {
     return plain;
+  }
   const std::set<int> lines = Confirmed(problem, Outliers(problem));
   if (lines.empty() || 4 * lines.size() > CountLines(problem)) return plain;
   LinearSolution rest = SolvePlain(Without(problem, lines));
@@ -237,8 +241,9 @@ Result<LinearSolution> SolveWhole(const LinearProblem& problem, std::string_view
   LinearSolution solution = Solve(problem);
   if (solution.unseen.empty()) return solution;
   std::string text = "the readings do not determine";
-  for (std::size_t i = 0; i < solution.unseen.size() && i < 3; ++i)
+  for (std::size_t i = 0; i < solution.unseen.size() && i < 3; ++i) {
     text += fmt::format("{} {}", i > 0 ? ", nor" : "", solution.unseen[i]);
+  }
   if (solution.unseen.size() > 3) text += fmt::format(", nor {} more", solution.unseen.size() - 3);
   return Fault{.code = FaultCode::kRange, .text = fmt::format("{}: {}", text, advice)};
 }

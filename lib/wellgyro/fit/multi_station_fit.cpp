@@ -78,8 +78,9 @@ Eigen::Vector3d DownOf(const AttitudeTable& table, int i) {
 void AddPriors(const Setup& setup, bool scales, NonlinearProblem& problem) {
   for (int i = 0; i < 3; ++i) {
     if (setup.prior_bias) problem.Add({{0, "prior", 1}}, PriorResidual{i, *setup.prior_bias});
-    if (scales && setup.prior_scale)
+    if (scales && setup.prior_scale) {
       problem.Add({{0, "prior", 1}}, PriorResidual{3 + i, *setup.prior_scale});
+    }
   }
 }
 
@@ -123,11 +124,12 @@ NonlinearProblem Gyros(const BenchTable& data, const std::vector<int>& columns,
 void RemarkPriors(const Setup& setup, FitReport& report) {
   for (Eigen::Index i = 0; i < report.values.size() && report.cov.size() > 0; ++i) {
     const auto& prior = i < 3 ? setup.prior_bias : setup.prior_scale;
-    if (prior && std::sqrt(report.cov(i, i)) > 0.7 * *prior)
+    if (prior && std::sqrt(report.cov(i, i)) > 0.7 * *prior) {
       report.remarks.push_back(
           fmt::format("the stations say next to nothing of {}: it rests on "
                       "its prior",
                       report.parameters[static_cast<std::size_t>(i)]));
+    }
   }
 }
 
@@ -166,8 +168,9 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   const auto table = ReadAttitudeTable(data, {.accel = true, .mag = !gyros});
   if (!table) return table.fault();
   if (auto fault = BadStations(data, *table, setup)) return *fault;
-  if (!gyros && (!setup.reference.field || !setup.reference.dip))
+  if (!gyros && (!setup.reference.field || !setup.reference.dip)) {
     throw std::invalid_argument("magnetometers need the field and its dip");
+  }
   if (gyros && !setup.reference.latitude) throw std::invalid_argument("gyros need the latitude");
   std::vector<int> rates;
   if (gyros) {
@@ -175,14 +178,16 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
     if (!found) return found.fault();
     rates = *std::move(found);
     const double rate = kBenchEarthRate / units::kDegPerHour;
-    if (auto fault = MixedUnits(data, rates, rate, "the length of (wx, wy, wz)", "deg/h"))
+    if (auto fault = MixedUnits(data, rates, rate, "the length of (wx, wy, wz)", "deg/h")) {
       return *fault;
+    }
   } else {
     std::vector<int> mag;
     for (const std::string& name : table->mag_channels) mag.push_back(*data.Find(name));
-    if (auto fault =
-            MixedUnits(data, mag, *setup.reference.field, "the length of the magnetometers", "nT"))
+    if (auto fault = MixedUnits(data, mag, *setup.reference.field,
+                                "the length of the magnetometers", "nT")) {
       return *fault;
+    }
     if (auto fault = WrongDip(data, *table, *setup.reference.dip)) return *fault;
   }
   const NonlinearProblem problem =
@@ -201,8 +206,9 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
                                {"dip", 1},
                                {"level", rate},
                                {"vertical", rate}},
-                              report))
+                              report)) {
     return *fault;
+  }
   AddVector(report, gyros ? "bg_degh" : "bm_nT", 0, 3);
   if (!gyros) AddVector(report, "sm", 3, 3);
   RemarkPriors(setup, report);

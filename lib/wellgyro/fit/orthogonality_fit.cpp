@@ -56,8 +56,9 @@ Result<Waves> FitWaves(const BenchTable& data, int seq, const Setup& setup) {
     const int axis = k % 3, sequence = axis + 1;
     const BenchTable rows = Rows(data, seq, sequence, sequence);
     if (auto fault = TooFew(rows, 4, fmt::format("readings of sequence {}", sequence),
-                            "measure it every 30 deg, 0 to 360"))
+                            "measure it every 30 deg, 0 to 360")) {
       return *fault;
+    }
     const auto table = ReadAttitudeTable(rows, {.attitude = true, .accel = true, .mag = true});
     if (!table) return table.fault();
     Eigen::VectorXd errors(table->rows());
@@ -70,9 +71,10 @@ Result<Waves> FitWaves(const BenchTable& data, int seq, const Setup& setup) {
     if (!wave) return BenchFault(rows, wave.fault().text, rows.lines.front());
     waves.model.x[static_cast<std::size_t>(k)] = wave->x;
     waves.sigma.row(k) = wave->sigma.transpose();
-    if (setup.free_frequency && !wave->free)
+    if (setup.free_frequency && !wave->free) {
       waves.remarks.push_back(
           fmt::format("x_{}2 stays 1: the readings do not tell its frequency from 1", k + 1));
+    }
   }
   return waves;
 }
@@ -130,10 +132,12 @@ OrthogonalityCheck Verify(const AttitudeTable& table, const BenchReference& refe
 void TakeErrors(FitReport& report) {
   std::vector<std::string> names;
   for (const char* suffix : {"G", "M"}) {
-    for (const std::string& name : VectorNames(std::string("b_") + suffix, 3))
+    for (const std::string& name : VectorNames(std::string("b_") + suffix, 3)) {
       names.push_back(name);
-    for (const std::string& name : MatrixNames(std::string("E_") + suffix, 3, 3))
+    }
+    for (const std::string& name : MatrixNames(std::string("E_") + suffix, 3, 3)) {
       names.push_back(name);
+    }
   }
   Reparametrise(report, names, [](const Eigen::VectorXd& x) {
     Eigen::VectorXd errors = x;
@@ -152,8 +156,9 @@ void TakeErrors(FitReport& report) {
 void AddCoefficients(const Waves& waves, FitReport& report) {
   FitQuantity x{"x_kj", FitQuantity::Shape::kMatrix, Eigen::MatrixXd(6, 4), waves.sigma};
   for (int k = 0; k < 6; ++k) {
-    for (int j = 0; j < 4; ++j)
+    for (int j = 0; j < 4; ++j) {
       x.value(k, j) = waves.model.x[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)];
+    }
   }
   report.result.push_back(std::move(x));
   report.remarks.insert(report.remarks.end(), waves.remarks.begin(), waves.remarks.end());
@@ -162,22 +167,25 @@ void AddCoefficients(const Waves& waves, FitReport& report) {
 }  // namespace
 
 Result<OrthogonalityFit> FitOrthogonality(const BenchTable& data, const Setup& setup) {
-  if (!setup.reference.field || !setup.reference.dip)
+  if (!setup.reference.field || !setup.reference.dip) {
     throw std::invalid_argument("the orthogonality method needs the field and its dip");
+  }
   const auto seq = FindColumns(data, {"seq"});
   if (!seq) return seq.fault();
   for (int i = 0; i < data.rows(); ++i) {
     const double number = data.values(i, seq->front());
-    if (number != 0 && number != 1 && number != 2 && number != 3)
+    if (number != 0 && number != 1 && number != 2 && number != 3) {
       return BenchFault(data,
                         fmt::format("sequence {:g}: 1, 2 and 3 calibrate, 0 verifies", number),
                         data.lines[static_cast<std::size_t>(i)]);
+    }
   }
   const auto accel = FindColumns(data, {"Gx", "Gy", "Gz"});
   if (!accel) return accel.fault();
   if (auto fault = MixedUnits(data, *accel, setup.reference.gravity, "the length of (Gx, Gy, Gz)",
-                              "g, or give --gravity-mps2"))
+                              "g, or give --gravity-mps2")) {
     return *fault;
+  }
   const BenchTable sequences = Rows(data, seq->front(), 1, 3);
   const auto waves = FitWaves(sequences, seq->front(), setup);
   if (!waves) return waves.fault();

@@ -43,17 +43,21 @@ std::optional<Fault> Place(const BenchTable& data, const Columns& columns, int r
   const int line = data.lines[static_cast<std::size_t>(row)];
   const double axis = value(columns.axis), channel = value(columns.channel);
   const double quarter = std::fmod(std::fmod(value(columns.rot), 360.0) + 360.0, 360.0) / 90;
-  if (axis != 0 && axis != 1 && axis != 2)
+  if (axis != 0 && axis != 1 && axis != 2) {
     return BenchFault(data, "column axis must be x, y or z", line);
-  if (channel != 0 && channel != 1 && channel != 2)
+  }
+  if (channel != 0 && channel != 1 && channel != 2) {
     return BenchFault(data, "column channel must be x, y or z", line);
-  if (std::abs(value(columns.dir)) != 1)
+  }
+  if (std::abs(value(columns.dir)) != 1) {
     return BenchFault(data, "column dir must be up or down", line);
-  if (quarter != std::floor(quarter))
+  }
+  if (quarter != std::floor(quarter)) {
     return BenchFault(
         data,
         fmt::format("rotation {} deg: the four rotations are 0, 90, 180, 270", value(columns.rot)),
         line);
+  }
   *at = PositionRun::At(static_cast<int>(axis), value(columns.dir) < 0 ? 1 : 0,
                         static_cast<int>(quarter), static_cast<int>(channel));
   return std::nullopt;
@@ -112,7 +116,7 @@ Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double to
   run.temperature = raw.temperature_sum / raw.rows;
   for (const auto& [at, series] : raw.series) {
     const SettledRun settled = Settle(series.volts, tolerance);
-    if (!settled.settled)
+    if (!settled.settled) {
       return BenchFault(
           data,
           series.volts.size() < 3
@@ -122,6 +126,7 @@ Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double to
                             "by {:.3g} V; read on until they repeat, or give the tolerance",
                             PositionText(at), kAxes[at % 3], settled.spread),
           series.line);
+    }
     run.readings[at] = {settled.value, series.line};
   }
   return run;

@@ -24,7 +24,8 @@ struct PositionRun {
   std::array<PositionReading, 72> readings;
 
   static std::size_t At(int axis, int down, int quarter, int channel) {
-    return static_cast<std::size_t>(((axis * 2 + down) * 4 + quarter) * 3 + channel);
+    const int at = ((axis * 2 + down) * 4 + quarter) * 3 + channel;
+    return static_cast<std::size_t>(at);
   }
   const PositionReading& Of(int axis, int down, int quarter, int channel) const {
     return readings[At(axis, down, quarter, channel)];

@@ -49,26 +49,29 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
   if (!set_column) return set_column.fault();
   const auto table = ReadAttitudeTable(data, {.accel = true});
   if (!table) return table.fault();
-  if (auto fault = TooFew(data, 6, "readings", "roll the tool right round, every 45 deg"))
+  if (auto fault = TooFew(data, 6, "readings", "roll the tool right round, every 45 deg")) {
     return *fault;
+  }
   if (auto fault = BadReadings(data, *table)) return *fault;
   if (auto fault =
           MixedUnits(data,
                      {*data.Find(table->accel_channels[0]), *data.Find(table->accel_channels[1]),
                       *data.Find(table->accel_channels[2])},
-                     setup.reference.gravity, "the length of the readings", "g or m/s2"))
+                     setup.reference.gravity, "the length of the readings", "g or m/s2")) {
     return *fault;
+  }
   const std::vector<int> sets = SetsOf(data, set_column->front());
   const int n_sets = 1 + *std::max_element(sets.begin(), sets.end());
   const Eigen::Matrix3d V = Directions(table->accel, sets, n_sets);
   const Eigen::Vector3d axis = (V(2, 2) < 0 ? -1 : 1) * V.col(2);
   const double off = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
-  if (off > kPi / 6)
+  if (off > kPi / 6) {
     return BenchFault(data,
                       fmt::format("the axis of the rolls lies {:.0f} deg from the sensors' z: "
                                   "exchange the columns, or the tool was not rolled about itself",
                                   ToDegrees(off)),
                       data.lines[0]);
+  }
   const Eigen::Vector3d e1 = V.col(0), e2 = axis.cross(e1);
 
   // About it: axis + alpha e1 + beta e2, and what each set reads along it.

@@ -44,7 +44,8 @@ struct DipResidual {
     const T f_length = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     const T h_length = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
     const T along = (f[0] * h[0] + f[1] * h[1] + f[2] * h[2]) / (f_length * h_length);
-    const T sine = free_dip ? sin(p[kDip]) : T(std::sin(dip));
+    const T stated{std::sin(dip)};
+    const T sine = free_dip ? sin(p[kDip]) : stated;
     r[0] = (f_length - gravity) * weight[0];
     r[1] = (h_length - field) * weight[1];
     r[2] = (along - sign * sine) * weight[2];
@@ -180,8 +181,9 @@ void TakeResult(FitReport& report, bool free_dip) {
 
 Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup& setup) {
   if (!setup.reference.field) throw std::invalid_argument("scalar-dip needs the field");
-  if (!setup.reference.dip && !setup.free_dip)
+  if (!setup.reference.dip && !setup.free_dip) {
     throw std::invalid_argument("scalar-dip needs the dip, or is to find it");
+  }
   const auto table = ReadAttitudeTable(data, {.accel = true, .mag = true});
   if (!table) return table.fault();
   if (auto fault = TooFew(data, 12, "attitudes", kAdvice)) return *fault;
@@ -203,8 +205,9 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   if (auto fault = DoesNotFit(
           data,
           {{"gravity", setup.reference.gravity}, {"field", *setup.reference.field}, {"dip", 1}},
-          out.report))
+          out.report)) {
     return *fault;
+  }
   FitReport& report = out.report;
   report.method = "scalar-dip";
   const Eigen::Matrix3d A = LowerOf(report.values).inverse(), M = FullOf(report.values).inverse();

@@ -71,8 +71,9 @@ Result<NonlinearProblem::Solution> SolveScalar(const ScalarReadings& readings) {
     }
     // Fewer outliers first, then the smaller cost.
     if (!best || std::pair(solution->outlier_lines.size(), solution->cost) <
-                     std::pair(best->outlier_lines.size(), best->cost))
+                     std::pair(best->outlier_lines.size(), best->cost)) {
       best = *std::move(solution);
+    }
   }
   if (!best) return *fault;
   // Signs of rows of M are free; a sensor's own axis reads upwards.
@@ -145,11 +146,12 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   AddMatrix(report, "Ka", 0, 3, 3);
   AddVector(report, "ba", 9, 3);
   AddFixed(report, "MtM", FitQuantity::Shape::kMatrix, M.transpose() * M);
-  if (data.rows() < 18)
+  if (data.rows() < 18) {
     report.remarks.push_back(
         fmt::format("{} attitudes are few for nine parameters: 18 to 24, some with gravity between "
                     "the axes, halve the uncertainty",
                     data.rows()));
+  }
   report.remarks.push_back("the frame is the sensors' own: tie it to the housing by a roll test");
   const double si = setup.reference.gravity_mps2 / setup.reference.gravity;
   out.accel = ThreeChannels(report.values.tail<3>(), M.inverse(), si, setup.reference.axes,

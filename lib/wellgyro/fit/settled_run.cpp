@@ -65,10 +65,11 @@ Decay BestDecay(std::span<const double> v) {
   double a = best - step, b = best + step;
   for (int turn = 0; turn < kTurns; ++turn) {
     const double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
-    if (at(c).squares < at(d).squares)
+    if (at(c).squares < at(d).squares) {
       b = d;
-    else
+    } else {
       a = c;
+    }
   }
   return at((a + b) / 2);
 }

@@ -43,19 +43,23 @@ Result<std::vector<Position>> Read(const BenchTable& data, const Setup& setup) {
     position.axis = static_cast<int>(value(p[0]));
     position.sign = value(p[1]);
     position.seconds = value(p[2]);
-    if (value(p[0]) != 0 && value(p[0]) != 1 && value(p[0]) != 2)
+    if (value(p[0]) != 0 && value(p[0]) != 1 && value(p[0]) != 2) {
       return BenchFault(data, "column axis must be x, y or z", position.line);
-    if (std::abs(position.sign) != 1)
+    }
+    if (std::abs(position.sign) != 1) {
       return BenchFault(data, "column sign must be 1 (up) or -1 (down)", position.line);
-    if (!(position.seconds > 0))
+    }
+    if (!(position.seconds > 0)) {
       return BenchFault(data, fmt::format("a position of {} s", position.seconds), position.line);
+    }
     position.u = position.sign * setup.gravity * Eigen::Vector3d::Unit(position.axis);
     if (ux && uy && uz) position.u = {value(*ux), value(*uy), value(*uz)};
-    if (position.sign * position.u[position.axis] <= 0.5 * position.u.norm())
+    if (position.sign * position.u[position.axis] <= 0.5 * position.u.norm()) {
       return BenchFault(data,
                         "axb, ayb, azb do not point where axis and sign say: up and down are "
                         "swapped in one of them",
                         position.line, FaultCode::kConflict);
+    }
     position.rate = Eigen::Vector3d(value(p[3]), value(p[4]), value(p[5])) / position.seconds;
     positions.push_back(position);
   }
@@ -69,12 +73,14 @@ std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Posi
     const bool there = std::any_of(positions.begin(), positions.end(), [&](const Position& p) {
       return p.axis == at / 2 && (p.sign < 0) == (at % 2 == 1);
     });
-    if (!there)
+    if (!there) {
       missing += fmt::format("{}{} {}", missing.empty() ? "" : ", ", "xyz"[at / 2],
                              at % 2 == 1 ? "down" : "up");
+    }
   }
-  if (!missing.empty())
+  if (!missing.empty()) {
     return BenchFault(data, fmt::format("six positions are needed; measure {}", missing));
+  }
   BenchTable rates{data.source, {"Nx", "Ny", "Nz"}, Eigen::MatrixXd(positions.size(), 3), {}};
   BenchTable forces = rates;
   forces.columns = {"axb", "ayb", "azb"};
@@ -86,19 +92,22 @@ std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Posi
   forces.lines = rates.lines;
   if (auto fault = Frozen(rates, {0, 1, 2})) return fault;
   std::vector<UprightReading> upright;
-  for (const Position& position : positions)
+  for (const Position& position : positions) {
     upright.push_back({position.axis, position.sign, position.rate[position.axis], position.line});
+  }
   if (auto fault = SwappedPositions(rates, upright)) return fault;
-  if (auto fault = MixedUnits(rates, {0, 1, 2}, 0, "the length of N/T_s", "pulses and seconds"))
+  if (auto fault = MixedUnits(rates, {0, 1, 2}, 0, "the length of N/T_s", "pulses and seconds")) {
     return fault;
+  }
   return MixedUnits(forces, {0, 1, 2}, setup.gravity, "the length of (axb, ayb, azb)", "m/s2");
 }
 
 // Parameters, pulses a second: offset in the own pair (3), offset elsewhere (3), S (9).
 LinearProblem Problem(const std::vector<Position>& positions) {
   std::vector<std::string> names = VectorNames("own_offset", 3);
-  for (const auto& more : {VectorNames("offset", 3), MatrixNames("S", 3, 3)})
+  for (const auto& more : {VectorNames("offset", 3), MatrixNames("S", 3, 3)}) {
     names.insert(names.end(), more.begin(), more.end());
+  }
   LinearProblem problem(names, static_cast<int>(positions.size()) * 3);
   for (int row = 0; row < problem.y.size(); ++row) {
     const Position& position = positions[static_cast<std::size_t>(row / 3)];
@@ -165,13 +174,15 @@ void Remark(const std::vector<Position>& positions, const Setup& setup, FitRepor
   std::set<std::pair<int, double>> distinct;
   for (const Position& position : positions) distinct.insert({position.axis, position.sign});
   const bool repeated = positions.size() >= 3 * distinct.size();
-  if (!setup.second_order)
+  if (!setup.second_order) {
     report.remarks.push_back(
         "k2 was not estimated: a0 is that of each axis's own pair, and holds k2 g");
-  if (setup.second_order && !repeated && !setup.tilt_sigma)
+  }
+  if (setup.second_order && !repeated && !setup.tilt_sigma) {
     report.remarks.push_back(
         "one rotation a position: a0 and k2 take a tilt of the fixture for their own (1 arcsec is "
         "4.85 ug); rotate and repeat the positions, give the tilt's sigma, or leave k2 out");
+  }
 }
 
 SensorGroup Group(const Eigen::VectorXd& x, bool second_order) {
@@ -209,14 +220,16 @@ Result<BenchCalibration> FitSixPositions(const BenchTable& data, const Setup& se
   out.report = ReportOf(problem, *solution);
   FitReport& report = out.report;
   if (auto fault =
-          DoesNotFit(data, {{"", S.diagonal().cwiseAbs().minCoeff() * setup.gravity}}, report))
+          DoesNotFit(data, {{"", S.diagonal().cwiseAbs().minCoeff() * setup.gravity}}, report)) {
     return *fault;
+  }
   report.method = "six-position";
   // The own pair's offset is k (a0 + k2 g^2), with k2 in 1/(m/s^2); files have it in g/g^2.
   const double g = Mean(*positions, [](const Position& p) { return p.u.norm(); });
   std::vector<std::string> names = VectorNames("k_pulse_per_s_per_mps2", 3);
-  for (const auto& more : {VectorNames("a0_mps2", 3), MatrixNames("E_rad", 3, 3)})
+  for (const auto& more : {VectorNames("a0_mps2", 3), MatrixNames("E_rad", 3, 3)}) {
     names.insert(names.end(), more.begin(), more.end());
+  }
   const bool second_order = setup.second_order;
   if (second_order) {
     const auto more = VectorNames("k2_g_per_g2", 3);

@@ -25,11 +25,13 @@ Result<Readings> Read(const BenchTable& data) {
   for (std::size_t i = 0; i < data.columns.size(); ++i) {
     if (data.columns[i].rfind("ref", 0) == 0) refs.push_back(static_cast<int>(i));
   }
-  if (refs.empty())
+  if (refs.empty()) {
     return BenchFault(data, "the table has no reference thermometer, a column ref1", 1,
                       FaultCode::kForeign);
-  if (auto fault = TooFew(data, 4, "temperatures", "read the thermometers at more of them"))
+  }
+  if (auto fault = TooFew(data, 4, "temperatures", "read the thermometers at more of them")) {
     return *fault;
+  }
   if (auto fault = Repeated(data)) return *fault;
   std::vector<int> all = refs;
   all.push_back(place->front());
@@ -43,15 +45,17 @@ Result<Readings> Read(const BenchTable& data) {
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   constexpr double kLargest = 20;  // degC; a thermometer further off is not read in degC
-  if (*middle > kLargest)
+  if (*middle > kLargest) {
     return BenchFault(data,
                       fmt::format("the references differ from t_m by {:.1f} in the middle of the "
                                   "rows: give all of them in degC",
                                   *middle),
                       data.lines[0]);
-  if (refs.size() > 1)
+  }
+  if (refs.size() > 1) {
     readings.spread = std::sqrt((references.colwise() - mean).squaredNorm() /
                                 static_cast<double>(references.size() - references.rows()));
+  }
   return readings;
 }
 
@@ -95,10 +99,11 @@ double FindKnee(const Readings& readings, const ThermometerFitSetup& setup) {
   constexpr double kGolden = 0.6180339887498949;
   while (high - low > 1e-9 * (1 + std::abs(best))) {
     const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    if (cost(a) < cost(b))
+    if (cost(a) < cost(b)) {
       high = b;
-    else
+    } else {
       low = a;
+    }
   }
   return (low + high) / 2;
 }
@@ -111,8 +116,9 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   const auto beyond = [&](double knee) { return (readings->t.array() > knee).count(); };
   double knee = setup.knee;
   if (setup.fit_knee) {
-    if (auto fault = TooFew(data, 7, "temperatures", "read on both sides of the knee"))
+    if (auto fault = TooFew(data, 7, "temperatures", "read on both sides of the knee")) {
       return *fault;
+    }
     knee = FindKnee(*readings, setup);
   }
   const bool bends = beyond(knee) > 0;
@@ -132,15 +138,17 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   });
   AddVector(report, "c", 0, 3);
   AddFixed(report, "knee_C", FitQuantity::Shape::kNumber, Eigen::MatrixXd::Constant(1, 1, knee));
-  if (!bends)
+  if (!bends) {
     report.remarks.push_back(fmt::format(
         "no reading beyond the knee at {:.4g} degC: c[2] is left at zero, and the range ends at "
         "{:.4g} degC",
         knee, readings->t.maxCoeff()));
-  if (readings->spread > 0)
+  }
+  if (readings->spread > 0) {
     report.remarks.push_back(
         fmt::format("the reference thermometers differ by {:.3g} degC (1 sigma) among themselves",
                     readings->spread));
+  }
   out.thermometer = ThermometerCalibration{.c0 = report.values[0],
                                            .c1 = report.values[1],
                                            .c2 = report.values[2],

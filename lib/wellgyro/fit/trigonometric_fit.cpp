@@ -68,9 +68,10 @@ std::optional<FitReport> FitFree(const Eigen::VectorXd& angles, const Eigen::Vec
     NonlinearProblem problem(VectorNames("x", 4), start);
     problem.robust = false;
     problem.Bound(1, 0.3, 3);
-    for (int i = 0; i < angles.size(); ++i)
+    for (int i = 0; i < angles.size(); ++i) {
       problem.Add({{lines[static_cast<std::size_t>(i)], "wave", 1}},
                   WaveResidual{angles[i], errors[i]});
+    }
     auto solution = problem.Solve();
     if (solution && (!best || solution->cost < best->cost)) best = *std::move(solution);
   }
@@ -86,9 +87,10 @@ std::optional<FitReport> FitFree(const Eigen::VectorXd& angles, const Eigen::Vec
 
 Result<Wave> FitWave(const Eigen::VectorXd& angles, const Eigen::VectorXd& errors,
                      const std::vector<int>& lines, bool free_frequency) {
-  if (angles.size() < 4)
+  if (angles.size() < 4) {
     return Fault{.code = FaultCode::kRange,
                  .text = "fewer than four readings in a sequence: measure every 30 deg"};
+  }
   const FitReport fixed = FitFixed(angles, errors, lines);
   if (!free_frequency || angles.size() < 6) return WaveOf(fixed, false);
   const auto free = FitFree(angles, errors, lines);

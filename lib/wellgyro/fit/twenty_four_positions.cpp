@@ -149,8 +149,9 @@ void AddAngles(FitReport& report, const Eigen::Matrix3d& S) {
 
 void AddMeans(FitReport& report, const PositionRun& run) {
   Eigen::MatrixXd M(24, 3), P(3, 6);
-  for (int at = 0; at < 72; ++at)
+  for (int at = 0; at < 72; ++at) {
     M(at / 3, at % 3) = run.readings[static_cast<std::size_t>(at)].volt;
+  }
   for (int c = 0; c < 3; ++c) {
     for (int k = 0; k < 6; ++k) P(c, k) = run.P(k / 2, k % 2, c);
   }
@@ -169,8 +170,9 @@ SensorGroup Group(const FitReport& report, int degree, const std::vector<Positio
     group.bias[power].head<3>() = report.values.segment<3>(12 * n);
     group.sensitivity[power].topRows<3>() = SensitivityOf(report.values, n) / kG;
   }
-  for (int c = 0; c < 3; ++c)
+  for (int c = 0; c < 3; ++c) {
     group.second_order(c, c) = report.values[12 * (degree + 1) + c] / (kG * kG);
+  }
   if (degree == 0) return group;
   const Reduced reduced = ReducedTemperature(runs);
   group.thermometer = 0;
@@ -272,10 +274,11 @@ Result<BenchCalibration> FitTwentyFourPositions(const BenchTable& data, const Se
     AddFixed(report, "T_half_range_C", FitQuantity::Shape::kNumber,
              Eigen::MatrixXd::Constant(1, 1, reduced.half_range));
     AddRuns(data, *runs, setup, report);
-    if (degree == 0)
+    if (degree == 0) {
       report.remarks.push_back(
           "no polynomial in temperature: the temperatures are too few, too close together, or do "
           "not matter");
+    }
   }
   out.accel = Group(report, degree, *runs);
   out.accel.R_TS = ToolFromBench(setup.axes);

@@ -42,8 +42,9 @@ std::optional<double> NumberOf(std::string_view cell) {
   if (cell.starts_with('+')) cell.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
     return std::nullopt;
+  }
   return value;
 }
 
@@ -91,12 +92,14 @@ class Reader {
       const int column = static_cast<int>(cell.data() - line.data()) + 1;
       if (cell.empty()) return At(FaultCode::kForeign, "a column without a name", number, column);
       double value = 0;
-      if (std::from_chars(cell.data(), cell.data() + cell.size(), value).ec == std::errc())
+      if (std::from_chars(cell.data(), cell.data() + cell.size(), value).ec == std::errc()) {
         return At(FaultCode::kForeign, "the first line must name the columns; it holds numbers",
                   number, column);
-      if (table_.Find(cell))
+      }
+      if (table_.Find(cell)) {
         return At(FaultCode::kConflict, fmt::format("column {} stands there twice", cell), number,
                   column);
+      }
       table_.columns.emplace_back(cell);
     }
     return std::nullopt;
@@ -104,24 +107,27 @@ class Reader {
 
   std::optional<Fault> Row(std::string_view line, int number) {
     const std::vector<std::string_view> cells = Cells(line, separator_);
-    if (cells.size() != table_.columns.size())
+    if (cells.size() != table_.columns.size()) {
       return At(FaultCode::kSize,
                 fmt::format("{} cells where the header names {} columns", cells.size(),
                             table_.columns.size()),
                 number, 1);
+    }
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto value = NumberOf(cells[i]);
-      if (!value)
+      if (!value) {
         return At(FaultCode::kSyntax,
                   fmt::format("\"{}\" in column {} is no number", cells[i], table_.columns[i]),
                   number,
                   cells[i].empty() ? 1 : static_cast<int>(cells[i].data() - line.data()) + 1);
+      }
       constexpr double kLargest = 1e15;
-      if (std::abs(*value) > kLargest)
+      if (std::abs(*value) > kLargest) {
         return At(FaultCode::kRange,
                   fmt::format("\"{}\" in column {}: no reading is that large", cells[i],
                               table_.columns[i]),
                   number, static_cast<int>(cells[i].data() - line.data()) + 1);
+      }
       values_.push_back(*value);
     }
     table_.lines.push_back(number);

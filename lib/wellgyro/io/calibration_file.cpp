@@ -119,9 +119,10 @@ Eigen::MatrixXd ReadValue(TomlTable& table, const std::string& key, Shape* shape
   const auto rows = table.Need(key, table.FindRows(key, table.Width(key)));
   Eigen::MatrixXd value(static_cast<Eigen::Index>(rows.size()),
                         static_cast<Eigen::Index>(rows.front().size()));
-  for (Eigen::Index i = 0; i < value.rows(); ++i)
+  for (Eigen::Index i = 0; i < value.rows(); ++i) {
     value.row(i) = Eigen::Map<const Eigen::RowVectorXd>(rows[static_cast<std::size_t>(i)].data(),
                                                         value.cols());
+  }
   return value;
 }
 
@@ -141,8 +142,9 @@ void ReadQuantities(TomlTable& table, const std::string& prefix, bool sigma, Fit
     found->sigma = value;
   }
   int place = 0;
-  for (TomlTable& element : table.FindTables("per_T"))
+  for (TomlTable& element : table.FindTables("per_T")) {
     ReadQuantities(element, fmt::format("per_T[{}].", place++), sigma, report);
+  }
 }
 
 void ReadStatistics(TomlTable& table, FitReport& report) {
@@ -164,8 +166,9 @@ void ReadStatistics(TomlTable& table, FitReport& report) {
   table.Read("condition", report.condition, 1, kPositive);
   table.Read("studentised_limit", report.studentised_limit, 1, kNotNegative);
   for (const double line :
-       table.Need("outlier_lines", table.FindNumbers("outlier_lines", kPositive)))
+       table.Need("outlier_lines", table.FindNumbers("outlier_lines", kPositive))) {
     report.outlier_lines.push_back(static_cast<int>(line));
+  }
   report.correlations = table.Need("correlations", table.FindStrings("correlations"));
   report.remarks = table.Need("remarks", table.FindStrings("remarks"));
 }
@@ -180,9 +183,10 @@ void ReadCovariance(TomlTable& table, FitReport& report) {
   if (!rows) return;
   if (rows->size() != n) table.Refuse("rows", fmt::format("must be {} rows", n));
   report.cov.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
-  for (Eigen::Index i = 0; i < report.cov.rows(); ++i)
+  for (Eigen::Index i = 0; i < report.cov.rows(); ++i) {
     report.cov.row(i) = Eigen::Map<const Eigen::RowVectorXd>(
         (*rows)[static_cast<std::size_t>(i)].data(), report.cov.cols());
+  }
 }
 
 void ReadResiduals(TomlTable& table, FitReport& report) {
@@ -190,16 +194,18 @@ void ReadResiduals(TomlTable& table, FitReport& report) {
   const auto channels = table.Need("channel", table.FindStrings("channel"));
   const auto column = [&](std::string_view key) {
     auto numbers = table.Need(key, table.FindNumbers(key, kAnyNumber));
-    if (numbers.size() != lines.size())
+    if (numbers.size() != lines.size()) {
       table.Refuse(key, fmt::format("must be {} numbers, as many as lines", lines.size()));
+    }
     return numbers;
   };
   if (channels.size() != lines.size()) table.Refuse("channel", "must be as many as lines");
   const auto values = column("value"), studentised = column("studentised");
   const auto leverage = column("leverage");
-  for (std::size_t i = 0; i < lines.size(); ++i)
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     report.residuals.push_back(
         {static_cast<int>(lines[i]), channels[i], values[i], studentised[i], leverage[i]});
+  }
 }
 
 OrthogonalityCheck ReadCheck(TomlTable& table) {

@@ -21,13 +21,15 @@ std::string Quantity(const FitQuantity& quantity) {
     return quantity.sigma.size() > 0 ? quantity.sigma(i, j) : 0.0;
   };
   std::string text = fmt::format("  {}", quantity.name);
-  if (quantity.shape == FitQuantity::Shape::kNumber)
+  if (quantity.shape == FitQuantity::Shape::kNumber) {
     return text + fmt::format(" = {}\n", Number(quantity.value(0, 0), sigma(0, 0)));
+  }
   text += "\n";
   for (Eigen::Index i = 0; i < quantity.value.rows(); ++i) {
     text += "   ";
-    for (Eigen::Index j = 0; j < quantity.value.cols(); ++j)
+    for (Eigen::Index j = 0; j < quantity.value.cols(); ++j) {
       text += fmt::format("  {:<26}", Number(quantity.value(i, j), sigma(i, j)));
+    }
     while (text.back() == ' ') text.pop_back();
     text += "\n";
   }
@@ -45,18 +47,20 @@ std::string Scatters(const FitReport& report) {
     ++at->second.second;
   }
   std::string text;
-  for (const auto& [channel, sum] : sums)
+  for (const auto& [channel, sum] : sums) {
     text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", channel,
                         std::sqrt(sum.first / sum.second));
+  }
   return text;
 }
 
 std::string Fit(const FitReport& report) {
   if (report.dof == 0) return fmt::format("{} readings, none to spare\n", report.readings);
-  if (!report.sigma_given)
+  if (!report.sigma_given) {
     return fmt::format(
         "{} readings, {} to spare; the uncertainties rest on their residuals, rms {}\n",
         report.readings, report.dof, Scatters(report));
+  }
   const bool inside = report.chi_square >= report.chi_low && report.chi_square <= report.chi_high;
   return fmt::format("{} readings, {} to spare; chi-square {:.1f}, {} 95 % of {:.1f} to {:.1f}\n",
                      report.readings, report.dof, report.chi_square, inside ? "inside" : "OUTSIDE",
@@ -71,18 +75,20 @@ std::string Worst(const FitReport& report) {
     if (!levered || r.leverage > levered->leverage) levered = &r;
   }
   std::string text;
-  if (worst && report.dof > 0)
+  if (worst && report.dof > 0) {
     text += fmt::format(
         "worst residual: line {}, {}, {:.3g}, {:.1f} of its sigmas ({} the limit "
         "{:.1f})\n",
         worst->line, worst->channel, worst->value, std::abs(worst->studentised),
         std::abs(worst->studentised) > report.studentised_limit ? "BEYOND" : "within",
         report.studentised_limit);
-  if (levered && levered->leverage > 0.95)
+  }
+  if (levered && levered->leverage > 0.95) {
     text += fmt::format(
         "line {}, {}, cannot be checked: nothing else fixes what it fixes "
         "(leverage {:.2f})\n",
         levered->line, levered->channel, levered->leverage);
+  }
   return text;
 }
 
@@ -111,10 +117,12 @@ std::string CalibrationSummary(const CalibrationFile& file) {
             Errors("affine", file.check->affine);
   }
   constexpr std::size_t kShown = 6;
-  for (std::size_t i = 0; i < std::min(report.correlations.size(), kShown); ++i)
+  for (std::size_t i = 0; i < std::min(report.correlations.size(), kShown); ++i) {
     text += fmt::format("correlated: {}\n", report.correlations[i]);
-  if (report.correlations.size() > kShown)
+  }
+  if (report.correlations.size() > kShown) {
     text += fmt::format("correlated: {} more, in the file\n", report.correlations.size() - kShown);
+  }
   for (const std::string& remark : report.remarks) text += fmt::format("note: {}\n", remark);
   return text;
 }

@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/calibration/field_checks.h"
 #include "wellgyro/earth/grid.h"
 #include "wellgyro/survey/choose.h"
 
@@ -297,7 +298,12 @@ Check CheckAsked(const Job& job, std::span<const Station> chosen) {
 std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
   std::vector<Check> checks;
   for (const RunSummary& run : inputs.runs) {
+    if (job.tool && (job.tool->calibrated || job.tool->expires)) {
+      checks.push_back(CheckCalibrationDate(*job.tool, run.begin));
+      checks.back().run = run.run;
+    }
     CheckFixes(job, run, checks);
+    checks.insert(checks.end(), run.stop_checks.begin(), run.stop_checks.end());
     CheckPasses(job, inputs.passes, run.run, Pass::kOut, "in_out", checks);
     CheckPractice(inputs.passes, run.run, checks);
     CheckPasses(job, inputs.passes, run.run, Pass::kRepeat, "repeat", checks);

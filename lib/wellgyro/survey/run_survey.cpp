@@ -6,6 +6,7 @@
 
 #include "wellgyro/alignment/gyrocompass.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/calibration/field_checks.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/hole_attitude.h"
 
@@ -363,6 +364,23 @@ void RunSurvey::TakeWindow(const StillWindow& window) {
   group_.push_back(window);
 }
 
+void RunSurvey::CheckStop() {
+  FieldCheckSetup setup;
+  setup.reference.gravity = site_.gravity;
+  setup.reference.latitude = site_.latitude;
+  setup.gyro = job_.noise;
+  setup.errors = job_.errors;
+  for (const StillWindow& window : group_) {
+    if (!window.has_gz) continue;
+    for (Check& check : CheckWindow(window, setup)) {
+      // Gravity and the rate itself are checked with the fix.
+      if (check.code != "earth_rate_vertical") continue;
+      check.run = summary_.run;
+      summary_.stop_checks.push_back(std::move(check));
+    }
+  }
+}
+
 void RunSurvey::CloseGroup() {
   if (group_.empty()) return;
   // What lies before the end of the stop is decided; the fix needs it in the filter.
@@ -375,6 +393,7 @@ void RunSurvey::CloseGroup() {
     waiting_.erase(waiting_.begin());
     StepFilter(first);
   }
+  CheckStop();
   GyrocompassSetup setup;
   setup.gyro = job_.noise;
   setup.errors = job_.errors;

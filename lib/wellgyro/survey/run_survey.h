@@ -89,6 +89,7 @@ class RunSurvey {
   std::optional<Draft> RestDraft(const AlongHole& end) const;
   Draft NewDraft(double md) const;
   void TakeWindow(const StillWindow& window);
+  void CheckStop();
   void CloseGroup();
   void Release(bool all);
   void StepFilter(const Waiting& waiting);

@@ -26,6 +26,7 @@ struct RunSummary {
   double seconds_without_depth = 0;
   std::int64_t duplicates = 0;  ///< sent again and skipped
   std::vector<NorthFix> fixes;
+  std::vector<Check> stop_checks;  ///< of three gyro axes at rest, beyond what a fix says
 };
 
 /// Everything a survey is at one moment, for those who write files.
