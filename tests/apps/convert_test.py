@@ -41,6 +41,12 @@ class Convert(unittest.TestCase):
         self.assertFalse(os.path.exists(self.Path(target)))
         return done.stderr
 
+    def test_bare_names_are_of_the_folder_it_runs_in(self):
+        done = subprocess.run([PROGRAM, "convert", "in.csv", "out.las"], cwd=self.folder.name,
+                              capture_output=True, text=True, check=False, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("~A", self.Read("out.las").upper())
+
     def test_every_format_there_and_back(self):
         datum = ("--datum", "RT", "--datum-elevation-m", "25", "--convergence-deg", "1.25")
         for name in ("out.las", "out.p717", "out.xml", "out.dev", "out.txt", "out.csv"):

@@ -81,9 +81,11 @@ void SyncFolder(const std::filesystem::path& folder) {
 
 std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
                                 std::span<const OutputFile> files) {
+  // An empty folder is the one that the program runs in.
+  const std::filesystem::path place = folder.empty() ? "." : folder;
   std::vector<Partial> partials;
   for (const OutputFile& file : files) {
-    const std::filesystem::path target = folder / file.name;
+    const std::filesystem::path target = place / file.name;
     std::error_code error;
     std::filesystem::create_directories(target.parent_path(), error);
     if (error) return Refused(target.parent_path(), "make this folder", error.value());
@@ -93,7 +95,7 @@ std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
   for (Partial& partial : partials) {
     if (auto fault = partial.PutInPlace()) return fault;
   }
-  for (const OutputFile& file : files) SyncFolder((folder / file.name).parent_path());
+  for (const OutputFile& file : files) SyncFolder((place / file.name).parent_path());
   return std::nullopt;
 }
 
