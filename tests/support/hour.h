@@ -28,9 +28,10 @@ struct KeepingAdjuster : RunAdjuster {
 };
 
 struct Hour {
-  double inclination_deg = 60;
+  double inclination_deg = 60, build_deg = 0;  ///< grows by so much over the run
   double azimuth_deg = 40, swing_deg = 50;
-  double rpm = 3;  ///< with 25 deg in 23 s on it; zero: slides, roll wandering slowly
+  double rpm = 3;  ///< with a swing in 23 s on it; zero: slides, roll wandering slowly
+  double roll_amplitude_deg = 25;
   double latitude_deg = 60;
   int stops = 3;  ///< of 180 s each, spread over the run, the first at its begin
   double stop_seconds = 180;
@@ -77,6 +78,9 @@ inline Simulation SimulationOf(const Hour& hour, std::uint64_t seed) {
   s.well.end_md = way + 50;
   s.well.inclination.start = FromDegrees(hour.inclination_deg);
   s.well.inclination.terms.push_back({.amplitude = FromDegrees(1.8), .period = 360});
+  if (hour.build_deg != 0) {
+    s.well.inclination.terms.push_back({.rate = FromDegrees(hour.build_deg) / way});
+  }
   s.well.azimuth.start = FromDegrees(hour.azimuth_deg);
   if (hour.swing_deg > 0) {
     s.well.azimuth.terms.push_back({.amplitude = FromDegrees(hour.swing_deg), .period = way});
@@ -85,7 +89,8 @@ inline Simulation SimulationOf(const Hour& hour, std::uint64_t seed) {
   s.run.start_md = 5;
   s.run.roll_reference = RollReference::kHighSide;
   const int legs = std::max(1, hour.stops);
-  const RunRoll spin{hour.rpm * kTwoPi / 60, FromDegrees(25), hour.rpm > 0 ? 23.0 : 900.0, 0};
+  const RunRoll spin{hour.rpm * kTwoPi / 60, FromDegrees(hour.roll_amplitude_deg),
+                     hour.rpm > 0 ? 23.0 : 900.0, 0};
   if (hour.stops == 0) s.run.steps.push_back(RunStop{.seconds = 5});
   for (int leg = 0; leg < legs; ++leg) {
     if (hour.stops > 0) s.run.steps.push_back(RunStop{.seconds = hour.stop_seconds});

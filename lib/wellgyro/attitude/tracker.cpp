@@ -278,20 +278,22 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
   mean.accel = reference_ + accel;
 
   Gains gains = steady_;
+  double reach = options_.acceleration_doubt;
   if (memory_ < 2 * options_.level_seconds) {
     memory_ += s.dt;
     gains = Fitted(steady_, s.dt, memory_);
+    // The shorter the memory, the more one sample weighs.
+    reach *= std::max(0.3, memory_ / (2 * options_.level_seconds));
   }
-  if (s.stamp.accel_saturated) gains = {0, 0};
+  mean.trust = s.stamp.accel_saturated ? 0 : 1;
   if (memory_ > kFirstLevel) {
-    const double said = s.along.known ? s.along.acceleration : 0;
-    const double sigma = s.along.known ? s.along.sigma_acceleration : kUnknown;
-    const double doubt = options_.acceleration_doubt;
-    const double trust = 1 / (1 + (said * said + sigma * sigma) / (doubt * doubt));
-    gains.level *= trust;
-    gains.rate *= trust;
+    const double said = s.along.known ? s.along.acceleration / reach : 0;
+    // Its scatter averages out, which a late change does not.
+    const double sigma =
+        0.5 * (s.along.known ? s.along.sigma_acceleration : kUnknown) / options_.acceleration_doubt;
+    mean.trust /= 1 + said * said + sigma * sigma;
   }
-  const double off = accel - from_reference;
+  const double off = mean.trust * (accel - from_reference);
   const double raised = inclination_ + rise + gains.level * off;
   rate_bias_ += gains.rate * off * inverse_dt_;
   const double bounded = std::clamp(raised, 0.0, kPi);
@@ -383,8 +385,8 @@ void HighSideTracker::Integrate(const Seen& s, const Seen* next) {
   }
   const double roll = Roll(s, slopes);
   slopes_ = slopes;
-  part_ = {turn,        mean.accel * s.dt, vr,     vh,  roll, mean.cot * s.dt,
-           s.ux * s.dt, s.uy * s.dt,       s.spin, s.dt};
+  part_ = {turn,   mean.accel * s.dt, vr,  vh, roll, mean.cot * s.dt, s.ux * s.dt, s.uy * s.dt,
+           s.spin, mean.trust * s.dt, s.dt};
   sample_quality_ = s.quality;
   if (mean.vertical) {
     sample_quality_ |= Quality::kVertical;

@@ -30,7 +30,7 @@ struct TrackerOptions {
   /// Acceleration along the hole at which they do so at half weight: depth tells a changing one
   /// late and smeared, and what is left of it would pass for inclination [m/s^2]. Where depth does
   /// not tell it at all, they count for a tenth.
-  double acceleration_doubt = 0.01;
+  double acceleration_doubt = 0.005;
   double inclination_min = FromDegrees(0.5);  ///< below it, or above pi less it: vertical [rad]
   double sigma_toolface_max = 0.1;            ///< of one sample, beyond it: vertical [rad]
   double roll_limit = kPi / 2;                ///< per sample, beyond it: aliased [rad]
@@ -105,6 +105,7 @@ class WELLGYRO_EXPORT HighSideTracker {
     kUnitC,    // cos T dt
     kUnitS,    // sin T dt
     kSpin,     // rotation about z where has_gz, else zero
+    kTrust,    // how far the observer followed the accelerometers, times dt
     kSeconds,  // dt
     kSums
   };
@@ -126,7 +127,7 @@ class WELLGYRO_EXPORT HighSideTracker {
     double c1 = 0, c2 = 0, a1h = 0, a1r = 0;
   };
   struct Mean {  // inclination over a sample; csc and cot held below the threshold
-    double accel, csc, cot;
+    double accel, csc, cot, trust;
     bool vertical;
   };
   struct Gains {  // of the observer, on inclination and on its rate times the step
@@ -144,7 +145,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   };
 
   struct Block {  // means of angles and sums of turns over a block
-    double seconds, cot, csc, cs, sn, vh, vr, roll, spin;
+    double seconds, cot, csc, cs, sn, vh, vr, roll, spin, trust;
   };
 
   bool Follows(const SampleStamp& next, bool& breaks, std::int64_t& gap_ns,

@@ -25,6 +25,7 @@ HighSideTracker::Block HighSideTracker::Means(const Sums& sums) const {
   b.vh = sums[kLiftH];
   b.vr = sums[kLift];
   b.roll = sums[kRoll];
+  b.trust = sums[kTrust] / b.seconds;
   // w_z dt = T' + A' cos I + e_t, with A' from the gyros; of the Earth cos L cos A / sin I is left.
   b.spin =
       has_gz_ ? sums[kSpin] : b.roll - b.cot * b.vh + earth_cos_ * cos_azimuth_ * b.csc * b.seconds;
@@ -78,7 +79,7 @@ HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& sums, Observed& ob
   const Gains gains = Fitted(Steady(b.seconds), b.seconds, block_memory_);
   const Knot::SourceVector climb = errors.lift + b.seconds * observed.rate;
   const Knot::SourceVector middle = observed.level + 0.5 * climb;
-  const Knot::SourceVector off = level - middle;
+  const Knot::SourceVector off = b.trust * (level - middle);
   observed.level += climb + gains.level * off;
   observed.rate += gains.rate / b.seconds * off;
 

@@ -209,12 +209,7 @@ class LevelFunction : public Three {
     double predicted = (x[kBegin][kI] + x[kEnd][kI]) / 2 + span_.bow;
     rows.Slope(0, kBegin, kI, weight_ / 2);
     rows.Slope(0, kEnd, kI, weight_ / 2);
-    for (int axis = 0; axis < 3; ++axis) {
-      const int place = layout_.source[static_cast<std::size_t>(Knot::kAccelBiasX + axis)];
-      if (place < 0) continue;
-      predicted += span_.d_level[axis] * x[kCommon][place];
-      rows.Slope(0, kCommon, place, weight_ * span_.d_level[axis]);
-    }
+    predicted += AddErrors(x, span_.d_level, weight_, 0, &rows);
     rows.Value(0, weight_ * (predicted - span_.level));
     return true;
   }

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/adjust_result_internal.h"
 
 namespace wellgyro {
@@ -147,12 +148,14 @@ Within PathWithin(const AdjustProblem& p, std::size_t k) {
   const double* begin = p.node(k);
   const double* end = p.node(k + 1);
   Within path;
+  const double north = kEarthRate * std::cos(p.history->setup.site.latitude);
   double turned = 0, lifted = 0, seconds = 0;
   std::vector<double> share;
   for (std::size_t i = span.epoch_begin; i < span.epoch_end; ++i) {
     const Knot& knot = p.history->epochs[i].knot;
     const bool moves = !span.still && !span.broken;
-    turned += moves ? knot.turn : 0;
+    const double azimuth = begin[AdjustLayout::kAzimuth] + turned + knot.turn / 2;
+    turned += moves ? knot.turn + north * knot.cot * std::cos(azimuth) : 0;
     lifted += moves ? knot.lift : 0;
     seconds += knot.seconds;
     path.azimuth.push_back(turned);

@@ -47,6 +47,7 @@ struct Sums {
   double sine_time = 0, cosine_time = 0;  // of the inclination
   double acceleration = 0;                // the largest
   double gap_turn = 0, gap_lift = 0;      // variances [rad^2]
+  Knot::SourceVector d_path = Knot::SourceVector::Zero();
 };
 
 void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double begin, double grown,
@@ -77,6 +78,7 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   AddEarth(s, place, setup.site, sums->turned, grown, span);
   sums->turned += grown;
   sums->path += s.sampled * (span->lift + knot.lift / 2);
+  sums->d_path += s.sampled * (span->d_lift + knot.d_lift / 2);
   sums->level += s.sampled * knot.inclination_accel;
   sums->sampled += s.sampled;
   sums->white_turn += knot.white_turn;
@@ -108,10 +110,14 @@ void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, A
   span->levelled = !Has(last.quality, Quality::kSaturated) && !(last.gap_seconds > 0);
   span->d_inclination /= time;
   const double sine = sums.sine_time / time, cosine = sums.cosine_time / time;
-  span->d_level = {cosine * span->d_lift[Knot::kGyroBiasY] / (g * time),
-                   -cosine * span->d_lift[Knot::kGyroBiasX] / (g * time), sine / g};
   span->level = sums.level / time;
-  span->bow = span->still ? 0 : sums.path / time - span->lift / 2;
+  if (!span->still) {
+    span->bow = sums.path / time - span->lift / 2;
+    span->d_level = span->d_lift / 2 - sums.d_path / time;
+  }
+  span->d_level[Knot::kAccelBiasX] += cosine * span->d_lift[Knot::kGyroBiasY] / (g * time);
+  span->d_level[Knot::kAccelBiasY] -= cosine * span->d_lift[Knot::kGyroBiasX] / (g * time);
+  span->d_level[Knot::kAccelBiasZ] += sine / g;
 
   double var = Square(setup.errors.accel_noise / g) / time + kFloor;
   if (!span->still) {

@@ -15,7 +15,7 @@ namespace wellgyro {
 /// its begin, and errors e,
 ///   azimuth grows by turn + Re[e^{iA} earth_turn] + up - (d_turn + Re[e^{iA} by_inclination]
 ///   d_inclination) e, inclination by lift + Im[e^{iA} earth_lift] + carried - d_lift e;
-/// the accelerometers say (I + I_end)/2 + bow + d_level e_accel for its mean.
+/// the accelerometers say (I + I_end)/2 + bow + d_level e for its mean.
 struct AdjustSpan {
   std::size_t epoch_begin = 0, epoch_end = 0;  ///< [begin, end) of FilterHistory::epochs
   double seconds = 0;                          ///< gaps included [s]
@@ -33,7 +33,7 @@ struct AdjustSpan {
   Knot::SourceVector d_turn = Knot::SourceVector::Zero();
   Knot::SourceVector d_lift = Knot::SourceVector::Zero();
   Eigen::Vector3d d_inclination = Eigen::Vector3d::Zero();  ///< of the tracker, by accelerometers
-  Eigen::Vector3d d_level = Eigen::Vector3d::Zero();
+  Knot::SourceVector d_level = Knot::SourceVector::Zero();
   double level = 0;  ///< mean of the accelerometers' inclination [rad]
   double bow = 0;    ///< mean of the path's inclination less its chord's [rad]
   double var_turn = 0, var_lift = 0, var_level = 0;  ///< [rad^2]

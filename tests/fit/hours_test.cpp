@@ -1,0 +1,242 @@
+// One-hour runs as the estimators leave them, against the truth at the same instants. Many seeds
+// where WELLGYRO_LONG, few elsewhere.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/fit/run_adjustment.h"
+#include "wellgyro/math/random.h"
+
+#include "support/claims.h"
+#include "support/hour.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::Claims;
+using testing::Flown;
+using testing::Fly;
+using testing::Hour;
+using testing::JobOf;
+using testing::SimulationOf;
+
+std::uint64_t Seeds(std::uint64_t few, std::uint64_t many) { return WELLGYRO_LONG ? many : few; }
+
+// Told the azimuth at the begin, `sigma_deg` off by the seed's draw.
+Job ExternalJob(const Hour& hour, std::uint64_t seed, double sigma_deg) {
+  Job job = JobOf(hour);
+  Random random(1000 + seed);
+  job.alignment.method = AlignmentSpec::Method::kExternal;
+  job.alignment.sigma_azimuth = FromDegrees(sigma_deg);
+  job.alignment.azimuth = Truth(SimulationOf(hour, seed)).At(0).azimuth;
+  if (seed != 0) job.alignment.azimuth += job.alignment.sigma_azimuth * random.Normal();
+  return job;
+}
+
+double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size_t i) {
+  return WrapPi(run.attitude[i].azimuth - flown.truth[i].azimuth);
+}
+
+double WorstAzimuth(const Flown& flown, const SmoothedRun& run) {
+  double worst = 0;
+  for (std::size_t i = 0; i < flown.truth.size(); ++i) {
+    worst = std::max(worst, std::abs(AzimuthError(flown, run, i)));
+  }
+  return worst;
+}
+
+// Inclination and toolface from the accelerometers of a tool that starts, rolls and travels.
+TEST(Hours, OfAPerfectToolAreTheTruth) {
+  for (const double hz : {100., 10.}) {
+    for (const double inclination : {3., 10., 30., 60., 90., 110.}) {
+      Hour hour = testing::Tactical();
+      hour.inclination_deg = inclination;
+      hour.imu_hz = hz;
+      const Flown flown = Fly(hour, ExternalJob(hour, 0, 1e-3), 0);
+      const double smoothed = ToDegrees(WorstAzimuth(flown, Smooth(flown.history)));
+      const double adjusted = ToDegrees(WorstAzimuth(flown, AdjustRun(flown.history, 0).run));
+      std::printf("%3.0f Hz, I %3.0f: worst azimuth %.1e deg smoothed, %.1e adjusted\n", hz,
+                  inclination, smoothed, adjusted);
+      const double limit = inclination < 10 ? 2e-3 : 2e-4;
+      EXPECT_LT(smoothed, limit) << hz << " Hz, I " << inclination;
+      EXPECT_LT(adjusted, limit) << hz << " Hz, I " << inclination;
+      EXPECT_GT(smoothed, 0);
+    }
+  }
+}
+
+struct TacticalCase {
+  double inclination_deg, rpm;
+  double worst_deg;  // what a prototype of the same equations reached, rms of the worst error
+};
+
+class TacticalHours : public ::testing::TestWithParam<TacticalCase> {};
+
+TEST_P(TacticalHours, EndAsSureAsTheySay) {
+  const TacticalCase& c = GetParam();
+  const std::uint64_t seeds = Seeds(6, 400);
+  Claims smoothed, adjusted;
+  double worst_smoothed = 0, worst_adjusted = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    Hour hour = testing::Tactical();
+    hour.inclination_deg = c.inclination_deg;
+    hour.rpm = c.rpm;
+    const Flown flown = Fly(hour, ExternalJob(hour, seed, 1e-3), seed);
+    const std::size_t last = flown.truth.size() - 1;
+    const auto add = [&](const SmoothedRun& run, Claims* claims, double* worst) {
+      claims->Add(AzimuthError(flown, run, last), run.attitude[last].cov_attitude(1, 1));
+      *worst += std::pow(ToDegrees(WorstAzimuth(flown, run)), 2) / static_cast<double>(seeds);
+    };
+    add(Smooth(flown.history), &smoothed, &worst_smoothed);
+    add(AdjustRun(flown.history, 0).run, &adjusted, &worst_adjusted);
+  }
+  const std::string name = "I " + std::to_string(static_cast<int>(c.inclination_deg)) + ", " +
+                           std::to_string(static_cast<int>(c.rpm)) + " rpm, ";
+  smoothed.ExpectTrue(name + "smoothed");
+  adjusted.ExpectTrue(name + "adjusted");
+  std::printf("%srms of the worst %.4f smoothed, %.4f adjusted, prototype %.4f deg\n", name.c_str(),
+              std::sqrt(worst_smoothed), std::sqrt(worst_adjusted), c.worst_deg);
+  // An rms of n draws is itself uncertain by 1/sqrt(2 n).
+  const double few = WELLGYRO_LONG ? 1 : 1 + 3 / std::sqrt(2.0 * static_cast<double>(seeds));
+  EXPECT_LT(std::sqrt(worst_smoothed), 1.25 * few * c.worst_deg);
+  EXPECT_LT(std::sqrt(worst_adjusted), 1.25 * few * c.worst_deg);
+  if (WELLGYRO_LONG) {
+    EXPECT_NEAR(smoothed.rms_deg() / smoothed.sigma_deg(), 1, 0.1);
+    EXPECT_NEAR(adjusted.rms_deg() / adjusted.sigma_deg(), 1, 0.1);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Inclinations, TacticalHours,
+                         ::testing::Values(TacticalCase{3, 3, 0.283}, TacticalCase{10, 3, 0.080},
+                                           TacticalCase{30, 3, 0.030}, TacticalCase{60, 3, 0.0176},
+                                           TacticalCase{90, 3, 0.0144},
+                                           TacticalCase{110, 3, 0.0154}, TacticalCase{3, 0, 1.20},
+                                           TacticalCase{10, 0, 0.42}, TacticalCase{30, 0, 0.16},
+                                           TacticalCase{60, 0, 0.095}, TacticalCase{90, 0, 0.084},
+                                           TacticalCase{110, 0, 0.090}));
+
+// Strong drift, three stops, no azimuth from outside, one position at each stop.
+struct UntoldCase {
+  double swing_deg, rpm;
+  double limit_deg;  // of the predicted sigma
+};
+
+class UntoldHours : public ::testing::TestWithParam<UntoldCase> {};
+
+TEST_P(UntoldHours, FindNorth) {
+  const UntoldCase& c = GetParam();
+  Claims end;
+  for (std::uint64_t seed = 1; seed <= Seeds(6, 200); ++seed) {
+    Hour hour = testing::StrongDrift();
+    hour.swing_deg = c.swing_deg;
+    hour.rpm = c.rpm;
+    const Flown flown = Fly(hour, JobOf(hour), seed);
+    const Adjustment adjusted = AdjustRun(flown.history, 0);
+    ASSERT_TRUE(adjusted.converged) << seed;
+    const AttitudeSample& last = adjusted.run.attitude.back();
+    ASSERT_TRUE(last.azimuth_known) << seed;
+    end.Add(AzimuthError(flown, adjusted.run, flown.truth.size() - 1), last.cov_attitude(1, 1));
+  }
+  end.ExpectTrue("no azimuth told, swing " + std::to_string(static_cast<int>(c.swing_deg)) + ", " +
+                 std::to_string(static_cast<int>(c.rpm)) + " rpm");
+  EXPECT_LT(end.sigma_deg(), c.limit_deg);
+}
+
+INSTANTIATE_TEST_SUITE_P(Runs, UntoldHours,
+                         ::testing::Values(UntoldCase{50, 3, 0.22}, UntoldCase{50, 0, 0.33},
+                                           UntoldCase{2, 3, 1.5}, UntoldCase{2, 0, 3}));
+
+// Errors as large as the industry's error models take them for a coarse tool.
+TEST(Hours, OfACoarseToolEndAsSureAsTheySay) {
+  for (const double rpm : {0., 0.3}) {
+    for (const double inclination : {30., 60., 90.}) {
+      Claims smoothed, adjusted;
+      for (std::uint64_t seed = 1; seed <= Seeds(6, 100); ++seed) {
+        Hour hour = testing::Tactical();
+        hour.noise.angle_random_walk = 0.25 * units::kDegPerSqrtHour;
+        hour.errors.gyro_bias_sigma = 0.5 * units::kDegPerHour;
+        hour.inclination_deg = inclination;
+        hour.rpm = rpm;
+        const Flown flown = Fly(hour, ExternalJob(hour, seed, 0.1), seed);
+        const std::size_t last = flown.truth.size() - 1;
+        const SmoothedRun a = Smooth(flown.history), b = AdjustRun(flown.history, 0).run;
+        smoothed.Add(AzimuthError(flown, a, last), a.attitude[last].cov_attitude(1, 1));
+        adjusted.Add(AzimuthError(flown, b, last), b.attitude[last].cov_attitude(1, 1));
+      }
+      const std::string name = "coarse, I " + std::to_string(static_cast<int>(inclination)) +
+                               (rpm > 0 ? ", 0.3 rpm, " : ", sliding, ");
+      smoothed.ExpectTrue(name + "smoothed");
+      adjusted.ExpectTrue(name + "adjusted");
+    }
+  }
+}
+
+// From 12 to 80 deg of inclination while the tool turns one and a half times; both ends known.
+Hour Build(int stops) {
+  Hour hour = testing::StrongDrift();
+  hour.inclination_deg = 12;
+  hour.build_deg = 68;
+  hour.rpm = 0.025;
+  hour.roll_amplitude_deg = 0;
+  hour.stops = stops;
+  return hour;
+}
+
+// The run with its end told, exactly.
+FilterHistory Closed(const Flown& flown) {
+  FilterHistory history = flown.history;
+  NorthFix fix;
+  fix.begin = fix.end = history.epochs.back().knot.time;
+  fix.external = true;
+  fix.azimuth = flown.truth.back().azimuth;
+  fix.cov_attitude(1, 1) = std::pow(FromDegrees(1e-3), 2);
+  history.fixes.push_back({.fix = fix,
+                           .azimuth = fix.azimuth,
+                           .about = fix.azimuth,
+                           .epoch_begin = history.epochs.size() - 1,
+                           .epoch_end = history.epochs.size()});
+  return history;
+}
+
+TEST(Hours, ClosedBetweenTwoNorthsAreFarBetterThanWithTheDriftSpreadEvenly) {
+  double spread = 0, closed = 0;
+  Claims claims;
+  const std::uint64_t seeds = Seeds(6, 100);
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const Hour hour = Build(3);
+    Job job = ExternalJob(hour, seed, 1e-3);
+    const Flown stopped = Fly(hour, job, seed);
+    const Adjustment adjusted = AdjustRun(Closed(stopped), 0);
+    ASSERT_TRUE(adjusted.converged) << seed;
+    job.alignment.use_fixes = false;
+    const Flown reckoned = Fly(hour, job, seed);
+    const SmoothedRun run = Smooth(reckoned.history);
+    const std::size_t n = run.attitude.size();
+    const double closure = AzimuthError(reckoned, run, n - 1);
+    double sum_spread = 0, sum_closed = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double share = static_cast<double>(i) / static_cast<double>(n - 1);
+      sum_spread += std::pow(AzimuthError(reckoned, run, i) - share * closure, 2);
+      sum_closed += std::pow(AzimuthError(stopped, adjusted.run, i), 2);
+    }
+    spread += sum_spread / static_cast<double>(n * seeds);
+    closed += sum_closed / static_cast<double>(n * seeds);
+    const std::size_t middle = n / 2;
+    claims.Add(AzimuthError(stopped, adjusted.run, middle),
+               adjusted.run.attitude[middle].cov_attitude(1, 1));
+  }
+  std::printf("between two norths: rms %.4f deg adjusted with stops, %.4f with linear drift\n",
+              ToDegrees(std::sqrt(closed)), ToDegrees(std::sqrt(spread)));
+  claims.ExpectTrue("between two norths, half-way");
+  EXPECT_LT(ToDegrees(std::sqrt(closed)), WELLGYRO_LONG ? 0.015 : 0.02);
+  EXPECT_GT(std::sqrt(spread), 5 * std::sqrt(closed));
+}
+
+}  // namespace
+}  // namespace wellgyro
