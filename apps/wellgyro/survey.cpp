@@ -147,10 +147,11 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--from", options->sources,
-                   "LCM log, - for standard input, or an LCM URL as udpm://239.255.76.67:7667; "
-                   "by default LCM_DEFAULT_URL, or LCM's own default. Or tables of samples, of "
-                   "averages at rest and of depth, each with its own --from")
+      ->add_option(
+          "--from", options->sources,
+          "LCM log, - for standard input, or an LCM URL as udpm://239.255.76.67:7667; "
+          "by default LCM_DEFAULT_URL, or LCM's own default. Or tables of samples, of "
+          "averages at rest and of depth, or P7/17 with G7 records, each with its own --from")
       ->allow_extra_args(false)
       ->type_name("LOG|URL|CSV");
   command->add_option("--out", options->out, "Folder for the survey files")

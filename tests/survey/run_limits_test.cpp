@@ -166,6 +166,34 @@ TEST(RunLimits, AnExternalAzimuthThatTheStopsContradictIsToldAtEveryStation) {
   }
 }
 
+TEST(RunLimits, AveragesThatCannotBeAreLeftOutAndTold) {
+  StillWindow good;
+  good.utc_begin = UtcTime{1'700'000'000'000'000'000};
+  good.utc_end = good.utc_begin + Duration::Seconds(60);
+  good.f_T = {4.9, 0, -8.5};
+  good.w_IT_T = {4e-5, 3e-5, 0};
+  good.sigma_w_IT_T.setConstant(1e-7);
+  good.md = 100;
+  const auto spoil = [&](auto change) {
+    StillWindow window = good;
+    change(window);
+    CollectingSink sink;
+    Surveyor surveyor(SlantJob(), sink);
+    surveyor.Push(window);
+    surveyor.Finish();
+    return sink.faults.size();
+  };
+  const double none = std::nan("");
+  EXPECT_EQ(spoil([](StillWindow&) {}), 0u);
+  EXPECT_EQ(spoil([](StillWindow& w) { w.f_T.setZero(); }), 1u);
+  EXPECT_EQ(spoil([&](StillWindow& w) { w.f_T.y() = none; }), 1u);
+  EXPECT_EQ(spoil([&](StillWindow& w) { w.w_IT_T.x() = none; }), 1u);
+  EXPECT_EQ(spoil([](StillWindow& w) { w.w_IT_T.x() = 1e300; }), 1u);
+  EXPECT_EQ(spoil([](StillWindow& w) { w.sigma_w_IT_T.x() = -1; }), 1u);
+  EXPECT_EQ(spoil([](StillWindow& w) { w.md = 1e300; }), 1u);
+  EXPECT_EQ(spoil([](StillWindow& w) { w.utc_end = w.utc_begin; }), 1u);
+}
+
 TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
   Simulator simulator(Slant());
   CollectingSink sink;

@@ -154,7 +154,10 @@ void Layout::Take(std::string_view heading, int field) {
     places[i] = {field, known->factor};
     return;
   }
-  complain(fmt::format("column \"{}\" is not known", heading));
+  std::string shown(heading.substr(0, 40));
+  std::ranges::replace_if(
+      shown, [](char c) { return c < 0x20 || c > 0x7e; }, '?');
+  complain(fmt::format("column \"{}\" is not known", shown));
 }
 
 std::optional<SensorTable> Layout::Kind() const {

@@ -13,6 +13,8 @@
 #include <fmt/core.h>
 
 #include "wellgyro/alignment/still_detector.h"
+#include "wellgyro/io/exchange.h"
+#include "wellgyro/io/gyro_raw.h"
 #include "wellgyro/io/sensor_csv.h"
 #include "wellgyro/io/sha256.h"
 
@@ -102,6 +104,10 @@ class Joiner {
     if (samples_.empty() || !stills_.empty()) {
       if (const auto fault = PushDepth()) return *fault;
     }
+    for (const StillWindow& window : gyro_raw_) {
+      ++report_.windows;
+      surveyor_.Push(window);
+    }
     for (const auto& path : stills_) {
       const auto fault = ForEach<StillWindow>(path, [&](const StillWindow& window) {
         ++report_.windows;
@@ -116,7 +122,24 @@ class Joiner {
   }
 
  private:
+  std::optional<Fault> TakeGyroRaw(const std::filesystem::path& path) {
+    const Result<SurveyTable> table = ReadSurvey(path);
+    if (!table) return table.fault();
+    Result<std::vector<StillWindow>> windows = WindowsOfGyroRaw(*table, job_);
+    if (!windows) {
+      Fault fault = windows.fault();
+      fault.source = path.string();
+      return fault;
+    }
+    const Result<InputFile> noted = Noted(path);
+    if (!noted) return noted.fault();
+    report_.files.push_back(*noted);
+    gyro_raw_.insert(gyro_raw_.end(), windows->begin(), windows->end());
+    return std::nullopt;
+  }
+
   std::optional<Fault> Take(const std::filesystem::path& path) {
+    if (IsIogpFile(path)) return TakeGyroRaw(path);
     const Result<SensorCsv> table = SensorCsv::Open(path);
     if (!table) return table.fault();
     const Result<InputFile> noted = Noted(path);
@@ -261,6 +284,7 @@ class Joiner {
   SensorReport report_;
   std::filesystem::path samples_, depth_;
   std::vector<std::filesystem::path> stills_;
+  std::vector<StillWindow> gyro_raw_;
   bool has_utc_ = false, has_tool_ = false;
 };
 
@@ -273,6 +297,7 @@ Result<SensorReport> PushSensorFiles(std::span<const std::filesystem::path> file
 }
 
 bool IsSensorTable(const std::filesystem::path& path) {
+  if (IsIogpFile(path)) return true;
   const Result<std::string> head = ReadTextHead(path, 65536);
   if (!head || head->find('\0') != std::string::npos) return false;
   for (std::string_view rest = *head; !rest.empty();) {

@@ -24,8 +24,9 @@ struct SensorReport {
   std::int64_t samples = 0, windows = 0, marks = 0;
 };
 
-/// The other door beside a log: tables of samples, of averages at rest and of depth (sensor_csv.h)
-/// into a Surveyor, in the order of time; does not Finish it.
+/// The other door beside a log: tables of samples, of averages at rest and of depth (sensor_csv.h),
+/// and the G7 records of IOGP P7/17 files (gyro_raw.h), into a Surveyor, in the order of time; does
+/// not Finish it.
 ///
 /// Samples of a memory or drop tool, which have the tool's time alone, get UTC from its stops
 /// against those of the depth or tally table (stop_match.h). Where they have both, stops more than
@@ -35,7 +36,7 @@ WELLGYRO_EXPORT Result<SensorReport> PushSensorFiles(
     std::span<const std::filesystem::path> files, const Job& job, Surveyor& surveyor, Sink& faults,
     const std::function<void(double)>& progress = {});
 
-/// True where the file's first lines are those of such a table.
+/// True where the file's first lines are those of such a table or of an IOGP file.
 WELLGYRO_EXPORT bool IsSensorTable(const std::filesystem::path& path);
 
 }  // namespace wellgyro

@@ -42,6 +42,21 @@ bool HasDirection(const AttitudeSample& attitude) {
   return attitude.azimuth_known || Has(attitude.quality, Quality::kVertical);
 }
 
+/// Values that a tool at rest can send; what else comes, is damage.
+bool CanBe(const StillWindow& window) {
+  constexpr double kRate = 1;     // [rad/s]
+  constexpr double kDepth = 1e5;  // [m]
+  constexpr double kSeconds = 1e5;
+  const double f = window.f_T.norm();
+  const double seconds = window.seconds();
+  const bool sigmas = window.sigma_w_IT_T.allFinite() && window.sigma_f_T.allFinite() &&
+                      window.sigma_w_IT_T.minCoeff() >= 0 && window.sigma_f_T.minCoeff() >= 0 &&
+                      window.sigma_w_IT_T.maxCoeff() < kRate && window.sigma_f_T.maxCoeff() < 100;
+  const bool depth = !window.md || std::abs(*window.md) < kDepth;
+  return f > 5 && f < 20 && window.w_IT_T.norm() < kRate && sigmas && depth && seconds > 0 &&
+         seconds < kSeconds;
+}
+
 /// The north fix that contradicts the job's external azimuth most, where one does.
 const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
   if (job.alignment.method != AlignmentSpec::Method::kExternal) return nullptr;
@@ -104,6 +119,14 @@ void ToolSurvey::Push(const Operation& operation) {
 }
 
 void ToolSurvey::Push(const StillWindow& window) {
+  if (!CanBe(window)) {
+    sink_.OnFault(
+        Fault{FaultCode::kRange,
+              fmt::format("the averages at rest of {} s cannot be those of a tool at rest "
+                          "and were left out",
+                          window.utc_begin.ns / 1'000'000'000)});
+    return;
+  }
   RunState* found = RunFor(book_.RunAt(window.utc_begin, window.run));
   if (found == nullptr) return;
   RunState& run = *found;
