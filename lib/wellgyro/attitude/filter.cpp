@@ -62,8 +62,17 @@ ToolTime BeginOf(const Knot& knot) { return knot.time - Duration::Seconds(knot.s
 // A still knot that lies in the fix's window: what the fix rests on.
 bool Serves(const Knot& knot, const NorthFix& fix) {
   return knot.still && knot.seconds > 0 && knot.gap_seconds <= 0 &&
-         !Has(knot.quality, Quality::kVertical) && !knot.vertical &&
+         !Has(knot.quality, Quality::kVertical) && !knot.vertical && !knot.axial &&
          fix.begin <= BeginOf(knot) + kClockGrain && knot.time <= fix.end + kClockGrain;
+}
+
+// A fix as the filter holds an axial knot: by the sum of azimuth and toolface, which is regular.
+void TakeSum(const Knot& knot, NorthFix* fix) {
+  const double shift = WrapPi(fix->toolface - knot.toolface);
+  const Eigen::Matrix3d& cov = fix->cov_attitude;
+  fix->cov_attitude(1, 1) = cov(1, 1) + cov(2, 2) + 2 * cov(1, 2);
+  fix->azimuth += shift;
+  if (fix->mirror_azimuth) *fix->mirror_azimuth += shift;
 }
 
 double ChiSquare(double azimuth, double predicted, double variance) {
@@ -88,6 +97,7 @@ struct AzimuthFilter::Impl {
   void Observe(const Knot& knot);
   void Station(std::size_t i);
   void Remember(std::size_t epochs);
+  void WorkStretchAgain();
   void Rewind(std::size_t epochs);
   void Locate(FilterFix* f) const;
   // A plain fix enters when its epoch is worked, one at the start before all of them.
@@ -237,6 +247,7 @@ void AzimuthFilter::Impl::Locate(FilterFix* f) const {
   }
   f->epoch_begin = last;
   f->epoch_end = last + 1;
+  if (!fix.external && epochs[last].knot.axial) TakeSum(epochs[last].knot, &f->fix);
 }
 
 void AzimuthFilter::Impl::ChooseBranch(FilterFix* f, double azimuth, double variance) const {
@@ -261,6 +272,20 @@ void AzimuthFilter::Impl::ChooseBranch(FilterFix* f, double azimuth, double vari
   }
 }
 
+// The axial knots before the last one, with what is known of their noise by now; and the last.
+void AzimuthFilter::Impl::WorkStretchAgain() {
+  auto& epochs = history.epochs;
+  const std::size_t last = epochs.size() - 1;
+  const auto knots = static_cast<std::size_t>(epochs[last].knot.axial_noise_knots);
+  const std::size_t begin = last - std::min(last, knots);
+  for (std::size_t i = begin; i < last; ++i) {
+    epochs[i].knot.toolface_noise_turn *= epochs[last].knot.axial_noise_share;
+  }
+  epochs[last].knot.axial_noise_share = 1;
+  Rewind(begin);
+  for (std::size_t i = begin; i < epochs.size(); ++i) Work(i);
+}
+
 AzimuthFilter::AzimuthFilter(const FilterSetup& setup) {
   Validate(setup);
   impl_ = std::make_unique<Impl>(setup);
@@ -281,7 +306,11 @@ const AttitudeSample& AzimuthFilter::Step(const Knot& knot) {
   }
   epochs.emplace_back();
   epochs.back().knot = knot;
-  impl_->Work(epochs.size() - 1);
+  if (knot.axial_noise_share < 1) {
+    impl_->WorkStretchAgain();
+  } else {
+    impl_->Work(epochs.size() - 1);
+  }
   return impl_->attitude;
 }
 

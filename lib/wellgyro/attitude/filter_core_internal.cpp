@@ -127,6 +127,7 @@ AzimuthGrowth GrowthOver(const Knot& knot, const FilterPlace& before, const Site
     result.growth = knot.turn + knot.cot * (c * (north + per_east * s) - s * per_north * c) +
                     seconds * (up + per_east * s * tan_latitude);
   }
+  if (knot.axial) return result;
   const double slope = -knot.cot * north * s;  // against the azimuth at the middle
   result.by_azimuth = slope / (1 - slope / 2);
   result.by_latitude = -knot.cot * c * up + seconds * north;
@@ -134,6 +135,8 @@ AzimuthGrowth GrowthOver(const Knot& knot, const FilterPlace& before, const Site
   result.by_inclination = -north * c * (1 + cot * cot) * seconds;
   return result;
 }
+
+double StillGrowth(const Knot& knot) { return knot.axial ? -knot.roll : 0; }
 
 FilterCore::FilterCore(const FilterSetup& setup)
     : setup_(setup), layout_(LayoutOf(setup)), drift_(DriftOf(setup)) {
@@ -147,7 +150,7 @@ FilterCore::FilterCore(const FilterSetup& setup)
 double FilterCore::WhiteVariance(const Knot& knot) const {
   double variance =
       Square(setup_.gyro.angle_random_walk) * knot.white_turn + knot.toolface_noise_turn;
-  if (knot.gap_seconds > 0) {
+  if (knot.gap_seconds > 0 && !knot.axial) {
     const double rate =
         knot.along.known ? setup_.gap_dogleg * std::abs(MeanSpeed(knot, place_)) : setup_.gap_rate;
     const double sine = std::max(std::sin(MeanInclination(knot, place_)), 1e-6);
@@ -162,6 +165,7 @@ FilterTransition FilterCore::TransitionOver(const Knot& knot, double azimuth_beg
   if (drift_.correlation_time) t.decay = std::exp(-knot.seconds / *drift_.correlation_time);
   t.row = FilterVector::Zero(layout_.size);
   t.row[0] = 1;
+  if (knot.still) t.offset = StillGrowth(knot);
   if (knot.still || !(knot.seconds > 0)) return t;
 
   const AzimuthGrowth g = GrowthOver(knot, place_, setup_.site, azimuth_begin, false);
@@ -305,6 +309,11 @@ AttitudeRows RowsOf(const FilterLayout& layout, const Knot& knot, double gravity
   AttitudeRows rows = AttitudeRows::Zero(3, layout.size);
   Load(layout, knot.d_inclination, -1, rows.row(0));
   rows(1, 0) = 1;
+  if (knot.axial) {
+    Load(layout, knot.d_toolface, 1, rows.row(1));
+    Load(layout, knot.d_toolface, -1, rows.row(2));
+    return rows;
+  }
   const double weight = gravity * std::max(std::sin(knot.inclination), 1e-6);
   Knot::SourceVector toolface = Knot::SourceVector::Zero();
   toolface[Knot::kToolfaceOffset] = 1;
@@ -322,16 +331,31 @@ AttitudeSample AttitudeOf(const Knot& knot, const Eigen::Vector3d& estimate,
   a.inclination = knot.inclination + estimate[0];
   a.azimuth = WrapTwoPi(estimate[1]);
   a.toolface = WrapPi(knot.toolface + estimate[2]);
-  a.azimuth_known = cov(1, 1) < kFlatAzimuthVariance;
+  // Of the sum, where that is held: near vertical the azimuth itself comes and goes with the noise.
+  const double held = knot.axial ? cov(1, 1) + cov(2, 2) + 2 * cov(1, 2) : cov(1, 1);
+  a.azimuth_known = held < kFlatAzimuthVariance;
   a.quality = knot.quality;
   if (knot.vertical) a.quality |= Quality::kVertical;
+  if (a.inclination < 0) {
+    a.inclination = -a.inclination;
+    a.azimuth = WrapTwoPi(a.azimuth + kPi);
+    a.toolface = WrapPi(a.toolface - kPi);
+  }
 
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   const double noise = Square(knot.sigma_inclination);
   a.cov_attitude = cov;
   a.cov_attitude(0, 0) += noise;
   a.cov_attitude(1, 1) += Square(gyro.quantization) / sine2;
-  a.cov_attitude(2, 2) += noise / sine2;
+  if (knot.axial) {
+    const double beyond = knot.var_azimuth_beyond;
+    a.cov_attitude(1, 1) = std::max(cov(1, 1) + beyond, cov(1, 1) / 16);
+    a.cov_attitude(2, 2) += knot.var_toolface;
+    a.cov_attitude(1, 2) -= std::clamp(beyond, 0.0, knot.var_toolface);
+    a.cov_attitude(2, 1) = a.cov_attitude(1, 2);
+  } else {
+    a.cov_attitude(2, 2) += std::max(noise / sine2, knot.var_toolface);
+  }
   for (const int i : {1, 2}) {
     const double over = a.cov_attitude(i, i) / kFlatAzimuthVariance;
     if (!(over > 1)) continue;
@@ -353,11 +377,12 @@ StationState StationOf(std::size_t epoch, const Knot& knot, const AttitudeSample
   station.angles = rows.topRows<2>();
   // An unknown azimuth is flat round the circle, however wide its variance in the algebra.
   if (cov(0, 0) > kFlatAzimuthVariance) {
-    station.angles.row(1) *= std::sqrt(kFlatAzimuthVariance / cov(0, 0));
+    station.angles(1, 0) *= std::sqrt(kFlatAzimuthVariance / cov(0, 0));
   }
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   station.cov_white(0, 0) = Square(knot.sigma_inclination);
   station.cov_white(1, 1) = std::min(Square(gyro.quantization) / sine2, kFlatAzimuthVariance);
+  if (knot.axial) station.cov_white(1, 1) += std::max(0.0, knot.var_azimuth_beyond);
   return station;
 }
 

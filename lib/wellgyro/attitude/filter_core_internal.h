@@ -98,6 +98,10 @@ struct AzimuthGrowth {
   double by_inclination = 0;  ///< of an error of the inclination in the Earth's share alone
 };
 
+/// Growth of the azimuth state over a knot at rest: none, unless the toolface it is held against
+/// was read anew.
+double StillGrowth(const Knot& knot);
+
 /// Mid-point rule with the mean of cos A over the turn, so that a long turn counts rightly; good to
 /// the product of the changes of cot I and A over the knot. `azimuth` holds at the knot's begin, or
 /// with `backwards` at its end.

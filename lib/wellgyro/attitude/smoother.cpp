@@ -67,7 +67,9 @@ Path FirstPath(const FilterHistory& history) {
     }
     leads = leads || e.azimuth_known || e.fix >= 0;
     path[i + 1] = next;
-    if (!e.knot.still && !e.knot.vertical && e.knot.seconds > 0) {
+    if (e.knot.still) {
+      next -= StillGrowth(e.knot);
+    } else if (!e.knot.vertical && e.knot.seconds > 0) {
       next -= GrowthOver(e.knot, PlaceBefore(history, i), history.setup.site, next, true).growth;
     }
   }
@@ -161,6 +163,16 @@ struct Adjoint {
   }
 };
 
+// What the errors of S and of the toolface had in common when the knot was made, they no longer
+// have once more is known of S.
+AttitudeSample SmoothAttitude(const Knot& knot, const Eigen::Vector3d& estimate,
+                              const Eigen::Matrix3d& cov, const NoiseCoefficients& gyro) {
+  if (!(knot.var_azimuth_beyond < 0)) return AttitudeOf(knot, estimate, cov, gyro);
+  Knot apart = knot;
+  apart.var_azimuth_beyond = 0;
+  return AttitudeOf(apart, estimate, cov, gyro);
+}
+
 StationState SmoothStation(const FilterHistory& history, std::size_t i, const Record& r,
                            const StationRecord& s, const AttitudeSample& attitude,
                            const Adjoint& adjoint) {
@@ -182,7 +194,7 @@ void Backward(const FilterHistory& history, const ForwardPass& pass, const Filte
     const Record& r = pass.records[i];
     const Eigen::Vector3d estimate = r.estimate - r.rows_cov * adjoint.state;
     const Eigen::Matrix3d cov = r.cov - r.rows_cov * adjoint.information * r.rows_cov.transpose();
-    run->attitude[i] = AttitudeOf(history.epochs[i].knot, estimate, cov, history.setup.gyro);
+    run->attitude[i] = SmoothAttitude(history.epochs[i].knot, estimate, cov, history.setup.gyro);
     (*path)[i + 1] = estimate[1];
     if (history.epochs[i].station) {
       run->stations[r.stations_end - 1] = SmoothStation(

@@ -179,6 +179,12 @@ Knot HighSideTracker::CutKnot(double fraction) {
   const double accel_var = noise * noise * std::max(4 / std::max(memory_, s.dt), 1.25 / level);
   knot.sigma_inclination = std::sqrt(accel_var + walk * walk * level / 4);
 
+  // The end of a sample, from its own phase and its neighbours' as they are weighed in Across(); of
+  // the last before a break from that before it alone.
+  const double weighed = waiting_ ? 5. / 6 : 5. / 2;
+  const double sine = std::max(std::sin(knot.inclination), sin_min_);
+  knot.var_toolface = weighed * noise * noise / (s.dt * sine * sine);
+
   for (int i = 0; i < kSums; ++i) sums_[i] = -block[i];
   OpenInterval(s, fraction, rest_ns);
   return knot;

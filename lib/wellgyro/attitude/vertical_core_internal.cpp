@@ -18,8 +18,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kSineLeast = 1e-6;
-constexpr double kAxialFirst = 0.5;  // what a tool may turn at when the filter meets it [rad/s]
-constexpr double kTiltFirst = 0.03;  // before the first force is taken [rad]
+constexpr double kAxialFirst = 0.5;     // what a tool may turn at when the filter meets it [rad/s]
+constexpr double kBiasLeast = 1e-9;     // of a measured rate about z [rad/s]
+constexpr double kLostVariance = 0.25;  // of the heading [rad^2]
+constexpr double kLinearVariance = 0.01;  // of it too
+constexpr double kRateSeconds = 10;       // over which the Earth's unknown rate would be one [s]
+constexpr double kSure = 3;               // sigmas at which what is seen is no error
+constexpr double kTiltFirst = 0.03;       // before the first force is taken [rad]
 
 double Square(double x) { return x * x; }
 
@@ -57,7 +62,7 @@ void Orthonormalize(Matrix3d& R) {
 }  // namespace
 
 Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& site,
-                const Matrix3d& R_LT) {
+                const Vector2d& north, const Matrix3d& R_LT) {
   Sensed s;
   s.seconds = 1e-9 * sample.stamp.period_ns;
   s.has_gz = sample.has_gz;
@@ -65,18 +70,17 @@ Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& sit
   if (!s.has_gz) s.w_IT_T.z() = 0;
   s.gravity = site.gravity;
   s.accel_good = !sample.stamp.accel_saturated;
-  const double north = kEarthRate * std::cos(site.latitude);
-  const double up = kEarthRate * std::sin(site.latitude);
-  s.w_IL_L = Vector3d(north, 0, -up);
+  const Vector2d across = kEarthRate * std::cos(site.latitude) * north;
+  s.w_IL_L = Vector3d(across.x(), across.y(), -kEarthRate * std::sin(site.latitude));
   s.gravity_T = sample.f_T;
   if (along.known) {
-    const Vector3d v_L = along.speed * R_LT.col(2);
-    const double east = v_L.y() / site.radius_east;
-    const Vector3d carried(east, -v_L.x() / site.radius_north, -east * std::tan(site.latitude));
     const Vector3d w = s.w_IT_T + R_LT.transpose() * s.w_IL_L;
     s.gravity_T -= along.speed * Vector3d(w.y(), -w.x(), 0);
     s.gravity_T.z() -= along.acceleration;
-    s.w_IL_L += carried;
+    // The level frame turns with the travel over the Earth, taken for a sphere here; about the
+    // vertical it then turns by less than 1e-9 rad/s.
+    const double radius = (site.radius_north + site.radius_east) / 2;
+    s.w_IL_L += along.speed / radius * Vector3d(R_LT(1, 2), -R_LT(0, 2), 0);
   }
   return s;
 }
@@ -94,13 +98,22 @@ Matrix3d EulerSlopes(const Matrix3d& R_LT) {
   return slopes;
 }
 
-void Core::Start(const Sensed& s, const Matrix3d& R_LT, const Noise& noise,
-                 const ErrorPriors& errors, double bias_sigma) {
+Eigen::RowVector3d SumSlope(const Matrix3d& R_LT) {
+  const Vector3d t = R_LT.col(2);
+  // (1 - cos I) / sin I times the high side, less its vertical part: all finite at I = 0.
+  const double less = 1 / (1 + t.z());
+  const Vector3d h(t.z() * t.x(), t.z() * t.y(), -t.head<2>().squaredNorm());
+  return (t - less * h).transpose();
+}
+
+void Core::Start(const Sensed& s, const Matrix3d& R_LT, const ErrorPriors& errors,
+                 double bias_sigma) {
   *this = Core();
   R_ = R_LT;
   has_gz_ = s.has_gz;
+  accel_sigma_ = errors.accel_bias_sigma;
   Eigen::Matrix<double, kStates, 1> sigma;
-  sigma << kTiltFirst, kTiltFirst, 0, s.has_gz ? std::max(bias_sigma, noise.rate) : kAxialFirst,
+  sigma << kTiltFirst, kTiltFirst, 0, s.has_gz ? std::max(bias_sigma, kBiasLeast) : kAxialFirst,
       bias_sigma, bias_sigma, errors.accel_bias_sigma, errors.accel_bias_sigma;
   cov_ = sigma.cwiseAbs2().asDiagonal();
   cov_noise_ = cov_;
@@ -127,12 +140,25 @@ void Core::Predict(const Sensed& s) {
   }
   R_ = Exp(-0.5 * s.seconds * s.w_IL_L) * R_ * tilt * half;
   w_sum_ += s.seconds * s.w_IT_T;
+  last_rate_ << s.w_IT_T.head<2>() - gyro_, s.w_IT_T.z() + axial_;
   spin_ += spin;
   w_IL_L_ += s.seconds * s.w_IL_L;
+  w_IL_ = s.w_IL_L;
   gravity_ = s.gravity;
   has_gz_ = s.has_gz;
   seconds_ += s.seconds;
 }
+
+// The horizontal part of the axis, by which gravity shows a turn about it, less what may be error
+// of the estimate: where all of it may be, gravity shows nothing.
+double Core::Seen() const {
+  const double sine2 = R_.col(2).head<2>().squaredNorm();
+  const double var = Square(kSure) * (cov_(0, 0) + cov_(1, 1));
+  return sine2 > var ? std::sqrt(1 - var / sine2) : 0;
+}
+
+// The heading has become so uncertain that nothing which turns with it is linear any more.
+bool Core::Lost() const { return cov_noise_(2, 2) > kLostVariance; }
 
 void Core::Carry(const Noise& noise) {
   const double T = seconds_;
@@ -141,11 +167,12 @@ void Core::Carry(const Noise& noise) {
   const double spin = spin_ / T;
   Covariance phi = Covariance::Identity();
   phi.topLeftCorner<3, 3>() -= Skew(w_IL_L_);
-  phi.block<3, 1>(kTurn, kAxial) = T * R.col(2);
+  Vector3d z = R.col(2);
+  z.head<2>() *= Seen();
+  phi.block<3, 1>(kTurn, kAxial) = T * z;
   phi.block<3, 2>(kTurn, kGyro) = -T * R.leftCols<2>();
 
   Covariance added = Covariance::Zero();
-  const Vector3d z = R.col(2);
   const Matrix3d along = z * z.transpose();
   const double white = Square(noise.rate) * T;
   added.topLeftCorner<3, 3>() = white * (Matrix3d::Identity() - (has_gz_ ? 0 : 1) * along);
@@ -154,6 +181,13 @@ void Core::Carry(const Noise& noise) {
   added.block<3, 1>(kTurn, kAxial) = walk * T * T / 2 * z;
   added.block<1, 3>(kAxial, kTurn) = added.block<3, 1>(kTurn, kAxial).transpose();
   added(kAxial, kAxial) = walk * T;
+  // A heading that is wrong turns the Earth's rate. That shows the heading, but falsely as soon as
+  // it is no longer linear: then it only counts as noise.
+  if (cov_(2, 2) > kLinearVariance) {
+    phi.block<2, 1>(kTurn, 2).setZero();
+    added.topLeftCorner<2, 2>().diagonal().array() +=
+        std::min(cov_(2, 2), 1.0) * w_IL_.head<2>().squaredNorm() * kRateSeconds * T;
+  }
   const double changed = Square(noise.skewed * (spin - last_spin_));
   if (has_gz_) added(kAxial, kAxial) += changed;
   last_spin_ = spin;
@@ -187,7 +221,12 @@ double Core::Take(const Noise& noise) {
                          std::max(Square(noise.force) / accel_seconds_, Square(1e-8 * gravity_));
   const Matrix2d S = C * cov_ * C.transpose() + white;
   const Matrix2d inverse = S.inverse();
-  const Gain K = cov_ * C.transpose() * inverse;
+  Gain K = cov_ * C.transpose() * inverse;
+  // A tool that turns parts a bias, which turns with it, from tilt; one that only seems to, because
+  // the rate about its axis is uncertain, would part them falsely.
+  if (Square(spin_ / seconds_) < Square(kSure) * cov_(kAxial, kAxial)) {
+    K.bottomRows<2>().setZero();
+  }
   const Eigen::Matrix<double, kStates, 1> error = K * y;
   R_ = Exp(-error.head<3>()) * R_;
   Orthonormalize(R_);
@@ -199,6 +238,13 @@ double Core::Take(const Noise& noise) {
   const Covariance of_white = K * white * K.transpose();
   cov_ = left * cov_ * left.transpose() + of_white;
   cov_noise_ = left * cov_noise_ * left.transpose() + of_white;
+  if (Lost()) {
+    const double least = Square(accel_sigma_ / gravity_);
+    for (int i = 0; i < 2; ++i) {
+      cov_(i, i) = std::max(cov_(i, i), least);
+      cov_noise_(i, i) = std::max(cov_noise_(i, i), least);
+    }
+  }
   // What the constant errors put into the mean force, turned to L.
   Eigen::Matrix<double, 2, Knot::kSources> force = Eigen::Matrix<double, 2, Knot::kSources>::Zero();
   const Vector2d rolled = turn * Vector2d(f.y(), -f.x());
@@ -223,6 +269,43 @@ double Core::Close(const Noise& noise) {
   return likelihood;
 }
 
+void Core::Hold(double sigma) {
+  if (has_gz_) return;
+  const double still = R_.col(2).dot(w_IL_);
+  const Eigen::Matrix<double, kStates, 1> gain =
+      cov_.col(kAxial) / (cov_(kAxial, kAxial) + Square(sigma));
+  const Eigen::Matrix<double, kStates, 1> error = gain * (axial_ - still);
+  R_ = Exp(-error.head<3>()) * R_;
+  axial_ -= error[kAxial];
+  gyro_ -= error.segment<2>(kGyro);
+  accel_ -= error.segment<2>(kAccel);
+  Covariance left = Covariance::Identity();
+  left.col(kAxial) -= gain;
+  const Covariance of_white = gain * Square(sigma) * gain.transpose();
+  cov_ = left * cov_ * left.transpose() + of_white;
+  cov_noise_ = left * cov_noise_ * left.transpose() + of_white;
+  sources_ = (left * sources_).eval();
+}
+
+void Core::Release() {
+  if (has_gz_) return;
+  cov_(kAxial, kAxial) += Square(kAxialFirst);
+  cov_noise_(kAxial, kAxial) += Square(kAxialFirst);
+}
+
+Matrix3d Core::Before(double seconds) const { return R_ * Exp(-seconds * last_rate_); }
+
+void Core::ForgetGyroBias(double sigma) {
+  gyro_.setZero();
+  for (Covariance* cov : {&cov_, &cov_noise_}) {
+    cov->middleRows<2>(kGyro).setZero();
+    cov->middleCols<2>(kGyro).setZero();
+  }
+  cov_.diagonal().segment<2>(kGyro).setConstant(Square(sigma));
+  sources_.middleRows<2>(kGyro).setZero();
+  sources_(kGyro, Knot::kGyroBiasX) = sources_(kGyro + 1, Knot::kGyroBiasY) = -1;
+}
+
 void Core::Widen(double seconds, double sigma_tilt, double sigma_axial) {
   for (Covariance* cov : {&cov_, &cov_noise_}) {
     (*cov)(0, 0) += Square(sigma_tilt);
@@ -231,6 +314,14 @@ void Core::Widen(double seconds, double sigma_tilt, double sigma_axial) {
     (*cov)(2, 2) += Square(sigma_axial * seconds);
     if (!has_gz_) (*cov)(kAxial, kAxial) += Square(sigma_axial);
   }
+}
+
+void Core::CountSum() {
+  Covariance set = Covariance::Identity();
+  set.block<1, 3>(2, 0) -= SumSlope(R_) / R_(2, 2);
+  cov_ = (set * cov_ * set.transpose()).eval();
+  cov_noise_ = (set * cov_noise_ * set.transpose()).eval();
+  sources_ = (set * sources_).eval();
 }
 
 void Core::SetHeading(double azimuth, double variance) {

@@ -34,13 +34,15 @@ struct Sensed {
   bool accel_good = true;
 };
 
-/// Gravity's and the Earth's share of a sample at `heading` (sine and cosine of the azimuth are
-/// taken from `R_LT`).
+/// A sample with what travel adds to its force taken out. `north`: components of north along the
+/// two horizontal axes that `R_LT` counts from; zero where unknown.
 Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& site,
-                const Eigen::Matrix3d& R_LT);
+                const Eigen::Vector2d& north, const Eigen::Matrix3d& R_LT);
 
 /// Slopes of (inclination, azimuth, toolface) against phi; sine bounded from below.
 Eigen::Matrix3d EulerSlopes(const Eigen::Matrix3d& R_LT);
+/// Of the sum of azimuth and toolface, regular at vertical.
+Eigen::RowVector3d SumSlope(const Eigen::Matrix3d& R_LT);
 
 /// White noise and walks of the model [SI].
 struct Noise {
@@ -54,8 +56,8 @@ struct Noise {
 /// One filter with one walk of the axial rate.
 class Core {
  public:
-  void Start(const Sensed& s, const Eigen::Matrix3d& R_LT, const Noise& noise,
-             const ErrorPriors& errors, double bias_sigma);
+  void Start(const Sensed& s, const Eigen::Matrix3d& R_LT, const ErrorPriors& errors,
+             double bias_sigma);
   /// Carries the attitude over one sample.
   void Predict(const Sensed& s);
   /// Ends the block: carries the covariance over it and takes its mean force. Returns the
@@ -64,6 +66,16 @@ class Core {
   /// Time without samples: what the tool did in it is unknown.
   void Widen(double seconds, double sigma_tilt, double sigma_axial);
   void SetHeading(double azimuth, double variance);
+  /// From here on errors of the sum of azimuth and toolface are counted.
+  void CountSum();
+  /// What was learned of the gyros' biases was something else.
+  void ForgetGyroBias(double sigma);
+  /// The tool does not turn about its axis; of the axial rate to `sigma` [rad/s].
+  void Hold(double sigma);
+  /// It may turn about its axis as never before.
+  void Release();
+  /// The attitude so long before the end of the last sample.
+  Eigen::Matrix3d Before(double seconds) const;
 
   const Eigen::Matrix3d& R_LT() const { return R_; }
   double axial() const { return axial_; }
@@ -77,6 +89,8 @@ class Core {
  private:
   void Carry(const Noise& noise);
   double Take(const Noise& noise);
+  bool Lost() const;
+  double Seen() const;
 
   Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity();
   double axial_ = 0;
@@ -84,7 +98,10 @@ class Core {
   Covariance cov_ = Covariance::Zero(), cov_noise_ = Covariance::Zero();
   Sensitivity sources_ = Sensitivity::Zero();
   // The open block.
+  Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
+  double accel_sigma_ = 0;
   double seconds_ = 0, accel_seconds_ = 0, gravity_ = 0, spin_ = 0, last_spin_ = 0;
+  Eigen::Vector3d w_IL_ = Eigen::Vector3d::Zero();  // of the last sample
   bool has_gz_ = false;
   Eigen::Matrix3d R_sum_ = Eigen::Matrix3d::Zero(), R_accel_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d force_L_ = Eigen::Vector3d::Zero(), w_sum_ = Eigen::Vector3d::Zero();

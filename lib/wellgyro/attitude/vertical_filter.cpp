@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <Eigen/Core>
 
 #include "wellgyro/attitude/vertical_core_internal.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
@@ -19,9 +21,22 @@ using vertical::Noise;
 using vertical::SensedOf;
 
 constexpr std::array<double, 5> kWalks = {1e-5, 1e-4, 1e-3, 1e-2, 1e-1};  // [rad/s/sqrt(s)]
+// Before anything is known of how the tool rolls, and again so long after [s].
+constexpr std::array<double, 5> kFirstWeights = {0.01, 0.01, 0.03, 0.15, 0.8};
+constexpr double kForget = 600;
+constexpr double kHeld = 1e-5;  // of the axial rate at rest [rad/s]
 constexpr double kBlockSeconds = 0.2;
 constexpr double kLeastWeight = 1e-4;
-constexpr double kPatience = 3;  // that long without weight, then start again from the best [s]
+constexpr double kPatience = 3;   // that long without weight, then start again from the best [s]
+constexpr double kByNoise = 500;  // [sqrt(Hz)], see the header
+constexpr double kByBias = 50;
+constexpr double kSineLeast = 2e-3;
+constexpr double kSineByThird = 0.25;  // with a third gyro axis the sum grows best up to there
+constexpr double kLeave = 1.3;         // of the sine at which the filter takes over
+constexpr double kRun = 6, kStop = 7;
+constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
+constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
+constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
 constexpr double kFlat = kPi * kPi / 3;
 
 Knot::SourceVector SourceSigmas(const ErrorPriors& e) {
@@ -37,19 +52,66 @@ bool IsFinite(const ImuSample& s) {
          (!s.has_gz || std::isfinite(s.w_IT_T.z()));
 }
 
+// The filter at one knot: values, their slopes against the tool's errors, variances from noise.
+struct Cut {
+  double azimuth = 0, inclination = 0, toolface = 0;
+  Knot::SourceVector d_azimuth = Knot::SourceVector::Zero(), d_toolface = d_azimuth,
+                     d_inclination = d_azimuth, d_sum = d_azimuth;
+  double var_azimuth = 0, var_toolface = 0, var_inclination = 0, var_sum = 0;
+};
+
+Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
+  Cut c;
+  c.azimuth = std::atan2(R(1, 2), R(0, 2));
+  c.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
+  c.toolface = std::atan2(R(2, 1), -R(2, 0));
+  const Eigen::Matrix3d slopes = vertical::EulerSlopes(R);
+  const auto sources = core.sources().topRows<3>();
+  const Eigen::Matrix3d cov = core.cov_noise().topLeftCorner<3, 3>();
+  const auto take = [&](const Eigen::RowVector3d& slope, Knot::SourceVector& d, double& var) {
+    d = (slope * sources).transpose();
+    var = slope * cov * slope.transpose();
+  };
+  take(slopes.row(0), c.d_inclination, c.var_inclination);
+  take(slopes.row(1), c.d_azimuth, c.var_azimuth);
+  take(slopes.row(2), c.d_toolface, c.var_toolface);
+  take(vertical::SumSlope(R), c.d_sum, c.var_sum);
+  return c;
+}
+
 }  // namespace
+
+double SineNearVertical(const ErrorPriors& errors, bool has_gz) {
+  if (has_gz) return kSineByThird;
+  return std::max({kByNoise * errors.accel_noise / units::kStandardGravity,
+                   kByBias * errors.accel_bias_sigma / units::kStandardGravity, kSineLeast});
+}
 
 struct VerticalFilter::Impl {
   explicit Impl(const VerticalSetup& s);
   void Start(const ImuSample& sample, const AlongHole& along, const Site& site);
   void Close();
   void Weigh(const std::array<double, kWalks.size()>& likelihood, double seconds);
-  Noise NoiseOf(double walk) const;
+  Noise NoiseOf(double axial_walk) const;
   Eigen::Matrix3d CovTurn() const;
+  void SetHeading(double azimuth, double variance);
+  Cut CutAt(double rest) const;
+  void Fill(const Cut& now, bool axial, Knot& knot);
+  void CountSum();
+  double FirstBias() const;
 
   VerticalSetup setup;
   Noise noise;
-  double bias_sigma = 0;
+  double bias_sigma = 0, walk = 0;
+  double sine_enter = kSineLeast;
+  Eigen::Vector2d north = Eigen::Vector2d::Zero();  // from the filter's zero; zero: unknown
+  double zero = 0;                                  // true azimuth of it
+  double latitude = 0;
+  // The stretch near vertical.
+  bool axial = false, linked = false, cut_before = false;
+  Cut last;            // at the knot before
+  double counted = 0;  // variance given to the knots since errors of the sum are counted [rad^2]
+  int counted_knots = 0;
   Knot::SourceVector source_sigma;
   Core main;
   std::array<Core, kWalks.size()> bank;
@@ -64,7 +126,7 @@ struct VerticalFilter::Impl {
 VerticalFilter::Impl::Impl(const VerticalSetup& s) : setup(s) {
   const NoiseCoefficients& g = s.gyro;
   noise.rate = g.angle_random_walk;
-  noise.force = s.errors.accel_noise;
+  noise.force = std::max(s.errors.accel_noise, kNoiseLeast);
   noise.bias_walk = g.rate_random_walk;
   double instability = g.bias_instability;
   if (g.bias_instability_correlation_time) {
@@ -78,9 +140,9 @@ VerticalFilter::Impl::Impl(const VerticalSetup& s) : setup(s) {
   source_sigma[Knot::kGyroBiasX] = source_sigma[Knot::kGyroBiasY] = bias_sigma;
 }
 
-Noise VerticalFilter::Impl::NoiseOf(double walk) const {
+Noise VerticalFilter::Impl::NoiseOf(double axial_walk) const {
   Noise n = noise;
-  n.axial_walk = walk;
+  n.axial_walk = axial_walk;
   return n;
 }
 
@@ -96,12 +158,91 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
   const Eigen::Vector3d& f = sample.f_T;
   const Eigen::Matrix3d R_LT =
       AttitudeMatrix(0, std::atan2(std::hypot(f.x(), f.y()), -f.z()), std::atan2(-f.y(), f.x()));
-  main.Start(SensedOf(sample, along, site, R_LT), R_LT, noise, setup.errors, bias_sigma);
+  latitude = site.latitude;
+  main.Start(SensedOf(sample, along, site, north, R_LT), R_LT, setup.errors, FirstBias());
   bank.fill(main);
-  weight.fill(1.0 / kWalks.size());
+  weight = kFirstWeights;
   idle.fill(0);
+  last = Cut();
+  last.toolface = std::atan2(-f.y(), f.x());
+  last.inclination = std::atan2(std::hypot(f.x(), f.y()), -f.z());
+  counted = 0;
+  linked = !cut_before;
+  axial = std::sin(last.inclination) < sine_enter && f.z() < 0;
   started = true;
   ready = false;
+}
+
+// With north unknown the Earth's rate passes for a bias.
+double VerticalFilter::Impl::FirstBias() const {
+  const bool unknown = north.isZero();
+  return unknown ? std::hypot(bias_sigma, kEarthRate * std::cos(latitude)) : bias_sigma;
+}
+
+void VerticalFilter::Impl::SetHeading(double azimuth, double variance) {
+  if (main.block_seconds() > 0) Close();
+  const auto azimuth_of = [](const Core& core) {
+    return std::atan2(core.R_LT()(1, 2), core.R_LT()(0, 2));
+  };
+  const double turn = azimuth - azimuth_of(main);
+  for (Core& core : bank) core.SetHeading(azimuth_of(core) + turn, variance);
+  main.SetHeading(azimuth, variance);
+}
+
+Cut VerticalFilter::Impl::CutAt(double rest) const {
+  Core core = main;
+  core.Close(NoiseOf(walk));
+  return CutOf(core, core.Before(rest));
+}
+
+// From here on: what was given to knots so far is theirs for good.
+void VerticalFilter::Impl::CountSum() {
+  main.CountSum();
+  for (Core& core : bank) core.CountSum();
+  last.d_sum.setZero();
+  counted = 0;
+  counted_knots = 0;
+}
+
+// The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
+void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
+  const double up = kEarthRate * std::sin(latitude) * (knot.seconds - knot.gap_seconds);
+  const Knot::SourceVector& d_end = is_axial ? now.d_sum : now.d_azimuth;
+  const double var_end = is_axial ? now.var_sum : now.var_azimuth;
+  knot.turn = WrapPi(now.azimuth - last.azimuth) - up;
+  knot.d_turn = d_end - last.d_sum;
+  knot.white_turn = 0;
+  knot.toolface_noise_turn = std::max(0.0, var_end - counted);
+  counted += knot.toolface_noise_turn;
+  if (!is_axial && var_end < counted) {
+    knot.axial_noise_share = var_end / counted;
+    knot.axial_noise_knots = counted_knots;
+  }
+  ++counted_knots;
+  knot.roll = WrapPi(now.toolface - last.toolface);
+  knot.cot = 0;
+  knot.vertical = !linked;
+  knot.axial = is_axial;
+  if (is_axial) {
+    knot.inclination = now.inclination;
+    knot.inclination_accel = (now.inclination + last.inclination) / 2;
+    knot.d_inclination = now.d_inclination;
+    knot.sigma_inclination = knot.sigma_inclination_accel = std::sqrt(now.var_inclination);
+    const double sampled = knot.seconds - knot.gap_seconds;
+    knot.lift = now.inclination - last.inclination;
+    knot.d_lift.setZero();
+    knot.d_lift[Knot::kGyroBiasX] = sampled * std::sin(now.toolface);
+    knot.d_lift[Knot::kGyroBiasY] = sampled * std::cos(now.toolface);
+    knot.toolface = now.toolface;
+    knot.d_toolface = now.d_toolface;
+    knot.var_toolface = now.var_toolface;
+    knot.var_azimuth_beyond = now.var_azimuth - counted;
+  }
+  const double vague = now.var_toolface + now.d_toolface.cwiseProduct(source_sigma).squaredNorm();
+  constexpr auto kAll = ~static_cast<std::uint32_t>(Quality::kVertical);
+  knot.quality = knot.quality & static_cast<Quality>(kAll);
+  if (vague > kToolfaceVague * kToolfaceVague) knot.quality |= Quality::kVertical;
+  linked = true;
 }
 
 void VerticalFilter::Impl::Weigh(const std::array<double, kWalks.size()>& likelihood,
@@ -115,6 +256,7 @@ void VerticalFilter::Impl::Weigh(const std::array<double, kWalks.size()>& likeli
   for (std::size_t i = 0; i < kWalks.size(); ++i) {
     const bool without = weight[i] <= kLeastWeight * sum;
     weight[i] = std::max(weight[i] / sum, kLeastWeight);
+    weight[i] += (kFirstWeights[i] - weight[i]) * seconds / kForget;
     idle[i] = without ? idle[i] + seconds : 0;
     if (idle[i] > kPatience) {
       bank[i] = main;
@@ -125,7 +267,6 @@ void VerticalFilter::Impl::Weigh(const std::array<double, kWalks.size()>& likeli
 
 void VerticalFilter::Impl::Close() {
   const double seconds = main.block_seconds();
-  double walk = 0;
   if (!main.has_gz()) {
     std::array<double, kWalks.size()> likelihood;
     for (std::size_t i = 0; i < kWalks.size(); ++i) {
@@ -161,6 +302,9 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
   const SampleStamp& stamp = sample.stamp;
   if (stamp.period_ns <= 0 || !IsFinite(sample)) return;
   if (!m.started) {
+    const Eigen::Vector3d& f = sample.f_T;
+    m.sine_enter = SineNearVertical(m.setup.errors, sample.has_gz);
+    if (!(f.z() < 0 && f.head<2>().norm() < std::min(kRun * m.sine_enter, 0.5) * f.norm())) return;
     m.Start(sample, along, site);
   } else {
     const double apart = (stamp.tool_time - m.end).seconds(), period = 1e-9 * stamp.period_ns;
@@ -176,26 +320,90 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
   }
   m.session = stamp.session;
   m.end = stamp.tool_time + Duration{stamp.period_ns};
-  m.main.Predict(SensedOf(sample, along, site, m.main.R_LT()));
+  m.main.Predict(SensedOf(sample, along, site, m.north, m.main.R_LT()));
   if (!sample.has_gz) {
-    for (Core& core : m.bank) core.Predict(SensedOf(sample, along, site, core.R_LT()));
+    for (Core& core : m.bank) core.Predict(SensedOf(sample, along, site, m.north, core.R_LT()));
   }
   if (m.main.block_seconds() > kBlockSeconds - 1e-9) m.Close();
 }
 
 void VerticalFilter::SetAzimuth(double azimuth, double variance) {
+  impl_->SetHeading(azimuth - impl_->zero, variance);
+  if (impl_->north.isZero()) SetNorth(0.0);
+}
+
+void VerticalFilter::SetNorth(std::optional<double> azimuth_of_zero) {
   Impl& m = *impl_;
+  const bool unknown = m.north.isZero();
+  m.zero = azimuth_of_zero.value_or(0);
+  m.north.setZero();
+  if (azimuth_of_zero) m.north << std::cos(m.zero), -std::sin(m.zero);
+  if (!m.started || !unknown || !azimuth_of_zero) return;
   if (m.main.block_seconds() > 0) m.Close();
-  const Eigen::Matrix3d before = m.main.R_LT();
-  m.main.SetHeading(azimuth, variance);
-  const Eigen::Matrix3d& after = m.main.R_LT();
-  const double turned =
-      std::atan2(after(1, 2), after(0, 2)) - std::atan2(before(1, 2), before(0, 2));
-  for (Core& core : m.bank) {
-    core.SetHeading(std::atan2(core.R_LT()(1, 2), core.R_LT()(0, 2)) + turned, variance);
+  m.main.ForgetGyroBias(m.bias_sigma);
+  for (Core& core : m.bank) core.ForgetGyroBias(m.bias_sigma);
+}
+
+void VerticalFilter::CutKnot(double rest, Knot& knot) {
+  Impl& m = *impl_;
+  if (!m.started) {
+    m.cut_before = true;
+    return;
+  }
+  const bool from_axis = !m.cut_before && m.axial && m.setup.start_is_axis;
+  m.cut_before = true;
+  if (from_axis) m.SetHeading(m.CutAt(0).azimuth, 0);
+  Cut now = m.CutAt(rest);
+  const double sine = std::sin(now.inclination);
+  if (m.axial) {
+    if (from_axis) m.last = now, m.last.d_sum.setZero();
+    const double turn = knot.turn, cot = knot.cot;
+    m.axial = sine < kLeave * m.sine_enter;
+    m.Fill(now, m.axial, knot);
+    // Until its first forces are in, the filter cannot tell how the azimuth grew.
+    if (from_axis) knot.turn = turn, knot.cot = cot;
+  }
+  if (!m.axial) {
+    if (sine > std::min(kStop * m.sine_enter, 0.6)) {
+      m.started = m.ready = false;
+    } else if (sine < m.sine_enter) {
+      m.axial = m.linked = true;
+      m.counted = 0;
+      m.counted_knots = 0;
+      m.SetHeading(m.CutAt(0).azimuth, 0);
+      now = m.CutAt(rest);
+      // What the filter holds there is azimuth, which is taken for free of error.
+      now.d_sum.setZero();
+    }
+  }
+  m.last = now;
+  if (m.axial && now.var_sum > kLostVariance) {
+    if (m.main.block_seconds() > 0) m.Close();
+    m.CountSum();
   }
 }
 
+void VerticalFilter::Hold() {
+  Impl& m = *impl_;
+  if (!m.started) return;
+  if (m.main.block_seconds() > 0) m.Close();
+  m.main.Hold(kHeld);
+  for (Core& core : m.bank) core.Hold(kHeld);
+  m.CountSum();
+  m.weight = kFirstWeights;
+}
+
+void VerticalFilter::Release() {
+  Impl& m = *impl_;
+  if (!m.started) return;
+  if (m.main.block_seconds() > 0) m.Close();
+  m.main.Release();
+  for (Core& core : m.bank) core.Release();
+  m.weight = kFirstWeights;
+}
+
+bool VerticalFilter::running() const { return impl_->started; }
+double VerticalFilter::azimuth_from_zero() const { return impl_->last.azimuth; }
 bool VerticalFilter::ready() const { return impl_->ready; }
 
 AttitudeSample VerticalFilter::attitude() const {
@@ -204,7 +412,7 @@ AttitudeSample VerticalFilter::attitude() const {
   AttitudeSample a;
   a.time = impl_->end;
   a.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
-  a.azimuth = WrapTwoPi(std::atan2(R(1, 2), R(0, 2)));
+  a.azimuth = WrapTwoPi(std::atan2(R(1, 2), R(0, 2)) + impl_->zero);
   a.toolface = std::atan2(R(2, 1), -R(2, 0));
   const Eigen::Matrix3d slopes = vertical::EulerSlopes(R);
   a.cov_attitude = slopes * impl_->CovTurn() * slopes.transpose();

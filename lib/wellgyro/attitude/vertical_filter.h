@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/earth/earth.h"
@@ -17,7 +17,15 @@ struct VerticalSetup {
   NoiseCoefficients gyro;
   ErrorPriors errors;
   double gap_rate = 1.7e-3;  ///< how fast the axis may turn while samples are missing [rad/s]
+  /// What is given from outside at the begin of a run is the azimuth of the axis, not that of the
+  /// reference mark.
+  bool start_is_axis = false;
 };
+
+/// sin I below which the vertical filter does better than the high-side form:
+/// max(500 N_a / g, 50 b_a / g, 2e-3), N_a the accelerometers' noise density and b_a their bias.
+/// There the noise of one second is 2e-3 rad of toolface. With a third gyro axis 0.25.
+WELLGYRO_EXPORT double SineNearVertical(const ErrorPriors& errors, bool has_gz);
 
 /// The whole rotation R_LT of a moving tool near vertical, where azimuth and toolface are singular
 /// and only their sum S = A + T (the gyro toolface) is regular.
@@ -27,11 +35,14 @@ struct VerticalSetup {
 /// Where the stream has a third gyro axis it is used, and its bias takes the place of the rate.
 /// Without one the rate about the axis is a random walk, which gravity shows the less the nearer
 /// to vertical: how much it walks is learned from a bank of filters with walks a decade apart,
-/// whose likelihoods weigh them. Errors grow from the last place where gravity showed the rate.
+/// whose likelihoods weigh them; where gravity shows nothing for minutes they are forgotten. Errors
+/// grow from the last place where gravity showed the rate.
 ///
-/// Meant for inclinations up to some 20 deg; further up it stays right but loses to the high-side
-/// form. Costs some microseconds a sample; allocates nothing per sample.
-/// Markley, "Attitude error representations for Kalman filtering", J. Guidance 26 (2003).
+/// It takes over (CutKnot) below sin I = max(500 N_a / g, 50 b_a / g, 2e-3), N_a the
+/// accelerometers' noise density and b_a their bias: there the noise of one second is 2e-3 rad of
+/// toolface. It gives back a third higher, and runs along from six times that on. Costs some
+/// microseconds a sample while it runs; allocates nothing per sample. Markley, "Attitude error
+/// representations for Kalman filtering", J. Guidance 26 (2003).
 class WELLGYRO_EXPORT VerticalFilter {
  public:
   explicit VerticalFilter(const VerticalSetup& setup);
@@ -49,7 +60,25 @@ class WELLGYRO_EXPORT VerticalFilter {
   /// zero. What is known of the sum A + T from then on counts from this.
   void SetAzimuth(double azimuth, double variance);
 
+  /// The true azimuth of what this filter's azimuths count from, where known [rad]: for the Earth's
+  /// rate. Makes no step in azimuth() of this filter.
+  void SetNorth(std::optional<double> azimuth_of_zero);
+
+  /// `knot` ends `rest` [s] before the end of the last sample. Where this filter does better, its
+  /// attitude and growths take the place of the knot's own, Knot::axial tells. Every knot of a run
+  /// goes through here once, in the order of time.
+  void CutKnot(double rest, Knot& knot);
+
+  /// The tool is at rest: it does not turn about its axis either, though near vertical gravity
+  /// would not show it. What was learned of its rolling is forgotten with that.
+  void Hold();
+  /// The tool is told to turn about its axis.
+  void Release();
+
+  bool running() const;
   bool ready() const;  ///< a force has been taken
+  /// At the last knot, counted from the filter's own zero, not from north [rad].
+  double azimuth_from_zero() const;
   /// At the end of the last sample: all that is known, tool's errors by their priors.
   AttitudeSample attitude() const;
   /// Rate about the tool's axis against inertial space, and its sigma [rad/s].

@@ -169,7 +169,7 @@ class SpanFunction : public Three {
   }
 
   void Grows(double const* const* x, int place, double weight, Rows* rows) const {
-    double growth = 0;
+    double growth = place == AdjustLayout::kAzimuth ? span_.still_turn : 0;
     if (!span_.still) {
       growth = place == AdjustLayout::kAzimuth ? Turn(x, kBegin, -weight, place, rows)
                                                : Lift(x, kBegin, -weight, place, rows);

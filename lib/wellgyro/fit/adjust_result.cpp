@@ -73,7 +73,14 @@ MatrixXd AttitudeRows(const AdjustLayout& layout, const Knot& knot, double gravi
   const auto toolface = [&](Knot::Source source, double slope) {
     const int at = layout.source[static_cast<std::size_t>(source)];
     if (at >= 0) rows(2, layout.node + at) = -slope;
+    if (at >= 0 && knot.axial) rows(1, layout.node + at) = slope;
   };
+  if (knot.axial) {
+    for (int source = 0; source < Knot::kSources; ++source) {
+      toolface(static_cast<Knot::Source>(source), knot.d_toolface[source]);
+    }
+    return rows;
+  }
   toolface(Knot::kToolfaceOffset, 1);
   toolface(Knot::kTimeSkew, knot.seconds > 0 ? knot.roll / knot.seconds : 0);
   toolface(Knot::kAccelBiasX, -std::sin(knot.toolface) / weight);
@@ -96,16 +103,25 @@ AttitudeSample AttitudeAt(const AdjustProblem& p, const Knot& knot, double incli
   AttitudeSample a;
   a.time = knot.time;
   a.inclination = inclination;
-  a.azimuth = WrapTwoPi(azimuth);
-  a.toolface = WrapPi(knot.toolface + ToolfaceGrowth(p, rows));
+  const double rolled = ToolfaceGrowth(p, rows);
+  a.azimuth = WrapTwoPi(knot.axial ? azimuth - rolled : azimuth);
+  a.toolface = WrapPi(knot.toolface + rolled);
   a.quality = knot.quality;
   if (knot.vertical) a.quality |= Quality::kVertical;
   a.cov_attitude = rows * cov * rows.transpose();
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   a.cov_attitude(1, 1) += Square(p.history->setup.gyro.quantization) / sine2;
-  a.cov_attitude(2, 2) += Square(knot.sigma_inclination) / sine2;
+  if (knot.axial) {
+    const double beyond = std::max(0.0, knot.var_azimuth_beyond);
+    a.cov_attitude(1, 1) += beyond;
+    a.cov_attitude(2, 2) += knot.var_toolface;
+    a.cov_attitude(1, 2) -= std::min(beyond, knot.var_toolface);
+    a.cov_attitude(2, 1) = a.cov_attitude(1, 2);
+  } else {
+    a.cov_attitude(2, 2) += std::max(Square(knot.sigma_inclination) / sine2, knot.var_toolface);
+  }
   if (!known) a.cov_attitude(1, 1) += kUnknownVariance;
-  a.azimuth_known = a.cov_attitude(1, 1) < kFlatAzimuthVariance;
+  a.azimuth_known = (knot.axial ? cov(0, 0) : a.cov_attitude(1, 1)) < kFlatAzimuthVariance && known;
   for (const int i : {1, 2}) {
     const double over = a.cov_attitude(i, i) / kFlatAzimuthVariance;
     if (!(over > 1)) continue;
@@ -132,6 +148,13 @@ StationState StationAt(const AdjustProblem& p, std::size_t epoch, const Attitude
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   station.cov_white(1, 1) =
       std::min(Square(p.history->setup.gyro.quantization) / sine2, kFlatAzimuthVariance);
+  if (knot.axial) {
+    station.angles.row(1).tail(p.layout.state() - p.layout.node) =
+        AttitudeRows(p.layout, knot, p.history->setup.site.gravity)
+            .row(1)
+            .tail(p.layout.state() - p.layout.node);
+    station.cov_white(1, 1) += std::max(0.0, knot.var_azimuth_beyond);
+  }
   if (!attitude.azimuth_known) {
     station.cov(0, 0) += kUnknownVariance;
   }

@@ -87,6 +87,7 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   sums->cosine_time += s.sampled * std::cos(s.inclination);
   sums->acceleration = std::max(sums->acceleration, acceleration);
   span->turn += knot.turn;
+  if (span->still && knot.axial) span->still_turn -= knot.roll;
   span->lift += knot.lift;
   span->d_turn += knot.d_turn;
   span->d_lift += knot.d_lift;
@@ -94,7 +95,7 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
       s.sampled * knot.d_inclination.segment<3>(static_cast<int>(Knot::kAccelBiasX));
   span->seconds += knot.seconds;
   const double blind = Has(knot.quality, Quality::kSaturated) ? knot.seconds : knot.gap_seconds;
-  if (blind > 0) {
+  if (blind > 0 && !knot.axial) {
     const double rate = knot.along.known ? setup.gap_dogleg * std::abs(s.speed) : setup.gap_rate;
     const double sine = std::max(std::sin(s.inclination), 1e-6);
     sums->gap_lift += Square(rate * blind);
@@ -125,7 +126,11 @@ void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, A
     var += last.along.known ? 2 * Square(sine * kSpeedSigma / (g * time)) : Square(kUnknownForce);
     var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
   }
-  if (span->vertical) var += Square(kVerticalLevel);
+  if (span->axial) {
+    var = std::max(var, Square(last.sigma_inclination_accel));
+  } else if (span->vertical) {
+    var += Square(kVerticalLevel);
+  }
   span->var_level = var;
 }
 
@@ -149,6 +154,12 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
     span->var_lift = kVerticalVariance;
   }
   FinishLevel(last, setup, sums, span);
+  if (!span->axial) return;
+  // Its lift is how much more the tool leans by then, nothing of the gyros'.
+  span->var_lift = 4 * Square(last.sigma_inclination) + kFloor;
+  span->d_lift.setZero();
+  span->earth_lift = span->lift_by_latitude = 0;
+  span->carried = 0;
 }
 
 // The largest of each knot and those near it: a change of speed is smeared over so long.
@@ -220,7 +231,8 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
       sums = {};
     }
     AdjustSpan& span = spans.back();
-    span.vertical = knot.vertical;
+    span.vertical = knot.vertical || knot.axial;
+    span.axial = knot.axial && !knot.vertical;
     span.broken = knot.vertical && !knot.still;
     AddKnot(history, StepAt(history, i), places[i], accelerations[i], &span, &sums);
     span.epoch_end = i + 1;
@@ -228,6 +240,7 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
     const Knot* next = last ? nullptr : &epochs[i + 1].knot;
     open = !last && !ends[i] && !(epochs[i].station && options.at_stations) && !Lone(knot) &&
            !Lone(*next) && next->still == knot.still && next->vertical == knot.vertical &&
+           next->axial == knot.axial &&
            span.seconds + next->seconds <= options.seconds * (1 + 1e-9);
     if (!open) Finish(history, sums, &span);
   }

@@ -20,10 +20,12 @@ struct AdjustSpan {
   std::size_t epoch_begin = 0, epoch_end = 0;  ///< [begin, end) of FilterHistory::epochs
   double seconds = 0;                          ///< gaps included [s]
   bool still = false;
-  bool vertical = false;      ///< the form below does not hold
+  bool vertical = false;      ///< the form below does not hold, or for the azimuth alone
+  bool axial = false;         ///< it does for the azimuth: see Knot::axial
   bool broken = false;        ///< vertical and moving: nothing links the azimuths of its two ends
   bool levelled = false;      ///< has samples whose accelerometers count
   double turn = 0, lift = 0;  ///< [rad]
+  double still_turn = 0;      ///< at rest: what the azimuth is counted from has moved [rad]
   std::complex<double> earth_turn, earth_lift;
   double up = 0;       ///< Earth's and transport rate about the vertical [rad]
   double carried = 0;  ///< transport rate about the right [rad]

@@ -46,7 +46,9 @@ std::vector<double> ReckonedFrom(double start, const std::vector<AdjustSpan>& sp
   std::vector<double> azimuths{start};
   for (const AdjustSpan& span : spans) {
     double next = azimuths.back();
-    if (!span.still && !span.broken) {
+    if (span.still) {
+      next += span.still_turn;
+    } else if (!span.broken) {
       next += span.turn + (std::polar(1.0, next) * span.earth_turn).real() + span.up;
     }
     azimuths.push_back(next);
@@ -98,7 +100,7 @@ void FindRepeats(const FilterHistory& history, const std::vector<double>& path, 
   for (std::size_t k = 0; k < p->spans.size(); ++k) {
     const AdjustSpan& span = p->spans[k];
     const FilterEpoch& epoch = history.epochs[span.epoch_end - 1];
-    if (!epoch.station || !epoch.knot.along.known || span.still || epoch.knot.vertical) continue;
+    if (!epoch.station || !epoch.knot.along.known || span.still || span.vertical) continue;
     const double md = epoch.knot.along.md;
     const auto near = nodes.lower_bound(md - kSameDepth);
     if (near != nodes.end() && near->first < md + kSameDepth) {
@@ -207,7 +209,7 @@ Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, 
 std::vector<double> AtNodes(const AdjustProblem& p, const std::vector<double>& path) {
   const std::size_t first = p.spans.front().epoch_begin;
   const AdjustSpan& span = p.spans.front();
-  double turned = 0;
+  double turned = span.still_turn;
   for (std::size_t i = first; i < span.epoch_end; ++i) {
     if (!span.still && !span.broken) turned += p.history->epochs[i].knot.turn;
   }

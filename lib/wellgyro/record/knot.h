@@ -61,10 +61,22 @@ struct Knot {
   double white_turn = 0;  ///< integral of 1 / sin^2 I [s]: times N^2 the variance of `turn`
   double toolface_noise_turn = 0;  ///< variance of `turn` from accelerometer noise [rad^2]
   bool still = false;              ///< the whole interval was at rest
-  bool vertical = false;       ///< nowhere in it was the inclination enough for this form to hold
-  double gap_seconds = 0;      ///< of the interval, without samples
-  std::int64_t seq_begin = 0;  ///< first sample
-  std::int64_t seq_end = 0;    ///< exclusive
+  bool vertical = false;  ///< nowhere in it was the inclination enough for this form to hold
+  /// At `time` so near vertical that only the gyro toolface S = azimuth + toolface is regular: what
+  /// grows by `turn` is then S - `toolface`, which is the azimuth but for the error of `toolface`.
+  /// d_turn and toolface_noise_turn lead from the one to the other where a stretch begins or ends.
+  bool axial = false;
+  SourceVector d_toolface = SourceVector::Zero();  ///< d toolface (at `time`) / d source; if axial
+  double var_toolface = 0;                         ///< of `toolface` from noise alone [rad^2]
+  /// Variance from noise of the azimuth less that of S - `toolface`, if axial [rad^2].
+  double var_azimuth_beyond = 0;
+  /// At the first knot after axial ones, what toolface_noise_turn of so many before it has to be
+  /// multiplied by, now that gravity has told how the tool turned meanwhile.
+  double axial_noise_share = 1;
+  int axial_noise_knots = 0;
+  double gap_seconds = 0;         ///< of the interval, without samples
+  std::int64_t seq_begin = 0;     ///< first sample
+  std::int64_t seq_end = 0;       ///< exclusive
   std::int64_t samples_lost = 0;  ///< in that range
   Quality quality = Quality::kGood;
 };

@@ -23,8 +23,19 @@ constexpr double kVague = FromDegrees(2);  // [rad], sigma of a fix's azimuth
 constexpr double kLeastFraction = 1e-9;    // of a sample, at which it can be cut
 constexpr double kJump = 50;  // [m] in one sample: no hole is logged so fast, the depth is wrong
 
+VerticalSetup VerticalSetupOf(const Job& job) {
+  VerticalSetup setup;
+  setup.gyro = job.noise;
+  setup.errors = job.errors;
+  setup.start_is_axis = job.alignment.method == AlignmentSpec::Method::kExternal &&
+                        job.alignment.of == AlignmentSpec::Of::kAxis;
+  return setup;
+}
+
 TrackerOptions TrackerOptionsOf(const Job& job) {
   TrackerOptions options;
+  // Below twice this the vertical filter takes over.
+  options.inclination_min = std::asin(SineNearVertical(job.errors, false)) / 2;
   options.accel_noise = job.errors.accel_noise;
   options.angle_random_walk = job.noise.angle_random_walk;
   return options;
@@ -63,6 +74,7 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
       tvd_(job.tie_in.tvd),
       plan_(job),
       tracker_(TrackerOptionsOf(job)),
+      vertical_(VerticalSetupOf(job)),
       still_(StillSetupOf(job)),
       external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal) {
   summary_.run = run;
@@ -86,7 +98,7 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   }
   if (taken) {
     const UtcTime utc_end = utc + Duration{sample.stamp.period_ns};
-    current_ = Current{sample.stamp, utc, utc_end, along, pass};
+    current_ = Current{sample, middle, sample.stamp, utc, utc_end, along, pass};
     summary_.end = utc_end;
   }
   if (const auto window = still_.Push(sample, middle)) TakeWindow(*window);
@@ -110,6 +122,8 @@ void RunSurvey::CountDepth(const SampleStamp& stamp, bool known) {
 }
 
 void RunSurvey::Cut(std::optional<std::int32_t> index_position) {
+  vertical_.Release();
+  resting_ = false;
   if (const auto window = still_.Cut(index_position)) TakeWindow(*window);
 }
 
@@ -148,6 +162,8 @@ Draft RunSurvey::NewDraft(double md) const {
 void RunSurvey::Summed(const AlongHole& end, const PassState& pass_end) {
   cuts_.clear();
   const Current& c = *current_;
+  vertical_.Push(c.sample, c.middle, site_);
+  resting_ = c.middle.known && std::abs(c.middle.speed) < kRestSpeed;
   if (c.along.known && end.known && pass_end.number == c.pass.number &&
       c.pass.pass != Pass::kStationary) {
     AddTargets(pass_end.md);
@@ -235,7 +251,9 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& end) {
     temperature_outside_ = false;
     knot.utc = c.utc + Duration::Seconds(fraction * (c.utc_end - c.utc).seconds());
     knot.along = Between(c.along, end, fraction);
-    waiting_.push_back({knot, begin, std::nullopt, false});
+    vertical_.CutKnot((1 - fraction) * 1e-9 * c.stamp.period_ns, knot);
+    waiting_.push_back({knot, begin, std::nullopt, false, std::nullopt});
+    if (vertical_.running()) waiting_.back().from_zero = vertical_.azimuth_from_zero();
     lost_since_listed_ = lost_since_listed_ || knot.samples_lost > 0;
   }
   // Two cuts within one nanosecond are one knot.
@@ -273,6 +291,8 @@ void RunSurvey::Release(bool all) {
     const bool still = covered(w);
     if (!still && !all && newest - w.knot.time < kMakeUpMind) break;
     w.knot.still = still;
+    // Known late, but nothing that has been seen since says that it has moved.
+    if (still && resting_) vertical_.Hold();
     StepFilter(w);
   }
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
@@ -306,6 +326,9 @@ void RunSurvey::StepFilter(const Waiting& waiting) {
   MoveSite(knot);
   if (!filter_) StartFilter(knot);
   filter_->Step(knot);
+  from_zero_ = waiting.from_zero;
+  // Also without a fix: behind a stretch near vertical it may turn out never to have been lost.
+  if (filter_->attitude().azimuth_known) TellUnheard();
   if (waiting.draft) {
     filter_->MarkStation();
     drafts_.push_back(*waiting.draft);
@@ -330,9 +353,18 @@ void RunSurvey::StepFilter(const Waiting& waiting) {
   SetTrackerAzimuth();
 }
 
+void RunSurvey::TellUnheard() {
+  news_.insert(news_.end(), unheard_.begin(), unheard_.end());
+  unheard_.clear();
+}
+
 void RunSurvey::SetTrackerAzimuth() {
   const AttitudeSample& now = filter_->attitude();
   tracker_.SetAzimuth(now.azimuth_known ? std::optional<double>(now.azimuth) : std::nullopt);
+  if (!from_zero_) return;
+  std::optional<double> zero;
+  if (now.azimuth_known) zero = filter_->history().epochs.back().azimuth - *from_zero_;
+  vertical_.SetNorth(zero);
 }
 
 /// Latitude and height follow the path, roughly: a kilometre is 1e-2 deg and 0.1 mg.
@@ -418,10 +450,7 @@ void RunSurvey::UseFix(const NorthFix& fix) {
     const FilterFix used = filter_->Update(given);
     if (known_before && used.use != FixUse::kNoKnot) kept.chi_square = used.chi_square;
     if (used.use == FixUse::kAmbiguous) kept.quality |= Quality::kMirror;
-    if (filter_->attitude().azimuth_known) {
-      news_.insert(news_.end(), unheard_.begin(), unheard_.end());
-      unheard_.clear();
-    }
+    if (filter_->attitude().azimuth_known) TellUnheard();
     SetTrackerAzimuth();
   }
   summary_.fixes.push_back(kept);

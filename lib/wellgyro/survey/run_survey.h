@@ -8,6 +8,7 @@
 #include "wellgyro/alignment/still_detector.h"
 #include "wellgyro/attitude/filter.h"
 #include "wellgyro/attitude/tracker.h"
+#include "wellgyro/attitude/vertical_filter.h"
 #include "wellgyro/depth/passes.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/record/north_fix.h"
@@ -61,6 +62,8 @@ class RunSurvey {
  private:
   /// The sample that the tracker has just summed, or is about to.
   struct Current {
+    ImuSample sample;
+    AlongHole middle;  ///< at the middle of it
     SampleStamp stamp;
     UtcTime utc, utc_end;
     AlongHole along;
@@ -71,7 +74,8 @@ class RunSurvey {
     Knot knot;
     ToolTime begin;
     std::optional<Draft> draft;
-    bool external = false;  ///< the job's azimuth holds here
+    bool external = false;            ///< the job's azimuth holds here
+    std::optional<double> from_zero;  ///< azimuth by the vertical filter's own zero [rad]
   };
 
   /// Where a knot is wanted within the summed sample.
@@ -96,6 +100,7 @@ class RunSurvey {
   void StartFilter(const Knot& knot);
   double AxisAzimuth(double inclination, double toolface) const;
   void SetTrackerAzimuth();
+  void TellUnheard();
   void UseFix(const NorthFix& fix);
   void MoveSite(const Knot& knot);
   void ListStop(const NorthFix& fix);
@@ -108,6 +113,9 @@ class RunSurvey {
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::vector<KnotAt> cuts_;                  ///< scratch
   HighSideTracker tracker_;
+  VerticalFilter vertical_;
+  std::optional<double> from_zero_;  ///< of the knot last stepped
+  bool resting_ = false;             ///< by its depth, now
   StillDetector still_;
   PassTracker passes_;
   std::optional<AzimuthFilter> filter_;

@@ -1,0 +1,111 @@
+// Holes that are vertical, nearly so, or begin so: errors against their covariance.
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/math/statistics.h"
+#include "wellgyro/simulate/tool_errors.h"
+#include "wellgyro/simulate/truth.h"
+
+#include "support/simulated_survey.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::CollectingSink;
+using testing::SurveyOf;
+
+constexpr int kSeeds = 6;
+constexpr double kStopMd = 150, kEndMd = 300;
+
+struct Case {
+  std::string name;
+  double inclination_deg, build_from, rpm;
+};
+
+Simulation SimulationOf(const Case& c) {
+  Simulation s;
+  s.well.begin_md = 0;
+  s.well.end_md = kEndMd + 40;
+  s.well.inclination.start = FromDegrees(c.inclination_deg);
+  s.well.azimuth.start = FromDegrees(40);
+  if (c.build_from > 0) {
+    s.well.inclination.terms.push_back(
+        {.begin_md = c.build_from, .ramp = 30, .rate = FromDegrees(4) / 30});
+  }
+  s.earth.latitude = FromDegrees(60);
+  s.streams.imu_hz = 10;
+  s.run.roll_reference = RollReference::kNorth;
+  RunMove move;
+  move.to_md = kStopMd;
+  move.speed = 0.5;
+  move.roll.rate = c.rpm * kTwoPi / 60;
+  RunMove on = move;
+  on.to_md = kEndMd;
+  s.run.steps = {RunStop{.seconds = 180}, move, RunStop{.seconds = 180}, on, RunStop{.seconds = 5}};
+  return s;
+}
+
+class NearVertical : public ::testing::TestWithParam<Case> {};
+
+TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
+  Simulation simulation = SimulationOf(GetParam());
+  Job job;
+  job.well.latitude = simulation.earth.latitude;
+  job.noise.angle_random_walk = 0.01 * units::kDegPerSqrtHour;
+  job.errors.gyro_bias_sigma = 0.1 * units::kDegPerHour;
+  job.errors.accel_bias_sigma = 0.1 * units::kMilliG;
+  job.errors.accel_noise = 0.05 * units::kMilliG;
+  job.errors.depth_sigma = 0.01;
+  // Of horizontal position at four depths, of azimuth where the hole leans enough to have one.
+  double position = 0, azimuth = 0;
+  int azimuths = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    simulation.seed = static_cast<std::uint64_t>(seed);
+    simulation.tool.errors = DrawToolErrors(job.errors, job.noise, simulation.seed);
+    CollectingSink sink;
+    const Survey survey = SurveyOf(simulation, job, sink);
+    ASSERT_EQ(survey.unusable, "");
+    const Truth truth(simulation);
+    for (const Station& station : survey.chosen) {
+      const bool last = std::abs(station.md - 280) < 1e-6;
+      if (!last) continue;
+      const WellPoint point = truth.well().PointAt(station.md);
+      const Eigen::Vector2d off =
+          (station.p_WT_W - truth.well().PlaceAt(station.md).p_WT_W).head<2>();
+      const Eigen::Matrix2d cov = station.cov_p_WT_W.topLeftCorner<2, 2>();
+      position += off.dot(cov.inverse() * off);
+      if (point.inclination > FromDegrees(0.9)) {
+        const double turn = WrapPi(station.azimuth - point.azimuth);
+        azimuth += turn * turn / station.cov_md_inc_azi(2, 2);
+        ++azimuths;
+      } else {
+        EXPECT_TRUE(Has(station.quality, Quality::kVertical));
+        EXPECT_GT(std::sqrt(station.cov_md_inc_azi(2, 2)), FromDegrees(20));
+      }
+    }
+  }
+  const double tail = 0.01 / 2 / (6 * 2);  // of all cases together one in a hundred
+  EXPECT_GT(position, ChiSquareQuantile(tail, 2 * kSeeds));
+  EXPECT_LT(position, ChiSquareQuantile(1 - tail, 2 * kSeeds));
+  if (azimuths == 0) return;
+  EXPECT_EQ(azimuths, kSeeds);
+  EXPECT_GT(azimuth, ChiSquareQuantile(tail, kSeeds));
+  EXPECT_LT(azimuth, ChiSquareQuantile(1 - tail, kSeeds));
+}
+
+INSTANTIATE_TEST_SUITE_P(Holes, NearVertical,
+                         ::testing::Values(Case{"Vertical", 0, 0, 0},
+                                           Case{"VerticalRolling", 0, 0, 3}, Case{"Slant", 1, 0, 0},
+                                           Case{"SlantRolling", 1, 0, 3}, Case{"Build", 0, 100, 0},
+                                           Case{"BuildRolling", 0, 100, 3}),
+                         [](const auto& of) { return of.param.name; });
+
+}  // namespace
+}  // namespace wellgyro
