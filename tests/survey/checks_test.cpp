@@ -105,7 +105,8 @@ TEST(Checks, AStopIsHeldToGravityAndEarthRate) {
 
 TEST(Checks, ACalibrationThatHasExpiredIsTold) {
   Job job;
-  EXPECT_TRUE(std::none_of(Checks(job, {}).begin(), Checks(job, {}).end(),
+  const std::vector<Check> without = Checks(job, {});
+  EXPECT_TRUE(std::none_of(without.begin(), without.end(),
                            [](const Check& check) { return check.code == "calibration_date"; }));
   constexpr std::int64_t kDay = 86'400'000'000'000;
   job.tool.emplace();
