@@ -27,12 +27,11 @@ Eigen::Matrix<double, 6, 1> TrigonometricErrors(const TrigonometricModel& model,
                                                 double toolface) {
   Eigen::Matrix<double, 6, 1> errors;
   for (int sensor = 0; sensor < 2; ++sensor) {
-    const auto k = static_cast<std::size_t>(3 * sensor);
-    errors[3 * sensor] = Wave(model.x[k], inclination) * std::sin(toolface) + model.x[k][3];
-    errors[3 * sensor + 1] =
-        Wave(model.x[k + 1], inclination) * std::cos(toolface) + model.x[k + 1][3];
-    errors[3 * sensor + 2] =
-        Wave(model.x[k + 2], toolface) * std::sin(inclination) + model.x[k + 2][3];
+    const int first = 3 * sensor;
+    const auto k = static_cast<std::size_t>(first);
+    errors[first] = Wave(model.x[k], inclination) * std::sin(toolface) + model.x[k][3];
+    errors[first + 1] = Wave(model.x[k + 1], inclination) * std::cos(toolface) + model.x[k + 1][3];
+    errors[first + 2] = Wave(model.x[k + 2], toolface) * std::sin(inclination) + model.x[k + 2][3];
   }
   return errors;
 }

@@ -107,27 +107,30 @@ std::optional<Fault> MixedUnits(const BenchTable& data, const std::vector<int>& 
     example = lengths[i];
   }
   // One row alone is a bad reading, and outliers are found later.
-  if (lines.size() > 1)
+  if (lines.size() > 1) {
     return BenchFault(data,
                       fmt::format("{}: {} is {:.4g} where the other rows have {:.4g}: units are "
                                   "mixed; give every row in {}",
                                   LinesText(lines), what, example, middle, units),
                       lines.front(), FaultCode::kConflict);
-  if (expected > 0 && (middle > 2 * expected || middle < expected / 2))
+  }
+  if (expected > 0 && (middle > 2 * expected || middle < expected / 2)) {
     return BenchFault(
         data,
         fmt::format("{} is {:.4g} in the middle of the rows where {:.4g} is expected: "
                     "give the reference in the unit of the readings, {}",
                     what, middle, expected, units),
         data.lines[0]);
+  }
   return std::nullopt;
 }
 
 std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector<int>& columns) {
   if (data.rows() < 6) return std::nullopt;
   double largest = 0;
-  for (const int column : columns)
+  for (const int column : columns) {
     largest = std::max(largest, data.values.col(column).cwiseAbs().maxCoeff());
+  }
   if (largest == 0 || largest > kTwoPi + 0.01) return std::nullopt;
   return BenchFault(data,
                     fmt::format("no angle in the table is larger than {:.4g}: they look like "
@@ -149,8 +152,9 @@ std::optional<Fault> SwappedPositions(const BenchTable& data,
     if (n_up == 0 || n_down == 0) continue;
     const double middle = (up / n_up + down / n_down) / 2, half = up / n_up - middle;
     for (const UprightReading& reading : readings) {
-      if (reading.channel == c && (reading.value - middle) * reading.sign * half < 0)
+      if (reading.channel == c && (reading.value - middle) * reading.sign * half < 0) {
         lines.push_back(reading.line);
+      }
     }
   }
   if (lines.empty()) return std::nullopt;
@@ -189,8 +193,9 @@ std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<Channe
         "{}: look there for swapped positions, wrong signs, mixed units or a wrong reference, or "
         "average longer",
         channel, rms, 100 * rms / known->signal, LinesText(worst));
-    if (rms > kRefused * known->signal)
+    if (rms > kRefused * known->signal) {
       return BenchFault(data, "the readings do not fit: " + text, worst.front());
+    }
     report.remarks.push_back(text);
   }
   return std::nullopt;
@@ -203,20 +208,22 @@ std::optional<Fault> WrongAxes(const BenchTable& data, const Eigen::Matrix3d& se
     Eigen::Index most = 0;
     const double value = sensitivity.row(c).cwiseAbs().maxCoeff(&most);
     const std::string& channel = channels[static_cast<std::size_t>(c)];
-    if (most != c)
+    if (most != c) {
       return BenchFault(
           data,
           fmt::format("channel {} follows {}{}: its axis is not {}; exchange the columns, or "
                       "mend the names of the positions",
                       channel, sensitivity(c, most) < 0 ? "-" : "",
                       kAxes[static_cast<std::size_t>(most)], kAxes[static_cast<std::size_t>(c)]));
-    if (sensitivity(c, c) < 0)
+    }
+    if (sensitivity(c, c) < 0) {
       return BenchFault(
           data,
           fmt::format("channel {} falls by {:.4g} where {} rises by one: its sign is wrong, or "
                       "up and down of {} are swapped",
                       channel, value, kAxes[static_cast<std::size_t>(c)],
                       kAxes[static_cast<std::size_t>(c)]));
+    }
   }
   return std::nullopt;
 }

@@ -92,6 +92,7 @@ std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Posi
   forces.lines = rates.lines;
   if (auto fault = Frozen(rates, {0, 1, 2})) return fault;
   std::vector<UprightReading> upright;
+  upright.reserve(positions.size());
   for (const Position& position : positions) {
     upright.push_back({position.axis, position.sign, position.rate[position.axis], position.line});
   }

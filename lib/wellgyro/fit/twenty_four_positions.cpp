@@ -69,8 +69,8 @@ LinearProblem Problem(const std::vector<PositionRun>& runs, const Setup& setup, 
       problem.y[row + 1] = run.Alternating(axis, down, c);
       const FitRow label{run.Of(axis, down, 0, c).line, std::string(1, "xyz"[c]),
                          problem.sigma[row]};
-      problem.rows[static_cast<std::size_t>(row)] = label;
-      problem.rows[static_cast<std::size_t>(row + 1)] = label;
+      const auto first = static_cast<std::size_t>(row);
+      problem.rows[first] = problem.rows[first + 1] = label;
     }
   }
   return problem;
@@ -85,6 +85,7 @@ double Criterion(const LinearProblem& problem, const LinearSolution& solution) {
 
 int Degree(const std::vector<PositionRun>& runs, const Setup& setup) {
   std::vector<double> temperatures;
+  temperatures.reserve(runs.size());
   for (const PositionRun& run : runs) temperatures.push_back(run.temperature);
   std::sort(temperatures.begin(), temperatures.end());
   constexpr double kApart = 2;  // degC
@@ -167,7 +168,7 @@ SensorGroup Group(const FitReport& report, int degree, const std::vector<Positio
   group.unit = "V";
   for (int n = 0; n <= degree; ++n) {
     const auto power = static_cast<std::size_t>(n);
-    group.bias[power].head<3>() = report.values.segment<3>(12 * n);
+    group.bias[power].head<3>() = report.values.segment<3>(Eigen::Index{12} * n);
     group.sensitivity[power].topRows<3>() = SensitivityOf(report.values, n) / kG;
   }
   for (int c = 0; c < 3; ++c) {
