@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -31,11 +32,10 @@ std::optional<Fault> WriteAll(int file, std::string_view bytes, const std::files
     if (written < 0) return Refused(path, "write", errno);
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(file) != 0) return Refused(path, "write to disk", errno);
   return std::nullopt;
 }
 
-// A whole file on disk under its temporary name, removed again unless it is put in place.
+// A whole file under its temporary name, removed again unless it is put in place.
 class Partial {
  public:
   explicit Partial(std::filesystem::path target) : target_(std::move(target)) {
@@ -43,18 +43,25 @@ class Partial {
                  fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid());
   }
   ~Partial() {
+    if (file_ >= 0) ::close(file_);
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
   }
   Partial(Partial&& other) noexcept
-      : target_(std::move(other.target_)), temporary_(std::exchange(other.temporary_, {})) {}
+      : target_(std::move(other.target_)),
+        temporary_(std::exchange(other.temporary_, {})),
+        file_(std::exchange(other.file_, -1)) {}
   Partial& operator=(Partial&&) = delete;
 
-  std::optional<Fault> Write(std::string_view bytes) const {
-    const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) return Refused(target_, "make a file beside it", errno);
-    std::optional<Fault> fault = WriteAll(file, bytes, target_);
-    if (::close(file) != 0 && !fault) fault = Refused(target_, "close", errno);
-    return fault;
+  std::optional<Fault> Write(std::string_view bytes) {
+    file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file_ < 0) return Refused(target_, "make a file beside it", errno);
+    return WriteAll(file_, bytes, target_);
+  }
+
+  std::optional<Fault> Sync() {
+    if (::fsync(file_) != 0) return Refused(target_, "write to disk", errno);
+    if (::close(std::exchange(file_, -1)) != 0) return Refused(target_, "close", errno);
+    return std::nullopt;
   }
 
   std::optional<Fault> PutInPlace() {
@@ -67,6 +74,7 @@ class Partial {
 
  private:
   std::filesystem::path target_, temporary_;
+  int file_ = -1;
 };
 
 // So that the renames themselves survive a loss of power. Some file systems know no such thing.
@@ -92,10 +100,16 @@ std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
     partials.emplace_back(target);
     if (auto fault = partials.back().Write(file.bytes)) return fault;
   }
+  // All of them are written by now: the first wait for the disk is mostly the only one.
+  for (Partial& partial : partials) {
+    if (auto fault = partial.Sync()) return fault;
+  }
   for (Partial& partial : partials) {
     if (auto fault = partial.PutInPlace()) return fault;
   }
-  for (const OutputFile& file : files) SyncFolder((place / file.name).parent_path());
+  std::set<std::filesystem::path> folders;
+  for (const OutputFile& file : files) folders.insert((place / file.name).parent_path());
+  for (const std::filesystem::path& each : folders) SyncFolder(each);
   return std::nullopt;
 }
 

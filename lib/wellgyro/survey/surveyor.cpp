@@ -1,6 +1,7 @@
 #include "wellgyro/survey/surveyor.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
@@ -18,6 +19,8 @@ namespace {
 
 // A depth mark with a time so far ahead of the samples would make all others late.
 constexpr Duration kAhead = Duration::Seconds(600);
+// Of data time, between looks at which depth marks are still needed.
+constexpr Duration kForgetEvery = Duration::Seconds(16);
 
 const Job& Checked(const Job& job) {
   CheckJob(job);
@@ -59,6 +62,7 @@ struct Surveyor::Rooms {
   std::vector<ToolInfo> infos;
   std::map<std::int32_t, SampleCalibrator> calibrators;  ///< of each tool
   std::vector<ImuSample> calibrated;                     ///< scratch
+  std::int64_t forgotten_at = 0;                         ///< in kForgetEvery
   bool finished = false;
   std::optional<UtcTime> newest;  ///< begin of the last sample that came
 
@@ -103,16 +107,19 @@ struct Surveyor::Rooms {
     return !finished;
   }
 
-  void Work() {
-    std::optional<UtcTime> needed;
-    for (auto& [number, tool] : tools) {
-      if (tool.finish_asked()) {
-        Finish();
-        return;
-      }
-      if (!needed || tool.Needs() < *needed) needed = tool.Needs();
+  /// After samples of `tool`.
+  void Work(const ToolSurvey& tool) {
+    if (tool.finish_asked()) {
+      Finish();
+      return;
     }
-    if (needed) track.Forget(*needed - track.lag() - DepthGrid::kStep);
+    // Looking through all tools at every batch would make a hundred of them cost their square.
+    const std::int64_t period = tool.Needs().ns / kForgetEvery.ns;
+    if (period == forgotten_at) return;
+    forgotten_at = period;
+    UtcTime needed = tool.Needs();
+    for (const auto& [number, other] : tools) needed = std::min(needed, other.Needs());
+    track.Forget(needed - track.lag() - DepthGrid::kStep);
   }
 
   void Finish() {
@@ -135,14 +142,17 @@ Surveyor& Surveyor::operator=(Surveyor&&) noexcept = default;
 
 void Surveyor::Push(std::span<const ImuSample> batch) {
   if (!rooms_->Open()) return;
+  ToolSurvey* last = nullptr;
   for (const ImuSample& sample : batch) {
-    if (rooms_->finished) return;
     ToolSurvey* tool = rooms_->Tool(sample.stamp.tool);
-    if (tool == nullptr) return;
+    if (tool == nullptr) break;
+    if (last != nullptr && tool != last) rooms_->Work(*last);
+    if (rooms_->finished) return;
+    last = tool;
     tool->Push(sample);
     rooms_->newest = sample.stamp.utc;
   }
-  rooms_->Work();
+  if (last != nullptr) rooms_->Work(*last);
 }
 
 void Surveyor::Push(std::span<const RawSample> batch) {
