@@ -14,6 +14,7 @@
 #include "wellgyro/io/job_file.h"
 #include "wellgyro/io/noise_file.h"
 #include "wellgyro/io/program_file.h"
+#include "wellgyro/io/sensor_csv.h"
 #include "wellgyro/io/simulation_file.h"
 #include "wellgyro/io/survey_csv.h"
 #include "wellgyro/survey/job.h"
@@ -84,6 +85,15 @@ int CheckLog(const std::string& name) {
   return Tell(name, what, faults, kDoneWithLosses);
 }
 
+std::vector<Fault> FaultsOfSensorTable(const std::string& name) {
+  Result<SensorCsv> table = SensorCsv::Open(name);
+  if (!table) return {table.fault()};
+  SensorCsv::Row row;
+  while (table->Next(row)) {
+  }
+  return table->fault() ? std::vector<Fault>{*table->fault()} : std::vector<Fault>();
+}
+
 int CheckFile(const std::string& name) {
   const Result<FileIdentity> identity = IdentifyFile(name);
   if (!identity) {
@@ -104,6 +114,8 @@ int CheckFile(const std::string& name) {
       return Tell(name, what, FaultOf(ReadSurveyProgram(name)), kUnusable);
     case FileKind::kSurveyCsv:
       return Tell(name, what, FaultOf(ReadSurveyCsv(name)), kUnusable);
+    case FileKind::kSensorCsv:
+      return Tell(name, what, FaultsOfSensorTable(name), kUnusable);
     case FileKind::kLcmLog:
       return CheckLog(name);
     case FileKind::kEmpty:

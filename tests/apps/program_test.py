@@ -263,6 +263,9 @@ class Program(unittest.TestCase):
         for row, azimuth in zip(stations[1:], (100.0, 102.0, 105.0)):
             self.assertAlmostEqual(float(row["INC[deg]"]), 30.0, delta=0.001)
             self.assertAlmostEqual(float(row["AZI_TRUE[deg]"]), azimuth, delta=0.05)
+        done = Run("check", table)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("averages at rest, whole", done.stdout)
         with open(os.path.join(self.Path("points"), "run.toml"), encoding="utf-8") as file:
             self.assertIn("still.csv", file.read())
         broken = self.Write("broken.csv", "\n".join([rows[0], rows[1].replace("100", "a", 1)]))

@@ -64,6 +64,14 @@ TEST(IdentifyBytes, KnowsTheTruthOfASimulation) {
   EXPECT_EQ(truth.text, "the truth of a wellgyro simulation");
 }
 
+TEST(IdentifyBytes, KnowsTablesOfSensorData) {
+  const FileIdentity tally = IdentifyBytes("# rig A\nUTC[s],END_UTC[s],LENGTH[m]\n1,2,3\n");
+  EXPECT_EQ(tally.kind, FileKind::kSensorCsv);
+  EXPECT_EQ(tally.text, "a table of depths");
+  EXPECT_EQ(IdentifyBytes("UTC[s],DURATION[s],GX[deg/h],GY[deg/h],AX[g],AY[g],AZ[g]\n").text,
+            "a table of averages at rest");
+}
+
 TEST(IdentifyFile, ReadsNoMoreThanTheHead) {
   const support::Scratch scratch;
   scratch.Write("big", "format = \"wellgyro.job/1\"\n" + std::string(1 << 20, '#'));

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/sensor_csv.h"
 #include "wellgyro/io/survey_csv.h"
 #include "wellgyro/io/text_file.h"
 
@@ -106,6 +107,18 @@ FileIdentity ByContent(std::string_view head) {
   return {FileKind::kForeign, text ? "text of an unknown kind" : "binary data of an unknown kind"};
 }
 
+std::string TextOf(SensorTable table) {
+  switch (table) {
+    case SensorTable::kSamples:
+      return "a table of sensor samples";
+    case SensorTable::kStill:
+      return "a table of averages at rest";
+    case SensorTable::kDepth:
+      break;
+  }
+  return "a table of depths";
+}
+
 }  // namespace
 
 FileIdentity IdentifyBytes(std::string_view head) {
@@ -118,7 +131,7 @@ FileIdentity IdentifyBytes(std::string_view head) {
     return ByFormat(format);
   }
   std::string_view rest = head;
-  const std::string_view line = NextLine(rest);
+  std::string_view line = NextLine(rest);
   if (IsSurveyCsvHeader(line)) return {FileKind::kSurveyCsv, "a wellgyro survey"};
   if (line.starts_with("RUN,PASS,STATUS,REVISION,MD[m]")) {
     return {FileKind::kPassesCsv, "the passes of a wellgyro survey"};
@@ -129,6 +142,8 @@ FileIdentity IdentifyBytes(std::string_view head) {
   if (line.starts_with("T[s],MD[m],INC[deg],AZI_TRUE[deg],GTF[deg]")) {
     return {FileKind::kTruthCsv, "the truth of a wellgyro simulation"};
   }
+  while (line.starts_with('#')) line = NextLine(rest);
+  if (const auto table = SensorTableOf(line)) return {FileKind::kSensorCsv, TextOf(*table)};
   return ByContent(head);
 }
 

@@ -26,6 +26,7 @@ enum class FileKind {
   kPassesCsv,
   kChecksCsv,
   kTruthCsv,
+  kSensorCsv,  ///< sensor_csv.h
   kForeign,
 };
 
