@@ -192,7 +192,7 @@ void Tools(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * kSeconds * 10 * tools);
 }
-BENCHMARK(Tools)->Arg(1)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(Tools)->Arg(1)->Arg(50)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace wellgyro
