@@ -470,7 +470,7 @@ void AddGyros(CLI::App& calibrate, int& exit_code, const Shared& o) {
 void AddStations(CLI::App& calibrate, int& exit_code, const Shared& o) {
   CLI::App& command = AddMethod(calibrate, exit_code, o, "multi-station",
                                 "bias of magnetometers or gyros from the stations of a run",
-                                "Gx,Gy,Gz and Mx,My,Mz or wx,wy,wz",
+                                "Gx,Gy,Gz and Mx,My,Mz or wx,wy or wx,wy,wz",
                                 [](const BenchTable& data, const BenchTable&, Options& options) {
                                   options.stations.reference = options.reference;
                                   return Plain(FitMultiStation(data, options.stations));

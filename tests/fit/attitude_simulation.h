@@ -159,8 +159,8 @@ inline BenchTable Stations(const Eigen::Vector3d& bm, const Eigen::Vector3d& sm,
 }
 
 inline BenchTable GyroStations(const Eigen::Vector3d& b, double latitude, double sigma,
-                               Random& random) {
-  TableMaker table({"Gx", "Gy", "Gz", "wx", "wy", "wz"});
+                               Random& random, bool has_wz = true) {
+  TableMaker table({"Gx", "Gy", "Gz", "wx", "wy", has_wz ? "wz" : "unused"});
   const Eigen::Vector3d w_ned(kEarth * std::cos(latitude * kRad), 0,
                               -kEarth * std::sin(latitude * kRad));
   for (int i = 0; i < 40; ++i) {

@@ -222,6 +222,14 @@ TEST(GeneratedSets, MultiStation) {
         {.reference = {.latitude = 60 * kRad}, .sigma_rate = 0.05, .prior_bias = 0.3});
     return std::pair(fit, Eigen::VectorXd(b));
   });
+  // Two axes, and gyros that know their bias to a tenth of a degree an hour.
+  ExpectFamily("multi-station, two gyros", 12'000, [](Random& random) {
+    const Eigen::Vector3d b = Noise(random, 0.1);
+    const auto fit = FitMultiStation(
+        GyroStations(b, 60, 0.02, random, false),
+        {.reference = {.latitude = 60 * kRad}, .sigma_rate = 0.02, .prior_bias = 0.1});
+    return std::pair(fit, Eigen::VectorXd(b.head<2>()));
+  });
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
@@ -60,6 +62,25 @@ struct RateResidual {
   }
 };
 
+/// Rates across the tool alone, at one station of which the azimuth is not known: parameters b (2),
+/// then the azimuth of every station.
+struct AcrossResidual {
+  Eigen::Vector2d high, right, raw;  ///< high and right side in the sensors' axes
+  double sine_inc, cosine_inc, level, up, sigma;
+  int azimuth;
+  template <class T>
+  bool operator()(const T* const* parameters, T* r) const {
+    using std::cos;
+    using std::sin;
+    const T* p = parameters[0];
+    const T w_high = level * cosine_inc * cos(p[azimuth]) + up * sine_inc;
+    const T w_right = -level * sin(p[azimuth]);
+    for (int i = 0; i < 2; ++i)
+      r[i] = (p[i] + high[i] * w_high + right[i] * w_right - raw[i]) / sigma;
+    return true;
+  }
+};
+
 struct PriorResidual {
   int parameter;
   double sigma;
@@ -75,8 +96,8 @@ Eigen::Vector3d DownOf(const AttitudeTable& table, int i) {
   return table.gravity_signed ? a : Eigen::Vector3d(-a);
 }
 
-void AddPriors(const Setup& setup, bool scales, NonlinearProblem& problem) {
-  for (int i = 0; i < 3; ++i) {
+void AddPriors(const Setup& setup, int axes, bool scales, NonlinearProblem& problem) {
+  for (int i = 0; i < axes; ++i) {
     if (setup.prior_bias) problem.Add({{0, "prior", 1}}, PriorResidual{i, *setup.prior_bias});
     if (scales && setup.prior_scale) {
       problem.Add({{0, "prior", 1}}, PriorResidual{3 + i, *setup.prior_scale});
@@ -100,7 +121,7 @@ NonlinearProblem Magnetic(const AttitudeTable& table, const Setup& setup) {
         FieldResidual{DownOf(table, i), table.mag.row(i).transpose(), *setup.reference.field,
                       *setup.reference.dip, sigma_field, sigma_dip});
   }
-  AddPriors(setup, true, problem);
+  AddPriors(setup, 3, true, problem);
   return problem;
 }
 
@@ -117,8 +138,82 @@ NonlinearProblem Gyros(const BenchTable& data, const std::vector<int>& columns,
                              rate * std::cos(*setup.reference.latitude),
                              rate * std::sin(*setup.reference.latitude), sigma});
   }
-  AddPriors(setup, false, problem);
+  AddPriors(setup, 3, false, problem);
   return problem;
+}
+
+std::vector<AcrossResidual> AcrossStations(const BenchTable& data, const std::vector<int>& columns,
+                                           const AttitudeTable& table, const Setup& setup) {
+  const double rate = kBenchEarthRate / units::kDegPerHour;
+  std::vector<AcrossResidual> stations;
+  stations.reserve(static_cast<std::size_t>(table.rows()));
+  for (int i = 0; i < table.rows(); ++i) {
+    const Eigen::Vector3d down = DownOf(table, i);
+    const double sine = down.head<2>().norm();
+    // Where it is vertical any direction will do for the high side.
+    const Eigen::Vector2d high =
+        sine > 1e-9 ? Eigen::Vector2d(-down.head<2>() / sine) : Eigen::Vector2d(1, 0);
+    stations.push_back({high,
+                        {-high.y(), high.x()},
+                        data.values(i, columns).transpose(),
+                        sine,
+                        down.z(),
+                        rate * std::cos(*setup.reference.latitude),
+                        rate * std::sin(*setup.reference.latitude),
+                        setup.sigma_rate.value_or(1),
+                        2 + i});
+  }
+  return stations;
+}
+
+// The azimuth of every station that suits the biases in x best, of a whole circle: two minima, east
+// and west of north or north and south of east, may both be near.
+void TakeBestAzimuths(const std::vector<AcrossResidual>& stations, Eigen::VectorXd& x) {
+  constexpr int kDirections = 180;
+  for (const AcrossResidual& station : stations) {
+    double least = std::numeric_limits<double>::infinity(), best = 0;
+    for (int k = 0; k < kDirections; ++k) {
+      const double azimuth = kTwoPi * k / kDirections;
+      x[station.azimuth] = azimuth;
+      const double* const parameters = x.data();
+      double r[2];
+      station(&parameters, r);
+      const double cost = r[0] * r[0] + r[1] * r[1];
+      if (cost < least) {
+        least = cost;
+        best = azimuth;
+      }
+    }
+    x[station.azimuth] = best;
+  }
+}
+
+Result<NonlinearProblem::Solution> SolveTwoGyros(const BenchTable& data,
+                                                 const std::vector<int>& columns,
+                                                 const AttitudeTable& table, const Setup& setup) {
+  const std::vector<AcrossResidual> stations = AcrossStations(data, columns, table, setup);
+  std::vector<std::string> names = VectorNames("bg_degh", 2);
+  for (const std::string& name : VectorNames("azimuth", table.rows())) names.push_back(name);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(2 + table.rows());
+  TakeBestAzimuths(stations, start);
+  NonlinearProblem problem(names, start);
+  problem.sigma_given = setup.sigma_rate.has_value();
+  problem.robust = false;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const double sigma = stations[i].sigma;
+    problem.Add({{table.lines[i], "wx", sigma}, {table.lines[i], "wy", sigma}}, stations[i]);
+  }
+  AddPriors(setup, 2, false, problem);
+  auto best = problem.Solve();
+  for (int turn = 0; turn < 5 && best; ++turn) {
+    Eigen::VectorXd again = best->x;
+    TakeBestAzimuths(stations, again);
+    problem.Start(again);
+    auto next = problem.Solve();
+    if (!next || next->cost > best->cost * (1 - 1e-9)) break;
+    best = std::move(next);
+  }
+  return best;
 }
 
 void RemarkPriors(const Setup& setup, FitReport& report) {
@@ -173,15 +268,19 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   }
   if (gyros && !setup.reference.latitude) throw std::invalid_argument("gyros need the latitude");
   std::vector<int> rates;
+  const bool two = gyros && !data.Find("wz");
+  const double rate = kBenchEarthRate / units::kDegPerHour;
   if (gyros) {
-    auto found = FindColumns(data, {"wx", "wy", "wz"});
+    auto found = two ? FindColumns(data, {"wx", "wy"}) : FindColumns(data, {"wx", "wy", "wz"});
     if (!found) return found.fault();
     rates = *std::move(found);
-    const double rate = kBenchEarthRate / units::kDegPerHour;
+  }
+  if (gyros && !two) {
     if (auto fault = MixedUnits(data, rates, rate, "the length of (wx, wy, wz)", "deg/h")) {
       return *fault;
     }
-  } else {
+  }
+  if (!gyros) {
     std::vector<int> mag;
     for (const std::string& name : table->mag_channels) mag.push_back(*data.Find(name));
     if (auto fault = MixedUnits(data, mag, *setup.reference.field,
@@ -190,9 +289,9 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
     }
     if (auto fault = WrongDip(data, *table, *setup.reference.dip)) return *fault;
   }
-  const NonlinearProblem problem =
-      gyros ? Gyros(data, rates, *table, setup) : Magnetic(*table, setup);
-  const auto solution = problem.Solve();
+  const auto solution = two     ? SolveTwoGyros(data, rates, *table, setup)
+                        : gyros ? Gyros(data, rates, *table, setup).Solve()
+                                : Magnetic(*table, setup).Solve();
   if (!solution) return BenchFault(data, solution.fault().text);
   const auto linear = SolveWhole(*solution, kAdvice);
   if (!linear) return BenchFault(data, linear.fault().text);
@@ -200,16 +299,22 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   out.report = ReportOf(solution->linear, *linear);
   FitReport& report = out.report;
   report.method = "multi-station";
-  const double rate = kBenchEarthRate / units::kDegPerHour;
   if (auto fault = DoesNotFit(data,
-                              {{"field", setup.reference.field.value_or(0)},
+                              {{"wx", rate},
+                               {"wy", rate},
+                               {"field", setup.reference.field.value_or(0)},
                                {"dip", 1},
                                {"level", rate},
                                {"vertical", rate}},
                               report)) {
     return *fault;
   }
-  AddVector(report, gyros ? "bg_degh" : "bm_nT", 0, 3);
+  // The stations' azimuths served their turn.
+  if (two) {
+    Reparametrise(report, VectorNames("bg_degh", 2),
+                  [](const Eigen::VectorXd& x) { return Eigen::VectorXd(x.head<2>()); });
+  }
+  AddVector(report, gyros ? "bg_degh" : "bm_nT", 0, two ? 2 : 3);
   if (!gyros) AddVector(report, "sm", 3, 3);
   RemarkPriors(setup, report);
   return out;

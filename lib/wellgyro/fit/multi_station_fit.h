@@ -20,10 +20,11 @@ struct MultiStationSetup {
 };
 
 /// What the stations of a run say of their own sensors: columns Gx, Gy, Gz and Mx, My, Mz [nT], or
-/// wx, wy, wz [deg/h], calibrated, a row a station.
+/// wx, wy [and wz, deg/h], calibrated, a row a station.
 ///
 /// Magnetometers: M = (M_raw - bm) / (1 + sm) with |M| that of the field and its dip against
-/// gravity; gyros (where wx is there): |w - bg| the Earth's rate and its vertical part We sin L.
+/// gravity; gyros (where wx is there): the level and vertical parts of w - bg
+/// are We cos L and We sin L; with two axes the azimuth of every station is estimated along.
 /// Biases across the hole need toolfaces all round, those along it a spread of inclination or
 /// azimuth; near horizontal east-west nothing sees bm_z. Priors carry what the stations do not, and
 /// a remark says for what. Result: `bm_nT`, `sm`; or `bg_degh`.
