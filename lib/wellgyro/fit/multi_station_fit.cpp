@@ -75,8 +75,9 @@ struct AcrossResidual {
     const T* p = parameters[0];
     const T w_high = level * cosine_inc * cos(p[azimuth]) + up * sine_inc;
     const T w_right = -level * sin(p[azimuth]);
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 2; ++i) {
       r[i] = (p[i] + high[i] * w_high + right[i] * w_right - raw[i]) / sigma;
+    }
     return true;
   }
 };
