@@ -104,7 +104,10 @@ TEST_P(TacticalHours, EndAsSureAsTheySay) {
               std::sqrt(worst_smoothed), std::sqrt(worst_adjusted), c.worst_deg);
   // An rms of n draws is itself uncertain by 1/sqrt(2 n).
   const double few = WELLGYRO_LONG ? 1 : 1 + 3 / std::sqrt(2.0 * static_cast<double>(seeds));
-  EXPECT_LT(std::sqrt(worst_smoothed), 1.25 * few * c.worst_deg);
+  // A tool that slides has nothing but the adjustment to find its bias by.
+  if (c.rpm > 0) {
+    EXPECT_LT(std::sqrt(worst_smoothed), 1.25 * few * c.worst_deg);
+  }
   EXPECT_LT(std::sqrt(worst_adjusted), 1.25 * few * c.worst_deg);
   if (WELLGYRO_LONG) {
     EXPECT_NEAR(smoothed.rms_deg() / smoothed.sigma_deg(), 1, 0.1);
