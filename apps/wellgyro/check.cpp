@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/io/error_model_file.h"
+#include "wellgyro/io/exchange.h"
 #include "wellgyro/io/file_kind.h"
 #include "wellgyro/io/job_file.h"
 #include "wellgyro/io/noise_file.h"
@@ -94,6 +96,20 @@ std::vector<Fault> FaultsOfSensorTable(const std::string& name) {
   return table->fault() ? std::vector<Fault>{*table->fault()} : std::vector<Fault>();
 }
 
+/// A survey in another's format, or nothing that wellgyro reads.
+int CheckForeign(const std::string& name, const std::string& what) {
+  const Result<SurveyTable> table = ReadSurvey(name);
+  if (!table) {
+    fmt::print("{}: {}, not one of wellgyro's nor a survey it reads\n  {}\n", name, what,
+               Sentence(table.fault()));
+    return kUnusable;
+  }
+  const std::size_t rows = table->rows();
+  fmt::print("{}: {}, a survey of {} stations from MD {:.2f} to {:.2f} m, whole\n", name, what,
+             rows, rows > 0 ? table->md(0) : 0, rows > 0 ? table->md(rows - 1) : 0);
+  return kDone;
+}
+
 int CheckFile(const std::string& name) {
   const Result<FileIdentity> identity = IdentifyFile(name);
   if (!identity) {
@@ -119,9 +135,10 @@ int CheckFile(const std::string& name) {
     case FileKind::kLcmLog:
       return CheckLog(name);
     case FileKind::kEmpty:
-    case FileKind::kForeign:
       fmt::print("{}: {}, not one of wellgyro's\n", name, what);
       return kUnusable;
+    case FileKind::kForeign:
+      return CheckForeign(name, what);
     default:
       fmt::print("{}: {}\n", name, what);
       return kDone;

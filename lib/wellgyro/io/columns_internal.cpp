@@ -219,6 +219,24 @@ std::optional<double> CurvatureFactor(std::string unit) {
   return times * *angle / (*count * FactorOf(*length));
 }
 
+// Finds what `name` is a heading of, if of anything.
+void NameHeading(Heading& found, std::string_view name) {
+  const std::string plain = LettersAndDigits(name);
+  found.status = plain == "status";
+  for (const TextColumnInfo& info : kTextInfo) {
+    if (plain == LettersAndDigits(info.csv)) found.text = info.column;
+  }
+  for (const Alias& alias : kAliases) {
+    if (plain != alias.name) continue;
+    found.column = alias.column;
+    found.north = alias.north;
+    return;
+  }
+  for (const ColumnInfo& info : kInfo) {
+    if (plain == LettersAndDigits(info.csv)) found.column = info.column;
+  }
+}
+
 }  // namespace
 
 std::span<const ColumnInfo> AllColumns() { return kInfo; }
@@ -229,26 +247,21 @@ Heading HeadingOf(std::string_view heading) {
   Heading found;
   heading = Trim(heading);
   const std::size_t bracket = heading.find_first_of("[(");
-  std::string_view name = heading.substr(0, bracket);
+  const std::string_view name = heading.substr(0, bracket);
   if (bracket != std::string_view::npos) {
     const std::size_t close = heading.find_last_of("])");
     const std::size_t end = close == std::string_view::npos ? heading.size() : close;
     if (end > bracket) found.unit = Trim(heading.substr(bracket + 1, end - bracket - 1));
+    NameHeading(found, name);
+    return found;
   }
-  const std::string plain = LettersAndDigits(name);
-  if (plain == "status") found.status = true;
-  for (const TextColumnInfo& info : kTextInfo) {
-    if (plain == LettersAndDigits(info.csv)) found.text = info.column;
-  }
-  for (const Alias& alias : kAliases) {
-    if (plain == alias.name) {
-      found.column = alias.column;
-      found.north = alias.north;
-      return found;
-    }
-  }
-  for (const ColumnInfo& info : kInfo) {
-    if (plain == LettersAndDigits(info.csv)) found.column = info.column;
+  NameHeading(found, name);
+  for (const std::string_view unit : {"m", "ft", "deg"}) {  // as md_ft
+    const std::size_t line = name.find_last_of('_');
+    if (found.column || line == std::string_view::npos) break;
+    if (!EqualNoCase(name.substr(line + 1), unit)) continue;
+    found.unit = unit;
+    NameHeading(found, name.substr(0, line));
   }
   return found;
 }

@@ -55,7 +55,8 @@ std::string WriteOsdu(const SurveyTable& table) {
   NeedNorth(table, "an OSDU manifest");
   const SurveyHead& head = table.head;
   if (table.rows() == 0) Lacks("an OSDU manifest", "a station");
-  if (!head.datum_elevation) Lacks("an OSDU manifest", "the elevation of the depth datum");
+  if (!head.datum_elevation)
+    Lacks("an OSDU manifest", "the elevation of the depth datum (datum_elevation_m)");
   const double factor = FactorOf(head.md_unit);
   const std::string unit =
       head.md_unit == LengthUnit::kUsFoot ? "ft[US]" : std::string(WordOf(head.md_unit));

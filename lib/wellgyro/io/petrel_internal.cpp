@@ -181,7 +181,8 @@ std::string WritePetrel(const SurveyTable& table) {
   NeedNorth(table, "Petrel");
   const SurveyHead& head = table.head;
   if (head.azimuth.north == North::kMagnetic) Lacks("Petrel", "azimuths from true or grid north");
-  if (!head.datum_elevation) Lacks("Petrel", "the elevation of the depth datum");
+  if (!head.datum_elevation)
+    Lacks("Petrel", "the elevation of the depth datum (datum_elevation_m)");
   if (table.rows() == 0 || !table.Get(Column::kTvd, 0) || !table.Get(Column::kNorth, 0)) {
     Lacks("Petrel", "positions");
   }

@@ -14,7 +14,7 @@ namespace {
 
 class ProgramReader {
  public:
-  ProgramReader(std::filesystem::path folder, NorthReference wanted)
+  ProgramReader(std::filesystem::path folder, North wanted)
       : files_(std::move(folder)), wanted_(wanted) {}
 
   SurveyProgram Read(TomlTable& root) {
@@ -47,6 +47,7 @@ class ProgramReader {
     const auto tvd = table.FindNumber("tvd_m", kAnyNumber);
     start.z() = tvd.value_or(0);
     if (tvd) program_.survey.start = start;
+    program_.survey.start_stated = tvd.has_value();
     if (!tvd && (table.Has("north_m") || table.Has("east_m"))) {
       table.Refuse("", "a place needs tvd_m too");
     }
@@ -59,19 +60,22 @@ class ProgramReader {
 
   void ReadLeg(TomlTable& table, int number) {
     const std::string name = table.Need("survey", table.FindString("survey"));
-    const Result<SurveyTable> survey =
-        ParseSurveyTable(files_.Take("survey", name), files_.PathOf(name).string(), wanted_);
+    const Result<WellStations> survey =
+        ParseWellStations(files_.Take("survey", name), files_.PathOf(name).string(), wanted_);
     if (!survey) throw TomlError{survey.fault()};
     ToolLeg leg;
     leg.model = Model(table);
     leg.run = static_cast<int>(table.FindInteger("run", 0, 1000000).value_or(number));
     const auto from = table.FindNumber("from_md_m", kAnyNumber);
     const auto to = table.FindNumber("to_md_m", kAnyNumber);
-    SurveyTable& all = program_.survey;
+    WellStations& all = program_.survey;
     if (number == 1) {
       all.north = survey->north;
       all.depth_unit_stated = survey->depth_unit_stated;
-      if (!all.start) all.start = survey->start;
+      if (!all.start_stated) {
+        all.start = survey->start;
+        all.start_stated = survey->start_stated;
+      }
     } else if (all.north != survey->north) {
       table.Refuse("survey", "its azimuths are of another north than those of the first leg");
     }
@@ -92,14 +96,14 @@ class ProgramReader {
   }
 
   NamedFiles files_;
-  NorthReference wanted_;
+  North wanted_;
   SurveyProgram program_;
   std::map<std::string, const ErrorModel*> models_;
 };
 
 }  // namespace
 
-Result<SurveyProgram> ReadSurveyProgram(const std::filesystem::path& path, NorthReference wanted) {
+Result<SurveyProgram> ReadSurveyProgram(const std::filesystem::path& path, North wanted) {
   const Result<std::string> text = ReadTextFile(path);
   if (!text) return text.fault();
   const auto read = [&](TomlTable& root) {

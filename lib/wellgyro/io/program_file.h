@@ -9,15 +9,15 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/io/survey_table.h"
 #include "wellgyro/io/text_file.h"
+#include "wellgyro/io/well_stations.h"
 #include "wellgyro/uncertainty/propagate.h"
 
 namespace wellgyro {
 
 /// A definitive survey: legs of several tools, one after the other.
 struct SurveyProgram {
-  SurveyTable survey;                                     ///< of all legs
+  WellStations survey;                                    ///< of all legs
   std::vector<std::unique_ptr<const ErrorModel>> models;  ///< that the legs point to
   std::vector<ToolLeg> legs;
   Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();  ///< of the first station [m^2]
@@ -30,7 +30,7 @@ struct SurveyProgram {
 /// included) to `to_md_m` (default: all). `[tie_in]` with `north_m`, `east_m`, `tvd_m` and
 /// `sigma_north_m`, `sigma_east_m`, `sigma_tvd_m` is optional. Files are named relative to `path`.
 /// Faults name file and line.
-WELLGYRO_EXPORT Result<SurveyProgram> ReadSurveyProgram(
-    const std::filesystem::path& path, NorthReference wanted = NorthReference::kTrue);
+WELLGYRO_EXPORT Result<SurveyProgram> ReadSurveyProgram(const std::filesystem::path& path,
+                                                        North wanted = North::kTrue);
 
 }  // namespace wellgyro

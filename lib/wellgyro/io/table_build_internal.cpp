@@ -80,6 +80,10 @@ std::optional<TableBuilder::Problem> TableBuilder::Add(double md, double inclina
     return Problem{FaultCode::kRange,
                    fmt::format("{} deg is no inclination", Exact(inclination, FromDegrees(1)))};
   }
+  constexpr double kDeepest = 1e6;  // [m]; no hole is
+  if (!(std::abs(md) <= kDeepest)) {
+    return Problem{FaultCode::kRange, fmt::format("{} m is no measured depth", Exact(md, 1))};
+  }
   if (OnPath(status)) {
     if (last_md_ && !(md > *last_md_)) {
       return Problem{FaultCode::kOrder, fmt::format("depth {} m after {} m: depth must increase",

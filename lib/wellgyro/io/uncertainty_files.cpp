@@ -14,10 +14,10 @@
 #include "wellgyro/io/error_model_file.h"
 #include "wellgyro/io/named_file_internal.h"
 #include "wellgyro/io/program_file.h"
-#include "wellgyro/io/survey_table.h"
 #include "wellgyro/io/toml_internal.h"
 #include "wellgyro/io/toml_writer_internal.h"
 #include "wellgyro/io/well_plot.h"
+#include "wellgyro/io/well_stations.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -34,25 +34,25 @@ struct Case {
   PositionUncertainty errors;
 };
 
-void CheckNorth(const SurveyTable& table, const std::optional<double>& convergence,
+void CheckNorth(const WellStations& table, const std::optional<double>& convergence,
                 std::vector<std::string>& notes) {
-  if (table.north == NorthReference::kGrid && !convergence) {
+  if (table.north == North::kGrid && !convergence) {
     throw std::invalid_argument("the survey's azimuths are grid: the convergence is needed");
   }
-  if (table.north == NorthReference::kTrue && convergence && *convergence != 0) {
+  if (table.north == North::kTrue && convergence && *convergence != 0) {
     throw std::invalid_argument(
         "the survey's azimuths are true by its header; with a convergence they would be grid");
   }
-  if (table.north == NorthReference::kUnstated) {
+  if (table.north == North::kUnknown) {
     notes.emplace_back(convergence ? "azimuths taken as grid" : "azimuths taken as true");
   }
   if (!table.depth_unit_stated) notes.emplace_back("the header names no unit of depth: metres");
 }
 
-void Place(Case& c, SurveyTable table) {
+void Place(Case& c, WellStations table) {
   Eigen::Vector3d start(0, 0, 0);
-  if (table.start) {
-    start = *table.start;
+  if (table.start_stated) {
+    start = table.start;
   } else if (table.stations.front().md != 0) {
     start.z() = table.stations.front().md;
     c.notes.emplace_back("no TVD for the first station: taken to be its MD");
@@ -60,8 +60,8 @@ void Place(Case& c, SurveyTable table) {
   c.well = SurveyWell(std::move(table.stations), start);
 }
 
-NorthReference Wanted(const UncertaintyRequest& request) {
-  return request.convergence ? NorthReference::kGrid : NorthReference::kTrue;
+North Wanted(const UncertaintyRequest& request) {
+  return request.convergence ? North::kGrid : North::kTrue;
 }
 
 void ReadProgram(Case& c, const std::filesystem::path& path, const UncertaintyRequest& request) {
@@ -91,11 +91,11 @@ void NoteUnobserved(std::string_view noise_file, std::vector<std::string>& notes
   }
 }
 
-void ReadSurvey(Case& c, const UncertaintySources& sources, const UncertaintyRequest& request) {
+void ReadSingle(Case& c, const UncertaintySources& sources, const UncertaintyRequest& request) {
   NamedFiles files{std::filesystem::path()};
   const std::string survey = sources.survey->string();
-  Result<SurveyTable> table =
-      ParseSurveyTable(files.Take("survey", survey), survey, Wanted(request));
+  Result<WellStations> table =
+      ParseWellStations(files.Take("survey", survey), survey, Wanted(request));
   if (!table) throw TomlError{table.fault()};
   CheckNorth(*table, request.convergence, c.notes);
   if (sources.model) {
@@ -125,7 +125,7 @@ Case ReadCase(const UncertaintySources& sources, const UncertaintyRequest& reque
     if (!sources.model && !sources.noise) {
       throw std::invalid_argument("an error model, the noise of a gyro or a program is needed");
     }
-    ReadSurvey(c, sources, request);
+    ReadSingle(c, sources, request);
     c.cov_tie_in = request.sigma_tie_in.cwiseAbs2().asDiagonal();
   }
   c.basis.form = request.form;
