@@ -134,6 +134,33 @@ INSTANTIATE_TEST_SUITE_P(Inclinations, TacticalHours,
                                            TacticalCase{60, 0, 0.095}, TacticalCase{90, 0, 0.084},
                                            TacticalCase{110, 0, 0.090}));
 
+// Between 0.2 and 3.8 deg from vertical; nearest to it the errors of neighbouring knots are one.
+TEST(Hours, LeanAsSureAsTheySayNearVertical) {
+  double sum[2] = {};
+  int knots[2] = {};
+  for (std::uint64_t seed = 1; seed <= Seeds(8, 200); ++seed) {
+    Hour hour = testing::Tactical();
+    hour.inclination_deg = 2;
+    hour.errors.accel_noise = 0.02 * units::kMilliG;
+    const Flown flown = Fly(hour, ExternalJob(hour, seed, 1e-3), seed);
+    const SmoothedRun run = AdjustRun(flown.history, 0).run;
+    for (std::size_t i = 0; i < flown.truth.size(); ++i) {
+      const int form = flown.history.epochs[i].knot.axial;
+      const double error = run.attitude[i].inclination - flown.truth[i].inclination;
+      sum[form] += error * error / run.attitude[i].cov_attitude(0, 0);
+      ++knots[form];
+    }
+  }
+  for (const int form : {0, 1}) {
+    const double mean = sum[form] / knots[form];
+    std::printf("inclination %s: squared error over variance %.2f, %d knots\n",
+                form == 1 ? "nearest to vertical" : "above", mean, knots[form]);
+    EXPECT_GT(knots[form], 1000);
+    EXPECT_GT(mean, 0.2);  // an hour's errors are nearly one: few of them are free
+    EXPECT_LT(mean, 2);
+  }
+}
+
 // Strong drift, three stops, no azimuth from outside, one position at each stop.
 struct UntoldCase {
   double swing_deg, rpm;
