@@ -245,5 +245,24 @@ TEST(RunLimits, ADepthErrorCountsOnceInAPassThatBeginsBelowTheTieIn) {
   EXPECT_GE(seen, 10);
 }
 
+// The encoder reads 0.5 m too much all the way: below a build from 10 to 88 deg that is in the TVD.
+TEST(RunLimits, ADepthErrorFromTheStartIsInTheTvdBelowABuild) {
+  Simulation simulation = Slant();
+  simulation.well.inclination.start = FromDegrees(10);
+  simulation.well.inclination.terms.push_back({.rate = FromDegrees(78) / 300});
+  simulation.tool.errors.depth_offset = 0.5;
+  Job job = SlantJob();
+  job.errors.depth_sigma = 0.5;
+  Sink sink;
+  const Survey survey = testing::SurveyOf(simulation, job, sink);
+  ASSERT_EQ(survey.unusable, "");
+  ASSERT_FALSE(survey.chosen.empty());
+  const Station& last = survey.chosen.back();
+  const double error = last.p_WT_W.z() - Truth(simulation).well().PlaceAt(last.md).p_WT_W.z();
+  const double sigma = std::sqrt(last.cov_p_WT_W(2, 2));
+  EXPECT_NEAR(error, 0.5 * (std::cos(FromDegrees(10)) - std::cos(last.inclination)), 0.05);
+  EXPECT_NEAR(sigma, std::abs(error), 0.1);
+}
+
 }  // namespace
 }  // namespace wellgyro

@@ -146,9 +146,26 @@ class SystematicCovariance {
   std::optional<Station> last_;
 };
 
+/// What a depth error of the whole run does beside moving each station along the hole there. The
+/// start is where it is whatever its depth reads, so that the path below it moves by the difference
+/// of the two directions: none in a straight hole; from vertical to horizontal all error of the
+/// TVD.
+class ShiftOfPath {
+ public:
+  explicit ShiftOfPath(const Station& first) : start_(Tangent(first.inclination, first.azimuth)) {}
+  Eigen::Matrix3d At(const Station& s) const {
+    const Eigen::Vector3d turned = start_ - Tangent(s.inclination, s.azimuth);
+    return s.cov_md_inc_azi(0, 0) * turned * turned.transpose();
+  }
+
+ private:
+  Eigen::Vector3d start_;
+};
+
 std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pass,
                                              const Start& start) {
   std::vector<Eigen::Matrix3d> covs;
+  const ShiftOfPath shift(pass.front().station);
   const bool windows =
       std::any_of(pass.begin(), pass.end(), [](const Item& item) { return item.state == nullptr; });
   // The first leg runs from the start to the first station with the first station's error.
@@ -157,7 +174,9 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
   if (windows) {
     SystematicCovariance sum(start.cov_p_WT_W, true);
     sum.Add(origin);
-    for (const Item& item : pass) covs.push_back(sum.Add(item.station));
+    for (const Item& item : pass) {
+      covs.push_back(sum.Add(item.station) + shift.At(item.station));
+    }
     return covs;
   }
   const bool out = pass.front().station.pass == Pass::kOut;
@@ -177,7 +196,7 @@ std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pa
         unseen += UnseenCourse(above->station, item.station);
       }
       above = &item;
-      covs.push_back(sum.Add(*item.state) + unseen);
+      covs.push_back(sum.Add(*item.state) + unseen + shift.At(item.station));
     } else {
       sum.Skip(*item.state);
       covs.push_back(covs.back());
