@@ -1,7 +1,9 @@
 #include "wellgyro/bus/lcm_live.h"
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -18,6 +20,7 @@
 #include "wellgyro/bus/feed.h"
 
 #include "bus/generated_messages.h"
+#include "bus/multicast.h"
 
 namespace wellgyro::test {
 namespace {
@@ -169,13 +172,16 @@ bool LeaveTheNetwork() { return unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0; }
 
 TEST(LcmLive, AMissingRouteIsNamedWithTheCommandThatAddsIt) {
   const pid_t child = fork();
-  if (child == 0) _exit(LeaveTheNetwork() ? 0 : 1);
+  if (child == 0) _exit(LeaveTheNetwork() ? 0 : errno);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
-  if (status != 0) GTEST_SKIP() << "no network namespaces here";
+  ASSERT_TRUE(WIFEXITED(status));
+  if (const int error = WEXITSTATUS(status); error != 0) {
+    GTEST_SKIP() << "no network namespaces here: " << std::strerror(error);
+  }
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   const auto open_without_network = [] {
-    LeaveTheNetwork();
+    if (!LeaveTheNetwork()) std::exit(2);
     const Result<LiveBus> bus = LiveBus::Open("udpm://239.255.76.67:7667");
     if (!bus) std::fputs(bus.fault().text.c_str(), stderr);
     std::exit(bus ? 1 : 0);
@@ -184,14 +190,26 @@ TEST(LcmLive, AMissingRouteIsNamedWithTheCommandThatAddsIt) {
               "ip route add 224.0.0.0/4 dev lo");
 }
 
-TEST(LcmLive, MulticastOnThisMachineLosesNothingAtARestingListener) {
+class LcmLiveMulticast : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string lacks = NoMulticast(port_); !lacks.empty()) GTEST_SKIP() << lacks;
+  }
+  std::string Url() const { return "udpm://239.255.76.67:" + std::to_string(port_); }
+
+ private:
   // A port of its own: LCM 1.3 hears every group on its port.
-  const std::string url = "udpm://239.255.76.67:" + std::to_string(20'000 + getpid() % 20'000);
+  std::uint16_t port_ = static_cast<std::uint16_t>(20'000 + getpid() % 40'000);
+};
+
+TEST_F(LcmLiveMulticast, ARestingListenerLosesNothing) {
+  const std::string url = Url();
   Result<LiveBus> listening = LiveBus::Open(url);
-  if (!listening) GTEST_SKIP() << listening.fault().text;
+  ASSERT_TRUE(listening) << listening.fault().text;
   EXPECT_THAT(listening->url(), HasSubstr("ttl=0&recv_buf_size=4194304"));
   std::vector<Got> got;
-  if (auto fault = listening->Subscribe({"WELLGYRO_DEPTH"}, Into(got))) GTEST_SKIP() << fault->text;
+  const auto fault = listening->Subscribe({"WELLGYRO_DEPTH"}, Into(got));
+  ASSERT_FALSE(fault) << fault->text;
   Result<LiveBus> speaking = LiveBus::Open(url);
   ASSERT_TRUE(speaking);
   const Bytes depth = BytesOf(GeneratedDepth());
@@ -201,7 +219,7 @@ TEST(LcmLive, MulticastOnThisMachineLosesNothingAtARestingListener) {
     ASSERT_FALSE(speaking->Publish("WELLGYRO_DEPTH", depth));
   }
   while (got.size() < kCount && Waited(*listening, 2000) == Woken::kMessages) continue;
-  EXPECT_EQ(got.size(), kCount);
+  ASSERT_EQ(got.size(), kCount);
   EXPECT_EQ(got.back().data, depth);
   EXPECT_EQ(listening->kernel_drops(), 0);
   ASSERT_TRUE(listening->granted_receive_buffer());
@@ -210,10 +228,10 @@ TEST(LcmLive, MulticastOnThisMachineLosesNothingAtARestingListener) {
 }
 
 // 10 kHz in batches of 32. LCM's own thread goes on reading while the consumer stands.
-TEST(LcmLive, AConsumerThatStandsForASecondLosesNothing) {
-  const std::string url = "udpm://239.255.76.67:" + std::to_string(40'000 + getpid() % 20'000);
+TEST_F(LcmLiveMulticast, AConsumerThatStandsForASecondLosesNothing) {
+  const std::string url = Url();
   Result<LiveBus> listening = LiveBus::Open(url);
-  if (!listening) GTEST_SKIP() << listening.fault().text;
+  ASSERT_TRUE(listening) << listening.fault().text;
   constexpr std::int64_t kCount = 625;
   std::int64_t heard = 0, wrong = 0;
   const auto handler = [&](std::string_view, std::span<const std::byte> data, std::int64_t) {
@@ -222,7 +240,8 @@ TEST(LcmLive, AConsumerThatStandsForASecondLosesNothing) {
     wrong += number == heard++ ? 0 : 1;
     if (heard == 100) std::this_thread::sleep_for(std::chrono::seconds(1));
   };
-  if (auto fault = listening->Subscribe({"BATCH"}, handler)) GTEST_SKIP() << fault->text;
+  const auto fault = listening->Subscribe({"BATCH"}, handler);
+  ASSERT_FALSE(fault) << fault->text;
   std::thread speaker([&url] {
     Result<LiveBus> speaking = LiveBus::Open(url);
     if (!speaking) return;
