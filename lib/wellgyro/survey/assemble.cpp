@@ -5,17 +5,15 @@
 #include <cstddef>
 #include <map>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "wellgyro/attitude/along_hole_covariance.h"
 #include "wellgyro/base/angle.h"
-#include "wellgyro/base/units.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/choose.h"
+#include "wellgyro/survey/pass_covariance_internal.h"
 #include "wellgyro/survey/station_of.h"
 #include "wellgyro/survey/way.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
@@ -24,31 +22,19 @@
 namespace wellgyro {
 namespace {
 
-// A leg so long without a depth in it was not seen: marks at stands of pipe.
-constexpr double kUnseenLeg = 5;  // [m]
-
-/// A station of one pass on its way to a position.
-struct Item {
-  Station station;
-  const StationState* state = nullptr;  ///< nullptr: from a window of its own
-  bool listed = true;
-  bool on_line = true;                ///< deeper than the one before
-  std::vector<PathStation> way = {};  ///< from the one before on the line
-};
-using PassItems = std::vector<Item>;  ///< in the order of depth
-
 /// The pass in the order of depth. Stations are met in the order of time, down or up; one at which
 /// the tool, or its depth counter, was on its way back lies on no leg and is only carried along.
 PassItems InDepthOrder(PassItems items) {
   const Pass pass = items.front().station.pass;
   if (items.front().state == nullptr) {
-    std::stable_sort(items.begin(), items.end(),
-                     [](const Item& a, const Item& b) { return a.station.md < b.station.md; });
+    std::stable_sort(items.begin(), items.end(), [](const PassItem& a, const PassItem& b) {
+      return a.station.md < b.station.md;
+    });
   } else if (pass == Pass::kOut) {
     std::reverse(items.begin(), items.end());
   }
   double last = -HUGE_VAL;
-  for (Item& item : items) {
+  for (PassItem& item : items) {
     item.on_line = item.station.md > last;
     if (item.on_line) last = item.station.md;
   }
@@ -65,8 +51,8 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
   std::vector<PassItems> result;
   for (auto& [number, items] : passes) {
     result.push_back(InDepthOrder(std::move(items)));
-    const Item* above = nullptr;
-    for (Item& item : result.back()) {
+    const PassItem* above = nullptr;
+    for (PassItem& item : result.back()) {
       if (!item.on_line) continue;
       if (above == nullptr && item.state != nullptr) {
         item.way = WayAbove(run.way, item.station, item.station.pass == Pass::kOut);
@@ -81,128 +67,10 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
 
 PathStation PathOf(const Station& s) { return {s.md, s.inclination, s.azimuth}; }
 
-/// Where a sum of legs starts.
-struct Start {
-  PathPoint point;
-  Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();
-};
-
-std::optional<Start> StartOnLine(const Site& head, const PassLine& line, double md) {
+std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, double md) {
   const auto i = line.Below(md);
   if (!i) return std::nullopt;
-  return Start{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs[*i]};
-}
-
-/// What the hole may do in a leg that nobody saw: course-length terms XCLA and XCLH of the ISCWSA
-/// error model, SPE 187249.
-Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
-  constexpr double kRatio = 0.167;
-  constexpr double kTortuosity = units::kDegPer100ft;  // the least that a hole turns
-  const double length = below.md - above.md;
-  const double inclination = 0.5 * (above.inclination + below.inclination);
-  const double turn = WrapPi(below.azimuth - above.azimuth);
-  const double azimuth = above.azimuth + 0.5 * turn;
-  const double si = std::sin(inclination), ci = std::cos(inclination);
-  const double sa = std::sin(azimuth), ca = std::cos(azimuth);
-  const double least = kTortuosity * length;
-  const double build = std::abs(below.inclination - above.inclination);
-  const Eigen::Vector3d high = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::max(build, least);
-  const Eigen::Vector3d right = Eigen::Vector3d(-sa, ca, 0) * std::max(std::abs(si * turn), least);
-  const double ratio = kRatio * length;
-  return ratio * ratio * (high * high.transpose() + right * right.transpose());
-}
-
-/// Azimuth and inclination errors taken as one and the same at all stations: for stations of their
-/// own windows, whose shared instrument errors dominate. Never smaller than what they really are.
-/// What the hole does between two stations, where nobody saw it, is random from leg to leg.
-class SystematicCovariance {
- public:
-  SystematicCovariance(const Eigen::Matrix3d& cov_tie_in, bool legs_unseen)
-      : cov_tie_in_(cov_tie_in), legs_unseen_(legs_unseen) {}
-
-  Eigen::Matrix3d Add(const Station& station) {
-    const double si = std::sin(station.inclination), ci = std::cos(station.inclination);
-    const double sa = std::sin(station.azimuth), ca = std::cos(station.azimuth);
-    Eigen::Matrix<double, 3, 2> turn;
-    turn.col(0) = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::sqrt(station.cov_md_inc_azi(1, 1));
-    turn.col(1) = Eigen::Vector3d(-si * sa, si * ca, 0) * std::sqrt(station.cov_md_inc_azi(2, 2));
-    const Eigen::Vector3d tangent(si * ca, si * sa, ci);
-    if (last_) {
-      sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
-      if (legs_unseen_) course_ += UnseenCourse(*last_, station);
-    }
-    last_ = station;
-    last_turn_ = turn;
-    return cov_tie_in_ + sum_ * sum_.transpose() + course_ +
-           station.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
-  }
-
- private:
-  Eigen::Matrix3d cov_tie_in_;
-  bool legs_unseen_;
-  Eigen::Matrix3d course_ = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 2> sum_ = Eigen::Matrix<double, 3, 2>::Zero();
-  Eigen::Matrix<double, 3, 2> last_turn_ = Eigen::Matrix<double, 3, 2>::Zero();
-  std::optional<Station> last_;
-};
-
-/// What a depth error of the whole run does beside moving each station along the hole there. The
-/// start is where it is whatever its depth reads, so that the path below it moves by the difference
-/// of the two directions: none in a straight hole; from vertical to horizontal all error of the
-/// TVD.
-class ShiftOfPath {
- public:
-  explicit ShiftOfPath(const Station& first) : start_(Tangent(first.inclination, first.azimuth)) {}
-  Eigen::Matrix3d At(const Station& s) const {
-    const Eigen::Vector3d turned = start_ - Tangent(s.inclination, s.azimuth);
-    return s.cov_md_inc_azi(0, 0) * turned * turned.transpose();
-  }
-
- private:
-  Eigen::Vector3d start_;
-};
-
-std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pass,
-                                             const Start& start) {
-  std::vector<Eigen::Matrix3d> covs;
-  const ShiftOfPath shift(pass.front().station);
-  const bool windows =
-      std::any_of(pass.begin(), pass.end(), [](const Item& item) { return item.state == nullptr; });
-  // The first leg runs from the start to the first station with the first station's error.
-  Station origin = pass.front().station;
-  origin.md = start.point.station.md;
-  if (windows) {
-    SystematicCovariance sum(start.cov_p_WT_W, true);
-    sum.Add(origin);
-    for (const Item& item : pass) {
-      covs.push_back(sum.Add(item.station) + shift.At(item.station));
-    }
-    return covs;
-  }
-  const bool out = pass.front().station.pass == Pass::kOut;
-  const auto order = out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth;
-  // Its depth error is left to the sum over the stations, which has it too.
-  Station entry = pass.front().station;
-  origin.cov_md_inc_azi(0, 0) = entry.cov_md_inc_azi(0, 0) = 0;
-  SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty());
-  first.Add(origin);
-  AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
-  Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
-  const Item* above = nullptr;
-  for (const Item& item : pass) {
-    if (item.on_line) {
-      const bool leg = above != nullptr && item.way.empty();
-      if (leg && item.station.md - above->station.md > kUnseenLeg) {
-        unseen += UnseenCourse(above->station, item.station);
-      }
-      above = &item;
-      covs.push_back(sum.Add(*item.state) + unseen + shift.At(item.station));
-    } else {
-      sum.Skip(*item.state);
-      covs.push_back(covs.back());
-    }
-  }
-  return covs;
+  return PathStart{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs[*i]};
 }
 
 /// What starts from a station has a depth error of its own, and must not have the station's too.
@@ -221,7 +89,7 @@ double SeverityOf(double length, const Eigen::Vector3d& t1, const Eigen::Vector3
 }
 
 /// Sums a pass over its way, from station to station.
-PassLine Place(const Site& head, const Job& job, const Start& start, PassItems& pass) {
+PassLine Place(const Site& head, const Job& job, const PathStart& start, PassItems& pass) {
   const std::vector<Eigen::Matrix3d> covs = PassCovariances(job, pass, start);
   Path path(head, start.point.station, start.point.p_WT_W);
   PassLine line{pass.front().station.run,
@@ -266,7 +134,7 @@ std::optional<Station> OpeningStation(const Job& job, const std::vector<PassItem
   } else {
     const Station* best = nullptr;
     for (const PassItems& pass : passes) {
-      for (const Item& item : pass) {
+      for (const PassItem& item : pass) {
         const Station& s = item.station;
         if (std::abs(s.md - tie.md) > TieInReach(job)) continue;
         if (!best || s.cov_md_inc_azi(2, 2) < best->cov_md_inc_azi(2, 2)) best = &s;
@@ -293,7 +161,7 @@ double ShallowestDepth(const std::vector<PassItems>& passes) {
 
 void PlaceAll(const Site& head, const Job& job, const Station& opening,
               std::vector<PassItems>& passes, std::vector<PassLine>& lines) {
-  Start tie;
+  PathStart tie;
   tie.point.station = PathOf(opening);
   tie.point.p_WT_W = opening.p_WT_W;
   tie.point.tangent_W = Tangent(opening.inclination, opening.azimuth);
@@ -312,7 +180,7 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
   const auto depth = [&](std::size_t i) { return lines[i].points.back().station.md; };
   for (std::size_t i : order) {
     const double first = passes[i].front().station.md;
-    std::optional<Start> start;
+    std::optional<PathStart> start;
     if (main_line < lines.size()) start = StartOnLine(head, lines[main_line], first);
     lines.push_back(Place(head, job, start && first > top ? *start : tie, passes[i]));
     if (depth(lines.size() - 1) > depth(main_line)) main_line = lines.size() - 1;
@@ -337,7 +205,7 @@ void PlaceChosen(const Site& head, const std::vector<PassLine>& lines, Placed& p
 void List(const std::vector<PassItems>& passes, double tie_md, bool misrun, Placed& placed) {
   for (const PassItems& pass : passes) {
     std::vector<Station> stations;
-    for (const Item& item : pass) {
+    for (const PassItem& item : pass) {
       if (!item.listed || !item.on_line || item.station.md <= tie_md + kSameDepth) continue;
       stations.push_back(item.station);
       if (misrun && stations.back().status != StationStatus::kRejected) {
@@ -372,7 +240,7 @@ void Choose(const Site& head, const Station& opening, const std::vector<PassLine
 std::string WhyNothing(const Job& job, const std::vector<PassItems>& passes, const Placed& placed) {
   double deepest = -HUGE_VAL;
   for (const PassItems& pass : passes) {
-    for (const Item& item : pass) deepest = std::max(deepest, item.station.md);
+    for (const PassItem& item : pass) deepest = std::max(deepest, item.station.md);
   }
   if (deepest <= job.tie_in.md + kSameDepth) {
     return fmt::format("the survey ends at {:.2f} m, no deeper than the tie-in at {:.2f} m",

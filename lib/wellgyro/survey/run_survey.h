@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "wellgyro/alignment/still_detector.h"
@@ -92,16 +93,20 @@ class RunSurvey {
   void CutAt(const KnotAt& cut, const AlongHole& end);
   std::optional<Draft> RestDraft(const AlongHole& end) const;
   Draft NewDraft(double md) const;
+  bool SamePlace(ToolTime time, std::optional<double> md) const;
   void TakeWindow(const StillWindow& window);
   void CheckStop();
+  NorthFix FixOf(std::span<const StillWindow> windows) const;
   void CloseGroup();
+  bool IsStill(const Waiting& waiting, const std::optional<StillWindow>& open) const;
   void Release(bool all);
+  void UseExternal(const Knot& knot);
   void StepFilter(const Waiting& waiting);
   void StartFilter(const Knot& knot);
   double AxisAzimuth(double inclination, double toolface) const;
   void SetTrackerAzimuth();
   void TellUnheard();
-  void UseFix(const NorthFix& fix);
+  void UseFix(NorthFix fix);
   void MoveSite(const Knot& knot);
   void ListStop(const NorthFix& fix);
 

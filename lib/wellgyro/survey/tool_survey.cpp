@@ -7,11 +7,8 @@
 #include <fmt/core.h>
 
 #include "wellgyro/attitude/smoother.h"
-#include "wellgyro/survey/choose.h"
-#include "wellgyro/survey/hole_attitude.h"
-#include "wellgyro/survey/joined_states.h"
-#include "wellgyro/survey/model_covariance.h"
-#include "wellgyro/survey/station_of.h"
+#include "wellgyro/survey/run_survey_internal.h"
+#include "wellgyro/survey/tool_survey_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -20,13 +17,6 @@ namespace {
 constexpr std::size_t kDueMax = 2000;
 // An accepted or rejected depth is typed by hand, to the decimetre at best.
 constexpr double kTypedDepth = 0.5;  // [m]
-// A foresight holds at a knot no further away than this.
-constexpr double kForesightSeconds = 2;
-// From so many sigmas on two norths are not both right.
-constexpr double kContradiction = 4;
-// So long after the last sample or mark a tool that was at rest then still hangs as it did.
-constexpr Duration kHeld = Duration::Seconds(600);
-constexpr double kHeldSpeed = 0.006;  // [m/s], that of the still detector
 
 /// Depth marks of a second and more after a sample decide its depth; so long it waits for them.
 Duration Hold(const Job& job, const DepthTrack& track) {
@@ -35,11 +25,6 @@ Duration Hold(const Job& job, const DepthTrack& track) {
 
 UtcTime TimeOf(const Operation& operation) {
   return std::visit([](const auto& record) { return record.utc; }, operation);
-}
-
-/// Near vertical the hole's direction is known without an azimuth.
-bool HasDirection(const AttitudeSample& attitude) {
-  return attitude.azimuth_known || Has(attitude.quality, Quality::kVertical);
 }
 
 /// Values that a tool at rest can send; what else comes, is damage.
@@ -55,18 +40,6 @@ bool CanBe(const StillWindow& window) {
   const bool depth = !window.md || std::abs(*window.md) < kDepth;
   return f > 5 && f < 20 && window.w_IT_T.norm() < kRate && sigmas && depth && seconds > 0 &&
          seconds < kSeconds;
-}
-
-/// The north fix that contradicts the job's external azimuth most, where one does.
-const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
-  if (job.alignment.method != AlignmentSpec::Method::kExternal) return nullptr;
-  const NorthFix* worst = nullptr;
-  for (const NorthFix& fix : run.fixes) {
-    if (fix.external || !fix.chi_square || Has(fix.quality, Quality::kVertical)) continue;
-    if (*fix.chi_square < kContradiction * kContradiction) continue;
-    if (worst == nullptr || *fix.chi_square > *worst->chi_square) worst = &fix;
-  }
-  return worst;
 }
 
 double Correction(const std::vector<std::pair<double, double>>& table, double md) {
@@ -151,10 +124,8 @@ bool ToolSurvey::IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) co
   return due.utc <= utc;
 }
 
-void ToolSurvey::Use(const ImuSample& sample) {
-  const SampleStamp& stamp = sample.stamp;
-  tie_.Push(stamp);
-  const UtcTime utc = tie_.ToUtc(stamp.tool_time);
+/// What holds from before this sample on; false: the survey ends with it.
+bool ToolSurvey::ObeyDue(const SampleStamp& stamp, UtcTime utc) {
   for (std::size_t i = 0; i < due_.size();) {
     if (!IsDue(due_[i], stamp, utc)) {
       // A mode may wait for its sample longer than its time says; nothing else does.
@@ -165,21 +136,31 @@ void ToolSurvey::Use(const ImuSample& sample) {
     const Operation operation = due_[i].operation;
     due_.erase(due_.begin() + static_cast<std::ptrdiff_t>(i));
     Obey(operation);
-    if (finish_asked_) return;
+    if (finish_asked_) return false;
   }
+  return true;
+}
+
+void ToolSurvey::CountLost(const SampleStamp& stamp, RunSummary& summary) {
+  if (!last_ || stamp.session != last_->session || stamp.seq <= last_->seq + 1) return;
+  const std::int64_t lost = stamp.seq - last_->seq - 1;
+  summary.samples_lost += lost;
+  lost_ += lost;
+  ++gaps_;
+  sink_.OnFault(Fault{FaultCode::kLost, fmt::format("samples {} to {} of session {} are missing",
+                                                    last_->seq + 1, stamp.seq - 1, stamp.session)});
+}
+
+void ToolSurvey::Use(const ImuSample& sample) {
+  const SampleStamp& stamp = sample.stamp;
+  tie_.Push(stamp);
+  const UtcTime utc = tie_.ToUtc(stamp.tool_time);
+  if (!ObeyDue(stamp, utc)) return;
   if (!last_) book_.HeardAt(utc);
   RunState* found = RunFor(book_.RunAt(utc, stamp.run));
   if (found == nullptr) return;
   RunState& run = *found;
-  if (last_ && stamp.session == last_->session && stamp.seq > last_->seq + 1) {
-    const std::int64_t lost = stamp.seq - last_->seq - 1;
-    run.survey->summary().samples_lost += lost;
-    lost_ += lost;
-    ++gaps_;
-    sink_.OnFault(
-        Fault{FaultCode::kLost, fmt::format("samples {} to {} of session {} are missing",
-                                            last_->seq + 1, stamp.seq - 1, stamp.session)});
-  }
+  CountLost(stamp, run.survey->summary());
   last_ = stamp;
   if (book_.Ended(run.survey->summary().run, utc)) {
     ++run.survey->summary().samples_after_end;
@@ -205,7 +186,7 @@ AlongHole ToolSurvey::DepthHeldAt(UtcTime utc) const {
   const UtcTime last = track_.newest();
   if (utc < last || utc - last > kHeld) return along;
   const AlongHole end = track_.At(last);
-  return std::abs(end.speed) <= kHeldSpeed ? end : along;
+  return std::abs(end.speed) <= kRestSpeed ? end : along;
 }
 
 inline void ToolSurvey::ShiftToSensor(UtcTime utc, AlongHole& along) const {
@@ -394,169 +375,6 @@ SampleTally ToolSurvey::tally() const {
   SampleTally tally{counts.accepted, lost_, gaps_, counts.duplicates, std::nullopt};
   if (counts.accepted > 0) tally.newest = queue_.newest();
   return tally;
-}
-
-/// Where the hole points at every knot that has a depth and a direction.
-std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
-  std::vector<Waypoint> way;
-  const std::vector<FilterEpoch>& epochs = run.survey->filter()->history().epochs;
-  way.reserve(epochs.size());
-  for (std::size_t i = 0; i < epochs.size(); ++i) {
-    const FilterEpoch& epoch = epochs[i];
-    AttitudeSample attitude;
-    if (i < run.attitude.size()) {
-      attitude = run.attitude[i];
-    } else {
-      attitude.inclination = epoch.knot.inclination;
-      attitude.azimuth = epoch.azimuth;
-      attitude.toolface = epoch.knot.toolface;
-      attitude.azimuth_known = epoch.azimuth_known;
-      if (epoch.knot.vertical) attitude.quality |= Quality::kVertical;
-    }
-    if (!epoch.knot.along.known || !HasDirection(attitude)) continue;
-    const HoleAttitude hole = AttitudeOfHole(attitude, job_.string);
-    way.push_back({epoch.knot.utc, {epoch.knot.along.md, hole.inclination, hole.azimuth}});
-  }
-  return way;
-}
-
-std::vector<DraftedRun> ToolSurvey::Drafted() const {
-  std::vector<DraftedRun> drafted;
-  for (const RunState& run : runs_) {
-    DraftedRun d;
-    d.run = run.survey->summary().run;
-    d.misrun = book_.misrun(d.run);
-    if (const AzimuthFilter* filter = run.survey->filter()) {
-      d.states = JoinStates(run.adjusted, run.backwards, filter->stations());
-      d.way = WayOf(run);
-    }
-    const bool contradicted = Contradiction(job_, run.survey->summary()) != nullptr;
-    for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
-      Draft draft = run.survey->drafts()[i];
-      if (contradicted) draft.station.quality |= Quality::kEarthRate;
-      if (draft.state && !HasDirection(d.states[*draft.state].attitude)) continue;
-      draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
-      d.drafts.push_back(std::move(draft));
-    }
-    drafted.push_back(std::move(d));
-  }
-  return drafted;
-}
-
-std::vector<Foresight> ToolSurvey::Foresights() const {
-  std::vector<Foresight> result;
-  for (const Event& event : foresights_) {
-    Foresight foresight{event.run, event.value_rad, event.sigma_rad, std::nullopt, 0};
-    for (const RunState& run : runs_) {
-      if (run.survey->summary().run != event.run || !run.survey->filter()) continue;
-      const auto& epochs = run.survey->filter()->history().epochs;
-      if (epochs.empty()) continue;
-      auto at = std::lower_bound(
-          epochs.begin(), epochs.end(), event.utc,
-          [](const FilterEpoch& epoch, UtcTime utc) { return epoch.knot.utc < utc; });
-      const bool after = at == epochs.end();
-      if (after) --at;
-      const auto i = static_cast<std::size_t>(at - epochs.begin());
-      if (i >= run.attitude.size()) continue;
-      const double away = std::abs((at->knot.utc - event.utc).seconds());
-      const AlongHole& along = at->knot.along;
-      const bool rests = at->knot.still || (along.known && std::abs(along.speed) <= kHeldSpeed);
-      const bool held = after && rests && away <= kHeld.seconds();
-      if (away > kForesightSeconds && !held) continue;
-      const AttitudeSample& attitude = run.attitude[i];
-      if (!attitude.azimuth_known) continue;
-      foresight.measured = DirectionOfMark(attitude);
-      foresight.sigma_measured = std::sqrt(attitude.cov_attitude(1, 1));
-    }
-    result.push_back(foresight);
-  }
-  return result;
-}
-
-std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const {
-  std::vector<RunSummary> summaries;
-  for (const RunState& run : runs_) summaries.push_back(run.survey->summary());
-  const std::vector<Foresight> foresights = Foresights();
-  return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_});
-}
-
-/// Stations that were asked for and passed, but at which no azimuth is known.
-std::int64_t ToolSurvey::WithoutAzimuth() const {
-  std::int64_t count = 0;
-  for (const RunState& run : runs_) {
-    const AzimuthFilter* filter = run.survey->filter();
-    for (const Draft& draft : run.survey->drafts()) {
-      if (!draft.listed || !draft.state || !filter) continue;
-      const std::size_t i = *draft.state;
-      const StationState& state = i < run.adjusted.size() ? run.adjusted[i] : filter->stations()[i];
-      count += HasDirection(state.attitude) ? 0 : 1;
-    }
-  }
-  return count;
-}
-
-Check ToolSurvey::CheckAzimuths() const {
-  Check check;
-  check.code = "stations_without_azimuth";
-  const auto count = static_cast<double>(WithoutAzimuth());
-  check.value = count;
-  check.sigma = check.limit = 0;
-  check.unit = "1";
-  check.limit_source = "every station passed has an azimuth";
-  check.verdict = Judge(count, 0);
-  return check;
-}
-
-Survey ToolSurvey::Current() const {
-  Survey survey;
-  for (const RunState& run : runs_) {
-    survey.runs.push_back(run.survey->summary());
-    RunSummary& summary = survey.runs.back();
-    summary.misrun = book_.misrun(summary.run);
-    summary.remark = book_.remark(summary.run);
-    summary.duplicates = queue_.counts().duplicates;
-  }
-  if (runs_.empty()) {
-    survey.unusable = "no samples came, and no averages at rest";
-    return survey;
-  }
-  const std::vector<DraftedRun> drafted = Drafted();
-  Placed placed = Assemble(job_, drafted);
-  survey.checks = Checks(placed.passes);
-  survey.checks.push_back(CheckAzimuths());
-  if (!job_.stations.at.empty()) survey.checks.push_back(CheckAsked(job_, placed.chosen));
-  survey.passes = std::move(placed.passes);
-  survey.chosen = std::move(placed.chosen);
-  survey.unusable = std::move(placed.unusable);
-  if (survey.unusable.empty()) survey.unusable = TakeModelCovariance(job_, survey.chosen);
-  survey.accepted = std::any_of(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
-    return s.status == StationStatus::kDefinitive;
-  });
-  const bool north = std::any_of(drafted.begin(), drafted.end(), [](const DraftedRun& run) {
-    return std::any_of(run.drafts.begin(), run.drafts.end(), [&run](const Draft& draft) {
-      return !draft.state || run.states[*draft.state].attitude.azimuth_known;
-    });
-  });
-  const bool depth = std::any_of(runs_.begin(), runs_.end(), [](const RunState& run) {
-    return run.survey->depth_seen() || run.survey->summary().samples == 0;
-  });
-  if (!depth) {
-    survey.unusable = fmt::format(
-        "samples came but no depth with them: no marks on {} at their times, or all further apart "
-        "than [depth] max_gap_s = {}",
-        job_.channels.depth, job_.depth.max_gap);
-  } else if (!north && (survey.chosen.empty() || WithoutAzimuth() > 0)) {
-    survey.unusable = job_.alignment.method == AlignmentSpec::Method::kExternal
-                          ? "no north was found: the depth or time at which the job's external "
-                            "azimuth holds was never reached"
-                          : fmt::format(
-                                "no north was found: no stop of {:.0f} s at which the gyros tell "
-                                "one azimuth from its mirror, and the job gives no azimuth; log a "
-                                "stop, or use [alignment] method = \"external\"",
-                                job_.alignment.min_still);
-  }
-  if (!survey.unusable.empty()) survey.chosen.clear();
-  return survey;
 }
 
 }  // namespace wellgyro

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -56,7 +57,6 @@ class ToolSurvey {
   struct RunState {
     std::unique_ptr<RunSurvey> survey;
     std::unique_ptr<ProvisionalPath> provisional;
-    std::size_t placed = 0;               ///< drafts that have gone through `provisional`
     std::vector<StationState> adjusted;   ///< as of the last Adjust
     std::vector<StationState> backwards;  ///< as the first north showed those before it
     std::size_t adjusted_drafts = 0;
@@ -69,6 +69,8 @@ class ToolSurvey {
 
   void Work();
   void Use(const ImuSample& sample);
+  bool ObeyDue(const SampleStamp& stamp, UtcTime utc);
+  void CountLost(const SampleStamp& stamp, RunSummary& summary);
   void Obey(const Operation& operation);
   void Obey(const ToolMode& mode);
   void Obey(const Event& event);
@@ -79,6 +81,7 @@ class ToolSurvey {
   RunState* RunFor(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
+  std::vector<RunSummary> Summaries() const;
   std::vector<Waypoint> WayOf(const RunState& run) const;
   std::vector<DraftedRun> Drafted() const;
   std::vector<Foresight> Foresights() const;
@@ -86,6 +89,8 @@ class ToolSurvey {
   void SendRevisions();
   std::int64_t WithoutAzimuth() const;
   Check CheckAzimuths() const;
+  std::string WithoutDepth() const;
+  std::string WithoutNorth(const std::vector<DraftedRun>& drafted, const Survey& survey) const;
 
   const Job& job_;
   std::int32_t tool_;
@@ -108,7 +113,6 @@ class ToolSurvey {
   UtcTime newest_used_;
   std::optional<UtcTime> finish_asked_;
   bool finished_ = false;
-  bool accepted_ = false;
   std::vector<Event> verdicts_;  ///< accepts and rejects, in the order in which they came
   std::vector<Event> foresights_;
   std::vector<ReturnToZero> returns_;

@@ -1,0 +1,140 @@
+#include "wellgyro/survey/pass_covariance_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "wellgyro/attitude/along_hole_covariance.h"
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro {
+namespace {
+
+// A leg so long without a depth in it was not seen: marks at stands of pipe.
+constexpr double kUnseenLeg = 5;  // [m]
+
+/// What the hole may do in a leg that nobody saw: course-length terms XCLA and XCLH of the ISCWSA
+/// error model, SPE 187249.
+Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
+  constexpr double kRatio = 0.167;
+  constexpr double kTortuosity = units::kDegPer100ft;  // the least that a hole turns
+  const double length = below.md - above.md;
+  const double inclination = 0.5 * (above.inclination + below.inclination);
+  const double turn = WrapPi(below.azimuth - above.azimuth);
+  const double azimuth = above.azimuth + 0.5 * turn;
+  const double si = std::sin(inclination), ci = std::cos(inclination);
+  const double sa = std::sin(azimuth), ca = std::cos(azimuth);
+  const double least = kTortuosity * length;
+  const double build = std::abs(below.inclination - above.inclination);
+  const Eigen::Vector3d high = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::max(build, least);
+  const Eigen::Vector3d right = Eigen::Vector3d(-sa, ca, 0) * std::max(std::abs(si * turn), least);
+  const double ratio = kRatio * length;
+  return ratio * ratio * (high * high.transpose() + right * right.transpose());
+}
+
+/// Azimuth and inclination errors taken as one and the same at all stations: for stations of their
+/// own windows, whose shared instrument errors dominate. Never smaller than what they really are.
+/// What the hole does between two stations, where nobody saw it, is random from leg to leg.
+class SystematicCovariance {
+ public:
+  SystematicCovariance(const Eigen::Matrix3d& cov_tie_in, bool legs_unseen)
+      : cov_tie_in_(cov_tie_in), legs_unseen_(legs_unseen) {}
+
+  Eigen::Matrix3d Add(const Station& station) {
+    const double si = std::sin(station.inclination), ci = std::cos(station.inclination);
+    const double sa = std::sin(station.azimuth), ca = std::cos(station.azimuth);
+    Eigen::Matrix<double, 3, 2> turn;
+    turn.col(0) = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::sqrt(station.cov_md_inc_azi(1, 1));
+    turn.col(1) = Eigen::Vector3d(-si * sa, si * ca, 0) * std::sqrt(station.cov_md_inc_azi(2, 2));
+    const Eigen::Vector3d tangent(si * ca, si * sa, ci);
+    if (last_) {
+      sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
+      if (legs_unseen_) course_ += UnseenCourse(*last_, station);
+    }
+    last_ = station;
+    last_turn_ = turn;
+    return cov_tie_in_ + sum_ * sum_.transpose() + course_ +
+           station.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
+  }
+
+ private:
+  Eigen::Matrix3d cov_tie_in_;
+  bool legs_unseen_;
+  Eigen::Matrix3d course_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, 2> sum_ = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Matrix<double, 3, 2> last_turn_ = Eigen::Matrix<double, 3, 2>::Zero();
+  std::optional<Station> last_;
+};
+
+/// What a depth error of the whole run does beside moving each station along the hole there. The
+/// start is where it is whatever its depth reads, so that the path below it moves by the difference
+/// of the two directions: none in a straight hole; from vertical to horizontal all error of the
+/// TVD.
+class ShiftOfPath {
+ public:
+  explicit ShiftOfPath(const Station& first) : start_(Tangent(first.inclination, first.azimuth)) {}
+  Eigen::Matrix3d At(const Station& s) const {
+    const Eigen::Vector3d turned = start_ - Tangent(s.inclination, s.azimuth);
+    return s.cov_md_inc_azi(0, 0) * turned * turned.transpose();
+  }
+
+ private:
+  Eigen::Vector3d start_;
+};
+
+std::vector<Eigen::Matrix3d> OfWindows(const PassItems& pass, const PathStart& start,
+                                       const Station& origin, const ShiftOfPath& shift) {
+  std::vector<Eigen::Matrix3d> covs;
+  SystematicCovariance sum(start.cov_p_WT_W, true);
+  sum.Add(origin);
+  for (const PassItem& item : pass) covs.push_back(sum.Add(item.station) + shift.At(item.station));
+  return covs;
+}
+
+std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
+                                       const PathStart& start, Station origin,
+                                       const ShiftOfPath& shift) {
+  std::vector<Eigen::Matrix3d> covs;
+  const bool out = pass.front().station.pass == Pass::kOut;
+  const auto order = out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth;
+  // Its depth error is left to the sum over the stations, which has it too.
+  Station entry = pass.front().station;
+  origin.cov_md_inc_azi(0, 0) = entry.cov_md_inc_azi(0, 0) = 0;
+  SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty());
+  first.Add(origin);
+  AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
+  Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
+  const PassItem* above = nullptr;
+  for (const PassItem& item : pass) {
+    if (item.on_line) {
+      const bool leg = above != nullptr && item.way.empty();
+      if (leg && item.station.md - above->station.md > kUnseenLeg) {
+        unseen += UnseenCourse(above->station, item.station);
+      }
+      above = &item;
+      covs.push_back(sum.Add(*item.state) + unseen + shift.At(item.station));
+    } else {
+      sum.Skip(*item.state);
+      covs.push_back(covs.back());
+    }
+  }
+  return covs;
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pass,
+                                             const PathStart& start) {
+  const ShiftOfPath shift(pass.front().station);
+  // The first leg runs from the start to the first station with the first station's error.
+  Station origin = pass.front().station;
+  origin.md = start.point.station.md;
+  const bool windows = std::any_of(pass.begin(), pass.end(),
+                                   [](const PassItem& item) { return item.state == nullptr; });
+  return windows ? OfWindows(pass, start, origin, shift)
+                 : OfSamples(job, pass, start, origin, shift);
+}
+
+}  // namespace wellgyro

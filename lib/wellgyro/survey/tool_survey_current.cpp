@@ -1,0 +1,223 @@
+// The survey of one tool as it stands: stations placed, checks made.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/survey/hole_attitude.h"
+#include "wellgyro/survey/joined_states.h"
+#include "wellgyro/survey/model_covariance.h"
+#include "wellgyro/survey/run_survey_internal.h"
+#include "wellgyro/survey/tool_survey.h"
+#include "wellgyro/survey/tool_survey_internal.h"
+
+namespace wellgyro {
+namespace {
+
+// A foresight holds at a knot no further away than this.
+constexpr double kForesightSeconds = 2;
+// From so many sigmas on two norths are not both right.
+constexpr double kContradiction = 4;
+
+/// Near vertical the hole's direction is known without an azimuth.
+bool HasDirection(const AttitudeSample& attitude) {
+  return attitude.azimuth_known || Has(attitude.quality, Quality::kVertical);
+}
+
+}  // namespace
+
+const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
+  if (job.alignment.method != AlignmentSpec::Method::kExternal) return nullptr;
+  const NorthFix* worst = nullptr;
+  for (const NorthFix& fix : run.fixes) {
+    if (fix.external || !fix.chi_square || Has(fix.quality, Quality::kVertical)) continue;
+    if (*fix.chi_square < kContradiction * kContradiction) continue;
+    if (worst == nullptr || *fix.chi_square > *worst->chi_square) worst = &fix;
+  }
+  return worst;
+}
+
+/// Where the hole points at every knot that has a depth and a direction.
+std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
+  std::vector<Waypoint> way;
+  const std::vector<FilterEpoch>& epochs = run.survey->filter()->history().epochs;
+  way.reserve(epochs.size());
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    const FilterEpoch& epoch = epochs[i];
+    AttitudeSample attitude;
+    if (i < run.attitude.size()) {
+      attitude = run.attitude[i];
+    } else {
+      attitude.inclination = epoch.knot.inclination;
+      attitude.azimuth = epoch.azimuth;
+      attitude.toolface = epoch.knot.toolface;
+      attitude.azimuth_known = epoch.azimuth_known;
+      if (epoch.knot.vertical) attitude.quality |= Quality::kVertical;
+    }
+    if (!epoch.knot.along.known || !HasDirection(attitude)) continue;
+    const HoleAttitude hole = AttitudeOfHole(attitude, job_.string);
+    way.push_back({epoch.knot.utc, {epoch.knot.along.md, hole.inclination, hole.azimuth}});
+  }
+  return way;
+}
+
+std::vector<DraftedRun> ToolSurvey::Drafted() const {
+  std::vector<DraftedRun> drafted;
+  for (const RunState& run : runs_) {
+    DraftedRun d;
+    d.run = run.survey->summary().run;
+    d.misrun = book_.misrun(d.run);
+    if (const AzimuthFilter* filter = run.survey->filter()) {
+      d.states = JoinStates(run.adjusted, run.backwards, filter->stations());
+      d.way = WayOf(run);
+    }
+    const bool contradicted = Contradiction(job_, run.survey->summary()) != nullptr;
+    for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
+      Draft draft = run.survey->drafts()[i];
+      if (contradicted) draft.station.quality |= Quality::kEarthRate;
+      if (draft.state && !HasDirection(d.states[*draft.state].attitude)) continue;
+      draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
+      d.drafts.push_back(std::move(draft));
+    }
+    drafted.push_back(std::move(d));
+  }
+  return drafted;
+}
+
+std::vector<Foresight> ToolSurvey::Foresights() const {
+  std::vector<Foresight> result;
+  for (const Event& event : foresights_) {
+    Foresight foresight{event.run, event.value_rad, event.sigma_rad, std::nullopt, 0};
+    for (const RunState& run : runs_) {
+      if (run.survey->summary().run != event.run || !run.survey->filter()) continue;
+      const auto& epochs = run.survey->filter()->history().epochs;
+      if (epochs.empty()) continue;
+      auto at = std::lower_bound(
+          epochs.begin(), epochs.end(), event.utc,
+          [](const FilterEpoch& epoch, UtcTime utc) { return epoch.knot.utc < utc; });
+      const bool after = at == epochs.end();
+      if (after) --at;
+      const auto i = static_cast<std::size_t>(at - epochs.begin());
+      if (i >= run.attitude.size()) continue;
+      const double away = std::abs((at->knot.utc - event.utc).seconds());
+      const AlongHole& along = at->knot.along;
+      const bool rests = at->knot.still || (along.known && std::abs(along.speed) <= kRestSpeed);
+      const bool held = after && rests && away <= kHeld.seconds();
+      if (away > kForesightSeconds && !held) continue;
+      const AttitudeSample& attitude = run.attitude[i];
+      if (!attitude.azimuth_known) continue;
+      foresight.measured = DirectionOfMark(attitude);
+      foresight.sigma_measured = std::sqrt(attitude.cov_attitude(1, 1));
+    }
+    result.push_back(foresight);
+  }
+  return result;
+}
+
+std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const {
+  std::vector<RunSummary> summaries;
+  for (const RunState& run : runs_) summaries.push_back(run.survey->summary());
+  const std::vector<Foresight> foresights = Foresights();
+  return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_});
+}
+
+/// Stations that were asked for and passed, but at which no azimuth is known.
+std::int64_t ToolSurvey::WithoutAzimuth() const {
+  std::int64_t count = 0;
+  for (const RunState& run : runs_) {
+    const AzimuthFilter* filter = run.survey->filter();
+    for (const Draft& draft : run.survey->drafts()) {
+      if (!draft.listed || !draft.state || !filter) continue;
+      const std::size_t i = *draft.state;
+      const StationState& state = i < run.adjusted.size() ? run.adjusted[i] : filter->stations()[i];
+      count += HasDirection(state.attitude) ? 0 : 1;
+    }
+  }
+  return count;
+}
+
+Check ToolSurvey::CheckAzimuths() const {
+  Check check;
+  check.code = "stations_without_azimuth";
+  const auto count = static_cast<double>(WithoutAzimuth());
+  check.value = count;
+  check.sigma = check.limit = 0;
+  check.unit = "1";
+  check.limit_source = "every station passed has an azimuth";
+  check.verdict = Judge(count, 0);
+  return check;
+}
+
+std::vector<RunSummary> ToolSurvey::Summaries() const {
+  std::vector<RunSummary> summaries;
+  for (const RunState& run : runs_) {
+    RunSummary& summary = summaries.emplace_back(run.survey->summary());
+    summary.misrun = book_.misrun(summary.run);
+    summary.remark = book_.remark(summary.run);
+    summary.duplicates = queue_.counts().duplicates;
+  }
+  return summaries;
+}
+
+/// The sentence for a survey whose samples no depth came with; empty where some did.
+std::string ToolSurvey::WithoutDepth() const {
+  const bool depth = std::any_of(runs_.begin(), runs_.end(), [](const RunState& run) {
+    return run.survey->depth_seen() || run.survey->summary().samples == 0;
+  });
+  if (depth) return {};
+  return fmt::format(
+      "samples came but no depth with them: no marks on {} at their times, or all further apart "
+      "than [depth] max_gap_s = {}",
+      job_.channels.depth, job_.depth.max_gap);
+}
+
+/// The sentence for a survey that lacks nothing but a north; empty where there is one.
+std::string ToolSurvey::WithoutNorth(const std::vector<DraftedRun>& drafted,
+                                     const Survey& survey) const {
+  const bool north = std::any_of(drafted.begin(), drafted.end(), [](const DraftedRun& run) {
+    return std::any_of(run.drafts.begin(), run.drafts.end(), [&run](const Draft& draft) {
+      return !draft.state || run.states[*draft.state].attitude.azimuth_known;
+    });
+  });
+  if (north || (!survey.chosen.empty() && WithoutAzimuth() == 0)) return {};
+  if (job_.alignment.method == AlignmentSpec::Method::kExternal) {
+    return "no north was found: the depth or time at which the job's external azimuth holds was "
+           "never reached";
+  }
+  return fmt::format(
+      "no north was found: no stop of {:.0f} s at which the gyros tell one azimuth from its "
+      "mirror, "
+      "and the job gives no azimuth; log a stop, or use [alignment] method = \"external\"",
+      job_.alignment.min_still);
+}
+
+Survey ToolSurvey::Current() const {
+  Survey survey;
+  if (runs_.empty()) {
+    survey.unusable = "no samples came, and no averages at rest";
+    return survey;
+  }
+  survey.runs = Summaries();
+  const std::vector<DraftedRun> drafted = Drafted();
+  Placed placed = Assemble(job_, drafted);
+  survey.checks = Checks(placed.passes);
+  survey.checks.push_back(CheckAzimuths());
+  if (!job_.stations.at.empty()) survey.checks.push_back(CheckAsked(job_, placed.chosen));
+  survey.passes = std::move(placed.passes);
+  survey.chosen = std::move(placed.chosen);
+  survey.unusable = std::move(placed.unusable);
+  if (survey.unusable.empty()) survey.unusable = TakeModelCovariance(job_, survey.chosen);
+  survey.accepted = std::any_of(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
+    return s.status == StationStatus::kDefinitive;
+  });
+  // What lacks altogether says more than what there is none of because of it.
+  std::string lacking = WithoutDepth();
+  if (lacking.empty()) lacking = WithoutNorth(drafted, survey);
+  if (!lacking.empty()) survey.unusable = std::move(lacking);
+  if (!survey.unusable.empty()) survey.chosen.clear();
+  return survey;
+}
+
+}  // namespace wellgyro
