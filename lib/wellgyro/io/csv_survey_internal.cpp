@@ -6,8 +6,11 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/headings_internal.h"
 #include "wellgyro/io/number_text_internal.h"
+#include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -358,14 +361,6 @@ class CsvReader {
   bool azimuth_seen_ = false, md_unit_known_ = false, ended_ = false;
 };
 
-// RFC 4180: quoted where it must be.
-std::string Quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string CsvName(const ColumnInfo& info, const SurveyHead& head) {
   const auto by_north = [](std::string_view name, North north) {
     switch (north) {
@@ -446,7 +441,7 @@ std::string WriteCsv(const SurveyTable& table, const WriteOptions& options) {
       }
     }
     for (const TextColumnInfo& info : AllTextColumns()) {
-      if (table.Has(info.column)) text += "," + Quoted(table.Get(info.column, row));
+      if (table.Has(info.column)) text += "," + CsvQuoted(table.Get(info.column, row));
     }
     if (status) text += "," + std::string(WordOf(table.status(row)));
     text += '\n';

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/io/line_reader_internal.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {

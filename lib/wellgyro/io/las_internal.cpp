@@ -7,7 +7,10 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/headings_internal.h"
+#include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {

@@ -2,10 +2,8 @@
 
 #include <cstddef>
 #include <istream>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "wellgyro/base/result.h"
 
@@ -42,25 +40,5 @@ class LineReader {
   int number_ = 0;
   bool again_ = false;
 };
-
-std::string_view Trim(std::string_view text);
-std::string Lower(std::string_view text);
-bool EqualNoCase(std::string_view a, std::string_view b);
-
-/// `text` if it is UTF-8, else as Latin-1.
-std::string ToUtf8(std::string_view text);
-
-/// Fields between `delimiter`, quotes as in RFC 4180; with ' ' for any run of blanks. The last
-/// quote is missing: nothing.
-std::optional<std::vector<std::string>> SplitQuoted(std::string_view line, char delimiter);
-/// The same without quotes, and without copies.
-void Split(std::string_view line, char delimiter, std::vector<std::string_view>& fields);
-
-/// A finite number, whole, with blanks around it; any number of digits is rounded right, what does
-/// not fit a double is none.
-std::optional<double> NumberOf(std::string_view text);
-/// With a comma for the decimal point.
-std::optional<double> NumberWithComma(std::string_view text);
-std::optional<int> IntegerOf(std::string_view text);
 
 }  // namespace wellgyro

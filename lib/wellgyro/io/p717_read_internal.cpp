@@ -7,6 +7,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/p717_internal.h"
 #include "wellgyro/io/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {

@@ -2,7 +2,6 @@
 #include <cstddef>
 
 #include "wellgyro/io/iso_time_internal.h"
-#include "wellgyro/io/line_reader_internal.h"
 #include "wellgyro/io/p717_internal.h"
 
 namespace wellgyro::p717 {

@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {

@@ -13,6 +13,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/text_file.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
 
 namespace wellgyro {
@@ -50,14 +51,6 @@ void AppendStation(std::string& text, const Station& s, const WellGrid* grid) {
 
 std::string Header(std::string_view first, const WellGrid* grid) {
   return fmt::format("{}{}{}\n", first, kColumns, grid ? kGridColumns : "");
-}
-
-// RFC 4180: quoted where it must be.
-std::string Quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
 }
 
 // One line cut at its commas, with the column at which each field begins.
@@ -178,10 +171,10 @@ std::string ChecksCsv(std::span<const Check> checks) {
   const auto number = [](const std::optional<double>& v) { return v ? Significant(*v) : ""; };
   std::string text = "CODE,RUN,PASS,MD[m],VALUE,SIGMA,LIMIT,UNIT,LIMIT_SOURCE,VERDICT\n";
   for (const Check& c : checks) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", Quoted(c.code), c.run,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvQuoted(c.code), c.run,
                         c.pass ? WordOf(*c.pass) : "", c.md ? Metres(*c.md) : "", number(c.value),
-                        number(c.sigma), number(c.limit), Quoted(c.unit), Quoted(c.limit_source),
-                        WordOf(c.verdict));
+                        number(c.sigma), number(c.limit), CsvQuoted(c.unit),
+                        CsvQuoted(c.limit_source), WordOf(c.verdict));
   }
   return text;
 }

@@ -11,6 +11,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
 #include "wellgyro/trajectory/leg_geometry.h"
 #include "wellgyro/trajectory/minimum_curvature.h"

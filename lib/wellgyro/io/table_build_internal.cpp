@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/survey_words_internal.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
 
 namespace wellgyro {

@@ -4,7 +4,9 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/iso_time_internal.h"
+#include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/witsml_internal.h"
 #include "wellgyro/io/xml_internal.h"
 

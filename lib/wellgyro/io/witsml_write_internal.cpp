@@ -8,7 +8,9 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/sha256.h"
+#include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/witsml_internal.h"
 #include "wellgyro/io/xml_internal.h"
 

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/text_internal.h"
+
 namespace wellgyro {
 namespace {
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "wellgyro/record/survey_table.h"
+
+namespace wellgyro {
+
+/// A column's heading taken apart: what it is, its unit as written, and the north it names.
+struct Heading {
+  std::optional<Column> column;
+  std::optional<TextColumn> text;
+  bool status = false;
+  std::string unit;
+  North north = North::kUnknown;
+};
+/// From any name that importers and vendors use, as "Measured Depth ( ft )" or "AZI_TRUE[deg]".
+Heading HeadingOf(std::string_view heading);
+
+}  // namespace wellgyro
