@@ -22,9 +22,10 @@ struct CollectingSink : Sink {
 };
 
 /// A survey of a simulated run, as from a log that holds every message once, in order.
-inline Survey SurveyOf(const Simulation& simulation, const Job& job, Sink& sink) {
+inline Survey SurveyOf(const Simulation& simulation, const Job& job, Sink& sink,
+                       const RunAdjuster* adjuster = nullptr) {
   Simulator simulator(simulation);
-  Surveyor surveyor(job, sink);
+  Surveyor surveyor(job, sink, adjuster);
   surveyor.Push(simulator.tool_info());
   SimulatedStep step;
   while (simulator.Next(step)) {
