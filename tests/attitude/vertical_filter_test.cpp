@@ -12,8 +12,6 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/base/units.h"
-#include "wellgyro/earth/earth.h"
 #include "wellgyro/math/statistics.h"
 
 #include "attitude/vertical_truth.h"
@@ -25,22 +23,17 @@ using vertical_truth::AddErrors;
 using vertical_truth::AlongAt;
 using vertical_truth::AttitudeAt;
 using vertical_truth::AzimuthAt;
+using vertical_truth::Cell;
 using vertical_truth::Crossing;
 using vertical_truth::Errors;
+using vertical_truth::ErrorsAt;
+using vertical_truth::kCells;
+using vertical_truth::Norway;
+using vertical_truth::Pass;
 using vertical_truth::Samples;
 using vertical_truth::Tactical;
 
 constexpr double kRate = 10;  // [Hz]
-
-Site Norway() { return SiteAt(FromDegrees(60), 0); }
-
-Crossing Pass(double rpm, double closest_deg) {
-  Crossing c;
-  c.closest = FromDegrees(closest_deg);
-  c.rpm = rpm;
-  c.path = FromDegrees(12);
-  return c;
-}
 
 /// Flies through `samples`, the azimuth exactly known after the first second.
 VerticalFilter Fly(const Crossing& crossing, const Errors& errors,
@@ -58,20 +51,12 @@ VerticalFilter Fly(const Crossing& crossing, const Errors& errors,
   return filter;
 }
 
-/// Errors of (inclination, azimuth, toolface) at the end of the passage.
-Eigen::Vector3d ErrorsAtEnd(const Crossing& c, const AttitudeSample& a) {
-  const Eigen::Matrix3d R = AttitudeAt(c, c.seconds);
-  return {a.inclination - std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2)),
-          WrapPi(a.azimuth - std::atan2(R(1, 2), R(0, 2))),
-          WrapPi(a.toolface - std::atan2(R(2, 1), -R(2, 0)))};
-}
-
 TEST(VerticalFilter, CrossesExactlyWithAPerfectTool) {
   for (const double rpm : {0.0, 3.0}) {
     for (const bool has_gz : {false, true}) {
       const Crossing c = Pass(rpm, 0.05);
       const VerticalFilter filter = Fly(c, Tactical(), Samples(c, Norway(), kRate, has_gz));
-      const Eigen::Vector3d error = ErrorsAtEnd(c, filter.attitude());
+      const Eigen::Vector3d error = ErrorsAt(c, c.seconds, filter.attitude());
       // A hundredth of what the same tool's errors come to.
       EXPECT_LT(std::abs(ToDegrees(error[1])), 2e-3) << rpm << ' ' << has_gz;
       EXPECT_LT(std::abs(ToDegrees(error[0])), 2e-4) << rpm << ' ' << has_gz;
@@ -115,16 +100,6 @@ TEST(VerticalFilter, AGapWidensIt) {
   EXPECT_GT(filter.attitude().cov_attitude(1, 1), 4 * whole);
 }
 
-// The crossing of the notes: twelve degrees of path in nine minutes past vertical at `closest`.
-// `best` is the best rms error of azimuth at the end that high-side form, locked quaternion and
-// multiplicative filters with a large and with a small walk reached there [deg].
-struct Cell {
-  double rpm, closest, best;
-};
-constexpr Cell kCells[] = {{0, 0.05, 0.55},   {0, 0.2, 0.47},   {0, 0.5, 0.31},  {0, 2, 0.21},
-                           {0.3, 0.05, 0.96}, {0.3, 0.5, 0.74}, {3, 0.05, 0.85}, {3, 0.2, 0.51},
-                           {3, 0.5, 0.19},    {3, 2, 0.08}};
-
 void CrossAll(int seeds, double wave_deg, bool has_gz) {
   // All bands together leave out one in a hundred.
   const double tail = 0.01 / 2 / (3 * 10);
@@ -139,7 +114,7 @@ void CrossAll(int seeds, double wave_deg, bool has_gz) {
       std::vector<ImuSample> samples = perfect;
       AddErrors(Tactical(), static_cast<std::uint64_t>(seed), samples);
       const AttitudeSample a = Fly(c, Tactical(), samples).attitude();
-      const Eigen::Vector3d error = ErrorsAtEnd(c, a);
+      const Eigen::Vector3d error = ErrorsAt(c, c.seconds, a);
       squares += error[1] * error[1];
       variance += a.cov_attitude(1, 1);
       normalised += error.cwiseAbs2().cwiseQuotient(a.cov_attitude.diagonal());

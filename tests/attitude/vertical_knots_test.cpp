@@ -15,7 +15,6 @@
 #include "wellgyro/attitude/tracker.h"
 #include "wellgyro/attitude/vertical_filter.h"
 #include "wellgyro/base/angle.h"
-#include "wellgyro/earth/earth.h"
 #include "wellgyro/math/statistics.h"
 
 #include "attitude/vertical_truth.h"
@@ -27,17 +26,19 @@ namespace {
 
 using vertical_truth::AddErrors;
 using vertical_truth::AlongAt;
-using vertical_truth::AttitudeAt;
 using vertical_truth::AzimuthAt;
+using vertical_truth::Cell;
 using vertical_truth::Crossing;
 using vertical_truth::Errors;
+using vertical_truth::ErrorsAt;
+using vertical_truth::kCells;
+using vertical_truth::Norway;
+using vertical_truth::Pass;
 using vertical_truth::Samples;
 using vertical_truth::Tactical;
 
 constexpr double kRate = 10;  // [Hz]
 constexpr std::size_t kSamplesPerKnot = 10;
-
-Site Norway() { return SiteAt(FromDegrees(60), 0); }
 
 /// One passage with its start known, a knot every second.
 class Passage {
@@ -97,28 +98,10 @@ class Passage {
   VerticalFilter vertical_;
 };
 
-Crossing Pass(double rpm, double closest_deg) {
-  Crossing c;
-  c.closest = FromDegrees(closest_deg);
-  c.rpm = rpm;
-  c.path = FromDegrees(12);
-  return c;
-}
-
 /// Errors of (inclination, azimuth, toolface) after knot `i`.
 Eigen::Vector3d ErrorsAfter(const Crossing& c, std::size_t i, const AttitudeSample& a) {
-  const Eigen::Matrix3d R = AttitudeAt(c, static_cast<double>(i + 1));
-  return {a.inclination - std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2)),
-          WrapPi(a.azimuth - std::atan2(R(1, 2), R(0, 2))),
-          WrapPi(a.toolface - std::atan2(R(2, 1), -R(2, 0)))};
+  return ErrorsAt(c, static_cast<double>(i + 1), a);
 }
-
-struct Cell {
-  double rpm, closest, best;  // [rpm], [deg], [deg]: see vertical_filter_test.cpp
-};
-constexpr Cell kCells[] = {{0, 0.05, 0.55},   {0, 0.2, 0.47},   {0, 0.5, 0.31},  {0, 2, 0.21},
-                           {0.3, 0.05, 0.96}, {0.3, 0.5, 0.74}, {3, 0.05, 0.85}, {3, 0.2, 0.51},
-                           {3, 0.5, 0.19},    {3, 2, 0.08}};
 
 void CrossAll(bool has_gz) {
   constexpr int kSeeds = WELLGYRO_CROSSING_SEEDS;

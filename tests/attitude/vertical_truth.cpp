@@ -59,6 +59,16 @@ void Sense(const Crossing& c, const Site& site, double t, Vector3d& w, Vector3d&
 
 }  // namespace
 
+Crossing Pass(double rpm, double closest_deg) {
+  Crossing c;
+  c.closest = FromDegrees(closest_deg);
+  c.rpm = rpm;
+  c.path = FromDegrees(12);
+  return c;
+}
+
+Site Norway() { return SiteAt(FromDegrees(60), 0); }
+
 Errors Tactical() {
   Errors e;
   e.gyro.angle_random_walk = 0.01 * units::kDegPerSqrtHour;
@@ -81,6 +91,13 @@ double AzimuthAt(const Crossing& c, double t) {
 }
 
 AlongHole AlongAt(const Crossing& c, double t) { return {100 + c.speed * t, c.speed, 0, 0, true}; }
+
+Vector3d ErrorsAt(const Crossing& c, double t, const AttitudeSample& a) {
+  const Matrix3d R = AttitudeAt(c, t);
+  return {a.inclination - std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2)),
+          WrapPi(a.azimuth - std::atan2(R(1, 2), R(0, 2))),
+          WrapPi(a.toolface - std::atan2(R(2, 1), -R(2, 0)))};
+}
 
 std::vector<ImuSample> Samples(const Crossing& c, const Site& site, double rate, bool has_gz) {
   const double dt = 1 / rate;

@@ -3,13 +3,11 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <variant>
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "wellgyro/fit/run_adjustment.h"
-#include "wellgyro/math/random.h"
 
 #include "support/claims.h"
 #include "support/hour.h"
@@ -39,13 +37,8 @@ Hour WornTool(double inclination_deg, double rpm) {
 
 // Told the azimuth at the begin to 0.1 deg, and the place exactly.
 Job TiedJob(const Hour& hour, const Simulation& simulation, std::uint64_t seed) {
-  Job job = testing::JobOf(hour);
-  const Truth truth(simulation);
-  Random random(1000 + seed);
-  job.alignment.method = AlignmentSpec::Method::kExternal;
-  job.alignment.sigma_azimuth = FromDegrees(0.1);
-  job.alignment.azimuth = truth.At(0).azimuth + job.alignment.sigma_azimuth * random.Normal();
-  const Eigen::Vector3d begin = truth.well().PlaceAt(job.tie_in.md).p_WT_W;
+  Job job = testing::ExternalJob(hour, seed, 0.1);
+  const Eigen::Vector3d begin = Truth(simulation).well().PlaceAt(job.tie_in.md).p_WT_W;
   job.tie_in.north = begin.x();
   job.tie_in.east = begin.y();
   job.tie_in.tvd = begin.z();
@@ -73,16 +66,6 @@ struct ThreeClaims {
   }
 };
 
-void Play(const Simulation& simulation, Surveyor& surveyor) {
-  Simulator simulator(simulation);
-  surveyor.Push(simulator.tool_info());
-  SimulatedStep step;
-  while (simulator.Next(step)) {
-    std::visit([&](const auto& record) { surveyor.Push(record); }, step);
-  }
-  surveyor.Finish();
-}
-
 struct TruthCase {
   double inclination_deg, rpm;
 };
@@ -100,7 +83,7 @@ TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
     testing::CollectingSink sink;
     const LeastSquaresAdjuster adjuster;
     Surveyor surveyor(job, sink, &adjuster);
-    Play(simulation, surveyor);
+    testing::Play(simulation, surveyor);
     adjusted.Add(surveyor.Current(0).chosen.back(), truth, offset);
     const Station* told = nullptr;
     for (const Station& s : sink.stations) {
@@ -113,7 +96,7 @@ TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
     job.alignment.use_fixes = false;
     testing::CollectingSink quiet;
     Surveyor alone(job, quiet);
-    Play(simulation, alone);
+    testing::Play(simulation, alone);
     reckoned.Add(alone.Current(0).chosen.back(), truth, offset);
   }
   const std::string name = "I " + std::to_string(static_cast<int>(GetParam().inclination_deg)) +

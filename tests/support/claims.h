@@ -33,7 +33,7 @@ struct Claims {
   /// Inside the chi-square band that holds with 1 - `risk`.
   void ExpectTrue(const std::string& what, double risk = 2e-4) const {
     const double unit = dof == 1 ? ToDegrees(1) : 1;
-    std::printf("%-44s rms %.4f, predicted %.4f %s, mean square %.3f of %d\n", what.c_str(),
+    std::printf("%-44s rms %.4g, predicted %.4g %s, mean square %.3f of %d\n", what.c_str(),
                 unit * std::sqrt(squares / count), unit * std::sqrt(variance / count),
                 dof == 1 ? "deg" : "m", mean(), count);
     EXPECT_GT(normalised, ChiSquareQuantile(risk / 2, count * dof)) << what << ": " << mean();

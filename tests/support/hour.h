@@ -1,14 +1,18 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "wellgyro/attitude/filter.h"
 #include "wellgyro/attitude/smoother.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/random.h"
 #include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/survey/run_adjuster.h"
 
@@ -121,29 +125,50 @@ inline Job JobOf(const Hour& hour) {
   return job;
 }
 
+/// Told the azimuth at the begin, `sigma_deg` off by the seed's draw.
+inline Job ExternalJob(const Hour& hour, std::uint64_t seed, double sigma_deg) {
+  Job job = JobOf(hour);
+  Random random(1000 + seed);
+  job.alignment.method = AlignmentSpec::Method::kExternal;
+  job.alignment.sigma_azimuth = FromDegrees(sigma_deg);
+  job.alignment.azimuth = Truth(SimulationOf(hour, seed)).At(0).azimuth;
+  if (seed != 0) job.alignment.azimuth += job.alignment.sigma_azimuth * random.Normal();
+  return job;
+}
+
 struct Flown {
   FilterHistory history;
   std::vector<TruthState> truth;  ///< at the end of every epoch
 };
 
-/// Plays the hour through a surveyor.
-inline Flown Fly(const Hour& hour, const Job& job, std::uint64_t seed) {
-  const Simulation simulation = SimulationOf(hour, seed);
+inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size_t i) {
+  return WrapPi(run.attitude[i].azimuth - flown.truth[i].azimuth);
+}
+
+/// Every record of a run, in order, and the end.
+inline void Play(const Simulation& simulation, Surveyor& surveyor) {
   Simulator simulator(simulation);
-  Sink sink;
-  const KeepingAdjuster keeper;
-  Surveyor surveyor(job, sink, &keeper);
   surveyor.Push(simulator.tool_info());
   SimulatedStep step;
   while (simulator.Next(step)) {
     std::visit([&](const auto& record) { surveyor.Push(record); }, step);
   }
   surveyor.Finish();
+}
+
+/// Plays the hour through a surveyor.
+inline Flown Fly(const Hour& hour, const Job& job, std::uint64_t seed) {
+  const Simulation simulation = SimulationOf(hour, seed);
+  Sink sink;
+  const KeepingAdjuster keeper;
+  Surveyor surveyor(job, sink, &keeper);
+  Play(simulation, surveyor);
   Flown flown;
   flown.history = std::move(keeper.kept);
+  const Truth truth(simulation);
   for (const FilterEpoch& epoch : flown.history.epochs) {
     const double t = (epoch.knot.time - ToolTime{}).seconds() - simulation.tool.errors.clock_offset;
-    flown.truth.push_back(simulator.truth().At(t));
+    flown.truth.push_back(truth.At(t));
   }
   return flown;
 }
