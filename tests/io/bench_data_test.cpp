@@ -20,6 +20,12 @@ TEST(BenchData, ReadsWordsCommentsAndAnySeparator) {
   EXPECT_FALSE(table->Find("dirt").has_value());
 }
 
+TEST(BenchData, ColumnNamesMayBeginAsNumbersDo) {
+  const auto table = ParseBenchTable("info,2nd\r\n1,2\r\n", "b");
+  ASSERT_TRUE(table.has_value()) << table.fault().text;
+  EXPECT_THAT(table->columns, testing::ElementsAre("info", "2nd"));
+}
+
 TEST(BenchData, NamesLineAndColumnOfWhatIsWrong) {
   const auto fault = [](std::string_view text) {
     const auto table = ParseBenchTable(text, "b");
@@ -33,7 +39,9 @@ TEST(BenchData, NamesLineAndColumnOfWhatIsWrong) {
   EXPECT_EQ(cell.text, "\"4o\" in column b is no number");
   EXPECT_EQ(cell.line, 3);
   EXPECT_EQ(cell.column, 3);
-  EXPECT_EQ(fault("a,b\n1,\n").line, 2);
+  const Fault empty = fault("a,b\n1,\n");
+  EXPECT_EQ(empty.line, 2);
+  EXPECT_EQ(empty.column, 3);
   EXPECT_EQ(fault("a,b\n1,nan\n").code, FaultCode::kSyntax);
   EXPECT_EQ(fault("a,b\n1,1e999\n").code, FaultCode::kSyntax);
   EXPECT_EQ(fault("a,b\n1\n").text, "1 cells where the header names 2 columns");

@@ -270,6 +270,20 @@ TEST(SensorCsv, NamesTheLineAndColumnOfWhatItCannotUse) {
   EXPECT_FALSE(SensorCsv::Open(scratch.path()));
 }
 
+TEST(SensorCsv, AnEmptyFieldHasAPlaceToo) {
+  const Scratch scratch;
+  scratch.Write("a.csv", "UTC[s],MD[m],RUN\n100,10,1\n101, ,1\n");
+  Result<SensorCsv> table = SensorCsv::Open(scratch.path() / "a.csv");
+  ASSERT_TRUE(table) << table.fault().text;
+  SensorCsv::Row row;
+  EXPECT_TRUE(table->Next(row));
+  EXPECT_FALSE(table->Next(row));
+  ASSERT_TRUE(table->fault());
+  EXPECT_EQ(table->fault()->text, "a depth is missing");
+  EXPECT_EQ(table->fault()->line, 3);
+  EXPECT_EQ(table->fault()->column, 5);
+}
+
 TEST(SensorCsv, GapsAndMissingValuesAreLostSamples) {
   const Scratch scratch;
   scratch.Write("a.csv",

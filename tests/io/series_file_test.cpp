@@ -86,6 +86,10 @@ TEST_F(SeriesFile, SaysWhereACsvGoesWrong) {
   EXPECT_EQ(Csv("1,2\n").fault().code, FaultCode::kConflict);
   EXPECT_EQ(Csv("a,b\n1,2\n", {.value = "c"}).fault().code, FaultCode::kRange);
   EXPECT_EQ(Csv("n,y\n2,1\n1,1\n", {.sequence = "n"}).fault().code, FaultCode::kOrder);
+  const auto nowhere = Csv("y,n\n2,1\n1,\n", {.value = "y", .sequence = "n"});
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.fault().line, 3);
+  EXPECT_EQ(nowhere.fault().column, 3);
   EXPECT_EQ(Csv("n,y\n2,1\n1e300,1\n", {.sequence = "n"}).fault().code, FaultCode::kRange);
   EXPECT_EQ(Csv("").fault().code, FaultCode::kForeign);
   EXPECT_EQ(Csv("# nothing\n").fault().code, FaultCode::kForeign);

@@ -1,7 +1,6 @@
 #include "wellgyro/io/bench_data.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -10,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/text_file.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -18,41 +18,17 @@ constexpr std::pair<std::string_view, double> kWords[] = {
     {"x", 0}, {"y", 1}, {"z", 2}, {"up", 1}, {"down", -1},
 };
 
-std::string_view Trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\"";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
 std::vector<std::string_view> Cells(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
-  while (true) {
-    const std::size_t end = line.find(separator);
-    cells.push_back(Trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return cells;
-    line.remove_prefix(end + 1);
-  }
+  SplitCells(line, separator, cells);
+  return cells;
 }
 
-std::optional<double> NumberOf(std::string_view cell) {
+std::optional<double> ReadingOf(std::string_view cell) {
   for (const auto& [word, value] : kWords) {
     if (cell == word) return value;
   }
-  if (cell.starts_with('+')) cell.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
-}
-
-char SeparatorOf(std::string_view line) {
-  for (const char separator : {',', ';', '\t'}) {
-    if (line.find(separator) != std::string_view::npos) return separator;
-  }
-  return ',';
+  return NumberOf(cell);
 }
 
 // Reads line by line.
@@ -61,7 +37,7 @@ class Reader {
   explicit Reader(std::string source) { table_.source = std::move(source); }
 
   std::optional<Fault> Take(std::string_view line, int number) {
-    const std::string_view text = Trimmed(line);
+    const std::string_view text = TrimCell(line);
     if (text.empty() || text.starts_with('#')) return std::nullopt;
     return table_.columns.empty() ? Header(line, number) : Row(line, number);
   }
@@ -87,12 +63,11 @@ class Reader {
   }
 
   std::optional<Fault> Header(std::string_view line, int number) {
-    separator_ = SeparatorOf(line);
+    separator_ = DelimiterOf(line, ',');
     for (const std::string_view cell : Cells(line, separator_)) {
       const int column = static_cast<int>(cell.data() - line.data()) + 1;
       if (cell.empty()) return At(FaultCode::kForeign, "a column without a name", number, column);
-      double value = 0;
-      if (std::from_chars(cell.data(), cell.data() + cell.size(), value).ec == std::errc()) {
+      if (NumberOf(cell)) {
         return At(FaultCode::kForeign, "the first line must name the columns; it holds numbers",
                   number, column);
       }
@@ -114,12 +89,11 @@ class Reader {
                 number, 1);
     }
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto value = NumberOf(cells[i]);
+      const auto value = ReadingOf(cells[i]);
       if (!value) {
         return At(FaultCode::kSyntax,
                   fmt::format("\"{}\" in column {} is no number", cells[i], table_.columns[i]),
-                  number,
-                  cells[i].empty() ? 1 : static_cast<int>(cells[i].data() - line.data()) + 1);
+                  number, static_cast<int>(cells[i].data() - line.data()) + 1);
       }
       constexpr double kLargest = 1e15;
       if (std::abs(*value) > kLargest) {
@@ -147,7 +121,9 @@ Result<BenchTable> ParseBenchTable(std::string_view text, const std::string& sou
   Reader reader(source);
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    if (auto fault = reader.Take(text.substr(0, end), number)) return *std::move(fault);
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (auto fault = reader.Take(line, number)) return *std::move(fault);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return reader.Finish();

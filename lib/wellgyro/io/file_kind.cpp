@@ -9,6 +9,7 @@
 #include "wellgyro/io/sensor_csv.h"
 #include "wellgyro/io/survey_csv.h"
 #include "wellgyro/io/text_file.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -65,21 +66,15 @@ std::string_view NextLine(std::string_view& text) {
   return line;
 }
 
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
-}
-
 // The value of the line format = "...", which comes before anything but comments; or empty.
 std::string_view FormatLine(std::string_view text) {
   while (!text.empty()) {
-    std::string_view line = Trimmed(NextLine(text));
+    std::string_view line = Trim(NextLine(text));
     if (line.empty() || line.front() == '#') continue;
     if (!line.starts_with("format")) return {};
-    line = Trimmed(line.substr(6));
+    line = Trim(line.substr(6));
     if (!line.starts_with('=')) return {};
-    line = Trimmed(line.substr(1));
+    line = Trim(line.substr(1));
     if (line.empty() || (line.front() != '"' && line.front() != '\'')) return {};
     const std::size_t end = line.find(line.front(), 1);
     return end == std::string_view::npos ? std::string_view() : line.substr(1, end - 1);

@@ -1,7 +1,6 @@
 #include "wellgyro/io/sensor_csv.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -14,168 +13,15 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/base/units.h"
+#include "wellgyro/io/sensor_layout_internal.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
 
-enum Quantity : std::uint8_t { kClock, kRate, kForce, kField, kLength, kTension, kSeconds, kPlain };
-
-struct Unit {
-  Quantity quantity;
-  std::string_view name;
-  double factor;
-};
-constexpr std::array kUnits{
-    Unit{kClock, "ns", 1},
-    Unit{kClock, "us", 1e3},
-    Unit{kClock, "ms", 1e6},
-    Unit{kClock, "s", 1e9},
-    Unit{kRate, "rad/s", 1},
-    Unit{kRate, "deg/s", units::kDeg},
-    Unit{kRate, "deg/h", units::kDegPerHour},
-    Unit{kForce, "m/s2", 1},
-    Unit{kForce, "g", units::kStandardGravity},
-    Unit{kForce, "mg", units::kMilliG},
-    Unit{kField, "T", 1},
-    Unit{kField, "nT", units::kNanotesla},
-    Unit{kLength, "m", 1},
-    Unit{kLength, "ft", units::kFoot},
-    Unit{kTension, "N", 1},
-    Unit{kTension, "kN", 1e3},
-    Unit{kTension, "lbf", 4.4482216152605},
-    Unit{kSeconds, "s", 1},
-    Unit{kPlain, "", 1},
-    Unit{kPlain, "degC", 1},
-};
-
-enum Column : std::uint8_t {
-  kUtc,
-  kEndUtc,
-  kTool,
-  kGx,
-  kGy,
-  kGz,
-  kAx,
-  kAy,
-  kAz,
-  kMx,
-  kMy,
-  kMz,
-  kSigGx,
-  kSigGy,
-  kSigGz,
-  kSigAx,
-  kSigAy,
-  kSigAz,
-  kTemp,
-  kDuration,
-  kMd,
-  kLengthOf,
-  kSigMd,
-  kTensionOf,
-  kStopped,
-  kMark,
-  kCorrected,
-  kIndex,
-  kRun,
-  kToolNumber,
-  kColumns
-};
-struct Name {
-  std::string_view name;
-  Quantity quantity;
-};
-constexpr std::array<Name, kColumns> kNames{{
-    {"UTC", kClock},     {"END_UTC", kClock},     {"TOOL", kClock},      {"GX", kRate},
-    {"GY", kRate},       {"GZ", kRate},           {"AX", kForce},        {"AY", kForce},
-    {"AZ", kForce},      {"MX", kField},          {"MY", kField},        {"MZ", kField},
-    {"SIG_GX", kRate},   {"SIG_GY", kRate},       {"SIG_GZ", kRate},     {"SIG_AX", kForce},
-    {"SIG_AY", kForce},  {"SIG_AZ", kForce},      {"TEMP", kPlain},      {"DURATION", kSeconds},
-    {"MD", kLength},     {"LENGTH", kLength},     {"SIG_MD", kLength},   {"TENSION", kTension},
-    {"STOPPED", kPlain}, {"MARK", kPlain},        {"CORRECTED", kPlain}, {"INDEX", kPlain},
-    {"RUN", kPlain},     {"TOOL_NUMBER", kPlain},
-}};
-
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\"");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\"") + 1 - begin);
-}
-
-void Split(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  for (std::size_t at = 0;;) {
-    const std::size_t end = line.find(',', at);
-    fields.push_back(Trimmed(line.substr(at, end == std::string_view::npos ? end : end - at)));
-    if (end == std::string_view::npos) return;
-    at = end + 1;
-  }
-}
-
-/// Where each column stands, and its unit.
-struct Layout {
-  struct Place {
-    int field = -1;
-    double factor = 1;
-  };
-  std::array<Place, kColumns> places;
-  std::string complaint;  ///< about a heading
-  int complaint_field = 0;
-
-  bool Has(Column column) const { return places[column].field >= 0; }
-  bool HasAll(std::initializer_list<Column> columns) const {
-    return std::ranges::all_of(columns, [this](Column c) { return Has(c); });
-  }
-  void Take(std::string_view heading, int field);
-  std::optional<SensorTable> Kind() const;
-};
-
-void Layout::Take(std::string_view heading, int field) {
-  const std::size_t bracket = heading.find('[');
-  const std::string_view name = Trimmed(heading.substr(0, bracket));
-  std::string_view unit;
-  if (bracket != std::string_view::npos && heading.ends_with(']')) {
-    unit = heading.substr(bracket + 1, heading.size() - bracket - 2);
-  }
-  const auto complain = [&](std::string text) {
-    if (!complaint.empty()) return;
-    complaint = std::move(text);
-    complaint_field = field;
-  };
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (kNames[i].name != name) continue;
-    if (places[i].field >= 0) return complain(fmt::format("column {} stands twice", name));
-    const auto known = std::ranges::find_if(
-        kUnits, [&](const Unit& u) { return u.quantity == kNames[i].quantity && u.name == unit; });
-    if (known == kUnits.end()) {
-      return complain(fmt::format("column {} has no unit that is known: [{}]", name, unit));
-    }
-    places[i] = {field, known->factor};
-    return;
-  }
-  std::string shown(heading.substr(0, 40));
-  std::ranges::replace_if(
-      shown, [](char c) { return c < 0x20 || c > 0x7e; }, '?');
-  complain(fmt::format("column \"{}\" is not known", shown));
-}
-
-std::optional<SensorTable> Layout::Kind() const {
-  const bool sensors = HasAll({kGx, kGy, kAx, kAy, kAz});
-  if (sensors && Has(kDuration) && Has(kUtc)) return SensorTable::kStill;
-  if (sensors && !Has(kDuration) && (Has(kUtc) || Has(kTool))) return SensorTable::kSamples;
-  if (!sensors && Has(kUtc) && (Has(kMd) || Has(kLengthOf))) return SensorTable::kDepth;
-  return std::nullopt;
-}
-
-Layout LayoutOf(std::string_view header) {
-  if (header.starts_with("\xEF\xBB\xBF")) header.remove_prefix(3);
-  std::vector<std::string_view> fields;
-  Split(header, fields);
-  Layout layout;
-  for (std::size_t i = 0; i < fields.size(); ++i) layout.Take(fields[i], static_cast<int>(i));
-  return layout;
-}
+using sensors::Column;
+using sensors::Layout;
+using enum sensors::Column;
 
 /// Nothing where the text is no number; a missing one is empty or nan.
 struct Number {
@@ -184,13 +30,9 @@ struct Number {
 };
 std::optional<Number> NumberIn(std::string_view text) {
   if (text.empty()) return Number{0, true};
-  if (text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (std::isnan(value)) return Number{0, true};
-  if (!std::isfinite(value)) return std::nullopt;
-  return Number{value, false};
+  const std::optional<double> value = AnyNumberOf(text);
+  if (!value || std::isinf(*value)) return std::nullopt;
+  return std::isnan(*value) ? Number{0, true} : Number{*value, false};
 }
 
 constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
@@ -238,7 +80,7 @@ struct SensorCsv::Impl {
       }
       const std::size_t begin = line.find_first_not_of(" \t");
       if (begin == std::string::npos || line[begin] == '#') continue;
-      Split(line, fields);
+      SplitCells(line, ',', fields);
       return true;
     }
     if (file.bad()) Refuse("reading this file failed half way", FaultCode::kIo);
@@ -299,6 +141,16 @@ struct SensorCsv::Impl {
     }
     return all;
   }
+  /// A sample's or an average's; whether accelerometers and the two gyros across are all there.
+  template <class Record>
+  bool Sensors(Record& record) {
+    const bool force = Triple(kAx, record.f_T);
+    const auto gx = Get(kGx), gy = Get(kGy), gz = Get(kGz);
+    record.w_IT_T = {gx.value_or(0), gy.value_or(0), gz.value_or(0)};
+    record.has_gz = gz.has_value();
+    record.has_mag = layout.HasAll({kMx, kMy, kMz}) && Triple(kMx, record.b_T);
+    return force && gx && gy;
+  }
   bool InOrder(std::int64_t ns, Column column) {
     if (rows > 0 && ns <= last_ns) {
       Refuse("time does not go on from the row before", FaultCode::kOrder,
@@ -321,7 +173,7 @@ std::optional<Fault> SensorCsv::Impl::Begin() {
   file.open(path, std::ios::binary);
   if (!file) return Bad("cannot open this file for reading", FaultCode::kIo);
   if (!ReadLine()) return Bad("this is an empty file", FaultCode::kForeign);
-  layout = LayoutOf(line);
+  layout = sensors::LayoutOf(line);
   const auto known = layout.Kind();
   if (!known && layout.complaint.empty()) {
     return Bad("this is no table of samples, averages or depths", FaultCode::kForeign);
@@ -366,13 +218,7 @@ bool SensorCsv::Impl::NextSample(ImuSample& sample) {
     const auto ns = GetTime(clock);
     if (!ns || !InOrder(*ns, clock)) return false;
     sample = ImuSample{};
-    const bool all = Triple(kAx, sample.f_T) && Get(kGx) && Get(kGy);
-    sample.w_IT_T = {Get(kGx).value_or(0), Get(kGy).value_or(0), 0};
-    if (const auto gz = Get(kGz)) {
-      sample.w_IT_T.z() = *gz;
-      sample.has_gz = true;
-    }
-    sample.has_mag = layout.HasAll({kMx, kMy, kMz}) && Triple(kMx, sample.b_T);
+    const bool all = Sensors(sample);
     SampleStamp& stamp = sample.stamp;
     stamp.temperature = static_cast<float>(Get(kTemp).value_or(0));
     stamp.run = Whole(kRun);
@@ -403,15 +249,9 @@ bool SensorCsv::Impl::NextStill(StillWindow& window) {
   const auto begin = GetTime(kUtc);
   const auto duration = Get(kDuration);
   window = StillWindow{};
-  const bool all = Triple(kAx, window.f_T) && Get(kGx) && Get(kGy);
-  window.w_IT_T = {Get(kGx).value_or(0), Get(kGy).value_or(0), 0};
-  if (const auto gz = Get(kGz)) {
-    window.w_IT_T.z() = *gz;
-    window.has_gz = true;
-  }
+  const bool all = Sensors(window);
   Triple(kSigGx, window.sigma_w_IT_T);
   Triple(kSigAx, window.sigma_f_T);
-  window.has_mag = layout.HasAll({kMx, kMy, kMz}) && Triple(kMx, window.b_T);
   window.temperature = Get(kTemp).value_or(0);
   if (layout.Has(kIndex)) window.index_position = Whole(kIndex);
   window.run = Whole(kRun);
@@ -474,7 +314,7 @@ bool SensorCsv::Impl::NextDepth(DepthMark& mark) {
 }
 
 std::optional<SensorTable> SensorTableOf(std::string_view header) {
-  return LayoutOf(header).Kind();
+  return sensors::LayoutOf(header).Kind();
 }
 
 SensorCsv::SensorCsv(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

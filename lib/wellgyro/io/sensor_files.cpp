@@ -145,13 +145,14 @@ class Joiner {
     const Result<InputFile> noted = Noted(path);
     if (!noted) return noted.fault();
     report_.files.push_back(*noted);
+    const auto second = [&](std::string_view what) {
+      return Fault{.code = FaultCode::kConflict,
+                   .text = fmt::format("a second table of {}; give one", what),
+                   .source = path.string()};
+    };
     switch (table->kind()) {
       case SensorTable::kSamples:
-        if (!samples_.empty()) {
-          return Fault{.code = FaultCode::kConflict,
-                       .text = "a second table of samples; give one",
-                       .source = path.string()};
-        }
+        if (!samples_.empty()) return second("samples");
         samples_ = path;
         has_utc_ = table->has_utc();
         has_tool_ = table->has_tool();
@@ -160,11 +161,7 @@ class Joiner {
         stills_.push_back(path);
         break;
       case SensorTable::kDepth:
-        if (!depth_.empty()) {
-          return Fault{.code = FaultCode::kConflict,
-                       .text = "a second table of depth; give one",
-                       .source = path.string()};
-        }
+        if (!depth_.empty()) return second("depth");
         depth_ = path;
         break;
     }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -11,60 +10,16 @@
 
 #include "wellgyro/io/series_file.h"
 #include "wellgyro/io/text_file.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr std::int64_t kLongestGap = 1'000'000'000;
 
-// Splits a line into fields; blanks separate only where no other separator is in use.
-class Splitter {
- public:
-  explicit Splitter(std::string_view first_line) {
-    for (const char c : {',', ';', '\t'}) {
-      if (first_line.find(c) != std::string_view::npos) {
-        separator_ = c;
-        break;
-      }
-    }
-  }
-
-  void Split(std::string_view line, std::vector<std::string_view>& fields) const {
-    fields.clear();
-    if (separator_ == ' ') {
-      for (std::size_t at = line.find_first_not_of(' '); at != std::string_view::npos;) {
-        const std::size_t end = std::min(line.find(' ', at), line.size());
-        fields.push_back(line.substr(at, end - at));
-        at = line.find_first_not_of(' ', end);
-      }
-      return;
-    }
-    for (std::size_t at = 0;;) {
-      const std::size_t end = line.find(separator_, at);
-      fields.push_back(Trimmed(line.substr(at, end == std::string_view::npos ? end : end - at)));
-      if (end == std::string_view::npos) return;
-      at = end + 1;
-    }
-  }
-
- private:
-  static std::string_view Trimmed(std::string_view field) {
-    const std::size_t begin = field.find_first_not_of(" \t\"");
-    if (begin == std::string_view::npos) return {};
-    return field.substr(begin, field.find_last_not_of(" \t\"") + 1 - begin);
-  }
-  char separator_ = ' ';
-};
-
 // Nothing when it is no number; NaN for an empty field.
 std::optional<double> NumberIn(std::string_view field) {
-  if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (field.front() == '+') field.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (end != field.data() + field.size()) return std::nullopt;
-  if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
-  return error == std::errc() ? std::optional(value) : std::nullopt;
+  return field.empty() ? std::numeric_limits<double>::quiet_NaN() : AnyNumberOf(field);
 }
 
 class CsvReader {
@@ -112,8 +67,9 @@ class CsvReader {
 
   void TakeLine(const std::string& line) {
     line_begin_ = line.data();
-    if (!splitter_) splitter_.emplace(line);
-    splitter_->Split(line, fields_);
+    // Blanks separate only where nothing else does.
+    if (!delimiter_) delimiter_ = DelimiterOf(line, ' ');
+    SplitCells(line, *delimiter_, fields_);
     if (!columns_known_) {
       const bool header = std::any_of(fields_.begin(), fields_.end(),
                                       [](std::string_view f) { return !NumberIn(f); });
@@ -129,11 +85,9 @@ class CsvReader {
     for (std::size_t i = 0; header && i < fields_.size(); ++i) {
       if (fields_[i] == name) return i;
     }
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (error == std::errc() && end == name.data() + name.size() && number >= 1 &&
-        number <= fields_.size()) {
-      return number - 1;
+    const std::optional<int> number = IntegerOf(name);
+    if (number && *number >= 1 && static_cast<std::size_t>(*number) <= fields_.size()) {
+      return static_cast<std::size_t>(*number) - 1;
     }
     Refuse(
         header
@@ -215,7 +169,7 @@ class CsvReader {
   const std::filesystem::path& path_;
   const SeriesColumns& columns_;
   SampleSeries series_;
-  std::optional<Splitter> splitter_;
+  std::optional<char> delimiter_;
   std::vector<std::string_view> fields_;
   bool columns_known_ = false;
   std::optional<std::size_t> value_;

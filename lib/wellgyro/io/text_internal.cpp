@@ -37,6 +37,7 @@ std::string_view Stripped(std::string_view text, std::string_view characters) {
 }  // namespace
 
 std::string_view Trim(std::string_view text) { return Stripped(text, " \t"); }
+std::string_view TrimCell(std::string_view text) { return Stripped(text, " \t\""); }
 
 std::string LettersAndDigits(std::string_view text) {
   std::string kept;
@@ -102,7 +103,7 @@ void Split(std::string_view line, char delimiter, std::vector<std::string_view>&
 
 void SplitCells(std::string_view line, char delimiter, std::vector<std::string_view>& cells) {
   Split(line, delimiter, cells);
-  for (std::string_view& cell : cells) cell = Stripped(cell, " \t\"");
+  for (std::string_view& cell : cells) cell = TrimCell(cell);
 }
 
 char DelimiterOf(std::string_view line, char otherwise) {

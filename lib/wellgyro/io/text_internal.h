@@ -10,6 +10,8 @@ namespace wellgyro {
 
 /// Without blanks at its ends. What is empty still points to its place in the line.
 std::string_view Trim(std::string_view text);
+/// The same without quotes at its ends either.
+std::string_view TrimCell(std::string_view text);
 std::string Lower(std::string_view text);
 bool EqualNoCase(std::string_view a, std::string_view b);
 /// Its letters and digits alone, in lower case.

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -11,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -21,10 +20,9 @@ std::optional<std::array<double, 3>> ThreeNumbers(std::string_view line) {
   std::array<double, 3> v{};
   for (std::size_t i = 0; i < v.size(); ++i) {
     const std::string_view field = line.substr(0, line.find(','));
-    const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), v[i]);
-    if (error != std::errc() || rest != field.data() + field.size() || !std::isfinite(v[i])) {
-      return std::nullopt;
-    }
+    const std::optional<double> number = NumberOf(field);
+    if (!number) return std::nullopt;
+    v[i] = *number;
     line.remove_prefix(std::min(field.size() + 1, line.size()));
   }
   return v;
