@@ -14,6 +14,7 @@ constexpr double kUnusual = 8;           // times the robust sigma
 constexpr std::size_t kAway = 100;       // stretches it may stand away and come back
 constexpr double kExplained = 0.9;       // share of the slow variance
 constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // equal to no reading
 
 double Median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -103,60 +104,76 @@ class Inspector {
     if (static_cast<std::size_t>(same) < kFindingsMax) findings_.push_back(finding);
   }
 
-  // Stretches of one value: constant logs, piles at an extreme, readings that stood still.
-  void FindRuns() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  // What one pass over the samples tells of their values.
+  struct Values {
     Extreme high{kNone, 0, kNone, 0};
     Extreme low{kNone, 0, kNone, 0};
     std::int64_t present = 0;
-    std::int64_t repeats = 0;
+    std::int64_t repeats = 0;  // of the sample before
+
+    // What most readings are is no end of the range, but a signal finer than its steps.
+    bool IsPile(const Extreme& end) const { return end.IsPile() && end.count < present / 2; }
+  };
+
+  Values CountValues() const {
+    Values values;
     double last = kNone;
     ForEachPresent([&](std::int64_t, double y) {
-      high.Take(y, 1);
-      low.Take(y, -1);
-      repeats += y == last;
+      values.high.Take(y, 1);
+      values.low.Take(y, -1);
+      values.repeats += y == last;
       last = y;
-      ++present;
+      ++values.present;
     });
-    if (present > 1 && high.value == low.value) {
+    return values;
+  }
+
+  // Length of a run that coarse readings make by chance once in a million logs.
+  double LongestByChance(const Values& values) const {
+    const auto present = static_cast<double>(values.present);
+    const double repeat = static_cast<double>(values.repeats) / std::max(1., present);
+    const double chance = std::log(1e-6 / (present + 1));
+    return repeat < 1 ? std::max(32., chance / std::log(std::max(repeat, 1e-3)))
+                      : static_cast<double>(samples_);
+  }
+
+  bool IsAtEnd(double y) const {
+    return (options_.highest && y >= *options_.highest) ||
+           (options_.lowest && y <= *options_.lowest);
+  }
+
+  // Stretches of one value: constant logs, piles at an extreme, readings that stood still.
+  void FindRuns() {
+    const Values values = CountValues();
+    if (values.present > 1 && values.high.value == values.low.value) {
       Add({.kind = Kind::kConstant,
            .where = {0, samples_},
-           .size = high.value,
-           .samples = present});
+           .size = values.high.value,
+           .samples = values.present});
       return;
     }
-    // What most readings are is no end of the range, but a signal finer than its steps.
-    const bool high_pile = high.IsPile() && high.count < present / 2;
-    const bool low_pile = low.IsPile() && low.count < present / 2;
-    // A run that coarse readings make by chance once in a million logs.
-    const double repeat =
-        static_cast<double>(repeats) / static_cast<double>(std::max<std::int64_t>(1, present));
-    const double chance = std::log(1e-6 / static_cast<double>(present + 1));
-    const double stuck = repeat < 1 ? std::max(32., chance / std::log(std::max(repeat, 1e-3)))
-                                    : static_cast<double>(samples_);
-    const auto at_end = [&](double y) {
-      return (options_.highest && y >= *options_.highest) ||
-             (options_.lowest && y <= *options_.lowest);
-    };
-    std::int64_t begin = 0;
-    std::int64_t end = 0;
+    const bool high_pile = values.IsPile(values.high);
+    const bool low_pile = values.IsPile(values.low);
+    const double stuck = LongestByChance(values);
+    SampleGap run;
     double value = kNone;
     const auto close = [&] {
-      const std::int64_t length = end - begin;
-      const bool piled = (high_pile && value == high.value) || (low_pile && value == low.value);
-      if (length > 0 && (at_end(value) || (piled && length >= 3))) {
-        AddSaturated({begin, end}, value);
+      const std::int64_t length = run.end - run.begin;
+      const bool piled =
+          (high_pile && value == values.high.value) || (low_pile && value == values.low.value);
+      if (length > 0 && (IsAtEnd(value) || (piled && length >= 3))) {
+        AddSaturated(run, value);
       } else if (static_cast<double>(length) > stuck) {
-        Add({.kind = Kind::kStuck, .where = {begin, end}, .size = value, .samples = length});
+        Add({.kind = Kind::kStuck, .where = run, .size = value, .samples = length});
       }
     };
     ForEachPresent([&](std::int64_t i, double y) {
-      if (y != value || i != end) {
+      if (y != value || i != run.end) {
         close();
-        begin = i;
+        run.begin = i;
         value = y;
       }
-      end = i + 1;
+      run.end = i + 1;
     });
     close();
   }
@@ -205,44 +222,49 @@ class Inspector {
     }
   }
 
-  void FindMovements() {
-    if (stretches_.size() < 16) return;
-    std::vector<double> steps;
-    std::vector<double> scatters;
-    for (std::size_t i = 0; i < stretches_.size(); ++i) {
-      if (i > 0) steps.push_back(stretches_[i].mean - stretches_[i - 1].mean);
-      scatters.push_back(stretches_[i].log_scatter);
+  // Against the stretch before each; zero for the first.
+  std::vector<double> Steps() const {
+    std::vector<double> steps(stretches_.size(), 0);
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+      steps[i] = stretches_[i].mean - stretches_[i - 1].mean;
     }
-    const double step = RobustSigma(steps);
+    return steps;
+  }
+
+  // How far each stretch moved, zero where it did not: its step, or the scatter within.
+  std::vector<double> Moves(const std::vector<double>& steps, double usual_step) const {
+    std::vector<double> scatters;
+    for (const auto& s : stretches_) scatters.push_back(s.log_scatter);
     const double middle = Median(scatters);
     // Differences of normal noise scatter by sqrt(3/length) in the logarithm of their variance.
     const double spread =
         std::max(RobustSigma(scatters), std::sqrt(3 / static_cast<double>(length_)));
-    std::vector<bool> moved(stretches_.size(), false);
-    std::vector<double> size(stretches_.size(), 0);
-    for (std::size_t i = 0; i < stretches_.size(); ++i) {
-      const double excess = stretches_[i].log_scatter - middle;
-      if (excess > kUnusual * spread) {
-        moved[i] = true;
-        size[i] = std::exp(stretches_[i].log_scatter / 2);
-      }
-      if (i > 0 && step > 0 && std::abs(steps[i - 1]) > kUnusual * step) {
-        moved[i] = true;
-        size[i] = std::max(size[i], std::abs(steps[i - 1]));
-      }
+    std::vector<double> moves(stretches_.size(), 0);
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      if (scatters[i] - middle > kUnusual * spread) moves[i] = std::exp(scatters[i] / 2);
+      const double step = std::abs(steps[i]);
+      if (usual_step > 0 && step > kUnusual * usual_step) moves[i] = std::max(moves[i], step);
     }
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      if (!moved[i]) continue;
+    return moves;
+  }
+
+  void FindMovements() {
+    if (stretches_.size() < 16) return;
+    const std::vector<double> steps = Steps();
+    const double usual = RobustSigma({steps.begin() + 1, steps.end()});
+    const std::vector<double> moves = Moves(steps, usual);
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      if (!(moves[i] > 0)) continue;
       std::size_t last = i;
-      double largest = size[i];
-      double level = i > 0 ? steps[i - 1] : 0;  // against before the movement
+      double largest = moves[i];
+      double level = steps[i];  // against before the movement
       // Up to where it has been quiet for a while at the level it had.
-      for (std::size_t j = i + 1; j < moved.size(); ++j) {
-        level += steps[j - 1];
-        if (moved[j]) {
+      for (std::size_t j = i + 1; j < moves.size(); ++j) {
+        level += steps[j];
+        if (moves[j] > 0) {
           last = j;
-          largest = std::max(largest, size[j]);
-        } else if (j > last + 3 && (std::abs(level) < kUnusual * step || j > last + kAway)) {
+          largest = std::max(largest, moves[j]);
+        } else if (j > last + 3 && (std::abs(level) < kUnusual * usual || j > last + kAway)) {
           break;
         }
       }
@@ -251,7 +273,7 @@ class Inspector {
       Add({.kind = Kind::kMoved,
            .where = {begin, end},
            .size = largest,
-           .typical = step,
+           .typical = usual,
            .samples = end - begin});
       i = last;
     }
