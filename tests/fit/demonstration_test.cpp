@@ -32,11 +32,11 @@ const std::filesystem::path kDemo = std::filesystem::path(WELLGYRO_DATA_DIR) / "
 Result<SimulationFile> WithSeed(std::uint64_t seed) {
   const std::filesystem::path path = kDemo / "simulation.toml";
   std::ifstream file(path);
-  std::string text((std::istreambuf_iterator<char>(file)), {});
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
   const std::string key = "\nseed = ";
   const std::size_t at = text.find(key) + key.size();
-  text.replace(at, text.find('\n', at) - at, std::to_string(seed));
-  return ParseSimulation(text, path, kDemo);
+  return ParseSimulation(
+      text.substr(0, at) + std::to_string(seed) + text.substr(text.find('\n', at)), path, kDemo);
 }
 
 TEST(Demonstration, IsAsGoodAsItSaysFromVerticalToTheEnd) {
