@@ -11,6 +11,7 @@
 
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
 namespace {
@@ -20,7 +21,6 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using gyrocompass::HeadingFrom;
-using gyrocompass::kVarianceMost;
 using gyrocompass::Problem;
 using gyrocompass::Solution;
 
@@ -72,7 +72,7 @@ double HeadingVariance(const Problem& problem, const Solution& solution) {
       moment += std::exp(-cost / 2) * away * away;
     }
   }
-  return std::min(moment / weights, kVarianceMost);
+  return std::min(moment / weights, kUnknownAngleVariance);
 }
 
 /// Covariance of (inclination, azimuth, toolface of the last window) from that of the rotation in L
@@ -96,13 +96,13 @@ Matrix3d EulerCovariance(const Solution& solution, std::size_t windows, bool& ve
   if (windows > 1) J(2, static_cast<Index>(windows) + 1) = 1;
   Matrix3d cov = J * solution.cov * J.transpose();
   vertical = std::sqrt(r.dot(rotation * r)) > sine / 3;
-  if (cov(1, 1) <= kVarianceMost && cov(2, 2) <= kVarianceMost) return cov;
+  if (cov(1, 1) <= kUnknownAngleVariance && cov(2, 2) <= kUnknownAngleVariance) return cov;
   const double sign = t.z() >= 0 ? 1 : -1;  // beyond horizontal the difference is the regular one
-  const double sum = std::min(cov(1, 1) + cov(2, 2) + 2 * sign * cov(1, 2), kVarianceMost);
+  const double sum = std::min(cov(1, 1) + cov(2, 2) + 2 * sign * cov(1, 2), kUnknownAngleVariance);
   Matrix3d capped = Matrix3d::Zero();
   capped(0, 0) = cov(0, 0);
-  capped(1, 1) = std::min(cov(1, 1), kVarianceMost);
-  capped(2, 2) = std::min(cov(2, 2), kVarianceMost);
+  capped(1, 1) = std::min(cov(1, 1), kUnknownAngleVariance);
+  capped(2, 2) = std::min(cov(2, 2), kUnknownAngleVariance);
   capped(1, 2) = capped(2, 1) = sign * (sum - capped(1, 1) - capped(2, 2)) / 2;
   return capped;
 }

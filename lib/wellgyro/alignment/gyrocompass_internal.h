@@ -10,13 +10,10 @@
 #include <Eigen/Core>
 
 #include "wellgyro/alignment/gyrocompass.h"
-#include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
 
 /// The least-squares problem behind Gyrocompass().
 namespace wellgyro::gyrocompass {
-
-inline constexpr double kVarianceMost = kPi * kPi / 3;  ///< of a direction not known at all [rad^2]
 
 /// Errors of the sensors and the place that are estimated by their priors.
 enum Error {

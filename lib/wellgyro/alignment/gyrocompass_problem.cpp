@@ -4,6 +4,7 @@
 
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro::gyrocompass {
 namespace {
@@ -239,7 +240,7 @@ Problem::System Problem::Linear(const State& state) const {
 /// a minimum this moves nothing.
 MatrixXd Problem::Normal(const MatrixXd& J) const {
   MatrixXd normal = J.transpose() * J;
-  normal.diagonal().head(errors_at_).array() += 1 / kVarianceMost;
+  normal.diagonal().head(errors_at_).array() += 1 / kUnknownAngleVariance;
   return normal;
 }
 

@@ -196,7 +196,7 @@ void AzimuthFilter::Impl::Work(std::size_t i) {
   TakePlainFixes(i + 1, core.azimuth() - before, place);
   epoch.azimuth = core.azimuth();
   epoch.azimuth_known = core.azimuth_known();
-  epoch.sigma_azimuth = std::sqrt(std::min(core.variance(), kFlatAzimuthVariance));
+  epoch.sigma_azimuth = std::sqrt(std::min(core.variance(), kUnknownAngleVariance));
   Observe(knot);
   if (epoch.station) Station(i);
 }
@@ -253,7 +253,7 @@ void AzimuthFilter::Impl::Locate(FilterFix* f) const {
 void AzimuthFilter::Impl::ChooseBranch(FilterFix* f, double azimuth, double variance) const {
   const NorthFix& fix = f->fix;
   f->azimuth = fix.azimuth;
-  const bool known = variance < kFlatAzimuthVariance;
+  const bool known = variance < kUnknownAngleVariance;
   if (!known) {
     const bool mirrored = fix.mirror_azimuth && fix.mirror_cost <= kBranchMargin;
     if (mirrored || fix.cov_attitude(1, 1) > kVagueVariance) f->use = FixUse::kAmbiguous;
@@ -334,7 +334,7 @@ FilterFix AzimuthFilter::Update(const NorthFix& fix) {
     // Near east-west and horizontal a fix by itself may lie far off: the rates are hardly linear
     // there, so that the place matters.
     const double weight =
-        variance < kFlatAzimuthVariance ? variance / (variance + f.fix.cov_attitude(1, 1)) : 1;
+        variance < kUnknownAngleVariance ? variance / (variance + f.fix.cov_attitude(1, 1)) : 1;
     f.about = weight < 1 ? before + weight * WrapPi(f.azimuth - before) : f.azimuth;
   }
   m.history.fixes.push_back(f);

@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/record/knot_sources.h"
 
 namespace wellgyro {
 namespace {
@@ -38,19 +39,6 @@ void Load(const FilterLayout& layout, const Knot::SourceVector& d, double sign, 
   }
 }
 
-std::array<double, Knot::kSources> SourceSigmas(const ErrorPriors& e) {
-  std::array<double, Knot::kSources> sigma{};
-  sigma[Knot::kMassUnbalance] = e.mass_unbalance_sigma;
-  sigma[Knot::kQuadrature] = e.quadrature_sigma;
-  sigma[Knot::kGyroScaleX] = sigma[Knot::kGyroScaleY] = e.gyro_scale_sigma;
-  sigma[Knot::kMisalignmentX] = sigma[Knot::kMisalignmentY] = e.gyro_misalignment_sigma;
-  sigma[Knot::kToolfaceOffset] = e.roll_offset_sigma;
-  sigma[Knot::kTimeSkew] = e.time_skew_sigma;
-  sigma[Knot::kAccelBiasX] = sigma[Knot::kAccelBiasY] = sigma[Knot::kAccelBiasZ] =
-      e.accel_bias_sigma;
-  return sigma;
-}
-
 Knot::Source BiasOf(std::size_t axis) { return axis == 0 ? Knot::kGyroBiasX : Knot::kGyroBiasY; }
 
 FilterMatrix PriorOf(const FilterSetup& setup, const FilterLayout& layout) {
@@ -62,9 +50,10 @@ FilterMatrix PriorOf(const FilterSetup& setup, const FilterLayout& layout) {
     if (axis.markov >= 0) prior(axis.markov, axis.markov) = drift(kDriftMarkov, kDriftMarkov);
     if (axis.ramp >= 0) prior(axis.ramp, axis.ramp) = drift(kDriftRamp, kDriftRamp);
   }
-  const auto sigma = SourceSigmas(setup.errors);
-  for (std::size_t i = 0; i < sigma.size(); ++i) {
-    if (layout.source[i] >= 0) prior(layout.source[i], layout.source[i]) = Square(sigma[i]);
+  const Knot::SourceVector sigma = SourceSigmas(setup.errors);
+  for (int i = 0; i < Knot::kSources; ++i) {
+    const int at = layout.source[static_cast<std::size_t>(i)];
+    if (at >= 0) prior(at, at) = Square(sigma[i]);
   }
   if (layout.latitude >= 0) {
     prior(layout.latitude, layout.latitude) = Square(setup.errors.latitude_sigma);
@@ -96,9 +85,9 @@ FilterLayout LayoutOf(const FilterSetup& setup) {
     if (markov) axis.markov = layout.size++;
     if (ramp) axis.ramp = layout.size++;
   }
-  const auto sigma = SourceSigmas(setup.errors);
-  for (std::size_t i = 0; i < sigma.size(); ++i) {
-    layout.source[i] = sigma[i] > 0 ? layout.size++ : -1;
+  const Knot::SourceVector sigma = SourceSigmas(setup.errors);
+  for (int i = 0; i < Knot::kSources; ++i) {
+    layout.source[static_cast<std::size_t>(i)] = sigma[i] > 0 ? layout.size++ : -1;
   }
   if (setup.errors.latitude_sigma > 0) layout.latitude = layout.size++;
   return layout;
@@ -223,8 +212,8 @@ FilterTransition FilterCore::Step(const Knot& knot, double azimuth_begin,
                                   std::optional<double> nominal_end) {
   FilterTransition t = TransitionOver(knot, azimuth_begin);
   const double variance = t.row.dot(covariance_ * t.row) + t.white;
-  const bool lost = !azimuth_diffuse() && variance > kFlatAzimuthVariance;
-  const bool too_long = variance > kDiffuseAzimuthVariance + kFlatAzimuthVariance;
+  const bool lost = !azimuth_diffuse() && variance > kUnknownAngleVariance;
+  const bool too_long = variance > kDiffuseAzimuthVariance + kUnknownAngleVariance;
   const double azimuth_before = state_[0];
   if (!knot.still && knot.seconds > 0 && (knot.vertical || lost || too_long)) {
     t.row.setZero();
@@ -333,7 +322,7 @@ AttitudeSample AttitudeOf(const Knot& knot, const Eigen::Vector3d& estimate,
   a.toolface = WrapPi(knot.toolface + estimate[2]);
   // Of the sum, where that is held: near vertical the azimuth itself comes and goes with the noise.
   const double held = knot.axial ? cov(1, 1) + cov(2, 2) + 2 * cov(1, 2) : cov(1, 1);
-  a.azimuth_known = held < kFlatAzimuthVariance;
+  a.azimuth_known = held < kUnknownAngleVariance;
   a.quality = knot.quality;
   if (knot.vertical) a.quality |= Quality::kVertical;
   if (a.inclination < 0) {
@@ -356,12 +345,7 @@ AttitudeSample AttitudeOf(const Knot& knot, const Eigen::Vector3d& estimate,
   } else {
     a.cov_attitude(2, 2) += std::max(noise / sine2, knot.var_toolface);
   }
-  for (const int i : {1, 2}) {
-    const double over = a.cov_attitude(i, i) / kFlatAzimuthVariance;
-    if (!(over > 1)) continue;
-    a.cov_attitude.row(i) /= std::sqrt(over);
-    a.cov_attitude.col(i) /= std::sqrt(over);
-  }
+  CapAtUnknown(&a.cov_attitude);
   return a;
 }
 
@@ -376,12 +360,12 @@ StationState StationOf(std::size_t epoch, const Knot& knot, const AttitudeSample
   station.cov_with_previous = cross;
   station.angles = rows.topRows<2>();
   // An unknown azimuth is flat round the circle, however wide its variance in the algebra.
-  if (cov(0, 0) > kFlatAzimuthVariance) {
-    station.angles(1, 0) *= std::sqrt(kFlatAzimuthVariance / cov(0, 0));
+  if (cov(0, 0) > kUnknownAngleVariance) {
+    station.angles(1, 0) *= std::sqrt(kUnknownAngleVariance / cov(0, 0));
   }
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   station.cov_white(0, 0) = Square(knot.sigma_inclination);
-  station.cov_white(1, 1) = std::min(Square(gyro.quantization) / sine2, kFlatAzimuthVariance);
+  station.cov_white(1, 1) = std::min(Square(gyro.quantization) / sine2, kUnknownAngleVariance);
   if (knot.axial) station.cov_white(1, 1) += std::max(0.0, knot.var_azimuth_beyond);
   return station;
 }

@@ -9,11 +9,9 @@
 #include "wellgyro/attitude/filter_state.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/record/knot.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
-
-/// Variance of an azimuth of which nothing is known.
-inline constexpr double kFlatAzimuthVariance = 3.2898681336964529;  // pi^2/3
 
 /// What the linear algebra takes for "nothing known": wide enough that a fix learns nothing about
 /// the other errors from it (1e-4 of what a turn uncertain by 0.1 rad would tell), small enough to
@@ -135,7 +133,7 @@ class FilterCore {
   const FilterMatrix& cross() const { return cross_; }
   double azimuth() const { return state_[0]; }
   double variance() const { return covariance_(0, 0); }
-  bool azimuth_known() const { return variance() < kFlatAzimuthVariance; }
+  bool azimuth_known() const { return variance() < kUnknownAngleVariance; }
   bool azimuth_diffuse() const { return variance() > kDiffuseAzimuthVariance / 2; }
 
  private:

@@ -12,6 +12,8 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/record/knot_sources.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
 namespace {
@@ -37,15 +39,6 @@ constexpr double kRun = 6, kStop = 7;
 constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
 constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
 constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
-constexpr double kFlat = kPi * kPi / 3;
-
-Knot::SourceVector SourceSigmas(const ErrorPriors& e) {
-  Knot::SourceVector sigma;
-  sigma << 0, 0, e.mass_unbalance_sigma, e.quadrature_sigma, e.gyro_scale_sigma, e.gyro_scale_sigma,
-      e.gyro_misalignment_sigma, e.gyro_misalignment_sigma, e.roll_offset_sigma, e.time_skew_sigma,
-      e.accel_bias_sigma, e.accel_bias_sigma, e.accel_bias_sigma;
-  return sigma;
-}
 
 bool IsFinite(const ImuSample& s) {
   return s.w_IT_T.head<2>().allFinite() && s.f_T.allFinite() &&
@@ -416,7 +409,7 @@ AttitudeSample VerticalFilter::attitude() const {
   a.toolface = std::atan2(R(2, 1), -R(2, 0));
   const Eigen::Matrix3d slopes = vertical::EulerSlopes(R);
   a.cov_attitude = slopes * impl_->CovTurn() * slopes.transpose();
-  a.azimuth_known = a.cov_attitude(1, 1) < kFlat;
+  a.azimuth_known = a.cov_attitude(1, 1) < kUnknownAngleVariance;
   return a;
 }
 

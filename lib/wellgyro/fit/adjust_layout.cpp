@@ -3,24 +3,9 @@
 
 #include "wellgyro/fit/adjust_layout_internal.h"
 #include "wellgyro/math/drift.h"
+#include "wellgyro/record/knot_sources.h"
 
 namespace wellgyro {
-namespace {
-
-std::array<double, Knot::kSources> SourceSigmas(const ErrorPriors& e) {
-  std::array<double, Knot::kSources> sigma{};
-  sigma[Knot::kMassUnbalance] = e.mass_unbalance_sigma;
-  sigma[Knot::kQuadrature] = e.quadrature_sigma;
-  sigma[Knot::kGyroScaleX] = sigma[Knot::kGyroScaleY] = e.gyro_scale_sigma;
-  sigma[Knot::kMisalignmentX] = sigma[Knot::kMisalignmentY] = e.gyro_misalignment_sigma;
-  sigma[Knot::kToolfaceOffset] = e.roll_offset_sigma;
-  sigma[Knot::kTimeSkew] = e.time_skew_sigma;
-  sigma[Knot::kAccelBiasX] = sigma[Knot::kAccelBiasY] = sigma[Knot::kAccelBiasZ] =
-      e.accel_bias_sigma;
-  return sigma;
-}
-
-}  // namespace
 
 AdjustLayout AdjustLayoutOf(const FilterSetup& setup, double sigma_lie, bool repeats) {
   AdjustLayout layout;
@@ -51,8 +36,10 @@ AdjustLayout AdjustLayoutOf(const FilterSetup& setup, double sigma_lie, bool rep
     if (markov) axis.markov = layout.node++;
     axis.ramp_common = common(gyro.rate_ramp);
   }
-  const auto sigma = SourceSigmas(setup.errors);
-  for (std::size_t i = 0; i < sigma.size(); ++i) layout.source[i] = common(sigma[i]);
+  const Knot::SourceVector sigma = SourceSigmas(setup.errors);
+  for (int i = 0; i < Knot::kSources; ++i) {
+    layout.source[static_cast<std::size_t>(i)] = common(sigma[i]);
+  }
   layout.latitude = common(setup.errors.latitude_sigma);
   if (repeats) {
     layout.lie_azimuth = common(std::sqrt(2.0) * sigma_lie);

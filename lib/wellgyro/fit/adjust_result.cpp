@@ -6,6 +6,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/adjust_result_internal.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
 namespace {
@@ -15,9 +16,8 @@ using Eigen::VectorXd;
 
 // Of the inclination, what the model of a moving tool leaves out and the run cannot show: found on
 // simulated hours between 2 and 4 deg, where all else is less.
-constexpr double kInclinationFloor = 1e-5;              // [rad]
-constexpr double kFlatAzimuthVariance = kPi * kPi / 3;  // nothing is known of it [rad^2]
-constexpr double kUnknownVariance = 100;                // the same, for the algebra
+constexpr double kInclinationFloor = 1e-5;  // [rad]
+constexpr double kUnknownVariance = 100;    // of an unknown azimuth, in the algebra [rad^2]
 
 double Square(double x) { return x * x; }
 
@@ -139,13 +139,9 @@ AttitudeSample AttitudeAt(const AdjustProblem& p, const Knot& knot, double incli
     a.cov_attitude(2, 2) += std::max(Square(knot.sigma_inclination) / sine2, knot.var_toolface);
   }
   if (!known) a.cov_attitude(1, 1) += kUnknownVariance;
-  a.azimuth_known = (knot.axial ? cov(0, 0) : a.cov_attitude(1, 1)) < kFlatAzimuthVariance && known;
-  for (const int i : {1, 2}) {
-    const double over = a.cov_attitude(i, i) / kFlatAzimuthVariance;
-    if (!(over > 1)) continue;
-    a.cov_attitude.row(i) /= std::sqrt(over);
-    a.cov_attitude.col(i) /= std::sqrt(over);
-  }
+  a.azimuth_known =
+      (knot.axial ? cov(0, 0) : a.cov_attitude(1, 1)) < kUnknownAngleVariance && known;
+  CapAtUnknown(&a.cov_attitude);
   return a;
 }
 
@@ -162,10 +158,10 @@ StationState StationAt(const AdjustProblem& p, std::size_t epoch, const Attitude
   station.angles(0, AdjustLayout::kInclination) = 1;
   const double variance = attitude.azimuth_known ? 0 : cov(0, 0) + kUnknownVariance;
   station.angles(1, AdjustLayout::kAzimuth) =
-      variance > kFlatAzimuthVariance ? std::sqrt(kFlatAzimuthVariance / variance) : 1;
+      variance > kUnknownAngleVariance ? std::sqrt(kUnknownAngleVariance / variance) : 1;
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   station.cov_white(1, 1) =
-      std::min(Square(p.history->setup.gyro.quantization) / sine2, kFlatAzimuthVariance);
+      std::min(Square(p.history->setup.gyro.quantization) / sine2, kUnknownAngleVariance);
   if (knot.axial) {
     station.angles.row(1).tail(p.layout.state() - p.layout.node) =
         AttitudeRows(p.layout, knot, p.history->setup.site.gravity)
@@ -175,7 +171,7 @@ StationState StationAt(const AdjustProblem& p, std::size_t epoch, const Attitude
     const double leans = std::max(0.0, VarOfKnot(p.layout, knot) - adjusted);
     station.cov_white(0, 0) += leans;
     station.cov_white(1, 1) +=
-        std::min(std::max(0.0, knot.var_azimuth_beyond) + leans / sine2, kFlatAzimuthVariance);
+        std::min(std::max(0.0, knot.var_azimuth_beyond) + leans / sine2, kUnknownAngleVariance);
   }
   if (!attitude.azimuth_known) {
     station.cov(0, 0) += kUnknownVariance;

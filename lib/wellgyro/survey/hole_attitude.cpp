@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
 
@@ -27,12 +28,11 @@ HoleAttitude AttitudeOfHole(const AttitudeSample& tool, const StringSpec& string
   const double lean = string.sigma_misalignment;
   hole.cov = tool.cov_attitude.topLeftCorner<2, 2>();
   hole.cov(0, 0) += sag * sag + lean * lean;
-  const double unknown = kPi * kPi / 3;
   const double azimuth = hole.cov(1, 1) + (lean > 0 ? lean * lean / (s * s) : 0);
-  if (azimuth < unknown) {
+  if (azimuth < kUnknownAngleVariance) {
     hole.cov(1, 1) = azimuth;
   } else {
-    hole.cov(1, 1) = unknown;
+    hole.cov(1, 1) = kUnknownAngleVariance;
     hole.cov(0, 1) = hole.cov(1, 0) = 0;
   }
   return hole;
