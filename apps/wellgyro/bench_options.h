@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "wellgyro/calibration/tool_update.h"
+#include "wellgyro/fit/affine_fit.h"
+#include "wellgyro/fit/gyro_fit.h"
+#include "wellgyro/fit/multi_station_fit.h"
+#include "wellgyro/fit/position_fit.h"
+#include "wellgyro/fit/roll_test.h"
+#include "wellgyro/fit/scalar_fit.h"
+#include "wellgyro/fit/thermometer_fit.h"
+
+namespace wellgyro::apps {
+
+/// Everything that the options of the bench methods can say; each method asks for its own.
+struct BenchOptions {
+  std::string data, joined, out, tool;
+  BenchReference reference;
+  std::vector<std::string> said;  ///< references as the user gave them, for the file
+  ToolUpdate update;
+  std::vector<std::string> axes;
+  std::string date, expires;
+
+  ThermometerFitSetup thermometer;
+  TwentyFourPositionSetup twenty_four;
+  SixPositionSetup six;
+  AffineSetup affine;
+  OrthogonalitySetup orthogonality;
+  ScalarSetup scalar;
+  RollTestSetup roll;
+  GyroFitSetup gyro;
+  MultiStationSetup stations;
+};
+
+/// Numbers from `low` to `high`; no other word is one.
+CLI::Validator Within(double low, double high);
+
+/// An option whose number above zero, in the unit of its name, is held in another.
+template <class T>
+void AddNumber(CLI::App& command, const std::string& name, T& held, double unit,
+               const std::string& help) {
+  constexpr double kLeast = 1e-15, kMost = 1e15;
+  command
+      .add_option_function<double>(
+          name, [&held, unit](const double& value) { held = value * unit; }, help)
+      ->check(Within(kLeast, kMost));
+}
+
+// Options that several methods have. The command's callbacks write to `o`, which must outlive it.
+void AddGravity(CLI::App& command, BenchOptions& o);
+void AddField(CLI::App& command, BenchOptions& o);
+void AddDeclination(CLI::App& command, BenchOptions& o);
+void AddLatitude(CLI::App& command, BenchOptions& o);
+void AddAxes(CLI::App& command, BenchOptions& o);
+void AddTool(CLI::App& command, BenchOptions& o);
+
+/// What follows from the options together; throws std::invalid_argument where they contradict each
+/// other.
+void Complete(BenchOptions& o);
+
+}  // namespace wellgyro::apps
