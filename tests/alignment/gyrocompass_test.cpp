@@ -252,6 +252,31 @@ TEST(Gyrocompass, IndexingCancelsBiasButNotWhatTurnsWithGravity) {
   }
 }
 
+// Whatever the prior, two positions tell the bias as their noise says.
+TEST(Gyrocompass, IndexPositionsTellTheBiasWithoutItsPrior) {
+  Random random(8);
+  constexpr int kDraws = 300;
+  double squares = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const Truth truth{.gyro_noise = 0.02 * kDegPerHour,
+                      .bias_x = 0.4 * kDegPerHour,
+                      .bias_y = -0.1 * kDegPerHour};
+    // A prior as narrow as the data: the posterior lies half way.
+    const ErrorPriors errors{.gyro_bias_sigma = 0.015 * kDegPerHour};
+    const NorthFix fix =
+        Gyrocompass(truth.Windows({1, 1 + kPi}, random), truth.Place(), {.errors = errors});
+    ASSERT_TRUE(fix.gyro_bias.has_value());
+    EXPECT_NEAR(fix.sigma_gyro_bias.x(), 0.02 * kDegPerHour / std::sqrt(2), 1e-3 * kDegPerHour);
+    const Eigen::Vector2d off = *fix.gyro_bias - Eigen::Vector2d(truth.bias_x, truth.bias_y);
+    squares += off.cwiseQuotient(fix.sigma_gyro_bias).squaredNorm();
+  }
+  ExpectInBand(squares, kDraws, 2, "biases");
+  const Truth truth{.gyro_noise = 0.02 * kDegPerHour};
+  const NorthFix alone = Gyrocompass(truth.Windows({1}, random), truth.Place(),
+                                     {.errors = {.gyro_bias_sigma = 0.3 * kDegPerHour}});
+  EXPECT_FALSE(alone.gyro_bias.has_value());
+}
+
 TEST(Gyrocompass, BiasWithoutAPriorIsFreeWhereToolfacesSeparateIt) {
   Random random(6);
   const Truth truth{

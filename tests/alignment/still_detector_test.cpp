@@ -159,6 +159,28 @@ TEST(StillDetector, CreepThatShowsOnlyAfterMinStillIsFlagged) {
   EXPECT_TRUE(Has(windows[0].quality, Quality::kMoved));
 }
 
+TEST(StillDetector, RollTooSlowToEndTheStopIsTold) {
+  double squares = 0;
+  constexpr int kSeeds = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Tool tool;
+    tool.random = Random(static_cast<std::uint64_t>(seed));
+    tool.period = 0.1;
+    const double rate = (seed % 2 == 0 ? 0.05 : -0.05) * kDegPerHour;
+    tool.toolface = [rate](double t) { return 2.1 + rate * t; };
+    const auto windows = Detect(tool, SetupFor(tool), 300);
+    ASSERT_EQ(windows.size(), 1u);
+    ASSERT_TRUE(windows[0].roll_rate.has_value());
+    // A line through n seconds: sigma_T sqrt(12 / n^3), sigma_T of one second 1e-4 / sin 0.5.
+    EXPECT_NEAR(windows[0].sigma_roll_rate,
+                50e-6 / std::sin(0.5) * std::sqrt(12 / std::pow(windows[0].seconds(), 3)),
+                0.1 * windows[0].sigma_roll_rate);
+    squares += std::pow((*windows[0].roll_rate - rate) / windows[0].sigma_roll_rate, 2);
+  }
+  EXPECT_GT(squares, ChiSquareQuantile(0.001, kSeeds));
+  EXPECT_LT(squares, ChiSquareQuantile(0.999, kSeeds));
+}
+
 TEST(StillDetector, SlidingInAStraightHoleIsVetoedByDepth) {
   const auto slide = [](double speed, double from) {
     return [=](double t) {

@@ -66,7 +66,7 @@ TEST(FieldChecks, PassOnATrueWindowWhereverItLies) {
           EXPECT_NEAR(*check.value, 0, 1e-6 * *check.sigma + 1e-12) << check.code << inc;
           EXPECT_GT(*check.sigma, 0);
         }
-        EXPECT_EQ(checks.size(), has_gz ? 6u : 5u);
+        EXPECT_EQ(checks.size(), has_gz ? 7u : 5u);
       }
     }
   }
@@ -102,6 +102,13 @@ TEST(FieldChecks, EachFailsOnItsOwnError) {
   window.w_IT_T += 1 * units::kDegPerHour * window.f_T.normalized();
   EXPECT_EQ(verdict(window, HouseSetup(), "earth_rate_vertical"), Verdict::kFail);
   EXPECT_EQ(verdict(window, HouseSetup(), "earth_rate"), Verdict::kFail);
+  EXPECT_EQ(verdict(window, HouseSetup(), "earth_rate_horizontal"), Verdict::kPass);
+  const Eigen::Vector3d up = window.f_T.normalized();
+  StillWindow turned = Window(0.7, 1, 2, true);
+  turned.w_IT_T *= 1.5;
+  turned.w_IT_T -= 0.5 * kEarthRate * std::sin(kLatitude) * up;
+  EXPECT_EQ(verdict(turned, HouseSetup(), "earth_rate_vertical"), Verdict::kPass);
+  EXPECT_EQ(verdict(turned, HouseSetup(), "earth_rate_horizontal"), Verdict::kFail);
   FieldCheckSetup loose = HouseSetup();
   loose.errors.gyro_bias_sigma = 1 * units::kDegPerHour;
   EXPECT_EQ(verdict(window, loose, "earth_rate"), Verdict::kPass);

@@ -92,6 +92,30 @@ TEST(RunToml, SaysWhatMadeTheBytesAndWhatCameOfIt) {
   EXPECT_EQ(fix["quality"].value<std::string>(), "mirror");
 }
 
+TEST(RunToml, SaysHowTheRunFits) {
+  Survey survey = SmallSurvey();
+  RunSummary& summary = survey.runs[0];
+  summary.samples_accel_saturated = 4;
+  summary.temperature_max = 61.5F;
+  summary.fit.emplace();
+  summary.fit->chi_square = 812.5;
+  summary.fit->degrees_of_freedom = 800;
+  summary.fit->parts[RunFit::kInclination] = {300.25, 310.5};
+  summary.fit->errors[Knot::kToolfaceOffset] = 0.25 * units::kDeg;
+  summary.fit->sigma_errors[Knot::kToolfaceOffset] = 0.03 * units::kDeg;
+  summary.fixes[0].roll_rate = 0.5 * units::kDegPerHour;
+  const toml::table run = toml::parse(RunToml(Record(), SmallJob(), survey, {}));
+  const auto first = run["run"][0];
+  EXPECT_EQ(first["accel_saturated"].value<int>(), 4);
+  EXPECT_EQ(first["temperature_max_degc"].value<double>(), 61.5);
+  EXPECT_EQ(first["fit"]["chi_square"].value<double>(), 812.5);
+  EXPECT_EQ(first["fit"]["inclination_degrees_of_freedom"].value<double>(), 310.5);
+  EXPECT_NEAR(first["fit"]["toolface_offset_deg"].value<double>().value_or(0), 0.25, 1e-12);
+  EXPECT_NEAR(first["fit"]["toolface_offset_sigma_deg"].value<double>().value_or(0), 0.03, 1e-12);
+  EXPECT_FALSE(first["fit"]["time_skew_s"]) << "it has no prior";
+  EXPECT_NEAR(first["north_fix"][0]["roll_rate_deg_per_h"].value<double>().value_or(0), 0.5, 1e-12);
+}
+
 TEST(RunToml, HoldsNothingOfTheSource) {
   const std::string text = RunToml(Record(), SmallJob(), SmallSurvey(), {});
   EXPECT_THAT(text, testing::Not(testing::HasSubstr("/somewhere")));

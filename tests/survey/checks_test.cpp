@@ -103,6 +103,57 @@ TEST(Checks, AStopIsHeldToGravityAndEarthRate) {
   EXPECT_EQ(Find(checks, "earth_rate").md.value_or(0), 750);
 }
 
+TEST(Checks, AStopThatRollsFails) {
+  NorthFix fix;
+  fix.md = 750;
+  fix.roll_rate = -0.15 * units::kDegPerHour;
+  fix.sigma_roll_rate = 0.1 * units::kDegPerHour;
+  EXPECT_EQ(Find(Checks({}, {}, {fix}), "roll_at_rest").verdict, Verdict::kPass);
+  fix.roll_rate = 0.31 * units::kDegPerHour;
+  const std::vector<Check> checks = Checks({}, {}, {fix});
+  EXPECT_EQ(Find(checks, "roll_at_rest").verdict, Verdict::kFail);
+  EXPECT_NEAR(Find(checks, "roll_at_rest").value.value_or(0), 0.31, 1e-9);
+  EXPECT_EQ(Find(checks, "roll_at_rest").md.value_or(0), 750);
+}
+
+TEST(Checks, BiasesOfLaterStopsAreHeldToTheFirstByWhatTheToolMayDrift) {
+  NorthFix first, last;
+  first.gyro_bias = Eigen::Vector2d(0.1, 0.2) * units::kDegPerHour;
+  first.sigma_gyro_bias.setConstant(0.03 * units::kDegPerHour);
+  last = first;
+  last.md = 900;
+  last.utc_end = UtcTime{3'600'000'000'000};
+  last.gyro_bias->y() = 0.4 * units::kDegPerHour;
+  Job job;
+  const std::vector<Check> constant = Checks(job, {}, {first, last});
+  const Check& check = Find(constant, "bias_repeatability");
+  EXPECT_EQ(check.verdict, Verdict::kFail);
+  EXPECT_NEAR(check.value.value_or(0), 0.2, 1e-9);
+  EXPECT_NEAR(check.sigma.value_or(0), 0.03 * std::sqrt(2), 1e-9);
+  EXPECT_EQ(check.md.value_or(0), 900);
+  job.noise.rate_random_walk = 0.1 * units::kDegPerHourSqrtHour;
+  EXPECT_EQ(Find(Checks(job, {}, {first, last}), "bias_repeatability").verdict, Verdict::kPass);
+  EXPECT_EQ(Find(Checks(job, {}, {last}), "bias_repeatability").verdict, Verdict::kNotDone);
+}
+
+TEST(Checks, FaultySamplesAreCounted) {
+  RunSummary run;
+  run.run = 1;
+  run.samples = 1000;
+  Job job;
+  job.tool.emplace();
+  const char* const codes[] = {"gyro_saturated", "accel_saturated", "samples_aliased",
+                               "clock_unsynced", "temperature_outside"};
+  const auto verdict = [&](const char* code) {
+    const std::vector<RunSummary> runs = {run};
+    return Find(MakeChecks(job, {runs, {}, {}, {}}), code).verdict;
+  };
+  for (const char* code : codes) EXPECT_EQ(verdict(code), Verdict::kPass) << code;
+  run.samples_gyro_saturated = run.samples_accel_saturated = run.samples_aliased =
+      run.samples_unsynced = run.samples_temperature_outside = 1;
+  for (const char* code : codes) EXPECT_EQ(verdict(code), Verdict::kFail) << code;
+}
+
 TEST(Checks, ACalibrationThatHasExpiredIsTold) {
   Job job;
   const std::vector<Check> without = Checks(job, {});

@@ -124,6 +124,14 @@ void CheckGravity(std::span<const StillWindow> windows, const Site& site,
   }
 }
 
+void TakeBiases(const Problem& problem, const Solution& solution, NorthFix& fix) {
+  const auto x = problem.Alone(solution, gyrocompass::kBiasX);
+  const auto y = problem.Alone(solution, gyrocompass::kBiasY);
+  if (!x || !y) return;
+  fix.gyro_bias = Eigen::Vector2d(x->first, y->first);
+  fix.sigma_gyro_bias = {x->second, y->second};
+}
+
 void CheckEarthRate(const Problem& problem, const Solution& solution, NorthFix& fix) {
   const auto [ratio, sigma] = problem.RateRatio(solution.state);
   fix.earth_rate_ref = kEarthRate;
@@ -164,7 +172,15 @@ NorthFix Frame(std::span<const StillWindow> windows) {
   fix.tool = last.tool;
   fix.md = last.md;
   fix.from_samples = std::ranges::all_of(windows, [](const auto& w) { return w.samples > 0; });
-  for (const StillWindow& window : windows) fix.quality |= window.quality;
+  for (const StillWindow& window : windows) {
+    fix.quality |= window.quality;
+    if (!window.roll_rate) continue;
+    const bool more = !fix.roll_rate || std::abs(*window.roll_rate) * fix.sigma_roll_rate >
+                                            std::abs(*fix.roll_rate) * window.sigma_roll_rate;
+    if (!more) continue;
+    fix.roll_rate = window.roll_rate;
+    fix.sigma_roll_rate = window.sigma_roll_rate;
+  }
   return fix;
 }
 
@@ -200,6 +216,7 @@ NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,
     fix.mirror_cost = minima[1].cost - best.cost;
     fix.quality |= Quality::kMirror;
   }
+  TakeBiases(problem, best, fix);
   CheckGravity(windows, site, setup, fix);
   CheckEarthRate(problem, best, fix);
   return fix;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -61,6 +62,9 @@ class Problem {
   /// Cost least over all but the heading, by one linear step.
   double Profile(double azimuth) const;
   Solution Descend(State state) const;
+  /// One of the estimated errors as the data alone tell it, its prior taken out again, and sigma of
+  /// that [SI]; absent where they tell less than half of what the prior does.
+  std::optional<std::pair<double, double>> Alone(const Solution& solution, Error error) const;
   /// The Earth's rate as the data would have it over its reference, and sigma of that.
   std::pair<double, double> RateRatio(const State& state) const;
 

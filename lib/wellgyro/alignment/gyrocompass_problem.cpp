@@ -279,6 +279,18 @@ Solution Problem::Descend(State state) const {
   return {state, cost, normal.ldlt().solve(MatrixXd::Identity(n, n))};
 }
 
+std::optional<std::pair<double, double>> Problem::Alone(const Solution& solution,
+                                                        Error error) const {
+  const Index at = column_[error];
+  if (at < 0) return std::nullopt;
+  // In units of the prior: posterior information = the data's + 1.
+  const double variance = solution.cov(at, at);
+  const double data = 1 / variance - 1;
+  if (!(data > 0.5)) return std::nullopt;
+  const double value = solution.state.error[error] / variance / data;
+  return std::pair(value, sigma_[error] / std::sqrt(data));
+}
+
 std::pair<double, double> Problem::RateRatio(const State& state) const {
   const System system = Linear(state);
   const Vector3d earth = EarthRate(latitude_ + state.error[kLatitude]);

@@ -232,19 +232,39 @@ bool StillDetector::StillTogether(const Means& block) const {
 /// A slope of the specific force over the stretch, too much for the accelerometers' noise: gravity
 /// turns in the tool.
 bool StillDetector::Creeps() const {
-  const double n = static_cast<double>(stretch_.blocks);
-  if (n < kCreepBlocks) return false;
-  const double seconds = static_cast<double>(stretch_.samples * stretch_.first.period_ns) * 1e-9;
-  const double samples = static_cast<double>(stretch_.samples) / n;
-  const double spread = stretch_.sum_tt - stretch_.sum_t * stretch_.sum_t / n;
+  if (static_cast<double>(stretch_.blocks) < kCreepBlocks) return false;
   for (int i = 0; i < 3; ++i) {
-    const double slope = (stretch_.sum_tf[i] - stretch_.sum_t * stretch_.mean_f[i]) / spread;
-    const double variance = BlockVariance(ForceVariance(setup_.errors, seconds / n),
-                                          stretch_.sum_var_f[i] / n, samples, kScatterForce);
-    const double limit = kGate * std::sqrt(variance / spread) + kCreep * stretch_.mean_f.norm();
-    if (std::abs(slope) > limit) return true;
+    const double limit = kGate * std::sqrt(VarianceOfSlope(i)) + kCreep * stretch_.mean_f.norm();
+    if (std::abs(SlopeOfForce(i)) > limit) return true;
   }
   return false;
+}
+
+/// Of the line fitted to the blocks' means [m/s^3].
+double StillDetector::SlopeOfForce(int axis) const {
+  const Stretch& s = stretch_;
+  const double n = static_cast<double>(s.blocks);
+  return (s.sum_tf[axis] - s.sum_t * s.mean_f[axis]) / (s.sum_tt - s.sum_t * s.sum_t / n);
+}
+
+double StillDetector::VarianceOfSlope(int axis) const {
+  const Stretch& s = stretch_;
+  const double n = static_cast<double>(s.blocks);
+  const double seconds = static_cast<double>(s.samples * s.first.period_ns) * 1e-9;
+  const double variance =
+      BlockVariance(ForceVariance(setup_.errors, seconds / n), s.sum_var_f[axis] / n,
+                    static_cast<double>(s.samples) / n, kScatterForce);
+  return variance / (s.sum_tt - s.sum_t * s.sum_t / n);
+}
+
+/// How fast gravity turns about the tool's axis. fx + i fy = g sin I e^{-iT}.
+void StillDetector::TakeRoll(StillWindow& window) const {
+  const double across = stretch_.mean_f.head<2>().squaredNorm();
+  if (static_cast<double>(stretch_.blocks) < kCreepBlocks || !(across > 0)) return;
+  const double fx = stretch_.mean_f.x(), fy = stretch_.mean_f.y();
+  window.roll_rate = (fy * SlopeOfForce(0) - fx * SlopeOfForce(1)) / across;
+  window.sigma_roll_rate =
+      std::sqrt(fy * fy * VarianceOfSlope(0) + fx * fx * VarianceOfSlope(1)) / across;
 }
 
 void StillDetector::Average(const Means& block) {
@@ -325,6 +345,7 @@ StillWindow StillDetector::Window(Quality quality) const {
     window.sigma_f_T[i] = SigmaOfMean(force, force * blocks, s.square_f[i], blocks);
   }
   if (!s.gz) window.w_IT_T[2] = window.sigma_w_IT_T[2] = 0;
+  TakeRoll(window);
   return window;
 }
 

@@ -103,6 +103,9 @@ class WELLGYRO_EXPORT StillDetector {
   bool StillAlone(const Means& block) const;
   bool StillTogether(const Means& block) const;
   bool Creeps() const;
+  double SlopeOfForce(int axis) const;
+  double VarianceOfSlope(int axis) const;
+  void TakeRoll(StillWindow& window) const;
   void Average(const Means& block);
   std::optional<StillWindow> EndStretch(Quality quality);
   StillWindow Window(Quality quality) const;

@@ -272,6 +272,12 @@ void AzimuthFilter::Impl::ChooseBranch(FilterFix* f, double azimuth, double vari
   }
 }
 
+void TakeClosure(double azimuth, double variance, FilterFix* f) {
+  if (!(variance < kFlatAzimuthVariance)) return;
+  f->closure = WrapPi(f->azimuth - azimuth);
+  f->sigma_closure = std::sqrt(variance + f->fix.cov_attitude(1, 1));
+}
+
 // The axial knots before the last one, with what is known of their noise by now; and the last.
 void AzimuthFilter::Impl::WorkStretchAgain() {
   auto& epochs = history.epochs;
@@ -331,6 +337,7 @@ FilterFix AzimuthFilter::Update(const NorthFix& fix) {
     }
     const double before = m.core.azimuth() - since, variance = m.core.variance();
     m.ChooseBranch(&f, before, variance);
+    TakeClosure(before, variance, &f);
     // Near east-west and horizontal a fix by itself may lie far off: the rates are hardly linear
     // there, so that the place matters.
     const double weight =

@@ -50,8 +50,9 @@ enum class FixUse {
 struct FilterFix {
   NorthFix fix;
   FixUse use = FixUse::kUsed;
-  double azimuth = 0;           ///< the branch that was used [rad]
-  double chi_square = 0;        ///< of that branch against the azimuth before; 0 where unknown
+  double azimuth = 0;     ///< the branch that was used [rad]
+  double chi_square = 0;  ///< of that branch against the azimuth before; 0 where unknown
+  double closure = 0, sigma_closure = 0;  ///< the same as an angle [rad]
   double about = 0;             ///< where the rates are made linear: `azimuth`, weighed with the
                                 ///< azimuth known before [rad]
   bool rates = false;           ///< the still knots of its window entered instead of its azimuth

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "wellgyro/attitude/filter.h"
 #include "wellgyro/attitude/filter_state.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/attitude_sample.h"
+#include "wellgyro/record/run_fit.h"
 
 namespace wellgyro {
 
@@ -13,6 +15,7 @@ namespace wellgyro {
 struct SmoothedRun {
   std::vector<AttitudeSample> attitude;  ///< of every epoch of the history
   std::vector<StationState> stations;    ///< of every marked station, in the order of time
+  std::optional<RunFit> fit;             ///< where the run was adjusted as a whole
 };
 
 /// Fixed-interval smoothing of a run (modified Bryson-Frazier, which inverts no covariance), so

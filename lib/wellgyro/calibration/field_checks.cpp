@@ -139,12 +139,18 @@ void CheckThreeAxes(const StillWindow& window, const FieldCheckSetup& setup, Che
   const Eigen::Vector3d up = window.f_T / force;
   const Eigen::Vector3d by_force = (window.w_IT_T - window.w_IT_T.dot(up) * up) / force;
   const double tilt = Root(by_force, ForceCovariance(window, setup), 0);
-  const double latitude = setup.reference.latitude;
-  checks.Add("earth_rate_vertical", "deg/h",
-             window.w_IT_T.dot(up) - kEarthRate * std::sin(latitude),
-             Root(up, cov,
-                  std::hypot(tilt, kEarthRate * std::cos(latitude) * setup.errors.latitude_sigma)),
-             units::kDegPerHour);
+  const double latitude = setup.reference.latitude, by_latitude = setup.errors.latitude_sigma;
+  const double vertical = kEarthRate * std::sin(latitude);
+  const double horizontal = kEarthRate * std::cos(latitude);
+  checks.Add("earth_rate_vertical", "deg/h", window.w_IT_T.dot(up) - vertical,
+             Root(up, cov, std::hypot(tilt, horizontal * by_latitude)), units::kDegPerHour);
+  const Eigen::Vector3d level = window.w_IT_T - window.w_IT_T.dot(up) * up;
+  // Tilted towards north by d, gravity leaves the vertical rate times d in the level.
+  const double tilted = vertical / std::max(horizontal, 1e-12) * tilt;
+  checks.Add(
+      "earth_rate_horizontal", "deg/h", level.norm() - horizontal,
+      Root(level / std::max(level.norm(), 1e-12), cov, std::hypot(tilted, vertical * by_latitude)),
+      units::kDegPerHour);
 }
 
 void CheckField(const StillWindow& window, const FieldCheckSetup& setup, Checks& checks) {

@@ -36,7 +36,8 @@ struct FieldCheckSetup {
 
 /// What one window at rest says of the sensors, each check against its own sigma, which holds the
 /// window's noise, the priors and the reference's uncertainty: `gravity` |f| - g [m/s2];
-/// `earth_rate` [deg/h]: with three gyro axes |w| - We, and `earth_rate_vertical` w.up - We sin L;
+/// `earth_rate` [deg/h]: with three gyro axes |w| - We, `earth_rate_vertical` w.up - We sin L, and
+/// `earth_rate_horizontal`, what is left of w, less We cos L;
 /// with two, the one residual that they leave whatever the azimuth: how far the measured rates lie
 /// outside the ellipse of all azimuths (horizontal rate near vertical, vertical rate near
 /// horizontal); `field` [nT] and `dip` [deg] where fluxgates and references are; `parity` [deg/h].

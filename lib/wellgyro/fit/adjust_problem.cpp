@@ -41,37 +41,47 @@ class Builder {
     AddSpans();
     AddAzimuths();
     for (const AdjustProblem::Repeat& r : p_.repeats) {
-      Add(RepeatCost(p_.layout, {r.sigma_azimuth, r.sigma_inclination, r.sine}), loss_.get(),
+      Add(RepeatCost(p_.layout, {r.sigma_azimuth, r.sigma_inclination, r.sine}), RunFit::kRepeat,
           {p_.node(r.first), p_.node(r.second), p_.common.data()});
     }
-    if (p_.layout.drift() > 0) Add(DriftPriorCost(p_.layout), nullptr, {p_.node(0)});
-    Add(CommonPriorCost(p_.layout), nullptr, {p_.common.data()});
+    if (p_.layout.drift() > 0) Add(DriftPriorCost(p_.layout), RunFit::kParts, {p_.node(0)});
+    Add(CommonPriorCost(p_.layout), RunFit::kParts, {p_.common.data()});
   }
 
   ceres::Problem& problem() { return *problem_; }
+  /// Of every residual.
+  const std::vector<RunFit::Part>& parts() const { return parts_; }
 
  private:
-  void Add(std::unique_ptr<ceres::CostFunction> cost, ceres::LossFunction* loss,
+  // Growth between nodes and priors belong to no part, and count in full.
+  void Add(std::unique_ptr<ceres::CostFunction> cost, RunFit::Part part,
            const std::vector<double*>& blocks) {
-    problem_->AddResidualBlock(cost.release(), loss, blocks);
+    parts_.insert(parts_.end(), static_cast<std::size_t>(cost->num_residuals()), part);
+    problem_->AddResidualBlock(cost.release(), part == RunFit::kParts ? nullptr : loss_.get(),
+                               blocks);
   }
 
   void AddSpans() {
     for (std::size_t k = 0; k < p_.spans.size(); ++k) {
       const AdjustSpan& span = p_.spans[k];
       const std::vector<double*> blocks{p_.node(k), p_.node(k + 1), p_.common.data()};
-      Add(SpanCost(p_.layout, span), nullptr, blocks);
-      if (span.still && !span.vertical) Add(StillCost(p_.layout, span), loss_.get(), blocks);
-      if (span.levelled) Add(LevelCost(p_.layout, span), loss_.get(), blocks);
+      const std::size_t first = parts_.size();
+      Add(SpanCost(p_.layout, span), RunFit::kParts, blocks);
+      if (!span.still && !span.vertical) {
+        parts_[first + AdjustLayout::kInclination] = RunFit::kInclination;
+      }
+      if (span.still && !span.vertical) Add(StillCost(p_.layout, span), RunFit::kRest, blocks);
+      if (span.levelled) Add(LevelCost(p_.layout, span), RunFit::kInclination, blocks);
     }
   }
 
   void AddAzimuths() {
     const FilterSetup& setup = p_.history->setup;
     if (setup.start_azimuth) {
-      Add(AzimuthCost(p_.layout, *setup.start_azimuth, setup.start_sigma), nullptr, {p_.node(0)});
+      Add(AzimuthCost(p_.layout, *setup.start_azimuth, setup.start_sigma), RunFit::kParts,
+          {p_.node(0)});
     } else {  // a matrix that can be inverted even if nothing ever tells
-      Add(AzimuthCost(p_.layout, p_.azimuth(0), kNothingKnown), nullptr, {p_.node(0)});
+      Add(AzimuthCost(p_.layout, p_.azimuth(0), kNothingKnown), RunFit::kParts, {p_.node(0)});
     }
     for (const FilterFix& f : p_.history->fixes) {
       if (!Used(f) || f.rates) continue;
@@ -86,28 +96,30 @@ class Builder {
         if (!knot.still) since = knot.turn * std::clamp(after, 0.0, 1.0);
       }
       Add(AzimuthCost(p_.layout, f.azimuth + since, std::sqrt(f.fix.cov_attitude(1, 1))),
-          loss_.get(), {p_.node(node)});
+          RunFit::kAzimuth, {p_.node(node)});
     }
   }
 
   AdjustProblem& p_;
+  std::vector<RunFit::Part> parts_;
   std::unique_ptr<ceres::LossFunction> loss_;
   std::unique_ptr<ceres::Problem> problem_;
 };
 
-Eigen::SparseMatrix<double> InformationAt(const AdjustProblem& p, ceres::Problem& problem) {
+AdjustRows RowsAt(const AdjustProblem& p, Builder& builder) {
   ceres::Problem::EvaluateOptions options;
   for (std::size_t k = 0; k < p.node_count(); ++k) {
     options.parameter_blocks.push_back(const_cast<double*>(p.node(k)));
   }
   options.parameter_blocks.push_back(const_cast<double*>(p.common.data()));
   ceres::CRSMatrix crs;
-  problem.Evaluate(options, nullptr, nullptr, nullptr, &crs);
-  const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(
+  AdjustRows rows;
+  builder.problem().Evaluate(options, nullptr, &rows.residual, nullptr, &crs);
+  rows.jacobian = Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
       crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()), crs.rows.data(),
       crs.cols.data(), crs.values.data());
-  const Eigen::SparseMatrix<double> by_column = jacobian;
-  return by_column.transpose() * by_column;
+  rows.part = builder.parts();
+  return rows;
 }
 
 }  // namespace
@@ -129,7 +141,7 @@ void StartFrom(const std::vector<double>& azimuths, AdjustProblem* p) {
   }
 }
 
-AdjustOutcome Solve(AdjustProblem* p, Eigen::SparseMatrix<double>* information) {
+AdjustOutcome Solve(AdjustProblem* p, AdjustRows* rows) {
   Builder builder(p);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -141,7 +153,7 @@ AdjustOutcome Solve(AdjustProblem* p, Eigen::SparseMatrix<double>* information) 
   options.parameter_tolerance = 1e-12;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &builder.problem(), &summary);
-  if (information != nullptr) *information = InformationAt(*p, builder.problem());
+  if (rows != nullptr) *rows = RowsAt(*p, builder);
   return {2 * summary.final_cost, summary.num_residuals,
           static_cast<int>(summary.iterations.size()),
           summary.termination_type == ceres::CONVERGENCE};

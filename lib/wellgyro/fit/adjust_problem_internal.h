@@ -9,6 +9,7 @@
 #include "wellgyro/attitude/filter.h"
 #include "wellgyro/fit/adjust_layout_internal.h"
 #include "wellgyro/fit/adjust_span_internal.h"
+#include "wellgyro/record/run_fit.h"
 
 namespace wellgyro {
 
@@ -37,6 +38,14 @@ struct AdjustProblem {
   double azimuth(std::size_t k) const { return node(k)[AdjustLayout::kAzimuth]; }
 };
 
+/// Every residual where the unknowns stand, as the loss counts it.
+struct AdjustRows {
+  /// By nodes first, the common unknowns last.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> jacobian;
+  std::vector<double> residual;
+  std::vector<RunFit::Part> part;  ///< kParts: none of them
+};
+
 struct AdjustOutcome {
   double chi_square = 0;  ///< sum of the squared residuals, as the loss counts them
   int residuals = 0;
@@ -47,8 +56,7 @@ struct AdjustOutcome {
 /// Starts every unknown from the azimuth of each node and the tracker's inclination.
 void StartFrom(const std::vector<double>& azimuths, AdjustProblem* problem);
 
-/// Least squares from where the unknowns stand. With `information`, also J'J there, nodes first,
-/// the common unknowns last.
-AdjustOutcome Solve(AdjustProblem* problem, Eigen::SparseMatrix<double>* information);
+/// Least squares from where the unknowns stand. With `rows`, also all residuals there.
+AdjustOutcome Solve(AdjustProblem* problem, AdjustRows* rows);
 
 }  // namespace wellgyro

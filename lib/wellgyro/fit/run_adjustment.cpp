@@ -238,6 +238,33 @@ void FillErrors(const AdjustProblem& p, const SelectedInverse& inverse, Adjustme
   }
 }
 
+// Share of its own variance that the unknowns leave to a residual, from the rows of the others.
+double FreedomOf(const AdjustRows& rows, int row, const SelectedInverse& inverse) {
+  std::vector<std::pair<int, double>> slopes;
+  using Entry = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
+  for (Entry entry(rows.jacobian, row); entry; ++entry) {
+    if (entry.value() != 0) slopes.emplace_back(static_cast<int>(entry.col()), entry.value());
+  }
+  double taken = 0;
+  for (std::size_t a = 0; a < slopes.size(); ++a) {
+    const auto [i, slope] = slopes[a];
+    taken += slope * slope * inverse.At(i, i);
+    for (std::size_t b = 0; b < a; ++b) {
+      taken += 2 * slope * slopes[b].second * inverse.At(i, slopes[b].first);
+    }
+  }
+  return std::max(0.0, 1 - taken);
+}
+
+void FillParts(const AdjustRows& rows, const SelectedInverse& inverse, RunFit* fit) {
+  for (std::size_t row = 0; row < rows.part.size(); ++row) {
+    if (rows.part[row] == RunFit::kParts) continue;
+    RunFit::Squares& squares = fit->parts[rows.part[row]];
+    squares.sum += rows.residual[row] * rows.residual[row];
+    squares.freedom += FreedomOf(rows, static_cast<int>(row), inverse);
+  }
+}
+
 }  // namespace
 
 Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
@@ -253,9 +280,10 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
   AdjustProblem p =
       MakeProblem(history, begin.path, {options.knot_seconds, true}, options, sigma_lie);
   StartFrom(AtNodes(p, begin.path), &p);
-  Eigen::SparseMatrix<double> information;
-  const AdjustOutcome outcome = Solve(&p, &information);
-  const SelectedInverse inverse(information);
+  AdjustRows rows;
+  const AdjustOutcome outcome = Solve(&p, &rows);
+  const Eigen::SparseMatrix<double> jacobian = rows.jacobian;  // by columns
+  const SelectedInverse inverse(jacobian.transpose() * jacobian);
   if (!outcome.converged || !inverse.ok()) {  // what the smoother makes of it is still true
     result.run = Smooth(history);
     return result;
@@ -269,6 +297,8 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
   result.converged = true;
   result.ambiguous = std::find(known.begin(), known.end(), false) != known.end();
   FillErrors(p, inverse, &result);
+  FillParts(rows, inverse, &result);
+  result.run.fit = result;
   return result;
 }
 

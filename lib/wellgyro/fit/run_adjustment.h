@@ -3,7 +3,7 @@
 #include "wellgyro/attitude/filter.h"
 #include "wellgyro/attitude/smoother.h"
 #include "wellgyro/base/export.h"
-#include "wellgyro/record/knot.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/run_adjuster.h"
 
 namespace wellgyro {
@@ -15,15 +15,8 @@ struct AdjustmentOptions {
 };
 
 /// A run adjusted as a whole, with what tells how well it fits.
-struct Adjustment {
+struct Adjustment : RunFit {
   SmoothedRun run;
-  double chi_square = 0;       ///< of all residuals, priors included
-  int degrees_of_freedom = 0;  ///< residuals less unknowns
-  bool converged = false;
-  /// Two azimuths fit nearly as well, differing by less than 9 in chi-square: none is given.
-  bool ambiguous = false;
-  Knot::SourceVector errors = Knot::SourceVector::Zero();        ///< of the tool, as found
-  Knot::SourceVector sigma_errors = Knot::SourceVector::Zero();  ///< of these, likewise
 };
 
 /// Least squares over all that a run measured: azimuth, inclination and drift at nodes every

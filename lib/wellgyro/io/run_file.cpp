@@ -76,6 +76,20 @@ void WriteFix(TomlWriter& toml, const NorthFix& fix) {
     deg("mirror_azimuth_true_deg", WrapTwoPi(*fix.mirror_azimuth));
     toml.Number("mirror_cost", fix.mirror_cost);
   }
+  if (fix.chi_square) {
+    deg("closure_deg", fix.closure);
+    deg("sigma_closure_deg", fix.sigma_closure);
+  }
+  if (fix.gyro_bias) {
+    toml.Number("gyro_bias_x_deg_per_h", fix.gyro_bias->x() / units::kDegPerHour);
+    toml.Number("gyro_bias_y_deg_per_h", fix.gyro_bias->y() / units::kDegPerHour);
+    toml.Number("sigma_gyro_bias_x_deg_per_h", fix.sigma_gyro_bias.x() / units::kDegPerHour);
+    toml.Number("sigma_gyro_bias_y_deg_per_h", fix.sigma_gyro_bias.y() / units::kDegPerHour);
+  }
+  if (fix.roll_rate) {
+    toml.Number("roll_rate_deg_per_h", *fix.roll_rate / units::kDegPerHour);
+    toml.Number("sigma_roll_rate_deg_per_h", fix.sigma_roll_rate / units::kDegPerHour);
+  }
   toml.Number("gravity_mps2", fix.gravity);
   toml.Number("gravity_ref_mps2", fix.gravity_ref);
   toml.Number("sigma_gravity_mps2", fix.sigma_gravity);
@@ -85,6 +99,57 @@ void WriteFix(TomlWriter& toml, const NorthFix& fix) {
     toml.Number("sigma_earth_rate_deg_per_h", fix.sigma_earth_rate / units::kDegPerHour);
   }
   toml.Text("quality", QualityText(fix.quality));
+}
+
+/// Of one kind of error, by its name without axis.
+void WriteFound(TomlWriter& toml, const RunFit& fit, Knot::Source source, const std::string& name,
+                const std::string& unit_name, double unit) {
+  if (!(fit.sigma_errors[source] > 0)) return;
+  toml.Number(name + unit_name, fit.errors[source] / unit);
+  toml.Number(name + "_sigma" + unit_name, fit.sigma_errors[source] / unit);
+}
+
+void WriteFit(TomlWriter& toml, const RunFit& fit) {
+  toml.Table("run.fit");
+  toml.Flag("converged", fit.converged);
+  toml.Flag("ambiguous", fit.ambiguous);
+  toml.Number("chi_square", fit.chi_square);
+  toml.Whole("degrees_of_freedom", fit.degrees_of_freedom);
+  const std::array<std::pair<std::string, RunFit::Part>, RunFit::kParts> parts{
+      {{"inclination", RunFit::kInclination},
+       {"rest", RunFit::kRest},
+       {"azimuth", RunFit::kAzimuth},
+       {"repeat", RunFit::kRepeat}}};
+  for (const auto& [name, part] : parts) {
+    toml.Number(name + "_chi_square", fit.parts[part].sum);
+    toml.Number(name + "_degrees_of_freedom", fit.parts[part].freedom);
+  }
+  WriteFound(toml, fit, Knot::kToolfaceOffset, "toolface_offset", "_deg", units::kDeg);
+  WriteFound(toml, fit, Knot::kTimeSkew, "time_skew", "_s", 1);
+  WriteFound(toml, fit, Knot::kGyroBiasX, "gyro_bias_x", "_deg_per_h", units::kDegPerHour);
+  WriteFound(toml, fit, Knot::kGyroBiasY, "gyro_bias_y", "_deg_per_h", units::kDegPerHour);
+  WriteFound(toml, fit, Knot::kMassUnbalance, "mass_unbalance", "_deg_per_h_per_g",
+             units::kDegPerHourPerG);
+  WriteFound(toml, fit, Knot::kQuadrature, "quadrature", "_deg_per_h_per_g",
+             units::kDegPerHourPerG);
+  WriteFound(toml, fit, Knot::kGyroScaleX, "gyro_scale_x", "", 1);
+  WriteFound(toml, fit, Knot::kGyroScaleY, "gyro_scale_y", "", 1);
+  WriteFound(toml, fit, Knot::kMisalignmentX, "gyro_misalignment_x", "_rad", 1);
+  WriteFound(toml, fit, Knot::kMisalignmentY, "gyro_misalignment_y", "_rad", 1);
+  WriteFound(toml, fit, Knot::kAccelBiasX, "accel_bias_x", "_mps2", 1);
+  WriteFound(toml, fit, Knot::kAccelBiasY, "accel_bias_y", "_mps2", 1);
+  WriteFound(toml, fit, Knot::kAccelBiasZ, "accel_bias_z", "_mps2", 1);
+}
+
+void WriteSamples(TomlWriter& toml, const RunSummary& run) {
+  toml.Whole("gyro_saturated", run.samples_gyro_saturated);
+  toml.Whole("accel_saturated", run.samples_accel_saturated);
+  toml.Whole("samples_aliased", run.samples_aliased);
+  toml.Whole("clock_unsynced", run.samples_unsynced);
+  toml.Number("seconds_without_depth", run.seconds_without_depth);
+  toml.Number("temperature_min_degc", static_cast<double>(run.temperature_min));
+  toml.Number("temperature_max_degc", static_cast<double>(run.temperature_max));
+  toml.Whole("temperature_outside", run.samples_temperature_outside);
 }
 
 void WriteRuns(TomlWriter& toml, const std::vector<RunSummary>& runs) {
@@ -100,6 +165,8 @@ void WriteRuns(TomlWriter& toml, const std::vector<RunSummary>& runs) {
     toml.Whole("samples_lost", run.samples_lost);
     if (run.samples_after_end > 0) toml.Whole("samples_after_end", run.samples_after_end);
     toml.Whole("duplicates", run.duplicates);
+    if (run.samples > 0) WriteSamples(toml, run);
+    if (run.fit) WriteFit(toml, *run.fit);
     for (const NorthFix& fix : run.fixes) WriteFix(toml, fix);
   }
 }

@@ -31,6 +31,15 @@ struct NorthFix {
   double mirror_cost = 0;  ///< cost of the mirror less cost of the solution, chi-square units
   /// Of the azimuth against what was known before it came; absent where nothing was.
   std::optional<double> chi_square;
+  /// The same as an angle, and its sigma [rad].
+  double closure = 0, sigma_closure = 0;
+  /// Biases of the gyros x and y as this stop alone tells them, whatever their prior; absent where
+  /// it does not. With their sigmas [rad/s].
+  std::optional<Eigen::Vector2d> gyro_bias;
+  Eigen::Vector2d sigma_gyro_bias = Eigen::Vector2d::Zero();
+  /// Of the toolface at rest, in the window where it is most for its sigma [rad/s].
+  std::optional<double> roll_rate;
+  double sigma_roll_rate = 0;
   double gravity = 0;        ///< measured |f| [m/s^2]
   double gravity_ref = 0;    ///< of the Earth model at the place [m/s^2]
   double sigma_gravity = 0;  ///< [m/s^2]

@@ -10,38 +10,12 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/field_checks.h"
 #include "wellgyro/earth/grid.h"
+#include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/choose.h"
+#include "wellgyro/survey/run_checks_internal.h"
 
 namespace wellgyro {
 namespace {
-
-struct Measured {
-  double value = 0, sigma = 0;
-};
-
-/// A check in SI units; `unit` divides what is written.
-Check Compare(std::string code, std::int32_t run, Measured measured, std::optional<double> accepted,
-              double unit, std::string unit_name) {
-  Check check;
-  check.code = std::move(code);
-  check.run = run;
-  const double limit = accepted ? *accepted : 3 * measured.sigma;
-  check.value = measured.value / unit;
-  check.sigma = measured.sigma / unit;
-  check.limit = limit / unit;
-  check.unit = std::move(unit_name);
-  check.limit_source = accepted ? "acceptance" : "3 sigma";
-  check.verdict = Judge(measured.value, limit);
-  return check;
-}
-
-Check NotDone(std::string code, std::int32_t run, std::string why) {
-  Check check;
-  check.code = std::move(code);
-  check.run = run;
-  check.limit_source = std::move(why);
-  return check;
-}
 
 void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
   bool earth_rate = false, compared = false;
@@ -271,12 +245,6 @@ void CheckGrid(const Job& job, std::vector<Check>& checks) {
 
 }  // namespace
 
-Verdict Judge(double value, double limit) {
-  const double size = std::abs(value);
-  if (!(size <= limit)) return Verdict::kFail;
-  return size <= limit * (2.0 / 3.0) ? Verdict::kPass : Verdict::kWarn;
-}
-
 Check CheckAsked(const Job& job, std::span<const Station> chosen) {
   int missing = 0;
   std::optional<double> first;
@@ -304,6 +272,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     }
     CheckFixes(job, run, checks);
     checks.insert(checks.end(), run.stop_checks.begin(), run.stop_checks.end());
+    CheckStops(job, run, checks);
     CheckPasses(job, inputs.passes, run.run, Pass::kOut, "in_out", checks);
     CheckPractice(inputs.passes, run.run, checks);
     CheckPasses(job, inputs.passes, run.run, Pass::kRepeat, "repeat", checks);
@@ -314,6 +283,8 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     Check unknown = Compare("depth_unknown", run.run, {run.seconds_without_depth, 0}, 0.0, 1, "s");
     unknown.limit_source = "marks no further apart than [depth] max_gap_s";
     if (run.samples > 0) checks.push_back(unknown);
+    CheckSamples(job, run, checks);
+    CheckFit(job, run, checks);
   }
   CheckReturns(job, inputs, checks);
   CheckMarks(job, inputs.marks, checks);

@@ -71,7 +71,7 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
 void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& along,
                      const AlongHole& middle) {
   if (summary_.samples == 0) summary_.begin = utc;
-  ++summary_.samples;
+  Count(sample.stamp);
   CountDepth(sample.stamp, along.known);
   PassState pass = passes_.state();
   if (along.known) pass = passes_.Push(utc, along.md);
@@ -91,6 +91,19 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   if (const auto window = still_.Push(sample, middle)) TakeWindow(*window);
   const std::optional<double> md = along.known ? std::optional(along.md) : std::nullopt;
   if (!SamePlace(sample.stamp.tool_time, md)) CloseGroup();
+}
+
+void RunSurvey::Count(const SampleStamp& stamp) {
+  RunSummary& s = summary_;
+  s.temperature_min =
+      s.samples == 0 ? stamp.temperature : std::min(s.temperature_min, stamp.temperature);
+  s.temperature_max =
+      s.samples == 0 ? stamp.temperature : std::max(s.temperature_max, stamp.temperature);
+  ++s.samples;
+  s.samples_gyro_saturated += stamp.gyro_saturated;
+  s.samples_accel_saturated += stamp.accel_saturated;
+  s.samples_unsynced += stamp.utc_unsynced;
+  s.samples_temperature_outside += stamp.temperature_outside;
 }
 
 void RunSurvey::CountDepth(const SampleStamp& stamp, bool known) {
@@ -144,6 +157,7 @@ Draft RunSurvey::NewDraft(double md) const {
 void RunSurvey::Summed(const AlongHole& end, const PassState& pass_end) {
   cuts_.clear();
   const Current& c = *current_;
+  summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
   vertical_.Push(c.sample, c.middle, site_);
   resting_ = c.middle.known && std::abs(c.middle.speed) < kRestSpeed;
   if (c.along.known && end.known && pass_end.number == c.pass.number &&

@@ -86,6 +86,7 @@ class RunSurvey {
     bool external = false;
   };
 
+  void Count(const SampleStamp& stamp);
   void CountDepth(const SampleStamp& stamp, bool known);
   void Summed(const AlongHole& end, const PassState& pass_end);
   void AddTargets(double md_end);

@@ -47,7 +47,7 @@ void RunSurvey::CheckStop() {
     if (!window.has_gz) continue;
     for (Check& check : CheckWindow(window, setup)) {
       // Gravity and the rate itself are checked with the fix.
-      if (check.code != "earth_rate_vertical") continue;
+      if (check.code != "earth_rate_vertical" && check.code != "earth_rate_horizontal") continue;
       check.run = summary_.run;
       summary_.stop_checks.push_back(std::move(check));
     }
@@ -92,7 +92,11 @@ void RunSurvey::UseFix(NorthFix fix) {
     // linear, would take the rates of such a stop for far more than the fix itself says.
     if (std::sqrt(fix.cov_attitude(1, 1)) > kVague) given.from_samples = false;
     const FilterFix used = filter_->Update(given);
-    if (known_before && used.use != FixUse::kNoKnot) fix.chi_square = used.chi_square;
+    if (known_before && used.use != FixUse::kNoKnot) {
+      fix.chi_square = used.chi_square;
+      fix.closure = used.closure;
+      fix.sigma_closure = used.sigma_closure;
+    }
     if (used.use == FixUse::kAmbiguous) fix.quality |= Quality::kMirror;
     if (filter_->attitude().azimuth_known) TellUnheard();
     SetTrackerAzimuth();

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/north_fix.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/record/station.h"
 
 namespace wellgyro {
@@ -25,6 +27,12 @@ struct RunSummary {
   /// Without a depth, between the first and the last that had one [s].
   double seconds_without_depth = 0;
   std::int64_t duplicates = 0;  ///< sent again and skipped
+  std::int64_t samples_gyro_saturated = 0, samples_accel_saturated = 0;
+  std::int64_t samples_unsynced = 0;  ///< of which the surface doubts the UTC
+  std::int64_t samples_aliased = 0;   ///< that turned too far in one period
+  std::int64_t samples_temperature_outside = 0;
+  float temperature_min = 0, temperature_max = 0;  ///< [degC]
+  std::optional<RunFit> fit;                       ///< where an adjuster said so
   std::vector<NorthFix> fixes;
   std::vector<Check> stop_checks;  ///< of three gyro axes at rest, beyond what a fix says
 };

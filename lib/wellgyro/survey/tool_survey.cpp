@@ -319,6 +319,7 @@ void ToolSurvey::Adjust() {
       SmoothedRun smoothed =
           adjuster_ ? adjuster_->Adjust(filter->history(), job_.string.sigma_misalignment)
                     : Smooth(filter->history());
+      run.survey->summary().fit = smoothed.fit;
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);
     }

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+
+#include "wellgyro/record/knot.h"
+
+namespace wellgyro {
+
+/// How well the adjustment of a run as a whole fits what was measured, and what it found of the
+/// tool's errors.
+struct RunFit {
+  /// Some of the residuals, by what they compare.
+  enum Part {
+    kInclination,  ///< gyros' and accelerometers' inclination on the way: the r-channel
+    kRest,         ///< rates at rest and the Earth's
+    kAzimuth,      ///< azimuths given from outside, and from vague fixes
+    kRepeat,       ///< directions at depths passed more than once
+    kParts
+  };
+  /// Squares of residuals over their variances, and what is to be expected of their sum: their
+  /// number less what the unknowns take up of them.
+  struct Squares {
+    double sum = 0;
+    double freedom = 0;
+  };
+
+  double chi_square = 0;       ///< of all residuals, priors included
+  int degrees_of_freedom = 0;  ///< residuals less unknowns
+  bool converged = false;
+  /// Two azimuths fit nearly as well, differing by less than 9 in chi-square: none is given.
+  bool ambiguous = false;
+  std::array<Squares, kParts> parts;
+  Knot::SourceVector errors = Knot::SourceVector::Zero();        ///< of the tool, as found
+  Knot::SourceVector sigma_errors = Knot::SourceVector::Zero();  ///< of these; 0: has no prior
+};
+
+}  // namespace wellgyro

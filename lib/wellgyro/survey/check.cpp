@@ -1,0 +1,48 @@
+#include <cmath>
+#include <utility>
+
+#include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/checks.h"
+
+namespace wellgyro {
+
+Verdict Judge(double value, double limit) {
+  const double size = std::abs(value);
+  if (!(size <= limit)) return Verdict::kFail;
+  return size <= limit * (2.0 / 3.0) ? Verdict::kPass : Verdict::kWarn;
+}
+
+Check CompareWith(std::string code, std::int32_t run, Measured measured, double limit, double unit,
+                  std::string unit_name, std::string source) {
+  Check check;
+  check.code = std::move(code);
+  check.run = run;
+  check.value = measured.value / unit;
+  check.sigma = measured.sigma / unit;
+  check.limit = limit / unit;
+  check.unit = std::move(unit_name);
+  check.limit_source = std::move(source);
+  check.verdict = Judge(measured.value, limit);
+  return check;
+}
+
+Check Compare(std::string code, std::int32_t run, Measured measured, std::optional<double> accepted,
+              double unit, std::string unit_name) {
+  return CompareWith(std::move(code), run, measured, accepted ? *accepted : 3 * measured.sigma,
+                     unit, std::move(unit_name), accepted ? "acceptance" : "3 sigma");
+}
+
+Check CompareCount(std::string code, std::int32_t run, std::int64_t count, std::string source) {
+  return CompareWith(std::move(code), run, {static_cast<double>(count), 0}, 0, 1, "1",
+                     std::move(source));
+}
+
+Check NotDone(std::string code, std::int32_t run, std::string why) {
+  Check check;
+  check.code = std::move(code);
+  check.run = run;
+  check.limit_source = std::move(why);
+  return check;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,172 @@
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/math/statistics.h"
+#include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/run_checks_internal.h"
+
+namespace wellgyro {
+namespace {
+
+double Square(double x) { return x * x; }
+
+/// What a gyro's bias changes by in `seconds`, by the coefficients [rad/s].
+double SigmaOfChange(const NoiseCoefficients& gyro, double seconds) {
+  double variance = Square(gyro.rate_random_walk) * seconds;
+  if (const auto& tc = gyro.bias_instability_correlation_time; tc && *tc > 0) {
+    variance += 2 * Square(1.075 * gyro.bias_instability) * -std::expm1(-seconds / *tc);
+  }
+  return std::sqrt(variance + Square(gyro.rate_ramp * seconds));
+}
+
+/// Gyro biases of each stop against those of the first that tells them: the axis and stop that
+/// differ most for their sigma.
+void CheckBiases(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
+  const NorthFix *first = nullptr, *where = nullptr;
+  Measured worst;
+  for (const NorthFix& fix : run.fixes) {
+    if (!fix.gyro_bias) continue;
+    if (first == nullptr) {
+      first = &fix;
+      continue;
+    }
+    const double change = SigmaOfChange(job.noise, (fix.utc_end - first->utc_end).seconds());
+    for (int axis = 0; axis < 2; ++axis) {
+      const Measured off{
+          (*fix.gyro_bias)[axis] - (*first->gyro_bias)[axis],
+          std::hypot(fix.sigma_gyro_bias[axis], first->sigma_gyro_bias[axis], change)};
+      if (where && std::abs(off.value) * worst.sigma <= std::abs(worst.value) * off.sigma) continue;
+      worst = off;
+      where = &fix;
+    }
+  }
+  if (where == nullptr) {
+    checks.push_back(NotDone("bias_repeatability", run.run,
+                             "no two stops that tell the gyros' bias: index positions at each"));
+    return;
+  }
+  checks.push_back(
+      Compare("bias_repeatability", run.run, worst, std::nullopt, units::kDegPerHour, "deg/h"));
+  checks.back().md = where->md;
+}
+
+/// A source of a Knot as people know it.
+struct ToolError {
+  Knot::Source source;
+  const char* code;
+  double unit;
+  const char* unit_name;
+  double sigma;  ///< its prior
+};
+
+std::array<ToolError, Knot::kSources> ToolErrors(const Job& job) {
+  const ErrorPriors& e = job.errors;
+  const double bias = std::hypot(e.gyro_bias_sigma, job.noise.bias_instability);
+  return {{{Knot::kToolfaceOffset, "toolface_offset", units::kDeg, "deg", e.roll_offset_sigma},
+           {Knot::kTimeSkew, "time_skew", 1, "s", e.time_skew_sigma},
+           {Knot::kGyroBiasX, "gyro_bias_x", units::kDegPerHour, "deg/h", bias},
+           {Knot::kGyroBiasY, "gyro_bias_y", units::kDegPerHour, "deg/h", bias},
+           {Knot::kMassUnbalance, "mass_unbalance", units::kDegPerHourPerG, "deg/h/g",
+            e.mass_unbalance_sigma},
+           {Knot::kQuadrature, "quadrature", units::kDegPerHourPerG, "deg/h/g", e.quadrature_sigma},
+           {Knot::kGyroScaleX, "gyro_scale_x", 1, "1", e.gyro_scale_sigma},
+           {Knot::kGyroScaleY, "gyro_scale_y", 1, "1", e.gyro_scale_sigma},
+           {Knot::kMisalignmentX, "gyro_misalignment_x", 1, "rad", e.gyro_misalignment_sigma},
+           {Knot::kMisalignmentY, "gyro_misalignment_y", 1, "rad", e.gyro_misalignment_sigma},
+           {Knot::kAccelBiasX, "accel_bias_x", 1, "m/s2", e.accel_bias_sigma},
+           {Knot::kAccelBiasY, "accel_bias_y", 1, "m/s2", e.accel_bias_sigma},
+           {Knot::kAccelBiasZ, "accel_bias_z", 1, "m/s2", e.accel_bias_sigma}}};
+}
+
+/// Squares over what is to be expected of them; of true runs one in 44 warns and one in 740 fails.
+Check CheckSquares(std::string code, std::int32_t run, double sum, double freedom) {
+  constexpr double kLeastFreedom = 0.3;
+  if (!(freedom >= kLeastFreedom)) {
+    return NotDone(std::move(code), run, "nothing of this kind is measured more than once");
+  }
+  const double warn = ChiSquareQuantile(NormalCdf(2), freedom);
+  const double fail = ChiSquareQuantile(NormalCdf(3), freedom);
+  Check check = CompareWith(std::move(code), run, {sum / freedom, std::sqrt(2 / freedom)},
+                            fail / freedom, 1, "1", "chi-square at 3 sigma");
+  check.verdict = sum <= warn ? Verdict::kPass : sum <= fail ? Verdict::kWarn : Verdict::kFail;
+  return check;
+}
+
+}  // namespace
+
+void CheckSamples(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
+  if (run.samples == 0) return;
+  checks.push_back(CompareCount("gyro_saturated", run.run, run.samples_gyro_saturated,
+                                "no sample may reach full scale"));
+  checks.push_back(CompareCount("accel_saturated", run.run, run.samples_accel_saturated,
+                                "no sample may reach full scale"));
+  checks.push_back(CompareCount("samples_aliased", run.run, run.samples_aliased,
+                                "no more than a quarter turn in a sample"));
+  checks.push_back(
+      CompareCount("clock_unsynced", run.run, run.samples_unsynced, "every sample's UTC is sure"));
+  if (job.tool) {
+    checks.push_back(CompareCount("temperature_outside", run.run, run.samples_temperature_outside,
+                                  "calibrated temperatures"));
+  } else {
+    checks.push_back(NotDone("temperature_outside", run.run, "the job names no tool calibration"));
+  }
+}
+
+void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
+  const NorthFix* last = nullptr;
+  bool rolls = false;
+  for (const NorthFix& fix : run.fixes) {
+    const bool vertical = Has(fix.quality, Quality::kVertical);
+    if (fix.chi_square && !vertical) last = &fix;
+    if (!fix.roll_rate || vertical) continue;
+    rolls = true;
+    checks.push_back(Compare("roll_at_rest", run.run, {*fix.roll_rate, fix.sigma_roll_rate},
+                             std::nullopt, units::kDegPerHour, "deg/h"));
+    checks.back().md = fix.md;
+  }
+  if (!rolls) checks.push_back(NotDone("roll_at_rest", run.run, "no stop long enough"));
+  if (last != nullptr) {
+    checks.push_back(Compare("drift_closure", run.run, {last->closure, last->sigma_closure},
+                             std::nullopt, units::kDeg, "deg"));
+    checks.back().md = last->md;
+  } else {
+    checks.push_back(NotDone("drift_closure", run.run, "no two independent norths"));
+  }
+  CheckBiases(job, run, checks);
+}
+
+void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
+  const std::array<std::pair<const char*, RunFit::Part>, 4> parts{
+      {{"fit_inclination", RunFit::kInclination},
+       {"fit_rest", RunFit::kRest},
+       {"fit_azimuth", RunFit::kAzimuth},
+       {"fit_repeat", RunFit::kRepeat}}};
+  if (!run.fit) {
+    checks.push_back(NotDone("fit", run.run, "the run was not adjusted as a whole"));
+    return;
+  }
+  const RunFit& fit = *run.fit;
+  checks.push_back(CheckSquares("fit", run.run, fit.chi_square, fit.degrees_of_freedom));
+  for (const auto& [code, part] : parts) {
+    const RunFit::Squares& squares = fit.parts[part];
+    checks.push_back(CheckSquares(code, run.run, squares.sum, squares.freedom));
+  }
+  for (const ToolError& error : ToolErrors(job)) {
+    const double sigma = fit.sigma_errors[error.source];
+    if (!(sigma > 0)) {
+      checks.push_back(NotDone(error.code, run.run, "taken as none: the job gives no sigma of it"));
+      continue;
+    }
+    const Measured found{fit.errors[error.source], sigma};
+    checks.push_back(CompareWith(error.code, run.run, found, 3 * error.sigma, error.unit,
+                                 error.unit_name, "3 sigma of its prior"));
+  }
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,147 @@
+// Each check of a run passes on true ones and fails on one that is wrong in that one way.
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/fit/run_adjustment.h"
+
+#include "support/hour.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::CollectingSink;
+using testing::Hour;
+
+/// A tool most errors of which have a prior, in a hole that builds, with three stops of two index
+/// positions each, down and up again.
+Hour Everything() {
+  Hour hour = testing::StrongDrift();
+  hour.noise.rate_random_walk = 0;
+  hour.errors.gyro_scale_sigma = 1e-4;
+  hour.errors.gyro_misalignment_sigma = 1e-4;
+  hour.errors.roll_offset_sigma = FromDegrees(0.1);
+  hour.errors.time_skew_sigma = 2e-3;
+  hour.inclination_deg = 20;
+  hour.build_deg = 50;
+  hour.minutes = 40;
+  hour.and_back = true;
+  return hour;
+}
+
+struct Flight {
+  explicit Flight(std::uint64_t seed) {
+    const Hour hour = Everything();
+    simulation = testing::SimulationOf(hour, seed);
+    for (RunStep& step : simulation.run.steps) {
+      auto* stop = std::get_if<RunStop>(&step);
+      if (stop != nullptr && stop->seconds > 100) stop->index_angles = {0, kPi};
+    }
+    job = testing::JobOf(hour);
+  }
+  std::vector<Check> Checks() const {
+    CollectingSink sink;
+    const LeastSquaresAdjuster adjuster;
+    return testing::SurveyOf(simulation, job, sink, &adjuster).checks;
+  }
+  ToolErrors& errors() { return simulation.tool.errors; }
+
+  Simulation simulation;
+  Job job;
+};
+
+// One in 370 of some two hundred verdicts may fail by chance.
+TEST(Quality, TrueRunsPass) {
+  int judged = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (const Check& check : Flight(seed).Checks()) {
+      if (check.verdict == Verdict::kNotDone) continue;
+      ++judged;
+      EXPECT_NE(check.verdict, Verdict::kFail)
+          << check.code << " " << check.value.value_or(0) << " of " << check.limit.value_or(0)
+          << ", seed " << seed;
+    }
+  }
+  EXPECT_GT(judged, 4 * 35);
+}
+
+struct Wrong {
+  std::string code;
+  std::function<void(Flight&)> make;
+};
+
+void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.code; }
+
+class Quality : public ::testing::TestWithParam<Wrong> {};
+
+TEST_P(Quality, AFaultFailsItsCheck) {
+  Flight flight(1);
+  GetParam().make(flight);
+  bool there = false, failed = false;
+  for (const Check& check : flight.Checks()) {
+    if (check.code != GetParam().code) continue;
+    there = true;
+    failed = failed || check.verdict == Verdict::kFail;
+  }
+  EXPECT_TRUE(there);
+  EXPECT_TRUE(failed);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, Quality,
+    ::testing::Values(
+        Wrong{"toolface_offset", [](Flight& f) { f.errors().roll_offset = FromDegrees(0.6); }},
+        Wrong{"time_skew", [](Flight& f) { f.errors().time_skew = 0.02; }},
+        Wrong{"gyro_bias_x", [](Flight& f) { f.errors().gyro_bias.x() = 3 * units::kDegPerHour; }},
+        Wrong{"gyro_bias_y", [](Flight& f) { f.errors().gyro_bias.y() = -3 * units::kDegPerHour; }},
+        Wrong{"mass_unbalance",
+              [](Flight& f) { f.errors().mass_unbalance = units::kDegPerHourPerG; }},
+        Wrong{"quadrature", [](Flight& f) { f.errors().quadrature = units::kDegPerHourPerG; }},
+        Wrong{"gyro_misalignment_x", [](Flight& f) { f.errors().gyro_misalignment.x() = 2e-3; }},
+        Wrong{"accel_bias_y", [](Flight& f) { f.errors().accel_bias.y() = units::kMilliG; }},
+        Wrong{"fit", [](Flight& f) { f.errors().gyro_noise.angle_random_walk *= 2; }},
+        Wrong{"fit_inclination", [](Flight& f) { f.errors().gyro_noise.angle_random_walk *= 3; }},
+        Wrong{"fit_rest",
+              [](Flight& f) {
+                f.errors().gyro_noise.rate_random_walk = 2 * units::kDegPerHourSqrtHour;
+              }},
+        Wrong{"fit_azimuth",
+              [](Flight& f) {
+                f.job.alignment.method = AlignmentSpec::Method::kExternal;
+                f.job.alignment.at_md = 200;
+                f.job.alignment.azimuth = FromDegrees(140);
+                f.job.alignment.sigma_azimuth = FromDegrees(1);
+              }},
+        Wrong{"fit_repeat",
+              [](Flight& f) {
+                // A mark lost on the way out.
+                Event event;
+                event.kind = Event::Kind::kDepthRezero;
+                event.utc = f.simulation.streams.begin_utc + Duration::Seconds(1700);
+                event.has_value = true;
+                event.value_m = 300;
+                f.job.events.push_back(event);
+              }},
+        Wrong{"bias_repeatability",
+              [](Flight& f) {
+                f.errors().gyro_noise.rate_random_walk = 2 * units::kDegPerHourSqrtHour;
+              }},
+        Wrong{"drift_closure",
+              [](Flight& f) {
+                f.errors().gyro_noise.rate_random_walk = 20 * units::kDegPerHourSqrtHour;
+              }},
+        Wrong{"gyro_saturated",
+              [](Flight& f) { f.errors().gyro_full_scale = 10 * units::kDegPerHour; }},
+        Wrong{"accel_saturated", [](Flight& f) { f.errors().accel_full_scale = 9; }},
+        Wrong{"samples_aliased", [](Flight& f) {
+                for (RunStep& step : f.simulation.run.steps) {
+                  if (auto* move = std::get_if<RunMove>(&step)) move->roll.rate = 17;
+                }
+              }}));
+
+}  // namespace
+}  // namespace wellgyro
