@@ -273,7 +273,7 @@ void AzimuthFilter::Impl::ChooseBranch(FilterFix* f, double azimuth, double vari
 }
 
 void TakeClosure(double azimuth, double variance, FilterFix* f) {
-  if (!(variance < kFlatAzimuthVariance)) return;
+  if (!(variance < kUnknownAngleVariance)) return;
   f->closure = WrapPi(f->azimuth - azimuth);
   f->sigma_closure = std::sqrt(variance + f->fix.cov_attitude(1, 1));
 }

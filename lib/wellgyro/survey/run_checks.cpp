@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/statistics.h"
+#include "wellgyro/record/knot_sources.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/run_checks_internal.h"
 
@@ -62,26 +63,30 @@ struct ToolError {
   const char* code;
   double unit;
   const char* unit_name;
-  double sigma;  ///< its prior
 };
 
-std::array<ToolError, Knot::kSources> ToolErrors(const Job& job) {
-  const ErrorPriors& e = job.errors;
-  const double bias = std::hypot(e.gyro_bias_sigma, job.noise.bias_instability);
-  return {{{Knot::kToolfaceOffset, "toolface_offset", units::kDeg, "deg", e.roll_offset_sigma},
-           {Knot::kTimeSkew, "time_skew", 1, "s", e.time_skew_sigma},
-           {Knot::kGyroBiasX, "gyro_bias_x", units::kDegPerHour, "deg/h", bias},
-           {Knot::kGyroBiasY, "gyro_bias_y", units::kDegPerHour, "deg/h", bias},
-           {Knot::kMassUnbalance, "mass_unbalance", units::kDegPerHourPerG, "deg/h/g",
-            e.mass_unbalance_sigma},
-           {Knot::kQuadrature, "quadrature", units::kDegPerHourPerG, "deg/h/g", e.quadrature_sigma},
-           {Knot::kGyroScaleX, "gyro_scale_x", 1, "1", e.gyro_scale_sigma},
-           {Knot::kGyroScaleY, "gyro_scale_y", 1, "1", e.gyro_scale_sigma},
-           {Knot::kMisalignmentX, "gyro_misalignment_x", 1, "rad", e.gyro_misalignment_sigma},
-           {Knot::kMisalignmentY, "gyro_misalignment_y", 1, "rad", e.gyro_misalignment_sigma},
-           {Knot::kAccelBiasX, "accel_bias_x", 1, "m/s2", e.accel_bias_sigma},
-           {Knot::kAccelBiasY, "accel_bias_y", 1, "m/s2", e.accel_bias_sigma},
-           {Knot::kAccelBiasZ, "accel_bias_z", 1, "m/s2", e.accel_bias_sigma}}};
+constexpr std::array<ToolError, Knot::kSources> kToolErrors{
+    {{Knot::kToolfaceOffset, "toolface_offset", units::kDeg, "deg"},
+     {Knot::kTimeSkew, "time_skew", 1, "s"},
+     {Knot::kGyroBiasX, "gyro_bias_x", units::kDegPerHour, "deg/h"},
+     {Knot::kGyroBiasY, "gyro_bias_y", units::kDegPerHour, "deg/h"},
+     {Knot::kMassUnbalance, "mass_unbalance", units::kDegPerHourPerG, "deg/h/g"},
+     {Knot::kQuadrature, "quadrature", units::kDegPerHourPerG, "deg/h/g"},
+     {Knot::kGyroScaleX, "gyro_scale_x", 1, "1"},
+     {Knot::kGyroScaleY, "gyro_scale_y", 1, "1"},
+     {Knot::kMisalignmentX, "gyro_misalignment_x", 1, "rad"},
+     {Knot::kMisalignmentY, "gyro_misalignment_y", 1, "rad"},
+     {Knot::kAccelBiasX, "accel_bias_x", 1, "m/s2"},
+     {Knot::kAccelBiasY, "accel_bias_y", 1, "m/s2"},
+     {Knot::kAccelBiasZ, "accel_bias_z", 1, "m/s2"}}};
+
+/// Of the gyro biases with what they may become in the run.
+Knot::SourceVector SigmasOf(const Job& job, const RunSummary& run) {
+  Knot::SourceVector sigma = SourceSigmas(job.errors);
+  sigma[Knot::kGyroBiasX] = sigma[Knot::kGyroBiasY] =
+      std::hypot(job.errors.gyro_bias_sigma, job.noise.bias_instability,
+                 SigmaOfChange(job.noise, (run.end - run.begin).seconds()));
+  return sigma;
 }
 
 /// Squares over what is to be expected of them; of true runs one in 44 warns and one in 740 fails.
@@ -157,14 +162,15 @@ void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks)
     const RunFit::Squares& squares = fit.parts[part];
     checks.push_back(CheckSquares(code, run.run, squares.sum, squares.freedom));
   }
-  for (const ToolError& error : ToolErrors(job)) {
+  const Knot::SourceVector priors = SigmasOf(job, run);
+  for (const ToolError& error : kToolErrors) {
     const double sigma = fit.sigma_errors[error.source];
     if (!(sigma > 0)) {
       checks.push_back(NotDone(error.code, run.run, "taken as none: the job gives no sigma of it"));
       continue;
     }
     const Measured found{fit.errors[error.source], sigma};
-    checks.push_back(CompareWith(error.code, run.run, found, 3 * error.sigma, error.unit,
+    checks.push_back(CompareWith(error.code, run.run, found, 3 * priors[error.source], error.unit,
                                  error.unit_name, "3 sigma of its prior"));
   }
 }
