@@ -30,24 +30,20 @@ constexpr std::array kNames{
     NameKey{"Date", &SurveyIdentity::created},
 };
 
-struct HeadColumn {
-  std::string_view name;
-  Column column;
-};
 constexpr std::array kTable{
-    HeadColumn{"MD", Column::kMd},
-    HeadColumn{"Inc", Column::kInclination},
-    HeadColumn{"Azi", Column::kAzimuth},
-    HeadColumn{"TVD", Column::kTvd},
-    HeadColumn{"+N/-S", Column::kNorth},
-    HeadColumn{"+E/-W", Column::kEast},
-    HeadColumn{"V.Sec", Column::kVerticalSection},
-    HeadColumn{"DLeg", Column::kDogleg},
-    HeadColumn{"Build", Column::kBuild},
-    HeadColumn{"Turn", Column::kTurn},
-    HeadColumn{"Northing", Column::kNorthing},
-    HeadColumn{"Easting", Column::kEasting},
-    HeadColumn{"TVDSS", Column::kTvdSubSea},
+    NamedColumn{"MD", Column::kMd},
+    NamedColumn{"Inc", Column::kInclination},
+    NamedColumn{"Azi", Column::kAzimuth},
+    NamedColumn{"TVD", Column::kTvd},
+    NamedColumn{"+N/-S", Column::kNorth},
+    NamedColumn{"+E/-W", Column::kEast},
+    NamedColumn{"V.Sec", Column::kVerticalSection},
+    NamedColumn{"DLeg", Column::kDogleg},
+    NamedColumn{"Build", Column::kBuild},
+    NamedColumn{"Turn", Column::kTurn},
+    NamedColumn{"Northing", Column::kNorthing},
+    NamedColumn{"Easting", Column::kEasting},
+    NamedColumn{"TVDSS", Column::kTvdSubSea},
 };
 
 std::optional<double> Degrees(std::string_view value) {
@@ -69,6 +65,40 @@ void TakeDatum(SurveyHead& head, std::string_view value) {
   if (above != std::string_view::npos) head.vertical_reference = Trim(unit.substr(above + 7));
   const auto length = LengthUnitOf(unit.substr(0, std::min(unit.find(' '), unit.size())));
   if (number && length) head.datum_elevation = *number * FactorOf(*length);
+}
+
+// What TakeDatum takes.
+std::string DatumText(const SurveyHead& head) {
+  std::string datum = head.datum.empty() ? "Unknown" : head.datum;
+  if (head.datum_elevation) {
+    datum += fmt::format(" @ {}{} above {}", Exact(*head.datum_elevation, FactorOf(head.md_unit)),
+                         WordOf(head.md_unit),
+                         head.vertical_reference.empty() ? "MSL" : head.vertical_reference);
+  }
+  return datum;
+}
+
+std::string HeadText(const SurveyHead& head) {
+  std::string text = "Survey Report\n\n";
+  const auto line = [&](std::string_view key, std::string_view value) {
+    if (!value.empty()) text += fmt::format("{:<28}{}\n", fmt::format("{}:", key), value);
+  };
+  const auto degrees = [&](std::string_view key, const std::optional<double>& value) {
+    if (value) line(key, Exact(*value, units::kDeg) + " deg");
+  };
+  for (const NameKey& n : kNames) line(n.key, head.names.*n.member);
+  line("North Reference", Capital(WordOf(head.azimuth.north)));
+  if (head.offsets != North::kUnknown) line("Offset Reference", Capital(WordOf(head.offsets)));
+  line("MD Reference", DatumText(head));
+  line("TVD Reference", DatumText(head));
+  line("Survey Calculation Method", head.method);
+  degrees("Grid Convergence", head.azimuth.convergence);
+  degrees("Magnetic Declination", head.azimuth.declination);
+  degrees("Vertical Section Azimuth", head.section_azimuth);
+  line("Map System", head.crs);
+  line("Survey Tool", WordOf(head.tool));
+  line("Error Model", head.error_model);
+  return text;
 }
 
 }  // namespace
@@ -106,39 +136,9 @@ void TakeReportLine(SurveyHead& head, std::string_view line) {
 std::string WriteCompass(const SurveyTable& table) {
   NeedNorth(table, "a Compass-style report");
   const SurveyHead& head = table.head;
-  std::string text = "Survey Report\n\n";
-  const auto line = [&](std::string_view key, std::string_view value) {
-    if (!value.empty()) text += fmt::format("{:<28}{}\n", fmt::format("{}:", key), value);
-  };
-  const auto degrees = [&](std::string_view key, const std::optional<double>& value) {
-    if (value) line(key, Exact(*value, units::kDeg) + " deg");
-  };
-  const auto capital = [](std::string_view word) {
-    std::string upper(word);
-    upper[0] = static_cast<char>(upper[0] & ~0x20);
-    return upper;
-  };
-  for (const NameKey& n : kNames) line(n.key, head.names.*n.member);
-  line("North Reference", capital(WordOf(head.azimuth.north)));
-  if (head.offsets != North::kUnknown) line("Offset Reference", capital(WordOf(head.offsets)));
-  std::string datum = head.datum.empty() ? "Unknown" : head.datum;
-  if (head.datum_elevation) {
-    datum += fmt::format(" @ {}{} above {}", Exact(*head.datum_elevation, FactorOf(head.md_unit)),
-                         WordOf(head.md_unit),
-                         head.vertical_reference.empty() ? "MSL" : head.vertical_reference);
-  }
-  line("MD Reference", datum);
-  line("TVD Reference", datum);
-  line("Survey Calculation Method", head.method);
-  degrees("Grid Convergence", head.azimuth.convergence);
-  degrees("Magnetic Declination", head.azimuth.declination);
-  degrees("Vertical Section Azimuth", head.section_azimuth);
-  line("Map System", head.crs);
-  line("Survey Tool", WordOf(head.tool));
-  line("Error Model", head.error_model);
-  text += '\n';
+  std::string text = HeadText(head) + "\n";
   std::string names, units;
-  for (const HeadColumn& c : kTable) {
+  for (const NamedColumn& c : kTable) {
     if (!table.Has(c.column)) continue;
     names += fmt::format(" {:>14}", c.name);
     units += fmt::format(" {:>14}", "(" + UnitOf(InfoOf(c.column).quantity, head) + ")");
@@ -146,7 +146,7 @@ std::string WriteCompass(const SurveyTable& table) {
   text += names + "\n" + units + "\n";
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!OnPath(table.status(row))) continue;
-    for (const HeadColumn& c : kTable) {
+    for (const NamedColumn& c : kTable) {
       if (!table.Has(c.column)) continue;
       const auto value = table.Get(c.column, row);
       text += fmt::format(" {:>14}", value ? Exact(InfoOf(c.column).quantity, *value, head) : "-");

@@ -44,70 +44,59 @@ std::string Reference(std::string_view type, std::string_view code) {
   return Id("reference-data", type, code);
 }
 
-struct Property {
-  Column column;
-  std::string_view type, unit;
+// How OSDU calls a unit of length: the symbol, and the end of an identifier.
+struct UnitText {
+  std::string symbol, key;
+};
+UnitText TextOf(LengthUnit unit) {
+  if (unit == LengthUnit::kUsFoot) return {"ft[US]", "ft%5BUS%5D"};
+  const std::string word(WordOf(unit));
+  return {word, word};
+}
+
+// A north, and azimuths from it.
+struct NorthText {
+  std::string_view reference, azimuth;
+};
+NorthText TextOf(North north) {
+  if (north == North::kTrue) return {"TrueNorth", "AzimuthTN"};
+  if (north == North::kGrid) return {"GridNorth", "AzimuthGN"};
+  return {"MagneticNorth", "AzimuthMN"};
+}
+
+// Members of the object "data", one a line.
+class Members {
+ public:
+  void Add(std::string_view key, const std::string& value) {
+    text_ += fmt::format("{}\n      {}: {}", text_.empty() ? "" : ",", Quoted(key), value);
+  }
+  void AddNumber(std::string_view key, const std::optional<double>& value, double unit = 1) {
+    if (value) Add(key, Exact(*value, unit));
+  }
+  void AddFlag(std::string_view key, const std::optional<bool>& value) {
+    if (value) Add(key, *value ? "true" : "false");
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
 };
 
-}  // namespace
-
-std::string WriteOsdu(const SurveyTable& table) {
-  NeedNorth(table, "an OSDU manifest");
-  const SurveyHead& head = table.head;
-  if (table.rows() == 0) Lacks("an OSDU manifest", "a station");
-  if (!head.datum_elevation)
-    Lacks("an OSDU manifest", "the elevation of the depth datum (datum_elevation_m)");
-  const double factor = FactorOf(head.md_unit);
-  const std::string unit =
-      head.md_unit == LengthUnit::kUsFoot ? "ft[US]" : std::string(WordOf(head.md_unit));
-  const std::string unit_key = head.md_unit == LengthUnit::kUsFoot ? "ft%5BUS%5D" : unit;
-  const std::string north = head.azimuth.north == North::kTrue   ? "TrueNorth"
-                            : head.azimuth.north == North::kGrid ? "GridNorth"
-                                                                 : "MagneticNorth";
-  const std::string azimuth = head.azimuth.north == North::kTrue   ? "AzimuthTN"
-                              : head.azimuth.north == North::kGrid ? "AzimuthGN"
-                                                                   : "AzimuthMN";
-  const std::string dls =
-      head.curvature_unit == CurvatureUnit::kDegPer100ft ? "dega%2F100ft" : "dega%2F30m";
-  std::string data;
-  const auto add = [&](std::string_view key, const std::string& value) {
-    data += fmt::format("{}\n      {}: {}", data.empty() ? "" : ",", Quoted(key), value);
+// What the columns of the stations are, which travel beside the record.
+std::string PropertiesOf(const SurveyTable& table, const std::string& unit) {
+  struct Property {
+    Column column;
+    std::string_view type, unit;
   };
-  add("Name", Quoted(head.names.survey.empty() ? "survey" : head.names.survey));
-  add("WellboreID", Id("master-data", "Wellbore",
-                       Key(head.names.wellbore.empty() ? head.names.well : head.names.wellbore)));
-  add("TopDepthMeasuredDepth", Exact(table.md(0), factor));
-  add("BaseDepthMeasuredDepth", Exact(table.md(table.rows() - 1), factor));
-  add("VerticalMeasurement",
-      fmt::format("{{\"VerticalMeasurement\": {}, \"VerticalMeasurementTypeID\": {}, "
-                  "\"VerticalMeasurementPathID\": {}}}",
-                  Exact(*head.datum_elevation, factor),
-                  Reference("VerticalMeasurementType", Key(head.datum)),
-                  Reference("VerticalMeasurementPath", "Elevation")));
-  add("AzimuthReferenceType", Reference("AzimuthReferenceType", north));
-  if (head.method == "minimum curvature") {
-    add("CalculationMethodType", Reference("CalculationMethodType", "MinimumCurvature"));
-  }
-  if (!head.error_model.empty()) {
-    add("SurveyToolTypeID", Reference("SurveyToolType", Key(head.error_model)));
-  }
-  if (table.status(0) == RowStatus::kTieIn) add("TieMeasuredDepth", Exact(table.md(0), factor));
-  if (head.azimuth.convergence) {
-    add("SurfaceGridConvergence", Exact(*head.azimuth.convergence, units::kDeg));
-  }
-  if (head.scale) add("SurfaceScaleFactor", Exact(*head.scale));
-  if (head.section_azimuth)
-    add("VerticalSectionAzimuth", Exact(*head.section_azimuth, units::kDeg));
-  if (head.definitive) add("IsDefinitive", *head.definitive ? "true" : "false");
-  if (head.memory) add("IsMemory", *head.memory ? "true" : "false");
-  if (head.final_survey) add("IsFinal", *head.final_survey ? "true" : "false");
+  const std::string_view dls =
+      table.head.curvature_unit == CurvatureUnit::kDegPer100ft ? "dega%2F100ft" : "dega%2F30m";
   const std::array properties{
-      Property{Column::kMd, "MD", unit_key},
+      Property{Column::kMd, "MD", unit},
       Property{Column::kInclination, "Inclination", "dega"},
-      Property{Column::kAzimuth, azimuth, "dega"},
-      Property{Column::kTvd, "TVD", unit_key},
-      Property{Column::kEast, "DX", unit_key},
-      Property{Column::kNorth, "DY", unit_key},
+      Property{Column::kAzimuth, TextOf(table.head.azimuth.north).azimuth, "dega"},
+      Property{Column::kTvd, "TVD", unit},
+      Property{Column::kEast, "DX", unit},
+      Property{Column::kNorth, "DY", unit},
       Property{Column::kDogleg, "DLS", dls},
   };
   std::string list;
@@ -119,11 +108,60 @@ std::string WriteOsdu(const SurveyTable& table) {
         list.empty() ? "" : ",", Reference("TrajectoryStationPropertyType", p.type),
         Reference("UnitOfMeasure", p.unit), Quoted(p.type));
   }
-  add("AvailableTrajectoryStationProperties", "[" + list + "\n      ]");
+  return "[" + list + "\n      ]";
+}
+
+std::string DataOf(const SurveyTable& table) {
+  const SurveyHead& head = table.head;
+  const SurveyIdentity& names = head.names;
+  const double factor = FactorOf(head.md_unit);
+  Members data;
+  data.Add("Name", Quoted(names.survey.empty() ? "survey" : names.survey));
+  data.Add("WellboreID", Id("master-data", "Wellbore",
+                            Key(names.wellbore.empty() ? names.well : names.wellbore)));
+  data.Add("TopDepthMeasuredDepth", Exact(table.md(0), factor));
+  data.Add("BaseDepthMeasuredDepth", Exact(table.md(table.rows() - 1), factor));
+  data.Add("VerticalMeasurement",
+           fmt::format("{{\"VerticalMeasurement\": {}, \"VerticalMeasurementTypeID\": {}, "
+                       "\"VerticalMeasurementPathID\": {}}}",
+                       Exact(*head.datum_elevation, factor),
+                       Reference("VerticalMeasurementType", Key(head.datum)),
+                       Reference("VerticalMeasurementPath", "Elevation")));
+  data.Add("AzimuthReferenceType",
+           Reference("AzimuthReferenceType", TextOf(head.azimuth.north).reference));
+  if (head.method == "minimum curvature") {
+    data.Add("CalculationMethodType", Reference("CalculationMethodType", "MinimumCurvature"));
+  }
+  if (!head.error_model.empty()) {
+    data.Add("SurveyToolTypeID", Reference("SurveyToolType", Key(head.error_model)));
+  }
+  if (table.status(0) == RowStatus::kTieIn) {
+    data.Add("TieMeasuredDepth", Exact(table.md(0), factor));
+  }
+  data.AddNumber("SurfaceGridConvergence", head.azimuth.convergence, units::kDeg);
+  data.AddNumber("SurfaceScaleFactor", head.scale);
+  data.AddNumber("VerticalSectionAzimuth", head.section_azimuth, units::kDeg);
+  data.AddFlag("IsDefinitive", head.definitive);
+  data.AddFlag("IsMemory", head.memory);
+  data.AddFlag("IsFinal", head.final_survey);
+  data.Add("AvailableTrajectoryStationProperties", PropertiesOf(table, TextOf(head.md_unit).key));
+  return data.text();
+}
+
+}  // namespace
+
+std::string WriteOsdu(const SurveyTable& table) {
+  NeedNorth(table, "an OSDU manifest");
+  const SurveyHead& head = table.head;
+  if (table.rows() == 0) Lacks("an OSDU manifest", "a station");
+  if (!head.datum_elevation) {
+    Lacks("an OSDU manifest", "the elevation of the depth datum (datum_elevation_m)");
+  }
+  const UnitText unit = TextOf(head.md_unit);
   const std::string reference = fmt::format(
       "{{\"abcd\":{{\"a\":0.0,\"b\":{},\"c\":1.0,\"d\":0.0}},\"symbol\":\"{}\","
       "\"baseMeasurement\":{{\"ancestry\":\"L\",\"type\":\"UM\"}},\"type\":\"UAD\"}}",
-      Exact(factor), unit);
+      Exact(FactorOf(head.md_unit)), unit.symbol);
   return fmt::format(
       "{{\n"
       "  \"kind\": \"osdu:wks:work-product-component--WellboreTrajectory:1.4.0\",\n"
@@ -135,8 +173,8 @@ std::string WriteOsdu(const SurveyTable& table) {
       "\"unitOfMeasureID\": {}, \"propertyNames\": [\"TopDepthMeasuredDepth\", "
       "\"BaseDepthMeasuredDepth\", \"VerticalMeasurement.VerticalMeasurement\"]}}],\n"
       "  \"data\": {{{}\n    }}\n}}\n",
-      head.names.country_code.empty() ? "" : Quoted(head.names.country_code), unit,
-      Quoted(reference), Reference("UnitOfMeasure", unit_key), data);
+      head.names.country_code.empty() ? "" : Quoted(head.names.country_code), unit.symbol,
+      Quoted(reference), Reference("UnitOfMeasure", unit.key), DataOf(table));
 }
 
 }  // namespace wellgyro

@@ -6,6 +6,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/p717_internal.h"
+#include "wellgyro/io/p717_record_internal.h"
 #include "wellgyro/io/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
 
@@ -38,7 +39,7 @@ class P717Reader {
 
   SurveyTable Read() {
     std::string_view line;
-    while (lines_.Next(line)) Record(line);
+    while (lines_.Next(line)) Take(line);
     if (!identified_) {
       lines_.Complain(FaultCode::kForeign,
                       lines_.number() == 0 ? "this file is empty" : "does not begin with IOGP,");
@@ -53,41 +54,11 @@ class P717Reader {
  private:
   SurveyHead& head() { return build_.table.head; }
 
-  std::string_view At(std::size_t i) const { return i < fields_.size() ? fields_[i] : ""; }
-  std::string Text(std::size_t i) const { return std::string(At(i)); }
-
-  std::optional<double> Maybe(std::size_t i, double factor) {
-    const std::string_view text = At(i);
-    if (text.empty() || text == "N/A") return std::nullopt;
-    const auto number = NumberOf(text);
-    if (!number) Odd(i, "is not a number");
-    return *number * factor;
-  }
-
-  double Needed(std::size_t i, double factor) {
-    const auto value = Maybe(i, factor);
-    if (!value) Odd(i, "is missing");
-    return *value;
-  }
-
-  int Integer(std::size_t i, int otherwise) {
-    if (At(i).empty()) return otherwise;
-    const auto number = IntegerOf(At(i));
-    if (!number) Odd(i, "is not a whole number");
-    return *number;
-  }
-
-  [[noreturn]] void Odd(std::size_t i, std::string_view why) {
-    lines_.Complain(FaultCode::kSyntax,
-                    fmt::format("field {} '{}' {}", i + 1, At(i).substr(0, 40), why),
-                    static_cast<int>(i) + 1);
-  }
-
-  void Record(std::string_view line) {
+  void Take(std::string_view line) {
     const std::string_view text = Trim(line);
     if (text.empty()) return;
-    Split(text, ',', fields_);
-    const std::string_view id = fields_[0];
+    record_.Take(text);
+    const std::string_view id = record_.At(0);
     if (!identified_ && id != "IOGP") {
       lines_.Complain(FaultCode::kForeign, "the first record is not IOGP,: this is no P7/17 file");
     }
@@ -100,21 +71,23 @@ class P717Reader {
     if (id == "CC" || id == "C7") return Comment(line);
     if (id == "M7") return;
     // Decoration, as the user guide's example B has it, but never a record that is not known.
-    const bool record = fields_.size() > 2 && id.size() == 2 && id[0] >= 'A' && id[0] <= 'Z';
+    const bool record = record_.size() > 2 && id.size() == 2 && id[0] >= 'A' && id[0] <= 'Z';
     if (record) lines_.Complain(FaultCode::kSyntax, fmt::format("no record is called {}", id));
   }
 
   void Identification() {
-    if (At(2) != "7") lines_.Complain(FaultCode::kForeign, "an IOGP file, but not of P7");
+    if (record_.At(2) != "7") lines_.Complain(FaultCode::kForeign, "an IOGP file, but not of P7");
     identified_ = true;
-    head().names.created = IsoDate(At(5)) + (At(6).empty() ? "" : "T" + Text(6) + "Z");
-    head().names.author = Text(8);
+    head().names.created =
+        IsoDate(record_.At(5)) + (record_.At(6).empty() ? "" : "T" + record_.Text(6) + "Z");
+    head().names.author = record_.Text(8);
   }
 
   void Comment(std::string_view line) {
     std::size_t comma = 0;
-    for (int i = 0; i < 4 && comma != std::string_view::npos; ++i)
+    for (int i = 0; i < 4 && comma != std::string_view::npos; ++i) {
       comma = line.find(',', comma + 1);
+    }
     if (comma == std::string_view::npos) return;
     const std::string_view text = Trim(line.substr(comma + 1));
     // Rules and column headings are layout.
@@ -127,66 +100,66 @@ class P717Reader {
   }
 
   void CommonHeader() {
-    const std::string key = Text(1) + Text(2) + Text(3);
+    const std::string key = record_.Text(1) + record_.Text(2) + record_.Text(3);
     if (key == "130" || key == "170") {
-      CrsEntry entry{.number = Integer(5, 0),
-                     .code = Text(6),
-                     .name = Text(7),
-                     .version = Text(8),
-                     .date = IsoDate(At(9)),
-                     .source = Text(10),
-                     .text = Text(11)};
+      CrsEntry entry{.number = record_.Integer(5, 0),
+                     .code = record_.Text(6),
+                     .name = record_.Text(7),
+                     .version = record_.Text(8),
+                     .date = IsoDate(record_.At(9)),
+                     .source = record_.Text(10),
+                     .text = record_.Text(11)};
       (key == "130" ? head().crs_entries : head().transformations).push_back(std::move(entry));
     } else if (key == "161") {
-      const auto unit = LengthUnitOf(At(12));
+      const auto unit = LengthUnitOf(record_.At(12));
       if (!unit) return;
-      const std::string direction = Lower(At(9));
+      const std::string direction = Lower(record_.At(9));
       if (direction == "down" || direction == "up") vertical_ = FactorOf(*unit);
       if (direction == "north" || direction == "east") head().grid_unit = *unit;
     }
   }
 
   void Header() {
-    const std::string key = Text(1) + Text(2) + Text(3);
+    const std::string key = record_.Text(1) + record_.Text(2) + record_.Text(3);
     SurveyIdentity& names = head().names;
     if (key == "100") {
-      names.field = Text(6);
-      names.region = Text(7);
-      names.country = Text(8);
-      names.country_code = Text(9);
+      names.field = record_.Text(6);
+      names.region = record_.Text(7);
+      names.country = record_.Text(8);
+      names.country_code = record_.Text(9);
     } else if (key == "110") {
-      names.structure = Text(6);
-      for (std::size_t i = 9; i < fields_.size(); ++i) {
-        const std::string lower = Lower(At(i));
-        if (lower == "onshore" || lower == "offshore") names.structure_kind = Text(i);
+      names.structure = record_.Text(6);
+      for (std::size_t i = 9; i < record_.size(); ++i) {
+        const std::string lower = Lower(record_.At(i));
+        if (lower == "onshore" || lower == "offshore") names.structure_kind = record_.Text(i);
       }
     } else if (key == "120") {
-      names.uwi = Text(9);
-      names.well = Text(10);
+      names.uwi = record_.Text(9);
+      names.well = record_.Text(10);
     } else if (key == "130") {
-      names.uwi_wellbore = Text(7);
-      names.wellbore = Text(8);
+      names.uwi_wellbore = record_.Text(7);
+      names.wellbore = record_.Text(8);
     } else if (key == "140") {
-      names.rig = Text(6);
-      head().datum = At(7) == "ZDP" ? Text(10) : Text(7);
-      if (At(7) != "ZDP") head().datum_elevation = Maybe(8, vertical_);
+      names.rig = record_.Text(6);
+      head().datum = record_.At(7) == "ZDP" ? record_.Text(10) : record_.Text(7);
+      if (record_.At(7) != "ZDP") head().datum_elevation = record_.Maybe(8, vertical_);
     } else if (key == "150") {
       Survey();
     } else if (key == "151") {
       SurveyDetails();
     } else if (key == "152") {
-      SurveyRun& run = Run(Integer(5, 1));
-      run.operator_name = Text(6);
-      run.contractor = Text(7);
-      run.job = Text(8);
+      SurveyRun& run = Run(record_.Integer(5, 1));
+      run.operator_name = record_.Text(6);
+      run.contractor = record_.Text(7);
+      run.job = record_.Text(8);
     } else if (key == "300") {
-      geomagnetic_ = Text(7);
+      geomagnetic_ = record_.Text(7);
     } else if (key == "400") {
       ObjectDefinition();
     } else if (key == "500") {
       TableDefinition();
     } else if (key == "600") {
-      error_models_.emplace_back(Integer(5, 0), Text(6));
+      error_models_.emplace_back(record_.Integer(5, 0), record_.Text(6));
     }
   }
 
@@ -199,12 +172,12 @@ class P717Reader {
   }
 
   void Survey() {
-    SurveyRun& run = Run(Integer(5, 1));
-    run.name = Text(8);
-    run.tool = ToolOfType(At(9));
-    run.begin = IsoDate(At(17));
-    run.end = IsoDate(At(18));
-    TakeMdUnit(At(16));
+    SurveyRun& run = Run(record_.Integer(5, 1));
+    run.name = record_.Text(8);
+    run.tool = ToolOfType(record_.At(9));
+    run.begin = IsoDate(record_.At(17));
+    run.end = IsoDate(record_.At(18));
+    TakeMdUnit(record_.At(16));
   }
 
   void TakeMdUnit(std::string_view name) {
@@ -217,9 +190,16 @@ class P717Reader {
     md_unit_known_ = true;
   }
 
+  void RequireMdUnit() {
+    if (md_unit_known_) return;
+    lines_.Complain(
+        FaultCode::kSyntax,
+        fmt::format("a {} record before its survey's definition, H7,1,5,0", record_.At(0)));
+  }
+
   void SurveyDetails() {
-    SurveyRun& run = Run(Integer(5, 1));
-    const int unit = Integer(6, 0);
+    SurveyRun& run = Run(record_.Integer(5, 1));
+    const int unit = record_.Integer(6, 0);
     if (md_unit_known_) {
       // The number tells which draft's table the file follows.
       draft_2018_ = draft_2018_ || (p717::UnitName(unit, false) != WordOf(head().md_unit) &&
@@ -227,7 +207,7 @@ class P717Reader {
     } else {
       TakeMdUnit(p717::UnitName(unit, false));
     }
-    const std::string kind = Lower(At(8));
+    const std::string kind = Lower(record_.At(8));
     for (std::size_t i = 0; i < p717::kDepthKinds.size(); ++i) {
       if (kind == Lower(p717::kDepthKinds[i])) {
         constexpr std::array kKinds{DepthKind::kDrillPipe, DepthKind::kWireline, DepthKind::kTubing,
@@ -235,12 +215,12 @@ class P717Reader {
         run.md_kind = kKinds[i];
       }
     }
-    run.md_status = std::clamp(Integer(9, 1), 0, 4);
-    run.azimuth.north = NorthOfType(At(13));
+    run.md_status = std::clamp(record_.Integer(9, 1), 0, 4);
+    run.azimuth.north = NorthOfType(record_.At(13));
     // Examples apply convergence with flag 1; a value without it is there all the same.
-    run.azimuth.convergence = Maybe(17, units::kDeg);
-    run.azimuth.declination = Maybe(19, units::kDeg);
-    run.azimuth.declination_date = IsoDate(At(20));
+    run.azimuth.convergence = record_.Maybe(17, units::kDeg);
+    run.azimuth.declination = record_.Maybe(19, units::kDeg);
+    run.azimuth.declination_date = IsoDate(record_.At(20));
   }
 
   PositionObject& ObjectOf(int number) {
@@ -255,36 +235,36 @@ class P717Reader {
   double Grid() { return FactorOf(head().grid_unit); }
 
   void ObjectDefinition() {
-    PositionObject& object = ObjectOf(Integer(5, 0));
-    object.name = Text(6);
-    if (const auto* type = p717::TypeOfNumber(Integer(7, 0))) object.kind = type->code;
-    object.text = Text(9);
-    object.md = Maybe(11, Md());
+    PositionObject& object = ObjectOf(record_.Integer(5, 0));
+    object.name = record_.Text(6);
+    if (const auto* type = p717::TypeOfNumber(record_.Integer(7, 0))) object.kind = type->code;
+    object.text = record_.Text(9);
+    object.md = record_.Maybe(11, Md());
   }
 
   void Object() {
-    PositionObject& object = ObjectOf(Integer(2, 0));
-    object.kind = Text(3);
-    object.name = Text(4);
-    object.northing = Maybe(5, Grid());
-    object.easting = Maybe(6, Grid());
-    object.down = Maybe(7, vertical_);
-    object.latitude = Maybe(8, units::kDeg);
-    object.longitude = Maybe(9, units::kDeg);
-    object.latitude_wgs84 = Maybe(10, units::kDeg);
-    object.longitude_wgs84 = Maybe(11, units::kDeg);
-    object.sigma_horizontal = Maybe(12, Grid());
-    object.sigma_vertical = Maybe(13, vertical_);
+    PositionObject& object = ObjectOf(record_.Integer(2, 0));
+    object.kind = record_.Text(3);
+    object.name = record_.Text(4);
+    object.northing = record_.Maybe(5, Grid());
+    object.easting = record_.Maybe(6, Grid());
+    object.down = record_.Maybe(7, vertical_);
+    object.latitude = record_.Maybe(8, units::kDeg);
+    object.longitude = record_.Maybe(9, units::kDeg);
+    object.latitude_wgs84 = record_.Maybe(10, units::kDeg);
+    object.longitude_wgs84 = record_.Maybe(11, units::kDeg);
+    object.sigma_horizontal = record_.Maybe(12, Grid());
+    object.sigma_vertical = record_.Maybe(13, vertical_);
   }
 
   void TableDefinition() {
     if (tables_++ > 0) {
       lines_.Complain(FaultCode::kForeign, "a second P7 table: split the file");
     }
-    head().method = Lower(At(8));
-    head().names.survey = Text(6);
-    head().scale = Maybe(12, 1);
-    const int count = Integer(14, 0);
+    head().method = Lower(record_.At(8));
+    head().names.survey = record_.Text(6);
+    head().scale = record_.Maybe(12, 1);
+    const int count = record_.Integer(14, 0);
     for (int i = 0; i < count; ++i) AddExtension(15 + static_cast<std::size_t>(i));
   }
 
@@ -297,8 +277,8 @@ class P717Reader {
 
   void AddExtension(std::size_t i) {
     std::vector<std::string_view> parts;
-    Split(At(i), ';', parts);
-    if (parts.size() < 3) Odd(i, "is no extension field id;parameter;name;unit");
+    Split(record_.At(i), ';', parts);
+    if (parts.size() < 3) record_.Odd(i, "is no extension field id;parameter;name;unit");
     Field field;
     for (const p717::Extension& known : p717::Extensions()) {
       if (!EqualNoCase(known.name, parts[2])) continue;
@@ -326,19 +306,18 @@ class P717Reader {
   }
 
   void Station() {
-    if (fields_.size() < 13) {
-      lines_.Complain(FaultCode::kSyntax, fmt::format("{} fields in a P7 record", fields_.size()));
+    if (record_.size() < 13) {
+      lines_.Complain(FaultCode::kSyntax, fmt::format("{} fields in a P7 record", record_.size()));
     }
-    if (!md_unit_known_) {
-      lines_.Complain(FaultCode::kSyntax, "a P7 record before its survey's definition, H7,1,5,0");
-    }
-    const std::string point = Text(7);
-    const RowStatus status = p717::StatusOf(Integer(8, 1), point);
-    const double azimuth = ValueOf(Quantity::kDirection, Needed(12, 1), units::kDeg);
-    const auto problem = build_.Add(Needed(10, Md()), Needed(11, units::kDeg), azimuth, status);
+    RequireMdUnit();
+    const std::string point = record_.Text(7);
+    const RowStatus status = p717::StatusOf(record_.Integer(8, 1), point);
+    const double azimuth = ValueOf(Quantity::kDirection, record_.Needed(12, 1), units::kDeg);
+    const auto problem =
+        build_.Add(record_.Needed(10, Md()), record_.Needed(11, units::kDeg), azimuth, status);
     if (problem) lines_.Complain(problem->code, problem->text);
-    build_.Set(Column::kSurvey, Integer(3, 1));
-    if (!At(6).empty()) build_.Set(Column::kObject, Integer(6, 0));
+    build_.Set(Column::kSurvey, record_.Integer(3, 1));
+    if (!record_.At(6).empty()) build_.Set(Column::kObject, record_.Integer(6, 0));
     if (point != "D") build_.Set(TextColumn::kPoint, point);
     Keep(Column::kNorth, 13, Md());
     Keep(Column::kEast, 14, Md());
@@ -353,14 +332,14 @@ class P717Reader {
   }
 
   void Keep(Column column, std::size_t i, double factor) {
-    if (const auto value = Maybe(i, factor)) build_.Set(column, *value);
+    if (const auto value = record_.Maybe(i, factor)) build_.Set(column, *value);
   }
 
   void ErrorModel() {
-    std::string name = Text(5);
-    if (name.empty() && !At(4).empty()) {
+    std::string name = record_.Text(5);
+    if (name.empty() && !record_.At(4).empty()) {
       for (const auto& [number, model] : error_models_) {
-        if (number == Integer(4, 0)) name = model;
+        if (number == record_.Integer(4, 0)) name = model;
       }
     }
     if (name.empty()) return;
@@ -371,7 +350,7 @@ class P717Reader {
   void Extended() {
     if (extensions_.empty()) return;
     std::vector<std::string_view> parts;
-    Split(At(21), ';', parts);
+    Split(record_.At(21), ';', parts);
     for (std::size_t i = 0; i < std::min(parts.size(), extensions_.size()); ++i) {
       const Field& field = extensions_[i];
       if (parts[i].empty()) continue;
@@ -382,52 +361,18 @@ class P717Reader {
         continue;
       }
       const auto number = NumberOf(parts[i]);
-      if (!number) Odd(21, "has an extension that is not a number");
+      if (!number) record_.Odd(21, "has an extension that is not a number");
       build_.Set(*field.column, ValueOf(field.quantity, *number, field.factor));
     }
   }
 
-  // The drafts of 2018 have the tool after n, e, d; that of 2019 has it before MD. Whole numbers
-  // tell them apart, or the absence of n, e and d.
-  bool ToolBeforeDepth() { return IntegerOf(At(6)).has_value() && !IntegerOf(At(12)).has_value(); }
-
   void GyroRaw() {
-    if (fields_.size() < kG7Fields - 1) {
+    if (record_.size() < kG7Fields - 1) {
       lines_.Complain(FaultCode::kSyntax, fmt::format("{} fields in a G7 record, which has {}",
-                                                      fields_.size(), kG7Fields));
+                                                      record_.size(), kG7Fields));
     }
-    if (!md_unit_known_) {
-      lines_.Complain(FaultCode::kSyntax, "a G7 record before its survey's definition, H7,1,5,0");
-    }
-    const bool tool_first = ToolBeforeDepth();
-    const std::size_t md = tool_first ? 7 : 6;
-    GyroRawRecord g;
-    g.survey = Integer(2, 1);
-    g.number = Integer(3, 0);
-    g.time = Text(4);
-    g.used = Integer(tool_first ? 6 : 5, 1) != 0;
-    g.tool = Integer(tool_first ? 5 : 12, 1);
-    g.md = Needed(md, Md());
-    g.inclination = Needed(md + 1, units::kDeg);
-    g.azimuth = ValueOf(Quantity::kDirection, Needed(md + 2, 1), units::kDeg);
-    g.north = Maybe(md + 3, Md());
-    g.east = Maybe(md + 4, Md());
-    g.down = Maybe(md + 5, Md());
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      g.f[k] = Needed(13 + i, 1);
-      g.w[k] = Needed(16 + i, units::kDegPerHour);
-    }
-    g.gravity = Maybe(19, 1);
-    g.latitude = Maybe(20, units::kDeg);
-    g.earth_rate = Maybe(21, units::kDegPerHour);
-    g.gyro_toolface = Maybe(22, units::kDeg);
-    g.gravity_toolface = Maybe(23, units::kDeg);
-    g.gravity_ref = Maybe(24, 1);
-    g.latitude_ref = Maybe(25, units::kDeg);
-    g.earth_rate_ref = Maybe(26, units::kDegPerHour);
-    g.convergence = Maybe(27, units::kDeg);
-    head().gyro_raw.push_back(std::move(g));
+    RequireMdUnit();
+    head().gyro_raw.push_back(p717::GyroRawOf(record_, Md()));
   }
 
   // The head takes over what its first survey says.
@@ -466,7 +411,7 @@ class P717Reader {
 
   LineReader& lines_;
   TableBuilder build_;
-  std::vector<std::string_view> fields_;
+  p717::Record record_{lines_};
   std::vector<Field> extensions_;
   std::vector<std::pair<int, std::string>> error_models_;
   std::string geomagnetic_;

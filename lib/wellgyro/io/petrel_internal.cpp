@@ -129,24 +129,20 @@ class PetrelReader {
 
   void Cell(std::size_t i, std::array<double, 3>& station,
             std::vector<std::pair<Column, double>>& others) {
-    struct Name {
-      std::string_view name;
-      Column column;
-    };
-    constexpr std::array kNames{Name{"MD", Column::kMd},
-                                Name{"X", Column::kEasting},
-                                Name{"Y", Column::kNorthing},
-                                Name{"TVD", Column::kTvd},
-                                Name{"DX", Column::kEast},
-                                Name{"DY", Column::kNorth},
-                                Name{"INCL", Column::kInclination},
-                                Name{"DLS", Column::kDogleg},
-                                Name{"Z", Column::kDown},
-                                Name{"AZIM_TN", Column::kAzimuthTrue},
-                                Name{"AZIM_GN", Column::kAzimuthGrid}};
+    constexpr std::array kNames{NamedColumn{"MD", Column::kMd},
+                                NamedColumn{"X", Column::kEasting},
+                                NamedColumn{"Y", Column::kNorthing},
+                                NamedColumn{"TVD", Column::kTvd},
+                                NamedColumn{"DX", Column::kEast},
+                                NamedColumn{"DY", Column::kNorth},
+                                NamedColumn{"INCL", Column::kInclination},
+                                NamedColumn{"DLS", Column::kDogleg},
+                                NamedColumn{"Z", Column::kDown},
+                                NamedColumn{"AZIM_TN", Column::kAzimuthTrue},
+                                NamedColumn{"AZIM_GN", Column::kAzimuthGrid}};
     Column column = Column::kAzimuth;
     bool known = names_[i] == azimuth_;
-    for (const Name& n : kNames) {
+    for (const NamedColumn& n : kNames) {
       if (!known && n.name == names_[i]) {
         column = n.column;
         known = true;
@@ -175,6 +171,93 @@ class PetrelReader {
   std::string azimuth_;
 };
 
+using Row = std::array<std::string, 10>;
+
+std::string Line(const Row& cells) {
+  std::string line;
+  for (const std::string& cell : cells) line += fmt::format(" {:>18}", cell);
+  return line + "\n";
+}
+
+class PetrelWriter {
+ public:
+  explicit PetrelWriter(const SurveyTable& table) : table_(table) {}
+
+  std::string Write() const {
+    std::string text = Head();
+    text += kRule;
+    text += Line({"MD", "X", "Y", "Z", "TVD", "DX", "DY", grid_north_ ? "AZIM_GN" : "AZIM_TN",
+                  "INCL", "DLS"});
+    text += kRule;
+    for (std::size_t row = 0; row < table_.rows(); ++row) {
+      if (OnPath(table_.status(row))) text += Line(Station(row));
+    }
+    return text;
+  }
+
+ private:
+  std::string Head() const {
+    const std::string_view unit = WordOf(head_.md_unit);
+    std::string text = "# WELL TRACE FROM PETREL\n";
+    text += "# WELL NAME: " + head_.names.well + "\n";
+    if (!head_.names.survey.empty()) text += "# DEFINITIVE SURVEY: " + head_.names.survey + "\n";
+    text += fmt::format("# WELL HEAD X-COORDINATE: {} ({})\n", X(0), unit);
+    text += fmt::format("# WELL HEAD Y-COORDINATE: {} ({})\n", Y(0), unit);
+    text += fmt::format("# WELL DATUM ({}, from MSL): {} ({})\n",
+                        head_.datum.empty() ? "KB, Kelly bushing" : head_.datum,
+                        Exact(*head_.datum_elevation, factor_), unit);
+    text += "# MD AND TVD ARE REFERENCED (=0) AT WELL DATUM AND INCREASE DOWNWARDS\n";
+    text += "# ANGLES ARE GIVEN IN DEGREES\n";
+    text += fmt::format("# XYZ TRACE IS GIVEN IN COORDINATE SYSTEM {}\n",
+                        grid_ ? (head_.crs.empty() ? "UNKNOWN" : head_.crs) : "LOCAL");
+    text += fmt::format("# AZIMUTH REFERENCE {} NORTH\n", grid_north_ ? "GRID" : "TRUE");
+    text += fmt::format("# DX DY ARE GIVEN IN {} NORTH IN {}-UNITS\n",
+                        head_.offsets == North::kTrue ? "TRUE" : "GRID", unit);
+    text += fmt::format("# DEPTH (Z, TVD) GIVEN IN {}-UNITS\n", unit);
+    return text;
+  }
+
+  Row Station(std::size_t row) const {
+    const double below_datum = table_.Get(Column::kTvd, row).value_or(0);
+    const double down =
+        table_.Get(Column::kDown, row).value_or(below_datum - *head_.datum_elevation);
+    const double curvature =
+        head_.md_unit == LengthUnit::kMetre ? units::kDegPer30m : units::kDegPer100ft;
+    return {Exact(table_.md(row), factor_),
+            X(row),
+            Y(row),
+            Exact(-down, factor_),
+            Text(Column::kTvd, row),
+            Text(Column::kEast, row),
+            Text(Column::kNorth, row),
+            Exact(Quantity::kDirection, table_.azimuth(row), head_),
+            Exact(table_.inclination(row), units::kDeg),
+            Exact(table_.Get(Column::kDogleg, row).value_or(0), curvature)};
+  }
+
+  std::string X(std::size_t row) const {
+    return Text(grid_ ? Column::kEasting : Column::kEast, row);
+  }
+  std::string Y(std::size_t row) const {
+    return Text(grid_ ? Column::kNorthing : Column::kNorth, row);
+  }
+
+  std::string Text(Column column, std::size_t row) const {
+    const auto value = table_.Get(column, row);
+    if (!value) {
+      Lacks("Petrel",
+            fmt::format("{} in every row; row {} has none", InfoOf(column).text, row + 1));
+    }
+    return Exact(*value, factor_);
+  }
+
+  const SurveyTable& table_;
+  const SurveyHead& head_ = table_.head;
+  double factor_ = FactorOf(head_.md_unit);
+  bool grid_ = table_.Has(Column::kNorthing) && table_.Has(Column::kEasting);
+  bool grid_north_ = head_.azimuth.north == North::kGrid;
+};
+
 }  // namespace
 
 SurveyTable ReadPetrel(LineReader& lines) { return PetrelReader(lines).Read(); }
@@ -183,66 +266,13 @@ std::string WritePetrel(const SurveyTable& table) {
   NeedNorth(table, "Petrel");
   const SurveyHead& head = table.head;
   if (head.azimuth.north == North::kMagnetic) Lacks("Petrel", "azimuths from true or grid north");
-  if (!head.datum_elevation)
+  if (!head.datum_elevation) {
     Lacks("Petrel", "the elevation of the depth datum (datum_elevation_m)");
+  }
   if (table.rows() == 0 || !table.Get(Column::kTvd, 0) || !table.Get(Column::kNorth, 0)) {
     Lacks("Petrel", "positions");
   }
-  const double factor = FactorOf(head.md_unit);
-  const bool grid = table.Has(Column::kNorthing) && table.Has(Column::kEasting);
-  const std::string unit(WordOf(head.md_unit));
-  const bool grid_north = head.azimuth.north == North::kGrid;
-  const double curvature =
-      head.md_unit == LengthUnit::kMetre ? units::kDegPer30m : units::kDegPer100ft;
-  const auto text_of = [&](Column column, std::size_t row) {
-    const auto value = table.Get(column, row);
-    if (!value) {
-      Lacks("Petrel",
-            fmt::format("{} in every row; row {} has none", InfoOf(column).text, row + 1));
-    }
-    return Exact(*value, factor);
-  };
-  const auto x = [&](std::size_t row) {
-    return text_of(grid ? Column::kEasting : Column::kEast, row);
-  };
-  const auto y = [&](std::size_t row) {
-    return text_of(grid ? Column::kNorthing : Column::kNorth, row);
-  };
-  std::string text = "# WELL TRACE FROM PETREL\n";
-  text += "# WELL NAME: " + head.names.well + "\n";
-  if (!head.names.survey.empty()) text += "# DEFINITIVE SURVEY: " + head.names.survey + "\n";
-  text += fmt::format("# WELL HEAD X-COORDINATE: {} ({})\n", x(0), unit);
-  text += fmt::format("# WELL HEAD Y-COORDINATE: {} ({})\n", y(0), unit);
-  text += fmt::format("# WELL DATUM ({}, from MSL): {} ({})\n",
-                      head.datum.empty() ? "KB, Kelly bushing" : head.datum,
-                      Exact(*head.datum_elevation, factor), unit);
-  text += "# MD AND TVD ARE REFERENCED (=0) AT WELL DATUM AND INCREASE DOWNWARDS\n";
-  text += "# ANGLES ARE GIVEN IN DEGREES\n";
-  text += fmt::format("# XYZ TRACE IS GIVEN IN COORDINATE SYSTEM {}\n",
-                      grid ? (head.crs.empty() ? "UNKNOWN" : head.crs) : "LOCAL");
-  text += fmt::format("# AZIMUTH REFERENCE {} NORTH\n", grid_north ? "GRID" : "TRUE");
-  text += fmt::format("# DX DY ARE GIVEN IN {} NORTH IN {}-UNITS\n",
-                      head.offsets == North::kTrue ? "TRUE" : "GRID", unit);
-  text += fmt::format("# DEPTH (Z, TVD) GIVEN IN {}-UNITS\n", unit);
-  text += kRule;
-  text += fmt::format(" {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18}\n",
-                      "MD", "X", "Y", "Z", "TVD", "DX", "DY", grid_north ? "AZIM_GN" : "AZIM_TN",
-                      "INCL", "DLS");
-  text += kRule;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (!OnPath(table.status(row))) continue;
-    const double down =
-        table.Get(Column::kDown, row)
-            .value_or(table.Get(Column::kTvd, row).value_or(0) - *head.datum_elevation);
-    text += fmt::format(" {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18} {:>18}\n",
-                        Exact(table.md(row), factor), x(row), y(row), Exact(-down, factor),
-                        text_of(Column::kTvd, row), text_of(Column::kEast, row),
-                        text_of(Column::kNorth, row),
-                        Exact(Quantity::kDirection, table.azimuth(row), head),
-                        Exact(table.inclination(row), units::kDeg),
-                        Exact(table.Get(Column::kDogleg, row).value_or(0), curvature));
-  }
-  return text;
+  return PetrelWriter(table).Write();
 }
 
 }  // namespace wellgyro

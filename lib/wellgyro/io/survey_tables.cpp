@@ -91,6 +91,39 @@ SurveyTool ToolOf(std::span<const Station> stations) {
   return tool;
 }
 
+RowStatus StatusOf(const Station& s) {
+  if (s.status == StationStatus::kRejected) return RowStatus::kUnused;
+  return s.kind == StationKind::kTieIn ? RowStatus::kTieIn : RowStatus::kSurveyed;
+}
+
+std::size_t AddStation(SurveyTable& table, const Station& s) {
+  const std::size_t row = table.Add(s.md, s.inclination, s.azimuth, StatusOf(s));
+  table.Set(Column::kToolface, row, s.toolface);
+  table.Set(Column::kNorth, row, s.p_WT_W.x());
+  table.Set(Column::kEast, row, s.p_WT_W.y());
+  table.Set(Column::kTvd, row, s.p_WT_W.z());
+  table.Set(Column::kDogleg, row, s.dogleg_severity);
+  SetCovariance(table, row, s.cov_p_WT_W);
+  table.Set(Column::kSigmaInclination, row, std::sqrt(s.cov_md_inc_azi(1, 1)));
+  table.Set(Column::kSigmaAzimuth, row, std::sqrt(s.cov_md_inc_azi(2, 2)));
+  if (s.gravity > 0) table.Set(Column::kGravity, row, s.gravity);
+  if (s.gravity_ref > 0) table.Set(Column::kGravityRef, row, s.gravity_ref);
+  if (s.earth_rate) {
+    table.Set(Column::kEarthRateMeasured, row, *s.earth_rate);
+    table.Set(Column::kEarthRateReference, row, s.earth_rate_ref);
+  }
+  table.Set(TextColumn::kKind, row, std::string(WordOf(s.kind)));
+  table.Set(TextColumn::kQuality, row, QualityText(s.quality));
+  return row;
+}
+
+void SetGrid(SurveyTable& table, std::size_t row, const Station& s, const WellGrid& grid) {
+  const GridPoint p = grid.At(s.p_WT_W.x(), s.p_WT_W.y());
+  table.Set(Column::kAzimuthGrid, row, WrapTwoPi(s.azimuth - p.convergence));
+  table.Set(Column::kNorthing, row, p.northing);
+  table.Set(Column::kEasting, row, p.easting);
+}
+
 }  // namespace
 
 SurveyTable TableOfSurvey(const Job& job, std::span<const Station> stations, const WellGrid* grid) {
@@ -100,40 +133,15 @@ SurveyTable TableOfSurvey(const Job& job, std::span<const Station> stations, con
   bool accepted = !stations.empty();
   std::optional<double> first, last;
   for (const Station& s : stations) {
-    const bool tie = s.kind == StationKind::kTieIn;
-    const RowStatus status = s.status == StationStatus::kRejected ? RowStatus::kUnused
-                             : tie                                ? RowStatus::kTieIn
-                                                                  : RowStatus::kSurveyed;
-    const std::size_t row = table.Add(s.md, s.inclination, s.azimuth, status);
-    table.Set(Column::kToolface, row, s.toolface);
-    table.Set(Column::kNorth, row, s.p_WT_W.x());
-    table.Set(Column::kEast, row, s.p_WT_W.y());
-    table.Set(Column::kTvd, row, s.p_WT_W.z());
-    table.Set(Column::kDogleg, row, s.dogleg_severity);
-    SetCovariance(table, row, s.cov_p_WT_W);
-    table.Set(Column::kSigmaInclination, row, std::sqrt(s.cov_md_inc_azi(1, 1)));
-    table.Set(Column::kSigmaAzimuth, row, std::sqrt(s.cov_md_inc_azi(2, 2)));
-    if (s.gravity > 0) table.Set(Column::kGravity, row, s.gravity);
-    if (s.gravity_ref > 0) table.Set(Column::kGravityRef, row, s.gravity_ref);
-    if (s.earth_rate) {
-      table.Set(Column::kEarthRateMeasured, row, *s.earth_rate);
-      table.Set(Column::kEarthRateReference, row, s.earth_rate_ref);
-    }
-    table.Set(TextColumn::kKind, row, std::string(WordOf(s.kind)));
-    table.Set(TextColumn::kQuality, row, QualityText(s.quality));
-    if (grid && job.grid) {
-      const GridPoint p = grid->At(s.p_WT_W.x(), s.p_WT_W.y());
-      table.Set(Column::kAzimuthGrid, row, WrapTwoPi(s.azimuth - p.convergence));
-      table.Set(Column::kNorthing, row, p.northing);
-      table.Set(Column::kEasting, row, p.easting);
-    }
-    if (!tie && s.utc.ns > 0) {
-      const double utc = static_cast<double>(s.utc.ns) * 1e-9;
-      table.Set(Column::kUtc, row, utc);
-      first = first ? std::min(*first, utc) : utc;
-      last = last ? std::max(*last, utc) : utc;
-    }
-    accepted = accepted && (tie || s.status == StationStatus::kDefinitive);
+    const std::size_t row = AddStation(table, s);
+    if (grid && job.grid) SetGrid(table, row, s, *grid);
+    if (s.kind == StationKind::kTieIn) continue;
+    accepted = accepted && s.status == StationStatus::kDefinitive;
+    if (s.utc.ns <= 0) continue;
+    const double utc = static_cast<double>(s.utc.ns) * 1e-9;
+    table.Set(Column::kUtc, row, utc);
+    first = first ? std::min(*first, utc) : utc;
+    last = last ? std::max(*last, utc) : utc;
   }
   table.head.definitive = table.head.final_survey = accepted;
   // Nothing here reads a clock: the survey is as old as its last station.

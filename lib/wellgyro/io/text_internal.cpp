@@ -53,6 +53,13 @@ std::string Lower(std::string_view text) {
   return lower;
 }
 
+std::string Capital(std::string_view word) {
+  std::string capital(word);
+  char& first = capital[0];
+  if (first >= 'a' && first <= 'z') first = static_cast<char>(first - 32);
+  return capital;
+}
+
 bool EqualNoCase(std::string_view a, std::string_view b) {
   return a.size() == b.size() && Lower(a) == Lower(b);
 }

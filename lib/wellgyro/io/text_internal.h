@@ -13,6 +13,8 @@ std::string_view Trim(std::string_view text);
 /// The same without quotes at its ends either.
 std::string_view TrimCell(std::string_view text);
 std::string Lower(std::string_view text);
+/// With a capital for its first letter.
+std::string Capital(std::string_view word);
 bool EqualNoCase(std::string_view a, std::string_view b);
 /// Its letters and digits alone, in lower case.
 std::string LettersAndDigits(std::string_view text);

@@ -94,8 +94,9 @@ class WitsmlReader {
     const pugi::xml_node north = ChildOf(t, "aziRef");
     if (const std::string word = TextOf(north); !word.empty() && word != "unknown") {
       const auto known = NorthOf(word);
-      if (!known)
+      if (!known) {
         xml_.Complain(FaultCode::kRange, north, "azimuths from " + word + " are not read");
+      }
       h.azimuth.north = *known;
     }
     h.azimuth.convergence = Number(ChildOf(t, "gridConUsed"), Quantity::kAngle);
@@ -123,8 +124,7 @@ class WitsmlReader {
         if (LocalName(child) != "extensionNameValue") continue;
         const std::string name = TextOf(ChildOf(child, "name"));
         if (!name.starts_with(kExtension)) continue;
-        TakePair(h, std::string_view(name).substr(kExtension.size()),
-                 TextOf(ChildOf(child, "value")));
+        TakePair(h, name.substr(kExtension.size()), TextOf(ChildOf(child, "value")));
       }
     }
     if (!comments.empty() && h.remarks.empty()) h.remarks.push_back(comments);
@@ -174,7 +174,7 @@ class WitsmlReader {
     }
     build_.Set(TextColumn::kUid, ToUtf8(s.attribute("uid").value()));
     if (const auto utc = UtcOf(TextOf(ChildOf(s, "dTimStn")))) build_.Set(Column::kUtc, *utc);
-    for (const WitsmlElement& e : kWitsmlElements) {
+    for (const NamedColumn& e : kWitsmlElements) {
       if (e.column == Column::kInclination || e.column == Column::kAzimuth) continue;
       const pugi::xml_node node = Inner(ChildOf(s, e.name), "verticalDepth");
       Keep(e.column, Number(node, InfoOf(e.column).quantity));
@@ -212,7 +212,7 @@ class WitsmlReader {
     // Covariances may be stated at several sigma.
     const double sigma = Number(ChildOf(matrix, "sigma"), Quantity::kRatio).value_or(1);
     if (!(sigma > 0)) xml_.Complain(FaultCode::kRange, matrix, "sigma is not positive");
-    for (const WitsmlElement& e : kWitsmlMatrix) {
+    for (const NamedColumn& e : kWitsmlMatrix) {
       const Quantity quantity = InfoOf(e.column).quantity;
       auto value = Number(ChildOf(matrix, e.name), quantity);
       if (value && quantity == Quantity::kArea) *value /= sigma * sigma;
@@ -254,10 +254,11 @@ class WitsmlReader {
   void Extension(pugi::xml_node extension) {
     const std::string name = TextOf(ChildOf(extension, "name"));
     const pugi::xml_node value = ChildOf(extension, "value");
-    if (name == "c_earthRateCalc")
+    if (name == "c_earthRateCalc") {
       return Keep(Column::kEarthRateMeasured, Number(value, Quantity::kRate));
+    }
     if (!name.starts_with(kExtension)) return;
-    const std::string_view key = std::string_view(name).substr(kExtension.size());
+    const std::string key = name.substr(kExtension.size());
     if (key == "STATUS") {
       if (const auto status = RowStatusOf(TextOf(value))) {
         build_.table.SetStatus(build_.table.rows() - 1, *status);

@@ -1,144 +1,39 @@
 // WITSML 1.4.1.1 and 2.1 trajectories. Order matters: the schemas are sequences.
 #include <algorithm>
-#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
 
-#include "wellgyro/base/angle.h"
-#include "wellgyro/base/units.h"
 #include "wellgyro/io/iso_time_internal.h"
-#include "wellgyro/io/sha256.h"
 #include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/witsml_internal.h"
+#include "wellgyro/io/witsml_text_internal.h"
 #include "wellgyro/io/xml_internal.h"
 
 namespace wellgyro {
 namespace {
 
+using witsml::DateTime;
+using witsml::Method;
+using witsml::Or;
+using witsml::ToolText;
+using witsml::Uid;
+using witsml::UuidOf;
+
 constexpr std::string_view kNoDate = "1970-01-01T00:00:00.000Z";
 
 // Columns that stations carry as elements of their own; the others go as extensions.
 bool IsElement(Column column) {
-  const auto is = [&](const WitsmlElement& e) { return e.column == column; };
+  const auto is = [&](const NamedColumn& e) { return e.column == column; };
   return column == Column::kMd || column == Column::kUtc || column == Column::kGravity ||
          column == Column::kLatitude || column == Column::kLongitude ||
          std::any_of(kWitsmlElements.begin(), kWitsmlElements.end(), is) ||
          std::any_of(kWitsmlMatrix.begin(), kWitsmlMatrix.end(), is);
-}
-
-class Units {
- public:
-  Units(const SurveyHead& head, bool version_2) : head_(head), version_2_(version_2) {}
-
-  std::string Name(Quantity quantity) const {
-    switch (quantity) {
-      case Quantity::kLength:
-        return Length(head_.md_unit);
-      case Quantity::kGridLength:
-        return Length(head_.grid_unit);
-      case Quantity::kAngle:
-      case Quantity::kDirection:
-        return "dega";
-      case Quantity::kCurvature:
-        return Curvature();
-      case Quantity::kArea:
-        return head_.md_unit == LengthUnit::kFoot ? "ft2" : "m2";
-      case Quantity::kAcceleration:
-        return "m/s2";
-      case Quantity::kRate:
-        return "dega/h";
-      case Quantity::kTemperature:
-        return "degC";
-      case Quantity::kTime:
-        return "s";
-      default:
-        return "";
-    }
-  }
-
-  std::string Text(Quantity quantity, double value) const {
-    // There is no area in US survey feet.
-    if (quantity == Quantity::kArea && head_.md_unit == LengthUnit::kUsFoot) return Exact(value);
-    return Exact(quantity, value, head_);
-  }
-
- private:
-  std::string Length(LengthUnit unit) const {
-    if (unit == LengthUnit::kUsFoot) return version_2_ ? "ft[US]" : "ftUS";
-    return std::string(WordOf(unit));
-  }
-
-  std::string Curvature() const {
-    switch (head_.curvature_unit) {
-      case CurvatureUnit::kDegPer30m:
-        return version_2_ ? "1/30 dega/m" : "dega/30m";
-      case CurvatureUnit::kDegPer100ft:
-        return version_2_ ? "0.01 dega/ft" : "dega/100ft";
-      case CurvatureUnit::kDegPerMetre:
-        return "dega/m";
-      case CurvatureUnit::kDegPerFoot:
-        return "dega/ft";
-      default:
-        return "rad/m";
-    }
-  }
-
-  const SurveyHead& head_;
-  bool version_2_;
-};
-
-// A UUID that the same survey gets again: the head of a hash of what it names.
-std::string UuidOf(const std::string& given, std::string_view what, const SurveyHead& head) {
-  const auto hexadecimal = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
-  };
-  if (given.size() == 36 && given[8] == '-' && given[13] == '-' && given[18] == '-' &&
-      given[23] == '-' && std::count_if(given.begin(), given.end(), hexadecimal) == 32) {
-    return given;
-  }
-  std::string hash = Sha256Hex(fmt::format("{}\n{}\n{}\n{}\n{}", what, given, head.names.well,
-                                           head.names.wellbore, head.names.survey));
-  hash[12] = '8';
-  hash[16] = '8';
-  return fmt::format("{}-{}-{}-{}-{}", hash.substr(0, 8), hash.substr(8, 4), hash.substr(12, 4),
-                     hash.substr(16, 4), hash.substr(20, 12));
-}
-
-std::string Or(const std::string& text, std::string_view otherwise) {
-  return text.empty() ? std::string(otherwise) : text;
-}
-
-// Identifiers of 1.4.1.1 have no blanks and 64 characters at most.
-std::string Uid(const std::string& text, std::string_view otherwise) {
-  std::string uid = Or(text, otherwise).substr(0, 64);
-  for (char& c : uid) c = c > ' ' && c < 0x7F && c != ',' ? c : '-';
-  return uid;
-}
-
-// xsd:dateTime of a day or an instant; nothing when it is neither.
-std::string DateTime(const std::string& text) {
-  if (UtcOf(text)) return text;
-  const std::string midnight = text + "T00:00:00.000Z";
-  return UtcOf(midnight) ? midnight : std::string();
-}
-
-// The schemas' list; another method goes as an extension.
-std::string Method(const std::string& method) {
-  constexpr std::array<std::string_view, 8> kMethods{
-      "average angle", "balanced tangential", "constant tool face",  "custom",
-      "inertial",      "minimum curvature",   "radius of curvature", "tangential"};
-  const std::string lower = Lower(method);
-  return std::find(kMethods.begin(), kMethods.end(), lower) == kMethods.end() ? "" : lower;
-}
-
-std::string Word(bool value) { return value ? "true" : "false"; }
-
-std::string CapitalOf(std::string_view name) {
-  std::string capital(name);
-  capital[0] = static_cast<char>(capital[0] & ~0x20);
-  return capital;
 }
 
 class WitsmlWriter {
@@ -151,7 +46,7 @@ class WitsmlWriter {
 
  private:
   std::string Tag(std::string_view name) const {
-    return version_2_ ? CapitalOf(name) : std::string(name);
+    return version_2_ ? Capital(name) : std::string(name);
   }
   void Measure(std::string_view tag, Quantity quantity, const std::optional<double>& value,
                const std::string& datum = {}) {
@@ -159,6 +54,11 @@ class WitsmlWriter {
     xml_.Leaf(tag, units_.Text(quantity, *value),
               {{"uom", units_.Name(quantity)}, {"datum", datum}});
   }
+  void Flag(std::string_view name, const std::optional<bool>& value);
+  void Flags();
+  void Section();
+  void Citation();
+  void Index();
   void HeadExtensions(const std::vector<std::string_view>& native);
   void Extension(std::string_view name, const std::string& value, const std::string& uom,
                  std::string_view type);
@@ -175,7 +75,7 @@ class WitsmlWriter {
 
   const SurveyTable& table_;
   const SurveyHead& head_;
-  Units units_;
+  witsml::Units units_;
   bool version_2_;
   XmlWriter xml_;
 };
@@ -237,8 +137,7 @@ void WitsmlWriter::StationStart(std::size_t row) {
   }
   if (utc) xml_.Leaf(Tag("dTimStn"), IsoUtc(*utc));
   xml_.Leaf(Tag("typeTrajStation"), TypeOf(table_.status(row)));
-  std::string tool(WordOf(head_.tool));
-  if (head_.tool == SurveyTool::kInclinationOnly) tool.clear();
+  std::string tool = ToolText(head_.tool);
   // The list of values of 1.4.1.1 has two blanks here.
   if (!version_2_ && head_.tool == SurveyTool::kGyroMwd) tool = "gyroscopic  MWD";
   xml_.LeafIf(Tag("typeSurveyTool"), tool);
@@ -247,7 +146,7 @@ void WitsmlWriter::StationStart(std::size_t row) {
 }
 
 void WitsmlWriter::Elements(std::size_t row, bool after_dogleg) {
-  for (const WitsmlElement& e : kWitsmlElements) {
+  for (const NamedColumn& e : kWitsmlElements) {
     if ((e.column == Column::kGravityRef) != after_dogleg) continue;
     const auto value = table_.Get(e.column, row);
     if (!value) continue;
@@ -276,14 +175,14 @@ void WitsmlWriter::Model(std::size_t row) {
 void WitsmlWriter::Matrix(std::size_t row) {
   const auto has = [&](Column c) { return table_.Get(c, row).has_value(); };
   bool any = false, whole = true;
-  for (const WitsmlElement& e : kWitsmlMatrix) {
+  for (const NamedColumn& e : kWitsmlMatrix) {
     any = any || has(e.column);
     whole = whole && (has(e.column) || InfoOf(e.column).quantity == Quantity::kLength);
   }
   // 2.1 wants all of it, biases and sigma too.
   if (!any || (version_2_ && !whole)) return;
   xml_.Open(Tag("matrixCov"));
-  for (const WitsmlElement& e : kWitsmlMatrix) {
+  for (const NamedColumn& e : kWitsmlMatrix) {
     auto value = table_.Get(e.column, row);
     if (version_2_ && !value) value = 0;
     Measure(Tag(e.name), InfoOf(e.column).quantity, value);
@@ -365,6 +264,23 @@ void WitsmlWriter::Station(std::size_t row) {
   xml_.Close();
 }
 
+void WitsmlWriter::Section() {
+  if (!head_.section_azimuth) return;
+  Measure(Tag("aziVertSect"), Quantity::kAngle, head_.section_azimuth);
+  Measure(Tag("dispNsVertSectOrig"), Quantity::kLength, head_.section_north);
+  Measure(Tag("dispEwVertSectOrig"), Quantity::kLength, head_.section_east);
+}
+
+void WitsmlWriter::Flag(std::string_view name, const std::optional<bool>& value) {
+  if (value) xml_.Leaf(Tag(name), *value ? "true" : "false");
+}
+
+void WitsmlWriter::Flags() {
+  Flag("definitive", head_.definitive);
+  Flag("memory", head_.memory);
+  Flag("finalTraj", head_.final_survey);
+}
+
 std::string WitsmlWriter::Write1411() {
   xml_.Open("trajectorys",
             {{"xmlns", "http://www.witsml.org/schemas/1series"}, {"version", "1.4.1.1"}});
@@ -383,14 +299,8 @@ std::string WitsmlWriter::Write1411() {
   Measure("magDeclUsed", Quantity::kAngle, head_.azimuth.declination);
   Measure("gridCorUsed", Quantity::kAngle, head_.grid_correction);
   Measure("gridConUsed", Quantity::kAngle, head_.azimuth.convergence);
-  Measure("aziVertSect", Quantity::kAngle, head_.section_azimuth);
-  if (head_.section_azimuth) {
-    Measure("dispNsVertSectOrig", Quantity::kLength, head_.section_north);
-    Measure("dispEwVertSectOrig", Quantity::kLength, head_.section_east);
-  }
-  if (head_.definitive) xml_.Leaf("definitive", Word(*head_.definitive));
-  if (head_.memory) xml_.Leaf("memory", Word(*head_.memory));
-  if (head_.final_survey) xml_.Leaf("finalTraj", Word(*head_.final_survey));
+  Section();
+  Flags();
   xml_.Leaf("aziRef", std::string(WordOf(head_.azimuth.north)) + " north");
   for (std::size_t row = 0; row < table_.rows(); ++row) Station(row);
   xml_.Open("commonData");
@@ -405,24 +315,16 @@ std::string WitsmlWriter::Write1411() {
   return xml_.Take();
 }
 
-std::string WitsmlWriter::Write21() {
-  const SurveyIdentity& names = head_.names;
-  xml_.Open("Trajectory", {{"xmlns", "http://www.energistics.org/energyml/data/witsmlv2"},
-                           {"xmlns:eml", "http://www.energistics.org/energyml/data/commonv2"},
-                           {"xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"},
-                           {"schemaVersion", "2.1"},
-                           {"uuid", UuidOf(names.uid_survey, "trajectory", head_)}});
+void WitsmlWriter::Citation() {
   xml_.Open("eml:Citation");
-  xml_.Leaf("eml:Title", Or(names.survey, "survey"));
-  xml_.Leaf("eml:Originator", Or(names.author, "unknown"));
-  xml_.Leaf("eml:Creation", Or(DateTime(names.created), kNoDate));
+  xml_.Leaf("eml:Title", Or(head_.names.survey, "survey"));
+  xml_.Leaf("eml:Originator", Or(head_.names.author, "unknown"));
+  xml_.Leaf("eml:Creation", Or(DateTime(head_.names.created), kNoDate));
   xml_.Leaf("eml:Format", "wellgyro:wellgyro:1");
   xml_.Close();
-  if (head_.planned) xml_.Leaf("eml:Existence", *head_.planned ? "planned" : "actual");
-  HeadExtensions({"survey", "begin", "end", "created", "contractor", "wellbore", "north_reference",
-                  "grid_convergence_deg", "declination_deg", "datum", "method",
-                  "section_azimuth_deg", "tool", "error_model", "grid_scale"});
-  xml_.Leaf("eml:ActiveStatus", "inactive");
+}
+
+void WitsmlWriter::Index() {
   const std::string unit = units_.Name(Quantity::kLength);
   xml_.Open("eml:Index");
   xml_.Leaf("eml:IndexKind", "measured depth");
@@ -434,14 +336,28 @@ std::string WitsmlWriter::Write21() {
   xml_.Leaf("eml:MdMax", units_.Text(Quantity::kLength, table_.md(table_.rows() - 1)));
   xml_.Leaf("eml:Uom", unit);
   xml_.Close();
+}
+
+std::string WitsmlWriter::Write21() {
+  const SurveyIdentity& names = head_.names;
+  xml_.Open("Trajectory", {{"xmlns", "http://www.energistics.org/energyml/data/witsmlv2"},
+                           {"xmlns:eml", "http://www.energistics.org/energyml/data/commonv2"},
+                           {"xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"},
+                           {"schemaVersion", "2.1"},
+                           {"uuid", UuidOf(names.uid_survey, "trajectory", head_)}});
+  Citation();
+  if (head_.planned) xml_.Leaf("eml:Existence", *head_.planned ? "planned" : "actual");
+  HeadExtensions({"survey", "begin", "end", "created", "contractor", "wellbore", "north_reference",
+                  "grid_convergence_deg", "declination_deg", "datum", "method",
+                  "section_azimuth_deg", "tool", "error_model", "grid_scale"});
+  xml_.Leaf("eml:ActiveStatus", "inactive");
+  Index();
   if (!names.contractor.empty()) {
     Reference("ServiceCompany", "eml23.BusinessAssociate", "", names.contractor);
   }
   xml_.LeafIf("DTimTrajEnd", DateTime(names.end));
   xml_.LeafIf("DTimTrajStart", DateTime(names.begin));
-  if (head_.definitive) xml_.Leaf("Definitive", Word(*head_.definitive));
-  if (head_.memory) xml_.Leaf("Memory", Word(*head_.memory));
-  if (head_.final_survey) xml_.Leaf("FinalTraj", Word(*head_.final_survey));
+  Flags();
   if (!head_.datum.empty()) {
     Reference("DefaultMdDatum", "eml23.ReferencePoint", "", head_.datum);
     Reference("DefaultTvdDatum", "eml23.ReferencePoint", "", head_.datum);
@@ -450,17 +366,11 @@ std::string WitsmlWriter::Write21() {
   Reference("Wellbore", "witsml21.Wellbore", names.uid_wellbore,
             Or(names.wellbore, Or(names.well, "unknown")));
   Measure("MagDeclUsed", Quantity::kAngle, head_.azimuth.declination);
-  std::string tool(WordOf(head_.tool));
-  if (head_.tool == SurveyTool::kInclinationOnly) tool.clear();
   xml_.LeafIf("NominalCalcAlgorithm", Method(head_.method));
-  xml_.LeafIf("NominalTypeSurveyTool", tool);
+  xml_.LeafIf("NominalTypeSurveyTool", ToolText(head_.tool));
   Measure("GridConUsed", Quantity::kAngle, head_.azimuth.convergence);
   if (head_.scale) xml_.Leaf("GridScaleFactorUsed", Exact(*head_.scale), {{"uom", "Euc"}});
-  Measure("AziVertSect", Quantity::kAngle, head_.section_azimuth);
-  if (head_.section_azimuth) {
-    Measure("DispNsVertSectOrig", Quantity::kLength, head_.section_north);
-    Measure("DispEwVertSectOrig", Quantity::kLength, head_.section_east);
-  }
+  Section();
   xml_.Leaf("AziRef", std::string(WordOf(head_.azimuth.north)) + " north");
   xml_.Close();
   return xml_.Take();

@@ -1,63 +1,17 @@
-// CWLS LAS 2.0 (1992, with the updates of 2014 and 2017).
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include <fmt/core.h>
 
-#include "wellgyro/base/angle.h"
 #include "wellgyro/io/headings_internal.h"
+#include "wellgyro/io/las_internal.h"
 #include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
-
-// Well-information mnemonics and the names they carry.
-struct WellKey {
-  std::string_view mnemonic, text;
-  std::string SurveyIdentity::*member;
-};
-constexpr std::array kWellKeys{
-    WellKey{"COMP", "COMPANY", &SurveyIdentity::operator_name},
-    WellKey{"WELL", "WELL", &SurveyIdentity::well},
-    WellKey{"FLD", "FIELD", &SurveyIdentity::field},
-    WellKey{"LOC", "LOCATION", &SurveyIdentity::structure},
-    WellKey{"PROV", "PROVINCE", &SurveyIdentity::region},
-    WellKey{"CTRY", "COUNTRY", &SurveyIdentity::country},
-    WellKey{"SRVC", "SERVICE COMPANY", &SurveyIdentity::contractor},
-    WellKey{"DATE", "SURVEY DATE", &SurveyIdentity::begin},
-    WellKey{"UWI", "UNIQUE WELL ID", &SurveyIdentity::uwi},
-};
-
-// Parameters after the Inclinometry set of LAS 3.0.
-struct ParameterKey {
-  std::string_view mnemonic, unit, key, text;
-};
-constexpr std::array kParameters{
-    ParameterKey{"I_AT", "", "north_reference", "AZIMUTH NORTH TYPE"},
-    ParameterKey{"I_DC", "DEG", "declination_deg", "MAGNETIC DECLINATION"},
-    ParameterKey{"I_DCSRC", "", "declination_source", "DECLINATION MODEL"},
-    ParameterKey{"I_DCDATE", "", "declination_date", "DECLINATION DATE"},
-    ParameterKey{"I_GC", "DEG", "grid_convergence_deg", "GRID CONVERGENCE"},
-    ParameterKey{"I_GSF", "", "grid_scale", "GRID SCALE FACTOR"},
-    ParameterKey{"I_GD", "", "datum", "DEPTH DATUM"},
-    ParameterKey{"I_RF", "M", "datum_elevation_m", "DATUM ELEVATION"},
-    ParameterKey{"I_VR", "", "vertical_reference", "VERTICAL REFERENCE"},
-    ParameterKey{"I_CP", "", "method", "COMPUTE METHOD"},
-    ParameterKey{"I_CS", "", "crs", "COORDINATE SYSTEM"},
-    ParameterKey{"I_VSAZ", "DEG", "section_azimuth_deg", "VERTICAL SECTION AZIMUTH"},
-    ParameterKey{"I_TOOL", "", "tool", "SURVEY TOOL CLASS"},
-    ParameterKey{"I_EM", "", "error_model", "TOOL ERROR MODEL"},
-    ParameterKey{"I_DK", "", "depth_kind", "DEPTH KIND"},
-    ParameterKey{"I_SURV", "", "survey", "SURVEY"},
-    ParameterKey{"I_WB", "", "wellbore", "WELLBORE"},
-    ParameterKey{"I_RIG", "", "rig", "RIG"},
-    ParameterKey{"I_JOB", "", "job", "JOB"},
-    ParameterKey{"I_END", "", "end", "END OF SURVEY"},
-};
 
 // A header line: MNEM.UNIT DATA : DESCRIPTION, parted at the first dot, the first blank after it
 // and the last colon.
@@ -152,13 +106,13 @@ class LasReader {
     } else if (line.mnemonic == "STEP") {
       step_ = NumberOf(line.data);
     }
-    for (const WellKey& key : kWellKeys) {
+    for (const las::WellKey& key : las::kWellKeys) {
       if (key.mnemonic == line.mnemonic) head().names.*key.member = line.data;
     }
   }
 
   void Parameter(const LasLine& line) {
-    for (const ParameterKey& p : kParameters) {
+    for (const las::ParameterKey& p : las::kParameters) {
       if (p.mnemonic != line.mnemonic || line.data.empty()) continue;
       if (!TakePair(head(), p.key, line.data)) {
         lines_.Complain(FaultCode::kSyntax, fmt::format("{}: '{}' is none", p.text, line.data));
@@ -308,123 +262,10 @@ class LasReader {
   bool wrap_ = false, azimuth_seen_ = false;
 };
 
-// LAS 2.0 of 1992 forbids colons in data, and a line break would end the line.
-std::string LasData(std::string_view text) {
-  std::string clean(text);
-  for (char& c : clean) {
-    if (c == ':' || c == '\n' || c == '\r') c = ' ';
-  }
-  return clean;
-}
-
-std::string LasUnit(Quantity quantity, const SurveyHead& head) {
-  std::string unit = UnitOf(quantity, head);
-  for (char& c : unit) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
-  return unit;
-}
-
-void Entry(std::string& text, std::string_view mnemonic, std::string_view unit,
-           std::string_view data, std::string_view description) {
-  const std::string start = fmt::format(" {:<9}.{:<9}", mnemonic, unit);
-  text += fmt::format("{} {:>20} : {}\n", start, LasData(data), LasData(description));
-}
-
-// A number that no column holds, to stand for nothing.
-double NullFor(const SurveyTable& table, const std::vector<Column>& columns) {
-  for (double null : {-999.25, -9999.25, -99999.25, -999999.25}) {
-    bool free = true;
-    for (const Column column : columns) {
-      const double factor = FactorOf(InfoOf(column).quantity, table.head);
-      for (std::size_t row = 0; row < table.rows() && free; ++row) {
-        const auto value = table.Get(column, row);
-        free = !value || std::abs(*value / factor - null) > 1e-6;
-      }
-    }
-    if (free) return null;
-  }
-  return -1e30;
-}
-
-// The common step of depths in the file's unit, or 0.
-double StepOf(const SurveyTable& table, const std::vector<std::size_t>& rows) {
-  if (rows.size() < 2) return 0;
-  const double factor = FactorOf(table.head.md_unit);
-  const auto depth = [&](std::size_t i) { return table.md(rows[i]) / factor; };
-  const double n = static_cast<double>(rows.size() - 1);
-  const double step = std::round((depth(rows.size() - 1) - depth(0)) / n * 1e6) / 1e6;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double expected = depth(0) + static_cast<double>(i) * step;
-    if (std::abs(depth(i) - expected) > 1e-9 * std::max(1.0, std::abs(expected))) return 0;
-  }
-  return step;
-}
-
 }  // namespace
 
 SurveyTable ReadLas(LineReader& lines, const ReadOptions& options) {
   return LasReader(lines, options).Read();
-}
-
-std::string WriteLas(const SurveyTable& table, const WriteOptions& options) {
-  NeedNorth(table, "LAS");
-  const SurveyHead& head = table.head;
-  std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (OnPath(table.status(row))) rows.push_back(row);
-  }
-  if (rows.empty()) Lacks("LAS", "a station");
-  std::vector<Column> columns;
-  for (const ColumnInfo& info : AllColumns()) {
-    if (table.Has(info.column)) columns.push_back(info.column);
-  }
-  const double null = NullFor(table, columns);
-  const std::string unit = LasUnit(Quantity::kLength, head);
-  const double factor = FactorOf(head.md_unit);
-  const double step = options.variable_step ? 0 : StepOf(table, rows);
-
-  std::string text = "~VERSION INFORMATION\n";
-  Entry(text, "VERS", "", "2.0", "CWLS LOG ASCII STANDARD - VERSION 2.0");
-  Entry(text, "WRAP", "", "NO", "ONE LINE PER DEPTH STEP");
-  text += "~WELL INFORMATION\n";
-  Entry(text, "STRT", unit, Exact(table.md(rows.front()), factor), "START DEPTH");
-  Entry(text, "STOP", unit, Exact(table.md(rows.back()), factor), "STOP DEPTH");
-  Entry(text, "STEP", unit, Exact(step), "STEP, 0 IF VARIABLE");
-  Entry(text, "NULL", "", Exact(null), "NULL VALUE");
-  for (const WellKey& key : kWellKeys) {
-    Entry(text, key.mnemonic, "", head.names.*key.member, key.text);
-  }
-  text += "~CURVE INFORMATION\n";
-  for (const Column column : columns) {
-    const ColumnInfo& info = InfoOf(column);
-    std::string description(info.text);
-    if (column == Column::kAzimuth) {
-      description += fmt::format(" from {} north", WordOf(head.azimuth.north));
-    }
-    Entry(text, info.las, LasUnit(info.quantity, head), "", description);
-  }
-  text += "~PARAMETER INFORMATION\n";
-  const Pairs pairs = PairsOf(head);
-  for (const ParameterKey& p : kParameters) {
-    for (const auto& [key, value] : pairs) {
-      if (key == p.key) Entry(text, p.mnemonic, p.unit, value, p.text);
-    }
-  }
-  if (!head.remarks.empty()) text += "~OTHER INFORMATION\n";
-  for (const std::string& remark : head.remarks) {
-    const std::string line = LasData(remark);
-    text += (line.starts_with('~') || line.starts_with('#') ? " " : "") + line + "\n";
-  }
-  text += "~A\n";
-  for (const std::size_t row : rows) {
-    std::string line;
-    for (const Column column : columns) {
-      const auto value = table.Get(column, row);
-      line += fmt::format(" {:>14}",
-                          value ? Exact(InfoOf(column).quantity, *value, head) : Exact(null));
-    }
-    text += line.substr(1) + "\n";
-  }
-  return text;
 }
 
 }  // namespace wellgyro

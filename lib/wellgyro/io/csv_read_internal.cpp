@@ -1,13 +1,11 @@
 // Surveys as delimited tables: our own survey.csv and whatever importers are fed with.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/headings_internal.h"
-#include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/survey_words_internal.h"
 #include "wellgyro/io/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -137,6 +135,7 @@ class CsvReader {
 
   std::vector<Heading> HeadingsOf(const std::vector<std::string>& fields) const {
     std::vector<Heading> headings;
+    headings.reserve(fields.size());
     for (const std::string& field : fields) headings.push_back(HeadingOf(field));
     for (const auto& [canonical, name] : options_.columns) {
       const Heading want = HeadingOf(canonical);
@@ -275,8 +274,9 @@ class CsvReader {
     }
     // Without a unit: angles are degrees, lengths as MD, and curvature could be anything.
     if (c.quantity == Quantity::kCurvature) c.column.reset();
-    if (c.quantity == Quantity::kAngle || c.quantity == Quantity::kDirection)
+    if (c.quantity == Quantity::kAngle || c.quantity == Quantity::kDirection) {
       c.factor = units::kDeg;
+    }
     if (c.quantity == Quantity::kLength || c.quantity == Quantity::kGridLength ||
         c.quantity == Quantity::kArea) {
       if (c.column != Column::kMd && !md_unit_known_) return c.column.reset();
@@ -361,92 +361,10 @@ class CsvReader {
   bool azimuth_seen_ = false, md_unit_known_ = false, ended_ = false;
 };
 
-std::string CsvName(const ColumnInfo& info, const SurveyHead& head) {
-  const auto by_north = [](std::string_view name, North north) {
-    switch (north) {
-      case North::kTrue:
-        return std::string(name) + "_TRUE";
-      case North::kGrid:
-        return std::string(name) + "_GRID";
-      default:
-        return std::string(name) + "_MAG";
-    }
-  };
-  if (info.column == Column::kAzimuth) return by_north("AZI", head.azimuth.north);
-  const bool offset = info.column == Column::kNorth || info.column == Column::kEast;
-  if (offset && head.offsets != head.azimuth.north && head.offsets != North::kUnknown) {
-    return by_north(info.csv, head.offsets);
-  }
-  return std::string(info.csv);
-}
-
-// survey.csv's order first, so that a survey of ours comes out as one.
-std::vector<Column> CsvOrder(const SurveyTable& table) {
-  constexpr std::array kFirst{Column::kMd,          Column::kInclination, Column::kAzimuth,
-                              Column::kToolface,    Column::kTvd,         Column::kNorth,
-                              Column::kEast,        Column::kDogleg,      Column::kVarNN,
-                              Column::kCovNE,       Column::kCovNV,       Column::kVarEE,
-                              Column::kCovEV,       Column::kVarVV,       Column::kSigmaInclination,
-                              Column::kSigmaAzimuth};
-  std::vector<Column> order(kFirst.begin(), kFirst.end());
-  for (const ColumnInfo& info : AllColumns()) {
-    if (std::find(order.begin(), order.end(), info.column) == order.end()) {
-      order.push_back(info.column);
-    }
-  }
-  std::erase_if(order, [&](Column c) { return !table.Has(c); });
-  return order;
-}
-
 }  // namespace
 
 SurveyTable ReadCsv(LineReader& lines, const ReadOptions& options) {
   return CsvReader(lines, options).Read();
-}
-
-std::string WriteCsv(const SurveyTable& table, const WriteOptions& options) {
-  NeedNorth(table, "CSV");
-  const SurveyHead& head = table.head;
-  std::string text;
-  if (options.preamble) {
-    for (const auto& [key, value] : PairsOf(head)) {
-      std::string line = value;
-      std::replace(line.begin(), line.end(), '\n', ' ');
-      text += "# " + key + ": " + line + "\n";
-    }
-  }
-  const std::vector<Column> columns = CsvOrder(table);
-  bool status = false;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    status = status || table.status(row) != RowStatus::kSurveyed;
-  }
-  std::string line;
-  for (const Column column : columns) {
-    const ColumnInfo& info = InfoOf(column);
-    const std::string unit = UnitOf(info.quantity, head);
-    line +=
-        (line.empty() ? "" : ",") + CsvName(info, head) + (unit.empty() ? "" : "[" + unit + "]");
-  }
-  for (const TextColumnInfo& info : AllTextColumns()) {
-    if (table.Has(info.column)) line += "," + std::string(info.csv);
-  }
-  text += line + (status ? ",STATUS\n" : "\n");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    bool first = true;
-    for (const Column column : columns) {
-      if (!first) text += ',';
-      first = false;
-      if (const auto value = table.Get(column, row)) {
-        text += Exact(InfoOf(column).quantity, *value, head);
-      }
-    }
-    for (const TextColumnInfo& info : AllTextColumns()) {
-      if (table.Has(info.column)) text += "," + CsvQuoted(table.Get(info.column, row));
-    }
-    if (status) text += "," + std::string(WordOf(table.status(row)));
-    text += '\n';
-  }
-  return text;
 }
 
 }  // namespace wellgyro
