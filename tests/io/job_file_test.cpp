@@ -94,6 +94,8 @@ sigma_azimuth_deg = 0.1
 at_md_m = 12.0
 use_fixes = false
 min_still_s = 45
+[attitude]
+order = "second"
 [stations]
 every_m = 5
 at_m = [100.0, 120.5]
@@ -239,6 +241,7 @@ TEST(ReadJob, TakesWhatTheRunIsLike) {
   EXPECT_FALSE(job.alignment.at_utc);
   EXPECT_FALSE(job.alignment.use_fixes);
   EXPECT_EQ(job.alignment.min_still, 45);
+  EXPECT_EQ(job.attitude.order, TrackerOptions::kSecond);
   EXPECT_EQ(job.stations.every, 5);
   EXPECT_THAT(job.stations.at, testing::ElementsAre(100, 120.5));
   EXPECT_TRUE(job.stations.at_stops);
@@ -301,10 +304,21 @@ TEST(ReadJob, TheLeastJobKeepsTheDefaults) {
   EXPECT_EQ(file->job.stations.every, 10);
   EXPECT_EQ(file->job.channels.imu, "WELLGYRO_IMU");
   EXPECT_EQ(file->job.alignment.min_still, 60);
+  EXPECT_EQ(file->job.attitude.order, TrackerOptions::kThird);
   EXPECT_FALSE(file->job.grid);
   ASSERT_EQ(file->files.size(), 1u);
   EXPECT_EQ(file->files[0].role, "job");
   EXPECT_EQ(file->files[0].name, "job.toml");
+}
+
+TEST(ReadJob, AnUnknownOrderIsRefusedWithTheKnownOnes) {
+  const std::string head = "format = \"wellgyro.job/1\"\nwell = {latitude_deg = 60}\n";
+  EXPECT_EQ(Parse(head + "attitude.order = 'third'")->job.attitude.order, TrackerOptions::kThird);
+  const auto file = Parse(head + "attitude.order = 'fourth'");
+  ASSERT_FALSE(file);
+  EXPECT_THAT(file.fault().text, AllOf(HasSubstr("order"), HasSubstr("fourth"), HasSubstr("second"),
+                                       HasSubstr("third")));
+  EXPECT_EQ(file.fault().line, 3);
 }
 
 TEST(ReadJob, StationsAtDepthsAloneHaveNoSpacing) {
@@ -394,6 +408,7 @@ TEST(ReadJob, OutOfRangeIsAnErrorWithItsLineAndValue) {
       {"of", {"'hole'"}},
       {"sigma_azimuth_deg", {"0", "-1"}},
       {"min_still_s", {"0", "-60"}},
+      {"order", {"'first'", "'Third'"}},
       {"every_m", {"-1"}},
       {"at_m", {"[2.0, 1.0]", "[1.0, 1.0]"}},
       {"kind", {"'rope'", "''"}},

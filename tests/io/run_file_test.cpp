@@ -68,6 +68,7 @@ TEST(RunToml, SaysWhatMadeTheBytesAndWhatCameOfIt) {
   EXPECT_EQ(run["program"].value<std::string>(), "wellgyro 0.1.0");
   EXPECT_EQ(run["accepted"].value<bool>(), false);
   EXPECT_EQ(run["stations"].value<int>(), 2);
+  EXPECT_FALSE(run.contains("attitude_order")) << "said only where it is not the usual one";
   EXPECT_EQ(run["identity"]["uwi"].value<std::string>(), "NO 30/9");
   EXPECT_EQ(run["identity"]["odd key"].value<std::string>(), "\\");
   EXPECT_EQ(run["input"][0]["sha256"].value<std::string>(), "00ff");
@@ -114,6 +115,13 @@ TEST(RunToml, SaysHowTheRunFits) {
   EXPECT_NEAR(first["fit"]["toolface_offset_sigma_deg"].value<double>().value_or(0), 0.03, 1e-12);
   EXPECT_FALSE(first["fit"]["time_skew_s"]) << "it has no prior";
   EXPECT_NEAR(first["north_fix"][0]["roll_rate_deg_per_h"].value<double>().value_or(0), 0.5, 1e-12);
+}
+
+TEST(RunToml, NamesTheCheaperForm) {
+  Job job = SmallJob();
+  job.attitude.order = TrackerOptions::kSecond;
+  const toml::table run = toml::parse(RunToml(Record(), job, SmallSurvey(), {}));
+  EXPECT_EQ(run["attitude_order"].value<std::string>(), "second");
 }
 
 TEST(RunToml, HoldsNothingOfTheSource) {

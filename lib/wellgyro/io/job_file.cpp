@@ -62,6 +62,7 @@ class JobReader {
     if (auto table = root.FindTable("error_model")) TakeErrorModel(*table);
     if (auto table = root.FindTable("channels")) job.channels = ReadChannels(*table);
     if (auto table = root.FindTable("alignment")) job.alignment = ReadAlignment(*table);
+    if (auto table = root.FindTable("attitude")) job.attitude = ReadAttitude(*table);
     if (auto table = root.FindTable("stations")) job.stations = ReadStations(*table);
     if (auto table = root.FindTable("depth")) job.depth = ReadDepth(*table);
     if (auto table = root.FindTable("string")) job.string = ReadString(*table);

@@ -219,6 +219,16 @@ AlignmentSpec ReadAlignment(TomlTable table) {
   return spec;
 }
 
+AttitudeSpec ReadAttitude(TomlTable table) {
+  using Order = TrackerOptions::Order;
+  AttitudeSpec spec;
+  spec.order = table
+                   .FindWord<Order>("order", {{"second", TrackerOptions::kSecond},
+                                              {"third", TrackerOptions::kThird}})
+                   .value_or(spec.order);
+  return spec;
+}
+
 StationSpec ReadStations(TomlTable table) {
   StationSpec spec;
   if (auto at = table.FindNumbers("at_m", kAnyNumber)) {

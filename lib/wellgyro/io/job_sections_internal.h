@@ -11,6 +11,7 @@ GridSpec ReadGrid(TomlTable table);
 TieIn ReadTieIn(TomlTable table);
 Channels ReadChannels(TomlTable table);
 AlignmentSpec ReadAlignment(TomlTable table);
+AttitudeSpec ReadAttitude(TomlTable table);
 StationSpec ReadStations(TomlTable table);
 DepthSpec ReadDepth(TomlTable table);
 StringSpec ReadString(TomlTable table);

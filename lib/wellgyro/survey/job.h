@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/attitude/tracker.h"
 #include "wellgyro/base/depth.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -39,6 +40,11 @@ struct AlignmentSpec {
   std::optional<UtcTime> at_utc;  ///< ... or this time; neither: the begin of the first sample
   bool use_fixes = true;          ///< of later north fixes, with an external azimuth
   double min_still = 60;          ///< shortest stop that is gyrocompassed [s]
+};
+
+/// How samples are summed on the run.
+struct AttitudeSpec {
+  TrackerOptions::Order order = TrackerOptions::kThird;  ///< the second is cheaper, not better
 };
 
 struct StationSpec {
@@ -103,6 +109,7 @@ struct Job {
   std::optional<ErrorModel> error_model;  ///< absent: covariance from the run itself alone
   Channels channels;
   AlignmentSpec alignment;
+  AttitudeSpec attitude;
   StationSpec stations;
   DepthSpec depth;
   StringSpec string;

@@ -25,6 +25,7 @@ VerticalSetup VerticalSetupOf(const Job& job) {
 
 TrackerOptions TrackerOptionsOf(const Job& job) {
   TrackerOptions options;
+  options.order = job.attitude.order;
   // Below twice this the vertical filter takes over.
   options.inclination_min = std::asin(SineNearVertical(job.errors, false)) / 2;
   options.accel_noise = job.errors.accel_noise;
