@@ -8,26 +8,22 @@
 #include <span>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "wellgyro/base/angle.h"
-#include "wellgyro/base/units.h"
-#include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/surveyor_listener.h"
 #include "wellgyro/io/run_file.h"
-#include "wellgyro/simulate/sample_batcher.h"
-#include "wellgyro/simulate/simulator.h"
 
 #include "bus/broker.h"
 #include "bus/multicast.h"
+#include "bus/simulated_messages.h"
 #include "support/scratch.h"
+#include "support/small_hole.h"
 
 namespace wellgyro {
 namespace {
@@ -38,65 +34,36 @@ struct Sent {
   std::int64_t utime_us = 0;
 };
 
+const testing::SmallHole kHole = {.inclination_deg = 35,
+                                  .azimuth_deg = 70,
+                                  .latitude_deg = 57,
+                                  .to_md = 200,
+                                  .rpm = 1,
+                                  .imu_hz = 25,
+                                  .depth_hz = 5,
+                                  .walk = 0.01,
+                                  .accel_noise_g = 5e-5};
+
 Simulation NoisyRun() {
-  Simulation simulation;
+  Simulation simulation = SimulationOf(kHole);
   simulation.seed = 11;
-  simulation.well.end_md = 300;
-  simulation.well.inclination.start = FromDegrees(35);
-  simulation.well.azimuth.start = FromDegrees(70);
-  simulation.earth.latitude = FromDegrees(57);
-  simulation.tool.errors.gyro_noise.angle_random_walk = 0.01 * units::kDegPerSqrtHour;
-  simulation.tool.errors.accel_noise = 5e-5 * units::kStandardGravity;
   simulation.tool.errors.utc_jitter = 1e-3;
-  RunStop stop;
-  stop.seconds = 90;
-  RunMove move;
-  move.to_md = 200;
-  move.roll.rate = kTwoPi / 60;
-  simulation.run.steps = {stop, move, stop};
-  simulation.streams.imu_hz = 25;
   simulation.streams.batch = 25;
-  simulation.streams.depth_hz = 5;
   return simulation;
 }
 
 std::vector<Sent> Messages(const Simulation& simulation) {
-  const Channels channels;
   std::vector<Sent> messages;
-  std::vector<std::byte> bytes;
-  Simulator simulator(simulation);
-  SampleBatcher batcher(simulation.streams, simulation.seed);
-  SampleBatch batch;
-  std::int64_t now = 0;
-  const auto send = [&](const std::string& channel, const auto& record) {
-    Encode(record, bytes);
-    messages.push_back({channel, bytes, now});
-  };
-  SimulatedStep step;
-  while (simulator.Next(step)) {
-    if (const auto* sample = std::get_if<ImuSample>(&step)) {
-      now = (sample->stamp.utc.ns + sample->stamp.period_ns) / 1000;
-      if (batcher.Push(*sample, batch)) {
-        send(channels.imu, std::span<const ImuSample>(batch.samples));
-      }
-    } else if (const auto* mark = std::get_if<DepthMark>(&step)) {
-      now = mark->utc.ns / 1000;
-      send(channels.depth, *mark);
-    } else {
-      send(channels.mode, std::get<ToolMode>(step));
-    }
-  }
-  if (batcher.Flush(batch)) send(channels.imu, std::span<const ImuSample>(batch.samples));
+  test::ForEachMessage(simulation, [&](const std::string& channel, std::span<const std::byte> bytes,
+                                       std::int64_t now) {
+    messages.push_back({channel, {bytes.begin(), bytes.end()}, now});
+  });
   return messages;
 }
 
 Job SomeJob() {
-  Job job;
-  job.well.latitude = FromDegrees(57);
-  job.noise.angle_random_walk = 0.01 * units::kDegPerSqrtHour;
-  job.errors.accel_noise = 5e-5 * units::kStandardGravity;
+  Job job = JobOf(kHole);
   job.depth.latency = 2;
-  job.stations.every = 20;
   return job;
 }
 

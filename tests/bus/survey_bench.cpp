@@ -1,86 +1,55 @@
 // Log to stations: how fast, and where the time goes. Counters are samples a second.
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
-#include "wellgyro/base/angle.h"
-#include "wellgyro/base/units.h"
 #include "wellgyro/bus/decode.h"
-#include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/surveyor_listener.h"
 #include "wellgyro/io/run_file.h"
-#include "wellgyro/simulate/sample_batcher.h"
 #include "wellgyro/simulate/simulator.h"
 
+#include "bus/simulated_messages.h"
 #include "support/scratch.h"
+#include "support/small_hole.h"
 
 namespace wellgyro {
 namespace {
 
-Simulation LongRun(double imu_hz) {
-  Simulation simulation;
-  simulation.seed = 3;
-  simulation.well.end_md = 2000;
-  simulation.well.inclination.start = FromDegrees(35);
-  simulation.well.azimuth.start = FromDegrees(70);
-  simulation.earth.latitude = FromDegrees(57);
-  simulation.tool.errors.gyro_noise.angle_random_walk = 0.01 * units::kDegPerSqrtHour;
-  simulation.tool.errors.accel_noise = 5e-5 * units::kStandardGravity;
-  RunStop stop;
-  stop.seconds = 90;
-  RunMove move;
-  move.speed = 1;
-  // As many samples at every rate.
-  move.to_md = 2e6 / imu_hz - 180;
-  move.roll.rate = kTwoPi / 60;
-  simulation.run.steps = {stop, move, stop};
-  simulation.streams.imu_hz = imu_hz;
-  simulation.streams.batch = 100;
-  simulation.streams.depth_hz = 10;
-  return simulation;
+/// As many samples at every rate.
+testing::SmallHole LongHole(double imu_hz) {
+  return {.inclination_deg = 35,
+          .azimuth_deg = 70,
+          .latitude_deg = 57,
+          .to_md = 2e6 / imu_hz - 180,
+          .rpm = 1,
+          .imu_hz = imu_hz,
+          .depth_hz = 10,
+          .walk = 0.01,
+          .accel_noise_g = 5e-5,
+          .stations_every = 10};
 }
 
-Job TheJob() {
-  Job job;
-  job.well.latitude = FromDegrees(57);
-  job.noise.angle_random_walk = 0.01 * units::kDegPerSqrtHour;
-  job.errors.accel_noise = 5e-5 * units::kStandardGravity;
-  job.stations.every = 10;
-  return job;
-}
+Job TheJob() { return JobOf(LongHole(1'000)); }
 
 class Log {
  public:
   explicit Log(double imu_hz) {
-    const Simulation simulation = LongRun(imu_hz);
-    const Channels channels;
+    Simulation simulation = SimulationOf(LongHole(imu_hz));
+    simulation.seed = 3;
+    simulation.streams.batch = 100;
+    samples_ = Simulator(simulation).sample_count();
     auto writer = LogWriter::Open(path());
-    Simulator simulator(simulation);
-    SampleBatcher batcher(simulation.streams, simulation.seed);
-    SampleBatch batch;
-    std::vector<std::byte> bytes;
-    const auto write = [&](const std::string& channel) {
+    test::ForEachMessage(simulation, [&writer](const std::string& channel,
+                                               std::span<const std::byte> bytes, std::int64_t) {
       static_cast<void>(writer->Write(channel, bytes, 0));
-    };
-    SimulatedStep step;
-    while (simulator.Next(step)) {
-      if (const auto* sample = std::get_if<ImuSample>(&step)) {
-        ++samples_;
-        if (!batcher.Push(*sample, batch)) continue;
-        Encode(std::span<const ImuSample>(batch.samples), bytes);
-        write(channels.imu);
-      } else if (const auto* mark = std::get_if<DepthMark>(&step)) {
-        Encode(*mark, bytes);
-        write(channels.depth);
-      }
-    }
+    });
   }
   std::string path() const { return (folder_.path() / "run.lcm").string(); }
   std::int64_t samples() const { return samples_; }
@@ -123,27 +92,7 @@ void ReadAndDecode(benchmark::State& state) {
 }
 BENCHMARK(ReadAndDecode)->Arg(1'000)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
-/// The whole: reading, decoding, surveying, and the text of the files.
-void LogToStations(benchmark::State& state) {
-  const Log& log = Log::At(static_cast<double>(state.range(0)));
-  for (auto unused : state) {
-    Sink sink;
-    Surveyor surveyor(TheJob(), sink);
-    SurveyorListener listener(surveyor, sink);
-    Feed feed({}, listener);
-    auto reader = LogReader::Open(log.path());
-    LogEvent event;
-    while (reader->Next(event)) feed.Take(event.channel, event.data);
-    surveyor.Finish();
-    const auto files = ResultFiles({}, {}, TheJob(), surveyor.Current(0));
-    benchmark::DoNotOptimize(files.size());
-  }
-  state.SetItemsProcessed(state.iterations() * log.samples());
-}
-BENCHMARK(LogToStations)->Arg(1'000)->Arg(10'000)->Unit(benchmark::kMillisecond);
-
-void TextOfTheFiles(benchmark::State& state) {
-  const Log& log = Log::At(static_cast<double>(state.range(0)));
+Survey SurveyOf(const Log& log) {
   Sink sink;
   Surveyor surveyor(TheJob(), sink);
   SurveyorListener listener(surveyor, sink);
@@ -152,8 +101,25 @@ void TextOfTheFiles(benchmark::State& state) {
   LogEvent event;
   while (reader->Next(event)) feed.Take(event.channel, event.data);
   surveyor.Finish();
+  return surveyor.Current(0);
+}
+
+/// The whole: reading, decoding, surveying, and the text of the files.
+void LogToStations(benchmark::State& state) {
+  const Log& log = Log::At(static_cast<double>(state.range(0)));
   for (auto unused : state) {
-    const auto files = ResultFiles({}, {}, TheJob(), surveyor.Current(0));
+    const auto files = ResultFiles({}, {}, TheJob(), SurveyOf(log));
+    benchmark::DoNotOptimize(files.size());
+  }
+  state.SetItemsProcessed(state.iterations() * log.samples());
+}
+BENCHMARK(LogToStations)->Arg(1'000)->Arg(10'000)->Unit(benchmark::kMillisecond);
+
+void TextOfTheFiles(benchmark::State& state) {
+  const Log& log = Log::At(static_cast<double>(state.range(0)));
+  const Survey survey = SurveyOf(log);
+  for (auto unused : state) {
+    const auto files = ResultFiles({}, {}, TheJob(), survey);
     benchmark::DoNotOptimize(files.size());
   }
   state.SetItemsProcessed(state.iterations() * log.samples());

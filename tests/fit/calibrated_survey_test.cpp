@@ -91,21 +91,17 @@ Simulation HoleRun(std::uint64_t seed) {
   return simulation;
 }
 
-Survey SurveyOf(const Simulation& simulation, const Job& job, RawCounter* counter) {
-  Simulator simulator(simulation);
+/// The survey of the counts that a tool makes of the run.
+Survey SurveyOfCounts(const Simulation& simulation, const Job& job, RawCounter& counter) {
   Sink sink;
   Surveyor surveyor(job, sink);
-  surveyor.Push(simulator.tool_info());
-  SimulatedStep step;
-  while (simulator.Next(step)) {
-    if (const auto* sample = std::get_if<ImuSample>(&step);
-        sample != nullptr && counter != nullptr) {
-      const RawSample raw = counter->Count(*sample, 20);
-      surveyor.Push(std::span<const RawSample>(&raw, 1));
-    } else {
-      std::visit([&](const auto& record) { surveyor.Push(record); }, step);
-    }
-  }
+  wellgyro::testing::Play(simulation, surveyor, [&](SimulatedStep& step) {
+    const auto* sample = std::get_if<ImuSample>(&step);
+    if (sample == nullptr) return true;
+    const RawSample raw = counter.Count(*sample, 20);
+    surveyor.Push(std::span<const RawSample>(&raw, 1));
+    return false;
+  });
   surveyor.Finish();
   return surveyor.Current(simulation.streams.tool);
 }
@@ -132,12 +128,13 @@ TEST(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
     job.errors.accel_noise = 1e-5;
     job.tie_in.md = 5;
     job.stations.every = 10;
-    const Survey perfect = SurveyOf(simulation, job, nullptr);
+    Sink sink;
+    const Survey perfect = wellgyro::testing::SurveyOf(simulation, job, sink);
     job.errors = *tool->errors;
     job.errors.accel_noise = 1e-5;
     job.tool = *tool;
     RawCounter counter(TrueModel(gyros, accels));
-    const Survey survey = SurveyOf(simulation, job, &counter);
+    const Survey survey = SurveyOfCounts(simulation, job, counter);
     ASSERT_GT(survey.chosen.size(), 40u) << survey.unusable;
     ASSERT_EQ(survey.chosen.size(), perfect.chosen.size());
 

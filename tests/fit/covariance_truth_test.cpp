@@ -84,6 +84,7 @@ TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
     const LeastSquaresAdjuster adjuster;
     Surveyor surveyor(job, sink, &adjuster);
     testing::Play(simulation, surveyor);
+    surveyor.Finish();
     adjusted.Add(surveyor.Current(0).chosen.back(), truth, offset);
     const Station* told = nullptr;
     for (const Station& s : sink.stations) {
@@ -97,6 +98,7 @@ TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
     testing::CollectingSink quiet;
     Surveyor alone(job, quiet);
     testing::Play(simulation, alone);
+    alone.Finish();
     reckoned.Add(alone.Current(0).chosen.back(), truth, offset);
   }
   const std::string name = "I " + std::to_string(static_cast<int>(GetParam().inclination_deg)) +

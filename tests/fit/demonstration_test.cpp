@@ -51,7 +51,7 @@ TEST(Demonstration, IsAsGoodAsItSaysFromVerticalToTheEnd) {
     const Simulation& simulation = file->simulation;
     Sink sink;
     const LeastSquaresAdjuster adjuster;
-    const Survey survey = testing::SurveyOf(simulation, job->job, sink, &adjuster);
+    const Survey survey = testing::SurveyOf(simulation, job->job, sink, {}, &adjuster);
     ASSERT_EQ(survey.unusable, "");
     const TruthWell well = Truth(simulation).well();
     for (const Station& s : survey.chosen) {

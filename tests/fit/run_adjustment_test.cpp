@@ -202,6 +202,7 @@ TEST(RunAdjustment, IsSentOutByASurveyor) {
   testing::CollectingSink sink;
   Surveyor surveyor(JobOf(hour), sink, &adjuster);
   testing::Play(simulation, surveyor);
+  surveyor.Finish();
   const Survey adjusted = surveyor.Current(0);
   testing::CollectingSink other;
   const Survey smoothed = testing::SurveyOf(simulation, JobOf(hour), other);

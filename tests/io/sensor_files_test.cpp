@@ -19,48 +19,34 @@
 
 #include "support/scratch.h"
 #include "support/simulated_survey.h"
+#include "support/small_hole.h"
 
 namespace wellgyro {
 namespace {
 
 using support::Scratch;
 
+const testing::SmallHole kStands = {.inclination_deg = 35,
+                                    .build_deg = 0.05,
+                                    .azimuth_deg = 75,
+                                    .latitude_deg = 57,
+                                    .to_md = 230,
+                                    .depth_hz = 2};
+
 Simulation Stands() {
-  Simulation simulation;
-  simulation.well.end_md = 260;
-  simulation.well.inclination.start = FromDegrees(35);
-  AngleTerm build;
-  build.rate = FromDegrees(0.05);
-  simulation.well.inclination.terms.push_back(build);
-  simulation.well.azimuth.start = FromDegrees(75);
-  simulation.earth.latitude = FromDegrees(57);
-  simulation.run.roll_reference = RollReference::kHighSide;
-  simulation.tool.errors.gyro_noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
-  simulation.tool.errors.clock_offset = 0;
+  Simulation simulation = SimulationOf(kStands);
+  simulation.run.steps.clear();
   for (int i = 0; i <= 8; ++i) {
-    RunStop stop;
-    stop.seconds = 70 + 13 * (i * i % 5);
     if (i > 0) {
-      RunMove move;
-      move.to_md = 28 * i + 3 * (i % 2);
-      move.speed = 0.5 + 0.05 * (i % 3);
-      move.ramp = 3;
-      simulation.run.steps.push_back(move);
+      simulation.run.steps.push_back(
+          RunMove{.to_md = 28.0 * i + 3 * (i % 2), .speed = 0.5 + 0.05 * (i % 3), .ramp = 3});
     }
-    simulation.run.steps.push_back(stop);
+    simulation.run.steps.push_back(RunStop{.seconds = 70.0 + 13 * (i * i % 5)});
   }
-  simulation.streams.imu_hz = 20;
-  simulation.streams.depth_hz = 2;
   return simulation;
 }
 
-Job StandsJob() {
-  Job job;
-  job.well.latitude = FromDegrees(57);
-  job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
-  job.stations.every = 20;
-  return job;
-}
+Job StandsJob() { return JobOf(kStands); }
 
 /// The run as tables: samples with the tool's time and, where asked, UTC; marks; a tally.
 struct Tables {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "wellgyro/attitude/filter.h"
@@ -145,17 +144,6 @@ inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size
   return WrapPi(run.attitude[i].azimuth - flown.truth[i].azimuth);
 }
 
-/// Every record of a run, in order, and the end.
-inline void Play(const Simulation& simulation, Surveyor& surveyor) {
-  Simulator simulator(simulation);
-  surveyor.Push(simulator.tool_info());
-  SimulatedStep step;
-  while (simulator.Next(step)) {
-    std::visit([&](const auto& record) { surveyor.Push(record); }, step);
-  }
-  surveyor.Finish();
-}
-
 /// Plays the hour through a surveyor.
 inline Flown Fly(const Hour& hour, const Job& job, std::uint64_t seed) {
   const Simulation simulation = SimulationOf(hour, seed);
@@ -163,6 +151,7 @@ inline Flown Fly(const Hour& hour, const Job& job, std::uint64_t seed) {
   const KeepingAdjuster keeper;
   Surveyor surveyor(job, sink, &keeper);
   Play(simulation, surveyor);
+  surveyor.Finish();
   Flown flown;
   flown.history = std::move(keeper.kept);
   const Truth truth(simulation);

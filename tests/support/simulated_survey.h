@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -21,18 +23,35 @@ struct CollectingSink : Sink {
   std::vector<std::int32_t> acknowledged;
 };
 
-/// A survey of a simulated run, as from a log that holds every message once, in order.
-inline Survey SurveyOf(const Simulation& simulation, const Job& job, Sink& sink,
-                       const RunAdjuster* adjuster = nullptr) {
+/// Is given every step first, may change it, and says whether it comes at all.
+using Arrives = std::function<bool(SimulatedStep&)>;
+
+/// Plays a run into a surveyor, as from a log that holds every message once, in order.
+inline void Play(const Simulation& simulation, Surveyor& surveyor, const Arrives& arrives = {}) {
   Simulator simulator(simulation);
-  Surveyor surveyor(job, sink, adjuster);
   surveyor.Push(simulator.tool_info());
   SimulatedStep step;
   while (simulator.Next(step)) {
+    if (arrives && !arrives(step)) continue;
     std::visit([&](const auto& record) { surveyor.Push(record); }, step);
   }
+}
+
+/// The survey of a simulated run.
+inline Survey SurveyOf(const Simulation& simulation, const Job& job, Sink& sink,
+                       const Arrives& arrives = {}, const RunAdjuster* adjuster = nullptr) {
+  Surveyor surveyor(job, sink, adjuster);
+  Play(simulation, surveyor, arrives);
   surveyor.Finish();
   return surveyor.Current(simulation.streams.tool);
+}
+
+/// The check of this code, of this run where one is given; nullptr: it was not made.
+inline const Check* Find(const Survey& survey, const std::string& code, std::int32_t run = -1) {
+  for (const Check& check : survey.checks) {
+    if (check.code == code && (run < 0 || check.run == run)) return &check;
+  }
+  return nullptr;
 }
 
 }  // namespace wellgyro::testing

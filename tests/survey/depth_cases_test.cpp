@@ -12,52 +12,33 @@
 #include "wellgyro/simulate/truth.h"
 
 #include "support/simulated_survey.h"
+#include "support/small_hole.h"
 
 namespace wellgyro {
 namespace {
 
 using testing::CollectingSink;
+using testing::Find;
 
+testing::SmallHole BuildingHole(double depth_hz) {
+  return {.build_deg = 0.05, .to_md = 400, .depth_hz = depth_hz};
+}
+
+/// With a stop every 100 m.
 Simulation Building(double depth_hz) {
-  Simulation simulation;
-  simulation.well.end_md = 420;
-  simulation.well.inclination.start = FromDegrees(30);
-  AngleTerm build;
-  build.rate = FromDegrees(0.05);
-  simulation.well.inclination.terms.push_back(build);
-  simulation.well.azimuth.start = FromDegrees(45);
-  simulation.earth.latitude = FromDegrees(55);
-  simulation.run.roll_reference = RollReference::kHighSide;
-  simulation.tool.errors.gyro_noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
-  RunStop stop;
-  stop.seconds = 90;
-  simulation.run.steps = {stop};
+  Simulation simulation = SimulationOf(BuildingHole(depth_hz));
+  simulation.run.steps = {RunStop{.seconds = 90}};
   for (const double md : {100.0, 200.0, 300.0, 400.0}) {
-    RunMove move;
-    move.to_md = md;
-    move.ramp = 5;
-    simulation.run.steps.push_back(move);
-    simulation.run.steps.push_back(stop);
+    simulation.run.steps.push_back(RunMove{.to_md = md, .ramp = 5});
+    simulation.run.steps.push_back(RunStop{.seconds = 90});
   }
-  simulation.streams.imu_hz = 20;
-  simulation.streams.depth_hz = depth_hz;
   return simulation;
 }
 
 Job BuildingJob() {
-  Job job;
-  job.well.latitude = FromDegrees(55);
-  job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
-  job.stations.every = 20;
+  Job job = JobOf(BuildingHole(4));
   job.stations.at_stops = true;
   return job;
-}
-
-const Check* Find(const Survey& survey, const std::string& code) {
-  for (const Check& check : survey.checks) {
-    if (check.code == code) return &check;
-  }
-  return nullptr;
 }
 
 TEST(DepthCases, InclinationNearStopsDoesNotSufferFromRareMarks) {
@@ -112,21 +93,17 @@ TEST(DepthCases, StopsOffTheStationsDepthsCanBeListed) {
 TEST(DepthCases, NoisyDepthDoesNotHideTheStops) {
   for (const double rate : {2.0, 10.0}) {
     Random random(11);
-    Simulator simulator(Building(rate));
     Job job = BuildingJob();
     job.errors.depth_sigma = 0.02;
     Sink sink;
-    Surveyor surveyor(job, sink);
-    SimulatedStep step;
-    while (simulator.Next(step)) {
-      if (auto* mark = std::get_if<DepthMark>(&step)) {
-        mark->md += 0.02 * random.Normal();
-        mark->stopped = false;
-      }
-      std::visit([&](const auto& record) { surveyor.Push(record); }, step);
-    }
-    surveyor.Finish();
-    const Survey survey = surveyor.Current(0);
+    const Survey survey =
+        testing::SurveyOf(Building(rate), job, sink, [&random](SimulatedStep& step) {
+          if (auto* mark = std::get_if<DepthMark>(&step)) {
+            mark->md += 0.02 * random.Normal();
+            mark->stopped = false;
+          }
+          return true;
+        });
     ASSERT_EQ(survey.unusable, "") << rate;
     EXPECT_EQ(survey.runs[0].fixes.size(), 5u) << rate << " Hz";
     for (const NorthFix& fix : survey.runs[0].fixes) {
@@ -143,12 +120,10 @@ TEST(DepthCases, MagneticMarksAndStretchHoldTheStationsToTheHole) {
   job.depth.cable.stretch = 1e-6;  // of a very soft cable
   job.depth.cable.tool_weight = 2000;
   CollectingSink sink;
-  Simulator simulator(simulation);
   Surveyor surveyor(job, sink);
-  SimulatedStep step;
-  const Truth& truth = simulator.truth();
+  const Truth truth(simulation);
   double last = 0;
-  while (simulator.Next(step)) {
+  testing::Play(simulation, surveyor, [&](SimulatedStep& step) {
     if (auto* mark = std::get_if<DepthMark>(&step)) {
       const double md = mark->md;
       mark->md *= 0.997 / 1.002;  // 0.3 % of slip and 0.2 % of stretch
@@ -166,8 +141,8 @@ TEST(DepthCases, MagneticMarksAndStretchHoldTheStationsToTheHole) {
       }
       last = md;
     }
-    std::visit([&](const auto& record) { surveyor.Push(record); }, step);
-  }
+    return true;
+  });
   surveyor.Finish();
   const Survey survey = surveyor.Current(0);
   ASSERT_EQ(survey.unusable, "");
@@ -184,17 +159,13 @@ TEST(DepthCases, NoStationLiesBeyondTheEncodersEnd) {
     Simulation simulation = Building(5);
     std::get<RunMove>(simulation.run.steps[7]).to_md = 400 + 0.0007 + 0.00125 * k;
     simulation.tool.errors.depth_resolution = 0.01;
-    Simulator simulator(simulation);
     Sink sink;
-    Surveyor surveyor(BuildingJob(), sink);
-    SimulatedStep step;
     double deepest = 0;
-    while (simulator.Next(step)) {
-      if (auto* mark = std::get_if<DepthMark>(&step)) deepest = std::max(deepest, mark->md);
-      std::visit([&](const auto& record) { surveyor.Push(record); }, step);
-    }
-    surveyor.Finish();
-    const Survey survey = surveyor.Current(0);
+    const Survey survey =
+        testing::SurveyOf(simulation, BuildingJob(), sink, [&deepest](SimulatedStep& step) {
+          if (auto* mark = std::get_if<DepthMark>(&step)) deepest = std::max(deepest, mark->md);
+          return true;
+        });
     ASSERT_EQ(survey.unusable, "");
     for (const Station& s : survey.passes) EXPECT_LE(s.md, deepest) << k;
     EXPECT_GT(survey.chosen.back().md, deepest - 0.02);

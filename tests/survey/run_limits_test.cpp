@@ -13,36 +13,15 @@
 #include "wellgyro/simulate/truth.h"
 
 #include "support/simulated_survey.h"
+#include "support/small_hole.h"
 
 namespace wellgyro {
 namespace {
 
 using testing::CollectingSink;
 
-Simulation Slant() {
-  Simulation simulation;
-  simulation.well.end_md = 400;
-  simulation.well.inclination.start = FromDegrees(30);
-  simulation.well.azimuth.start = FromDegrees(45);
-  simulation.earth.latitude = FromDegrees(55);
-  simulation.tool.errors.gyro_noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
-  RunStop stop;
-  stop.seconds = 90;
-  RunMove move;
-  move.to_md = 300;
-  simulation.run.steps = {stop, move, stop};
-  simulation.streams.imu_hz = 20;
-  simulation.streams.depth_hz = 4;
-  return simulation;
-}
-
-Job SlantJob() {
-  Job job;
-  job.well.latitude = FromDegrees(55);
-  job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
-  job.stations.every = 20;
-  return job;
-}
+Simulation Slant() { return SimulationOf(testing::SmallHole{}); }
+Job SlantJob() { return JobOf(testing::SmallHole{}); }
 
 TEST(RunLimits, ATieInBelowTheRunIsNoSurvey) {
   Job job = SlantJob();
@@ -67,14 +46,10 @@ TEST(RunLimits, DepthsOutsideTheRunAreNoSurvey) {
   const Survey part = testing::SurveyOf(Slant(), job, sink);
   EXPECT_EQ(part.unusable, "");
   EXPECT_EQ(part.chosen.size(), 2u);
-  bool told = false;
-  for (const Check& check : part.checks) {
-    if (check.code != "stations_asked") continue;
-    told = true;
-    EXPECT_EQ(check.verdict, Verdict::kFail);
-    EXPECT_EQ(check.md.value_or(0), 1000);
-  }
-  EXPECT_TRUE(told);
+  const Check* asked = testing::Find(part, "stations_asked");
+  ASSERT_NE(asked, nullptr);
+  EXPECT_EQ(asked->verdict, Verdict::kFail);
+  EXPECT_EQ(asked->md.value_or(0), 1000);
 }
 
 TEST(RunLimits, RejectingEverythingLeavesNoSurvey) {
@@ -111,12 +86,8 @@ TEST(RunLimits, SamplesAfterTheJobsEndOfARunAreLeftOut) {
 
 TEST(RunLimits, ReturnToZeroAndForesightCountAfterTheLastSample) {
   Simulation simulation = Slant();
-  RunMove up;
-  up.to_md = 1;
-  RunStop stop;
-  stop.seconds = 30;
-  simulation.run.steps.push_back(up);
-  simulation.run.steps.push_back(stop);
+  simulation.run.steps.push_back(RunMove{.to_md = 1});
+  simulation.run.steps.push_back(RunStop{.seconds = 30});
   const Truth truth(simulation);
   const TruthState end = truth.At(truth.seconds() - 1);
   Job job = SlantJob();
@@ -128,25 +99,22 @@ TEST(RunLimits, ReturnToZeroAndForesightCountAfterTheLastSample) {
   back.sigma_m = 0.05;
   Event foresight = back;
   foresight.kind = Event::Kind::kForesight;
-  foresight.value_rad = std::atan2(end.R_LT(1, 0), end.R_LT(0, 0)) + FromDegrees(0.05);
+  foresight.value_rad = std::atan2(end.R_LT(1, 0), end.R_LT(0, 0)) + FromDegrees(2);
   foresight.sigma_rad = FromDegrees(0.05);
   job.events = {back, foresight};
   Sink sink;
   const Survey survey = testing::SurveyOf(simulation, job, sink);
-  int done = 0;
-  for (const Check& check : survey.checks) {
-    if (check.code == "depth_closure") {
-      ++done;
-      ASSERT_TRUE(check.value);
-      EXPECT_NEAR(*check.value, 0.2, 0.02);
-    }
-    if (check.code == "foresight") {
-      ++done;
-      ASSERT_TRUE(check.value);
-      EXPECT_NEAR(*check.value, -0.05, 4 * *check.sigma);
-    }
-  }
-  EXPECT_EQ(done, 2);
+  const Check* closure = testing::Find(survey, "depth_closure");
+  ASSERT_NE(closure, nullptr);
+  ASSERT_TRUE(closure->value);
+  EXPECT_NEAR(*closure->value, 0.2, 0.02);
+  const Check* seen = testing::Find(survey, "foresight");
+  ASSERT_NE(seen, nullptr);
+  ASSERT_TRUE(seen->value);
+  ASSERT_TRUE(seen->sigma);
+  EXPECT_LT(*seen->sigma, 0.3);
+  EXPECT_NEAR(*seen->value, -2, 4 * *seen->sigma);
+  EXPECT_EQ(seen->verdict, Verdict::kFail);
 }
 
 TEST(RunLimits, AnExternalAzimuthThatTheStopsContradictIsToldAtEveryStation) {
@@ -195,28 +163,25 @@ TEST(RunLimits, AveragesThatCannotBeAreLeftOutAndTold) {
 }
 
 TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
-  Simulator simulator(Slant());
-  CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
-  SimulatedStep step;
+  const Simulation simulation = Slant();
+  const Truth truth(simulation);
   double lost_md = 0;
   int lost = 0;
-  const Truth& truth = simulator.truth();
-  while (simulator.Next(step)) {
-    if (const auto* sample = std::get_if<ImuSample>(&step)) {
-      const double md = truth.At(static_cast<double>(sample->stamp.seq) / 20.0).md;
-      // Half a second, five metres before the station at 120 m.
-      if (md > 115 && lost < 10) {
-        ++lost;
-        lost_md = md;
-        continue;
-      }
-    }
-    std::visit([&](const auto& record) { surveyor.Push(record); }, step);
-  }
-  surveyor.Finish();
+  Sink sink;
+  const Survey survey = testing::SurveyOf(simulation, SlantJob(), sink, [&](SimulatedStep& step) {
+    const auto* sample = std::get_if<ImuSample>(&step);
+    if (sample == nullptr || lost == 10) return true;
+    const double md = truth.At(static_cast<double>(sample->stamp.seq) / 20.0).md;
+    // Half a second, five metres before the station at 120 m.
+    if (md <= 115) return true;
+    ++lost;
+    lost_md = md;
+    return false;
+  });
+  ASSERT_EQ(survey.unusable, "");
+  EXPECT_EQ(survey.runs[0].samples_lost, 10);
   EXPECT_NEAR(lost_md, 115, 2);
-  for (const Station& s : surveyor.Current(0).chosen) {
+  for (const Station& s : survey.chosen) {
     EXPECT_EQ(Has(s.quality, Quality::kGap), std::abs(s.md - 120) < 1) << s.md;
   }
 }
@@ -224,12 +189,8 @@ TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
 TEST(RunLimits, ADepthErrorCountsOnceInAPassThatBeginsBelowTheTieIn) {
   // An hour of stops makes the depth error the largest by far.
   Simulation simulation = Slant();
-  RunMove up;
-  up.to_md = 150;
-  RunMove down;
-  down.to_md = 250;
-  simulation.run.steps.push_back(up);
-  simulation.run.steps.push_back(down);
+  simulation.run.steps.push_back(RunMove{.to_md = 150});
+  simulation.run.steps.push_back(RunMove{.to_md = 250});
   Job job = SlantJob();
   job.errors.depth_sigma = 2;
   Sink sink;

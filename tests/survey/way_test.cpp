@@ -13,34 +13,27 @@
 #include "wellgyro/simulate/truth.h"
 
 #include "support/simulated_survey.h"
+#include "support/small_hole.h"
 
 namespace wellgyro {
 namespace {
 
 /// Down a hole that builds by 4 deg/30 m on average and turns, and back out of it.
 Simulation Building(bool and_back) {
-  Simulation simulation;
-  simulation.well.end_md = 720;
-  simulation.well.inclination.start = FromDegrees(5);
-  AngleTerm build;
-  build.rate = FromDegrees(0.1);
-  simulation.well.inclination.terms = {build, {.amplitude = FromDegrees(3), .period = 150}};
-  simulation.well.azimuth.start = FromDegrees(70);
-  AngleTerm turn;
-  turn.rate = FromDegrees(-0.05);
-  simulation.well.azimuth.terms.push_back(turn);
-  simulation.earth.latitude = FromDegrees(60);
-  simulation.run.roll_reference = RollReference::kHighSide;
-  simulation.streams.imu_hz = 20;
-  RunStop stop;
-  stop.seconds = 20;
-  RunMove move;
-  move.to_md = 700;
-  simulation.run.steps = {stop, move, stop};
+  Simulation simulation = SimulationOf(testing::SmallHole{.inclination_deg = 5,
+                                                          .build_deg = 0.1,
+                                                          .azimuth_deg = 70,
+                                                          .latitude_deg = 60,
+                                                          .to_md = 700,
+                                                          .walk = 0});
+  simulation.well.inclination.terms.push_back({.amplitude = FromDegrees(3), .period = 150});
+  simulation.well.azimuth.terms.push_back({.rate = FromDegrees(-0.05)});
+  for (RunStep& step : simulation.run.steps) {
+    if (auto* stop = std::get_if<RunStop>(&step)) stop->seconds = 20;
+  }
   if (and_back) {
-    move.to_md = 0;
-    simulation.run.steps.push_back(move);
-    simulation.run.steps.push_back(stop);
+    simulation.run.steps.push_back(RunMove{.to_md = 0});
+    simulation.run.steps.push_back(RunStop{.seconds = 20});
   }
   return simulation;
 }
@@ -93,15 +86,9 @@ std::vector<StillWindow> WindowsEvery(double every, const Simulation& well) {
   Simulation simulation = well;
   simulation.run.start_md = 0;
   simulation.run.steps.clear();
-  RunStop stop;
-  stop.seconds = 120;
   for (double md = 0; md <= 700; md += every) {
-    if (md > 0) {
-      RunMove move;
-      move.to_md = md;
-      simulation.run.steps.push_back(move);
-    }
-    simulation.run.steps.push_back(stop);
+    if (md > 0) simulation.run.steps.push_back(RunMove{.to_md = md});
+    simulation.run.steps.push_back(RunStop{.seconds = 120});
   }
   const Truth truth(simulation);
   std::vector<StillWindow> windows;
