@@ -383,6 +383,29 @@ TEST(TrackerDynamics, StartsAndStopsAlongTheHoleAreTakenOut) {
   EXPECT_GT(without, FromDegrees(1e-2));
 }
 
+// Depth marks of 0.1 m rms; the tool stands. What the first seconds make of it must not stay.
+TEST(TrackerDynamics, ScatterOfTheDepthIsNoRateOfInclination) {
+  constexpr double kScatter = 0.05;  // [m/s^2]
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Random random(seed);
+    HighSideTracker tracker({});
+    tracker.SetAzimuth(0);
+    const truth::Path path = [](double) { return Motion{.inclination = FromDegrees(40)}; };
+    double worst = 0, said = 0;
+    for (const ImuSample& sample : Samples(path, 10, 300)) {
+      AlongHole along{.known = true, .sigma_acceleration = kScatter};
+      // Alike for about a second, as a fit of marks over some seconds leaves it.
+      said += 0.1 * (random.Normal() * kScatter * std::sqrt(20) - said);
+      along.acceleration = said;
+      tracker.Push(sample, along, kSite);
+      if (!tracker.ready() || Begin(sample) < 10) continue;
+      worst = std::max(worst, std::abs(tracker.inclination() - FromDegrees(40)));
+    }
+    EXPECT_LT(worst, FromDegrees(0.3)) << seed << ": " << ToDegrees(worst);
+    EXPECT_LT(std::abs(tracker.inclination() - FromDegrees(40)), FromDegrees(0.1)) << seed;
+  }
+}
+
 TEST(TrackerDynamics, AccelerometersOffTheAxisAreBroughtBack) {
   truth::Sensors sensors;
   sensors.p_accel_T = {0.02, -0.01, 0};

@@ -10,8 +10,6 @@
 namespace wellgyro {
 namespace {
 
-// Until the observer has seen this long a level it takes what it gets [s].
-constexpr double kFirstLevel = 2;
 constexpr double kUnknown = 0.03;  // [m/s^2], rms acceleration of a tool whose depth nobody knows
 
 // atan2(s, c) where s^2 + c^2 = 1, to 1e-12 of it.
@@ -99,7 +97,7 @@ void HighSideTracker::SetAzimuth(std::optional<double> azimuth) {
   sin_azimuth_ = azimuth ? std::sin(*azimuth) : 0;
   TakeEarth();
   // While the azimuth was unknown the observer took the Earth's rate for a bias of the gyros.
-  if (was_set != azimuth.has_value() && memory_ > 0) rate_bias_ += earth_r_ - earth_before;
+  if (was_set != azimuth.has_value() && memory_.seconds > 0) rate_bias_ += earth_r_ - earth_before;
 }
 
 double HighSideTracker::toolface() const {
@@ -113,12 +111,34 @@ HighSideTracker::Gains HighSideTracker::Steady(double dt) const {
   return {1 - left * (1 - part), left * part * part};
 }
 
-// Those of a line fitted to all that was seen, until they fall to `steady`.
-HighSideTracker::Gains HighSideTracker::Fitted(Gains steady, double dt, double memory) const {
-  if (memory >= 2 * options_.level_seconds) return steady;
-  const double n = std::max(1.0, memory / dt), part = 2 / (n * (n + 1));
-  return {std::min(1.0, std::max(steady.level, part * (2 * n - 1))),
-          n < 1.5 ? 0 : std::max(steady.rate, 3 * part)};
+void HighSideTracker::Memory::Add(double dt, double trust) {
+  second += dt * (dt * seconds - 2 * first);
+  first -= dt * seconds;
+  seconds += trust * dt;
+  span += dt;
+}
+
+void HighSideTracker::Memory::Shorten(double by) {
+  const double left = by < span ? 1 - by / span : 0;
+  span *= left;
+  seconds *= left;
+  first *= left * left;
+  second *= left * left * left;
+}
+
+// A sample's, by its trust: those of the line fitted to all that was seen and this one, until they
+// fall to `steady`.
+HighSideTracker::Gains HighSideTracker::Weighed(Gains steady, double dt, double trust,
+                                                const Memory& memory) const {
+  steady = {trust * steady.level, trust * steady.rate};
+  if (!(trust > 0) || memory.seconds >= 2 * options_.level_seconds) return steady;
+  const double weight = trust * dt, mean = memory.first / memory.seconds;
+  const double spread = memory.second - mean * memory.first;
+  // One that counts for more than all before it makes no line with them.
+  if (!(spread > 0) || memory.seconds < 1.5 * weight) return {weight / memory.seconds, 0};
+  const double rate = -weight * mean / spread;
+  return {std::min(1.0, std::max(steady.level, weight / memory.seconds - mean * rate)),
+          std::max(steady.rate, rate * dt)};
 }
 
 // False: the sample is late. Otherwise says whether the window breaks before it, and the gap.
@@ -277,23 +297,21 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
   const double accel = NearAngle(a, b);
   mean.accel = reference_ + accel;
 
-  Gains gains = steady_;
-  double reach = options_.acceleration_doubt;
-  if (memory_ < 2 * options_.level_seconds) {
-    memory_ += s.dt;
-    gains = Fitted(steady_, s.dt, memory_);
-    // The shorter the memory, the more one sample weighs.
-    reach *= std::max(0.3, memory_ / (2 * options_.level_seconds));
+  const double full = 2 * options_.level_seconds;
+  // The shorter the memory, the more one sample weighs.
+  const double reach =
+      options_.acceleration_doubt * std::clamp((memory_.seconds + s.dt) / full, 0.3, 1.0);
+  const double said = s.along.known ? s.along.acceleration / reach : 0;
+  // Its scatter averages out, which a late change does not.
+  const double sigma =
+      0.5 * (s.along.known ? s.along.sigma_acceleration : kUnknown) / options_.acceleration_doubt;
+  mean.trust = s.stamp.accel_saturated ? 0 : 1 / (1 + said * said + sigma * sigma);
+  if (memory_.seconds < full) {
+    memory_.Add(s.dt, mean.trust);
+    memory_.span = std::min(memory_.span, full);
   }
-  mean.trust = s.stamp.accel_saturated ? 0 : 1;
-  if (memory_ > kFirstLevel) {
-    const double said = s.along.known ? s.along.acceleration / reach : 0;
-    // Its scatter averages out, which a late change does not.
-    const double sigma =
-        0.5 * (s.along.known ? s.along.sigma_acceleration : kUnknown) / options_.acceleration_doubt;
-    mean.trust /= 1 + said * said + sigma * sigma;
-  }
-  const double off = mean.trust * (accel - from_reference);
+  const Gains gains = Weighed(steady_, s.dt, mean.trust, memory_);
+  const double off = accel - from_reference;
   const double raised = inclination_ + rise + gains.level * off;
   rate_bias_ += gains.rate * off * inverse_dt_;
   const double bounded = std::clamp(raised, 0.0, kPi);
@@ -317,8 +335,8 @@ inline double HighSideTracker::Roll(const Seen& s, const Slopes& slopes) const {
 inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
   const bool gap = (s.gap_ns | s.lost) != 0;
   // A block is short against the observer's memory and against a turn.
-  if (block_[kSeconds] + s.dt > 0.0125 * memory_ || std::abs(block_[kRoll] + part_[kRoll]) > 0.2 ||
-      gap || s.has_gz != has_gz_) {
+  if (block_[kSeconds] + s.dt > 0.0125 * memory_.seconds ||
+      std::abs(block_[kRoll] + part_[kRoll]) > 0.2 || gap || s.has_gz != has_gz_) {
     CloseBlock();
     has_gz_ = s.has_gz;
   }
@@ -360,7 +378,7 @@ void HighSideTracker::Integrate(const Seen& s, const Seen* next) {
   const Slopes slopes = Across(s, next);
   if (s.gap_ns > 0) {
     // Four seconds without samples are as good as a new start.
-    memory_ = std::max(0.0, memory_ - 1e-8 * static_cast<double>(s.gap_ns));
+    memory_.Shorten(1e-8 * static_cast<double>(s.gap_ns));
   }
   const double inverse = InverseSinc(slopes.c1), free_rise = (rate_bias_ - s.e_r) * s.dt;
   double vh = s.vh * inverse, vr = s.vr * inverse, curve_h = 0, curve_r = 0;

@@ -133,6 +133,12 @@ class WELLGYRO_EXPORT HighSideTracker {
   struct Gains {  // of the observer, on inclination and on its rate times the step
     double level, rate;
   };
+  /// Of a line fitted to the level: the samples' trust, summed, and its moments of time from now.
+  struct Memory {
+    double span = 0, seconds = 0, first = 0, second = 0;
+    void Add(double dt, double trust);
+    void Shorten(double by);
+  };
   struct Observed {  // errors of inclination by source, as the observer carries them on
     Knot::SourceVector level = Knot::SourceVector::Zero();
     Knot::SourceVector rate = Knot::SourceVector::Zero();
@@ -160,7 +166,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   void Integrate(const Seen& s, const Seen* next);
   Mean Level(const Seen& s, double rise, double curve, double across);
   Gains Steady(double dt) const;
-  Gains Fitted(Gains steady, double dt, double memory) const;
+  Gains Weighed(Gains steady, double dt, double trust, const Memory& memory) const;
   double Roll(const Seen& s, const Slopes& slopes) const;
   void AddSample(const Seen& s, bool vertical);
   void CloseBlock();
@@ -181,7 +187,8 @@ class WELLGYRO_EXPORT HighSideTracker {
   double dt_ = 0, inverse_dt_ = 0, sin_min_ = 1;
   Gains steady_{};
   // Observer of inclination.
-  double inclination_ = 0, rate_bias_ = 0, memory_ = 0;
+  double inclination_ = 0, rate_bias_ = 0;
+  Memory memory_;
   double reference_ = 0, reference_sin_ = 0, reference_cos_ = 1, reference_cot_ = 0;
   double reference_reach_ = 0, earth_h_ = 0, earth_r_ = 0, carried_ = 0;
   // Roll rate, twice smoothed, for the lever arm.
@@ -200,7 +207,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   // Errors are followed by blocks of samples, whose bounds do not depend on where knots are cut:
   // what a cut takes out of an open block is taken off when the block closes.
   Sums block_{};
-  double block_memory_ = 0;
+  Memory block_memory_;
   Observed observed_;
   Errors errors_, given_;
   // The open interval, without the open block.

@@ -76,10 +76,10 @@ HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& sums, Observed& ob
   level(Knot::kAccelBiasX) = b.cot / b.csc * inverse_gravity_ * b.cs;
   level(Knot::kAccelBiasY) = -b.cot / b.csc * inverse_gravity_ * b.sn;
   level(Knot::kAccelBiasZ) = inverse_gravity_ / b.csc;
-  const Gains gains = Fitted(Steady(b.seconds), b.seconds, block_memory_);
+  const Gains gains = Weighed(Steady(b.seconds), b.seconds, b.trust, block_memory_);
   const Knot::SourceVector climb = errors.lift + b.seconds * observed.rate;
   const Knot::SourceVector middle = observed.level + 0.5 * climb;
-  const Knot::SourceVector off = b.trust * (level - middle);
+  const Knot::SourceVector off = level - middle;
   observed.level += climb + gains.level * off;
   observed.rate += gains.rate / b.seconds * off;
 
@@ -176,7 +176,8 @@ Knot HighSideTracker::CutKnot(double fraction) {
   knot.inclination_accel = sampled > 0 ? sums[kAccel] / sampled : knot.inclination;
   knot.sigma_inclination_accel = noise / std::sqrt(std::max(sampled, s.dt));
   // A line fitted to the time seen, later the observer; the gyros' walk through the observer.
-  const double accel_var = noise * noise * std::max(4 / std::max(memory_, s.dt), 1.25 / level);
+  const double accel_var =
+      noise * noise * std::max(4 / std::max(memory_.seconds, s.dt), 1.25 / level);
   knot.sigma_inclination = std::sqrt(accel_var + walk * walk * level / 4);
 
   // The end of a sample, from its own phase and its neighbours' as they are weighed in Across(); of
