@@ -76,7 +76,8 @@ void CheckNotNegative(const char* name, double value) {
 
 }  // namespace
 
-HighSideTracker::HighSideTracker(const TrackerOptions& options) : options_(options) {
+HighSideTracker::HighSideTracker(const TrackerOptions& options)
+    : options_(options), roll_(options.toolface_seconds) {
   CheckNotNegative("accel_noise", options.accel_noise);
   CheckNotNegative("angle_random_walk", options.angle_random_walk);
   CheckPositive("level_seconds", options.level_seconds);
@@ -84,6 +85,7 @@ HighSideTracker::HighSideTracker(const TrackerOptions& options) : options_(optio
   CheckPositive("inclination_min", options.inclination_min);
   CheckPositive("sigma_toolface_max", options.sigma_toolface_max);
   CheckPositive("roll_limit", options.roll_limit);
+  CheckPositive("toolface_seconds", options.toolface_seconds);
   CheckPositive("roll_rate_seconds", options.roll_rate_seconds);
   if (!options.p_accel_T.allFinite()) {
     throw std::invalid_argument("TrackerOptions.p_accel_T is not finite");
@@ -274,6 +276,13 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
     s.ux = seen_[newest_].ux;
     s.uy = seen_[newest_].uy;
   }
+  if (sample.has_gz) {
+    // T' = w_z - A' cos I, but for the Earth's rate, which is slow.
+    const double carried = (wx * s.ux - wy * s.uy) * dt * reference_cot_;
+    roll_.Take(s.spin + carried, dt, across > 0 && !sample.stamp.accel_saturated, s.ux, s.uy);
+  } else {
+    roll_.Forget();
+  }
   s.across = std::max(0.0, across - v * s.e_r);
   s.vh = (wx * s.ux - wy * s.uy) * dt;
   s.vr = (wx * s.uy + wy * s.ux) * dt;
@@ -424,7 +433,10 @@ bool HighSideTracker::Push(const ImuSample& sample, const AlongHole& along, cons
   bool breaks = false;
   std::int64_t gap_ns = 0, lost = 0;
   if (started_ && !Follows(sample.stamp, breaks, gap_ns, lost)) return false;
-  if (breaks) Flush();
+  if (breaks) {
+    Flush();
+    roll_.Forget();
+  }
 
   TakeSite(site, 1e-9 * sample.stamp.period_ns);
   if (!started_) TakeFirst(sample);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/attitude/roll_observer.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -36,6 +37,7 @@ struct TrackerOptions {
   double roll_limit = kPi / 2;                ///< per sample, beyond it: aliased [rad]
   /// Where the accelerometers sit, from the point of the axis that `speed` moves [m].
   Eigen::Vector3d p_accel_T = Eigen::Vector3d::Zero();
+  double toolface_seconds = 2;     ///< over which they correct the third gyro's toolface [s]
   double roll_rate_seconds = 0.1;  ///< smoothing of the roll rate that the lever arm needs [s]
 };
 
@@ -47,7 +49,8 @@ struct TrackerOptions {
 /// rotating period, and that loss is given back (sinc). Inclination is the gyros' r-rate, held to
 /// the accelerometers by an observer with a rate-bias state. What the tool's travel adds to the
 /// specific force, v' e3 + v (w_IT + w_IE) x e3 + the lever arm's part, is taken out first; where
-/// along.known is false it is not, and kDepth says so.
+/// along.known is false it is not, and kDepth says so. A third gyro axis, where a sample has it,
+/// gives the toolface above a tenth of a Hz: see RollObserver.
 ///
 /// The state stands at the *end of the last sample but one* until Flush(): a sample is summed when
 /// its successor is there. Near vertical 1/sin I is held at its value at the threshold
@@ -186,6 +189,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   double gravity_ = 0, inverse_gravity_ = 0;
   double dt_ = 0, inverse_dt_ = 0, sin_min_ = 1;
   Gains steady_{};
+  RollObserver roll_;  // where there is a third gyro axis
   // Observer of inclination.
   double inclination_ = 0, rate_bias_ = 0;
   Memory memory_;

@@ -183,8 +183,9 @@ Knot HighSideTracker::CutKnot(double fraction) {
   // The end of a sample, from its own phase and its neighbours' as they are weighed in Across(); of
   // the last before a break from that before it alone.
   const double weighed = waiting_ ? 5. / 6 : 5. / 2;
-  const double sine = std::max(std::sin(knot.inclination), sin_min_);
-  knot.var_toolface = weighed * noise * noise / (s.dt * sine * sine);
+  const double across = noise / std::max(std::sin(knot.inclination), sin_min_);
+  knot.var_toolface = weighed * across * across / s.dt;
+  if (s.has_gz) knot.var_toolface = std::min(knot.var_toolface, roll_.Variance(across));
 
   for (int i = 0; i < kSums; ++i) sums_[i] = -block[i];
   OpenInterval(s, fraction, rest_ns);
