@@ -46,7 +46,7 @@ struct Flight {
   std::vector<Check> Checks() const {
     CollectingSink sink;
     const LeastSquaresAdjuster adjuster;
-    return testing::SurveyOf(simulation, job, sink, &adjuster).checks;
+    return testing::SurveyOf(simulation, job, sink, {}, &adjuster).checks;
   }
   ToolErrors& errors() { return simulation.tool.errors; }
 
