@@ -1,23 +1,18 @@
 #!/usr/bin/env python3
 """wellgyro allan as a user runs it: files, exit codes, sentences. allan_test.py PROGRAM"""
-import csv
 import math
 import os
 import random
 import struct
 import subprocess
-import sys
-import tempfile
-import tomllib
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-PROGRAM = os.path.abspath(sys.argv.pop(1))
+from harness import FreshProgramTest, Run
 
 
-def Run(*arguments, **options):
-    return subprocess.run([PROGRAM, "allan", *arguments], capture_output=True, text=True,
-                          check=False, timeout=120, **options)
+def Allan(*arguments):
+    return Run("allan", *arguments)
 
 
 def White(samples, seed):
@@ -25,34 +20,17 @@ def White(samples, seed):
     return [generator.gauss(0, 6) for _ in range(samples)]
 
 
-class Allan(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
-    def Path(self, name):
-        return os.path.join(self.folder.name, name)
-
-    def Put(self, name, data):
-        with open(self.Path(name), "wb") as file:
-            file.write(data if isinstance(data, bytes) else data.encode())
-        return self.Path(name)
-
+class AllanOfFiles(FreshProgramTest):
     def PutDoubles(self, name, values):
-        return self.Put(name, struct.pack(f"<{len(values)}d", *values))
-
-    def Table(self, name):
-        with open(self.Path(name), newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return self.Write(name, struct.pack(f"<{len(values)}d", *values))
 
     def test_writes_noise_table_and_plot(self):
         data = self.PutDoubles("log.f64", White(50000, 1))
-        ran = Run("--data", data, "--rate-hz", "100", "--unit", "deg_per_h",
-                  "--out", self.Path("n.toml"), "--table", self.Path("t.csv"),
-                  "--plot", self.Path("p.svg"))
+        ran = Allan("--data", data, "--rate-hz", "100", "--unit", "deg_per_h",
+                    "--out", self.Path("n.toml"), "--table", self.Path("t.csv"),
+                    "--plot", self.Path("p.svg"))
         self.assertEqual(ran.returncode, 0, ran.stderr)
-        with open(self.Path("n.toml"), "rb") as file:
-            noise = tomllib.load(file)
+        noise = self.Toml("n.toml")
         self.assertEqual(noise["format"], "wellgyro.noise/1")
         c = noise["coefficients"]
         # 6 deg/h at 100 Hz: 0.6 (deg/h) sqrt(s), 0.01 deg/sqrt(h).
@@ -66,7 +44,7 @@ class Allan(unittest.TestCase):
                 self.assertNotIn(key + "_upper95", c)
             else:
                 self.assertGreater(c[key + "_upper95"], 0)
-        rows = self.Table("t.csv")
+        rows = self.Rows("t.csv")
         self.assertEqual([float(r["tau_s"]) for r in rows[:3]], [0.01, 0.02, 0.04])
         self.assertEqual([int(r["n"]) for r in rows[:3]], [49999, 49997, 49993])
         for row in rows:
@@ -74,17 +52,15 @@ class Allan(unittest.TestCase):
                                                                          "upper95"))
             self.assertTrue(0 < low < middle < high)
         ElementTree.parse(self.Path("p.svg"))
-        checked = subprocess.run([PROGRAM, "check", self.Path("n.toml")], capture_output=True,
-                                 check=False)
-        self.assertEqual(checked.returncode, 0)
+        self.assertEqual(Run("check", self.Path("n.toml")).returncode, 0)
 
     def test_nbs10_by_hand(self):
-        data = self.Put("nbs.txt", "892\n809\n823\n798\n671\n644\n883\n903\n677\n")
+        data = self.Write("nbs.txt", "892\n809\n823\n798\n671\n644\n883\n903\n677\n")
         for deviation, m2 in (("adev", 115.8082), ("oadev", 85.95287), ("mdev", 74.78849)):
-            ran = Run("--data", data, "--rate-hz", "1", "--unitless", "--deviation", deviation,
-                      "--taus", "1,2", "--table", self.Path("t.csv"))
+            ran = Allan("--data", data, "--rate-hz", "1", "--unitless", "--deviation", deviation,
+                        "--taus", "1,2", "--table", self.Path("t.csv"))
             self.assertEqual(ran.returncode, 0, ran.stderr)
-            one, two = self.Table("t.csv")
+            one, two = self.Rows("t.csv")
             self.assertAlmostEqual(float(one["adev"]), 91.22945, delta=5e-6)
             self.assertAlmostEqual(float(two["adev"]), m2, delta=5e-5)
 
@@ -92,8 +68,8 @@ class Allan(unittest.TestCase):
         values = White(5000, 2)
         values[777] = math.nan
         rows = [f"{i},{v!r}" for i, v in enumerate(values) if not 3000 <= i < 3010]
-        data = self.Put("log.csv", "seq,gx\n" + "\n".join(rows) + "\n")
-        ran = Run("--data", data, "--channel", "gx", "--sequence", "seq", "--rate-hz", "50")
+        data = self.Write("log.csv", "seq,gx\n" + "\n".join(rows) + "\n")
+        ran = Allan("--data", data, "--channel", "gx", "--sequence", "seq", "--rate-hz", "50")
         self.assertEqual(ran.returncode, 3)
         self.assertIn("sample 777 (15.54 s)", ran.stderr)
         self.assertIn("10 samples missing by number: samples 3000 to 3009", ran.stderr)
@@ -105,12 +81,12 @@ class Allan(unittest.TestCase):
                                  ("n.csv", b"1\n2\nx3\n", ":3:1"),
                                  ("l.lcm", b"no log at all", "log"),
                                  ("b.csv", b"\0\1\2\3", "binary")):
-            ran = Run("--data", self.Put(name, data), "--rate-hz", "1")
+            ran = Allan("--data", self.Write(name, data), "--rate-hz", "1")
             self.assertEqual(ran.returncode, 2, name + ran.stderr)
             self.assertIn(word, ran.stderr, name)
             self.assertEqual(ran.stdout, "")
         constant = self.PutDoubles("k.f64", [3.0] * 500)
-        ran = Run("--data", constant, "--rate-hz", "1", "--out", self.Path("n.toml"))
+        ran = Allan("--data", constant, "--rate-hz", "1", "--out", self.Path("n.toml"))
         self.assertEqual(ran.returncode, 2)
         self.assertIn("every sample reads 3", ran.stderr)
         self.assertFalse(os.path.exists(self.Path("n.toml")))
@@ -123,8 +99,8 @@ class Allan(unittest.TestCase):
                           ("--data", data, "--rate-hz", "1", "--unit", "counts"),
                           ("--data", data, "--rate-hz", "1", "--taus", "1,,2"),
                           ("--data", data, "--rate-hz", "1", "--unitless", "--out", "n.toml")):
-            self.assertEqual(Run(*arguments).returncode, 1, arguments)
-        helped = Run("--help")
+            self.assertEqual(Allan(*arguments).returncode, 1, arguments)
+        helped = Allan("--help")
         self.assertEqual(helped.returncode, 0)
         self.assertIn("Example:", helped.stdout)
 
@@ -132,10 +108,10 @@ class Allan(unittest.TestCase):
         os.mkfifo(self.Path("pipe"))
         data = self.PutDoubles("log.f64", White(100, 4))
         reader = subprocess.Popen(["cat", self.Path("pipe")], stdout=subprocess.PIPE, text=True)
-        ran = Run("--data", data, "--rate-hz", "1", "--table", self.Path("pipe"))
+        ran = Allan("--data", data, "--rate-hz", "1", "--table", self.Path("pipe"))
         self.assertEqual(ran.returncode, 0, ran.stderr)
         self.assertTrue(reader.communicate(timeout=60)[0].startswith("tau_s,"))
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv)
+    unittest.main()

@@ -1,59 +1,21 @@
 #!/usr/bin/env python3
 """From a bench to a survey by the program, and benches that cannot give a calibration: files, exit
 codes, sentences. calibrate_test.py PROGRAM"""
-import csv
 import math
 import os
 import random
-import shutil
-import subprocess
-import sys
-import tempfile
 import unittest
 
-PROGRAM = os.path.abspath(sys.argv.pop(1))
-TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
+from harness import DEMO, TOP, FreshProgramTest, Job, Move, Run, Simulation, Stop
+
 EARTH = 15.041067178669  # deg/h
 G = 9.80665
 LATITUDE = 61.0
 
-SIMULATION = """format = "wellgyro.simulation/1"
-seed = 3
-[well]
-name = "slant"
-inclination_deg = 25.0
-azimuth_true_deg = 300.0
-end_md_m = 400.0
-[earth]
-latitude_deg = 61.0
-[run]
-[[run.step]]
-stop_s = 120.0
-[[run.step]]
-to_md_m = 300.0
-speed_mps = 1.0
-roll_rpm = 1.0
-[[run.step]]
-stop_s = 120.0
-[tool]
-has_gz = true
-angle_random_walk_deg_per_sqrt_h = 0.002
-[streams]
-imu_hz = 20.0
-depth_hz = 4.0
-batch = 20
-overlap = 5
-"""
-JOB = """format = "wellgyro.job/1"
-[well]
-name = "Slant"
-latitude_deg = 61.0
-longitude_deg = 3.0
-[noise]
-angle_random_walk_deg_per_sqrt_h = 0.002
-[stations]
-every_m = 25.0
-"""
+SIMULATION = Simulation(Stop(120) + Move(300) + Stop(120),
+                        "imu_hz = 20.0\ndepth_hz = 4.0\nbatch = 20\noverlap = 5\n", walk=0.002,
+                        tool="has_gz = true\n")
+JOB = Job(25.0, walk=0.002)
 
 # The tool as it is. Axes of the bench: x is -y of the tool, y its x.
 B = [1.35, -0.82, 0.57, -1.1]  # deg/h
@@ -144,34 +106,15 @@ def TrueTool():
             + "\nsensitivity_per_mps2 = " + Toml([[x / G for x in row] for row in PER_G]) + "\n")
 
 
-class Calibrate(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
-
-    def tearDown(self):
-        shutil.rmtree(self.folder)
-
-    def Path(self, name):
-        return os.path.join(self.folder, name)
-
-    def Write(self, name, content):
-        with open(self.Path(name), "wb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode())
-        return self.Path(name)
-
-    def Run(self, *arguments):
-        return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False,
-                              timeout=300)
-
+class Calibrate(FreshProgramTest):
     def Done(self, *arguments):
-        result = self.Run(*arguments)
+        result = Run(*arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
         return result
 
     def Survey(self, job, log, out):
         self.Done("survey", "--job", job, "--from", log, "--out", self.Path(out))
-        with open(self.Path(out + "/survey.csv")) as file:
-            return list(csv.DictReader(file))
+        return self.Rows(out, "survey.csv")
 
     def test_from_the_bench_to_the_survey(self):
         source = random.Random(5)
@@ -206,8 +149,7 @@ class Calibrate(unittest.TestCase):
             for axis, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]")):
                 self.assertLess(abs(float(a[axis]) - float(b[axis])),
                                 3.5 * math.sqrt(float(a[variance])) + 2e-4)
-        with open(self.Path("calibrated/checks.csv")) as file:
-            checks = {row["CODE"]: row for row in csv.DictReader(file)}
+        checks = {row["CODE"]: row for row in self.Rows("calibrated", "checks.csv")}
         self.assertEqual(checks["calibration_date"]["VERDICT"], "pass")
         self.assertIn(checks["earth_rate_vertical"]["VERDICT"], ("pass", "warn"))
         self.assertGreater(worst, 0)
@@ -235,15 +177,14 @@ class Calibrate(unittest.TestCase):
     def test_readme_shows_what_the_demonstration_gives(self):
         out = self.Path("accel.toml")
         result = self.Done("calibrate", "six-position", "--data",
-                           os.path.join(TOP, "data", "demo", "bench.csv"), "--gravity-mps2",
+                           os.path.join(DEMO, "bench.csv"), "--gravity-mps2",
                            "9.81234", "--out", out)
-        with open(os.path.join(TOP, "README.md")) as file:
-            self.assertIn(result.stdout.replace(out, "accel.toml"), file.read())
+        self.assertIn(result.stdout.replace(out, "accel.toml"), self.Read(TOP, "README.md"))
 
     def Refused(self, method, text, words, *options, code=2):
         data = self.Write("data.csv", text)
         out = self.Path("out.toml")
-        result = self.Run("calibrate", method, "--data", data, "--out", out, *options)
+        result = Run("calibrate", method, "--data", data, "--out", out, *options)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         for word in [words] if isinstance(words, str) else words:
             self.assertIn(word, result.stderr)
@@ -303,14 +244,14 @@ class Calibrate(unittest.TestCase):
                 settle = [] if "--settle-v" in options else ["--settle-v", "1e-3"]
                 self.Refused("24-position", volts, word, *settle, *options.split(), code=1)
                 self.assertFalse(os.path.exists(tool))
-        self.assertEqual(self.Run("calibrate").returncode, 1)
-        self.assertEqual(self.Run("calibrate", "guess").returncode, 1)
+        self.assertEqual(Run("calibrate").returncode, 1)
+        self.assertEqual(Run("calibrate", "guess").returncode, 1)
         rest = AtRest(random.Random(8))
         for latitude in ("95", "-91", "nan"):
             self.Refused("gyro-multi-position", rest, "latitude", "--latitude-deg", latitude, code=1)
         self.Refused("gyro-multi-position", rest, "latitude", code=1)
-        missing = self.Run("calibrate", "scalar", "--data", self.Path("none.csv"), "--out",
-                           self.Path("c.toml"))
+        missing = Run("calibrate", "scalar", "--data", self.Path("none.csv"), "--out",
+                      self.Path("c.toml"))
         self.assertEqual(missing.returncode, 2)
         self.assertIn("none.csv", missing.stderr)
 
@@ -318,12 +259,10 @@ class Calibrate(unittest.TestCase):
         data = self.Write("d.csv", Volts(random.Random(9)))
         for options in (["--out", data], ["--out", self.Path("c.toml"), "--tool", data],
                         ["--out", self.Path("c.toml"), "--tool", self.Path("c.toml")]):
-            result = self.Run("calibrate", "24-position", "--data", data, "--settle-v", "1e-3",
-                              *options)
+            result = Run("calibrate", "24-position", "--data", data, "--settle-v", "1e-3", *options)
             self.assertEqual(result.returncode, 1, options)
             self.assertIn("must be different files", result.stderr)
-        with open(data) as file:
-            self.assertTrue(file.read().startswith("axis,"))
+        self.assertTrue(self.Read(data).startswith("axis,"))
 
 
 if __name__ == "__main__":

@@ -1,49 +1,34 @@
 #!/usr/bin/env python3
 """Runs `wellgyro convert` as a user does. convert_test.py PROGRAM"""
 import os
-import subprocess
 import sys
-import tempfile
 import unittest
 
-PROGRAM = os.path.abspath(sys.argv.pop(1))
+from harness import FreshProgramTest, Run
+
 SURVEY = "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,1.5,350\n60,3,355.25\n"
 
 
-class Convert(unittest.TestCase):
+class Convert(FreshProgramTest):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        super().setUp()
         self.Write("in.csv", SURVEY)
 
-    def Path(self, name):
-        return os.path.join(self.folder.name, name)
-
-    def Write(self, name, text):
-        with open(self.Path(name), "wb") as file:
-            file.write(text if isinstance(text, bytes) else text.encode())
-
-    def Read(self, name):
-        with open(self.Path(name), encoding="utf-8") as file:
-            return file.read()
-
-    def Run(self, source, target, *options):
-        return subprocess.run([PROGRAM, "convert", self.Path(source), self.Path(target), *options],
-                              capture_output=True, text=True, check=False, timeout=60)
+    def Convert(self, source, target, *options):
+        return Run("convert", self.Path(source), self.Path(target), *options)
 
     def Done(self, source, target, *options):
-        done = self.Run(source, target, *options)
+        done = self.Convert(source, target, *options)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def Refused(self, source, target, *options):
-        done = self.Run(source, target, *options)
+        done = self.Convert(source, target, *options)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertFalse(os.path.exists(self.Path(target)))
         return done.stderr
 
     def test_bare_names_are_of_the_folder_it_runs_in(self):
-        done = subprocess.run([PROGRAM, "convert", "in.csv", "out.las"], cwd=self.folder.name,
-                              capture_output=True, text=True, check=False, timeout=60)
+        done = Run("convert", "in.csv", "out.las", cwd=self.folder)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("~A", self.Read("out.las").upper())
 
@@ -82,10 +67,9 @@ class Convert(unittest.TestCase):
         self.assertIn("station 1", self.Refused("opposite.csv", "out.las"))
 
     def test_command_line(self):
-        self.assertEqual(self.Run("in.csv", "out.unknown").returncode, 1)
-        self.assertEqual(self.Run("in.csv", "out.csv", "--to", "docx").returncode, 1)
-        help_text = subprocess.run([PROGRAM, "convert", "--help"], capture_output=True, text=True,
-                                   check=False)
+        self.assertEqual(self.Convert("in.csv", "out.unknown").returncode, 1)
+        self.assertEqual(self.Convert("in.csv", "out.csv", "--to", "docx").returncode, 1)
+        help_text = Run("convert", "--help")
         self.assertEqual(help_text.returncode, 0)
         self.assertIn("Example: wellgyro convert", help_text.stdout)
 

@@ -13,41 +13,14 @@ import sys
 import tempfile
 import time
 
-SIMULATION = """format = "wellgyro.simulation/1"
-seed = 5
-[well]
-name = "slant"
-inclination_deg = 25.0
-azimuth_true_deg = 300.0
-end_md_m = {end}
-[earth]
-latitude_deg = 61.0
-[run]
-[[run.step]]
-to_md_m = {md}
-speed_mps = 1.0
-roll_rpm = 1.0
-[tool]
-angle_random_walk_deg_per_sqrt_h = 0.005
-[streams]
-imu_hz = 10000.0
-depth_hz = 10.0
-batch = 32
-"""
-JOB = """format = "wellgyro.job/1"
-[well]
-name = "Slant"
-latitude_deg = 61.0
-longitude_deg = 3.0
-[noise]
-angle_random_walk_deg_per_sqrt_h = 0.005
-[alignment]
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "apps"))
+from harness import PROGRAM, Job, Listening, Move, Simulation, Start
+
+JOB = Job(0.2) + """[alignment]
 method = "external"
 azimuth_true_deg = 300.0
 sigma_azimuth_deg = 0.1
 of = "axis"
-[stations]
-every_m = 0.2
 [depth]
 latency_s = 1.0
 """
@@ -61,38 +34,33 @@ def Seconds(pid):
 
 def Main():
     options = argparse.ArgumentParser()
-    options.add_argument("program")
     options.add_argument("--seconds", type=float, default=600)
-    options = options.parse_args()
+    length = options.parse_args().seconds
     folder = tempfile.mkdtemp()
 
     def path(name):
         return os.path.join(folder, name)
 
-    length = options.seconds
     with open(path("simulation.toml"), "w") as file:
-        file.write(SIMULATION.format(md=float(length), end=float(length + 10)))
+        file.write(Simulation(Move(length), "imu_hz = 10000.0\ndepth_hz = 10.0\nbatch = 32\n",
+                              seed=5, end_md_m=length + 10))
     with open(path("job.toml"), "w") as file:
         file.write(JOB)
     url = f"udpm://239.255.76.67:{20000 + os.getpid() % 20000}"
-    survey = subprocess.Popen([options.program, "survey", "--job", path("job.toml"), "--from", url,
-                               "--out", path("out")], stderr=subprocess.PIPE, text=True,
-                              stdout=subprocess.DEVNULL)
-    heard = []
-    while "listening" not in (line := survey.stderr.readline()):
-        heard.append(line)
-        assert line, "".join(heard)
+    survey = Start("survey", "--job", path("job.toml"), "--from", url, "--out", path("out"))
+    listening, heard = Listening(survey)
+    assert listening, "".join(heard)
     buffer = survey.stderr.readline().strip()
     time.sleep(0.2)
-    sender = subprocess.Popen([options.program, "simulate", "--job", path("simulation.toml"),
+    sender = subprocess.Popen([PROGRAM, "simulate", "--job", path("simulation.toml"),
                                "--out", url, "--speed", "1", "--finish"],
                               stdout=subprocess.DEVNULL)
-    time.sleep(options.seconds * 0.5)
+    time.sleep(length * 0.5)
     survey.send_signal(signal.SIGSTOP)
     time.sleep(1)
     survey.send_signal(signal.SIGCONT)
     begin, busy = time.monotonic(), Seconds(survey.pid)
-    time.sleep(options.seconds * 0.3)
+    time.sleep(length * 0.3)
     load = (Seconds(survey.pid) - busy) / (time.monotonic() - begin)
     sender.wait()
     errors = survey.communicate()[1]
@@ -108,7 +76,7 @@ def Main():
         return int(re.search(rf"^{name} = (\d+)", source, re.M).group(1))
 
     median, p99 = count("station_latency_median_us"), count("station_latency_p99_us")
-    print(f"{options.seconds:g} s at 10 kHz, batches of 32, the process stopped for 1 s; {buffer}")
+    print(f"{length:g} s at 10 kHz, batches of 32, the process stopped for 1 s; {buffer}")
     print(f"samples {samples}, lost {lost}; kernel drops {count('kernel_drops')}")
     print(f"{stations} stations; latency median {median / 1000:.2f} ms, p99 {p99 / 1000:.2f} ms")
     print(f"load {100 * load:.1f} % of one core; machine's load average {os.getloadavg()[0]:.1f}")
