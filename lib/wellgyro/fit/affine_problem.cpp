@@ -36,14 +36,11 @@ Eigen::Matrix3d Rough(const AffineReadings& readings) {
 
 std::vector<std::string> Names(const std::vector<AffineReadings>& groups) {
   std::vector<std::string> names;
-  const auto add = [&](const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
-  };
   for (const AffineReadings& group : groups) {
-    add(VectorNames("b_" + group.suffix, 3));
-    add(MatrixNames("S_" + group.suffix, 3, 3));
-    if (group.order == SecondOrder::kOwn) add(VectorNames("K2_" + group.suffix, 3));
-    if (group.order == SecondOrder::kFull) add(MatrixNames("K2_" + group.suffix, 3, 6));
+    Append(names, VectorNames("b_" + group.suffix, 3));
+    Append(names, MatrixNames("S_" + group.suffix, 3, 3));
+    if (group.order == SecondOrder::kOwn) Append(names, VectorNames("K2_" + group.suffix, 3));
+    if (group.order == SecondOrder::kFull) Append(names, MatrixNames("K2_" + group.suffix, 3, 6));
   }
   return names;
 }

@@ -90,13 +90,15 @@ Eigen::Vector3d AttitudeTable::IdealMag(int i, const BenchReference& reference) 
                              *reference.field * std::sin(*reference.dip));
 }
 
+std::vector<int> ColumnsOf(const BenchTable& data, const std::vector<std::string>& channels) {
+  return *FindAll(data, channels);
+}
+
 std::optional<Fault> BadReadings(const BenchTable& data, const AttitudeTable& table) {
-  std::vector<int> used;
-  for (const Names& names : {table.accel_channels, table.mag_channels}) {
-    for (const std::string& name : names) used.push_back(*data.Find(name));
-  }
   if (auto fault = Repeated(data)) return fault;
-  return Frozen(data, used);
+  Names used = table.accel_channels;
+  used.insert(used.end(), table.mag_channels.begin(), table.mag_channels.end());
+  return Frozen(data, ColumnsOf(data, used));
 }
 
 Result<AttitudeTable> ReadAttitudeTable(const BenchTable& data, const AttitudeNeeds& needs) {

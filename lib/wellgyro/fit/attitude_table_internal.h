@@ -37,6 +37,9 @@ struct AttitudeNeeds {
 };
 Result<AttitudeTable> ReadAttitudeTable(const BenchTable& data, const AttitudeNeeds& needs);
 
+/// Places of channels that the table has.
+std::vector<int> ColumnsOf(const BenchTable& data, const std::vector<std::string>& channels);
+
 /// Repeated rows and frozen channels of a whole table.
 std::optional<Fault> BadReadings(const BenchTable& data, const AttitudeTable& table);
 

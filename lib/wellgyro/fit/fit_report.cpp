@@ -165,4 +165,8 @@ std::vector<std::string> MatrixNames(std::string_view name, int rows, int column
   return names;
 }
 
+void Append(std::vector<std::string>& names, const std::vector<std::string>& more) {
+  names.insert(names.end(), more.begin(), more.end());
+}
+
 }  // namespace wellgyro

@@ -36,16 +36,15 @@ struct Layout {
 
 std::vector<std::string> Names(const Layout& layout) {
   std::vector<std::string> names;
-  const auto add = [&](const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
-  };
   for (int c = 0; c < layout.channels; ++c) {
     names.push_back(fmt::format("b_degh[{}]", c));
     for (int j = 0; j < 3; ++j) names.push_back(fmt::format("U[{},{}]", c, j));
   }
-  if (layout.force == GyroForceModel::kFull) add(MatrixNames("G_degh_per_g", layout.channels, 3));
-  if (layout.force == GyroForceModel::kDualAxis) add(VectorNames("MQ", 2 * layout.rotors));
-  if (layout.aniso) add(VectorNames("aniso_degh_per_g2", layout.channels));
+  if (layout.force == GyroForceModel::kFull)
+    Append(names, MatrixNames("G_degh_per_g", layout.channels, 3));
+  if (layout.force == GyroForceModel::kDualAxis)
+    Append(names, VectorNames("MQ", 2 * layout.rotors));
+  if (layout.aniso) Append(names, VectorNames("aniso_degh_per_g2", layout.channels));
   if (layout.north) names.emplace_back("north_rad");
   return names;
 }
@@ -224,82 +223,90 @@ std::optional<Fault> WrongChannels(const BenchTable& data, const GyroReadings& r
   return std::nullopt;
 }
 
-// From the layout to b, U, G by channel, M and Q, N.
+// Where the result stands in the report, for n channels: b (n), U (n x 3), G (n x 3); then M and Q
+// by rotor, N and the north offset where the layout has them.
+struct ResultPlaces {
+  explicit ResultPlaces(const Layout& layout)
+      : U(layout.channels),
+        G(4 * layout.channels),
+        MQ(7 * layout.channels),
+        aniso(MQ + (layout.force == GyroForceModel::kDualAxis ? 2 * layout.rotors : 0)),
+        north(aniso + (layout.aniso ? layout.channels : 0)),
+        size(north + (layout.north ? 1 : 0)) {}
+
+  int U, G, MQ, aniso, north, size;
+};
+
+Eigen::VectorXd ResultOf(const GyroReadings& readings, const Layout& layout,
+                         const Eigen::VectorXd& x) {
+  const ResultPlaces at(layout);
+  const int n = layout.channels;
+  Eigen::VectorXd to = Eigen::VectorXd::Zero(at.size);
+  for (int c = 0; c < n; ++c) {
+    to[c] = x[Eigen::Index{4} * c];
+    to.segment<3>(at.U + 3 * c) = x.segment<3>(4 * c + 1);
+    if (layout.force == GyroForceModel::kFull) {
+      to.segment<3>(at.G + 3 * c) = x.segment<3>(layout.force_first() + 3 * c);
+    }
+  }
+  for (int k = 0; layout.force == GyroForceModel::kDualAxis && k < layout.rotors; ++k) {
+    const Rotor& rotor = readings.rotors[static_cast<std::size_t>(k)];
+    const int a = readings.channels[static_cast<std::size_t>(rotor.a)].axis;
+    const int c = readings.channels[static_cast<std::size_t>(rotor.c)].axis;
+    const double M = x[layout.force_first() + 2 * k], Q = x[layout.force_first() + 2 * k + 1];
+    to[at.G + 3 * rotor.a + a] = M;
+    to[at.G + 3 * rotor.a + c] = Q;
+    to[at.G + 3 * rotor.c + c] = M;
+    to[at.G + 3 * rotor.c + a] = -Q;
+    to.segment<2>(at.MQ + 2 * k) << M, Q;
+  }
+  if (layout.aniso) to.segment(at.aniso, n) = x.segment(layout.aniso_first(), n);
+  if (layout.north) to[at.north] = ToDegrees(x[layout.north_first()]);
+  return to;
+}
+
 void TakeResult(const GyroReadings& readings, const Layout& layout, FitReport& report) {
+  const ResultPlaces at(layout);
   const int n = layout.channels, rotors = layout.rotors;
   const bool dual = layout.force == GyroForceModel::kDualAxis;
   std::vector<std::string> names = VectorNames("b_degh", n);
-  const auto add = [&](const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
-  };
-  add(MatrixNames("U", n, 3));
-  add(MatrixNames("G_degh_per_g", n, 3));
-  if (dual) add(VectorNames("MQ", 2 * rotors));
-  if (layout.aniso) add(VectorNames("aniso_degh_per_g2", n));
+  Append(names, MatrixNames("U", n, 3));
+  Append(names, MatrixNames("G_degh_per_g", n, 3));
+  if (dual) Append(names, VectorNames("MQ", 2 * rotors));
+  if (layout.aniso) Append(names, VectorNames("aniso_degh_per_g2", n));
   if (layout.north) names.emplace_back("north_deg");
-  Reparametrise(report, names, [&](const Eigen::VectorXd& x) {
-    Eigen::VectorXd to = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
-    for (int c = 0; c < n; ++c) {
-      to[c] = x[Eigen::Index{4} * c];
-      to.segment<3>(n + 3 * c) = x.segment<3>(4 * c + 1);
-      if (layout.force == GyroForceModel::kFull) {
-        to.segment<3>(4 * n + 3 * c) = x.segment<3>(layout.force_first() + 3 * c);
-      }
-    }
-    for (int k = 0; dual && k < rotors; ++k) {
-      const Rotor& rotor = readings.rotors[static_cast<std::size_t>(k)];
-      const int a = readings.channels[static_cast<std::size_t>(rotor.a)].axis;
-      const int c = readings.channels[static_cast<std::size_t>(rotor.c)].axis;
-      const double M = x[layout.force_first() + 2 * k], Q = x[layout.force_first() + 2 * k + 1];
-      to[4 * n + 3 * rotor.a + a] = M;
-      to[4 * n + 3 * rotor.a + c] = Q;
-      to[4 * n + 3 * rotor.c + c] = M;
-      to[4 * n + 3 * rotor.c + a] = -Q;
-    }
-    int at = 7 * n;
-    if (dual) {
-      to.segment(at, 2 * rotors) = x.segment(layout.force_first(), 2 * rotors);
-      at += 2 * rotors;
-    }
-    if (layout.aniso) to.segment(at, n) = x.segment(layout.aniso_first(), n);
-    if (layout.north) to[to.size() - 1] = ToDegrees(x[layout.north_first()]);
-    return to;
-  });
+  Reparametrise(report, names,
+                [&](const Eigen::VectorXd& x) { return ResultOf(readings, layout, x); });
   AddVector(report, "b_degh", 0, n);
-  AddMatrix(report, "U", n, n, 3);
-  if (layout.force != GyroForceModel::kNone) AddMatrix(report, "G_degh_per_g", 4 * n, n, 3);
-  int at = 7 * n;
-  if (dual) {
-    AddVector(report, "MQ", at, 2 * rotors);
-    at += 2 * rotors;
-  }
-  if (layout.aniso) AddVector(report, "aniso_degh_per_g2", at, n);
-  if (layout.north) AddNumber(report, "north_deg", static_cast<int>(names.size()) - 1);
+  AddMatrix(report, "U", at.U, n, 3);
+  if (layout.force != GyroForceModel::kNone) AddMatrix(report, "G_degh_per_g", at.G, n, 3);
+  if (dual) AddVector(report, "MQ", at.MQ, 2 * rotors);
+  if (layout.aniso) AddVector(report, "aniso_degh_per_g2", at.aniso, n);
+  if (layout.north) AddNumber(report, "north_deg", at.north);
 }
 
 SensorGroup Group(const GyroReadings& readings, const Layout& layout,
                   const BenchReference& reference, const Eigen::VectorXd& values) {
   const int n = layout.channels;
+  const ResultPlaces at(layout);
   SensorGroup group;
   group.n_channels = n;
   group.unit = "deg/h";
   group.R_TS = ToolFromBench(reference.axes);
   const double g = reference.gravity_mps2;
-  const bool dual = layout.force == GyroForceModel::kDualAxis;
   for (int c = 0; c < n; ++c) {
     group.channel[static_cast<std::size_t>(c)] = c;
     group.bias[0][c] = values[c];
-    group.sensitivity[0].row(c) = values.segment<3>(n + 3 * c).transpose() / units::kDegPerHour;
-    group.g_dependence[0].row(c) = values.segment<3>(4 * n + 3 * c).transpose() / g;
+    group.sensitivity[0].row(c) = values.segment<3>(at.U + 3 * c).transpose() / units::kDegPerHour;
+    group.g_dependence[0].row(c) = values.segment<3>(at.G + 3 * c).transpose() / g;
   }
   if (!layout.aniso) return group;
-  const int first = 7 * n + (dual ? 2 * layout.rotors : 0);
   for (const Rotor& rotor : readings.rotors) {
     for (const int c : {rotor.a, rotor.c}) {
       // q(f) holds xy, yz, zx behind the squares.
       const int axis = readings.channels[static_cast<std::size_t>(c)].axis;
       const int place = axis + rotor.spin == 1 ? 3 : axis + rotor.spin == 3 ? 4 : 5;
-      group.g_squared(c, place) = values[first + c] / (g * g);
+      group.g_squared(c, place) = values[at.aniso + c] / (g * g);
     }
   }
   return group;

@@ -78,5 +78,7 @@ double StudentLimit(double probability, double dof);
 /// "bias[0]", "sensitivity[1,2]".
 std::vector<std::string> VectorNames(std::string_view name, int size);
 std::vector<std::string> MatrixNames(std::string_view name, int rows, int columns);
+/// Adds names behind the others.
+void Append(std::vector<std::string>& names, const std::vector<std::string>& more);
 
 }  // namespace wellgyro

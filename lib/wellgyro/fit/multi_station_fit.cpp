@@ -19,6 +19,8 @@ namespace {
 
 using Setup = MultiStationSetup;
 
+constexpr double kEarthDegPerHour = kBenchEarthRate / units::kDegPerHour;
+
 constexpr std::string_view kAdvice =
     "add stations at other toolfaces and inclinations, or give priors of the biases and scales";
 
@@ -108,7 +110,7 @@ void AddPriors(const Setup& setup, int axes, bool scales, NonlinearProblem& prob
 
 NonlinearProblem Magnetic(const AttitudeTable& table, const Setup& setup) {
   std::vector<std::string> names = VectorNames("bm_nT", 3);
-  for (const std::string& name : VectorNames("sm", 3)) names.push_back(name);
+  Append(names, VectorNames("sm", 3));
   NonlinearProblem problem(names, Eigen::VectorXd::Zero(6));
   // Without sigmas only their ratio matters.
   constexpr double kUsualField = 50, kUsualDip = 0.1 * units::kDeg;
@@ -131,13 +133,12 @@ NonlinearProblem Gyros(const BenchTable& data, const std::vector<int>& columns,
   NonlinearProblem problem(VectorNames("bg_degh", 3), Eigen::VectorXd::Zero(3));
   problem.sigma_given = setup.sigma_rate.has_value();
   const double sigma = setup.sigma_rate.value_or(1);
-  const double rate = kBenchEarthRate / units::kDegPerHour;
   for (int i = 0; i < table.rows(); ++i) {
     const int line = table.lines[static_cast<std::size_t>(i)];
     problem.Add({{line, "level", sigma}, {line, "vertical", sigma}},
                 RateResidual{DownOf(table, i), data.values(i, columns).transpose(),
-                             rate * std::cos(*setup.reference.latitude),
-                             rate * std::sin(*setup.reference.latitude), sigma});
+                             kEarthDegPerHour * std::cos(*setup.reference.latitude),
+                             kEarthDegPerHour * std::sin(*setup.reference.latitude), sigma});
   }
   AddPriors(setup, 3, false, problem);
   return problem;
@@ -145,7 +146,6 @@ NonlinearProblem Gyros(const BenchTable& data, const std::vector<int>& columns,
 
 std::vector<AcrossResidual> AcrossStations(const BenchTable& data, const std::vector<int>& columns,
                                            const AttitudeTable& table, const Setup& setup) {
-  const double rate = kBenchEarthRate / units::kDegPerHour;
   std::vector<AcrossResidual> stations;
   stations.reserve(static_cast<std::size_t>(table.rows()));
   for (int i = 0; i < table.rows(); ++i) {
@@ -159,8 +159,8 @@ std::vector<AcrossResidual> AcrossStations(const BenchTable& data, const std::ve
                         data.values(i, columns).transpose(),
                         sine,
                         down.z(),
-                        rate * std::cos(*setup.reference.latitude),
-                        rate * std::sin(*setup.reference.latitude),
+                        kEarthDegPerHour * std::cos(*setup.reference.latitude),
+                        kEarthDegPerHour * std::sin(*setup.reference.latitude),
                         setup.sigma_rate.value_or(1),
                         2 + i});
   }
@@ -194,7 +194,7 @@ Result<NonlinearProblem::Solution> SolveTwoGyros(const BenchTable& data,
                                                  const AttitudeTable& table, const Setup& setup) {
   const std::vector<AcrossResidual> stations = AcrossStations(data, columns, table, setup);
   std::vector<std::string> names = VectorNames("bg_degh", 2);
-  for (const std::string& name : VectorNames("azimuth", table.rows())) names.push_back(name);
+  Append(names, VectorNames("azimuth", table.rows()));
   Eigen::VectorXd start = Eigen::VectorXd::Zero(2 + table.rows());
   TakeBestAzimuths(stations, start);
   NonlinearProblem problem(names, start);
@@ -233,10 +233,8 @@ std::optional<Fault> BadStations(const BenchTable& data, const AttitudeTable& ta
                                  const Setup& setup) {
   if (auto fault = TooFew(data, 4, "stations", kAdvice)) return fault;
   if (auto fault = BadReadings(data, table)) return fault;
-  std::vector<int> accel;
-  for (const std::string& name : table.accel_channels) accel.push_back(*data.Find(name));
-  return MixedUnits(data, accel, setup.reference.gravity, "the length of the accelerometers",
-                    "g, or m/s2");
+  return MixedUnits(data, ColumnsOf(data, table.accel_channels), setup.reference.gravity,
+                    "the length of the accelerometers", "g, or m/s2");
 }
 
 // The dip as read, of the wrong sign: the accelerometers give the force where gravity is asked for.
@@ -257,6 +255,52 @@ std::optional<Fault> WrongDip(const BenchTable& data, const AttitudeTable& table
                     data.lines[0]);
 }
 
+std::optional<Fault> BadField(const BenchTable& data, const AttitudeTable& table,
+                              const BenchReference& reference) {
+  if (auto fault = MixedUnits(data, ColumnsOf(data, table.mag_channels), *reference.field,
+                              "the length of the magnetometers", "nT")) {
+    return fault;
+  }
+  return WrongDip(data, table, *reference.dip);
+}
+
+Result<std::vector<int>> RateColumns(const BenchTable& data) {
+  if (!data.Find("wz")) return FindColumns(data, {"wx", "wy"});
+  auto rates = FindColumns(data, {"wx", "wy", "wz"});
+  if (!rates) return rates;
+  if (auto fault =
+          MixedUnits(data, *rates, kEarthDegPerHour, "the length of (wx, wy, wz)", "deg/h")) {
+    return *fault;
+  }
+  return rates;
+}
+
+void RequireReference(const BenchReference& reference, bool gyros) {
+  if (!gyros && (!reference.field || !reference.dip)) {
+    throw std::invalid_argument("magnetometers need the field and its dip");
+  }
+  if (gyros && !reference.latitude) throw std::invalid_argument("gyros need the latitude");
+}
+
+// From two gyros, from three, or from the magnetometers where `rates` has no columns.
+Result<NonlinearProblem::Solution> SolveStations(const BenchTable& data,
+                                                 const std::vector<int>& rates,
+                                                 const AttitudeTable& table, const Setup& setup) {
+  if (rates.empty()) return Magnetic(table, setup).Solve();
+  if (rates.size() == 2) return SolveTwoGyros(data, rates, table, setup);
+  return Gyros(data, rates, table, setup).Solve();
+}
+
+void TakeResult(std::size_t gyros, FitReport& report) {
+  // The stations' azimuths served their turn.
+  if (gyros == 2) {
+    Reparametrise(report, VectorNames("bg_degh", 2),
+                  [](const Eigen::VectorXd& x) { return Eigen::VectorXd(x.head<2>()); });
+  }
+  AddVector(report, gyros > 0 ? "bg_degh" : "bm_nT", 0, gyros == 2 ? 2 : 3);
+  if (gyros == 0) AddVector(report, "sm", 3, 3);
+}
+
 }  // namespace
 
 Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& setup) {
@@ -264,35 +308,13 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   const auto table = ReadAttitudeTable(data, {.accel = true, .mag = !gyros});
   if (!table) return table.fault();
   if (auto fault = BadStations(data, *table, setup)) return *fault;
-  if (!gyros && (!setup.reference.field || !setup.reference.dip)) {
-    throw std::invalid_argument("magnetometers need the field and its dip");
-  }
-  if (gyros && !setup.reference.latitude) throw std::invalid_argument("gyros need the latitude");
-  std::vector<int> rates;
-  const bool two = gyros && !data.Find("wz");
-  const double rate = kBenchEarthRate / units::kDegPerHour;
-  if (gyros) {
-    auto found = two ? FindColumns(data, {"wx", "wy"}) : FindColumns(data, {"wx", "wy", "wz"});
-    if (!found) return found.fault();
-    rates = *std::move(found);
-  }
-  if (gyros && !two) {
-    if (auto fault = MixedUnits(data, rates, rate, "the length of (wx, wy, wz)", "deg/h")) {
-      return *fault;
-    }
-  }
+  RequireReference(setup.reference, gyros);
+  const auto rates = gyros ? RateColumns(data) : std::vector<int>();
+  if (!rates) return rates.fault();
   if (!gyros) {
-    std::vector<int> mag;
-    for (const std::string& name : table->mag_channels) mag.push_back(*data.Find(name));
-    if (auto fault = MixedUnits(data, mag, *setup.reference.field,
-                                "the length of the magnetometers", "nT")) {
-      return *fault;
-    }
-    if (auto fault = WrongDip(data, *table, *setup.reference.dip)) return *fault;
+    if (auto fault = BadField(data, *table, setup.reference)) return *fault;
   }
-  const auto solution = two     ? SolveTwoGyros(data, rates, *table, setup)
-                        : gyros ? Gyros(data, rates, *table, setup).Solve()
-                                : Magnetic(*table, setup).Solve();
+  const auto solution = SolveStations(data, *rates, *table, setup);
   if (!solution) return BenchFault(data, solution.fault().text);
   const auto linear = SolveWhole(*solution, kAdvice);
   if (!linear) return BenchFault(data, linear.fault().text);
@@ -301,22 +323,16 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   FitReport& report = out.report;
   report.method = "multi-station";
   if (auto fault = DoesNotFit(data,
-                              {{"wx", rate},
-                               {"wy", rate},
+                              {{"wx", kEarthDegPerHour},
+                               {"wy", kEarthDegPerHour},
                                {"field", setup.reference.field.value_or(0)},
                                {"dip", 1},
-                               {"level", rate},
-                               {"vertical", rate}},
+                               {"level", kEarthDegPerHour},
+                               {"vertical", kEarthDegPerHour}},
                               report)) {
     return *fault;
   }
-  // The stations' azimuths served their turn.
-  if (two) {
-    Reparametrise(report, VectorNames("bg_degh", 2),
-                  [](const Eigen::VectorXd& x) { return Eigen::VectorXd(x.head<2>()); });
-  }
-  AddVector(report, gyros ? "bg_degh" : "bm_nT", 0, two ? 2 : 3);
-  if (!gyros) AddVector(report, "sm", 3, 3);
+  TakeResult(rates->size(), report);
   RemarkPriors(setup, report);
   return out;
 }

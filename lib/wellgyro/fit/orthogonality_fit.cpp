@@ -132,12 +132,8 @@ OrthogonalityCheck Verify(const AttitudeTable& table, const BenchReference& refe
 void TakeErrors(FitReport& report) {
   std::vector<std::string> names;
   for (const char* suffix : {"G", "M"}) {
-    for (const std::string& name : VectorNames(std::string("b_") + suffix, 3)) {
-      names.push_back(name);
-    }
-    for (const std::string& name : MatrixNames(std::string("E_") + suffix, 3, 3)) {
-      names.push_back(name);
-    }
+    Append(names, VectorNames(std::string("b_") + suffix, 3));
+    Append(names, MatrixNames(std::string("E_") + suffix, 3, 3));
   }
   Reparametrise(report, names, [](const Eigen::VectorXd& x) {
     Eigen::VectorXd errors = x;
@@ -164,6 +160,18 @@ void AddCoefficients(const Waves& waves, FitReport& report) {
   report.remarks.insert(report.remarks.end(), waves.remarks.begin(), waves.remarks.end());
 }
 
+std::optional<Fault> BadSequences(const BenchTable& data, int column) {
+  for (int i = 0; i < data.rows(); ++i) {
+    const double number = data.values(i, column);
+    if (number != 0 && number != 1 && number != 2 && number != 3) {
+      return BenchFault(data,
+                        fmt::format("sequence {:g}: 1, 2 and 3 calibrate, 0 verifies", number),
+                        data.lines[static_cast<std::size_t>(i)]);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<OrthogonalityFit> FitOrthogonality(const BenchTable& data, const Setup& setup) {
@@ -172,14 +180,7 @@ Result<OrthogonalityFit> FitOrthogonality(const BenchTable& data, const Setup& s
   }
   const auto seq = FindColumns(data, {"seq"});
   if (!seq) return seq.fault();
-  for (int i = 0; i < data.rows(); ++i) {
-    const double number = data.values(i, seq->front());
-    if (number != 0 && number != 1 && number != 2 && number != 3) {
-      return BenchFault(data,
-                        fmt::format("sequence {:g}: 1, 2 and 3 calibrate, 0 verifies", number),
-                        data.lines[static_cast<std::size_t>(i)]);
-    }
-  }
+  if (auto fault = BadSequences(data, seq->front())) return *fault;
   const auto accel = FindColumns(data, {"Gx", "Gy", "Gz"});
   if (!accel) return accel.fault();
   if (auto fault = MixedUnits(data, *accel, setup.reference.gravity, "the length of (Gx, Gy, Gz)",

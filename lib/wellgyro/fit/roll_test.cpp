@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
@@ -26,7 +29,7 @@ std::vector<int> SetsOf(const BenchTable& data, int column) {
   return sets;
 }
 
-// The direction of least variation about the sets' means.
+// By their variation about the sets' means; last the one that varies least.
 Eigen::Matrix3d Directions(const Eigen::MatrixX3d& f, const std::vector<int>& sets, int n_sets) {
   Eigen::MatrixX3d mean = Eigen::MatrixX3d::Zero(n_sets, 3);
   Eigen::VectorXd count = Eigen::VectorXd::Zero(n_sets);
@@ -42,29 +45,33 @@ Eigen::Matrix3d Directions(const Eigen::MatrixX3d& f, const std::vector<int>& se
   return Eigen::JacobiSVD<Eigen::MatrixXd>(centred, Eigen::ComputeThinV).matrixV();
 }
 
-}  // namespace
-
-Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup& setup) {
-  const auto set_column = FindColumns(data, {"set"});
-  if (!set_column) return set_column.fault();
-  const auto table = ReadAttitudeTable(data, {.accel = true});
-  if (!table) return table.fault();
+std::optional<Fault> BadRolls(const BenchTable& data, const AttitudeTable& table, double gravity) {
   if (auto fault = TooFew(data, 6, "readings", "roll the tool right round, every 45 deg")) {
-    return *fault;
+    return fault;
   }
-  if (auto fault = BadReadings(data, *table)) return *fault;
-  if (auto fault =
-          MixedUnits(data,
-                     {*data.Find(table->accel_channels[0]), *data.Find(table->accel_channels[1]),
-                      *data.Find(table->accel_channels[2])},
-                     setup.reference.gravity, "the length of the readings", "g or m/s2")) {
-    return *fault;
+  if (auto fault = BadReadings(data, table)) return fault;
+  return MixedUnits(data, ColumnsOf(data, table.accel_channels), gravity,
+                    "the length of the readings", "g or m/s2");
+}
+
+// An axis near that of the rolls; from it to that is linear: axis + x[0] e1 + x[1] e2.
+struct NearAxis {
+  Eigen::Vector3d axis, e1, e2;
+
+  Eigen::Vector3d With(const Eigen::VectorXd& x) const {
+    return (axis + x[0] * e1 + x[1] * e2).normalized();
   }
-  const std::vector<int> sets = SetsOf(data, set_column->front());
-  const int n_sets = 1 + *std::max_element(sets.begin(), sets.end());
-  const Eigen::Matrix3d V = Directions(table->accel, sets, n_sets);
-  const Eigen::Vector3d axis = (V(2, 2) < 0 ? -1 : 1) * V.col(2);
-  const double off = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
+};
+
+// From z [rad].
+double AngleFromZ(const Eigen::Vector3d& axis) {
+  return std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
+}
+
+Result<NearAxis> FindAxis(const BenchTable& data, const Eigen::Matrix3d& directions) {
+  const Eigen::Vector3d last = directions.col(2);
+  const Eigen::Vector3d axis = last.z() < 0 ? Eigen::Vector3d(-last) : last;
+  const double off = AngleFromZ(axis);
   if (off > kPi / 6) {
     return BenchFault(data,
                       fmt::format("the axis of the rolls lies {:.0f} deg from the sensors' z: "
@@ -72,23 +79,43 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
                                   ToDegrees(off)),
                       data.lines[0]);
   }
-  const Eigen::Vector3d e1 = V.col(0), e2 = axis.cross(e1);
+  const Eigen::Vector3d e1 = directions.col(0);
+  return NearAxis{axis, e1, axis.cross(e1)};
+}
 
-  // About it: axis + alpha e1 + beta e2, and what each set reads along it.
+// The two tilts of the axis from `about`, and what each set reads along the axis.
+LinearProblem Problem(const AttitudeTable& table, const std::vector<int>& sets, int n_sets,
+                      const NearAxis& about, const std::optional<double>& sigma) {
   std::vector<std::string> names = {"tilt_1", "tilt_2"};
-  for (const std::string& name : VectorNames("along", n_sets)) names.push_back(name);
-  LinearProblem problem(names, data.rows());
-  problem.sigma.setConstant(setup.sigma.value_or(1));
-  problem.sigma_given = setup.sigma.has_value();
-  for (int i = 0; i < data.rows(); ++i) {
-    const Eigen::Vector3d f = table->accel.row(i).transpose();
-    problem.A(i, 0) = f.dot(e1);
-    problem.A(i, 1) = f.dot(e2);
-    problem.A(i, 2 + sets[static_cast<std::size_t>(i)]) = -1;
-    problem.y[i] = -f.dot(axis);
-    problem.rows[static_cast<std::size_t>(i)] = {data.lines[static_cast<std::size_t>(i)], "along",
-                                                 problem.sigma[i]};
+  Append(names, VectorNames("along", n_sets));
+  LinearProblem problem(names, table.rows());
+  problem.sigma.setConstant(sigma.value_or(1));
+  problem.sigma_given = sigma.has_value();
+  for (int i = 0; i < table.rows(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Eigen::Vector3d f = table.accel.row(i).transpose();
+    problem.A(i, 0) = f.dot(about.e1);
+    problem.A(i, 1) = f.dot(about.e2);
+    problem.A(i, 2 + sets[at]) = -1;
+    problem.y[i] = -f.dot(about.axis);
+    problem.rows[at] = {table.lines[at], "along", problem.sigma[i]};
   }
+  return problem;
+}
+
+}  // namespace
+
+Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup& setup) {
+  const auto set_column = FindColumns(data, {"set"});
+  if (!set_column) return set_column.fault();
+  const auto table = ReadAttitudeTable(data, {.accel = true});
+  if (!table) return table.fault();
+  if (auto fault = BadRolls(data, *table, setup.reference.gravity)) return *fault;
+  const std::vector<int> sets = SetsOf(data, set_column->front());
+  const int n_sets = 1 + *std::max_element(sets.begin(), sets.end());
+  const auto about = FindAxis(data, Directions(table->accel, sets, n_sets));
+  if (!about) return about.fault();
+  const LinearProblem problem = Problem(*table, sets, n_sets, *about, setup.sigma);
   const auto solution = SolveWhole(problem,
                                    "roll the tool right round, and at inclinations where "
                                    "gravity lies across it");
@@ -99,15 +126,12 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
   report.method = "roll-test";
   const double length = table->accel.rowwise().norm().maxCoeff();
   if (auto fault = DoesNotFit(data, {{"along", length}}, report)) return *fault;
-  Reparametrise(report, VectorNames("axis_in_sensor", 3), [&](const Eigen::VectorXd& x) {
-    return Eigen::VectorXd((axis + x[0] * e1 + x[1] * e2).normalized());
-  });
+  Reparametrise(report, VectorNames("axis_in_sensor", 3),
+                [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(about->With(x)); });
   AddVector(report, "axis_in_sensor", 0, 3);
-  const Eigen::Vector3d found = report.values;
+  out.axis = report.values;
   AddFixed(report, "misalignment_deg", FitQuantity::Shape::kNumber,
-           Eigen::MatrixXd::Constant(
-               1, 1, ToDegrees(std::atan2(std::hypot(found.x(), found.y()), found.z()))));
-  out.axis = found;
+           Eigen::MatrixXd::Constant(1, 1, ToDegrees(AngleFromZ(report.values))));
   return out;
 }
 

@@ -83,12 +83,9 @@ Eigen::Vector3d RowSigmas(const AttitudeTable& table, const Eigen::VectorXd& x, 
 std::vector<std::string> Names(bool free_dip) {
   std::vector<std::string> names = {"Ma[0,0]", "Ma[1,0]", "Ma[1,1]",
                                     "Ma[2,0]", "Ma[2,1]", "Ma[2,2]"};
-  const auto add = [&](const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
-  };
-  add(VectorNames("ba", 3));
-  add(MatrixNames("Mm", 3, 3));
-  add(VectorNames("bm", 3));
+  Append(names, VectorNames("ba", 3));
+  Append(names, MatrixNames("Mm", 3, 3));
+  Append(names, VectorNames("bm", 3));
   if (free_dip) names.emplace_back("dip");
   return names;
 }
@@ -154,12 +151,9 @@ Result<Start> StartOf(const AttitudeTable& table, const ScalarSetup& setup) {
 
 void TakeResult(FitReport& report, bool free_dip) {
   std::vector<std::string> names = MatrixNames("Ka", 3, 3);
-  const auto add = [&](const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
-  };
-  add(VectorNames("ba", 3));
-  add(MatrixNames("Km", 3, 3));
-  add(VectorNames("bm", 3));
+  Append(names, VectorNames("ba", 3));
+  Append(names, MatrixNames("Km", 3, 3));
+  Append(names, VectorNames("bm", 3));
   if (free_dip) names.emplace_back("dip_deg");
   Reparametrise(report, names, [free_dip](const Eigen::VectorXd& x) {
     const Eigen::Matrix3d A = LowerOf(x).inverse(), M = FullOf(x).inverse();

@@ -35,7 +35,7 @@ struct LengthResidual {
 
 std::vector<std::string> Names() {
   std::vector<std::string> names = {"M[0,0]", "M[1,0]", "M[1,1]", "M[2,0]", "M[2,1]", "M[2,2]"};
-  for (const std::string& name : VectorNames("b", 3)) names.push_back(name);
+  Append(names, VectorNames("b", 3));
   return names;
 }
 
@@ -136,7 +136,7 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   if (auto fault = DoesNotFit(data, {{"length", setup.reference.gravity}}, report)) return *fault;
   const Eigen::Matrix3d M = LowerOf(report.values);
   std::vector<std::string> names = MatrixNames("Ka", 3, 3);
-  for (const std::string& name : VectorNames("ba", 3)) names.push_back(name);
+  Append(names, VectorNames("ba", 3));
   Reparametrise(report, names, [](const Eigen::VectorXd& x) {
     const Eigen::Matrix3d K = LowerOf(x).inverse();
     Eigen::VectorXd to(12);

@@ -106,9 +106,8 @@ std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Posi
 // Parameters, pulses a second: offset in the own pair (3), offset elsewhere (3), S (9).
 LinearProblem Problem(const std::vector<Position>& positions) {
   std::vector<std::string> names = VectorNames("own_offset", 3);
-  for (const auto& more : {VectorNames("offset", 3), MatrixNames("S", 3, 3)}) {
-    names.insert(names.end(), more.begin(), more.end());
-  }
+  Append(names, VectorNames("offset", 3));
+  Append(names, MatrixNames("S", 3, 3));
   LinearProblem problem(names, static_cast<int>(positions.size()) * 3);
   for (int row = 0; row < problem.y.size(); ++row) {
     const Position& position = positions[static_cast<std::size_t>(row / 3)];
@@ -171,6 +170,29 @@ Classes SigmaOf(const std::vector<Position>& positions, const Setup& setup,
   return {counting, std::hypot(counting, tilt), true};
 }
 
+// The own pair's offset is k (a0 + k2 g^2), with k2 in 1/(m/s^2); files have it in g/g^2.
+void TakeResult(FitReport& report, bool second_order, double g) {
+  std::vector<std::string> names = VectorNames("k_pulse_per_s_per_mps2", 3);
+  Append(names, VectorNames("a0_mps2", 3));
+  Append(names, MatrixNames("E_rad", 3, 3));
+  if (second_order) Append(names, VectorNames("k2_g_per_g2", 3));
+  Reparametrise(report, names, [=](const Eigen::VectorXd& x) {
+    Eigen::VectorXd to(second_order ? 18 : 15);
+    for (int c = 0; c < 3; ++c) {
+      const double k = x[6 + 4 * c];
+      to[c] = k;
+      to[3 + c] = (second_order ? x[3 + c] : x[c]) / k;
+      for (int j = 0; j < 3; ++j) to[6 + 3 * c + j] = c == j ? 0 : x[6 + 3 * c + j] / k;
+      if (second_order) to[15 + c] = (x[c] - x[3 + c]) / (k * g * g) * units::kStandardGravity;
+    }
+    return to;
+  });
+  AddVector(report, "k_pulse_per_s_per_mps2", 0, 3);
+  AddVector(report, "a0_mps2", 3, 3);
+  AddMatrix(report, "E_rad", 6, 3, 3);
+  if (second_order) AddVector(report, "k2_g_per_g2", 15, 3);
+}
+
 void Remark(const std::vector<Position>& positions, const Setup& setup, FitReport& report) {
   std::set<std::pair<int, double>> distinct;
   for (const Position& position : positions) distinct.insert({position.axis, position.sign});
@@ -225,34 +247,10 @@ Result<BenchCalibration> FitSixPositions(const BenchTable& data, const Setup& se
     return *fault;
   }
   report.method = "six-position";
-  // The own pair's offset is k (a0 + k2 g^2), with k2 in 1/(m/s^2); files have it in g/g^2.
   const double g = Mean(*positions, [](const Position& p) { return p.u.norm(); });
-  std::vector<std::string> names = VectorNames("k_pulse_per_s_per_mps2", 3);
-  for (const auto& more : {VectorNames("a0_mps2", 3), MatrixNames("E_rad", 3, 3)}) {
-    names.insert(names.end(), more.begin(), more.end());
-  }
-  const bool second_order = setup.second_order;
-  if (second_order) {
-    const auto more = VectorNames("k2_g_per_g2", 3);
-    names.insert(names.end(), more.begin(), more.end());
-  }
-  Reparametrise(report, names, [=](const Eigen::VectorXd& x) {
-    Eigen::VectorXd to(second_order ? 18 : 15);
-    for (int c = 0; c < 3; ++c) {
-      const double k = x[6 + 4 * c];
-      to[c] = k;
-      to[3 + c] = (second_order ? x[3 + c] : x[c]) / k;
-      for (int j = 0; j < 3; ++j) to[6 + 3 * c + j] = c == j ? 0 : x[6 + 3 * c + j] / k;
-      if (second_order) to[15 + c] = (x[c] - x[3 + c]) / (k * g * g) * units::kStandardGravity;
-    }
-    return to;
-  });
-  AddVector(report, "k_pulse_per_s_per_mps2", 0, 3);
-  AddVector(report, "a0_mps2", 3, 3);
-  AddMatrix(report, "E_rad", 6, 3, 3);
-  if (second_order) AddVector(report, "k2_g_per_g2", 15, 3);
+  TakeResult(report, setup.second_order, g);
   Remark(*positions, setup, report);
-  out.accel = Group(report.values, second_order);
+  out.accel = Group(report.values, setup.second_order);
   out.accel.R_TS = ToolFromBench(setup.axes);
   return out;
 }

@@ -108,12 +108,25 @@ double FindKnee(const Readings& readings, const ThermometerFitSetup& setup) {
   return (low + high) / 2;
 }
 
+void Remark(const Readings& readings, double knee, bool bends, FitReport& report) {
+  if (!bends) {
+    report.remarks.push_back(fmt::format(
+        "no reading beyond the knee at {:.4g} degC: c[2] is left at zero, and the range ends at "
+        "{:.4g} degC",
+        knee, readings.t.maxCoeff()));
+  }
+  if (readings.spread > 0) {
+    report.remarks.push_back(
+        fmt::format("the reference thermometers differ by {:.3g} degC (1 sigma) among themselves",
+                    readings.spread));
+  }
+}
+
 }  // namespace
 
 Result<BenchCalibration> FitThermometer(const BenchTable& data, const ThermometerFitSetup& setup) {
   const Result<Readings> readings = Read(data);
   if (!readings) return readings.fault();
-  const auto beyond = [&](double knee) { return (readings->t.array() > knee).count(); };
   double knee = setup.knee;
   if (setup.fit_knee) {
     if (auto fault = TooFew(data, 7, "temperatures", "read on both sides of the knee")) {
@@ -121,7 +134,8 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
     }
     knee = FindKnee(*readings, setup);
   }
-  const bool bends = beyond(knee) > 0;
+  const double coldest = readings->t.minCoeff(), hottest = readings->t.maxCoeff();
+  const bool bends = hottest > knee;
   const LinearProblem problem = Problem(*readings, setup, knee, bends);
   const auto solution = SolveWhole(problem, "read the thermometers at more temperatures");
   if (!solution) return BenchFault(data, solution.fault().text);
@@ -129,8 +143,7 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   out.report = ReportOf(problem, *solution);
   FitReport& report = out.report;
   report.method = "thermometer";
-  const double range = readings->t.maxCoeff() - readings->t.minCoeff();
-  if (auto fault = DoesNotFit(data, {{"t_m", range}}, report)) return *fault;
+  if (auto fault = DoesNotFit(data, {{"t_m", hottest - coldest}}, report)) return *fault;
   Reparametrise(report, VectorNames("c", 3), [](const Eigen::VectorXd& c) {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(3);
     all.head(c.size()) = c;
@@ -138,23 +151,10 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   });
   AddVector(report, "c", 0, 3);
   AddFixed(report, "knee_C", FitQuantity::Shape::kNumber, Eigen::MatrixXd::Constant(1, 1, knee));
-  if (!bends) {
-    report.remarks.push_back(fmt::format(
-        "no reading beyond the knee at {:.4g} degC: c[2] is left at zero, and the range ends at "
-        "{:.4g} degC",
-        knee, readings->t.maxCoeff()));
-  }
-  if (readings->spread > 0) {
-    report.remarks.push_back(
-        fmt::format("the reference thermometers differ by {:.3g} degC (1 sigma) among themselves",
-                    readings->spread));
-  }
-  out.thermometer = ThermometerCalibration{.c0 = report.values[0],
-                                           .c1 = report.values[1],
-                                           .c2 = report.values[2],
-                                           .knee = knee,
-                                           .min = readings->t.minCoeff(),
-                                           .max = readings->t.maxCoeff()};
+  Remark(*readings, knee, bends, report);
+  const Eigen::VectorXd& c = report.values;
+  out.thermometer = ThermometerCalibration{
+      .c0 = c[0], .c1 = c[1], .c2 = c[2], .knee = knee, .min = coldest, .max = hottest};
   return out;
 }
 

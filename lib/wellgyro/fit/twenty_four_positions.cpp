@@ -35,15 +35,12 @@ Reduced ReducedTemperature(const std::vector<PositionRun>& runs) {
 // Parameters: for every power of tau Vb (3) and S (9); then K2 (3).
 std::vector<std::string> Names(int degree) {
   std::vector<std::string> names;
-  const auto add = [&](const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
-  };
   for (int n = 0; n <= degree; ++n) {
     const std::string tau = n == 0 ? "" : fmt::format("_tau{}", n);
-    add(VectorNames("Vb_V" + tau, 3));
-    add(MatrixNames("S_V_per_g" + tau, 3, 3));
+    Append(names, VectorNames("Vb_V" + tau, 3));
+    Append(names, MatrixNames("S_V_per_g" + tau, 3, 3));
   }
-  add(VectorNames("K2_V_per_g2", 3));
+  Append(names, VectorNames("K2_V_per_g2", 3));
   return names;
 }
 
