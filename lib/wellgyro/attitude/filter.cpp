@@ -168,12 +168,12 @@ void AzimuthFilter::Impl::TakePlainFixes(std::size_t worked, double growth,
 }
 
 void AzimuthFilter::Impl::TakeStill(const FilterEpoch& epoch) {
-  const double azimuth = history.fixes[static_cast<std::size_t>(epoch.fix)].about;
-  if (core.azimuth_diffuse()) core.SetAzimuth(azimuth);
+  const FilterFix& fix = history.fixes[static_cast<std::size_t>(epoch.fix)];
+  if (core.azimuth_diffuse()) core.SetAzimuth(fix.about);
   // Every knot of a window is made linear about the same azimuth, so that together they weigh as
   // one measurement.
-  const double about = core.azimuth() + WrapPi(azimuth - core.azimuth());
-  StillMeasurements m = core.AtRest(epoch.knot, about);
+  const double about = core.azimuth() + WrapPi(fix.about - core.azimuth());
+  StillMeasurements m = core.AtRest(epoch.knot, {about, fix.var_about, fix.seconds});
   core.Take(&m.turn);
   core.Take(&m.lift);
 }
@@ -231,6 +231,7 @@ void AzimuthFilter::Impl::Locate(FilterFix* f) const {
     }
     if (covered > 0 && covered >= 0.5 * (fix.end - fix.begin).seconds()) {
       f->rates = true;
+      f->seconds = covered;
       f->epoch_begin = begin;
       f->epoch_end = end;
       return;
@@ -340,9 +341,10 @@ FilterFix AzimuthFilter::Update(const NorthFix& fix) {
     TakeClosure(before, variance, &f);
     // Near east-west and horizontal a fix by itself may lie far off: the rates are hardly linear
     // there, so that the place matters.
-    const double weight =
-        variance < kUnknownAngleVariance ? variance / (variance + f.fix.cov_attitude(1, 1)) : 1;
+    const double given = f.fix.cov_attitude(1, 1);
+    const double weight = variance < kUnknownAngleVariance ? variance / (variance + given) : 1;
     f.about = weight < 1 ? before + weight * WrapPi(f.azimuth - before) : f.azimuth;
+    f.var_about = weight * given;
   }
   m.history.fixes.push_back(f);
   if (f.use == FixUse::kNoKnot) return f;

@@ -55,7 +55,9 @@ struct FilterFix {
   double closure = 0, sigma_closure = 0;  ///< the same as an angle [rad]
   double about = 0;             ///< where the rates are made linear: `azimuth`, weighed with the
                                 ///< azimuth known before [rad]
+  double var_about = 0;         ///< of `about` [rad^2]
   bool rates = false;           ///< the still knots of its window entered instead of its azimuth
+  double seconds = 0;           ///< of these knots
   std::size_t epoch_begin = 0;  ///< first epoch of the window, and the one at which a plain azimuth
   std::size_t epoch_end = 0;    ///< holds is epoch_end - 1; both 0: before the first knot
 };
@@ -77,8 +79,10 @@ struct FilterHistory {
 /// azimuth, so that gyro bias, mass unbalance and the rest correlate it rightly with the drift and
 /// with other fixes; any other fix enters as azimuth and cov_attitude(1, 1), taken as independent.
 ///
-/// Never looks back: where one fix by itself is uncertain by several degrees, as near horizontal
-/// and east-west, the variance is short by up to 2 until Smooth(), which makes all linear afresh.
+/// Rates count for less by what the second order in azimuth may be, so that a stop hardly seeing
+/// north, as near horizontal and east-west, is not trusted for more than it says. Never looks back:
+/// three such stops, 2 deg from horizontal and 5 deg from east-west, leave the variance short by up
+/// to 5 in the mean until Smooth(), which makes all linear afresh.
 /// A first knot with zero `seconds` only says where the run begins. One filter for one run.
 class WELLGYRO_EXPORT AzimuthFilter {
  public:

@@ -239,7 +239,8 @@ FilterTransition FilterCore::Step(const Knot& knot, double azimuth_begin,
   return t;
 }
 
-StillMeasurements FilterCore::AtRest(const Knot& knot, double azimuth) const {
+StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& about) const {
+  const double azimuth = about.azimuth;
   const double north = kEarthRate * std::cos(place_.latitude);
   const double up = kEarthRate * std::sin(place_.latitude);
   const double c = std::cos(azimuth), s = std::sin(azimuth);
@@ -248,6 +249,8 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, double azimuth) const {
   const double quantum = 2 * Square(setup_.gyro.quantization);
   // Against a noiseless setup: a turn of 1e-9 rad is beyond any gyro.
   constexpr double kFloor = 1e-18;
+  // What the second order leaves out, (dA^2 / 2)^2 in the mean, is one error for the whole window.
+  const double bent = 0.75 * Square(north * about.variance) * knot.seconds * about.seconds;
   StillMeasurements m;
 
   // 0 = turn + Earth - errors' share.
@@ -260,8 +263,8 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, double azimuth) const {
     m.turn.h[layout_.latitude] = -knot.cot * c * up + knot.seconds * north;
   }
   m.turn.value = -(knot.turn + knot.cot * north * c + knot.seconds * up) + m.turn.h[0] * azimuth;
-  m.turn.variance =
-      white * knot.white_turn + knot.toolface_noise_turn + quantum * (1 + cot * cot) + kFloor;
+  m.turn.variance = white * knot.white_turn + knot.toolface_noise_turn + quantum * (1 + cot * cot) +
+                    kFloor + bent * Square(cot * c);
 
   // 0 = lift + W_e cos L sin A - errors' share: the inclination does not change.
   m.lift.h = FilterVector::Zero(layout_.size);
@@ -269,7 +272,7 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, double azimuth) const {
   m.lift.h[0] = north * c * knot.seconds;
   if (layout_.latitude >= 0) m.lift.h[layout_.latitude] = -up * s * knot.seconds;
   m.lift.value = -(knot.lift + north * s * knot.seconds) + m.lift.h[0] * azimuth;
-  m.lift.variance = white * knot.seconds + quantum + kFloor;
+  m.lift.variance = white * knot.seconds + quantum + kFloor + bent * Square(s);
   return m;
 }
 

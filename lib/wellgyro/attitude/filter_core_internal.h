@@ -74,6 +74,13 @@ struct FilterMeasurement {
   double innovation_variance = 0;
 };
 
+/// Azimuth about which the still knots of one window are made linear.
+struct StillWindowPoint {
+  double azimuth = 0;
+  double variance = 0;  ///< of the azimuth: how far it may be from there [rad^2]
+  double seconds = 0;   ///< of all knots of the window
+};
+
 /// The two measurements that a still knot makes: rates about the high side and about the right.
 struct StillMeasurements {
   FilterMeasurement turn, lift;
@@ -117,7 +124,7 @@ class FilterCore {
   FilterTransition Step(const Knot& knot, double azimuth_begin, std::optional<double> nominal_end);
 
   /// What the last knot, at rest, says, made linear about `azimuth`.
-  StillMeasurements AtRest(const Knot& knot, double azimuth) const;
+  StillMeasurements AtRest(const Knot& knot, const StillWindowPoint& about) const;
 
   void Take(FilterMeasurement* m);
 

@@ -118,7 +118,8 @@ ForwardPass Forward(const FilterHistory& history, const Path& path) {
     r.transition = core.Step(e.knot, path[i], path[i + 1]);
     const double growth = core.azimuth() - before;
     if (e.fix >= 0) {
-      StillMeasurements m = core.AtRest(e.knot, path[i + 1]);
+      const FilterFix& fix = history.fixes[static_cast<std::size_t>(e.fix)];
+      StillMeasurements m = core.AtRest(e.knot, {path[i + 1], fix.var_about, fix.seconds});
       TakeAndKeep(std::move(m.turn), &core, &pass);
       TakeAndKeep(std::move(m.lift), &core, &pass);
     }

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kSamePlace = 0.2;         // [m], between windows of one stop
 constexpr double kSamePlaceSeconds = 120;  // the same where there is no depth
-constexpr double kVague = FromDegrees(2);  // [rad], sigma of a fix's azimuth
 
 /// What the Earth measured at the stop, and what it is.
 void TakeReferences(const NorthFix& fix, Station& station) {
@@ -87,11 +86,7 @@ void RunSurvey::UseFix(NorthFix fix) {
                       job_.alignment.method == AlignmentSpec::Method::kGyrocompass;
   if (wanted && filter_) {
     const bool known_before = filter_->attitude().azimuth_known;
-    NorthFix given = fix;
-    // Near east-west and horizontal the cost of azimuth is no parabola: the filter, which is
-    // linear, would take the rates of such a stop for far more than the fix itself says.
-    if (std::sqrt(fix.cov_attitude(1, 1)) > kVague) given.from_samples = false;
-    const FilterFix used = filter_->Update(given);
+    const FilterFix used = filter_->Update(fix);
     if (known_before && used.use != FixUse::kNoKnot) {
       fix.chi_square = used.chi_square;
       fix.closure = used.closure;
