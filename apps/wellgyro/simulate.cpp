@@ -147,59 +147,50 @@ std::optional<Fault> WriteTruth(const std::string& name, const Truth& truth) {
   return WriteFiles(folder.empty() ? std::filesystem::path(".") : folder, files);
 }
 
-int Simulate(const SimulateOptions& options) {
+/// The tool as whose counts samples go out; none where no file is named.
+Result<std::optional<ToolCalibration>> CountingTool(const SimulateOptions& options,
+                                                    const SimulatedTool& simulated) {
+  if (options.tool.empty()) return std::optional<ToolCalibration>();
+  auto tool = ReadToolFile(options.tool);
+  if (!tool) return tool.fault();
+  if (!simulated.has_gz || (tool->mag.n_channels > 0 && !simulated.has_mag)) {
+    return Fault{
+        .code = FaultCode::kConflict,
+        .text = fmt::format("counts need what their channels may feel: set {} = true under [tool]",
+                            simulated.has_gz ? "has_mag" : "has_gz"),
+        .source = options.job};
+  }
+  return std::optional<ToolCalibration>(*std::move(tool));
+}
+
+std::optional<Fault> Simulate(const SimulateOptions& options) {
   const Result<SimulationFile> file = ReadSimulation(options.job);
-  if (!file) {
-    Complain(file.fault());
-    return kUnusable;
-  }
-  std::optional<ToolCalibration> tool;
-  if (!options.tool.empty()) {
-    auto read = ReadToolFile(options.tool);
-    if (!read) {
-      Complain(read.fault());
-      return kUnusable;
-    }
-    tool = *std::move(read);
-    const SimulatedTool& simulated = file->simulation.tool;
-    if (!simulated.has_gz || (tool->mag.n_channels > 0 && !simulated.has_mag)) {
-      Complain(
-          fmt::format("{}: counts need what their channels may feel: set {} = true under [tool]",
-                      options.job, simulated.has_gz ? "has_mag" : "has_gz"));
-      return kUnusable;
-    }
-  }
+  if (!file) return file.fault();
+  const auto tool = CountingTool(options, file->simulation.tool);
+  if (!tool) return tool.fault();
   const bool live = options.out.find("://") != std::string::npos;
   const std::string truth =
       options.truth.empty() && !live ? options.out + ".truth.csv" : options.truth;
   if (options.out == options.job || truth == options.job || options.out == truth) {
-    Complain("--job, --out and --truth must be three different files");
-    return kUnusable;
+    return Fault{.code = FaultCode::kConflict,
+                 .text = "--job, --out and --truth must be three different files"};
   }
   // What the simulation refuses is refused before a file is touched.
   Simulator simulator(file->simulation);
   const SampleBatcher batcher(file->simulation.streams, file->simulation.seed);
   auto outlet = live ? OpenLiveOutlet(options.out, file->channels, options.speed)
                      : OpenLogOutlet(options.out);
-  if (!outlet) {
-    Complain(outlet.fault());
-    return kUnusable;
-  }
+  if (!outlet) return outlet.fault();
   Recorder recorder(*file, **outlet);
-  if (tool) recorder.CountAs(*tool, options.temperature);
-  if (const auto fault = Play(simulator, recorder, **outlet, options.finish)) {
-    Complain(*fault);
-    return kUnusable;
-  }
-  const auto fault = truth.empty() ? std::nullopt : WriteTruth(truth, simulator.truth());
-  if (fault) {
-    Complain(*fault);
-    return kUnusable;
+  if (*tool) recorder.CountAs(**tool, options.temperature);
+  if (auto fault = Play(simulator, recorder, **outlet, options.finish)) return fault;
+  if (!truth.empty()) {
+    if (auto fault = WriteTruth(truth, simulator.truth())) return fault;
   }
   fmt::print("simulated {:.0f} s: {} events, {} bytes\n{} {}\n", simulator.truth().seconds(),
              (*outlet)->events(), (*outlet)->bytes(), live ? "sent to" : "wrote", options.out);
   if (!truth.empty()) fmt::print("wrote {}\n", truth);
-  return kDone;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -234,7 +225,11 @@ void AddSimulate(CLI::App& app, int& exit_code) {
       "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
       "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "
       "--speed 10");
-  command->callback([options, &exit_code] { exit_code = Simulate(*options); });
+  command->callback([options, &exit_code] {
+    const auto fault = Simulate(*options);
+    if (fault) Complain(*fault);
+    exit_code = fault ? kUnusable : kDone;
+  });
 }
 
 }  // namespace wellgyro::apps

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -68,19 +69,21 @@ SampleCalibrator::State::State(const ToolCalibration& model)
       temperature(model.thermometers.size(), 0.0),
       temperature_known(model.thermometers.size(), 1) {
   for (const SensorGroup* group : {&tool.gyro, &tool.accel, &tool.mag}) {
-    for (int c = 0; c < group->n_channels; ++c)
+    for (int c = 0; c < group->n_channels; ++c) {
       channels_needed = std::max(channels_needed, group->channel[static_cast<std::size_t>(c)] + 1);
+    }
     heats = heats || (group->n_channels > 0 && !group->heating.isZero(0));
   }
-  for (const ThermometerCalibration& thermometer : tool.thermometers)
+  for (const ThermometerCalibration& thermometer : tool.thermometers) {
     thermometers_needed = std::max(thermometers_needed, thermometer.channel + 1);
+  }
 }
 
 bool SampleCalibrator::State::Changed(const RawSample& raw) const {
   // By bits: a reading that is no number is the same as itself.
+  using Bits = std::array<std::uint32_t, RawSample::kTemperaturesMax>;
   return raw.stamp.period_ns != period_ns || !prepared ||
-         std::memcmp(raw.temperature_raw.data(), raw_temperature.data(), sizeof raw_temperature) !=
-             0;
+         std::bit_cast<Bits>(raw.temperature_raw) != std::bit_cast<Bits>(raw_temperature);
 }
 
 void SampleCalibrator::State::PrepareGroup(const SensorGroup& group, double seconds,

@@ -21,43 +21,51 @@ bool Finite(const std::array<T, SensorGroup::kPowers>& powers) {
 
 Complaint ChannelComplaint(const SensorGroup& group, const std::string& name, int least) {
   const int n = group.n_channels;
-  if (n < least || n > SensorGroup::kChannels)
+  if (n < least || n > SensorGroup::kChannels) {
     return fmt::format("{}: {} channels, it takes {} to {}", name, n, least,
                        SensorGroup::kChannels);
+  }
   for (int c = 0; c < n; ++c) {
     const int place = group.channel[static_cast<std::size_t>(c)];
-    if (place < 0 || place >= RawSample::kChannelsMax)
+    if (place < 0 || place >= RawSample::kChannelsMax) {
       return fmt::format("{}: channel {} is outside 0 to {}", name, place,
                          RawSample::kChannelsMax - 1);
-    for (int other = 0; other < c; ++other) {
-      if (group.channel[static_cast<std::size_t>(other)] == place)
-        return fmt::format("{}: channel {} is named twice", name, place);
     }
-    if (!std::isfinite(group.unit_per_count[c]) || group.unit_per_count[c] == 0)
+    for (int other = 0; other < c; ++other) {
+      if (group.channel[static_cast<std::size_t>(other)] == place) {
+        return fmt::format("{}: channel {} is named twice", name, place);
+      }
+    }
+    if (!std::isfinite(group.unit_per_count[c]) || group.unit_per_count[c] == 0) {
       return fmt::format("{}: unit_per_count of channel {} is {}", name, place,
                          group.unit_per_count[c]);
+    }
   }
   return std::nullopt;
 }
 
 Complaint TemperatureComplaint(const SensorGroup& group, const std::string& name,
                                std::size_t thermometers) {
-  if (group.thermometer < -1 || group.thermometer >= static_cast<int>(thermometers))
+  if (group.thermometer < -1 || group.thermometer >= static_cast<int>(thermometers)) {
     return fmt::format("{}: there is no thermometer {}", name, group.thermometer);
+  }
   if (!(group.heating_lag > 0)) return fmt::format("{}: heating lag {} s", name, group.heating_lag);
   const bool varies = [&] {
     for (std::size_t n = 1; n < SensorGroup::kPowers; ++n) {
       if (!group.bias[n].isZero(0) || !group.sensitivity[n].isZero(0) ||
-          !group.g_dependence[n].isZero(0))
+          !group.g_dependence[n].isZero(0)) {
         return true;
+      }
     }
     return !group.heating.isZero(0);
   }();
-  if (group.thermometer < 0)
+  if (group.thermometer < 0) {
     return varies ? Complaint(name + ": terms in temperature, but no thermometer") : std::nullopt;
-  if (!std::isfinite(group.reference) || !(group.half_range > 0) || !(group.min <= group.max))
+  }
+  if (!std::isfinite(group.reference) || !(group.half_range > 0) || !(group.min <= group.max)) {
     return fmt::format("{}: temperature reference {}, half range {}, from {} to {} degC", name,
                        group.reference, group.half_range, group.min, group.max);
+  }
   return std::nullopt;
 }
 
@@ -78,19 +86,22 @@ Complaint GroupComplaint(const SensorGroup& group, const std::string& name, int 
   if (auto complaint = ChannelComplaint(group, name, least)) return complaint;
   if (!Finite(group.bias) || !Finite(group.sensitivity) || !Finite(group.g_dependence) ||
       !group.second_order.allFinite() || !group.g_squared.allFinite() ||
-      !group.heating.allFinite() || !group.R_TS.allFinite())
+      !group.heating.allFinite() || !group.R_TS.allFinite()) {
     return name + ": a coefficient is not a number";
-  if (!(group.R_TS * group.R_TS.transpose()).isIdentity(1e-9))
+  }
+  if (!(group.R_TS * group.R_TS.transpose()).isIdentity(1e-9)) {
     return name + ": the axes are not at right angles";
+  }
   if (auto complaint = TemperatureComplaint(group, name, thermometers)) return complaint;
   const double lowest =
       group.thermometer < 0 ? 0 : (group.min - group.reference) / group.half_range;
   const double highest =
       group.thermometer < 0 ? 0 : (group.max - group.reference) / group.half_range;
   for (const double tau : {0.0, lowest, highest}) {
-    if (!(Condition(group, tau) > 1e-3))
+    if (!(Condition(group, tau) > 1e-3)) {
       return fmt::format("{}: the sensitivities do not separate the axes{}", name,
                          tau == 0 ? "" : " at an end of the temperature range");
+    }
   }
   return std::nullopt;
 }
@@ -98,15 +109,18 @@ Complaint GroupComplaint(const SensorGroup& group, const std::string& name, int 
 }  // namespace
 
 Complaint FindComplaint(const ToolCalibration& tool) {
-  if (tool.gyro.n_channels == 0 && tool.accel.n_channels == 0 && tool.mag.n_channels == 0)
+  if (tool.gyro.n_channels == 0 && tool.accel.n_channels == 0 && tool.mag.n_channels == 0) {
     return "the tool model has no sensors";
+  }
   for (const ThermometerCalibration& t : tool.thermometers) {
-    if (t.channel < 0 || t.channel >= RawSample::kTemperaturesMax)
+    if (t.channel < 0 || t.channel >= RawSample::kTemperaturesMax) {
       return fmt::format("thermometer: channel {} is outside 0 to {}", t.channel,
                          RawSample::kTemperaturesMax - 1);
+    }
     if (!std::isfinite(t.offset + t.gain + t.c0 + t.c1 + t.c2 + t.knee) || t.gain == 0 ||
-        !std::isfinite(t.min) || !std::isfinite(t.max) || !(t.min < t.max))
+        !std::isfinite(t.min) || !std::isfinite(t.max) || !(t.min < t.max)) {
       return "thermometer: its numbers make no sense";
+    }
   }
   const std::size_t thermometers = tool.thermometers.size();
   if (auto complaint = GroupComplaint(tool.gyro, "gyro", 2, thermometers)) return complaint;
@@ -117,10 +131,12 @@ Complaint FindComplaint(const ToolCalibration& tool) {
       (!tool.gyro.g_squared.isZero(0) ||
        std::any_of(tool.gyro.g_dependence.begin(), tool.gyro.g_dependence.end(),
                    [](const SensorGroup::Rows& rows) { return !rows.isZero(0); }));
-  if (feels_force && tool.accel.n_channels == 0)
+  if (feels_force && tool.accel.n_channels == 0) {
     return "gyro: terms in the specific force, but no accelerometers";
-  if (tool.calibrated && tool.expires && *tool.expires <= *tool.calibrated)
+  }
+  if (tool.calibrated && tool.expires && *tool.expires <= *tool.calibrated) {
     return "the calibration expires before it was made";
+  }
   return std::nullopt;
 }
 

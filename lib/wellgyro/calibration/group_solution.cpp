@@ -62,9 +62,10 @@ bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double
   temperature_ = temperature;
   const double held = std::clamp(temperature, group.min, group.max);
   const double tau = group.thermometer < 0 ? 0 : (held - group.reference) / group.half_range;
-  for (std::size_t c = 0; c < channel_.size(); ++c)
+  for (std::size_t c = 0; c < channel_.size(); ++c) {
     channel_[c] =
         static_cast<std::size_t>(group.channel[static_cast<int>(c) < n_channels_ ? c : 0]);
+  }
 
   const Eigen::Matrix3d R_ST = group.R_TS.transpose();
   const Eigen::Matrix<double, 6, 6> squares_ST = OfSquares(R_ST);
@@ -137,8 +138,9 @@ Eigen::Vector3d GroupSolution::Refine(const Eigen::Vector3d& linear) const {
 double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
                              const Eigen::Vector3d& f_T) const {
   Eigen::Vector4d units;
-  for (int c = 0; c < 4; ++c)
+  for (int c = 0; c < 4; ++c) {
     units[c] = static_cast<double>(raw.counts[channel_[static_cast<std::size_t>(c)]]);
+  }
   units = units.cwiseProduct(unit_per_count_) - bias_ - heating_ * heating_rate_;
   units -= g_dependence_ * f_T + g_squares_ * SquaresOf(f_T) + squares_ * SquaresOf(u_T);
   return parity_.dot(units);

@@ -135,6 +135,7 @@ double MedianOf(std::vector<double> values) {
 
 void Step(const std::vector<Edge>& edges, const StopMatchSetup& setup, Fit& fit) {
   std::vector<double> sizes;
+  sizes.reserve(edges.size());
   for (const Edge& e : edges) sizes.push_back(std::abs(fit.Off(e)));
   fit.scale = std::max(1.4826 * MedianOf(sizes), kScaleLeast);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -193,8 +194,9 @@ Result<StopMatch> MatchStops(std::span<const ToolRest> tool, std::span<const Utc
   if (!(setup.sigma_drift > 0)) {
     throw std::invalid_argument("MatchStops: sigma_drift must be positive");
   }
-  if (!(setup.sigma_edge > 0))
+  if (!(setup.sigma_edge > 0)) {
     throw std::invalid_argument("MatchStops: sigma_edge must be positive");
+  }
   if (tool.size() > kMost || rig.size() > kMost) {
     return Fault{.code = FaultCode::kSize,
                  .text = "more than " + std::to_string(kMost) + " stops of one clock"};

@@ -40,10 +40,12 @@ std::vector<std::string> Names(const Layout& layout) {
     names.push_back(fmt::format("b_degh[{}]", c));
     for (int j = 0; j < 3; ++j) names.push_back(fmt::format("U[{},{}]", c, j));
   }
-  if (layout.force == GyroForceModel::kFull)
+  if (layout.force == GyroForceModel::kFull) {
     Append(names, MatrixNames("G_degh_per_g", layout.channels, 3));
-  if (layout.force == GyroForceModel::kDualAxis)
+  }
+  if (layout.force == GyroForceModel::kDualAxis) {
     Append(names, VectorNames("MQ", 2 * layout.rotors));
+  }
   if (layout.aniso) Append(names, VectorNames("aniso_degh_per_g2", layout.channels));
   if (layout.north) names.emplace_back("north_rad");
   return names;

@@ -58,8 +58,9 @@ NoiseCoefficients ReadCoefficients(TomlTable& table) {
 
 ErrorPriors ReadPriors(TomlTable& table) {
   ErrorPriors priors;
-  for (const Prior& prior : kPriors)
+  for (const Prior& prior : kPriors) {
     table.Read(prior.key, priors.*prior.member, prior.unit, kNotNegative);
+  }
   return priors;
 }
 

@@ -283,8 +283,9 @@ bool SensorCsv::Impl::NextDepth(DepthMark& mark) {
   const auto utc = GetTime(kUtc);
   const Column depth = layout.Has(kMd) ? kMd : kLengthOf;
   const auto value = Get(depth);
-  if (!fault && !value)
+  if (!fault && !value) {
     Refuse("a depth is missing", FaultCode::kSyntax, layout.places[depth].field);
+  }
   mark = DepthMark{};
   mark.sigma = Get(kSigMd);
   mark.tension = Get(kTensionOf);

@@ -228,18 +228,21 @@ std::optional<std::vector<std::vector<double>>> TomlTable::FindRows(std::string_
 
 std::vector<std::string> TomlTable::Keys() const {
   std::vector<std::pair<toml::source_position, std::string>> found;
-  for (const auto& [key, value] : *table_)
+  for (const auto& [key, value] : *table_) {
     found.emplace_back(key.source().begin, std::string(key.str()));
+  }
   std::sort(found.begin(), found.end());
   std::vector<std::string> keys;
+  keys.reserve(found.size());
   for (auto& [at, key] : found) keys.push_back(std::move(key));
   return keys;
 }
 
 int TomlTable::Depth(std::string_view key) const {
   int depth = 0;
-  for (const toml::node* node = table_->get(key); node != nullptr && node->is_array(); ++depth)
+  for (const toml::node* node = table_->get(key); node != nullptr && node->is_array(); ++depth) {
     node = node->as_array()->get(0);
+  }
   return depth;
 }
 

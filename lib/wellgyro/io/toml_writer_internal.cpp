@@ -105,8 +105,9 @@ void TomlWriter::Number(std::string_view key, double value) {
 void TomlWriter::Numbers(std::string_view key, std::span<const double> values) {
   Key(key);
   text_ += '[';
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i) {
     text_ += (i > 0 ? ", " : "") + NumberText(values[i]);
+  }
   text_ += "]\n";
 }
 
@@ -120,8 +121,9 @@ void TomlWriter::Rows(std::string_view key, const Eigen::MatrixXd& rows) {
   text_ += '[';
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     text_ += rows.rows() > 1 ? "\n  [" : "[";
-    for (Eigen::Index j = 0; j < rows.cols(); ++j)
+    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
       text_ += (j > 0 ? ", " : "") + NumberText(rows(i, j));
+    }
     text_ += rows.rows() > 1 ? "]," : "]";
   }
   text_ += rows.rows() > 1 ? "\n]\n" : "]\n";
@@ -130,8 +132,9 @@ void TomlWriter::Rows(std::string_view key, const Eigen::MatrixXd& rows) {
 void TomlWriter::Texts(std::string_view key, std::span<const std::string> values) {
   Key(key);
   text_ += '[';
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i) {
     text_ += fmt::format("{}\"{}\"", i > 0 ? ", " : "", Escaped(values[i], false));
+  }
   text_ += "]\n";
 }
 

@@ -66,8 +66,9 @@ ToolCalibration Read(TomlTable& root) {
   root.Read("note", tool.note);
   tool.calibrated = ReadDate(root, "calibrated");
   tool.expires = ReadDate(root, "expires");
-  for (TomlTable& table : root.FindTables("thermometer"))
+  for (TomlTable& table : root.FindTables("thermometer")) {
     tool.thermometers.push_back(ReadThermometer(table));
+  }
   if (auto table = root.FindTable("gyro")) tool.gyro = ReadGroup(*table, kGyroWords);
   if (auto table = root.FindTable("accel")) tool.accel = ReadGroup(*table, kAccelWords);
   if (auto table = root.FindTable("mag")) tool.mag = ReadGroup(*table, kMagWords);
@@ -99,8 +100,9 @@ void WriteAxes(TomlWriter& out, const SensorGroup& group) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const double e = group.R_TS(i, j);
-      if (e == 1 || e == -1)
+      if (e == 1 || e == -1) {
         words.push_back(fmt::format("{}{}", e > 0 ? '+' : '-', kAxes[static_cast<std::size_t>(j)]));
+      }
     }
   }
   if (words.size() == 3) {
@@ -119,20 +121,23 @@ void WritePolynomials(TomlWriter& out, const SensorGroup& group, const GroupWord
   const int n = group.n_channels;
   for (std::size_t power = 0; power < SensorGroup::kPowers; ++power) {
     const std::string_view tau = kPowerWords[power];
-    if (power == 0 || !group.bias[power].isZero(0))
+    if (power == 0 || !group.bias[power].isZero(0)) {
       WriteColumn(out, fmt::format("bias{}", tau), group.bias[power], n);
+    }
   }
   for (std::size_t power = 0; power < SensorGroup::kPowers; ++power) {
     const std::string_view tau = kPowerWords[power];
-    if (power == 0 || !group.sensitivity[power].isZero(0))
+    if (power == 0 || !group.sensitivity[power].isZero(0)) {
       out.Rows(fmt::format("sensitivity{}_{}", tau, words.per),
                group.sensitivity[power].topRows(n) * words.unit);
+    }
   }
   for (std::size_t power = 0; power < SensorGroup::kPowers; ++power) {
     const std::string_view tau = kPowerWords[power];
-    if (!group.g_dependence[power].isZero(0))
+    if (!group.g_dependence[power].isZero(0)) {
       out.Rows(fmt::format("g_dependence{}_per_g", tau),
                group.g_dependence[power].topRows(n) * units::kStandardGravity);
+    }
   }
 }
 
@@ -159,12 +164,14 @@ void WriteGroup(TomlWriter& out, const SensorGroup& group, const GroupWords& wor
   out.Flag("per_second", group.per_second);
   WriteAxes(out, group);
   WritePolynomials(out, group, words);
-  if (!group.second_order.isZero(0))
+  if (!group.second_order.isZero(0)) {
     out.Rows(fmt::format("second_order_{}", words.per_square),
              group.second_order.topRows(n) * (words.unit * words.unit));
-  if (!group.g_squared.isZero(0))
+  }
+  if (!group.g_squared.isZero(0)) {
     out.Rows("g_squared_per_g2",
              group.g_squared.topRows(n) * (units::kStandardGravity * units::kStandardGravity));
+  }
   WriteTemperature(out, group);
   if (!group.covariance) return;
   out.Table(fmt::format("{}.covariance", words.table));

@@ -22,9 +22,10 @@ std::string KeyOf(std::string_view name, std::size_t power, std::string_view per
 void Fill(TomlTable& table, std::string_view key, std::size_t n, SensorGroup::Column& column) {
   const auto numbers = table.FindNumbers(key, kAnyNumber);
   if (!numbers) return;
-  if (numbers->size() != n)
+  if (numbers->size() != n) {
     table.Refuse(key, fmt::format("has {} numbers, one for each of {} channels are needed",
                                   numbers->size(), n));
+  }
   for (std::size_t c = 0; c < n; ++c) column[static_cast<Eigen::Index>(c)] = (*numbers)[c];
 }
 
@@ -33,12 +34,14 @@ template <class Matrix>
 bool Fill(TomlTable& table, std::string_view key, std::size_t n, double unit, Matrix& matrix) {
   const auto rows = table.FindRows(key, static_cast<std::size_t>(matrix.cols()));
   if (!rows) return false;
-  if (rows->size() != n)
+  if (rows->size() != n) {
     table.Refuse(
         key, fmt::format("has {} rows, one for each of {} channels are needed", rows->size(), n));
+  }
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < (*rows)[i].size(); ++j)
+    for (std::size_t j = 0; j < (*rows)[i].size(); ++j) {
       matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = (*rows)[i][j] / unit;
+    }
   }
   return true;
 }
@@ -46,13 +49,15 @@ bool Fill(TomlTable& table, std::string_view key, std::size_t n, double unit, Ma
 void ReadChannels(TomlTable& table, SensorGroup& group) {
   const auto channels =
       table.Need("channels", table.FindNumbers("channels", {.min = 0, .max = 15}));
-  if (channels.size() < 2 || channels.size() > 4)
+  if (channels.size() < 2 || channels.size() > 4) {
     table.Refuse("channels", fmt::format("names {} channels, it takes 2 to 4", channels.size()));
+  }
   group.n_channels = static_cast<int>(channels.size());
   for (std::size_t c = 0; c < channels.size(); ++c) {
     group.channel[c] = static_cast<int>(channels[c]);
-    if (static_cast<double>(group.channel[c]) != channels[c])
+    if (static_cast<double>(group.channel[c]) != channels[c]) {
       table.Refuse("channels", "must be whole numbers, places in raw_batch_t from 0");
+    }
   }
 }
 
@@ -60,24 +65,28 @@ void ReadAxes(TomlTable& table, SensorGroup& group) {
   const auto words = table.FindStrings("axes");
   const auto rows = table.FindRows("axes_rows", 3);
   if (words && rows) table.Refuse("axes_rows", "stands beside axes; one of them says it all");
-  if (words && words->size() != 3)
+  if (words && words->size() != 3) {
     table.Refuse("axes", "must name three axes of the sensors, for x, y and z of the tool");
+  }
   if (rows && rows->size() != 3) table.Refuse("axes_rows", "must be three rows of three numbers");
   if (words) {
     const auto R_TS = AxesOf(*words);
-    if (!R_TS)
+    if (!R_TS) {
       table.Refuse("axes",
                    "names no axes at right angles: +x, -x, +y, -y, +z or -z, each axis once");
+    }
     group.R_TS = *R_TS;
   }
-  for (std::size_t i = 0; rows && i < 3; ++i)
+  for (std::size_t i = 0; rows && i < 3; ++i) {
     group.R_TS.row(static_cast<Eigen::Index>(i)) =
         Eigen::Map<const Eigen::RowVector3d>((*rows)[i].data());
+  }
 }
 
 void ReadTemperature(TomlTable& table, SensorGroup& group) {
-  if (const auto place = table.FindInteger("thermometer", 0, RawSample::kTemperaturesMax - 1))
+  if (const auto place = table.FindInteger("thermometer", 0, RawSample::kTemperaturesMax - 1)) {
     group.thermometer = static_cast<int>(*place);
+  }
   table.Read("reference_degc", group.reference);
   table.Read("half_range_degc", group.half_range, 1, kPositive);
   table.Read("min_degc", group.min);
@@ -95,9 +104,10 @@ std::optional<ParameterCovariance> ReadCovariance(TomlTable& table) {
   if (rows.size() != n) sub->Refuse("rows", fmt::format("must be {} rows of {} numbers", n, n));
   const auto size = static_cast<Eigen::Index>(n);
   known.cov.resize(size, size);
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i) {
     known.cov.row(static_cast<Eigen::Index>(i)) =
         Eigen::Map<const Eigen::RowVectorXd>(rows[i].data(), size);
+  }
   return known;
 }
 
@@ -113,8 +123,9 @@ SensorGroup ReadGroup(TomlTable& table, const GroupWords& words) {
   for (std::size_t power = 0; power < SensorGroup::kPowers; ++power) {
     Fill(table, KeyOf("bias", power), n, group.bias[power]);
     const std::string key = KeyOf("sensitivity", power, words.per);
-    if (!Fill(table, key, n, words.unit, group.sensitivity[power]) && power == 0)
+    if (!Fill(table, key, n, words.unit, group.sensitivity[power]) && power == 0) {
       table.RefuseAbsent(key, "is missing");
+    }
     Fill(table, KeyOf("g_dependence", power, "per_g"), n, units::kStandardGravity,
          group.g_dependence[power]);
   }
@@ -154,9 +165,9 @@ std::optional<UtcTime> DateOf(std::string_view text) {
   };
   const int month = number(5, 2), day = number(8, 2);
   if (month < 0 || day < 0) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(number(0, 4)),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
+  const std::chrono::year_month_day date{std::chrono::year{number(0, 4)},
+                                         std::chrono::month{static_cast<unsigned>(month)},
+                                         std::chrono::day{static_cast<unsigned>(day)}};
   if (!date.ok()) return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
   return UtcTime{days * 86'400 * 1'000'000'000};

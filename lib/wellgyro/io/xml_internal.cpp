@@ -112,7 +112,7 @@ XmlFile::XmlFile(std::string bytes, std::string source)
   }
 }
 
-void XmlFile::Complain(FaultCode code, pugi::xml_node at, std::string text) const {
+void XmlFile::Complain(FaultCode code, pugi::xml_node at, const std::string& text) const {
   std::string path;
   for (pugi::xml_node node = at; node && node.type() == pugi::node_element; node = node.parent()) {
     int number = 1;
@@ -121,7 +121,7 @@ void XmlFile::Complain(FaultCode code, pugi::xml_node at, std::string text) cons
       ++number;
     }
     const bool alone = number == 1 && !node.next_sibling(node.name());
-    path = fmt::format("/{}{}", node.name(), alone ? "" : fmt::format("[{}]", number)) + path;
+    path.insert(0, fmt::format("/{}{}", node.name(), alone ? "" : fmt::format("[{}]", number)));
   }
   const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(at.offset_debug(), 0));
   throw TextError{FaultAt(code, path + ": " + text, source_, bytes_, offset)};

@@ -18,7 +18,7 @@ class XmlFile {
   XmlFile(std::string bytes, std::string source);
 
   pugi::xml_node root() const { return document_.document_element(); }
-  [[noreturn]] void Complain(FaultCode code, pugi::xml_node at, std::string text) const;
+  [[noreturn]] void Complain(FaultCode code, pugi::xml_node at, const std::string& text) const;
 
  private:
   std::string bytes_, source_;

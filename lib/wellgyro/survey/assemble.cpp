@@ -226,8 +226,9 @@ void Choose(const Site& head, const Station& opening, const std::vector<PassLine
   for (std::size_t i : chosen) is_chosen[i] = true;
   for (std::size_t i = 0; i < placed.passes.size(); ++i) {
     Station& s = placed.passes[i];
-    if (!is_chosen[i] && s.status != StationStatus::kRejected)
+    if (!is_chosen[i] && s.status != StationStatus::kRejected) {
       s.status = StationStatus::kSuperseded;
+    }
   }
   for (std::size_t i : chosen) {
     placed.passes[i].number = static_cast<std::int32_t>(placed.chosen.size());

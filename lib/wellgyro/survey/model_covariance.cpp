@@ -11,6 +11,7 @@ namespace wellgyro {
 std::string TakeModelCovariance(const Job& job, std::vector<Station>& chosen) {
   if (!job.error_model || chosen.size() < 2) return {};
   std::vector<SurveyPoint> points;
+  points.reserve(chosen.size());
   for (const Station& s : chosen) points.push_back({s.md, s.inclination, s.azimuth, s.p_WT_W.z()});
   Surroundings surroundings;
   surroundings.latitude = job.well.latitude;
