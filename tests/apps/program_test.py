@@ -42,6 +42,7 @@ class Program(ProgramTest):
             self.assertAlmostEqual(float(row["INC[deg]"]), 25.0, delta=0.01)
             sigma = float(row["SIG_AZI[deg]"])
             self.assertGreater(sigma, 0.01)
+            self.assertLess(sigma, 0.5)
             self.assertAlmostEqual(float(row["AZI_TRUE[deg]"]), 300.0, delta=5 * sigma)
         self.assertEqual(rows[0]["KIND"], "tie_in")
 
@@ -68,6 +69,7 @@ class Program(ProgramTest):
         chance = random.Random(1)
         ends = [k for k in range(len(self.bytes)) if self.bytes[k:k + 4] == b"\xed\xa1\xda\x01"]
         cuts = [chance.randrange(1, len(self.bytes)) for _ in range(25)]
+        surveys = 0
         for cut in cuts + [ends[len(ends) // 2], ends[-1]]:
             with self.subTest(cut=cut):
                 log = self.Write("cut.lcm", self.bytes[:cut])
@@ -77,12 +79,15 @@ class Program(ProgramTest):
                 if done.returncode == 2:
                     self.assertTrue(done.stderr.startswith("wellgyro: "), done.stderr)
                     continue
+                surveys += 1
                 self.assertEqual(done.returncode, 0 if cut in ends else 3)
                 rows, all_rows = self.Rows("cut", "survey.csv"), self.Rows("whole", "survey.csv")
                 for row, full in zip(rows[:-2], all_rows):
                     self.assertEqual(row["MD[m]"], full["MD[m]"])
                     self.assertAlmostEqual(float(row["INC[deg]"]), float(full["INC[deg]"]),
                                            delta=0.02)
+
+        self.assertGreater(surveys, len(cuts) // 3)
 
     def test_flipped_bytes_never_crash_and_are_told(self):
         chance = random.Random(2)

@@ -10,6 +10,8 @@
 
 #include "wellgyro/bus/log_reader.h"
 
+#include "support/scratch.h"
+
 namespace wellgyro::test {
 
 using Bytes = std::vector<std::byte>;
@@ -17,16 +19,7 @@ using Bytes = std::vector<std::byte>;
 /// A file of the running test, removed at its end.
 class TestFile {
  public:
-  explicit TestFile(const std::string& name = "log") {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    std::string unique = std::string(info->test_suite_name()) + "." + info->name() + "." + name;
-    for (char& c : unique) c = c == '/' ? '_' : c;
-    path_ = (std::filesystem::path(testing::TempDir()) / unique).string();
-    std::filesystem::remove(path_);
-  }
-  ~TestFile() { std::filesystem::remove(path_); }
-  TestFile(const TestFile&) = delete;
-  TestFile& operator=(const TestFile&) = delete;
+  explicit TestFile(const std::string& name = "log") : path_((folder_.path() / name).string()) {}
 
   const std::string& path() const { return path_; }
 
@@ -52,6 +45,7 @@ class TestFile {
   }
 
  private:
+  support::Scratch folder_;
   std::string path_;
 };
 

@@ -83,9 +83,12 @@ TEST_F(LossWatchTest, TwoSendersOnOneChannelAreNamed) {
 
 TEST_F(LossWatchTest, MemoryIsBoundedWhateverComes) {
   for (int i = 0; i < 3000; ++i) Hear(100 * i, 1);  // gaps without end
-  EXPECT_GE(said_.size(), 1900u);
-  for (int i = 0; i < 10'000; ++i) Hear(0, 1, i, i);
+  EXPECT_GE(said_.size(), 3000 - LossWatch::kGapsMax - 20) << "the oldest are told of at once";
+  for (int i = 1; i < 10'000; ++i) Hear(0, 1, i, i);
+  constexpr auto kStreams = static_cast<std::int64_t>(LossWatch::kStreamsMax);
+  EXPECT_EQ(watch_.samples(), 3000 + kStreams - 1) << "what comes in further streams is not seen";
   watch_.Settle();
+  EXPECT_EQ(watch_.lost(), 2999 * 99);
 }
 
 }  // namespace

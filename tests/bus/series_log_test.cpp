@@ -1,6 +1,8 @@
 #include "wellgyro/bus/series_log.h"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +10,15 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/log_writer.h"
 
+#include "support/scratch.h"
+
 namespace wellgyro {
 namespace {
 
-std::string PathOfLog() { return std::string(testing::TempDir()) + "series_log_test.lcm"; }
+std::string PathOfLog() {
+  static const support::Scratch folder;
+  return (folder.path() / "log.lcm").string();
+}
 
 class Logger {
  public:

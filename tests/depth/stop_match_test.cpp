@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/math/random.h"
+#include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
 namespace {
@@ -50,7 +51,7 @@ Log Stands(int stands, double offset, double drift, double sigma, std::uint64_t 
 
 TEST(StopMatch, OffsetAndDriftAreRightWithinTheirSigmas) {
   constexpr int kSeeds = 200;
-  double squares = 0, offset2 = 0;
+  double squares = 0, offset2 = 0, late = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const double offset = -4000 + 37 * seed, drift = 5e-5 * std::sin(seed);
     const Log log = Stands(40, offset, drift, 2, static_cast<std::uint64_t>(seed));
@@ -64,11 +65,12 @@ TEST(StopMatch, OffsetAndDriftAreRightWithinTheirSigmas) {
     offset2 += off[0] * off[0];
     EXPECT_LT(std::abs(off[0]), 2.5) << seed;
     EXPECT_NEAR(match->late, 1, 1) << seed;
+    late += match->late / kSeeds;
   }
   std::printf("offset rms %.3f s\n", std::sqrt(offset2 / kSeeds));
-  // chi-square of 400 degrees, 0.1 % to 99.9 %: 316 to 497.
-  EXPECT_GT(squares, 250);
-  EXPECT_LT(squares, 520);
+  EXPECT_GT(squares, ChiSquareQuantile(1e-3, 2 * kSeeds));
+  EXPECT_LT(squares, ChiSquareQuantile(1 - 1e-3, 2 * kSeeds));
+  EXPECT_NEAR(late, 1, 0.1);
 }
 
 TEST(StopMatch, TwoStopsOfDifferentLengthAreEnough) {
@@ -82,6 +84,7 @@ TEST(StopMatch, TwoStopsOfDifferentLengthAreEnough) {
   ASSERT_TRUE(match) << match.fault().text;
   EXPECT_NEAR((match->ToUtc(kTool) - kUtc).seconds(), 0, 1e-3);
   EXPECT_GT(match->Sigma(kTool), 0);
+  EXPECT_LT(match->Sigma(kTool), 0.1) << "their edges agree exactly";
 }
 
 TEST(StopMatch, StopsThatAreAllAlikeAreRefused) {

@@ -153,7 +153,7 @@ TEST(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
       kTools, direction / kTools, place / kTools, worst_azimuth / kRad, uncalibrated / kRad);
   for (const double sum : {direction, place}) {
     EXPECT_LT(sum, ChiSquareQuantile(0.995, 2 * kTools));
-    EXPECT_GT(sum, 0.05 * 2 * kTools);
+    EXPECT_GT(sum, ChiSquareQuantile(0.005, 2 * kTools));
   }
   EXPECT_LT(worst_azimuth, 0.1 * uncalibrated);
 }

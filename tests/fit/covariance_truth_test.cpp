@@ -59,6 +59,11 @@ struct ThreeClaims {
     const double square = off.dot(s.cov_p_WT_W.ldlt().solve(off));
     position.Add(square, off.squaredNorm(), s.cov_p_WT_W.trace());
   }
+  void Add(const ThreeClaims& others) {
+    azimuth.Add(others.azimuth);
+    inclination.Add(others.inclination);
+    position.Add(others.position);
+  }
   void ExpectTrue(const std::string& what) const {
     azimuth.ExpectTrue(what + ", azimuth", kRisk);
     inclination.ExpectTrue(what + ", inclination", kRisk);
@@ -66,16 +71,34 @@ struct ThreeClaims {
   }
 };
 
+struct WaysOfSurvey {
+  ThreeClaims reckoned, filtered, adjusted;
+};
+
 struct TruthCase {
   double inclination_deg, rpm;
 };
 
-class CovarianceTruth : public ::testing::TestWithParam<TruthCase> {};
+class CovarianceTruth : public ::testing::TestWithParam<TruthCase> {
+ protected:
+  static void SetUpTestSuite() { all_ = {}; }
+  // Two runs of a case say little, those of all cases together more.
+  static void TearDownTestSuite() {
+    if (WELLGYRO_LONG) return;
+    all_.reckoned.ExpectTrue("all cases, reckoned");
+    all_.filtered.ExpectTrue("all cases, filtered");
+    all_.adjusted.ExpectTrue("all cases, adjusted");
+  }
+  inline static WaysOfSurvey all_;
+};
 
 TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
-  ThreeClaims reckoned, filtered, adjusted;
+  WaysOfSurvey one;
   const Hour hour = WornTool(GetParam().inclination_deg, GetParam().rpm);
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  // Few seeds are each case's own, so that all cases together are as many independent runs.
+  const std::uint64_t first =
+      WELLGYRO_LONG ? 1 : static_cast<std::uint64_t>(10 * hour.inclination_deg + hour.rpm);
+  for (std::uint64_t seed = first; seed < first + kSeeds; ++seed) {
     const Simulation simulation = testing::SimulationOf(hour, seed);
     const Truth truth(simulation);
     const double offset = simulation.tool.errors.depth_offset;
@@ -85,27 +108,30 @@ TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
     Surveyor surveyor(job, sink, &adjuster);
     testing::Play(simulation, surveyor);
     surveyor.Finish();
-    adjusted.Add(surveyor.Current(0).chosen.back(), truth, offset);
+    one.adjusted.Add(surveyor.Current(0).chosen.back(), truth, offset);
     const Station* told = nullptr;
     for (const Station& s : sink.stations) {
       if (s.status != StationStatus::kProvisional || s.pass != Pass::kIn) continue;
       if (told == nullptr || s.md > told->md) told = &s;
     }
     ASSERT_NE(told, nullptr);
-    filtered.Add(*told, truth, offset);
+    one.filtered.Add(*told, truth, offset);
 
     job.alignment.use_fixes = false;
     testing::CollectingSink quiet;
     Surveyor alone(job, quiet);
     testing::Play(simulation, alone);
     alone.Finish();
-    reckoned.Add(alone.Current(0).chosen.back(), truth, offset);
+    one.reckoned.Add(alone.Current(0).chosen.back(), truth, offset);
   }
   const std::string name = "I " + std::to_string(static_cast<int>(GetParam().inclination_deg)) +
                            (GetParam().rpm > 0 ? ", 3 rpm, " : ", sliding, ");
-  reckoned.ExpectTrue(name + "reckoned");
-  filtered.ExpectTrue(name + "filtered");
-  adjusted.ExpectTrue(name + "adjusted");
+  one.reckoned.ExpectTrue(name + "reckoned");
+  one.filtered.ExpectTrue(name + "filtered");
+  one.adjusted.ExpectTrue(name + "adjusted");
+  all_.reckoned.Add(one.reckoned);
+  all_.filtered.Add(one.filtered);
+  all_.adjusted.Add(one.adjusted);
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, CovarianceTruth,

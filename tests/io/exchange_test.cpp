@@ -123,14 +123,18 @@ TEST(Exchange, FilesCutShortAreRefusedOrShorter) {
   for (const SurveyFormat format : kReadable) {
     const SurveyTable full = FullSurvey();
     const std::string text = WriteSurvey(full, format);
+    int shorter = 0;
     for (std::size_t size = 0; size < text.size(); size += 7) {
       const auto table = ParseSurvey(std::string_view(text).substr(0, size), "cut");
       if (!table) continue;
+      ++shorter;
       EXPECT_LE(table->rows(), full.rows());
       for (std::size_t row = 0; row + 1 < table->rows(); ++row) {
         EXPECT_EQ(table->md(row), full.md(row)) << WordOf(format) << " " << size;
       }
     }
+    const bool xml = format == SurveyFormat::kWitsml1411 || format == SurveyFormat::kWitsml21;
+    EXPECT_EQ(shorter == 0, xml) << WordOf(format);
   }
 }
 

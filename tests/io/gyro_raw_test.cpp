@@ -80,8 +80,8 @@ TEST(GyroRaw, AnotherVendorsRecordsAreSurveyedAfresh) {
       const Station& s = survey.chosen[static_cast<std::size_t>(k)];
       EXPECT_EQ(s.kind, StationKind::kStill);
       EXPECT_DOUBLE_EQ(s.md, 30.0 * k);
-      EXPECT_NEAR(ToDegrees(s.inclination), 20 + 5 * k, 0.01);
-      EXPECT_NEAR(ToDegrees(s.azimuth), 50 + 10 * k, 0.1);
+      EXPECT_NEAR(ToDegrees(s.inclination), 20 + 5 * k, 1e-4);
+      EXPECT_NEAR(ToDegrees(s.azimuth), 50 + 10 * k, 1e-3);
     }
   }
 }

@@ -183,15 +183,19 @@ TEST_F(ReferenceFormats, TheSameSurveyInEveryFormat) {
 
 TEST_F(ReferenceFormats, TablesOfEveryStyle) {
   const ReadOptions metres{.depth_unit = LengthUnit::kMetre, .north = North::kGrid};
-  EXPECT_GT(Read("wells/wellpathpy/well9.csv").rows(), 50u);
-  EXPECT_GT(Read("wells/wellpathpy/well10.csv").rows(), 50u);
+  EXPECT_EQ(Read("wells/wellpathpy/well9.csv").rows(), 121u);
+  EXPECT_EQ(Read("wells/wellpathpy/well10.csv").rows(), 121u);
   const SurveyTable report =
       Read("wells/wellpathpy/Well_Surveys_Projected_to_TD.csv", {.north = North::kGrid});
   EXPECT_EQ(report.rows(), 80u);
   EXPECT_THAT(report.head.remarks, testing::ElementsAre(testing::HasSubstr("430.1m")));
-  EXPECT_GT(Read("wells/volve/15_9-F-12_Survey_Data.csv", metres).rows(), 50u);
-  EXPECT_GT(Read("wells/nlog/P11-A-02_SURV.csv", metres).rows(), 50u);
-  EXPECT_GT(Read("wells/wellpathpy/mock_data_set.csv", metres).rows(), 90u);
+  EXPECT_EQ(Read("wells/volve/15_9-F-12_Survey_Data.csv", metres).rows(), 126u);
+  const SurveyTable nlog = Read("wells/nlog/P11-A-02_SURV.csv", metres);
+  EXPECT_EQ(nlog.rows(), 91u);
+  EXPECT_EQ(nlog.md(90), 2691);
+  EXPECT_EQ(nlog.inclination(90), 89.66 * units::kDeg);
+  EXPECT_EQ(nlog.azimuth(90), 319.61 * units::kDeg);
+  EXPECT_EQ(Read("wells/wellpathpy/mock_data_set.csv", metres).rows(), 94u);
   const ReadOptions by_number{
       .columns = {{"MD[m]", "1"}, {"INC", "2"}, {"AZI_GRID", "3"}, {"TVD[m]", "4"}}};
   const SurveyTable iscwsa = Read("wells/iscwsa-1.txt", by_number);

@@ -160,6 +160,7 @@ TEST(SensorFiles, AMemoryToolIsJoinedToTheTallyByItsStops) {
     EXPECT_NEAR(s.inclination, point.inclination, FromDegrees(0.03)) << s.md;
     EXPECT_NEAR(WrapPi(s.azimuth - point.azimuth), 0,
                 5 * std::sqrt(s.cov_md_inc_azi(2, 2)) + FromDegrees(0.01));
+    EXPECT_LT(std::sqrt(s.cov_md_inc_azi(2, 2)), FromDegrees(0.5)) << s.md;
     EXPECT_LT((s.p_WT_W - truth.well().PlaceAt(s.md).p_WT_W).norm(), 1.5) << s.md;
   }
 }

@@ -2,9 +2,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include <gtest/gtest.h>
+
+#include "support/scratch.h"
 
 namespace wellgyro {
 namespace {
@@ -12,13 +13,15 @@ namespace {
 class SeriesFile : public testing::Test {
  protected:
   std::filesystem::path Put(const std::string& name, const std::string& bytes) const {
-    const auto path = std::filesystem::path(testing::TempDir()) / name;
-    std::ofstream(path, std::ios::binary) << bytes;
-    return path;
+    folder_.Write(name, bytes);
+    return folder_.path() / name;
   }
   Result<SampleSeries> Csv(const std::string& text, const SeriesColumns& columns = {}) const {
-    return ReadCsvSeries(Put("series_file_test.csv", text), columns);
+    return ReadCsvSeries(Put("a.csv", text), columns);
   }
+
+ private:
+  support::Scratch folder_;
 };
 
 using Values = std::vector<double>;

@@ -26,6 +26,12 @@ struct Claims {
     variance += var;
     ++count;
   }
+  void Add(const Claims& others) {
+    normalised += others.normalised;
+    squares += others.squares;
+    variance += others.variance;
+    count += others.count;
+  }
   double sigma_deg() const { return ToDegrees(std::sqrt(variance / count)); }
   double rms_deg() const { return ToDegrees(std::sqrt(squares / count)); }
   double mean() const { return normalised / (count * dof); }
