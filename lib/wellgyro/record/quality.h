@@ -32,6 +32,9 @@ constexpr Quality operator&(Quality a, Quality b) {
   return static_cast<Quality>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
 }
 constexpr Quality& operator|=(Quality& a, Quality b) { return a = a | b; }
+constexpr Quality Without(Quality set, Quality bit) {
+  return static_cast<Quality>(static_cast<std::uint32_t>(set) & ~static_cast<std::uint32_t>(bit));
+}
 constexpr bool Has(Quality set, Quality bit) { return (set & bit) != Quality::kGood; }
 
 }  // namespace wellgyro

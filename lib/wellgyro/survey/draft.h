@@ -18,7 +18,10 @@ struct Draft {
   /// Index among the marked stations of the run's filter; absent: `attitude` holds.
   std::optional<std::size_t> state;
   AttitudeSample attitude;  ///< of the tool, where it does not come from the filter
-  bool listed = true;       ///< false: only ties others together, or not asked for after all
+  /// See NorthFix; of `attitude`.
+  std::optional<double> mirror_azimuth;
+  double mirror_cost = 0;
+  bool listed = true;  ///< false: only ties others together, or not asked for after all
 };
 
 /// One run of one tool, ready to be placed.

@@ -92,7 +92,15 @@ void RunSurvey::UseFix(NorthFix fix) {
       fix.closure = used.closure;
       fix.sigma_closure = used.sigma_closure;
     }
-    if (used.use == FixUse::kAmbiguous) fix.quality |= Quality::kMirror;
+    if (used.use == FixUse::kAmbiguous) {
+      fix.quality |= Quality::kMirror;
+    } else if (used.use != FixUse::kNoKnot) {
+      fix.quality = Without(fix.quality, Quality::kMirror);
+    }
+    if (used.use == FixUse::kMirror) {
+      std::swap(fix.azimuth, *fix.mirror_azimuth);
+      fix.mirror_cost = -fix.mirror_cost;
+    }
     if (filter_->attitude().azimuth_known) TellUnheard();
     SetTrackerAzimuth();
   }
@@ -139,6 +147,8 @@ void RunSurvey::Push(const StillWindow& window, const AlongHole& along) {
   TakeReferences(fix, s);
   draft.attitude = {window.end, fix.inclination,  fix.azimuth, fix.toolface,
                     true,       fix.cov_attitude, fix.quality};
+  draft.mirror_azimuth = fix.mirror_azimuth;
+  draft.mirror_cost = fix.mirror_cost;
   drafts_.push_back(draft);
   news_.push_back(drafts_.size() - 1);
 }

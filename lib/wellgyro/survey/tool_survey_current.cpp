@@ -8,6 +8,7 @@
 
 #include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/joined_states.h"
+#include "wellgyro/survey/mirrors.h"
 #include "wellgyro/survey/model_covariance.h"
 #include "wellgyro/survey/run_survey_internal.h"
 #include "wellgyro/survey/tool_survey.h"
@@ -79,8 +80,14 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
       if (contradicted) draft.station.quality |= Quality::kEarthRate;
       if (draft.state && !HasDirection(d.states[*draft.state].attitude)) continue;
       draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
+      // The run as a whole knows one azimuth: no stop of it has two any more.
+      const bool whole = draft.state && *draft.state < run.adjusted.size() &&
+                         run.survey->summary().fit &&
+                         run.adjusted[*draft.state].attitude.azimuth_known;
+      if (whole) draft.station.quality = Without(draft.station.quality, Quality::kMirror);
       d.drafts.push_back(std::move(draft));
     }
+    ResolveMirrors(job_, d.drafts);
     drafted.push_back(std::move(d));
   }
   return drafted;
