@@ -144,9 +144,12 @@ class Calibrate(FreshProgramTest):
             turned = (float(a["AZI_TRUE[deg]"]) - float(b["AZI_TRUE[deg]"]) + 180) % 360 - 180
             worst = max(worst, abs(turned))
             self.assertLess(abs(turned), 3.5 * float(a["SIG_AZI[deg]"]))
+            self.assertLess(float(a["SIG_AZI[deg]"]), 0.3)
+            self.assertLess(float(a["SIG_INC[deg]"]), 0.02)
             self.assertLess(abs(float(a["INC[deg]"]) - float(b["INC[deg]"])),
                             3.5 * float(a["SIG_INC[deg]"]) + 1e-6)
             for axis, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]")):
+                self.assertLess(float(a[variance]), 0.5 ** 2)
                 self.assertLess(abs(float(a[axis]) - float(b[axis])),
                                 3.5 * math.sqrt(float(a[variance])) + 2e-4)
         checks = {row["CODE"]: row for row in self.Rows("calibrated", "checks.csv")}
