@@ -10,6 +10,7 @@
 #include "wellgyro/attitude/smoother.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/random.h"
 
 #include "attitude/filter_truth.h"
 
@@ -233,6 +234,31 @@ TEST(AzimuthFilter, AtRestAzimuthAndItsVarianceStand) {
   for (std::size_t i = 30; i < 60; ++i) filter.Step(run.truth.knots[i]);
   EXPECT_NEAR(filter.attitude().azimuth, before.azimuth, 1e-15);
   EXPECT_NEAR(filter.attitude().cov_attitude(1, 1), before.cov_attitude(1, 1), 1e-18);
+}
+
+// The toolface of a tool at rest jitters; a misaligned gyro does not feel that.
+TEST(AzimuthFilter, AJitterOfTheToolfaceAtRestTeachesNothing) {
+  ToolRun run = StopRun(7);
+  run.setup.errors.gyro_misalignment_sigma = 1e-3;
+  run.setup.errors.time_skew_sigma = 1e-2;
+  Random random(7);
+  AzimuthFilter quiet(run.setup), jittered(run.setup);
+  for (std::size_t i = 0; i < 80; ++i) {
+    quiet.Step(run.truth.knots[i]);
+    Knot knot = run.truth.knots[i];
+    if (knot.still) {
+      knot.d_lift[Knot::kMisalignmentX] += 0.01 * random.Normal();
+      knot.d_turn[Knot::kMisalignmentY] += 0.01 * random.Normal();
+      knot.d_turn[Knot::kTimeSkew] += 0.01 * random.Normal();
+    }
+    jittered.Step(knot);
+    if (i != 60) continue;
+    quiet.Update(StopFix(run));
+    jittered.Update(StopFix(run));
+  }
+  EXPECT_EQ(quiet.attitude().azimuth, jittered.attitude().azimuth);
+  EXPECT_EQ(quiet.attitude().cov_attitude, jittered.attitude().cov_attitude);
+  EXPECT_TRUE(quiet.attitude().azimuth_known);
 }
 
 TEST(Smoother, AtTheLastKnotItIsTheFilter) {

@@ -66,6 +66,14 @@ bool Serves(const Knot& knot, const NorthFix& fix) {
          fix.begin <= BeginOf(knot) + kClockGrain && knot.time <= fix.end + kClockGrain;
 }
 
+// At rest the toolface stands: that it seems to change is noise, and of an error that goes by its
+// change many such knots would learn what they do not hold.
+void ForgetRoll(Knot* knot) {
+  for (const Knot::Source source : {Knot::kMisalignmentX, Knot::kMisalignmentY, Knot::kTimeSkew}) {
+    knot->d_turn[source] = knot->d_lift[source] = 0;
+  }
+}
+
 // A fix as the filter holds an axial knot: by the sum of azimuth and toolface, which is regular.
 void TakeSum(const Knot& knot, NorthFix* fix) {
   const double shift = WrapPi(fix->toolface - knot.toolface);
@@ -313,6 +321,7 @@ const AttitudeSample& AzimuthFilter::Step(const Knot& knot) {
   }
   epochs.emplace_back();
   epochs.back().knot = knot;
+  if (knot.still && !knot.axial) ForgetRoll(&epochs.back().knot);
   if (knot.axial_noise_share < 1) {
     impl_->WorkStretchAgain();
   } else {
