@@ -4,10 +4,12 @@ import filecmp
 import math
 import os
 import random
+import re
+import shlex
 import shutil
 import unittest
 
-from harness import DEMO, RESULT, Job, Move, ProgramTest, Run, Simulation, Stop
+from harness import DEMO, RESULT, TOP, Job, Move, ProgramTest, Run, Simulation, Stop
 
 SIMULATION = Simulation(Stop(120) + Move(300) + Stop(20),
                         "imu_hz = 20.0\ndepth_hz = 4.0\nbatch = 20\n")
@@ -239,6 +241,28 @@ class Program(ProgramTest):
             done = Run(command, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn(f"wellgyro {command}", done.stdout, "an example")
+
+    def test_the_commands_of_the_readme_run_as_they_stand(self):
+        folder = self.Path("readme")
+        os.mkdir(folder)
+        os.symlink(os.path.dirname(DEMO), os.path.join(folder, "data"))
+        self.Write("readme/raw.txt", "0 0 0\n100 1 20\n")
+        self.Log("readme/still", Simulation(Stop(600), "imu_hz = 20.0\n"))
+        text = self.Read(TOP, "README.md").replace("\\\n", "")
+        job = self.Write("readme/job.toml", re.search(r"(?s)```toml\n(.*?)```", text).group(1))
+        latitude = self.Toml(job)["well"]["latitude_deg"]
+        self.Log("readme/tool", SIMULATION.replace("61.0", str(latitude)))
+        ran = set()
+        commands = [match.group(1) or match.group(2) for match in
+                    re.finditer(r"(?m)^(wellgyro .*)$|`(wellgyro survey --job job[^`]+)`", text)]
+        for command in commands:
+            arguments = shlex.split(command)[1:]
+            if "udpm" in command or "memory.csv" in command:
+                continue
+            done = Run(*arguments, cwd=folder)
+            self.assertEqual(done.returncode, 0, command + "\n" + done.stderr)
+            ran.add(arguments[0])
+        self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate"})
 
     def test_the_demonstration(self):
         done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
