@@ -119,12 +119,11 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   }
   LinearProblem problem = AffineProblem(groups, table->lines, setup.tilt_sigma);
   problem.sigma_given = given;
-  const auto solution =
-      SolveWhole(problem, "measure attitudes that are not all in one plane or on one cone");
-  if (!solution) return BenchFault(data, solution.fault().text);
-
+  auto whole = WholeReport(data, problem, Solve(problem),
+                           "measure attitudes that are not all in one plane or on one cone");
+  if (!whole) return whole.fault();
   BenchCalibration out;
-  out.report = ReportOf(problem, *solution);
+  out.report = *std::move(whole);
   out.report.method = "affine";
   std::vector<ChannelSignal> signals;
   for (const std::string& channel : table->accel_channels) {
@@ -135,7 +134,7 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   }
   int first = 0;
   for (const AffineReadings& group : groups) {
-    if (auto fault = WrongAxes(data, MatrixAt(solution->x, first + 3), group.channels)) {
+    if (auto fault = WrongAxes(data, MatrixAt(out.report.values, first + 3), group.channels)) {
       return *fault;
     }
     AddGroup(group, *table, setup.reference, first, out);

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
 #include "wellgyro/math/statistics.h"
 
@@ -100,6 +101,17 @@ FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution)
         report.scatter));
   }
   return report;
+}
+
+Result<FitReport> WholeReport(const BenchTable& data, const LinearProblem& problem,
+                              const LinearSolution& solution, std::string_view advice) {
+  if (solution.unseen.empty()) return ReportOf(problem, solution);
+  std::string text = "the readings do not determine";
+  for (std::size_t i = 0; i < solution.unseen.size() && i < 3; ++i) {
+    text += fmt::format("{} {}", i > 0 ? ", nor" : "", solution.unseen[i]);
+  }
+  if (solution.unseen.size() > 3) text += fmt::format(", nor {} more", solution.unseen.size() - 3);
+  return BenchFault(data, fmt::format("{}: {}", text, advice));
 }
 
 void Reparametrise(FitReport& report, std::vector<std::string> names,

@@ -351,15 +351,15 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
         "the anisoelastic terms are left out: no attitude has force along input and spin axis at "
         "once; add inclinations of 45 deg and toolfaces that are no multiples of 90 deg");
   }
-  const auto whole = SolveWhole(
-      fitted.problem,
+  auto whole = WholeReport(
+      data, fitted.problem, fitted.solution,
       "measure inclinations every 45 deg, four azimuths and toolfaces every 60 deg, or join a rate "
       "table's readings");
-  if (!whole) return BenchFault(data, whole.fault().text);
-  if (auto fault = WrongChannels(data, *readings, whole->x)) return *fault;
+  if (!whole) return whole.fault();
+  if (auto fault = WrongChannels(data, *readings, whole->values)) return *fault;
 
   BenchCalibration out;
-  out.report = ReportOf(fitted.problem, *whole);
+  out.report = *std::move(whole);
   FitReport& report = out.report;
   constexpr double kEarth = kBenchEarthRate / units::kDegPerHour;
   const double largest = readings->w.cwiseAbs().maxCoeff();

@@ -237,15 +237,4 @@ LinearSolution Solve(const LinearProblem& problem) {
   return rest;
 }
 
-Result<LinearSolution> SolveWhole(const LinearProblem& problem, std::string_view advice) {
-  LinearSolution solution = Solve(problem);
-  if (solution.unseen.empty()) return solution;
-  std::string text = "the readings do not determine";
-  for (std::size_t i = 0; i < solution.unseen.size() && i < 3; ++i) {
-    text += fmt::format("{} {}", i > 0 ? ", nor" : "", solution.unseen[i]);
-  }
-  if (solution.unseen.size() > 3) text += fmt::format(", nor {} more", solution.unseen.size() - 3);
-  return Fault{.code = FaultCode::kRange, .text = fmt::format("{}: {}", text, advice)};
-}
-
 }  // namespace wellgyro

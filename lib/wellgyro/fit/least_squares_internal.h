@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/base/result.h"
+#include "wellgyro/calibration/bench_table.h"
 #include "wellgyro/calibration/fit_report.h"
 
 namespace wellgyro {
@@ -53,12 +54,13 @@ struct LinearSolution {
 /// left out, and the rest solved without it.
 LinearSolution Solve(const LinearProblem& problem);
 
-/// Solve, for problems that must determine everything: the Fault names what they do not, and says
-/// `advice`.
-Result<LinearSolution> SolveWhole(const LinearProblem& problem, std::string_view advice);
-
 /// What people read of a solution.
 FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution);
+
+/// The report of a solution that must determine everything: the Fault, of `data`, names what the
+/// readings do not, and says `advice`.
+Result<FitReport> WholeReport(const BenchTable& data, const LinearProblem& problem,
+                              const LinearSolution& solution, std::string_view advice);
 
 /// Takes the report from its parameters to functions of them; the covariance by differences.
 void Reparametrise(FitReport& report, std::vector<std::string> names,

@@ -315,11 +315,10 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
     if (auto fault = BadField(data, *table, setup.reference)) return *fault;
   }
   const auto solution = SolveStations(data, *rates, *table, setup);
-  if (!solution) return BenchFault(data, solution.fault().text);
-  const auto linear = SolveWhole(*solution, kAdvice);
-  if (!linear) return BenchFault(data, linear.fault().text);
+  auto whole = WholeReport(data, solution, kAdvice);
+  if (!whole) return whole.fault();
   BenchCalibration out;
-  out.report = ReportOf(solution->linear, *linear);
+  out.report = *std::move(whole);
   FitReport& report = out.report;
   report.method = "multi-station";
   if (auto fault = DoesNotFit(data,

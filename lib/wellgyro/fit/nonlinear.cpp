@@ -5,6 +5,7 @@
 
 #include <ceres/ceres.h>
 
+#include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/nonlinear_internal.h"
 
 namespace wellgyro {
@@ -173,11 +174,13 @@ Result<NonlinearProblem::Solution> NonlinearProblem::Solve() const {
   return Solution{minimum.x, Linearise(minimum.x, outliers), minimum.cost, outliers};
 }
 
-Result<LinearSolution> SolveWhole(const NonlinearProblem::Solution& solution,
-                                  std::string_view advice) {
-  auto linear = SolveWhole(solution.linear, advice);
-  if (linear) linear->outlier_lines = solution.outlier_lines;
-  return linear;
+Result<FitReport> WholeReport(const BenchTable& data,
+                              const Result<NonlinearProblem::Solution>& solution,
+                              std::string_view advice) {
+  if (!solution) return BenchFault(data, solution.fault().text);
+  LinearSolution linear = Solve(solution->linear);
+  linear.outlier_lines = solution->outlier_lines;
+  return WholeReport(data, solution->linear, linear, advice);
 }
 
 }  // namespace wellgyro

@@ -77,8 +77,9 @@ class NonlinearProblem {
   std::vector<BoundOf> bounds_;
 };
 
-/// The statistics of a solution, whole; the Fault names what the readings do not determine.
-Result<LinearSolution> SolveWhole(const NonlinearProblem::Solution& solution,
-                                  std::string_view advice);
+/// The same of a problem that is not linear; or why it has no solution.
+Result<FitReport> WholeReport(const BenchTable& data,
+                              const Result<NonlinearProblem::Solution>& solution,
+                              std::string_view advice);
 
 }  // namespace wellgyro

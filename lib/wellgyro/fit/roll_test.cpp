@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -116,12 +117,12 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
   const auto about = FindAxis(data, Directions(table->accel, sets, n_sets));
   if (!about) return about.fault();
   const LinearProblem problem = Problem(*table, sets, n_sets, *about, setup.sigma);
-  const auto solution = SolveWhole(problem,
-                                   "roll the tool right round, and at inclinations where "
-                                   "gravity lies across it");
-  if (!solution) return BenchFault(data, solution.fault().text);
+  auto whole = WholeReport(data, problem, Solve(problem),
+                           "roll the tool right round, and at inclinations where "
+                           "gravity lies across it");
+  if (!whole) return whole.fault();
   BenchCalibration out;
-  out.report = ReportOf(problem, *solution);
+  out.report = *std::move(whole);
   FitReport& report = out.report;
   report.method = "roll-test";
   const double length = table->accel.rowwise().norm().maxCoeff();

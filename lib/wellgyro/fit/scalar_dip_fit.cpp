@@ -190,12 +190,10 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   Eigen::VectorXd x = start->x;
   Result<NonlinearProblem::Solution> solution = Problem(*table, setup, start->sigma, x).Solve();
   if (solution) solution = Problem(*table, setup, start->sigma, solution->x).Solve();
-  if (!solution) return BenchFault(data, solution.fault().text);
-  const auto linear = SolveWhole(*solution, kAdvice);
-  if (!linear) return BenchFault(data, linear.fault().text);
-
+  auto whole = WholeReport(data, solution, kAdvice);
+  if (!whole) return whole.fault();
   BenchCalibration out;
-  out.report = ReportOf(solution->linear, *linear);
+  out.report = *std::move(whole);
   if (auto fault = DoesNotFit(
           data,
           {{"gravity", setup.reference.gravity}, {"field", *setup.reference.field}, {"dip", 1}},

@@ -125,12 +125,10 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
   const auto solution =
       SolveScalar({table->lines, table->accel, setup.reference.gravity, setup.sigma_accel});
-  if (!solution) return BenchFault(data, solution.fault().text);
-  const auto linear = SolveWhole(*solution, kAdvice);
-  if (!linear) return BenchFault(data, linear.fault().text);
-
+  auto whole = WholeReport(data, solution, kAdvice);
+  if (!whole) return whole.fault();
   BenchCalibration out;
-  out.report = ReportOf(solution->linear, *linear);
+  out.report = *std::move(whole);
   FitReport& report = out.report;
   report.method = "scalar";
   if (auto fault = DoesNotFit(data, {{"length", setup.reference.gravity}}, report)) return *fault;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -232,15 +233,15 @@ Result<BenchCalibration> FitSixPositions(const BenchTable& data, const Setup& se
   if (auto fault = BadPositions(data, *positions, setup)) return *fault;
   LinearProblem problem = Problem(*positions);
   Weigh(*positions, SigmaOf(*positions, setup, problem), problem);
-  const auto solution = SolveWhole(problem, "measure all six positions");
-  if (!solution) return BenchFault(data, solution.fault().text);
-  const Eigen::VectorXd nine = solution->x.tail<9>();
+  auto whole = WholeReport(data, problem, Solve(problem), "measure all six positions");
+  if (!whole) return whole.fault();
+  const Eigen::VectorXd nine = whole->values.tail<9>();
   const Eigen::Matrix3d S =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nine.data());
   if (auto fault = WrongAxes(data, S, {"Nx", "Ny", "Nz"})) return *fault;
 
   BenchCalibration out;
-  out.report = ReportOf(problem, *solution);
+  out.report = *std::move(whole);
   FitReport& report = out.report;
   if (auto fault =
           DoesNotFit(data, {{"", S.diagonal().cwiseAbs().minCoeff() * setup.gravity}}, report)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -137,10 +138,11 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   const double coldest = readings->t.minCoeff(), hottest = readings->t.maxCoeff();
   const bool bends = hottest > knee;
   const LinearProblem problem = Problem(*readings, setup, knee, bends);
-  const auto solution = SolveWhole(problem, "read the thermometers at more temperatures");
-  if (!solution) return BenchFault(data, solution.fault().text);
+  auto whole =
+      WholeReport(data, problem, Solve(problem), "read the thermometers at more temperatures");
+  if (!whole) return whole.fault();
   BenchCalibration out;
-  out.report = ReportOf(problem, *solution);
+  out.report = *std::move(whole);
   FitReport& report = out.report;
   report.method = "thermometer";
   if (auto fault = DoesNotFit(data, {{"t_m", hottest - coldest}}, report)) return *fault;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -189,9 +190,9 @@ struct Fitted {
 Result<Fitted> Fit(const BenchTable& data, const std::vector<PositionRun>& runs, const Setup& setup,
                    int degree) {
   const LinearProblem problem = Problem(runs, setup, degree);
-  const auto solution = SolveWhole(problem, "measure all 24 positions");
-  if (!solution) return BenchFault(data, solution.fault().text);
-  Fitted fitted{ReportOf(problem, *solution), 0};
+  auto whole = WholeReport(data, problem, Solve(problem), "measure all 24 positions");
+  if (!whole) return whole.fault();
+  Fitted fitted{*std::move(whole), 0};
   const Eigen::Matrix3d S = SensitivityOf(fitted.report.values, 0);
   if (auto fault = WrongAxes(data, S, {"x", "y", "z"})) return *fault;
   const double volts_per_g = S.diagonal().cwiseAbs().minCoeff() * setup.gravity;
