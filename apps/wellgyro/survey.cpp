@@ -135,6 +135,34 @@ int SurveyAny(SurveyOptions options) {
   return tables ? SurveyTables(options, *job) : SurveyLog(options, *job);
 }
 
+void AddLiveOptions(CLI::App& command, SurveyOptions& options) {
+  command.add_option("--record", options.record, "Write what is heard live to this LCM log")
+      ->type_name("LOG");
+  command.add_flag("--resume", options.resume,
+                   "Continue a live survey that was cut off, from its --record log");
+  command
+      .add_option("--fill", options.fill,
+                  "With --resume: another recorder's log, for what was sent meanwhile")
+      ->type_name("LOG");
+}
+
+void AddFormats(CLI::App& command, SurveyOptions& options) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--formats",
+          [&options](const std::vector<std::string>& words) {
+            for (const std::string& word : words) {
+              options.formats.push_back(*SurveyFormatOf(word));
+            }
+          },
+          "Files for others, beside survey.csv: las, p717, witsml (1.4.1.1), witsml21, petrel, "
+          "compass, osdu")
+      ->delimiter(',')
+      ->check(
+          CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu"}))
+      ->type_name("LIST");
+}
+
 }  // namespace
 
 void AddSurvey(CLI::App& app, int& exit_code) {
@@ -157,28 +185,8 @@ void AddSurvey(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "Folder for the survey files")
       ->required()
       ->type_name("DIR");
-  command->add_option("--record", options->record, "Write what is heard live to this LCM log")
-      ->type_name("LOG");
-  command->add_flag("--resume", options->resume,
-                    "Continue a live survey that was cut off, from its --record log");
-  command
-      ->add_option("--fill", options->fill,
-                   "With --resume: another recorder's log, for what was sent meanwhile")
-      ->type_name("LOG");
-  command
-      ->add_option_function<std::vector<std::string>>(
-          "--formats",
-          [options](const std::vector<std::string>& words) {
-            for (const std::string& word : words) {
-              options->formats.push_back(*SurveyFormatOf(word));
-            }
-          },
-          "Files for others, beside survey.csv: las, p717, witsml (1.4.1.1), witsml21, petrel, "
-          "compass, osdu")
-      ->delimiter(',')
-      ->check(
-          CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu"}))
-      ->type_name("LIST");
+  AddLiveOptions(*command, *options);
+  AddFormats(*command, *options);
   command->footer(
       "Example:\n  wellgyro survey --job data/demo/job.toml --from data/demo/run.lcm "
       "--out result\n"

@@ -63,9 +63,8 @@ std::optional<double> UtcOf(std::string_view text) {
   }
   const auto zone = ZoneOf(text.substr(end));
   if (!zone) return std::nullopt;
-  const std::int64_t whole =
-      DaysOf(*year, *month, *day) * 86400 + *hour * 3600 + *minute * 60 + *second - *zone;
-  return static_cast<double>(whole) + fraction;
+  const int clock = *hour * 3600 + *minute * 60 + *second - *zone;
+  return static_cast<double>(DaysOf(*year, *month, *day) * 86400 + clock) + fraction;
 }
 
 std::string IsoUtc(double seconds) {

@@ -106,7 +106,7 @@ class P717Writer {
   }
 
   static std::string Or(const std::string& text, std::string_view otherwise) {
-    return Plain(text.empty() ? otherwise : std::string_view(text));
+    return Plain(text.empty() ? otherwise : std::string_view{text});
   }
 
   double Md() const { return FactorOf(head_.md_unit); }
