@@ -121,6 +121,10 @@ sag_sigma_deg = 0.02
 misalignment_x_deg = 0.01
 misalignment_y_deg = -0.02
 misalignment_sigma_deg = 0.03
+[magnetic]
+declination_deg = -3.5
+sigma_deg = 0.4
+tie = true
 [acceptance]
 gravity_mps2 = 0.006
 earth_rate_deg_per_h = 0.67
@@ -268,6 +272,10 @@ TEST(ReadJob, TakesWhatTheRunIsLike) {
 
 TEST(ReadJob, TakesLimitsRunsAndEvents) {
   const Job job = Parse(kWhole)->job;
+  ASSERT_TRUE(job.magnetic.has_value());
+  EXPECT_DOUBLE_EQ(job.magnetic->declination, -3.5 * kDeg);
+  EXPECT_DOUBLE_EQ(job.magnetic->sigma, 0.4 * kDeg);
+  EXPECT_TRUE(job.magnetic->tie);
   EXPECT_EQ(job.acceptance.gravity, 0.006);
   EXPECT_DOUBLE_EQ(job.acceptance.earth_rate.value(), 0.67 * kDegPerHour);
   EXPECT_DOUBLE_EQ(job.acceptance.inclination_difference.value(), 0.23 * kDeg);
@@ -371,7 +379,7 @@ TEST(ReadJob, AWrongTypeIsAnErrorWithItsLine) {
     for (const char* value : {"{}", "[1, 'x']", "1979-05-27", "true", "'word'", "nan", "-inf"}) {
       if (identity && value[0] != '{' && value[0] != '[') continue;
       if (value[0] == '\'' && text) continue;
-      if (value[0] == 't' && (key == "use_fixes" || key == "at_stops")) continue;
+      if (value[0] == 't' && (key == "use_fixes" || key == "at_stops" || key == "tie")) continue;
       const auto file = Parse(WithLine(number, key + " = " + value));
       ASSERT_FALSE(file) << key << " = " << value;
       EXPECT_EQ(file.fault().line, number) << key << " = " << value << ": " << file.fault().text;

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/alignment/gyrocompass_internal.h"
+#include "wellgyro/alignment/magnetic.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -171,6 +172,7 @@ NorthFix Frame(std::span<const StillWindow> windows) {
   fix.run = last.run;
   fix.tool = last.tool;
   fix.md = last.md;
+  fix.magnetic_azimuth = MagneticAzimuth(windows);
   fix.from_samples = std::ranges::all_of(windows, [](const auto& w) { return w.samples > 0; });
   for (const StillWindow& window : windows) {
     fix.quality |= window.quality;

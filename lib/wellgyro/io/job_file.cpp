@@ -66,6 +66,7 @@ class JobReader {
     if (auto table = root.FindTable("stations")) job.stations = ReadStations(*table);
     if (auto table = root.FindTable("depth")) job.depth = ReadDepth(*table);
     if (auto table = root.FindTable("string")) job.string = ReadString(*table);
+    if (auto table = root.FindTable("magnetic")) job.magnetic = ReadMagnetic(*table);
     if (auto table = root.FindTable("acceptance")) job.acceptance = ReadAcceptance(*table);
     TakeRuns(root);
     for (const TomlTable& table : root.FindTables("event")) job.events.push_back(ReadEvent(table));

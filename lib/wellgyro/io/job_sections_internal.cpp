@@ -286,6 +286,16 @@ StringSpec ReadString(TomlTable table) {
   return spec;
 }
 
+MagneticSpec ReadMagnetic(TomlTable table) {
+  MagneticSpec spec;
+  constexpr TomlRange kSigmaDeg{.min = 1e-6, .max = 179};
+  const auto declination = table.FindNumber("declination_deg", {.min = -180, .max = 180});
+  spec.declination = kDeg * table.Need("declination_deg", declination);
+  spec.sigma = kDeg * table.Need("sigma_deg", table.FindNumber("sigma_deg", kSigmaDeg));
+  table.Read("tie", spec.tie);
+  return spec;
+}
+
 Acceptance ReadAcceptance(TomlTable table) {
   Acceptance limits;
   table.Read("gravity_mps2", limits.gravity, 1, kPositive);

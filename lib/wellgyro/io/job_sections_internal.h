@@ -15,6 +15,7 @@ AttitudeSpec ReadAttitude(TomlTable table);
 StationSpec ReadStations(TomlTable table);
 DepthSpec ReadDepth(TomlTable table);
 StringSpec ReadString(TomlTable table);
+MagneticSpec ReadMagnetic(TomlTable table);
 Acceptance ReadAcceptance(TomlTable table);
 RunSpec ReadRun(TomlTable table);
 Event ReadEvent(TomlTable table);

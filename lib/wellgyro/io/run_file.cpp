@@ -72,6 +72,7 @@ void WriteFix(TomlWriter& toml, const NorthFix& fix) {
   deg("sigma_inclination_deg", std::sqrt(fix.cov_attitude(0, 0)));
   deg("sigma_azimuth_deg", std::sqrt(fix.cov_attitude(1, 1)));
   deg("sigma_toolface_deg", std::sqrt(fix.cov_attitude(2, 2)));
+  if (fix.magnetic_azimuth) deg("azimuth_magnetic_deg", *fix.magnetic_azimuth);
   if (fix.mirror_azimuth) {
     deg("mirror_azimuth_true_deg", WrapTwoPi(*fix.mirror_azimuth));
     toml.Number("mirror_cost", fix.mirror_cost);

@@ -26,6 +26,9 @@ struct NorthFix {
   double toolface = 0;       ///< from the high side to the reference mark [rad]
   /// Of (inclination, azimuth, toolface) [rad^2].
   Eigen::Matrix3d cov_attitude = Eigen::Matrix3d::Zero();
+  /// Of the axis, clockwise from magnetic north, where the tool has magnetometers [rad]. Compared
+  /// with `azimuth`, and never in it.
+  std::optional<double> magnetic_azimuth;
   /// Second minimum of the cost, kept whenever the data cannot exclude it.
   std::optional<double> mirror_azimuth;
   double mirror_cost = 0;  ///< cost of the mirror less cost of the solution, chi-square units

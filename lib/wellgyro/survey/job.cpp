@@ -65,6 +65,13 @@ void CheckAlignment(const AlignmentSpec& alignment) {
   }
 }
 
+void CheckMagnetic(const MagneticSpec& magnetic) {
+  RequireWithin("magnetic.declination [rad]", magnetic.declination, -kPi, kPi);
+  if (!(magnetic.sigma > 0) || !(magnetic.sigma < kPi)) {
+    Refuse("magnetic.sigma [rad]", magnetic.sigma, "is not inside (0, pi)");
+  }
+}
+
 void CheckDepth(const DepthSpec& depth) {
   RequireWithin("depth.latency_s", depth.latency, 0, 600);
   RequireWithin("depth.max_gap_s", depth.max_gap, 0.1, 600);
@@ -136,6 +143,7 @@ void CheckJob(const Job& job) {
   RequireWithin("well.datum_elevation_m", job.well.datum_elevation, -12000, 9000);
   CheckTieIn(job.tie_in);
   CheckAlignment(job.alignment);
+  if (job.magnetic) CheckMagnetic(*job.magnetic);
   CheckDepth(job.depth);
   CheckErrors(job.noise, job.errors);
   if (job.tool) {

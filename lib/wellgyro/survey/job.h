@@ -47,6 +47,14 @@ struct AttitudeSpec {
   TrackerOptions::Order order = TrackerOptions::kThird;  ///< the second is cheaper, not better
 };
 
+/// What the job says of the magnetic azimuths of a tool that has magnetometers.
+struct MagneticSpec {
+  double declination = 0;  ///< true azimuth less magnetic [rad]
+  /// 1-sigma of an azimuth made true by it: tool, string and declination, alike at all stops [rad].
+  double sigma = 0;
+  bool tie = false;  ///< the first of each run ties the run's azimuth; else they are only compared
+};
+
 struct StationSpec {
   double every = 10;       ///< spacing [m]; 0: none
   std::vector<double> at;  ///< depths asked for [m]
@@ -109,6 +117,7 @@ struct Job {
   std::optional<ErrorModel> error_model;  ///< absent: covariance from the run itself alone
   Channels channels;
   AlignmentSpec alignment;
+  std::optional<MagneticSpec> magnetic;
   AttitudeSpec attitude;
   StationSpec stations;
   DepthSpec depth;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/record/knot_sources.h"
@@ -55,6 +56,28 @@ void CheckBiases(const Job& job, const RunSummary& run, std::vector<Check>& chec
   checks.push_back(
       Compare("bias_repeatability", run.run, worst, std::nullopt, units::kDegPerHour, "deg/h"));
   checks.back().md = where->md;
+}
+
+/// The gyros' azimuth at each stop against the magnetic one.
+void CheckMagnets(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
+  bool measured = false, compared = false;
+  for (const NorthFix& fix : run.fixes) {
+    const bool doubtful = Has(fix.quality, Quality::kVertical | Quality::kMirror);
+    if (fix.external || !fix.magnetic_azimuth) continue;
+    measured = true;
+    if (doubtful || !job.magnetic) continue;
+    compared = true;
+    const double magnetic = *fix.magnetic_azimuth + job.magnetic->declination;
+    const double sigma = std::hypot(std::sqrt(fix.cov_attitude(1, 1)), job.magnetic->sigma);
+    checks.push_back(Compare("magnetic_azimuth", run.run, {WrapPi(fix.azimuth - magnetic), sigma},
+                             std::nullopt, units::kDeg, "deg"));
+    checks.back().md = fix.md;
+  }
+  if (compared) return;
+  const char* why = !measured       ? "no magnetometers at rest"
+                    : !job.magnetic ? "the job gives no declination: [magnetic]"
+                                    : "no stop that tells the azimuth from its mirror";
+  checks.push_back(NotDone("magnetic_azimuth", run.run, why));
 }
 
 /// A source of a Knot as people know it.
@@ -144,6 +167,7 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
     checks.push_back(NotDone("drift_closure", run.run, "no two independent norths"));
   }
   CheckBiases(job, run, checks);
+  CheckMagnets(job, run, checks);
 }
 
 void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks) {

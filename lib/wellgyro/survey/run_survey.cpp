@@ -64,7 +64,8 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
       tracker_(TrackerOptionsOf(job)),
       vertical_(VerticalSetupOf(job)),
       still_(StillSetupOf(job)),
-      external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal) {
+      external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal),
+      magnet_pending_(job.magnetic && job.magnetic->tie) {
   summary_.run = run;
   summary_.tool = tool;
 }

@@ -108,6 +108,7 @@ class RunSurvey {
   void SetTrackerAzimuth();
   void TellUnheard();
   void UseFix(NorthFix fix);
+  void TieByMagnet(const NorthFix& fix);
   void MoveSite(const Knot& knot);
   void ListStop(const NorthFix& fix);
 
@@ -132,6 +133,7 @@ class RunSurvey {
   bool depth_seen_ = false;
   double seconds_unknown_ = 0;  ///< since the last sample with a depth [s]
   bool external_pending_ = false;
+  bool magnet_pending_ = false;  ///< a magnetic azimuth is still to tie the run
   std::optional<double> asked_md_;
   bool asked_ = false;
   bool temperature_outside_ = false;  ///< since the last knot

@@ -78,7 +78,29 @@ void RunSurvey::CloseGroup() {
   CheckStop();
   const NorthFix fix = FixOf(group_);
   group_.clear();
+  if (magnet_pending_ && fix.magnetic_azimuth && !Has(fix.quality, Quality::kVertical)) {
+    TieByMagnet(fix);
+  }
   UseFix(fix);
+}
+
+/// The magnetic azimuth of a stop, before its own fix, which it may tell from its mirror. Once:
+/// what is wrong with one is wrong with all.
+void RunSurvey::TieByMagnet(const NorthFix& fix) {
+  magnet_pending_ = false;
+  NorthFix tie;
+  tie.run = fix.run;
+  tie.tool = fix.tool;
+  tie.md = fix.md;
+  tie.external = true;
+  tie.begin = tie.end = fix.begin;
+  tie.utc_begin = tie.utc_end = fix.utc_begin;
+  tie.inclination = fix.inclination;
+  tie.toolface = fix.toolface;
+  tie.magnetic_azimuth = fix.magnetic_azimuth;
+  tie.azimuth = WrapTwoPi(*fix.magnetic_azimuth + job_.magnetic->declination);
+  tie.cov_attitude(1, 1) = job_.magnetic->sigma * job_.magnetic->sigma;
+  UseFix(tie);
 }
 
 void RunSurvey::UseFix(NorthFix fix) {
