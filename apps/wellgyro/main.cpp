@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "wellgyro/fit/solver_log.h"
+
 #include "commands.h"
 
 namespace wellgyro::apps {
@@ -34,6 +36,7 @@ int Run(int argc, char** argv) {
 }  // namespace wellgyro::apps
 
 int main(int argc, char** argv) {
+  wellgyro::QuietSolverLog();
   try {
     return wellgyro::apps::Run(argc, argv);
   } catch (const std::exception& error) {

@@ -261,6 +261,7 @@ class Program(ProgramTest):
                 continue
             done = Run(*arguments, cwd=folder)
             self.assertEqual(done.returncode, 0, command + "\n" + done.stderr)
+            self.assertNotIn(".cc:", done.stderr, "a line of the solver's log")
             ran.add(arguments[0])
         self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate"})
 
