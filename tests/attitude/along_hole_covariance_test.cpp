@@ -122,6 +122,37 @@ TEST(AlongHoleCovariance, AgainstDepthTheSumRunsTheOtherWay) {
   EXPECT_NEAR(cov[180](1, 1), expected, 1e-4 * expected);
 }
 
+// Noise s of the inclination that lasts for T: the depth's variance after t is
+// (v s sin I)^2 2 (T t - T^2 (1 - e^(-t/T))), however many stations there are.
+TEST(AlongHoleCovariance, NoiseOfTheInclinationDoesNotAverageOutOverCloseStations) {
+  constexpr double kSigma = 1e-5, kLasts = 8, kSeconds = 1000;
+  const double expected = std::pow(kSpeed * kSigma * std::sin(kInclination), 2) * 2 *
+                          (kLasts * kSeconds - kLasts * kLasts);
+  for (const double every : {0.5, 2.0, 4.0}) {
+    for (const bool out : {false, true}) {
+      std::vector<StationState> stations;
+      for (int i = 0; i <= std::lround(kSeconds / every); ++i) {
+        const double t = every * i;
+        StationState& s = stations.emplace_back();
+        s.epoch = static_cast<std::size_t>(i);
+        s.attitude.time.ns = Duration::Seconds(t).ns;
+        s.attitude.inclination = kInclination;
+        s.along.md = kSpeed * (out ? kSeconds - t : t);
+        s.cov.setZero(1, 1);
+        if (i > 0) s.cov_with_previous.setZero(1, 1);
+        s.angles.setZero(2, 1);
+        s.cov_white(0, 0) = kSigma * kSigma;
+        s.lean_seconds = kLasts;
+      }
+      if (out) std::reverse(stations.begin(), stations.end());
+      const auto cov = CovarianceAlongHole(
+          stations, out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth,
+          Eigen::Matrix3d::Zero(), 0);
+      EXPECT_NEAR(cov.back()(2, 2), expected, 0.03 * expected) << every << (out ? " out" : " in");
+    }
+  }
+}
+
 TEST(AlongHoleCovariance, StationsLeftOutOnlyMakeTrapezoidsLonger) {
   FilterSetup setup = SetupAt(FromDegrees(60));
   for (const Process& p : Processes()) p.set(&setup);

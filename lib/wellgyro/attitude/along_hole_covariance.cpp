@@ -51,6 +51,8 @@ void AlongHoleCovariance::Advance(const StationState& station) {
   if (link.size() == 0) {
     cov_with_state_ = Rows::Zero(3, station.cov.rows());
     slope_with_state_ = Rows::Zero(3, station.cov.rows());
+    cov_with_lean_.setZero();
+    slope_with_lean_.setZero();
     return;
   }
   if (with_depth ? station.epoch <= epoch_ : station.epoch >= epoch_) {
@@ -61,6 +63,12 @@ void AlongHoleCovariance::Advance(const StationState& station) {
   const FilterMatrix carry = SolveCovariance(state_cov_, cross);
   cov_with_state_ = (cov_with_state_ * carry).eval();
   slope_with_state_ = (slope_with_state_ * carry).eval();
+  const double seconds = std::abs((station.attitude.time - time_).seconds());
+  const double lasts = station.lean_seconds > 0 ? std::exp(-seconds / station.lean_seconds) : 0;
+  const double lean =
+      lean_variance_ > 0 ? lasts * std::sqrt(station.cov_white(0, 0) / lean_variance_) : 0;
+  cov_with_lean_ *= lean;
+  slope_with_lean_ *= lean;
 }
 
 void AlongHoleCovariance::Skip(const StationState& station) {
@@ -68,6 +76,8 @@ void AlongHoleCovariance::Skip(const StationState& station) {
   epoch_ = station.epoch;
   state_cov_ = station.cov;
   state_cov_with_previous_ = station.cov_with_previous;
+  lean_variance_ = station.cov_white(0, 0);
+  time_ = station.attitude.time;
 }
 
 Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
@@ -86,20 +96,25 @@ Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
   if (first) {
     any_ = true;
     cov_with_slope_.setZero();
+    cov_with_lean_.setZero();
     cov_with_state_ = Rows::Zero(3, station.cov.rows());
   } else {
     // r' = (r + half s) + half s'
     const double half = (station.along.md - md_) / 2;
     const Rows upper = cov_with_state_ + half * slope_with_state_;
-    const Eigen::Matrix3d upper_slope = upper * rows.transpose();
+    const Eigen::Vector3d upper_lean = cov_with_lean_ + half * slope_with_lean_;
+    const Eigen::Matrix3d upper_slope =
+        upper * rows.transpose() + upper_lean * slope.col(0).transpose();
     cov_ += half * PlusTransposed(cov_with_slope_ + upper_slope) +
             half * half * (cov_slope_ + cov_slope);
     cov_with_slope_ = upper_slope + half * cov_slope;
     cov_with_state_ = upper + half * rows_cov;
+    cov_with_lean_ = upper_lean + half * lean_variance_ * slope.col(0);
   }
   md_ = station.along.md;
   cov_slope_ = cov_slope;
   slope_with_state_ = rows_cov;
+  slope_with_lean_ = lean_variance_ * slope.col(0);
 
   const double sigma = std::max(depth_sigma_, station.along.sigma_md);
   const Eigen::Vector3d tangent = Tangent(inclination, azimuth);

@@ -8,6 +8,7 @@
 
 #include "wellgyro/attitude/filter_state.h"
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/time.h"
 
 namespace wellgyro {
 
@@ -50,7 +51,11 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   Eigen::Matrix3d cov_with_slope_;  // E[r s']
   Rows cov_with_state_;             // E[r x'], x of the station last seen, added or skipped
   Rows slope_with_state_;           // E[s x']
-  std::size_t epoch_ = 0;           // of that station
+  // The same with the part of the inclination's error that is in no state, and its variance there.
+  Eigen::Vector3d cov_with_lean_, slope_with_lean_;
+  double lean_variance_ = 0;
+  ToolTime time_;          // of that station
+  std::size_t epoch_ = 0;  // of that station
   FilterMatrix state_cov_, state_cov_with_previous_;
 };
 

@@ -352,6 +352,10 @@ AttitudeSample AttitudeOf(const Knot& knot, const Eigen::Vector3d& estimate,
   return a;
 }
 
+// How long the noise of the inclination lasts: the tracker's observer, two time constants w of 20
+// s, makes exp(-w t) (1 - 0.6 w t) of white noise, whose integral is that of exp(-t / 8 s).
+constexpr double kLeanSeconds = 8;
+
 StationState StationOf(std::size_t epoch, const Knot& knot, const AttitudeSample& attitude,
                        const AttitudeRows& rows, const FilterMatrix& cov, const FilterMatrix& cross,
                        const NoiseCoefficients& gyro) {
@@ -368,6 +372,7 @@ StationState StationOf(std::size_t epoch, const Knot& knot, const AttitudeSample
   }
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   station.cov_white(0, 0) = Square(knot.sigma_inclination);
+  station.lean_seconds = kLeanSeconds;
   station.cov_white(1, 1) = std::min(Square(gyro.quantization) / sine2, kUnknownAngleVariance);
   if (knot.axial) station.cov_white(1, 1) += std::max(0.0, knot.var_azimuth_beyond);
   return station;

@@ -33,6 +33,8 @@ struct StationState {
   /// station with covariance `cov_white` [rad^2].
   Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kFilterStatesMax> angles;
   Eigen::Matrix2d cov_white = Eigen::Matrix2d::Zero();
+  /// Not quite: that of the inclination lasts so long, exp(-t / lean_seconds) [s].
+  double lean_seconds = 0;
 };
 
 }  // namespace wellgyro

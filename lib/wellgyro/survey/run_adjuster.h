@@ -13,9 +13,9 @@ class WELLGYRO_EXPORT RunAdjuster {
   virtual ~RunAdjuster();
 
   /// One attitude for every epoch and one state for every marked station of `history`, as Smooth()
-  /// gives them: the states of neighbours in time form a Markov chain. `sigma_lie`: how differently
-  /// the tool lies in the hole each time it passes a place, 1-sigma of an angle [rad]. Must not
-  /// throw for any history that a filter leaves behind.
+  /// gives them, and how they fit: the states of neighbours in time form a Markov chain.
+  /// `sigma_lie`: how differently the tool lies in the hole each time it passes a place, 1-sigma of
+  /// an angle [rad]. Must not throw for any history that a filter leaves behind.
   virtual SmoothedRun Adjust(const FilterHistory& history, double sigma_lie) const = 0;
 };
 
