@@ -78,7 +78,7 @@ StillDetector::StillDetector(const StillSetup& setup) : setup_(setup) {
   require(setup.errors.gyro_bias_sigma >= 0, "errors.gyro_bias_sigma must not be negative");
 }
 
-bool StillDetector::Continues(const SampleStamp& stamp) const {
+inline bool StillDetector::Continues(const SampleStamp& stamp) const {
   if (!previous_ || stamp.session != previous_->session || stamp.seq != previous_->seq + 1 ||
       stamp.period_ns != previous_->period_ns) {
     return false;
@@ -92,37 +92,42 @@ std::optional<StillWindow> StillDetector::Push(const ImuSample& sample, const Al
   if (previous_ && stamp.session == previous_->session && stamp.seq <= previous_->seq) {
     return std::nullopt;
   }
-  std::optional<StillWindow> window;
-  if (block_.samples > 0 && !Continues(stamp)) {
-    // The gap may lie exactly at the end of a block, which is then whole and counts.
-    window = CloseBlock();
-    auto rest = EndStretch(Quality::kGood);
-    if (rest) window = rest;
-    block_ = Block{};
-  } else if (block_.samples > 0 && BlockOf(stamp.tool_time) != block_.index) {
-    window = CloseBlock();
-    block_ = Block{};
+  if (block_.samples > 0 && Continues(stamp) && InBlock(stamp.tool_time)) {
+    Add(sample, along);
+    return std::nullopt;
   }
+  std::optional<StillWindow> window = EndBlock(stamp);
+  block_ = Block{};
+  block_.index = BlockOf(stamp.tool_time);
+  block_.first = stamp;
+  block_.w0 = sample.w_IT_T;
+  block_.f0 = sample.f_T;
   Add(sample, along);
-  previous_ = stamp;
-  sliding_ = along.known && std::abs(along.speed) > SpeedLimit(along.sigma_speed);
   return window;
 }
 
+inline bool StillDetector::InBlock(ToolTime time) const {
+  const std::int64_t begin = block_.index * kBlockNs;
+  return time.ns >= begin && time.ns - begin < kBlockNs;
+}
+
+/// Before a sample that is not the block's.
+std::optional<StillWindow> StillDetector::EndBlock(const SampleStamp& next) {
+  if (block_.samples == 0) return std::nullopt;
+  std::optional<StillWindow> window = CloseBlock();
+  if (Continues(next)) return window;
+  // The gap may lie exactly at the end of a block, which is then whole and counts.
+  std::optional<StillWindow> rest = EndStretch(Quality::kGood);
+  return rest ? rest : window;
+}
+
 /// A depth that does not know its speed so well cannot tell motion from its own noise.
-double StillDetector::SpeedLimit(double sigma_speed) const {
+inline double StillDetector::SpeedLimit(double sigma_speed) const {
   return std::max(setup_.speed_limit, kSpeedSigmas * sigma_speed);
 }
 
-void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
-  if (block_.samples == 0) {
-    block_.index = BlockOf(sample.stamp.tool_time);
-    block_.first = sample.stamp;
-    block_.w0 = sample.w_IT_T;
-    block_.f0 = sample.f_T;
-  }
+inline void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
   Block& block = block_;
-  block.last = sample.stamp;
   ++block.samples;
   const Vector3d w = sample.w_IT_T - block.w0;
   const Vector3d f = sample.f_T - block.f0;
@@ -132,9 +137,11 @@ void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
   block.square_w += w.cwiseAbs2();
   block.square_f += f.cwiseAbs2();
   block.sum_temperature += static_cast<double>(sample.stamp.temperature);
-  block.gz = block.gz && sample.has_gz;
-  block.mag = block.mag && sample.has_mag;
-  block.saturated = block.saturated || sample.stamp.gyro_saturated || sample.stamp.accel_saturated;
+  block.gz &= sample.has_gz;
+  block.mag &= sample.has_mag;
+  block.saturated |= sample.stamp.gyro_saturated | sample.stamp.accel_saturated;
+  previous_ = sample.stamp;
+  sliding_ = along.known && std::abs(along.speed) > SpeedLimit(along.sigma_speed);
   if (!along.known) return;
   ++block.depths;
   block.sum_md += along.md;
@@ -145,12 +152,12 @@ void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
 /// Judges the finished block; returns the window that its motion ends.
 std::optional<StillWindow> StillDetector::CloseBlock() {
   const Block& block = block_;
-  if (!Whole(block.index, block.first, block.last)) return EndStretch(Quality::kGood);
+  if (!Whole(block.index, block.first, *previous_)) return EndStretch(Quality::kGood);
   const double n = static_cast<double>(block.samples);
   const double depths = static_cast<double>(std::max<std::int64_t>(block.depths, 1));
   const double free = std::max(n - 1, 1.0);
   const Means means{.first = block.first,
-                    .last = block.last,
+                    .last = *previous_,
                     .samples = block.samples,
                     .w = block.w0 + block.sum_w / n,
                     .f = block.f0 + block.sum_f / n,

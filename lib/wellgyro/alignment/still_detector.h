@@ -63,7 +63,7 @@ class WELLGYRO_EXPORT StillDetector {
   /// Sums over the samples of the block in progress, relative to its first sample.
   struct Block {
     std::int64_t index = 0;  ///< of the second on the tool clock
-    SampleStamp first, last;
+    SampleStamp first;
     std::int64_t samples = 0, depths = 0;
     Eigen::Vector3d w0 = Eigen::Vector3d::Zero(), f0 = w0;  ///< the first sample
     Eigen::Vector3d sum_w = w0, sum_f = w0, sum_b = w0, square_w = w0, square_f = w0;
@@ -97,6 +97,8 @@ class WELLGYRO_EXPORT StillDetector {
   };
 
   bool Continues(const SampleStamp& stamp) const;
+  bool InBlock(ToolTime time) const;
+  std::optional<StillWindow> EndBlock(const SampleStamp& next);
   double SpeedLimit(double sigma_speed) const;
   void Add(const ImuSample& sample, const AlongHole& along);
   std::optional<StillWindow> CloseBlock();
@@ -112,8 +114,8 @@ class WELLGYRO_EXPORT StillDetector {
 
   StillSetup setup_;
   std::optional<std::int32_t> index_position_;
-  std::optional<SampleStamp> previous_;
-  Block block_;           ///< without samples: none
+  std::optional<SampleStamp> previous_;  ///< the block's last
+  Block block_;                          ///< without samples: none
   Means pending_;         ///< newest still block, averaged when the next one is still too; or none
   bool guarded_ = false;  ///< the stretch's first block has been left out
   Stretch stretch_;

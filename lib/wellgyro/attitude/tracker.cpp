@@ -62,6 +62,25 @@ bool IsFinite(const ImuSample& s) {
   return std::isfinite(w + s.f_T.x() + s.f_T.y() + s.f_T.z());
 }
 
+// False: the sample is late. Otherwise says whether the window breaks before it, and the gap.
+bool Follows(const SampleStamp& before, const SampleStamp& next, bool& breaks, std::int64_t& gap_ns,
+             std::int64_t& lost) {
+  if (next.session != before.session || next.tool != before.tool) {
+    breaks = true;
+    gap_ns = std::max<std::int64_t>(0, (next.utc - before.utc).ns - before.period_ns);
+    lost = 0;
+    return true;
+  }
+  const std::int64_t apart = (next.tool_time - before.tool_time).ns - before.period_ns;
+  const std::int64_t tolerance = before.period_ns / 2;
+  if (apart < -tolerance || next.seq <= before.seq) return false;
+  const bool gap = apart > tolerance || next.seq != before.seq + 1;
+  gap_ns = apart > tolerance ? apart : 0;
+  lost = next.seq - before.seq - 1;
+  breaks = gap || next.period_ns != before.period_ns;
+  return true;
+}
+
 void CheckPositive(const char* name, double value) {
   if (value > 0 && std::isfinite(value)) return;
   throw std::invalid_argument(std::string("TrackerOptions.") + name + " must be positive, is " +
@@ -90,6 +109,7 @@ HighSideTracker::HighSideTracker(const TrackerOptions& options)
   if (!options.p_accel_T.allFinite()) {
     throw std::invalid_argument("TrackerOptions.p_accel_T is not finite");
   }
+  off_axis_ = !options.p_accel_T.head<2>().isZero(0);
 }
 
 void HighSideTracker::SetAzimuth(std::optional<double> azimuth) {
@@ -104,7 +124,7 @@ void HighSideTracker::SetAzimuth(std::optional<double> azimuth) {
 
 double HighSideTracker::toolface() const {
   const Seen& s = last();
-  return WrapPi(std::atan2(s.uy, s.ux) + 0.5 * slopes_.c1 + slopes_.c2 / 6);
+  return WrapPi(std::atan2(s.uy, s.ux) + 0.5 * c1_ + c2_ / 6);
 }
 
 // Two equal time constants, so matched to a continuous observer that means over any step agree.
@@ -143,28 +163,8 @@ HighSideTracker::Gains HighSideTracker::Weighed(Gains steady, double dt, double 
           std::max(steady.rate, rate * dt)};
 }
 
-// False: the sample is late. Otherwise says whether the window breaks before it, and the gap.
-inline bool HighSideTracker::Follows(const SampleStamp& next, bool& breaks, std::int64_t& gap_ns,
-                                     std::int64_t& lost) const {
-  const SampleStamp& before = seen_[newest_].stamp;
-  if (next.session != before.session || next.tool != before.tool) {
-    breaks = true;
-    gap_ns = std::max<std::int64_t>(0, (next.utc - before.utc).ns - before.period_ns);
-    lost = 0;
-    return true;
-  }
-  const std::int64_t apart = (next.tool_time - before.tool_time).ns - before.period_ns;
-  const std::int64_t tolerance = before.period_ns / 2;
-  if (apart < -tolerance || next.seq <= before.seq) return false;
-  const bool gap = apart > tolerance || next.seq != before.seq + 1;
-  gap_ns = apart > tolerance ? apart : 0;
-  lost = next.seq - before.seq - 1;
-  breaks = gap || next.period_ns != before.period_ns;
-  return true;
-}
-
-inline void HighSideTracker::TakeSite(const Site& site, double dt) {
-  if (site.latitude != latitude_ || gravity_ == 0) {
+inline void HighSideTracker::TakeSite(const Site& site, std::int32_t period_ns) {
+  if (site.latitude != latitude_ || !started_) {
     latitude_ = site.latitude;
     earth_cos_ = kEarthRate * std::cos(latitude_);
     earth_sin_ = kEarthRate * std::sin(latitude_);
@@ -180,12 +180,13 @@ inline void HighSideTracker::TakeSite(const Site& site, double dt) {
     gravity_ = site.gravity;
     inverse_gravity_ = 1 / gravity_;
   }
-  if (dt != dt_) {
-    dt_ = dt;
-    inverse_dt_ = 1 / dt;
-    steady_ = Steady(dt);
+  if (period_ns != period_ns_) {
+    period_ns_ = period_ns;
+    dt_ = 1e-9 * period_ns;
+    inverse_dt_ = 1 / dt_;
+    steady_ = Steady(dt_);
     sin_min_ = std::max(std::sin(options_.inclination_min),
-                        options_.accel_noise / (units::kStandardGravity * std::sqrt(dt) *
+                        options_.accel_noise / (units::kStandardGravity * std::sqrt(dt_) *
                                                 options_.sigma_toolface_max));
   }
 }
@@ -259,7 +260,7 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
     fz -= along.acceleration;
     s.e_r -= v * carried_;
   }
-  if (options_.p_accel_T.x() != 0 || options_.p_accel_T.y() != 0) {
+  if (off_axis_) {
     TakeLeverArm(sample, dt, fx, fy, fz);
   }
 
@@ -307,19 +308,21 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
   mean.accel = reference_ + accel;
 
   const double full = 2 * options_.level_seconds;
+  const bool young = memory_.seconds < full;
   // The shorter the memory, the more one sample weighs.
-  const double reach =
-      options_.acceleration_doubt * std::clamp((memory_.seconds + s.dt) / full, 0.3, 1.0);
+  const double share = young ? std::clamp((memory_.seconds + s.dt) / full, 0.3, 1.0) : 1;
+  const double reach = options_.acceleration_doubt * share;
   const double said = s.along.known ? s.along.acceleration / reach : 0;
   // Its scatter averages out, which a late change does not.
   const double sigma =
       0.5 * (s.along.known ? s.along.sigma_acceleration : kUnknown) / options_.acceleration_doubt;
   mean.trust = s.stamp.accel_saturated ? 0 : 1 / (1 + said * said + sigma * sigma);
-  if (memory_.seconds < full) {
+  Gains gains{mean.trust * steady_.level, mean.trust * steady_.rate};
+  if (young) {
     memory_.Add(s.dt, mean.trust);
     memory_.span = std::min(memory_.span, full);
+    gains = Weighed(steady_, s.dt, mean.trust, memory_);
   }
-  const Gains gains = Weighed(steady_, s.dt, mean.trust, memory_);
   const double off = accel - from_reference;
   const double raised = inclination_ + rise + gains.level * off;
   rate_bias_ += gains.rate * off * inverse_dt_;
@@ -334,7 +337,7 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
 // its own window.
 inline double HighSideTracker::Roll(const Seen& s, const Slopes& slopes) const {
   if (has_before_) {
-    return delta_in_ + 0.5 * (slopes.c1 - slopes_.c1) + (slopes.c2 - slopes_.c2) / 6;
+    return delta_in_ + 0.5 * (slopes.c1 - c1_) + (slopes.c2 - c2_) / 6;
   }
   if (!ready_) return slopes.c1;
   const double begin = std::atan2(s.uy, s.ux) - 0.5 * slopes.c1 + slopes.c2 / 6;
@@ -368,31 +371,43 @@ inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
 }
 
 // Slopes across the waiting sample, central where it has both neighbours.
+template <TrackerOptions::Order kOrder>
 inline HighSideTracker::Slopes HighSideTracker::Across(const Seen& s, const Seen* next) {
+  Slopes slopes;
   if (next == nullptr) {
-    if (!has_before_) return {};
-    return {delta_in_, 0, s.vh - before_vh_, s.vr - before_vr_};
+    if (!has_before_) return slopes;
+    slopes.c1 = delta_in_;
+    if constexpr (kOrder == TrackerOptions::kThird) {
+      slopes.a1h = s.vh - before_vh_;
+      slopes.a1r = s.vr - before_vr_;
+    }
+    return slopes;
   }
   const double delta = Phase(next->uy * s.ux - next->ux * s.uy, next->ux * s.ux + next->uy * s.uy);
-  Slopes slopes{delta, 0, next->vh - s.vh, next->vr - s.vr};
-  if (has_before_) {
-    slopes = {0.5 * (delta + delta_in_), 0.5 * (delta - delta_in_), 0.5 * (next->vh - before_vh_),
-              0.5 * (next->vr - before_vr_)};
-  }
   delta_out_ = delta;
+  slopes.c1 = has_before_ ? 0.5 * (delta + delta_in_) : delta;
+  slopes.c2 = has_before_ ? 0.5 * (delta - delta_in_) : 0;
+  if constexpr (kOrder == TrackerOptions::kThird) {
+    slopes.a1h = has_before_ ? 0.5 * (next->vh - before_vh_) : next->vh - s.vh;
+    slopes.a1r = has_before_ ? 0.5 * (next->vr - before_vr_) : next->vr - s.vr;
+  }
   return slopes;
 }
 
-void HighSideTracker::Integrate(const Seen& s, const Seen* next) {
-  const Slopes slopes = Across(s, next);
+template <TrackerOptions::Order kOrder>
+inline void HighSideTracker::SumUp(const Seen& s, const Seen* next) {
+  constexpr bool kThird = kOrder == TrackerOptions::kThird;
+  const Slopes slopes = Across<kOrder>(s, next);
   if (s.gap_ns > 0) {
     // Four seconds without samples are as good as a new start.
     memory_.Shorten(1e-8 * static_cast<double>(s.gap_ns));
   }
-  const double inverse = InverseSinc(slopes.c1), free_rise = (rate_bias_ - s.e_r) * s.dt;
+  // By the turn since the sample before, where second order will do: the square of a difference
+  // from c1 is of third, and the rest does not wait for the next sample's phase.
+  const double turned = kThird || !has_before_ ? slopes.c1 : delta_in_;
+  const double inverse = InverseSinc(turned), free_rise = (rate_bias_ - s.e_r) * s.dt;
   double vh = s.vh * inverse, vr = s.vr * inverse, curve_h = 0, curve_r = 0;
-  const bool third = options_.order == TrackerOptions::kThird;
-  if (third) {
+  if constexpr (kThird) {
     const double moment = FirstMoment(slopes.c1);
     curve_h = slopes.a1h * inverse;
     curve_r = slopes.a1r * inverse;
@@ -405,13 +420,16 @@ void HighSideTracker::Integrate(const Seen& s, const Seen* next) {
   const double rise = vr + free_rise;
   const Mean mean = Level(s, rise, curve_r, s.across * inverse);
   double turn = vh * mean.csc;
-  if (third) {
+  if constexpr (kThird) {
     const double csc = mean.csc, cot = mean.cot;
     turn += csc * (vh * (cot * cot + csc * csc) * rise * rise * (1. / 24) -
                    cot * rise * curve_h * (1. / 12));
+    before_vh_ = s.vh;
+    before_vr_ = s.vr;
   }
   const double roll = Roll(s, slopes);
-  slopes_ = slopes;
+  c1_ = slopes.c1;
+  c2_ = slopes.c2;
   part_ = {turn,   mean.accel * s.dt, vr,  vh, roll, mean.cot * s.dt, s.ux * s.dt, s.uy * s.dt,
            s.spin, mean.trust * s.dt, s.dt};
   sample_quality_ = s.quality;
@@ -421,27 +439,33 @@ void HighSideTracker::Integrate(const Seen& s, const Seen* next) {
     sample_quality_ |= Quality::kAliased;
   }
   AddSample(s, mean.vertical);
-  before_vh_ = s.vh;
-  before_vr_ = s.vr;
   delta_in_ = delta_out_;
   has_before_ = true;
+}
+
+void HighSideTracker::Integrate(const Seen& s, const Seen* next) {
+  if (options_.order == TrackerOptions::kThird) {
+    SumUp<TrackerOptions::kThird>(s, next);
+  } else {
+    SumUp<TrackerOptions::kSecond>(s, next);
+  }
 }
 
 // Private members are inline: exported and position-independent, they could not be otherwise.
 bool HighSideTracker::Push(const ImuSample& sample, const AlongHole& along, const Site& site) {
   if (sample.stamp.period_ns <= 0 || !IsFinite(sample)) return false;
+  const Seen& now = newest_ == 0 ? seen_[0] : seen_[1];
+  Seen& next = newest_ == 0 ? seen_[1] : seen_[0];
   bool breaks = false;
   std::int64_t gap_ns = 0, lost = 0;
-  if (started_ && !Follows(sample.stamp, breaks, gap_ns, lost)) return false;
+  if (started_ && !Follows(now.stamp, sample.stamp, breaks, gap_ns, lost)) return false;
   if (breaks) {
     Flush();
     roll_.Forget();
   }
 
-  TakeSite(site, 1e-9 * sample.stamp.period_ns);
+  TakeSite(site, sample.stamp.period_ns);
   if (!started_) TakeFirst(sample);
-  const Seen& now = seen_[newest_];
-  Seen& next = seen_[1 - newest_];
   Prepare(sample, along, next);
   next.gap_ns = gap_ns;
   next.lost = lost;

@@ -157,15 +157,16 @@ class WELLGYRO_EXPORT HighSideTracker {
     double seconds, cot, csc, cs, sn, vh, vr, roll, spin, trust;
   };
 
-  bool Follows(const SampleStamp& next, bool& breaks, std::int64_t& gap_ns,
-               std::int64_t& lost) const;
-  void TakeSite(const Site& site, double dt);
+  void TakeSite(const Site& site, std::int32_t period_ns);
   void TakeFirst(const ImuSample& sample);
   void TakeReference();
   void TakeEarth();
   void Prepare(const ImuSample& sample, const AlongHole& along, Seen& s);
   void TakeLeverArm(const ImuSample& sample, double dt, double& fx, double& fy, double& fz);
+  template <TrackerOptions::Order kOrder>
   Slopes Across(const Seen& s, const Seen* next);
+  template <TrackerOptions::Order kOrder>
+  void SumUp(const Seen& s, const Seen* next);
   void Integrate(const Seen& s, const Seen* next);
   Mean Level(const Seen& s, double rise, double curve, double across);
   Gains Steady(double dt) const;
@@ -183,10 +184,12 @@ class WELLGYRO_EXPORT HighSideTracker {
   const Seen& last() const { return seen_[waiting_ ? 1 - newest_ : newest_]; }
 
   TrackerOptions options_;
+  bool off_axis_ = false;  ///< the accelerometers are
   // What only changes now and then: azimuth (both zero: unset), site, period.
   double cos_azimuth_ = 0, sin_azimuth_ = 0;
   double latitude_ = 0, earth_cos_ = 0, earth_sin_ = 0, inverse_radius_ = 0;
   double gravity_ = 0, inverse_gravity_ = 0;
+  std::int32_t period_ns_ = 0;
   double dt_ = 0, inverse_dt_ = 0, sin_min_ = 1;
   Gains steady_{};
   RollObserver roll_;  // where there is a third gyro axis
@@ -203,7 +206,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   bool started_ = false, waiting_ = false, has_before_ = false, ready_ = false;
   double before_vh_ = 0, before_vr_ = 0, delta_in_ = 0, delta_out_ = 0;
   // The last summed sample.
-  Slopes slopes_;
+  double c1_ = 0, c2_ = 0;  ///< slopes of its toolface
   Sums part_{};
   double end_toolface_ = 0, cut_ = 1, rise_ = 0;
   Quality sample_quality_ = Quality::kGood;

@@ -151,7 +151,7 @@ Knot HighSideTracker::CutKnot(double fraction) {
   }
   const Seen& s = last();
   const double rest = 1 - fraction, u = fraction - 0.5;
-  const double roll_left = slopes_.c1 * (0.5 - u) + slopes_.c2 * (0.25 - u * u);
+  const double roll_left = c1_ * (0.5 - u) + c2_ * (0.25 - u * u);
   const std::int64_t rest_ns = std::llround(rest * s.stamp.period_ns);
   Sums block;
   for (int i = 0; i < kSums; ++i) block[i] = block_[i] - rest * part_[i];

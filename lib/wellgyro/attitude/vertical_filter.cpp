@@ -82,6 +82,7 @@ double SineNearVertical(const ErrorPriors& errors, bool has_gz) {
 
 struct VerticalFilter::Impl {
   explicit Impl(const VerticalSetup& s);
+  bool StartsAt(const ImuSample& sample) const;
   void Start(const ImuSample& sample, const AlongHole& along, const Site& site);
   void Close();
   void Weigh(const std::array<double, kWalks.size()>& likelihood, double seconds);
@@ -96,7 +97,7 @@ struct VerticalFilter::Impl {
   VerticalSetup setup;
   Noise noise;
   double bias_sigma = 0, walk = 0;
-  double sine_enter = kSineLeast;
+  double sine_of_two = kSineLeast, sine_enter = kSineLeast;  // with two gyro axes; now
   Eigen::Vector2d north = Eigen::Vector2d::Zero();  // from the filter's zero; zero: unknown
   double zero = 0;                                  // true azimuth of it
   double latitude = 0;
@@ -118,6 +119,7 @@ struct VerticalFilter::Impl {
 
 VerticalFilter::Impl::Impl(const VerticalSetup& s) : setup(s) {
   const NoiseCoefficients& g = s.gyro;
+  sine_of_two = SineNearVertical(s.errors, false);
   noise.rate = g.angle_random_walk;
   noise.force = std::max(s.errors.accel_noise, kNoiseLeast);
   noise.bias_walk = g.rate_random_walk;
@@ -144,6 +146,13 @@ Eigen::Matrix3d VerticalFilter::Impl::CovTurn() const {
   const auto slopes = main.sources().topRows<3>();
   return main.cov_noise().topLeftCorner<3, 3>() +
          slopes * source_sigma.cwiseAbs2().asDiagonal() * slopes.transpose();
+}
+
+inline bool VerticalFilter::Impl::StartsAt(const ImuSample& sample) const {
+  const Eigen::Vector3d& f = sample.f_T;
+  const double sine = std::min(kRun * (sample.has_gz ? kSineByThird : sine_of_two), 0.5);
+  const double across = f.x() * f.x() + f.y() * f.y();
+  return f.z() < 0 && across < sine * sine * (across + f.z() * f.z());
 }
 
 void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along,
@@ -290,14 +299,17 @@ VerticalFilter& VerticalFilter::operator=(const VerticalFilter& other) {
 VerticalFilter::VerticalFilter(VerticalFilter&&) noexcept = default;
 VerticalFilter& VerticalFilter::operator=(VerticalFilter&&) noexcept = default;
 
+bool VerticalFilter::Wants(const ImuSample& sample) const {
+  return impl_->started || impl_->StartsAt(sample);
+}
+
 void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const Site& site) {
   Impl& m = *impl_;
   const SampleStamp& stamp = sample.stamp;
+  if (!Wants(sample)) return;
   if (stamp.period_ns <= 0 || !IsFinite(sample)) return;
   if (!m.started) {
-    const Eigen::Vector3d& f = sample.f_T;
-    m.sine_enter = SineNearVertical(m.setup.errors, sample.has_gz);
-    if (!(f.z() < 0 && f.head<2>().norm() < std::min(kRun * m.sine_enter, 0.5) * f.norm())) return;
+    m.sine_enter = sample.has_gz ? kSineByThird : m.sine_of_two;
     m.Start(sample, along, site);
   } else {
     const double apart = (stamp.tool_time - m.end).seconds(), period = 1e-9 * stamp.period_ns;

@@ -56,6 +56,9 @@ class WELLGYRO_EXPORT VerticalFilter {
   /// left out, time without samples widens the covariance.
   void Push(const ImuSample& sample, const AlongHole& along, const Site& site);
 
+  /// Whether Push would take this sample next: it runs, or here it would begin to.
+  bool Wants(const ImuSample& sample) const;
+
   /// The azimuth of the axis now [rad], with its variance; before, it counts from an arbitrary
   /// zero. What is known of the sum A + T from then on counts from this.
   void SetAzimuth(double azimuth, double variance);

@@ -79,13 +79,18 @@ Fault FirstNotFinite(const ImuHead& head, std::span<const std::byte> bytes) {
   return {};
 }
 
+/// 0, unless one is not finite: infinity less itself is no number.
+double Nothing(const Eigen::Vector3d& v) {
+  return (v.x() - v.x()) + ((v.y() - v.y()) + (v.z() - v.z()));
+}
+
 /// Reads the arrays; false when a value is not finite.
 bool ReadArrays(const ImuHead& head, std::span<const std::byte> bytes, ImuSample* out) {
   const ImuColumns columns = ColumnsOf(head);
   SampleStamp stamp = head.stamp;
   const bool has_gz = head.n_gz > 0;
   const bool has_mag = head.n_mag > 0;
-  bool finite = true;
+  double none = 0;
   for (int k = 0; k < head.n; ++k, ++out, Advance(stamp)) {
     const std::byte* row = bytes.data() + static_cast<std::size_t>(k) * sizeof(double);
     const auto value = [&](std::size_t column) { return Load<double>(row + columns.at[column]); };
@@ -99,9 +104,9 @@ bool ReadArrays(const ImuHead& head, std::span<const std::byte> bytes, ImuSample
     }
     out->has_gz = has_gz;
     out->has_mag = has_mag;
-    finite = finite && out->w_IT_T.allFinite() && out->f_T.allFinite() && out->b_T.allFinite();
+    none += Nothing(out->w_IT_T) + Nothing(out->f_T) + Nothing(out->b_T);
   }
-  return finite;
+  return none == 0;
 }
 
 void ReadCounts(const RawHead& head, std::span<const std::byte> bytes, RawSample* out) {

@@ -93,8 +93,7 @@ void CableMarks::Resolve(UtcTime until) {
   waiting_.erase(waiting_.begin(), end);
 }
 
-double CableMarks::At(UtcTime utc, double md) {
-  if (waiting_.empty() && laws_.empty()) return 0;
+double CableMarks::Added(UtcTime utc, double md) {
   Resolve(utc);
   const auto after = std::ranges::upper_bound(laws_, utc, {}, &Law::utc);
   if (after == laws_.begin()) return 0;

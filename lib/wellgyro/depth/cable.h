@@ -53,7 +53,9 @@ class WELLGYRO_EXPORT CableMarks {
   /// Takes a mark whose magnetic_mark is set; others, and marks seen before, are skipped.
   void Push(const DepthMark& mark);
   /// What to add to the track's `md` at `utc`, where the track is final. 0 before the first mark.
-  double At(UtcTime utc, double md);
+  double At(UtcTime utc, double md) {
+    return waiting_.empty() && laws_.empty() ? 0 : Added(utc, md);
+  }
 
   std::size_t passed() const { return laws_.size(); }        ///< marks that count
   std::size_t left_out() const { return left_out_; }         ///< read too far off
@@ -70,6 +72,7 @@ class WELLGYRO_EXPORT CableMarks {
     double slope;   ///< of what is added [1]
     double At(double md_now, double half) const;
   };
+  double Added(UtcTime utc, double md);
   void Resolve(UtcTime until);
   void Take(UtcTime utc);
 

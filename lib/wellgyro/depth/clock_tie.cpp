@@ -35,9 +35,13 @@ std::int64_t Sum(std::int64_t a, std::int64_t b) {
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
+// As std::llround does it, which is a call for every sample.
 std::int64_t Nanoseconds(double seconds) {
   constexpr double kMost = 9e18;
-  return std::llround(std::clamp(seconds * 1e9, -kMost, kMost));
+  const double ns = std::clamp(seconds * 1e9, -kMost, kMost);
+  const auto whole = static_cast<std::int64_t>(ns);
+  const double rest = ns - static_cast<double>(whole);
+  return whole + (rest >= 0.5) - (rest <= -0.5);
 }
 
 }  // namespace
@@ -77,9 +81,11 @@ void ClockTie::Push(const SampleStamp& stamp) {
   // surface say something new. Clocks in perfect step never change it; they may speak too, rarely.
   const bool fresh = difference != difference_ || tool_ns == 0 || tool_ns - fresh_ns_ >= kRepeatNs;
   difference_ = difference;
-  const std::int64_t index = FloorCell(stamp.tool_time);
-  if (index != cell_.index) CloseCell();
-  cell_.index = index;
+  const std::int64_t into = Since(stamp.tool_time, ToolTime{cell_.index * kCellNs});
+  if (into < 0 || into >= kCellNs) {
+    CloseCell();
+    cell_.index = FloorCell(stamp.tool_time);
+  }
   if (!fresh) return;
   fresh_ns_ = tool_ns;
   AddPair(tool_ns, difference, !stamp.utc_unsynced);

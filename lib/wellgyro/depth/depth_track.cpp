@@ -164,7 +164,7 @@ bool DepthTrack::Settled(UtcTime utc) const {
 
 bool DepthTrack::Covers(UtcTime utc) const { return IsTime(utc) && Settled(utc); }
 
-std::int32_t DepthTrack::Segment(UtcTime utc) const {
+std::int32_t DepthTrack::SegmentAt(UtcTime utc) const {
   const auto it = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
   return static_cast<std::int32_t>(it - shifts_.begin());
 }

@@ -64,7 +64,7 @@ class WELLGYRO_EXPORT DepthTrack {
   bool empty() const { return marks_.empty(); }
   UtcTime newest() const { return newest_; }
   /// Depth events that hold at `utc`, so far pushed: where it changes, depth may jump.
-  std::int32_t Segment(UtcTime utc) const;
+  std::int32_t Segment(UtcTime utc) const { return shifts_.empty() ? 0 : SegmentAt(utc); }
   /// Drops what is needed only before `utc`. Without it memory grows with the marks.
   void Forget(UtcTime utc);
 
@@ -91,6 +91,7 @@ class WELLGYRO_EXPORT DepthTrack {
   };
 
   std::size_t After(UtcTime utc) const;
+  std::int32_t SegmentAt(UtcTime utc) const;
   Span SpanAt(UtcTime utc) const;
   double Offset(const Shift& shift) const;
   bool Bracketed(UtcTime utc, Span span) const;

@@ -53,7 +53,7 @@ void PassTracker::LeaveStationary(UtcTime utc, double md) {
   }
 }
 
-PassState PassTracker::Push(UtcTime utc, double md) {
+const PassState& PassTracker::Push(UtcTime utc, double md) {
   if (!started_ || restart_) {
     Start(utc, md);
     return state_;

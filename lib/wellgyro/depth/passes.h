@@ -40,7 +40,7 @@ class WELLGYRO_EXPORT PassTracker {
   explicit PassTracker(const PassSetup& setup = {});
 
   /// Takes the depth at an instant later than the one before.
-  PassState Push(UtcTime utc, double md);
+  const PassState& Push(UtcTime utc, double md);
   /// The depth scale changes before the next depth (see DepthTrack::Segment): a pass of the same
   /// kind begins there, and what was covered before counts no more.
   void Restart();

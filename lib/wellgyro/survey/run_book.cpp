@@ -48,7 +48,7 @@ std::int32_t RunBook::RunAt(UtcTime utc, std::int32_t told) const {
   return number;
 }
 
-bool RunBook::Ended(std::int32_t run, UtcTime utc) const {
+bool RunBook::EndedBySpec(std::int32_t run, UtcTime utc) const {
   return std::any_of(specs_.begin(), specs_.end(), [&](const RunSpec& spec) {
     return spec.number == run && spec.end && utc >= *spec.end;
   });

@@ -32,12 +32,16 @@ class WELLGYRO_EXPORT RunBook {
 
   /// The job says that the run had ended by then: samples from there to the next run's begin are
   /// no run's. A RUN_END of a person ends none, because what follows on deck still belongs to it.
-  bool Ended(std::int32_t run, UtcTime utc) const;
+  bool Ended(std::int32_t run, UtcTime utc) const {
+    return !specs_.empty() && EndedBySpec(run, utc);
+  }
 
   bool misrun(std::int32_t run) const;
   std::string remark(std::int32_t run) const;
 
  private:
+  bool EndedBySpec(std::int32_t run, UtcTime utc) const;
+
   struct Begin {
     UtcTime utc;
     std::int32_t number = 0;  ///< 0: the next

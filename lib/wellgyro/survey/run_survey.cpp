@@ -75,19 +75,28 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   if (summary_.samples == 0) summary_.begin = utc;
   Count(sample.stamp);
   CountDepth(sample.stamp, along.known);
-  PassState pass = passes_.state();
-  if (along.known) pass = passes_.Push(utc, along.md);
+  const PassState& pass = along.known ? passes_.Push(utc, along.md) : passes_.state();
   const bool taken = tracker_.Push(sample, middle, site_);
   if (sample.stamp.temperature_outside) temperature_outside_ = true;
-  if (current_ && tracker_.ready() && tracker_.sample_begin() == current_->stamp.tool_time) {
-    const bool contiguous = sample.stamp.seq == current_->stamp.seq + 1 &&
-                            sample.stamp.session == current_->stamp.session;
+  if (WaitsForSum()) {
+    const SampleStamp& before = current_->stamp;
+    const bool contiguous =
+        sample.stamp.seq == before.seq + 1 && sample.stamp.session == before.session;
     if (contiguous) current_->utc_end = utc;
     Summed(contiguous ? along : current_->along, pass);
   }
   if (taken) {
     const UtcTime utc_end = utc + Duration{sample.stamp.period_ns};
-    current_ = Current{sample, middle, sample.stamp, utc, utc_end, along, pass};
+    if (!current_) current_.emplace();
+    Current& c = *current_;  // member by member: built whole it would be copied twice
+    c.stamp = sample.stamp;
+    c.for_vertical = vertical_.Wants(sample);
+    if (c.for_vertical) c.sample = sample;
+    c.middle = middle;
+    c.utc = utc;
+    c.utc_end = utc_end;
+    c.along = along;
+    c.pass = pass;
     summary_.end = utc_end;
   }
   if (const auto window = still_.Push(sample, middle)) TakeWindow(*window);
@@ -118,6 +127,11 @@ void RunSurvey::CountDepth(const SampleStamp& stamp, bool known) {
   }
 }
 
+/// The tracker has just summed what is in current_.
+bool RunSurvey::WaitsForSum() const {
+  return current_ && tracker_.ready() && tracker_.sample_begin() == current_->stamp.tool_time;
+}
+
 void RunSurvey::Cut(std::optional<std::int32_t> index_position) {
   vertical_.Release();
   resting_ = false;
@@ -131,7 +145,7 @@ void RunSurvey::TakeStation(std::optional<double> md) {
 
 void RunSurvey::Flush() {
   tracker_.Flush();
-  if (current_ && tracker_.ready() && tracker_.sample_begin() == current_->stamp.tool_time) {
+  if (WaitsForSum()) {
     // A run that ends on its way down ends in a station.
     const AlongHole& end = current_->along;
     asked_ = asked_ || (end.known && passes_.state().pass == Pass::kIn &&
@@ -160,7 +174,7 @@ void RunSurvey::Summed(const AlongHole& end, const PassState& pass_end) {
   cuts_.clear();
   const Current& c = *current_;
   summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
-  vertical_.Push(c.sample, c.middle, site_);
+  if (c.for_vertical) vertical_.Push(c.sample, c.middle, site_);
   resting_ = c.middle.known && std::abs(c.middle.speed) < kRestSpeed;
   if (c.along.known && end.known && pass_end.number == c.pass.number &&
       c.pass.pass != Pass::kStationary) {

@@ -63,9 +63,10 @@ class RunSurvey {
  private:
   /// The sample that the tracker has just summed, or is about to.
   struct Current {
-    ImuSample sample;
-    AlongHole middle;  ///< at the middle of it
     SampleStamp stamp;
+    bool for_vertical;  ///< the vertical filter is to have it
+    ImuSample sample;   ///< if so
+    AlongHole middle;   ///< at the middle of it
     UtcTime utc, utc_end;
     AlongHole along;
     PassState pass;
@@ -88,6 +89,7 @@ class RunSurvey {
 
   void Count(const SampleStamp& stamp);
   void CountDepth(const SampleStamp& stamp, bool known);
+  bool WaitsForSum() const;
   void Summed(const AlongHole& end, const PassState& pass_end);
   void AddTargets(double md_end);
   void ListLastMark();

@@ -37,8 +37,22 @@ class WELLGYRO_EXPORT SampleQueue {
   Verdict Push(const ImuSample& sample);
 
   /// The next sample in order, or nullptr while it has to wait. Valid until the next Push.
-  const ImuSample* Front() const;
-  void Pop();
+  const ImuSample* Front() const {
+    if (size_ == 0) return nullptr;
+    const ImuSample& front = At(0);
+    const bool old = At(size_ - 1).stamp.tool_time - front.stamp.tool_time >= hold_;
+    return old || flushing_ || old_session_ > 0 || size_ > kWaitingMax ? &front : nullptr;
+  }
+  void Pop() {
+    const SampleStamp& stamp = At(0).stamp;
+    const bool next = stamp.seq == last_.seq + 1 && stamp.session == last_.session;
+    if (popped_ && !next) NoteGap(stamp);
+    last_ = stamp;
+    popped_ = true;
+    head_ = (head_ + 1) & mask_;
+    --size_;
+    if (old_session_ > 0) --old_session_;
+  }
 
   /// From now on nothing waits: the end of the stream.
   void Flush() { flushing_ = true; }
@@ -49,15 +63,19 @@ class WELLGYRO_EXPORT SampleQueue {
   std::size_t waiting() const { return size_; }
 
  private:
-  ImuSample& At(std::size_t i) { return ring_[(head_ + i) & (ring_.size() - 1)]; }
-  const ImuSample& At(std::size_t i) const { return ring_[(head_ + i) & (ring_.size() - 1)]; }
-  void Insert(std::size_t position, const ImuSample& sample);
-  Verdict Count(Verdict verdict);
+  ImuSample& At(std::size_t i) { return ring_[(head_ + i) & mask_]; }
+  const ImuSample& At(std::size_t i) const { return ring_[(head_ + i) & mask_]; }
+  Verdict Sort(const ImuSample& sample);
+  void Take(std::size_t position, const ImuSample& sample);
+  void Grow();
+  void NoteGap(const SampleStamp& next);
+  bool IsNext(const SampleStamp& stamp) const;
   bool Contradicts(const ImuSample& sample) const;
   bool InGap(std::int64_t seq) const;
 
   Duration hold_;
   std::vector<ImuSample> ring_;  ///< its size is a power of two
+  std::size_t mask_ = 0;         ///< one less
   std::size_t head_ = 0;
   std::size_t size_ = 0;
   std::size_t old_session_ = 0;  ///< waiting samples, from the front, of sessions that have ended

@@ -144,12 +144,14 @@ void Surveyor::Push(std::span<const ImuSample> batch) {
   if (!rooms_->Open()) return;
   ToolSurvey* last = nullptr;
   for (const ImuSample& sample : batch) {
-    ToolSurvey* tool = rooms_->Tool(sample.stamp.tool);
-    if (tool == nullptr) break;
-    if (last != nullptr && tool != last) rooms_->Work(*last);
-    if (rooms_->finished) return;
-    last = tool;
-    tool->Push(sample);
+    if (last == nullptr || sample.stamp.tool != last->tool()) {
+      ToolSurvey* tool = rooms_->Tool(sample.stamp.tool);
+      if (tool == nullptr) break;
+      if (last != nullptr) rooms_->Work(*last);
+      if (rooms_->finished) return;
+      last = tool;
+    }
+    last->Push(sample);
     rooms_->newest = sample.stamp.utc;
   }
   if (last != nullptr) rooms_->Work(*last);

@@ -142,7 +142,7 @@ bool ToolSurvey::ObeyDue(const SampleStamp& stamp, UtcTime utc) {
 }
 
 void ToolSurvey::CountLost(const SampleStamp& stamp, RunSummary& summary) {
-  if (!last_ || stamp.session != last_->session || stamp.seq <= last_->seq + 1) return;
+  if (stamp.session != last_->session || stamp.seq <= last_->seq + 1) return;
   const std::int64_t lost = stamp.seq - last_->seq - 1;
   summary.samples_lost += lost;
   lost_ += lost;
@@ -151,16 +151,21 @@ void ToolSurvey::CountLost(const SampleStamp& stamp, RunSummary& summary) {
                                                     last_->seq + 1, stamp.seq - 1, stamp.session)});
 }
 
+inline ToolSurvey::RunState* ToolSurvey::RunFor(std::int32_t run) {
+  const bool same = !runs_.empty() && runs_.back().survey->summary().run == run;
+  return same ? &runs_.back() : FindRun(run);
+}
+
 void ToolSurvey::Use(const ImuSample& sample) {
   const SampleStamp& stamp = sample.stamp;
   tie_.Push(stamp);
   const UtcTime utc = tie_.ToUtc(stamp.tool_time);
-  if (!ObeyDue(stamp, utc)) return;
+  if (!due_.empty() && !ObeyDue(stamp, utc)) return;
   if (!last_) book_.HeardAt(utc);
   RunState* found = RunFor(book_.RunAt(utc, stamp.run));
   if (found == nullptr) return;
   RunState& run = *found;
-  CountLost(stamp, run.survey->summary());
+  if (last_ && stamp.seq != last_->seq + 1) CountLost(stamp, run.survey->summary());
   last_ = stamp;
   if (book_.Ended(run.survey->summary().run, utc)) {
     ++run.survey->summary().samples_after_end;
@@ -192,12 +197,11 @@ AlongHole ToolSurvey::DepthHeldAt(UtcTime utc) const {
 inline void ToolSurvey::ShiftToSensor(UtcTime utc, AlongHole& along) const {
   if (!along.known) return;
   along.md += marks_.At(utc, along.md);
-  const auto& table = job_.depth.corrections;
-  along.md += (table.empty() ? 0 : Correction(table, along.md)) + sensor_below_reference_;
+  along.md += Correction(job_.depth.corrections, along.md) + sensor_below_reference_;
 }
 
 /// nullptr, and a Fault: one run too many.
-ToolSurvey::RunState* ToolSurvey::RunFor(std::int32_t run) {
+ToolSurvey::RunState* ToolSurvey::FindRun(std::int32_t run) {
   for (RunState& state : runs_) {
     if (state.survey->summary().run != run) continue;
     // Another run may have begun since and ended; its samples are not mixed with these.

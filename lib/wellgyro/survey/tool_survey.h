@@ -45,6 +45,7 @@ class ToolSurvey {
   void Adjust();
   /// `until`: samples that begin later are not used.
   void Finish(std::optional<UtcTime> until);
+  std::int32_t tool() const { return tool_; }
   bool finish_asked() const { return finish_asked_.has_value(); }
   std::optional<UtcTime> finish_asked_at() const { return finish_asked_; }
 
@@ -79,6 +80,7 @@ class ToolSurvey {
   AlongHole DepthHeldAt(UtcTime utc) const;
   void ShiftToSensor(UtcTime utc, AlongHole& along) const;
   RunState* RunFor(std::int32_t run);
+  RunState* FindRun(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
   std::vector<RunSummary> Summaries() const;
