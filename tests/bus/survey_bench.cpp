@@ -1,4 +1,5 @@
 // Log to stations: how fast, and where the time goes. Counters are samples a second.
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -36,7 +37,11 @@ testing::SmallHole LongHole(double imu_hz) {
           .stations_every = 10};
 }
 
-Job TheJob() { return JobOf(LongHole(1'000)); }
+Job TheJob(TrackerOptions::Order order) {
+  Job job = JobOf(LongHole(1'000));
+  job.attitude.order = order;
+  return job;
+}
 
 class Log {
  public:
@@ -92,39 +97,85 @@ void ReadAndDecode(benchmark::State& state) {
 }
 BENCHMARK(ReadAndDecode)->Arg(1'000)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
-Survey SurveyOf(const Log& log) {
-  Sink sink;
-  Surveyor surveyor(TheJob(), sink);
-  SurveyorListener listener(surveyor, sink);
-  Feed feed({}, listener);
-  auto reader = LogReader::Open(log.path());
-  LogEvent event;
-  while (reader->Next(event)) feed.Take(event.channel, event.data);
-  surveyor.Finish();
-  return surveyor.Current(0);
-}
+/// Time spent in the parts of the way; looking at the clock for every message costs 1 % of it.
+class Stopwatch {
+ public:
+  /// What has passed since the last call is `part`'s.
+  void Lap(double& part) {
+    const auto now = std::chrono::steady_clock::now();
+    part += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
 
-/// The whole: reading, decoding, surveying, and the text of the files.
-void LogToStations(benchmark::State& state) {
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+struct Shares {
+  double reading = 0, decoding = 0, surveying = 0, writing = 0;  ///< [s]
+};
+
+/// Stands between decoding and surveying.
+class TimedListener : public SurveyorListener {
+ public:
+  TimedListener(Surveyor& surveyor, Sink& sink, Stopwatch& watch, Shares& shares)
+      : SurveyorListener(surveyor, sink), watch_(watch), shares_(shares) {}
+  void OnImu(std::span<const ImuSample> batch) override {
+    watch_.Lap(shares_.decoding);
+    SurveyorListener::OnImu(batch);
+    watch_.Lap(shares_.surveying);
+  }
+  void OnDepth(const DepthMark& mark) override {
+    watch_.Lap(shares_.decoding);
+    SurveyorListener::OnDepth(mark);
+    watch_.Lap(shares_.surveying);
+  }
+
+ private:
+  Stopwatch& watch_;
+  Shares& shares_;
+};
+
+/// The whole: reading, decoding, surveying, and the text of the files, with the share of each.
+void LogToStations(benchmark::State& state, TrackerOptions::Order order) {
   const Log& log = Log::At(static_cast<double>(state.range(0)));
+  const Job job = TheJob(order);
+  Shares shares;
   for (auto unused : state) {
-    const auto files = ResultFiles({}, {}, TheJob(), SurveyOf(log));
+    Sink sink;
+    Surveyor surveyor(job, sink);
+    Stopwatch watch;
+    TimedListener listener(surveyor, sink, watch, shares);
+    Feed feed({}, listener);
+    auto reader = LogReader::Open(log.path());
+    LogEvent event;
+    while (reader->Next(event)) {
+      watch.Lap(shares.reading);
+      feed.Take(event.channel, event.data);
+      watch.Lap(shares.decoding);
+    }
+    surveyor.Finish();
+    watch.Lap(shares.surveying);
+    const auto files = ResultFiles({}, {}, job, surveyor.Current(0));
     benchmark::DoNotOptimize(files.size());
+    watch.Lap(shares.writing);
   }
   state.SetItemsProcessed(state.iterations() * log.samples());
+  const double percent =
+      100 / (shares.reading + shares.decoding + shares.surveying + shares.writing);
+  state.counters["reading_%"] = shares.reading * percent;
+  state.counters["decoding_%"] = shares.decoding * percent;
+  state.counters["surveying_%"] = shares.surveying * percent;
+  state.counters["writing_%"] = shares.writing * percent;
 }
-BENCHMARK(LogToStations)->Arg(1'000)->Arg(10'000)->Unit(benchmark::kMillisecond);
-
-void TextOfTheFiles(benchmark::State& state) {
-  const Log& log = Log::At(static_cast<double>(state.range(0)));
-  const Survey survey = SurveyOf(log);
-  for (auto unused : state) {
-    const auto files = ResultFiles({}, {}, TheJob(), survey);
-    benchmark::DoNotOptimize(files.size());
-  }
-  state.SetItemsProcessed(state.iterations() * log.samples());
-}
-BENCHMARK(TextOfTheFiles)->Arg(1'000)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LogToStations, second_order, TrackerOptions::kSecond)
+    ->Arg(1'000)
+    ->Arg(10'000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LogToStations, third_order, TrackerOptions::kThird)
+    ->Arg(1'000)
+    ->Arg(10'000)
+    ->Unit(benchmark::kMillisecond);
 
 /// A hundred tools at 10 Hz in batches of 10, and one: the load must be linear in the streams.
 void Tools(benchmark::State& state) {
@@ -132,7 +183,7 @@ void Tools(benchmark::State& state) {
   constexpr int kSeconds = 600;
   for (auto unused : state) {
     Sink sink;
-    Surveyor surveyor(TheJob(), sink);
+    Surveyor surveyor(TheJob(TrackerOptions::kThird), sink);
     std::vector<ImuSample> batch(10);
     for (int second = 0; second < kSeconds; ++second) {
       DepthMark mark;
