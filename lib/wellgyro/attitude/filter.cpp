@@ -293,8 +293,14 @@ void AzimuthFilter::Impl::WorkStretchAgain() {
   const std::size_t last = epochs.size() - 1;
   const auto knots = static_cast<std::size_t>(epochs[last].knot.axial_noise_knots);
   const std::size_t begin = last - std::min(last, knots);
+  // What they cost in the end is little; on the way each azimuth was as uncertain as it was then.
+  const double share = epochs[last].knot.axial_noise_share;
+  double counted = 0;
   for (std::size_t i = begin; i < last; ++i) {
-    epochs[i].knot.toolface_noise_turn *= epochs[last].knot.axial_noise_share;
+    Knot& knot = epochs[i].knot;
+    counted += knot.toolface_noise_turn;
+    knot.toolface_noise_turn *= share;
+    knot.var_azimuth_beyond += (1 - share) * counted;
   }
   epochs[last].knot.axial_noise_share = 1;
   Rewind(begin);

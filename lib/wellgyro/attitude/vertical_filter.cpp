@@ -112,6 +112,8 @@ struct VerticalFilter::Impl {
   std::array<double, kWalks.size()> weight{};
   std::array<double, kWalks.size()> idle{};  // how long without weight [s]
   bool started = false, ready = false;
+  bool lost = false;   // of the sum nothing is left, and gravity has not shown the toolface since
+  bool found = false;  // now it does: with the next sample all begins anew
   ToolTime end;
   std::int64_t seq = 0;
   std::int32_t session = 0;
@@ -169,10 +171,11 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
   last.toolface = std::atan2(-f.y(), f.x());
   last.inclination = std::atan2(std::hypot(f.x(), f.y()), -f.z());
   counted = 0;
+  counted_knots = 0;
   linked = !cut_before;
   axial = std::sin(last.inclination) < sine_enter && f.z() < 0;
   started = true;
-  ready = false;
+  ready = lost = found = false;
 }
 
 // With north unknown the Earth's rate passes for a bias.
@@ -241,6 +244,8 @@ void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
     knot.var_azimuth_beyond = now.var_azimuth - counted;
   }
   const double vague = now.var_toolface + now.d_toolface.cwiseProduct(source_sigma).squaredNorm();
+  // What was learned while the sum was anything rests on slopes taken far from the truth.
+  found = lost && is_axial && vague < kToolfaceVague * kToolfaceVague;
   constexpr auto kAll = ~static_cast<std::uint32_t>(Quality::kVertical);
   knot.quality = knot.quality & static_cast<Quality>(kAll);
   if (vague > kToolfaceVague * kToolfaceVague) knot.quality |= Quality::kVertical;
@@ -314,7 +319,7 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
   } else {
     const double apart = (stamp.tool_time - m.end).seconds(), period = 1e-9 * stamp.period_ns;
     if (stamp.session == m.session && apart < -period / 2) return;
-    if (stamp.session != m.session) {
+    if (stamp.session != m.session || m.found) {
       m.Start(sample, along, site);
     } else if (apart > period / 2) {
       m.Close();
@@ -383,6 +388,7 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
   }
   m.last = now;
   if (m.axial && now.var_sum > kLostVariance) {
+    m.lost = true;
     if (m.main.block_seconds() > 0) m.Close();
     m.CountSum();
   }
