@@ -255,7 +255,9 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& a
 
   // 0 = turn + Earth - errors' share.
   m.turn.h = FilterVector::Zero(layout_.size);
-  const double by_inclination = -north * c * (1 + cot * cot) * knot.seconds;
+  // An inclination that is off reads the Earth's rate as another; d_turn holds that by the measured
+  // rate, whose noise is in the reading too, so that hundreds of knots would seem to tell of it.
+  const double by_inclination = (cot * up - north * c) * knot.seconds + cot * knot.turn;
   Load(layout_, Knot::SourceVector(knot.d_turn + by_inclination * knot.d_inclination), -1,
        m.turn.h);
   m.turn.h[0] = -knot.cot * north * s;
