@@ -84,12 +84,41 @@ class ShiftOfPath {
   Eigen::Vector3d start_;
 };
 
+/// A leg whose azimuth is off by d falls short of its way by 1 - cos d, which no first order shows.
+/// Its sign is always the same: taken as one error of all legs.
+class ShortOfWay {
+ public:
+  explicit ShortOfWay(const Station& first) : md_(first.md), last_(Of(first)) {}
+  Eigen::Matrix3d To(const Station& s) {
+    const Eigen::Vector3d here = Of(s);
+    sum_ += 0.5 * (s.md - md_) * (last_ + here);
+    md_ = s.md;
+    last_ = here;
+    return sum_ * sum_.transpose();
+  }
+
+ private:
+  /// Root mean square of 1 - cos d for a normal d, along the station's way.
+  static Eigen::Vector3d Of(const Station& s) {
+    const double u = -std::expm1(-s.cov_md_inc_azi(2, 2) / 2);
+    const double less = u * std::sqrt(3 - 2 * u + u * u / 2) * std::sin(s.inclination);
+    return {less * std::cos(s.azimuth), less * std::sin(s.azimuth), 0};
+  }
+
+  double md_;
+  Eigen::Vector3d last_, sum_ = Eigen::Vector3d::Zero();
+};
+
 std::vector<Eigen::Matrix3d> OfWindows(const PassItems& pass, const PathStart& start,
                                        const Station& origin, const ShiftOfPath& shift) {
   std::vector<Eigen::Matrix3d> covs;
   SystematicCovariance sum(start.cov_p_WT_W, true);
   sum.Add(origin);
-  for (const PassItem& item : pass) covs.push_back(sum.Add(item.station) + shift.At(item.station));
+  ShortOfWay shortfall(origin);
+  for (const PassItem& item : pass) {
+    const Station& s = item.station;
+    covs.push_back(sum.Add(s) + shift.At(s) + shortfall.To(s));
+  }
   return covs;
 }
 
@@ -104,6 +133,7 @@ std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
   origin.cov_md_inc_azi(0, 0) = entry.cov_md_inc_azi(0, 0) = 0;
   SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty());
   first.Add(origin);
+  ShortOfWay shortfall(origin);
   AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
   Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
   const PassItem* above = nullptr;
@@ -114,7 +144,8 @@ std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
         unseen += UnseenCourse(above->station, item.station);
       }
       above = &item;
-      covs.push_back(sum.Add(*item.state) + unseen + shift.At(item.station));
+      covs.push_back(sum.Add(*item.state) + unseen + shift.At(item.station) +
+                     shortfall.To(item.station));
     } else {
       sum.Skip(*item.state);
       covs.push_back(covs.back());

@@ -1,0 +1,47 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/math/random.h"
+#include "wellgyro/survey/pass_covariance_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kLength = 1000, kAzimuth = 0.7, kInclination = 0.5;
+
+// Variance along its way of the end of a straight hole [m^2].
+double VarianceAlong(double sigma_azimuth) {
+  PassItems pass;
+  for (double md = 100; md <= kLength; md += 100) {
+    PassItem& item = pass.emplace_back();
+    item.station.md = md;
+    item.station.inclination = kInclination;
+    item.station.azimuth = kAzimuth;
+    item.station.cov_md_inc_azi(2, 2) = sigma_azimuth * sigma_azimuth;
+  }
+  PathStart start;
+  start.point.station.md = 0;
+  const Eigen::Vector3d along(std::cos(kAzimuth), std::sin(kAzimuth), 0);
+  return along.dot(PassCovariances({}, pass, start).back() * along);
+}
+
+// Surveyed in one wrong direction, as drawn, its end falls short of its way.
+TEST(PassCovariance, AnAzimuthFarOffFallsShortOfItsWay) {
+  for (const double sigma_deg : {1., 5., 20., 60.}) {
+    const double sigma = FromDegrees(sigma_deg);
+    Random random(7);
+    constexpr int kDraws = 200000;
+    double square = 0;
+    for (int i = 0; i < kDraws; ++i) {
+      square += std::pow(1 - std::cos(sigma * random.Normal()), 2) / kDraws;
+    }
+    const double expected = square * std::pow(kLength * std::sin(kInclination), 2);
+    EXPECT_NEAR(VarianceAlong(sigma) - VarianceAlong(0), expected, 0.03 * expected)
+        << sigma_deg << " deg";
+  }
+}
+
+}  // namespace
+}  // namespace wellgyro
