@@ -181,7 +181,7 @@ TEST(Hours, OfACoarseToolEndAsSureAsTheySay) {
   for (const double rpm : {0., 0.3}) {
     for (const double inclination : {30., 60., 90.}) {
       Claims smoothed, adjusted;
-      for (std::uint64_t seed = 1; seed <= Seeds(6, 100); ++seed) {
+      for (std::uint64_t seed = 1; seed <= Seeds(6, 400); ++seed) {
         Hour hour = testing::Tactical();
         hour.noise.angle_random_walk = 0.25 * units::kDegPerSqrtHour;
         hour.errors.gyro_bias_sigma = 0.5 * units::kDegPerHour;
@@ -197,6 +197,10 @@ TEST(Hours, OfACoarseToolEndAsSureAsTheySay) {
                                (rpm > 0 ? ", 0.3 rpm, " : ", sliding, ");
       smoothed.ExpectTrue(name + "smoothed");
       adjusted.ExpectTrue(name + "adjusted");
+      if (WELLGYRO_LONG) {
+        EXPECT_NEAR(smoothed.rms_deg() / smoothed.sigma_deg(), 1, 0.1);
+        EXPECT_NEAR(adjusted.rms_deg() / adjusted.sigma_deg(), 1, 0.1);
+      }
     }
   }
 }
