@@ -4,6 +4,7 @@
 
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/drift.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro::gyrocompass {
@@ -103,7 +104,7 @@ MatrixXd Problem::RateCovariance(int axis, const NoiseCoefficients& gyro) const 
       const double walked = std::max(0.0, std::min(middle(i), middle(j)) - middle(0));
       double bias = gyro.bias_instability * gyro.bias_instability;
       if (const auto& tc = gyro.bias_instability_correlation_time; tc && *tc > 0) {
-        bias *= 1.075 * 1.075 * std::exp(-apart / *tc);
+        bias *= kMarkovSigmaPerInstability * kMarkovSigmaPerInstability * std::exp(-apart / *tc);
       }
       cov(i, j) = bias + walk * walked;
     }

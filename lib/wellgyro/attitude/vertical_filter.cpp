@@ -11,6 +11,7 @@
 #include "wellgyro/attitude/vertical_core_internal.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/drift.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/record/knot_sources.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -127,7 +128,7 @@ VerticalFilter::Impl::Impl(const VerticalSetup& s) : setup(s) {
   noise.bias_walk = g.rate_random_walk;
   double instability = g.bias_instability;
   if (g.bias_instability_correlation_time) {
-    instability *= 1.075;
+    instability *= kMarkovSigmaPerInstability;
     noise.bias_walk = std::hypot(noise.bias_walk,
                                  instability * std::sqrt(2 / *g.bias_instability_correlation_time));
   }

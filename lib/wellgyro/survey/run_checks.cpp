@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/drift.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/record/knot_sources.h"
 #include "wellgyro/survey/check_internal.h"
@@ -22,7 +23,8 @@ double Square(double x) { return x * x; }
 double SigmaOfChange(const NoiseCoefficients& gyro, double seconds) {
   double variance = Square(gyro.rate_random_walk) * seconds;
   if (const auto& tc = gyro.bias_instability_correlation_time; tc && *tc > 0) {
-    variance += 2 * Square(1.075 * gyro.bias_instability) * -std::expm1(-seconds / *tc);
+    variance += 2 * Square(kMarkovSigmaPerInstability * gyro.bias_instability) *
+                -std::expm1(-seconds / *tc);
   }
   return std::sqrt(variance + Square(gyro.rate_ramp * seconds));
 }
