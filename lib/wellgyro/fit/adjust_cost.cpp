@@ -291,9 +291,10 @@ class PriorFunction : public ceres::CostFunction {
     for (std::size_t row = 0; row < terms_.size(); ++row) {
       const auto [place, sigma] = terms_[row];
       residuals[row] = x[0][place] / sigma;
-      if (slopes)
+      if (slopes) {
         jacobians[0][row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(place)] =
             1 / sigma;
+      }
     }
     return true;
   }
@@ -338,6 +339,7 @@ std::unique_ptr<ceres::CostFunction> DriftPriorCost(const AdjustLayout& layout) 
 
 std::unique_ptr<ceres::CostFunction> CommonPriorCost(const AdjustLayout& layout) {
   std::vector<std::pair<int, double>> terms;
+  terms.reserve(static_cast<std::size_t>(layout.common));
   for (int i = 0; i < layout.common; ++i) terms.emplace_back(i, layout.sigma_common[i]);
   return std::make_unique<PriorFunction>(layout.common, std::move(terms));
 }
