@@ -67,6 +67,14 @@ void SayHowHeard(const LiveBus& bus) {
              asked);
 }
 
+void DrainStopped(LiveBus& bus, int quiet_ms, std::int64_t most_us) {
+  const std::int64_t end = MonotonicUs() + most_us;
+  while (MonotonicUs() < end) {
+    const auto drained = bus.Drain(1, quiet_ms);
+    if (!drained || *drained == 0) return;
+  }
+}
+
 StopOnSignals::StopOnSignals(LiveBus& bus) {
   to_stop = &bus;
   for (const int signal : kSignals) Handle(signal, Stop);

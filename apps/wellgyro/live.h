@@ -22,6 +22,10 @@ std::int64_t MonotonicUs();  ///< for lengths of time [us]
 /// Says on standard error what is listened to and what buffer the system grants for it.
 void SayHowHeard(const LiveBus& bus);
 
+/// After a stop: hands on what had come, until nothing more does for `quiet_ms`, for `most_us` at
+/// most.
+void DrainStopped(LiveBus& bus, int quiet_ms, std::int64_t most_us);
+
 /// While it lives, SIGINT and SIGTERM stop the bus, and SIGPIPE does nothing. One at a time.
 class StopOnSignals {
  public:

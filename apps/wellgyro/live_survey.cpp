@@ -204,11 +204,7 @@ Ended LiveSurvey::Run() {
       return Ended::kBusGone;
     }
     if (*woken != LiveBus::Woken::kStopped) continue;
-    const std::int64_t begin = MonotonicUs();
-    for (;;) {
-      const auto drained = bus_.Drain(64);
-      if (!drained || *drained == 0 || MonotonicUs() - begin > kDrainUs) break;
-    }
+    DrainStopped(bus_, 0, kDrainUs);
     return surveyor_.finished() ? Ended::kFinished : Ended::kInterrupted;
   }
 }

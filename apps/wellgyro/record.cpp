@@ -24,7 +24,10 @@ namespace wellgyro::apps {
 namespace {
 
 constexpr std::int64_t kSecondUs = 1'000'000;
-constexpr std::int64_t kDrainUs = 50'000;
+// After a signal the recording ends when what the system still held is in the log: when nothing has
+// come for kQuietMs, in which LCM's thread gets its turn on a busy machine too, or after kDrainUs.
+constexpr int kQuietMs = 100;
+constexpr std::int64_t kDrainUs = 300'000;
 
 struct RecordOptions {
   std::string from, out, job;
@@ -149,11 +152,7 @@ int Recording::Run() {
       break;
     }
     if (*woken != LiveBus::Woken::kStopped) continue;
-    const std::int64_t begin = MonotonicUs();
-    for (;;) {
-      const auto drained = bus_.Drain(1000);
-      if (!drained || *drained == 0 || MonotonicUs() - begin > kDrainUs) break;
-    }
+    DrainStopped(bus_, kQuietMs, kDrainUs);
     break;
   }
   return Report();

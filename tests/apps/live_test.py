@@ -524,6 +524,19 @@ class Live(ProgramTest):
         self.assertIn("goes on without recording", errors)
         self.SameAs("straight", out)
 
+    def test_what_the_system_holds_at_a_signal_is_recorded(self):
+        url, log = self.Udpm(), self.Path("held.lcm")
+        recorder = self.Listening("record", "--from", url, "--out", log)
+        recorder.send_signal(signal.SIGSTOP)
+        short = self.Write("short.toml", Simulation(Stop(6), "imu_hz = 100.0\nbatch = 2\n"))
+        sent = Run("simulate", "--job", short, "--out", url, "--speed", "60")
+        self.assertEqual(sent.returncode, 0, sent.stderr)
+        recorder.send_signal(signal.SIGTERM)
+        recorder.send_signal(signal.SIGCONT)
+        text, errors = recorder.communicate(timeout=20)
+        self.assertEqual(recorder.returncode, 0, text + errors)
+        self.assertEqual(self.Bytes("held.lcm").count(b"WELLGYRO_IMU"), 300)
+
     def test_a_log_that_is_rotated_away(self):
         url, log = self.Udpm(), self.Path("away.lcm")
         recorder = self.Listening("record", "--from", url, "--out", log)

@@ -39,6 +39,13 @@ void RequireChannel(std::string_view channel) {
       fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, kChannelMax));
 }
 
+/// poll(2), begun again after a signal.
+int Poll(std::span<pollfd> ends, int timeout_ms) {
+  int ready = ::poll(ends.data(), ends.size(), timeout_ms);
+  while (ready < 0 && errno == EINTR) ready = ::poll(ends.data(), ends.size(), timeout_ms);
+  return ready;
+}
+
 }  // namespace
 
 struct LiveBus::Core {
@@ -78,9 +85,9 @@ struct LiveBus::Core {
     return {FaultCode::kIo, fmt::format("{}: {}", url.full, what), url.full};
   }
 
-  bool Readable() const {
+  bool Readable(int within_ms) const {
     pollfd bus{lcm_get_fileno(lcm), POLLIN, 0};
-    return bus.fd >= 0 && ::poll(&bus, 1, 0) > 0 && (bus.revents & POLLIN) != 0;
+    return bus.fd >= 0 && Poll({&bus, 1}, within_ms) > 0 && (bus.revents & POLLIN) != 0;
   }
 
   /// One message, which must be there: liblcm's own waiting breaks on signals.
@@ -150,10 +157,10 @@ std::optional<Fault> LiveBus::Subscribe(const std::vector<std::string>& channels
 Result<LiveBus::Woken> LiveBus::Wait(int timeout_ms) {
   std::array<pollfd, 2> ends = {
       {{core_->stop_pipe[0], POLLIN, 0}, {lcm_get_fileno(core_->lcm), POLLIN, 0}}};
-  const nfds_t count = ends[1].fd < 0 ? 1 : 2;
-  int ready = ::poll(ends.data(), count, timeout_ms);
-  while (ready < 0 && errno == EINTR) ready = ::poll(ends.data(), count, timeout_ms);
-  if (ready < 0) return core_->Gone(std::strerror(errno));
+  const std::size_t count = ends[1].fd < 0 ? 1 : 2;
+  if (Poll(std::span(ends).first(count), timeout_ms) < 0) {
+    return core_->Gone(std::strerror(errno));
+  }
   if (ends[0].revents != 0) return Woken::kStopped;
   if ((ends[1].revents & POLLIN) != 0) {
     const Result<std::int64_t> handled = Drain(kBurst);
@@ -164,9 +171,9 @@ Result<LiveBus::Woken> LiveBus::Wait(int timeout_ms) {
   return Woken::kIdle;
 }
 
-Result<std::int64_t> LiveBus::Drain(std::int64_t most) {
+Result<std::int64_t> LiveBus::Drain(std::int64_t most, int quiet_ms) {
   std::int64_t handled = 0;
-  while (handled < most && core_->Readable()) {
+  while (handled < most && core_->Readable(quiet_ms)) {
     if (!core_->HandleOne()) return core_->Gone("the connection is lost");
     ++handled;
   }

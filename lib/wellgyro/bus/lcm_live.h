@@ -56,8 +56,10 @@ class WELLGYRO_EXPORT LiveBus {
   /// Waits for a message, for Stop, or for the time to pass (negative: for ever), then hands on
   /// what has come. A Fault: the bus is gone.
   Result<Woken> Wait(int timeout_ms);
-  /// Hands on what has come, without waiting, at most `most` messages; how many it was.
-  Result<std::int64_t> Drain(std::int64_t most = 1'000'000);
+  /// Hands on what has come until nothing more does for `quiet_ms`, at most `most` messages; how
+  /// many it was. Without waiting (0), what LCM's own thread has not yet fetched from the system
+  /// stays there.
+  Result<std::int64_t> Drain(std::int64_t most = 1'000'000, int quiet_ms = 0);
 
   /// Ends the present and every later Wait. May be called from a signal handler or another thread.
   void Stop() noexcept;
