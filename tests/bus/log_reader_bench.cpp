@@ -1,4 +1,3 @@
-#include <filesystem>
 #include <stdexcept>
 
 #include <benchmark/benchmark.h>
@@ -10,6 +9,8 @@
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/log_writer.h"
 
+#include "support/scratch.h"
+
 // Reading logs, ours beside liblcm's in one run: BM_Log* / BM_LiblcmLog* give the ratio that is to
 // be 10 or more. BM_FeedLog/100 reads and decodes batches: 30 M samples/s or more.
 namespace wellgyro {
@@ -18,8 +19,7 @@ namespace {
 /// A log of imu batches of `n` samples each (n = 1: 108 bytes of data an event).
 class Log {
  public:
-  Log(int n, int events)
-      : path_((std::filesystem::temp_directory_path() / "wellgyro-bench.lcm").string()) {
+  Log(int n, int events) : path_((scratch_.path() / "bench.lcm").string()) {
     std::vector<ImuSample> batch(static_cast<std::size_t>(n));
     std::vector<std::byte> bytes;
     auto writer = LogWriter::Open(path_, IfExists::kReplace);
@@ -38,12 +38,10 @@ class Log {
     }
     if (writer->Close()) throw std::runtime_error("disk full");
   }
-  ~Log() { std::filesystem::remove(path_); }
-  Log(const Log&) = delete;
-  Log& operator=(const Log&) = delete;
   const std::string& path() const { return path_; }
 
  private:
+  support::Scratch scratch_;
   std::string path_;
 };
 

@@ -1,6 +1,7 @@
 #include "wellgyro/noise/allan_confidence.h"
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -224,14 +225,17 @@ TEST(NoiseModel, GaussMarkovPeaksAtTheFloorItStandsFor) {
     }
   }
   EXPECT_NEAR(at, 189, 1);  // 1.89 correlation times
-  EXPECT_NEAR(std::sqrt(peak), 0.664282, 0.001);
+  EXPECT_NEAR(std::sqrt(peak), std::sqrt(2 * std::numbers::ln2 / std::numbers::pi), 1e-5)
+      << "flicker's floor";
+  // The floor over the peak 0.6173643 of unit sigma, where the derivative by tau is zero.
+  constexpr double kSigma = 1.0759976;
   // Short times: a random walk of 2 sigma^2/T; long times: white noise of 2 sigma^2 T.
   EXPECT_NEAR(UnitAllanVariance(NoiseTerm::kBiasInstability, shape, 1e-3) /
-                  (2 * 1.075 * 1.075 * 1e-3 / 100 / 3),
+                  (2 * kSigma * kSigma * 1e-3 / 100 / 3),
+              1, 2e-5);
+  EXPECT_NEAR(UnitAllanVariance(NoiseTerm::kBiasInstability, shape, 1e7) /
+                  (2 * kSigma * kSigma * 100 / 1e7),
               1, 1e-4);
-  EXPECT_NEAR(
-      UnitAllanVariance(NoiseTerm::kBiasInstability, shape, 1e7) / (2 * 1.075 * 1.075 * 100 / 1e7),
-      1, 1e-4);
 }
 
 }  // namespace

@@ -95,12 +95,12 @@ TEST(FitNoise, FitsBiasInstabilityAsGaussMarkov) {
   constexpr double kB = 0.2;
   Random random(4);
   std::vector<double> rate(1 << 19);
-  double state = kGaussMarkovSigmaPerB * kB * random.Normal();
+  constexpr double kSigma = 1.076 * kB;
+  double state = kSigma * random.Normal();
   const double keep = std::exp(-kPeriod / kTime);
   for (auto& y : rate) {
     y = state + 0.1 / std::sqrt(kPeriod) * random.Normal();
-    state =
-        keep * state + kGaussMarkovSigmaPerB * kB * std::sqrt(1 - keep * keep) * random.Normal();
+    state = keep * state + kSigma * std::sqrt(1 - keep * keep) * random.Normal();
   }
   NoiseFitOptions options;
   options.gauss_markov = true;

@@ -55,6 +55,31 @@ void WriteTools(TomlWriter& toml, const std::vector<ToolInfo>& tools) {
   }
 }
 
+/// What the sensors of a fix were found to read.
+void WriteFixSensors(TomlWriter& toml, const NorthFix& fix) {
+  const auto rate = [&](std::string_view key, double v) {
+    toml.Number(key, v / units::kDegPerHour);
+  };
+  if (fix.gyro_bias) {
+    rate("gyro_bias_x_deg_per_h", fix.gyro_bias->x());
+    rate("gyro_bias_y_deg_per_h", fix.gyro_bias->y());
+    rate("sigma_gyro_bias_x_deg_per_h", fix.sigma_gyro_bias.x());
+    rate("sigma_gyro_bias_y_deg_per_h", fix.sigma_gyro_bias.y());
+  }
+  if (fix.roll_rate) {
+    rate("roll_rate_deg_per_h", *fix.roll_rate);
+    rate("sigma_roll_rate_deg_per_h", fix.sigma_roll_rate);
+  }
+  toml.Number("gravity_mps2", fix.gravity);
+  toml.Number("gravity_ref_mps2", fix.gravity_ref);
+  toml.Number("sigma_gravity_mps2", fix.sigma_gravity);
+  if (fix.earth_rate) {
+    rate("earth_rate_deg_per_h", *fix.earth_rate);
+    rate("earth_rate_ref_deg_per_h", fix.earth_rate_ref);
+    rate("sigma_earth_rate_deg_per_h", fix.sigma_earth_rate);
+  }
+}
+
 void WriteFix(TomlWriter& toml, const NorthFix& fix) {
   const auto deg = [&](std::string_view key, double v) { toml.Number(key, ToDegrees(v)); };
   toml.Element("run.north_fix");
@@ -81,24 +106,7 @@ void WriteFix(TomlWriter& toml, const NorthFix& fix) {
     deg("closure_deg", fix.closure);
     deg("sigma_closure_deg", fix.sigma_closure);
   }
-  if (fix.gyro_bias) {
-    toml.Number("gyro_bias_x_deg_per_h", fix.gyro_bias->x() / units::kDegPerHour);
-    toml.Number("gyro_bias_y_deg_per_h", fix.gyro_bias->y() / units::kDegPerHour);
-    toml.Number("sigma_gyro_bias_x_deg_per_h", fix.sigma_gyro_bias.x() / units::kDegPerHour);
-    toml.Number("sigma_gyro_bias_y_deg_per_h", fix.sigma_gyro_bias.y() / units::kDegPerHour);
-  }
-  if (fix.roll_rate) {
-    toml.Number("roll_rate_deg_per_h", *fix.roll_rate / units::kDegPerHour);
-    toml.Number("sigma_roll_rate_deg_per_h", fix.sigma_roll_rate / units::kDegPerHour);
-  }
-  toml.Number("gravity_mps2", fix.gravity);
-  toml.Number("gravity_ref_mps2", fix.gravity_ref);
-  toml.Number("sigma_gravity_mps2", fix.sigma_gravity);
-  if (fix.earth_rate) {
-    toml.Number("earth_rate_deg_per_h", *fix.earth_rate / units::kDegPerHour);
-    toml.Number("earth_rate_ref_deg_per_h", fix.earth_rate_ref / units::kDegPerHour);
-    toml.Number("sigma_earth_rate_deg_per_h", fix.sigma_earth_rate / units::kDegPerHour);
-  }
+  WriteFixSensors(toml, fix);
   toml.Text("quality", QualityText(fix.quality));
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/drift.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -30,7 +31,7 @@ double PhaseCovariance(const NoiseModel& model, double t) {
   const double u = t / time;
   // The parabola u^2/2 is taken off so that short lags do not cancel.
   const double bent = u < 1e-2 ? u * u * u * (-1 / 6. + u / 24) : std::expm1(-u) + u - u * u / 2;
-  return g - std::pow(kGaussMarkovSigmaPerB * b * time, 2) * bent;
+  return g - std::pow(kMarkovSigmaPerInstability * b * time, 2) * bent;
 }
 
 // Lags are sampled `per_average` to the shorter averaging time, or at every sample where that is

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/drift.h"
 
 namespace wellgyro {
 namespace {
@@ -26,7 +27,7 @@ double UnitAllanVariance(NoiseTerm term, const NoiseShape& shape, double tau) {
       return 1 / tau;
     case NoiseTerm::kBiasInstability: {
       if (!shape.correlation_time) return 2 * std::numbers::ln2 / kPi;
-      constexpr double kSigma2 = kGaussMarkovSigmaPerB * kGaussMarkovSigmaPerB;
+      constexpr double kSigma2 = kMarkovSigmaPerInstability * kMarkovSigmaPerInstability;
       return kSigma2 * GaussMarkovVariance(tau / *shape.correlation_time);
     }
     case NoiseTerm::kRateRandomWalk:

@@ -13,7 +13,7 @@ namespace wellgyro {
 enum class NoiseTerm : std::size_t {
   kQuantization,     ///< Q: 3 Q^2/t^2
   kAngleRandomWalk,  ///< N: N^2/t
-  kBiasInstability,  ///< B: (2 ln2/pi) B^2, or a Gauss-Markov process of sigma 1.075 B
+  kBiasInstability,  ///< B: (2 ln2/pi) B^2, or a Gauss-Markov process of sigma 1.0760 B
   kRateRandomWalk,   ///< K: K^2 t/3
   kRateRamp,         ///< R: R^2 t^2/2
   kSinusoid,         ///< amplitude A at frequency f: A^2 (sin^2(pi f t)/(pi f t))^2
@@ -45,9 +45,6 @@ struct NoiseModel {
   PerTerm<double> coefficient{};
   NoiseShape shape;
 };
-
-/// Sigma of the Gauss-Markov process over the B whose floor its Allan deviation's peak touches.
-inline constexpr double kGaussMarkovSigmaPerB = 1.075;
 
 /// Allan variance of one term of unit coefficient at averaging time `tau` > 0 [s] (IEEE 952-1997,
 /// annex C; the process itself, not its samples: see AllanVariance for what sampling does to none).
