@@ -6,13 +6,9 @@
 #include <string>
 #include <tuple>
 
-#include "wellgyro/math/interpolation.h"
-
 namespace wellgyro {
 namespace {
 
-// Of the window: marks no further apart are fitted, others joined.
-constexpr double kDense = 0.55;
 constexpr double kHold = 0.02;         // [m] between marks of a tool that stands
 constexpr double kStopAndGo = 5;       // [s] between marks in which a stop may hide
 constexpr double kUnseen = 0.03;       // [m/s^2], acceleration of a winch, rms
@@ -286,31 +282,7 @@ AlongHole DepthTrack::At(UtcTime utc) const {
   if (!IsTime(utc)) return {};
   const Span span = SpanAt(utc);
   if (!Bracketed(utc, span)) return {};
-  const double w = setup_.half_window.seconds();
-  const double md0 = marks_[span.begin].md;
-  double low = md0, high = md0;
-  LocalFit fit;
-  for (std::size_t i = span.begin; i < span.end; ++i) {
-    const double u = Seconds(marks_[i].utc, utc) / w;
-    fit.Add(u, marks_[i].md - md0, 1 - u * u);
-    low = std::min(low, marks_[i].md);
-    high = std::max(high, marks_[i].md);
-  }
-  AlongHole along;
-  if (fit.count() < 3 || Sparse(utc)) {
-    along = Join(utc, span);
-  } else {
-    // The encoder's rounding repeats from mark to mark: it does not average.
-    const LocalFit::Value y = fit.Fit(2);
-    const double noise = std::max(setup_.sigma_reading, y.scatter);
-    along = {.md = std::clamp(md0 + y.value, low, high),
-             .speed = y.slope / w,
-             .acceleration = y.curvature / (w * w),
-             .sigma_md = std::max(setup_.sigma_reading, noise * std::sqrt(y.variance_value)),
-             .known = true,
-             .sigma_speed = noise * std::sqrt(y.variance_slope) / w,
-             .sigma_acceleration = noise * std::sqrt(y.variance_curvature) / (w * w)};
-  }
+  AlongHole along = Sparse(utc) ? Join(utc, span) : Fitted(utc, span);
   const Mark& nearest = marks_[std::clamp(After(utc), span.begin + 1, span.end) - 1];
   double sigma_event = 0;
   const auto next = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
@@ -328,11 +300,13 @@ void DepthTrack::Forget(UtcTime utc) {
   for (const Shift& shift : shifts_) {
     if (!shift.offset) keep = std::min(keep, shift.utc);
   }
-  // The last two marks at or before stay, to bracket what follows.
+  // The last two marks at or before stay, to bracket what follows; more to tell of the scatter.
   const std::size_t after = After(keep);
   if (after < 3) return;
-  marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(after - 2));
-  forgotten_ = std::max(forgotten_.value_or(marks_.front().utc), marks_.front().utc);
+  const UtcTime first = marks_[after - 2].utc;
+  forgotten_ = std::max(forgotten_.value_or(first), first);
+  const std::size_t drop = after - std::min(after, kMemory);
+  marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(drop));
 }
 
 }  // namespace wellgyro

@@ -9,6 +9,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/base/time.h"
+#include "wellgyro/math/interpolation.h"
 #include "wellgyro/record/along_hole.h"
 #include "wellgyro/record/depth_mark.h"
 #include "wellgyro/record/operations.h"
@@ -36,8 +37,11 @@ struct DepthTrackSetup {
 /// both agree within 2 cm; across a jump of the counter it is unknown, and no fit spans one.
 /// A 1 cm encoder on a winch that swings by 4 cm/s gives speed and acceleration to 1 mm/s and
 /// 2 mm/s^2 rms at 10 Hz, to 2 mm/s and 5 mm/s^2 at 1 Hz; one count at rest reads as 5 mm/s. A
-/// sudden change of speed is smeared over the window. Noise of the marks beyond `sigma_reading` is
-/// seen from their scatter.
+/// sudden change of speed is smeared over the window. The sigmas are by the scatter that the marks
+/// show, about the fit or, where it holds too few, from mark to mark over the last of them. Marks
+/// that repeat each other tell less, and what of the rounding is not seen as scatter is common to
+/// all. What the parabola misses is in them where it stands out of the scatter: of a string that
+/// sticks within a window they are a third at worst.
 ///
 /// Depth events cut the track: from a DEPTH_ZERO, DEPTH_REZERO or DEPTH_TIE on depths read value_m
 /// there, whether or not the depth system itself was set; earlier depths stay. No fit spans one.
@@ -69,6 +73,11 @@ class WELLGYRO_EXPORT DepthTrack {
   void Forget(UtcTime utc);
 
  private:
+  /// Of the half window: marks no further apart are fitted, others joined.
+  static constexpr double kDense = 0.55;
+  /// Marks that tell of the scatter where the window holds too few.
+  static constexpr std::size_t kMemory = 24;
+
   struct Mark {
     UtcTime utc;
     std::int64_t seq;
@@ -81,6 +90,14 @@ class WELLGYRO_EXPORT DepthTrack {
   /// Marks [begin, end) that one fit may use.
   struct Span {
     std::size_t begin, end;
+  };
+  /// Squares of the scatter of single marks, summed, and of how many degrees of freedom.
+  struct Scatter {
+    double squares = 0, freedom = 0;
+  };
+  /// Squares of what a fit misses, of its value and derivatives by the half window.
+  struct Bend {
+    double value = 0, slope = 0, curvature = 0;
   };
   struct Shift {
     UtcTime utc;
@@ -103,6 +120,11 @@ class WELLGYRO_EXPORT DepthTrack {
   Duration Reach() const { return std::max(setup_.half_window, setup_.max_gap); }
   bool Sparse(UtcTime utc) const;
   AlongHole Join(UtcTime utc, Span span) const;
+  AlongHole Fitted(UtcTime utc, Span span) const;
+  Scatter ScatterAbout(UtcTime utc) const;
+  double Noise(Scatter scatter) const;
+  double Common(Scatter scatter) const;
+  Bend BendOf(UtcTime utc, Span span, const LocalFit::Value& y, double noise) const;
 
   DepthTrackSetup setup_;
   std::vector<Mark> marks_;    ///< by time

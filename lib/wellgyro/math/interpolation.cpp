@@ -1,5 +1,6 @@
 #include "wellgyro/math/interpolation.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Core>
@@ -48,6 +49,7 @@ LocalFit::Value Solve(const double* s, const double* w2, const double* y, double
   if (count > n && expected > 1e-6 * s[0] && left > 1e-12 * yy) {
     value.scatter = std::sqrt(left / expected);
   }
+  value.freedom = std::max(0.0, s[0] * s[0] / w2[0] - n);
   return value;
 }
 

@@ -18,6 +18,7 @@ class WELLGYRO_EXPORT LocalFit {
     double variance_value = 0;                          ///< for unit variance of every y ...
     double variance_slope = 0, variance_curvature = 0;  ///< ... and of the derivatives
     double scatter = 0;  ///< 1-sigma of one y, as the points scatter about the fit; 0: too few
+    double freedom = 0;  ///< points beyond the unknowns that told it, by their weights
   };
 
   void Add(double t, double y, double weight);

@@ -241,7 +241,7 @@ void RunSurvey::ListLastMark() {
 /// A tool that comes to rest makes a station, listed only if the job asks for stops or if it turns
 /// out to be the deepest.
 std::optional<Draft> RunSurvey::RestDraft(const AlongHole& end) const {
-  if (!end.known || std::abs(end.speed) > std::max(kRestSpeed, 4 * end.sigma_speed)) {
+  if (!end.known || std::abs(end.speed) > std::max(kRestSpeed, 2 * end.sigma_speed)) {
     return std::nullopt;
   }
   if (marked_ && std::abs(end.md - last_mark_md_) <= kSameDepth) return std::nullopt;

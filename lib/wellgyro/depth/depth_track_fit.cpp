@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+
+#include "wellgyro/depth/depth_track.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kEnough = 8;  // degrees of freedom that tell a scatter, to a quarter
+constexpr double kSure = 4;    // times the variance, what noise seldom makes
+
+double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
+
+}  // namespace
+
+AlongHole DepthTrack::Fitted(UtcTime utc, Span span) const {
+  const double w = setup_.half_window.seconds(), md0 = marks_[span.begin].md;
+  double low = md0, high = md0, values = 1, last = md0;
+  LocalFit fit;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    const double u = Seconds(marks_[i].utc, utc) / w, md = marks_[i].md;
+    fit.Add(u, md - md0, 1 - u * u);
+    low = std::min(low, md);
+    high = std::max(high, md);
+    if (md != last) ++values;
+    last = md;
+  }
+  if (fit.count() < 3) return Join(utc, span);
+  const LocalFit::Value y = fit.Fit(2);
+  Scatter scatter{y.scatter * y.scatter * y.freedom, y.freedom};
+  if (scatter.freedom < kEnough) scatter = ScatterAbout(utc);
+  // Marks that repeat each other are rounded alike: fewer than there are tell something.
+  const double noise = Noise(scatter) * static_cast<double>(span.end - span.begin) / values;
+  const Bend bend = BendOf(utc, span, y, noise);
+  return {.md = std::clamp(md0 + y.value, low, high),
+          .speed = y.slope / w,
+          .acceleration = y.curvature / (w * w),
+          .sigma_md = std::sqrt(Common(scatter) + noise * y.variance_value + bend.value),
+          .known = true,
+          .sigma_speed = std::sqrt(noise * y.variance_slope + bend.slope) / w,
+          .sigma_acceleration = std::sqrt(noise * y.variance_curvature + bend.curvature) / (w * w)};
+}
+
+/// From third differences, free of any acceleration, of the marks behind, and of those ahead as far
+/// as they are final with those of the window.
+DepthTrack::Scatter DepthTrack::ScatterAbout(UtcTime utc) const {
+  const std::size_t end = After(utc + Reach());
+  const double gap = kDense * setup_.half_window.seconds();
+  Scatter scatter;
+  for (std::size_t i = end - std::min(end, kMemory); i + 3 < end; ++i) {
+    const Mark* m = &marks_[i];
+    if (m[1].jumps || m[2].jumps || m[3].jumps || Segment(m[0].utc) != Segment(m[3].utc)) continue;
+    const double t1 = Seconds(m[1].utc, m[0].utc), t2 = Seconds(m[2].utc, m[0].utc),
+                 t3 = Seconds(m[3].utc, m[0].utc);
+    if (!(t1 > 0 && t2 > t1 && t3 > t2) || std::max({t1, t2 - t1, t3 - t2}) > gap) continue;
+    // Times t1 t2 t3, divided differences.
+    const double c1 = t2 * t3 / ((t2 - t1) * (t3 - t1)), c2 = -t1 * t3 / ((t2 - t1) * (t3 - t2)),
+                 c3 = t1 * t2 / ((t3 - t1) * (t3 - t2));
+    const double left =
+        c1 * (m[1].md - m[0].md) + c2 * (m[2].md - m[0].md) + c3 * (m[3].md - m[0].md);
+    scatter.squares += left * left / (1 + c1 * c1 + c2 * c2 + c3 * c3);
+    scatter.freedom += 1;
+  }
+  // Each shares three marks with the next.
+  const double share = 0.43;
+  scatter.squares *= share;
+  scatter.freedom *= share;
+  return scatter;
+}
+
+/// Variance of one mark's noise. By what scatter it was told by, and as much of the encoder's
+/// rounding as half a mark tells; a mean over what the scatter may still be.
+double DepthTrack::Noise(Scatter scatter) const {
+  const double reading = setup_.sigma_reading * setup_.sigma_reading;
+  return (0.5 * reading + scatter.squares) / std::max(0.5, scatter.freedom - 1.5);
+}
+
+/// Variance of what rounding adds to all marks alike: what of it their scatter does not show.
+double DepthTrack::Common(Scatter scatter) const {
+  const double reading = setup_.sigma_reading * setup_.sigma_reading;
+  return std::max(0.0, reading - scatter.squares / std::max(1.0, scatter.freedom));
+}
+
+/// Squares of what the parabola `y` misses where the marks show more than noise of variance `noise`
+/// of a third or fourth power beside it. By the polynomials orthogonal under the weight 1 - u^2.
+DepthTrack::Bend DepthTrack::BendOf(UtcTime utc, Span span, const LocalFit::Value& y,
+                                    double noise) const {
+  double norm3 = 0, norm4 = 0, sum3 = 0, sum4 = 0, var3 = 0, var4 = 0;
+  const double w = setup_.half_window.seconds(), md0 = marks_[span.begin].md;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    const double u = Seconds(marks_[i].utc, utc) / w, u2 = u * u, weight = 1 - u2;
+    if (!(weight > 0)) continue;
+    const double left = marks_[i].md - md0 - (y.value + u * (y.slope + 0.5 * u * y.curvature));
+    const double third = weight * u * (u2 - 3. / 7);
+    const double fourth = weight * (u2 * (u2 - 2. / 3) + 1. / 21);
+    sum3 += third * left;
+    sum4 += fourth * left;
+    var3 += third * third;
+    var4 += fourth * fourth;
+    norm3 += third * third / weight;
+    norm4 += fourth * fourth / weight;
+  }
+  const auto beyond = [noise](double sum, double var, double norm) {
+    return norm > 0 ? std::max(0.0, sum * sum - kSure * noise * var) / (norm * norm) : 0;
+  };
+  const double third = beyond(sum3, var3, norm3), fourth = beyond(sum4, var4, norm4);
+  return {fourth / (21 * 21), (third + fourth) * (9. / 49), (third + fourth) * (16. / 9)};
+}
+
+}  // namespace wellgyro
