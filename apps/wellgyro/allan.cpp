@@ -242,7 +242,7 @@ void AddAnalysis(CLI::App& command, Options& o) {
 
 void AddAllan(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("allan", "static log -> Allan deviation and noise coefficients");
+      app.add_subcommand("allan", "Finds Allan deviation and noise coefficients of a static log");
   auto options = std::make_shared<Options>();
   AddInput(*command, *options);
   AddAnalysis(*command, *options);

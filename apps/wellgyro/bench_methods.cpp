@@ -105,7 +105,8 @@ void AffineOptions(CLI::App& command, Options& o) {
   command
       .add_option("--second-order", o.affine.order,
                   "of the accelerometers: none (default), own axis, or full with products")
-      ->transform(CLI::CheckedTransformer(orders));
+      ->transform(CLI::CheckedTransformer(orders).description(""))
+      ->type_name("none|own|full");
   AddNumber(command, "--sigma-accel", o.affine.sigma_accel, 1, "of a reading, its unit");
   AddNumber(command, "--sigma-mag", o.affine.sigma_mag, 1, "of a reading, its unit");
   AddNumber(command, "--tilt-deg", o.affine.tilt_sigma, units::kDeg,
@@ -180,37 +181,43 @@ void StationOptions(CLI::App& command, Options& o) {
   AddNumber(command, "--prior-scale", s.prior_scale, 1, "1 sigma about zero");
 }
 
+constexpr const char* kField = " --field-nt 50000 --dip-deg 65";
+constexpr const char* kLatitude = " --latitude-deg 60";
+
 constexpr BenchMethod kMethods[] = {
     {"24-position", "three accelerometers in volts, each axis up and down at four rotations",
-     "axis,dir,rot_deg,channel,volt and T_C where there are several temperatures",
+     "axis,dir,rot_deg,channel,volt and T_C where there are several temperatures", "",
      TwentyFourOptions, TwentyFour},
     {"six-position", "three accelerometers with pulse outputs, each axis up and down",
-     "axis,sign,T_s,Nx,Ny,Nz and axb,ayb,azb where the fixture is not exact", SixOptions, Six},
-    {"thermometer", "a thermometer against others", "t_m,ref1,ref2 ... in degC", ThermometerOptions,
-     Thermometer},
+     "axis,sign,T_s,Nx,Ny,Nz and axb,ayb,azb where the fixture is not exact", "", SixOptions, Six},
+    {"thermometer", "a thermometer against others", "t_m,ref1,ref2 ... in degC", "",
+     ThermometerOptions, Thermometer},
     {"affine", "accelerometers and magnetometers at known attitudes",
-     "inc,az,tf in deg, Gx,Gy,Gz (gravity) or fx,fy,fz or vx,vy,vz (force), Mx,My,Mz",
+     "inc,az,tf in deg, Gx,Gy,Gz (gravity) or fx,fy,fz or vx,vy,vz (force), Mx,My,Mz", kField,
      AffineOptions, AgainstReference<FitAffine, &Options::affine>},
     {"orthogonality",
      "three accelerometers and three fluxgates: trigonometric coefficients, and the affine model "
      "from the same readings",
-     "seq,inc,az,tf,Gx,Gy,Gz,Mx,My,Mz; seq 0 verifies", OrthogonalityOptions, Orthogonality},
+     "seq,inc,az,tf,Gx,Gy,Gz,Mx,My,Mz; seq 0 verifies", kField, OrthogonalityOptions,
+     Orthogonality},
     {"scalar", "accelerometers without a turntable: gravity has one length",
-     "ax,ay,az or Gx,Gy,Gz (gravity), or fx,fy,fz or vx,vy,vz (force)", kScalarOptions,
+     "ax,ay,az or Gx,Gy,Gz (gravity), or fx,fy,fz or vx,vy,vz (force)", "", kScalarOptions,
      AgainstReference<FitScalar, &Options::scalar>},
     {"scalar-dip", "accelerometers and magnetometers together, by lengths and dip",
-     "ax,ay,az,mx,my,mz", ScalarDipOptions, AgainstReference<FitScalarDip, &Options::scalar>},
+     "ax,ay,az,mx,my,mz", kField, ScalarDipOptions,
+     AgainstReference<FitScalarDip, &Options::scalar>},
     {"roll-test", "the housing's axis in the accelerometers' frame",
-     "set,fx,fy,fz, calibrated, rolled in V-blocks",
+     "set,fx,fy,fz, calibrated, rolled in V-blocks", "",
      GravityOptions<&Options::roll, &RollTestSetup::sigma>,
      AgainstReference<FitRollTest, &Options::roll>},
     {"gyro-multi-position", "gyros at rest against the Earth's rate",
-     "inc,az,tf,fx,fy,fz,m_x1,m_y1 ... in deg, g, deg/h", AtRestOptions, GyrosAtRest, "rate_table"},
+     "inc,az,tf,fx,fy,fz,m_x1,m_y1 ... in deg, g, deg/h", kLatitude, AtRestOptions, GyrosAtRest,
+     "rate_table"},
     {"gyro-rate-table", "gyros on a rate table, axis up",
-     "axis,rate_deg_s,m_x1,m_y1 ... in deg/s, deg/h", OnTableOptions, GyrosOnTable,
+     "axis,rate_deg_s,m_x1,m_y1 ... in deg/s, deg/h", kLatitude, OnTableOptions, GyrosOnTable,
      "multi_position"},
     {"multi-station", "bias of magnetometers or gyros from the stations of a run",
-     "Gx,Gy,Gz and Mx,My,Mz or wx,wy or wx,wy,wz", StationOptions,
+     "Gx,Gy,Gz and Mx,My,Mz or wx,wy or wx,wy,wz", kField, StationOptions,
      AgainstReference<FitMultiStation, &Options::stations>},
 };
 

@@ -25,6 +25,7 @@ struct BenchMethod {
   const char* name;
   const char* help;
   const char* columns;  ///< of its readings
+  const char* needs;    ///< options that it cannot do without, as an example gives them
   void (*add_options)(CLI::App& command, BenchOptions& o);
   /// `joined` has no rows where none were given.
   Result<BenchOutcome> (*fit)(const BenchTable& data, const BenchTable& joined, BenchOptions& o);

@@ -106,7 +106,8 @@ void AddAxes(CLI::App& command, BenchOptions& o) {
       .add_option("--bench-axes", o.reference.axes,
                   "x and y of the bench: trade, toolface measured to y (default), or tool, "
                   "toolface measured to x as in jobs")
-      ->transform(CLI::CheckedTransformer(words));
+      ->transform(CLI::CheckedTransformer(words).description(""))
+      ->type_name("trade|tool");
 }
 
 void AddTool(CLI::App& command, BenchOptions& o) {

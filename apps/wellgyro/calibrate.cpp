@@ -87,8 +87,9 @@ void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchO
       ->required();
   command->add_option("--out", o->out, "calibration file to write (TOML)")->required();
   method.add_options(*command, *o);
-  command->footer(fmt::format("Example:\n  wellgyro calibrate {0} --data bench.csv --out {0}.toml",
-                              method.name));
+  command->footer(
+      fmt::format("Example:\n  wellgyro calibrate {0} --data bench.csv --out {0}.toml{1}",
+                  method.name, method.needs));
   command->callback([o, &exit_code, &method] {
     try {
       const auto fault = Run(*o, method);
@@ -104,8 +105,8 @@ void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchO
 }  // namespace
 
 void AddCalibrate(CLI::App& app, int& exit_code) {
-  CLI::App* const command =
-      app.add_subcommand("calibrate", "bench data -> calibration with covariance and residuals");
+  CLI::App* const command = app.add_subcommand(
+      "calibrate", "Fits a calibration to bench data, with covariance and residuals");
   command->require_subcommand(1);
   command->footer(
       "Example:\n  wellgyro calibrate six-position --data bench.csv --out accel.toml \\\n"

@@ -99,7 +99,7 @@ int Run(Options& o) {
 
 void AddUncertainty(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
-      "uncertainty", "survey and error model -> position covariances and ellipses");
+      "uncertainty", "Finds position covariances and ellipses of a survey by an error model");
   const auto options = std::make_shared<Options>();
   AddFiles(*command, *options);
   AddNumbers(*command, *options);

@@ -37,7 +37,10 @@ TEST(SummaryText, GivesTheEndAndItsEllipse) {
   Check passed = failed;
   passed.code = "gravity";
   passed.verdict = Verdict::kPass;
-  survey.checks = {failed, passed};
+  Check counted = failed;
+  counted.code = "samples_lost";
+  counted.unit = "1";
+  survey.checks = {failed, passed, counted};
   const std::string text = SummaryText(survey);
   EXPECT_THAT(text, HasSubstr("MD 3012.00 m, inclination 45.00 deg, azimuth 0.00 deg true"));
   EXPECT_THAT(text, HasSubstr("north 100.12 m, east -250.50 m, TVD 2800.00 m"));
@@ -46,6 +49,7 @@ TEST(SummaryText, GivesTheEndAndItsEllipse) {
   EXPECT_THAT(text, HasSubstr("TVD +- 3.92 m"));
   EXPECT_THAT(text, HasSubstr("2, of which 1 good"));
   EXPECT_THAT(text, HasSubstr("check fail     foresight, run 1: 0.8 against 0.5 deg (acceptance)"));
+  EXPECT_THAT(text, HasSubstr("samples_lost, run 1: 0.8 against 0.5 (acceptance)"));
   EXPECT_THAT(text, testing::Not(HasSubstr("gravity")));
 }
 

@@ -23,15 +23,10 @@ double Flattening(const GridSpec& grid) {
   return grid.inverse_flattening == 0 ? 0 : 1 / grid.inverse_flattening;
 }
 
-// What the projection gives before false easting and northing; convergence in radians.
-GridPoint TransverseMercator(const GridSpec& grid, double latitude, double longitude) {
-  if (!(std::abs(WrapPi(longitude - grid.longitude_origin)) <= kTransverseMercatorReach)) {
-    throw std::domain_error(
-        fmt::format("ProjectToGrid: longitude {} deg is too far from the central meridian {} deg",
-                    ToDegrees(longitude), ToDegrees(grid.longitude_origin)));
-  }
-  const GeographicLib::TransverseMercator projection(grid.semi_major, Flattening(grid),
-                                                     grid.scale_origin);
+// What a projection of GeographicLib's gives, northing counted from the latitude of origin.
+template <class Projection>
+GridPoint FromOrigin(const Projection& projection, const GridSpec& grid, double latitude,
+                     double longitude) {
   const double meridian = ToDegrees(grid.longitude_origin);
   double unused = 0, northing_origin = 0, convergence_deg = 0;
   projection.Forward(meridian, ToDegrees(grid.latitude_origin), meridian, unused, northing_origin);
@@ -43,19 +38,23 @@ GridPoint TransverseMercator(const GridSpec& grid, double latitude, double longi
   return point;
 }
 
+// What the projection gives before false easting and northing; convergence in radians.
+GridPoint TransverseMercator(const GridSpec& grid, double latitude, double longitude) {
+  if (!(std::abs(WrapPi(longitude - grid.longitude_origin)) <= kTransverseMercatorReach)) {
+    throw std::domain_error(
+        fmt::format("ProjectToGrid: longitude {} deg is too far from the central meridian {} deg",
+                    ToDegrees(longitude), ToDegrees(grid.longitude_origin)));
+  }
+  const GeographicLib::TransverseMercator projection(grid.semi_major, Flattening(grid),
+                                                     grid.scale_origin);
+  return FromOrigin(projection, grid, latitude, longitude);
+}
+
 GridPoint LambertCone(const GridSpec& grid, double latitude, double longitude) {
   const GeographicLib::LambertConformalConic projection(
       grid.semi_major, Flattening(grid), ToDegrees(grid.parallel_1), ToDegrees(grid.parallel_2),
       grid.scale_origin);
-  const double meridian = ToDegrees(grid.longitude_origin);
-  double unused = 0, northing_origin = 0, convergence_deg = 0;
-  projection.Forward(meridian, ToDegrees(grid.latitude_origin), meridian, unused, northing_origin);
-  GridPoint point;
-  projection.Forward(meridian, ToDegrees(latitude), ToDegrees(longitude), point.easting,
-                     point.northing, convergence_deg, point.scale);
-  point.northing -= northing_origin;
-  point.convergence = FromDegrees(convergence_deg);
-  return point;
+  return FromOrigin(projection, grid, latitude, longitude);
 }
 
 GridPoint PolarPlane(const GridSpec& grid, double latitude, double longitude) {

@@ -39,7 +39,8 @@ std::string CheckText(const Check& check) {
   if (check.pass) text += fmt::format(" {}", WordOf(*check.pass));
   if (check.md) text += fmt::format(", MD {} m", Fixed(*check.md, 2));
   if (check.value && check.limit) {
-    text += fmt::format(": {:.3g} against {:.3g} {} ({})", *check.value, *check.limit, check.unit,
+    const std::string unit = check.unit == "1" ? "" : " " + check.unit;
+    text += fmt::format(": {:.3g} against {:.3g}{} ({})", *check.value, *check.limit, unit,
                         check.limit_source);
   }
   return text + '\n';
