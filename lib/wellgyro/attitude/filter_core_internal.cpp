@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
@@ -108,18 +109,20 @@ AzimuthGrowth GrowthOver(const Knot& knot, const FilterPlace& before, const Site
 
   AzimuthGrowth result;
   double c = 0, s = 0;
+  std::complex<double> axial;
   for (int pass = 0; pass < 4; ++pass) {
     const double half = result.growth / 2;
     const double mid = backwards ? azimuth - half : azimuth + half;
     const double mean = Sinc(half);
     c = std::cos(mid) * mean, s = std::sin(mid) * mean;
+    axial = std::polar(1.0, backwards ? azimuth - result.growth : azimuth) * knot.axial_cot;
     result.growth = knot.turn + knot.cot * (c * (north + per_east * s) - s * per_north * c) +
-                    seconds * (up + per_east * s * tan_latitude);
+                    north * axial.real() + seconds * (up + per_east * s * tan_latitude);
   }
-  if (knot.axial) return result;
   const double slope = -knot.cot * north * s;  // against the azimuth at the middle
-  result.by_azimuth = slope / (1 - slope / 2);
-  result.by_latitude = -knot.cot * c * up + seconds * north;
+  result.by_azimuth = slope / (1 - slope / 2) - north * axial.imag();
+  result.by_latitude = -(knot.cot * c + axial.real()) * up + seconds * north;
+  if (knot.axial) return result;
   const double cot = seconds > 0 ? knot.cot / seconds : 0;
   result.by_inclination = -north * c * (1 + cot * cot) * seconds;
   return result;

@@ -160,6 +160,8 @@ double Core::Seen() const {
 // The heading has become so uncertain that nothing which turns with it is linear any more.
 bool Core::Lost() const { return cov_noise_(2, 2) > kLostVariance; }
 
+bool Core::heading_feeds_back() const { return cov_(2, 2) <= kLinearVariance; }
+
 void Core::Carry(const Noise& noise) {
   const double T = seconds_;
   const Matrix3d R = R_sum_ / T;
@@ -183,7 +185,7 @@ void Core::Carry(const Noise& noise) {
   added(kAxial, kAxial) = walk * T;
   // A heading that is wrong turns the Earth's rate. That shows the heading, but falsely as soon as
   // it is no longer linear: then it only counts as noise.
-  if (cov_(2, 2) > kLinearVariance) {
+  if (!heading_feeds_back()) {
     phi.block<2, 1>(kTurn, 2).setZero();
     added.topLeftCorner<2, 2>().diagonal().array() +=
         std::min(cov_(2, 2), 1.0) * w_IL_.head<2>().squaredNorm() * kRateSeconds * T;
@@ -204,7 +206,8 @@ void Core::Carry(const Noise& noise) {
   rate(1, Knot::kGyroScaleY) = w.y();
   rate(0, Knot::kMisalignmentX) = rate(1, Knot::kMisalignmentY) = spin;
   sources_ = (phi * sources_).eval();
-  sources_.topRows<3>() += T * R.leftCols<2>() * rate;
+  sources_.topLeftCorner<3, Knot::kSources>() += T * R.leftCols<2>() * rate;
+  sources_.block<2, 2>(kTurn, kEarth).diagonal().array() -= T;
 }
 
 double Core::Take(const Noise& noise) {
@@ -251,7 +254,8 @@ double Core::Take(const Noise& noise) {
   force.col(Knot::kToolfaceOffset) = rolled;
   force.col(Knot::kTimeSkew) = rolled * (spin_ / seconds_);
   force.col(Knot::kAccelBiasZ) = R.block<2, 1>(0, 2);
-  sources_ = (left * sources_ - K * force).eval();
+  sources_ = (left * sources_).eval();
+  sources_.leftCols<Knot::kSources>() -= K * force;
   return -0.5 * (y.dot(inverse * y) + std::log(S.determinant()));
 }
 

@@ -20,7 +20,9 @@ enum State {
   kStates = 8
 };
 using Covariance = Eigen::Matrix<double, kStates, kStates>;
-using Sensitivity = Eigen::Matrix<double, kStates, Knot::kSources>;
+/// To the tool's constant errors, and to a rate of the Earth taken too large along x and y of L.
+enum SensitivityColumn { kEarth = Knot::kSources, kColumns = kEarth + 2 };
+using Sensitivity = Eigen::Matrix<double, kStates, kColumns>;
 using Gain = Eigen::Matrix<double, kStates, 2>;
 
 /// What one sample says, and where.
@@ -79,10 +81,12 @@ class Core {
 
   const Eigen::Matrix3d& R_LT() const { return R_; }
   double axial() const { return axial_; }
+  /// Whether an error of the heading turns the Earth's rate in what the filter holds.
+  bool heading_feeds_back() const;
   bool has_gz() const { return has_gz_; }
   double block_seconds() const { return seconds_; }
   const Covariance& cov() const { return cov_; }
-  /// Of the noise alone, and what the tool's constant errors do.
+  /// Of the noise alone, and what the tool's constant errors and the Earth's rate do.
   const Covariance& cov_noise() const { return cov_noise_; }
   const Sensitivity& sources() const { return sources_; }
 

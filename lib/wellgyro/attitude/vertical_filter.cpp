@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 
@@ -39,6 +40,7 @@ constexpr double kLeave = 1.3;         // of the sine at which the filter takes 
 constexpr double kRun = 6, kStop = 7;
 constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
 constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
+constexpr double kLeastKept = 0.1;      // of an error of azimuth, by the Earth's rate
 constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
 
 bool IsFinite(const ImuSample& s) {
@@ -52,6 +54,8 @@ struct Cut {
   Knot::SourceVector d_azimuth = Knot::SourceVector::Zero(), d_toolface = d_azimuth,
                      d_inclination = d_azimuth, d_sum = d_azimuth;
   double var_azimuth = 0, var_toolface = 0, var_inclination = 0, var_sum = 0;
+  /// Slopes against the Earth's rate along x (real) and y (imaginary) of L [s].
+  std::complex<double> earth_azimuth, earth_sum;
 };
 
 Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
@@ -60,7 +64,8 @@ Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
   c.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
   c.toolface = std::atan2(R(2, 1), -R(2, 0));
   const Eigen::Matrix3d slopes = vertical::EulerSlopes(R);
-  const auto sources = core.sources().topRows<3>();
+  const auto sources = core.sources().topLeftCorner<3, Knot::kSources>();
+  const auto earth = core.sources().block<3, 2>(0, vertical::kEarth);
   const Eigen::Matrix3d cov = core.cov_noise().topLeftCorner<3, 3>();
   const auto take = [&](const Eigen::RowVector3d& slope, Knot::SourceVector& d, double& var) {
     d = (slope * sources).transpose();
@@ -69,7 +74,10 @@ Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
   take(slopes.row(0), c.d_inclination, c.var_inclination);
   take(slopes.row(1), c.d_azimuth, c.var_azimuth);
   take(slopes.row(2), c.d_toolface, c.var_toolface);
-  take(vertical::SumSlope(R), c.d_sum, c.var_sum);
+  const Eigen::RowVector3d sum = vertical::SumSlope(R);
+  take(sum, c.d_sum, c.var_sum);
+  c.earth_azimuth = {slopes.row(1).dot(earth.col(0)), slopes.row(1).dot(earth.col(1))};
+  c.earth_sum = {sum.dot(earth.col(0)), sum.dot(earth.col(1))};
   return c;
 }
 
@@ -91,6 +99,7 @@ struct VerticalFilter::Impl {
   Eigen::Matrix3d CovTurn() const;
   void SetHeading(double azimuth, double variance);
   Cut CutAt(double rest) const;
+  double FillTurn(const Cut& now, bool axial, Knot& knot) const;
   void Fill(const Cut& now, bool axial, Knot& knot);
   void CountSum();
   double FirstBias() const;
@@ -146,7 +155,7 @@ Noise VerticalFilter::Impl::NoiseOf(double axial_walk) const {
 
 // The gains rest on what the filter models; what all errors do with these gains is known better.
 Eigen::Matrix3d VerticalFilter::Impl::CovTurn() const {
-  const auto slopes = main.sources().topRows<3>();
+  const auto slopes = main.sources().topLeftCorner<3, Knot::kSources>();
   return main.cov_noise().topLeftCorner<3, 3>() +
          slopes * source_sigma.cwiseAbs2().asDiagonal() * slopes.transpose();
 }
@@ -206,18 +215,34 @@ void VerticalFilter::Impl::CountSum() {
   main.CountSum();
   for (Core& core : bank) core.CountSum();
   last.d_sum.setZero();
+  last.earth_sum = 0;
   counted = 0;
   counted_knots = 0;
 }
 
+// What the azimuth grew by since the cut before, parted into what the Earth's rate did and the
+// rest. An azimuth that is off turns that rate, all along the stretch as it was off at its begin:
+// so far that has made the error grow by `kept`. Returns what an error grows by over this knot.
+double VerticalFilter::Impl::FillTurn(const Cut& now, bool is_axial, Knot& knot) const {
+  const std::complex<double> to_north = north.isZero() ? 0 : std::polar(1.0, zero);
+  const double across = kEarthRate * std::cos(latitude), up = kEarthRate * std::sin(latitude);
+  const double kept = std::max(1 - across * (to_north * last.earth_sum).imag(), kLeastKept);
+  const std::complex<double> earth =
+      ((is_axial ? now.earth_sum : now.earth_azimuth) - last.earth_sum) / kept;
+  knot.axial_cot = std::polar(1.0, -last.azimuth) * earth;
+  knot.turn = WrapPi(now.azimuth - last.azimuth) - up * (knot.seconds - knot.gap_seconds) -
+              across * (to_north * earth).real();
+  return main.heading_feeds_back() ? -across * (to_north * earth).imag() : 0;
+}
+
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
 void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
-  const double up = kEarthRate * std::sin(latitude) * (knot.seconds - knot.gap_seconds);
+  const double kept = 1 + FillTurn(now, is_axial, knot);
   const Knot::SourceVector& d_end = is_axial ? now.d_sum : now.d_azimuth;
   const double var_end = is_axial ? now.var_sum : now.var_azimuth;
-  knot.turn = WrapPi(now.azimuth - last.azimuth) - up;
-  knot.d_turn = d_end - last.d_sum;
+  knot.d_turn = d_end - kept * last.d_sum;
   knot.white_turn = 0;
+  counted *= kept * kept;
   knot.toolface_noise_turn = std::max(0.0, var_end - counted);
   counted += knot.toolface_noise_turn;
   if (!is_axial && var_end < counted) {
@@ -367,12 +392,12 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
   Cut now = m.CutAt(rest);
   const double sine = std::sin(now.inclination);
   if (m.axial) {
-    if (from_axis) m.last = now, m.last.d_sum.setZero();
+    if (from_axis) m.last = now, m.last.d_sum.setZero(), m.last.earth_sum = 0;
     const double turn = knot.turn, cot = knot.cot;
     m.axial = sine < kLeave * m.sine_enter;
     m.Fill(now, m.axial, knot);
     // Until its first forces are in, the filter cannot tell how the azimuth grew.
-    if (from_axis) knot.turn = turn, knot.cot = cot;
+    if (from_axis) knot.turn = turn, knot.cot = cot, knot.axial_cot = 0;
   }
   if (!m.axial) {
     if (sine > std::min(kStop * m.sine_enter, 0.6)) {
@@ -385,6 +410,7 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
       now = m.CutAt(rest);
       // What the filter holds there is azimuth, which is taken for free of error.
       now.d_sum.setZero();
+      now.earth_sum = 0;
     }
   }
   m.last = now;

@@ -11,6 +11,7 @@ namespace {
 constexpr double kBrokenVariance = 100;     // of the azimuth across a vertical stretch [rad^2]
 constexpr double kVerticalVariance = 1e-2;  // of the inclination's growth there [rad^2]
 constexpr double kVerticalLevel = 5e-4;     // of the accelerometers' inclination there [rad]
+constexpr double kAxialTurn = 1e-5;         // of the turn there [rad]
 constexpr double kSpeedSigma = 1e-3;        // of a depth track's speed, 1 cm encoder [m/s]
 constexpr double kUnknownForce = 1e-3;      // of inclination while moving without depth [rad]
 // Acceleration at which depth tells too late by half of it: see TrackerOptions.
@@ -60,11 +61,12 @@ void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double 
       std::polar(Sinc(grown / 2), begin + grown / 2);  // mean direction from the span's begin
   const std::complex<double> i(0, 1);
   const double cot = s.sampled > 0 ? s.knot.cot / s.sampled : 0;
-  span->earth_turn += to * (s.knot.cot * north - i * s.sampled * across * std::tan(place.latitude));
+  const std::complex<double> turn = to * s.knot.cot + std::polar(1.0, begin) * s.knot.axial_cot;
+  span->earth_turn += turn * north - to * i * s.sampled * across * std::tan(place.latitude);
   span->earth_lift += to * (s.sampled * north);
   span->up += s.sampled * up;
   span->carried += s.sampled * across;
-  span->turn_by_latitude -= to * (s.knot.cot * up);
+  span->turn_by_latitude -= turn * up;
   span->lift_by_latitude -= to * (s.sampled * up);
   span->up_by_latitude += s.sampled * north;
   span->by_inclination -= to * (north * (1 + cot * cot) * s.sampled);
@@ -155,6 +157,8 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   }
   FinishLevel(last, setup, sums, span);
   if (!span->axial) return;
+  // Where gravity shows more of the way than before, its noise gets no more.
+  span->var_turn += Square(kAxialTurn);
   // Its lift is how much more the tool leans by then, nothing of the gyros'.
   span->var_lift = 4 * Square(last.sigma_inclination) + kFloor;
   span->d_lift.setZero();

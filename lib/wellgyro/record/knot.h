@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -50,8 +51,11 @@ struct Knot {
   double toolface = 0;     ///< at `time` [rad], (-pi, pi]
   double turn = 0;         ///< integral of -Re(W e^{iT}) / sin I [rad]
   double cot = 0;          ///< integral of cot I [s]
-  double lift = 0;         ///< integral of Im(W e^{iT}), the inertial inclination change [rad]
-  double roll = 0;         ///< change of the unwrapped toolface [rad]
+  /// Near vertical in place of cot: the growth has W_e cos L Re[e^{iA} axial_cot] instead, with the
+  /// azimuth at the knot's begin [s].
+  std::complex<double> axial_cot = 0;
+  double lift = 0;  ///< integral of Im(W e^{iT}), the inertial inclination change [rad]
+  double roll = 0;  ///< change of the unwrapped toolface [rad]
   double inclination_accel = 0;  ///< mean over the interval of accelerometer inclination [rad]
   double sigma_inclination = 0;  ///< of `inclination`, from noise alone [rad]
   double sigma_inclination_accel = 0;          ///< of `inclination_accel`, from noise alone [rad]
