@@ -322,7 +322,7 @@ void Core::Widen(double seconds, double sigma_tilt, double sigma_axial) {
 
 void Core::CountSum() {
   Covariance set = Covariance::Identity();
-  set.block<1, 3>(2, 0) -= SumSlope(R_) / R_(2, 2);
+  set.block<1, 3>(2, 0) -= SumSlope(R_);  // of which a turn about the vertical is one
   cov_ = (set * cov_ * set.transpose()).eval();
   cov_noise_ = (set * cov_noise_ * set.transpose()).eval();
   sources_ = (set * sources_).eval();

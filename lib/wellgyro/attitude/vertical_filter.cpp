@@ -40,7 +40,7 @@ constexpr double kLeave = 1.3;         // of the sine at which the filter takes 
 constexpr double kRun = 6, kStop = 7;
 constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
 constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
-constexpr double kLeastKept = 0.1;      // of an error of azimuth, by the Earth's rate
+constexpr double kLeastKept = 1;        // of an error of azimuth, by the Earth's rate
 constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
 
 bool IsFinite(const ImuSample& s) {

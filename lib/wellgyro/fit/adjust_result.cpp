@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include <Eigen/Cholesky>
 
@@ -195,8 +196,10 @@ Within PathWithin(const AdjustProblem& p, std::size_t k) {
   for (std::size_t i = span.epoch_begin; i < span.epoch_end; ++i) {
     const Knot& knot = p.history->epochs[i].knot;
     const bool moves = !span.still && !span.broken;
-    const double azimuth = begin[AdjustLayout::kAzimuth] + turned + knot.turn / 2;
-    turned += moves ? knot.turn + north * knot.cot * std::cos(azimuth) : 0;
+    const double start = begin[AdjustLayout::kAzimuth] + turned;
+    const double earth = knot.cot * std::cos(start + knot.turn / 2) +
+                         (std::polar(1.0, start) * knot.axial_cot).real();
+    turned += moves ? knot.turn + north * earth : 0;
     lifted += moves ? knot.lift : 0;
     seconds += knot.seconds;
     path.azimuth.push_back(turned);
