@@ -11,6 +11,12 @@
 namespace wellgyro {
 namespace {
 
+// Of an unknown azimuth, which the Earth's rate makes grow as any error of it; beyond, what links
+// it to what comes is not worth its digits.
+constexpr double kFaintestVariance = 100 * kDiffuseAzimuthVariance;
+
+constexpr double kTells = 0.5;  // a measurement that leaves so much of a variance, or less
+
 double Square(double x) { return x * x; }
 
 double Sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
@@ -135,6 +141,7 @@ FilterCore::FilterCore(const FilterSetup& setup)
   state_ = FilterVector::Zero(layout_.size);
   state_[0] = setup.start_azimuth.value_or(0);
   covariance_ = PriorOf(setup, layout_);
+  diffuse_ = !(variance() < kUnknownAngleVariance);
   place_.latitude = setup.site.latitude;
   place_.height = setup.site.height;
 }
@@ -216,13 +223,14 @@ FilterTransition FilterCore::Step(const Knot& knot, double azimuth_begin,
   FilterTransition t = TransitionOver(knot, azimuth_begin);
   const double variance = t.row.dot(covariance_ * t.row) + t.white;
   const bool lost = !azimuth_diffuse() && variance > kUnknownAngleVariance;
-  const bool too_long = variance > kDiffuseAzimuthVariance + kUnknownAngleVariance;
+  const bool too_long = variance > kFaintestVariance;
   const double azimuth_before = state_[0];
   if (!knot.still && knot.seconds > 0 && (knot.vertical || lost || too_long)) {
     t.row.setZero();
     t.gain = {};
     t.white = kDiffuseAzimuthVariance;
     t.offset = nominal_end.value_or(azimuth_before);
+    diffuse_ = true;
   }
   Propagate(knot, t);
 
@@ -282,6 +290,7 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& a
 }
 
 void FilterCore::Take(FilterMeasurement* m) {
+  const double before = variance();
   const FilterVector ph = covariance_ * m->h;
   m->innovation = m->value - m->h.dot(state_);
   m->innovation_variance = m->h.dot(ph) + m->variance;
@@ -300,6 +309,7 @@ void FilterCore::Take(FilterMeasurement* m) {
   covariance_ = half - hh * m->gain.transpose() + m->gain * m->variance * m->gain.transpose();
   covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();
   if (cross_.size() > 0) cross_ -= (cross_ * m->h) * m->gain.transpose();
+  if (variance() < std::min(kUnknownAngleVariance, kTells * before)) diffuse_ = false;
 }
 
 AttitudeRows RowsOf(const FilterLayout& layout, const Knot& knot, double gravity) {

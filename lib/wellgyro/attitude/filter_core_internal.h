@@ -140,8 +140,9 @@ class FilterCore {
   const FilterMatrix& cross() const { return cross_; }
   double azimuth() const { return state_[0]; }
   double variance() const { return covariance_(0, 0); }
-  bool azimuth_known() const { return variance() < kUnknownAngleVariance; }
-  bool azimuth_diffuse() const { return variance() > kDiffuseAzimuthVariance / 2; }
+  bool azimuth_known() const { return !diffuse_ && variance() < kUnknownAngleVariance; }
+  /// Nothing has told of it yet, though the Earth's rate may have made its variance small.
+  bool azimuth_diffuse() const { return diffuse_; }
 
  private:
   FilterTransition TransitionOver(const Knot& knot, double azimuth_begin) const;
@@ -155,6 +156,7 @@ class FilterCore {
   FilterMatrix covariance_;
   FilterMatrix cross_;  // empty before the first station
   FilterPlace place_;
+  bool diffuse_ = true;
 };
 
 using AttitudeRows = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kFilterStatesMax>;

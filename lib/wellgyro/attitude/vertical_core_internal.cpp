@@ -71,6 +71,7 @@ Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& sit
   s.gravity = site.gravity;
   s.accel_good = !sample.stamp.accel_saturated;
   const Vector2d across = kEarthRate * std::cos(site.latitude) * north;
+  if (north.isZero()) s.unknown_rate = kEarthRate * std::cos(site.latitude);
   s.w_IL_L = Vector3d(across.x(), across.y(), -kEarthRate * std::sin(site.latitude));
   s.gravity_T = sample.f_T;
   if (along.known) {
@@ -144,6 +145,7 @@ void Core::Predict(const Sensed& s) {
   spin_ += spin;
   w_IL_L_ += s.seconds * s.w_IL_L;
   w_IL_ = s.w_IL_L;
+  unknown_rate_ = s.unknown_rate;
   gravity_ = s.gravity;
   has_gz_ = s.has_gz;
   seconds_ += s.seconds;
@@ -197,6 +199,8 @@ void Core::Carry(const Noise& noise) {
   for (int i = kGyro; i < kAccel; ++i) added(i, i) = Square(noise.bias_walk) * T;
   cov_noise_ = phi * cov_noise_ * phi.transpose() + added;
   for (int i = kGyro; i < kAccel; ++i) added(i, i) += changed;
+  // What an unknown rate does with these gains is in the sensitivities.
+  added.topLeftCorner<2, 2>().diagonal().array() += Square(unknown_rate_) * kRateSeconds * T;
   cov_ = phi * cov_ * phi.transpose() + added;
 
   Eigen::Matrix<double, 2, Knot::kSources> rate = Eigen::Matrix<double, 2, Knot::kSources>::Zero();
@@ -298,17 +302,6 @@ void Core::Release() {
 }
 
 Matrix3d Core::Before(double seconds) const { return R_ * Exp(-seconds * last_rate_); }
-
-void Core::ForgetGyroBias(double sigma) {
-  gyro_.setZero();
-  for (Covariance* cov : {&cov_, &cov_noise_}) {
-    cov->middleRows<2>(kGyro).setZero();
-    cov->middleCols<2>(kGyro).setZero();
-  }
-  cov_.diagonal().segment<2>(kGyro).setConstant(Square(sigma));
-  sources_.middleRows<2>(kGyro).setZero();
-  sources_(kGyro, Knot::kGyroBiasX) = sources_(kGyro + 1, Knot::kGyroBiasY) = -1;
-}
 
 void Core::Widen(double seconds, double sigma_tilt, double sigma_axial) {
   for (Covariance* cov : {&cov_, &cov_noise_}) {

@@ -32,6 +32,7 @@ struct Sensed {
   Eigen::Vector3d gravity_T = Eigen::Vector3d::Zero();  ///< specific force less that of travel
   Eigen::Vector3d w_IL_L = Eigen::Vector3d::Zero();
   double gravity = 0;
+  double unknown_rate = 0;  ///< of the Earth, horizontal, where north is unknown [rad/s]
   bool has_gz = false;
   bool accel_good = true;
 };
@@ -70,8 +71,6 @@ class Core {
   void SetHeading(double azimuth, double variance);
   /// From here on errors of the sum of azimuth and toolface are counted.
   void CountSum();
-  /// What was learned of the gyros' biases was something else.
-  void ForgetGyroBias(double sigma);
   /// The tool does not turn about its axis; of the axial rate to `sigma` [rad/s].
   void Hold(double sigma);
   /// It may turn about its axis as never before.
@@ -106,6 +105,7 @@ class Core {
   double accel_sigma_ = 0;
   double seconds_ = 0, accel_seconds_ = 0, gravity_ = 0, spin_ = 0, last_spin_ = 0;
   Eigen::Vector3d w_IL_ = Eigen::Vector3d::Zero();  // of the last sample
+  double unknown_rate_ = 0;
   bool has_gz_ = false;
   Eigen::Matrix3d R_sum_ = Eigen::Matrix3d::Zero(), R_accel_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d force_L_ = Eigen::Vector3d::Zero(), w_sum_ = Eigen::Vector3d::Zero();

@@ -48,14 +48,21 @@ bool IsFinite(const ImuSample& s) {
          (!s.has_gz || std::isfinite(s.w_IT_T.z()));
 }
 
-// The filter at one knot: values, their slopes against the tool's errors, variances from noise.
+// Slopes of an angle against the tool's errors and the Earth's rate, and its variance from noise.
+struct Uncertain {
+  using Slopes = Eigen::Matrix<double, 1, vertical::kColumns>;
+  Slopes d = Slopes::Zero();
+  double var = 0;
+
+  Knot::SourceVector by_sources() const { return d.head<Knot::kSources>().transpose(); }
+  /// Along x and y of L as real and imaginary part [s].
+  std::complex<double> by_earth() const { return {d[vertical::kEarth], d[vertical::kEarth + 1]}; }
+};
+
+// The filter at one knot.
 struct Cut {
   double azimuth = 0, inclination = 0, toolface = 0;
-  Knot::SourceVector d_azimuth = Knot::SourceVector::Zero(), d_toolface = d_azimuth,
-                     d_inclination = d_azimuth, d_sum = d_azimuth;
-  double var_azimuth = 0, var_toolface = 0, var_inclination = 0, var_sum = 0;
-  /// Slopes against the Earth's rate along x (real) and y (imaginary) of L [s].
-  std::complex<double> earth_azimuth, earth_sum;
+  Uncertain in_azimuth, in_inclination, in_toolface, in_sum;
 };
 
 Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
@@ -64,20 +71,14 @@ Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
   c.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
   c.toolface = std::atan2(R(2, 1), -R(2, 0));
   const Eigen::Matrix3d slopes = vertical::EulerSlopes(R);
-  const auto sources = core.sources().topLeftCorner<3, Knot::kSources>();
-  const auto earth = core.sources().block<3, 2>(0, vertical::kEarth);
-  const Eigen::Matrix3d cov = core.cov_noise().topLeftCorner<3, 3>();
-  const auto take = [&](const Eigen::RowVector3d& slope, Knot::SourceVector& d, double& var) {
-    d = (slope * sources).transpose();
-    var = slope * cov * slope.transpose();
+  const auto take = [&](const Eigen::RowVector3d& slope) {
+    return Uncertain{slope * core.sources().topRows<3>(),
+                     slope * core.cov_noise().topLeftCorner<3, 3>() * slope.transpose()};
   };
-  take(slopes.row(0), c.d_inclination, c.var_inclination);
-  take(slopes.row(1), c.d_azimuth, c.var_azimuth);
-  take(slopes.row(2), c.d_toolface, c.var_toolface);
-  const Eigen::RowVector3d sum = vertical::SumSlope(R);
-  take(sum, c.d_sum, c.var_sum);
-  c.earth_azimuth = {slopes.row(1).dot(earth.col(0)), slopes.row(1).dot(earth.col(1))};
-  c.earth_sum = {sum.dot(earth.col(0)), sum.dot(earth.col(1))};
+  c.in_inclination = take(slopes.row(0));
+  c.in_azimuth = take(slopes.row(1));
+  c.in_toolface = take(slopes.row(2));
+  c.in_sum = take(vertical::SumSlope(R));
   return c;
 }
 
@@ -99,10 +100,10 @@ struct VerticalFilter::Impl {
   Eigen::Matrix3d CovTurn() const;
   void SetHeading(double azimuth, double variance);
   Cut CutAt(double rest) const;
-  double FillTurn(const Cut& now, bool axial, Knot& knot) const;
+  double FillTurn(const Cut& now, const Uncertain& end, Knot& knot) const;
+  double VarOf(const Uncertain& angle) const;
   void Fill(const Cut& now, bool axial, Knot& knot);
   void CountSum();
-  double FirstBias() const;
 
   VerticalSetup setup;
   Noise noise;
@@ -173,7 +174,7 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
   const Eigen::Matrix3d R_LT =
       AttitudeMatrix(0, std::atan2(std::hypot(f.x(), f.y()), -f.z()), std::atan2(-f.y(), f.x()));
   latitude = site.latitude;
-  main.Start(SensedOf(sample, along, site, north, R_LT), R_LT, setup.errors, FirstBias());
+  main.Start(SensedOf(sample, along, site, north, R_LT), R_LT, setup.errors, bias_sigma);
   bank.fill(main);
   weight = kFirstWeights;
   idle.fill(0);
@@ -186,12 +187,6 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
   axial = std::sin(last.inclination) < sine_enter && f.z() < 0;
   started = true;
   ready = lost = found = false;
-}
-
-// With north unknown the Earth's rate passes for a bias.
-double VerticalFilter::Impl::FirstBias() const {
-  const bool unknown = north.isZero();
-  return unknown ? std::hypot(bias_sigma, kEarthRate * std::cos(latitude)) : bias_sigma;
 }
 
 void VerticalFilter::Impl::SetHeading(double azimuth, double variance) {
@@ -214,21 +209,25 @@ Cut VerticalFilter::Impl::CutAt(double rest) const {
 void VerticalFilter::Impl::CountSum() {
   main.CountSum();
   for (Core& core : bank) core.CountSum();
-  last.d_sum.setZero();
-  last.earth_sum = 0;
+  last.in_sum.d.setZero();
   counted = 0;
   counted_knots = 0;
+}
+
+// With north unknown, what the Earth's rate may have done is noise.
+double VerticalFilter::Impl::VarOf(const Uncertain& angle) const {
+  const double across = north.isZero() ? kEarthRate * std::cos(latitude) : 0;
+  return angle.var + across * across / 2 * std::norm(angle.by_earth());
 }
 
 // What the azimuth grew by since the cut before, parted into what the Earth's rate did and the
 // rest. An azimuth that is off turns that rate, all along the stretch as it was off at its begin:
 // so far that has made the error grow by `kept`. Returns what an error grows by over this knot.
-double VerticalFilter::Impl::FillTurn(const Cut& now, bool is_axial, Knot& knot) const {
+double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& end, Knot& knot) const {
   const std::complex<double> to_north = north.isZero() ? 0 : std::polar(1.0, zero);
   const double across = kEarthRate * std::cos(latitude), up = kEarthRate * std::sin(latitude);
-  const double kept = std::max(1 - across * (to_north * last.earth_sum).imag(), kLeastKept);
-  const std::complex<double> earth =
-      ((is_axial ? now.earth_sum : now.earth_azimuth) - last.earth_sum) / kept;
+  const double kept = std::max(1 - across * (to_north * last.in_sum.by_earth()).imag(), kLeastKept);
+  const std::complex<double> earth = (end.by_earth() - last.in_sum.by_earth()) / kept;
   knot.axial_cot = std::polar(1.0, -last.azimuth) * earth;
   knot.turn = WrapPi(now.azimuth - last.azimuth) - up * (knot.seconds - knot.gap_seconds) -
               across * (to_north * earth).real();
@@ -237,16 +236,15 @@ double VerticalFilter::Impl::FillTurn(const Cut& now, bool is_axial, Knot& knot)
 
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
 void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
-  const double kept = 1 + FillTurn(now, is_axial, knot);
-  const Knot::SourceVector& d_end = is_axial ? now.d_sum : now.d_azimuth;
-  const double var_end = is_axial ? now.var_sum : now.var_azimuth;
-  knot.d_turn = d_end - kept * last.d_sum;
+  const Uncertain& end = is_axial ? now.in_sum : now.in_azimuth;
+  const double kept = 1 + FillTurn(now, end, knot);
+  knot.d_turn = end.by_sources() - kept * last.in_sum.by_sources();
   knot.white_turn = 0;
   counted *= kept * kept;
-  knot.toolface_noise_turn = std::max(0.0, var_end - counted);
+  knot.toolface_noise_turn = std::max(0.0, end.var - counted);
   counted += knot.toolface_noise_turn;
-  if (!is_axial && var_end < counted) {
-    knot.axial_noise_share = var_end / counted;
+  if (!is_axial && end.var < counted) {
+    knot.axial_noise_share = end.var / counted;
     knot.axial_noise_knots = counted_knots;
   }
   ++counted_knots;
@@ -257,19 +255,21 @@ void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
   if (is_axial) {
     knot.inclination = now.inclination;
     knot.inclination_accel = (now.inclination + last.inclination) / 2;
-    knot.d_inclination = now.d_inclination;
-    knot.sigma_inclination = knot.sigma_inclination_accel = std::sqrt(now.var_inclination);
+    knot.d_inclination = now.in_inclination.by_sources();
+    knot.sigma_inclination = knot.sigma_inclination_accel = std::sqrt(VarOf(now.in_inclination));
     const double sampled = knot.seconds - knot.gap_seconds;
     knot.lift = now.inclination - last.inclination;
     knot.d_lift.setZero();
     knot.d_lift[Knot::kGyroBiasX] = sampled * std::sin(now.toolface);
     knot.d_lift[Knot::kGyroBiasY] = sampled * std::cos(now.toolface);
     knot.toolface = now.toolface;
-    knot.d_toolface = now.d_toolface;
-    knot.var_toolface = now.var_toolface;
-    knot.var_azimuth_beyond = now.var_azimuth - counted;
+    knot.d_toolface = now.in_toolface.by_sources();
+    knot.var_toolface = VarOf(now.in_toolface);
+    knot.var_azimuth_beyond =
+        now.in_azimuth.var - counted + knot.var_toolface - now.in_toolface.var;
   }
-  const double vague = now.var_toolface + now.d_toolface.cwiseProduct(source_sigma).squaredNorm();
+  const Knot::SourceVector d_toolface = now.in_toolface.by_sources();
+  const double vague = VarOf(now.in_toolface) + d_toolface.cwiseProduct(source_sigma).squaredNorm();
   // What was learned while the sum was anything rests on slopes taken far from the truth.
   found = lost && is_axial && vague < kToolfaceVague * kToolfaceVague;
   constexpr auto kAll = ~static_cast<std::uint32_t>(Quality::kVertical);
@@ -370,14 +370,9 @@ void VerticalFilter::SetAzimuth(double azimuth, double variance) {
 
 void VerticalFilter::SetNorth(std::optional<double> azimuth_of_zero) {
   Impl& m = *impl_;
-  const bool unknown = m.north.isZero();
   m.zero = azimuth_of_zero.value_or(0);
   m.north.setZero();
   if (azimuth_of_zero) m.north << std::cos(m.zero), -std::sin(m.zero);
-  if (!m.started || !unknown || !azimuth_of_zero) return;
-  if (m.main.block_seconds() > 0) m.Close();
-  m.main.ForgetGyroBias(m.bias_sigma);
-  for (Core& core : m.bank) core.ForgetGyroBias(m.bias_sigma);
 }
 
 void VerticalFilter::CutKnot(double rest, Knot& knot) {
@@ -392,7 +387,7 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
   Cut now = m.CutAt(rest);
   const double sine = std::sin(now.inclination);
   if (m.axial) {
-    if (from_axis) m.last = now, m.last.d_sum.setZero(), m.last.earth_sum = 0;
+    if (from_axis) m.last = now, m.last.in_sum.d.setZero();
     const double turn = knot.turn, cot = knot.cot;
     m.axial = sine < kLeave * m.sine_enter;
     m.Fill(now, m.axial, knot);
@@ -409,12 +404,11 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
       m.SetHeading(m.CutAt(0).azimuth, 0);
       now = m.CutAt(rest);
       // What the filter holds there is azimuth, which is taken for free of error.
-      now.d_sum.setZero();
-      now.earth_sum = 0;
+      now.in_sum.d.setZero();
     }
   }
   m.last = now;
-  if (m.axial && now.var_sum > kLostVariance) {
+  if (m.axial && now.in_sum.var > kLostVariance) {
     m.lost = true;
     if (m.main.block_seconds() > 0) m.Close();
     m.CountSum();
