@@ -100,7 +100,7 @@ struct VerticalFilter::Impl {
   Eigen::Matrix3d CovTurn() const;
   void SetHeading(double azimuth, double variance);
   Cut CutAt(double rest) const;
-  double FillTurn(const Cut& now, const Uncertain& end, Knot& knot) const;
+  double FillTurn(const Cut& now, const Uncertain& left, Knot& knot) const;
   double VarOf(const Uncertain& angle) const;
   void Fill(const Cut& now, bool axial, Knot& knot);
   void CountSum();
@@ -223,11 +223,11 @@ double VerticalFilter::Impl::VarOf(const Uncertain& angle) const {
 // What the azimuth grew by since the cut before, parted into what the Earth's rate did and the
 // rest. An azimuth that is off turns that rate, all along the stretch as it was off at its begin:
 // so far that has made the error grow by `kept`. Returns what an error grows by over this knot.
-double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& end, Knot& knot) const {
+double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& left, Knot& knot) const {
   const std::complex<double> to_north = north.isZero() ? 0 : std::polar(1.0, zero);
   const double across = kEarthRate * std::cos(latitude), up = kEarthRate * std::sin(latitude);
   const double kept = std::max(1 - across * (to_north * last.in_sum.by_earth()).imag(), kLeastKept);
-  const std::complex<double> earth = (end.by_earth() - last.in_sum.by_earth()) / kept;
+  const std::complex<double> earth = (left.by_earth() - last.in_sum.by_earth()) / kept;
   knot.axial_cot = std::polar(1.0, -last.azimuth) * earth;
   knot.turn = WrapPi(now.azimuth - last.azimuth) - up * (knot.seconds - knot.gap_seconds) -
               across * (to_north * earth).real();
@@ -236,15 +236,15 @@ double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& end, Knot
 
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
 void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
-  const Uncertain& end = is_axial ? now.in_sum : now.in_azimuth;
-  const double kept = 1 + FillTurn(now, end, knot);
-  knot.d_turn = end.by_sources() - kept * last.in_sum.by_sources();
+  const Uncertain& left = is_axial ? now.in_sum : now.in_azimuth;
+  const double kept = 1 + FillTurn(now, left, knot);
+  knot.d_turn = left.by_sources() - kept * last.in_sum.by_sources();
   knot.white_turn = 0;
   counted *= kept * kept;
-  knot.toolface_noise_turn = std::max(0.0, end.var - counted);
+  knot.toolface_noise_turn = std::max(0.0, left.var - counted);
   counted += knot.toolface_noise_turn;
-  if (!is_axial && end.var < counted) {
-    knot.axial_noise_share = end.var / counted;
+  if (!is_axial && left.var < counted) {
+    knot.axial_noise_share = left.var / counted;
     knot.axial_noise_knots = counted_knots;
   }
   ++counted_knots;
