@@ -34,7 +34,7 @@ int Deliver(const std::filesystem::path& folder, const RunRecord& record,
 bool HasLosses(const SourceRecord& source, const Survey& survey) {
   if (!source.faults.empty()) return true;
   for (const RunSummary& run : survey.runs) {
-    if (run.samples_lost > 0) return true;
+    if (run.samples_lost + run.samples_refused + run.clock_jumps > 0) return true;
   }
   for (const Station& station : survey.passes) {
     if (Has(station.quality, Quality::kSaturated)) return true;

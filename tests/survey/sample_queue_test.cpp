@@ -1,5 +1,6 @@
 #include "wellgyro/survey/sample_queue.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -75,12 +76,91 @@ TEST(SampleQueue, RefusesWhatMakesNoSense) {
   EXPECT_EQ(queue.Push(nan), Verdict::kRefused);
   ImuSample jumped = At(1);
   jumped.stamp.tool_time.ns += 3'600'000'000'000;  // an hour by time, one sample by number
-  EXPECT_EQ(queue.Push(jumped), Verdict::kRefused);
+  EXPECT_EQ(queue.Push(jumped), Verdict::kAside);
   ImuSample timeless = At(1);
   timeless.stamp.period_ns = 0;
   EXPECT_EQ(queue.Push(timeless), Verdict::kRefused);
   EXPECT_EQ(queue.Push(At(1)), Verdict::kTaken);
-  EXPECT_EQ(queue.counts().refused, 3);
+  queue.Flush();
+  EXPECT_EQ(queue.counts().refused, 2);
+  EXPECT_EQ(queue.counts().strays, 1);
+}
+
+/// Sample number `k` of a stream whose UTC runs on, whatever its number and tool clock say.
+ImuSample Wild(int k, std::int64_t seq_ahead, std::int64_t tool_ahead_ns) {
+  ImuSample sample = At(k);
+  sample.stamp.utc.ns = 1'700'000'000'000'000'000 + 10'000'000LL * k;
+  sample.stamp.seq += seq_ahead;
+  sample.stamp.tool_time.ns += tool_ahead_ns;
+  return sample;
+}
+
+struct JumpCase {
+  std::int64_t seq_ahead, tool_ahead_ns;
+};
+
+// Each once ended a survey at the jump, without a word: 2026-11-21.
+TEST(SampleQueue, BehindAClockThatJumpsNothingIsLost) {
+  constexpr int kBefore = 3000, kAll = 6000;
+  for (const auto& [seq, tool] :
+       {JumpCase{0, 1'000'000'000}, JumpCase{0, -10'000'000'000}, JumpCase{-2500, 0},
+        JumpCase{7000, 0}, JumpCase{-kBefore, -30'000'000'000}}) {
+    SampleQueue queue(Duration::Seconds(6));
+    std::vector<std::int64_t> utcs;
+    int jumps = 0;
+    const auto drain = [&] {
+      for (const ImuSample* front = queue.Front(); front != nullptr; front = queue.Front()) {
+        if (queue.Jumps()) {
+          ++jumps;
+          EXPECT_EQ(utcs.size(), static_cast<std::size_t>(kBefore)) << seq << " " << tool;
+        }
+        utcs.push_back(front->stamp.utc.ns);
+        queue.Pop();
+      }
+    };
+    // Pairs swapped, so that two cross the jump itself.
+    for (int k = 0; k < kAll; ++k) {
+      const int from = k == 0 || k == kAll - 1 ? k : ((k - 1) ^ 1) + 1;
+      const bool after = from >= kBefore;
+      queue.Push(Wild(from, after ? seq : 0, after ? tool : 0));
+      drain();
+    }
+    queue.Flush();
+    drain();
+    EXPECT_EQ(jumps, 1) << seq << " " << tool;
+    ASSERT_EQ(utcs.size(), static_cast<std::size_t>(kAll)) << seq << " " << tool;
+    EXPECT_TRUE(std::is_sorted(utcs.begin(), utcs.end())) << seq << " " << tool;
+    EXPECT_EQ(queue.counts().strays + queue.counts().late + queue.counts().duplicates, 0);
+  }
+}
+
+TEST(SampleQueue, AMessageOfWildTimesIsAStrayAndMakesNoOtherLate) {
+  for (const auto& [seq, tool] :
+       {JumpCase{0, 1'000'000'000'000}, JumpCase{1'000'000, 0},
+        JumpCase{1'000'000, 10'000'000'000'000}, JumpCase{0, -3'000'000'000}}) {
+    SampleQueue queue(Duration::Seconds(6));
+    std::int64_t out = 0;
+    for (int k = 0; k < 6000; ++k) {
+      const bool wild = k >= 3000 && k < 3100;
+      queue.Push(wild ? Wild(k, seq, tool) : Wild(k, 0, 0));
+      for (; queue.Front() != nullptr; queue.Pop()) out += queue.Jumps() ? 1000 : 1;
+    }
+    EXPECT_EQ(queue.counts().strays, 100) << seq << " " << tool;
+    EXPECT_EQ(queue.counts().accepted, 5900) << seq << " " << tool;
+    EXPECT_GE(out, 5200) << seq << " " << tool;
+    EXPECT_LE(out, 5900) << seq << " " << tool;
+  }
+}
+
+TEST(SampleQueue, ASampleOfTheSessionBeforeDoesNotBringItBack) {
+  SampleQueue queue(Duration::Seconds(1));
+  queue.Push(At(7, 1));
+  queue.Push(At(0, 2));
+  EXPECT_EQ(queue.Push(At(8, 1)), Verdict::kAside);
+  queue.Push(At(1, 2));
+  queue.Flush();
+  EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{7, 0, 1}));
+  EXPECT_EQ(queue.counts().strays, 1);
 }
 
 TEST(SampleQueue, GrowsPastItsFirstBufferInOrder) {

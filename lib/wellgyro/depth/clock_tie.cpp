@@ -194,6 +194,7 @@ void ClockTie::Refuse(double innovation, double variance, bool synced) {
   p00_ = variance;
   p01_ = 0;
   ++steps_;
+  step_ = Seconds(step);
   refused_ = 0;
   refused_sum_ = 0;
 }

@@ -44,7 +44,8 @@ class WELLGYRO_EXPORT ClockTie {
   double sigma_drift() const;
   /// No synchronised pair in the last minute, or pairs just now contradict the tie.
   bool doubtful() const;
-  int steps() const { return steps_; }  ///< of UTC, in this session
+  int steps() const { return steps_; }   ///< of UTC, in this session
+  double step() const { return step_; }  ///< the last of them [s]
   std::int32_t session() const { return session_; }
 
  private:
@@ -86,6 +87,7 @@ class WELLGYRO_EXPORT ClockTie {
   int refused_ = 0;                        ///< seconds in a row that agree with each other
   double refused_sum_ = 0;
   int steps_ = 0;
+  double step_ = 0;
 };
 
 }  // namespace wellgyro

@@ -174,6 +174,8 @@ void WriteRuns(TomlWriter& toml, const std::vector<RunSummary>& runs) {
     toml.Whole("samples_lost", run.samples_lost);
     if (run.samples_after_end > 0) toml.Whole("samples_after_end", run.samples_after_end);
     toml.Whole("duplicates", run.duplicates);
+    if (run.samples_refused > 0) toml.Whole("samples_refused", run.samples_refused);
+    if (run.clock_jumps > 0) toml.Whole("clock_jumps", run.clock_jumps);
     if (run.samples > 0) WriteSamples(toml, run);
     if (run.fit) WriteFit(toml, *run.fit);
     for (const NorthFix& fix : run.fixes) WriteFix(toml, fix);

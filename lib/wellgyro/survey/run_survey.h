@@ -51,6 +51,8 @@ class RunSurvey {
   bool has_news() const { return !news_.empty(); }
   /// Some sample had a depth.
   bool depth_seen() const { return depth_seen_; }
+  /// How long it has been since the last that had one [s].
+  double seconds_without_depth() const { return depth_seen_ ? seconds_unknown_ : 0; }
   const std::vector<Draft>& drafts() const { return drafts_; }
   std::vector<Draft>& drafts() { return drafts_; }
   /// Those of drafts() that are from samples stand in this order in the filter.

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 
 namespace wellgyro {
 namespace {
@@ -32,27 +33,40 @@ bool SameStory(const SampleStamp& a, const SampleStamp& b) {
   return std::abs(time - periods * period) <= period * (0.5 + 1e-4 * std::abs(periods));
 }
 
+// What `b` says in UTC beside `a`, against the tool's clock: to a second of delayed messages and
+// two hundred parts per million of drift.
+bool SameUtc(const SampleStamp& a, const SampleStamp& b) {
+  if (a.utc == b.utc) return true;  // it does not say
+  const double tool = static_cast<double>((b.tool_time - a.tool_time).ns);
+  const double utc = static_cast<double>((b.utc - a.utc).ns);
+  return std::abs(utc - tool) <= 1e9 + 2e-4 * std::abs(tool);
+}
+
+/// `b` cannot be of the same count and clock as `a`.
+bool Contradicts(const SampleStamp& a, const SampleStamp& b) {
+  if (a.session != b.session) return true;
+  // A tool that changes its sampling rate starts its numbers and times anew from there.
+  if (a.period_ns != b.period_ns) return (b.seq > a.seq) != (a.tool_time < b.tool_time);
+  if (!SameStory(a, b)) return true;
+  // UTC may step; but where number and clock leap together, it tells a loss from nonsense.
+  const Duration apart = b.tool_time - a.tool_time;
+  return std::max(apart, Duration{-apart.ns}) > SampleQueue::kAgree && !SameUtc(a, b);
+}
+
 }  // namespace
+
+/// The newest sample of the story that is believed; nullptr before the first.
+inline const SampleStamp* SampleQueue::Newest() const {
+  return size_ > 0 ? &At(size_ - 1).stamp : popped_ ? &last_ : nullptr;
+}
 
 /// Right behind the last one that came: nothing is to be sorted.
 inline bool SampleQueue::IsNext(const SampleStamp& stamp) const {
   if (size_ == 0 && !popped_) return false;
-  const SampleStamp& before = size_ > 0 ? At(size_ - 1).stamp : last_;
+  const SampleStamp& before = *Newest();
   return stamp.seq == before.seq + 1 && stamp.session == before.session &&
          stamp.period_ns == before.period_ns &&
          (stamp.tool_time - before.tool_time).ns == before.period_ns;
-}
-
-bool SampleQueue::Contradicts(const ImuSample& sample) const {
-  const SampleStamp* neighbour = size_ > old_session_ ? &At(size_ - 1).stamp
-                                 : popped_            ? &last_
-                                                      : nullptr;
-  if (neighbour == nullptr || neighbour->session != sample.stamp.session) return false;
-  // A tool that changes its sampling rate starts its numbers and times anew from there.
-  if (neighbour->period_ns != sample.stamp.period_ns) {
-    return (sample.stamp.seq > neighbour->seq) != (neighbour->tool_time < sample.stamp.tool_time);
-  }
-  return !SameStory(*neighbour, sample.stamp);
 }
 
 SampleQueue::Verdict SampleQueue::Push(const ImuSample& sample) {
@@ -60,24 +74,25 @@ SampleQueue::Verdict SampleQueue::Push(const ImuSample& sample) {
     ++counts_.refused;
     return Verdict::kRefused;
   }
-  if (!IsNext(sample.stamp)) return Sort(sample);
-  Take(size_, sample);
-  return Verdict::kTaken;
+  const bool sorts = !IsNext(sample.stamp);
+  if (!sorts) Take(size_, sample);
+  const Verdict verdict = sorts ? Sort(sample) : Verdict::kTaken;
+  if (!stories_.empty()) DropOld();
+  return verdict;
 }
 
 SampleQueue::Verdict SampleQueue::Sort(const ImuSample& sample) {
-  const std::int32_t session = sample.stamp.session;
-  const std::int32_t current = size_ > 0 ? At(size_ - 1).stamp.session
-                               : popped_ ? last_.session
-                                         : session;
-  if (session != current) {
-    old_session_ = size_;
-  } else if (Contradicts(sample)) {
-    ++counts_.refused;
-    return Verdict::kRefused;
+  const SampleStamp& stamp = sample.stamp;
+  const std::int64_t seq = stamp.seq;
+  if (const SampleStamp* newest = Newest()) {
+    if (stamp.session != newest->session && stamp.session != former_session_) {
+      former_session_ = newest->session;
+      Begin();
+    } else if (Contradicts(*newest, stamp)) {
+      return PutAside(sample);
+    }
   }
-  const std::int64_t seq = sample.stamp.seq;
-  if (popped_ && last_.session == session && seq <= last_.seq) {
+  if (popped_ && !last_is_old_ && seq <= last_.seq) {
     const bool late = InGap(seq);
     ++(late ? counts_.late : counts_.duplicates);
     return late ? Verdict::kLate : Verdict::kDuplicate;
@@ -92,6 +107,66 @@ SampleQueue::Verdict SampleQueue::Sort(const ImuSample& sample) {
   }
   Take(position, sample);
   return Verdict::kTaken;
+}
+
+SampleQueue::Verdict SampleQueue::PutAside(const ImuSample& sample) {
+  for (Story& story : stories_) {
+    if (!Contradicts(story.samples.back().stamp, sample.stamp)) return Join(story, sample);
+  }
+  if (stories_.size() == kStoriesMax) Drop(1);
+  stories_.push_back({{sample}, Newest()->tool_time});
+  return Verdict::kAside;
+}
+
+SampleQueue::Verdict SampleQueue::Join(Story& story, const ImuSample& sample) {
+  std::vector<ImuSample>& samples = story.samples;
+  const std::int64_t seq = sample.stamp.seq;
+  auto at = samples.end();
+  while (at != samples.begin() && std::prev(at)->stamp.seq >= seq) --at;
+  if (at != samples.end() && at->stamp.seq == seq) {
+    ++counts_.duplicates;
+    return Verdict::kDuplicate;
+  }
+  samples.insert(at, sample);
+  const Duration span = samples.back().stamp.tool_time - samples.front().stamp.tool_time;
+  if (span < kAgree && samples.size() < kAgreeMax) return Verdict::kAside;
+  Believe(std::move(story));
+  return Verdict::kTaken;
+}
+
+/// What was believed so far has ended.
+void SampleQueue::Begin() {
+  Drop(stories_.size());
+  old_session_ = size_;
+  last_is_old_ = true;
+}
+
+/// The samples put aside are the present.
+void SampleQueue::Believe(Story story) {
+  const std::int32_t session = story.samples.front().stamp.session;
+  if (session == Newest()->session) {
+    jumps_.push_back(counts_.accepted);
+  } else {
+    former_session_ = Newest()->session;
+  }
+  Begin();
+  for (const ImuSample& sample : story.samples) Take(size_, sample);
+}
+
+/// The oldest of what was put aside were strays.
+void SampleQueue::Drop(std::size_t stories) {
+  const auto end = stories_.begin() + static_cast<std::ptrdiff_t>(stories);
+  for (auto story = stories_.begin(); story != end; ++story) {
+    counts_.strays += static_cast<std::int64_t>(story->samples.size());
+  }
+  stories_.erase(stories_.begin(), end);
+}
+
+void SampleQueue::DropOld() {
+  const ToolTime now = Newest()->tool_time;
+  std::size_t old = 0;
+  while (old < stories_.size() && now - stories_[old].begun >= kAgree) ++old;
+  Drop(old);
 }
 
 inline void SampleQueue::Take(std::size_t position, const ImuSample& sample) {
@@ -116,8 +191,9 @@ bool SampleQueue::InGap(std::int64_t seq) const {
                      [seq](const auto& gap) { return gap.first <= seq && seq < gap.second; });
 }
 
-void SampleQueue::NoteGap(const SampleStamp& next) {
-  if (next.session != last_.session) {
+void SampleQueue::NoteGap(const SampleStamp& next, bool jumps) {
+  if (jumps) jumps_.erase(jumps_.begin());
+  if (jumps || next.session != last_.session) {
     gaps_.clear();
   } else if (next.seq > last_.seq + 1) {
     if (gaps_.size() == kGapsKept) gaps_.erase(gaps_.begin());

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,22 +19,29 @@ namespace wellgyro {
 /// younger one was handed out is refused. A new session flushes the old one. What comes out depends
 /// only on the set of samples and never on how they were batched. Nothing is allocated per sample
 /// once the buffer has grown to `hold`; of more than kWaitingMax the oldest no longer wait.
+///
+/// Samples whose number, tool clock and UTC contradict those before are put aside. When such that
+/// agree with each other cover kAgree, the clock has jumped: they follow the others as a new
+/// session would, and none is lost. While the others go on for kAgree instead, they are strays.
 class WELLGYRO_EXPORT SampleQueue {
  public:
   static constexpr std::size_t kWaitingMax = std::size_t{1} << 21;  ///< 20 s at 100 kHz
+  static constexpr Duration kAgree{10'000'000'000};
+  static constexpr std::size_t kAgreeMax = std::size_t{1} << 16;  ///< samples that are enough, too
 
   struct Counts {
     std::int64_t accepted = 0;
     std::int64_t duplicates = 0;
     std::int64_t late = 0;     ///< came after a younger sample had been used
-    std::int64_t refused = 0;  ///< impossible values, or time against number
+    std::int64_t refused = 0;  ///< impossible values
+    std::int64_t strays = 0;   ///< whose times contradict all others'
   };
 
   explicit SampleQueue(Duration hold) : hold_(hold) {}
 
   /// Takes `sample` unless it is known, late or makes no sense; the return and the counts say
-  /// which.
-  enum class Verdict { kTaken, kDuplicate, kLate, kRefused };
+  /// which. kAside: what follows will tell.
+  enum class Verdict { kTaken, kDuplicate, kLate, kRefused, kAside };
   Verdict Push(const ImuSample& sample);
 
   /// The next sample in order, or nullptr while it has to wait. Valid until the next Push.
@@ -43,19 +51,26 @@ class WELLGYRO_EXPORT SampleQueue {
     const bool old = At(size_ - 1).stamp.tool_time - front.stamp.tool_time >= hold_;
     return old || flushing_ || old_session_ > 0 || size_ > kWaitingMax ? &front : nullptr;
   }
+  /// Within its session the clock jumps before the sample at the front.
+  bool Jumps() const { return !jumps_.empty() && jumps_.front() == counts_.accepted - Waiting(); }
   void Pop() {
     const SampleStamp& stamp = At(0).stamp;
+    const bool jumps = Jumps();
     const bool next = stamp.seq == last_.seq + 1 && stamp.session == last_.session;
-    if (popped_ && !next) NoteGap(stamp);
+    if (jumps || (popped_ && !next)) NoteGap(stamp, jumps);
     last_ = stamp;
     popped_ = true;
     head_ = (head_ + 1) & mask_;
     --size_;
+    last_is_old_ = old_session_ > 0;
     if (old_session_ > 0) --old_session_;
   }
 
   /// From now on nothing waits: the end of the stream.
-  void Flush() { flushing_ = true; }
+  void Flush() {
+    flushing_ = true;
+    Drop(stories_.size());
+  }
 
   const Counts& counts() const { return counts_; }
   /// Latest begin of any sample taken.
@@ -65,12 +80,25 @@ class WELLGYRO_EXPORT SampleQueue {
  private:
   ImuSample& At(std::size_t i) { return ring_[(head_ + i) & mask_]; }
   const ImuSample& At(std::size_t i) const { return ring_[(head_ + i) & mask_]; }
+  /// Samples put aside that agree with each other, by number.
+  struct Story {
+    std::vector<ImuSample> samples;
+    ToolTime begun;  ///< of the newest of the others when it began
+  };
+
+  std::int64_t Waiting() const { return static_cast<std::int64_t>(size_); }
+  const SampleStamp* Newest() const;
   Verdict Sort(const ImuSample& sample);
+  Verdict PutAside(const ImuSample& sample);
+  Verdict Join(Story& story, const ImuSample& sample);
+  void Begin();
+  void Believe(Story story);
+  void Drop(std::size_t stories);
+  void DropOld();
   void Take(std::size_t position, const ImuSample& sample);
   void Grow();
-  void NoteGap(const SampleStamp& next);
+  void NoteGap(const SampleStamp& next, bool jumps);
   bool IsNext(const SampleStamp& stamp) const;
-  bool Contradicts(const ImuSample& sample) const;
   bool InGap(std::int64_t seq) const;
 
   Duration hold_;
@@ -79,6 +107,7 @@ class WELLGYRO_EXPORT SampleQueue {
   std::size_t head_ = 0;
   std::size_t size_ = 0;
   std::size_t old_session_ = 0;  ///< waiting samples, from the front, of sessions that have ended
+  bool last_is_old_ = false;     ///< the sample handed out last is of such a one
   bool flushing_ = false;
   bool popped_ = false;
   UtcTime newest_;
@@ -87,6 +116,10 @@ class WELLGYRO_EXPORT SampleQueue {
   /// kGapsKept of this session.
   static constexpr std::size_t kGapsKept = 256;
   std::vector<std::pair<std::int64_t, std::int64_t>> gaps_;
+  static constexpr std::size_t kStoriesMax = 4;
+  std::vector<Story> stories_;                  ///< put aside, the oldest first
+  std::vector<std::int64_t> jumps_;             ///< samples taken before each, not yet handed out
+  std::optional<std::int32_t> former_session_;  ///< the one before the present
   Counts counts_;
 };
 

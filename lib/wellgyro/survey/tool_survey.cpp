@@ -69,12 +69,32 @@ ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& trac
       queue_(Hold(job, track)) {}
 
 void ToolSurvey::Push(const ImuSample& sample) {
-  if (queue_.Push(sample) == SampleQueue::Verdict::kLate) {
-    sink_.OnFault(Fault{FaultCode::kLate,
-                        fmt::format("sample {} of session {} came after its time had been used",
-                                    sample.stamp.seq, sample.stamp.session)});
-  }
+  const SampleQueue::Verdict verdict = queue_.Push(sample);
+  if (verdict != SampleQueue::Verdict::kTaken) TellRefused(verdict, sample.stamp);
+  TellStrays();
   Work();
+}
+
+void ToolSurvey::TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp) {
+  const auto tell = [&](FaultCode code, const char* what) {
+    sink_.OnFault(
+        Fault{code, fmt::format("sample {} of session {} {}", stamp.seq, stamp.session, what)});
+  };
+  if (verdict == SampleQueue::Verdict::kLate) {
+    tell(FaultCode::kLate, "came after its time had been used");
+  } else if (verdict == SampleQueue::Verdict::kRefused) {
+    tell(FaultCode::kRange, "has values that no tool can measure and was left out");
+  }
+}
+
+void ToolSurvey::TellStrays() {
+  const std::int64_t strays = queue_.counts().strays - strays_told_;
+  if (strays == 0) return;
+  strays_told_ += strays;
+  sink_.OnFault(Fault{FaultCode::kOrder,
+                      fmt::format("{} samples were left out: their numbers and times contradict "
+                                  "those of the samples before and after",
+                                  strays)});
 }
 
 void ToolSurvey::Push(const Operation& operation) {
@@ -156,16 +176,39 @@ inline ToolSurvey::RunState* ToolSurvey::RunFor(std::int32_t run) {
   return same ? &runs_.back() : FindRun(run);
 }
 
+/// A clock that jumps within a session, or a UTC that steps against it.
+void ToolSurvey::TellClock(const SampleStamp& stamp, bool jumps, RunSummary& summary) {
+  if (jumps) {
+    const double tool = (stamp.tool_time - last_->tool_time).seconds();
+    const double utc = (stamp.utc - last_->utc).seconds();
+    sink_.OnFault(Fault{
+        FaultCode::kOrder,
+        fmt::format("the clock jumps before sample {} of session {}: {} samples by number, {:.3f} "
+                    "s by the tool's clock, {:.3f} s by UTC; the survey goes on behind a gap",
+                    stamp.seq, stamp.session, stamp.seq - last_->seq, tool, utc)});
+  }
+  if (clock_.step()) {
+    sink_.OnFault(Fault{
+        FaultCode::kOrder,
+        fmt::format("UTC steps by {:.3f} s against the tool's clock, some seconds before sample {} "
+                    "of session {}: the depths from there on are in doubt",
+                    *clock_.step(), stamp.seq, stamp.session)});
+  }
+  summary.clock_jumps += (jumps ? 1 : 0) + (clock_.step() ? 1 : 0);
+}
+
 void ToolSurvey::Use(const ImuSample& sample) {
+  const bool jumps = queue_.Jumps();
   const SampleStamp& stamp = sample.stamp;
-  tie_.Push(stamp);
-  const UtcTime utc = tie_.ToUtc(stamp.tool_time);
+  const SampleStamp& continued = clock_.Take(stamp, jumps);
+  const UtcTime utc = clock_.utc();
   if (!due_.empty() && !ObeyDue(stamp, utc)) return;
   if (!last_) book_.HeardAt(utc);
   RunState* found = RunFor(book_.RunAt(utc, stamp.run));
   if (found == nullptr) return;
   RunState& run = *found;
-  if (last_ && stamp.seq != last_->seq + 1) CountLost(stamp, run.survey->summary());
+  if (last_ && !jumps && stamp.seq != last_->seq + 1) CountLost(stamp, run.survey->summary());
+  if (jumps || clock_.step()) TellClock(stamp, jumps, run.survey->summary());
   last_ = stamp;
   if (book_.Ended(run.survey->summary().run, utc)) {
     ++run.survey->summary().samples_after_end;
@@ -179,7 +222,11 @@ void ToolSurvey::Use(const ImuSample& sample) {
   AlongHole begin = grid_.At(utc), middle = grid_.At(utc_middle);
   ShiftToSensor(utc, begin);
   ShiftToSensor(utc_middle, middle);
-  run.survey->Push(sample, utc, begin, middle);
+  if (!clock_.own()) {
+    changed_ = sample;
+    changed_.stamp = continued;
+  }
+  run.survey->Push(clock_.own() ? sample : changed_, utc, begin, middle);
   newest_used_ = utc;
   if (run.survey->has_news()) Tell(run);
 }
@@ -198,6 +245,10 @@ inline void ToolSurvey::ShiftToSensor(UtcTime utc, AlongHole& along) const {
   if (!along.known) return;
   along.md += marks_.At(utc, along.md);
   along.md += Correction(job_.depth.corrections, along.md) + sensor_below_reference_;
+  // What the string moved in the time by which UTC may be wrong.
+  if (clock_.doubt() > 0) {
+    along.sigma_md = std::hypot(along.sigma_md, clock_.doubt() * along.speed);
+  }
 }
 
 /// nullptr, and a Fault: one run too many.
@@ -341,6 +392,7 @@ void ToolSurvey::SendRevisions() {
 void ToolSurvey::Finish(std::optional<UtcTime> until) {
   if (finished_) return;
   queue_.Flush();
+  TellStrays();
   while (const ImuSample* sample = queue_.Front()) {
     const bool after = (until && sample->stamp.utc >= *until) || finish_asked_;
     if (!after) Use(*sample);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "wellgyro/depth/cable.h"
-#include "wellgyro/depth/clock_tie.h"
 #include "wellgyro/depth/depth_grid.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/record/operations.h"
@@ -19,6 +18,7 @@
 #include "wellgyro/survey/provisional.h"
 #include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/run_book.h"
+#include "wellgyro/survey/run_clock.h"
 #include "wellgyro/survey/run_survey.h"
 #include "wellgyro/survey/sample_queue.h"
 #include "wellgyro/survey/surveyor.h"
@@ -72,6 +72,9 @@ class ToolSurvey {
   void Use(const ImuSample& sample);
   bool ObeyDue(const SampleStamp& stamp, UtcTime utc);
   void CountLost(const SampleStamp& stamp, RunSummary& summary);
+  void TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp);
+  void TellClock(const SampleStamp& stamp, bool jumps, RunSummary& summary);
+  void TellStrays();
   void Obey(const Operation& operation);
   void Obey(const ToolMode& mode);
   void Obey(const Event& event);
@@ -83,6 +86,7 @@ class ToolSurvey {
   RunState* FindRun(std::int32_t run);
   void Tell(RunState& run);
   StationStatus StatusOf(const Draft& draft, bool adjusted) const;
+  double DepthTooLate() const;
   std::vector<RunSummary> Summaries() const;
   std::vector<Waypoint> WayOf(const RunState& run) const;
   std::vector<DraftedRun> Drafted() const;
@@ -104,7 +108,9 @@ class ToolSurvey {
   const RunAdjuster* adjuster_;
   double sensor_below_reference_;
   SampleQueue queue_;
-  ClockTie tie_;
+  RunClock clock_;
+  std::int64_t strays_told_ = 0;              ///< of the queue's
+  ImuSample changed_;             ///< scratch
   std::vector<Due> due_;                      ///< not yet obeyed, by time
   std::set<std::int32_t> commands_, events_;  ///< ids obeyed
   std::vector<RunState> runs_;

@@ -58,6 +58,8 @@ std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
       if (epoch.knot.vertical) attitude.quality |= Quality::kVertical;
     }
     if (!epoch.knot.along.known || !HasDirection(attitude)) continue;
+    // A UTC that has stepped back passes the same times again.
+    if (!way.empty() && epoch.knot.utc < way.back().utc) continue;
     const HoleAttitude hole = AttitudeOfHole(attitude, job_.string);
     way.push_back({epoch.knot.utc, {epoch.knot.along.md, hole.inclination, hole.azimuth}});
   }
@@ -124,8 +126,7 @@ std::vector<Foresight> ToolSurvey::Foresights() const {
 }
 
 std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const {
-  std::vector<RunSummary> summaries;
-  for (const RunState& run : runs_) summaries.push_back(run.survey->summary());
+  const std::vector<RunSummary> summaries = Summaries();
   const std::vector<Foresight> foresights = Foresights();
   return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_});
 }
@@ -157,14 +158,27 @@ Check ToolSurvey::CheckAzimuths() const {
   return check;
 }
 
+/// Samples behind the last depth, for which marks came after all, but too late [s].
+double ToolSurvey::DepthTooLate() const {
+  const double unknown = runs_.back().survey->seconds_without_depth();
+  if (track_.empty() || !(unknown > 0)) return 0;
+  const double until_newest = (newest_used_ - track_.newest()).seconds();
+  const double late = unknown - std::max(until_newest, 0.0);
+  // Between the last mark and the first sample that would have needed another.
+  return late > job_.depth.max_gap ? late : 0;
+}
+
 std::vector<RunSummary> ToolSurvey::Summaries() const {
   std::vector<RunSummary> summaries;
   for (const RunState& run : runs_) {
     RunSummary& summary = summaries.emplace_back(run.survey->summary());
     summary.misrun = book_.misrun(summary.run);
     summary.remark = book_.remark(summary.run);
-    summary.duplicates = queue_.counts().duplicates;
+    const SampleQueue::Counts& counts = queue_.counts();
+    summary.duplicates = counts.duplicates;
+    summary.samples_refused = counts.refused + counts.strays + counts.late;
   }
+  if (!summaries.empty()) summaries.back().seconds_without_depth += DepthTooLate();
   return summaries;
 }
 

@@ -1,0 +1,94 @@
+#include "wellgyro/survey/run_clock.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace wellgyro {
+namespace {
+
+constexpr double kStep = 0.1;  // [s], less is the jitter of messages and moves no depth by much
+constexpr Duration kTies = Duration::Seconds(5);  // until a new tie knows its UTC
+
+// Times come from outside: nonsense must not overflow.
+template <class Time>
+double Apart(Time a, Time b) {
+  return 1e-9 * (static_cast<double>(b.ns) - static_cast<double>(a.ns));
+}
+
+/// What number, tool clock and UTC say has passed between the begins of two samples [s].
+struct Passed {
+  double by_seq, by_tool, by_utc;
+  Passed(const SampleStamp& a, const SampleStamp& b)
+      : by_seq(1e-9 * b.period_ns * (static_cast<double>(b.seq) - static_cast<double>(a.seq))),
+        by_tool(Apart(a.tool_time, b.tool_time)),
+        by_utc(Apart(a.utc, b.utc)) {}
+};
+
+/// At a jump, of what goes forwards the middle one, or the smaller of two; at a new session UTC. At
+/// least a period, and no longer than a run.
+double TimePassed(const Passed& passed, double period, bool jumps) {
+  constexpr double kLongest = 1e6;  // [s]
+  if (!jumps) return std::clamp(passed.by_utc, period, kLongest);
+  std::array<double, 3> all{passed.by_seq, passed.by_tool, passed.by_utc};
+  std::sort(all.begin(), all.end());
+  const auto forwards = static_cast<std::size_t>(
+      std::count_if(all.begin(), all.end(), [period](double t) { return t >= period / 2; }));
+  if (forwards == 0) return period;
+  return std::clamp(all[3 - forwards + (forwards - 1) / 2], period, kLongest);
+}
+
+/// By which UTC contradicts number and tool clock: both where the numbers run on, else the nearer;
+/// not at all where both begin anew.
+double Contradicted(const Passed& passed, bool next) {
+  if (passed.by_seq < 0 && passed.by_tool < 0) return 0;
+  const double off_seq = std::abs(passed.by_utc - passed.by_seq);
+  const double off_tool = std::abs(passed.by_utc - passed.by_tool);
+  return next ? off_seq : std::min(off_seq, off_tool);
+}
+
+}  // namespace
+
+void RunClock::Break(const SampleStamp& stamp, bool jumps) {
+  const Passed passed(*in_, stamp);
+  const Duration apart = Duration::Seconds(TimePassed(passed, 1e-9 * in_->period_ns, jumps));
+  const ToolTime begin = out_.tool_time + apart;
+  ahead_.ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(begin.ns) -
+                                        static_cast<std::uint64_t>(stamp.tool_time.ns));
+  const double off = jumps ? Contradicted(passed, stamp.seq == in_->seq + 1) : 0;
+  doubt_ = jumps ? std::max(doubt_, off > kStep ? off : 0) : 0;
+  if (jumps) restless_ = begin + kTies;
+  session_ = static_cast<std::int32_t>(static_cast<std::uint32_t>(out_.session) + 1u);
+  broken_ = true;
+  steps_ = 0;
+}
+
+void RunClock::NoteSteps() {
+  step_.reset();
+  if (tie_.steps() == steps_) return;
+  steps_ = tie_.steps();
+  if (std::abs(tie_.step()) <= kStep) return;
+  step_ = tie_.step();
+  doubt_ += std::abs(*step_);
+}
+
+const SampleStamp& RunClock::Take(const SampleStamp& stamp, bool jumps) {
+  const SampleStamp before = out_;
+  const bool breaks = in_ && (jumps || stamp.session != in_->session);
+  if (breaks) Break(stamp, jumps);
+  in_ = stamp;
+  out_ = stamp;
+  if (broken_) {
+    out_.session = session_;
+    out_.tool_time.ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(stamp.tool_time.ns) +
+                                                  static_cast<std::uint64_t>(ahead_.ns));
+  }
+  tie_.Push(out_);
+  NoteSteps();
+  // The stages take the length of a gap between sessions from this.
+  if (breaks) out_.utc = before.utc + (out_.tool_time - before.tool_time);
+  if (doubt_ > 0 || (restless_ && out_.tool_time < *restless_)) out_.utc_unsynced = true;
+  return out_;
+}
+
+}  // namespace wellgyro
