@@ -17,6 +17,11 @@ int Deliver(const std::filesystem::path& folder, const RunRecord& record,
             const SourceRecord& source, const Job& job, const Survey& survey) {
   if (!survey.unusable.empty()) {
     Complain(survey.unusable);
+    const auto malformed = source.counts.find("malformed");
+    if (malformed != source.counts.end() && malformed->second > 0 && !source.faults.empty()) {
+      Complain(fmt::format("{} messages came and were refused; the first: {}", malformed->second,
+                           Sentence(source.faults.front())));
+    }
     return kUnusable;
   }
   const std::vector<OutputFile> files = ResultFiles(record, source, job, survey);
@@ -32,7 +37,7 @@ int Deliver(const std::filesystem::path& folder, const RunRecord& record,
 }
 
 bool HasLosses(const SourceRecord& source, const Survey& survey) {
-  if (!source.faults.empty()) return true;
+  if (!source.faults.empty() || survey.marks_refused > 0) return true;
   for (const RunSummary& run : survey.runs) {
     if (run.samples_lost + run.samples_refused + run.clock_jumps > 0) return true;
   }

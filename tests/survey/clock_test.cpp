@@ -135,6 +135,74 @@ TEST(Clock, AUtcThatMovesAgainstTheNumbersMakesAllDepthsBehindItDoubtful) {
   }
 }
 
+// Depths leap where the step is taken; what is passed in that leap is no good station.
+TEST(Clock, NoStationPassedInTheLeapOfAStepIsGood) {
+  Job job = JobOf(Hole());
+  job.stations.every = 1;
+  Sink sink;
+  const Survey survey = WithStamps(
+      sink, [](SampleStamp& stamp) { Move(stamp, 0, 5); }, job);
+  ASSERT_EQ(survey.unusable, "");
+  int good = 0;
+  for (const Station& s : survey.chosen) {
+    if (s.kind == StationKind::kTieIn || s.md < 2 || s.quality != Quality::kGood) continue;
+    ++good;
+    EXPECT_NEAR(ToDegrees(s.inclination), 20 + 0.05 * s.md, 0.05) << s.md;
+  }
+  EXPECT_GT(good, 100);
+}
+
+struct MarkCase {
+  const char* what;
+  double seconds, metres;
+  int from, to, late, impossible;
+};
+
+TEST(Clock, DepthMarksThatAreLeftOutFailACheck) {
+  const double sentinel = -999.25;
+  for (const MarkCase& c : {MarkCase{"one of another depth", 0, 500, 700, 701, 0, 1},
+                            MarkCase{"one sentinel", 0, sentinel, 700, 701, 0, 1},
+                            MarkCase{"one far ahead", 5000, 0, 700, 701, 0, 1},
+                            MarkCase{"a clock that goes back", -20, 0, 800, 1 << 20, 78, 0},
+                            MarkCase{"none", 0, 0, 0, 0, 0, 0}}) {
+    SCOPED_TRACE(c.what);
+    CollectingSink sink;
+    int k = 0;
+    const Survey survey =
+        testing::SurveyOf(SimulationOf(Hole()), JobOf(Hole()), sink, [&](SimulatedStep& step) {
+          auto* mark = std::get_if<DepthMark>(&step);
+          if (mark == nullptr) return true;
+          if (k >= c.from && k < c.to) {
+            mark->utc = mark->utc + Duration::Seconds(c.seconds);
+            mark->md += c.metres;
+          }
+          ++k;
+          return true;
+        });
+    ASSERT_EQ(survey.unusable, "");
+    // Marks of the last declared latency are not late.
+    EXPECT_NEAR(survey.marks_refused, c.late + c.impossible, c.late > 0 ? 4 : 0);
+    const Check* refused = Find(survey, "depth_refused");
+    const bool any = c.late + c.impossible > 0;
+    EXPECT_EQ(refused->verdict, any ? Verdict::kFail : Verdict::kPass);
+    EXPECT_EQ(refused->limit_source.find("latency_s") != std::string::npos, c.late > 0);
+    EXPECT_EQ(Find(survey, "depth_unknown")->verdict, c.late > 0 ? Verdict::kFail : Verdict::kPass);
+  }
+}
+
+TEST(Clock, RareDepthMarksSayWhichKeyWouldDo) {
+  CollectingSink sink;
+  int k = 0;
+  const Survey survey =
+      testing::SurveyOf(SimulationOf(Hole()), JobOf(Hole()), sink, [&](SimulatedStep& step) {
+        return !std::holds_alternative<DepthMark>(step) || ++k % 40 == 1;  // every ten seconds
+      });
+  const Check* unknown = Find(survey, "depth_unknown");
+  ASSERT_NE(unknown, nullptr);
+  EXPECT_EQ(unknown->verdict, Verdict::kFail);
+  EXPECT_NE(unknown->limit_source.find("[depth] max_gap_s = 5"), std::string::npos);
+}
+
 // Samples so far ahead of the depth find none: the survey ends there, but not without a word.
 TEST(Clock, DepthsThatComeTooLateFailACheck) {
   for (const double tool : {0.0, 30.0}) {

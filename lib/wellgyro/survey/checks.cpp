@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/field_checks.h"
@@ -224,6 +226,15 @@ void CheckMarks(const Job& job, const CableMarks* marks, std::vector<Check>& che
   }
 }
 
+void CheckRefused(const Job& job, const MarksRefused& refused, std::vector<Check>& checks) {
+  checks.push_back(CompareCount("depth_refused", 0, refused.all(),
+                                refused.late > 0
+                                    ? fmt::format("marks in time: [depth] latency_s = {} is too "
+                                                  "little, or their clock is behind",
+                                                  job.depth.latency)
+                                    : "every mark is a depth near its neighbours"));
+}
+
 void CheckGrid(const Job& job, std::vector<Check>& checks) {
   if (!job.grid || (!job.grid->convergence && !job.grid->scale)) {
     checks.push_back(NotDone("grid_convergence", 0, "the job states no convergence"));
@@ -282,11 +293,17 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     checks.push_back(lost);
     Check unknown = Compare("depth_unknown", run.run, {run.seconds_without_depth, 0}, 0.0, 1, "s");
     unknown.limit_source = "marks no further apart than [depth] max_gap_s";
+    if (unknown.verdict == Verdict::kFail) {
+      unknown.limit_source +=
+          fmt::format(" = {}, and no later than latency_s = {}: raise what is too little for them",
+                      job.depth.max_gap, job.depth.latency);
+    }
     if (run.samples > 0) checks.push_back(unknown);
     CheckSamples(job, run, checks);
     CheckFit(job, run, checks);
   }
   CheckReturns(job, inputs, checks);
+  CheckRefused(job, inputs.marks_refused, checks);
   CheckMarks(job, inputs.marks, checks);
   CheckForesights(job, inputs, checks);
   CheckGrid(job, checks);

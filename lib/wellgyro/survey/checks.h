@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,6 +32,13 @@ struct ReturnToZero {
   double sigma = 0;               ///< [m]
 };
 
+/// Depth marks that were left out.
+struct MarksRefused {
+  std::int64_t impossible = 0;  ///< no depth, or far off their neighbours
+  std::int64_t late = 0;        ///< later than the depth latency allows
+  std::int64_t all() const { return impossible + late; }
+};
+
 /// What can be checked of one job.
 struct CheckInputs {
   std::span<const RunSummary> runs;
@@ -38,6 +46,7 @@ struct CheckInputs {
   std::span<const Foresight> foresights;
   std::span<const ReturnToZero> returns;
   const CableMarks* marks = nullptr;
+  MarksRefused marks_refused = {};
 };
 
 /// `value` against `limit`: passes up to two thirds of it, warns up to it, fails beyond.

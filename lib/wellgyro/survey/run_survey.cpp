@@ -78,6 +78,7 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   const PassState& pass = along.known ? passes_.Push(utc, along.md) : passes_.state();
   const bool taken = tracker_.Push(sample, middle, site_);
   if (sample.stamp.temperature_outside) temperature_outside_ = true;
+  end_unsynced_ = sample.stamp.utc_unsynced;
   if (WaitsForSum()) {
     const SampleStamp& before = current_->stamp;
     const bool contiguous =
@@ -166,6 +167,8 @@ Draft RunSurvey::NewDraft(double md) const {
   s.pass = current_->pass.pass;
   s.pass_number = current_->pass.number;
   s.md = md;
+  // Where UTC steps, depths are passed between a sample that is sure of it and one that is not.
+  if (end_unsynced_) s.quality |= Quality::kClock;
   return draft;
 }
 

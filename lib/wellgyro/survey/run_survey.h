@@ -141,6 +141,7 @@ class RunSurvey {
   std::optional<double> asked_md_;
   bool asked_ = false;
   bool temperature_outside_ = false;  ///< since the last knot
+  bool end_unsynced_ = false;         ///< the sample behind the one being summed doubts its UTC
   bool lost_since_listed_ = false;    ///< samples, since the last station that is listed
   std::vector<Waiting> waiting_;
   std::vector<StillWindow> group_;  ///< windows at one place

@@ -55,6 +55,7 @@ struct Surveyor::Rooms {
   Sink& sink;
   const RunAdjuster* adjuster;
   DepthTrack track;
+  MarksRefused refused;
   CableMarks marks;
   RunBook book;
   std::map<std::int32_t, ToolSurvey> tools;
@@ -77,7 +78,8 @@ struct Surveyor::Rooms {
       return nullptr;
     }
     ToolSurvey& tool =
-        tools.try_emplace(number, job, number, track, marks, book, sink, adjuster).first->second;
+        tools.try_emplace(number, job, number, track, refused, marks, book, sink, adjuster)
+            .first->second;
     for (const ToolInfo& info : infos) {
       if (info.tool == number) tool.Push(info);
     }
@@ -187,6 +189,7 @@ void Surveyor::Push(const StillWindow& window) {
 void Surveyor::Push(const DepthMark& mark) {
   if (!rooms_->Open()) return;
   if (rooms_->newest && mark.utc - *rooms_->newest > kAhead) {
+    ++rooms_->refused.impossible;
     rooms_->sink.OnFault(Fault{FaultCode::kRange,
                                fmt::format("a depth mark is stamped {:.0f} s ahead of the samples "
                                            "and was left out",
@@ -197,6 +200,7 @@ void Surveyor::Push(const DepthMark& mark) {
   if (!told.sigma) told.sigma = rooms_->job.errors.depth_sigma;
   told = Stretched(rooms_->job.depth.cable, told);
   if (const auto fault = rooms_->track.Push(told)) {
+    ++(fault->code == FaultCode::kLate ? rooms_->refused.late : rooms_->refused.impossible);
     rooms_->sink.OnFault(*fault);
   } else {
     rooms_->marks.Push(told);

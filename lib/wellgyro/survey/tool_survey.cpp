@@ -56,10 +56,12 @@ double Correction(const std::vector<std::pair<double, double>>& table, double md
 }  // namespace
 
 ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track,
-                       CableMarks& marks, RunBook& book, Sink& sink, const RunAdjuster* adjuster)
+                       const MarksRefused& refused, CableMarks& marks, RunBook& book, Sink& sink,
+                       const RunAdjuster* adjuster)
     : job_(job),
       tool_(tool),
       track_(track),
+      refused_(refused),
       grid_(track),
       marks_(marks),
       book_(book),

@@ -32,10 +32,11 @@ using Operation = std::variant<ToolMode, Event, Command>;
 /// into runs and tells the sink of every station.
 class ToolSurvey {
  public:
-  /// All references must outlive this object. `track` and `book` are the string's; `adjuster` may
-  /// be null.
-  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track, CableMarks& marks,
-             RunBook& book, Sink& sink, const RunAdjuster* adjuster);
+  /// All references must outlive this object. `track`, `refused` and `book` are the string's;
+  /// `adjuster` may be null.
+  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track,
+             const MarksRefused& refused, CableMarks& marks, RunBook& book, Sink& sink,
+             const RunAdjuster* adjuster);
 
   void Push(const ImuSample& sample);
   void Push(const StillWindow& window);
@@ -101,6 +102,7 @@ class ToolSurvey {
   const Job& job_;
   std::int32_t tool_;
   const DepthTrack& track_;
+  const MarksRefused& refused_;
   DepthGrid grid_;
   CableMarks& marks_;
   RunBook& book_;
@@ -110,7 +112,7 @@ class ToolSurvey {
   SampleQueue queue_;
   RunClock clock_;
   std::int64_t strays_told_ = 0;              ///< of the queue's
-  ImuSample changed_;             ///< scratch
+  ImuSample changed_;                         ///< scratch
   std::vector<Due> due_;                      ///< not yet obeyed, by time
   std::set<std::int32_t> commands_, events_;  ///< ids obeyed
   std::vector<RunState> runs_;

@@ -128,7 +128,7 @@ std::vector<Foresight> ToolSurvey::Foresights() const {
 std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const {
   const std::vector<RunSummary> summaries = Summaries();
   const std::vector<Foresight> foresights = Foresights();
-  return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_});
+  return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_, refused_});
 }
 
 /// Stations that were asked for and passed, but at which no azimuth is known.
@@ -221,6 +221,7 @@ Survey ToolSurvey::Current() const {
     return survey;
   }
   survey.runs = Summaries();
+  survey.marks_refused = refused_.all();
   const std::vector<DraftedRun> drafted = Drafted();
   Placed placed = Assemble(job_, drafted);
   survey.checks = Checks(placed.passes);
