@@ -47,8 +47,8 @@ struct Survey {
   std::vector<Check> checks;
   std::vector<RunSummary> runs;
   std::int64_t marks_refused = 0;  ///< depth marks that were left out
-  bool accepted = false;  ///< someone accepted a station: never to be written over
-  std::string unusable;   ///< why there is no survey, in a sentence; empty: there is one
+  bool accepted = false;           ///< someone accepted a station: never to be written over
+  std::string unusable;            ///< why there is no survey, in a sentence; empty: there is one
 };
 
 }  // namespace wellgyro
