@@ -141,7 +141,9 @@ TEST(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
     const Station &a = survey.chosen.back(), &b = perfect.chosen.back();
     const Eigen::Vector2d turned(a.inclination - b.inclination,
                                  std::remainder(a.azimuth - b.azimuth, 2 * kPi));
-    direction += Normalised(turned, a.cov_md_inc_azi.bottomRightCorner<2, 2>());
+    // What both have from noise and from the depth is not in their difference.
+    const Eigen::Matrix3d cov = a.cov_md_inc_azi - b.cov_md_inc_azi;
+    direction += Normalised(turned, cov.bottomRightCorner<2, 2>());
     place += Normalised((a.p_WT_W - b.p_WT_W).head<2>(), a.cov_p_WT_W.topLeftCorner<2, 2>());
     worst_azimuth = std::max(worst_azimuth, std::abs(turned[1]));
     // Unknown, the same errors would cost so much: one degree an hour against the level rate.

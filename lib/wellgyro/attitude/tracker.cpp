@@ -10,8 +10,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kUnknown = 0.03;  // [m/s^2], rms acceleration of a tool whose depth nobody knows
-
 // atan2(s, c) where s^2 + c^2 = 1, to 1e-12 of it.
 double Phase(double s, double c) {
   if (c <= 0 || std::abs(s) > 0.05) return std::atan2(s, c);
@@ -309,14 +307,8 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
 
   const double full = 2 * options_.level_seconds;
   const bool young = memory_.seconds < full;
-  // The shorter the memory, the more one sample weighs.
-  const double share = young ? std::clamp((memory_.seconds + s.dt) / full, 0.3, 1.0) : 1;
-  const double reach = options_.acceleration_doubt * share;
-  const double said = s.along.known ? s.along.acceleration / reach : 0;
-  // Its scatter averages out, which a late change does not.
-  const double sigma =
-      0.5 * (s.along.known ? s.along.sigma_acceleration : kUnknown) / options_.acceleration_doubt;
-  mean.trust = s.stamp.accel_saturated ? 0 : 1 / (1 + said * said + sigma * sigma);
+  const double said = s.along.known ? s.along.acceleration / Reach(memory_, s.dt) : 0;
+  mean.trust = s.stamp.accel_saturated ? 0 : 1 / (Quiet(s.along) + said * said);
   Gains gains{mean.trust * steady_.level, mean.trust * steady_.rate};
   if (young) {
     memory_.Add(s.dt, mean.trust);
@@ -349,13 +341,17 @@ inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
   // A block is short against the observer's memory and against a turn.
   if (block_[kSeconds] + s.dt > 0.0125 * memory_.seconds ||
       std::abs(block_[kRoll] + part_[kRoll]) > 0.2 || gap || s.has_gz != has_gz_) {
-    CloseBlock();
+    CloseBlock(s.along);
+    if (gap) observed_.noise.Break();
     has_gz_ = s.has_gz;
   }
   for (int i = 0; i < kSums; ++i) block_[i] += part_[i];
   block_memory_ = memory_;
-  if (empty_) seq_begin_ = s.stamp.seq;
-  empty_ = false;
+  if (empty_) {
+    seq_begin_ = s.stamp.seq;
+    along_begin_ = s.along;
+    empty_ = false;
+  }
   ns_ += s.stamp.period_ns;
   quality_ |= sample_quality_;
   if (gap) {

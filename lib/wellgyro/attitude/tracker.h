@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 
 #include <Eigen/Core>
 
+#include "wellgyro/attitude/level_noise.h"
 #include "wellgyro/attitude/roll_observer.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/export.h"
@@ -97,6 +99,9 @@ class WELLGYRO_EXPORT HighSideTracker {
   Knot CutKnot(double fraction);
 
  private:
+  /// Rms acceleration of a tool whose depth nobody knows [m/s^2].
+  static constexpr double kUnknown = 0.03;
+
   // Summed over samples, V = W e^{iT} over the period: what Evaluate() makes errors from.
   enum Sum {
     kTurn,     // V_h / sin I
@@ -142,9 +147,10 @@ class WELLGYRO_EXPORT HighSideTracker {
     void Add(double dt, double trust);
     void Shorten(double by);
   };
-  struct Observed {  // errors of inclination by source, as the observer carries them on
+  struct Observed {  // errors of inclination, as the observer carries them on: by source ...
     Knot::SourceVector level = Knot::SourceVector::Zero();
     Knot::SourceVector rate = Knot::SourceVector::Zero();
+    LevelNoise noise;  // ... and from noise of the depth
   };
   struct Errors {  // what a Knot says of errors
     Knot::SourceVector turn = Knot::SourceVector::Zero();
@@ -169,14 +175,27 @@ class WELLGYRO_EXPORT HighSideTracker {
   void SumUp(const Seen& s, const Seen* next);
   void Integrate(const Seen& s, const Seen* next);
   Mean Level(const Seen& s, double rise, double curve, double across);
+  /// Acceleration that halves what a sample counts: the shorter the memory, the more it weighs.
+  double Reach(const Memory& memory, double dt) const {
+    const double full = 2 * options_.level_seconds;
+    if (memory.seconds >= full) return options_.acceleration_doubt;
+    return options_.acceleration_doubt * std::clamp((memory.seconds + dt) / full, 0.3, 1.0);
+  }
+  /// One by what a sample counts that says no acceleration. The scatter of one averages out, which
+  /// a late change does not.
+  double Quiet(const AlongHole& along) const {
+    const double sigma = along.known ? along.sigma_acceleration : kUnknown;
+    const double doubt = 0.5 * sigma / options_.acceleration_doubt;
+    return 1 + doubt * doubt;
+  }
   Gains Steady(double dt) const;
   Gains Weighed(Gains steady, double dt, double trust, const Memory& memory) const;
   double Roll(const Seen& s, const Slopes& slopes) const;
   void AddSample(const Seen& s, bool vertical);
-  void CloseBlock();
+  void CloseBlock(const AlongHole& along);
   Block Means(const Sums& sums) const;
   void AddedTo(const Block& b, Knot::SourceVector& across, Knot::SourceVector& rise) const;
-  Errors Evaluate(const Sums& sums, Observed& observed) const;
+  Errors Evaluate(const Sums& sums, const AlongHole& along, Observed& observed) const;
   void FillErrors(const Sums& block, Knot& knot);
   void FillStamps(const Seen& s, Duration into, Knot& knot) const;
   void OpenInterval(const Seen& s, double fraction, std::int64_t rest_ns);
@@ -220,6 +239,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   // The open interval, without the open block.
   Sums sums_{};
   std::int64_t ns_ = 0, gap_ns_ = 0, lost_ = 0, seq_begin_ = 0;
+  AlongHole along_begin_;
   bool empty_ = true, all_vertical_ = true;
   Quality quality_ = Quality::kGood;
 };

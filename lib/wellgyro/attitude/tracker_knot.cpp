@@ -64,7 +64,8 @@ void HighSideTracker::AddedTo(const Block& b, Knot::SourceVector& across,
   by_toolface(Knot::kAccelBiasY, -b.cs * per_force);
 }
 
-HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& sums, Observed& observed) const {
+HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& sums, const AlongHole& along,
+                                                  Observed& observed) const {
   Errors errors;
   if (sums[kSeconds] <= 0) return errors;
   const Block b = Means(sums);
@@ -82,6 +83,18 @@ HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& sums, Observed& ob
   const Knot::SourceVector off = level - middle;
   observed.level += climb + gains.level * off;
   observed.rate += gains.rate / b.seconds * off;
+  const double noise = options_.accel_noise * inverse_gravity_;
+  observed.noise.Take({.seconds = b.seconds,
+                       .level = gains.level,
+                       .rate = gains.rate,
+                       .trust = b.trust,
+                       .quiet = Quiet(along),
+                       .reach = Reach(block_memory_, b.seconds),
+                       .span = block_memory_.span,
+                       .per_force = inverse_gravity_ / b.csc,
+                       .psd_accel = noise * noise,
+                       .psd_gyro = options_.angle_random_walk * options_.angle_random_walk},
+                      along);
 
   errors.turn = -b.csc * across + b.vh * b.csc * b.cot * middle;
   errors.white = b.csc * b.csc * b.seconds;
@@ -92,8 +105,8 @@ HighSideTracker::Errors HighSideTracker::Evaluate(const Sums& sums, Observed& ob
   return errors;
 }
 
-void HighSideTracker::CloseBlock() {
-  errors_.Add(Evaluate(block_, observed_), 1);
+void HighSideTracker::CloseBlock(const AlongHole& along) {
+  errors_.Add(Evaluate(block_, along, observed_), 1);
   errors_.Add(given_, -1);
   given_ = {};
   for (int i = 0; i < kSums; ++i) sums_[i] += block_[i];
@@ -103,12 +116,13 @@ void HighSideTracker::CloseBlock() {
 // `block` is the open block up to the cut; the observer's own errors stay where the block began.
 void HighSideTracker::FillErrors(const Sums& block, Knot& knot) {
   Observed observed = observed_;
-  const Errors here = Evaluate(block, observed);
+  const Errors here = Evaluate(block, last().along, observed);
   errors_.Add(here, 1);
   errors_.Add(given_, -1);
   knot.d_turn = errors_.turn;
   knot.d_lift = errors_.lift;
   knot.d_inclination = observed.level;
+  knot.sigma_inclination = std::sqrt(observed.noise.variance());
   knot.white_turn = errors_.white;
   const double noise = options_.accel_noise * inverse_gravity_;
   knot.toolface_noise_turn = noise * noise * errors_.jitter;
@@ -139,6 +153,7 @@ void HighSideTracker::OpenInterval(const Seen& s, double fraction, std::int64_t 
   ns_ = rest_ns;
   gap_ns_ = lost_ = 0;
   seq_begin_ = s.stamp.seq;
+  along_begin_ = s.along;
   all_vertical_ = empty_ || sample_vertical_;
   quality_ = empty_ ? Quality::kGood : sample_quality_;
 }
@@ -171,14 +186,12 @@ Knot HighSideTracker::CutKnot(double fraction) {
   FillErrors(block, knot);
 
   const double noise = options_.accel_noise * inverse_gravity_;
-  const double walk = options_.angle_random_walk;
-  const double sampled = knot.seconds - knot.gap_seconds, level = options_.level_seconds;
+  const double sampled = knot.seconds - knot.gap_seconds;
   knot.inclination_accel = sampled > 0 ? sums[kAccel] / sampled : knot.inclination;
-  knot.sigma_inclination_accel = noise / std::sqrt(std::max(sampled, s.dt));
-  // A line fitted to the time seen, later the observer; the gyros' walk through the observer.
-  const double accel_var =
-      noise * noise * std::max(4 / std::max(memory_.seconds, s.dt), 1.25 / level);
-  knot.sigma_inclination = std::sqrt(accel_var + walk * walk * level / 4);
+  const double seconds = std::max(sampled, s.dt);
+  const double sine = std::sin(knot.inclination) * inverse_gravity_;
+  const double by_depth = LevelNoise::MeanVariance(along_begin_, s.along, seconds) * sine * sine;
+  knot.sigma_inclination_accel = std::sqrt(noise * noise / seconds + by_depth);
 
   // The end of a sample, from its own phase and its neighbours' as they are weighed in Across(); of
   // the last before a break from that before it alone.

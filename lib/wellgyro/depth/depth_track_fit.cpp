@@ -6,8 +6,9 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kEnough = 8;  // degrees of freedom that tell a scatter, to a quarter
-constexpr double kSure = 4;    // times the variance, what noise seldom makes
+constexpr double kEnough = 8;       // degrees of freedom that tell a scatter, to a quarter
+constexpr double kSure = 4;         // times the variance, what noise seldom makes
+constexpr double kRounding = 0.05;  // marks that the rounding counts for where none scatter
 
 double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
 
@@ -69,10 +70,10 @@ DepthTrack::Scatter DepthTrack::ScatterAbout(UtcTime utc) const {
 }
 
 /// Variance of one mark's noise. By what scatter it was told by, and as much of the encoder's
-/// rounding as half a mark tells; a mean over what the scatter may still be.
+/// rounding as keeps it from nothing; a mean over what the scatter may still be.
 double DepthTrack::Noise(Scatter scatter) const {
   const double reading = setup_.sigma_reading * setup_.sigma_reading;
-  return (0.5 * reading + scatter.squares) / std::max(0.5, scatter.freedom - 1.5);
+  return (kRounding * reading + scatter.squares) / std::max(0.5, scatter.freedom - 1.5);
 }
 
 /// Variance of what rounding adds to all marks alike: what of it their scatter does not show.
