@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <vector>
 
@@ -88,6 +89,7 @@ TEST_P(ScatteringDepth, IsInTheSigmaOfTheInclination) {
   const Case& c = GetParam();
   const double truth = FromDegrees(c.inclination_deg);
   std::vector<ImuSample> clean;
+  clean.reserve(static_cast<std::size_t>(kSeconds * kRate));
   for (int k = 0; k < kSeconds * kRate; ++k) {
     clean.push_back(truth::SampleAt(Straight(c.inclination_deg), {}, truth::SiteOf(1), k, kRate));
   }
