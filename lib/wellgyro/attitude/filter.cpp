@@ -188,8 +188,8 @@ void AzimuthFilter::Impl::TakeStill(const FilterEpoch& epoch) {
 
 void AzimuthFilter::Impl::Observe(const Knot& knot) {
   const AttitudeRows rows = RowsOf(core.layout(), knot, history.setup.site.gravity);
-  attitude = AttitudeOf(knot, rows * core.state(), rows * core.covariance() * rows.transpose(),
-                        history.setup.gyro);
+  attitude = AttitudeOf(knot, rows * core.state(),
+                        rows * core.shown_covariance() * rows.transpose(), history.setup.gyro);
 }
 
 void AzimuthFilter::Impl::Work(std::size_t i) {
@@ -213,7 +213,7 @@ void AzimuthFilter::Impl::Station(std::size_t i) {
   const Knot& knot = history.epochs[i].knot;
   stations.push_back(StationOf(i, knot, attitude,
                                RowsOf(core.layout(), knot, history.setup.site.gravity),
-                               core.covariance(), core.cross(), history.setup.gyro));
+                               core.shown_covariance(), core.cross(), history.setup.gyro));
   core.BeginStation();
   Remember(i + 1);
 }

@@ -15,8 +15,6 @@ namespace {
 // it to what comes is not worth its digits.
 constexpr double kFaintestVariance = 100 * kDiffuseAzimuthVariance;
 
-constexpr double kTells = 0.5;  // a measurement that leaves so much of a variance, or less
-
 double Square(double x) { return x * x; }
 
 double Sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
@@ -289,8 +287,14 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& a
   return m;
 }
 
+FilterMatrix FilterCore::shown_covariance() const {
+  FilterMatrix shown = covariance_;
+  shown(0, 0) = variance();
+  return shown;
+}
+
 void FilterCore::Take(FilterMeasurement* m) {
-  const double before = variance();
+  const double before = covariance_(0, 0);
   const FilterVector ph = covariance_ * m->h;
   m->innovation = m->value - m->h.dot(state_);
   m->innovation_variance = m->h.dot(ph) + m->variance;
@@ -309,7 +313,8 @@ void FilterCore::Take(FilterMeasurement* m) {
   covariance_ = half - hh * m->gain.transpose() + m->gain * m->variance * m->gain.transpose();
   covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();
   if (cross_.size() > 0) cross_ -= (cross_ * m->h) * m->gain.transpose();
-  if (variance() < std::min(kUnknownAngleVariance, kTells * before)) diffuse_ = false;
+  if (covariance_(0, 0) < std::min(kUnknownAngleVariance, kTellsOfAzimuth * before))
+    diffuse_ = false;
 }
 
 AttitudeRows RowsOf(const FilterLayout& layout, const Knot& knot, double gravity) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -17,6 +18,9 @@ namespace wellgyro {
 /// the other errors from it (1e-4 of what a turn uncertain by 0.1 rad would tell), small enough to
 /// keep digits.
 inline constexpr double kDiffuseAzimuthVariance = 100;
+
+/// What leaves so much of an unknown azimuth's variance, or less, tells of it.
+inline constexpr double kTellsOfAzimuth = 0.5;
 
 /// Which error stands where in the state; -1 where its prior is zero. Azimuth is state 0.
 struct FilterLayout {
@@ -113,6 +117,12 @@ double StillGrowth(const Knot& knot);
 AzimuthGrowth GrowthOver(const Knot& knot, const FilterPlace& before, const Site& site,
                          double azimuth, bool backwards);
 
+/// Variance of an azimuth that nothing has told of yet: the Earth's rate may have made it small in
+/// the algebra, where it links the azimuth to what comes.
+inline double Shown(double variance, bool diffuse) {
+  return diffuse ? std::max(variance, kDiffuseAzimuthVariance) : variance;
+}
+
 /// State and covariance at one knot, and how they go on: the one forward pass that filter and
 /// smoother share. A value: copying it is a snapshot.
 class FilterCore {
@@ -139,10 +149,13 @@ class FilterCore {
   const FilterMatrix& covariance() const { return covariance_; }
   const FilterMatrix& cross() const { return cross_; }
   double azimuth() const { return state_[0]; }
-  double variance() const { return covariance_(0, 0); }
-  bool azimuth_known() const { return !diffuse_ && variance() < kUnknownAngleVariance; }
-  /// Nothing has told of it yet, though the Earth's rate may have made its variance small.
+  /// Of the azimuth: see Shown().
+  double variance() const { return Shown(covariance_(0, 0), diffuse_); }
+  bool azimuth_known() const { return variance() < kUnknownAngleVariance; }
+  /// Nothing has told of it yet.
   bool azimuth_diffuse() const { return diffuse_; }
+  /// covariance(), of which an azimuth that is unknown is as unknown as it was.
+  FilterMatrix shown_covariance() const;
 
  private:
   FilterTransition TransitionOver(const Knot& knot, double azimuth_begin) const;

@@ -16,6 +16,7 @@ struct Record {
   AttitudeRows rows_cov;     // rows P
   Eigen::Vector3d estimate;  // rows x
   Eigen::Matrix3d cov;       // rows P rows'
+  bool diffuse = false;      // so far nothing has told of the azimuth
   std::size_t measurements_end = 0;
   std::size_t stations_end = 0;
 };
@@ -128,6 +129,7 @@ ForwardPass Forward(const FilterHistory& history, const Path& path) {
     r.rows_cov = r.rows * core.covariance();
     r.estimate = r.rows * core.state();
     r.cov = r.rows_cov * r.rows.transpose();
+    r.diffuse = core.azimuth_diffuse();
     r.measurements_end = pass.measurements.size();
     if (e.station) {
       pass.stations.push_back({core.covariance(), core.cross()});
@@ -176,8 +178,9 @@ AttitudeSample SmoothAttitude(const Knot& knot, const Eigen::Vector3d& estimate,
 
 StationState SmoothStation(const FilterHistory& history, std::size_t i, const Record& r,
                            const StationRecord& s, const AttitudeSample& attitude,
-                           const Adjoint& adjoint) {
-  const FilterMatrix cov = s.cov - s.cov * adjoint.information * s.cov;
+                           const Adjoint& adjoint, bool unknown) {
+  FilterMatrix cov = s.cov - s.cov * adjoint.information * s.cov;
+  cov(0, 0) = Shown(cov(0, 0), unknown);
   FilterMatrix cross;
   if (s.cross.size() > 0) cross = s.cross - s.cross * adjoint.information * s.cov;
   return StationOf(i, history.epochs[i].knot, attitude, r.rows, (cov + cov.transpose()) / 2, cross,
@@ -194,12 +197,15 @@ void Backward(const FilterHistory& history, const ForwardPass& pass, const Filte
   for (std::size_t i = n; i-- > 0;) {
     const Record& r = pass.records[i];
     const Eigen::Vector3d estimate = r.estimate - r.rows_cov * adjoint.state;
-    const Eigen::Matrix3d cov = r.cov - r.rows_cov * adjoint.information * r.rows_cov.transpose();
+    Eigen::Matrix3d cov = r.cov - r.rows_cov * adjoint.information * r.rows_cov.transpose();
+    const bool unknown = r.diffuse && cov(1, 1) > kTellsOfAzimuth * r.cov(1, 1);
+    cov(1, 1) = Shown(cov(1, 1), unknown);
     run->attitude[i] = SmoothAttitude(history.epochs[i].knot, estimate, cov, history.setup.gyro);
     (*path)[i + 1] = estimate[1];
     if (history.epochs[i].station) {
-      run->stations[r.stations_end - 1] = SmoothStation(
-          history, i, r, pass.stations[r.stations_end - 1], run->attitude[i], adjoint);
+      StationState& station = run->stations[r.stations_end - 1];
+      station = SmoothStation(history, i, r, pass.stations[r.stations_end - 1], run->attitude[i],
+                              adjoint, unknown);
     }
     const std::size_t begin = i > 0 ? pass.records[i - 1].measurements_end : pass.start;
     for (std::size_t m = r.measurements_end; m-- > begin;) adjoint.Undo(pass.measurements[m]);
