@@ -41,6 +41,7 @@ constexpr double kRun = 6, kStop = 7;
 constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
 constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
 constexpr double kLeastKept = 1;        // of an error of azimuth, by the Earth's rate
+constexpr double kMemory = 10;          // of a rate in what the filter holds [s]
 constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
 
 bool IsFinite(const ImuSample& s) {
@@ -100,7 +101,8 @@ struct VerticalFilter::Impl {
   Eigen::Matrix3d CovTurn() const;
   void SetHeading(double azimuth, double variance);
   Cut CutAt(double rest) const;
-  double FillTurn(const Cut& now, const Uncertain& left, Knot& knot) const;
+  double FillTurn(const Cut& now, const Uncertain& held, Knot& knot) const;
+  double VarOfTurning(const Knot& knot) const;
   double VarOf(const Uncertain& angle) const;
   void Fill(const Cut& now, bool axial, Knot& knot);
   void CountSum();
@@ -214,6 +216,17 @@ void VerticalFilter::Impl::CountSum() {
   counted_knots = 0;
 }
 
+// With north unknown, what the filter counts from turns by all that the Earth's rate does to the
+// azimuth: by so much its direction is off over what the filter remembers, [rad^2] over the knot.
+double VerticalFilter::Impl::VarOfTurning(const Knot& knot) const {
+  const double sampled = knot.seconds - knot.gap_seconds;
+  if (!north.isZero() || !(sampled > 0)) return 0;
+  const double rate = kEarthRate * std::cos(latitude) * std::abs(knot.axial_cot) / sampled;
+  const double off = std::min(rate * kMemory, 1.0);
+  // Alike for as long as it takes to turn by a radian.
+  return 2 * rate * sampled * off * off;
+}
+
 // With north unknown, what the Earth's rate may have done is noise.
 double VerticalFilter::Impl::VarOf(const Uncertain& angle) const {
   const double across = north.isZero() ? kEarthRate * std::cos(latitude) : 0;
@@ -223,11 +236,11 @@ double VerticalFilter::Impl::VarOf(const Uncertain& angle) const {
 // What the azimuth grew by since the cut before, parted into what the Earth's rate did and the
 // rest. An azimuth that is off turns that rate, all along the stretch as it was off at its begin:
 // so far that has made the error grow by `kept`. Returns what an error grows by over this knot.
-double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& left, Knot& knot) const {
+double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& held, Knot& knot) const {
   const std::complex<double> to_north = north.isZero() ? 0 : std::polar(1.0, zero);
   const double across = kEarthRate * std::cos(latitude), up = kEarthRate * std::sin(latitude);
   const double kept = std::max(1 - across * (to_north * last.in_sum.by_earth()).imag(), kLeastKept);
-  const std::complex<double> earth = (left.by_earth() - last.in_sum.by_earth()) / kept;
+  const std::complex<double> earth = (held.by_earth() - last.in_sum.by_earth()) / kept;
   knot.axial_cot = std::polar(1.0, -last.azimuth) * earth;
   knot.turn = WrapPi(now.azimuth - last.azimuth) - up * (knot.seconds - knot.gap_seconds) -
               across * (to_north * earth).real();
@@ -236,18 +249,20 @@ double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& left, Kno
 
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
 void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
-  const Uncertain& left = is_axial ? now.in_sum : now.in_azimuth;
-  const double kept = 1 + FillTurn(now, left, knot);
-  knot.d_turn = left.by_sources() - kept * last.in_sum.by_sources();
+  const Uncertain& held = is_axial ? now.in_sum : now.in_azimuth;
+  const double kept = 1 + FillTurn(now, held, knot);
+  knot.d_turn = held.by_sources() - kept * last.in_sum.by_sources();
   knot.white_turn = 0;
   counted *= kept * kept;
-  knot.toolface_noise_turn = std::max(0.0, left.var - counted);
+  const double turning = VarOfTurning(knot);
+  knot.toolface_noise_turn = std::max(0.0, held.var - counted);
   counted += knot.toolface_noise_turn;
-  if (!is_axial && left.var < counted) {
-    knot.axial_noise_share = left.var / counted;
+  if (!is_axial && held.var < counted) {
+    knot.axial_noise_share = held.var / counted;
     knot.axial_noise_knots = counted_knots;
   }
   ++counted_knots;
+  knot.toolface_noise_turn += turning;
   knot.roll = WrapPi(now.toolface - last.toolface);
   knot.cot = 0;
   knot.vertical = !linked;

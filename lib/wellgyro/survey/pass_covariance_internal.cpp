@@ -34,6 +34,14 @@ Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
   return ratio * ratio * (high * high.transpose() + right * right.transpose());
 }
 
+/// Of a leg between stations that have nothing in common, as the azimuth was lost between them: its
+/// way may lead anywhere by its inclination, and so does the line it is drawn as.
+Eigen::Matrix3d UnknownCourse(const Station& above, const Station& below) {
+  const double inclination = 0.5 * (above.inclination + below.inclination);
+  const double aside = (below.md - above.md) * std::sin(inclination);
+  return Eigen::Vector3d(aside * aside, aside * aside, 0).asDiagonal();
+}
+
 /// Azimuth and inclination errors taken as one and the same at all stations: for stations of their
 /// own windows, whose shared instrument errors dominate. Never smaller than what they really are.
 /// What the hole does between two stations, where nobody saw it, is random from leg to leg.
@@ -142,6 +150,10 @@ std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
       const bool leg = above != nullptr && item.way.empty();
       if (leg && item.station.md - above->station.md > kUnseenLeg) {
         unseen += UnseenCourse(above->station, item.station);
+      }
+      const StationState* later = above == nullptr ? nullptr : out ? above->state : item.state;
+      if (later != nullptr && later->cov_with_previous.size() == 0) {
+        unseen += UnknownCourse(above->station, item.station);
       }
       above = &item;
       covs.push_back(sum.Add(*item.state) + unseen + shift.At(item.station) +

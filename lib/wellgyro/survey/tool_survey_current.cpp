@@ -80,7 +80,11 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
       Draft draft = run.survey->drafts()[i];
       if (contradicted) draft.station.quality |= Quality::kEarthRate;
-      if (draft.state && !HasDirection(d.states[*draft.state].attitude)) continue;
+      if (draft.state && !HasDirection(d.states[*draft.state].attitude)) {
+        // The next one's covariance with this one would be taken for that with the one before.
+        if (*draft.state + 1 < d.states.size()) d.states[*draft.state + 1].cov_with_previous = {};
+        continue;
+      }
       draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
       // The run as a whole knows one azimuth: no stop of it has two any more.
       const bool whole = draft.state && *draft.state < run.adjusted.size() &&
