@@ -1,0 +1,113 @@
+// Wells that are vertical for a while, hardly out of vertical, or that pass through it: whole runs
+// with a stop at both ends, against the truth at fixed depths.
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "wellgyro/fit/run_adjustment.h"
+
+#include "support/claims.h"
+#include "support/hour.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::Claims;
+
+struct Well {
+  const char* name;
+  double begin_deg, vertical_m, build_deg;  ///< builds by .02 deg/m below the first part
+  double rpm, swing_deg, period;            ///< of the roll, period in s
+};
+
+constexpr Well kWells[] = {
+    {"vertical, then 0.3 deg, 3 rpm", 0, 100, 0.3, 3, 0, 15},
+    {"vertical, then 0.7 deg, 3 rpm", 0, 100, 0.7, 3, 0, 15},
+    {"vertical, then 2 deg, 0.3 rpm", 0, 100, 2, 0.3, 0, 15},
+    {"0.15 deg, roll that swings", 0.15, 600, 0, 0.3, 30, 15},
+    {"0.3 deg, roll that swings", 0.3, 600, 0, 0.3, 30, 15},
+    {"0.05 deg, then 0.5, roll that swings", 0.05, 300, 0.45, 0.3, 30, 15},
+    {"0.3 deg, then 10, 3 rpm", 0.3, 100, 9.7, 3, 0, 15},
+};
+constexpr double kBelow = 400;  // [m]
+
+Simulation SimulationOf(const Well& well, const testing::Hour& tool, std::uint64_t seed) {
+  Simulation s;
+  const double end = well.vertical_m + kBelow;
+  s.well.begin_md = 0;
+  s.well.end_md = end;
+  s.well.inclination.start = FromDegrees(well.begin_deg);
+  if (well.build_deg > 0) {
+    const double length = well.build_deg / 0.04;
+    s.well.inclination.terms.push_back({.begin_md = well.vertical_m,
+                                        .end_md = well.vertical_m + length,
+                                        .ramp = 1,
+                                        .rate = FromDegrees(well.build_deg) / (length - 1)});
+  }
+  s.well.azimuth.start = FromDegrees(20);
+  s.earth.latitude = FromDegrees(tool.latitude_deg);
+  s.run.start_md = 5;
+  const RunRoll roll{well.rpm * kTwoPi / 60, FromDegrees(well.swing_deg), well.period, 0};
+  s.run.steps = {RunStop{.seconds = 180}, RunMove{.to_md = end - 10, .speed = 1, .roll = roll},
+                 RunStop{.seconds = 180}};
+  s.streams.imu_hz = tool.imu_hz;
+  s.seed = seed;
+  s.tool.errors = DrawToolErrors(tool.errors, tool.noise, seed);
+  return s;
+}
+
+class NearVertical : public ::testing::TestWithParam<Well> {};
+
+TEST_P(NearVertical, IsAsSureAsItSays) {
+  const Well& well = GetParam();
+  const int seeds = WELLGYRO_LONG ? 100 : 12;
+  const double below = well.vertical_m;
+  const std::vector<double> depths = {below + 50, below + 150, below + 250, below + 380};
+  std::vector<Claims> inclination(depths.size()), azimuth(depths.size()), place(depths.size());
+  int told = 0;
+  testing::Hour tool = testing::Tactical();
+  tool.errors.accel_bias_sigma *= 0.5;
+  tool.errors.accel_noise *= 0.5;
+  const LeastSquaresAdjuster adjuster;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));
+    testing::CollectingSink sink;
+    const Survey survey =
+        testing::SurveyOf(simulation, testing::JobOf(tool), sink, {}, &adjuster);
+    const Truth truth(simulation);
+    const Eigen::Vector3d start = truth.well().PlaceAt(5).p_WT_W;
+    for (const Station& s : survey.chosen) {
+      for (std::size_t i = 0; i < depths.size(); ++i) {
+        if (std::abs(s.md - depths[i]) > 1) continue;
+        const auto point = truth.well().PointAt(s.md);
+        inclination[i].Add(s.inclination - point.inclination, s.cov_md_inc_azi(1, 1));
+        const Eigen::Vector3d off = s.p_WT_W - (truth.well().PlaceAt(s.md).p_WT_W - start);
+        const Eigen::Matrix3d cov = s.cov_p_WT_W + 1e-4 * Eigen::Matrix3d::Identity();
+        place[i].dof = 3;
+        place[i].Add(off.dot(cov.inverse() * off), off.squaredNorm(), cov.trace());
+        if (s.cov_md_inc_azi(2, 2) > 1) continue;
+        ++told;
+        azimuth[i].Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const std::string where = std::string(well.name) + " at " + std::to_string(depths[i]);
+    std::printf("%-52s I %.2f of %.4f, A %.2f of %.2f deg, %d, place %.2f\n", where.c_str(),
+                inclination[i].mean(), inclination[i].sigma_deg(), azimuth[i].mean(),
+                azimuth[i].sigma_deg(), azimuth[i].count, place[i].mean());
+  }
+  std::printf("told %d\n", told);
+}
+
+INSTANTIATE_TEST_SUITE_P(Wells, NearVertical, ::testing::ValuesIn(kWells),
+                         [](const auto& p) { return "Well" + std::to_string(p.index); });
+
+}  // namespace
+}  // namespace wellgyro
