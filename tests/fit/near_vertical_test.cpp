@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -70,7 +71,6 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
   const double below = well.vertical_m;
   const std::vector<double> depths = {below + 50, below + 150, below + 250, below + 380};
   std::vector<Claims> inclination(depths.size()), azimuth(depths.size()), place(depths.size());
-  int told = 0;
   testing::Hour tool = testing::Tactical();
   tool.errors.accel_bias_sigma *= 0.5;
   tool.errors.accel_noise *= 0.5;
@@ -78,8 +78,7 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
   for (int seed = 1; seed <= seeds; ++seed) {
     const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));
     testing::CollectingSink sink;
-    const Survey survey =
-        testing::SurveyOf(simulation, testing::JobOf(tool), sink, {}, &adjuster);
+    const Survey survey = testing::SurveyOf(simulation, testing::JobOf(tool), sink, {}, &adjuster);
     const Truth truth(simulation);
     const Eigen::Vector3d start = truth.well().PlaceAt(5).p_WT_W;
     for (const Station& s : survey.chosen) {
@@ -91,19 +90,28 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
         const Eigen::Matrix3d cov = s.cov_p_WT_W + 1e-4 * Eigen::Matrix3d::Identity();
         place[i].dof = 3;
         place[i].Add(off.dot(cov.inverse() * off), off.squaredNorm(), cov.trace());
-        if (s.cov_md_inc_azi(2, 2) > 1) continue;
-        ++told;
         azimuth[i].Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
       }
     }
   }
+  // In all wells together with 99 %. Timid it may be: with north unknown near vertical, how the
+  // Earth turns the azimuth is only bounded. At 0.15 deg of inclination it is 1.3 times too sure.
+  const double risk = 0.01 / static_cast<double>(std::size(kWells) * depths.size() * 3);
   for (std::size_t i = 0; i < depths.size(); ++i) {
-    const std::string where = std::string(well.name) + " at " + std::to_string(depths[i]);
-    std::printf("%-52s I %.2f of %.4f, A %.2f of %.2f deg, %d, place %.2f\n", where.c_str(),
+    const std::string where = std::string(well.name) + " at " + std::to_string(depths[i]) + " m";
+    std::printf("%-54s I %.2f of %.4f, A %.2f of %.2f deg, place %.2f of %.2f m\n", where.c_str(),
                 inclination[i].mean(), inclination[i].sigma_deg(), azimuth[i].mean(),
-                azimuth[i].sigma_deg(), azimuth[i].count, place[i].mean());
+                azimuth[i].sigma_deg(), place[i].mean(),
+                std::sqrt(place[i].variance / place[i].count));
+    EXPECT_EQ(azimuth[i].count, seeds) << where;
+    const double band = ChiSquareQuantile(1 - risk, seeds);
+    EXPECT_LT(inclination[i].normalised, band) << where;
+    EXPECT_GT(inclination[i].normalised, ChiSquareQuantile(risk, seeds) / 2) << where;
+    EXPECT_LT(azimuth[i].normalised, band * (well.begin_deg == 0.15 ? 1.3 * 1.3 : 1)) << where;
+    EXPECT_LT(place[i].normalised, ChiSquareQuantile(1 - risk, 3 * seeds)) << where;
+    EXPECT_LT(std::sqrt(place[i].variance / place[i].count), 2.0) << where;
   }
-  std::printf("told %d\n", told);
+  EXPECT_LT(azimuth.back().sigma_deg(), 2.5) << well.name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Wells, NearVertical, ::testing::ValuesIn(kWells),
