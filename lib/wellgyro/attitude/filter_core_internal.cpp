@@ -139,7 +139,7 @@ FilterCore::FilterCore(const FilterSetup& setup)
   state_ = FilterVector::Zero(layout_.size);
   state_[0] = setup.start_azimuth.value_or(0);
   covariance_ = PriorOf(setup, layout_);
-  diffuse_ = !(variance() < kUnknownAngleVariance);
+  diffuse_ = !(covariance_(0, 0) < kUnknownAngleVariance);
   place_.latitude = setup.site.latitude;
   place_.height = setup.site.height;
 }
