@@ -105,6 +105,7 @@ struct VerticalFilter::Impl {
   double VarOfTurning(const Knot& knot) const;
   double VarOf(const Uncertain& angle) const;
   void Fill(const Cut& now, bool axial, Knot& knot);
+  void FloorAtAccelerometers(Knot& knot) const;
   void CountSum();
 
   VerticalSetup setup;
@@ -247,6 +248,15 @@ double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& held, Kno
   return main.heading_feeds_back() ? -across * (to_north * earth).imag() : 0;
 }
 
+// Where gravity does not show how the tool rolls, a lean is not told from the accelerometers' bias.
+void VerticalFilter::Impl::FloorAtAccelerometers(Knot& knot) const {
+  const double bias = setup.errors.accel_bias_sigma;
+  const auto d = knot.d_inclination.segment<2>(static_cast<int>(Knot::kAccelBiasX));
+  const double missing = 1 / (units::kStandardGravity * units::kStandardGravity) - d.squaredNorm();
+  if (missing > 0)
+    knot.sigma_inclination = std::hypot(knot.sigma_inclination, bias * std::sqrt(missing));
+}
+
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
 void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
   const Uncertain& held = is_axial ? now.in_sum : now.in_azimuth;
@@ -285,6 +295,7 @@ void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
   }
   const Knot::SourceVector d_toolface = now.in_toolface.by_sources();
   const double vague = VarOf(now.in_toolface) + d_toolface.cwiseProduct(source_sigma).squaredNorm();
+  if (is_axial && vague > kToolfaceVague * kToolfaceVague) FloorAtAccelerometers(knot);
   // What was learned while the sum was anything rests on slopes taken far from the truth.
   found = lost && is_axial && vague < kToolfaceVague * kToolfaceVague;
   constexpr auto kAll = ~static_cast<std::uint32_t>(Quality::kVertical);
