@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <span>
 
 #include <gtest/gtest.h>
 
 #include "wellgyro/fit/run_adjustment.h"
 
+#include "support/claims.h"
 #include "support/hour.h"
 
 namespace wellgyro {
@@ -84,6 +87,79 @@ TEST_P(Mirror, IsNeverTakenSilently) {
 INSTANTIATE_TEST_SUITE_P(Runs, Mirror,
                          ::testing::Values(Case{88, 0, 0}, Case{88, 30, 3}, Case{89, 0, 3},
                                            Case{90, 0, 0}, Case{90, 30, 3}));
+
+// Straight holes so near to east-west and to horizontal that azimuth and mirror run into one, of a
+// tool most errors of which have a prior.
+struct Straight {
+  double inclination_deg, azimuth_deg, bias_degph, rpm;
+  int stops;
+};
+
+constexpr Straight kFew[] = {
+    {88, 80, 0.1, 3, 3}, {90, 75, 0.3, 3, 1}, {90, 95, 0.1, 3, 3}, {89, 265, 0.1, 3, 3}};
+constexpr Straight kMany[] = {{88, 80, 0.1, 3, 3},  {90, 75, 0.3, 3, 1}, {90, 95, 0.1, 3, 3},
+                              {89, 265, 0.1, 3, 3}, {85, 85, 0.1, 3, 3}, {88, 95, 0.1, 3, 1},
+                              {88, 80, 0.1, 0, 3},  {90, 75, 0.1, 0, 3}, {89, 85, 0.1, 0, 1},
+                              {88, 75, 0.1, 3, 3},  {89, 95, 0.1, 3, 3}};
+
+testing::Hour HourOf(const Straight& c) {
+  testing::Hour hour;
+  hour.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+  hour.noise.bias_instability = 0.02 * units::kDegPerHour;
+  hour.noise.bias_instability_correlation_time = 0.3 * 3600;
+  hour.noise.rate_random_walk = 0.01 * units::kDegPerHourSqrtHour;
+  hour.errors.gyro_bias_sigma = c.bias_degph * units::kDegPerHour;
+  hour.errors.mass_unbalance_sigma = 0.02 * units::kDegPerHourPerG;
+  hour.errors.quadrature_sigma = 0.02 * units::kDegPerHourPerG;
+  hour.errors.gyro_scale_sigma = 1e-4;
+  hour.errors.gyro_misalignment_sigma = 1e-4;
+  hour.errors.accel_bias_sigma = 5e-4;
+  hour.errors.accel_noise = 2e-4;
+  hour.errors.roll_offset_sigma = FromDegrees(0.02);
+  hour.inclination_deg = c.inclination_deg;
+  hour.undulation_deg = 0;
+  hour.azimuth_deg = c.azimuth_deg;
+  hour.swing_deg = 0;
+  hour.rpm = c.rpm;
+  if (c.rpm > 0) hour.roll_amplitude_deg = 0;
+  hour.stops = c.stops;
+  hour.speed = 1;
+  hour.minutes = 1000. / 60 + c.stops * 3;
+  hour.depth_resolution = 0;
+  return hour;
+}
+
+TEST(MirrorNearEastWest, IsNotGivenAsSure) {
+  const std::uint64_t seeds = WELLGYRO_LONG ? 40 : 6;
+  testing::Claims claims;
+  const std::span<const Straight> cases =
+      WELLGYRO_LONG ? std::span<const Straight>(kMany) : std::span<const Straight>(kFew);
+  int flown = 0;
+  for (const Straight& c : cases) {
+    const testing::Hour hour = HourOf(c);
+    testing::Claims here;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      const testing::Flown flight = testing::Fly(hour, testing::JobOf(hour), seed);
+      const Adjustment adjusted = AdjustRun(flight.history, 0);
+      const std::size_t last = flight.truth.size() - 1;
+      const AttitudeSample& end = adjusted.run.attitude[last];
+      if (!end.azimuth_known) continue;
+      const double error = testing::AzimuthError(flight, adjusted.run, last);
+      const double variance = end.cov_attitude(1, 1);
+      here.Add(error, variance);
+      EXPECT_LT(std::abs(error), 4.5 * std::sqrt(variance))
+          << "I " << c.inclination_deg << ", A " << c.azimuth_deg << ", " << c.rpm << " rpm, seed "
+          << seed << ": " << ToDegrees(error) << " of " << ToDegrees(std::sqrt(variance));
+    }
+    std::printf("I %g, A %g, %g rpm, %d stops: %d of %d give an azimuth, mean square %.2f\n",
+                c.inclination_deg, c.azimuth_deg, c.rpm, c.stops, here.count,
+                static_cast<int>(seeds), here.count > 0 ? here.mean() : 0);
+    claims.Add(here);
+    flown += static_cast<int>(seeds);
+  }
+  claims.ExpectTrue("near horizontal and east-west");
+  EXPECT_GT(3 * claims.count, flown) << "refusing all would be easy";
+}
 
 }  // namespace
 }  // namespace wellgyro

@@ -32,6 +32,7 @@ struct KeepingAdjuster : RunAdjuster {
 
 struct Hour {
   double inclination_deg = 60, build_deg = 0;  ///< grows by so much over the run
+  double undulation_deg = 1.8;
   double azimuth_deg = 40, swing_deg = 50;
   double rpm = 3;  ///< with a swing in 23 s on it; zero: slides, roll wandering slowly
   double roll_amplitude_deg = 25;
@@ -80,7 +81,10 @@ inline Simulation SimulationOf(const Hour& hour, std::uint64_t seed) {
   s.well.begin_md = 0;
   s.well.end_md = way + 50;
   s.well.inclination.start = FromDegrees(hour.inclination_deg);
-  s.well.inclination.terms.push_back({.amplitude = FromDegrees(1.8), .period = 360});
+  if (hour.undulation_deg > 0) {
+    s.well.inclination.terms.push_back(
+        {.amplitude = FromDegrees(hour.undulation_deg), .period = 360});
+  }
   if (hour.build_deg != 0) {
     s.well.inclination.terms.push_back({.rate = FromDegrees(hour.build_deg) / way});
   }

@@ -83,6 +83,11 @@ class Builder {
     } else {  // a matrix that can be inverted even if nothing ever tells
       Add(AzimuthCost(p_.layout, p_.azimuth(0), kNothingKnown), RunFit::kParts, {p_.node(0)});
     }
+    for (const AdjustProblem::Hold& hold : p_.holds) {
+      const auto node = NodeAt(p_, hold.epoch);
+      if (!node) continue;
+      Add(AzimuthCost(p_.layout, hold.azimuth, hold.sigma), RunFit::kParts, {p_.node(*node)});
+    }
     for (const FilterFix& f : p_.history->fixes) {
       if (!Used(f) || f.rates) continue;
       std::size_t node = 0;

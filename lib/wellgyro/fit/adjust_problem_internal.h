@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -24,6 +23,12 @@ struct AdjustProblem {
     double sigma_azimuth, sigma_inclination, sine;
   };
   std::vector<Repeat> repeats;
+  /// Azimuth at the end of an epoch that ends a span, as if measured.
+  struct Hold {
+    std::size_t epoch;
+    double azimuth, sigma;
+  };
+  std::vector<Hold> holds;
   double huber = 4;  ///< residuals beyond so many sigma count less
 
   // The unknowns.

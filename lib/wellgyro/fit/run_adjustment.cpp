@@ -6,35 +6,21 @@
 #include <utility>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/fit/adjust_north_internal.h"
 #include "wellgyro/fit/adjust_problem_internal.h"
 #include "wellgyro/fit/adjust_result_internal.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr double kCoarseSeconds = 60;  // nodes of the search for north
-constexpr int kTries = 12;             // azimuths to start it from
-constexpr double kMargin = 9;          // chi-square by which one must beat another
-constexpr double kApart = 0.2;         // closer than this two are one [rad]
-constexpr double kSameDepth = 0.05;    // of two passes of one station [m]
-constexpr double kLeastBend = 6e-6;    // of a hole, 0.01 deg in 30 m [rad/m]
-constexpr double kLeastLie = 1e-6;     // by which passes differ in any case [rad]
+constexpr double kDecides = 0.1;     // sigma of an azimuth from outside that needs no search [rad]
+constexpr double kSameDepth = 0.05;  // of two passes of one station [m]
+constexpr double kLeastBend = 6e-6;  // of a hole, 0.01 deg in 30 m [rad/m]
+constexpr double kLeastLie = 1e-6;   // by which passes differ in any case [rad]
 
-// Consecutive nodes whose azimuths hang together.
-struct Segment {
-  std::size_t begin, end;  // nodes
-};
-
-std::vector<Segment> SegmentsOf(const std::vector<AdjustSpan>& spans) {
-  std::vector<Segment> segments{{0, 1}};
-  for (std::size_t k = 0; k < spans.size(); ++k) {
-    if (spans[k].broken) segments.push_back({k + 1, k + 1});
-    segments.back().end = k + 2;
-  }
-  return segments;
-}
-
-bool TellsOfNorth(const Segment& segment, const std::vector<AdjustSpan>& spans) {
+bool TellsOfNorth(const AdjustSegment& segment, const std::vector<AdjustSpan>& spans) {
   for (std::size_t k = segment.begin; k + 1 < segment.end; ++k) {
     if (!spans[k].vertical) return true;
   }
@@ -133,37 +119,6 @@ AdjustProblem MakeProblem(const FilterHistory& history, const std::vector<double
   return p;
 }
 
-// What the search for north came to, for one segment.
-struct North {
-  double azimuth = 0;  // at the end of the segment's last span
-  std::size_t epoch = 0;
-  bool ambiguous = false;
-};
-
-// Tries azimuths for the nodes of a segment that has none, others as they are.
-North FindNorth(const Segment& segment, const std::vector<double>& azimuths, AdjustProblem* p) {
-  struct Minimum {
-    double chi_square, azimuth;
-  };
-  std::vector<Minimum> minima;
-  const std::size_t last = segment.end - 1;
-  for (int i = 0; i < kTries; ++i) {
-    std::vector<double> tried = azimuths;
-    for (std::size_t k = segment.begin; k < segment.end; ++k) tried[k] += i * kTwoPi / kTries;
-    StartFrom(tried, p);
-    const AdjustOutcome outcome = Solve(p, nullptr);
-    minima.push_back({outcome.chi_square, p->azimuth(last)});
-  }
-  std::sort(minima.begin(), minima.end(),
-            [](const Minimum& a, const Minimum& b) { return a.chi_square < b.chi_square; });
-  const Minimum& best = minima.front();
-  const auto other = std::find_if(minima.begin(), minima.end(), [&](const Minimum& m) {
-    return std::abs(WrapPi(m.azimuth - best.azimuth)) > kApart;
-  });
-  const bool ambiguous = other != minima.end() && other->chi_square - best.chi_square < kMargin;
-  return {best.azimuth, last > 0 ? p->spans[last - 1].epoch_end - 1 : 0, ambiguous};
-}
-
 // Azimuth at the end of every epoch.
 std::vector<double> PathOf(const AdjustProblem& p) {
   std::vector<double> path(p.spans.front().epoch_begin, p.azimuth(0));
@@ -174,36 +129,72 @@ std::vector<double> PathOf(const AdjustProblem& p) {
   return path;
 }
 
-// Before the first fit: azimuths of every epoch, and epochs whose segment stays without north.
+// Before the first fit: azimuths of every epoch, and what the search for north adds to the variance
+// of each, or takes off it.
 struct Beginning {
   std::vector<double> path;
-  std::vector<bool> ambiguous;
+  std::vector<double> var_beyond;
+  std::vector<AdjustProblem::Hold> holds;
 };
+
+bool IsFound(double var_beyond) { return var_beyond < kUnknownAngleVariance; }
+
+// Whether an azimuth from outside, and no gyrocompass, says where north is in [first, last].
+bool IsTold(const FilterHistory& history, std::size_t first, std::size_t last) {
+  const FilterSetup& setup = history.setup;
+  if (first == 0 && setup.start_azimuth && setup.start_sigma < kDecides) return true;
+  return std::any_of(history.fixes.begin(), history.fixes.end(), [&](const FilterFix& f) {
+    const bool within = f.epoch_end >= first && f.epoch_end <= last + 1;
+    return within && f.fix.external && f.fix.cov_attitude(1, 1) < kDecides * kDecides;
+  });
+}
 
 Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, double sigma_lie) {
   const SmoothedRun smoothed = Smooth(history);
   Beginning begin;
-  begin.ambiguous.assign(history.epochs.size(), false);
+  begin.var_beyond.assign(history.epochs.size(), 0.0);
   AdjustProblem p = MakeProblem(history, {}, {kCoarseSeconds, false}, options, sigma_lie);
   std::vector<double> azimuths = SmoothedAt(smoothed, p.spans);
-  for (const Segment& segment : SegmentsOf(p.spans)) {
+  for (const AdjustSegment& segment : SegmentsOf(p.spans)) {
     if (!TellsOfNorth(segment, p.spans)) continue;
     const auto epoch_of = [&](std::size_t node) {
       return node > 0 ? p.spans[node - 1].epoch_end - 1 : p.spans.front().epoch_begin;
     };
+    const std::size_t first = segment.begin > 0 ? epoch_of(segment.begin) : 0;
     const std::size_t last = epoch_of(segment.end - 1);
-    if (smoothed.attitude[last].azimuth_known) continue;
-    const North north = FindNorth(segment, azimuths, &p);
+    if (smoothed.attitude[last].azimuth_known && IsTold(history, first, last)) continue;
+    const AdjustNorth north = FindNorth(segment, azimuths, &p);
     const double off = north.azimuth - azimuths[segment.end - 1];
     for (std::size_t k = segment.begin; k < segment.end; ++k) azimuths[k] += off;
-    if (!north.ambiguous) continue;
-    for (std::size_t i = segment.begin > 0 ? epoch_of(segment.begin) : 0; i <= last; ++i) {
-      begin.ambiguous[i] = true;
+    if (north.var_hold > 0) {
+      begin.holds.push_back({north.epoch, 0, std::sqrt(north.var_hold)});
     }
+    const double beyond = north.ambiguous ? kUnknownAngleVariance : north.var_beyond;
+    for (std::size_t i = first; i <= last; ++i) begin.var_beyond[i] = beyond;
   }
   StartFrom(azimuths, &p);
   begin.path = PathOf(p);
   return begin;
+}
+
+// The same error of all azimuths that hang together.
+void Widen(const std::vector<double>& var_beyond, SmoothedRun* run) {
+  for (std::size_t i = 0; i < run->attitude.size(); ++i) {
+    Eigen::Matrix3d& cov = run->attitude[i].cov_attitude;
+    cov(1, 1) += var_beyond[i];
+    if (!IsFound(var_beyond[i])) run->attitude[i].azimuth_known = false;
+    CapAtUnknown(&cov);
+  }
+  const StationState* previous = nullptr;
+  for (StationState& station : run->stations) {
+    const double var = var_beyond[station.epoch];
+    station.attitude = run->attitude[station.epoch];
+    station.cov(0, 0) += var;
+    if (previous != nullptr && var_beyond[previous->epoch] == var) {
+      station.cov_with_previous(0, 0) += var;
+    }
+    previous = &station;
+  }
 }
 
 std::vector<double> AtNodes(const AdjustProblem& p, const std::vector<double>& path) {
@@ -279,6 +270,15 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
   const Beginning begin = Begin(history, options, sigma_lie);
   AdjustProblem p =
       MakeProblem(history, begin.path, {options.knot_seconds, true}, options, sigma_lie);
+  for (AdjustProblem::Hold hold : begin.holds) {
+    for (const AdjustSpan& span : p.spans) {
+      if (span.epoch_end <= hold.epoch) continue;
+      hold.epoch = span.epoch_end - 1;
+      hold.azimuth = begin.path[hold.epoch];
+      p.holds.push_back(hold);
+      break;
+    }
+  }
   StartFrom(AtNodes(p, begin.path), &p);
   AdjustRows rows;
   const AdjustOutcome outcome = Solve(&p, &rows);
@@ -286,11 +286,15 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
   const SelectedInverse inverse(jacobian.transpose() * jacobian);
   if (!outcome.converged || !inverse.ok()) {  // what the smoother makes of it is still true
     result.run = Smooth(history);
+    Widen(begin.var_beyond, &result.run);
     return result;
   }
-  std::vector<bool> known{!begin.ambiguous.front()};
-  for (const AdjustSpan& span : p.spans) known.push_back(!begin.ambiguous[span.epoch_end - 1]);
+  std::vector<bool> known{IsFound(begin.var_beyond.front())};
+  for (const AdjustSpan& span : p.spans) {
+    known.push_back(IsFound(begin.var_beyond[span.epoch_end - 1]));
+  }
   result.run = ResultOf(p, inverse, known);
+  Widen(begin.var_beyond, &result.run);
   result.chi_square = outcome.chi_square;
   result.degrees_of_freedom =
       outcome.residuals - static_cast<int>(p.nodes.size() + p.common.size());
