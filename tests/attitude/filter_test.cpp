@@ -213,14 +213,15 @@ TEST(AzimuthFilter, AVerticalStretchLosesAzimuthAndAFixBringsItBack) {
 TEST(AzimuthFilter, AGapWidensByTheBendTheHoleMayTake) {
   ToolRun run = StopRun(0);
   run.setup.start_azimuth = run.truth.start.azimuth;
-  run.setup.gap_dogleg = FromDegrees(3) / 30;
   run.truth.knots[5].gap_seconds = 10;
+  run.truth.knots[5].unseen = FromDegrees(1);
+  run.truth.knots[5].var_unseen = FromDegrees(1) * FromDegrees(1);
   AzimuthFilter filter(run.setup);
   for (std::size_t i = 0; i < 5; ++i) filter.Step(run.truth.knots[i]);
   const double before = filter.attitude().cov_attitude(1, 1);
   const double after = filter.Step(run.truth.knots[5]).cov_attitude(1, 1);
   const double i = (run.truth.poses[4].inclination + run.truth.poses[5].inclination) / 2;
-  const double bend = FromDegrees(1) / std::sin(i);  // 10 m at 3 deg/30 m
+  const double bend = FromDegrees(1) / std::sin(i);
   EXPECT_NEAR(after - before, bend * bend, 0.01 * bend * bend);
 }
 

@@ -45,8 +45,6 @@ void Validate(const FilterSetup& s) {
       {"errors.time_skew_sigma", e.time_skew_sigma},
       {"errors.latitude_sigma", e.latitude_sigma},
       {"start_sigma", s.start_sigma},
-      {"gap_dogleg", s.gap_dogleg},
-      {"gap_rate", s.gap_rate},
       {"start_azimuth", std::abs(s.start_azimuth.value_or(0))},
       {"site.latitude", std::abs(s.site.latitude)},
       {"site.height", std::abs(s.site.height)},

@@ -23,10 +23,6 @@ struct FilterSetup {
   /// True azimuth of the axis at the begin of the first knot [rad]; absent: unknown.
   std::optional<double> start_azimuth;
   double start_sigma = 0;  ///< of start_azimuth [rad]
-  /// How much the hole may bend while samples are missing: 1-sigma dogleg where the speed is known
-  /// [rad/m], and 1-sigma transverse rate where it is not [rad/s].
-  double gap_dogleg = 1.7e-3;
-  double gap_rate = 1.7e-3;
 };
 
 /// One knot as the filter left it.

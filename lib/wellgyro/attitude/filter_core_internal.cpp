@@ -147,11 +147,8 @@ FilterCore::FilterCore(const FilterSetup& setup)
 double FilterCore::WhiteVariance(const Knot& knot) const {
   double variance =
       Square(setup_.gyro.angle_random_walk) * knot.white_turn + knot.toolface_noise_turn;
-  if (knot.gap_seconds > 0 && !knot.axial) {
-    const double rate =
-        knot.along.known ? setup_.gap_dogleg * std::abs(MeanSpeed(knot, place_)) : setup_.gap_rate;
-    const double sine = std::max(std::sin(MeanInclination(knot, place_)), 1e-6);
-    variance += Square(rate * knot.gap_seconds / sine);
+  if (knot.var_unseen > 0 && !knot.axial) {
+    variance += knot.var_unseen / Square(std::max(std::sin(MeanInclination(knot, place_)), 1e-6));
   }
   return variance;
 }
@@ -275,7 +272,7 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& a
   }
   m.turn.value = -(knot.turn + knot.cot * north * c + knot.seconds * up) + m.turn.h[0] * azimuth;
   m.turn.variance = white * knot.white_turn + knot.toolface_noise_turn + quantum * (1 + cot * cot) +
-                    kFloor + bent * Square(cot * c);
+                    kFloor + bent * Square(cot * c) + knot.var_unseen * (1 + cot * cot);
 
   // 0 = lift + W_e cos L sin A - errors' share: the inclination does not change.
   m.lift.h = FilterVector::Zero(layout_.size);
@@ -283,7 +280,7 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& a
   m.lift.h[0] = north * c * knot.seconds;
   if (layout_.latitude >= 0) m.lift.h[layout_.latitude] = -up * s * knot.seconds;
   m.lift.value = -(knot.lift + north * s * knot.seconds) + m.lift.h[0] * azimuth;
-  m.lift.variance = white * knot.seconds + quantum + kFloor + bent * Square(s);
+  m.lift.variance = white * knot.seconds + quantum + kFloor + bent * Square(s) + knot.var_unseen;
   return m;
 }
 

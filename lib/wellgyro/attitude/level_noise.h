@@ -36,6 +36,8 @@ class WELLGYRO_EXPORT LevelNoise {
   void Take(const Block& block, const AlongHole& along);
   /// What scattered so far says nothing of what follows.
   void Break();
+  /// The inclination has changed by what nothing told [rad^2].
+  void Widen(double variance) { cov_(0, 0) += variance; }
   double variance() const { return cov_(0, 0); }  ///< of the inclination [rad^2]
 
   /// Of the mean acceleration over `seconds`, by what holds at both ends of them [(m/s^2)^2].

@@ -104,6 +104,9 @@ HighSideTracker::HighSideTracker(const TrackerOptions& options)
   CheckPositive("roll_limit", options.roll_limit);
   CheckPositive("toolface_seconds", options.toolface_seconds);
   CheckPositive("roll_rate_seconds", options.roll_rate_seconds);
+  CheckNotNegative("unseen_dogleg", options.unseen_dogleg);
+  CheckNotNegative("unseen_rate", options.unseen_rate);
+  CheckPositive("unseen_seconds", options.unseen_seconds);
   if (!options.p_accel_T.allFinite()) {
     throw std::invalid_argument("TrackerOptions.p_accel_T is not finite");
   }
@@ -138,8 +141,7 @@ void HighSideTracker::Memory::Add(double dt, double trust) {
   span += dt;
 }
 
-void HighSideTracker::Memory::Shorten(double by) {
-  const double left = by < span ? 1 - by / span : 0;
+void HighSideTracker::Memory::Shorten(double left) {
   span *= left;
   seconds *= left;
   first *= left * left;
@@ -285,6 +287,7 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
   s.across = std::max(0.0, across - v * s.e_r);
   s.vh = (wx * s.ux - wy * s.uy) * dt;
   s.vr = (wx * s.uy + wy * s.ux) * dt;
+  s.unseen = Has(s.quality, Quality::kSaturated) ? UnseenIn(s) : 0;
 }
 
 // Inclinations are counted from a reference near by whose sine and cosine are exact, so that the
@@ -327,13 +330,15 @@ inline HighSideTracker::Mean HighSideTracker::Level(const Seen& s, double rise, 
 
 // Change of toolface since the end of the sample before, whose last angle was extrapolated from
 // its own window.
-inline double HighSideTracker::Roll(const Seen& s, const Slopes& slopes) const {
+inline double HighSideTracker::Roll(const Seen& s, const Slopes& slopes) {
   if (has_before_) {
     return delta_in_ + 0.5 * (slopes.c1 - c1_) + (slopes.c2 - c2_) / 6;
   }
   if (!ready_) return slopes.c1;
   const double begin = std::atan2(s.uy, s.ux) - 0.5 * slopes.c1 + slopes.c2 / 6;
-  return WrapPi(begin - end_toolface_) + slopes.c1;
+  // No gyro took part in that.
+  unseen_roll_ += WrapPi(begin - end_toolface_);
+  return slopes.c1;
 }
 
 inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
@@ -354,6 +359,8 @@ inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
   }
   ns_ += s.stamp.period_ns;
   quality_ |= sample_quality_;
+  if (s.stamp.accel_saturated) level_ = false;
+  if (unseen_ > 0) unseen_ -= unseen_ * s.dt / options_.unseen_seconds;
   if (gap) {
     ns_ += s.gap_ns;
     gap_ns_ += s.gap_ns;
@@ -364,6 +371,34 @@ inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
   all_vertical_ = all_vertical_ && vertical;
   cut_ = 0;
   ready_ = true;
+}
+
+// How far the hole may have turned in the gap between two samples.
+double HighSideTracker::UnseenBetween(const Seen& before, const Seen& next) const {
+  const double seconds = 1e-9 * static_cast<double>(next.gap_ns);
+  if (!before.along.known || !next.along.known) return options_.unseen_rate * seconds;
+  const double apart = seconds + 0.5 * (before.dt + next.dt);
+  return options_.unseen_dogleg * std::abs(next.along.md - before.along.md) * seconds / apart;
+}
+
+// A rate at full scale may be as much again, and as much more as the hole may turn.
+double HighSideTracker::UnseenIn(const Seen& s) const {
+  const double hole = s.along.known ? options_.unseen_dogleg * std::abs(s.along.speed) * s.dt
+                                    : options_.unseen_rate * s.dt;
+  return std::max(hole, std::hypot(s.vh, s.vr));
+}
+
+void HighSideTracker::AddUnseen(const AlongHole& along, double angle, double variance) {
+  CloseBlock(along);
+  observed_.noise.Widen(variance);
+  unseen_ += angle;
+  unseen_here_ += angle;
+  var_unseen_ += variance;
+  // The line fitted to the level is worth no more than what that may have changed it by.
+  const double noise = options_.accel_noise * inverse_gravity_;
+  if (variance > 0) {
+    memory_.Shorten(4 * noise * noise / (4 * noise * noise + variance * memory_.seconds));
+  }
 }
 
 // Slopes across the waiting sample, central where it has both neighbours.
@@ -394,10 +429,8 @@ template <TrackerOptions::Order kOrder>
 inline void HighSideTracker::SumUp(const Seen& s, const Seen* next) {
   constexpr bool kThird = kOrder == TrackerOptions::kThird;
   const Slopes slopes = Across<kOrder>(s, next);
-  if (s.gap_ns > 0) {
-    // Four seconds without samples are as good as a new start.
-    memory_.Shorten(1e-8 * static_cast<double>(s.gap_ns));
-  }
+  if (s.unseen_before > 0) AddUnseen(s.along, s.unseen_before, s.var_unseen_before);
+  if (s.unseen > 0) AddUnseen(s.along, s.unseen, VarUnseen(s.unseen));
   // By the turn since the sample before, where second order will do: the square of a difference
   // from c1 is of third, and the rest does not wait for the next sample's phase.
   const double turned = kThird || !has_before_ ? slopes.c1 : delta_in_;
@@ -465,6 +498,12 @@ bool HighSideTracker::Push(const ImuSample& sample, const AlongHole& along, cons
   Prepare(sample, along, next);
   next.gap_ns = gap_ns;
   next.lost = lost;
+  next.unseen_before = next.var_unseen_before = 0;
+  gap_cut_ns_ = 0;
+  if (gap_ns > 0) {
+    next.unseen_before = UnseenBetween(now, next);
+    next.var_unseen_before = VarUnseen(next.unseen_before);
+  }
 
   if (waiting_) Integrate(now, &next);
   newest_ = 1 - newest_;

@@ -41,6 +41,10 @@ struct TrackerOptions {
   Eigen::Vector3d p_accel_T = Eigen::Vector3d::Zero();
   double toolface_seconds = 2;     ///< over which they correct the third gyro's toolface [s]
   double roll_rate_seconds = 0.1;  ///< smoothing of the roll rate that the lever arm needs [s]
+  /// How much the hole may bend unseen: 1-sigma dogleg where the depth is known [rad/m], 1-sigma
+  /// transverse rate where it is not [rad/s]; and for how long it goes on so [s].
+  double unseen_dogleg = 1.7e-3, unseen_rate = 1.7e-3;
+  double unseen_seconds = 100;
 };
 
 /// Follows the high side of a moving tool sample by sample and sums into Knots what two transverse
@@ -58,6 +62,10 @@ struct TrackerOptions {
 /// its successor is there. Near vertical 1/sin I is held at its value at the threshold
 ///   sin I = max(sin(inclination_min), accel_noise / (g sqrt(period) sigma_toolface_max)),
 /// which keeps all sums finite, and kVertical is set. Values may be copied: a copy goes on alone.
+///
+/// What a gap hides, and by how much a rate passed full scale, is unknown and counts in var_unseen;
+/// the accelerometers' inclination takes over from the gyros' after it. A rate at full scale may be
+/// as much again.
 class WELLGYRO_EXPORT HighSideTracker {
  public:
   /// Throws std::invalid_argument for an option outside its domain.
@@ -98,6 +106,11 @@ class WELLGYRO_EXPORT HighSideTracker {
   Knot CutKnot() { return CutKnot(1.0); }
   Knot CutKnot(double fraction);
 
+  /// Ends the interval in the gap behind which the last pushed sample waits, `into` it. Its
+  /// inclination is that of the gap's begin, with what it may have changed by since. Throws
+  /// std::invalid_argument where no gap waits, or before an earlier cut of it or behind its end.
+  Knot CutGap(Duration into);
+
  private:
   /// Rms acceleration of a tool whose depth nobody knows [m/s^2].
   static constexpr double kUnknown = 0.03;
@@ -122,12 +135,14 @@ class WELLGYRO_EXPORT HighSideTracker {
   struct Seen {  // a sample made ready: the rate turned to the high side, force of gravity alone
     SampleStamp stamp;
     AlongHole along;
-    double dt, ux, uy;          // e^{iT}, T the phase of the mean
-    double vh, vr;              // (W dt) e^{iT}
-    double spin;                // rotation about z where has_gz, else zero
-    double across, fz;          // |f_x + i f_y|, f_z [m/s^2]
-    double e_r;                 // the Earth's part of the inclination rate [rad/s]
-    std::int64_t gap_ns, lost;  // before it
+    double dt, ux, uy;                        // e^{iT}, T the phase of the mean
+    double vh, vr;                            // (W dt) e^{iT}
+    double spin;                              // rotation about z where has_gz, else zero
+    double across, fz;                        // |f_x + i f_y|, f_z [m/s^2]
+    double e_r;                               // the Earth's part of the inclination rate [rad/s]
+    std::int64_t gap_ns, lost;                // before it
+    double unseen_before, var_unseen_before;  // in that gap: see Knot
+    double unseen;                            // in it
     Quality quality;
     bool has_gz;
   };
@@ -145,7 +160,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   struct Memory {
     double span = 0, seconds = 0, first = 0, second = 0;
     void Add(double dt, double trust);
-    void Shorten(double by);
+    void Shorten(double left);
   };
   struct Observed {  // errors of inclination, as the observer carries them on: by source ...
     Knot::SourceVector level = Knot::SourceVector::Zero();
@@ -163,6 +178,10 @@ class WELLGYRO_EXPORT HighSideTracker {
     double seconds, cot, csc, cs, sn, vh, vr, roll, spin, trust;
   };
 
+  double UnseenBetween(const Seen& before, const Seen& next) const;
+  double UnseenIn(const Seen& s) const;
+  double VarUnseen(double angle) const { return angle * (2 * unseen_ + angle); }
+  void AddUnseen(const AlongHole& along, double angle, double variance);
   void TakeSite(const Site& site, std::int32_t period_ns);
   void TakeFirst(const ImuSample& sample);
   void TakeReference();
@@ -190,7 +209,7 @@ class WELLGYRO_EXPORT HighSideTracker {
   }
   Gains Steady(double dt) const;
   Gains Weighed(Gains steady, double dt, double trust, const Memory& memory) const;
-  double Roll(const Seen& s, const Slopes& slopes) const;
+  double Roll(const Seen& s, const Slopes& slopes);
   void AddSample(const Seen& s, bool vertical);
   void CloseBlock(const AlongHole& along);
   Block Means(const Sums& sums) const;
@@ -236,6 +255,10 @@ class WELLGYRO_EXPORT HighSideTracker {
   Memory block_memory_;
   Observed observed_;
   Errors errors_, given_;
+  // What was not seen of the hole's turning: as it goes on, in the interval.
+  double unseen_ = 0, unseen_here_ = 0, var_unseen_ = 0, unseen_roll_ = 0;
+  std::int64_t gap_cut_ns_ = 0;
+  bool level_ = true;
   // The open interval, without the open block.
   Sums sums_{};
   std::int64_t ns_ = 0, gap_ns_ = 0, lost_ = 0, seq_begin_ = 0;

@@ -140,6 +140,9 @@ void HighSideTracker::FillStamps(const Seen& s, Duration into, Knot& knot) const
     knot.along.speed += t * s.along.acceleration;
   }
   knot.gap_seconds = 1e-9 * static_cast<double>(gap_ns_);
+  knot.unseen = unseen_here_;
+  knot.var_unseen = var_unseen_;
+  knot.level = level_;
   knot.vertical = !empty_ && all_vertical_;
   knot.seq_begin = empty_ ? s.stamp.seq + 1 : seq_begin_;
   knot.seq_end = s.stamp.seq + 1;
@@ -152,6 +155,8 @@ void HighSideTracker::OpenInterval(const Seen& s, double fraction, std::int64_t 
   empty_ = fraction >= 1;
   ns_ = rest_ns;
   gap_ns_ = lost_ = 0;
+  unseen_here_ = var_unseen_ = unseen_roll_ = 0;
+  level_ = empty_ || !s.stamp.accel_saturated;
   seq_begin_ = s.stamp.seq;
   along_begin_ = s.along;
   all_vertical_ = empty_ || sample_vertical_;
@@ -182,7 +187,7 @@ Knot HighSideTracker::CutKnot(double fraction) {
   knot.turn = -sums[kTurn];
   knot.cot = sums[kCot];
   knot.lift = sums[kLift];
-  knot.roll = sums[kRoll];
+  knot.roll = sums[kRoll] + unseen_roll_;
   FillErrors(block, knot);
 
   const double noise = options_.accel_noise * inverse_gravity_;
@@ -202,6 +207,29 @@ Knot HighSideTracker::CutKnot(double fraction) {
 
   for (int i = 0; i < kSums; ++i) sums_[i] = -block[i];
   OpenInterval(s, fraction, rest_ns);
+  return knot;
+}
+
+Knot HighSideTracker::CutGap(Duration into) {
+  Seen& next = seen_[newest_];
+  const std::int64_t ns = into.ns - gap_cut_ns_;
+  if (!waiting_ || !ready_ || ns < 0 || ns > next.gap_ns) {
+    throw std::invalid_argument("CutGap: no gap waits that is cut by " +
+                                std::to_string(into.seconds()) + " s");
+  }
+  const double share = ns > 0 ? static_cast<double>(ns) / static_cast<double>(next.gap_ns) : 0;
+  const double variance = share * next.var_unseen_before;
+  AddUnseen(last().along, share * next.unseen_before, variance);
+  next.unseen_before -= share * next.unseen_before;
+  next.var_unseen_before -= variance;
+  next.gap_ns -= ns;
+  gap_cut_ns_ = into.ns;
+  ns_ += ns;
+  gap_ns_ += ns;
+  quality_ |= Quality::kGap;
+  Knot knot = CutKnot(1.0);
+  knot.time = knot.time + into;
+  knot.utc = knot.utc + into;
   return knot;
 }
 

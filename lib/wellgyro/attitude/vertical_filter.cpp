@@ -104,6 +104,7 @@ struct VerticalFilter::Impl {
   double FillTurn(const Cut& now, const Uncertain& held, Knot& knot) const;
   double VarOfTurning(const Knot& knot) const;
   double VarOf(const Uncertain& angle) const;
+  void Widen(double seconds, Core* core) const;
   void Fill(const Cut& now, bool axial, Knot& knot);
   void FloorAtAccelerometers(Knot& knot) const;
   void CountSum();
@@ -202,10 +203,16 @@ void VerticalFilter::Impl::SetHeading(double azimuth, double variance) {
   main.SetHeading(azimuth, variance);
 }
 
+// Samples are missing.
+void VerticalFilter::Impl::Widen(double seconds, Core* core) const {
+  core->Widen(seconds, setup.gap_rate * seconds, 0.1);
+}
+
 Cut VerticalFilter::Impl::CutAt(double rest) const {
   Core core = main;
   core.Close(NoiseOf(walk));
-  return CutOf(core, core.Before(rest));
+  if (rest < 0) Widen(-rest, &core);
+  return CutOf(core, core.Before(std::max(rest, 0.0)));
 }
 
 // From here on: what was given to knots so far is theirs for good.
@@ -375,9 +382,8 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
       m.Start(sample, along, site);
     } else if (apart > period / 2) {
       m.Close();
-      const auto widen = [&](Core& core) { core.Widen(apart, m.setup.gap_rate * apart, 0.1); };
-      widen(m.main);
-      for (Core& core : m.bank) widen(core);
+      m.Widen(apart, &m.main);
+      for (Core& core : m.bank) m.Widen(apart, &core);
     }
   }
   m.session = stamp.session;

@@ -67,9 +67,9 @@ class WELLGYRO_EXPORT VerticalFilter {
   /// rate. Makes no step in azimuth() of this filter.
   void SetNorth(std::optional<double> azimuth_of_zero);
 
-  /// `knot` ends `rest` [s] before the end of the last sample. Where this filter does better, its
-  /// attitude and growths take the place of the knot's own, Knot::axial tells. Every knot of a run
-  /// goes through here once, in the order of time.
+  /// `knot` ends `rest` [s] before the end of the last sample, in a gap after it (negative). Where
+  /// this filter does better, its attitude and growths take the place of the knot's own,
+  /// Knot::axial tells. Every knot of a run goes through here once, in the order of time.
   void CutKnot(double rest, Knot& knot);
 
   /// The tool is at rest: it does not turn about its axis either, though near vertical gravity

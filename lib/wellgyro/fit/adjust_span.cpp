@@ -45,9 +45,9 @@ Step StepAt(const FilterHistory& history, std::size_t i) {
 // Sums that a span's means are made of.
 struct Sums {
   double sampled = 0, level = 0, path = 0, turned = 0, white_turn = 0, jitter = 0;
-  double sine_time = 0, cosine_time = 0;  // of the inclination
-  double acceleration = 0;                // the largest
-  double gap_turn = 0, gap_lift = 0;      // variances [rad^2]
+  double sine_time = 0, cosine_time = 0;                // of the inclination
+  double acceleration = 0;                              // the largest
+  double unseen = 0, unseen_turn = 0, unseen_lift = 0;  // see Knot
   Knot::SourceVector d_path = Knot::SourceVector::Zero();
 };
 
@@ -75,9 +75,8 @@ void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double 
 void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& place,
              double acceleration, AdjustSpan* span, Sums* sums) {
   const Knot& knot = s.knot;
-  const FilterSetup& setup = history.setup;
   const double grown = span->still ? 0 : place.grown;
-  AddEarth(s, place, setup.site, sums->turned, grown, span);
+  AddEarth(s, place, history.setup.site, sums->turned, grown, span);
   sums->turned += grown;
   sums->path += s.sampled * (span->lift + knot.lift / 2);
   sums->d_path += s.sampled * (span->d_lift + knot.d_lift / 2);
@@ -96,12 +95,10 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   span->d_inclination +=
       s.sampled * knot.d_inclination.segment<3>(static_cast<int>(Knot::kAccelBiasX));
   span->seconds += knot.seconds;
-  const double blind = Has(knot.quality, Quality::kSaturated) ? knot.seconds : knot.gap_seconds;
-  if (blind > 0 && !knot.axial) {
-    const double rate = knot.along.known ? setup.gap_dogleg * std::abs(s.speed) : setup.gap_rate;
-    const double sine = std::max(std::sin(s.inclination), 1e-6);
-    sums->gap_lift += Square(rate * blind);
-    sums->gap_turn += Square(rate * blind / sine);
+  if (knot.var_unseen > 0 && !knot.axial) {
+    sums->unseen += knot.unseen;
+    sums->unseen_lift += knot.var_unseen;
+    sums->unseen_turn += knot.var_unseen / Square(std::max(std::sin(s.inclination), 1e-6));
   }
 }
 
@@ -110,7 +107,7 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
 void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, AdjustSpan* span) {
   const double g = setup.site.gravity, time = sums.sampled;
   if (!(time > 0)) return;
-  span->levelled = !Has(last.quality, Quality::kSaturated) && !(last.gap_seconds > 0);
+  span->levelled = last.level && !(last.gap_seconds > 0);
   span->d_inclination /= time;
   const double sine = sums.sine_time / time, cosine = sums.cosine_time / time;
   span->level = sums.level / time;
@@ -127,6 +124,7 @@ void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, A
     var += Square(setup.gyro.angle_random_walk) * time / 12;
     var += last.along.known ? 2 * Square(sine * kSpeedSigma / (g * time)) : Square(kUnknownForce);
     var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
+    var += Square(sums.unseen) / 12;
   }
   if (span->axial) {
     var = std::max(var, Square(last.sigma_inclination_accel));
@@ -140,8 +138,8 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   const FilterSetup& setup = history.setup;
   const Knot& last = history.epochs[span->epoch_end - 1].knot;
   const double walk2 = Square(setup.gyro.angle_random_walk);
-  span->var_turn = walk2 * sums.white_turn + sums.jitter + sums.gap_turn + kFloor;
-  span->var_lift = walk2 * sums.sampled + sums.gap_lift + kFloor;
+  span->var_turn = walk2 * sums.white_turn + sums.jitter + sums.unseen_turn + kFloor;
+  span->var_lift = walk2 * sums.sampled + sums.unseen_lift + kFloor;
   if (sums.sampled > 0) {
     const double noise = setup.errors.accel_noise / setup.site.gravity;
     span->var_lift += Square(noise * span->turn) / sums.sampled;

@@ -58,9 +58,10 @@ struct Knot {
   double roll = 0;  ///< change of the unwrapped toolface [rad]
   double inclination_accel = 0;  ///< mean over the interval of accelerometer inclination [rad]
   double sigma_inclination = 0;  ///< of `inclination`, from noise alone [rad]
-  double sigma_inclination_accel = 0;          ///< of `inclination_accel`, from noise alone [rad]
-  SourceVector d_turn = SourceVector::Zero();  ///< d turn / d source
-  SourceVector d_lift = SourceVector::Zero();  ///< d lift / d source
+  double sigma_inclination_accel = 0;  ///< of `inclination_accel`, from noise alone [rad]
+  bool level = true;  ///< `inclination_accel` counts: no accelerometer stood at full scale
+  SourceVector d_turn = SourceVector::Zero();         ///< d turn / d source
+  SourceVector d_lift = SourceVector::Zero();         ///< d lift / d source
   SourceVector d_inclination = SourceVector::Zero();  ///< d inclination (at `time`) / d source
   double white_turn = 0;  ///< integral of 1 / sin^2 I [s]: times N^2 the variance of `turn`
   double toolface_noise_turn = 0;  ///< variance of `turn` from accelerometer noise [rad^2]
@@ -78,7 +79,13 @@ struct Knot {
   /// multiplied by, now that gravity has told how the tool turned meanwhile.
   double axial_noise_share = 1;
   int axial_noise_knots = 0;
-  double gap_seconds = 0;         ///< of the interval, without samples
+  double gap_seconds = 0;  ///< of the interval, without samples
+  /// How far the hole may have turned unseen, each way, 1-sigma: while samples were missing, or
+  /// beyond what a sensor at full scale read [rad].
+  double unseen = 0;
+  /// Variance which that adds since the run's begin: a hole goes on as it does, so that what was
+  /// missed of it shortly before adds in amplitude [rad^2].
+  double var_unseen = 0;
   std::int64_t seq_begin = 0;     ///< first sample
   std::int64_t seq_end = 0;       ///< exclusive
   std::int64_t samples_lost = 0;  ///< in that range

@@ -12,7 +12,9 @@ namespace {
 
 constexpr std::int64_t kKnotNs = 1'000'000'000;
 constexpr double kLeastFraction = 1e-9;  // of a sample, at which it can be cut
-constexpr double kJump = 50;  // [m] in one sample: no hole is logged so fast, the depth is wrong
+// [m] in one sample, or in each second of a gap: no hole is logged so fast, the depth is wrong.
+constexpr double kJump = 50;
+constexpr double kWithoutGap = 1.5;  // periods from a sample to its successor, at most
 
 VerticalSetup VerticalSetupOf(const Job& job) {
   VerticalSetup setup;
@@ -81,10 +83,16 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   end_unsynced_ = sample.stamp.utc_unsynced;
   if (WaitsForSum()) {
     const SampleStamp& before = current_->stamp;
-    const bool contiguous =
-        sample.stamp.seq == before.seq + 1 && sample.stamp.session == before.session;
-    if (contiguous) current_->utc_end = utc;
-    Summed(contiguous ? along : current_->along, pass);
+    const double reach = static_cast<double>((sample.stamp.tool_time - before.tool_time).ns) /
+                         static_cast<double>(before.period_ns);
+    if (sample.stamp.session != before.session) {
+      Summed(current_->along, current_->pass, 1);
+    } else if (reach < kWithoutGap) {
+      current_->utc_end = utc;
+      Summed(along, pass, 1);
+    } else {
+      Summed(along, pass, reach);
+    }
   }
   if (taken) {
     const UtcTime utc_end = utc + Duration{sample.stamp.period_ns};
@@ -151,7 +159,7 @@ void RunSurvey::Flush() {
     const AlongHole& end = current_->along;
     asked_ = asked_ || (end.known && passes_.state().pass == Pass::kIn &&
                         std::abs(end.md - last_mark_md_) > kSameDepth);
-    Summed(end, passes_.state());
+    Summed(end, passes_.state(), 1);
     current_.reset();
   }
   if (const auto window = still_.Flush()) TakeWindow(*window);
@@ -173,15 +181,16 @@ Draft RunSurvey::NewDraft(double md) const {
 }
 
 /// The sample in current_ has been summed: makes the knots that fall into it.
-void RunSurvey::Summed(const AlongHole& end, const PassState& pass_end) {
+void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double reach) {
   cuts_.clear();
   const Current& c = *current_;
+  const AlongHole end = Between(c.along, next, 1 / reach);
   summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
   if (c.for_vertical) vertical_.Push(c.sample, c.middle, site_);
   resting_ = c.middle.known && std::abs(c.middle.speed) < kRestSpeed;
-  if (c.along.known && end.known && pass_end.number == c.pass.number &&
+  if (c.along.known && next.known && pass_next.number == c.pass.number &&
       c.pass.pass != Pass::kStationary) {
-    AddTargets(pass_end.md);
+    AddTargets(pass_next.md, reach);
   }
   const double period = static_cast<double>(c.stamp.period_ns);
   const std::int64_t begin = c.stamp.tool_time.ns;
@@ -201,27 +210,28 @@ void RunSurvey::Summed(const AlongHole& end, const PassState& pass_end) {
   if (const auto rest = RestDraft(end)) cuts_.push_back({1.0, rest, false});
   std::stable_sort(cuts_.begin(), cuts_.end(),
                    [](const KnotAt& a, const KnotAt& b) { return a.fraction < b.fraction; });
-  for (const KnotAt& cut : cuts_) CutAt(cut, end);
+  for (const KnotAt& cut : cuts_) CutAt(cut, next, reach);
   if (!cuts_.empty()) Release(false);
 }
 
-/// The asked depths that the tool passes within the sample, up to `md_end`.
-void RunSurvey::AddTargets(double md_end) {
+/// The asked depths that the tool passes within the sample, and the gap after it, up to `md_next`.
+void RunSurvey::AddTargets(double md_next, double reach) {
   const PassState& pass = current_->pass;
-  const double way = md_end - pass.md;
-  if (std::abs(way) > kJump || (way == 0 && !pass.begins)) return;
+  const double way = md_next - pass.md;
+  const double seconds = reach * 1e-9 * static_cast<double>(current_->stamp.period_ns);
+  if (std::abs(way) > kJump * std::max(seconds, 1.0) || (way == 0 && !pass.begins)) return;
   // A first pass begins where the tool stood; between any other turn and its discovery the depths
   // belong to the pass before.
   const bool first = pass.begins && std::abs(pass.md_turn - pass.md) <= 2 * kSameDepth;
-  plan_.Between(first ? pass.md_turn : pass.md, md_end, first, targets_);
+  plan_.Between(first ? pass.md_turn : pass.md, md_next, first, targets_);
   for (const StationPlan::Target& target : targets_) {
     if (first && marked_ && std::abs(target.md - last_mark_md_) <= kSameDepth) {
       // The station of the stop is there already.
       if (target.listed) ListLastMark();
       continue;
     }
-    const double fraction =
-        way != 0 ? std::clamp((target.md - pass.md) / way, kLeastFraction, 1.0) : 1.0;
+    const double part = way != 0 ? (target.md - pass.md) / way : 1.0;
+    const double fraction = std::clamp(part * reach, kLeastFraction, reach);
     Draft draft = NewDraft(target.md);
     draft.listed = target.listed;
     const bool external =
@@ -253,11 +263,14 @@ std::optional<Draft> RunSurvey::RestDraft(const AlongHole& end) const {
   return draft;
 }
 
-void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& end) {
+void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
   const auto& [fraction, draft, external] = cut;
   const Current& c = *current_;
   const ToolTime begin = last_knot_.value_or(c.stamp.tool_time);
-  Knot knot = tracker_.CutKnot(fraction);
+  const double period = 1e-9 * c.stamp.period_ns;
+  Knot knot = fraction > 1
+                  ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.stamp.period_ns)})
+                  : tracker_.CutKnot(fraction);
   const bool again = last_knot_ && knot.time <= *last_knot_;
   if (again && (waiting_.empty() || waiting_.back().draft)) return;
   if (!again) {
@@ -265,11 +278,11 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& end) {
     if (temperature_outside_) knot.quality |= Quality::kTemperature;
     temperature_outside_ = false;
     knot.utc = c.utc + Duration::Seconds(fraction * (c.utc_end - c.utc).seconds());
-    knot.along = Between(c.along, end, fraction);
-    vertical_.CutKnot((1 - fraction) * 1e-9 * c.stamp.period_ns, knot);
+    knot.along = Between(c.along, next, fraction / reach);
+    vertical_.CutKnot((1 - fraction) * period, knot);
     waiting_.push_back({knot, begin, std::nullopt, false, std::nullopt});
     if (vertical_.running()) waiting_.back().from_zero = vertical_.azimuth_from_zero();
-    lost_since_listed_ = lost_since_listed_ || knot.samples_lost > 0;
+    unseen_since_listed_ |= knot.quality & (Quality::kGap | Quality::kSaturated);
   }
   // Two cuts within one nanosecond are one knot.
   Waiting& last = waiting_.back();
@@ -285,8 +298,8 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& end) {
     s.imu_seq_begin = last.knot.seq_begin;
     s.imu_seq_end = last.knot.seq_end;
     s.samples_lost = last.knot.samples_lost;
-    if (lost_since_listed_) s.quality |= Quality::kGap;
-    if (draft->listed) lost_since_listed_ = false;
+    s.quality |= unseen_since_listed_;
+    if (draft->listed) unseen_since_listed_ = Quality::kGood;
   }
 }
 

@@ -82,7 +82,7 @@ class RunSurvey {
     std::optional<double> from_zero;  ///< azimuth by the vertical filter's own zero [rad]
   };
 
-  /// Where a knot is wanted within the summed sample.
+  /// Where a knot is wanted within the summed sample, or (beyond 1) in the gap after it.
   struct KnotAt {
     double fraction = 1;
     std::optional<Draft> draft;
@@ -92,10 +92,11 @@ class RunSurvey {
   void Count(const SampleStamp& stamp);
   void CountDepth(const SampleStamp& stamp, bool known);
   bool WaitsForSum() const;
-  void Summed(const AlongHole& end, const PassState& pass_end);
-  void AddTargets(double md_end);
+  /// `reach`: from its begin to where `next` and `pass_next` hold, in periods.
+  void Summed(const AlongHole& next, const PassState& pass_next, double reach);
+  void AddTargets(double md_next, double reach);
   void ListLastMark();
-  void CutAt(const KnotAt& cut, const AlongHole& end);
+  void CutAt(const KnotAt& cut, const AlongHole& next, double reach);
   std::optional<Draft> RestDraft(const AlongHole& end) const;
   Draft NewDraft(double md) const;
   bool SamePlace(ToolTime time, std::optional<double> md) const;
@@ -142,7 +143,7 @@ class RunSurvey {
   bool asked_ = false;
   bool temperature_outside_ = false;  ///< since the last knot
   bool end_unsynced_ = false;         ///< the sample behind the one being summed doubts its UTC
-  bool lost_since_listed_ = false;    ///< samples, since the last station that is listed
+  Quality unseen_since_listed_ = Quality::kGood;  ///< since the last station that is listed
   std::vector<Waiting> waiting_;
   std::vector<StillWindow> group_;  ///< windows at one place
   std::vector<Draft> drafts_;

@@ -1,0 +1,155 @@
+// Surveys of runs that did not see all of the hole: what they say of the stations there and behind.
+// 2026-11-21.
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/run_adjustment.h"
+#include "wellgyro/math/random.h"
+#include "wellgyro/math/statistics.h"
+
+#include "support/hour.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr int kSeeds = 24;
+constexpr double kStop = 120;  // [s]
+
+testing::Hour Tool() {
+  testing::Hour hour = testing::Tactical();
+  hour.errors.gyro_scale_sigma = 1e-4;
+  hour.errors.gyro_misalignment_sigma = 1e-4;
+  hour.errors.roll_offset_sigma = FromDegrees(0.02);
+  hour.errors.depth_sigma = 0;
+  return hour;
+}
+
+/// From a stop at 0 m down at 1 m/s and 3 rpm, through a hole that bends, by a draw that is the
+/// tracker's own, between `bend_begin` and `bend_end`.
+Simulation HoleOf(std::uint64_t seed, double bend_begin, double bend_end) {
+  const testing::Hour hour = Tool();
+  Random random(500 + seed);
+  Simulation s;
+  s.well.end_md = 200;
+  const auto bend = [&](double per) {
+    return AngleTerm{.begin_md = bend_begin,
+                     .end_md = bend_end,
+                     .ramp = 2,
+                     .rate = TrackerOptions().unseen_dogleg * random.Normal() / per};
+  };
+  s.well.inclination = {FromDegrees(45), {bend(1)}};
+  s.well.azimuth = {FromDegrees(40), {bend(std::sin(FromDegrees(45)))}};
+  s.earth.latitude = FromDegrees(hour.latitude_deg);
+  s.run.roll_reference = RollReference::kHighSide;
+  s.run.steps.push_back(RunStop{.seconds = kStop});
+  s.seed = seed;
+  s.tool.errors = DrawToolErrors(hour.errors, hour.noise, seed);
+  return s;
+}
+
+RunMove Down(double to_md) {
+  return {.to_md = to_md, .speed = 1, .roll = {3 * kTwoPi / 60, 0, 1, 0}};
+}
+
+Job JobOf() {
+  Job job = testing::JobOf(Tool());
+  job.tie_in.md = 0;
+  return job;
+}
+
+/// Squared errors over sigmas by depth.
+struct Squares {
+  std::map<double, double> inclination, azimuth;
+  void Add(const Survey& survey, const Simulation& simulation) {
+    const Truth truth(simulation);
+    for (const Station& s : survey.chosen) {
+      const auto at = truth.well().PointAt(s.md);
+      inclination[s.md] += std::pow(s.inclination - at.inclination, 2) / s.cov_md_inc_azi(1, 1);
+      azimuth[s.md] += std::pow(WrapPi(s.azimuth - at.azimuth), 2) / s.cov_md_inc_azi(2, 2);
+    }
+  }
+};
+
+void ExpectHonest(double sum, const char* what, double md) {
+  EXPECT_GT(sum, ChiSquareQuantile(0.0005, kSeeds)) << what << " at " << md;
+  EXPECT_LT(sum, ChiSquareQuantile(0.9995, kSeeds)) << what << " at " << md;
+}
+
+class Unseen : public ::testing::TestWithParam<bool> {
+ protected:
+  const RunAdjuster* adjuster() const { return GetParam() ? &adjuster_ : nullptr; }
+
+ private:
+  LeastSquaresAdjuster adjuster_;
+};
+
+TEST_P(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
+  Squares squares;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Simulation simulation = HoleOf(seed, 20, 80);
+    simulation.run.steps.push_back(Down(100));
+    testing::CollectingSink sink;
+    const ToolTime begin = ToolTime{} + Duration::Seconds(simulation.tool.errors.clock_offset);
+    const Survey survey = testing::SurveyOf(
+        simulation, JobOf(), sink,
+        [&](SimulatedStep& step) {
+          const auto* sample = std::get_if<ImuSample>(&step);
+          if (sample == nullptr) return true;
+          const double t = (sample->stamp.tool_time - begin).seconds();
+          return t < kStop + 49 || t >= kStop + 61.5;  // from 44 m to 56.5 m
+        },
+        adjuster());
+    ASSERT_EQ(survey.chosen.size(), 11u) << survey.unusable;
+    squares.Add(survey, simulation);
+    for (const Station& s : survey.chosen) {
+      EXPECT_EQ(Has(s.quality, Quality::kGap), s.md == 50 || s.md == 60) << s.md;
+    }
+    // There it is not better known than by half of what the hole may bend.
+    EXPECT_GT(std::sqrt(survey.chosen[5].cov_md_inc_azi(1, 1)),
+              0.4 * 12.5 * TrackerOptions().unseen_dogleg);
+  }
+  EXPECT_LT(squares.inclination[50], ChiSquareQuantile(0.9995, kSeeds));
+  EXPECT_LT(squares.azimuth[50], ChiSquareQuantile(0.9995, kSeeds));
+  for (const double md : {40., 60., 70., 90.}) {
+    ExpectHonest(squares.inclination[md], "inclination", md);
+    ExpectHonest(squares.azimuth[md], "azimuth", md);
+  }
+}
+
+// Beyond 60 deg/h the gyros see nothing; below it, a stop, and a straight hole.
+TEST_P(Unseen, StationsBelowASaturatedStretchAreAsGoodAsTheySay) {
+  Squares squares;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Simulation simulation = HoleOf(seed, 20, 80);
+    simulation.run.steps = {RunStop{.seconds = kStop}, Down(100), RunStop{.seconds = kStop},
+                            Down(160)};
+    simulation.tool.errors.gyro_full_scale = 60 * units::kDegPerHour;
+    testing::CollectingSink sink;
+    const Survey survey = testing::SurveyOf(simulation, JobOf(), sink, {}, adjuster());
+    ASSERT_EQ(survey.chosen.size(), 17u) << survey.unusable;
+    squares.Add(survey, simulation);
+    for (const Station& s : survey.chosen) {
+      EXPECT_EQ(Has(s.quality, Quality::kSaturated), s.md >= 30 && s.md <= 80) << s.md;
+    }
+  }
+  for (const double md : {20., 30., 50., 80., 90.}) {
+    EXPECT_LT(squares.inclination[md], ChiSquareQuantile(0.9995, kSeeds)) << md;
+    EXPECT_LT(squares.azimuth[md], ChiSquareQuantile(0.9995, kSeeds)) << md;
+  }
+  for (const double md : {110., 130., 150.}) {
+    ExpectHonest(squares.inclination[md], "inclination", md);
+    ExpectHonest(squares.azimuth[md], "azimuth", md);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Adjusted, Unseen, ::testing::Bool());
+
+}  // namespace
+}  // namespace wellgyro
