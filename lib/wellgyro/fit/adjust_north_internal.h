@@ -22,7 +22,8 @@ struct AdjustNorth {
   // Where the cost is no parabola, as near horizontal and east-west, the curvature at its bottom
   // says too much or too little:
   double var_beyond = 0;  ///< of the azimuths' common error, above that of the curvature [rad^2]
-  double var_hold = 0;  ///< of the azimuth there as if measured, which the curvature lacks; 0: not [rad^2]
+  /// Of the azimuth at `epoch` as if measured, which the curvature lacks [rad^2]; 0: none.
+  double var_hold = 0;
 };
 
 /// Tries azimuths all round for the nodes of a segment, starting from `azimuths`, which the nodes
