@@ -5,55 +5,17 @@
 #include <stdexcept>
 #include <string>
 
+#include "wellgyro/attitude/tracker_angles_internal.h"
 #include "wellgyro/base/units.h"
 
 namespace wellgyro {
 namespace {
 
-// atan2(s, c) where s^2 + c^2 = 1, to 1e-12 of it.
-double Phase(double s, double c) {
-  if (c <= 0 || std::abs(s) > 0.05) return std::atan2(s, c);
-  const double q = s * s;
-  return s + s * q * ((1. / 6 + q * (3. / 40)) + q * q * (5. / 112));
-}
-
-// atan2(a, b), to 1e-12 of it.
-double NearAngle(double a, double b) {
-  if (!(std::abs(a) < 0.05 * b)) return std::atan2(a, b);
-  const double t = a / b, q = t * t;
-  return t - t * q * ((1. / 3 - q * (1. / 5)) + q * q * (1. / 7));
-}
-
-// (x/2) / sin(x/2): what a mean over a period that turns by x falls short of. To 1e-9 up to 0.15,
-// to 1e-6 up to pi/2.
-double InverseSinc(double x) {
-  const double q = x * x, q2 = q * q;
-  const double small = 1 + q * (1. / 24 + q * (7. / 5760));
-  if (q < 0.0225) return small;
-  return small + q2 * q * ((31. / 967680 + q * (127. / 154828800)) + q2 * 2.08386e-8);
-}
-
-// Mean of u sin(x u) over [-1/2, 1/2] by the mean of cos(x u): (1 - x/2 cot(x/2)) / x.
-double FirstMoment(double x) {
-  const double q = x * x;
-  return x * ((1. / 12 + q * (1. / 720)) + q * q * (1. / 30240 + q * (1. / 1209600)));
-}
-
-// (s, c) turned by d.
-void Turn(double d, double& s, double& c) {
-  double sd, cd;
-  if (std::abs(d) < 0.02) {  // to 3e-11
-    const double q = d * d;
-    sd = d - d * q * (1. / 6);
-    cd = 1 - q * (0.5 - q * (1. / 24));
-  } else {
-    sd = std::sin(d);
-    cd = std::cos(d);
-  }
-  const double turned = s * cd + c * sd;
-  c = c * cd - s * sd;
-  s = turned;
-}
+using tracker::FirstMoment;
+using tracker::InverseSinc;
+using tracker::NearAngle;
+using tracker::Phase;
+using tracker::Turn;
 
 bool IsFinite(const ImuSample& s) {
   const double w = s.w_IT_T.x() + s.w_IT_T.y() + (s.has_gz ? s.w_IT_T.z() : 0);
@@ -79,39 +41,7 @@ bool Follows(const SampleStamp& before, const SampleStamp& next, bool& breaks, s
   return true;
 }
 
-void CheckPositive(const char* name, double value) {
-  if (value > 0 && std::isfinite(value)) return;
-  throw std::invalid_argument(std::string("TrackerOptions.") + name + " must be positive, is " +
-                              std::to_string(value));
-}
-
-void CheckNotNegative(const char* name, double value) {
-  if (value >= 0 && std::isfinite(value)) return;
-  throw std::invalid_argument(std::string("TrackerOptions.") + name + " must not be negative, is " +
-                              std::to_string(value));
-}
-
 }  // namespace
-
-HighSideTracker::HighSideTracker(const TrackerOptions& options)
-    : options_(options), roll_(options.toolface_seconds) {
-  CheckNotNegative("accel_noise", options.accel_noise);
-  CheckNotNegative("angle_random_walk", options.angle_random_walk);
-  CheckPositive("level_seconds", options.level_seconds);
-  CheckPositive("acceleration_doubt", options.acceleration_doubt);
-  CheckPositive("inclination_min", options.inclination_min);
-  CheckPositive("sigma_toolface_max", options.sigma_toolface_max);
-  CheckPositive("roll_limit", options.roll_limit);
-  CheckPositive("toolface_seconds", options.toolface_seconds);
-  CheckPositive("roll_rate_seconds", options.roll_rate_seconds);
-  CheckNotNegative("unseen_dogleg", options.unseen_dogleg);
-  CheckNotNegative("unseen_rate", options.unseen_rate);
-  CheckPositive("unseen_seconds", options.unseen_seconds);
-  if (!options.p_accel_T.allFinite()) {
-    throw std::invalid_argument("TrackerOptions.p_accel_T is not finite");
-  }
-  off_axis_ = !options.p_accel_T.head<2>().isZero(0);
-}
 
 void HighSideTracker::SetAzimuth(std::optional<double> azimuth) {
   const bool was_set = cos_azimuth_ != 0 || sin_azimuth_ != 0;
@@ -371,34 +301,6 @@ inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
   all_vertical_ = all_vertical_ && vertical;
   cut_ = 0;
   ready_ = true;
-}
-
-// How far the hole may have turned in the gap between two samples.
-double HighSideTracker::UnseenBetween(const Seen& before, const Seen& next) const {
-  const double seconds = 1e-9 * static_cast<double>(next.gap_ns);
-  if (!before.along.known || !next.along.known) return options_.unseen_rate * seconds;
-  const double apart = seconds + 0.5 * (before.dt + next.dt);
-  return options_.unseen_dogleg * std::abs(next.along.md - before.along.md) * seconds / apart;
-}
-
-// A rate at full scale may be as much again, and as much more as the hole may turn.
-double HighSideTracker::UnseenIn(const Seen& s) const {
-  const double hole = s.along.known ? options_.unseen_dogleg * std::abs(s.along.speed) * s.dt
-                                    : options_.unseen_rate * s.dt;
-  return std::max(hole, std::hypot(s.vh, s.vr));
-}
-
-void HighSideTracker::AddUnseen(const AlongHole& along, double angle, double variance) {
-  CloseBlock(along);
-  observed_.noise.Widen(variance);
-  unseen_ += angle;
-  unseen_here_ += angle;
-  var_unseen_ += variance;
-  // The line fitted to the level is worth no more than what that may have changed it by.
-  const double noise = options_.accel_noise * inverse_gravity_;
-  if (variance > 0) {
-    memory_.Shorten(4 * noise * noise / (4 * noise * noise + variance * memory_.seconds));
-  }
 }
 
 // Slopes across the waiting sample, central where it has both neighbours.
