@@ -47,7 +47,7 @@ truth::Path Bend(Random& random) {
 TrackerOptions Options() {
   TrackerOptions options;
   options.accel_noise = kAccelNoise;
-  options.unseen_dogleg = kDogleg;
+  options.unseen.dogleg = kDogleg;
   return options;
 }
 

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <iterator>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/fit/run_adjustment.h"
+#include "wellgyro/math/random.h"
 
 #include "support/claims.h"
 #include "support/hour.h"
@@ -25,6 +28,7 @@ struct Well {
   const char* name;
   double begin_deg, vertical_m, build_deg;  ///< builds by .02 deg/m below the first part
   double rpm, swing_deg, period;            ///< of the roll, period in s
+  double lost = 0;                          ///< of the messages of two seconds
 };
 
 constexpr Well kWells[] = {
@@ -35,6 +39,7 @@ constexpr Well kWells[] = {
     {"0.3 deg, roll that swings", 0.3, 600, 0, 0.3, 30, 15},
     {"0.05 deg, then 0.5, roll that swings", 0.05, 300, 0.45, 0.3, 30, 15},
     {"0.3 deg, then 10, 3 rpm", 0.3, 100, 9.7, 3, 0, 15},
+    {"0.2 deg, 3 rpm, 3 % lost", 0.2, 600, 0, 3, 0, 15, 0.03},
 };
 constexpr double kBelow = 400;  // [m]
 
@@ -63,6 +68,19 @@ Simulation SimulationOf(const Well& well, const testing::Hour& tool, std::uint64
   return s;
 }
 
+/// Of a log whose messages are lost, once the tool is on its way: a stop that is cut into pieces
+/// too short to find north is another matter.
+testing::Arrives Losing(double lost, std::uint64_t seed) {
+  return [random = Random(900 + seed), lost, message = std::int64_t{0},
+          arrives = true](SimulatedStep& step) mutable {
+    const auto* sample = std::get_if<ImuSample>(&step);
+    if (!sample || sample->stamp.seq < 2000) return true;
+    const std::int64_t of = sample->stamp.seq / 20;
+    if (of != std::exchange(message, of)) arrives = random.Uniform() >= lost;
+    return arrives;
+  };
+}
+
 class NearVertical : public ::testing::TestWithParam<Well> {};
 
 TEST_P(NearVertical, IsAsSureAsItSays) {
@@ -78,7 +96,8 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
   for (int seed = 1; seed <= seeds; ++seed) {
     const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));
     testing::CollectingSink sink;
-    const Survey survey = testing::SurveyOf(simulation, testing::JobOf(tool), sink, {}, &adjuster);
+    const Survey survey = testing::SurveyOf(simulation, testing::JobOf(tool), sink,
+                                            Losing(well.lost, simulation.seed), &adjuster);
     const Truth truth(simulation);
     const Eigen::Vector3d start = truth.well().PlaceAt(5).p_WT_W;
     for (const Station& s : survey.chosen) {

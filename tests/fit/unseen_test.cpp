@@ -42,7 +42,7 @@ Simulation HoleOf(std::uint64_t seed, double bend_begin, double bend_end) {
     return AngleTerm{.begin_md = bend_begin,
                      .end_md = bend_end,
                      .ramp = 2,
-                     .rate = TrackerOptions().unseen_dogleg * random.Normal() / per};
+                     .rate = UnseenHole().dogleg * random.Normal() / per};
   };
   s.well.inclination = {FromDegrees(45), {bend(1)}};
   s.well.azimuth = {FromDegrees(40), {bend(std::sin(FromDegrees(45)))}};
@@ -112,8 +112,7 @@ TEST_P(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
       EXPECT_EQ(Has(s.quality, Quality::kGap), s.md == 50 || s.md == 60) << s.md;
     }
     // There it is not better known than by half of what the hole may bend.
-    EXPECT_GT(std::sqrt(survey.chosen[5].cov_md_inc_azi(1, 1)),
-              0.4 * 12.5 * TrackerOptions().unseen_dogleg);
+    EXPECT_GT(std::sqrt(survey.chosen[5].cov_md_inc_azi(1, 1)), 0.4 * 12.5 * UnseenHole().dogleg);
   }
   EXPECT_LT(squares.inclination[50], ChiSquareQuantile(0.9995, kSeeds));
   EXPECT_LT(squares.azimuth[50], ChiSquareQuantile(0.9995, kSeeds));

@@ -217,7 +217,8 @@ inline void HighSideTracker::Prepare(const ImuSample& sample, const AlongHole& a
   s.across = std::max(0.0, across - v * s.e_r);
   s.vh = (wx * s.ux - wy * s.uy) * dt;
   s.vr = (wx * s.uy + wy * s.ux) * dt;
-  s.unseen = Has(s.quality, Quality::kSaturated) ? UnseenIn(s) : 0;
+  const bool saturated = Has(s.quality, Quality::kSaturated);
+  s.unseen = saturated ? options_.unseen.Beyond(along, std::hypot(s.vh, s.vr), dt) : 0;
 }
 
 // Inclinations are counted from a reference near by whose sine and cosine are exact, so that the
@@ -290,7 +291,7 @@ inline void HighSideTracker::AddSample(const Seen& s, bool vertical) {
   ns_ += s.stamp.period_ns;
   quality_ |= sample_quality_;
   if (s.stamp.accel_saturated) level_ = false;
-  if (unseen_ > 0) unseen_ -= unseen_ * s.dt / options_.unseen_seconds;
+  unseen_.Pass(s.dt, options_.unseen.seconds);
   if (gap) {
     ns_ += s.gap_ns;
     gap_ns_ += s.gap_ns;
@@ -332,7 +333,7 @@ inline void HighSideTracker::SumUp(const Seen& s, const Seen* next) {
   constexpr bool kThird = kOrder == TrackerOptions::kThird;
   const Slopes slopes = Across<kOrder>(s, next);
   if (s.unseen_before > 0) AddUnseen(s.along, s.unseen_before, s.var_unseen_before);
-  if (s.unseen > 0) AddUnseen(s.along, s.unseen, VarUnseen(s.unseen));
+  if (s.unseen > 0) AddUnseen(s.along, s.unseen, unseen_.VarOf(s.unseen));
   // By the turn since the sample before, where second order will do: the square of a difference
   // from c1 is of third, and the rest does not wait for the next sample's phase.
   const double turned = kThird || !has_before_ ? slopes.c1 : delta_in_;
@@ -403,8 +404,10 @@ bool HighSideTracker::Push(const ImuSample& sample, const AlongHole& along, cons
   next.unseen_before = next.var_unseen_before = 0;
   gap_cut_ns_ = 0;
   if (gap_ns > 0) {
-    next.unseen_before = UnseenBetween(now, next);
-    next.var_unseen_before = VarUnseen(next.unseen_before);
+    const double seconds = 1e-9 * static_cast<double>(gap_ns);
+    next.unseen_before =
+        options_.unseen.Between(now.along, next.along, seconds, seconds + 0.5 * (now.dt + next.dt));
+    next.var_unseen_before = unseen_.VarOf(next.unseen_before);
   }
 
   if (waiting_) Integrate(now, &next);

@@ -9,6 +9,7 @@
 
 #include "wellgyro/attitude/level_noise.h"
 #include "wellgyro/attitude/roll_observer.h"
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -41,10 +42,7 @@ struct TrackerOptions {
   Eigen::Vector3d p_accel_T = Eigen::Vector3d::Zero();
   double toolface_seconds = 2;     ///< over which they correct the third gyro's toolface [s]
   double roll_rate_seconds = 0.1;  ///< smoothing of the roll rate that the lever arm needs [s]
-  /// How much the hole may bend unseen: 1-sigma dogleg where the depth is known [rad/m], 1-sigma
-  /// transverse rate where it is not [rad/s]; and for how long it goes on so [s].
-  double unseen_dogleg = 1.7e-3, unseen_rate = 1.7e-3;
-  double unseen_seconds = 100;
+  UnseenHole unseen;
 };
 
 /// Follows the high side of a moving tool sample by sample and sums into Knots what two transverse
@@ -178,9 +176,6 @@ class WELLGYRO_EXPORT HighSideTracker {
     double seconds, cot, csc, cs, sn, vh, vr, roll, spin, trust;
   };
 
-  double UnseenBetween(const Seen& before, const Seen& next) const;
-  double UnseenIn(const Seen& s) const;
-  double VarUnseen(double angle) const { return angle * (2 * unseen_ + angle); }
   void AddUnseen(const AlongHole& along, double angle, double variance);
   void TakeSite(const Site& site, std::int32_t period_ns);
   void TakeFirst(const ImuSample& sample);
@@ -256,7 +251,8 @@ class WELLGYRO_EXPORT HighSideTracker {
   Observed observed_;
   Errors errors_, given_;
   // What was not seen of the hole's turning: as it goes on, in the interval.
-  double unseen_ = 0, unseen_here_ = 0, var_unseen_ = 0, unseen_roll_ = 0;
+  UnseenTurn unseen_;
+  double unseen_here_ = 0, var_unseen_ = 0, unseen_roll_ = 0;
   std::int64_t gap_cut_ns_ = 0;
   bool level_ = true;
   // The open interval, without the open block.

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -8,25 +6,10 @@
 
 namespace wellgyro {
 
-// How far the hole may have turned in the gap between two samples.
-double HighSideTracker::UnseenBetween(const Seen& before, const Seen& next) const {
-  const double seconds = 1e-9 * static_cast<double>(next.gap_ns);
-  if (!before.along.known || !next.along.known) return options_.unseen_rate * seconds;
-  const double apart = seconds + 0.5 * (before.dt + next.dt);
-  return options_.unseen_dogleg * std::abs(next.along.md - before.along.md) * seconds / apart;
-}
-
-// A rate at full scale may be as much again, and as much more as the hole may turn.
-double HighSideTracker::UnseenIn(const Seen& s) const {
-  const double hole = s.along.known ? options_.unseen_dogleg * std::abs(s.along.speed) * s.dt
-                                    : options_.unseen_rate * s.dt;
-  return std::max(hole, std::hypot(s.vh, s.vr));
-}
-
 void HighSideTracker::AddUnseen(const AlongHole& along, double angle, double variance) {
   CloseBlock(along);
   observed_.noise.Widen(variance);
-  unseen_ += angle;
+  unseen_.Add(angle);
   unseen_here_ += angle;
   var_unseen_ += variance;
   // The line fitted to the level is worth no more than what that may have changed it by.

@@ -32,9 +32,9 @@ HighSideTracker::HighSideTracker(const TrackerOptions& options)
   CheckPositive("roll_limit", options.roll_limit);
   CheckPositive("toolface_seconds", options.toolface_seconds);
   CheckPositive("roll_rate_seconds", options.roll_rate_seconds);
-  CheckNotNegative("unseen_dogleg", options.unseen_dogleg);
-  CheckNotNegative("unseen_rate", options.unseen_rate);
-  CheckPositive("unseen_seconds", options.unseen_seconds);
+  CheckNotNegative("unseen.dogleg", options.unseen.dogleg);
+  CheckNotNegative("unseen.rate", options.unseen.rate);
+  CheckPositive("unseen.seconds", options.unseen.seconds);
   if (!options.p_accel_T.allFinite()) {
     throw std::invalid_argument("TrackerOptions.p_accel_T is not finite");
   }

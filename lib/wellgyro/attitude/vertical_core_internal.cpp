@@ -22,6 +22,7 @@ constexpr double kAxialFirst = 0.5;     // what a tool may turn at when the filt
 constexpr double kBiasLeast = 1e-9;     // of a measured rate about z [rad/s]
 constexpr double kLostVariance = 0.25;  // of the heading [rad^2]
 constexpr double kLinearVariance = 0.01;  // of it too
+constexpr double kLinearTurn = 0.03;      // of the turn about the axis in a gap [rad^2]
 constexpr double kRateSeconds = 10;       // over which the Earth's unknown rate would be one [s]
 constexpr double kSure = 3;               // sigmas at which what is seen is no error
 constexpr double kTiltFirst = 0.03;       // before the first force is taken [rad]
@@ -50,6 +51,16 @@ Matrix3d Exp(const Vector3d& v) {
 double InverseSinc(double x) {
   const double half = x / 2;
   return std::abs(half) < 1e-3 ? 1 + half * half / 6 : half / std::sin(half);
+}
+
+// The rate about z turns the attitude about `z`, and walks.
+void AddAxial(double seconds, const Vector3d& z, double walk, Covariance* phi, Covariance* added) {
+  const double T = seconds;
+  phi->block<3, 1>(kTurn, kAxial) = T * z;
+  added->topLeftCorner<3, 3>() += walk * T * T * T / 3 * (z * z.transpose());
+  added->block<3, 1>(kTurn, kAxial) = walk * T * T / 2 * z;
+  added->block<1, 3>(kAxial, kTurn) = added->block<3, 1>(kTurn, kAxial).transpose();
+  (*added)(kAxial, kAxial) = walk * T;
 }
 
 // Rounding of thousands of products, once a block.
@@ -159,6 +170,13 @@ double Core::Seen() const {
   return sine2 > var ? std::sqrt(1 - var / sine2) : 0;
 }
 
+// A turn about it turns the attitude so, as far as gravity shows that.
+Vector3d Core::Axis() const {
+  Vector3d z = R_.col(2);
+  z.head<2>() *= Seen();
+  return z;
+}
+
 // The heading has become so uncertain that nothing which turns with it is linear any more.
 bool Core::Lost() const { return cov_noise_(2, 2) > kLostVariance; }
 
@@ -173,18 +191,13 @@ void Core::Carry(const Noise& noise) {
   phi.topLeftCorner<3, 3>() -= Skew(w_IL_L_);
   Vector3d z = R.col(2);
   z.head<2>() *= Seen();
-  phi.block<3, 1>(kTurn, kAxial) = T * z;
   phi.block<3, 2>(kTurn, kGyro) = -T * R.leftCols<2>();
 
   Covariance added = Covariance::Zero();
   const Matrix3d along = z * z.transpose();
   const double white = Square(noise.rate) * T;
   added.topLeftCorner<3, 3>() = white * (Matrix3d::Identity() - (has_gz_ ? 0 : 1) * along);
-  const double walk = Square(has_gz_ ? noise.bias_walk : noise.axial_walk);
-  added.topLeftCorner<3, 3>() += walk * T * T * T / 3 * along;
-  added.block<3, 1>(kTurn, kAxial) = walk * T * T / 2 * z;
-  added.block<1, 3>(kAxial, kTurn) = added.block<3, 1>(kTurn, kAxial).transpose();
-  added(kAxial, kAxial) = walk * T;
+  AddAxial(T, z, Square(has_gz_ ? noise.bias_walk : noise.axial_walk), &phi, &added);
   // A heading that is wrong turns the Earth's rate. That shows the heading, but falsely as soon as
   // it is no longer linear: then it only counts as noise.
   if (!heading_feeds_back()) {
@@ -295,6 +308,17 @@ void Core::Hold(double sigma) {
   sources_ = (left * sources_).eval();
 }
 
+void Core::TakeThird(bool has_gz, double sigma) {
+  axial_ = has_gz ? 0 : last_rate_.z();
+  has_gz_ = has_gz;
+  for (Covariance* cov : {&cov_, &cov_noise_}) {
+    cov->row(kAxial).setZero();
+    cov->col(kAxial).setZero();
+    (*cov)(kAxial, kAxial) = Square(sigma);
+  }
+  sources_.row(kAxial).setZero();
+}
+
 void Core::Release() {
   if (has_gz_) return;
   cov_(kAxial, kAxial) += Square(kAxialFirst);
@@ -303,13 +327,43 @@ void Core::Release() {
 
 Matrix3d Core::Before(double seconds) const { return R_ * Exp(-seconds * last_rate_); }
 
-void Core::Widen(double seconds, double sigma_tilt, double sigma_axial) {
+void Core::Bridge(const Gap& gap) {
+  const double T = gap.seconds, begin = has_gz_ ? last_rate_.z() : axial_;
+  const double end = gap.axial_end ? *gap.axial_end + axial_ : begin;
+  double turned = ((begin + end) / 2 - R_.col(2).dot(w_IL_)) * T;
+  // A walk between two ends that are known strays half as far as one from a known begin.
+  const double walk = Square(gap.axial_walk);
+  const double strayed = walk * T * T * T / (has_gz_ && gap.axial_end ? 12 : 3);
+  const double var_turned = T * T * cov_(kAxial, kAxial) + strayed;
+  Vector3d about = Axis();
+  double var_heading = 0;
+  if (gap.toolface_end && var_turned > kLinearTurn) {
+    // Too far to be linear: gravity shows the toolface, and the hole keeps its azimuth as far as it
+    // does not bend; or else all is lost that turns with the tool.
+    const double var_bent = (gap.var_across + cov_(0, 0) + cov_(1, 1)) /
+                            std::max(R_.col(2).head<2>().squaredNorm(), Square(kSineLeast));
+    if (var_bent < var_turned) {
+      const double toolface = std::atan2(R_(2, 1), -R_(2, 0));
+      turned += WrapPi(*gap.toolface_end - toolface - turned);
+    }
+    var_heading = std::min(var_bent, var_turned);
+    about.setZero();
+  }
+  R_ = (R_ * RotationZ(turned)).eval();
+  Covariance phi = Covariance::Identity(), added = Covariance::Zero();
+  AddAxial(T, about, has_gz_ ? 0 : walk, &phi, &added);
+  if (has_gz_) added.topLeftCorner<3, 3>() += strayed * (about * about.transpose());
+  added(2, 2) += var_heading;
+  for (Covariance* cov : {&cov_, &cov_noise_}) *cov = phi * *cov * phi.transpose() + added;
+  sources_ = (phi * sources_).eval();
+  Widen(gap.var_across, 0);
+}
+
+void Core::Widen(double var_across, double var_about) {
+  const Vector3d z = Axis();
   for (Covariance* cov : {&cov_, &cov_noise_}) {
-    (*cov)(0, 0) += Square(sigma_tilt);
-    (*cov)(1, 1) += Square(sigma_tilt);
-    // Over the gap the rate stood anywhere between its two ends.
-    (*cov)(2, 2) += Square(sigma_axial * seconds);
-    if (!has_gz_) (*cov)(kAxial, kAxial) += Square(sigma_axial);
+    cov->topLeftCorner<3, 3>() += var_about * z * z.transpose();
+    cov->topLeftCorner<2, 2>().diagonal().array() += var_across;
   }
 }
 

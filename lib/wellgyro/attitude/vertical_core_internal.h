@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "wellgyro/earth/earth.h"
@@ -56,6 +58,15 @@ struct Noise {
   double skewed = 0;      ///< rate about z seen by x and y, and scale of a measured z [rad], [1]
 };
 
+/// Time without samples.
+struct Gap {
+  double seconds = 0;
+  double var_across = 0;               ///< of the axis by its end, each way [rad^2]
+  double axial_walk = 0;               ///< of the rate about z in it [rad/s/sqrt(s)]
+  std::optional<double> axial_end;     ///< that rate behind it, where measured [rad/s]
+  std::optional<double> toolface_end;  ///< as the accelerometers show it behind it [rad]
+};
+
 /// One filter with one walk of the axial rate.
 class Core {
  public:
@@ -66,13 +77,18 @@ class Core {
   /// Ends the block: carries the covariance over it and takes its mean force. Returns the
   /// logarithm of the likelihood.
   double Close(const Noise& noise);
-  /// Time without samples: what the tool did in it is unknown.
-  void Widen(double seconds, double sigma_tilt, double sigma_axial);
+  /// Time without samples, which begins here: the axis stays, the tool turns on about it.
+  void Bridge(const Gap& gap);
+  /// What nothing told: of the axis each way, and of the turn about it [rad^2].
+  void Widen(double var_across, double var_about);
   void SetHeading(double azimuth, double variance);
   /// From here on errors of the sum of azimuth and toolface are counted.
   void CountSum();
   /// The tool does not turn about its axis; of the axial rate to `sigma` [rad/s].
   void Hold(double sigma);
+  /// From here on the rate about the axis is measured, or no longer; what then stands in its place
+  /// is known to `sigma` [rad/s].
+  void TakeThird(bool has_gz, double sigma);
   /// It may turn about its axis as never before.
   void Release();
   /// The attitude so long before the end of the last sample.
@@ -84,6 +100,7 @@ class Core {
   bool heading_feeds_back() const;
   bool has_gz() const { return has_gz_; }
   double block_seconds() const { return seconds_; }
+  double block_spin() const { return spin_; }  ///< about the axis, in these [rad]
   const Covariance& cov() const { return cov_; }
   /// Of the noise alone, and what the tool's constant errors and the Earth's rate do.
   const Covariance& cov_noise() const { return cov_noise_; }
@@ -94,6 +111,7 @@ class Core {
   double Take(const Noise& noise);
   bool Lost() const;
   double Seen() const;
+  Eigen::Vector3d Axis() const;
 
   Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity();
   double axial_ = 0;

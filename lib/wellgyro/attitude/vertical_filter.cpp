@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/attitude/roll_walk_internal.h"
 #include "wellgyro/attitude/vertical_core_internal.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
@@ -21,17 +22,14 @@ namespace wellgyro {
 namespace {
 
 using vertical::Core;
+using vertical::Gap;
+using vertical::kWalks;
 using vertical::Noise;
+using vertical::RollWalk;
 using vertical::SensedOf;
 
-constexpr std::array<double, 5> kWalks = {1e-5, 1e-4, 1e-3, 1e-2, 1e-1};  // [rad/s/sqrt(s)]
-// Before anything is known of how the tool rolls, and again so long after [s].
-constexpr std::array<double, 5> kFirstWeights = {0.01, 0.01, 0.03, 0.15, 0.8};
-constexpr double kForget = 600;
 constexpr double kHeld = 1e-5;  // of the axial rate at rest [rad/s]
 constexpr double kBlockSeconds = 0.2;
-constexpr double kLeastWeight = 1e-4;
-constexpr double kPatience = 3;   // that long without weight, then start again from the best [s]
 constexpr double kByNoise = 500;  // [sqrt(Hz)], see the header
 constexpr double kByBias = 50;
 constexpr double kSineLeast = 2e-3;
@@ -41,6 +39,8 @@ constexpr double kRun = 6, kStop = 7;
 constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
 constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
 constexpr double kLeastKept = 1;        // of an error of azimuth, by the Earth's rate
+constexpr double kBack = 0.5;           // so much left of what a gap cost, the rest is given back,
+constexpr double kWorthBack = 0.1;      // where it was so much of what is held
 constexpr double kMemory = 10;          // of a rate in what the filter holds [s]
 constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
 
@@ -64,6 +64,13 @@ struct Uncertain {
 struct Cut {
   double azimuth = 0, inclination = 0, toolface = 0;
   Uncertain in_azimuth, in_inclination, in_toolface, in_sum;
+};
+
+// Variance given to the knots since errors of the sum are counted, and before the last gap [rad^2].
+struct Counted {
+  double var = 0, before_gap = 0;
+  int knots = 0, since_gap = -1;  // none yet
+  bool in_gap = false;
 };
 
 Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
@@ -96,7 +103,12 @@ struct VerticalFilter::Impl {
   bool StartsAt(const ImuSample& sample) const;
   void Start(const ImuSample& sample, const AlongHole& along, const Site& site);
   void Close();
-  void Weigh(const std::array<double, kWalks.size()>& likelihood, double seconds);
+  void CloseBank(double seconds);
+  void CloseThird(double seconds);
+  void TakeThird(bool has_gz);
+  vertical::Gap GapOf(double seconds) const;
+  void Bridge(const ImuSample& next, const AlongHole& next_along, double seconds);
+  void AddUnseen(const ImuSample& sample, const AlongHole& now);
   Noise NoiseOf(double axial_walk) const;
   Eigen::Matrix3d CovTurn() const;
   void SetHeading(double azimuth, double variance);
@@ -104,28 +116,30 @@ struct VerticalFilter::Impl {
   double FillTurn(const Cut& now, const Uncertain& held, Knot& knot) const;
   double VarOfTurning(const Knot& knot) const;
   double VarOf(const Uncertain& angle) const;
-  void Widen(double seconds, Core* core) const;
+  void Count(double held, double kept, bool is_axial, Knot& knot);
   void Fill(const Cut& now, bool axial, Knot& knot);
   void FloorAtAccelerometers(Knot& knot) const;
   void CountSum();
 
   VerticalSetup setup;
   Noise noise;
-  double bias_sigma = 0, walk = 0;
+  double bias_sigma = 0;
   double sine_of_two = kSineLeast, sine_enter = kSineLeast;  // with two gyro axes; now
   Eigen::Vector2d north = Eigen::Vector2d::Zero();  // from the filter's zero; zero: unknown
   double zero = 0;                                  // true azimuth of it
   double latitude = 0;
   // The stretch near vertical.
   bool axial = false, linked = false, cut_before = false;
-  Cut last;            // at the knot before
-  double counted = 0;  // variance given to the knots since errors of the sum are counted [rad^2]
-  int counted_knots = 0;
+  Cut last;  // at the knot before
+  Counted counted;
   Knot::SourceVector source_sigma;
   Core main;
   std::array<Core, kWalks.size()> bank;
-  std::array<double, kWalks.size()> weight{};
-  std::array<double, kWalks.size()> idle{};  // how long without weight [s]
+  RollWalk walk;
+  std::optional<double> rate_before;  // about the axis where measured, in the block before [rad/s]
+  UnseenTurn unseen_across, unseen_about;  // of the axis, and about it
+  AlongHole last_along;                    // of the last sample
+  double dt = 0;                           // its period [s]
   bool started = false, ready = false;
   bool lost = false;   // of the sum nothing is left, and gravity has not shown the toolface since
   bool found = false;  // now it does: with the next sample all begins anew
@@ -178,17 +192,18 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
   const Eigen::Matrix3d R_LT =
       AttitudeMatrix(0, std::atan2(std::hypot(f.x(), f.y()), -f.z()), std::atan2(-f.y(), f.x()));
   latitude = site.latitude;
+  sine_enter = sample.has_gz ? kSineByThird : sine_of_two;
   main.Start(SensedOf(sample, along, site, north, R_LT), R_LT, setup.errors, bias_sigma);
   bank.fill(main);
-  weight = kFirstWeights;
-  idle.fill(0);
+  walk.Reset();
+  rate_before.reset();
   last = Cut();
   last.toolface = std::atan2(-f.y(), f.x());
   last.inclination = std::atan2(std::hypot(f.x(), f.y()), -f.z());
-  counted = 0;
-  counted_knots = 0;
+  counted = Counted();
   linked = !cut_before;
   axial = std::sin(last.inclination) < sine_enter && f.z() < 0;
+  unseen_across = unseen_about = UnseenTurn();
   started = true;
   ready = lost = found = false;
 }
@@ -203,15 +218,48 @@ void VerticalFilter::Impl::SetHeading(double azimuth, double variance) {
   main.SetHeading(azimuth, variance);
 }
 
-// Samples are missing.
-void VerticalFilter::Impl::Widen(double seconds, Core* core) const {
-  core->Widen(seconds, setup.gap_rate * seconds, 0.1);
+// Samples are missing, and how deep the tool was behind them is not known yet.
+Gap VerticalFilter::Impl::GapOf(double seconds) const {
+  AlongHole behind = last_along;
+  behind.md += last_along.speed * seconds;
+  const double turned = setup.unseen.Between(last_along, behind, seconds, seconds);
+  return {seconds, unseen_across.VarOf(turned), walk.Over(seconds), std::nullopt, std::nullopt};
+}
+
+void VerticalFilter::Impl::Bridge(const ImuSample& next, const AlongHole& next_along,
+                                  double seconds) {
+  Close();
+  Gap gap = GapOf(seconds);
+  const double apart = seconds + (dt + 1e-9 * next.stamp.period_ns) / 2;
+  const double turned = setup.unseen.Between(last_along, next_along, seconds, apart);
+  gap.var_across = unseen_across.VarOf(turned);
+  if (next.has_gz) gap.axial_end = next.w_IT_T.z();
+  if (!next.stamp.accel_saturated) gap.toolface_end = std::atan2(-next.f_T.y(), next.f_T.x());
+  main.Bridge(gap);
+  for (Core& core : bank) core.Bridge(gap);
+  rate_before.reset();
+  unseen_across.Add(turned);
+  walk.Pass(seconds);
+}
+
+// A gyro stands at full scale, and which is not said.
+void VerticalFilter::Impl::AddUnseen(const ImuSample& sample, const AlongHole& now) {
+  unseen_across.Pass(dt, setup.unseen.seconds);
+  unseen_about.Pass(dt, setup.unseen.seconds);
+  if (!sample.stamp.gyro_saturated) return;
+  const double turned = setup.unseen.Beyond(now, dt * sample.w_IT_T.head<2>().norm(), dt);
+  const double rolled = sample.has_gz ? dt * std::abs(sample.w_IT_T.z()) : 0;
+  const double var_across = unseen_across.VarOf(turned), var_about = unseen_about.VarOf(rolled);
+  main.Widen(var_across, var_about);
+  for (Core& core : bank) core.Widen(var_across, var_about);
+  unseen_across.Add(turned);
+  unseen_about.Add(rolled);
 }
 
 Cut VerticalFilter::Impl::CutAt(double rest) const {
   Core core = main;
-  core.Close(NoiseOf(walk));
-  if (rest < 0) Widen(-rest, &core);
+  core.Close(NoiseOf(walk.mean()));
+  if (rest < 0) core.Bridge(GapOf(-rest));
   return CutOf(core, core.Before(std::max(rest, 0.0)));
 }
 
@@ -220,8 +268,7 @@ void VerticalFilter::Impl::CountSum() {
   main.CountSum();
   for (Core& core : bank) core.CountSum();
   last.in_sum.d.setZero();
-  counted = 0;
-  counted_knots = 0;
+  counted = Counted();
 }
 
 // With north unknown, what the filter counts from turns by all that the Earth's rate does to the
@@ -260,8 +307,33 @@ void VerticalFilter::Impl::FloorAtAccelerometers(Knot& knot) const {
   const double bias = setup.errors.accel_bias_sigma;
   const auto d = knot.d_inclination.segment<2>(static_cast<int>(Knot::kAccelBiasX));
   const double missing = 1 / (units::kStandardGravity * units::kStandardGravity) - d.squaredNorm();
-  if (missing > 0)
+  if (missing > 0) {
     knot.sigma_inclination = std::hypot(knot.sigma_inclination, bias * std::sqrt(missing));
+  }
+}
+
+// What the sum's variance grew by is the knot's. What turns out not to have been lost is given
+// back: as gravity shows behind a gap how the tool rolled in it, and where the stretch ends.
+void VerticalFilter::Impl::Count(double held, double kept, bool is_axial, Knot& knot) {
+  Counted& c = counted;
+  c.var *= kept * kept;
+  c.before_gap *= kept * kept;
+  const bool gap = knot.gap_seconds > 0;
+  if (gap && !c.in_gap) c.before_gap = c.var, c.since_gap = 0;
+  c.in_gap = gap;
+  knot.toolface_noise_turn = std::max(0.0, held - c.var);
+  c.var += knot.toolface_noise_turn;
+  const double of_gap = c.var - c.before_gap, left = std::max(held - c.before_gap, 0.0);
+  if (!is_axial && held < c.var) {
+    knot.axial_noise_share = held / c.var;
+    knot.axial_noise_knots = c.knots;
+  } else if (c.since_gap > 0 && of_gap > kWorthBack * held && left < kBack * of_gap) {
+    knot.axial_noise_share = left / of_gap;
+    knot.axial_noise_knots = c.since_gap;
+    c.var = c.before_gap + left;
+  }
+  ++c.knots;
+  if (c.since_gap >= 0) ++c.since_gap;
 }
 
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
@@ -270,16 +342,8 @@ void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
   const double kept = 1 + FillTurn(now, held, knot);
   knot.d_turn = held.by_sources() - kept * last.in_sum.by_sources();
   knot.white_turn = 0;
-  counted *= kept * kept;
-  const double turning = VarOfTurning(knot);
-  knot.toolface_noise_turn = std::max(0.0, held.var - counted);
-  counted += knot.toolface_noise_turn;
-  if (!is_axial && held.var < counted) {
-    knot.axial_noise_share = held.var / counted;
-    knot.axial_noise_knots = counted_knots;
-  }
-  ++counted_knots;
-  knot.toolface_noise_turn += turning;
+  Count(held.var, kept, is_axial, knot);
+  knot.toolface_noise_turn += VarOfTurning(knot);
   knot.roll = WrapPi(now.toolface - last.toolface);
   knot.cot = 0;
   knot.vertical = !linked;
@@ -298,7 +362,7 @@ void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
     knot.d_toolface = now.in_toolface.by_sources();
     knot.var_toolface = VarOf(now.in_toolface);
     knot.var_azimuth_beyond =
-        now.in_azimuth.var - counted + knot.var_toolface - now.in_toolface.var;
+        now.in_azimuth.var - counted.var + knot.var_toolface - now.in_toolface.var;
   }
   const Knot::SourceVector d_toolface = now.in_toolface.by_sources();
   const double vague = VarOf(now.in_toolface) + d_toolface.cwiseProduct(source_sigma).squaredNorm();
@@ -311,43 +375,52 @@ void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
   linked = true;
 }
 
-void VerticalFilter::Impl::Weigh(const std::array<double, kWalks.size()>& likelihood,
-                                 double seconds) {
-  const double best = *std::max_element(likelihood.begin(), likelihood.end());
-  double sum = 0;
+void VerticalFilter::Impl::CloseBank(double seconds) {
+  vertical::PerWalk likelihood;
   for (std::size_t i = 0; i < kWalks.size(); ++i) {
-    weight[i] *= std::exp(likelihood[i] - best);
-    sum += weight[i];
+    likelihood[i] = bank[i].Close(NoiseOf(kWalks[i]));
   }
+  main.Close(NoiseOf(walk.mean()));
+  walk.Weigh(likelihood, seconds);
   for (std::size_t i = 0; i < kWalks.size(); ++i) {
-    const bool without = weight[i] <= kLeastWeight * sum;
-    weight[i] = std::max(weight[i] / sum, kLeastWeight);
-    weight[i] += (kFirstWeights[i] - weight[i]) * seconds / kForget;
-    idle[i] = without ? idle[i] + seconds : 0;
-    if (idle[i] > kPatience) {
-      bank[i] = main;
-      idle[i] = 0;
+    if (walk.TakeIdle(i)) bank[i] = main;
+  }
+}
+
+// Where the rate is measured, so is its walk.
+void VerticalFilter::Impl::CloseThird(double seconds) {
+  if (seconds > 0) {
+    const double rate = main.block_spin() / seconds;
+    if (rate_before) {
+      vertical::PerWalk likelihood;
+      for (std::size_t i = 0; i < kWalks.size(); ++i) {
+        const double var =
+            kWalks[i] * kWalks[i] * seconds * 2 / 3 + 2 * noise.rate * noise.rate / seconds;
+        const double off = rate - *rate_before;
+        likelihood[i] = -0.5 * (off * off / var + std::log(var));
+      }
+      walk.Weigh(likelihood, seconds);
     }
+    rate_before = rate;
   }
+  main.Close(noise);
+}
+
+// The third gyro axis came, or fell away.
+void VerticalFilter::Impl::TakeThird(bool has_gz) {
+  if (main.block_seconds() > 0) Close();
+  main.TakeThird(has_gz, has_gz ? bias_sigma : noise.rate / std::sqrt(dt));
+  bank.fill(main);
+  sine_enter = has_gz ? kSineByThird : sine_of_two;
+  rate_before.reset();
 }
 
 void VerticalFilter::Impl::Close() {
   const double seconds = main.block_seconds();
   if (!main.has_gz()) {
-    std::array<double, kWalks.size()> likelihood;
-    for (std::size_t i = 0; i < kWalks.size(); ++i) {
-      likelihood[i] = bank[i].Close(NoiseOf(kWalks[i]));
-    }
-    double sum = 0, mean = 0;
-    for (std::size_t i = 0; i < kWalks.size(); ++i) {
-      sum += weight[i];
-      mean += weight[i] * std::log(kWalks[i]);
-    }
-    walk = std::exp(mean / sum);
-    main.Close(NoiseOf(walk));
-    Weigh(likelihood, seconds);
+    CloseBank(seconds);
   } else {
-    main.Close(noise);
+    CloseThird(seconds);
   }
   ready = true;
 }
@@ -373,7 +446,6 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
   if (!Wants(sample)) return;
   if (stamp.period_ns <= 0 || !IsFinite(sample)) return;
   if (!m.started) {
-    m.sine_enter = sample.has_gz ? kSineByThird : m.sine_of_two;
     m.Start(sample, along, site);
   } else {
     const double apart = (stamp.tool_time - m.end).seconds(), period = 1e-9 * stamp.period_ns;
@@ -381,17 +453,19 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
     if (stamp.session != m.session || m.found) {
       m.Start(sample, along, site);
     } else if (apart > period / 2) {
-      m.Close();
-      m.Widen(apart, &m.main);
-      for (Core& core : m.bank) m.Widen(apart, &core);
+      m.Bridge(sample, along, apart);
     }
+    if (sample.has_gz != m.main.has_gz()) m.TakeThird(sample.has_gz);
   }
   m.session = stamp.session;
   m.end = stamp.tool_time + Duration{stamp.period_ns};
+  m.last_along = along;
+  m.dt = 1e-9 * stamp.period_ns;
   m.main.Predict(SensedOf(sample, along, site, m.north, m.main.R_LT()));
   if (!sample.has_gz) {
     for (Core& core : m.bank) core.Predict(SensedOf(sample, along, site, m.north, core.R_LT()));
   }
+  m.AddUnseen(sample, along);
   if (m.main.block_seconds() > kBlockSeconds - 1e-9) m.Close();
 }
 
@@ -431,8 +505,7 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
       m.started = m.ready = false;
     } else if (sine < m.sine_enter) {
       m.axial = m.linked = true;
-      m.counted = 0;
-      m.counted_knots = 0;
+      m.counted = Counted();
       m.SetHeading(m.CutAt(0).azimuth, 0);
       now = m.CutAt(rest);
       // What the filter holds there is azimuth, which is taken for free of error.
@@ -454,7 +527,7 @@ void VerticalFilter::Hold() {
   m.main.Hold(kHeld);
   for (Core& core : m.bank) core.Hold(kHeld);
   m.CountSum();
-  m.weight = kFirstWeights;
+  m.walk.Reset();
 }
 
 void VerticalFilter::Release() {
@@ -463,7 +536,7 @@ void VerticalFilter::Release() {
   if (m.main.block_seconds() > 0) m.Close();
   m.main.Release();
   for (Core& core : m.bank) core.Release();
-  m.weight = kFirstWeights;
+  m.walk.Reset();
 }
 
 bool VerticalFilter::running() const { return impl_->started; }

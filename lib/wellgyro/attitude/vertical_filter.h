@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/record/along_hole.h"
@@ -16,7 +17,7 @@ namespace wellgyro {
 struct VerticalSetup {
   NoiseCoefficients gyro;
   ErrorPriors errors;
-  double gap_rate = 1.7e-3;  ///< how fast the axis may turn while samples are missing [rad/s]
+  UnseenHole unseen;
   /// What is given from outside at the begin of a run is the azimuth of the axis, not that of the
   /// reference mark.
   bool start_is_axis = false;
@@ -53,7 +54,9 @@ class WELLGYRO_EXPORT VerticalFilter {
   VerticalFilter& operator=(VerticalFilter&&) noexcept;
 
   /// Takes the next sample; `along` at the middle of it. Samples that are late or not finite are
-  /// left out, time without samples widens the covariance.
+  /// left out. Over time without samples the axis stays and the tool turns on about it as before,
+  /// and the covariance widens by what may have changed; beyond a gyro's full scale by as much
+  /// again.
   void Push(const ImuSample& sample, const AlongHole& along, const Site& site);
 
   /// Whether Push would take this sample next: it runs, or here it would begin to.
