@@ -1,5 +1,6 @@
 #include "wellgyro/bus/feed.h"
 
+#include <limits>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -49,6 +50,21 @@ TEST(Feed, EveryTypeReachesItsListener) {
     EXPECT_EQ(feed.count(sample.type).messages, 1);
     EXPECT_EQ(feed.count(sample.type).bytes, static_cast<std::int64_t>(sample.bytes.size()));
   }
+}
+
+TEST(Feed, ABatchIsHeardLessWhatIsNoNumber) {
+  Heard heard;
+  int accepted = 0;
+  Feed feed({}, heard, [&](auto&&...) { ++accepted; });
+  imu_batch_t m = GeneratedImu(3, true, true);
+  m.ay_mps2[0] = m.mx_t[2] = std::numeric_limits<double>::quiet_NaN();
+  feed.Take(NameOf({}, MessageType::kImuBatch), BytesOf(m), 1000);
+  EXPECT_EQ(heard.calls, (std::vector<std::pair<std::string, std::size_t>>{{"imu", 2}}));
+  EXPECT_EQ(accepted, 1);
+  EXPECT_EQ(feed.count(MessageType::kImuBatch).messages, 1);
+  EXPECT_EQ(feed.malformed(), 1);
+  ASSERT_EQ(heard.faults.size(), 1U);
+  EXPECT_GT(heard.faults[0].offset, 1000);
 }
 
 TEST(Feed, RepeatedFaultsAreHeardTenTimesPerChannelAndCode) {

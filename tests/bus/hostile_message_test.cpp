@@ -175,6 +175,41 @@ TEST(HostileBatch, ThePlaceOfABadNumberIsItsByte) {
   EXPECT_EQ(message.fault().offset, 68 + 3 * 8 + 8);
 }
 
+// 2026-11-21: one such number cost the batch of two seconds, a dead magnetometer the whole survey.
+TEST(HostileBatch, WhatIsNoNumberCostsItsOwnSampleOnly) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const imu_batch_t good = GeneratedImu(5, true, true);
+  std::vector<ImuSample> all, buffer;
+  ASSERT_TRUE(DecodeImuBatch(BytesOf(good), all));
+  const auto same = [](const ImuSample& a, const ImuSample& b) {
+    return a.stamp.seq == b.stamp.seq && a.stamp.tool_time == b.stamp.tool_time && a.f_T == b.f_T &&
+           a.w_IT_T.head<2>() == b.w_IT_T.head<2>();
+  };
+  imu_batch_t m = good;
+  m.gy_rps[1] = nan;
+  m.az_mps2[3] = -std::numeric_limits<double>::infinity();
+  m.gz_rps[0] = nan;
+  m.mz_t[4] = nan;
+  std::optional<Fault> damage;
+  const auto left = DecodeImuBatch(BytesOf(m), buffer, "HERE", &damage);
+  ASSERT_TRUE(left);
+  ASSERT_EQ(left->size(), 3U);
+  for (const std::size_t i : {0, 1, 2}) EXPECT_TRUE(same((*left)[i], all[2 * i])) << i;
+  EXPECT_FALSE((*left)[0].has_gz);
+  EXPECT_EQ((*left)[0].w_IT_T.z(), 0);
+  EXPECT_TRUE((*left)[0].has_mag && (*left)[1].has_gz && (*left)[1].has_mag && (*left)[2].has_gz);
+  EXPECT_EQ((*left)[1].b_T, all[2].b_T);
+  EXPECT_FALSE((*left)[2].has_mag);
+  ASSERT_TRUE(damage);
+  EXPECT_EQ(damage->code, FaultCode::kRange);
+  EXPECT_THAT(damage->text, HasSubstr("gy_rps[1] = nan"));
+  EXPECT_THAT(damage->text, HasSubstr("left out of 5 samples: 2 samples, 1 third rates, 1 fields"));
+  EXPECT_TRUE(DecodeImuBatch(BytesOf(good), buffer, "HERE", &damage));
+  EXPECT_FALSE(damage);
+  for (double& f : m.ax_mps2) f = nan;
+  EXPECT_FALSE(DecodeImuBatch(BytesOf(m), buffer, "HERE", &damage));
+}
+
 TEST(HostileMessage, ChoicesFlagsAndSigmas) {
   depth_t depth = GeneratedDepth();
   depth.source = 5;

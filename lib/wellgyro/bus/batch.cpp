@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -109,6 +111,30 @@ bool ReadArrays(const ImuHead& head, std::span<const std::byte> bytes, ImuSample
   return none == 0;
 }
 
+/// Leaves out of `samples` what is no number. Returns how many samples are left, and
+/// says what was left out.
+std::size_t LeaveOut(std::span<ImuSample> samples, std::string& text) {
+  std::size_t left = 0, gz = 0, mag = 0;
+  for (const ImuSample& from : samples) {
+    if (!from.w_IT_T.head<2>().allFinite() || !from.f_T.allFinite()) continue;
+    ImuSample& sample = samples[left++];
+    sample = from;
+    if (!std::isfinite(sample.w_IT_T.z())) {
+      sample.w_IT_T.z() = 0;
+      sample.has_gz = false;
+      ++gz;
+    }
+    if (!sample.b_T.allFinite()) {
+      sample.b_T.setZero();
+      sample.has_mag = false;
+      ++mag;
+    }
+  }
+  text += fmt::format("; left out of {} samples: {} samples, {} third rates, {} fields",
+                      samples.size(), samples.size() - left, gz, mag);
+  return left;
+}
+
 void ReadCounts(const RawHead& head, std::span<const std::byte> bytes, RawSample* out) {
   const auto n = static_cast<std::size_t>(head.n);
   const auto channels = static_cast<std::size_t>(head.n_channels);
@@ -197,13 +223,19 @@ void RequireFinite(double value, const char* name, std::size_t k) {
 
 Result<std::span<const ImuSample>> DecodeImuBatch(std::span<const std::byte> bytes,
                                                   std::vector<ImuSample>& buffer,
-                                                  std::string_view channel) {
+                                                  std::string_view channel,
+                                                  std::optional<Fault>* damage) {
   const auto head = ReadHead<ImuHead>(MessageType::kImuBatch, bytes, channel);
   if (!head) return head.fault();
-  const auto n = static_cast<std::size_t>(head->n);
+  auto n = static_cast<std::size_t>(head->n);
   if (buffer.size() < n) buffer.resize(n);
+  if (damage != nullptr) damage->reset();
   if (!ReadArrays(*head, bytes, buffer.data())) {
-    return Placed(FirstNotFinite(*head, bytes), MessageType::kImuBatch, channel);
+    Fault fault = FirstNotFinite(*head, bytes);
+    if (damage != nullptr) n = LeaveOut(std::span(buffer).first(n), fault.text);
+    fault = Placed(std::move(fault), MessageType::kImuBatch, channel);
+    if (damage == nullptr || n == 0) return fault;
+    *damage = std::move(fault);
   }
   return std::span<const ImuSample>(buffer.data(), n);
 }

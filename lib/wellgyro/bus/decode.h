@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -24,9 +25,13 @@ WELLGYRO_EXPORT Result<Message> Decode(MessageType expected, std::span<const std
 /// The same for the two frequent types, into `buffer`, which grows at most to N_MAX samples and is
 /// not allocated again after that. The result lies in `buffer`, whose contents a Fault leaves
 /// undefined. Samples are in order of seq; the batch's temperature and status bits go to each.
-WELLGYRO_EXPORT Result<std::span<const ImuSample>> DecodeImuBatch(std::span<const std::byte> bytes,
-                                                                  std::vector<ImuSample>& buffer,
-                                                                  std::string_view channel = {});
+///
+/// With `damage`, what is no number costs its own sample only: one without a rate across or a force
+/// is left out, one without a third rate or a field says that it has none. `damage` then is the
+/// Fault of the first such value and counts them. Where no sample is left, it is the result's.
+WELLGYRO_EXPORT Result<std::span<const ImuSample>> DecodeImuBatch(
+    std::span<const std::byte> bytes, std::vector<ImuSample>& buffer, std::string_view channel = {},
+    std::optional<Fault>* damage = nullptr);
 WELLGYRO_EXPORT Result<std::span<const RawSample>> DecodeRawBatch(std::span<const std::byte> bytes,
                                                                   std::vector<RawSample>& buffer,
                                                                   std::string_view channel = {});

@@ -39,7 +39,7 @@ void Feed::Take(std::string_view channel, std::span<const std::byte> bytes, std:
   const std::optional<MessageType> type = TypeOn(channels_, channel);
   if (!type) return Ignore(channel, bytes);
   if (std::optional<Fault> fault = Hand(*type, channel, bytes)) {
-    Refuse(*type, *std::move(fault), offset);
+    Complain(*type, *std::move(fault), offset);
   }
 }
 
@@ -47,10 +47,12 @@ std::optional<Fault> Feed::Hand(MessageType type, std::string_view channel,
                                 std::span<const std::byte> bytes) {
   // The two frequent types go through buffers that stay.
   if (type == MessageType::kImuBatch) {
-    const auto batch = DecodeImuBatch(bytes, imu_, channel);
+    std::optional<Fault> damage;
+    const auto batch = DecodeImuBatch(bytes, imu_, channel, &damage);
     if (!batch) return batch.fault();
     Accept(type, channel, bytes);
     listener_->OnImu(*batch);
+    return damage;
   } else if (type == MessageType::kRawBatch) {
     const auto batch = DecodeRawBatch(bytes, raw_, channel);
     if (!batch) return batch.fault();
@@ -72,7 +74,7 @@ void Feed::Accept(MessageType type, std::string_view channel, std::span<const st
   if (on_accepted_) on_accepted_(type, channel, bytes);
 }
 
-void Feed::Refuse(MessageType type, Fault fault, std::int64_t offset) {
+void Feed::Complain(MessageType type, Fault fault, std::int64_t offset) {
   ++counts_[Index(type)].malformed;
   int& heard = heard_[Index(type)][fault.code];
   if (heard >= kFaultsHeard) return;

@@ -38,7 +38,7 @@ class WELLGYRO_EXPORT Listener {
 struct ChannelCount {
   std::int64_t messages = 0;   ///< accepted
   std::int64_t bytes = 0;      ///< of the accepted
-  std::int64_t malformed = 0;  ///< refused
+  std::int64_t malformed = 0;  ///< refused, or accepted less what is no number
 };
 
 /// What came on a channel that is none of ours.
@@ -51,8 +51,9 @@ struct ForeignCount {
 /// decodes, counts, and hands on records. Which of the two it was makes no difference to what the
 /// listener hears.
 ///
-/// What is refused becomes a Fault; of each code on each channel the first kFaultsHeard reach the
-/// listener, the others are counted only. Batches allocate nothing once the buffers have grown.
+/// What is refused, or left out of a message, becomes a Fault; of each code on each channel the
+/// first kFaultsHeard reach the listener, the others are counted only. Batches allocate nothing
+/// once the buffers have grown.
 class WELLGYRO_EXPORT Feed {
  public:
   static constexpr int kFaultsHeard = 10;
@@ -79,7 +80,7 @@ class WELLGYRO_EXPORT Feed {
   std::optional<Fault> Hand(MessageType type, std::string_view channel,
                             std::span<const std::byte> bytes);
   void Accept(MessageType type, std::string_view channel, std::span<const std::byte> bytes);
-  void Refuse(MessageType type, Fault fault, std::int64_t offset);
+  void Complain(MessageType type, Fault fault, std::int64_t offset);
   void Ignore(std::string_view channel, std::span<const std::byte> bytes);
 
   Channels channels_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -131,12 +132,14 @@ class SeriesReader {
         Refuse(batch.fault());
       }
     } else {
-      const auto batch = DecodeImuBatch(event.data, imu_, event.channel);
+      std::optional<Fault> damage;
+      const auto batch = DecodeImuBatch(event.data, imu_, event.channel, &damage);
       if (batch) {
         for (const auto& sample : *batch) TakeImu(sample);
       } else {
-        Refuse(batch.fault());
+        damage = batch.fault();
       }
+      if (damage) Refuse(*damage);
     }
   }
 
