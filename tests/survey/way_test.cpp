@@ -81,6 +81,29 @@ TEST(Way, PositionsDoNotDependOnTheSpacingOfStations) {
   }
 }
 
+// 2026-11-21: the stop at the bottom was a pass of its own, with a leg from the tie-in that nobody
+// saw: 44 m of sigma in depth, below a station with 0.1.
+TEST(Way, OfALogOnTheWayOutAloneBeginsAtItsDeepestStop) {
+  Simulation simulation = Building(false);
+  simulation.run.start_md = 700;
+  simulation.run.steps = {RunStop{.seconds = 20}, RunMove{.to_md = 0}, RunStop{.seconds = 20}};
+  const Truth truth(simulation);
+  Job job = ExternalJob(simulation, 10);
+  job.alignment.azimuth = truth.well().PointAt(700).azimuth;
+  job.alignment.of = AlignmentSpec::Of::kAxis;
+  job.alignment.sigma_azimuth = FromDegrees(0.5);
+  Sink sink;
+  const Survey survey = testing::SurveyOf(simulation, job, sink);
+  ASSERT_GT(survey.chosen.size(), 69U);
+  const Station& deepest = survey.chosen.back();
+  EXPECT_EQ(deepest.md, 700);
+  EXPECT_LT((deepest.p_WT_W - truth.well().PlaceAt(700).p_WT_W).norm(), 0.02);
+  // A straight line from the wellhead that is half a degree off.
+  const double off = deepest.p_WT_W.head<2>().norm() * FromDegrees(0.5);
+  EXPECT_NEAR(std::sqrt(deepest.cov_p_WT_W.topLeftCorner<2, 2>().trace()), off, 0.02 * off);
+  EXPECT_LT(deepest.cov_p_WT_W(2, 2), 0.1);
+}
+
 /// Averages at rest every `every` metres by a tool of near perfect sensors.
 std::vector<StillWindow> WindowsEvery(double every, const Simulation& well) {
   Simulation simulation = well;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -25,7 +27,7 @@ namespace {
 /// The pass in the order of depth. Stations are met in the order of time, down or up; one at which
 /// the tool, or its depth counter, was on its way back lies on no leg and is only carried along.
 PassItems InDepthOrder(PassItems items) {
-  const Pass pass = items.front().station.pass;
+  const Pass pass = items.back().station.pass;
   if (items.front().state == nullptr) {
     std::stable_sort(items.begin(), items.end(), [](const PassItem& a, const PassItem& b) {
       return a.station.md < b.station.md;
@@ -41,6 +43,24 @@ PassItems InDepthOrder(PassItems items) {
   return items;
 }
 
+/// A stop from which the tool goes out of the hole is the deepest station of that pass, and no other
+/// way leads there.
+void JoinStopsBelow(std::map<std::int32_t, PassItems>& passes) {
+  for (auto stop = passes.begin(); stop != passes.end();) {
+    const auto next = std::next(stop);
+    if (next == passes.end()) return;
+    PassItems& out = next->second;
+    const bool below = stop->second.back().station.pass == Pass::kStationary &&
+                       stop->second.back().state != nullptr &&
+                       out.front().station.pass == Pass::kOut && out.front().state != nullptr;
+    if (below) {
+      out.insert(out.begin(), stop->second.begin(), stop->second.end());
+      passes.erase(stop);
+    }
+    stop = next;
+  }
+}
+
 std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
   std::map<std::int32_t, PassItems> passes;
   for (const Draft& draft : run.drafts) {
@@ -48,6 +68,7 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
     passes[draft.station.pass_number].push_back(
         {StationOf(job, draft, state), state, draft.listed, true});
   }
+  JoinStopsBelow(passes);
   std::vector<PassItems> result;
   for (auto& [number, items] : passes) {
     result.push_back(InDepthOrder(std::move(items)));
