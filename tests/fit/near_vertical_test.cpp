@@ -1,6 +1,8 @@
 // Wells that are vertical for a while, hardly out of vertical, or that pass through it: whole runs
 // with a stop at both ends, against the truth at fixed depths.
 #include <cmath>
+#include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <iterator>
@@ -13,8 +15,12 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/math/random.h"
+#include "wellgyro/record/knot.h"
 
 #include "support/claims.h"
 #include "support/hour.h"
@@ -131,6 +137,44 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
     EXPECT_LT(std::sqrt(place[i].variance / place[i].count), 2.0) << where;
   }
   EXPECT_LT(azimuth.back().sigma_deg(), 2.5) << well.name;
+}
+
+// What a knot says the azimuth grew by, with the true azimuth for the Earth's rate.
+double GrowthOf(const Knot& knot, double azimuth, double latitude) {
+  const double sampled = knot.seconds - knot.gap_seconds;
+  return knot.turn + kEarthRate * std::sin(latitude) * sampled +
+         kEarthRate * std::cos(latitude) *
+             (std::polar(1.0, azimuth) * (knot.cot + knot.axial_cot)).real();
+}
+
+// An hour at 3 deg comes down to 1.2 six times. A bias of the gyros turns the azimuth in between,
+// and so the Earth's rate against it: what one passage taught of the bias is wrong in the next.
+TEST(NearVerticalStretch, OwesNothingToThoseBefore) {
+  testing::Hour hour = testing::Tactical();
+  hour.inclination_deg = 3;
+  hour.rpm = 0;
+  Simulation simulation = testing::SimulationOf(hour, 1);
+  simulation.tool.errors = {};
+  simulation.tool.errors.gyro_bias.x() = 0.2 * units::kDegPerHour;
+  const testing::Flown flown = testing::Fly(simulation, testing::ExternalJob(hour, 0, 1e-3));
+  int stretches = 0;
+  double off = 0, by_bias = 0;
+  for (std::size_t i = 1; i < flown.truth.size(); ++i) {
+    const Knot& knot = flown.history.epochs[i].knot;
+    const bool was_axial = flown.history.epochs[i - 1].knot.axial;
+    if (!knot.axial && !was_axial) continue;
+    const double begin = flown.truth[i - 1].azimuth;
+    const double share = knot.d_turn[Knot::kGyroBiasX] * simulation.tool.errors.gyro_bias.x();
+    by_bias += share;
+    off += WrapPi(GrowthOf(knot, begin, FromDegrees(hour.latitude_deg)) - share -
+                  (flown.truth[i].azimuth - begin));
+    if (knot.axial) continue;
+    ++stretches;
+    EXPECT_GT(std::abs(ToDegrees(by_bias)), 0.2) << stretches;
+    EXPECT_LT(std::abs(ToDegrees(off)), 0.03) << stretches;
+    off = by_bias = 0;
+  }
+  EXPECT_EQ(stretches, 6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Wells, NearVertical, ::testing::ValuesIn(kWells),

@@ -148,9 +148,8 @@ inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size
   return WrapPi(run.attitude[i].azimuth - flown.truth[i].azimuth);
 }
 
-/// Plays the hour through a surveyor.
-inline Flown Fly(const Hour& hour, const Job& job, std::uint64_t seed) {
-  const Simulation simulation = SimulationOf(hour, seed);
+/// Plays a run through a surveyor.
+inline Flown Fly(const Simulation& simulation, const Job& job) {
   Sink sink;
   const KeepingAdjuster keeper;
   Surveyor surveyor(job, sink, &keeper);
@@ -164,6 +163,10 @@ inline Flown Fly(const Hour& hour, const Job& job, std::uint64_t seed) {
     flown.truth.push_back(truth.At(t));
   }
   return flown;
+}
+
+inline Flown Fly(const Hour& hour, const Job& job, std::uint64_t seed) {
+  return Fly(SimulationOf(hour, seed), job);
 }
 
 }  // namespace wellgyro::testing

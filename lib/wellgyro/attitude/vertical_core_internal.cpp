@@ -319,6 +319,17 @@ void Core::TakeThird(bool has_gz, double sigma) {
   sources_.row(kAxial).setZero();
 }
 
+void Core::ForgetBias(double sigma) {
+  gyro_.setZero();
+  for (Covariance* cov : {&cov_, &cov_noise_}) {
+    cov->middleRows<2>(kGyro).setZero();
+    cov->middleCols<2>(kGyro).setZero();
+  }
+  cov_.diagonal().segment<2>(kGyro).setConstant(Square(sigma));
+  sources_.middleRows<2>(kGyro).setZero();
+  sources_(kGyro, Knot::kGyroBiasX) = sources_(kGyro + 1, Knot::kGyroBiasY) = -1;
+}
+
 void Core::Release() {
   if (has_gz_) return;
   cov_(kAxial, kAxial) += Square(kAxialFirst);

@@ -84,6 +84,8 @@ class Core {
   void SetHeading(double azimuth, double variance);
   /// From here on errors of the sum of azimuth and toolface are counted.
   void CountSum();
+  /// What was learned of the gyros' bias counts no more.
+  void ForgetBias(double sigma);
   /// The tool does not turn about its axis; of the axial rate to `sigma` [rad/s].
   void Hold(double sigma);
   /// From here on the rate about the axis is measured, or no longer; what then stands in its place

@@ -41,6 +41,7 @@ constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface
 constexpr double kLeastKept = 1;        // of an error of azimuth, by the Earth's rate
 constexpr double kBack = 0.5;           // so much left of what a gap cost, the rest is given back,
 constexpr double kWorthBack = 0.1;      // where it was so much of what is held
+constexpr double kGivenBack = 0.8;      // of what was counted: less is held, the rest is given back
 constexpr double kMemory = 10;          // of a rate in what the filter holds [s]
 constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
 
@@ -120,6 +121,7 @@ struct VerticalFilter::Impl {
   void Fill(const Cut& now, bool axial, Knot& knot);
   void FloorAtAccelerometers(Knot& knot) const;
   void CountSum();
+  void ForgetBias();
 
   VerticalSetup setup;
   Noise noise;
@@ -271,6 +273,13 @@ void VerticalFilter::Impl::CountSum() {
   counted = Counted();
 }
 
+// It was learned with the Earth's rate as the azimuth then seemed to be: with an azimuth that has
+// since become worse it would be wrong in every stretch, and its noise would be one in all of them.
+void VerticalFilter::Impl::ForgetBias() {
+  main.ForgetBias(bias_sigma);
+  for (Core& core : bank) core.ForgetBias(bias_sigma);
+}
+
 // With north unknown, what the filter counts from turns by all that the Earth's rate does to the
 // azimuth: by so much its direction is off over what the filter remembers, [rad^2] over the knot.
 double VerticalFilter::Impl::VarOfTurning(const Knot& knot) const {
@@ -313,7 +322,8 @@ void VerticalFilter::Impl::FloorAtAccelerometers(Knot& knot) const {
 }
 
 // What the sum's variance grew by is the knot's. What turns out not to have been lost is given
-// back: as gravity shows behind a gap how the tool rolled in it, and where the stretch ends.
+// back: as gravity shows behind a gap how the tool rolled in it, as more is learned of how it
+// rolls, and where the stretch ends.
 void VerticalFilter::Impl::Count(double held, double kept, bool is_axial, Knot& knot) {
   Counted& c = counted;
   c.var *= kept * kept;
@@ -324,13 +334,16 @@ void VerticalFilter::Impl::Count(double held, double kept, bool is_axial, Knot& 
   knot.toolface_noise_turn = std::max(0.0, held - c.var);
   c.var += knot.toolface_noise_turn;
   const double of_gap = c.var - c.before_gap, left = std::max(held - c.before_gap, 0.0);
-  if (!is_axial && held < c.var) {
-    knot.axial_noise_share = held / c.var;
-    knot.axial_noise_knots = c.knots;
-  } else if (c.since_gap > 0 && of_gap > kWorthBack * held && left < kBack * of_gap) {
+  const bool gap_counts = is_axial && c.since_gap > 0 && of_gap > kWorthBack * held;
+  if (gap_counts && left < kBack * of_gap) {
     knot.axial_noise_share = left / of_gap;
     knot.axial_noise_knots = c.since_gap;
     c.var = c.before_gap + left;
+  } else if (!gap_counts && held < (is_axial ? kGivenBack : 1) * c.var) {
+    knot.axial_noise_share = held / c.var;
+    knot.axial_noise_knots = c.knots;
+    c.before_gap *= knot.axial_noise_share;
+    c.var = held;
   }
   ++c.knots;
   if (c.since_gap >= 0) ++c.since_gap;
@@ -507,6 +520,7 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
       m.axial = m.linked = true;
       m.counted = Counted();
       m.SetHeading(m.CutAt(0).azimuth, 0);
+      m.ForgetBias();
       now = m.CutAt(rest);
       // What the filter holds there is azimuth, which is taken for free of error.
       now.in_sum.d.setZero();

@@ -75,8 +75,8 @@ struct Knot {
   double var_toolface = 0;                         ///< of `toolface` from noise alone [rad^2]
   /// Variance from noise of the azimuth less that of S - `toolface`, if axial [rad^2].
   double var_azimuth_beyond = 0;
-  /// At the first knot after axial ones, or some time behind a gap, what toolface_noise_turn of so
-  /// many before it has to be multiplied by, now that gravity told how the tool turned meanwhile.
+  /// At an axial knot or the first one behind, what toolface_noise_turn of so many before it has to
+  /// be multiplied by, now that gravity has told how the tool turned meanwhile.
   double axial_noise_share = 1;
   int axial_noise_knots = 0;
   double gap_seconds = 0;  ///< of the interval, without samples
