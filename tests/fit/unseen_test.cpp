@@ -148,6 +148,46 @@ TEST_P(Unseen, StationsBelowASaturatedStretchAreAsGoodAsTheySay) {
   }
 }
 
+// Both clocks of the samples step back by ten seconds: behind that each depth is another's, and no
+// direction there is that of the same depth above. The log ends before the tool does: depth tells
+// of its stopping ten seconds late.
+TEST_P(Unseen, StationsAboveAClockThatStepsBackAreAsGoodAsTheySay) {
+  Squares squares;
+  const Duration back = Duration::Seconds(10);
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Simulation simulation = HoleOf(seed, 20, 180);
+    simulation.run.steps.push_back(Down(200));
+    testing::CollectingSink sink;
+    const ToolTime begin = ToolTime{} + Duration::Seconds(simulation.tool.errors.clock_offset);
+    const Survey survey = testing::SurveyOf(
+        simulation, JobOf(), sink,
+        [&](SimulatedStep& step) {
+          auto* sample = std::get_if<ImuSample>(&step);
+          if (sample == nullptr) return true;
+          SampleStamp& stamp = sample->stamp;
+          const double t = (stamp.tool_time - begin).seconds();
+          if (t < kStop + 120) return true;
+          stamp.tool_time = stamp.tool_time - back;
+          stamp.utc = stamp.utc - back;
+          return t < kStop + 195;
+        },
+        adjuster());
+    ASSERT_GT(survey.chosen.size(), 17u) << survey.unusable;
+    squares.Add(survey, simulation);
+    for (const Station& s : survey.chosen) {
+      if (s.md <= 90) {
+        EXPECT_EQ(s.quality, Quality::kGood) << s.md;
+      } else if (s.md > 120) {
+        EXPECT_TRUE(Has(s.quality, Quality::kClock)) << s.md;
+      }
+    }
+  }
+  for (const double md : {10., 30., 60., 90.}) {
+    ExpectHonest(squares.inclination[md], "inclination", md);
+    ExpectHonest(squares.azimuth[md], "azimuth", md);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Adjusted, Unseen, ::testing::Bool());
 
 }  // namespace

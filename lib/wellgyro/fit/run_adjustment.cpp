@@ -9,6 +9,7 @@
 #include "wellgyro/fit/adjust_north_internal.h"
 #include "wellgyro/fit/adjust_problem_internal.h"
 #include "wellgyro/fit/adjust_result_internal.h"
+#include "wellgyro/record/quality.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
@@ -87,6 +88,8 @@ void FindRepeats(const FilterHistory& history, const std::vector<double>& path, 
     const AdjustSpan& span = p->spans[k];
     const FilterEpoch& epoch = history.epochs[span.epoch_end - 1];
     if (!epoch.station || !epoch.knot.along.known || span.still || span.vertical) continue;
+    // Of another time, perhaps, is its depth.
+    if (Has(epoch.knot.quality, Quality::kClock)) continue;
     const double md = epoch.knot.along.md;
     const auto near = nodes.lower_bound(md - kSameDepth);
     if (near != nodes.end() && near->first < md + kSameDepth) {

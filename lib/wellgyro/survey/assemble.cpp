@@ -43,8 +43,8 @@ PassItems InDepthOrder(PassItems items) {
   return items;
 }
 
-/// A stop from which the tool goes out of the hole is the deepest station of that pass, and no other
-/// way leads there.
+/// A stop from which the tool goes out of the hole is the deepest station of that pass, and no
+/// other way leads there.
 void JoinStopsBelow(std::map<std::int32_t, PassItems>& passes) {
   for (auto stop = passes.begin(); stop != passes.end();) {
     const auto next = std::next(stop);
