@@ -89,11 +89,18 @@ inline bool StillDetector::Continues(const SampleStamp& stamp) const {
 
 std::optional<StillWindow> StillDetector::Push(const ImuSample& sample, const AlongHole& along) {
   const SampleStamp& stamp = sample.stamp;
-  if (previous_ && stamp.session == previous_->session && stamp.seq <= previous_->seq) {
-    return std::nullopt;
+  if (block_.samples == 0 || !Continues(stamp) || !InBlock(stamp.tool_time)) {
+    return PushAnew(sample, along);
   }
-  if (block_.samples > 0 && Continues(stamp) && InBlock(stamp.tool_time)) {
-    Add(sample, along);
+  Add(sample, along);
+  return std::nullopt;
+}
+
+/// A sample that is not the next of the block.
+std::optional<StillWindow> StillDetector::PushAnew(const ImuSample& sample,
+                                                   const AlongHole& along) {
+  const SampleStamp& stamp = sample.stamp;
+  if (previous_ && stamp.session == previous_->session && stamp.seq <= previous_->seq) {
     return std::nullopt;
   }
   std::optional<StillWindow> window = EndBlock(stamp);
@@ -133,7 +140,7 @@ inline void StillDetector::Add(const ImuSample& sample, const AlongHole& along) 
   const Vector3d f = sample.f_T - block.f0;
   block.sum_w += w;
   block.sum_f += f;
-  block.sum_b += sample.b_T;
+  if (sample.has_mag) block.sum_b += sample.b_T;
   block.square_w += w.cwiseAbs2();
   block.square_f += f.cwiseAbs2();
   block.sum_temperature += static_cast<double>(sample.stamp.temperature);

@@ -96,6 +96,7 @@ class WELLGYRO_EXPORT StillDetector {
     bool md_known = true, gz = true, mag = true, saturated = false;
   };
 
+  std::optional<StillWindow> PushAnew(const ImuSample& sample, const AlongHole& along);
   bool Continues(const SampleStamp& stamp) const;
   bool InBlock(ToolTime time) const;
   std::optional<StillWindow> EndBlock(const SampleStamp& next);

@@ -36,11 +36,11 @@ Result<Head> ReadHead(MessageType type, std::span<const std::byte> bytes,
   return head;
 }
 
-void Advance(SampleStamp& stamp) {
-  const Duration period{stamp.period_ns};
-  stamp.tool_time = stamp.tool_time + period;
-  stamp.utc = stamp.utc + period;
-  ++stamp.seq;
+void Advance(SampleStamp& stamp, std::int64_t samples) {
+  const Duration passed{samples * stamp.period_ns};
+  stamp.tool_time = stamp.tool_time + passed;
+  stamp.utc = stamp.utc + passed;
+  stamp.seq += samples;
 }
 
 /// Columns of an imu_batch_t, in the order of its arrays; null where there is none.
@@ -81,33 +81,34 @@ Fault FirstNotFinite(const ImuHead& head, std::span<const std::byte> bytes) {
   return {};
 }
 
-/// 0, unless one is not finite: infinity less itself is no number.
-double Nothing(const Eigen::Vector3d& v) {
-  return (v.x() - v.x()) + ((v.y() - v.y()) + (v.z() - v.z()));
-}
-
-/// Reads the arrays; false when a value is not finite.
+/// Reads the arrays; false when a value is not finite. One array after the other, as they stand.
 bool ReadArrays(const ImuHead& head, std::span<const std::byte> bytes, ImuSample* out) {
   const ImuColumns columns = ColumnsOf(head);
-  SampleStamp stamp = head.stamp;
+  const auto n = static_cast<std::size_t>(head.n);
   const bool has_gz = head.n_gz > 0;
   const bool has_mag = head.n_mag > 0;
-  double none = 0;
-  for (int k = 0; k < head.n; ++k, ++out, Advance(stamp)) {
-    const std::byte* row = bytes.data() + static_cast<std::size_t>(k) * sizeof(double);
-    const auto value = [&](std::size_t column) { return Load<double>(row + columns.at[column]); };
-    out->stamp = stamp;
-    out->w_IT_T = {value(0), value(1), has_gz ? value(2) : 0};
-    out->f_T = {value(3), value(4), value(5)};
-    if (has_mag) {
-      out->b_T = {value(6), value(7), value(8)};
-    } else {
-      out->b_T.setZero();
-    }
-    out->has_gz = has_gz;
-    out->has_mag = has_mag;
-    none += Nothing(out->w_IT_T) + Nothing(out->f_T) + Nothing(out->b_T);
+  for (std::size_t k = 0; k < n; ++k) {
+    ImuSample& sample = out[k];
+    sample.stamp = head.stamp;
+    Advance(sample.stamp, static_cast<std::int64_t>(k));
+    if (!has_gz) sample.w_IT_T.z() = 0;
+    if (!has_mag) sample.b_T.setZero();
+    sample.has_gz = has_gz;
+    sample.has_mag = has_mag;
   }
+  double none = 0;  // unless one is not finite: infinity less itself is no number
+  const auto read = [&](std::size_t column, Eigen::Vector3d ImuSample::*vector, int axis) {
+    if (columns.at[column] == 0) return;
+    const std::byte* array = bytes.data() + columns.at[column];
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto value = Load<double>(array + k * sizeof(double));
+      (out[k].*vector)[axis] = value;
+      none += value - value;
+    }
+  };
+  for (int axis = 0; axis < 3; ++axis) read(static_cast<std::size_t>(axis), &ImuSample::w_IT_T, axis);
+  for (int axis = 0; axis < 3; ++axis) read(static_cast<std::size_t>(3 + axis), &ImuSample::f_T, axis);
+  for (int axis = 0; axis < 3; ++axis) read(static_cast<std::size_t>(6 + axis), &ImuSample::b_T, axis);
   return none == 0;
 }
 
@@ -139,11 +140,11 @@ void ReadCounts(const RawHead& head, std::span<const std::byte> bytes, RawSample
   const auto n = static_cast<std::size_t>(head.n);
   const auto channels = static_cast<std::size_t>(head.n_channels);
   const std::byte* counts = bytes.data() + kArraysAt;
-  SampleStamp stamp = head.stamp;
-  for (std::size_t k = 0; k < n; ++k, Advance(stamp)) {
+  for (std::size_t k = 0; k < n; ++k) {
     RawSample& sample = out[k];
     sample = RawSample{};
-    sample.stamp = stamp;
+    sample.stamp = head.stamp;
+    Advance(sample.stamp, static_cast<std::int64_t>(k));
     sample.n_channels = head.n_channels;
     sample.n_temperatures = head.n_temperatures;
     for (std::size_t c = 0; c < channels; ++c) {
@@ -194,7 +195,7 @@ SampleStamp CommonStamp(std::span<const Sample> batch) {
   }
   SampleStamp common = batch[0].stamp;
   SampleStamp expected = common;
-  for (std::size_t k = 0; k < batch.size(); ++k, Advance(expected)) {
+  for (std::size_t k = 0; k < batch.size(); ++k, Advance(expected, 1)) {
     const SampleStamp& stamp = batch[k].stamp;
     RequireEven(expected, stamp, k);
     common.gyro_saturated |= stamp.gyro_saturated;

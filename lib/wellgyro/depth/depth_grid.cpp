@@ -51,13 +51,9 @@ DepthGrid::Blend DepthGrid::BlendOf(const AlongHole& a, const AlongHole& b) {
   Blend blend;
   blend.md = {a.md, a.speed + d0 / h, bend + d1 / h, d2 / h};
   blend.speed = {a.speed, a.acceleration + d1 / h, 2 * d2 / h};
-  blend.acceleration = {a.acceleration, 2 * d2 / h};
-  const auto line = [](double at_a, double at_b) {
-    return std::array<double, 2>{at_a, (at_b - at_a) / kSeconds};
-  };
-  blend.sigma_md = line(a.sigma_md, b.sigma_md);
-  blend.sigma_speed = line(a.sigma_speed, b.sigma_speed);
-  blend.sigma_acceleration = line(a.sigma_acceleration, b.sigma_acceleration);
+  blend.begin = {a.acceleration, a.sigma_md, a.sigma_speed, a.sigma_acceleration};
+  blend.slope = {2 * d2 / h, (b.sigma_md - a.sigma_md) / h, (b.sigma_speed - a.sigma_speed) / h,
+                 (b.sigma_acceleration - a.sigma_acceleration) / h};
   std::tie(blend.md_low, blend.md_high) = std::minmax(a.md, b.md);
   return blend;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "wellgyro/base/export.h"
@@ -42,7 +43,8 @@ class WELLGYRO_EXPORT DepthGrid {
   struct Blend {
     std::array<double, 4> md{};
     std::array<double, 3> speed{};
-    std::array<double, 2> acceleration{}, sigma_md{}, sigma_speed{}, sigma_acceleration{};
+    // Of acceleration and of the sigmas of depth, speed and acceleration.
+    std::array<double, 4> begin{}, slope{};
     double md_low = 0, md_high = 0;  ///< the ends': a blend never turns back
   };
 
@@ -52,16 +54,16 @@ class WELLGYRO_EXPORT DepthGrid {
   static Blend BlendOf(const AlongHole& a, const AlongHole& b);
   AlongHole Smooth(double t) const {
     const Blend& c = blend_;
-    const auto line = [t](const std::array<double, 2>& l) { return l[0] + t * l[1]; };
+    const auto line = [&](std::size_t i) { return c.begin[i] + t * c.slope[i]; };
     const double md = c.md[0] + t * (c.md[1] + t * (c.md[2] + t * c.md[3]));
     const double speed = c.speed[0] + t * (c.speed[1] + t * c.speed[2]);
     return {.md = std::clamp(md, c.md_low, c.md_high),
             .speed = speed,
-            .acceleration = line(c.acceleration),
-            .sigma_md = line(c.sigma_md),
+            .acceleration = line(0),
+            .sigma_md = line(1),
             .known = true,
-            .sigma_speed = line(c.sigma_speed),
-            .sigma_acceleration = line(c.sigma_acceleration)};
+            .sigma_speed = line(2),
+            .sigma_acceleration = line(3)};
   }
 
   const DepthTrack* track_;

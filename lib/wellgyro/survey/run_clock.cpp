@@ -49,7 +49,8 @@ double Contradicted(const Passed& passed, bool next) {
 
 }  // namespace
 
-void RunClock::Break(const SampleStamp& stamp, bool jumps) {
+/// The UTC from which the stages take the length of a gap between sessions.
+UtcTime RunClock::Break(const SampleStamp& stamp, bool jumps) {
   const Passed passed(*in_, stamp);
   const Duration apart = Duration::Seconds(TimePassed(passed, 1e-9 * in_->period_ns, jumps));
   const ToolTime begin = out_.tool_time + apart;
@@ -61,9 +62,10 @@ void RunClock::Break(const SampleStamp& stamp, bool jumps) {
   session_ = static_cast<std::int32_t>(static_cast<std::uint32_t>(out_.session) + 1u);
   broken_ = true;
   steps_ = 0;
+  return out_.utc + apart;
 }
 
-void RunClock::NoteSteps() {
+inline void RunClock::NoteSteps() {
   step_.reset();
   if (tie_.steps() == steps_) return;
   steps_ = tie_.steps();
@@ -73,9 +75,8 @@ void RunClock::NoteSteps() {
 }
 
 const SampleStamp& RunClock::Take(const SampleStamp& stamp, bool jumps) {
-  const SampleStamp before = out_;
   const bool breaks = in_ && (jumps || stamp.session != in_->session);
-  if (breaks) Break(stamp, jumps);
+  const UtcTime utc = breaks ? Break(stamp, jumps) : stamp.utc;
   in_ = stamp;
   out_ = stamp;
   if (broken_) {
@@ -85,8 +86,7 @@ const SampleStamp& RunClock::Take(const SampleStamp& stamp, bool jumps) {
   }
   tie_.Push(out_);
   NoteSteps();
-  // The stages take the length of a gap between sessions from this.
-  if (breaks) out_.utc = before.utc + (out_.tool_time - before.tool_time);
+  out_.utc = utc;
   if (doubt_ > 0 || (restless_ && out_.tool_time < *restless_)) out_.utc_unsynced = true;
   return out_;
 }

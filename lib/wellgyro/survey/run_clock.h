@@ -32,7 +32,7 @@ class WELLGYRO_EXPORT RunClock {
   std::optional<double> step() const { return step_; }
 
  private:
-  void Break(const SampleStamp& stamp, bool jumps);
+  UtcTime Break(const SampleStamp& stamp, bool jumps);
   void NoteSteps();
 
   ClockTie tie_;

@@ -82,10 +82,9 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   if (sample.stamp.temperature_outside) temperature_outside_ = true;
   end_unsynced_ = sample.stamp.utc_unsynced;
   if (WaitsForSum()) {
-    const SampleStamp& before = current_->stamp;
-    const double reach = static_cast<double>((sample.stamp.tool_time - before.tool_time).ns) /
-                         static_cast<double>(before.period_ns);
-    if (sample.stamp.session != before.session) {
+    const double reach = static_cast<double>((sample.stamp.tool_time - current_->begin).ns) /
+                         static_cast<double>(current_->period_ns);
+    if (sample.stamp.session != current_->session) {
       Summed(current_->along, current_->pass, 1);
     } else if (reach < kWithoutGap) {
       current_->utc_end = utc;
@@ -98,10 +97,15 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
     const UtcTime utc_end = utc + Duration{sample.stamp.period_ns};
     if (!current_) current_.emplace();
     Current& c = *current_;  // member by member: built whole it would be copied twice
-    c.stamp = sample.stamp;
+    c.begin = sample.stamp.tool_time;
+    c.period_ns = sample.stamp.period_ns;
+    c.session = sample.stamp.session;
+    c.rests = middle.known && std::abs(middle.speed) < kRestSpeed;
     c.for_vertical = vertical_.Wants(sample);
-    if (c.for_vertical) c.sample = sample;
-    c.middle = middle;
+    if (c.for_vertical) {
+      c.sample = sample;
+      c.middle = middle;
+    }
     c.utc = utc;
     c.utc_end = utc_end;
     c.along = along;
@@ -109,8 +113,10 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
     summary_.end = utc_end;
   }
   if (const auto window = still_.Push(sample, middle)) TakeWindow(*window);
-  const std::optional<double> md = along.known ? std::optional(along.md) : std::nullopt;
-  if (!SamePlace(sample.stamp.tool_time, md)) CloseGroup();
+  if (!group_.empty()) {
+    const std::optional<double> md = along.known ? std::optional(along.md) : std::nullopt;
+    if (!SamePlace(sample.stamp.tool_time, md)) CloseGroup();
+  }
 }
 
 void RunSurvey::Count(const SampleStamp& stamp) {
@@ -138,7 +144,7 @@ void RunSurvey::CountDepth(const SampleStamp& stamp, bool known) {
 
 /// The tracker has just summed what is in current_.
 bool RunSurvey::WaitsForSum() const {
-  return current_ && tracker_.ready() && tracker_.sample_begin() == current_->stamp.tool_time;
+  return current_ && tracker_.ready() && tracker_.sample_begin() == current_->begin;
 }
 
 void RunSurvey::Cut(std::optional<std::int32_t> index_position) {
@@ -184,18 +190,20 @@ Draft RunSurvey::NewDraft(double md) const {
 void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double reach) {
   cuts_.clear();
   const Current& c = *current_;
-  const AlongHole end = Between(c.along, next, 1 / reach);
+  AlongHole mixed;
+  if (reach != 1) mixed = Between(c.along, next, 1 / reach);
+  const AlongHole& end = reach != 1 ? mixed : next;
+  const bool known = c.along.known && next.known;
   summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
   if (c.for_vertical) vertical_.Push(c.sample, c.middle, site_);
-  resting_ = c.middle.known && std::abs(c.middle.speed) < kRestSpeed;
-  if (c.along.known && next.known && pass_next.number == c.pass.number &&
-      c.pass.pass != Pass::kStationary) {
+  resting_ = c.rests;
+  if (known && pass_next.number == c.pass.number && c.pass.pass != Pass::kStationary) {
     AddTargets(pass_next.md, reach);
   }
-  const double period = static_cast<double>(c.stamp.period_ns);
-  const std::int64_t begin = c.stamp.tool_time.ns;
+  const double period = static_cast<double>(c.period_ns);
+  const std::int64_t begin = c.begin.ns;
   const std::int64_t second = (begin / kKnotNs + 1) * kKnotNs;
-  if (second <= begin + c.stamp.period_ns) {
+  if (second <= begin + c.period_ns) {
     cuts_.push_back({static_cast<double>(second - begin) / period, std::nullopt, false});
   }
   const std::optional<UtcTime>& at_utc = job_.alignment.at_utc;
@@ -203,22 +211,26 @@ void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double
     const double fraction = (*at_utc - c.utc).seconds() / (period * 1e-9);
     cuts_.push_back({std::clamp(fraction, kLeastFraction, 1.0), std::nullopt, true});
   }
-  if (asked_ && (asked_md_ || end.known)) {
+  if (asked_ && (asked_md_ || known)) {
     cuts_.push_back({1.0, NewDraft(asked_md_.value_or(end.md)), false});
   }
   asked_ = false;
-  if (const auto rest = RestDraft(end)) cuts_.push_back({1.0, rest, false});
+  if (known && ComesToRest(end)) {
+    cuts_.push_back({1.0, NewDraft(end.md), false});
+    cuts_.back().draft->listed = false;
+  }
+  if (cuts_.empty()) return;
   std::stable_sort(cuts_.begin(), cuts_.end(),
                    [](const KnotAt& a, const KnotAt& b) { return a.fraction < b.fraction; });
   for (const KnotAt& cut : cuts_) CutAt(cut, next, reach);
-  if (!cuts_.empty()) Release(false);
+  Release(false);
 }
 
 /// The asked depths that the tool passes within the sample, and the gap after it, up to `md_next`.
 void RunSurvey::AddTargets(double md_next, double reach) {
   const PassState& pass = current_->pass;
   const double way = md_next - pass.md;
-  const double seconds = reach * 1e-9 * static_cast<double>(current_->stamp.period_ns);
+  const double seconds = reach * 1e-9 * static_cast<double>(current_->period_ns);
   if (std::abs(way) > kJump * std::max(seconds, 1.0) || (way == 0 && !pass.begins)) return;
   // A first pass begins where the tool stood; between any other turn and its discovery the depths
   // belong to the pass before.
@@ -251,25 +263,19 @@ void RunSurvey::ListLastMark() {
   news_.push_back(drafts_.size() - 1);
 }
 
-/// A tool that comes to rest makes a station, listed only if the job asks for stops or if it turns
-/// out to be the deepest.
-std::optional<Draft> RunSurvey::RestDraft(const AlongHole& end) const {
-  if (!end.known || std::abs(end.speed) > std::max(kRestSpeed, 2 * end.sigma_speed)) {
-    return std::nullopt;
-  }
-  if (marked_ && std::abs(end.md - last_mark_md_) <= kSameDepth) return std::nullopt;
-  Draft draft = NewDraft(end.md);
-  draft.listed = false;
-  return draft;
+/// That makes a station, listed only if the job asks for stops or if it turns out to be the deepest.
+inline bool RunSurvey::ComesToRest(const AlongHole& end) const {
+  if (std::abs(end.speed) > std::max(kRestSpeed, 2 * end.sigma_speed)) return false;
+  return !marked_ || std::abs(end.md - last_mark_md_) > kSameDepth;
 }
 
 void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
   const auto& [fraction, draft, external] = cut;
   const Current& c = *current_;
-  const ToolTime begin = last_knot_.value_or(c.stamp.tool_time);
-  const double period = 1e-9 * c.stamp.period_ns;
+  const ToolTime begin = last_knot_.value_or(c.begin);
+  const double period = 1e-9 * c.period_ns;
   Knot knot = fraction > 1
-                  ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.stamp.period_ns)})
+                  ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.period_ns)})
                   : tracker_.CutKnot(fraction);
   const bool again = last_knot_ && knot.time <= *last_knot_;
   if (again && (waiting_.empty() || waiting_.back().draft)) return;

@@ -65,10 +65,12 @@ class RunSurvey {
  private:
   /// The sample that the tracker has just summed, or is about to.
   struct Current {
-    SampleStamp stamp;
+    ToolTime begin;
+    std::int32_t period_ns, session;
+    bool rests;         ///< by the depth at the middle of it
     bool for_vertical;  ///< the vertical filter is to have it
     ImuSample sample;   ///< if so
-    AlongHole middle;   ///< at the middle of it
+    AlongHole middle;   ///< if so, at the middle of it
     UtcTime utc, utc_end;
     AlongHole along;
     PassState pass;
@@ -97,7 +99,7 @@ class RunSurvey {
   void AddTargets(double md_next, double reach);
   void ListLastMark();
   void CutAt(const KnotAt& cut, const AlongHole& next, double reach);
-  std::optional<Draft> RestDraft(const AlongHole& end) const;
+  bool ComesToRest(const AlongHole& end) const;
   Draft NewDraft(double md) const;
   bool SamePlace(ToolTime time, std::optional<double> md) const;
   void TakeWindow(const StillWindow& window);

@@ -15,9 +15,7 @@ constexpr double kForceLimit = 1e4;  // [m/s^2]
 constexpr double kFieldLimit = 10;   // [T]
 
 // False also for what is no number.
-bool Within(const Eigen::Vector3d& v, double limit) {
-  return std::abs(v.x()) <= limit && std::abs(v.y()) <= limit && std::abs(v.z()) <= limit;
-}
+bool Within(const Eigen::Vector3d& v, double limit) { return v.squaredNorm() <= limit * limit; }
 
 bool IsPossible(const ImuSample& sample) {
   return sample.stamp.period_ns > 0 && Within(sample.w_IT_T, kRateLimit) &&
@@ -42,6 +40,13 @@ bool SameUtc(const SampleStamp& a, const SampleStamp& b) {
   return std::abs(utc - tool) <= 1e9 + 2e-4 * std::abs(tool);
 }
 
+/// Right behind `before`: nothing is to be sorted.
+bool IsNext(const SampleStamp& before, const SampleStamp& stamp) {
+  return stamp.seq == before.seq + 1 && stamp.session == before.session &&
+         stamp.period_ns == before.period_ns &&
+         (stamp.tool_time - before.tool_time).ns == before.period_ns;
+}
+
 /// `b` cannot be of the same count and clock as `a`.
 bool Contradicts(const SampleStamp& a, const SampleStamp& b) {
   if (a.session != b.session) return true;
@@ -55,44 +60,46 @@ bool Contradicts(const SampleStamp& a, const SampleStamp& b) {
 
 }  // namespace
 
-/// The newest sample of the story that is believed; nullptr before the first.
-inline const SampleStamp* SampleQueue::Newest() const {
-  return size_ > 0 ? &At(size_ - 1).stamp : popped_ ? &last_ : nullptr;
-}
-
-/// Right behind the last one that came: nothing is to be sorted.
-inline bool SampleQueue::IsNext(const SampleStamp& stamp) const {
-  if (size_ == 0 && !popped_) return false;
-  const SampleStamp& before = *Newest();
-  return stamp.seq == before.seq + 1 && stamp.session == before.session &&
-         stamp.period_ns == before.period_ns &&
-         (stamp.tool_time - before.tool_time).ns == before.period_ns;
-}
-
 SampleQueue::Verdict SampleQueue::Push(const ImuSample& sample) {
   if (!IsPossible(sample)) {
     ++counts_.refused;
     return Verdict::kRefused;
   }
-  const bool sorts = !IsNext(sample.stamp);
-  if (!sorts) Take(size_, sample);
-  const Verdict verdict = sorts ? Sort(sample) : Verdict::kTaken;
+  const Verdict verdict = Sort(sample);
   if (!stories_.empty()) DropOld();
   return verdict;
+}
+
+std::size_t SampleQueue::Append(std::span<const ImuSample> batch) {
+  if (!back_ || !stories_.empty()) return 0;
+  const SampleStamp* before = &*back_;
+  std::size_t n = 0;
+  for (; n < batch.size() && IsNext(*before, batch[n].stamp) && IsPossible(batch[n]); ++n) {
+    before = &batch[n].stamp;
+    newest_ = std::max(newest_, before->utc);
+  }
+  while (ring_.size() - size_ < n) Grow();
+  const std::size_t begin = (head_ + size_) & mask_, room = std::min(n, ring_.size() - begin);
+  std::copy_n(batch.data(), room, ring_.data() + begin);
+  std::copy_n(batch.data() + room, n - room, ring_.data());
+  size_ += n;
+  counts_.accepted += static_cast<std::int64_t>(n);
+  back_ = *before;
+  return n;
 }
 
 SampleQueue::Verdict SampleQueue::Sort(const ImuSample& sample) {
   const SampleStamp& stamp = sample.stamp;
   const std::int64_t seq = stamp.seq;
-  if (const SampleStamp* newest = Newest()) {
-    if (stamp.session != newest->session && stamp.session != former_session_) {
-      former_session_ = newest->session;
+  if (back_) {
+    if (stamp.session != back_->session && stamp.session != former_session_) {
+      former_session_ = back_->session;
       Begin();
-    } else if (Contradicts(*newest, stamp)) {
+    } else if (Contradicts(*back_, stamp)) {
       return PutAside(sample);
     }
   }
-  if (popped_ && !last_is_old_ && seq <= last_.seq) {
+  if (last_ && !last_is_old_ && seq <= last_->seq) {
     const bool late = InGap(seq);
     ++(late ? counts_.late : counts_.duplicates);
     return late ? Verdict::kLate : Verdict::kDuplicate;
@@ -114,7 +121,7 @@ SampleQueue::Verdict SampleQueue::PutAside(const ImuSample& sample) {
     if (!Contradicts(story.samples.back().stamp, sample.stamp)) return Join(story, sample);
   }
   if (stories_.size() == kStoriesMax) Drop(1);
-  stories_.push_back({{sample}, Newest()->tool_time});
+  stories_.push_back({{sample}, back_->tool_time});
   return Verdict::kAside;
 }
 
@@ -144,10 +151,10 @@ void SampleQueue::Begin() {
 /// The samples put aside are the present.
 void SampleQueue::Believe(Story story) {
   const std::int32_t session = story.samples.front().stamp.session;
-  if (session == Newest()->session) {
+  if (session == back_->session) {
     jumps_.push_back(counts_.accepted);
   } else {
-    former_session_ = Newest()->session;
+    former_session_ = back_->session;
   }
   Begin();
   for (const ImuSample& sample : story.samples) Take(size_, sample);
@@ -163,15 +170,16 @@ void SampleQueue::Drop(std::size_t stories) {
 }
 
 void SampleQueue::DropOld() {
-  const ToolTime now = Newest()->tool_time;
+  const ToolTime now = back_->tool_time;
   std::size_t old = 0;
   while (old < stories_.size() && now - stories_[old].begun >= kAgree) ++old;
   Drop(old);
 }
 
-inline void SampleQueue::Take(std::size_t position, const ImuSample& sample) {
+void SampleQueue::Take(std::size_t position, const ImuSample& sample) {
   if (size_ == ring_.size()) Grow();
   for (std::size_t i = size_; i > position; --i) At(i) = At(i - 1);
+  if (position == size_) back_ = sample.stamp;
   ++size_;
   At(position) = sample;
   newest_ = counts_.accepted == 0 ? sample.stamp.utc : std::max(newest_, sample.stamp.utc);
@@ -193,11 +201,11 @@ bool SampleQueue::InGap(std::int64_t seq) const {
 
 void SampleQueue::NoteGap(const SampleStamp& next, bool jumps) {
   if (jumps) jumps_.erase(jumps_.begin());
-  if (jumps || next.session != last_.session) {
+  if (jumps || !last_ || next.session != last_->session) {
     gaps_.clear();
-  } else if (next.seq > last_.seq + 1) {
+  } else if (next.seq > last_->seq + 1) {
     if (gaps_.size() == kGapsKept) gaps_.erase(gaps_.begin());
-    gaps_.emplace_back(last_.seq + 1, next.seq);
+    gaps_.emplace_back(last_->seq + 1, next.seq);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -43,12 +44,15 @@ class WELLGYRO_EXPORT SampleQueue {
   /// which. kAside: what follows will tell.
   enum class Verdict { kTaken, kDuplicate, kLate, kRefused, kAside };
   Verdict Push(const ImuSample& sample);
+  /// Takes from the begin of `batch` what comes right behind the newest sample, and says how many:
+  /// as Push of each would, at less cost.
+  std::size_t Append(std::span<const ImuSample> batch);
 
   /// The next sample in order, or nullptr while it has to wait. Valid until the next Push.
   const ImuSample* Front() const {
     if (size_ == 0) return nullptr;
     const ImuSample& front = At(0);
-    const bool old = At(size_ - 1).stamp.tool_time - front.stamp.tool_time >= hold_;
+    const bool old = back_->tool_time - front.stamp.tool_time >= hold_;
     return old || flushing_ || old_session_ > 0 || size_ > kWaitingMax ? &front : nullptr;
   }
   /// Within its session the clock jumps before the sample at the front.
@@ -56,10 +60,9 @@ class WELLGYRO_EXPORT SampleQueue {
   void Pop() {
     const SampleStamp& stamp = At(0).stamp;
     const bool jumps = Jumps();
-    const bool next = stamp.seq == last_.seq + 1 && stamp.session == last_.session;
-    if (jumps || (popped_ && !next)) NoteGap(stamp, jumps);
-    last_ = stamp;
-    popped_ = true;
+    const bool next = last_ && stamp.seq == last_->seq + 1 && stamp.session == last_->session;
+    if (!next || jumps) NoteGap(stamp, jumps);
+    last_ = {stamp.seq, stamp.session};
     head_ = (head_ + 1) & mask_;
     --size_;
     last_is_old_ = old_session_ > 0;
@@ -86,8 +89,12 @@ class WELLGYRO_EXPORT SampleQueue {
     ToolTime begun;  ///< of the newest of the others when it began
   };
 
+  struct Place {
+    std::int64_t seq = 0;
+    std::int32_t session = 0;
+  };
+
   std::int64_t Waiting() const { return static_cast<std::int64_t>(size_); }
-  const SampleStamp* Newest() const;
   Verdict Sort(const ImuSample& sample);
   Verdict PutAside(const ImuSample& sample);
   Verdict Join(Story& story, const ImuSample& sample);
@@ -98,7 +105,6 @@ class WELLGYRO_EXPORT SampleQueue {
   void Take(std::size_t position, const ImuSample& sample);
   void Grow();
   void NoteGap(const SampleStamp& next, bool jumps);
-  bool IsNext(const SampleStamp& stamp) const;
   bool InGap(std::int64_t seq) const;
 
   Duration hold_;
@@ -109,9 +115,9 @@ class WELLGYRO_EXPORT SampleQueue {
   std::size_t old_session_ = 0;  ///< waiting samples, from the front, of sessions that have ended
   bool last_is_old_ = false;     ///< the sample handed out last is of such a one
   bool flushing_ = false;
-  bool popped_ = false;
   UtcTime newest_;
-  SampleStamp last_;  ///< of the sample handed out last
+  std::optional<SampleStamp> back_;  ///< the newest of the story that is believed
+  std::optional<Place> last_;        ///< of the sample handed out last
   /// Numbers that were missing when younger samples were handed out: [first, second), the latest
   /// kGapsKept of this session.
   static constexpr std::size_t kGapsKept = 256;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <vector>
@@ -144,19 +145,17 @@ Surveyor& Surveyor::operator=(Surveyor&&) noexcept = default;
 
 void Surveyor::Push(std::span<const ImuSample> batch) {
   if (!rooms_->Open()) return;
-  ToolSurvey* last = nullptr;
-  for (const ImuSample& sample : batch) {
-    if (last == nullptr || sample.stamp.tool != last->tool()) {
-      ToolSurvey* tool = rooms_->Tool(sample.stamp.tool);
-      if (tool == nullptr) break;
-      if (last != nullptr) rooms_->Work(*last);
-      if (rooms_->finished) return;
-      last = tool;
-    }
-    last->Push(sample);
-    rooms_->newest = sample.stamp.utc;
+  for (auto at = batch.begin(); at != batch.end() && !rooms_->finished;) {
+    ToolSurvey* tool = rooms_->Tool(at->stamp.tool);
+    if (tool == nullptr) return;
+    const auto end = std::find_if(at, batch.end(), [tool](const ImuSample& sample) {
+      return sample.stamp.tool != tool->tool();
+    });
+    tool->Push(std::span(at, end));
+    rooms_->newest = std::prev(end)->stamp.utc;
+    rooms_->Work(*tool);
+    at = end;
   }
-  if (last != nullptr) rooms_->Work(*last);
 }
 
 void Surveyor::Push(std::span<const RawSample> batch) {

@@ -66,14 +66,22 @@ ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& trac
       book_(book),
       sink_(sink),
       adjuster_(adjuster),
+      corrects_depth_(!job.depth.corrections.empty() || job.depth.cable.mark_spacing > 0),
       sensor_below_reference_(job.string.sensor_below_reference),
       queue_(Hold(job, track)) {}
 
-void ToolSurvey::Push(const ImuSample& sample) {
-  const SampleQueue::Verdict verdict = queue_.Push(sample);
-  if (verdict != SampleQueue::Verdict::kTaken) TellRefused(verdict, sample.stamp);
-  TellStrays();
-  Work();
+void ToolSurvey::Push(std::span<const ImuSample> batch) {
+  while (true) {
+    batch = batch.subspan(queue_.Append(batch));
+    // What is ready goes on before another is sorted in, which must not depend on the batches.
+    Work(std::nullopt);
+    if (batch.empty()) return;
+    const ImuSample& sample = batch.front();
+    const SampleQueue::Verdict verdict = queue_.Push(sample);
+    if (verdict != SampleQueue::Verdict::kTaken) TellRefused(verdict, sample.stamp);
+    TellStrays();
+    batch = batch.subspan(1);
+  }
 }
 
 void ToolSurvey::TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp) {
@@ -131,9 +139,10 @@ void ToolSurvey::Push(const StillWindow& window) {
   Tell(run);
 }
 
-void ToolSurvey::Work() {
+void ToolSurvey::Work(std::optional<UtcTime> until) {
   while (const ImuSample* sample = queue_.Front()) {
-    if (!finish_asked_) Use(*sample);
+    const bool after = finish_asked_ || (until && sample->stamp.utc >= *until);
+    if (!after) Use(*sample);
     queue_.Pop();
   }
 }
@@ -210,8 +219,12 @@ void ToolSurvey::Use(const ImuSample& sample) {
 
 inline void ToolSurvey::ShiftToSensor(UtcTime utc, AlongHole& along) const {
   if (!along.known) return;
-  along.md += marks_.At(utc, along.md);
-  along.md += Correction(job_.depth.corrections, along.md) + sensor_below_reference_;
+  double below = sensor_below_reference_;
+  if (corrects_depth_) {
+    along.md += marks_.At(utc, along.md);
+    below += Correction(job_.depth.corrections, along.md);
+  }
+  along.md += below;
   // What the string moved in the time by which UTC may be wrong.
   if (clock_.doubt() > 0) {
     along.sigma_md = std::hypot(along.sigma_md, clock_.doubt() * along.speed);
@@ -307,11 +320,7 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
   if (finished_) return;
   queue_.Flush();
   TellStrays();
-  while (const ImuSample* sample = queue_.Front()) {
-    const bool after = (until && sample->stamp.utc >= *until) || finish_asked_;
-    if (!after) Use(*sample);
-    queue_.Pop();
-  }
+  Work(until);
   for (RunState& run : runs_) {
     run.survey->Flush();
     Tell(run);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,7 +39,7 @@ class ToolSurvey {
              const MarksRefused& refused, CableMarks& marks, RunBook& book, Sink& sink,
              const RunAdjuster* adjuster);
 
-  void Push(const ImuSample& sample);
+  void Push(std::span<const ImuSample> batch);
   void Push(const StillWindow& window);
   void Push(const ToolInfo& info) { sensor_below_reference_ = info.sensor_below_reference; }
   void Push(const Operation& operation);
@@ -69,7 +70,7 @@ class ToolSurvey {
     Operation operation;
   };
 
-  void Work();
+  void Work(std::optional<UtcTime> until);
   void Use(const ImuSample& sample);
   bool ObeyDue(const SampleStamp& stamp, UtcTime utc);
   void CountLost(const SampleStamp& stamp, RunSummary& summary);
@@ -108,6 +109,7 @@ class ToolSurvey {
   RunBook& book_;
   Sink& sink_;
   const RunAdjuster* adjuster_;
+  bool corrects_depth_;  ///< by the job's table or its cable's marks
   double sensor_below_reference_;
   SampleQueue queue_;
   RunClock clock_;
