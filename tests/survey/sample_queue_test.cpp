@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -161,6 +162,35 @@ TEST(SampleQueue, ASampleOfTheSessionBeforeDoesNotBringItBack) {
   queue.Flush();
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{7, 0, 1}));
   EXPECT_EQ(queue.counts().strays, 1);
+}
+
+TEST(SampleQueue, AppendTakesOfABatchWhatPushOfEachWouldUpToTheFirstThatIsSortedIn) {
+  std::vector<ImuSample> batch;
+  for (std::int64_t k : {0, 1, 2, 3, 5, 4, 6, 7, 7, 8, 8, 20, 21, 22, 9}) batch.push_back(At(k));
+  batch[7].f_T.x() = 1e6;
+  for (std::int64_t k = 0; k < 2'000; ++k) batch.push_back(At(k, 2));
+  SampleQueue one(Duration::Seconds(1)), many(Duration::Seconds(1));
+  for (const ImuSample& sample : batch) one.Push(sample);
+  std::vector<std::size_t> taken;
+  for (std::span<const ImuSample> rest(batch); !rest.empty(); rest = rest.subspan(1)) {
+    taken.push_back(many.Append(rest));
+    rest = rest.subspan(taken.back());
+    if (rest.empty()) break;
+    many.Push(rest.front());
+  }
+  // Up to 0, which is the first; 5; 4; the impossible 7; 8 again; 20; 9; the new session; the end.
+  EXPECT_EQ(taken, (std::vector<std::size_t>{0, 3, 0, 1, 2, 0, 2, 0, 1'999}));
+  EXPECT_EQ(one.counts().refused, 1);
+  EXPECT_EQ(many.counts().refused, 1);
+  EXPECT_EQ(many.counts().accepted, one.counts().accepted);
+  EXPECT_EQ(one.counts().duplicates, 1);
+  EXPECT_EQ(many.counts().duplicates, 1);
+  EXPECT_EQ(many.newest(), one.newest());
+  one.Flush();
+  many.Flush();
+  const std::vector<std::int64_t> seqs = Drain(one);
+  EXPECT_EQ(Drain(many), seqs);
+  EXPECT_EQ(seqs.size(), 2'013u);
 }
 
 TEST(SampleQueue, GrowsPastItsFirstBufferInOrder) {

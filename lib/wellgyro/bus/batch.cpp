@@ -36,6 +36,7 @@ Result<Head> ReadHead(MessageType type, std::span<const std::byte> bytes,
   return head;
 }
 
+/// Moves on by so many samples.
 void Advance(SampleStamp& stamp, std::int64_t samples) {
   const Duration passed{samples * stamp.period_ns};
   stamp.tool_time = stamp.tool_time + passed;
@@ -97,18 +98,20 @@ bool ReadArrays(const ImuHead& head, std::span<const std::byte> bytes, ImuSample
     sample.has_mag = has_mag;
   }
   double none = 0;  // unless one is not finite: infinity less itself is no number
-  const auto read = [&](std::size_t column, Eigen::Vector3d ImuSample::*vector, int axis) {
-    if (columns.at[column] == 0) return;
-    const std::byte* array = bytes.data() + columns.at[column];
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto value = Load<double>(array + k * sizeof(double));
-      (out[k].*vector)[axis] = value;
-      none += value - value;
+  const auto read = [&](std::size_t first, Eigen::Vector3d ImuSample::*vector) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (columns.at[first + axis] == 0) continue;
+      const std::byte* array = bytes.data() + columns.at[first + axis];
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto value = Load<double>(array + k * sizeof(double));
+        (out[k].*vector)[static_cast<Eigen::Index>(axis)] = value;
+        none += value - value;
+      }
     }
   };
-  for (int axis = 0; axis < 3; ++axis) read(static_cast<std::size_t>(axis), &ImuSample::w_IT_T, axis);
-  for (int axis = 0; axis < 3; ++axis) read(static_cast<std::size_t>(3 + axis), &ImuSample::f_T, axis);
-  for (int axis = 0; axis < 3; ++axis) read(static_cast<std::size_t>(6 + axis), &ImuSample::b_T, axis);
+  read(0, &ImuSample::w_IT_T);
+  read(3, &ImuSample::f_T);
+  read(6, &ImuSample::b_T);
   return none == 0;
 }
 

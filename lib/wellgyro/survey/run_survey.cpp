@@ -263,7 +263,8 @@ void RunSurvey::ListLastMark() {
   news_.push_back(drafts_.size() - 1);
 }
 
-/// That makes a station, listed only if the job asks for stops or if it turns out to be the deepest.
+/// That makes a station, listed only if the job asks for stops or if it turns out to be the
+/// deepest.
 inline bool RunSurvey::ComesToRest(const AlongHole& end) const {
   if (std::abs(end.speed) > std::max(kRestSpeed, 2 * end.sigma_speed)) return false;
   return !marked_ || std::abs(end.md - last_mark_md_) > kSameDepth;
@@ -274,9 +275,8 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
   const Current& c = *current_;
   const ToolTime begin = last_knot_.value_or(c.begin);
   const double period = 1e-9 * c.period_ns;
-  Knot knot = fraction > 1
-                  ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.period_ns)})
-                  : tracker_.CutKnot(fraction);
+  Knot knot = fraction > 1 ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.period_ns)})
+                           : tracker_.CutKnot(fraction);
   const bool again = last_knot_ && knot.time <= *last_knot_;
   if (again && (waiting_.empty() || waiting_.back().draft)) return;
   if (!again) {

@@ -89,6 +89,7 @@ class WELLGYRO_EXPORT SampleQueue {
     ToolTime begun;  ///< of the newest of the others when it began
   };
 
+  /// Of a sample in the order of all.
   struct Place {
     std::int64_t seq = 0;
     std::int32_t session = 0;
