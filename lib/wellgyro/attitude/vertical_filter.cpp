@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <cstdint>
 
@@ -11,6 +10,7 @@
 
 #include "wellgyro/attitude/roll_walk_internal.h"
 #include "wellgyro/attitude/vertical_core_internal.h"
+#include "wellgyro/attitude/vertical_knot_internal.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/drift.h"
@@ -22,11 +22,17 @@ namespace wellgyro {
 namespace {
 
 using vertical::Core;
+using vertical::Counted;
+using vertical::Cut;
+using vertical::CutOf;
+using vertical::FillKnot;
 using vertical::Gap;
 using vertical::kWalks;
 using vertical::Noise;
+using vertical::Reference;
 using vertical::RollWalk;
 using vertical::SensedOf;
+using vertical::VarOf;
 
 constexpr double kHeld = 1e-5;  // of the axial rate at rest [rad/s]
 constexpr double kBlockSeconds = 0.2;
@@ -38,57 +44,11 @@ constexpr double kLeave = 1.3;         // of the sine at which the filter takes 
 constexpr double kRun = 6, kStop = 7;
 constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
 constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
-constexpr double kLeastKept = 1;        // of an error of azimuth, by the Earth's rate
-constexpr double kBack = 0.5;           // so much left of what a gap cost, the rest is given back,
-constexpr double kWorthBack = 0.1;      // where it was so much of what is held
-constexpr double kGivenBack = 0.8;      // of what was counted: less is held, the rest is given back
-constexpr double kMemory = 10;          // of a rate in what the filter holds [s]
 constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
 
 bool IsFinite(const ImuSample& s) {
   return s.w_IT_T.head<2>().allFinite() && s.f_T.allFinite() &&
          (!s.has_gz || std::isfinite(s.w_IT_T.z()));
-}
-
-// Slopes of an angle against the tool's errors and the Earth's rate, and its variance from noise.
-struct Uncertain {
-  using Slopes = Eigen::Matrix<double, 1, vertical::kColumns>;
-  Slopes d = Slopes::Zero();
-  double var = 0;
-
-  Knot::SourceVector by_sources() const { return d.head<Knot::kSources>().transpose(); }
-  /// Along x and y of L as real and imaginary part [s].
-  std::complex<double> by_earth() const { return {d[vertical::kEarth], d[vertical::kEarth + 1]}; }
-};
-
-// The filter at one knot.
-struct Cut {
-  double azimuth = 0, inclination = 0, toolface = 0;
-  Uncertain in_azimuth, in_inclination, in_toolface, in_sum;
-};
-
-// Variance given to the knots since errors of the sum are counted, and before the last gap [rad^2].
-struct Counted {
-  double var = 0, before_gap = 0;
-  int knots = 0, since_gap = -1;  // none yet
-  bool in_gap = false;
-};
-
-Cut CutOf(const Core& core, const Eigen::Matrix3d& R) {
-  Cut c;
-  c.azimuth = std::atan2(R(1, 2), R(0, 2));
-  c.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
-  c.toolface = std::atan2(R(2, 1), -R(2, 0));
-  const Eigen::Matrix3d slopes = vertical::EulerSlopes(R);
-  const auto take = [&](const Eigen::RowVector3d& slope) {
-    return Uncertain{slope * core.sources().topRows<3>(),
-                     slope * core.cov_noise().topLeftCorner<3, 3>() * slope.transpose()};
-  };
-  c.in_inclination = take(slopes.row(0));
-  c.in_azimuth = take(slopes.row(1));
-  c.in_toolface = take(slopes.row(2));
-  c.in_sum = take(vertical::SumSlope(R));
-  return c;
 }
 
 }  // namespace
@@ -114,10 +74,6 @@ struct VerticalFilter::Impl {
   Eigen::Matrix3d CovTurn() const;
   void SetHeading(double azimuth, double variance);
   Cut CutAt(double rest) const;
-  double FillTurn(const Cut& now, const Uncertain& held, Knot& knot) const;
-  double VarOfTurning(const Knot& knot) const;
-  double VarOf(const Uncertain& angle) const;
-  void Count(double held, double kept, bool is_axial, Knot& knot);
   void Fill(const Cut& now, bool axial, Knot& knot);
   void FloorAtAccelerometers(Knot& knot) const;
   void CountSum();
@@ -127,9 +83,7 @@ struct VerticalFilter::Impl {
   Noise noise;
   double bias_sigma = 0;
   double sine_of_two = kSineLeast, sine_enter = kSineLeast;  // with two gyro axes; now
-  Eigen::Vector2d north = Eigen::Vector2d::Zero();  // from the filter's zero; zero: unknown
-  double zero = 0;                                  // true azimuth of it
-  double latitude = 0;
+  Reference reference;
   // The stretch near vertical.
   bool axial = false, linked = false, cut_before = false;
   Cut last;  // at the knot before
@@ -193,9 +147,10 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
   const Eigen::Vector3d& f = sample.f_T;
   const Eigen::Matrix3d R_LT =
       AttitudeMatrix(0, std::atan2(std::hypot(f.x(), f.y()), -f.z()), std::atan2(-f.y(), f.x()));
-  latitude = site.latitude;
+  reference.latitude = site.latitude;
   sine_enter = sample.has_gz ? kSineByThird : sine_of_two;
-  main.Start(SensedOf(sample, along, site, north, R_LT), R_LT, setup.errors, bias_sigma);
+  main.Start(SensedOf(sample, along, site, reference.north(), R_LT), R_LT, setup.errors,
+             bias_sigma);
   bank.fill(main);
   walk.Reset();
   rate_before.reset();
@@ -280,37 +235,6 @@ void VerticalFilter::Impl::ForgetBias() {
   for (Core& core : bank) core.ForgetBias(bias_sigma);
 }
 
-// With north unknown, what the filter counts from turns by all that the Earth's rate does to the
-// azimuth: by so much its direction is off over what the filter remembers, [rad^2] over the knot.
-double VerticalFilter::Impl::VarOfTurning(const Knot& knot) const {
-  const double sampled = knot.seconds - knot.gap_seconds;
-  if (!north.isZero() || !(sampled > 0)) return 0;
-  const double rate = kEarthRate * std::cos(latitude) * std::abs(knot.axial_cot) / sampled;
-  const double off = std::min(rate * kMemory, 1.0);
-  // Alike for as long as it takes to turn by a radian.
-  return 2 * rate * sampled * off * off;
-}
-
-// With north unknown, what the Earth's rate may have done is noise.
-double VerticalFilter::Impl::VarOf(const Uncertain& angle) const {
-  const double across = north.isZero() ? kEarthRate * std::cos(latitude) : 0;
-  return angle.var + across * across / 2 * std::norm(angle.by_earth());
-}
-
-// What the azimuth grew by since the cut before, parted into what the Earth's rate did and the
-// rest. An azimuth that is off turns that rate, all along the stretch as it was off at its begin:
-// so far that has made the error grow by `kept`. Returns what an error grows by over this knot.
-double VerticalFilter::Impl::FillTurn(const Cut& now, const Uncertain& held, Knot& knot) const {
-  const std::complex<double> to_north = north.isZero() ? 0 : std::polar(1.0, zero);
-  const double across = kEarthRate * std::cos(latitude), up = kEarthRate * std::sin(latitude);
-  const double kept = std::max(1 - across * (to_north * last.in_sum.by_earth()).imag(), kLeastKept);
-  const std::complex<double> earth = (held.by_earth() - last.in_sum.by_earth()) / kept;
-  knot.axial_cot = std::polar(1.0, -last.azimuth) * earth;
-  knot.turn = WrapPi(now.azimuth - last.azimuth) - up * (knot.seconds - knot.gap_seconds) -
-              across * (to_north * earth).real();
-  return main.heading_feeds_back() ? -across * (to_north * earth).imag() : 0;
-}
-
 // Where gravity does not show how the tool rolls, a lean is not told from the accelerometers' bias.
 void VerticalFilter::Impl::FloorAtAccelerometers(Knot& knot) const {
   const double bias = setup.errors.accel_bias_sigma;
@@ -321,64 +245,13 @@ void VerticalFilter::Impl::FloorAtAccelerometers(Knot& knot) const {
   }
 }
 
-// What the sum's variance grew by is the knot's. What turns out not to have been lost is given
-// back: as gravity shows behind a gap how the tool rolled in it, as more is learned of how it
-// rolls, and where the stretch ends.
-void VerticalFilter::Impl::Count(double held, double kept, bool is_axial, Knot& knot) {
-  Counted& c = counted;
-  c.var *= kept * kept;
-  c.before_gap *= kept * kept;
-  const bool gap = knot.gap_seconds > 0;
-  if (gap && !c.in_gap) c.before_gap = c.var, c.since_gap = 0;
-  c.in_gap = gap;
-  knot.toolface_noise_turn = std::max(0.0, held - c.var);
-  c.var += knot.toolface_noise_turn;
-  const double of_gap = c.var - c.before_gap, left = std::max(held - c.before_gap, 0.0);
-  const bool gap_counts = is_axial && c.since_gap > 0 && of_gap > kWorthBack * held;
-  if (gap_counts && left < kBack * of_gap) {
-    knot.axial_noise_share = left / of_gap;
-    knot.axial_noise_knots = c.since_gap;
-    c.var = c.before_gap + left;
-  } else if (!gap_counts && held < (is_axial ? kGivenBack : 1) * c.var) {
-    knot.axial_noise_share = held / c.var;
-    knot.axial_noise_knots = c.knots;
-    c.before_gap *= knot.axial_noise_share;
-    c.var = held;
-  }
-  ++c.knots;
-  if (c.since_gap >= 0) ++c.since_gap;
-}
-
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
 void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
-  const Uncertain& held = is_axial ? now.in_sum : now.in_azimuth;
-  const double kept = 1 + FillTurn(now, held, knot);
-  knot.d_turn = held.by_sources() - kept * last.in_sum.by_sources();
-  knot.white_turn = 0;
-  Count(held.var, kept, is_axial, knot);
-  knot.toolface_noise_turn += VarOfTurning(knot);
-  knot.roll = WrapPi(now.toolface - last.toolface);
-  knot.cot = 0;
+  FillKnot({last, now, reference, is_axial, main.heading_feeds_back()}, &counted, &knot);
   knot.vertical = !linked;
-  knot.axial = is_axial;
-  if (is_axial) {
-    knot.inclination = now.inclination;
-    knot.inclination_accel = (now.inclination + last.inclination) / 2;
-    knot.d_inclination = now.in_inclination.by_sources();
-    knot.sigma_inclination = knot.sigma_inclination_accel = std::sqrt(VarOf(now.in_inclination));
-    const double sampled = knot.seconds - knot.gap_seconds;
-    knot.lift = now.inclination - last.inclination;
-    knot.d_lift.setZero();
-    knot.d_lift[Knot::kGyroBiasX] = sampled * std::sin(now.toolface);
-    knot.d_lift[Knot::kGyroBiasY] = sampled * std::cos(now.toolface);
-    knot.toolface = now.toolface;
-    knot.d_toolface = now.in_toolface.by_sources();
-    knot.var_toolface = VarOf(now.in_toolface);
-    knot.var_azimuth_beyond =
-        now.in_azimuth.var - counted.var + knot.var_toolface - now.in_toolface.var;
-  }
   const Knot::SourceVector d_toolface = now.in_toolface.by_sources();
-  const double vague = VarOf(now.in_toolface) + d_toolface.cwiseProduct(source_sigma).squaredNorm();
+  const double vague =
+      VarOf(now.in_toolface, reference) + d_toolface.cwiseProduct(source_sigma).squaredNorm();
   if (is_axial && vague > kToolfaceVague * kToolfaceVague) FloorAtAccelerometers(knot);
   // What was learned while the sum was anything rests on slopes taken far from the truth.
   found = lost && is_axial && vague < kToolfaceVague * kToolfaceVague;
@@ -474,24 +347,23 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
   m.end = stamp.tool_time + Duration{stamp.period_ns};
   m.last_along = along;
   m.dt = 1e-9 * stamp.period_ns;
-  m.main.Predict(SensedOf(sample, along, site, m.north, m.main.R_LT()));
+  const Eigen::Vector2d north = m.reference.north();
+  m.main.Predict(SensedOf(sample, along, site, north, m.main.R_LT()));
   if (!sample.has_gz) {
-    for (Core& core : m.bank) core.Predict(SensedOf(sample, along, site, m.north, core.R_LT()));
+    for (Core& core : m.bank) core.Predict(SensedOf(sample, along, site, north, core.R_LT()));
   }
   m.AddUnseen(sample, along);
   if (m.main.block_seconds() > kBlockSeconds - 1e-9) m.Close();
 }
 
 void VerticalFilter::SetAzimuth(double azimuth, double variance) {
-  impl_->SetHeading(azimuth - impl_->zero, variance);
-  if (impl_->north.isZero()) SetNorth(0.0);
+  const Reference& r = impl_->reference;
+  impl_->SetHeading(azimuth - r.azimuth.value_or(0), variance);
+  if (!r.azimuth) SetNorth(0.0);
 }
 
 void VerticalFilter::SetNorth(std::optional<double> azimuth_of_zero) {
-  Impl& m = *impl_;
-  m.zero = azimuth_of_zero.value_or(0);
-  m.north.setZero();
-  if (azimuth_of_zero) m.north << std::cos(m.zero), -std::sin(m.zero);
+  impl_->reference.azimuth = azimuth_of_zero;
 }
 
 void VerticalFilter::CutKnot(double rest, Knot& knot) {
@@ -563,7 +435,7 @@ AttitudeSample VerticalFilter::attitude() const {
   AttitudeSample a;
   a.time = impl_->end;
   a.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
-  a.azimuth = WrapTwoPi(std::atan2(R(1, 2), R(0, 2)) + impl_->zero);
+  a.azimuth = WrapTwoPi(std::atan2(R(1, 2), R(0, 2)) + impl_->reference.azimuth.value_or(0));
   a.toolface = std::atan2(R(2, 1), -R(2, 0));
   const Eigen::Matrix3d slopes = vertical::EulerSlopes(R);
   a.cov_attitude = slopes * impl_->CovTurn() * slopes.transpose();
