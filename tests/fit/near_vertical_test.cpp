@@ -35,6 +35,7 @@ struct Well {
   double begin_deg, vertical_m, build_deg;  ///< builds by .02 deg/m below the first part
   double rpm, swing_deg, period;            ///< of the roll, period in s
   double lost = 0;                          ///< of the messages of two seconds
+  double skewed = 0;                        ///< scale [1] and misalignment [rad] of the gyros
 };
 
 constexpr Well kWells[] = {
@@ -46,6 +47,7 @@ constexpr Well kWells[] = {
     {"0.05 deg, then 0.5, roll that swings", 0.05, 300, 0.45, 0.3, 30, 15},
     {"0.3 deg, then 10, 3 rpm", 0.3, 100, 9.7, 3, 0, 15},
     {"0.2 deg, 3 rpm, 3 % lost", 0.2, 600, 0, 3, 0, 15, 0.03},
+    {"0.2 deg, sliding, skewed gyros", 0.2, 600, 0, 0, 0, 15, 0, 1e-4},
 };
 constexpr double kBelow = 400;  // [m]
 
@@ -98,6 +100,7 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
   testing::Hour tool = testing::Tactical();
   tool.errors.accel_bias_sigma *= 0.5;
   tool.errors.accel_noise *= 0.5;
+  tool.errors.gyro_scale_sigma = tool.errors.gyro_misalignment_sigma = well.skewed;
   const LeastSquaresAdjuster adjuster;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));

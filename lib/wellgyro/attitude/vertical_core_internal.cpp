@@ -205,9 +205,13 @@ void Core::Carry(const Noise& noise) {
     added.topLeftCorner<2, 2>().diagonal().array() +=
         std::min(cov_(2, 2), 1.0) * w_IL_.head<2>().squaredNorm() * kRateSeconds * T;
   }
-  const double changed = Square(noise.skewed * (spin - last_spin_));
+  // What the tool's turning puts into the other axes changes with it; not with what may be error of
+  // the estimate, which would add up to a bias of anything.
+  const double faster = spin - last_spin_;
+  const bool is_faster = Square(faster) > Square(kSure) * cov_(kAxial, kAxial);
+  const double changed = is_faster ? Square(noise.skewed * faster) : 0;
   if (has_gz_) added(kAxial, kAxial) += changed;
-  last_spin_ = spin;
+  if (is_faster) last_spin_ = spin;
 
   for (int i = kGyro; i < kAccel; ++i) added(i, i) = Square(noise.bias_walk) * T;
   cov_noise_ = phi * cov_noise_ * phi.transpose() + added;
