@@ -34,9 +34,7 @@ void RunBook::HeardAt(UtcTime utc) {
   if (!heard_ || utc < *heard_) heard_ = utc;
 }
 
-std::int32_t RunBook::RunAt(UtcTime utc, std::int32_t told) const {
-  if (told > 0) return told;
-  if (begins_.empty()) return 1;
+std::int32_t RunBook::RunBegunBy(UtcTime utc) const {
   // The job says of its runs when they begin: what is earlier still belongs to the first of them.
   const bool before_first = heard_ && *heard_ < begins_.front().utc;
   if (utc < begins_.front().utc) return begins_.front().of_job ? begins_.front().number : 1;

@@ -28,7 +28,9 @@ class WELLGYRO_EXPORT RunBook {
   void HeardAt(UtcTime utc);
 
   /// `told` where the source knows its run (> 0), else the run that began last.
-  std::int32_t RunAt(UtcTime utc, std::int32_t told) const;
+  std::int32_t RunAt(UtcTime utc, std::int32_t told) const {
+    return told > 0 ? told : begins_.empty() ? 1 : RunBegunBy(utc);
+  }
 
   /// The job says that the run had ended by then: samples from there to the next run's begin are
   /// no run's. A RUN_END of a person ends none, because what follows on deck still belongs to it.
@@ -40,6 +42,7 @@ class WELLGYRO_EXPORT RunBook {
   std::string remark(std::int32_t run) const;
 
  private:
+  std::int32_t RunBegunBy(UtcTime utc) const;
   bool EndedBySpec(std::int32_t run, UtcTime utc) const;
 
   struct Begin {

@@ -197,7 +197,8 @@ void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double
   summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
   if (c.for_vertical) vertical_.Push(c.sample, c.middle, site_);
   resting_ = c.rests;
-  if (known && pass_next.number == c.pass.number && c.pass.pass != Pass::kStationary) {
+  if (known && pass_next.number == c.pass.number && c.pass.pass != Pass::kStationary &&
+      (pass_next.md != c.pass.md || c.pass.begins)) {
     AddTargets(pass_next.md, reach);
   }
   const double period = static_cast<double>(c.period_ns);
@@ -231,7 +232,7 @@ void RunSurvey::AddTargets(double md_next, double reach) {
   const PassState& pass = current_->pass;
   const double way = md_next - pass.md;
   const double seconds = reach * 1e-9 * static_cast<double>(current_->period_ns);
-  if (std::abs(way) > kJump * std::max(seconds, 1.0) || (way == 0 && !pass.begins)) return;
+  if (std::abs(way) > kJump * std::max(seconds, 1.0)) return;
   // A first pass begins where the tool stood; between any other turn and its discovery the depths
   // belong to the pass before.
   const bool first = pass.begins && std::abs(pass.md_turn - pass.md) <= 2 * kSameDepth;
