@@ -97,6 +97,7 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
   const double below = well.vertical_m;
   const std::vector<double> depths = {below + 50, below + 150, below + 250, below + 380};
   std::vector<Claims> inclination(depths.size()), azimuth(depths.size()), place(depths.size());
+  Claims seen;  // azimuths at the last depth, where no sample is missing
   testing::Hour tool = testing::Tactical();
   tool.errors.accel_bias_sigma *= 0.5;
   tool.errors.accel_noise *= 0.5;
@@ -119,11 +120,13 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
         place[i].dof = 3;
         place[i].Add(off.dot(cov.inverse() * off), off.squaredNorm(), cov.trace());
         azimuth[i].Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
+        if (i + 1 < depths.size() || Has(s.quality, Quality::kGap)) continue;
+        seen.Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
       }
     }
   }
   // In all wells together with 99 %. Timid it may be: with north unknown near vertical, how the
-  // Earth turns the azimuth is only bounded. At 0.15 deg of inclination it is 1.3 times too sure.
+  // Earth turns the azimuth is only bounded.
   const double risk = 0.01 / static_cast<double>(std::size(kWells) * depths.size() * 3);
   for (std::size_t i = 0; i < depths.size(); ++i) {
     const std::string where = std::string(well.name) + " at " + std::to_string(depths[i]) + " m";
@@ -135,11 +138,12 @@ TEST_P(NearVertical, IsAsSureAsItSays) {
     const double band = ChiSquareQuantile(1 - risk, seeds);
     EXPECT_LT(inclination[i].normalised, band) << where;
     EXPECT_GT(inclination[i].normalised, ChiSquareQuantile(risk, seeds) / 2) << where;
-    EXPECT_LT(azimuth[i].normalised, band * (well.begin_deg == 0.15 ? 1.3 * 1.3 : 1)) << where;
+    EXPECT_LT(azimuth[i].normalised, band) << where;
     EXPECT_LT(place[i].normalised, ChiSquareQuantile(1 - risk, 3 * seeds)) << where;
     EXPECT_LT(std::sqrt(place[i].variance / place[i].count), 2.0) << where;
   }
-  EXPECT_LT(azimuth.back().sigma_deg(), 2.5) << well.name;
+  EXPECT_GT(seen.count, seeds / 2) << well.name;
+  EXPECT_LT(seen.sigma_deg(), 2.5) << well.name;
 }
 
 // What a knot says the azimuth grew by, with the true azimuth for the Earth's rate.
