@@ -25,7 +25,8 @@ using gyrocompass::HeadingFrom;
 using gyrocompass::Problem;
 using gyrocompass::Solution;
 
-constexpr double kMirrorCost = 9;
+constexpr double kMirrorCost = 9;  // by which one minimum must beat the other
+constexpr double kBarrier = 4;     // between two minima, beyond which they are two candidates
 
 /// The minima of the cost over all headings, best first. Two axes leave up to two.
 std::vector<Solution> Minima(const Problem& problem) {
@@ -53,27 +54,46 @@ std::vector<Solution> Minima(const Problem& problem) {
   return found;
 }
 
-/// Variance of the heading from the posterior itself, about the solution, over the headings that
-/// hang together with it within a cost of 12: where the minimum is no parabola, as near east-west
-/// and horizontal, the curvature at its bottom says too much or too little.
-double HeadingVariance(const Problem& problem, const Solution& solution) {
+/// The posterior of the heading about a minimum, over the headings that hang together with it:
+/// between them the cost rises by less than kBarrier. Two minima may do so, as near east-west
+/// and horizontal, and the curvature at the bottom of one says nothing of the other.
+struct Basin {
+  double low = 0, high = 0;  ///< against the minimum [rad]
+  double mean = 0;           ///< likewise [rad]
+  double variance = 0;       ///< about the mean [rad^2]
+};
+
+Basin BasinAbout(const Problem& problem, const std::vector<Solution>& minima) {
+  const Solution& solution = minima.front();
   const double parabola = solution.cov(2, 2);
   constexpr double kNarrow = FromDegrees(0.5);
-  if (parabola < kNarrow * kNarrow) return parabola;
+  // Minima farther apart than 12 of such sigmas have more than kBarrier between them.
+  const bool alone = std::none_of(minima.begin() + 1, minima.end(), [&](const Solution& other) {
+    return std::abs(HeadingFrom(solution.state, other.state)) < 12 * std::sqrt(parabola);
+  });
+  if (alone && parabola < kNarrow * kNarrow) return {.variance = parabola};
   constexpr double kCost = 12;
   const double centre = HeadingFrom(problem.Start(0), solution.state);
   const double step = std::clamp(std::sqrt(parabola) / 4, FromDegrees(0.25), FromDegrees(2));
-  double weights = 1, moment = 0;
+  Basin basin;
+  double weights = 1, first = 0, second = 0;
   const double best = problem.Profile(centre);
   for (const int side : {-1, 1}) {
+    double last = 0;
     for (double away = step; away <= kPi; away += step) {
       const double cost = problem.Profile(centre + side * away) - best;
-      if (cost > kCost) break;
-      weights += std::exp(-cost / 2);
-      moment += std::exp(-cost / 2) * away * away;
+      if (cost > kCost || (cost > kBarrier && cost < last)) break;
+      (side < 0 ? basin.low : basin.high) = side * away;
+      const double weight = std::exp(-cost / 2);
+      weights += weight;
+      first += weight * side * away;
+      second += weight * away * away;
+      last = cost;
     }
   }
-  return std::min(moment / weights, kUnknownAngleVariance);
+  basin.mean = first / weights;
+  basin.variance = std::min(second / weights - basin.mean * basin.mean, kUnknownAngleVariance);
+  return basin;
 }
 
 /// Covariance of (inclination, azimuth, toolface of the last window) from that of the rotation in L
@@ -195,14 +215,28 @@ NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,
   const Problem problem(windows, site, setup);
   std::vector<Solution> minima = Minima(problem);
   Solution& best = minima.front();
+  TakeBiases(problem, best, fix);
+  CheckGravity(windows, site, setup, fix);
+  CheckEarthRate(problem, best, fix);
 
+  const Basin basin = BasinAbout(problem, minima);
+  const auto rival = std::find_if(minima.begin() + 1, minima.end(), [&](const Solution& other) {
+    const double away = HeadingFrom(best.state, other.state);
+    return other.cost - best.cost < kMirrorCost && (away < basin.low || away > basin.high);
+  });
+  if (rival != minima.end()) {
+    const Vector3d mirror = rival->state.R_LT.col(2);
+    fix.mirror_azimuth = WrapTwoPi(std::atan2(mirror.y(), mirror.x()));
+    fix.mirror_cost = rival->cost - best.cost;
+    fix.quality |= Quality::kMirror;
+  }
+  best.state.R_LT = RotationZ(basin.mean) * best.state.R_LT;
   // Where the posterior is not the parabola's, neither are the parabola's correlations.
-  const double variance = HeadingVariance(problem, best);
-  const double ratio = variance / best.cov(2, 2);
+  const double ratio = basin.variance / best.cov(2, 2);
   const double cross = std::sqrt(ratio) * std::min(ratio, 1 / ratio);
   best.cov.row(2) *= cross;
   best.cov.col(2) *= cross;
-  best.cov(2, 2) = variance;
+  best.cov(2, 2) = basin.variance;
 
   const Matrix3d R = best.state.R(windows.size() - 1);
   const Vector3d t = R.col(2);
@@ -212,15 +246,6 @@ NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,
   bool vertical = false;
   fix.cov_attitude = EulerCovariance(best, windows.size(), vertical);
   if (vertical) fix.quality |= Quality::kVertical;
-  if (minima.size() > 1 && minima[1].cost - best.cost < kMirrorCost) {
-    const Vector3d mirror = minima[1].state.R_LT.col(2);
-    fix.mirror_azimuth = WrapTwoPi(std::atan2(mirror.y(), mirror.x()));
-    fix.mirror_cost = minima[1].cost - best.cost;
-    fix.quality |= Quality::kMirror;
-  }
-  TakeBiases(problem, best, fix);
-  CheckGravity(windows, site, setup, fix);
-  CheckEarthRate(problem, best, fix);
   return fix;
 }
 

@@ -29,10 +29,11 @@ struct GyrocompassSetup {
 /// `toolface` is that of the last window. The covariance holds noise over the windows, bias
 /// instability and rate random walk between them, and the priors. Two axes see azimuths A and
 /// 180 deg - A nearly alike: the second minimum is kept (`mirror_azimuth`) while its cost is within
-/// 9 of the best, and flagged kMirror. Near east-west and horizontal the covariance grows to that
-/// of the posterior itself. Where the axis is vertical within 3 sigma, kVertical is set; azimuth
-/// and toolface alone mean little (variances up to pi^2/3), their sum is still good, and the
-/// covariance says both. kGravity and kEarthRate are set beyond 3 of their own sigmas.
+/// 9 of the best, and flagged kMirror. Near east-west and horizontal the two run into one: where
+/// the cost between them rises by less than 4, azimuth and variance are the posterior's over both.
+/// Where the axis is vertical within 3 sigma, kVertical is set; azimuth and toolface alone mean
+/// little (variances up to pi^2/3), their sum is still good, and the covariance says both. kGravity
+/// and kEarthRate are set beyond 3 of their own sigmas.
 ///
 /// Throws std::invalid_argument for no windows, values not finite, or a window without length.
 WELLGYRO_EXPORT NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,

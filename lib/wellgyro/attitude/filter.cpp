@@ -81,6 +81,31 @@ void TakeSum(const Knot& knot, NorthFix* fix) {
   if (fix->mirror_azimuth) *fix->mirror_azimuth += shift;
 }
 
+// Whether the second order of the rates at rest counts against the first, over this spread.
+bool Bends(double azimuth, double inclination, double variance) {
+  const double slope = std::hypot(std::cos(azimuth), std::sin(azimuth) / std::tan(inclination));
+  return 3 * variance > slope * slope;
+}
+
+// Where the rates are made linear, the azimuth before being known by `variance`. Near east-west and
+// horizontal they bend, so that the place matters, and going on from there to where the window
+// itself leads would pick one of two mirrors that have run into one. Their second order is one and
+// the same error in all `others` that bent before: it leaves an azimuth that rests on them as vague
+// as each says, and all count as little more than one.
+void TakePoint(double before, double variance, std::ptrdiff_t others, FilterFix* f) {
+  const double given = f->fix.cov_attitude(1, 1);
+  const bool known = variance < kUnknownAngleVariance;
+  const double weight = known ? variance / (variance + given) : 1;
+  f->about = known ? before + weight * WrapPi(f->azimuth - before) : f->azimuth;
+  f->var_about = weight * given;
+  f->steady = f->rates && Bends(f->azimuth, f->fix.inclination, given);
+  if (!f->steady) return;
+  f->seconds *= static_cast<double>((others + 1) * (others + 1));
+  if (!known) return;
+  f->about = before;
+  f->var_about = others > 0 ? std::max(variance, given) : variance;
+}
+
 double ChiSquare(double azimuth, double predicted, double variance) {
   const double d = WrapPi(azimuth - predicted);
   return variance > 0 ? d * d / variance : 0;
@@ -98,7 +123,9 @@ struct AzimuthFilter::Impl {
 
   void Work(std::size_t i);
   void TakePlainFixes(std::size_t worked, double growth, const FilterPlace& place);
-  void TakeStill(const FilterEpoch& epoch);
+  void FitRates(std::size_t from, FilterFix* f);
+  double PointOf(const FilterFix& f) const;
+  void TakeStill(std::size_t i);
   void TakeAzimuth(double azimuth, double variance);
   void Observe(const Knot& knot);
   void Station(std::size_t i);
@@ -146,11 +173,7 @@ void AzimuthFilter::Impl::Rewind(std::size_t epochs) {
 
 void AzimuthFilter::Impl::TakeAzimuth(double azimuth, double variance) {
   if (core.azimuth_diffuse()) core.SetAzimuth(azimuth);
-  FilterMeasurement m;
-  m.h = FilterVector::Zero(core.layout().size);
-  m.h[0] = 1;
-  m.value = core.azimuth() + WrapPi(azimuth - core.azimuth());
-  m.variance = variance;
+  FilterMeasurement m = core.OfAzimuth(core.azimuth() + WrapPi(azimuth - core.azimuth()), variance);
   core.Take(&m);
 }
 
@@ -173,15 +196,50 @@ void AzimuthFilter::Impl::TakePlainFixes(std::size_t worked, double growth,
   }
 }
 
-void AzimuthFilter::Impl::TakeStill(const FilterEpoch& epoch) {
+// `about`, counted through the same whole turns as the azimuth before the window.
+double AzimuthFilter::Impl::PointOf(const FilterFix& f) const {
+  double before = f.about;
+  if (f.epoch_begin > 0 && history.epochs[f.epoch_begin - 1].azimuth_known) {
+    before = history.epochs[f.epoch_begin - 1].azimuth;
+  } else if (f.epoch_begin == 0) {
+    before = history.setup.start_azimuth.value_or(before);
+  }
+  return before + WrapPi(f.about - before);
+}
+
+void AzimuthFilter::Impl::TakeStill(std::size_t i) {
+  const FilterEpoch& epoch = history.epochs[i];
   const FilterFix& fix = history.fixes[static_cast<std::size_t>(epoch.fix)];
-  if (core.azimuth_diffuse()) core.SetAzimuth(fix.about);
   // Every knot of a window is made linear about the same azimuth, so that together they weigh as
   // one measurement.
-  const double about = core.azimuth() + WrapPi(fix.about - core.azimuth());
+  const double about = PointOf(fix);
+  if (core.azimuth_diffuse() && i == fix.epoch_begin) core.SetAzimuth(about);
   StillMeasurements m = core.AtRest(epoch.knot, {about, fix.var_about, fix.seconds});
   core.Take(&m.turn);
   core.Take(&m.lift);
+  if (fix.var_hold > 0 && i + 1 == fix.epoch_end) {
+    FilterMeasurement hold = core.OfAzimuth(about + fix.hold - fix.about, fix.var_hold);
+    core.Take(&hold);
+  }
+}
+
+// Makes the rates linear about what the window itself gives, as in an iterated Kalman filter. Where
+// they bend and nothing was known, they leave less than the fix says, which holds the difference.
+void AzimuthFilter::Impl::FitRates(std::size_t from, FilterFix* f) {
+  if (f->steady && !core.azimuth_diffuse()) return;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = from; i < f->epoch_end; ++i) Work(i);
+    const double azimuth = core.azimuth(), variance = core.covariance()(0, 0);
+    Rewind(from);
+    if (f->steady) {
+      const double given = f->fix.cov_attitude(1, 1);
+      if (!(given < variance)) return;
+      f->var_hold = 1 / (1 / given - 1 / variance);
+      f->hold = f->about + (f->about - azimuth) * f->var_hold / variance;
+      return;
+    }
+    f->about = azimuth;
+  }
 }
 
 void AzimuthFilter::Impl::Observe(const Knot& knot) {
@@ -198,7 +256,7 @@ void AzimuthFilter::Impl::Work(std::size_t i) {
   const double before = core.azimuth();
   const FilterPlace place = core.place();
   core.Step(knot, before, std::nullopt);
-  if (epoch.fix >= 0) TakeStill(epoch);
+  if (epoch.fix >= 0) TakeStill(i);
   TakePlainFixes(i + 1, core.azimuth() - before, place);
   epoch.azimuth = core.azimuth();
   epoch.azimuth_known = core.azimuth_known();
@@ -352,12 +410,10 @@ FilterFix AzimuthFilter::Update(const NorthFix& fix) {
     const double before = m.core.azimuth() - since, variance = m.core.variance();
     m.ChooseBranch(&f, before, variance);
     TakeClosure(before, variance, &f);
-    // Near east-west and horizontal a fix by itself may lie far off: the rates are hardly linear
-    // there, so that the place matters.
-    const double given = f.fix.cov_attitude(1, 1);
-    const double weight = variance < kUnknownAngleVariance ? variance / (variance + given) : 1;
-    f.about = weight < 1 ? before + weight * WrapPi(f.azimuth - before) : f.azimuth;
-    f.var_about = weight * given;
+    const auto others =
+        std::count_if(m.history.fixes.begin(), m.history.fixes.end(),
+                      [](const FilterFix& o) { return o.steady && o.use != FixUse::kAmbiguous; });
+    TakePoint(before, variance, others, &f);
   }
   m.history.fixes.push_back(f);
   if (f.use == FixUse::kNoKnot) return f;
@@ -370,16 +426,9 @@ FilterFix AzimuthFilter::Update(const NorthFix& fix) {
   const std::size_t from = m.FirstToWork(f);
   if (f.epoch_end == 0) m.snapshots.clear();
   m.Rewind(from);
-  if (f.rates) {  // linear about what the window itself gives, as in an iterated Kalman filter
-    for (int pass = 0; pass < 2; ++pass) {
-      for (std::size_t i = from; i < f.epoch_end; ++i) m.Work(i);
-      f.about = m.core.azimuth();
-      m.history.fixes.back().about = f.about;
-      m.Rewind(from);
-    }
-  }
+  if (f.rates && f.use != FixUse::kAmbiguous) m.FitRates(from, &m.history.fixes.back());
   for (std::size_t i = from; i < all; ++i) m.Work(i);
-  return f;
+  return m.history.fixes.back();
 }
 
 const StationState& AzimuthFilter::MarkStation() {

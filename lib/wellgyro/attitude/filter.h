@@ -52,8 +52,11 @@ struct FilterFix {
   double about = 0;             ///< where the rates are made linear: `azimuth`, weighed with the
                                 ///< azimuth known before [rad]
   double var_about = 0;         ///< of `about` [rad^2]
-  bool rates = false;           ///< the still knots of its window entered instead of its azimuth
-  double seconds = 0;           ///< of these knots
+  bool rates = false;           ///< the still knots of its window enter instead of its azimuth
+  bool steady = false;          ///< these stay linear about `about`, whatever comes later
+  double seconds = 0;           ///< of these knots; n^2 times that for the n-th steady fix
+  double hold = 0;              ///< azimuth as if measured at the window's end, beside its rates,
+  double var_hold = 0;          ///< and its variance: what they by themselves lack [rad^2]; 0: none
   std::size_t epoch_begin = 0;  ///< first epoch of the window, and the one at which a plain azimuth
   std::size_t epoch_end = 0;    ///< holds is epoch_end - 1; both 0: before the first knot
 };
@@ -75,10 +78,10 @@ struct FilterHistory {
 /// azimuth, so that gyro bias, mass unbalance and the rest correlate it rightly with the drift and
 /// with other fixes; any other fix enters as azimuth and cov_attitude(1, 1), taken as independent.
 ///
-/// Rates count for less by what the second order in azimuth may be, so that a stop hardly seeing
-/// north, as near horizontal and east-west, is not trusted for more than it says. Never looks back:
-/// three such stops, 2 deg from horizontal and 5 deg from east-west, leave the variance short by up
-/// to 5 in the mean until Smooth(), which makes all linear afresh.
+/// Rates count for less by what the second order in azimuth may be. Where that is too much, as near
+/// horizontal and east-west, a first fix leaves azimuth and variance as they stand in it, and later
+/// ones are made linear about the azimuth known before, over all its spread. Errors of the second
+/// order are the same in all of them: together they tell hardly more of them than one.
 /// A first knot with zero `seconds` only says where the run begins. One filter for one run.
 class WELLGYRO_EXPORT AzimuthFilter {
  public:

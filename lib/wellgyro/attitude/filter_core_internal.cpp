@@ -249,7 +249,8 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& a
   const double azimuth = about.azimuth;
   const double north = kEarthRate * std::cos(place_.latitude);
   const double up = kEarthRate * std::sin(place_.latitude);
-  const double c = std::cos(azimuth), s = std::sin(azimuth);
+  const double faded = std::exp(-about.variance / 2);  // the mean over all azimuths
+  const double c = faded * std::cos(azimuth), s = faded * std::sin(azimuth);
   const double cot = knot.cot / knot.seconds;
   const double white = Square(setup_.gyro.angle_random_walk);
   const double quantum = 2 * Square(setup_.gyro.quantization);
@@ -281,6 +282,15 @@ StillMeasurements FilterCore::AtRest(const Knot& knot, const StillWindowPoint& a
   if (layout_.latitude >= 0) m.lift.h[layout_.latitude] = -up * s * knot.seconds;
   m.lift.value = -(knot.lift + north * s * knot.seconds) + m.lift.h[0] * azimuth;
   m.lift.variance = white * knot.seconds + quantum + kFloor + bent * Square(s) + knot.var_unseen;
+  return m;
+}
+
+FilterMeasurement FilterCore::OfAzimuth(double azimuth, double variance) const {
+  FilterMeasurement m;
+  m.h = FilterVector::Zero(layout_.size);
+  m.h[0] = 1;
+  m.value = azimuth;
+  m.variance = variance;
   return m;
 }
 

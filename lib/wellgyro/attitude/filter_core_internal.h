@@ -136,6 +136,8 @@ class FilterCore {
   /// What the last knot, at rest, says, made linear about `azimuth`.
   StillMeasurements AtRest(const Knot& knot, const StillWindowPoint& about) const;
 
+  FilterMeasurement OfAzimuth(double azimuth, double variance) const;
+
   void Take(FilterMeasurement* m);
 
   /// From here on cross() is E[x_here x_now'].

@@ -94,12 +94,8 @@ void TakePlainFixes(const FilterHistory& history, std::size_t worked, double gro
     if (!Used(f) || f.rates || f.epoch_end != worked) continue;
     const double since =
         worked > 0 ? GrowthSince(history.epochs[worked - 1].knot, f.fix, growth) : 0;
-    FilterMeasurement m;
-    m.h = FilterVector::Zero(core->layout().size);
-    m.h[0] = 1;
-    m.value = core->azimuth() + WrapPi(f.azimuth + since - core->azimuth());
-    m.variance = f.fix.cov_attitude(1, 1);
-    TakeAndKeep(std::move(m), core, pass);
+    const double azimuth = core->azimuth() + WrapPi(f.azimuth + since - core->azimuth());
+    TakeAndKeep(core->OfAzimuth(azimuth, f.fix.cov_attitude(1, 1)), core, pass);
   }
 }
 
@@ -120,9 +116,13 @@ ForwardPass Forward(const FilterHistory& history, const Path& path) {
     const double growth = core.azimuth() - before;
     if (e.fix >= 0) {
       const FilterFix& fix = history.fixes[static_cast<std::size_t>(e.fix)];
-      StillMeasurements m = core.AtRest(e.knot, {path[i + 1], fix.var_about, fix.seconds});
+      const double about = fix.steady ? path[i + 1] + WrapPi(fix.about - path[i + 1]) : path[i + 1];
+      StillMeasurements m = core.AtRest(e.knot, {about, fix.var_about, fix.seconds});
       TakeAndKeep(std::move(m.turn), &core, &pass);
       TakeAndKeep(std::move(m.lift), &core, &pass);
+      if (fix.var_hold > 0 && i + 1 == fix.epoch_end) {
+        TakeAndKeep(core.OfAzimuth(about + fix.hold - fix.about, fix.var_hold), &core, &pass);
+      }
     }
     TakePlainFixes(history, i + 1, growth, &core, &pass);
     r.rows = RowsOf(core.layout(), e.knot, history.setup.site.gravity);

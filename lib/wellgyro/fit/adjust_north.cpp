@@ -12,7 +12,6 @@ namespace {
 constexpr int kTries = 12;                    // azimuths to start from
 constexpr double kMargin = 9;                 // chi-square by which one must beat another
 constexpr double kFar = 12;                   // chi-square beyond which nothing counts
-constexpr double kApart = 0.2;                // closer than this two may be one [rad]
 constexpr double kNarrow = FromDegrees(0.5);  // sigma to which the cost is a parabola
 constexpr double kWide = FromDegrees(3);      // step along the cost
 constexpr double kSame = 1e-3;                // two tries that came to one [rad]
@@ -135,8 +134,6 @@ AdjustNorth FindNorth(const AdjustSegment& segment, const std::vector<double>& a
       return m.chi_square - best.chi_square < kMargin && is_one(away);
     });
   };
-  north.ambiguous = rivals([](double away) { return std::abs(away) > kApart; });
-  if (north.ambiguous) return north;
   const Basin basin = BasinAbout(best, segment, reference, p);
   north.var_beyond = std::max(0.0, basin.variance - reference.variance);
   if (basin.variance < kAlike * reference.variance) {

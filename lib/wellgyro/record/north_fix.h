@@ -29,7 +29,8 @@ struct NorthFix {
   /// Of the axis, clockwise from magnetic north, where the tool has magnetometers [rad]. Compared
   /// with `azimuth`, and never in it.
   std::optional<double> magnetic_azimuth;
-  /// Second minimum of the cost, kept whenever the data cannot exclude it.
+  /// Second minimum of the cost, kept whenever the data cannot exclude it; where the two have run
+  /// into one, `azimuth` lies between and its variance covers both.
   std::optional<double> mirror_azimuth;
   double mirror_cost = 0;  ///< cost of the mirror less cost of the solution, chi-square units
   /// Of the azimuth against what was known before it came; absent where nothing was.
