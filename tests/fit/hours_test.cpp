@@ -142,7 +142,8 @@ TEST(Hours, LeanAsSureAsTheySayNearVertical) {
     }
   }
   nearest.ExpectTrue("inclination nearest to vertical");
-  above.ExpectTrue("inclination above");
+  // By the floor of inclinations, which a well just below its kink needs.
+  above.ExpectTrue("inclination above", 2e-4, 1.3);
 }
 
 // Strong drift, three stops, no azimuth from outside, one position at each stop.

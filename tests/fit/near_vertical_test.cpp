@@ -1,5 +1,6 @@
 // Wells that are vertical for a while, hardly out of vertical, or that pass through it: whole runs
 // with a stop at both ends, against the truth at fixed depths.
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -182,6 +183,36 @@ TEST(NearVerticalStretch, OwesNothingToThoseBefore) {
     off = by_bias = 0;
   }
   EXPECT_EQ(stretches, 6);
+}
+
+// A bias across the tool looks like the same lean on both sides of vertical, where it leans the
+// other way: nothing tells the one from the other.
+TEST(ThroughVertical, ASlidingToolLearnsNothingOfItsAccelerometers) {
+  testing::Hour tool = testing::Tactical();
+  tool.errors.accel_bias_sigma = 5e-4;
+  tool.errors.accel_noise = 2e-4;
+  Simulation simulation;
+  const double lean = FromDegrees(2);
+  simulation.well.stations = {{0, lean, FromDegrees(200)},
+                              {150, lean, FromDegrees(200)},
+                              {250, lean, FromDegrees(20)},
+                              {500, lean, FromDegrees(20)}};
+  simulation.earth.latitude = FromDegrees(tool.latitude_deg);
+  simulation.run.start_md = 5;
+  simulation.run.steps = {RunStop{.seconds = 180}, RunMove{.to_md = 490, .speed = 1},
+                          RunStop{.seconds = 180}};
+  simulation.streams.imu_hz = tool.imu_hz;
+  simulation.tool.errors.accel_bias.x() = 6e-4;
+  const testing::Flown flown = testing::Fly(simulation, testing::JobOf(tool));
+  const Adjustment adjusted = AdjustRun(flown.history, 0);
+  EXPECT_GT(adjusted.sigma_errors[Knot::kAccelBiasX], 0.95 * tool.errors.accel_bias_sigma);
+  double worst = 0;
+  for (std::size_t i = 0; i < flown.truth.size(); ++i) {
+    const AttitudeSample& a = adjusted.run.attitude[i];
+    const double off = a.inclination - flown.truth[i].inclination;
+    worst = std::max(worst, std::abs(off) / std::sqrt(a.cov_attitude(0, 0)));
+  }
+  EXPECT_LT(worst, 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Wells, NearVertical, ::testing::ValuesIn(kWells),

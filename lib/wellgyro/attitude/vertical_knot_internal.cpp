@@ -78,11 +78,8 @@ void FillEnd(const Leg& leg, double counted, Knot* knot) {
   knot->d_inclination = now.in_inclination.by_sources();
   knot->sigma_inclination = knot->sigma_inclination_accel =
       std::sqrt(VarOf(now.in_inclination, leg.reference));
-  const double sampled = knot->seconds - knot->gap_seconds;
   knot->lift = now.inclination - leg.before.inclination;
-  knot->d_lift.setZero();
-  knot->d_lift[Knot::kGyroBiasX] = sampled * std::sin(now.toolface);
-  knot->d_lift[Knot::kGyroBiasY] = sampled * std::cos(now.toolface);
+  knot->d_lift = now.in_inclination.by_sources() - leg.before.in_inclination.by_sources();
   knot->toolface = now.toolface;
   knot->d_toolface = now.in_toolface.by_sources();
   knot->var_toolface = VarOf(now.in_toolface, leg.reference);

@@ -12,7 +12,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kIterationsMax = 50;
+constexpr int kIterationsMax = 200;   // a hundred where a sliding tool passes through vertical
 constexpr double kNothingKnown = 10;  // sigma of an azimuth [rad]
 
 bool Used(const FilterFix& f) { return f.use == FixUse::kUsed || f.use == FixUse::kMirror; }

@@ -49,6 +49,7 @@ struct Sums {
   double acceleration = 0;                              // the largest
   double unseen = 0, unseen_turn = 0, unseen_lift = 0;  // see Knot
   Knot::SourceVector d_path = Knot::SourceVector::Zero();
+  Knot::SourceVector d_level = Knot::SourceVector::Zero();  // of axial knots
 };
 
 void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double begin, double grown,
@@ -92,6 +93,7 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   span->lift += knot.lift;
   span->d_turn += knot.d_turn;
   span->d_lift += knot.d_lift;
+  sums->d_level += s.sampled * (knot.d_inclination - knot.d_lift / 2);
   span->d_inclination +=
       s.sampled * knot.d_inclination.segment<3>(static_cast<int>(Knot::kAccelBiasX));
   span->seconds += knot.seconds;
@@ -115,9 +117,14 @@ void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, A
     span->bow = sums.path / time - span->lift / 2;
     span->d_level = span->d_lift / 2 - sums.d_path / time;
   }
-  span->d_level[Knot::kAccelBiasX] += cosine * span->d_lift[Knot::kGyroBiasY] / (g * time);
-  span->d_level[Knot::kAccelBiasY] -= cosine * span->d_lift[Knot::kGyroBiasX] / (g * time);
-  span->d_level[Knot::kAccelBiasZ] += sine / g;
+  if (span->axial) {
+    span->d_level += sums.d_level / time;
+  } else {
+    const Knot::SourceVector& d = span->d_lift;
+    span->d_level[Knot::kAccelBiasX] += cosine * d[Knot::kGyroBiasY] / (g * time);
+    span->d_level[Knot::kAccelBiasY] -= cosine * d[Knot::kGyroBiasX] / (g * time);
+    span->d_level[Knot::kAccelBiasZ] += sine / g;
+  }
 
   double var = Square(setup.errors.accel_noise / g) / time + kFloor;
   if (!span->still) {
@@ -157,9 +164,8 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   if (!span->axial) return;
   // Where gravity shows more of the way than before, its noise gets no more.
   span->var_turn += Square(kAxialTurn);
-  // Its lift is how much more the tool leans by then, nothing of the gyros'.
+  // Its lift is how much more the tool leans by then.
   span->var_lift = 4 * Square(last.sigma_inclination) + kFloor;
-  span->d_lift.setZero();
   span->earth_lift = span->lift_by_latitude = 0;
   span->carried = 0;
 }
