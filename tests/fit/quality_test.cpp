@@ -69,6 +69,23 @@ TEST(Quality, TrueRunsPass) {
   EXPECT_GT(judged, 4 * 35);
 }
 
+// Depths that scatter by what the job says of them, at rest as well.
+TEST(Quality, DepthsThatScatterArePassed) {
+  for (const double hz : {1.0, 4.0}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      Flight flight(seed);
+      flight.errors().depth_noise = 0.01;
+      flight.simulation.streams.depth_hz = hz;
+      for (const Check& check : flight.Checks()) {
+        if (check.code != "fit" && check.code != "fit_inclination") continue;
+        EXPECT_EQ(check.verdict, Verdict::kPass)
+            << check.code << " " << check.value.value_or(0) << " of " << check.limit.value_or(0)
+            << ", seed " << seed << ", " << hz << " Hz";
+      }
+    }
+  }
+}
+
 struct Wrong {
   std::string code;
   std::function<void(Flight&)> make;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wellgyro/attitude/level_noise.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/adjust_span_internal.h"
@@ -12,7 +13,6 @@ constexpr double kBrokenVariance = 100;     // of the azimuth across a vertical 
 constexpr double kVerticalVariance = 1e-2;  // of the inclination's growth there [rad^2]
 constexpr double kVerticalLevel = 5e-4;     // of the accelerometers' inclination there [rad]
 constexpr double kAxialTurn = 1e-5;         // of the turn there [rad]
-constexpr double kSpeedSigma = 1e-3;        // of a depth track's speed, 1 cm encoder [m/s]
 constexpr double kUnknownForce = 1e-3;      // of inclination while moving without depth [rad]
 // Acceleration at which depth tells too late by half of it: see TrackerOptions.
 constexpr double kAccelerationDoubt = 0.01;  // [m/s^2]
@@ -104,9 +104,20 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   }
 }
 
+// Of the mean acceleration along the hole, by the depths at both ends of the span: taken out of the
+// accelerometers at rest too.
+double VarAcceleration(const FilterHistory& history, const AdjustSpan& span, double time) {
+  const AlongHole& end = history.epochs[span.epoch_end - 1].knot.along;
+  const std::size_t before = span.epoch_begin > 0 ? span.epoch_begin - 1 : span.epoch_begin;
+  const AlongHole& begin = history.epochs[before].knot.along;
+  return LevelNoise::MeanVariance(begin.known ? begin : end, end, time);
+}
+
 // Where the knot's errors know it, the mean of the toolface's direction too: the lift of a bias of
 // x is the integral of sin T, that of y of cos T.
-void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, AdjustSpan* span) {
+void FinishLevel(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
+  const FilterSetup& setup = history.setup;
+  const Knot& last = history.epochs[span->epoch_end - 1].knot;
   const double g = setup.site.gravity, time = sums.sampled;
   if (!(time > 0)) return;
   span->levelled = last.level && !(last.gap_seconds > 0);
@@ -126,10 +137,11 @@ void FinishLevel(const Knot& last, const FilterSetup& setup, const Sums& sums, A
     span->d_level[Knot::kAccelBiasZ] += sine / g;
   }
 
-  double var = Square(setup.errors.accel_noise / g) / time + kFloor;
+  double var = Square(setup.errors.accel_noise / g) / time +
+               Square(sine / g) * VarAcceleration(history, *span, time) + kFloor;
   if (!span->still) {
     var += Square(setup.gyro.angle_random_walk) * time / 12;
-    var += last.along.known ? 2 * Square(sine * kSpeedSigma / (g * time)) : Square(kUnknownForce);
+    if (!last.along.known) var += Square(kUnknownForce);
     var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
     var += Square(sums.unseen) / 12;
   }
@@ -160,7 +172,7 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
     span->var_turn = kBrokenVariance;
     span->var_lift = kVerticalVariance;
   }
-  FinishLevel(last, setup, sums, span);
+  FinishLevel(history, sums, span);
   if (!span->axial) return;
   // Where gravity shows more of the way than before, its noise gets no more.
   span->var_turn += Square(kAxialTurn);
