@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -194,6 +195,30 @@ TEST(Checks, InAndOutRunAreHeldToFieldPracticeFromTenPairsOn) {
   EXPECT_NEAR(Find(at_9, "azimuth_in_out_practice").limit.value_or(0), 5.0, 1e-12);
   EXPECT_EQ(Find(at_9, "azimuth_in_out_practice").verdict, Verdict::kPass);
   EXPECT_EQ(Find(at_9, "inclination_in_out_practice").verdict, Verdict::kFail);
+}
+
+TEST(Checks, FieldPracticeAsksNoAzimuthThatIsUnsureNearVertical) {
+  std::vector<Station> passes;
+  const auto fly = [&](int i, double inclination_deg, double sigma_deg, double apart_deg) {
+    passes.push_back(At(100.0 * i, Pass::kIn, 50, sigma_deg));
+    passes.push_back(At(100.0 * i, Pass::kOut, 50 + apart_deg, sigma_deg));
+    for (Station& s : std::span(passes).last(2)) s.inclination = FromDegrees(inclination_deg);
+  };
+  for (int i = 1; i <= 10; ++i) fly(i, 0.4, 8, 12);
+  const auto azimuth = [&] { return Find(Checks({}, passes), "azimuth_in_out_practice"); };
+  EXPECT_EQ(azimuth().verdict, Verdict::kNotDone);
+  EXPECT_EQ(Find(Checks({}, passes), "inclination_in_out_practice").verdict, Verdict::kPass);
+  for (int i = 11; i <= 20; ++i) fly(i, 4, 0.5, 2);
+  EXPECT_EQ(azimuth().verdict, Verdict::kPass);
+  EXPECT_NEAR(azimuth().value.value_or(0), 2, 1e-9);
+  // A sure one that is off is told.
+  fly(21, 4, 0.5, 6);
+  EXPECT_EQ(azimuth().verdict, Verdict::kFail);
+  EXPECT_EQ(azimuth().md.value_or(0), 2100);
+  // Above 10 deg practice allows 1 deg to whatever tool.
+  passes.resize(40);
+  fly(21, 12, 8, 1.5);
+  EXPECT_EQ(azimuth().verdict, Verdict::kFail);
 }
 
 TEST(Checks, SlippageIsPerKilometreThereAndBack) {

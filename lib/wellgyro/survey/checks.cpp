@@ -112,7 +112,8 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
   checks.back().md = azimuth.md;
 }
 
-/// What operators ask of an in-run against its out-run, whatever the error model says.
+/// What operators ask of an in-run against its out-run, whatever the error model says; but at low
+/// inclination azimuths that may differ by more without a fault tell nothing.
 /// Source: drillingforgas.com, "Gyro surveys QA/QC".
 void CheckPractice(std::span<const Station> stations, std::int32_t run,
                    std::vector<Check>& checks) {
@@ -121,23 +122,28 @@ void CheckPractice(std::span<const Station> stations, std::int32_t run,
   constexpr double kLow = FromDegrees(10);  // inclination below which azimuth may differ more
   struct Worst {
     double value = 0, limit = 0, md = 0;
+    int pairs = 0;
     void Take(double v, double l, double at) {
+      ++pairs;
       if (limit > 0 && std::abs(v) * limit <= std::abs(value) * l) return;
-      *this = {v, l, at};
+      value = v;
+      limit = l;
+      md = at;
     }
   };
   Worst inclination, azimuth;
-  int pairs = 0;
   ForPairs(stations, run, Pass::kIn, Pass::kOut, [&](const Station& a, const Station& b) {
-    ++pairs;
     inclination.Take(b.inclination - a.inclination, kInclination, a.md);
     if (Has(a.quality | b.quality, Quality::kVertical)) return;
-    azimuth.Take(WrapPi(b.azimuth - a.azimuth), FromDegrees(a.inclination < kLow ? 5.0 : 1.0),
-                 a.md);
+    const bool low = a.inclination < kLow;
+    const double limit = FromDegrees(low ? 5.0 : 1.0);
+    const double sigma = std::sqrt(AngleVariance(a, 2) + AngleVariance(b, 2));
+    if (low && 3 * sigma > limit) return;
+    azimuth.Take(WrapPi(b.azimuth - a.azimuth), limit, a.md);
   });
-  const auto add = [&](const char* code, const Worst& worst) {
-    if (pairs < kPairs || worst.limit == 0) {
-      checks.push_back(NotDone(code, run, "fewer than 10 depths seen in both passes"));
+  const auto add = [&](const char* code, const Worst& worst, const char* too_few) {
+    if (worst.pairs < kPairs) {
+      checks.push_back(NotDone(code, run, too_few));
       return;
     }
     checks.push_back(Compare(code, run, {worst.value, 0}, worst.limit, units::kDeg, "deg"));
@@ -145,8 +151,10 @@ void CheckPractice(std::span<const Station> stations, std::int32_t run,
     checks.back().limit_source = "field practice";
     checks.back().md = worst.md;
   };
-  add("inclination_in_out_practice", inclination);
-  add("azimuth_in_out_practice", azimuth);
+  const char* const few = "fewer than 10 depths seen in both passes";
+  add("inclination_in_out_practice", inclination, few);
+  add("azimuth_in_out_practice", azimuth,
+      inclination.pairs < kPairs ? few : "fewer than 10 depths where the azimuth is sure enough");
 }
 
 /// Depth lost on the way there and back, per kilometre of way. Source as above: 1 ft in 1000 ft.
