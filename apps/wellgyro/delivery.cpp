@@ -71,6 +71,7 @@ RunRecord RecordOf(const JobFile& job, const std::vector<SurveyFormat>& formats,
                    const Intake& intake, const FaultBook& surveyor_faults) {
   RunRecord record;
   record.program = "wellgyro " WELLGYRO_VERSION;
+  record.adjuster = kAdjuster;
   record.inputs = job.files;
   record.channels = intake.Channels();
   record.tools = intake.tools();

@@ -14,6 +14,8 @@
 
 namespace wellgyro::apps {
 
+inline constexpr const char* kAdjuster = "least squares";  ///< LeastSquaresAdjuster, in run.toml
+
 /// Says so and gives false when `folder` holds a survey that someone accepted.
 bool MayWriteTo(const std::filesystem::path& folder);
 

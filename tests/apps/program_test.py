@@ -57,6 +57,10 @@ class Program(ProgramTest):
                                              shallow=False)
         self.assertEqual((len(same), differ, odd), (len(names), [], []))
 
+    def test_run_toml_names_the_adjuster(self):
+        self.assertEqual(self.Survey(self.log, "adjusted").returncode, 0)
+        self.assertEqual(self.Toml("adjusted", "run.toml")["adjuster"], "least squares")
+
     def test_a_pipe_is_as_good_as_a_file(self):
         self.assertEqual(self.Survey(self.log, "file").returncode, 0)
         with open(self.log, "rb") as log:

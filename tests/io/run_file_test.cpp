@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <toml++/toml.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/sha256.h"
 
@@ -115,6 +116,30 @@ TEST(RunToml, SaysHowTheRunFits) {
   EXPECT_NEAR(first["fit"]["toolface_offset_sigma_deg"].value<double>().value_or(0), 0.03, 1e-12);
   EXPECT_FALSE(first["fit"]["time_skew_s"]) << "it has no prior";
   EXPECT_NEAR(first["north_fix"][0]["roll_rate_deg_per_h"].value<double>().value_or(0), 0.5, 1e-12);
+}
+
+TEST(RunToml, SaysAnglesAsTheJobDid) {
+  Job job = SmallJob();
+  for (const double said :
+       {60.0, 0.1, -33.3, 71.2345678901234, 1e-7, 89.9999999999999, 9.99, 7.7}) {
+    job.well.latitude = FromDegrees(said);
+    job.well.longitude = FromDegrees(-said);
+    const toml::table run = toml::parse(RunToml(Record(), job, SmallSurvey(), {}));
+    EXPECT_EQ(run["well"]["latitude_deg"].value<double>(), said);
+    EXPECT_EQ(run["well"]["longitude_deg"].value<double>(), -said);
+  }
+}
+
+TEST(RunToml, NamesWhatAdjustedTheRunsThatWere) {
+  RunRecord record = Record();
+  record.adjuster = "least squares";
+  const auto adjuster = [&record](const Survey& survey) {
+    return toml::parse(RunToml(record, SmallJob(), survey, {}))["adjuster"].value<std::string>();
+  };
+  Survey survey = SmallSurvey();
+  EXPECT_EQ(adjuster(survey), "none");
+  survey.runs[0].fit.emplace();
+  EXPECT_EQ(adjuster(survey), "least squares");
 }
 
 TEST(RunToml, NamesTheCheaperForm) {

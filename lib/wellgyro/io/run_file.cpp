@@ -8,11 +8,14 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/survey_csv.h"
 #include "wellgyro/io/survey_tables.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/toml_writer_internal.h"
 #include "wellgyro/io/words.h"
 
@@ -20,6 +23,13 @@ namespace wellgyro {
 namespace {
 
 constexpr std::size_t kFaultsListed = 100;
+
+/// In 15 digits, so that what a text of no more said in degrees comes back as it was: there and
+/// back again errs by less than half of the last one.
+double Degrees(double radians) {
+  const double degrees = ToDegrees(radians);
+  return AnyNumberOf(fmt::format("{:.15g}", degrees)).value_or(degrees);
+}
 
 void WriteInputs(TomlWriter& toml, const std::vector<InputFile>& inputs) {
   for (const InputFile& input : inputs) {
@@ -81,7 +91,7 @@ void WriteFixSensors(TomlWriter& toml, const NorthFix& fix) {
 }
 
 void WriteFix(TomlWriter& toml, const NorthFix& fix) {
-  const auto deg = [&](std::string_view key, double v) { toml.Number(key, ToDegrees(v)); };
+  const auto deg = [&](std::string_view key, double v) { toml.Number(key, Degrees(v)); };
   toml.Element("run.north_fix");
   if (fix.md) toml.Number("md_m", *fix.md);
   toml.Whole("begin_utime_us", fix.utc_begin.ns / 1000);
@@ -249,7 +259,9 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   TomlWriter toml;
   toml.Text("format", "wellgyro.run/1");
   toml.Text("program", record.program);
-  toml.Text("adjuster", record.adjuster.empty() ? "none" : record.adjuster);
+  const bool adjusted =
+      std::ranges::any_of(survey.runs, [](const RunSummary& run) { return run.fit.has_value(); });
+  toml.Text("adjuster", adjusted ? record.adjuster : "none");
   toml.Flag("accepted", survey.accepted);
   toml.Whole("stations", std::ssize(survey.chosen));
   toml.Whole("stations_of_all_passes", std::ssize(survey.passes));
@@ -259,8 +271,8 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   toml.Text("positions_summed_over", Sampled(survey) ? "run, every second" : "stations");
   toml.Table("well");
   toml.Text("name", job.well.name);
-  toml.Number("latitude_deg", ToDegrees(job.well.latitude));
-  toml.Number("longitude_deg", ToDegrees(job.well.longitude));
+  toml.Number("latitude_deg", Degrees(job.well.latitude));
+  toml.Number("longitude_deg", Degrees(job.well.longitude));
   toml.Number("datum_elevation_m", job.well.datum_elevation);
   toml.Table("identity");
   for (const auto& [key, value] : job.identity) toml.Text(key, value);
