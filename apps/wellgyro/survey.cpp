@@ -45,7 +45,9 @@ SourceRecord Describe(const std::string& name, const Intake& intake, const LogRe
 int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   Result<LogReader> reader = LogReader::Open(options.from);
   if (!reader) {
-    Complain(reader.fault());
+    Fault fault = reader.fault();
+    if (fault.code == FaultCode::kForeign) fault.text += ", nor a table of sensor data";
+    Complain(fault);
     return kUnusable;
   }
   FaultBook faults;

@@ -232,6 +232,19 @@ class Program(ProgramTest):
             self.assertEqual(said.count(arguments[1 if len(arguments) == 2 else 4]), 1, said)
             self.assertFalse("an LCM log" in said and "no LCM log" in said, said)
 
+    def test_what_is_no_sensor_table_is_named(self):
+        lacking = self.Write("lacking.csv", "UTC[s],GX[deg/h]\n1,2\n")
+        other = self.Write("other.csv", "a,b,c\n1,2,3\n")
+        for files, says in (((self.log, self.log), "an LCM log, no table"),
+                            ((lacking,), "lacks GY, AX, AY, AZ"),
+                            ((other,), "no LCM log, nor a table"),
+                            ((other, self.log), "unknown kind, no table")):
+            sources = [word for file in files for word in ("--from", file)]
+            done = Run("survey", "--job", self.job, *sources, "--out", self.Path("no_table"))
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(says, done.stderr)
+            self.assertTrue(done.stderr.isascii(), done.stderr)
+
     def test_the_command_line(self):
         self.assertEqual(Run().returncode, 1)
         self.assertEqual(Run("survey", "--no-such-option").returncode, 1)

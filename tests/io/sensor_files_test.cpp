@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -253,6 +254,23 @@ TEST(SensorCsv, NamesTheLineAndColumnOfWhatItCannotUse) {
             std::string::npos);
   scratch.Write("a.csv", "UTC[us],MD[m],WHAT\n1,2,3\n");
   EXPECT_NE(SensorCsv::Open(scratch.path() / "a.csv").fault().text.find("WHAT"), std::string::npos);
+  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
+           {"UTC[us],GX[deg/h],GY[deg/h],AX[g],AZ[g]\n1,2,3,4,5\n", "samples lacks AY"},
+           {"GX[deg/h],GY[deg/h],AX[g],AY[g],AZ[g]\n1,2,3,4,5\n", "samples lacks UTC or TOOL"},
+           {"TOOL[s],DURATION[s],GY[deg/h],AX[g],AY[g],AZ[g]\n1,2,3,4,5,6\n",
+            "averages lacks GX, UTC"},
+           {"MD[m]\n1\n", "depths lacks UTC"},
+           {"UTC[us],TEMP[degC]\n1,2\n", "depths lacks MD or LENGTH"},
+           {"a,b,c\n1,2,3\n", "text of an unknown kind, no table"},
+           {"MD[m],WHAT\n1,2\n", "WHAT"},
+           {"UTC,MD\n1,2\n", "UTC has no unit"},
+           {"\xED\xA1\xDA\x01\x01\x02,\xFF", "an LCM log, no table"}}) {
+    scratch.Write("a.csv", text);
+    const Result<SensorCsv> table = SensorCsv::Open(scratch.path() / "a.csv");
+    ASSERT_FALSE(table) << text;
+    EXPECT_NE(table.fault().text.find(says), std::string::npos) << table.fault().text;
+    EXPECT_EQ(IsSensorTable(scratch.path() / "a.csv"), says.find("no table") == std::string::npos);
+  }
   EXPECT_FALSE(SensorCsv::Open(scratch.path() / "absent.csv"));
   EXPECT_FALSE(SensorCsv::Open(scratch.path()));
 }

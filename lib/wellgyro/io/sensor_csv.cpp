@@ -13,6 +13,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/file_kind.h"
 #include "wellgyro/io/sensor_layout_internal.h"
 #include "wellgyro/io/text_internal.h"
 
@@ -175,12 +176,17 @@ std::optional<Fault> SensorCsv::Impl::Begin() {
   if (!ReadLine()) return Bad("this is an empty file", FaultCode::kForeign);
   layout = sensors::LayoutOf(line);
   const auto known = layout.Kind();
-  if (!known && layout.complaint.empty()) {
-    return Bad("this is no table of samples, averages or depths", FaultCode::kForeign);
+  if (!known) {
+    const Result<FileIdentity> what = IdentifyFile(path);
+    if (what && (what->kind != FileKind::kForeign || !layout.meant)) {
+      return Bad(fmt::format("this is {}, no table of samples, averages or depths", what->text),
+                 FaultCode::kForeign);
+    }
   }
   if (!layout.complaint.empty()) {
     return Bad(layout.complaint, FaultCode::kSyntax, layout.complaint_field);
   }
+  if (!known) return Bad(layout.Lacking(), FaultCode::kForeign);
   kind = *known;
   return kind == SensorTable::kSamples ? FindPeriod() : std::nullopt;
 }

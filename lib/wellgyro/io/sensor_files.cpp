@@ -16,6 +16,7 @@
 #include "wellgyro/io/exchange.h"
 #include "wellgyro/io/gyro_raw.h"
 #include "wellgyro/io/sensor_csv.h"
+#include "wellgyro/io/sensor_layout_internal.h"
 #include "wellgyro/io/sha256.h"
 
 namespace wellgyro {
@@ -304,7 +305,7 @@ bool IsSensorTable(const std::filesystem::path& path) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     const std::size_t begin = line.find_first_not_of(" \t");
     if (begin == std::string_view::npos || line[begin] == '#') continue;
-    return SensorTableOf(line).has_value();
+    return sensors::LayoutOf(line).meant;
   }
   return false;
 }

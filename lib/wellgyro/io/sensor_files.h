@@ -36,7 +36,8 @@ WELLGYRO_EXPORT Result<SensorReport> PushSensorFiles(
     std::span<const std::filesystem::path> files, const Job& job, Surveyor& surveyor, Sink& faults,
     const std::function<void(double)>& progress = {});
 
-/// True where the file's first lines are those of such a table or of an IOGP file.
+/// True where the file's first lines are those of such a table, be it without columns that it
+/// needs, or of an IOGP file.
 WELLGYRO_EXPORT bool IsSensorTable(const std::filesystem::path& path);
 
 }  // namespace wellgyro

@@ -73,6 +73,7 @@ void Layout::Take(std::string_view heading, int field) {
   };
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (kNames[i].name != name) continue;
+    meant = true;
     if (places[i].field >= 0) return complain(fmt::format("column {} stands twice", name));
     const auto known = std::ranges::find_if(
         kUnits, [&](const Unit& u) { return u.quantity == kNames[i].quantity && u.name == unit; });
@@ -94,6 +95,27 @@ std::optional<SensorTable> Layout::Kind() const {
   if (sensors && !Has(kDuration) && (Has(kUtc) || Has(kTool))) return SensorTable::kSamples;
   if (!sensors && Has(kUtc) && (Has(kMd) || Has(kLengthOf))) return SensorTable::kDepth;
   return std::nullopt;
+}
+
+std::string Layout::Lacking() const {
+  const std::array sensors{kGx, kGy, kAx, kAy, kAz};
+  const bool any = std::ranges::any_of(sensors, [this](Column c) { return Has(c); });
+  std::string missing;
+  const auto need = [&missing](bool has, std::string_view name) {
+    if (!has) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", name);
+  };
+  if (!any) {
+    need(Has(kUtc), "UTC");
+    need(Has(kMd) || Has(kLengthOf), "MD or LENGTH");
+    return fmt::format("a table of depths lacks {}", missing);
+  }
+  for (const Column c : sensors) need(Has(c), kNames[c].name);
+  if (Has(kDuration)) {
+    need(Has(kUtc), "UTC");
+  } else {
+    need(Has(kUtc) || Has(kTool), "UTC or TOOL");
+  }
+  return fmt::format("a table of {} lacks {}", Has(kDuration) ? "averages" : "samples", missing);
 }
 
 Layout LayoutOf(std::string_view header) {

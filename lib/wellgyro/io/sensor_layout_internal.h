@@ -52,6 +52,7 @@ struct Layout {
     double factor = 1;
   };
   std::array<Place, kColumns> places;
+  bool meant = false;     ///< a heading has a name that is known, be its unit so or not
   std::string complaint;  ///< about a heading
   int complaint_field = 0;
 
@@ -64,6 +65,8 @@ struct Layout {
   }
   void Take(std::string_view heading, int field);
   std::optional<SensorTable> Kind() const;
+  /// Where that is none: the columns that are missing, in words.
+  std::string Lacking() const;
 };
 
 /// Of a header line, a byte order mark before it or not.
