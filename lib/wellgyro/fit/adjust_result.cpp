@@ -128,10 +128,11 @@ AttitudeSample AttitudeAt(const AdjustProblem& p, const Knot& knot, double incli
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   a.cov_attitude(1, 1) += Square(p.history->setup.gyro.quantization) / sine2;
   if (knot.axial) {
-    const double leans = std::max(0.0, VarOfKnot(p.layout, knot) - a.cov_attitude(0, 0));
+    const double var = VarOfKnot(p.layout, knot);
+    const double leans = std::max(0.0, var - a.cov_attitude(0, 0));
     const double beyond = std::max(0.0, knot.var_azimuth_beyond) + leans / sine2;
     const double rolls = knot.var_toolface + leans / sine2;
-    a.cov_attitude(0, 0) += leans;
+    a.cov_attitude(0, 0) = var;
     a.cov_attitude(1, 1) += beyond;
     a.cov_attitude(2, 2) += rolls;
     a.cov_attitude(1, 2) -= std::min(beyond, rolls);
@@ -170,7 +171,9 @@ StationState StationAt(const AdjustProblem& p, std::size_t epoch, const Attitude
             .row(1)
             .tail(p.layout.state() - p.layout.node);
     const double adjusted = cov(AdjustLayout::kInclination, AdjustLayout::kInclination);
-    const double leans = std::max(0.0, VarOfKnot(p.layout, knot) - adjusted);
+    const double var = VarOfKnot(p.layout, knot), leans = std::max(0.0, var - adjusted);
+    // The knot's own inclination is told, which may be known better than the node's.
+    station.angles(0, AdjustLayout::kInclination) = std::sqrt(std::min(1.0, var / adjusted));
     station.cov_white(0, 0) += leans;
     station.cov_white(1, 1) +=
         std::min(std::max(0.0, knot.var_azimuth_beyond) + leans / sine2, kUnknownAngleVariance);

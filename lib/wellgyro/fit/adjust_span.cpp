@@ -13,6 +13,7 @@ constexpr double kBrokenVariance = 100;     // of the azimuth across a vertical 
 constexpr double kVerticalVariance = 1e-2;  // of the inclination's growth there [rad^2]
 constexpr double kVerticalLevel = 5e-4;     // of the accelerometers' inclination there [rad]
 constexpr double kAxialTurn = 1e-5;         // of the turn there [rad]
+constexpr double kAxialLifts = 20;          // sigmas of the inclination there, of its growth
 constexpr double kUnknownForce = 1e-3;      // of inclination while moving without depth [rad]
 // Acceleration at which depth tells too late by half of it: see TrackerOptions.
 constexpr double kAccelerationDoubt = 0.01;  // [m/s^2]
@@ -176,8 +177,10 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   if (!span->axial) return;
   // Where gravity shows more of the way than before, its noise gets no more.
   span->var_turn += Square(kAxialTurn);
-  // Its lift is how much more the tool leans by then.
-  span->var_lift = 4 * Square(last.sigma_inclination) + kFloor;
+  // Its lift is how much more the tool leans by then: the levels once more, which only keeps them
+  // from going up and down in turn. Taken in earnest, a bias of the gyros that bends it passes for
+  // one of the accelerometers.
+  span->var_lift = Square(kAxialLifts * last.sigma_inclination) + kFloor;
   span->earth_lift = span->lift_by_latitude = 0;
   span->carried = 0;
 }
