@@ -71,6 +71,14 @@ TEST(Damage, RestlessDepthIsNoInclination) {
   }
 }
 
+// Found by fuzz.survey_long: the site beneath the Earth's centre ended the program. 2026-11-21.
+TEST(Damage, DepthsThatNoHoleHasEndNothing) {
+  for (const double off : {1e7, 1e15, -1e7}) {
+    Sink sink;
+    EXPECT_NO_THROW(Damaged(sink, [off](DepthMark& mark, int) { mark.md += off; })) << off;
+  }
+}
+
 TEST(Damage, ImpossibleSamplesAreRefused) {
   CollectingSink sink;
   int k = 0;

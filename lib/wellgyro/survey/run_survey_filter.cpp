@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/run_survey.h"
 
@@ -126,8 +127,12 @@ void RunSurvey::MoveSite(const Knot& knot) {
     }
   }
   site_md_ = knot.along.md;
-  site_ =
-      SiteAt(job_.well.latitude + north_ / site_.radius_north, job_.well.datum_elevation - tvd_);
+  // Damaged depths may lead anywhere; the site stays on the Earth.
+  constexpr double kReach = 1e5;  // [m]
+  tvd_ = std::clamp(tvd_, -kReach, kReach);
+  north_ = std::clamp(north_, -kReach, kReach);
+  const double latitude = job_.well.latitude + north_ / site_.radius_north;
+  site_ = SiteAt(std::clamp(latitude, -kPi / 2, kPi / 2), job_.well.datum_elevation - tvd_);
 }
 
 }  // namespace wellgyro
