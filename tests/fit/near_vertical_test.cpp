@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -250,14 +251,20 @@ TEST(ThroughVertical, AGyrosBiasIsNotTakenForAnAccelerometers) {
     EXPECT_LT(std::abs(adjusted.errors[source]), 4 * adjusted.sigma_errors[source]) << source;
   }
   double inclination = 0, azimuth = 0;
+  std::size_t known = 0;
   for (std::size_t i = 0; i < flown.truth.size(); ++i) {
     const AttitudeSample& a = adjusted.run.attitude[i];
+    EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(a.cov_attitude).eigenvalues()[0],
+              -1e-9 * a.cov_attitude.trace())
+        << i;
     if (!a.azimuth_known) continue;
+    ++known;
     const double off = a.inclination - flown.truth[i].inclination;
     inclination = std::max(inclination, std::abs(off) / std::sqrt(a.cov_attitude(0, 0)));
     const double turned = testing::AzimuthError(flown, adjusted.run, i);
     azimuth = std::max(azimuth, std::abs(turned) / std::sqrt(a.cov_attitude(1, 1)));
   }
+  EXPECT_GT(2 * known, flown.truth.size());
   std::printf("worst of inclination %.1f, of azimuth %.1f sigma\n", inclination, azimuth);
   // No more than this is held: a bend that follows from a bias is taken as a line.
   EXPECT_LT(inclination, 4.5);

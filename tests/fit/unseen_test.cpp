@@ -2,8 +2,10 @@
 // 2026-11-21.
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -82,6 +84,17 @@ void ExpectHonest(double sum, const char* what, double md) {
   EXPECT_LT(sum, ChiSquareQuantile(0.9995, kSeeds)) << what << " at " << md;
 }
 
+/// Changes the stamps of samples, by their time from the begin of the run [s]; false: lost.
+testing::Arrives EachStamp(const Simulation& simulation,
+                           std::function<bool(double, SampleStamp&)> change) {
+  const ToolTime begin = ToolTime{} + Duration::Seconds(simulation.tool.errors.clock_offset);
+  return [begin, change = std::move(change)](SimulatedStep& step) {
+    auto* sample = std::get_if<ImuSample>(&step);
+    if (sample == nullptr) return true;
+    return change((sample->stamp.tool_time - begin).seconds(), sample->stamp);
+  };
+}
+
 class Unseen : public ::testing::TestWithParam<bool> {
  protected:
   const RunAdjuster* adjuster() const { return GetParam() ? &adjuster_ : nullptr; }
@@ -96,16 +109,10 @@ TEST_P(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
     Simulation simulation = HoleOf(seed, 20, 80);
     simulation.run.steps.push_back(Down(100));
     testing::CollectingSink sink;
-    const ToolTime begin = ToolTime{} + Duration::Seconds(simulation.tool.errors.clock_offset);
-    const Survey survey = testing::SurveyOf(
-        simulation, JobOf(), sink,
-        [&](SimulatedStep& step) {
-          const auto* sample = std::get_if<ImuSample>(&step);
-          if (sample == nullptr) return true;
-          const double t = (sample->stamp.tool_time - begin).seconds();
-          return t < kStop + 49 || t >= kStop + 61.5;  // from 44 m to 56.5 m
-        },
-        adjuster());
+    const auto gap = EachStamp(simulation, [](double t, const SampleStamp&) {
+      return t < kStop + 49 || t >= kStop + 61.5;  // from 44 m to 56.5 m
+    });
+    const Survey survey = testing::SurveyOf(simulation, JobOf(), sink, gap, adjuster());
     ASSERT_EQ(survey.chosen.size(), 11u) << survey.unusable;
     squares.Add(survey, simulation);
     for (const Station& s : survey.chosen) {
@@ -158,20 +165,13 @@ TEST_P(Unseen, StationsAboveAClockThatStepsBackAreAsGoodAsTheySay) {
     Simulation simulation = HoleOf(seed, 20, 180);
     simulation.run.steps.push_back(Down(200));
     testing::CollectingSink sink;
-    const ToolTime begin = ToolTime{} + Duration::Seconds(simulation.tool.errors.clock_offset);
-    const Survey survey = testing::SurveyOf(
-        simulation, JobOf(), sink,
-        [&](SimulatedStep& step) {
-          auto* sample = std::get_if<ImuSample>(&step);
-          if (sample == nullptr) return true;
-          SampleStamp& stamp = sample->stamp;
-          const double t = (stamp.tool_time - begin).seconds();
-          if (t < kStop + 120) return true;
-          stamp.tool_time = stamp.tool_time - back;
-          stamp.utc = stamp.utc - back;
-          return t < kStop + 195;
-        },
-        adjuster());
+    const auto steps = EachStamp(simulation, [back](double t, SampleStamp& stamp) {
+      if (t < kStop + 120) return true;
+      stamp.tool_time = stamp.tool_time - back;
+      stamp.utc = stamp.utc - back;
+      return t < kStop + 195;
+    });
+    const Survey survey = testing::SurveyOf(simulation, JobOf(), sink, steps, adjuster());
     ASSERT_GT(survey.chosen.size(), 17u) << survey.unusable;
     squares.Add(survey, simulation);
     for (const Station& s : survey.chosen) {

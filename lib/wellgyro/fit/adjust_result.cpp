@@ -113,9 +113,18 @@ double VarOfKnot(const AdjustLayout& layout, const Knot& knot) {
   return var;
 }
 
+// Of the node's error of inclination, how much is in that of the knot: all, or less where the
+// knot's own inclination, which is told, is known better.
+double ShareOfNode(double var_knot, const MatrixXd& cov) {
+  const double var_node = cov(AdjustLayout::kInclination, AdjustLayout::kInclination);
+  return var_knot < var_node ? std::sqrt(var_knot / var_node) : 1;
+}
+
 AttitudeSample AttitudeAt(const AdjustProblem& p, const Knot& knot, double inclination,
                           double azimuth, const MatrixXd& cov, bool known) {
-  const MatrixXd rows = AttitudeRows(p.layout, knot, p.history->setup.site.gravity);
+  MatrixXd rows = AttitudeRows(p.layout, knot, p.history->setup.site.gravity);
+  const double var_knot = VarOfKnot(p.layout, knot);
+  if (knot.axial) rows(0, AdjustLayout::kInclination) = ShareOfNode(var_knot, cov);
   AttitudeSample a;
   a.time = knot.time;
   a.inclination = knot.axial ? knot.inclination : inclination;
@@ -128,11 +137,10 @@ AttitudeSample AttitudeAt(const AdjustProblem& p, const Knot& knot, double incli
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   a.cov_attitude(1, 1) += Square(p.history->setup.gyro.quantization) / sine2;
   if (knot.axial) {
-    const double var = VarOfKnot(p.layout, knot);
-    const double leans = std::max(0.0, var - a.cov_attitude(0, 0));
+    const double leans = std::max(0.0, var_knot - a.cov_attitude(0, 0));
     const double beyond = std::max(0.0, knot.var_azimuth_beyond) + leans / sine2;
     const double rolls = knot.var_toolface + leans / sine2;
-    a.cov_attitude(0, 0) = var;
+    a.cov_attitude(0, 0) += leans;
     a.cov_attitude(1, 1) += beyond;
     a.cov_attitude(2, 2) += rolls;
     a.cov_attitude(1, 2) -= std::min(beyond, rolls);
@@ -170,10 +178,10 @@ StationState StationAt(const AdjustProblem& p, std::size_t epoch, const Attitude
         AttitudeRows(p.layout, knot, p.history->setup.site.gravity)
             .row(1)
             .tail(p.layout.state() - p.layout.node);
-    const double adjusted = cov(AdjustLayout::kInclination, AdjustLayout::kInclination);
-    const double var = VarOfKnot(p.layout, knot), leans = std::max(0.0, var - adjusted);
-    // The knot's own inclination is told, which may be known better than the node's.
-    station.angles(0, AdjustLayout::kInclination) = std::sqrt(std::min(1.0, var / adjusted));
+    const double var_knot = VarOfKnot(p.layout, knot), share = ShareOfNode(var_knot, cov);
+    const double told = cov(AdjustLayout::kInclination, AdjustLayout::kInclination) * share * share;
+    const double leans = std::max(0.0, var_knot - told);
+    station.angles(0, AdjustLayout::kInclination) = share;
     station.cov_white(0, 0) += leans;
     station.cov_white(1, 1) +=
         std::min(std::max(0.0, knot.var_azimuth_beyond) + leans / sine2, kUnknownAngleVariance);
