@@ -142,5 +142,32 @@ TEST(VerticalFilter, CrossesVerticalRollingToAndFro) {
 }
 TEST(VerticalFilter, CrossesVerticalWithAThirdAxis) { CrossAll(WELLGYRO_CROSSING_SEEDS, 25, true); }
 
+// Noise that looks like a turn about the axis parted a bias of the accelerometers from tilt, second
+// after second the same way. Ended 3e-4 rad off.
+TEST(VerticalFilter, ARestTeachesNoBiasOfTheAccelerometers) {
+  Crossing rest;
+  rest.closest = FromDegrees(1.5);
+  rest.spin_up = 0;
+  rest.seconds = 400;
+  rest.speed = 0;
+  Errors errors = Tactical();
+  errors.priors.accel_bias_sigma = 2e-3;
+  errors.priors.accel_noise = 2e-4;
+  Errors drawn = errors;
+  drawn.priors.accel_bias_sigma = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    std::vector<ImuSample> samples = Samples(rest, Norway(), 20, false);
+    AddErrors(drawn, seed, samples);
+    VerticalFilter filter({errors.gyro, errors.priors});
+    for (const ImuSample& s : samples) {
+      filter.Push(s, AlongAt(rest, 0), Norway());
+      if (s.stamp.seq == 20) filter.SetAzimuth(AzimuthAt(rest, 1), 0);
+      if (s.stamp.seq > 1200 && s.stamp.seq % 20 == 0) filter.Hold();
+    }
+    const double off = ErrorsAt(rest, rest.seconds, filter.attitude())[0];
+    EXPECT_LT(std::abs(off), 4e-5) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace wellgyro

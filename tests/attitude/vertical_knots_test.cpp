@@ -90,7 +90,8 @@ class Passage {
     online.push_back(filter->Step(knot));
     tracker_.SetAzimuth(online.back().azimuth);
     if (!vertical_.running()) return;
-    vertical_.SetNorth(filter->history().epochs.back().azimuth - vertical_.azimuth_from_zero());
+    const FilterEpoch& last = filter->history().epochs.back();
+    vertical_.SetNorth(last.azimuth - vertical_.azimuth_from_zero(), last.sigma_azimuth);
   }
 
   Crossing crossing_;

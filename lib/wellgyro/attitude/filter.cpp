@@ -256,6 +256,7 @@ void AzimuthFilter::Impl::Work(std::size_t i) {
   const double before = core.azimuth();
   const FilterPlace place = core.place();
   core.Step(knot, before, std::nullopt);
+  if (auto level = core.Level(knot)) core.Take(&*level);
   if (epoch.fix >= 0) TakeStill(i);
   TakePlainFixes(i + 1, core.azimuth() - before, place);
   epoch.azimuth = core.azimuth();

@@ -82,6 +82,9 @@ struct FilterHistory {
 /// horizontal and east-west, a first fix leaves azimuth and variance as they stand in it, and later
 /// ones are made linear about the azimuth known before, over all its spread. Errors of the second
 /// order are the same in all of them: together they tell hardly more of them than one.
+/// Near vertical, where the Earth's rate makes an error of azimuth feed itself within minutes, the
+/// filter follows the inclination too: its growth by gyros and Earth, against the accelerometers',
+/// holds the azimuth while its sigma is below 30 deg.
 /// A first knot with zero `seconds` only says where the run begins. One filter for one run.
 class WELLGYRO_EXPORT AzimuthFilter {
  public:

@@ -19,33 +19,6 @@ double Square(double x) { return x * x; }
 
 double Sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
 
-// Speed over the knot; depths at both ends are better than a derivative at one.
-double MeanSpeed(const Knot& knot, const FilterPlace& before) {
-  if (!knot.along.known || !(knot.seconds > 0)) return 0;
-  if (!before.any_knot || !before.along.known) return knot.along.speed;
-  return (knot.along.md - before.along.md) / knot.seconds;
-}
-
-double MeanInclination(const Knot& knot, const FilterPlace& before) {
-  return before.any_knot ? (knot.inclination + before.inclination) / 2 : knot.inclination;
-}
-
-// Sensitivities to the sources, with a sign, into the rows of the state they belong to.
-template <class Row>
-void Load(const FilterLayout& layout, const Knot::SourceVector& d, double sign, Row&& row) {
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const double value = sign * d[axis == 0 ? Knot::kGyroBiasX : Knot::kGyroBiasY];
-    if (layout.drift[axis].level >= 0) row[layout.drift[axis].level] += value;
-    if (layout.drift[axis].markov >= 0) row[layout.drift[axis].markov] += value;
-  }
-  for (int source = 0; source < Knot::kSources; ++source) {
-    const int at = layout.source[static_cast<std::size_t>(source)];
-    if (at >= 0) row[at] += sign * d[source];
-  }
-}
-
-Knot::Source BiasOf(std::size_t axis) { return axis == 0 ? Knot::kGyroBiasX : Knot::kGyroBiasY; }
-
 FilterMatrix PriorOf(const FilterSetup& setup, const FilterLayout& layout) {
   FilterMatrix prior = FilterMatrix::Zero(layout.size, layout.size);
   prior(0, 0) = setup.start_azimuth ? Square(setup.start_sigma) : kDiffuseAzimuthVariance;
@@ -63,10 +36,21 @@ FilterMatrix PriorOf(const FilterSetup& setup, const FilterLayout& layout) {
   if (layout.latitude >= 0) {
     prior(layout.latitude, layout.latitude) = Square(setup.errors.latitude_sigma);
   }
+  prior(layout.inclination, layout.inclination) = kNoInclination;
   return prior;
 }
 
 }  // namespace
+
+double MeanSpeed(const Knot& knot, const FilterPlace& before) {
+  if (!knot.along.known || !(knot.seconds > 0)) return 0;
+  if (!before.any_knot || !before.along.known) return knot.along.speed;
+  return (knot.along.md - before.along.md) / knot.seconds;
+}
+
+double MeanInclination(const Knot& knot, const FilterPlace& before) {
+  return before.any_knot ? (knot.inclination + before.inclination) / 2 : knot.inclination;
+}
 
 DriftCoefficients DriftOf(const FilterSetup& setup) {
   // White noise comes in through Knot::white_turn, which knows the inclination inside the knot.
@@ -95,6 +79,7 @@ FilterLayout LayoutOf(const FilterSetup& setup) {
     layout.source[static_cast<std::size_t>(i)] = sigma[i] > 0 ? layout.size++ : -1;
   }
   if (setup.errors.latitude_sigma > 0) layout.latitude = layout.size++;
+  layout.inclination = layout.size++;
   return layout;
 }
 
@@ -188,6 +173,7 @@ FilterTransition FilterCore::TransitionOver(const Knot& knot, double azimuth_beg
 void FilterCore::Propagate(const Knot& knot, const FilterTransition& t) {
   ApplyTransition(layout_, t, &state_);
   state_[0] += t.offset;
+  state_[layout_.inclination] += t.rise.offset;
   ApplyTransition(layout_, t, &covariance_);
   covariance_.transposeInPlace();
   ApplyTransition(layout_, t, &covariance_);
@@ -197,6 +183,7 @@ void FilterCore::Propagate(const Knot& knot, const FilterTransition& t) {
     cross_.transposeInPlace();
   }
   covariance_(0, 0) += t.white;
+  covariance_(layout_.inclination, layout_.inclination) += t.rise.white;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto& at = layout_.drift[axis];
     const DriftStep step = DriftOver(drift_, t.gain[axis], knot.seconds);
@@ -220,6 +207,7 @@ FilterTransition FilterCore::Step(const Knot& knot, double azimuth_begin,
   const bool lost = !azimuth_diffuse() && variance > kUnknownAngleVariance;
   const bool too_long = variance > kFaintestVariance;
   const double azimuth_before = state_[0];
+  Rise(knot, azimuth_begin, &t);
   if (!knot.still && knot.seconds > 0 && (knot.vertical || lost || too_long)) {
     t.row.setZero();
     t.gain = {};

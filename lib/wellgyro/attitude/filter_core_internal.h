@@ -31,11 +31,40 @@ struct FilterLayout {
   /// Of the other sources of a Knot; -1 for the two gyro biases, which are in `drift`.
   std::array<int, Knot::kSources> source;
   int latitude = -1;
+  int inclination = -1;
   int size = 1;
 };
 
+/// Variance of an inclination that is not followed so far [rad^2].
+inline constexpr double kNoInclination = 1e-2;
+
+inline Knot::Source BiasOf(std::size_t axis) {
+  return axis == 0 ? Knot::kGyroBiasX : Knot::kGyroBiasY;
+}
+
+/// Sensitivities to the sources, with a sign, into the rows of the state they belong to.
+template <class Row>
+void Load(const FilterLayout& layout, const Knot::SourceVector& d, double sign, Row&& row) {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double value = sign * d[BiasOf(axis)];
+    if (layout.drift[axis].level >= 0) row[layout.drift[axis].level] += value;
+    if (layout.drift[axis].markov >= 0) row[layout.drift[axis].markov] += value;
+  }
+  for (int source = 0; source < Knot::kSources; ++source) {
+    const int at = layout.source[static_cast<std::size_t>(source)];
+    if (at >= 0) row[at] += sign * d[source];
+  }
+}
+
 FilterLayout LayoutOf(const FilterSetup& setup);
 DriftCoefficients DriftOf(const FilterSetup& setup);
+
+/// inclination' = row x + offset + white, from the errors at the interval's begin.
+struct FilterRise {
+  FilterVector row;
+  double offset = 0;
+  double white = 0;  ///< variance [rad^2]
+};
 
 /// x' = Phi x + c + w over one knot, with Phi = D Phi_A: the azimuth first (row 0 is `row`), from
 /// the drift at the interval's begin, then the drift (level += seconds ramp, Markov *= decay).
@@ -46,12 +75,15 @@ struct FilterTransition {
   double decay = 1;
   double white = 0;              ///< variance added to azimuth'
   std::array<double, 2> gain{};  ///< of the drift of x and y in the azimuth, which mixes them
+  FilterRise rise;
 };
 
 /// M <- Phi M, and M <- Phi' M.
 template <class Matrix>
 void ApplyTransition(const FilterLayout& layout, const FilterTransition& t, Matrix* m) {
+  const auto risen = (t.rise.row.transpose() * *m).eval();
   m->row(0) = (t.row.transpose() * *m).eval();
+  m->row(layout.inclination) = risen;
   for (const auto& axis : layout.drift) {
     if (axis.ramp >= 0) m->row(axis.level) += t.seconds * m->row(axis.ramp);
     if (axis.markov >= 0) m->row(axis.markov) *= t.decay;
@@ -63,9 +95,10 @@ void ApplyTransposed(const FilterLayout& layout, const FilterTransition& t, Matr
     if (axis.ramp >= 0) m->row(axis.ramp) += t.seconds * m->row(axis.level);
     if (axis.markov >= 0) m->row(axis.markov) *= t.decay;
   }
-  const auto first = m->row(0).eval();
+  const auto first = m->row(0).eval(), risen = m->row(layout.inclination).eval();
   m->row(0).setZero();
-  *m += t.row * first;
+  m->row(layout.inclination).setZero();
+  *m += t.row * first + t.rise.row * risen;
 }
 
 /// One scalar measurement y = h x + white, as it was taken.
@@ -98,6 +131,10 @@ struct FilterPlace {
   double inclination = 0;  ///< at the last knot
   AlongHole along;         ///< there
 };
+
+/// Speed over the knot; depths at both ends are better than a derivative at one [m/s].
+double MeanSpeed(const Knot& knot, const FilterPlace& before);
+double MeanInclination(const Knot& knot, const FilterPlace& before);
 
 /// One knot's azimuth growth, less the share of the errors, and its slopes.
 struct AzimuthGrowth {
@@ -138,6 +175,11 @@ class FilterCore {
 
   FilterMeasurement OfAzimuth(double azimuth, double variance) const;
 
+  /// What the accelerometers say of the inclination over the last knot, where the filter follows
+  /// that: near vertical, where an azimuth that is off turns the Earth's rate into an error of the
+  /// azimuth which feeds itself, and only how the inclination grows holds it.
+  std::optional<FilterMeasurement> Level(const Knot& knot) const;
+
   void Take(FilterMeasurement* m);
 
   /// From here on cross() is E[x_here x_now'].
@@ -161,6 +203,10 @@ class FilterCore {
 
  private:
   FilterTransition TransitionOver(const Knot& knot, double azimuth_begin) const;
+  bool Follows(const Knot& knot) const;
+  Knot::SourceVector Errors() const;
+  FilterRise RiseOver(const Knot& knot, double azimuth_begin, double azimuth_growth) const;
+  void Rise(const Knot& knot, double azimuth_begin, FilterTransition* t);
   double WhiteVariance(const Knot& knot) const;
   void Propagate(const Knot& knot, const FilterTransition& t);
 
@@ -172,6 +218,9 @@ class FilterCore {
   FilterMatrix cross_;  // empty before the first station
   FilterPlace place_;
   bool diffuse_ = true;
+  // How the inclination grew over the last knot, by the errors at its begin, where it is followed.
+  bool follows_ = false;
+  FilterRise rise_;
 };
 
 using AttitudeRows = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kFilterStatesMax>;

@@ -114,6 +114,7 @@ ForwardPass Forward(const FilterHistory& history, const Path& path) {
     const double before = core.azimuth();
     r.transition = core.Step(e.knot, path[i], path[i + 1]);
     const double growth = core.azimuth() - before;
+    if (auto level = core.Level(e.knot)) TakeAndKeep(std::move(*level), &core, &pass);
     if (e.fix >= 0) {
       const FilterFix& fix = history.fixes[static_cast<std::size_t>(e.fix)];
       const double about = fix.steady ? path[i + 1] + WrapPi(fix.about - path[i + 1]) : path[i + 1];

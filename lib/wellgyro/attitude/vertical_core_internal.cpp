@@ -25,6 +25,7 @@ constexpr double kLinearVariance = 0.01;  // of it too
 constexpr double kLinearTurn = 0.03;      // of the turn about the axis in a gap [rad^2]
 constexpr double kRateSeconds = 10;       // over which the Earth's unknown rate would be one [s]
 constexpr double kSure = 3;               // sigmas at which what is seen is no error
+constexpr double kHeldSeconds = 3;        // at least, that a stop goes on [s]
 constexpr double kTiltFirst = 0.03;       // before the first force is taken [rad]
 
 double Square(double x) { return x * x; }
@@ -73,7 +74,7 @@ void Orthonormalize(Matrix3d& R) {
 }  // namespace
 
 Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& site,
-                const Vector2d& north, const Matrix3d& R_LT) {
+                const Heading& heading, const Matrix3d& R_LT) {
   Sensed s;
   s.seconds = 1e-9 * sample.stamp.period_ns;
   s.has_gz = sample.has_gz;
@@ -81,8 +82,9 @@ Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& sit
   if (!s.has_gz) s.w_IT_T.z() = 0;
   s.gravity = site.gravity;
   s.accel_good = !sample.stamp.accel_saturated;
-  const Vector2d across = kEarthRate * std::cos(site.latitude) * north;
-  if (north.isZero()) s.unknown_rate = kEarthRate * std::cos(site.latitude);
+  const double horizontal = kEarthRate * std::cos(site.latitude);
+  const Vector2d across = horizontal * heading.north;
+  s.unknown_rate = horizontal * heading.unsure;
   s.w_IL_L = Vector3d(across.x(), across.y(), -kEarthRate * std::sin(site.latitude));
   s.gravity_T = sample.f_T;
   if (along.known) {
@@ -142,6 +144,7 @@ void Core::Predict(const Sensed& s) {
   const Vector3d step(across.x() / 2, across.y() / 2, 0);
   const Matrix3d tilt = Exp(step);
   R_ = Exp(-0.5 * s.seconds * s.w_IL_L) * R_ * half * tilt;
+  R_middle_ = R_;
   R_sum_ += s.seconds * R_;
   if (s.accel_good) {
     const Vector3d f(s.gravity_T.x() * regain, s.gravity_T.y() * regain, s.gravity_T.z());
@@ -184,6 +187,7 @@ bool Core::heading_feeds_back() const { return cov_(2, 2) <= kLinearVariance; }
 
 void Core::Carry(const Noise& noise) {
   const double T = seconds_;
+  since_hold_ += T;
   const Matrix3d R = R_sum_ / T;
   const Vector3d w = w_sum_ / T, f = force_T_ / std::max(accel_seconds_, 1e-9);
   const double spin = spin_ / T;
@@ -247,8 +251,9 @@ double Core::Take(const Noise& noise) {
   const Matrix2d inverse = S.inverse();
   Gain K = cov_ * C.transpose() * inverse;
   // A tool that turns parts a bias, which turns with it, from tilt; one that only seems to, because
-  // the rate about its axis is uncertain, would part them falsely.
-  if (Square(spin_ / seconds_) < Square(kSure) * cov_(kAxial, kAxial)) {
+  // the rate about its axis is uncertain, would part them falsely; one at rest for all its length.
+  const bool held = since_hold_ < kHeldSeconds;
+  if (held || Square(spin_ / seconds_) < Square(kSure) * cov_(kAxial, kAxial)) {
     K.bottomRows<2>().setZero();
   }
   const Eigen::Matrix<double, kStates, 1> error = K * y;
@@ -296,14 +301,14 @@ double Core::Close(const Noise& noise) {
 
 void Core::Hold(double sigma) {
   if (has_gz_) return;
+  since_hold_ = 0;
   const double still = R_.col(2).dot(w_IL_);
-  const Eigen::Matrix<double, kStates, 1> gain =
+  Eigen::Matrix<double, kStates, 1> gain =
       cov_.col(kAxial) / (cov_(kAxial, kAxial) + Square(sigma));
+  gain.tail<4>().setZero();
   const Eigen::Matrix<double, kStates, 1> error = gain * (axial_ - still);
   R_ = Exp(-error.head<3>()) * R_;
   axial_ -= error[kAxial];
-  gyro_ -= error.segment<2>(kGyro);
-  accel_ -= error.segment<2>(kAccel);
   Covariance left = Covariance::Identity();
   left.col(kAxial) -= gain;
   const Covariance of_white = gain * Square(sigma) * gain.transpose();
@@ -336,6 +341,7 @@ void Core::ForgetBias(double sigma) {
 
 void Core::Release() {
   if (has_gz_) return;
+  since_hold_ = kHeldSeconds;
   cov_(kAxial, kAxial) += Square(kAxialFirst);
   cov_noise_(kAxial, kAxial) += Square(kAxialFirst);
 }

@@ -34,15 +34,21 @@ struct Sensed {
   Eigen::Vector3d gravity_T = Eigen::Vector3d::Zero();  ///< specific force less that of travel
   Eigen::Vector3d w_IL_L = Eigen::Vector3d::Zero();
   double gravity = 0;
-  double unknown_rate = 0;  ///< of the Earth, horizontal, where north is unknown [rad/s]
+  double unknown_rate = 0;  ///< of the Earth, horizontal, by what north is unsure [rad/s]
   bool has_gz = false;
   bool accel_good = true;
 };
 
-/// A sample with what travel adds to its force taken out. `north`: components of north along the
-/// two horizontal axes that `R_LT` counts from; zero where unknown.
+/// North, as components along the two horizontal axes that an attitude counts from; zero where it
+/// is unknown.
+struct Heading {
+  Eigen::Vector2d north = Eigen::Vector2d::Zero();
+  double unsure = 1;  ///< 1-sigma, at most 1 [rad]
+};
+
+/// A sample with what travel adds to its force taken out. `R_LT` counts as `heading` does.
 Sensed SensedOf(const ImuSample& sample, const AlongHole& along, const Site& site,
-                const Eigen::Vector2d& north, const Eigen::Matrix3d& R_LT);
+                const Heading& heading, const Eigen::Matrix3d& R_LT);
 
 /// Slopes of (inclination, azimuth, toolface) against phi; sine bounded from below.
 Eigen::Matrix3d EulerSlopes(const Eigen::Matrix3d& R_LT);
@@ -97,6 +103,8 @@ class Core {
   Eigen::Matrix3d Before(double seconds) const;
 
   const Eigen::Matrix3d& R_LT() const { return R_; }
+  const Eigen::Matrix3d& R_middle() const { return R_middle_; }  ///< of the last sample
+  double axial_rate() const { return last_rate_.z(); }           ///< in it [rad/s]
   double axial() const { return axial_; }
   /// Whether an error of the heading turns the Earth's rate in what the filter holds.
   bool heading_feeds_back() const;
@@ -115,7 +123,7 @@ class Core {
   double Seen() const;
   Eigen::Vector3d Axis() const;
 
-  Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity(), R_middle_ = Eigen::Matrix3d::Identity();
   double axial_ = 0;
   Eigen::Vector2d gyro_ = Eigen::Vector2d::Zero(), accel_ = Eigen::Vector2d::Zero();
   Covariance cov_ = Covariance::Zero(), cov_noise_ = Covariance::Zero();
@@ -123,6 +131,7 @@ class Core {
   // The open block.
   Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
   double accel_sigma_ = 0;
+  double since_hold_ = 1e9;  // [s]
   double seconds_ = 0, accel_seconds_ = 0, gravity_ = 0, spin_ = 0, last_spin_ = 0;
   Eigen::Vector3d w_IL_ = Eigen::Vector3d::Zero();  // of the last sample
   double unknown_rate_ = 0;

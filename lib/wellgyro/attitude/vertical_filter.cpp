@@ -11,6 +11,7 @@
 #include "wellgyro/attitude/roll_walk_internal.h"
 #include "wellgyro/attitude/vertical_core_internal.h"
 #include "wellgyro/attitude/vertical_knot_internal.h"
+#include "wellgyro/attitude/vertical_lift_internal.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/drift.h"
@@ -42,9 +43,10 @@ constexpr double kSineLeast = 2e-3;
 constexpr double kSineByThird = 0.25;  // with a third gyro axis the sum grows best up to there
 constexpr double kLeave = 1.3;         // of the sine at which the filter takes over
 constexpr double kRun = 6, kStop = 7;
-constexpr double kNoiseLeast = 1e-5;    // no accelerometer is better [m/s^2 sqrt(s)]
-constexpr double kToolfaceVague = 0.1;  // [rad], beyond it azimuth and toolface mean little
-constexpr double kLostVariance = 0.25;  // of the sum: nothing learned later brings it back [rad^2]
+constexpr double kNoiseLeast = 1e-5;     // no accelerometer is better [m/s^2 sqrt(s)]
+constexpr double kToolfaceVague = 0.1;   // [rad], beyond it azimuth and toolface mean little
+constexpr double kToolfaceClear = 0.03;  // of its noise alone, up to which rates are turned with it
+constexpr double kLostVariance = 0.25;   // of the sum: nothing learned later brings it back [rad^2]
 
 bool IsFinite(const ImuSample& s) {
   return s.w_IT_T.head<2>().allFinite() && s.f_T.allFinite() &&
@@ -74,7 +76,9 @@ struct VerticalFilter::Impl {
   Eigen::Matrix3d CovTurn() const;
   void SetHeading(double azimuth, double variance);
   Cut CutAt(double rest) const;
-  void Fill(const Cut& now, bool axial, Knot& knot);
+  bool IsVague(const Cut& cut) const;
+  bool IsClear(const Cut& cut) const;
+  void Fill(const Cut& now, bool axial, const std::optional<vertical::Lift>& lift, Knot& knot);
   void FloorAtAccelerometers(Knot& knot) const;
   void CountSum();
   void ForgetBias();
@@ -89,6 +93,7 @@ struct VerticalFilter::Impl {
   Cut last;  // at the knot before
   Counted counted;
   Knot::SourceVector source_sigma;
+  vertical::LiftSums lift_sums;
   Core main;
   std::array<Core, kWalks.size()> bank;
   RollWalk walk;
@@ -149,7 +154,7 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
       AttitudeMatrix(0, std::atan2(std::hypot(f.x(), f.y()), -f.z()), std::atan2(-f.y(), f.x()));
   reference.latitude = site.latitude;
   sine_enter = sample.has_gz ? kSineByThird : sine_of_two;
-  main.Start(SensedOf(sample, along, site, reference.north(), R_LT), R_LT, setup.errors,
+  main.Start(SensedOf(sample, along, site, reference.heading(), R_LT), R_LT, setup.errors,
              bias_sigma);
   bank.fill(main);
   walk.Reset();
@@ -161,6 +166,7 @@ void VerticalFilter::Impl::Start(const ImuSample& sample, const AlongHole& along
   linked = !cut_before;
   axial = std::sin(last.inclination) < sine_enter && f.z() < 0;
   unseen_across = unseen_about = UnseenTurn();
+  lift_sums = vertical::LiftSums();
   started = true;
   ready = lost = found = false;
 }
@@ -186,6 +192,7 @@ Gap VerticalFilter::Impl::GapOf(double seconds) const {
 void VerticalFilter::Impl::Bridge(const ImuSample& next, const AlongHole& next_along,
                                   double seconds) {
   Close();
+  lift_sums.Break();
   Gap gap = GapOf(seconds);
   const double apart = seconds + (dt + 1e-9 * next.stamp.period_ns) / 2;
   const double turned = setup.unseen.Between(last_along, next_along, seconds, apart);
@@ -245,19 +252,32 @@ void VerticalFilter::Impl::FloorAtAccelerometers(Knot& knot) const {
   }
 }
 
+bool VerticalFilter::Impl::IsVague(const Cut& cut) const {
+  const Knot::SourceVector d_toolface = cut.in_toolface.by_sources();
+  return VarOf(cut.in_toolface, reference) + d_toolface.cwiseProduct(source_sigma).squaredNorm() >
+         kToolfaceVague * kToolfaceVague;
+}
+
+// Rates and forces may be turned with the toolface.
+bool VerticalFilter::Impl::IsClear(const Cut& cut) const {
+  return !IsVague(cut) && cut.in_toolface.var < kToolfaceClear * kToolfaceClear;
+}
+
 // The knot from the cut before to this one; `is_axial`: what it leaves behind is S - toolface.
-void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial, Knot& knot) {
-  FillKnot({last, now, reference, is_axial, main.heading_feeds_back()}, &counted, &knot);
+void VerticalFilter::Impl::Fill(const Cut& now, bool is_axial,
+                                const std::optional<vertical::Lift>& lift, Knot& knot) {
+  const bool vague = IsVague(now);
+  const bool clear = linked && IsClear(last) && IsClear(now);
+  FillKnot(
+      {last, now, reference, is_axial, main.heading_feeds_back(), lift && clear ? &*lift : nullptr},
+      &counted, &knot);
   knot.vertical = !linked;
-  const Knot::SourceVector d_toolface = now.in_toolface.by_sources();
-  const double vague =
-      VarOf(now.in_toolface, reference) + d_toolface.cwiseProduct(source_sigma).squaredNorm();
-  if (is_axial && vague > kToolfaceVague * kToolfaceVague) FloorAtAccelerometers(knot);
+  if (is_axial && !knot.lifts) FloorAtAccelerometers(knot);
   // What was learned while the sum was anything rests on slopes taken far from the truth.
-  found = lost && is_axial && vague < kToolfaceVague * kToolfaceVague;
+  found = lost && is_axial && !vague;
   constexpr auto kAll = ~static_cast<std::uint32_t>(Quality::kVertical);
   knot.quality = knot.quality & static_cast<Quality>(kAll);
-  if (vague > kToolfaceVague * kToolfaceVague) knot.quality |= Quality::kVertical;
+  if (vague) knot.quality |= Quality::kVertical;
   linked = true;
 }
 
@@ -308,6 +328,9 @@ void VerticalFilter::Impl::Close() {
   } else {
     CloseThird(seconds);
   }
+  const Eigen::RowVector3d toolface = vertical::EulerSlopes(main.R_LT()).row(2);
+  lift_sums.TakeToolface(
+      (toolface * main.sources().topLeftCorner<3, Knot::kSources>()).transpose());
   ready = true;
 }
 
@@ -347,10 +370,12 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
   m.end = stamp.tool_time + Duration{stamp.period_ns};
   m.last_along = along;
   m.dt = 1e-9 * stamp.period_ns;
-  const Eigen::Vector2d north = m.reference.north();
-  m.main.Predict(SensedOf(sample, along, site, north, m.main.R_LT()));
+  const vertical::Heading heading = m.reference.heading();
+  const vertical::Sensed sensed = SensedOf(sample, along, site, heading, m.main.R_LT());
+  m.main.Predict(sensed);
+  m.lift_sums.Add(sensed, m.main.R_middle(), m.main.axial_rate());
   if (!sample.has_gz) {
-    for (Core& core : m.bank) core.Predict(SensedOf(sample, along, site, north, core.R_LT()));
+    for (Core& core : m.bank) core.Predict(SensedOf(sample, along, site, heading, core.R_LT()));
   }
   m.AddUnseen(sample, along);
   if (m.main.block_seconds() > kBlockSeconds - 1e-9) m.Close();
@@ -359,11 +384,12 @@ void VerticalFilter::Push(const ImuSample& sample, const AlongHole& along, const
 void VerticalFilter::SetAzimuth(double azimuth, double variance) {
   const Reference& r = impl_->reference;
   impl_->SetHeading(azimuth - r.azimuth.value_or(0), variance);
-  if (!r.azimuth) SetNorth(0.0);
+  if (!r.azimuth) SetNorth(0.0, std::sqrt(variance));
 }
 
-void VerticalFilter::SetNorth(std::optional<double> azimuth_of_zero) {
+void VerticalFilter::SetNorth(std::optional<double> azimuth_of_zero, double sigma) {
   impl_->reference.azimuth = azimuth_of_zero;
+  impl_->reference.sigma = sigma;
 }
 
 void VerticalFilter::CutKnot(double rest, Knot& knot) {
@@ -376,12 +402,13 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
   m.cut_before = true;
   if (from_axis) m.SetHeading(m.CutAt(0).azimuth, 0);
   Cut now = m.CutAt(rest);
+  const auto lift = m.lift_sums.Cut(rest, knot.seconds, now.in_toolface.by_sources());
   const double sine = std::sin(now.inclination);
   if (m.axial) {
     if (from_axis) m.last = now, m.last.in_sum.d.setZero();
     const double turn = knot.turn, cot = knot.cot;
     m.axial = sine < kLeave * m.sine_enter;
-    m.Fill(now, m.axial, knot);
+    m.Fill(now, m.axial, lift, knot);
     // Until its first forces are in, the filter cannot tell how the azimuth grew.
     if (from_axis) knot.turn = turn, knot.cot = cot, knot.axial_cot = 0;
   }
@@ -396,6 +423,9 @@ void VerticalFilter::CutKnot(double rest, Knot& knot) {
       now = m.CutAt(rest);
       // What the filter holds there is azimuth, which is taken for free of error.
       now.in_sum.d.setZero();
+    } else {
+      // Whoever told of north tells of the azimuth: nothing is to be learned of it here.
+      m.SetHeading(now.azimuth, 0);
     }
   }
   m.last = now;

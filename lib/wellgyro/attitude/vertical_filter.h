@@ -66,9 +66,9 @@ class WELLGYRO_EXPORT VerticalFilter {
   /// zero. What is known of the sum A + T from then on counts from this.
   void SetAzimuth(double azimuth, double variance);
 
-  /// The true azimuth of what this filter's azimuths count from, where known [rad]: for the Earth's
-  /// rate. Makes no step in azimuth() of this filter.
-  void SetNorth(std::optional<double> azimuth_of_zero);
+  /// The true azimuth of what this filter's azimuths count from, where known, and its 1-sigma
+  /// [rad]: for the Earth's rate. Makes no step in the azimuths of this filter.
+  void SetNorth(std::optional<double> azimuth_of_zero, double sigma);
 
   /// `knot` ends `rest` [s] before the end of the last sample, in a gap after it (negative). Where
   /// this filter does better, its attitude and growths take the place of the knot's own,

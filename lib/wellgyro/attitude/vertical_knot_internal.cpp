@@ -70,16 +70,31 @@ void Count(double held, double kept, bool axial, Counted* counted, Knot* knot) {
   if (c.since_gap >= 0) ++c.since_gap;
 }
 
+void FillLift(const Leg& leg, Knot* knot) {
+  knot->lifts = leg.lift != nullptr;
+  if (leg.lift) {
+    knot->lift = leg.lift->lift;
+    knot->d_lift = leg.lift->d_lift;
+    knot->inclination_accel = leg.lift->inclination_accel;
+    knot->level = leg.lift->level;
+    knot->rolled = leg.lift->rolled;
+    knot->rolled_toolface = leg.lift->rolled_toolface;
+    return;
+  }
+  knot->inclination_accel = (leg.now.inclination + leg.before.inclination) / 2;
+  knot->sigma_inclination_accel = knot->sigma_inclination;
+  knot->lift = leg.now.inclination - leg.before.inclination;
+  knot->d_lift = leg.now.in_inclination.by_sources() - leg.before.in_inclination.by_sources();
+}
+
 // What an axial knot says of the tool where it ends.
 void FillEnd(const Leg& leg, double counted, Knot* knot) {
   const Cut& now = leg.now;
   knot->inclination = now.inclination;
-  knot->inclination_accel = (now.inclination + leg.before.inclination) / 2;
   knot->d_inclination = now.in_inclination.by_sources();
-  knot->sigma_inclination = knot->sigma_inclination_accel =
-      std::sqrt(VarOf(now.in_inclination, leg.reference));
-  knot->lift = now.inclination - leg.before.inclination;
-  knot->d_lift = now.in_inclination.by_sources() - leg.before.in_inclination.by_sources();
+  knot->sigma_inclination = std::sqrt(VarOf(now.in_inclination, leg.reference));
+  knot->var_sum = now.in_sum.var;
+  FillLift(leg, knot);
   knot->toolface = now.toolface;
   knot->d_toolface = now.in_toolface.by_sources();
   knot->var_toolface = VarOf(now.in_toolface, leg.reference);
@@ -107,18 +122,20 @@ Cut CutOf(const Core& core, const Eigen::Matrix3d& R_LT) {
   return c;
 }
 
-Eigen::Vector2d Reference::north() const {
-  if (!azimuth) return Eigen::Vector2d::Zero();
-  return {std::cos(*azimuth), -std::sin(*azimuth)};
+Heading Reference::heading() const {
+  if (!azimuth) return {};
+  return {{std::cos(*azimuth), -std::sin(*azimuth)}, std::min(sigma, 1.0)};
 }
+
+double Reference::var_north() const { return azimuth ? std::min(sigma * sigma, 0.5) : 0.5; }
 
 std::complex<double> Reference::to_north() const { return azimuth ? std::polar(1.0, *azimuth) : 0; }
 double Reference::rate_across() const { return kEarthRate * std::cos(latitude); }
 double Reference::rate_up() const { return kEarthRate * std::sin(latitude); }
 
 double VarOf(const Uncertain& angle, const Reference& reference) {
-  const double across = reference.azimuth ? 0 : reference.rate_across();
-  return angle.var + across * across / 2 * std::norm(angle.by_earth());
+  const double across = reference.rate_across();
+  return angle.var + across * across * reference.var_north() * std::norm(angle.by_earth());
 }
 
 void FillKnot(const Leg& leg, Counted* counted, Knot* knot) {

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/attitude/vertical_core_internal.h"
+#include "wellgyro/attitude/vertical_lift_internal.h"
 #include "wellgyro/record/knot.h"
 
 /// What VerticalFilter gives to a knot.
@@ -32,15 +33,17 @@ Cut CutOf(const Core& core, const Eigen::Matrix3d& R_LT);
 /// Where the filter counts azimuth from, and the Earth there.
 struct Reference {
   std::optional<double> azimuth;  ///< true, where north is known [rad]
+  double sigma = 0;               ///< of it [rad]
   double latitude = 0;            ///< [rad]
 
-  Eigen::Vector2d north() const;  ///< along x and y of L; zero where unknown
+  Heading heading() const;
+  double var_north() const;  ///< of a component of north, across what is known of it [rad^2]
   std::complex<double> to_north() const;
   double rate_across() const;  ///< of the Earth, horizontal [rad/s]
   double rate_up() const;      ///< [rad/s]
 };
 
-/// With north unknown, what the Earth's rate may have done is noise [rad^2].
+/// As far as north is unsure, what the Earth's rate may have done is noise [rad^2].
 double VarOf(const Uncertain& angle, const Reference& reference);
 
 /// Variance given to the knots since errors of the sum are counted, and before the last gap
@@ -57,6 +60,7 @@ struct Leg {
   const Cut& now;
   const Reference& reference;
   bool axial, heading_feeds_back;
+  const Lift* lift;  ///< null: not known
 };
 /// All of the knot that leads along the hole, with its errors; length and gap are given.
 void FillKnot(const Leg& leg, Counted* counted, Knot* knot);

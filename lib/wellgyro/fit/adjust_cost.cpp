@@ -114,7 +114,32 @@ class Three : public ceres::CostFunction {
       value += slope * x[kCommon][layout_.latitude];
       rows->Slope(row, kCommon, layout_.latitude, weight * slope);
     }
-    return value - AddErrors(x, span_.d_lift, -weight, row, rows);
+    Knot::SourceVector d = span_.d_lift - earth.real() * span_.d_azimuth;
+    value += AddSecond(x, span_.second.lift, &d);
+    return value - AddErrors(x, d, -weight, row, rows);
+  }
+
+  // What `form` says beyond the first order, and into `d` its slopes: with them AddErrors() then
+  // counts it twice, so that it comes off again.
+  double AddSecond(double const* const* x, const SecondOrder::Form& form,
+                   Knot::SourceVector* d) const {
+    if (!span_.lifts) return 0;
+    const Knot::SourceVector errors = Errors(x);
+    *d += form * errors + form.transpose() * errors;
+    return errors.dot(form * errors);
+  }
+
+  // As they stand, the drift in the mean of the span.
+  Knot::SourceVector Errors(double const* const* x) const {
+    Knot::SourceVector errors = Knot::SourceVector::Zero();
+    Rows none(layout_, 0, nullptr, nullptr);
+    errors[Knot::kGyroBiasX] = AddDrift(x, 0, 1, 0, 0, &none);
+    errors[Knot::kGyroBiasY] = AddDrift(x, 1, 1, 0, 0, &none);
+    for (int source = 0; source < Knot::kSources; ++source) {
+      const int place = layout_.source[static_cast<std::size_t>(source)];
+      if (place >= 0) errors[source] = x[kCommon][place];
+    }
+    return errors;
   }
 
   const AdjustLayout& layout_;
@@ -209,7 +234,9 @@ class LevelFunction : public Three {
     double predicted = (x[kBegin][kI] + x[kEnd][kI]) / 2 + span_.bow;
     rows.Slope(0, kBegin, kI, weight_ / 2);
     rows.Slope(0, kEnd, kI, weight_ / 2);
-    predicted += AddErrors(x, span_.d_level, weight_, 0, &rows);
+    Knot::SourceVector d = span_.d_level;
+    predicted -= AddSecond(x, span_.second.level, &d);
+    predicted += AddErrors(x, d, weight_, 0, &rows);
     rows.Value(0, weight_ * (predicted - span_.level));
     return true;
   }

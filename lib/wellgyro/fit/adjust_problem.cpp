@@ -12,7 +12,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kIterationsMax = 200;   // a hundred where a sliding tool passes through vertical
+constexpr int kIterationsMax = 400;   // two hundred where a sliding tool passes through vertical
 constexpr double kNothingKnown = 10;  // sigma of an azimuth [rad]
 
 bool Used(const FilterFix& f) { return f.use == FixUse::kUsed || f.use == FixUse::kMirror; }
@@ -67,7 +67,7 @@ class Builder {
       const std::vector<double*> blocks{p_.node(k), p_.node(k + 1), p_.common.data()};
       const std::size_t first = parts_.size();
       Add(SpanCost(p_.layout, span), RunFit::kParts, blocks);
-      if (!span.still && !span.vertical) {
+      if (!span.still && (!span.vertical || span.lifts)) {
         parts_[first + AdjustLayout::kInclination] = RunFit::kInclination;
       }
       if (span.still && !span.vertical) Add(StillCost(p_.layout, span), RunFit::kRest, blocks);
@@ -154,6 +154,7 @@ AdjustOutcome Solve(AdjustProblem* p, AdjustRows* rows) {
   options.max_num_iterations = kIterationsMax;
   options.num_threads = 1;
   options.initial_trust_region_radius = 1e8;
+  options.use_nonmonotonic_steps = true;  // along valleys that the Earth bends near vertical
   options.function_tolerance = 1e-9;
   options.parameter_tolerance = 1e-12;
   ceres::Solver::Summary summary;

@@ -124,10 +124,11 @@ AttitudeSample AttitudeAt(const AdjustProblem& p, const Knot& knot, double incli
                           double azimuth, const MatrixXd& cov, bool known) {
   MatrixXd rows = AttitudeRows(p.layout, knot, p.history->setup.site.gravity);
   const double var_knot = VarOfKnot(p.layout, knot);
-  if (knot.axial) rows(0, AdjustLayout::kInclination) = ShareOfNode(var_knot, cov);
+  const bool told = knot.axial && !knot.lifts;
+  if (told) rows(0, AdjustLayout::kInclination) = ShareOfNode(var_knot, cov);
   AttitudeSample a;
   a.time = knot.time;
-  a.inclination = knot.axial ? knot.inclination : inclination;
+  a.inclination = told ? knot.inclination : inclination;
   const double rolled = ToolfaceGrowth(p, rows);
   a.azimuth = WrapTwoPi(knot.axial ? azimuth - rolled : azimuth);
   a.toolface = WrapPi(knot.toolface + rolled);
@@ -137,7 +138,8 @@ AttitudeSample AttitudeAt(const AdjustProblem& p, const Knot& knot, double incli
   const double sine2 = std::max(Square(std::sin(knot.inclination)), 1e-12);
   a.cov_attitude(1, 1) += Square(p.history->setup.gyro.quantization) / sine2;
   if (knot.axial) {
-    const double leans = std::max(0.0, var_knot - a.cov_attitude(0, 0));
+    const double leans =
+        told ? std::max(0.0, var_knot - a.cov_attitude(0, 0)) : Square(kInclinationFloor);
     const double beyond = std::max(0.0, knot.var_azimuth_beyond) + leans / sine2;
     const double rolls = knot.var_toolface + leans / sine2;
     a.cov_attitude(0, 0) += leans;
@@ -178,9 +180,10 @@ StationState StationAt(const AdjustProblem& p, std::size_t epoch, const Attitude
         AttitudeRows(p.layout, knot, p.history->setup.site.gravity)
             .row(1)
             .tail(p.layout.state() - p.layout.node);
-    const double var_knot = VarOfKnot(p.layout, knot), share = ShareOfNode(var_knot, cov);
+    const double var_knot = VarOfKnot(p.layout, knot);
+    const double share = knot.lifts ? 1 : ShareOfNode(var_knot, cov);
     const double told = cov(AdjustLayout::kInclination, AdjustLayout::kInclination) * share * share;
-    const double leans = std::max(0.0, var_knot - told);
+    const double leans = knot.lifts ? Square(kInclinationFloor) : std::max(0.0, var_knot - told);
     station.angles(0, AdjustLayout::kInclination) = share;
     station.cov_white(0, 0) += leans;
     station.cov_white(1, 1) +=

@@ -13,12 +13,16 @@ constexpr double kBrokenVariance = 100;     // of the azimuth across a vertical 
 constexpr double kVerticalVariance = 1e-2;  // of the inclination's growth there [rad^2]
 constexpr double kVerticalLevel = 5e-4;     // of the accelerometers' inclination there [rad]
 constexpr double kAxialTurn = 1e-5;         // of the turn there [rad]
+constexpr double kAxialSeconds = 10;        // that an error of the inclination lasts there [s]
 constexpr double kAxialLifts = 20;          // sigmas of the inclination there, of its growth
 constexpr double kUnknownForce = 1e-3;      // of inclination while moving without depth [rad]
 // Acceleration at which depth tells too late by half of it: see TrackerOptions.
 constexpr double kAccelerationDoubt = 0.01;  // [m/s^2]
 constexpr double kSmear = 2.5;               // of the depth track, and half a knot [s]
 constexpr double kFloor = 1e-18;             // against a setup without noise [rad^2]
+// Of an error of azimuth at a span's begin, by which the Earth's rate may make it grow: a span
+// takes that for linear, and is shorter near vertical.
+constexpr double kFeedsItself = 0.1;
 
 double Square(double x) { return x * x; }
 
@@ -49,6 +53,8 @@ struct Sums {
   double sine_time = 0, cosine_time = 0;                // of the inclination
   double acceleration = 0;                              // the largest
   double unseen = 0, unseen_turn = 0, unseen_lift = 0;  // see Knot
+  std::complex<double> rolled;
+  double lift_beyond = 0;  // variance [rad^2]
   Knot::SourceVector d_path = Knot::SourceVector::Zero();
   Knot::SourceVector d_level = Knot::SourceVector::Zero();  // of axial knots
 };
@@ -84,6 +90,12 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   sums->d_path += s.sampled * (span->d_lift + knot.d_lift / 2);
   sums->level += s.sampled * knot.inclination_accel;
   sums->sampled += s.sampled;
+  sums->rolled += RolledOver(knot);
+  if (!span->still) {
+    const FilterSetup& setup = history.setup;
+    sums->lift_beyond += VarLiftBeyond(knot, setup.errors, setup.site.gravity,
+                                       kEarthRate * std::cos(place.latitude));
+  }
   sums->white_turn += knot.white_turn;
   sums->jitter += knot.toolface_noise_turn;
   sums->sine_time += s.sampled * std::sin(s.inclination);
@@ -97,6 +109,12 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   sums->d_level += s.sampled * (knot.d_inclination - knot.d_lift / 2);
   span->d_inclination +=
       s.sampled * knot.d_inclination.segment<3>(static_cast<int>(Knot::kAccelBiasX));
+  if (knot.lifts) {
+    span->d_azimuth += s.sampled * knot.d_toolface;
+    const SecondOrder second = SecondOrderOf(knot, history.setup.site.gravity);
+    span->second.lift += second.lift;
+    span->second.level += second.level;
+  }
   span->seconds += knot.seconds;
   if (knot.var_unseen > 0 && !knot.axial) {
     sums->unseen += knot.unseen;
@@ -114,8 +132,6 @@ double VarAcceleration(const FilterHistory& history, const AdjustSpan& span, dou
   return LevelNoise::MeanVariance(begin.known ? begin : end, end, time);
 }
 
-// Where the knot's errors know it, the mean of the toolface's direction too: the lift of a bias of
-// x is the integral of sin T, that of y of cos T.
 void FinishLevel(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   const FilterSetup& setup = history.setup;
   const Knot& last = history.epochs[span->epoch_end - 1].knot;
@@ -129,12 +145,11 @@ void FinishLevel(const FilterHistory& history, const Sums& sums, AdjustSpan* spa
     span->bow = sums.path / time - span->lift / 2;
     span->d_level = span->d_lift / 2 - sums.d_path / time;
   }
-  if (span->axial) {
+  if (span->axial && !span->lifts) {
     span->d_level += sums.d_level / time;
   } else {
-    const Knot::SourceVector& d = span->d_lift;
-    span->d_level[Knot::kAccelBiasX] += cosine * d[Knot::kGyroBiasY] / (g * time);
-    span->d_level[Knot::kAccelBiasY] -= cosine * d[Knot::kGyroBiasX] / (g * time);
+    span->d_level[Knot::kAccelBiasX] += cosine * sums.rolled.real() / (g * time);
+    span->d_level[Knot::kAccelBiasY] -= cosine * sums.rolled.imag() / (g * time);
     span->d_level[Knot::kAccelBiasZ] += sine / g;
   }
 
@@ -146,8 +161,13 @@ void FinishLevel(const FilterHistory& history, const Sums& sums, AdjustSpan* spa
     var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
     var += Square(sums.unseen) / 12;
   }
-  if (span->axial) {
-    var = std::max(var, Square(last.sigma_inclination_accel));
+  if (span->lifts) {
+    span->d_azimuth /= time;
+    span->second.level /= time;
+  } else if (span->axial) {
+    // Knots that follow soon after each other share their error.
+    const double alike = std::max(1.0, kAxialSeconds / span->seconds);
+    var = std::max(var, Square(last.sigma_inclination_accel) * alike);
   } else if (span->vertical) {
     var += Square(kVerticalLevel);
   }
@@ -159,7 +179,7 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   const Knot& last = history.epochs[span->epoch_end - 1].knot;
   const double walk2 = Square(setup.gyro.angle_random_walk);
   span->var_turn = walk2 * sums.white_turn + sums.jitter + sums.unseen_turn + kFloor;
-  span->var_lift = walk2 * sums.sampled + sums.unseen_lift + kFloor;
+  span->var_lift = walk2 * sums.sampled + sums.unseen_lift + sums.lift_beyond + kFloor;
   if (sums.sampled > 0) {
     const double noise = setup.errors.accel_noise / setup.site.gravity;
     span->var_lift += Square(noise * span->turn) / sums.sampled;
@@ -177,6 +197,7 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   if (!span->axial) return;
   // Where gravity shows more of the way than before, its noise gets no more.
   span->var_turn += Square(kAxialTurn);
+  if (span->lifts) return;
   // Its lift is how much more the tool leans by then: the levels once more, which only keeps them
   // from going up and down in turn. Taken in earnest, a bias of the gyros that bends it passes for
   // one of the accelerometers.
@@ -203,6 +224,14 @@ std::vector<double> AccelerationsAbout(const FilterHistory& history) {
 }
 
 bool Used(const FilterFix& f) { return f.use == FixUse::kUsed || f.use == FixUse::kMirror; }
+
+// The longest span of knots like this one.
+double LongestWith(const Knot& knot, double latitude) {
+  const double sampled = knot.seconds - knot.gap_seconds;
+  if (!knot.axial || !(sampled > 0)) return HUGE_VAL;
+  const double rate = kEarthRate * std::cos(latitude) * std::abs(knot.axial_cot) / sampled;
+  return rate > 0 ? kFeedsItself / rate : HUGE_VAL;
+}
 
 bool Lone(const Knot& knot) {
   return knot.gap_seconds > 0 || Has(knot.quality, Quality::kSaturated);
@@ -256,6 +285,7 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
     AdjustSpan& span = spans.back();
     span.vertical = knot.vertical || knot.axial;
     span.axial = knot.axial && !knot.vertical;
+    span.lifts = span.axial && knot.lifts;
     span.broken = knot.vertical && !knot.still;
     AddKnot(history, StepAt(history, i), places[i], accelerations[i], &span, &sums);
     span.epoch_end = i + 1;
@@ -263,8 +293,9 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
     const Knot* next = last ? nullptr : &epochs[i + 1].knot;
     open = !last && !ends[i] && !(epochs[i].station && options.at_stations) && !Lone(knot) &&
            !Lone(*next) && next->still == knot.still && next->vertical == knot.vertical &&
-           next->axial == knot.axial &&
-           span.seconds + next->seconds <= options.seconds * (1 + 1e-9);
+           next->axial == knot.axial && next->lifts == knot.lifts &&
+           span.seconds + next->seconds <=
+               std::min(options.seconds, LongestWith(*next, places[i].latitude)) * (1 + 1e-9);
     if (!open) Finish(history, sums, &span);
   }
   return spans;

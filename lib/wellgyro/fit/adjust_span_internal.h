@@ -8,6 +8,7 @@
 
 #include "wellgyro/attitude/filter.h"
 #include "wellgyro/record/knot.h"
+#include "wellgyro/record/knot_sources.h"
 
 namespace wellgyro {
 
@@ -22,6 +23,7 @@ struct AdjustSpan {
   bool still = false;
   bool vertical = false;      ///< the form below does not hold, or for the azimuth alone
   bool axial = false;         ///< it does for the azimuth: see Knot::axial
+  bool lifts = false;         ///< where axial, for the inclination too
   bool broken = false;        ///< vertical and moving: nothing links the azimuths of its two ends
   bool levelled = false;      ///< has samples whose accelerometers count
   double turn = 0, lift = 0;  ///< [rad]
@@ -35,6 +37,9 @@ struct AdjustSpan {
   Knot::SourceVector d_turn = Knot::SourceVector::Zero();
   Knot::SourceVector d_lift = Knot::SourceVector::Zero();
   Eigen::Vector3d d_inclination = Eigen::Vector3d::Zero();  ///< of the tracker, by accelerometers
+  /// Where axial, of the true azimuth by that of its two ends, in the Earth's share of the lift.
+  Knot::SourceVector d_azimuth = Knot::SourceVector::Zero();
+  SecondOrder second;  ///< there too, of lift and of level
   Knot::SourceVector d_level = Knot::SourceVector::Zero();
   double level = 0;  ///< mean of the accelerometers' inclination [rad]
   double bow = 0;    ///< mean of the path's inclination less its chord's [rad]

@@ -71,6 +71,14 @@ struct Knot {
   /// grows by `turn` is then S - `toolface`, which is the azimuth but for the error of `toolface`.
   /// d_turn and toolface_noise_turn lead from the one to the other where a stretch begins or ends.
   bool axial = false;
+  /// There too the toolface is known, so that `lift`, `inclination_accel` and what belongs to them
+  /// are as everywhere; elsewhere in a stretch they follow from `inclination`.
+  bool lifts = false;
+  double var_sum = 0;               ///< if axial, of S from noise, which comes and goes [rad^2]
+  std::complex<double> rolled = 0;  ///< if it lifts, integral of e^{iT} [s]
+  /// Likewise of cos T and sin T times d toolface / d source: errors that turn with the tool meet
+  /// that of the toolface, which does too, in the second order. See SecondOrderOf().
+  Eigen::Matrix<double, 2, kSources> rolled_toolface = Eigen::Matrix<double, 2, kSources>::Zero();
   SourceVector d_toolface = SourceVector::Zero();  ///< d toolface (at `time`) / d source; if axial
   double var_toolface = 0;                         ///< of `toolface` from noise alone [rad^2]
   /// Variance from noise of the azimuth less that of S - `toolface`, if axial [rad^2].

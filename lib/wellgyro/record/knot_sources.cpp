@@ -1,5 +1,8 @@
 #include "wellgyro/record/knot_sources.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace wellgyro {
 
 Knot::SourceVector SourceSigmas(const ErrorPriors& errors) {
@@ -13,6 +16,58 @@ Knot::SourceVector SourceSigmas(const ErrorPriors& errors) {
   sigma[Knot::kAccelBiasX] = sigma[Knot::kAccelBiasY] = sigma[Knot::kAccelBiasZ] =
       errors.accel_bias_sigma;
   return sigma;
+}
+
+SecondOrder SecondOrderOf(const Knot& knot, double gravity) {
+  SecondOrder second;
+  const double sampled = knot.seconds - knot.gap_seconds;
+  if (!knot.lifts || !(sampled > 0)) return second;
+  const auto c = knot.rolled_toolface.row(0), s = knot.rolled_toolface.row(1);
+  const double spin = knot.roll / sampled;
+  second.lift.row(Knot::kGyroBiasX) = c;
+  second.lift.row(Knot::kGyroBiasY) = -s;
+  second.lift.row(Knot::kMisalignmentX) = spin * c;
+  second.lift.row(Knot::kMisalignmentY) = -spin * s;
+  second.level.row(Knot::kAccelBiasX) = -s / gravity;
+  second.level.row(Knot::kAccelBiasY) = -c / gravity;
+  second.level -=
+      std::sin(knot.inclination) / 2 * sampled * knot.d_toolface * knot.d_toolface.transpose();
+  // Where the toolface is read wrong, the force is seen turned with it.
+  for (const Knot::Source source : {Knot::kToolfaceOffset, Knot::kTimeSkew}) {
+    second.level.row(source).setZero();
+    second.level.col(source).setZero();
+  }
+  return second;
+}
+
+double VarLiftBeyond(const Knot& knot, const ErrorPriors& priors, double gravity,
+                     double horizontal) {
+  constexpr double kAlike = 10;         // so long lasts what comes and goes [s]
+  constexpr double kSecondAlike = 1e3;  // and what is of the second order
+  constexpr double kShare = 0.2;        // of which a knot that knows it may be wrong
+  const double sampled = knot.seconds - knot.gap_seconds;
+  if (!(sampled > 0)) return 0;
+  const double sine = std::max(std::sin(knot.inclination), 1e-3);
+  const double skewed = priors.gyro_misalignment_sigma * std::abs(knot.roll) / sampled;
+  const double travel = knot.along.known ? knot.along.speed * skewed : 0;
+  double toolface = std::hypot(priors.accel_bias_sigma, travel) / (gravity * sine);
+  if (knot.lifts) {
+    toolface = kShare * knot.d_toolface.cwiseProduct(SourceSigmas(priors)).norm();
+  }
+  const double second = skewed * toolface / 2;
+  double rate2 = second * second * kSecondAlike;
+  if (knot.lifts) {
+    const double bends = knot.turn * sine / sampled;
+    rate2 +=
+        2 * kAlike * (horizontal * horizontal * knot.var_sum + bends * bends * knot.var_toolface);
+  }
+  return rate2 * sampled;
+}
+
+std::complex<double> RolledOver(const Knot& knot) {
+  // A bias of y lifts by the integral of cos T, one of x by that of sin T.
+  if (!knot.lifts) return {knot.d_lift[Knot::kGyroBiasY], knot.d_lift[Knot::kGyroBiasX]};
+  return knot.rolled;
 }
 
 }  // namespace wellgyro

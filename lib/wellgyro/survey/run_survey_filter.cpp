@@ -109,8 +109,9 @@ void RunSurvey::SetTrackerAzimuth() {
   tracker_.SetAzimuth(now.azimuth_known ? std::optional<double>(now.azimuth) : std::nullopt);
   if (!from_zero_) return;
   std::optional<double> zero;
-  if (now.azimuth_known) zero = filter_->history().epochs.back().azimuth - *from_zero_;
-  vertical_.SetNorth(zero);
+  const FilterEpoch& last = filter_->history().epochs.back();
+  if (now.azimuth_known) zero = last.azimuth - *from_zero_;
+  vertical_.SetNorth(zero, last.sigma_azimuth);
 }
 
 /// Latitude and height follow the path, roughly: a kilometre is 1e-2 deg and 0.1 mg.
