@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -214,6 +215,28 @@ TEST(DepthTrack, LateMarksAreRefusedAndRepeatedOnesSkipped) {
 
 // An operator says at 30 s that the depth is 800 m. Whether the counter was set then (it reads 800
 // from there on) or not (it goes on), depths from 30 s on are the same and earlier ones stay.
+TEST(DepthTrack, ATimeAtRestIsNoGapBetweenMarksThatAgree) {
+  const auto at = [](std::initializer_list<DepthMark> marks, double begin, double end) {
+    DepthTrack track;
+    for (const DepthMark& mark : marks) EXPECT_FALSE(track.Push(mark));
+    return track.AtRest(Utc(begin), Utc(end));
+  };
+  const DepthMark before = Mark(0, 100.005, 1), after = Mark(120, 100.015, 2);
+  const AlongHole rest = at({before, after, Mark(150, 200, 3)}, 0, 120);
+  ASSERT_TRUE(rest.known);
+  EXPECT_NEAR(rest.md, 100.01, 1e-9);
+  EXPECT_LT(rest.sigma_md, 0.01);
+  EXPECT_LT(std::abs(rest.speed), 1e-3);
+  // What lies outside the rest still is a gap, of 5 s at most.
+  EXPECT_TRUE(at({before, after}, 2, 117.1).known);
+  EXPECT_FALSE(at({before, after}, 2, 116.9).known);
+  EXPECT_FALSE(at({before, after}, 60, 60).known);
+  EXPECT_FALSE(at({before, Mark(120, 100.03, 2)}, 0, 120).known);
+  EXPECT_FALSE(at({before}, 0, 120).known);
+  // Marks within it count as well.
+  EXPECT_TRUE(at({Mark(30, 100, 1), Mark(90, 100, 2)}, 0, 120).known);
+}
+
 TEST(DepthTrack, RezeroHoldsFromItsTimeOnWhetherOrNotTheCounterWasSet) {
   for (const bool set : {false, true}) {
     for (const bool first : {false, true}) {

@@ -3,12 +3,15 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/simulate/truth.h"
 
@@ -160,6 +163,79 @@ TEST(RunLimits, AveragesThatCannotBeAreLeftOutAndTold) {
   EXPECT_EQ(spoil([](StillWindow& w) { w.sigma_w_IT_T.x() = -1; }), 1u);
   EXPECT_EQ(spoil([](StillWindow& w) { w.md = 1e300; }), 1u);
   EXPECT_EQ(spoil([](StillWindow& w) { w.utc_end = w.utc_begin; }), 1u);
+}
+
+/// 60 s at rest, from 0, 150 and 300 s on.
+std::vector<StillWindow> ThreeRests() {
+  std::vector<StillWindow> windows(3);
+  const Site site = SiteAt(FromDegrees(60), 0);
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    StillWindow& w = windows[i];
+    w.utc_begin =
+        UtcTime{1'700'000'000'000'000'000 + static_cast<std::int64_t>(i) * 150'000'000'000};
+    w.utc_end = w.utc_begin + Duration::Seconds(60);
+    const Eigen::Matrix3d to_tool =
+        AttitudeMatrix(FromDegrees(40), FromDegrees(20), 0.3 + static_cast<double>(i)).transpose();
+    w.f_T = to_tool * Eigen::Vector3d(0, 0, -site.gravity);
+    w.w_IT_T = to_tool * kEarthRate *
+               Eigen::Vector3d(std::cos(FromDegrees(60)), 0, -std::sin(FromDegrees(60)));
+    w.w_IT_T.z() = 0;
+    w.sigma_w_IT_T.setConstant(1e-8);
+    w.sigma_f_T.setConstant(1e-5);
+  }
+  return windows;
+}
+
+DepthMark MarkAt(UtcTime utc, double md, std::int64_t seq) {
+  DepthMark mark;
+  mark.utc = utc;
+  mark.md = md;
+  mark.seq = seq;
+  return mark;
+}
+
+// Until 2026-11-21: "no north was found: no stop of 60 s ...".
+TEST(RunLimits, MarksAtBothEndsOfAveragesAtRestGiveTheirDepth) {
+  Job job = SlantJob();
+  job.well.latitude = FromDegrees(60);
+  job.stations.every = 0;
+  job.stations.at_stops = true;
+  const std::vector<StillWindow> windows = ThreeRests();
+  // How far the second mark of the second rest is off the first, and stations.
+  for (const auto& [off, stations] : {std::pair{0.0, 3u}, std::pair{0.5, 2u}}) {
+    CollectingSink sink;
+    Surveyor surveyor(job, sink);
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      const double md = 100.0 * static_cast<double>(i);
+      const auto seq = static_cast<std::int64_t>(2 * i);
+      surveyor.Push(MarkAt(windows[i].utc_begin, md, seq));
+      surveyor.Push(MarkAt(windows[i].utc_end, md + (i == 1 ? off : 0), seq + 1));
+    }
+    for (const StillWindow& window : windows) surveyor.Push(window);
+    surveyor.Finish();
+    const Survey survey = surveyor.Current(0);
+    ASSERT_EQ(survey.unusable, "");
+    ASSERT_EQ(survey.chosen.size(), stations);
+    EXPECT_NEAR(survey.chosen.back().md, 200, 1e-6);
+    EXPECT_NEAR(survey.runs[0].seconds_without_depth, off > 0 ? 60 : 0, 1e-6);
+    const Check* unknown = testing::Find(survey, "depth_unknown");
+    ASSERT_EQ(unknown != nullptr, off > 0);
+    if (unknown == nullptr) continue;
+    EXPECT_EQ(unknown->verdict, Verdict::kFail);
+    ASSERT_EQ(sink.faults.size(), 1u);
+    EXPECT_NE(sink.faults[0].text.find("averages at rest of 1700000150"), std::string::npos);
+    EXPECT_NE(sink.faults[0].text.find("max_gap_s = 5"), std::string::npos);
+  }
+}
+
+TEST(RunLimits, AveragesAtRestWithoutAnyDepthAreToldAsSuch) {
+  Sink sink;
+  Surveyor surveyor(SlantJob(), sink);
+  for (const StillWindow& window : ThreeRests()) surveyor.Push(window);
+  surveyor.Finish();
+  const std::string why = surveyor.Current(0).unusable;
+  EXPECT_NE(why.find("averages at rest came but no depth"), std::string::npos) << why;
+  EXPECT_NE(why.find("max_gap_s"), std::string::npos) << why;
 }
 
 TEST(RunLimits, AStationAfterLostSamplesSaysSo) {

@@ -192,7 +192,7 @@ DepthTrack::Span DepthTrack::SpanAt(UtcTime utc) const {
 
 /// Marks on both sides, near enough to speak for `utc`. Beside a depth event one of the two may be
 /// of the other segment.
-bool DepthTrack::Bracketed(UtcTime utc, Span span) const {
+bool DepthTrack::Bracketed(UtcTime utc, Span span, UtcTime rest_begin, UtcTime rest_end) const {
   const std::size_t after = After(utc);
   if (span.begin == span.end || after == 0) return false;
   const Mark& a = marks_[after - 1];
@@ -201,7 +201,10 @@ bool DepthTrack::Bracketed(UtcTime utc, Span span) const {
   const Mark& b = marks_[after];
   if (Segment(a.utc) != Segment(b.utc)) return b.utc - a.utc <= setup_.max_gap;
   if (b.jumps) return false;
-  return b.utc - a.utc <= setup_.max_gap || (a.stopped && std::abs(b.md - a.md) < kHold);
+  if (b.utc - a.utc <= setup_.max_gap) return true;
+  const Duration moving =
+      (b.utc - a.utc) - (std::min(b.utc, rest_end) - std::max(a.utc, rest_begin));
+  return (a.stopped || moving <= setup_.max_gap) && std::abs(b.md - a.md) < kHold;
 }
 
 /// What to add to the marks from `shift` on. The reading at the event is taken from marks after it
@@ -278,10 +281,11 @@ AlongHole DepthTrack::Join(UtcTime utc, Span span) const {
   return along;
 }
 
-AlongHole DepthTrack::At(UtcTime utc) const {
-  if (!IsTime(utc)) return {};
+AlongHole DepthTrack::AtRest(UtcTime begin, UtcTime end) const {
+  if (!IsTime(begin) || !IsTime(end)) return {};
+  const UtcTime utc = begin + Duration{(end - begin).ns / 2};
   const Span span = SpanAt(utc);
-  if (!Bracketed(utc, span)) return {};
+  if (!Bracketed(utc, span, begin, end)) return {};
   AlongHole along = Sparse(utc) ? Join(utc, span) : Fitted(utc, span);
   const Mark& nearest = marks_[std::clamp(After(utc), span.begin + 1, span.end) - 1];
   double sigma_event = 0;

@@ -58,7 +58,10 @@ class WELLGYRO_EXPORT DepthTrack {
   /// before, are skipped. Refused (kLate) when the marks at its time are forgotten already.
   [[nodiscard]] std::optional<Fault> Push(const Event& event);
 
-  AlongHole At(UtcTime utc) const;
+  AlongHole At(UtcTime utc) const { return AtRest(utc, utc); }
+  /// At the middle of a time at rest that others than the marks know of: it does not count to the
+  /// gap between two marks that agree within 2 cm, and which may lie at its ends.
+  AlongHole AtRest(UtcTime begin, UtcTime end) const;
   /// At(utc) is final: no mark that may still come in changes it. Events must be in by then.
   bool Covers(UtcTime utc) const;
   /// How far behind the newest mark Covers() stays.
@@ -111,7 +114,7 @@ class WELLGYRO_EXPORT DepthTrack {
   std::int32_t SegmentAt(UtcTime utc) const;
   Span SpanAt(UtcTime utc) const;
   double Offset(const Shift& shift) const;
-  bool Bracketed(UtcTime utc, Span span) const;
+  bool Bracketed(UtcTime utc, Span span, UtcTime rest_begin, UtcTime rest_end) const;
   bool Seen(const DepthMark& mark) const;
   bool Settled(UtcTime utc) const;
   void NoteJump(std::size_t i);

@@ -306,7 +306,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
           fmt::format(" = {}, and no later than latency_s = {}: raise what is too little for them",
                       job.depth.max_gap, job.depth.latency);
     }
-    if (run.samples > 0) checks.push_back(unknown);
+    if (run.samples > 0 || run.seconds_without_depth > 0) checks.push_back(unknown);
     CheckSamples(job, run, checks);
     CheckFit(job, run, checks);
   }

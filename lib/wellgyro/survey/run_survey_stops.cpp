@@ -155,7 +155,10 @@ void RunSurvey::Push(const StillWindow& window, const AlongHole& along) {
   NorthFix fix = FixOf({&placed, 1});
   fix.from_samples = false;
   summary_.fixes.push_back(fix);
-  if (!fix.md) return;
+  if (!fix.md) {
+    summary_.seconds_without_depth += window.seconds();
+    return;
+  }
   Draft draft;
   Station& s = draft.station;
   s.run = summary_.run;

@@ -133,10 +133,20 @@ void ToolSurvey::Push(const StillWindow& window) {
   if (found == nullptr) return;
   RunState& run = *found;
   const UtcTime middle = window.utc_begin + Duration{(window.utc_end - window.utc_begin).ns / 2};
-  AlongHole along = track_.At(middle);
+  AlongHole along = track_.AtRest(window.utc_begin, window.utc_end);
   ShiftToSensor(middle, along);
+  if (!window.md && !along.known) TellWithoutDepth(window);
   run.survey->Push(window, along);
   Tell(run);
+}
+
+void ToolSurvey::TellWithoutDepth(const StillWindow& window) {
+  sink_.OnFault(Fault{FaultCode::kLost,
+                      fmt::format("the averages at rest of {} to {} s have no depth and make no "
+                                  "station: no marks about them that agree within 2 cm and leave "
+                                  "no more than [depth] max_gap_s = {} outside the rest",
+                                  window.utc_begin.ns / 1'000'000'000,
+                                  window.utc_end.ns / 1'000'000'000, job_.depth.max_gap)});
 }
 
 void ToolSurvey::Work(std::optional<UtcTime> until) {

@@ -77,6 +77,7 @@ class ToolSurvey {
   void TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp);
   void TellClock(const SampleStamp& stamp, bool jumps, RunSummary& summary);
   void TellStrays();
+  void TellWithoutDepth(const StillWindow& window);
   void Obey(const Operation& operation);
   void Obey(const ToolMode& mode);
   void Obey(const Event& event);

@@ -186,12 +186,25 @@ std::vector<RunSummary> ToolSurvey::Summaries() const {
   return summaries;
 }
 
-/// The sentence for a survey whose samples no depth came with; empty where some did.
+/// The sentence for a survey whose samples or averages no depth came with; empty where some did.
 std::string ToolSurvey::WithoutDepth() const {
-  const bool depth = std::any_of(runs_.begin(), runs_.end(), [](const RunState& run) {
-    return run.survey->depth_seen() || run.survey->summary().samples == 0;
-  });
-  if (depth) return {};
+  bool sampled = false;
+  for (const RunState& run : runs_) {
+    const RunSummary& summary = run.survey->summary();
+    const bool placed =
+        std::any_of(summary.fixes.begin(), summary.fixes.end(),
+                    [](const NorthFix& fix) { return !fix.from_samples && fix.md; });
+    const bool empty = summary.samples == 0 && summary.fixes.empty();
+    if (run.survey->depth_seen() || placed || empty) return {};
+    sampled = sampled || summary.samples > 0;
+  }
+  if (!sampled) {
+    return fmt::format(
+        "averages at rest came but no depth with them: give each its own, or marks on {} at both "
+        "its ends that agree within 2 cm, or raise [depth] max_gap_s = {} to what lies between "
+        "the marks",
+        job_.channels.depth, job_.depth.max_gap);
+  }
   return fmt::format(
       "samples came but no depth with them: no marks on {} at their times, or all further apart "
       "than [depth] max_gap_s = {}",
