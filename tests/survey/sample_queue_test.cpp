@@ -60,6 +60,55 @@ TEST(SampleQueue, TellsALateSampleFromARepeatedOne) {
   EXPECT_EQ(queue.counts().late, 1);
 }
 
+/// Two milli-g off the first.
+ImuSample Other(std::int64_t seq, std::int32_t session = 1) {
+  ImuSample sample = At(seq, session);
+  sample.f_T.x() = 0.02;
+  return sample;
+}
+
+TEST(SampleQueue, TellsAnotherContentFromARepeatedSampleWhileItWaits) {
+  SampleQueue queue(Duration::Seconds(10));
+  for (int k = 0; k < 100; ++k) queue.Push(At(k));
+  EXPECT_EQ(queue.Push(At(7)), Verdict::kDuplicate);
+  EXPECT_EQ(queue.Push(Other(8)), Verdict::kOther);
+  EXPECT_EQ(queue.Push(At(9)), Verdict::kDuplicate);
+  ImuSample turned = At(10);
+  turned.w_IT_T.y() = 3e-5;
+  EXPECT_EQ(queue.Push(turned), Verdict::kOther);
+  ImuSample warmer = At(11);  // the same counts by another batch's temperature
+  warmer.w_IT_T.setConstant(1e-6);
+  warmer.f_T.setConstant(1e-3);
+  warmer.stamp.temperature = 1;
+  EXPECT_EQ(queue.Push(warmer), Verdict::kDuplicate);
+  EXPECT_EQ(queue.counts().others, 2);
+  EXPECT_EQ(queue.counts().duplicates, 3);
+}
+
+TEST(SampleQueue, TellsAnotherContentLongAfterTheFirst) {
+  constexpr int kAll = 50'000, kAgain = 5'000;
+  SampleQueue queue(Duration::Seconds(1));
+  for (int k = 0; k < kAll; ++k) {
+    queue.Push(At(k));
+    Drain(queue);
+  }
+  for (int k = 0; k < kAgain; ++k) queue.Push(At(k));
+  EXPECT_EQ(queue.counts().duplicates, kAgain);
+  EXPECT_EQ(queue.counts().others, 0);
+  for (int k = 100; k < kAgain; ++k) queue.Push(Other(k));
+  // From the first that is kept on.
+  EXPECT_EQ(queue.counts().others, kAgain - 128);
+  queue.Push(At(kAll));
+  EXPECT_EQ(queue.Push(At(kAll - 1)), Verdict::kDuplicate);
+  // Of what is forgotten nothing is said.
+  for (int k = kAll; k < 700'000; ++k) {
+    queue.Push(At(k));
+    Drain(queue);
+  }
+  EXPECT_EQ(queue.Push(Other(64)), Verdict::kDuplicate);
+  EXPECT_EQ(queue.Push(Other(640'000)), Verdict::kOther);
+}
+
 TEST(SampleQueue, ANewSessionFlushesTheOldOne) {
   SampleQueue queue(Duration::Seconds(10));
   queue.Push(At(7, 1));

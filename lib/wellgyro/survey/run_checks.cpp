@@ -143,7 +143,10 @@ void CheckSamples(const Job& job, const RunSummary& run, std::vector<Check>& che
   checks.push_back(CompareCount("clock_jumps", run.run, run.clock_jumps,
                                 "number, tool clock and UTC agree throughout"));
   checks.push_back(CompareCount("samples_refused", run.run, run.samples_refused,
-                                "no sample is late, impossible or of another time"));
+                                run.samples_other > 0
+                                    ? "no sample comes again with another content, late, "
+                                      "impossible or of another time"
+                                    : "no sample is late, impossible or of another time"));
   if (job.tool) {
     checks.push_back(CompareCount("temperature_outside", run.run, run.samples_temperature_outside,
                                   "calibrated temperatures"));

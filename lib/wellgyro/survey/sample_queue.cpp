@@ -14,6 +14,15 @@ constexpr double kRateLimit = 700;   // [rad/s]
 constexpr double kForceLimit = 1e4;  // [m/s^2]
 constexpr double kFieldLimit = 10;   // [T]
 
+// By no more does a sample differ that was made SI again at the temperature of another batch.
+constexpr float kSameRate = 2e-5F;   // [rad/s]
+constexpr float kSameForce = 0.01F;  // [m/s^2]
+
+/// Where a number that is kept has its place.
+std::size_t Slot(std::int64_t seq) {
+  return static_cast<std::size_t>(seq / SampleQueue::kKeptEvery) & (SampleQueue::kKept - 1);
+}
+
 // False also for what is no number.
 bool Within(const Eigen::Vector3d& v, double limit) { return v.squaredNorm() <= limit * limit; }
 
@@ -85,6 +94,7 @@ std::size_t SampleQueue::Append(std::span<const ImuSample> batch) {
   size_ += n;
   counts_.accepted += static_cast<std::int64_t>(n);
   back_ = *before;
+  if (n > 0) other_ = false;
   return n;
 }
 
@@ -100,20 +110,46 @@ SampleQueue::Verdict SampleQueue::Sort(const ImuSample& sample) {
     }
   }
   if (last_ && !last_is_old_ && seq <= last_->seq) {
-    const bool late = InGap(seq);
-    ++(late ? counts_.late : counts_.duplicates);
-    return late ? Verdict::kLate : Verdict::kDuplicate;
+    if (InGap(seq)) {
+      ++counts_.late;
+      return Verdict::kLate;
+    }
+    const bool compared = seq % kKeptEvery == 0 && !kept_.empty();
+    return Again(sample, compared ? &kept_[Slot(seq)] : nullptr);
   }
   std::size_t position = size_;
   while (position > old_session_ && At(position - 1).stamp.seq >= seq) {
     if (At(position - 1).stamp.seq == seq) {
-      ++counts_.duplicates;
-      return Verdict::kDuplicate;
+      const Content first = ContentOf(At(position - 1));
+      return Again(sample, &first);
     }
     --position;
   }
   Take(position, sample);
   return Verdict::kTaken;
+}
+
+SampleQueue::Content SampleQueue::ContentOf(const ImuSample& sample) {
+  const SampleStamp& stamp = sample.stamp;
+  return {stamp.seq, stamp.tool_time, stamp.session, sample.w_IT_T.cast<float>(),
+          sample.f_T.cast<float>()};
+}
+
+void SampleQueue::Keep(const ImuSample& sample) {
+  if (kept_.empty()) kept_.resize(kKept);
+  kept_[Slot(sample.stamp.seq)] = ContentOf(sample);
+}
+
+/// A sample whose number has been before, perhaps as `first`.
+SampleQueue::Verdict SampleQueue::Again(const ImuSample& sample, const Content* first) {
+  const Content again = ContentOf(sample);
+  if (first != nullptr && first->seq == again.seq && first->session == again.session &&
+      first->time == again.time) {
+    other_ = (first->w - again.w).cwiseAbs().maxCoeff() > kSameRate ||
+             (first->f - again.f).cwiseAbs().maxCoeff() > kSameForce;
+  }
+  ++(other_ ? counts_.others : counts_.duplicates);
+  return other_ ? Verdict::kOther : Verdict::kDuplicate;
 }
 
 SampleQueue::Verdict SampleQueue::PutAside(const ImuSample& sample) {
@@ -182,6 +218,7 @@ void SampleQueue::Take(std::size_t position, const ImuSample& sample) {
   if (position == size_) back_ = sample.stamp;
   ++size_;
   At(position) = sample;
+  other_ = false;
   newest_ = counts_.accepted == 0 ? sample.stamp.utc : std::max(newest_, sample.stamp.utc);
   ++counts_.accepted;
 }

@@ -24,11 +24,18 @@ namespace wellgyro {
 /// Samples whose number, tool clock and UTC contradict those before are put aside. When such that
 /// agree with each other cover kAgree, the clock has jumped: they follow the others as a new
 /// session would, and none is lost. While the others go on for kAgree instead, they are strays.
+///
+/// A sample that comes again is compared with the first: with each that waits still, with one in
+/// kKeptEvery of those handed out, the last kKept of them. It is other where it differs by more
+/// than a calibration at another temperature would make it; so are those behind it that come again,
+/// until one compares as the same.
 class WELLGYRO_EXPORT SampleQueue {
  public:
   static constexpr std::size_t kWaitingMax = std::size_t{1} << 21;  ///< 20 s at 100 kHz
   static constexpr Duration kAgree{10'000'000'000};
   static constexpr std::size_t kAgreeMax = std::size_t{1} << 16;  ///< samples that are enough, too
+  static constexpr std::int64_t kKeptEvery = 64;
+  static constexpr std::size_t kKept = std::size_t{1} << 13;  ///< 7 h at 20 Hz
 
   struct Counts {
     std::int64_t accepted = 0;
@@ -36,13 +43,14 @@ class WELLGYRO_EXPORT SampleQueue {
     std::int64_t late = 0;     ///< came after a younger sample had been used
     std::int64_t refused = 0;  ///< impossible values
     std::int64_t strays = 0;   ///< whose times contradict all others'
+    std::int64_t others = 0;   ///< of a number and time that came with another content before
   };
 
   explicit SampleQueue(Duration hold) : hold_(hold) {}
 
   /// Takes `sample` unless it is known, late or makes no sense; the return and the counts say
   /// which. kAside: what follows will tell.
-  enum class Verdict { kTaken, kDuplicate, kLate, kRefused, kAside };
+  enum class Verdict { kTaken, kDuplicate, kLate, kRefused, kAside, kOther };
   Verdict Push(const ImuSample& sample);
   /// Takes from the begin of `batch` what comes right behind the newest sample, and says how many:
   /// as Push of each would, at less cost.
@@ -63,6 +71,7 @@ class WELLGYRO_EXPORT SampleQueue {
     const bool next = last_ && stamp.seq == last_->seq + 1 && stamp.session == last_->session;
     if (!next || jumps) NoteGap(stamp, jumps);
     last_ = {stamp.seq, stamp.session};
+    if (stamp.seq % kKeptEvery == 0) Keep(At(0));
     head_ = (head_ + 1) & mask_;
     --size_;
     last_is_old_ = old_session_ > 0;
@@ -95,6 +104,19 @@ class WELLGYRO_EXPORT SampleQueue {
     std::int32_t session = 0;
   };
 
+  /// Of a sample handed out, what tells it from another.
+  struct Content {
+    std::int64_t seq = -1;  ///< kept are others
+    ToolTime time;
+    std::int32_t session = 0;
+    Eigen::Vector3f w = Eigen::Vector3f::Zero();  ///< [rad/s]
+    Eigen::Vector3f f = Eigen::Vector3f::Zero();  ///< [m/s^2]
+  };
+
+  static Content ContentOf(const ImuSample& sample);
+  void Keep(const ImuSample& sample);
+  Verdict Again(const ImuSample& sample, const Content* first);
+
   std::int64_t Waiting() const { return static_cast<std::int64_t>(size_); }
   Verdict Sort(const ImuSample& sample);
   Verdict PutAside(const ImuSample& sample);
@@ -124,6 +146,8 @@ class WELLGYRO_EXPORT SampleQueue {
   static constexpr std::size_t kGapsKept = 256;
   std::vector<std::pair<std::int64_t, std::int64_t>> gaps_;
   static constexpr std::size_t kStoriesMax = 4;
+  std::vector<Content> kept_;                   ///< by number
+  bool other_ = false;                          ///< what was compared last, and what follows it
   std::vector<Story> stories_;                  ///< put aside, the oldest first
   std::vector<std::int64_t> jumps_;             ///< samples taken before each, not yet handed out
   std::optional<std::int32_t> former_session_;  ///< the one before the present

@@ -27,9 +27,10 @@ struct RunSummary {
   /// Without a depth, between the first and the last that had one [s].
   double seconds_without_depth = 0;
   std::int64_t duplicates = 0;  ///< sent again and skipped
-  /// Impossible values, contradictory times, or too late; of all the tool's runs.
+  /// Impossible values, contradictory times, too late, or other; of all the tool's runs.
   std::int64_t samples_refused = 0;
-  std::int64_t clock_jumps = 0;  ///< of the tool's clock, its numbers or its UTC
+  std::int64_t samples_other = 0;  ///< of these, that came again with another content
+  std::int64_t clock_jumps = 0;    ///< of the tool's clock, its numbers or its UTC
   std::int64_t samples_gyro_saturated = 0, samples_accel_saturated = 0;
   std::int64_t samples_unsynced = 0;  ///< of which the surface doubts the UTC
   std::int64_t samples_aliased = 0;   ///< that turned too far in one period

@@ -93,6 +93,13 @@ void ToolSurvey::TellRefused(SampleQueue::Verdict verdict, const SampleStamp& st
     tell(FaultCode::kLate, "came after its time had been used");
   } else if (verdict == SampleQueue::Verdict::kRefused) {
     tell(FaultCode::kRange, "has values that no tool can measure and was left out");
+  } else if (verdict == SampleQueue::Verdict::kOther) {
+    const bool goes_on = other_ && other_->session == stamp.session && other_->seq + 1 == stamp.seq;
+    if (!goes_on) {
+      tell(FaultCode::kConflict,
+           "came again with another content: it is left out, with those behind it that do so");
+    }
+    other_ = stamp;
   }
 }
 

@@ -115,6 +115,7 @@ class ToolSurvey {
   SampleQueue queue_;
   RunClock clock_;
   std::int64_t strays_told_ = 0;              ///< of the queue's
+  std::optional<SampleStamp> other_;          ///< the last that came again with another content
   ImuSample changed_;                         ///< scratch
   std::vector<Due> due_;                      ///< not yet obeyed, by time
   std::set<std::int32_t> commands_, events_;  ///< ids obeyed

@@ -180,7 +180,8 @@ std::vector<RunSummary> ToolSurvey::Summaries() const {
     summary.remark = book_.remark(summary.run);
     const SampleQueue::Counts& counts = queue_.counts();
     summary.duplicates = counts.duplicates;
-    summary.samples_refused = counts.refused + counts.strays + counts.late;
+    summary.samples_other = counts.others;
+    summary.samples_refused = counts.refused + counts.strays + counts.late + counts.others;
   }
   if (!summaries.empty()) summaries.back().seconds_without_depth += DepthTooLate();
   return summaries;
