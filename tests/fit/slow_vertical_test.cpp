@@ -106,12 +106,12 @@ TEST_P(SlowNearVertical, LiftsAreThoseOfTheHole) {
     if (!k.lifts || k.still) continue;
     const TruthState a = truth.At(SecondsOf(k) - k.seconds), b = truth.At(SecondsOf(k));
     const double mean_azimuth = a.azimuth + WrapPi(b.azimuth - a.azimuth) / 2;
-    const SecondOrder second = SecondOrderOf(k, g);
+    const SecondOrder second = SecondOrderOf(k);
     const double lift = k.lift + kEarth * std::sin(mean_azimuth) * k.seconds -
                         k.d_lift.dot(errors) - errors.dot(second.lift * errors) -
                         (b.inclination - a.inclination);
-    const double var =
-        std::pow(Noise().angle_random_walk, 2) * k.seconds + VarLiftBeyond(k, Priors(), g, kEarth);
+    const double var = std::pow(Noise().angle_random_walk, 2) * k.seconds +
+                       VarBeyondOf(k, Priors(), g, kEarth).lift;
     const std::complex<double> toward = k.rolled / k.seconds;
     const double level =
         k.inclination_accel - (a.inclination + b.inclination) / 2 -

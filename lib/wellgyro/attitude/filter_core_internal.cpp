@@ -130,8 +130,9 @@ FilterCore::FilterCore(const FilterSetup& setup)
 }
 
 double FilterCore::WhiteVariance(const Knot& knot) const {
-  double variance =
-      Square(setup_.gyro.angle_random_walk) * knot.white_turn + knot.toolface_noise_turn;
+  double variance = Square(setup_.gyro.angle_random_walk) * knot.white_turn +
+                    knot.toolface_noise_turn +
+                    VarBeyondOf(knot, setup_.errors, setup_.site.gravity, 0).turn;
   if (knot.var_unseen > 0 && !knot.axial) {
     variance += knot.var_unseen / Square(std::max(std::sin(MeanInclination(knot, place_)), 1e-6));
   }

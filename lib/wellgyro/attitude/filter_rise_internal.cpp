@@ -62,7 +62,7 @@ FilterRise FilterCore::RiseOver(const Knot& knot, double azimuth_begin,
   rise.offset = knot.lift + (north * std::sin(middle) + carried) * sampled - slope * azimuth_begin;
   if (knot.lifts) {
     const Knot::SourceVector errors = Errors();
-    const SecondOrder::Form form = SecondOrderOf(knot, setup_.site.gravity).lift;
+    const SecondOrder::Form form = SecondOrderOf(knot).lift;
     d += slope * knot.d_toolface - (form + form.transpose()) * errors;
     rise.offset += errors.dot(form * errors);
   }
@@ -74,7 +74,7 @@ FilterRise FilterCore::RiseOver(const Knot& knot, double azimuth_begin,
   }
   rise.white = Square(setup_.gyro.angle_random_walk) * sampled + knot.var_unseen +
                0.75 * Square(north * covariance_(0, 0)) * sampled * kBentSeconds +
-               VarLiftBeyond(knot, setup_.errors, setup_.site.gravity, north);
+               VarBeyondOf(knot, setup_.errors, setup_.site.gravity, north).lift;
   return rise;
 }
 
@@ -104,7 +104,7 @@ std::optional<FilterMeasurement> FilterCore::Level(const Knot& knot) const {
   double second = 0;
   if (knot.lifts) {
     const Knot::SourceVector errors = Errors();
-    const SecondOrder::Form form = SecondOrderOf(knot, g).level / sampled;
+    const SecondOrder::Form form = SecondOrderOf(knot).level / sampled;
     d += (form + form.transpose()) * errors;
     second = errors.dot(form * errors);
   }

@@ -100,6 +100,7 @@ class Three : public ceres::CostFunction {
     Knot::SourceVector d = span_.d_turn;
     d.segment<3>(static_cast<int>(Knot::kAccelBiasX)) +=
         (to * span_.by_inclination).real() * span_.d_inclination;
+    value += AddSecond(x, span_.second.turn, &d);
     return value - AddErrors(x, d, -weight, row, rows);
   }
 
@@ -123,7 +124,7 @@ class Three : public ceres::CostFunction {
   // counts it twice, so that it comes off again.
   double AddSecond(double const* const* x, const SecondOrder::Form& form,
                    Knot::SourceVector* d) const {
-    if (!span_.lifts) return 0;
+    if (!span_.curved) return 0;
     const Knot::SourceVector errors = Errors(x);
     *d += form * errors + form.transpose() * errors;
     return errors.dot(form * errors);

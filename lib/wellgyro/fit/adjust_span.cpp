@@ -54,7 +54,7 @@ struct Sums {
   double acceleration = 0;                              // the largest
   double unseen = 0, unseen_turn = 0, unseen_lift = 0;  // see Knot
   std::complex<double> rolled;
-  double lift_beyond = 0;  // variance [rad^2]
+  VarBeyond beyond;
   Knot::SourceVector d_path = Knot::SourceVector::Zero();
   Knot::SourceVector d_level = Knot::SourceVector::Zero();  // of axial knots
 };
@@ -93,8 +93,10 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   sums->rolled += RolledOver(knot);
   if (!span->still) {
     const FilterSetup& setup = history.setup;
-    sums->lift_beyond += VarLiftBeyond(knot, setup.errors, setup.site.gravity,
-                                       kEarthRate * std::cos(place.latitude));
+    const VarBeyond beyond =
+        VarBeyondOf(knot, setup.errors, setup.site.gravity, kEarthRate * std::cos(place.latitude));
+    sums->beyond.turn += beyond.turn;
+    sums->beyond.lift += beyond.lift;
   }
   sums->white_turn += knot.white_turn;
   sums->jitter += knot.toolface_noise_turn;
@@ -111,9 +113,13 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
       s.sampled * knot.d_inclination.segment<3>(static_cast<int>(Knot::kAccelBiasX));
   if (knot.lifts) {
     span->d_azimuth += s.sampled * knot.d_toolface;
-    const SecondOrder second = SecondOrderOf(knot, history.setup.site.gravity);
+  }
+  if (knot.lifts || history.setup.errors.time_skew_sigma > 0) {
+    const SecondOrder second = SecondOrderOf(knot);
+    span->second.turn += second.turn;
     span->second.lift += second.lift;
     span->second.level += second.level;
+    span->curved = true;
   }
   span->seconds += knot.seconds;
   if (knot.var_unseen > 0 && !knot.axial) {
@@ -178,8 +184,9 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   const FilterSetup& setup = history.setup;
   const Knot& last = history.epochs[span->epoch_end - 1].knot;
   const double walk2 = Square(setup.gyro.angle_random_walk);
-  span->var_turn = walk2 * sums.white_turn + sums.jitter + sums.unseen_turn + kFloor;
-  span->var_lift = walk2 * sums.sampled + sums.unseen_lift + sums.lift_beyond + kFloor;
+  span->var_turn =
+      walk2 * sums.white_turn + sums.jitter + sums.unseen_turn + sums.beyond.turn + kFloor;
+  span->var_lift = walk2 * sums.sampled + sums.unseen_lift + sums.beyond.lift + kFloor;
   if (sums.sampled > 0) {
     const double noise = setup.errors.accel_noise / setup.site.gravity;
     span->var_lift += Square(noise * span->turn) / sums.sampled;

@@ -39,7 +39,8 @@ struct AdjustSpan {
   Eigen::Vector3d d_inclination = Eigen::Vector3d::Zero();  ///< of the tracker, by accelerometers
   /// Where axial, of the true azimuth by that of its two ends, in the Earth's share of the lift.
   Knot::SourceVector d_azimuth = Knot::SourceVector::Zero();
-  SecondOrder second;  ///< there too, of lift and of level
+  bool curved = false;
+  SecondOrder second;  ///< if so, of turn, of lift and of level
   Knot::SourceVector d_level = Knot::SourceVector::Zero();
   double level = 0;  ///< mean of the accelerometers' inclination [rad]
   double bow = 0;    ///< mean of the path's inclination less its chord's [rad]

@@ -18,50 +18,55 @@ Knot::SourceVector SourceSigmas(const ErrorPriors& errors) {
   return sigma;
 }
 
-SecondOrder SecondOrderOf(const Knot& knot, double gravity) {
+SecondOrder SecondOrderOf(const Knot& knot) {
   SecondOrder second;
   const double sampled = knot.seconds - knot.gap_seconds;
-  if (!knot.lifts || !(sampled > 0)) return second;
-  const auto c = knot.rolled_toolface.row(0), s = knot.rolled_toolface.row(1);
+  if (!(sampled > 0)) return second;
   const double spin = knot.roll / sampled;
-  second.lift.row(Knot::kGyroBiasX) = c;
-  second.lift.row(Knot::kGyroBiasY) = -s;
-  second.lift.row(Knot::kMisalignmentX) = spin * c;
-  second.lift.row(Knot::kMisalignmentY) = -spin * s;
-  second.level.row(Knot::kAccelBiasX) = -s / gravity;
-  second.level.row(Knot::kAccelBiasY) = -c / gravity;
-  second.level -=
-      std::sin(knot.inclination) / 2 * sampled * knot.d_toolface * knot.d_toolface.transpose();
-  // Where the toolface is read wrong, the force is seen turned with it.
-  for (const Knot::Source source : {Knot::kToolfaceOffset, Knot::kTimeSkew}) {
-    second.level.row(source).setZero();
-    second.level.col(source).setZero();
+  if (!knot.axial) {
+    Knot::SourceVector toolface = Knot::SourceVector::Zero();
+    toolface[Knot::kToolfaceOffset] = 1;
+    toolface[Knot::kTimeSkew] = spin;
+    const SecondOrder::Form half = 0.5 * toolface * toolface.transpose();
+    second.turn = knot.turn * half;
+    second.lift = knot.lift * half;
   }
+  if (!knot.lifts) return second;
+  const auto c = knot.rolled_toolface.row(0), s = knot.rolled_toolface.row(1);
+  second.lift.row(Knot::kGyroBiasX) = -c;
+  second.lift.row(Knot::kGyroBiasY) = s;
+  second.lift.row(Knot::kMisalignmentX) = -spin * c;
+  second.lift.row(Knot::kMisalignmentY) = spin * s;
+  // Where the toolface is read wrong, the force is seen turned with it.
+  Knot::SourceVector leaning = knot.d_toolface;
+  leaning[Knot::kToolfaceOffset] = leaning[Knot::kTimeSkew] = 0;
+  second.level = -std::sin(knot.inclination) / 2 * sampled * leaning * leaning.transpose();
   return second;
 }
 
-double VarLiftBeyond(const Knot& knot, const ErrorPriors& priors, double gravity,
-                     double horizontal) {
+VarBeyond VarBeyondOf(const Knot& knot, const ErrorPriors& priors, double gravity,
+                      double horizontal) {
   constexpr double kAlike = 10;         // so long lasts what comes and goes [s]
   constexpr double kSecondAlike = 1e3;  // and what is of the second order
-  constexpr double kShare = 0.2;        // of which a knot that knows it may be wrong
+  constexpr double kShare = 0.1;        // of which a knot that knows it may be wrong
   const double sampled = knot.seconds - knot.gap_seconds;
-  if (!(sampled > 0)) return 0;
+  if (!(sampled > 0)) return {};
   const double sine = std::max(std::sin(knot.inclination), 1e-3);
   const double skewed = priors.gyro_misalignment_sigma * std::abs(knot.roll) / sampled;
   const double travel = knot.along.known ? knot.along.speed * skewed : 0;
-  double toolface = std::hypot(priors.accel_bias_sigma, travel) / (gravity * sine);
-  if (knot.lifts) {
-    toolface = kShare * knot.d_toolface.cwiseProduct(SourceSigmas(priors)).norm();
+  const double turns = std::abs(knot.turn) / sampled;
+  if (!knot.axial) {
+    const double toolface = std::hypot(priors.accel_bias_sigma, travel) / (gravity * sine);
+    const double rate = skewed * toolface / 2;
+    const double turn = rate / sine + turns * toolface * toolface;
+    return {turn * turn * kSecondAlike * sampled, rate * rate * kSecondAlike * sampled};
   }
-  const double second = skewed * toolface / 2;
-  double rate2 = second * second * kSecondAlike;
-  if (knot.lifts) {
-    const double bends = knot.turn * sine / sampled;
-    rate2 +=
-        2 * kAlike * (horizontal * horizontal * knot.var_sum + bends * bends * knot.var_toolface);
-  }
-  return rate2 * sampled;
+  if (!knot.lifts) return {};
+  const double toolface = kShare * knot.d_toolface.cwiseProduct(SourceSigmas(priors)).norm();
+  const double rate = skewed * toolface / 2, bends = turns * sine;
+  const double comes_and_goes =
+      horizontal * horizontal * knot.var_sum + bends * bends * knot.var_toolface;
+  return {0, (rate * rate * kSecondAlike + 2 * kAlike * comes_and_goes) * sampled};
 }
 
 std::complex<double> RolledOver(const Knot& knot) {

@@ -14,23 +14,28 @@ namespace wellgyro {
 /// biases: what they are takes the noise coefficients too.
 WELLGYRO_EXPORT Knot::SourceVector SourceSigmas(const ErrorPriors& errors);
 
-/// What d_lift and the sensitivities of inclination_accel leave out of an axial knot that lifts:
-/// with e the errors, lift has e' lift e more, the integral of the accelerometers' inclination over
-/// the knot e' level e [SI]. An error across the tool turns with it, as does the error of toolface
-/// that it makes, and their product does not.
+/// What d_turn, d_lift and the sensitivities of inclination_accel, which hold where the readings
+/// stand, leave out: with e the errors, turn has e' turn e more, lift e' lift e, the integral of
+/// the accelerometers' inclination over the knot e' level e [SI]. A toolface that is off by a time
+/// skew sees less of how the hole turns. Of an axial knot that lifts: an error across the tool
+/// turns with it, as does the error of toolface that it makes, and their product does not; of other
+/// axial knots nothing is known.
 struct SecondOrder {
   using Form = Eigen::Matrix<double, Knot::kSources, Knot::kSources>;
-  Form lift = Form::Zero(), level = Form::Zero();
+  Form turn = Form::Zero(), lift = Form::Zero(), level = Form::Zero();
 };
-WELLGYRO_EXPORT SecondOrder SecondOrderOf(const Knot& knot, double gravity);
+WELLGYRO_EXPORT SecondOrder SecondOrderOf(const Knot& knot);
 
-/// Variance of the lift that neither noise nor the sensitivities hold, as if it were white. Of the
-/// second order: axes that are skewed turn with a rolling tool, and so does the error of toolface
-/// that the accelerometers make, in `priors`; of an axial knot, which knows its second order, a
-/// share of that. Of an axial knot also what comes and goes in its azimuth and its toolface.
-/// `horizontal`: the Earth's rate across [rad/s].
-WELLGYRO_EXPORT double VarLiftBeyond(const Knot& knot, const ErrorPriors& priors, double gravity,
-                                     double horizontal);
+/// Variances that neither noise nor the sensitivities hold, as if they were white [rad^2].
+struct VarBeyond {
+  double turn = 0, lift = 0;
+};
+/// Of the second order in `priors`: axes that are skewed turn with a rolling tool, and so does the
+/// error of toolface that the accelerometers make; of an axial knot that lifts, which knows its
+/// second order, a share of that. Of such a knot also what comes and goes in its azimuth and its
+/// toolface. `horizontal`: the Earth's rate across [rad/s]. The turn of an axial knot is its own.
+WELLGYRO_EXPORT VarBeyond VarBeyondOf(const Knot& knot, const ErrorPriors& priors, double gravity,
+                                      double horizontal);
 
 /// Integral of e^{iT} over the knot [s].
 WELLGYRO_EXPORT std::complex<double> RolledOver(const Knot& knot);
