@@ -243,6 +243,8 @@ class Live(ProgramTest):
         self.assertEqual(Run("check", self.Path(out, "survey.csv")).returncode, 0)
         self.assertIn("interrupted", self.Read(out, "source.toml"))
         self.assertIn("provisional", self.Read(out, "passes.csv"))
+        # The station before the first north has the azimuth that this north gave it.
+        self.assertRegex(self.Read(out, "checks.csv"), "stations_without_azimuth,.*,pass")
         print(f"signal {number}: {1000 * seconds:.0f} ms to the end")
         # 100 ms on a machine of its own; this one may be shared.
         self.assertLess(seconds, 1.0)

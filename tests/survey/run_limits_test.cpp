@@ -238,6 +238,54 @@ TEST(RunLimits, AveragesAtRestWithoutAnyDepthAreToldAsSuch) {
   EXPECT_NE(why.find("max_gap_s"), std::string::npos) << why;
 }
 
+// Cut off by the user. Until 2026-11-21 the stations before the first north were said to have none,
+// and those of a run that has not come to its first stop to have failed.
+TEST(RunLimits, AStationOfARunCutOffLacksAnAzimuthOnlyWhereNoneIsKnown) {
+  const auto azimuths = [](const Surveyor& surveyor) {
+    const Survey survey = surveyor.Current(0);
+    const Check* check = testing::Find(survey, "stations_without_azimuth");
+    return check == nullptr ? Check{} : *check;
+  };
+  const Simulation first = Slant();
+  const double length = Truth(first).seconds();
+  const auto before = [](UtcTime end) {
+    return [end](const SimulatedStep& step) {
+      const auto* sample = std::get_if<ImuSample>(&step);
+      const auto* mark = std::get_if<DepthMark>(&step);
+      return sample != nullptr ? sample->stamp.utc < end : mark == nullptr || mark->utc < end;
+    };
+  };
+  for (const double part : {0.5, 0.7}) {
+    Sink sink;
+    Surveyor surveyor(SlantJob(), sink);
+    testing::Play(first, surveyor,
+                  before(first.streams.begin_utc + Duration::Seconds(part * length)));
+    const Survey survey = surveyor.Current(0);
+    ASSERT_EQ(survey.unusable, "");
+    EXPECT_EQ(survey.chosen.front().md, 0);
+    EXPECT_EQ(azimuths(surveyor).verdict, Verdict::kPass) << azimuths(surveyor).limit_source;
+  }
+  // Another run, without a stop at its begin.
+  Simulation second = Slant();
+  second.run.steps = {RunMove{.to_md = 200}, RunStop{.seconds = 90}};
+  second.streams.session = 2;
+  second.streams.begin_utc = first.streams.begin_utc + Duration::Seconds(length + 600);
+  Event begin;
+  begin.kind = Event::Kind::kRunBegin;
+  begin.utc = second.streams.begin_utc - Duration::Seconds(1);
+  Sink sink;
+  Surveyor surveyor(SlantJob(), sink);
+  testing::Play(first, surveyor);
+  surveyor.Push(begin);
+  const double moving = Truth(second).seconds() - 90;
+  testing::Play(second, surveyor, before(second.streams.begin_utc + Duration::Seconds(moving)));
+  EXPECT_EQ(azimuths(surveyor).verdict, Verdict::kNotDone);
+  EXPECT_NE(azimuths(surveyor).limit_source.find("wait for the next north"), std::string::npos);
+  surveyor.Finish();
+  EXPECT_EQ(azimuths(surveyor).verdict, Verdict::kFail);
+  EXPECT_GE(azimuths(surveyor).value.value_or(0), 5);
+}
+
 TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
   const Simulation simulation = Slant();
   const Truth truth(simulation);

@@ -31,6 +31,9 @@ struct DraftedRun {
   std::vector<Draft> drafts;         ///< in the order of time
   std::vector<StationState> states;  ///< of the filter, or smoothed: whichever is to be told
   std::vector<Waypoint> way;         ///< of the hole, in the order of time
+  /// Stations asked for and passed that are not in `drafts` because no azimuth is known there: for
+  /// good, or until the next north of a run that goes on.
+  std::int64_t without_azimuth = 0, waiting_for_azimuth = 0;
 };
 
 }  // namespace wellgyro

@@ -53,6 +53,8 @@ class RunSurvey {
   bool depth_seen() const { return depth_seen_; }
   /// How long it has been since the last that had one [s].
   double seconds_without_depth() const { return depth_seen_ ? seconds_unknown_ : 0; }
+  /// The draft still waits for an azimuth to become known.
+  bool IsUnheard(std::size_t draft) const;
   const std::vector<Draft>& drafts() const { return drafts_; }
   std::vector<Draft>& drafts() { return drafts_; }
   /// Those of drafts() that are from samples stand in this order in the filter.

@@ -104,6 +104,10 @@ void RunSurvey::TellUnheard() {
   unheard_.clear();
 }
 
+bool RunSurvey::IsUnheard(std::size_t draft) const {
+  return std::binary_search(unheard_.begin(), unheard_.end(), draft);
+}
+
 void RunSurvey::SetTrackerAzimuth() {
   const AttitudeSample& now = filter_->attitude();
   tracker_.SetAzimuth(now.azimuth_known ? std::optional<double>(now.azimuth) : std::nullopt);

@@ -96,8 +96,6 @@ class ToolSurvey {
   std::vector<Foresight> Foresights() const;
   std::vector<Check> Checks(const std::vector<Station>& passes) const;
   void SendRevisions();
-  std::int64_t WithoutAzimuth() const;
-  Check CheckAzimuths() const;
   std::string WithoutDepth() const;
   std::string WithoutNorth(const std::vector<DraftedRun>& drafted, const Survey& survey) const;
 

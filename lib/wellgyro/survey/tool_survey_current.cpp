@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/joined_states.h"
 #include "wellgyro/survey/mirrors.h"
@@ -21,6 +22,25 @@ namespace {
 constexpr double kForesightSeconds = 2;
 // From so many sigmas on two norths are not both right.
 constexpr double kContradiction = 4;
+
+std::int64_t WithoutAzimuth(const std::vector<DraftedRun>& drafted) {
+  std::int64_t count = 0;
+  for (const DraftedRun& run : drafted) count += run.without_azimuth + run.waiting_for_azimuth;
+  return count;
+}
+
+Check CheckAzimuths(const std::vector<DraftedRun>& drafted) {
+  std::int64_t waiting = 0;
+  for (const DraftedRun& run : drafted) waiting += run.waiting_for_azimuth;
+  const std::int64_t never = WithoutAzimuth(drafted) - waiting;
+  if (never == 0 && waiting > 0) {
+    return NotDone("stations_without_azimuth", 0,
+                   fmt::format("{} stations wait for the next north of their run, which has not "
+                               "ended",
+                               waiting));
+  }
+  return CompareCount("stations_without_azimuth", 0, never, "every station passed has an azimuth");
+}
 
 /// Near vertical the hole's direction is known without an azimuth.
 bool HasDirection(const AttitudeSample& attitude) {
@@ -83,6 +103,8 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
       if (draft.state && !HasDirection(d.states[*draft.state].attitude)) {
         // The next one's covariance with this one would be taken for that with the one before.
         if (*draft.state + 1 < d.states.size()) d.states[*draft.state + 1].cov_with_previous = {};
+        const bool waits = !finished_ && &run == &runs_.back() && run.survey->IsUnheard(i);
+        if (draft.listed) ++(waits ? d.waiting_for_azimuth : d.without_azimuth);
         continue;
       }
       draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
@@ -133,33 +155,6 @@ std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const 
   const std::vector<RunSummary> summaries = Summaries();
   const std::vector<Foresight> foresights = Foresights();
   return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_, refused_});
-}
-
-/// Stations that were asked for and passed, but at which no azimuth is known.
-std::int64_t ToolSurvey::WithoutAzimuth() const {
-  std::int64_t count = 0;
-  for (const RunState& run : runs_) {
-    const AzimuthFilter* filter = run.survey->filter();
-    for (const Draft& draft : run.survey->drafts()) {
-      if (!draft.listed || !draft.state || !filter) continue;
-      const std::size_t i = *draft.state;
-      const StationState& state = i < run.adjusted.size() ? run.adjusted[i] : filter->stations()[i];
-      count += HasDirection(state.attitude) ? 0 : 1;
-    }
-  }
-  return count;
-}
-
-Check ToolSurvey::CheckAzimuths() const {
-  Check check;
-  check.code = "stations_without_azimuth";
-  const auto count = static_cast<double>(WithoutAzimuth());
-  check.value = count;
-  check.sigma = check.limit = 0;
-  check.unit = "1";
-  check.limit_source = "every station passed has an azimuth";
-  check.verdict = Judge(count, 0);
-  return check;
 }
 
 /// Samples behind the last depth, for which marks came after all, but too late [s].
@@ -220,7 +215,7 @@ std::string ToolSurvey::WithoutNorth(const std::vector<DraftedRun>& drafted,
       return !draft.state || run.states[*draft.state].attitude.azimuth_known;
     });
   });
-  if (north || (!survey.chosen.empty() && WithoutAzimuth() == 0)) return {};
+  if (north || (!survey.chosen.empty() && WithoutAzimuth(drafted) == 0)) return {};
   if (job_.alignment.method == AlignmentSpec::Method::kExternal) {
     return "no north was found: the depth or time at which the job's external azimuth holds was "
            "never reached";
@@ -243,7 +238,7 @@ Survey ToolSurvey::Current() const {
   const std::vector<DraftedRun> drafted = Drafted();
   Placed placed = Assemble(job_, drafted);
   survey.checks = Checks(placed.passes);
-  survey.checks.push_back(CheckAzimuths());
+  survey.checks.push_back(CheckAzimuths(drafted));
   if (!job_.stations.at.empty()) survey.checks.push_back(CheckAsked(job_, placed.chosen));
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);
