@@ -1,4 +1,5 @@
 // Cases that once ended a survey, each from a report: 2026-11-21.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -94,6 +95,34 @@ TEST(Damage, ImpossibleSamplesAreRefused) {
   for (const Station& s : survey.chosen) {
     EXPECT_TRUE(s.cov_p_WT_W.allFinite());
     EXPECT_NEAR(s.inclination, FromDegrees(30), FromDegrees(0.1));
+  }
+}
+
+// Two recordings under one session and its numbers. Until 2026-11-21 the second was taken for a
+// repetition of the first.
+TEST(Damage, AnotherRunUnderTheSameNumbersIsTold) {
+  Simulation turned = Slant();
+  turned.run.steps[1] = RunMove{.to_md = 300, .roll = {.rate = 0.3}};
+  for (const bool other : {false, true}) {
+    CollectingSink sink;
+    Surveyor surveyor(SlantJob(), sink);
+    testing::Play(Slant(), surveyor);
+    testing::Play(other ? turned : Slant(), surveyor, [](const SimulatedStep& step) {
+      return std::holds_alternative<ImuSample>(step);
+    });
+    surveyor.Finish();
+    const Survey survey = surveyor.Current(0);
+    const Check* refused = testing::Find(survey, "samples_refused");
+    ASSERT_NE(refused, nullptr);
+    EXPECT_EQ(refused->verdict, other ? Verdict::kFail : Verdict::kPass);
+    const auto told = std::count_if(sink.faults.begin(), sink.faults.end(), [](const Fault& f) {
+      return f.code == FaultCode::kConflict && f.text.find("another content") != std::string::npos;
+    });
+    EXPECT_EQ(told > 0, other);
+    EXPECT_LT(told, 20);
+    const RunSummary& run = survey.runs[0];
+    EXPECT_EQ(run.samples_refused > 1000, other);
+    EXPECT_GT(run.duplicates, 1000);
   }
 }
 
