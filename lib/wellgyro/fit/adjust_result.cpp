@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 // Of the inclination, what the model of a moving tool leaves out and the run cannot show. Hours of
 // a tool without errors err by at most 8e-7; below a kink out of vertical the noise in common with
 // the knots before is taken for less than it is.
-constexpr double kInclinationFloor = 3e-6;  // [rad]
-constexpr double kUnknownVariance = 100;    // of an unknown azimuth, in the algebra [rad^2]
+constexpr double kInclinationFloor = 3.5e-6;  // [rad]
+constexpr double kUnknownVariance = 100;      // of an unknown azimuth, in the algebra [rad^2]
 
 double Square(double x) { return x * x; }
 
