@@ -309,8 +309,9 @@ void FilterCore::Take(FilterMeasurement* m) {
   covariance_ = half - hh * m->gain.transpose() + m->gain * m->variance * m->gain.transpose();
   covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();
   if (cross_.size() > 0) cross_ -= (cross_ * m->h) * m->gain.transpose();
-  if (covariance_(0, 0) < std::min(kUnknownAngleVariance, kTellsOfAzimuth * before))
+  if (covariance_(0, 0) < std::min(kUnknownAngleVariance, kTellsOfAzimuth * before)) {
     diffuse_ = false;
+  }
 }
 
 AttitudeRows RowsOf(const FilterLayout& layout, const Knot& knot, double gravity) {
