@@ -213,8 +213,6 @@ TEST(DepthTrack, LateMarksAreRefusedAndRepeatedOnesSkipped) {
   EXPECT_NEAR(track.At(Utc(8.33)).md, before.md, 0.01);
 }
 
-// An operator says at 30 s that the depth is 800 m. Whether the counter was set then (it reads 800
-// from there on) or not (it goes on), depths from 30 s on are the same and earlier ones stay.
 TEST(DepthTrack, ATimeAtRestIsNoGapBetweenMarksThatAgree) {
   const auto at = [](std::initializer_list<DepthMark> marks, double begin, double end) {
     DepthTrack track;
@@ -237,6 +235,8 @@ TEST(DepthTrack, ATimeAtRestIsNoGapBetweenMarksThatAgree) {
   EXPECT_TRUE(at({Mark(30, 100, 1), Mark(90, 100, 2)}, 0, 120).known);
 }
 
+// An operator says at 30 s that the depth is 800 m. Whether the counter was set then (it reads 800
+// from there on) or not (it goes on), depths from 30 s on are the same and earlier ones stay.
 TEST(DepthTrack, RezeroHoldsFromItsTimeOnWhetherOrNotTheCounterWasSet) {
   for (const bool set : {false, true}) {
     for (const bool first : {false, true}) {

@@ -24,7 +24,7 @@ struct RunSummary {
   std::int64_t samples = 0;            ///< accepted
   std::int64_t samples_lost = 0;       ///< by sequence number
   std::int64_t samples_after_end = 0;  ///< left out, because the job ends the run before them
-  /// Without a depth, between the first and the last that had one [s].
+  /// Without a depth, between the first and the last that had one, and of averages at rest [s].
   double seconds_without_depth = 0;
   std::int64_t duplicates = 0;  ///< sent again and skipped
   /// Impossible values, contradictory times, too late, or other; of all the tool's runs.
