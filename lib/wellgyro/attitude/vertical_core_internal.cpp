@@ -236,6 +236,7 @@ void Core::Carry(const Noise& noise) {
 }
 
 double Core::Take(const Noise& noise) {
+  regained_ = 0;
   if (!(accel_seconds_ > 0)) return 0;
   const Matrix3d R = R_accel_ / accel_seconds_;
   const Vector3d f = force_T_ / accel_seconds_;
@@ -259,6 +260,7 @@ double Core::Take(const Noise& noise) {
   const Eigen::Matrix<double, kStates, 1> error = K * y;
   R_ = Exp(-error.head<3>()) * R_;
   Orthonormalize(R_);
+  regained_ = -R_.col(2).dot(error.head<3>());
   axial_ -= error[kAxial];
   gyro_ -= error.segment<2>(kGyro);
   accel_ -= error.segment<2>(kAccel);
@@ -282,6 +284,9 @@ double Core::Take(const Noise& noise) {
   force.col(Knot::kAccelBiasZ) = R.block<2, 1>(0, 2);
   sources_ = (left * sources_).eval();
   sources_.leftCols<Knot::kSources>() -= K * force;
+  // The tool had turned by that too, and skewed axes with it.
+  sources_.block<3, 1>(kTurn, Knot::kMisalignmentX) += regained_ * R_.col(0);
+  sources_.block<3, 1>(kTurn, Knot::kMisalignmentY) += regained_ * R_.col(1);
   return -0.5 * (y.dot(inverse * y) + std::log(S.determinant()));
 }
 

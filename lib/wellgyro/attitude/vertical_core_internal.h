@@ -111,6 +111,9 @@ class Core {
   bool has_gz() const { return has_gz_; }
   double block_seconds() const { return seconds_; }
   double block_spin() const { return spin_; }  ///< about the axis, in these [rad]
+  /// What the last block's force added to its turn about the axis [rad]: where the rate there comes
+  /// and goes, it is always found a little late.
+  double regained() const { return regained_; }
   const Covariance& cov() const { return cov_; }
   /// Of the noise alone, and what the tool's constant errors and the Earth's rate do.
   const Covariance& cov_noise() const { return cov_noise_; }
@@ -124,7 +127,7 @@ class Core {
   Eigen::Vector3d Axis() const;
 
   Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity(), R_middle_ = Eigen::Matrix3d::Identity();
-  double axial_ = 0;
+  double axial_ = 0, regained_ = 0;
   Eigen::Vector2d gyro_ = Eigen::Vector2d::Zero(), accel_ = Eigen::Vector2d::Zero();
   Covariance cov_ = Covariance::Zero(), cov_noise_ = Covariance::Zero();
   Sensitivity sources_ = Sensitivity::Zero();

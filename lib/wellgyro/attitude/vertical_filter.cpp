@@ -330,7 +330,7 @@ void VerticalFilter::Impl::Close() {
   }
   const Eigen::RowVector3d toolface = vertical::EulerSlopes(main.R_LT()).row(2);
   lift_sums.TakeToolface(
-      (toolface * main.sources().topLeftCorner<3, Knot::kSources>()).transpose());
+      (toolface * main.sources().topLeftCorner<3, Knot::kSources>()).transpose(), main.regained());
   ready = true;
 }
 

@@ -32,7 +32,11 @@ void LiftSums::Roll(const Sums& open, const Knot::SourceVector& d_toolface) {
   rolled_ += Eigen::Vector3d(open[kUnitC], open[kUnitS], open[kAcross]) * d_toolface.transpose();
 }
 
-void LiftSums::TakeToolface(const Knot::SourceVector& d_toolface) {
+void LiftSums::TakeToolface(const Knot::SourceVector& d_toolface, double regained) {
+  if (open_[kSeconds] > 0) {
+    sums_[kSpinC] += regained * open_[kUnitC] / open_[kSeconds];
+    sums_[kSpinS] += regained * open_[kUnitS] / open_[kSeconds];
+  }
   Roll(open_, d_toolface);
   open_.setZero();
 }

@@ -27,9 +27,9 @@ class LiftSums {
  public:
   /// One sample; `R_LT` at its middle, turning about z at `axial_rate` [rad/s].
   void Add(const Sensed& sensed, const Eigen::Matrix3d& R_LT, double axial_rate);
-  /// The toolface used since the last call errs so by the tool's errors. To be called every
-  /// fraction of a turn.
-  void TakeToolface(const Knot::SourceVector& d_toolface);
+  /// The toolface used since the last call errs so by the tool's errors, and the tool turned by
+  /// `regained` [rad] more than the rates said. To be called every fraction of a turn.
+  void TakeToolface(const Knot::SourceVector& d_toolface, double regained);
   /// Time without samples begins or ends: what is held no longer belongs to one interval.
   void Break() { broken_ = true; }
 
