@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -20,6 +22,8 @@ constexpr double kDecides = 0.1;     // sigma of an azimuth from outside that ne
 constexpr double kSameDepth = 0.05;  // of two passes of one station [m]
 constexpr double kLeastBend = 6e-6;  // of a hole, 0.01 deg in 30 m [rad/m]
 constexpr double kLeastLie = 1e-6;   // by which passes differ in any case [rad]
+constexpr double kSamePath = 0.1;    // sigmas of a span's growth by which a path counts as the same
+constexpr int kPathsMax = 6;
 
 bool TellsOfNorth(const AdjustSegment& segment, const std::vector<AdjustSpan>& spans) {
   for (std::size_t k = segment.begin; k + 1 < segment.end; ++k) {
@@ -259,6 +263,46 @@ void FillParts(const AdjustRows& rows, const SelectedInverse& inverse, RunFit* f
   }
 }
 
+// By how many sigmas the Earth turns another way within a span than the problem has it.
+double MovedBetween(const AdjustProblem& p, const AdjustProblem& renewed) {
+  double most = 0;
+  for (std::size_t k = 0; k < p.spans.size(); ++k) {
+    const AdjustSpan &was = p.spans[k], &is = renewed.spans[k];
+    const std::complex<double> to = std::polar(1.0, p.azimuth(k));
+    const double turn = (to * (is.earth_turn - was.earth_turn)).real();
+    const double lift = (to * (is.earth_lift - was.earth_lift)).imag();
+    most = std::max({most, turn * turn / is.var_turn, lift * lift / is.var_lift});
+  }
+  return std::sqrt(most);
+}
+
+// A span takes what the Earth does in it from the path, of which one is known only now: near
+// vertical, where the azimuth turns by tens of degrees in a span, the first one is far off.
+AdjustOutcome SolveAlong(AdjustProblem* p, AdjustRows* rows,
+                         const std::function<AdjustProblem(const std::vector<double>&)>& make) {
+  AdjustOutcome outcome = Solve(p, rows);
+  for (int i = 1; i < kPathsMax && outcome.converged; ++i) {
+    const std::vector<double> path = PathOf(*p);
+    AdjustProblem renewed = make(path);
+    renewed.holds = p->holds;
+    const bool alike = renewed.spans.size() == p->spans.size();
+    if (alike && MovedBetween(*p, renewed) < kSamePath) break;
+    if (alike && renewed.layout.common == p->layout.common) {
+      renewed.nodes = p->nodes;
+      renewed.common = p->common;
+    } else {
+      StartFrom(AtNodes(renewed, path), &renewed);
+    }
+    AdjustRows renewed_rows;
+    const AdjustOutcome again = Solve(&renewed, &renewed_rows);
+    if (!again.converged) break;
+    outcome = again;
+    *p = std::move(renewed);
+    *rows = std::move(renewed_rows);
+  }
+  return outcome;
+}
+
 }  // namespace
 
 Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
@@ -271,8 +315,10 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
     return result;
   }
   const Beginning begin = Begin(history, options, sigma_lie);
-  AdjustProblem p =
-      MakeProblem(history, begin.path, {options.knot_seconds, true}, options, sigma_lie);
+  const auto make = [&](const std::vector<double>& path) {
+    return MakeProblem(history, path, {options.knot_seconds, true}, options, sigma_lie);
+  };
+  AdjustProblem p = make(begin.path);
   for (AdjustProblem::Hold hold : begin.holds) {
     for (const AdjustSpan& span : p.spans) {
       if (span.epoch_end <= hold.epoch) continue;
@@ -284,7 +330,7 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
   }
   StartFrom(AtNodes(p, begin.path), &p);
   AdjustRows rows;
-  const AdjustOutcome outcome = Solve(&p, &rows);
+  const AdjustOutcome outcome = SolveAlong(&p, &rows, make);
   const Eigen::SparseMatrix<double> jacobian = rows.jacobian;  // by columns
   const SelectedInverse inverse(jacobian.transpose() * jacobian);
   if (!outcome.converged || !inverse.ok()) {  // what the smoother makes of it is still true
