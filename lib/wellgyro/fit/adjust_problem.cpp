@@ -67,7 +67,7 @@ class Builder {
       const std::vector<double*> blocks{p_.node(k), p_.node(k + 1), p_.common.data()};
       const std::size_t first = parts_.size();
       Add(SpanCost(p_.layout, span), RunFit::kParts, blocks);
-      if (!span.still && (!span.vertical || span.lifts)) {
+      if (!span.still && !span.broken && (!span.vertical || span.lifts)) {
         parts_[first + AdjustLayout::kInclination] = RunFit::kInclination;
       }
       if (span.still && !span.vertical) Add(StillCost(p_.layout, span), RunFit::kRest, blocks);

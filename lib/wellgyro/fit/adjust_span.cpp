@@ -204,7 +204,7 @@ void Finish(const FilterHistory& history, const Sums& sums, AdjustSpan* span) {
   if (!span->axial) return;
   // Where gravity shows more of the way than before, its noise gets no more.
   span->var_turn += Square(kAxialTurn);
-  if (span->lifts) return;
+  if (span->lifts && !span->broken) return;
   // Its lift is how much more the tool leans by then: the levels once more, which only keeps them
   // from going up and down in turn. Taken in earnest, a bias of the gyros that bends it passes for
   // one of the accelerometers.
@@ -277,6 +277,7 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
     if (Used(f) && !f.rates && f.epoch_end > 0) ends[f.epoch_end - 1] = true;
   }
   const std::vector<double> accelerations = AccelerationsAbout(history);
+  const auto lost = [&](std::size_t i) { return !options.lost.empty() && options.lost[i]; };
   std::vector<AdjustSpan> spans;
   Sums sums;
   bool open = false;
@@ -293,14 +294,14 @@ std::vector<AdjustSpan> SpansOf(const FilterHistory& history,
     span.vertical = knot.vertical || knot.axial;
     span.axial = knot.axial && !knot.vertical;
     span.lifts = span.axial && knot.lifts;
-    span.broken = knot.vertical && !knot.still;
+    span.broken = (knot.vertical || lost(i)) && !knot.still;
     AddKnot(history, StepAt(history, i), places[i], accelerations[i], &span, &sums);
     span.epoch_end = i + 1;
     const bool last = i + 1 == epochs.size();
     const Knot* next = last ? nullptr : &epochs[i + 1].knot;
     open = !last && !ends[i] && !(epochs[i].station && options.at_stations) && !Lone(knot) &&
            !Lone(*next) && next->still == knot.still && next->vertical == knot.vertical &&
-           next->axial == knot.axial && next->lifts == knot.lifts &&
+           next->axial == knot.axial && next->lifts == knot.lifts && lost(i + 1) == lost(i) &&
            span.seconds + next->seconds <=
                std::min(options.seconds, LongestWith(*next, places[i].latitude)) * (1 + 1e-9);
     if (!open) Finish(history, sums, &span);

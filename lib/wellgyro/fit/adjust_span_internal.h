@@ -24,7 +24,7 @@ struct AdjustSpan {
   bool vertical = false;      ///< the form below does not hold, or for the azimuth alone
   bool axial = false;         ///< it does for the azimuth: see Knot::axial
   bool lifts = false;         ///< where axial, for the inclination too
-  bool broken = false;        ///< vertical and moving: nothing links the azimuths of its two ends
+  bool broken = false;        ///< moving: nothing links the azimuths of its two ends
   bool levelled = false;      ///< has samples whose accelerometers count
   double turn = 0, lift = 0;  ///< [rad]
   double still_turn = 0;      ///< at rest: what the azimuth is counted from has moved [rad]
@@ -50,6 +50,9 @@ struct AdjustSpan {
 struct SpanOptions {
   double seconds = 10;      ///< longest span made of several knots [s]
   bool at_stations = true;  ///< every marked station ends a span
+  /// Of every epoch, whether the azimuth is lost over it: moving there nothing links the azimuths
+  /// of a span's two ends. Empty: nowhere.
+  std::vector<bool> lost;
 };
 
 /// Place of the tool at the begin of an epoch, and how its azimuth grows over it.

@@ -24,6 +24,7 @@ constexpr double kLeastBend = 6e-6;  // of a hole, 0.01 deg in 30 m [rad/m]
 constexpr double kLeastLie = 1e-6;   // by which passes differ in any case [rad]
 constexpr double kSamePath = 0.1;    // sigmas of a span's growth by which a path counts as the same
 constexpr int kPathsMax = 6;
+constexpr double kLostVariance = 0.25;  // of an azimuth that no longer is linear [rad^2]
 
 bool TellsOfNorth(const AdjustSegment& segment, const std::vector<AdjustSpan>& spans) {
   for (std::size_t k = segment.begin; k + 1 < segment.end; ++k) {
@@ -140,6 +141,7 @@ std::vector<double> PathOf(const AdjustProblem& p) {
 // of each, or takes off it.
 struct Beginning {
   std::vector<double> path;
+  std::vector<bool> lost;  // see SpanOptions
   std::vector<double> var_beyond;
   std::vector<AdjustProblem::Hold> holds;
 };
@@ -156,11 +158,34 @@ bool IsTold(const FilterHistory& history, std::size_t first, std::size_t last) {
   });
 }
 
+// Near vertical, where an azimuth that is not known lets its own growth go: what the lifts say of
+// it there has two answers at every node, and least squares would take any of them for the truth.
+std::vector<bool> LostAlong(const FilterHistory& history, const SmoothedRun& smoothed) {
+  const auto& epochs = history.epochs;
+  std::vector<bool> lost(epochs.size(), false);
+  const auto is_vague = [&](std::size_t i) {
+    return epochs[i].knot.axial && !epochs[i].knot.still &&
+           smoothed.attitude[i].cov_attitude(1, 1) > kLostVariance;
+  };
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    const std::size_t begin = i;
+    double var = 0;
+    for (; i < epochs.size() && is_vague(i); ++i) var += epochs[i].knot.toolface_noise_turn;
+    if (var > kLostVariance) {
+      std::fill(lost.begin() + static_cast<std::ptrdiff_t>(begin),
+                lost.begin() + static_cast<std::ptrdiff_t>(i), true);
+    }
+  }
+  return lost;
+}
+
 Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, double sigma_lie) {
   const SmoothedRun smoothed = Smooth(history);
   Beginning begin;
   begin.var_beyond.assign(history.epochs.size(), 0.0);
-  AdjustProblem p = MakeProblem(history, {}, {kCoarseSeconds, false}, options, sigma_lie);
+  begin.lost = LostAlong(history, smoothed);
+  const SpanOptions coarse{kCoarseSeconds, false, begin.lost};
+  AdjustProblem p = MakeProblem(history, {}, coarse, options, sigma_lie);
   std::vector<double> azimuths = SmoothedAt(smoothed, p.spans);
   for (const AdjustSegment& segment : SegmentsOf(p.spans)) {
     if (!TellsOfNorth(segment, p.spans)) continue;
@@ -178,6 +203,9 @@ Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, 
     }
     const double beyond = north.ambiguous ? kUnknownAngleVariance : north.var_beyond;
     for (std::size_t i = first; i <= last; ++i) begin.var_beyond[i] = beyond;
+  }
+  for (std::size_t i = 0; i < begin.lost.size(); ++i) {
+    if (begin.lost[i]) begin.var_beyond[i] = kUnknownAngleVariance;
   }
   StartFrom(azimuths, &p);
   begin.path = PathOf(p);
@@ -315,8 +343,9 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
     return result;
   }
   const Beginning begin = Begin(history, options, sigma_lie);
+  const SpanOptions spans{options.knot_seconds, true, begin.lost};
   const auto make = [&](const std::vector<double>& path) {
-    return MakeProblem(history, path, {options.knot_seconds, true}, options, sigma_lie);
+    return MakeProblem(history, path, spans, options, sigma_lie);
   };
   AdjustProblem p = make(begin.path);
   for (AdjustProblem::Hold hold : begin.holds) {
