@@ -126,18 +126,20 @@ void Core::Start(const Sensed& s, const Matrix3d& R_LT, const ErrorPriors& error
   R_ = R_LT;
   has_gz_ = s.has_gz;
   accel_sigma_ = errors.accel_bias_sigma;
+  scale_sigma_ = errors.gyro_scale_sigma;
   Eigen::Matrix<double, kStates, 1> sigma;
   sigma << kTiltFirst, kTiltFirst, 0, s.has_gz ? std::max(bias_sigma, kBiasLeast) : kAxialFirst,
-      bias_sigma, bias_sigma, errors.accel_bias_sigma, errors.accel_bias_sigma;
+      bias_sigma, bias_sigma, errors.accel_bias_sigma, errors.accel_bias_sigma,
+      s.has_gz ? scale_sigma_ : 0;
   cov_ = sigma.cwiseAbs2().asDiagonal();
   cov_noise_ = cov_;
-  for (int i = kGyro; i < kStates; ++i) cov_noise_(i, i) = 0;
+  for (int i = kGyro; i < kScale; ++i) cov_noise_(i, i) = 0;
   sources_(kGyro, Knot::kGyroBiasX) = sources_(kGyro + 1, Knot::kGyroBiasY) = -1;
   sources_(kAccel, Knot::kAccelBiasX) = sources_(kAccel + 1, Knot::kAccelBiasY) = -1;
 }
 
 void Core::Predict(const Sensed& s) {
-  const double spin = (s.w_IT_T.z() + axial_) * s.seconds;
+  const double spin = ((1 + scale_) * s.w_IT_T.z() + axial_) * s.seconds;
   const double regain = InverseSinc(spin);
   const Vector2d across = (s.w_IT_T.head<2>() - gyro_) * (s.seconds * regain);
   const Matrix3d half = RotationZ(spin / 2);
@@ -155,7 +157,7 @@ void Core::Predict(const Sensed& s) {
   }
   R_ = Exp(-0.5 * s.seconds * s.w_IL_L) * R_ * tilt * half;
   w_sum_ += s.seconds * s.w_IT_T;
-  last_rate_ << s.w_IT_T.head<2>() - gyro_, s.w_IT_T.z() + axial_;
+  last_rate_ << s.w_IT_T.head<2>() - gyro_, (1 + scale_) * s.w_IT_T.z() + axial_;
   spin_ += spin;
   w_IL_L_ += s.seconds * s.w_IL_L;
   w_IL_ = s.w_IL_L;
@@ -202,6 +204,7 @@ void Core::Carry(const Noise& noise) {
   const double white = Square(noise.rate) * T;
   added.topLeftCorner<3, 3>() = white * (Matrix3d::Identity() - (has_gz_ ? 0 : 1) * along);
   AddAxial(T, z, Square(has_gz_ ? noise.bias_walk : noise.axial_walk), &phi, &added);
+  if (has_gz_) phi.block<3, 1>(kTurn, kScale) = spin_ * z;
   // A heading that is wrong turns the Earth's rate. That shows the heading, but falsely as soon as
   // it is no longer linear: then it only counts as noise.
   if (!heading_feeds_back()) {
@@ -214,7 +217,6 @@ void Core::Carry(const Noise& noise) {
   const double faster = spin - last_spin_;
   const bool is_faster = Square(faster) > Square(kSure) * cov_(kAxial, kAxial);
   const double changed = is_faster ? Square(noise.skewed * faster) : 0;
-  if (has_gz_) added(kAxial, kAxial) += changed;
   if (is_faster) last_spin_ = spin;
 
   for (int i = kGyro; i < kAccel; ++i) added(i, i) = Square(noise.bias_walk) * T;
@@ -255,7 +257,7 @@ double Core::Take(const Noise& noise) {
   // the rate about its axis is uncertain, would part them falsely; one at rest for all its length.
   const bool held = since_hold_ < kHeldSeconds;
   if (held || Square(spin_ / seconds_) < Square(kSure) * cov_(kAxial, kAxial)) {
-    K.bottomRows<2>().setZero();
+    K.middleRows<2>(kAccel).setZero();
   }
   const Eigen::Matrix<double, kStates, 1> error = K * y;
   R_ = Exp(-error.head<3>()) * R_;
@@ -264,6 +266,7 @@ double Core::Take(const Noise& noise) {
   axial_ -= error[kAxial];
   gyro_ -= error.segment<2>(kGyro);
   accel_ -= error.segment<2>(kAccel);
+  scale_ -= error[kScale];
 
   const Covariance left = Covariance::Identity() - K * C;
   const Covariance of_white = K * white * K.transpose();
@@ -310,7 +313,7 @@ void Core::Hold(double sigma) {
   const double still = R_.col(2).dot(w_IL_);
   Eigen::Matrix<double, kStates, 1> gain =
       cov_.col(kAxial) / (cov_(kAxial, kAxial) + Square(sigma));
-  gain.tail<4>().setZero();
+  gain.tail<kStates - kGyro>().setZero();
   const Eigen::Matrix<double, kStates, 1> error = gain * (axial_ - still);
   R_ = Exp(-error.head<3>()) * R_;
   axial_ -= error[kAxial];
@@ -324,13 +327,18 @@ void Core::Hold(double sigma) {
 
 void Core::TakeThird(bool has_gz, double sigma) {
   axial_ = has_gz ? 0 : last_rate_.z();
+  scale_ = 0;
   has_gz_ = has_gz;
   for (Covariance* cov : {&cov_, &cov_noise_}) {
-    cov->row(kAxial).setZero();
-    cov->col(kAxial).setZero();
+    for (const int i : {kAxial, kScale}) {
+      cov->row(i).setZero();
+      cov->col(i).setZero();
+    }
     (*cov)(kAxial, kAxial) = Square(sigma);
+    if (has_gz) (*cov)(kScale, kScale) = Square(scale_sigma_);
   }
   sources_.row(kAxial).setZero();
+  sources_.row(kScale).setZero();
 }
 
 void Core::ForgetBias(double sigma) {
@@ -355,7 +363,7 @@ Matrix3d Core::Before(double seconds) const { return R_ * Exp(-seconds * last_ra
 
 void Core::Bridge(const Gap& gap) {
   const double T = gap.seconds, begin = has_gz_ ? last_rate_.z() : axial_;
-  const double end = gap.axial_end ? *gap.axial_end + axial_ : begin;
+  const double end = gap.axial_end ? (1 + scale_) * *gap.axial_end + axial_ : begin;
   double turned = ((begin + end) / 2 - R_.col(2).dot(w_IL_)) * T;
   // A walk between two ends that are known strays half as far as one from a known begin.
   const double walk = Square(gap.axial_walk);

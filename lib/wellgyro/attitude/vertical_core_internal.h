@@ -19,7 +19,8 @@ enum State {
   kAxial = 3,  ///< rate about z, or of a measured one the bias with its sign turned [rad/s]
   kGyro = 4,   ///< bias of x, y [rad/s]
   kAccel = 6,  ///< bias of x, y [m/s^2]
-  kStates = 8
+  kScale = 8,  ///< of a measured rate about z, with its sign turned [1]
+  kStates = 9
 };
 using Covariance = Eigen::Matrix<double, kStates, kStates>;
 /// To the tool's constant errors, and to a rate of the Earth taken too large along x and y of L.
@@ -61,7 +62,7 @@ struct Noise {
   double force = 0;       ///< [m/s^2 sqrt(s)]
   double bias_walk = 0;   ///< [rad/s/sqrt(s)]
   double axial_walk = 0;  ///< of the rate about z where it is not measured [rad/s/sqrt(s)]
-  double skewed = 0;      ///< rate about z seen by x and y, and scale of a measured z [rad], [1]
+  double skewed = 0;      ///< rate about z seen by x and y [rad]
 };
 
 /// Time without samples.
@@ -127,13 +128,13 @@ class Core {
   Eigen::Vector3d Axis() const;
 
   Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity(), R_middle_ = Eigen::Matrix3d::Identity();
-  double axial_ = 0, regained_ = 0;
+  double axial_ = 0, scale_ = 0, regained_ = 0;
   Eigen::Vector2d gyro_ = Eigen::Vector2d::Zero(), accel_ = Eigen::Vector2d::Zero();
   Covariance cov_ = Covariance::Zero(), cov_noise_ = Covariance::Zero();
   Sensitivity sources_ = Sensitivity::Zero();
   // The open block.
   Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
-  double accel_sigma_ = 0;
+  double accel_sigma_ = 0, scale_sigma_ = 0;
   double since_hold_ = 1e9;  // [s]
   double seconds_ = 0, accel_seconds_ = 0, gravity_ = 0, spin_ = 0, last_spin_ = 0;
   Eigen::Vector3d w_IL_ = Eigen::Vector3d::Zero();  // of the last sample

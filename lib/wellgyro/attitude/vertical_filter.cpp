@@ -121,7 +121,7 @@ VerticalFilter::Impl::Impl(const VerticalSetup& s) : setup(s) {
     noise.bias_walk = std::hypot(noise.bias_walk,
                                  instability * std::sqrt(2 / *g.bias_instability_correlation_time));
   }
-  noise.skewed = std::hypot(s.errors.gyro_misalignment_sigma, s.errors.gyro_scale_sigma);
+  noise.skewed = s.errors.gyro_misalignment_sigma;
   bias_sigma = std::hypot(s.errors.gyro_bias_sigma, instability);
   source_sigma = SourceSigmas(s.errors);
   source_sigma[Knot::kGyroBiasX] = source_sigma[Knot::kGyroBiasY] = bias_sigma;
@@ -329,8 +329,8 @@ void VerticalFilter::Impl::Close() {
     CloseThird(seconds);
   }
   const Eigen::RowVector3d toolface = vertical::EulerSlopes(main.R_LT()).row(2);
-  lift_sums.TakeToolface(
-      (toolface * main.sources().topLeftCorner<3, Knot::kSources>()).transpose(), main.regained());
+  lift_sums.TakeToolface((toolface * main.sources().topLeftCorner<3, Knot::kSources>()).transpose(),
+                         main.regained());
   ready = true;
 }
 
