@@ -121,7 +121,8 @@ VerticalFilter::Impl::Impl(const VerticalSetup& s) : setup(s) {
     noise.bias_walk = std::hypot(noise.bias_walk,
                                  instability * std::sqrt(2 / *g.bias_instability_correlation_time));
   }
-  noise.skewed = s.errors.gyro_misalignment_sigma;
+  // For the gains alone, with a margin: of what each sample shows the slopes tell.
+  noise.skewed = std::hypot(s.errors.gyro_misalignment_sigma, s.errors.gyro_scale_sigma);
   bias_sigma = std::hypot(s.errors.gyro_bias_sigma, instability);
   source_sigma = SourceSigmas(s.errors);
   source_sigma[Knot::kGyroBiasX] = source_sigma[Knot::kGyroBiasY] = bias_sigma;

@@ -57,6 +57,7 @@ struct Sums {
   VarBeyond beyond;
   Knot::SourceVector d_path = Knot::SourceVector::Zero();
   Knot::SourceVector d_level = Knot::SourceVector::Zero();  // of axial knots
+  SecondOrder::Form second_path = SecondOrder::Form::Zero();
 };
 
 void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double begin, double grown,
@@ -116,6 +117,7 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
   }
   if (knot.lifts || history.setup.errors.time_skew_sigma > 0) {
     const SecondOrder second = SecondOrderOf(knot);
+    sums->second_path += s.sampled * (span->second.lift + second.lift / 2);
     span->second.turn += second.turn;
     span->second.lift += second.lift;
     span->second.level += second.level;
@@ -167,9 +169,12 @@ void FinishLevel(const FilterHistory& history, const Sums& sums, AdjustSpan* spa
     var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
     var += Square(sums.unseen) / 12;
   }
+  if (span->curved) {
+    span->second.level /= time;
+    if (!span->still) span->second.level += span->second.lift / 2 - sums.second_path / time;
+  }
   if (span->lifts) {
     span->d_azimuth /= time;
-    span->second.level /= time;
   } else if (span->axial) {
     // Knots that follow soon after each other share their error.
     const double alike = std::max(1.0, kAxialSeconds / span->seconds);

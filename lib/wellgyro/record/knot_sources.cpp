@@ -18,6 +18,33 @@ Knot::SourceVector SourceSigmas(const ErrorPriors& errors) {
   return sigma;
 }
 
+namespace {
+
+// Integral over the knot of l l', l = d toolface / d source without what moves all toolfaces alike.
+// The errors across the tool turn in l as u cos T + v sin T, of which the knot has the integrals of
+// l cos T and l sin T; where T turns too little for these to tell u from v, l does not change.
+SecondOrder::Form SquareOfLeaning(const Knot& knot, double sampled) {
+  constexpr double kTurnsEnough = 0.1;
+  const auto leaning = [](Knot::SourceVector d) {
+    d[Knot::kToolfaceOffset] = d[Knot::kTimeSkew] = 0;
+    return d;
+  };
+  const Knot::SourceVector c = leaning(knot.rolled_toolface.row(0).transpose());
+  const Knot::SourceVector s = leaning(knot.rolled_toolface.row(1).transpose());
+  const double half = std::abs(knot.roll) > 1e-9 ? std::sin(knot.roll) / knot.roll : 1;
+  const std::complex<double> twice = std::polar(half, 2 * knot.toolface - knot.roll);
+  const double cc = sampled / 2 * (1 + twice.real()), ss = sampled / 2 * (1 - twice.real());
+  const double cs = sampled / 2 * twice.imag(), det = cc * ss - cs * cs;
+  if (det < kTurnsEnough * sampled * sampled / 4) {
+    const Knot::SourceVector end = leaning(knot.d_toolface);
+    return sampled * end * end.transpose();
+  }
+  const Knot::SourceVector u = (ss * c - cs * s) / det, v = (cc * s - cs * c) / det;
+  return u * c.transpose() + v * s.transpose();
+}
+
+}  // namespace
+
 SecondOrder SecondOrderOf(const Knot& knot) {
   SecondOrder second;
   const double sampled = knot.seconds - knot.gap_seconds;
@@ -38,9 +65,7 @@ SecondOrder SecondOrderOf(const Knot& knot) {
   second.lift.row(Knot::kMisalignmentX) = -spin * c;
   second.lift.row(Knot::kMisalignmentY) = spin * s;
   // Where the toolface is read wrong, the force is seen turned with it.
-  Knot::SourceVector leaning = knot.d_toolface;
-  leaning[Knot::kToolfaceOffset] = leaning[Knot::kTimeSkew] = 0;
-  second.level = -std::sin(knot.inclination) / 2 * sampled * leaning * leaning.transpose();
+  second.level = -std::sin(knot.inclination) / 2 * SquareOfLeaning(knot, sampled);
   return second;
 }
 
