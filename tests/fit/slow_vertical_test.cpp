@@ -106,7 +106,7 @@ TEST_P(SlowNearVertical, LiftsAreThoseOfTheHole) {
     if (!k.lifts || k.still) continue;
     const TruthState a = truth.At(SecondsOf(k) - k.seconds), b = truth.At(SecondsOf(k));
     const double mean_azimuth = a.azimuth + WrapPi(b.azimuth - a.azimuth) / 2;
-    const SecondOrder second = SecondOrderOf(k);
+    const SecondOrderShare second = SecondOrderOf(k);
     const double lift = k.lift + kEarth * std::sin(mean_azimuth) * k.seconds -
                         k.d_lift.dot(errors) - errors.dot(second.lift * errors) -
                         (b.inclination - a.inclination);
@@ -117,7 +117,7 @@ TEST_P(SlowNearVertical, LiftsAreThoseOfTheHole) {
         k.inclination_accel - (a.inclination + b.inclination) / 2 -
         (toward.real() * errors[Knot::kAccelBiasX] - toward.imag() * errors[Knot::kAccelBiasY]) /
             g -
-        errors.dot(second.level * errors) / k.seconds;
+        errors.dot(SecondLevelOf(k) * errors) / k.seconds;
     lifts += lift * lift / var;
     levels += level * level / (std::pow(Priors().accel_noise / g, 2) / k.seconds);
     sum += lift;

@@ -15,7 +15,6 @@ namespace {
 constexpr double kFeedsItself = 1e-3;
 constexpr double kFollowVariance = 0.25;  // of an azimuth that its growth can hold [rad^2]
 constexpr double kBentSeconds = 100;      // that an error of the second order stays alike [s]
-constexpr double kUnknownForce = 1e-3;    // of the level while moving without depth [rad]
 constexpr double kLevelFloor = 1e-12;     // of a tool without noise: sums over seconds [rad^2]
 
 double Square(double x) { return x * x; }
@@ -62,7 +61,7 @@ FilterRise FilterCore::RiseOver(const Knot& knot, double azimuth_begin,
   rise.offset = knot.lift + (north * std::sin(middle) + carried) * sampled - slope * azimuth_begin;
   if (knot.lifts) {
     const Knot::SourceVector errors = Errors();
-    const SecondOrder::Form form = SecondOrderOf(knot).lift;
+    const SourceForm form = SecondOrderOf(knot).lift;
     d += slope * knot.d_toolface - (form + form.transpose()) * errors;
     rise.offset += errors.dot(form * errors);
   }
@@ -96,15 +95,11 @@ std::optional<FilterMeasurement> FilterCore::Level(const Knot& knot) const {
   if (!follows_ || !knot.level || !(sampled > 0)) return std::nullopt;
   const double g = setup_.site.gravity;
   const double sine = std::sin(knot.inclination), cosine = std::cos(knot.inclination);
-  Knot::SourceVector d = Knot::SourceVector::Zero();
-  const std::complex<double> rolled = RolledOver(knot) / sampled;
-  d[Knot::kAccelBiasX] = cosine / g * rolled.real();
-  d[Knot::kAccelBiasY] = -cosine / g * rolled.imag();
-  d[Knot::kAccelBiasZ] = sine / g;
+  Knot::SourceVector d = LevelSlopes(RolledOver(knot) / sampled, sine, cosine, g);
   double second = 0;
   if (knot.lifts) {
     const Knot::SourceVector errors = Errors();
-    const SecondOrder::Form form = SecondOrderOf(knot).level / sampled;
+    const SourceForm form = SecondLevelOf(knot) / sampled;
     d += (form + form.transpose()) * errors;
     second = errors.dot(form * errors);
   }
@@ -115,7 +110,7 @@ std::optional<FilterMeasurement> FilterCore::Level(const Knot& knot) const {
   m.value = knot.inclination_accel + second + rise_.offset / 2;
   m.variance = Square(setup_.errors.accel_noise / g) / sampled +
                Square(sine / g) * LevelNoise::MeanVariance(knot.along, knot.along, sampled) +
-               (knot.along.known ? 0 : Square(kUnknownForce)) + kLevelFloor;
+               (knot.along.known ? 0 : Square(LevelNoise::kUnknownForce)) + kLevelFloor;
   return m;
 }
 

@@ -20,6 +20,8 @@ namespace wellgyro {
 /// within seconds of the begin is a rule of thumb: there sigma is up to twice too large.
 class WELLGYRO_EXPORT LevelNoise {
  public:
+  /// Of the inclination while the tool moves and no depth tells how [rad].
+  static constexpr double kUnknownForce = 1e-3;
   /// What an observer did over a time that is short against its memory.
   struct Block {
     double seconds = 0;    ///< summed

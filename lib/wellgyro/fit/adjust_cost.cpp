@@ -122,8 +122,7 @@ class Three : public ceres::CostFunction {
 
   // What `form` says beyond the first order, and into `d` its slopes: with them AddErrors() then
   // counts it twice, so that it comes off again.
-  double AddSecond(double const* const* x, const SecondOrder::Form& form,
-                   Knot::SourceVector* d) const {
+  double AddSecond(double const* const* x, const SourceForm& form, Knot::SourceVector* d) const {
     if (!span_.curved) return 0;
     const Knot::SourceVector errors = Errors(x);
     *d += form * errors + form.transpose() * errors;
@@ -236,7 +235,7 @@ class LevelFunction : public Three {
     rows.Slope(0, kBegin, kI, weight_ / 2);
     rows.Slope(0, kEnd, kI, weight_ / 2);
     Knot::SourceVector d = span_.d_level;
-    predicted -= AddSecond(x, span_.second.level, &d);
+    predicted -= AddSecond(x, span_.second_level, &d);
     predicted += AddErrors(x, d, weight_, 0, &rows);
     rows.Value(0, weight_ * (predicted - span_.level));
     return true;

@@ -7,6 +7,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/adjust_result_internal.h"
+#include "wellgyro/record/knot_sources.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
@@ -200,6 +201,39 @@ struct Within {
   std::vector<double> azimuth, inclination;
 };
 
+// The tool's errors as found, its drift where the span begins.
+Knot::SourceVector FoundAt(const AdjustProblem& p, std::size_t k) {
+  Knot::SourceVector found = Knot::SourceVector::Zero();
+  const auto common = [&](int place) { return p.common[static_cast<std::size_t>(place)]; };
+  for (int source = 0; source < Knot::kSources; ++source) {
+    const int at = p.layout.source[static_cast<std::size_t>(source)];
+    if (at >= 0) found[source] = common(at);
+  }
+  for (int i = 0; i < 2; ++i) {
+    const AdjustLayout::Axis& at = p.layout.axis[static_cast<std::size_t>(i)];
+    if (at.level >= 0) found[i] += p.node(k)[at.level];
+    if (at.markov >= 0) found[i] += p.node(k)[at.markov];
+    if (at.level_common >= 0) found[i] += common(at.level_common);
+  }
+  return found;
+}
+
+// What the gyros read of the growths over a knot, less the errors' share.
+struct Read {
+  double turn, lift;
+};
+
+Read ReadOver(const Knot& knot, bool curved, const Knot::SourceVector& errors) {
+  Read read{knot.turn - knot.d_turn.dot(errors), knot.lift - knot.d_lift.dot(errors)};
+  if (curved) {
+    const SecondOrderShare second = SecondOrderOf(knot);
+    read.turn += errors.dot(second.turn * errors);
+    read.lift += errors.dot(second.lift * errors);
+  }
+  return read;
+}
+
+// As read, and what that leaves of the growth from node to node shared out by time.
 Within PathWithin(const AdjustProblem& p, std::size_t k) {
   const AdjustSpan& span = p.spans[k];
   const double* begin = p.node(k);
@@ -208,14 +242,16 @@ Within PathWithin(const AdjustProblem& p, std::size_t k) {
   const double north = kEarthRate * std::cos(p.history->setup.site.latitude);
   double turned = 0, lifted = 0, seconds = 0;
   std::vector<double> share;
+  const Knot::SourceVector errors = FoundAt(p, k);
   for (std::size_t i = span.epoch_begin; i < span.epoch_end; ++i) {
     const Knot& knot = p.history->epochs[i].knot;
     const bool moves = !span.still && !span.broken;
     const double start = begin[AdjustLayout::kAzimuth] + turned;
-    const double earth = knot.cot * std::cos(start + knot.turn / 2) +
+    const Read read = ReadOver(knot, span.curved, errors);
+    const double earth = knot.cot * std::cos(start + read.turn / 2) +
                          (std::polar(1.0, start) * knot.axial_cot).real();
-    turned += moves ? knot.turn + north * earth : 0;
-    lifted += moves ? knot.lift : 0;
+    turned += moves ? read.turn + north * earth : 0;
+    lifted += moves ? read.lift : 0;
     seconds += knot.seconds;
     path.azimuth.push_back(turned);
     path.inclination.push_back(lifted);

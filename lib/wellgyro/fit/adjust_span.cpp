@@ -15,7 +15,6 @@ constexpr double kVerticalLevel = 5e-4;     // of the accelerometers' inclinatio
 constexpr double kAxialTurn = 1e-5;         // of the turn there [rad]
 constexpr double kAxialSeconds = 10;        // that an error of the inclination lasts there [s]
 constexpr double kAxialLifts = 20;          // sigmas of the inclination there, of its growth
-constexpr double kUnknownForce = 1e-3;      // of inclination while moving without depth [rad]
 // Acceleration at which depth tells too late by half of it: see TrackerOptions.
 constexpr double kAccelerationDoubt = 0.01;  // [m/s^2]
 constexpr double kSmear = 2.5;               // of the depth track, and half a knot [s]
@@ -57,7 +56,7 @@ struct Sums {
   VarBeyond beyond;
   Knot::SourceVector d_path = Knot::SourceVector::Zero();
   Knot::SourceVector d_level = Knot::SourceVector::Zero();  // of axial knots
-  SecondOrder::Form second_path = SecondOrder::Form::Zero();
+  SourceForm second_path = SourceForm::Zero();
 };
 
 void AddEarth(const Step& s, const AdjustPlace& place, const Site& site, double begin, double grown,
@@ -116,11 +115,11 @@ void AddKnot(const FilterHistory& history, const Step& s, const AdjustPlace& pla
     span->d_azimuth += s.sampled * knot.d_toolface;
   }
   if (knot.lifts || history.setup.errors.time_skew_sigma > 0) {
-    const SecondOrder second = SecondOrderOf(knot);
+    const SecondOrderShare second = SecondOrderOf(knot);
     sums->second_path += s.sampled * (span->second.lift + second.lift / 2);
     span->second.turn += second.turn;
     span->second.lift += second.lift;
-    span->second.level += second.level;
+    span->second_level += SecondLevelOf(knot);
     span->curved = true;
   }
   span->seconds += knot.seconds;
@@ -156,22 +155,20 @@ void FinishLevel(const FilterHistory& history, const Sums& sums, AdjustSpan* spa
   if (span->axial && !span->lifts) {
     span->d_level += sums.d_level / time;
   } else {
-    span->d_level[Knot::kAccelBiasX] += cosine * sums.rolled.real() / (g * time);
-    span->d_level[Knot::kAccelBiasY] -= cosine * sums.rolled.imag() / (g * time);
-    span->d_level[Knot::kAccelBiasZ] += sine / g;
+    span->d_level += LevelSlopes(sums.rolled / time, sine, cosine, g);
   }
 
   double var = Square(setup.errors.accel_noise / g) / time +
                Square(sine / g) * VarAcceleration(history, *span, time) + kFloor;
   if (!span->still) {
     var += Square(setup.gyro.angle_random_walk) * time / 12;
-    if (!last.along.known) var += Square(kUnknownForce);
+    if (!last.along.known) var += Square(LevelNoise::kUnknownForce);
     var *= Square(1 + Square(sums.acceleration / kAccelerationDoubt));
     var += Square(sums.unseen) / 12;
   }
   if (span->curved) {
-    span->second.level /= time;
-    if (!span->still) span->second.level += span->second.lift / 2 - sums.second_path / time;
+    span->second_level /= time;
+    if (!span->still) span->second_level += span->second.lift / 2 - sums.second_path / time;
   }
   if (span->lifts) {
     span->d_azimuth /= time;

@@ -40,7 +40,8 @@ struct AdjustSpan {
   /// Where axial, of the true azimuth by that of its two ends, in the Earth's share of the lift.
   Knot::SourceVector d_azimuth = Knot::SourceVector::Zero();
   bool curved = false;
-  SecondOrder second;  ///< if so, of turn, of lift and of level
+  SecondOrderShare second;                       ///< if so, of turn and of lift
+  SourceForm second_level = SourceForm::Zero();  ///< and of the level below
   Knot::SourceVector d_level = Knot::SourceVector::Zero();
   double level = 0;  ///< mean of the accelerometers' inclination [rad]
   double bow = 0;    ///< mean of the path's inclination less its chord's [rad]

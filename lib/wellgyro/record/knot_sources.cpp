@@ -23,7 +23,7 @@ namespace {
 // Integral over the knot of l l', l = d toolface / d source without what moves all toolfaces alike.
 // The errors across the tool turn in l as u cos T + v sin T, of which the knot has the integrals of
 // l cos T and l sin T; where T turns too little for these to tell u from v, l does not change.
-SecondOrder::Form SquareOfLeaning(const Knot& knot, double sampled) {
+SourceForm SquareOfLeaning(const Knot& knot, double sampled) {
   constexpr double kTurnsEnough = 0.1;
   const auto leaning = [](Knot::SourceVector d) {
     d[Knot::kToolfaceOffset] = d[Knot::kTimeSkew] = 0;
@@ -45,8 +45,17 @@ SecondOrder::Form SquareOfLeaning(const Knot& knot, double sampled) {
 
 }  // namespace
 
-SecondOrder SecondOrderOf(const Knot& knot) {
-  SecondOrder second;
+Knot::SourceVector LevelSlopes(std::complex<double> rolled, double sine, double cosine,
+                               double gravity) {
+  Knot::SourceVector d = Knot::SourceVector::Zero();
+  d[Knot::kAccelBiasX] = cosine / gravity * rolled.real();
+  d[Knot::kAccelBiasY] = -cosine / gravity * rolled.imag();
+  d[Knot::kAccelBiasZ] = sine / gravity;
+  return d;
+}
+
+SecondOrderShare SecondOrderOf(const Knot& knot) {
+  SecondOrderShare second;
   const double sampled = knot.seconds - knot.gap_seconds;
   if (!(sampled > 0)) return second;
   const double spin = knot.roll / sampled;
@@ -54,7 +63,7 @@ SecondOrder SecondOrderOf(const Knot& knot) {
     Knot::SourceVector toolface = Knot::SourceVector::Zero();
     toolface[Knot::kToolfaceOffset] = 1;
     toolface[Knot::kTimeSkew] = spin;
-    const SecondOrder::Form half = 0.5 * toolface * toolface.transpose();
+    const SourceForm half = 0.5 * toolface * toolface.transpose();
     second.turn = knot.turn * half;
     second.lift = knot.lift * half;
   }
@@ -64,9 +73,14 @@ SecondOrder SecondOrderOf(const Knot& knot) {
   second.lift.row(Knot::kGyroBiasY) = s;
   second.lift.row(Knot::kMisalignmentX) = -spin * c;
   second.lift.row(Knot::kMisalignmentY) = spin * s;
-  // Where the toolface is read wrong, the force is seen turned with it.
-  second.level = -std::sin(knot.inclination) / 2 * SquareOfLeaning(knot, sampled);
   return second;
+}
+
+SourceForm SecondLevelOf(const Knot& knot) {
+  const double sampled = knot.seconds - knot.gap_seconds;
+  if (!knot.lifts || !(sampled > 0)) return SourceForm::Zero();
+  // Where the toolface is read wrong, the force is seen turned with it.
+  return -std::sin(knot.inclination) / 2 * SquareOfLeaning(knot, sampled);
 }
 
 VarBeyond VarBeyondOf(const Knot& knot, const ErrorPriors& priors, double gravity,

@@ -14,17 +14,29 @@ namespace wellgyro {
 /// biases: what they are takes the noise coefficients too.
 WELLGYRO_EXPORT Knot::SourceVector SourceSigmas(const ErrorPriors& errors);
 
-/// What d_turn, d_lift and the sensitivities of inclination_accel, which hold where the readings
-/// stand, leave out: with e the errors, turn has e' turn e more, lift e' lift e, the integral of
-/// the accelerometers' inclination over the knot e' level e [SI]. A toolface that is off by a time
-/// skew sees less of how the hole turns. Of an axial knot that lifts: an error across the tool
-/// turns with it, as does the error of toolface that it makes, and their product does not; of other
-/// axial knots nothing is known.
-struct SecondOrder {
-  using Form = Eigen::Matrix<double, Knot::kSources, Knot::kSources>;
-  Form turn = Form::Zero(), lift = Form::Zero(), level = Form::Zero();
+/// Integral of e^{iT} over the knot [s].
+WELLGYRO_EXPORT std::complex<double> RolledOver(const Knot& knot);
+
+/// d(accelerometers' inclination) / d source, by their biases. `rolled`: the mean of e^{iT}; sine
+/// and cosine of the inclination.
+WELLGYRO_EXPORT Knot::SourceVector LevelSlopes(std::complex<double> rolled, double sine,
+                                               double cosine, double gravity);
+
+/// e' F e, of the errors e of all sources.
+using SourceForm = Eigen::Matrix<double, Knot::kSources, Knot::kSources>;
+
+/// What d_turn and d_lift, which hold where the readings stand, leave out: with e the errors, turn
+/// has e' turn e more, lift e' lift e [SI]. A toolface that is off by a time skew sees less of how
+/// the hole turns. Of an axial knot that lifts: an error across the tool turns with it, as does the
+/// error of toolface that it makes, and their product does not; of other axial knots nothing is
+/// known.
+struct SecondOrderShare {
+  SourceForm turn = SourceForm::Zero(), lift = SourceForm::Zero();
 };
-WELLGYRO_EXPORT SecondOrder SecondOrderOf(const Knot& knot);
+WELLGYRO_EXPORT SecondOrderShare SecondOrderOf(const Knot& knot);
+
+/// Likewise of the integral of the accelerometers' inclination over a knot that lifts [rad s].
+WELLGYRO_EXPORT SourceForm SecondLevelOf(const Knot& knot);
 
 /// Variances that neither noise nor the sensitivities hold, as if they were white [rad^2].
 struct VarBeyond {
@@ -36,8 +48,5 @@ struct VarBeyond {
 /// toolface. `horizontal`: the Earth's rate across [rad/s]. The turn of an axial knot is its own.
 WELLGYRO_EXPORT VarBeyond VarBeyondOf(const Knot& knot, const ErrorPriors& priors, double gravity,
                                       double horizontal);
-
-/// Integral of e^{iT} over the knot [s].
-WELLGYRO_EXPORT std::complex<double> RolledOver(const Knot& knot);
 
 }  // namespace wellgyro

@@ -1,0 +1,217 @@
+// Wells that come close to vertical, run by tools that swing, roll and slide: what a small error of
+// the tool does there, and that whoever is sure of an azimuth is right.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/run_adjustment.h"
+#include "wellgyro/record/knot.h"
+#include "wellgyro/record/knot_sources.h"
+#include "wellgyro/simulate/simulator.h"
+#include "wellgyro/simulate/tool_errors.h"
+
+#include "support/hour.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kEarth = 7.292115e-5;  // [rad/s]
+
+struct Place {
+  double md, inclination_deg, azimuth_deg;
+};
+
+struct Pass {
+  std::vector<Place> well;
+  double latitude_deg = 60, speed = 0.5, rpm = 0, swing_deg = 0, swing_seconds = 0;
+  int legs = 1;
+  double stop_seconds = 20;  // between them, and three minutes at both ends
+  double bias = 0.02, walk = 0.005, accel_bias = 1e-4;  // [deg/h], [deg/sqrt h], [m/s^2]
+  bool has_gz = false;
+};
+
+testing::Hour ToolOf(const Pass& run) {
+  testing::Hour tool;
+  tool.latitude_deg = run.latitude_deg;
+  tool.noise.angle_random_walk = run.walk * units::kDegPerSqrtHour;
+  tool.noise.bias_instability = 0.02 * units::kDegPerHour;
+  tool.noise.bias_instability_correlation_time = 1080;
+  tool.noise.rate_random_walk = 0.01 * units::kDegPerHourSqrtHour;
+  ErrorPriors& p = tool.errors;
+  p.gyro_bias_sigma = run.bias * units::kDegPerHour;
+  p.mass_unbalance_sigma = p.quadrature_sigma = 0.02 * units::kDegPerHourPerG;
+  p.gyro_scale_sigma = p.gyro_misalignment_sigma = 1e-4;
+  p.accel_bias_sigma = run.accel_bias;
+  p.accel_noise = 2e-4;
+  p.roll_offset_sigma = FromDegrees(0.02);
+  return tool;
+}
+
+/// With seed zero a tool without errors.
+Simulation SimulationOf(const Pass& run, std::uint64_t seed) {
+  Simulation s;
+  for (const Place& p : run.well) {
+    s.well.stations.push_back({p.md, FromDegrees(p.inclination_deg), FromDegrees(p.azimuth_deg)});
+  }
+  s.earth.latitude = FromDegrees(run.latitude_deg);
+  const RunRoll roll{run.rpm * kTwoPi / 60, FromDegrees(run.swing_deg), run.swing_seconds, 0};
+  const double length = run.well.back().md;
+  s.run.steps.push_back(RunStop{.seconds = 180});
+  for (int leg = 1; leg <= run.legs; ++leg) {
+    s.run.steps.push_back(
+        RunMove{.to_md = length * leg / run.legs, .speed = run.speed, .roll = roll});
+    s.run.steps.push_back(RunStop{.seconds = leg < run.legs ? run.stop_seconds : 180});
+  }
+  s.streams.imu_hz = 10;
+  s.tool.has_gz = run.has_gz;
+  s.seed = seed;
+  const testing::Hour tool = ToolOf(run);
+  if (seed != 0) s.tool.errors = DrawToolErrors(tool.errors, tool.noise, seed);
+  return s;
+}
+
+testing::Flown FlyOf(const Pass& run, const Simulation& simulation) {
+  Job job = testing::JobOf(ToolOf(run));
+  job.tie_in.md = 0;
+  return testing::Fly(simulation, job);
+}
+
+/// Of the azimuths that are said to be known and good where the hole leans more than `least_deg`:
+/// their number, and the largest error, in sigmas and in degrees.
+struct Known {
+  int count = 0;
+  double worst = 0, worst_deg = 0;
+};
+
+Known KnownOf(const testing::Flown& flown, const SmoothedRun& run, double least_deg) {
+  Known known;
+  for (std::size_t i = 0; i < run.attitude.size(); ++i) {
+    const AttitudeSample& a = run.attitude[i];
+    const bool leans = ToDegrees(flown.truth[i].inclination) > least_deg;
+    if (!a.azimuth_known || !leans || Has(a.quality, Quality::kVertical)) continue;
+    const double off = testing::AzimuthError(flown, run, i);
+    known.worst = std::max(known.worst, std::abs(off) / std::sqrt(a.cov_attitude(1, 1)));
+    known.worst_deg = std::max(known.worst_deg, ToDegrees(std::abs(off)));
+    ++known.count;
+  }
+  return known;
+}
+
+// A roll that comes and goes is found a little late, and what gravity then adds to it is a turn
+// about the axis too: without it an eighth of what skewed gyros read of the swing seemed to be how
+// the hole bends, and parted the gyros' skew from the accelerometers' bias.
+TEST(PastVertical, LiftsOfASwingingToolHoldItsSkewedGyros) {
+  const Pass run{.well = {{0, 1.5, 70}, {120, 0.5, 300}, {240, 1.5, 270}},
+                 .latitude_deg = 72,
+                 .speed = 0.2,
+                 .swing_deg = 49,
+                 .swing_seconds = 36.7,
+                 .accel_bias = 2e-3};
+  Simulation simulation = SimulationOf(run, 0);
+  ToolErrors& tool = simulation.tool.errors;
+  tool.gyro_misalignment = {-1e-4, 2e-5};
+  Knot::SourceVector errors = Knot::SourceVector::Zero();
+  errors.segment<2>(static_cast<int>(Knot::kMisalignmentX)) = tool.gyro_misalignment;
+  const testing::Flown flown = FlyOf(run, simulation);
+  const double horizontal = kEarth * std::cos(FromDegrees(run.latitude_deg));
+  constexpr int kKnots = 10;
+  double squares = 0, whole = 0, sum = 0, explained = 0;
+  int count = 0;
+  for (std::size_t i = 1; i < flown.truth.size(); ++i) {
+    const Knot& k = flown.history.epochs[i].knot;
+    if (!k.lifts || k.still) continue;
+    const TruthState &a = flown.truth[i - 1], &b = flown.truth[i];
+    const double azimuth =
+        a.azimuth + WrapPi(b.azimuth - a.azimuth) / 2 - WrapPi(k.toolface - b.toolface);
+    const double seen = k.d_lift.dot(errors) + errors.dot(SecondOrderOf(k).lift * errors);
+    explained += seen;
+    sum += k.lift + horizontal * std::sin(azimuth) * k.seconds - (b.inclination - a.inclination) -
+           seen;
+    if (++count % kKnots != 0) continue;
+    squares += sum * sum;
+    whole += explained * explained;
+    sum = explained = 0;
+  }
+  ASSERT_GT(count, 200);
+  const double rms = ToDegrees(std::sqrt(squares / (count / kKnots)));
+  const double rms_whole = ToDegrees(std::sqrt(whole / (count / kKnots)));
+  std::printf("%.6f deg left of %.6f\n", rms, rms_whole);
+  EXPECT_GT(rms_whole, 2e-3);
+  EXPECT_LT(rms, 2.5e-4);
+}
+
+// The Earth's share of a span is taken along a path; as long as that was the first guess, the run
+// found another north behind 0.005 deg than before it.
+TEST(PastVertical, WithinFiveThousandthsOfADegree) {
+  const Pass run{.well = {{0, 0.715, 261.1},
+                          {480, 0.061, 297.5},
+                          {960, 0.244, 65.5},
+                          {1440, 0.593, 213.4},
+                          {1920, 0.038, 41},
+                          {2400, 0.818, 58.7}},
+                 .rpm = -3,
+                 .legs = 2};
+  for (const std::uint64_t seed : {37, 537}) {
+    const testing::Flown flown = FlyOf(run, SimulationOf(run, seed));
+    const Adjustment adjusted = AdjustRun(flown.history, 0);
+    const Known known = KnownOf(flown, adjusted.run, 0.1);
+    std::printf("%d azimuths, worst %.1f sigma, chi-square %.0f of %d\n", known.count, known.worst,
+                adjusted.chi_square, adjusted.degrees_of_freedom);
+    EXPECT_GT(known.count, 3500) << seed;
+    EXPECT_LT(known.worst, 4.5) << seed;
+    EXPECT_LT(adjusted.chi_square, 1.2 * adjusted.degrees_of_freedom) << seed;
+  }
+}
+
+// Sliding past 0.1 deg at the equator nothing holds the azimuth for minutes.
+TEST(PastVertical, WhereItIsLostNothingIsClaimed) {
+  const Pass run{.well = {{0, 0.226, 225},
+                          {340, 0.705, 9.2},
+                          {680, 0.102, 185.9},
+                          {1020, 0.117, 76.1},
+                          {1360, 1.338, 195.4},
+                          {1700, 0.56, 263.7}},
+                 .latitude_deg = 0,
+                 .speed = 0.2,
+                 .legs = 10,
+                 .stop_seconds = 60,
+                 .walk = 0.05,
+                 .accel_bias = 5e-4};
+  const testing::Flown flown = FlyOf(run, SimulationOf(run, 539));
+  const Adjustment adjusted = AdjustRun(flown.history, 0);
+  const Known known = KnownOf(flown, adjusted.run, 0.1);
+  std::printf("%d azimuths of %zu, worst %.1f sigma, %.1f deg\n", known.count, flown.truth.size(),
+              known.worst, known.worst_deg);
+  EXPECT_TRUE(adjusted.converged);
+  EXPECT_GT(known.count, 6000);
+  EXPECT_LT(known.worst, 6);
+  EXPECT_LT(known.worst_deg, 20);
+}
+
+// Three turns a minute through a scale that is 2e-4 off are 13 deg/h about the axis.
+TEST(PastVertical, AThirdAxisHasAScale) {
+  const Pass run{.well = {{0, 0.73, 273}, {300, 0.85, 287}, {600, 0.97, 300}},
+                 .latitude_deg = 72,
+                 .speed = 2,
+                 .rpm = -3,
+                 .has_gz = true};
+  for (const double scale : {-2e-4, 2e-4}) {
+    Simulation simulation = SimulationOf(run, 0);
+    simulation.tool.errors.gyro_scale.z() = scale;
+    const testing::Flown flown = FlyOf(run, simulation);
+    const Known known = KnownOf(flown, AdjustRun(flown.history, 0).run, 0.1);
+    std::printf("worst %.1f sigma\n", known.worst);
+    EXPECT_GT(known.count, 400);
+    EXPECT_LT(known.worst, 3);
+  }
+}
+
+}  // namespace
+}  // namespace wellgyro
