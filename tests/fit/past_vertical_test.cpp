@@ -170,7 +170,8 @@ TEST(PastVertical, WithinFiveThousandthsOfADegree) {
   }
 }
 
-// Sliding past 0.1 deg at the equator nothing holds the azimuth for minutes.
+// Sliding past 0.1 deg at the equator nothing holds the azimuth for minutes; what the lifts say of
+// it has two answers at each node, of which a fit took any.
 TEST(PastVertical, WhereItIsLostNothingIsClaimed) {
   const Pass run{.well = {{0, 0.226, 225},
                           {340, 0.705, 9.2},
@@ -184,15 +185,17 @@ TEST(PastVertical, WhereItIsLostNothingIsClaimed) {
                  .stop_seconds = 60,
                  .walk = 0.05,
                  .accel_bias = 5e-4};
-  const testing::Flown flown = FlyOf(run, SimulationOf(run, 539));
-  const Adjustment adjusted = AdjustRun(flown.history, 0);
-  const Known known = KnownOf(flown, adjusted.run, 0.1);
-  std::printf("%d azimuths of %zu, worst %.1f sigma, %.1f deg\n", known.count, flown.truth.size(),
-              known.worst, known.worst_deg);
-  EXPECT_TRUE(adjusted.converged);
-  EXPECT_GT(known.count, 6000);
-  EXPECT_LT(known.worst, 6);
-  EXPECT_LT(known.worst_deg, 20);
+  for (const std::uint64_t seed : {5, 539}) {
+    const testing::Flown flown = FlyOf(run, SimulationOf(run, seed));
+    const Adjustment adjusted = AdjustRun(flown.history, 0);
+    const Known known = KnownOf(flown, adjusted.run, 0.1);
+    std::printf("%d azimuths of %zu, worst %.1f sigma, %.1f deg\n", known.count, flown.truth.size(),
+                known.worst, known.worst_deg);
+    EXPECT_TRUE(adjusted.converged) << seed;
+    EXPECT_GT(known.count, 6000) << seed;
+    EXPECT_LT(known.worst, 6) << seed;
+    EXPECT_LT(known.worst_deg, 20) << seed;
+  }
 }
 
 // Three turns a minute through a scale that is 2e-4 off are 13 deg/h about the axis.
@@ -207,9 +210,9 @@ TEST(PastVertical, AThirdAxisHasAScale) {
     simulation.tool.errors.gyro_scale.z() = scale;
     const testing::Flown flown = FlyOf(run, simulation);
     const Known known = KnownOf(flown, AdjustRun(flown.history, 0).run, 0.1);
-    std::printf("worst %.1f sigma\n", known.worst);
+    std::printf("worst %.3f deg, %.1f sigma\n", known.worst_deg, known.worst);
     EXPECT_GT(known.count, 400);
-    EXPECT_LT(known.worst, 3);
+    EXPECT_LT(known.worst_deg, 0.1);
   }
 }
 
