@@ -202,7 +202,8 @@ void Backward(const FilterHistory& history, const ForwardPass& pass, const Filte
     const bool unknown = r.diffuse && cov(1, 1) > kTellsOfAzimuth * r.cov(1, 1);
     cov(1, 1) = Shown(cov(1, 1), unknown);
     run->attitude[i] = SmoothAttitude(history.epochs[i].knot, estimate, cov, history.setup.gyro);
-    (*path)[i + 1] = estimate[1];
+    // The state is S - toolface where the knot is axial, as it was read.
+    (*path)[i + 1] = estimate[1] + (history.epochs[i].knot.axial ? estimate[2] : 0);
     if (history.epochs[i].station) {
       StationState& station = run->stations[r.stations_end - 1];
       station = SmoothStation(history, i, r, pass.stations[r.stations_end - 1], run->attitude[i],

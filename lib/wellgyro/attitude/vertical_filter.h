@@ -33,7 +33,8 @@ WELLGYRO_EXPORT double SineNearVertical(const ErrorPriors& errors, bool has_gz);
 ///
 /// An error-state Kalman filter on attitude, the rate about the tool's axis, and the biases of the
 /// transverse gyros and accelerometers; forces enter as vectors, so nothing is singular at I = 0.
-/// Where the stream has a third gyro axis it is used, and its bias takes the place of the rate.
+/// Where the stream has a third gyro axis it is used, and its bias and scale take the place of the
+/// rate.
 /// Without one the rate about the axis is a random walk, which gravity shows the less the nearer
 /// to vertical: how much it walks is learned from a bank of filters with walks a decade apart,
 /// whose likelihoods weigh them; where gravity shows nothing for minutes they are forgotten. Errors

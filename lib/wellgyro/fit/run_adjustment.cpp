@@ -48,12 +48,20 @@ std::vector<double> ReckonedFrom(double start, const std::vector<AdjustSpan>& sp
   return azimuths;
 }
 
+// Of the smoothed azimuth at an axial knot, what the nodes count: the sum less the toolface as
+// read.
+double CountedAt(const AttitudeSample& smoothed, const Knot& knot) {
+  return smoothed.azimuth + (knot.axial ? WrapPi(smoothed.toolface - knot.toolface) : 0);
+}
+
 // The smoothed azimuths of the nodes, counted on through whole turns.
-std::vector<double> SmoothedAt(const SmoothedRun& smoothed, const std::vector<AdjustSpan>& spans) {
+std::vector<double> SmoothedAt(const FilterHistory& history, const SmoothedRun& smoothed,
+                               const std::vector<AdjustSpan>& spans) {
   std::vector<double> azimuths = ReckonedFrom(0, spans);
   double turns = 0;
   for (std::size_t k = 0; k < spans.size(); ++k) {
-    const double there = smoothed.attitude[spans[k].epoch_end - 1].azimuth;
+    const std::size_t last = spans[k].epoch_end - 1;
+    const double there = CountedAt(smoothed.attitude[last], history.epochs[last].knot);
     const double reckoned = azimuths[k + 1] + turns;
     const double next = reckoned + WrapPi(there - reckoned);
     turns += next - reckoned;
@@ -186,7 +194,7 @@ Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, 
   begin.lost = LostAlong(history, smoothed);
   const SpanOptions coarse{kCoarseSeconds, false, begin.lost};
   AdjustProblem p = MakeProblem(history, {}, coarse, options, sigma_lie);
-  std::vector<double> azimuths = SmoothedAt(smoothed, p.spans);
+  std::vector<double> azimuths = SmoothedAt(history, smoothed, p.spans);
   for (const AdjustSegment& segment : SegmentsOf(p.spans)) {
     if (!TellsOfNorth(segment, p.spans)) continue;
     const auto epoch_of = [&](std::size_t node) {
