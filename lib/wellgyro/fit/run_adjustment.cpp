@@ -172,17 +172,16 @@ std::vector<bool> LostAlong(const FilterHistory& history, const SmoothedRun& smo
   const auto& epochs = history.epochs;
   std::vector<bool> lost(epochs.size(), false);
   const auto is_vague = [&](std::size_t i) {
-    return epochs[i].knot.axial && !epochs[i].knot.still &&
-           smoothed.attitude[i].cov_attitude(1, 1) > kLostVariance;
+    return epochs[i].knot.axial && smoothed.attitude[i].cov_attitude(1, 1) > kLostVariance;
   };
   for (std::size_t i = 0; i < epochs.size(); ++i) {
     const std::size_t begin = i;
     double var = 0;
-    for (; i < epochs.size() && is_vague(i); ++i) var += epochs[i].knot.toolface_noise_turn;
-    if (var > kLostVariance) {
-      std::fill(lost.begin() + static_cast<std::ptrdiff_t>(begin),
-                lost.begin() + static_cast<std::ptrdiff_t>(i), true);
+    for (; i < epochs.size() && is_vague(i); ++i) {
+      if (!epochs[i].knot.still) var += epochs[i].knot.toolface_noise_turn;
     }
+    if (!(var > kLostVariance)) continue;
+    for (std::size_t k = begin; k < i; ++k) lost[k] = !epochs[k].knot.still;
   }
   return lost;
 }
