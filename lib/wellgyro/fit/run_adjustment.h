@@ -27,8 +27,8 @@ struct Adjustment : RunFit {
 /// directions at depths passed twice, priors of all errors. The drift goes on as in the filter. The
 /// Earth's rate in `lift` makes the motion itself find north, so that a run without fix or external
 /// azimuth gets one wherever it is observable; where no azimuth is known to start from, twelve are
-/// tried on a coarse problem. Everything is linear but the Earth's share, whose way between nodes is
-/// renewed until it stays, so the covariance is that of the solution, from its normal equations.
+/// tried on a coarse problem. Everything is linear but the Earth's share, whose way between nodes
+/// is renewed until it stays, so the covariance is that of the solution, from its normal equations.
 /// Near vertical, where the smoother has lost the azimuth and its growth as well, none is given.
 /// Time and memory are proportional to the nodes.
 /// `sigma_lie`: see RunAdjuster.
