@@ -229,6 +229,28 @@ TEST(RunAdjustment, OfNothingIsNothing) {
   EXPECT_EQ(AdjustRun(history, 0).run.attitude.size(), 1u);
 }
 
+TEST(RunAdjustment, WhatDoesNotFitIsLessSure) {
+  const Hour hour = HalfHour();
+  FilterHistory history = Fly(hour, JobOf(hour), 4).history;
+  const Adjustment fits = AdjustRun(history, 0);
+  double sign = 1;
+  for (std::size_t i = 0; i < history.epochs.size(); i += 15, sign = -sign) {
+    if (!history.epochs[i].knot.still) history.epochs[i].knot.lift += sign * 5e-4;
+  }
+  const Adjustment does_not = AdjustRun(history, 0);
+  const double misfit = does_not.chi_square / does_not.degrees_of_freedom;
+  ASSERT_GT(misfit, 2);
+  EXPECT_LT(fits.chi_square, 1.2 * fits.degrees_of_freedom);
+  for (const int i : {0, 1}) {
+    const double grown = does_not.run.attitude.back().cov_attitude(i, i) /
+                         fits.run.attitude.back().cov_attitude(i, i);
+    EXPECT_NEAR(grown / misfit, 1, 0.3) << i;
+    EXPECT_NEAR(
+        does_not.run.stations.back().cov(i, i) / fits.run.stations.back().cov(i, i) / misfit, 1,
+        0.3);
+  }
+}
+
 TEST(RunAdjustment, IsSentOutByASurveyor) {
   Hour hour = HalfHour();
   Simulation simulation = SimulationOf(hour, 4);

@@ -11,6 +11,7 @@
 #include "wellgyro/fit/adjust_north_internal.h"
 #include "wellgyro/fit/adjust_problem_internal.h"
 #include "wellgyro/fit/adjust_result_internal.h"
+#include "wellgyro/math/statistics.h"
 #include "wellgyro/record/quality.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -239,6 +240,31 @@ void Widen(const std::vector<double>& var_beyond, SmoothedRun* run) {
   }
 }
 
+// How many times too small the variances of a run are that fits worse than chance would have it.
+double MisfitOf(const Adjustment& a) {
+  constexpr double kChance = 1e-6;
+  if (a.degrees_of_freedom < 1 ||
+      a.chi_square < ChiSquareQuantile(1 - kChance, a.degrees_of_freedom)) {
+    return 1;
+  }
+  return std::max(1.0, a.chi_square / a.degrees_of_freedom);
+}
+
+// What is wrong with such a run is not known: all of it may be so much worse.
+void Scale(double by, SmoothedRun* run) {
+  if (!(by > 1)) return;
+  for (AttitudeSample& a : run->attitude) {
+    a.cov_attitude *= by;
+    CapAtUnknown(&a.cov_attitude);
+  }
+  for (StationState& station : run->stations) {
+    station.attitude = run->attitude[station.epoch];
+    station.cov *= by;
+    station.cov_with_previous *= by;
+    station.cov_white *= by;
+  }
+}
+
 std::vector<double> AtNodes(const AdjustProblem& p, const std::vector<double>& path) {
   const std::size_t first = p.spans.front().epoch_begin;
   const AdjustSpan& span = p.spans.front();
@@ -379,10 +405,11 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
     known.push_back(IsFound(begin.var_beyond[span.epoch_end - 1]));
   }
   result.run = ResultOf(p, inverse, known);
-  Widen(begin.var_beyond, &result.run);
   result.chi_square = outcome.chi_square;
   result.degrees_of_freedom =
       outcome.residuals - static_cast<int>(p.nodes.size() + p.common.size());
+  Scale(MisfitOf(result), &result.run);
+  Widen(begin.var_beyond, &result.run);
   result.converged = true;
   result.ambiguous = std::find(known.begin(), known.end(), false) != known.end();
   FillErrors(p, inverse, &result);

@@ -30,6 +30,7 @@ struct Adjustment : RunFit {
 /// tried on a coarse problem. Everything is linear but the Earth's share, whose way between nodes
 /// is renewed until it stays, so the covariance is that of the solution, from its normal equations.
 /// Near vertical, where the smoother has lost the azimuth and its growth as well, none is given.
+/// A run that does not fit has its variances multiplied by chi-square over the degrees of freedom.
 /// Time and memory are proportional to the nodes.
 /// `sigma_lie`: see RunAdjuster.
 WELLGYRO_EXPORT Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
