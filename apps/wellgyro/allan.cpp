@@ -13,9 +13,9 @@
 #include <fmt/core.h>
 
 #include "wellgyro/bus/series_log.h"
-#include "wellgyro/io/allan_answer.h"
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/io/series_file.h"
+#include "wellgyro/io/result/allan_answer.h"
+#include "wellgyro/io/sensor/series_file.h"
 
 #include "commands.h"
 #include "report.h"

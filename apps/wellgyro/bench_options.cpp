@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
-#include "wellgyro/io/tool_file.h"
+#include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/record/sample.h"
 
 namespace wellgyro::apps {

@@ -11,10 +11,10 @@
 
 #include "wellgyro/calibration/tool_update.h"
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/io/bench_data.h"
-#include "wellgyro/io/calibration_file.h"
+#include "wellgyro/io/sensor/bench_data.h"
 #include "wellgyro/io/sha256.h"
-#include "wellgyro/io/tool_file.h"
+#include "wellgyro/io/toml/calibration_file.h"
+#include "wellgyro/io/toml/tool_file.h"
 
 #include "bench_methods.h"
 #include "bench_options.h"

@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/io/exchange.h"
-#include "wellgyro/io/survey_tables.h"
+#include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/exchange/survey_tables.h"
 
 #include "commands.h"
 #include "report.h"

@@ -4,7 +4,8 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/io/summary.h"
+#include "wellgyro/io/result/result_folder.h"
+#include "wellgyro/io/result/summary.h"
 
 #include "commands.h"
 #include "report.h"

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/io/exchange.h"
-#include "wellgyro/io/job_file.h"
-#include "wellgyro/io/run_file.h"
+#include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/result/run_file.h"
+#include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "intake.h"

@@ -9,7 +9,7 @@
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/loss_watch.h"
 #include "wellgyro/bus/surveyor_listener.h"
-#include "wellgyro/io/run_file.h"
+#include "wellgyro/io/result/run_file.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "digester.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "wellgyro/base/result.h"
-#include "wellgyro/io/job_file.h"
+#include "wellgyro/io/toml/job_file.h"
 
 namespace wellgyro::apps {
 

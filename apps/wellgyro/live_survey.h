@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "wellgyro/io/exchange.h"
-#include "wellgyro/io/job_file.h"
+#include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/toml/job_file.h"
 
 namespace wellgyro::apps {
 

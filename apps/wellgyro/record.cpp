@@ -14,7 +14,7 @@
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/loss_watch.h"
-#include "wellgyro/io/job_file.h"
+#include "wellgyro/io/toml/job_file.h"
 
 #include "commands.h"
 #include "live.h"

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "wellgyro/io/run_file.h"
+#include "wellgyro/io/result/run_file.h"
 #include "wellgyro/survey/job.h"
 
 #include "delivery.h"

@@ -13,9 +13,9 @@
 
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/io/simulation_file.h"
-#include "wellgyro/io/tool_file.h"
-#include "wellgyro/io/truth_csv.h"
+#include "wellgyro/io/result/truth_csv.h"
+#include "wellgyro/io/toml/simulation_file.h"
+#include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/simulate/raw_counts.h"
 #include "wellgyro/simulate/sample_batcher.h"
 #include "wellgyro/simulate/simulator.h"

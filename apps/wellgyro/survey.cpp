@@ -10,10 +10,10 @@
 
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/fit/run_adjustment.h"
-#include "wellgyro/io/exchange.h"
-#include "wellgyro/io/job_file.h"
-#include "wellgyro/io/run_file.h"
-#include "wellgyro/io/sensor_files.h"
+#include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/result/run_file.h"
+#include "wellgyro/io/sensor/sensor_files.h"
+#include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "commands.h"

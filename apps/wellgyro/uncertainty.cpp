@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
-#include "wellgyro/io/uncertainty_files.h"
+#include "wellgyro/io/result/uncertainty_files.h"
 
 #include "commands.h"
 #include "report.h"

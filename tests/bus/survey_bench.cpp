@@ -13,7 +13,7 @@
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/surveyor_listener.h"
-#include "wellgyro/io/run_file.h"
+#include "wellgyro/io/result/run_file.h"
 #include "wellgyro/simulate/simulator.h"
 
 #include "bus/simulated_messages.h"

@@ -12,7 +12,7 @@
 #include "wellgyro/calibration/tool_update.h"
 #include "wellgyro/fit/gyro_fit.h"
 #include "wellgyro/fit/position_fit.h"
-#include "wellgyro/io/tool_file.h"
+#include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/simulate/raw_counts.h"
 

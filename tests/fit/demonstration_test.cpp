@@ -14,8 +14,8 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/fit/run_adjustment.h"
-#include "wellgyro/io/job_file.h"
-#include "wellgyro/io/simulation_file.h"
+#include "wellgyro/io/toml/job_file.h"
+#include "wellgyro/io/toml/simulation_file.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/simulate/simulator.h"
 #include "wellgyro/survey/surveyor.h"

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/calibration/fit_report.h"
-#include "wellgyro/io/bench_data.h"
+#include "wellgyro/io/sensor/bench_data.h"
 
 namespace wellgyro::test {
 

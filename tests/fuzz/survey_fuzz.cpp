@@ -7,7 +7,7 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/surveyor_listener.h"
-#include "wellgyro/io/run_file.h"
+#include "wellgyro/io/result/run_file.h"
 
 #include "fuzz/fuzz.h"
 

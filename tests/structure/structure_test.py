@@ -25,6 +25,16 @@ ALLOWED = {
 }
 ALLOWED.update({stage: set(LOW) for stage in STAGES})
 
+# The rooms of io/, and what each sees of the others; all stand on the sources of io/ itself.
+IO = {
+    "": set(),
+    "plot": set(),
+    "exchange": set(),
+    "toml": {"exchange"},
+    "sensor": {"exchange"},
+    "result": {"exchange", "plot", "toml"},
+}
+
 STD = set("""algorithm array atomic bit cassert cctype cerrno cfloat charconv cinttypes climits cmath
 compare complex condition_variable concepts csignal cstddef cstdint cstdio cstdlib cstring deque
 exception filesystem fstream functional initializer_list iomanip iosfwd iterator istream limits list
@@ -77,6 +87,11 @@ def Room(path):
     return os.path.relpath(path, LIB).split(os.sep)[0]
 
 
+def IoRoom(path):
+    """Of "io/exchange/las.h" "exchange", of "io/words.h" ""."""
+    return (path.split("/") + [""])[1] if path.count("/") > 1 else ""
+
+
 def Place(path, number):
     return f"{os.path.relpath(path, TOP)}:{number}"
 
@@ -95,9 +110,22 @@ class Structure(unittest.TestCase):
                     problems.append(f"{Place(path, number)}: {room} may not include {target}")
         self.Report(problems)
 
+    def test_rooms_of_io_include_only_along_the_arrows(self):
+        problems = []
+        for path in Sources(os.path.join(LIB, "io")):
+            room = IoRoom(os.path.relpath(path, LIB))
+            for number, _, target in Includes(path):
+                other = IoRoom(target.removeprefix("wellgyro/"))
+                if target.startswith("wellgyro/io/") and other and other not in IO[room] | {room}:
+                    problems.append(f"{Place(path, number)}: io/{room} may not include {target}")
+        self.Report(problems)
+
     def test_every_room_is_known(self):
         rooms = {d for d in os.listdir(LIB) if os.path.isdir(os.path.join(LIB, d))}
         self.assertFalse(rooms - set(ALLOWED))
+        rooms = {d for d in os.listdir(os.path.join(LIB, "io"))
+                 if os.path.isdir(os.path.join(LIB, "io", d))}
+        self.assertFalse(rooms - set(IO))
 
     def test_public_headers_show_only_std_eigen_and_ours(self):
         problems = []
@@ -169,7 +197,7 @@ class Structure(unittest.TestCase):
     def test_every_source_is_built(self):
         problems = []
         for path in Sources(LIB, (".cpp",)):
-            lists = os.path.join(LIB, Room(path), "CMakeLists.txt")
+            lists = os.path.join(os.path.dirname(path), "CMakeLists.txt")
             name = os.path.relpath(path, os.path.dirname(lists))
             if not re.search(rf"(?<![\w/]){re.escape(name)}\b", "\n".join(Lines(lists))):
                 problems.append(f"{os.path.relpath(path, TOP)}: stands in no CMakeLists.txt")

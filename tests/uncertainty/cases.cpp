@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/units.h"
-#include "wellgyro/io/error_model_file.h"
+#include "wellgyro/io/toml/error_model_file.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
 
 namespace wellgyro::test {

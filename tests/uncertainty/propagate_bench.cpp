@@ -5,7 +5,7 @@
 #include <benchmark/benchmark.h>
 
 #include "wellgyro/base/units.h"
-#include "wellgyro/io/error_model_file.h"
+#include "wellgyro/io/toml/error_model_file.h"
 #include "wellgyro/uncertainty/allan_error.h"
 #include "wellgyro/uncertainty/propagate.h"
 

@@ -1,0 +1,271 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "wellgyro/io/exchange/headings_internal.h"
+#include "wellgyro/io/exchange/las_internal.h"
+#include "wellgyro/io/exchange/survey_words_internal.h"
+#include "wellgyro/io/exchange/table_build_internal.h"
+#include "wellgyro/io/text_internal.h"
+
+namespace wellgyro {
+namespace {
+
+// A header line: MNEM.UNIT DATA : DESCRIPTION, parted at the first dot, the first blank after it
+// and the last colon.
+struct LasLine {
+  std::string mnemonic, unit, data;
+};
+
+std::optional<LasLine> HeaderLine(std::string_view line) {
+  const std::size_t dot = line.find('.');
+  const std::size_t colon = line.rfind(':');
+  if (dot == std::string_view::npos || colon == std::string_view::npos || colon < dot) {
+    return std::nullopt;
+  }
+  std::string_view rest = line.substr(dot + 1, colon - dot - 1);
+  const std::size_t unit_end = std::min(rest.find_first_of(" \t"), rest.size());
+  return LasLine{std::string(Trim(line.substr(0, dot))), std::string(rest.substr(0, unit_end)),
+                 std::string(Trim(rest.substr(unit_end)))};
+}
+
+struct Curve {
+  std::optional<Column> column;
+  Quantity quantity = Quantity::kNumber;
+  double factor = 1;
+};
+
+class LasReader {
+ public:
+  LasReader(LineReader& lines, const ReadOptions& options) : lines_(lines), options_(options) {}
+
+  SurveyTable Read() {
+    std::string_view line;
+    while (lines_.Next(line)) {
+      const std::string_view text = Trim(line);
+      if (text.empty() || text.front() == '#') continue;
+      if (text.front() == '~') {
+        Section(text);
+      } else if (section_ == 'A') {
+        Data(text);
+      } else {
+        Header(text);
+      }
+    }
+    if (section_ != 'A') {
+      lines_.Complain(FaultCode::kForeign,
+                      lines_.number() == 0 ? "this file is empty" : "no section ~A: no data");
+    }
+    if (!pending_.empty()) lines_.Complain(FaultCode::kSyntax, "the last row is cut short");
+    if (build_.table.rows() == 0) lines_.Complain(FaultCode::kForeign, "not a single station");
+    CheckEnds();
+    return std::move(build_.table);
+  }
+
+ private:
+  SurveyHead& head() { return build_.table.head; }
+
+  void Section(std::string_view text) {
+    if (section_ == 'A') lines_.Complain(FaultCode::kSyntax, "a section after ~A, the last one");
+    section_ = text.size() > 1 ? static_cast<char>(text[1] & ~0x20) : ' ';
+    if (section_ == 'A') CheckCurves();
+  }
+
+  void Header(std::string_view text) {
+    const auto line = HeaderLine(text);
+    if (section_ == 'O') {
+      head().remarks.emplace_back(text);
+      return;
+    }
+    if (!line) lines_.Complain(FaultCode::kSyntax, "no line of the form MNEM.UNIT DATA : TEXT");
+    if (section_ == 'V') return Version(*line);
+    if (section_ == 'W') return Well(*line);
+    if (section_ == 'C') return AddCurve(*line);
+    if (section_ == 'P') return Parameter(*line);
+  }
+
+  void Version(const LasLine& line) {
+    if (line.mnemonic == "VERS") {
+      const auto version = NumberOf(line.data);
+      if (!version || *version < 1.2 || *version > 2.1) {
+        lines_.Complain(FaultCode::kForeign, "LAS " + line.data + " is not LAS 2.0");
+      }
+    }
+    if (line.mnemonic == "WRAP") wrap_ = EqualNoCase(line.data, "YES");
+  }
+
+  void Well(const LasLine& line) {
+    if (line.mnemonic == "NULL") {
+      null_ = NumberOf(line.data);
+    } else if (line.mnemonic == "STRT") {
+      start_ = NumberOf(line.data);
+    } else if (line.mnemonic == "STOP") {
+      stop_ = NumberOf(line.data);
+    } else if (line.mnemonic == "STEP") {
+      step_ = NumberOf(line.data);
+    }
+    for (const las::WellKey& key : las::kWellKeys) {
+      if (key.mnemonic == line.mnemonic) head().names.*key.member = line.data;
+    }
+  }
+
+  void Parameter(const LasLine& line) {
+    for (const las::ParameterKey& p : las::kParameters) {
+      if (p.mnemonic != line.mnemonic || line.data.empty()) continue;
+      if (!TakePair(head(), p.key, line.data)) {
+        lines_.Complain(FaultCode::kSyntax, fmt::format("{}: '{}' is none", p.text, line.data));
+      }
+    }
+  }
+
+  void AddCurve(const LasLine& line) {
+    Curve curve;
+    Heading heading = HeadingOf(line.mnemonic);
+    for (const auto& [canonical, name] : options_.columns) {
+      if (EqualNoCase(name, line.mnemonic)) heading = HeadingOf(canonical);
+    }
+    for (const ColumnInfo& info : AllColumns()) {
+      if (!heading.column && EqualNoCase(info.las, line.mnemonic)) heading.column = info.column;
+    }
+    // The first curve is the index, which need not say so.
+    if (curves_.empty() && EqualNoCase(line.mnemonic, "INDEX")) heading.column = Column::kMd;
+    if (heading.column == Column::kAzimuth) heading.column = AzimuthColumn(heading.north);
+    const bool twice =
+        heading.column && std::any_of(curves_.begin(), curves_.end(),
+                                      [&](const Curve& c) { return c.column == heading.column; });
+    if (heading.column && !twice) {
+      curve.quantity = InfoOf(*heading.column).quantity;
+      const auto factor = FactorOf(curve.quantity, line.unit);
+      if (factor) {
+        curve.column = heading.column;
+        curve.factor = *factor;
+        TakeUnits(*heading.column, line.unit);
+      } else if (*heading.column <= Column::kAzimuth) {
+        lines_.Complain(FaultCode::kSyntax, fmt::format("'{}' is no unit of {}", line.unit,
+                                                        InfoOf(*heading.column).text));
+      }
+    }
+    curves_.push_back(curve);
+  }
+
+  std::optional<Column> AzimuthColumn(North north) {
+    if (!azimuth_seen_) {
+      azimuth_seen_ = true;
+      if (north != North::kUnknown) head().azimuth.north = north;
+      return Column::kAzimuth;
+    }
+    switch (north) {
+      case North::kTrue:
+        return Column::kAzimuthTrue;
+      case North::kGrid:
+        return Column::kAzimuthGrid;
+      case North::kMagnetic:
+        return Column::kAzimuthMagnetic;
+      default:
+        return std::nullopt;
+    }
+  }
+
+  void TakeUnits(Column column, const std::string& unit) {
+    const auto length = LengthUnitOf(unit);
+    if (column == Column::kMd && length) head().md_unit = *length;
+    if ((column == Column::kNorthing || column == Column::kDown) && length) {
+      head().grid_unit = *length;
+    }
+    const auto curvature = column == Column::kDogleg ? CurvatureUnitOf(unit) : std::nullopt;
+    if (curvature) head().curvature_unit = *curvature;
+  }
+
+  void CheckCurves() {
+    for (const Column column : {Column::kMd, Column::kInclination, Column::kAzimuth}) {
+      const bool there = std::any_of(curves_.begin(), curves_.end(),
+                                     [&](const Curve& c) { return c.column == column; });
+      if (!there) {
+        lines_.Complain(FaultCode::kForeign, fmt::format("no curve of {}", InfoOf(column).text));
+      }
+    }
+    if (curves_.front().column != Column::kMd) {
+      lines_.Complain(FaultCode::kSyntax, "the first curve is not measured depth");
+    }
+    if (head().offsets == North::kUnknown) head().offsets = head().azimuth.north;
+  }
+
+  void Data(std::string_view text) {
+    std::vector<std::string_view> fields;
+    Split(text, ' ', fields);
+    for (const std::string_view field : fields) {
+      const auto number = NumberOf(field);
+      if (!number) {
+        lines_.Complain(FaultCode::kSyntax,
+                        fmt::format("'{}' is not a number", field.substr(0, 40)));
+      }
+      pending_.push_back(*number);
+    }
+    if (!wrap_ && pending_.size() != curves_.size()) {
+      lines_.Complain(FaultCode::kSyntax, fmt::format("{} numbers where ~C names {} curves",
+                                                      pending_.size(), curves_.size()));
+    }
+    if (pending_.size() > curves_.size()) {
+      lines_.Complain(FaultCode::kSyntax, "a wrapped row has more numbers than there are curves");
+    }
+    if (pending_.size() == curves_.size()) Row();
+  }
+
+  void Row() {
+    last_index_ = pending_.front();
+    if (!first_index_) first_index_ = last_index_;
+    std::array<double, 3> station{};
+    bool whole = true;
+    for (std::size_t i = 0; i < curves_.size(); ++i) {
+      const Curve& c = curves_[i];
+      if (!c.column || *c.column > Column::kAzimuth) continue;
+      whole = whole && !(null_ && pending_[i] == *null_);
+      station[static_cast<std::size_t>(*c.column)] = ValueOf(c.quantity, pending_[i], c.factor);
+    }
+    // A log has rows where there was no survey.
+    if (whole) {
+      const auto problem = build_.Add(station[0], station[1], station[2]);
+      if (problem) lines_.Complain(problem->code, problem->text);
+      for (std::size_t i = 0; i < curves_.size(); ++i) {
+        const Curve& c = curves_[i];
+        if (!c.column || *c.column <= Column::kAzimuth || (null_ && pending_[i] == *null_)) {
+          continue;
+        }
+        build_.Set(*c.column, ValueOf(c.quantity, pending_[i], c.factor));
+      }
+    }
+    pending_.clear();
+  }
+
+  // A file cut short says so by its own header.
+  void CheckEnds() {
+    if (!stop_ || !start_ || !step_) {
+      lines_.Complain(FaultCode::kSyntax, "~W lacks STRT, STOP or STEP");
+    }
+    const double reach = 1e-6 * std::max(std::abs(*stop_), 1.0) + 0.5 * std::abs(*step_);
+    if (std::abs(last_index_ - *stop_) > std::max(reach, 1e-3)) {
+      lines_.Complain(FaultCode::kSize, fmt::format("ends at {} where its header says {}",
+                                                    Exact(last_index_), Exact(*stop_)));
+    }
+  }
+
+  LineReader& lines_;
+  const ReadOptions& options_;
+  TableBuilder build_;
+  std::vector<Curve> curves_;
+  std::vector<double> pending_;
+  std::optional<double> null_, start_, stop_, step_, first_index_;
+  double last_index_ = 0;
+  char section_ = ' ';
+  bool wrap_ = false, azimuth_seen_ = false;
+};
+
+}  // namespace
+
+SurveyTable ReadLas(LineReader& lines, const ReadOptions& options) {
+  return LasReader(lines, options).Read();
+}
+
+}  // namespace wellgyro

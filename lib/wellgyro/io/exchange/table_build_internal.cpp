@@ -1,0 +1,173 @@
+#include "wellgyro/io/exchange/table_build_internal.h"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/io/exchange/survey_words_internal.h"
+#include "wellgyro/io/text_internal.h"
+#include "wellgyro/io/words.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::size_t kMostCells = std::size_t{1} << 27;
+
+// Plain texts of a head and the keys they go by.
+struct TextKey {
+  std::string_view key;
+  std::string SurveyIdentity::*member;
+};
+constexpr std::array kTextKeys{
+    TextKey{"well", &SurveyIdentity::well},
+    TextKey{"uwi", &SurveyIdentity::uwi},
+    TextKey{"wellbore", &SurveyIdentity::wellbore},
+    TextKey{"uwi_wellbore", &SurveyIdentity::uwi_wellbore},
+    TextKey{"field", &SurveyIdentity::field},
+    TextKey{"region", &SurveyIdentity::region},
+    TextKey{"country", &SurveyIdentity::country},
+    TextKey{"structure", &SurveyIdentity::structure},
+    TextKey{"rig", &SurveyIdentity::rig},
+    TextKey{"survey", &SurveyIdentity::survey},
+    TextKey{"operator", &SurveyIdentity::operator_name},
+    TextKey{"contractor", &SurveyIdentity::contractor},
+    TextKey{"job", &SurveyIdentity::job},
+    TextKey{"begin", &SurveyIdentity::begin},
+    TextKey{"end", &SurveyIdentity::end},
+    TextKey{"created", &SurveyIdentity::created},
+};
+
+struct HeadTextKey {
+  std::string_view key;
+  std::string SurveyHead::*member;
+};
+constexpr std::array kHeadTextKeys{
+    HeadTextKey{"datum", &SurveyHead::datum},
+    HeadTextKey{"vertical_reference", &SurveyHead::vertical_reference},
+    HeadTextKey{"crs", &SurveyHead::crs},
+    HeadTextKey{"method", &SurveyHead::method},
+    HeadTextKey{"error_model", &SurveyHead::error_model},
+};
+
+struct NumberKey {
+  std::string_view key;
+  std::optional<double> SurveyHead::*member;
+  Quantity quantity;
+};
+constexpr std::array kNumberKeys{
+    NumberKey{"datum_elevation_m", &SurveyHead::datum_elevation, Quantity::kRatio},
+    NumberKey{"grid_scale", &SurveyHead::scale, Quantity::kRatio},
+    NumberKey{"section_azimuth_deg", &SurveyHead::section_azimuth, Quantity::kAngle},
+};
+
+struct ReferenceKey {
+  std::string_view key;
+  std::optional<double> AzimuthReference::*member;
+};
+constexpr std::array kReferenceKeys{
+    ReferenceKey{"grid_convergence_deg", &AzimuthReference::convergence},
+    ReferenceKey{"declination_deg", &AzimuthReference::declination},
+};
+
+double FactorOfKey(Quantity quantity) { return quantity == Quantity::kAngle ? FromDegrees(1) : 1; }
+
+}  // namespace
+
+std::optional<TableBuilder::Problem> TableBuilder::Add(double md, double inclination,
+                                                       double azimuth, RowStatus status) {
+  if (!(inclination >= 0 && inclination <= kPi * (1 + 1e-12))) {
+    return Problem{FaultCode::kRange,
+                   fmt::format("{} deg is no inclination", Exact(inclination, FromDegrees(1)))};
+  }
+  constexpr double kDeepest = 1e6;  // [m]; no hole is
+  if (!(std::abs(md) <= kDeepest)) {
+    return Problem{FaultCode::kRange, fmt::format("{} m is no measured depth", Exact(md, 1))};
+  }
+  if (OnPath(status)) {
+    if (last_md_ && !(md > *last_md_)) {
+      return Problem{FaultCode::kOrder, fmt::format("depth {} m after {} m: depth must increase",
+                                                    Exact(md), Exact(*last_md_))};
+    }
+    last_md_ = md;
+  }
+  if (table.rows() % 1024 == 0 && table.cells() > kMostCells) {
+    return Problem{FaultCode::kSize, "more numbers than a survey can have here: split the file"};
+  }
+  table.Add(md, inclination, azimuth, status);
+  return std::nullopt;
+}
+
+Pairs PairsOf(const SurveyHead& head) {
+  Pairs pairs;
+  const auto add = [&](std::string_view key, std::string_view value) {
+    if (!value.empty()) pairs.emplace_back(key, value);
+  };
+  for (const TextKey& k : kTextKeys) add(k.key, head.names.*k.member);
+  if (head.azimuth.north != North::kUnknown) add("north_reference", WordOf(head.azimuth.north));
+  for (const ReferenceKey& k : kReferenceKeys) {
+    if (const auto& value = head.azimuth.*k.member) add(k.key, Exact(*value, FromDegrees(1)));
+  }
+  add("declination_source", head.azimuth.declination_source);
+  add("declination_date", head.azimuth.declination_date);
+  for (const HeadTextKey& k : kHeadTextKeys) add(k.key, head.*k.member);
+  for (const NumberKey& k : kNumberKeys) {
+    if (const auto& value = head.*k.member) add(k.key, Exact(*value, FactorOfKey(k.quantity)));
+  }
+  if (head.md_kind != DepthKind::kIndicated) add("depth_kind", WordOf(head.md_kind));
+  add("tool", WordOf(head.tool));
+  for (const std::string& remark : head.remarks) add("remark", remark);
+  return pairs;
+}
+
+bool TakePair(SurveyHead& head, std::string_view key, std::string_view value) {
+  key = Trim(key);
+  value = Trim(value);
+  for (const TextKey& k : kTextKeys) {
+    if (k.key == key) return head.names.*k.member = value, true;
+  }
+  for (const HeadTextKey& k : kHeadTextKeys) {
+    if (k.key == key) return head.*k.member = value, true;
+  }
+  if (key == "declination_source") return head.azimuth.declination_source = value, true;
+  if (key == "declination_date") return head.azimuth.declination_date = value, true;
+  if (key == "remark") return head.remarks.emplace_back(value), true;
+  if (key == "north_reference") {
+    const auto north = NorthOf(value);
+    if (north) head.azimuth.north = *north;
+    return north.has_value();
+  }
+  if (key == "depth_kind") {
+    const auto kind = DepthKindOf(value);
+    if (kind) head.md_kind = *kind;
+    return kind.has_value();
+  }
+  if (key == "tool") {
+    const auto tool = SurveyToolOf(value);
+    if (tool) head.tool = *tool;
+    return tool.has_value();
+  }
+  const std::optional<double> number = NumberOf(value);
+  if (!number) return false;
+  for (const ReferenceKey& k : kReferenceKeys) {
+    if (k.key == key) return head.azimuth.*k.member = *number * FromDegrees(1), true;
+  }
+  for (const NumberKey& k : kNumberKeys) {
+    if (k.key == key) return head.*k.member = *number * FactorOfKey(k.quantity), true;
+  }
+  return false;
+}
+
+void Lacks(std::string_view format, std::string_view what) {
+  throw std::invalid_argument(fmt::format("{} needs {}", format, what));
+}
+
+void NeedNorth(const SurveyTable& table, std::string_view format) {
+  if (table.head.azimuth.north == North::kUnknown) {
+    Lacks(format, "to be told which north the azimuths count from: true, grid or magnetic");
+  }
+}
+
+}  // namespace wellgyro

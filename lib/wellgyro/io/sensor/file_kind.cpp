@@ -1,0 +1,151 @@
+#include "wellgyro/io/sensor/file_kind.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include <fmt/core.h>
+
+#include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/sensor/sensor_csv.h"
+#include "wellgyro/io/text_file.h"
+#include "wellgyro/io/text_internal.h"
+
+namespace wellgyro {
+namespace {
+
+struct Format {
+  std::string_view name;
+  FileKind kind;
+  std::string_view text;
+};
+
+constexpr std::array kFormats{
+    Format{"wellgyro.job/1", FileKind::kJob, "a wellgyro job"},
+    Format{"wellgyro.simulation/1", FileKind::kSimulation, "a wellgyro simulation"},
+    Format{"wellgyro.noise/1", FileKind::kNoise, "a wellgyro noise file"},
+    Format{"wellgyro.calibration/1", FileKind::kCalibration, "a wellgyro calibration"},
+    Format{"wellgyro.tool/1", FileKind::kTool, "a wellgyro tool file"},
+    Format{"wellgyro.error-model/1", FileKind::kErrorModel, "a wellgyro error model"},
+    Format{"wellgyro.program/1", FileKind::kProgram, "a wellgyro survey program"},
+    Format{"wellgyro.uncertainty/1", FileKind::kUncertainty,
+           "the summary of a wellgyro position uncertainty"},
+    Format{"wellgyro.run/1", FileKind::kRun, "the run file of a wellgyro result"},
+    Format{"wellgyro.source/1", FileKind::kSource, "the source file of a wellgyro result"},
+};
+
+struct Signature {
+  std::string_view bytes;
+  std::string_view text;
+};
+
+constexpr std::array kSignatures{
+    Signature{"\x1F\x8B", "a gzip archive"},
+    Signature{"PK\x03\x04", "a zip archive"},
+    Signature{"BZh", "a bzip2 archive"},
+    Signature{"\xFD\x37zXZ", "an xz archive"},
+    Signature{"\x28\xB5\x2F\xFD", "a zstd archive"},
+    Signature{"%PDF", "a PDF document"},
+    Signature{"\x89PNG", "a PNG image"},
+    Signature{"\x7F"
+              "ELF",
+              "a program"},
+    Signature{"\x89HDF", "an HDF5 file"},
+    Signature{"IOGP,", "an IOGP P7/17 file"},
+    Signature{"<", "an XML or HTML document"},
+    Signature{"{", "a JSON document"},
+    Signature{"~V", "a LAS file"},
+};
+
+// The next line of `text` without its end; takes it off `text`.
+std::string_view NextLine(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+// The value of the line format = "...", which comes before anything but comments; or empty.
+std::string_view FormatLine(std::string_view text) {
+  while (!text.empty()) {
+    std::string_view line = Trim(NextLine(text));
+    if (line.empty() || line.front() == '#') continue;
+    if (!line.starts_with("format")) return {};
+    line = Trim(line.substr(6));
+    if (!line.starts_with('=')) return {};
+    line = Trim(line.substr(1));
+    if (line.empty() || (line.front() != '"' && line.front() != '\'')) return {};
+    const std::size_t end = line.find(line.front(), 1);
+    return end == std::string_view::npos ? std::string_view() : line.substr(1, end - 1);
+  }
+  return {};
+}
+
+FileIdentity ByFormat(std::string_view name) {
+  for (const Format& format : kFormats) {
+    if (format.name == name) return {format.kind, std::string(format.text)};
+  }
+  return {
+      FileKind::kForeign,
+      fmt::format("a file of format \"{}\", which this version does not know", name.substr(0, 60))};
+}
+
+FileIdentity ByContent(std::string_view head) {
+  for (const Signature& signature : kSignatures) {
+    if (head.starts_with(signature.bytes)) return {FileKind::kForeign, std::string(signature.text)};
+  }
+  const bool text = std::none_of(head.begin(), head.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t';
+  });
+  return {FileKind::kForeign, text ? "text of an unknown kind" : "binary data of an unknown kind"};
+}
+
+std::string TextOf(SensorTable table) {
+  switch (table) {
+    case SensorTable::kSamples:
+      return "a table of sensor samples";
+    case SensorTable::kStill:
+      return "a table of averages at rest";
+    case SensorTable::kDepth:
+      break;
+  }
+  return "a table of depths";
+}
+
+}  // namespace
+
+FileIdentity IdentifyBytes(std::string_view head) {
+  if (head.empty()) return {FileKind::kEmpty, "an empty file"};
+  if (head.find("\xED\xA1\xDA\x01") != std::string_view::npos) {
+    return {FileKind::kLcmLog, "an LCM log"};
+  }
+  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+  if (const std::string_view format = FormatLine(head); format.starts_with("wellgyro.")) {
+    return ByFormat(format);
+  }
+  std::string_view rest = head;
+  std::string_view line = NextLine(rest);
+  if (IsSurveyCsvHeader(line)) return {FileKind::kSurveyCsv, "a wellgyro survey"};
+  if (line.starts_with("RUN,PASS,STATUS,REVISION,MD[m]")) {
+    return {FileKind::kPassesCsv, "the passes of a wellgyro survey"};
+  }
+  if (line.starts_with("CODE,RUN,PASS,MD[m],VALUE")) {
+    return {FileKind::kChecksCsv, "the checks of a wellgyro survey"};
+  }
+  if (line.starts_with("T[s],MD[m],INC[deg],AZI_TRUE[deg],GTF[deg]")) {
+    return {FileKind::kTruthCsv, "the truth of a wellgyro simulation"};
+  }
+  while (line.starts_with('#')) line = NextLine(rest);
+  if (const auto table = SensorTableOf(line)) return {FileKind::kSensorCsv, TextOf(*table)};
+  return ByContent(head);
+}
+
+Result<FileIdentity> IdentifyFile(const std::filesystem::path& path) {
+  const Result<std::string> head = ReadTextHead(path, 1 << 16);
+  if (!head) return head.fault();
+  return IdentifyBytes(*head);
+}
+
+}  // namespace wellgyro

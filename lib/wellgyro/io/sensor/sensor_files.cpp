@@ -1,0 +1,313 @@
+#include "wellgyro/io/sensor/sensor_files.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/alignment/still_detector.h"
+#include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/sensor/gyro_raw.h"
+#include "wellgyro/io/sensor/sensor_csv.h"
+#include "wellgyro/io/sensor/sensor_layout_internal.h"
+#include "wellgyro/io/sha256.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kRest = 20;         // [s], the shortest stop that joins clocks
+constexpr double kSameDepth = 0.02;  // [m], between marks of a string at rest
+constexpr double kRestGap = 60;      // [s] between marks of one rest
+constexpr double kAhead = 120;       // [s] that depth is pushed ahead of samples
+constexpr double kStampSigmas = 3;
+constexpr std::int64_t kProgressRows = 65536;
+
+struct Opened {
+  std::filesystem::path path;
+  SensorCsv table;
+};
+
+Result<InputFile> Noted(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  Sha256 digest;
+  std::array<char, 1 << 16> block{};
+  while (file.read(block.data(), std::ssize(block)) || file.gcount() > 0) {
+    digest.Update(std::string_view(block.data(), static_cast<std::size_t>(file.gcount())));
+  }
+  if (file.bad()) {
+    return Fault{.code = FaultCode::kIo,
+                 .text = "reading this file failed half way",
+                 .source = path.string()};
+  }
+  return InputFile{.role = "sensors",
+                   .name = path.filename().string(),
+                   .path = path,
+                   .sha256 = digest.HexDigest()};
+}
+
+/// Every row of a table, or the fault of one.
+template <class Record, class Take>
+std::optional<Fault> ForEach(const std::filesystem::path& path, Take take) {
+  Result<SensorCsv> table = SensorCsv::Open(path);
+  if (!table) return table.fault();
+  SensorCsv::Row row;
+  while (table->Next(row)) take(std::get<Record>(row));
+  return table->fault();
+}
+
+class RigRests {
+ public:
+  void Take(const DepthMark& mark) {
+    const bool goes_on = last_ && std::abs(mark.md - begin_->md) < kSameDepth &&
+                         (mark.utc - last_->utc).seconds() <= kRestGap;
+    if (!goes_on) {
+      Close();
+      begin_ = mark;
+    }
+    last_ = mark;
+  }
+  std::vector<UtcRest> All() {
+    Close();
+    return std::move(rests_);
+  }
+
+ private:
+  void Close() {
+    if (last_ && (last_->utc - begin_->utc).seconds() >= kRest) {
+      rests_.push_back({begin_->utc, last_->utc});
+    }
+  }
+  std::optional<DepthMark> begin_, last_;
+  std::vector<UtcRest> rests_;
+};
+
+class Joiner {
+ public:
+  Joiner(const Job& job, Surveyor& surveyor, Sink& faults,
+         const std::function<void(double)>& progress)
+      : job_(job), surveyor_(surveyor), faults_(faults), progress_(progress) {}
+
+  Result<SensorReport> Run(std::span<const std::filesystem::path> files) {
+    for (const std::filesystem::path& path : files) {
+      if (const auto fault = Take(path)) return *fault;
+    }
+    if (!samples_.empty()) {
+      if (const auto fault = JoinClocks()) return *fault;
+    }
+    // Averages ask for their depth at once.
+    if (samples_.empty() || !stills_.empty()) {
+      if (const auto fault = PushDepth()) return *fault;
+    }
+    for (const StillWindow& window : gyro_raw_) {
+      ++report_.windows;
+      surveyor_.Push(window);
+    }
+    for (const auto& path : stills_) {
+      const auto fault = ForEach<StillWindow>(path, [&](const StillWindow& window) {
+        ++report_.windows;
+        surveyor_.Push(window);
+      });
+      if (fault) return *fault;
+    }
+    if (!samples_.empty()) {
+      if (const auto fault = PushSamples()) return *fault;
+    }
+    return std::move(report_);
+  }
+
+ private:
+  std::optional<Fault> TakeGyroRaw(const std::filesystem::path& path) {
+    const Result<SurveyTable> table = ReadSurvey(path);
+    if (!table) return table.fault();
+    Result<std::vector<StillWindow>> windows = WindowsOfGyroRaw(*table, job_);
+    if (!windows) {
+      Fault fault = windows.fault();
+      fault.source = path.string();
+      return fault;
+    }
+    const Result<InputFile> noted = Noted(path);
+    if (!noted) return noted.fault();
+    report_.files.push_back(*noted);
+    gyro_raw_.insert(gyro_raw_.end(), windows->begin(), windows->end());
+    return std::nullopt;
+  }
+
+  std::optional<Fault> Take(const std::filesystem::path& path) {
+    if (IsIogpFile(path)) return TakeGyroRaw(path);
+    const Result<SensorCsv> table = SensorCsv::Open(path);
+    if (!table) return table.fault();
+    const Result<InputFile> noted = Noted(path);
+    if (!noted) return noted.fault();
+    report_.files.push_back(*noted);
+    const auto second = [&](std::string_view what) {
+      return Fault{.code = FaultCode::kConflict,
+                   .text = fmt::format("a second table of {}; give one", what),
+                   .source = path.string()};
+    };
+    switch (table->kind()) {
+      case SensorTable::kSamples:
+        if (!samples_.empty()) return second("samples");
+        samples_ = path;
+        has_utc_ = table->has_utc();
+        has_tool_ = table->has_tool();
+        break;
+      case SensorTable::kStill:
+        stills_.push_back(path);
+        break;
+      case SensorTable::kDepth:
+        if (!depth_.empty()) return second("depth");
+        depth_ = path;
+        break;
+    }
+    return std::nullopt;
+  }
+
+  /// Ties the samples' tool time to UTC by the stops, where there is anything to be learnt.
+  std::optional<Fault> JoinClocks() {
+    if (!has_tool_) return std::nullopt;
+    if (depth_.empty()) {
+      if (has_utc_) return std::nullopt;
+      return Fault{.code = FaultCode::kConflict,
+                   .text =
+                       "the samples have the tool's time alone: give UTC, or a table of depth "
+                       "whose stops tell it",
+                   .source = samples_.string()};
+    }
+    RigRests rig;
+    if (auto fault = ForEach<DepthMark>(depth_, [&](const DepthMark& m) { rig.Take(m); })) {
+      return fault;
+    }
+    std::optional<SampleStamp> first, last;
+    StillSetup setup{.gyro = job_.noise, .errors = job_.errors};
+    setup.min_still = Duration::Seconds(kRest);
+    StillDetector still(setup);
+    std::vector<ToolRest> tool;
+    const auto note = [&](const std::optional<StillWindow>& window) {
+      if (window) tool.push_back({window->begin, window->end});
+    };
+    auto fault = ForEach<ImuSample>(samples_, [&](const ImuSample& sample) {
+      if (!first) first = sample.stamp;
+      last = sample.stamp;
+      note(still.Push(sample, AlongHole{}));
+    });
+    if (fault) return fault;
+    note(still.Flush());
+    const std::vector<UtcRest> rests = rig.All();
+    const Result<StopMatch> match = MatchStops(tool, rests);
+    if (!match) {
+      if (has_utc_) return std::nullopt;
+      Fault why = match.fault();
+      why.source = samples_.string();
+      return why;
+    }
+    report_.clock = *match;
+    if (has_utc_) CompareStamps(*match, *first, *last);
+    return std::nullopt;
+  }
+
+  void CompareStamps(const StopMatch& match, const SampleStamp& first, const SampleStamp& last) {
+    const double a = (first.utc - match.ToUtc(first.tool_time)).seconds();
+    const double b = (last.utc - match.ToUtc(last.tool_time)).seconds();
+    report_.stamps_less_stops = std::abs(a) > std::abs(b) ? a : b;
+    const double limit =
+        kStampSigmas * std::max(match.Sigma(first.tool_time), match.Sigma(last.tool_time));
+    if (std::abs(*report_.stamps_less_stops) <= std::max(limit, 1.0)) return;
+    faults_.OnFault(Fault{
+        .code = FaultCode::kConflict,
+        .text = fmt::format("the samples' UTC is {:.1f} s from what the stops of tool and depth "
+                            "say, {:.1f} s allowed: one of the clocks is set wrong",
+                            *report_.stamps_less_stops, std::max(limit, 1.0)),
+        .source = samples_.string()});
+  }
+
+  std::optional<Fault> PushDepth() {
+    if (depth_.empty()) return std::nullopt;
+    return ForEach<DepthMark>(depth_, [&](const DepthMark& mark) {
+      ++report_.marks;
+      surveyor_.Push(WithKind(mark));
+    });
+  }
+
+  DepthMark WithKind(DepthMark mark) const {
+    if (mark.kind == DepthKind::kIndicated) mark.kind = job_.depth.kind;
+    return mark;
+  }
+
+  std::optional<Fault> PushSamples() {
+    std::optional<SensorCsv> depth;
+    if (!depth_.empty() && stills_.empty()) {
+      Result<SensorCsv> opened = SensorCsv::Open(depth_);
+      if (!opened) return opened.fault();
+      depth = *std::move(opened);
+    }
+    SensorCsv::Row row;
+    bool more = depth && depth->Next(row);
+    std::error_code ignored;
+    std::int64_t next_progress = kProgressRows;
+    const bool by_stops = !has_utc_;
+    auto fault = ForEach<ImuSample>(samples_, [&](ImuSample sample) {
+      if (by_stops) {
+        sample.stamp.utc = report_.clock->ToUtc(sample.stamp.tool_time);
+        sample.stamp.utc_unsynced = false;
+      } else if (!has_tool_) {
+        sample.stamp.tool_time = ToolTime{sample.stamp.utc.ns};
+      }
+      const UtcTime until = sample.stamp.utc + Duration::Seconds(kAhead);
+      while (more && std::get<DepthMark>(row).utc <= until) {
+        ++report_.marks;
+        surveyor_.Push(WithKind(std::get<DepthMark>(row)));
+        more = depth->Next(row);
+      }
+      surveyor_.Push(sample);
+      if (++report_.samples == next_progress) {
+        next_progress += kProgressRows;
+        if (progress_) progress_(static_cast<double>(report_.samples));
+      }
+    });
+    if (!fault && depth) fault = depth->fault();
+    return fault;
+  }
+
+  const Job& job_;
+  Surveyor& surveyor_;
+  Sink& faults_;
+  const std::function<void(double)>& progress_;
+  SensorReport report_;
+  std::filesystem::path samples_, depth_;
+  std::vector<std::filesystem::path> stills_;
+  std::vector<StillWindow> gyro_raw_;
+  bool has_utc_ = false, has_tool_ = false;
+};
+
+}  // namespace
+
+Result<SensorReport> PushSensorFiles(std::span<const std::filesystem::path> files, const Job& job,
+                                     Surveyor& surveyor, Sink& faults,
+                                     const std::function<void(double)>& progress) {
+  return Joiner(job, surveyor, faults, progress).Run(files);
+}
+
+bool IsSensorTable(const std::filesystem::path& path) {
+  if (IsIogpFile(path)) return true;
+  const Result<std::string> head = ReadTextHead(path, 65536);
+  if (!head || head->find('\0') != std::string::npos) return false;
+  for (std::string_view rest = *head; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string_view::npos || line[begin] == '#') continue;
+    return sensors::LayoutOf(line).meant;
+  }
+  return false;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,130 @@
+#include "wellgyro/io/sensor/sensor_layout_internal.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/io/text_internal.h"
+
+namespace wellgyro::sensors {
+namespace {
+
+enum Quantity : std::uint8_t { kClock, kRate, kForce, kField, kLength, kTension, kSeconds, kPlain };
+
+struct Unit {
+  Quantity quantity;
+  std::string_view name;
+  double factor;
+};
+constexpr std::array kUnits{
+    Unit{kClock, "ns", 1},
+    Unit{kClock, "us", 1e3},
+    Unit{kClock, "ms", 1e6},
+    Unit{kClock, "s", 1e9},
+    Unit{kRate, "rad/s", 1},
+    Unit{kRate, "deg/s", units::kDeg},
+    Unit{kRate, "deg/h", units::kDegPerHour},
+    Unit{kForce, "m/s2", 1},
+    Unit{kForce, "g", units::kStandardGravity},
+    Unit{kForce, "mg", units::kMilliG},
+    Unit{kField, "T", 1},
+    Unit{kField, "nT", units::kNanotesla},
+    Unit{kLength, "m", 1},
+    Unit{kLength, "ft", units::kFoot},
+    Unit{kTension, "N", 1},
+    Unit{kTension, "kN", 1e3},
+    Unit{kTension, "lbf", 4.4482216152605},
+    Unit{kSeconds, "s", 1},
+    Unit{kPlain, "", 1},
+    Unit{kPlain, "degC", 1},
+};
+
+struct Name {
+  std::string_view name;
+  Quantity quantity;
+};
+constexpr std::array<Name, kColumns> kNames{{
+    {"UTC", kClock},     {"END_UTC", kClock},     {"TOOL", kClock},      {"GX", kRate},
+    {"GY", kRate},       {"GZ", kRate},           {"AX", kForce},        {"AY", kForce},
+    {"AZ", kForce},      {"MX", kField},          {"MY", kField},        {"MZ", kField},
+    {"SIG_GX", kRate},   {"SIG_GY", kRate},       {"SIG_GZ", kRate},     {"SIG_AX", kForce},
+    {"SIG_AY", kForce},  {"SIG_AZ", kForce},      {"TEMP", kPlain},      {"DURATION", kSeconds},
+    {"MD", kLength},     {"LENGTH", kLength},     {"SIG_MD", kLength},   {"TENSION", kTension},
+    {"STOPPED", kPlain}, {"MARK", kPlain},        {"CORRECTED", kPlain}, {"INDEX", kPlain},
+    {"RUN", kPlain},     {"TOOL_NUMBER", kPlain},
+}};
+
+}  // namespace
+
+void Layout::Take(std::string_view heading, int field) {
+  const std::size_t bracket = heading.find('[');
+  const std::string_view name = Trim(heading.substr(0, bracket));
+  std::string_view unit;
+  if (bracket != std::string_view::npos && heading.ends_with(']')) {
+    unit = heading.substr(bracket + 1, heading.size() - bracket - 2);
+  }
+  const auto complain = [&](std::string text) {
+    if (!complaint.empty()) return;
+    complaint = std::move(text);
+    complaint_field = field;
+  };
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i].name != name) continue;
+    meant = true;
+    if (places[i].field >= 0) return complain(fmt::format("column {} stands twice", name));
+    const auto known = std::ranges::find_if(
+        kUnits, [&](const Unit& u) { return u.quantity == kNames[i].quantity && u.name == unit; });
+    if (known == kUnits.end()) {
+      return complain(fmt::format("column {} has no unit that is known: [{}]", name, unit));
+    }
+    places[i] = {field, known->factor};
+    return;
+  }
+  std::string shown(heading.substr(0, 40));
+  std::ranges::replace_if(
+      shown, [](char c) { return c < 0x20 || c > 0x7e; }, '?');
+  complain(fmt::format("column \"{}\" is not known", shown));
+}
+
+std::optional<SensorTable> Layout::Kind() const {
+  const bool sensors = HasAll({kGx, kGy, kAx, kAy, kAz});
+  if (sensors && Has(kDuration) && Has(kUtc)) return SensorTable::kStill;
+  if (sensors && !Has(kDuration) && (Has(kUtc) || Has(kTool))) return SensorTable::kSamples;
+  if (!sensors && Has(kUtc) && (Has(kMd) || Has(kLengthOf))) return SensorTable::kDepth;
+  return std::nullopt;
+}
+
+std::string Layout::Lacking() const {
+  const std::array sensors{kGx, kGy, kAx, kAy, kAz};
+  const bool any = std::ranges::any_of(sensors, [this](Column c) { return Has(c); });
+  std::string missing;
+  const auto need = [&missing](bool has, std::string_view name) {
+    if (!has) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", name);
+  };
+  if (!any) {
+    need(Has(kUtc), "UTC");
+    need(Has(kMd) || Has(kLengthOf), "MD or LENGTH");
+    return fmt::format("a table of depths lacks {}", missing);
+  }
+  for (const Column c : sensors) need(Has(c), kNames[c].name);
+  if (Has(kDuration)) {
+    need(Has(kUtc), "UTC");
+  } else {
+    need(Has(kUtc) || Has(kTool), "UTC or TOOL");
+  }
+  return fmt::format("a table of {} lacks {}", Has(kDuration) ? "averages" : "samples", missing);
+}
+
+Layout LayoutOf(std::string_view header) {
+  if (header.starts_with("\xEF\xBB\xBF")) header.remove_prefix(3);
+  std::vector<std::string_view> fields;
+  SplitCells(header, ',', fields);
+  Layout layout;
+  for (std::size_t i = 0; i < fields.size(); ++i) layout.Take(fields[i], static_cast<int>(i));
+  return layout;
+}
+
+}  // namespace wellgyro::sensors

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "wellgyro/io/sensor/sensor_csv.h"
+
+/// The columns of tables of sensor data.
+namespace wellgyro::sensors {
+
+enum Column : std::uint8_t {
+  kUtc,
+  kEndUtc,
+  kTool,
+  kGx,
+  kGy,
+  kGz,
+  kAx,
+  kAy,
+  kAz,
+  kMx,
+  kMy,
+  kMz,
+  kSigGx,
+  kSigGy,
+  kSigGz,
+  kSigAx,
+  kSigAy,
+  kSigAz,
+  kTemp,
+  kDuration,
+  kMd,
+  kLengthOf,
+  kSigMd,
+  kTensionOf,
+  kStopped,
+  kMark,
+  kCorrected,
+  kIndex,
+  kRun,
+  kToolNumber,
+  kColumns
+};
+/// Where each column stands, and its unit.
+struct Layout {
+  struct Place {
+    int field = -1;
+    double factor = 1;
+  };
+  std::array<Place, kColumns> places;
+  bool meant = false;     ///< a heading has a name that is known, be its unit so or not
+  std::string complaint;  ///< about a heading
+  int complaint_field = 0;
+
+  bool Has(Column column) const { return places[column].field >= 0; }
+  bool HasAll(std::initializer_list<Column> columns) const {
+    for (const Column column : columns) {
+      if (!Has(column)) return false;
+    }
+    return true;
+  }
+  void Take(std::string_view heading, int field);
+  std::optional<SensorTable> Kind() const;
+  /// Where that is none: the columns that are missing, in words.
+  std::string Lacking() const;
+};
+
+/// Of a header line, a byte order mark before it or not.
+Layout LayoutOf(std::string_view header);
+
+}  // namespace wellgyro::sensors

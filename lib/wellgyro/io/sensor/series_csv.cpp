@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <system_error>
+#include <vector>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "wellgyro/io/sensor/series_file.h"
+#include "wellgyro/io/text_file.h"
+#include "wellgyro/io/text_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::int64_t kLongestGap = 1'000'000'000;
+
+// Nothing when it is no number; NaN for an empty field.
+std::optional<double> NumberIn(std::string_view field) {
+  return field.empty() ? std::numeric_limits<double>::quiet_NaN() : AnyNumberOf(field);
+}
+
+class CsvReader {
+ public:
+  CsvReader(const std::filesystem::path& path, const SeriesColumns& columns)
+      : path_(path), columns_(columns) {}
+
+  Result<SampleSeries> Read(const std::function<void(double)>& progress) {
+    const Result<std::string> head = ReadTextHead(path_, 4096);
+    if (!head) return head.fault();
+    if (head->empty()) return Bad("this is an empty file");
+    if (head->find('\0') != std::string::npos) {
+      return Bad("these are binary numbers, not text: give --type f64, i16 or i32");
+    }
+    std::error_code ignored;
+    const auto size = static_cast<double>(std::filesystem::file_size(path_, ignored));
+    std::ifstream file(path_, std::ios::binary);
+    double seen = 0;
+    for (std::string line; !fault_ && std::getline(file, line);) {
+      ++line_number_;
+      seen += static_cast<double>(line.size() + 1);
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      const std::size_t begin = line.find_first_not_of(" \t");
+      if (begin == std::string::npos || line[begin] == '#') continue;
+      TakeLine(line);
+      if (progress && line_number_ % 65536 == 0) progress(seen / size);
+    }
+    if (fault_) return *fault_;
+    if (file.bad()) return Bad("reading this file failed half way");
+    if (series_.values.empty()) return Bad("there is not one sample in it");
+    return std::move(series_);
+  }
+
+ private:
+  Fault Bad(std::string text, FaultCode code = FaultCode::kForeign) const {
+    return Fault{.code = code, .text = std::move(text), .source = path_.string()};
+  }
+  void Refuse(std::string text, FaultCode code = FaultCode::kSyntax, std::size_t field = 0) {
+    fault_ = Bad(std::move(text), code);
+    fault_->line = line_number_;
+    if (field < fields_.size()) {
+      fault_->column = static_cast<int>(fields_[field].data() - line_begin_) + 1;
+    }
+  }
+
+  void TakeLine(const std::string& line) {
+    line_begin_ = line.data();
+    // Blanks separate only where nothing else does.
+    if (!delimiter_) delimiter_ = DelimiterOf(line, ' ');
+    SplitCells(line, *delimiter_, fields_);
+    if (!columns_known_) {
+      const bool header = std::any_of(fields_.begin(), fields_.end(),
+                                      [](std::string_view f) { return !NumberIn(f); });
+      FindColumns(header);
+      columns_known_ = true;
+      if (header || fault_) return;
+    }
+    TakeSample();
+  }
+
+  std::optional<std::size_t> Find(const std::string& name, bool header) {
+    if (name.empty()) return std::nullopt;
+    for (std::size_t i = 0; header && i < fields_.size(); ++i) {
+      if (fields_[i] == name) return i;
+    }
+    const std::optional<int> number = IntegerOf(name);
+    if (number && *number >= 1 && static_cast<std::size_t>(*number) <= fields_.size()) {
+      return static_cast<std::size_t>(*number) - 1;
+    }
+    Refuse(
+        header
+            ? fmt::format("no column is called {}; there are: {}", name, fmt::join(fields_, ", "))
+            : fmt::format("no column {}: the file has {} and no header", name, fields_.size()),
+        FaultCode::kRange, fields_.size());
+    return std::nullopt;
+  }
+
+  void FindColumns(bool header) {
+    sequence_ = Find(columns_.sequence, header);
+    temperature_ = Find(columns_.temperature, header);
+    value_ = Find(columns_.value, header);
+    if (fault_ || value_) return;
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      if (i == sequence_ || i == temperature_) continue;
+      if (value_) {
+        Refuse(fmt::format("which of its {} columns? Give --channel by name or number from 1{}{}",
+                           fields_.size(), header ? ": " : "",
+                           header ? fmt::format("{}", fmt::join(fields_, ", ")) : ""),
+               FaultCode::kConflict, fields_.size());
+        return;
+      }
+      value_ = i;
+    }
+  }
+
+  // The number in a column of this line; refuses text.
+  double Number(std::size_t column) {
+    if (column >= fields_.size()) {
+      Refuse(fmt::format("only {} fields where column {} is wanted", fields_.size(), column + 1),
+             FaultCode::kSyntax, fields_.size());
+      return 0;
+    }
+    const std::optional<double> number = NumberIn(fields_[column]);
+    if (!number) {
+      Refuse(fmt::format("\"{}\" is not a number", fields_[column].substr(0, 40)),
+             FaultCode::kSyntax, column);
+    }
+    return number.value_or(0);
+  }
+
+  void TakeSample() {
+    const double value = Number(*value_);
+    const double temperature = temperature_ ? Number(*temperature_) : 0;
+    const double sequence = sequence_ ? Number(*sequence_) : 0;
+    if (fault_) return;
+    if (sequence_ && !LeaveGap(sequence)) return;
+    series_.values.push_back(value);
+    if (temperature_) series_.temperature.push_back(static_cast<float>(temperature));
+  }
+
+  // Makes room for the samples that are missing before this one.
+  bool LeaveGap(double sequence) {
+    if (!(std::abs(sequence) < 0x1p53) || sequence != std::floor(sequence)) {
+      Refuse("a sequence number must be whole", FaultCode::kRange, *sequence_);
+      return false;
+    }
+    const auto number = static_cast<std::int64_t>(sequence);
+    const std::int64_t missing = last_sequence_ ? number - *last_sequence_ - 1 : 0;
+    if (missing < 0 || missing > kLongestGap) {
+      Refuse(fmt::format("sequence number {} follows {}", number, *last_sequence_),
+             FaultCode::kOrder, *sequence_);
+      return false;
+    }
+    last_sequence_ = number;
+    if (missing == 0) return true;
+    const auto begin = std::ssize(series_.values);
+    series_.gaps.push_back({begin, begin + missing});
+    const auto size = static_cast<std::size_t>(begin + missing);
+    series_.values.resize(size, 0);
+    if (temperature_) {
+      series_.temperature.resize(size,
+                                 series_.temperature.empty() ? 0 : series_.temperature.back());
+    }
+    return true;
+  }
+
+  const std::filesystem::path& path_;
+  const SeriesColumns& columns_;
+  SampleSeries series_;
+  std::optional<char> delimiter_;
+  std::vector<std::string_view> fields_;
+  bool columns_known_ = false;
+  std::optional<std::size_t> value_;
+  std::optional<std::size_t> sequence_;
+  std::optional<std::size_t> temperature_;
+  std::optional<std::int64_t> last_sequence_;
+  const char* line_begin_ = nullptr;
+  int line_number_ = 0;
+  std::optional<Fault> fault_;
+};
+
+}  // namespace
+
+Result<SampleSeries> ReadCsvSeries(const std::filesystem::path& path, const SeriesColumns& columns,
+                                   const std::function<void(double)>& progress) {
+  return CsvReader(path, columns).Read(progress);
+}
+
+}  // namespace wellgyro

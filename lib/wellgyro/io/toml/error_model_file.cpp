@@ -1,0 +1,162 @@
+#include "wellgyro/io/toml/error_model_file.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/io/text_file.h"
+#include "wellgyro/io/toml/toml_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::string_view kFormat = "wellgyro.error-model/1";
+
+struct Unit {
+  Dimension dimension;
+  std::string_view name;
+  double si;
+};
+
+constexpr Unit kUnits[] = {
+    {Dimension::kLength, "m", 1},
+    {Dimension::kLength, "ft", units::kFoot},
+    {Dimension::kRatio, "1", 1},
+    {Dimension::kPerLength, "1/m", 1},
+    {Dimension::kPerLength, "1/ft", 1 / units::kFoot},
+    {Dimension::kAcceleration, "m/s2", 1},
+    {Dimension::kAcceleration, "mg", units::kMilliG},
+    {Dimension::kAccelerationPerG, "m/s2/g", 1},
+    {Dimension::kAngle, "deg", units::kDeg},
+    {Dimension::kAngle, "rad", 1},
+    {Dimension::kRate, "deg/h", units::kDegPerHour},
+    {Dimension::kRatePerG, "deg/h/g", units::kDegPerHour},
+    {Dimension::kAngleWalk, "deg/sqrt(h)", units::kDegPerSqrtHour},
+    {Dimension::kField, "nT", units::kNanotesla},
+    {Dimension::kAngleField, "deg*nT", units::kDeg* units::kNanotesla},
+};
+
+const TomlWords<GyroAxes> kAxes = {
+    {"xyz", GyroAxes::kXyz}, {"xy", GyroAxes::kXy}, {"z", GyroAxes::kZ}};
+
+double SiPer(TomlTable& table, const ErrorTerm& term, const std::string& unit) {
+  std::vector<std::string_view> fitting;
+  for (const Unit& known : kUnits) {
+    if (known.dimension != term.weight->dimension) continue;
+    if (known.name == unit) return known.si;
+    fitting.push_back(known.name);
+  }
+  table.Refuse("unit", fmt::format("\"{}\" does not fit weight {}, whose magnitude is in {}", unit,
+                                   term.weight->code, fmt::join(fitting, " or ")));
+}
+
+void ReadRest(TomlTable& table, ErrorTerm& term) {
+  const std::string code = table.Need("weight", table.FindString("weight"));
+  term.weight = FindWeight(code);
+  if (!term.weight) {
+    table.Refuse("weight", fmt::format("no weighting function has the code \"{}\"", code));
+  }
+  const double magnitude = table.Need("magnitude", table.FindNumber("magnitude", kNotNegative));
+  const auto unit = table.FindString("unit");
+  if (!unit) table.Refuse("magnitude", "stands without its 'unit'");
+  term.magnitude = magnitude * SiPer(table, term, *unit);
+  term.propagation = table.Need(
+      "propagation",
+      table.FindWord<Propagation>("propagation", {{"random", Propagation::kRandom},
+                                                  {"systematic", Propagation::kSystematic},
+                                                  {"well", Propagation::kWell},
+                                                  {"global", Propagation::kGlobal}}));
+}
+
+/// Every complaint about a term names it.
+ErrorTerm ReadTerm(TomlTable& table) {
+  ErrorTerm term;
+  term.name = table.Need("name", table.FindString("name"));
+  const auto foreign = [](unsigned char c) { return c <= ' ' || c == ',' || c == '"' || c >= 127; };
+  if (term.name.empty() || std::ranges::any_of(term.name, foreign)) {
+    table.Refuse("name", "must be plain characters without blanks, commas and quotes");
+  }
+  try {
+    ReadRest(table, term);
+  } catch (TomlError& error) {
+    error.fault.text = fmt::format("term {}: {}", term.name, error.fault.text);
+    throw;
+  }
+  return term;
+}
+
+std::optional<double> FindDegrees(TomlTable& table, std::string_view key, TomlRange range) {
+  const auto degrees = table.FindNumber(key, range);
+  return degrees ? std::optional(*degrees * units::kDeg) : std::nullopt;
+}
+
+StationaryMode ReadStationary(TomlTable& table) {
+  StationaryMode mode;
+  mode.axes = table.Need("axes", table.FindWord("axes", kAxes));
+  mode.end = table.Need("end_deg", FindDegrees(table, "end_deg", kInclinationDeg));
+  mode.initialise = FindDegrees(table, "initialise_deg", {.min = -1, .max = 180});
+  mode.min_distance = table.FindNumber("min_distance_m", kNotNegative);
+  mode.noise_reduction = table.FindNumber("noise_reduction", kPositive);
+  mode.noise_reduction_at_stations =
+      table.FindWord<bool>("noise_reduction_at", {{"initialisation", false}, {"every_fix", true}})
+          .value_or(false);
+  return mode;
+}
+
+ContinuousZone ReadZone(TomlTable& table) {
+  ContinuousZone zone;
+  zone.axes = table.Need("axes", table.FindWord("axes", kAxes));
+  zone.begin = table.Need("begin_deg", FindDegrees(table, "begin_deg", kInclinationDeg));
+  zone.end = table.Need("end_deg", FindDegrees(table, "end_deg", kInclinationDeg));
+  zone.speed = table.Need("speed_m_per_h", table.FindNumber("speed_m_per_h", kPositive));
+  zone.speed /= units::kHour;
+  return zone;
+}
+
+ErrorModel ReadModel(TomlTable& root) {
+  ErrorModel model;
+  model.name = root.Need("name", root.FindString("name"));
+  model.revision = root.Need("revision", root.FindString("revision"));
+  root.Need("source", root.FindString("source"));
+  model.max_inclination =
+      root.Need("inclination_max_deg", FindDegrees(root, "inclination_max_deg", kInclinationDeg));
+  model.vertical_limit =
+      root.Need("vertical_limit_deg", FindDegrees(root, "vertical_limit_deg", kPositive));
+  model.doubled_tie_on =
+      root.Need("surface_tie_on",
+                root.FindWord<bool>("surface_tie_on", {{"doubled", true}, {"single", false}}));
+  model.cant = FindDegrees(root, "cant_deg", {.min = -90, .max = 90});
+  model.min_course_length = root.FindNumber("min_course_length_m", kPositive);
+  if (const auto t = root.FindNumber("tortuosity_deg_per_100ft", kPositive)) {
+    model.tortuosity = *t * units::kDegPer100ft;
+  }
+  if (auto table = root.FindTable("stationary")) model.stationary = ReadStationary(*table);
+  for (TomlTable& table : root.FindTables("continuous")) {
+    model.continuous.push_back(ReadZone(table));
+  }
+  std::vector<TomlTable> terms = root.FindTables("term");
+  for (TomlTable& table : terms) model.terms.push_back(ReadTerm(table));
+  if (const auto complaint = FindComplaint(model)) {
+    const TomlTable& at = complaint->term ? terms[*complaint->term] : root;
+    at.Refuse("", complaint->text);
+  }
+  return model;
+}
+
+}  // namespace
+
+Result<ErrorModel> ReadErrorModel(std::string_view text, const std::string& source) {
+  return ReadTomlText<ErrorModel>(text, source, kFormat, ReadModel);
+}
+
+Result<ErrorModel> ReadErrorModelFile(const std::filesystem::path& path) {
+  const Result<std::string> text = ReadTextFile(path);
+  if (!text) return text.fault();
+  return ReadErrorModel(*text, path.string());
+}
+
+}  // namespace wellgyro

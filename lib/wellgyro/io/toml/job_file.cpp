@@ -1,0 +1,153 @@
+#include "wellgyro/io/toml/job_file.h"
+
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/toml/coefficients_internal.h"
+#include "wellgyro/io/toml/error_model_file.h"
+#include "wellgyro/io/toml/job_sections_internal.h"
+#include "wellgyro/io/toml/named_file_internal.h"
+#include "wellgyro/io/toml/toml_internal.h"
+#include "wellgyro/io/toml/tool_file.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::string_view kFormat = "wellgyro.job/1";
+
+TieIn TieInOfSurvey(const std::string& text, const std::string& source) {
+  const auto stations = ParseSurveyCsv(text, source);
+  if (!stations) throw TomlError{stations.fault()};
+  if (stations->empty()) {
+    throw TomlError{{.code = FaultCode::kRange,
+                     .text = "has no station to tie on to",
+                     .source = source,
+                     .line = 1}};
+  }
+  const Station& last = stations->back();
+  return {.md = last.md,
+          .north = last.p_WT_W.x(),
+          .east = last.p_WT_W.y(),
+          .tvd = last.p_WT_W.z(),
+          .inclination = last.inclination,
+          .azimuth = last.azimuth,
+          .cov_p_WT_W = last.cov_p_WT_W};
+}
+
+class JobReader {
+ public:
+  explicit JobReader(NamedFiles& files) : files_(files) {}
+
+  JobFile Read(TomlTable& root) {
+    Job& job = file_.job;
+    const TomlTable well = root.Need("well", root.FindTable("well"));
+    job.well = ReadWell(well);
+    if (auto table = root.FindTable("identity")) job.identity = table->Verbatim();
+    if (auto table = root.FindTable("grid")) {
+      if (!well.Has("longitude_deg")) {
+        well.RefuseAbsent("longitude_deg", "is missing; [grid] needs it");
+      }
+      TakeGrid(*table);
+    }
+    if (auto table = root.FindTable("tie_in")) TakeTieIn(*table);
+    if (auto table = root.FindTable("noise")) TakeNoise(*table);
+    if (auto table = root.FindTable("tool")) TakeTool(*table);
+    if (job.tool && job.tool->errors) job.errors = *job.tool->errors;
+    if (auto table = root.FindTable("errors")) job.errors = ReadPriors(*table);
+    if (auto table = root.FindTable("error_model")) TakeErrorModel(*table);
+    if (auto table = root.FindTable("channels")) job.channels = ReadChannels(*table);
+    if (auto table = root.FindTable("alignment")) job.alignment = ReadAlignment(*table);
+    if (auto table = root.FindTable("attitude")) job.attitude = ReadAttitude(*table);
+    if (auto table = root.FindTable("stations")) job.stations = ReadStations(*table);
+    if (auto table = root.FindTable("depth")) job.depth = ReadDepth(*table);
+    if (auto table = root.FindTable("string")) job.string = ReadString(*table);
+    if (auto table = root.FindTable("magnetic")) job.magnetic = ReadMagnetic(*table);
+    if (auto table = root.FindTable("acceptance")) job.acceptance = ReadAcceptance(*table);
+    TakeRuns(root);
+    for (const TomlTable& table : root.FindTables("event")) job.events.push_back(ReadEvent(table));
+    return std::move(file_);
+  }
+
+ private:
+  void TakeGrid(TomlTable& table) {
+    const Job::Well& well = file_.job.well;
+    GridSpec grid = ReadGrid(table);
+    try {
+      const WellGrid probe(grid, {.latitude = well.latitude, .longitude = well.longitude});
+    } catch (const std::exception& error) {
+      table.Refuse("", fmt::format("the well head has no place on it: {}", error.what()));
+    }
+    file_.job.grid = std::move(grid);
+  }
+
+  void TakeTieIn(TomlTable& table) {
+    if (const auto name = table.FindString("survey")) {
+      const std::string text = files_.Take("tie_in", *name);
+      file_.job.tie_in = TieInOfSurvey(text, files_.PathOf(*name).string());
+    } else {
+      file_.job.tie_in = ReadTieIn(table);
+    }
+  }
+
+  void TakeNoise(TomlTable& table) {
+    if (const auto name = table.FindString("file")) {
+      file_.job.noise = NoiseOfFile(*name, files_);
+    } else {
+      file_.job.noise = ReadCoefficients(table);
+    }
+  }
+
+  void TakeTool(TomlTable& table) {
+    const std::string name = table.Need("file", table.FindString("file"));
+    const std::string text = files_.Take("tool", name, true);
+    Result<ToolCalibration> tool = ParseTool(text, files_.PathOf(name).string());
+    if (!tool) throw TomlError{tool.fault()};
+    file_.job.tool = *std::move(tool);
+  }
+
+  void TakeErrorModel(TomlTable& table) {
+    const std::string name = table.Need("file", table.FindString("file"));
+    const std::string text = files_.Take("error_model", name, true);
+    Result<ErrorModel> model = ReadErrorModel(text, files_.PathOf(name).string());
+    if (!model) throw TomlError{model.fault()};
+    file_.job.error_model = *std::move(model);
+  }
+
+  void TakeRuns(TomlTable& root) {
+    std::set<std::int32_t> numbers;
+    for (TomlTable& table : root.FindTables("run")) {
+      file_.job.runs.push_back(ReadRun(table));
+      if (numbers.insert(file_.job.runs.back().number).second) continue;
+      table.Refuse("number", fmt::format("{} stands twice", file_.job.runs.back().number),
+                   FaultCode::kConflict);
+    }
+  }
+
+  NamedFiles& files_;
+  JobFile file_;
+};
+
+}  // namespace
+
+Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& source,
+                         const std::filesystem::path& folder) {
+  NamedFiles files(folder);
+  files.Note("job", source, text);
+  Result<JobFile> file = ReadTomlText<JobFile>(
+      text, source.string(), kFormat, [&](TomlTable& root) { return JobReader(files).Read(root); });
+  if (file) file->files = files.all();
+  return file;
+}
+
+Result<JobFile> ReadJob(const std::filesystem::path& path) {
+  const Result<std::string> text = ReadTextFile(path);
+  if (!text) return text.fault();
+  return ParseJob(*text, path, path.parent_path());
+}
+
+}  // namespace wellgyro

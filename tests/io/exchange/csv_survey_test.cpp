@@ -1,0 +1,176 @@
+#include <array>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/exchange/survey_tables.h"
+
+#include "support/scratch.h"
+#include "support/survey_samples.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::HasSubstr;
+
+SurveyTable Read(const std::string& text, const ReadOptions& options = {}) {
+  auto table = ParseSurvey(text, "text", options);
+  EXPECT_TRUE(table) << (table ? "" : table.fault().text);
+  return table ? *table : SurveyTable();
+}
+
+Fault Refusal(const std::string& text, const ReadOptions& options = {}) {
+  const auto table = ParseSurvey(text, "text", options);
+  EXPECT_FALSE(table) << text;
+  return table ? Fault{} : table.fault();
+}
+
+const ReadOptions kMetresTrue{.depth_unit = LengthUnit::kMetre, .north = North::kTrue};
+
+TEST(CsvSurvey, HeadingsAsVendorsWriteThem) {
+  const SurveyTable compass = Read(
+      ",,,\n,Wellpath Report,,\n,MD[m],Inc[deg],Azi[deg],TVD[m],North[m],East[m],"
+      "Dogleg [deg/30m],Vertical Section[m]\n,0,0,0,0,0,0,,0\n,76.29,0.9,7.19,76.29,0.59,0.07,"
+      "0.35,0.26\n,,,\n,\"All data in\nMetres\",,\n",
+      {.north = North::kGrid});
+  ASSERT_EQ(compass.rows(), 2u);
+  EXPECT_EQ(compass.Get(Column::kEast, 1), 0.07);
+  EXPECT_FALSE(compass.Get(Column::kDogleg, 0));
+  EXPECT_EQ(compass.Get(Column::kDogleg, 1), 0.35 * units::kDegPer30m);
+  EXPECT_THAT(compass.head.remarks, testing::ElementsAre("All data in\nMetres"));
+
+  const SurveyTable mixed = Read(
+      "Measured Depth ( ft ),Inclination ( deg ),Azimuth Grid ( deg ),TVD ( ft ),"
+      "DLS ( deg/100 ft ),Northing ( m ),Easting ( m )\n100,1.5,260,99.9,0.25,40000.5,655701\n");
+  EXPECT_EQ(mixed.head.azimuth.north, North::kGrid);
+  EXPECT_EQ(mixed.head.md_unit, LengthUnit::kFoot);
+  EXPECT_EQ(mixed.head.grid_unit, LengthUnit::kMetre);
+  EXPECT_EQ(mixed.md(0), 100 * units::kFoot);
+  EXPECT_EQ(mixed.Get(Column::kNorthing, 0), 40000.5);
+  EXPECT_EQ(mixed.Get(Column::kDogleg, 0), 0.25 * units::kDegPer100ft);
+
+  const SurveyTable two_lines =
+      Read("DEPT DEVI AZIM\nft deg deg\n10 1 2\n20 2 3\n", {.north = North::kMagnetic});
+  EXPECT_EQ(two_lines.md(1), 20 * units::kFoot);
+}
+
+TEST(CsvSurvey, ColumnsByNameOrNumber) {
+  const SurveyTable named =
+      Read("Tiefe;Neigung;Richtung\n10,5;1,25;300\n",
+           {.columns = {{"MD", "Tiefe"}, {"INC", "neigung"}, {"AZI_TRUE", "Richtung"}},
+            .depth_unit = LengthUnit::kMetre});
+  EXPECT_EQ(named.md(0), 10.5);
+  EXPECT_EQ(named.inclination(0), 1.25 * units::kDeg);
+  EXPECT_EQ(named.head.azimuth.north, North::kTrue);
+  const SurveyTable numbered =
+      Read("0\t0\t0\t0\n30\t1,5\t75\t30\n",
+           {.columns = {{"MD[ft]", "1"}, {"INC", "2"}, {"AZI", "3"}, {"TVD", "4"}},
+            .north = North::kTrue});
+  ASSERT_EQ(numbered.rows(), 2u);
+  EXPECT_EQ(numbered.md(1), 30 * units::kFoot);
+  EXPECT_EQ(numbered.inclination(1), 1.5 * units::kDeg);
+  EXPECT_EQ(numbered.Get(Column::kTvd, 1), 30 * units::kFoot);
+}
+
+TEST(CsvSurvey, NumbersOfAnyLengthAreRightOrRefused) {
+  std::string digits = "10.";
+  for (int i = 0; i < 200; ++i) digits += static_cast<char>('0' + i % 10);
+  const SurveyTable t = Read("MD[m],INC[deg],AZI_TRUE[deg]\n" + digits + ",1,2\n");
+  EXPECT_EQ(t.md(0), std::stod(digits));
+  for (const std::string bad : {"1e999", "nan", "inf", "0x10", "1.2.3", "--1", "", "1 2", "1d3"}) {
+    const Fault fault = Refusal("MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n" + bad + ",1,2\n");
+    EXPECT_EQ(fault.line, 3) << bad;
+  }
+}
+
+TEST(CsvSurvey, LineEndsMarksAndEncodings) {
+  const SurveyTable t =
+      Read("\xEF\xBB\xBFMD[m],INC[deg],AZI_TRUE[deg],COMMENT\r\n0,0,360,\xE6\xF8\r\n");
+  EXPECT_EQ(t.azimuth(0), 0);
+  EXPECT_EQ(t.Get(TextColumn::kComment, 0), "\xC3\xA6\xC3\xB8");
+  EXPECT_THAT(Refusal(std::string("\xFF\xFEM\0D\0", 6)).text, HasSubstr("UTF-16"));
+  EXPECT_THAT(Refusal(std::string("MD[m],\0INC", 10)).text, HasSubstr("zero byte"));
+  EXPECT_THAT(Refusal(std::string(2 << 20, 'x')).text, HasSubstr("mebibyte"));
+  EXPECT_EQ(Read("MD[m],INC[deg],AZI_TRUE[deg]\n1,2,3").rows(), 1u);
+}
+
+TEST(CsvSurvey, WhatIsNotStatedIsAskedFor) {
+  EXPECT_THAT(Refusal("md,inc,azi\n0,0,0\n").text, HasSubstr("--depth-unit"));
+  const SurveyTable t = Read("md,inc,azi\n0,0,0\n", {.depth_unit = LengthUnit::kMetre});
+  EXPECT_EQ(t.head.azimuth.north, North::kUnknown);
+  EXPECT_THAT(Refusal("a,b,c\n1,2,3\n").text, HasSubstr("--columns"));
+  EXPECT_THAT(Refusal("MD[furlong],INC[deg],AZI[deg]\n1,2,3\n").text, HasSubstr("furlong"));
+}
+
+TEST(CsvSurvey, FaultsNameTheLine) {
+  const std::string head = "MD[m],INC[deg],AZI_TRUE[deg],TVD[m]\n0,0,0,0\n";
+  EXPECT_EQ(Refusal(head + "0,1,1,1\n").code, FaultCode::kOrder);
+  EXPECT_EQ(Refusal(head + "10,181,1,1\n").code, FaultCode::kRange);
+  EXPECT_EQ(Refusal(head + "10,-1,1,1\n").line, 3);
+  EXPECT_EQ(Refusal(head + "10,1\n").line, 3);
+  EXPECT_EQ(Refusal(head + "10,1,1,1,9\n").line, 3);
+  EXPECT_EQ(Refusal(head + "10,1,1,x\n").column, 4);
+  EXPECT_EQ(Refusal(head + "\n10,1,1,1\n").line, 4);
+  EXPECT_THAT(Refusal(head + "\"10,1,1,1\n").text, HasSubstr("quotation"));
+  EXPECT_THAT(Refusal("MD[m],INC[deg],AZI_TRUE[deg]\n").text, HasSubstr("single station"));
+}
+
+TEST(CsvSurvey, OurOwnSurveyIsOneOfThem) {
+  Station a, b;
+  a.kind = StationKind::kTieIn;
+  b.md = 30;
+  b.inclination = 0.1;
+  b.azimuth = 6.2;
+  b.p_WT_W = {1, 2, 29.9};
+  b.quality = Quality::kGap;
+  b.cov_p_WT_W.diagonal() << 1, 2, 3;
+  const Station stations[] = {a, b};
+  const SurveyTable t = Read(SurveyCsv(stations, nullptr));
+  ASSERT_EQ(t.rows(), 2u);
+  EXPECT_EQ(t.head.offsets, North::kTrue);
+  EXPECT_EQ(t.Get(Column::kVarEE, 1), 2);
+  EXPECT_EQ(t.Get(TextColumn::kQuality, 1), "gap");
+  // And a table of ours comes out as a survey.csv that our own reader takes.
+  Job job;
+  const std::string csv = ExportFormats(TableOfSurvey(job, stations, nullptr),
+                                        std::array{SurveyFormat::kCsv}, "survey")[0]
+                              .bytes;
+  const std::string header = csv.substr(0, csv.find('\n'));
+  EXPECT_THAT(header, testing::StartsWith(
+                          "MD[m],INC[deg],AZI_TRUE[deg],GTF[deg],TVD[m],N[m],E[m],DLS[deg/30m],"
+                          "VAR_NN[m2],COV_NE[m2],COV_NV[m2],VAR_EE[m2],COV_EV[m2],VAR_VV[m2],"
+                          "SIG_INC[deg],SIG_AZI[deg],KIND,QUALITY"));
+}
+
+TEST(CsvSurvey, PreambleHoldsWhatTheHeaderCannot) {
+  const SurveyTable full = support::FullSurvey();
+  const std::string text = WriteSurvey(full, SurveyFormat::kCsv, {.preamble = true});
+  EXPECT_THAT(text, HasSubstr("# datum: RT\n"));
+  const SurveyTable back = Read(text);
+  EXPECT_EQ(back.head.datum, "RT");
+  EXPECT_EQ(back.head.azimuth.declination_source, "BGGM 2025");
+  EXPECT_EQ(back.head.names.survey, full.head.names.survey);
+  EXPECT_EQ(back.head.md_kind, DepthKind::kWireline);
+}
+
+// Streams: a file of many lines costs its numbers, not its text.
+TEST(CsvSurvey, ManyLines) {
+  const support::Scratch scratch;
+  constexpr int kLines = 300'000;
+  {
+    std::ofstream file(scratch.path() / "long.csv");
+    file << "MD[m],INC[deg],AZI_TRUE[deg]\n";
+    for (int i = 0; i < kLines; ++i) file << i << ".25,12.5,300.125\n";
+  }
+  const auto table = ReadSurvey(scratch.path() / "long.csv");
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows(), static_cast<std::size_t>(kLines));
+  EXPECT_EQ(table->md(kLines - 1), kLines - 1 + 0.25);
+  EXPECT_EQ(table->cells(), 3u * kLines);
+}
+
+}  // namespace
+}  // namespace wellgyro

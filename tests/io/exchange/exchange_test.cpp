@@ -1,0 +1,187 @@
+#include "wellgyro/io/exchange/exchange.h"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "wellgyro/io/exchange/survey_tables.h"
+
+#include "support/scratch.h"
+#include "support/survey_samples.h"
+
+namespace wellgyro {
+namespace {
+
+using support::ExpectSameStations;
+using support::FullSurvey;
+using testing::HasSubstr;
+
+constexpr std::array kReadable{SurveyFormat::kCsv,      SurveyFormat::kLas,
+                               SurveyFormat::kP717,     SurveyFormat::kWitsml1411,
+                               SurveyFormat::kWitsml21, SurveyFormat::kPetrel,
+                               SurveyFormat::kCompass};
+
+SurveyTable Reread(const std::string& text, const ReadOptions& options = {}) {
+  auto table = ParseSurvey(text, "text", options);
+  EXPECT_TRUE(table) << (table ? "" : table.fault().text) << " line "
+                     << (table ? 0 : table.fault().line);
+  return table ? *table : SurveyTable();
+}
+
+// What each format can hold of a station, and more of its head than its stations.
+std::vector<Column> Held(SurveyFormat format) {
+  using C = Column;
+  std::vector<C> held{C::kMd,    C::kInclination, C::kAzimuth, C::kTvd,
+                      C::kNorth, C::kEast,        C::kDogleg};
+  const auto add = [&](std::initializer_list<C> more) {
+    held.insert(held.end(), more.begin(), more.end());
+  };
+  const auto covariance = {C::kVarNN, C::kCovNE, C::kCovNV, C::kVarEE, C::kCovEV, C::kVarVV};
+  switch (format) {
+    case SurveyFormat::kPetrel:
+      add({C::kNorthing, C::kEasting, C::kDown});
+      break;
+    case SurveyFormat::kCompass:
+      add({C::kNorthing, C::kEasting, C::kVerticalSection});
+      break;
+    case SurveyFormat::kWitsml21:
+      add(covariance);
+      add({C::kToolface, C::kVerticalSection, C::kGravity, C::kGravityRef, C::kLatitude,
+           C::kLongitude, C::kUtc});
+      break;
+    default:
+      add(covariance);
+      add({C::kToolface, C::kVerticalSection, C::kGravity, C::kGravityRef, C::kLatitude,
+           C::kLongitude, C::kUtc, C::kNorthing, C::kEasting, C::kDown, C::kSigmaInclination,
+           C::kSigmaAzimuth, C::kEarthRateMeasured, C::kEarthRateReference});
+  }
+  return held;
+}
+
+TEST(Exchange, EveryFormatGivesBackWhatItHoldsToTheLastBit) {
+  for (const LengthUnit unit : {LengthUnit::kMetre, LengthUnit::kFoot}) {
+    const SurveyTable table = FullSurvey(unit);
+    for (const SurveyFormat format : kReadable) {
+      SCOPED_TRACE(std::string(WordOf(format)));
+      const SurveyTable back = Reread(WriteSurvey(table, format));
+      ExpectSameStations(table, back, Held(format));
+      EXPECT_EQ(back.head.md_unit, unit);
+      EXPECT_EQ(back.head.azimuth.north, North::kGrid);
+      EXPECT_EQ(back.head.offsets, North::kGrid);
+      if (format == SurveyFormat::kCsv) continue;
+      EXPECT_EQ(back.head.names.well, table.head.names.well);
+      EXPECT_EQ(back.head.datum, "RT");
+      if (format == SurveyFormat::kPetrel) continue;
+      EXPECT_EQ(back.head.tool, SurveyTool::kGyroContinuous);
+      EXPECT_EQ(back.head.error_model, table.head.error_model);
+      EXPECT_EQ(back.head.method, "minimum curvature");
+      EXPECT_NEAR(back.head.azimuth.convergence.value_or(9), *table.head.azimuth.convergence,
+                  1e-16);
+      EXPECT_NEAR(back.head.azimuth.declination.value_or(9), *table.head.azimuth.declination,
+                  1e-16);
+      EXPECT_NEAR(back.head.datum_elevation.value_or(0), *table.head.datum_elevation, 1e-12);
+    }
+  }
+}
+
+TEST(Exchange, WrittenAgainTheBytesAreTheSame) {
+  for (const SurveyFormat format : kReadable) {
+    SCOPED_TRACE(std::string(WordOf(format)));
+    const std::string once = WriteSurvey(FullSurvey(), format);
+    EXPECT_EQ(WriteSurvey(Reread(once), format), once);
+  }
+}
+
+TEST(Exchange, NorthIsNeverGuessed) {
+  SurveyTable table = FullSurvey();
+  table.head.azimuth.north = North::kUnknown;
+  for (const SurveyFormat format : kReadable) {
+    try {
+      WriteSurvey(table, format);
+      ADD_FAILURE() << WordOf(format);
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), HasSubstr("north"));
+    }
+  }
+  EXPECT_THROW(WriteSurvey(FullSurvey(), SurveyFormat::kWitsml20), std::invalid_argument);
+}
+
+TEST(Exchange, OptionsAndFileMayNotContradict) {
+  const std::string text = WriteSurvey(FullSurvey(), SurveyFormat::kLas);
+  EXPECT_FALSE(ParseSurvey(text, "x", {.north = North::kTrue}));
+  EXPECT_FALSE(ParseSurvey(text, "x", {.depth_unit = LengthUnit::kFoot}));
+  EXPECT_FALSE(ParseSurvey(text, "x", {.convergence = 0.3}));
+  EXPECT_TRUE(ParseSurvey(text, "x", {.depth_unit = LengthUnit::kMetre, .north = North::kGrid}));
+}
+
+// Every prefix of a file is read right, as far as it goes, or refused; nothing crashes.
+TEST(Exchange, FilesCutShortAreRefusedOrShorter) {
+  for (const SurveyFormat format : kReadable) {
+    const SurveyTable full = FullSurvey();
+    const std::string text = WriteSurvey(full, format);
+    int shorter = 0;
+    for (std::size_t size = 0; size < text.size(); size += 7) {
+      const auto table = ParseSurvey(std::string_view(text).substr(0, size), "cut");
+      if (!table) continue;
+      ++shorter;
+      EXPECT_LE(table->rows(), full.rows());
+      for (std::size_t row = 0; row + 1 < table->rows(); ++row) {
+        EXPECT_EQ(table->md(row), full.md(row)) << WordOf(format) << " " << size;
+      }
+    }
+    const bool xml = format == SurveyFormat::kWitsml1411 || format == SurveyFormat::kWitsml21;
+    EXPECT_EQ(shorter == 0, xml) << WordOf(format);
+  }
+}
+
+TEST(Exchange, FlippedBytesCrashNothing) {
+  for (const SurveyFormat format : kReadable) {
+    const std::string text = WriteSurvey(FullSurvey(), format);
+    for (std::size_t at = 0; at < text.size(); at += 5) {
+      for (const char flip : {'\x01', '\x20', '\x80'}) {
+        std::string damaged = text;
+        damaged[at] = static_cast<char>(damaged[at] ^ flip);
+        const auto table = ParseSurvey(damaged, "damaged");
+        EXPECT_TRUE(table || !table.fault().text.empty());
+      }
+    }
+  }
+}
+
+TEST(Exchange, EmptyFilesAndFoldersAreRefused) {
+  const support::Scratch scratch;
+  scratch.Write("empty.csv", "");
+  const auto empty = ReadSurvey(scratch.path() / "empty.csv");
+  ASSERT_FALSE(empty);
+  EXPECT_THAT(empty.fault().text, HasSubstr("empty"));
+  EXPECT_FALSE(ReadSurvey(scratch.path()));
+  EXPECT_FALSE(ReadSurvey(scratch.path() / "missing.las"));
+  for (const std::string text : {"\n\n", "\xEF\xBB\xBF", "<", "<a/>", "IOGP,", "~V\n", "#", "\"",
+                                 "# WELL TRACE FROM PETREL\n"}) {
+    EXPECT_FALSE(ParseSurvey(text, "x")) << text;
+  }
+}
+
+TEST(Exchange, ExportsRoundedForPeople) {
+  const std::array formats{SurveyFormat::kCsv, SurveyFormat::kLas, SurveyFormat::kWitsml1411};
+  SurveyTable table = FullSurvey();
+  table.Set(Column::kTvd, 1, 29.912345678);
+  const auto files = ExportFormats(table, formats, "survey");
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files[0].name, "survey.csv");
+  EXPECT_EQ(files[2].name, "survey-1411.xml");
+  EXPECT_THAT(files[0].bytes, HasSubstr("29.9123,"));
+  EXPECT_THAT(files[0].bytes, testing::Not(HasSubstr("29.91234")));
+}
+
+TEST(Exchange, FormatsHaveNames) {
+  for (const SurveyFormat format : kReadable) EXPECT_EQ(SurveyFormatOf(WordOf(format)), format);
+  EXPECT_FALSE(SurveyFormatOf("docx"));
+}
+
+}  // namespace
+}  // namespace wellgyro

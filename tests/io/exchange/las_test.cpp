@@ -1,0 +1,86 @@
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "wellgyro/io/exchange/exchange.h"
+
+#include "support/survey_samples.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::HasSubstr;
+
+std::string Las(const std::string& rows, const std::string& step = "10",
+                const std::string& stop = "20", const std::string& wrap = "NO") {
+  return "# a comment before everything\n~Version\n VERS. 2.0 : CWLS\n WRAP. " + wrap +
+         " : \n~Well\n STRT.FT 0 : \n STOP.FT " + stop + " :\n STEP.FT " + step +
+         " :\n NULL. -999.25 :\n WELL. A-1, 12.30 h : WELL\n COMP. : COMPANY\n"
+         "~Curve\n DEPT.FT : depth\n HAZI.DEG : azimuth\n DEVI.DEG 1 2 3 : inclination\n"
+         " GR.GAPI : gamma\n TVD.M : \n~Parameter\n I_AT. Grid : NORTH\n I_DC.DEG 0.5 : \n"
+         "~A DEPT HAZI DEVI GR TVD\n" +
+         rows;
+}
+
+Fault Refusal(const std::string& text) {
+  const auto table = ParseSurvey(text, "text");
+  EXPECT_FALSE(table);
+  return table ? Fault{} : table.fault();
+}
+
+TEST(Las, CurvesByMnemonicInAnyOrder) {
+  const auto t =
+      ParseSurvey(Las("0 1 0 50 0\n10 -999.25 -999.25 51 3\n20 350 2.5 52 -999.25\n"), "text");
+  ASSERT_TRUE(t) << t.fault().text;
+  // A row without attitude is a row of the log, not a station.
+  ASSERT_EQ(t->rows(), 2u);
+  EXPECT_EQ(t->md(1), 20 * units::kFoot);
+  EXPECT_EQ(t->inclination(1), 2.5 * units::kDeg);
+  EXPECT_EQ(t->azimuth(1), 350 * units::kDeg);
+  EXPECT_EQ(t->Get(Column::kTvd, 0), 0);
+  EXPECT_FALSE(t->Get(Column::kTvd, 1));
+  EXPECT_EQ(t->head.azimuth.north, North::kGrid);
+  EXPECT_EQ(t->head.azimuth.declination, 0.5 * units::kDeg);
+  EXPECT_EQ(t->head.names.well, "A-1, 12.30 h");
+}
+
+TEST(Las, WrappedRows) {
+  const auto t = ParseSurvey(Las("0\n1 0 50\n0\n20 350\n2.5 52 19\n", "0", "20", "YES"), "text");
+  ASSERT_TRUE(t) << t.fault().text;
+  EXPECT_EQ(t->Get(Column::kTvd, 1), 19);
+  EXPECT_THAT(Refusal(Las("0\n1 0 50\n0\n20 350\n", "0", "20", "YES")).text,
+              HasSubstr("cut short"));
+}
+
+TEST(Las, FaultsNameTheLine) {
+  EXPECT_EQ(Refusal(Las("0 1 0 50 0\n10 1 1 1\n")).line, 23);
+  EXPECT_THAT(Refusal(Las("0 1 0 50 0\n10 1 x 1 1\n")).text, HasSubstr("'x'"));
+  EXPECT_THAT(Refusal(Las("0 1 0 50 0\n10 1 1 1 1\n")).text, HasSubstr("header says 20"));
+  EXPECT_EQ(Refusal(Las("0 1 0 50 0\n0 1 1 1 1\n")).code, FaultCode::kOrder);
+  EXPECT_THAT(Refusal("~V\n VERS. 3.0 : \n").text, HasSubstr("LAS 2.0"));
+  EXPECT_THAT(Refusal("~V\n VERS. 2.0 : \n~C\n DEPT.M : \n~A\n1\n").text, HasSubstr("inclination"));
+  EXPECT_THAT(Refusal("~V\nnonsense\n").text, HasSubstr("MNEM.UNIT"));
+}
+
+TEST(Las, StepIsFixedWhereDepthsAreEven) {
+  SurveyTable t = support::FullSurvey();
+  EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas), testing::ContainsRegex("STEP +\\.M +30 :"));
+  EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas, {.variable_step = true}),
+              testing::ContainsRegex("STEP +\\.M +0 :"));
+  t.Set(Column::kMd, 3, 90.001);
+  EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas), testing::ContainsRegex("STEP +\\.M +0 :"));
+}
+
+TEST(Las, NoColonInDataAndNoNullThatIsANumber) {
+  SurveyTable t = support::FullSurvey();
+  t.head.names.well = "A:1\nB";
+  t.Set(Column::kNorth, 2, -999.25);
+  const std::string text = WriteSurvey(t, SurveyFormat::kLas);
+  const auto back = ParseSurvey(text, "text");
+  ASSERT_TRUE(back) << back.fault().text;
+  EXPECT_EQ(back->head.names.well, "A 1 B");
+  EXPECT_EQ(back->Get(Column::kNorth, 2), -999.25);
+}
+
+}  // namespace
+}  // namespace wellgyro

@@ -1,0 +1,59 @@
+#include "wellgyro/io/result/summary.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "wellgyro/base/angle.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(SummaryText, GivesTheEndAndItsEllipse) {
+  Survey survey;
+  Station end;
+  end.md = 3012;
+  end.inclination = FromDegrees(45);
+  end.azimuth = FromDegrees(359.999);
+  end.p_WT_W = {100.123, -250.5, 2800};
+  // Half axes 3 m and 1 m, the long one 30 deg east of north.
+  const double c = std::cos(FromDegrees(30)), s = std::sin(FromDegrees(30));
+  end.cov_p_WT_W(0, 0) = 9 * c * c + s * s;
+  end.cov_p_WT_W(1, 1) = 9 * s * s + c * c;
+  end.cov_p_WT_W(0, 1) = end.cov_p_WT_W(1, 0) = 8 * s * c;
+  end.cov_p_WT_W(2, 2) = 4;
+  survey.chosen = {Station{}, end};
+  survey.chosen[1].quality = Quality::kGap;
+  Check failed;
+  failed.code = "foresight";
+  failed.run = 1;
+  failed.value = 0.8;
+  failed.limit = 0.5;
+  failed.unit = "deg";
+  failed.limit_source = "acceptance";
+  failed.verdict = Verdict::kFail;
+  Check passed = failed;
+  passed.code = "gravity";
+  passed.verdict = Verdict::kPass;
+  Check counted = failed;
+  counted.code = "samples_lost";
+  counted.unit = "1";
+  survey.checks = {failed, passed, counted};
+  const std::string text = SummaryText(survey);
+  EXPECT_THAT(text, HasSubstr("MD 3012.00 m, inclination 45.00 deg, azimuth 0.00 deg true"));
+  EXPECT_THAT(text, HasSubstr("north 100.12 m, east -250.50 m, TVD 2800.00 m"));
+  // 95 % of a plane normal distribution lie within 2.4477 sigma, of a line within 1.9600.
+  EXPECT_THAT(text, HasSubstr("7.34 m by 2.45 m (half axes), the long one towards 30 deg"));
+  EXPECT_THAT(text, HasSubstr("TVD +- 3.92 m"));
+  EXPECT_THAT(text, HasSubstr("2, of which 1 good"));
+  EXPECT_THAT(text, HasSubstr("check fail     foresight, run 1: 0.8 against 0.5 deg (acceptance)"));
+  EXPECT_THAT(text, HasSubstr("samples_lost, run 1: 0.8 against 0.5 (acceptance)"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("gravity")));
+}
+
+TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }
+
+}  // namespace
+}  // namespace wellgyro
