@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds the tree to the house's rules: who may include whom, what public headers may show, and what
 lib never does. Each failure names file and line. Standard library only."""
+import functools
 import os
 import re
 import subprocess
@@ -61,19 +62,23 @@ def Sources(folder, endings=(".h", ".cpp")):
                 yield os.path.join(where, name)
 
 
+@functools.lru_cache(maxsize=None)
 def Lines(path):
     with open(path, encoding="utf-8") as file:
         return file.read().splitlines()
 
 
+@functools.lru_cache(maxsize=None)
 def Code(path):
     """Numbered lines without comments and string contents."""
+    numbered = []
     text = "\n".join(Lines(path))
     text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m.group().count("\n"), text, flags=re.S)
     for number, line in enumerate(text.split("\n"), 1):
         if not line.lstrip().startswith("#include"):
             line = re.sub(r'"(\\.|[^"\\])*"', '""', line)
-        yield number, re.sub(r"//.*", "", line)
+        numbered.append((number, re.sub(r"//.*", "", line)))
+    return numbered
 
 
 def Includes(path):
@@ -81,6 +86,43 @@ def Includes(path):
         found = re.match(r'\s*#\s*include\s+([<"])([^>"]+)[>"]', line)
         if found:
             yield number, found.group(1), found.group(2)
+
+
+def Functions(path):
+    """First line and length of every function that has a body; lambdas count as their owner's."""
+    text = re.sub(r"'(\\.|[^'\\])'", "' '", "\n".join(line for _, line in Code(path)))
+    found, open_braces, head, begin, number = [], [], "", 1, 1
+    for c in text:
+        if c == "\n":
+            number += 1
+        if c == "{":
+            inside = any(is_function for is_function, _ in open_braces)
+            named = re.search(r"\b(class|struct|union|enum|namespace)\b", head)
+            method = re.search(r"\)\s*((const|noexcept|override|final)\s*)*$", head)
+            value = re.search(r"=\s*(\[.*)?$", head, re.S)
+            open_braces.append((not inside and "(" in head and not value
+                                and (not named or method is not None), begin))
+            head = ""
+        elif c == "}":
+            if open_braces:
+                is_function, first = open_braces.pop()
+                if is_function:
+                    found.append((first, number - first + 1))
+            head = ""
+        elif c == ";":
+            head = ""
+        else:
+            if not head.strip() and not c.isspace():
+                begin = number
+            head += c
+    return found
+
+
+# Frames of the conventions in README.md, and of single blocks of sensors.
+FRAMES = "IEWLTHGASMB"
+ROTATION = r"R_([A-Z])([A-Z])(\.transpose\(\)|\.inverse\(\))?"
+VECTOR = r"(?:[a-z]+_)?[pwfbv]_(?:[A-Z]{1,2}_)?([A-Z])"
+PRODUCT = re.compile(rf"\b{ROTATION} \* (?:\w+(?:\.|->))*(?:{ROTATION}|{VECTOR})(?!\w)")
 
 
 def Room(path):
@@ -193,6 +235,38 @@ class Structure(unittest.TestCase):
                 problems.append(f"{os.path.relpath(path, TOP)}: no #pragma once")
         self.Report(problems)
         self.assertLessEqual(sorted(sizes)[len(sizes) // 2], 110, "median length of a header")
+
+    def test_functions_and_sources_are_short(self):
+        problems, lengths = [], []
+        for path in list(Sources(LIB)) + list(Sources(os.path.join(TOP, "apps"))):
+            if len(Lines(path)) >= 500:
+                problems.append(f"{os.path.relpath(path, TOP)}: {len(Lines(path))} lines")
+            for number, length in Functions(path):
+                lengths.append(length)
+                if length > 60:
+                    problems.append(f"{Place(path, number)}: a function of {length} lines")
+        self.Report(problems)
+        self.assertGreater(len(lengths), 1000)
+        short = sum(length <= 40 for length in lengths) / len(lengths)
+        self.assertGreaterEqual(short, 0.95, "share of functions of at most 40 lines")
+        print(f"{len(lengths)} functions, {100 * short:.1f} % of at most 40 lines, "
+              f"the longest of {max(lengths)}")
+
+    def test_chains_of_frames_telescope(self):
+        problems, products = [], 0
+        for path in Sources(LIB):
+            for number, line in Code(path):
+                for name in re.findall(r"\bR_([A-Z]{2})\b", line):
+                    if set(name) - set(FRAMES):
+                        problems.append(f"{Place(path, number)}: R_{name} has no such frame")
+                for a, b, turned, c, d, turned_2, vector in PRODUCT.findall(line):
+                    products += 1
+                    right = a if turned else b
+                    left = vector or (d if turned_2 else c)
+                    if right != left:
+                        problems.append(f"{Place(path, number)}: {right} meets {left}")
+        self.Report(problems)
+        self.assertGreater(products, 5)
 
     def test_every_source_is_built(self):
         problems = []
