@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace wellgyro {
+
+/// Constant errors of a tool that the estimator carries beside the attitudes, in this order
+/// (reading = truth + error). The first thirteen stand as in Knot::Source.
+enum ErrorSource {
+  kGyroBiasX,           ///< [rad/s]
+  kGyroBiasY,           ///< [rad/s]
+  kMassUnbalance,       ///< rate of x reads m f_x more, of y m f_y [rad/s per m/s^2]
+  kQuadrature,          ///< rate of x reads q f_y more, of y -q f_x [rad/s per m/s^2]
+  kGyroScaleX,          ///< [1]
+  kGyroScaleY,          ///< [1]
+  kMisalignmentX,       ///< rate about z seen by x [rad]
+  kMisalignmentY,       ///< rate about z seen by y [rad]
+  kToolfaceOffset,      ///< accelerometers read the toolface too large against the gyros [rad]
+  kTimeSkew,            ///< accelerometers stamped too early against the gyros [s]
+  kAccelBiasX,          ///< [m/s^2]
+  kAccelBiasY,          ///< [m/s^2]
+  kAccelBiasZ,          ///< [m/s^2]
+  kAccelScaleX,         ///< [1]
+  kAccelScaleY,         ///< [1]
+  kAccelScaleZ,         ///< [1]
+  kAccelMisalignmentX,  ///< force along z seen by x [rad]
+  kAccelMisalignmentY,  ///< force along z seen by y [rad]
+  kGyroBiasZ,           ///< of a third gyro axis [rad/s]
+  kGyroScaleZ,          ///< of a third gyro axis [1]
+  kErrorSources
+};
+using ErrorVector = Eigen::Matrix<double, kErrorSources, 1>;
+
+}  // namespace wellgyro
