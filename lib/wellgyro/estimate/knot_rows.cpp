@@ -1,0 +1,322 @@
+#include "wellgyro/estimate/knot_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wellgyro/math/drift.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Residuals of exact numbers are rounding: 1e-16 of an angle of a radian, over a knot.
+constexpr double kLeastTurn = 1e-9;   // [rad]
+constexpr double kLeastForce = 1e-7;  // [m/s^2]
+// The turn about the axis is the unknown roll rate's; this ties it to the attitude. A tenth of the
+// finest toolface that accelerometers tell in a knot, 1e-5 g.
+constexpr double kAxialTie = 1e-6;  // [rad]
+// At rest the tool turns by less than a tenth of what the gyros' noise says, which then costs the
+// azimuth 0.5 %.
+constexpr double kRestShare = 0.1;
+constexpr double kRestSpeed = 1e-5;    // [m/s]
+constexpr double kSpeedWalk = 0.3;     // winch and pipe: a third of a m/s in a second
+constexpr double kLeastDepth = 1e-3;   // [m], of a mark
+constexpr double kLeastWay = 1e-4;     // [m], of a knot's way
+constexpr double kUnknownSpeed = 1;    // [m/s], without depth marks
+// A hole that no sensor sees bends by 3 deg in 30 m, 1-sigma; without depth, in 30 s.
+constexpr double kUnseenBend = 1.7e-3;  // [rad/m]
+
+Vector3d Flat(const Vector2d& v) { return {v.x(), v.y(), 0}; }
+
+double Square(double x) { return x * x; }
+
+}  // namespace
+
+/// What several factors of a knot share.
+struct KnotRows::Terms {
+  const RunKnot& knot;
+  const KnotPlace& place;
+  const Node& begin;
+  const Node& end;
+  double dt;
+  double delta;                                   // psi's error at the end, from that at the begin
+  double in_phase, in_quadrature;                 // of the swing in the mean rate of roll
+  Eigen::Matrix<double, 2, kErrorSources> turn_by_error;  // at the roll rate of now
+  Vector2d turn;                                  // of what is known of the errors corrected
+  Matrix3d Ha, Hb, Xh;
+  Matrix3d R_LM;
+  BorderVector border;
+};
+
+KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
+                                  const BorderVector& border, const Node& begin,
+                                  const Node& end) const {
+  const Increment& inc = knot.increment;
+  Terms t{knot, place, begin, end, inc.seconds, 0, 0, 0, inc.turn_by_error, inc.turn_M,
+          {},   {},    {},    {},  border};
+  double rate = begin.roll_rate;
+  if (layout_.swing != kAbsent) {
+    const double angle = *setup_.swing * t.dt;
+    const double half = std::sin(0.5 * angle);
+    t.in_phase = std::sin(angle) / angle;
+    t.in_quadrature = 2 * half * half / angle;
+    rate += t.in_phase * begin.swing.x() + t.in_quadrature * begin.swing.y();
+  }
+  t.delta = rate * t.dt - (inc.roll_before + inc.roll_after);
+  // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
+  t.turn_by_error.middleCols<2>(kMisalignmentX) +=
+      t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
+  t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
+  for (int i = 0; i < kErrorSources; ++i) {
+    const double error = SourceAt(border, i);
+    if (error != 0) t.turn -= error * t.turn_by_error.col(i);
+  }
+  Vector2d drift = Vector2d::Zero();
+  if (layout_.walk != kAbsent) drift += 0.5 * (begin.walk + end.walk);
+  if (layout_.markov != kAbsent) drift += 0.5 * (begin.markov + end.markov);
+  if (layout_.ramp != kAbsent) drift += place.since_start * border.segment<2>(layout_.ramp);
+  t.turn -= inc.turn_by_error.middleCols<2>(kGyroBiasX) * drift;
+  t.turn += t.delta * inc.turn_per_roll;
+  t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta);
+  t.Hb = RotationZ(inc.roll_after + 0.5 * t.delta);
+  t.Xh = Exp(Flat(inc.turn_before_M + 0.5 * (t.turn - inc.turn_M)));
+  t.R_LM = Exp(-0.5 * t.dt * place.w_IL_L) * begin.R_LT * t.Ha * t.Xh;
+  return t;
+}
+
+void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RunScales& scales,
+                   const BorderVector& border, const Node& begin, const Node& end,
+                   NormalBlock& block) {
+  const Terms t = TermsOf(knot, place, border, begin, end);
+  AddTurn(t, block);
+  if (knot.increment.level) AddForce(t, block);
+  if (knot.increment.has_axial) AddAxial(t, block);
+  AddRoll(t, scales, block);
+  AddDepth(t, block);
+  AddDrift(t, block);
+  if (knot.still) AddRest(t, block);
+}
+
+/// Log[(E R_k Ha Exp(turn) Hb)' R_k+1], E = Exp(-w_IL dt): across the axis the gyros' noise, about
+/// it the tie of roll rate and attitude.
+void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
+  const Increment& inc = t.knot.increment;
+  const Matrix3d X = Exp(Flat(t.turn));
+  const Matrix3d B = t.Ha * X * t.Hb;
+  const Matrix3d R_end = Exp(-t.dt * t.place.w_IL_L) * t.begin.R_LT * B;
+  const double unseen = inc.gap_seconds * kUnseenBend *
+                        (t.knot.along.known ? std::abs(t.knot.along.speed) : kUnknownSpeed);
+  const double var = Square(setup_.gyro.angle_random_walk) * t.dt +
+                     2 * Square(setup_.gyro.quantization) + inc.var_turn + Square(unseen);
+  const double across = 1 / std::max(std::sqrt(var), kLeastTurn);
+  const Vector3d whiten(across, across, 1 / kAxialTie);
+  const auto by = whiten.asDiagonal();
+  const Eigen::Matrix<double, 3, 2> turned = t.Hb.topRows<2>().transpose();  // Hb' of a turn in M
+
+  Factor& f = factor_;
+  f.Begin(RowKind::kTurn, 3);
+  f.r = by * Log(R_end.transpose() * t.end.R_LT);
+  for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = by * -B.row(i).transpose();
+  for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = by * Vector3d::Unit(i);
+  const Vector3d by_delta = -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() -
+                            turned * inc.turn_per_roll;
+  const Vector3d by_rate = by * (t.dt * by_delta);
+  f.Column(layout_.roll) = by_rate;
+  if (layout_.swing != kAbsent) {
+    f.Column(layout_.swing) = t.in_phase * by_rate;
+    f.Column(layout_.swing + 1) = t.in_quadrature * by_rate;
+  }
+  const Eigen::Matrix<double, 3, kErrorSources> by_error = by * (turned * t.turn_by_error);
+  for (const int drift : {layout_.walk, layout_.markov}) {
+    if (drift == kAbsent) continue;
+    for (int i = 0; i < 2; ++i) {
+      f.Column(drift + i) = 0.5 * by_error.col(kGyroBiasX + i);
+      f.Column(block.next() + drift + i) = 0.5 * by_error.col(kGyroBiasX + i);
+    }
+  }
+  for (int i = 0; i <= kTimeSkew; ++i) {
+    const int at = layout_.source[static_cast<std::size_t>(i)];
+    if (at != kAbsent) f.Column(block.border() + at) = by_error.col(i);
+  }
+  if (layout_.ramp != kAbsent) {
+    for (int i = 0; i < 2; ++i) {
+      f.Column(block.border() + layout_.ramp + i) =
+          t.place.since_start * by_error.col(kGyroBiasX + i);
+    }
+  }
+  if (layout_.latitude != kAbsent) {
+    f.Column(block.border() + layout_.latitude) =
+        by * (t.end.R_LT.transpose() * (t.dt * t.place.dw_by_latitude));
+  }
+  block.Add(f);
+}
+
+/// Mean force in M less R_LM' (a - g) less the change of speed along the axis.
+void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
+  const Increment& inc = t.knot.increment;
+  const Vector3d p = t.R_LM.transpose() * t.place.force_L;
+  Vector3d force = inc.force_M;
+  for (int i = kAccelBiasX; i <= kAccelMisalignmentY; ++i) {
+    const double error = SourceAt(t.border, i);
+    if (error != 0) force -= error * inc.force_by_error.col(i);
+  }
+  force += t.delta * Flat(inc.force_per_roll);
+  double gravity = layout_.gravity == kAbsent ? 0 : t.border[layout_.gravity];
+  if (layout_.gravity_gradient != kAbsent) {
+    gravity += t.place.depth * t.border[layout_.gravity_gradient];
+  }
+  const Vector3d down_M = t.R_LM.row(2).transpose();
+  const double whiten =
+      1 / std::max(setup_.errors.accel_noise / std::sqrt(t.dt), kLeastForce);
+  const Matrix3d px = Skew(p);
+
+  Factor& f = factor_;
+  f.Begin(RowKind::kForce, 3);
+  f.r = whiten * (force - p + gravity * down_M -
+                  (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
+  const Matrix3d by_phi = -px * (t.Ha * t.Xh).transpose();
+  for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);
+  const Vector3d by_rate =
+      whiten * t.dt *
+      (-0.5 * px * t.Xh.row(2).transpose() + Flat(inc.force_per_roll));
+  f.Column(layout_.roll) = by_rate;
+  if (layout_.swing != kAbsent) {
+    f.Column(layout_.swing) = t.in_phase * by_rate;
+    f.Column(layout_.swing + 1) = t.in_quadrature * by_rate;
+  }
+  f.Column(layout_.speed) = whiten / t.dt * Vector3d::UnitZ();
+  f.Column(block.next() + layout_.speed) = -whiten / t.dt * Vector3d::UnitZ();
+  for (int i = 0; i <= kAccelMisalignmentY; ++i) {
+    const int at = layout_.source[static_cast<std::size_t>(i)];
+    if (at == kAbsent) continue;
+    f.Column(block.border() + at) =
+        whiten * (0.5 * px * Flat(t.turn_by_error.col(i)) - inc.force_by_error.col(i));
+  }
+  if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
+  if (layout_.gravity_gradient != kAbsent) {
+    f.Column(block.border() + layout_.gravity_gradient) = whiten * t.place.depth * down_M;
+  }
+  block.Add(f);
+}
+
+/// The roll rate walks from knot to knot; a swing turns by its own frequency and walks too.
+void KnotRows::AddRoll(const Terms& t, const RunScales& scales, NormalBlock& block) {
+  // A third axis measures the roll: its walk then only keeps the system whole.
+  const double walk = t.knot.increment.has_axial ? 1.0 : scales.roll_walk;
+  const double whiten = 1 / (walk * std::sqrt(t.dt));
+  Factor& f = factor_;
+  f.Begin(RowKind::kRoll, 1);
+  f.r[0] = whiten * (t.end.roll_rate - t.begin.roll_rate);
+  f.Column(layout_.roll)[0] = -whiten;
+  f.Column(block.next() + layout_.roll)[0] = whiten;
+  block.Add(f);
+  if (layout_.swing == kAbsent) return;
+  const double c = std::cos(*setup_.swing * t.dt), s = std::sin(*setup_.swing * t.dt);
+  const Vector2d& a = t.begin.swing;
+  f.Begin(RowKind::kRoll, 2);
+  f.r.head<2>() = whiten * (t.end.swing - Vector2d(c * a.x() + s * a.y(), c * a.y() - s * a.x()));
+  f.Column(layout_.swing) = whiten * Vector2d(-c, s);
+  f.Column(layout_.swing + 1) = whiten * Vector2d(-s, -c);
+  f.Column(block.next() + layout_.swing) = whiten * Vector2d::UnitX();
+  f.Column(block.next() + layout_.swing + 1) = whiten * Vector2d::UnitY();
+  block.Add(f);
+}
+
+/// psi is then the integral of the third axis: delta is what its errors and its noise made.
+void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
+  const double whiten =
+      1 / std::max(setup_.gyro.angle_random_walk * std::sqrt(t.dt), kLeastTurn);
+  const double axial = t.knot.increment.axial;
+  Factor& f = factor_;
+  f.Begin(RowKind::kAxial, 1);
+  f.r[0] = whiten * (t.delta + t.dt * SourceAt(t.border, kGyroBiasZ) +
+                     axial * SourceAt(t.border, kGyroScaleZ));
+  f.Column(layout_.roll)[0] = whiten * t.dt;
+  if (layout_.swing != kAbsent) {
+    f.Column(layout_.swing)[0] = whiten * t.dt * t.in_phase;
+    f.Column(layout_.swing + 1)[0] = whiten * t.dt * t.in_quadrature;
+  }
+  const int bias = layout_.source[kGyroBiasZ], scale = layout_.source[kGyroScaleZ];
+  if (bias != kAbsent) f.Column(block.border() + bias)[0] = whiten * t.dt;
+  if (scale != kAbsent) f.Column(block.border() + scale)[0] = whiten * axial;
+  block.Add(f);
+}
+
+void KnotRows::AddDepth(const Terms& t, NormalBlock& block) {
+  Factor& f = factor_;
+  const AlongHole& along = t.knot.along;
+  const int depth = layout_.depth, speed = layout_.speed, next = block.next();
+  if (along.known) {
+    const double whiten = 1 / std::max(along.sigma_md, kLeastDepth);
+    f.Begin(RowKind::kDepth, 1);
+    f.r[0] = whiten * (t.end.md - along.md);
+    f.Column(next + depth)[0] = whiten;
+    block.Add(f);
+  } else {
+    f.Begin(RowKind::kSpeed, 1);
+    f.r[0] = t.end.speed / kUnknownSpeed;
+    f.Column(next + speed)[0] = 1 / kUnknownSpeed;
+    block.Add(f);
+  }
+  // The trapezoid of the speed errs by dt^2/12 of the change of its change.
+  const double bend = along.known ? t.dt * t.dt / 12 * std::abs(along.acceleration) : 0;
+  const double way = 1 / (kLeastWay + bend);
+  f.Begin(RowKind::kSpeed, 1);
+  f.r[0] = way * (t.end.md - t.begin.md - 0.5 * t.dt * (t.begin.speed + t.end.speed));
+  f.Column(depth)[0] = -way;
+  f.Column(next + depth)[0] = way;
+  f.Column(speed)[0] = f.Column(next + speed)[0] = -0.5 * t.dt * way;
+  block.Add(f);
+  const double walk = 1 / (kSpeedWalk * std::sqrt(t.dt));
+  f.Begin(RowKind::kSpeed, 1);
+  f.r[0] = walk * (t.end.speed - t.begin.speed);
+  f.Column(speed)[0] = -walk;
+  f.Column(next + speed)[0] = walk;
+  block.Add(f);
+}
+
+void KnotRows::AddDrift(const Terms& t, NormalBlock& block) {
+  const auto add = [&](int column, double keep, double sigma, const Vector2d& from,
+                       const Vector2d& to) {
+    Factor& f = factor_;
+    f.Begin(RowKind::kDrift, 2);
+    f.r.head<2>() = (to - keep * from) / sigma;
+    for (int i = 0; i < 2; ++i) f.Column(column + i) = -keep / sigma * Vector2d::Unit(i);
+    for (int i = 0; i < 2; ++i) f.Column(block.next() + column + i) = Vector2d::Unit(i) / sigma;
+    block.Add(f);
+  };
+  if (layout_.walk != kAbsent) {
+    add(layout_.walk, 1, setup_.gyro.rate_random_walk * std::sqrt(t.dt), t.begin.walk, t.end.walk);
+  }
+  if (layout_.markov != kAbsent) {
+    const double span = t.dt / *setup_.gyro.bias_instability_correlation_time;
+    const double sigma = kMarkovSigmaPerInstability * setup_.gyro.bias_instability;
+    add(layout_.markov, std::exp(-span), sigma * std::sqrt(-std::expm1(-2 * span)),
+        t.begin.markov, t.end.markov);
+  }
+}
+
+/// A clamped tool does not move in L.
+void KnotRows::AddRest(const Terms& t, NormalBlock& block) {
+  const double noise = setup_.gyro.angle_random_walk * std::sqrt(t.dt);
+  const double whiten = 1 / std::max(kRestShare * noise, kLeastTurn);
+  const Matrix3d R = t.begin.R_LT.transpose() * t.end.R_LT;
+  Factor& f = factor_;
+  f.Begin(RowKind::kRest, 3);
+  f.r = whiten * Log(R);
+  for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = -whiten * R.row(i).transpose();
+  for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = whiten * Vector3d::Unit(i);
+  block.Add(f);
+  for (const int at : {layout_.speed, block.next() + layout_.speed}) {
+    f.Begin(RowKind::kRest, 1);
+    f.r[0] = (at == layout_.speed ? t.begin.speed : t.end.speed) / kRestSpeed;
+    f.Column(at)[0] = 1 / kRestSpeed;
+    block.Add(f);
+  }
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,63 @@
+#include "wellgyro/estimate/layout.h"
+
+#include <cmath>
+
+namespace wellgyro {
+namespace {
+
+ErrorVector SourceSigmas(const EstimateSetup& setup) {
+  const ErrorPriors& e = setup.errors;
+  // Without a correlation time the instability is a constant beside the bias.
+  const double constant =
+      setup.gyro.bias_instability_correlation_time ? 0 : setup.gyro.bias_instability;
+  ErrorVector sigma = ErrorVector::Zero();
+  sigma[kGyroBiasX] = sigma[kGyroBiasY] = std::hypot(e.gyro_bias_sigma, constant);
+  sigma[kMassUnbalance] = e.mass_unbalance_sigma;
+  sigma[kQuadrature] = e.quadrature_sigma;
+  sigma[kGyroScaleX] = sigma[kGyroScaleY] = e.gyro_scale_sigma;
+  if (setup.third_axis) {
+    sigma[kGyroBiasZ] = sigma[kGyroBiasX];
+    sigma[kGyroScaleZ] = e.gyro_scale_sigma;
+  }
+  sigma[kMisalignmentX] = sigma[kMisalignmentY] = e.gyro_misalignment_sigma;
+  sigma[kToolfaceOffset] = e.roll_offset_sigma;
+  sigma[kTimeSkew] = e.time_skew_sigma;
+  sigma[kAccelBiasX] = sigma[kAccelBiasY] = sigma[kAccelBiasZ] = e.accel_bias_sigma;
+  return sigma;
+}
+
+}  // namespace
+
+Layout LayoutOf(const EstimateSetup& setup) {
+  Layout layout;
+  const auto node = [&layout] {
+    const int column = layout.node;
+    layout.node += 2;
+    return column;
+  };
+  if (setup.gyro.rate_random_walk > 0) layout.walk = node();
+  if (setup.gyro.bias_instability_correlation_time && setup.gyro.bias_instability > 0) {
+    layout.markov = node();
+  }
+  if (setup.swing) layout.swing = node();
+
+  layout.sigma.resize(kBorderMax);
+  const auto border = [&layout](double sigma) {
+    if (!(sigma > 0)) return kAbsent;
+    layout.sigma[layout.border] = sigma;
+    return layout.border++;
+  };
+  const ErrorVector sources = SourceSigmas(setup);
+  for (int i = 0; i < kErrorSources; ++i) {
+    layout.source[static_cast<std::size_t>(i)] = border(sources[i]);
+  }
+  layout.ramp = border(setup.gyro.rate_ramp);
+  border(setup.gyro.rate_ramp);
+  layout.latitude = border(setup.errors.latitude_sigma);
+  layout.gravity = border(setup.sigma_gravity);
+  layout.gravity_gradient = border(setup.sigma_gravity_gradient);
+  layout.sigma.conservativeResize(layout.border);
+  return layout;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "wellgyro/estimate/layout.h"
+#include "wellgyro/math/so3.h"
+
+namespace wellgyro {
+
+/// The run's unknowns at one instant between two knots, as now known.
+struct Node {
+  Eigen::Matrix3d R_LT = Eigen::Matrix3d::Identity();
+  double roll_rate = 0;  ///< inertial, over the knot behind it, without the swing [rad/s]
+  double md = 0;         ///< of the sensor point [m]
+  double speed = 0;      ///< along the hole [m/s]
+  Eigen::Vector2d walk = Eigen::Vector2d::Zero();    ///< drift of the gyros x, y [rad/s]
+  Eigen::Vector2d markov = Eigen::Vector2d::Zero();  ///< the same, that which forgets [rad/s]
+  Eigen::Vector2d swing = Eigen::Vector2d::Zero();   ///< of the roll rate [rad/s]
+
+  Eigen::Vector3d tangent_L() const { return R_LT.col(2); }
+};
+
+/// The node moved by a step of its unknowns.
+inline void Move(const Layout& layout, const NodeVector& step, Node& node) {
+  node.R_LT = node.R_LT * Exp(step.segment<3>(layout.phi));
+  node.roll_rate += step[layout.roll];
+  node.md += step[layout.depth];
+  node.speed += step[layout.speed];
+  if (layout.walk != kAbsent) node.walk += step.segment<2>(layout.walk);
+  if (layout.markov != kAbsent) node.markov += step.segment<2>(layout.markov);
+  if (layout.swing != kAbsent) node.swing += step.segment<2>(layout.swing);
+}
+
+}  // namespace wellgyro

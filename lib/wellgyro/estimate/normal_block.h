@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "wellgyro/estimate/layout.h"
+
+namespace wellgyro {
+
+/// What a residual compares.
+enum class RowKind {
+  kTurn,     ///< gyros' turn against the attitudes at both ends
+  kForce,    ///< accelerometers against gravity and the motion along the hole
+  kRoll,     ///< the roll rate's walk or swing from knot to knot
+  kAxial,    ///< a third gyro axis
+  kDepth,    ///< depth marks
+  kSpeed,    ///< depth against speed, and the speed's walk
+  kDrift,    ///< of the gyros from node to node
+  kRest,     ///< a tool at rest that turns
+  kAzimuth,  ///< azimuth from outside
+  kPrior,
+  kKinds
+};
+inline constexpr std::size_t kRowKinds = static_cast<std::size_t>(RowKind::kKinds);
+
+/// Up to three rows of whitened residuals r with their derivatives, d r = J d(columns).
+struct Factor {
+  static constexpr int kColumnsMax = 40;
+  RowKind kind = RowKind::kPrior;
+  int rows = 1;
+  int columns = 0;
+  std::array<int, kColumnsMax> column{};  ///< of the block: node, next node, border
+  Eigen::Matrix<double, 3, kColumnsMax> J;
+  Eigen::Vector3d r;
+
+  /// Adds a column for what stands at `at` of the block; its derivative is to be filled in.
+  auto Column(int at) {
+    column[static_cast<std::size_t>(columns)] = at;
+    return J.col(columns++).head(rows);
+  }
+  void Begin(RowKind of, int n) {
+    kind = of;
+    rows = n;
+    columns = 0;
+  }
+};
+
+/// How squares of one kind of residual add up.
+struct RowSum {
+  double squares = 0;   ///< of the residuals as they are
+  double weighted = 0;  ///< with their robust weights
+  double cost = 0;      ///< -2 ln of their density, but for constants
+  double rows = 0;
+};
+
+/// The normal equations of what a knot says of [node | next node | border]: J'J and J'r.
+class NormalBlock {
+ public:
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                               2 * kNodeMax + kBorderMax, 2 * kNodeMax + kBorderMax>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 * kNodeMax + kBorderMax, 1>;
+
+  void Clear(const Layout& layout);
+  /// Adds the factor with the robust weight of its kind.
+  void Add(const Factor& factor);
+
+  int next() const { return node_; }        ///< first column of the next node
+  int border() const { return 2 * node_; }  ///< first of the border
+  /// Lower triangle.
+  Matrix& information() { return information_; }
+  Vector& gradient() { return gradient_; }
+  const std::array<RowSum, kRowKinds>& sums() const { return sums_; }
+  void ClearSums() { sums_ = {}; }
+
+ private:
+  int node_ = 0;
+  Matrix information_;
+  Vector gradient_;
+  std::array<RowSum, kRowKinds> sums_{};
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,85 @@
+#include "wellgyro/estimate/places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/Geometry>
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kLowPass = 15;      // [s], of the hole's turning
+constexpr double kSiteEvery = 10;    // [m]: 1e-4 mrad of latitude, 1e-5 m/s^2 of gravity
+constexpr double kPathReach = 1e5;   // [m]; damaged depths may lead anywhere, the site stays
+constexpr double kPoleMargin = 1e-3;  // [rad], from where the transport about the vertical grows
+
+Site SiteBy(const Site& first, const Vector3d& p) {
+  const double north = std::clamp(p.x(), -kPathReach, kPathReach);
+  const double down = std::clamp(p.z(), -kPathReach, kPathReach);
+  const double most = M_PI_2 - kPoleMargin;
+  return SiteAt(std::clamp(first.latitude + north / first.radius_north, -most, most),
+                first.height - down);
+}
+
+/// d(tangent)/dt over each knot, zero at rest.
+std::vector<Vector3d> Turning(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+  std::vector<Vector3d> sums(knots.size() + 1, Vector3d::Zero());  // of the tangent's change
+  std::vector<double> times(knots.size() + 1, 0);
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Vector3d change = nodes[k + 1].tangent_L() - nodes[k].tangent_L();
+    sums[k + 1] = sums[k];
+    if (!knots[k].still) sums[k + 1] += change;
+    times[k + 1] = times[k] + knots[k].increment.seconds;
+  }
+  std::vector<Vector3d> turning(knots.size(), Vector3d::Zero());
+  std::size_t begin = 0, end = 0;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const double middle = 0.5 * (times[k] + times[k + 1]);
+    while (times[begin + 1] <= middle - kLowPass / 2) ++begin;
+    while (end < knots.size() && times[end] < middle + kLowPass / 2) ++end;
+    if (!knots[k].still) turning[k] = (sums[end] - sums[begin]) / (times[end] - times[begin]);
+  }
+  return turning;
+}
+
+}  // namespace
+
+void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<const Node> nodes,
+                std::vector<KnotPlace>& places) {
+  places.resize(knots.size());
+  const std::vector<Vector3d> turning = Turning(knots, nodes);
+  Site site = first;
+  Vector3d p = Vector3d::Zero(), at = p;
+  double time = 0;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Node& a = nodes[k];
+    const Node& b = nodes[k + 1];
+    const Vector3d tangent = 0.5 * (a.tangent_L() + b.tangent_L());
+    const double speed = 0.5 * (a.speed + b.speed);
+    if ((p - at).squaredNorm() > kSiteEvery * kSiteEvery) {
+      site = SiteBy(first, p);
+      at = p;
+    }
+    KnotPlace& place = places[k];
+    place.site = site;
+    const double c = std::cos(site.latitude), s = std::sin(site.latitude);
+    const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
+    const Vector3d v = speed * tangent;
+    const Vector3d transport(v.y() / site.radius_east, -v.x() / site.radius_north,
+                             -v.y() * s / (c * site.radius_east));
+    place.w_IL_L = earth + transport;
+    place.dw_by_latitude = kEarthRate * Vector3d(-s, 0, -c);
+    place.force_L = speed * turning[k] + (2 * earth + transport).cross(v) -
+                    site.gravity * Vector3d::UnitZ();
+    const double dt = knots[k].increment.seconds;
+    place.since_start = time + 0.5 * dt;
+    place.depth = p.z();
+    time += dt;
+    p += (b.md - a.md) * tangent;
+  }
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,210 @@
+#include "wellgyro/estimate/run_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "wellgyro/estimate/places.h"
+#include "wellgyro/math/drift.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Priors of node 0 that say nothing against any measurement: a turn, a roll of 100 rpm, the
+// length of a well.
+constexpr double kAnyAttitude = 10;  // [rad]
+constexpr double kAnyRoll = 10;      // [rad/s]
+constexpr double kAnyDepth = 1e4;    // [m]
+constexpr double kAnySpeed = 10;     // [m/s]
+constexpr double kNoDrift = 1e-12;   // the walk begins at the bias [rad/s]
+// Gauss-Newton is trusted as far as this in one step: past it sine and angle part by 4 %.
+constexpr double kStepMost = 0.5;     // [rad]
+// Newton's decrement squared at which a run stays: a tenth of a sigma over all unknowns together.
+constexpr double kStays = 1e-2;
+// The forward pass: gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
+// about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
+constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
+// A walk of the roll rate from that of a clamped tool to that of one that jerks.
+constexpr double kWalkLeast = 1e-6, kWalkMost = 1;  // [rad/s/sqrt(s)]
+constexpr double kWalkStays = 0.2;  // of its logarithm: the sigma of what 50 knots tell of it
+
+Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
+
+}  // namespace
+
+RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots)
+    : setup_(setup),
+      layout_(LayoutOf(setup_)),
+      knots_(knots),
+      rows_(setup_, layout_),
+      elimination_(layout_) {
+  border_.setZero(layout_.border);
+}
+
+void RunSolver::Begin(const Matrix3d& R_LT) {
+  nodes_.assign(knots_.size() + 1, Node{});
+  border_.setZero();
+  scales_ = {};
+  nodes_[0].R_LT = R_LT;
+  const double c = std::cos(setup_.site.latitude), s = std::sin(setup_.site.latitude);
+  const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    const Increment& inc = knots_[k].increment;
+    const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
+    Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT * RotationZ(inc.roll_before) * half;
+    if (inc.level) {
+      const Vector3d f = inc.force_M.normalized();
+      const Vector3d p = -M.row(2).transpose();
+      const double sine2 = std::hypot(f.x(), f.y()) * std::hypot(p.x(), p.y());
+      // The angle about the axis from where the force should be to where it is.
+      const double angle = std::atan2(f.y() * p.x() - f.x() * p.y(), f.x() * p.x() + f.y() * p.y());
+      M = M * RotationZ(-kTurnShare * angle * sine2 / (sine2 + kTurnSine2));
+      const Vector3d down = -M.row(2).transpose();
+      M = M * Exp(kTiltShare * f.cross(down));
+    }
+    Node& next = nodes_[k + 1];
+    next.R_LT = M * half * RotationZ(inc.roll_after);
+    nodes_[k].roll_rate = (inc.roll_before + inc.roll_after) / inc.seconds;
+    next.roll_rate = nodes_[k].roll_rate;
+    next.md = knots_[k].along.known ? knots_[k].along.md : nodes_[k].md;
+    next.speed = knots_[k].along.known ? knots_[k].along.speed : 0;
+  }
+  nodes_[0].md = nodes_[1].md - nodes_[1].speed * knots_[0].increment.seconds;
+  nodes_[0].speed = nodes_[1].speed;
+}
+
+/// Information of node 0 and of the border before any knot.
+void RunSolver::FirstNode(EdgeMatrix& information, EdgeVector& gradient) {
+  const int n = layout_.node, b = layout_.border;
+  const Node& first = nodes_[0];
+  NodeVector sigma(n), value = NodeVector::Zero(n);
+  sigma.head<3>().setConstant(kAnyAttitude);
+  sigma[layout_.roll] = kAnyRoll;
+  sigma[layout_.depth] = kAnyDepth;
+  sigma[layout_.speed] = kAnySpeed;
+  value[layout_.speed] = first.speed;
+  if (layout_.walk != kAbsent) {
+    sigma.segment<2>(layout_.walk).setConstant(kNoDrift);
+    value.segment<2>(layout_.walk) = first.walk;
+  }
+  if (layout_.markov != kAbsent) {
+    sigma.segment<2>(layout_.markov)
+        .setConstant(kMarkovSigmaPerInstability * setup_.gyro.bias_instability);
+    value.segment<2>(layout_.markov) = first.markov;
+  }
+  if (layout_.swing != kAbsent) {
+    sigma.segment<2>(layout_.swing).setConstant(kAnyRoll);
+    value.segment<2>(layout_.swing) = first.swing;
+  }
+  information.setZero(n + b, n + b);
+  information.diagonal().head(n) = sigma.cwiseAbs2().cwiseInverse();
+  information.diagonal().tail(b) = layout_.sigma.cwiseAbs2().cwiseInverse();
+  gradient.resize(n + b);
+  gradient.head(n) = value.cwiseQuotient(sigma.cwiseAbs2());
+  gradient.tail(b) = border_.cwiseQuotient(layout_.sigma.cwiseAbs2());
+}
+
+/// Azimuths from outside that hold at this node, whose columns begin at `at`.
+void RunSolver::AddTies(std::size_t node, NormalBlock& block, int at) {
+  for (const AzimuthTie& tie : setup_.ties) {
+    if (tie.node != node) continue;
+    const Vector3d u = tie.of_mark ? Vector3d::UnitX() : Vector3d::UnitZ();
+    const Matrix3d& R = nodes_[node].R_LT;
+    const Vector3d direction = R * u;
+    const Vector3d across(-std::sin(tie.azimuth), std::cos(tie.azimuth), 0);
+    const Vector3d ahead(std::cos(tie.azimuth), std::sin(tie.azimuth), 0);
+    const double horizontal = std::hypot(direction.x(), direction.y());
+    if (!(horizontal > 0)) continue;
+    // d azimuth = n . R (phi x u) / horizontal, n the horizontal normal of the direction.
+    const Vector3d normal(-direction.y() / horizontal, direction.x() / horizontal, 0);
+    Factor f;
+    f.Begin(RowKind::kAzimuth, 1);
+    f.r[0] = std::atan2(across.dot(direction), ahead.dot(direction)) / tie.sigma;
+    const Eigen::RowVector3d by_phi = -normal.transpose() * R * Skew(u) / (horizontal * tie.sigma);
+    for (int i = 0; i < 3; ++i) f.Column(at + layout_.phi + i)[0] = by_phi[i];
+    block.Add(f);
+  }
+}
+
+bool RunSolver::Linearise() {
+  EdgeMatrix information;
+  EdgeVector gradient;
+  FirstNode(information, gradient);
+  elimination_.Start(knots_.size(), information, gradient);
+  block_.ClearSums();
+  log_scales_ = 0;
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    block_.Clear(layout_);
+    if (k == 0) AddTies(0, block_, 0);
+    AddTies(k + 1, block_, block_.next());
+    rows_.Add(knots_[k], places_[k], scales_, border_, nodes_[k], nodes_[k + 1], block_);
+    if (!elimination_.Step(block_)) return false;
+  }
+  return true;
+}
+
+/// Moves all unknowns; returns the largest turn [rad].
+double RunSolver::Step(const std::vector<NodeVector>& steps, const BorderVector& border_step) {
+  double most = 0;
+  for (const NodeVector& step : steps) most = std::max(most, step.head<3>().norm());
+  const double share = most > kStepMost ? kStepMost / most : 1;
+  for (std::size_t k = 0; k < steps.size(); ++k) Move(layout_, share * steps[k], nodes_[k]);
+  border_ += share * border_step;
+  return most;
+}
+
+/// The walk of the roll rate by its own residuals over their redundancy: a variance component.
+/// True where it stays.
+bool RunSolver::LearnRollWalk() {
+  EdgeMatrix next = elimination_.LastCovariance();
+  BehindMatrix with_next;
+  double squares = 0, freedom = 0;
+  const int roll = layout_.roll;
+  for (std::size_t k = knots_.size(); k-- > 0;) {
+    const EdgeMatrix here = elimination_.CovarianceBefore(k, next, with_next);
+    const double walk2 =
+        scales_.roll_walk * scales_.roll_walk * knots_[k].increment.seconds;
+    const double change = nodes_[k + 1].roll_rate - nodes_[k].roll_rate;
+    const double var = here(roll, roll) + next(roll, roll) - 2 * with_next(roll, roll);
+    const double weight = 6 / (5 + change * change / walk2);
+    squares += weight * change * change / walk2;
+    freedom += std::max(0.0, 1 - weight * var / walk2);
+    next = here;
+  }
+  if (!(freedom > 0)) return true;
+  const double ratio = std::clamp(std::sqrt(squares / freedom), 0.1, 10.0);
+  const double before = scales_.roll_walk;
+  scales_.roll_walk = std::clamp(before * ratio, kWalkLeast, kWalkMost);
+  return std::abs(std::log(scales_.roll_walk / before)) < kWalkStays;
+}
+
+SolveReport RunSolver::Solve(int iterations) {
+  SolveReport report;
+  std::vector<NodeVector> steps;
+  BorderVector border_step;
+  bool learned = false;
+  for (report.iterations = 0; report.iterations < iterations; ++report.iterations) {
+    PlaceKnots(setup_.site, knots_, nodes_, places_);
+    if (!Linearise() || !elimination_.Solve(steps, border_step)) return report;
+    const double most = Step(steps, border_step);
+    if (learned && elimination_.decrement() < kStays) {
+      report.converged = true;
+      break;
+    }
+    if (most < 0.1) learned = LearnRollWalk();
+  }
+  report.sums = block_.sums();
+  for (const RowSum& sum : report.sums) report.evidence += sum.cost;
+  report.evidence += border_.cwiseQuotient(layout_.sigma).squaredNorm();
+  report.evidence += elimination_.log_determinant();
+  report.evidence += 2 * static_cast<double>(knots_.size()) * std::log(scales_.roll_walk);
+  report.roll_walk = scales_.roll_walk;
+  return report;
+}
+
+}  // namespace wellgyro

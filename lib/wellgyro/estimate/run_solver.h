@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/estimate/elimination.h"
+#include "wellgyro/estimate/knot_rows.h"
+#include "wellgyro/estimate/layout.h"
+#include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/setup.h"
+#include "wellgyro/record/run_knot.h"
+
+namespace wellgyro {
+
+/// How a run was solved.
+struct SolveReport {
+  bool converged = false;
+  int iterations = 0;
+  /// -2 ln of the density of the measurements with the unknowns integrated out, but for constants:
+  /// what two starts or two roll walks are compared by.
+  double evidence = 0;
+  std::array<RowSum, kRowKinds> sums{};
+  double roll_walk = 0;  ///< found [rad/s/sqrt(s)]
+};
+
+/// All unknowns of one run: attitudes on SO(3) at the ends of its knots, drift, motion along the
+/// hole, and the tool's constant errors, by Gauss-Newton over whitened factors.
+///
+/// Regular at every inclination: no coordinate of an attitude is an angle. Time and memory are
+/// proportional to the knots.
+class RunSolver {
+ public:
+  /// `knots` must outlive this object; at least one.
+  RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots);
+
+  /// Places every node by a forward pass from this attitude of node 0: the gyros carry the axis,
+  /// gravity turns the tool about it.
+  void Begin(const Eigen::Matrix3d& R_LT);
+  /// Relinearises until the attitudes stay, at most `iterations` times.
+  SolveReport Solve(int iterations);
+
+  const Layout& layout() const { return layout_; }
+  const EstimateSetup& setup() const { return setup_; }
+  std::span<const RunKnot> knots() const { return knots_; }
+  std::vector<Node>& nodes() { return nodes_; }
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const BorderVector& border() const { return border_; }
+  /// Of the last linearisation.
+  const Elimination& elimination() const { return elimination_; }
+
+ private:
+  bool Linearise();
+  void MovePlaces();
+  void AddTies(std::size_t node, NormalBlock& block, int at_next);
+  void FirstNode(EdgeMatrix& information, EdgeVector& gradient);
+  double Step(const std::vector<NodeVector>& steps, const BorderVector& border_step);
+  bool LearnRollWalk();
+
+  EstimateSetup setup_;
+  Layout layout_;
+  std::span<const RunKnot> knots_;
+  std::vector<Node> nodes_;
+  std::vector<KnotPlace> places_;
+  BorderVector border_;
+  RunScales scales_;
+  KnotRows rows_;
+  NormalBlock block_;
+  Elimination elimination_;
+  double log_scales_ = 0;
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "wellgyro/base/time.h"
+#include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/increment.h"
+
+namespace wellgyro {
+
+/// One knot of a run as the estimator takes it: the sensors' increment, joined with depth and rest.
+struct RunKnot {
+  Increment increment;
+  UtcTime utc;         ///< of the end, by the clock tie
+  AlongHole along;     ///< at the end
+  bool still = false;  ///< the whole knot was at rest
+};
+
+}  // namespace wellgyro
