@@ -1,0 +1,315 @@
+#include "wellgyro/attitude/increment_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <stdexcept>
+#include <string>
+
+#include "wellgyro/attitude/knot_sum_internal.h"
+#include "wellgyro/base/angle.h"
+
+namespace wellgyro {
+namespace {
+
+using increment::Block;
+using increment::BlockSum;
+using increment::Blocks;
+using increment::Complex;
+using increment::KnotSpan;
+using increment::RollSmoother;
+
+// A block: short against a roll of 20 rpm (0.02 rad to its ends) and against whirls of some Hz.
+constexpr double kBlockSeconds = 0.02;
+// A stretch whose roll is smoothed at once, and what is looked at beyond it: three times the memory
+// of the slowest useful walk where gravity is hardly seen.
+constexpr std::int64_t kStretchNs = 8'000'000'000;
+constexpr std::uint64_t kStretchBlocks = 800;
+constexpr std::int64_t kKnotNs = 20'000'000'000;
+constexpr std::size_t kCapacity = 8192;
+// Below it the axis' own turning, divided by it, is no correction any more: half a degree.
+constexpr double kSineMin = 0.0087;
+
+bool IsFinite(const ImuSample& s) {
+  const double w = s.w_IT_T.x() + s.w_IT_T.y() + (s.has_gz ? s.w_IT_T.z() : 0);
+  return std::isfinite(w + s.f_T.x() + s.f_T.y() + s.f_T.z());
+}
+
+void CheckNotNegative(const char* name, double value) {
+  if (value >= 0 && std::isfinite(value)) return;
+  throw std::invalid_argument(std::string("IncrementOptions.") + name +
+                              " must not be negative, is " + std::to_string(value));
+}
+
+// How a sample follows the one before it.
+struct Following {
+  bool late = false, breaks = false;
+  std::int64_t gap_ns = 0, lost = 0;
+};
+Following Follows(const SampleStamp& before, const SampleStamp& next) {
+  Following f;
+  if (next.session != before.session || next.tool != before.tool) {
+    f.breaks = true;
+    f.gap_ns = std::max<std::int64_t>(0, (next.utc - before.utc).ns - before.period_ns);
+    return f;
+  }
+  const std::int64_t apart = (next.tool_time - before.tool_time).ns - before.period_ns;
+  const std::int64_t tolerance = before.period_ns / 2;
+  f.late = apart < -tolerance || next.seq <= before.seq;
+  f.gap_ns = apart > tolerance ? apart : 0;
+  f.lost = next.seq - before.seq - 1;
+  f.breaks = f.gap_ns > 0 || f.lost > 0 || next.period_ns != before.period_ns;
+  return f;
+}
+
+}  // namespace
+
+struct IncrementBuilder::State {
+  explicit State(const IncrementOptions& o) : options(o) {}
+
+  struct KnotEnd {
+    std::int64_t ns;
+    ToolTime time;
+  };
+
+  IncrementOptions options;
+  BlockSum open;
+  std::int64_t open_begin_ns = 0;
+  int block_samples = 1;
+  bool started = false, breaks = true;
+  std::int64_t lost = 0, last_begin_ns = 0;
+  std::int64_t gap_begin_ns = 0, gap_ns = 0;  // before the last sample
+  ToolTime gap_begin;
+  Blocks blocks{kCapacity};
+  RollSmoother smoother{kCapacity};
+  std::uint64_t smoothed = 0, turned = 0;  // blocks that are
+  std::uint64_t stretch_end = 0;           // of the next stretch, as far as it is known
+  std::int64_t final_ns = 0;               // up to here knots can be summed
+  std::deque<KnotEnd> cuts;
+  std::int64_t last_cut_ns = 0, begin_ns = 0;
+  std::uint64_t begin_block = 0;
+
+  // Of the phase.
+  double across = 0, phase_sum = 0, phase_before = 0, rate_before = 0, axial = 0;
+  bool seen_before = false, gz_before = false;
+
+  void CloseBlock();
+  void AddGap(std::int64_t ns);
+  void AddBlock(Block block);
+  void SeePhase(Block& block);
+  void Advance(bool to_end);
+  void Turn(std::uint64_t begin, std::uint64_t end);
+  void AddCut(std::int64_t ns, ToolTime time);
+};
+
+void IncrementBuilder::State::AddBlock(Block block) {
+  if (blocks.full()) throw std::logic_error("IncrementBuilder: increments wait to be fetched");
+  SeePhase(block);
+  blocks.Push(block);
+}
+
+void IncrementBuilder::State::CloseBlock() {
+  if (open.samples() == 0) return;
+  Block block = open.Close();
+  block.begin_ns = open_begin_ns;
+  block.breaks = breaks;
+  block.lost = lost;
+  open_begin_ns = block.end_ns();
+  breaks = false;
+  lost = 0;
+  AddBlock(block);
+}
+
+void IncrementBuilder::State::AddGap(std::int64_t ns) {
+  Block gap;
+  gap.begin_ns = open_begin_ns;
+  gap.length_ns = ns;
+  gap.seconds = 1e-9 * static_cast<double>(ns);
+  gap.breaks = true;
+  open_begin_ns += ns;
+  AddBlock(gap);
+}
+
+// The phase of the mean force across, and by how much the turning of the axis carries the high side
+// round the tool: psi' = T' + A' cos I, A' sin I = -Re(W e^{iT}).
+void IncrementBuilder::State::SeePhase(Block& b) {
+  const double g = options.gravity;
+  const bool had_gz = gz_before;
+  gz_before = b.has_gz && b.samples > 0;
+  if (gz_before) {
+    const double spin = b.sum[increment::kWz].zeroth;
+    b.phase = axial + 0.5 * spin;
+    b.weight = 1e12;
+    b.linked = had_gz;
+    axial += spin;
+    seen_before = false;
+    return;
+  }
+  if (b.samples == 0 || b.accel_full_scale) {
+    seen_before = false;
+    return;
+  }
+  const double per = 1 / (b.seconds * g);
+  const Complex force(b.sum[increment::kFx].zeroth * per, b.sum[increment::kFy].zeroth * per);
+  const double s = std::abs(force), noise = std::max(options.accel_noise, 5e-7) / g;
+  across += (s - across) * std::min(1., b.seconds);
+  if (blocks.empty()) across = s;
+  const double least =
+      std::max({kSineMin, 4 * noise / std::sqrt(b.seconds), 5 * options.accel_bias / g});
+  if (std::min(s, across) < least) {
+    seen_before = false;
+    return;
+  }
+  const Complex to_high = std::conj(force) / s;
+  const Complex turn(b.sum[increment::kWx].zeroth, b.sum[increment::kWy].zeroth);
+  const double carried = -(turn * to_high).real() / s * (-b.sum[increment::kFz].zeroth * per);
+  double phase = -std::arg(force);
+  const double h = b.seconds, expected = seen_before ? phase_before + rate_before * h : phase;
+  phase += kTwoPi * std::round((expected - phase) / kTwoPi);
+  phase_sum += 0.5 * carried;
+  b.phase = phase + phase_sum;
+  phase_sum += 0.5 * carried;
+  b.weight = s * s * b.seconds / (noise * noise);
+  b.linked = seen_before;
+  if (seen_before) rate_before += ((phase - phase_before) / h - rate_before) * std::min(1., 4 * h);
+  phase_before = phase;
+  seen_before = true;
+}
+
+// Means of the phase to its values at the middles, and the sums to U.
+void IncrementBuilder::State::Turn(std::uint64_t begin, std::uint64_t end) {
+  for (std::uint64_t k = begin; k < end; ++k) {
+    Block& b = blocks[k];
+    const std::uint64_t a = k > blocks.begin() ? k - 1 : k, c = k + 1 < smoothed ? k + 1 : k;
+    const double between = 1e-9 * static_cast<double>(blocks[c].begin_ns - blocks[a].begin_ns) +
+                           blocks[c].middle() - blocks[a].middle();
+    b.bend = between > 0 ? (blocks[c].rate - blocks[a].rate) / between : 0;
+  }
+  for (std::uint64_t k = begin; k < end; ++k) {
+    Block& b = blocks[k];
+    if (b.weight > 0) b.roll -= b.bend * b.seconds * b.seconds / (b.has_gz ? 8 : 24);
+    if (b.samples > 0) increment::TurnBlock(options.order == IncrementOptions::kThird, b);
+    b.carried = k > blocks.begin() ? blocks[k - 1].carried : 0;
+    if (b.samples > 0) {
+      b.carried += (b.turn() / b.seconds - b.carried) * std::min(1., b.seconds);
+    }
+  }
+}
+
+void IncrementBuilder::State::Advance(bool to_end) {
+  while (smoothed < blocks.end()) {
+    const std::int64_t begin = blocks[smoothed].begin_ns;
+    while (stretch_end < blocks.end() && stretch_end - smoothed < kStretchBlocks &&
+           blocks[stretch_end].begin_ns - begin < kStretchNs) {
+      ++stretch_end;
+    }
+    const bool far = blocks.end() - stretch_end >= kStretchBlocks ||
+                     blocks.back().begin_ns - begin >= 2 * kStretchNs;
+    if (!far && !to_end) break;
+    smoother.Smooth(smoothed, stretch_end, blocks.end(), blocks);
+    smoothed = stretch_end;
+    const std::uint64_t upto = to_end && smoothed == blocks.end() ? smoothed : smoothed - 1;
+    Turn(turned, upto);
+    turned = upto;
+    // The slopes across a block look at two beyond it.
+    if (turned == blocks.end()) {
+      final_ns = blocks.back().end_ns();
+    } else if (turned > blocks.begin() + 2) {
+      final_ns = blocks[turned - 3].end_ns();
+    }
+  }
+}
+
+void IncrementBuilder::State::AddCut(std::int64_t ns, ToolTime time) {
+  cuts.push_back({ns, time});
+  last_cut_ns = ns;
+}
+
+IncrementBuilder::IncrementBuilder(const IncrementOptions& options) {
+  CheckNotNegative("accel_noise", options.accel_noise);
+  CheckNotNegative("angle_random_walk", options.angle_random_walk);
+  CheckNotNegative("accel_bias", options.accel_bias);
+  state_ = std::make_unique<State>(options);
+}
+IncrementBuilder::~IncrementBuilder() = default;
+IncrementBuilder::IncrementBuilder(IncrementBuilder&&) noexcept = default;
+IncrementBuilder& IncrementBuilder::operator=(IncrementBuilder&&) noexcept = default;
+
+bool IncrementBuilder::Push(const ImuSample& sample, bool rests) {
+  State& s = *state_;
+  if (sample.stamp.period_ns <= 0 || !IsFinite(sample)) return false;
+  Following f;
+  if (s.started) f = Follows(s.open.last(), sample.stamp);
+  if (f.late) return false;
+  if (!s.started || f.breaks) {
+    s.gap_begin = s.started ? s.open.last().tool_time + Duration{s.open.last().period_ns}
+                            : sample.stamp.tool_time;
+    s.CloseBlock();
+    s.gap_begin_ns = s.open_begin_ns;
+    s.gap_ns = f.gap_ns;
+    if (f.gap_ns > 0) s.AddGap(f.gap_ns);
+    s.lost += f.lost;
+    s.breaks = true;
+    s.block_samples =
+        std::max(1, static_cast<int>(kBlockSeconds / (1e-9 * sample.stamp.period_ns) + 1e-6));
+  } else if (s.open.samples() >= s.block_samples) {
+    s.CloseBlock();
+    s.Advance(false);
+  }
+  s.last_begin_ns = s.open_begin_ns + s.open.samples() * std::int64_t{sample.stamp.period_ns};
+  s.open.Add(sample, rests);
+  s.started = true;
+  return true;
+}
+
+void IncrementBuilder::Cut(double fraction) {
+  State& s = *state_;
+  if (!(fraction > 0 && fraction <= 1) || !s.started) {
+    throw std::invalid_argument("IncrementBuilder::Cut: no part " + std::to_string(fraction) +
+                                " of a sample");
+  }
+  const Duration into{std::llround(fraction * s.open.last().period_ns)};
+  const std::int64_t ns = s.last_begin_ns + into.ns;
+  if (ns <= s.last_cut_ns) throw std::invalid_argument("IncrementBuilder::Cut: before another");
+  s.AddCut(ns, s.open.last().tool_time + into);
+}
+
+void IncrementBuilder::CutGap(Duration into) {
+  State& s = *state_;
+  const std::int64_t ns = s.gap_begin_ns + into.ns;
+  if (s.gap_ns == 0 || into.ns < 0 || into.ns > s.gap_ns || ns <= s.last_cut_ns) {
+    throw std::invalid_argument("IncrementBuilder::CutGap: no gap that is cut by " +
+                                std::to_string(into.seconds()) + " s");
+  }
+  s.AddCut(ns, s.gap_begin + into);
+}
+
+void IncrementBuilder::Flush() {
+  State& s = *state_;
+  s.CloseBlock();
+  s.breaks = true;
+  s.Advance(true);
+}
+
+bool IncrementBuilder::Ready() const {
+  return !state_->cuts.empty() && state_->cuts.front().ns <= state_->final_ns;
+}
+
+Increment IncrementBuilder::Pop() {
+  State& s = *state_;
+  if (!Ready()) throw std::logic_error("IncrementBuilder::Pop: none is ready");
+  const State::KnotEnd cut = s.cuts.front();
+  s.cuts.pop_front();
+  std::uint64_t end = s.begin_block;
+  while (s.blocks[end].end_ns() < cut.ns) ++end;
+  const KnotSpan span{s.begin_ns, cut.ns, s.begin_block, end};
+  Increment out = increment::SumKnot(span, s.options.order == IncrementOptions::kThird,
+                                     s.options.accel_noise, s.blocks);
+  out.time = cut.time;
+  s.begin_ns = cut.ns;
+  s.begin_block = end + (s.blocks[end].end_ns() == cut.ns ? 1 : 0);
+  s.blocks.DropBefore(std::max<std::uint64_t>(s.begin_block, 3) - 3);
+  return out;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,263 @@
+#include "wellgyro/attitude/knot_sum_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellgyro::increment {
+namespace {
+
+constexpr Complex kI(0, 1);
+
+double Axial(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
+Eigen::Vector2d Vector(Complex z) { return {z.real(), z.imag()}; }
+
+bool Adjoin(const Block& a, const Block& b) {
+  return !b.breaks && a.samples > 0 && b.samples == a.samples && a.length_ns == b.length_ns;
+}
+
+// Change of the turn's rate across block k, per second: five points where there are, else three or
+// two. `coarse`, by three, says what the fifth order leaves out.
+struct Slope {
+  Complex fine = 0, coarse = 0;
+};
+Slope SlopeOf(std::uint64_t k, const Blocks& blocks) {
+  const Block& block = blocks[k];
+  const bool before = k > blocks.begin() && Adjoin(blocks[k - 1], block);
+  const bool after = k + 1 < blocks.end() && Adjoin(block, blocks[k + 1]);
+  const double per = 1 / (block.seconds * block.seconds);
+  Slope slope;
+  if (!before && !after) return slope;
+  if (!before || !after) {
+    const std::uint64_t a = before ? k - 1 : k;
+    slope.fine = slope.coarse = per * (blocks[a + 1].turn() - blocks[a].turn());
+    return slope;
+  }
+  const Complex inner = blocks[k + 1].turn() - blocks[k - 1].turn();
+  slope.fine = slope.coarse = per * 0.5 * inner;
+  if (k - 1 > blocks.begin() && Adjoin(blocks[k - 2], blocks[k - 1]) && k + 2 < blocks.end() &&
+      Adjoin(blocks[k + 1], blocks[k + 2])) {
+    const Complex outer = blocks[k + 2].turn() - blocks[k - 2].turn();
+    slope.fine = per * (34. * inner - 5. * outer) / 48.;  // of means, exact for a quartic
+  }
+  return slope;
+}
+
+// A block made ready to be summed in parts: integrals and first moments about its middle.
+struct Ready {
+  const Block& b;
+  Complex turn, turn_first, force_first, missing;
+};
+Ready MakeReady(std::uint64_t k, bool third, const Blocks& blocks) {
+  const Block& b = blocks[k];
+  Ready r{b, b.turn(), b.w_first, b.f_first, 0};
+  if (b.samples == 0) {
+    r.turn = k > blocks.begin() ? b.carried * b.seconds : 0;
+    return r;
+  }
+  const double within = b.period * b.period * b.seconds / 12;
+  const Slope slope = SlopeOf(k, blocks);
+  r.turn_first += within * slope.fine;
+  r.force_first += within * kI * (b.turn() / b.seconds) * (b.sum[kFz].zeroth / b.seconds);
+  if (third) {
+    r.turn += kI * b.rate * within * slope.fine;
+    r.missing = kI * b.rate * within * (slope.fine - slope.coarse);
+  }
+  return r;
+}
+
+// Of something with integral `whole` and first moment `first` about the middle of a length: the
+// integral and first moment of a part [from, to] of it, were it straight.
+struct Part {
+  double share, share_first, first_share, first_first;
+  Part(double length, double from, double to) {
+    const double d1 = to - from, d2 = 0.5 * (to * to - from * from);
+    const double d3 = (to * to * to - from * from * from) / 3, lean = 12 / (length * length * length);
+    share = d1 / length;
+    share_first = lean * d2;
+    first_share = d2 / length;
+    first_first = lean * d3;
+  }
+  Complex Of(Complex whole, Complex first) const { return share * whole + share_first * first; }
+  Complex FirstOf(Complex whole, Complex first) const {
+    return first_share * whole + first_first * first;
+  }
+};
+
+struct Sums {
+  Complex turn = 0, missing = 0;
+  double coning = 0;
+  Complex wx = 0, wy = 0, unit = 0, skew = 0, fx = 0, fy = 0, unit_z = 0;
+  Complex back = 0, turn_moment = 0, force_moment = 0;
+  double z = 0, back_z = 0, forced = 0, axial = 0;
+  Complex force() const { return fx + kI * fy; }
+
+  void Add(const Ready& r, double from, double to, double at);
+};
+
+// `at`: the block's middle from the knot's begin [s].
+void Sums::Add(const Ready& r, double from, double to, double at) {
+  const Block& b = r.b;
+  const Part part(b.seconds, from, to);
+  const Complex w = part.Of(r.turn, r.turn_first), w1 = part.FirstOf(r.turn, r.turn_first);
+  const double length = to - from, centre = 0.5 * (from + to);
+  const Complex w1_here = w1 - centre * w;  // about the part's own middle
+  const Complex theta = turn + 0.5 * w - w1_here / length;
+  coning += 0.5 * Axial(turn, w) + Axial(w, w1_here) / length;
+  turn += w;
+  missing += part.share * r.missing;
+  turn_moment += at * w + w1;
+  if (b.samples == 0) return;
+  const Complex spin = kI * b.rate * b.seconds * b.seconds / 12.;
+  const auto turning = [&](Complex whole) { return part.Of(whole, spin * whole); };
+  wx += turning(b.wx);
+  wy += turning(b.wy);
+  unit += turning(b.unit);
+  skew += b.rate * w + b.bend * w1;
+  axial += part.share * b.sum[kWz].zeroth + part.share_first * b.sum[kWz].first;
+  const Complex f = part.Of(b.force(), r.force_first), f1 = part.FirstOf(b.force(), r.force_first);
+  fx += part.share * b.fx;
+  fy += part.share * b.fy;
+  const double fz = part.share * b.sum[kFz].zeroth + part.share_first * b.sum[kFz].first;
+  const double fz1 = part.first_share * b.sum[kFz].zeroth + part.first_first * b.sum[kFz].first -
+                     centre * fz;
+  const Complex rate = w / length, f1_here = f1 - centre * f;
+  back += f - kI * (theta * fz + rate * fz1);
+  back_z += fz + Axial(theta, f) + Axial(rate, f1_here);
+  z += fz;
+  unit_z += turning(b.unit) * (b.sum[kFz].zeroth / b.seconds);
+  force_moment += at * f + f1;
+  forced += length;
+}
+
+double Seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
+  const auto turn = [&](ErrorSource source, Complex z) {
+    out.turn_by_error.col(source) = Vector(to_M * z);
+  };
+  turn(kGyroBiasX, s.unit);
+  turn(kGyroBiasY, kI * s.unit);
+  turn(kMassUnbalance, s.force());
+  turn(kQuadrature, -kI * s.force());
+  turn(kGyroScaleX, s.wx);
+  turn(kGyroScaleY, kI * s.wy);
+  out.turn_by_error.col(kMisalignmentX) = Vector(-kI * edge);
+  out.turn_by_error.col(kMisalignmentY) = Vector(edge);
+  turn(kToolfaceOffset, kI * s.turn);
+  turn(kTimeSkew, kI * s.skew);
+  if (!(s.forced > 0)) return;
+  const auto force = [&](ErrorSource source, Complex z) {
+    out.force_by_error.col(source).head<2>() = Vector(to_M * z / s.forced);
+  };
+  force(kAccelBiasX, s.unit);
+  force(kAccelBiasY, kI * s.unit);
+  out.force_by_error(2, kAccelBiasZ) = 1;
+  force(kAccelScaleX, s.fx);
+  force(kAccelScaleY, kI * s.fy);
+  out.force_by_error(2, kAccelScaleZ) = s.z / s.forced;
+  force(kAccelMisalignmentX, s.unit_z);
+  force(kAccelMisalignmentY, kI * s.unit_z);
+}
+
+void FillFlags(const Block& b, double seconds, Increment& out) {
+  out.quality |= b.quality;
+  if (b.samples == 0) {
+    out.gap_seconds += seconds;
+    out.level = false;
+    out.roll_seen = false;
+    out.quality |= Quality::kGap;
+    return;
+  }
+  if (b.gyro_full_scale) out.gap_seconds += seconds;
+  if (b.accel_full_scale) out.level = false;
+  if (!(b.weight > 0) && !b.has_gz) out.roll_seen = false;
+}
+
+void FillSamples(const KnotSpan& span, const Blocks& blocks, Increment& out) {
+  bool first = true;
+  for (std::uint64_t k = span.begin_block; k <= span.end_block; ++k) {
+    const Block& b = blocks[k];
+    if (b.samples == 0) continue;
+    const std::int64_t period = b.length_ns / b.samples;
+    const std::int64_t from = std::max<std::int64_t>(0, span.begin_ns - b.begin_ns) / period;
+    const std::int64_t to =
+        (std::min(span.end_ns, b.end_ns()) - b.begin_ns + period - 1) / period;
+    if (to <= from) continue;
+    if (first) out.seq_begin = b.seq_begin + from;
+    if (from == 0 && !(first && b.begin_ns == span.begin_ns && false)) out.samples_lost += b.lost;
+    out.seq_end = b.seq_begin + to;
+    first = false;
+  }
+}
+
+}  // namespace
+
+double RollAt(std::int64_t ns, std::uint64_t k, const Blocks& blocks) {
+  const Block* b = &blocks[k];
+  double t = Seconds(ns - b->begin_ns) - b->middle();
+  const std::uint64_t other = t < 0 ? k - 1 : k + 1;
+  if (t < 0 ? k == blocks.begin() : other == blocks.end()) {
+    return b->roll + t * (b->rate + 0.5 * t * b->bend);
+  }
+  const Block& a = t < 0 ? blocks[other] : *b;
+  const Block& c = t < 0 ? *b : blocks[other];
+  const double h = a.middle() + c.middle(), u = (t < 0 ? t + h : t) / h, v = 1 - u;
+  return v * v * (1 + 2 * u) * a.roll + u * u * (1 + 2 * v) * c.roll +
+         u * v * h * (v * a.rate - u * c.rate);
+}
+
+Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Blocks& blocks) {
+  Increment out;
+  out.seconds = Seconds(span.end_ns - span.begin_ns);
+  out.roll_seen = true;
+  const double middle = 0.5 * out.seconds;
+  Sums s;
+  Complex turn_before = 0;
+  double coning_before = 0, roll_middle = 0;
+  bool has_axial = true;
+  for (std::uint64_t k = span.begin_block; k <= span.end_block; ++k) {
+    const Ready r = MakeReady(k, third, blocks);
+    const Block& b = r.b;
+    const double begin = Seconds(b.begin_ns - span.begin_ns), at = begin + b.middle();
+    double from = std::max(begin, 0.), to = std::min(begin + b.seconds, out.seconds);
+    if (to <= from) continue;
+    FillFlags(b, to - from, out);
+    has_axial = has_axial && b.has_gz && b.samples > 0;
+    if (from < middle && middle <= to) {
+      s.Add(r, from - at, middle - at, at);
+      turn_before = s.turn;
+      coning_before = s.coning;
+      roll_middle = RollAt(span.begin_ns + (span.end_ns - span.begin_ns) / 2, k, blocks);
+      from = middle;
+    }
+    if (to > from) s.Add(r, from - at, to - at, at);
+  }
+  const Complex to_M = std::polar(1., -roll_middle);
+  const double roll_begin = RollAt(span.begin_ns, span.begin_block, blocks);
+  const double roll_end = RollAt(span.end_ns, span.end_block, blocks);
+  out.roll_before = roll_middle - roll_begin + coning_before;
+  out.roll_after = roll_end - roll_middle + s.coning - coning_before;
+  out.turn_M = Vector(to_M * s.turn);
+  out.turn_before_M = Vector(to_M * turn_before);
+  out.turn_per_roll = Vector(to_M * kI * (s.turn_moment / out.seconds - 0.5 * s.turn));
+  out.var_turn = 0.5 * std::norm(s.missing);
+  out.has_axial = has_axial;
+  if (has_axial) out.axial = s.axial + s.coning;
+  if (s.forced > 0) {
+    const Complex f = (s.back + kI * turn_before * s.z) / s.forced;
+    const double fz = (s.back_z - Axial(turn_before, s.force())) / s.forced;
+    out.force_M << Vector(to_M * f), fz;
+    out.force_per_roll =
+        Vector(to_M * kI * (s.force_moment / out.seconds - 0.5 * s.force()) / s.forced);
+    out.sigma_roll = std::sqrt(12 / s.forced) * accel_noise / std::max(std::abs(f), 1e-9);
+  } else {
+    out.level = false;
+    out.sigma_roll = 1e9;
+  }
+  FillErrors(s, to_M, std::polar(1., roll_end - roll_middle) - std::polar(1., roll_begin - roll_middle),
+             out);
+  FillSamples(span, blocks, out);
+  return out;
+}
+
+}  // namespace wellgyro::increment

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace wellgyro::increment {
+
+/// Elements by their number since the beginning, of which the youngest are kept.
+template <class T>
+class Ring {
+ public:
+  /// A power of two.
+  explicit Ring(std::size_t capacity) : items_(capacity) {}
+  std::uint64_t begin() const { return begin_; }
+  std::uint64_t end() const { return end_; }
+  bool full() const { return end_ - begin_ == items_.size(); }
+  bool empty() const { return end_ == begin_; }
+  T& operator[](std::uint64_t k) { return items_[k & (items_.size() - 1)]; }
+  const T& operator[](std::uint64_t k) const { return items_[k & (items_.size() - 1)]; }
+  const T& back() const { return (*this)[end_ - 1]; }
+  void Push(const T& item) { (*this)[end_++] = item; }
+  void DropBefore(std::uint64_t k) { begin_ = k; }
+
+ private:
+  std::vector<T> items_;
+  std::uint64_t begin_ = 0, end_ = 0;
+};
+
+}  // namespace wellgyro::increment

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <complex>
+#include <cstdint>
+
+#include "wellgyro/record/quality.h"
+#include "wellgyro/record/sample.h"
+
+namespace wellgyro::increment {
+
+using Complex = std::complex<double>;
+
+/// Channels whose moments a block keeps.
+enum Channel { kWx, kWy, kFx, kFy, kFz, kWz, kChannels };
+
+/// One channel's integral over a block, and those of it times time and time squared from the
+/// block's middle, each sample standing at its own middle.
+struct Moments {
+  double zeroth = 0, first = 0, second = 0;
+};
+
+/// Some adjoining samples, in T; or a gap, which has none. Short enough for the roll inside it to
+/// be a parabola, and bound to the samples alone, never to where knots are cut.
+struct Block {
+  std::int64_t begin_ns = 0;   ///< on the builder's own axis, on which sessions follow each other
+  std::int64_t length_ns = 0;  ///< of all its samples, or of the gap
+  double seconds = 0;          ///< length_ns
+  double period = 0;           ///< of a sample [s]
+  std::int64_t seq_begin = 0, seq_end = 0;
+  std::int64_t lost = 0;  ///< samples missing before it
+  int samples = 0;        ///< none: a gap
+  bool breaks = false;    ///< what came before is not its neighbour
+  bool accel_full_scale = false, gyro_full_scale = false;
+  bool rests = false;
+  bool has_gz = false;
+  Quality quality = Quality::kGood;
+  std::array<Moments, kChannels> sum{};
+
+  double phase = 0;    ///< inertial roll by gravity, mean over the block, unwrapped [rad]
+  double weight = 0;   ///< of it [1/rad^2]; zero: gravity says nothing
+  bool linked = true;  ///< to the phase before it; else only its changes count from here on
+
+  double roll = 0, rate = 0, bend = 0;  ///< psi, psi', psi'' at the middle [rad, rad/s, rad/s^2]
+
+  // Turned to U by e^{i psi}: integrals over the block, and first moments from its middle.
+  Complex unit;             ///< of e^{i psi}
+  Complex wx, wy;           ///< of the two gyros by themselves: the turn is wx + i wy
+  Complex fx, fy;           ///< of the two accelerometers
+  Complex w_first, f_first; ///< of turn and force
+  Complex carried;          ///< mean of the turn's rate over the last second [rad/s]
+
+  double middle() const { return 0.5 * seconds; }
+  std::int64_t end_ns() const { return begin_ns + length_ns; }
+  Complex turn() const { return wx + Complex(0, 1) * wy; }
+  Complex force() const { return fx + Complex(0, 1) * fy; }
+};
+
+/// Sums samples to a block.
+class BlockSum {
+ public:
+  int samples() const { return samples_; }
+  const SampleStamp& last() const { return last_; }
+  void Add(const ImuSample& sample, bool rests);
+  /// The block so far, which a new one then follows; begins and lengths in time are the caller's.
+  Block Close();
+
+ private:
+  // Powers of a sample's number in the block; shifted to the middle at Close().
+  std::array<std::array<double, kChannels>, 3> sum_{};
+  int samples_ = 0;
+  SampleStamp last_;
+  std::int64_t seq_begin_ = 0;
+  bool accel_full_scale_ = false, gyro_full_scale_ = false, has_gz_ = true, rests_ = true;
+  Quality quality_ = Quality::kGood;
+};
+
+/// Turns the block's sums to U by its roll; `kept` of kSecond order or third.
+void TurnBlock(bool third, Block& block);
+
+}  // namespace wellgyro::increment
