@@ -13,8 +13,8 @@ namespace wellgyro {
 namespace {
 
 using increment::Block;
-using increment::BlockSum;
 using increment::Blocks;
+using increment::BlockSum;
 using increment::Complex;
 using increment::KnotSpan;
 using increment::RollSmoother;
@@ -106,6 +106,16 @@ void IncrementBuilder::State::AddBlock(Block block) {
   if (blocks.full()) throw std::logic_error("IncrementBuilder: increments wait to be fetched");
   SeePhase(block);
   blocks.Push(block);
+  // Half way is not the mean where what is swept changes: five adjoining integrals give the mean of
+  // their sum over the middle one to the sixth order.
+  const std::uint64_t k = blocks.end() - 1;
+  if (k < blocks.begin() + 4 || block.has_gz) return;
+  for (std::uint64_t j = k - 3; j <= k; ++j) {
+    if (!(blocks[j].weight > 0 && blocks[j].linked)) return;
+  }
+  const double inner = blocks[k - 1].swept - blocks[k - 3].swept;
+  const double outer = blocks[k].swept - blocks[k - 4].swept;
+  blocks[k - 2].phase += (11 * outer - 82 * inner) / 1440;
 }
 
 void IncrementBuilder::State::CloseBlock() {
@@ -166,9 +176,9 @@ void IncrementBuilder::State::SeePhase(Block& b) {
   double phase = -std::arg(force);
   const double h = b.seconds, expected = seen_before ? phase_before + rate_before * h : phase;
   phase += kTwoPi * std::round((expected - phase) / kTwoPi);
-  phase_sum += 0.5 * carried;
-  b.phase = phase + phase_sum;
-  phase_sum += 0.5 * carried;
+  b.phase = phase + phase_sum + 0.5 * carried;
+  b.swept = carried;
+  phase_sum += carried;
   b.weight = s * s * b.seconds / (noise * noise);
   b.linked = seen_before;
   if (seen_before) rate_before += ((phase - phase_before) / h - rate_before) * std::min(1., 4 * h);

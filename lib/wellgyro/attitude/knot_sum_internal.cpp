@@ -71,7 +71,8 @@ struct Part {
   double share, share_first, first_share, first_first;
   Part(double length, double from, double to) {
     const double d1 = to - from, d2 = 0.5 * (to * to - from * from);
-    const double d3 = (to * to * to - from * from * from) / 3, lean = 12 / (length * length * length);
+    const double d3 = (to * to * to - from * from * from) / 3,
+                 lean = 12 / (length * length * length);
     share = d1 / length;
     share_first = lean * d2;
     first_share = d2 / length;
@@ -118,8 +119,8 @@ void Sums::Add(const Ready& r, double from, double to, double at) {
   fx += part.share * b.fx;
   fy += part.share * b.fy;
   const double fz = part.share * b.sum[kFz].zeroth + part.share_first * b.sum[kFz].first;
-  const double fz1 = part.first_share * b.sum[kFz].zeroth + part.first_first * b.sum[kFz].first -
-                     centre * fz;
+  const double fz1 =
+      part.first_share * b.sum[kFz].zeroth + part.first_first * b.sum[kFz].first - centre * fz;
   const Complex rate = w / length, f1_here = f1 - centre * f;
   back += f - kI * (theta * fz + rate * fz1);
   back_z += fz + Axial(theta, f) + Axial(rate, f1_here);
@@ -180,8 +181,7 @@ void FillSamples(const KnotSpan& span, const Blocks& blocks, Increment& out) {
     if (b.samples == 0) continue;
     const std::int64_t period = b.length_ns / b.samples;
     const std::int64_t from = std::max<std::int64_t>(0, span.begin_ns - b.begin_ns) / period;
-    const std::int64_t to =
-        (std::min(span.end_ns, b.end_ns()) - b.begin_ns + period - 1) / period;
+    const std::int64_t to = (std::min(span.end_ns, b.end_ns()) - b.begin_ns + period - 1) / period;
     if (to <= from) continue;
     if (first) out.seq_begin = b.seq_begin + from;
     if (from == 0 && !(first && b.begin_ns == span.begin_ns && false)) out.samples_lost += b.lost;
@@ -254,7 +254,8 @@ Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Bl
     out.level = false;
     out.sigma_roll = 1e9;
   }
-  FillErrors(s, to_M, std::polar(1., roll_end - roll_middle) - std::polar(1., roll_begin - roll_middle),
+  FillErrors(s, to_M,
+             std::polar(1., roll_end - roll_middle) - std::polar(1., roll_begin - roll_middle),
              out);
   FillSamples(span, blocks, out);
   return out;

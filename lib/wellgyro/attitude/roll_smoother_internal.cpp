@@ -102,8 +102,10 @@ void RollSmoother::Join(std::uint64_t begin, std::uint64_t end, double before, B
     if (k > 0) {
       const Block& a = blocks[k - 1];
       double step = smoothed - before;
-      if (!b.linked) step = (a.middle() + b.middle()) * 0.5 * (a.rate + b.rate);
-      else if (b.has_gz) step = b.phase - a.phase;
+      if (!b.linked)
+        step = (a.middle() + b.middle()) * 0.5 * (a.rate + b.rate);
+      else if (b.has_gz)
+        step = b.phase - a.phase;
       roll_ += step;
     } else {
       roll_ = smoothed;

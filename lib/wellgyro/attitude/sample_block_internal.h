@@ -39,16 +39,17 @@ struct Block {
 
   double phase = 0;    ///< inertial roll by gravity, mean over the block, unwrapped [rad]
   double weight = 0;   ///< of it [1/rad^2]; zero: gravity says nothing
+  double swept = 0;    ///< what the axis' own turning adds to it over the block [rad]
   bool linked = true;  ///< to the phase before it; else only its changes count from here on
 
   double roll = 0, rate = 0, bend = 0;  ///< psi, psi', psi'' at the middle [rad, rad/s, rad/s^2]
 
   // Turned to U by e^{i psi}: integrals over the block, and first moments from its middle.
-  Complex unit;             ///< of e^{i psi}
-  Complex wx, wy;           ///< of the two gyros by themselves: the turn is wx + i wy
-  Complex fx, fy;           ///< of the two accelerometers
-  Complex w_first, f_first; ///< of turn and force
-  Complex carried;          ///< mean of the turn's rate over the last second [rad/s]
+  Complex unit;              ///< of e^{i psi}
+  Complex wx, wy;            ///< of the two gyros by themselves: the turn is wx + i wy
+  Complex fx, fy;            ///< of the two accelerometers
+  Complex w_first, f_first;  ///< of turn and force
+  Complex carried;           ///< mean of the turn's rate over the last second [rad/s]
 
   double middle() const { return 0.5 * seconds; }
   std::int64_t end_ns() const { return begin_ns + length_ns; }
