@@ -88,14 +88,14 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   return t;
 }
 
-void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RunScales& scales,
+void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, double walk,
                    const BorderVector& border, const Node& begin, const Node& end,
                    NormalBlock& block) {
   const Terms t = TermsOf(knot, place, border, begin, end);
   AddTurn(t, block);
   if (knot.increment.level) AddForce(t, block);
   if (knot.increment.has_axial) AddAxial(t, block);
-  AddRoll(t, scales, block);
+  AddRoll(t, walk, block);
   AddDepth(t, block);
   AddDrift(t, block);
   if (knot.still) AddRest(t, block);
@@ -204,10 +204,8 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
 }
 
 /// The roll rate walks from knot to knot; a swing turns by its own frequency and walks too.
-void KnotRows::AddRoll(const Terms& t, const RunScales& scales, NormalBlock& block) {
-  // A third axis measures the roll: its walk then only keeps the system whole.
-  const double walk = t.knot.increment.has_axial ? 1.0 : scales.roll_walk;
-  const double whiten = 1 / (walk * std::sqrt(t.dt));
+void KnotRows::AddRoll(const Terms& t, double walk, NormalBlock& block) {
+  const double whiten = 1 / walk;
   Factor& f = factor_;
   f.Begin(RowKind::kRoll, 1);
   f.r[0] = whiten * (t.end.roll_rate - t.begin.roll_rate);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "wellgyro/estimate/layout.h"
@@ -23,7 +26,10 @@ struct KnotPlace {
 
 /// What a run has been found to be, beside its nodes and constants.
 struct RunScales {
-  double roll_walk = 1e-2;  ///< of the roll rate [rad/s/sqrt(s)]
+  double roll_walk = 0.1;  ///< of the roll rate [rad/s/sqrt(s)]
+  /// Of each knot, how much the rate plainly changes there beyond its walk: starts and stops; empty
+  /// where not yet known [rad/s].
+  std::vector<double> roll_start;
 };
 
 /// Whitened residuals of everything that a knot says of the nodes at its ends and of the border,
@@ -34,8 +40,9 @@ class KnotRows {
   /// Both must outlive this object.
   KnotRows(const EstimateSetup& setup, const Layout& layout) : setup_(setup), layout_(layout) {}
 
-  void Add(const RunKnot& knot, const KnotPlace& place, const RunScales& scales,
-           const BorderVector& border, const Node& begin, const Node& end, NormalBlock& block);
+  /// `walk`: of the roll rate over this knot, 1-sigma [rad/s].
+  void Add(const RunKnot& knot, const KnotPlace& place, double walk, const BorderVector& border,
+           const Node& begin, const Node& end, NormalBlock& block);
 
  private:
   struct Terms;
@@ -43,7 +50,7 @@ class KnotRows {
                 const Node& begin, const Node& end) const;
   void AddTurn(const Terms& t, NormalBlock& block);
   void AddForce(const Terms& t, NormalBlock& block);
-  void AddRoll(const Terms& t, const RunScales& scales, NormalBlock& block);
+  void AddRoll(const Terms& t, double walk, NormalBlock& block);
   void AddAxial(const Terms& t, NormalBlock& block);
   void AddDepth(const Terms& t, NormalBlock& block);
   void AddDrift(const Terms& t, NormalBlock& block);

@@ -1,11 +1,14 @@
 #include "wellgyro/estimate/run_solver.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
 #include "wellgyro/estimate/places.h"
+#include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/rotation.h"
 
@@ -29,10 +32,11 @@ constexpr double kStays = 1e-2;
 // The forward pass: gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
 // about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
 constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
-// A walk of the roll rate from that of a clamped tool to that of one that jerks.
-constexpr double kWalkLeast = 1e-6, kWalkMost = 1;  // [rad/s/sqrt(s)]
-constexpr double kWalkStays = 0.2;  // of its logarithm: the sigma of what 50 knots tell of it
-
+// Steps at which another roll walk can be told from the last, and from which it is not worth while.
+constexpr double kNear = 1, kFar = 1e4;
+// Walks of the roll rate tried: of a tool that jerks, to one clamped to a turntable.
+constexpr double kWalkMost = 0.1, kWalkLeast = 1e-6;  // [rad/s/sqrt(s)]
+constexpr double kWorse = 6;  // 2 ln 20: by which evidence decides
 Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
 
 }  // namespace
@@ -49,7 +53,6 @@ RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots)
 void RunSolver::Begin(const Matrix3d& R_LT) {
   nodes_.assign(knots_.size() + 1, Node{});
   border_.setZero();
-  scales_ = {};
   nodes_[0].R_LT = R_LT;
   const double c = std::cos(setup_.site.latitude), s = std::sin(setup_.site.latitude);
   const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
@@ -137,12 +140,11 @@ bool RunSolver::Linearise() {
   FirstNode(information, gradient);
   elimination_.Start(knots_.size(), information, gradient);
   block_.ClearSums();
-  log_scales_ = 0;
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     block_.Clear(layout_);
     if (k == 0) AddTies(0, block_, 0);
     AddTies(k + 1, block_, block_.next());
-    rows_.Add(knots_[k], places_[k], scales_, border_, nodes_[k], nodes_[k + 1], block_);
+    rows_.Add(knots_[k], places_[k], Walk(k), border_, nodes_[k], nodes_[k + 1], block_);
     if (!elimination_.Step(block_)) return false;
   }
   return true;
@@ -158,51 +160,70 @@ double RunSolver::Step(const std::vector<NodeVector>& steps, const BorderVector&
   return most;
 }
 
-/// The walk of the roll rate by its own residuals over their redundancy: a variance component.
-/// True where it stays.
-bool RunSolver::LearnRollWalk() {
-  EdgeMatrix next = elimination_.LastCovariance();
-  BehindMatrix with_next;
-  double squares = 0, freedom = 0;
-  const int roll = layout_.roll;
-  for (std::size_t k = knots_.size(); k-- > 0;) {
-    const EdgeMatrix here = elimination_.CovarianceBefore(k, next, with_next);
-    const double walk2 =
-        scales_.roll_walk * scales_.roll_walk * knots_[k].increment.seconds;
-    const double change = nodes_[k + 1].roll_rate - nodes_[k].roll_rate;
-    const double var = here(roll, roll) + next(roll, roll) - 2 * with_next(roll, roll);
-    const double weight = 6 / (5 + change * change / walk2);
-    squares += weight * change * change / walk2;
-    freedom += std::max(0.0, 1 - weight * var / walk2);
-    next = here;
+/// 1-sigma of the change of the roll rate over a knot [rad/s].
+double RunSolver::Walk(std::size_t knot) const {
+  // A third axis measures the roll: its walk then only keeps the system whole.
+  const Increment& inc = knots_[knot].increment;
+  if (inc.has_axial) return std::sqrt(inc.seconds);
+  const double start = scales_.roll_start.empty() ? 0 : scales_.roll_start[knot];
+  return std::hypot(scales_.roll_walk * std::sqrt(inc.seconds), start);
+}
+
+/// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas.
+bool RunSolver::Iterate(int most, double stays, SolveReport& report) {
+  std::vector<NodeVector> steps;
+  BorderVector border_step;
+  for (int i = 0; i < most; ++i) {
+    PlaceKnots(setup_.site, knots_, nodes_, places_);
+    if (!Linearise() || !elimination_.Solve(steps, border_step)) return false;
+    Step(steps, border_step);
+    ++report.iterations;
+    if (elimination_.decrement() < stays) return true;
   }
-  if (!(freedom > 0)) return true;
-  const double ratio = std::clamp(std::sqrt(squares / freedom), 0.1, 10.0);
-  const double before = scales_.roll_walk;
-  scales_.roll_walk = std::clamp(before * ratio, kWalkLeast, kWalkMost);
-  return std::abs(std::log(scales_.roll_walk / before)) < kWalkStays;
+  return false;
+}
+
+double RunSolver::Evidence() const {
+  double evidence = elimination_.log_determinant() +
+                    border_.cwiseQuotient(layout_.sigma).squaredNorm();
+  for (const RowSum& sum : block_.sums()) evidence += sum.cost;
+  const double rows = layout_.swing == kAbsent ? 1 : 3;
+  for (std::size_t k = 0; k < knots_.size(); ++k) evidence += 2 * rows * std::log(Walk(k));
+  return evidence;
+}
+
+/// The walk of greatest evidence, by decades from the loosest.
+void RunSolver::FindRollWalk(SolveReport& report) {
+  std::vector<Node> best_nodes = nodes_;
+  BorderVector best_border = border_;
+  double best = HUGE_VAL, best_walk = scales_.roll_walk;
+  for (double walk = kWalkMost; walk > 0.9 * kWalkLeast; walk /= 10) {
+    scales_.roll_walk = walk;
+    if (!Iterate(3, kNear, report) && elimination_.decrement() > kFar) break;
+    const double evidence = Evidence(); if(getenv("DBG")) { int n=0; for(double e: scales_.roll_start) n+=e>0; printf("  walk %.0e ev %.2f dec %.2e starts %d roll w %.1f\n",walk,evidence,elimination_.decrement(),n,block_.sums()[2].weighted);}
+    if (evidence < best) {
+      best = evidence;
+      best_walk = walk;
+      best_nodes = nodes_;
+      best_border = border_;
+    } else if (evidence > best + kWorse) {
+      break;
+    }
+  }
+  scales_.roll_walk = best_walk;
+  nodes_ = best_nodes;
+  border_ = best_border;
 }
 
 SolveReport RunSolver::Solve(int iterations) {
   SolveReport report;
-  std::vector<NodeVector> steps;
-  BorderVector border_step;
-  bool learned = false;
-  for (report.iterations = 0; report.iterations < iterations; ++report.iterations) {
-    PlaceKnots(setup_.site, knots_, nodes_, places_);
-    if (!Linearise() || !elimination_.Solve(steps, border_step)) return report;
-    const double most = Step(steps, border_step);
-    if (learned && elimination_.decrement() < kStays) {
-      report.converged = true;
-      break;
-    }
-    if (most < 0.1) learned = LearnRollWalk();
-  }
+  scales_ = {};
+  Iterate(iterations, kNear, report);
+  scales_.roll_start = RollStarts(knots_);
+  FindRollWalk(report);
+  report.converged = Iterate(iterations, kStays, report);
   report.sums = block_.sums();
-  for (const RowSum& sum : report.sums) report.evidence += sum.cost;
-  report.evidence += border_.cwiseQuotient(layout_.sigma).squaredNorm();
-  report.evidence += elimination_.log_determinant();
-  report.evidence += 2 * static_cast<double>(knots_.size()) * std::log(scales_.roll_walk);
+  report.evidence = Evidence();
   report.roll_walk = scales_.roll_walk;
   return report;
 }

@@ -58,7 +58,10 @@ class RunSolver {
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void FirstNode(EdgeMatrix& information, EdgeVector& gradient);
   double Step(const std::vector<NodeVector>& steps, const BorderVector& border_step);
-  bool LearnRollWalk();
+  double Walk(std::size_t knot) const;
+  bool Iterate(int most, double stays, SolveReport& report);
+  double Evidence() const;
+  void FindRollWalk(SolveReport& report);
 
   EstimateSetup setup_;
   Layout layout_;
@@ -70,7 +73,6 @@ class RunSolver {
   KnotRows rows_;
   NormalBlock block_;
   Elimination elimination_;
-  double log_scales_ = 0;
 };
 
 }  // namespace wellgyro

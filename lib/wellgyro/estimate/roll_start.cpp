@@ -1,0 +1,76 @@
+#include "wellgyro/estimate/roll_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace wellgyro {
+namespace {
+
+constexpr double kMedianToSigma = 1.4826, kBeyond = 3.5;
+constexpr std::size_t kSpans[] = {1, 4, 12};  // knots: a jerk, a start, a slow start of a slow roll
+
+double MedianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Running sums of the roll, its variance, time, and knots that do not show it.
+struct Sums {
+  std::vector<double> roll{0}, var{0}, seconds{0};
+  std::vector<std::size_t> unseen{0};
+
+  explicit Sums(std::span<const RunKnot> knots) {
+    for (const RunKnot& knot : knots) {
+      const Increment& i = knot.increment;
+      roll.push_back(roll.back() + i.roll_before + i.roll_after);
+      var.push_back(var.back() + (i.roll_seen ? i.sigma_roll * i.sigma_roll : 0));
+      seconds.push_back(seconds.back() + i.seconds);
+      unseen.push_back(unseen.back() + (i.roll_seen ? 0 : 1));
+    }
+  }
+};
+
+struct Change {
+  std::size_t knot;
+  double rate, sigma;
+};
+
+std::vector<Change> ChangesOver(const Sums& s, std::size_t span) {
+  std::vector<Change> changes;
+  for (std::size_t k = span; k + span < s.roll.size(); ++k) {
+    const std::size_t a = k - span, b = k + span;
+    if (s.unseen[b] != s.unseen[a]) continue;
+    const double before = s.seconds[k] - s.seconds[a], after = s.seconds[b] - s.seconds[k];
+    const double rate = (s.roll[b] - s.roll[k]) / after - (s.roll[k] - s.roll[a]) / before;
+    changes.push_back({k - 1, std::abs(rate), std::sqrt(s.var[b] - s.var[a]) / before});
+  }
+  return changes;
+}
+
+}  // namespace
+
+std::vector<double> RollStarts(std::span<const RunKnot> knots) {
+  const Sums sums(knots);
+  std::vector<double> starts(knots.size(), 0);
+  for (const std::size_t span : kSpans) {
+    const std::vector<Change> changes = ChangesOver(sums, span);
+    if (changes.empty()) continue;
+    // What is usual is told by the half of the places where the roll is plainest.
+    std::vector<double> sigmas, plain;
+    for (const Change& c : changes) sigmas.push_back(c.sigma);
+    const double median = MedianOf(sigmas);
+    for (const Change& c : changes) {
+      if (c.sigma <= median) plain.push_back(c.rate);
+    }
+    const double usual = kMedianToSigma * MedianOf(plain);
+    for (const Change& c : changes) {
+      if (c.rate <= kBeyond * std::max(usual, c.sigma)) continue;
+      starts[c.knot] = std::max(starts[c.knot], c.rate / static_cast<double>(span));
+    }
+  }
+  return starts;
+}
+
+}  // namespace wellgyro
