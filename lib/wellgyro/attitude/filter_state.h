@@ -12,7 +12,7 @@ namespace wellgyro {
 /// Errors the filter can carry: azimuth, drift of two axes (level, Gauss-Markov, ramp each), mass
 /// unbalance, quadrature, scale x y, misalignment x y, toolface offset, time skew, accelerometer
 /// bias x y z, latitude; an adjustment's also inclination and what passes differ by.
-inline constexpr int kFilterStatesMax = 22;
+inline constexpr int kFilterStatesMax = 30;
 
 /// Sized once for the errors whose prior is not zero; nothing is allocated.
 using FilterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFilterStatesMax, 1>;

@@ -83,10 +83,9 @@ NodeMatrix Elimination::Remainder(std::size_t k) const {
   return inverse.transpose() * inverse;
 }
 
-EdgeMatrix Elimination::CovarianceBefore(std::size_t k, const EdgeMatrix& next,
-                                         BehindMatrix& with_next) const {
+EdgeMatrix Elimination::CovarianceBefore(std::size_t k, const BehindMatrix& gain,
+                                         const EdgeMatrix& next, BehindMatrix& with_next) const {
   const int n = layout_->node, b = layout_->border;
-  const BehindMatrix gain = Gain(k);
   with_next = gain * next;
   EdgeMatrix before(n + b, n + b);
   before.topLeftCorner(n, n) = Remainder(k) + with_next * gain.transpose();

@@ -40,9 +40,10 @@ class Elimination {
   BehindMatrix Gain(std::size_t k) const;
   /// cov(e) of node k.
   NodeMatrix Remainder(std::size_t k) const;
-  /// From the covariance of [node k + 1; border] to that of [node k; border]; `with_next` becomes
-  /// E[x_k (x_k+1; border)'].
-  EdgeMatrix CovarianceBefore(std::size_t k, const EdgeMatrix& next, BehindMatrix& with_next) const;
+  /// From the covariance of [node k + 1; border] to that of [node k; border], with Gain(k);
+  /// `with_next` becomes E[x_k (x_k+1; border)'].
+  EdgeMatrix CovarianceBefore(std::size_t k, const BehindMatrix& gain, const EdgeMatrix& next,
+                              BehindMatrix& with_next) const;
   /// ln det of the information of all unknowns, after Solve().
   double log_determinant() const { return log_determinant_; }
   /// Newton's decrement squared, g' H^-1 g, after Solve(): how far the step is in sigmas, all

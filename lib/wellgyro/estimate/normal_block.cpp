@@ -38,6 +38,20 @@ Loss LossOf(const Factor& f) {
   }
 }
 
+/// tr(J cov J').
+double Absorbed(const Factor& f, const NormalBlock::Matrix& cov) {
+  const auto n = static_cast<std::size_t>(f.columns);
+  double trace = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t k = 0; k < n; ++k) {
+      const double jj = f.J.col(static_cast<int>(j)).head(f.rows).dot(
+          f.J.col(static_cast<int>(k)).head(f.rows));
+      trace += jj * cov(f.column[j], f.column[k]);
+    }
+  }
+  return trace;
+}
+
 }  // namespace
 
 void NormalBlock::Clear(const Layout& layout) {
@@ -50,6 +64,16 @@ void NormalBlock::Clear(const Layout& layout) {
 void NormalBlock::Add(const Factor& f) {
   const Loss loss = LossOf(f);
   const auto n = static_cast<std::size_t>(f.columns);
+  RowSum& sum = sums_[static_cast<std::size_t>(f.kind)];
+  const double square = f.r.head(f.rows).squaredNorm();
+  sum.squares += square;
+  sum.weighted += loss.weight * square;
+  sum.cost += loss.cost;
+  sum.rows += f.rows;
+  if (covariance_ != nullptr) {
+    sum.absorbed += loss.weight * Absorbed(f, *covariance_);
+    return;
+  }
   for (std::size_t j = 0; j < n; ++j) {
     const int cj = f.column[j];
     const Eigen::Vector3d wj = loss.weight * f.J.col(static_cast<int>(j));
@@ -63,12 +87,6 @@ void NormalBlock::Add(const Factor& f) {
       information_(std::max(cj, ck), std::min(cj, ck)) += h;
     }
   }
-  RowSum& sum = sums_[static_cast<std::size_t>(f.kind)];
-  const double square = f.r.head(f.rows).squaredNorm();
-  sum.squares += square;
-  sum.weighted += loss.weight * square;
-  sum.cost += loss.cost;
-  sum.rows += f.rows;
 }
 
 }  // namespace wellgyro

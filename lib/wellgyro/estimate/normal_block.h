@@ -52,6 +52,9 @@ struct RowSum {
   double weighted = 0;  ///< with their robust weights
   double cost = 0;      ///< -2 ln of their density, but for constants
   double rows = 0;
+  /// What the unknowns take up of them, where the covariance was given: rows less this is what their
+  /// squares are to be.
+  double absorbed = 0;
 };
 
 /// The normal equations of what a knot says of [node | next node | border]: J'J and J'r.
@@ -64,6 +67,9 @@ class NormalBlock {
   void Clear(const Layout& layout);
   /// Adds the factor with the robust weight of its kind.
   void Add(const Factor& factor);
+  /// With the covariance of [node | next node | border], factors that come next are only summed up,
+  /// with what the unknowns absorb of them; nullptr: as before.
+  void Measure(const Matrix* covariance) { covariance_ = covariance; }
 
   int next() const { return node_; }        ///< first column of the next node
   int border() const { return 2 * node_; }  ///< first of the border
@@ -77,6 +83,7 @@ class NormalBlock {
   int node_ = 0;
   Matrix information_;
   Vector gradient_;
+  const Matrix* covariance_ = nullptr;
   std::array<RowSum, kRowKinds> sums_{};
 };
 

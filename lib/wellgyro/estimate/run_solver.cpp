@@ -1,8 +1,6 @@
 #include "wellgyro/estimate/run_solver.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -160,6 +158,22 @@ double RunSolver::Step(const std::vector<NodeVector>& steps, const BorderVector&
   return most;
 }
 
+void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMatrix& end,
+                        const BehindMatrix& begin_with_end) {
+  const int n = layout_.node, m = n + layout_.border;
+  NormalBlock::Matrix joint(n + m, n + m);
+  joint.topLeftCorner(n, n) = begin.topLeftCorner(n, n);
+  joint.topRightCorner(n, m) = begin_with_end;
+  joint.bottomLeftCorner(m, n) = begin_with_end.transpose();
+  joint.bottomRightCorner(m, m) = end;
+  block_.Clear(layout_);
+  block_.Measure(&joint);
+  AddTies(knot + 1, block_, block_.next());
+  rows_.Add(knots_[knot], places_[knot], Walk(knot), border_, nodes_[knot], nodes_[knot + 1],
+            block_);
+  block_.Measure(nullptr);
+}
+
 /// 1-sigma of the change of the roll rate over a knot [rad/s].
 double RunSolver::Walk(std::size_t knot) const {
   // A third axis measures the roll: its walk then only keeps the system whole.
@@ -200,7 +214,7 @@ void RunSolver::FindRollWalk(SolveReport& report) {
   for (double walk = kWalkMost; walk > 0.9 * kWalkLeast; walk /= 10) {
     scales_.roll_walk = walk;
     if (!Iterate(3, kNear, report) && elimination_.decrement() > kFar) break;
-    const double evidence = Evidence(); if(getenv("DBG")) { int n=0; for(double e: scales_.roll_start) n+=e>0; printf("  walk %.0e ev %.2f dec %.2e starts %d roll w %.1f\n",walk,evidence,elimination_.decrement(),n,block_.sums()[2].weighted);}
+    const double evidence = Evidence();
     if (evidence < best) {
       best = evidence;
       best_walk = walk;
@@ -221,7 +235,8 @@ SolveReport RunSolver::Solve(int iterations) {
   Iterate(iterations, kNear, report);
   scales_.roll_start = RollStarts(knots_);
   FindRollWalk(report);
-  report.converged = Iterate(iterations, kStays, report);
+  Iterate(iterations, kStays, report);
+  report.converged = elimination_.decrement() < kNear;
   report.sums = block_.sums();
   report.evidence = Evidence();
   report.roll_walk = scales_.roll_walk;

@@ -36,6 +36,8 @@ class RunSolver {
  public:
   /// `knots` must outlive this object; at least one.
   RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots);
+  RunSolver(const RunSolver&) = delete;
+  RunSolver& operator=(const RunSolver&) = delete;
 
   /// Places every node by a forward pass from this attitude of node 0: the gyros carry the axis,
   /// gravity turns the tool about it.
@@ -51,6 +53,13 @@ class RunSolver {
   const BorderVector& border() const { return border_; }
   /// Of the last linearisation.
   const Elimination& elimination() const { return elimination_; }
+
+  /// Sums up residuals anew, knot by knot in any order, each with the covariances of the nodes at
+  /// its ends with the border: as they stand, and what the unknowns absorb of them.
+  void BeginMeasure() { block_.ClearSums(); }
+  void Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMatrix& end,
+               const BehindMatrix& begin_with_end);
+  const std::array<RowSum, kRowKinds>& sums() const { return block_.sums(); }
 
  private:
   bool Linearise();

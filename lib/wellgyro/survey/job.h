@@ -44,7 +44,12 @@ struct AlignmentSpec {
 
 /// How samples are summed on the run.
 struct AttitudeSpec {
+  enum class Estimator {
+    kAngles,    ///< filter, smoother and adjustment in azimuth, inclination and toolface
+    kRotation,  ///< one adjustment of rotations, regular at vertical
+  };
   TrackerOptions::Order order = TrackerOptions::kThird;  ///< the second is cheaper, not better
+  Estimator estimator = Estimator::kAngles;              ///< of the final stations
 };
 
 /// What the job says of the magnetic azimuths of a tool that has magnetometers.

@@ -43,6 +43,16 @@ StillSetup StillSetupOf(const Job& job) {
   return setup;
 }
 
+IncrementOptions IncrementOptionsOf(const Job& job) {
+  IncrementOptions options;
+  options.order = job.attitude.order == TrackerOptions::kSecond ? IncrementOptions::kSecond
+                                                                : IncrementOptions::kThird;
+  options.accel_noise = job.errors.accel_noise;
+  options.angle_random_walk = job.noise.angle_random_walk;
+  if (job.errors.accel_bias_sigma > 0) options.accel_bias = job.errors.accel_bias_sigma;
+  return options;
+}
+
 AlongHole Between(const AlongHole& a, const AlongHole& b, double fraction) {
   if (!a.known || !b.known) return {};
   const auto mix = [fraction](double x, double y) { return x + fraction * (y - x); };
@@ -70,6 +80,9 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
       magnet_pending_(job.magnetic && job.magnetic->tie) {
   summary_.run = run;
   summary_.tool = tool;
+  if (job.attitude.estimator == AttitudeSpec::Estimator::kRotation) {
+    builder_.emplace(IncrementOptionsOf(job));
+  }
 }
 
 void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& along,
@@ -102,7 +115,7 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
     c.session = sample.stamp.session;
     c.rests = middle.known && std::abs(middle.speed) < kRestSpeed;
     c.for_vertical = vertical_.Wants(sample);
-    if (c.for_vertical) {
+    if (c.for_vertical || builder_) {
       c.sample = sample;
       c.middle = middle;
     }
@@ -171,6 +184,23 @@ void RunSurvey::Flush() {
   if (const auto window = still_.Flush()) TakeWindow(*window);
   Release(true);
   CloseGroup();
+  if (builder_) {
+    builder_->Flush();
+    TakeIncrements();
+  }
+}
+
+/// The increments' knots end where the tracker's do; in a gap, once the sample behind it has come.
+void RunSurvey::CutIncrement(double fraction) {
+  if (fraction <= 1) {
+    builder_->Cut(fraction);
+  } else {
+    gap_cuts_.push_back(Duration{std::llround((fraction - 1) * current_->period_ns)});
+  }
+}
+
+void RunSurvey::TakeIncrements() {
+  while (builder_->Ready()) increments_.push_back(builder_->Pop());
 }
 
 Draft RunSurvey::NewDraft(double md) const {
@@ -196,6 +226,11 @@ void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double
   const bool known = c.along.known && next.known;
   summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
   if (c.for_vertical) vertical_.Push(c.sample, c.middle, site_);
+  if (builder_ && builder_->Push(c.sample, c.rests)) {
+    for (const Duration into : gap_cuts_) builder_->CutGap(into);
+    TakeIncrements();
+  }
+  gap_cuts_.clear();
   resting_ = c.rests;
   if (known && pass_next.number == c.pass.number && c.pass.pass != Pass::kStationary &&
       (pass_next.md != c.pass.md || c.pass.begins)) {
@@ -279,6 +314,7 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
   Knot knot = fraction > 1 ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.period_ns)})
                            : tracker_.CutKnot(fraction);
   const bool again = last_knot_ && knot.time <= *last_knot_;
+  if (!again && builder_) CutIncrement(fraction);
   if (again && (waiting_.empty() || waiting_.back().draft)) return;
   if (!again) {
     last_knot_ = knot.time;

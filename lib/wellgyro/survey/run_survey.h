@@ -8,6 +8,7 @@
 
 #include "wellgyro/alignment/still_detector.h"
 #include "wellgyro/attitude/filter.h"
+#include "wellgyro/attitude/increment_builder.h"
 #include "wellgyro/attitude/tracker.h"
 #include "wellgyro/attitude/vertical_filter.h"
 #include "wellgyro/depth/passes.h"
@@ -59,6 +60,9 @@ class RunSurvey {
   std::vector<Draft>& drafts() { return drafts_; }
   /// Those of drafts() that are from samples stand in this order in the filter.
   const AzimuthFilter* filter() const { return filter_ ? &*filter_ : nullptr; }
+  /// Between knots, as far as they are known: some seconds behind filter(). Empty where the job's
+  /// estimator takes none.
+  std::span<const Increment> increments() const { return increments_; }
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
   /// Lists the deepest station of the in-runs, which closes the survey.
@@ -101,6 +105,8 @@ class RunSurvey {
   void AddTargets(double md_next, double reach);
   void ListLastMark();
   void CutAt(const KnotAt& cut, const AlongHole& next, double reach);
+  void CutIncrement(double fraction);
+  void TakeIncrements();
   bool ComesToRest(const AlongHole& end) const;
   Draft NewDraft(double md) const;
   bool SamePlace(ToolTime time, std::optional<double> md) const;
@@ -129,6 +135,9 @@ class RunSurvey {
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::vector<KnotAt> cuts_;                  ///< scratch
   HighSideTracker tracker_;
+  std::optional<IncrementBuilder> builder_;
+  std::vector<Duration> gap_cuts_;  ///< in the gap behind the sample last given to the builder
+  std::vector<Increment> increments_;
   VerticalFilter vertical_;
   std::optional<double> from_zero_;  ///< of the knot last stepped
   bool resting_ = false;             ///< by its depth, now

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/attitude/smoother.h"
+#include "wellgyro/survey/estimated_run.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 
 namespace wellgyro {
@@ -316,8 +317,10 @@ void ToolSurvey::Adjust() {
     run.survey->ListLastDepth();
     if (const AzimuthFilter* filter = run.survey->filter()) {
       SmoothedRun smoothed =
-          adjuster_ ? adjuster_->Adjust(filter->history(), job_.string.sigma_misalignment)
-                    : Smooth(filter->history());
+          job_.attitude.estimator == AttitudeSpec::Estimator::kRotation
+              ? EstimatedRun(job_, filter->history(), run.survey->increments())
+          : adjuster_ ? adjuster_->Adjust(filter->history(), job_.string.sigma_misalignment)
+                      : Smooth(filter->history());
       run.survey->summary().fit = smoothed.fit;
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);

@@ -226,6 +226,11 @@ AttitudeSpec ReadAttitude(TomlTable table) {
                    .FindWord<Order>("order", {{"second", TrackerOptions::kSecond},
                                               {"third", TrackerOptions::kThird}})
                    .value_or(spec.order);
+  using Estimator = AttitudeSpec::Estimator;
+  spec.estimator = table
+                       .FindWord<Estimator>("estimator", {{"angles", Estimator::kAngles},
+                                                          {"rotation", Estimator::kRotation}})
+                       .value_or(spec.estimator);
   return spec;
 }
 

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/run_solver.h"
+#include "wellgyro/estimate/setup.h"
+#include "wellgyro/record/run_knot.h"
+
+namespace wellgyro {
+
+/// An attitude from which a run may be begun: that of one node, found at rest or told.
+struct StartAttitude {
+  std::size_t node = 0;
+  Eigen::Matrix3d R_LT = Eigen::Matrix3d::Identity();
+};
+
+/// Errors of a run at one of its nodes that stay linked to those of others: attitude, drift, and the
+/// tool's constants. Those of the marked nodes form a chain in time.
+struct LinkedErrors {
+  std::size_t node = 0;
+  Eigen::MatrixXd cov;                ///< E[x x'], phi of the node first
+  Eigen::MatrixXd cov_with_previous;  ///< E[x_previous x'] of the marked node before; empty: none
+};
+
+/// A run as all its knots together tell it.
+struct RunEstimate {
+  bool solved = false;  ///< false: what follows means nothing
+  SolveReport report;   ///< of the start that fits best
+  /// Another start comes so near in evidence that the azimuth is not decided: by less than 9.
+  bool ambiguous = false;
+  std::vector<Node> nodes;                ///< one more than knots
+  std::vector<Eigen::Matrix3d> cov_phi;   ///< of each node's attitude, R_LT Exp(phi) [rad^2]
+  std::vector<LinkedErrors> marked;       ///< in the order of time
+  ErrorVector errors = ErrorVector::Zero();        ///< of the tool, as found
+  ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior
+};
+
+/// Solves the run from each start and keeps the one of greatest evidence. `marked`: nodes whose
+/// linked errors are wanted, ascending. Unsolved where there is no start or no knot, or where no
+/// start leads to a solution.
+WELLGYRO_EXPORT RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                                        std::span<const StartAttitude> starts,
+                                        std::span<const std::size_t> marked);
+
+}  // namespace wellgyro

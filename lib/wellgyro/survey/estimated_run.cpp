@@ -1,0 +1,224 @@
+#include "wellgyro/survey/estimated_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/run_estimate.h"
+#include "wellgyro/math/rotation.h"
+#include "wellgyro/record/unknown_angle.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Cuts of one place by the tracker and by the increments, each rounded to a nanosecond.
+constexpr std::int64_t kSameNs = 2;
+// An inclination at which an azimuth's sigma is that of no knowledge for any attitude's.
+constexpr double kLeastSine = 1e-9;
+
+/// Knots joined with the epochs that end where they do, and which node each epoch is.
+struct JoinedKnots {
+  std::vector<RunKnot> knots;
+  std::vector<std::size_t> node;  ///< of the epochs, as many as the increments reach
+};
+
+JoinedKnots Join(const Job& job, const FilterHistory& history,
+                 std::span<const Increment> increments) {
+  const bool rests = job.alignment.method == AlignmentSpec::Method::kGyrocompass ||
+                     job.alignment.use_fixes;
+  JoinedKnots joined;
+  std::size_t epoch = 0;
+  const auto& epochs = history.epochs;
+  for (const Increment& increment : increments) {
+    RunKnot knot{increment, {}, {}, false};
+    while (epoch < epochs.size() && epochs[epoch].knot.time.ns < increment.time.ns - kSameNs) {
+      joined.node.push_back(joined.knots.size());
+      ++epoch;
+    }
+    if (epoch < epochs.size() && epochs[epoch].knot.time.ns <= increment.time.ns + kSameNs) {
+      const Knot& at = epochs[epoch].knot;
+      knot.utc = at.utc;
+      knot.along = at.along;
+      knot.still = at.still && rests;
+      joined.node.push_back(joined.knots.size() + 1);
+      ++epoch;
+    }
+    joined.knots.push_back(knot);
+  }
+  return joined;
+}
+
+EstimateSetup SetupOf(const Job& job, const FilterHistory& history, const JoinedKnots& joined) {
+  EstimateSetup setup;
+  setup.gyro = history.setup.gyro;
+  setup.errors = history.setup.errors;
+  setup.site = history.setup.site;
+  setup.third_axis = std::any_of(joined.knots.begin(), joined.knots.end(),
+                                 [](const RunKnot& k) { return k.increment.has_axial; });
+  const bool of_mark = job.alignment.of == AlignmentSpec::Of::kMark;
+  const auto tie = [&](std::size_t node, double azimuth, double sigma, bool of_job) {
+    const bool mark = of_job && of_mark;
+    setup.ties.push_back({node, mark ? job.alignment.azimuth : azimuth, sigma, mark});
+  };
+  if (history.setup.start_azimuth) {
+    tie(0, *history.setup.start_azimuth, history.setup.start_sigma, true);
+  }
+  for (const FilterFix& fix : history.fixes) {
+    if (!fix.fix.external) continue;
+    const std::size_t epoch = fix.epoch_end == 0 ? 0 : fix.epoch_end - 1;
+    if (epoch >= joined.node.size()) continue;
+    tie(fix.epoch_end == 0 ? 0 : joined.node[epoch], fix.fix.azimuth,
+        std::sqrt(fix.fix.cov_attitude(1, 1)), !fix.fix.magnetic_azimuth);
+  }
+  return setup;
+}
+
+/// From a tie, else from the surest fix and its mirror.
+std::vector<StartAttitude> StartsOf(const EstimateSetup& setup, const FilterHistory& history,
+                                    const JoinedKnots& joined) {
+  std::vector<StartAttitude> starts;
+  if (!setup.ties.empty() && !setup.ties.front().of_mark) {
+    const AzimuthTie& tie = setup.ties.front();
+    const Knot& knot = history.epochs[0].knot;
+    // At the tie's own node only the azimuth matters where the tool leans enough to have one.
+    double inclination = knot.inclination, toolface = knot.toolface - knot.roll;
+    for (std::size_t i = 0; i < joined.node.size(); ++i) {
+      if (joined.node[i] != tie.node) continue;
+      inclination = history.epochs[i].knot.inclination;
+      toolface = history.epochs[i].knot.toolface;
+    }
+    starts.push_back({tie.node, AttitudeMatrix(tie.azimuth, inclination, toolface)});
+    return starts;
+  }
+  if (!setup.ties.empty()) {
+    const AzimuthTie& tie = setup.ties.front();
+    starts.push_back({tie.node, RotationZ(tie.azimuth)});
+    return starts;
+  }
+  const FilterFix* surest = nullptr;
+  for (const FilterFix& fix : history.fixes) {
+    if (fix.epoch_end == 0 || fix.epoch_end > joined.node.size()) continue;
+    if (surest == nullptr || fix.fix.cov_attitude(1, 1) < surest->fix.cov_attitude(1, 1)) {
+      surest = &fix;
+    }
+  }
+  if (surest == nullptr) return starts;
+  const std::size_t node = joined.node[surest->epoch_end - 1];
+  const NorthFix& fix = surest->fix;
+  starts.push_back({node, AttitudeMatrix(fix.azimuth, fix.inclination, fix.toolface)});
+  if (fix.mirror_azimuth) {
+    starts.push_back({node, AttitudeMatrix(*fix.mirror_azimuth, fix.inclination, fix.toolface)});
+  }
+  return starts;
+}
+
+/// d(inclination, azimuth, toolface) / d phi, by R_LT Exp(phi).
+Matrix3d AnglesByPhi(double inclination, double toolface) {
+  const double s = std::max(std::sin(inclination), kLeastSine), c = std::cos(inclination);
+  const double st = std::sin(toolface), ct = std::cos(toolface);
+  Matrix3d slope;
+  slope.row(0) << st, ct, 0;
+  slope.row(1) << -ct / s, st / s, 0;
+  slope.row(2) = Eigen::RowVector3d::UnitZ() - c * slope.row(1);
+  return slope;
+}
+
+AttitudeSample SampleOf(const Knot& knot, const Node& node, const Matrix3d& cov_phi) {
+  AttitudeSample a;
+  const Matrix3d& R = node.R_LT;
+  a.time = knot.time;
+  a.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
+  a.azimuth = WrapTwoPi(std::atan2(R(1, 2), R(0, 2)));
+  a.toolface = std::atan2(R(2, 1), -R(2, 0));
+  a.azimuth_known = true;
+  a.quality = Without(knot.quality, Quality::kVertical);
+  const Matrix3d slope = AnglesByPhi(a.inclination, a.toolface);
+  a.cov_attitude = slope * cov_phi * slope.transpose();
+  for (const int i : {1, 2}) {
+    if (a.cov_attitude(i, i) < kUnknownAngleVariance) continue;
+    a.cov_attitude.row(i).setZero();
+    a.cov_attitude.col(i).setZero();
+    a.cov_attitude(i, i) = kUnknownAngleVariance;
+    if (i == 1) a.quality |= Quality::kVertical;
+  }
+  return a;
+}
+
+void TakeStation(const LinkedErrors& errors, StationState& state) {
+  const Eigen::Index n = errors.cov.rows();
+  state.cov = errors.cov;
+  state.cov_with_previous = errors.cov_with_previous;
+  state.angles.setZero(2, n);
+  state.angles.leftCols<3>() =
+      AnglesByPhi(state.attitude.inclination, state.attitude.toolface).topRows<2>();
+  state.cov_white.setZero();
+}
+
+RunFit FitOf(const RunEstimate& estimate) {
+  RunFit fit;
+  fit.converged = estimate.report.converged;
+  fit.ambiguous = estimate.ambiguous;
+  double freedom = 0;
+  for (const RowKind kind : {RowKind::kTurn, RowKind::kForce, RowKind::kDepth, RowKind::kAxial,
+                             RowKind::kAzimuth}) {
+    const RowSum& sum = estimate.report.sums[static_cast<std::size_t>(kind)];
+    fit.chi_square += sum.weighted;
+    freedom += sum.rows - sum.absorbed;
+  }
+  fit.degrees_of_freedom = static_cast<int>(std::lround(freedom));
+  const RowSum& force = estimate.report.sums[static_cast<std::size_t>(RowKind::kForce)];
+  fit.parts[RunFit::kInclination] = {force.weighted, force.rows - force.absorbed};
+  fit.errors = estimate.errors.head<Knot::kSources>();
+  fit.sigma_errors = estimate.sigma_errors.head<Knot::kSources>();
+  return fit;
+}
+
+}  // namespace
+
+SmoothedRun EstimatedRun(const Job& job, const FilterHistory& history,
+                         std::span<const Increment> increments) {
+  const JoinedKnots joined = Join(job, history, increments);
+  std::vector<std::size_t> epochs, marked;
+  for (std::size_t i = 0; i < joined.node.size(); ++i) {
+    if (!history.epochs[i].station) continue;
+    epochs.push_back(i);
+    marked.push_back(joined.node[i]);
+  }
+  RunEstimate estimate;
+  if (!joined.knots.empty() && !joined.node.empty()) {
+    const EstimateSetup setup = SetupOf(job, history, joined);
+    estimate = EstimateRun(setup, joined.knots, StartsOf(setup, history, joined), marked);
+  }
+  if (!estimate.solved) {
+    SmoothedRun run = Smooth(history);
+    run.fit = RunFit{};
+    return run;
+  }
+  SmoothedRun run;
+  for (std::size_t i = 0; i < joined.node.size(); ++i) {
+    const std::size_t node = joined.node[i];
+    run.attitude.push_back(
+        SampleOf(history.epochs[i].knot, estimate.nodes[node], estimate.cov_phi[node]));
+  }
+  for (std::size_t j = 0; j < epochs.size(); ++j) {
+    StationState state;
+    state.epoch = epochs[j];
+    state.attitude = run.attitude[epochs[j]];
+    state.along = history.epochs[epochs[j]].knot.along;
+    TakeStation(estimate.marked[j], state);
+    run.stations.push_back(std::move(state));
+  }
+  run.fit = FitOf(estimate);
+  if (estimate.ambiguous) {
+    for (AttitudeSample& a : run.attitude) a.azimuth_known = false;
+    for (StationState& s : run.stations) s.attitude.azimuth_known = false;
+  }
+  return run;
+}
+
+}  // namespace wellgyro
