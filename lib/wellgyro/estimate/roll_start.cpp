@@ -49,7 +49,24 @@ std::vector<Change> ChangesOver(const Sums& s, std::size_t span) {
   return changes;
 }
 
+/// What is usual is told by the half of the places where the roll is plainest.
+double UsualOf(const std::vector<Change>& changes) {
+  std::vector<double> sigmas, plain;
+  for (const Change& c : changes) sigmas.push_back(c.sigma);
+  const double median = MedianOf(sigmas);
+  for (const Change& c : changes) {
+    if (c.sigma <= median) plain.push_back(c.rate);
+  }
+  return kMedianToSigma * MedianOf(plain);
+}
+
 }  // namespace
+
+std::optional<double> UsualRollChange(std::span<const RunKnot> knots) {
+  const std::vector<Change> changes = ChangesOver(Sums(knots), 1);
+  if (changes.empty()) return std::nullopt;
+  return UsualOf(changes);
+}
 
 std::vector<double> RollStarts(std::span<const RunKnot> knots) {
   const Sums sums(knots);
@@ -57,14 +74,7 @@ std::vector<double> RollStarts(std::span<const RunKnot> knots) {
   for (const std::size_t span : kSpans) {
     const std::vector<Change> changes = ChangesOver(sums, span);
     if (changes.empty()) continue;
-    // What is usual is told by the half of the places where the roll is plainest.
-    std::vector<double> sigmas, plain;
-    for (const Change& c : changes) sigmas.push_back(c.sigma);
-    const double median = MedianOf(sigmas);
-    for (const Change& c : changes) {
-      if (c.sigma <= median) plain.push_back(c.rate);
-    }
-    const double usual = kMedianToSigma * MedianOf(plain);
+    const double usual = UsualOf(changes);
     for (const Change& c : changes) {
       if (c.rate <= kBeyond * std::max(usual, c.sigma)) continue;
       starts[c.knot] = std::max(starts[c.knot], c.rate / static_cast<double>(span));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,5 +13,9 @@ namespace wellgyro {
 /// [rad/s]. It widens the walk of the roll rate there, so that a tool that once spins up is not taken
 /// for one that always jerks. Empty where the roll is nowhere seen.
 std::vector<double> RollStarts(std::span<const RunKnot> knots);
+
+/// What the roll rate usually changes by from one knot to the next where it is plainest, 1-sigma
+/// [rad/s]; absent where it is nowhere seen.
+std::optional<double> UsualRollChange(std::span<const RunKnot> knots);
 
 }  // namespace wellgyro

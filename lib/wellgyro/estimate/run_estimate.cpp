@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "wellgyro/estimate/swing.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
@@ -35,15 +37,34 @@ double HeadingBetween(const Matrix3d& from, const Matrix3d& to) {
   return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
 }
 
-/// Begins so that the node of the start has its heading. The Earth's rate depends on it, so twice.
-void BeginAt(const StartAttitude& start, RunSolver& solver) {
+/// Adds to the roll of the knots between two nodes that do not show it, together `angle`.
+void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
+            std::vector<double>& extra) {
+  const auto weight = [&](std::size_t k) {
+    const bool hidden = !knots[k].increment.roll_seen && !knots[k].still;
+    return hidden ? knots[k].increment.seconds : 0.0;
+  };
+  double sum = 0;
+  for (std::size_t k = begin; k < end; ++k) sum += weight(k);
+  if (!(sum > 0)) return;
+  for (std::size_t k = begin; k < end; ++k) extra[k] += angle * weight(k) / sum;
+}
+
+void BeginAt(const Start& start, RunSolver& solver) {
   Matrix3d first = LevelAttitude(solver.knots());
-  for (int i = 0; i < 3; ++i) {
-    solver.Begin(first);
-    const double heading = HeadingBetween(solver.nodes()[start.node].R_LT, start.R_LT);
-    first = RotationZ(heading) * first;
+  std::vector<double> extra(solver.knots().size(), 0);
+  const auto heading = [&](const Anchor& anchor) {
+    solver.Begin(first, extra);
+    return HeadingBetween(solver.nodes()[anchor.node].R_LT, anchor.R_LT);
+  };
+  // The Earth's rate depends on the heading: until it stays to a milliradian.
+  for (int i = 0; i < 3; ++i) first = RotationZ(heading(start.front())) * first;
+  const std::size_t* from = &start.front().node;
+  for (const Anchor& anchor : std::span(start).subspan(1)) {
+    for (int i = 0; i < 2; ++i) Spread(heading(anchor), solver.knots(), *from, anchor.node, extra);
+    from = &anchor.node;
   }
-  solver.Begin(first);
+  solver.Begin(first, extra);
 }
 
 /// Columns of [node; border] whose errors stay linked from node to node.
@@ -127,28 +148,36 @@ class Sweep {
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                        std::span<const StartAttitude> starts,
+                        std::span<const Start> starts,
                         std::span<const std::size_t> marked) {
   RunEstimate result;
   if (knots.empty()) return result;
+  std::vector<EstimateSetup> setups{setup};
+  if (const std::optional<double> swing = SwingOf(knots)) {
+    setups.push_back(setup);
+    setups.back().swing = swing;
+  }
   std::unique_ptr<RunSolver> best;
-  double rival = HUGE_VAL;
-  for (const StartAttitude& start : starts) {
-    auto solver = std::make_unique<RunSolver>(setup, knots);
-    BeginAt(start, *solver);
-    const SolveReport report = solver->Solve(kIterations);
-    if (!report.converged) continue;
-    if (!best || report.evidence < result.report.evidence) {
-      if (best) rival = result.report.evidence;
+  std::size_t best_start = 0;
+  std::vector<double> evidence(starts.size(), HUGE_VAL);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    for (const EstimateSetup& tried : setups) {
+      auto solver = std::make_unique<RunSolver>(tried, knots);
+      BeginAt(starts[i], *solver);
+      const SolveReport report = solver->Solve(kIterations);
+      if (!report.converged) continue;
+      evidence[i] = std::min(evidence[i], report.evidence);
+      if (best && !(report.evidence < result.report.evidence)) continue;
       result.report = report;
       best = std::move(solver);
-    } else {
-      rival = std::min(rival, report.evidence);
+      best_start = i;
     }
   }
   if (!best) return result;
   result.solved = true;
-  result.ambiguous = rival - result.report.evidence < kDecides;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    result.ambiguous |= i != best_start && evidence[i] - result.report.evidence < kDecides;
+  }
   Sweep(*best, marked, result).Run();
   result.nodes = best->nodes();
   return result;

@@ -14,11 +14,14 @@
 
 namespace wellgyro {
 
-/// An attitude from which a run may be begun: that of one node, found at rest or told.
-struct StartAttitude {
+/// The attitude of one node, found at rest or told, of which the heading counts.
+struct Anchor {
   std::size_t node = 0;
   Eigen::Matrix3d R_LT = Eigen::Matrix3d::Identity();
 };
+/// From where a run may be begun. The first anchor gives its heading; where the roll was not seen
+/// all the way from one to the next, near vertical, what is missing of it is spread over that part.
+using Start = std::vector<Anchor>;
 
 /// Errors of a run at one of its nodes that stay linked to those of others: attitude, drift, and the
 /// tool's constants. Those of the marked nodes form a chain in time.
@@ -45,7 +48,7 @@ struct RunEstimate {
 /// linked errors are wanted, ascending. Unsolved where there is no start or no knot, or where no
 /// start leads to a solution.
 WELLGYRO_EXPORT RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                        std::span<const StartAttitude> starts,
+                                        std::span<const Start> starts,
                                         std::span<const std::size_t> marked);
 
 }  // namespace wellgyro

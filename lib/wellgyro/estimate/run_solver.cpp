@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/places.h"
 #include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/math/drift.h"
@@ -25,16 +26,29 @@ constexpr double kAnySpeed = 10;     // [m/s]
 constexpr double kNoDrift = 1e-12;   // the walk begins at the bias [rad/s]
 // Gauss-Newton is trusted as far as this in one step: past it sine and angle part by 4 %.
 constexpr double kStepMost = 0.5;     // [rad]
-// Newton's decrement squared at which a run stays: a tenth of a sigma over all unknowns together.
-constexpr double kStays = 1e-2;
+// Newton's decrement squared at which a run stays: a third of a sigma over all unknowns together.
+constexpr double kStays = 0.1;
 // The forward pass: gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
 // about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
 constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
+// Near vertical the Earth's rate holds the heading, over some ten knots.
+constexpr double kEarthShare = 0.1;
 // Steps at which another roll walk can be told from the last, and from which it is not worth while.
 constexpr double kNear = 1, kFar = 1e4;
 // Walks of the roll rate tried: of a tool that jerks, to one clamped to a turntable.
 constexpr double kWalkMost = 0.1, kWalkLeast = 1e-6;  // [rad/s/sqrt(s)]
+constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
 constexpr double kWorse = 6;  // 2 ln 20: by which evidence decides
+/// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it, if
+/// the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
+double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
+  const Eigen::Vector2d earth = w_IE_M.head<2>() * inc.seconds;
+  const double ratio = inc.turn_M.norm() / earth.norm();
+  if (!(ratio > 0.7 && ratio < 1.4)) return 0;
+  return -std::atan2(inc.turn_M.y() * earth.x() - inc.turn_M.x() * earth.y(),
+                     inc.turn_M.dot(earth));
+}
+
 Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
 
 }  // namespace
@@ -48,16 +62,22 @@ RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots)
   border_.setZero(layout_.border);
 }
 
-void RunSolver::Begin(const Matrix3d& R_LT) {
+void RunSolver::Begin(const Matrix3d& R_LT, std::span<const double> extra_roll) {
   nodes_.assign(knots_.size() + 1, Node{});
   border_.setZero();
   nodes_[0].R_LT = R_LT;
   const double c = std::cos(setup_.site.latitude), s = std::sin(setup_.site.latitude);
   const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
+  const std::vector<double> slip = HiddenRoll(knots_, kEarthRate * c);
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const Increment& inc = knots_[k].increment;
+    const double extra = (extra_roll.empty() ? 0 : extra_roll[k]) + slip[k] * inc.seconds;
     const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
-    Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT * RotationZ(inc.roll_before) * half;
+    Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT *
+                 RotationZ(inc.roll_before + 0.5 * extra) * half;
+    if (!inc.roll_seen) {
+      M = M * RotationZ(kEarthShare * AngleToEarth(inc, M.transpose() * earth));
+    }
     if (inc.level) {
       const Vector3d f = inc.force_M.normalized();
       const Vector3d p = -M.row(2).transpose();
@@ -69,8 +89,8 @@ void RunSolver::Begin(const Matrix3d& R_LT) {
       M = M * Exp(kTiltShare * f.cross(down));
     }
     Node& next = nodes_[k + 1];
-    next.R_LT = M * half * RotationZ(inc.roll_after);
-    nodes_[k].roll_rate = (inc.roll_before + inc.roll_after) / inc.seconds;
+    next.R_LT = M * half * RotationZ(inc.roll_after + 0.5 * extra);
+    nodes_[k].roll_rate = (inc.roll_before + inc.roll_after + extra) / inc.seconds;
     next.roll_rate = nodes_[k].roll_rate;
     next.md = knots_[k].along.known ? knots_[k].along.md : nodes_[k].md;
     next.speed = knots_[k].along.known ? knots_[k].along.speed : 0;
@@ -202,16 +222,17 @@ double RunSolver::Evidence() const {
                     border_.cwiseQuotient(layout_.sigma).squaredNorm();
   for (const RowSum& sum : block_.sums()) evidence += sum.cost;
   const double rows = layout_.swing == kAbsent ? 1 : 3;
+  if (layout_.swing != kAbsent) evidence += 4 * std::log(kAnyRoll);  // of its prior
   for (std::size_t k = 0; k < knots_.size(); ++k) evidence += 2 * rows * std::log(Walk(k));
   return evidence;
 }
 
-/// The walk of greatest evidence, by decades from the loosest.
+/// The walk of greatest evidence, by decades down from the one that the run was begun with.
 void RunSolver::FindRollWalk(SolveReport& report) {
   std::vector<Node> best_nodes = nodes_;
   BorderVector best_border = border_;
   double best = HUGE_VAL, best_walk = scales_.roll_walk;
-  for (double walk = kWalkMost; walk > 0.9 * kWalkLeast; walk /= 10) {
+  for (double walk = scales_.roll_walk; walk > 0.9 * kWalkLeast; walk /= 10) {
     scales_.roll_walk = walk;
     if (!Iterate(3, kNear, report) && elimination_.decrement() > kFar) break;
     const double evidence = Evidence();
@@ -232,8 +253,12 @@ void RunSolver::FindRollWalk(SolveReport& report) {
 SolveReport RunSolver::Solve(int iterations) {
   SolveReport report;
   scales_ = {};
-  Iterate(iterations, kNear, report);
   scales_.roll_start = RollStarts(knots_);
+  // From the decade above what the rate usually changes by, which its own noise is part of.
+  const double usual = UsualRollChange(knots_).value_or(kWalkUnseen);
+  scales_.roll_walk =
+      std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
+  Iterate(iterations, kNear, report);
   FindRollWalk(report);
   Iterate(iterations, kStays, report);
   report.converged = elimination_.decrement() < kNear;

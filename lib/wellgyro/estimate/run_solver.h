@@ -40,8 +40,9 @@ class RunSolver {
   RunSolver& operator=(const RunSolver&) = delete;
 
   /// Places every node by a forward pass from this attitude of node 0: the gyros carry the axis,
-  /// gravity turns the tool about it.
-  void Begin(const Eigen::Matrix3d& R_LT);
+  /// gravity turns the tool about it. `extra_roll`: of each knot, where the roll inside it was not
+  /// seen and is known to be more [rad]; or empty.
+  void Begin(const Eigen::Matrix3d& R_LT, std::span<const double> extra_roll);
   /// Relinearises until the attitudes stay, at most `iterations` times.
   SolveReport Solve(int iterations);
 

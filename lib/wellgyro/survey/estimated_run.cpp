@@ -78,43 +78,47 @@ EstimateSetup SetupOf(const Job& job, const FilterHistory& history, const Joined
   return setup;
 }
 
-/// From a tie, else from the surest fix and its mirror.
-std::vector<StartAttitude> StartsOf(const EstimateSetup& setup, const FilterHistory& history,
-                                    const JoinedKnots& joined) {
-  std::vector<StartAttitude> starts;
-  if (!setup.ties.empty() && !setup.ties.front().of_mark) {
-    const AzimuthTie& tie = setup.ties.front();
-    const Knot& knot = history.epochs[0].knot;
-    // At the tie's own node only the azimuth matters where the tool leans enough to have one.
-    double inclination = knot.inclination, toolface = knot.toolface - knot.roll;
-    for (std::size_t i = 0; i < joined.node.size(); ++i) {
-      if (joined.node[i] != tie.node) continue;
-      inclination = history.epochs[i].knot.inclination;
-      toolface = history.epochs[i].knot.toolface;
-    }
-    starts.push_back({tie.node, AttitudeMatrix(tie.azimuth, inclination, toolface)});
-    return starts;
+Anchor AnchorOf(const JoinedKnots& joined, const FilterFix& fix, double azimuth) {
+  return {joined.node[fix.epoch_end - 1],
+          AttitudeMatrix(azimuth, fix.fix.inclination, fix.fix.toolface)};
+}
+
+Anchor AnchorOf(const AzimuthTie& tie, const FilterHistory& history, const JoinedKnots& joined) {
+  if (tie.of_mark) return {tie.node, RotationZ(tie.azimuth)};
+  const Knot& first = history.epochs[0].knot;
+  double inclination = first.inclination, toolface = first.toolface - first.roll;
+  for (std::size_t i = 0; i < joined.node.size(); ++i) {
+    if (joined.node[i] != tie.node) continue;
+    inclination = history.epochs[i].knot.inclination;
+    toolface = history.epochs[i].knot.toolface;
   }
-  if (!setup.ties.empty()) {
-    const AzimuthTie& tie = setup.ties.front();
-    starts.push_back({tie.node, RotationZ(tie.azimuth)});
-    return starts;
-  }
+  return {tie.node, AttitudeMatrix(tie.azimuth, inclination, toolface)};
+}
+
+/// From a tie, else from the surest fix and from its mirror; on the way past the fixes that have
+/// none.
+std::vector<Start> StartsOf(const EstimateSetup& setup, const FilterHistory& history,
+                            const JoinedKnots& joined) {
+  Start sure;
   const FilterFix* surest = nullptr;
   for (const FilterFix& fix : history.fixes) {
-    if (fix.epoch_end == 0 || fix.epoch_end > joined.node.size()) continue;
-    if (surest == nullptr || fix.fix.cov_attitude(1, 1) < surest->fix.cov_attitude(1, 1)) {
-      surest = &fix;
+    if (fix.epoch_end == 0 || fix.epoch_end > joined.node.size() || fix.fix.external) continue;
+    const double variance = fix.fix.cov_attitude(1, 1);
+    if (surest == nullptr || variance < surest->fix.cov_attitude(1, 1)) surest = &fix;
+    if (!fix.fix.mirror_azimuth) sure.push_back(AnchorOf(joined, fix, fix.fix.azimuth));
+  }
+  const auto from = [&](const Anchor& first) {
+    Start start{first};
+    for (const Anchor& anchor : sure) {
+      if (anchor.node > first.node) start.push_back(anchor);
     }
-  }
-  if (surest == nullptr) return starts;
-  const std::size_t node = joined.node[surest->epoch_end - 1];
-  const NorthFix& fix = surest->fix;
-  starts.push_back({node, AttitudeMatrix(fix.azimuth, fix.inclination, fix.toolface)});
-  if (fix.mirror_azimuth) {
-    starts.push_back({node, AttitudeMatrix(*fix.mirror_azimuth, fix.inclination, fix.toolface)});
-  }
-  return starts;
+    return start;
+  };
+  if (!setup.ties.empty()) return {from(AnchorOf(setup.ties.front(), history, joined))};
+  if (!sure.empty()) return {sure};
+  if (surest == nullptr) return {};
+  return {from(AnchorOf(joined, *surest, surest->fix.azimuth)),
+          from(AnchorOf(joined, *surest, *surest->fix.mirror_azimuth))};
 }
 
 /// d(inclination, azimuth, toolface) / d phi, by R_LT Exp(phi).

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "wellgyro/record/run_knot.h"
+
+namespace wellgyro {
+
+/// Angular frequency at which the tool's roll swings, if most of what its rate does where gravity
+/// shows it is one line between a period of a minute and two knots [rad/s].
+std::optional<double> SwingOf(std::span<const RunKnot> knots);
+
+}  // namespace wellgyro
