@@ -11,7 +11,7 @@ import unittest
 TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
 LIB = os.path.join(TOP, "lib", "wellgyro")
 
-STAGES = {"calibration", "noise", "alignment", "attitude", "depth", "trajectory", "uncertainty"}
+STAGES = {"calibration", "noise", "alignment", "attitude", "estimate", "depth", "trajectory", "uncertainty"}
 LOW = {"base", "math", "earth", "record"}
 ALLOWED = {
     "base": set(),

@@ -1,0 +1,65 @@
+#include "wellgyro/math/so3.h"
+
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "wellgyro/math/random.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// The defining series in long double, which converges for any angle.
+Matrix3d SeriesExp(const Vector3d& v) {
+  using MatrixL = Eigen::Matrix<long double, 3, 3>;
+  const MatrixL K = Skew(v).cast<long double>();
+  MatrixL sum = MatrixL::Identity(), term = sum;
+  for (int n = 1; n < 60; ++n) {
+    term = (term * K / static_cast<long double>(n)).eval();
+    sum += term;
+  }
+  return sum.cast<double>();
+}
+
+Vector3d RandomVector(Random& random, double length) {
+  const Vector3d v(random.Normal(), random.Normal(), random.Normal());
+  return length * v.normalized();
+}
+
+TEST(So3, SkewIsTheCrossProduct) {
+  Random random(1);
+  const Vector3d u = RandomVector(random, 2), v = RandomVector(random, 3);
+  EXPECT_LT((Skew(u) * v - u.cross(v)).norm(), 1e-15);
+}
+
+TEST(So3, ExpIsItsSeriesAtEveryAngle) {
+  Random random(2);
+  for (const double angle : {0.0, 1e-12, 1e-5, 9e-5, 1.1e-4, 0.01, 1.0, 3.0, 6.0}) {
+    const Vector3d v = RandomVector(random, angle);
+    EXPECT_LT((Exp(v) - SeriesExp(v)).norm(), 4e-15) << angle;
+  }
+}
+
+TEST(So3, LogUndoesExp) {
+  Random random(3);
+  for (const double angle : {0.0, 1e-12, 1e-9, 1e-7, 1e-4, 0.5, 1.6, 3.0}) {
+    const Vector3d v = RandomVector(random, angle);
+    EXPECT_LT((Log(Exp(v)) - v).norm(), 1e-15 + 4e-15 * angle) << angle;
+  }
+}
+
+TEST(So3, LogOfHalfATurnIsHalfATurn) {
+  Random random(4);
+  for (const double less : {0.0, 1e-10, 1e-7}) {
+    const Vector3d v = RandomVector(random, M_PI - less);
+    EXPECT_LT((Exp(Log(Exp(v))) - Exp(v)).norm(), 1e-7) << less;
+    EXPECT_NEAR(Log(Exp(v)).norm(), M_PI - less, 1e-7) << less;
+  }
+}
+
+}  // namespace
+}  // namespace wellgyro
