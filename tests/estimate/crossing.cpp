@@ -30,7 +30,8 @@ Crossing::Motion Crossing::At(double t) const {
   const Vector3d y = C.col(1);
   const double rate = 12 * kDeg / seconds, full = rpm * 2 * M_PI / 60, up = 30;
   const double omega = 2 * M_PI / swing_period, a = swing_deg * kDeg;
-  const double spin = (t < up ? full * t * t / (2 * up) : full * (t - up / 2)) + a * std::sin(omega * t);
+  const double spin =
+      (t < up ? full * t * t / (2 * up) : full * (t - up / 2)) + a * std::sin(omega * t);
   const double spin_rate = (t < up ? full * t / up : full) + a * omega * std::cos(omega * t);
   Motion m;
   m.R_LT = Exp(rate * (t - seconds / 2) * y) * C * RotationZ(spin);
@@ -125,8 +126,10 @@ std::vector<RunKnot> ReferenceKnots(const Crossing::Samples& s, const std::vecto
     Complex m = 0, before = 0, dm = 0, df = 0;
     for (std::size_t j = 0; j < per; ++j) {
       m += W[j] * dt;
-      if (j < per / 2) before += W[j] * dt;
-      else if (per % 2 && j == per / 2) before += 0.5 * W[j] * dt;
+      if (j < per / 2)
+        before += W[j] * dt;
+      else if (per % 2 && j == per / 2)
+        before += 0.5 * W[j] * dt;
     }
     Complex theta = -before;
     Vector3d force = Vector3d::Zero();

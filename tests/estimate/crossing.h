@@ -37,10 +37,10 @@ struct Crossing {
 
 /// Errors of one tool: what a seed draws.
 struct ToolDraw {
-  double arw = 0.01 / 57.29577951308232 / 60;           // [rad/sqrt s]
-  double bias = 0.1 / 57.29577951308232 / 3600;         // [rad/s]
-  double accel_bias = 1e-4 * 9.80665;                   // [m/s^2]
-  double accel_noise = 5e-5 * 9.80665;                  // [m/s^2/sqrt Hz]
+  double arw = 0.01 / 57.29577951308232 / 60;    // [rad/sqrt s]
+  double bias = 0.1 / 57.29577951308232 / 3600;  // [rad/s]
+  double accel_bias = 1e-4 * 9.80665;            // [m/s^2]
+  double accel_noise = 5e-5 * 9.80665;           // [m/s^2/sqrt Hz]
 };
 void AddErrors(const ToolDraw& draw, std::uint64_t seed, Crossing::Samples& samples);
 

@@ -32,7 +32,8 @@ std::vector<RunKnot> BuiltKnots(const Crossing& crossing, const Crossing::Sample
       RunKnot knot;
       knot.increment = builder.Pop();
       const double t = static_cast<double>(knot.increment.time.ns) * 1e-9;
-      knot.along = {.md = crossing.speed * t, .speed = crossing.speed, .sigma_md = 0.003, .known = true};
+      knot.along = {
+          .md = crossing.speed * t, .speed = crossing.speed, .sigma_md = 0.003, .known = true};
       knots.push_back(knot);
     }
   };
@@ -82,8 +83,8 @@ Score ScoreOf(const Crossing& crossing, std::uint64_t seed) {
   const std::size_t n = knots.size();
   const Eigen::Matrix3d& R = run.nodes[n].R_LT;
   const double horizontal2 = R(0, 2) * R(0, 2) + R(1, 2) * R(1, 2);
-  const Eigen::RowVector3d by_phi = -Eigen::RowVector3d(-R(1, 2), R(0, 2), 0) * R *
-                                    Skew(Eigen::Vector3d::UnitZ()) / horizontal2;
+  const Eigen::RowVector3d by_phi =
+      -Eigen::RowVector3d(-R(1, 2), R(0, 2), 0) * R * Skew(Eigen::Vector3d::UnitZ()) / horizontal2;
   const double azimuth = by_phi * error(n, crossing.seconds);
   score.square = azimuth * azimuth;
   score.azimuth = score.square / (by_phi * run.cov_phi[n] * by_phi.transpose());

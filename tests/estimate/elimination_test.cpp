@@ -71,7 +71,8 @@ TEST(Elimination, SolvesTheDenseSystem) {
   }
   EXPECT_LT((border - x.tail(chain.layout.border)).norm(), 1e-10);
   EXPECT_NEAR(chain.elimination.decrement(), -x.dot(chain.g), 1e-9);
-  const double log_determinant = 2 * chain.H.llt().matrixL().toDenseMatrix().diagonal().array().log().sum();
+  const double log_determinant =
+      2 * chain.H.llt().matrixL().toDenseMatrix().diagonal().array().log().sum();
   EXPECT_NEAR(chain.elimination.log_determinant(), log_determinant, 1e-9);
 }
 
@@ -86,7 +87,8 @@ TEST(Elimination, CovariancesAreThoseOfTheDenseInverse) {
   for (int k = kKnots; k-- > 0;) {
     BehindMatrix with_next;
     const auto at = static_cast<std::size_t>(k);
-    const EdgeMatrix here = chain.elimination.CovarianceBefore(at, chain.elimination.Gain(at), next, with_next);
+    const EdgeMatrix here =
+        chain.elimination.CovarianceBefore(at, chain.elimination.Gain(at), next, with_next);
     EXPECT_LT((here.topLeftCorner(n, n) - P.block(k * n, k * n, n, n)).norm(), 1e-10) << k;
     EXPECT_LT((here.topRightCorner(n, b) - P.block(k * n, (kKnots + 1) * n, n, b)).norm(), 1e-10);
     EXPECT_LT((with_next.leftCols(n) - P.block(k * n, (k + 1) * n, n, n)).norm(), 1e-10) << k;

@@ -33,31 +33,40 @@ struct Case {
   }
 };
 
-/// A knot whose residuals are some sigmas each: sigmas are large, so that angles of a hundredth of a
-/// radian are, and the errors of the first order in a knot's own turn stay small beside them.
+/// A knot of a good tool whose residuals are some sigmas each, so that the losses are on.
 Case MakeCase(double inclination, bool still, bool axial) {
   Case c;
-  c.setup.gyro = {.angle_random_walk = 2e-3, .rate_random_walk = 1e-3};
-  c.setup.gyro.bias_instability = 1e-3;
+  c.setup.gyro = {.angle_random_walk = 3e-6, .rate_random_walk = 1e-6};
+  c.setup.gyro.bias_instability = 1e-6;
   c.setup.gyro.bias_instability_correlation_time = 100;
-  c.setup.gyro.rate_ramp = 1e-5;
-  c.setup.errors = {.gyro_bias_sigma = 1e-3,          .mass_unbalance_sigma = 1e-4,
-                    .quadrature_sigma = 1e-4,         .gyro_scale_sigma = 0.1,
-                    .gyro_misalignment_sigma = 0.1,   .accel_bias_sigma = 0.05,
-                    .accel_noise = 0.05,              .roll_offset_sigma = 0.1,
-                    .time_skew_sigma = 0.1,           .latitude_sigma = 0.01};
+  c.setup.gyro.rate_ramp = 1e-8;
+  c.setup.errors = {.gyro_bias_sigma = 1e-6,
+                    .mass_unbalance_sigma = 1e-7,
+                    .quadrature_sigma = 1e-7,
+                    .gyro_scale_sigma = 1e-3,
+                    .gyro_misalignment_sigma = 1e-3,
+                    .accel_bias_sigma = 1e-3,
+                    .accel_noise = 1e-3,
+                    .roll_offset_sigma = 1e-3,
+                    .time_skew_sigma = 1e-3,
+                    .latitude_sigma = 1e-3};
   c.setup.swing = 0.3;
   c.setup.third_axis = axial;
   c.layout = LayoutOf(c.setup);
   Random random(static_cast<std::uint64_t>(100 * inclination) + still + 2 * axial);
-  const auto pair = [&random](double s) { return Eigen::Vector2d(s * random.Normal(), s * random.Normal()); };
+  const auto pair = [&random](double s) {
+    return Eigen::Vector2d(s * random.Normal(), s * random.Normal());
+  };
   Increment& inc = c.knot.increment;
   inc.seconds = 1;
-  inc.roll_before = 0.15;
-  inc.roll_after = 0.14;
-  inc.turn_M = pair(2e-3);
+  const Eigen::Matrix3d R_LT = AttitudeMatrix(1, inclination, 0.7);
+  const Vector3d w_IL_L(4e-5, 0, -6e-5), w_T = R_LT.transpose() * w_IL_L;
+  const double roll = still ? w_T.z() : 0.29;
+  inc.roll_before = 0.5 * roll;
+  inc.roll_after = 0.5 * roll;
+  inc.turn_M = still ? Eigen::Vector2d(w_T.head<2>()) : pair(1e-3);
   inc.turn_before_M = 0.5 * inc.turn_M;
-  inc.turn_per_roll = pair(1e-4);
+  if (!still) inc.turn_per_roll = pair(1e-4);
   inc.force_per_roll = pair(1e-2);
   inc.axial = 0.3;
   inc.has_axial = axial;
@@ -66,29 +75,32 @@ Case MakeCase(double inclination, bool still, bool axial) {
     inc.force_by_error.col(i) << pair(0.5), 0.3 * random.Normal();
   }
   c.place.site = SiteAt(1, 0);
-  c.place.w_IL_L = {4e-5, 0, -6e-5};
+  c.place.w_IL_L = w_IL_L;
   c.place.dw_by_latitude = {-6e-5, 0, -4e-5};
   c.place.force_L = {0.01, 0.02, -9.81};
   c.place.since_start = 30;
   c.place.depth = 100;
   c.border.setZero(c.layout.border);
-  for (int i = 0; i < c.layout.border; ++i) c.border[i] = 0.1 * c.layout.sigma[i] * random.Normal();
-  c.begin.R_LT = AttitudeMatrix(1, inclination, 0.7);
-  c.begin.roll_rate = 0.29;
+  c.begin.R_LT = R_LT;
+  c.begin.roll_rate = roll;
   c.begin.md = 10;
-  c.begin.speed = 0.5;
-  c.begin.walk = pair(1e-3);
-  c.begin.markov = pair(1e-3);
-  c.begin.swing = pair(0.01);
+  c.begin.speed = still ? 0 : 0.5;
+  if (!still) c.begin.swing = pair(2e-3);
   c.end = c.begin;
-  c.end.R_LT = c.begin.R_LT * RotationZ(still ? 0.0 : 0.29) * Exp(1e-3 * Vector3d(1, -2, 0.001));
-  c.end.roll_rate = 0.3;
-  c.end.md = 10.5;
-  c.end.walk = pair(1e-3);
+  // Near what the knot predicts: the tie about the axis is a millionth of a radian.
+  const double swing =
+      std::sin(0.3) / 0.3 * c.begin.swing.x() + (1 - std::cos(0.3)) / 0.3 * c.begin.swing.y();
+  const Eigen::Vector2d turn = inc.turn_M + swing * inc.turn_per_roll;
+  c.end.R_LT = Exp(-c.place.w_IL_L) * c.begin.R_LT * RotationZ(inc.roll_before + 0.5 * swing) *
+               Exp(Vector3d(turn.x(), turn.y(), 0)) * RotationZ(inc.roll_after + 0.5 * swing) *
+               Exp((still ? 3e-7 : 3e-6) * Vector3d(1, -0.7, 0) + 1e-6 * Vector3d::UnitZ());
+  c.end.roll_rate = roll + 0.01;
+  c.end.md = c.begin.md + c.begin.speed;
+  c.end.walk = pair(1e-6);
   const Vector3d f = c.begin.R_LT.transpose() * c.place.force_L;
-  inc.force_M = RotationZ(0.15).transpose() * f + Vector3d(0.05, -0.03, 0.04);
+  inc.force_M = RotationZ(inc.roll_before).transpose() * f + Vector3d(1e-3, -0.6e-3, 0.8e-3);
   c.knot.still = still;
-  c.knot.along = {.md = 10.501, .speed = 0.5, .sigma_md = 0.01, .known = true};
+  c.knot.along = {.md = c.end.md + 0.001, .speed = c.begin.speed, .sigma_md = 0.01, .known = true};
   return c;
 }
 
@@ -106,14 +118,17 @@ void ExpectGradient(const Case& c, const std::string& what) {
       const double step = side ? h : -h;
       Node a = c.begin, b = c.end;
       BorderVector x = c.border;
-      if (i < n) Move(c.layout, NodeVector(NodeVector::Unit(n, i) * step), a);
-      else if (i < 2 * n) Move(c.layout, NodeVector(NodeVector::Unit(n, i - n) * step), b);
-      else x[i - 2 * n] += step;
+      if (i < n)
+        Move(c.layout, NodeVector(NodeVector::Unit(n, i) * step), a);
+      else if (i < 2 * n)
+        Move(c.layout, NodeVector(NodeVector::Unit(n, i - n) * step), b);
+      else
+        x[i - 2 * n] += step;
       cost[side] = c.Cost(a, b, x);
     }
     const double slope = (cost[1] - cost[0]) / (2 * h);
     const double scale = std::sqrt(block.information()(i, i));
-    EXPECT_NEAR(block.gradient()[i] / std::max(scale, 1e-6), slope / std::max(scale, 1e-6), 0.02)
+    EXPECT_NEAR(block.gradient()[i] / std::max(scale, 1e-6), slope / std::max(scale, 1e-6), 0.05)
         << what << " column " << i << " of " << n << " and " << c.layout.border;
   }
 }

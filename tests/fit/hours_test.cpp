@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/fit/run_adjustment.h"
+#include "wellgyro/survey/estimated_run.h"
 
 #include "support/claims.h"
 #include "support/hour.h"
@@ -36,6 +37,14 @@ double WorstAzimuth(const Flown& flown, const SmoothedRun& run) {
   return worst;
 }
 
+double WorstInclination(const Flown& flown, const SmoothedRun& run) {
+  double worst = 0;
+  for (std::size_t i = 0; i < flown.truth.size(); ++i) {
+    worst = std::max(worst, std::abs(run.attitude[i].inclination - flown.truth[i].inclination));
+  }
+  return worst;
+}
+
 // Tactical gyros, and accelerometers twenty times as good: what a job says of a tool without
 // errors. Of worse ones the hour at 3 deg, which comes down to 1.2, would be surveyed as a vertical
 // one.
@@ -53,14 +62,21 @@ TEST(Hours, OfAPerfectToolAreTheTruth) {
       Hour hour = Perfect();
       hour.inclination_deg = inclination;
       hour.imu_hz = hz;
-      const Flown flown = Fly(hour, ExternalJob(hour, 0, 1e-3), 0);
+      const Job job = ExternalJob(hour, 0, 1e-3);
+      const Flown flown = Fly(hour, job, 0);
+      const SmoothedRun rotation = EstimatedRun(job, flown.history, flown.increments);
+      const double estimated = ToDegrees(WorstAzimuth(flown, rotation));
       const double smoothed = ToDegrees(WorstAzimuth(flown, Smooth(flown.history)));
       const double adjusted = ToDegrees(WorstAzimuth(flown, AdjustRun(flown.history, 0).run));
-      std::printf("%3.0f Hz, I %3.0f: worst azimuth %.1e deg smoothed, %.1e adjusted\n", hz,
-                  inclination, smoothed, adjusted);
+      std::printf(
+          "%3.0f Hz, I %3.0f: worst azimuth %.1e deg smoothed, %.1e adjusted, %.1e by "
+          "rotations; inclination %.1e\n",
+          hz, inclination, smoothed, adjusted, estimated,
+          ToDegrees(WorstInclination(flown, rotation)));
       const double limit = inclination < 10 ? 2e-3 : 2e-4;
       EXPECT_LT(smoothed, limit) << hz << " Hz, I " << inclination;
       EXPECT_LT(adjusted, limit) << hz << " Hz, I " << inclination;
+      EXPECT_LT(estimated, inclination < 10 ? 2.7e-4 : 1.2e-4) << hz << " Hz, I " << inclination;
       EXPECT_GT(smoothed, 0);
     }
   }
@@ -76,25 +92,40 @@ class TacticalHours : public ::testing::TestWithParam<TacticalCase> {};
 TEST_P(TacticalHours, EndAsSureAsTheySay) {
   const TacticalCase& c = GetParam();
   const std::uint64_t seeds = Seeds(6, 400);
-  Claims smoothed, adjusted;
-  double worst_smoothed = 0, worst_adjusted = 0;
+  Claims smoothed, adjusted, estimated, inclination, inclination_adjusted;
+  double worst_smoothed = 0, worst_adjusted = 0, worst_estimated = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     Hour hour = testing::Tactical();
     hour.inclination_deg = c.inclination_deg;
     hour.rpm = c.rpm;
-    const Flown flown = Fly(hour, ExternalJob(hour, seed, 1e-3), seed);
+    const Job job = ExternalJob(hour, seed, 1e-3);
+    const Flown flown = Fly(hour, job, seed);
     const std::size_t last = flown.truth.size() - 1;
     const auto add = [&](const SmoothedRun& run, Claims* claims, double* worst) {
       claims->Add(AzimuthError(flown, run, last), run.attitude[last].cov_attitude(1, 1));
       *worst += std::pow(ToDegrees(WorstAzimuth(flown, run)), 2) / static_cast<double>(seeds);
     };
     add(Smooth(flown.history), &smoothed, &worst_smoothed);
-    add(AdjustRun(flown.history, 0).run, &adjusted, &worst_adjusted);
+    const auto add_inclination = [&](const SmoothedRun& run, Claims* claims) {
+      const std::size_t middle = last / 2;
+      claims->Add(run.attitude[middle].inclination - flown.truth[middle].inclination,
+                  run.attitude[middle].cov_attitude(0, 0));
+    };
+    const SmoothedRun old = AdjustRun(flown.history, 0).run;
+    const SmoothedRun rotation = EstimatedRun(job, flown.history, flown.increments);
+    add(old, &adjusted, &worst_adjusted);
+    add(rotation, &estimated, &worst_estimated);
+    add_inclination(old, &inclination_adjusted);
+    add_inclination(rotation, &inclination);
   }
   const std::string name = "I " + std::to_string(static_cast<int>(c.inclination_deg)) + ", " +
                            std::to_string(static_cast<int>(c.rpm)) + " rpm, ";
   smoothed.ExpectTrue(name + "smoothed");
   adjusted.ExpectTrue(name + "adjusted");
+  estimated.ExpectTrue(name + "by rotations");
+  inclination_adjusted.ExpectTrue(name + "inclination, adjusted", 2e-4, 1.3);
+  inclination.ExpectTrue(name + "inclination, by rotations");
+  std::printf("%sby rotations rms of the worst %.4f\n", name.c_str(), std::sqrt(worst_estimated));
   std::printf("%srms of the worst %.4f smoothed, %.4f adjusted, prototype %.4f deg\n", name.c_str(),
               std::sqrt(worst_smoothed), std::sqrt(worst_adjusted), c.worst_deg);
   // An rms of n draws is itself uncertain by 1/sqrt(2 n).

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -23,11 +24,14 @@ namespace wellgyro::testing {
 
 /// Keeps the history and adjusts as a surveyor without adjuster does.
 struct KeepingAdjuster : RunAdjuster {
-  SmoothedRun Adjust(const FilterHistory& history, double) const override {
+  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment> increments,
+                     double) const override {
     kept = history;
+    kept_increments.assign(increments.begin(), increments.end());
     return Smooth(history);
   }
   mutable FilterHistory kept;
+  mutable std::vector<Increment> kept_increments;
 };
 
 struct Hour {
@@ -141,6 +145,7 @@ inline Job ExternalJob(const Hour& hour, std::uint64_t seed, double sigma_deg) {
 
 struct Flown {
   FilterHistory history;
+  std::vector<Increment> increments;
   std::vector<TruthState> truth;  ///< at the end of every epoch
 };
 
@@ -149,14 +154,16 @@ inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size
 }
 
 /// Plays a run through a surveyor.
-inline Flown Fly(const Simulation& simulation, const Job& job) {
+inline Flown Fly(const Simulation& simulation, Job job) {
   Sink sink;
+  job.attitude.estimator = AttitudeSpec::Estimator::kAngles;  // which asks the adjuster
   const KeepingAdjuster keeper;
   Surveyor surveyor(job, sink, &keeper);
   Play(simulation, surveyor);
   surveyor.Finish();
   Flown flown;
   flown.history = std::move(keeper.kept);
+  flown.increments = std::move(keeper.kept_increments);
   const Truth truth(simulation);
   for (const FilterEpoch& epoch : flown.history.epochs) {
     const double t = (epoch.knot.time - ToolTime{}).seconds() - simulation.tool.errors.clock_offset;

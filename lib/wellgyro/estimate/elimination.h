@@ -12,8 +12,8 @@ namespace wellgyro {
 ///
 /// Eliminating node k leaves what it knew of its successor and the border, and the conditional
 ///   x_k = gain [x_k+1; border] + offset + e,   cov(e) = (L L')^-1,
-/// e independent of all that comes later: forward the filter, back substitution the smoother (Rauch,
-/// Tung and Striebel in information form). Cost and memory are proportional to the nodes.
+/// e independent of all that comes later: forward the filter, back substitution the smoother
+/// (Rauch, Tung and Striebel in information form). Cost and memory are proportional to the nodes.
 /// Cholesky is invariant to the scale of the unknowns, so none is applied; what the information of
 /// stiff neighbours rounds off, 1e-16 of it a node, stays below 1e-2 rad^-2 of azimuth in 16 h.
 class Elimination {

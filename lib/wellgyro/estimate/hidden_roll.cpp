@@ -8,7 +8,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kReach = 10, kLeast = 5;  // knots to each side, and of them that tell
+constexpr std::size_t kReach = 10, kLeast = 5;         // knots to each side, and of them that tell
 constexpr double kLeastRatio = 0.7, kMostRatio = 1.4;  // of what the gyros read to the Earth's
 
 bool ReadsEarth(const RunKnot& knot, double horizontal) {

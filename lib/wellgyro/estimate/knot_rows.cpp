@@ -22,11 +22,11 @@ constexpr double kAxialTie = 1e-6;  // [rad]
 // At rest the tool turns by less than a tenth of what the gyros' noise says, which then costs the
 // azimuth 0.5 %.
 constexpr double kRestShare = 0.1;
-constexpr double kRestSpeed = 1e-5;    // [m/s]
-constexpr double kSpeedWalk = 0.3;     // winch and pipe: a third of a m/s in a second
-constexpr double kLeastDepth = 1e-3;   // [m], of a mark
-constexpr double kLeastWay = 1e-4;     // [m], of a knot's way
-constexpr double kUnknownSpeed = 1;    // [m/s], without depth marks
+constexpr double kRestSpeed = 1e-5;   // [m/s]
+constexpr double kSpeedWalk = 0.3;    // winch and pipe: a third of a m/s in a second
+constexpr double kLeastDepth = 1e-3;  // [m], of a mark
+constexpr double kLeastWay = 1e-4;    // [m], of a knot's way
+constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 // A hole that no sensor sees bends by 3 deg in 30 m, 1-sigma; without depth, in 30 s.
 constexpr double kUnseenBend = 1.7e-3;  // [rad/m]
 
@@ -43,12 +43,13 @@ struct KnotRows::Terms {
   const Node& begin;
   const Node& end;
   double dt;
-  double delta;                                   // psi's error at the end, from that at the begin
-  double in_phase, in_quadrature;                 // of the swing in the mean rate of roll
+  double delta;                    // psi's error at the end, from that at the begin
+  double in_phase, in_quadrature;  // of the swing in the mean rate of roll
   Eigen::Matrix<double, 2, kErrorSources> turn_by_error;  // at the roll rate of now
-  Vector2d turn;                                  // of what is known of the errors corrected
+  Vector2d turn;  // of what is known of the errors corrected
   Matrix3d Ha, Hb, Xh;
   Matrix3d R_LM;
+  Vector3d w_IL_L;  // at the latitude as it is now known
   BorderVector border;
 };
 
@@ -56,8 +57,9 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
   const Increment& inc = knot.increment;
-  Terms t{knot, place, begin, end, inc.seconds, 0, 0, 0, inc.turn_by_error, inc.turn_M,
-          {},   {},    {},    {},  border};
+  Terms t{knot, place, begin, end, inc.seconds,  0,     0, 0, inc.turn_by_error, inc.turn_M,
+          {},   {},    {},    {},  place.w_IL_L, border};
+  if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
   double rate = begin.roll_rate;
   if (layout_.swing != kAbsent) {
     const double angle = *setup_.swing * t.dt;
@@ -84,7 +86,7 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta);
   t.Hb = RotationZ(inc.roll_after + 0.5 * t.delta);
   t.Xh = Exp(Flat(inc.turn_before_M + 0.5 * (t.turn - inc.turn_M)));
-  t.R_LM = Exp(-0.5 * t.dt * place.w_IL_L) * begin.R_LT * t.Ha * t.Xh;
+  t.R_LM = Exp(-0.5 * t.dt * t.w_IL_L) * begin.R_LT * t.Ha * t.Xh;
   return t;
 }
 
@@ -107,7 +109,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Increment& inc = t.knot.increment;
   const Matrix3d X = Exp(Flat(t.turn));
   const Matrix3d B = t.Ha * X * t.Hb;
-  const Matrix3d R_end = Exp(-t.dt * t.place.w_IL_L) * t.begin.R_LT * B;
+  const Matrix3d R_end = Exp(-t.dt * t.w_IL_L) * t.begin.R_LT * B;
   const double unseen = inc.gap_seconds * kUnseenBend *
                         (t.knot.along.known ? std::abs(t.knot.along.speed) : kUnknownSpeed);
   const double var = Square(setup_.gyro.angle_random_walk) * t.dt +
@@ -122,8 +124,8 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   f.r = by * Log(R_end.transpose() * t.end.R_LT);
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = by * -B.row(i).transpose();
   for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = by * Vector3d::Unit(i);
-  const Vector3d by_delta = -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() -
-                            turned * inc.turn_per_roll;
+  const Vector3d by_delta =
+      -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * inc.turn_per_roll;
   const Vector3d by_rate = by * (t.dt * by_delta);
   f.Column(layout_.roll) = by_rate;
   if (layout_.swing != kAbsent) {
@@ -170,19 +172,17 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
     gravity += t.place.depth * t.border[layout_.gravity_gradient];
   }
   const Vector3d down_M = t.R_LM.row(2).transpose();
-  const double whiten =
-      1 / std::max(setup_.errors.accel_noise / std::sqrt(t.dt), kLeastForce);
+  const double whiten = 1 / std::max(setup_.errors.accel_noise / std::sqrt(t.dt), kLeastForce);
   const Matrix3d px = Skew(p);
 
   Factor& f = factor_;
   f.Begin(RowKind::kForce, 3);
-  f.r = whiten * (force - p + gravity * down_M -
-                  (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
+  f.r = whiten *
+        (force - p + gravity * down_M - (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
   const Matrix3d by_phi = -px * (t.Ha * t.Xh).transpose();
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);
   const Vector3d by_rate =
-      whiten * t.dt *
-      (-0.5 * px * t.Xh.row(2).transpose() + Flat(inc.force_per_roll));
+      whiten * t.dt * (-0.5 * px * t.Xh.row(2).transpose() + Flat(inc.force_per_roll));
   f.Column(layout_.roll) = by_rate;
   if (layout_.swing != kAbsent) {
     f.Column(layout_.swing) = t.in_phase * by_rate;
@@ -226,8 +226,7 @@ void KnotRows::AddRoll(const Terms& t, double walk, NormalBlock& block) {
 
 /// psi is then the integral of the third axis: delta is what its errors and its noise made.
 void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
-  const double whiten =
-      1 / std::max(setup_.gyro.angle_random_walk * std::sqrt(t.dt), kLeastTurn);
+  const double whiten = 1 / std::max(setup_.gyro.angle_random_walk * std::sqrt(t.dt), kLeastTurn);
   const double axial = t.knot.increment.axial;
   Factor& f = factor_;
   f.Begin(RowKind::kAxial, 1);
@@ -293,8 +292,8 @@ void KnotRows::AddDrift(const Terms& t, NormalBlock& block) {
   if (layout_.markov != kAbsent) {
     const double span = t.dt / *setup_.gyro.bias_instability_correlation_time;
     const double sigma = kMarkovSigmaPerInstability * setup_.gyro.bias_instability;
-    add(layout_.markov, std::exp(-span), sigma * std::sqrt(-std::expm1(-2 * span)),
-        t.begin.markov, t.end.markov);
+    add(layout_.markov, std::exp(-span), sigma * std::sqrt(-std::expm1(-2 * span)), t.begin.markov,
+        t.end.markov);
   }
 }
 

@@ -33,8 +33,8 @@ struct RunScales {
 };
 
 /// Whitened residuals of everything that a knot says of the nodes at its ends and of the border,
-/// about their present values, added to `block`. notes: R_IT(end) = R_IT(begin) Rz Exp(turn) Rz, see
-/// Increment; w_IL turns L meanwhile.
+/// about their present values, added to `block`. notes: R_IT(end) = R_IT(begin) Rz Exp(turn) Rz,
+/// see Increment; w_IL turns L meanwhile.
 class KnotRows {
  public:
   /// Both must outlive this object.

@@ -9,7 +9,7 @@
 
 namespace wellgyro {
 
-inline constexpr int kNodeMax = 12;   ///< errors of one node
+inline constexpr int kNodeMax = 12;    ///< errors of one node
 inline constexpr int kBorderMax = 25;  ///< errors of the whole run
 inline constexpr int kAbsent = -1;
 
@@ -17,16 +17,16 @@ using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax, 1>;
 using BorderVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kBorderMax, 1>;
 using NodeMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kNodeMax, kNodeMax>;
 /// Of a node, what follows it: the next node, then the border.
-using BehindMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kNodeMax,
-                                   kNodeMax + kBorderMax>;
+using BehindMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kNodeMax, kNodeMax + kBorderMax>;
 /// Of a node and the border.
 using EdgeMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kNodeMax + kBorderMax,
                                  kNodeMax + kBorderMax>;
 using EdgeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax + kBorderMax, 1>;
 
-/// Which columns the unknowns stand in. Of a node: attitude phi (R <- R Exp(phi)), roll rate, depth,
-/// speed, and where the setup has them drift and swing. Of the border: the tool's constant errors,
-/// those with a prior, and what the run shares.
+/// Which columns the unknowns stand in. Of a node: attitude phi (R <- R Exp(phi)), roll rate,
+/// depth, speed, and where the setup has them drift and swing. Of the border: the tool's constant
+/// errors, those with a prior, and what the run shares.
 struct Layout {
   int phi = 0, roll = 3, depth = 4, speed = 5;
   int walk = kAbsent;    ///< two, of the gyros x and y [rad/s]

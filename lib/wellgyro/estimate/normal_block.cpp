@@ -44,8 +44,8 @@ double Absorbed(const Factor& f, const NormalBlock::Matrix& cov) {
   double trace = 0;
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t k = 0; k < n; ++k) {
-      const double jj = f.J.col(static_cast<int>(j)).head(f.rows).dot(
-          f.J.col(static_cast<int>(k)).head(f.rows));
+      const double jj =
+          f.J.col(static_cast<int>(j)).head(f.rows).dot(f.J.col(static_cast<int>(k)).head(f.rows));
       trace += jj * cov(f.column[j], f.column[k]);
     }
   }

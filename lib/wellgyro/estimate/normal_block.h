@@ -52,16 +52,16 @@ struct RowSum {
   double weighted = 0;  ///< with their robust weights
   double cost = 0;      ///< -2 ln of their density, but for constants
   double rows = 0;
-  /// What the unknowns take up of them, where the covariance was given: rows less this is what their
-  /// squares are to be.
+  /// What the unknowns take up of them, where the covariance was given: rows less this is what
+  /// their squares are to be.
   double absorbed = 0;
 };
 
 /// The normal equations of what a knot says of [node | next node | border]: J'J and J'r.
 class NormalBlock {
  public:
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
-                               2 * kNodeMax + kBorderMax, 2 * kNodeMax + kBorderMax>;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 * kNodeMax + kBorderMax,
+                               2 * kNodeMax + kBorderMax>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 * kNodeMax + kBorderMax, 1>;
 
   void Clear(const Layout& layout);

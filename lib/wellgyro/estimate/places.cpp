@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLowPass = 15;      // [s], of the hole's turning
-constexpr double kSiteEvery = 10;    // [m]: 1e-4 mrad of latitude, 1e-5 m/s^2 of gravity
-constexpr double kPathReach = 1e5;   // [m]; damaged depths may lead anywhere, the site stays
+constexpr double kLowPass = 15;       // [s], of the hole's turning
+constexpr double kSiteEvery = 10;     // [m]: 1e-4 mrad of latitude, 1e-5 m/s^2 of gravity
+constexpr double kPathReach = 1e5;    // [m]; damaged depths may lead anywhere, the site stays
 constexpr double kPoleMargin = 1e-3;  // [rad], from where the transport about the vertical grows
 
 Site SiteBy(const Site& first, const Vector3d& p) {
@@ -72,8 +72,8 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
                              -v.y() * s / (c * site.radius_east));
     place.w_IL_L = earth + transport;
     place.dw_by_latitude = kEarthRate * Vector3d(-s, 0, -c);
-    place.force_L = speed * turning[k] + (2 * earth + transport).cross(v) -
-                    site.gravity * Vector3d::UnitZ();
+    place.force_L =
+        speed * turning[k] + (2 * earth + transport).cross(v) - site.gravity * Vector3d::UnitZ();
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
     place.depth = p.z();

@@ -148,8 +148,7 @@ class Sweep {
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                        std::span<const Start> starts,
-                        std::span<const std::size_t> marked) {
+                        std::span<const Start> starts, std::span<const std::size_t> marked) {
   RunEstimate result;
   if (knots.empty()) return result;
   std::vector<EstimateSetup> setups{setup};

@@ -23,8 +23,8 @@ struct Anchor {
 /// all the way from one to the next, near vertical, what is missing of it is spread over that part.
 using Start = std::vector<Anchor>;
 
-/// Errors of a run at one of its nodes that stay linked to those of others: attitude, drift, and the
-/// tool's constants. Those of the marked nodes form a chain in time.
+/// Errors of a run at one of its nodes that stay linked to those of others: attitude, drift, and
+/// the tool's constants. Those of the marked nodes form a chain in time.
 struct LinkedErrors {
   std::size_t node = 0;
   Eigen::MatrixXd cov;                ///< E[x x'], phi of the node first
@@ -37,10 +37,10 @@ struct RunEstimate {
   SolveReport report;   ///< of the start that fits best
   /// Another start comes so near in evidence that the azimuth is not decided: by less than 9.
   bool ambiguous = false;
-  std::vector<Node> nodes;                ///< one more than knots
-  std::vector<Eigen::Matrix3d> cov_phi;   ///< of each node's attitude, R_LT Exp(phi) [rad^2]
-  std::vector<LinkedErrors> marked;       ///< in the order of time
-  ErrorVector errors = ErrorVector::Zero();        ///< of the tool, as found
+  std::vector<Node> nodes;                   ///< one more than knots
+  std::vector<Eigen::Matrix3d> cov_phi;      ///< of each node's attitude, R_LT Exp(phi) [rad^2]
+  std::vector<LinkedErrors> marked;          ///< in the order of time
+  ErrorVector errors = ErrorVector::Zero();  ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior
 };
 

@@ -25,7 +25,7 @@ constexpr double kAnyDepth = 1e4;    // [m]
 constexpr double kAnySpeed = 10;     // [m/s]
 constexpr double kNoDrift = 1e-12;   // the walk begins at the bias [rad/s]
 // Gauss-Newton is trusted as far as this in one step: past it sine and angle part by 4 %.
-constexpr double kStepMost = 0.5;     // [rad]
+constexpr double kStepMost = 0.5;  // [rad]
 // Newton's decrement squared at which a run stays: a third of a sigma over all unknowns together.
 constexpr double kStays = 0.1;
 // The forward pass: gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
@@ -37,10 +37,10 @@ constexpr double kEarthShare = 0.1;
 constexpr double kNear = 1, kFar = 1e4;
 // Walks of the roll rate tried: of a tool that jerks, to one clamped to a turntable.
 constexpr double kWalkMost = 0.1, kWalkLeast = 1e-6;  // [rad/s/sqrt(s)]
-constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
-constexpr double kWorse = 6;  // 2 ln 20: by which evidence decides
-/// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it, if
-/// the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
+constexpr double kWalkUnseen = 1e-2;                  // of a tool whose roll is nowhere seen
+constexpr double kWorse = 6;                          // 2 ln 20: by which evidence decides
+/// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
+/// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
 double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
   const Eigen::Vector2d earth = w_IE_M.head<2>() * inc.seconds;
   const double ratio = inc.turn_M.norm() / earth.norm();
@@ -218,8 +218,8 @@ bool RunSolver::Iterate(int most, double stays, SolveReport& report) {
 }
 
 double RunSolver::Evidence() const {
-  double evidence = elimination_.log_determinant() +
-                    border_.cwiseQuotient(layout_.sigma).squaredNorm();
+  double evidence =
+      elimination_.log_determinant() + border_.cwiseQuotient(layout_.sigma).squaredNorm();
   for (const RowSum& sum : block_.sums()) evidence += sum.cost;
   const double rows = layout_.swing == kAbsent ? 1 : 3;
   if (layout_.swing != kAbsent) evidence += 4 * std::log(kAnyRoll);  // of its prior
@@ -256,8 +256,7 @@ SolveReport RunSolver::Solve(int iterations) {
   scales_.roll_start = RollStarts(knots_);
   // From the decade above what the rate usually changes by, which its own noise is part of.
   const double usual = UsualRollChange(knots_).value_or(kWalkUnseen);
-  scales_.roll_walk =
-      std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
+  scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
   Iterate(iterations, kNear, report);
   FindRollWalk(report);
   Iterate(iterations, kStays, report);

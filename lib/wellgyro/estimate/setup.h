@@ -11,20 +11,20 @@ namespace wellgyro {
 
 /// An azimuth known from outside the run's own sensors.
 struct AzimuthTie {
-  std::size_t node = 0;   ///< at whose instant it holds
-  double azimuth = 0;     ///< true [rad]
-  double sigma = 0;       ///< [rad]
-  bool of_mark = false;   ///< of the reference mark, for a tool near vertical; else of the axis
+  std::size_t node = 0;  ///< at whose instant it holds
+  double azimuth = 0;    ///< true [rad]
+  double sigma = 0;      ///< [rad]
+  bool of_mark = false;  ///< of the reference mark, for a tool near vertical; else of the axis
 };
 
 /// What the estimator must know of the tool and the place before the first knot.
 struct EstimateSetup {
   NoiseCoefficients gyro;  ///< of every axis
   ErrorPriors errors;
-  Site site;               ///< of node 0; latitude and gravity are carried along the path
+  Site site;                    ///< of node 0; latitude and gravity are carried along the path
   double sigma_gravity = 5e-4;  ///< of the Earth model, see SiteAt [m/s^2]
-  /// Of its growth with depth: a Bouguer plate counted twice, whose density is 2670 kg/m^3 within 9 %
-  /// [m/s^2 per m].
+  /// Of its growth with depth: a Bouguer plate counted twice, whose density is 2670 kg/m^3 within 9
+  /// % [m/s^2 per m].
   double sigma_gravity_gradient = 2e-7;
   bool third_axis = false;  ///< some knot has one
   /// The roll swings at this angular frequency [rad/s]; absent: it walks.

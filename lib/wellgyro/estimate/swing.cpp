@@ -11,12 +11,12 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kSegment = 600;    // [s], within which a line keeps its phase
-constexpr double kLeastSeen = 60;   // [s] of a segment, to tell a line from a trend
-constexpr double kLongest = 60;     // [s], period
-constexpr double kNyquist = 0.9;    // of half a turn a knot
-constexpr double kShare = 0.3;      // of the variance that a line must explain
-constexpr double kLeastRate = 3e-3;  // [rad/s]: what less does to the roll, a walk holds as well
+constexpr double kSegment = 600;        // [s], within which a line keeps its phase
+constexpr std::size_t kLeastSeen = 60;  // knots of a segment, to tell a line from a trend
+constexpr double kLongest = 60;         // [s], period
+constexpr double kNyquist = 0.9;        // of half a turn a knot
+constexpr double kShare = 0.3;          // of the variance that a line must explain
+constexpr double kLeastRate = 3e-3;     // [rad/s]: what less does to the roll, a walk holds as well
 constexpr int kOversampled = 4;
 constexpr std::size_t kSegmentsMost = 24;
 
@@ -41,7 +41,8 @@ std::vector<std::vector<Point>> Segments(std::span<const RunKnot> knots) {
   if (segments.size() > kSegmentsMost) segments.resize(kSegmentsMost);
   for (auto& segment : segments) {
     double mean = 0;
-    for (const Point& p : segment) mean += p.rate / static_cast<double>(segment.size());
+    for (const Point& p : segment) mean += p.rate;
+    mean /= static_cast<double>(segment.size());
     for (Point& p : segment) p.rate -= mean;
   }
   return segments;
@@ -82,7 +83,8 @@ std::optional<double> SwingOf(std::span<const RunKnot> knots) {
   }
   if (best < kShare * squares) return std::nullopt;
   // The top of the parabola through the peak and its neighbours.
-  const double before = Explained(segments, omega - step), after = Explained(segments, omega + step);
+  const double before = Explained(segments, omega - step),
+               after = Explained(segments, omega + step);
   const double bend = before - 2 * best + after;
   return bend < 0 ? omega + 0.5 * step * (before - after) / bend : omega;
 }

@@ -420,7 +420,8 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
 
 LeastSquaresAdjuster::LeastSquaresAdjuster(const AdjustmentOptions& options) : options_(options) {}
 
-SmoothedRun LeastSquaresAdjuster::Adjust(const FilterHistory& history, double sigma_lie) const {
+SmoothedRun LeastSquaresAdjuster::Adjust(const FilterHistory& history, std::span<const Increment>,
+                                         double sigma_lie) const {
   return AdjustRun(history, sigma_lie, options_).run;
 }
 

@@ -40,7 +40,8 @@ WELLGYRO_EXPORT Adjustment AdjustRun(const FilterHistory& history, double sigma_
 class WELLGYRO_EXPORT LeastSquaresAdjuster : public RunAdjuster {
  public:
   explicit LeastSquaresAdjuster(const AdjustmentOptions& options = {});
-  SmoothedRun Adjust(const FilterHistory& history, double sigma_lie) const override;
+  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment> increments,
+                     double sigma_lie) const override;
 
  private:
   AdjustmentOptions options_;

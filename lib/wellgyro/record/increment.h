@@ -13,19 +13,19 @@ namespace wellgyro {
 /// What the sensors say of the tool's motion between two instants, the knot's ends, free of any
 /// attitude: a preintegrated increment.
 ///
-/// M is the tool's frame at the knot's middle, turned about the axis with the tool: a vector of T at
-/// time t reads Rz(psi(t) - psi(middle)) v_T in it, psi being the tool's inertial roll. So U = M does
-/// not turn about the axis, and a rotation vector across the axis simply sums:
+/// M is the tool's frame at the knot's middle, turned about the axis with the tool: a vector of T
+/// at time t reads Rz(psi(t) - psi(middle)) v_T in it, psi being the tool's inertial roll. So U = M
+/// does not turn about the axis, and a rotation vector across the axis simply sums:
 ///   R_IT(end) = R_IT(begin) Rz(roll_before) Exp(turn) Rz(roll_after), turn and its axial part 0.
 /// With psi in error by a straight line through the middle that grows by delta over the knot
 /// (estimate psi + delta (t - t_middle)/seconds) the increment is that of
-///   roll_before + delta/2, turn + turn_per_roll delta, roll_after + delta/2, force + force_per_roll
-///   delta.
+///   roll_before + delta/2, turn + turn_per_roll delta, roll_after + delta/2, force +
+///   force_per_roll delta.
 /// psi is known inside the knot only: from one knot to the next it is the estimator's business.
 /// All sums are exact to the third order of the turn within a sample (mean rates in, de-averaged).
 struct Increment {
-  ToolTime time;       ///< end of the knot
-  double seconds = 0;  ///< its length
+  ToolTime time;           ///< end of the knot
+  double seconds = 0;      ///< its length
   double roll_before = 0;  ///< psi(middle) - psi(begin) [rad], not wrapped
   double roll_after = 0;   ///< psi(end) - psi(middle) [rad]
   Eigen::Vector2d turn_M = Eigen::Vector2d::Zero();         ///< over the knot [rad]
@@ -46,8 +46,8 @@ struct Increment {
   /// Variance of turn_M beyond the gyros' white noise: what the last order kept leaves out, per
   /// component [rad^2].
   double var_turn = 0;
-  /// 1-sigma of what gravity says of the roll over the knot, the change of psi, by noise alone [rad];
-  /// large where gravity says nothing.
+  /// 1-sigma of what gravity says of the roll over the knot, the change of psi, by noise alone
+  /// [rad]; large where gravity says nothing.
   double sigma_roll = 0;
   bool roll_seen = false;  ///< psi follows gravity (or a third axis) all through the knot
   bool level = true;       ///< force_M counts: no accelerometer stood at full scale, no gap

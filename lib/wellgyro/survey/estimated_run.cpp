@@ -29,8 +29,8 @@ struct JoinedKnots {
 
 JoinedKnots Join(const Job& job, const FilterHistory& history,
                  std::span<const Increment> increments) {
-  const bool rests = job.alignment.method == AlignmentSpec::Method::kGyrocompass ||
-                     job.alignment.use_fixes;
+  const bool rests =
+      job.alignment.method == AlignmentSpec::Method::kGyrocompass || job.alignment.use_fixes;
   JoinedKnots joined;
   std::size_t epoch = 0;
   const auto& epochs = history.epochs;
@@ -168,8 +168,8 @@ RunFit FitOf(const RunEstimate& estimate) {
   fit.converged = estimate.report.converged;
   fit.ambiguous = estimate.ambiguous;
   double freedom = 0;
-  for (const RowKind kind : {RowKind::kTurn, RowKind::kForce, RowKind::kDepth, RowKind::kAxial,
-                             RowKind::kAzimuth}) {
+  for (const RowKind kind :
+       {RowKind::kTurn, RowKind::kForce, RowKind::kDepth, RowKind::kAxial, RowKind::kAzimuth}) {
     const RowSum& sum = estimate.report.sums[static_cast<std::size_t>(kind)];
     fit.chi_square += sum.weighted;
     freedom += sum.rows - sum.absorbed;

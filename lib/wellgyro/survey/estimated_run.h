@@ -13,7 +13,8 @@ namespace wellgyro {
 /// states of the marked stations of `history`, as Smooth() gives them. Where the increments do not
 /// reach the last epochs, the first ones only.
 ///
-/// Without a north, or where nothing is found that fits, `fit` says so and the smoothed run is given.
+/// Without a north, or where nothing is found that fits, `fit` says so and the smoothed run is
+/// given.
 SmoothedRun EstimatedRun(const Job& job, const FilterHistory& history,
                          std::span<const Increment> increments);
 
