@@ -5,24 +5,27 @@
 #include <cstddef>
 #include <optional>
 
+#include "wellgyro/base/angle.h"
+
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kReach = 10, kLeast = 5;         // knots to each side, and of them that tell
-constexpr double kLeastRatio = 0.7, kMostRatio = 1.4;  // of what the gyros read to the Earth's
+constexpr std::size_t kReach = 10, kLeast = 5;  // knots to each side, and of them that tell
+constexpr double kLeastRatio = 0.7;             // of what the gyros read to the Earth's across
 
-bool ReadsEarth(const RunKnot& knot, double horizontal) {
+bool Reads(const RunKnot& knot, double horizontal) {
   const Increment& i = knot.increment;
   const double ratio = i.turn_M.norm() / (horizontal * i.seconds);
-  return !i.roll_seen && !knot.still && ratio > kLeastRatio && ratio < kMostRatio;
+  return !i.roll_seen && !knot.still && ratio > kLeastRatio;
 }
 
 /// Of psi against the Earth from one knot's middle to the next one's [rad/s].
 std::optional<double> SlipBetween(const RunKnot& a, const RunKnot& b, double horizontal) {
-  if (!ReadsEarth(a, horizontal) || !ReadsEarth(b, horizontal)) return std::nullopt;
+  if (!Reads(a, horizontal) || !Reads(b, horizontal)) return std::nullopt;
   const Eigen::Vector2d& u = a.increment.turn_M;
   const Eigen::Vector2d& v = b.increment.turn_M;
-  const double angle = -std::atan2(v.y() * u.x() - v.x() * u.y(), v.dot(u));
+  const double turned = -std::atan2(v.y() * u.x() - v.x() * u.y(), v.dot(u));
+  const double angle = WrapPi(turned - (a.increment.roll_after + b.increment.roll_before));
   return angle / (0.5 * (a.increment.seconds + b.increment.seconds));
 }
 

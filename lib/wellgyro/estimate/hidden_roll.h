@@ -7,10 +7,10 @@
 
 namespace wellgyro {
 
-/// Where gravity does not show the roll, near vertical, the Earth's rate across the tool does: it
-/// stands still in L, so that its phase in the tool turns back by what psi misses of the roll. The
-/// median over some twenty knots where the gyros read nothing but the Earth, `horizontal` [rad/s];
-/// 0 elsewhere [rad/s]. For the start only.
+/// Where gravity does not show the roll, near vertical, the rate across the tool does: the Earth's,
+/// `horizontal` [rad/s], and that of a bend of the hole stand still in L for some time, so that
+/// their phase in the tool turns back by what psi misses of the roll. The median over some twenty
+/// knots [rad/s]; 0 where the roll is seen or too little is read. For the start only.
 std::vector<double> HiddenRoll(std::span<const RunKnot> knots, double horizontal);
 
 }  // namespace wellgyro

@@ -11,8 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLowPass = 15;       // [s], of the hole's turning
-constexpr double kSiteEvery = 10;     // [m]: 1e-4 mrad of latitude, 1e-5 m/s^2 of gravity
+constexpr double kLowPass = 15;  // [s], of the hole's turning
+// [m] of depth marks, and not of the path: where it is renewed must not move with the solution.
+constexpr double kSiteEvery = 2;
 constexpr double kPathReach = 1e5;    // [m]; damaged depths may lead anywhere, the site stays
 constexpr double kPoleMargin = 1e-3;  // [rad], from where the transport about the vertical grows
 
@@ -52,16 +53,18 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
   places.resize(knots.size());
   const std::vector<Vector3d> turning = Turning(knots, nodes);
   Site site = first;
-  Vector3d p = Vector3d::Zero(), at = p;
+  Vector3d p = Vector3d::Zero();
+  double md = nodes[0].md;
   double time = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Node& a = nodes[k];
     const Node& b = nodes[k + 1];
     const Vector3d tangent = 0.5 * (a.tangent_L() + b.tangent_L());
     const double speed = 0.5 * (a.speed + b.speed);
-    if ((p - at).squaredNorm() > kSiteEvery * kSiteEvery) {
+    const AlongHole& along = knots[k].along;
+    if (k == 0 || (along.known && std::abs(along.md - md) > kSiteEvery)) {
       site = SiteBy(first, p);
-      at = p;
+      if (along.known) md = along.md;
     }
     KnotPlace& place = places[k];
     place.site = site;

@@ -26,8 +26,11 @@ constexpr double kAnySpeed = 10;     // [m/s]
 constexpr double kNoDrift = 1e-12;   // the walk begins at the bias [rad/s]
 // Gauss-Newton is trusted as far as this in one step: past it sine and angle part by 4 %.
 constexpr double kStepMost = 0.5;  // [rad]
-// Newton's decrement squared at which a run stays: a third of a sigma over all unknowns together.
-constexpr double kStays = 0.1;
+// Newton's decrement squared at which a run stays: a thousandth of a sigma over all unknowns
+// together.
+constexpr double kStays = 1e-6;
+constexpr int kFinish =
+    8;  // steps towards it; the last ones of a run with starts and stops are slow
 // The forward pass: gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
 // about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
 constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
@@ -35,8 +38,10 @@ constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
 constexpr double kEarthShare = 0.1;
 // Steps at which another roll walk can be told from the last, and from which it is not worth while.
 constexpr double kNear = 1, kFar = 1e4;
-// Walks of the roll rate tried: of a tool that jerks, to one clamped to a turntable.
-constexpr double kWalkMost = 0.1, kWalkLeast = 1e-6;  // [rad/s/sqrt(s)]
+// Walks of the roll rate tried, from that of a tool that jerks. The least walks in a minute by as
+// much as the Earth's rate: less, and the steadiness of the roll would tell the Earth's axial part,
+// which no tool across the axis measures.
+constexpr double kWalkMost = 0.1, kWalkLeast = 1e-5;  // [rad/s/sqrt(s)]
 constexpr double kWalkUnseen = 1e-2;                  // of a tool whose roll is nowhere seen
 constexpr double kWorse = 6;                          // 2 ln 20: by which evidence decides
 /// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
@@ -259,7 +264,7 @@ SolveReport RunSolver::Solve(int iterations) {
   scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
   Iterate(iterations, kNear, report);
   FindRollWalk(report);
-  Iterate(iterations, kStays, report);
+  Iterate(kFinish, kStays, report);
   report.converged = elimination_.decrement() < kNear;
   report.sums = block_.sums();
   report.evidence = Evidence();

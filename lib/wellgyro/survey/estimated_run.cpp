@@ -20,6 +20,8 @@ using Eigen::Vector3d;
 constexpr std::int64_t kSameNs = 2;
 // An inclination at which an azimuth's sigma is that of no knowledge for any attitude's.
 constexpr double kLeastSine = 1e-9;
+// From here on the angle is not what its first order says: sine and angle part by 2 %.
+constexpr double kVaguest = 20 * kPi / 180;  // [rad]
 
 /// Knots joined with the epochs that end where they do, and which node each epoch is.
 struct JoinedKnots {
@@ -143,12 +145,12 @@ AttitudeSample SampleOf(const Knot& knot, const Node& node, const Matrix3d& cov_
   a.quality = Without(knot.quality, Quality::kVertical);
   const Matrix3d slope = AnglesByPhi(a.inclination, a.toolface);
   a.cov_attitude = slope * cov_phi * slope.transpose();
+  if (a.cov_attitude(1, 1) > kVaguest * kVaguest) a.quality |= Quality::kVertical;
   for (const int i : {1, 2}) {
     if (a.cov_attitude(i, i) < kUnknownAngleVariance) continue;
     a.cov_attitude.row(i).setZero();
     a.cov_attitude.col(i).setZero();
     a.cov_attitude(i, i) = kUnknownAngleVariance;
-    if (i == 1) a.quality |= Quality::kVertical;
   }
   return a;
 }
