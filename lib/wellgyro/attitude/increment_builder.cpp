@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <stdexcept>
 #include <string>
 
 #include "wellgyro/attitude/knot_sum_internal.h"
-#include "wellgyro/base/angle.h"
+#include "wellgyro/attitude/phase_reader_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -15,20 +14,23 @@ namespace {
 using increment::Block;
 using increment::Blocks;
 using increment::BlockSum;
-using increment::Complex;
 using increment::KnotSpan;
+using increment::PhaseReader;
+using increment::Ring;
 using increment::RollSmoother;
 
 // A block: short against a roll of 20 rpm (0.02 rad to its ends) and against whirls of some Hz.
 constexpr double kBlockSeconds = 0.02;
 // A stretch whose roll is smoothed at once, and what is looked at beyond it: three times the memory
 // of the slowest useful walk where gravity is hardly seen.
-constexpr std::int64_t kStretchNs = 8'000'000'000;
+constexpr std::int64_t kStretchNs = 6'000'000'000;
 constexpr std::uint64_t kStretchBlocks = 800;
+// A knot that nobody ends, so that memory stays bounded: the stretch at hand, the one beyond it and
+// such a knot are half of what there is room for.
 constexpr std::int64_t kKnotNs = 20'000'000'000;
+constexpr std::uint64_t kKnotBlocks = 2000;
 constexpr std::size_t kCapacity = 8192;
-// Below it the axis' own turning, divided by it, is no correction any more: half a degree.
-constexpr double kSineMin = 0.0087;
+constexpr std::size_t kCutsMost = 1024;
 
 bool IsFinite(const ImuSample& s) {
   const double w = s.w_IT_T.x() + s.w_IT_T.y() + (s.has_gz ? s.w_IT_T.z() : 0);
@@ -65,7 +67,8 @@ Following Follows(const SampleStamp& before, const SampleStamp& next) {
 }  // namespace
 
 struct IncrementBuilder::State {
-  explicit State(const IncrementOptions& o) : options(o) {}
+  explicit State(const IncrementOptions& o)
+      : options(o), phase({o.accel_noise, o.accel_bias, o.gravity}) {}
 
   struct KnotEnd {
     std::int64_t ns;
@@ -81,109 +84,52 @@ struct IncrementBuilder::State {
   std::int64_t gap_begin_ns = 0, gap_ns = 0;  // before the last sample
   ToolTime gap_begin;
   Blocks blocks{kCapacity};
+  PhaseReader phase;
   RollSmoother smoother{kCapacity};
   std::uint64_t smoothed = 0, turned = 0;  // blocks that are
   std::uint64_t stretch_end = 0;           // of the next stretch, as far as it is known
   std::int64_t final_ns = 0;               // up to here knots can be summed
-  std::deque<KnotEnd> cuts;
+  Ring<KnotEnd> cuts{kCutsMost};
   std::int64_t last_cut_ns = 0, begin_ns = 0;
-  std::uint64_t begin_block = 0;
+  std::uint64_t begin_block = 0, last_cut_block = 0;
 
-  // Of the phase.
-  double across = 0, phase_sum = 0, phase_before = 0, rate_before = 0, axial = 0;
-  bool seen_before = false, gz_before = false;
-
+  Block& NewBlock();
   void CloseBlock();
   void AddGap(std::int64_t ns);
-  void AddBlock(Block block);
-  void SeePhase(Block& block);
   void Advance(bool to_end);
   void Turn(std::uint64_t begin, std::uint64_t end);
+  void EndLongKnot();
   void AddCut(std::int64_t ns, ToolTime time);
 };
 
-void IncrementBuilder::State::AddBlock(Block block) {
+Block& IncrementBuilder::State::NewBlock() {
   if (blocks.full()) throw std::logic_error("IncrementBuilder: increments wait to be fetched");
-  SeePhase(block);
-  blocks.Push(block);
-  // Half way is not the mean where what is swept changes: five adjoining integrals give the mean of
-  // their sum over the middle one to the sixth order.
-  const std::uint64_t k = blocks.end() - 1;
-  if (k < blocks.begin() + 4 || block.has_gz) return;
-  for (std::uint64_t j = k - 3; j <= k; ++j) {
-    if (!(blocks[j].weight > 0 && blocks[j].linked)) return;
-  }
-  const double inner = blocks[k - 1].swept - blocks[k - 3].swept;
-  const double outer = blocks[k].swept - blocks[k - 4].swept;
-  blocks[k - 2].phase += (11 * outer - 82 * inner) / 1440;
+  Block& block = blocks.Append();
+  block.begin_ns = open_begin_ns;
+  block.breaks = breaks;
+  block.lost = lost;
+  breaks = false;
+  lost = 0;
+  return block;
 }
 
 void IncrementBuilder::State::CloseBlock() {
   if (open.samples() == 0) return;
-  Block block = open.Close();
-  block.begin_ns = open_begin_ns;
-  block.breaks = breaks;
-  block.lost = lost;
+  Block& block = NewBlock();
+  open.Close(block);
   open_begin_ns = block.end_ns();
-  breaks = false;
-  lost = 0;
-  AddBlock(block);
+  phase.Read(blocks);
 }
 
 void IncrementBuilder::State::AddGap(std::int64_t ns) {
-  Block gap;
+  Block& gap = NewBlock();
+  gap = Block();
   gap.begin_ns = open_begin_ns;
   gap.length_ns = ns;
   gap.seconds = 1e-9 * static_cast<double>(ns);
   gap.breaks = true;
   open_begin_ns += ns;
-  AddBlock(gap);
-}
-
-// The phase of the mean force across, and by how much the turning of the axis carries the high side
-// round the tool: psi' = T' + A' cos I, A' sin I = -Re(W e^{iT}).
-void IncrementBuilder::State::SeePhase(Block& b) {
-  const double g = options.gravity;
-  const bool had_gz = gz_before;
-  gz_before = b.has_gz && b.samples > 0;
-  if (gz_before) {
-    const double spin = b.sum[increment::kWz].zeroth;
-    b.phase = axial + 0.5 * spin;
-    b.weight = 1e12;
-    b.linked = had_gz;
-    axial += spin;
-    seen_before = false;
-    return;
-  }
-  if (b.samples == 0 || b.accel_full_scale) {
-    seen_before = false;
-    return;
-  }
-  const double per = 1 / (b.seconds * g);
-  const Complex force(b.sum[increment::kFx].zeroth * per, b.sum[increment::kFy].zeroth * per);
-  const double s = std::abs(force), noise = std::max(options.accel_noise, 5e-7) / g;
-  across += (s - across) * std::min(1., b.seconds);
-  if (blocks.empty()) across = s;
-  const double least =
-      std::max({kSineMin, 4 * noise / std::sqrt(b.seconds), 5 * options.accel_bias / g});
-  if (std::min(s, across) < least) {
-    seen_before = false;
-    return;
-  }
-  const Complex to_high = std::conj(force) / s;
-  const Complex turn(b.sum[increment::kWx].zeroth, b.sum[increment::kWy].zeroth);
-  const double carried = -(turn * to_high).real() / s * (-b.sum[increment::kFz].zeroth * per);
-  double phase = -std::arg(force);
-  const double h = b.seconds, expected = seen_before ? phase_before + rate_before * h : phase;
-  phase += kTwoPi * std::round((expected - phase) / kTwoPi);
-  b.phase = phase + phase_sum + 0.5 * carried;
-  b.swept = carried;
-  phase_sum += carried;
-  b.weight = s * s * b.seconds / (noise * noise);
-  b.linked = seen_before;
-  if (seen_before) rate_before += ((phase - phase_before) / h - rate_before) * std::min(1., 4 * h);
-  phase_before = phase;
-  seen_before = true;
+  phase.Read(blocks);
 }
 
 // Means of the phase to its values at the middles, and the sums to U.
@@ -214,9 +160,11 @@ void IncrementBuilder::State::Advance(bool to_end) {
       ++stretch_end;
     }
     const bool far = blocks.end() - stretch_end >= kStretchBlocks ||
-                     blocks.back().begin_ns - begin >= 2 * kStretchNs;
+                     (blocks.end() >= stretch_end + 3 &&
+                      blocks[blocks.end() - 3].begin_ns - begin >= 2 * kStretchNs);
     if (!far && !to_end) break;
-    smoother.Smooth(smoothed, stretch_end, blocks.end(), blocks);
+    // The phases of the two youngest are not final.
+    smoother.Smooth(smoothed, stretch_end, to_end ? blocks.end() : blocks.end() - 2, blocks);
     smoothed = stretch_end;
     const std::uint64_t upto = to_end && smoothed == blocks.end() ? smoothed : smoothed - 1;
     Turn(turned, upto);
@@ -230,9 +178,18 @@ void IncrementBuilder::State::Advance(bool to_end) {
   }
 }
 
+void IncrementBuilder::State::EndLongKnot() {
+  if (!started) return;
+  if (last_begin_ns - last_cut_ns >= kKnotNs || blocks.end() - last_cut_block >= kKnotBlocks) {
+    AddCut(last_begin_ns, open.last().tool_time);
+  }
+}
+
 void IncrementBuilder::State::AddCut(std::int64_t ns, ToolTime time) {
-  cuts.push_back({ns, time});
+  if (cuts.full()) throw std::logic_error("IncrementBuilder: increments wait to be fetched");
+  cuts.Push({ns, time});
   last_cut_ns = ns;
+  last_cut_block = blocks.end();
 }
 
 IncrementBuilder::IncrementBuilder(const IncrementOptions& options) {
@@ -251,6 +208,7 @@ bool IncrementBuilder::Push(const ImuSample& sample, bool rests) {
   Following f;
   if (s.started) f = Follows(s.open.last(), sample.stamp);
   if (f.late) return false;
+  s.EndLongKnot();
   if (!s.started || f.breaks) {
     s.gap_begin = s.started ? s.open.last().tool_time + Duration{s.open.last().period_ns}
                             : sample.stamp.tool_time;
@@ -309,7 +267,7 @@ Increment IncrementBuilder::Pop() {
   State& s = *state_;
   if (!Ready()) throw std::logic_error("IncrementBuilder::Pop: none is ready");
   const State::KnotEnd cut = s.cuts.front();
-  s.cuts.pop_front();
+  s.cuts.DropBefore(s.cuts.begin() + 1);
   std::uint64_t end = s.begin_block;
   while (s.blocks[end].end_ns() < cut.ns) ++end;
   const KnotSpan span{s.begin_ns, cut.ns, s.begin_block, end};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wellgyro/base/angle.h"
+
 namespace wellgyro::increment {
 namespace {
 
@@ -115,6 +117,7 @@ void Sums::Add(const Ready& r, double from, double to, double at) {
   unit += turning(b.unit);
   skew += b.rate * w + b.bend * w1;
   axial += part.share * b.sum[kWz].zeroth + part.share_first * b.sum[kWz].first;
+  if (b.accel_full_scale) return;
   const Complex f = part.Of(b.force(), r.force_first), f1 = part.FirstOf(b.force(), r.force_first);
   fx += part.share * b.fx;
   fy += part.share * b.fy;
@@ -162,15 +165,14 @@ void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
 
 void FillFlags(const Block& b, double seconds, Increment& out) {
   out.quality |= b.quality;
+  if (b.lost > 0) out.quality |= Quality::kGap;
   if (b.samples == 0) {
     out.gap_seconds += seconds;
-    out.level = false;
     out.roll_seen = false;
     out.quality |= Quality::kGap;
     return;
   }
   if (b.gyro_full_scale) out.gap_seconds += seconds;
-  if (b.accel_full_scale) out.level = false;
   if (!(b.weight > 0) && !b.has_gz) out.roll_seen = false;
 }
 
@@ -184,7 +186,7 @@ void FillSamples(const KnotSpan& span, const Blocks& blocks, Increment& out) {
     const std::int64_t to = (std::min(span.end_ns, b.end_ns()) - b.begin_ns + period - 1) / period;
     if (to <= from) continue;
     if (first) out.seq_begin = b.seq_begin + from;
-    if (from == 0 && !(first && b.begin_ns == span.begin_ns && false)) out.samples_lost += b.lost;
+    if (from == 0) out.samples_lost += b.lost;
     out.seq_end = b.seq_begin + to;
     first = false;
   }
@@ -243,6 +245,7 @@ Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Bl
   out.var_turn = 0.5 * std::norm(s.missing);
   out.has_axial = has_axial;
   if (has_axial) out.axial = s.axial + s.coning;
+  out.level = 2 * s.forced >= out.seconds;
   if (s.forced > 0) {
     const Complex f = (s.back + kI * turn_before * s.z) / s.forced;
     const double fz = (s.back_z - Axial(turn_before, s.force())) / s.forced;
@@ -251,8 +254,7 @@ Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Bl
         Vector(to_M * kI * (s.force_moment / out.seconds - 0.5 * s.force()) / s.forced);
     out.sigma_roll = std::sqrt(12 / s.forced) * accel_noise / std::max(std::abs(f), 1e-9);
   } else {
-    out.level = false;
-    out.sigma_roll = 1e9;
+    out.sigma_roll = kTwoPi;
   }
   FillErrors(s, to_M,
              std::polar(1., roll_end - roll_middle) - std::polar(1., roll_begin - roll_middle),

@@ -18,8 +18,11 @@ class Ring {
   bool empty() const { return end_ == begin_; }
   T& operator[](std::uint64_t k) { return items_[k & (items_.size() - 1)]; }
   const T& operator[](std::uint64_t k) const { return items_[k & (items_.size() - 1)]; }
+  const T& front() const { return (*this)[begin_]; }
   const T& back() const { return (*this)[end_ - 1]; }
   void Push(const T& item) { (*this)[end_++] = item; }
+  /// The next element, which still holds what stood in its place.
+  T& Append() { return (*this)[end_++]; }
   void DropBefore(std::uint64_t k) { begin_ = k; }
 
  private:

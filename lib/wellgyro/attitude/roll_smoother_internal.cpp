@@ -5,42 +5,31 @@
 namespace wellgyro::increment {
 namespace {
 
-// Walks of the roll's rate that are tried [rad/s/sqrt(s)]: from a clamped tool to a drill string.
-constexpr std::array<double, 6> kWalks{1e-4, 1e-3, 1e-2, 1e-1, 1, 10};
 // A tool told to rest does not roll: half of what the Earth turns it [rad/s].
 constexpr double kRestRate = 3.6e-5;
 
 }  // namespace
 
-double RollSmoother::Score::value() const {
-  return count * std::log(misfit / count + 1e-300) + log_variance;
-}
-
-inline void RollSmoother::Predict(double h, double walk, bool linked, State& s) {
-  const double q = walk * walk * h;
+inline void RollSmoother::Predict(const Seen& seen, double walk, State& s) {
+  const double h = seen.step, q = walk * walk * h;
   s.roll += h * s.rate;
-  s.p00 += h * (2 * s.p01 + h * s.p11) + q * h * h / 3;
+  s.p00 += h * (2 * s.p01 + h * s.p11) + q * h * h * (1. / 3);
   s.p01 += h * s.p11 + 0.5 * q * h;
   s.p11 += q;
-  if (!linked) s.p00 = 1e4, s.p01 = 0;
+  if (!seen.linked) s.p00 = 1e4, s.p01 = 0;
 }
 
-inline void RollSmoother::Update(const Block& block, State& s, Score& score) {
-  if (block.weight > 0) {
-    const double noise = 1 / block.weight, sum = s.p00 + noise, off = block.phase - s.roll;
-    if (s.p00 < 1) {  // else nothing was foretold
-      score.misfit += off * off / sum;
-      score.log_variance += std::log(sum);
-      ++score.count;
-    }
-    const double k0 = s.p00 / sum, k1 = s.p01 / sum;
+inline void RollSmoother::Update(const Seen& seen, State& s) {
+  if (seen.measured) {
+    const double per = 1 / (s.p00 + seen.noise), off = seen.phase - s.roll;
+    const double k0 = s.p00 * per, k1 = s.p01 * per, left = seen.noise * per;
     s.roll += k0 * off;
     s.rate += k1 * off;
     s.p11 -= k1 * s.p01;
-    s.p00 = k0 * noise;
-    s.p01 *= noise / sum;
-  } else if (block.rests) {
-    const double sum = s.p11 + kRestRate * kRestRate, k0 = s.p01 / sum, k1 = s.p11 / sum;
+    s.p00 *= left;
+    s.p01 *= left;
+  } else if (seen.rests) {
+    const double per = 1 / (s.p11 + kRestRate * kRestRate), k0 = s.p01 * per, k1 = s.p11 * per;
     s.roll -= k0 * s.rate;
     s.rate -= k1 * s.rate;
     s.p00 -= k0 * s.p01;
@@ -49,17 +38,51 @@ inline void RollSmoother::Update(const Block& block, State& s, Score& score) {
   }
 }
 
-RollSmoother::Score RollSmoother::Forward(std::uint64_t begin, std::uint64_t end, double walk,
-                                          const Blocks& blocks, bool keep) {
-  State s = before_;
-  Score score;
-  for (std::uint64_t k = begin; k < end; ++k) {
-    const Block& block = blocks[k];
-    if (k > 0) Predict(blocks[k - 1].middle() + block.middle(), walk, block.linked, s);
-    Update(block, s, score);
-    if (keep) states_[k - begin] = s;
+// Every walk by its own filter, once over every block.
+void RollSmoother::Try(std::uint64_t end, const Blocks& blocks) {
+  for (std::uint64_t k = seen_.end(); k < end; ++k) {
+    const Block& b = blocks[k];
+    Seen seen{0, b.phase, 0, b.weight > 0, b.linked, b.rests};
+    if (k > 0) seen.step = blocks[k - 1].middle() + b.middle();
+    if (seen.measured) seen.noise = 1 / b.weight;
+    seen_.Push(seen);
+    for (std::size_t i = 0; i < kWalks.size(); ++i) {
+      State& s = tried_[i];
+      Score& score = now_[i];
+      if (k > 0) Predict(seen, kWalks[i], s);
+      if (seen.measured && s.p00 < 1) {  // else nothing was foretold
+        const double sum = s.p00 + seen.noise, off = seen.phase - s.roll;
+        score.misfit += off * off / sum;
+        score.product *= sum;
+        if (++score.count % 8 == 0) {  // far from what a double can hold
+          score.log_variance += std::log(score.product);
+          score.product = 1;
+        }
+      }
+      Update(seen, s);
+    }
   }
-  return score;
+}
+
+// By this stretch and what is seen beyond it, which is the next one.
+double RollSmoother::ChooseWalk() {
+  double walk = kWalks[0], least = 0;
+  for (std::size_t i = 0; i < kWalks.size(); ++i) {
+    Score& a = last_[i];
+    Score& b = now_[i];
+    const int count = a.count + b.count;
+    double value = 0;
+    if (count > 0) {
+      value = count * std::log((a.misfit + b.misfit) / count + 1e-300) + a.log_variance +
+              b.log_variance + std::log(a.product) + std::log(b.product);
+    }
+    a = b;
+    b = Score();
+    if (i > 0 && !(value < least)) continue;
+    walk = kWalks[i];
+    least = value;
+  }
+  return walk;
 }
 
 // Returns the smoothed value of the block before `begin`, to which this stretch joins.
@@ -70,19 +93,19 @@ double RollSmoother::Backward(std::uint64_t begin, std::uint64_t end, std::uint6
   for (std::uint64_t k = ahead; k-- > first;) {
     const State& s = k < begin ? before_ : states_[k - begin];
     if (k + 1 < ahead) {
-      const double h = blocks[k].middle() + blocks[k + 1].middle();
+      const Seen& seen = seen_[k + 1];
       State next = s;
-      Predict(h, walk, blocks[k + 1].linked, next);
+      Predict(seen, walk, next);
       // P F^T (P-)^-1 (smoothed - foretold)
       const double u0 = roll - next.roll, u1 = rate - next.rate;
       double v0 = 0, v1 = u1 / next.p11;
-      if (blocks[k + 1].linked) {
-        const double det = next.p00 * next.p11 - next.p01 * next.p01;
-        v0 = (next.p11 * u0 - next.p01 * u1) / det;
-        v1 = (next.p00 * u1 - next.p01 * u0) / det;
+      if (seen.linked) {
+        const double per = 1 / (next.p00 * next.p11 - next.p01 * next.p01);
+        v0 = (next.p11 * u0 - next.p01 * u1) * per;
+        v1 = (next.p00 * u1 - next.p01 * u0) * per;
       }
-      roll = s.roll + (s.p00 + h * s.p01) * v0 + s.p01 * v1;
-      rate = s.rate + (s.p01 + h * s.p11) * v0 + s.p11 * v1;
+      roll = s.roll + (s.p00 + seen.step * s.p01) * v0 + s.p01 * v1;
+      rate = s.rate + (s.p01 + seen.step * s.p11) * v0 + s.p11 * v1;
     }
     if (k >= begin && k < end) {
       blocks[k].roll = roll;
@@ -101,12 +124,11 @@ void RollSmoother::Join(std::uint64_t begin, std::uint64_t end, double before, B
     if (b.has_gz) b.rate = b.sum[kWz].zeroth / b.seconds;
     if (k > 0) {
       const Block& a = blocks[k - 1];
-      double step = smoothed - before;
-      if (!b.linked)
-        step = (a.middle() + b.middle()) * 0.5 * (a.rate + b.rate);
-      else if (b.has_gz)
-        step = b.phase - a.phase;
-      roll_ += step;
+      if (!b.linked) {
+        roll_ += (a.middle() + b.middle()) * 0.5 * (a.rate + b.rate);
+      } else {
+        roll_ += b.has_gz ? b.phase - a.phase : smoothed - before;
+      }
     } else {
       roll_ = smoothed;
     }
@@ -117,16 +139,17 @@ void RollSmoother::Join(std::uint64_t begin, std::uint64_t end, double before, B
 
 void RollSmoother::Smooth(std::uint64_t begin, std::uint64_t end, std::uint64_t ahead,
                           Blocks& blocks) {
-  double walk = kWalks[0], least = 0;
-  for (std::size_t i = 0; i < kWalks.size(); ++i) {
-    const Score score = Forward(begin, ahead, kWalks[i], blocks, false);
-    if (i > 0 && !(score.value() < least)) continue;
-    walk = kWalks[i];
-    least = score.value();
+  Try(ahead, blocks);
+  const double walk = ChooseWalk();
+  State s = before_;
+  for (std::uint64_t k = begin; k < ahead; ++k) {
+    if (k > 0) Predict(seen_[k], walk, s);
+    Update(seen_[k], s);
+    states_[k - begin] = s;
   }
-  Forward(begin, ahead, walk, blocks, true);
   Join(begin, end, Backward(begin, end, ahead, walk, blocks), blocks);
   before_ = states_[end - 1 - begin];
+  seen_.DropBefore(end);
 }
 
 }  // namespace wellgyro::increment

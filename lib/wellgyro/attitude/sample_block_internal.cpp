@@ -45,8 +45,7 @@ void BlockSum::Add(const ImuSample& sample, bool rests) {
   last_ = stamp;
 }
 
-Block BlockSum::Close() {
-  Block block;
+void BlockSum::Close(Block& block) {
   block.samples = samples_;
   block.length_ns = static_cast<std::int64_t>(samples_) * last_.period_ns;
   block.seconds = 1e-9 * static_cast<double>(block.length_ns);
@@ -64,10 +63,11 @@ Block BlockSum::Close() {
     const double second = sum_[2][i] - middle * (2 * first + middle * zeroth);
     block.sum[i] = {zeroth * dt, first * dt * dt, second * dt * dt * dt};
   }
-  const SampleStamp last = last_;
-  *this = BlockSum();
-  last_ = last;
-  return block;
+  sum_ = {};
+  samples_ = 0;
+  accel_full_scale_ = gyro_full_scale_ = false;
+  has_gz_ = rests_ = true;
+  quality_ = Quality::kGood;
 }
 
 // Within a sample the roll goes on: its mean is the phase at its middle and psi'' dt^2 / 24, its

@@ -63,8 +63,8 @@ class BlockSum {
   int samples() const { return samples_; }
   const SampleStamp& last() const { return last_; }
   void Add(const ImuSample& sample, bool rests);
-  /// The block so far, which a new one then follows; begins and lengths in time are the caller's.
-  Block Close();
+  /// The block so far, which a new one then follows; where it begins is the caller's.
+  void Close(Block& block);
 
  private:
   // Powers of a sample's number in the block; shifted to the middle at Close().
@@ -76,7 +76,7 @@ class BlockSum {
   Quality quality_ = Quality::kGood;
 };
 
-/// Turns the block's sums to U by its roll; `kept` of kSecond order or third.
+/// Turns the block's sums to U by its roll.
 void TurnBlock(bool third, Block& block);
 
 }  // namespace wellgyro::increment

@@ -1,0 +1,262 @@
+#include "wellgyro/attitude/increment_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+
+#include "attitude/tool_motion.h"
+
+namespace wellgyro {
+namespace {
+
+using motion::Angle;
+using motion::Attitude;
+using motion::InHole;
+using motion::Tilt;
+using motion::Turning;
+
+IncrementOptions Options(IncrementOptions::Order order = IncrementOptions::kThird) {
+  IncrementOptions options;
+  options.order = order;
+  options.accel_noise = 5e-4;
+  options.angle_random_walk = 2.9e-6;
+  return options;
+}
+
+Angle Swinging(double degrees, double hz, double rpm = 0) {
+  return [=, turning = Turning(rpm)](double t) {
+    return turning(t) + FromDegrees(degrees) * std::sin(kTwoPi * hz * t);
+  };
+}
+
+Tilt Whirl(double degrees, double hz) {
+  return [=](double t) {
+    return Eigen::Vector2d(FromDegrees(degrees) * std::cos(kTwoPi * hz * t),
+                           FromDegrees(degrees) * std::sin(kTwoPi * hz * t));
+  };
+}
+
+double StartAndStop(double t) {
+  const double spin = 2.0;  // 20 rpm within five seconds, and back
+  if (t < 20) return 0.3;
+  if (t < 25) return 0.3 + spin * (t - 20) * (t - 20) / 10;
+  if (t < 40) return 0.3 + spin * (t - 22.5);
+  if (t < 45) return 0.3 + spin * (17.5 + (t - 40) - (t - 40) * (t - 40) / 10);
+  return 0.3 + spin * 20;
+}
+
+struct Bounds {
+  double knot = 0;   // worst of the axis over a knot [rad]
+  double drift = 0;  // of the axis over the run, were it linear in time [rad/s]
+  double roll = 0;   // worst of the relative roll over a knot [rad]
+};
+
+Bounds Fly(const Attitude& attitude, double rate, const IncrementOptions& options, double every = 1,
+           bool has_gz = false) {
+  const double seconds = 60;
+  const auto increments = motion::Increments(
+      motion::Samples(attitude, {.has_gz = has_gz}, rate, seconds), every, options);
+  EXPECT_GE(increments.size(), std::floor(seconds / every + 1e-9));
+  Bounds worst;
+  Eigen::Vector3d drift = Eigen::Vector3d::Zero();
+  double t = 0;
+  for (const Increment& i : increments) {
+    double delta = 0;
+    const Eigen::Vector2d miss = motion::Miss(i, attitude, t, delta);
+    t += i.seconds;
+    drift += motion::InertialAttitude(attitude, t) * Eigen::Vector3d(miss.x(), miss.y(), 0);
+    worst.knot = std::max(worst.knot, miss.norm());
+    worst.roll = std::max(worst.roll, std::abs(delta));
+  }
+  worst.drift = drift.norm() / seconds;
+  return worst;
+}
+
+struct Case {
+  const char* name;
+  Attitude attitude;
+  double rate;
+  double knot, drift, roll;  // bounds: some three times what is left to the order kept
+};
+
+class Motions : public testing::TestWithParam<Case> {};
+
+TEST_P(Motions, TurnTheToolAsTheyDo) {
+  const Case& c = GetParam();
+  const Bounds worst = Fly(c.attitude, c.rate, Options());
+  EXPECT_LT(worst.knot, c.knot);
+  EXPECT_LT(worst.drift, c.drift);
+  EXPECT_LT(worst.roll, c.roll);
+}
+
+// The first and the last second of a run have neighbours on one side only and are the worst.
+std::vector<Case> AllMotions() {
+  std::vector<Case> cases;
+  for (const double rate : {10., 100.}) {
+    const bool slow = rate < 50;
+    for (const double inclination : {3., 30., 90., 110.}) {
+      for (const double rpm : {0., 3., 20.}) {
+        cases.push_back({"turning", InHole(inclination, Turning(rpm)), rate, 1e-9, 1e-10, 1e-3});
+      }
+    }
+    for (const double inclination : {3., 60.}) {
+      cases.push_back({"swing_8deg_0.7Hz", InHole(inclination, Swinging(8, 0.7)), rate,
+                       slow ? 2e-6 : 2e-7, slow ? 3e-8 : 5e-9, 5e-3});
+      cases.push_back({"swing_25deg_23s", InHole(inclination, Swinging(25, 1 / 23., 3)), rate,
+                       slow ? 2e-7 : 2e-8, 5e-9, 3e-3});
+      cases.push_back(
+          {"start_and_stop", InHole(inclination, StartAndStop), rate, 1e-9, 1e-10, 1e-3});
+    }
+  }
+  // Whirling tools, the worst case where the roll swings with them.
+  for (const double inclination : {3., 60.}) {
+    for (const double hz : {1., 1.7, 3., 5.}) {
+      const bool fast = hz > 4;
+      cases.push_back({"whirl", InHole(inclination, Turning(3), Whirl(0.1, hz)), 100, 6e-6,
+                       fast ? 5e-7 : 1e-7, 5e-3});
+      cases.push_back({"whirl_and_swing", InHole(inclination, Swinging(0.5, hz, 3), Whirl(0.1, hz)),
+                       100, fast ? 1e-5 : 3e-6, fast ? 6e-6 : 7e-7, 1e-2});
+    }
+    cases.push_back(
+        {"whirl_1.7Hz", InHole(inclination, Turning(3), Whirl(0.1, 1.7)), 10, 5e-6, 3e-7, 1e-2});
+    cases.push_back({"whirl_and_swing_1Hz", InHole(inclination, Swinging(0.5, 1, 3), Whirl(0.1, 1)),
+                     10, 1e-5, 1e-6, 1e-2});
+  }
+  return cases;
+}
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name << " at " << c.rate << " Hz"; }
+
+INSTANTIATE_TEST_SUITE_P(All, Motions, testing::ValuesIn(AllMotions()), [](const auto& info) {
+  std::string name = std::to_string(info.index) + "_" + info.param.name;
+  std::replace(name.begin(), name.end(), '.', 'p');
+  return name;
+});
+
+// Law: second order falls as period^2, third by another two powers, once the roll is known.
+TEST(IncrementBuilder, OrdersFallWithThePeriodAsTheyShould) {
+  const Attitude attitude = InHole(60, Swinging(0.5, 0.5, 3), Whirl(0.1, 0.5));
+  std::vector<double> second, third;
+  for (const double rate : {5., 10., 20.}) {
+    second.push_back(Fly(attitude, rate, Options(IncrementOptions::kSecond), 1, true).drift);
+    third.push_back(Fly(attitude, rate, Options(), 1, true).drift);
+  }
+  EXPECT_THAT(second[0] / second[1], testing::AllOf(testing::Gt(3), testing::Lt(5)));
+  EXPECT_THAT(second[1] / second[2], testing::AllOf(testing::Gt(3), testing::Lt(5)));
+  EXPECT_GT(third[0] / third[1], 10);
+  EXPECT_LT(third[1], 0.02 * second[1]);
+}
+
+TEST(IncrementBuilder, ThirdGyroGivesTheRollNearVerticalToo) {
+  const Attitude attitude = InHole(0.6, Swinging(8, 0.7, 3), Whirl(0.05, 1));
+  const Bounds worst = Fly(attitude, 20, Options(), 1, true);
+  EXPECT_LT(worst.knot, 1e-6);
+  EXPECT_LT(worst.roll, 1e-4);
+  const auto increments =
+      motion::Increments(motion::Samples(attitude, {.has_gz = true}, 20, 10), 1, Options());
+  for (const Increment& i : increments) {
+    ASSERT_TRUE(i.has_axial);
+    EXPECT_TRUE(i.roll_seen);
+    EXPECT_NEAR(i.axial, i.roll_before + i.roll_after, 1e-4);
+  }
+}
+
+// The force of an increment, brought to the middle, is gravity there, also in a tool that whirls.
+TEST(IncrementBuilder, ForceIsGravityAtTheMiddle) {
+  for (const double whirl : {0., 1.7}) {
+    const Attitude attitude = InHole(50, Swinging(3, 0.4, 3), Whirl(whirl > 0 ? 0.1 : 0, whirl));
+    const auto increments = motion::Increments(motion::Samples(attitude, {}, 50, 40), 1, Options());
+    for (std::size_t k = 1; k + 1 < increments.size(); ++k) {
+      const Increment& i = increments[k];
+      double delta = 0;
+      motion::Miss(i, attitude, static_cast<double>(k), delta);
+      Increment half = i;
+      half.turn_M = i.turn_before_M;
+      half.turn_per_roll.setZero();
+      half.roll_after = -0.5 * delta;
+      const Eigen::Matrix3d R_IM =
+          motion::InertialAttitude(attitude, static_cast<double>(k)) * motion::Turned(half, delta);
+      Eigen::Vector3d f = i.force_M;
+      f.head<2>() += delta * i.force_per_roll;
+      const double middle = static_cast<double>(k) + 0.5;
+      const Eigen::Vector3d up = motion::InertialAttitude(attitude, middle) *
+                                 attitude(middle).transpose() *
+                                 Eigen::Vector3d(0, 0, -motion::kGravity);
+      EXPECT_LT((R_IM * f - up).norm(), 3e-5 * motion::kGravity) << whirl << " Hz, knot " << k;
+    }
+  }
+}
+
+// An increment in the tool's frame at its begin, the roll put right as an estimator does.
+struct Resolved {
+  Eigen::Vector2d turn;
+  Eigen::Vector3d force;
+};
+Resolved AtBegin(const Increment& i, const Attitude& attitude, double begin) {
+  double delta = 0;
+  motion::Miss(i, attitude, begin, delta);
+  const Eigen::Rotation2Dd to_begin(i.roll_before + 0.5 * delta);
+  Resolved r{to_begin * (i.turn_M + delta * i.turn_per_roll), i.force_M};
+  r.force.head<2>() = to_begin * (i.force_M.head<2>() + delta * i.force_per_roll);
+  return r;
+}
+
+struct Injected {
+  ErrorSource source;
+  double size;
+};
+constexpr Injected kAllErrors[] = {
+    {kGyroBiasX, 1e-6},     {kGyroBiasY, 1e-6},          {kMassUnbalance, 1e-7},
+    {kQuadrature, 1e-7},    {kGyroScaleX, 1e-3},         {kGyroScaleY, 1e-3},
+    {kMisalignmentX, 1e-6}, {kMisalignmentY, 1e-6},      {kToolfaceOffset, 1e-3},
+    {kTimeSkew, 1e-3},      {kAccelBiasX, 1e-4},         {kAccelBiasY, 1e-4},
+    {kAccelBiasZ, 1e-4},    {kAccelScaleX, 1e-5},        {kAccelScaleY, 1e-5},
+    {kAccelScaleZ, 1e-5},   {kAccelMisalignmentX, 1e-5}, {kAccelMisalignmentY, 1e-5}};
+
+class Errors : public testing::TestWithParam<Injected> {};
+
+// Law: turn_by_error and force_by_error are what an error does to the increment. T is the
+// accelerometers' frame: where those are turned against the gyros, it is the truth that changes.
+TEST_P(Errors, DoWhatTheIncrementSays) {
+  const auto& [source, size] = GetParam();
+  const double rate = kTwoPi / 60 * 5;
+  const bool turned = source == kToolfaceOffset || source == kTimeSkew;
+  const Attitude attitude = InHole(40, turned ? Turning(5) : Swinging(4, 0.1, 5));
+  const auto fly = [&](double error) {
+    motion::Sensing sensing;
+    sensing.error(source) = error;
+    return motion::Increments(motion::Samples(attitude, sensing, 10, 12), 2, Options())[3];
+  };
+  const Increment increment = fly(size);
+  const Resolved plus = AtBegin(increment, attitude, 6), minus = AtBegin(fly(-size), attitude, 6);
+  const Eigen::Rotation2Dd to_begin(increment.roll_before);
+  const Eigen::Vector2d turn_by = to_begin * increment.turn_by_error.col(source);
+  Eigen::Vector3d force_by = increment.force_by_error.col(source);
+  force_by.head<2>() = to_begin * force_by.head<2>();
+  Eigen::Vector2d turn = (plus.turn - minus.turn) / (2 * size);
+  if (turned) {
+    const double ahead = source == kTimeSkew ? rate : 1;
+    turn += ahead * Eigen::Vector2d(-plus.turn.y(), plus.turn.x());
+  }
+  const Eigen::Vector3d force = (plus.force - minus.force) / (2 * size);
+  // What an accelerometer's error does to the phase within the knot is second order of small ones.
+  EXPECT_LT((turn - turn_by).norm(), 0.01 * turn_by.norm() + 1e-3 * plus.turn.norm())
+      << turn.transpose() << " for " << turn_by.transpose();
+  if (source < kAccelBiasX) return;
+  EXPECT_LT((force - force_by).norm(), 0.02 * force_by.norm())
+      << force.transpose() << " for " << force_by.transpose();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Errors, testing::ValuesIn(kAllErrors), [](const auto& info) {
+  return "source_" + std::to_string(info.param.source);
+});
+
+}  // namespace
+}  // namespace wellgyro
