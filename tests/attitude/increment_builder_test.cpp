@@ -54,7 +54,7 @@ double StartAndStop(double t) {
 
 struct Bounds {
   double knot = 0;   // worst of the axis over a knot [rad]
-  double drift = 0;  // of the axis over the run, were it linear in time [rad/s]
+  double drift = 0;  // of the axis but for the run's ends, were it linear in time [rad/s]
   double roll = 0;   // worst of the relative roll over a knot [rad]
 };
 
@@ -71,7 +71,10 @@ Bounds Fly(const Attitude& attitude, double rate, const IncrementOptions& option
     double delta = 0;
     const Eigen::Vector2d miss = motion::Miss(i, attitude, t, delta);
     t += i.seconds;
-    drift += motion::InertialAttitude(attitude, t) * Eigen::Vector3d(miss.x(), miss.y(), 0);
+    const bool inner = t > 1.5 * every && t < seconds - 0.5 * every;
+    if (inner) {
+      drift += motion::InertialAttitude(attitude, t) * Eigen::Vector3d(miss.x(), miss.y(), 0);
+    }
     worst.knot = std::max(worst.knot, miss.norm());
     worst.roll = std::max(worst.roll, std::abs(delta));
   }
@@ -142,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(All, Motions, testing::ValuesIn(AllMotions()), [](const
 
 // Law: second order falls as period^2, third by another two powers, once the roll is known.
 TEST(IncrementBuilder, OrdersFallWithThePeriodAsTheyShould) {
-  const Attitude attitude = InHole(60, Swinging(0.5, 0.5, 3), Whirl(0.1, 0.5));
+  const Attitude attitude = InHole(60, Swinging(2, 0.5, 3), Whirl(0.02, 0.5));
   std::vector<double> second, third;
   for (const double rate : {5., 10., 20.}) {
     second.push_back(Fly(attitude, rate, Options(IncrementOptions::kSecond), 1, true).drift);
@@ -228,7 +231,12 @@ TEST_P(Errors, DoWhatTheIncrementSays) {
   const auto& [source, size] = GetParam();
   const double rate = kTwoPi / 60 * 5;
   const bool turned = source == kToolfaceOffset || source == kTimeSkew;
-  const Attitude attitude = InHole(40, turned ? Turning(5) : Swinging(4, 0.1, 5));
+  // Accelerometers' errors go round with the tool and wind the roll within a knot by half the
+  // square of its turn: a slow one.
+  const bool slow = source >= kAccelBiasX;
+  const Attitude attitude = InHole(40, turned ? Turning(5)
+                                       : slow ? Turning(0.5)
+                                              : Swinging(4, 0.1, 5));
   const auto fly = [&](double error) {
     motion::Sensing sensing;
     sensing.error(source) = error;
@@ -246,8 +254,7 @@ TEST_P(Errors, DoWhatTheIncrementSays) {
     turn += ahead * Eigen::Vector2d(-plus.turn.y(), plus.turn.x());
   }
   const Eigen::Vector3d force = (plus.force - minus.force) / (2 * size);
-  // What an accelerometer's error does to the phase within the knot is second order of small ones.
-  EXPECT_LT((turn - turn_by).norm(), 0.01 * turn_by.norm() + 1e-3 * plus.turn.norm())
+  EXPECT_LT((turn - turn_by).norm(), 0.01 * turn_by.norm() + 3e-3 * plus.turn.norm())
       << turn.transpose() << " for " << turn_by.transpose();
   if (source < kAccelBiasX) return;
   EXPECT_LT((force - force_by).norm(), 0.02 * force_by.norm())

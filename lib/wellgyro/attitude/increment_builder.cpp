@@ -97,6 +97,7 @@ struct IncrementBuilder::State {
   void CloseBlock();
   void AddGap(std::int64_t ns);
   void Advance(bool to_end);
+  double BendOf(std::uint64_t k) const;
   void Turn(std::uint64_t begin, std::uint64_t end);
   void EndLongKnot();
   void AddCut(std::int64_t ns, ToolTime time);
@@ -132,17 +133,28 @@ void IncrementBuilder::State::AddGap(std::int64_t ns) {
   phase.Read(blocks);
 }
 
+// psi'' of a block from the rates of its neighbours: of those that adjoin to the fourth order.
+double IncrementBuilder::State::BendOf(std::uint64_t k) const {
+  const std::uint64_t a = k > blocks.begin() ? k - 1 : k, c = k + 1 < smoothed ? k + 1 : k;
+  const double inner = blocks[c].rate - blocks[a].rate;
+  const double apart = 1e-9 * static_cast<double>(blocks[c].begin_ns - blocks[a].begin_ns) +
+                       blocks[c].middle() - blocks[a].middle();
+  if (a == c) return 0;
+  if (k < blocks.begin() + 2 || k + 2 >= smoothed) return inner / apart;
+  for (std::uint64_t j = k - 2; j < k + 2; ++j) {
+    if (!increment::Adjoin(blocks[j], blocks[j + 1])) return inner / apart;
+  }
+  const double outer = blocks[k + 2].rate - blocks[k - 2].rate;
+  // Rates by a third gyro are means, smoothed ones are of the middle.
+  const double by = blocks[k].has_gz ? (34 * inner - 5 * outer) / 48 : (8 * inner - outer) / 12;
+  return by / blocks[k].seconds;
+}
+
 // Means of the phase to its values at the middles, and the sums to U.
 void IncrementBuilder::State::Turn(std::uint64_t begin, std::uint64_t end) {
   for (std::uint64_t k = begin; k < end; ++k) {
     Block& b = blocks[k];
-    const std::uint64_t a = k > blocks.begin() ? k - 1 : k, c = k + 1 < smoothed ? k + 1 : k;
-    const double between = 1e-9 * static_cast<double>(blocks[c].begin_ns - blocks[a].begin_ns) +
-                           blocks[c].middle() - blocks[a].middle();
-    b.bend = between > 0 ? (blocks[c].rate - blocks[a].rate) / between : 0;
-  }
-  for (std::uint64_t k = begin; k < end; ++k) {
-    Block& b = blocks[k];
+    b.bend = BendOf(k);
     if (b.weight > 0) b.roll -= b.bend * b.seconds * b.seconds / (b.has_gz ? 8 : 24);
     if (b.samples > 0) increment::TurnBlock(options.order == IncrementOptions::kThird, b);
     b.carried = k > blocks.begin() ? blocks[k - 1].carried : 0;
@@ -166,7 +178,9 @@ void IncrementBuilder::State::Advance(bool to_end) {
     // The phases of the two youngest are not final.
     smoother.Smooth(smoothed, stretch_end, to_end ? blocks.end() : blocks.end() - 2, blocks);
     smoothed = stretch_end;
-    const std::uint64_t upto = to_end && smoothed == blocks.end() ? smoothed : smoothed - 1;
+    const std::uint64_t upto = to_end && smoothed == blocks.end()
+                                   ? smoothed
+                                   : std::max(turned, std::max<std::uint64_t>(smoothed, 2) - 2);
     Turn(turned, upto);
     turned = upto;
     // The slopes across a block look at two beyond it.
@@ -220,6 +234,7 @@ bool IncrementBuilder::Push(const ImuSample& sample, bool rests) {
     s.breaks = true;
     s.block_samples =
         std::max(1, static_cast<int>(kBlockSeconds / (1e-9 * sample.stamp.period_ns) + 1e-6));
+    s.Advance(false);
   } else if (s.open.samples() >= s.block_samples) {
     s.CloseBlock();
     s.Advance(false);

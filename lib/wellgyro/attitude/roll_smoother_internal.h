@@ -14,8 +14,8 @@ using Blocks = Ring<Block>;
 /// Relative roll psi of blocks, from what gravity said of it in each: the smoothing spline whose
 /// rate walks, which is the smoothed state (psi, psi') of that model. For each stretch of blocks
 /// the walk is the likeliest of some decades, by how well each foretells the stretch and the one
-/// behind it, with the level of the noise free: prediction errors count against each other only
-/// (Schweppe, IEEE Trans. Inf. Theory 11, 1965).
+/// behind it, with the level of the noise free within bounds: prediction errors count against each
+/// other (Schweppe, IEEE Trans. Inf. Theory 11, 1965).
 class RollSmoother {
  public:
   explicit RollSmoother(std::size_t capacity) : seen_(capacity), states_(capacity) {}

@@ -57,6 +57,11 @@ struct Block {
   Complex force() const { return fx + Complex(0, 1) * fy; }
 };
 
+/// `b` follows `a` and is like it, so that differences can be taken.
+inline bool Adjoin(const Block& a, const Block& b) {
+  return !b.breaks && a.samples > 0 && b.samples == a.samples && a.length_ns == b.length_ns;
+}
+
 /// Sums samples to a block.
 class BlockSum {
  public:

@@ -17,6 +17,8 @@ namespace wellgyro {
 /// at time t reads Rz(psi(t) - psi(middle)) v_T in it, psi being the tool's inertial roll. So U = M
 /// does not turn about the axis, and a rotation vector across the axis simply sums:
 ///   R_IT(end) = R_IT(begin) Rz(roll_before) Exp(turn) Rz(roll_after), turn and its axial part 0.
+/// What turns about the axis because turns do not commute (coning) stands in the rolls. T is the
+/// accelerometers' frame where the gyros' is turned against it.
 /// With psi in error by a straight line through the middle that grows by delta over the knot
 /// (estimate psi + delta (t - t_middle)/seconds) the increment is that of
 ///   roll_before + delta/2, turn + turn_per_roll delta, roll_after + delta/2, force +
@@ -44,13 +46,13 @@ struct Increment {
   double axial = 0;
   bool has_axial = false;
   /// Variance of turn_M beyond the gyros' white noise: what the last order kept leaves out, per
-  /// component [rad^2].
+  /// component [rad^2]. Whirl and roll of half the sampling rate pass unseen.
   double var_turn = 0;
-  /// 1-sigma of what gravity says of the roll over the knot, the change of psi, by noise alone
-  /// [rad]; large where gravity says nothing.
+  /// 1-sigma of what gravity says of the roll over the knot, the change of psi, by noise alone and
+  /// from this knot's samples alone [rad]; 2 pi where there are none.
   double sigma_roll = 0;
   bool roll_seen = false;  ///< psi follows gravity (or a third axis) all through the knot
-  bool level = true;       ///< force_M counts: no accelerometer stood at full scale, no gap
+  bool level = true;       ///< force_M counts: of half the knot, off full scale and outside gaps
   double gap_seconds = 0;  ///< of the knot, without usable gyro samples: turn goes on as before it
   std::int64_t seq_begin = 0;     ///< first sample
   std::int64_t seq_end = 0;       ///< exclusive
