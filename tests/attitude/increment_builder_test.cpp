@@ -137,8 +137,8 @@ std::vector<Case> AllMotions() {
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name << " at " << c.rate << " Hz"; }
 
-INSTANTIATE_TEST_SUITE_P(All, Motions, testing::ValuesIn(AllMotions()), [](const auto& info) {
-  std::string name = std::to_string(info.index) + "_" + info.param.name;
+INSTANTIATE_TEST_SUITE_P(All, Motions, testing::ValuesIn(AllMotions()), [](const auto& param) {
+  std::string name = std::to_string(param.index) + "_" + param.param.name;
   std::replace(name.begin(), name.end(), '.', 'p');
   return name;
 });
@@ -261,8 +261,8 @@ TEST_P(Errors, DoWhatTheIncrementSays) {
       << force.transpose() << " for " << force_by.transpose();
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Errors, testing::ValuesIn(kAllErrors), [](const auto& info) {
-  return "source_" + std::to_string(info.param.source);
+INSTANTIATE_TEST_SUITE_P(All, Errors, testing::ValuesIn(kAllErrors), [](const auto& param) {
+  return "source_" + std::to_string(param.param.source);
 });
 
 }  // namespace

@@ -37,7 +37,7 @@ struct Increment {
   Eigen::Vector2d turn_per_roll = Eigen::Vector2d::Zero();   ///< [1]
   Eigen::Vector2d force_per_roll = Eigen::Vector2d::Zero();  ///< [m/s^2 per rad]
   /// d turn_M / d error, d force_M / d error (of the reading, uncorrected). Those of kMisalignment
-  /// and kTimeSkew hold for the roll rate of psi; see roll_rate terms in estimate/.
+  /// and kTimeSkew hold for the roll rate of psi.
   Eigen::Matrix<double, 2, kErrorSources> turn_by_error =
       Eigen::Matrix<double, 2, kErrorSources>::Zero();
   Eigen::Matrix<double, 3, kErrorSources> force_by_error =
