@@ -12,6 +12,7 @@
 #include "wellgyro/base/angle.h"
 
 #include "attitude/tool_motion.h"
+#include "simulate/allocation_count.h"
 
 namespace wellgyro {
 namespace {
@@ -71,6 +72,47 @@ TEST(IncrementKnots, DoNotDependOnOtherKnotsOrOnWhenTheyAreFetched) {
   const auto again = motion::Increments(samples, 1, Options());
   ASSERT_EQ(again.size(), b.size());
   for (std::size_t k = 0; k < b.size(); ++k) EXPECT_TRUE(Same(again[k], b[k])) << k;
+}
+
+// What was given away as the last stays what it was when more comes after all.
+TEST(IncrementKnots, StayWhatTheyWereWhenSamplesFollowAFlush) {
+  const auto samples = Steady(20, 30);
+  IncrementBuilder at_once(Options()), late(Options());
+  std::vector<Increment> a, b;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    at_once.Push(samples[k], false);
+    late.Push(samples[k], false);
+    if (k % 20 == 13) {
+      at_once.Cut();
+      late.Cut();
+    }
+    if (k == 313) {
+      at_once.Flush();
+      late.Flush();
+    }
+    while (at_once.Ready()) a.push_back(at_once.Pop());
+  }
+  at_once.Flush();
+  late.Flush();
+  while (at_once.Ready()) a.push_back(at_once.Pop());
+  while (late.Ready()) b.push_back(late.Pop());
+  ASSERT_EQ(a.size(), 30u);
+  ASSERT_EQ(b.size(), a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_TRUE(Same(a[k], b[k])) << k;
+}
+
+TEST(IncrementKnots, AllocateNothingOnTheWay) {
+  const auto samples = Steady(20, 60);
+  IncrementBuilder builder(Options());
+  const long before = AllocationCount();
+  double seconds = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    builder.Push(samples[k], k % 100 < 20);
+    if (k % 7 == 0) builder.Cut(0.5);
+    while (builder.Ready()) seconds += builder.Pop().seconds;
+  }
+  EXPECT_EQ(AllocationCount(), before);
+  EXPECT_GT(seconds, 40);
 }
 
 TEST(IncrementKnots, SayWhichSamplesTheyAreMadeOf) {

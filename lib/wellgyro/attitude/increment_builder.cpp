@@ -31,6 +31,8 @@ constexpr std::int64_t kKnotNs = 20'000'000'000;
 constexpr std::uint64_t kKnotBlocks = 2000;
 constexpr std::size_t kCapacity = 8192;
 constexpr std::size_t kCutsMost = 1024;
+// A clock that leaps by more is wrong, and sums of leaps must not overflow: a month.
+constexpr std::int64_t kGapMostNs = 30 * 86400 * std::int64_t{1'000'000'000};
 
 bool IsFinite(const ImuSample& s) {
   const double w = s.w_IT_T.x() + s.w_IT_T.y() + (s.has_gz ? s.w_IT_T.z() : 0);
@@ -52,13 +54,14 @@ Following Follows(const SampleStamp& before, const SampleStamp& next) {
   Following f;
   if (next.session != before.session || next.tool != before.tool) {
     f.breaks = true;
-    f.gap_ns = std::max<std::int64_t>(0, (next.utc - before.utc).ns - before.period_ns);
+    f.gap_ns =
+        std::clamp<std::int64_t>((next.utc - before.utc).ns - before.period_ns, 0, kGapMostNs);
     return f;
   }
   const std::int64_t apart = (next.tool_time - before.tool_time).ns - before.period_ns;
   const std::int64_t tolerance = before.period_ns / 2;
   f.late = apart < -tolerance || next.seq <= before.seq;
-  f.gap_ns = apart > tolerance ? apart : 0;
+  f.gap_ns = apart > tolerance ? std::min(apart, kGapMostNs) : 0;
   f.lost = next.seq - before.seq - 1;
   f.breaks = f.gap_ns > 0 || f.lost > 0 || next.period_ns != before.period_ns;
   return f;
@@ -79,7 +82,7 @@ struct IncrementBuilder::State {
   BlockSum open;
   std::int64_t open_begin_ns = 0;
   int block_samples = 1;
-  bool started = false, breaks = true;
+  bool started = false, breaks = true, anew = false;
   std::int64_t lost = 0, last_begin_ns = 0;
   std::int64_t gap_begin_ns = 0, gap_ns = 0;  // before the last sample
   ToolTime gap_begin;
@@ -108,8 +111,9 @@ Block& IncrementBuilder::State::NewBlock() {
   Block& block = blocks.Append();
   block.begin_ns = open_begin_ns;
   block.breaks = breaks;
+  block.anew = anew;
   block.lost = lost;
-  breaks = false;
+  breaks = anew = false;
   lost = 0;
   return block;
 }
@@ -124,7 +128,9 @@ void IncrementBuilder::State::CloseBlock() {
 
 void IncrementBuilder::State::AddGap(std::int64_t ns) {
   Block& gap = NewBlock();
+  const bool first = gap.anew;
   gap = Block();
+  gap.anew = first;
   gap.begin_ns = open_begin_ns;
   gap.length_ns = ns;
   gap.seconds = 1e-9 * static_cast<double>(ns);
@@ -187,7 +193,7 @@ void IncrementBuilder::State::Advance(bool to_end) {
     if (turned == blocks.end()) {
       final_ns = blocks.back().end_ns();
     } else if (turned > blocks.begin() + 2) {
-      final_ns = blocks[turned - 3].end_ns();
+      final_ns = std::max(final_ns, blocks[turned - 3].end_ns());
     }
   }
 }
@@ -270,7 +276,7 @@ void IncrementBuilder::CutGap(Duration into) {
 void IncrementBuilder::Flush() {
   State& s = *state_;
   s.CloseBlock();
-  s.breaks = true;
+  s.breaks = s.anew = true;
   s.Advance(true);
 }
 

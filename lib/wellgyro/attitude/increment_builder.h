@@ -34,8 +34,13 @@ struct IncrementOptions {
 /// on. Blocks are turned by e^{i psi} and summed. What comes out does not depend on where knots are
 /// cut but for the knots' own ends, nor on when it is fetched.
 ///
-/// Increments come out some 8 to 16 s behind the samples, the same live and offline. A knot of more
-/// than 20 s ends by itself. Push() allocates nothing.
+/// Increments come out 6 to 12 s behind the samples, the same live and offline. A knot of more than
+/// 20 s ends by itself. Push() allocates nothing.
+///
+/// Over a second, perfect sensors of 10 Hz and more: 1e-9 rad of the axis in a tool that turns at
+/// up to 20 rpm, 2e-8 where the roll swings by 8 deg at 0.7 Hz; turns are summed to the second
+/// order in U, so that a whirl of 0.1 deg leaves 3e-8. Noise of the relative roll adds 1e-7 at
+/// most.
 class WELLGYRO_EXPORT IncrementBuilder {
  public:
   /// Throws std::invalid_argument for an option outside its domain.

@@ -172,6 +172,7 @@ void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
 
 void FillFlags(const Block& b, double seconds, Increment& out) {
   out.quality |= b.quality;
+  if (!b.has_gz || b.samples == 0) out.has_axial = false;
   if (b.lost > 0) out.quality |= Quality::kGap;
   if (b.samples == 0) {
     out.gap_seconds += seconds;
@@ -199,73 +200,85 @@ void FillSamples(const KnotSpan& span, const Blocks& blocks, Increment& out) {
   }
 }
 
-}  // namespace
-
+// psi at an instant of block k, by a cubic from the blocks' middles.
 double RollAt(std::int64_t ns, std::uint64_t k, const Blocks& blocks) {
-  const Block* b = &blocks[k];
-  double t = Seconds(ns - b->begin_ns) - b->middle();
-  const std::uint64_t other = t < 0 ? k - 1 : k + 1;
-  if (t < 0 ? k == blocks.begin() : other == blocks.end()) {
-    return b->roll + t * (b->rate + 0.5 * t * b->bend);
-  }
-  const Block& a = t < 0 ? blocks[other] : *b;
-  const Block& c = t < 0 ? *b : blocks[other];
-  const double h = a.middle() + c.middle(), u = (t < 0 ? t + h : t) / h, v = 1 - u;
-  return v * v * (1 + 2 * u) * a.roll + u * u * (1 + 2 * v) * c.roll +
-         u * v * h * (v * a.rate - u * c.rate);
+  const double t = Seconds(ns - blocks[k].begin_ns) - blocks[k].middle();
+  const bool back = t < 0;
+  const bool alone =
+      back ? k == blocks.begin() || blocks[k].anew : k + 1 == blocks.end() || blocks[k + 1].anew;
+  if (alone) return blocks[k].roll + t * (blocks[k].rate + 0.5 * t * blocks[k].bend);
+  const Block& a = blocks[back ? k - 1 : k];
+  const Block& b = blocks[back ? k : k + 1];
+  const double h = a.middle() + b.middle(), u = (back ? t + h : t) / h, v = 1 - u;
+  return v * v * (1 + 2 * u) * a.roll + u * u * (1 + 2 * v) * b.roll +
+         u * v * h * (v * a.rate - u * b.rate);
 }
+
+// What stands at the knot's middle, from its begin.
+struct Middle {
+  Complex turn = 0;
+  double coning = 0, roll = 0;
+};
+
+Sums SumBlocks(const KnotSpan& span, bool third, const Blocks& blocks, Middle& middle,
+               Increment& out) {
+  const double half = 0.5 * out.seconds;
+  Sums s;
+  for (std::uint64_t k = span.begin_block; k <= span.end_block; ++k) {
+    const Ready r = MakeReady(k, third, blocks);
+    const double begin = Seconds(r.b.begin_ns - span.begin_ns), at = begin + r.b.middle();
+    double from = std::max(begin, 0.);
+    const double to = std::min(begin + r.b.seconds, out.seconds);
+    if (to <= from) continue;
+    FillFlags(r.b, to - from, out);
+    if (from < half && half <= to) {
+      s.Add(r, from - at, half - at, at);
+      middle = {s.turn, s.coning,
+                RollAt(span.begin_ns + (span.end_ns - span.begin_ns) / 2, k, blocks)};
+      from = half;
+    }
+    if (to > from) s.Add(r, from - at, to - at, at);
+  }
+  return s;
+}
+
+// Forces were turned back to the knot's begin: from there to its middle.
+void FillForce(const Sums& s, const Middle& middle, double accel_noise, Complex to_M,
+               Increment& out) {
+  out.level = 2 * s.forced >= out.seconds;
+  out.sigma_roll = kTwoPi;
+  if (!(s.forced > 0)) return;
+  const Complex f = (s.back + kI * middle.turn * s.z) / s.forced;
+  const double fz = (s.back_z - Axial(middle.turn, s.force())) / s.forced;
+  out.force_M << Vector(to_M * f), fz;
+  out.force_per_roll =
+      Vector(to_M * kI * (s.force_moment / out.seconds - 0.5 * s.force()) / s.forced);
+  // Of the slope of a line through phases of white noise.
+  if (std::abs(f) * kTwoPi > std::sqrt(12 / s.forced) * accel_noise) {
+    out.sigma_roll = std::sqrt(12 / s.forced) * accel_noise / std::abs(f);
+  }
+}
+
+}  // namespace
 
 Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Blocks& blocks) {
   Increment out;
   out.seconds = Seconds(span.end_ns - span.begin_ns);
-  out.roll_seen = true;
-  const double middle = 0.5 * out.seconds;
-  Sums s;
-  Complex turn_before = 0;
-  double coning_before = 0, roll_middle = 0;
-  bool has_axial = true;
-  for (std::uint64_t k = span.begin_block; k <= span.end_block; ++k) {
-    const Ready r = MakeReady(k, third, blocks);
-    const Block& b = r.b;
-    const double begin = Seconds(b.begin_ns - span.begin_ns), at = begin + b.middle();
-    double from = std::max(begin, 0.), to = std::min(begin + b.seconds, out.seconds);
-    if (to <= from) continue;
-    FillFlags(b, to - from, out);
-    has_axial = has_axial && b.has_gz && b.samples > 0;
-    if (from < middle && middle <= to) {
-      s.Add(r, from - at, middle - at, at);
-      turn_before = s.turn;
-      coning_before = s.coning;
-      roll_middle = RollAt(span.begin_ns + (span.end_ns - span.begin_ns) / 2, k, blocks);
-      from = middle;
-    }
-    if (to > from) s.Add(r, from - at, to - at, at);
-  }
-  const Complex to_M = std::polar(1., -roll_middle);
-  const double roll_begin = RollAt(span.begin_ns, span.begin_block, blocks);
-  const double roll_end = RollAt(span.end_ns, span.end_block, blocks);
-  out.roll_before = roll_middle - roll_begin + coning_before;
-  out.roll_after = roll_end - roll_middle + s.coning - coning_before;
+  out.roll_seen = out.has_axial = true;
+  Middle middle;
+  const Sums s = SumBlocks(span, third, blocks, middle, out);
+  const Complex to_M = std::polar(1., -middle.roll);
+  const double before = middle.roll - RollAt(span.begin_ns, span.begin_block, blocks);
+  const double after = RollAt(span.end_ns, span.end_block, blocks) - middle.roll;
+  out.roll_before = before + middle.coning;
+  out.roll_after = after + s.coning - middle.coning;
   out.turn_M = Vector(to_M * s.turn);
-  out.turn_before_M = Vector(to_M * turn_before);
+  out.turn_before_M = Vector(to_M * middle.turn);
   out.turn_per_roll = Vector(to_M * kI * (s.turn_moment / out.seconds - 0.5 * s.turn));
   out.var_turn = s.unkept * s.unkept;
-  out.has_axial = has_axial;
-  if (has_axial) out.axial = s.axial + s.coning;
-  out.level = 2 * s.forced >= out.seconds;
-  if (s.forced > 0) {
-    const Complex f = (s.back + kI * turn_before * s.z) / s.forced;
-    const double fz = (s.back_z - Axial(turn_before, s.force())) / s.forced;
-    out.force_M << Vector(to_M * f), fz;
-    out.force_per_roll =
-        Vector(to_M * kI * (s.force_moment / out.seconds - 0.5 * s.force()) / s.forced);
-    out.sigma_roll = std::sqrt(12 / s.forced) * accel_noise / std::max(std::abs(f), 1e-9);
-  } else {
-    out.sigma_roll = kTwoPi;
-  }
-  FillErrors(s, to_M,
-             std::polar(1., roll_end - roll_middle) - std::polar(1., roll_begin - roll_middle),
-             out);
+  if (out.has_axial) out.axial = s.axial + s.coning;
+  FillForce(s, middle, accel_noise, to_M, out);
+  FillErrors(s, to_M, std::polar(1., after) - std::polar(1., -before), out);
   FillSamples(span, blocks, out);
   return out;
 }

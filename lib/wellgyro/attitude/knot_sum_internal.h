@@ -16,7 +16,4 @@ struct KnotSpan {
 /// Sums the blocks of `span` to an increment, all but its time.
 Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Blocks& blocks);
 
-/// psi at an instant, from the blocks' middles by a cubic.
-double RollAt(std::int64_t ns, std::uint64_t block, const Blocks& blocks);
-
 }  // namespace wellgyro::increment

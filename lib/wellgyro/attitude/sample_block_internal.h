@@ -31,6 +31,7 @@ struct Block {
   std::int64_t lost = 0;  ///< samples missing before it
   int samples = 0;        ///< none: a gap
   bool breaks = false;    ///< what came before is not its neighbour
+  bool anew = false;      ///< what came before was given away as the last
   bool accel_full_scale = false, gyro_full_scale = false;
   bool rests = false;
   bool has_gz = false;
