@@ -137,8 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Steady, PastVertical,
 INSTANTIATE_TEST_SUITE_P(Swinging, PastVertical,
                          testing::Values(Cell{0, .05, 25}, Cell{0, .2, 25}, Cell{0, .5, 25},
                                          Cell{0, 2, 25}, Cell{.3, .05, 25}, Cell{.3, .5, 25},
-                                         Cell{3, .2, 25}, Cell{3, .5, 25},
-                                         Cell{3, 2, 25}));
+                                         Cell{3, .2, 25}, Cell{3, .5, 25}, Cell{3, 2, 25}));
 
 }  // namespace
 }  // namespace wellgyro::test
