@@ -14,7 +14,12 @@
 
 namespace wellgyro::apps {
 
-inline constexpr const char* kAdjuster = "least squares";  ///< LeastSquaresAdjuster, in run.toml
+inline constexpr const char* kAdjuster = "least squares";  ///< in run.toml
+
+/// The job's estimator is the one that fit/ adjusts for.
+inline bool InAngles(const Job& job) {
+  return job.attitude.estimator == AttitudeSpec::Estimator::kAngles;
+}
 
 /// Says so and gives false when `folder` holds a survey that someone accepted.
 bool MayWriteTo(const std::filesystem::path& folder);

@@ -49,7 +49,7 @@ class LiveSurvey {
         job_(job),
         bus_(bus),
         broadcast_(bus, job.job.channels),
-        surveyor_(job.job, broadcast_, &adjuster_),
+        surveyor_(job.job, broadcast_, InAngles(job.job) ? &adjuster_ : nullptr),
         intake_(job.job, surveyor_),
         watch_([this](const Fault& fault) { losses_.Tell(fault); }),
         catch_up_(job.job.channels,

@@ -52,7 +52,7 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   }
   FaultBook faults;
   const LeastSquaresAdjuster adjuster;
-  Surveyor surveyor(job.job, faults, &adjuster);
+  Surveyor surveyor(job.job, faults, InAngles(job.job) ? &adjuster : nullptr);
   Intake intake(job.job, surveyor);
   {
     Progress progress("surveying");
@@ -82,7 +82,7 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
 int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   FaultBook faults;
   const LeastSquaresAdjuster adjuster;
-  Surveyor surveyor(job.job, faults, &adjuster);
+  Surveyor surveyor(job.job, faults, InAngles(job.job) ? &adjuster : nullptr);
   const std::vector<std::filesystem::path> files(options.sources.begin(), options.sources.end());
   const Result<SensorReport> report = PushSensorFiles(files, job.job, surveyor, faults);
   if (!report) {

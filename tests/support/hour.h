@@ -156,7 +156,7 @@ inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size
 /// Plays a run through a surveyor.
 inline Flown Fly(const Simulation& simulation, Job job) {
   Sink sink;
-  job.attitude.estimator = AttitudeSpec::Estimator::kAngles;  // which asks the adjuster
+  job.attitude.estimator = AttitudeSpec::Estimator::kRotation;  // for its increments
   const KeepingAdjuster keeper;
   Surveyor surveyor(job, sink, &keeper);
   Play(simulation, surveyor);

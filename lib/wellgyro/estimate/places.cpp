@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/base/angle.h"
+
 namespace wellgyro {
 namespace {
 
@@ -20,7 +22,7 @@ constexpr double kPoleMargin = 1e-3;  // [rad], from where the transport about t
 Site SiteBy(const Site& first, const Vector3d& p) {
   const double north = std::clamp(p.x(), -kPathReach, kPathReach);
   const double down = std::clamp(p.z(), -kPathReach, kPathReach);
-  const double most = M_PI_2 - kPoleMargin;
+  const double most = kPi / 2 - kPoleMargin;
   return SiteAt(std::clamp(first.latitude + north / first.radius_north, -most, most),
                 first.height - down);
 }

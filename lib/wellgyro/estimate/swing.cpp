@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "wellgyro/base/angle.h"
+
 namespace wellgyro {
 namespace {
 
@@ -72,9 +74,9 @@ std::optional<double> SwingOf(std::span<const RunKnot> knots) {
   double seconds = 0;
   for (const RunKnot& knot : knots) seconds += knot.increment.seconds;
   const double knot = seconds / static_cast<double>(knots.size());
-  const double step = 2 * M_PI / (kOversampled * kSegment);
+  const double step = kTwoPi / (kOversampled * kSegment);
   double best = 0, omega = 0;
-  for (double w = 2 * M_PI / kLongest; w < kNyquist * M_PI / knot; w += step) {
+  for (double w = kTwoPi / kLongest; w < kNyquist * kPi / knot; w += step) {
     const double explained = Explained(segments, w);
     if (explained > best) {
       best = explained;

@@ -9,8 +9,8 @@
 
 namespace wellgyro {
 
-/// What makes the final stations of a run from everything that was measured in it, where the
-/// job asks for the estimator in angles. fit/ has one; without one, the smoothed run is final.
+/// What makes the final stations of a run from everything that was measured in it, in place of
+/// what the job's estimator says. fit/ has one for the estimator in angles.
 class WELLGYRO_EXPORT RunAdjuster {
  public:
   virtual ~RunAdjuster();

@@ -316,11 +316,11 @@ void ToolSurvey::Adjust() {
   for (RunState& run : runs_) {
     run.survey->ListLastDepth();
     if (const AzimuthFilter* filter = run.survey->filter()) {
-      SmoothedRun smoothed = job_.attitude.estimator == AttitudeSpec::Estimator::kRotation
-                                 ? EstimatedRun(job_, filter->history(), run.survey->increments())
-                             : adjuster_
+      SmoothedRun smoothed = adjuster_
                                  ? adjuster_->Adjust(filter->history(), run.survey->increments(),
                                                      job_.string.sigma_misalignment)
+                             : job_.attitude.estimator == AttitudeSpec::Estimator::kRotation
+                                 ? EstimatedRun(job_, filter->history(), run.survey->increments())
                                  : Smooth(filter->history());
       run.survey->summary().fit = smoothed.fit;
       run.adjusted = std::move(smoothed.stations);
