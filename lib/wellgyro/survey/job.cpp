@@ -110,10 +110,13 @@ void CheckErrors(const NoiseCoefficients& noise, const ErrorPriors& errors) {
                  {"errors.gyro_scale_sigma", errors.gyro_scale_sigma},
                  {"errors.gyro_misalignment_sigma", errors.gyro_misalignment_sigma},
                  {"errors.accel_bias_sigma", errors.accel_bias_sigma},
+                 {"errors.accel_scale_sigma", errors.accel_scale_sigma},
+                 {"errors.accel_misalignment_sigma", errors.accel_misalignment_sigma},
                  {"errors.accel_noise", errors.accel_noise},
                  {"errors.roll_offset_sigma", errors.roll_offset_sigma},
                  {"errors.time_skew_sigma", errors.time_skew_sigma},
                  {"errors.depth_sigma", errors.depth_sigma},
+                 {"errors.depth_scale_sigma", errors.depth_scale_sigma},
                  {"errors.latitude_sigma", errors.latitude_sigma}});
   const auto& correlation = noise.bias_instability_correlation_time;
   if (correlation && !(*correlation > 0)) {

@@ -163,6 +163,9 @@ TieIn ReadTieIn(TomlTable table) {
   table.Read("north_m", tie_in.north);
   table.Read("east_m", tie_in.east);
   table.Read("tvd_m", tie_in.tvd);
+  if (tie_in.md != 0 && !table.Has("tvd_m")) {
+    table.RefuseAbsent("tvd_m", "is missing beside md_m: how deep the tie-in is, is not guessed");
+  }
   table.Read("inclination_deg", tie_in.inclination, kDeg, kInclinationDeg);
   table.Read("azimuth_true_deg", tie_in.azimuth, kDeg, kAzimuthDeg);
   if (tie_in.azimuth) tie_in.azimuth = WrapTwoPi(*tie_in.azimuth);
