@@ -11,6 +11,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/calibration/apply.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 namespace {
@@ -36,7 +37,7 @@ void RequireSigmas(std::initializer_list<std::pair<std::string_view, double>> si
 }
 
 void CheckTieIn(const TieIn& tie) {
-  RequireWithin("tie_in.md_m", tie.md, -1e5, 1e5);
+  RequireWithin("tie_in.md_m", tie.md, -limits::kMd, limits::kMd);
   RequireWithin("tie_in.north_m", tie.north, -1e6, 1e6);
   RequireWithin("tie_in.east_m", tie.east, -1e6, 1e6);
   RequireWithin("tie_in.tvd_m", tie.tvd, -1e5, 1e5);
@@ -162,7 +163,8 @@ void CheckJob(const Job& job) {
   RequireWithin("string.sag [rad]", job.string.sag, -tilt, tilt);
   RequireWithin("string.misalignment_x [rad]", job.string.misalignment_x, -tilt, tilt);
   RequireWithin("string.misalignment_y [rad]", job.string.misalignment_y, -tilt, tilt);
-  RequireWithin("string.sensor_below_reference_m", job.string.sensor_below_reference, -100, 100);
+  RequireWithin("string.sensor_below_reference_m", job.string.sensor_below_reference,
+                -limits::kSensorBelowReference, limits::kSensorBelowReference);
   RequireSigmas({{"string.sag_sigma", job.string.sigma_sag},
                  {"string.misalignment_sigma", job.string.sigma_misalignment}});
 }
