@@ -68,6 +68,7 @@ class JobReader {
     if (auto table = root.FindTable("string")) job.string = ReadString(*table);
     if (auto table = root.FindTable("magnetic")) job.magnetic = ReadMagnetic(*table);
     if (auto table = root.FindTable("acceptance")) job.acceptance = ReadAcceptance(*table);
+    file_.operations = ReadOperations(root);
     TakeRuns(root);
     for (const TomlTable& table : root.FindTables("event")) job.events.push_back(ReadEvent(table));
     return std::move(file_);

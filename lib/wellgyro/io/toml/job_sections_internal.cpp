@@ -16,6 +16,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/signature.h"
 #include "wellgyro/io/words.h"
 
 namespace wellgyro {
@@ -305,6 +306,23 @@ Acceptance ReadAcceptance(TomlTable table) {
   table.Read("foresight_deg", limits.foresight, kDeg, kPositive);
   table.Read("depth_closure_m", limits.depth_closure, 1, kPositive);
   return limits;
+}
+
+OperationSpec ReadOperations(TomlTable& root) {
+  OperationSpec spec;
+  if (auto table = root.FindTable("operations")) {
+    spec.unsigned_tool = table->FindBool("unsigned_tool").value_or(false);
+  }
+  for (TomlTable& table : root.FindTables("operator")) {
+    OperatorKey& key = spec.keys.emplace_back();
+    key.name = table.Need("name", table.FindString("name"));
+    const auto bytes = BytesOfHex(table.Need("public_key", table.FindString("public_key")));
+    if (!bytes || bytes->size() != kPublicKeySize) {
+      table.Refuse("public_key", "must be the 64 hexadecimal digits of an Ed25519 public key");
+    }
+    key.key = *bytes;
+  }
+  return spec;
 }
 
 RunSpec ReadRun(TomlTable table) {
