@@ -6,6 +6,7 @@
 #include "wellgyro/fit/solver_log.h"
 
 #include "commands.h"
+#include "live_commands.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -18,6 +19,9 @@ int Run(int argc, char** argv) {
   int exit_code = kDone;
   AddSurvey(app, exit_code);
   AddRecord(app, exit_code);
+  AddWatch(app, exit_code);
+  AddSend(app, exit_code);
+  AddBridge(app, exit_code);
   AddSimulate(app, exit_code);
   AddAllan(app, exit_code);
   AddCalibrate(app, exit_code);
