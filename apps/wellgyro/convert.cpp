@@ -1,3 +1,4 @@
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/earth/crs.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 
@@ -22,6 +24,8 @@ struct ConvertOptions {
   std::string well, declination_source, declination_date;
   std::vector<std::string> columns;
   std::optional<double> convergence_deg, declination_deg, datum_elevation_m, section_azimuth_deg;
+  std::string crs;
+  std::optional<double> latitude_deg, longitude_deg;
   bool preamble = false, variable_step = false, derived = false, keep = false;
 };
 
@@ -87,11 +91,32 @@ void Prepare(SurveyTable& table, const ConvertOptions& o) {
   if (o.derived) FillDerived(table);
 }
 
-int Convert(const ConvertOptions& o) {
+/// The convergence at the well's position, where none is stated; where one is, ours is the check.
+std::optional<Fault> FindConvergence(ConvertOptions& o) {
+  if (o.crs.empty()) return std::nullopt;
+  const auto grid =
+      ProjectToCrs(o.crs, {FromDegrees(*o.latitude_deg), FromDegrees(*o.longitude_deg)});
+  if (!grid) return grid.fault();
+  const double ours = ToDegrees(grid->point.convergence);
+  if (!o.convergence_deg) {
+    o.convergence_deg = ours;
+    fmt::print(stderr, "note: convergence {:+.6f} deg, from {} at the position\n", ours, o.crs);
+  } else if (std::abs(*o.convergence_deg - ours) > 0.01) {
+    Complain(fmt::format("the stated convergence, {:+.4f} deg, holds; {} has {:+.4f} deg there",
+                         *o.convergence_deg, o.crs, ours));
+  }
+  return std::nullopt;
+}
+
+int Convert(ConvertOptions& o) {
   const auto format = o.to.empty() ? FormatByName(o.out) : SurveyFormatOf(o.to);
   if (!format) {
     Complain(fmt::format("{}: the name does not say which format: add --to", o.out));
     return kUsage;
+  }
+  if (const auto fault = FindConvergence(o)) {
+    Complain(*fault);
+    return kUnusable;
   }
   try {
     Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
@@ -123,6 +148,14 @@ void AddReading(CLI::App& command, ConvertOptions& o) {
   command.add_option("--azimuth-reference", o.azimuth_reference, "North of IN's azimuths")
       ->check(CLI::IsMember({"true", "grid", "magnetic"}));
   command.add_option("--convergence-deg", o.convergence_deg, "True less grid azimuth");
+  CLI::Option* const latitude = command.add_option("--latitude-deg", o.latitude_deg, "Of the well");
+  CLI::Option* const longitude =
+      command.add_option("--longitude-deg", o.longitude_deg, "Of the well");
+  command
+      .add_option("--crs", o.crs,
+                  "Projected system, as EPSG:23031: the convergence at the well's position")
+      ->needs(latitude)
+      ->needs(longitude);
   command.add_option("--declination-deg", o.declination_deg, "True less magnetic azimuth");
   command.add_option("--declination-source", o.declination_source, "Its model");
   command.add_option("--declination-date", o.declination_date, "Day it holds for, YYYY-MM-DD");
