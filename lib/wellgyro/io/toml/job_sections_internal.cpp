@@ -36,8 +36,9 @@ std::int32_t Small(TomlTable& table, std::string_view key, std::int64_t min, std
 
 // Three rows of (north, east, TVD) [m2].
 std::optional<Eigen::Matrix3d> FindCovariance(TomlTable& table, std::string_view key) {
-  if (!table.Has(key)) return std::nullopt;
-  const std::vector<std::vector<double>> rows = table.FindRows(key, 3).value();
+  const auto found = table.FindRows(key, 3);
+  if (!found) return std::nullopt;
+  const std::vector<std::vector<double>>& rows = *found;
   if (rows.size() != 3) table.Refuse(key, "must have three rows: north, east, TVD");
   Eigen::Matrix3d cov;
   for (int i = 0; i < 3; ++i) {
