@@ -33,7 +33,7 @@ struct RunScales {
 };
 
 /// Whitened residuals of everything that a knot says of the nodes at its ends and of the border,
-/// about their present values, added to `block`. notes: R_IT(end) = R_IT(begin) Rz Exp(turn) Rz,
+/// about their present values, added to `block`. R_IT(end) = R_IT(begin) Rz Exp(turn) Rz,
 /// see Increment; w_IL turns L meanwhile.
 class KnotRows {
  public:
