@@ -20,6 +20,7 @@
 #include "wellgyro/io/toml/program_file.h"
 #include "wellgyro/io/toml/simulation_file.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/job_keys.h"
 
 #include "commands.h"
 #include "report.h"
@@ -145,14 +146,27 @@ int CheckFile(const std::string& name) {
   }
 }
 
+std::string JobKeysPage() {
+  return "# Keys of a job\n\n`wellgyro check --job-keys` prints this page. A job is TOML and "
+         "begins "
+         "with `format = \"wellgyro.job/1\"`; any\nother key is an error with its line, but under "
+         "`[identity]`, where keys are free and go to the files as they\nare. Of `[noise]`, "
+         "`KEY_sigma` or `KEY_upper95` may stand beside a coefficient.\n" +
+         JobReference();
+}
+
 }  // namespace
 
 void AddCheck(CLI::App& app, int& exit_code) {
   auto files = std::make_shared<std::vector<std::string>>();
+  auto keys = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("check", "Says what files are and whether they are whole");
-  command->add_option("files", *files, "Jobs, logs, surveys, models ...")->required();
+  command->add_option("files", *files, "Jobs, logs, surveys, models ...");
+  command->add_flag("--job-keys", *keys, "Every key of a job, as Markdown");
   command->footer("Example:\n  wellgyro check data/demo/job.toml data/demo/run.lcm");
-  command->callback([files, &exit_code] {
+  command->callback([files, keys, &exit_code] {
+    if (files->empty() && !*keys) throw CLI::RequiredError("files");
+    if (*keys) fmt::print("{}", JobKeysPage());
     for (const std::string& name : *files) {
       const int one = CheckFile(name);
       // A file that cannot be used weighs more than one with losses.

@@ -3,13 +3,16 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/bus/log_tables.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_tables.h"
+#include "wellgyro/io/sensor/file_kind.h"
 
 #include "commands.h"
 #include "report.h"
@@ -87,7 +90,33 @@ void Prepare(SurveyTable& table, const ConvertOptions& o) {
   if (o.derived) FillDerived(table);
 }
 
+/// An LCM log into tables of samples and of depths, OUT and beside it OUT's stem with .depth.csv.
+int ConvertLog(const ConvertOptions& o) {
+  const std::filesystem::path out(o.out);
+  if (out.extension() != ".csv") {
+    Complain(fmt::format("{} is an LCM log, which becomes CSV: name OUT with .csv", o.in));
+    return kUsage;
+  }
+  const std::filesystem::path depths = out.parent_path() / (out.stem().string() + ".depth.csv");
+  const Result<LogTables> tables = WriteLogTables(o.in, Channels{}, out, depths);
+  if (!tables) {
+    Complain(tables.fault());
+    return kUnusable;
+  }
+  if (tables->left_out == 0) return kDone;
+  Complain(fmt::format("{}: {} samples of other tools or damaged messages are left out", o.in,
+                       tables->left_out));
+  return kDoneWithLosses;
+}
+
 int Convert(const ConvertOptions& o) {
+  std::error_code none;
+  if (std::filesystem::equivalent(o.in, o.out, none)) {
+    Complain(fmt::format("{} would be written over by what it becomes: choose another OUT", o.in));
+    return kUnusable;
+  }
+  const Result<FileIdentity> identity = IdentifyFile(o.in);
+  if (identity && identity->kind == FileKind::kLcmLog) return ConvertLog(o);
   const auto format = o.to.empty() ? FormatByName(o.out) : SurveyFormatOf(o.to);
   if (!format) {
     Complain(fmt::format("{}: the name does not say which format: add --to", o.out));
@@ -150,8 +179,9 @@ void AddWriting(CLI::App& command, ConvertOptions& o) {
 
 void AddConvert(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command = app.add_subcommand("convert", "Between the survey formats");
-  command->add_option("in", options->in, "Survey to read")->required();
+  CLI::App* command = app.add_subcommand(
+      "convert", "Between the survey formats; an LCM log to tables of samples and depths");
+  command->add_option("in", options->in, "Survey or LCM log to read")->required();
   command->add_option("out", options->out, "File to write")->required();
   AddReading(*command, *options);
   AddWriting(*command, *options);
@@ -160,7 +190,8 @@ void AddConvert(CLI::App& app, int& exit_code) {
       "of OUT .csv .las .p717 .xml .dev .txt .json. WITSML 2.0 is read too.\n"
       "Example: wellgyro convert survey.csv survey.las\n"
       "         wellgyro convert raw.txt well.xml --columns MD[ft]=1,INC=2,AZI=3 \\\n"
-      "             --azimuth-reference grid --well A-1");
+      "             --azimuth-reference grid --well A-1\n"
+      "         wellgyro convert run.lcm run.csv, which writes run.depth.csv too");
   command->callback([options, &exit_code] { exit_code = Convert(*options); });
 }
 

@@ -1,4 +1,5 @@
 #include <exception>
+#include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -6,15 +7,17 @@
 #include "wellgyro/fit/solver_log.h"
 
 #include "commands.h"
+#include "help.h"
+#include "report.h"
 
 namespace wellgyro::apps {
 namespace {
 
 int Run(int argc, char** argv) {
-  CLI::App app{"wellgyro: from a gyro survey tool's sensor stream to a wellbore survey"};
-  app.set_version_flag("--version", "wellgyro " WELLGYRO_VERSION);
+  CLI::App app{"From a gyro survey tool's sensor stream to a wellbore survey", "wellgyro"};
+  app.formatter(std::make_shared<HelpText>());
+  app.set_version_flag("--version", "wellgyro " WELLGYRO_VERSION " (" WELLGYRO_COMMIT ")");
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::help);
   int exit_code = kDone;
   AddSurvey(app, exit_code);
   AddRecord(app, exit_code);
@@ -27,7 +30,12 @@ int Run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kUsage;
+    if (error.get_exit_code() == 0) return app.exit(error), kDone;  // --help, --version
+    Complain(Complaint(app, error));
+    const auto commands = app.get_subcommands();
+    fmt::print(stderr, "wellgyro{} --help says what there is\n",
+               commands.empty() ? "" : " " + commands.front()->get_name());
+    return kUsage;
   }
   return exit_code;
 }

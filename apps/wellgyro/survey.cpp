@@ -170,10 +170,10 @@ void AddFormats(CLI::App& command, SurveyOptions& options) {
 
 void AddSurvey(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SurveyOptions>();
-  CLI::App* command = app.add_subcommand(
-      "survey",
-      "Turns a sensor stream into survey files: survey.csv, passes.csv, checks.csv, "
-      "run.toml and source.toml");
+  CLI::App* command =
+      app.add_subcommand("survey",
+                         "A sensor stream into survey files: survey.csv, passes.csv, checks.csv, "
+                         "run.toml and source.toml");
   command->add_option("--job", options->job, "Job file, wellgyro.job/1")
       ->required()
       ->type_name("FILE");

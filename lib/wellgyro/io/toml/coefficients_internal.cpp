@@ -3,6 +3,7 @@
 #include <string>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/survey/job_keys.h"
 
 namespace wellgyro {
 namespace {
@@ -29,7 +30,7 @@ constexpr Prior kPriors[] = {
 };
 
 void ReadOne(TomlTable& table, const std::string& key, double unit, double& value) {
-  table.Read(key, value, unit, kNotNegative);
+  table.Read(key, value, unit, JobKeyOf("noise", key).range);
   const bool bounded = table.FindNumber(key + "_upper95", kNotNegative).has_value();
   const bool measured = table.FindNumber(key + "_sigma", kNotNegative).has_value();
   if (bounded && (measured || table.Has(key))) {
@@ -52,14 +53,14 @@ NoiseCoefficients ReadCoefficients(TomlTable& table) {
           c.rate_random_walk);
   ReadOne(table, "rate_ramp_deg_per_h2", units::kDegPerHour2, c.rate_ramp);
   table.Read("bias_instability_correlation_time_h", c.bias_instability_correlation_time,
-             units::kHour, kPositive);
+             units::kHour, JobKeyOf("noise", "bias_instability_correlation_time_h").range);
   return c;
 }
 
 ErrorPriors ReadPriors(TomlTable& table) {
   ErrorPriors priors;
   for (const Prior& prior : kPriors) {
-    table.Read(prior.key, priors.*prior.member, prior.unit, kNotNegative);
+    table.Read(prior.key, priors.*prior.member, prior.unit, JobKeyOf("errors", prior.key).range);
   }
   return priors;
 }

@@ -10,6 +10,7 @@
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/toml/coefficients_internal.h"
 #include "wellgyro/io/toml/error_model_file.h"
+#include "wellgyro/io/toml/job_numbers_internal.h"
 #include "wellgyro/io/toml/job_sections_internal.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/toml_internal.h"
@@ -46,7 +47,7 @@ class JobReader {
   JobFile Read(TomlTable& root) {
     Job& job = file_.job;
     const TomlTable well = root.Need("well", root.FindTable("well"));
-    job.well = ReadWell(well);
+    ReadWell(well, job);
     if (auto table = root.FindTable("identity")) job.identity = table->Verbatim();
     if (auto table = root.FindTable("grid")) {
       if (!well.Has("longitude_deg")) {
@@ -61,13 +62,13 @@ class JobReader {
     if (auto table = root.FindTable("errors")) job.errors = ReadPriors(*table);
     if (auto table = root.FindTable("error_model")) TakeErrorModel(*table);
     if (auto table = root.FindTable("channels")) job.channels = ReadChannels(*table);
-    if (auto table = root.FindTable("alignment")) job.alignment = ReadAlignment(*table);
+    if (auto table = root.FindTable("alignment")) ReadAlignment(*table, job);
     if (auto table = root.FindTable("attitude")) job.attitude = ReadAttitude(*table);
-    if (auto table = root.FindTable("stations")) job.stations = ReadStations(*table);
-    if (auto table = root.FindTable("depth")) job.depth = ReadDepth(*table);
-    if (auto table = root.FindTable("string")) job.string = ReadString(*table);
-    if (auto table = root.FindTable("magnetic")) job.magnetic = ReadMagnetic(*table);
-    if (auto table = root.FindTable("acceptance")) job.acceptance = ReadAcceptance(*table);
+    if (auto table = root.FindTable("stations")) ReadStations(*table, job);
+    if (auto table = root.FindTable("depth")) ReadDepth(*table, job);
+    if (auto table = root.FindTable("string")) ReadNumbers(*table, "string", job);
+    if (auto table = root.FindTable("magnetic")) ReadMagnetic(*table, job);
+    if (auto table = root.FindTable("acceptance")) ReadNumbers(*table, "acceptance", job);
     TakeRuns(root);
     for (const TomlTable& table : root.FindTables("event")) job.events.push_back(ReadEvent(table));
     return std::move(file_);
@@ -76,13 +77,13 @@ class JobReader {
  private:
   void TakeGrid(TomlTable& table) {
     const Job::Well& well = file_.job.well;
-    GridSpec grid = ReadGrid(table);
+    ReadGrid(table, file_.job);
     try {
-      const WellGrid probe(grid, {.latitude = well.latitude, .longitude = well.longitude});
+      const WellGrid probe(*file_.job.grid,
+                           {.latitude = well.latitude, .longitude = well.longitude});
     } catch (const std::exception& error) {
       table.Refuse("", fmt::format("the well head has no place on it: {}", error.what()));
     }
-    file_.job.grid = std::move(grid);
   }
 
   void TakeTieIn(TomlTable& table) {
@@ -90,7 +91,7 @@ class JobReader {
       const std::string text = files_.Take("tie_in", *name);
       file_.job.tie_in = TieInOfSurvey(text, files_.PathOf(*name).string());
     } else {
-      file_.job.tie_in = ReadTieIn(table);
+      ReadTieIn(table, file_.job);
     }
   }
 
@@ -142,6 +143,18 @@ Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& sou
       text, source.string(), kFormat, [&](TomlTable& root) { return JobReader(files).Read(root); });
   if (file) file->files = files.all();
   return file;
+}
+
+std::set<std::string> KeysAskedOfJob(std::string_view text, const std::filesystem::path& folder) {
+  NamedFiles files(folder);
+  TomlDocument document(text, "job", kFormat);
+  TomlTable root(document);
+  try {
+    JobReader(files).Read(root);
+  } catch (const TomlError&) {
+    // A file that it names is not there: what was asked for until then stands.
+  }
+  return document.asked();
 }
 
 Result<JobFile> ReadJob(const std::filesystem::path& path) {

@@ -15,13 +15,12 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/base/units.h"
+#include "wellgyro/io/toml/job_numbers_internal.h"
 #include "wellgyro/io/words.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr double kDeg = units::kDeg;
 constexpr std::int64_t kInt32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t kUtimeMax = std::numeric_limits<std::int64_t>::max() / 1000;  // [us]
 
@@ -37,8 +36,9 @@ std::int32_t Small(TomlTable& table, std::string_view key, std::int64_t min, std
 
 // Three rows of (north, east, TVD) [m2].
 std::optional<Eigen::Matrix3d> FindCovariance(TomlTable& table, std::string_view key) {
-  if (!table.Has(key)) return std::nullopt;
-  const std::vector<std::vector<double>> rows = table.FindRows(key, 3).value();
+  const auto found = table.FindRows(key, 3);
+  if (!found) return std::nullopt;
+  const std::vector<std::vector<double>>& rows = *found;
   if (rows.size() != 3) table.Refuse(key, "must have three rows: north, east, TVD");
   Eigen::Matrix3d cov;
   for (int i = 0; i < 3; ++i) {
@@ -65,38 +65,34 @@ GridSpec::Projection ReadProjection(TomlTable& table) {
                                   {"polar_stereographic", Projection::kPolarStereographic}}));
 }
 
-GridSpec ReadExplicitGrid(TomlTable& table) {
-  GridSpec grid;
+void ReadExplicitGrid(TomlTable& table, Job& job) {
+  GridSpec& grid = *job.grid;
   grid.projection = ReadProjection(table);
-  table.Read("semi_major_m", grid.semi_major, 1, {.min = 1e6, .max = 1e8});
-  table.Read("inverse_flattening", grid.inverse_flattening, 1, {.min = 100, .max = 1e6});
-  table.Read("longitude_origin_deg", grid.longitude_origin, kDeg, kLongitudeDeg);
-  table.Read("scale_origin", grid.scale_origin, 1, {.min = 0.5, .max = 2});
-  table.Read("false_easting_m", grid.false_easting);
-  table.Read("false_northing_m", grid.false_northing);
+  for (const char* key : {"semi_major_m", "inverse_flattening", "longitude_origin_deg",
+                          "scale_origin", "false_easting_m", "false_northing_m"}) {
+    ReadNumber(table, "grid", key, job);
+  }
   if (grid.projection == GridSpec::Projection::kPolarStereographic) {
     grid.north_pole =
         table.Need("pole", table.FindWord<bool>("pole", {{"north", true}, {"south", false}}));
-    return grid;
+    return;
   }
-  table.Read("latitude_origin_deg", grid.latitude_origin, kDeg, kLatitudeDeg);
+  ReadNumber(table, "grid", "latitude_origin_deg", job);
   if (grid.projection == GridSpec::Projection::kLambertConformalConic) {
-    const auto second = table.FindNumber("parallel_2_deg", kLatitudeDeg);
-    const auto first = table.FindNumber("parallel_1_deg", kLatitudeDeg);
-    grid.parallel_1 = table.Need("parallel_1_deg", first) * kDeg;
-    grid.parallel_2 = second.value_or(*first) * kDeg;
+    NeedNumber(table, "grid", "parallel_1_deg", job);
+    grid.parallel_2 = grid.parallel_1;
+    ReadNumber(table, "grid", "parallel_2_deg", job);
   }
-  return grid;
 }
 
-void ReadExternalAzimuth(TomlTable& table, AlignmentSpec& spec) {
+void ReadExternalAzimuth(TomlTable& table, Job& job) {
   using Of = AlignmentSpec::Of;
+  AlignmentSpec& spec = job.alignment;
   spec.of = table.FindWord<Of>("of", {{"axis", Of::kAxis}, {"mark", Of::kMark}}).value_or(spec.of);
-  spec.azimuth = WrapTwoPi(
-      kDeg * table.Need("azimuth_true_deg", table.FindNumber("azimuth_true_deg", kAzimuthDeg)));
-  spec.sigma_azimuth =
-      kDeg * table.Need("sigma_azimuth_deg", table.FindNumber("sigma_azimuth_deg", kPositive));
-  table.Read("at_md_m", spec.at_md);
+  NeedNumber(table, "alignment", "azimuth_true_deg", job);
+  spec.azimuth = WrapTwoPi(spec.azimuth);
+  NeedNumber(table, "alignment", "sigma_azimuth_deg", job);
+  ReadNumber(table, "alignment", "at_md_m", job);
   spec.at_utc = FindUtime(table, "at_utime_us");
   if (spec.at_md && spec.at_utc) {
     table.Refuse("at_md_m", "stands beside at_utime_us; only one of them can hold",
@@ -105,38 +101,16 @@ void ReadExternalAzimuth(TomlTable& table, AlignmentSpec& spec) {
   table.Read("use_fixes", spec.use_fixes);
 }
 
-Cable ReadCable(TomlTable table) {
-  constexpr double kPerKmKn = 1e-6;  // m per km and kN, in 1/N
-  Cable cable;
-  table.Read("stretch_m_per_km_kn", cable.stretch, kPerKmKn, kNotNegative);
-  table.Read("weight_n_per_m", cable.weight, 1, kNotNegative);
-  table.Read("tool_weight_n", cable.tool_weight, 1, kNotNegative);
-  table.Read("measuring_tension_n", cable.measuring_tension, 1, kNotNegative);
-  table.Read("expansion_per_degc", cable.expansion, 1, kNotNegative);
-  table.Read("measuring_temperature_degc", cable.measuring_temperature);
-  table.Read("surface_temperature_degc", cable.surface_temperature);
-  table.Read("gradient_degc_per_km", cable.gradient, 1e-3);
-  table.Read("stretch_sigma_ratio", cable.ratio_sigma, 1, {.min = 0, .max = 1});
-  table.Read("mark_spacing_m", cable.mark_spacing, 1, kPositive);
-  table.Read("first_mark_m", cable.first_mark);
-  table.Read("mark_sigma_m", cable.sigma_mark, 1, kNotNegative);
-  return cable;
-}
-
 }  // namespace
 
-Job::Well ReadWell(TomlTable table) {
-  Job::Well well;
-  table.Read("name", well.name);
-  const auto latitude = table.FindNumber("latitude_deg", {.min = -89.5, .max = 89.5});
-  well.latitude = kDeg * table.Need("latitude_deg", latitude);
-  table.Read("longitude_deg", well.longitude, kDeg, kLongitudeDeg);
-  table.Read("datum_elevation_m", well.datum_elevation, 1, {.min = -12'000, .max = 10'000});
-  return well;
+void ReadWell(TomlTable table, Job& job) {
+  table.Read("name", job.well.name);
+  NeedNumber(table, "well", "latitude_deg", job);
+  ReadNumbers(table, "well", job);
 }
 
-GridSpec ReadGrid(TomlTable table) {
-  GridSpec grid;
+void ReadGrid(TomlTable table, Job& job) {
+  GridSpec& grid = job.grid.emplace();
   if (const auto zone = table.FindString("utm_zone")) {
     if (table.Has("projection")) {
       table.Refuse("projection", "stands beside utm_zone; only one of them can hold",
@@ -148,23 +122,17 @@ GridSpec ReadGrid(TomlTable table) {
       table.Refuse("utm_zone", error.what());
     }
   } else {
-    grid = ReadExplicitGrid(table);
+    ReadExplicitGrid(table, job);
   }
   table.Read("name", grid.name);
-  table.Read("convergence_deg", grid.convergence, kDeg, {.min = -180, .max = 180});
-  table.Read("scale", grid.scale, 1, {.min = 0.5, .max = 2});
+  ReadNumber(table, "grid", "convergence_deg", job);
+  ReadNumber(table, "grid", "scale", job);
   table.Read("epsg", grid.epsg);
-  return grid;
 }
 
-TieIn ReadTieIn(TomlTable table) {
-  TieIn tie_in;
-  table.Read("md_m", tie_in.md);
-  table.Read("north_m", tie_in.north);
-  table.Read("east_m", tie_in.east);
-  table.Read("tvd_m", tie_in.tvd);
-  table.Read("inclination_deg", tie_in.inclination, kDeg, kInclinationDeg);
-  table.Read("azimuth_true_deg", tie_in.azimuth, kDeg, kAzimuthDeg);
+void ReadTieIn(TomlTable table, Job& job) {
+  TieIn& tie_in = job.tie_in;
+  ReadNumbers(table, "tie_in", job);
   if (tie_in.azimuth) tie_in.azimuth = WrapTwoPi(*tie_in.azimuth);
   if (tie_in.inclination && !tie_in.azimuth) {
     table.RefuseAbsent("azimuth_true_deg", "is missing beside inclination_deg");
@@ -174,7 +142,6 @@ TieIn ReadTieIn(TomlTable table) {
   }
   const std::string_view covariance = table.Has("covariance") ? "covariance" : "covariance_m2";
   tie_in.cov_p_WT_W = FindCovariance(table, covariance).value_or(Eigen::Matrix3d::Zero());
-  return tie_in;
 }
 
 Channels ReadChannels(TomlTable table) {
@@ -207,16 +174,15 @@ Channels ReadChannels(TomlTable table) {
   return channels;
 }
 
-AlignmentSpec ReadAlignment(TomlTable table) {
+void ReadAlignment(TomlTable table, Job& job) {
   using Method = AlignmentSpec::Method;
-  AlignmentSpec spec;
+  AlignmentSpec& spec = job.alignment;
   spec.method = table
                     .FindWord<Method>("method", {{"gyrocompass", Method::kGyrocompass},
                                                  {"external", Method::kExternal}})
                     .value_or(spec.method);
-  if (spec.method == Method::kExternal) ReadExternalAzimuth(table, spec);
-  table.Read("min_still_s", spec.min_still, 1, kPositive);
-  return spec;
+  if (spec.method == Method::kExternal) ReadExternalAzimuth(table, job);
+  ReadNumber(table, "alignment", "min_still_s", job);
 }
 
 AttitudeSpec ReadAttitude(TomlTable table) {
@@ -234,13 +200,13 @@ AttitudeSpec ReadAttitude(TomlTable table) {
   return spec;
 }
 
-StationSpec ReadStations(TomlTable table) {
-  StationSpec spec;
+void ReadStations(TomlTable table, Job& job) {
+  StationSpec& spec = job.stations;
   if (auto at = table.FindNumbers("at_m", kAnyNumber)) {
     spec.at = *std::move(at);
     spec.every = 0;
   }
-  table.Read("every_m", spec.every, 1, kNotNegative);
+  ReadNumber(table, "stations", "every_m", job);
   table.Read("at_stops", spec.at_stops);
   for (std::size_t i = 1; i < spec.at.size(); ++i) {
     if (spec.at[i] > spec.at[i - 1]) continue;
@@ -251,11 +217,10 @@ StationSpec ReadStations(TomlTable table) {
     table.Refuse(table.Has("every_m") ? "every_m" : "at_m",
                  "asks for no station: give every_m, at_m or at_stops = true");
   }
-  return spec;
 }
 
-DepthSpec ReadDepth(TomlTable table) {
-  DepthSpec spec;
+void ReadDepth(TomlTable table, Job& job) {
+  DepthSpec& spec = job.depth;
   if (const auto kind = table.FindString("kind")) {
     const std::optional<DepthKind> known = DepthKindOf(*kind);
     if (!known) {
@@ -265,9 +230,8 @@ DepthSpec ReadDepth(TomlTable table) {
     }
     spec.kind = *known;
   }
-  table.Read("latency_s", spec.latency, 1, {.min = 0, .max = 86'400});
-  if (auto cable = table.FindTable("cable")) spec.cable = ReadCable(*std::move(cable));
-  table.Read("max_gap_s", spec.max_gap, 1, {.min = 0.1, .max = 600});
+  ReadNumbers(table, "depth", job);
+  if (auto cable = table.FindTable("cable")) ReadNumbers(*cable, "depth.cable", job);
   for (const auto& row :
        table.FindRows("corrections", 2).value_or(std::vector<std::vector<double>>())) {
     if (!spec.corrections.empty() && !(row[0] > spec.corrections.back().first)) {
@@ -276,40 +240,13 @@ DepthSpec ReadDepth(TomlTable table) {
     }
     spec.corrections.emplace_back(row[0], row[1]);
   }
-  return spec;
 }
 
-StringSpec ReadString(TomlTable table) {
-  StringSpec spec;
-  constexpr TomlRange kTilt{.min = -90, .max = 90};
-  table.Read("sensor_below_reference_m", spec.sensor_below_reference);
-  table.Read("sag_deg", spec.sag, kDeg, kTilt);
-  table.Read("sag_sigma_deg", spec.sigma_sag, kDeg, kNotNegative);
-  table.Read("misalignment_x_deg", spec.misalignment_x, kDeg, kTilt);
-  table.Read("misalignment_y_deg", spec.misalignment_y, kDeg, kTilt);
-  table.Read("misalignment_sigma_deg", spec.sigma_misalignment, kDeg, kNotNegative);
-  return spec;
-}
-
-MagneticSpec ReadMagnetic(TomlTable table) {
-  MagneticSpec spec;
-  constexpr TomlRange kSigmaDeg{.min = 1e-6, .max = 179};
-  const auto declination = table.FindNumber("declination_deg", {.min = -180, .max = 180});
-  spec.declination = kDeg * table.Need("declination_deg", declination);
-  spec.sigma = kDeg * table.Need("sigma_deg", table.FindNumber("sigma_deg", kSigmaDeg));
+void ReadMagnetic(TomlTable table, Job& job) {
+  MagneticSpec& spec = job.magnetic.emplace();
+  NeedNumber(table, "magnetic", "declination_deg", job);
+  NeedNumber(table, "magnetic", "sigma_deg", job);
   table.Read("tie", spec.tie);
-  return spec;
-}
-
-Acceptance ReadAcceptance(TomlTable table) {
-  Acceptance limits;
-  table.Read("gravity_mps2", limits.gravity, 1, kPositive);
-  table.Read("earth_rate_deg_per_h", limits.earth_rate, units::kDegPerHour, kPositive);
-  table.Read("inclination_difference_deg", limits.inclination_difference, kDeg, kPositive);
-  table.Read("azimuth_difference_deg", limits.azimuth_difference, kDeg, kPositive);
-  table.Read("foresight_deg", limits.foresight, kDeg, kPositive);
-  table.Read("depth_closure_m", limits.depth_closure, 1, kPositive);
-  return limits;
 }
 
 RunSpec ReadRun(TomlTable table) {
@@ -343,10 +280,10 @@ Event ReadEvent(TomlTable table) {
                     word));
   }
   event.kind = *kind;
-  table.Read("value_m", event.value_m);
-  table.Read("sigma_m", event.sigma_m, 1, kNotNegative);
-  table.Read("value_rad", event.value_rad);
-  table.Read("sigma_rad", event.sigma_rad, 1, kNotNegative);
+  event.value_m = FindListed(table, "event", "value_m").value_or(event.value_m);
+  event.sigma_m = FindListed(table, "event", "sigma_m").value_or(event.sigma_m);
+  event.value_rad = FindListed(table, "event", "value_rad").value_or(event.value_rad);
+  event.sigma_rad = FindListed(table, "event", "sigma_rad").value_or(event.sigma_rad);
   event.has_value = table.Has("value_m") || table.Has("value_rad");
   table.Read("what", event.what);
   table.Read("who", event.who);

@@ -1,23 +1,31 @@
 #pragma once
 
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/survey/job.h"
 
-/// The sections of a job file, one function each; every one reads all keys of its table.
+/// The sections of a job file, one function each; every one reads all keys of its table. Numbers
+/// are as survey/job_keys.h says; sections of numbers alone have no function here.
 namespace wellgyro {
 
-Job::Well ReadWell(TomlTable table);
-GridSpec ReadGrid(TomlTable table);
-TieIn ReadTieIn(TomlTable table);
+void ReadWell(TomlTable table, Job& job);
+void ReadGrid(TomlTable table, Job& job);
+void ReadTieIn(TomlTable table, Job& job);
 Channels ReadChannels(TomlTable table);
-AlignmentSpec ReadAlignment(TomlTable table);
+void ReadAlignment(TomlTable table, Job& job);
 AttitudeSpec ReadAttitude(TomlTable table);
-StationSpec ReadStations(TomlTable table);
-DepthSpec ReadDepth(TomlTable table);
-StringSpec ReadString(TomlTable table);
-MagneticSpec ReadMagnetic(TomlTable table);
-Acceptance ReadAcceptance(TomlTable table);
+void ReadStations(TomlTable table, Job& job);
+void ReadDepth(TomlTable table, Job& job);
+void ReadMagnetic(TomlTable table, Job& job);
 RunSpec ReadRun(TomlTable table);
 Event ReadEvent(TomlTable table);
+
+/// Every key that reading the job `text` asks for, there or not, after its table, until the first
+/// complaint.
+std::set<std::string> KeysAskedOfJob(std::string_view text, const std::filesystem::path& folder);
 
 }  // namespace wellgyro

@@ -1,12 +1,12 @@
 #include "wellgyro/io/toml/toml_internal.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <sstream>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
+
+#include "wellgyro/base/alike.h"
 
 namespace wellgyro {
 namespace {
@@ -26,24 +26,6 @@ toml::table Parse(std::string_view text, const std::string& source) {
   } catch (const toml::parse_error& error) {
     Throw(FaultCode::kSyntax, std::string(error.description()), source, error.source().begin);
   }
-}
-
-// Levenshtein's distance: insertions, deletions and replacements of single characters.
-std::size_t Distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = std::exchange(row[j + 1], std::min({replaced, row[j] + 1, row[j + 1] + 1}));
-    }
-  }
-  return row.back();
-}
-
-bool Alike(std::string_view a, std::string_view b) {
-  return Distance(a, b) <= 1 + std::max(a.size(), b.size()) / 5;
 }
 
 }  // namespace
@@ -107,9 +89,14 @@ void TomlDocument::RefuseUnread() const {
   Throw(FaultCode::kSyntax, std::move(text), source_, key->source().begin);
 }
 
+std::string TomlTable::PathOf(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
 std::string TomlTable::Named(std::string_view key) const {
-  if (key.empty()) return name_;
-  return name_.empty() ? std::string(key) : fmt::format("{} {}", name_, key);
+  if (path_.empty()) return std::string(key);
+  const std::string name = fmt::format(fmt::runtime(of_list_ ? "[[{}]]" : "[{}]"), path_);
+  return key.empty() ? name : fmt::format("{} {}", name, key);
 }
 
 void TomlTable::Refuse(std::string_view key, std::string_view why, FaultCode code) const {
@@ -136,6 +123,7 @@ void TomlTable::RefuseWord(std::string_view key, const std::string& word,
 
 const toml::node* TomlTable::Ask(std::string_view key) {
   document_->asked_[table_].emplace_back(key);
+  document_->asked_names_.insert(PathOf(key));
   const toml::node* const node = table_->get(key);
   if (node) document_->read_.insert(node);
   return node;
@@ -144,14 +132,8 @@ const toml::node* TomlTable::Ask(std::string_view key) {
 double TomlTable::NumberOf(const toml::node& node, std::string_view key, TomlRange range) const {
   const std::optional<double> number = node.is_number() ? node.value<double>() : std::nullopt;
   if (!number) Refuse(key, "must be a number", FaultCode::kSyntax);
-  const double v = *number;
-  if (!std::isfinite(v)) Refuse(key, fmt::format("{} is not a finite number", v));
-  if (range.above_min ? v <= range.min : v < range.min) {
-    Refuse(key,
-           fmt::format("{} must be {} {}", v, range.above_min ? "above" : "at least", range.min));
-  }
-  if (v > range.max) Refuse(key, fmt::format("{} must be at most {}", v, range.max));
-  return v;
+  if (const auto complaint = ComplaintOf(*number, range)) Refuse(key, *complaint);
+  return *number;
 }
 
 std::optional<double> TomlTable::FindNumber(std::string_view key, TomlRange range) {
@@ -256,7 +238,7 @@ std::optional<TomlTable> TomlTable::FindTable(std::string_view key) {
   const toml::node* const node = Ask(key);
   if (!node) return std::nullopt;
   if (!node->is_table()) Refuse(key, fmt::format("must be a table, [{}]", key), FaultCode::kSyntax);
-  return TomlTable(*document_, *node->as_table(), fmt::format("[{}]", key));
+  return TomlTable(*document_, *node->as_table(), PathOf(key));
 }
 
 std::vector<TomlTable> TomlTable::FindTables(std::string_view key) {
@@ -268,7 +250,7 @@ std::vector<TomlTable> TomlTable::FindTables(std::string_view key) {
   }
   std::vector<TomlTable> tables;
   for (const toml::node& element : *array) {
-    tables.push_back(TomlTable(*document_, *element.as_table(), fmt::format("[[{}]]", key)));
+    tables.push_back(TomlTable(*document_, *element.as_table(), PathOf(key), true));
   }
   return tables;
 }

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,6 +15,7 @@
 
 #include <toml++/toml.h>
 
+#include "wellgyro/base/number_range.h"
 #include "wellgyro/base/result.h"
 
 namespace wellgyro {
@@ -25,12 +25,7 @@ struct TomlError {
   Fault fault;
 };
 
-/// What a number may be, ends included unless `above_min`.
-struct TomlRange {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool above_min = false;
-};
+using TomlRange = NumberRange;
 inline constexpr TomlRange kAnyNumber{};
 inline constexpr TomlRange kNotNegative{.min = 0};
 inline constexpr TomlRange kPositive{.min = 0, .above_min = true};
@@ -52,6 +47,9 @@ class TomlDocument {
   const toml::table& root() const { return root_; }
   const std::string& source() const { return source_; }
 
+  /// Every key that was asked for, there or not, after its table: "depth.cable.mark_spacing_m".
+  const std::set<std::string>& asked() const { return asked_names_; }
+
   /// Throws TomlError that names the first key nobody asked for, and its like among those asked.
   void RefuseUnread() const;
 
@@ -63,6 +61,7 @@ class TomlDocument {
   toml::table root_;
   std::set<const toml::node*> read_;
   std::map<const toml::table*, std::vector<std::string>> asked_;
+  std::set<std::string> asked_names_;
 };
 
 /// One table of a document, read key by key. Find... give nothing where the key is absent; every
@@ -112,18 +111,21 @@ class TomlTable {
   [[noreturn]] void RefuseAbsent(std::string_view key, std::string_view why) const;
 
  private:
-  TomlTable(TomlDocument& document, const toml::table& table, std::string name)
-      : document_(&document), table_(&table), name_(std::move(name)) {}
+  TomlTable(TomlDocument& document, const toml::table& table, std::string path,
+            bool of_list = false)
+      : document_(&document), table_(&table), path_(std::move(path)), of_list_(of_list) {}
 
   const toml::node* Ask(std::string_view key);
   double NumberOf(const toml::node& node, std::string_view key, TomlRange range) const;
+  std::string PathOf(std::string_view key) const;
   std::string Named(std::string_view key) const;
   [[noreturn]] void RefuseWord(std::string_view key, const std::string& word,
                                const std::vector<std::string_view>& words) const;
 
   TomlDocument* document_;
   const toml::table* table_;
-  std::string name_;  ///< as written: [well], [[run]]; empty for the top
+  std::string path_;  ///< "depth.cable"; empty for the top
+  bool of_list_;      ///< one of [[run]]
 };
 
 /// `read` over the text of one file; every key it leaves is an error.

@@ -1,0 +1,45 @@
+#include "wellgyro/bus/survey_log.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "wellgyro/bus/feed.h"
+#include "wellgyro/bus/log_reader.h"
+#include "wellgyro/bus/surveyor_listener.h"
+
+namespace wellgyro {
+namespace {
+
+class FaultList : public Sink {
+ public:
+  void OnFault(const Fault& fault) override {
+    constexpr std::size_t kKept = 1000;
+    if (faults.size() < kKept) faults.push_back(fault);
+  }
+  std::vector<Fault> faults;
+};
+
+}  // namespace
+
+Result<LogSurvey> SurveyLog(const Job& job, const std::string& path, const RunAdjuster* adjuster) {
+  Result<LogReader> reader = LogReader::Open(path);
+  if (!reader) return reader.fault();
+  FaultList sink;
+  Surveyor surveyor(job, sink, adjuster);
+  SurveyorListener listener(surveyor, sink);
+  Feed feed(job.channels, listener);
+  LogEvent event;
+  while (!surveyor.finished() && reader->Next(event)) {
+    feed.Take(event.channel, event.data, event.data_offset);
+  }
+  surveyor.Finish();
+  LogSurvey survey;
+  for (const std::int32_t tool : surveyor.tools()) survey.tools[tool] = surveyor.Current(tool);
+  if (survey.tools.empty()) survey.tools[0] = surveyor.Current(0);
+  survey.faults = reader->Faults();
+  survey.faults.insert(survey.faults.end(), sink.faults.begin(), sink.faults.end());
+  survey.tally = surveyor.tally();
+  return survey;
+}
+
+}  // namespace wellgyro

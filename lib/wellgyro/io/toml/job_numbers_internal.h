@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "wellgyro/io/toml/toml_internal.h"
+#include "wellgyro/survey/job.h"
+
+/// Numbers of a job as survey/job_keys.h says that they are.
+namespace wellgyro {
+
+/// The number under `key` of `section`, in SI, into its place in `job`; as it was where absent.
+void ReadNumber(TomlTable& table, std::string_view section, std::string_view key, Job& job);
+
+/// The same, and it must be there.
+void NeedNumber(TomlTable& table, std::string_view section, std::string_view key, Job& job);
+
+/// All numbers of `section`.
+void ReadNumbers(TomlTable& table, std::string_view section, Job& job);
+
+/// A number that has no one place in a job, in SI.
+std::optional<double> FindListed(TomlTable& table, std::string_view section, std::string_view key);
+
+}  // namespace wellgyro

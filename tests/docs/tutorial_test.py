@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Runs the commands that the documentation shows, page by page, each in an empty folder: blocks of
+sh line by line, a block of toml being the job.toml that the page has saved by then.
+tutorial_test.py PROGRAM"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
+DOCS = os.path.join(TOP, "lib", "docs")
+
+
+def Blocks(name):
+    with open(os.path.join(DOCS, name), encoding="utf-8") as file:
+        return re.findall(r"^```(sh|toml)\n(.*?)^```$", file.read(), re.M | re.S)
+
+
+class Tutorial(unittest.TestCase):
+    def Run(self, page):
+        commands = 0
+        with tempfile.TemporaryDirectory() as folder:
+            for kind, text in Blocks(page):
+                if kind == "toml":
+                    with open(os.path.join(folder, "job.toml"), "w", encoding="utf-8") as job:
+                        job.write(text)
+                    continue
+                for line in text.replace("\\\n", " ").splitlines():
+                    line = line.replace("$DEMO", os.path.join(TOP, "data", "demo"))
+                    words = line.split()
+                    self.assertEqual(words[0], "wellgyro")
+                    done = subprocess.run([PROGRAM, *words[1:]], cwd=folder, capture_output=True,
+                                          text=True, timeout=300, check=False)
+                    self.assertEqual(done.returncode, 0, line + "\n" + done.stdout + done.stderr)
+                    commands += 1
+            self.assertGreater(commands, 0)
+            return {name: self.Size(folder, name) for name in ("first.las", "result/survey.csv")}
+
+    def Size(self, folder, name):
+        with open(os.path.join(folder, name), encoding="utf-8") as file:
+            return len(file.readlines())
+
+    def test_first_survey(self):
+        sizes = self.Run("first-survey.md")
+        self.assertGreater(sizes["result/survey.csv"], 50)
+        self.assertGreater(sizes["first.las"], sizes["result/survey.csv"])
+
+    def test_the_first_job_of_the_readme_is_one(self):
+        with open(os.path.join(TOP, "README.md"), encoding="utf-8") as file:
+            job = re.search(r"^```toml\n(.*?)^```$", file.read(), re.M | re.S).group(1)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "job.toml")
+            with open(path, "w", encoding="utf-8") as out:
+                out.write(job)
+            done = subprocess.run([PROGRAM, "check", path], capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
