@@ -47,6 +47,9 @@ class Terminal(FreshProgramTest):
         self.assertEqual(done.returncode, 0, done.stdout)
         done = Run("convert", os.path.join(DEMO, "run.lcm"), self.Path("run.las"))
         self.assertEqual(done.returncode, 1)
+        done = Run("convert", os.path.join(DEMO, "run.lcm"), self.Path("absent/run.csv"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("cannot be written", done.stderr)
 
 
 if __name__ == "__main__":

@@ -29,14 +29,15 @@ class Table {
   Table(const Table&) = delete;
   Table& operator=(const Table&) = delete;
 
-  bool begun() const { return out_.is_open(); }
+  bool begun() const { return begun_; }
   void Add(const std::string& line) {
-    if (!begun()) out_.open(partial_, std::ios::binary | std::ios::trunc);
+    if (!begun_) out_.open(partial_, std::ios::binary | std::ios::trunc);
+    begun_ = true;
     out_ << line << '\n';
   }
 
   std::optional<Fault> PutInPlace() {
-    if (!begun()) return std::nullopt;
+    if (!begun_) return std::nullopt;
     out_.close();
     std::error_code error;
     if (out_) std::filesystem::rename(partial_, path_, error);
@@ -50,6 +51,7 @@ class Table {
  private:
   std::filesystem::path path_, partial_;
   std::ofstream out_;
+  bool begun_ = false;
 };
 
 std::string Three(const Eigen::Vector3d& v, bool with_z) {
@@ -99,7 +101,8 @@ class Writer : public Listener {
                    (sample.has_gz ? ",GZ[rad/s]" : "") + ",AX[m/s2],AY[m/s2],AZ[m/s2]" +
                    (sample.has_mag ? ",MX[T],MY[T],MZ[T]" : "") + ",TEMP[degC],RUN,TOOL_NUMBER");
     }
-    if (sample.stamp.tool != first_.stamp.tool) {
+    if (sample.stamp.tool != first_.stamp.tool || sample.has_gz != first_.has_gz ||
+        sample.has_mag != first_.has_mag) {
       ++tables.left_out;
       return;
     }
