@@ -1,4 +1,4 @@
-# Installs the libraries with a CMake package (components fit, lcm) and pkg-config files.
+# Installs the libraries with a CMake package (components fit, lcm, c) and pkg-config files.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/wellgyro)
 
@@ -34,6 +34,10 @@ if(TARGET wellgyro-fit)
   wellgyro_install(wellgyro-fit wellgyro-fit)
   wellgyro_pkgconfig(wellgyro-fit "Fits of wellgyro, with Ceres"
     REQUIRES wellgyro LIBS_PRIVATE "-lceres -lglog")
+endif()
+if(TARGET wellgyro-c)
+  wellgyro_install(wellgyro-c wellgyro-c)
+  wellgyro_pkgconfig(wellgyro_c "wellgyro for C")
 endif()
 if(TARGET wellgyro-lcm)
   set_target_properties(wellgyro-lcm PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0)

@@ -1,0 +1,52 @@
+// Surveys a stream that feed wrote, by the C interface, and prints survey.csv: Session JOB STREAM
+using System;
+using System.IO;
+using System.Runtime.InteropServices;
+using System.Text;
+
+static class Session {
+  const string Library = "libwellgyro_c.so.1";
+  const int ImuBytes = 120, DepthBytes = 48;
+
+  [DllImport(Library)] static extern int wellgyro_open(string path, out IntPtr session);
+  [DllImport(Library)] static extern int wellgyro_push_imu(IntPtr s, byte[] samples, UIntPtr count);
+  [DllImport(Library)] static extern int wellgyro_push_depth(IntPtr s, byte[] marks, UIntPtr count);
+  [DllImport(Library)] static extern int wellgyro_finish(IntPtr s);
+  [DllImport(Library)] static extern int wellgyro_survey_csv(IntPtr s, int tool, byte[] text,
+                                                             UIntPtr capacity, out UIntPtr size);
+  [DllImport(Library)] static extern IntPtr wellgyro_error(IntPtr s);
+  [DllImport(Library)] static extern void wellgyro_close(IntPtr s);
+
+  static int Push(IntPtr session, BinaryReader stream) {
+    var one = new UIntPtr(1);
+    while (stream.BaseStream.Position < stream.BaseStream.Length) {
+      int answer = stream.ReadInt32() == 0
+          ? wellgyro_push_imu(session, stream.ReadBytes(ImuBytes), one)
+          : wellgyro_push_depth(session, stream.ReadBytes(DepthBytes), one);
+      if (answer != 0) return answer;
+    }
+    return wellgyro_finish(session);
+  }
+
+  static int Print(IntPtr session) {
+    UIntPtr size;
+    int answer = wellgyro_survey_csv(session, 0, null, UIntPtr.Zero, out size);
+    if (answer != 1) return answer;
+    var text = new byte[(int)size];
+    answer = wellgyro_survey_csv(session, 0, text, size, out size);
+    if (answer == 0) Console.OpenStandardOutput().Write(text, 0, text.Length - 1);
+    return answer;
+  }
+
+  static int Main(string[] arguments) {
+    IntPtr session;
+    int answer = wellgyro_open(arguments[0], out session);
+    using (var stream = new BinaryReader(File.OpenRead(arguments[1]))) {
+      if (answer == 0) answer = Push(session, stream);
+    }
+    if (answer == 0) answer = Print(session);
+    if (answer != 0) Console.Error.WriteLine(Marshal.PtrToStringAnsi(wellgyro_error(session)));
+    wellgyro_close(session);
+    return answer;
+  }
+}
