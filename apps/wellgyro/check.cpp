@@ -10,6 +10,7 @@
 
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/log_reader.h"
+#include "wellgyro/io/exchange/delivery_check.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/sensor/file_kind.h"
@@ -99,6 +100,16 @@ std::vector<Fault> FaultsOfSensorTable(const std::string& name) {
 
 /// A survey in another's format, or nothing that wellgyro reads.
 int CheckForeign(const std::string& name, const std::string& what) {
+  if (const auto delivery = DeliveryKind(name)) {
+    const auto fault = CheckDelivery(name);
+    return Tell(name, *delivery, fault ? std::vector<Fault>{*fault} : std::vector<Fault>(),
+                kUnusable);
+  }
+  // Results that are read by people and pages alone.
+  if (what.starts_with("the ") || what.find("wellgyro") != what.npos) {
+    fmt::print("{}: {}\n", name, what);
+    return kDone;
+  }
   const Result<SurveyTable> table = ReadSurvey(name);
   if (!table) {
     fmt::print("{}: {}, not one of wellgyro's nor a survey it reads\n  {}\n", name, what,
@@ -106,8 +117,13 @@ int CheckForeign(const std::string& name, const std::string& what) {
     return kUnusable;
   }
   const std::size_t rows = table->rows();
-  fmt::print("{}: {}, a survey of {} stations from MD {:.2f} to {:.2f} m, whole\n", name, what,
-             rows, rows > 0 ? table->md(0) : 0, rows > 0 ? table->md(rows - 1) : 0);
+  const bool ends = std::none_of(
+      table->head.notes.begin(), table->head.notes.end(),
+      [](const std::string& note) { return note.find("where the table ends") != note.npos; });
+  fmt::print("{}: {}, a survey of {} stations from MD {:.2f} to {:.2f} m{}\n", name, what, rows,
+             rows > 0 ? table->md(0) : 0, rows > 0 ? table->md(rows - 1) : 0,
+             ends ? ", whole" : "");
+  for (const std::string& note : table->head.notes) fmt::print("  {}\n", note);
   return kDone;
 }
 

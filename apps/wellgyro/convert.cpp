@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/bus/log_tables.h"
 #include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/sensor/file_kind.h"
 
@@ -22,10 +24,12 @@ namespace {
 
 struct ConvertOptions {
   std::string in, out, from, to, units, north, azimuth_reference, depth_unit, datum;
-  std::string well, declination_source, declination_date;
+  std::string well, trajectory, decimal, declination_source, declination_date;
   std::vector<std::string> columns;
   std::optional<double> convergence_deg, declination_deg, datum_elevation_m, section_azimuth_deg;
+  std::optional<double> latitude_deg, longitude_deg;
   bool preamble = false, variable_step = false, derived = false, keep = false;
+  bool strict = false, as_listed = false;
 };
 
 std::optional<North> NorthOf(const std::string& word) {
@@ -57,6 +61,9 @@ std::optional<SurveyFormat> FormatByName(const std::string& name) {
   if (ending == ".dev") return SurveyFormat::kPetrel;
   if (ending == ".txt") return SurveyFormat::kCompass;
   if (ending == ".json") return SurveyFormat::kOsdu;
+  if (ending == ".geojson") return SurveyFormat::kGeoJson;
+  if (ending == ".kml") return SurveyFormat::kKml;
+  if (ending == ".gpkg") return SurveyFormat::kGeoPackage;
   return std::nullopt;
 }
 
@@ -78,6 +85,11 @@ ReadOptions ReadingOf(const ConvertOptions& o) {
   reading.declination_date = o.declination_date;
   reading.datum = o.datum;
   reading.datum_elevation = o.datum_elevation_m;
+  reading.well = o.well;
+  reading.latitude = Radians(o.latitude_deg);
+  reading.longitude = Radians(o.longitude_deg);
+  reading.trajectory = o.trajectory;
+  if (!o.decimal.empty()) reading.decimal_comma = o.decimal == "comma";
   return reading;
 }
 
@@ -85,9 +97,33 @@ void Prepare(SurveyTable& table, const ConvertOptions& o) {
   if (!o.well.empty()) table.head.names.well = o.well;
   if (const auto azimuth = Radians(o.section_azimuth_deg)) table.head.section_azimuth = azimuth;
   if (!o.keep) FillPositions(table);
-  if (const auto north = NorthOf(o.north)) TurnTo(table, *north);
-  if (const auto unit = LengthOf(o.units)) SetUnits(table, *unit);
+  if (o.as_listed) SumAsListed(table);
+  const auto north = NorthOf(o.north);
+  const auto unit = LengthOf(o.units);
+  // What is computed anew has no more digits than make sense.
+  const bool turned = north && (*north != table.head.azimuth.north || *north != table.head.offsets);
+  const bool rescaled = unit && *unit != table.head.md_unit;
+  if (north) TurnTo(table, *north);
+  if (unit) SetUnits(table, *unit);
   if (o.derived) FillDerived(table);
+  if (turned || rescaled) table = Rounded(table);
+  SayDeparture(table);
+}
+
+/// Says what the format cannot hold, in the file too where that may have remarks; true where
+/// --strict forbids to write.
+bool Loses(SurveyTable& table, SurveyFormat format, const ConvertOptions& o,
+           const WriteOptions& writing) {
+  const std::vector<std::string> losses = LossesOf(table, format, writing);
+  for (const std::string& loss : losses) {
+    Complain(fmt::format("{}: {}: {}", o.out, o.strict ? "refused" : "note", loss));
+    const std::string remark = "not in this file, " + loss;
+    auto& remarks = table.head.remarks;
+    if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end()) {
+      remarks.push_back(remark);
+    }
+  }
+  return o.strict && !losses.empty();
 }
 
 /// An LCM log into tables of samples and of depths, OUT and beside it OUT's stem with .depth.csv.
@@ -129,11 +165,13 @@ int Convert(const ConvertOptions& o) {
       Complain(table.fault());
       return kUnusable;
     }
+    for (const std::string& note : table->head.notes) Complain(o.in + ": note: " + note);
     Prepare(*table, o);
-    const OutputFile file{
-        std::filesystem::path(o.out).filename().string(),
-        WriteSurvey(*table, *format, {.preamble = o.preamble, .variable_step = o.variable_step})};
-    if (const auto fault = WriteFiles(std::filesystem::path(o.out).parent_path(), {&file, 1})) {
+    const WriteOptions writing{.preamble = o.preamble, .variable_step = o.variable_step};
+    if (Loses(*table, *format, o, writing)) return kUnusable;
+    const auto files =
+        SurveyFiles(*table, *format, std::filesystem::path(o.out).filename().string(), writing);
+    if (const auto fault = WriteFiles(std::filesystem::path(o.out).parent_path(), files)) {
       Complain(*fault);
       return kUnusable;
     }
@@ -148,9 +186,11 @@ void AddReading(CLI::App& command, ConvertOptions& o) {
   command.add_option("--from", o.from, "Format of IN, where its first lines do not tell");
   command.add_option("--columns", o.columns, "Columns of a table: MD=1 or INC=Neigung ...")
       ->delimiter(',');
-  command.add_option("--depth-unit", o.depth_unit, "Unit of IN's depths, where it does not say")
+  command.add_option("--depth-unit", o.depth_unit, "Unit of IN's depths; wins over what it says")
       ->check(CLI::IsMember({"m", "ft", "ftUS"}));
-  command.add_option("--azimuth-reference", o.azimuth_reference, "North of IN's azimuths")
+  command
+      .add_option("--azimuth-reference", o.azimuth_reference,
+                  "North of IN's azimuths; wins over what it says")
       ->check(CLI::IsMember({"true", "grid", "magnetic"}));
   command.add_option("--convergence-deg", o.convergence_deg, "True less grid azimuth");
   command.add_option("--declination-deg", o.declination_deg, "True less magnetic azimuth");
@@ -158,13 +198,18 @@ void AddReading(CLI::App& command, ConvertOptions& o) {
   command.add_option("--declination-date", o.declination_date, "Day it holds for, YYYY-MM-DD");
   command.add_option("--datum", o.datum, "Name of the depth datum, as RT");
   command.add_option("--datum-elevation-m", o.datum_elevation_m, "Above mean sea level");
-  command.add_option("--well", o.well, "Name of the well");
+  command.add_option("--latitude-deg", o.latitude_deg, "Of the well head, on WGS 84");
+  command.add_option("--longitude-deg", o.longitude_deg, "Of the well head, on WGS 84");
+  command.add_option("--well", o.well, "Name of the well; which, where IN has several");
+  command.add_option("--trajectory", o.trajectory, "Name or uid, where IN has several");
+  command.add_option("--decimal", o.decimal, "What a comma inside IN's numbers is, where unclear")
+      ->check(CLI::IsMember({"comma", "point"}));
 }
 
 void AddWriting(CLI::App& command, ConvertOptions& o) {
   command.add_option("--to", o.to, "Format of OUT, where its name does not tell")
-      ->check(
-          CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu"}));
+      ->check(CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass",
+                             "osdu", "geojson", "kml", "gpkg"}));
   command.add_option("--units", o.units, "Units of OUT; those of IN unless given")
       ->check(CLI::IsMember({"metric", "field"}));
   command.add_option("--north", o.north, "Turn azimuths, offsets and covariances to this north")
@@ -172,6 +217,9 @@ void AddWriting(CLI::App& command, ConvertOptions& o) {
   command.add_option("--section-azimuth-deg", o.section_azimuth_deg, "Plane of vertical section");
   command.add_flag("--derived", o.derived, "Add closure, TVD sub-sea and vertical section");
   command.add_flag("--as-it-is", o.keep, "Do not sum positions where IN has none");
+  command.add_flag("--as-listed", o.as_listed,
+                   "Sum positions afresh from the listed stations alone");
+  command.add_flag("--strict", o.strict, "Refuse where OUT cannot hold all that IN says");
   command.add_flag("--preamble", o.preamble, "CSV: lines of '# key: value' before the header");
   command.add_flag("--variable-step", o.variable_step, "LAS: step 0 even where depths are even");
 }
@@ -187,8 +235,10 @@ void AddConvert(CLI::App& app, int& exit_code) {
   AddReading(*command, *options);
   AddWriting(*command, *options);
   command->footer(
-      "Formats: csv, las, p717, witsml (1.4.1.1), witsml21, petrel, compass, osdu; by the ending\n"
-      "of OUT .csv .las .p717 .xml .dev .txt .json. WITSML 2.0 is read too.\n"
+      "Formats: csv, las, p717, witsml (1.4.1.1), witsml21, petrel, compass, osdu, geojson, kml,\n"
+      "gpkg; by the ending of OUT .csv .las .p717 .xml .dev .txt .json .geojson .kml .gpkg. "
+      "WITSML\n"
+      "2.0 is read too; osdu, geojson, kml and gpkg are only written.\n"
       "Example: wellgyro convert survey.csv survey.las\n"
       "         wellgyro convert raw.txt well.xml --columns MD[ft]=1,INC=2,AZI=3 \\\n"
       "             --azimuth-reference grid --well A-1\n"

@@ -1,10 +1,16 @@
 #include "wellgyro/io/atomic_file.h"
 
+#include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "support/scratch.h"
 
@@ -49,6 +55,72 @@ TEST(WriteFiles, ATargetThatIsAFolderIsAFault) {
   scratch.Write("x.csv/inside", "");
   const std::vector<OutputFile> files{{"x.csv", "new"}};
   EXPECT_TRUE(WriteFiles(scratch.path(), files));
+  EXPECT_EQ(FilesIn(scratch.path()), 1u);
+}
+
+TEST(WriteFiles, LinksAreFollowedAndModesKept) {
+  const support::Scratch scratch;
+  scratch.Write("real/x.csv", "old");
+  const auto real = scratch.path() / "real" / "x.csv";
+  std::filesystem::permissions(real, std::filesystem::perms(0640));
+  std::filesystem::create_symlink(real, scratch.path() / "link.csv");
+  const std::vector<OutputFile> files{{"link.csv", "new"}};
+  EXPECT_FALSE(WriteFiles(scratch.path(), files));
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch.path() / "link.csv"));
+  EXPECT_EQ(scratch.Read("real/x.csv"), "new");
+  EXPECT_EQ(std::filesystem::status(real).permissions(), std::filesystem::perms(0640));
+  EXPECT_EQ(FilesIn(scratch.path() / "real"), 1u);
+}
+
+TEST(WriteFiles, PipesAreWrittenTo) {
+  const support::Scratch scratch;
+  const std::string pipe = (scratch.path() / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  const std::vector<OutputFile> files{{"pipe", "bytes"}};
+  EXPECT_FALSE(WriteFiles(scratch.path(), files));
+  char heard[8] = {};
+  EXPECT_EQ(::read(reader, heard, sizeof heard), 5);
+  EXPECT_STREQ(heard, "bytes");
+  ::close(reader);
+  EXPECT_EQ(FilesIn(scratch.path()), 1u);
+}
+
+TEST(WriteFiles, AFullDiskChangesNothing) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const support::Scratch scratch;
+  std::filesystem::create_symlink("/dev/full", scratch.path() / "x.csv");
+  const std::vector<OutputFile> files{{"x.csv", "bytes"}};
+  const auto fault = WriteFiles(scratch.path(), files);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->code, FaultCode::kIo);
+}
+
+// Killed 200 times while it writes: the file holds one of the two texts, whole, and the next run
+// leaves nothing beside it.
+TEST(WriteFiles, KilledWhileWriting) {
+  const support::Scratch scratch;
+  const std::vector<OutputFile> one{{"x.csv", std::string(300'000, '1')}};
+  const std::vector<OutputFile> two{{"x.csv", std::string(200'000, '2')}};
+  ASSERT_FALSE(WriteFiles(scratch.path(), one));
+  int leftovers = 0;
+  for (int k = 0; k < 200; ++k) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      for (;;) {
+        WriteFiles(scratch.path(), two);
+        WriteFiles(scratch.path(), one);
+      }
+    }
+    ::usleep(static_cast<useconds_t>(300 + 37 * k));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    const std::string text = scratch.Read("x.csv");
+    ASSERT_TRUE(text == one[0].bytes || text == two[0].bytes) << text.size();
+    leftovers += FilesIn(scratch.path()) > 1 ? 1 : 0;
+  }
+  std::printf("200 kills, %d of them left a temporary file\n", leftovers);
+  ASSERT_FALSE(WriteFiles(scratch.path(), one));
   EXPECT_EQ(FilesIn(scratch.path()), 1u);
 }
 

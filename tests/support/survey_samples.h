@@ -9,6 +9,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/record/survey_table.h"
+#include "wellgyro/trajectory/minimum_curvature.h"
 
 namespace wellgyro::support {
 
@@ -65,22 +66,33 @@ inline SurveyTable FullSurvey(LengthUnit unit = LengthUnit::kMetre) {
   const double f = unit == LengthUnit::kMetre ? 1 : units::kFoot;
   const double f2 = f * f;
   const double dls = unit == LengthUnit::kMetre ? units::kDegPer30m : units::kDegPer100ft;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  double severity = 0;
   for (int i = 0; i < 7; ++i) {
     const std::size_t r = t.Add(30 * i * f, (0.1 + 2.35 * i) * units::kDeg,
                                 std::fmod(358.5 + 1.1 * i, 360) * units::kDeg,
                                 i == 0 ? RowStatus::kTieIn : RowStatus::kSurveyed);
-    const double x = i * 1.37;
-    t.Set(Column::kTvd, r, (29.9 * i + 0.0123) * f);
-    t.Set(Column::kNorth, r, (x - 4.4321) * f);
-    t.Set(Column::kEast, r, (-0.7 * x + 0.1) * f);
-    t.Set(Column::kNorthing, r, (6625015.54 + x) * f);
-    t.Set(Column::kEasting, r, (427710.69 - x) * f);
-    t.Set(Column::kDown, r, (29.9 * i - 25.2877) * f);
+    if (i > 0) {
+      const auto tangent = [&](std::size_t row) {
+        const double s = std::sin(t.inclination(row));
+        return Eigen::Vector3d(s * std::cos(t.azimuth(row)), s * std::sin(t.azimuth(row)),
+                               std::cos(t.inclination(row)));
+      };
+      const auto leg = MinimumCurvatureLeg(30 * f, tangent(r - 1), tangent(r));
+      at += leg->displacement / f;
+      severity = std::round(leg->dogleg / (30 * f) / dls * 1e4) / 1e4 * dls;
+    }
+    t.Set(Column::kTvd, r, (at.z() + 0.0123) * f);
+    t.Set(Column::kNorth, r, (at.x() - 4.4321) * f);
+    t.Set(Column::kEast, r, (at.y() + 0.1) * f);
+    t.Set(Column::kNorthing, r, (6625015.54 + at.x()) * f);
+    t.Set(Column::kEasting, r, (427710.69 + at.y()) * f);
+    t.Set(Column::kDown, r, (at.z() - 25.2877) * f);
     t.Set(Column::kLatitude, r, (59.7553 + 1e-6 * i) * units::kDeg);
     t.Set(Column::kLongitude, r, (1.71347417 - 1e-6 * i) * units::kDeg);
-    t.Set(Column::kDogleg, r, (i == 0 ? 0 : 2.4567) * dls);
+    t.Set(Column::kDogleg, r, severity);
     t.Set(Column::kToolface, r, (10.0 + i) * units::kDeg);
-    t.Set(Column::kVerticalSection, r, (x + 0.001) * f);
+    t.Set(Column::kVerticalSection, r, (at.x() + 0.001) * f);
     t.Set(Column::kVarNN, r, (0.0025 + 0.001 * i) * f2);
     t.Set(Column::kCovNE, r, (-0.000125 * i) * f2);
     t.Set(Column::kCovNV, r, 1e-7 * f2);

@@ -1,6 +1,8 @@
 #include "wellgyro/io/atomic_file.h"
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstddef>
 #include <set>
 #include <string_view>
@@ -32,10 +34,47 @@ std::optional<Fault> WriteAll(int file, std::string_view bytes, const std::files
   return std::nullopt;
 }
 
-// A whole file under its temporary name, removed again unless it is put in place.
+// Where a name leads: what replaces a link is to be in the link's place.
+std::filesystem::path Followed(const std::filesystem::path& name) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(name, error)) return name;
+  const std::filesystem::path real = std::filesystem::weakly_canonical(name, error);
+  return error ? name : real;
+}
+
+// What a killed program left of writing `target`: temporary names of processes that are no more.
+void RemoveLeftovers(const std::filesystem::path& target) {
+  const std::filesystem::path folder =
+      target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+  const std::string start = fmt::format(".{}.", target.filename().string());
+  std::error_code error;
+  std::vector<std::filesystem::path> left;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(start) || !name.ends_with(".partial")) continue;
+    const std::string number = name.substr(start.size(), name.size() - start.size() - 8);
+    int process = 0;
+    const auto [rest, wrong] =
+        std::from_chars(number.data(), number.data() + number.size(), process);
+    const bool whole = wrong == std::errc() && rest == number.data() + number.size();
+    if (whole && process > 0 && ::kill(process, 0) != 0 && errno == ESRCH) {
+      left.push_back(it->path());
+    }
+  }
+  for (const std::filesystem::path& each : left) ::unlink(each.c_str());
+}
+
+// A whole file under its temporary name, removed again unless it is put in place. A target that is
+// no regular file, such as a pipe, is written to as it is.
 class Partial {
  public:
-  explicit Partial(std::filesystem::path target) : target_(std::move(target)) {
+  explicit Partial(const std::filesystem::path& name) : target_(Followed(name)) {
+    struct stat status {};
+    exists_ = ::stat(target_.c_str(), &status) == 0;
+    mode_ = status.st_mode;
+    if (direct()) return;
+    RemoveLeftovers(target_);
     temporary_ = target_.parent_path() /
                  fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid());
   }
@@ -46,22 +85,34 @@ class Partial {
   Partial(Partial&& other) noexcept
       : target_(std::move(other.target_)),
         temporary_(std::exchange(other.temporary_, {})),
-        file_(std::exchange(other.file_, -1)) {}
+        file_(std::exchange(other.file_, -1)),
+        mode_(other.mode_),
+        exists_(other.exists_) {}
   Partial& operator=(Partial&&) = delete;
 
   std::optional<Fault> Write(std::string_view bytes) {
+    if (direct()) {
+      file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+      if (file_ < 0) return Refused(target_, "open it to write", errno);
+      return WriteAll(file_, bytes, target_);
+    }
+    // What may not be written may not be replaced either.
+    if (exists_ && ::access(target_.c_str(), W_OK) != 0) return Refused(target_, "write", errno);
     file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (file_ < 0) return Refused(target_, "make a file beside it", errno);
+    if (exists_ && ::fchmod(file_, mode_ & 07777) != 0)
+      return Refused(target_, "keep its mode", errno);
     return WriteAll(file_, bytes, target_);
   }
 
   std::optional<Fault> Sync() {
-    if (::fsync(file_) != 0) return Refused(target_, "write to disk", errno);
+    if (!direct() && ::fsync(file_) != 0) return Refused(target_, "write to disk", errno);
     if (::close(std::exchange(file_, -1)) != 0) return Refused(target_, "close", errno);
     return std::nullopt;
   }
 
   std::optional<Fault> PutInPlace() {
+    if (direct()) return std::nullopt;
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
       return Refused(target_, "put the new file in place", errno);
     }
@@ -70,8 +121,12 @@ class Partial {
   }
 
  private:
+  bool direct() const { return exists_ && !S_ISREG(mode_) && !S_ISDIR(mode_); }
+
   std::filesystem::path target_, temporary_;
   int file_ = -1;
+  mode_t mode_ = 0;
+  bool exists_ = false;
 };
 
 // So that the renames themselves survive a loss of power. Some file systems know no such thing.

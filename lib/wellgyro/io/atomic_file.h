@@ -18,7 +18,9 @@ struct OutputFile {
 
 /// Writes `files` into `folder`, which is made if need be, so that at every moment each name holds
 /// either its old or its whole new bytes: temporary files first, on disk, then renamed in the given
-/// order. Nothing is renamed when one cannot be written. Gives the Fault, if any.
+/// order. Nothing is renamed when one cannot be written. Links are followed, modes kept, pipes and
+/// devices written to as they are; temporary files that a killed process left of the same names are
+/// removed. Gives the Fault, if any.
 WELLGYRO_EXPORT std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
                                                 std::span<const OutputFile> files);
 

@@ -111,6 +111,7 @@ struct SurveyHead {
   std::vector<SurveyRun> runs;
   std::vector<GyroRawRecord> gyro_raw;
   std::vector<std::string> remarks;
+  std::vector<std::string> notes;  ///< what reading the file settled, changed or could not check
 };
 
 }  // namespace wellgyro

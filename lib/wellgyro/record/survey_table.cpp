@@ -1,5 +1,6 @@
 #include "wellgyro/record/survey_table.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -37,6 +38,27 @@ void SurveyTable::Drop(Column column) {
   const auto c = static_cast<std::size_t>(column);
   values_[c].clear();
   known_[c].clear();
+}
+
+void SurveyTable::Clear(Column column, std::size_t row) {
+  const auto c = static_cast<std::size_t>(column);
+  if (row < known_[c].size()) known_[c][row] = false;
+}
+
+void SurveyTable::Reverse() {
+  std::reverse(status_.begin(), status_.end());
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    if (values_[c].empty()) continue;
+    values_[c].resize(rows());
+    known_[c].resize(rows());
+    std::reverse(values_[c].begin(), values_[c].end());
+    std::reverse(known_[c].begin(), known_[c].end());
+  }
+  for (std::vector<std::string>& texts : texts_) {
+    if (texts.empty()) continue;
+    texts.resize(rows());
+    std::reverse(texts.begin(), texts.end());
+  }
 }
 
 std::optional<double> SurveyTable::Get(Column column, std::size_t row) const {

@@ -106,6 +106,10 @@ class WELLGYRO_EXPORT SurveyTable {
   void SetStatus(std::size_t row, RowStatus status) { status_[row] = status; }
   /// Takes a column away.
   void Drop(Column column);
+  /// Takes one value away.
+  void Clear(Column column, std::size_t row);
+  /// Turns the order of the rows round.
+  void Reverse();
 
   std::optional<double> Get(Column column, std::size_t row) const;
   const std::string& Get(TextColumn column, std::size_t row) const;  ///< empty where absent

@@ -91,7 +91,13 @@ TEST(CsvSurvey, LineEndsMarksAndEncodings) {
       Read("\xEF\xBB\xBFMD[m],INC[deg],AZI_TRUE[deg],COMMENT\r\n0,0,360,\xE6\xF8\r\n");
   EXPECT_EQ(t.azimuth(0), 0);
   EXPECT_EQ(t.Get(TextColumn::kComment, 0), "\xC3\xA6\xC3\xB8");
-  EXPECT_THAT(Refusal(std::string("\xFF\xFEM\0D\0", 6)).text, HasSubstr("UTF-16"));
+  std::string wide = "\xFF\xFE", wide_big = "\xFE\xFF";
+  for (const char c : std::string("MD[m],INC[deg],AZI_TRUE[deg]\r\n0,0,0\r\n30,1,20\r\n")) {
+    wide += {c, '\0'};
+    wide_big += {'\0', c};
+  }
+  EXPECT_EQ(Read(wide).md(1), 30);
+  EXPECT_EQ(Read(wide_big).azimuth(1), 20 * units::kDeg);
   EXPECT_THAT(Refusal(std::string("MD[m],\0INC", 10)).text, HasSubstr("zero byte"));
   EXPECT_THAT(Refusal(std::string(2 << 20, 'x')).text, HasSubstr("mebibyte"));
   EXPECT_EQ(Read("MD[m],INC[deg],AZI_TRUE[deg]\n1,2,3").rows(), 1u);
@@ -103,6 +109,95 @@ TEST(CsvSurvey, WhatIsNotStatedIsAskedFor) {
   EXPECT_EQ(t.head.azimuth.north, North::kUnknown);
   EXPECT_THAT(Refusal("a,b,c\n1,2,3\n").text, HasSubstr("--columns"));
   EXPECT_THAT(Refusal("MD[furlong],INC[deg],AZI[deg]\n1,2,3\n").text, HasSubstr("furlong"));
+}
+
+TEST(CsvSurvey, CommasByWhatTheNumbersShow) {
+  const std::string head = "MD[m]\tINC[deg]\tAZI_TRUE[deg]\n";
+  EXPECT_EQ(Read(head + "0,000\t0\t0\n1,000\t1,5\t2\n").md(1), 1);
+  EXPECT_EQ(Read(head + "0\t0\t0\n1,000\t1.5\t2\n").md(1), 1000);
+  EXPECT_EQ(Read(head + "990\t0\t0\n1,000.5\t1\t2\n").md(1), 1000.5);
+  EXPECT_THAT(Refusal(head + "0\t0\t0\n1,000\t1\t2\n").text, HasSubstr("--decimal"));
+  EXPECT_EQ(Read(head + "0\t0\t0\n1,000\t1\t2\n", {.decimal_comma = true}).md(1), 1);
+  EXPECT_EQ(Read("MD[ft];INC;AZI_TRUE\n9,990;1.5;2\n10,000;1.5;2\n").md(1), 10000 * units::kFoot);
+  EXPECT_EQ(Read("MD[m],INC,AZI_TRUE\n\"990.0\",\"1.5\",\"2\"\n\"1,010.5\",1,2\n").md(1), 1010.5);
+}
+
+TEST(CsvSurvey, NumbersThatStandForNothing) {
+  const SurveyTable t =
+      Read("MD[m],INC,AZM\n0,0,-999.25\n30,1,20\n60,-999.25,20\n90,2,9999\n120,2,40\n120,2,40\n",
+           {.north = North::kTrue});
+  ASSERT_EQ(t.rows(), 4u);
+  EXPECT_EQ(t.azimuth(0), 20 * units::kDeg);
+  EXPECT_EQ(t.status(0), RowStatus::kSurveyed);
+  EXPECT_EQ(t.status(2), RowStatus::kAzimuthInterpolated);
+  EXPECT_NEAR(t.azimuth(2), (20 + 20 * 2.0 / 3) * units::kDeg, 1e-12);
+  EXPECT_THAT(t.head.notes, testing::Contains(HasSubstr("no azimuth at MD 90.00 m")));
+  EXPECT_THAT(t.head.notes, testing::Contains(HasSubstr("without inclination")));
+  EXPECT_THAT(t.head.notes, testing::Contains(HasSubstr("there twice")));
+  EXPECT_THAT(Refusal("MD[m],INC,AZI\n0,1,-999\n30,1,-999\n").text, HasSubstr("azimuth"));
+}
+
+// AZM is any azimuth.
+TEST(CsvSurvey, NorthOfAColumnIsOnlyWhatItSays) {
+  EXPECT_EQ(Read("MD[m],INC,AZM\n0,0,0\n30,1,2\n").head.azimuth.north, North::kUnknown);
+}
+
+TEST(CsvSurvey, FromTheBottomUp) {
+  const SurveyTable t = Read("MD[m],INC,AZI_TRUE,COMMENT\n60,2,20,c\n30,1,10,\n0,0,0,a\n");
+  EXPECT_EQ(t.md(0), 0);
+  EXPECT_EQ(t.Get(TextColumn::kComment, 0), "a");
+  EXPECT_EQ(t.azimuth(2), 20 * units::kDeg);
+  EXPECT_THAT(t.head.notes, testing::Contains(HasSubstr("turned round")));
+  EXPECT_EQ(Refusal("MD[m],INC,AZI_TRUE\n60,2,20\n30,1,10\n45,0,0\n").code, FaultCode::kOrder);
+}
+
+TEST(CsvSurvey, SeveralWellsInOneFile) {
+  const std::string text =
+      "WELL,MD[m],INC,AZI_TRUE\nA-1,0,0,0\nA-1,30,1,10\nA-2,0,0,0\nA-2,45,2,20\nA-2,60,2,20\n";
+  EXPECT_THAT(Refusal(text).text, HasSubstr("A-1, A-2; say which by --well"));
+  const SurveyTable t = Read(text, {.well = "A-2"});
+  EXPECT_EQ(t.rows(), 3u);
+  EXPECT_EQ(t.head.names.well, "A-2");
+  EXPECT_THAT(Refusal(text, {.well = "A-3"}).text, HasSubstr("A-1, A-2"));
+}
+
+TEST(CsvSurvey, HeadingsInSeveralLines) {
+  const SurveyTable t = Read(
+      "Company:   Nobody             Local Co-ordinate Reference:   Well A-1\n"
+      "Well:      A-1                TVD Reference:                 RT @ 82.0ft\n"
+      "Wellbore:  A-1 A              North Reference:               Grid\n\n"
+      "Measured                          Vertical\n"
+      " Depth     Inclination  Azimuth    Depth      +N/-S      +E/-W\n"
+      "  (ft)         (deg)      (deg)     (ft)       (ft)       (ft)\n"
+      "     0.0        0.00       0.00       0.0       0.0        0.0\n"
+      "   100.0        2.00      90.00     100.0       0.0        1.7\n"
+      "   200.0        4.00      90.00     199.8       0.0        7.0\n");
+  ASSERT_EQ(t.rows(), 3u);
+  EXPECT_EQ(t.md(1), 100 * units::kFoot);
+  EXPECT_EQ(t.Get(Column::kEast, 2), 7 * units::kFoot);
+  EXPECT_EQ(t.Get(Column::kTvd, 2), 199.8 * units::kFoot);
+  EXPECT_EQ(t.head.azimuth.north, North::kGrid);
+  EXPECT_EQ(t.head.names.well, "A-1");
+  EXPECT_EQ(t.head.names.wellbore, "A-1 A");
+  EXPECT_NEAR(*t.head.datum_elevation, 82 * units::kFoot, 1e-12);
+}
+
+TEST(CsvSurvey, TvdFromAnotherDatumThanMd) {
+  const SurveyTable t = Read(
+      "Well: A\nNorth Reference: True\nMD Reference: RT @ 25m above MSL\n"
+      "TVD Reference: Mean Sea Level\n\n MD Inc Azi TVD\n (m) (deg) (deg) (m)\n"
+      " 0 0 0 -25\n 30 0 0 5\n 60 0 0 35\n");
+  EXPECT_EQ(t.Get(Column::kTvd, 2), 60);
+  EXPECT_THAT(t.head.notes, testing::Contains(HasSubstr("Mean Sea Level")));
+}
+
+// North and east stay as the file has them where it has no TVD.
+TEST(CsvSurvey, OffsetsWithoutTvdAreKept) {
+  SurveyTable t = Read("MD[m],INC,AZI_TRUE,N[m],E[m]\n0,0,0,10,20\n30,4,90,10,21.05\n");
+  ASSERT_TRUE(FillPositions(t));
+  EXPECT_EQ(t.Get(Column::kNorth, 1), 10);
+  EXPECT_EQ(t.Get(Column::kEast, 1), 21.05);
+  EXPECT_NEAR(*t.Get(Column::kTvd, 1), 29.976, 1e-3);
 }
 
 TEST(CsvSurvey, FaultsNameTheLine) {
@@ -124,7 +219,7 @@ TEST(CsvSurvey, OurOwnSurveyIsOneOfThem) {
   b.md = 30;
   b.inclination = 0.1;
   b.azimuth = 6.2;
-  b.p_WT_W = {1, 2, 29.9};
+  b.p_WT_W = {1.493, -0.1245, 29.95};
   b.quality = Quality::kGap;
   b.cov_p_WT_W.diagonal() << 1, 2, 3;
   const Station stations[] = {a, b};

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -110,31 +111,52 @@ TEST(Exchange, NorthIsNeverGuessed) {
   EXPECT_THROW(WriteSurvey(FullSurvey(), SurveyFormat::kWitsml20), std::invalid_argument);
 }
 
-TEST(Exchange, OptionsAndFileMayNotContradict) {
+TEST(Exchange, OptionsWinWithANote) {
   const std::string text = WriteSurvey(FullSurvey(), SurveyFormat::kLas);
-  EXPECT_FALSE(ParseSurvey(text, "x", {.north = North::kTrue}));
-  EXPECT_FALSE(ParseSurvey(text, "x", {.depth_unit = LengthUnit::kFoot}));
-  EXPECT_FALSE(ParseSurvey(text, "x", {.convergence = 0.3}));
+  const SurveyTable turned = Reread(text, {.convergence = 0.3});
+  EXPECT_EQ(turned.head.azimuth.convergence, 0.3);
+  EXPECT_THAT(turned.head.notes, testing::Contains(HasSubstr("convergence is taken as told")));
   EXPECT_TRUE(ParseSurvey(text, "x", {.depth_unit = LengthUnit::kMetre, .north = North::kGrid}));
+  // Depths in feet would contradict the positions, which are said to be in metres too; not those.
+  const std::string bare = "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n100,1,2\n";
+  const SurveyTable feet = Reread(bare, {.depth_unit = LengthUnit::kFoot, .north = North::kGrid});
+  EXPECT_EQ(feet.md(1), 100 * units::kFoot);
+  EXPECT_EQ(feet.head.azimuth.north, North::kGrid);
+  EXPECT_THAT(feet.head.notes, testing::Contains(HasSubstr("though the file says m")));
+  EXPECT_THAT(feet.head.notes, testing::Contains(HasSubstr("though the file says true")));
 }
 
-// Every prefix of a file is read right, as far as it goes, or refused; nothing crashes.
-TEST(Exchange, FilesCutShortAreRefusedOrShorter) {
+// A file of ours that is cut at any byte is refused, or, where the format has no place to say how
+// long it is, taken with the word that its end could not be seen.
+TEST(Exchange, ACutAtEvery97thByteIsTold) {
+  const WriteOptions preamble{.preamble = true};
+  int cuts = 0, told = 0;
   for (const SurveyFormat format : kReadable) {
-    const SurveyTable full = FullSurvey();
-    const std::string text = WriteSurvey(full, format);
-    int shorter = 0;
-    for (std::size_t size = 0; size < text.size(); size += 7) {
-      const auto table = ParseSurvey(std::string_view(text).substr(0, size), "cut");
-      if (!table) continue;
-      ++shorter;
-      EXPECT_LE(table->rows(), full.rows());
-      for (std::size_t row = 0; row + 1 < table->rows(); ++row) {
-        EXPECT_EQ(table->md(row), full.md(row)) << WordOf(format) << " " << size;
+    for (const bool with : {false, true}) {
+      const std::string text = WriteSurvey(FullSurvey(), format, with ? preamble : WriteOptions{});
+      for (std::size_t size = 0; size < text.size(); size += 97) {
+        const auto table = ParseSurvey(std::string_view(text).substr(0, size), "cut");
+        ++cuts;
+        if (!table) continue;
+        ++told;
+        EXPECT_THAT(table->head.notes, testing::Contains(HasSubstr("where the table ends")))
+            << WordOf(format) << " " << size;
       }
     }
-    const bool xml = format == SurveyFormat::kWitsml1411 || format == SurveyFormat::kWitsml21;
-    EXPECT_EQ(shorter == 0, xml) << WordOf(format);
+  }
+  std::printf("%d cuts: %d refused, %d told by a note\n", cuts, cuts - told, told);
+}
+
+TEST(Exchange, WhatWasChangedSinceIsTold) {
+  for (const SurveyFormat format :
+       {SurveyFormat::kLas, SurveyFormat::kP717, SurveyFormat::kPetrel, SurveyFormat::kCompass}) {
+    std::string text = WriteSurvey(FullSurvey(), format);
+    const auto whole = ParseSurvey(text, "whole");
+    ASSERT_TRUE(whole);
+    EXPECT_THAT(whole->head.notes, testing::Not(testing::Contains(HasSubstr("was changed"))));
+    text.insert(text.find("358.5"), 1, ' ');
+    const auto table = ParseSurvey(text, "changed");
+    if (table) EXPECT_THAT(table->head.notes, testing::Contains(HasSubstr("was changed")));
   }
 }
 

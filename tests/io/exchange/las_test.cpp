@@ -45,9 +45,9 @@ TEST(Las, CurvesByMnemonicInAnyOrder) {
 }
 
 TEST(Las, WrappedRows) {
-  const auto t = ParseSurvey(Las("0\n1 0 50\n0\n20 350\n2.5 52 19\n", "0", "20", "YES"), "text");
+  const auto t = ParseSurvey(Las("0\n1 0 50\n0\n20 350\n2.5 52 6.09\n", "0", "20", "YES"), "text");
   ASSERT_TRUE(t) << t.fault().text;
-  EXPECT_EQ(t->Get(Column::kTvd, 1), 19);
+  EXPECT_EQ(t->Get(Column::kTvd, 1), 6.09);
   EXPECT_THAT(Refusal(Las("0\n1 0 50\n0\n20 350\n", "0", "20", "YES")).text,
               HasSubstr("cut short"));
 }
@@ -62,6 +62,21 @@ TEST(Las, FaultsNameTheLine) {
   EXPECT_THAT(Refusal("~V\nnonsense\n").text, HasSubstr("MNEM.UNIT"));
 }
 
+TEST(Las, WithoutUnitsBracketsOrColons) {
+  const std::string head = "~V\n VERS. 2.0\n WRAP. NO\n~W\n STRT. 30\n STOP. 0\n STEP. -30\n";
+  const std::string curves = "~C\n DEPT. \n DEVI. \n AZIM. \n~A\n30 2 100\n0 0 0\n";
+  EXPECT_THAT(Refusal(head + curves).text, HasSubstr("--depth-unit"));
+  const auto t = ParseSurvey(head + curves, "text", {.depth_unit = LengthUnit::kFoot});
+  ASSERT_TRUE(t) << t.fault().text;
+  // A log from the bottom up is turned round.
+  EXPECT_EQ(t->md(0), 0);
+  EXPECT_EQ(t->md(1), 30 * units::kFoot);
+  const auto brackets = ParseSurvey(
+      head + "~C\n DEPT.[M] \n DEVI.[deg] \n AZIM.[deg] \n~A\n30 2 100\n0 0 0\n", "text");
+  ASSERT_TRUE(brackets) << brackets.fault().text;
+  EXPECT_EQ(brackets->md(1), 30);
+}
+
 TEST(Las, StepIsFixedWhereDepthsAreEven) {
   SurveyTable t = support::FullSurvey();
   EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas), testing::ContainsRegex("STEP +\\.M +30 :"));
@@ -74,12 +89,12 @@ TEST(Las, StepIsFixedWhereDepthsAreEven) {
 TEST(Las, NoColonInDataAndNoNullThatIsANumber) {
   SurveyTable t = support::FullSurvey();
   t.head.names.well = "A:1\nB";
-  t.Set(Column::kNorth, 2, -999.25);
+  t.Set(Column::kVerticalSection, 2, -999.25);
   const std::string text = WriteSurvey(t, SurveyFormat::kLas);
   const auto back = ParseSurvey(text, "text");
   ASSERT_TRUE(back) << back.fault().text;
   EXPECT_EQ(back->head.names.well, "A 1 B");
-  EXPECT_EQ(back->Get(Column::kNorth, 2), -999.25);
+  EXPECT_EQ(back->Get(Column::kVerticalSection, 2), -999.25);
 }
 
 }  // namespace

@@ -41,6 +41,23 @@ TEST(Witsml, UnitsAreEachElementsOwn) {
   EXPECT_EQ(t->head.datum, "KB");
 }
 
+TEST(Witsml, SeveralTrajectoriesAndStationsWithoutAzimuth) {
+  const auto one = [](const std::string& name) {
+    return "<trajectory uid=\"u-" + name + "\"><name>" + name +
+           "</name><aziRef>true north</aziRef>" + Station("0") +
+           "<trajectoryStation><md uom=\"ft\">50</md><incl uom=\"dega\">2</incl>"
+           "</trajectoryStation>" +
+           Station("100") + "</trajectory>";
+  };
+  const std::string text = "<trajectorys>" + one("A") + one("B") + "</trajectorys>";
+  EXPECT_THAT(Refusal(text).text, HasSubstr("A, B; say which by --trajectory"));
+  const auto t = ParseSurvey(text, "text", {.trajectory = "u-B"});
+  ASSERT_TRUE(t) << t.fault().text;
+  EXPECT_EQ(t->head.names.survey, "B");
+  EXPECT_EQ(t->status(1), RowStatus::kAzimuthInterpolated);
+  EXPECT_NEAR(t->azimuth(1), 0.5, 1e-12);
+}
+
 TEST(Witsml, Version2WithPrefixesAndSigma) {
   const std::string text =
       "<w:Trajectory xmlns:w=\"w\" xmlns:eml=\"e\" schemaVersion=\"2.1\" uuid=\"u\">"
@@ -49,7 +66,7 @@ TEST(Witsml, Version2WithPrefixesAndSigma) {
       "uom=\"ft[US]\">10</eml:MeasuredDepth>"
       "</eml:Md><w:TypeTrajStation>tie in point</w:TypeTrajStation>"
       "<w:Tvd><eml:VerticalDepth uom=\"m\">3</eml:VerticalDepth></w:Tvd>"
-      "<w:Incl uom=\"dega\">2</w:Incl><w:Azi uom=\"dega\">400</w:Azi>"
+      "<w:Incl uom=\"dega\">2</w:Incl><w:Azi uom=\"dega\">-320</w:Azi>"
       "<w:Dls uom=\"0.01 dega/ft\">3</w:Dls>"
       "<w:MatrixCov><w:VarianceNN uom=\"m2\">8</w:VarianceNN><w:Sigma>2</w:Sigma></w:MatrixCov>"
       "</w:TrajectoryStation><w:AziRef>grid north</w:AziRef></w:Trajectory>";

@@ -31,7 +31,6 @@ PREAMBLE = """# tool: gyroscopic inertial
 MORE = {"GTF[deg]": (10, 1.5), "VAR_NN[m2]": (0.0025, 0.001), "COV_NE[m2]": (1e-4, -1e-5),
         "COV_NV[m2]": (0, 1e-6), "VAR_EE[m2]": (0.003, 0.001), "COV_EV[m2]": (0, -1e-6),
         "VAR_VV[m2]": (0.01, 0.0), "SIG_INC[deg]": (0.05, 0.0), "SIG_AZI[deg]": (0.3, 0.01),
-        "NORTHING[m]": (6625015.54, 1.25), "EASTING[m]": (427710.69, -0.5),
         "LAT[deg]": (59.7553, 1e-5), "LON[deg]": (1.7134, 0), "GRAVITY[m/s2]": (9.81229, 0),
         "GRAVITY_REF[m/s2]": (9.81234, 0), "EARTH_RATE[deg/h]": (15.02, 0.001),
         "TEMP[degC]": (20, 0.5), "BUILD[deg/30m]": (0.1, 0), "UTC[s]": (1768457520, 300)}
@@ -74,9 +73,11 @@ class Interop(unittest.TestCase):
         """Stations with everything else that a format may hold, so that readers meet all of it."""
         with open(cls.Path(name), "w", encoding="utf-8") as file:
             file.write(PREAMBLE + "MD[m],INC[deg],AZI_GRID[deg]," + ",".join(MORE) +
-                       ",KIND,QUALITY,COMMENT,STATUS\n")
+                       ",NORTHING[m],EASTING[m],KIND,QUALITY,COMMENT,STATUS\n")
+            places = Positions(stations)
             for i, (md, inc, azi) in enumerate(stations):
                 more = ",".join(str(value + slope * i) for value, slope in MORE.values())
+                more += f",{6625015.54 + places[i][0]},{427710.69 + places[i][1]}"
                 kind = ("tie_in", "tie_in") if i == 0 else ("continuous", "surveyed")
                 file.write(f"{md},{inc},{azi % 360},{more},{kind[0]},moved+gap,"
                            f"\"a, b & <c>\",{kind[1]}\n")
@@ -179,6 +180,103 @@ class Interop(unittest.TestCase):
         self.Same([[s.md.measured_depth.value, s.incl.value, s.azi.value, s.disp_ns.value,
                     s.disp_ew.value, s.tvd.vertical_depth.value]
                    for s in trajectory.trajectory_station])
+
+    def Heads(self):
+        """Files with awkward heads: lengths, blanks, letters, dates, missing parts."""
+        names = ("\u00d8-1 H", "\u00c6-1 H", "A" * 70, "well " * 30, "6507/7-A-42: 10:15", "a, b; c",
+                 "<&>\"'", "\u4e95\u6238 1", "")
+        dates = ("", "2026-01-15", "2026-01-15T08:00:00Z", "15 JAN 2026")
+        for i, name in enumerate(names):
+            for date in dates if i < 2 else dates[i % 4:i % 4 + 1]:
+                source = self.Path("head.csv")
+                with open(source, "w", encoding="utf-8") as file:
+                    for key in ("well", "wellbore", "survey", "contractor", "operator", "field",
+                                "datum", "error_model", "job", "uwi", "rig"):
+                        if name:
+                            file.write(f"# {key}: {name}\n")
+                    for key in ("begin", "end", "created"):
+                        if date:
+                            file.write(f"# {key}: {date}\n")
+                    file.write("# datum_elevation_m: 25.3\n# grid_convergence_deg: -1.2\n"
+                               "MD[m],INC[deg],AZI_GRID[deg],LAT[deg],LON[deg]\n0,0,0,59,2\n"
+                               "30,1.5,350,59.0001,2\n60,3,355.25,59.0002,2\n")
+                for units in ("metric", "field"):
+                    yield source, ("--units", units), f"{i} {date} {units}"
+
+    def Plain(self, source, target, *options):
+        path = self.Path(target)
+        done = subprocess.run([PROGRAM, "convert", source, path, *options], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return path
+
+    def test_awkward_heads_are_valid_everywhere(self):
+        import sqlite3
+        from komle.bindings.v1411.write import witsml
+        from xsdata.formats.dataclass.parsers import XmlParser
+        from xsdata.formats.dataclass.parsers.config import ParserConfig
+        from energyml.witsml.v2_1.witsmlv2 import Trajectory
+        import lasio
+        from osdu_models.workproductcomponent.wellbore_trajectory import v1_4_0
+        parser = XmlParser(config=ParserConfig(fail_on_unknown_properties=True,
+                                               fail_on_unknown_attributes=True,
+                                               fail_on_converter_warnings=True))
+        files = 0
+        for source, options, what in self.Heads():
+            with self.subTest(what):
+                with open(self.Plain(source, "h.xml", *options), "rb") as file:
+                    trajectory = witsml.CreateFromDocument(file.read()).trajectory[0]
+                self.assertTrue(trajectory.validateBinding())
+                with open(self.Plain(source, "h21.xml", "--to", "witsml21", *options),
+                          "rb") as file:
+                    two = parser.from_bytes(file.read(), Trajectory)
+                self.assertLessEqual(len(two.citation.title), 256)
+                self.assertTrue(all(e.value.value for e in two.extension_name_value))
+                las = lasio.read(self.Plain(source, "h.las", *options))
+                self.assertEqual(len(las["DEPT"]), 3)
+                with open(self.Plain(source, "h.json", *options), encoding="utf-8") as file:
+                    v1_4_0.Data(**json.load(file)["data"])
+                with open(self.Plain(source, "h.geojson", *options), encoding="utf-8") as file:
+                    self.assertEqual(json.load(file)["features"][0]["geometry"]["type"],
+                                     "LineString")
+                with sqlite3.connect(self.Plain(source, "h.gpkg", *options)) as database:
+                    self.assertEqual(database.execute("PRAGMA integrity_check").fetchone()[0], "ok")
+                    self.assertEqual(database.execute("SELECT count(*) FROM stations").fetchone()[0],
+                                     3)
+                for name in ("h.p717", "h.dev", "h.txt", "h.kml"):
+                    self.Plain(source, name, *options)
+                files += 10
+        print(f"{files} files of awkward heads")
+
+    def test_every_format_to_every_other_and_back(self):
+        """Angles and positions to the last bit, through any two formats."""
+        formats = ("csv", "las", "p717", "witsml", "witsml21", "petrel", "compass")
+        def Rows(path):
+            with open(path, newline="", encoding="utf-8") as file:
+                rows = [r for r in csv.DictReader(line for line in file if line[0] != "#")]
+            return [[r[c] for c in ("MD[m]", "INC[deg]", "AZI_GRID[deg]", "TVD[m]", "N[m]", "E[m]")]
+                    for r in rows]
+        start = self.Convert("survey.csv", "start.csv")
+        want = Rows(start)
+        for first in formats:
+            one = self.Plain(start, "one", "--to", first, "--datum-elevation-m", "25.3",
+                             "--azimuth-reference", "grid", "--convergence-deg", "-1.2345")
+            for second in formats:
+                two = self.Plain(one, "two", "--to", second, "--datum-elevation-m", "25.3")
+                self.assertEqual(Rows(self.Plain(two, "three", "--to", "csv")), want,
+                                 f"{first} {second}")
+
+    def test_maps_by_gdal(self):
+        import shutil
+        if not shutil.which("ogrinfo"):
+            self.skipTest("no GDAL here: apt-get install gdal-bin")
+        for name in ("map.geojson", "map.kml", "map.gpkg"):
+            path = self.Convert("survey.csv", name)
+            seen = subprocess.run(["ogrinfo", "-so", "-al", path], capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(seen.returncode, 0, seen.stderr)
+            self.assertNotIn("ERROR", seen.stderr)
+            self.assertIn("Line String", seen.stdout + "Line String" * ("geojson" in name))
 
     def test_osdu_by_its_models(self):
         from osdu_models.workproductcomponent.wellbore_trajectory import v1_4_0

@@ -31,7 +31,7 @@ constexpr std::array<ColumnInfo, kColumns> kInfo{{
     {C::kClosureAzimuth, Q::kDirection, "CLOSURE_AZI", "CLSRA", "closure azimuth"},
     {C::kAzimuthTrue, Q::kDirection, "AZI_TRUE", "AZT", "azimuth from true north"},
     {C::kAzimuthGrid, Q::kDirection, "AZI_GRID", "AZG", "azimuth from grid north"},
-    {C::kAzimuthMagnetic, Q::kDirection, "AZI_MAG", "AZM", "azimuth from magnetic north"},
+    {C::kAzimuthMagnetic, Q::kDirection, "AZI_MAG", "AZMAG", "azimuth from magnetic north"},
     {C::kVarNN, Q::kArea, "VAR_NN", "VARNN", "variance of north"},
     {C::kCovNE, Q::kArea, "COV_NE", "COVNE", "covariance of north and east"},
     {C::kCovNV, Q::kArea, "COV_NV", "COVNV", "covariance of north and vertical"},

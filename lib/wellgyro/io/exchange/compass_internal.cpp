@@ -2,10 +2,12 @@
 // lines of names and units. There is no published specification; reading goes by the table reader.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/certificate_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -79,7 +81,7 @@ std::string DatumText(const SurveyHead& head) {
 }
 
 std::string HeadText(const SurveyHead& head) {
-  std::string text = "Survey Report\n\n";
+  std::string text = "\n";
   const auto line = [&](std::string_view key, std::string_view value) {
     if (!value.empty()) text += fmt::format("{:<28}{}\n", fmt::format("{}:", key), value);
   };
@@ -98,38 +100,117 @@ std::string HeadText(const SurveyHead& head) {
   line("Map System", head.crs);
   line("Survey Tool", WordOf(head.tool));
   line("Error Model", head.error_model);
+  for (const std::string& remark : head.remarks) {
+    std::string whole = remark;
+    std::replace(whole.begin(), whole.end(), '\n', ' ');
+    line("Remark", whole);
+  }
   return text;
 }
 
 }  // namespace
 
-void TakeReportLine(SurveyHead& head, std::string_view line) {
-  const std::size_t colon = line.find(':');
-  if (colon == std::string_view::npos) return;
-  const std::string_view key = Trim(line.substr(0, colon)), value = Trim(line.substr(colon + 1));
+namespace {
+
+constexpr std::array<std::string_view, 13> kFacts{"North Reference",
+                                                  "Offset Reference",
+                                                  "MD Reference",
+                                                  "TVD Reference",
+                                                  "Survey Calculation Method",
+                                                  "Grid Convergence",
+                                                  "Magnetic Declination",
+                                                  "Vertical Section Azimuth",
+                                                  "Map System",
+                                                  "Survey Tool",
+                                                  "Error Model",
+                                                  "Local Co-ordinate Reference",
+                                                  "Remark"};
+
+// One of the keys of a report's head, at the begin of `text` and followed by a colon.
+std::string_view KeyAt(std::string_view text) {
+  const auto is = [&](std::string_view key) {
+    if (!EqualNoCase(text.substr(0, key.size()), key)) return false;
+    const std::string_view rest = Trim(text.substr(key.size()));
+    return rest.starts_with(':');
+  };
   for (const NameKey& n : kNames) {
-    if (EqualNoCase(key, n.key)) head.names.*n.member = value;
+    if (is(n.key)) return n.key;
   }
-  if (EqualNoCase(key, "North Reference")) {
+  for (const std::string_view key : kFacts) {
+    if (is(key)) return key;
+  }
+  return {};
+}
+
+void TakeTvdDatum(SurveyHead& head, std::string_view value, Claims& claims) {
+  SurveyHead other;
+  TakeDatum(other, value);
+  if (head.datum.empty() && !head.datum_elevation) return TakeDatum(head, value);
+  const bool sea = EqualNoCase(other.datum, "MSL") || EqualNoCase(other.datum, "Mean Sea Level");
+  if (!other.datum_elevation && sea) other.datum_elevation = 0;
+  const bool same_height = head.datum_elevation && other.datum_elevation &&
+                           std::abs(*head.datum_elevation - *other.datum_elevation) < 1e-3;
+  if (same_height || EqualNoCase(other.datum, head.datum)) return;
+  claims.tvd_datum = other.datum.empty() ? std::string(value) : other.datum;
+  claims.tvd_elevation = other.datum_elevation;
+}
+
+void TakeFact(SurveyHead& head, std::string_view key, std::string_view value, Claims& claims) {
+  for (const NameKey& n : kNames) {
+    if (key == n.key) head.names.*n.member = value;
+  }
+  if (key == "North Reference") {
     if (const auto north = NorthOf(value)) head.azimuth.north = *north;
-  } else if (EqualNoCase(key, "Offset Reference")) {
-    if (const auto north = NorthOf(value)) head.offsets = *north;
-  } else if (EqualNoCase(key, "MD Reference") || EqualNoCase(key, "TVD Reference")) {
+  } else if (key == "Offset Reference") {
+    if (const auto north = NorthOf(value)) {
+      head.offsets = *north;
+      claims.offsets_north = true;
+    }
+  } else if (key == "MD Reference") {
     TakeDatum(head, value);
-  } else if (EqualNoCase(key, "Survey Calculation Method")) {
+  } else if (key == "TVD Reference") {
+    TakeTvdDatum(head, value, claims);
+  } else if (key == "Survey Calculation Method") {
     head.method = Lower(value);
-  } else if (EqualNoCase(key, "Grid Convergence")) {
+  } else if (key == "Grid Convergence") {
     head.azimuth.convergence = Degrees(value);
-  } else if (EqualNoCase(key, "Magnetic Declination")) {
+  } else if (key == "Magnetic Declination") {
     head.azimuth.declination = Degrees(value);
-  } else if (EqualNoCase(key, "Vertical Section Azimuth")) {
+  } else if (key == "Vertical Section Azimuth") {
     head.section_azimuth = Degrees(value);
-  } else if (EqualNoCase(key, "Map System")) {
+  } else if (key == "Map System") {
     head.crs = value;
-  } else if (EqualNoCase(key, "Survey Tool")) {
+  } else if (key == "Survey Tool") {
     if (const auto tool = SurveyToolOf(value)) head.tool = *tool;
-  } else if (EqualNoCase(key, "Error Model")) {
+  } else if (key == "Error Model") {
     head.error_model = value;
+  } else if (key == "Remark" && head.remarks.size() < 1000) {
+    head.remarks.emplace_back(value);
+  }
+}
+
+}  // namespace
+
+// Heads stand in one column or in two, side by side: a key begins the line or follows two blanks.
+void TakeReportLine(SurveyHead& head, std::string_view line, Claims& claims) {
+  std::string_view key = KeyAt(line);
+  std::size_t from = 0;
+  while (!key.empty()) {
+    const std::size_t begin = line.find(':', from + key.size()) + 1;
+    std::size_t next = begin;
+    std::string_view next_key;
+    while (next_key.empty() && next < line.size()) {
+      next = line.find_first_of(" \t", next);
+      if (next == std::string_view::npos) break;
+      const std::size_t word = line.find_first_not_of(" \t", next);
+      if (word == std::string_view::npos) break;
+      if (word - next > 1 || line[next] == '\t') next_key = KeyAt(line.substr(word));
+      next = word;
+    }
+    const std::size_t end = next_key.empty() ? line.size() : next;
+    TakeFact(head, key, Trim(line.substr(begin, end - begin)), claims);
+    from = end;
+    key = next_key;
   }
 }
 
@@ -140,20 +221,22 @@ std::string WriteCompass(const SurveyTable& table) {
   std::string names, units;
   for (const NamedColumn& c : kTable) {
     if (!table.Has(c.column)) continue;
-    names += fmt::format(" {:>14}", c.name);
-    units += fmt::format(" {:>14}", "(" + UnitOf(InfoOf(c.column).quantity, head) + ")");
+    names += fmt::format(" {:>18}", c.name);
+    units += fmt::format(" {:>18}", "(" + UnitOf(InfoOf(c.column).quantity, head) + ")");
   }
   text += names + "\n" + units + "\n";
+  std::size_t stations = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!OnPath(table.status(row))) continue;
+    ++stations;
     for (const NamedColumn& c : kTable) {
       if (!table.Has(c.column)) continue;
       const auto value = table.Get(c.column, row);
-      text += fmt::format(" {:>14}", value ? Exact(InfoOf(c.column).quantity, *value, head) : "-");
+      text += fmt::format(" {:>18}", value ? Exact(InfoOf(c.column).quantity, *value, head) : "-");
     }
     text += '\n';
   }
-  return text;
+  return "Survey Report\n" + CertificateText(stations, text) + "\n" + text;
 }
 
 }  // namespace wellgyro

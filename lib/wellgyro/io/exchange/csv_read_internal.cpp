@@ -4,8 +4,9 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/base/units.h"
-#include "wellgyro/io/exchange/headings_internal.h"
+#include "wellgyro/io/exchange/csv_columns_internal.h"
+#include "wellgyro/io/exchange/number_marks_internal.h"
+#include "wellgyro/io/exchange/position_log_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -14,52 +15,69 @@ namespace wellgyro {
 namespace {
 
 constexpr int kMostHeaderLines = 200;
-
-struct CsvColumn {
-  std::optional<Column> column;
-  std::optional<TextColumn> text;
-  bool status = false;
-  Quantity quantity = Quantity::kNumber;
-  double factor = 1;
-  std::string heading;
-};
+constexpr std::size_t kMostRemarks = 1000;
 
 bool IsBlank(const std::vector<std::string>& fields) {
   return std::all_of(fields.begin(), fields.end(), [](const auto& f) { return f.empty(); });
 }
 
-std::optional<double> CellNumber(const std::string& cell, char delimiter) {
-  const auto number = NumberOf(cell);
-  if (number || delimiter == ',') return number;
-  return NumberWithComma(cell);
+bool IsNothing(std::string_view cell) {
+  constexpr std::array<std::string_view, 7> kNothing{"-", "--", "n/a", "na", "nan", "null", "none"};
+  return cell.empty() || std::find(kNothing.begin(), kNothing.end(), Lower(cell)) != kNothing.end();
 }
 
-// Turns lines into a table: preamble, header line, a line of units perhaps, rows, footnotes.
+// Turns lines into a table: preamble, header lines, a line of units perhaps, rows, footnotes.
 class CsvReader {
  public:
-  CsvReader(LineReader& lines, const ReadOptions& options) : lines_(lines), options_(options) {}
+  CsvReader(LineReader& lines, const ReadOptions& options, Claims& claims)
+      : lines_(lines), options_(options), claims_(claims) {}
 
   SurveyTable Read() {
     FindHeader();
-    CheckColumns();
+    if (!claims_.position_log && (!columns_.md || !columns_.inclination || !columns_.azimuth)) {
+      lines_.Complain(FaultCode::kForeign, "depth, inclination and azimuth must each be a column");
+    }
     std::vector<std::string> fields;
     while (NextRecord(fields)) {
       if (IsBlank(fields)) {
         ended_ = true;
       } else if (ended_) {
         TakeFootnote(fields);
-      } else {
+      } else if (!OfAnotherWell(fields)) {
         TakeRow(fields);
       }
     }
-    if (build_.table.rows() == 0) {
-      lines_.Complain(FaultCode::kForeign, "a header without a single station");
-    }
+    Conclude();
     return std::move(build_.table);
   }
 
  private:
   SurveyHead& head() { return build_.table.head; }
+
+  void Conclude() {
+    if (!options_.well.empty() && well_column_ && build_.table.rows() == 0) {
+      lines_.Complain(FaultCode::kForeign, "no row is of well " + options_.well + WellsText());
+    }
+    if (build_.table.rows() == 0) {
+      lines_.Complain(FaultCode::kForeign, "a header without a single station");
+    }
+    if (const auto problem = build_.Finish()) lines_.Complain(problem->code, problem->text);
+    if (claims_.position_log) {
+      if (!claims_.md_unit) {
+        lines_.Complain(FaultCode::kConflict,
+                        "the unit of measured depth is not stated: say "
+                        "--depth-unit m or ft");
+      }
+      const auto problem = BackCalculate(build_.table);
+      if (problem) lines_.Complain(FaultCode::kConflict, *problem);
+    }
+    if (!ended_ && !lines_.certified()) {
+      head().notes.emplace_back("nothing in it says where the table ends: a cut could not be seen");
+    }
+    if (well_column_ && !wells_.empty()) {
+      head().names.well = options_.well.empty() ? wells_.front() : options_.well;
+    }
+  }
 
   // One record, which quotes may carry over several lines.
   bool NextRecord(std::vector<std::string>& fields) {
@@ -86,26 +104,39 @@ class CsvReader {
     std::string_view line;
     while (lines_.number() < kMostHeaderLines && lines_.Next(line)) {
       const std::string_view text = Trim(line);
-      if (text.empty()) continue;
+      if (first_line_.empty()) first_line_ = text.substr(0, 200);
+      if (text.empty()) {
+        above_.clear();
+        continue;
+      }
       if (text.front() == '#') {
         TakePreamble(text.substr(1));
         continue;
       }
-      for (const char delimiter : {',', ';', '\t', ' '}) {
-        const auto fields = SplitQuoted(text.data() == line.data() ? line : text, delimiter);
-        if (fields && IsHeader(*fields)) {
-          delimiter_ = delimiter;
-          TakeHeader(*fields);
-          return;
-        }
-      }
+      if (TakeHeader(line, text)) return;
       if (!options_.columns.empty() && TakeHeaderless(line)) return;
-      TakeReportLine(head(), text);
+      if (TakeHeadingsAbove(line)) return;
+      TakeReportLine(head(), text, claims_);
+      above_.emplace_back(line);
+      if (above_.size() > 3) above_.erase(above_.begin());
     }
     if (lines_.number() == 0) lines_.Complain(FaultCode::kForeign, "this file is empty");
     lines_.Complain(FaultCode::kForeign,
                     "no line names columns for depth, inclination and azimuth: name them with "
-                    "--columns MD=1,INC=2,AZI=3");
+                    "--columns MD=1,INC=2,AZI=3" +
+                        SensorHint());
+  }
+
+  // What samples of sensors should be called, where the first line seems to name some.
+  std::string SensorHint() const {
+    const std::string first = Lower(first_line_);
+    const bool sensors =
+        first.find("gyro") != std::string::npos || first.find("acc") != std::string::npos ||
+        (first.find("time") != std::string::npos && first.find("gx") != first.npos);
+    if (!sensors) return {};
+    return "; a table of samples is for survey --from, with headings TOOL[s] or UTC[us], "
+           "GX[deg/h], "
+           "GY[deg/h], AX[m/s2], AY[m/s2], AZ[m/s2]; units deg/s, rad/s, g and mg serve too";
   }
 
   void TakePreamble(std::string_view line) {
@@ -115,188 +146,97 @@ class CsvReader {
     }
   }
 
-  std::optional<std::size_t> Wanted(const std::string& name,
-                                    const std::vector<std::string>& fields) const {
-    if (const auto number = IntegerOf(name)) {
-      if (*number >= 1 && static_cast<std::size_t>(*number) <= fields.size()) {
-        return static_cast<std::size_t>(*number) - 1;
+  bool TakeHeader(std::string_view line, std::string_view text) {
+    for (const char delimiter : {',', ';', '\t', ' '}) {
+      const auto fields = SplitQuoted(text.data() == line.data() ? line : text, delimiter);
+      if (!fields || std::any_of(fields->begin(), fields->end(),
+                                 [](const auto& f) { return NumberOf(f).has_value(); })) {
+        continue;
       }
-      return std::nullopt;
-    }
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const std::string_view plain = fields[i];
-      if (EqualNoCase(plain, name) ||
-          EqualNoCase(Trim(plain.substr(0, plain.find_first_of("[("))), name)) {
-        return i;
-      }
-    }
-    return std::nullopt;
-  }
-
-  std::vector<Heading> HeadingsOf(const std::vector<std::string>& fields) const {
-    std::vector<Heading> headings;
-    headings.reserve(fields.size());
-    for (const std::string& field : fields) headings.push_back(HeadingOf(field));
-    for (const auto& [canonical, name] : options_.columns) {
-      const Heading want = HeadingOf(canonical);
-      const auto at = Wanted(name, fields);
-      if (!want.column || !at) continue;
-      for (Heading& other : headings) {
-        if (other.column == want.column && other.north == want.north) other.column.reset();
-      }
-      headings[*at].column = want.column;
-      headings[*at].north = want.north;
-      if (!want.unit.empty()) headings[*at].unit = want.unit;
-    }
-    return headings;
-  }
-
-  bool IsHeader(const std::vector<std::string>& fields) const {
-    if (std::any_of(fields.begin(), fields.end(),
-                    [](const auto& f) { return NumberOf(f).has_value(); })) {
-      return false;
-    }
-    bool md = false, inclination = false, azimuth = false;
-    for (const Heading& h : HeadingsOf(fields)) {
-      md = md || h.column == Column::kMd;
-      inclination = inclination || h.column == Column::kInclination;
-      azimuth = azimuth || h.column == Column::kAzimuth;
-    }
-    return md && inclination && azimuth;
-  }
-
-  // No header line at all: columns by number, and the line is the first station.
-  bool TakeHeaderless(std::string_view line) {
-    for (const char delimiter : {'\t', ';', ',', ' '}) {
-      const auto fields = SplitQuoted(line, delimiter);
-      if (!fields || fields->size() < 3) continue;
-      const bool numbers = std::all_of(fields->begin(), fields->end(), [&](const auto& f) {
-        return f.empty() || CellNumber(f, delimiter).has_value();
-      });
-      if (!numbers) continue;
-      for (const auto& [canonical, name] : options_.columns) {
-        if (!IntegerOf(name)) return false;
-      }
+      std::vector<Heading> headings = CsvHeadingsOf(*fields, options_);
+      claims_.position_log = NamePositions(headings);
+      if (!NameStations(headings) && !claims_.position_log) continue;
       delimiter_ = delimiter;
-      MakeColumns(HeadingsOf(std::vector<std::string>(fields->size())), *fields);
-      lines_.Back();
+      TakeUnitLine(headings);
+      MakeColumns(headings);
       return true;
     }
     return false;
   }
 
-  void TakeHeader(const std::vector<std::string>& fields) {
-    std::vector<Heading> headings = HeadingsOf(fields);
-    // A second line may hold the units.
+  // A second line may hold the units.
+  void TakeUnitLine(std::vector<Heading>& headings) {
     std::vector<std::string> next;
-    if (NextRecord(next)) {
-      const bool units =
-          !IsBlank(next) && next.size() <= fields.size() &&
-          std::all_of(next.begin(), next.end(), [](const auto& f) { return !NumberOf(f); }) &&
-          std::any_of(next.begin(), next.end(), [](const auto& f) { return IsUnit(f); });
-      if (units) {
-        for (std::size_t i = 0; i < next.size(); ++i) {
-          const Heading cell = HeadingOf("x" + next[i]);
-          if (headings[i].unit.empty()) headings[i].unit = cell.unit.empty() ? next[i] : cell.unit;
-        }
-      } else {
+    if (!NextRecord(next)) return;
+    const bool units =
+        !IsBlank(next) && next.size() <= headings.size() &&
+        std::all_of(next.begin(), next.end(), [](const auto& f) { return !NumberOf(f); }) &&
+        std::any_of(next.begin(), next.end(), IsCsvUnit);
+    if (!units) return lines_.Back();
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const Heading cell = HeadingOf("x" + next[i]);
+      if (!headings[i].unit.empty() || LettersAndDigits(next[i]).empty()) continue;
+      headings[i].unit = cell.unit.empty() ? next[i] : cell.unit;
+    }
+  }
+
+  bool AreNumbers(const std::vector<std::string>& fields, std::string_view line, char delimiter) {
+    const CommaUse use = CommaUseOf(line, delimiter);
+    std::size_t numbers = 0;
+    for (const std::string& field : fields) {
+      if (IsNothing(TrimCell(field))) continue;
+      if (!NumberIn(field, use == CommaUse::kUnclear ? CommaUse::kDecimal : use)) return false;
+      ++numbers;
+    }
+    return numbers >= 3;
+  }
+
+  // No header line at all: columns by number, and the line is the first station.
+  bool TakeHeaderless(std::string_view line) {
+    for (const auto& [canonical, name] : options_.columns) {
+      if (!IntegerOf(name)) return false;
+    }
+    for (const char delimiter : {'\t', ';', ',', ' '}) {
+      const auto fields = SplitQuoted(line, delimiter);
+      if (!fields || fields->size() < 3 || !AreNumbers(*fields, line, delimiter)) continue;
+      delimiter_ = delimiter;
+      lines_.Back();
+      MakeColumns(CsvHeadingsOf(std::vector<std::string>(fields->size()), options_));
+      return true;
+    }
+    return false;
+  }
+
+  // Headings in several lines, known by the numbers that follow.
+  bool TakeHeadingsAbove(std::string_view line) {
+    if (above_.empty()) return false;
+    for (const char delimiter : {'\t', ';', ',', ' '}) {
+      const auto fields = SplitQuoted(line, delimiter);
+      if (!fields || fields->size() < 3 || !AreNumbers(*fields, line, delimiter)) continue;
+      // The fewest lines that name the columns; more of them may be the end of a head.
+      for (std::size_t from = above_.size(); from-- > 0;) {
+        const std::vector<std::string> lines(above_.begin() + static_cast<std::ptrdiff_t>(from),
+                                             above_.end());
+        const auto headings = MergedHeadings(lines, std::string(line), delimiter, options_);
+        if (!NameStations(headings)) continue;
+        delimiter_ = delimiter;
         lines_.Back();
+        MakeColumns(headings);
+        return true;
       }
     }
-    MakeColumns(headings, fields);
+    return false;
   }
 
-  static bool IsUnit(const std::string& cell) {
-    const Heading h = HeadingOf("x" + cell);
-    const std::string& unit = h.unit.empty() ? cell : h.unit;
-    return LengthUnitOf(unit) || FactorOf(Quantity::kAngle, unit).has_value();
-  }
-
-  void MakeColumns(const std::vector<Heading>& headings, const std::vector<std::string>& names) {
-    // The unit of MD first: others take it over, wherever it stands.
-    for (const Heading& h : headings) {
-      if (h.column != Column::kMd) continue;
-      const auto unit = LengthUnitOf(h.unit);
-      if (!h.unit.empty() && !unit) continue;
-      if (unit || options_.depth_unit) {
-        head().md_unit = unit ? *unit : *options_.depth_unit;
-        md_unit_known_ = true;
-      }
-      break;
+  void MakeColumns(const std::vector<Heading>& headings) {
+    columns_ = CsvColumnsOf(headings, options_, head(), claims_, lines_);
+    for (std::size_t i = 0; i < columns_.all.size(); ++i) {
+      if (columns_.all[i].well && !well_column_) well_column_ = i;
     }
-    for (std::size_t i = 0; i < headings.size(); ++i) {
-      const Heading& h = headings[i];
-      CsvColumn c{.column = h.column, .text = h.text, .status = h.status};
-      c.heading = i < names.size() ? names[i] : std::string();
-      if (c.column) TakeNorth(c, h.north);
-      const bool twice =
-          c.column && std::any_of(columns_.begin(), columns_.end(),
-                                  [&](const auto& o) { return o.column == c.column; });
-      if (twice) c.column.reset();
-      if (c.column) TakeUnit(c, h.unit);
-      columns_.push_back(std::move(c));
-    }
-  }
-
-  // The first azimuth is the table's own; others stand beside it.
-  void TakeNorth(CsvColumn& c, North north) {
-    if (c.column == Column::kAzimuth) {
-      if (!azimuth_seen_) {
-        azimuth_seen_ = true;
-        if (north != North::kUnknown) head().azimuth.north = north;
-        return;
-      }
-      c.column = north == North::kTrue       ? Column::kAzimuthTrue
-                 : north == North::kGrid     ? Column::kAzimuthGrid
-                 : north == North::kMagnetic ? Column::kAzimuthMagnetic
-                                             : std::optional<Column>();
-    }
-    if (c.column == Column::kNorth && north != North::kUnknown) head().offsets = north;
-  }
-
-  void TakeUnit(CsvColumn& c, const std::string& unit) {
-    c.quantity = InfoOf(*c.column).quantity;
-    if (!unit.empty()) {
-      const auto factor = FactorOf(c.quantity, unit);
-      if (!factor) {
-        if (*c.column > Column::kAzimuth) return c.column.reset();
-        lines_.Complain(FaultCode::kSyntax,
-                        fmt::format("'{}' is no unit of {}", unit, InfoOf(*c.column).text));
-      }
-      c.factor = *factor;
-      if (c.column == Column::kNorthing || c.column == Column::kDown) {
-        if (const auto length = LengthUnitOf(unit)) head().grid_unit = *length;
-      }
-      if (c.column == Column::kDogleg) {
-        if (const auto curvature = CurvatureUnitOf(unit)) head().curvature_unit = *curvature;
-      }
-      return;
-    }
-    // Without a unit: angles are degrees, lengths as MD, and curvature could be anything.
-    if (c.quantity == Quantity::kCurvature) c.column.reset();
-    if (c.quantity == Quantity::kAngle || c.quantity == Quantity::kDirection) {
-      c.factor = units::kDeg;
-    }
-    if (c.quantity == Quantity::kLength || c.quantity == Quantity::kGridLength ||
-        c.quantity == Quantity::kArea) {
-      if (c.column != Column::kMd && !md_unit_known_) return c.column.reset();
-      if (c.column == Column::kMd && !md_unit_known_) {
-        lines_.Complain(FaultCode::kSyntax,
-                        "the unit of measured depth is not stated: say --depth-unit m or ft");
-      }
-      c.factor = FactorOf(head().md_unit);
-      if (c.quantity == Quantity::kArea) c.factor *= c.factor;
-    }
-  }
-
-  void CheckColumns() {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i].column == Column::kMd) md_ = i;
-      if (columns_[i].column == Column::kInclination) inclination_ = i;
-      if (columns_[i].column == Column::kAzimuth) azimuth_ = i;
-    }
-    if (!md_ || !inclination_ || !azimuth_) {
-      lines_.Complain(FaultCode::kForeign, "depth, inclination and azimuth must each be a column");
+    if (options_.decimal_comma) {
+      commas_ = *options_.decimal_comma ? CommaUse::kDecimal : CommaUse::kThousands;
+    } else {
+      commas_ = CommaUseOf(lines_.Ahead(), delimiter_);
     }
     if (head().offsets == North::kUnknown) head().offsets = head().azimuth.north;
   }
@@ -309,62 +249,124 @@ class CsvReader {
       }
       if (!field.empty()) text += (text.empty() ? "" : " ") + field;
     }
-    head().remarks.push_back(text);
+    if (head().remarks.size() < kMostRemarks) head().remarks.push_back(text);
   }
 
-  double Needed(const std::vector<std::string>& fields, std::size_t i) {
-    const std::string cell = i < fields.size() ? fields[i] : std::string();
-    const auto number = CellNumber(cell, delimiter_);
-    if (!number) {
-      lines_.Complain(FaultCode::kSyntax, fmt::format("'{}' is not a number", cell.substr(0, 40)),
+  std::string WellsText() const {
+    std::string text = ": the file has";
+    for (const std::string& well : wells_) {
+      text += (well == wells_.front() ? " " : ", ") + well;
+    }
+    return text;
+  }
+
+  // Rows of wells other than the one asked for.
+  bool OfAnotherWell(const std::vector<std::string>& fields) {
+    if (!well_column_ || *well_column_ >= fields.size()) return false;
+    const std::string well(TrimCell(fields[*well_column_]));
+    const bool known = std::find(wells_.begin(), wells_.end(), well) != wells_.end();
+    if (!known && wells_.size() < 20) wells_.push_back(well);
+    if (!options_.well.empty()) return well != options_.well;
+    if (wells_.size() > 1) {
+      std::vector<std::string> more;
+      while (wells_.size() < 20 && NextRecord(more)) {
+        if (*well_column_ >= more.size()) continue;
+        const std::string next(TrimCell(more[*well_column_]));
+        if (next.empty() || std::find(wells_.begin(), wells_.end(), next) != wells_.end()) continue;
+        wells_.push_back(next);
+      }
+      lines_.Complain(FaultCode::kConflict, "several wells in one file" + WellsText().substr(14) +
+                                                "; say which by --well");
+    }
+    return false;
+  }
+
+  std::optional<double> Number(const std::vector<std::string>& fields, std::size_t i) {
+    const std::string_view cell = i < fields.size() ? TrimCell(fields[i]) : std::string_view();
+    const auto number = NumberIn(cell, commas_);
+    if (number) return number;
+    if (commas_ == CommaUse::kUnclear && NumberIn(cell, CommaUse::kDecimal)) {
+      lines_.Complain(FaultCode::kSyntax,
+                      fmt::format("the comma in '{}' may be a decimal one or part thousands: say "
+                                  "--decimal comma or --decimal point",
+                                  cell),
                       static_cast<int>(i) + 1);
     }
-    return ValueOf(columns_[i].quantity, *number, columns_[i].factor);
+    lines_.Complain(FaultCode::kSyntax, fmt::format("'{}' is not a number", cell.substr(0, 40)),
+                    static_cast<int>(i) + 1);
   }
 
-  void TakeRow(const std::vector<std::string>& fields) {
-    if (fields.size() > columns_.size() &&
-        std::any_of(fields.begin() + static_cast<std::ptrdiff_t>(columns_.size()), fields.end(),
-                    [](const auto& f) { return !f.empty(); })) {
-      lines_.Complain(FaultCode::kSyntax, fmt::format("{} fields where the header has {}",
-                                                      fields.size(), columns_.size()));
-    }
+  // A number, or nothing where the cell says so; `i` may lie behind a row that is cut.
+  std::optional<double> Maybe(const std::vector<std::string>& fields, std::size_t i) {
+    if (i < fields.size() && IsNothing(TrimCell(fields[i]))) return std::nullopt;
+    return Number(fields, i);
+  }
+
+  RowStatus StatusIn(const std::vector<std::string>& fields) {
     RowStatus status = RowStatus::kSurveyed;
-    for (std::size_t i = 0; i < std::min(fields.size(), columns_.size()); ++i) {
-      if (!columns_[i].status || fields[i].empty()) continue;
+    for (std::size_t i = 0; i < std::min(fields.size(), columns_.all.size()); ++i) {
+      if (!columns_.all[i].status || fields[i].empty()) continue;
       const auto word = RowStatusOf(fields[i]);
       if (!word) lines_.Complain(FaultCode::kSyntax, "'" + fields[i] + "' is no status");
       status = *word;
     }
-    const auto problem = build_.Add(Needed(fields, *md_), Needed(fields, *inclination_),
-                                    Needed(fields, *azimuth_), status);
-    if (problem) lines_.Complain(problem->code, problem->text);
-    for (std::size_t i = 0; i < std::min(fields.size(), columns_.size()); ++i) {
-      const CsvColumn& c = columns_[i];
-      if (fields[i].empty() || i == *md_ || i == *inclination_ || i == *azimuth_) continue;
-      if (c.text) build_.Set(*c.text, fields[i]);
-      if (c.column && !IsNothing(fields[i])) build_.Set(*c.column, Needed(fields, i));
+    return status;
+  }
+
+  void CheckWidth(const std::vector<std::string>& fields) {
+    if (fields.size() <= columns_.all.size()) return;
+    if (std::any_of(fields.begin() + static_cast<std::ptrdiff_t>(columns_.all.size()), fields.end(),
+                    [](const auto& f) { return !f.empty(); })) {
+      lines_.Complain(FaultCode::kSyntax, fmt::format("{} fields where the header has {}",
+                                                      fields.size(), columns_.all.size()));
     }
   }
 
-  static bool IsNothing(const std::string& cell) {
-    constexpr std::array<std::string_view, 6> kNothing{"-", "--", "n/a", "na", "nan", "null"};
-    return std::find(kNothing.begin(), kNothing.end(), Lower(cell)) != kNothing.end();
+  void TakeRow(const std::vector<std::string>& fields) {
+    CheckWidth(fields);
+    const std::vector<CsvColumn>& all = columns_.all;
+    std::optional<double> inclination, azimuth;
+    if (claims_.position_log) {
+      inclination = azimuth = 0;  // until they are computed
+    } else {
+      inclination = Maybe(fields, *columns_.inclination);
+      azimuth = Maybe(fields, *columns_.azimuth);
+      if (inclination) inclination = InclinationOf(*inclination, all[*columns_.inclination].factor);
+      if (azimuth) azimuth = AzimuthOf(*azimuth, all[*columns_.azimuth].factor);
+    }
+    const auto problem = build_.Add(*Number(fields, *columns_.md) * all[*columns_.md].factor,
+                                    inclination, azimuth, StatusIn(fields));
+    if (problem) lines_.Complain(problem->code, problem->text);
+    for (std::size_t i = 0; i < std::min(fields.size(), all.size()); ++i) {
+      const CsvColumn& c = all[i];
+      const bool attitude = c.column && *c.column <= Column::kAzimuth;
+      if (fields[i].empty() || attitude) continue;
+      if (c.text) build_.Set(*c.text, fields[i]);
+      if (!c.column || IsNothing(TrimCell(fields[i]))) continue;
+      const double number = *Number(fields, i);
+      // What stands for nothing among positions, the positions' own witness tells.
+      if (*c.column > Column::kTvdSubSea && StandsForNothing(number)) continue;
+      build_.Set(*c.column, ValueOf(c.quantity, number, c.factor));
+    }
   }
 
   LineReader& lines_;
   const ReadOptions& options_;
+  Claims& claims_;
   TableBuilder build_;
-  std::vector<CsvColumn> columns_;
-  std::optional<std::size_t> md_, inclination_, azimuth_;
+  CsvColumns columns_;
+  std::vector<std::string> above_, wells_;
+  std::string first_line_;
+  std::optional<std::size_t> well_column_;
   char delimiter_ = ',';
-  bool azimuth_seen_ = false, md_unit_known_ = false, ended_ = false;
+  CommaUse commas_ = CommaUse::kNone;
+  bool ended_ = false;
 };
 
 }  // namespace
 
-SurveyTable ReadCsv(LineReader& lines, const ReadOptions& options) {
-  return CsvReader(lines, options).Read();
+SurveyTable ReadCsv(LineReader& lines, const ReadOptions& options, Claims& claims) {
+  return CsvReader(lines, options, claims).Read();
 }
 
 }  // namespace wellgyro

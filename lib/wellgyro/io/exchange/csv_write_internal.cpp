@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/exchange/certificate_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -109,7 +110,10 @@ std::string WriteCsv(const SurveyTable& table, const WriteOptions& options) {
     if (status) text += "," + std::string(WordOf(table.status(row)));
     text += '\n';
   }
-  return text;
+  // An empty line ends the table: without it a cut between two rows could not be seen.
+  text += '\n';
+  if (!options.preamble) return text;
+  return "# " + CertificateText(table.rows(), text) + "\n" + text;
 }
 
 }  // namespace wellgyro

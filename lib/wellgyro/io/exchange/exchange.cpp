@@ -1,16 +1,21 @@
 #include "wellgyro/io/exchange/exchange.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/exchange/geo_path_internal.h"
 #include "wellgyro/io/exchange/survey_tables.h"
+#include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
+#include "wellgyro/io/exchange/witness_internal.h"
 #include "wellgyro/io/text_file.h"
 
 namespace wellgyro {
@@ -30,12 +35,21 @@ constexpr std::array kFormats{
     FormatName{SurveyFormat::kPetrel, "petrel", ".dev"},
     FormatName{SurveyFormat::kCompass, "compass", ".txt"},
     FormatName{SurveyFormat::kOsdu, "osdu", ".osdu.json"},
+    FormatName{SurveyFormat::kGeoJson, "geojson", ".geojson"},
+    FormatName{SurveyFormat::kKml, "kml", ".kml"},
+    FormatName{SurveyFormat::kGeoPackage, "gpkg", ".gpkg"},
 };
 
 constexpr std::int64_t kMostXml = std::int64_t{1} << 28;
 
 // By its first bytes: formats that are not told by them are tables.
 SurveyFormat Recognised(std::string_view head) {
+  std::string plain;
+  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) {
+    std::copy_if(head.begin() + 2, head.end(), std::back_inserter(plain),
+                 [](char c) { return c != '\0'; });
+    head = plain;
+  }
   if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
   while (!head.empty() && static_cast<unsigned char>(head.front()) <= ' ') head.remove_prefix(1);
   if (head.starts_with('<')) return SurveyFormat::kWitsml1411;
@@ -50,16 +64,13 @@ SurveyFormat Recognised(std::string_view head) {
   return head.starts_with('~') ? SurveyFormat::kLas : SurveyFormat::kCsv;
 }
 
-void Conflict(const std::string& source, std::string_view what) {
-  throw TextError{{.code = FaultCode::kConflict,
-                   .text = fmt::format("the file says another {} than the options do", what),
-                   .source = source}};
-}
-
-void TakeOver(std::optional<double>& value, const std::optional<double>& option,
-              const std::string& source, std::string_view what) {
+// What an option says holds against what the file says, with a note where they differ.
+void TakeOver(SurveyHead& head, std::optional<double>& value, const std::optional<double>& option,
+              std::string_view what) {
   if (!option) return;
-  if (value && std::abs(*value - *option) > 1e-9) Conflict(source, what);
+  if (value && std::abs(*value - *option) > 1e-9) {
+    head.notes.push_back(fmt::format("the {} is taken as told, not as the file says", what));
+  }
   value = option;
 }
 
@@ -67,39 +78,105 @@ void TakeOver(std::string& value, const std::string& option) {
   if (!option.empty()) value = option;
 }
 
-void Apply(SurveyTable& table, const ReadOptions& options, const std::string& source) {
-  SurveyHead& head = table.head;
-  if (options.north) {
-    if (head.azimuth.north != North::kUnknown && head.azimuth.north != *options.north) {
-      Conflict(source, "north");
-    }
-    head.azimuth.north = *options.north;
-    if (head.offsets == North::kUnknown) head.offsets = *options.north;
+void TakeNorth(SurveyHead& head, North north, const Claims& claims) {
+  const North said = head.azimuth.north;
+  if (said != North::kUnknown && said != north) {
+    head.notes.push_back(
+        fmt::format("azimuths are taken from {} north as told, though the file "
+                    "says {}",
+                    WordOf(north), WordOf(said)));
   }
-  if (options.depth_unit && head.md_unit != *options.depth_unit) Conflict(source, "unit of depth");
-  TakeOver(head.azimuth.convergence, options.convergence, source, "convergence");
-  TakeOver(head.azimuth.declination, options.declination, source, "declination");
-  TakeOver(head.datum_elevation, options.datum_elevation, source, "elevation of the datum");
+  head.azimuth.north = north;
+  if (!claims.offsets_north) head.offsets = north;
+}
+
+// Formats that always say their unit of depth were read by it.
+void TakeDepthUnit(SurveyTable& table, LengthUnit unit) {
+  SurveyHead& head = table.head;
+  if (head.md_unit == unit) return;
+  head.notes.push_back(fmt::format("depths are taken in {} as told, though the file says {}",
+                                   WordOf(unit), WordOf(head.md_unit)));
+  const double factor = FactorOf(unit) / FactorOf(head.md_unit);
+  for (const ColumnInfo& info : AllColumns()) {
+    if (info.quantity != Quantity::kLength) continue;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      if (const auto value = table.Get(info.column, row)) {
+        table.Set(info.column, row, *value * factor);
+      }
+    }
+  }
+  head.md_unit = unit;
+}
+
+// TVD from another datum than MD, as a head says it, from that of MD.
+void SettleTvdDatum(SurveyTable& table, const Claims& claims, const std::string& source) {
+  SurveyHead& head = table.head;
+  if (claims.tvd_datum.empty() || !table.Has(Column::kTvd)) return;
+  if (!head.datum_elevation || !claims.tvd_elevation) {
+    throw TextError{{.code = FaultCode::kConflict,
+                     .text = fmt::format("TVD counts from {}, MD from {}: say --datum-elevation-m",
+                                         claims.tvd_datum, head.datum),
+                     .source = source}};
+  }
+  const double shift = *head.datum_elevation - *claims.tvd_elevation;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto tvd = table.Get(Column::kTvd, row);
+    if (tvd) table.Set(Column::kTvd, row, *tvd + shift);
+  }
+  head.notes.push_back(
+      fmt::format("TVD counts from {} in the file; here from {}, {:.2f} m above it",
+                  claims.tvd_datum, head.datum, shift));
+}
+
+void Apply(SurveyTable& table, const ReadOptions& options, const Claims& claims,
+           const std::string& source) {
+  SurveyHead& head = table.head;
+  if (options.north) TakeNorth(head, *options.north, claims);
+  if (options.depth_unit) TakeDepthUnit(table, *options.depth_unit);
+  TakeOver(head, head.azimuth.convergence, options.convergence, "convergence");
+  TakeOver(head, head.azimuth.declination, options.declination, "declination");
+  TakeOver(head, head.datum_elevation, options.datum_elevation, "elevation of the datum");
   TakeOver(head.azimuth.declination_source, options.declination_source);
   TakeOver(head.azimuth.declination_date, options.declination_date);
   TakeOver(head.datum, options.datum);
+  if (options.latitude && options.longitude) {
+    head.objects.insert(head.objects.begin(), {.number = static_cast<int>(head.objects.size()) + 1,
+                                               .kind = "WRP",
+                                               .name = head.names.well,
+                                               .latitude_wgs84 = options.latitude,
+                                               .longitude_wgs84 = options.longitude});
+  }
+  SettleTvdDatum(table, claims, source);
+  Witness(table, claims, source);
 }
 
-SurveyTable ReadStream(std::istream& bytes, const std::string& source, SurveyFormat format,
-                       const ReadOptions& options) {
-  LineReader lines(bytes, source);
+SurveyTable ReadLines(LineReader& lines, SurveyFormat format, const ReadOptions& options,
+                      Claims& claims) {
   switch (format) {
     case SurveyFormat::kLas:
-      return ReadLas(lines, options);
+      return ReadLas(lines, options, claims);
     case SurveyFormat::kP717:
       return ReadP717(lines);
     case SurveyFormat::kPetrel:
-      return ReadPetrel(lines);
+      return ReadPetrel(lines, options, claims);
     case SurveyFormat::kOsdu:
       lines.Complain(FaultCode::kForeign, "an OSDU manifest holds no stations: read its CSV");
+    case SurveyFormat::kGeoJson:
+    case SurveyFormat::kKml:
+    case SurveyFormat::kGeoPackage:
+      lines.Complain(FaultCode::kForeign, "a map of a survey is written, not read");
     default:
-      return ReadCsv(lines, options);
+      return ReadCsv(lines, options, claims);
   }
+}
+
+SurveyTable ReadStream(std::istream& bytes, const std::string& source, SurveyFormat format,
+                       const ReadOptions& options, Claims& claims) {
+  LineReader lines(bytes, source);
+  SurveyTable table = ReadLines(lines, format, options, claims);
+  const std::string changed = lines.CheckCertificate();
+  if (!changed.empty()) table.head.notes.push_back(changed);
+  return table;
 }
 
 bool IsXml(SurveyFormat format) {
@@ -129,13 +206,15 @@ Result<SurveyTable> ParseSurvey(std::string_view text, const std::string& source
   try {
     const SurveyFormat format = options.format.value_or(Recognised(text));
     SurveyTable table;
+    Claims claims;
     if (IsXml(format)) {
-      table = ReadWitsml(std::string(text), source);
+      table = IsEdm(text) ? ReadEdm(std::string(text), source, options)
+                          : ReadWitsml(std::string(text), source, options);
     } else {
       std::istringstream bytes{std::string(text)};
-      table = ReadStream(bytes, source, format, options);
+      table = ReadStream(bytes, source, format, options, claims);
     }
-    Apply(table, options, source);
+    Apply(table, options, claims, source);
     return table;
   } catch (const TextError& error) {
     return error.fault;
@@ -155,8 +234,9 @@ Result<SurveyTable> ReadSurvey(const std::filesystem::path& path, const ReadOpti
   }
   try {
     std::ifstream bytes(path, std::ios::binary);
-    SurveyTable table = ReadStream(bytes, path.string(), format, options);
-    Apply(table, options, path.string());
+    Claims claims;
+    SurveyTable table = ReadStream(bytes, path.string(), format, options, claims);
+    Apply(table, options, claims, path.string());
     return table;
   } catch (const TextError& error) {
     return error.fault;
@@ -183,18 +263,48 @@ std::string WriteSurvey(const SurveyTable& table, SurveyFormat format,
     case SurveyFormat::kCompass:
       return WriteCompass(table);
     case SurveyFormat::kOsdu:
-      return WriteOsdu(table);
+      return WriteOsdu(table, "");
+    case SurveyFormat::kGeoJson:
+      return WriteGeoJson(table);
+    case SurveyFormat::kKml:
+      return WriteKml(table);
+    case SurveyFormat::kGeoPackage:
+      return WriteGeoPackage(table);
   }
   return {};
+}
+
+std::vector<OutputFile> SurveyFiles(const SurveyTable& table, SurveyFormat format,
+                                    const std::string& name, const WriteOptions& options) {
+  if (format != SurveyFormat::kOsdu) return {{name, WriteSurvey(table, format, options)}};
+  const std::string bulk = name.substr(0, name.rfind(".json")) + ".csv";
+  return {{bulk, WriteOsduBulk(table)}, {name, WriteOsdu(table, bulk)}};
+}
+
+void SayDeparture(SurveyTable& table) {
+  constexpr double kRounding = 0.005;  // [m]
+  const auto departure = DepartureFromListed(table);
+  if (!departure || *departure < kRounding) return;
+  const std::string remark = fmt::format(
+      "positions are not the minimum curvature of the listed stations: they part from "
+      "it by up to {:.3f} m",
+      *departure);
+  std::vector<std::string>& remarks = table.head.remarks;
+  if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end()) {
+    remarks.push_back(remark);
+  }
 }
 
 std::vector<OutputFile> ExportFormats(const SurveyTable& table,
                                       std::span<const SurveyFormat> formats,
                                       const std::string& stem) {
-  const SurveyTable rounded = Rounded(table);
+  SurveyTable rounded = Rounded(table);
+  SayDeparture(rounded);
   std::vector<OutputFile> files;
   for (const SurveyFormat format : formats) {
-    files.push_back({FileNameOf(format, stem), WriteSurvey(rounded, format)});
+    for (OutputFile& file : SurveyFiles(rounded, format, FileNameOf(format, stem))) {
+      files.push_back(std::move(file));
+    }
   }
   return files;
 }

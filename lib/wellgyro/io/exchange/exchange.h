@@ -27,16 +27,19 @@ enum class SurveyFormat {
   kPetrel,   ///< "WELL TRACE FROM PETREL"
   kCompass,  ///< text report in the manner of Landmark Compass
   kOsdu,     ///< manifest WellboreTrajectory 1.4.0; write only: its stations go by CSV
+  kGeoJson,  ///< path, stations and 95 % ellipses on WGS 84; write only, as the two below
+  kKml,
+  kGeoPackage,  ///< an SQLite database with the layers path, stations and ellipses
 };
 
-/// csv, las, p717, witsml (1.4.1.1), witsml20, witsml21, petrel, compass, osdu.
+/// csv, las, p717, witsml (1.4.1.1), witsml20, witsml21, petrel, compass, osdu, geojson, kml, gpkg.
 WELLGYRO_EXPORT std::optional<SurveyFormat> SurveyFormatOf(std::string_view word);
 WELLGYRO_EXPORT std::string_view WordOf(SurveyFormat format);
 /// File name for `stem`, as "survey.las" or "survey-1411.xml".
 WELLGYRO_EXPORT std::string FileNameOf(SurveyFormat format, const std::string& stem);
 
-/// What the caller knows and the file may not say. Where both say different things, that is a
-/// Fault.
+/// What the caller knows and the file may not say. Where both say different things, the caller's
+/// holds and the head's notes say so.
 struct ReadOptions {
   std::optional<SurveyFormat> format;  ///< else by the file's own first lines
   /// Columns of a table: canonical name (MD, INC, AZI_TRUE, TVD ...) and the file's heading or its
@@ -48,12 +51,21 @@ struct ReadOptions {
   std::optional<double> declination;  ///< [rad]
   std::string declination_source, declination_date;
   std::string datum;
-  std::optional<double> datum_elevation;  ///< above mean sea level [m]
+  std::optional<double> datum_elevation;      ///< above mean sea level [m]
+  std::string well;                           ///< which, where a file has several
+  std::string trajectory;                     ///< which, by name or uid, where a file has several
+  std::optional<double> latitude, longitude;  ///< of the well head, on WGS 84 [rad]
+  /// Whether commas inside numbers are decimal ones; else as the numbers show it.
+  std::optional<bool> decimal_comma;
 };
 
-/// Reads a survey, as a stream where the format is text by lines. Faults name the file with line
-/// or element: kForeign when it is none of the formats, kSyntax, kRange, kOrder when depth does not
-/// increase, kConflict with the options, kSize beyond 2^27 numbers or, for XML, 2^28 bytes.
+/// Reads a survey, as a stream where the format is text by lines, and holds its positions against
+/// its angles: what the file leaves open (units, norths, datum, axes, method) is settled where
+/// exactly one reading fits. SurveyHead::notes tells what was settled, repaired or could not be
+/// checked. Faults name the file with line or element: kForeign when it is none of the formats,
+/// kSyntax, kRange, kOrder when depth goes both ways, kConflict where numbers contradict what the
+/// file says or several readings fit, with the option that decides, kSize beyond 2^27 numbers or,
+/// for XML, 2^28 bytes.
 WELLGYRO_EXPORT Result<SurveyTable> ReadSurvey(const std::filesystem::path& path,
                                                const ReadOptions& options = {});
 /// The same of text in memory; `source` names it.
@@ -71,6 +83,16 @@ struct WriteOptions {
 /// saying what the format needs and the table lacks; north is never guessed.
 WELLGYRO_EXPORT std::string WriteSurvey(const SurveyTable& table, SurveyFormat format,
                                         const WriteOptions& options = {});
+
+/// The file of a format as `name`, and beside an OSDU manifest the CSV of its stations, whose
+/// columns are called as the manifest says; ready for WriteFiles. Throws as WriteSurvey.
+WELLGYRO_EXPORT std::vector<OutputFile> SurveyFiles(const SurveyTable& table, SurveyFormat format,
+                                                    const std::string& name,
+                                                    const WriteOptions& options = {});
+
+/// Adds a remark where positions part by more than 5 mm from the minimum curvature of the listed
+/// stations.
+WELLGYRO_EXPORT void SayDeparture(SurveyTable& table);
 
 /// A file of each format named after `stem`, ready for WriteFiles: angles to 1e-6 deg, lengths to
 /// 1e-4, as survey.csv has them.

@@ -52,8 +52,20 @@ constexpr std::array kAliases{
     Alias{"azmag", C::kAzimuth, North::kMagnetic},
     Alias{"azmagn", C::kAzimuth, North::kMagnetic},
     Alias{"azimuthmagnetic", C::kAzimuth, North::kMagnetic},
-    Alias{"azm", C::kAzimuth, North::kMagnetic},
+    Alias{"azm", C::kAzimuth},
+    Alias{"azmth", C::kAzimuth},
+    Alias{"drift", C::kInclination},
+    Alias{"driftangle", C::kInclination},
+    Alias{"inclin", C::kInclination},
+    Alias{"holedevi", C::kInclination},
+    Alias{"holeazi", C::kAzimuth},
+    Alias{"azimuthtn", C::kAzimuth, North::kTrue},
+    Alias{"azimuthgn", C::kAzimuth, North::kGrid},
     Alias{"trueverticaldepth", C::kTvd},
+    Alias{"verticaldepth", C::kTvd},
+    Alias{"tvdsubsea", C::kTvdSubSea},
+    Alias{"sstvd", C::kTvdSubSea},
+    Alias{"tvdmsl", C::kTvdSubSea},
     Alias{"tvdzdp", C::kTvd},
     Alias{"north", C::kNorth},
     Alias{"ns", C::kNorth},
@@ -61,6 +73,23 @@ constexpr std::array kAliases{
     Alias{"dispns", C::kNorth},
     Alias{"nsoffset", C::kNorth},
     Alias{"northoffset", C::kNorth},
+    Alias{"dy", C::kNorth},
+    Alias{"yoffset", C::kNorth},
+    Alias{"yoff", C::kNorth},
+    Alias{"dx", C::kEast},
+    Alias{"xoffset", C::kEast},
+    Alias{"xoff", C::kEast},
+    Alias{"deltanorth", C::kNorth},
+    Alias{"deltaeast", C::kEast},
+    Alias{"localnorth", C::kNorth},
+    Alias{"localeast", C::kEast},
+    Alias{"mapn", C::kNorthing},
+    Alias{"mape", C::kEasting},
+    Alias{"ycoord", C::kNorthing},
+    Alias{"xcoord", C::kEasting},
+    Alias{"z", C::kDown},
+    Alias{"y", C::kNorthing},
+    Alias{"x", C::kEasting},
     Alias{"ntrue", C::kNorth, North::kTrue},
     Alias{"ngrid", C::kNorth, North::kGrid},
     Alias{"east", C::kEast},
@@ -94,6 +123,13 @@ constexpr std::array kAliases{
 void NameHeading(Heading& found, std::string_view name) {
   const std::string plain = LettersAndDigits(name);
   found.status = plain == "status";
+  for (const std::string_view well :
+       {"well", "wellname", "wellid", "uwi", "api", "borehole", "wellbore", "boreholename",
+        "wellborename", "wellidentifier", "commonname"}) {
+    found.well = found.well || plain == well;
+  }
+  found.either_axis = plain == "x" || plain == "y" || plain == "dx" || plain == "dy" ||
+                      plain == "xoffset" || plain == "yoffset";
   for (const TextColumnInfo& info : AllTextColumns()) {
     if (plain == LettersAndDigits(info.csv)) found.text = info.column;
   }

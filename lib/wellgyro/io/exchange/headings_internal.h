@@ -13,6 +13,8 @@ struct Heading {
   std::optional<Column> column;
   std::optional<TextColumn> text;
   bool status = false;
+  bool well = false;         ///< names the well of its row
+  bool either_axis = false;  ///< X or Y: which of them is the east must be seen
   std::string unit;
   North north = North::kUnknown;
 };

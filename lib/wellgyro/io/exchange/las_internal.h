@@ -53,4 +53,10 @@ inline constexpr std::array kParameters{
     ParameterKey{"I_END", "", "end", "END OF SURVEY"},
 };
 
+inline constexpr std::string_view kColonLetter = "\xEA\x9E\x89";
+/// LAS 2.0 of 1992 forbids colons in data: they are written as the letter that looks like one,
+/// U+A789, which reading turns back. Line breaks become blanks.
+std::string DataText(std::string_view text);
+std::string FromDataText(std::string_view data);
+
 }  // namespace wellgyro::las

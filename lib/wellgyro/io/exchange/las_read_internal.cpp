@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/headings_internal.h"
 #include "wellgyro/io/exchange/las_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
@@ -21,14 +22,16 @@ struct LasLine {
 
 std::optional<LasLine> HeaderLine(std::string_view line) {
   const std::size_t dot = line.find('.');
-  const std::size_t colon = line.rfind(':');
-  if (dot == std::string_view::npos || colon == std::string_view::npos || colon < dot) {
-    return std::nullopt;
-  }
+  if (dot == std::string_view::npos) return std::nullopt;
+  // Some writers leave the colon out where there is no description.
+  std::size_t colon = line.rfind(':');
+  if (colon == std::string_view::npos || colon < dot) colon = line.size();
   std::string_view rest = line.substr(dot + 1, colon - dot - 1);
   const std::size_t unit_end = std::min(rest.find_first_of(" \t"), rest.size());
-  return LasLine{std::string(Trim(line.substr(0, dot))), std::string(rest.substr(0, unit_end)),
-                 std::string(Trim(rest.substr(unit_end)))};
+  std::string_view unit = rest.substr(0, unit_end);
+  if (unit.starts_with('[') && unit.ends_with(']')) unit = unit.substr(1, unit.size() - 2);
+  return LasLine{std::string(Trim(line.substr(0, dot))), std::string(unit),
+                 las::FromDataText(Trim(rest.substr(unit_end)))};
 }
 
 struct Curve {
@@ -39,7 +42,8 @@ struct Curve {
 
 class LasReader {
  public:
-  LasReader(LineReader& lines, const ReadOptions& options) : lines_(lines), options_(options) {}
+  LasReader(LineReader& lines, const ReadOptions& options, Claims& claims)
+      : lines_(lines), options_(options), claims_(claims) {}
 
   SurveyTable Read() {
     std::string_view line;
@@ -61,6 +65,7 @@ class LasReader {
     if (!pending_.empty()) lines_.Complain(FaultCode::kSyntax, "the last row is cut short");
     if (build_.table.rows() == 0) lines_.Complain(FaultCode::kForeign, "not a single station");
     CheckEnds();
+    if (const auto problem = build_.Finish()) lines_.Complain(problem->code, problem->text);
     return std::move(build_.table);
   }
 
@@ -76,7 +81,7 @@ class LasReader {
   void Header(std::string_view text) {
     const auto line = HeaderLine(text);
     if (section_ == 'O') {
-      head().remarks.emplace_back(text);
+      if (head().remarks.size() < 1000) head().remarks.push_back(las::FromDataText(text));
       return;
     }
     if (!line) lines_.Complain(FaultCode::kSyntax, "no line of the form MNEM.UNIT DATA : TEXT");
@@ -101,6 +106,7 @@ class LasReader {
       null_ = NumberOf(line.data);
     } else if (line.mnemonic == "STRT") {
       start_ = NumberOf(line.data);
+      start_unit_ = line.unit;
     } else if (line.mnemonic == "STOP") {
       stop_ = NumberOf(line.data);
     } else if (line.mnemonic == "STEP") {
@@ -136,18 +142,64 @@ class LasReader {
         heading.column && std::any_of(curves_.begin(), curves_.end(),
                                       [&](const Curve& c) { return c.column == heading.column; });
     if (heading.column && !twice) {
-      curve.quantity = InfoOf(*heading.column).quantity;
-      const auto factor = FactorOf(curve.quantity, line.unit);
-      if (factor) {
-        curve.column = heading.column;
-        curve.factor = *factor;
-        TakeUnits(*heading.column, line.unit);
-      } else if (*heading.column <= Column::kAzimuth) {
-        lines_.Complain(FaultCode::kSyntax, fmt::format("'{}' is no unit of {}", line.unit,
-                                                        InfoOf(*heading.column).text));
-      }
+      TakeCurve(curve, *heading.column, line.unit);
     }
     curves_.push_back(curve);
+  }
+
+  void TakeCurve(Curve& curve, Column column, std::string unit) {
+    curve.quantity = InfoOf(column).quantity;
+    if (unit.empty()) return WithoutUnit(curve, column);
+    auto factor = FactorOf(curve.quantity, unit);
+    if (!factor) {
+      if (column > Column::kAzimuth) return;
+      lines_.Complain(FaultCode::kSyntax,
+                      fmt::format("'{}' is no unit of {}", unit, InfoOf(column).text));
+    }
+    // An option for the unit of depth wins for what stands in the file's unit of depth.
+    const auto length = LengthUnitOf(unit);
+    if (column == Column::kMd) md_unit_ = length;
+    if (options_.depth_unit && curve.quantity == Quantity::kLength && length == md_unit_) {
+      if (column == Column::kMd && length && *length != *options_.depth_unit) {
+        head().notes.push_back(
+            fmt::format("depths are taken in {} as told, though the file says {}",
+                        WordOf(*options_.depth_unit), WordOf(*length)));
+      }
+      factor = FactorOf(*options_.depth_unit);
+      unit = WordOf(*options_.depth_unit);
+    }
+    curve.column = column;
+    curve.factor = *factor;
+    TakeUnits(column, unit);
+  }
+
+  // Angles are degrees; lengths are in the unit of the index, which may be told.
+  void WithoutUnit(Curve& curve, Column column) {
+    curve.column = column;
+    switch (curve.quantity) {
+      case Quantity::kAngle:
+      case Quantity::kDirection:
+        curve.factor = units::kDeg;
+        return;
+      case Quantity::kCurvature:
+        if (column != Column::kDogleg) return curve.column.reset();
+        claims_.curvature_unit = false;
+        curve.factor = units::kDegPer30m;
+        return;
+      case Quantity::kLength:
+      case Quantity::kGridLength:
+        if (column == Column::kMd) {
+          const auto unit = options_.depth_unit ? options_.depth_unit : LengthUnitOf(start_unit_);
+          claims_.md_unit = unit.has_value();
+          if (unit) head().md_unit = head().grid_unit = *unit;
+        } else {
+          claims_.open.push_back(column);
+        }
+        curve.factor = claims_.md_unit ? FactorOf(head().md_unit) : 1;
+        return;
+      default:
+        if (!FactorOf(curve.quantity, "")) curve.column.reset();
+    }
   }
 
   std::optional<Column> AzimuthColumn(North north) {
@@ -216,27 +268,27 @@ class LasReader {
   void Row() {
     last_index_ = pending_.front();
     if (!first_index_) first_index_ = last_index_;
-    std::array<double, 3> station{};
-    bool whole = true;
+    std::optional<double> md, inclination, azimuth;
     for (std::size_t i = 0; i < curves_.size(); ++i) {
       const Curve& c = curves_[i];
-      if (!c.column || *c.column > Column::kAzimuth) continue;
-      whole = whole && !(null_ && pending_[i] == *null_);
-      station[static_cast<std::size_t>(*c.column)] = ValueOf(c.quantity, pending_[i], c.factor);
+      if (!c.column || *c.column > Column::kAzimuth || (null_ && pending_[i] == *null_)) continue;
+      if (c.column == Column::kMd) md = pending_[i] * c.factor;
+      if (c.column == Column::kInclination) inclination = InclinationOf(pending_[i], c.factor);
+      if (c.column == Column::kAzimuth) azimuth = AzimuthOf(pending_[i], c.factor);
     }
     // A log has rows where there was no survey.
-    if (whole) {
-      const auto problem = build_.Add(station[0], station[1], station[2]);
+    if (md && (inclination || azimuth)) {
+      const auto problem = build_.Add(*md, inclination, azimuth);
       if (problem) lines_.Complain(problem->code, problem->text);
-      for (std::size_t i = 0; i < curves_.size(); ++i) {
-        const Curve& c = curves_[i];
-        if (!c.column || *c.column <= Column::kAzimuth || (null_ && pending_[i] == *null_)) {
-          continue;
-        }
-        build_.Set(*c.column, ValueOf(c.quantity, pending_[i], c.factor));
-      }
+      for (std::size_t i = 0; i < curves_.size(); ++i) Keep(curves_[i], pending_[i]);
     }
     pending_.clear();
+  }
+
+  void Keep(const Curve& c, double number) {
+    if (!c.column || *c.column <= Column::kAzimuth || (null_ && number == *null_)) return;
+    if (!null_ && *c.column > Column::kTvdSubSea && StandsForNothing(number)) return;
+    build_.Set(*c.column, ValueOf(c.quantity, number, c.factor));
   }
 
   // A file cut short says so by its own header.
@@ -253,10 +305,13 @@ class LasReader {
 
   LineReader& lines_;
   const ReadOptions& options_;
+  Claims& claims_;
   TableBuilder build_;
   std::vector<Curve> curves_;
   std::vector<double> pending_;
   std::optional<double> null_, start_, stop_, step_, first_index_;
+  std::optional<LengthUnit> md_unit_;
+  std::string start_unit_;
   double last_index_ = 0;
   char section_ = ' ';
   bool wrap_ = false, azimuth_seen_ = false;
@@ -264,8 +319,8 @@ class LasReader {
 
 }  // namespace
 
-SurveyTable ReadLas(LineReader& lines, const ReadOptions& options) {
-  return LasReader(lines, options).Read();
+SurveyTable ReadLas(LineReader& lines, const ReadOptions& options, Claims& claims) {
+  return LasReader(lines, options, claims).Read();
 }
 
 }  // namespace wellgyro

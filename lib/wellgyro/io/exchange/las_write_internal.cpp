@@ -7,21 +7,35 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/exchange/certificate_internal.h"
 #include "wellgyro/io/exchange/las_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 
 namespace wellgyro {
-namespace {
 
-// LAS 2.0 of 1992 forbids colons in data, and a line break would end the line.
-std::string LasData(std::string_view text) {
-  std::string clean(text);
-  for (char& c : clean) {
-    if (c == ':' || c == '\n' || c == '\r') c = ' ';
+std::string las::DataText(std::string_view text) {
+  std::string clean;
+  for (const char c : text) {
+    if (c == ':') {
+      clean += kColonLetter;
+    } else {
+      clean += c == '\n' || c == '\r' ? ' ' : c;
+    }
   }
   return clean;
 }
+
+std::string las::FromDataText(std::string_view data) {
+  std::string text(data);
+  for (std::size_t at = text.find(kColonLetter); at != std::string::npos;
+       at = text.find(kColonLetter, at + 1)) {
+    text.replace(at, kColonLetter.size(), ":");
+  }
+  return text;
+}
+
+namespace {
 
 std::string LasUnit(Quantity quantity, const SurveyHead& head) {
   std::string unit = UnitOf(quantity, head);
@@ -75,7 +89,6 @@ class LasWriter {
   }
 
   std::string Write() {
-    text_ = "~VERSION INFORMATION\n";
     Entry("VERS", "", "2.0", "CWLS LOG ASCII STANDARD - VERSION 2.0");
     Entry("WRAP", "", "NO", "ONE LINE PER DEPTH STEP");
     Well();
@@ -83,14 +96,14 @@ class LasWriter {
     Parameters();
     Other();
     Data();
-    return std::move(text_);
+    return "~VERSION INFORMATION\n# " + CertificateText(rows_.size(), text_) + "\n" + text_;
   }
 
  private:
   void Entry(std::string_view mnemonic, std::string_view unit, std::string_view data,
              std::string_view description) {
     const std::string start = fmt::format(" {:<9}.{:<9}", mnemonic, unit);
-    text_ += fmt::format("{} {:>20} : {}\n", start, LasData(data), LasData(description));
+    text_ += fmt::format("{} {:>20} : {}\n", start, las::DataText(data), description);
   }
 
   void Well() {
@@ -131,7 +144,7 @@ class LasWriter {
   void Other() {
     if (!head_.remarks.empty()) text_ += "~OTHER INFORMATION\n";
     for (const std::string& remark : head_.remarks) {
-      const std::string line = LasData(remark);
+      const std::string line = las::DataText(remark);
       text_ += (line.starts_with('~') || line.starts_with('#') ? " " : "") + line + "\n";
     }
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
@@ -10,6 +12,19 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 18;
 constexpr std::size_t kLongestLine = 1 << 20;
+
+void AppendUtf8(std::string& text, unsigned code) {
+  if (code < 0x80) {
+    text += static_cast<char>(code);
+  } else if (code < 0x800) {
+    text += static_cast<char>(0xC0 | (code >> 6));
+    text += static_cast<char>(0x80 | (code & 0x3F));
+  } else {
+    text += static_cast<char>(0xE0 | (code >> 12));
+    text += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
+    text += static_cast<char>(0x80 | (code & 0x3F));
+  }
+}
 
 }  // namespace
 
@@ -33,7 +48,54 @@ bool LineReader::Fill() {
   const auto got = static_cast<std::size_t>(std::max<std::streamsize>(bytes_.gcount(), 0));
   block_.resize(had + got);
   if (bytes_.bad()) Complain(FaultCode::kIo, "reading this file failed half way");
+  if (encoding_ == Encoding::kUnseen) {
+    encoding_ = block_.starts_with("\xFF\xFE")   ? Encoding::kLittleEndian
+                : block_.starts_with("\xFE\xFF") ? Encoding::kBigEndian
+                                                 : Encoding::kBytes;
+  }
+  if (encoding_ != Encoding::kBytes) Decode(had);
   return got > 0;
+}
+
+// Names beyond the first plane of Unicode are not looked for: their halves become two characters.
+void LineReader::Decode(std::size_t had) {
+  const std::string raw = odd_ + block_.substr(had);
+  block_.resize(had);
+  const bool little = encoding_ == Encoding::kLittleEndian;
+  std::size_t i = 0;
+  for (; i + 1 < raw.size(); i += 2) {
+    const auto a = static_cast<unsigned char>(raw[i]), b = static_cast<unsigned char>(raw[i + 1]);
+    AppendUtf8(block_, little ? a | (b << 8U) : b | (a << 8U));
+  }
+  odd_ = raw.substr(i);
+}
+
+std::string LineReader::Ahead() {
+  if (block_.size() - at_ < kBlock / 2) Fill();
+  return (again_ ? line_ + "\n" : std::string()) + block_.substr(at_);
+}
+
+void LineReader::Count(std::string_view raw) {
+  if (certificate_) {
+    below_.Update(raw);
+    bytes_below_ += static_cast<std::int64_t>(raw.size());
+  } else if (number_ < 100) {
+    certificate_ = CertificateIn(raw);
+  }
+}
+
+std::string LineReader::CheckCertificate() const {
+  if (!certificate_) return {};
+  if (bytes_below_ < certificate_->bytes) {
+    throw TextError{{.code = FaultCode::kSize,
+                     .text = fmt::format("the file is cut: {} of {} bytes, where its head promises "
+                                         "{} stations",
+                                         bytes_below_, certificate_->bytes, certificate_->stations),
+                     .source = source_,
+                     .line = number_}};
+  }
+  if (below_.HexDigest() == certificate_->sha256) return {};
+  return "the file was changed after it was written: its SHA-256 is another than its head says";
 }
 
 bool LineReader::Next(std::string_view& line) {
@@ -57,12 +119,11 @@ bool LineReader::Next(std::string_view& line) {
     end = block_.find('\n', at_ + searched);
   }
   std::string_view raw(block_.data() + at_, end - at_);
-  at_ = std::min(end + 1, block_.size());
+  const std::size_t after = std::min(end + 1, block_.size());
+  Count(std::string_view(block_).substr(at_, after - at_));
+  at_ = after;
   ++number_;
   if (number_ == 1) {
-    if (raw.starts_with("\xFF\xFE") || raw.starts_with("\xFE\xFF")) {
-      Complain(FaultCode::kForeign, "this is UTF-16 text: save it as UTF-8");
-    }
     if (raw.starts_with("\xEF\xBB\xBF")) raw.remove_prefix(3);
   }
   if (raw.ends_with('\r')) raw.remove_suffix(1);

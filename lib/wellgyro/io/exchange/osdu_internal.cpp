@@ -1,30 +1,19 @@
 // OSDU manifest of a WellboreTrajectory, schema 1.4.0. The record holds what the survey is; its
 // stations travel beside it, as CSV with the columns that it lists.
-#include <array>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/geo_path_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
+#include "wellgyro/io/sha256.h"
+#include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
 
-std::string Quoted(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (byte < 0x20) {
-      quoted += fmt::format("\\u{:04x}", byte);
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + '"';
-}
+std::string Quoted(std::string_view text) { return JsonQuoted(text); }
 
 // An identifier's last part: letters, digits and a few signs.
 std::string Key(std::string_view text) {
@@ -82,26 +71,38 @@ class Members {
   std::string text_;
 };
 
-// What the columns of the stations are, which travel beside the record.
-std::string PropertiesOf(const SurveyTable& table, const std::string& unit) {
-  struct Property {
-    Column column;
-    std::string_view type, unit;
-  };
-  const std::string_view dls =
+// A column of the stations, which travel beside the record.
+struct Property {
+  Column column;
+  std::string type, unit;
+};
+std::vector<Property> PropertiesOf(const SurveyTable& table) {
+  const std::string unit = TextOf(table.head.md_unit).key;
+  const std::string area = unit == "m" ? "m2" : unit == "ft" ? "ft2" : "ft%5BUS%5D2";
+  const std::string dls =
       table.head.curvature_unit == CurvatureUnit::kDegPer100ft ? "dega%2F100ft" : "dega%2F30m";
-  const std::array properties{
-      Property{Column::kMd, "MD", unit},
-      Property{Column::kInclination, "Inclination", "dega"},
-      Property{Column::kAzimuth, TextOf(table.head.azimuth.north).azimuth, "dega"},
-      Property{Column::kTvd, "TVD", unit},
-      Property{Column::kEast, "DX", unit},
-      Property{Column::kNorth, "DY", unit},
-      Property{Column::kDogleg, "DLS", dls},
+  std::vector<Property> properties{
+      {Column::kMd, "MD", unit},
+      {Column::kInclination, "Inclination", "dega"},
+      {Column::kAzimuth, std::string(TextOf(table.head.azimuth.north).azimuth), "dega"},
+      {Column::kTvd, "TVD", unit},
+      {Column::kEast, "DX", unit},
+      {Column::kNorth, "DY", unit},
+      {Column::kDogleg, "DLS", dls},
+      {Column::kVarNN, "CovarianceNN", area},
+      {Column::kCovNE, "CovarianceNE", area},
+      {Column::kCovNV, "CovarianceNV", area},
+      {Column::kVarEE, "CovarianceEE", area},
+      {Column::kCovEV, "CovarianceEV", area},
+      {Column::kVarVV, "CovarianceVV", area},
   };
+  std::erase_if(properties, [&](const Property& p) { return !table.Has(p.column); });
+  return properties;
+}
+
+std::string ListOf(const std::vector<Property>& properties) {
   std::string list;
   for (const Property& p : properties) {
-    if (!table.Has(p.column)) continue;
     list += fmt::format(
         "{}\n        {{\"TrajectoryStationPropertyTypeID\": {}, \"StationPropertyUnitID\": {}, "
         "\"Name\": {}}}",
@@ -111,7 +112,15 @@ std::string PropertiesOf(const SurveyTable& table, const std::string& unit) {
   return "[" + list + "\n      ]";
 }
 
-std::string DataOf(const SurveyTable& table) {
+// "A021Gc GYRO-NS-CT" as the list of tool types has it, GYRO-NS-CT_A021Gc.
+std::string ToolCode(const std::string& model) {
+  const std::size_t blank = model.find(' ');
+  const bool code =
+      blank == 6 && model[0] == 'A' && model.find(' ', blank + 1) == std::string::npos;
+  return Key(code ? model.substr(blank + 1) + "_" + model.substr(0, blank) : model);
+}
+
+std::string DataOf(const SurveyTable& table, const std::string& bulk) {
   const SurveyHead& head = table.head;
   const SurveyIdentity& names = head.names;
   const double factor = FactorOf(head.md_unit);
@@ -133,7 +142,7 @@ std::string DataOf(const SurveyTable& table) {
     data.Add("CalculationMethodType", Reference("CalculationMethodType", "MinimumCurvature"));
   }
   if (!head.error_model.empty()) {
-    data.Add("SurveyToolTypeID", Reference("SurveyToolType", Key(head.error_model)));
+    data.Add("SurveyToolTypeID", Reference("SurveyToolType", ToolCode(head.error_model)));
   }
   if (table.status(0) == RowStatus::kTieIn) {
     data.Add("TieMeasuredDepth", Exact(table.md(0), factor));
@@ -144,13 +153,38 @@ std::string DataOf(const SurveyTable& table) {
   data.AddFlag("IsDefinitive", head.definitive);
   data.AddFlag("IsMemory", head.memory);
   data.AddFlag("IsFinal", head.final_survey);
-  data.Add("AvailableTrajectoryStationProperties", PropertiesOf(table, TextOf(head.md_unit).key));
+  std::string description;
+  if (!bulk.empty()) {
+    description = fmt::format("{} stations in {}, SHA-256 {}. ", table.rows(), bulk,
+                              Sha256Hex(WriteOsduBulk(table)));
+  }
+  for (const std::string& remark : head.remarks) description += remark + ". ";
+  if (!description.empty()) data.Add("Description", Quoted(Trim(description)));
+  data.Add("AvailableTrajectoryStationProperties", ListOf(PropertiesOf(table)));
   return data.text();
 }
 
 }  // namespace
 
-std::string WriteOsdu(const SurveyTable& table) {
+std::string WriteOsduBulk(const SurveyTable& table) {
+  const std::vector<Property> properties = PropertiesOf(table);
+  std::string text;
+  for (const Property& p : properties) text += (text.empty() ? "" : ",") + p.type;
+  text += '\n';
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    bool first = true;
+    for (const Property& p : properties) {
+      const auto value = table.Get(p.column, row);
+      if (!first) text += ',';
+      first = false;
+      if (value) text += Exact(InfoOf(p.column).quantity, *value, table.head);
+    }
+    text += '\n';
+  }
+  return text + '\n';
+}
+
+std::string WriteOsdu(const SurveyTable& table, const std::string& bulk) {
   NeedNorth(table, "an OSDU manifest");
   const SurveyHead& head = table.head;
   if (table.rows() == 0) Lacks("an OSDU manifest", "a station");
@@ -174,7 +208,7 @@ std::string WriteOsdu(const SurveyTable& table) {
       "\"BaseDepthMeasuredDepth\", \"VerticalMeasurement.VerticalMeasurement\"]}}],\n"
       "  \"data\": {{{}\n    }}\n}}\n",
       head.names.country_code.empty() ? "" : Quoted(head.names.country_code), unit.symbol,
-      Quoted(reference), Reference("UnitOfMeasure", unit.key), DataOf(table));
+      Quoted(reference), Reference("UnitOfMeasure", unit.key), DataOf(table, bulk));
 }
 
 }  // namespace wellgyro

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/certificate_internal.h"
 #include "wellgyro/io/exchange/p717_internal.h"
 #include "wellgyro/io/exchange/p717_record_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
@@ -47,6 +48,7 @@ class P717Reader {
     if (build_.table.rows() == 0 && head().gyro_raw.empty()) {
       lines_.Complain(FaultCode::kForeign, "holds neither a P7 nor a G7 record");
     }
+    if (const auto problem = build_.Finish()) lines_.Complain(problem->code, problem->text);
     Conclude();
     return std::move(build_.table);
   }
@@ -80,6 +82,7 @@ class P717Reader {
     identified_ = true;
     head().names.created =
         IsoDate(record_.At(5)) + (record_.At(6).empty() ? "" : "T" + record_.Text(6) + "Z");
+    if (record_.At(5).empty()) head().names.created.clear();
     head().names.author = record_.Text(8);
   }
 
@@ -94,7 +97,7 @@ class P717Reader {
     const bool words = std::any_of(text.begin(), text.end(), [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
     });
-    if (words && std::count(text.begin(), text.end(), ',') < 5) {
+    if (words && !CertificateIn(text) && std::count(text.begin(), text.end(), ',') < 5) {
       head().remarks.emplace_back(text);
     }
   }
@@ -178,6 +181,22 @@ class P717Reader {
     run.begin = IsoDate(record_.At(17));
     run.end = IsoDate(record_.At(18));
     TakeMdUnit(record_.At(16));
+    if (md_unit_known_) ends_.emplace_back(run.number, record_.Maybe(15, Md()).value_or(-1));
+  }
+
+  // A survey that ends above the depth that its own definition gives.
+  void CheckEnds() {
+    for (const auto& [number, end] : ends_) {
+      double last = -1;
+      for (std::size_t row = 0; row < build_.table.rows(); ++row) {
+        if (build_.table.Get(Column::kSurvey, row) == number) {
+          last = std::max(last, build_.table.md(row));
+        }
+      }
+      if (end < 0 || last >= end - 0.02) continue;
+      head().notes.push_back(fmt::format(
+          "survey {} ends at MD {:.2f} m, its definition says {:.2f} m", number, last, end));
+    }
   }
 
   void TakeMdUnit(std::string_view name) {
@@ -312,9 +331,10 @@ class P717Reader {
     RequireMdUnit();
     const std::string point = record_.Text(7);
     const RowStatus status = p717::StatusOf(record_.Integer(8, 1), point);
-    const double azimuth = ValueOf(Quantity::kDirection, record_.Needed(12, 1), units::kDeg);
+    const auto degrees = record_.Maybe(12, 1);
     const auto problem =
-        build_.Add(record_.Needed(10, Md()), record_.Needed(11, units::kDeg), azimuth, status);
+        build_.Add(record_.Needed(10, Md()), record_.Maybe(11, units::kDeg),
+                   degrees ? AzimuthOf(*degrees, units::kDeg) : std::nullopt, status);
     if (problem) lines_.Complain(problem->code, problem->text);
     build_.Set(Column::kSurvey, record_.Integer(3, 1));
     if (!record_.At(6).empty()) build_.Set(Column::kObject, record_.Integer(6, 0));
@@ -377,6 +397,7 @@ class P717Reader {
 
   // The head takes over what its first survey says.
   void Conclude() {
+    CheckEnds();
     SurveyHead& h = head();
     h.vertical_reference = "MSL";
     for (const CrsEntry& crs : h.crs_entries) {
@@ -415,7 +436,8 @@ class P717Reader {
   std::vector<Field> extensions_;
   std::vector<std::pair<int, std::string>> error_models_;
   std::string geomagnetic_;
-  double vertical_ = 1;  // unit of the vertical axis [m]
+  std::vector<std::pair<int, double>> ends_;  // [m]
+  double vertical_ = 1;                       // unit of the vertical axis [m]
   int tables_ = 0;
   bool identified_ = false, md_unit_known_ = false, draft_2018_ = false;
 };

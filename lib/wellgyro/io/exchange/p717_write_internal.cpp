@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/certificate_internal.h"
 #include "wellgyro/io/exchange/p717_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 
@@ -61,7 +63,6 @@ class P717Writer {
   }
 
   std::string Write() {
-    Identification();
     Systems();
     Names();
     for (const SurveyRun& run : runs_) Survey(run);
@@ -74,7 +75,7 @@ class P717Writer {
     for (const std::string& remark : head_.remarks) text_ += "CC,0,0,0," + Plain(remark) + "\n";
     for (std::size_t row = 0; row < table_.rows(); ++row) Station(row);
     for (const GyroRawRecord& g : head_.gyro_raw) GyroRaw(g);
-    return std::move(text_);
+    return Identification() + "CC,0,0,0," + CertificateText(table_.rows(), text_) + "\n" + text_;
   }
 
  private:
@@ -103,6 +104,17 @@ class P717Writer {
     objects_.push_back({.number = 2, .kind = "WRP", .name = Or(head_.names.well, "well")});
     objects_.push_back({.number = 3, .kind = "ZDP", .name = Or(head_.datum, "datum")});
     if (head_.datum_elevation) objects_.back().down = -*head_.datum_elevation;
+    // The first row lies at the well head where its offsets are zero.
+    if (table_.rows() == 0 || std::abs(table_.Get(Column::kNorth, 0).value_or(1)) > 1e-3 ||
+        std::abs(table_.Get(Column::kEast, 0).value_or(1)) > 1e-3) {
+      return;
+    }
+    for (PositionObject* o : {&objects_[1], &objects_[2]}) {
+      o->northing = table_.Get(Column::kNorthing, 0);
+      o->easting = table_.Get(Column::kEasting, 0);
+      o->latitude = table_.Get(Column::kLatitude, 0);
+      o->longitude = table_.Get(Column::kLongitude, 0);
+    }
   }
 
   static std::string Or(const std::string& text, std::string_view otherwise) {
@@ -112,13 +124,13 @@ class P717Writer {
   double Md() const { return FactorOf(head_.md_unit); }
   double Grid() const { return FactorOf(head_.grid_unit); }
 
-  void Identification() {
+  std::string Identification() const {
     const std::string& created = head_.names.created;
     const std::size_t t = created.find('T');
-    std::string time = t == std::string::npos ? "00:00:00" : created.substr(t + 1, 8);
-    text_ = fmt::format("IOGP,{},7,1.0,1,{},{},,{}\n", Or(head_.names.well, "survey"),
-                        created.empty() ? "1970:01:01" : ColonDate(created), time,
-                        Or(head_.names.author, "wellgyro"));
+    std::string time = t == std::string::npos ? "" : created.substr(t + 1);
+    if (time.ends_with('Z')) time.pop_back();
+    return fmt::format("IOGP,{},7,1.0,1,{},{},,{}\n", Or(head_.names.well, "survey"),
+                       ColonDate(created), time, Or(head_.names.author, "wellgyro"));
   }
 
   void Systems() {

@@ -1,9 +1,11 @@
 // "WELL TRACE FROM PETREL", as Petrel exports and many open readers take it.
+#include <algorithm>
 #include <array>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/certificate_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -20,23 +22,37 @@ std::string_view AfterColon(std::string_view line) {
   return colon == std::string_view::npos ? std::string_view() : Trim(line.substr(colon + 1));
 }
 
-// Number and unit of "25.0 (m)".
+// Number and unit of "25.0 (m)"; the unit may be missing.
 struct Length {
-  double value = 0;  // [m]
-  LengthUnit unit = LengthUnit::kMetre;
+  double number = 0;
+  std::optional<LengthUnit> unit;
 };
 std::optional<Length> LengthOf(std::string_view text) {
   const std::size_t open = text.find('(');
   const auto number = NumberOf(text.substr(0, open));
-  if (!number || open == std::string_view::npos) return std::nullopt;
-  const auto unit = LengthUnitOf(text.substr(open + 1, text.find(')') - open - 1));
-  if (!unit) return std::nullopt;
-  return Length{*number * FactorOf(*unit), *unit};
+  if (!number) return std::nullopt;
+  if (open == std::string_view::npos) return Length{*number, std::nullopt};
+  return Length{*number, LengthUnitOf(text.substr(open + 1, text.find(')') - open - 1))};
 }
 
+constexpr std::array kPetrelNames{NamedColumn{"MD", Column::kMd},
+                                  NamedColumn{"X", Column::kEasting},
+                                  NamedColumn{"Y", Column::kNorthing},
+                                  NamedColumn{"TVD", Column::kTvd},
+                                  NamedColumn{"DX", Column::kEast},
+                                  NamedColumn{"DY", Column::kNorth},
+                                  NamedColumn{"INCL", Column::kInclination},
+                                  NamedColumn{"DLS", Column::kDogleg},
+                                  NamedColumn{"Z", Column::kDown},
+                                  NamedColumn{"AZIM_TN", Column::kAzimuthTrue},
+                                  NamedColumn{"AZIM_GN", Column::kAzimuthGrid}};
+
+// Depths stand in the unit of the line DEPTH, coordinates in that of the line DX DY; MD with the
+// depths. A head without those lines leaves the units open.
 class PetrelReader {
  public:
-  explicit PetrelReader(LineReader& lines) : lines_(lines) {}
+  PetrelReader(LineReader& lines, const ReadOptions& options, Claims& claims)
+      : lines_(lines), options_(options), claims_(claims) {}
 
   SurveyTable Read() {
     std::string_view line;
@@ -52,6 +68,8 @@ class PetrelReader {
       }
     }
     if (build_.table.rows() == 0) lines_.Complain(FaultCode::kForeign, "not a single station");
+    if (const auto problem = build_.Finish()) lines_.Complain(problem->code, problem->text);
+    Conclude();
     return std::move(build_.table);
   }
 
@@ -62,15 +80,16 @@ class PetrelReader {
     if (line.starts_with("# WELL NAME:")) head().names.well = AfterColon(line);
     if (line.starts_with("# DEFINITIVE SURVEY:")) head().names.survey = AfterColon(line);
     if (line.starts_with("# WELL DATUM")) {
-      const auto length = LengthOf(AfterColon(line));
-      if (!length) lines_.Complain(FaultCode::kSyntax, "the well datum has no length with a unit");
-      head().datum_elevation = length->value;
+      datum_ = LengthOf(AfterColon(line));
+      if (!datum_) lines_.Complain(FaultCode::kSyntax, "the well datum has no length");
       const std::size_t open = line.find('('), comma = line.find_first_of(",)", open);
       if (open < comma) head().datum = Trim(line.substr(open + 1, comma - open - 1));
       head().vertical_reference = "MSL";
     }
     if (line.starts_with("# XYZ TRACE IS GIVEN IN COORDINATE SYSTEM")) {
-      head().crs = Trim(line.substr(41));
+      const std::string_view system = Trim(line.substr(41));
+      local_ = EqualNoCase(system, "LOCAL");
+      if (!local_) head().crs = system;
     }
     if (line.starts_with("# AZIMUTH REFERENCE")) {
       const auto north = NorthOf(line.substr(19));
@@ -80,20 +99,23 @@ class PetrelReader {
     if (line.starts_with("# DX DY ARE GIVEN IN")) {
       if (const auto north = NorthOf(line.substr(20, line.find(" IN ", 20) - 20))) {
         head().offsets = *north;
+        claims_.offsets_north = true;
       }
-      Unit(line);
+      across_ = Unit(line);
     }
-    if (line.starts_with("# DEPTH")) Unit(line);
+    if (line.starts_with("# DEPTH")) depths_ = Unit(line);
+    if (line.starts_with("# REMARK: ") && head().remarks.size() < 1000) {
+      head().remarks.emplace_back(Trim(line.substr(10)));
+    }
   }
 
-  void Unit(std::string_view line) {
+  std::optional<LengthUnit> Unit(std::string_view line) {
     const std::size_t end = line.find("-UNITS");
-    if (end == std::string_view::npos) return;
+    if (end == std::string_view::npos) return std::nullopt;
     const std::size_t begin = line.rfind(' ', end) + 1;
     const auto unit = LengthUnitOf(line.substr(begin, end - begin));
     if (!unit) lines_.Complain(FaultCode::kSyntax, "lengths in a unit that is not known");
-    head().md_unit = head().grid_unit = *unit;
-    if (*unit != LengthUnit::kMetre) head().curvature_unit = CurvatureUnit::kDegPer100ft;
+    return unit;
   }
 
   void Columns(std::string_view line) {
@@ -111,6 +133,52 @@ class PetrelReader {
     if (azimuth_ == "AZIM_TN") head().azimuth.north = North::kTrue;
     if (azimuth_ == "AZIM_GN") head().azimuth.north = North::kGrid;
     if (head().offsets == North::kUnknown) head().offsets = North::kGrid;
+    SettleUnits();
+  }
+
+  void SettleUnits() {
+    if (options_.depth_unit) {
+      if (depths_ && *depths_ != *options_.depth_unit) {
+        head().notes.push_back(
+            fmt::format("depths are taken in {} as told, though the file says {}",
+                        WordOf(*options_.depth_unit), WordOf(*depths_)));
+      }
+      if (across_ == depths_) across_ = options_.depth_unit;
+      depths_ = options_.depth_unit;
+    }
+    claims_.md_unit = depths_.has_value();
+    claims_.curvature_unit = claims_.md_unit;
+    if (!depths_) {
+      claims_.open = {Column::kTvd, Column::kDown, Column::kTvdSubSea};
+    } else {
+      head().md_unit = *depths_;
+      if (*depths_ != LengthUnit::kMetre) head().curvature_unit = CurvatureUnit::kDegPer100ft;
+    }
+    if (!across_) {
+      for (const Column c : {Column::kNorth, Column::kEast, Column::kNorthing, Column::kEasting}) {
+        claims_.open.push_back(c);
+      }
+    }
+    head().grid_unit = across_.value_or(head().md_unit);
+  }
+
+  double FactorFor(Column column) const {
+    const double depth = depths_ ? FactorOf(*depths_) : 1;
+    switch (column) {
+      case Column::kMd:
+      case Column::kTvd:
+      case Column::kDown:
+        return depth;
+      case Column::kNorth:
+      case Column::kEast:
+      case Column::kNorthing:
+      case Column::kEasting:
+        return across_ ? FactorOf(*across_) : depth;
+      case Column::kDogleg:
+        return depths_ && *depths_ != LengthUnit::kMetre ? units::kDegPer100ft : units::kDegPer30m;
+      default:
+        return units::kDeg;
+    }
   }
 
   void Row(std::string_view line) {
@@ -119,56 +187,77 @@ class PetrelReader {
       lines_.Complain(FaultCode::kSyntax, fmt::format("{} fields where the header has {}",
                                                       fields_.size(), names_.size()));
     }
-    std::array<double, 3> station{};
+    double md = 0;
+    std::optional<double> inclination, azimuth;
     std::vector<std::pair<Column, double>> others;
-    for (std::size_t i = 0; i < fields_.size(); ++i) Cell(i, station, others);
-    const auto problem = build_.Add(station[0], station[1], station[2]);
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      const auto column = ColumnOf(names_[i]);
+      if (!column) continue;
+      const double number = Number(i), factor = FactorFor(*column);
+      if (column == Column::kMd) {
+        md = number * factor;
+      } else if (column == Column::kInclination) {
+        inclination = InclinationOf(number, factor);
+      } else if (column == Column::kAzimuth) {
+        azimuth = AzimuthOf(number, factor);
+      } else {
+        const double value = ValueOf(InfoOf(*column).quantity, number, factor);
+        others.emplace_back(*column, column == Column::kDown ? -value : value);
+      }
+    }
+    const auto problem = build_.Add(md, inclination, azimuth);
     if (problem) lines_.Complain(problem->code, problem->text);
     for (const auto& [column, value] : others) build_.Set(column, value);
   }
 
-  void Cell(std::size_t i, std::array<double, 3>& station,
-            std::vector<std::pair<Column, double>>& others) {
-    constexpr std::array kNames{NamedColumn{"MD", Column::kMd},
-                                NamedColumn{"X", Column::kEasting},
-                                NamedColumn{"Y", Column::kNorthing},
-                                NamedColumn{"TVD", Column::kTvd},
-                                NamedColumn{"DX", Column::kEast},
-                                NamedColumn{"DY", Column::kNorth},
-                                NamedColumn{"INCL", Column::kInclination},
-                                NamedColumn{"DLS", Column::kDogleg},
-                                NamedColumn{"Z", Column::kDown},
-                                NamedColumn{"AZIM_TN", Column::kAzimuthTrue},
-                                NamedColumn{"AZIM_GN", Column::kAzimuthGrid}};
-    Column column = Column::kAzimuth;
-    bool known = names_[i] == azimuth_;
-    for (const NamedColumn& n : kNames) {
-      if (!known && n.name == names_[i]) {
-        column = n.column;
-        known = true;
+  std::optional<Column> ColumnOf(const std::string& name) const {
+    if (name == azimuth_) return Column::kAzimuth;
+    for (const NamedColumn& n : kPetrelNames) {
+      if (n.name == name) return n.column;
+    }
+    return std::nullopt;
+  }
+
+  double Number(std::size_t i) const {
+    const auto number = NumberOf(fields_[i]);
+    if (number) return *number;
+    lines_.Complain(FaultCode::kSyntax, fmt::format("'{}' is not a number", fields_[i]),
+                    static_cast<int>(i) + 1);
+  }
+
+  void Conclude() {
+    SurveyTable& table = build_.table;
+    if (datum_) {
+      const auto unit = datum_->unit ? datum_->unit : depths_;
+      if (!unit) lines_.Complain(FaultCode::kSyntax, "the well datum has no unit: --depth-unit");
+      head().datum_elevation = datum_->number * FactorOf(*unit);
+    }
+    const auto tvd = table.Get(Column::kTvd, 0), down = table.Get(Column::kDown, 0);
+    if (tvd && down) claims_.sum_of_tvd_and_z = *tvd - *down;
+    if (!local_) return;
+    // A local system has no map: its coordinates are offsets.
+    if (!table.Has(Column::kNorth) && table.Has(Column::kNorthing)) {
+      for (std::size_t row = 0; row < table.rows(); ++row) {
+        const auto y = table.Get(Column::kNorthing, row), x = table.Get(Column::kEasting, row);
+        if (y) table.Set(Column::kNorth, row, *y);
+        if (x) table.Set(Column::kEast, row, *x);
       }
     }
-    if (!known) return;
-    const auto number = NumberOf(fields_[i]);
-    if (!number) {
-      lines_.Complain(FaultCode::kSyntax, fmt::format("'{}' is not a number", fields_[i]),
-                      static_cast<int>(i) + 1);
-    }
-    const Quantity quantity = InfoOf(column).quantity;
-    double value = ValueOf(quantity, *number, FactorOf(quantity, head()));
-    if (column == Column::kDown) value = -value;
-    if (column <= Column::kAzimuth) {
-      station[static_cast<std::size_t>(column)] = value;
-    } else {
-      others.emplace_back(column, value);
-    }
+    table.Drop(Column::kNorthing);
+    table.Drop(Column::kEasting);
+    head().notes.emplace_back("X and Y are local coordinates, not of a map");
   }
 
   LineReader& lines_;
+  const ReadOptions& options_;
+  Claims& claims_;
   TableBuilder build_;
   std::vector<std::string> names_;
   std::vector<std::string_view> fields_;
   std::string azimuth_;
+  std::optional<LengthUnit> depths_, across_;
+  std::optional<Length> datum_;
+  bool local_ = false;
 };
 
 using Row = std::array<std::string, 10>;
@@ -185,21 +274,23 @@ class PetrelWriter {
 
   std::string Write() const {
     std::string text = Head();
+    std::size_t stations = 0;
     text += kRule;
     text += Line({"MD", "X", "Y", "Z", "TVD", "DX", "DY", grid_north_ ? "AZIM_GN" : "AZIM_TN",
                   "INCL", "DLS"});
     text += kRule;
     for (std::size_t row = 0; row < table_.rows(); ++row) {
-      if (OnPath(table_.status(row))) text += Line(Station(row));
+      if (!OnPath(table_.status(row))) continue;
+      text += Line(Station(row));
+      ++stations;
     }
-    return text;
+    return "# WELL TRACE FROM PETREL\n# " + CertificateText(stations, text) + "\n" + text;
   }
 
  private:
   std::string Head() const {
     const std::string_view unit = WordOf(head_.md_unit);
-    std::string text = "# WELL TRACE FROM PETREL\n";
-    text += "# WELL NAME: " + head_.names.well + "\n";
+    std::string text = "# WELL NAME: " + head_.names.well + "\n";
     if (!head_.names.survey.empty()) text += "# DEFINITIVE SURVEY: " + head_.names.survey + "\n";
     text += fmt::format("# WELL HEAD X-COORDINATE: {} ({})\n", X(0), unit);
     text += fmt::format("# WELL HEAD Y-COORDINATE: {} ({})\n", Y(0), unit);
@@ -214,6 +305,11 @@ class PetrelWriter {
     text += fmt::format("# DX DY ARE GIVEN IN {} NORTH IN {}-UNITS\n",
                         head_.offsets == North::kTrue ? "TRUE" : "GRID", unit);
     text += fmt::format("# DEPTH (Z, TVD) GIVEN IN {}-UNITS\n", unit);
+    for (const std::string& remark : head_.remarks) {
+      std::string whole = remark;
+      std::replace(whole.begin(), whole.end(), '\n', ' ');
+      text += "# REMARK: " + whole + "\n";
+    }
     return text;
   }
 
@@ -260,7 +356,9 @@ class PetrelWriter {
 
 }  // namespace
 
-SurveyTable ReadPetrel(LineReader& lines) { return PetrelReader(lines).Read(); }
+SurveyTable ReadPetrel(LineReader& lines, const ReadOptions& options, Claims& claims) {
+  return PetrelReader(lines, options, claims).Read();
+}
 
 std::string WritePetrel(const SurveyTable& table) {
   NeedNorth(table, "Petrel");

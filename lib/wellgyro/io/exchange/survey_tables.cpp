@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/trajectory/leg_geometry.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
 
@@ -80,6 +82,15 @@ SurveyHead HeadOf(const Job& job, const WellGrid* grid) {
     head.crs = spec.epsg.empty() ? spec.name : spec.epsg;
   }
   return head;
+}
+
+void TurnVector(SurveyTable& table, std::size_t row, const Eigen::Matrix3d& r, Column north,
+                Column east) {
+  const auto n = table.Get(north, row), e = table.Get(east, row);
+  if (!n || !e) return;
+  const Eigen::Vector3d p = r * Eigen::Vector3d(*n, *e, 0);
+  table.Set(north, row, p.x());
+  table.Set(east, row, p.y());
 }
 
 SurveyTool ToolOf(std::span<const Station> stations) {
@@ -168,16 +179,22 @@ void TurnTo(SurveyTable& table, North north) {
     const double turn = AzimuthFrom(head.azimuth, 0, offsets_from, north);
     Eigen::Matrix3d r;
     r << std::cos(turn), -std::sin(turn), 0, std::sin(turn), std::cos(turn), 0, 0, 0, 1;
-    const auto n = table.Get(Column::kNorth, row), e = table.Get(Column::kEast, row);
-    if (n && e) {
-      const Eigen::Vector3d p = r * Eigen::Vector3d(*n, *e, 0);
-      table.Set(Column::kNorth, row, p.x());
-      table.Set(Column::kEast, row, p.y());
-    }
+    TurnVector(table, row, r, Column::kNorth, Column::kEast);
     if (const auto c = CovarianceOf(table, row)) {
       SetCovariance(table, row, r * *c * r.transpose());
     }
+    TurnVector(table, row, r, Column::kBiasN, Column::kBiasE);
+    if (const auto closure = table.Get(Column::kClosureAzimuth, row)) {
+      table.Set(Column::kClosureAzimuth, row, WrapTwoPi(*closure + turn));
+    }
   }
+  for (GyroRawRecord& raw : head.gyro_raw) {
+    raw.azimuth = AzimuthFrom(head.azimuth, raw.azimuth, azimuth_from, north);
+  }
+  const double turn = AzimuthFrom(head.azimuth, 0, offsets_from, north);
+  const double section_north = head.section_north;
+  head.section_north = section_north * std::cos(turn) - head.section_east * std::sin(turn);
+  head.section_east = section_north * std::sin(turn) + head.section_east * std::cos(turn);
   if (head.section_azimuth && azimuth_from != north) {
     head.section_azimuth = AzimuthFrom(head.azimuth, *head.section_azimuth, azimuth_from, north);
   }
@@ -204,18 +221,87 @@ bool FillPositions(SurveyTable& table) {
   std::vector<double> severity(md.size());
   MinimumCurvature(md, inclination, azimuth, {0, 0, tvd.value_or(0)}, position, severity);
   const bool had_tvd = table.Has(Column::kTvd), had_dogleg = table.Has(Column::kDogleg);
+  const bool had_offsets = table.Has(Column::kNorth) && table.Has(Column::kEast);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    table.Set(Column::kNorth, rows[i], ToStep(position[i].x(), 1e-6));
-    table.Set(Column::kEast, rows[i], ToStep(position[i].y(), 1e-6));
+    if (!had_offsets) {
+      table.Set(Column::kNorth, rows[i], ToStep(position[i].x(), 1e-6));
+      table.Set(Column::kEast, rows[i], ToStep(position[i].y(), 1e-6));
+    }
     if (!had_tvd) table.Set(Column::kTvd, rows[i], ToStep(position[i].z(), 1e-6));
     if (!had_dogleg) {
       table.Set(Column::kDogleg, rows[i],
                 ToStep(severity[i] / units::kDegPer30m, 1e-6) * units::kDegPer30m);
     }
   }
-  table.head.offsets = table.head.azimuth.north;
+  if (!had_offsets) table.head.offsets = table.head.azimuth.north;
   if (table.head.method.empty()) table.head.method = "minimum curvature";
   return true;
+}
+
+std::optional<double> DepartureFromListed(const SurveyTable& table) {
+  const SurveyHead& head = table.head;
+  if (head.azimuth.north == North::kUnknown || head.offsets == North::kUnknown) return {};
+  double turn = 0, worst = 0;
+  if (head.offsets != head.azimuth.north) {
+    try {
+      turn = AzimuthFrom(head.azimuth, 0, head.azimuth.north, head.offsets);
+    } catch (const std::invalid_argument&) {
+      return std::nullopt;
+    }
+  }
+  std::optional<std::size_t> last;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto n = table.Get(Column::kNorth, row), e = table.Get(Column::kEast, row);
+    const auto tvd = table.Get(Column::kTvd, row);
+    if (!OnPath(table.status(row)) || !n || !e || !tvd) continue;
+    const Eigen::Vector3d given(*n, *e, *tvd);
+    if (!last) {
+      at = given;
+    } else {
+      const auto leg =
+          MinimumCurvatureLeg(table.md(row) - table.md(*last),
+                              Tangent(table.inclination(*last), table.azimuth(*last) + turn),
+                              Tangent(table.inclination(row), table.azimuth(row) + turn));
+      if (!leg) return std::nullopt;
+      at += leg->displacement;
+      worst = std::max(worst, (given - at).norm());
+    }
+    last = row;
+  }
+  if (!last) return std::nullopt;
+  return worst;
+}
+
+void SumAsListed(SurveyTable& table) {
+  const auto north = table.Get(Column::kNorth, 0), east = table.Get(Column::kEast, 0);
+  const auto tvd = table.Get(Column::kTvd, 0);
+  for (const Column c :
+       {Column::kTvd, Column::kNorth, Column::kEast, Column::kDogleg, Column::kNorthing,
+        Column::kEasting, Column::kDown, Column::kLatitude, Column::kLongitude, Column::kTvdSubSea,
+        Column::kVerticalSection, Column::kClosure, Column::kClosureAzimuth, Column::kBuild,
+        Column::kTurn}) {
+    table.Drop(c);
+  }
+  // FillPositions sums from depth zero.
+  SurveyTable shifted = table;
+  const double first = table.rows() > 0 ? table.md(0) : 0;
+  for (std::size_t row = 0; row < shifted.rows(); ++row) {
+    shifted.Set(Column::kMd, row, table.md(row) - first);
+  }
+  FillPositions(shifted);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto put = [&](Column column, double from) {
+      const auto value = shifted.Get(column, row);
+      if (value) table.Set(column, row, *value + from);
+    };
+    put(Column::kNorth, north.value_or(0));
+    put(Column::kEast, east.value_or(0));
+    put(Column::kTvd, tvd.value_or(first));
+    put(Column::kDogleg, 0);
+  }
+  table.head.offsets = table.head.azimuth.north;
+  table.head.method = "minimum curvature";
 }
 
 void FillDerived(SurveyTable& table) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "wellgyro/base/export.h"
@@ -19,15 +20,24 @@ WELLGYRO_EXPORT SurveyTable TableOfSurvey(const Job& job, std::span<const Statio
 /// Metric or field units for MD, TVD, offsets and curvature; grid coordinates keep their own.
 WELLGYRO_EXPORT void SetUnits(SurveyTable& table, LengthUnit unit);
 
-/// Turns azimuths, offsets and covariances to count from `north`. Throws std::invalid_argument as
-/// AzimuthFrom.
+/// Turns every direction of the survey to count from `north`: azimuths, offsets, covariances,
+/// biases, closure, the plane of the vertical section and raw records. Throws std::invalid_argument
+/// as AzimuthFrom.
 WELLGYRO_EXPORT void TurnTo(SurveyTable& table, North north);
 
-/// Sums TVD, north, east and dogleg severity by minimum curvature where the table has no positions,
-/// over the rows that belong to the path, to 1e-6 m. The first row must lie at depth zero or have a
+/// Sums what the table lacks of TVD, north, east and dogleg severity by minimum curvature, over the
+/// rows that belong to the path, to 1e-6 m. The first row must lie at depth zero or have a
 /// position: else nothing is done and false given. Throws std::invalid_argument, naming the
 /// station, when two of them point opposite ways.
 WELLGYRO_EXPORT bool FillPositions(SurveyTable& table);
+
+/// How far positions part from minimum curvature of the listed stations, at most [m]; nothing
+/// where there are none to compare. Positions of ours are summed between the stations too.
+WELLGYRO_EXPORT std::optional<double> DepartureFromListed(const SurveyTable& table);
+
+/// Sums TVD, north, east and dogleg severity afresh from the listed stations alone, from the first
+/// row's own position; map coordinates, latitudes and what follows from positions are taken away.
+WELLGYRO_EXPORT void SumAsListed(SurveyTable& table);
 
 /// Closure, its azimuth, TVD below sea level and vertical section, from positions and head.
 WELLGYRO_EXPORT void FillDerived(SurveyTable& table);

@@ -1,7 +1,6 @@
 #include "wellgyro/io/exchange/table_build_internal.h"
 
 #include <array>
-#include <cmath>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -13,8 +12,6 @@
 
 namespace wellgyro {
 namespace {
-
-constexpr std::size_t kMostCells = std::size_t{1} << 27;
 
 // Plain texts of a head and the keys they go by.
 struct TextKey {
@@ -75,30 +72,6 @@ constexpr std::array kReferenceKeys{
 double FactorOfKey(Quantity quantity) { return quantity == Quantity::kAngle ? FromDegrees(1) : 1; }
 
 }  // namespace
-
-std::optional<TableBuilder::Problem> TableBuilder::Add(double md, double inclination,
-                                                       double azimuth, RowStatus status) {
-  if (!(inclination >= 0 && inclination <= kPi * (1 + 1e-12))) {
-    return Problem{FaultCode::kRange,
-                   fmt::format("{} deg is no inclination", Exact(inclination, FromDegrees(1)))};
-  }
-  constexpr double kDeepest = 1e6;  // [m]; no hole is
-  if (!(std::abs(md) <= kDeepest)) {
-    return Problem{FaultCode::kRange, fmt::format("{} m is no measured depth", Exact(md, 1))};
-  }
-  if (OnPath(status)) {
-    if (last_md_ && !(md > *last_md_)) {
-      return Problem{FaultCode::kOrder, fmt::format("depth {} m after {} m: depth must increase",
-                                                    Exact(md), Exact(*last_md_))};
-    }
-    last_md_ = md;
-  }
-  if (table.rows() % 1024 == 0 && table.cells() > kMostCells) {
-    return Problem{FaultCode::kSize, "more numbers than a survey can have here: split the file"};
-  }
-  table.Add(md, inclination, azimuth, status);
-  return std::nullopt;
-}
 
 Pairs PairsOf(const SurveyHead& head) {
   Pairs pairs;

@@ -6,38 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "wellgyro/io/exchange/claims_internal.h"
 #include "wellgyro/io/exchange/columns_internal.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/line_reader_internal.h"
+#include "wellgyro/io/exchange/table_builder_internal.h"
 
 namespace wellgyro {
-
-/// Adds stations to a table with the checks that every format shares. Complaints come back as text
-/// for the caller to give its place.
-class TableBuilder {
- public:
-  struct Problem {
-    FaultCode code;
-    std::string text;
-  };
-
-  SurveyTable table;
-
-  /// `md` [m], angles [rad]. Depth must increase over rows that belong to the path, of one survey
-  /// where `survey` is given.
-  std::optional<Problem> Add(double md, double inclination, double azimuth,
-                             RowStatus status = RowStatus::kSurveyed);
-  void Set(Column column, double value) { table.Set(column, table.rows() - 1, value); }
-  void Set(TextColumn column, std::string text) {
-    table.Set(column, table.rows() - 1, std::move(text));
-  }
-
- private:
-  std::optional<double> last_md_;
-};
-
-/// Whether a row with it is a station of the path.
-inline bool OnPath(RowStatus status) { return status != RowStatus::kUnused; }
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 /// What a head says that fits in "key: value" lines; nothing where it says nothing.
@@ -46,18 +21,22 @@ Pairs PairsOf(const SurveyHead& head);
 bool TakePair(SurveyHead& head, std::string_view key, std::string_view value);
 
 /// Takes in a line of a Compass-style report's head, as "North Reference: Grid"; leaves others.
-void TakeReportLine(SurveyHead& head, std::string_view line);
+void TakeReportLine(SurveyHead& head, std::string_view line, Claims& claims);
 
 /// Throws std::invalid_argument: `format` needs ... .
 [[noreturn]] void Lacks(std::string_view format, std::string_view what);
 /// Lacks, unless the north of the azimuths is known.
 void NeedNorth(const SurveyTable& table, std::string_view format);
 
-SurveyTable ReadCsv(LineReader& lines, const ReadOptions& options);
-SurveyTable ReadLas(LineReader& lines, const ReadOptions& options);
+SurveyTable ReadCsv(LineReader& lines, const ReadOptions& options, Claims& claims);
+SurveyTable ReadLas(LineReader& lines, const ReadOptions& options, Claims& claims);
 SurveyTable ReadP717(LineReader& lines);
-SurveyTable ReadPetrel(LineReader& lines);
-SurveyTable ReadWitsml(std::string bytes, const std::string& source);
+SurveyTable ReadPetrel(LineReader& lines, const ReadOptions& options, Claims& claims);
+SurveyTable ReadWitsml(std::string bytes, const std::string& source, const ReadOptions& options);
+
+/// Whether XML is an export of Landmark's EDM with a definitive survey.
+bool IsEdm(std::string_view bytes);
+SurveyTable ReadEdm(std::string bytes, const std::string& source, const ReadOptions& options);
 
 std::string WriteCsv(const SurveyTable& table, const WriteOptions& options);
 std::string WriteLas(const SurveyTable& table, const WriteOptions& options);
@@ -66,6 +45,8 @@ std::string WritePetrel(const SurveyTable& table);
 std::string WriteCompass(const SurveyTable& table);
 std::string WriteWitsml1411(const SurveyTable& table);
 std::string WriteWitsml21(const SurveyTable& table);
-std::string WriteOsdu(const SurveyTable& table);
+/// `bulk` names the CSV of the stations, where there is one beside the manifest.
+std::string WriteOsdu(const SurveyTable& table, const std::string& bulk);
+std::string WriteOsduBulk(const SurveyTable& table);
 
 }  // namespace wellgyro

@@ -6,6 +6,8 @@
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/exchange/witsml_internal.h"
+#include "wellgyro/io/exchange/witsml_row_internal.h"
+#include "wellgyro/io/exchange/witsml_text_internal.h"
 #include "wellgyro/io/exchange/xml_internal.h"
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -15,25 +17,42 @@ namespace {
 
 class WitsmlReader {
  public:
-  WitsmlReader(std::string bytes, const std::string& source) : xml_(std::move(bytes), source) {}
+  WitsmlReader(std::string bytes, const std::string& source, const ReadOptions& options)
+      : xml_(std::move(bytes), source), options_(options) {}
 
   SurveyTable Read() {
     const pugi::xml_node trajectory = FindTrajectory();
     Names(trajectory);
     References(trajectory);
-    Common(trajectory);
+    Existence(trajectory);
     for (const pugi::xml_node child : trajectory.children()) {
       if (LocalName(child) == "trajectoryStation") Station(child);
     }
     if (build_.table.rows() == 0) {
       xml_.Complain(FaultCode::kForeign, trajectory, "not a single station");
     }
+    // After the stations, whose attributes hold less.
+    Common(trajectory);
+    ForgetUnknown();
+    CheckEnd(ChildOf(trajectory, "mdMx"));
     if (head().offsets == North::kUnknown) head().offsets = head().azimuth.north;
+    if (const auto problem = build_.Finish()) {
+      xml_.Complain(problem->code, trajectory, problem->text);
+    }
     return std::move(build_.table);
   }
 
  private:
   SurveyHead& head() { return build_.table.head; }
+
+  void CheckEnd(pugi::xml_node deepest) {
+    const auto end = Number(deepest, Quantity::kLength);
+    const double last = build_.table.rows() > 0 ? build_.table.md(build_.table.rows() - 1) : 0;
+    if (end && last < *end - 0.01) {
+      head().notes.push_back(
+          fmt::format("its stations end at MD {:.2f} m, its head says {:.2f} m", last, *end));
+    }
+  }
 
   pugi::xml_node FindTrajectory() {
     const pugi::xml_node root = xml_.root();
@@ -42,14 +61,36 @@ class WitsmlReader {
     if (name != "trajectorys") {
       xml_.Complain(FaultCode::kForeign, root, "this is XML, but no WITSML trajectory");
     }
-    pugi::xml_node found;
+    std::vector<pugi::xml_node> found;
+    std::string names;
     for (const pugi::xml_node child : root.children()) {
       if (LocalName(child) != "trajectory") continue;
-      if (found) xml_.Complain(FaultCode::kForeign, child, "a second trajectory: split the file");
-      found = child;
+      const std::string called = TextOf(ChildOf(child, "name"));
+      const std::string uid = ToUtf8(child.attribute("uid").value());
+      if (names.size() < 1000)
+        names += (names.empty() ? "" : ", ") + (called.empty() ? uid : called);
+      const std::string& wanted = options_.trajectory;
+      if (wanted.empty() || wanted == called || wanted == uid) found.push_back(child);
     }
-    if (!found) xml_.Complain(FaultCode::kForeign, root, "no trajectory in it");
-    return found;
+    if (names.empty()) xml_.Complain(FaultCode::kForeign, root, "no trajectory in it");
+    if (found.empty()) {
+      xml_.Complain(FaultCode::kConflict, root,
+                    "no trajectory is called " + options_.trajectory + ": there are " + names);
+    }
+    if (found.size() > 1) {
+      xml_.Complain(FaultCode::kConflict, found[1],
+                    "several trajectories: " + names + "; say which by --trajectory");
+    }
+    return found.front();
+  }
+
+  // Mandatory elements of nothing are not names.
+  void ForgetUnknown() {
+    SurveyIdentity& names = head().names;
+    for (std::string* name : {&names.well, &names.wellbore, &names.survey, &names.author}) {
+      if (*name == witsml::kUnknown) name->clear();
+    }
+    if (names.created == witsml::kNoDate) names.created.clear();
   }
 
   void Names(pugi::xml_node t) {
@@ -110,20 +151,23 @@ class WitsmlReader {
     if (const auto tool = SurveyToolOf(TextOf(ChildOf(t, "nominalTypeSurveyTool")))) h.tool = *tool;
   }
 
+  void Existence(pugi::xml_node t) {
+    const std::string state = TextOf(ChildOf(ChildOf(t, "commonData"), "itemState"));
+    const std::string existence = TextOf(ChildOf(t, "existence"));
+    if (state == "plan" || existence == "planned") head().planned = true;
+    if (state == "actual" || existence == "actual") head().planned = false;
+  }
+
   void Common(pugi::xml_node t) {
     SurveyHead& h = head();
     const pugi::xml_node common = ChildOf(t, "commonData");
-    const std::string state = TextOf(ChildOf(common, "itemState"));
-    const std::string existence = TextOf(ChildOf(t, "existence"));
-    if (state == "plan" || existence == "planned") h.planned = true;
-    if (state == "actual" || existence == "actual") h.planned = false;
     if (h.names.created.empty()) h.names.created = TextOf(ChildOf(common, "dTimCreation"));
     const std::string comments = TextOf(ChildOf(common, "comments"));
     for (const pugi::xml_node holder : {common, t}) {
       for (const pugi::xml_node child : holder.children()) {
         if (LocalName(child) != "extensionNameValue") continue;
         const std::string name = TextOf(ChildOf(child, "name"));
-        if (!name.starts_with(kExtension)) continue;
+        if (!name.starts_with(kExtension) || name == witsml::kRowExtension) continue;
         TakePair(h, name.substr(kExtension.size()), TextOf(ChildOf(child, "value")));
       }
     }
@@ -165,11 +209,13 @@ class WitsmlReader {
     const pugi::xml_node md = Inner(ChildOf(s, "md"), "measuredDepth");
     const auto depth = Number(md, Quantity::kLength);
     const auto inclination = Number(ChildOf(s, "incl"), Quantity::kAngle);
-    const auto azimuth = Number(ChildOf(s, "azi"), Quantity::kDirection);
+    auto azimuth = Number(ChildOf(s, "azi"), Quantity::kDirection);
+    const auto unwrapped = Number(ChildOf(s, "azi"), Quantity::kAngle);
+    if (unwrapped && !AzimuthOf(*unwrapped, 1)) azimuth.reset();
     if (!depth) xml_.Complain(FaultCode::kSyntax, s, "no md");
-    if (!inclination || !azimuth) xml_.Complain(FaultCode::kSyntax, s, "no incl or no azi");
+    if (!inclination) xml_.Complain(FaultCode::kSyntax, s, "no incl");
     if (build_.table.rows() == 0) Units(s, md);
-    if (const auto problem = build_.Add(*depth, *inclination, *azimuth, StatusOf(s))) {
+    if (const auto problem = build_.Add(*depth, *inclination, azimuth, StatusOf(s))) {
       xml_.Complain(problem->code, md, problem->text);
     }
     build_.Set(TextColumn::kUid, ToUtf8(s.attribute("uid").value()));
@@ -257,11 +303,14 @@ class WitsmlReader {
     if (name == "c_earthRateCalc") {
       return Keep(Column::kEarthRateMeasured, Number(value, Quantity::kRate));
     }
+    if (name == witsml::kRowExtension) {
+      return witsml::UnpackRow(TextOf(value), build_.table, build_.table.rows() - 1);
+    }
     if (!name.starts_with(kExtension)) return;
     const std::string key = name.substr(kExtension.size());
     if (key == "STATUS") {
       if (const auto status = RowStatusOf(TextOf(value))) {
-        build_.table.SetStatus(build_.table.rows() - 1, *status);
+        build_.SetStatus(*status);
       }
       return;
     }
@@ -277,13 +326,14 @@ class WitsmlReader {
   }
 
   XmlFile xml_;
+  const ReadOptions& options_;
   TableBuilder build_;
 };
 
 }  // namespace
 
-SurveyTable ReadWitsml(std::string bytes, const std::string& source) {
-  return WitsmlReader(std::move(bytes), source).Read();
+SurveyTable ReadWitsml(std::string bytes, const std::string& source, const ReadOptions& options) {
+  return WitsmlReader(std::move(bytes), source, options).Read();
 }
 
 }  // namespace wellgyro

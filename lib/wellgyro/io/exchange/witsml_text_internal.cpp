@@ -84,10 +84,21 @@ std::string Or(const std::string& text, std::string_view otherwise) {
   return text.empty() ? std::string(otherwise) : text;
 }
 
+std::string Cut(const std::string& text, std::size_t characters) {
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;
+    if (begins && ++seen > characters) return text.substr(0, i);
+  }
+  return text;
+}
+
 std::string Uid(const std::string& text, std::string_view otherwise) {
-  std::string uid = Or(text, otherwise).substr(0, 64);
-  for (char& c : uid) c = c > ' ' && c < 0x7F && c != ',' ? c : '-';
-  return uid;
+  const std::string whole = Or(text, otherwise);
+  std::string uid;
+  for (const char c : whole) uid += c > ' ' && c < 0x7F && c != ',' ? c : '-';
+  if (uid == whole && uid.size() <= kNameLength) return uid;
+  return uid.substr(0, kNameLength - 9) + "-" + Sha256Hex(whole).substr(0, 8);
 }
 
 std::string DateTime(const std::string& text) {

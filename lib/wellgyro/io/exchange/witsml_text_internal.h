@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -28,7 +29,14 @@ class Units {
 /// `given` if it is a UUID, else one that the same survey gets again: the head of a hash of what it
 /// names.
 std::string UuidOf(const std::string& given, std::string_view what, const SurveyHead& head);
-/// Identifiers of 1.4.1.1 have no blanks and 64 characters at most.
+/// Characters that 1.4.1.1 allows in names and identifiers, and in values of extensions.
+inline constexpr std::size_t kNameLength = 64, kValueLength = 4000;
+/// What stands in mandatory elements for which there is nothing to say.
+inline constexpr std::string_view kUnknown = "unknown", kNoDate = "1970-01-01T00:00:00.000Z";
+/// The first characters of UTF-8 text.
+std::string Cut(const std::string& text, std::size_t characters);
+/// Identifiers of 1.4.1.1 have no blanks and 64 characters at most. What must be changed for that,
+/// or holds other than ASCII, ends in the head of its hash, so that different texts stay different.
 std::string Uid(const std::string& text, std::string_view otherwise);
 std::string Or(const std::string& text, std::string_view otherwise);
 /// xsd:dateTime of a day or an instant; nothing when it is neither.

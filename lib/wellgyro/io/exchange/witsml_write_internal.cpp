@@ -1,5 +1,6 @@
 // WITSML 1.4.1.1 and 2.1 trajectories. Order matters: the schemas are sequences.
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/exchange/witsml_internal.h"
+#include "wellgyro/io/exchange/witsml_row_internal.h"
 #include "wellgyro/io/exchange/witsml_text_internal.h"
 #include "wellgyro/io/exchange/xml_internal.h"
 #include "wellgyro/io/iso_time_internal.h"
@@ -18,14 +20,16 @@
 namespace wellgyro {
 namespace {
 
+using witsml::Cut;
 using witsml::DateTime;
+using witsml::kNameLength;
 using witsml::Method;
 using witsml::Or;
 using witsml::ToolText;
 using witsml::Uid;
 using witsml::UuidOf;
 
-constexpr std::string_view kNoDate = "1970-01-01T00:00:00.000Z";
+constexpr std::string_view kNoDate = witsml::kNoDate, kUnknown = witsml::kUnknown;
 
 // Columns that stations carry as elements of their own; the others go as extensions.
 bool IsElement(Column column) {
@@ -39,7 +43,16 @@ bool IsElement(Column column) {
 class WitsmlWriter {
  public:
   WitsmlWriter(const SurveyTable& table, bool version_2)
-      : table_(table), head_(table.head), units_(table.head, version_2), version_2_(version_2) {}
+      : table_(table), head_(table.head), units_(table.head, version_2), version_2_(version_2) {
+    for (const ColumnInfo& info : AllColumns()) {
+      const bool matrix =
+          std::any_of(kWitsmlMatrix.begin(), kWitsmlMatrix.end(),
+                      [&](const NamedColumn& e) { return e.column == info.column; });
+      if (matrix || IsElement(info.column) || info.column == Column::kAzimuth) {
+        native_.push_back(info.column);
+      }
+    }
+  }
 
   std::string Write1411();
   std::string Write21();
@@ -54,12 +67,15 @@ class WitsmlWriter {
     xml_.Leaf(tag, units_.Text(quantity, *value),
               {{"uom", units_.Name(quantity)}, {"datum", datum}});
   }
+  /// The datum as an attribute has it, which is an identifier.
+  std::string Datum() const { return head_.datum.empty() ? "" : Uid(head_.datum, ""); }
   void Flag(std::string_view name, const std::optional<bool>& value);
   void Flags();
   void Section();
   void Citation();
   void Index();
   void HeadExtensions(const std::vector<std::string_view>& native);
+  bool ComesBack(std::string_view key, const std::string& value) const;
   void Extension(std::string_view name, const std::string& value, const std::string& uom,
                  std::string_view type);
   void Reference(std::string_view tag, std::string_view type, const std::string& uuid,
@@ -77,6 +93,8 @@ class WitsmlWriter {
   const SurveyHead& head_;
   witsml::Units units_;
   bool version_2_;
+  std::vector<Column> native_;             ///< what 2.1 has elements for
+  std::map<std::string, int> extensions_;  ///< how many of a name there are
   XmlWriter xml_;
 };
 
@@ -85,11 +103,14 @@ void WitsmlWriter::Extension(std::string_view name, const std::string& value,
   if (version_2_) {
     xml_.Open("eml:ExtensionNameValue");
     xml_.Leaf("eml:Name", name);
-    xml_.Leaf("eml:Value", value, {{"uom", uom}});
+    xml_.Leaf("eml:Value", Cut(value, 2000), {{"uom", uom}});
   } else {
-    xml_.Open("extensionNameValue", {{"uid", std::string(name)}});
+    // Remarks come in numbers, identifiers may not.
+    const int number = ++extensions_[std::string(name)];
+    const std::string uid = std::string(name) + (number > 1 ? fmt::format("-{}", number) : "");
+    xml_.Open("extensionNameValue", {{"uid", uid}});
     xml_.Leaf("name", name);
-    xml_.Leaf("value", value, {{"uom", uom}});
+    xml_.Leaf("value", Cut(value, witsml::kValueLength), {{"uom", uom}});
     xml_.Leaf("dataType", type);
   }
   xml_.Close();
@@ -98,9 +119,18 @@ void WitsmlWriter::Extension(std::string_view name, const std::string& value,
 void WitsmlWriter::HeadExtensions(const std::vector<std::string_view>& native) {
   for (const auto& [key, value] : PairsOf(head_)) {
     const bool own = std::find(native.begin(), native.end(), key) != native.end();
-    if (own && !(key == "method" && Method(value).empty())) continue;
+    if (own && ComesBack(key, value)) continue;
     Extension(std::string(kExtension) + key, value, "", "string");
   }
+}
+
+// Whether the element of a fact gives it back as it is.
+bool WitsmlWriter::ComesBack(std::string_view key, const std::string& value) const {
+  if (key == "method") return !Method(value).empty();
+  if (key == "begin" || key == "end" || key == "created") return DateTime(value) == value;
+  if (version_2_) return key != "survey" || Cut(value, 256) == value;
+  if (key == "datum") return Uid(value, "") == value;
+  return Cut(value, kNameLength) == value;
 }
 
 void WitsmlWriter::Reference(std::string_view tag, std::string_view type, const std::string& uuid,
@@ -123,12 +153,15 @@ std::string WitsmlWriter::TypeOf(RowStatus status) const {
 
 void WitsmlWriter::StationStart(std::size_t row) {
   const std::string uid = Uid(table_.Get(TextColumn::kUid, row), fmt::format("s-{:06}", row));
+  extensions_.clear();
   xml_.Open(Tag("trajectoryStation"), {{"uid", uid}});
   const auto utc = table_.Get(Column::kUtc, row);
   if (version_2_) {
     const std::string created = Or(DateTime(head_.names.created), kNoDate);
     xml_.Leaf("eml:Creation", created);
     xml_.Leaf("eml:LastUpdate", created);
+    const std::string more = witsml::PackedRow(table_, row, native_);
+    if (!more.empty()) Extension(witsml::kRowExtension, more, "", "string");
     xml_.Open("eml:Md");
     Measure("eml:MeasuredDepth", Quantity::kLength, table_.md(row));
     xml_.Close();
@@ -142,7 +175,7 @@ void WitsmlWriter::StationStart(std::size_t row) {
   if (!version_2_ && head_.tool == SurveyTool::kGyroMwd) tool = "gyroscopic  MWD";
   xml_.LeafIf(Tag("typeSurveyTool"), tool);
   xml_.LeafIf(Tag("calcAlgorithm"), Method(head_.method));
-  if (!version_2_) Measure("md", Quantity::kLength, table_.md(row), head_.datum);
+  if (!version_2_) Measure("md", Quantity::kLength, table_.md(row), Datum());
 }
 
 void WitsmlWriter::Elements(std::size_t row, bool after_dogleg) {
@@ -157,7 +190,7 @@ void WitsmlWriter::Elements(std::size_t row, bool after_dogleg) {
       continue;
     }
     const bool datum = e.column == Column::kTvd;
-    Measure(Tag(e.name), InfoOf(e.column).quantity, value, datum ? head_.datum : "");
+    Measure(Tag(e.name), InfoOf(e.column).quantity, value, datum ? Datum() : "");
   }
 }
 
@@ -168,7 +201,7 @@ void WitsmlWriter::Model(std::size_t row) {
   if (version_2_) {
     Reference("ToolErrorModel", "witsml21.ToolErrorModel", uid, model);
   } else {
-    xml_.Leaf("iscwsaToolErrorModel", model, {{"uidRef", Uid(uid, model)}});
+    xml_.Leaf("iscwsaToolErrorModel", Cut(model, kNameLength), {{"uidRef", Uid(uid, model)}});
   }
 }
 
@@ -205,14 +238,14 @@ void WitsmlWriter::Location(std::size_t row) {
   const auto northing = table_.Get(Column::kNorthing, row);
   if (easting && northing) {
     xml_.Open("location", {{"uid", "projected"}});
-    xml_.Leaf("wellCRS", Or(head_.crs, "unknown"), {{"uidRef", "projected"}});
+    xml_.Leaf("wellCRS", Cut(Or(head_.crs, "unknown"), kNameLength), {{"uidRef", "projected"}});
     Measure("easting", Quantity::kGridLength, easting);
     Measure("northing", Quantity::kGridLength, northing);
     xml_.Close();
   }
 }
 
-// 2.1 allows a station one extension only, so that these are for 1.4.1.1.
+// 2.1 allows a station one extension only, PackedRow's, so that these are for 1.4.1.1.
 void WitsmlWriter::StationExtensions(std::size_t row) {
   if (const auto rate = table_.Get(Column::kEarthRateMeasured, row)) {
     Extension("c_earthRateCalc", units_.Text(Quantity::kRate, *rate), "dega/h", "double");
@@ -288,14 +321,14 @@ std::string WitsmlWriter::Write1411() {
   xml_.Open("trajectory", {{"uidWell", Uid(names.uid_well, Or(names.well, "well"))},
                            {"uidWellbore", Uid(names.uid_wellbore, Or(names.wellbore, "wellbore"))},
                            {"uid", Uid(names.uid_survey, "survey")}});
-  xml_.Leaf("nameWell", Or(names.well, "unknown"));
-  xml_.Leaf("nameWellbore", Or(names.wellbore, Or(names.well, "unknown")));
-  xml_.Leaf("name", Or(names.survey, "survey"));
+  xml_.Leaf("nameWell", Cut(Or(names.well, kUnknown), kNameLength));
+  xml_.Leaf("nameWellbore", Cut(Or(names.wellbore, kUnknown), kNameLength));
+  xml_.Leaf("name", Cut(Or(names.survey, kUnknown), kNameLength));
   xml_.LeafIf("dTimTrajStart", DateTime(names.begin));
   xml_.LeafIf("dTimTrajEnd", DateTime(names.end));
-  Measure("mdMn", Quantity::kLength, table_.md(0), head_.datum);
-  Measure("mdMx", Quantity::kLength, table_.md(table_.rows() - 1), head_.datum);
-  xml_.LeafIf("serviceCompany", names.contractor);
+  Measure("mdMn", Quantity::kLength, table_.md(0), Datum());
+  Measure("mdMx", Quantity::kLength, table_.md(table_.rows() - 1), Datum());
+  xml_.LeafIf("serviceCompany", Cut(names.contractor, kNameLength));
   Measure("magDeclUsed", Quantity::kAngle, head_.azimuth.declination);
   Measure("gridCorUsed", Quantity::kAngle, head_.grid_correction);
   Measure("gridConUsed", Quantity::kAngle, head_.azimuth.convergence);
@@ -317,8 +350,8 @@ std::string WitsmlWriter::Write1411() {
 
 void WitsmlWriter::Citation() {
   xml_.Open("eml:Citation");
-  xml_.Leaf("eml:Title", Or(head_.names.survey, "survey"));
-  xml_.Leaf("eml:Originator", Or(head_.names.author, "unknown"));
+  xml_.Leaf("eml:Title", Cut(Or(head_.names.survey, kUnknown), 256));
+  xml_.Leaf("eml:Originator", Cut(Or(head_.names.author, kUnknown), 64));
   xml_.Leaf("eml:Creation", Or(DateTime(head_.names.created), kNoDate));
   xml_.Leaf("eml:Format", "wellgyro:wellgyro:1");
   xml_.Close();
@@ -363,8 +396,7 @@ std::string WitsmlWriter::Write21() {
     Reference("DefaultTvdDatum", "eml23.ReferencePoint", "", head_.datum);
   }
   for (std::size_t row = 0; row < table_.rows(); ++row) Station(row);
-  Reference("Wellbore", "witsml21.Wellbore", names.uid_wellbore,
-            Or(names.wellbore, Or(names.well, "unknown")));
+  Reference("Wellbore", "witsml21.Wellbore", names.uid_wellbore, Or(names.wellbore, kUnknown));
   Measure("MagDeclUsed", Quantity::kAngle, head_.azimuth.declination);
   xml_.LeafIf("NominalCalcAlgorithm", Method(head_.method));
   xml_.LeafIf("NominalTypeSurveyTool", ToolText(head_.tool));

@@ -52,6 +52,12 @@ constexpr std::array kSignatures{
               "a program"},
     Signature{"\x89HDF", "an HDF5 file"},
     Signature{"IOGP,", "an IOGP P7/17 file"},
+    Signature{"# WELL TRACE FROM PETREL", "a Petrel well trace"},
+    Signature{"Survey Report", "a text report of a survey"},
+    Signature{"RUN,CODE,BEGIN_UTC", "the diagnosis of a wellgyro survey"},
+    Signature{"RUN,CODE,SMALLEST", "the reliability of a wellgyro survey"},
+    Signature{"MD[m],VAR_NN[m2]", "the covariances of a wellgyro survey"},
+    Signature{"MD[m],TERM,", "the terms of a wellgyro position uncertainty"},
     Signature{"<", "an XML or HTML document"},
     Signature{"{", "a JSON document"},
     Signature{"~V", "a LAS file"},
@@ -93,7 +99,16 @@ FileIdentity ByFormat(std::string_view name) {
 
 FileIdentity ByContent(std::string_view head) {
   for (const Signature& signature : kSignatures) {
-    if (head.starts_with(signature.bytes)) return {FileKind::kForeign, std::string(signature.text)};
+    if (!head.starts_with(signature.bytes)) continue;
+    const bool xml = signature.bytes == "<";
+    const bool one = xml && head.find("witsml.org/schemas/1series") != head.npos;
+    const bool two = xml && head.find("energyml/data/witsmlv2") != head.npos;
+    if (one || two) return {FileKind::kForeign, one ? "a WITSML 1 object" : "a WITSML 2 object"};
+    if (xml && head.find("<CD_") != head.npos) return {FileKind::kForeign, "an EDM export"};
+    if (signature.bytes == "{" && head.find("\"wellgyro.survey/1\"") != head.npos) {
+      return {FileKind::kForeign, "a wellgyro survey for programs"};
+    }
+    return {FileKind::kForeign, std::string(signature.text)};
   }
   const bool text = std::none_of(head.begin(), head.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);

@@ -1,0 +1,395 @@
+// Files made from wells with one error planted in each: of unit, north, datum, offset or null. None
+// may be converted into other numbers than the truth's, and the clean ones must get in.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/io/exchange/exchange.h"
+
+#include "foreign_files.h"
+
+namespace wellgyro {
+namespace {
+
+using foreign::Look;
+using foreign::Sheet;
+using foreign::SheetOf;
+using foreign::Well;
+
+constexpr std::array kLooks{Look::kBrackets, Look::kUnitLine, Look::kTabs,
+                            Look::kLas,      Look::kReport,   Look::kPreamble};
+
+std::filesystem::path Reference(const std::string& name) {
+  return std::filesystem::path(WELLGYRO_REFERENCE_DIR) / name;
+}
+
+void Add(std::vector<Well>& wells, const std::filesystem::path& path, const ReadOptions& options) {
+  const auto table = ReadSurvey(path, options);
+  ASSERT_TRUE(table) << path << " " << table.fault().text;
+  Well well{.name = path.stem().string()};
+  for (std::size_t row = 0; row < table->rows(); ++row) {
+    const auto rounded = [](double value) { return std::round(value * 100) / 100; };
+    well.md.push_back(rounded(table->md(row)));
+    well.inclination.push_back(rounded(ToDegrees(table->inclination(row))));
+    well.azimuth.push_back(std::fmod(rounded(ToDegrees(table->azimuth(row))), 360));
+  }
+  const auto k = static_cast<double>(wells.size());
+  well.convergence = (wells.size() % 2 == 0 ? -1 : 1) * (0.6 + 0.23 * k);
+  well.declination = 3.1 + 0.37 * k;
+  well.elevation = 25.3 + 3 * k;
+  well.northing = 6625015.54 + 1000 * k;
+  well.easting = 427710.69 - 1000 * k;
+  Sum(well);
+  wells.push_back(well);
+}
+
+std::vector<Well> Wells() {
+  std::vector<Well> wells;
+  const std::filesystem::path own = std::filesystem::path(WELLGYRO_DATA_DIR) / "wells";
+  for (const char* name : {"s-shape.csv", "horizontal-turn.csv", "near-vertical.csv"}) {
+    Add(wells, own / name, {});
+  }
+  if (!std::filesystem::exists(Reference("wells"))) {
+    std::printf("the reference wells are not here: our own alone\n");
+    return wells;
+  }
+  const ReadOptions metres{.depth_unit = LengthUnit::kMetre, .north = North::kGrid};
+  const ReadOptions columns{.columns = {{"MD[m]", "1"}, {"INC", "2"}, {"AZI_GRID", "3"}}};
+  for (const char* name : {"iscwsa-1.txt", "iscwsa-2.txt", "iscwsa-3.txt"}) {
+    Add(wells, Reference("wells") / name, columns);
+  }
+  Add(wells, Reference("wells/volve/15_9-F-12_Survey_Data.csv"), metres);
+  Add(wells, Reference("wells/nlog/P11-A-02_SURV.csv"), metres);
+  Add(wells, Reference("wells/wellpathpy/well9.csv"), {});
+  Add(wells, Reference("wells/wellpathpy/well10.csv"), {});
+  Add(wells, Reference("wells/p717/exampleA.p717"), {});
+  return wells;
+}
+
+// What is wrong with a table that was read, against the truth; empty where nothing is.
+std::string WrongIn(const SurveyTable& table, const Well& well) {
+  const double grid_to_true = FromDegrees(well.convergence);
+  const double grid_to_magnetic = FromDegrees(well.convergence - well.declination);
+  const auto turn = [&](North north) {
+    return north == North::kTrue ? grid_to_true : north == North::kMagnetic ? grid_to_magnetic : 0;
+  };
+  if (table.head.azimuth.north == North::kUnknown) return "";  // it cannot be written
+  std::size_t at = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    while (at + 1 < well.md.size() && well.md[at] < table.md(row) - 0.02) ++at;
+    if (std::abs(table.md(row) - well.md[at]) > 0.02) return "MD";
+    if (table.status(row) != RowStatus::kSurveyed) continue;
+    const double inclination = FromDegrees(well.inclination[at]);
+    if (std::abs(table.inclination(row) - inclination) > FromDegrees(0.011)) return "inclination";
+    const double azimuth = FromDegrees(well.azimuth[at]) + turn(table.head.azimuth.north);
+    if (std::abs(WrapPi(table.azimuth(row) - azimuth)) * std::sin(inclination) >
+        FromDegrees(0.011)) {
+      return "azimuth";
+    }
+    const double angle = turn(table.head.offsets);
+    const double north = well.north[at] * std::cos(angle) - well.east[at] * std::sin(angle);
+    const double east = well.north[at] * std::sin(angle) + well.east[at] * std::cos(angle);
+    const auto off = [&](Column column, double wanted) {
+      const auto value = table.Get(column, row);
+      return value && std::abs(*value - wanted) > 0.02;
+    };
+    if (off(Column::kTvd, well.tvd[at])) return "TVD";
+    if (off(Column::kNorth, north) || off(Column::kEast, east)) return "offsets";
+    if (off(Column::kNorthing, well.northing + well.north[at])) return "northing";
+    if (off(Column::kEasting, well.easting + well.east[at])) return "easting";
+    if (off(Column::kTvdSubSea, well.tvd[at] - well.elevation)) return "TVDSS";
+  }
+  const auto& elevation = table.head.datum_elevation;
+  if (elevation && std::abs(*elevation - well.elevation) > 0.02) return "elevation";
+  return "";
+}
+
+bool Named(const SurveyTable& table) {
+  for (const std::string& note : table.head.notes) {
+    if (!note.starts_with("MD, inclination and azimuth agree") &&
+        !note.starts_with("nothing in the file checks") &&
+        !note.starts_with("nothing in it says")) {
+      return true;
+    }
+  }
+  return false;
+}
+
+struct Planted {
+  std::string name;
+  bool map;  ///< wants map coordinates beside
+  std::function<void(Sheet&, const Well&)> plant;
+};
+
+void Scale(Sheet& sheet, std::initializer_list<const char*> names, double factor) {
+  for (const char* name : names) {
+    for (double& v : sheet.At(name).values) v *= factor;
+  }
+}
+void Shift(Sheet& sheet, const char* name, double by) {
+  for (double& v : sheet.At(name).values) v += by;
+}
+double FactorIn(const Sheet& sheet) { return sheet.columns[0].unit == "ft" ? 1 / 0.3048 : 1; }
+double Other(const Sheet& sheet) { return sheet.columns[0].unit == "ft" ? 0.3048 : 1 / 0.3048; }
+void SetCell(Sheet& sheet, const char* name, const Well& well, const char* text) {
+  auto& column = sheet.At(name);
+  column.cells.resize(column.values.size());
+  column.cells[well.md.size() * 2 / 3] = text;
+}
+void TurnOffsets(Sheet& sheet, double degrees) {
+  const double c = std::cos(FromDegrees(degrees)), s = std::sin(FromDegrees(degrees));
+  auto& north = sheet.At("N").values;
+  auto& east = sheet.At("E").values;
+  for (std::size_t k = 0; k < north.size(); ++k) {
+    const double n = north[k] * c - east[k] * s, e = north[k] * s + east[k] * c;
+    north[k] = n, east[k] = e;
+  }
+}
+void TurnAzimuths(Sheet& sheet, double degrees) {
+  for (double& v : sheet.At("AZI").values) v = std::fmod(v + degrees + 720, 360);
+}
+
+std::vector<Planted> Units() {
+  return {
+      {"TVD in another unit", false, [](Sheet& s, const Well&) { Scale(s, {"TVD"}, Other(s)); }},
+      {"MD in another unit", false, [](Sheet& s, const Well&) { Scale(s, {"MD"}, Other(s)); }},
+      {"offsets in another unit", false,
+       [](Sheet& s, const Well&) {
+         Scale(s, {"N", "E"}, Other(s));
+       }},
+      {"all lengths in another unit than they say", false,
+       [](Sheet& s, const Well&) {
+         Scale(s, {"MD", "TVD", "N", "E"}, Other(s));
+       }},
+      {"map coordinates in another unit", true,
+       [](Sheet& s, const Well&) {
+         Scale(s, {"NORTHING", "EASTING"}, Other(s));
+       }},
+      {"positions without unit in another one", false,
+       [](Sheet& s, const Well&) {
+         Scale(s, {"TVD", "N", "E"}, Other(s));
+         for (const char* name : {"TVD", "N", "E"}) s.At(name).unit.clear();
+       }},
+      {"no unit of depth", false,
+       [](Sheet& s, const Well&) {
+         for (const char* name : {"MD", "TVD", "N", "E", "DLS"}) s.At(name).unit.clear();
+       }},
+      {"no unit of depth, others said", false,
+       [](Sheet& s, const Well&) { s.At("MD").unit.clear(); }},
+  };
+}
+
+std::vector<Planted> Norths() {
+  return {
+      {"true azimuths called grid", false,
+       [](Sheet& s, const Well& w) { TurnAzimuths(s, w.convergence); }},
+      {"grid azimuths called true beside a map", true,
+       [](Sheet& s, const Well&) { s.north = North::kTrue; }},
+      {"magnetic azimuths called grid", false,
+       [](Sheet& s, const Well& w) { TurnAzimuths(s, w.convergence - w.declination); }},
+      {"convergence of the wrong sign", true,
+       [](Sheet& s, const Well& w) {
+         TurnAzimuths(s, w.convergence);
+         s.north = North::kTrue;
+         s.convergence = -w.convergence;
+       }},
+      {"convergence unsaid, grid azimuths called true", true,
+       [](Sheet& s, const Well&) {
+         s.convergence.reset();
+         s.north = North::kTrue;
+       }},
+      {"north unsaid beside a map", true, [](Sheet& s, const Well&) { s.north = North::kUnknown; }},
+      {"true azimuths, north unsaid, beside a map", true,
+       [](Sheet& s, const Well& w) {
+         TurnAzimuths(s, w.convergence);
+         s.north = North::kUnknown;
+         s.Drop("N");
+         s.Drop("E");
+       }},
+      {"offsets from true, azimuths from grid north", false,
+       [](Sheet& s, const Well& w) { TurnOffsets(s, w.convergence); }},
+      {"offsets from a north that nothing tells", false,
+       [](Sheet& s, const Well& w) {
+         TurnOffsets(s, w.convergence);
+         s.convergence.reset();
+       }},
+  };
+}
+
+std::vector<Planted> Datums() {
+  return {
+      {"TVD from sea level", false,
+       [](Sheet& s, const Well& w) { Shift(s, "TVD", -w.elevation * FactorIn(s)); }},
+      {"TVD from the ground", false,
+       [](Sheet& s, const Well&) { Shift(s, "TVD", -7.3 * FactorIn(s)); }},
+      {"TVD from above the datum", false,
+       [](Sheet& s, const Well&) { Shift(s, "TVD", 4.1 * FactorIn(s)); }},
+      {"elevation in another unit", true,
+       [](Sheet& s, const Well&) { s.elevation = *s.elevation / 0.3048; }},
+      {"elevation of another datum", true,
+       [](Sheet& s, const Well&) { s.elevation = *s.elevation - 12.5; }},
+      {"elevation unsaid", true, [](Sheet& s, const Well&) { s.elevation.reset(); }},
+      {"TVD upwards", false, [](Sheet& s, const Well&) { Scale(s, {"TVD"}, -1); }},
+      {"TVDSS upwards", true, [](Sheet& s, const Well&) { Scale(s, {"TVDSS"}, -1); }},
+  };
+}
+
+std::vector<Planted> Offsets() {
+  return {
+      {"north and east exchanged", false,
+       [](Sheet& s, const Well&) { std::swap(s.At("N").values, s.At("E").values); }},
+      {"east of the wrong sign", false, [](Sheet& s, const Well&) { Scale(s, {"E"}, -1); }},
+      {"north of the wrong sign", false, [](Sheet& s, const Well&) { Scale(s, {"N"}, -1); }},
+      {"both of the wrong sign", false,
+       [](Sheet& s, const Well&) {
+         Scale(s, {"N", "E"}, -1);
+       }},
+      {"map coordinates as offsets", false,
+       [](Sheet& s, const Well& w) {
+         Shift(s, "N", w.northing * FactorIn(s));
+         Shift(s, "E", w.easting * FactorIn(s));
+       }},
+      {"northing and easting exchanged", true,
+       [](Sheet& s, const Well&) { std::swap(s.At("NORTHING").values, s.At("EASTING").values); }},
+      {"another well's offsets", false, [](Sheet& s, const Well&) { TurnOffsets(s, 47); }},
+  };
+}
+
+std::vector<Planted> Nulls() {
+  std::vector<Planted> planted;
+  for (const char* column : {"INC", "AZI", "TVD", "N", "E"}) {
+    for (const char* null : {"-999.25", "-9999", "-999", "9999"}) {
+      planted.push_back({std::string(null) + " for " + column, false,
+                         [=](Sheet& s, const Well& w) { SetCell(s, column, w, null); }});
+    }
+  }
+  planted.push_back(
+      {"0 for TVD", false, [](Sheet& s, const Well& w) { SetCell(s, "TVD", w, "0"); }});
+  planted.push_back(
+      {"-999.25 for MD", false, [](Sheet& s, const Well& w) { SetCell(s, "MD", w, "-999.25"); }});
+  planted.push_back({"N of 9999 at the second station", false, [](Sheet& s, const Well&) {
+                       auto& north = s.At("N");
+                       north.cells.resize(north.values.size());
+                       north.cells[1] = "9999";
+                     }});
+  return planted;
+}
+
+// An error that changes nothing is none: a turn within what the file's digits show, say.
+bool Matters(const std::string& planted, const Well& well) {
+  double reach = 0;
+  for (std::size_t k = 0; k < well.md.size(); ++k) {
+    reach = std::max(reach, std::hypot(well.north[k], well.east[k]));
+  }
+  return reach > 20 || planted.find("azimuth") == std::string::npos;
+}
+
+struct Count {
+  int planted = 0, refused = 0, named = 0, silent = 0, wrong = 0;
+};
+
+class PlantedErrors : public testing::Test {
+ protected:
+  static const std::vector<Well>& AllWells() {
+    static const std::vector<Well> wells = Wells();
+    return wells;
+  }
+
+  // Every error of a kind in every well, looks and units by turns, until `many` files are made.
+  Count Plant(const std::string& kind, const std::vector<Planted>& errors, int many) {
+    Count count;
+    const std::size_t each = errors.size() * AllWells().size();
+    for (std::size_t k = 0; count.planted < many && k < 20 * each; ++k) {
+      const Planted& error = errors[k % errors.size()];
+      const Well& well = AllWells()[k / errors.size() % AllWells().size()];
+      const Look look = kLooks[(k + k / each) % kLooks.size()];
+      const std::string unit = (k / 3 + k / each) % 2 == 0 ? "m" : "ft";
+      if (!Matters(error.name, well)) continue;
+      // LAS says itself what stands for nothing.
+      if (look == Look::kLas && error.name.starts_with("-999.25")) continue;
+      Sheet sheet = SheetOf(well, unit, error.map);
+      error.plant(sheet, well);
+      ++count.planted;
+      Judge(TextOf(sheet, look, well.name),
+            kind + ", " + error.name + ", " + well.name + ", " + unit + ", look " +
+                std::to_string(static_cast<int>(look)),
+            well, count);
+    }
+    std::printf("%-8s %4d planted: %4d refused, %4d named, %d silent, %d converted wrong\n",
+                kind.c_str(), count.planted, count.refused, count.named, count.silent, count.wrong);
+    return count;
+  }
+
+  static void Judge(const std::string& text, const std::string& what, const Well& well,
+                    Count& count) {
+    const auto table = ParseSurvey(text, "file");
+    if (!table) {
+      ++count.refused;
+      return;
+    }
+    const std::string wrong = WrongIn(*table, well);
+    if (!wrong.empty()) {
+      ++count.wrong;
+      ADD_FAILURE() << what << ": converted into a wrong " << wrong << "\n"
+                    << testing::PrintToString(table->head.notes) << "\n"
+                    << text.substr(0, 600);
+    } else if (Named(*table)) {
+      ++count.named;
+    } else {
+      ++count.silent;
+      std::printf("  silent: %s\n", what.c_str());
+    }
+  }
+};
+
+TEST_F(PlantedErrors, AThousandAreNamedOrRefused) {
+  Count all;
+  const auto add = [&](const Count& c) {
+    all.planted += c.planted;
+    all.silent += c.silent;
+    all.wrong += c.wrong;
+  };
+  add(Plant("unit", Units(), 200));
+  add(Plant("north", Norths(), 200));
+  add(Plant("datum", Datums(), 200));
+  add(Plant("offset", Offsets(), 200));
+  add(Plant("null", Nulls(), 200));
+  EXPECT_EQ(all.planted, 1000);
+  EXPECT_LE(all.silent, 10);
+  EXPECT_EQ(all.wrong, 0);
+}
+
+TEST_F(PlantedErrors, CleanFilesGetIn) {
+  int clean = 0;
+  for (const Well& well : AllWells()) {
+    for (const Look look : kLooks) {
+      for (const std::string unit : {"m", "ft"}) {
+        for (const bool map : {false, true}) {
+          const std::string text = TextOf(SheetOf(well, unit, map), look, well.name);
+          const auto table = ParseSurvey(text, "file");
+          ASSERT_TRUE(table) << well.name << " look " << static_cast<int>(look) << unit << "\n"
+                             << table.fault().text << "\n"
+                             << text.substr(0, 600);
+          EXPECT_EQ(WrongIn(*table, well), "") << well.name;
+          EXPECT_EQ(table->rows(), well.md.size());
+          EXPECT_FALSE(Named(*table)) << testing::PrintToString(table->head.notes);
+          ++clean;
+        }
+      }
+    }
+  }
+  std::printf("%d clean files, none refused\n", clean);
+}
+
+}  // namespace
+}  // namespace wellgyro
