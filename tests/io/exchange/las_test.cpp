@@ -86,14 +86,14 @@ TEST(Las, StepIsFixedWhereDepthsAreEven) {
   EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas), testing::ContainsRegex("STEP +\\.M +0 :"));
 }
 
-TEST(Las, NoColonInDataAndNoNullThatIsANumber) {
+TEST(Las, ColonsComeBackAndNoNullIsANumber) {
   SurveyTable t = support::FullSurvey();
   t.head.names.well = "A:1\nB";
   t.Set(Column::kVerticalSection, 2, -999.25);
   const std::string text = WriteSurvey(t, SurveyFormat::kLas);
   const auto back = ParseSurvey(text, "text");
   ASSERT_TRUE(back) << back.fault().text;
-  EXPECT_EQ(back->head.names.well, "A 1 B");
+  EXPECT_EQ(back->head.names.well, "A:1 B");
   EXPECT_EQ(back->Get(Column::kVerticalSection, 2), -999.25);
 }
 

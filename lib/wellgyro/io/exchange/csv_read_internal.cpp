@@ -1,6 +1,7 @@
 // Surveys as delimited tables: our own survey.csv and whatever importers are fed with.
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include <fmt/core.h>
 
@@ -154,6 +155,10 @@ class CsvReader {
         continue;
       }
       std::vector<Heading> headings = CsvHeadingsOf(*fields, options_);
+      // "Depth" twice is the lower half of "Measured Depth" and "Vertical Depth".
+      const auto depths = std::count_if(headings.begin(), headings.end(),
+                                        [](const Heading& h) { return h.column == Column::kMd; });
+      if (depths > 1 && !above_.empty()) continue;
       claims_.position_log = NamePositions(headings);
       if (!NameStations(headings) && !claims_.position_log) continue;
       delimiter_ = delimiter;
@@ -213,19 +218,34 @@ class CsvReader {
     for (const char delimiter : {'\t', ';', ',', ' '}) {
       const auto fields = SplitQuoted(line, delimiter);
       if (!fields || fields->size() < 3 || !AreNumbers(*fields, line, delimiter)) continue;
-      // The fewest lines that name the columns; more of them may be the end of a head.
-      for (std::size_t from = above_.size(); from-- > 0;) {
-        const std::vector<std::string> lines(above_.begin() + static_cast<std::ptrdiff_t>(from),
-                                             above_.end());
-        const auto headings = MergedHeadings(lines, std::string(line), delimiter, options_);
-        if (!NameStations(headings)) continue;
-        delimiter_ = delimiter;
-        lines_.Back();
-        MakeColumns(headings);
-        return true;
-      }
+      const std::vector<Heading> headings = BestHeadings(std::string(line), delimiter);
+      if (headings.empty()) continue;
+      delimiter_ = delimiter;
+      lines_.Back();
+      MakeColumns(headings);
+      return true;
     }
     return false;
+  }
+
+  // By as many of the lines above as name the most different columns: more of them may be the end
+  // of a head.
+  std::vector<Heading> BestHeadings(const std::string& line, char delimiter) const {
+    std::vector<Heading> best;
+    std::size_t most = 0;
+    for (std::size_t from = above_.size(); from-- > 0;) {
+      const std::vector<std::string> lines(above_.begin() + static_cast<std::ptrdiff_t>(from),
+                                           above_.end());
+      std::vector<Heading> headings = MergedHeadings(lines, line, delimiter, options_);
+      std::set<Column> named;
+      for (const Heading& h : headings) {
+        if (h.column) named.insert(*h.column);
+      }
+      if (!NameStations(headings) || named.size() <= most) continue;
+      most = named.size();
+      best = std::move(headings);
+    }
+    return best;
   }
 
   void MakeColumns(const std::vector<Heading>& headings) {
@@ -298,7 +318,8 @@ class CsvReader {
 
   // A number, or nothing where the cell says so; `i` may lie behind a row that is cut.
   std::optional<double> Maybe(const std::vector<std::string>& fields, std::size_t i) {
-    if (i < fields.size() && IsNothing(TrimCell(fields[i]))) return std::nullopt;
+    const std::string_view cell = i < fields.size() ? TrimCell(fields[i]) : "?";
+    if (IsNothing(cell) && !EqualNoCase(cell, "nan")) return std::nullopt;
     return Number(fields, i);
   }
 
