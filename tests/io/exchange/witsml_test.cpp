@@ -85,7 +85,8 @@ TEST(Witsml, FaultsNameTheElementAndItsLine) {
   const Fault number = Refusal(Trajectory(Station("1") + Station("x")));
   EXPECT_THAT(number.text, HasSubstr("/trajectorys/trajectory/trajectoryStation[2]/md: 'x'"));
   EXPECT_EQ(number.line, 9);
-  EXPECT_EQ(Refusal(Trajectory(Station("2") + Station("1"))).code, FaultCode::kOrder);
+  EXPECT_EQ(Refusal(Trajectory(Station("1") + Station("3") + Station("2"))).code,
+            FaultCode::kOrder);
   EXPECT_THAT(Refusal(Trajectory(Station("1", "<tvd uom=\"parsec\">1</tvd>"))).text,
               HasSubstr("parsec"));
   EXPECT_THAT(Refusal(Trajectory("<trajectoryStation uid=\"s\"><md uom=\"m\">1</md>"

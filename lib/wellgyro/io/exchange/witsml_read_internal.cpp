@@ -63,8 +63,10 @@ class WitsmlReader {
     }
     std::vector<pugi::xml_node> found;
     std::string names;
+    bool any = false;
     for (const pugi::xml_node child : root.children()) {
       if (LocalName(child) != "trajectory") continue;
+      any = true;
       const std::string called = TextOf(ChildOf(child, "name"));
       const std::string uid = ToUtf8(child.attribute("uid").value());
       if (names.size() < 1000)
@@ -72,7 +74,7 @@ class WitsmlReader {
       const std::string& wanted = options_.trajectory;
       if (wanted.empty() || wanted == called || wanted == uid) found.push_back(child);
     }
-    if (names.empty()) xml_.Complain(FaultCode::kForeign, root, "no trajectory in it");
+    if (!any) xml_.Complain(FaultCode::kForeign, root, "no trajectory in it");
     if (found.empty()) {
       xml_.Complain(FaultCode::kConflict, root,
                     "no trajectory is called " + options_.trajectory + ": there are " + names);
