@@ -33,8 +33,8 @@ class Caller {
         return Depth(session);
       case 2:
         return Poll(session);
-      case 3:
-        return wellgyro_adjust(session) != WELLGYRO_OK;
+      case 3:  // the one that takes long
+        return Below(40) == 0 && wellgyro_adjust(session) != WELLGYRO_OK;
       case 4:
         return Below(20) == 0 && wellgyro_finish(session) != WELLGYRO_OK;
       case 5:

@@ -14,8 +14,9 @@ void HighSideTracker::AddUnseen(const AlongHole& along, double angle, double var
   var_unseen_ += variance;
   // The line fitted to the level is worth no more than what that may have changed it by.
   const double noise = options_.accel_noise * inverse_gravity_;
-  if (variance > 0) {
-    memory_.Shorten(4 * noise * noise / (4 * noise * noise + variance * memory_.seconds));
+  const double spread = variance * memory_.seconds;
+  if (spread > 0) {
+    memory_.Shorten(4 * noise * noise / (4 * noise * noise + spread));
   }
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <tuple>
 
+#include "wellgyro/base/time_range.h"
+
 namespace wellgyro {
 namespace {
 
@@ -19,9 +21,10 @@ double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
 
 std::string Place(UtcTime utc) { return " at utime_us " + std::to_string(utc.ns / 1000); }
 
-bool IsTime(UtcTime utc) {
-  constexpr std::int64_t kMost = 4'000'000'000'000'000'000;  // year 2096; sums stay inside int64
-  return utc.ns > -kMost && utc.ns < kMost;
+// No hole is as long as 100 km; numbers beyond are damage, and would ask for as many stations.
+bool IsDepth(double md) {
+  constexpr double kMost = 1e5;
+  return std::abs(md) <= kMost;
 }
 
 }  // namespace
@@ -56,7 +59,9 @@ bool DepthTrack::Seen(const DepthMark& mark) const {
 }
 
 std::optional<Fault> DepthTrack::Push(const DepthMark& mark) {
-  if (!IsTime(mark.utc) || !std::isfinite(mark.md)) {
+  const double sigma = mark.sigma.value_or(setup_.sigma_md);
+  if (!IsWithinReach(mark.utc) || !IsWithinReach(mark.seq) || !IsDepth(mark.md) || !(sigma >= 0) ||
+      !IsDepth(sigma)) {
     return Fault{.code = FaultCode::kRange,
                  .text = "depth mark that is no depth" + Place(mark.utc)};
   }
@@ -72,7 +77,7 @@ std::optional<Fault> DepthTrack::Push(const DepthMark& mark) {
                    .stopped = mark.stopped,
                    .jumps = false,
                    .md = mark.md,
-                   .sigma = mark.sigma.value_or(setup_.sigma_md)};
+                   .sigma = sigma};
   const auto key = [](const Mark& m) { return std::tuple(m.utc, m.session, m.seq); };
   const auto it = std::ranges::upper_bound(marks_, key(entry), {}, key);
   const auto i = static_cast<std::size_t>(it - marks_.begin());
@@ -128,7 +133,7 @@ std::optional<Fault> DepthTrack::Push(const Event& event) {
                                : s.event_id == 0 && s.utc == event.utc && s.seq == event.seq;
   };
   if (std::ranges::any_of(shifts_, same)) return std::nullopt;
-  if ((!event.has_value && !zero) || !IsTime(event.utc) || !std::isfinite(event.value_m)) {
+  if ((!event.has_value && !zero) || !IsWithinReach(event.utc) || !IsDepth(event.value_m)) {
     return Fault{.code = FaultCode::kRange,
                  .text = "depth event without a depth" + Place(event.utc)};
   }
@@ -158,7 +163,7 @@ bool DepthTrack::Settled(UtcTime utc) const {
   return after < marks_.size() && marks_[after].utc <= final;
 }
 
-bool DepthTrack::Covers(UtcTime utc) const { return IsTime(utc) && Settled(utc); }
+bool DepthTrack::Covers(UtcTime utc) const { return IsWithinReach(utc) && Settled(utc); }
 
 std::int32_t DepthTrack::SegmentAt(UtcTime utc) const {
   const auto it = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
@@ -282,7 +287,7 @@ AlongHole DepthTrack::Join(UtcTime utc, Span span) const {
 }
 
 AlongHole DepthTrack::AtRest(UtcTime begin, UtcTime end) const {
-  if (!IsTime(begin) || !IsTime(end)) return {};
+  if (!IsWithinReach(begin) || !IsWithinReach(end)) return {};
   const UtcTime utc = begin + Duration{(end - begin).ns / 2};
   const Span span = SpanAt(utc);
   if (!Bracketed(utc, span, begin, end)) return {};

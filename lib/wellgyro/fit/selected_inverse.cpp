@@ -8,6 +8,7 @@
 namespace wellgyro {
 
 SelectedInverse::SelectedInverse(const Eigen::SparseMatrix<double>& matrix) {
+  if (matrix.rows() == 0) return;
   // Unknowns differ by ten orders of magnitude.
   scale_ = matrix.diagonal();
   if (!(scale_.minCoeff() > 0)) return;

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <iterator>
 
+#include "wellgyro/base/time_range.h"
+
 namespace wellgyro {
 namespace {
 
@@ -27,8 +29,11 @@ std::size_t Slot(std::int64_t seq) {
 bool Within(const Eigen::Vector3d& v, double limit) { return v.squaredNorm() <= limit * limit; }
 
 bool IsPossible(const ImuSample& sample) {
-  return sample.stamp.period_ns > 0 && Within(sample.w_IT_T, kRateLimit) &&
-         Within(sample.f_T, kForceLimit) && (!sample.has_mag || Within(sample.b_T, kFieldLimit));
+  const SampleStamp& stamp = sample.stamp;
+  const bool counted = IsWithinReach(stamp.tool_time) && IsWithinReach(stamp.utc) &&
+                       IsWithinReach(stamp.seq) && stamp.period_ns > 0;
+  return counted && Within(sample.w_IT_T, kRateLimit) && Within(sample.f_T, kForceLimit) &&
+         (!sample.has_mag || Within(sample.b_T, kFieldLimit));
 }
 
 // Sequence numbers and tool time tell the same story if the step in time is the step in number

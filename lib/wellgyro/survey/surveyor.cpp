@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/time_range.h"
 #include "wellgyro/calibration/apply.h"
 #include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/depth_track.h"
@@ -152,7 +153,8 @@ void Surveyor::Push(std::span<const ImuSample> batch) {
       return sample.stamp.tool != tool->tool();
     });
     tool->Push(std::span(at, end));
-    rooms_->newest = std::prev(end)->stamp.utc;
+    const UtcTime last = std::prev(end)->stamp.utc;
+    if (IsWithinReach(last)) rooms_->newest = last;
     rooms_->Work(*tool);
     at = end;
   }
@@ -187,7 +189,8 @@ void Surveyor::Push(const StillWindow& window) {
 
 void Surveyor::Push(const DepthMark& mark) {
   if (!rooms_->Open()) return;
-  if (rooms_->newest && mark.utc - *rooms_->newest > kAhead) {
+  const bool dated = rooms_->newest && IsWithinReach(mark.utc);
+  if (dated && mark.utc - *rooms_->newest > kAhead) {
     ++rooms_->refused.impossible;
     rooms_->sink.OnFault(Fault{FaultCode::kRange,
                                fmt::format("a depth mark is stamped {:.0f} s ahead of the samples "
