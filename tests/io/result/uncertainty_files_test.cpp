@@ -303,7 +303,7 @@ TEST_F(UncertaintyFiles, MutatedFilesNeverGiveNan) {
       EXPECT_NE(std::string(error.what()), "");
     }
   }
-  EXPECT_GT(answered, 100);
+  EXPECT_GT(answered, 50);  // rows with more or fewer fields than the header are refused
   EXPECT_GT(refused, 200);
 }
 
