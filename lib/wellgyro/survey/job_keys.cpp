@@ -85,7 +85,6 @@ constexpr NumberRange kFraction{.min = 0, .max = 1};
 constexpr NumberRange kWhole{.min = 0, .max = std::numeric_limits<std::int32_t>::max()};
 constexpr NumberRange kPlace{.min = -1e6, .max = 1e6};
 constexpr NumberRange kDepth{.min = -1e5, .max = 1e5};
-constexpr NumberRange kDegC{.min = -273.15, .max = 1000};
 
 constexpr std::array kWell{
     Word("well", "name", "text", "none", "of the well, for the files"),
