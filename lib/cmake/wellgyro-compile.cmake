@@ -3,8 +3,9 @@
 # Contraction is off so that a*b+c has one result on every processor: the same messages give the
 # same bytes. For the same reason there is no -ffast-math and no -march=native anywhere.
 #
-# Optimising, g++ 12 sees what is not there in std::string and std::optional (its PR 105329, 105562);
-# the build with assertions, which optimises less, keeps both warnings.
+# Optimising, g++ 12 sees what is not there in std::string and std::optional (its PR 105329, 105562),
+# and so it does between the checks of sanitizers, see CMakePresets.json; the build with assertions,
+# which optimises less, keeps both warnings.
 function(wellgyro_compile target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
