@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/uncertainty/gyro_mode.h"
 
 #include "allan_profiles.h"
 #include "cases.h"
@@ -154,11 +155,50 @@ TEST(AllanErrors, RefusesWhereTheGyroFeelsNoTurn) {
 // gate it agrees in azimuth with N and B where the path is straight.
 TEST(PrintedAllan, SaysWhatItLeavesOut) {
   const PrintedAllan printed = PrintedAllanModel(Everything());
-  EXPECT_EQ(printed.left_out, (std::vector<std::string>{"ALLAN-Q", "ALLAN-K", "ALLAN-R"}));
+  EXPECT_EQ(printed.left_out, std::vector<std::string>{"ALLAN-Q"});
   EXPECT_FALSE(FindComplaint(printed.model));
   AllanRun external = Everything();
   external.initialise = -1;
   EXPECT_FALSE(FindComplaint(PrintedAllanModel(external).model));
+}
+
+// The four recursions by hand over three legs of a straight hole at 30 deg: a = 2, 40 s, 60 s, 20
+// s.
+TEST(PrintedAllan, FourRecursionsByHand) {
+  std::vector<SurveyPoint> survey;
+  for (const double md : {0.0, 40.0, 100.0, 120.0}) survey.push_back({md, 30 * kDeg, 90 * kDeg, 0});
+  const double a = 2, legs[] = {40, 60, 20};
+  double n = 0, b = 0, k = 0, r = 0;
+  for (const double dt : legs) {
+    n += a * a * dt;
+    b += a * dt;
+    k += a * a * dt * dt * dt / 3;
+    r += a * dt * dt / 2;
+  }
+  const double expected[] = {std::sqrt(n), b, std::sqrt(k), r};
+  const char* const codes[] = {"GXY-GRW", "GXY-GD", "GXY-GRR", "GXY-GR"};
+  for (int i = 0; i < 4; ++i) {
+    AllanRun run;
+    run.speed = 1;
+    run.initialise = -1;
+    double* const coefficients[] = {&run.noise.angle_random_walk, &run.noise.bias_instability,
+                                    &run.noise.rate_random_walk, &run.noise.rate_ramp};
+    *coefficients[i] = 1e-5;
+    ErrorModel model = PrintedAllanModel(run).model;
+    std::erase_if(model.terms, [](const ErrorTerm& t) { return t.magnitude == 0; });
+    ASSERT_EQ(model.terms.size(), 1U);
+    EXPECT_EQ(model.terms[0].weight->code, codes[i]);
+    GyroModeTracker tracker(model);
+    tracker.Begin(survey[0]);
+    for (std::size_t s = 1; s < survey.size(); ++s) tracker.Advance(survey[s - 1], survey[s]);
+    const GyroMode& mode = tracker.mode();
+    const double h[] = {std::sqrt(mode.walk_time[0]), mode.drift_time[0],
+                        std::sqrt(mode.rate_walk_time[0]), mode.ramp_time[0]};
+    EXPECT_NEAR(h[i], expected[i], 1e-9 * expected[i]) << codes[i];
+    // And as they reach the position: the last station's own error moves it over half a leg.
+    const auto errors = PropagateErrors(survey, {}, model);
+    EXPECT_GT(errors.cov_p.back().trace(), 0) << codes[i];
+  }
 }
 
 // Section 5 (iv) of the gyro literature's recursion: on a straight hole the printed form overstates

@@ -13,7 +13,9 @@ namespace {
 constexpr double kDefaultInitialise = 15 * units::kDeg;
 
 bool IsContinuous(const ErrorTerm& term) {
-  return term.weight->role == WeightRole::kDrift || term.weight->role == WeightRole::kWalk;
+  const WeightRole role = term.weight->role;
+  return role == WeightRole::kDrift || role == WeightRole::kWalk || role == WeightRole::kRateWalk ||
+         role == WeightRole::kRamp;
 }
 
 const ErrorModel* OnlyModel(std::span<const ToolLeg> legs) {
@@ -96,6 +98,12 @@ PositionUncertainty PrintedPart(const SurveyedWell& well, const Surroundings& su
   of_part.cov_tie_in.setZero();
   PositionUncertainty part = PropagateErrors(well.survey, surroundings, printed.model, of_part);
   part.notes.push_back("Allan terms: printed");
+  if (run.noise.rate_random_walk > 0 || run.noise.rate_ramp > 0) {
+    part.notes.push_back(
+        "the printed recursions of rate random walk and ramp begin anew at every station: they "
+        "come "
+        "out too small, the more the closer the stations are; the exact form does not");
+  }
   for (const std::string& name : printed.left_out) {
     part.notes.push_back("the printed form has no term for " + name + ": left out");
   }

@@ -330,10 +330,10 @@ PrintedAllan PrintedAllanModel(const AllanRun& run) {
   };
   add("ALLAN-N", gyro + "-GRW", n.angle_random_walk);
   add("ALLAN-B", gyro + "-GD", n.bias_instability);
+  if (n.rate_random_walk > 0) add("ALLAN-K", gyro + "-GRR", n.rate_random_walk);
+  if (n.rate_ramp > 0) add("ALLAN-R", gyro + "-GR", n.rate_ramp);
   if (run.sigma_azimuth > 0) add("FIX", "AZ", run.sigma_azimuth);
   if (n.quantization > 0) printed.left_out.emplace_back("ALLAN-Q");
-  if (n.rate_random_walk > 0) printed.left_out.emplace_back("ALLAN-K");
-  if (n.rate_ramp > 0) printed.left_out.emplace_back("ALLAN-R");
   return printed;
 }
 

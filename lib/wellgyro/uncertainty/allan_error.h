@@ -58,7 +58,11 @@ struct AllanUncertainty {
 WELLGYRO_EXPORT AllanUncertainty AllanErrors(std::span<const SurveyPoint> survey,
                                              const AllanRun& run);
 
-/// The recursive form that SPE 90408 prints, for comparison: N as GRW, B as GD, both systematic.
+/// The recursive form that SPE 90408 prints, for comparison, all systematic within a section: with
+/// dt a leg's time and a = 1 / f of its mean inclination,
+///   N: h^2 += a^2 dt (GRW),   B: h += a dt (GD),   K: h^2 += a^2 dt^3 / 3,   R: h += a dt^2 / 2.
+/// The last two follow the paper's pattern for the other two Allan coefficients. They forget at
+/// every station what the rate has become: over n equal legs K comes out n and R n times too small.
 struct PrintedAllan {
   ErrorModel model;
   std::vector<std::string> left_out;  ///< coefficients that are not zero and have no printed form

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/uncertainty/formula_weight.h"
 #include "wellgyro/uncertainty/gyro_mode.h"
 
 namespace wellgyro {
@@ -25,13 +26,17 @@ bool IsInclination(double x) { return x >= 0 && x <= kPi; }
 
 std::string AboutTerm(const ErrorTerm& term) {
   if (!term.weight) return "has no weighting function";
+  if ((term.weight == &OwnFormula()) != (term.formula != nullptr)) {
+    return "has a formula beside a published weight, or none where it should";
+  }
   if (!std::isfinite(term.magnitude) || term.magnitude < 0) {
     return "has a magnitude that is not finite or below 0";
   }
   const Role role = term.weight->role;
   const bool random = term.propagation == Propagation::kRandom;
   if (role == Role::kCourse && !random) return "is a course length error and so must be random";
-  if (role == Role::kDrift && random) return "is a drift and so cannot be random";
+  if ((role == Role::kDrift || role == Role::kRamp) && random)
+    return "is a drift and so cannot be random";
   if ((role == Role::kExternal || role == Role::kExternalAtTie) && random) {
     return "is an azimuth that is carried on and so cannot be random";
   }
@@ -51,6 +56,8 @@ std::string AboutNeeds(const ErrorModel& model, const WeightFunction& w) {
       return {};
     case Role::kDrift:
     case Role::kWalk:
+    case Role::kRateWalk:
+    case Role::kRamp:
       if (std::ranges::none_of(model.continuous, same_gyro)) {
         return "needs a [[continuous]] zone of its gyro";
       }

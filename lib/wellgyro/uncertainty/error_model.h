@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "wellgyro/uncertainty/weight.h"
 
 namespace wellgyro {
+
+class FormulaWeight;
 
 /// How far one error reaches: a new value at every station; one in a tool leg; one in a well; one
 /// everywhere.
@@ -20,6 +23,8 @@ struct ErrorTerm {
   const WeightFunction* weight = nullptr;  ///< of FindWeight
   double magnitude = 0;                    ///< 1 sigma, in SI units of weight->dimension
   Propagation propagation = Propagation::kSystematic;
+  /// Beside the weight OwnFormula: the model's own weighting function, for a magnitude in SI units.
+  std::shared_ptr<const FormulaWeight> formula;
 };
 
 /// Gyrocompassing at rest, and how it starts a continuous section (SPE 90408, App. C).
@@ -47,6 +52,9 @@ struct ContinuousZone {
 struct ErrorModel {
   std::string name;
   std::string revision;
+  std::string description;         ///< one line
+  std::string source;              ///< who published it
+  std::vector<std::string> notes;  ///< what was assumed when it was read
   std::vector<ErrorTerm> terms;
   double max_inclination = 0;  ///< beyond it the model says nothing [rad]
   std::optional<StationaryMode> stationary;

@@ -46,7 +46,7 @@ void ErrorSources::Open(std::size_t stations, PositionUncertainty& result) {
 
 void ErrorSources::StartLeg(const std::vector<std::size_t>& sources) {
   active_ = sources;
-  idle_ = options_.cov_tie_in;
+  idle_ = tie_in_;
   std::vector<bool> is_active(sources_.size(), false);
   for (const std::size_t i : active_) is_active[i] = true;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -63,6 +63,17 @@ void ErrorSources::Close(Source& source, std::int64_t group) {
   if (options_.terms) source.closed += cov;
   source.sum.setZero();
   source.group = group;
+}
+
+void ErrorSources::Forget() {
+  tie_in_.setZero();
+  ended_.setZero();
+  idle_.setZero();
+  for (Source& source : sources_) {
+    source.sum.setZero();
+    source.error.setZero();
+    source.closed.setZero();
+  }
 }
 
 void ErrorSources::Give(PositionUncertainty& result) const {

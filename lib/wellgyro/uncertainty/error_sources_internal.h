@@ -18,7 +18,8 @@ namespace wellgyro {
 /// legs share are one source.
 class ErrorSources {
  public:
-  explicit ErrorSources(const PropagateOptions& options) : options_(options) {}
+  explicit ErrorSources(const PropagateOptions& options)
+      : options_(options), tie_in_(options.cov_tie_in) {}
 
   /// The source of `term` in `leg`, which may be that of an earlier leg.
   std::size_t SourceOf(const ErrorTerm& term, const ToolLeg& leg, std::size_t leg_number);
@@ -35,6 +36,8 @@ class ErrorSources {
     s.error = s.sum + at;
     s.sum += through;
   }
+  /// What has been gathered so far, the tie-in's covariance included, is left out from here on.
+  void Forget();
   /// Writes this station's covariances.
   void Give(PositionUncertainty& result) const;
 
@@ -55,6 +58,7 @@ class ErrorSources {
   void Close(Source& source, std::int64_t group);
 
   const PropagateOptions& options_;
+  Eigen::Matrix3d tie_in_;
   std::vector<Source> sources_;
   std::vector<std::size_t> active_;
   std::vector<std::size_t> shared_;                  ///< sources of result.shared

@@ -79,6 +79,8 @@ void GyroModeTracker::Advance(const SurveyPoint& previous, const SurveyPoint& po
     Open(initialise_, AzimuthOnArc(previous, point, initialise_));
     mode_.drift_time = before.drift_time;
     mode_.walk_time = before.walk_time;
+    mode_.rate_walk_time = before.rate_walk_time;
+    mode_.ramp_time = before.ramp_time;
   }
   Gather(previous, point);
 }
@@ -101,6 +103,8 @@ void GyroModeTracker::Gather(const SurveyPoint& previous, const SurveyPoint& poi
   const auto i = static_cast<std::size_t>(zone - model_.continuous.begin());
   mode_.drift_time[i] += time / factor;
   mode_.walk_time[i] += time / (factor * factor);
+  mode_.rate_walk_time[i] += time * time * time / (3 * factor * factor);
+  mode_.ramp_time[i] += time * time / (2 * factor);
 }
 
 }  // namespace wellgyro

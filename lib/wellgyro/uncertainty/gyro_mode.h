@@ -22,6 +22,11 @@ struct GyroMode {
   /// a random walk [s]. f is 1, sin I or cos I for three axes, two and one.
   std::array<double, kMaxZones> drift_time{};
   std::array<double, kMaxZones> walk_time{};
+  /// Likewise of dt^3 / (3 f^2) [s^3], whose root multiplies a rate random walk, and of dt^2 / (2
+  /// f) [s^2], that multiplies a ramp, dt a whole leg's: the printed recursions, which begin anew
+  /// at every station and so grow with the leg's length. See allan_error.h for what is exact.
+  std::array<double, kMaxZones> rate_walk_time{};
+  std::array<double, kMaxZones> ramp_time{};
   std::string refusal;  ///< why the model does not reach this station; empty: it does
 };
 

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/uncertainty/formula_weight.h"
 #include "wellgyro/uncertainty/leg_weights_internal.h"
 
 namespace wellgyro {
@@ -72,10 +73,21 @@ double LegWeights::CarriedAzimuth(std::size_t term, const WeightPlace& place) {
 std::optional<Weights> LegWeights::Weigh(std::size_t term, const WeightPlace& place,
                                          std::string& why) {
   const WeightFunction& weight = *model_.terms[term].weight;
+  if (const auto& formula = model_.terms[term].formula) {
+    const Weights w = formula->At(place.named);
+    if (std::isfinite(w.md) && std::isfinite(w.inclination) && std::isfinite(w.azimuth)) return w;
+    why = "the formula of term " + model_.terms[term].name + " of model " + model_.name +
+          " has no value here";
+    return std::nullopt;
+  }
   if (weight.role == WeightRole::kDrift) return Weights{0, 0, mode().drift_time[zones_[term]]};
   if (weight.role == WeightRole::kWalk) {
     return Weights{0, 0, std::sqrt(mode().walk_time[zones_[term]])};
   }
+  if (weight.role == WeightRole::kRateWalk) {
+    return Weights{0, 0, std::sqrt(mode().rate_walk_time[zones_[term]])};
+  }
+  if (weight.role == WeightRole::kRamp) return Weights{0, 0, mode().ramp_time[zones_[term]]};
   const bool carried = mode().section > 0 && IsStationary(weight.role);
   if (weight.denominator) {
     const double denominator =
@@ -95,9 +107,21 @@ std::optional<Weights> LegWeights::Weigh(std::size_t term, const WeightPlace& pl
   return w;
 }
 
+std::optional<Eigen::Vector3d> LegWeights::Displacement(std::size_t term, const WeightPlace& place,
+                                                        bool vertical) const {
+  const ErrorTerm& of = model_.terms[term];
+  if (of.formula) {
+    if (!vertical || !of.formula->has_vector()) return std::nullopt;
+    return of.formula->VectorAt(place.named);
+  }
+  const bool serves = vertical || of.weight->role == WeightRole::kCourse;
+  if (!of.weight->vector || !serves) return std::nullopt;
+  return of.weight->vector(place);
+}
+
 std::int64_t LegWeights::Group(std::size_t term, std::size_t station) const {
   const WeightRole role = model_.terms[term].weight->role;
-  if (role == WeightRole::kWalk) return mode().section;
+  if (role == WeightRole::kWalk || role == WeightRole::kRateWalk) return mode().section;
   if (model_.terms[term].propagation != Propagation::kRandom) return 0;
   if (IsStationary(role) && mode().section > 0) return mode().section;
   return -1 - static_cast<std::int64_t>(station);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "wellgyro/uncertainty/gyro_mode.h"
 #include "wellgyro/uncertainty/propagate.h"
 
@@ -29,6 +31,10 @@ class LegWeights {
   /// Weights of term i at `place`, which has this leg's parameters. An empty result: `why` says why
   /// they are not to be trusted.
   std::optional<Weights> Weigh(std::size_t term, const WeightPlace& place, std::string& why);
+  /// The position error of term i in place of its weights, where it has one: per metre of course at
+  /// a vertical station; of a course term always, and whole.
+  std::optional<Eigen::Vector3d> Displacement(std::size_t term, const WeightPlace& place,
+                                              bool vertical) const;
   /// Errors of term i add up while this stays the same: from station to station for systematic
   /// ones; within a section of continuous survey for what was drawn once at its begin.
   std::int64_t Group(std::size_t term, std::size_t station) const;

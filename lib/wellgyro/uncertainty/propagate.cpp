@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/uncertainty/error_sources_internal.h"
+#include "wellgyro/uncertainty/formula_weight.h"
 #include "wellgyro/uncertainty/leg_weights_internal.h"
 #include "wellgyro/uncertainty/survey_check_internal.h"
 
@@ -52,6 +56,18 @@ Sensitivity SensitivityAt(const Vector3d& above, const Direction& here, const Ve
   return s;
 }
 
+/// The same where the position is taken as known: at a tie-on, a kick-off. Of the depth, counted
+/// from the datum, remains what the bend of the leg makes.
+Sensitivity FromHere(const Direction& here, const Vector3d& below, double ahead) {
+  Sensitivity s;
+  s.at.setZero();
+  s.along_through = ahead / 2;
+  s.through.col(0) = (here.t - below) / 2;
+  s.through.col(1) = s.along_through * here.t_inc;
+  s.through.col(2) = s.along_through * here.t_azi;
+  return s;
+}
+
 WeightPlace PlaceIn(const Surroundings& surroundings, const SurveyPoint& first) {
   WeightPlace p;
   p.sin_convergence = std::sin(surroundings.convergence);
@@ -82,19 +98,26 @@ class Propagator {
  private:
   void StartLeg(std::size_t leg);
   void PlaceAt(std::size_t k);
+  void NamePlace();
+  void NameValues(std::size_t k);
   void First();
+  void AddTie();
   bool Station(std::size_t k);
   bool AddTerm(std::size_t term, std::size_t k, const Sensitivity& s);
   void Refuse(std::size_t k, const std::string& term, const std::string& why);
   void Note();
 
   std::span<const SurveyPoint> survey_;
+  const Surroundings& surroundings_;
+  FormulaValues named_{};
   std::span<const ToolLeg> tool_legs_;
   std::vector<LegWeights> legs_;
   std::vector<std::vector<std::size_t>> leg_sources_;
   ErrorSources sources_;
   WeightPlace place_;
   double magnetic_sin_ = 0, magnetic_cos_ = 1;  ///< of magnetic less survey azimuth
+  TieOn tie_on_;
+  std::optional<std::size_t> zero_at_;
   std::size_t leg_ = 0;
   Direction here_;
   PositionUncertainty result_;
@@ -103,10 +126,12 @@ class Propagator {
 Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& surroundings,
                        std::span<const ToolLeg> legs, const PropagateOptions& options)
     : survey_(survey),
+      surroundings_(surroundings),
       tool_legs_(legs),
-
       sources_(options),
-      place_(PlaceIn(surroundings, survey.front())) {
+      place_(PlaceIn(surroundings, survey.front())),
+      tie_on_(options.tie_on),
+      zero_at_(options.zero_at) {
   const double to_magnetic = surroundings.convergence - surroundings.declination.value_or(0);
   magnetic_sin_ = std::sin(to_magnetic);
   magnetic_cos_ = std::cos(to_magnetic);
@@ -118,6 +143,28 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
     }
   }
   sources_.Open(survey.size(), result_);
+  const auto has_formula = [](const LegWeights& leg) {
+    return std::ranges::any_of(leg.model().terms,
+                               [](const auto& t) { return t.formula != nullptr; });
+  };
+  if (!std::ranges::any_of(legs_, has_formula)) return;
+  place_.named = named_;
+  NamePlace();
+}
+
+/// What formulas speak of, in the whole well.
+void Propagator::NamePlace() {
+  using N = FormulaName;
+  const auto put = [&](N name, double value) { named_[static_cast<std::size_t>(name)] = value; };
+  const double latitude = surroundings_.latitude.value_or(0);
+  for (const N name : {N::kGfield, N::kGtot}) put(name, surroundings_.gravity);
+  for (const N name : {N::kBField, N::kMtot}) put(name, surroundings_.field.value_or(0));
+  for (const N name : {N::kLatitude, N::kLat}) put(name, latitude);
+  put(N::kDip, surroundings_.dip.value_or(0));
+  put(N::kRotation, kEarthRate);
+  put(N::kErot, kEarthRate * 3600 * std::cos(latitude));
+  put(N::kRad, kPi / 180);
+  put(N::kMtf, 1);
 }
 
 void Propagator::StartLeg(std::size_t leg) {
@@ -148,6 +195,32 @@ void Propagator::PlaceAt(std::size_t k) {
   p.cos_azi = p.cos_hole * p.cos_convergence - p.sin_hole * p.sin_convergence;
   p.sin_mag = p.sin_hole * magnetic_cos_ + p.cos_hole * magnetic_sin_;
   p.cos_mag = p.cos_hole * magnetic_cos_ - p.sin_hole * magnetic_sin_;
+  if (!p.named.empty()) NameValues(k);
+}
+
+/// What formulas speak of, at this station.
+void Propagator::NameValues(std::size_t k) {
+  using N = FormulaName;
+  const SurveyPoint &here = survey_[k], &before = survey_[k > 0 ? k - 1 : 0];
+  const auto put = [&](N name, double value) { named_[static_cast<std::size_t>(name)] = value; };
+  const auto azimuths = [&](const SurveyPoint& p, N own, N to_true, N magnetic) {
+    put(own, p.azimuth);
+    put(to_true, p.azimuth + surroundings_.convergence);
+    put(magnetic, p.azimuth + surroundings_.convergence - surroundings_.declination.value_or(0));
+  };
+  azimuths(here, N::kAz, N::kAzT, N::kAzM);
+  azimuths(before, N::kAzPrev, N::kAzTPrev, N::kAzMPrev);
+  put(N::kAzi, here.azimuth);
+  put(N::kInc, here.inclination);
+  put(N::kIncPrev, before.inclination);
+  for (const N name : {N::kMd, N::kTmd}) put(name, here.md);
+  put(N::kMdPrev, before.md);
+  put(N::kDmd, here.md - before.md);
+  put(N::kTvd, here.tvd);
+  put(N::kSide, here.inclination > kPi / 2 ? -1 : 1);
+  const ErrorModel& model = legs_[leg_].model();
+  put(N::kTortuosity, model.tortuosity.value_or(0));
+  put(N::kNoiseReduction, model.stationary ? model.stationary->noise_reduction.value_or(1) : 1.0);
 }
 
 /// The root: at the surface the depth reference is uncertain, and that is this station's alone.
@@ -160,10 +233,40 @@ void Propagator::First() {
   for (std::size_t i = 0; i < model.terms.size(); ++i) {
     const ErrorTerm& term = model.terms[i];
     if (survey_[0].md != 0 || term.weight->role != WeightRole::kPlain) continue;
-    const Vector3d e = term.magnitude * term.weight->at(place_).md * here_.t;
+    const double md = term.formula ? term.formula->At(place_.named).md : term.weight->at(place_).md;
+    const Vector3d e = term.magnitude * (std::isfinite(md) ? md : 0) * here_.t;
     sources_.Add(leg_sources_[0][i], 0, e, Vector3d::Zero());
   }
+  if (tie_on_ == TieOn::kIndependent) AddTie();
   sources_.Give(result_);
+}
+
+/// The first station as another run surveyed it: its direction holds over half of the first leg,
+/// and its depth, which is the well's from the datum on, moves what is below where the leg bends.
+/// What reaches beyond a run goes on in its group; the rest has one of its own, shared with
+/// nothing.
+void Propagator::AddTie() {
+  constexpr std::int64_t kOwn = std::numeric_limits<std::int64_t>::min();
+  LegWeights& leg = legs_[0];
+  const double half = (survey_[1].md - survey_[0].md) / 2;
+  const bool vertical = place_.inclination < leg.model().vertical_limit;
+  const Matrix3d through =
+      FromHere(here_, Tangent(survey_[1].inclination, survey_[1].azimuth), 2 * half).through;
+  for (std::size_t i = 0; i < leg.model().terms.size(); ++i) {
+    const ErrorTerm& term = leg.model().terms[i];
+    if (term.weight->role == WeightRole::kCourse) continue;
+    const bool reaches = term.propagation == Propagation::kWell ||  //
+                         term.propagation == Propagation::kGlobal;
+    Vector3d e = Vector3d::Zero();
+    std::string why;
+    if (const auto v = leg.Displacement(i, place_, vertical)) {
+      e = half * *v;
+    } else if (const auto w = leg.Weigh(i, place_, why)) {
+      e = through * Vector3d(w->md, w->inclination, w->azimuth);
+    }
+    sources_.Add(leg_sources_[0][i], reaches ? leg.Group(i, 0) : kOwn, Vector3d::Zero(),
+                 term.magnitude * e);
+  }
 }
 
 void Propagator::Refuse(std::size_t k, const std::string& term, const std::string& why) {
@@ -177,9 +280,14 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
   const std::size_t source = leg_sources_[leg_][term];
   const std::int64_t group = leg.Group(term, k);
   const bool vertical = place_.inclination < leg.model().vertical_limit;
-  if (weight.vector && (vertical || weight.role == WeightRole::kCourse)) {
+  if (const auto unit = leg.Displacement(term, place_, vertical)) {
     const bool course = weight.role == WeightRole::kCourse;  // a displacement, not a direction
-    const Vector3d v = model_term.magnitude * weight.vector(place_);
+    if (course && zero_at_ == k) return true;
+    if (!unit->allFinite()) {
+      return Refuse(k, model_term.name, "the term's formula has no value in a vertical hole"),
+             false;
+    }
+    const Vector3d v = model_term.magnitude * *unit;
     sources_.Add(source, group, (course ? 1 : s.along_at) * v, (course ? 1 : s.along_through) * v);
     return true;
   }
@@ -200,10 +308,17 @@ bool Propagator::Station(std::size_t k) {
   LegWeights& leg = legs_[leg_];
   if (std::string why = leg.WhyNot(survey_[k]); !why.empty()) return Refuse(k, {}, why), false;
   const SurveyPoint& next = survey_[std::min(k + 1, survey_.size() - 1)];
-  const bool whole = k == 1 && leg.model().doubled_tie_on;
-  const Sensitivity s =
-      SensitivityAt(above.t, here_, Tangent(next.inclination, next.azimuth),
-                    whole ? place_.course : place_.course / 2, next.md - survey_[k].md);
+  const bool doubled =
+      tie_on_ == TieOn::kModel ? leg.model().doubled_tie_on : tie_on_ == TieOn::kWhole;
+  const bool whole = k == 1 && doubled;
+  const Vector3d below = Tangent(next.inclination, next.azimuth);
+  const double ahead = next.md - survey_[k].md;
+  Sensitivity s =
+      SensitivityAt(above.t, here_, below, whole ? place_.course : place_.course / 2, ahead);
+  if (zero_at_ == k) {
+    sources_.Forget();
+    s = FromHere(here_, below, ahead);
+  }
   for (std::size_t i = 0; i < leg.model().terms.size(); ++i) {
     if (!AddTerm(i, k, s)) return false;
   }
@@ -217,6 +332,14 @@ void Propagator::Note() {
     result_.notes.emplace_back(
         "the survey begins above the inclination at which the tool is initialised: taken as "
         "initialised at the first station");
+  }
+  for (const ToolLeg& leg : tool_legs_) {
+    for (const std::string& note : leg.model->notes) {
+      const std::string text = "model " + leg.model->name + ": " + note;
+      if (std::ranges::find(result_.notes, text) == result_.notes.end()) {
+        result_.notes.push_back(text);
+      }
+    }
   }
   if (survey_[0].md != 0) {
     result_.notes.emplace_back(
@@ -233,13 +356,16 @@ PositionUncertainty Propagator::Run() {
   return std::move(result_);
 }
 
-/// The survey with the azimuth of vertical stations set to 0, as the published listings have it.
+/// The survey with the azimuth of vertical stations set to 0, as the published listings have it;
+/// `changed` counts those that had another.
 std::vector<SurveyPoint> WithoutVerticalAzimuths(std::span<const SurveyPoint> survey,
-                                                 std::span<const ToolLeg> legs) {
+                                                 std::span<const ToolLeg> legs, int& changed) {
   std::vector<SurveyPoint> points(survey.begin(), survey.end());
   for (const ToolLeg& leg : legs) {
     for (std::size_t k = leg.begin; k < leg.end; ++k) {
-      if (points[k].inclination < leg.model->vertical_limit) points[k].azimuth = 0;
+      if (points[k].inclination >= leg.model->vertical_limit) continue;
+      if (points[k].azimuth != 0) ++changed;
+      points[k].azimuth = 0;
     }
   }
   return points;
@@ -253,8 +379,17 @@ PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,
   CheckSurvey(survey);
   CheckSurroundings(surroundings);
   CheckLegs(legs, survey.size(), surroundings);
-  const std::vector<SurveyPoint> points = WithoutVerticalAzimuths(survey, legs);
-  return Propagator(points, surroundings, legs, options).Run();
+  if (options.zero_at && (*options.zero_at == 0 || *options.zero_at + 1 >= survey.size())) {
+    throw std::invalid_argument("errors cannot begin to count at the first or last station");
+  }
+  int changed = 0;
+  const std::vector<SurveyPoint> points = WithoutVerticalAzimuths(survey, legs, changed);
+  PositionUncertainty result = Propagator(points, surroundings, legs, options).Run();
+  if (changed > 0) {
+    result.notes.push_back("the listed azimuth of " + std::to_string(changed) +
+                           " exactly vertical stations is not used: it is taken as 0");
+  }
+  return result;
 }
 
 PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,

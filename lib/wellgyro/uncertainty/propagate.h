@@ -61,9 +61,26 @@ struct PositionUncertainty {
   std::optional<Refusal> refusal;
 };
 
+/// What is known of the first station, which opens the first leg.
+enum class TieOn {
+  kModel,  ///< as the model says: half or whole
+  kHalf,   ///< no error: half of the first leg goes along an exact direction
+  kWhole,  ///< the second station's: its error acts over the whole leg
+  /// Another run surveyed it, as where a side-track leaves its parent: by the model's weights
+  /// there, its direction over half the leg; its depth, counted from the datum as the side-track's
+  /// is, where the leg bends. Of that, only what reaches beyond a run is shared with other stations
+  /// (ISCWSA, Current Common Practice in Collision Avoidance Calculations, 2017, 2.8).
+  kIndependent,
+};
+
 struct PropagateOptions {
   Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();  ///< of the first station's position [m^2]
   bool terms = false;
+  TieOn tie_on = TieOn::kModel;
+  /// A station, not the first, from which on errors count: where a side-track leaves this hole.
+  /// What comes before it is common to both and so left out; the tool's mode is followed through
+  /// it.
+  std::optional<std::size_t> zero_at;
 };
 
 /// Position uncertainty of a survey, each station in constant time.
@@ -71,14 +88,14 @@ struct PropagateOptions {
 /// Stations carry their errors into positions by the balanced tangential sensitivities (ISCWSA
 /// Error Model Definition, section 4). Gyro terms follow the mode of the tool (SPE 90408, App. C),
 /// which is taken to have run in from the well's first station. The first station has no error of
-/// direction. A station that the model cannot serve (a two-axis gyrocompass above its end
-/// inclination or within 1 deg of horizontal, an inclination beyond the model's) ends the result
-/// with a refusal; no term is ever left out.
+/// direction but by `tie_on`. A station that the model cannot serve (a two-axis gyrocompass above
+/// its end inclination or within 1 deg of horizontal, an inclination beyond the model's) ends the
+/// result with a refusal; no term is ever left out.
 ///
 /// Throws std::invalid_argument, naming what and where, for fewer than two points, depths that do
-/// not increase, values that are not finite or out of range, a model with a complaint, legs that
-/// do not cover the stations, gyrocompass terms without a latitude or beyond 89 deg, or missing
-/// magnetics.
+/// not increase, a `zero_at` that is no station, values that are not finite or out of range, a
+/// model with a complaint, legs that do not cover the stations, gyrocompass terms without a
+/// latitude or beyond 89 deg, or missing magnetics.
 WELLGYRO_EXPORT PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,
                                                     const Surroundings& surroundings,
                                                     const ErrorModel& model,

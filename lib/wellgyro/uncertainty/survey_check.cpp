@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/uncertainty/formula_weight.h"
 #include "wellgyro/uncertainty/survey_check_internal.h"
 
 namespace wellgyro {
@@ -19,13 +20,15 @@ std::string At(std::size_t k, const SurveyPoint& point) {
 bool NeedsLatitude(const ErrorModel& model) {
   return std::ranges::any_of(model.terms, [](const auto& t) {
     return t.weight->role == WeightRole::kStationary ||
-           t.weight->role == WeightRole::kStationaryNoise;
+           t.weight->role == WeightRole::kStationaryNoise ||
+           (t.formula && t.formula->needs_latitude());
   });
 }
 
 bool NeedsMagnetics(const ErrorModel& model) {
-  return std::ranges::any_of(model.terms,
-                             [](const auto& t) { return t.weight->role == WeightRole::kMagnetic; });
+  return std::ranges::any_of(model.terms, [](const auto& t) {
+    return t.weight->role == WeightRole::kMagnetic || (t.formula && t.formula->needs_field());
+  });
 }
 
 }  // namespace

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <vector>
+
+#include "wellgyro/uncertainty/weight_more_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -220,6 +224,12 @@ constexpr WeightFunction kExternalAndContinuous[] = {
     {"GXYZ-GRW", D::kAngleWalk, R::kWalk, kXyz, nullptr},
     {"GXY-GD", D::kRate, R::kDrift, kXy, nullptr},
     {"GXY-GRW", D::kAngleWalk, R::kWalk, kXy, nullptr},
+    {"GXYZ-GRR", D::kRateWalk, R::kRateWalk, kXyz, nullptr},
+    {"GXYZ-GR", D::kRateRamp, R::kRamp, kXyz, nullptr},
+    {"GXY-GRR", D::kRateWalk, R::kRateWalk, kXy, nullptr},
+    {"GXY-GR", D::kRateRamp, R::kRamp, kXy, nullptr},
+    {"GZ-GRR", D::kRateWalk, R::kRateWalk, kZ, nullptr},
+    {"GZ-GR", D::kRateRamp, R::kRamp, kZ, nullptr},
     {"GZ-GD", D::kRate, R::kDrift, kZ, nullptr},
     {"GZ-GRW", D::kAngleWalk, R::kWalk, kZ, nullptr},
 };
@@ -331,9 +341,19 @@ constexpr auto kAll = Join(kDepthAndAlignment, kMisalignment, kCourseLength, kAc
 
 const WeightFunction* FindWeight(std::string_view code) {
   const auto* found = std::ranges::find(kAll, code, &WeightFunction::code);
-  return found == kAll.end() ? nullptr : found;
+  if (found != kAll.end()) return found;
+  const auto more = MoreWeights();
+  const auto other = std::ranges::find(more, code, &WeightFunction::code);
+  return other == more.end() ? nullptr : &*other;
 }
 
-std::span<const WeightFunction> AllWeights() { return kAll; }
+std::span<const WeightFunction> AllWeights() {
+  static const std::vector<WeightFunction> all = [] {
+    std::vector<WeightFunction> joined(kAll.begin(), kAll.end());
+    std::ranges::copy(MoreWeights(), std::back_inserter(joined));
+    return joined;
+  }();
+  return all;
+}
 
 }  // namespace wellgyro

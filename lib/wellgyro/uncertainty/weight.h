@@ -23,6 +23,8 @@ enum class Dimension {
   kRate,              ///< [rad/s]
   kRatePerG,          ///< at 1 g [rad/s]
   kAngleWalk,         ///< [rad/sqrt(s)]
+  kRateWalk,          ///< [rad/s/sqrt(s)]
+  kRateRamp,          ///< [rad/s^2]
   kField,             ///< [T]
   kAngleField,        ///< [rad T]
 };
@@ -38,6 +40,8 @@ enum class WeightRole {
   kStationaryNoise,  ///< the same, averaged when initialising
   kDrift,            ///< time in the continuous section
   kWalk,             ///< square root of it
+  kRateWalk,         ///< root of the sum of a third of its cubes, leg by leg
+  kRamp,             ///< sum of half its squares, leg by leg
   kExternal,         ///< an azimuth brought to the tool
   kExternalAtTie,    ///< the same, with the inclination of the first station
 };
@@ -59,10 +63,11 @@ struct WeightPlace {
   double gravity = 9.80665;     ///< [m/s^2]
   double horizontal_field = 1;  ///< [T]
   double tan_dip = 0;
-  double cant = 0;               ///< [rad]
-  double min_course_length = 0;  ///< [m]
-  double tortuosity = 0;         ///< [rad/m]
-  double tie_sin_inc = 0;        ///< at the first station
+  double cant = 0;                ///< [rad]
+  double min_course_length = 0;   ///< [m]
+  double tortuosity = 0;          ///< [rad/m]
+  double tie_sin_inc = 0;         ///< at the first station
+  std::span<const double> named;  ///< for formula_weight.h, where the model has formulas
 };
 
 /// Error of (measured depth, inclination, azimuth) for a unit of the magnitude.

@@ -1,0 +1,208 @@
+#include "wellgyro/trajectory/leg_arc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStraight = 1e-12;  // [rad]
+
+/// sin(x) / x.
+double Sinc(double x) { return std::abs(x) < 1e-5 ? 1 - x * x / 6 : std::sin(x) / x; }
+
+}  // namespace
+
+LegArc MakeLegArc(const Vector3d& begin, double length, const Vector3d& t1, const Vector3d& t2) {
+  LegArc arc;
+  arc.begin = begin;
+  arc.tangent = t1;
+  arc.length = length;
+  const Vector3d difference = t2 - t1;
+  const double dogleg = 2 * std::atan2(difference.norm(), (t1 + t2).norm());
+  if (dogleg > kStraight) {
+    arc.curvature = dogleg / length;
+    // From the difference, not from t2: near a straight leg nothing is lost.
+    arc.normal = (difference - difference.dot(t1) * t1).normalized();
+  } else {
+    Vector3d axis = Vector3d::Zero();
+    Eigen::Index least = 0;
+    t1.cwiseAbs().minCoeff(&least);
+    axis(least) = 1;
+    arc.normal = (axis - axis.dot(t1) * t1).normalized();
+  }
+  return arc;
+}
+
+Vector3d PointOn(const LegArc& arc, double s) {
+  const double half = arc.curvature * s / 2;
+  const double chord = s * Sinc(half);
+  return arc.begin + chord * (std::cos(half) * arc.tangent + std::sin(half) * arc.normal);
+}
+
+Vector3d DirectionOn(const LegArc& arc, double s) {
+  const double turn = arc.curvature * s;
+  return std::cos(turn) * arc.tangent + std::sin(turn) * arc.normal;
+}
+
+double NearestOn(const LegArc& arc, const Vector3d& point) {
+  const Vector3d d = point - arc.begin;
+  const double along = d.dot(arc.tangent), across = d.dot(arc.normal);
+  if (arc.curvature == 0) return std::clamp(along, 0.0, arc.length);
+  const double s = std::atan2(arc.curvature * along, 1 - arc.curvature * across) / arc.curvature;
+  if (s >= 0 && s <= arc.length) return s;
+  const double to_begin = d.squaredNorm();
+  const double to_end = (point - PointOn(arc, arc.length)).squaredNorm();
+  return to_begin <= to_end ? 0 : arc.length;
+}
+
+PlaneCrossings CrossingsOfPlane(const LegArc& arc, const Vector3d& point, const Vector3d& across) {
+  // With x = 2 tan(curvature s / 2) / curvature the arc is rational and the plane a quadratic.
+  const double k = arc.curvature;
+  const double c = (arc.begin - point).dot(across);
+  const double b = arc.tangent.dot(across);
+  const double a = k * arc.normal.dot(across) / 2 + c * k * k / 4;
+  double roots[2] = {0, 0};
+  int count = 0;
+  if (std::abs(a) <= 1e-15 * std::abs(b)) {
+    if (b != 0) roots[count++] = -c / b;
+  } else if (const double d = b * b - 4 * a * c; d >= 0) {
+    const double q = -(b + std::copysign(std::sqrt(d), b)) / 2;
+    roots[count++] = q / a;
+    if (q != 0) roots[count++] = c / q;
+  }
+  PlaneCrossings found;
+  for (int i = 0; i < count; ++i) {
+    const double s = k == 0 ? roots[i] : 2 / k * std::atan(k * roots[i] / 2);
+    if (s >= 0 && s <= arc.length) found.s[found.count++] = s;
+  }
+  if (found.count == 2 && found.s[0] > found.s[1]) std::swap(found.s[0], found.s[1]);
+  return found;
+}
+
+namespace {
+
+constexpr double kGoodTo = 1e-7;  // [m]
+
+NearestPair BetweenStraights(const LegArc& a, const LegArc& b) {
+  NearestPair best{0, NearestOn(b, a.begin), 0};
+  best.distance = (PointOn(b, best.s_second) - a.begin).norm();
+  const auto take = [&](double s, double u) {
+    const double distance = (PointOn(b, u) - PointOn(a, s)).norm();
+    if (distance < best.distance) best = {s, u, distance};
+  };
+  take(a.length, NearestOn(b, PointOn(a, a.length)));
+  take(NearestOn(a, b.begin), 0);
+  take(NearestOn(a, PointOn(b, b.length)), b.length);
+  const double cosine = a.tangent.dot(b.tangent);
+  const double sine2 = a.tangent.cross(b.tangent).squaredNorm();
+  if (sine2 > 1e-24) {
+    const Vector3d d = b.begin - a.begin;
+    const double s = (d.dot(a.tangent) - cosine * d.dot(b.tangent)) / sine2;
+    if (s > 0 && s < a.length) take(s, NearestOn(b, PointOn(a, s)));
+  }
+  return best;
+}
+
+/// The search of NearestBetween, along the first arc.
+class PairSearch {
+ public:
+  PairSearch(const LegArc& along, const LegArc& other) : along_(along), other_(other) {}
+  NearestPair Run();
+
+ private:
+  struct Sample {
+    double s = 0, u = 0;
+    double square = 0;  ///< g [m^2]
+    double slope = 0;   ///< half its derivative [m]
+  };
+  struct Interval {
+    Sample begin, end;
+  };
+
+  Sample At(double s);
+  void CloseIn(const Interval& in);
+  bool MayHoldNearer(const Interval& in) const;
+
+  const LegArc& along_;
+  const LegArc& other_;
+  Sample best_;
+  double closed_in_on_ = -1;
+};
+
+PairSearch::Sample PairSearch::At(double s) {
+  const Vector3d here = PointOn(along_, s);
+  const double u = NearestOn(other_, here);
+  const Vector3d d = here - PointOn(other_, u);
+  const Sample sample{s, u, d.squaredNorm(), d.dot(DirectionOn(along_, s))};
+  if (sample.square < best_.square) best_ = sample;
+  return sample;
+}
+
+/// A minimum lies where the slope goes from below to above zero; a change of the nearest place on
+/// the other arc only makes the slope fall, so bisection ends at one.
+void PairSearch::CloseIn(const Interval& in) {
+  const bool known = closed_in_on_ >= in.begin.s && closed_in_on_ <= in.end.s;
+  if (in.begin.slope >= 0 || in.end.slope <= 0 || known) return;
+  double low = in.begin.s, high = in.end.s;
+  for (int i = 0; i < 60 && high - low > 1e-9 * (1 + high); ++i) {
+    const Sample middle = At((low + high) / 2);
+    (middle.slope < 0 ? low : high) = middle.s;
+  }
+  closed_in_on_ = low;
+}
+
+bool PairSearch::MayHoldNearer(const Interval& in) const {
+  const double h = in.end.s - in.begin.s;
+  const double nearest = std::sqrt(best_.square);
+  if (nearest <= kGoodTo) return false;
+  const double farthest = std::sqrt(std::min(in.begin.square, in.end.square)) + 2 * h;
+  const double bend = 2 * (1 + along_.curvature * farthest);
+  const double rise = in.end.square - in.begin.square;
+  const double x = std::clamp(h / 2 - rise / (bend * h), 0.0, h);
+  const double least = in.begin.square + rise * x / h - bend * x * (h - x) / 2;
+  return least < (nearest - kGoodTo) * (nearest - kGoodTo);
+}
+
+NearestPair PairSearch::Run() {
+  constexpr int kFirst = 4;
+  best_.square = (PointOn(along_, 0) - other_.begin).squaredNorm();
+  std::vector<Interval> open;
+  Sample from = At(0);
+  best_ = from;
+  for (int i = 1; i <= kFirst; ++i) {
+    const Sample to = At(along_.length * i / kFirst);
+    open.push_back({from, to});
+    from = to;
+  }
+  for (const Interval& in : open) CloseIn(in);
+  while (!open.empty()) {
+    const Interval in = open.back();
+    open.pop_back();
+    if (!MayHoldNearer(in)) continue;
+    const Sample middle = At((in.begin.s + in.end.s) / 2);
+    const Interval halves[] = {{in.begin, middle}, {middle, in.end}};
+    for (const Interval& half : halves) {
+      CloseIn(half);
+      open.push_back(half);
+    }
+  }
+  return {best_.s, best_.u, std::sqrt(best_.square)};
+}
+
+}  // namespace
+
+NearestPair NearestBetween(const LegArc& first, const LegArc& second) {
+  if (first.curvature == 0 && second.curvature == 0) return BetweenStraights(first, second);
+  if (first.curvature <= second.curvature) return PairSearch(first, second).Run();
+  const NearestPair turned = PairSearch(second, first).Run();
+  return {turned.s_second, turned.s_first, turned.distance};
+}
+
+}  // namespace wellgyro
