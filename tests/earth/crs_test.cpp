@@ -1,0 +1,91 @@
+#include "wellgyro/earth/crs.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/units.h"
+
+namespace wellgyro {
+namespace {
+
+GeodeticPoint Place(double latitude, double longitude) {
+  return {latitude * units::kDeg, longitude * units::kDeg};
+}
+
+// An independent projection, GeographicLib's, on WGS 84: UTM north and south, east and west of the
+// central meridian. The sign of the convergence is the same: true less grid azimuth.
+TEST(Crs, UtmAsGeographicLibHasIt) {
+  const struct {
+    const char* code;
+    const char* zone;
+    double latitude, longitude;
+  } cases[] = {{"EPSG:32631", "31N", 58.44, 1.93},
+               {"EPSG:32631", "31N", 58.44, 5.5},
+               {"EPSG:32733", "33S", -12.3, 13.1},
+               {"EPSG:32760", "60S", -41, 178.9}};
+  for (const auto& c : cases) {
+    const auto found = ProjectToCrs(c.code, Place(c.latitude, c.longitude));
+    ASSERT_TRUE(found) << found.fault().text;
+    const GridPoint ours =
+        ProjectToGrid(UtmGrid(c.zone), c.latitude * units::kDeg, c.longitude * units::kDeg);
+    EXPECT_NEAR(found->point.easting, ours.easting, 1e-6) << c.code;
+    EXPECT_NEAR(found->point.northing, ours.northing, 1e-6) << c.code;
+    EXPECT_NEAR(found->point.convergence / units::kDeg, ours.convergence / units::kDeg, 1e-8);
+    EXPECT_NEAR(found->point.scale, ours.scale, 1e-9);
+    EXPECT_EQ(found->unit, 1);
+  }
+}
+
+// EPSG Guidance Note 7-2, the worked example of the Lambert conic of Texas South Central in US
+// survey feet: 28 deg 30' N, 96 deg W gives easting 2963503.91 and northing 254759.80 (NAD27).
+TEST(Crs, FeetAsThePublishedExampleHasThem) {
+  const auto grid = ShiftPoint("EPSG:4267", "EPSG:32040", {-96, 28.5, 0});
+  ASSERT_TRUE(grid) << grid.fault().text;
+  EXPECT_NEAR(grid->point.x, 2963503.91, 0.006);
+  EXPECT_NEAR(grid->point.y, 254759.80, 0.006);
+  const auto back = ShiftPoint("EPSG:32040", "EPSG:4267", grid->point);
+  ASSERT_TRUE(back);
+  EXPECT_NEAR(back->point.x, -96, 1e-10);
+  EXPECT_NEAR(back->point.y, 28.5, 1e-10);
+}
+
+TEST(Crs, ThereAndBack) {
+  const auto grid = ProjectToCrs("EPSG:23031", Place(58.44, 1.93));
+  ASSERT_TRUE(grid) << grid.fault().text;
+  EXPECT_EQ(grid->name, "ED50 / UTM zone 31N");
+  const auto place = GeodeticOfCrs("EPSG:23031", {grid->point.easting, grid->point.northing, 0});
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place->latitude / units::kDeg, 58.44, 2e-8);  // 2 mm: heights go with the datum
+  EXPECT_NEAR(place->longitude / units::kDeg, 1.93, 2e-8);
+  // The datum moves the well by some hundred metres: never forgotten.
+  const auto wgs = ProjectToCrs("EPSG:32631", Place(58.44, 1.93));
+  ASSERT_TRUE(wgs);
+  EXPECT_GT(std::hypot(grid->point.easting - wgs->point.easting,
+                       grid->point.northing - wgs->point.northing),
+            100);
+}
+
+// NAD27 to NAD83 in Texas is done by a grid file that Debian's package lacks: its name is said, and
+// no rough shift is given in its place.
+TEST(Crs, AMissingGridIsNamed) {
+  const auto shifted = ShiftPoint("EPSG:4267", "EPSG:4269", {-96, 28.5, 0});
+  if (shifted) GTEST_SKIP() << "this machine has the grid: " << shifted->operation;
+  EXPECT_EQ(shifted.fault().code, FaultCode::kRange);
+  EXPECT_NE(shifted.fault().text.find("grid file"), std::string::npos) << shifted.fault().text;
+  EXPECT_NE(shifted.fault().text.find(".tif"), std::string::npos) << shifted.fault().text;
+}
+
+TEST(Crs, RefusesWhatItDoesNotKnow) {
+  EXPECT_EQ(ProjectToCrs("EPSG:999999", Place(1, 1)).fault().code, FaultCode::kForeign);
+  EXPECT_EQ(ProjectToCrs("EPSG:4326", Place(1, 1)).fault().code, FaultCode::kForeign);
+  for (const char* bad : {"", "EPSG", ":", "EPSG:", "+proj=utm +zone=31", "/etc/passwd",
+                          "urn:ogc:def:crs:EPSG::23031", "EPSG:23031+5773"}) {
+    EXPECT_FALSE(ProjectToCrs(bad, Place(58, 2))) << bad;
+  }
+  EXPECT_FALSE(ShiftPoint("EPSG:32631", "EPSG:4326", {NAN, 0, 0}));
+  EXPECT_FALSE(ShiftPoint("EPSG:32631", "EPSG:4326", {1e30, 1e30, 0}));
+}
+
+}  // namespace
+}  // namespace wellgyro
