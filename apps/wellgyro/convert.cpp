@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/bus/log_tables.h"
+#include "wellgyro/earth/crs.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_tables.h"
@@ -24,7 +26,7 @@ namespace {
 
 struct ConvertOptions {
   std::string in, out, from, to, units, north, azimuth_reference, depth_unit, datum;
-  std::string well, trajectory, decimal, declination_source, declination_date;
+  std::string well, trajectory, decimal, crs, declination_source, declination_date;
   std::vector<std::string> columns;
   std::optional<double> convergence_deg, declination_deg, datum_elevation_m, section_azimuth_deg;
   std::optional<double> latitude_deg, longitude_deg;
@@ -146,7 +148,24 @@ int ConvertLog(const ConvertOptions& o) {
   return kDoneWithLosses;
 }
 
-int Convert(const ConvertOptions& o) {
+/// The convergence at the well's position, where none is stated; where one is, ours is the check.
+std::optional<Fault> FindConvergence(ConvertOptions& o) {
+  if (o.crs.empty()) return std::nullopt;
+  const auto grid =
+      ProjectToCrs(o.crs, {FromDegrees(*o.latitude_deg), FromDegrees(*o.longitude_deg)});
+  if (!grid) return grid.fault();
+  const double ours = ToDegrees(grid->point.convergence);
+  if (!o.convergence_deg) {
+    o.convergence_deg = ours;
+    fmt::print(stderr, "note: convergence {:+.6f} deg, from {} at the position\n", ours, o.crs);
+  } else if (std::abs(*o.convergence_deg - ours) > 0.01) {
+    Complain(fmt::format("the stated convergence, {:+.4f} deg, holds; {} has {:+.4f} deg there",
+                         *o.convergence_deg, o.crs, ours));
+  }
+  return std::nullopt;
+}
+
+int Convert(ConvertOptions& o) {
   std::error_code none;
   if (std::filesystem::equivalent(o.in, o.out, none)) {
     Complain(fmt::format("{} would be written over by what it becomes: choose another OUT", o.in));
@@ -158,6 +177,10 @@ int Convert(const ConvertOptions& o) {
   if (!format) {
     Complain(fmt::format("{}: the name does not say which format: add --to", o.out));
     return kUsage;
+  }
+  if (const auto fault = FindConvergence(o)) {
+    Complain(*fault);
+    return kUnusable;
   }
   try {
     Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
@@ -193,13 +216,20 @@ void AddReading(CLI::App& command, ConvertOptions& o) {
                   "North of IN's azimuths; wins over what it says")
       ->check(CLI::IsMember({"true", "grid", "magnetic"}));
   command.add_option("--convergence-deg", o.convergence_deg, "True less grid azimuth");
+  CLI::Option* const latitude =
+      command.add_option("--latitude-deg", o.latitude_deg, "Of the well head, on WGS 84");
+  CLI::Option* const longitude =
+      command.add_option("--longitude-deg", o.longitude_deg, "Of the well head, on WGS 84");
+  command
+      .add_option("--crs", o.crs,
+                  "Projected system, as EPSG:23031: the convergence at the well's position")
+      ->needs(latitude)
+      ->needs(longitude);
   command.add_option("--declination-deg", o.declination_deg, "True less magnetic azimuth");
   command.add_option("--declination-source", o.declination_source, "Its model");
   command.add_option("--declination-date", o.declination_date, "Day it holds for, YYYY-MM-DD");
   command.add_option("--datum", o.datum, "Name of the depth datum, as RT");
   command.add_option("--datum-elevation-m", o.datum_elevation_m, "Above mean sea level");
-  command.add_option("--latitude-deg", o.latitude_deg, "Of the well head, on WGS 84");
-  command.add_option("--longitude-deg", o.longitude_deg, "Of the well head, on WGS 84");
   command.add_option("--well", o.well, "Name of the well; which, where IN has several");
   command.add_option("--trajectory", o.trajectory, "Name or uid, where IN has several");
   command.add_option("--decimal", o.decimal, "What a comma inside IN's numbers is, where unclear")

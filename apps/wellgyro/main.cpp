@@ -25,6 +25,9 @@ int Run(int argc, char** argv) {
   AddAllan(app, exit_code);
   AddCalibrate(app, exit_code);
   AddUncertainty(app, exit_code);
+  AddClearance(app, exit_code);
+  AddModels(app, exit_code);
+  AddNorth(app, exit_code);
   AddConvert(app, exit_code);
   AddCheck(app, exit_code);
   try {

@@ -1,3 +1,4 @@
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include "wellgyro/io/result/uncertainty_files.h"
 
 #include "commands.h"
+#include "place_options.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -22,41 +24,31 @@ struct Options {
   bool same_hole = false;
 };
 
-/// An option whose number, in a unit of the trade, is held in SI.
-template <class T>
-CLI::Option* AddNumber(CLI::App& command, const std::string& name, T& held, double unit,
-                       const std::string& help) {
-  return command.add_option_function<double>(
-      name, [&held, unit](const double& value) { held = value * unit; }, help);
-}
-
 void AddFiles(CLI::App& command, Options& o) {
   UncertaintySources& s = o.request.sources;
   command.add_option("--survey", s.survey,
                      "survey CSV: MD, INC, AZI; metres or feet by its header");
-  command.add_option("--model", s.model, "error model (TOML), as data/models/GYRO-NS-CT.toml");
+  command.add_option("--model", s.model,
+                     "error model: a name of 'wellgyro models', as GYRO-NS-CT, or a file");
   command.add_option("--noise", s.noise, "noise file of a gyro, from 'wellgyro allan'");
   command.add_option("--program", s.program, "survey program (TOML): legs of survey, model, run");
   command.add_option("--other", o.request.other, "another survey: write the separation from it");
   command.add_option("--other-model", o.request.other_model, "its error model, if not the same");
   command.add_flag("--same-hole", o.same_hole,
                    "the other survey is of the same hole: compare at equal MD");
+  command
+      .add_option("--correlation", o.request.correlation,
+                  "errors that both surveys share and so drop out: none, global (default) or full")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Correlation>{{"none", Correlation::kNone},
+                                             {"global", Correlation::kGlobal},
+                                             {"full", Correlation::kFull}}));
   command.add_option("--out", o.out, "folder for the results")->required();
 }
 
 void AddNumbers(CLI::App& command, Options& o) {
   UncertaintyRequest& r = o.request;
-  Surroundings& place = r.surroundings;
-  AddNumber(command, "--latitude-deg", place.latitude, units::kDeg, "of the well")
-      ->check(CLI::Range(-90.0, 90.0));
-  AddNumber(command, "--convergence-deg", r.convergence, units::kDeg,
-            "the azimuths are grid; true = grid + this; results are in the grid's frame")
-      ->check(CLI::Range(-180.0, 180.0));
-  AddNumber(command, "--gravity-mps2", place.gravity, 1, "default 9.80665");
-  AddNumber(command, "--field-nt", place.field, units::kNanotesla,
-            "total field, for magnetic terms");
-  AddNumber(command, "--dip-deg", place.dip, units::kDeg, "of the field");
-  AddNumber(command, "--declination-deg", place.declination, units::kDeg, "of the field");
+  AddPlace(command, r.surroundings, r.convergence);
   AddNumber(command, "--speed-mps", r.speed, 1, "of the tool along hole, with --noise");
   AddNumber(command, "--initialise-deg", r.initialise, units::kDeg,
             "inclination where the continuous survey starts; below 0: at the first station "
@@ -110,7 +102,7 @@ void AddUncertainty(CLI::App& app, int& exit_code) {
   command->add_flag("--terms", options->request.terms, "write every term's part, terms.csv");
   command->add_flag("--plot", options->request.plot, "plan and vertical section, uncertainty.svg");
   command->footer(
-      "Example:\n  wellgyro uncertainty --survey survey.csv --model data/models/GYRO-NS-CT.toml "
+      "Example:\n  wellgyro uncertainty --survey survey.csv --model GYRO-NS-CT "
       "\\\n"
       "      --latitude-deg 60 --terms --plot --out results\n"
       "Noise: --noise N.toml --allan exact --speed-mps 0.75, alone or beside --model, where it\n"

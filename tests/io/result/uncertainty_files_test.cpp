@@ -185,7 +185,7 @@ TEST_F(UncertaintyFiles, AllanModesSayWhichWasUsed) {
   const auto printed = AnswerUncertainty(request);
   ASSERT_TRUE(printed);
   EXPECT_THAT(Bytes(*printed, "uncertainty.toml"), HasSubstr("allan = \"printed\""));
-  EXPECT_THAT(Bytes(*printed, "uncertainty.toml"), HasSubstr("no term for ALLAN-K"));
+  EXPECT_THAT(Bytes(*printed, "uncertainty.toml"), HasSubstr("begin anew at every station"));
 
   // Beside a model it takes the place of drift and random walk, and of nothing else.
   request.form = AllanForm::kExact;

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/plot/plot_text_internal.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -18,33 +19,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kPanel = 460, kMargin = 64, kTop = 56, kGap = 84;  // pixels
-
-std::string Escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += ' ';
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
-/// The next of 1, 2, 5, 10, ... not below `x`.
-double RoundUp(double x) {
-  const double decade = std::pow(10, std::floor(std::log10(x)));
-  for (const double m : {1.0, 2.0, 5.0}) {
-    if (m * decade >= x * (1 - 1e-9)) return m * decade;
-  }
-  return 10 * decade;
-}
 
 /// A square window on a plane, first axis to the right, second up or down.
 struct Panel {
@@ -94,7 +68,7 @@ void DrawGrid(std::string& svg, const Panel& panel, const char* x_name, const ch
       "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#fff\" "
       "stroke=\"#888\"/>\n",
       panel.left, kTop, kPanel, kPanel);
-  const double tick = RoundUp(panel.span / 7);
+  const double tick = RoundTick(panel.span / 7);
   for (int axis = 0; axis < 2; ++axis) {
     const double from = panel.middle(axis) - panel.span / 2, to = from + panel.span;
     for (double v = tick * std::ceil(from / tick); v <= to; v += tick) {
@@ -159,7 +133,7 @@ double Magnification(const Flat& flat, double span) {
   for (const auto& half : flat.ellipses) greatest = std::max(greatest, half[0].norm());
   constexpr double kShare = 0.03;  // of the panel, for the greatest semi-axis
   if (!(greatest > 0) || greatest >= kShare * span) return 1;
-  return std::min(1000.0, RoundUp(kShare * span / greatest));
+  return std::min(1000.0, RoundTick(kShare * span / greatest));
 }
 
 void Draw(std::string& svg, Panel& panel, const Flat& flat, double confidence, const char* name,
@@ -195,7 +169,7 @@ std::string WellPlotSvg(const SurveyedWell& well, const PositionUncertainty& err
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
       width, height);
   svg += fmt::format("<text x=\"{:.0f}\" y=\"22\" font-size=\"15\">{}</text>\n", kMargin,
-                     Escaped(title));
+                     SvgText(title));
   const std::string along_name =
       fmt::format("along azimuth {:.1f} deg [m]", ToDegrees(WrapTwoPi(azimuth)));
   Draw(svg, left, plan, confidence, "plan", "east [m]", "north [m]");

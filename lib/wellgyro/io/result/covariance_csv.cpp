@@ -72,13 +72,25 @@ std::string TermsCsv(const SurveyedWell& well, const PositionUncertainty& errors
   return text;
 }
 
+std::string_view KindWord(Separation::Kind kind) {
+  switch (kind) {
+    case Separation::Kind::kNearest:
+      return "nearest";
+    case Separation::Kind::kLowest:
+      return "lowest";
+    case Separation::Kind::kStation:
+      break;
+  }
+  return "station";
+}
+
 std::string SeparationCsv(std::span<const Separation> separations) {
-  std::string text = "MD[m],OTHER_MD[m],DISTANCE[m],N[m],E[m],V[m],SIGMA[m],SIGMAS\n";
+  std::string text = "MD[m],OTHER_MD[m],DISTANCE[m],N[m],E[m],V[m],SIGMA[m],SIGMAS,KIND\n";
   for (const Separation& s : separations) {
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", Metres(s.md), Metres(s.other_md),
+    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", Metres(s.md), Metres(s.other_md),
                         Metres(s.distance), Metres(s.vector.x()), Metres(s.vector.y()),
                         Metres(s.vector.z()), Metres(s.sigma),
-                        s.sigmas ? Significant(*s.sigmas) : std::string());
+                        s.sigmas ? Significant(*s.sigmas) : std::string(), KindWord(s.kind));
   }
   return text;
 }

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/survey/separation.h"
@@ -21,8 +22,11 @@ WELLGYRO_EXPORT std::string CovarianceCsv(const SurveyedWell& well,
 /// station.
 WELLGYRO_EXPORT std::string TermsCsv(const SurveyedWell& well, const PositionUncertainty& errors);
 
-/// separation.csv: MD[m],OTHER_MD[m],DISTANCE[m],N[m],E[m],V[m],SIGMA[m],SIGMAS; the last is empty
-/// where sigma is zero.
+/// "station", "nearest" or "lowest".
+WELLGYRO_EXPORT std::string_view KindWord(Separation::Kind kind);
+
+/// separation.csv: MD[m],OTHER_MD[m],DISTANCE[m],N[m],E[m],V[m],SIGMA[m],SIGMAS,KIND; SIGMAS is
+/// empty where sigma is zero.
 WELLGYRO_EXPORT std::string SeparationCsv(std::span<const Separation> separations);
 
 }  // namespace wellgyro

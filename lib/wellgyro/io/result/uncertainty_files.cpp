@@ -13,7 +13,7 @@
 #include "wellgyro/io/exchange/well_stations.h"
 #include "wellgyro/io/plot/well_plot.h"
 #include "wellgyro/io/result/covariance_csv.h"
-#include "wellgyro/io/toml/error_model_file.h"
+#include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/program_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
@@ -91,6 +91,13 @@ void NoteUnobserved(std::string_view noise_file, std::vector<std::string>& notes
   }
 }
 
+/// From a file, which is noted; a name that is neither is refused with those that there are.
+Result<ErrorModel> FindModelOf(const std::string& name, NamedFiles& files) {
+  const std::string file = name.substr(0, name.find('#'));
+  if (!std::filesystem::exists(file)) return FindModel(name);
+  return ParseModel(files.Take("model", file), name);
+}
+
 void ReadSingle(Case& c, const UncertaintySources& sources, const UncertaintyRequest& request) {
   NamedFiles files{std::filesystem::path()};
   const std::string survey = sources.survey->string();
@@ -100,7 +107,8 @@ void ReadSingle(Case& c, const UncertaintySources& sources, const UncertaintyReq
   CheckNorth(*table, request.convergence, c.notes);
   if (sources.model) {
     const std::string name = sources.model->string();
-    Result<ErrorModel> model = ReadErrorModel(files.Take("model", name), name);
+    std::optional<ErrorModel> own = OwnModel(name);
+    Result<ErrorModel> model = own ? Result<ErrorModel>(*std::move(own)) : FindModelOf(name, files);
     if (!model) throw TomlError{model.fault()};
     c.models.push_back(std::make_unique<const ErrorModel>(*std::move(model)));
     c.basis.legs = {{c.models.back().get(), 0, table->stations.size(), 1}};
@@ -196,8 +204,11 @@ void AddSeparation(const UncertaintyRequest& request, const Case& c, Uncertainty
   }
   sources.program.reset();
   const Case other = ReadCase(sources, request);
+  SeparationRule rule;
+  rule.correlation = request.correlation;
   const auto separations =
-      Separations({&c.well, &c.errors}, {&other.well, &other.errors}, request.pairing);
+      Separations(HoleLine({&c.well, &c.errors}), HoleLine({&other.well, &other.errors}),
+                  request.pairing, rule);
   answer.files.push_back({"separation.csv", SeparationCsv(separations)});
   if (other.errors.refusal) {
     answer.refusals.push_back("other survey: " + other.errors.refusal->text);

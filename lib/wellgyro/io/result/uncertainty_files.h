@@ -37,6 +37,7 @@ struct UncertaintyRequest {
   /// For the separation from another survey, with the model of the first where none is named.
   std::optional<std::filesystem::path> other, other_model;
   Pairing pairing = Pairing::kTwoWells;
+  Correlation correlation = Correlation::kGlobal;
 };
 
 /// Its answer.

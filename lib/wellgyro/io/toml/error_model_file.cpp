@@ -36,6 +36,8 @@ constexpr Unit kUnits[] = {
     {Dimension::kRate, "deg/h", units::kDegPerHour},
     {Dimension::kRatePerG, "deg/h/g", units::kDegPerHour},
     {Dimension::kAngleWalk, "deg/sqrt(h)", units::kDegPerSqrtHour},
+    {Dimension::kRateWalk, "deg/h/sqrt(h)", units::kDegPerHourSqrtHour},
+    {Dimension::kRateRamp, "deg/h2", units::kDegPerHour2},
     {Dimension::kField, "nT", units::kNanotesla},
     {Dimension::kAngleField, "deg*nT", units::kDeg* units::kNanotesla},
 };
@@ -121,7 +123,8 @@ ErrorModel ReadModel(TomlTable& root) {
   ErrorModel model;
   model.name = root.Need("name", root.FindString("name"));
   model.revision = root.Need("revision", root.FindString("revision"));
-  root.Need("source", root.FindString("source"));
+  model.source = root.Need("source", root.FindString("source"));
+  root.Read("description", model.description);
   model.max_inclination =
       root.Need("inclination_max_deg", FindDegrees(root, "inclination_max_deg", kInclinationDeg));
   model.vertical_limit =

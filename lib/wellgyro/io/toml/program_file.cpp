@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/io/toml/error_model_file.h"
+#include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/toml_internal.h"
 
@@ -33,8 +33,11 @@ class ProgramReader {
   const ErrorModel* Model(TomlTable& table) {
     const std::string name = table.Need("model", table.FindString("model"));
     if (const auto known = models_.find(name); known != models_.end()) return known->second;
+    std::optional<ErrorModel> own = OwnModel(name);
     Result<ErrorModel> model =
-        ReadErrorModel(files_.Take("model", name), files_.PathOf(name).string());
+        own ? Result<ErrorModel>(*std::move(own))
+            : ParseModel(files_.Take("model", name.substr(0, name.find('#'))),
+                         files_.PathOf(name).string());
     if (!model) throw TomlError{model.fault()};
     program_.models.push_back(std::make_unique<const ErrorModel>(*std::move(model)));
     return models_[name] = program_.models.back().get();

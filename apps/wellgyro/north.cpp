@@ -1,0 +1,141 @@
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/crs.h"
+#include "wellgyro/earth/magnetic.h"
+
+#include "commands.h"
+#include "place_options.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+namespace {
+
+struct Options {
+  std::optional<double> latitude, longitude;  // [rad]
+  std::optional<double> easting, northing;    // in the system's unit
+  double height = 0;                          // [m]
+  std::string crs, date, model = "wmm2025", data;
+  std::optional<double> stated_convergence, stated_declination;  // [rad]
+};
+
+double Deg(double radians) { return radians / units::kDeg; }
+
+/// Beside the program where it is installed, else where it was built.
+std::string DataFolder(const Options& o) {
+  if (!o.data.empty()) return o.data;
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto installed = program.parent_path().parent_path() / WELLGYRO_SHARE / "magnetic";
+  if (!error && std::filesystem::exists(installed)) return installed.string();
+  return WELLGYRO_SOURCE_DATA "/magnetic";
+}
+
+void PrintCheck(const char* what, double stated, double ours) {
+  fmt::print("  stated {:+.4f} deg: it holds; ours differs by {:+.4f} deg\n", Deg(stated),
+             Deg(ours - stated));
+  if (std::abs(ours - stated) > 0.1 * units::kDeg) {
+    Complain(fmt::format("the stated {} differs from ours by more than 0.1 deg", what));
+  }
+}
+
+int PrintGrid(const Options& o, const GeodeticPoint& place) {
+  const auto grid = ProjectToCrs(o.crs, place);
+  if (!grid) {
+    Complain(grid.fault());
+    return kUnusable;
+  }
+  fmt::print("grid {} ({})\n  easting {:.4f} m, northing {:.4f} m", o.crs, grid->name,
+             grid->point.easting, grid->point.northing);
+  if (grid->unit != 1) {
+    fmt::print("; {:.4f}, {:.4f} {}", grid->point.easting / grid->unit,
+               grid->point.northing / grid->unit, grid->unit_name);
+  }
+  fmt::print("\n  convergence {:+.6f} deg (true less grid azimuth), scale {:.8f}\n",
+             Deg(grid->point.convergence), grid->point.scale);
+  if (o.stated_convergence) {
+    PrintCheck("convergence", *o.stated_convergence, grid->point.convergence);
+  }
+  return kDone;
+}
+
+int PrintMagnetic(const Options& o, const GeodeticPoint& place) {
+  const auto year = DecimalYear(o.date);
+  if (!year) {
+    Complain(year.fault());
+    return kUsage;
+  }
+  const auto found = MagneticFieldAt(o.model, DataFolder(o), place, o.height, *year);
+  if (!found) {
+    Complain(found.fault());
+    return kUnusable;
+  }
+  const MagneticField& f = *found;
+  fmt::print("magnetic, {} on {} ({:.4f})\n", o.model, o.date, *year);
+  fmt::print("  declination {:+.4f} deg +- {:.2f} (true less magnetic azimuth)\n",
+             Deg(f.declination), Deg(f.sigma_declination));
+  fmt::print("  dip {:+.4f} deg +- {:.2f}, field {:.1f} nT +- {:.0f}, 1 sigma\n", Deg(f.dip),
+             Deg(f.sigma_dip), f.field / units::kNanotesla, f.sigma_field / units::kNanotesla);
+  if (o.stated_declination) PrintCheck("declination", *o.stated_declination, f.declination);
+  return kDone;
+}
+
+int Run(const Options& o) {
+  GeodeticPoint place;
+  if (o.easting && o.northing && !o.crs.empty()) {
+    const auto found = GeodeticOfCrs(o.crs, {*o.easting, *o.northing, 0});
+    if (!found) {
+      Complain(found.fault());
+      return kUnusable;
+    }
+    place = *found;
+  } else if (o.latitude && o.longitude) {
+    place = {*o.latitude, *o.longitude};
+  } else {
+    Complain(
+        "a place is needed: --latitude-deg and --longitude-deg, or --crs with --easting and "
+        "--northing");
+    return kUsage;
+  }
+  fmt::print("place on WGS 84: latitude {:.9f} deg, longitude {:.9f} deg\n", Deg(place.latitude),
+             Deg(place.longitude));
+  fmt::print("true north: 0\n");
+  int code = o.crs.empty() ? kDone : PrintGrid(o, place);
+  if (code == kDone && !o.date.empty()) code = PrintMagnetic(o, place);
+  return code;
+}
+
+}  // namespace
+
+void AddNorth(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "north", "Says where true, grid and magnetic north are at a place and date");
+  const auto o = std::make_shared<Options>();
+  AddNumber(*command, "--latitude-deg", o->latitude, units::kDeg, "WGS 84")
+      ->check(CLI::Range(-90.0, 90.0));
+  AddNumber(*command, "--longitude-deg", o->longitude, units::kDeg, "WGS 84, east positive")
+      ->check(CLI::Range(-180.0, 360.0));
+  AddNumber(*command, "--height-m", o->height, 1, "above the ellipsoid, for the field");
+  command->add_option("--crs", o->crs, "projected system of the EPSG registry, as EPSG:23031");
+  AddNumber(*command, "--easting", o->easting, 1, "in the system's own unit, with --crs");
+  AddNumber(*command, "--northing", o->northing, 1, "likewise");
+  command->add_option("--date", o->date, "YYYY-MM-DD, of the magnetic field");
+  command->add_option("--magnetic-model", o->model, "wmm2025 (default), wmm2020 or igrf14");
+  command->add_option("--magnetic-data", o->data, "folder of the models, if others");
+  AddNumber(*command, "--convergence-deg", o->stated_convergence, units::kDeg,
+            "the operator's: it holds, ours is the check");
+  AddNumber(*command, "--declination-deg", o->stated_declination, units::kDeg, "likewise");
+  command->footer(
+      "Example:\n  wellgyro north --latitude-deg 58.44 --longitude-deg 1.93 --crs EPSG:23031 \\\n"
+      "      --date 2026-11-22");
+  command->callback([o, &exit_code] { exit_code = Run(*o); });
+}
+
+}  // namespace wellgyro::apps

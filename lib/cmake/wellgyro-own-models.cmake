@@ -1,0 +1,15 @@
+# Writes OUTPUT, a source that holds every file of FOLDER ending in .toml as text: the error models
+# that come with the library. Run with cmake -P at build time.
+file(GLOB models "${FOLDER}/*.toml")
+list(SORT models)
+set(source "#include \"wellgyro/io/toml/own_models_internal.h\"\n\n#include <array>\n\n")
+string(APPEND source "namespace wellgyro {\nnamespace {\n\nconstexpr std::array kModels = {\n")
+foreach(model IN LISTS models)
+  get_filename_component(name "${model}" NAME)
+  file(READ "${model}" text)
+  string(APPEND source "    OwnModelText{\"${name}\", R\"toml(${text})toml\"},\n")
+endforeach()
+string(APPEND source "};\n\n}  // namespace\n\n")
+string(APPEND source "std::span<const OwnModelText> OwnModelTexts() { return kModels; }\n\n")
+string(APPEND source "}  // namespace wellgyro\n")
+file(WRITE "${OUTPUT}" "${source}")

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace wellgyro {
+
+/// Text as it may stand in SVG and HTML.
+std::string SvgText(const std::string& text);
+
+/// The next of 1, 2, 5, 10, ... not below `x`, which is above 0.
+double RoundTick(double x);
+
+}  // namespace wellgyro

@@ -1,0 +1,248 @@
+#include "wellgyro/io/result/clearance_files.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/io/plot/clearance_plot.h"
+#include "wellgyro/io/result/clearance_report_internal.h"
+#include "wellgyro/io/toml/model_catalogue.h"
+#include "wellgyro/io/toml/named_file_internal.h"
+#include "wellgyro/io/toml/program_file.h"
+#include "wellgyro/io/toml/toml_internal.h"
+#include "wellgyro/survey/kick_off.h"
+
+namespace wellgyro {
+namespace {
+
+/// A well as read: its stations and what surveyed them.
+struct ReadWell {
+  WellStations table;
+  std::vector<std::shared_ptr<const ErrorModel>> models;
+  std::vector<ToolLeg> legs;
+  Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();
+};
+
+class ClearanceRun {
+ public:
+  explicit ClearanceRun(const ClearanceRequest& request);
+  ClearanceAnswer Answer();
+
+ private:
+  ReadWell Read(const ClearanceWell& entry);
+  ReadWell ReadLegs(const std::filesystem::path& path);
+  std::shared_ptr<const ErrorModel> Model(const std::filesystem::path& path);
+  KnownWell Known(ReadWell read, const ClearanceWell& entry, std::optional<double> kick_off);
+  OffsetResult Against(const ClearanceWell& entry);
+  void Note(const std::string& well, const std::string& text);
+
+  const ClearanceRequest& request_;
+  ClearancePolicy policy_;
+  std::filesystem::path folder_;
+  std::vector<std::pair<std::filesystem::path, std::shared_ptr<const ErrorModel>>> models_;
+  ClearanceWell reference_entry_;
+  ReadWell reference_read_;
+  std::unique_ptr<KnownWell> reference_;
+  std::unique_ptr<HoleLine> line_;
+  ClearanceAnswer answer_;
+};
+
+bool IsProgram(const std::filesystem::path& path) { return path.extension() == ".toml"; }
+
+ClearanceWell EntryOf(const std::filesystem::path& path) {
+  ClearanceWell entry;
+  entry.name = path.stem().string();
+  const std::string absolute = std::filesystem::absolute(path).string();
+  (IsProgram(path) ? entry.program : entry.survey) = absolute;
+  return entry;
+}
+
+ClearanceRun::ClearanceRun(const ClearanceRequest& request) : request_(request) {
+  if (request.policy) {
+    Result<ClearancePolicy> read = ReadClearancePolicy(*request.policy);
+    if (!read) throw TomlError{read.fault()};
+    policy_ = *std::move(read);
+    folder_ = request.policy->parent_path();
+  }
+  if (request.reference) policy_.reference = EntryOf(*request.reference);
+  for (const auto& path : request.offsets) policy_.offsets.push_back(EntryOf(path));
+  if (!policy_.reference) throw std::invalid_argument("no reference well is named");
+  if (policy_.offsets.empty()) throw std::invalid_argument("no offset well is named");
+  reference_entry_ = *policy_.reference;
+}
+
+std::shared_ptr<const ErrorModel> ClearanceRun::Model(const std::filesystem::path& path) {
+  for (const auto& [known, model] : models_) {
+    if (known == path) return model;
+  }
+  Result<ErrorModel> read = FindModel(path.string());
+  if (!read) throw TomlError{read.fault()};
+  models_.emplace_back(path, std::make_shared<const ErrorModel>(*std::move(read)));
+  return models_.back().second;
+}
+
+ReadWell ClearanceRun::ReadLegs(const std::filesystem::path& path) {
+  Result<SurveyProgram> program =
+      ReadSurveyProgram(path, request_.convergence ? North::kGrid : North::kTrue);
+  if (!program) throw TomlError{program.fault()};
+  ReadWell read;
+  read.table = std::move(program->survey);
+  for (auto& model : program->models) read.models.push_back(std::move(model));
+  read.legs = std::move(program->legs);
+  read.cov_tie_in = program->cov_tie_in;
+  return read;
+}
+
+ReadWell ClearanceRun::Read(const ClearanceWell& entry) {
+  ReadWell read;
+  if (!entry.program.empty()) {
+    read = ReadLegs(folder_ / entry.program);
+  } else {
+    const std::filesystem::path path = folder_ / entry.survey;
+    const Result<std::string> text = ReadTextFile(path);
+    if (!text) throw TomlError{text.fault()};
+    Result<WellStations> table =
+        ParseWellStations(*text, path.string(), request_.convergence ? North::kGrid : North::kTrue);
+    if (!table) throw TomlError{table.fault()};
+    read.table = *std::move(table);
+    if (entry.model.empty() && request_.model.empty()) {
+      throw std::invalid_argument("well " + entry.name + " has no error model: name one");
+    }
+    const bool named = entry.model.empty() || OwnModel(entry.model);
+    const std::string& name = entry.model.empty() ? request_.model : entry.model;
+    const auto model = Model(named ? std::filesystem::path(name) : folder_ / name);
+    read.models.push_back(model);
+    read.legs = {{model.get(), 0, read.table.stations.size(), 1}};
+  }
+  if (entry.start) read.table.start = *entry.start;
+  if (!entry.start && !read.table.start_stated && read.table.stations.front().md != 0) {
+    read.table.start.z() = read.table.stations.front().md;
+    Note(entry.name, "no TVD for the first station: taken to be its MD");
+  }
+  if (read.table.north == North::kUnknown) {
+    Note(entry.name, request_.convergence ? "azimuths taken as grid" : "azimuths taken as true");
+  }
+  if (read.table.north == North::kTrue && request_.convergence && *request_.convergence != 0) {
+    throw std::invalid_argument("well " + entry.name + " has true azimuths by its header");
+  }
+  if (read.table.north == North::kGrid && !request_.convergence) {
+    throw std::invalid_argument("well " + entry.name + " has grid azimuths: give the convergence");
+  }
+  return read;
+}
+
+void ClearanceRun::Note(const std::string& well, const std::string& text) {
+  const std::string note = well + ": " + text;
+  if (std::ranges::find(answer_.notes, note) == answer_.notes.end()) answer_.notes.push_back(note);
+}
+
+/// With a kick-off, what lies below it, with the errors gathered from there on.
+KnownWell ClearanceRun::Known(ReadWell read, const ClearanceWell& entry,
+                              std::optional<double> kick_off) {
+  PropagateOptions options;
+  options.cov_tie_in = read.cov_tie_in;
+  options.tie_on = policy_.tie_on;
+  std::size_t from = 0;
+  if (kick_off) {
+    from = StationAt(read.table.stations, read.legs, *kick_off);
+    options.cov_tie_in.setZero();
+    if (from == 0) {
+      options.tie_on = TieOn::kIndependent;
+    } else {
+      options.zero_at = from;
+    }
+  }
+  KnownWell known;
+  known.well = SurveyWell(std::move(read.table.stations), read.table.start);
+  Surroundings place = request_.surroundings;
+  place.convergence = request_.convergence.value_or(0);
+  UncertaintyBasis basis;
+  basis.legs = read.legs;
+  known.errors = WellUncertainty(known.well, place, basis, options);
+  if (known.errors.refusal) {
+    answer_.refusals.push_back(entry.name + ": " + known.errors.refusal->text);
+  }
+  for (const std::string& note : known.errors.notes) Note(entry.name, note);
+  return from == 0 ? known : FromStation(known, from);
+}
+
+OffsetResult ClearanceRun::Against(const ClearanceWell& entry) {
+  const auto& default_hole = policy_.offset_hole;
+  const auto& hole = entry.hole.empty() ? default_hole : entry.hole;
+  const KnownWell offset = Known(Read(entry), entry, entry.kick_off);
+  const HoleLine line({&offset.well, &offset.errors}, hole);
+  OffsetResult result;
+  result.name = entry.name;
+  if (!entry.kick_off) {
+    result.screened_out = !MayFallBelow(*line_, line, policy_.rule, policy_.report);
+    if (!result.screened_out) {
+      result.rows = Separations(*line_, line, Pairing::kTwoWells, policy_.rule);
+    }
+  } else {
+    const KnownWell below = Known(reference_read_, reference_entry_, entry.kick_off);
+    const auto& own_hole =
+        reference_entry_.hole.empty() ? policy_.reference_hole : reference_entry_.hole;
+    const HoleLine tail({&below.well, &below.errors}, own_hole);
+    result.rows = Separations(tail, line, Pairing::kTwoWells, policy_.rule);
+    // At the kick-off itself both are one hole.
+    std::erase_if(result.rows, [&](const Separation& s) { return s.md <= *entry.kick_off; });
+  }
+  if (const Separation* lowest = Lowest(result.rows)) result.lowest = *lowest;
+  return result;
+}
+
+ClearanceAnswer ClearanceRun::Answer() {
+  reference_read_ = Read(reference_entry_);
+  reference_ = std::make_unique<KnownWell>(Known(reference_read_, reference_entry_, std::nullopt));
+  const auto& hole = reference_entry_.hole.empty() ? policy_.reference_hole : reference_entry_.hole;
+  line_ = std::make_unique<HoleLine>(UncertainWell{&reference_->well, &reference_->errors}, hole);
+  std::vector<OffsetResult> results;
+  for (const ClearanceWell& entry : policy_.offsets) {
+    if (request_.progress) request_.progress(results.size(), policy_.offsets.size());
+    results.push_back(Against(entry));
+  }
+  const OffsetResult* worst = nullptr;
+  for (const OffsetResult& r : results) {
+    if (!r.lowest || !r.lowest->factor) continue;
+    if (!worst || *r.lowest->factor < *worst->lowest->factor) worst = &r;
+    if (*r.lowest->factor < policy_.stop) {
+      answer_.verdict = ClearanceVerdict::kFail;
+    } else if (*r.lowest->factor < policy_.alert && answer_.verdict == ClearanceVerdict::kPass) {
+      answer_.verdict = ClearanceVerdict::kWarn;
+    }
+  }
+  const std::string ladder =
+      LadderSvg(reference_entry_.name, SeriesOf(results), policy_.stop, policy_.alert);
+  const std::string cylinder = TravellingCylinderSvg(reference_entry_.name, SeriesOf(results));
+  answer_.files = {{"clearance.csv", ClearanceCsv(results)},
+                   {"wells.csv", WellsCsv(results, policy_)},
+                   {"ladder.svg", ladder},
+                   {"travelling_cylinder.svg", cylinder},
+                   {"clearance.html", ClearanceHtml(reference_entry_.name, results, policy_,
+                                                    answer_.notes, ladder, cylinder)}};
+  answer_.summary =
+      worst ? fmt::format(
+                  "lowest separation factor {:.3f}, against {} at MD {:.2f} m, {:.2f} m "
+                  "from it",
+                  *worst->lowest->factor, worst->name, worst->lowest->md, worst->lowest->distance)
+            : fmt::format("no offset can come below a separation factor of {:g}", policy_.report);
+  return std::move(answer_);
+}
+
+}  // namespace
+
+Result<ClearanceAnswer> AnswerClearance(const ClearanceRequest& request) {
+  try {
+    return ClearanceRun(request).Answer();
+  } catch (const TomlError& error) {
+    return error.fault;
+  } catch (const std::domain_error& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wellgyro/io/plot/clearance_plot.h"
+#include "wellgyro/io/toml/clearance_file.h"
+#include "wellgyro/survey/separation.h"
+
+namespace wellgyro {
+
+/// One offset well as it was found.
+struct OffsetResult {
+  std::string name;
+  bool screened_out = false;     ///< it cannot come below the policy's `report`
+  std::vector<Separation> rows;  ///< empty when screened out
+  std::optional<Separation> lowest;
+};
+
+/// Those that were not screened out, the lowest factor first.
+std::vector<ClearanceSeries> SeriesOf(const std::vector<OffsetResult>& offsets);
+
+std::string ClearanceCsv(const std::vector<OffsetResult>& offsets);
+std::string WellsCsv(const std::vector<OffsetResult>& offsets, const ClearancePolicy& policy);
+std::string ClearanceHtml(const std::string& reference, const std::vector<OffsetResult>& offsets,
+                          const ClearancePolicy& policy, const std::vector<std::string>& notes,
+                          const std::string& ladder, const std::string& cylinder);
+
+/// "pass", "warn" or "fail".
+const char* VerdictWord(const OffsetResult& offset, const ClearancePolicy& policy);
+
+}  // namespace wellgyro
