@@ -6,6 +6,7 @@
 
 #include "wellgyro/base/result.h"
 #include "wellgyro/uncertainty/error_model.h"
+#include "wellgyro/uncertainty/formula_weight.h"
 
 namespace wellgyro {
 
