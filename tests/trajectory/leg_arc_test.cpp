@@ -85,7 +85,7 @@ double Sampled(const F& f, double length, int samples) {
   return least;
 }
 
-// The figure of the issue is 1e5 pairs; tests/run --long draws them.
+// tests/run --long draws 1e5 pairs.
 TEST(LegArc, NoMinimumIsMissed) {
   Draw draw;
   double worst_above = 0, worst_below = 0;
