@@ -252,8 +252,9 @@ class Program(ProgramTest):
         listed = Run("--help").stdout.split("Subcommands:")[1]
         commands = [line.split()[0] for line in listed.splitlines() if line.startswith("  ")
                     and line[2] != " "]
-        self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "convert", "record",
-                                            "simulate", "survey", "uncertainty"])
+        self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "clearance", "convert", "models",
+                                            "north", "record", "simulate", "survey",
+                                            "uncertainty"])
         for command in commands:
             done = Run(command, "--help")
             self.assertEqual(done.returncode, 0)
@@ -269,6 +270,7 @@ class Program(ProgramTest):
         job = self.Write("readme/job.toml", re.search(r"(?s)```toml\n(.*?)```", text).group(1))
         latitude = self.Toml(job)["well"]["latitude_deg"]
         self.Log("readme/tool", SIMULATION.replace("61.0", str(latitude)))
+        self.OtherWells("readme", re.findall(r"(?s)```toml\n(.*?)```", text)[1])
         ran = set()
         commands = [match.group(1) or match.group(2) for match in
                     re.finditer(r"(?m)^(wellgyro .*)$|`(wellgyro survey --job job[^`]+)`", text)]
@@ -277,10 +279,22 @@ class Program(ProgramTest):
             if "udpm" in command or "memory.csv" in command:
                 continue
             done = Run(*arguments, cwd=folder)
-            self.assertEqual(done.returncode, 0, command + "\n" + done.stderr)
+            # A side-track cannot keep its distance where it leaves its well.
+            expected = 4 if arguments[0] == "clearance" else 0
+            self.assertEqual(done.returncode, expected, command + "\n" + done.stderr)
             self.assertNotIn(".cc:", done.stderr, "a line of the solver's log")
             ran.add(arguments[0])
-        self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate"})
+        self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate",
+                               "clearance"})
+
+    def OtherWells(self, folder, policy):
+        self.Write(folder + "/clearance.toml", policy)
+        head = "MD[m],INC[deg],AZI_TRUE[deg],TVD[m],N[m],E[m]\n"
+        for name, north in (("plan", 0), ("a", 40), ("b", 900)):
+            rows = "".join(f"{md},0,0,{md},{north},0\n" for md in range(0, 2500, 100))
+            self.Write(f"{folder}/{name}.csv", head + rows)
+        self.Write(folder + "/sidetrack.csv",
+                   head + "900,0,0,900,0,0\n930,3,90,,,\n960,6,90,,,\n1200,30,90,,,\n")
 
     def test_the_demonstration(self):
         done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
