@@ -87,5 +87,22 @@ TEST(Crs, RefusesWhatItDoesNotKnow) {
   EXPECT_FALSE(ShiftPoint("EPSG:32631", "EPSG:4326", {1e30, 1e30, 0}));
 }
 
+// SWEREF99 TM lists the northing first. On its central meridian true north is grid north; 3 deg
+// east of it the convergence is the sphere's, tan(c) = tan(3 deg) sin(latitude), to 1e-3 deg.
+TEST(Crs, ConvergenceOfASystemThatListsTheNorthingFirst) {
+  const auto place = [](double longitude_deg) {
+    return GeodeticPoint{.latitude = 60 * units::kDeg, .longitude = longitude_deg * units::kDeg};
+  };
+  const auto middle = ProjectToCrs("EPSG:3006", place(15)),
+             east = ProjectToCrs("EPSG:3006", place(18));
+  ASSERT_TRUE(middle && east);
+  EXPECT_NEAR(middle->point.easting, 500'000, 1e-3);
+  EXPECT_NEAR(middle->point.convergence, 0, 1e-8);
+  EXPECT_NEAR(middle->point.scale, 0.9996, 1e-9);
+  EXPECT_NEAR(east->point.convergence,
+              std::atan(std::tan(3 * units::kDeg) * std::sin(60 * units::kDeg)),
+              1e-3 * units::kDeg);
+}
+
 }  // namespace
 }  // namespace wellgyro
