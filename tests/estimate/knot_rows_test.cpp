@@ -26,7 +26,10 @@ struct Case {
     KnotRows rows(setup, layout);
     NormalBlock block;
     block.Clear(layout);
-    rows.Add(knot, place, 0.01, x, a, b, block);
+    KnotPlace turned = place;
+    const double heading = Log(a.R_LT * begin.R_LT.transpose()).z();
+    turned.acceleration_L = Exp(Vector3d(0, 0, heading)) * place.acceleration_L;
+    rows.Add(knot, turned, {.sigma = 0.01}, x, a, b, block);
     double cost = 0;
     for (const RowSum& sum : block.sums()) cost += 0.5 * sum.cost;
     return cost;
@@ -77,7 +80,7 @@ Case MakeCase(double inclination, bool still, bool axial) {
   c.place.site = SiteAt(1, 0);
   c.place.w_IL_L = w_IL_L;
   c.place.dw_by_latitude = {-6e-5, 0, -4e-5};
-  c.place.force_L = {0.01, 0.02, -9.81};
+  c.place.acceleration_L = {0.01, 0.02, 0.001};
   c.place.since_start = 30;
   c.place.depth = 100;
   c.border.setZero(c.layout.border);
@@ -97,7 +100,8 @@ Case MakeCase(double inclination, bool still, bool axial) {
   c.end.roll_rate = roll + 0.01;
   c.end.md = c.begin.md + c.begin.speed;
   c.end.walk = pair(1e-6);
-  const Vector3d f = c.begin.R_LT.transpose() * c.place.force_L;
+  const Vector3d f = c.begin.R_LT.transpose() *
+                     (c.place.acceleration_L - c.place.site.gravity * Vector3d::UnitZ());
   inc.force_M = RotationZ(inc.roll_before).transpose() * f + Vector3d(1e-3, -0.6e-3, 0.8e-3);
   c.knot.still = still;
   c.knot.along = {.md = c.end.md + 0.001, .speed = c.begin.speed, .sigma_md = 0.01, .known = true};
@@ -108,7 +112,7 @@ void ExpectGradient(const Case& c, const std::string& what) {
   KnotRows rows(c.setup, c.layout);
   NormalBlock block;
   block.Clear(c.layout);
-  rows.Add(c.knot, c.place, 0.01, c.border, c.begin, c.end, block);
+  rows.Add(c.knot, c.place, {.sigma = 0.01}, c.border, c.begin, c.end, block);
   const int n = c.layout.node;
   for (int i = 0; i < 2 * n + c.layout.border; ++i) {
     // A step of a hundredth of what the factors resolve in this unknown.
@@ -138,6 +142,32 @@ TEST(KnotRows, GradientIsThatOfTheCost) {
     ExpectGradient(MakeCase(inclination, false, false), "moving");
     ExpectGradient(MakeCase(inclination, true, false), "at rest");
     ExpectGradient(MakeCase(inclination, false, true), "third axis");
+  }
+}
+
+// Only the Earth's rate tells a heading: were it nought, a turn of both nodes about the vertical
+// would change no residual, however large. In thousands of knots the least share of it adds up.
+TEST(KnotRows, WithoutTheEarthsRateNoKnotTellsAHeading) {
+  for (const double inclination : {0.0, 0.02, 0.7, M_PI / 2, 1.9}) {
+    for (const bool still : {false, true}) {
+      Case c = MakeCase(inclination, still, false);
+      c.place.w_IL_L.setZero();
+      c.place.dw_by_latitude.setZero();
+      KnotRows rows(c.setup, c.layout);
+      NormalBlock block;
+      block.Clear(c.layout);
+      rows.Add(c.knot, c.place, {.sigma = 0.01}, c.border, c.begin, c.end, block);
+      NormalBlock::Vector turn = NormalBlock::Vector::Zero(block.gradient().size());
+      turn.segment<3>(c.layout.phi) = c.begin.R_LT.row(2).transpose();
+      turn.segment<3>(block.next() + c.layout.phi) = c.end.R_LT.row(2).transpose();
+      const Eigen::MatrixXd all = block.information().selfadjointView<Eigen::Lower>();
+      // With first derivatives good to the residuals' size only, it would be a sum of their
+      // squares.
+      EXPECT_LT(turn.dot(all * turn), 1e-2) << inclination << " " << still;
+      EXPECT_GT(
+          block.sums()[static_cast<std::size_t>(still ? RowKind::kStill : RowKind::kTurn)].squares,
+          1);
+    }
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/rotation.h"
 
@@ -34,7 +36,36 @@ Vector3d Flat(const Vector2d& v) { return {v.x(), v.y(), 0}; }
 
 double Square(double x) { return x * x; }
 
+/// How r = Log(R) changes where R becomes Exp(-a) R Exp(b): by right b - left a, to the second
+/// order of r. A turn of both nodes together then changes nothing; with unit matrices it would seem
+/// to by r, a sigma a radian, and thousands of knots would tell a heading that nothing measures.
+struct LogSlopes {
+  explicit LogSlopes(const Vector3d& r) {
+    const Matrix3d rx = Skew(r);
+    const Matrix3d even = Matrix3d::Identity() + rx * rx / 12;
+    left = even - 0.5 * rx;
+    right = even + 0.5 * rx;
+  }
+  Matrix3d left, right;
+};
+
+/// What a swing is after `seconds`, of what it was: [c s; -s c].
+Vector2d SwingAfter(const EstimateSetup& setup, double seconds, const Vector2d& a) {
+  const double c = std::cos(*setup.swing * seconds), s = std::sin(*setup.swing * seconds);
+  return {c * a.x() + s * a.y(), c * a.y() - s * a.x()};
+}
+
 }  // namespace
+
+RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double sigma,
+                          const Node& begin, const Node& end) {
+  RollSquares squares{Square((end.roll_rate - begin.roll_rate) / sigma), 0};
+  if (setup.swing) {
+    squares.swing =
+        (end.swing - SwingAfter(setup, seconds, begin.swing)).squaredNorm() / Square(sigma);
+  }
+  return squares;
+}
 
 /// What several factors of a knot share.
 struct KnotRows::Terms {
@@ -90,14 +121,14 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   return t;
 }
 
-void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, double walk,
+void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RollChange& roll,
                    const BorderVector& border, const Node& begin, const Node& end,
                    NormalBlock& block) {
   const Terms t = TermsOf(knot, place, border, begin, end);
   AddTurn(t, block);
   if (knot.increment.level) AddForce(t, block);
   if (knot.increment.has_axial) AddAxial(t, block);
-  AddRoll(t, walk, block);
+  AddRoll(t, roll, block);
   AddDepth(t, block);
   AddDrift(t, block);
   if (knot.still) AddRest(t, block);
@@ -120,10 +151,13 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Eigen::Matrix<double, 3, 2> turned = t.Hb.topRows<2>().transpose();  // Hb' of a turn in M
 
   Factor& f = factor_;
-  f.Begin(RowKind::kTurn, 3);
-  f.r = by * Log(R_end.transpose() * t.end.R_LT);
-  for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = by * -B.row(i).transpose();
-  for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = by * Vector3d::Unit(i);
+  f.Begin(t.knot.still ? RowKind::kStill : RowKind::kTurn, 3);
+  const Vector3d r = Log(R_end.transpose() * t.end.R_LT);
+  const LogSlopes slopes(r);
+  f.r = by * r;
+  const Matrix3d by_begin = by * slopes.left * -B.transpose(), by_end = by * slopes.right;
+  for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = by_begin.col(i);
+  for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = by_end.col(i);
   const Vector3d by_delta =
       -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * inc.turn_per_roll;
   const Vector3d by_rate = by * (t.dt * by_delta);
@@ -160,7 +194,9 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
 /// Mean force in M less R_LM' (a - g) less the change of speed along the axis.
 void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Increment& inc = t.knot.increment;
-  const Vector3d p = t.R_LM.transpose() * t.place.force_L;
+  const Vector3d down_M = t.R_LM.row(2).transpose();
+  const Vector3d path = t.R_LM.transpose() * t.place.acceleration_L;
+  const Vector3d p = path - t.place.site.gravity * down_M;
   Vector3d force = inc.force_M;
   for (int i = kAccelBiasX; i <= kAccelMisalignmentY; ++i) {
     const double error = SourceAt(t.border, i);
@@ -171,7 +207,6 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   if (layout_.gravity_gradient != kAbsent) {
     gravity += t.place.depth * t.border[layout_.gravity_gradient];
   }
-  const Vector3d down_M = t.R_LM.row(2).transpose();
   const double whiten = 1 / std::max(setup_.errors.accel_noise / std::sqrt(t.dt), kLeastForce);
   const Matrix3d px = Skew(p);
 
@@ -179,7 +214,8 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   f.Begin(RowKind::kForce, 3);
   f.r = whiten *
         (force - p + gravity * down_M - (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
-  const Matrix3d by_phi = -px * (t.Ha * t.Xh).transpose();
+  const Matrix3d by_phi =
+      -(px + down_M.cross(path) * down_M.transpose()) * (t.Ha * t.Xh).transpose();
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);
   const Vector3d by_rate =
       whiten * t.dt * (-0.5 * px * t.Xh.row(2).transpose() + Flat(inc.force_per_roll));
@@ -204,23 +240,25 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
 }
 
 /// The roll rate walks from knot to knot; a swing turns by its own frequency and walks too.
-void KnotRows::AddRoll(const Terms& t, double walk, NormalBlock& block) {
-  const double whiten = 1 / walk;
+void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block) {
+  const double whiten = 1 / roll.sigma;
   Factor& f = factor_;
   f.Begin(RowKind::kRoll, 1);
+  f.held = roll.weight;
   f.r[0] = whiten * (t.end.roll_rate - t.begin.roll_rate);
   f.Column(layout_.roll)[0] = -whiten;
   f.Column(block.next() + layout_.roll)[0] = whiten;
   block.Add(f);
   if (layout_.swing == kAbsent) return;
-  const double c = std::cos(*setup_.swing * t.dt), s = std::sin(*setup_.swing * t.dt);
-  const Vector2d& a = t.begin.swing;
   f.Begin(RowKind::kRoll, 2);
-  f.r.head<2>() = whiten * (t.end.swing - Vector2d(c * a.x() + s * a.y(), c * a.y() - s * a.x()));
-  f.Column(layout_.swing) = whiten * Vector2d(-c, s);
-  f.Column(layout_.swing + 1) = whiten * Vector2d(-s, -c);
-  f.Column(block.next() + layout_.swing) = whiten * Vector2d::UnitX();
-  f.Column(block.next() + layout_.swing + 1) = whiten * Vector2d::UnitY();
+  f.held = roll.swing_weight;
+  f.r.head<2>() = whiten * (t.end.swing - SwingAfter(setup_, t.dt, t.begin.swing));
+  for (int i = 0; i < 2; ++i) {
+    f.Column(layout_.swing + i) = -whiten * SwingAfter(setup_, t.dt, Vector2d::Unit(i));
+  }
+  for (int i = 0; i < 2; ++i) {
+    f.Column(block.next() + layout_.swing + i) = whiten * Vector2d::Unit(i);
+  }
   block.Add(f);
 }
 
@@ -301,12 +339,15 @@ void KnotRows::AddDrift(const Terms& t, NormalBlock& block) {
 void KnotRows::AddRest(const Terms& t, NormalBlock& block) {
   const double noise = setup_.gyro.angle_random_walk * std::sqrt(t.dt);
   const double whiten = 1 / std::max(kRestShare * noise, kLeastTurn);
-  const Matrix3d R = t.begin.R_LT.transpose() * t.end.R_LT;
+  const Vector3d r = Log(t.begin.R_LT.transpose() * t.end.R_LT);
+  const LogSlopes slopes(r);
   Factor& f = factor_;
   f.Begin(RowKind::kRest, 3);
-  f.r = whiten * Log(R);
-  for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = -whiten * R.row(i).transpose();
-  for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = whiten * Vector3d::Unit(i);
+  f.r = whiten * r;
+  for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = -whiten * slopes.left.col(i);
+  for (int i = 0; i < 3; ++i) {
+    f.Column(block.next() + layout_.phi + i) = whiten * slopes.right.col(i);
+  }
   block.Add(f);
   for (const int at : {layout_.speed, block.next() + layout_.speed}) {
     f.Begin(RowKind::kRest, 1);

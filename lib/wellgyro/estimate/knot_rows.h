@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -18,8 +19,10 @@ struct KnotPlace {
   Site site;
   Eigen::Vector3d w_IL_L = Eigen::Vector3d::Zero();  ///< Earth's rate and transport [rad/s]
   Eigen::Vector3d dw_by_latitude = Eigen::Vector3d::Zero();
-  /// Acceleration of the path but for that along it, less gravity: R_LT' of it is the force.
-  Eigen::Vector3d force_L = Eigen::Vector3d::Zero();
+  /// Of the path, but for that along it, with Coriolis' [m/s^2]. It turns about the vertical with
+  /// the node: a path read on the map under another azimuth bends the same way seen from the tool,
+  /// and tells nothing of it.
+  Eigen::Vector3d acceleration_L = Eigen::Vector3d::Zero();
   double since_start = 0;  ///< middle of the knot [s]
   double depth = 0;        ///< vertical, below node 0 [m]
 };
@@ -30,7 +33,22 @@ struct RunScales {
   /// Of each knot, how much the rate plainly changes there beyond its walk: starts and stops; empty
   /// where not yet known [rad/s].
   std::vector<double> roll_start;
+  /// Of each knot, held while the run is brought to its end; empty: by the residuals.
+  std::vector<std::array<double, 2>> roll_weight;
 };
+
+/// How the roll rate may change over a knot.
+struct RollChange {
+  double sigma = 0.1;                   ///< [rad/s]
+  double weight = 0, swing_weight = 0;  ///< robust ones, held; 0: by the residuals
+};
+
+/// Sum of squares of what the rate of roll changes by over a knot, by `sigma`, and of its swing.
+struct RollSquares {
+  double rate = 0, swing = 0;
+};
+RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double sigma,
+                          const Node& begin, const Node& end);
 
 /// Whitened residuals of everything that a knot says of the nodes at its ends and of the border,
 /// about their present values, added to `block`. R_IT(end) = R_IT(begin) Rz Exp(turn) Rz,
@@ -40,9 +58,8 @@ class KnotRows {
   /// Both must outlive this object.
   KnotRows(const EstimateSetup& setup, const Layout& layout) : setup_(setup), layout_(layout) {}
 
-  /// `walk`: of the roll rate over this knot, 1-sigma [rad/s].
-  void Add(const RunKnot& knot, const KnotPlace& place, double walk, const BorderVector& border,
-           const Node& begin, const Node& end, NormalBlock& block);
+  void Add(const RunKnot& knot, const KnotPlace& place, const RollChange& roll,
+           const BorderVector& border, const Node& begin, const Node& end, NormalBlock& block);
 
  private:
   struct Terms;
@@ -50,7 +67,7 @@ class KnotRows {
                 const Node& begin, const Node& end) const;
   void AddTurn(const Terms& t, NormalBlock& block);
   void AddForce(const Terms& t, NormalBlock& block);
-  void AddRoll(const Terms& t, double walk, NormalBlock& block);
+  void AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block);
   void AddAxial(const Terms& t, NormalBlock& block);
   void AddDepth(const Terms& t, NormalBlock& block);
   void AddDrift(const Terms& t, NormalBlock& block);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wellgyro/base/angle.h"
+
 namespace wellgyro {
 namespace {
 
@@ -15,7 +17,26 @@ constexpr double kDegrees = 5;
 struct Loss {
   double weight = 1;
   double cost = 0;
+  double expected = 1;  ///< of the weighted square, for n standard normal residuals, over n
 };
+
+/// E[min(x'x, k |x|)] / n of n standard normal x, by the upper tails Q of chi with n + 1 and n + 2
+/// degrees: E[x'x; |x| < k] = n (1 - Q_n+2), E[|x|; |x| > k] = (E |x|) Q_n+1.
+double HuberExpected(int n) {
+  const double k = kHuber, normal = std::exp(-0.5 * k * k), tail = std::erfc(k / std::sqrt(2.0));
+  const double q2 = normal, q3 = tail + std::sqrt(2 / kPi) * k * normal,
+               q4 = (1 + 0.5 * k * k) * normal,
+               q5 = q3 + std::sqrt(2 / kPi) * k * k * k / 3 * normal;
+  switch (n) {
+    case 1:
+      return 1 - q3 + k * std::sqrt(2 / kPi) * q2;
+    case 2:
+      return 1 - q4 + k * std::sqrt(kPi / 2) * q3 / 2;
+    default:
+      return 1 - q5 + k * std::sqrt(8 / kPi) * q4 / 3;
+  }
+}
+const std::array<double, 4> kHuberExpected{1, HuberExpected(1), HuberExpected(2), HuberExpected(3)};
 
 /// Huber's weights never exceed 1: most of a gyro factor has no redundancy, and a weight above it
 /// would be believed.
@@ -24,14 +45,17 @@ Loss LossOf(const Factor& f) {
   switch (f.kind) {
     case RowKind::kRoll: {
       const double n = f.rows;
-      return {(kDegrees + n) / (kDegrees + square), (kDegrees + n) * std::log1p(square / kDegrees)};
+      return {f.held > 0 ? f.held : RollWeight(square, f.rows),
+              (kDegrees + n) * std::log1p(square / kDegrees)};
     }
     case RowKind::kTurn:
+    case RowKind::kStill:
     case RowKind::kForce:
     case RowKind::kDepth: {
       const double norm = std::sqrt(square);
-      if (norm <= kHuber) return {1, square};
-      return {kHuber / norm, kHuber * (2 * norm - kHuber)};
+      const double expected = kHuberExpected[static_cast<std::size_t>(f.rows)];
+      if (norm <= kHuber) return {1, square, expected};
+      return {kHuber / norm, kHuber * (2 * norm - kHuber), expected};
     }
     default:
       return {1, square};
@@ -54,6 +78,8 @@ double Absorbed(const Factor& f, const NormalBlock::Matrix& cov) {
 
 }  // namespace
 
+double RollWeight(double square, int n) { return (kDegrees + n) / (kDegrees + square); }
+
 void NormalBlock::Clear(const Layout& layout) {
   node_ = layout.node;
   const int size = 2 * layout.node + layout.border;
@@ -70,6 +96,7 @@ void NormalBlock::Add(const Factor& f) {
   sum.weighted += loss.weight * square;
   sum.cost += loss.cost;
   sum.rows += f.rows;
+  sum.expected += f.rows * loss.expected;
   if (covariance_ != nullptr) {
     sum.absorbed += loss.weight * Absorbed(f, *covariance_);
     return;

@@ -11,6 +11,7 @@ namespace wellgyro {
 /// What a residual compares.
 enum class RowKind {
   kTurn,     ///< gyros' turn against the attitudes at both ends
+  kStill,    ///< the same of a tool at rest: the Earth's rate
   kForce,    ///< accelerometers against gravity and the motion along the hole
   kRoll,     ///< the roll rate's walk or swing from knot to knot
   kAxial,    ///< a third gyro axis
@@ -29,6 +30,7 @@ struct Factor {
   static constexpr int kColumnsMax = 40;
   RowKind kind = RowKind::kPrior;
   int rows = 1;
+  double held = 0;  ///< the robust weight, where it is held; 0: by the residuals
   int columns = 0;
   std::array<int, kColumnsMax> column{};  ///< of the block: node, next node, border
   Eigen::Matrix<double, 3, kColumnsMax> J;
@@ -42,9 +44,13 @@ struct Factor {
   void Begin(RowKind of, int n) {
     kind = of;
     rows = n;
+    held = 0;
     columns = 0;
   }
 };
+
+/// The robust weight of the roll's change, whose `n` whitened residuals have this sum of squares.
+double RollWeight(double square, int n);
 
 /// How squares of one kind of residual add up.
 struct RowSum {
@@ -52,8 +58,9 @@ struct RowSum {
   double weighted = 0;  ///< with their robust weights
   double cost = 0;      ///< -2 ln of their density, but for constants
   double rows = 0;
-  /// What the unknowns take up of them, where the covariance was given: rows less this is what
-  /// their squares are to be.
+  double expected = 0;  ///< of `weighted`, were the residuals standard normal
+  /// What the unknowns take up of them, where the covariance was given: `expected` less this is
+  /// what `weighted` is to be.
   double absorbed = 0;
 };
 

@@ -77,8 +77,7 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
                              -v.y() * s / (c * site.radius_east));
     place.w_IL_L = earth + transport;
     place.dw_by_latitude = kEarthRate * Vector3d(-s, 0, -c);
-    place.force_L =
-        speed * turning[k] + (2 * earth + transport).cross(v) - site.gravity * Vector3d::UnitZ();
+    place.acceleration_L = speed * turning[k] + (2 * earth + transport).cross(v);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
     place.depth = p.z();

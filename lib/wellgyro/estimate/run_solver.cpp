@@ -167,7 +167,7 @@ bool RunSolver::Linearise() {
     block_.Clear(layout_);
     if (k == 0) AddTies(0, block_, 0);
     AddTies(k + 1, block_, block_.next());
-    rows_.Add(knots_[k], places_[k], Walk(k), border_, nodes_[k], nodes_[k + 1], block_);
+    rows_.Add(knots_[k], places_[k], Change(k), border_, nodes_[k], nodes_[k + 1], block_);
     if (!elimination_.Step(block_)) return false;
   }
   return true;
@@ -194,7 +194,7 @@ void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMat
   block_.Clear(layout_);
   block_.Measure(&joint);
   AddTies(knot + 1, block_, block_.next());
-  rows_.Add(knots_[knot], places_[knot], Walk(knot), border_, nodes_[knot], nodes_[knot + 1],
+  rows_.Add(knots_[knot], places_[knot], Change(knot), border_, nodes_[knot], nodes_[knot + 1],
             block_);
   block_.Measure(nullptr);
 }
@@ -206,6 +206,21 @@ double RunSolver::Walk(std::size_t knot) const {
   if (inc.has_axial) return std::sqrt(inc.seconds);
   const double start = scales_.roll_start.empty() ? 0 : scales_.roll_start[knot];
   return std::hypot(scales_.roll_walk * std::sqrt(inc.seconds), start);
+}
+
+RollChange RunSolver::Change(std::size_t knot) const {
+  if (scales_.roll_weight.empty()) return {Walk(knot), 0, 0};
+  return {Walk(knot), scales_.roll_weight[knot][0], scales_.roll_weight[knot][1]};
+}
+
+/// From here on the problem is one of least squares, which Gauss-Newton ends in few steps.
+void RunSolver::HoldRollWeights() {
+  scales_.roll_weight.resize(knots_.size());
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    const RollSquares squares =
+        RollSquaresOf(setup_, knots_[k].increment.seconds, Walk(k), nodes_[k], nodes_[k + 1]);
+    scales_.roll_weight[k] = {RollWeight(squares.rate, 1), RollWeight(squares.swing, 2)};
+  }
 }
 
 /// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas.
@@ -264,6 +279,7 @@ SolveReport RunSolver::Solve(int iterations) {
   scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
   Iterate(iterations, kNear, report);
   FindRollWalk(report);
+  HoldRollWeights();
   Iterate(kFinish, kStays, report);
   report.converged = elimination_.decrement() < kNear;
   report.sums = block_.sums();

@@ -69,6 +69,8 @@ class RunSolver {
   void FirstNode(EdgeMatrix& information, EdgeVector& gradient);
   double Step(const std::vector<NodeVector>& steps, const BorderVector& border_step);
   double Walk(std::size_t knot) const;
+  RollChange Change(std::size_t knot) const;
+  void HoldRollWeights();
   bool Iterate(int most, double stays, SolveReport& report);
   double Evidence() const;
   void FindRollWalk(SolveReport& report);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <vector>
 
 #include "wellgyro/base/angle.h"
@@ -170,15 +171,22 @@ RunFit FitOf(const RunEstimate& estimate) {
   fit.converged = estimate.report.converged;
   fit.ambiguous = estimate.ambiguous;
   double freedom = 0;
-  for (const RowKind kind :
-       {RowKind::kTurn, RowKind::kForce, RowKind::kDepth, RowKind::kAxial, RowKind::kAzimuth}) {
-    const RowSum& sum = estimate.report.sums[static_cast<std::size_t>(kind)];
-    fit.chi_square += sum.weighted;
-    freedom += sum.rows - sum.absorbed;
-  }
+  const auto squares = [&](std::initializer_list<RowKind> kinds) {
+    RunFit::Squares part;
+    for (const RowKind kind : kinds) {
+      const RowSum& sum = estimate.report.sums[static_cast<std::size_t>(kind)];
+      part.sum += sum.weighted;
+      part.freedom += sum.expected - sum.absorbed;
+    }
+    fit.chi_square += part.sum;
+    freedom += part.freedom;
+    return part;
+  };
+  fit.parts[RunFit::kInclination] = squares({RowKind::kTurn, RowKind::kForce, RowKind::kAxial});
+  fit.parts[RunFit::kRest] = squares({RowKind::kStill, RowKind::kRest});
+  fit.parts[RunFit::kAzimuth] = squares({RowKind::kAzimuth});
+  squares({RowKind::kDepth, RowKind::kDrift});
   fit.degrees_of_freedom = static_cast<int>(std::lround(freedom));
-  const RowSum& force = estimate.report.sums[static_cast<std::size_t>(RowKind::kForce)];
-  fit.parts[RunFit::kInclination] = {force.weighted, force.rows - force.absorbed};
   fit.errors = estimate.errors.head<Knot::kSources>();
   fit.sigma_errors = estimate.sigma_errors.head<Knot::kSources>();
   return fit;
