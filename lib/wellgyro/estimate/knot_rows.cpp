@@ -29,8 +29,6 @@ constexpr double kSpeedWalk = 0.3;    // winch and pipe: a third of a m/s in a s
 constexpr double kLeastDepth = 1e-3;  // [m], of a mark
 constexpr double kLeastWay = 1e-4;    // [m], of a knot's way
 constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
-// A hole that no sensor sees bends by 3 deg in 30 m, 1-sigma; without depth, in 30 s.
-constexpr double kUnseenBend = 1.7e-3;  // [rad/m]
 
 Vector3d Flat(const Vector2d& v) { return {v.x(), v.y(), 0}; }
 
@@ -77,7 +75,8 @@ struct KnotRows::Terms {
   double delta;                    // psi's error at the end, from that at the begin
   double in_phase, in_quadrature;  // of the swing in the mean rate of roll
   Eigen::Matrix<double, 2, kErrorSources> turn_by_error;  // at the roll rate of now
-  Vector2d turn;  // of what is known of the errors corrected
+  Vector2d turn;           // of what is known of the errors corrected
+  Vector2d turn_per_roll;  // at delta
   Matrix3d Ha, Hb, Xh;
   Matrix3d R_LM;
   Vector3d w_IL_L;  // at the latitude as it is now known
@@ -88,7 +87,7 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
   const Increment& inc = knot.increment;
-  Terms t{knot, place, begin, end, inc.seconds,  0,     0, 0, inc.turn_by_error, inc.turn_M,
+  Terms t{knot, place, begin, end, inc.seconds,  0,     0, 0, inc.turn_by_error, inc.turn_M, {},
           {},   {},    {},    {},  place.w_IL_L, border};
   if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
   double rate = begin.roll_rate;
@@ -113,7 +112,10 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   if (layout_.markov != kAbsent) drift += 0.5 * (begin.markov + end.markov);
   if (layout_.ramp != kAbsent) drift += place.since_start * border.segment<2>(layout_.ramp);
   t.turn -= inc.turn_by_error.middleCols<2>(kGyroBiasX) * drift;
-  t.turn += t.delta * inc.turn_per_roll;
+  // e^{i delta (tau - 1/2)} under the integral, to the third order where the turn is steady: of a
+  // tool whose roll was hidden, and which turned by delta more than psi, the square counts.
+  t.turn += t.delta * (inc.turn_per_roll - t.delta / 24 * inc.turn_M);
+  t.turn_per_roll = inc.turn_per_roll - t.delta / 12 * inc.turn_M;
   t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta);
   t.Hb = RotationZ(inc.roll_after + 0.5 * t.delta);
   t.Xh = Exp(Flat(inc.turn_before_M + 0.5 * (t.turn - inc.turn_M)));
@@ -141,10 +143,8 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Matrix3d X = Exp(Flat(t.turn));
   const Matrix3d B = t.Ha * X * t.Hb;
   const Matrix3d R_end = Exp(-t.dt * t.w_IL_L) * t.begin.R_LT * B;
-  const double unseen = inc.gap_seconds * kUnseenBend *
-                        (t.knot.along.known ? std::abs(t.knot.along.speed) : kUnknownSpeed);
   const double var = Square(setup_.gyro.angle_random_walk) * t.dt +
-                     2 * Square(setup_.gyro.quantization) + inc.var_turn + Square(unseen);
+                     2 * Square(setup_.gyro.quantization) + inc.var_turn + t.place.var_unseen;
   const double across = 1 / std::max(std::sqrt(var), kLeastTurn);
   const Vector3d whiten(across, across, 1 / kAxialTie);
   const auto by = whiten.asDiagonal();
@@ -159,7 +159,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = by_begin.col(i);
   for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = by_end.col(i);
   const Vector3d by_delta =
-      -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * inc.turn_per_roll;
+      -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * t.turn_per_roll;
   const Vector3d by_rate = by * (t.dt * by_delta);
   f.Column(layout_.roll) = by_rate;
   if (layout_.swing != kAbsent) {
@@ -202,7 +202,9 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
     const double error = SourceAt(t.border, i);
     if (error != 0) force -= error * inc.force_by_error.col(i);
   }
-  force += t.delta * Flat(inc.force_per_roll);
+  const Vector2d across = force.head<2>();
+  force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
+  const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
   double gravity = layout_.gravity == kAbsent ? 0 : t.border[layout_.gravity];
   if (layout_.gravity_gradient != kAbsent) {
     gravity += t.place.depth * t.border[layout_.gravity_gradient];
@@ -217,8 +219,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Matrix3d by_phi =
       -(px + down_M.cross(path) * down_M.transpose()) * (t.Ha * t.Xh).transpose();
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);
-  const Vector3d by_rate =
-      whiten * t.dt * (-0.5 * px * t.Xh.row(2).transpose() + Flat(inc.force_per_roll));
+  const Vector3d by_rate = whiten * t.dt * (-0.5 * px * t.Xh.row(2).transpose() + force_per_roll);
   f.Column(layout_.roll) = by_rate;
   if (layout_.swing != kAbsent) {
     f.Column(layout_.swing) = t.in_phase * by_rate;

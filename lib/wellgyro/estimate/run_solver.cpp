@@ -56,6 +56,16 @@ double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
 
 Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
 
+/// The attitudes go back most of the way that they came.
+bool TakesBack(const std::vector<NodeVector>& steps, const std::vector<NodeVector>& before) {
+  double back = 0, way = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    back -= steps[k].head<3>().dot(before[k].head<3>());
+    way += before[k].head<3>().squaredNorm();
+  }
+  return back > 0.5 * way && way > 0;
+}
+
 }  // namespace
 
 RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots)
@@ -173,14 +183,14 @@ bool RunSolver::Linearise() {
   return true;
 }
 
-/// Moves all unknowns; returns the largest turn [rad].
-double RunSolver::Step(const std::vector<NodeVector>& steps, const BorderVector& border_step) {
+/// Moves all unknowns, by no more than kStepMost anywhere.
+void RunSolver::Step(const std::vector<NodeVector>& steps, const BorderVector& border_step,
+                     double share) {
   double most = 0;
   for (const NodeVector& step : steps) most = std::max(most, step.head<3>().norm());
-  const double share = most > kStepMost ? kStepMost / most : 1;
+  if (most > kStepMost) share = std::min(share, kStepMost / most);
   for (std::size_t k = 0; k < steps.size(); ++k) Move(layout_, share * steps[k], nodes_[k]);
   border_ += share * border_step;
-  return most;
 }
 
 void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMatrix& end,
@@ -223,16 +233,20 @@ void RunSolver::HoldRollWeights() {
   }
 }
 
-/// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas.
+/// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas. A step that
+/// takes the last one back went too far, as the next one would: half of it then.
 bool RunSolver::Iterate(int most, double stays, SolveReport& report) {
-  std::vector<NodeVector> steps;
+  std::vector<NodeVector> steps, before;
   BorderVector border_step;
   for (int i = 0; i < most; ++i) {
     PlaceKnots(setup_.site, knots_, nodes_, places_);
     if (!Linearise() || !elimination_.Solve(steps, border_step)) return false;
-    Step(steps, border_step);
+    Step(steps, border_step, TakesBack(steps, before) ? 0.5 : 1);
     ++report.iterations;
+      fprintf(stderr, "  it %d walk %g decrement %g cost-ev %.3f\n", report.iterations,
+              scales_.roll_walk, elimination_.decrement(), Evidence());
     if (elimination_.decrement() < stays) return true;
+    std::swap(steps, before);
   }
   return false;
 }

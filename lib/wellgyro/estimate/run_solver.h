@@ -67,7 +67,7 @@ class RunSolver {
   void MovePlaces();
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void FirstNode(EdgeMatrix& information, EdgeVector& gradient);
-  double Step(const std::vector<NodeVector>& steps, const BorderVector& border_step);
+  void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
   double Walk(std::size_t knot) const;
   RollChange Change(std::size_t knot) const;
   void HoldRollWeights();
