@@ -45,13 +45,14 @@ struct Count {
   int flagged = 0;           ///< stations that still have a mirror
 };
 
-Count Fly(const Case& c, int seeds, const RunAdjuster* adjuster) {
+Count Fly(const Case& c, int seeds, const RunAdjuster* adjuster, bool by_rotations = false) {
   Count count;
   for (int seed = 1; seed <= seeds; ++seed) {
     const testing::Hour hour = HourOf(c);
     const Simulation simulation = testing::SimulationOf(hour, static_cast<std::uint64_t>(seed));
     Job job = testing::JobOf(hour);
     job.stations.at_stops = true;
+    if (by_rotations) job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
     testing::CollectingSink sink;
     const Survey survey = testing::SurveyOf(simulation, job, sink, {}, adjuster);
     for (const NorthFix& fix : survey.runs.at(0).fixes) {
@@ -84,6 +85,10 @@ TEST_P(Mirror, IsNeverTakenSilently) {
   EXPECT_EQ(adjusted.silent, 0);
   EXPECT_EQ(adjusted.none, 0) << "of " << reckoned.none << " without adjustment";
   EXPECT_EQ(adjusted.flagged, 0);
+  // Rotations let go of the mirror by less: what one stop beside another tells.
+  const Count rotated = Fly(GetParam(), kSeeds / 2, nullptr, true);
+  EXPECT_EQ(rotated.silent, 0);
+  EXPECT_EQ(rotated.flagged, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, Mirror,

@@ -243,8 +243,6 @@ bool RunSolver::Iterate(int most, double stays, SolveReport& report) {
     if (!Linearise() || !elimination_.Solve(steps, border_step)) return false;
     Step(steps, border_step, TakesBack(steps, before) ? 0.5 : 1);
     ++report.iterations;
-      fprintf(stderr, "  it %d walk %g decrement %g cost-ev %.3f\n", report.iterations,
-              scales_.roll_walk, elimination_.decrement(), Evidence());
     if (elimination_.decrement() < stays) return true;
     std::swap(steps, before);
   }
