@@ -9,7 +9,7 @@
 
 #include "wellgyro/attitude/level_noise.h"
 #include "wellgyro/attitude/roll_observer.h"
-#include "wellgyro/record/unseen.h"
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"

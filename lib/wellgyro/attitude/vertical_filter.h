@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "wellgyro/record/unseen.h"
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/record/along_hole.h"

@@ -144,7 +144,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Matrix3d B = t.Ha * X * t.Hb;
   const Matrix3d R_end = Exp(-t.dt * t.w_IL_L) * t.begin.R_LT * B;
   const double var = Square(setup_.gyro.angle_random_walk) * t.dt +
-                     2 * Square(setup_.gyro.quantization) + inc.var_turn + t.place.var_unseen;
+                     2 * Square(setup_.gyro.quantization) + inc.var_turn + t.knot.var_unseen;
   const double across = 1 / std::max(std::sqrt(var), kLeastTurn);
   const Vector3d whiten(across, across, 1 / kAxialTie);
   const auto by = whiten.asDiagonal();

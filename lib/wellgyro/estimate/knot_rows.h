@@ -23,7 +23,6 @@ struct KnotPlace {
   /// the node: a path read on the map under another azimuth bends the same way seen from the tool,
   /// and tells nothing of it.
   Eigen::Vector3d acceleration_L = Eigen::Vector3d::Zero();
-  double var_unseen = 0;   ///< of the turn of the axis that no sensor saw [rad^2]
   double since_start = 0;  ///< middle of the knot [s]
   double depth = 0;        ///< vertical, below node 0 [m]
 };

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/record/unseen.h"
 
 namespace wellgyro {
 namespace {
@@ -49,16 +48,6 @@ std::vector<Vector3d> Turning(std::span<const RunKnot> knots, std::span<const No
   return turning;
 }
 
-/// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may
-/// bend, or, of gyros at full scale, as much again as they read.
-double UnseenIn(const RunKnot& knot) {
-  const UnseenHole hole;
-  const Increment& inc = knot.increment;
-  const double rate =
-      knot.along.known ? hole.dogleg * std::abs(knot.along.speed) : hole.rate;
-  return inc.gap_seconds * std::max(rate, inc.turn_M.norm() / inc.seconds);
-}
-
 }  // namespace
 
 void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<const Node> nodes,
@@ -69,7 +58,6 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
   Vector3d p = Vector3d::Zero();
   double md = nodes[0].md;
   double time = 0;
-  UnseenTurn unseen;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Node& a = nodes[k];
     const Node& b = nodes[k + 1];
@@ -93,10 +81,6 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
     place.depth = p.z();
-    const double angle = UnseenIn(knots[k]);
-    place.var_unseen = unseen.VarOf(angle);
-    unseen.Add(angle);
-    unseen.Pass(dt - knots[k].increment.gap_seconds, UnseenHole().seconds);
     time += dt;
     p += (b.md - a.md) * tangent;
   }

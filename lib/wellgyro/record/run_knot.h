@@ -9,9 +9,10 @@ namespace wellgyro {
 /// One knot of a run as the estimator takes it: the sensors' increment, joined with depth and rest.
 struct RunKnot {
   Increment increment;
-  UtcTime utc;         ///< of the end, by the clock tie
-  AlongHole along;     ///< at the end
-  bool still = false;  ///< the whole knot was at rest
+  UtcTime utc;            ///< of the end, by the clock tie
+  AlongHole along;        ///< at the end
+  bool still = false;     ///< the whole knot was at rest
+  double var_unseen = 0;  ///< of the turn of the axis that no sensor saw [rad^2]
 };
 
 }  // namespace wellgyro

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/math/rotation.h"
@@ -24,6 +25,15 @@ constexpr double kLeastSine = 1e-9;
 // From here on the angle is not what its first order says: sine and angle part by 2 %.
 constexpr double kVaguest = 20 * kPi / 180;  // [rad]
 
+/// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may
+/// bend, or, of gyros at full scale, as much again as they read.
+double UnseenIn(const RunKnot& knot) {
+  const UnseenHole hole;
+  const Increment& inc = knot.increment;
+  const double rate = knot.along.known ? hole.dogleg * std::abs(knot.along.speed) : hole.rate;
+  return inc.gap_seconds * std::max(rate, inc.turn_M.norm() / inc.seconds);
+}
+
 /// Knots joined with the epochs that end where they do, and which node each epoch is.
 struct JoinedKnots {
   std::vector<RunKnot> knots;
@@ -35,10 +45,11 @@ JoinedKnots Join(const Job& job, const FilterHistory& history,
   const bool rests =
       job.alignment.method == AlignmentSpec::Method::kGyrocompass || job.alignment.use_fixes;
   JoinedKnots joined;
+  UnseenTurn unseen;
   std::size_t epoch = 0;
   const auto& epochs = history.epochs;
   for (const Increment& increment : increments) {
-    RunKnot knot{increment, {}, {}, false};
+    RunKnot knot{.increment = increment};
     while (epoch < epochs.size() && epochs[epoch].knot.time.ns < increment.time.ns - kSameNs) {
       joined.node.push_back(joined.knots.size());
       ++epoch;
@@ -51,6 +62,10 @@ JoinedKnots Join(const Job& job, const FilterHistory& history,
       joined.node.push_back(joined.knots.size() + 1);
       ++epoch;
     }
+    const double angle = UnseenIn(knot);
+    knot.var_unseen = unseen.VarOf(angle);
+    unseen.Add(angle);
+    unseen.Pass(increment.seconds - increment.gap_seconds, UnseenHole().seconds);
     joined.knots.push_back(knot);
   }
   return joined;
