@@ -22,8 +22,8 @@ endfunction()
 # the same kind (libraries are compiled with -fPIC, programs with -fPIE) and define no macro that the
 # target does not.
 #
-# Not the default: ccache shares no precompiled header between clones, and a source that forgot an
-# include compiles all the same. tests/run asks for them on a machine without ccache.
+# Not the default, nor in tests/run: ccache shares no precompiled header between clones, a source
+# that forgot an include compiles all the same, and g++ 12 then warns of bounds that are kept.
 option(WELLGYRO_PCH "Precompile the headers of others: half the time from scratch" OFF)
 function(wellgyro_precompile target)
   cmake_parse_arguments(PCH "" "LIKE" "" ${ARGN})
