@@ -146,7 +146,9 @@ void ExpectAsSureAsItSays(const Well& well, int seeds, bool by_rotations) {
     EXPECT_LT(std::sqrt(place[i].variance / place[i].count), 2.0) << where;
   }
   EXPECT_GT(seen.count, seeds / 2) << well.name;
-  EXPECT_LT(seen.sigma_deg(), by_rotations ? 0.7 : 2.5) << well.name;
+  // A tool that slides has nothing to tell its bias from the Earth's rate by.
+  const double rotations = well.rpm > 0 ? 0.7 : 1.5;
+  EXPECT_LT(seen.sigma_deg(), by_rotations ? rotations : 2.5) << well.name;
 }
 
 TEST_P(NearVertical, IsAsSureAsItSays) {
