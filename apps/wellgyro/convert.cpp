@@ -104,8 +104,9 @@ int ConvertLog(const ConvertOptions& o) {
     return kUnusable;
   }
   if (tables->left_out == 0) return kDone;
-  Complain(fmt::format("{}: {} samples of other tools or sensors, or damaged messages, are left out", o.in,
-                       tables->left_out));
+  Complain(
+      fmt::format("{}: {} samples of other tools or sensors, or damaged messages, are left out",
+                  o.in, tables->left_out));
   return kDoneWithLosses;
 }
 

@@ -13,7 +13,7 @@ namespace wellgyro {
 /// What was written.
 struct LogTables {
   std::int64_t samples = 0, marks = 0;
-  std::int64_t left_out = 0;  ///< samples of other tools or sensors than the first's, messages refused
+  std::int64_t left_out = 0;  ///< samples of tools or sensors unlike the first, messages refused
 };
 
 /// The samples in SI units of the LCM log at `log`, and its depths, as tables that sensor_csv.h
