@@ -10,6 +10,7 @@ enum ExitCode {
   kUsage = 1,           ///< the command line is wrong
   kUnusable = 2,        ///< nothing usable, or a named file is not
   kDoneWithLosses = 3,  ///< done, but damage, losses or values out of range were met
+  kUnfit = 4,           ///< done, and the verdict is fail: not to be handed over as it is
 };
 
 // One function a command: adds the subcommand with its options to `app`; when it is the one that

@@ -98,6 +98,7 @@ std::string HeadText(const SurveyHead& head) {
   line("Map System", head.crs);
   line("Survey Tool", WordOf(head.tool));
   line("Error Model", head.error_model);
+  for (const std::string& remark : head.remarks) line("Remark", OneLine(remark));
   return text;
 }
 
@@ -130,6 +131,8 @@ void TakeReportLine(SurveyHead& head, std::string_view line) {
     if (const auto tool = SurveyToolOf(value)) head.tool = *tool;
   } else if (EqualNoCase(key, "Error Model")) {
     head.error_model = value;
+  } else if (EqualNoCase(key, "Remark")) {
+    head.remarks.emplace_back(value);
   }
 }
 

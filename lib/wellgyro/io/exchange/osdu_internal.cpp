@@ -117,6 +117,7 @@ std::string DataOf(const SurveyTable& table) {
   const double factor = FactorOf(head.md_unit);
   Members data;
   data.Add("Name", Quoted(names.survey.empty() ? "survey" : names.survey));
+  if (!head.remarks.empty()) data.Add("Description", Quoted(JoinedRemarks(head)));
   data.Add("WellboreID", Id("master-data", "Wellbore",
                             Key(names.wellbore.empty() ? names.well : names.wellbore)));
   data.Add("TopDepthMeasuredDepth", Exact(table.md(0), factor));

@@ -61,6 +61,7 @@ class PetrelReader {
   void Header(std::string_view line) {
     if (line.starts_with("# WELL NAME:")) head().names.well = AfterColon(line);
     if (line.starts_with("# DEFINITIVE SURVEY:")) head().names.survey = AfterColon(line);
+    if (line.starts_with("# REMARK:")) head().remarks.emplace_back(AfterColon(line));
     if (line.starts_with("# WELL DATUM")) {
       const auto length = LengthOf(AfterColon(line));
       if (!length) lines_.Complain(FaultCode::kSyntax, "the well datum has no length with a unit");
@@ -214,6 +215,7 @@ class PetrelWriter {
     text += fmt::format("# DX DY ARE GIVEN IN {} NORTH IN {}-UNITS\n",
                         head_.offsets == North::kTrue ? "TRUE" : "GRID", unit);
     text += fmt::format("# DEPTH (Z, TVD) GIVEN IN {}-UNITS\n", unit);
+    for (const std::string& remark : head_.remarks) text += "# REMARK: " + OneLine(remark) + "\n";
     return text;
   }
 
