@@ -88,7 +88,8 @@ std::size_t SampleQueue::Append(std::span<const ImuSample> batch) {
   if (!back_ || !stories_.empty()) return 0;
   const SampleStamp* before = &*back_;
   std::size_t n = 0;
-  for (; n < batch.size() && IsNext(*before, batch[n].stamp) && IsPossible(batch[n]); ++n) {
+  // Times out of reach must not be subtracted.
+  for (; n < batch.size() && IsPossible(batch[n]) && IsNext(*before, batch[n].stamp); ++n) {
     before = &batch[n].stamp;
     newest_ = std::max(newest_, before->utc);
   }
