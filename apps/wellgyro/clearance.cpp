@@ -8,6 +8,7 @@
 
 #include "wellgyro/io/result/clearance_files.h"
 
+#include "answer.h"
 #include "commands.h"
 #include "place_options.h"
 #include "report.h"
@@ -28,16 +29,7 @@ int Run(Options& o) {
     progress.Show(static_cast<std::int64_t>(done), static_cast<std::int64_t>(all));
   };
   const Result<ClearanceAnswer> answer = AnswerClearance(o.request);
-  if (!answer) {
-    Complain(answer.fault());
-    return kUnusable;
-  }
-  if (const auto fault = WriteFiles(o.out, answer->files)) {
-    Complain(*fault);
-    return kUnusable;
-  }
-  for (const std::string& note : answer->notes) fmt::print(stderr, "note: {}\n", note);
-  for (const OutputFile& file : answer->files) fmt::print("{}/{}\n", o.out, file.name);
+  if (const auto code = WriteAnswer(answer, o.out)) return *code;
   constexpr const char* kWords[] = {"pass", "warn", "fail"};
   fmt::print("{}\nverdict: {}\n", answer->summary, kWords[static_cast<int>(answer->verdict)]);
   for (const std::string& why : answer->refusals) Complain("a model ends before " + why);

@@ -10,6 +10,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/result/uncertainty_files.h"
 
+#include "answer.h"
 #include "commands.h"
 #include "place_options.h"
 #include "report.h"
@@ -72,16 +73,7 @@ int Run(Options& o) {
   o.request.form = o.allan == "printed" ? AllanForm::kPrinted : AllanForm::kExact;
   o.request.pairing = o.same_hole ? Pairing::kSameHole : Pairing::kTwoWells;
   const Result<UncertaintyAnswer> answer = AnswerUncertainty(o.request);
-  if (!answer) {
-    Complain(answer.fault());
-    return kUnusable;
-  }
-  if (const auto fault = WriteFiles(o.out, answer->files)) {
-    Complain(*fault);
-    return kUnusable;
-  }
-  for (const std::string& note : answer->notes) fmt::print(stderr, "note: {}\n", note);
-  for (const OutputFile& file : answer->files) fmt::print("{}/{}\n", o.out, file.name);
+  if (const auto code = WriteAnswer(answer, o.out)) return *code;
   fmt::print("{}\n", answer->summary);
   for (const std::string& why : answer->refusals) Complain("the result ends before " + why);
   return answer->refusals.empty() ? kDone : kDoneWithLosses;

@@ -8,10 +8,11 @@
 
 namespace wellgyro {
 
-/// Of each knot, by how much the roll rate changes behind it where gravity plainly shows a start or
-/// a stop: beyond 3.5 of what is usual in the run and of its own sigma, over 1, 4 or 12 knots; else
-/// 0 [rad/s]. It widens the walk of the roll rate there, so that a tool that once spins up is not
-/// taken for one that always jerks. Empty where the roll is nowhere seen.
+/// Of each knot, by how much the roll rate may change behind it beyond its walk [rad/s]: where
+/// gravity plainly shows a start or a stop, over 1, 4 or 12 knots beyond 3.5 of what is usual in
+/// the run and of its own sigma, by what it shows; where the speed along the hole changes, within 5
+/// s to each side, by 2 rad/m of that, whether the roll is seen or not; else 0. A tool that once
+/// spins up is then not taken for one that always jerks.
 std::vector<double> RollStarts(std::span<const RunKnot> knots);
 
 /// What the roll rate usually changes by from one knot to the next where it is plainest, 1-sigma

@@ -28,19 +28,6 @@ std::optional<std::size_t> Wanted(const std::string& name, const std::vector<std
   return std::nullopt;
 }
 
-std::optional<Column> SecondAzimuth(North north) {
-  switch (north) {
-    case North::kTrue:
-      return Column::kAzimuthTrue;
-    case North::kGrid:
-      return Column::kAzimuthGrid;
-    case North::kMagnetic:
-      return Column::kAzimuthMagnetic;
-    default:
-      return std::nullopt;
-  }
-}
-
 class ColumnMaker {
  public:
   ColumnMaker(const ReadOptions& options, SurveyHead& head, Claims& claims, const LineReader& lines)

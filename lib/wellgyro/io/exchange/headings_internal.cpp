@@ -169,4 +169,17 @@ Heading HeadingOf(std::string_view heading) {
   return found;
 }
 
+std::optional<Column> SecondAzimuth(North north) {
+  switch (north) {
+    case North::kTrue:
+      return Column::kAzimuthTrue;
+    case North::kGrid:
+      return Column::kAzimuthGrid;
+    case North::kMagnetic:
+      return Column::kAzimuthMagnetic;
+    default:
+      return std::nullopt;
+  }
+}
+
 }  // namespace wellgyro

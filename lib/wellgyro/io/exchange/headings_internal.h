@@ -21,4 +21,7 @@ struct Heading {
 /// From any name that importers and vendors use, as "Measured Depth ( ft )" or "AZI_TRUE[deg]".
 Heading HeadingOf(std::string_view heading);
 
+/// Where azimuths by this north go in a table whose azimuths are by another; none for an unknown.
+std::optional<Column> SecondAzimuth(North north);
+
 }  // namespace wellgyro

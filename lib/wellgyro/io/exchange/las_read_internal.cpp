@@ -208,16 +208,7 @@ class LasReader {
       if (north != North::kUnknown) head().azimuth.north = north;
       return Column::kAzimuth;
     }
-    switch (north) {
-      case North::kTrue:
-        return Column::kAzimuthTrue;
-      case North::kGrid:
-        return Column::kAzimuthGrid;
-      case North::kMagnetic:
-        return Column::kAzimuthMagnetic;
-      default:
-        return std::nullopt;
-    }
+    return SecondAzimuth(north);
   }
 
   void TakeUnits(Column column, const std::string& unit) {

@@ -86,6 +86,17 @@ CommonFactor FactorOf(const std::vector<std::pair<Complex, Complex>>& pairs) {
   return fit;
 }
 
+/// The factor that the pairs of (computed, given) have in common, as it is for lengths along a
+/// line.
+LineFit Line(const std::vector<std::pair<Complex, Complex>>& pairs, double reach) {
+  const CommonFactor common = FactorOf(pairs);
+  return {.pairs = pairs.size(),
+          .reach = reach,
+          .factor = common.z.real(),
+          .sigma = common.sigma,
+          .median = common.median};
+}
+
 }  // namespace
 
 std::string_view WordOf(Method method) {
@@ -145,19 +156,14 @@ std::vector<Stretch> StretchesOf(const SurveyTable& table, Method method, std::s
 LineFit FitVertical(const SurveyTable& table, const std::vector<Stretch>& stretches,
                     Column column) {
   std::vector<std::pair<Complex, Complex>> pairs;
-  LineFit fit;
+  double reach = 0;
   for (const Stretch& s : stretches) {
     const auto a = table.Get(column, s.begin), b = table.Get(column, s.end);
     if (!a || !b) continue;
     pairs.emplace_back(s.moved.z(), *b - *a);
-    fit.reach += std::abs(s.moved.z());
+    reach += std::abs(s.moved.z());
   }
-  const CommonFactor common = FactorOf(pairs);
-  fit.pairs = pairs.size();
-  fit.factor = common.z.real();
-  fit.sigma = common.sigma;
-  fit.median = common.median;
-  return fit;
+  return Line(pairs, reach);
 }
 
 PlaneFit FitPlane(const SurveyTable& table, const std::vector<Stretch>& stretches, Column north,
@@ -187,7 +193,7 @@ PlaneFit FitPlane(const SurveyTable& table, const std::vector<Stretch>& stretche
 LineFit FitCurvature(const SurveyTable& table) {
   constexpr double kEnough = 0.2 * units::kDegPer30m;
   std::vector<std::pair<Complex, Complex>> pairs;
-  LineFit fit;
+  double reach = 0;
   // Some thousand legs tell as much as all of them.
   const std::size_t step = table.rows() / 4096 + 1;
   for (std::size_t row = 1; row < table.rows(); row += step) {
@@ -202,14 +208,9 @@ LineFit FitCurvature(const SurveyTable& table) {
     const double severity = 2 * std::atan2((b - a).norm(), (b + a).norm()) / length;
     if (severity < kEnough) continue;
     pairs.emplace_back(severity, *given);
-    fit.reach += severity * length;
+    reach += severity * length;
   }
-  const CommonFactor common = FactorOf(pairs);
-  fit.pairs = pairs.size();
-  fit.factor = common.z.real();
-  fit.sigma = common.sigma;
-  fit.median = common.median;
-  return fit;
+  return Line(pairs, reach);
 }
 
 }  // namespace wellgyro::witness

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/result.h"
+#include "wellgyro/io/atomic_file.h"
+
+#include "commands.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+
+/// Writes the files of an answer into `folder`, says where they are and what is to be noted; the
+/// exit code where there is no answer or it cannot be written.
+template <class Answer>
+std::optional<int> WriteAnswer(const Result<Answer>& answer, const std::string& folder) {
+  if (!answer) {
+    Complain(answer.fault());
+    return kUnusable;
+  }
+  if (const auto fault = WriteFiles(folder, answer->files)) {
+    Complain(*fault);
+    return kUnusable;
+  }
+  for (const std::string& note : answer->notes) fmt::print(stderr, "note: {}\n", note);
+  for (const OutputFile& file : answer->files) fmt::print("{}/{}\n", folder, file.name);
+  return std::nullopt;
+}
+
+}  // namespace wellgyro::apps
