@@ -7,15 +7,14 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/math/sinc.h"
+
 namespace wellgyro {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr double kStraight = 1e-12;  // [rad]
-
-/// sin(x) / x.
-double Sinc(double x) { return std::abs(x) < 1e-5 ? 1 - x * x / 6 : std::sin(x) / x; }
 
 }  // namespace
 

@@ -9,19 +9,11 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/math/sinc.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
 
 namespace wellgyro {
 namespace {
-
-// sin(x) / x; the series' next term is below 1e-17 where it is used.
-double Sinc(double x) {
-  if (std::abs(x) < 1e-2) {
-    const double x2 = x * x;
-    return 1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42));
-  }
-  return std::sin(x) / x;
-}
 
 struct Attitude {
   double inclination, azimuth;

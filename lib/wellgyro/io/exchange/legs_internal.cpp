@@ -8,16 +8,13 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/math/sinc.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
 
 namespace wellgyro::witness {
 namespace {
 
 using Complex = std::complex<double>;
-
-double Sinc(double half) {
-  return std::abs(half) < 1e-6 ? 1 - half * half / 6 : std::sin(half) / half;
-}
 
 Eigen::Vector3d ByRadius(double length, double i1, double a1, double i2, double a2) {
   // Means of sine and cosine over angles that change evenly with depth.
