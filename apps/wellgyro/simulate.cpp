@@ -222,9 +222,14 @@ void AddSimulate(CLI::App& app, int& exit_code) {
   command->add_option("--temperature-degc", options->temperature,
                       "Of that tool's sensors, default 20");
   command->footer(
-      "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
-      "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "
-      "--speed 10");
+      std::string(
+          "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
+          "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "
+          "--speed 10\n\n"
+          "[[fault]] in the file: cause, its keys, begin_s and end_s since the begin of the run, "
+          "every_s\n"
+          "for what repeats (spikes, swing, vibration, whirl)\n") +
+      FaultHelp());
   command->callback([options, &exit_code] {
     const auto fault = Simulate(*options);
     if (fault) Complain(*fault);

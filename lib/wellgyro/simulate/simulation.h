@@ -10,6 +10,7 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/operations.h"
+#include "wellgyro/simulate/fault.h"
 
 /// What is to be simulated, as plain data: the hole, the run, the Earth, the tool's errors and its
 /// streams. Whatever is left at its default is absent or perfect.
@@ -167,6 +168,7 @@ struct Simulation {
   SimulatedEarth earth;
   SimulatedTool tool;
   SimulatedStreams streams;
+  std::vector<SimulatedFault> faults = {};
   std::uint64_t seed = 0;
 };
 

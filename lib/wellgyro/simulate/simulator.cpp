@@ -33,8 +33,9 @@ std::int64_t WholeMicroseconds(double seconds) { return std::llround(seconds * 1
 Simulator::Simulator(const Simulation& simulation)
     : streams_(simulation.streams),
       tool_(simulation.tool),
-      truth_(simulation),
+      truth_(WithTruth(simulation)),
       sensor_errors_(simulation.tool, simulation.seed),
+      faults_(simulation),
       jitter_(RandomStream(simulation.seed, kJitter)),
       depth_noise_(RandomStream(simulation.seed, kDepthNoise)),
       period_ns_(PeriodNs(simulation.streams.imu_hz)) {
@@ -114,16 +115,25 @@ ImuSample Simulator::NextSample() {
   const double begin = SampleTime(k);
   const double jitter = tool_.errors.utc_jitter;
   ImuSample sample;
-  sensor_errors_.Measure(truth_, begin, SampleTime(k + 1), sample);
+  sample.stamp.temperature = tool_.temperature;
+  if (faults_.empty()) {
+    sensor_errors_.Measure(truth_, begin, SampleTime(k + 1), sample);
+  } else {
+    const double late = faults_.SampledAt(begin) - begin;
+    const double taken = begin + late, end = SampleTime(k + 1) + late;
+    sensor_errors_.SetErrors(faults_.ErrorsAt(begin));
+    sensor_errors_.Measure(truth_, taken, end, sample);
+    faults_.Spoil(begin, SampleTime(k + 1), sample);
+  }
   SampleStamp& stamp = sample.stamp;
   stamp.tool_time.ns = Duration::Seconds(tool_.errors.clock_offset).ns + k * period_ns_;
-  stamp.utc = UtcAt(jitter > 0 ? begin + jitter * jitter_.Normal() : begin);
+  const double stamped = begin + faults_.UtcOffset(begin);
+  stamp.utc = UtcAt(jitter > 0 ? stamped + jitter * jitter_.Normal() : stamped);
   stamp.seq = k;
   stamp.session = streams_.session;
   stamp.run = streams_.run;
   stamp.tool = streams_.tool;
   stamp.period_ns = period_ns_;
-  stamp.temperature = tool_.temperature;
   stamp.simulated = true;
   return sample;
 }
@@ -132,10 +142,10 @@ DepthMark Simulator::NextMark() {
   const ToolErrors& e = tool_.errors;
   const std::int64_t k = marks_done_++;
   const double time = MarkTime(k);
-  const RunMotion motion = truth_.plan().At(time);
+  const RunMotion motion = truth_.plan().At(faults_.MarkedAt(time));
   double md = motion.md - tool_.sensor_below_reference;
   if (e.depth_scale != 0) md += e.depth_scale * md;
-  md += e.depth_offset;
+  md = faults_.MarkMd(time, md + e.depth_offset);
   if (e.depth_noise > 0) md += e.depth_noise * depth_noise_.Normal();
   if (e.depth_resolution > 0) md = std::nearbyint(md / e.depth_resolution) * e.depth_resolution;
   DepthMark mark;

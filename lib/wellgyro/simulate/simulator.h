@@ -10,6 +10,7 @@
 #include "wellgyro/record/depth_mark.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/sample.h"
+#include "wellgyro/simulate/fault_player.h"
 #include "wellgyro/simulate/simulation.h"
 #include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/simulate/truth.h"
@@ -55,6 +56,7 @@ class WELLGYRO_EXPORT Simulator {
   SimulatedTool tool_;
   Truth truth_;
   SensorErrors sensor_errors_;
+  FaultPlayer faults_;
   Random jitter_;
   Random depth_noise_;
   std::int32_t period_ns_;

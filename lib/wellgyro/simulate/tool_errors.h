@@ -40,6 +40,8 @@ class WELLGYRO_EXPORT SensorErrors {
 
   /// Fills rate, specific force and field of the sample over [begin, end] and its saturation flags.
   void Measure(const Truth& truth, double begin, double end, ImuSample& sample);
+  /// From now on, but for the gyros' noise and the steps to which sensors round.
+  void SetErrors(const ToolErrors& errors) { tool_.errors = errors; }
 
  private:
   Eigen::Vector3d Rate(const SensorTruth& truth, double seconds, bool& saturated);

@@ -272,6 +272,50 @@ start_deg = 200
   EXPECT_DOUBLE_EQ(laws->simulation.well.azimuth.start, 200 * kDeg);
 }
 
+TEST(ReadSimulation, FaultsHaveTheirSizeInTheUnitOfItsKey) {
+  const auto file = Parse(std::string(kWhole) + R"(
+[[fault]]
+cause = "gyro_step"
+axis = "y"
+begin_s = 1800
+size_deg_per_h = 0.5
+[[fault]]
+cause = "accel_spike"
+axis = "z"
+every_s = 60
+end_s = 600
+size_mps2 = -2
+[[fault]]
+cause = "accels_swapped"
+)");
+  ASSERT_TRUE(file) << file.fault().text;
+  const std::vector<SimulatedFault>& faults = file->simulation.faults;
+  ASSERT_EQ(faults.size(), 3u);
+  EXPECT_EQ(faults[0].cause, SimulatedFault::Cause::kGyroStep);
+  EXPECT_EQ(faults[0].axis, 1);
+  EXPECT_EQ(faults[0].begin, 1800);
+  EXPECT_DOUBLE_EQ(faults[0].size, 0.5 * kDegPerHour);
+  EXPECT_GT(faults[0].end, 1e300);
+  EXPECT_EQ(faults[1].axis, 2);
+  EXPECT_EQ(faults[1].period, 60);
+  EXPECT_EQ(faults[1].end, 600);
+  EXPECT_EQ(faults[1].size, -2);
+  EXPECT_EQ(faults[2].cause, SimulatedFault::Cause::kAccelsSwapped);
+}
+
+TEST(ReadSimulation, AFaultThatCannotBeIsNamed) {
+  const auto complaint = [](const std::string& fault) {
+    const auto file = Parse(std::string(kWhole) + "\n[[fault]]\n" + fault);
+    return file ? std::string() : file.fault().text;
+  };
+  EXPECT_THAT(complaint("cause = \"rust\""), HasSubstr("is none of gyro_step, gyro_ramp"));
+  EXPECT_THAT(complaint("cause = \"gyro_step\"\naxis = \"x\""), HasSubstr("size_deg_per_h"));
+  EXPECT_THAT(complaint("cause = \"gyro_stuck\""), HasSubstr("axis"));
+  EXPECT_THAT(complaint("cause = \"gyro_stuck\"\naxis = \"w\""), HasSubstr("w"));
+  EXPECT_THAT(complaint("cause = \"depth_frozen\"\nbegin_s = 5\nend_s = 4"), HasSubstr("later"));
+  EXPECT_THAT(complaint("cause = \"depth_frozen\"\nsize_m = 5"), HasSubstr("size_m"));
+}
+
 TEST(ReadSimulation, MistakesHaveTheirLine) {
   std::istringstream text{std::string(kWhole)};
   std::vector<std::string> lines;

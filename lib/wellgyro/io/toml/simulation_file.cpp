@@ -8,6 +8,7 @@
 #include "wellgyro/io/exchange/well_table_internal.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/toml/coefficients_internal.h"
+#include "wellgyro/io/toml/fault_section_internal.h"
 #include "wellgyro/io/toml/job_sections_internal.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/simulation_sections_internal.h"
@@ -51,6 +52,7 @@ SimulationFile Read(TomlTable& root, NamedFiles& files) {
   s.earth = ReadSimulatedEarth(root.Need("earth", root.FindTable("earth")));
   if (const auto table = root.FindTable("tool")) s.tool = TakeTool(*table, files, s.seed);
   if (const auto table = root.FindTable("streams")) s.streams = ReadSimulatedStreams(*table);
+  for (const TomlTable& table : root.FindTables("fault")) s.faults.push_back(ReadFault(table));
   if (const auto table = root.FindTable("channels")) file.channels = ReadChannels(*table);
   return file;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -43,5 +44,8 @@ WELLGYRO_EXPORT Result<SimulationFile> ReadSimulation(const std::filesystem::pat
 WELLGYRO_EXPORT Result<SimulationFile> ParseSimulation(std::string_view text,
                                                        const std::filesystem::path& source,
                                                        const std::filesystem::path& folder);
+
+/// The causes that a `[[fault]]` may have, one a line, with their keys.
+WELLGYRO_EXPORT std::string FaultHelp();
 
 }  // namespace wellgyro
