@@ -1,6 +1,7 @@
 #include "delivery.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <fmt/core.h>
 
@@ -46,6 +47,14 @@ bool HasLosses(const SourceRecord& source, const Survey& survey) {
     if (Has(station.quality, Quality::kSaturated)) return true;
   }
   return false;
+}
+
+void SayLosses(const SourceRecord& source) {
+  constexpr std::size_t kSaid = 5;
+  Complain("done, with losses or damage: see source.toml and run.toml");
+  for (std::size_t i = 0; i < std::min(source.faults.size(), kSaid); ++i) {
+    Complain(source.faults[i]);
+  }
 }
 
 }  // namespace
@@ -111,17 +120,21 @@ int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Su
   const std::vector<ToolResult> results = ResultsOf(surveyor, folder);
   const bool any = std::any_of(results.begin(), results.end(),
                                [](const auto& r) { return r.survey.unusable.empty(); });
-  int code = any ? kDone : kUnusable;
+  RunVerdict worst;
+  bool losses = false;
   for (const ToolResult& result : results) {
     if (results.size() > 1) fmt::print("tool {}\n", result.tool);
     const int one = Deliver(result.folder, record, source, job.job, result.survey);
     if (one == kUnusable && result.survey.unusable.empty()) return kUnusable;
-    if (code != kUnusable && (one == kUnusable || HasLosses(source, result.survey))) {
-      code = kDoneWithLosses;
-    }
+    const RunVerdict& verdict = result.survey.verdict;
+    if (result.survey.unusable.empty() && verdict.verdict > worst.verdict) worst = verdict;
+    losses = losses || one == kUnusable || HasLosses(source, result.survey);
   }
   RemoveFormer(folder, results);
-  return code;
+  if (!any) return kUnusable;
+  if (losses) SayLosses(source);
+  fmt::print("{}\n", VerdictText(worst));
+  return worst.verdict == Verdict::kFail ? kUnfit : losses ? kDoneWithLosses : kDone;
 }
 
 }  // namespace wellgyro::apps

@@ -305,13 +305,9 @@ int LiveSurvey::End(Ended ended) {
     keeper_.End();
     SourceRecord source = Source();
     source.ended = "adjusted";
-    const int code = DeliverAll(options_.out, job_, surveyor_,
-                                RecordOf(job_, options_.formats, intake_, broadcast_), source);
     HintAtChannels(intake_.feed());
-    if (code == kDoneWithLosses) {
-      Complain("done, with losses or damage: see source.toml and run.toml");
-    }
-    return code;
+    return DeliverAll(options_.out, job_, surveyor_,
+                      RecordOf(job_, options_.formats, intake_, broadcast_), source);
   }
   Snapshot snapshot = Take();
   snapshot.source.ended = ended == Ended::kInterrupted ? "interrupted" : "the bus was lost";

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -67,15 +66,8 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   }
   HintAtChannels(intake.feed());
   const SourceRecord source = Describe(options.from, intake, *reader);
-  const int code = DeliverAll(options.out, job, surveyor,
-                              RecordOf(job, options.formats, intake, faults), source);
-  if (code == kDoneWithLosses) {
-    Complain("done, with losses or damage: see source.toml and run.toml");
-    for (std::size_t i = 0; i < std::min<std::size_t>(source.faults.size(), 5); ++i) {
-      Complain(source.faults[i]);
-    }
-  }
-  return code;
+  return DeliverAll(options.out, job, surveyor, RecordOf(job, options.formats, intake, faults),
+                    source);
 }
 
 /// From tables of sensor data: samples, averages at rest, depth.

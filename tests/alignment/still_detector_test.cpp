@@ -131,6 +131,30 @@ TEST(StillDetector, AStopOfMinStillGivesAWindowAndAShorterOneNone) {
   }
 }
 
+// Dated 2026-11-22: samples that begin on whole seconds, by a clock that jitters by a nanosecond.
+TEST(StillDetector, ABlockNeedNotBeHitToTheNanosecond) {
+  Tool tool = StopAt100(180);
+  tool.period = 0.1;
+  tool.tool0 = 12'000'000'000;
+  const auto detect = [&](std::int64_t jitter) {
+    StillDetector detector(SetupFor(tool));
+    Random random(5);
+    std::vector<StillWindow> windows;
+    for (std::int64_t k = 0; k < 4000; ++k) {
+      ImuSample sample = tool.Sample(k);
+      sample.stamp.tool_time.ns += std::llround(static_cast<double>(jitter) * random.Normal());
+      if (auto window = detector.Push(sample, {})) windows.push_back(*window);
+    }
+    if (auto window = detector.Flush()) windows.push_back(*window);
+    return windows;
+  };
+  for (const std::int64_t jitter : {0, 1, 1000, 10'000'000}) {
+    const auto windows = detect(jitter);
+    ASSERT_EQ(windows.size(), 1u) << jitter << " ns";
+    EXPECT_GT(windows[0].seconds(), 174) << jitter << " ns";
+  }
+}
+
 TEST(StillDetector, AMovingToolGivesNone) {
   Tool tool;
   tool.inclination = [](double t) { return 0.5 + 2e-4 * t; };

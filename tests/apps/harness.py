@@ -42,8 +42,22 @@ latitude_deg = 61.0
 {streams}"""
 
 
+# A tool that is perfect but for its noise: what a job does not state is not zero.
+PERFECT = """[errors]
+gyro_bias_sigma_deg_per_h = 0
+mass_unbalance_sigma_deg_per_h_per_g = 0
+gyro_scale_sigma = 0
+gyro_misalignment_sigma_rad = 0
+accel_bias_sigma_mps2 = 0
+accel_noise_mps2_per_sqrt_hz = 0
+time_skew_sigma_s = 0
+depth_sigma_m = 0
+depth_scale_sigma = 0
+"""
+
+
 def Job(every_m, *, walk=0.005):
-    """The text of a job file of nine lines; [stations] is its last table."""
+    """The text of a job file of a perfect tool but for its noise; [stations] is its last table."""
     return f"""format = "wellgyro.job/1"
 [well]
 name = "Slant"
@@ -51,7 +65,7 @@ latitude_deg = 61.0
 longitude_deg = 3.0
 [noise]
 angle_random_walk_deg_per_sqrt_h = {walk}
-[stations]
+{PERFECT}[stations]
 every_m = {every_m}
 """
 

@@ -35,7 +35,7 @@ TEST(Quality, TextNamesTheSetFlags) {
   EXPECT_EQ(QualityText(Quality::kGood), "good");
   EXPECT_EQ(QualityText(Quality::kGap | Quality::kMoved), "moved+gap");
   EXPECT_EQ(QualityText(Quality::kClock), "clock");
-  for (unsigned bits = 0; bits < 1u << 11; ++bits) {
+  for (unsigned bits = 0; bits < 1u << 12; ++bits) {
     const auto quality = static_cast<Quality>(bits);
     EXPECT_EQ(QualityOf(QualityText(quality)), quality) << bits;
   }

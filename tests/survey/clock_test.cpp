@@ -104,7 +104,7 @@ TEST(Clock, BehindAJumpOfTheToolsClockOrNumbersTheSurveyGoesOn) {
     EXPECT_LT((Deepest(survey).p_WT_W - Deepest(undisturbed).p_WT_W).norm(), 0.1);
     EXPECT_TRUE(Told(sink, "the clock jumps before sample"));
     EXPECT_EQ(survey.runs[0].clock_jumps, 1);
-    EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kFail);
+    EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kWarn);
     EXPECT_EQ(Flagged(survey, 0, 100), 0);
     EXPECT_EQ(Flagged(survey, 140, 300), 0);
   }
@@ -122,7 +122,7 @@ TEST(Clock, AUtcThatMovesAgainstTheNumbersMakesAllDepthsBehindItDoubtful) {
       EXPECT_GT(Deepest(survey).md, 260);
       EXPECT_TRUE(Told(sink, tool > 0 ? "the clock jumps before sample" : "UTC steps by"));
       EXPECT_EQ(survey.runs[0].clock_jumps, 1);
-      EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kFail);
+      EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kWarn);
       EXPECT_EQ(Flagged(survey, 0, 90), 0);
       EXPECT_GE(Flagged(survey, 160, 300), 5);
       for (const Station& s : survey.chosen) {
@@ -185,9 +185,9 @@ TEST(Clock, DepthMarksThatAreLeftOutFailACheck) {
                 c.late > 0 ? 2 : 0);
     const Check* refused = Find(survey, "depth_refused");
     const bool any = c.late + c.impossible > 0;
-    EXPECT_EQ(refused->verdict, any ? Verdict::kFail : Verdict::kPass);
+    EXPECT_EQ(refused->verdict, any ? Verdict::kWarn : Verdict::kPass);
     EXPECT_EQ(refused->limit_source.find("latency_s") != std::string::npos, c.late > 0);
-    EXPECT_EQ(Find(survey, "depth_unknown")->verdict, c.late > 0 ? Verdict::kFail : Verdict::kPass);
+    EXPECT_EQ(Find(survey, "depth_unknown")->verdict, c.late > 0 ? Verdict::kWarn : Verdict::kPass);
   }
 }
 
@@ -200,20 +200,20 @@ TEST(Clock, RareDepthMarksSayWhichKeyWouldDo) {
       });
   const Check* unknown = Find(survey, "depth_unknown");
   ASSERT_NE(unknown, nullptr);
-  EXPECT_EQ(unknown->verdict, Verdict::kFail);
+  EXPECT_EQ(unknown->verdict, Verdict::kWarn);
   EXPECT_NE(unknown->limit_source.find("[depth] max_gap_s = 5"), std::string::npos);
 }
 
 // Samples so far ahead of the depth find none: the survey ends there, but not without a word.
-TEST(Clock, DepthsThatComeTooLateFailACheck) {
+TEST(Clock, DepthsThatComeTooLateAreWarnedOf) {
   for (const double tool : {0.0, 30.0}) {
     CollectingSink sink;
     const Survey survey = WithStamps(sink, [&](SampleStamp& stamp) { Move(stamp, tool, 30); });
     ASSERT_EQ(survey.unusable, "");
     EXPECT_EQ(survey.runs[0].clock_jumps, 1);
-    EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kFail);
+    EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kWarn);
     const Check* unknown = Find(survey, "depth_unknown");
-    EXPECT_EQ(unknown->verdict, Verdict::kFail);
+    EXPECT_EQ(unknown->verdict, Verdict::kWarn);
     EXPECT_GT(*unknown->value, 200);
   }
   CollectingSink sink;
@@ -235,7 +235,7 @@ TEST(Clock, AToolThatStartsAnewGoesOnBehindAGap) {
     EXPECT_LT(std::abs(ToDegrees(s.azimuth) - 45), 0.5) << s.md;
 }
 
-TEST(Clock, StraysAreToldAndFailACheck) {
+TEST(Clock, StraysAreToldAndWarnedOf) {
   CollectingSink sink;
   int k = 0;
   const Survey survey = WithStamps(sink, [&](SampleStamp& stamp) {
@@ -246,7 +246,7 @@ TEST(Clock, StraysAreToldAndFailACheck) {
   EXPECT_EQ(survey.runs[0].samples_refused, 40);
   EXPECT_EQ(survey.runs[0].samples_lost, 40);
   EXPECT_EQ(survey.runs[0].clock_jumps, 0);
-  EXPECT_EQ(Find(survey, "samples_refused")->verdict, Verdict::kFail);
+  EXPECT_EQ(Find(survey, "samples_refused")->verdict, Verdict::kWarn);
   EXPECT_TRUE(Told(sink, "40 samples were left out"));
 }
 

@@ -138,8 +138,9 @@ void CheckGravity(std::span<const StillWindow> windows, const Site& site,
     noise += along * along / n / n;
   }
   fix.gravity_ref = site.gravity;
-  fix.sigma_gravity =
-      std::hypot(std::sqrt(noise), setup.errors.accel_bias_sigma, setup.sigma_gravity_ref);
+  const double scale = setup.errors.accel_scale_sigma * site.gravity;
+  fix.sigma_gravity = std::hypot(std::hypot(std::sqrt(noise), scale), setup.errors.accel_bias_sigma,
+                                 setup.sigma_gravity_ref);
   if (std::abs(fix.gravity - fix.gravity_ref) > 3 * fix.sigma_gravity) {
     fix.quality |= Quality::kGravity;
   }

@@ -48,10 +48,12 @@ double BlockVariance(double model, double scatter, double samples, double floor)
   return std::max(model, scatter / samples);
 }
 
+// Samples that begin on whole seconds fall on either side of them by a clock's jitter, so half a
+// period is not missed; that none between is missing their numbers say.
 bool Whole(std::int64_t index, const SampleStamp& first, const SampleStamp& last) {
   const std::int64_t begin = index * kBlockNs;
-  return first.tool_time.ns - begin < first.period_ns &&
-         begin + kBlockNs - last.tool_time.ns <= last.period_ns;
+  return 2 * (first.tool_time.ns - begin) < 3 * static_cast<std::int64_t>(first.period_ns) &&
+         2 * (begin + kBlockNs - last.tool_time.ns) < 3 * static_cast<std::int64_t>(last.period_ns);
 }
 
 // Sigma of a mean over blocks: by the coefficients unless the blocks scatter beyond four sigmas of

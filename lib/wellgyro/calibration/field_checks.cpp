@@ -22,6 +22,7 @@ class Checks {
     check.sigma = sigma / per_unit;
     check.limit = setup_.fail * *check.sigma;
     check.limit_source = "own sigma";
+    check.looks = 1;
     const double size = std::abs(value);
     check.verdict = size <= setup_.warn * sigma   ? Verdict::kPass
                     : size <= setup_.fail * sigma ? Verdict::kWarn

@@ -54,9 +54,10 @@ struct Reference {
 Reference BestKnown(const AdjustSegment& segment, AdjustProblem* p) {
   AdjustRows rows;
   Solve(p, &rows);
+  Reference best{segment.end - 1, HUGE_VAL};
+  if (rows.residual.empty()) return best;
   const Eigen::SparseMatrix<double> jacobian = rows.jacobian;
   const SelectedInverse inverse(jacobian.transpose() * jacobian);
-  Reference best{segment.end - 1, HUGE_VAL};
   if (!inverse.ok()) return best;
   for (std::size_t k = std::max<std::size_t>(segment.begin, 1); k < segment.end; ++k) {
     const int at = static_cast<int>(k) * p->layout.node + AdjustLayout::kAzimuth;

@@ -111,6 +111,7 @@ class Builder {
   std::unique_ptr<ceres::Problem> problem_;
 };
 
+// Without rows where some residual has no value.
 AdjustRows RowsAt(const AdjustProblem& p, Builder& builder) {
   ceres::Problem::EvaluateOptions options;
   for (std::size_t k = 0; k < p.node_count(); ++k) {
@@ -119,7 +120,7 @@ AdjustRows RowsAt(const AdjustProblem& p, Builder& builder) {
   options.parameter_blocks.push_back(const_cast<double*>(p.common.data()));
   ceres::CRSMatrix crs;
   AdjustRows rows;
-  builder.problem().Evaluate(options, nullptr, &rows.residual, nullptr, &crs);
+  if (!builder.problem().Evaluate(options, nullptr, &rows.residual, nullptr, &crs)) return {};
   rows.jacobian = Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
       crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()), crs.rows.data(),
       crs.cols.data(), crs.values.data());
@@ -159,10 +160,13 @@ AdjustOutcome Solve(AdjustProblem* p, AdjustRows* rows) {
   options.parameter_tolerance = 1e-12;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &builder.problem(), &summary);
-  if (rows != nullptr) *rows = RowsAt(*p, builder);
+  bool converged = summary.termination_type == ceres::CONVERGENCE;
+  if (rows != nullptr) {
+    *rows = RowsAt(*p, builder);
+    converged = converged && !rows->residual.empty();
+  }
   return {2 * summary.final_cost, summary.num_residuals,
-          static_cast<int>(summary.iterations.size()),
-          summary.termination_type == ceres::CONVERGENCE};
+          static_cast<int>(summary.iterations.size()), converged};
 }
 
 }  // namespace wellgyro

@@ -153,6 +153,7 @@ struct Beginning {
   std::vector<bool> lost;  // see SpanOptions
   std::vector<double> var_beyond;
   std::vector<AdjustProblem::Hold> holds;
+  bool ambiguous = false;  // two norths fit a part of the run
 };
 
 bool IsFound(double var_beyond) { return var_beyond < kUnknownAngleVariance; }
@@ -209,6 +210,7 @@ Beginning Begin(const FilterHistory& history, const AdjustmentOptions& options, 
     if (north.var_hold > 0) {
       begin.holds.push_back({north.epoch, 0, std::sqrt(north.var_hold)});
     }
+    begin.ambiguous = begin.ambiguous || north.ambiguous;
     const double beyond = north.ambiguous ? kUnknownAngleVariance : north.var_beyond;
     for (std::size_t i = first; i <= last; ++i) begin.var_beyond[i] = beyond;
   }
@@ -364,6 +366,16 @@ AdjustOutcome SolveAlong(AdjustProblem* p, AdjustRows* rows,
   return outcome;
 }
 
+// What the smoother makes of the run is all there is of it, and the fit says that it is no fit.
+Adjustment GivenUp(const FilterHistory& history, const Beginning& begin) {
+  Adjustment result;
+  result.run = Smooth(history);
+  Widen(begin.var_beyond, &result.run);
+  result.ambiguous = begin.ambiguous;
+  result.run.fit = result;
+  return result;
+}
+
 }  // namespace
 
 Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
@@ -393,13 +405,10 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
   StartFrom(AtNodes(p, begin.path), &p);
   AdjustRows rows;
   const AdjustOutcome outcome = SolveAlong(&p, &rows, make);
+  if (!outcome.converged) return GivenUp(history, begin);
   const Eigen::SparseMatrix<double> jacobian = rows.jacobian;  // by columns
   const SelectedInverse inverse(jacobian.transpose() * jacobian);
-  if (!outcome.converged || !inverse.ok()) {  // what the smoother makes of it is still true
-    result.run = Smooth(history);
-    Widen(begin.var_beyond, &result.run);
-    return result;
-  }
+  if (!inverse.ok()) return GivenUp(history, begin);
   std::vector<bool> known{IsFound(begin.var_beyond.front())};
   for (const AdjustSpan& span : p.spans) {
     known.push_back(IsFound(begin.var_beyond[span.epoch_end - 1]));
@@ -411,7 +420,7 @@ Adjustment AdjustRun(const FilterHistory& history, double sigma_lie,
   Scale(MisfitOf(result), &result.run);
   Widen(begin.var_beyond, &result.run);
   result.converged = true;
-  result.ambiguous = std::find(known.begin(), known.end(), false) != known.end();
+  result.ambiguous = begin.ambiguous;
   FillErrors(p, inverse, &result);
   FillParts(rows, inverse, &result);
   result.run.fit = result;

@@ -21,9 +21,9 @@ constexpr std::array<std::string_view, 5> kDepths{"indicated", "wireline", "dril
 constexpr std::array<std::string_view, 11> kEvents{
     "",          "depth_zero", "depth_rezero", "depth_tie", "return_to_zero", "foresight",
     "run_begin", "run_end",    "accept",       "reject",    "remark"};
-constexpr std::array<std::string_view, 11> kFlags{
-    "moved",       "mirror",  "vertical", "saturated",  "gap",  "depth",
-    "temperature", "aliased", "gravity",  "earth_rate", "clock"};
+constexpr std::array<std::string_view, 12> kFlags{
+    "moved",       "mirror",  "vertical", "saturated",  "gap",   "depth",
+    "temperature", "aliased", "gravity",  "earth_rate", "clock", "unfit"};
 
 constexpr std::array<std::string_view, 11> kFaults{"io",    "foreign", "fingerprint", "size",
                                                    "range", "syntax",  "damaged",     "lost",

@@ -24,7 +24,7 @@ WELLGYRO_EXPORT std::string_view WordOf(DepthKind kind);        ///< indicated, 
 WELLGYRO_EXPORT std::string_view WordOf(FaultCode code);        ///< io, foreign, fingerprint, ...
 
 /// `good`, or the names of the set flags joined by `+`: moved mirror vertical saturated gap depth
-/// temperature aliased gravity earth_rate clock.
+/// temperature aliased gravity earth_rate clock unfit.
 WELLGYRO_EXPORT std::string QualityText(Quality quality);
 
 /// Back from the word; nothing for any other word.

@@ -20,17 +20,20 @@ struct NoiseCoefficients {
 
 /// What Allan coefficients do not carry: 1-sigma priors of a tool's other errors. Zero: none.
 struct ErrorPriors {
-  double gyro_bias_sigma = 0;          ///< per axis [rad/s]
-  double mass_unbalance_sigma = 0;     ///< [rad/s per m/s^2]
-  double quadrature_sigma = 0;         ///< [rad/s per m/s^2]
-  double gyro_scale_sigma = 0;         ///< [1]
-  double gyro_misalignment_sigma = 0;  ///< z into x and y [rad]
-  double accel_bias_sigma = 0;         ///< per axis [m/s^2]
-  double accel_noise = 0;              ///< [m/s^2/sqrt(Hz)]
-  double roll_offset_sigma = 0;        ///< accelerometers against gyros about z [rad]
-  double time_skew_sigma = 0;          ///< accelerometers against gyros [s]
-  double depth_sigma = 0;              ///< [m]
-  double latitude_sigma = 0;           ///< [rad]
+  double gyro_bias_sigma = 0;           ///< per axis [rad/s]
+  double mass_unbalance_sigma = 0;      ///< [rad/s per m/s^2]
+  double quadrature_sigma = 0;          ///< [rad/s per m/s^2]
+  double gyro_scale_sigma = 0;          ///< [1]
+  double gyro_misalignment_sigma = 0;   ///< z into x and y [rad]
+  double accel_bias_sigma = 0;          ///< per axis [m/s^2]
+  double accel_scale_sigma = 0;         ///< per axis [1]
+  double accel_misalignment_sigma = 0;  ///< of each axis towards each other [rad]
+  double accel_noise = 0;               ///< [m/s^2/sqrt(Hz)]
+  double roll_offset_sigma = 0;         ///< accelerometers against gyros about z [rad]
+  double time_skew_sigma = 0;           ///< accelerometers against gyros [s]
+  double depth_sigma = 0;               ///< [m]
+  double depth_scale_sigma = 0;         ///< [1]
+  double latitude_sigma = 0;            ///< [rad]
 };
 
 }  // namespace wellgyro

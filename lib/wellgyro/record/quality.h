@@ -22,6 +22,7 @@ enum class Quality : std::uint32_t {
   kGravity = 1u << 8,      ///< |f| differs from gravity beyond its limit
   kEarthRate = 1u << 9,    ///< the rate at rest differs from the Earth's beyond its limit
   kClock = 1u << 10,       ///< the tie between the tool's clock and UTC is doubtful
+  kUnfit = 1u << 11,       ///< a cause that failed the run can have touched it: no sigma is given
 };
 #pragma GCC diagnostic pop
 

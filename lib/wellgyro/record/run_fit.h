@@ -26,7 +26,7 @@ struct RunFit {
 
   double chi_square = 0;       ///< of all residuals, priors included
   int degrees_of_freedom = 0;  ///< residuals less unknowns
-  bool converged = false;
+  bool converged = false;      ///< false: it gave up, and the run is as it was before
   /// Two azimuths fit nearly as well, differing by less than 9 in chi-square: none is given.
   bool ambiguous = false;
   std::array<Squares, kParts> parts;

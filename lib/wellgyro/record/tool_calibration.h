@@ -85,10 +85,11 @@ struct ToolCalibration {
   std::optional<UtcTime> calibrated;  ///< when
   std::optional<UtcTime> expires;     ///< from then on no longer to be relied on
   std::vector<ThermometerCalibration> thermometers;
-  SensorGroup gyro;                   ///< SI unit rad/s; two channels: across the tool only
-  SensorGroup accel;                  ///< SI unit m/s^2
-  SensorGroup mag;                    ///< SI unit T; absent where the tool has none
-  std::optional<ErrorPriors> errors;  ///< what remains of errors after it, 1-sigma
+  SensorGroup gyro;                      ///< SI unit rad/s; two channels: across the tool only
+  SensorGroup accel;                     ///< SI unit m/s^2
+  SensorGroup mag;                       ///< SI unit T; absent where the tool has none
+  std::optional<ErrorPriors> errors;     ///< what remains of errors after it, 1-sigma
+  std::vector<std::string> errors_none;  ///< of these the keys that are 0 because someone said so
 };
 
 }  // namespace wellgyro

@@ -258,6 +258,25 @@ void Choose(const Site& head, const Station& opening, const std::vector<PassLine
   PlaceChosen(head, lines, placed);
 }
 
+/// What an error e of the depth's scale does to stations below the tie-in at `origin`. The path to
+/// what was measured at a station grows by e (p - origin), and the station lies e (md - md_tie) up
+/// the hole from where its depth says.
+void AddDepthScale(const Job& job, const Eigen::Vector3d& origin, std::vector<Station>& stations) {
+  const double scale = job.errors.depth_scale_sigma;
+  if (!(scale > 0)) return;
+  for (Station& s : stations) {
+    const double way = s.md - job.tie_in.md;
+    if (s.kind == StationKind::kTieIn || !(way > 0)) continue;
+    const Eigen::Vector3d along =
+        scale * way *
+        Eigen::Vector3d(std::sin(s.inclination) * std::cos(s.azimuth),
+                        std::sin(s.inclination) * std::sin(s.azimuth), std::cos(s.inclination));
+    const Eigen::Vector3d path = scale * (s.p_WT_W - origin) - along;
+    s.cov_p_WT_W += along * along.transpose() + path * path.transpose();
+    s.cov_md_inc_azi(0, 0) += scale * way * scale * way;
+  }
+}
+
 /// Why the tie-in is all that there is.
 std::string WhyNothing(const Job& job, const std::vector<PassItems>& passes, const Placed& placed) {
   double deepest = -HUGE_VAL;
@@ -314,6 +333,8 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
     List(by_run[i], job.tie_in.md, runs[i].misrun, placed);
   }
   Choose(head, *opening, lines, placed);
+  AddDepthScale(job, placed.chosen.front().p_WT_W, placed.passes);
+  AddDepthScale(job, placed.chosen.front().p_WT_W, placed.chosen);
   if (placed.chosen.size() == 1) placed.unusable = WhyNothing(job, good, placed);
   return placed;
 }

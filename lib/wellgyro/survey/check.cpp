@@ -5,6 +5,11 @@
 #include "wellgyro/survey/checks.h"
 
 namespace wellgyro {
+namespace {
+
+constexpr std::int64_t kShare = 100;  // one in so many is no longer single
+
+}  // namespace
 
 Verdict Judge(double value, double limit) {
   const double size = std::abs(value);
@@ -28,13 +33,25 @@ Check CompareWith(std::string code, std::int32_t run, Measured measured, double 
 
 Check Compare(std::string code, std::int32_t run, Measured measured, std::optional<double> accepted,
               double unit, std::string unit_name) {
-  return CompareWith(std::move(code), run, measured, accepted ? *accepted : 3 * measured.sigma,
-                     unit, std::move(unit_name), accepted ? "acceptance" : "3 sigma");
+  Check check =
+      CompareWith(std::move(code), run, measured, accepted ? *accepted : 3 * measured.sigma, unit,
+                  std::move(unit_name), accepted ? "acceptance" : "3 sigma");
+  if (!accepted) check.looks = 1;
+  return check;
 }
 
-Check CompareCount(std::string code, std::int32_t run, std::int64_t count, std::string source) {
-  return CompareWith(std::move(code), run, {static_cast<double>(count), 0}, 0, 1, "1",
-                     std::move(source));
+Check CountOf(std::string code, std::int32_t run, std::int64_t count, std::string source) {
+  Check check = CompareWith(std::move(code), run, {static_cast<double>(count), 0}, 0, 1, "1",
+                            std::move(source));
+  if (check.verdict == Verdict::kFail) check.verdict = Verdict::kWarn;
+  return check;
+}
+
+Check ShareOf(std::string code, std::int32_t run, std::int64_t count, std::int64_t all,
+              std::string source) {
+  Check check = CountOf(std::move(code), run, count, std::move(source));
+  if (kShare * count > all) check.verdict = Verdict::kFail;
+  return check;
 }
 
 Check NotDone(std::string code, std::int32_t run, std::string why) {

@@ -13,7 +13,8 @@ struct Measured {
   double value = 0, sigma = 0;
 };
 
-/// A check in SI units; `unit` divides what is written. Without `accepted` the limit is 3 sigma.
+/// A check in SI units; `unit` divides what is written. Without `accepted` the limit is one of
+/// chance, 3 sigma until ShareFalseAlarms() knows how many there are.
 Check Compare(std::string code, std::int32_t run, Measured measured, std::optional<double> accepted,
               double unit, std::string unit_name);
 
@@ -21,8 +22,13 @@ Check Compare(std::string code, std::int32_t run, Measured measured, std::option
 Check CompareWith(std::string code, std::int32_t run, Measured measured, double limit, double unit,
                   std::string unit_name, std::string source);
 
-/// `count` of something of which there should be none.
-Check CompareCount(std::string code, std::int32_t run, std::int64_t count, std::string source);
+/// `count` of something of which there should be none, but which is flagged where it is and, where
+/// it hides a part of the run, in the sigma: a warning.
+Check CountOf(std::string code, std::int32_t run, std::int64_t count, std::string source);
+
+/// The same, of `all`: one in a hundred is no longer single, and fails.
+Check ShareOf(std::string code, std::int32_t run, std::int64_t count, std::int64_t all,
+              std::string source);
 
 Check NotDone(std::string code, std::int32_t run, std::string why);
 

@@ -15,9 +15,12 @@
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/run_checks_internal.h"
+#include "wellgyro/survey/tie_in_check.h"
 
 namespace wellgyro {
 namespace {
+
+constexpr int kPairsApart = 36;  // of a run's pairs of stations, those that are independent
 
 void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
   bool earth_rate = false, compared = false;
@@ -28,6 +31,7 @@ void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& check
           Compare("azimuth_closure", run.run, {std::sqrt(*fix.chi_square), 1}, 3.0, 1, "1");
       closure.md = fix.md;
       closure.limit_source = "3 sigma of the run against the fix";
+      closure.looks = 1;
       checks.push_back(closure);
     }
     if (fix.external) continue;
@@ -47,7 +51,13 @@ void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& check
   const bool none = std::all_of(run.fixes.begin(), run.fixes.end(),
                                 [](const NorthFix& fix) { return fix.external; });
   if (none) checks.push_back(NotDone("gravity", run.run, "no stop long enough"));
-  if (!earth_rate) checks.push_back(NotDone("earth_rate", run.run, "no stop long enough"));
+  if (!earth_rate) {
+    checks.push_back(NotDone("earth_rate", run.run,
+                             none
+                                 ? "no stop long enough"
+                                 : "the errors that the job allows the gyros hide the Earth's rate "
+                                   "at every stop: index positions or a third axis show it"));
+  }
 }
 
 /// The pairs of stations of one run at one depth, one of pass `a` and one of pass `b`.
@@ -104,12 +114,16 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
     checks.push_back(NotDone("azimuth_" + name, run, "no depth seen in both passes"));
     return;
   }
-  checks.push_back(Compare("inclination_" + name, run, inclination.difference,
-                           job.acceptance.inclination_difference, units::kDeg, "deg"));
-  checks.back().md = inclination.md;
-  checks.push_back(Compare("azimuth_" + name, run, azimuth.difference,
-                           job.acceptance.azimuth_difference, units::kDeg, "deg"));
-  checks.back().md = azimuth.md;
+  const auto add = [&](const std::string& code, const Worst& worst,
+                       const std::optional<double>& accepted) {
+    Check check = Compare(code + name, run, worst.difference, accepted, units::kDeg, "deg");
+    check.md = worst.md;
+    // Errors go on along the hole: so many of the pairs are independent at most.
+    check.looks = accepted ? 0 : std::min(pairs, kPairsApart);
+    checks.push_back(check);
+  };
+  add("inclination_", inclination, job.acceptance.inclination_difference);
+  add("azimuth_", azimuth, job.acceptance.azimuth_difference);
 }
 
 /// What operators ask of an in-run against its out-run, whatever the error model says; but at low
@@ -228,19 +242,27 @@ void CheckMarks(const Job& job, const CableMarks* marks, std::vector<Check>& che
   checks.push_back(Compare("magnetic_marks", 0, {marks->largest_change(), sigma}, limit, 1, "m"));
   checks.back().limit_source = "3 sigma of two marks and 1 in 1000 of slip between them";
   if (marks->left_out() > 0) {
-    checks.push_back(Compare("magnetic_marks_left_out", 0,
-                             {static_cast<double>(marks->left_out()), 0}, 0.0, 1, "1"));
-    checks.back().limit_source = "every mark within a quarter of the spacing";
+    checks.push_back(CountOf("magnetic_marks_left_out", 0, marks->left_out(),
+                             "every mark within a quarter of the spacing"));
   }
 }
 
+/// Nothing in a run tells the scale of its depth; its sigma stands in every station's.
+void CheckDepthScale(const Job& job, const CableMarks* marks, std::vector<Check>& checks) {
+  if (marks != nullptr && job.depth.cable.mark_spacing > 0 && marks->passed() >= 2) return;
+  checks.push_back(NotDone("depth_scale", 0,
+                           fmt::format("unverified: no magnetic marks passed; {:g} of depth stands "
+                                       "in every sigma",
+                                       job.errors.depth_scale_sigma)));
+}
+
 void CheckRefused(const Job& job, const MarksRefused& refused, std::vector<Check>& checks) {
-  checks.push_back(CompareCount("depth_refused", 0, refused.all(),
-                                refused.late > 0
-                                    ? fmt::format("marks in time: [depth] latency_s = {} is too "
-                                                  "little, or their clock is behind",
-                                                  job.depth.latency)
-                                    : "every mark is a depth near its neighbours"));
+  checks.push_back(CountOf("depth_refused", 0, refused.all(),
+                           refused.late > 0
+                               ? fmt::format("marks in time: [depth] latency_s = {} is too "
+                                             "little, or their clock is behind",
+                                             job.depth.latency)
+                               : "every mark is a depth near its neighbours"));
 }
 
 void CheckGrid(const Job& job, std::vector<Check>& checks) {
@@ -262,6 +284,13 @@ void CheckGrid(const Job& job, std::vector<Check>& checks) {
   }
 }
 
+void CheckNoise(const Job& job, std::vector<Check>& checks) {
+  if (job.noise_stated) return;
+  checks.push_back(
+      NotDone("noise_stated", 0, "give [noise]: taken as that of the example tools of SPE 90408"));
+  checks.back().verdict = Verdict::kWarn;
+}
+
 }  // namespace
 
 Check CheckAsked(const Job& job, std::span<const Station> chosen) {
@@ -276,8 +305,7 @@ Check CheckAsked(const Job& job, std::span<const Station> chosen) {
     ++missing;
     if (!first) first = md;
   }
-  Check check = Compare("stations_asked", 0, {static_cast<double>(missing), 0}, 0.0, 1, "1");
-  check.limit_source = "every depth asked for has a station";
+  Check check = CountOf("stations_asked", 0, missing, "every depth asked for has a station");
   check.md = first;
   return check;
 }
@@ -295,26 +323,28 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     CheckPasses(job, inputs.passes, run.run, Pass::kOut, "in_out", checks);
     CheckPractice(inputs.passes, run.run, checks);
     CheckPasses(job, inputs.passes, run.run, Pass::kRepeat, "repeat", checks);
-    Check lost =
-        Compare("samples_lost", run.run, {static_cast<double>(run.samples_lost), 0}, 0.0, 1, "1");
-    lost.limit_source = "none may be lost";
-    checks.push_back(lost);
+    checks.push_back(CountOf("samples_lost", run.run, run.samples_lost, "none may be lost"));
     Check unknown = Compare("depth_unknown", run.run, {run.seconds_without_depth, 0}, 0.0, 1, "s");
     unknown.limit_source = "marks no further apart than [depth] max_gap_s";
     if (unknown.verdict == Verdict::kFail) {
+      unknown.verdict = Verdict::kWarn;
       unknown.limit_source +=
           fmt::format(" = {}, and no later than latency_s = {}: raise what is too little for them",
                       job.depth.max_gap, job.depth.latency);
     }
     if (run.samples > 0 || run.seconds_without_depth > 0) checks.push_back(unknown);
     CheckSamples(job, run, checks);
+    checks.insert(checks.end(), run.sample_checks.begin(), run.sample_checks.end());
     CheckFit(job, run, checks);
   }
   CheckReturns(job, inputs, checks);
   CheckRefused(job, inputs.marks_refused, checks);
   CheckMarks(job, inputs.marks, checks);
+  CheckDepthScale(job, inputs.marks, checks);
   CheckForesights(job, inputs, checks);
   CheckGrid(job, checks);
+  checks.push_back(CheckTieIn(job, inputs.passes));
+  CheckNoise(job, checks);
   return checks;
 }
 

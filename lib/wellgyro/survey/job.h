@@ -118,6 +118,7 @@ struct Job {
   TieIn tie_in;
   std::optional<ToolCalibration> tool;  ///< absent: samples come in SI units
   NoiseCoefficients noise;
+  bool noise_stated = true;  ///< false: nobody said, and `noise` is a guess
   ErrorPriors errors;
   std::optional<ErrorModel> error_model;  ///< absent: covariance from the run itself alone
   Channels channels;

@@ -168,30 +168,50 @@ constexpr std::array kNoise{
         "of B as a Gauss-Markov process", "B is a constant"),
 };
 
+// Without a key what the tool's file says of it holds, else what io/toml/coefficients_internal.h has
+// from published tools.
 constexpr std::array kErrors{
     Number<&Job::errors, &ErrorPriors::gyro_bias_sigma>("errors", "gyro_bias_sigma_deg_per_h",
-                                                        units::kDegPerHour, kSize, "per axis"),
+                                                        units::kDegPerHour, kSize, "per axis",
+                                                        "the tool's, else 0.1"),
     Number<&Job::errors, &ErrorPriors::mass_unbalance_sigma>(
-        "errors", "mass_unbalance_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize, ""),
+        "errors", "mass_unbalance_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize, "",
+        "the tool's, else 0.5"),
     Number<&Job::errors, &ErrorPriors::quadrature_sigma>(
-        "errors", "quadrature_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize, ""),
+        "errors", "quadrature_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize, "",
+        "the tool's, else mass unbalance, else 0.5"),
     Number<&Job::errors, &ErrorPriors::gyro_scale_sigma>("errors", "gyro_scale_sigma", 1, kFraction,
-                                                         ""),
+                                                         "", "the tool's, else 0.001"),
     Number<&Job::errors, &ErrorPriors::gyro_misalignment_sigma>(
-        "errors", "gyro_misalignment_sigma_rad", 1, kFraction, "z into x and y"),
+        "errors", "gyro_misalignment_sigma_rad", 1, kFraction, "z into x and y",
+        "the tool's, else 0.05 deg"),
     Number<&Job::errors, &ErrorPriors::accel_bias_sigma>("errors", "accel_bias_sigma_mps2", 1,
-                                                         {.min = 0, .max = 10}, "per axis"),
+                                                         {.min = 0, .max = 10}, "per axis",
+                                                         "the tool's, else 0.005"),
+    Number<&Job::errors, &ErrorPriors::accel_scale_sigma>(
+        "errors", "accel_scale_sigma", 1, kFraction, "per axis",
+        "the tool's, else accelerometer bias over 1 g, else 5e-4"),
+    Number<&Job::errors, &ErrorPriors::accel_misalignment_sigma>(
+        "errors", "accel_misalignment_sigma_rad", 1, kFraction, "of each axis towards each other",
+        "the tool's, else gyro misalignment, else 0.05 deg"),
     Number<&Job::errors, &ErrorPriors::accel_noise>("errors", "accel_noise_mps2_per_sqrt_hz", 1,
-                                                    {.min = 0, .max = 10}, "white"),
-    Number<&Job::errors, &ErrorPriors::roll_offset_sigma>("errors", "roll_offset_sigma_deg", kDeg,
-                                                          {.min = 0, .max = 180},
-                                                          "accelerometers against gyros about z"),
+                                                    {.min = 0, .max = 10}, "white",
+                                                    "the tool's, else 2e-4"),
+    Number<&Job::errors, &ErrorPriors::roll_offset_sigma>(
+        "errors", "roll_offset_sigma_deg", kDeg, {.min = 0, .max = 180},
+        "accelerometers against gyros about z", "the tool's, else gyro misalignment, else 0.05"),
     Number<&Job::errors, &ErrorPriors::time_skew_sigma>(
-        "errors", "time_skew_sigma_s", 1, {.min = 0, .max = 10}, "accelerometers against gyros"),
+        "errors", "time_skew_sigma_s", 1, {.min = 0, .max = 10}, "accelerometers against gyros",
+        "the tool's, else 0.001"),
     Number<&Job::errors, &ErrorPriors::depth_sigma>("errors", "depth_sigma_m", 1,
-                                                    {.min = 0, .max = 1000}, "of measured depth"),
+                                                    {.min = 0, .max = 1000}, "of measured depth",
+                                                    "the tool's, else 0.35"),
+    Number<&Job::errors, &ErrorPriors::depth_scale_sigma>(
+        "errors", "depth_scale_sigma", 1, kFraction, "of measured depth below the tie-in",
+        "the tool's, else 5.6e-4"),
     Number<&Job::errors, &ErrorPriors::latitude_sigma>("errors", "latitude_sigma_deg", kDeg,
-                                                       {.min = 0, .max = 90}, ""),
+                                                       {.min = 0, .max = 90}, "",
+                                                       "the tool's, else 0"),
 };
 
 constexpr std::array kFilesAndChannels{

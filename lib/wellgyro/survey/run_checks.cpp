@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -105,51 +106,73 @@ constexpr std::array<ToolError, Knot::kSources> kToolErrors{
      {Knot::kAccelBiasY, "accel_bias_y", 1, "m/s2"},
      {Knot::kAccelBiasZ, "accel_bias_z", 1, "m/s2"}}};
 
-/// Of the gyro biases with what they may become in the run.
+/// Of the gyro biases, whose value is the level where the run ends, with what it may become; a
+/// Gauss-Markov part is none of the level.
 Knot::SourceVector SigmasOf(const Job& job, const RunSummary& run) {
   Knot::SourceVector sigma = SourceSigmas(job.errors);
+  const double seconds = (run.end - run.begin).seconds();
+  const double walk = job.noise.rate_random_walk * std::sqrt(std::max(seconds, 0.0));
+  const double constant =
+      job.noise.bias_instability_correlation_time ? 0 : job.noise.bias_instability;
   sigma[Knot::kGyroBiasX] = sigma[Knot::kGyroBiasY] =
-      std::hypot(job.errors.gyro_bias_sigma, job.noise.bias_instability,
-                 SigmaOfChange(job.noise, (run.end - run.begin).seconds()));
+      std::sqrt(Square(job.errors.gyro_bias_sigma) + Square(constant) + Square(walk) +
+                Square(job.noise.rate_ramp * seconds));
   return sigma;
 }
 
-/// Squares over what is to be expected of them; of true runs one in 44 warns and one in 740 fails.
+/// Squares over what is to be expected of them.
 Check CheckSquares(std::string code, std::int32_t run, double sum, double freedom) {
   constexpr double kLeastFreedom = 0.3;
   if (!(freedom >= kLeastFreedom)) {
     return NotDone(std::move(code), run, "nothing of this kind is measured more than once");
   }
-  const double warn = ChiSquareQuantile(NormalCdf(2), freedom);
   const double fail = ChiSquareQuantile(NormalCdf(3), freedom);
   Check check = CompareWith(std::move(code), run, {sum / freedom, std::sqrt(2 / freedom)},
                             fail / freedom, 1, "1", "chi-square at 3 sigma");
-  check.verdict = sum <= warn ? Verdict::kPass : sum <= fail ? Verdict::kWarn : Verdict::kFail;
+  check.looks = 1;
+  check.freedom = freedom;
   return check;
+}
+
+/// An error of the tool as found against its prior. The difference of the two has the variance of
+/// the prior less that of what was found: of a run that tells little of it, a small one. This is
+/// Baarda's w-test of the prior's own row.
+Check CheckPrior(const ToolError& error, std::int32_t run, Measured found, double prior) {
+  constexpr double kTells = 0.02;  // of the prior's variance, below which a run says nothing of it
+  const double told = Square(prior) - Square(found.sigma);
+  if (!(told > kTells * Square(prior))) {
+    return NotDone(error.code, run, "the run tells nothing of it beyond the prior");
+  }
+  return Compare(error.code, run, {found.value, std::sqrt(told)}, std::nullopt, error.unit,
+                 error.unit_name);
 }
 
 }  // namespace
 
 void CheckSamples(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
   if (run.samples == 0) return;
-  checks.push_back(CompareCount("gyro_saturated", run.run, run.samples_gyro_saturated,
-                                "no sample may reach full scale"));
-  checks.push_back(CompareCount("accel_saturated", run.run, run.samples_accel_saturated,
-                                "no sample may reach full scale"));
-  checks.push_back(CompareCount("samples_aliased", run.run, run.samples_aliased,
-                                "no more than a quarter turn in a sample"));
+  checks.push_back(ShareOf("gyro_saturated", run.run, run.samples_gyro_saturated, run.samples,
+                           "no sample may reach full scale"));
+  checks.push_back(ShareOf("accel_saturated", run.run, run.samples_accel_saturated, run.samples,
+                           "no sample may reach full scale"));
+  checks.push_back(ShareOf("gyro_spikes", run.run, run.samples_gyro_mended, run.samples,
+                           "every sample is possible beside its neighbours"));
+  checks.push_back(ShareOf("accel_spikes", run.run, run.samples_accel_mended, run.samples,
+                           "every sample is possible beside its neighbours"));
+  checks.push_back(ShareOf("samples_aliased", run.run, run.samples_aliased, run.samples,
+                           "no more than a quarter turn in a sample"));
   checks.push_back(
-      CompareCount("clock_unsynced", run.run, run.samples_unsynced, "every sample's UTC is sure"));
-  checks.push_back(CompareCount("clock_jumps", run.run, run.clock_jumps,
-                                "number, tool clock and UTC agree throughout"));
-  checks.push_back(CompareCount("samples_refused", run.run, run.samples_refused,
-                                run.samples_other > 0
-                                    ? "no sample comes again with another content, late, "
-                                      "impossible or of another time"
-                                    : "no sample is late, impossible or of another time"));
+      CountOf("clock_unsynced", run.run, run.samples_unsynced, "every sample's UTC is sure"));
+  checks.push_back(CountOf("clock_jumps", run.run, run.clock_jumps,
+                           "number, tool clock and UTC agree throughout"));
+  checks.push_back(ShareOf("samples_refused", run.run, run.samples_refused, run.samples,
+                           run.samples_other > 0
+                               ? "no sample comes again with another content, late, "
+                                 "impossible or of another time"
+                               : "no sample is late, impossible or of another time"));
   if (job.tool) {
-    checks.push_back(CompareCount("temperature_outside", run.run, run.samples_temperature_outside,
-                                  "calibrated temperatures"));
+    checks.push_back(CountOf("temperature_outside", run.run, run.samples_temperature_outside,
+                             "calibrated temperatures"));
   } else {
     checks.push_back(NotDone("temperature_outside", run.run, "the job names no tool calibration"));
   }
@@ -190,6 +213,11 @@ void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks)
     return;
   }
   const RunFit& fit = *run.fit;
+  if (!fit.converged) {
+    checks.push_back(NotDone("fit", run.run, "the adjustment of the run gave up"));
+    checks.back().verdict = Verdict::kFail;
+    return;
+  }
   checks.push_back(CheckSquares("fit", run.run, fit.chi_square, fit.degrees_of_freedom));
   for (const auto& [code, part] : parts) {
     const RunFit::Squares& squares = fit.parts[part];
@@ -202,9 +230,8 @@ void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks)
       checks.push_back(NotDone(error.code, run.run, "taken as none: the job gives no sigma of it"));
       continue;
     }
-    const Measured found{fit.errors[error.source], sigma};
-    checks.push_back(CompareWith(error.code, run.run, found, 3 * priors[error.source], error.unit,
-                                 error.unit_name, "3 sigma of its prior"));
+    checks.push_back(
+        CheckPrior(error, run.run, {fit.errors[error.source], sigma}, priors[error.source]));
   }
 }
 

@@ -11,6 +11,7 @@
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/record/station.h"
+#include "wellgyro/record/verdict.h"
 
 namespace wellgyro {
 
@@ -18,7 +19,8 @@ namespace wellgyro {
 struct RunSummary {
   std::int32_t run = 0;
   std::int32_t tool = 0;
-  bool misrun = false;
+  bool misrun = false;  ///< by someone's word
+  RunVerdict verdict;   ///< by its checks
   std::string remark;
   UtcTime begin, end;
   std::int64_t samples = 0;            ///< accepted
@@ -33,12 +35,14 @@ struct RunSummary {
   std::int64_t clock_jumps = 0;    ///< of the tool's clock, its numbers or its UTC
   std::int64_t samples_gyro_saturated = 0, samples_accel_saturated = 0;
   std::int64_t samples_unsynced = 0;  ///< of which the surface doubts the UTC
-  std::int64_t samples_aliased = 0;   ///< that turned too far in one period
+  std::int64_t samples_gyro_mended = 0, samples_accel_mended = 0;  ///< single ones, see SpikeFilter
+  std::int64_t samples_aliased = 0;  ///< that turned too far in one period
   std::int64_t samples_temperature_outside = 0;
   float temperature_min = 0, temperature_max = 0;  ///< [degC]
   std::optional<RunFit> fit;                       ///< where an adjuster said so
   std::vector<NorthFix> fixes;
-  std::vector<Check> stop_checks;  ///< of three gyro axes at rest, beyond what a fix says
+  std::vector<Check> stop_checks;    ///< of three gyro axes at rest, beyond what a fix says
+  std::vector<Check> sample_checks;  ///< of samples and depth marks as they come
 };
 
 /// Everything a survey is at one moment, for those who write files.
@@ -47,6 +51,7 @@ struct Survey {
   std::vector<Station> passes;  ///< every station of every run and pass, as last revised, in time
   std::vector<Check> checks;
   std::vector<RunSummary> runs;
+  RunVerdict verdict;  ///< of the chosen stations, by the checks of the runs they are from
   std::int64_t marks_refused = 0;  ///< depth marks that were left out
   bool accepted = false;           ///< someone accepted a station: never to be written over
   std::string unusable;            ///< why there is no survey, in a sentence; empty: there is one

@@ -206,6 +206,7 @@ void Surveyor::Push(const DepthMark& mark) {
     rooms_->sink.OnFault(*fault);
   } else {
     rooms_->marks.Push(told);
+    for (auto& [number, tool] : rooms_->tools) tool.Push(told);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/attitude/smoother.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/survey/estimated_run.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 
@@ -27,9 +28,12 @@ UtcTime TimeOf(const Operation& operation) {
   return std::visit([](const auto& record) { return record.utc; }, operation);
 }
 
-/// Values that a tool at rest can send; what else comes, is damage.
+/// Values that a tool at rest can send; what else comes, is damage or was no rest. Gravity is 9.78
+/// to 9.83 m/s^2 on the Earth and 9.90 below 15 km of it; what is left of both limits is the error
+/// of an uncalibrated tool.
 bool CanBe(const StillWindow& window) {
-  constexpr double kRate = 1;     // [rad/s]
+  constexpr double kRate = 0.5 * units::kDeg;  // [rad/s]
+  constexpr double kLeastForce = 9.3, kMostForce = 10.3;
   constexpr double kDepth = 1e5;  // [m]
   constexpr double kSeconds = 1e5;
   const double f = window.f_T.norm();
@@ -38,8 +42,8 @@ bool CanBe(const StillWindow& window) {
                       window.sigma_w_IT_T.minCoeff() >= 0 && window.sigma_f_T.minCoeff() >= 0 &&
                       window.sigma_w_IT_T.maxCoeff() < kRate && window.sigma_f_T.maxCoeff() < 100;
   const bool depth = !window.md || std::abs(*window.md) < kDepth;
-  return f > 5 && f < 20 && window.w_IT_T.norm() < kRate && sigmas && depth && seconds > 0 &&
-         seconds < kSeconds;
+  return f > kLeastForce && f < kMostForce && window.w_IT_T.norm() < kRate && sigmas && depth &&
+         seconds > 0 && seconds < kSeconds;
 }
 
 double Correction(const std::vector<std::pair<double, double>>& table, double md) {
@@ -69,7 +73,8 @@ ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& trac
       adjuster_(adjuster),
       corrects_depth_(!job.depth.corrections.empty() || job.depth.cable.mark_spacing > 0),
       sensor_below_reference_(job.string.sensor_below_reference),
-      queue_(Hold(job, track)) {}
+      queue_(Hold(job, track)),
+      filter_(job.noise, job.errors) {}
 
 void ToolSurvey::Push(std::span<const ImuSample> batch) {
   while (true) {
@@ -128,6 +133,10 @@ void ToolSurvey::Push(const Operation& operation) {
   due_.insert(after, due);
 }
 
+void ToolSurvey::Push(const DepthMark& mark) {
+  if (!runs_.empty()) runs_.back().motion->Mark(mark.utc, mark.md);
+}
+
 void ToolSurvey::Push(const StillWindow& window) {
   if (!CanBe(window)) {
     sink_.OnFault(
@@ -160,9 +169,43 @@ void ToolSurvey::TellWithoutDepth(const StillWindow& window) {
 void ToolSurvey::Work(std::optional<UtcTime> until) {
   while (const ImuSample* sample = queue_.Front()) {
     const bool after = finish_asked_ || (until && sample->stamp.utc >= *until);
-    if (!after) Use(*sample);
+    if (!after) {
+      const bool jumps = queue_.Jumps();
+      if (jumps || !filter_.Continues(sample->stamp)) UseRest();
+      if (const SpikeFilter::Out* out = filter_.Push(*sample, jumps)) Use(*out);
+    }
     queue_.Pop();
   }
+}
+
+/// What the filter still holds: the samples that end a stretch without gaps.
+void ToolSurvey::UseRest() {
+  while (const SpikeFilter::Out* out = filter_.Flush()) Use(*out);
+}
+
+/// One fault for all that lie near each other.
+void ToolSurvey::TellMended(const SpikeFilter::Out& out, RunSummary& summary) {
+  summary.samples_gyro_mended += out.gyro;
+  summary.samples_accel_mended += out.accel;
+  constexpr std::int64_t kNear = 10'000'000'000;  // [ns]
+  const SampleStamp& stamp = out.sample.stamp;
+  const bool joins = mended_.count > 0 && mended_.session == stamp.session &&
+                     (stamp.seq - mended_.last) * stamp.period_ns < kNear;
+  if (!joins) {
+    TellMendedRange();
+    mended_ = {stamp.session, stamp.seq, stamp.seq, 0};
+  }
+  mended_.last = stamp.seq;
+  ++mended_.count;
+}
+
+void ToolSurvey::TellMendedRange() {
+  if (mended_.count == 0) return;
+  sink_.OnFault(Fault{FaultCode::kRange,
+                      fmt::format("{} of the samples {} to {} of session {} are impossible beside "
+                                  "their neighbours and were replaced by what these say",
+                                  mended_.count, mended_.first, mended_.last, mended_.session)});
+  mended_.count = 0;
 }
 
 void ToolSurvey::CountLost(const SampleStamp& stamp, RunSummary& summary) {
@@ -201,8 +244,10 @@ void ToolSurvey::TellClock(const SampleStamp& stamp, bool jumps, RunSummary& sum
   summary.clock_jumps += (jumps ? 1 : 0) + (clock_.step() ? 1 : 0);
 }
 
-void ToolSurvey::Use(const ImuSample& sample) {
-  const bool jumps = queue_.Jumps();
+void ToolSurvey::Use(const SpikeFilter::Out& out) {
+  if (finish_asked_) return;
+  const ImuSample& sample = out.sample;
+  const bool jumps = out.mark;
   const SampleStamp& stamp = sample.stamp;
   const SampleStamp& continued = clock_.Take(stamp, jumps);
   const UtcTime utc = clock_.utc();
@@ -211,6 +256,7 @@ void ToolSurvey::Use(const ImuSample& sample) {
   RunState* found = RunFor(book_.RunAt(utc, stamp.run));
   if (found == nullptr) return;
   RunState& run = *found;
+  if (out.gyro || out.accel) TellMended(out, run.survey->summary());
   if (last_ && !jumps && stamp.seq != last_->seq + 1) CountLost(stamp, run.survey->summary());
   if (jumps || clock_.step()) TellClock(stamp, jumps, run.survey->summary());
   last_ = stamp;
@@ -220,7 +266,10 @@ void ToolSurvey::Use(const ImuSample& sample) {
     return;
   }
   const std::int32_t segment = track_.Segment(utc);
-  if (segment != depth_segment_) run.survey->RestartDepth();
+  if (segment != depth_segment_) {
+    run.survey->RestartDepth();
+    run.motion->Restart();
+  }
   depth_segment_ = segment;
   const UtcTime utc_middle = utc + Duration{stamp.period_ns / 2};
   AlongHole begin = grid_.At(utc), middle = grid_.At(utc_middle);
@@ -230,6 +279,8 @@ void ToolSurvey::Use(const ImuSample& sample) {
     changed_ = sample;
     changed_.stamp = continued;
   }
+  run.watch->Push(sample, begin);
+  run.motion->Feel(utc, 1e-9 * stamp.period_ns, sample.f_T.z());
   run.survey->Push(clock_.own() ? sample : changed_, utc, begin, middle);
   newest_used_ = utc;
   if (run.survey->has_news()) Tell(run);
@@ -268,6 +319,8 @@ ToolSurvey::RunState* ToolSurvey::FindRun(std::int32_t run) {
   RunState state;
   state.survey = std::make_unique<RunSurvey>(job_, run, tool_);
   state.provisional = std::make_unique<ProvisionalPath>(job_);
+  state.watch = std::make_unique<SampleWatch>(job_);
+  state.motion = std::make_unique<DepthMotion>();
   runs_.push_back(std::move(state));
   return &runs_.back();
 }
@@ -333,8 +386,8 @@ void ToolSurvey::Adjust() {
 }
 
 void ToolSurvey::SendRevisions() {
-  const Placed placed = Assemble(job_, Drafted());
-  for (const Station& station : placed.passes) sink_.OnStation(station);
+  const Survey survey = Current();
+  for (const Station& station : survey.passes) sink_.OnStation(station);
 }
 
 void ToolSurvey::Finish(std::optional<UtcTime> until) {
@@ -342,6 +395,8 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
   queue_.Flush();
   TellStrays();
   Work(until);
+  UseRest();
+  TellMendedRange();
   for (RunState& run : runs_) {
     run.survey->Flush();
     Tell(run);

@@ -10,8 +10,10 @@
 #include <variant>
 #include <vector>
 
+#include "wellgyro/calibration/spike_filter.h"
 #include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/depth_grid.h"
+#include "wellgyro/depth/depth_motion.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/survey/assemble.h"
@@ -22,6 +24,7 @@
 #include "wellgyro/survey/run_clock.h"
 #include "wellgyro/survey/run_survey.h"
 #include "wellgyro/survey/sample_queue.h"
+#include "wellgyro/survey/sample_watch.h"
 #include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {
@@ -43,6 +46,7 @@ class ToolSurvey {
   void Push(const StillWindow& window);
   void Push(const ToolInfo& info) { sensor_below_reference_ = info.sensor_below_reference; }
   void Push(const Operation& operation);
+  void Push(const DepthMark& mark);
 
   void Adjust();
   /// `until`: samples that begin later are not used.
@@ -60,6 +64,8 @@ class ToolSurvey {
   struct RunState {
     std::unique_ptr<RunSurvey> survey;
     std::unique_ptr<ProvisionalPath> provisional;
+    std::unique_ptr<SampleWatch> watch;
+    std::unique_ptr<DepthMotion> motion;
     std::vector<StationState> adjusted;   ///< as of the last Adjust
     std::vector<StationState> backwards;  ///< as the first north showed those before it
     std::size_t adjusted_drafts = 0;
@@ -71,7 +77,10 @@ class ToolSurvey {
   };
 
   void Work(std::optional<UtcTime> until);
-  void Use(const ImuSample& sample);
+  void UseRest();
+  void Use(const SpikeFilter::Out& out);
+  void TellMended(const SpikeFilter::Out& out, RunSummary& summary);
+  void TellMendedRange();
   bool ObeyDue(const SampleStamp& stamp, UtcTime utc);
   void CountLost(const SampleStamp& stamp, RunSummary& summary);
   void TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp);
@@ -111,6 +120,13 @@ class ToolSurvey {
   bool corrects_depth_;  ///< by the job's table or its cable's marks
   double sensor_below_reference_;
   SampleQueue queue_;
+  SpikeFilter filter_;
+  /// Samples that the filter has mended and of which nobody has been told.
+  struct Mended {
+    std::int32_t session = 0;
+    std::int64_t first = 0, last = 0, count = 0;
+  };
+  Mended mended_;
   RunClock clock_;
   std::int64_t strays_told_ = 0;              ///< of the queue's
   std::optional<SampleStamp> other_;          ///< the last that came again with another content

@@ -14,6 +14,7 @@
 #include "wellgyro/survey/run_survey_internal.h"
 #include "wellgyro/survey/tool_survey.h"
 #include "wellgyro/survey/tool_survey_internal.h"
+#include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
 namespace {
@@ -39,7 +40,29 @@ Check CheckAzimuths(const std::vector<DraftedRun>& drafted) {
                                "ended",
                                waiting));
   }
-  return CompareCount("stations_without_azimuth", 0, never, "every station passed has an azimuth");
+  return CountOf("stations_without_azimuth", 0, never, "every station passed has an azimuth");
+}
+
+/// A step that no cable makes, and a lag that any speed makes a depth error.
+void AddDepthChecks(const DepthMotion::Found& found, RunSummary& run) {
+  constexpr double kStep = 0.2, kLag = 0.1;  // less is no matter [m], [s]
+  if (run.samples == 0) return;
+  if (!(found.sigma_step > 0)) {
+    run.sample_checks.push_back(NotDone("depth_jump", run.run, "too few marks along samples"));
+  } else {
+    const double limit = std::max(kStep, 8 * found.sigma_step);
+    run.sample_checks.push_back(CompareWith("depth_jump", run.run, {found.step, found.sigma_step},
+                                            limit, 1, "m", "8 sigma of the marks, 0.2 m"));
+    run.sample_checks.back().md = found.step_md;
+  }
+  constexpr double kTells = 0.1;  // sigma of a lag that says something [s]
+  if (!(found.sigma_lag > 0 && found.sigma_lag < kTells)) {
+    run.sample_checks.push_back(NotDone("depth_lag", run.run, "no starts and stops that tell it"));
+    return;
+  }
+  run.sample_checks.push_back(CompareWith("depth_lag", run.run, {found.lag, found.sigma_lag},
+                                          kLag + 5 * found.sigma_lag, 1, "s",
+                                          "0.1 s and 5 sigma of starts and stops"));
 }
 
 /// Near vertical the hole's direction is known without an azimuth.
@@ -172,6 +195,8 @@ std::vector<RunSummary> ToolSurvey::Summaries() const {
   for (const RunState& run : runs_) {
     RunSummary& summary = summaries.emplace_back(run.survey->summary());
     summary.misrun = book_.misrun(summary.run);
+    summary.sample_checks = run.watch->Checks(summary.run, summary.fixes);
+    AddDepthChecks(run.motion->found(), summary);
     summary.remark = book_.remark(summary.run);
     const SampleQueue::Counts& counts = queue_.counts();
     summary.duplicates = counts.duplicates;
@@ -252,6 +277,8 @@ Survey ToolSurvey::Current() const {
   if (lacking.empty()) lacking = WithoutNorth(drafted, survey);
   if (!lacking.empty()) survey.unusable = std::move(lacking);
   if (!survey.unusable.empty()) survey.chosen.clear();
+  ShareFalseAlarms(survey.checks);
+  GiveVerdict(survey);
   return survey;
 }
 

@@ -53,6 +53,22 @@ TEST(SurveyCsv, IsAsTheDesignSaysToTheByte) {
   EXPECT_EQ(SurveyCsv({}, nullptr), kHeader + "\n");
 }
 
+TEST(SurveyCsv, AnUnfitStationHasNoSigma) {
+  std::vector<Station> stations = SmallSurvey();
+  stations[1].quality = Quality::kUnfit;
+  const std::string row =
+      "110.2500,12.345679,271.500000,270.000000,109.7000,0.0321,-12345.6789,1.500000,,,,,,,,,"
+      "continuous,unfit";
+  const std::string text = kHeader + "\n" + kTieRow + "\n" + row + "\n";
+  EXPECT_EQ(SurveyCsv(stations, nullptr), text);
+  const auto read = ParseSurveyCsv(text, "a.csv");
+  ASSERT_TRUE(read) << read.fault().text;
+  EXPECT_EQ((*read)[1].quality, Quality::kUnfit);
+  EXPECT_EQ(SurveyCsv(*read, nullptr), text);
+  const std::string good = text.substr(0, text.size() - 6) + "good\n";
+  EXPECT_FALSE(ParseSurveyCsv(good, "a.csv")) << "no other may lack it";
+}
+
 TEST(PassesCsv, IsAsTheDesignSaysToTheByte) {
   EXPECT_EQ(PassesCsv(SmallSurvey(), nullptr), "RUN,PASS,STATUS,REVISION," + kHeader +
                                                    "\n0,stationary,provisional,0," + kTieRow +

@@ -39,6 +39,8 @@ Survey SmallSurvey() {
   RunSummary run;
   run.run = 1;
   run.misrun = true;
+  run.verdict = {Verdict::kWarn, {"3 samples are missing"}};
+  survey.verdict = {Verdict::kFail, {"a gyro is dead", "depth is missing"}};
   run.remark = "he said \"stop\"";
   run.samples = 360'000;
   run.samples_lost = 3;
@@ -83,7 +85,12 @@ TEST(RunToml, SaysWhatMadeTheBytesAndWhatCameOfIt) {
   EXPECT_EQ(run["faults"]["lost"].value<int>(), 2);
   EXPECT_EQ(run["fault"][0]["text"].value<std::string>(), "3 samples");
   const auto first = run["run"][0];
-  EXPECT_EQ(first["verdict"].value<std::string>(), "misrun");
+  EXPECT_EQ(first["misrun"].value<bool>(), true);
+  EXPECT_EQ(first["verdict"].value<std::string>(), "warn");
+  EXPECT_EQ(first["causes"][0].value<std::string>(), "3 samples are missing");
+  EXPECT_EQ(run["verdict"]["verdict"].value<std::string>(), "fail");
+  EXPECT_EQ(run["verdict"]["causes"].as_array()->size(), 2u);
+  EXPECT_EQ(run["verdict"]["false_alarm_rate"].value<double>(), 0.01);
   EXPECT_EQ(first["remark"].value<std::string>(), "he said \"stop\"");
   EXPECT_EQ(first["samples"].value<int>(), 360'000);
   EXPECT_EQ(first["begin_utime_us"].value<std::int64_t>(), 1'767'225'600'000'000);

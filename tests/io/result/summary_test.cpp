@@ -53,6 +53,12 @@ TEST(SummaryText, GivesTheEndAndItsEllipse) {
   EXPECT_THAT(text, testing::Not(HasSubstr("gravity")));
 }
 
+TEST(VerdictText, IsOneLineWithItsCauses) {
+  EXPECT_EQ(VerdictText({}), "verdict pass");
+  EXPECT_EQ(VerdictText({Verdict::kFail, {"a gyro is dead", "depth is missing"}}),
+            "verdict fail: a gyro is dead; depth is missing");
+}
+
 TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }
 
 }  // namespace

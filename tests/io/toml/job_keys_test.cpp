@@ -85,6 +85,7 @@ std::string JobWith(const JobKey& key, double value, int& line) {
   }
   if (table == "magnetic") add("declination_deg = 1"), add("sigma_deg = 1");
   if (table == "grid") add("projection = 'lambert_conformal_conic'"), add("parallel_1_deg = 58");
+  if (table == "tie_in" && name == "md_m") add("tvd_m = 1");
   if (table == "tie_in" && name == "inclination_deg") add("azimuth_true_deg = 1");
   if (table == "tie_in" && name == "azimuth_true_deg") add("inclination_deg = 1");
   if (table == "event") add("utime_us = 1"), add("event = 'remark'");

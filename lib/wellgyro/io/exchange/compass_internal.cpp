@@ -100,11 +100,7 @@ std::string HeadText(const SurveyHead& head) {
   line("Map System", head.crs);
   line("Survey Tool", WordOf(head.tool));
   line("Error Model", head.error_model);
-  for (const std::string& remark : head.remarks) {
-    std::string whole = remark;
-    std::replace(whole.begin(), whole.end(), '\n', ' ');
-    line("Remark", whole);
-  }
+  for (const std::string& remark : head.remarks) line("Remark", OneLine(remark));
   return text;
 }
 

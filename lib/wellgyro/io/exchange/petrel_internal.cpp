@@ -305,11 +305,7 @@ class PetrelWriter {
     text += fmt::format("# DX DY ARE GIVEN IN {} NORTH IN {}-UNITS\n",
                         head_.offsets == North::kTrue ? "TRUE" : "GRID", unit);
     text += fmt::format("# DEPTH (Z, TVD) GIVEN IN {}-UNITS\n", unit);
-    for (const std::string& remark : head_.remarks) {
-      std::string whole = remark;
-      std::replace(whole.begin(), whole.end(), '\n', ' ');
-      text += "# REMARK: " + whole + "\n";
-    }
+    for (const std::string& remark : head_.remarks) text += "# REMARK: " + OneLine(remark) + "\n";
     return text;
   }
 

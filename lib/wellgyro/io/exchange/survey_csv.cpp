@@ -26,6 +26,7 @@ constexpr std::string_view kGridColumns = ",AZI_GRID[deg],NORTHING[m],EASTING[m]
 constexpr std::string_view kPassColumns = "RUN,PASS,STATUS,REVISION,";
 
 constexpr std::size_t kNumbers = 16;  // before KIND
+constexpr std::size_t kSigmas = 8;    // the last of them, empty where a station is unfit
 constexpr std::size_t kFields = 18;
 constexpr std::size_t kFieldsWithGrid = 21;
 
@@ -34,11 +35,16 @@ void AppendStation(std::string& text, const Station& s, const WellGrid* grid) {
   text += Metres(s.md) + ',' + AngleDeg(s.inclination) + ',' + AzimuthDeg(s.azimuth) + ',' +
           AzimuthDeg(s.toolface) + ',' + Metres(s.p_WT_W.z()) + ',' + Metres(s.p_WT_W.x()) + ',' +
           Metres(s.p_WT_W.y()) + ',' + Fixed(s.dogleg_severity / units::kDegPer30m, 6);
-  for (const double v : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
-    text += ',' + Significant(v);
+  if (Has(s.quality, Quality::kUnfit)) {
+    text += std::string(kSigmas, ',');
+  } else {
+    for (const double v : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
+      text += ',' + Significant(v);
+    }
+    text += ',' + AngleDeg(std::sqrt(s.cov_md_inc_azi(1, 1))) + ',' +
+            AngleDeg(std::sqrt(s.cov_md_inc_azi(2, 2)));
   }
-  text += ',' + AngleDeg(std::sqrt(s.cov_md_inc_azi(1, 1))) + ',' +
-          AngleDeg(std::sqrt(s.cov_md_inc_azi(2, 2))) + ',';
+  text += ',';
   text += WordOf(s.kind);
   text += ',' + QualityText(s.quality);
   if (grid) {
@@ -94,14 +100,17 @@ class Reader {
           fmt::format("{} fields where the header has {}", fields.text.size(), fields_wanted_));
     }
     std::array<double, kFieldsWithGrid> v{};
+    const auto quality = QualityOf(fields.text[kNumbers + 1]);
+    const bool unfit = quality && Has(*quality, Quality::kUnfit);
     for (std::size_t i = 0; i < fields_wanted_; ++i) {
       if (i == kNumbers || i == kNumbers + 1) continue;
+      const bool withheld = unfit && i + kSigmas >= kNumbers && i < kNumbers;
+      if (withheld && fields.text[i].empty()) continue;
       const std::optional<double> number = Number(fields.text[i]);
       if (!number) return Odd(fields, i, "is not a number");
       v[i] = *number;
     }
     const auto kind = StationKindOf(fields.text[kNumbers]);
-    const auto quality = QualityOf(fields.text[kNumbers + 1]);
     if (!kind) return Odd(fields, kNumbers, "is not a kind of station");
     if (!quality) return Odd(fields, kNumbers + 1, "is not a quality");
     if (!stations.empty() && !(v[0] > stations.back().md)) {

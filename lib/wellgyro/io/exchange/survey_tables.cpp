@@ -114,9 +114,11 @@ std::size_t AddStation(SurveyTable& table, const Station& s) {
   table.Set(Column::kEast, row, s.p_WT_W.y());
   table.Set(Column::kTvd, row, s.p_WT_W.z());
   table.Set(Column::kDogleg, row, s.dogleg_severity);
-  SetCovariance(table, row, s.cov_p_WT_W);
-  table.Set(Column::kSigmaInclination, row, std::sqrt(s.cov_md_inc_azi(1, 1)));
-  table.Set(Column::kSigmaAzimuth, row, std::sqrt(s.cov_md_inc_azi(2, 2)));
+  if (!Has(s.quality, Quality::kUnfit)) {
+    SetCovariance(table, row, s.cov_p_WT_W);
+    table.Set(Column::kSigmaInclination, row, std::sqrt(s.cov_md_inc_azi(1, 1)));
+    table.Set(Column::kSigmaAzimuth, row, std::sqrt(s.cov_md_inc_azi(2, 2)));
+  }
   if (s.gravity > 0) table.Set(Column::kGravity, row, s.gravity);
   if (s.gravity_ref > 0) table.Set(Column::kGravityRef, row, s.gravity_ref);
   if (s.earth_rate) {

@@ -95,6 +95,21 @@ Pairs PairsOf(const SurveyHead& head) {
   return pairs;
 }
 
+std::string OneLine(std::string remark) {
+  for (char& c : remark) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return remark;
+}
+
+std::string JoinedRemarks(const SurveyHead& head) {
+  std::string text;
+  for (const std::string& remark : head.remarks) {
+    text += (text.empty() ? "" : "; ") + OneLine(remark);
+  }
+  return text;
+}
+
 bool TakePair(SurveyHead& head, std::string_view key, std::string_view value) {
   key = Trim(key);
   value = Trim(value);

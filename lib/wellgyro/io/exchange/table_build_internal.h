@@ -20,6 +20,11 @@ Pairs PairsOf(const SurveyHead& head);
 /// Takes one such line in; false for an unknown key or a value that is none.
 bool TakePair(SurveyHead& head, std::string_view key, std::string_view value);
 
+/// A remark as one line.
+std::string OneLine(std::string remark);
+/// All of a head's remarks in one line, for formats that have a single place for them.
+std::string JoinedRemarks(const SurveyHead& head);
+
 /// Takes in a line of a Compass-style report's head, as "North Reference: Grid"; leaves others.
 void TakeReportLine(SurveyHead& head, std::string_view line, Claims& claims);
 

@@ -339,6 +339,7 @@ std::string WitsmlWriter::Write1411() {
   xml_.Open("commonData");
   xml_.LeafIf("dTimCreation", DateTime(names.created));
   if (head_.planned) xml_.Leaf("itemState", *head_.planned ? "plan" : "actual");
+  xml_.LeafIf("comments", JoinedRemarks(head_));
   HeadExtensions({"well", "wellbore", "survey", "begin", "end", "created", "contractor",
                   "north_reference", "grid_convergence_deg", "declination_deg", "datum", "method",
                   "section_azimuth_deg", "tool", "error_model"});
@@ -354,6 +355,7 @@ void WitsmlWriter::Citation() {
   xml_.Leaf("eml:Originator", Cut(Or(head_.names.author, kUnknown), 64));
   xml_.Leaf("eml:Creation", Or(DateTime(head_.names.created), kNoDate));
   xml_.Leaf("eml:Format", "wellgyro:wellgyro:1");
+  xml_.LeafIf("eml:Description", JoinedRemarks(head_));
   xml_.Close();
 }
 

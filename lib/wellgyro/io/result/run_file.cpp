@@ -14,10 +14,12 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/exchange/survey_tables.h"
+#include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
 namespace {
@@ -171,12 +173,18 @@ void WriteSamples(TomlWriter& toml, const RunSummary& run) {
   toml.Whole("temperature_outside", run.samples_temperature_outside);
 }
 
+void WriteVerdict(TomlWriter& toml, const RunVerdict& verdict) {
+  toml.Text("verdict", WordOf(verdict.verdict));
+  toml.Texts("causes", verdict.causes);
+}
+
 void WriteRuns(TomlWriter& toml, const std::vector<RunSummary>& runs) {
   for (const RunSummary& run : runs) {
     toml.Element("run");
     toml.Whole("number", run.run);
     toml.Whole("tool", run.tool);
-    toml.Text("verdict", run.misrun ? "misrun" : "ok");
+    if (run.misrun) toml.Flag("misrun", true);
+    WriteVerdict(toml, run.verdict);
     if (!run.remark.empty()) toml.Text("remark", run.remark);
     toml.Whole("begin_utime_us", run.begin.ns / 1000);
     toml.Whole("end_utime_us", run.end.ns / 1000);
@@ -276,6 +284,9 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   toml.Number("datum_elevation_m", job.well.datum_elevation);
   toml.Table("identity");
   for (const auto& [key, value] : job.identity) toml.Text(key, value);
+  toml.Table("verdict");
+  WriteVerdict(toml, survey.verdict);
+  toml.Number("false_alarm_rate", kFalseAlarmRate);
   WriteChecks(toml, survey.checks);
   WriteFaultCounts(toml, record.faults);
   WriteRuns(toml, survey.runs);
@@ -315,7 +326,8 @@ std::vector<OutputFile> ResultFiles(const RunRecord& record, const SourceRecord&
   std::vector<OutputFile> files{{"survey.csv", SurveyCsv(survey.chosen, columns)},
                                 {"passes.csv", PassesCsv(survey.passes, columns)},
                                 {"checks.csv", ChecksCsv(survey.checks)}};
-  const SurveyTable table = TableOfSurvey(job, survey.chosen, columns);
+  SurveyTable table = TableOfSurvey(job, survey.chosen, columns);
+  table.head.remarks.push_back(VerdictText(survey.verdict));
   for (OutputFile& file : ExportFormats(table, BesidesCsv(record.formats), kExportStem)) {
     files.push_back(std::move(file));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/core.h>
 
@@ -47,6 +48,14 @@ std::string CheckText(const Check& check) {
 }
 
 }  // namespace
+
+std::string VerdictText(const RunVerdict& verdict) {
+  std::string text = fmt::format("verdict {}", WordOf(verdict.verdict));
+  for (std::size_t i = 0; i < verdict.causes.size(); ++i) {
+    text += (i == 0 ? ": " : "; ") + verdict.causes[i];
+  }
+  return text;
+}
 
 std::string SummaryText(const Survey& survey) {
   std::string text;

@@ -1,6 +1,9 @@
 #include "wellgyro/io/toml/coefficients_internal.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/survey/job_keys.h"
@@ -22,12 +25,47 @@ constexpr Prior kPriors[] = {
     {"gyro_scale_sigma", &ErrorPriors::gyro_scale_sigma, 1},
     {"gyro_misalignment_sigma_rad", &ErrorPriors::gyro_misalignment_sigma, 1},
     {"accel_bias_sigma_mps2", &ErrorPriors::accel_bias_sigma, 1},
+    {"accel_scale_sigma", &ErrorPriors::accel_scale_sigma, 1},
+    {"accel_misalignment_sigma_rad", &ErrorPriors::accel_misalignment_sigma, 1},
     {"accel_noise_mps2_per_sqrt_hz", &ErrorPriors::accel_noise, 1},
     {"roll_offset_sigma_deg", &ErrorPriors::roll_offset_sigma, units::kDeg},
     {"time_skew_sigma_s", &ErrorPriors::time_skew_sigma, 1},
     {"depth_sigma_m", &ErrorPriors::depth_sigma, 1},
+    {"depth_scale_sigma", &ErrorPriors::depth_scale_sigma, 1},
     {"latitude_sigma_deg", &ErrorPriors::latitude_sigma, units::kDeg},
 };
+
+using Member = double ErrorPriors::*;
+
+/// See PriorsOfJob().
+void FillUnstated(const std::vector<Member>& stated, ErrorPriors& priors) {
+  const auto is_stated = [&](Member member) {
+    return std::find(stated.begin(), stated.end(), member) != stated.end();
+  };
+  const auto fill = [&](Member member, double value) {
+    if (!is_stated(member)) priors.*member = value;
+  };
+  const auto follow = [&](Member member, Member other, double ratio, double value) {
+    fill(member, is_stated(other) ? ratio * priors.*other : value);
+  };
+  using E = ErrorPriors;
+  constexpr double kG = units::kStandardGravity;
+  constexpr double kUnbalance = 0.5 * units::kDegPerHourPerG;
+  constexpr double kMounting = 0.05 * units::kDeg;
+  follow(&E::quadrature_sigma, &E::mass_unbalance_sigma, 1, kUnbalance);
+  follow(&E::accel_scale_sigma, &E::accel_bias_sigma, 1 / kG, 5e-4);
+  follow(&E::accel_misalignment_sigma, &E::gyro_misalignment_sigma, 1, kMounting);
+  follow(&E::roll_offset_sigma, &E::gyro_misalignment_sigma, 1, kMounting);
+  fill(&E::gyro_bias_sigma, 0.1 * units::kDegPerHour);
+  fill(&E::mass_unbalance_sigma, kUnbalance);
+  fill(&E::gyro_scale_sigma, 1e-3);
+  fill(&E::gyro_misalignment_sigma, kMounting);
+  fill(&E::accel_bias_sigma, 5e-3);
+  fill(&E::accel_noise, 2e-4);
+  fill(&E::time_skew_sigma, 1e-3);
+  fill(&E::depth_sigma, 0.35);
+  fill(&E::depth_scale_sigma, 5.6e-4);
+}
 
 void ReadOne(TomlTable& table, const std::string& key, double unit, double& value) {
   table.Read(key, value, unit, JobKeyOf("noise", key).range);
@@ -57,6 +95,14 @@ NoiseCoefficients ReadCoefficients(TomlTable& table) {
   return c;
 }
 
+NoiseCoefficients NoiseUnlessStated() {
+  constexpr double kStop = 180;  // [s]
+  NoiseCoefficients c;
+  c.angle_random_walk = 0.1 * units::kDegPerHour * std::sqrt(kStop);
+  c.bias_instability = 0.1 * units::kDegPerHour;
+  return c;
+}
+
 ErrorPriors ReadPriors(TomlTable& table) {
   ErrorPriors priors;
   for (const Prior& prior : kPriors) {
@@ -65,10 +111,37 @@ ErrorPriors ReadPriors(TomlTable& table) {
   return priors;
 }
 
-void WritePriors(TomlWriter& out, const ErrorPriors& priors) {
+std::vector<std::string> PriorsOfNone(const TomlTable& table, const ErrorPriors& priors) {
+  std::vector<std::string> none;
   for (const Prior& prior : kPriors) {
-    if (priors.*prior.member != 0) out.Number(prior.key, priors.*prior.member / prior.unit);
+    if (table.Has(prior.key) && priors.*prior.member == 0) none.emplace_back(prior.key);
   }
+  return none;
+}
+
+void WritePriors(TomlWriter& out, const ErrorPriors& priors, std::span<const std::string> none) {
+  for (const Prior& prior : kPriors) {
+    const bool said = std::find(none.begin(), none.end(), prior.key) != none.end();
+    if (priors.*prior.member != 0 || said) {
+      out.Number(prior.key, priors.*prior.member / prior.unit);
+    }
+  }
+}
+
+ErrorPriors PriorsOfJob(TomlTable* job, const ToolCalibration* tool) {
+  const bool of_tool = tool != nullptr && tool->errors;
+  ErrorPriors priors = of_tool ? *tool->errors : ErrorPriors{};
+  const ErrorPriors own = job != nullptr ? ReadPriors(*job) : ErrorPriors{};
+  std::vector<double ErrorPriors::*> stated;
+  for (const Prior& prior : kPriors) {
+    const bool by_job = job != nullptr && job->Has(prior.key);
+    const bool none = of_tool && std::find(tool->errors_none.begin(), tool->errors_none.end(),
+                                           prior.key) != tool->errors_none.end();
+    if (by_job) priors.*prior.member = own.*prior.member;
+    if (by_job || none || priors.*prior.member != 0) stated.push_back(prior.member);
+  }
+  FillUnstated(stated, priors);
+  return priors;
 }
 
 }  // namespace wellgyro

@@ -31,6 +31,12 @@ TieIn TieInOfSurvey(const std::string& text, const std::string& source) {
                      .line = 1}};
   }
   const Station& last = stations->back();
+  if (Has(last.quality, Quality::kUnfit)) {
+    throw TomlError{{.code = FaultCode::kRange,
+                     .text = "ends in a station that its own survey calls unfit: not to tie on to",
+                     .source = source,
+                     .line = static_cast<int>(stations->size()) + 1}};
+  }
   return {.md = last.md,
           .north = last.p_WT_W.x(),
           .east = last.p_WT_W.y(),
@@ -56,10 +62,12 @@ class JobReader {
       TakeGrid(*table);
     }
     if (auto table = root.FindTable("tie_in")) TakeTieIn(*table);
+    job.noise_stated = root.Has("noise");
     if (auto table = root.FindTable("noise")) TakeNoise(*table);
+    if (!job.noise_stated) job.noise = NoiseUnlessStated();
     if (auto table = root.FindTable("tool")) TakeTool(*table);
-    if (job.tool && job.tool->errors) job.errors = *job.tool->errors;
-    if (auto table = root.FindTable("errors")) job.errors = ReadPriors(*table);
+    auto errors = root.FindTable("errors");
+    job.errors = PriorsOfJob(errors ? &*errors : nullptr, job.tool ? &*job.tool : nullptr);
     if (auto table = root.FindTable("error_model")) TakeErrorModel(*table);
     if (auto table = root.FindTable("channels")) job.channels = ReadChannels(*table);
     if (auto table = root.FindTable("alignment")) ReadAlignment(*table, job);

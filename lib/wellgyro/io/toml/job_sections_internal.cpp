@@ -133,6 +133,9 @@ void ReadGrid(TomlTable table, Job& job) {
 void ReadTieIn(TomlTable table, Job& job) {
   TieIn& tie_in = job.tie_in;
   ReadNumbers(table, "tie_in", job);
+  if (tie_in.md != 0 && !table.Has("tvd_m")) {
+    table.RefuseAbsent("tvd_m", "is missing beside md_m: how deep the tie-in is, is not guessed");
+  }
   if (tie_in.azimuth) tie_in.azimuth = WrapTwoPi(*tie_in.azimuth);
   if (tie_in.inclination && !tie_in.azimuth) {
     table.RefuseAbsent("azimuth_true_deg", "is missing beside inclination_deg");

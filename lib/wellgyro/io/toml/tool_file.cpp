@@ -72,7 +72,10 @@ ToolCalibration Read(TomlTable& root) {
   if (auto table = root.FindTable("gyro")) tool.gyro = ReadGroup(*table, kGyroWords);
   if (auto table = root.FindTable("accel")) tool.accel = ReadGroup(*table, kAccelWords);
   if (auto table = root.FindTable("mag")) tool.mag = ReadGroup(*table, kMagWords);
-  if (auto table = root.FindTable("errors")) tool.errors = ReadPriors(*table);
+  if (auto table = root.FindTable("errors")) {
+    tool.errors = ReadPriors(*table);
+    tool.errors_none = PriorsOfNone(*table, *tool.errors);
+  }
   if (const auto complaint = FindComplaint(tool)) root.Refuse("", *complaint);
   return tool;
 }
@@ -208,7 +211,7 @@ std::string ToolToml(const ToolCalibration& tool) {
   if (tool.errors) {
     out.Table("errors");
     out.Comment("what remains after it, 1-sigma; the job's own [errors] win");
-    WritePriors(out, *tool.errors);
+    WritePriors(out, *tool.errors, tool.errors_none);
   }
   return out.text();
 }

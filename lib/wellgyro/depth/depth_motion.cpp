@@ -1,0 +1,108 @@
+#include "wellgyro/depth/depth_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellgyro {
+namespace {
+
+constexpr double kApart = 1.9;       // marks at least [s]
+constexpr double kFar = 10;          // and at most [s]
+constexpr double kGap = 0.5;         // between samples, from which nothing is felt [s]
+constexpr double kLeast = 1e-3;      // sigma of a step: no depth is read to less [m]
+constexpr std::int64_t kFirst = 20;  // steps before their scatter is known
+
+/// The way between the middle two less the mean of the ways beside it, of values at four times.
+double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
+  const auto slope = [&](std::size_t i) { return (x[i + 1] - x[i]) / (t[i + 1] - t[i]); };
+  return (slope(1) - (slope(0) + slope(2)) / 2) * (t[2] - t[1]);
+}
+
+}  // namespace
+
+void DepthMotion::Mark(UtcTime utc, double md) {
+  if (last_mark_ && (utc - *last_mark_).seconds() < kApart) return;
+  last_mark_ = utc;
+  if (mark_count_ == kMarksMax) return;
+  marks_[(first_mark_ + mark_count_) % kMarksMax] = {utc, md, 0, 0};
+  ++mark_count_;
+}
+
+void DepthMotion::Restart() { passed_count_ = 0; }
+
+void DepthMotion::Feel(UtcTime utc, double seconds, double f_z) {
+  if (felt_until_ && std::abs((utc - *felt_until_).seconds()) > kGap) {
+    passed_count_ = 0;
+    speed_ = way_ = 0;
+  }
+  felt_until_ = utc + Duration::Seconds(seconds);
+  while (mark_count_ > 0 && marks_[first_mark_].utc < *felt_until_) {
+    Passed mark = marks_[first_mark_];
+    first_mark_ = (first_mark_ + 1) % kMarksMax;
+    --mark_count_;
+    const double t = (mark.utc - utc).seconds();
+    if (t < 0) continue;
+    mark.speed = speed_ + f_z * t;
+    mark.way = way_ + (speed_ + f_z * t / 2) * t;
+    Pass(mark);
+  }
+  way_ += (speed_ + f_z * seconds / 2) * seconds;
+  speed_ += f_z * seconds;
+}
+
+void DepthMotion::Pass(const Passed& passed) {
+  if (passed_count_ > 0 && (passed.utc - passed_[passed_count_ - 1].utc).seconds() > kFar) {
+    passed_count_ = 0;
+  }
+  if (passed_count_ == kMarks) {
+    std::rotate(passed_.begin(), passed_.begin() + 1, passed_.end());
+    --passed_count_;
+  }
+  passed_[passed_count_++] = passed;
+  if (passed_count_ < kMarks) return;
+  Compare();
+}
+
+/// Of one step, by the mean size of them all: of a normal distribution 0.8 sigma.
+double DepthMotion::Sigma() const {
+  if (found_.compared < kFirst) return 0;
+  return std::max(1.2533 * sum_size_ / static_cast<double>(found_.compared), kLeast);
+}
+
+void DepthMotion::Compare() {
+  std::array<double, kMarks> t, way, rate;
+  const Passed& first = passed_.front();
+  const double whole = (passed_.back().utc - first.utc).seconds();
+  const double mean = (passed_.back().speed - first.speed) / whole;  // gravity's share, mostly
+  for (std::size_t i = 0; i < kMarks; ++i) {
+    const Passed& p = passed_[i];
+    t[i] = (p.utc - first.utc).seconds();
+    way[i] = p.way - first.way - first.speed * t[i] - mean * t[i] * t[i] / 2;
+    rate[i] = p.speed - first.speed - mean * t[i];
+  }
+  std::array<double, kMarks> left;
+  for (std::size_t i = 0; i < kMarks; ++i) left[i] = passed_[i].md - first.md - way[i];
+  const double step = Bow(t, left), felt = Bow(t, rate);
+  const double sigma = Sigma();
+  const double most = sigma > 0 ? 4 * sigma : HUGE_VAL;
+  ++found_.compared;
+  sum_size_ += std::min(std::abs(step), most);
+  if (std::abs(step) > std::abs(found_.step)) {
+    found_.step = step;
+    found_.step_md = passed_[2].md;
+  }
+  const double held = std::clamp(step, -most, most);
+  rate2_ += felt * felt;
+  rate_step_ += felt * held;
+}
+
+DepthMotion::Found DepthMotion::found() const {
+  Found found = found_;
+  found.sigma_step = Sigma();
+  if (!(found.sigma_step > 0) || !(rate2_ > 0)) return found;
+  found.lag = -rate_step_ / rate2_;
+  found.sigma_lag = found.sigma_step / std::sqrt(rate2_);
+  return found;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/time.h"
+
+namespace wellgyro {
+
+/// Depth marks against the motion along the hole that the accelerometers feel: do marks jump where
+/// nothing was felt, and do they come late?
+///
+/// Of four marks two seconds apart, the way between the middle two less the mean of the ways beside
+/// it knows no speed and no steady acceleration; what is left of it, after the same of the felt
+/// motion (the double integral of f_z less its mean) has been taken off, is a step between the
+/// middle two, or -lag times the same of the felt speed. Steps are told against their own scatter,
+/// the lag by least squares over all starts and stops. Memory is bounded; nothing depends on how
+/// samples and marks interleave as long as marks come before the samples of their time.
+class WELLGYRO_EXPORT DepthMotion {
+ public:
+  struct Found {
+    std::int64_t compared = 0;      ///< groups of four marks
+    double step = 0;                ///< the largest [m]
+    double sigma_step = 0;          ///< of one, as they scatter [m]
+    std::optional<double> step_md;  ///< where [m]
+    double lag = 0;                 ///< positive where depth comes late [s]
+    double sigma_lag = 0;           ///< 0: no start or stop tells it [s]
+  };
+
+  /// A mark of this depth; one that is not later than the last by two seconds is left out.
+  void Mark(UtcTime utc, double md);
+  /// The next sample's mean specific force along the tool, over [utc, utc + seconds].
+  void Feel(UtcTime utc, double seconds, double f_z);
+  /// The depth scale changes here: marks on either side are not compared.
+  void Restart();
+  Found found() const;
+
+ private:
+  static constexpr std::size_t kMarks = 4;
+  static constexpr std::size_t kMarksMax = 512;  ///< ahead of the samples
+
+  /// A mark, and the felt speed and way there, by a datum of their own.
+  struct Passed {
+    UtcTime utc;
+    double md = 0, speed = 0, way = 0;
+  };
+  void Pass(const Passed& passed);
+  void Compare();
+  double Sigma() const;
+
+  std::array<Passed, kMarksMax> marks_;  ///< a ring of those not yet passed
+  std::size_t first_mark_ = 0, mark_count_ = 0;
+  std::array<Passed, kMarks> passed_;
+  std::size_t passed_count_ = 0;
+  std::optional<UtcTime> last_mark_, felt_until_;
+  double speed_ = 0, way_ = 0;
+  Found found_;
+  double sum_size_ = 0;  ///< of steps, each at most four times their mean so far
+  double rate2_ = 0, rate_step_ = 0;
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,281 @@
+#include "wellgyro/survey/sample_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/run_survey_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr std::int64_t kEveryNs = 20'000'000;
+constexpr double kStuckMoving = 2, kStuckAtRest = 20;  // [s]
+constexpr std::int64_t kRepeats = 10;                  // at least
+constexpr double kDead = 0.9;                          // of the run
+constexpr double kStretch = 30;                        // [s]
+// Of f_z at the ends of a stretch: starts and stops of the string, and the Earth's turn.
+constexpr double kForce = 0.03;      // [m/s^2]
+constexpr double kBetter = 25;       // chi-square by which another pairing must explain more ...
+constexpr double kLeaves = 0.25;     // ... and the share of it that it may leave
+constexpr double kUnitTells = 0.1;   // sigma of the ratio from which it says something
+constexpr double kUnitWrong = 0.15;  // no calibrated gyro is so far off
+constexpr double kRestBlock = 10;    // [s]
+constexpr double kSettles = 10;      // of either end of a stop that may move [s]
+constexpr double kMostRests = 1000;  // stops remembered
+
+constexpr const char* kAxisNames[] = {"gyro x",  "gyro y",  "gyro z",
+                                      "accel x", "accel y", "accel z"};
+// In the order of PairingOf().
+constexpr const char* kPairingNames[] = {
+    "as the job has them",
+    "accelerometer x or gyro y inverted",
+    "accelerometer y or gyro x inverted",
+    "accelerometer z or both gyros inverted",
+    "gyros x and y swapped",
+    "gyros or accelerometers swapped, and one of x inverted",
+    "gyros or accelerometers swapped, and one of y inverted",
+    "accelerometers x and y swapped",
+};
+
+/// f_z' by each pairing, from the integrals of products(gyro axis, accelerometer axis).
+std::array<double, 8> PredictionsOf(const Eigen::Matrix2d& p) {
+  const double xx = p(0, 0), xy = p(0, 1), yx = p(1, 0), yy = p(1, 1);
+  return {yx - xy, -yx - xy, yx + xy, -yx + xy, xx - yy, -xx - yy, xx + yy, -xx + yy};
+}
+
+/// Where the string neither starts nor stops, f_z is gravity's share.
+bool IsSteady(const AlongHole& along) {
+  constexpr double kSteady = 0.02;  // [m/s^2]
+  return along.known && std::abs(along.acceleration) < kSteady;
+}
+
+double ValueOf(const ImuSample& sample, std::size_t axis) {
+  const auto i = static_cast<Eigen::Index>(axis % 3);
+  return axis < 3 ? sample.w_IT_T[i] : sample.f_T[i];
+}
+
+Check Failed(std::string code, std::int32_t run, double value, std::string unit, std::string why) {
+  Check check = NotDone(std::move(code), run, std::move(why));
+  check.value = value;
+  check.unit = std::move(unit);
+  check.verdict = Verdict::kFail;
+  return check;
+}
+
+}  // namespace
+
+SampleWatch::SampleWatch(const Job& job) : job_(job) {}
+
+void SampleWatch::Watch(const ImuSample& sample, const AlongHole& along) {
+  const SampleStamp& stamp = sample.stamp;
+  const bool continues =
+      last_ && last_->session == stamp.session && last_->seq + stride_ == stamp.seq;
+  stride_ = wait_ = std::max<std::int64_t>(1, kEveryNs / std::max(stamp.period_ns, 1));
+  period_ = 1e-9 * static_cast<double>(stride_ * stamp.period_ns);
+  const bool rests = along.known && std::abs(along.speed) < kRestSpeed;
+  if (!continues) stretch_ = {.begin_f_z = sample.f_T.z(), .steady = IsSteady(along)};
+  WatchAxes(sample, along, rests);
+  WatchBend(sample, along, period_);
+  WatchRest(sample, along, rests, period_);
+  ++samples_;
+  seconds_ += period_;
+  last_ = stamp;
+}
+
+std::int64_t SampleWatch::Busiest(std::size_t besides) const {
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    if (i != besides) most = std::max(most, axes_[i].changes);
+  }
+  return most;
+}
+
+/// Of the repeats in hand, those that say that the axis is stuck.
+double SampleWatch::StuckNow(std::size_t i) const {
+  const Axis& axis = axes_[i];
+  const double seconds = period_ * static_cast<double>(axis.repeats);
+  const bool noisy = i < 3 ? job_.noise.angle_random_walk > 0 : job_.errors.accel_noise > 0;
+  const bool long_enough = seconds >= (axis.rests ? kStuckAtRest : kStuckMoving);
+  const bool alone = 2 * (Busiest(i) - axis.others) > axis.repeats;
+  return noisy && axis.repeats >= kRepeats && long_enough && alone ? seconds : 0;
+}
+
+void SampleWatch::WatchAxes(const ImuSample& sample, const AlongHole& along, bool rests) {
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    if (i == 2 && !sample.has_gz) continue;
+    Axis& axis = axes_[i];
+    const double value = ValueOf(sample, i);
+    if (samples_ > 0 && value == axis.value) {
+      if (axis.repeats == 0) {
+        axis.others = Busiest(i);
+        axis.rests = true;
+      }
+      ++axis.repeats;
+      axis.rests = axis.rests && rests;
+      continue;
+    }
+    if (const double stuck = StuckNow(i); stuck > 0) {
+      axis.stuck += stuck;
+      if (!axis.md && along.known) axis.md = along.md;
+    }
+    axis.repeats = 0;
+    axis.value = value;
+    ++axis.changes;
+  }
+}
+
+void SampleWatch::WatchBend(const ImuSample& sample, const AlongHole& along, double seconds) {
+  stretch_.products += seconds * sample.w_IT_T.head<2>() * sample.f_T.head<2>().transpose();
+  stretch_.seconds += seconds;
+  if (stretch_.seconds < kStretch) return;
+  const Stretch stretch = stretch_;
+  stretch_ = {.begin_f_z = sample.f_T.z(), .steady = IsSteady(along)};
+  if (!stretch.steady || !stretch_.steady) return;
+  const double found = (sample.f_T.z() - stretch.begin_f_z) / kForce;
+  const std::array<double, kPairings> predicted = PredictionsOf(stretch.products / kForce);
+  ++stretches_;
+  // Bounded, so that a single bad sample at an end does not decide.
+  for (std::size_t i = 0; i < kPairings; ++i) {
+    squares_[i] += std::min(std::pow(found - predicted[i], 2), 100.0);
+  }
+  if (std::abs(found) < 100 && std::abs(predicted[0]) < 1e4) {
+    predicted2_ += predicted[0] * predicted[0];
+    predicted_found_ += predicted[0] * found;
+  }
+}
+
+void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, bool rests,
+                            double seconds) {
+  const SampleStamp& stamp = sample.stamp;
+  if (!rests) {
+    rest_seconds_ = 0;
+    rest_w_.setZero();
+    resting_ = false;
+    return;
+  }
+  if (!resting_ && static_cast<double>(stops_.size()) < kMostRests) {
+    stops_.push_back({stamp.tool_time, stamp.tool_time, along.md});
+    resting_ = true;
+  }
+  if (resting_) stops_.back().end = stamp.tool_time + Duration{stamp.period_ns};
+  rest_w_ += seconds * sample.w_IT_T.head<2>();
+  rest_seconds_ += seconds;
+  if (rest_seconds_ < kRestBlock) return;
+  const double rate = rest_w_.norm() / rest_seconds_;
+  least_at_rest_ = std::min(least_at_rest_.value_or(rate), rate);
+  rest_seconds_ = 0;
+  rest_w_.setZero();
+}
+
+void SampleWatch::AddStuck(std::int32_t run, std::vector<Check>& checks) const {
+  for (const bool gyros : {true, false}) {
+    std::size_t worst = gyros ? 0 : 3;
+    double longest = 0;
+    for (std::size_t i = gyros ? 0 : 3; i < (gyros ? 3u : 6u); ++i) {
+      const double stuck = axes_[i].stuck + StuckNow(i);
+      if (stuck <= longest) continue;
+      longest = stuck;
+      worst = i;
+    }
+    const std::string sensor = gyros ? "gyro" : "accel";
+    if (longest > 0) {
+      const bool dead = longest > kDead * seconds_;
+      checks.push_back(Failed(sensor + (dead ? "_dead" : "_stuck"), run, longest, "s",
+                              fmt::format("{} repeats one value", kAxisNames[worst])));
+      checks.back().limit = 0;
+      checks.back().md = axes_[worst].md;
+    } else {
+      checks.push_back(CountOf(sensor + "_stuck", run, 0, "no axis repeats one value"));
+      checks.back().unit = "s";
+    }
+  }
+}
+
+void SampleWatch::AddPairing(std::int32_t run, std::vector<Check>& checks) const {
+  const auto best = std::min_element(squares_.begin() + 1, squares_.end());
+  const double right = squares_.front();
+  const bool wrong = *best + kBetter < right && *best < kLeaves * right;
+  if (wrong) {
+    const auto i = static_cast<std::size_t>(best - squares_.begin());
+    checks.push_back(Failed("axes", run, right, "1", kPairingNames[i]));
+    return;
+  }
+  const bool bends = right + kBetter < *best;
+  if (!bends) {
+    checks.push_back(NotDone("axes", run, "the hole bends too little to tell the axes apart"));
+    return;
+  }
+  Check check = CountOf("axes", run, 0, "gyros turn as the accelerometers tilt");
+  checks.push_back(check);
+}
+
+void SampleWatch::AddUnit(std::int32_t run, std::vector<Check>& checks) const {
+  const double allowed =
+      5 * std::hypot(job_.errors.gyro_bias_sigma, job_.noise.bias_instability,
+                     job_.noise.angle_random_walk / std::sqrt(kRestBlock)) +
+      5 * std::hypot(job_.errors.mass_unbalance_sigma, job_.errors.quadrature_sigma) * 9.8;
+  if (least_at_rest_ && *least_at_rest_ > 2 * kEarthRate + allowed) {
+    checks.push_back(Failed("gyro_unit", run, *least_at_rest_ / kEarthRate, "1",
+                            "the rate at rest over the Earth's: at most 1"));
+    checks.back().limit = 1;
+    return;
+  }
+  const double sigma = predicted2_ > 0 ? 1 / std::sqrt(predicted2_) : HUGE_VAL;
+  const double slope = predicted2_ > 0 ? predicted_found_ / predicted2_ : 0;
+  if (sigma > kUnitTells && squares_.front() > 100 && squares_.front() > 16 * stretches_) {
+    checks.push_back(Failed("gyro_unit", run, slope, "1",
+                            "the gyros do not turn where the accelerometers tilt"));
+    return;
+  }
+  // Of few stretches, or of gyros that read far too little, the slope has no meaning.
+  if (sigma > kUnitTells) {
+    checks.push_back(
+        NotDone("gyro_unit", run, "the hole bends too little to tell the gyros' unit"));
+    return;
+  }
+  checks.push_back(CompareWith("gyro_unit", run, {slope - 1, sigma}, kUnitWrong + 6 * sigma, 1, "1",
+                               "tilt by the accelerometers over turn by the gyros, less one"));
+}
+
+void SampleWatch::AddMotion(std::int32_t run, const std::vector<NorthFix>& fixes,
+                            std::vector<Check>& checks) const {
+  double longest = 0;
+  std::optional<double> where;
+  const double least = job_.alignment.min_still + 2 * kSettles;
+  for (const Stop& stop : stops_) {
+    const double rest = (stop.end - stop.begin).seconds();
+    if (rest < least) continue;
+    double still = 0;
+    for (const NorthFix& fix : fixes) {
+      if (fix.external || !fix.from_samples) continue;
+      const ToolTime begin = std::max(fix.begin, stop.begin), end = std::min(fix.end, stop.end);
+      if (begin < end) still += (end - begin).seconds();
+    }
+    const double moving = rest - 2 * kSettles - still;
+    if (moving < rest / 2 || moving <= longest) continue;
+    longest = moving;
+    where = stop.md;
+  }
+  Check check =
+      CompareWith("rest_motion", run, {longest, 0}, 0, 1, "s", "a tool whose depth rests is still");
+  if (check.verdict == Verdict::kFail) check.verdict = Verdict::kWarn;
+  check.md = where;
+  checks.push_back(check);
+}
+
+std::vector<Check> SampleWatch::Checks(std::int32_t run, const std::vector<NorthFix>& fixes) const {
+  std::vector<Check> checks;
+  if (samples_ == 0) return checks;
+  AddStuck(run, checks);
+  AddPairing(run, checks);
+  AddUnit(run, checks);
+  AddMotion(run, fixes, checks);
+  return checks;
+}
+
+}  // namespace wellgyro

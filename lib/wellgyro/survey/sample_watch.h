@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/check.h"
+#include "wellgyro/record/north_fix.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/survey/job.h"
+
+namespace wellgyro {
+
+/// What samples say of their own sensors before anything is made of them: axes that repeat one
+/// value, that are dead, swapped or inverted, rates in another unit, and motion at stops. Sums
+/// only; memory grows with the stops.
+///
+/// - `gyro_stuck`, `accel_stuck` [s]: an axis repeats its value for 2 s and more (20 s where depth
+///   rests, for coarse converters) while another axis changes from sample to sample. `gyro_dead`,
+///   `accel_dead`: it does so for nine tenths of the run.
+/// - `axes`: f_z' = w_y f_x - w_x f_y whatever the roll, because gravity does not turn. Stretches
+///   of 30 s in which the hole bends tell this from the seven other ways to pair gyros with
+///   accelerometers; fails where another explains them and this does not, and names it.
+/// - `gyro_unit` [1]: by the same sums, the gyros' scale against the accelerometers'; at rest the
+///   rate across the tool over the Earth's.
+/// - `rest_motion` [s]: the longest time for which depth rests and the tool does not.
+class WELLGYRO_EXPORT SampleWatch {
+ public:
+  explicit SampleWatch(const Job& job);
+
+  /// The next sample, in order, and where it is. Of fast streams one sample in 20 ms is looked at.
+  void Push(const ImuSample& sample, const AlongHole& along) {
+    if (--wait_ <= 0) Watch(sample, along);
+  }
+  std::vector<Check> Checks(std::int32_t run, const std::vector<NorthFix>& fixes) const;
+
+ private:
+  static constexpr std::size_t kAxes = 6;      // gx gy gz ax ay az
+  static constexpr std::size_t kPairings = 8;  // the right one first
+
+  struct Axis {
+    double value = 0;
+    std::int64_t changes = 0, repeats = 0;
+    std::int64_t others = 0;   ///< changes of the busiest other axis, when the repeats began
+    bool rests = true;         ///< depth did all the while
+    double stuck = 0;          ///< seconds, so far
+    std::optional<double> md;  ///< where it first was
+  };
+  struct Stretch {
+    double seconds = 0, begin_f_z = 0;
+    bool steady = false;  ///< where it begins the string keeps its speed
+    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();  ///< of w and f across the tool
+  };
+  struct Stop {
+    ToolTime begin, end;
+    std::optional<double> md;
+  };
+
+  void Watch(const ImuSample& sample, const AlongHole& along);
+  void WatchAxes(const ImuSample& sample, const AlongHole& along, bool rests);
+  double StuckNow(std::size_t axis) const;
+  std::int64_t Busiest(std::size_t besides) const;
+  void WatchBend(const ImuSample& sample, const AlongHole& along, double seconds);
+  void WatchRest(const ImuSample& sample, const AlongHole& along, bool rests, double seconds);
+  void AddStuck(std::int32_t run, std::vector<Check>& checks) const;
+  void AddPairing(std::int32_t run, std::vector<Check>& checks) const;
+  void AddUnit(std::int32_t run, std::vector<Check>& checks) const;
+  void AddMotion(std::int32_t run, const std::vector<NorthFix>& fixes,
+                 std::vector<Check>& checks) const;
+
+  const Job& job_;
+  std::int64_t wait_ = 0, stride_ = 1;  ///< samples
+  std::array<Axis, kAxes> axes_;
+  std::int64_t samples_ = 0;
+  double seconds_ = 0, period_ = 0;
+  std::optional<SampleStamp> last_;
+  Stretch stretch_;
+  std::array<double, kPairings> squares_{};  ///< what each pairing leaves
+  double stretches_ = 0;
+  double predicted2_ = 0, predicted_found_ = 0;
+  Eigen::Vector2d rest_w_ = Eigen::Vector2d::Zero();
+  double rest_seconds_ = 0;
+  std::optional<double> least_at_rest_;  ///< rate across the tool [rad/s]
+  std::vector<Stop> stops_;
+  bool resting_ = false;
+};
+
+}  // namespace wellgyro

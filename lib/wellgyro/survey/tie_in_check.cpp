@@ -1,0 +1,52 @@
+#include "wellgyro/survey/tie_in_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/survey/check_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kReach = 30;                  // [m]
+constexpr double kSurveys = FromDegrees(0.5);  // of two surveys of one hole
+constexpr double kBend = FromDegrees(5) / 30;  // of a hole, at most [rad/m]
+
+Eigen::Vector3d Along(double inclination, double azimuth) {
+  return {std::sin(inclination) * std::cos(azimuth), std::sin(inclination) * std::sin(azimuth),
+          std::cos(inclination)};
+}
+
+// Of the direction; near vertical the azimuth's own is no angle in the hole.
+double SigmaOfDirection(const Station& s) {
+  const double across = std::pow(std::sin(s.inclination), 2) * s.cov_md_inc_azi(2, 2);
+  return std::sqrt(s.cov_md_inc_azi(1, 1) + std::min(across, 1.0));
+}
+
+}  // namespace
+
+Check CheckTieIn(const Job& job, std::span<const Station> stations) {
+  const Station* nearest = nullptr;
+  const auto away = [&](const Station& s) { return std::abs(s.md - job.tie_in.md); };
+  for (const Station& s : stations) {
+    if (s.status == StationStatus::kRejected || !(away(s) <= kReach)) continue;
+    if (nearest == nullptr || away(s) < away(*nearest)) nearest = &s;
+  }
+  if (!job.tie_in.inclination) return NotDone("tie_in", 0, "the run itself gives its direction");
+  if (nearest == nullptr) return NotDone("tie_in", 0, "no station within 30 m of it");
+  const Eigen::Vector3d tie = Along(*job.tie_in.inclination, *job.tie_in.azimuth);
+  const Eigen::Vector3d run = Along(nearest->inclination, nearest->azimuth);
+  const double angle = std::atan2(tie.cross(run).norm(), tie.dot(run));
+  const double sigma = SigmaOfDirection(*nearest);
+  Check check = CompareWith("tie_in", nearest->run, {angle, sigma},
+                            kSurveys + kBend * away(*nearest) + 3 * sigma, units::kDeg, "deg",
+                            "3 sigma, 0.5 deg of two surveys and 5 deg in 30 m of hole");
+  check.md = nearest->md;
+  return check;
+}
+
+}  // namespace wellgyro

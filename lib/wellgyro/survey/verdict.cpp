@@ -1,0 +1,193 @@
+#include "wellgyro/survey/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+// So many causes of one kind say it all; the rest stand in checks.csv.
+constexpr std::size_t kCausesListed = 12;
+// A limit of chance for ever fewer clean runs is one for ever stranger distributions.
+constexpr double kLeastShare = 1e-7;
+
+struct Limits {
+  double warn = 0, fail = 0;
+};
+
+/// Of |value| where chance exceeds it with `share` and, for a warning, with ten times that.
+Limits LimitsOf(const Check& check, double share) {
+  const double more = std::min(10 * share, 0.5);
+  if (check.freedom > 0) {
+    return {ChiSquareQuantile(1 - more, check.freedom) / check.freedom,
+            ChiSquareQuantile(1 - share, check.freedom) / check.freedom};
+  }
+  const double sigma = check.sigma.value_or(0);
+  return {-NormalQuantile(more / 2) * sigma, -NormalQuantile(share / 2) * sigma};
+}
+
+void Judge(double share, double looks_of_all, Check& check) {
+  if (!check.value || check.verdict == Verdict::kNotDone) return;
+  const Limits limits = LimitsOf(check, std::max(share, kLeastShare));
+  check.limit = limits.fail;
+  check.limit_source =
+      fmt::format("{:g} % of clean runs, shared by {:.0f} comparisons{}", 100 * kFalseAlarmRate,
+                  looks_of_all, check.looks > 1 ? fmt::format(", {:.0f} here", check.looks) : "");
+  const double size = std::abs(*check.value);
+  check.verdict = !(size <= limits.fail)   ? Verdict::kFail
+                  : !(size <= limits.warn) ? Verdict::kWarn
+                                           : Verdict::kPass;
+}
+
+struct Words {
+  std::string_view code, words;
+};
+
+// What a check that fails says, by the begin of its code; the longest that fits holds.
+constexpr Words kWords[] = {
+    {"accel_bias", "an accelerometer's bias is beyond its prior"},
+    {"accel_dead", "an accelerometer axis does not answer"},
+    {"accel_saturated", "accelerometers reached full scale"},
+    {"accel_spikes", "single accelerometer samples are impossible beside their neighbours"},
+    {"accel_stuck", "an accelerometer axis repeats one value"},
+    {"azimuth_closure", "the run's azimuth and the north of a stop differ"},
+    {"azimuth_in_out", "azimuths on the way in and out differ"},
+    {"azimuth_repeat", "azimuths of the repeat section differ"},
+    {"axes", "axes of the tool are swapped or inverted"},
+    {"bias_repeatability", "the gyros' bias changed between stops"},
+    {"calibration_date", "the tool's calibration has expired"},
+    {"clock_jumps", "the tool's clock jumps"},
+    {"clock_unsynced", "UTC of samples is doubtful"},
+    {"depth_closure", "depth does not return to zero"},
+    {"depth_lag", "depth comes late against the motion that the accelerometers feel"},
+    {"depth_jump", "depth jumps where the accelerometers feel no motion"},
+    {"depth_refused", "depth marks were left out"},
+    {"depth_scale", "the scale of depth is unverified"},
+    {"depth_slippage", "depth slips on the way"},
+    {"depth_unknown", "depth is missing"},
+    {"drift_closure", "the run does not close on the north of its last stop"},
+    {"earth_rate", "the gyros at rest do not read the Earth's rate"},
+    {"fit", "the run as a whole does not fit together"},
+    {"fit_azimuth", "azimuths given from outside do not fit the run"},
+    {"fit_inclination", "gyros and accelerometers disagree on the way"},
+    {"fit_repeat", "directions at depths passed more than once disagree"},
+    {"fit_rest", "the gyros at rest and on the way disagree"},
+    {"foresight", "the run and the foresight differ"},
+    {"gravity", "the accelerometers at rest do not read gravity"},
+    {"grid", "the job's grid figures are not the projection's"},
+    {"gyro_bias", "a gyro's bias is beyond its prior"},
+    {"gyro_dead", "a gyro axis does not answer"},
+    {"gyro_misalignment", "a gyro's misalignment is beyond its prior"},
+    {"gyro_saturated", "gyros reached full scale"},
+    {"gyro_scale", "a gyro's scale is beyond its prior"},
+    {"gyro_spikes", "single gyro samples are impossible beside their neighbours"},
+    {"gyro_stuck", "a gyro axis repeats one value"},
+    {"gyro_unit", "the gyros' unit or scale is wrong"},
+    {"inclination_in_out", "inclinations on the way in and out differ"},
+    {"inclination_repeat", "inclinations of the repeat section differ"},
+    {"latitude", "the gyros at rest tell another latitude than the job"},
+    {"magnetic_azimuth", "gyro and magnetic azimuth differ"},
+    {"magnetic_marks", "the cable slips between magnetic marks"},
+    {"mass_unbalance", "the gyros' mass unbalance is beyond its prior"},
+    {"noise_stated", "the job states no [noise]"},
+    {"quadrature", "the gyros' quadrature is beyond its prior"},
+    {"rest_motion", "the tool moved at a stop"},
+    {"roll_at_rest", "the tool turned at a stop"},
+    {"samples_aliased", "rotation too fast for the sampling"},
+    {"samples_lost", "samples are missing"},
+    {"samples_refused", "samples were left out"},
+    {"stations_asked", "stations asked for are missing"},
+    {"stations_without_azimuth", "stations have no azimuth"},
+    {"temperature_outside", "temperature outside the calibrated range"},
+    {"tie_in", "the tie-in and the run disagree where they meet"},
+    {"time_skew", "the clocks of gyros and accelerometers differ beyond the prior"},
+    {"toolface_offset", "gyros and accelerometers are turned against each other beyond the prior"},
+};
+
+std::string_view WordsFor(std::string_view code) {
+  std::string_view words, longest;
+  for (const Words& entry : kWords) {
+    if (!code.starts_with(entry.code) || entry.code.size() < longest.size()) continue;
+    longest = entry.code;
+    words = entry.words;
+  }
+  return words;
+}
+
+bool IsOf(const Check& check, std::int32_t run) { return check.run == run || check.run == 0; }
+
+/// Causes of what `take` takes, failing ones first.
+template <class Take>
+RunVerdict VerdictOf(std::span<const Check> checks, Take take) {
+  RunVerdict verdict;
+  for (const Verdict wanted : {Verdict::kFail, Verdict::kWarn}) {
+    std::map<std::string, std::size_t> told;  // how many of each code
+    for (const Check& check : checks) {
+      if (check.verdict != wanted || !take(check)) continue;
+      if (verdict.verdict == Verdict::kPass) verdict.verdict = wanted;
+      if (++told[check.code] > 1 || verdict.causes.size() >= kCausesListed) continue;
+      verdict.causes.push_back(CauseOf(check));
+    }
+  }
+  return verdict;
+}
+
+}  // namespace
+
+void ShareFalseAlarms(std::vector<Check>& checks) {
+  std::map<std::int32_t, double> looks;
+  for (const Check& check : checks) {
+    if (check.value && check.verdict != Verdict::kNotDone) looks[check.run] += check.looks;
+  }
+  for (Check& check : checks) {
+    if (!(check.looks > 0)) continue;
+    const double all = std::max(looks[check.run], 1.0);
+    Judge(kFalseAlarmRate / all, all, check);
+  }
+}
+
+RunVerdict VerdictOfRun(std::span<const Check> checks, std::int32_t run) {
+  return VerdictOf(checks, [run](const Check& check) { return IsOf(check, run); });
+}
+
+void GiveVerdict(Survey& survey) {
+  std::set<std::int32_t> failed, chosen;
+  for (RunSummary& run : survey.runs) {
+    run.verdict = VerdictOfRun(survey.checks, run.run);
+    if (run.verdict.verdict == Verdict::kFail) failed.insert(run.run);
+  }
+  for (std::vector<Station>* stations : {&survey.chosen, &survey.passes}) {
+    for (Station& s : *stations) {
+      if (s.kind == StationKind::kTieIn) continue;
+      if (stations == &survey.chosen) chosen.insert(s.run);
+      if (failed.contains(s.run)) s.quality |= Quality::kUnfit;
+    }
+  }
+  survey.verdict = VerdictOf(std::span<const Check>(survey.checks), [&](const Check& check) {
+    return check.run == 0 || chosen.contains(check.run);
+  });
+}
+
+std::string CauseOf(const Check& check) {
+  std::string place = check.code;
+  if (check.run > 0) place += fmt::format(", run {}", check.run);
+  if (check.md) place += fmt::format(", MD {:.2f} m", *check.md);
+  const std::string unit = check.unit == "1" || check.unit.empty() ? "" : " " + check.unit;
+  if (check.value && check.limit) {
+    place += fmt::format(": {:.3g}{}, limit {:.3g}", *check.value, unit, *check.limit);
+  } else if (!check.limit_source.empty()) {
+    place += ": " + check.limit_source;
+  }
+  const std::string_view words = WordsFor(check.code);
+  return words.empty() ? place : fmt::format("{} ({})", words, place);
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,103 @@
+#include "wellgyro/depth/depth_motion.h"
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/math/random.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kRamp = 8, kMove = 100, kRest = 30, kCycle = kMove + kRamp + kRest;
+
+/// A string that goes 100 m at a time at 1 m/s, with starts and stops of 8 s and rests of 30 s.
+double Depth(double t) {
+  const double cycles = std::floor(t / kCycle), u = t - cycles * kCycle;
+  // Speed 1 - cos over the ramps: its integral.
+  const auto ramp = [](double x) {
+    const double s = std::min(std::max(x, 0.0), kRamp);
+    return s / 2 - kRamp / (2 * M_PI) * std::sin(M_PI * s / kRamp) + std::max(x - kRamp, 0.0);
+  };
+  return kMove * cycles + ramp(u) - ramp(u - kMove);
+}
+
+struct Depths {
+  std::function<double(double)> read = [](double t) { return Depth(t); };
+  double noise = 0.01, period = 0.5;
+  std::uint64_t seed = 1;
+};
+
+DepthMotion::Found FoundOf(const Depths& depths, double seconds) {
+  Random random(depths.seed);
+  DepthMotion motion;
+  const UtcTime begin{1'700'000'000'000'000'000};
+  double next_mark = 0;
+  constexpr double kStep = 0.1;
+  for (double t = 0; t < seconds; t += kStep) {
+    for (; next_mark < t + 5; next_mark += depths.period) {
+      motion.Mark(begin + Duration::Seconds(next_mark),
+                  depths.read(next_mark) + depths.noise * random.Normal());
+    }
+    const double h = 0.02, middle = t + kStep / 2;
+    const double felt = (Depth(middle + h) - 2 * Depth(middle) + Depth(middle - h)) / (h * h);
+    motion.Feel(begin + Duration::Seconds(t), kStep, felt - 6.5 + 1e-3 * random.Normal());
+  }
+  return motion.found();
+}
+
+TEST(DepthMotion, AGoodTrackHasNoStepAndNoLag) {
+  double squares = 0;
+  constexpr int kSeeds = 20;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Depths depths;
+    depths.seed = seed;
+    const DepthMotion::Found found = FoundOf(depths, 3000);
+    EXPECT_GT(found.compared, 1000);
+    // Of white marks the coefficients -1/2, 3/2, -3/2, 1/2 leave 2.24 times their sigma.
+    EXPECT_NEAR(found.sigma_step, 2.236 * 0.01, 0.003);
+    EXPECT_LT(std::abs(found.step), 5 * found.sigma_step);
+    EXPECT_LT(found.sigma_lag, 0.05);
+    squares += std::pow(found.lag / found.sigma_lag, 2);
+  }
+  // Chi-square of 20: 7 to 40 hold 99.7 %; neighbouring groups share marks, which widens it.
+  EXPECT_GT(squares / kSeeds, 0.2);
+  EXPECT_LT(squares / kSeeds, 3);
+}
+
+TEST(DepthMotion, AJumpOfTheCounterStandsOut) {
+  Depths depths;
+  depths.read = [](double t) { return Depth(t) + (t > 700 ? 1.0 : 0.0); };
+  const DepthMotion::Found found = FoundOf(depths, 1500);
+  EXPECT_NEAR(found.step, 1, 0.1);
+  EXPECT_GT(found.step, 20 * found.sigma_step);
+  EXPECT_NEAR(found.step_md.value_or(0), Depth(701), 4);
+}
+
+TEST(DepthMotion, TellsLateMarksFromPromptOnes) {
+  for (const double lag : {0.5, -0.3}) {
+    Depths depths;
+    depths.read = [lag](double t) { return Depth(t - lag); };
+    const DepthMotion::Found found = FoundOf(depths, 3000);
+    EXPECT_NEAR(found.lag, lag, 0.1);
+    EXPECT_GT(std::abs(found.lag), 8 * found.sigma_lag);
+  }
+}
+
+TEST(DepthMotion, AReZeroIsNoStep) {
+  DepthMotion motion;
+  const UtcTime begin{1'700'000'000'000'000'000};
+  for (int k = 0; k < 200; ++k) {
+    const UtcTime utc = begin + Duration::Seconds(2.0 * k);
+    if (k == 100) motion.Restart();
+    motion.Mark(utc, k + (k < 100 ? 0 : 7));
+    motion.Feel(utc, 2, -9.8);
+  }
+  EXPECT_LT(std::abs(motion.found().step), 1e-6);
+  EXPECT_GT(motion.found().compared, 180);
+}
+
+}  // namespace
+}  // namespace wellgyro

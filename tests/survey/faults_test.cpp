@@ -1,0 +1,205 @@
+// What goes wrong in samples and marks, put into a simulated run, is seen and said.
+#include <cmath>
+#include <functional>
+#include <ostream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/simulate/tool_errors.h"
+#include "wellgyro/survey/verdict.h"
+
+#include "support/simulated_survey.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::CollectingSink;
+using testing::Find;
+using testing::SurveyOf;
+using Cause = SimulatedFault::Cause;
+
+/// Twelve minutes down a hole that builds and turns, with a stop at each end and one on the way.
+struct Flight {
+  Flight() {
+    simulation.well.end_md = 600;
+    simulation.well.inclination.start = FromDegrees(30);
+    simulation.well.inclination.terms.push_back({.rate = 3 * units::kDegPer30m});
+    simulation.well.azimuth.start = FromDegrees(40);
+    simulation.well.azimuth.terms.push_back({.rate = units::kDegPer30m});
+    simulation.earth.latitude = FromDegrees(60);
+    simulation.run.roll_reference = RollReference::kHighSide;
+    RunMove down;
+    down.speed = 0.8;
+    down.roll.rate = kTwoPi / 60;
+    down.to_md = 150;
+    simulation.run.steps.push_back(RunStop{.seconds = 150});
+    simulation.run.steps.push_back(down);
+    simulation.run.steps.push_back(RunStop{.seconds = 150});
+    down.to_md = 400;
+    simulation.run.steps.push_back(down);
+    simulation.run.steps.push_back(RunStop{.seconds = 60});
+    simulation.streams.imu_hz = 10;
+    simulation.streams.depth_hz = 2;
+    job.well.latitude = FromDegrees(60);
+    job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+    job.errors.gyro_bias_sigma = 0.1 * units::kDegPerHour;
+    job.errors.mass_unbalance_sigma = 0.02 * units::kDegPerHourPerG;
+    job.errors.accel_bias_sigma = 5e-4;
+    job.errors.accel_noise = 2e-4;
+    job.errors.depth_sigma = 0.3;
+    simulation.tool.errors = DrawToolErrors(job.errors, job.noise, 4);
+    simulation.tool.errors.depth_resolution = 0.01;
+    simulation.seed = 4;
+  }
+  Survey Surveyed() {
+    CollectingSink sink;
+    const Survey survey = SurveyOf(simulation, job, sink);
+    faults = sink.faults;
+    return survey;
+  }
+  void Add(Cause cause, double size, double begin = 0, int axis = 0, double period = 0) {
+    simulation.faults.push_back(
+        {.cause = cause, .axis = axis, .begin = begin, .size = size, .period = period});
+  }
+  void AddUntil(Cause cause, double begin, double end, double size = 0, int axis = 0) {
+    simulation.faults.push_back(
+        {.cause = cause, .axis = axis, .begin = begin, .end = end, .size = size});
+  }
+
+  Simulation simulation;
+  Job job;
+  std::vector<Fault> faults;
+};
+
+TEST(Faults, ARunWithoutAnyHasNoneSaid) {
+  Flight flight;
+  const Survey survey = flight.Surveyed();
+  ASSERT_EQ(survey.unusable, "");
+  EXPECT_TRUE(flight.faults.empty());
+  for (const char* code : {"gyro_stuck", "accel_stuck", "axes", "gyro_unit", "rest_motion",
+                           "depth_jump", "gyro_spikes", "accel_spikes"}) {
+    const Check* check = Find(survey, code);
+    ASSERT_NE(check, nullptr) << code;
+    EXPECT_EQ(check->verdict, Verdict::kPass) << code << " " << check->limit_source;
+  }
+  EXPECT_NE(survey.verdict.verdict, Verdict::kFail) << CauseOf(survey.checks.front());
+}
+
+struct Wrong {
+  std::string code;
+  std::function<void(Flight&)> make;
+  std::string words = {};  ///< in what the check says
+  Verdict verdict = Verdict::kFail;
+};
+void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.code << " " << wrong.words; }
+
+class FaultIsSaid : public ::testing::TestWithParam<Wrong> {};
+
+TEST_P(FaultIsSaid, ByTheCheckThatIsItsOwn) {
+  Flight flight;
+  GetParam().make(flight);
+  const Survey survey = flight.Surveyed();
+  const Check* check = Find(survey, GetParam().code);
+  ASSERT_NE(check, nullptr);
+  EXPECT_EQ(check->verdict, GetParam().verdict) << check->limit_source;
+  EXPECT_NE(check->limit_source.find(GetParam().words), std::string::npos) << check->limit_source;
+  if (GetParam().verdict != Verdict::kFail || survey.passes.empty()) return;
+  EXPECT_EQ(survey.runs[0].verdict.verdict, Verdict::kFail);
+  for (const Station& s : survey.passes) EXPECT_TRUE(Has(s.quality, Quality::kUnfit));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, FaultIsSaid,
+    ::testing::Values(
+        Wrong{"gyro_stuck", [](Flight& f) { f.AddUntil(Cause::kGyroStuck, 250, 270); }, "gyro x"},
+        Wrong{"accel_stuck", [](Flight& f) { f.AddUntil(Cause::kAccelStuck, 250, 260, 0, 1); },
+              "accel y"},
+        Wrong{"gyro_dead", [](Flight& f) { f.Add(Cause::kGyroDead, 0, 0, 1); }, "gyro y"},
+        Wrong{"accel_dead", [](Flight& f) { f.Add(Cause::kAccelDead, 0, 0, 2); }, "accel z"},
+        Wrong{"axes", [](Flight& f) { f.Add(Cause::kGyroInverted, 0); }, "gyro x inverted"},
+        Wrong{"axes", [](Flight& f) { f.Add(Cause::kGyroInverted, 0, 0, 1); }, "gyro y inverted"},
+        Wrong{"axes", [](Flight& f) { f.Add(Cause::kAccelInverted, 0); },
+              "accelerometer x or gyro y"},
+        Wrong{"axes", [](Flight& f) { f.Add(Cause::kGyrosSwapped, 0); }, "gyros x and y swapped"},
+        Wrong{"axes", [](Flight& f) { f.Add(Cause::kAccelsSwapped, 0); },
+              "accelerometers x and y swapped"},
+        Wrong{"gyro_unit", [](Flight& f) { f.Add(Cause::kGyroUnit, 57.3); }},
+        Wrong{"gyro_unit", [](Flight& f) { f.Add(Cause::kGyroUnit, 1 / 57.3); }},
+        Wrong{"gyro_unit", [](Flight& f) { f.Add(Cause::kGyroUnit, 0.5); }},
+        Wrong{"gyro_spikes", [](Flight& f) { f.Add(Cause::kGyroSpike, FromDegrees(1), 30, 0, 60); },
+              "every sample", Verdict::kWarn},
+        Wrong{"accel_spikes", [](Flight& f) { f.Add(Cause::kAccelSpike, 1, 30, 1, 0.7); },
+              "every sample"},
+        Wrong{"rest_motion",
+              [](Flight& f) { f.AddUntil(Cause::kRestCreep, 5, 145, FromDegrees(0.05) / 60); },
+              "still", Verdict::kWarn},
+        Wrong{"rest_motion",
+              [](Flight& f) {
+                f.simulation.faults.push_back({.cause = Cause::kSwing,
+                                               .begin = 5,
+                                               .end = 145,
+                                               .size = FromDegrees(0.1),
+                                               .period = 4});
+              },
+              "still", Verdict::kWarn},
+        Wrong{"depth_jump", [](Flight& f) { f.Add(Cause::kDepthStep, 1, 260); }},
+        Wrong{"depth_lag", [](Flight& f) { f.Add(Cause::kDepthLag, 0.5); }}));
+
+TEST(Faults, SpikesAreReplacedAndToldByRange) {
+  Flight clean, spiked;
+  spiked.Add(Cause::kGyroSpike, FromDegrees(1), 170, 0, 20);
+  const Survey was = clean.Surveyed(), is = spiked.Surveyed();
+  ASSERT_EQ(was.chosen.size(), is.chosen.size());
+  const Station &a = was.chosen.back(), &b = is.chosen.back();
+  const double sigma = std::sqrt(a.cov_md_inc_azi(2, 2));
+  EXPECT_LT(std::abs(WrapPi(a.azimuth - b.azimuth)), 0.2 * sigma);
+  EXPECT_NEAR(std::sqrt(b.cov_md_inc_azi(2, 2)), sigma, 0.01 * sigma);
+  EXPECT_EQ(is.runs[0].samples_gyro_mended, (is.runs[0].samples / 10 - 170 + 19) / 20);
+  ASSERT_FALSE(spiked.faults.empty());
+  EXPECT_NE(spiked.faults.front().text.find("1700 to 1700 of session 1"), std::string::npos)
+      << spiked.faults.front().text;
+}
+
+TEST(Faults, AveragesThatNoToolAtRestHasAreLeftOut) {
+  Job job;
+  CollectingSink sink;
+  Surveyor surveyor(job, sink);
+  StillWindow window;
+  window.utc_begin.ns = 1'700'000'000'000'000'000;
+  window.utc_end.ns = window.utc_begin.ns + 120'000'000'000;
+  window.md = 100;
+  window.f_T = {4.9, 0, -8.5};
+  window.w_IT_T = {5e-5, 0, 0};
+  surveyor.Push(window);
+  EXPECT_TRUE(sink.faults.empty());
+  window.f_T *= 0.9;
+  surveyor.Push(window);
+  EXPECT_EQ(sink.faults.size(), 1u) << "0.9 g";
+  window.f_T /= 0.9;
+  window.w_IT_T.x() = FromDegrees(1);
+  surveyor.Push(window);
+  EXPECT_EQ(sink.faults.size(), 2u) << "1 deg/s";
+}
+
+TEST(Faults, AnUnverifiedDepthScaleStandsInTheSigma) {
+  Flight flight;
+  const Survey without = flight.Surveyed();
+  flight.job.errors.depth_scale_sigma = 1e-3;
+  const Survey with = flight.Surveyed();
+  const Station &a = without.chosen.back(), &b = with.chosen.back();
+  EXPECT_NEAR(b.cov_md_inc_azi(0, 0) - a.cov_md_inc_azi(0, 0), 0.4 * 0.4, 1e-6);
+  // Along the hole and across it: the trace grows by the way's square and by the path's bow.
+  const double more = (b.cov_p_WT_W - a.cov_p_WT_W).trace();
+  EXPECT_GT(more, 0.4 * 0.4);
+  EXPECT_LT(more, 2 * 0.4 * 0.4);
+  const Check* check = Find(with, "depth_scale");
+  ASSERT_NE(check, nullptr);
+  EXPECT_EQ(check->verdict, Verdict::kNotDone);
+  EXPECT_NE(check->limit_source.find("unverified"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace wellgyro

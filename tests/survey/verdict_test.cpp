@@ -1,0 +1,155 @@
+#include "wellgyro/survey/verdict.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "wellgyro/math/random.h"
+#include "wellgyro/survey/tie_in_check.h"
+
+namespace wellgyro {
+namespace {
+
+using ::testing::HasSubstr;
+
+Check Normal(std::string code, double value, double looks = 1, std::int32_t run = 1) {
+  Check check;
+  check.code = std::move(code);
+  check.run = run;
+  check.value = value;
+  check.sigma = 1;
+  check.limit = 3;
+  check.unit = "deg";
+  check.looks = looks;
+  check.verdict = Verdict::kPass;
+  return check;
+}
+
+// Of 20 000 runs of 8 comparisons that are true 1 % fail: 0.8 to 1.2 % are 3 sigmas of the count.
+TEST(ShareFalseAlarms, OneCleanRunInAHundredFails) {
+  Random random(1);
+  constexpr int kRuns = 20'000;
+  int failed = 0, warned = 0;
+  for (int k = 0; k < kRuns; ++k) {
+    std::vector<Check> checks;
+    for (int i = 0; i < 5; ++i) checks.push_back(Normal("a", random.Normal()));
+    double worst = 0;
+    for (int i = 0; i < 2; ++i) worst = std::max(worst, std::abs(random.Normal()));
+    checks.push_back(Normal("worst of two", worst, 2));
+    double squares = 0;
+    for (int i = 0; i < 12; ++i) squares += std::pow(random.Normal(), 2);
+    checks.push_back(Normal("squares", squares / 12));
+    checks.back().freedom = 12;
+    ShareFalseAlarms(checks);
+    const Verdict verdict = VerdictOfRun(checks, 1).verdict;
+    failed += verdict == Verdict::kFail;
+    warned += verdict == Verdict::kWarn;
+  }
+  EXPECT_NEAR(failed, 0.01 * kRuns, 45);
+  EXPECT_NEAR(warned, 0.085 * kRuns, 200) << "ten times as many, less those that fail";
+}
+
+TEST(ShareFalseAlarms, MoreComparisonsHaveWiderLimits) {
+  std::vector<Check> few{Normal("a", 2.9)};
+  std::vector<Check> many(40, Normal("a", 2.9));
+  ShareFalseAlarms(few);
+  ShareFalseAlarms(many);
+  EXPECT_EQ(few[0].verdict, Verdict::kFail);
+  EXPECT_NEAR(*few[0].limit, 2.5758, 1e-4) << "two-sided 1 %";
+  EXPECT_EQ(many[0].verdict, Verdict::kPass);
+  EXPECT_NEAR(*many[0].limit, 3.6623, 1e-4) << "two-sided 0.025 %";
+  EXPECT_THAT(many[0].limit_source, HasSubstr("1 % of clean runs, shared by 40"));
+}
+
+TEST(ShareFalseAlarms, LeavesOtherLimitsAndOtherRunsAlone) {
+  std::vector<Check> checks{Normal("acceptance", 2.9, 0), Normal("a", 2.9), Normal("b", 2.9, 1, 2)};
+  checks[0].limit_source = "acceptance";
+  checks[0].verdict = Verdict::kWarn;
+  ShareFalseAlarms(checks);
+  EXPECT_EQ(checks[0].verdict, Verdict::kWarn);
+  EXPECT_EQ(checks[0].limit_source, "acceptance");
+  EXPECT_NEAR(*checks[1].limit, *checks[2].limit, 0) << "each run has its own 1 %";
+}
+
+Station At(std::int32_t run, double md, StationKind kind = StationKind::kContinuous) {
+  Station s;
+  s.run = run;
+  s.md = md;
+  s.kind = kind;
+  return s;
+}
+
+Survey TwoRuns() {
+  Survey survey;
+  survey.runs.resize(2);
+  survey.runs[0].run = 1;
+  survey.runs[1].run = 2;
+  survey.passes = {At(1, 10), At(2, 10), At(2, 20)};
+  survey.chosen = {At(0, 0, StationKind::kTieIn), At(1, 10), At(2, 20)};
+  return survey;
+}
+
+TEST(GiveVerdict, AFailingRunTakesItsStationsWithIt) {
+  Survey survey = TwoRuns();
+  Check failed = Normal("earth_rate", 9);
+  failed.run = 2;
+  failed.md = 20;
+  failed.verdict = Verdict::kFail;
+  Check warned = Normal("samples_lost", 1);
+  warned.verdict = Verdict::kWarn;
+  survey.checks = {warned, failed};
+  GiveVerdict(survey);
+  EXPECT_EQ(survey.runs[0].verdict.verdict, Verdict::kWarn);
+  EXPECT_EQ(survey.runs[1].verdict.verdict, Verdict::kFail);
+  EXPECT_EQ(survey.verdict.verdict, Verdict::kFail);
+  ASSERT_EQ(survey.verdict.causes.size(), 2u);
+  EXPECT_THAT(survey.verdict.causes[0], HasSubstr("do not read the Earth's rate"));
+  EXPECT_THAT(survey.verdict.causes[0], HasSubstr("MD 20.00 m: 9 deg, limit 3"));
+  EXPECT_THAT(survey.verdict.causes[1], HasSubstr("samples are missing"));
+  EXPECT_FALSE(Has(survey.chosen[0].quality, Quality::kUnfit)) << "the tie-in is nobody's";
+  EXPECT_FALSE(Has(survey.chosen[1].quality, Quality::kUnfit));
+  EXPECT_TRUE(Has(survey.chosen[2].quality, Quality::kUnfit));
+  EXPECT_TRUE(Has(survey.passes[1].quality, Quality::kUnfit));
+}
+
+TEST(GiveVerdict, ARunThatGaveNoStationDoesNotFailTheSurvey) {
+  Survey survey = TwoRuns();
+  survey.chosen.pop_back();
+  Check failed = Normal("fit", 9);
+  failed.run = 2;
+  failed.verdict = Verdict::kFail;
+  survey.checks = {failed};
+  GiveVerdict(survey);
+  EXPECT_EQ(survey.runs[1].verdict.verdict, Verdict::kFail);
+  EXPECT_EQ(survey.verdict.verdict, Verdict::kPass);
+  failed.run = 0;
+  survey.checks = {failed};
+  GiveVerdict(survey);
+  EXPECT_EQ(survey.verdict.verdict, Verdict::kFail) << "what concerns all of it";
+}
+
+TEST(CheckTieIn, ATieInThatIsNotTheRunsFails) {
+  Job job;
+  job.tie_in.md = 100;
+  EXPECT_EQ(CheckTieIn(job, {}).verdict, Verdict::kNotDone);
+  job.tie_in.inclination = 5 * kPi / 180;
+  job.tie_in.azimuth = 0;
+  Station near = At(1, 105);
+  near.inclination = 0.01 * kPi / 180;
+  near.cov_md_inc_azi(1, 1) = std::pow(0.01 * kPi / 180, 2);
+  near.cov_md_inc_azi(2, 2) = 1;
+  const std::vector<Station> stations{At(1, 160), near};
+  const Check check = CheckTieIn(job, stations);
+  EXPECT_EQ(check.verdict, Verdict::kFail);
+  EXPECT_NEAR(check.value.value_or(0), 5, 0.02);
+  EXPECT_EQ(check.md.value_or(0), 105);
+  job.tie_in.inclination = 0.2 * kPi / 180;
+  EXPECT_EQ(CheckTieIn(job, stations).verdict, Verdict::kPass) << "the azimuth of a vertical hole";
+}
+
+}  // namespace
+}  // namespace wellgyro
