@@ -190,11 +190,12 @@ TEST(Faults, AnUnverifiedDepthScaleStandsInTheSigma) {
   flight.job.errors.depth_scale_sigma = 1e-3;
   const Survey with = flight.Surveyed();
   const Station &a = without.chosen.back(), &b = with.chosen.back();
-  EXPECT_NEAR(b.cov_md_inc_azi(0, 0) - a.cov_md_inc_azi(0, 0), 0.4 * 0.4, 1e-6);
+  const double whole = std::pow(1e-3 * b.md, 2);
+  EXPECT_NEAR(b.cov_md_inc_azi(0, 0) - a.cov_md_inc_azi(0, 0), whole, 1e-6);
   // Along the hole and across it: the trace grows by the way's square and by the path's bow.
   const double more = (b.cov_p_WT_W - a.cov_p_WT_W).trace();
-  EXPECT_GT(more, 0.4 * 0.4);
-  EXPECT_LT(more, 2 * 0.4 * 0.4);
+  EXPECT_GT(more, whole);
+  EXPECT_LT(more, 2 * whole);
   const Check* check = Find(with, "depth_scale");
   ASSERT_NE(check, nullptr);
   EXPECT_EQ(check->verdict, Verdict::kNotDone);

@@ -32,7 +32,8 @@ class WELLGYRO_EXPORT DepthMotion {
 
   /// A mark of this depth; one that is not later than the last by two seconds is left out.
   void Mark(UtcTime utc, double md);
-  /// The next sample's mean specific force along the tool, over [utc, utc + seconds].
+  /// The next sample's mean specific force along the tool, over [utc, utc + seconds], but for a
+  /// constant: gravity's share of it is to stay.
   void Feel(UtcTime utc, double seconds, double f_z);
   /// The depth scale changes here: marks on either side are not compared.
   void Restart();

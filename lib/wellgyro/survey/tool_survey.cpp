@@ -46,6 +46,15 @@ bool CanBe(const StillWindow& window) {
          seconds > 0 && seconds < kSeconds;
 }
 
+/// What the accelerometers feel along the tool, less what the inclination changes of gravity's
+/// share of it, which the force across tells; within 12 deg of horizontal it does not.
+double FeltAlong(const Eigen::Vector3d& f_T) {
+  constexpr double kFlat = 0.2, kG = units::kStandardGravity;
+  const double across = f_T.head<2>().squaredNorm() / (kG * kG);
+  const double cosine = std::sqrt(std::max(1 - across, 0.0));
+  return f_T.z() - std::copysign(kG * std::max(cosine - kFlat, 0.0), f_T.z());
+}
+
 double Correction(const std::vector<std::pair<double, double>>& table, double md) {
   if (table.empty()) return 0;
   const auto after = std::upper_bound(table.begin(), table.end(), md,
@@ -280,7 +289,7 @@ void ToolSurvey::Use(const SpikeFilter::Out& out) {
     changed_.stamp = continued;
   }
   run.watch->Push(sample, begin);
-  run.motion->Feel(utc, 1e-9 * stamp.period_ns, sample.f_T.z());
+  run.motion->Feel(utc, 1e-9 * stamp.period_ns, FeltAlong(sample.f_T));
   run.survey->Push(clock_.own() ? sample : changed_, utc, begin, middle);
   newest_used_ = utc;
   if (run.survey->has_news()) Tell(run);
