@@ -27,23 +27,33 @@ double Depth(double t) {
 struct Depths {
   std::function<double(double)> read = [](double t) { return Depth(t); };
   double noise = 0.01, period = 0.5;
+  double ahead = 5;  ///< marks of the samples [s]
   std::uint64_t seed = 1;
 };
 
+void PushMark(UtcTime utc, double md, DepthTrack& track) {
+  DepthMark mark;
+  mark.utc = utc;
+  mark.seq = utc.ns / 1'000'000;
+  mark.md = md;
+  EXPECT_FALSE(track.Push(mark));
+}
+
 DepthMotion::Found FoundOf(const Depths& depths, double seconds) {
-  Random random(depths.seed);
+  Random random(depths.seed), force(depths.seed + 1000);
   DepthMotion motion;
+  DepthTrack track;
   const UtcTime begin{1'700'000'000'000'000'000};
   double next_mark = 0;
   constexpr double kStep = 0.1;
   for (double t = 0; t < seconds; t += kStep) {
-    for (; next_mark < t + 5; next_mark += depths.period) {
-      motion.Mark(begin + Duration::Seconds(next_mark),
-                  depths.read(next_mark) + depths.noise * random.Normal());
+    for (; next_mark < t + depths.ahead; next_mark += depths.period) {
+      PushMark(begin + Duration::Seconds(next_mark),
+               depths.read(next_mark) + depths.noise * random.Normal(), track);
     }
     const double h = 0.02, middle = t + kStep / 2;
     const double felt = (Depth(middle + h) - 2 * Depth(middle) + Depth(middle - h)) / (h * h);
-    motion.Feel(begin + Duration::Seconds(t), kStep, felt - 6.5 + 1e-3 * random.Normal());
+    motion.Feel(begin + Duration::Seconds(t), kStep, felt - 6.5 + 1e-3 * force.Normal(), track);
   }
   return motion.found();
 }
@@ -67,6 +77,18 @@ TEST(DepthMotion, AGoodTrackHasNoStepAndNoLag) {
   EXPECT_LT(squares / kSeeds, 3);
 }
 
+// How marks and samples interleave does not matter.
+TEST(DepthMotion, MarksMayBeAheadByAnyTime) {
+  Depths near, far;
+  near.ahead = 1;
+  far.ahead = 2000;
+  const DepthMotion::Found a = FoundOf(near, 1500), b = FoundOf(far, 1500);
+  EXPECT_EQ(a.compared, b.compared);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.sigma_step, b.sigma_step);
+  EXPECT_EQ(a.lag, b.lag);
+}
+
 TEST(DepthMotion, AJumpOfTheCounterStandsOut) {
   Depths depths;
   depths.read = [](double t) { return Depth(t) + (t > 700 ? 1.0 : 0.0); };
@@ -88,12 +110,13 @@ TEST(DepthMotion, TellsLateMarksFromPromptOnes) {
 
 TEST(DepthMotion, AReZeroIsNoStep) {
   DepthMotion motion;
+  DepthTrack track;
   const UtcTime begin{1'700'000'000'000'000'000};
   for (int k = 0; k < 200; ++k) {
     const UtcTime utc = begin + Duration::Seconds(2.0 * k);
     if (k == 100) motion.Restart();
-    motion.Mark(utc, k + (k < 100 ? 0 : 7));
-    motion.Feel(utc, 2, -9.8);
+    PushMark(utc, k + (k < 100 ? 0 : 7), track);
+    motion.Feel(utc, 2, -9.8, track);
   }
   EXPECT_LT(std::abs(motion.found().step), 1e-6);
   EXPECT_GT(motion.found().compared, 180);

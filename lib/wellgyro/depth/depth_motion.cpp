@@ -6,11 +6,11 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kApart = 1.9;       // marks at least [s]
-constexpr double kFar = 10;          // and at most [s]
-constexpr double kGap = 0.5;         // between samples, from which nothing is felt [s]
-constexpr double kLeast = 1e-3;      // sigma of a step: no depth is read to less [m]
-constexpr std::int64_t kFirst = 20;  // steps before their scatter is known
+constexpr Duration kApart{1'900'000'000};  // marks at least
+constexpr double kFar = 10;                // and at most [s]
+constexpr double kGap = 0.5;               // between samples, from which nothing is felt [s]
+constexpr double kLeast = 1e-3;            // sigma of a step: no depth is read to less [m]
+constexpr std::int64_t kFirst = 20;        // steps before their scatter is known
 
 /// The way between the middle two less the mean of the ways beside it, of values at four times.
 double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
@@ -20,31 +20,22 @@ double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
 
 }  // namespace
 
-void DepthMotion::Mark(UtcTime utc, double md) {
-  if (last_mark_ && (utc - *last_mark_).seconds() < kApart) return;
-  last_mark_ = utc;
-  if (mark_count_ == kMarksMax) return;
-  marks_[(first_mark_ + mark_count_) % kMarksMax] = {utc, md, 0, 0};
-  ++mark_count_;
-}
-
 void DepthMotion::Restart() { passed_count_ = 0; }
 
-void DepthMotion::Feel(UtcTime utc, double seconds, double f_z) {
+void DepthMotion::Feel(UtcTime utc, double seconds, double f_z, const DepthTrack& track) {
   if (felt_until_ && std::abs((utc - *felt_until_).seconds()) > kGap) {
     passed_count_ = 0;
     speed_ = way_ = 0;
   }
   felt_until_ = utc + Duration::Seconds(seconds);
-  while (mark_count_ > 0 && marks_[first_mark_].utc < *felt_until_) {
-    Passed mark = marks_[first_mark_];
-    first_mark_ = (first_mark_ + 1) % kMarksMax;
-    --mark_count_;
-    const double t = (mark.utc - utc).seconds();
-    if (t < 0) continue;
-    mark.speed = speed_ + f_z * t;
-    mark.way = way_ + (speed_ + f_z * t / 2) * t;
-    Pass(mark);
+  const UtcTime wanted = last_mark_ ? std::max(utc, *last_mark_ + kApart) : utc;
+  if (wanted < *felt_until_) {
+    const std::optional<MarkRead> mark = track.FirstMark(wanted);
+    if (mark && mark->utc < *felt_until_) {
+      const double t = (mark->utc - utc).seconds();
+      last_mark_ = mark->utc;
+      Pass({mark->utc, mark->md, speed_ + f_z * t, way_ + (speed_ + f_z * t / 2) * t});
+    }
   }
   way_ += (speed_ + f_z * seconds / 2) * seconds;
   speed_ += f_z * seconds;

@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
+#include "wellgyro/depth/depth_track.h"
 
 namespace wellgyro {
 
@@ -17,8 +18,8 @@ namespace wellgyro {
 /// it knows no speed and no steady acceleration; what is left of it, after the same of the felt
 /// motion (the double integral of f_z less its mean) has been taken off, is a step between the
 /// middle two, or -lag times the same of the felt speed. Steps are told against their own scatter,
-/// the lag by least squares over all starts and stops. Memory is bounded; nothing depends on how
-/// samples and marks interleave as long as marks come before the samples of their time.
+/// the lag by least squares over all starts and stops. Memory is bounded. Marks are looked up in
+/// the track when the samples of their time come, so that how the two interleave does not matter.
 class WELLGYRO_EXPORT DepthMotion {
  public:
   struct Found {
@@ -30,18 +31,15 @@ class WELLGYRO_EXPORT DepthMotion {
     double sigma_lag = 0;           ///< 0: no start or stop tells it [s]
   };
 
-  /// A mark of this depth; one that is not later than the last by two seconds is left out.
-  void Mark(UtcTime utc, double md);
   /// The next sample's mean specific force along the tool, over [utc, utc + seconds], but for a
-  /// constant: gravity's share of it is to stay.
-  void Feel(UtcTime utc, double seconds, double f_z);
+  /// constant: gravity's share of it is to stay. Marks of `track` are final over this time.
+  void Feel(UtcTime utc, double seconds, double f_z, const DepthTrack& track);
   /// The depth scale changes here: marks on either side are not compared.
   void Restart();
   Found found() const;
 
  private:
   static constexpr std::size_t kMarks = 4;
-  static constexpr std::size_t kMarksMax = 512;  ///< ahead of the samples
 
   /// A mark, and the felt speed and way there, by a datum of their own.
   struct Passed {
@@ -52,8 +50,6 @@ class WELLGYRO_EXPORT DepthMotion {
   void Compare();
   double Sigma() const;
 
-  std::array<Passed, kMarksMax> marks_;  ///< a ring of those not yet passed
-  std::size_t first_mark_ = 0, mark_count_ = 0;
   std::array<Passed, kMarks> passed_;
   std::size_t passed_count_ = 0;
   std::optional<UtcTime> last_mark_, felt_until_;

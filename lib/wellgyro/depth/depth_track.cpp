@@ -163,6 +163,12 @@ bool DepthTrack::Settled(UtcTime utc) const {
   return after < marks_.size() && marks_[after].utc <= final;
 }
 
+std::optional<MarkRead> DepthTrack::FirstMark(UtcTime utc) const {
+  const auto it = std::ranges::lower_bound(marks_, utc, {}, &Mark::utc);
+  if (it == marks_.end()) return std::nullopt;
+  return MarkRead{it->utc, it->md};
+}
+
 bool DepthTrack::Covers(UtcTime utc) const { return IsWithinReach(utc) && Settled(utc); }
 
 std::int32_t DepthTrack::SegmentAt(UtcTime utc) const {

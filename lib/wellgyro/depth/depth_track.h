@@ -25,6 +25,12 @@ struct DepthTrackSetup {
   double sigma_md = 0;           ///< of marks that bring no sigma of their own [m]
 };
 
+/// What one mark says, before anything is made of it.
+struct MarkRead {
+  UtcTime utc;
+  double md = 0;  ///< [m]
+};
+
 /// Depth of the string's reference point against UTC, from the marks of the depth system.
 ///
 /// Depth, speed and acceleration at an instant t are a local quadratic with weights 1 - u^2 over
@@ -69,6 +75,8 @@ class WELLGYRO_EXPORT DepthTrack {
   /// How long after an instant the marks that tell its depth are made, or have come.
   Duration wait() const { return std::max(setup_.half_window + setup_.latency, setup_.max_gap); }
   bool empty() const { return marks_.empty(); }
+  /// The first mark at or after `utc` of those that are in, as the depth system sent it.
+  std::optional<MarkRead> FirstMark(UtcTime utc) const;
   UtcTime newest() const { return newest_; }
   /// Depth events that hold at `utc`, so far pushed: where it changes, depth may jump.
   std::int32_t Segment(UtcTime utc) const { return shifts_.empty() ? 0 : SegmentAt(utc); }

@@ -140,7 +140,8 @@ constexpr std::array kTieIn{
     Number<&Job::tie_in, &TieIn::md>("tie_in", "md_m", 1, kDepth, "measured depth"),
     Number<&Job::tie_in, &TieIn::north>("tie_in", "north_m", 1, kPlace, "of the well head"),
     Number<&Job::tie_in, &TieIn::east>("tie_in", "east_m", 1, kPlace, "of the well head"),
-    Number<&Job::tie_in, &TieIn::tvd>("tie_in", "tvd_m", 1, kDepth, "below the depth datum"),
+    Number<&Job::tie_in, &TieIn::tvd>("tie_in", "tvd_m", 1, kDepth, "below the depth datum",
+                                      "0; required beside md_m"),
     Number<&Job::tie_in, &TieIn::inclination>("tie_in", "inclination_deg", kDeg,
                                               {.min = 0, .max = 180}, "with azimuth_true_deg",
                                               "the run's own"),
@@ -156,9 +157,11 @@ constexpr std::array kNoise{
     Number<&Job::noise, &NoiseCoefficients::quantization>("noise", "quantization_arcsec",
                                                           units::kArcsec, kSize, "Q of IEEE 952"),
     Number<&Job::noise, &NoiseCoefficients::angle_random_walk>(
-        "noise", "angle_random_walk_deg_per_sqrt_h", units::kDegPerSqrtHour, kSize, "N"),
+        "noise", "angle_random_walk_deg_per_sqrt_h", units::kDegPerSqrtHour, kSize, "N",
+        "0; without any [noise] 0.0224"),
     Number<&Job::noise, &NoiseCoefficients::bias_instability>("noise", "bias_instability_deg_per_h",
-                                                              units::kDegPerHour, kSize, "B"),
+                                                              units::kDegPerHour, kSize, "B",
+                                                              "0; without any [noise] 0.1"),
     Number<&Job::noise, &NoiseCoefficients::rate_random_walk>(
         "noise", "rate_random_walk_deg_per_h_sqrt_h", units::kDegPerHourSqrtHour, kSize, "K"),
     Number<&Job::noise, &NoiseCoefficients::rate_ramp>("noise", "rate_ramp_deg_per_h2",
@@ -168,8 +171,8 @@ constexpr std::array kNoise{
         "of B as a Gauss-Markov process", "B is a constant"),
 };
 
-// Without a key what the tool's file says of it holds, else what io/toml/coefficients_internal.h has
-// from published tools.
+// Without a key what the tool's file says of it holds, else what io/toml/coefficients_internal.h
+// has from published tools.
 constexpr std::array kErrors{
     Number<&Job::errors, &ErrorPriors::gyro_bias_sigma>("errors", "gyro_bias_sigma_deg_per_h",
                                                         units::kDegPerHour, kSize, "per axis",
@@ -209,9 +212,8 @@ constexpr std::array kErrors{
     Number<&Job::errors, &ErrorPriors::depth_scale_sigma>(
         "errors", "depth_scale_sigma", 1, kFraction, "of measured depth below the tie-in",
         "the tool's, else 5.6e-4"),
-    Number<&Job::errors, &ErrorPriors::latitude_sigma>("errors", "latitude_sigma_deg", kDeg,
-                                                       {.min = 0, .max = 90}, "",
-                                                       "the tool's, else 0"),
+    Number<&Job::errors, &ErrorPriors::latitude_sigma>(
+        "errors", "latitude_sigma_deg", kDeg, {.min = 0, .max = 90}, "", "the tool's, else 0"),
 };
 
 constexpr std::array kFilesAndChannels{

@@ -206,7 +206,6 @@ void Surveyor::Push(const DepthMark& mark) {
     rooms_->sink.OnFault(*fault);
   } else {
     rooms_->marks.Push(told);
-    for (auto& [number, tool] : rooms_->tools) tool.Push(told);
   }
 }
 

@@ -142,10 +142,6 @@ void ToolSurvey::Push(const Operation& operation) {
   due_.insert(after, due);
 }
 
-void ToolSurvey::Push(const DepthMark& mark) {
-  if (!runs_.empty()) runs_.back().motion->Mark(mark.utc, mark.md);
-}
-
 void ToolSurvey::Push(const StillWindow& window) {
   if (!CanBe(window)) {
     sink_.OnFault(
@@ -289,7 +285,7 @@ void ToolSurvey::Use(const SpikeFilter::Out& out) {
     changed_.stamp = continued;
   }
   run.watch->Push(sample, begin);
-  run.motion->Feel(utc, 1e-9 * stamp.period_ns, FeltAlong(sample.f_T));
+  run.motion->Feel(utc, 1e-9 * stamp.period_ns, FeltAlong(sample.f_T), track_);
   run.survey->Push(clock_.own() ? sample : changed_, utc, begin, middle);
   newest_used_ = utc;
   if (run.survey->has_news()) Tell(run);

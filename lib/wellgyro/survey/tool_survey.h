@@ -46,7 +46,6 @@ class ToolSurvey {
   void Push(const StillWindow& window);
   void Push(const ToolInfo& info) { sensor_below_reference_ = info.sensor_below_reference; }
   void Push(const Operation& operation);
-  void Push(const DepthMark& mark);
 
   void Adjust();
   /// `until`: samples that begin later are not used.
