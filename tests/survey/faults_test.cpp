@@ -8,7 +8,9 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/random.h"
 #include "wellgyro/simulate/tool_errors.h"
+#include "wellgyro/survey/sample_watch.h"
 #include "wellgyro/survey/verdict.h"
 
 #include "support/simulated_survey.h"
@@ -86,6 +88,42 @@ TEST(Faults, ARunWithoutAnyHasNoneSaid) {
     EXPECT_EQ(check->verdict, Verdict::kPass) << code << " " << check->limit_source;
   }
   EXPECT_NE(survey.verdict.verdict, Verdict::kFail) << CauseOf(survey.checks.front());
+}
+
+/// Two minutes of a run that rolls once a minute, whose gyro x is read in steps of `step` sigmas of
+/// its noise, and which repeats one value from `frozen` on [s].
+Check StuckGyroOf(double step, double frozen) {
+  Job job;
+  job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+  job.errors.accel_noise = 2e-4;
+  SampleWatch watch(job);
+  Random random(8);
+  const double sigma = job.noise.angle_random_walk / std::sqrt(0.1);
+  double value = 0;
+  for (int k = 0; k < 1200; ++k) {
+    ImuSample sample;
+    sample.stamp.session = 1;
+    sample.stamp.seq = k;
+    sample.stamp.tool_time.ns = 100'000'000LL * k;
+    sample.stamp.period_ns = 100'000'000;
+    const double read = 1e-3 * std::sin(kTwoPi * k / 600) + sigma * random.Normal();
+    if (0.1 * k < frozen) value = step * sigma * std::round(read / (step * sigma));
+    sample.w_IT_T = {value, sigma * random.Normal(), 0};
+    sample.f_T = {1 + 6e-4 * random.Normal(), 6e-4 * random.Normal(), -9.7};
+    watch.Push(sample, {.md = 0.05 * k, .speed = 0.5, .known = true});
+  }
+  for (const Check& check : watch.Checks(1, {})) {
+    if (check.code.starts_with("gyro_stuck") || check.code.starts_with("gyro_dead")) return check;
+  }
+  return {};
+}
+
+TEST(Faults, ACoarseConverterIsNotStuck) {
+  EXPECT_EQ(StuckGyroOf(0.5, 200).verdict, Verdict::kPass);
+  EXPECT_EQ(StuckGyroOf(10, 200).verdict, Verdict::kPass) << "steps wider than the noise";
+  const Check stuck = StuckGyroOf(0.5, 100);
+  EXPECT_EQ(stuck.verdict, Verdict::kFail);
+  EXPECT_NEAR(stuck.value.value_or(0), 20, 1);
 }
 
 struct Wrong {

@@ -16,6 +16,7 @@ namespace {
 constexpr std::int64_t kEveryNs = 20'000'000;
 constexpr double kStuckMoving = 2, kStuckAtRest = 20;  // [s]
 constexpr std::int64_t kRepeats = 10;                  // at least
+constexpr double kChance = 1e-9;                       // that noise repeats so often
 constexpr double kDead = 0.9;                          // of the run
 constexpr double kStretch = 30;                        // [s]
 // Of f_z at the ends of a stretch: starts and stops of the string, and the Earth's turn.
@@ -95,14 +96,25 @@ std::int64_t SampleWatch::Busiest(std::size_t besides) const {
   return most;
 }
 
+/// Of so many repeats in a signal that stands in the middle of a step of the axis's converter,
+/// under the stated noise: (erf(step / sqrt(8) sigma))^repeats.
+double SampleWatch::ChanceOfRepeats(std::size_t i) const {
+  const Axis& axis = axes_[i];
+  const double noise = i < 3 ? job_.noise.angle_random_walk : job_.errors.accel_noise;
+  const double sigma = noise / std::sqrt(1e-9 * static_cast<double>(last_->period_ns));
+  if (!(sigma > 0)) return 1;
+  const double same = std::erf(axis.step / (std::sqrt(8.0) * sigma));
+  return std::pow(same, static_cast<double>(axis.repeats));
+}
+
 /// Of the repeats in hand, those that say that the axis is stuck.
 double SampleWatch::StuckNow(std::size_t i) const {
   const Axis& axis = axes_[i];
   const double seconds = period_ * static_cast<double>(axis.repeats);
-  const bool noisy = i < 3 ? job_.noise.angle_random_walk > 0 : job_.errors.accel_noise > 0;
   const bool long_enough = seconds >= (axis.rests ? kStuckAtRest : kStuckMoving);
   const bool alone = 2 * (Busiest(i) - axis.others) > axis.repeats;
-  return noisy && axis.repeats >= kRepeats && long_enough && alone ? seconds : 0;
+  const bool stuck = axis.repeats >= kRepeats && long_enough && alone;
+  return stuck && ChanceOfRepeats(i) < kChance ? seconds : 0;
 }
 
 void SampleWatch::WatchAxes(const ImuSample& sample, const AlongHole& along, bool rests) {
@@ -123,6 +135,8 @@ void SampleWatch::WatchAxes(const ImuSample& sample, const AlongHole& along, boo
       axis.stuck += stuck;
       if (!axis.md && along.known) axis.md = along.md;
     }
+    const double step = std::abs(value - axis.value);
+    if (samples_ > 0 && (axis.step == 0 || step < axis.step)) axis.step = step;
     axis.repeats = 0;
     axis.value = value;
     ++axis.changes;

@@ -22,8 +22,9 @@ namespace wellgyro {
 /// only; memory grows with the stops.
 ///
 /// - `gyro_stuck`, `accel_stuck` [s]: an axis repeats its value for 2 s and more (20 s where depth
-///   rests, for coarse converters) while another axis changes from sample to sample. `gyro_dead`,
-///   `accel_dead`: it does so for nine tenths of the run.
+///   rests) while another axis changes from sample to sample, which the stated noise does not allow
+///   by the smallest step that the axis makes. `gyro_dead`, `accel_dead`: for nine tenths of the
+///   run.
 /// - `axes`: f_z' = w_y f_x - w_x f_y whatever the roll, because gravity does not turn. Stretches
 ///   of 30 s in which the hole bends tell this from the seven other ways to pair gyros with
 ///   accelerometers; fails where another explains them and this does not, and names it.
@@ -46,6 +47,7 @@ class WELLGYRO_EXPORT SampleWatch {
 
   struct Axis {
     double value = 0;
+    double step = 0;  ///< smallest change so far: its converter's
     std::int64_t changes = 0, repeats = 0;
     std::int64_t others = 0;   ///< changes of the busiest other axis, when the repeats began
     bool rests = true;         ///< depth did all the while
@@ -65,6 +67,7 @@ class WELLGYRO_EXPORT SampleWatch {
   void Watch(const ImuSample& sample, const AlongHole& along);
   void WatchAxes(const ImuSample& sample, const AlongHole& along, bool rests);
   double StuckNow(std::size_t axis) const;
+  double ChanceOfRepeats(std::size_t axis) const;
   std::int64_t Busiest(std::size_t besides) const;
   void WatchBend(const ImuSample& sample, const AlongHole& along, double seconds);
   void WatchRest(const ImuSample& sample, const AlongHole& along, bool rests, double seconds);
