@@ -114,6 +114,9 @@ TEST(GiveVerdict, AFailingRunTakesItsStationsWithIt) {
   EXPECT_FALSE(Has(survey.chosen[1].quality, Quality::kUnfit));
   EXPECT_TRUE(Has(survey.chosen[2].quality, Quality::kUnfit));
   EXPECT_TRUE(Has(survey.passes[1].quality, Quality::kUnfit));
+  // Nowhere in the hole can the tool be further than two sigmas from where the survey has it.
+  EXPECT_EQ(survey.chosen[2].cov_p_WT_W, 20 * 20 * Eigen::Matrix3d::Identity());
+  EXPECT_EQ(survey.passes[0].cov_p_WT_W, Eigen::Matrix3d::Zero()) << "of the run that is good";
 }
 
 TEST(GiveVerdict, ARunThatGaveNoStationDoesNotFailTheSurvey) {

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/math/statistics.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
 namespace {
@@ -158,17 +159,29 @@ RunVerdict VerdictOfRun(std::span<const Check> checks, std::int32_t run) {
   return VerdictOf(checks, [run](const Check& check) { return IsOf(check, run); });
 }
 
+void MakeUnfit(const Station& tie_in, Station& station) {
+  const double way = station.md - tie_in.md;
+  station.quality |= Quality::kUnfit;
+  station.cov_p_WT_W = tie_in.cov_p_WT_W + way * way * Eigen::Matrix3d::Identity();
+  station.cov_md_inc_azi =
+      Eigen::Vector3d(way * way, kUnknownAngleVariance, kUnknownAngleVariance).asDiagonal();
+}
+
 void GiveVerdict(Survey& survey) {
   std::set<std::int32_t> failed, chosen;
   for (RunSummary& run : survey.runs) {
     run.verdict = VerdictOfRun(survey.checks, run.run);
     if (run.verdict.verdict == Verdict::kFail) failed.insert(run.run);
   }
+  Station tie_in;
+  if (!survey.chosen.empty() && survey.chosen.front().kind == StationKind::kTieIn) {
+    tie_in = survey.chosen.front();
+  }
   for (std::vector<Station>* stations : {&survey.chosen, &survey.passes}) {
     for (Station& s : *stations) {
       if (s.kind == StationKind::kTieIn) continue;
       if (stations == &survey.chosen) chosen.insert(s.run);
-      if (failed.contains(s.run)) s.quality |= Quality::kUnfit;
+      if (failed.contains(s.run)) MakeUnfit(tie_in, s);
     }
   }
   survey.verdict = VerdictOf(std::span<const Check>(survey.checks), [&](const Check& check) {

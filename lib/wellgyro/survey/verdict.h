@@ -26,9 +26,14 @@ WELLGYRO_EXPORT void ShareFalseAlarms(std::vector<Check>& checks);
 /// The worst of the checks of `run`, and of those of no run; not_done counts as pass.
 WELLGYRO_EXPORT RunVerdict VerdictOfRun(std::span<const Check> checks, std::int32_t run);
 
+/// All that can be said of where a station lies whose run failed: its direction is any, and it is
+/// as far from `tie_in` as the hole between them is long, which is its sigma along each axis. So
+/// whoever reads its covariance without its quality is not misled.
+WELLGYRO_EXPORT void MakeUnfit(const Station& tie_in, Station& station);
+
 /// Judges the runs of `survey` by its checks, and the survey by the runs that its chosen stations
-/// are from. Every station of a run that fails becomes Quality::kUnfit: what failed has touched all
-/// that was adjusted with it.
+/// are from. Every station of a run that fails is made unfit: what failed has touched all that was
+/// adjusted with it.
 WELLGYRO_EXPORT void GiveVerdict(Survey& survey);
 
 /// What `check` found, in words: "gyros at rest do not read the Earth's rate (earth_rate, MD 900 m:

@@ -51,6 +51,8 @@ TEST(SummaryText, GivesTheEndAndItsEllipse) {
   EXPECT_THAT(text, HasSubstr("check fail     foresight, run 1: 0.8 against 0.5 deg (acceptance)"));
   EXPECT_THAT(text, HasSubstr("samples_lost, run 1: 0.8 against 0.5 (acceptance)"));
   EXPECT_THAT(text, testing::Not(HasSubstr("gravity")));
+  survey.chosen[1].quality |= Quality::kUnfit;
+  EXPECT_THAT(SummaryText(survey), HasSubstr("95 % ellipse   none: the end is unfit\n"));
 }
 
 TEST(VerdictText, IsOneLineWithItsCauses) {

@@ -15,6 +15,7 @@
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
 namespace {
@@ -121,6 +122,7 @@ class Reader {
       if (v[i] < 0) return Odd(fields, i, "is negative, which a variance or sigma cannot be");
     }
     stations.push_back(Make(v, *kind, *quality));
+    if (unfit) MakeUnfit(stations.front(), stations.back());
     return std::nullopt;
   }
 

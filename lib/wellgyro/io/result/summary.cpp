@@ -25,13 +25,17 @@ std::string EndText(const Station& end) {
   const double minor = k95Plane * std::sqrt(std::max(mean - spread, 0.0));
   double direction = 0.5 * std::atan2(2 * c(0, 1), c(0, 0) - c(1, 1));
   if (direction < 0) direction += kPi;
-  return fmt::format(
+  std::string text = fmt::format(
       "end of survey  MD {} m, inclination {} deg, azimuth {} deg true\n"
-      "position       north {} m, east {} m, TVD {} m\n"
-      "95 % ellipse   {} m by {} m (half axes), the long one towards {} deg; TVD +- {} m\n",
+      "position       north {} m, east {} m, TVD {} m\n",
       Fixed(end.md, 2), Fixed(ToDegrees(end.inclination), 2), AzimuthText(end.azimuth, 2),
-      Fixed(end.p_WT_W.x(), 2), Fixed(end.p_WT_W.y(), 2), Fixed(end.p_WT_W.z(), 2), Fixed(major, 2),
-      Fixed(minor, 2), Fixed(ToDegrees(direction), 0), Fixed(k95Line * std::sqrt(c(2, 2)), 2));
+      Fixed(end.p_WT_W.x(), 2), Fixed(end.p_WT_W.y(), 2), Fixed(end.p_WT_W.z(), 2));
+  if (Has(end.quality, Quality::kUnfit)) return text + "95 % ellipse   none: the end is unfit\n";
+  return text + fmt::format(
+                    "95 % ellipse   {} m by {} m (half axes), the long one towards {} deg; TVD +- "
+                    "{} m\n",
+                    Fixed(major, 2), Fixed(minor, 2), Fixed(ToDegrees(direction), 0),
+                    Fixed(k95Line * std::sqrt(c(2, 2)), 2));
 }
 
 std::string CheckText(const Check& check) {
