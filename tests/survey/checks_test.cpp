@@ -11,6 +11,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
 namespace {
@@ -260,6 +261,21 @@ TEST(Checks, AStatedConvergenceIsComparedWithTheProjections) {
   EXPECT_EQ(Find(Checks(job, {}), "grid_convergence").verdict, Verdict::kPass);
   job.grid->convergence = -*job.grid->convergence;
   EXPECT_EQ(Find(Checks(job, {}), "grid_convergence").verdict, Verdict::kFail);
+}
+
+TEST(Checks, AnAdjustmentThatGaveUpFailsItsRun) {
+  CheckInputs inputs;
+  RunSummary run;
+  run.run = 1;
+  run.fit = RunFit{};
+  const std::vector<RunSummary> runs{run};
+  inputs.runs = runs;
+  const std::vector<Check> checks = MakeChecks(Job{}, inputs);
+  const auto fit = std::find_if(checks.begin(), checks.end(),
+                                [](const Check& check) { return check.code == "fit"; });
+  ASSERT_NE(fit, checks.end());
+  EXPECT_EQ(fit->verdict, Verdict::kFail);
+  EXPECT_EQ(VerdictOfRun(checks, 1).verdict, Verdict::kFail);
 }
 
 }  // namespace

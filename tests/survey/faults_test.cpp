@@ -142,7 +142,9 @@ TEST_P(FaultIsSaid, ByTheCheckThatIsItsOwn) {
   const Survey survey = flight.Surveyed();
   const Check* check = Find(survey, GetParam().code);
   ASSERT_NE(check, nullptr);
-  EXPECT_EQ(check->verdict, GetParam().verdict) << check->limit_source;
+  EXPECT_EQ(check->verdict, GetParam().verdict)
+      << check->value.value_or(0) << " against " << check->limit.value_or(0) << ", "
+      << check->limit_source;
   EXPECT_NE(check->limit_source.find(GetParam().words), std::string::npos) << check->limit_source;
   if (GetParam().verdict != Verdict::kFail || survey.passes.empty()) return;
   EXPECT_EQ(survey.runs[0].verdict.verdict, Verdict::kFail);

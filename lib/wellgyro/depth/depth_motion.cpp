@@ -10,6 +10,8 @@ constexpr Duration kApart{1'900'000'000};  // marks at least
 constexpr double kFar = 10;                // and at most [s]
 constexpr double kGap = 0.5;               // between samples, from which nothing is felt [s]
 constexpr double kLeast = 1e-3;            // sigma of a step: no depth is read to less [m]
+constexpr double kLag = 1;                 // that a step at a start may be in place of itself [s]
+constexpr double kLagMost = 3;             // that is told in full [s]
 constexpr std::int64_t kFirst = 20;        // steps before their scatter is known
 
 /// The way between the middle two less the mean of the ways beside it, of values at four times.
@@ -26,6 +28,11 @@ void DepthMotion::Feel(UtcTime utc, double seconds, double f_z, const DepthTrack
   if (felt_until_ && std::abs((utc - *felt_until_).seconds()) > kGap) {
     passed_count_ = 0;
     speed_ = way_ = 0;
+  }
+  // What a short gap holds was felt as what follows it.
+  if (felt_until_ && *felt_until_ < utc) {
+    seconds += (utc - *felt_until_).seconds();
+    utc = *felt_until_;
   }
   felt_until_ = utc + Duration::Seconds(seconds);
   const UtcTime wanted = last_mark_ ? std::max(utc, *last_mark_ + kApart) : utc;
@@ -78,11 +85,14 @@ void DepthMotion::Compare() {
   const double most = sigma > 0 ? 4 * sigma : HUGE_VAL;
   ++found_.compared;
   sum_size_ += std::min(std::abs(step), most);
-  if (std::abs(step) > std::abs(found_.step)) {
-    found_.step = step;
+  const double beyond_lag = std::max(std::abs(step) - kLag * std::abs(felt), 0.0);
+  if (beyond_lag > std::abs(found_.step)) {
+    found_.step = std::copysign(beyond_lag, step);
     found_.step_md = passed_[2].md;
   }
-  const double held = std::clamp(step, -most, most);
+  // A step at a start is no lag.
+  const double lags = most + kLagMost * std::abs(felt);
+  const double held = std::clamp(step, -lags, lags);
   rate2_ += felt * felt;
   rate_step_ += felt * held;
 }

@@ -24,7 +24,7 @@ class WELLGYRO_EXPORT DepthMotion {
  public:
   struct Found {
     std::int64_t compared = 0;      ///< groups of four marks
-    double step = 0;                ///< the largest [m]
+    double step = 0;                ///< the largest, less what a lag of 1 s makes there [m]
     double sigma_step = 0;          ///< of one, as they scatter [m]
     std::optional<double> step_md;  ///< where [m]
     double lag = 0;                 ///< positive where depth comes late [s]

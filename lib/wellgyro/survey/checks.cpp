@@ -313,6 +313,8 @@ Check CheckAsked(const Job& job, std::span<const Station> chosen) {
 std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
   std::vector<Check> checks;
   for (const RunSummary& run : inputs.runs) {
+    // What the samples themselves say comes first: other checks fail of it too, and blame others.
+    checks.insert(checks.end(), run.sample_checks.begin(), run.sample_checks.end());
     if (job.tool && (job.tool->calibrated || job.tool->expires)) {
       checks.push_back(CheckCalibrationDate(*job.tool, run.begin));
       checks.back().run = run.run;
@@ -334,7 +336,6 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     }
     if (run.samples > 0 || run.seconds_without_depth > 0) checks.push_back(unknown);
     CheckSamples(job, run, checks);
-    checks.insert(checks.end(), run.sample_checks.begin(), run.sample_checks.end());
     CheckFit(job, run, checks);
   }
   CheckReturns(job, inputs, checks);

@@ -18,6 +18,8 @@
 namespace wellgyro {
 namespace {
 
+constexpr double kLeastRoll = 1e-3 * units::kDegPerHour;
+
 double Square(double x) { return x * x; }
 
 /// What a gyro's bias changes by in `seconds`, by the coefficients [rad/s].
@@ -186,8 +188,10 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
     if (fix.chi_square && !vertical) last = &fix;
     if (!fix.roll_rate || vertical) continue;
     rolls = true;
-    checks.push_back(Compare("roll_at_rest", run.run, {*fix.roll_rate, fix.sigma_roll_rate},
-                             std::nullopt, units::kDegPerHour, "deg/h"));
+    // A tool that the job calls perfect is not known to less than numbers round.
+    const double sigma = std::hypot(fix.sigma_roll_rate, kLeastRoll);
+    checks.push_back(Compare("roll_at_rest", run.run, {*fix.roll_rate, sigma}, std::nullopt,
+                             units::kDegPerHour, "deg/h"));
     checks.back().md = fix.md;
   }
   if (!rolls) checks.push_back(NotDone("roll_at_rest", run.run, "no stop long enough"));

@@ -15,6 +15,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/sensor/sensor_csv.h"
 #include "wellgyro/simulate/truth.h"
 
@@ -154,6 +155,7 @@ TEST(SensorFiles, AMemoryToolIsJoinedToTheTallyByItsStops) {
   EXPECT_LT(std::abs(off), 1.0) << "joined without a first guess";
   EXPECT_LT(std::abs(off), 4 * done.report->clock->Sigma(ToolTime{}) + 0.3);
   ASSERT_EQ(done.survey.unusable, "");
+  EXPECT_NE(done.survey.verdict.verdict, Verdict::kFail) << VerdictText(done.survey.verdict);
   ASSERT_GE(done.survey.chosen.size(), 8u);
   const Truth truth(simulation);
   for (const Station& s : done.survey.chosen) {

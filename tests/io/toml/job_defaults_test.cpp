@@ -89,7 +89,7 @@ TEST(JobDefaults, ANoiseThatNobodyStatesIsTold) {
 }
 
 TEST(JobDefaults, ATieInBelowTheDatumSaysHowDeepItIs) {
-  EXPECT_THAT(FaultOf("[tie_in]\nmd_m = 100\n"), HasSubstr("tvd_m is missing beside md_m"));
+  EXPECT_THAT(FaultOf("[tie_in]\nmd_m = 100\n"), HasSubstr("tvd_m: is missing beside md_m"));
   EXPECT_EQ(FaultOf("[tie_in]\nmd_m = 100\ntvd_m = 99\n"), "");
   EXPECT_EQ(FaultOf("[tie_in]\nmd_m = 0\n"), "");
 }

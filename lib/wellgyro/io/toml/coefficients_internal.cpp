@@ -46,7 +46,7 @@ void FillUnstated(const std::vector<Member>& stated, ErrorPriors& priors) {
     if (!is_stated(member)) priors.*member = value;
   };
   const auto follow = [&](Member member, Member other, double ratio, double value) {
-    fill(member, is_stated(other) ? ratio * priors.*other : value);
+    fill(member, is_stated(other) ? std::min(ratio * priors.*other, 1.0) : value);
   };
   using E = ErrorPriors;
   constexpr double kG = units::kStandardGravity;
