@@ -272,7 +272,8 @@ class Program(ProgramTest):
         # What the job leaves out is not zero: accelerometers without noise would count as stuck.
         self.Log("readme/tool", SIMULATION.replace("61.0", str(latitude)).replace(
             "[tool]\n", "[tool]\naccel_noise_mps2_per_sqrt_hz = 2e-4\n"))
-        self.OtherWells("readme", re.search(r"(?s)```toml\n(format = \"wellgyro.clearance.*?)```", text).group(1))
+        policy = re.search(r'(?s)```toml\n(format = "wellgyro.clearance.*?)```', text)
+        self.OtherWells("readme", policy.group(1))
         ran = set()
         commands = [match.group(1) or match.group(2) for match in
                     re.finditer(r"(?m)^(wellgyro .*)$|`(wellgyro survey --job job[^`]+)`", text)]

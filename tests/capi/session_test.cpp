@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kJob =
     "format = \"wellgyro.job/1\"\n[well]\nlatitude_deg = 60\n[stations]\nat_stops = "
-    "true\n[tie_in]\nmd_m = 500\n"
+    "true\n[tie_in]\nmd_m = 500\ntvd_m = 500\n"
     "[noise]\nangle_random_walk_deg_per_sqrt_h = 0.01\n[errors]\ngyro_bias_sigma_deg_per_h = 0.1\n"
     "accel_bias_sigma_mps2 = 1e-3\n";
 TEST(Session, AJobThatCannotBeUsedIsToldWithItsLine) {
