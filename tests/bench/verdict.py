@@ -142,8 +142,8 @@ def Files(well, seed, fault, size):
 
 
 def TruthAt(path, md):
-    """Position where the truth passes `md` on its way in."""
-    before = None
+    """Position where the truth passes `md` on its way in; the deepest where it never does."""
+    before = deepest = None
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             here = [float(row[key]) for key in ("MD[m]", "N[m]", "E[m]", "TVD[m]")]
@@ -151,7 +151,8 @@ def TruthAt(path, md):
                 part = (md - before[0]) / (here[0] - before[0])
                 return [a + part * (b - a) for a, b in zip(before[1:], here[1:])]
             before = here
-    return before[1:]
+            deepest = here if deepest is None or here[0] > deepest[0] else deepest
+    return deepest[1:]
 
 
 def Compared(folder):
