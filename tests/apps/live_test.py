@@ -468,16 +468,21 @@ class Live(ProgramTest):
 
     def test_two_tools_in_one_string(self):
         url, out = self.Udpm(), self.Path("string")
-        survey = self.Listening("survey", "--job", self.job, "--from", url, "--out", out)
-        senders = []
+        # Both senders give the same depths, the one a little before the other: at 40 times the speed,
+        # a process that starts half a second later is 20 s behind.
+        patient = self.Write("patient.toml", JOB.replace("latency_s = 2.0", "latency_s = 20.0"))
+        jobs = []
         for tool in (1, 2):
             job = self.Write(f"tool{tool}.toml", SIMULATION.replace("seed = 5", f"seed = {tool}") +
                              f"tool = {tool}\nsession = {tool}\n")
             log = self.Path(f"tool{tool}.lcm")
             self.Make("simulate", "--job", job, "--out", log)
-            self.Make("survey", "--job", self.job, "--from", log, "--out",
+            self.Make("survey", "--job", patient, "--from", log, "--out",
                       self.Path(f"alone{tool}"))
-            senders.append(self.Start("simulate", "--job", job, "--out", url, "--speed", "40"))
+            jobs.append(job)
+        survey = self.Listening("survey", "--job", patient, "--from", url, "--out", out)
+        senders = [self.Start("simulate", "--job", job, "--out", url, "--speed", "40")
+                   for job in jobs]
         for sender in senders:
             sender.communicate(timeout=60)
         time.sleep(1)

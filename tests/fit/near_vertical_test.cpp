@@ -105,12 +105,18 @@ void ExpectAsSureAsItSays(const Well& well, int seeds, bool by_rotations) {
   const LeastSquaresAdjuster adjuster;
   Job job = testing::JobOf(tool);
   if (by_rotations) job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
+  int judged = 0;  // runs whose verdict lets them be; of clean ones chance fails 1 %
   for (int seed = 1; seed <= seeds; ++seed) {
     const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));
     testing::CollectingSink sink;
     const Survey survey =
         testing::SurveyOf(simulation, job, sink, Losing(well.lost, simulation.seed),
                           by_rotations ? nullptr : &adjuster);
+    if (survey.verdict.verdict == Verdict::kFail) {
+      std::printf("seed %d fails: %s\n", seed, survey.verdict.causes.front().c_str());
+      continue;
+    }
+    ++judged;
     const Truth truth(simulation);
     const Eigen::Vector3d start = truth.well().PlaceAt(5).p_WT_W;
     for (const Station& s : survey.chosen) {
@@ -128,6 +134,7 @@ void ExpectAsSureAsItSays(const Well& well, int seeds, bool by_rotations) {
       }
     }
   }
+  EXPECT_GE(judged, seeds - 1 - seeds / 25) << well.name;
   // In all wells together with 99 %. Timid it may be: with north unknown near vertical, how the
   // Earth turns the azimuth is only bounded.
   const double risk = 0.01 / static_cast<double>(std::size(kWells) * depths.size() * 3);
@@ -137,15 +144,15 @@ void ExpectAsSureAsItSays(const Well& well, int seeds, bool by_rotations) {
                 inclination[i].mean(), inclination[i].sigma_deg(), azimuth[i].mean(),
                 azimuth[i].sigma_deg(), place[i].mean(),
                 std::sqrt(place[i].variance / place[i].count));
-    EXPECT_EQ(azimuth[i].count, seeds) << where;
-    const double band = ChiSquareQuantile(1 - risk, seeds);
+    EXPECT_EQ(azimuth[i].count, judged) << where;
+    const double band = ChiSquareQuantile(1 - risk, judged);
     EXPECT_LT(inclination[i].normalised, band) << where;
-    EXPECT_GT(inclination[i].normalised, ChiSquareQuantile(risk, seeds) / 2) << where;
+    EXPECT_GT(inclination[i].normalised, ChiSquareQuantile(risk, judged) / 2) << where;
     EXPECT_LT(azimuth[i].normalised, band) << where;
-    EXPECT_LT(place[i].normalised, ChiSquareQuantile(1 - risk, 3 * seeds)) << where;
+    EXPECT_LT(place[i].normalised, ChiSquareQuantile(1 - risk, 3 * judged)) << where;
     EXPECT_LT(std::sqrt(place[i].variance / place[i].count), 2.0) << where;
   }
-  EXPECT_GT(seen.count, seeds / 2) << well.name;
+  EXPECT_GT(seen.count, judged / 2) << well.name;
   // A tool that slides has nothing to tell its bias from the Earth's rate by.
   const double rotations = well.rpm > 0 ? 0.7 : 1.5;
   EXPECT_LT(seen.sigma_deg(), by_rotations ? rotations : 2.5) << well.name;

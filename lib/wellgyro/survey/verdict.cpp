@@ -17,6 +17,9 @@ namespace {
 
 // So many causes of one kind say it all; the rest stand in checks.csv.
 constexpr std::size_t kCausesListed = 12;
+// Squares over freedom that are no fault yet: an hour's record tells white noise to some 7 %, and
+// of thousands of rows chance alone would fail for less.
+constexpr double kNoiseTold = 1.15;
 // A limit of chance for ever fewer clean runs is one for ever stranger distributions.
 constexpr double kLeastShare = 1e-7;
 
@@ -29,7 +32,7 @@ Limits LimitsOf(const Check& check, double share) {
   const double more = std::min(10 * share, 0.5);
   if (check.freedom > 0) {
     return {ChiSquareQuantile(1 - more, check.freedom) / check.freedom,
-            ChiSquareQuantile(1 - share, check.freedom) / check.freedom};
+            std::max(ChiSquareQuantile(1 - share, check.freedom) / check.freedom, kNoiseTold)};
   }
   const double sigma = check.sigma.value_or(0);
   return {-NormalQuantile(more / 2) * sigma, -NormalQuantile(share / 2) * sigma};
