@@ -26,5 +26,6 @@ void AddModels(CLI::App& app, int& exit_code);
 void AddNorth(CLI::App& app, int& exit_code);
 void AddConvert(CLI::App& app, int& exit_code);
 void AddCheck(CLI::App& app, int& exit_code);
+void AddReport(CLI::App& app, int& exit_code);
 
 }  // namespace wellgyro::apps

@@ -30,6 +30,7 @@ int Run(int argc, char** argv) {
   AddNorth(app, exit_code);
   AddConvert(app, exit_code);
   AddCheck(app, exit_code);
+  AddReport(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

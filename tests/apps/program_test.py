@@ -52,7 +52,7 @@ class Program(ProgramTest):
         for out in ("one", "two"):
             self.assertEqual(self.Survey(self.log, out).returncode, 0)
         names = sorted(os.listdir(self.Path("one")))
-        self.assertEqual(names, sorted([*RESULT, "source.toml"]))
+        self.assertEqual(names, sorted([*RESULT, "source.toml", "survey.json"]))
         same, differ, odd = filecmp.cmpfiles(self.Path("one"), self.Path("two"), names,
                                              shallow=False)
         self.assertEqual((len(same), differ, odd), (len(names), [], []))

@@ -23,6 +23,7 @@ ALLOWED = {
     "io": LOW | STAGES | {"survey", "simulate"},
     "fit": LOW | STAGES | {"survey"},
     "bus": LOW | STAGES | {"survey"},
+    "page": LOW | STAGES | {"survey", "io"},
 }
 ALLOWED.update({stage: set(LOW) for stage in STAGES})
 

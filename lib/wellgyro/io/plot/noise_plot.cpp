@@ -15,8 +15,8 @@ namespace {
 constexpr double kWidth = 900;
 constexpr double kHeight = 620;
 constexpr double kLeft = 90;
-constexpr double kTop = 50;
-constexpr double kRight = 250;  // the legend stands here
+constexpr double kTop = 66;
+constexpr double kRight = 290;  // the legend stands here
 constexpr double kBottom = 70;
 
 // Told apart also by readers who do not see red and green (Okabe and Ito).
@@ -100,6 +100,7 @@ class Plot {
     DrawPoints();
     svg_ += "</g>\n";
     DrawLegend();
+    DrawWarnings();
     return svg_ + "</svg>\n";
   }
 
@@ -173,6 +174,9 @@ class Plot {
         (kTop + kHeight - kBottom) / 2, Escaped(labels_.deviation));
     svg_ += fmt::format("<text x=\"{:g}\" y=\"30\" font-size=\"16\">{}</text>\n", kLeft,
                         Escaped(labels_.title));
+    std::string facts;
+    for (const std::string& fact : labels_.facts) facts += (facts.empty() ? "" : "; ") + fact;
+    Text(kLeft, 50, "start", Escaped(facts));
   }
 
   std::string PathOf(const std::vector<Point>& points) const {
@@ -250,7 +254,7 @@ class Plot {
                       "fill-opacity=\"0.5\"/>",
                       x, y - 6),
           "95 % interval");
-    if (!fit_) return;
+    if (!fit_) return DrawBounds(y);
     const auto stroke = [&](const char* colour, const char* dash) {
       return fmt::format(
           "<path d=\"M{:g} {:g}h26\" stroke=\"{}\" stroke-width=\"1.5\" stroke-dasharray=\"{}\"/>",
@@ -269,6 +273,36 @@ class Plot {
         Text(x + 34, y + 2, "start", Escaped(label.substr(split + 1)));
         y += 24;
       }
+    }
+    DrawBounds(y + 8);
+  }
+
+  /// What is not observable, as far as the paper goes.
+  void DrawBounds(double y) {
+    const double x = kWidth - kRight + 16;
+    for (const std::string& bound : labels_.bounds) {
+      if (y > kHeight - kBottom) return;
+      svg_ += fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"11\">{}</text>\n", x, y + 4,
+                          Escaped(bound));
+      y += 16;
+    }
+  }
+
+  void DrawWarnings() {
+    constexpr std::size_t kMost = 6;
+    constexpr std::size_t kLetters = 86;  // of a line that stays on the paper
+    double y = kHeight - kBottom - 12;
+    for (std::size_t i = std::min(labels_.warnings.size(), kMost); i-- > 0;) {
+      std::string text = labels_.warnings[i];
+      if (text.size() > kLetters) {
+        std::size_t end = kLetters;
+        while ((static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // whole characters
+        text = text.substr(0, end) + " ...";
+      }
+      svg_ +=
+          fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"12\" fill=\"#9c0000\">{}</text>\n",
+                      kLeft + 10, y, Escaped(text));
+      y -= 17;
     }
   }
 

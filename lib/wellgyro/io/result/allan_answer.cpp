@@ -32,6 +32,7 @@ class Analyst {
     answer_.losses = series_.damaged;
     if (request_.phases) RatesFromPhases(series_);
     const AllanResult octaves = OctavesOfAll();
+    samples_ = octaves.samples;
     TellMissing(octaves);
     if (!HasTerms(octaves)) {
       return Fault{.code = FaultCode::kRange,
@@ -289,13 +290,37 @@ class Analyst {
     for (const auto term : kAllNoiseTerms) {
       if (!with_fit || !fit_->term[term].observable) continue;
       const TermText text = TextOf(term, unit_);
-      labels.term[term] = fmt::format("{} {}\n{}", text.name, text.letter,
-                                      Shown(fit_->term[term].value, text.unit_si, text.unit));
+      labels.term[term] = fmt::format("{} {}\n{:.4g} \u00b1 {:.2g} {}", text.name, text.letter,
+                                      fit_->term[term].value / text.unit_si,
+                                      fit_->term[term].sigma / text.unit_si, text.unit);
     }
+    SayBesides(labels);
     answer_.plot = NoisePlotSvg(rows_, with_fit ? &*fit_ : nullptr, labels);
   }
 
+  /// Length and rate of the log, what it cannot show, and what is wrong with it.
+  void SayBesides(NoisePlotLabels& labels) const {
+    labels.facts = {
+        fmt::format("{} at {:g} Hz", Duration(static_cast<double>(samples_) * series_.period),
+                    1 / series_.period),
+        "\u00b1 is one sigma, the band 95 %"};
+    if (request_.deviation == Deviation::kModified) {
+      labels.facts.emplace_back("the fitted terms are of another deviation");
+    }
+    for (const auto term : kAllNoiseTerms) {
+      const bool asked = term != NoiseTerm::kSinusoid || model_.shape.sinusoid_frequency > 0;
+      if (!fit_ || !asked || fit_->term[term].observable) continue;
+      const TermText text = TextOf(term, unit_);
+      labels.bounds.push_back(fmt::format("{} not observable,", text.name));
+      labels.bounds.push_back(fmt::format(
+          "   below {} (95 %)", Shown(fit_->term[term].upper95, text.unit_si, text.unit)));
+    }
+    labels.warnings = answer_.notes;
+    if (answer_.unfit) labels.warnings.push_back("no fit: " + answer_.unfit->text);
+  }
+
   SampleSeries series_;
+  std::int64_t samples_ = 0;  ///< of the log, the missing ones too
   const AllanRequest& request_;
   AllanUnit unit_;
   double si_ = 1;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace wellgyro::apps {
+
+/// Prints the page in the file `html` as `pdf`, by a headless Chromium from PATH with a profile of
+/// its own. The complaint, where there is no Chromium or it did not do it within a minute.
+std::optional<std::string> PrintByChromium(const std::filesystem::path& html,
+                                           const std::filesystem::path& pdf);
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,142 @@
+#include "result_report.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/io/atomic_file.h"
+#include "wellgyro/io/result/survey_json.h"
+#include "wellgyro/io/text_file.h"
+
+#include "chromium.h"
+#include "commands.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Writes one file; false where it cannot be, which has been said.
+bool Write(const fs::path& path, std::string bytes) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const std::vector<OutputFile> files{{path.filename().string(), std::move(bytes)}};
+  if (const auto fault = WriteFiles(folder, files)) {
+    Complain(*fault);
+    return false;
+  }
+  fmt::print("wrote {}\n", path.string());
+  return true;
+}
+
+Result<std::string> DocumentOf(const ResultReport& report) {
+  const Result<ResultTexts> texts = ReadResultTexts(report.result);
+  if (!texts) return texts.fault();
+  std::vector<OtherWell> others;
+  for (const std::string& name : report.others) {
+    Result<std::string> text = ReadTextFile(name);
+    if (!text) return text.fault();
+    others.push_back({fs::path(name).stem().string(), *std::move(text)});
+  }
+  Result<std::string> json = SurveyJson(*texts, others);
+  if (json) return json;
+  Fault fault = json.fault();
+  if (texts->contains(fault.source)) fault.source = (report.result / fault.source).string();
+  return fault;
+}
+
+}  // namespace
+
+int WriteReport(const ResultReport& report) {
+  const Result<std::string> json = DocumentOf(report);
+  if (!json) {
+    Complain(json.fault());
+    return kUnusable;
+  }
+  if (!report.json.empty() && !Write(report.json, *json)) return kUnusable;
+  if (report.out.empty()) return kDone;
+  Result<std::string> page = ReportPage(*json, report.options);
+  if (!page) {
+    Complain(page.fault());
+    return kUnusable;
+  }
+  if (!Write(report.out, *std::move(page))) return kUnusable;
+  if (report.pdf.empty()) return kDone;
+  if (const auto complaint = PrintByChromium(report.out, report.pdf)) {
+    Complain(*complaint);
+    return kUnusable;
+  }
+  fmt::print("wrote {}\n", report.pdf.string());
+  return kDone;
+}
+
+int ReportOnSurvey(const fs::path& out, bool page) {
+  std::vector<fs::path> folders;
+  std::error_code absent;
+  if (fs::exists(out / "run.toml", absent)) folders.push_back(out);
+  for (fs::directory_iterator entry(out, absent), end; !absent && entry != end;
+       entry.increment(absent)) {
+    const bool tool = entry->path().filename().string().starts_with("tool-");
+    if (tool && fs::exists(entry->path() / "run.toml")) folders.push_back(entry->path());
+  }
+  std::sort(folders.begin(), folders.end());
+  int code = kDone;
+  for (const fs::path& folder : folders) {
+    ResultReport report{.result = folder, .json = folder / "survey.json"};
+    if (page) report.out = folder / "report.html";
+    code = std::max(code, WriteReport(report));
+  }
+  return code;
+}
+
+void AddReport(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::string result, out, pdf, json;
+    std::vector<std::string> others;
+    ReportOptions page;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("report", "The report of a survey's result folder, as one page");
+  command->add_option("RESULT", options->result, "Folder with run.toml and survey.csv")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--out", options->out, "The page, whole in one file")
+      ->required()
+      ->type_name("HTML");
+  command->add_option("--pdf", options->pdf, "The page printed too, by a Chromium that is here")
+      ->type_name("PDF");
+  command->add_option("--json", options->json, "All that the page rests on: survey.json")
+      ->type_name("JSON");
+  command
+      ->add_option("--other", options->others,
+                   "A survey of another well, drawn beside; in any format that convert reads")
+      ->allow_extra_args(false)
+      ->type_name("SURVEY");
+  using Units = ReportOptions::Units;
+  command->add_option("--units", options->page.units, "Units of length")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Units>{{"metric", Units::kMetric}, {"field", Units::kField}}))
+      ->type_name("metric|field");
+  using Paper = ReportOptions::Paper;
+  command->add_option("--paper", options->page.paper, "Paper of the print")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Paper>{{"a4", Paper::kA4}, {"letter", Paper::kLetter}}))
+      ->type_name("a4|letter");
+  command->footer(
+      "Example:\n  wellgyro report result --out report.html --pdf report.pdf --other plan.csv");
+  command->callback([options, &exit_code] {
+    exit_code = WriteReport({.result = options->result,
+                             .out = options->out,
+                             .pdf = options->pdf,
+                             .json = options->json,
+                             .others = options->others,
+                             .options = options->page});
+  });
+}
+
+}  // namespace wellgyro::apps

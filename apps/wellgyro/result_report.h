@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "wellgyro/page/report_page.h"
+
+namespace wellgyro::apps {
+
+struct ResultReport {
+  std::filesystem::path result;  ///< folder of one tool's survey files
+  std::filesystem::path out;     ///< page; empty: none
+  std::filesystem::path pdf;     ///< the same printed; empty: none
+  std::filesystem::path json;    ///< survey.json; empty: none
+  std::vector<std::string> others;
+  ReportOptions options;
+};
+
+/// Writes what is asked for and says where it is; the exit code.
+int WriteReport(const ResultReport& report);
+
+/// After a survey: survey.json, and with `page` report.html, into each folder of results in `out`.
+/// The exit code.
+int ReportOnSurvey(const std::filesystem::path& out, bool page);
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,294 @@
+"""The report of a survey, in a browser and on paper: it asks nothing of a network, says what the
+files say, shows any name as text, and can be read."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import unittest
+
+import browser
+from harness import DEMO, Job, Move, ProgramTest, Run, Simulation, Stop
+
+STREAMS = "imu_hz = 10.0\ndepth_hz = 2.0\n"
+TOOL = "accel_noise_mps2_per_sqrt_hz = 2e-4\n"
+JOB = Job(25.0).replace("accel_noise_mps2_per_sqrt_hz = 0", "accel_noise_mps2_per_sqrt_hz = 2e-4")
+THERE = Stop(120) + Move(200) + Stop(120)
+LISTING = """Array.from(document.querySelectorAll('table.listing tbody tr')).map(
+    r => Array.from(r.cells).map(c => c.textContent))"""
+# Every text against what lies behind it, WCAG 2's ratio; those below 4.5.
+FAINT = """(() => {
+  const parts = c => (c.match(/[\\d.]+/g) || []).map(Number);
+  const light = ([r, g, b]) => [r, g, b].map(v => v / 255).map(
+    v => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = e => { for (; e; e = e.parentElement) {
+    const c = parts(getComputedStyle(e).backgroundColor);
+    if (c.length === 3 || c[3] > 0) return c; } return [255, 255, 255]; };
+  const faint = new Set();
+  document.querySelectorAll('body *').forEach(e => {
+    if (!Array.from(e.childNodes).some(n => n.nodeType === 3 && n.data.trim())) return;
+    if (['SCRIPT', 'STYLE'].includes(e.tagName)) return;
+    const svg = e.namespaceURI.endsWith('svg');
+    const a = light(parts(getComputedStyle(e)[svg ? 'fill' : 'color']));
+    const b = light(svg ? [255, 255, 255] : behind(e));
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (ratio < 4.5) faint.add(e.tagName + ' ' + e.className + ' ' + ratio.toFixed(2));
+  });
+  return Array.from(faint); })()"""
+HOSTILE = ["<script>alert(1)</script>", "\"><img src=x onerror=alert(2)>", "</script><b>bold",
+           "\u202eright to left \u05e9\u05dc\u05d5\u05dd", "\U0001f6e2 drill", "long " * 2000,
+           "a & b 'quoted'", "-->", "]]>"]
+
+
+@unittest.skipUnless(browser.PROGRAM, "no Chromium on this machine")
+class Report(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser = browser.Browser()
+        cls.addClassCleanup(cls.browser.Close)
+        cls.Make("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                 os.path.join(DEMO, "run.lcm"), "--out", cls.Path("demo"), "--report")
+
+    def Survey(self, name, steps, *, faults="", job=JOB):
+        simulation = self.Write(name + ".toml",
+                                Simulation(steps, STREAMS, end_md_m=250.0, tool=TOOL) + faults)
+        self.Make("simulate", "--job", simulation, "--out", self.Path(name + ".lcm"))
+        return Run("survey", "--job", self.Write(name + ".job.toml", job), "--from",
+                   self.Path(name + ".lcm"), "--out", self.Path(name))
+
+    def Copy(self, name, **changed):
+        """The demonstration's result with the text of some files changed."""
+        shutil.copytree(self.Path("demo"), self.Path(name), dirs_exist_ok=True)
+        for file, change in changed.items():
+            path = file.replace("_", ".")
+            self.Write(os.path.join(name, path), change(self.Read(name, path)))
+        return self.Path(name)
+
+    def Page(self, name, *options, **of_page):
+        page_file = self.Path(name + ".html")
+        done = Run("report", self.Path(name), "--out", page_file, *options)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        page = browser.Page(self.browser, **of_page)
+        page.Open(page_file)
+        return page
+
+    def SameNumbers(self, page, name):
+        """The listing, and the document in the page, against survey.csv."""
+        rows = self.Rows(name, "survey.csv")
+        listed = page.Ask(LISTING)
+        self.assertEqual(len(listed), len(rows))
+        grid = "AZI_GRID[deg]" in rows[0]
+        shown = [("MD[m]", 2), ("INC[deg]", 3), ("AZI_TRUE[deg]", 3)]
+        shown += [("AZI_GRID[deg]", 3)] if grid else []
+        shown += [("TVD[m]", 2), ("N[m]", 2), ("E[m]", 2)]
+        shown += [("NORTHING[m]", 2), ("EASTING[m]", 2)] if grid else []
+        shown += [("DLS[deg/30m]", 2), ("SIG_INC[deg]", 3), ("SIG_AZI[deg]", 3)]
+        document = json.loads(page.Ask("document.getElementById('survey').textContent"))
+        self.assertEqual(document["stations"]["columns"], list(rows[0]))
+        for cells, row, exact in zip(listed, rows, document["stations"]["rows"], strict=True):
+            for cell, (column, decimals) in zip(cells, shown, strict=False):
+                if row[column] == "":
+                    self.assertEqual(cell, "\u2013")
+                else:
+                    self.assertLessEqual(abs(float(cell) - float(row[column])),
+                                         0.5001 * 10 ** -decimals, (column, row["MD[m]"]))
+            for value, text in zip(exact, row.values(), strict=True):
+                self.assertEqual(value, None if text == "" else text if isinstance(value, str)
+                                 else float(text))
+
+    def Quiet(self, page):
+        self.assertEqual((page.requests, page.errors), ([], []))
+        self.assertEqual(page.Ask("document.documentElement.dataset.drawn"),
+                         str(page.Ask("document.querySelectorAll('figure.chart svg').length"
+                                      " - document.querySelectorAll('figure.empty').length")))
+
+    def test_of_the_demonstration(self):
+        page = self.Page("demo")
+        self.Quiet(page)
+        self.SameNumbers(page, "demo")
+        self.assertEqual(page.Ask("document.querySelectorAll('section[id^=block]').length"), 9)
+        self.assertIn("Verdict: warn", page.Ask("document.querySelector('.verdict').innerText")
+                      .replace("VERDICT: WARN", "Verdict: warn"))
+        self.assertEqual(self.Bytes("demo", "report.html"), self.Bytes("demo.html"))
+        document = json.loads(self.Read("demo", "survey.json"))
+        self.assertEqual(document["format"], "wellgyro.survey/1")
+
+    def test_of_a_run_that_fails(self):
+        done = self.Survey("dead", THERE, faults='[[fault]]\ncause = "gyro_dead"\naxis = "x"\n')
+        self.assertEqual(done.returncode, 4, done.stderr)
+        page = self.Page("dead")
+        self.Quiet(page)
+        self.SameNumbers(page, "dead")
+        said = page.Ask("document.querySelector('.verdict').textContent")
+        self.assertIn("a gyro axis does not answer", said)
+        self.assertIn("Not to be handed over", said)
+        self.assertEqual(page.Ask("document.querySelector('main').firstElementChild.className"),
+                         "verdict fail")
+
+    def test_of_two_runs(self):
+        begin, half = 1_767_225_600_000_000, 1_767_225_600_000_000 + 440_000_000
+        job = JOB + f"[[run]]\nnumber = 1\nend_utime_us = {half}\n" \
+                    f"[[run]]\nnumber = 2\nbegin_utime_us = {half}\n"
+        self.assertLess(begin, half)
+        done = self.Survey("two", THERE + Move(50) + Stop(120), job=job)
+        self.assertIn(done.returncode, (0, 4), done.stderr)
+        page = self.Page("two")
+        self.Quiet(page)
+        self.SameNumbers(page, "two")
+        self.assertEqual(len(self.Toml("two", "run.toml")["run"]),
+                         page.Ask("document.querySelectorAll('table.samples tbody tr').length"))
+
+    def test_of_a_stream_that_ended(self):
+        ended = self.Copy("ended", source_toml=lambda text: text.replace(
+            "name =", 'ended = "the bus was lost"\nname =', 1))
+        self.assertTrue(os.path.isdir(ended))
+        page = self.Page("ended")
+        self.Quiet(page)
+        self.assertIn("the bus was lost", page.Ask("document.querySelector('.verdict').textContent"))
+
+    def test_a_difference_between_in_and_out_is_marked_where_it_is(self):
+        def Plant(text):
+            lines = text.split("\n")
+            at = next(i for i, line in enumerate(lines)
+                      if line.startswith("1,out,") and line.split(",")[4] == "2000.0000")
+            cells = lines[at].split(",")
+            cells[5] = f"{float(cells[5]) + 0.4:.6f}"
+            return "\n".join([*lines[:at], ",".join(cells), *lines[at + 1:]])
+
+        rows = """Array.from(document.querySelectorAll('table.beyond tbody tr')).map(
+            r => Array.from(r.cells).map(c => c.textContent))"""
+        self.assertNotIn("2000.00", [row[1] for row in self.Page("demo").Ask(rows)])
+        self.Copy("planted", passes_csv=Plant)
+        page = self.Page("planted")
+        marked = [row for row in page.Ask(rows) if row[0] == "inclination"]
+        self.assertEqual([row[1] for row in marked], ["2000.00"])
+        self.assertAlmostEqual(abs(float(marked[0][3])), 0.4, delta=0.02)
+        flags = page.Ask("document.querySelectorAll('#run-1-out-inclination circle[r=\"6\"]').length")
+        self.assertEqual(flags, 1)
+
+    def test_any_name_is_shown_as_text(self):
+        def Rename(text):
+            for name in HOSTILE:
+                key = json.dumps(f"key {name[:30]}")
+                text = text.replace("[verdict]\n", f"[verdict]\n", 1).replace(
+                    "[identity]\n", f"[identity]\n{key} = {json.dumps(name)}\n", 1)
+            return text.replace('name = "ISCWSA 2"', "name = " + json.dumps(HOSTILE[0]), 1)
+
+        self.Copy("hostile", run_toml=Rename)
+        page = self.Page("hostile")
+        self.Quiet(page)
+        self.assertEqual(page.Ask("document.querySelector('h1 bdi').textContent"), HOSTILE[0])
+        shown = page.Ask("Array.from(document.querySelectorAll('.facts dd bdi')).map(e => e.textContent)")
+        for name in HOSTILE:
+            self.assertIn(name, shown)
+        self.assertEqual(page.Ask("document.querySelectorAll('main script, main img, main b').length"), 0)
+        self.assertEqual(page.Ask("document.scripts.length"), 4)
+        self.assertLessEqual(page.Ask("document.documentElement.scrollWidth"), 1280)
+
+    def test_a_thousand_stations(self):
+        def Longer(text):
+            head, *rows = text.rstrip("\n").split("\n")
+            first = head.split(",").index("MD[m]")
+            longer = [head]
+            for k in range(3):
+                for row in rows:
+                    cells = row.split(",")
+                    cells[first] = f"{float(cells[first]) + 4000 * k:.4f}"
+                    longer.append(",".join(cells))
+            return "\n".join(longer[:1001] if first == 0 else longer) + "\n"
+
+        self.Copy("long", survey_csv=Longer, passes_csv=Longer)
+        page = self.Page("long")
+        self.Quiet(page)
+        self.SameNumbers(page, "long")
+        size = os.path.getsize(self.Path("long.html"))
+        took = page.Ask("performance.timing.loadEventEnd - performance.timing.navigationStart")
+        print(f"1000 stations: {size / 1e6:.2f} MB, drawn in {took / 1e3:.2f} s")
+        self.assertLess(size, 5e6)
+        self.assertLess(took, 2000 if os.environ.get("WELLGYRO_TIMED") else 20000)
+
+    def test_can_be_read_without_scripts(self):
+        page = self.Page("demo", scripts=False)
+        root = page.Do("DOM.getDocument")["root"]["nodeId"]
+        count = lambda what: len(page.Do("DOM.querySelectorAll", nodeId=root, selector=what)["nodeIds"])
+        self.assertGreaterEqual(count("figure.chart svg"), 8)
+        self.assertEqual(count("figure.chart svg"), count("figure.chart"))
+        self.assertEqual(count("table.listing tbody tr"), len(self.Rows("demo", "survey.csv")))
+        self.assertEqual((page.requests, page.errors), ([], []))
+
+    def test_can_be_read_by_everyone(self):
+        page = self.Page("demo")
+        self.assertEqual(page.Ask(FAINT), [])
+        for width in (1280, 390):
+            page = self.Page("demo", width=width)
+            self.assertLessEqual(page.Ask("document.documentElement.scrollWidth"), width)
+
+    def test_one_cursor_goes_through_all_charts(self):
+        page = self.Page("demo")
+        page.Ask("document.getElementById('growth').dispatchEvent("
+                 "new KeyboardEvent('keydown', {key: 'ArrowRight'}))")
+        self.assertIn("MD 10.00 m", page.Ask("document.getElementById('readout').textContent"))
+        self.assertGreaterEqual(page.Ask(
+            "document.querySelectorAll('.cursor[visibility=visible], .here[visibility=visible]').length"), 8)
+
+    def test_in_feet(self):
+        page = self.Page("demo", "--units", "field", "--paper", "letter")
+        rows = self.Rows("demo", "survey.csv")
+        for cells, row in zip(page.Ask(LISTING), rows, strict=True):
+            self.assertAlmostEqual(float(cells[0]), float(row["MD[m]"]) / 0.3048, delta=0.0051)
+
+    def test_another_well_is_drawn_beside(self):
+        other = self.Write("other.csv", "MD[m],INC[deg],AZI[deg]\n0,0,0\n500,10,200\n1000,20,210\n")
+        page = self.Page("demo", "--other", other)
+        self.assertIn("other", page.Ask("document.getElementById('plan').textContent"))
+        self.Quiet(page)
+
+    def test_what_is_no_result_is_refused(self):
+        os.makedirs(self.Path("empty"), exist_ok=True)
+        done = Run("report", self.Path("empty"), "--out", self.Path("none.html"))
+        self.assertEqual(done.returncode, 2)
+        self.assertFalse(os.path.exists(self.Path("none.html")))
+        self.Copy("torn", passes_csv=lambda text: text[:text.rindex(",")])
+        done = Run("report", self.Path("torn"), "--out", self.Path("none.html"))
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"passes.csv:761: \d+ fields where the header has \d+")
+        self.Copy("foreign", run_toml=lambda text: text.replace("wellgyro.run/1", "other/1"))
+        done = Run("report", self.Path("foreign"), "--out", self.Path("none.html"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("run.toml", done.stderr)
+
+    @unittest.skipUnless(shutil.which("pdftotext"), "no poppler-utils on this machine")
+    def test_on_paper(self):
+        for paper, width, height in (("a4", 595, 842), ("letter", 612, 792)):
+            pdf = self.Path(paper + ".pdf")
+            done = Run("report", self.Path("demo"), "--out", self.Path("paper.html"), "--pdf", pdf,
+                       "--paper", paper)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            boxes = subprocess.run(["pdftotext", "-bbox", pdf, "-"], capture_output=True, text=True,
+                                   check=True).stdout
+            pages = re.split(r"<page ", boxes)[1:]
+            self.assertGreater(len(pages), 5)
+            for page in pages:
+                size = [float(v) for v in re.findall(r'(?:width|height)="([\d.]+)"', page)[:2]]
+                self.assertLess(abs(size[0] - width) + abs(size[1] - height), 2)
+                words = re.findall(r'xMin="([-\d.]+)" yMin="([-\d.]+)" xMax="([-\d.]+)" '
+                                   r'yMax="([-\d.]+)">([^<]*)', page)
+                top = " ".join(w[4] for w in words if float(w[1]) < 60)
+                self.assertIn("ISCWSA 2", top)
+                self.assertIn("WARN", top.upper())
+                for left, up, right, down, word in words:
+                    self.assertGreater(float(left), 30, word)
+                    self.assertLess(float(right), width - 30, word)
+                    self.assertGreater(float(up), 25, word)
+                    self.assertLess(float(down), height - 12, word)
+            fonts = subprocess.run(["pdffonts", pdf], capture_output=True, text=True,
+                                   check=True).stdout.splitlines()[2:]
+            self.assertGreater(len(fonts), 0)
+            for font in fonts:
+                self.assertRegex(font, r"\byes (yes|no ) ?(yes|no)")
+
+
+if __name__ == "__main__":
+    unittest.main()
