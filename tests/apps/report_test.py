@@ -100,17 +100,16 @@ class Report(ProgramTest):
 
     def Quiet(self, page):
         self.assertEqual((page.requests, page.errors), ([], []))
-        self.assertEqual(page.Ask("document.documentElement.dataset.drawn"),
-                         str(page.Ask("document.querySelectorAll('figure.chart svg').length"
-                                      " - document.querySelectorAll('figure.empty').length")))
+        charts = page.Ask("""Array.from(document.querySelectorAll('figure.chart')).filter(
+            f => !f.textContent.includes('not measured')).length""")
+        self.assertEqual(page.Ask("document.documentElement.dataset.drawn"), str(charts))
 
     def test_of_the_demonstration(self):
         page = self.Page("demo")
         self.Quiet(page)
         self.SameNumbers(page, "demo")
         self.assertEqual(page.Ask("document.querySelectorAll('section[id^=block]').length"), 9)
-        self.assertIn("Verdict: warn", page.Ask("document.querySelector('.verdict').innerText")
-                      .replace("VERDICT: WARN", "Verdict: warn"))
+        self.assertIn("Verdict: warn", page.Ask("document.querySelector('.verdict').textContent"))
         self.assertEqual(self.Bytes("demo", "report.html"), self.Bytes("demo.html"))
         document = json.loads(self.Read("demo", "survey.json"))
         self.assertEqual(document["format"], "wellgyro.survey/1")
@@ -128,12 +127,11 @@ class Report(ProgramTest):
                          "verdict fail")
 
     def test_of_two_runs(self):
-        begin, half = 1_767_225_600_000_000, 1_767_225_600_000_000 + 440_000_000
+        half = 1_767_225_600_000_000 + 440_000_000  # of the simulation's time
         job = JOB + f"[[run]]\nnumber = 1\nend_utime_us = {half}\n" \
                     f"[[run]]\nnumber = 2\nbegin_utime_us = {half}\n"
-        self.assertLess(begin, half)
-        done = self.Survey("two", THERE + Move(50) + Stop(120), job=job)
-        self.assertIn(done.returncode, (0, 4), done.stderr)
+        done = self.Survey("two", THERE + Stop(120) + Move(50) + Stop(120), job=job)
+        self.assertIn(done.returncode, (0, 3, 4), done.stderr)
         page = self.Page("two")
         self.Quiet(page)
         self.SameNumbers(page, "two")
@@ -171,9 +169,9 @@ class Report(ProgramTest):
     def test_any_name_is_shown_as_text(self):
         def Rename(text):
             for name in HOSTILE:
-                key = json.dumps(f"key {name[:30]}")
-                text = text.replace("[verdict]\n", f"[verdict]\n", 1).replace(
-                    "[identity]\n", f"[identity]\n{key} = {json.dumps(name)}\n", 1)
+                key, value = (json.dumps(text_of, ensure_ascii=False)
+                              for text_of in ("key " + name[:30], name))
+                text = text.replace("[identity]\n", f"[identity]\n{key} = {value}\n", 1)
             return text.replace('name = "ISCWSA 2"', "name = " + json.dumps(HOSTILE[0]), 1)
 
         self.Copy("hostile", run_toml=Rename)

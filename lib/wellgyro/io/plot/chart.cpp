@@ -229,6 +229,31 @@ std::string ChartSvg(const Chart& chart) {
   return svg + "</svg>\n";
 }
 
+std::string ChartSheetSvg(const std::string& title, const std::vector<std::string>& facts,
+                          const std::vector<Chart>& charts) {
+  constexpr double kTitle = 34, kLine = 15;  // pixels
+  const double top = kTitle + kLine * static_cast<double>(facts.size()) + 6;
+  double width = 0, height = 0;
+  std::string drawn;
+  for (const Chart& chart : charts) {
+    drawn += fmt::format("<svg x=\"{:g}\" y=\"{:g}\"", width, top) + ChartSvg(chart).substr(4);
+    width += chart.width;
+    height = std::max(height, chart.height);
+  }
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" "
+      "height=\"{1:g}\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#222\">\n"
+      "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"#fff\"/>\n"
+      "<text x=\"{2:g}\" y=\"22\" font-size=\"15\" font-weight=\"bold\">{3}</text>\n",
+      width, top + height, kRight, SvgText(title));
+  double y = kTitle + kLine - 6;
+  for (const std::string& fact : facts) {
+    svg += Text({kRight, y}, "start", fact);
+    y += kLine;
+  }
+  return svg + drawn + "</svg>\n";
+}
+
 std::vector<Vector2d> EllipseOutline(const Vector2d& middle, const Vector2d& a, const Vector2d& b) {
   constexpr int kPoints = 36;
   std::vector<Vector2d> outline;

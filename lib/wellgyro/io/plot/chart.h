@@ -58,6 +58,11 @@ WELLGYRO_EXPORT ChartFrame FrameOf(const Chart& chart);
 /// the picture says that nothing was measured.
 WELLGYRO_EXPORT std::string ChartSvg(const Chart& chart);
 
+/// Charts side by side as one picture, below its title and lines of facts.
+WELLGYRO_EXPORT std::string ChartSheetSvg(const std::string& title,
+                                          const std::vector<std::string>& facts,
+                                          const std::vector<Chart>& charts);
+
 /// Points of the outline of an ellipse about `middle` with the half axes `a` and `b`.
 WELLGYRO_EXPORT std::vector<Eigen::Vector2d> EllipseOutline(const Eigen::Vector2d& middle,
                                                             const Eigen::Vector2d& a,

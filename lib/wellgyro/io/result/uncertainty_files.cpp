@@ -1,5 +1,6 @@
 #include "wellgyro/io/result/uncertainty_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -194,8 +195,17 @@ std::string SummaryToml(const UncertaintyRequest& request, const std::vector<Inp
   return toml.text();
 }
 
+/// Where the two wells are closest; nothing where there is no row.
+std::optional<Separation> NearestOf(const std::vector<Separation>& separations) {
+  const auto nearest = std::ranges::min_element(separations, {}, &Separation::distance);
+  if (nearest == separations.end()) return std::nullopt;
+  return *nearest;
+}
+
+/// Draws the other well on the picture too, where one is asked for.
 void AddSeparation(const UncertaintyRequest& request, const Case& c, UncertaintyAnswer& answer,
-                   std::vector<InputFile>& inputs) {
+                   std::vector<InputFile>& inputs, std::optional<SurveyedWell>& beside,
+                   WellPlotLabels& labels) {
   UncertaintySources sources = request.sources;
   sources.survey = request.other;
   if (request.other_model) sources.model = request.other_model;
@@ -203,7 +213,7 @@ void AddSeparation(const UncertaintyRequest& request, const Case& c, Uncertainty
     throw std::invalid_argument("beside a program the other survey needs a model of its own");
   }
   sources.program.reset();
-  const Case other = ReadCase(sources, request);
+  Case other = ReadCase(sources, request);
   SeparationRule rule;
   rule.correlation = request.correlation;
   const auto separations =
@@ -217,6 +227,27 @@ void AddSeparation(const UncertaintyRequest& request, const Case& c, Uncertainty
     input.role = "other " + input.role;
     inputs.push_back(std::move(input));
   }
+  labels.nearest = NearestOf(separations);
+  labels.other_name = request.other->filename().string();
+  beside = std::move(other.well);
+  labels.other = &*beside;
+}
+
+/// What the picture says of the well: its file, its tools, north, datum.
+WellPlotLabels LabelsOf(const UncertaintyRequest& request, const Case& c) {
+  const UncertaintySources& sources = request.sources;
+  WellPlotLabels labels;
+  labels.title = (sources.program ? sources.program : sources.survey)->filename().string();
+  std::string tools;
+  for (const auto& model : c.models) tools += (tools.empty() ? "" : ", ") + model->name;
+  if (c.basis.noise) {
+    tools += (tools.empty() ? "" : ", ") + ("noise of " + sources.noise->filename().string());
+  }
+  labels.facts = {
+      "tool: " + tools,
+      fmt::format("azimuths from {} north; metres, TVD from the survey's own depth datum",
+                  request.convergence ? "grid" : "true")};
+  return labels;
 }
 
 UncertaintyAnswer Answer(const UncertaintyRequest& request) {
@@ -227,11 +258,12 @@ UncertaintyAnswer Answer(const UncertaintyRequest& request) {
   if (c.errors.refusal) answer.refusals.push_back(c.errors.refusal->text);
   answer.files.push_back({"covariance.csv", CovarianceCsv(c.well, c.errors, request.confidence)});
   if (request.terms) answer.files.push_back({"terms.csv", TermsCsv(c.well, c.errors)});
-  if (request.other) AddSeparation(request, c, answer, inputs);
+  WellPlotLabels labels = LabelsOf(request, c);
+  std::optional<SurveyedWell> beside;
+  if (request.other) AddSeparation(request, c, answer, inputs, beside, labels);
   if (request.plot) {
-    const auto& named = request.sources.program ? request.sources.program : request.sources.survey;
-    answer.files.push_back({"uncertainty.svg", WellPlotSvg(c.well, c.errors, request.confidence,
-                                                           named->filename().string())});
+    answer.files.push_back(
+        {"uncertainty.svg", WellPlotSvg(c.well, c.errors, request.confidence, labels)});
   }
   answer.summary = AboutEnd(c, request.confidence);
   answer.files.push_back(
