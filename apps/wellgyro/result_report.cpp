@@ -84,6 +84,8 @@ int ReportOnSurvey(const fs::path& out, bool page) {
     if (tool && fs::exists(entry->path() / "run.toml")) folders.push_back(entry->path());
   }
   std::sort(folders.begin(), folders.end());
+  // Of a former survey of one tool, where several now have folders of their own.
+  if (!fs::exists(out / "run.toml", absent)) fs::remove(out / "survey.json", absent);
   int code = kDone;
   for (const fs::path& folder : folders) {
     ResultReport report{.result = folder, .json = folder / "survey.json"};
