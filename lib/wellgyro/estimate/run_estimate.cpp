@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/math/rotation.h"
 
@@ -178,6 +179,10 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
     result.ambiguous |= i != best_start && evidence[i] - result.report.evidence < kDecides;
   }
   Sweep(*best, marked, result).Run();
+  if (!setup.causes.empty()) {
+    result.diagnosis =
+        Diagnose(*best, setup.causes, EndByPhi(best->nodes()), setup.false_alarm_rate);
+  }
   result.nodes = best->nodes();
   return result;
 }
