@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
@@ -57,7 +58,6 @@ struct Flight {
     job.errors.gyro_scale_sigma = job.errors.gyro_misalignment_sigma = 1e-4;
     job.errors.roll_offset_sigma = FromDegrees(0.02);
     job.errors.time_skew_sigma = 1e-3;
-    job.errors.latitude_sigma = FromDegrees(0.01);
     job.errors.accel_bias_sigma = 5e-4;
     job.errors.accel_noise = 2e-4;
     job.errors.depth_sigma = 0.3;
@@ -116,7 +116,8 @@ void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.code; }
 
 class FaultIsNamed : public ::testing::TestWithParam<Wrong> {};
 
-// The code itself or one that this run hardly tells from it comes first.
+// The code itself or one that this run hardly tells from it comes first. The job takes the latitude
+// as exact, so that it is no unknown of the run.
 TEST_P(FaultIsNamed, WithItsSize) {
   const Wrong& wrong = GetParam();
   Flight flight(3);

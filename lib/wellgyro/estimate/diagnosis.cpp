@@ -21,7 +21,8 @@ using Kind = CauseSpec::Kind;
 // What rounding leaves of an information that the unknowns absorb.
 constexpr double kAbsorbed = 1e-9;
 constexpr double kPower = 0.8416212335729143;  // normal quantile of 80 %
-constexpr double kHopeless = 100;              // sizes of a fault
+// No fault is larger than so many of its sizes, five sigmas of its prior.
+constexpr double kLargest = 5;
 // Knots to a stretch that is looked at as one.
 constexpr std::size_t kStretch = 20;
 
@@ -99,8 +100,8 @@ class Looks {
     const double onsets = std::log(std::max(count / look.alike, 1.0));
     const double w2 = (1 + 1 / vm) * (2 * (ln_limit_ + onsets) + std::log1p(vm));
     const double smallest = (std::sqrt(std::max(w2, 0.0)) + kPower) / std::sqrt(m);
-    const bool noticeable = smallest < kHopeless * spec_.size;
-    const Vector3d hidden = (noticeable ? smallest : spec_.size) * look.score.shift;
+    const bool noticeable = smallest < kLargest * spec_.size;
+    const Vector3d hidden = std::min(smallest, kLargest * spec_.size) * look.score.shift;
     if (test.smallest > 0 && !(hidden.norm() > test.hidden.norm())) return;
     test.noticeable = noticeable;
     test.smallest = smallest;

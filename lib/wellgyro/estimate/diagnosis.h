@@ -22,8 +22,8 @@ struct CauseTest {
   /// What such a fault does to the end of the run: as found less as it is [m].
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   /// Of all onsets the one at which what passes unnoticed moves the end the most: the smallest size
-  /// that is noticed four times in five, and that shift. `noticeable` false: not even a hundred
-  /// times the spec's size is, and the shift is that of the spec's size.
+  /// that is noticed four times in five, and that shift. `noticeable` false: not even five times
+  /// the spec's size is, and the shift is that of five times.
   bool noticeable = false;
   double smallest = 0;
   std::size_t smallest_node = 0;

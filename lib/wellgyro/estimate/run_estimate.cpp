@@ -146,6 +146,19 @@ class Sweep {
   Eigen::MatrixXd link_;  ///< E[(node; border) x'] of the marked node behind
 };
 
+/// What the run's errors are taken as none, a fault may make all the same: they become unknowns
+/// whose prior is a thousandth of that.
+Diagnosis DiagnosisOf(const RunSolver& solved) {
+  EstimateSetup setup = solved.setup();
+  for (const CauseSpec& cause : setup.causes) {
+    if (cause.kind != CauseSpec::Kind::kConstant && cause.kind != CauseSpec::Kind::kOnset) continue;
+    if (double* sigma = PriorOf(cause.unknown, setup)) *sigma = std::max(*sigma, 1e-3 * cause.size);
+  }
+  RunSolver tested(setup, solved.knots());
+  tested.TakeOver(solved);
+  return Diagnose(tested, setup.causes, EndByPhi(solved.nodes()), setup.false_alarm_rate);
+}
+
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
@@ -179,10 +192,7 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
     result.ambiguous |= i != best_start && evidence[i] - result.report.evidence < kDecides;
   }
   Sweep(*best, marked, result).Run();
-  if (!setup.causes.empty()) {
-    result.diagnosis =
-        Diagnose(*best, setup.causes, EndByPhi(best->nodes()), setup.false_alarm_rate);
-  }
+  if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(*best);
   result.nodes = best->nodes();
   return result;
 }

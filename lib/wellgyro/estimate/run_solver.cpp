@@ -194,6 +194,24 @@ void RunSolver::Step(const std::vector<NodeVector>& steps, const BorderVector& b
   border_ += share * border_step;
 }
 
+void RunSolver::TakeOver(const RunSolver& other) {
+  nodes_ = other.nodes_;
+  places_ = other.places_;
+  scales_ = other.scales_;
+  border_.setZero();
+  const auto take = [&](int to, int from) {
+    if (to != kAbsent && from != kAbsent) border_[to] = other.border_[from];
+  };
+  const Layout& theirs = other.layout_;
+  for (std::size_t i = 0; i < kErrorSources; ++i) take(layout_.source[i], theirs.source[i]);
+  if (layout_.ramp != kAbsent && theirs.ramp != kAbsent) {
+    for (int i = 0; i < 2; ++i) take(layout_.ramp + i, theirs.ramp + i);
+  }
+  take(layout_.latitude, theirs.latitude);
+  take(layout_.gravity, theirs.gravity);
+  take(layout_.gravity_gradient, theirs.gravity_gradient);
+}
+
 void RunSolver::RowsOf(std::size_t knot, std::vector<Factor>& rows) {
   block_.Clear(layout_);
   block_.Collect(&rows);

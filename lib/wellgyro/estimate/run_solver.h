@@ -63,6 +63,9 @@ class RunSolver : public RunRows {
                const BehindMatrix& begin_with_end);
   const std::array<RowSum, kRowKinds>& sums() const { return block_.sums(); }
 
+  /// Stands where `other` does, which has solved the same knots: what its setup lacks is zero.
+  void TakeOver(const RunSolver& other);
+
   // Of the last linearisation.
   std::size_t size() const override { return knots_.size(); }
   void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const override;

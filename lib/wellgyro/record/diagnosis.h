@@ -34,7 +34,7 @@ struct RunReliability {
   std::optional<double> smallest;  ///< that would be noticed four times in five; absent: none would
   std::string unit;
   std::optional<double> md;  ///< where it would have to begin, the worst place [m]
-  /// Shift of the end by the smallest; where none would be noticed by one of usual size [m].
+  /// Shift of the end by the smallest; where none would be noticed by the largest there is [m].
   Eigen::Vector3d shift_W = Eigen::Vector3d::Zero();
 };
 

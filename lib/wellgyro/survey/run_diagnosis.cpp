@@ -258,7 +258,9 @@ RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots)
 void CheckDiagnosis(const RunSummary& run, std::vector<Check>& checks) {
   const RunDiagnosis* found = run.fit && run.fit->diagnosis ? &*run.fit->diagnosis : nullptr;
   if (found == nullptr || found->causes.empty()) {
-    checks.push_back(NotDone("diagnosis", run.run, "the run was not solved by rotations"));
+    checks.push_back(NotDone("diagnosis", run.run,
+                             found == nullptr ? "the run was not solved by rotations"
+                                              : "the residuals of the run could not be tested"));
     return;
   }
   const double limit = -std::log(kDiagnosisFalseAlarms);

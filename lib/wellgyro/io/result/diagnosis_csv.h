@@ -15,8 +15,8 @@ WELLGYRO_EXPORT std::string DiagnosisCsv(const Survey& survey);
 
 /// reliability.csv: RUN,CODE,SMALLEST,UNIT,AT_MD[m],DN[m],DE[m],DV[m]. Of every cause the smallest
 /// that is noticed four times in five, beginning where it does most, and what it then does to the
-/// end. SMALLEST empty: not even a hundred times the usual size would be, and the shift is that of
-/// the usual size.
+/// end. SMALLEST empty: not even five times the usual size would be, and the shift is that of five
+/// times.
 WELLGYRO_EXPORT std::string ReliabilityCsv(const Survey& survey);
 
 }  // namespace wellgyro
