@@ -110,7 +110,8 @@ void RemoveFormer(const std::filesystem::path& folder, const std::vector<ToolRes
     return;
   }
   std::error_code ignored;
-  for (const char* name : {"survey.csv", "passes.csv", "checks.csv", "source.toml", "run.toml"}) {
+  for (const char* name : {"survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
+                           "reliability.csv", "source.toml", "run.toml"}) {
     std::filesystem::remove(folder / name, ignored);
   }
 }

@@ -175,7 +175,7 @@ void AddSurvey(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("survey",
                          "A sensor stream into survey files: survey.csv, passes.csv, checks.csv, "
-                         "run.toml and source.toml");
+                         "diagnosis.csv, reliability.csv, run.toml and source.toml");
   command->add_option("--job", options->job, "Job file, wellgyro.job/1")
       ->required()
       ->type_name("FILE");

@@ -154,6 +154,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
 
   Factor& f = factor_;
   f.Begin(t.knot.still ? RowKind::kStill : RowKind::kTurn, 3);
+  f.per_unit = across;
   const Vector3d r = Log(R_end.transpose() * t.end.R_LT);
   const LogSlopes slopes(r);
   f.r = by * r;
@@ -219,6 +220,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
 
   Factor& f = factor_;
   f.Begin(RowKind::kForce, 3);
+  f.per_unit = whiten;
   f.r = whiten *
         (force - p + gravity * down_M - (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
   const Matrix3d by_phi =
@@ -349,6 +351,7 @@ void KnotRows::AddRest(const Terms& t, NormalBlock& block) {
   const LogSlopes slopes(r);
   Factor& f = factor_;
   f.Begin(RowKind::kRest, 3);
+  f.per_unit = whiten;
   f.r = whiten * r;
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = -whiten * slopes.left.col(i);
   for (int i = 0; i < 3; ++i) {

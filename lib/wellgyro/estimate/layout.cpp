@@ -62,4 +62,44 @@ Layout LayoutOf(const EstimateSetup& setup) {
   return layout;
 }
 
+double* PriorOf(int unknown, EstimateSetup& setup) {
+  ErrorPriors& e = setup.errors;
+  switch (unknown) {
+    case kGyroBiasX:
+    case kGyroBiasY:
+      return &e.gyro_bias_sigma;
+    case kMassUnbalance:
+      return &e.mass_unbalance_sigma;
+    case kQuadrature:
+      return &e.quadrature_sigma;
+    case kGyroScaleX:
+    case kGyroScaleY:
+      return &e.gyro_scale_sigma;
+    case kMisalignmentX:
+    case kMisalignmentY:
+      return &e.gyro_misalignment_sigma;
+    case kToolfaceOffset:
+      return &e.roll_offset_sigma;
+    case kTimeSkew:
+      return &e.time_skew_sigma;
+    case kAccelBiasX:
+    case kAccelBiasY:
+    case kAccelBiasZ:
+      return &e.accel_bias_sigma;
+    case kAccelScaleX:
+    case kAccelScaleY:
+    case kAccelScaleZ:
+      return &e.accel_scale_sigma;
+    case kAccelMisalignmentX:
+    case kAccelMisalignmentY:
+      return &e.accel_misalignment_sigma;
+    case kLatitudeError:
+      return &e.latitude_sigma;
+    case kGravityError:
+      return &setup.sigma_gravity;
+    default:
+      return nullptr;
+  }
+}
+
 }  // namespace wellgyro

@@ -42,4 +42,8 @@ struct Layout {
 
 Layout LayoutOf(const EstimateSetup& setup);
 
+/// The sigma in `setup` that an ErrorSource, kLatitudeError or kGravityError has; nullptr: it
+/// cannot be an unknown.
+double* PriorOf(int unknown, EstimateSetup& setup);
+
 }  // namespace wellgyro

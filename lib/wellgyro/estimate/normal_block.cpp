@@ -89,6 +89,10 @@ void NormalBlock::Clear(const Layout& layout) {
 }
 
 void NormalBlock::Add(const Factor& f) {
+  if (collected_ != nullptr) {
+    collected_->push_back(f);
+    return;
+  }
   const Loss loss = LossOf(f);
   const auto n = static_cast<std::size_t>(f.columns);
   RowSum& sum = sums_[static_cast<std::size_t>(f.kind)];

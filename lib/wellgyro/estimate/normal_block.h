@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -31,6 +32,8 @@ struct Factor {
   RowKind kind = RowKind::kPrior;
   int rows = 1;
   double held = 0;  ///< the robust weight, where it is held; 0: by the residuals
+  /// By what the rows that measure, not tie, grow with what they compare: 1 / sigma; 0: not told.
+  double per_unit = 0;
   int columns = 0;
   std::array<int, kColumnsMax> column{};  ///< of the block: node, next node, border
   Eigen::Matrix<double, 3, kColumnsMax> J;
@@ -44,7 +47,7 @@ struct Factor {
   void Begin(RowKind of, int n) {
     kind = of;
     rows = n;
-    held = 0;
+    held = per_unit = 0;
     columns = 0;
   }
 };
@@ -77,6 +80,9 @@ class NormalBlock {
   /// with what the unknowns absorb of them; nullptr: as before.
   void Measure(const Matrix* covariance) { covariance_ = covariance; }
 
+  /// Factors that come next are appended here and otherwise left alone; nullptr: as before.
+  void Collect(std::vector<Factor>* factors) { collected_ = factors; }
+
   int next() const { return node_; }        ///< first column of the next node
   int border() const { return 2 * node_; }  ///< first of the border
   /// Lower triangle.
@@ -90,6 +96,7 @@ class NormalBlock {
   Matrix information_;
   Vector gradient_;
   const Matrix* covariance_ = nullptr;
+  std::vector<Factor>* collected_ = nullptr;
   std::array<RowSum, kRowKinds> sums_{};
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/math/rotation.h"
 
@@ -179,6 +180,19 @@ void FitNoise(RunSolver& solver, std::span<const std::size_t> marked, RunEstimat
   result.report.sums = stated;
 }
 
+/// What the run's errors are taken as none, a fault may make all the same: they become unknowns
+/// whose prior is a thousandth of that.
+Diagnosis DiagnosisOf(const RunSolver& solved) {
+  EstimateSetup setup = solved.setup();
+  for (const CauseSpec& cause : setup.causes) {
+    if (cause.kind != CauseSpec::Kind::kConstant && cause.kind != CauseSpec::Kind::kOnset) continue;
+    if (double* sigma = PriorOf(cause.unknown, setup)) *sigma = std::max(*sigma, 1e-3 * cause.size);
+  }
+  RunSolver tested(setup, solved.knots());
+  tested.TakeOver(solved);
+  return Diagnose(tested, setup.causes, EndByPhi(solved.nodes()), setup.false_alarm_rate);
+}
+
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
@@ -212,6 +226,8 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
     result.ambiguous |= i != best_start && evidence[i] - result.report.evidence < kDecides;
   }
   Sweep(*best, marked, result).Run();
+  // Before the noise is taken larger: a fault is what makes the residuals too large.
+  if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(*best);
   FitNoise(*best, marked, result);
   result.nodes = best->nodes();
   return result;

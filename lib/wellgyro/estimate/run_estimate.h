@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/estimate/diagnosis.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/estimate/setup.h"
@@ -43,6 +44,7 @@ struct RunEstimate {
   std::vector<LinkedErrors> marked;          ///< in the order of time
   ErrorVector errors = ErrorVector::Zero();  ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior
+  Diagnosis diagnosis;                             ///< where the setup asks for it
 };
 
 /// Solves the run from each start and keeps the one of greatest evidence. Where the residuals of

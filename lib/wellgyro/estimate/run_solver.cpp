@@ -116,7 +116,7 @@ void RunSolver::Begin(const Matrix3d& R_LT, std::span<const double> extra_roll) 
 }
 
 /// Information of node 0 and of the border before any knot.
-void RunSolver::FirstNode(EdgeMatrix& information, EdgeVector& gradient) {
+void RunSolver::FirstRows(EdgeMatrix& information, EdgeVector& gradient) const {
   const int n = layout_.node, b = layout_.border;
   const Node& first = nodes_[0];
   NodeVector sigma(n), value = NodeVector::Zero(n);
@@ -161,6 +161,7 @@ void RunSolver::AddTies(std::size_t node, NormalBlock& block, int at) {
     const Vector3d normal(-direction.y() / horizontal, direction.x() / horizontal, 0);
     Factor f;
     f.Begin(RowKind::kAzimuth, 1);
+    f.per_unit = 1 / tie.sigma;
     f.r[0] = std::atan2(across.dot(direction), ahead.dot(direction)) / tie.sigma;
     const Eigen::RowVector3d by_phi = -normal.transpose() * R * Skew(u) / (horizontal * tie.sigma);
     for (int i = 0; i < 3; ++i) f.Column(at + layout_.phi + i)[0] = by_phi[i];
@@ -171,7 +172,7 @@ void RunSolver::AddTies(std::size_t node, NormalBlock& block, int at) {
 bool RunSolver::Linearise() {
   EdgeMatrix information;
   EdgeVector gradient;
-  FirstNode(information, gradient);
+  FirstRows(information, gradient);
   elimination_.Start(knots_.size(), information, gradient);
   block_.ClearSums();
   for (std::size_t k = 0; k < knots_.size(); ++k) {
@@ -192,6 +193,34 @@ void RunSolver::Step(const std::vector<NodeVector>& steps, const BorderVector& b
   if (most > kStepMost) share = std::min(share, kStepMost / most);
   for (std::size_t k = 0; k < steps.size(); ++k) Move(layout_, share * steps[k], nodes_[k]);
   border_ += share * border_step;
+}
+
+void RunSolver::TakeOver(const RunSolver& other) {
+  nodes_ = other.nodes_;
+  places_ = other.places_;
+  scales_ = other.scales_;
+  border_.setZero();
+  const auto take = [&](int to, int from) {
+    if (to != kAbsent && from != kAbsent) border_[to] = other.border_[from];
+  };
+  const Layout& theirs = other.layout_;
+  for (std::size_t i = 0; i < kErrorSources; ++i) take(layout_.source[i], theirs.source[i]);
+  if (layout_.ramp != kAbsent && theirs.ramp != kAbsent) {
+    for (int i = 0; i < 2; ++i) take(layout_.ramp + i, theirs.ramp + i);
+  }
+  take(layout_.latitude, theirs.latitude);
+  take(layout_.gravity, theirs.gravity);
+  take(layout_.gravity_gradient, theirs.gravity_gradient);
+}
+
+void RunSolver::RowsOf(std::size_t knot, std::vector<Factor>& rows) {
+  block_.Clear(layout_);
+  block_.Collect(&rows);
+  if (knot == 0) AddTies(0, block_, 0);
+  AddTies(knot + 1, block_, block_.next());
+  rows_.Add(knots_[knot], places_[knot], Change(knot), border_, nodes_[knot], nodes_[knot + 1],
+            block_);
+  block_.Collect(nullptr);
 }
 
 void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMatrix& end,

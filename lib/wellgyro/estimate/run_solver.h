@@ -10,6 +10,7 @@
 #include "wellgyro/estimate/elimination.h"
 #include "wellgyro/estimate/knot_rows.h"
 #include "wellgyro/estimate/layout.h"
+#include "wellgyro/estimate/linear_run.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
@@ -32,7 +33,7 @@ struct SolveReport {
 ///
 /// Regular at every inclination: no coordinate of an attitude is an angle. Time and memory are
 /// proportional to the knots.
-class RunSolver {
+class RunSolver : public RunRows {
  public:
   /// `knots` must outlive this object; at least one.
   RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots);
@@ -49,7 +50,7 @@ class RunSolver {
   /// on from where it stands. False: it does not converge.
   bool SolveWithNoise(double gyro, double accel);
 
-  const Layout& layout() const { return layout_; }
+  const Layout& layout() const override { return layout_; }
   const EstimateSetup& setup() const { return setup_; }
   std::span<const RunKnot> knots() const { return knots_; }
   std::vector<Node>& nodes() { return nodes_; }
@@ -65,11 +66,18 @@ class RunSolver {
                const BehindMatrix& begin_with_end);
   const std::array<RowSum, kRowKinds>& sums() const { return block_.sums(); }
 
+  /// Stands where `other` does, which has solved the same knots: what its setup lacks is zero.
+  void TakeOver(const RunSolver& other);
+
+  // Of the last linearisation.
+  std::size_t size() const override { return knots_.size(); }
+  void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const override;
+  void RowsOf(std::size_t knot, std::vector<Factor>& rows) override;
+
  private:
   bool Linearise();
   void MovePlaces();
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
-  void FirstNode(EdgeMatrix& information, EdgeVector& gradient);
   void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
   double WalkOfUnseen(std::size_t knot) const;
   double Walk(std::size_t knot) const;

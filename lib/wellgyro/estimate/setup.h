@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/cause.h"
 #include "wellgyro/record/noise.h"
 
 namespace wellgyro {
@@ -30,6 +31,8 @@ struct EstimateSetup {
   /// The roll swings at this angular frequency [rad/s]; absent: it walks.
   std::optional<double> swing;
   std::vector<AzimuthTie> ties;
+  std::vector<CauseSpec> causes;   ///< that are looked for in the solution; none: no diagnosis
+  double false_alarm_rate = 1e-3;  ///< of the diagnosis
 };
 
 }  // namespace wellgyro

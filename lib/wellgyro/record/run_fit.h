@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include "wellgyro/record/diagnosis.h"
 #include "wellgyro/record/knot.h"
 
 namespace wellgyro {
@@ -33,6 +35,7 @@ struct RunFit {
   std::array<Squares, kParts> parts;
   Knot::SourceVector errors = Knot::SourceVector::Zero();        ///< of the tool, as found
   Knot::SourceVector sigma_errors = Knot::SourceVector::Zero();  ///< of these; 0: has no prior
+  std::optional<RunDiagnosis> diagnosis;  ///< where what adjusted the run made one
 };
 
 }  // namespace wellgyro

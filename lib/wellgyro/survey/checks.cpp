@@ -15,6 +15,7 @@
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/run_checks_internal.h"
+#include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/tie_in_check.h"
 
 namespace wellgyro {
@@ -319,6 +320,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
       checks.push_back(CheckCalibrationDate(*job.tool, run.begin));
       checks.back().run = run.run;
     }
+    CheckDiagnosis(run, checks);
     CheckFixes(job, run, checks);
     checks.insert(checks.end(), run.stop_checks.begin(), run.stop_checks.end());
     CheckStops(job, run, checks);

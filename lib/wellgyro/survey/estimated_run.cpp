@@ -11,6 +11,7 @@
 #include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/record/unknown_angle.h"
+#include "wellgyro/survey/run_diagnosis.h"
 
 namespace wellgyro {
 namespace {
@@ -221,7 +222,9 @@ SmoothedRun EstimatedRun(const Job& job, const FilterHistory& history,
   }
   RunEstimate estimate;
   if (!joined.knots.empty() && !joined.node.empty()) {
-    const EstimateSetup setup = SetupOf(job, history, joined);
+    EstimateSetup setup = SetupOf(job, history, joined);
+    setup.causes = CausesLookedFor();
+    setup.false_alarm_rate = kDiagnosisFalseAlarms;
     estimate = EstimateRun(setup, joined.knots, StartsOf(setup, history, joined), marked);
   }
   if (!estimate.solved) {
@@ -244,6 +247,7 @@ SmoothedRun EstimatedRun(const Job& job, const FilterHistory& history,
     run.stations.push_back(std::move(state));
   }
   run.fit = FitOf(estimate);
+  run.fit->diagnosis = DiagnosisOf(estimate.diagnosis, joined.knots);
   if (estimate.ambiguous) {
     for (AttitudeSample& a : run.attitude) a.azimuth_known = false;
     for (StationState& s : run.stations) s.attitude.azimuth_known = false;

@@ -70,6 +70,7 @@ constexpr Words kWords[] = {
     {"calibration_date", "the tool's calibration has expired"},
     {"clock_jumps", "the tool's clock jumps"},
     {"clock_unsynced", "UTC of samples is doubtful"},
+    {"diagnosis", "the run shows a fault"},
     {"depth_closure", "depth does not return to zero"},
     {"depth_lag", "depth comes late against the motion that the accelerometers feel"},
     {"depth_jump", "depth jumps where the accelerometers feel no motion"},

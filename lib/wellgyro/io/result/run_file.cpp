@@ -14,6 +14,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/exchange/survey_tables.h"
+#include "wellgyro/io/result/diagnosis_csv.h"
 #include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/text_internal.h"
@@ -325,7 +326,9 @@ std::vector<OutputFile> ResultFiles(const RunRecord& record, const SourceRecord&
   const WellGrid* const columns = grid ? &*grid : nullptr;
   std::vector<OutputFile> files{{"survey.csv", SurveyCsv(survey.chosen, columns)},
                                 {"passes.csv", PassesCsv(survey.passes, columns)},
-                                {"checks.csv", ChecksCsv(survey.checks)}};
+                                {"checks.csv", ChecksCsv(survey.checks)},
+                                {"diagnosis.csv", DiagnosisCsv(survey)},
+                                {"reliability.csv", ReliabilityCsv(survey)}};
   SurveyTable table = TableOfSurvey(job, survey.chosen, columns);
   table.head.remarks.push_back(VerdictText(survey.verdict));
   for (OutputFile& file : ExportFormats(table, BesidesCsv(record.formats), kExportStem)) {

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "wellgyro/record/error_source.h"
+
+namespace wellgyro {
+
+/// Unknowns of the whole run that are no tool's, beside ErrorSource.
+inline constexpr int kLatitudeError = kErrorSources;     ///< [rad]
+inline constexpr int kGravityError = kErrorSources + 1;  ///< [m/s^2]
+
+/// A fault that is looked for.
+struct CauseSpec {
+  enum class Kind {
+    kConstant,    ///< `unknown` is beyond its prior all the while
+    kOnset,       ///< from some node on `unknown` is another
+    kGyroSpike,   ///< one knot's turn, of one axis across [rad]
+    kAccelSpike,  ///< one knot's mean force, of one axis [m/s^2]
+    kRestMotion,  ///< a tool at rest turned within one knot [rad]
+    kTie,         ///< one azimuth from outside [rad]
+    kGyroNoise,   ///< all turns scatter more: a factor
+    kAccelNoise,  ///< all forces scatter more: a factor
+    kOther,       ///< anything: a stretch of the run, or all of it, scatters more
+  };
+  Kind kind = Kind::kConstant;
+  int unknown = 0;  ///< of the first two: an ErrorSource, or one of the above
+  double size = 0;  ///< its 1-sigma where the fault is there; unused of noise and kOther
+};
+
+}  // namespace wellgyro

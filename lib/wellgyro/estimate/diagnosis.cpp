@@ -1,0 +1,398 @@
+#include "wellgyro/estimate/diagnosis.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+
+#include "wellgyro/estimate/onset_scan.h"
+#include "wellgyro/estimate/scatter.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Kind = CauseSpec::Kind;
+
+// What rounding leaves of an information that the unknowns absorb.
+constexpr double kAbsorbed = 1e-9;
+constexpr double kPower = 0.8416212335729143;  // normal quantile of 80 %
+// No fault is larger than so many of its sizes, five sigmas of its prior.
+constexpr double kLargest = 5;
+// Knots to a stretch that is looked at as one.
+constexpr std::size_t kStretch = 20;
+
+/// ln of the mean of exponentials, one after the other.
+class LogMean {
+ public:
+  void Add(double x) {
+    ++count_;
+    if (x <= most_) {
+      sum_ += std::exp(x - most_);
+      return;
+    }
+    sum_ = sum_ * std::exp(most_ - x) + 1;
+    most_ = x;
+  }
+  double count() const { return count_; }
+  double value() const { return count_ > 0 ? most_ + std::log(sum_ / count_) : 0; }
+
+ private:
+  double most_ = -HUGE_VAL, sum_ = 0, count_ = 0;
+};
+
+double LnBayes(const Score& score, double size) {
+  const double s = score.score, m = score.information, v = size * size;
+  return 0.5 * s * s / (m + 1 / v) - 0.5 * std::log1p(v * m);
+}
+
+int BorderColumn(const Layout& layout, int unknown) {
+  if (unknown == kLatitudeError) return layout.latitude;
+  if (unknown == kGravityError) return layout.gravity;
+  return layout.source[static_cast<std::size_t>(unknown)];
+}
+
+/// All looks at one cause.
+class Looks {
+ public:
+  Looks(const CauseSpec& spec, double ln_limit) : spec_(spec), ln_limit_(ln_limit) {}
+
+  /// `alike`: how many onsets beside this one look the same.
+  void Add(std::size_t node, const Score& score, double alike = 1) {
+    if (!(score.information > 0)) return;
+    looks_.push_back({node, score, alike});
+  }
+  void AddTo(CauseTest& test) const {
+    if (looks_.empty()) return;
+    LogMean mean;
+    double best = -HUGE_VAL;
+    for (const Look& look : looks_) {
+      const double ln_bayes = LnBayes(look.score, spec_.size);
+      mean.Add(ln_bayes);
+      if (ln_bayes <= best) continue;
+      best = ln_bayes;
+      test.node = look.node;
+      test.size = look.score.size();
+      test.sigma = 1 / std::sqrt(look.score.information);
+      test.shift = test.size * look.score.shift;
+    }
+    test.tested = true;
+    test.ln_bayes = mean.value();
+    for (const Look& look : looks_) TakeHidden(look, test);
+  }
+
+ private:
+  struct Look {
+    std::size_t node;
+    Score score;
+    double alike;
+  };
+
+  /// The Bayes factor passes its limit at w^2 = (1 + 1/(S^2 M)) (2 ln limit + ln(1 + S^2 M)),
+  /// w = s / sqrt(M), the limit growing by the onsets that are averaged.
+  void TakeHidden(const Look& look, CauseTest& test) const {
+    const double m = look.score.information, vm = spec_.size * spec_.size * m;
+    const double count = static_cast<double>(looks_.size());
+    const double onsets = std::log(std::max(count / look.alike, 1.0));
+    const double w2 = (1 + 1 / vm) * (2 * (ln_limit_ + onsets) + std::log1p(vm));
+    const double smallest = (std::sqrt(std::max(w2, 0.0)) + kPower) / std::sqrt(m);
+    const bool noticeable = smallest < kLargest * spec_.size;
+    const Vector3d hidden = std::min(smallest, kLargest * spec_.size) * look.score.shift;
+    if (test.smallest > 0 && !(hidden.norm() > test.hidden.norm())) return;
+    test.noticeable = noticeable;
+    test.smallest = smallest;
+    test.smallest_node = look.node;
+    test.hidden = hidden;
+  }
+
+  CauseSpec spec_;
+  double ln_limit_;
+  std::vector<Look> looks_;
+};
+
+/// P of a factor's rows: 1 - J cov J', `cov` of [node | next node | border].
+Matrix3d Freedom(const Factor& f, const NormalBlock::Matrix& cov) {
+  Matrix3d p = Matrix3d::Zero();
+  for (int i = 0; i < f.rows; ++i) p(i, i) = 1;
+  for (int j = 0; j < f.columns; ++j) {
+    Vector3d jc = Vector3d::Zero();
+    for (int k = 0; k < f.columns; ++k) {
+      jc.head(f.rows) +=
+          cov(f.column[static_cast<std::size_t>(j)], f.column[static_cast<std::size_t>(k)]) *
+          f.J.col(k).head(f.rows);
+    }
+    p.topLeftCorner(f.rows, f.rows) -= f.J.col(j).head(f.rows) * jc.head(f.rows).transpose();
+  }
+  return 0.5 * (p + p.transpose());
+}
+
+class Diagnoser {
+ public:
+  Diagnoser(RunRows& rows, std::span<const CauseSpec> specs, double false_alarm_rate)
+      : run_(rows), specs_(specs) {
+    // The odds of one cause alone must reach this for those of all to pass the alarm.
+    const double limit =
+        std::log(static_cast<double>(std::max<std::size_t>(specs.size(), 1)) / false_alarm_rate);
+    for (const CauseSpec& spec : specs) looks_.emplace_back(spec, limit);
+  }
+
+  Diagnosis Run(std::span<const Matrix3d> end_by_phi) {
+    Diagnosis d;
+    d.tests.resize(specs_.size());
+    const auto count = static_cast<Index>(specs_.size());
+    d.alike.setZero(count, count);
+    if (!run_.Solve()) return d;
+    influence_.emplace(run_, end_by_phi);
+    Forward();
+    Backward();
+    AddConstants();
+    AddOnsets();
+    for (std::size_t i = 0; i < specs_.size(); ++i) looks_[i].AddTo(d.tests[i]);
+    AddScatter(d);
+    CompareSignatures(d);
+    AddOdds(d);
+    d.done = true;
+    return d;
+  }
+
+ private:
+  int ColumnOfSpec(std::size_t i) const {
+    const bool of_border = specs_[i].kind == Kind::kConstant || specs_[i].kind == Kind::kOnset;
+    return of_border ? BorderColumn(run_.layout(), specs_[i].unknown) : kAbsent;
+  }
+
+  void Forward() {
+    std::vector<int> unknowns;
+    for (std::size_t i = 0; i < specs_.size(); ++i) {
+      if (specs_[i].kind != Kind::kOnset || ColumnOfSpec(i) == kAbsent) continue;
+      unknowns.push_back(ColumnOfSpec(i));
+      onsets_of_.push_back(i);
+    }
+    scan_.emplace(run_, unknowns);
+    for (std::size_t k = 0; k < run_.knots(); ++k) {
+      run_.RowsOf(k, rows_);
+      scan_->Forward(k, rows_, *influence_);
+    }
+  }
+
+  void Backward() {
+    const Elimination& e = run_.elimination();
+    const int n = run_.layout().node, m = n + run_.layout().border;
+    EdgeMatrix next = e.LastCovariance();
+    border_covariance_ = next.bottomRightCorner(m - n, m - n);
+    scan_->Backward(run_.knots(), next);
+    changes_.assign(run_.knots(), std::vector<double>(onsets_of_.size(), 0));
+    for (std::size_t k = run_.knots(); k-- > 0;) {
+      BehindMatrix with_next;
+      const EdgeMatrix here = e.CovarianceBefore(k, e.Gain(k), next, with_next);
+      NormalBlock::Matrix joint(n + m, n + m);
+      joint.topLeftCorner(n, n) = here.topLeftCorner(n, n);
+      joint.topRightCorner(n, m) = with_next;
+      joint.bottomLeftCorner(m, n) = with_next.transpose();
+      joint.bottomRightCorner(m, m) = next;
+      LookAt(k, joint);
+      scan_->Backward(k, here);
+      next = here;
+    }
+  }
+
+  void LookAt(std::size_t k, const NormalBlock::Matrix& joint) {
+    run_.RowsOf(k, rows_);
+    for (const Factor& f : rows_) {
+      const bool gyro = f.kind == RowKind::kTurn || f.kind == RowKind::kStill;
+      const bool accel = f.kind == RowKind::kForce;
+      if (!gyro && !accel && f.kind != RowKind::kRest && f.kind != RowKind::kAzimuth) continue;
+      const Matrix3d freedom = Freedom(f, joint);
+      for (std::size_t i = 0; i < onsets_of_.size(); ++i) {
+        const Vector3d c = ColumnOf(f, run_.layout(), ColumnOfSpec(onsets_of_[i]));
+        changes_[k][i] += c.dot(freedom * c);
+      }
+      if (gyro) LookAtRows(Kind::kGyroSpike, 2, k, f, freedom);
+      if (accel) LookAtRows(Kind::kAccelSpike, 3, k, f, freedom);
+      if (f.kind == RowKind::kRest && f.rows == 3) {
+        LookAtRows(Kind::kRestMotion, 3, k, f, freedom);
+      }
+      if (f.kind == RowKind::kAzimuth) LookAtRows(Kind::kTie, 1, k, f, freedom);
+      if (gyro) turns_.Add(k, f, freedom);
+      if (accel) forces_.Add(k, f, freedom);
+    }
+  }
+
+  /// Each of the first `count` rows alone may be wrong: a unit of it is a column 1 / sigma.
+  void LookAtRows(Kind kind, int count, std::size_t k, const Factor& f, const Matrix3d& freedom) {
+    for (std::size_t s = 0; s < specs_.size(); ++s) {
+      if (specs_[s].kind != kind) continue;
+      const Matrix3d moved = influence_->Of(k, f);
+      for (int i = 0; i < count; ++i) {
+        const double by = f.per_unit;
+        if (!(by > 0) || !(freedom(i, i) > kAbsorbed)) continue;
+        looks_[s].Add(k, {by * f.r[i], by * by * freedom(i, i), -by * moved.col(i)});
+      }
+    }
+  }
+
+  void AddConstants() {
+    for (std::size_t s = 0; s < specs_.size(); ++s) {
+      const int i = ColumnOfSpec(s);
+      if (specs_[s].kind != Kind::kConstant || i == kAbsent) continue;
+      const double sigma = run_.layout().sigma[i];
+      const double freedom = 1 - border_covariance_(i, i) / (sigma * sigma);
+      if (!(freedom > kAbsorbed)) continue;
+      looks_[s].Add(0, {run_.PriorResidual(i) / sigma, freedom / (sigma * sigma),
+                        -influence_->OfBorder(i) / (sigma * sigma)});
+    }
+  }
+
+  /// A step at the first node is a constant, and near the ends as good as nothing.
+  void AddOnsets() {
+    for (std::size_t i = 0; i < onsets_of_.size(); ++i) {
+      double most = 0;
+      for (std::size_t t = 1; t < run_.knots(); ++t) {
+        most = std::max(most, scan_->At(i, t).information);
+      }
+      for (std::size_t t = 1; t < run_.knots(); ++t) {
+        const Score& score = scan_->At(i, t);
+        if (score.information > kAbsorbed * most) {
+          looks_[onsets_of_[i]].Add(t, score, AlikeAt(i, t));
+        }
+      }
+    }
+  }
+
+  /// Onsets about node t whose Bayes factor is much the same: the signature's correlation falls in
+  /// proportion to the distance, and with it the exponent, from some 15.
+  double AlikeAt(std::size_t i, std::size_t t) const {
+    const double here = scan_->At(i, t).information, next = scan_->At(i, t + 1).information;
+    if (!(here > 0) || !(next > 0)) return 1;
+    const double rho =
+        std::clamp((here + next - changes_[t][i]) / (2 * std::sqrt(here * next)), 0.0, 1.0);
+    const double falls = 15 * (1 - rho * rho);
+    return falls > 2 ? 1 : 2 / std::max(falls, 1e-6);
+  }
+
+  void AddScatter(Diagnosis& d) const {
+    for (std::size_t s = 0; s < specs_.size(); ++s) {
+      CauseTest& test = d.tests[s];
+      if (specs_[s].kind == Kind::kGyroNoise) turns_.TestAll(test);
+      if (specs_[s].kind == Kind::kAccelNoise) forces_.TestAll(test);
+      if (specs_[s].kind != Kind::kOther) continue;
+      LogMean mean;
+      for (const Scatter* scatter : {&turns_, &forces_}) {
+        for (const double ln_bayes : scatter->Stretches()) mean.Add(ln_bayes);
+      }
+      if (mean.count() == 0) continue;
+      test.tested = true;
+      test.ln_bayes = mean.value();
+    }
+  }
+
+  void CompareSignatures(Diagnosis& d) const;
+  void AddOdds(Diagnosis& d) const;
+
+  LinearRun run_;
+  std::span<const CauseSpec> specs_;
+  std::vector<Looks> looks_;
+  std::optional<EndInfluence> influence_;
+  std::optional<OnsetScan> scan_;
+  std::vector<std::size_t> onsets_of_;        ///< specs, in the order of the scan
+  std::vector<std::vector<double>> changes_;  ///< information of one knot's part of the column
+  Eigen::MatrixXd border_covariance_;
+  Scatter turns_{kStretch}, forces_{kStretch};
+  mutable std::vector<Factor> rows_;
+};
+
+/// Of constants and onsets at their likeliest nodes: N^-1 J'c of each, and in `gram` c'c less what
+/// is then taken off, c_i'P c_j.
+void Diagnoser::CompareSignatures(Diagnosis& d) const {
+  const Layout& layout = run_.layout();
+  const std::size_t specs = specs_.size();
+  const auto count = static_cast<Index>(specs);
+  const int n = layout.node, b = layout.border;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count, count);
+  LinearRun::Columns columns;
+  columns.border = Eigen::MatrixXd::Zero(b, count);
+  columns.nodes.assign(run_.knots() + 1, Eigen::MatrixXd::Zero(n, count));
+  const auto tested = [&](std::size_t s) {
+    return d.tests[s].tested && ColumnOfSpec(s) != kAbsent;
+  };
+  for (std::size_t i = 0; i < specs; ++i) {
+    if (!tested(i)) continue;
+    const double sigma = layout.sigma[ColumnOfSpec(i)];
+    columns.border(ColumnOfSpec(i), static_cast<Index>(i)) = 1 / (sigma * sigma);
+    for (std::size_t j = 0; j < specs; ++j) {
+      if (!tested(j) || ColumnOfSpec(i) != ColumnOfSpec(j)) continue;
+      gram(static_cast<Index>(i), static_cast<Index>(j)) = 1 / (sigma * sigma);
+    }
+  }
+  Eigen::VectorXd block(2 * n + b);
+  for (std::size_t k = 0; k < run_.knots(); ++k) {
+    run_.RowsOf(k, rows_);
+    for (const Factor& f : rows_) {
+      Eigen::Matrix<double, 3, Eigen::Dynamic> c =
+          Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, count);
+      bool any = false;
+      for (std::size_t i = 0; i < specs; ++i) {
+        if (!tested(i) || k >= d.tests[i].node) continue;
+        const auto at = static_cast<Index>(i);
+        c.col(at) = ColumnOf(f, layout, ColumnOfSpec(i));
+        if (c.col(at).isZero(0)) continue;
+        any = true;
+        block.setZero();
+        AddTransposed(f, c.col(at), block);
+        columns.nodes[k].col(at) += block.head(n);
+        columns.nodes[k + 1].col(at) += block.segment(n, n);
+        columns.border.col(at) += block.tail(b);
+      }
+      if (any) gram += c.transpose() * c;
+    }
+  }
+  const LinearRun::Columns transposed = columns;
+  run_.SolveFor(columns);
+  gram -= transposed.border.transpose() * columns.border;
+  for (std::size_t k = 0; k <= run_.knots(); ++k) {
+    gram -= transposed.nodes[k].transpose() * columns.nodes[k];
+  }
+  for (Index i = 0; i < count; ++i) {
+    for (Index j = 0; j < count; ++j) {
+      const double by = std::sqrt(gram(i, i) * gram(j, j));
+      if (by > 0) d.alike(i, j) = std::clamp(gram(i, j) / by, -1.0, 1.0);
+    }
+  }
+}
+
+/// With the likeliest cause taken out at its size, the scores of those like it are smaller and so
+/// is their information.
+void Diagnoser::AddOdds(Diagnosis& d) const {
+  LogMean all, rest;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < d.tests.size(); ++i) {
+    if (!d.tests[i].tested) continue;
+    all.Add(d.tests[i].ln_bayes);
+    if (!d.tests[first].tested || d.tests[i].ln_bayes > d.tests[first].ln_bayes) first = i;
+  }
+  d.ln_odds = d.ln_odds_without_first = all.value();
+  if (all.count() == 0 || ColumnOfSpec(first) == kAbsent) return;
+  const CauseTest& taken = d.tests[first];
+  for (std::size_t i = 0; i < d.tests.size(); ++i) {
+    const CauseTest& test = d.tests[i];
+    if (!test.tested || i == first || ColumnOfSpec(i) == kAbsent) continue;
+    const double rho = d.alike(static_cast<Index>(i), static_cast<Index>(first));
+    const double w = test.size / test.sigma - rho * taken.size / taken.sigma;
+    const double information = (1 - rho * rho) / (test.sigma * test.sigma);
+    rest.Add(LnBayes({w / test.sigma, information, {}}, specs_[i].size));
+  }
+  d.ln_odds_without_first = rest.value();
+}
+
+}  // namespace
+
+Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
+                   std::span<const Matrix3d> end_by_phi, double false_alarm_rate) {
+  return Diagnoser(rows, specs, false_alarm_rate).Run(end_by_phi);
+}
+
+}  // namespace wellgyro

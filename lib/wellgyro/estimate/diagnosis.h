@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/estimate/cause.h"
+#include "wellgyro/estimate/linear_run.h"
+
+namespace wellgyro {
+
+/// What a run's rows say of one cause.
+struct CauseTest {
+  bool tested = false;   ///< false: nothing in the run can tell it
+  double ln_bayes = 0;   ///< ln of its Bayes factor against no fault, onset and size integrated out
+  std::size_t node = 0;  ///< the likeliest onset
+  double size = 0;       ///< found there
+  double sigma = 0;      ///< of that
+  /// What such a fault does to the end of the run: as found less as it is [m].
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  /// Of all onsets the one at which what passes unnoticed moves the end the most: the smallest size
+  /// that is noticed four times in five, and that shift. `noticeable` false: not even five times
+  /// the spec's size is, and the shift is that of five times.
+  bool noticeable = false;
+  double smallest = 0;
+  std::size_t smallest_node = 0;
+  Eigen::Vector3d hidden = Eigen::Vector3d::Zero();
+};
+
+/// Which fault explains a run.
+struct Diagnosis {
+  bool done = false;
+  /// ln of the odds of some cause against none, were both as likely before: the mean of the Bayes
+  /// factors. Without fault it exceeds ln(1/a) in at most a share a of runs (Markov).
+  double ln_odds = 0;
+  double ln_odds_without_first = 0;  ///< the same once the likeliest cause is taken out
+  std::vector<CauseTest> tests;      ///< of each spec
+  /// Correlation of the signatures of constants and onsets, each at its likeliest node; 0 of
+  /// others.
+  Eigen::MatrixXd alike;
+};
+
+/// Tests every cause from one factorisation of the run's rows, by the algebra of linear models:
+/// score s = c'P r, information M = c'P c, size s / M, Bayes factor
+/// ln B = s^2 / (2 (M + 1/S^2)) - ln(1 + S^2 M) / 2 with size ~ N(0, S^2); over onsets the mean.
+/// c may be replaced by c + J v, so that a constant beyond its prior is its prior's row, and a step
+/// at node t is that row and the columns of the knots before t: one pass forward for all onsets.
+/// Baarda (1968); de Jong and Penzer, "Diagnosing shocks in time series", JASA 93 (1998).
+/// `end_by_phi`: derivative of the end by every node's phi [m]. `false_alarm_rate`: of `ln_odds`
+/// above which a fault is taken as noticed. Time and memory are proportional to the knots.
+WELLGYRO_EXPORT Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
+                                   std::span<const Eigen::Matrix3d> end_by_phi,
+                                   double false_alarm_rate);
+
+}  // namespace wellgyro

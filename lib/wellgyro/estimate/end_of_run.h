@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/estimate/node.h"
+
+namespace wellgyro {
+
+/// How the deepest place of a run, as seen from its shallowest, moves with every node's phi:
+/// tangents summed over the depths of the pass between them [m]. Zero of a run without depth.
+std::vector<Eigen::Matrix3d> EndByPhi(std::span<const Node> nodes);
+
+}  // namespace wellgyro

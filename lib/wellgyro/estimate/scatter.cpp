@@ -1,0 +1,64 @@
+#include "wellgyro/estimate/scatter.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace wellgyro {
+namespace {
+
+constexpr double kOwn = 0.3;  // of a row, what its own residual must keep
+// tau^2, in the variances that rows should have: of bursts, and of a sensor that is out of its
+// class.
+constexpr std::array<double, 6> kBurst{0.5, 2, 8, 40, 400, 1e4};
+constexpr std::array<double, 6> kNoisier{0.3, 0.6, 1, 1.5, 2.2, 3};
+
+}  // namespace
+
+void Scatter::Add(std::size_t k, const Factor& f, const Eigen::Matrix3d& freedom) {
+  const std::size_t at = k / stretch_;
+  if (stretches_.size() <= at) stretches_.resize(at + 1);
+  const Eigen::MatrixXd p = freedom.topLeftCorner(f.rows, f.rows);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p);
+  for (Eigen::Index i = 0; i < f.rows; ++i) {
+    const double l = eigen.eigenvalues()[i];
+    if (!(l > kOwn)) continue;
+    const double along = eigen.eigenvectors().col(i).dot(f.r.head(f.rows));
+    const double square = along * along / l;
+    for (Sum* sum : {&stretches_[at], &all_, &all_fine_}) {
+      const std::array<double, kGrid>& grid = sum == &all_fine_ ? kNoisier : kBurst;
+      for (std::size_t g = 0; g < kGrid; ++g) {
+        const double x = grid[g] * l;
+        sum->ln_bayes[g] += 0.5 * (square * x / (1 + x) - std::log1p(x));
+      }
+      sum->squares += square;
+      sum->count += 1;
+    }
+  }
+}
+
+double Scatter::Mean(const Sum& sum) {
+  double most = -HUGE_VAL, mean = 0;
+  for (const double x : sum.ln_bayes) most = std::max(most, x);
+  for (const double x : sum.ln_bayes) mean += std::exp(x - most) / kGrid;
+  return most + std::log(mean);
+}
+
+std::vector<double> Scatter::Stretches() const {
+  std::vector<double> ln_bayes;
+  for (const Sum& sum : stretches_) {
+    if (sum.count > 0) ln_bayes.push_back(Mean(sum));
+  }
+  if (all_.count > 0) ln_bayes.push_back(Mean(all_));
+  return ln_bayes;
+}
+
+void Scatter::TestAll(CauseTest& test) const {
+  if (!(all_fine_.count > 0)) return;
+  test.tested = true;
+  test.ln_bayes = Mean(all_fine_);
+  test.size = std::sqrt(all_fine_.squares / all_fine_.count);
+  test.sigma = test.size / std::sqrt(2 * all_fine_.count);
+}
+
+}  // namespace wellgyro

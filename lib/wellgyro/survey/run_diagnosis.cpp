@@ -1,0 +1,332 @@
+#include "wellgyro/survey/run_diagnosis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <Eigen/LU>
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/survey/check_internal.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Kind = CauseSpec::Kind;
+
+// Of runs, those with some fault before anything is known of them. No field statistics are
+// published; by it the probabilities are stated, not what is found.
+constexpr double kFaultyShare = 0.1;
+// Signatures that correlate by more are hardly told apart: it would take 2 ln(20) / (1 - rho^2),
+// 30 sigma, to prefer one at odds of 20 (Imparato, Teunissen and Tiberius 2019).
+constexpr double kAlike = 0.9;
+constexpr double kNamed = 0.95;  // probability that the causes named have together
+
+struct Entry {
+  std::string_view code;
+  Kind kind;
+  int unknown;
+  double size;  // in `unit`
+  double unit;
+  std::string_view unit_name, remedy;
+};
+
+constexpr double kOne = 1;
+constexpr std::string_view kCalibrate =
+    "widen its sigma in [errors], run again, calibrate the tool";
+constexpr std::string_view kBench =
+    "the run is good to its end only with the step told: bench "
+    "the tool, survey the part below again";
+constexpr std::string_view kSpike = "look at the samples there; leave them out and run again";
+
+// Sizes by which a tool, or a job, is out of its class: a judgement, some five to ten times what
+// calibrated tools have. Bayes factors change little with them, by ln 4 where they are wrong by 4.
+constexpr Entry kEntries[] = {
+    {"gyro_bias_x", Kind::kConstant, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
+    {"gyro_bias_y", Kind::kConstant, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
+    {"mass_unbalance", Kind::kConstant, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
+     kCalibrate},
+    {"quadrature", Kind::kConstant, kQuadrature, 0.15, units::kDegPerHourPerG, "deg/h/g",
+     kCalibrate},
+    {"gyro_scale_x", Kind::kConstant, kGyroScaleX, 1e-3, kOne, "1", kCalibrate},
+    {"gyro_scale_y", Kind::kConstant, kGyroScaleY, 1e-3, kOne, "1", kCalibrate},
+    {"gyro_misalignment_x", Kind::kConstant, kMisalignmentX, 1e-3, kOne, "rad", kCalibrate},
+    {"gyro_misalignment_y", Kind::kConstant, kMisalignmentY, 1e-3, kOne, "rad", kCalibrate},
+    {"toolface_offset", Kind::kConstant, kToolfaceOffset, 0.2, units::kDeg, "deg", kCalibrate},
+    {"time_skew", Kind::kConstant, kTimeSkew, 0.01, kOne, "s",
+     "correct the stamps of the accelerometers, run again"},
+    {"accel_bias_x", Kind::kConstant, kAccelBiasX, 3e-3, kOne, "m/s2", kCalibrate},
+    {"accel_bias_y", Kind::kConstant, kAccelBiasY, 3e-3, kOne, "m/s2", kCalibrate},
+    {"accel_bias_z", Kind::kConstant, kAccelBiasZ, 3e-3, kOne, "m/s2", kCalibrate},
+    {"accel_scale_x", Kind::kConstant, kAccelScaleX, 1e-3, kOne, "1", kCalibrate},
+    {"accel_scale_y", Kind::kConstant, kAccelScaleY, 1e-3, kOne, "1", kCalibrate},
+    {"accel_scale_z", Kind::kConstant, kAccelScaleZ, 1e-3, kOne, "1", kCalibrate},
+    {"accel_misalignment_x", Kind::kConstant, kAccelMisalignmentX, 1e-3, kOne, "rad", kCalibrate},
+    {"accel_misalignment_y", Kind::kConstant, kAccelMisalignmentY, 1e-3, kOne, "rad", kCalibrate},
+    {"gyro_bias_z", Kind::kConstant, kGyroBiasZ, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
+    {"gyro_scale_z", Kind::kConstant, kGyroScaleZ, 1e-3, kOne, "1", kCalibrate},
+    {"latitude", Kind::kConstant, kLatitudeError, 0.4, units::kDeg, "deg",
+     "correct the latitude of the job, run again"},
+    {"gravity", Kind::kConstant, kGravityError, 5e-3, kOne, "m/s2",
+     "correct the well's place or elevation in the job, run again"},
+    {"gyro_step_x", Kind::kOnset, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kBench},
+    {"gyro_step_y", Kind::kOnset, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kBench},
+    {"mass_unbalance_step", Kind::kOnset, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
+     kBench},
+    {"accel_step_x", Kind::kOnset, kAccelBiasX, 3e-3, kOne, "m/s2", kBench},
+    {"accel_step_y", Kind::kOnset, kAccelBiasY, 3e-3, kOne, "m/s2", kBench},
+    {"accel_step_z", Kind::kOnset, kAccelBiasZ, 3e-3, kOne, "m/s2", kBench},
+    {"toolface_slip", Kind::kOnset, kToolfaceOffset, 0.2, units::kDeg, "deg",
+     "tighten gyros and accelerometers against each other, survey the part below again"},
+    {"samples_lost", Kind::kOnset, kTimeSkew, 0.05, kOne, "s",
+     "restore the numbering of the samples, run again"},
+    {"gyro_spike", Kind::kGyroSpike, 0, 0.05, units::kDeg, "deg", kSpike},
+    {"accel_spike", Kind::kAccelSpike, 0, 0.05, kOne, "m/s2", kSpike},
+    {"rest_motion", Kind::kRestMotion, 0, 0.01, units::kDeg, "deg",
+     "the tool was not at rest: leave the stop out and run again"},
+    {"azimuth_tie", Kind::kTie, 0, 2.5, units::kDeg, "deg",
+     "leave the azimuth from outside out, run again"},
+    {"gyro_noise", Kind::kGyroNoise, 0, 1, kOne, "1",
+     "state the noise as it is, run again; look for vibration"},
+    {"accel_noise", Kind::kAccelNoise, 0, 1, kOne, "1",
+     "state the noise as it is, run again; look for vibration"},
+    {"other", Kind::kOther, 0, 1, kOne, "1", "survey the well again"},
+};
+constexpr std::size_t kCount = std::size(kEntries);
+
+struct SampleWords {
+  std::string_view code, remedy;
+};
+// Checks of samples and marks that by themselves name what is wrong.
+constexpr SampleWords kOfSamples[] = {
+    {"accel_dead", "mend the sensor, survey the well again"},
+    {"accel_stuck", "leave the stretch out; where it is long, survey the well again"},
+    {"axes", "correct the axes of the tool file, run again"},
+    {"depth_jump", "correct the depth marks there, run again"},
+    {"depth_lag", "correct the times of the depth marks, run again"},
+    {"gyro_dead", "mend the sensor, survey the well again"},
+    {"gyro_stuck", "leave the stretch out; where it is long, survey the well again"},
+    {"gyro_unit", "correct the unit or scale in the tool file, run again"},
+    {"latitude", "correct the latitude of the job, run again"},
+};
+
+/// ln(e^a + e^b).
+double LogSum(double a, double b) {
+  const double most = std::max(a, b);
+  return most + std::log(std::exp(a - most) + std::exp(b - most));
+}
+
+RunCause CauseOfTest(const Entry& entry, const CauseTest& test, std::span<const RunKnot> knots) {
+  RunCause cause;
+  cause.code = entry.code;
+  cause.unit = entry.unit_name;
+  cause.remedy = entry.remedy;
+  cause.ln_bayes = test.ln_bayes;
+  if (entry.kind == Kind::kOther) return cause;
+  cause.size = test.size / entry.unit;
+  cause.sigma = test.sigma / entry.unit;
+  if (entry.kind == Kind::kGyroNoise || entry.kind == Kind::kAccelNoise) return cause;
+  cause.shift_W = test.shift;
+  if (entry.kind == Kind::kConstant || test.node >= knots.size()) return cause;
+  cause.begin = knots[test.node].utc;
+  if (knots[test.node].along.known) cause.begin_md = knots[test.node].along.md;
+  return cause;
+}
+
+RunReliability ReliabilityOf(const Entry& entry, const CauseTest& test,
+                             std::span<const RunKnot> knots) {
+  RunReliability hidden;
+  hidden.code = entry.code;
+  hidden.unit = entry.unit_name;
+  if (test.noticeable) hidden.smallest = test.smallest / entry.unit;
+  hidden.shift_W = test.hidden;
+  if (entry.kind != Kind::kConstant && test.smallest_node < knots.size() &&
+      knots[test.smallest_node].along.known) {
+    hidden.md = knots[test.smallest_node].along.md;
+  }
+  return hidden;
+}
+
+bool HasReliability(const Entry& entry, const CauseTest& test) {
+  return test.tested && entry.kind != Kind::kGyroNoise && entry.kind != Kind::kAccelNoise &&
+         entry.kind != Kind::kOther;
+}
+
+void AddHidden(RunDiagnosis& diagnosis) {
+  std::vector<Vector2d> points;
+  double most = 0;
+  for (const RunReliability& hidden : diagnosis.reliability) {
+    points.push_back(hidden.shift_W.head<2>());
+    if (points.back().norm() <= most) continue;
+    most = points.back().norm();
+    diagnosis.hidden_cause = hidden.code;
+  }
+  diagnosis.hidden = EllipseAbout(points);
+}
+
+/// The likeliest causes that together have kNamed of the probability that there is one.
+std::vector<const RunCause*> Named(const std::vector<RunCause>& causes) {
+  double all = 0, named = 0;
+  for (const RunCause& cause : causes) all += cause.code == "none" ? 0 : cause.posterior;
+  std::vector<const RunCause*> set;
+  for (const RunCause& cause : causes) {
+    if (cause.code == "none") continue;
+    if (named >= kNamed * all) break;
+    named += cause.posterior;
+    set.push_back(&cause);
+  }
+  return set;
+}
+
+std::string WordsOf(const RunCause& cause, double share) {
+  std::string text = fmt::format("{} ({:.2f}", cause.code, share);
+  if (cause.size) {
+    text += fmt::format(", {:.3g} +- {:.1g}{}", *cause.size, cause.sigma.value_or(0),
+                        cause.unit == "1" ? "" : " " + cause.unit);
+  }
+  if (cause.begin_md) text += fmt::format(", from MD {:.1f} m", *cause.begin_md);
+  if (cause.shift_W) text += fmt::format(", end moved by {:.2g} m", cause.shift_W->norm());
+  return text + ")";
+}
+
+std::string WordsOf(const RunDiagnosis& diagnosis) {
+  const std::vector<const RunCause*> named = Named(diagnosis.causes);
+  if (named.empty()) return "";
+  double all = 0;
+  for (const RunCause& cause : diagnosis.causes) {
+    all += cause.code == "none" ? 0 : cause.posterior;
+  }
+  if (named.size() == 1 && named[0]->code == "other") return "none of the faults that are known";
+  std::string text = named.size() > 1 ? "one of " : "";
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    text += (i > 0 ? ", " : "") + WordsOf(*named[i], all > 0 ? named[i]->posterior / all : 0);
+  }
+  if (diagnosis.ln_odds_without_first > -std::log(kDiagnosisFalseAlarms)) {
+    text += ", and something else beside it";
+  }
+  return text + "; if the first: " + named[0]->remedy;
+}
+
+}  // namespace
+
+std::vector<CauseSpec> CausesLookedFor() {
+  std::vector<CauseSpec> specs;
+  for (const Entry& entry : kEntries) {
+    specs.push_back({entry.kind, entry.unknown, entry.size * entry.unit});
+  }
+  return specs;
+}
+
+RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots) {
+  RunDiagnosis diagnosis;
+  if (!tests.done) return diagnosis;
+  diagnosis.ln_odds = tests.ln_odds;
+  diagnosis.ln_odds_without_first = tests.ln_odds_without_first;
+  double tested = 0;
+  for (const CauseTest& test : tests.tests) tested += test.tested ? 1 : 0;
+  // ln of what p(none) + sum of p(cause) B(cause) comes to.
+  const double none = std::log(1 - kFaultyShare), each = std::log(kFaultyShare / tested);
+  const double sum = LogSum(none, std::log(kFaultyShare) + tests.ln_odds);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const CauseTest& test = tests.tests[i];
+    if (!test.tested) continue;
+    RunCause cause = CauseOfTest(kEntries[i], test, knots);
+    cause.posterior = std::exp(each + test.ln_bayes - sum);
+    for (std::size_t j = 0; j < kCount; ++j) {
+      const double rho = tests.alike(static_cast<Index>(i), static_cast<Index>(j));
+      if (j != i && std::abs(rho) > kAlike) cause.alike.emplace_back(kEntries[j].code);
+    }
+    diagnosis.causes.push_back(std::move(cause));
+    if (HasReliability(kEntries[i], test)) {
+      diagnosis.reliability.push_back(ReliabilityOf(kEntries[i], test, knots));
+    }
+  }
+  RunCause& clean = diagnosis.causes.emplace_back();
+  clean.code = "none";
+  clean.ln_bayes = 0;
+  clean.posterior = std::exp(none - sum);
+  std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),
+                   [](const RunCause& a, const RunCause& b) { return a.posterior > b.posterior; });
+  AddHidden(diagnosis);
+  return diagnosis;
+}
+
+void CheckDiagnosis(const RunSummary& run, std::vector<Check>& checks) {
+  const RunDiagnosis* found = run.fit && run.fit->diagnosis ? &*run.fit->diagnosis : nullptr;
+  if (found == nullptr || found->causes.empty()) {
+    checks.push_back(NotDone("diagnosis", run.run,
+                             found == nullptr ? "the run was not solved by rotations"
+                                              : "the residuals of the run could not be tested"));
+    return;
+  }
+  const double limit = -std::log(kDiagnosisFalseAlarms);
+  Check check{.code = "diagnosis", .run = run.run, .value = found->ln_odds, .unit = "1"};
+  const bool fails = !(found->ln_odds <= limit);
+  check.verdict = fails ? Verdict::kFail : Verdict::kPass;
+  // Without a limit of its own: what is told of the check are the causes.
+  if (fails) {
+    check.limit_source = WordsOf(*found);
+  } else {
+    check.limit = limit;
+    check.limit_source =
+        fmt::format("ln of the odds, {:g} % of clean runs", 100 * kDiagnosisFalseAlarms);
+  }
+  checks.push_back(check);
+}
+
+std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> checks) {
+  std::vector<RunCause> causes;
+  for (const Check& check : checks) {
+    if (check.run != run.run || check.verdict != Verdict::kFail) continue;
+    for (const SampleWords& words : kOfSamples) {
+      if (!check.code.starts_with(words.code)) continue;
+      RunCause& cause = causes.emplace_back();
+      cause.code = check.code;
+      cause.begin_md = check.md;
+      cause.size = check.value;
+      cause.sigma = check.sigma;
+      cause.unit = check.unit;
+      cause.remedy = words.remedy;
+    }
+  }
+  const bool by_samples = !causes.empty();
+  for (RunCause& cause : causes) cause.posterior = 1 / static_cast<double>(causes.size());
+  if (!run.fit || !run.fit->diagnosis) return causes;
+  for (const RunCause& cause : run.fit->diagnosis->causes) {
+    causes.push_back(cause);
+    if (by_samples) causes.back().posterior = 0;
+  }
+  return causes;
+}
+
+/// Khachiyan's algorithm for centred ellipses: the weight of a point grows as it stands out of the
+/// ellipse of all.
+Matrix2d EllipseAbout(std::span<const Vector2d> points) {
+  double most = 0;
+  for (const Vector2d& p : points) most = std::max(most, p.norm());
+  if (!(most > 0) || !std::isfinite(most)) return Matrix2d::Zero();
+  // Points on one line have an ellipse of no width: given a thousandth.
+  const double least = 1e-6 * most * most;
+  std::vector<double> weight(points.size(), 1 / static_cast<double>(points.size()));
+  Matrix2d spread = Matrix2d::Zero();
+  for (int i = 0; i < 200; ++i) {
+    spread = least * Matrix2d::Identity();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      spread += weight[k] * points[k] * points[k].transpose();
+    }
+    const Matrix2d inverse = spread.inverse();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      weight[k] *= points[k].dot(inverse * points[k]) / 2;
+    }
+  }
+  const Matrix2d inverse = spread.inverse();
+  double out = 0;
+  for (const Vector2d& p : points) out = std::max(out, p.dot(inverse * p));
+  return out * spread;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/estimate/diagnosis.h"
+#include "wellgyro/record/check.h"
+#include "wellgyro/record/diagnosis.h"
+#include "wellgyro/record/run_knot.h"
+#include "wellgyro/survey/survey.h"
+
+namespace wellgyro {
+
+/// Of runs without fault the share in which a fault is taken as found, at the most. Part of what
+/// all checks of a run share, see kFalseAlarmRate.
+inline constexpr double kDiagnosisFalseAlarms = 1e-3;
+
+/// The faults that are looked for, in the order of their codes' table.
+std::vector<CauseSpec> CausesLookedFor();
+
+/// What the estimator's tests of CausesLookedFor() come to, in words and where it was.
+RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots);
+
+/// The check `diagnosis`: fails where a fault is found, naming the likeliest, or several that
+/// together have 95 %.
+void CheckDiagnosis(const RunSummary& run, std::vector<Check>& checks);
+
+/// The causes of a run with those that its samples alone tell, by `checks` that fail, in front: a
+/// dead, stuck or swapped axis leaves nothing that the adjustment could judge.
+WELLGYRO_EXPORT std::vector<RunCause> CausesOf(const RunSummary& run,
+                                               std::span<const Check> checks);
+
+/// The least centred ellipse e' E^-1 e <= 1 that holds all points.
+Eigen::Matrix2d EllipseAbout(std::span<const Eigen::Vector2d> points);
+
+}  // namespace wellgyro

@@ -1,0 +1,189 @@
+// Which fault explains a simulated run, by the estimator of rotations.
+#include "wellgyro/survey/run_diagnosis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/io/result/diagnosis_csv.h"
+#include "wellgyro/simulate/tool_errors.h"
+
+#include "support/simulated_survey.h"
+
+namespace wellgyro {
+namespace {
+
+using testing::CollectingSink;
+using testing::Find;
+using testing::SurveyOf;
+using Cause = SimulatedFault::Cause;
+
+constexpr double kHalf = 600;  // [s]
+
+/// Twenty minutes down a hole that builds and turns, with four stops.
+struct Flight {
+  explicit Flight(std::uint64_t seed) {
+    simulation.well.end_md = 900;
+    simulation.well.inclination.start = FromDegrees(30);
+    simulation.well.inclination.terms.push_back({.rate = 1.5 * units::kDegPer30m});
+    simulation.well.azimuth.start = FromDegrees(40);
+    simulation.well.azimuth.terms.push_back({.rate = units::kDegPer30m});
+    simulation.earth.latitude = FromDegrees(60);
+    simulation.run.roll_reference = RollReference::kHighSide;
+    RunMove down;
+    down.speed = 1;
+    down.roll.rate = kTwoPi / 60;
+    for (const double to : {200., 400., 600.}) {
+      simulation.run.steps.push_back(RunStop{.seconds = 150});
+      down.to_md = to;
+      simulation.run.steps.push_back(down);
+      down.roll.rate = -down.roll.rate;
+    }
+    simulation.run.steps.push_back(RunStop{.seconds = 150});
+    simulation.streams.imu_hz = 10;
+    simulation.streams.depth_hz = 2;
+    job.well.latitude = FromDegrees(60);
+    job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
+    job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
+    job.noise.rate_random_walk = 0.01 * units::kDegPerHourSqrtHour;
+    job.errors.gyro_bias_sigma = 0.1 * units::kDegPerHour;
+    job.errors.mass_unbalance_sigma = 0.02 * units::kDegPerHourPerG;
+    job.errors.gyro_scale_sigma = job.errors.gyro_misalignment_sigma = 1e-4;
+    job.errors.roll_offset_sigma = FromDegrees(0.02);
+    job.errors.time_skew_sigma = 1e-3;
+    job.errors.accel_bias_sigma = 5e-4;
+    job.errors.accel_noise = 2e-4;
+    job.errors.depth_sigma = 0.3;
+    simulation.tool.errors = DrawToolErrors(job.errors, job.noise, seed);
+    simulation.tool.errors.depth_resolution = 0.01;
+    simulation.seed = seed;
+  }
+  Survey Surveyed() const {
+    CollectingSink sink;
+    return SurveyOf(simulation, job, sink);
+  }
+
+  Simulation simulation;
+  Job job;
+};
+
+double Sum(const std::vector<RunCause>& causes) {
+  double sum = 0;
+  for (const RunCause& cause : causes) sum += cause.posterior;
+  return sum;
+}
+
+TEST(RunDiagnosis, OfARunWithoutFaultIsNone) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Survey survey = Flight(seed).Surveyed();
+    ASSERT_EQ(survey.unusable, "");
+    ASSERT_TRUE(survey.runs[0].fit && survey.runs[0].fit->diagnosis);
+    const Check* check = Find(survey, "diagnosis");
+    ASSERT_NE(check, nullptr);
+    EXPECT_EQ(check->verdict, Verdict::kPass) << check->value.value_or(0) << check->limit_source;
+    const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
+    EXPECT_GE(causes.size(), 26u);
+    EXPECT_EQ(causes.front().code, "none");
+    EXPECT_NEAR(Sum(causes), 1, 1e-9);
+    const RunDiagnosis& found = *survey.runs[0].fit->diagnosis;
+    // Every shift that could pass unseen lies in the ellipse, and one of them on it.
+    double furthest = 0;
+    for (const RunReliability& hidden : found.reliability) {
+      const Eigen::Vector2d e = hidden.shift_W.head<2>();
+      furthest = std::max(furthest, e.dot(found.hidden.inverse() * e));
+    }
+    EXPECT_NEAR(furthest, 1, 1e-6);
+    EXPECT_FALSE(found.hidden_cause.empty());
+  }
+}
+
+struct Wrong {
+  std::string code;
+  Cause cause;
+  double size;
+  double unit;
+  double begin;
+  int axis = 0;
+};
+void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.code; }
+
+class FaultIsNamed : public ::testing::TestWithParam<Wrong> {};
+
+// The code itself or one that this run hardly tells from it comes first. The job takes the latitude
+// as exact, so that it is no unknown of the run.
+TEST_P(FaultIsNamed, WithItsSize) {
+  const Wrong& wrong = GetParam();
+  Flight flight(3);
+  flight.simulation.faults.push_back({.cause = wrong.cause,
+                                      .axis = wrong.axis,
+                                      .begin = wrong.begin,
+                                      .size = wrong.size * wrong.unit});
+  const Survey survey = flight.Surveyed();
+  ASSERT_EQ(survey.unusable, "");
+  EXPECT_EQ(survey.verdict.verdict, Verdict::kFail);
+  const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
+  const auto found = std::find_if(causes.begin(), causes.end(),
+                                  [&](const RunCause& c) { return c.code == wrong.code; });
+  ASSERT_NE(found, causes.end());
+  const RunCause& first = causes.front();
+  const bool alike =
+      std::find(first.alike.begin(), first.alike.end(), wrong.code) != first.alike.end();
+  EXPECT_TRUE(first.code == wrong.code || alike) << first.code << " " << first.posterior;
+  EXPECT_FALSE(found->remedy.empty());
+  ASSERT_TRUE(found->size && found->sigma);
+  EXPECT_NEAR(std::abs(*found->size), wrong.size, 5 * *found->sigma + 0.05 * wrong.size);
+  if (wrong.begin > 0) {
+    ASSERT_TRUE(found->begin_md);
+    EXPECT_NEAR(*found->begin_md, 285, 60);
+  }
+  ASSERT_FALSE(survey.verdict.causes.empty());
+  EXPECT_NE(survey.verdict.causes.front().find(first.code), std::string::npos)
+      << survey.verdict.causes.front();
+}
+
+// At 600 s the tool is at 285 m or so.
+INSTANTIATE_TEST_SUITE_P(
+    Of, FaultIsNamed,
+    ::testing::Values(Wrong{"toolface_slip", Cause::kToolfaceSlip, 0.6, units::kDeg, kHalf},
+                      Wrong{"toolface_offset", Cause::kToolfaceSlip, 0.6, units::kDeg, 0},
+                      Wrong{"gyro_step_x", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 0},
+                      Wrong{"gyro_step_y", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 1},
+                      Wrong{"accel_bias_z", Cause::kAccelBias, 9e-3, 1, 0, 2},
+                      Wrong{"latitude", Cause::kLatitude, 2, units::kDeg, 0}));
+
+TEST(RunDiagnosis, FilesHaveTheirColumns) {
+  const Survey survey = Flight(1).Surveyed();
+  const std::string diagnosis = DiagnosisCsv(survey), reliability = ReliabilityCsv(survey);
+  EXPECT_TRUE(diagnosis.starts_with(
+      "RUN,CODE,BEGIN_UTC,BEGIN_MD[m],SIZE,SIGMA,UNIT,LN_BAYES,POSTERIOR,DN[m],DE[m],DV[m],ALIKE,"
+      "REMEDY\n1,none,,,,,,0,"))
+      << diagnosis.substr(0, 200);
+  EXPECT_TRUE(reliability.starts_with("RUN,CODE,SMALLEST,UNIT,AT_MD[m],DN[m],DE[m],DV[m]\n1,"));
+  for (const std::string& text : {diagnosis, reliability}) {
+    EXPECT_EQ(text.find("nan"), std::string::npos);
+    EXPECT_EQ(text.find("inf"), std::string::npos);
+  }
+}
+
+TEST(RunDiagnosis, TheEllipseIsTheLeastThatHoldsAllPoints) {
+  const std::vector<Eigen::Vector2d> points{{2, 0}, {0, 1}, {0.5, 0.5}, {-1, 0.2}};
+  const Eigen::Matrix2d ellipse = EllipseAbout(points);
+  EXPECT_NEAR(ellipse(0, 0), 4, 0.02);
+  EXPECT_NEAR(ellipse(1, 1), 1, 0.02);
+  EXPECT_NEAR(ellipse(0, 1), 0, 0.02);
+  // One shift alone has an ellipse without width.
+  const Eigen::Matrix2d line = EllipseAbout(std::vector<Eigen::Vector2d>{{3, 4}});
+  EXPECT_NEAR(line.trace(), 25, 0.01);
+  EXPECT_LT(line.determinant(), 0.01);
+  EXPECT_TRUE(EllipseAbout({}).isZero());
+}
+
+}  // namespace
+}  // namespace wellgyro
