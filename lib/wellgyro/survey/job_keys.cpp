@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 namespace {
@@ -84,7 +85,7 @@ constexpr NumberRange kTilt{.min = -5, .max = 5};
 constexpr NumberRange kFraction{.min = 0, .max = 1};
 constexpr NumberRange kWhole{.min = 0, .max = std::numeric_limits<std::int32_t>::max()};
 constexpr NumberRange kPlace{.min = -1e6, .max = 1e6};
-constexpr NumberRange kDepth{.min = -1e5, .max = 1e5};
+constexpr NumberRange kDepth{.min = -limits::kMd, .max = limits::kMd};
 
 constexpr std::array kWell{
     Word("well", "name", "text", "none", "of the well, for the files"),
@@ -303,7 +304,9 @@ constexpr std::array kCable{
 
 constexpr std::array kStringAndChecks{
     Number<&Job::string, &StringSpec::sensor_below_reference>(
-        "string", "sensor_below_reference_m", 1, {.min = -100, .max = 100}, "along hole"),
+        "string", "sensor_below_reference_m", 1,
+        {.min = -limits::kSensorBelowReference, .max = limits::kSensorBelowReference},
+        "along hole"),
     Number<&Job::string, &StringSpec::sag>("string", "sag_deg", kDeg, kTilt,
                                            "of the tool axis, in a horizontal hole"),
     Number<&Job::string, &StringSpec::sigma_sag>("string", "sag_sigma_deg", kDeg,
