@@ -343,6 +343,11 @@ constexpr std::array kStringAndChecks{
 };
 
 constexpr std::array kRunsAndEvents{
+    Word("operations", "unsigned_tool", "true or false", "false",
+         "with [[operator]]: whether what the tool says of itself is used unsigned"),
+    Word("operator", "name", "text", "required", "of the key, for the files"),
+    Word("operator", "public_key", "text", "required",
+         "64 hexadecimal digits, Ed25519: orders it has signed are obeyed, and no others"),
     Listed("run", "number", "whole number", {.min = 1, .max = kWhole.max}, "required",
            "of the run"),
     Word("run", "begin_utime_us", "whole number", "none", "UTC since 1970"),
@@ -423,7 +428,7 @@ std::string JobReference() {
   for (const JobKey& key : kKeys) {
     if (key.table != table) {
       table = key.table;
-      const bool list = table == "run" || table == "event";
+      const bool list = table == "run" || table == "event" || table == "operator";
       text += fmt::format("\n## {}{}{}\n\n| key | is | without it | meaning |\n|---|---|---|---|\n",
                           list ? "[[" : "[", table, list ? "]]" : "]");
     }
