@@ -165,5 +165,37 @@ TEST_F(Gate, ForgedOrdersAreNotObeyedAndTakeNoMemory) {
   EXPECT_EQ(gate.records().back().id, 99);
 }
 
+// What is forged before the first sample takes no room from what is true.
+TEST_F(Gate, ForgedOrdersBeforeTheFirstSampleKeepNoTrueOneOut) {
+  List(key_);
+  Surveyor surveyor(job_.job, sink_);
+  OperationGate gate(job_, surveyor);
+  SignedOperation forged = Signed(key_, 1);
+  forged.signature.front() ^= std::byte{1};
+  for (std::size_t i = 0; i < 2 * OperationGate::kWaitMax; ++i) gate.Take(forged);
+  gate.Take(Signed(key_, 2));
+  EXPECT_EQ(gate.obeyed(), 0);
+  gate.HeardAt(begin_);
+  EXPECT_EQ(gate.obeyed(), 1);
+}
+
+// Unsigned orders, of which anyone may send any number, leave what is remembered of signed ones.
+TEST_F(Gate, AFloodOfUnsignedOrdersMakesNoOrderNewAgain) {
+  List(key_);
+  Surveyor surveyor(job_.job, sink_);
+  OperationGate gate(job_, surveyor);
+  gate.HeardAt(begin_);
+  Command command;
+  command.session = 1;
+  for (int i = 1; i <= 300'000; ++i) {
+    command.command_id = i;
+    gate.Take(command);
+  }
+  for (int i = 0; i < 3; ++i) gate.Take(Signed(key_, 4));
+  EXPECT_EQ(gate.obeyed(), 1);
+  gate.Take(Signed(key_, 0));
+  EXPECT_EQ(gate.obeyed(), 1) << "without a number it could be sent again";
+}
+
 }  // namespace
 }  // namespace wellgyro

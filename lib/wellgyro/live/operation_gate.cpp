@@ -134,17 +134,46 @@ void OperationGate::HeardAt(UtcTime utc) {
 }
 
 void OperationGate::Take(const SignedOperation& operation) {
-  if (heard_) return Judge(operation);
-  if (waiting_.size() < kWaitMax) waiting_.push_back(operation);
+  // What is forged takes no place among those that wait for the time.
+  if (heard_ || !WhyForged(operation).empty()) return Judge(operation);
+  if (waiting_.size() < kWaitMax) return waiting_.push_back(operation);
+  Keep(RecordOf(operation, "refused: too many orders came before the first sample"));
 }
 
-std::string OperationGate::WhyNot(const SignedOperation& operation, const OperatorKey* key) const {
-  if (key == nullptr) {
+const OperatorKey* OperationGate::KeyOf(const SignedOperation& operation) const {
+  const auto& keys = spec_.keys;
+  const auto key = std::find_if(keys.begin(), keys.end(), [&operation](const OperatorKey& k) {
+    return k.key == operation.key;
+  });
+  return key == keys.end() ? nullptr : &*key;
+}
+
+OperationRecord OperationGate::RecordOf(const SignedOperation& operation,
+                                        std::string effect) const {
+  const OperatorKey* key = KeyOf(operation);
+  OperationRecord record;
+  record.key = key == nullptr ? HexOf(operation.key).substr(0, 16) : key->name;
+  record.session = operation.session;
+  record.id = operation.id;
+  record.utc = operation.utc;
+  record.kind = TypeName(ContentType(operation));
+  record.effect = std::move(effect);
+  return record;
+}
+
+std::string OperationGate::WhyForged(const SignedOperation& operation) const {
+  if (KeyOf(operation) == nullptr) {
     return spec_.keys.empty() ? "the job lists no keys" : "its key is not in the job";
   }
   if (!Verify(operation.key, SignedBytes(operation, well_), operation.signature)) {
     return "its signature is wrong, or for another well";
   }
+  // Without a number the same order again would be another one.
+  return operation.id != 0 ? "" : "it has no number";
+}
+
+std::string OperationGate::WhyNot(const SignedOperation& operation) const {
+  if (std::string forged = WhyForged(operation); !forged.empty()) return forged;
   const Duration off = operation.utc - *heard_;
   if (std::max(off, Duration{-off.ns}) > kFresh) {
     return fmt::format("it was signed {:.0f} s from the samples' time", off.seconds());
@@ -158,17 +187,7 @@ std::string OperationGate::WhyNot(const SignedOperation& operation, const Operat
 }
 
 void OperationGate::Judge(const SignedOperation& operation) {
-  const auto& keys = spec_.keys;
-  const auto key = std::find_if(keys.begin(), keys.end(), [&operation](const OperatorKey& k) {
-    return k.key == operation.key;
-  });
-  OperationRecord record;
-  record.key = key == keys.end() ? HexOf(operation.key).substr(0, 16) : key->name;
-  record.session = operation.session;
-  record.id = operation.id;
-  record.utc = operation.utc;
-  record.kind = TypeName(ContentType(operation));
-  record.effect = WhyNot(operation, key == keys.end() ? nullptr : &*key);
+  OperationRecord record = RecordOf(operation, WhyNot(operation));
   if (!record.effect.empty()) {
     record.effect = "refused: " + record.effect;
     return Keep(std::move(record));
@@ -218,8 +237,10 @@ void OperationGate::Obey(OperationRecord record, const Event& event) {
 
 void OperationGate::Take(const Command& command) {
   OperationRecord record{.key = "unsigned", .session = command.session, .id = command.command_id};
-  if (!IsNew("command", record.session, record.id)) return;
-  if (spec_.keys.empty()) return Obey(std::move(record), command);
+  if (spec_.keys.empty()) {
+    if (IsNew("command", record.session, record.id)) Obey(std::move(record), command);
+    return;
+  }
   record.utc = command.utc;
   record.kind = WordOf(command.kind);
   record.effect = "refused: the job lists keys, and it is not signed";
@@ -228,8 +249,10 @@ void OperationGate::Take(const Command& command) {
 
 void OperationGate::Take(const Event& event) {
   OperationRecord record{.key = "unsigned", .session = event.session, .id = event.event_id};
-  if (!IsNew("event", record.session, record.id)) return;
-  if (spec_.keys.empty()) return Obey(std::move(record), event);
+  if (spec_.keys.empty()) {
+    if (IsNew("event", record.session, record.id)) Obey(std::move(record), event);
+    return;
+  }
   record.utc = event.utc;
   record.kind = wellgyro::WordOf(event.kind);
   record.who = event.who;

@@ -60,7 +60,10 @@ class WELLGYRO_EXPORT OperationGate {
 
  private:
   void Judge(const SignedOperation& operation);
-  std::string WhyNot(const SignedOperation& operation, const OperatorKey* key) const;
+  const OperatorKey* KeyOf(const SignedOperation& operation) const;
+  OperationRecord RecordOf(const SignedOperation& operation, std::string effect) const;
+  std::string WhyForged(const SignedOperation& operation) const;
+  std::string WhyNot(const SignedOperation& operation) const;
   bool IsNew(const std::string& key, std::int32_t session, std::int32_t id);
   bool TakeOfTool(const char* kind, UtcTime utc, std::int32_t session);
   void Obey(OperationRecord record, const Command& command);
