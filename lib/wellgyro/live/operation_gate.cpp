@@ -192,7 +192,7 @@ void OperationGate::Judge(const SignedOperation& operation) {
     record.effect = "refused: " + record.effect;
     return Keep(std::move(record));
   }
-  if (IsNew(record.key, record.session, record.id)) ObeyContent(std::move(record), operation);
+  if (IsNew(HexOf(operation.key), record.session, record.id)) ObeyContent(std::move(record), operation);
 }
 
 void OperationGate::ObeyContent(OperationRecord record, const SignedOperation& operation) {
