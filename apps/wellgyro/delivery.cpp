@@ -91,7 +91,7 @@ int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Su
   const std::vector<ToolResult> results = ResultsOf(surveyor, folder);
   const int code = DeliverTools(Files::kToWrite, results, job, record, source);
   RemoveFormer(folder, results);
-  return code == kUnusable ? code : Conclude(results, code == kDoneWithLosses);
+  return code == kUnusable ? code : Conclude(WorstVerdict(results), code == kDoneWithLosses);
 }
 
 int Summarise(const JobFile& job, const LiveOutcome& outcome) {
@@ -99,17 +99,13 @@ int Summarise(const JobFile& job, const LiveOutcome& outcome) {
       DeliverTools(Files::kWritten, outcome.tools, job, outcome.record, outcome.source);
   if (code == kUnusable) return code;
   if (!outcome.recording_is_whole) Complain("done, but the recording lacks messages");
-  return Conclude(outcome.tools, code == kDoneWithLosses || !outcome.recording_is_whole);
+  return Conclude(WorstVerdict(outcome.tools),
+                  code == kDoneWithLosses || !outcome.recording_is_whole);
 }
 
-int Conclude(const std::vector<ToolResult>& results, bool losses) {
-  RunVerdict worst;
-  for (const ToolResult& result : results) {
-    const RunVerdict& verdict = result.survey.verdict;
-    if (!Nothing(result) && verdict.verdict >= worst.verdict) worst = verdict;
-  }
-  fmt::print("{}\n", VerdictText(worst));
-  return worst.verdict == Verdict::kFail ? kUnfit : losses ? kDoneWithLosses : kDone;
+int Conclude(const RunVerdict& verdict, bool losses) {
+  fmt::print("{}\n", VerdictText(verdict));
+  return verdict.verdict == Verdict::kFail ? kUnfit : losses ? kDoneWithLosses : kDone;
 }
 
 }  // namespace wellgyro::apps

@@ -32,7 +32,7 @@ int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Su
 /// Of a live survey whose files are written: prints their summary and gives the exit code.
 int Summarise(const JobFile& job, const LiveOutcome& outcome);
 
-/// Prints the worst verdict of the tools that have a survey as the last line; the exit code.
-int Conclude(const std::vector<ToolResult>& results, bool losses);
+/// Prints the verdict as the last line; the exit code.
+int Conclude(const RunVerdict& verdict, bool losses);
 
 }  // namespace wellgyro::apps

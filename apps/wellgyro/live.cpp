@@ -1,5 +1,6 @@
 #include "live.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -40,6 +42,13 @@ void Handle(int signal, void (*handler)(int)) {
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
   sigaction(signal, &action, nullptr);
+}
+
+/// Of the terminal; two at least.
+std::size_t Columns() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col : 80;
 }
 
 template <class Clock>
@@ -85,9 +94,10 @@ void Console::Show(const std::string& line) {
   const std::int64_t now = MonotonicUs();
   if (terminal_) {
     Clear();
-    fmt::print(stderr, "{}", line);
+    // A line that wraps could not be taken back.
+    shown_ = std::min(line.size(), Columns() - 1);
+    fmt::print(stderr, "{}", line.substr(0, shown_));
     std::fflush(stderr);
-    shown_ = line.size();
   } else if (now - said_us_ >= kPlainUs) {
     fmt::print(stderr, "{}\n", line);
     said_us_ = now;

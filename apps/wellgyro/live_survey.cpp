@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -22,10 +23,16 @@ namespace {
 class SurveyConsole : public Console {
  public:
   void OnStatus(const Status& /*status*/) override { NotifyManager("WATCHDOG=1"); }
-  void OnStuck() override {
-    Complain("stopped while adjusting: the survey in the folder is whole, as of before that");
+  void OnStuck(const std::optional<RunVerdict>& kept) override {
+    int code = kUnusable;
+    if (kept) {
+      Complain("stopped while adjusting: the survey in the folder is whole, as of before that");
+      code = Conclude(*kept, false);
+    } else {
+      Complain("stopped while adjusting, before there was a survey");
+    }
     std::fflush(stdout);
-    std::_Exit(kDone);
+    std::_Exit(code);
   }
 };
 
@@ -40,7 +47,7 @@ int Stopped(const SurveyOptions& options, const LiveOutcome& outcome) {
   }
   if (outcome.fault || outcome.ended != LiveOutcome::Ended::kInterrupted) return kUnusable;
   Complain(fmt::format("stopped: the survey in {} is whole, not adjusted{}", options.out, next));
-  return Conclude(outcome.tools, !outcome.recording_is_whole);
+  return Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole);
 }
 
 }  // namespace

@@ -166,7 +166,9 @@ TEST(Reassembly, UnfinishedMessagesAreBoundedAndTheirSenderPaysForThem) {
     r.Take(1, Datagram(
                   {.message = i, .size = 1 << 20, .count = 20, .channel = "A", .data = Data(10)}));
   }
-  EXPECT_LE(r.waiting(), 1 + Reassembly::kWaitingOfSender);
+  EXPECT_LE(r.waiting(), 1u + Reassembly::kWaitingOfSender);
+  // What was announced but never came takes no memory.
+  EXPECT_LT(r.waiting_bytes(), 10'000u);
   EXPECT_TRUE(r.Take(7, parts[1]));
   for (std::uint32_t i = 0; i < 10'000; ++i) {
     r.Take(
@@ -176,6 +178,38 @@ TEST(Reassembly, UnfinishedMessagesAreBoundedAndTheirSenderPaysForThem) {
   }
   EXPECT_LE(r.waiting(), Reassembly::kWaiting);
   EXPECT_GT(r.abandoned(), 10'000);
+}
+
+TEST(Reassembly, WhatHasComeIsBoundedInBytesAndTheOldestGivesWay) {
+  Reassembly r;
+  const Bytes big = Data(60'000);
+  for (std::uint16_t i = 0; i < 100; ++i) {
+    for (std::uint64_t sender = 0; sender < 40; ++sender) {
+      r.Take(sender, Datagram({.size = 8 << 20,
+                               .offset = i * 60'000u,
+                               .number = i,
+                               .count = 140,
+                               .channel = i == 0 ? "A" : "",
+                               .data = big}));
+      ASSERT_LE(r.waiting_bytes(), Reassembly::kWaitingMax);
+    }
+  }
+  EXPECT_GT(r.waiting_bytes(), Reassembly::kWaitingMax / 2);
+  EXPECT_GT(r.abandoned(), 0);
+}
+
+// Fragments that each say again what others said would hold more than the message has.
+TEST(Reassembly, FragmentsOfMoreThanTheMessageAreRefused) {
+  Reassembly r;
+  for (std::uint16_t i = 0; i < 1000; ++i) {
+    r.Take(1, Datagram({.size = 10'000,
+                        .number = i,
+                        .count = 2000,
+                        .channel = i == 0 ? "A" : "",
+                        .data = Data(9000)}));
+  }
+  EXPECT_LT(r.waiting_bytes(), 20'000u);
+  EXPECT_EQ(r.refused(), 999);
 }
 
 TEST(Reassembly, RandomDatagramsEndNothing) {

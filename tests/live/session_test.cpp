@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -35,7 +36,11 @@ struct Observer : LiveObserver {
     ++statuses;
     busy += status.text.starts_with("busy") ? 1 : 0;
   }
-  void OnStuck() override { stuck_us = Micros(std::chrono::steady_clock::now()); }
+  void OnStuck(const std::optional<RunVerdict>& what) override {
+    kept = what;
+    stuck_us = Micros(std::chrono::steady_clock::now());
+  }
+  std::optional<RunVerdict> kept;
   std::vector<std::string> said;
   std::atomic<int> stations = 0, statuses = 0, busy = 0;
   std::atomic<std::int64_t> stuck_us = 0;
@@ -150,6 +155,7 @@ TEST_F(Session, WhileItAdjustsItsStatusGoesOnAndAStopIsHeeded) {
   std::this_thread::sleep_for(milliseconds(2200));
   EXPECT_GT(observer_.stuck_us, 0) << "nobody was told";
   EXPECT_LT(observer_.stuck_us - stop, 2'000'000);
+  EXPECT_TRUE(observer_.kept) << "files were written before the adjustment";
   adjuster.release = true;
   runner.join();
 }

@@ -92,8 +92,12 @@ struct LiveBus::Core {
     return {FaultCode::kIo, fmt::format("{}: {}", url.full, what), url.full};
   }
 
-  /// Of what is heard; negative where nothing can be.
-  int Descriptor() const { return receiver ? receiver->descriptor() : lcm_get_fileno(lcm); }
+  /// Of what is heard; negative where nothing can be. On udpm liblcm is never asked for its own,
+  /// with which it would begin to listen.
+  int Descriptor() const {
+    if (url.provider == "udpm") return receiver ? receiver->descriptor() : -1;
+    return lcm_get_fileno(lcm);
+  }
 
   bool Readable(int within_ms) const {
     pollfd bus{Descriptor(), POLLIN, 0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "wellgyro/bus/bytes_internal.h"
@@ -76,56 +77,67 @@ std::optional<Reassembly::Whole> Reassembly::Add(std::uint64_t sender, const Fra
   Place at = std::find_if(messages_.begin(), messages_.end(), [&](const Message& m) {
     return m.sender == sender && m.number == fragment.message;
   });
-  if (at == messages_.end()) {
-    const std::optional<Place> begun = Begin(sender, fragment);
-    if (!begun) return Refuse();
-    at = *begun;
-  }
+  if (at == messages_.end()) at = Begin(sender, fragment);
   Message& message = *at;
-  if (message.data.size() != fragment.size || message.has.size() != fragment.count) {
-    return Refuse();
-  }
+  if (message.size != fragment.size || message.has.size() != fragment.count) return Refuse();
   if (message.has[fragment.number]) return std::nullopt;  // the network doubles now and then
+  if (message.bytes.size() + fragment.data.size() > message.size) return Refuse();
+  MakeRoom(at, fragment.data.size() + sizeof(Piece));
   message.has[fragment.number] = true;
-  std::copy(fragment.data.begin(), fragment.data.end(), message.data.begin() + fragment.offset);
+  message.pieces.push_back({fragment.offset, static_cast<std::uint32_t>(fragment.data.size())});
+  message.bytes.insert(message.bytes.end(), fragment.data.begin(), fragment.data.end());
   if (fragment.number == 0) message.channel = fragment.channel;
-  message.filled += fragment.data.size();
-  if (--message.missing > 0) return std::nullopt;
-  const bool complete = message.filled == message.data.size();
-  bytes_ -= message.data.size();
-  whole_ = std::move(message);
-  messages_.erase(at);
-  if (!complete) return Refuse();
-  return Whole{whole_.channel, whole_.data};
+  if (message.pieces.size() < message.has.size()) return std::nullopt;
+  return Finish(at);
 }
 
-std::optional<Reassembly::Place> Reassembly::Begin(std::uint64_t sender, const Fragment& fragment) {
-  const auto of_sender = std::count_if(messages_.begin(), messages_.end(),
-                                       [sender](const Message& m) { return m.sender == sender; });
-  if (of_sender >= static_cast<std::ptrdiff_t>(kWaitingOfSender)) DropOldest(sender);
-  while (messages_.size() >= kWaiting || bytes_ + fragment.size > kWaitingMax) {
-    if (!DropOldest(std::nullopt)) return std::nullopt;
+/// All fragments of the message have come.
+std::optional<Reassembly::Whole> Reassembly::Finish(Place at) {
+  const Message message = std::move(*at);
+  bytes_ -= message.cost();
+  messages_.erase(at);
+  if (message.bytes.size() != message.size) return Refuse();
+  channel_ = message.channel;
+  whole_.assign(message.size, std::byte{});
+  const std::byte* from = message.bytes.data();
+  for (const Piece& piece : message.pieces) {
+    std::copy_n(from, piece.size, whole_.data() + piece.offset);
+    from += piece.size;
   }
+  return Whole{channel_, whole_};
+}
+
+Reassembly::Place Reassembly::Begin(std::uint64_t sender, const Fragment& fragment) {
+  const auto of_sender = [sender](const Message& m) { return m.sender == sender; };
+  if (std::ranges::count_if(messages_, of_sender) >= kWaitingOfSender) {
+    Drop(std::ranges::find_if(messages_, of_sender));
+  }
+  if (messages_.size() >= kWaiting) Drop(messages_.begin());
   Message message;
   message.sender = sender;
   message.number = fragment.message;
-  message.data.resize(fragment.size);
+  message.size = fragment.size;
   message.has.resize(fragment.count);
-  message.missing = fragment.count;
-  bytes_ += message.data.size();
+  MakeRoom(messages_.end(), message.cost());
   messages_.push_back(std::move(message));
   return std::prev(messages_.end());
 }
 
-bool Reassembly::DropOldest(std::optional<std::uint64_t> sender) {
-  const Place oldest = std::find_if(messages_.begin(), messages_.end(), [&](const Message& m) {
-    return !sender || m.sender == *sender;
-  });
-  if (oldest == messages_.end()) return false;
-  bytes_ -= oldest->data.size();
-  messages_.erase(oldest);
+/// Takes `more` bytes of what may wait; for them the oldest messages but `at` give way.
+void Reassembly::MakeRoom(Place at, std::size_t more) {
+  while (bytes_ + more > kWaitingMax) {
+    Place oldest = messages_.begin();
+    if (oldest != messages_.end() && oldest == at) ++oldest;
+    if (oldest == messages_.end()) break;
+    Drop(oldest);
+  }
+  bytes_ += more;
+}
+
+void Reassembly::Drop(Place at) {
+  bytes_ -= at->cost();
+  messages_.erase(at);
   ++abandoned_;
-  return true;
 }
 
 }  // namespace wellgyro

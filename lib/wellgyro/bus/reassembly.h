@@ -23,7 +23,7 @@ class WELLGYRO_EXPORT Reassembly {
   static constexpr std::size_t kChannelMax = 63;
   static constexpr std::size_t kMessageMax = std::size_t{8} << 20;   ///< of fragments
   static constexpr std::size_t kWaitingMax = std::size_t{16} << 20;  ///< bytes of unfinished ones
-  static constexpr std::size_t kWaitingOfSender = 4;                 ///< unfinished messages
+  static constexpr std::ptrdiff_t kWaitingOfSender = 4;              ///< unfinished messages
   static constexpr std::size_t kWaiting = 64;                        ///< of all senders
 
   /// Valid until the next Take.
@@ -48,26 +48,35 @@ class WELLGYRO_EXPORT Reassembly {
     std::string_view channel;  ///< of the first
     std::span<const std::byte> data;
   };
+  struct Piece {
+    std::uint32_t offset, size;
+  };
+  /// Of its size only what came is held: a sender pays for memory in bytes sent.
   struct Message {
     std::uint64_t sender = 0;
-    std::uint32_t number = 0;
+    std::uint32_t number = 0, size = 0;
     std::string channel;
-    std::vector<std::byte> data;
-    std::vector<bool> has;    ///< by fragment
-    std::size_t missing = 0;  ///< fragments
-    std::size_t filled = 0;   ///< bytes
+    std::vector<std::byte> bytes;  ///< in the order in which they came
+    std::vector<Piece> pieces;     ///< of these bytes
+    std::vector<bool> has;         ///< by fragment
+    std::size_t cost() const {
+      return bytes.size() + pieces.size() * sizeof(Piece) + has.size() / 8;
+    }
   };
   using Place = std::list<Message>::iterator;
 
   std::optional<Whole> Refuse();
   static std::optional<Fragment> Parse(std::span<const std::byte> datagram);
   std::optional<Whole> Add(std::uint64_t sender, const Fragment& fragment);
-  std::optional<Place> Begin(std::uint64_t sender, const Fragment& fragment);
-  bool DropOldest(std::optional<std::uint64_t> sender);
+  std::optional<Whole> Finish(Place at);
+  Place Begin(std::uint64_t sender, const Fragment& fragment);
+  void MakeRoom(Place at, std::size_t more);
+  void Drop(Place at);
 
   std::list<Message> messages_;  ///< the oldest first
-  Message whole_;                ///< handed out last
-  std::size_t bytes_ = 0;
+  std::string channel_;          ///< handed out last, with ...
+  std::vector<std::byte> whole_;
+  std::size_t bytes_ = 0;  ///< cost of all messages
   std::int64_t refused_ = 0, abandoned_ = 0;
 };
 

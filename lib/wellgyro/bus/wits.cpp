@@ -12,6 +12,9 @@
 namespace wellgyro {
 namespace {
 
+// What a sender puts where it has no value.
+constexpr double kNull = -9999, kNullComputed = -8888;
+
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 bool IsItem(std::string_view line) {
@@ -124,7 +127,8 @@ void WitsReader::EndRecord() {
   if (!values_.contains(items_.bit_depth)) return;
   const std::optional<UtcTime> utc = Time();
   if (!utc) return Bad("has no time that can be");
-  const std::optional<double> depth = Number(items_.bit_depth);
+  std::optional<double> depth = Number(items_.bit_depth);
+  if (depth == kNull || depth == kNullComputed) depth.reset();
   const double md = depth.value_or(0) * items_.length_unit;
   if (!depth || std::abs(md) > limits::kMd) return Bad("has no depth that can be");
   if (last_ && *last_ == *utc) return;

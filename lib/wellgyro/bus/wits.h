@@ -17,7 +17,8 @@ namespace wellgyro {
 
 /// Depth marks out of a WITS level 0 stream: records between "&&" and "!!", a line each with two
 /// digits of the record, two of the item, and the value. Whatever else the line brings costs its
-/// own record only: one that has a wrong line, no time, no depth or no end is left out and told.
+/// own record only: one that has a wrong line, no time, no depth (-9999 and -8888 are none) or no
+/// end is left out and told.
 /// A mark's time is the record's own, whole seconds of the rig's clock; of records within one
 /// second the first counts.
 ///

@@ -1,15 +1,13 @@
 #include "wellgyro/io/signature.h"
 
-#include <cstdio>
-#include <fstream>
 #include <memory>
 #include <new>
-#include <system_error>
 
 #include <fmt/core.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 
+#include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/text_file.h"
 
 namespace wellgyro {
@@ -86,23 +84,12 @@ Result<PrivateKey> ReadPrivateKey(const std::filesystem::path& path) {
 }
 
 std::optional<Fault> WritePrivateKey(const PrivateKey& key, const std::filesystem::path& path) {
-  if (std::filesystem::exists(path)) {
-    return Fault{FaultCode::kConflict, "exists; choose another name", path.string()};
-  }
   const Bio bio(BIO_new(BIO_s_mem()));
   Demand(bio != nullptr && PEM_write_bio_PrivateKey(bio.get(), KeyOf(key).get(), nullptr, nullptr,
                                                     0, nullptr, nullptr) == 1);
   char* text = nullptr;
   const long size = BIO_get_mem_data(bio.get(), &text);
-  std::ofstream file(path, std::ios::binary);
-  // Nobody else reads it from the first byte on.
-  std::error_code error;
-  std::filesystem::permissions(
-      path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write, error);
-  file.write(text, size);
-  file.close();
-  if (file && !error) return std::nullopt;
-  return Fault{FaultCode::kIo, "cannot be written", path.string()};
+  return WriteSecretFile(path, {text, static_cast<std::size_t>(size)});
 }
 
 std::vector<std::byte> PublicKeyOf(const PrivateKey& key) {

@@ -51,8 +51,8 @@ class WELLGYRO_EXPORT ToolBook : public SurveyorListener {
   ToolBook(const JobFile& job, Surveyor& surveyor, Sink& faults)
       : SurveyorListener(surveyor, faults),
         gate_(job, surveyor,
-              [this](const auto& record) {
-                if (tell_) tell_(record);
+              [this](const OperationRecord& record, bool event) {
+                if (tell_) tell_(record, event);
               }),
         surveyor_(surveyor) {}
   void OnTool(const ToolInfo& info) override;

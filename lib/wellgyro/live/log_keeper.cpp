@@ -44,7 +44,13 @@ void LogKeeper::Work() {
     woken_.wait_for(lock, std::chrono::milliseconds(kSyncMs), [this] { return ending_; });
     if (!std::exchange(dirty_, false)) continue;
     lock.unlock();
-    static_cast<void>(log_.Sync());
+    if (const bool synced = log_.Sync(); synced != synced_) {
+      synced_ = synced;
+      notices_.Say(synced ? fmt::format("{} is on the disk again", path_)
+                          : fmt::format("{} cannot be forced to the disk: a loss of power may take "
+                                        "what came since",
+                                        path_));
+    }
     lock.lock();
   }
 }

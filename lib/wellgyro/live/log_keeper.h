@@ -60,6 +60,7 @@ class WELLGYRO_EXPORT LogKeeper {
   std::mutex mutex_;
   std::condition_variable woken_;
   bool dirty_ = false, ending_ = false;
+  bool synced_ = true;  ///< the thread's
   std::thread thread_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "wellgyro/base/export.h"
@@ -7,6 +8,7 @@
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/status.h"
+#include "wellgyro/record/verdict.h"
 
 namespace wellgyro {
 
@@ -21,7 +23,8 @@ class WELLGYRO_EXPORT LiveObserver {
   virtual void OnGlance(const Glance& /*glance*/) {}       ///< once a second
   /// Stop was called and the session does not come to an end, because an adjustment takes long. The
   /// files in its folder are whole and nothing writes to them any more: the program may end here.
-  virtual void OnStuck() {}
+  /// `kept`: their verdict, the worst of the tools'; nothing: they hold no survey yet.
+  virtual void OnStuck(const std::optional<RunVerdict>& /*kept*/) {}
 };
 
 }  // namespace wellgyro

@@ -11,6 +11,7 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/io/signature.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/survey/plausible.h"
 
 namespace wellgyro {
 namespace {
@@ -111,9 +112,15 @@ std::vector<std::byte> SignedBytes(const SignedOperation& operation, const std::
   return bytes;
 }
 
-void OperationGate::Keep(OperationRecord record) {
+void OperationGate::Refuse(OperationRecord record, const std::string& why) {
+  record.obeyed = false;
+  record.effect = "refused: " + why;
+  Keep(std::move(record));
+}
+
+void OperationGate::Keep(OperationRecord record, bool event) {
   ++(record.obeyed ? obeyed_ : refused_);
-  if (tell_) tell_(record);
+  if (tell_) tell_(record, event);
   // Those that were refused, of which there may be any number, leave room for the others.
   const bool room = records_.size() < (record.obeyed ? kKept : kKept / 2);
   if (room) records_.push_back(std::move(record));
@@ -137,7 +144,7 @@ void OperationGate::Take(const SignedOperation& operation) {
   // What is forged takes no place among those that wait for the time.
   if (heard_ || !WhyForged(operation).empty()) return Judge(operation);
   if (waiting_.size() < kWaitMax) return waiting_.push_back(operation);
-  Keep(RecordOf(operation, "refused: too many orders came before the first sample"));
+  Refuse(RecordOf(operation, {}), "too many orders came before the first sample");
 }
 
 const OperatorKey* OperationGate::KeyOf(const SignedOperation& operation) const {
@@ -187,12 +194,13 @@ std::string OperationGate::WhyNot(const SignedOperation& operation) const {
 }
 
 void OperationGate::Judge(const SignedOperation& operation) {
-  OperationRecord record = RecordOf(operation, WhyNot(operation));
-  if (!record.effect.empty()) {
-    record.effect = "refused: " + record.effect;
-    return Keep(std::move(record));
+  OperationRecord record = RecordOf(operation, {});
+  if (const std::string why = WhyNot(operation); !why.empty()) {
+    return Refuse(std::move(record), why);
   }
-  if (IsNew(HexOf(operation.key), record.session, record.id)) ObeyContent(std::move(record), operation);
+  if (IsNew(HexOf(operation.key), record.session, record.id)) {
+    ObeyContent(std::move(record), operation);
+  }
 }
 
 void OperationGate::ObeyContent(OperationRecord record, const SignedOperation& operation) {
@@ -207,10 +215,15 @@ void OperationGate::ObeyContent(OperationRecord record, const SignedOperation& o
     event->event_id = operation.id;
     Obey(std::move(record), *event);
   } else {
+    const auto* info = std::get_if<ToolInfo>(&content);
+    if (info != nullptr) {
+      const std::string why = WhyImplausible(*info);
+      if (!why.empty()) return Refuse(std::move(record), why);
+      surveyor_.Push(*info);
+    }
+    if (const auto* mode = std::get_if<ToolMode>(&content)) surveyor_.Push(*mode);
     record.obeyed = true;
     record.effect = "used";
-    if (const auto* mode = std::get_if<ToolMode>(&content)) surveyor_.Push(*mode);
-    if (const auto* info = std::get_if<ToolInfo>(&content)) surveyor_.Push(*info);
     Keep(std::move(record));
   }
 }
@@ -218,6 +231,9 @@ void OperationGate::ObeyContent(OperationRecord record, const SignedOperation& o
 void OperationGate::Obey(OperationRecord record, const Command& command) {
   record.utc = command.utc;
   record.kind = WordOf(command.kind);
+  if (const std::string why = WhyImplausible(command); !why.empty()) {
+    return Refuse(std::move(record), why);
+  }
   record.obeyed = true;
   record.effect = EffectOf(command);
   finish_ = finish_ || command.kind == Command::Kind::kFinish;
@@ -229,9 +245,12 @@ void OperationGate::Obey(OperationRecord record, const Event& event) {
   record.utc = event.utc;
   record.kind = wellgyro::WordOf(event.kind);
   record.who = event.who;
+  if (const std::string why = WhyImplausible(event); !why.empty()) {
+    return Refuse(std::move(record), why);
+  }
   record.obeyed = true;
   record.effect = EffectOf(event);
-  Keep(std::move(record));
+  Keep(std::move(record), true);
   surveyor_.Push(event);
 }
 
@@ -243,8 +262,7 @@ void OperationGate::Take(const Command& command) {
   }
   record.utc = command.utc;
   record.kind = WordOf(command.kind);
-  record.effect = "refused: the job lists keys, and it is not signed";
-  Keep(std::move(record));
+  Refuse(std::move(record), "the job lists keys, and it is not signed");
 }
 
 void OperationGate::Take(const Event& event) {
@@ -256,8 +274,7 @@ void OperationGate::Take(const Event& event) {
   record.utc = event.utc;
   record.kind = wellgyro::WordOf(event.kind);
   record.who = event.who;
-  record.effect = "refused: the job lists keys, and it is not signed";
-  Keep(std::move(record));
+  Refuse(std::move(record), "the job lists keys, and it is not signed");
 }
 
 /// What the tool says of itself comes often and is named once.
@@ -268,10 +285,8 @@ bool OperationGate::TakeOfTool(const char* kind, UtcTime utc, std::int32_t sessi
     return false;
   }
   OperationRecord record{.key = "unsigned", .session = session, .utc = utc, .kind = kind};
-  record.effect =
-      "refused: the job lists keys, and it is not signed; [operations] unsigned_tool = true uses "
-      "it";
-  Keep(std::move(record));
+  Refuse(std::move(record),
+         "the job lists keys, and it is not signed; [operations] unsigned_tool = true uses it");
   return false;
 }
 

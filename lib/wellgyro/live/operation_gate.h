@@ -34,7 +34,8 @@ class WELLGYRO_EXPORT OperationGate {
   static constexpr std::size_t kKept = 1000;    ///< records
   static constexpr std::size_t kWaitMax = 100;  ///< signed orders before the first sample
 
-  using Tell = std::function<void(const OperationRecord&)>;
+  /// `event`: an event that is obeyed; of a command the surveyor itself says when it was.
+  using Tell = std::function<void(const OperationRecord&, bool event)>;
 
   /// `job` and `surveyor` must outlive this object; `tell` hears each new record.
   OperationGate(const JobFile& job, Surveyor& surveyor, Tell tell = {})
@@ -69,7 +70,8 @@ class WELLGYRO_EXPORT OperationGate {
   void Obey(OperationRecord record, const Command& command);
   void Obey(OperationRecord record, const Event& event);
   void ObeyContent(OperationRecord record, const SignedOperation& operation);
-  void Keep(OperationRecord record);
+  void Refuse(OperationRecord record, const std::string& why);
+  void Keep(OperationRecord record, bool event = false);
 
   const OperationSpec& spec_;
   const std::string& well_;

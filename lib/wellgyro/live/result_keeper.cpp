@@ -31,6 +31,11 @@ bool ResultKeeper::failing() const {
   return failing_;
 }
 
+std::optional<RunVerdict> ResultKeeper::kept() const {
+  const std::lock_guard lock(mutex_);
+  return kept_;
+}
+
 void ResultKeeper::End() {
   {
     const std::lock_guard lock(mutex_);
@@ -74,6 +79,7 @@ void ResultKeeper::Work() {
     }
     if (!fault && failing_) notices_.Say("the survey's files are up to date again");
     failing_ = fault.has_value();
+    if (!failing_ && AnyUsable(snapshot.tools)) kept_ = WorstVerdict(snapshot.tools);
     if (!failing_ || ending_ || waiting_) continue;
     // The disk is full or the folder is gone: what could not be written is not lost.
     woken_.wait_for(lock, std::chrono::seconds(1), [this] { return ending_ || waiting_; });

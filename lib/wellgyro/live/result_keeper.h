@@ -39,6 +39,8 @@ class WELLGYRO_EXPORT ResultKeeper {
   /// Nothing is being written or waits to be, and the last writing went well.
   bool idle() const;
   bool failing() const;
+  /// The verdict in the files, the worst of the tools'; nothing: no survey has been written.
+  std::optional<RunVerdict> kept() const;
 
   /// Ends the thread after what it is writing, leaving out what waits.
   void End();
@@ -57,6 +59,7 @@ class WELLGYRO_EXPORT ResultKeeper {
   bool writing_ = false;
   bool failing_ = false;
   bool ending_ = false;
+  std::optional<RunVerdict> kept_;
   std::thread thread_;
 };
 

@@ -19,6 +19,20 @@ bool HasLosses(const SourceRecord& source, const Survey& survey) {
   });
 }
 
+bool AnyUsable(const std::vector<ToolResult>& results) {
+  return std::ranges::any_of(results,
+                             [](const ToolResult& tool) { return tool.survey.unusable.empty(); });
+}
+
+RunVerdict WorstVerdict(const std::vector<ToolResult>& results) {
+  RunVerdict worst;
+  for (const ToolResult& result : results) {
+    const RunVerdict& verdict = result.survey.verdict;
+    if (result.survey.unusable.empty() && verdict.verdict >= worst.verdict) worst = verdict;
+  }
+  return worst;
+}
+
 std::optional<Fault> AcceptedIn(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> folders = {folder};
   std::error_code absent;

@@ -12,6 +12,7 @@
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/intake.h"
+#include "wellgyro/record/verdict.h"
 #include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {
@@ -50,5 +51,9 @@ WELLGYRO_EXPORT void RemoveFormer(const std::filesystem::path& folder,
 
 /// Something of the stream was lost, damaged or beyond what the tool can measure.
 WELLGYRO_EXPORT bool HasLosses(const SourceRecord& source, const Survey& survey);
+
+WELLGYRO_EXPORT bool AnyUsable(const std::vector<ToolResult>& results);
+/// Of the tools that have a survey.
+WELLGYRO_EXPORT RunVerdict WorstVerdict(const std::vector<ToolResult>& results);
 
 }  // namespace wellgyro

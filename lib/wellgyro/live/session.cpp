@@ -46,8 +46,7 @@ std::optional<Fault> Complaint(const LiveSetup& setup) {
 }  // namespace
 
 bool LiveOutcome::usable() const {
-  return std::any_of(tools.begin(), tools.end(),
-                     [](const ToolResult& tool) { return tool.survey.unusable.empty(); });
+  return AnyUsable(tools);
 }
 
 bool LiveOutcome::losses() const {
@@ -92,13 +91,13 @@ LiveSession::Core::Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveOb
                }),
       keeper(setup.job.job, notices) {
   intake.Watch(watch);
-  intake.Tell([this](const OperationRecord& record) { TellOf(record); });
+  intake.Tell([this](const OperationRecord& record, bool event) { TellOf(record, event); });
   watchdog = std::make_unique<Watchdog>(
       setup.clock, [this] { SendLate(); },
       [this] {
         // What is known of the survey so far is in the files; nothing may be half-way then.
         keeper.End();
-        notices.With([](LiveObserver& to) { to.OnStuck(); });
+        notices.With([this](LiveObserver& to) { to.OnStuck(keeper.kept()); });
       });
 }
 
@@ -158,8 +157,9 @@ std::optional<Fault> LiveSession::Core::BeginRecord() {
   return std::nullopt;
 }
 
-void LiveSession::Core::TellOf(const OperationRecord& record) {
+void LiveSession::Core::TellOf(const OperationRecord& record, bool event) {
   if (resuming) return;
+  if (event && record.id != 0) broadcast.OnAcknowledged(record.id);
   std::string by = record.key + (record.who.empty() ? "" : ", " + Printable(record.who));
   std::string what = fmt::format("{} of {}, session {}, number {}: {}", record.kind, by,
                                  record.session, record.id, record.effect);

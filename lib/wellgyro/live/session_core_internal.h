@@ -41,7 +41,7 @@ struct LiveSession::Core {
   void Use(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us,
            bool record);
   bool ComesFromElsewhere(std::string_view channel, std::span<const std::byte> bytes);
-  void TellOf(const OperationRecord& record);
+  void TellOf(const OperationRecord& record, bool event);
   std::optional<Fault> TakeFolder();
   std::optional<Fault> BeginRecord();
   Result<bool> Resume();
@@ -81,7 +81,8 @@ struct LiveSession::Core {
   std::map<std::string, Verdict> verdicts;  ///< of the last files, by check
   std::string turned;
   std::mutex status_mutex;
-  Status last_status;  ///< for the watchdog to say again
+  Status last_status;            ///< for the watchdog to say again, and ...
+  std::int64_t last_status_us = 0;  ///< ... when it was said
   std::unique_ptr<Watchdog> watchdog;
 };
 

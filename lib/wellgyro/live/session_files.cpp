@@ -66,6 +66,7 @@ void LiveSession::Core::SendStatus(std::int64_t now) {
   if (on_time) broadcast.Send(GlanceNow());
   const std::lock_guard lock(status_mutex);
   last_status = status;
+  last_status_us = now;
 }
 
 Glance LiveSession::Core::GlanceNow() const {
@@ -123,8 +124,8 @@ void LiveSession::Core::SendLate() {
   {
     const std::lock_guard lock(status_mutex);
     status = last_status;
+    status.data_age += static_cast<double>(Now() - last_status_us) * 1e-6;
   }
-  status.data_age += static_cast<double>(Watchdog::kLateUs) * 1e-6;
   status.text = "busy adjusting or catching up";
   if (status.state == Status::State::kOk) status.state = Status::State::kDegraded;
   broadcast.Send(status);

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "wellgyro/base/export.h"
 #include "wellgyro/record/depth_mark.h"
 #include "wellgyro/record/operations.h"
 
@@ -9,9 +10,9 @@ namespace wellgyro {
 
 // Whether a record that came in holds what it can hold by record/limits.h: empty, or the sentence
 // that says what is wrong with it.
-std::string WhyImplausible(const DepthMark& mark);
-std::string WhyImplausible(const ToolInfo& info);
-std::string WhyImplausible(const Command& command);
-std::string WhyImplausible(const Event& event);
+WELLGYRO_EXPORT std::string WhyImplausible(const DepthMark& mark);
+WELLGYRO_EXPORT std::string WhyImplausible(const ToolInfo& info);
+WELLGYRO_EXPORT std::string WhyImplausible(const Command& command);
+WELLGYRO_EXPORT std::string WhyImplausible(const Event& event);
 
 }  // namespace wellgyro

@@ -266,6 +266,8 @@ void ToolSurvey::KeepToWhatWasTold(std::vector<Station>& stations) const {
     station.p_WT_W = as.p_WT_W;
     station.cov_p_WT_W = as.cov_p_WT_W;
     station.dogleg_severity = as.dogleg_severity;
+    // Without the flag, the covariance of an unfit station would be a strange one.
+    if (Has(as.quality, Quality::kUnfit)) station.quality |= Quality::kUnfit;
   }
 }
 
