@@ -17,7 +17,7 @@
 namespace wellgyro {
 namespace {
 
-class Gate : public testing::Test {
+class Gate : public ::testing::Test {
  protected:
   Gate() {
     job_.job = JobOf(wellgyro::testing::SmallHole{});

@@ -83,7 +83,9 @@ TEST(HostileInput, ADepthMarkOfAnotherTimeChangesNothingAndIsTold) {
       });
       ExpectSame(straight, survey);
       // One before the first sample that is of the past contradicts nothing.
-      if (off > 0 || at == 3000) EXPECT_EQ(sink.faults.size(), 1u) << off << " " << at;
+      if (off > 0 || at == 3000) {
+        EXPECT_EQ(sink.faults.size(), 1u) << off << " " << at;
+      }
     }
   }
 }

@@ -159,7 +159,10 @@ bool UdpReceiver::IsLocal(std::uint32_t address) const {
   const auto in = [address](const std::vector<std::uint32_t>& list) {
     return std::find(list.begin(), list.end(), address) != list.end();
   };
-  return address >> 24 == 127 || in(own_) || in(url_.senders);
+  // Where only the loopback has a route a sender has no address. From outside the system lets none
+  // in without one, but to groups of the form 224.0.0.x.
+  const bool nobody = address == 0 && !url_.host.starts_with("224.0.0.");
+  return address >> 24 == 127 || nobody || in(own_) || in(url_.senders);
 }
 
 void UdpReceiver::Want(const std::string& channel) {
