@@ -22,7 +22,10 @@ namespace {
 /// A survey that adjusts when it is stopped does not hold up whoever stopped it.
 class SurveyConsole : public Console {
  public:
-  void OnStatus(const Status& /*status*/) override { NotifyManager("WATCHDOG=1"); }
+  void OnStatus(const Status& status) override {
+    NotifyManager("WATCHDOG=1");
+    if (status.text == kBusy) Show(status.text);
+  }
   void OnStuck(const std::optional<RunVerdict>& kept) override {
     int code = kUnusable;
     if (kept) {
@@ -67,7 +70,8 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
   setup.clock = ThisClock();
   SurveyConsole console;
   const LeastSquaresAdjuster adjuster;
-  auto session = LiveSession::Open(std::move(setup), InAngles(job.job) ? &adjuster : nullptr, console);
+  auto session =
+      LiveSession::Open(std::move(setup), InAngles(job.job) ? &adjuster : nullptr, console);
   if (!session) {
     Complain(session.fault());
     return kUnusable;

@@ -56,6 +56,7 @@ class Watch : private Listener {
   void OnStatus(const Status& status) override {
     heard_ = true;
     begin_us_ = heard_us_ = MonotonicUs();
+    if (status.text == text_ && text_ == kBusy) console_.Show(text_);
     if (status.text == text_) return;
     text_ = status.text;
     console_.OnNotice(text_.empty() ? "the survey is well again" : Printable(text_));

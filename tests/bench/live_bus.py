@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """What a live survey says on the bus beside what it writes.  live_bus.py PROGRAM [--age SECONDS]
 Of the demonstration and three more wells, every number of a station's last revision against its row
-in passes.csv; with --age, in real time, how old a station is when its message comes, beside what the
-job's latency_s and a second and a half allow. Ends with 3 when anything differs or is too old."""
+in passes.csv; with --age, in real time, how old a station is when its message comes, beside what
+the job's latency_s and a second and a half allow. Ends with 3 when anything differs or is too old.
+"""
 import argparse
 import csv
 import math
@@ -29,7 +30,6 @@ WELL = """format = "wellgyro.simulation/1"
 seed = 11
 [well]
 file = "{file}"
-{azimuth}
 [earth]
 latitude_deg = 61.0
 [run]
@@ -63,8 +63,7 @@ def Wells(folder):
     for name in ("near-vertical", "s-shape", "horizontal-turn"):
         simulation = os.path.join(folder, name + ".toml")
         with open(simulation, "w", encoding="utf-8") as file:
-            file.write(WELL.format(file=os.path.join(TOP, "data", "wells", name + ".csv"),
-                                   azimuth=""))
+            file.write(WELL.format(file=os.path.join(TOP, "data", "wells", name + ".csv")))
         yield name, simulation, job
 
 
@@ -134,7 +133,7 @@ def Compare(name, ear, out):
                     if differ < 5:
                         print(f"  {name} MD {row['MD[m]']} {column}: {row[column]}, told {value}")
     print(f"{name}: {len(told)} stations told, {rows} in passes.csv, {missing} of them not told; "
-          f"{numbers} numbers, {differ} differ")
+          f"{numbers} numbers, {differ} differ", flush=True)
     return differ + missing + (rows == 0)
 
 
@@ -177,8 +176,8 @@ def Age(seconds, folder, port):
     sender.communicate()
     ages.sort()
     most = ages[-1] if ages else math.inf
-    print(f"{len(ages)} stations in real time, latency_s = {latency}: their age at their message is "
-          f"{ages[len(ages) // 2]:.2f} s by the median, {most:.2f} s at most; "
+    print(f"{len(ages)} stations in real time, latency_s = {latency}: their age at their message "
+          f"is {ages[len(ages) // 2]:.2f} s by the median, {most:.2f} s at most; "
           f"{latency + ALLOWED_S} s are allowed")
     return most > latency + ALLOWED_S
 

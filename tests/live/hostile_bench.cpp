@@ -42,7 +42,8 @@ void Put(Bytes& bytes, std::uint64_t value, int size) {
 /// One survey, from datagrams on.
 class Subject {
  public:
-  explicit Subject(const JobFile& job) : job_(job), surveyor_(job.job, faults_), in_(job, surveyor_) {}
+  explicit Subject(const JobFile& job)
+      : job_(job), surveyor_(job.job, faults_), in_(job, surveyor_) {}
   void Take(std::uint64_t sender, std::span<const std::byte> datagram) {
     const auto whole = reassembly_.Take(sender, datagram);
     if (whole) in_.Take(whole->channel, whole->data);
@@ -150,7 +151,8 @@ class Harm {
     Put(next_, kOffsets[(dice >> 16) % 6], 4);
     Put(next_, dice >> 24 & 3, 2);
     Put(next_, (dice >> 26 & 7) == 7 ? 0xffff : dice >> 29 & 3, 2);
-    for (const char c : std::string_view("WELLGYRO_IMU")) next_.push_back(static_cast<std::byte>(c));
+    for (const char c : std::string_view("WELLGYRO_IMU"))
+      next_.push_back(static_cast<std::byte>(c));
     next_.push_back(std::byte{0});
     Random(dice >> 40 & 127);
   }
@@ -196,8 +198,9 @@ int Datagrams(std::int64_t count) {
   std::int64_t sent = 0;
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t i = 0; i < stream.size(); ++i) {
-    const auto until = static_cast<std::int64_t>(
-        static_cast<double>(count) * static_cast<double>(i + 1) / static_cast<double>(stream.size()));
+    const auto until =
+        static_cast<std::int64_t>(static_cast<double>(count) * static_cast<double>(i + 1) /
+                                  static_cast<double>(stream.size()));
     const Bytes framed = Framed(stream[i].channel, stream[i].bytes);
     alone.Take(1, framed);
     among.Take(1, framed);

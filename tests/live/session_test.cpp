@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -48,7 +49,8 @@ struct Observer : LiveObserver {
 
 /// Takes its time, as the adjustment of a long run does.
 struct SlowAdjuster : RunAdjuster {
-  SmoothedRun Adjust(const FilterHistory& history, double) const override {
+  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment>,
+                     double) const override {
     ++begun;
     while (!release) std::this_thread::sleep_for(milliseconds(20));
     return Smooth(history);

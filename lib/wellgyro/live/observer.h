@@ -12,6 +12,9 @@
 
 namespace wellgyro {
 
+/// Status::text of a session that hears and says nothing else for the moment.
+inline constexpr std::string_view kBusy = "busy adjusting or catching up";
+
 /// Who wants to hear how a live session gets on. Override what you want to hear. Calls come one at
 /// a time, but from several threads, while the session runs: they must not wait for it.
 class WELLGYRO_EXPORT LiveObserver {

@@ -45,9 +45,7 @@ std::optional<Fault> Complaint(const LiveSetup& setup) {
 
 }  // namespace
 
-bool LiveOutcome::usable() const {
-  return AnyUsable(tools);
-}
+bool LiveOutcome::usable() const { return AnyUsable(tools); }
 
 bool LiveOutcome::losses() const {
   return !recording_is_whole ||

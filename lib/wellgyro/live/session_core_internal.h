@@ -81,7 +81,7 @@ struct LiveSession::Core {
   std::map<std::string, Verdict> verdicts;  ///< of the last files, by check
   std::string turned;
   std::mutex status_mutex;
-  Status last_status;            ///< for the watchdog to say again, and ...
+  Status last_status;               ///< for the watchdog to say again, and ...
   std::int64_t last_status_us = 0;  ///< ... when it was said
   std::unique_ptr<Watchdog> watchdog;
 };

@@ -126,7 +126,7 @@ void LiveSession::Core::SendLate() {
     status = last_status;
     status.data_age += static_cast<double>(Now() - last_status_us) * 1e-6;
   }
-  status.text = "busy adjusting or catching up";
+  status.text = kBusy;
   if (status.state == Status::State::kOk) status.state = Status::State::kDegraded;
   broadcast.Send(status);
 }
