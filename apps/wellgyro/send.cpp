@@ -112,7 +112,7 @@ Event EventOf(const SendOptions& options, UtcTime utc, std::int32_t session) {
 std::string Lacks(const SendOptions& options) {
   const std::string& what = options.what;
   const bool depth = what == "rezero" || what == "tie";
-  if (depth && !options.md) return what + " needs --md, the depth that is true there";
+  if (depth && !options.md) return what + " needs --md-m, the depth that is true there";
   if (what == "foresight" && (!options.azimuth_deg || !options.sigma_deg)) {
     return "foresight needs --azimuth-deg and --sigma-deg";
   }
@@ -177,7 +177,9 @@ int SendOver(LiveBus& bus, SendOptions options, const JobFile& job,
     fmt::print("the survey has obeyed\n");
     return kDone;
   }
-  Complain("the survey has not said that it obeyed; its terminal and run.toml say why");
+  Complain(
+      "the survey has not said that it obeyed: it refused, or waits for samples of that time; its "
+      "terminal and run.toml say which");
   return kUnusable;
 }
 

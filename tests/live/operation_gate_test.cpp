@@ -122,6 +122,32 @@ TEST_F(Gate, OfAnotherKeyWellOrDayItIsRefused) {
   EXPECT_NE(gate.records()[3].effect.find("-86400 s"), std::string::npos);
 }
 
+TEST_F(Gate, AnOrderThatNoJobCouldHoldIsRefusedAndNamedOnce) {
+  List(key_);
+  Surveyor surveyor(job_.job, sink_);
+  int told = 0, obeyed = 0;
+  OperationGate gate(job_, surveyor, [&](const OperationRecord& record, bool) {
+    ++told;
+    obeyed += record.obeyed ? 1 : 0;
+  });
+  gate.HeardAt(begin_);
+  Event event;
+  event.utc = begin_;
+  event.kind = Event::Kind::kDepthRezero;
+  event.has_value = true;
+  event.value_m = 1e300;
+  SignedOperation operation{.utc = begin_, .session = 3, .id = 5};
+  Encode(event, operation.content);
+  operation.key = PublicKeyOf(key_);
+  operation.signature = Sign(key_, SignedBytes(operation, "A-1"));
+  for (int i = 0; i < 3; ++i) gate.Take(operation);
+  EXPECT_EQ(told, 1);
+  EXPECT_EQ(obeyed, 0);
+  ASSERT_EQ(gate.records().size(), 1u);
+  EXPECT_NE(gate.records()[0].effect.find("value_m"), std::string::npos)
+      << gate.records()[0].effect;
+}
+
 TEST_F(Gate, AFlippedBitAnywhereMakesItWorthless) {
   List(key_);
   Surveyor surveyor(job_.job, sink_);

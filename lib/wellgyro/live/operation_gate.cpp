@@ -113,6 +113,13 @@ std::vector<std::byte> SignedBytes(const SignedOperation& operation, const std::
 }
 
 void OperationGate::Refuse(OperationRecord record, const std::string& why) {
+  // An order comes three times, since any may be lost, and is named once.
+  auto order = std::tuple(record.key, record.session, record.id, why);
+  if (record.id != 0 && refused_last_ == order) {
+    ++refused_;
+    return;
+  }
+  refused_last_ = std::move(order);
   record.obeyed = false;
   record.effect = "refused: " + why;
   Keep(std::move(record));

@@ -81,6 +81,7 @@ class WELLGYRO_EXPORT OperationGate {
   std::deque<SignedOperation> waiting_;
   std::set<std::tuple<std::string, std::int32_t, std::int32_t>> known_;
   std::vector<OperationRecord> records_;
+  std::tuple<std::string, std::int32_t, std::int32_t, std::string> refused_last_;
   std::int64_t obeyed_ = 0, refused_ = 0;
   std::set<std::string> told_of_tool_;
   bool finish_ = false;
