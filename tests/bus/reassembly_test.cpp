@@ -81,11 +81,13 @@ std::vector<Bytes> Fragments(const std::string& channel, const Bytes& data, std:
 
 TEST(Reassembly, AWholeMessageIsHandedOn) {
   Reassembly r;
-  const auto whole = r.Take(1, Small("DEPTH", Data(56)));
+  const Bytes datagram = Small("DEPTH", Data(56));
+  const auto whole = r.Take(1, datagram);
   ASSERT_TRUE(whole);
   EXPECT_EQ(whole->channel, "DEPTH");
   EXPECT_EQ(Bytes(whole->data.begin(), whole->data.end()), Data(56));
-  EXPECT_TRUE(r.Take(1, Small("E", {}))->data.empty());
+  const Bytes nothing = Small("E", {});
+  EXPECT_TRUE(r.Take(1, nothing)->data.empty());
   EXPECT_EQ(r.refused(), 0);
 }
 
@@ -126,13 +128,15 @@ TEST(Reassembly, OffsetsThatWrapAreRefused) {
 
 TEST(Reassembly, WhatCannotBeIsRefused) {
   Reassembly r;
+  Bytes without_nul = Small("NO-NUL", {});
+  without_nul.pop_back();
   const std::vector<Bytes> impossible = {
       {},
       Data(7),
       Data(40),
       Small("", Data(3)),
       Small(std::string(64, 'A'), Data(3)),
-      Bytes(Small("NO-NUL", {}).begin(), Small("NO-NUL", {}).end() - 1),
+      without_nul,
       Datagram({.size = 100, .number = 2, .count = 2, .data = Data(50)}),
       Datagram({.size = 100, .number = 0, .count = 0, .channel = "A", .data = Data(50)}),
       Datagram({.size = 100, .offset = 10, .count = 2, .channel = "A", .data = Data(50)}),

@@ -95,7 +95,7 @@ class Harm {
   explicit Harm(const std::vector<Message>& stream) : stream_(stream) {
     DepthMark mark;
     ToolInfo info;
-    for (const double seconds : {1.893e9, 4e9, -4e9}) {
+    for (const double seconds : {1.893e9, 3e9, 1e9}) {
       mark.utc = UtcTime{static_cast<std::int64_t>(seconds * 1e9)};
       mark.md = 100;
       Keep("WELLGYRO_DEPTH", mark);

@@ -24,8 +24,6 @@ namespace {
 
 constexpr std::size_t kChannelMax = 63;
 
-// The channel of the message by which LCM's own programs test that they hear themselves.
-constexpr const char* kSelfTest = "LCM_SELF_TEST";
 constexpr int kSelfTests = 10;
 constexpr int kSelfTestMs = 100;
 

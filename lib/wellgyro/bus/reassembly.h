@@ -26,7 +26,7 @@ class WELLGYRO_EXPORT Reassembly {
   static constexpr std::ptrdiff_t kWaitingOfSender = 4;              ///< unfinished messages
   static constexpr std::size_t kWaiting = 64;                        ///< of all senders
 
-  /// Valid until the next Take.
+  /// Valid until the next Take, and no longer than the datagram.
   struct Whole {
     std::string_view channel;
     std::span<const std::byte> data;

@@ -240,7 +240,8 @@ void UdpReceiver::Hold(const Reassembly::Whole& whole, std::int64_t received_us,
     awaited_.clear();
     changed_.notify_all();
   }
-  if (!Wanted(whole.channel)) return;
+  // What LCM's programs say to hear themselves is said to nobody else.
+  if (!Wanted(whole.channel) || whole.channel == kSelfTest) return;
   const std::size_t size = kHead + whole.channel.size() + whole.data.size();
   if (blocks_.empty() || blocks_.back().bytes.size() + size > kBlock) {
     blocks_.emplace_back().bytes = std::exchange(spare_, {});

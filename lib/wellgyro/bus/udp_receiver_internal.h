@@ -21,6 +21,9 @@
 
 namespace wellgyro {
 
+/// The channel of the message by which LCM's own programs test that they hear themselves.
+inline constexpr const char* kSelfTest = "LCM_SELF_TEST";
+
 /// Hears LCM's multicast with a socket of its own, bound to the group and to the interface that
 /// leads to it: liblcm 1.3 takes what comes to the port from anywhere, and is ended by two
 /// datagrams. A thread reads as fast as the system delivers, so that a consumer may stand for
