@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
-#include "wellgyro/io/result/result_folder.h"
 #include "wellgyro/io/result/summary.h"
 
 #include "commands.h"
@@ -14,8 +15,10 @@
 namespace wellgyro::apps {
 namespace {
 
-/// Writes one tool's result; its exit code.
-int Deliver(const std::filesystem::path& folder, const RunRecord& record,
+enum class Files { kToWrite, kWritten };
+
+/// Writes one tool's result where it is not written yet, and says what it is; its exit code.
+int Deliver(Files state, const std::filesystem::path& folder, const RunRecord& record,
             const SourceRecord& source, const Job& job, const Survey& survey) {
   if (!survey.unusable.empty()) {
     Complain(survey.unusable);
@@ -27,9 +30,11 @@ int Deliver(const std::filesystem::path& folder, const RunRecord& record,
     return kUnusable;
   }
   const std::vector<OutputFile> files = ResultFiles(record, source, job, survey);
-  if (const auto fault = WriteFiles(folder, files)) {
-    Complain(*fault);
-    return kUnusable;
+  if (state == Files::kToWrite) {
+    if (const auto fault = WriteFiles(folder, files)) {
+      Complain(*fault);
+      return kUnusable;
+    }
   }
   fmt::print("{}", SummaryText(survey));
   for (const OutputFile& file : files) {
@@ -38,16 +43,8 @@ int Deliver(const std::filesystem::path& folder, const RunRecord& record,
   return kDone;
 }
 
-bool HasLosses(const SourceRecord& source, const Survey& survey) {
-  if (!source.faults.empty() || survey.marks_refused > 0) return true;
-  for (const RunSummary& run : survey.runs) {
-    if (run.samples_lost + run.samples_refused + run.clock_jumps > 0) return true;
-  }
-  for (const Station& station : survey.passes) {
-    if (Has(station.quality, Quality::kSaturated)) return true;
-  }
-  return false;
-}
+/// Tools that made no survey beside one that did: a damaged number in a message, mostly.
+bool Nothing(const ToolResult& result) { return !result.survey.unusable.empty(); }
 
 void SayLosses(const SourceRecord& source) {
   constexpr std::size_t kSaid = 5;
@@ -57,85 +54,61 @@ void SayLosses(const SourceRecord& source) {
   }
 }
 
+int DeliverTools(Files state, const std::vector<ToolResult>& results, const JobFile& job,
+                 const RunRecord& record, const SourceRecord& source) {
+  const auto nothing = std::count_if(results.begin(), results.end(), Nothing);
+  const bool any = nothing < std::ssize(results);
+  bool told = false, losses = false;
+  for (const ToolResult& result : results) {
+    const bool of_many = any && nothing > 1 && Nothing(result);
+    if (of_many && std::exchange(told, true)) continue;
+    if (of_many) {
+      Complain(fmt::format("{} more tools were heard of that made no survey", nothing));
+    } else if (results.size() > 1) {
+      fmt::print("tool {}\n", result.tool);
+    }
+    const int one = Deliver(state, result.folder, record, source, job.job, result.survey);
+    if (one == kUnusable && !Nothing(result)) return kUnusable;
+    losses = losses || one == kUnusable || HasLosses(source, result.survey);
+  }
+  if (!any) return kUnusable;
+  if (losses) SayLosses(source);
+  return losses ? kDoneWithLosses : kDone;
+}
+
 }  // namespace
 
+Maker MakerOf(const Job& job) {
+  return {"wellgyro " WELLGYRO_VERSION,
+          InAngles(job) ? "least squares in angles" : "least squares of rotations"};
+}
+
 bool MayWriteTo(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> folders = {folder};
-  std::error_code absent;
-  for (std::filesystem::directory_iterator entry(folder, absent), end; !absent && entry != end;
-       entry.increment(absent)) {
-    if (entry->path().filename().string().starts_with("tool-")) folders.push_back(entry->path());
-  }
-  for (const std::filesystem::path& one : folders) {
-    const Result<bool> accepted = HoldsAcceptedResult(one);
-    if (accepted && !*accepted) continue;
-    Complain(accepted ? fmt::format("{} holds a survey that was accepted; choose a new --out",
-                                    one.string())
-                      : Sentence(accepted.fault()));
-    return false;
-  }
-  return true;
-}
-
-RunRecord RecordOf(const JobFile& job, const std::vector<SurveyFormat>& formats,
-                   const Intake& intake, const FaultBook& surveyor_faults) {
-  RunRecord record;
-  record.program = "wellgyro " WELLGYRO_VERSION;
-  record.adjuster = AdjusterOf(job.job);
-  record.inputs = job.files;
-  record.channels = intake.Channels();
-  record.tools = intake.tools();
-  record.faults = surveyor_faults.faults();
-  record.formats = formats;
-  return record;
-}
-
-std::vector<ToolResult> ResultsOf(const Surveyor& surveyor, const std::filesystem::path& folder) {
-  std::vector<ToolResult> results;
-  for (const std::int32_t tool : surveyor.tools()) {
-    results.push_back({tool, folder, surveyor.Current(tool)});
-  }
-  const auto usable = std::count_if(results.begin(), results.end(),
-                                    [](const auto& r) { return r.survey.unusable.empty(); });
-  if (results.empty()) results.push_back({0, folder, surveyor.Current(0)});
-  for (ToolResult& result : results) {
-    if (usable > 1) result.folder /= fmt::format("tool-{}", result.tool);
-  }
-  return results;
-}
-
-void RemoveFormer(const std::filesystem::path& folder, const std::vector<ToolResult>& results) {
-  if (std::any_of(results.begin(), results.end(),
-                  [&folder](const ToolResult& result) { return result.folder == folder; })) {
-    return;
-  }
-  std::error_code ignored;
-  for (const char* name : {"survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
-                           "reliability.csv", "source.toml", "run.toml"}) {
-    std::filesystem::remove(folder / name, ignored);
-  }
+  const auto fault = AcceptedIn(folder);
+  if (fault) Complain(*fault);
+  return !fault;
 }
 
 int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Surveyor& surveyor,
                const RunRecord& record, const SourceRecord& source) {
   const std::vector<ToolResult> results = ResultsOf(surveyor, folder);
-  const bool any = std::any_of(results.begin(), results.end(),
-                               [](const auto& r) { return r.survey.unusable.empty(); });
-  RunVerdict worst;
-  bool losses = false;
-  for (const ToolResult& result : results) {
-    if (results.size() > 1) fmt::print("tool {}\n", result.tool);
-    const int one = Deliver(result.folder, record, source, job.job, result.survey);
-    if (one == kUnusable && result.survey.unusable.empty()) return kUnusable;
-    const RunVerdict& verdict = result.survey.verdict;
-    if (result.survey.unusable.empty() && verdict.verdict > worst.verdict) worst = verdict;
-    losses = losses || one == kUnusable || HasLosses(source, result.survey);
-  }
+  const int code = DeliverTools(Files::kToWrite, results, job, record, source);
   RemoveFormer(folder, results);
-  if (!any) return kUnusable;
-  if (losses) SayLosses(source);
-  fmt::print("{}\n", VerdictText(worst));
-  return worst.verdict == Verdict::kFail ? kUnfit : losses ? kDoneWithLosses : kDone;
+  return code == kUnusable ? code : Conclude(WorstVerdict(results), code == kDoneWithLosses);
+}
+
+int Summarise(const JobFile& job, const LiveOutcome& outcome) {
+  const int code =
+      DeliverTools(Files::kWritten, outcome.tools, job, outcome.record, outcome.source);
+  if (code == kUnusable) return code;
+  if (!outcome.recording_is_whole) Complain("done, but the recording lacks messages");
+  return Conclude(WorstVerdict(outcome.tools),
+                  code == kDoneWithLosses || !outcome.recording_is_whole);
+}
+
+int Conclude(const RunVerdict& verdict, bool losses) {
+  fmt::print("{}\n", VerdictText(verdict));
+  return verdict.verdict == Verdict::kFail ? kUnfit : losses ? kDoneWithLosses : kDone;
 }
 
 }  // namespace wellgyro::apps

@@ -1,28 +1,39 @@
 #include "live.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "wellgyro/live/glance_line.h"
 
 #include "report.h"
 
 namespace wellgyro::apps {
 namespace {
 
-constexpr std::int64_t kToldAtOnce = 10;
-constexpr std::int64_t kSecond = 1'000'000;
+constexpr std::int64_t kPlainUs = 4'500'000;  // so that no silence is longer than 5 s
 
 constexpr std::array<int, 2> kSignals = {SIGINT, SIGTERM};
 
 // A signal handler has no other way to know whom it concerns.
-std::atomic<LiveBus*> to_stop = nullptr;
+std::atomic<const std::function<void()>*> to_call = nullptr;
 
 void Stop(int /*signal*/) {
-  if (LiveBus* bus = to_stop.load()) bus->Stop();
+  if (const auto* stop = to_call.load()) (*stop)();
 }
 
 void Handle(int signal, void (*handler)(int)) {
@@ -31,6 +42,13 @@ void Handle(int signal, void (*handler)(int)) {
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
   sigaction(signal, &action, nullptr);
+}
+
+/// Of the terminal; two at least.
+std::size_t Columns() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col : 80;
 }
 
 template <class Clock>
@@ -54,6 +72,54 @@ std::string UrlOr(const std::string& from) {
 std::int64_t NowUs() { return Microseconds<std::chrono::system_clock>(); }
 std::int64_t MonotonicUs() { return Microseconds<std::chrono::steady_clock>(); }
 
+LiveClock ThisClock() { return {NowUs, MonotonicUs}; }
+
+Console::Console() : terminal_(isatty(STDERR_FILENO) != 0), said_us_(MonotonicUs()) {}
+Console::~Console() { Clear(); }
+
+void Console::Clear() {
+  if (shown_ > 0) fmt::print(stderr, "\r{:{}}\r", "", shown_);
+  shown_ = 0;
+}
+
+void Console::OnNotice(std::string_view sentence) {
+  Clear();
+  Complain(sentence);
+  said_us_ = MonotonicUs();
+}
+
+void Console::OnGlance(const Glance& glance) { Show(LineOf(glance)); }
+
+void Console::Show(const std::string& line) {
+  const std::int64_t now = MonotonicUs();
+  if (terminal_) {
+    Clear();
+    // A line that wraps could not be taken back.
+    shown_ = std::min(line.size(), Columns() - 1);
+    fmt::print(stderr, "{}", line.substr(0, shown_));
+    std::fflush(stderr);
+  } else if (now - said_us_ >= kPlainUs) {
+    fmt::print(stderr, "{}\n", line);
+    said_us_ = now;
+  }
+}
+
+void NotifyManager(std::string_view state) {
+  const char* name = std::getenv("NOTIFY_SOCKET");
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (name == nullptr || std::strlen(name) >= sizeof address.sun_path) return;
+  std::strcpy(address.sun_path, name);
+  const std::size_t size = offsetof(sockaddr_un, sun_path) + std::strlen(name);
+  // A name that begins with @ is in no file system.
+  if (address.sun_path[0] == '@') address.sun_path[0] = '\0';
+  const int descriptor = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return;
+  ::sendto(descriptor, state.data(), state.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+           reinterpret_cast<const sockaddr*>(&address), static_cast<socklen_t>(size));
+  ::close(descriptor);
+}
+
 void SayHowHeard(const LiveBus& bus) {
   fmt::print(stderr, "listening on {}\n", bus.url());
   const std::optional<int> granted = bus.granted_receive_buffer();
@@ -75,29 +141,15 @@ void DrainStopped(LiveBus& bus, int quiet_ms, std::int64_t most_us) {
   }
 }
 
-StopOnSignals::StopOnSignals(LiveBus& bus) {
-  to_stop = &bus;
+StopOnSignals::StopOnSignals(std::function<void()> stop) : stop_(std::move(stop)) {
+  to_call = &stop_;
   for (const int signal : kSignals) Handle(signal, Stop);
-  Handle(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGPIPE, SIGHUP}) Handle(signal, SIG_IGN);
 }
 
 StopOnSignals::~StopOnSignals() {
   for (const int signal : kSignals) Handle(signal, SIG_DFL);
-  to_stop = nullptr;
-}
-
-void FaultTeller::Tell(const Fault& fault) {
-  Count& count = counts_[fault.code];
-  const std::int64_t now = MonotonicUs();
-  if (count.told >= kToldAtOnce && now - count.last_us < kSecond) {
-    ++count.untold;
-    return;
-  }
-  Complain(fault);
-  if (count.untold > 0) Complain(fmt::format("and {} more of this kind before", count.untold));
-  count.untold = 0;
-  ++count.told;
-  count.last_us = now;
+  to_call = nullptr;
 }
 
 }  // namespace wellgyro::apps

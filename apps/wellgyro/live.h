@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "wellgyro/base/result.h"
 #include "wellgyro/bus/lcm_live.h"
+#include "wellgyro/live/clock.h"
+#include "wellgyro/live/observer.h"
 
 /// What the commands that speak with a live bus share.
 namespace wellgyro::apps {
@@ -18,6 +22,29 @@ std::string UrlOr(const std::string& from);
 
 std::int64_t NowUs();        ///< UTC since 1970 [us]
 std::int64_t MonotonicUs();  ///< for lengths of time [us]
+LiveClock ThisClock();       ///< both
+
+/// Says what a live program has to say on standard error.
+/// On a terminal one line lives below what was said; else it is a plain line every few seconds.
+class Console : public LiveObserver {
+ public:
+  Console();
+  ~Console() override;
+  void OnNotice(std::string_view sentence) override;
+  void OnGlance(const Glance& glance) override;
+
+  /// Shows `line` in place of the one before.
+  void Show(const std::string& line);
+
+ private:
+  void Clear();
+  bool terminal_;
+  std::size_t shown_ = 0;  ///< characters of the line that lives
+  std::int64_t said_us_;
+};
+
+/// Tells the service manager that started this program, if one did (sd_notify(3)): "READY=1".
+void NotifyManager(std::string_view state);
 
 /// Says on standard error what is listened to and what buffer the system grants for it.
 void SayHowHeard(const LiveBus& bus);
@@ -26,27 +53,18 @@ void SayHowHeard(const LiveBus& bus);
 /// most.
 void DrainStopped(LiveBus& bus, int quiet_ms, std::int64_t most_us);
 
-/// While it lives, SIGINT and SIGTERM stop the bus, and SIGPIPE does nothing. One at a time.
+/// While it lives, SIGINT and SIGTERM call `stop`, which must be fit for a signal handler; SIGPIPE
+/// and the SIGHUP of a terminal that goes away do nothing. One at a time.
 class StopOnSignals {
  public:
-  explicit StopOnSignals(LiveBus& bus);
+  explicit StopOnSignals(std::function<void()> stop);
+  explicit StopOnSignals(LiveBus& bus) : StopOnSignals([&bus] { bus.Stop(); }) {}
   ~StopOnSignals();
   StopOnSignals(const StopOnSignals&) = delete;
   StopOnSignals& operator=(const StopOnSignals&) = delete;
-};
-
-/// Says faults as they come: the first ten of each code, then one a second with how many there
-/// were.
-class FaultTeller {
- public:
-  void Tell(const Fault& fault);
 
  private:
-  struct Count {
-    std::int64_t told = 0, untold = 0;
-    std::int64_t last_us = 0;
-  };
-  std::map<FaultCode, Count> counts_;
+  std::function<void()> stop_;
 };
 
 }  // namespace wellgyro::apps

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "help.h"
+#include "live_commands.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -21,6 +22,9 @@ int Run(int argc, char** argv) {
   int exit_code = kDone;
   AddSurvey(app, exit_code);
   AddRecord(app, exit_code);
+  AddWatch(app, exit_code);
+  AddSend(app, exit_code);
+  AddBridge(app, exit_code);
   AddSimulate(app, exit_code);
   AddAllan(app, exit_code);
   AddCalibrate(app, exit_code);

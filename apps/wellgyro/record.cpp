@@ -15,6 +15,7 @@
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/loss_watch.h"
 #include "wellgyro/io/toml/job_file.h"
+#include "wellgyro/live/notices.h"
 
 #include "commands.h"
 #include "live.h"
@@ -50,7 +51,9 @@ class Recording {
   Recording(const RecordOptions& options, const Channels& channels, LiveBus& bus)
       : options_(options),
         bus_(bus),
-        watch_([this](const Fault& fault) { teller_.Tell(fault); }),
+        clock_(ThisClock()),
+        notices_(console_, clock_),
+        watch_([this](const Fault& fault) { notices_.Tell(fault); }),
         feed_(channels, watch_) {}
 
   std::optional<Fault> Begin() {
@@ -71,7 +74,9 @@ class Recording {
 
   const RecordOptions& options_;
   LiveBus& bus_;
-  FaultTeller teller_;
+  Console console_;
+  LiveClock clock_;
+  Notices notices_;
   LossWatch watch_;
   Feed feed_;
   std::optional<LogWriter> log_;

@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "wellgyro/live/notices.h"
+
 namespace wellgyro::apps {
 namespace {
 
@@ -16,24 +18,8 @@ std::int64_t NowMs() {
 
 }  // namespace
 
-std::string Sentence(const Fault& fault) {
-  // Some texts name their file themselves.
-  const bool named = !fault.source.empty() && fault.text.starts_with(fault.source);
-  std::string place = named ? std::string() : fault.source;
-  if (fault.line > 0) place += fmt::format(":{}", fault.line);
-  if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
-  if (fault.offset >= 0) place += fmt::format("{}byte {}", place.empty() ? "" : ", ", fault.offset);
-  return place.empty() ? fault.text : place + ": " + fault.text;
-}
-
-std::string Printable(std::string_view text) {
-  std::string printable;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    printable += byte >= 0x20 && byte < 0x7f ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
-  }
-  return printable;
-}
+std::string Sentence(const Fault& fault) { return SentenceOf(fault); }
+std::string Printable(std::string_view text) { return wellgyro::Printable(text); }
 
 void Complain(std::string_view sentence) { fmt::print(stderr, "wellgyro: {}\n", sentence); }
 

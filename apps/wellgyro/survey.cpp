@@ -1,23 +1,27 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "wellgyro/bus/file_lock.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/sensor/sensor_files.h"
 #include "wellgyro/io/toml/job_file.h"
+#include "wellgyro/live/intake.h"
+#include "wellgyro/live/results.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "commands.h"
 #include "delivery.h"
-#include "intake.h"
 #include "live.h"
 #include "live_survey.h"
 #include "report.h"
@@ -53,7 +57,7 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   FaultBook faults;
   const LeastSquaresAdjuster adjuster;
   Surveyor surveyor(job.job, faults, InAngles(job.job) ? &adjuster : nullptr);
-  Intake intake(job.job, surveyor);
+  Intake intake(job, surveyor);
   {
     Progress progress("surveying");
     std::error_code ignored;
@@ -65,10 +69,10 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
     }
     surveyor.Finish();
   }
-  HintAtChannels(intake.feed());
+  for (const std::string& hint : HintsAtChannels(intake.feed())) Complain(hint);
   const SourceRecord source = Describe(options.from, intake, *reader);
-  return DeliverAll(options.out, job, surveyor, RecordOf(job, options.formats, intake, faults),
-                    source);
+  return DeliverAll(options.out, job, surveyor,
+                    RecordOf(MakerOf(job.job), job, options.formats, intake, faults), source);
 }
 
 /// From tables of sensor data: samples, averages at rest, depth.
@@ -84,8 +88,9 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   }
   surveyor.Finish();
   RunRecord record;
-  record.program = "wellgyro " WELLGYRO_VERSION;
-  record.adjuster = AdjusterOf(job.job);
+  const Maker maker = MakerOf(job.job);
+  record.program = maker.program;
+  record.adjuster = maker.adjuster;
   record.inputs = job.files;
   record.inputs.insert(record.inputs.end(), report->files.begin(), report->files.end());
   record.faults = faults.faults();
@@ -127,6 +132,16 @@ int SurveyAny(SurveyOptions options) {
     return kUsage;
   }
   if (!MayWriteTo(options.out)) return kUnusable;
+  // A folder that is new is nobody else's.
+  std::optional<FileLock> lock;
+  if (std::filesystem::is_directory(options.out)) {
+    Result<FileLock> taken = FileLock::Take(options.out);
+    if (!taken) {
+      Complain(taken.fault());
+      return kUnusable;
+    }
+    lock.emplace(std::move(*taken));
+  }
   const bool tables = options.sources.size() > 1 || IsSensorTable(options.from);
   return tables ? SurveyTables(options, *job) : SurveyLog(options, *job);
 }

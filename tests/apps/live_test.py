@@ -30,6 +30,7 @@ SIMULATION = Simulation(Stop(90) + Move(200) + Stop(90),
                         tool="utc_jitter_s = 0.001\n")
 JOB = Job(10.0) + "[depth]\nlatency_s = 2.0\n"
 BEGIN_US = 1_767_225_600_000_000  # of the simulation's time
+FINGERPRINTS = {"request_t": 0x5c9579a393f3035d}
 
 
 class Broker(threading.Thread):
@@ -452,8 +453,9 @@ class Live(ProgramTest):
             print("the kernel has no netem: the cable is a good one")
         type(self).port += 1
         url = f"udpm://239.255.76.68:{self.port}?ttl=1"
-        survey = self.Listening("survey", "--job", self.job, "--from", url, "--out",
-                                self.Path("cable"))
+        # Its orders, FINISH among them, are obeyed because the URL names the machine.
+        survey = self.Listening("survey", "--job", self.job, "--from", url + "&from=10.77.0.2",
+                                "--out", self.Path("cable"))
         sent = subprocess.run([*there.split(), PROGRAM, "simulate", "--job", self.simulation,
                                "--out", url, "--speed", "40", "--finish"], capture_output=True,
                               text=True, check=False, timeout=60)
@@ -527,8 +529,8 @@ class Live(ProgramTest):
             os.remove(log)
         sender.communicate(timeout=60)
         text, errors = survey.communicate(timeout=60)
-        self.assertEqual(survey.returncode, 0, text + errors)
-        self.assertIn("goes on without recording", errors)
+        self.assertIn(survey.returncode, (0, 3), text + errors)
+        self.assertIn("its recording is tried again", errors)
         self.SameAs("straight", out)
 
     def test_what_the_system_holds_at_a_signal_is_recorded(self):
@@ -628,7 +630,7 @@ class Live(ProgramTest):
             self.assertEqual(Run("check", self.Path(name)).returncode, 0)
 
 
-def InOwnNetwork():
+def InOwnNetwork(script_file=__file__):
     """Starts over in a network namespace, so that tests disturb nobody; as we are where not."""
     if os.environ.get("WELLGYRO_OWN_NETWORK"):
         return
@@ -643,7 +645,7 @@ def InOwnNetwork():
         print("no network namespaces here: the tests use this machine's network")
         return
     os.environ["WELLGYRO_OWN_NETWORK"] = "1"
-    os.execvp("unshare", ["unshare", "-rnm", "sh", "-c", script, "sh", sys.executable, __file__,
+    os.execvp("unshare", ["unshare", "-rnm", "sh", "-c", script, "sh", sys.executable, script_file,
                           PROGRAM, "--kills", str(KILLS), *sys.argv[1:]])
 
 

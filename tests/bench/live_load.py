@@ -32,6 +32,12 @@ def Seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def Resident(pid):
+    """Memory [MB]."""
+    with open(f"/proc/{pid}/statm", encoding="utf-8") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
+
+
 def Main():
     options = argparse.ArgumentParser()
     options.add_argument("--seconds", type=float, default=600)
@@ -59,8 +65,10 @@ def Main():
     survey.send_signal(signal.SIGSTOP)
     time.sleep(1)
     survey.send_signal(signal.SIGCONT)
-    begin, busy = time.monotonic(), Seconds(survey.pid)
+    time.sleep(length * 0.05)
+    begin, busy, memory = time.monotonic(), Seconds(survey.pid), Resident(survey.pid)
     time.sleep(length * 0.3)
+    grown = Resident(survey.pid) - memory
     load = (Seconds(survey.pid) - busy) / (time.monotonic() - begin)
     sender.wait()
     errors = survey.communicate()[1]
@@ -77,6 +85,7 @@ def Main():
 
     median, p99 = count("station_latency_median_us"), count("station_latency_p99_us")
     print(f"{length:g} s at 10 kHz, batches of 32, the process stopped for 1 s; {buffer}")
+    print(f"resident memory {memory:.1f} MB, {grown:+.2f} MB in the {length * 0.3:.0f} s after that")
     print(f"samples {samples}, lost {lost}; kernel drops {count('kernel_drops')}")
     print(f"{stations} stations; latency median {median / 1000:.2f} ms, p99 {p99 / 1000:.2f} ms")
     print(f"load {100 * load:.1f} % of one core; machine's load average {os.getloadavg()[0]:.1f}")

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "wellgyro/bus/glance_channel.h"
+
 #include "bus/generated_messages.h"
 
 namespace wellgyro::test {
@@ -33,18 +35,21 @@ TEST(Feed, EveryTypeReachesItsListener) {
   const Channels channels;
   Heard heard;
   std::vector<MessageType> accepted;
+  const auto place = [&channels](MessageType type) {
+    return type == MessageType::kGlance ? GlanceChannel(channels) : NameOf(channels, type);
+  };
   Feed feed(channels, heard,
             [&](MessageType type, std::string_view channel, std::span<const std::byte> bytes) {
-              EXPECT_EQ(channel, NameOf(channels, type));
+              EXPECT_EQ(channel, place(type));
               EXPECT_EQ(TypeOf(bytes), type);
               accepted.push_back(type);
             });
-  for (const Sample& sample : OneOfEach()) feed.Take(NameOf(channels, sample.type), sample.bytes);
+  for (const Sample& sample : OneOfEach()) feed.Take(place(sample.type), sample.bytes);
   const std::vector<std::pair<std::string, std::size_t>> expected = {
       {"raw", 3},  {"imu", 3},   {"still", 1},   {"depth", 1},   {"mode", 1},
       {"tool", 1}, {"event", 1}, {"command", 1}, {"station", 1}, {"status", 1}};
   EXPECT_EQ(heard.calls, expected);
-  EXPECT_EQ(accepted.size(), 10U);
+  EXPECT_EQ(accepted.size(), 13U);
   EXPECT_TRUE(heard.faults.empty());
   for (const Sample& sample : OneOfEach()) {
     EXPECT_EQ(feed.count(sample.type).messages, 1);

@@ -218,6 +218,53 @@ status_t GeneratedStatus() {
   return m;
 }
 
+operation_t GeneratedOperation() {
+  operation_t m{};
+  m.utime_us = kUtimeUs + 10;
+  m.session = 6;
+  m.operation_id = 77;
+  m.n_key = 32;
+  m.n_content = 5;
+  m.n_signature = 64;
+  for (int i = 0; i < m.n_key; ++i) m.key.push_back(static_cast<std::uint8_t>(i));
+  for (int i = 0; i < m.n_content; ++i) m.content.push_back(static_cast<std::uint8_t>(200 + i));
+  for (int i = 0; i < m.n_signature; ++i) m.signature.push_back(static_cast<std::uint8_t>(99 - i));
+  return m;
+}
+
+glance_t GeneratedGlance() {
+  glance_t m{};
+  m.utime_us = kUtimeUs + 11;
+  m.seq = 7;
+  m.session = 6;
+  m.run = 2;
+  m.has_depth = 1;
+  m.md_m = 1234.5;
+  m.speed_mps = -0.5;
+  m.has_direction = 1;
+  m.inclination_rad = 0.75;
+  m.azimuth_true_rad = 6.125;
+  m.sigma_azimuth_rad = 0.0078125;
+  m.stations = 41;
+  m.at_rest = 1;
+  m.still_s = 12.5;
+  m.still_needed_s = 60;
+  m.samples_lost = 3;
+  m.checks_warned = 1;
+  m.checks_failed = 2;
+  m.turned = "gravity";
+  return m;
+}
+
+request_t GeneratedRequest() {
+  request_t m{};
+  m.utime_us = kUtimeUs + 12;
+  m.seq = 8;
+  m.session = 6;
+  m.from_revision = 4;
+  return m;
+}
+
 std::vector<Sample> OneOfEach() {
   return {
       {MessageType::kRawBatch, BytesOf(GeneratedRaw(3, 5, 2))},
@@ -230,6 +277,9 @@ std::vector<Sample> OneOfEach() {
       {MessageType::kCommand, BytesOf(GeneratedCommand())},
       {MessageType::kStation, BytesOf(GeneratedStation())},
       {MessageType::kStatus, BytesOf(GeneratedStatus())},
+      {MessageType::kOperation, BytesOf(GeneratedOperation())},
+      {MessageType::kGlance, BytesOf(GeneratedGlance())},
+      {MessageType::kRequest, BytesOf(GeneratedRequest())},
   };
 }
 

@@ -8,8 +8,11 @@
 #include "wellgyro/bus/message.h"
 #include "wellgyro/depth_t.hpp"
 #include "wellgyro/event_t.hpp"
+#include "wellgyro/glance_t.hpp"
 #include "wellgyro/imu_batch_t.hpp"
+#include "wellgyro/operation_t.hpp"
 #include "wellgyro/raw_batch_t.hpp"
+#include "wellgyro/request_t.hpp"
 #include "wellgyro/status_t.hpp"
 #include "wellgyro/still_window_t.hpp"
 #include "wellgyro/survey_cmd_t.hpp"
@@ -42,6 +45,9 @@ event_t GeneratedEvent();
 survey_cmd_t GeneratedCommand();
 survey_station_t GeneratedStation();
 status_t GeneratedStatus();
+operation_t GeneratedOperation();
+glance_t GeneratedGlance();
+request_t GeneratedRequest();
 
 struct Sample {
   MessageType type;

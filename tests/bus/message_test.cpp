@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "wellgyro/bus/glance_channel.h"
+
 #include "bus/generated_messages.h"
 
 namespace wellgyro::test {
@@ -23,6 +25,9 @@ TEST(Message, FingerprintsAreThoseOfTheContract) {
   EXPECT_EQ(Fingerprint(MessageType::kCommand), 0xf6f180edef9120b9U);
   EXPECT_EQ(Fingerprint(MessageType::kStation), 0x1efcdc84420fbed3U);
   EXPECT_EQ(Fingerprint(MessageType::kStatus), 0x31cb6cddd9398a5aU);
+  EXPECT_EQ(Fingerprint(MessageType::kOperation), 0x9922a77d1561fc57U);
+  EXPECT_EQ(Fingerprint(MessageType::kGlance), 0xfb949bef0282ff62U);
+  EXPECT_EQ(Fingerprint(MessageType::kRequest), 0x5c9579a393f3035dU);
 }
 
 TEST(Message, EveryTypeHasItsOwnFingerprintAndName) {
@@ -39,10 +44,13 @@ TEST(Message, EveryTypeHasItsOwnFingerprintAndName) {
 
 TEST(Message, ChannelsHaveTheirTypes) {
   const Channels channels;
-  for (int i = 0; i < kMessageTypes; ++i) {
-    const auto type = static_cast<MessageType>(i);
-    EXPECT_EQ(TypeOn(channels, NameOf(channels, type)), type);
+  for (const Sample& sample : OneOfEach()) {
+    const bool glance = sample.type == MessageType::kGlance;
+    const std::string name = glance ? GlanceChannel(channels) : NameOf(channels, sample.type);
+    EXPECT_EQ(TypeOn(channels, name, sample.bytes), sample.type);
   }
+  EXPECT_EQ(TypeOn(channels, NameOf(channels, MessageType::kOperation)), MessageType::kCommand);
+  EXPECT_EQ(TypeOn(channels, "WELLGYRO_IMU", BytesOf(GeneratedGlance())), MessageType::kImuBatch);
   EXPECT_EQ(NameOf(channels, MessageType::kCommand), "WELLGYRO_CMD");
   EXPECT_EQ(TypeOn(channels, "WELLGYRO"), std::nullopt);
   EXPECT_EQ(TypeOn(channels, ""), std::nullopt);

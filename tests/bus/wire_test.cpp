@@ -325,5 +325,46 @@ TEST(Wire, ABatchBufferIsAllocatedOnce) {
   EXPECT_EQ((*many)[99].b_T, Eigen::Vector3d(0, 0, 0));
 }
 
+TEST(Wire, Operation) {
+  const operation_t m = GeneratedOperation();
+  const auto r = Decoded<SignedOperation>(MessageType::kOperation, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.session, m.session);
+  EXPECT_EQ(r.id, m.operation_id);
+  ASSERT_EQ(r.key.size(), m.key.size());
+  ASSERT_EQ(r.content.size(), m.content.size());
+  ASSERT_EQ(r.signature.size(), m.signature.size());
+  EXPECT_EQ(r.key[31], std::byte{31});
+  EXPECT_EQ(r.content[4], std::byte{204});
+  EXPECT_EQ(r.signature[63], std::byte{36});
+}
+
+TEST(Wire, Glance) {
+  const glance_t m = GeneratedGlance();
+  const auto r = Decoded<Glance>(MessageType::kGlance, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.run, m.run);
+  EXPECT_EQ(r.md, m.md_m);
+  EXPECT_EQ(r.speed, m.speed_mps);
+  EXPECT_EQ(r.inclination, m.inclination_rad);
+  EXPECT_EQ(r.azimuth, m.azimuth_true_rad);
+  EXPECT_EQ(r.sigma_azimuth, m.sigma_azimuth_rad);
+  EXPECT_EQ(r.stations, m.stations);
+  EXPECT_EQ(r.still, m.still_s);
+  EXPECT_EQ(r.still_needed, m.still_needed_s);
+  EXPECT_EQ(r.samples_lost, m.samples_lost);
+  EXPECT_EQ(r.checks_warned, m.checks_warned);
+  EXPECT_EQ(r.checks_failed, m.checks_failed);
+  EXPECT_EQ(r.turned, m.turned);
+}
+
+TEST(Wire, Request) {
+  const request_t m = GeneratedRequest();
+  const auto r = Decoded<StationRequest>(MessageType::kRequest, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.seq, m.seq);
+  EXPECT_EQ(r.from_revision, m.from_revision);
+}
+
 }  // namespace
 }  // namespace wellgyro::test

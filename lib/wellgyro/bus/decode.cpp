@@ -50,6 +50,15 @@ Result<Message> SurveyStation(std::span<const std::byte> bytes) {
   return Message(std::move(sent));
 }
 
+Result<Message> Operation(std::span<const std::byte> bytes) {
+  SignedOperation operation;
+  std::int32_t n_key = 0, n_content = 0, n_signature = 0;
+  if (std::optional<Fault> fault = Read(bytes, operation, n_key, n_content, n_signature)) {
+    return *std::move(fault);
+  }
+  return Message(std::move(operation));
+}
+
 Result<Message> Imu(std::span<const std::byte> bytes, std::string_view channel) {
   ImuBatch batch;
   auto samples = DecodeImuBatch(bytes, batch.samples, channel);
@@ -82,6 +91,12 @@ Result<Message> DecodeCold(MessageType type, std::span<const std::byte> bytes) {
       return SurveyStation(bytes);
     case MessageType::kStatus:
       return Plain<Status>(bytes);
+    case MessageType::kOperation:
+      return Operation(bytes);
+    case MessageType::kGlance:
+      return Plain<Glance>(bytes);
+    case MessageType::kRequest:
+      return Plain<StationRequest>(bytes);
     case MessageType::kRawBatch:
     case MessageType::kImuBatch:
       break;

@@ -55,6 +55,22 @@ void Encode(const Status& status, std::vector<std::byte>& bytes) {
   Write(MessageType::kStatus, status, bytes);
 }
 
+void Encode(const SignedOperation& operation, std::vector<std::byte>& bytes) {
+  const auto size = [](const std::vector<std::byte>& part) {
+    return static_cast<std::int32_t>(part.size());
+  };
+  Write(MessageType::kOperation, operation, bytes, size(operation.key), size(operation.content),
+        size(operation.signature));
+}
+
+void Encode(const Glance& glance, std::vector<std::byte>& bytes) {
+  Write(MessageType::kGlance, glance, bytes);
+}
+
+void Encode(const StationRequest& request, std::vector<std::byte>& bytes) {
+  Write(MessageType::kRequest, request, bytes);
+}
+
 void Encode(const Message& message, std::vector<std::byte>& bytes) {
   std::visit(
       [&bytes](const auto& record) {

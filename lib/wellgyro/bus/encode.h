@@ -29,6 +29,9 @@ WELLGYRO_EXPORT void Encode(const Event& event, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const Command& command, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const SentStation& station, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const Status& status, std::vector<std::byte>& bytes);
+WELLGYRO_EXPORT void Encode(const SignedOperation& operation, std::vector<std::byte>& bytes);
+WELLGYRO_EXPORT void Encode(const Glance& glance, std::vector<std::byte>& bytes);
+WELLGYRO_EXPORT void Encode(const StationRequest& request, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const Message& message, std::vector<std::byte>& bytes);
 
 }  // namespace wellgyro

@@ -22,6 +22,9 @@ struct Telling {
   void operator()(const Command& command) const { listener.OnCommand(command); }
   void operator()(const SentStation& station) const { listener.OnStation(station); }
   void operator()(const Status& status) const { listener.OnStatus(status); }
+  void operator()(const SignedOperation& operation) const { listener.OnOperation(operation); }
+  void operator()(const Glance& glance) const { listener.OnGlance(glance); }
+  void operator()(const StationRequest& request) const { listener.OnRequest(request); }
 };
 
 std::size_t Index(MessageType type) { return static_cast<std::size_t>(type); }
@@ -36,7 +39,7 @@ Feed::Feed(const Channels& channels, Listener& listener, Accepted on_accepted)
 }
 
 void Feed::Take(std::string_view channel, std::span<const std::byte> bytes, std::int64_t offset) {
-  const std::optional<MessageType> type = TypeOn(channels_, channel);
+  const std::optional<MessageType> type = TypeOn(channels_, channel, bytes);
   if (!type) return Ignore(channel, bytes);
   if (std::optional<Fault> fault = Hand(*type, channel, bytes)) {
     Complain(*type, *std::move(fault), offset);

@@ -31,6 +31,9 @@ class WELLGYRO_EXPORT Listener {
   virtual void OnCommand(const Command& /*command*/) {}
   virtual void OnStation(const SentStation& /*station*/) {}
   virtual void OnStatus(const Status& /*status*/) {}
+  virtual void OnOperation(const SignedOperation& /*operation*/) {}
+  virtual void OnGlance(const Glance& /*glance*/) {}
+  virtual void OnRequest(const StationRequest& /*request*/) {}
   virtual void OnFault(const Fault& /*fault*/) {}
 };
 

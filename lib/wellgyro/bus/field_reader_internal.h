@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -121,6 +122,15 @@ class FieldReader {
     text.assign(chars, static_cast<std::size_t>(length) - 1);
     Require(chars[length - 1] == '\0', name, "a string without its closing NUL");
     Require(text.find('\0') == std::string::npos, name, "a string with a NUL inside");
+  }
+
+  /// LCM's bytes, of which `n` was given before.
+  void Bytes(const char* /*name*/, std::vector<std::byte>& bytes, std::int32_t n) {
+    const std::size_t begin = at_;
+    at_ += n > 0 ? static_cast<std::size_t>(n) : 0;
+    if (at_ > bytes_.size() || stopped_) return;
+    bytes.assign(bytes_.begin() + static_cast<std::ptrdiff_t>(begin),
+                 bytes_.begin() + static_cast<std::ptrdiff_t>(at_));
   }
 
   /// Call after the last field: what was wrong, size first. A string's length that makes no sense

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -89,6 +90,11 @@ class FieldWriter {
     Put(static_cast<std::int32_t>(text.size() + 1));
     const auto* bytes = reinterpret_cast<const std::byte*>(text.c_str());
     bytes_.insert(bytes_.end(), bytes, bytes + text.size() + 1);
+  }
+
+  void Bytes(const char* name, const std::vector<std::byte>& bytes, std::int32_t n) {
+    Require(std::ssize(bytes) == n, name, bytes.size());
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
   }
 
  private:

@@ -174,6 +174,56 @@ void Fields(Io& io, Record& sent,
   io.Count("samples_lost", r.samples_lost);
 }
 
+/// The counts stand for the sizes of the record's byte strings.
+template <class Io, class Record>
+void Fields(Io& io, Record& r, auto& n_key, auto& n_content, auto& n_signature) requires
+    std::is_same_v<std::remove_const_t<Record>, SignedOperation> {
+  io.Utc("utime_us", r.utc);
+  io.Int("session", r.session);
+  io.Int("operation_id", r.id);
+  io.Within("n_key", n_key, std::int32_t{0}, kKeyMax);
+  io.Within("n_content", n_content, std::int32_t{0}, kContentMax);
+  io.Within("n_signature", n_signature, std::int32_t{0}, kKeyMax);
+  io.Bytes("key", r.key, n_key);
+  io.Bytes("content", r.content, n_content);
+  io.Bytes("signature", r.signature, n_signature);
+}
+
+template <class Io, class Record>
+void Fields(Io& io, Record& r) requires std::is_same_v<std::remove_const_t<Record>, Glance> {
+  bool has_depth = r.md.has_value();
+  bool has_direction = r.inclination.has_value() && r.azimuth.has_value();
+  bool at_rest = r.still.has_value();
+  io.Utc("utime_us", r.utc);
+  io.Count("seq", r.seq);
+  io.Int("session", r.session);
+  io.Count("run", r.run);
+  io.Flag("has_depth", has_depth);
+  io.Optional("md_m", has_depth, r.md);
+  io.Optional("speed_mps", has_depth, r.speed);
+  io.Flag("has_direction", has_direction);
+  io.Optional("inclination_rad", has_direction, r.inclination);
+  io.Optional("azimuth_true_rad", has_direction, r.azimuth);
+  io.NotNegative("sigma_azimuth_rad", r.sigma_azimuth);
+  io.Count("stations", r.stations);
+  io.Flag("at_rest", at_rest);
+  io.OptionalNotNegative("still_s", at_rest, r.still);
+  io.NotNegative("still_needed_s", r.still_needed);
+  io.Count("samples_lost", r.samples_lost);
+  io.Count("checks_warned", r.checks_warned);
+  io.Count("checks_failed", r.checks_failed);
+  io.String("turned", r.turned);
+}
+
+template <class Io, class Record>
+void Fields(Io& io,
+            Record& r) requires std::is_same_v<std::remove_const_t<Record>, StationRequest> {
+  io.Utc("utime_us", r.utc);
+  io.Count("seq", r.seq);
+  io.Int("session", r.session);
+  io.Count("from_revision", r.from_revision);
+}
+
 template <class Io, class Record>
 void Fields(Io& io, Record& r) requires std::is_same_v<std::remove_const_t<Record>, Status> {
   bool has_kernel_drops = r.kernel_drops.has_value();

@@ -4,8 +4,11 @@
 #include "wellgyro/bus/message.h"
 #include "wellgyro/depth_t.hpp"
 #include "wellgyro/event_t.hpp"
+#include "wellgyro/glance_t.hpp"
 #include "wellgyro/imu_batch_t.hpp"
+#include "wellgyro/operation_t.hpp"
 #include "wellgyro/raw_batch_t.hpp"
+#include "wellgyro/request_t.hpp"
 #include "wellgyro/status_t.hpp"
 #include "wellgyro/still_window_t.hpp"
 #include "wellgyro/survey_cmd_t.hpp"
@@ -31,7 +34,8 @@ const std::array<Identity, kMessageTypes>& Identities() {
       IdentityOf<raw_batch_t>(), IdentityOf<imu_batch_t>(),  IdentityOf<still_window_t>(),
       IdentityOf<depth_t>(),     IdentityOf<tool_mode_t>(),  IdentityOf<tool_info_t>(),
       IdentityOf<event_t>(),     IdentityOf<survey_cmd_t>(), IdentityOf<survey_station_t>(),
-      IdentityOf<status_t>(),
+      IdentityOf<status_t>(),    IdentityOf<operation_t>(),  IdentityOf<glance_t>(),
+      IdentityOf<request_t>(),
   };
   return identities;
 }

@@ -17,11 +17,15 @@
 
 #include "wellgyro/bus/lcm_url_internal.h"
 #include "wellgyro/bus/log_format_internal.h"
+#include "wellgyro/bus/udp_receiver_internal.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr std::size_t kChannelMax = 63;
+
+constexpr int kSelfTests = 10;
+constexpr int kSelfTestMs = 100;
 
 /// LCM takes channels as regular expressions.
 std::string Escaped(std::string_view channel) {
@@ -62,11 +66,12 @@ struct LiveBus::Core {
   struct Subscription {
     Core* core;
     Handler handler;
+    std::vector<std::string> channels;  ///< udpm only; none: every one
   };
 
   /// Called by liblcm, through which no exception may pass.
   static void OnMessage(const lcm_recv_buf_t* message, const char* channel, void* subscription) {
-    auto& [core, handler] = *static_cast<Subscription*>(subscription);
+    auto& [core, handler, channels] = *static_cast<Subscription*>(subscription);
     // A datagram without the channel's NUL comes with a size of nearly 4 GiB.
     if (message->data_size > log_format::kDataMax) {
       ++core->refused;
@@ -85,9 +90,30 @@ struct LiveBus::Core {
     return {FaultCode::kIo, fmt::format("{}: {}", url.full, what), url.full};
   }
 
+  /// Of what is heard; negative where nothing can be. On udpm liblcm is never asked for its own,
+  /// with which it would begin to listen.
+  int Descriptor() const {
+    if (url.provider == "udpm") return receiver ? receiver->descriptor() : -1;
+    return lcm_get_fileno(lcm);
+  }
+
   bool Readable(int within_ms) const {
-    pollfd bus{lcm_get_fileno(lcm), POLLIN, 0};
+    pollfd bus{Descriptor(), POLLIN, 0};
     return bus.fd >= 0 && Poll({&bus, 1}, within_ms) > 0 && (bus.revents & POLLIN) != 0;
+  }
+
+  /// The next message of our own receiver; false: there is none.
+  bool HandleHeld() {
+    UdpReceiver::Held held;
+    if (!receiver->Next(held)) return false;
+    held_is_local = held.local;
+    for (Subscription& subscription : subscriptions) {
+      const auto& channels = subscription.channels;
+      const bool wanted = channels.empty() || std::find(channels.begin(), channels.end(),
+                                                        held.channel) != channels.end();
+      if (wanted) subscription.handler(held.channel, held.data, held.received_us);
+    }
+    return true;
   }
 
   /// One message, which must be there: liblcm's own waiting breaks on signals.
@@ -97,13 +123,50 @@ struct LiveBus::Core {
     return result >= 0;
   }
 
+  std::optional<Fault> Hear(const std::vector<std::string>& channels);
+  std::optional<Fault> HearByLcm(const std::vector<std::string>& channels);
+
   LcmUrl url;
   lcm_t* lcm = nullptr;
   std::array<int, 2> stop_pipe = {-1, -1};
   std::list<Subscription> subscriptions;
+  std::optional<UdpReceiver> receiver;  ///< udpm: liblcm's own takes what would end it
+  bool held_is_local = false;
   std::exception_ptr thrown;
   std::int64_t refused = 0;
 };
+
+/// Our own receiver, started where it is not and tested with a message as LCM's would be.
+std::optional<Fault> LiveBus::Core::Hear(const std::vector<std::string>& channels) {
+  if (!receiver) receiver.emplace(url);
+  for (const std::string& channel : channels) receiver->Want(channel);
+  if (channels.empty()) receiver->Want({});
+  if (receiver->started()) return std::nullopt;
+  if (auto fault = receiver->Start()) return fault;
+  // Where only certain senders are heard, this one need not be among them.
+  if (!url.senders.empty() || !url.interface.empty()) return std::nullopt;
+  receiver->Await(kSelfTest);
+  for (int i = 0; i < kSelfTests; ++i) {
+    lcm_publish(lcm, kSelfTest, "", 0);
+    if (receiver->Came(kSelfTestMs)) return std::nullopt;
+  }
+  return Gone("LCM hears none of its own messages; a firewall may drop multicast");
+}
+
+std::optional<Fault> LiveBus::Core::HearByLcm(const std::vector<std::string>& channels) {
+  std::vector<std::string> patterns;
+  for (const std::string& channel : channels) patterns.push_back(Escaped(channel));
+  if (channels.empty()) patterns.emplace_back(".*");
+  std::sort(patterns.begin(), patterns.end());
+  patterns.erase(std::unique(patterns.begin(), patterns.end()), patterns.end());
+  for (const std::string& pattern : patterns) {
+    auto* subscription =
+        lcm_subscribe(lcm, pattern.c_str(), &Core::OnMessage, &subscriptions.back());
+    if (subscription == nullptr) return Gone("LCM refuses to subscribe");
+    lcm_subscription_set_queue_capacity(subscription, 0);
+  }
+  return std::nullopt;
+}
 
 LiveBus::LiveBus(std::unique_ptr<Core> core) : core_(std::move(core)) {}
 LiveBus::~LiveBus() = default;
@@ -120,7 +183,7 @@ Result<LiveBus> LiveBus::Open(const std::string& url, int receive_buffer) {
   if (::pipe2(core->stop_pipe.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
     return core->Gone(std::strerror(errno));
   }
-  core->lcm = lcm_create(core->url.full.c_str());
+  core->lcm = lcm_create(core->url.for_lcm.c_str());
   const bool tcpq = core->url.provider == "tcpq";
   // LCM 1.3 makes a bus even where no broker answers, and ends the process when it is used.
   if (core->lcm == nullptr || (tcpq && lcm_get_fileno(core->lcm) < 0)) {
@@ -132,38 +195,21 @@ Result<LiveBus> LiveBus::Open(const std::string& url, int receive_buffer) {
 }
 
 std::optional<Fault> LiveBus::Subscribe(const std::vector<std::string>& channels, Handler handler) {
-  std::vector<std::string> patterns;
-  for (const std::string& channel : channels) {
-    RequireChannel(channel);
-    patterns.push_back(Escaped(channel));
-  }
-  if (channels.empty()) patterns.emplace_back(".*");
-  std::sort(patterns.begin(), patterns.end());
-  patterns.erase(std::unique(patterns.begin(), patterns.end()), patterns.end());
-  core_->subscriptions.push_back({core_.get(), std::move(handler)});
-  for (const std::string& pattern : patterns) {
-    auto* subscription =
-        lcm_subscribe(core_->lcm, pattern.c_str(), &Core::OnMessage, &core_->subscriptions.back());
-    if (subscription == nullptr) return core_->Gone("LCM refuses to subscribe");
-    lcm_subscription_set_queue_capacity(subscription, 0);
-  }
-  // The first use of the descriptor makes LCM join the group and test it with a message of its own.
-  if (lcm_get_fileno(core_->lcm) < 0) {
-    return core_->Gone("LCM hears none of its own messages; a firewall may drop multicast");
-  }
-  return std::nullopt;
+  for (const std::string& channel : channels) RequireChannel(channel);
+  core_->subscriptions.push_back({core_.get(), std::move(handler), channels});
+  return core_->url.provider == "udpm" ? core_->Hear(channels) : core_->HearByLcm(channels);
 }
 
-Result<LiveBus::Woken> LiveBus::Wait(int timeout_ms) {
+Result<LiveBus::Woken> LiveBus::Wait(int timeout_ms, std::int64_t most) {
   std::array<pollfd, 2> ends = {
-      {{core_->stop_pipe[0], POLLIN, 0}, {lcm_get_fileno(core_->lcm), POLLIN, 0}}};
+      {{core_->stop_pipe[0], POLLIN, 0}, {core_->Descriptor(), POLLIN, 0}}};
   const std::size_t count = ends[1].fd < 0 ? 1 : 2;
   if (Poll(std::span(ends).first(count), timeout_ms) < 0) {
     return core_->Gone(std::strerror(errno));
   }
   if (ends[0].revents != 0) return Woken::kStopped;
   if ((ends[1].revents & POLLIN) != 0) {
-    const Result<std::int64_t> handled = Drain(kBurst);
+    const Result<std::int64_t> handled = Drain(most);
     if (!handled) return handled.fault();
     return Woken::kMessages;
   }
@@ -174,6 +220,11 @@ Result<LiveBus::Woken> LiveBus::Wait(int timeout_ms) {
 Result<std::int64_t> LiveBus::Drain(std::int64_t most, int quiet_ms) {
   std::int64_t handled = 0;
   while (handled < most && core_->Readable(quiet_ms)) {
+    if (core_->receiver) {
+      // As many as there are without asking the system again for each.
+      while (handled < most && core_->HandleHeld()) ++handled;
+      continue;
+    }
     if (!core_->HandleOne()) return core_->Gone("the connection is lost");
     ++handled;
   }
@@ -211,9 +262,21 @@ int LiveBus::asked_receive_buffer() const { return core_->url.receive_buffer; }
 
 std::optional<std::int64_t> LiveBus::kernel_drops() const {
   if (core_->url.provider != "udpm") return std::nullopt;
-  return UdpDrops(core_->url.port);
+  return core_->receiver ? core_->receiver->kernel_drops() : 0;
 }
 
-std::int64_t LiveBus::refused() const { return core_->refused; }
+bool LiveBus::heard_here() const {
+  if (core_->receiver) return core_->held_is_local;
+  const std::string& host = core_->url.host;
+  return core_->url.provider == "memq" || host == "localhost" || host.starts_with("127.");
+}
+
+std::int64_t LiveBus::refused() const {
+  return core_->refused + (core_->receiver ? core_->receiver->refused() : 0);
+}
+
+std::int64_t LiveBus::strangers() const {
+  return core_->receiver ? core_->receiver->foreign_senders() : 0;
+}
 
 }  // namespace wellgyro

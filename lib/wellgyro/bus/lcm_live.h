@@ -24,7 +24,10 @@ inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
 /// what is published waits until the same thread calls Wait or Drain). To a udpm URL that does not
 /// say otherwise, `ttl=0` is added, so that nothing leaves the machine unasked, and
 /// `recv_buf_size`: at 10 kHz of single samples 4 MiB outlast a stall of a second, the system's
-/// default 25 ms. LCM's own queue, which drops the newest messages silently, is made unlimited.
+/// default 25 ms. Multicast is heard with a socket of our own, bound to the group and the interface
+/// of the route to it: what is sent to this machine alone is not heard unless the URL has
+/// `unicast=1`; `interface=NAME` hears on another; `from=ADDRESS,ADDRESS` hears these senders only.
+/// Whatever comes, no more than 40 MiB of it are held. liblcm does the sending, tcpq and memq.
 ///
 /// tcpq: a broker that goes away raises SIGPIPE at the next Publish; a program should ignore it.
 class WELLGYRO_EXPORT LiveBus {
@@ -54,12 +57,16 @@ class WELLGYRO_EXPORT LiveBus {
                                                Handler handler);
 
   /// Waits for a message, for Stop, or for the time to pass (negative: for ever), then hands on
-  /// what has come. A Fault: the bus is gone.
-  Result<Woken> Wait(int timeout_ms);
+  /// `most` messages at most of what has come. A Fault: the bus is gone.
+  Result<Woken> Wait(int timeout_ms, std::int64_t most = kBurst);
   /// Hands on what has come until nothing more does for `quiet_ms`, at most `most` messages; how
   /// many it was. Without waiting (0), what LCM's own thread has not yet fetched from the system
   /// stays there.
   Result<std::int64_t> Drain(std::int64_t most = 1'000'000, int quiet_ms = 0);
+
+  /// While a handler is called: its message came from this machine, or from one that the URL's
+  /// `from` names. Of a broker it counts where the broker is.
+  bool heard_here() const;
 
   /// Ends the present and every later Wait. May be called from a signal handler or another thread.
   void Stop() noexcept;
@@ -77,8 +84,10 @@ class WELLGYRO_EXPORT LiveBus {
   std::optional<int> granted_receive_buffer() const;
   /// Datagrams that the system threw away because the buffer was full; nothing where not known.
   std::optional<std::int64_t> kernel_drops() const;
-  /// Messages refused because LCM gave them an impossible size.
+  /// Datagrams that are no messages of LCM's, and messages of an impossible size.
   std::int64_t refused() const;
+  /// Datagrams of senders that the URL's `from` does not name.
+  std::int64_t strangers() const;
 
  private:
   struct Core;

@@ -1,10 +1,7 @@
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <set>
-#include <sstream>
 #include <string_view>
 
 #include <arpa/inet.h>
@@ -60,36 +57,57 @@ std::string_view TakeOption(std::string_view& options) {
   return option;
 }
 
-/// The value of the last `name` among `options`.
-std::optional<int> Option(std::string_view options, std::string_view name) {
-  std::optional<int> number;
-  while (!options.empty()) {
-    const std::string_view option = TakeOption(options);
-    if (!option.starts_with(name) || option.substr(name.size(), 1) != "=") continue;
-    int value = 0;
-    std::from_chars(option.data() + name.size() + 1, option.data() + option.size(), value);
-    number = value;
+/// IPv4 addresses between commas; nothing where one of them is none.
+std::optional<std::vector<std::uint32_t>> Addresses(std::string_view list) {
+  std::vector<std::uint32_t> addresses;
+  while (!list.empty()) {
+    const std::string one(list.substr(0, list.find(',')));
+    list.remove_prefix(std::min(list.size(), one.size() + 1));
+    in_addr address{};
+    if (::inet_pton(AF_INET, one.c_str(), &address) != 1) return std::nullopt;
+    addresses.push_back(ntohl(address.s_addr));
   }
+  return addresses;
+}
+
+std::optional<int> Number(std::string_view value) {
+  int number = 0;
+  const char* end = value.data() + value.size();
+  const auto [stop, error] = std::from_chars(value.data(), end, number);
+  if (error != std::errc() || stop != end || number < 0) return std::nullopt;
   return number;
 }
 
-/// What is wrong with the options of a udpm URL, which LCM would pass over with a warning at most.
-std::string WrongOption(std::string_view options) {
-  while (!options.empty()) {
-    const std::string_view option = TakeOption(options);
-    const std::string_view name = option.substr(0, option.find('='));
-    const std::string_view value = option.substr(std::min(option.size(), name.size() + 1));
-    const bool ttl = name == "ttl";
-    if (!ttl && name != "recv_buf_size" && name != "transmit_only") {
-      return fmt::format("the options are ttl and recv_buf_size, not \"{}\"", name);
-    }
-    int number = 0;
-    const char* end = value.data() + value.size();
-    const auto [stop, error] = std::from_chars(value.data(), end, number);
-    if (error != std::errc() || stop != end || number < 0 || (ttl && number > 255)) {
-      return fmt::format("{} is no number{}", option, ttl ? " from 0 to 255" : "");
-    }
+/// Takes one option of a udpm URL, into `lcm` where LCM knows it too; what is wrong with it, which
+/// LCM would pass over with a warning at most.
+std::string WrongOption(std::string_view option, LcmUrl& parsed, std::vector<std::string>& lcm) {
+  const std::string_view name = option.substr(0, option.find('='));
+  const std::string_view value = option.substr(std::min(option.size(), name.size() + 1));
+  if (name == "interface") {
+    parsed.interface = value;
+    return value.empty() ? "interface= has no name" : "";
   }
+  if (name == "from") {
+    const auto senders = Addresses(value);
+    if (!senders || senders->empty()) return fmt::format("{} are no IPv4 addresses", option);
+    parsed.senders = *senders;
+    return {};
+  }
+  const std::optional<int> number = Number(value);
+  const bool ttl = name == "ttl";
+  if (!ttl && name != "recv_buf_size" && name != "transmit_only" && name != "unicast") {
+    return fmt::format(
+        "the options are ttl, recv_buf_size, interface, from and unicast, not \"{}\"", name);
+  }
+  if (!number || (ttl && *number > 255)) {
+    return fmt::format("{} is no number{}", option, ttl ? " from 0 to 255" : "");
+  }
+  if (name == "unicast") {
+    parsed.unicast = *number != 0;
+    return {};
+  }
+  if (name == "recv_buf_size") parsed.receive_buffer = *number;
+  lcm.emplace_back(option);
   return {};
 }
 
@@ -106,16 +124,30 @@ bool SplitAddress(std::string_view address, const char* host, std::uint16_t port
   return error == std::errc() && stop == end && parsed.port > 0;
 }
 
-/// Inodes of this process's open sockets, as /proc/net/udp names them.
-std::set<std::string> OwnSockets() {
-  std::set<std::string> inodes;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error)) {
-    std::error_code gone;
-    const std::string target = std::filesystem::read_symlink(entry.path(), gone).string();
-    if (target.starts_with("socket:[")) inodes.insert(target.substr(8, target.size() - 9));
+/// All options of a udpm URL, with our defaults, into `parsed`; what is wrong with one of them.
+std::string TakeOptions(std::string_view options, int receive_buffer, LcmUrl& parsed) {
+  std::vector<std::string> lcm, ours;
+  parsed.receive_buffer = receive_buffer;
+  while (!options.empty()) {
+    const std::string_view option = TakeOption(options);
+    const std::size_t before = lcm.size();
+    std::string wrong = WrongOption(option, parsed, lcm);
+    if (!wrong.empty()) return wrong;
+    if (lcm.size() == before) ours.emplace_back(option);
   }
-  return inodes;
+  const auto add = [&lcm](std::string_view name, int value) {
+    const bool given = std::any_of(lcm.begin(), lcm.end(), [name](const std::string& option) {
+      return option.substr(0, option.find('=')) == name;
+    });
+    if (!given) lcm.push_back(fmt::format("{}={}", name, value));
+  };
+  add("ttl", 0);
+  add("recv_buf_size", receive_buffer);
+  const std::string address = fmt::format("udpm://{}:{}?", parsed.host, parsed.port);
+  parsed.for_lcm = address + fmt::format("{}", fmt::join(lcm, "&"));
+  lcm.insert(lcm.end(), ours.begin(), ours.end());
+  parsed.full = address + fmt::format("{}", fmt::join(lcm, "&"));
+  return {};
 }
 
 }  // namespace
@@ -127,7 +159,7 @@ Result<LcmUrl> ParseLcmUrl(const std::string& url, int receive_buffer) {
   }
   LcmUrl parsed;
   parsed.provider = parts->provider;
-  parsed.full = url;
+  parsed.full = parsed.for_lcm = url;
   if (parts->provider == "memq") return parsed;
   if (parts->provider == "file") return BadUrl(url, "name a log by its path alone");
   const bool udpm = parts->provider == "udpm";
@@ -138,17 +170,8 @@ Result<LcmUrl> ParseLcmUrl(const std::string& url, int receive_buffer) {
                          : SplitAddress(parts->address, "127.0.0.1", 7700, parsed);
   if (!good) return BadUrl(url, "the port must be 1 to 65535");
   if (!udpm) return parsed;
-  if (const std::string wrong = WrongOption(parts->options); !wrong.empty()) {
-    return BadUrl(url, wrong);
-  }
-  std::string options(parts->options);
-  const auto add = [&options](const std::string& option) {
-    options += (options.empty() ? "" : "&") + option;
-  };
-  if (!Option(options, "ttl")) add("ttl=0");
-  if (!Option(options, "recv_buf_size")) add(fmt::format("recv_buf_size={}", receive_buffer));
-  parsed.receive_buffer = Option(options, "recv_buf_size").value_or(receive_buffer);
-  parsed.full = fmt::format("udpm://{}:{}?{}", parsed.host, parsed.port, options);
+  const std::string wrong = TakeOptions(parts->options, receive_buffer, parsed);
+  if (!wrong.empty()) return BadUrl(url, wrong);
   return parsed;
 }
 
@@ -184,26 +207,6 @@ std::optional<int> GrantedReceiveBuffer(int asked) {
     return std::nullopt;
   }
   return granted / 2;  // Linux doubles it for its own book-keeping
-}
-
-std::optional<std::int64_t> UdpDrops(std::uint16_t port) {
-  std::ifstream table("/proc/net/udp");
-  std::string line;
-  if (!std::getline(table, line)) return std::nullopt;
-  const std::set<std::string> own = OwnSockets();
-  const std::string end_of_address = fmt::format(":{:04X}", port);
-  std::optional<std::int64_t> drops;
-  while (std::getline(table, line)) {
-    // sl local_address rem_address st queues tr:when retrnsmt uid timeout inode ref pointer drops
-    std::istringstream words(line);
-    std::string slot, local, word, inode;
-    words >> slot >> local;
-    for (int i = 0; i < 7; ++i) words >> word;
-    std::int64_t lost = 0;
-    if (!(words >> inode >> word >> word >> lost)) continue;
-    if (local.ends_with(end_of_address) && own.contains(inode)) drops = drops.value_or(0) + lost;
-  }
-  return drops;
 }
 
 }  // namespace wellgyro

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "wellgyro/base/result.h"
 
@@ -14,7 +15,12 @@ struct LcmUrl {
   std::string host;
   std::uint16_t port = 0;
   std::string full;        ///< with our defaults added
+  std::string for_lcm;     ///< without the options that are ours alone
   int receive_buffer = 0;  ///< asked for [bytes]; udpm only
+  // udpm only, of the options `interface=NAME|ADDRESS`, `unicast=1`, `from=ADDRESS,ADDRESS`:
+  std::string interface;               ///< to hear on; empty: the one of the route to the group
+  bool unicast = false;                ///< hears what is sent to this machine alone, too
+  std::vector<std::uint32_t> senders;  ///< IPv4 addresses to hear, host's order; none: all
 };
 
 /// `receive_buffer` [bytes] goes into a udpm URL that asks for none.
@@ -25,8 +31,5 @@ std::optional<Fault> CheckMulticastRoute(const LcmUrl& url);
 
 /// What the system grants to a socket that asks for this receive buffer [bytes].
 std::optional<int> GrantedReceiveBuffer(int asked);
-
-/// Datagrams dropped by this process's UDP sockets on a port, from /proc.
-std::optional<std::int64_t> UdpDrops(std::uint16_t port);
 
 }  // namespace wellgyro

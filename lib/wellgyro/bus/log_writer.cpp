@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "wellgyro/bus/bytes_internal.h"
 #include "wellgyro/bus/log_format_internal.h"
@@ -85,7 +86,11 @@ std::optional<Fault> LogWriter::Write(std::string_view channel, std::span<const 
     throw std::invalid_argument(fmt::format("channel \"{}\": {} bytes of data are more than {}",
                                             channel, data.size(), log_format::kDataMax));
   }
-  if (!file_ || fault_) return fault_;
+  if (!file_) return fault_;
+  if (fault_ && gathered_.size() + data.size() > kHeldMax) {
+    ++lost_;
+    return fault_;
+  }
   const std::size_t at = gathered_.size();
   gathered_.resize(at + log_format::kHeadSize + channel.size() + data.size());
   std::byte* to = gathered_.data() + at;
@@ -99,6 +104,7 @@ std::optional<Fault> LogWriter::Write(std::string_view channel, std::span<const 
     std::memcpy(to + log_format::kHeadSize + channel.size(), data.data(), data.size());
   }
   ++events_;
+  if (fault_) return fault_;
   return gathered_.size() >= kBlock ? Flush() : std::nullopt;
 }
 
@@ -135,19 +141,31 @@ std::optional<Fault> LogWriter::Flush() {
   }
   const std::size_t whole = WholeEvents(done);
   written_ += static_cast<std::int64_t>(whole);
-  if (done < gathered_.size()) {
+  const bool all = done == gathered_.size();
+  gathered_.erase(gathered_.begin(), gathered_.begin() + static_cast<std::ptrdiff_t>(whole));
+  if (!all) {
     Fail("write");
     std::error_code ignored;  // a pipe cannot be cut
     if (file_.get() != stdout && whole < done) {
       std::filesystem::resize_file(path_, static_cast<std::uintmax_t>(written_), ignored);
     }
   }
-  gathered_.clear();
   return fault_;
 }
 
+std::optional<Fault> LogWriter::TryAgain() {
+  if (!file_ || !fault_) return fault_;
+  std::clearerr(file_.get());
+  if (file_.get() != stdout) ::fseeko(file_.get(), written_, SEEK_SET);
+  fault_.reset();
+  return Flush();
+}
+
+bool LogWriter::Sync() const { return !file_ || ::fdatasync(::fileno(file_.get())) == 0; }
+
 std::optional<Fault> LogWriter::Close() {
   std::optional<Fault> fault = Flush();
+  if (file_ && file_.get() != stdout) static_cast<void>(Sync());
   if (std::FILE* file = file_.release(); file != nullptr && file != stdout) {
     if (std::fclose(file) != 0 && !fault_) Fail("close");
   }

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "wellgyro/bus/glance_channel.h"
+
 namespace wellgyro {
 namespace {
 
@@ -14,8 +16,10 @@ struct Place {
   const char* field;
 };
 
-// In the order of MessageType.
-constexpr std::array<Place, kMessageTypes> kPlaces = {{
+constexpr std::size_t kChannels = 10;
+
+// In the order of MessageType. Later types share the channel of an older one.
+constexpr std::array<Place, kChannels> kPlaces = {{
     {&Channels::raw, "raw"},
     {&Channels::imu, "imu"},
     {&Channels::still, "still"},
@@ -34,7 +38,11 @@ bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7
 
 }  // namespace
 
+std::string GlanceChannel(const Channels& channels) { return channels.status + "_GLANCE"; }
+
 const std::string& NameOf(const Channels& channels, MessageType type) {
+  if (type == MessageType::kGlance) return channels.status;
+  if (type == MessageType::kOperation || type == MessageType::kRequest) return channels.command;
   return channels.*kPlaces.at(static_cast<std::size_t>(type)).name;
 }
 
@@ -43,6 +51,15 @@ std::optional<MessageType> TypeOn(const Channels& channels, std::string_view nam
     if (channels.*kPlaces[i].name == name) return static_cast<MessageType>(i);
   }
   return std::nullopt;
+}
+
+std::optional<MessageType> TypeOn(const Channels& channels, std::string_view name,
+                                  std::span<const std::byte> bytes) {
+  const std::optional<MessageType> type = TypeOn(channels, name);
+  if (!type && name == GlanceChannel(channels)) return MessageType::kGlance;
+  if (type != MessageType::kCommand) return type;
+  const std::optional<MessageType> said = TypeOf(bytes);
+  return said && NameOf(channels, *said) == name ? said : type;
 }
 
 void Validate(const Channels& channels) {

@@ -12,8 +12,10 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/channels.h"
 #include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/glance.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/sample.h"
+#include "wellgyro/record/signed_operation.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/status.h"
 #include "wellgyro/record/still_window.h"
@@ -32,8 +34,11 @@ enum class MessageType {
   kCommand,
   kStation,
   kStatus,
+  kOperation,
+  kGlance,
+  kRequest,
 };
-inline constexpr int kMessageTypes = 10;
+inline constexpr int kMessageTypes = 13;
 
 struct RawBatch {
   std::vector<RawSample> samples;
@@ -54,7 +59,7 @@ struct SentStation {
 /// Any message of proto/ as a record. Of a StillWindow that travelled, `seq_begin` and `seq_end`
 /// are the message's number and `samples` is zero.
 using Message = std::variant<RawBatch, ImuBatch, StillWindow, DepthMark, ToolMode, ToolInfo, Event,
-                             Command, SentStation, Status>;
+                             Command, SentStation, Status, SignedOperation, Glance, StationRequest>;
 
 /// The struct's name in proto/, as "imu_batch_t".
 WELLGYRO_EXPORT std::string_view TypeName(MessageType type);
@@ -71,6 +76,11 @@ WELLGYRO_EXPORT const std::string& NameOf(const Channels& channels, MessageType 
 
 /// The type that belongs on a channel; nothing when the channel is none of ours.
 WELLGYRO_EXPORT std::optional<MessageType> TypeOn(const Channels& channels, std::string_view name);
+
+/// The same of a message: a channel carries later types beside the one it was made for, told apart
+/// by their fingerprint.
+WELLGYRO_EXPORT std::optional<MessageType> TypeOn(const Channels& channels, std::string_view name,
+                                                  std::span<const std::byte> bytes);
 
 /// Throws std::invalid_argument, naming the field, when a name is empty, longer than the 63 bytes
 /// that LCM takes, holds a control character, or stands twice.

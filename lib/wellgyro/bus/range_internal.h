@@ -8,6 +8,9 @@ namespace wellgyro {
 
 inline constexpr std::int32_t kBatchMax = 1000;  ///< N_MAX of imu_batch_t and raw_batch_t
 
+inline constexpr std::int32_t kKeyMax = 128;        ///< [bytes] of a key or signature
+inline constexpr std::int32_t kContentMax = 32768;  ///< [bytes] of a signed message
+
 // Differences and sums of two times, or of two sample numbers, stay inside 64 bits.
 inline constexpr std::int64_t kUtcMaxUs = std::int64_t{4'000'000'000'000'000};  ///< year 2096
 inline constexpr std::int64_t kToolTimeMax = std::int64_t{1} << 61;             ///< [ns] 73 years

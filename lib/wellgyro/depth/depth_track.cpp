@@ -129,7 +129,7 @@ std::optional<Fault> DepthTrack::Push(const Event& event) {
     return std::nullopt;
   }
   const auto same = [&](const Shift& s) {
-    return event.event_id != 0 ? s.event_id == event.event_id
+    return event.event_id != 0 ? s.event_id == event.event_id && s.session == event.session
                                : s.event_id == 0 && s.utc == event.utc && s.seq == event.seq;
   };
   if (std::ranges::any_of(shifts_, same)) return std::nullopt;
@@ -146,6 +146,7 @@ std::optional<Fault> DepthTrack::Push(const Event& event) {
                     .seq = event.seq,
                     .value = event.has_value ? event.value_m : 0,
                     .sigma = std::abs(event.sigma_m),
+                    .session = event.session,
                     .event_id = event.event_id,
                     .offset = std::nullopt};
   const auto key = [](const Shift& s) { return std::tuple(s.utc, s.seq, s.event_id); };

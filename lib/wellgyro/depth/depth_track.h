@@ -61,7 +61,8 @@ class WELLGYRO_EXPORT DepthTrack {
   /// skipped in silence; one that is `latency` or more behind the newest is refused.
   [[nodiscard]] std::optional<Fault> Push(const DepthMark& mark);
   /// Takes a depth event, before or after the marks around it; other kinds, and an event_id seen
-  /// before, are skipped. Refused (kLate) when the marks at its time are forgotten already.
+  /// before of the session, are skipped. Refused (kLate) when the marks at its time are forgotten
+  /// already.
   [[nodiscard]] std::optional<Fault> Push(const Event& event);
 
   AlongHole At(UtcTime utc) const { return AtRest(utc, utc); }
@@ -114,7 +115,7 @@ class WELLGYRO_EXPORT DepthTrack {
     UtcTime utc;
     std::int64_t seq;
     double value, sigma;
-    std::int32_t event_id;
+    std::int32_t session, event_id;
     std::optional<double> offset;  ///< to add to the marks, once it is final
   };
 

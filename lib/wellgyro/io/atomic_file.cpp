@@ -165,4 +165,17 @@ std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
   return std::nullopt;
 }
 
+std::optional<Fault> WriteSecretFile(const std::filesystem::path& path, std::string_view bytes) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (file < 0 && errno == EEXIST) {
+    return Fault{FaultCode::kConflict, "exists; choose another name", path.string()};
+  }
+  if (file < 0) return Refused(path, "create", errno);
+  std::optional<Fault> fault = WriteAll(file, bytes, path);
+  if (!fault && ::fsync(file) != 0) fault = Refused(path, "write to disk", errno);
+  if (::close(file) != 0 && !fault) fault = Refused(path, "close", errno);
+  if (fault) ::unlink(path.c_str());
+  return fault;
+}
+
 }  // namespace wellgyro

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
@@ -23,5 +24,10 @@ struct OutputFile {
 /// removed. Gives the Fault, if any.
 WELLGYRO_EXPORT std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
                                                 std::span<const OutputFile> files);
+
+/// Writes a file that nobody but its owner can open, from its first moment on. A Fault where the
+/// name is taken, by a link too.
+WELLGYRO_EXPORT std::optional<Fault> WriteSecretFile(const std::filesystem::path& path,
+                                                     std::string_view bytes);
 
 }  // namespace wellgyro

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 namespace {
@@ -84,7 +85,7 @@ constexpr NumberRange kTilt{.min = -5, .max = 5};
 constexpr NumberRange kFraction{.min = 0, .max = 1};
 constexpr NumberRange kWhole{.min = 0, .max = std::numeric_limits<std::int32_t>::max()};
 constexpr NumberRange kPlace{.min = -1e6, .max = 1e6};
-constexpr NumberRange kDepth{.min = -1e5, .max = 1e5};
+constexpr NumberRange kDepth{.min = -limits::kMd, .max = limits::kMd};
 
 constexpr std::array kWell{
     Word("well", "name", "text", "none", "of the well, for the files"),
@@ -303,7 +304,9 @@ constexpr std::array kCable{
 
 constexpr std::array kStringAndChecks{
     Number<&Job::string, &StringSpec::sensor_below_reference>(
-        "string", "sensor_below_reference_m", 1, {.min = -100, .max = 100}, "along hole"),
+        "string", "sensor_below_reference_m", 1,
+        {.min = -limits::kSensorBelowReference, .max = limits::kSensorBelowReference},
+        "along hole"),
     Number<&Job::string, &StringSpec::sag>("string", "sag_deg", kDeg, kTilt,
                                            "of the tool axis, in a horizontal hole"),
     Number<&Job::string, &StringSpec::sigma_sag>("string", "sag_sigma_deg", kDeg,
@@ -340,6 +343,11 @@ constexpr std::array kStringAndChecks{
 };
 
 constexpr std::array kRunsAndEvents{
+    Word("operations", "unsigned_tool", "true or false", "false",
+         "with [[operator]]: whether what the tool says of itself is used unsigned"),
+    Word("operator", "name", "text", "required", "of the key, for the files"),
+    Word("operator", "public_key", "text", "required",
+         "64 hexadecimal digits, Ed25519: orders it has signed are obeyed, and no others"),
     Listed("run", "number", "whole number", {.min = 1, .max = kWhole.max}, "required",
            "of the run"),
     Word("run", "begin_utime_us", "whole number", "none", "UTC since 1970"),
@@ -420,7 +428,7 @@ std::string JobReference() {
   for (const JobKey& key : kKeys) {
     if (key.table != table) {
       table = key.table;
-      const bool list = table == "run" || table == "event";
+      const bool list = table == "run" || table == "event" || table == "operator";
       text += fmt::format("\n## {}{}{}\n\n| key | is | without it | meaning |\n|---|---|---|---|\n",
                           list ? "[[" : "[", table, list ? "]]" : "]");
     }

@@ -120,14 +120,16 @@ void RunSurvey::SetTrackerAzimuth() {
 
 /// Latitude and height follow the path, roughly: a kilometre is 1e-2 deg and 0.1 mg.
 void RunSurvey::MoveSite(const Knot& knot) {
-  if (!knot.along.known) return;
+  if (!knot.along.known || !std::isfinite(knot.along.md) || !std::isfinite(knot.inclination))
+    return;
   if (!site_md_) {
     // Where a run begins below the tie-in, the hole between counts as vertical.
     tvd_ += std::max(knot.along.md - job_.tie_in.md, 0.0);
   } else {
     const double way = knot.along.md - *site_md_;
     tvd_ += way * std::cos(knot.inclination);
-    if (filter_ && filter_->attitude().azimuth_known) {
+    const bool north = filter_ && filter_->attitude().azimuth_known;
+    if (north && std::isfinite(filter_->attitude().azimuth)) {
       north_ += way * std::sin(knot.inclination) * std::cos(filter_->attitude().azimuth);
     }
   }

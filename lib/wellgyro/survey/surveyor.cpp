@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iterator>
+#include <deque>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -13,14 +15,21 @@
 #include "wellgyro/calibration/apply.h"
 #include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/depth_track.h"
+#include "wellgyro/survey/mark_gate.h"
+#include "wellgyro/survey/plausible.h"
 #include "wellgyro/survey/run_book.h"
 #include "wellgyro/survey/tool_survey.h"
 
 namespace wellgyro {
 namespace {
 
-// A depth mark with a time so far ahead of the samples would make all others late.
-constexpr Duration kAhead = Duration::Seconds(600);
+// Marks are ahead of the samples by the depth's latency, or by what a message holds of these.
+constexpr Duration kAheadAtLeast = Duration::Seconds(1);
+// Of a batch, samples of no longer a time are used before the marks up to their end are.
+constexpr Duration kBatchPart = Duration::Seconds(0.5);
+// A tool of so many samples is there and gives way to none that is new.
+constexpr std::int64_t kEstablished = 1000;
+constexpr std::size_t kInfosMax = 4 * Surveyor::kToolsMax;
 // Of data time, between looks at which depth marks are still needed.
 constexpr Duration kForgetEvery = Duration::Seconds(16);
 
@@ -37,6 +46,10 @@ DepthTrackSetup TrackSetup(const Job& job) {
   return setup;
 }
 
+bool IsInPart(UtcTime begin, UtcTime utc) {
+  return IsWithinReach(begin) && IsWithinReach(utc) && utc - begin <= kBatchPart;
+}
+
 }  // namespace
 
 Sink::~Sink() = default;
@@ -49,6 +62,13 @@ struct Surveyor::Rooms {
         adjuster(the_adjuster),
         track(TrackSetup(job)),
         marks(job.depth.cable, track),
+        gate(
+            std::max(Duration::Seconds(job.depth.latency), kAheadAtLeast),
+            [this](const DepthMark& mark) { Use(mark); },
+            [this](const Fault& fault) {
+              ++refused.impossible;
+              sink.OnFault(fault);
+            }),
         book(job.runs) {
     for (const Event& event : job.events) Take(event);
   }
@@ -59,56 +79,113 @@ struct Surveyor::Rooms {
   DepthTrack track;
   MarksRefused refused;
   CableMarks marks;
+  MarkGate gate;
   RunBook book;
   std::map<std::int32_t, ToolSurvey> tools;
-  std::vector<Operation> operations;  ///< all so far, for a tool that is heard of later
-  std::vector<ToolInfo> infos;
+  // For a tool that is heard of later: all commands and events so far, and the last modes.
+  std::vector<Operation> operations;
+  std::deque<ToolMode> modes;
+  std::map<std::int32_t, ToolInfo> infos;                ///< the latest of each tool
   std::map<std::int32_t, SampleCalibrator> calibrators;  ///< of each tool
   std::vector<ImuSample> calibrated;                     ///< scratch
   std::int64_t forgotten_at = 0;                         ///< in kForgetEvery
-  bool finished = false;
-  std::optional<UtcTime> newest;  ///< begin of the last sample that came
+  bool finished = false, flushed = false;
+  std::int64_t most_heard = 0;  ///< samples of the tool that has most: its clock is the string's
 
   /// nullptr: one tool too many.
   ToolSurvey* Tool(std::int32_t number) {
     const auto found = tools.find(number);
     if (found != tools.end()) return &found->second;
-    if (tools.size() >= kToolsMax) {
-      sink.OnFault(Fault{FaultCode::kRange, fmt::format("tool {} is one more than {}: its messages "
-                                                        "are left out",
-                                                        number, kToolsMax)});
-      return nullptr;
-    }
+    if (tools.size() >= kToolsMax && !GiveWay(number)) return nullptr;
     ToolSurvey& tool =
         tools.try_emplace(number, job, number, track, refused, marks, book, sink, adjuster)
             .first->second;
-    for (const ToolInfo& info : infos) {
-      if (info.tool == number) tool.Push(info);
-    }
+    const auto info = infos.find(number);
+    if (info != infos.end()) tool.Push(info->second);
     for (const Operation& operation : operations) tool.Push(operation);
+    for (const ToolMode& mode : modes) tool.Push(mode);
     return &tool;
   }
 
+  /// Leaves out the tool of which least has come, for one that is new; or the new one.
+  bool GiveWay(std::int32_t number) {
+    const auto least = std::min_element(tools.begin(), tools.end(), [](auto& a, auto& b) {
+      return a.second.tally().received < b.second.tally().received;
+    });
+    const std::int64_t samples = least->second.tally().received;
+    const bool gives_way = samples < kEstablished;
+    sink.OnFault(Fault{FaultCode::kRange,
+                       fmt::format("tool {} is one more than {}: {}", number, kToolsMax,
+                                   gives_way ? fmt::format("tool {} with {} samples is left out",
+                                                           least->first, samples)
+                                             : "its messages are left out")});
+    if (gives_way) tools.erase(least);
+    return gives_way;
+  }
+
   void Take(const Operation& operation) {
-    if (operations.size() >= kOperationsMax) {
-      sink.OnFault(Fault{FaultCode::kRange, fmt::format("one command, mode or event more than {}: "
-                                                        "it is left out",
+    const auto* mode = std::get_if<ToolMode>(&operation);
+    if (mode != nullptr) {
+      modes.push_back(*mode);
+      if (modes.size() > kModesKept) modes.pop_front();
+    } else if (operations.size() >= kOperationsMax) {
+      sink.OnFault(Fault{FaultCode::kRange, fmt::format("one command or event more than {}: it is "
+                                                        "left out",
                                                         kOperationsMax)});
       return;
+    } else {
+      operations.push_back(operation);
     }
     if (const auto* event = std::get_if<Event>(&operation)) {
       if (const auto fault = track.Push(*event)) sink.OnFault(*fault);
       book.Take(*event);
     }
-    operations.push_back(operation);
     for (auto& [number, tool] : tools) tool.Push(operation);
   }
 
+  /// Whether the survey is open and `record` holds what it can hold; otherwise a Fault.
+  template <class Record>
+  bool Admits(const Record& record) {
+    if (!Open()) return false;
+    std::string why = WhyImplausible(record);
+    if (!why.empty()) sink.OnFault(Fault{FaultCode::kRange, std::move(why)});
+    return why.empty();
+  }
+
+  void Use(const DepthMark& mark) {
+    if (const auto fault = track.Push(mark)) {
+      ++(fault->code == FaultCode::kLate ? refused.late : refused.impossible);
+      sink.OnFault(*fault);
+    } else {
+      marks.Push(mark);
+    }
+  }
+
+  /// Samples of one tool, with the depth marks that waited for them.
+  void Use(ToolSurvey& tool, std::span<const ImuSample> samples) {
+    while (!samples.empty() && !finished) {
+      const UtcTime begin = samples.front().stamp.utc;
+      const auto end = std::ranges::find_if_not(
+          samples, [begin](const ImuSample& s) { return IsInPart(begin, s.stamp.utc); });
+      const auto count = std::max<std::ptrdiff_t>(end - samples.begin(), 1);
+      const auto part = samples.first(static_cast<std::size_t>(count));
+      tool.Push(part);
+      const SampleTally tally = tool.tally();
+      if (tally.newest && tally.received >= most_heard) {
+        most_heard = tally.received;
+        gate.HeardAt(*tally.newest);
+      }
+      Work(tool);
+      samples = samples.subspan(part.size());
+    }
+  }
+
   bool Open() {
-    if (finished) {
+    const bool open = !finished && !flushed;
+    if (!open) {
       sink.OnFault(Fault{FaultCode::kOrder, "a message came after the survey was finished"});
     }
-    return !finished;
+    return open;
   }
 
   /// After samples of `tool`.
@@ -129,6 +206,7 @@ struct Surveyor::Rooms {
   void Finish() {
     if (finished) return;
     finished = true;
+    gate.Close();
     std::optional<UtcTime> until;
     for (auto& [number, tool] : tools) {
       const auto asked = tool.finish_asked_at();
@@ -152,10 +230,7 @@ void Surveyor::Push(std::span<const ImuSample> batch) {
     const auto end = std::find_if(at, batch.end(), [tool](const ImuSample& sample) {
       return sample.stamp.tool != tool->tool();
     });
-    tool->Push(std::span(at, end));
-    const UtcTime last = std::prev(end)->stamp.utc;
-    if (IsWithinReach(last)) rooms_->newest = last;
-    rooms_->Work(*tool);
+    rooms_->Use(*tool, std::span(at, end));
     at = end;
   }
 }
@@ -184,29 +259,20 @@ void Surveyor::Push(const ImuSample& sample) { Push({&sample, 1}); }
 
 void Surveyor::Push(const StillWindow& window) {
   if (!rooms_->Open()) return;
+  rooms_->gate.Open();
   if (ToolSurvey* tool = rooms_->Tool(window.tool)) tool->Push(window);
 }
 
 void Surveyor::Push(const DepthMark& mark) {
   if (!rooms_->Open()) return;
-  const bool dated = rooms_->newest && IsWithinReach(mark.utc);
-  if (dated && mark.utc - *rooms_->newest > kAhead) {
+  if (std::string why = WhyImplausible(mark); !why.empty()) {
     ++rooms_->refused.impossible;
-    rooms_->sink.OnFault(Fault{FaultCode::kRange,
-                               fmt::format("a depth mark is stamped {:.0f} s ahead of the samples "
-                                           "and was left out",
-                                           (mark.utc - *rooms_->newest).seconds())});
+    rooms_->sink.OnFault(Fault{FaultCode::kRange, std::move(why)});
     return;
   }
   DepthMark told = mark;
   if (!told.sigma) told.sigma = rooms_->job.errors.depth_sigma;
-  told = Stretched(rooms_->job.depth.cable, told);
-  if (const auto fault = rooms_->track.Push(told)) {
-    ++(fault->code == FaultCode::kLate ? rooms_->refused.late : rooms_->refused.impossible);
-    rooms_->sink.OnFault(*fault);
-  } else {
-    rooms_->marks.Push(told);
-  }
+  rooms_->gate.Push(Stretched(rooms_->job.depth.cable, told));
 }
 
 void Surveyor::Push(const ToolMode& mode) {
@@ -214,22 +280,33 @@ void Surveyor::Push(const ToolMode& mode) {
 }
 
 void Surveyor::Push(const ToolInfo& info) {
-  if (!rooms_->Open()) return;
-  if (rooms_->infos.size() < kOperationsMax) rooms_->infos.push_back(info);
+  if (!rooms_->Admits(info)) return;
+  auto& infos = rooms_->infos;
+  if (infos.size() >= kInfosMax && !infos.contains(info.tool)) {
+    // One of a tool that has sent nothing else makes room.
+    std::erase_if(infos, [this](const auto& i) { return !rooms_->tools.contains(i.first); });
+  }
+  infos.insert_or_assign(info.tool, info);
   const auto tool = rooms_->tools.find(info.tool);
   if (tool != rooms_->tools.end()) tool->second.Push(info);
 }
 
 void Surveyor::Push(const Command& command) {
-  if (rooms_->Open()) rooms_->Take(command);
+  if (rooms_->Admits(command)) rooms_->Take(command);
 }
 
 void Surveyor::Push(const Event& event) {
-  if (rooms_->Open()) rooms_->Take(event);
+  if (rooms_->Admits(event)) rooms_->Take(event);
 }
 
 void Surveyor::Adjust() {
   for (auto& [number, tool] : rooms_->tools) tool.Adjust();
+}
+
+void Surveyor::Flush() {
+  if (rooms_->finished || std::exchange(rooms_->flushed, true)) return;
+  rooms_->gate.Close();
+  for (auto& [number, tool] : rooms_->tools) tool.Flush(std::nullopt);
 }
 
 void Surveyor::Finish() { rooms_->Finish(); }

@@ -58,10 +58,12 @@ struct SampleTally {
 /// Quality. Memory grows with stations and knots only (one knot a second, about 1 kB).
 class WELLGYRO_EXPORT Surveyor {
  public:
-  /// What comes beyond these is left out with a Fault.
+  /// What comes beyond these is left out with a Fault; of more tools those with the most samples
+  /// stay, of modes for a tool that is heard of later the last.
   static constexpr std::size_t kToolsMax = 256;
   static constexpr std::size_t kRunsMax = 1000;           ///< of one tool
-  static constexpr std::size_t kOperationsMax = 100'000;  ///< commands, modes and events
+  static constexpr std::size_t kOperationsMax = 100'000;  ///< commands and events
+  static constexpr std::size_t kModesKept = 1000;
 
   /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` and
   /// `adjuster` must outlive this object; without an adjuster the smoothed run is final.
@@ -83,6 +85,9 @@ class WELLGYRO_EXPORT Surveyor {
 
   /// Sends revisions from all that is known so far; changes nothing that follows.
   void Adjust();
+  /// Works off what still waits for its depth, as Finish does, and adjusts nothing: what is known
+  /// when a survey is broken off. Pushes after it are faults.
+  void Flush();
   /// The last Adjust: works off what still waits, then revises every station. Pushes after it are
   /// faults.
   void Finish();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,8 +15,8 @@
 namespace wellgyro {
 namespace {
 
-// Commands, modes and events that wait for their time; more come from a broken sender alone.
-constexpr std::size_t kDueMax = 2000;
+// Modes, and commands and events, that wait for their time; more come from a broken sender alone.
+constexpr std::ptrdiff_t kDueMax = 1000;
 // An accepted or rejected depth is typed by hand, to the decimetre at best.
 constexpr double kTypedDepth = 0.5;  // [m]
 
@@ -128,15 +129,26 @@ void ToolSurvey::TellStrays() {
                                   strays)});
 }
 
+/// Modes do not take the place of what people say. Of too many, the latest is left out; false: that
+/// is `due` itself.
+bool ToolSurvey::MakeRoom(const Due& due) {
+  const bool mode = std::holds_alternative<ToolMode>(due.operation);
+  const auto alike = [mode](const Due& d) {
+    return std::holds_alternative<ToolMode>(d.operation) == mode;
+  };
+  if (std::count_if(due_.begin(), due_.end(), alike) < kDueMax) return true;
+  sink_.OnFault(Fault{FaultCode::kRange,
+                      fmt::format("more than {} {} wait for samples of tool {}: one is left out",
+                                  kDueMax, mode ? "modes" : "commands and events", tool_)});
+  const auto last = std::find_if(due_.rbegin(), due_.rend(), alike);
+  if (!mode || last->utc <= due.utc) return false;
+  due_.erase(std::next(last).base());
+  return true;
+}
+
 void ToolSurvey::Push(const Operation& operation) {
-  if (due_.size() >= kDueMax) {
-    sink_.OnFault(Fault{FaultCode::kRange, fmt::format("more than {} commands, modes and events "
-                                                       "wait for samples of tool {}: one is left "
-                                                       "out",
-                                                       kDueMax, tool_)});
-    return;
-  }
   const Due due{TimeOf(operation), operation};
+  if (!MakeRoom(due)) return;
   const auto after = std::upper_bound(due_.begin(), due_.end(), due.utc,
                                       [](UtcTime utc, const Due& d) { return utc < d.utc; });
   due_.insert(after, due);
@@ -353,7 +365,7 @@ void ToolSurvey::Tell(RunState& run) {
     const StationState* state = draft.state ? &(*states)[*draft.state] : nullptr;
     if (std::optional<Station> station = run.provisional->Place(draft, state)) {
       station->status = StatusOf(draft, false);
-      sink_.OnStation(*station);
+      TellStation(*station);
     }
   }
 }
@@ -392,11 +404,15 @@ void ToolSurvey::Adjust() {
 
 void ToolSurvey::SendRevisions() {
   const Survey survey = Current();
-  for (const Station& station : survey.passes) sink_.OnStation(station);
+  for (const Station& station : survey.passes) TellStation(station);
 }
 
-void ToolSurvey::Finish(std::optional<UtcTime> until) {
-  if (finished_) return;
+void ToolSurvey::TellStation(const Station& station) {
+  told_.insert_or_assign(std::tuple(station.run, station.utc.ns, station.kind), station);
+  sink_.OnStation(station);
+}
+
+void ToolSurvey::Flush(std::optional<UtcTime> until) {
   queue_.Flush();
   TellStrays();
   Work(until);
@@ -406,13 +422,19 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
     run.survey->Flush();
     Tell(run);
   }
+}
+
+void ToolSurvey::Finish(std::optional<UtcTime> until) {
+  if (finished_) return;
+  Flush(until);
   const std::vector<Due> rest = std::exchange(due_, {});
   for (const Due& due : rest) {
     const auto* command = std::get_if<Command>(&due.operation);
     if (command == nullptr) Obey(due.operation);
     // One that no sample reached any more is obeyed by ending.
     if (command != nullptr && command->kind == Command::Kind::kFinish &&
-        (command->command_id == 0 || commands_.insert(command->command_id).second)) {
+        (command->command_id == 0 ||
+         commands_.insert({command->session, command->command_id}).second)) {
       sink_.OnAcknowledged(command->command_id);
     }
   }

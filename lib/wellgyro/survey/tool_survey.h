@@ -2,11 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -48,6 +51,8 @@ class ToolSurvey {
   void Push(const Operation& operation);
 
   void Adjust();
+  /// Works off what still waits. `until`: samples that begin later are not used.
+  void Flush(std::optional<UtcTime> until);
   /// `until`: samples that begin later are not used.
   void Finish(std::optional<UtcTime> until);
   std::int32_t tool() const { return tool_; }
@@ -86,6 +91,7 @@ class ToolSurvey {
   void TellClock(const SampleStamp& stamp, bool jumps, RunSummary& summary);
   void TellStrays();
   void TellWithoutDepth(const StillWindow& window);
+  bool MakeRoom(const Due& due);
   void Obey(const Operation& operation);
   void Obey(const ToolMode& mode);
   void Obey(const Event& event);
@@ -104,6 +110,8 @@ class ToolSurvey {
   std::vector<Foresight> Foresights() const;
   std::vector<Check> Checks(const std::vector<Station>& passes) const;
   void SendRevisions();
+  void TellStation(const Station& station);
+  void KeepToWhatWasTold(std::vector<Station>& stations) const;
   std::string WithoutDepth() const;
   std::string WithoutNorth(const std::vector<DraftedRun>& drafted, const Survey& survey) const;
 
@@ -127,11 +135,12 @@ class ToolSurvey {
   };
   Mended mended_;
   RunClock clock_;
-  std::int64_t strays_told_ = 0;              ///< of the queue's
-  std::optional<SampleStamp> other_;          ///< the last that came again with another content
-  ImuSample changed_;                         ///< scratch
-  std::vector<Due> due_;                      ///< not yet obeyed, by time
-  std::set<std::int32_t> commands_, events_;  ///< ids obeyed
+  std::int64_t strays_told_ = 0;      ///< of the queue's
+  std::optional<SampleStamp> other_;  ///< the last that came again with another content
+  ImuSample changed_;                 ///< scratch
+  std::vector<Due> due_;              ///< not yet obeyed, by time
+  /// Obeyed: session and id. Another console may count the same numbers.
+  std::set<std::pair<std::int32_t, std::int32_t>> commands_, events_;
   std::vector<RunState> runs_;
   std::optional<SampleStamp> last_;
   std::int64_t lost_ = 0, gaps_ = 0;  ///< samples, and places
@@ -140,6 +149,9 @@ class ToolSurvey {
   UtcTime newest_used_;
   std::optional<UtcTime> finish_asked_;
   bool finished_ = false;
+  /// As last told, by run, time and kind: of one revision a station has one position and
+  /// covariance, wherever it is read.
+  std::map<std::tuple<std::int32_t, std::int64_t, StationKind>, Station> told_;
   std::vector<Event> verdicts_;  ///< accepts and rejects, in the order in which they came
   std::vector<Event> foresights_;
   std::vector<ReturnToZero> returns_;

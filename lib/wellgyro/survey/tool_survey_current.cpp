@@ -252,6 +252,25 @@ std::string ToolSurvey::WithoutNorth(const std::vector<DraftedRun>& drafted,
       job_.alignment.min_still);
 }
 
+/// The numbers of the revision that was told; a later one brings others.
+void ToolSurvey::KeepToWhatWasTold(std::vector<Station>& stations) const {
+  for (Station& station : stations) {
+    const auto told = told_.find(std::tuple(station.run, station.utc.ns, station.kind));
+    if (told == told_.end() || told->second.revision != station.revision) continue;
+    const Station& as = told->second;
+    station.md = as.md;
+    station.inclination = as.inclination;
+    station.azimuth = as.azimuth;
+    station.toolface = as.toolface;
+    station.cov_md_inc_azi = as.cov_md_inc_azi;
+    station.p_WT_W = as.p_WT_W;
+    station.cov_p_WT_W = as.cov_p_WT_W;
+    station.dogleg_severity = as.dogleg_severity;
+    // Without the flag, the covariance of an unfit station would be a strange one.
+    if (Has(as.quality, Quality::kUnfit)) station.quality |= Quality::kUnfit;
+  }
+}
+
 Survey ToolSurvey::Current() const {
   Survey survey;
   if (runs_.empty()) {
@@ -268,6 +287,8 @@ Survey ToolSurvey::Current() const {
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);
   survey.unusable = std::move(placed.unusable);
+  KeepToWhatWasTold(survey.passes);
+  KeepToWhatWasTold(survey.chosen);
   if (survey.unusable.empty()) survey.unusable = TakeModelCovariance(job_, survey.chosen);
   survey.accepted = std::any_of(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
     return s.status == StationStatus::kDefinitive;

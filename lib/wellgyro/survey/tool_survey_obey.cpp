@@ -9,7 +9,10 @@ namespace wellgyro {
 
 bool ToolSurvey::IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const {
   if (const auto* mode = std::get_if<ToolMode>(&due.operation)) {
-    if (mode->imu_seq && mode->session == stamp.session) return *mode->imu_seq <= stamp.seq;
+    const bool waits = utc - due.utc < kHeld;  // longer no sample is on its way
+    if (waits && mode->imu_seq && mode->session == stamp.session) {
+      return *mode->imu_seq <= stamp.seq;
+    }
   }
   return due.utc <= utc;
 }
@@ -53,7 +56,7 @@ void ToolSurvey::Obey(const ToolMode& mode) {
 }
 
 void ToolSurvey::Obey(const Event& event) {
-  if (event.event_id != 0 && !events_.insert(event.event_id).second) return;
+  if (event.event_id != 0 && !events_.insert({event.session, event.event_id}).second) return;
   const std::int32_t run = book_.RunAt(event.utc, event.run);
   switch (event.kind) {
     case Event::Kind::kAccept:
@@ -77,7 +80,8 @@ void ToolSurvey::Obey(const Event& event) {
 }
 
 void ToolSurvey::Obey(const Command& command) {
-  if (command.command_id != 0 && !commands_.insert(command.command_id).second) return;
+  const auto key = std::pair(command.session, command.command_id);
+  if (command.command_id != 0 && !commands_.insert(key).second) return;
   switch (command.kind) {
     case Command::Kind::kTakeStation:
       if (!runs_.empty()) runs_.back().survey->TakeStation(command.md);

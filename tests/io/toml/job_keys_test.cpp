@@ -32,6 +32,9 @@ std::vector<std::string> Jobs() {
           "alignment = {method = 'external', azimuth_true_deg = 1, sigma_azimuth_deg = 1}\n"
           "depth.cable = {}\nstring = {}\nacceptance = {}\n"
           "magnetic = {declination_deg = 1, sigma_deg = 1}\nrun = [{number = 1}]\n"
+          "operations = {}\noperator = [{name = 'a', public_key = '" +
+          std::string(64, '0') +
+          "'}]\n"
           "event = [{utime_us = 1, event = 'remark'}]\n",
       kHead + kWell + "grid = {projection = 'polar_stereographic', pole = 'north'}\n",
       kHead + kWell + "[tool]\n",

@@ -225,6 +225,24 @@ void WriteFault(TomlWriter& toml, const Fault& fault) {
   toml.Text("text", fault.text);
 }
 
+void WriteOperations(TomlWriter& toml, const RunRecord& record) {
+  if (record.operations_obeyed + record.operations_refused == 0) return;
+  toml.Table("operations");
+  toml.Whole("obeyed", record.operations_obeyed);
+  toml.Whole("refused", record.operations_refused);
+  for (const OperationRecord& operation : record.operations) {
+    toml.Element("operation");
+    toml.Text("key", operation.key);
+    toml.Whole("session", operation.session);
+    toml.Whole("id", operation.id);
+    toml.Whole("utime_us", operation.utc.ns / 1000);
+    toml.Text("kind", operation.kind);
+    if (!operation.who.empty()) toml.Text("who", operation.who);
+    toml.Flag("obeyed", operation.obeyed);
+    toml.Text("effect", operation.effect);
+  }
+}
+
 void WriteClock(TomlWriter& toml, const RunRecord& record) {
   const StopMatch& clock = *record.clock;
   toml.Table("clock_by_stops");
@@ -293,6 +311,7 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   WriteRuns(toml, survey.runs);
   if (record.clock) WriteClock(toml, record);
   WriteTools(toml, record.tools);
+  WriteOperations(toml, record);
   WriteChannels(toml, record.channels);
   for (const OutputFile& output : outputs) {
     toml.Element("output");

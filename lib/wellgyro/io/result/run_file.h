@@ -14,6 +14,7 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/record/operations.h"
+#include "wellgyro/record/signed_operation.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/survey.h"
 
@@ -35,8 +36,10 @@ struct RunRecord {
   std::optional<StopMatch> clock;           ///< of the tool, by its stops
   std::optional<double> stamps_less_stops;  ///< the samples' own UTC less that [s]
   std::vector<ChannelRecord> channels;
-  std::vector<ToolInfo> tools;  ///< as the tools said
-  std::vector<Fault> faults;    ///< of the surveyor, none of the source
+  std::vector<ToolInfo> tools;              ///< as the tools said
+  std::vector<Fault> faults;                ///< of the surveyor, none of the source
+  std::vector<OperationRecord> operations;  ///< what people ordered; the first of many
+  std::int64_t operations_obeyed = 0, operations_refused = 0;
   /// Files of the chosen survey that others read, besides survey.csv.
   std::vector<SurveyFormat> formats;
 };

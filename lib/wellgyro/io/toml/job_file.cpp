@@ -77,6 +77,7 @@ class JobReader {
     if (auto table = root.FindTable("string")) ReadNumbers(*table, "string", job);
     if (auto table = root.FindTable("magnetic")) ReadMagnetic(*table, job);
     if (auto table = root.FindTable("acceptance")) ReadNumbers(*table, "acceptance", job);
+    file_.operations = ReadOperations(root);
     TakeRuns(root);
     for (const TomlTable& table : root.FindTables("event")) job.events.push_back(ReadEvent(table));
     return std::move(file_);

@@ -7,6 +7,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/text_file.h"
+#include "wellgyro/record/signed_operation.h"
 #include "wellgyro/survey/job.h"
 
 namespace wellgyro {
@@ -15,6 +16,7 @@ namespace wellgyro {
 struct JobFile {
   Job job;
   std::vector<InputFile> files;  ///< the job itself first
+  OperationSpec operations;      ///< whose orders are obeyed
 };
 
 /// Reads a job, `format = "wellgyro.job/1"`, and the files it names, relative to its own folder.

@@ -15,6 +15,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/signature.h"
 #include "wellgyro/io/toml/job_numbers_internal.h"
 #include "wellgyro/io/words.h"
 
@@ -250,6 +251,23 @@ void ReadMagnetic(TomlTable table, Job& job) {
   NeedNumber(table, "magnetic", "declination_deg", job);
   NeedNumber(table, "magnetic", "sigma_deg", job);
   table.Read("tie", spec.tie);
+}
+
+OperationSpec ReadOperations(TomlTable& root) {
+  OperationSpec spec;
+  if (auto table = root.FindTable("operations")) {
+    spec.unsigned_tool = table->FindBool("unsigned_tool").value_or(false);
+  }
+  for (TomlTable& table : root.FindTables("operator")) {
+    OperatorKey& key = spec.keys.emplace_back();
+    key.name = table.Need("name", table.FindString("name"));
+    const auto bytes = BytesOfHex(table.Need("public_key", table.FindString("public_key")));
+    if (!bytes || bytes->size() != kPublicKeySize) {
+      table.Refuse("public_key", "must be the 64 hexadecimal digits of an Ed25519 public key");
+    }
+    key.key = *bytes;
+  }
+  return spec;
 }
 
 RunSpec ReadRun(TomlTable table) {

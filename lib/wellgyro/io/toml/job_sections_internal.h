@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "wellgyro/io/toml/toml_internal.h"
+#include "wellgyro/record/signed_operation.h"
 #include "wellgyro/survey/job.h"
 
 /// The sections of a job file, one function each; every one reads all keys of its table. Numbers
@@ -21,6 +22,8 @@ AttitudeSpec ReadAttitude(TomlTable table);
 void ReadStations(TomlTable table, Job& job);
 void ReadDepth(TomlTable table, Job& job);
 void ReadMagnetic(TomlTable table, Job& job);
+/// [operations] and each [[operator]].
+OperationSpec ReadOperations(TomlTable& root);
 RunSpec ReadRun(TomlTable table);
 Event ReadEvent(TomlTable table);
 

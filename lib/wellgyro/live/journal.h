@@ -5,10 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/toml/job_file.h"
 
-namespace wellgyro::apps {
+namespace wellgyro {
 
 /// What a live survey needs besides its log to be continued: journal.toml in its --out.
 struct Journal {
@@ -30,4 +31,4 @@ Result<Journal> ReadJournal(const std::filesystem::path& folder, const Journal& 
 /// Removes what a killed program was about to put in place.
 void RemovePartials(const std::filesystem::path& folder);
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

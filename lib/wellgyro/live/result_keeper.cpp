@@ -1,4 +1,4 @@
-#include "result_keeper.h"
+#include "wellgyro/live/result_keeper.h"
 
 #include <chrono>
 #include <exception>
@@ -8,11 +8,10 @@
 
 #include "wellgyro/io/atomic_file.h"
 
-#include "report.h"
+namespace wellgyro {
 
-namespace wellgyro::apps {
-
-ResultKeeper::ResultKeeper(const Job& job) : job_(job), thread_([this] { Work(); }) {}
+ResultKeeper::ResultKeeper(const Job& job, Notices& notices)
+    : job_(job), notices_(notices), thread_([this] { Work(); }) {}
 
 ResultKeeper::~ResultKeeper() { End(); }
 
@@ -30,6 +29,11 @@ bool ResultKeeper::idle() const {
 bool ResultKeeper::failing() const {
   const std::lock_guard lock(mutex_);
   return failing_;
+}
+
+std::optional<RunVerdict> ResultKeeper::kept() const {
+  const std::lock_guard lock(mutex_);
+  return kept_;
 }
 
 void ResultKeeper::End() {
@@ -70,11 +74,12 @@ void ResultKeeper::Work() {
     lock.lock();
     writing_ = false;
     if (fault && !failing_) {
-      Complain(*fault);
-      Complain("the survey goes on; its files are tried again every second");
+      notices_.Say(*fault);
+      notices_.Say("the survey goes on; its files are tried again every second");
     }
-    if (!fault && failing_) Complain("the survey's files are up to date again");
+    if (!fault && failing_) notices_.Say("the survey's files are up to date again");
     failing_ = fault.has_value();
+    if (!failing_ && AnyUsable(snapshot.tools)) kept_ = WorstVerdict(snapshot.tools);
     if (!failing_ || ending_ || waiting_) continue;
     // The disk is full or the folder is gone: what could not be written is not lost.
     woken_.wait_for(lock, std::chrono::seconds(1), [this] { return ending_ || waiting_; });
@@ -82,4 +87,4 @@ void ResultKeeper::Work() {
   }
 }
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

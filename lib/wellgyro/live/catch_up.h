@@ -8,14 +8,18 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "wellgyro/base/export.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/message.h"
 #include "wellgyro/bus/splice.h"
+#include "wellgyro/live/clock.h"
+#include "wellgyro/live/notices.h"
 #include "wellgyro/record/channels.h"
 
-namespace wellgyro::apps {
+namespace wellgyro {
 
 /// A message with its own storage.
 struct HeldMessage {
@@ -26,14 +30,15 @@ struct HeldMessage {
 
 /// Brings a survey that was cut off up to the live stream: its own log first, then what other
 /// recorders have beyond that, then what the bus has brought meanwhile, each message once.
-class CatchUp {
+class WELLGYRO_EXPORT CatchUp {
  public:
   /// `fresh`: the message is in no log of ours yet.
   using Use = std::function<void(std::string_view channel, std::span<const std::byte> bytes,
                                  std::int64_t received_us, bool fresh)>;
 
-  /// `channels` must outlive this object.
-  CatchUp(const Channels& channels, Use use) : channels_(channels), use_(std::move(use)) {}
+  /// All but `use` must outlive this object.
+  CatchUp(const Channels& channels, const LiveClock& clock, Notices& notices, Use use)
+      : channels_(channels), clock_(clock), notices_(notices), use_(std::move(use)) {}
 
   /// The log that the survey itself wrote. Of other logs what they heard before `begun_us` is left
   /// out: the survey did not listen yet.
@@ -57,6 +62,8 @@ class CatchUp {
   void Join();
 
   const Channels& channels_;
+  const LiveClock& clock_;
+  Notices& notices_;
   Use use_;
   Splice splice_;
   std::int64_t begun_us_ = 0;
@@ -66,4 +73,4 @@ class CatchUp {
   std::deque<HeldMessage> held_;
 };
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

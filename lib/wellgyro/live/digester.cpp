@@ -1,8 +1,8 @@
-#include "digester.h"
+#include "wellgyro/live/digester.h"
 
 #include <utility>
 
-namespace wellgyro::apps {
+namespace wellgyro {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;
@@ -66,4 +66,4 @@ void Digester::Work() {
   }
 }
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

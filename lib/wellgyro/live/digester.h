@@ -9,14 +9,15 @@
 #include <thread>
 #include <vector>
 
+#include "wellgyro/base/export.h"
 #include "wellgyro/bus/message.h"
 #include "wellgyro/io/sha256.h"
 
-namespace wellgyro::apps {
+namespace wellgyro {
 
 /// SHA-256 of the messages of each type, one after the other, made in a thread of its own: at full
 /// speed hashing would take as long as surveying.
-class Digester {
+class WELLGYRO_EXPORT Digester {
  public:
   Digester();
   ~Digester();
@@ -48,4 +49,4 @@ class Digester {
   std::thread thread_;
 };
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

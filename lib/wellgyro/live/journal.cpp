@@ -1,4 +1,4 @@
-#include "journal.h"
+#include "wellgyro/live/journal.h"
 
 #include <charconv>
 #include <string_view>
@@ -9,7 +9,7 @@
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/text_file.h"
 
-namespace wellgyro::apps {
+namespace wellgyro {
 namespace {
 
 constexpr const char* kName = "journal.toml";
@@ -75,4 +75,4 @@ void RemovePartials(const std::filesystem::path& folder) {
   for (const auto& path : partials) std::filesystem::remove(path, error);
 }
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

@@ -8,12 +8,13 @@
 #include <thread>
 #include <vector>
 
+#include "wellgyro/base/export.h"
 #include "wellgyro/io/result/run_file.h"
+#include "wellgyro/live/notices.h"
+#include "wellgyro/live/results.h"
 #include "wellgyro/survey/job.h"
 
-#include "delivery.h"
-
-namespace wellgyro::apps {
+namespace wellgyro {
 
 /// A survey at one moment, for its files.
 struct Snapshot {
@@ -25,10 +26,10 @@ struct Snapshot {
 
 /// Keeps the files of a running survey up to date from a thread of its own, so that neither a slow
 /// disk nor a full one holds up the stream. Every file is whole at every moment.
-class ResultKeeper {
+class WELLGYRO_EXPORT ResultKeeper {
  public:
-  /// `job` must outlive this object.
-  explicit ResultKeeper(const Job& job);
+  /// Both must outlive this object.
+  ResultKeeper(const Job& job, Notices& notices);
   ~ResultKeeper();
   ResultKeeper(const ResultKeeper&) = delete;
   ResultKeeper& operator=(const ResultKeeper&) = delete;
@@ -38,6 +39,8 @@ class ResultKeeper {
   /// Nothing is being written or waits to be, and the last writing went well.
   bool idle() const;
   bool failing() const;
+  /// The verdict in the files, the worst of the tools'; nothing: no survey has been written.
+  std::optional<RunVerdict> kept() const;
 
   /// Ends the thread after what it is writing, leaving out what waits.
   void End();
@@ -49,13 +52,15 @@ class ResultKeeper {
   void Work();
 
   const Job& job_;
+  Notices& notices_;
   mutable std::mutex mutex_;
   std::condition_variable woken_;
   std::optional<Snapshot> waiting_;
   bool writing_ = false;
   bool failing_ = false;
   bool ending_ = false;
+  std::optional<RunVerdict> kept_;
   std::thread thread_;
 };
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

@@ -1,4 +1,4 @@
-#include "catch_up.h"
+#include "wellgyro/live/catch_up.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,10 +8,7 @@
 
 #include "wellgyro/bus/log_reader.h"
 
-#include "live.h"
-#include "report.h"
-
-namespace wellgyro::apps {
+namespace wellgyro {
 namespace {
 
 constexpr std::int64_t kPatienceUs = 10'000'000;  // for a recorder's log to reach the live stream
@@ -129,7 +126,7 @@ Result<std::int64_t> CatchUp::ReadOn(Follower& log) {
 }
 
 Result<bool> CatchUp::Follow(LiveBus& bus, Follower& log) {
-  const std::int64_t begin = MonotonicUs();
+  const std::int64_t begin = clock_.monotonic_us();
   std::int64_t last_news = begin;
   for (;;) {
     const auto count = ReadOn(log);
@@ -139,12 +136,12 @@ Result<bool> CatchUp::Follow(LiveBus& bus, Follower& log) {
     if (!woken) return woken.fault();
     if (*woken == LiveBus::Woken::kStopped) return true;
     if (Joint()) return false;
-    const std::int64_t now = MonotonicUs();
+    const std::int64_t now = clock_.monotonic_us();
     if (*count > 0 || held_.size() > held_before) last_news = now;
     if (held_.empty() && now - last_news > kQuietUs) return false;
     if (now - begin < kPatienceUs) continue;
-    Complain(fmt::format("{} does not reach the live stream: what was sent between may be lost",
-                         log.path));
+    notices_.Say(fmt::format("{} does not reach the live stream: what was sent between may be lost",
+                             log.path));
     return false;
   }
 }
@@ -168,4 +165,4 @@ Result<bool> CatchUp::FillAndJoin(LiveBus& bus, const std::vector<std::string>& 
   return stopped;
 }
 
-}  // namespace wellgyro::apps
+}  // namespace wellgyro

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/record/channels.h"
+
+namespace wellgyro {
+
+/// Where a survey says how it stands, once a second, for screens: beside its status, under that
+/// channel's name with _GLANCE behind it.
+WELLGYRO_EXPORT std::string GlanceChannel(const Channels& channels);
+
+}  // namespace wellgyro

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace wellgyro {
+
+/// The clocks of the program that runs a live session: the library itself reads none, so that a
+/// test may give it any time. Both are called from several threads.
+struct LiveClock {
+  std::function<std::int64_t()> utc_us;        ///< since 1970 [us]
+  std::function<std::int64_t()> monotonic_us;  ///< for lengths of time [us]
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,55 @@
+#include "wellgyro/live/notices.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace wellgyro {
+namespace {
+
+constexpr std::int64_t kToldAtOnce = 10;
+constexpr std::int64_t kSecond = 1'000'000;
+
+}  // namespace
+
+std::string SentenceOf(const Fault& fault) {
+  // Some texts name their file themselves.
+  const bool named = !fault.source.empty() && fault.text.starts_with(fault.source);
+  std::string place = named ? std::string() : fault.source;
+  if (fault.line > 0) place += fmt::format(":{}", fault.line);
+  if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
+  if (fault.offset >= 0) place += fmt::format("{}byte {}", place.empty() ? "" : ", ", fault.offset);
+  return place.empty() ? fault.text : place + ": " + fault.text;
+}
+
+std::string Printable(std::string_view text) {
+  std::string printable;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    printable += byte >= 0x20 && byte < 0x7f ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+  }
+  return printable;
+}
+
+void Notices::Say(std::string_view sentence) {
+  const std::lock_guard lock(mutex_);
+  observer_.OnNotice(sentence);
+}
+
+void Notices::Tell(const Fault& fault) {
+  const std::lock_guard lock(mutex_);
+  Count& count = counts_[fault.code];
+  const std::int64_t now = clock_.monotonic_us();
+  if (count.told >= kToldAtOnce && now - count.last_us < kSecond) {
+    ++count.untold;
+    return;
+  }
+  observer_.OnNotice(SentenceOf(fault));
+  if (const std::int64_t untold = std::exchange(count.untold, 0); untold > 0) {
+    observer_.OnNotice(fmt::format("and {} more of this kind before", untold));
+  }
+  ++count.told;
+  count.last_us = now;
+}
+
+}  // namespace wellgyro

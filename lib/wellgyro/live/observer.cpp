@@ -1,0 +1,7 @@
+#include "wellgyro/live/observer.h"
+
+namespace wellgyro {
+
+LiveObserver::~LiveObserver() = default;
+
+}  // namespace wellgyro

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+#include "wellgyro/record/glance.h"
+#include "wellgyro/record/station.h"
+#include "wellgyro/record/status.h"
+#include "wellgyro/record/verdict.h"
+
+namespace wellgyro {
+
+/// Status::text of a session that hears and says nothing else for the moment.
+inline constexpr std::string_view kBusy = "busy adjusting or catching up";
+
+/// Who wants to hear how a live session gets on. Override what you want to hear. Calls come one at
+/// a time, but from several threads, while the session runs: they must not wait for it.
+class WELLGYRO_EXPORT LiveObserver {
+ public:
+  virtual ~LiveObserver();
+  virtual void OnNotice(std::string_view /*sentence*/) {}  ///< for the person on the rig
+  virtual void OnStation(const Station& /*station*/) {}    ///< as sent
+  virtual void OnStatus(const Status& /*status*/) {}       ///< once a second
+  virtual void OnGlance(const Glance& /*glance*/) {}       ///< once a second
+  /// Stop was called and the session does not come to an end, because an adjustment takes long. The
+  /// files in its folder are whole and nothing writes to them any more: the program may end here.
+  /// `kept`: their verdict, the worst of the tools'; nothing: they hold no survey yet.
+  virtual void OnStuck(const std::optional<RunVerdict>& /*kept*/) {}
+};
+
+}  // namespace wellgyro

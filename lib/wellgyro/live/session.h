@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+#include "wellgyro/bus/lcm_live.h"
+#include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/result/run_file.h"
+#include "wellgyro/io/toml/job_file.h"
+#include "wellgyro/live/clock.h"
+#include "wellgyro/live/observer.h"
+#include "wellgyro/live/results.h"
+#include "wellgyro/survey/run_adjuster.h"
+
+namespace wellgyro {
+
+/// What a live session is asked to do.
+struct LiveSetup {
+  JobFile job;
+  std::string url = kDefaultLcmUrl;
+  std::string out;                ///< folder of the result
+  std::string record = {};        ///< log of what is heard; empty: none
+  bool resume = false;            ///< continues what was cut off, from `record`
+  std::vector<std::string> fill;  ///< with resume: other recorders' logs
+  std::vector<SurveyFormat> formats;
+  Maker maker = {"wellgyro", "none"};
+  LiveClock clock;
+};
+
+/// How a session came to its end, and what is in its folder then.
+struct LiveOutcome {
+  enum class Ended { kFinished, kInterrupted, kBusLost };
+  Ended ended = Ended::kFinished;
+  std::vector<ToolResult> tools;  ///< one at least
+  RunRecord record;
+  SourceRecord source;
+  std::optional<Fault> fault;      ///< the files could not be written
+  std::vector<std::string> hints;  ///< what the job might lack
+  bool recording_is_whole = true;  ///< what was used is in the log
+
+  bool usable() const;  ///< of one tool at least
+  bool losses() const;
+};
+
+/// A survey of a live stream: hears, records, surveys, publishes stations and status, and keeps the
+/// files in its folder whole at every moment. What it makes is what the recording gives when it is
+/// surveyed, to the byte; killed at any instant, it resumes from the recording.
+///
+/// A session holds its folder and its log for itself (FileLock). It ends with FINISH, whose samples
+/// may stay out for five seconds, with Stop, or when the bus is gone. One thread runs it; two more
+/// write files and watch that the status goes on while the survey is adjusted.
+class WELLGYRO_EXPORT LiveSession {
+ public:
+  /// Listens from here on. `observer` and `adjuster`, which may be null, must outlive the session.
+  /// A Fault says what to do: nothing has been written then. Throws std::invalid_argument when the
+  /// job makes no sense.
+  static Result<std::unique_ptr<LiveSession>> Open(LiveSetup setup, const RunAdjuster* adjuster,
+                                                   LiveObserver& observer);
+  ~LiveSession();
+  LiveSession(const LiveSession&) = delete;
+  LiveSession& operator=(const LiveSession&) = delete;
+
+  const LiveBus& bus() const;
+
+  /// Until the end; once.
+  LiveOutcome Run();
+  /// Ends Run within two seconds, or calls LiveObserver::OnStuck. For signal handlers too.
+  void Stop() noexcept;
+
+ private:
+  struct Core;
+  explicit LiveSession(std::unique_ptr<Core> core);
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+
+/// What values from outside can be at most, whether they come in a message, in the job or from a
+/// vendor's program. Beyond it they are refused, so that nothing that follows has to ask again.
+namespace wellgyro::limits {
+
+inline constexpr double kMd = 1e5;                    ///< along hole, either sign [m]
+inline constexpr double kSensorBelowReference = 100;  ///< either sign [m]
+inline constexpr double kSigma = 1e3;                 ///< of a depth [m] or an angle [rad]
+inline constexpr double kSpeed = 100;                 ///< of a string, either sign [m/s]
+inline constexpr double kDuration = 1e6;              ///< that a command asks for [s]
+inline constexpr double kAngle = 100;                 ///< of a direction, either sign [rad]
+inline constexpr double kSeconds = 4e9;               ///< UTC since 1970: year 2096; sums fit [s]
+inline constexpr std::size_t kText = 4096;            ///< of one text [bytes]
+
+}  // namespace wellgyro::limits

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "wellgyro/base/result.h"
+#include "wellgyro/base/time.h"
+#include "wellgyro/record/depth_mark.h"
+
+namespace wellgyro {
+
+/// Keeps a depth mark that is ahead of everything else in time until the samples get there, so that
+/// one wrong time does not make every true mark late. What waits is handed on in the order of time;
+/// a mark that kOthers others have overtaken contradicts them and is told. Nothing is lost by a
+/// stream that is merely ahead of the samples.
+class MarkGate {
+ public:
+  static constexpr int kOthers = 10;
+  static constexpr std::size_t kAsideMax = 10'000;
+
+  using Use = std::function<void(const DepthMark&)>;
+  using Tell = std::function<void(const Fault&)>;
+
+  /// `ahead`: by so much a mark may be ahead of the newest sample and mark.
+  MarkGate(Duration ahead, Use use, Tell tell)
+      : ahead_(ahead), use_(std::move(use)), tell_(std::move(tell)) {}
+
+  void Push(const DepthMark& mark);
+  /// Samples that are believed have come up to this time.
+  void HeardAt(UtcTime utc);
+  /// Hands on everything that waits for a first sample: averages at rest ask for their depth now.
+  void Open();
+  /// The end: what is still ahead is told.
+  void Close();
+
+ private:
+  struct Aside {
+    DepthMark mark;
+    int overtaken = 0;
+  };
+  bool IsAhead(UtcTime utc) const;
+  void Pass(const DepthMark& mark);
+  void Release(UtcTime utc);
+  void Overtake();
+  void TellOf(const DepthMark& mark);
+
+  Duration ahead_;
+  Use use_;
+  Tell tell_;
+  bool open_ = false;  ///< before the first sample too
+  std::optional<UtcTime> heard_, passed_;
+  std::multimap<UtcTime, Aside> aside_;  ///< by time
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,166 @@
+// A live session as a vendor's program runs it: over multicast, in this process.
+#include "wellgyro/live/session.h"
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "wellgyro/bus/encode.h"
+
+#include "bus/multicast.h"
+#include "bus/simulated_messages.h"
+#include "support/scratch.h"
+#include "support/small_hole.h"
+
+namespace wellgyro {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::int64_t Micros(auto now) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(now.time_since_epoch()).count();
+}
+
+/// What the session tells, from whichever thread.
+struct Observer : LiveObserver {
+  void OnNotice(std::string_view sentence) override { said.emplace_back(sentence); }
+  void OnStation(const Station&) override { ++stations; }
+  void OnStatus(const Status& status) override {
+    ++statuses;
+    busy += status.text.starts_with("busy") ? 1 : 0;
+  }
+  void OnStuck(const std::optional<RunVerdict>& what) override {
+    kept = what;
+    stuck_us = Micros(std::chrono::steady_clock::now());
+  }
+  std::optional<RunVerdict> kept;
+  std::vector<std::string> said;
+  std::atomic<int> stations = 0, statuses = 0, busy = 0;
+  std::atomic<std::int64_t> stuck_us = 0;
+};
+
+/// Takes its time, as the adjustment of a long run does.
+struct SlowAdjuster : RunAdjuster {
+  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment>,
+                     double) const override {
+    ++begun;
+    while (!release) std::this_thread::sleep_for(milliseconds(20));
+    return Smooth(history);
+  }
+  mutable std::atomic<int> begun = 0;
+  std::atomic<bool> release = false;
+};
+
+class Session : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string lacks = test::NoMulticast(port_); !lacks.empty()) GTEST_SKIP() << lacks;
+    setup_.job.job = JobOf(hole_);
+    setup_.url = "udpm://239.255.76.67:" + std::to_string(port_);
+    setup_.out = (scratch_.path() / "out").string();
+    setup_.clock = {[] { return Micros(std::chrono::system_clock::now()); },
+                    [] { return Micros(std::chrono::steady_clock::now()); }};
+  }
+
+  /// Sends the run, slowly enough for one thread.
+  void Send(LiveBus& bus, bool finish) {
+    int sent = 0;
+    test::ForEachMessage(SimulationOf(hole_), [&](const auto& channel, auto bytes, std::int64_t) {
+      ASSERT_FALSE(bus.Publish(channel, bytes));
+      if (++sent % 20 == 0) std::this_thread::sleep_for(milliseconds(1));
+    });
+    if (finish) Order(bus, Command::Kind::kFinish);
+  }
+  void Order(LiveBus& bus, Command::Kind kind) {
+    Command command;
+    command.utc = SimulationOf(hole_).streams.begin_utc + Duration::Seconds(1e5);
+    command.command_id = 1;
+    command.kind = kind;
+    std::vector<std::byte> bytes;
+    Encode(command, bytes);
+    ASSERT_FALSE(bus.Publish("WELLGYRO_CMD", bytes));
+  }
+
+  testing::SmallHole hole_{.to_md = 100};
+  std::uint16_t port_ = static_cast<std::uint16_t>(20'000 + getpid() % 40'000);
+  support::Scratch scratch_;
+  LiveSetup setup_;
+  Observer observer_;
+};
+
+TEST_F(Session, SurveysRecordsAndResumesInTheSameFolder) {
+  setup_.record = (scratch_.path() / "heard.lcm").string();
+  auto speaking = LiveBus::Open(setup_.url);
+  ASSERT_TRUE(speaking);
+  {
+    auto session = LiveSession::Open(setup_, nullptr, observer_);
+    ASSERT_TRUE(session) << session.fault().text;
+    std::thread sender([&] {
+      Send(*speaking, false);
+      std::this_thread::sleep_for(milliseconds(500));
+      (*session)->Stop();
+    });
+    const LiveOutcome outcome = (*session)->Run();
+    sender.join();
+    EXPECT_EQ(outcome.ended, LiveOutcome::Ended::kInterrupted);
+    EXPECT_TRUE(outcome.usable());
+  }
+  setup_.resume = true;
+  auto session = LiveSession::Open(setup_, nullptr, observer_);
+  ASSERT_TRUE(session) << session.fault().text;
+  std::thread sender([&] {
+    std::this_thread::sleep_for(milliseconds(300));
+    Order(*speaking, Command::Kind::kFinish);
+  });
+  const LiveOutcome outcome = (*session)->Run();
+  sender.join();
+  EXPECT_EQ(outcome.ended, LiveOutcome::Ended::kFinished);
+  EXPECT_FALSE(outcome.fault);
+  ASSERT_TRUE(outcome.usable());
+  EXPECT_EQ(outcome.record.operations.size(), 1u);
+  EXPECT_GT(observer_.stations, 5);
+}
+
+TEST_F(Session, AFolderHasOneSession) {
+  auto session = LiveSession::Open(setup_, nullptr, observer_);
+  ASSERT_TRUE(session) << session.fault().text;
+  Observer other;
+  const auto second = LiveSession::Open(setup_, nullptr, other);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.fault().text.find("another wellgyro"), std::string::npos);
+}
+
+TEST_F(Session, WhileItAdjustsItsStatusGoesOnAndAStopIsHeeded) {
+  SlowAdjuster adjuster;
+  auto session = LiveSession::Open(setup_, &adjuster, observer_);
+  ASSERT_TRUE(session) << session.fault().text;
+  auto speaking = LiveBus::Open(setup_.url);
+  std::thread runner([&] { (*session)->Run(); });
+  Send(*speaking, true);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (adjuster.begun == 0 && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  ASSERT_GT(adjuster.begun, 0) << "FINISH was not obeyed";
+  std::this_thread::sleep_for(milliseconds(3500));
+  EXPECT_GE(observer_.busy, 2);
+  const std::int64_t stop = Micros(std::chrono::steady_clock::now());
+  (*session)->Stop();
+  std::this_thread::sleep_for(milliseconds(2200));
+  EXPECT_GT(observer_.stuck_us, 0) << "nobody was told";
+  EXPECT_LT(observer_.stuck_us - stop, 2'000'000);
+  EXPECT_TRUE(observer_.kept) << "files were written before the adjustment";
+  adjuster.release = true;
+  runner.join();
+}
+
+}  // namespace
+}  // namespace wellgyro
