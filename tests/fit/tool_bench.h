@@ -50,8 +50,8 @@ struct ThermalTool {
   }
   Eigen::Vector4d Gyro(const Eigen::Vector3d& w, const Eigen::Vector3d& f, double tau,
                        double dTdt) const {
-    Eigen::Vector4d m = bg[0] + tau * (bg[1] + tau * (bg[2] + tau * bg[3])) + U * w +
-                        heating * dTdt;
+    Eigen::Vector4d m =
+        bg[0] + tau * (bg[1] + tau * (bg[2] + tau * bg[3])) + U * w + heating * dTdt;
     const Eigen::Vector4d mq = MQ[0] + tau * MQ[1];
     m[0] += mq[0] * f.x() + mq[1] * f.y() + N[0] * f.x() * f.z();
     m[1] += mq[0] * f.y() - mq[1] * f.x() + N[1] * f.y() * f.z();
@@ -62,11 +62,11 @@ struct ThermalTool {
 };
 
 struct ThermalBench {
-  double latitude = 60;         ///< stated [deg]
-  double latitude_error = 0;    ///< true less stated [rad]
-  Eigen::Vector3d level[2];     ///< turn of each positions' table: about north, east, down [rad]
-  Eigen::Vector2d seat[3];      ///< of the tool on the rate table, by axis [rad]
-  Eigen::Vector4d drift[2];     ///< from the middle to the end of a positions' table [deg/h]
+  double latitude = 60;       ///< stated [deg]
+  double latitude_error = 0;  ///< true less stated [rad]
+  Eigen::Vector3d level[2];   ///< turn of each positions' table: about north, east, down [rad]
+  Eigen::Vector2d seat[3];    ///< of the tool on the rate table, by axis [rad]
+  Eigen::Vector4d drift[3];   ///< from the middle to the end of a table [deg/h]
   double wobble = 20 * kRad / 3600;
   double sigma_accel = 2e-5, sigma_gyro = 0.02, sigma_table = 0.5;
 
@@ -76,7 +76,9 @@ struct ThermalBench {
     for (int table = 0; table < 2; ++table) {
       bench.level[table] = kRad * Eigen::Vector3d(0.3 * random.Normal(), 0.3 * random.Normal(),
                                                   0.5 * random.Normal());
-      for (double& d : bench.drift[table]) d = 0.1 * random.Normal();
+    }
+    for (Eigen::Vector4d& drift : bench.drift) {
+      for (double& d : drift) d = 0.1 * random.Normal();
     }
     for (Eigen::Vector2d& seat : bench.seat) {
       seat = 1.5e-4 * Eigen::Vector2d(random.Normal(), random.Normal());
@@ -86,17 +88,16 @@ struct ThermalBench {
 };
 
 inline Eigen::Matrix3d TurnBy(const Eigen::Vector3d& e) {
-  return e.norm() > 0
-             ? Eigen::AngleAxisd(e.norm(), e.normalized()).toRotationMatrix()
-             : Eigen::Matrix3d::Identity();
+  return e.norm() > 0 ? Eigen::AngleAxisd(e.norm(), e.normalized()).toRotationMatrix()
+                      : Eigen::Matrix3d::Identity();
 }
 
 /// `n` positions spread over all attitudes in any order, the temperature on a ramp between `cold`
 /// and `hot`, two minutes each.
 inline BenchTable ThermalPositions(const ThermalTool& tool, const ThermalBench& bench, int which,
                                    int n, double cold, double hot, Random& random) {
-  TableMaker table({"t_s", "T_C", "inc", "az", "tf", "Gx", "Gy", "Gz", "m_x1", "m_y1", "m_z2",
-                    "m_x2"});
+  TableMaker table(
+      {"t_s", "T_C", "inc", "az", "tf", "Gx", "Gy", "Gz", "m_x1", "m_y1", "m_z2", "m_x2"});
   const double L = bench.latitude * kRad + bench.latitude_error;
   const Eigen::Matrix3d R = TurnBy(bench.level[which]);
   const Eigen::Vector3d w_ned = R * Eigen::Vector3d(kEarth * std::cos(L), 0, -kEarth * std::sin(L));
@@ -138,6 +139,7 @@ inline BenchTable ThermalRates(const ThermalTool& tool, const ThermalBench& benc
       n[(axis + 2) % 3] = bench.seat[axis][1];
       n = TurnBy(-Noise(random, bench.wobble)) * n.normalized();
       Eigen::Vector4d m = tool.Gyro((3600 * rate + up) * n, n, (T - 87.5) / 62.5, 0);
+      m += (-1 + 2.0 * count / 17) * bench.drift[2];
       for (double& channel : m) channel += bench.sigma_table * random.Normal();
       std::vector<double> row = {60.0 * count++, T, double(axis), rate};
       Append(row, m);
@@ -169,6 +171,7 @@ inline std::map<std::string, double> TruthOf(const ThermalTool& tool, const Ther
     for (int j = 0; j < 3; ++j) put2("gyro_S", c, j, tool.U(c, j));
     put("gyro_drift_1", c, bench.drift[0][c]);
     put("gyro_drift_2", c, bench.drift[1][c]);
+    put("gyro_drift_3", c, bench.drift[2][c]);
   }
   for (int c = 0; c < 3; ++c) {
     put2("accel_K2", c, c, tool.K2[c]);

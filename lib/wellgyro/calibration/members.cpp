@@ -62,11 +62,10 @@ CalibrationMember MemberOf(const std::string& name) {
       if (!Take(rest, kind.name)) continue;
       member.kind = kind.kind;
       const bool whole =
-          (!kind.powers || (Take(rest, ".p") && TakeNumber(rest, SensorGroup::kPowers,
-                                                           member.power))) &&
+          (!kind.powers ||
+           (Take(rest, ".p") && TakeNumber(rest, SensorGroup::kPowers, member.power))) &&
           Take(rest, "[") && TakeNumber(rest, SensorGroup::kChannels, member.channel) &&
-          (!kind.columns ||
-           (Take(rest, ",") && TakeNumber(rest, kind.n_columns, member.column))) &&
+          (!kind.columns || (Take(rest, ",") && TakeNumber(rest, kind.n_columns, member.column))) &&
           rest == "]";
       if (whole) return member;
     }

@@ -111,7 +111,8 @@ std::optional<Fault> Missing(const BenchTable& data, const RawRun& run, bool alo
 }
 
 // Slopes of short runs against the scatter about them, pooled over all positions: those of settled
-// readings are noise, F with (series, n - 2 each) degrees of freedom, one false alarm in a thousand.
+// readings are noise, F with (series, n - 2 each) degrees of freedom, one false alarm in a
+// thousand.
 double PooledDrift(const RawRun& raw) {
   double slopes = 0, squares = 0, freedom = 0, n_series = 0, length = 0, spread = 0;
   for (const auto& [at, series] : raw.series) {
@@ -153,15 +154,14 @@ Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double to
     // Readings that differ by exactly the tolerance repeat; their decimals are not exact.
     constexpr double kRounding = 1e-12;
     const double largest = std::abs(series.volts.back());
-    const SettledRun settled =
-        Settle(series.volts, tolerance * (1 + 1e-9) + kRounding * largest);
+    const SettledRun settled = Settle(series.volts, tolerance * (1 + 1e-9) + kRounding * largest);
     if (!settled.settled) {
-      const std::vector<double> end(series.volts.end() - std::min<std::ptrdiff_t>(
-                                                             3, std::ssize(series.volts)),
-                                    series.volts.end());
-      const double left = std::abs(std::accumulate(end.begin(), end.end(), 0.0) /
-                                       static_cast<double>(end.size()) -
-                                   settled.value);
+      const std::vector<double> end(
+          series.volts.end() - std::min<std::ptrdiff_t>(3, std::ssize(series.volts)),
+          series.volts.end());
+      const double left =
+          std::abs(std::accumulate(end.begin(), end.end(), 0.0) / static_cast<double>(end.size()) -
+                   settled.value);
       return BenchFault(
           data,
           series.volts.size() < 3

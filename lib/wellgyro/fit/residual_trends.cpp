@@ -1,5 +1,3 @@
-#include "wellgyro/fit/residual_trends_internal.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -11,20 +9,20 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr double kFalseAlarm = 0.01;
-constexpr int kFewest = 8;        // rows of a channel, below which nothing is tested
+constexpr int kFewest = 8;         // rows of a channel, below which nothing is tested
 constexpr double kLeastSwing = 1;  // degC
 
 // Rows of one channel of one table, among those that the solution used.
 struct ChannelRows {
   std::string channel;
   std::vector<Eigen::Index> rows, in_problem;
-  double unit = 1;
 };
 
 std::vector<ChannelRows> ChannelsOf(const LinearProblem& problem, const LinearSolution& solution) {
@@ -38,7 +36,6 @@ std::vector<ChannelRows> ChannelsOf(const LinearProblem& problem, const LinearSo
     if (row.line == 0) continue;
     ChannelRows& channel = channels[{row.line < 0, row.channel}];
     channel.channel = row.line < 0 ? "table " + row.channel : row.channel;
-    channel.unit = row.unit;
     channel.rows.push_back(at);
     channel.in_problem.push_back(static_cast<Eigen::Index>(i));
   }
@@ -51,7 +48,7 @@ std::vector<ChannelRows> ChannelsOf(const LinearProblem& problem, const LinearSo
 
 struct Trend {
   double t = 0, limit = 0;
-  double change = 0;  // from the least to the largest abscissa, whitened
+  double change = 0;  // from the least to the largest abscissa [data's unit]
   std::string moved;  // parameter that it would move most
   double moved_sigmas = 0;
 };
@@ -70,8 +67,8 @@ Trend TrendAlong(const LinearProblem& problem, const LinearSolution& solution,
   if (!(half > 0)) return {};
   for (std::size_t i = 0; i < z.size(); ++i) {
     const Eigen::Index row = channel.in_problem[i];
-    // Of the data's unit, as the rows' sigmas may differ.
-    const double value = (z[i] - middle) / half * channel.unit / problem.sigma[row];
+    // One of the data's unit at the end, over what that unit is of the whitened residual.
+    const double value = (z[i] - middle) / half / problem.rows[static_cast<std::size_t>(row)].unit;
     zr += value * solution.residual[channel.rows[i]];
     zz += value * value;
     h += value / problem.sigma[row] * problem.A.row(row).transpose();
@@ -86,8 +83,7 @@ Trend TrendAlong(const LinearProblem& problem, const LinearSolution& solution,
   const double dof = solution.dof - 1;
   const double scatter = problem.sigma_given ? 1 : std::sqrt(freed / dof);
   trend.t = scatter > 0 ? std::abs(beta) * std::sqrt(left) / scatter : 0;
-  trend.limit =
-      problem.sigma_given ? -NormalQuantile(probability) : StudentLimit(probability, dof);
+  trend.limit = problem.sigma_given ? -NormalQuantile(probability) : StudentLimit(probability, dof);
   trend.change = 2 * beta;
   const Eigen::VectorXd sigma = solution.cov.diagonal().cwiseMax(0).cwiseSqrt();
   for (Eigen::Index i = 0; i < move.size(); ++i) {
@@ -112,10 +108,11 @@ void Tell(const ChannelRows& channel, const Trend& trend, std::string_view again
           FitReport& report) {
   if (!(trend.t > trend.limit)) return;
   report.remarks.push_back(fmt::format(
-      "channel {}: the residuals follow {}, by {:.3g} from end to end ({:.1f} of its sigmas, chance "
+      "channel {}: the residuals follow {}, by {:.3g} from end to end ({:.1f} of its sigmas, "
+      "chance "
       "reaches {:.1f}); with a term for it {} would move by {:.1f} of its sigmas: repeat what was "
       "measured first, or fit all of the bench's data by calibrate tool",
-      channel.channel, against, trend.change * channel.unit, trend.t, trend.limit, trend.moved,
+      channel.channel, against, trend.change, trend.t, trend.limit, trend.moved,
       trend.moved_sigmas));
 }
 
@@ -152,10 +149,11 @@ void RemarkTemperature(const BenchTable& data, FitReport& report) {
   const double low = data.values.col(*column).minCoeff();
   const double high = data.values.col(*column).maxCoeff();
   if (high - low < kLeastSwing) return;
-  report.remarks.push_back(fmt::format(
-      "the temperatures of the table, {:.4g} to {:.4g} degC, play no part in this method: what they "
-      "do to the sensors is in the result; calibrate tool fits them",
-      low, high));
+  report.remarks.push_back(
+      fmt::format("the temperatures of the table, {:.4g} to {:.4g} degC, play no part in this "
+                  "method: what they "
+                  "do to the sensors is in the result; calibrate tool fits them",
+                  low, high));
 }
 
 }  // namespace wellgyro

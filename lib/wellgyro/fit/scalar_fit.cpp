@@ -132,6 +132,8 @@ std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& rea
     rows.back() << w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), w.x() * w.y(), w.y() * w.z(),
         w.z() * w.x(), w.transpose(), 1;
   }
+  constexpr std::size_t kUnknown = 10;
+  if (rows.size() < kUnknown) return TooFew(data, 12, "attitudes", kAdvice);
   Eigen::MatrixXd A(static_cast<Eigen::Index>(rows.size()), 10);
   for (std::size_t i = 0; i < rows.size(); ++i) A.row(static_cast<Eigen::Index>(i)) = rows[i];
   const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues() /
@@ -155,10 +157,11 @@ std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::st
   const bool in_g = std::abs(reference.gravity - reference.gravity_mps2) > 1;
   constexpr double kClose = 0.03;
   if (in_g && std::abs(gain - 1) < kClose) {
-    return BenchFault(data,
-                      "the readings are 9.8 times the gravity that is given in g: they are in m/s2; "
-                      "give --gravity-mps2",
-                      data.lines[0], FaultCode::kConflict);
+    return BenchFault(
+        data,
+        "the readings are 9.8 times the gravity that is given in g: they are in m/s2; "
+        "give --gravity-mps2",
+        data.lines[0], FaultCode::kConflict);
   }
   if (!in_g && std::abs(gain * units::kStandardGravity * units::kStandardGravity - 1) < kClose) {
     return BenchFault(data,
@@ -178,6 +181,9 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   const ScalarReadings readings{table->lines, table->accel, setup.reference.gravity,
                                 setup.sigma_accel};
   const auto solution = SolveScalar(readings);
+  if (!solution) {
+    if (auto fault = OnlyCones(data, readings, {})) return *fault;
+  }
   auto whole = WholeReport(data, solution, kAdvice);
   if (!whole) return whole.fault();
   if (auto fault = OnlyCones(data, readings, solution->outlier_lines)) return *fault;

@@ -28,7 +28,8 @@ Result<NonlinearProblem::Solution> SolveScalar(const ScalarReadings& readings);
 std::optional<Fault> BadVectors(const BenchTable& data, const Eigen::MatrixX3d& v,
                                 const std::vector<std::string>& channels, std::string_view units);
 
-/// Readings that lie on a second quadric as closely as on the ellipsoid: what only noise determines.
+/// Readings that lie on a second quadric as closely as on the ellipsoid: what only noise
+/// determines.
 std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& readings,
                                const std::vector<int>& outlier_lines);
 

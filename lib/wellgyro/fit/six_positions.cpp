@@ -115,8 +115,8 @@ std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Posi
   if (auto fault = MixedUnits(rates, {0, 1, 2}, 0, "the length of N/T_s", "pulses and seconds")) {
     return fault;
   }
-  if (auto fault = MixedUnits(forces, {0, 1, 2}, setup.gravity, "the length of (axb, ayb, azb)",
-                              "m/s2")) {
+  if (auto fault =
+          MixedUnits(forces, {0, 1, 2}, setup.gravity, "the length of (axb, ayb, azb)", "m/s2")) {
     return fault;
   }
   return OtherGravity(data, positions, setup);

@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
 #include <ceres/ceres.h>
@@ -67,13 +69,22 @@ struct Prior {
   Eigen::VectorXd x0;
 };
 
-// Of the nuisances.
+// Of the nuisances, and of terms that have one.
 Prior PriorOf(const ToolModel& model) {
-  const auto n = static_cast<Eigen::Index>(model.nuisances().size());
+  std::vector<std::pair<int, double>> known;
+  for (int k = 0; k < model.n_terms(); ++k) {
+    const double sigma = model.terms()[static_cast<std::size_t>(k)].prior_sigma;
+    if (sigma > 0) known.emplace_back(k, sigma);
+  }
+  int at = model.n_terms();
+  for (const BenchNuisance& nuisance : model.nuisances()) {
+    known.emplace_back(at++, nuisance.prior_sigma);
+  }
+  const auto n = static_cast<Eigen::Index>(known.size());
   Prior prior{RowMajor::Zero(n, model.size()), Eigen::VectorXd::Zero(model.size())};
   for (Eigen::Index i = 0; i < n; ++i) {
-    prior.A(i, model.n_terms() + i) =
-        1 / model.nuisances()[static_cast<std::size_t>(i)].prior_sigma;
+    const auto& [parameter, sigma] = known[static_cast<std::size_t>(i)];
+    prior.A(i, parameter) = 1 / sigma;
   }
   return prior;
 }
@@ -102,9 +113,10 @@ class Adjuster {
     for (int turn = 0; turn < kRobustTurns; ++turn) {
       if (!Minimise(true)) return Unsettled();
       const std::vector<char> before = out_;
-      MarkOutliers();
+      // The start's sigmas weigh the kinds of readings badly against each other.
+      if (turn > 0) MarkOutliers();
       FindNoise();
-      if (turn > 0 && before == out_) break;
+      if (turn > 1 && before == out_) break;
     }
     for (int turn = 0; turn < kTurns; ++turn) {
       if (!Minimise(false)) return Unsettled();
@@ -123,6 +135,21 @@ class Adjuster {
             .text =
                 "the adjustment does not settle, the readings do not fit the model: look for wrong "
                 "signs, exchanged columns, mixed units or a wrong reference"};
+  }
+
+  // Of a direction in which the readings say nothing.
+  Fault Undetermined(const Eigen::VectorXd& direction) const {
+    std::string text;
+    const std::vector<std::string> names = model_.names();
+    for (Eigen::Index i = 0; i < direction.size(); ++i) {
+      constexpr double kMuch = 0.25;
+      if (std::abs(direction[i]) < kMuch) continue;
+      text += (text.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
+    }
+    return {.code = FaultCode::kRange,
+            .text = "the readings do not tell apart " + text +
+                    ": measure inclinations every 45 deg, four azimuths and toolfaces every 60 "
+                    "deg, or join a rate table's readings"};
   }
 
   std::array<double*, 4> Components() {
@@ -152,22 +179,28 @@ class Adjuster {
     }
     const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * N * scale.asDiagonal();
-    x_.head(n) = scale.cwiseProduct(
-        scaled.completeOrthogonalDecomposition().solve(scale.cwiseProduct(b)));
-    std::array<std::vector<double>, 3> sizes;
+    x_.head(n) =
+        scale.cwiseProduct(scaled.completeOrthogonalDecomposition().solve(scale.cwiseProduct(b)));
+    std::array<std::vector<double>, 3> sizes, readings;
     for (const ToolRow& row : readings_.rows) {
       const Eigen::VectorXd e = model_.At(row, x_).v - row.v;
       for (Eigen::Index i = 0; i < e.size(); ++i) {
-        const int kind = KindOf(readings_, row, row.channels[static_cast<std::size_t>(i)]);
-        sizes[static_cast<std::size_t>(kind)].push_back(std::abs(e[i]));
+        const auto kind = static_cast<std::size_t>(
+            KindOf(readings_, row, row.channels[static_cast<std::size_t>(i)]));
+        sizes[kind].push_back(std::abs(e[i]));
+        readings[kind].push_back(std::abs(row.v[i]));
       }
     }
-    const double largest = std::max(1e-300, b.cwiseAbs().maxCoeff());
+    // Below that lies the rounding of what was written down.
+    constexpr double kRounding = 1e-8;
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+      floor_[kind] = std::max(kRounding * RobustSigma(readings[kind]), 1e-300);
+    }
     noise_.wobble = setup_.sigma_wobble.value_or(5e-5);
-    noise_.accel = setup_.sigma_accel.value_or(std::max(RobustSigma(sizes[0]), 1e-15 * largest));
-    noise_.gyro = setup_.sigma_gyro.value_or(std::max(RobustSigma(sizes[1]), 1e-15 * largest));
-    noise_.gyro_table = setup_.sigma_gyro_table.value_or(
-        std::max(RobustSigma(sizes[2]), 1e-15 * largest));
+    noise_.accel = setup_.sigma_accel.value_or(std::max(RobustSigma(sizes[0]), floor_[0]));
+    noise_.gyro = setup_.sigma_gyro.value_or(std::max(RobustSigma(sizes[1]), floor_[1]));
+    noise_.gyro_table =
+        setup_.sigma_gyro_table.value_or(std::max(RobustSigma(sizes[2]), floor_[2]));
   }
 
   Eigen::MatrixXd WhitenerOf(const ToolRow& row) const {
@@ -250,17 +283,17 @@ class Adjuster {
     for (int sweep = 0; sweep < 3; ++sweep) {
       const ToolNoise before = noise_;
       for (std::size_t k = 0; k < 4; ++k) {
-        if (!held[k]) Search(*Components()[k], k == 3, cost);
+        if (!held[k]) Search(*Components()[k], floor_[k], cost);
       }
       if (Alike(before)) break;
     }
   }
 
   template <class Cost>
-  static void Search(double& sigma, bool may_vanish, const Cost& cost) {
+  static void Search(double& sigma, double floor, const Cost& cost) {
     constexpr double kGolden = 0.6180339887498949;
-    const double start = std::max(sigma, may_vanish ? 1e-7 : 1e-300);
-    double a = std::log(start) - 2, b = std::log(start) + 2;
+    const double start = std::log(std::max(sigma, floor));
+    double a = std::max(start - 2, std::log(floor)), b = start + 2;
     const auto at = [&](double log_sigma) {
       sigma = std::exp(log_sigma);
       return cost();
@@ -307,7 +340,9 @@ class Adjuster {
       for (Eigen::Index k = 0; k < size; ++k) {
         const int channel = row.channels[static_cast<std::size_t>(k)];
         linear.rows[static_cast<std::size_t>(at + k)] = {
-            static_cast<int>(i) + 1, readings_.channels[static_cast<std::size_t>(channel)].name,
+            static_cast<int>(i) + 1,
+            (row.mount >= 0 ? "table " : "") +
+                readings_.channels[static_cast<std::size_t>(channel)].name,
             1 / W(k, k)};
       }
       at += size;
@@ -326,9 +361,10 @@ class Adjuster {
     const Eigen::MatrixXd N = scaled.transpose() * scaled;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N);
     const Eigen::VectorXd values = eigen.eigenvalues();
-    if (!(values[0] > 1e-13 * values[values.size() - 1])) return Unsettled();
-    const Eigen::MatrixXd inverse = eigen.eigenvectors() *
-                                    values.cwiseInverse().asDiagonal() *
+    if (!(values[0] > 1e-13 * values[values.size() - 1])) {
+      return Undetermined(eigen.eigenvectors().col(0));
+    }
+    const Eigen::MatrixXd inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
                                     eigen.eigenvectors().transpose();
     a.cov = scale.asDiagonal() * inverse * scale.asDiagonal();
     LinearSolution& s = a.solution;
@@ -349,6 +385,7 @@ class Adjuster {
   const ToolModel& model_;
   Eigen::VectorXd x_;
   ToolNoise noise_;
+  std::array<double, 4> floor_{1e-300, 1e-300, 1e-300, 1e-8};
   std::vector<char> out_;
 };
 
@@ -370,6 +407,12 @@ std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& s
     const Eigen::MatrixXd A = (row.mount >= 0 ? kTable : 1) * model.At(row, zero).J.leftCols(n);
     N += A.transpose() * A;
   }
+  // Against the noise of a reading, as far as that is guessed.
+  constexpr double kNoise = 0.02;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double sigma = terms[static_cast<std::size_t>(k)].prior_sigma;
+    if (sigma > 0) N(k, k) += kNoise * kNoise / (sigma * sigma);
+  }
   const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   N = scale.asDiagonal() * N * scale.asDiagonal();
   // Row by row of a Cholesky decomposition: what is left of a column beside those before it.
@@ -382,13 +425,13 @@ std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& s
     std::vector<Eigen::Index> with = kept;
     for (Eigen::Index k = 0; k < size; ++k) with.push_back(first + k);
     first += size;
-    const bool has_base = bundles[b].after < 0 ||
-                          std::find(seen.begin(), seen.end(), bundles[b].after) != seen.end();
+    const bool has_base =
+        bundles[b].after < 0 || std::find(seen.begin(), seen.end(), bundles[b].after) != seen.end();
     const Eigen::MatrixXd part = N(with, with);
     const Eigen::LLT<Eigen::MatrixXd> root(part);
-    const bool told = root.info() == Eigen::Success &&
-                      Eigen::MatrixXd(root.matrixL()).diagonal().cwiseAbs2().tail(size).minCoeff() >
-                          kTold;
+    const bool told =
+        root.info() == Eigen::Success &&
+        Eigen::MatrixXd(root.matrixL()).diagonal().cwiseAbs2().tail(size).minCoeff() > kTold;
     if (!has_base || size == 0 || (!told && !bundles[b].needed)) continue;
     seen.push_back(static_cast<int>(b));
     kept = std::move(with);

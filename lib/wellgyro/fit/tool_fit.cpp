@@ -11,6 +11,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/tool_adjust_internal.h"
@@ -34,7 +35,8 @@ std::vector<Eigen::Index> PlacesIn(const std::vector<TermBundle>& bundles,
                                    const std::vector<int>& kept, int bundle) {
   Eigen::Index first = 0;
   for (const int place : kept) {
-    const auto size = static_cast<Eigen::Index>(bundles[static_cast<std::size_t>(place)].terms.size());
+    const auto size =
+        static_cast<Eigen::Index>(bundles[static_cast<std::size_t>(place)].terms.size());
     if (place == bundle) {
       std::vector<Eigen::Index> places;
       for (Eigen::Index k = 0; k < size; ++k) places.push_back(first + k);
@@ -93,8 +95,8 @@ void TellLeftOut(const std::vector<TermBundle>& bundles, const std::vector<int>&
     LeftOutTerm term{bundles[b].name, 0, false};
     for (const Eigen::Index k : PlacesIn(bundles, seen, place)) {
       term.seen = true;
-      term.bound =
-          std::max(term.bound, std::abs(full.x[k]) + k95 * std::sqrt(std::max(0.0, full.cov(k, k))));
+      term.bound = std::max(term.bound,
+                            std::abs(full.x[k]) + k95 * std::sqrt(std::max(0.0, full.cov(k, k))));
     }
     if (!bundles[b].terms.empty()) fit.left_out.push_back(std::move(term));
   }
@@ -172,15 +174,15 @@ std::optional<Fault> WrongChannels(const BenchTable& data, const ToolReadings& r
     Eigen::Index most = 0;
     S.cwiseAbs().maxCoeff(&most);
     if (most == channel.axis && S[most] > 0) continue;
-    return BenchFault(data,
-                      most != channel.axis
-                          ? fmt::format("channel {} follows {}{}: its axis is not {}; exchange the "
-                                        "columns, or mend their names",
-                                        channel.name, S[most] < 0 ? "-" : "", "xyz"[most],
-                                        "xyz"[channel.axis])
-                          : fmt::format("channel {} falls where {} rises: its sign is wrong, or up "
-                                        "and down of the positions are swapped",
-                                        channel.name, "xyz"[most]));
+    return BenchFault(
+        data,
+        most != channel.axis
+            ? fmt::format("channel {} follows {}{}: its axis is not {}; exchange the "
+                          "columns, or mend their names",
+                          channel.name, S[most] < 0 ? "-" : "", "xyz"[most], "xyz"[channel.axis])
+            : fmt::format("channel {} falls where {} rises: its sign is wrong, or up "
+                          "and down of the positions are swapped",
+                          channel.name, "xyz"[most]));
   }
   return std::nullopt;
 }
@@ -205,6 +207,25 @@ std::vector<ChannelSignal> Signals(const ToolReadings& readings, const ToolModel
   return signals;
 }
 
+// What would not show in any residual.
+void TellReferences(std::span<const BenchTable> tables, const ToolReadings& readings,
+                    const ToolFitSetup& setup, FitReport& report) {
+  if (!tables.front().Find("T_C")) {
+    report.remarks.emplace_back(
+        "no temperatures (column T_C): what they do to the sensors is in the result");
+  }
+  if (readings.n_accel == 0 || !setup.reference.latitude) return;
+  // Benches stand up to two kilometres high.
+  constexpr double kAbove = 8e-4, kAnomaly = 2e-4;
+  const double normal = SiteAt(*setup.reference.latitude, 0).gravity;
+  const double off = setup.reference.gravity_mps2 / normal - 1;
+  if (off < kAnomaly && off > -kAbove) return;
+  report.remarks.push_back(fmt::format(
+      "gravity is taken as {:.5g} m/s2 where {:.5g} is normal at the bench's latitude: the "
+      "accelerometers' sensitivities are wrong by as much ({:.1e}) if that is not so",
+      setup.reference.gravity_mps2, normal, off));
+}
+
 Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& readings,
                       const ToolFitSetup& setup, const ToolModel& model, const ToolAdjustment& a) {
   ToolFit fit;
@@ -218,12 +239,18 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
     return *fault;
   }
   NameLines(tables, readings, a, report);
+  TellReferences(tables, readings, setup, report);
   TellNuisances(model, a, fit);
   TakeToolResult(readings, setup, model, a, fit);
   return fit;
 }
 
 }  // namespace
+
+std::string TextOf(const LeftOutTerm& term) {
+  return term.seen ? fmt::format("{}: below {:.2g}", term.name, term.bound)
+                   : fmt::format("{}: these readings cannot tell", term.name);
+}
 
 Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& setup) {
   if (tables.empty()) throw std::invalid_argument("calibrate tool needs bench data");
@@ -242,7 +269,11 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
   const auto last = AdjustTool(*readings, setup, terms);
   if (!last) return refused(last.fault());
   auto fit = Whole(tables, *readings, setup, ToolModel(*readings, setup, terms), *last);
-  if (fit) TellLeftOut(bundles, seen, chosen, *full, *fit);
+  if (!fit) return fit.fault();
+  TellLeftOut(bundles, seen, chosen, *full, *fit);
+  for (const LeftOutTerm& term : fit->left_out) {
+    fit->calibration.report.remarks.push_back("left out: " + TextOf(term));
+  }
   return fit;
 }
 

@@ -1,5 +1,3 @@
-#include "wellgyro/fit/tool_model_internal.h"
-
 #include <cmath>
 #include <utility>
 
@@ -7,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/tool_model_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -118,7 +117,8 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
     const int place = level_[static_cast<std::size_t>(row.table)];
     const bool north = readings_.n_gyro > 0;
     const Eigen::Vector3d e(z[place], z[place + 1], north ? z[place + 2] : 0);
-    const Eigen::Vector3d w_L = kEarth * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
+    const Eigen::Vector3d w_L =
+        kEarth * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
     const auto [w, dw] = Turned(e, w_L);
     const auto [f, df] = Turned(e, -Eigen::Vector3d::UnitZ());
     state.row.w = row.R_BL * w;
@@ -131,7 +131,8 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
       state.slopes.push_back({latitude_, row.R_BL * Turned(e, kEarth * by).first, {0, 0, 0}});
     }
   }
-  const double unit = readings_.gravity_signed ? -setup_.reference.gravity : setup_.reference.gravity;
+  const double unit =
+      readings_.gravity_signed ? -setup_.reference.gravity : setup_.reference.gravity;
   state.row.u_accel = unit * state.row.f;
   return state;
 }
@@ -141,7 +142,8 @@ ToolModel::Prediction ToolModel::At(const ToolRow& row, const Eigen::VectorXd& x
   const auto n = static_cast<Eigen::Index>(row.channels.size());
   Prediction p{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, size()),
                Eigen::MatrixXd::Zero(n, 3)};
-  const double unit = readings_.gravity_signed ? -setup_.reference.gravity : setup_.reference.gravity;
+  const double unit =
+      readings_.gravity_signed ? -setup_.reference.gravity : setup_.reference.gravity;
   for (Eigen::Index i = 0; i < n; ++i) {
     const int c = row.channels[static_cast<std::size_t>(i)];
     const bool is_gyro = readings_.channels[static_cast<std::size_t>(c)].is_gyro;
@@ -150,8 +152,7 @@ ToolModel::Prediction ToolModel::At(const ToolRow& row, const Eigen::VectorXd& x
     for (const int k : terms_of_[static_cast<std::size_t>(c)]) {
       for (const TermUse& use : terms_[static_cast<std::size_t>(k)].uses) {
         if (use.channel != c) continue;
-        const Basis basis =
-            BasisOf(terms_[static_cast<std::size_t>(k)], use, is_gyro, state.row);
+        const Basis basis = BasisOf(terms_[static_cast<std::size_t>(k)], use, is_gyro, state.row);
         p.v[i] += x[k] * basis.value;
         p.J(i, k) += basis.value;
         if (is_gyro) by_w += x[k] * basis.by_own;
@@ -163,8 +164,7 @@ ToolModel::Prediction ToolModel::At(const ToolRow& row, const Eigen::VectorXd& x
       p.J(i, n_terms() + slope.place) += by_w.dot(slope.w) + by_f.dot(slope.f);
     }
     // A tool turned by e sees v as v - e x v.
-    p.wobble.row(i) =
-        by_w.transpose() * Cross(state.row.w) + by_f.transpose() * Cross(state.row.f);
+    p.wobble.row(i) = by_w.transpose() * Cross(state.row.w) + by_f.transpose() * Cross(state.row.f);
   }
   return p;
 }

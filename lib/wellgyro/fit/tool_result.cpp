@@ -1,5 +1,3 @@
-#include "wellgyro/fit/tool_result_internal.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +9,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/fit/tool_result_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -139,10 +138,11 @@ void AddHysteresis(const ToolModel& model, const ToolReadings& readings, const T
     const auto& names = fit.members.names;
     const auto at = std::find(names.begin(), names.end(), bias) - names.begin();
     fit.members.cov(at, at) += a.x[k] * a.x[k] + a.cov(k, k);
-    fit.calibration.report.remarks.push_back(fmt::format(
-        "channel {}: a loop of {:.3g} between heating and cooling, which the tool model cannot take "
-        "off: it is in the bias's covariance",
-        readings.channels[static_cast<std::size_t>(c)].name, 2 * std::abs(a.x[k])));
+    fit.calibration.report.remarks.push_back(
+        fmt::format("channel {}: a loop of {:.3g} between heating and cooling, which the tool "
+                    "model cannot take "
+                    "off: it is in the bias's covariance",
+                    readings.channels[static_cast<std::size_t>(c)].name, 2 * std::abs(a.x[k])));
   }
 }
 

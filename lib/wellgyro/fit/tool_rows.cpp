@@ -1,5 +1,3 @@
-#include "wellgyro/fit/tool_rows_internal.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,6 +9,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/tool_rows_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -55,9 +54,8 @@ std::optional<Fault> TakeGyros(const BenchTable& data, ToolReadings& readings) {
     return std::nullopt;
   }
   for (const GyroChannel& channel : *channels) {
-    const bool known =
-        std::any_of(readings.channels.begin(), readings.channels.end(),
-                    [&](const ToolChannel& c) { return c.name == channel.name; });
+    const bool known = std::any_of(readings.channels.begin(), readings.channels.end(),
+                                   [&](const ToolChannel& c) { return c.name == channel.name; });
     if (!known) {
       return BenchFault(data,
                         fmt::format("channel {} is in no other table: give all tables the same "

@@ -1,5 +1,3 @@
-#include "wellgyro/fit/tool_terms_internal.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,6 +5,8 @@
 #include <utility>
 
 #include <fmt/core.h>
+
+#include "wellgyro/fit/tool_terms_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -57,13 +57,13 @@ class Candidates {
     }
   }
   // `columns` coefficients a channel.
-  void AddMatrix(bool gyro, const std::string& name, TermKind kind, int power, int from, int columns,
-                 bool needed, const std::string& after) {
+  void AddMatrix(bool gyro, const std::string& name, TermKind kind, int power, int from,
+                 int columns, bool needed, const std::string& after) {
     TermBundle& bundle = Add(name, needed, after);
     for (int c = 0; c < Count(gyro); ++c) {
       for (int j = from; j < from + columns; ++j) {
-        bundle.terms.push_back({fmt::format("{}[{},{}]", name, c, j), kind, power, -1,
-                                {{First(gyro) + c, j, 1}}});
+        bundle.terms.push_back(
+            {fmt::format("{}[{},{}]", name, c, j), kind, power, -1, {{First(gyro) + c, j, 1}}});
       }
     }
   }
@@ -71,15 +71,15 @@ class Candidates {
   void AddOwnSquares() {
     TermBundle& bundle = Add("accel_K2", false);
     for (int c = 0; c < 3; ++c) {
-      bundle.terms.push_back({fmt::format("accel_K2[{},{}]", c, c), TermKind::kSquare, 0, -1,
-                              {{c, c, 1}}});
+      bundle.terms.push_back(
+          {fmt::format("accel_K2[{},{}]", c, c), TermKind::kSquare, 0, -1, {{c, c, 1}}});
     }
     TermBundle& cross = Add("accel_K2_cross", false, "accel_K2");
     for (int c = 0; c < 3; ++c) {
       for (int j = 0; j < 6; ++j) {
         if (j == c) continue;
-        cross.terms.push_back({fmt::format("accel_K2[{},{}]", c, j), TermKind::kSquare, 0, -1,
-                               {{c, j, 1}}});
+        cross.terms.push_back(
+            {fmt::format("accel_K2[{},{}]", c, j), TermKind::kSquare, 0, -1, {{c, j, 1}}});
       }
     }
   }
@@ -105,8 +105,11 @@ class Candidates {
         const int channel = First(true) + c;
         const int axis = readings_.channels[static_cast<std::size_t>(channel)].axis;
         const int place = axis + rotor.spin == 1 ? 3 : axis + rotor.spin == 3 ? 4 : 5;
-        bundle.terms.push_back({fmt::format("gyro_N[{},{}]", c, place), TermKind::kForceSquare, 0,
-                                -1, {{channel, place, 1}}});
+        bundle.terms.push_back({fmt::format("gyro_N[{},{}]", c, place),
+                                TermKind::kForceSquare,
+                                0,
+                                -1,
+                                {{channel, place, 1}}});
       }
     }
   }
@@ -151,7 +154,11 @@ class Candidates {
     if (readings_.has_temperature) Temperatures(gyro);
     for (int table = 0; table < readings_.n_tables; ++table) {
       const std::string name = fmt::format("{}drift_{}", p, table + 1);
-      AddVector(gyro, name, TermKind::kDrift, 1, table, false, "");
+      // What it may be is known before: on a ramp it cannot be told from the temperature's slope.
+      AddVector(gyro, name, TermKind::kDrift, 1, table, gyro, "");
+      for (ToolTerm& term : bundles_.back().terms) {
+        term.prior_sigma = gyro ? setup_.sigma_drift : 0;
+      }
       AddVector(gyro, name + "_bend", TermKind::kDrift, 2, table, false, name);
     }
   }
@@ -205,8 +212,7 @@ Basis BasisOf(const ToolTerm& term, const TermUse& use, bool is_gyro, const RowS
     case TermKind::kDrift:
       // Of the mean over the table nothing: that is the bias.
       if (state.row->table != term.table) break;
-      basis.value = term.power == 1 ? state.row->time
-                                    : state.row->time * state.row->time - 1.0 / 3;
+      basis.value = term.power == 1 ? state.row->time : state.row->time * state.row->time - 1.0 / 3;
       break;
   }
   return basis;

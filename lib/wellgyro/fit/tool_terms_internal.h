@@ -33,6 +33,7 @@ struct ToolTerm {
   int power = 0;   ///< of the temperature, or of time
   int table = -1;  ///< of a drift
   std::vector<TermUse> uses;
+  double prior_sigma = 0;  ///< about zero [the channel's unit]; 0: none
 };
 
 /// Coefficients that stay or go together.

@@ -45,7 +45,7 @@ Wave Held(Wave fixed, const Wave& free) {
     const auto at = static_cast<std::size_t>(j);
     double off = free.x[at] - fixed.x[at];
     if (j == 2) off = WrapPi(off);
-    fixed.sigma[j] = std::max(free.sigma[j], std::hypot(fixed.sigma[j], off));
+    fixed.sigma[j] = std::hypot(free.sigma[j], off);
   }
   return fixed;
 }
