@@ -100,19 +100,19 @@ std::optional<Fault> Attitude(const BenchTable& data, const ToolFitSetup& setup,
 void Follow(const BenchTable& data, std::span<ToolRow> rows) {
   const auto T = data.Find("T_C"), t = data.Find("t_s");
   const int n = data.rows();
-  const auto time = [&](int i) { return t ? data.values(i, *t) : static_cast<double>(i); };
-  const double middle = (time(0) + time(n - 1)) / 2;
-  const double half = std::max(std::abs(time(n - 1) - time(0)) / 2, 1e-9);
+  const auto second_of = [&](int i) { return t ? data.values(i, *t) : static_cast<double>(i); };
+  const double middle = (second_of(0) + second_of(n - 1)) / 2;
+  const double half = std::max(std::abs(second_of(n - 1) - second_of(0)) / 2, 1e-9);
   constexpr double kStill = 1e-4;  // degC/s
   double branch = 0;
   for (int i = 0; i < n; ++i) {
     ToolRow& row = rows[static_cast<std::size_t>(i)];
-    row.time = (time(i) - middle) / half;
+    row.time = (second_of(i) - middle) / half;
     if (!T) continue;
     row.temperature = data.values(i, *T);
     const int a = std::max(0, i - 1), b = std::min(n - 1, i + 1);
-    if (!t || !(time(b) > time(a))) continue;
-    row.heating = (data.values(b, *T) - data.values(a, *T)) / (time(b) - time(a));
+    if (!t || !(second_of(b) > second_of(a))) continue;
+    row.heating = (data.values(b, *T) - data.values(a, *T)) / (second_of(b) - second_of(a));
     if (std::abs(row.heating) > kStill) branch = row.heating > 0 ? 1 : -1;
     row.branch = branch;
   }
