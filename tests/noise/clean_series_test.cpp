@@ -131,7 +131,9 @@ TEST(CleanSeries, AWarmUpIsToldWithItsTimeConstant) {
   ASSERT_TRUE(Has(findings, Kind::kWarmUp));
   EXPECT_FALSE(Has(findings, Kind::kDrift));
   for (const LogFinding& finding : findings) {
-    if (finding.kind == Kind::kWarmUp) EXPECT_NEAR(*finding.time_constant, 20'000, 4'000);
+    if (finding.kind == Kind::kWarmUp) {
+      EXPECT_NEAR(*finding.time_constant, 20'000, 4'000);
+    }
   }
   SampleSeries drifting = White(200'000, 1, random);
   for (std::size_t i = 0; i < drifting.values.size(); ++i) {
