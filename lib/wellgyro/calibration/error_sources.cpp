@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
@@ -128,6 +129,35 @@ double LargestOf(const CalibrationSources& sources, int first, bool diagonal, in
   return largest;
 }
 
+// Whether the covariance of members has any of a group, "gyro." or "accel.".
+bool KnowsMembers(const ToolCalibration& tool, std::string_view prefix) {
+  for (const SensorGroup* group : {&tool.gyro, &tool.accel}) {
+    if (!HasMembers(*group)) continue;
+    const auto& names = group->covariance->names;
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const std::string& name) { return name.starts_with(prefix); })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Raise(double& sigma, double to) { sigma = std::max(sigma, to); }
+
+void TakeGyroErrors(const CalibrationSources& sources, int across, ErrorPriors& errors) {
+  for (int i = 0; i < 3; ++i) Raise(errors.gyro_bias_sigma, Sigma(sources, kGyroBias + i));
+  Raise(errors.gyro_scale_sigma, LargestOf(sources, kGyroRate, true, across));
+  Raise(errors.gyro_misalignment_sigma, LargestOf(sources, kGyroRate, false, across));
+  Raise(errors.mass_unbalance_sigma, Sigma(sources, kUnbalance));
+  Raise(errors.quadrature_sigma, Sigma(sources, kQuadrature));
+}
+
+void TakeAccelErrors(const CalibrationSources& sources, ErrorPriors& errors) {
+  for (int i = 0; i < 3; ++i) Raise(errors.accel_bias_sigma, Sigma(sources, kAccelBias + i));
+  Raise(errors.accel_scale_sigma, LargestOf(sources, kAccelForce, true, 3));
+  Raise(errors.accel_misalignment_sigma, LargestOf(sources, kAccelForce, false, 3));
+}
+
 }  // namespace
 
 Eigen::Index CalibrationSources::At(const std::string& name) const {
@@ -161,41 +191,24 @@ CalibrationSources SourcesOf(const ToolCalibration& tool, double temperature) {
 }
 
 ErrorPriors ErrorsLeft(const ToolCalibration& tool, ErrorPriors errors) {
-  if (!HasMembers(tool.gyro) && !HasMembers(tool.accel)) return errors;
-  const SensorGroup& group = tool.gyro.n_channels > 0 ? tool.gyro : tool.accel;
+  const bool gyro = KnowsMembers(tool, "gyro."), accel = KnowsMembers(tool, "accel.");
+  if (gyro) {
+    errors.gyro_bias_sigma = errors.gyro_scale_sigma = errors.gyro_misalignment_sigma = 0;
+    errors.mass_unbalance_sigma = errors.quadrature_sigma = 0;
+  }
+  if (accel) {
+    errors.accel_bias_sigma = errors.accel_scale_sigma = errors.accel_misalignment_sigma = 0;
+  }
+  const SensorGroup& group = gyro ? tool.gyro : tool.accel;
   const bool varies = group.thermometer >= 0;
-  ErrorPriors left = errors;
-  left.gyro_bias_sigma = left.gyro_scale_sigma = left.gyro_misalignment_sigma = 0;
-  left.mass_unbalance_sigma = left.quadrature_sigma = left.accel_bias_sigma = 0;
   constexpr int kSteps = 8;
   for (int step = 0; step <= (varies ? kSteps : 0); ++step) {
     const double T = varies ? group.min + (group.max - group.min) * step / kSteps : 0;
     const CalibrationSources sources = SourcesOf(tool, T);
-    const int across = tool.gyro.n_channels == 2 ? 2 : 3;
-    for (int i = 0; i < 3; ++i) {
-      left.gyro_bias_sigma = std::max(left.gyro_bias_sigma, Sigma(sources, kGyroBias + i));
-      // The priors have no scale of accelerometers: at one g it is a bias.
-      const double accel =
-          std::hypot(Sigma(sources, kAccelBias + i),
-                     units::kStandardGravity * LargestOf(sources, kAccelForce, true, 3));
-      left.accel_bias_sigma = std::max(left.accel_bias_sigma, accel);
-    }
-    left.gyro_scale_sigma =
-        std::max(left.gyro_scale_sigma, LargestOf(sources, kGyroRate, true, across));
-    left.gyro_misalignment_sigma =
-        std::max(left.gyro_misalignment_sigma, LargestOf(sources, kGyroRate, false, across));
-    left.mass_unbalance_sigma = std::max(left.mass_unbalance_sigma, Sigma(sources, kUnbalance));
-    left.quadrature_sigma = std::max(left.quadrature_sigma, Sigma(sources, kQuadrature));
+    if (gyro) TakeGyroErrors(sources, tool.gyro.n_channels == 2 ? 2 : 3, errors);
+    if (accel) TakeAccelErrors(sources, errors);
   }
-  if (tool.gyro.n_channels == 0) {
-    left.gyro_bias_sigma = errors.gyro_bias_sigma;
-    left.gyro_scale_sigma = errors.gyro_scale_sigma;
-    left.gyro_misalignment_sigma = errors.gyro_misalignment_sigma;
-    left.mass_unbalance_sigma = errors.mass_unbalance_sigma;
-    left.quadrature_sigma = errors.quadrature_sigma;
-  }
-  if (tool.accel.n_channels == 0) left.accel_bias_sigma = errors.accel_bias_sigma;
-  return left;
+  return errors;
 }
 
 }  // namespace wellgyro

@@ -124,7 +124,11 @@ std::optional<std::string> PlaceByTime(SampleSeries& series, std::span<const dou
     }
     place[i] = place[i - 1] + static_cast<std::int64_t>(std::llround(step));
   }
-  if (static_cast<double>(place.back()) > kLongest) return "the times leave more than 1e9 places";
+  constexpr std::int64_t kRoom = 1'000'000, kPerSample = 100;
+  if (place.back() > kRoom + kPerSample * std::ssize(place)) {
+    return fmt::format("the times leave {} places for {} samples", place.back() + 1,
+                       std::ssize(place));
+  }
   series.period = (times.back() - times.front()) / static_cast<double>(place.back());
   if (place.back() + 1 == std::ssize(place)) return std::nullopt;
   SampleSeries spread = series;

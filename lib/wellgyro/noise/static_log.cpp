@@ -253,6 +253,7 @@ class Inspector {
     const std::vector<double> steps = Steps();
     const double usual = RobustSigma({steps.begin() + 1, steps.end()});
     const std::vector<double> moves = Moves(steps, usual);
+    const double usual_change = UsualChange();
     for (std::size_t i = 0; i < moves.size(); ++i) {
       if (!(moves[i] > 0)) continue;
       std::size_t last = i;
@@ -270,7 +271,7 @@ class Inspector {
       }
       const std::int64_t begin = stretches_[i > 0 ? i - 1 : 0].begin;
       const std::int64_t end = stretches_[last].begin + length_;
-      const bool stayed = usual > 0 && StaysAway(last, i, kUnusual * usual);
+      const bool stayed = usual_change > 0 && StaysAway(last, i, kUnusual * usual_change);
       Add({.kind = stayed ? Kind::kStep : Kind::kMoved,
            .where = {begin, end},
            .size = stayed ? std::abs(LevelAfter(last) - LevelBefore(i)) : largest,
@@ -295,6 +296,14 @@ class Inspector {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) sum += stretches_[i].mean;
     return sum / static_cast<double>(end - begin);
+  }
+  // Of the mean level across any one stretch: far less than between two neighbours.
+  double UsualChange() const {
+    std::vector<double> changes;
+    for (std::size_t i = kBeside + 1; i + kBeside < stretches_.size(); ++i) {
+      changes.push_back(LevelAfter(i) - LevelBefore(i));
+    }
+    return RobustSigma(changes);
   }
   // A movement in a few stretches after which the mean is another, for as long as can be seen.
   bool StaysAway(std::size_t last, std::size_t first, double limit) const {

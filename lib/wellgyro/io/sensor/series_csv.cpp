@@ -111,6 +111,7 @@ class CsvReader {
     if (fault_) return;
     if (header && !time_ && !sequence_) FindClock();
     if (!value_) FindOnly(header);
+    if (!value_ && !fault_) Refuse("no column beside times, numbers and temperatures");
     if (header && !fault_) TakeUnits();
   }
 
