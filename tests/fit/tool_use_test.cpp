@@ -18,55 +18,10 @@
 #include "wellgyro/fit/tool_verify.h"
 
 #include "fit/tool_bench.h"
+#include "fit/tool_model_truth.h"
 
 namespace wellgyro::test {
 namespace {
-
-constexpr double kG = 9.80665;
-
-// The tool model that the bench's tool is, in the trade's axes.
-ToolCalibration ModelOf(const ThermalTool& tool) {
-  ToolCalibration model;
-  model.thermometers.resize(1);
-  for (const bool gyro : {true, false}) {
-    SensorGroup& group = gyro ? model.gyro : model.accel;
-    group.n_channels = gyro ? 4 : 3;
-    for (int c = 0; c < group.n_channels; ++c) {
-      group.channel[static_cast<std::size_t>(c)] = (gyro ? 3 : 0) + c;
-    }
-    group.thermometer = 0;
-    group.reference = 87.5;
-    group.half_range = 62.5;
-    group.min = 25;
-    group.max = 150;
-    // Bench x is -y of the tool, bench y its x.
-    group.R_TS << 0, 1, 0, -1, 0, 0, 0, 0, 1;
-    if (!gyro) group.R_TS = -group.R_TS;
-    group.unit_per_count.setConstant(1e-6);
-  }
-  for (std::size_t n = 0; n < 4; ++n) {
-    model.gyro.bias[n] = tool.bg[n];
-    model.accel.bias[n].head<3>() = tool.ba[n];
-  }
-  const double per_h = kRad / 3600;
-  model.gyro.sensitivity[0] = tool.U / per_h;
-  for (std::size_t n = 0; n < 2; ++n) {
-    model.accel.sensitivity[n].topRows<3>() = tool.Sa[n] / kG;
-    const Eigen::Vector4d mq = tool.MQ[n] / kG;
-    SensorGroup::Rows& force = model.gyro.g_dependence[n];
-    force(0, 0) = force(1, 1) = mq[0];
-    force(0, 1) = mq[1];
-    force(1, 0) = -mq[1];
-    force(3, 0) = force(2, 2) = mq[2];
-    force(3, 2) = mq[3];
-    force(2, 0) = -mq[3];
-  }
-  const int place[] = {5, 4, 4, 3};
-  for (int c = 0; c < 4; ++c) model.gyro.g_squared(c, place[c]) = tool.N[c] / (kG * kG);
-  for (int c = 0; c < 3; ++c) model.accel.second_order(c, c) = tool.K2[c] / (kG * kG);
-  model.gyro.heating = tool.heating;
-  return model;
-}
 
 // A covariance of biases, sensitivities and force terms at two powers, all of them correlated.
 ParameterCovariance AnyCovariance(Random& random) {
@@ -178,6 +133,34 @@ TEST(ToolUse, ErrorsOfSamplesAreThoseOfTheCalibration) {
     // 99.9 % of chi-square over so many.
     EXPECT_NEAR(square / number, 1, 3.3 * std::sqrt(2 / number)) << T;
   }
+}
+
+// The tool's priors are the largest of each kind, of the sensors that were calibrated alone.
+TEST(ToolUse, ErrorsLeftAreThoseOfTheSensorsOnTheBench) {
+  Random random(45);
+  ToolCalibration model = ModelOf(ThermalTool::Any(random));
+  ErrorPriors before;
+  before.gyro_bias_sigma = before.gyro_scale_sigma = before.accel_noise = 1;
+  const double per_h = kRad / 3600;
+  ParameterCovariance known;
+  known.names = {"accel.bias.p0[1]", "accel.sensitivity.p0[2,2]", "accel.sensitivity.p0[0,1]"};
+  known.cov = Eigen::Vector3d(1e-10, 4e-10 / (kG * kG), 9e-10 / (kG * kG)).asDiagonal();
+  model.accel.covariance = known;
+  const ErrorPriors accel = ErrorsLeft(model, before);
+  // In g as the channels read; their sensitivities are one to a per cent.
+  EXPECT_NEAR(accel.accel_bias_sigma, 1e-5 * kG, 3e-7 * kG);
+  EXPECT_NEAR(accel.accel_scale_sigma, 2e-5, 6e-7);
+  EXPECT_NEAR(accel.accel_misalignment_sigma, 3e-5, 9e-7);
+  EXPECT_EQ(accel.gyro_bias_sigma, 1);
+  EXPECT_EQ(accel.gyro_scale_sigma, 1);
+  EXPECT_EQ(accel.accel_noise, 1);
+  model.accel.covariance.reset();
+  EXPECT_EQ(ErrorsLeft(model, before).accel_bias_sigma, before.accel_bias_sigma);
+  known.names = {"gyro.bias.p0[1]", "gyro.bias.p1[1]"};
+  known.cov = Eigen::Vector2d(9e-4, 16e-4).asDiagonal();
+  model.gyro.covariance = known;
+  // At the ends of the range, where tau is one.
+  EXPECT_NEAR(ErrorsLeft(model, before).gyro_bias_sigma, 0.05 * per_h, 1e-3 * per_h);
 }
 
 TEST(ToolUse, NamesOfMembersComeBack) {

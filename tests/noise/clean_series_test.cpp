@@ -38,8 +38,11 @@ TEST(CleanSeries, TimesGiveThePeriodAndWhatIsMissing) {
 }
 
 TEST(CleanSeries, TimesThatGoBackOrRunAwayAreRefused) {
-  for (const std::vector<double>& times :
-       {std::vector<double>{0, 1, 0.5, 2}, {0, 1, 1, 2}, {3, 2, 1, 0}, {0, 1, 2, 1e12}}) {
+  for (const std::vector<double>& times : {std::vector<double>{0, 1, 0.5, 2},
+                                           {0, 1, 1, 2},
+                                           {3, 2, 1, 0},
+                                           {0, 1, 2, 3e6},
+                                           {0, 1, 2, 1e12}}) {
     SampleSeries series;
     series.values = {0, 1, 2, 3};
     EXPECT_NE(PlaceByTime(series, times), std::nullopt);

@@ -253,69 +253,87 @@ class Adjuster {
     if (4 * count > out_.size()) std::fill(out_.begin(), out_.end(), 0);
   }
 
+  // A row about x: its residual, and by what it changes.
   struct Left {
     const ToolRow* row;
     Eigen::VectorXd e;
-    Eigen::MatrixXd wobble;
+    Eigen::MatrixXd J, wobble;
   };
 
-  // The sigmas under which what is left is likeliest, its loss to the parameters allowed for.
-  void FindNoise() {
+  std::vector<Left> RowsLeft() const {
     std::vector<Left> rows;
-    double n = 0;
     for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
       if (out_[i] != 0) continue;
       const ToolRow& row = readings_.rows[i];
       ToolModel::Prediction at = model_.At(row, x_);
-      rows.push_back({&row, at.v - row.v, std::move(at.wobble)});
-      n += static_cast<double>(row.channels.size());
+      rows.push_back({&row, row.v - at.v, std::move(at.J), std::move(at.wobble)});
     }
-    const double lost = n / std::max(1.0, n - model_.n_terms());
-    const auto cost = [&] {
-      double sum = 0;
-      for (const Left& left : rows) {
-        const Eigen::MatrixXd W = model_.Whitener(*left.row, left.wobble, noise_);
-        sum += lost * (W * left.e).squaredNorm() - 2 * W.diagonal().array().log().sum();
-      }
-      return sum;
-    };
-    const std::array<bool, 4> held = Held();
-    for (int sweep = 0; sweep < 3; ++sweep) {
+    return rows;
+  }
+
+  // The sigmas under which what is left is likeliest, what each kind of readings loses to the
+  // parameters allowed for (restricted likelihood), in a model linear about x.
+  void FindNoise() {
+    const std::vector<Left> rows = RowsLeft();
+    constexpr int kSweeps = 12;
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
       const ToolNoise before = noise_;
+      const std::array<double, 4> ratios = SquaresOverExpected(rows);
+      const std::array<bool, 4> held = Held();
+      const std::array<double*, 4> sigmas = Components();
       for (std::size_t k = 0; k < 4; ++k) {
-        if (!held[k]) Search(*Components()[k], floor_[k], cost);
+        if (held[k] || !(ratios[k] > 0)) continue;
+        const double factor = std::clamp(std::sqrt(ratios[k]), 0.2, 5.0);
+        *sigmas[k] = std::max(*sigmas[k] * factor, floor_[k]);
       }
       if (Alike(before)) break;
     }
   }
 
-  template <class Cost>
-  static void Search(double& sigma, double floor, const Cost& cost) {
-    constexpr double kGolden = 0.6180339887498949;
-    const double start = std::log(std::max(sigma, floor));
-    double a = std::max(start - 2, std::log(floor)), b = start + 2;
-    const auto at = [&](double log_sigma) {
-      sigma = std::exp(log_sigma);
-      return cost();
-    };
-    double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
-    double of_c = at(c), of_d = at(d);
-    for (int turn = 0; turn < 14; ++turn) {
-      if (of_c < of_d) {
-        b = d;
-        d = c;
-        of_d = of_c;
-        c = b - kGolden * (b - a);
-        of_c = at(c);
-      } else {
-        a = c;
-        c = d;
-        of_c = of_d;
-        d = a + kGolden * (b - a);
-        of_d = at(d);
-      }
+  // Of each component with covariance V: y'P V P y over tr(P V), where P takes the parameters out
+  // (Patterson and Thompson 1971). At the likeliest sigmas all are one; 0 where there is nothing.
+  std::array<double, 4> SquaresOverExpected(const std::vector<Left>& rows) const {
+    const Eigen::Index n = model_.size();
+    const Prior prior = PriorOf(model_);
+    Eigen::MatrixXd N = prior.A.transpose() * prior.A;
+    Eigen::VectorXd b = prior.A.transpose() * (prior.A * (prior.x0 - x_));
+    std::vector<Eigen::MatrixXd> weights;
+    for (const Left& left : rows) {
+      const Eigen::MatrixXd W = model_.Whitener(*left.row, left.wobble, noise_);
+      const Eigen::MatrixXd A = W * left.J;
+      N.selfadjointView<Eigen::Lower>().rankUpdate(A.transpose());
+      b += A.transpose() * (W * left.e);
+      weights.push_back(W.transpose() * W);
     }
-    sigma = std::exp((a + b) / 2);
+    const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() *
+                                   Eigen::MatrixXd(N.selfadjointView<Eigen::Lower>()) *
+                                   scale.asDiagonal();
+    const Eigen::LDLT<Eigen::MatrixXd> root(scaled);
+    const Eigen::MatrixXd cov = scale.asDiagonal() *
+                                Eigen::MatrixXd(root.solve(Eigen::MatrixXd::Identity(n, n))) *
+                                scale.asDiagonal();
+    const Eigen::VectorXd step = cov * b;
+    std::array<double, 4> squares{}, expected{};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Left& left = rows[i];
+      const Eigen::VectorXd r = weights[i] * (left.e - left.J * step);
+      const Eigen::MatrixXd WJ = weights[i] * left.J;
+      const Eigen::MatrixXd P = weights[i] - WJ * cov * WJ.transpose();
+      for (Eigen::Index c = 0; c < r.size(); ++c) {
+        const auto kind = static_cast<std::size_t>(
+            KindOf(readings_, *left.row, left.row->channels[static_cast<std::size_t>(c)]));
+        squares[kind] += r[c] * r[c];
+        expected[kind] += P(c, c);
+      }
+      squares[3] += (left.wobble.transpose() * r).squaredNorm();
+      expected[3] += (left.wobble.transpose() * P * left.wobble).trace();
+    }
+    std::array<double, 4> ratios{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (expected[k] > 0) ratios[k] = squares[k] / expected[k];
+    }
+    return ratios;
   }
 
   // Linear about x, with the priors as rows of line 0.

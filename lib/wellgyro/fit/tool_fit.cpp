@@ -16,6 +16,7 @@
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/tool_adjust_internal.h"
 #include "wellgyro/fit/tool_result_internal.h"
+#include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
 namespace {
@@ -54,7 +55,12 @@ double Gain(const Eigen::VectorXd& x, const Eigen::MatrixXd& cov,
   return part.dot(Eigen::MatrixXd(cov(places, places)).ldlt().solve(part));
 }
 
-// Backwards from all that is seen: what lowers Akaike's criterion goes, one bundle a turn.
+// What noise alone gives a bundle of so many coefficients once in a hundred.
+double ByChance(std::size_t coefficients) {
+  return ChiSquareQuantile(0.99, static_cast<int>(coefficients));
+}
+
+// Backwards from all that is seen: what chance gives as well goes, one bundle a turn.
 std::vector<int> Chosen(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
                         const ToolAdjustment& full) {
   Eigen::VectorXd x = full.x;
@@ -70,7 +76,7 @@ std::vector<int> Chosen(const std::vector<TermBundle>& bundles, const std::vecto
       });
       if (bundle.needed || carries) continue;
       const auto places = PlacesIn(bundles, seen, place);
-      const double rise = Gain(x, cov, places) - 2 * static_cast<double>(places.size());
+      const double rise = Gain(x, cov, places) - ByChance(places.size());
       if (rise >= least) continue;
       least = rise;
       worst = place;
