@@ -85,6 +85,7 @@ struct PlanOptions {
   BenchPlanSetup setup;
   std::string out;
   double bench_latitude_deg = 0, well_latitude_deg = 0, sigma_azimuth_deg = 0.1;
+  std::vector<double> inclination_deg, azimuth_deg;
 };
 
 std::string PlanText(const BenchPlan& plan) {
@@ -100,6 +101,14 @@ int Plan(PlanOptions& o) {
   o.setup.bench_latitude = FromDegrees(o.bench_latitude_deg);
   o.setup.well_latitude = FromDegrees(o.well_latitude_deg);
   o.setup.sigma_azimuth = FromDegrees(o.sigma_azimuth_deg);
+  if (!o.inclination_deg.empty()) {
+    o.setup.inclination_from = FromDegrees(o.inclination_deg[0]);
+    o.setup.inclination_to = FromDegrees(o.inclination_deg[1]);
+  }
+  if (!o.azimuth_deg.empty()) {
+    o.setup.azimuth_from = FromDegrees(o.azimuth_deg[0]);
+    o.setup.azimuth_to = FromDegrees(o.azimuth_deg[1]);
+  }
   const BenchPlan plan = PlanBench(o.setup);
   const auto plain = PlainSettings(o.setup.temperatures);
   fmt::print("{} settings: azimuth sigma {:.4g} deg\n", plan.settings.size(),
@@ -187,6 +196,12 @@ void AddCalibratePlan(CLI::App& calibrate, int& exit_code) {
       ->check(Within(-85, 85));
   command->add_option("--azimuth-sigma-deg", o->sigma_azimuth_deg, "wanted, default 0.1")
       ->check(Within(1e-6, 90));
+  command->add_option("--inclination-deg", o->inclination_deg, "of the hole: from, to")
+      ->expected(2)
+      ->check(Within(0, 180));
+  command->add_option("--azimuth-deg", o->azimuth_deg, "of the hole: from, to (clockwise)")
+      ->expected(2)
+      ->check(Within(-360, 360));
   AddNumber(*command, "--sigma-deg-per-h", o->setup.sigma_gyro, 1, "of a reading, default 0.02");
   command->add_option("--temperatures", o->setup.temperatures, "stops of the chamber, 1 to 5")
       ->check(CLI::Range(1, 5));
@@ -197,7 +212,8 @@ void AddCalibratePlan(CLI::App& calibrate, int& exit_code) {
       ->required();
   command->footer(
       "Example:\n  wellgyro calibrate plan --bench-latitude-deg 52 --latitude-deg 60 "
-      "--azimuth-sigma-deg 0.05 \\\n      --out settings.csv");
+      "--azimuth-sigma-deg 0.05 \\\n      --inclination-deg 30 60 --azimuth-deg 60 80 --out "
+      "settings.csv");
   OnCall(command, exit_code, [o] { return Plan(*o); });
 }
 

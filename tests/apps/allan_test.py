@@ -90,6 +90,13 @@ class AllanOfFiles(FreshProgramTest):
         ran = Allan("--data", bad, "--channel", "GX")
         self.assertEqual(ran.returncode, 2)
         self.assertIn("no unit that is known", ran.stderr)
+        ran = Allan("--data", self.Write("times.csv", "TOOL[s]\n0\n1\n2\n"))
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("no column beside times", ran.stderr)
+        far = self.Write("far.csv", "TOOL[s],GX[deg/h]\n0,1\n1,2\n2,1\n3000000,2\n")
+        ran = Allan("--data", far)
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("3000001 places for 4 samples", ran.stderr)
 
     def test_what_is_left_out_and_taken_off_is_told(self):
         values = White(20000, 6)

@@ -48,7 +48,7 @@ BenchTable Rolled(const std::vector<double>& inclinations, double sigma, Random&
 
 // 2026-11-22: a roll at one inclination gave a bias wrong by 0.5 g with a sigma of 6e-6 g.
 TEST(BenchFaults, ConesAreNoCalibrationWithoutATurntable) {
-  for (const double sigma : {1e-6, 1e-4, 1e-3}) {
+  for (const double sigma : {1e-6, 1e-3}) {
     Random random(11);
     for (const std::vector<double>& cones : {std::vector<double>{50}, {90, 45}, {60, 120}}) {
       const auto fitted = FitScalar(Rolled(cones, sigma, random), {});

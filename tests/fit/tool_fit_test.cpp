@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -94,7 +95,7 @@ void Sum(const Score& one, Score& all) {
 TEST(ToolFit, ParametersAndNuisancesWithinTheirSigmas) {
   Random random(31);
   Score all;
-  const int benches = WELLGYRO_LONG ? 200 : 4;
+  const int benches = WELLGYRO_LONG ? 200 : 1;
   for (int i = 0; i < benches; ++i) {
     const Bench b = AnyBench(random);
     const auto fit = FitTool(b.tables, Stated());
@@ -107,10 +108,10 @@ TEST(ToolFit, ParametersAndNuisancesWithinTheirSigmas) {
       "bench, %.3f; %d terms of the truth left out\n",
       benches, all.number, all.square / all.number, all.bench_number,
       all.bench_square / all.bench_number, all.missed);
-  // Of so many by chance: 95 %.
-  const double chance = WELLGYRO_LONG ? 0.05 : 2.6 * std::sqrt(2 / all.number);
+  // Beyond by chance once in a thousand.
+  const double chance = WELLGYRO_LONG ? 0.05 : 3.3 * std::sqrt(2 / all.number);
   EXPECT_NEAR(all.square / all.number, 1, chance);
-  EXPECT_NEAR(all.bench_square / all.bench_number, 1, 2.6 * std::sqrt(2 / all.bench_number));
+  EXPECT_NEAR(all.bench_square / all.bench_number, 1, 3.3 * std::sqrt(2 / all.bench_number));
   EXPECT_LE(all.missed, all.number / 20);
 }
 
@@ -215,6 +216,8 @@ TEST(ToolFit, CorruptedBenchesAreNeverWrongWithoutAWord) {
   const int of_each = WELLGYRO_LONG ? 25 : 1;
   int refused = 0, told = 0, sound = 0, silent = 0;
   for (const auto& [name, corrupt] : kCorruptions) {
+    const std::string_view few[] = {"one gyro in deg/s", "wrong latitude"};
+    if (!WELLGYRO_LONG && std::find(few, few + 2, name) == few + 2) continue;
     for (int k = 0; k < of_each; ++k) {
       Bench b = AnyBench(random);
       ToolFitSetup setup = Stated();

@@ -52,33 +52,50 @@ Pair RowsOf(const BenchSetting& at, BenchAxes axes, double latitude) {
   return rows;
 }
 
+// Evenly from one to the other; the ends of a whole circle once.
+std::vector<double> Between(double from, double to, int n, bool circle = false) {
+  std::vector<double> values;
+  const double step = (to - from) / (circle ? n : n - 1);
+  for (int k = 0; k < n; ++k) values.push_back(from + k * step);
+  return values;
+}
+
+// Attitudes of the tool in the hole, at the temperatures that matter.
+std::vector<BenchSetting> HoleOf(const BenchPlanSetup& setup) {
+  const bool circle = setup.azimuth_to - setup.azimuth_from > kTwoPi - 1e-3;
+  std::vector<BenchSetting> all;
+  for (const double inc : Between(setup.inclination_from, setup.inclination_to, 7)) {
+    for (const double az : Between(setup.azimuth_from, setup.azimuth_to, circle ? 12 : 5, circle)) {
+      for (const double tf : Between(0, kTwoPi, 8, true)) {
+        for (const double tau : Between(-1, 1, 3)) {
+          if (setup.temperatures == 1 && tau != 0) continue;
+          all.push_back({inc, az, tf, tau});
+        }
+      }
+    }
+  }
+  return all;
+}
+
 // Azimuth by the parameters, over attitudes in the hole: mean of g g'.
 Square WeightOf(const BenchPlanSetup& setup) {
   Square W = Square::Zero();
   double count = 0;
   constexpr double kStep = 1e-5;
-  for (int inc = 5; inc <= 95; inc += 15) {
-    for (int az = 0; az < 360; az += 30) {
-      for (int tf = 0; tf < 360; tf += 45) {
-        for (int k = 0; k < (setup.temperatures > 1 ? 3 : 1); ++k) {
-          BenchSetting at{FromDegrees(inc), FromDegrees(az), FromDegrees(tf),
-                          setup.temperatures > 1 ? k - 1.0 : 0.0};
-          const Pair rows = RowsOf(at, setup.axes, setup.well_latitude);
-          at.azimuth += kStep;
-          const Pair turned = RowsOf(at, setup.axes, setup.well_latitude);
-          // The rates themselves: sensitivity one.
-          const Eigen::Vector2d d(turned(0, 1) - rows(0, 1), turned(1, 6) - rows(1, 6));
-          const Eigen::Vector2d slope = d / kStep;
-          const double least = 0.5 * kEarth * std::cos(setup.well_latitude);
-          if (slope.norm() < least) continue;
-          const Eigen::Matrix<double, kMost, 1> g = rows.transpose() * slope / slope.squaredNorm();
-          W += g * g.transpose();
-          count += 1;
-        }
-      }
-    }
+  const double least = 0.5 * kEarth * std::cos(setup.well_latitude);
+  for (BenchSetting at : HoleOf(setup)) {
+    const Pair rows = RowsOf(at, setup.axes, setup.well_latitude);
+    at.azimuth += kStep;
+    const Pair turned = RowsOf(at, setup.axes, setup.well_latitude);
+    // The rates themselves: sensitivity one.
+    const Eigen::Vector2d d(turned(0, 1) - rows(0, 1), turned(1, 6) - rows(1, 6));
+    const Eigen::Vector2d slope = d / kStep;
+    if (slope.norm() < least) continue;
+    const Eigen::Matrix<double, kMost, 1> g = rows.transpose() * slope / slope.squaredNorm();
+    W += g * g.transpose();
+    count += 1;
   }
-  if (count < 1) throw std::invalid_argument("no azimuth can be told at this latitude");
+  if (count < 1) throw std::invalid_argument("no azimuth can be told in this hole");
   return W / count;
 }
 
@@ -242,6 +259,11 @@ void Require(const BenchPlanSetup& setup) {
   if (setup.temperatures < 1 || setup.temperatures > 5) {
     throw std::invalid_argument(
         fmt::format("{} temperatures: 1 to 5 can be planned", setup.temperatures));
+  }
+  const double inc = setup.inclination_to - setup.inclination_from;
+  const double az = setup.azimuth_to - setup.azimuth_from;
+  if (!(inc >= 0) || !(az >= 0) || az > kTwoPi + 1e-3) {
+    throw std::invalid_argument("inclinations and azimuths of the hole go from less to more");
   }
   if (!(setup.sigma_gyro > 0) || !(setup.sigma_azimuth > 0)) {
     throw std::invalid_argument("a plan needs the sigma of a reading and the azimuth's wanted one");

@@ -20,6 +20,9 @@ struct BenchPlanSetup {
     kDeterminant,  ///< all parameters alike (D-optimal)
   } criterion = Criterion::kAzimuth;
   int most = 240;  ///< settings
+  /// Of the hole that it is for [rad]: a plan for a part of all directions needs fewer settings.
+  double inclination_from = 0.0873, inclination_to = 1.6581;  ///< 5 to 95 deg
+  double azimuth_from = 0, azimuth_to = 6.2832;               ///< clockwise, the whole circle
 };
 
 /// One setting: attitude of the bench and, from -1 to 1, the temperature in its range.
@@ -34,7 +37,8 @@ struct BenchPlan {
   bool reached = false;                ///< what was wanted
 };
 
-/// The root mean square, over the hole's attitudes that are not near east-west and horizontal, of
+/// The root mean square, over the hole's attitudes that are not near east-west and horizontal and
+/// all toolfaces, of
 /// the azimuth's sigma that a calibration from `settings` leaves; infinite where they leave a
 /// parameter open.
 WELLGYRO_EXPORT double AzimuthSigmaOf(const std::vector<BenchSetting>& settings,

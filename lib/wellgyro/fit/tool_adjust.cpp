@@ -115,20 +115,20 @@ class Adjuster {
       const std::vector<char> before = out_;
       // The start's sigmas weigh the kinds of readings badly against each other.
       if (turn > 0) MarkOutliers();
-      FindNoise();
+      FindNoise(kRoughSweeps);
       if (turn > 1 && before == out_) break;
     }
     for (int turn = 0; turn < kTurns; ++turn) {
       if (!Minimise(false)) return Unsettled();
       const ToolNoise before = noise_;
-      FindNoise();
+      FindNoise(kSweeps);
       if (Alike(before)) break;
     }
     return Finish();
   }
 
  private:
-  static constexpr int kRobustTurns = 6, kTurns = 6;
+  static constexpr int kRobustTurns = 6, kTurns = 6, kRoughSweeps = 3, kSweeps = 12;
 
   static Fault Unsettled() {
     return {.code = FaultCode::kRange,
@@ -221,7 +221,7 @@ class Adjuster {
     const Prior prior = PriorOf(model_);
     problem.AddResidualBlock(new PriorCost(prior.A, prior.x0), nullptr, x_.data());
     ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = 200;
     options.function_tolerance = 1e-12;
     options.gradient_tolerance = 1e-14;
@@ -273,10 +273,9 @@ class Adjuster {
 
   // The sigmas under which what is left is likeliest, what each kind of readings loses to the
   // parameters allowed for (restricted likelihood), in a model linear about x.
-  void FindNoise() {
+  void FindNoise(int sweeps) {
     const std::vector<Left> rows = RowsLeft();
-    constexpr int kSweeps = 12;
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
       const ToolNoise before = noise_;
       const std::array<double, 4> ratios = SquaresOverExpected(rows);
       const std::array<bool, 4> held = Held();

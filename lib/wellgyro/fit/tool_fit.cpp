@@ -108,19 +108,23 @@ void TellLeftOut(const std::vector<TermBundle>& bundles, const std::vector<int>&
   }
 }
 
+// What the readings say of the bench against what was said before: of a prior of sigma s that the
+// readings narrow to v, the estimate scatters by sqrt(s^2 - v), however little they narrow it.
 void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
-  constexpr double kFar = 3.5;
+  constexpr double kFar = 3.5, kLeastNarrowed = 1e-7;
   for (std::size_t i = 0; i < model.nuisances().size(); ++i) {
     BenchNuisance nuisance = model.nuisances()[i];
     const auto at = static_cast<Eigen::Index>(i) + model.n_terms();
     nuisance.value = a.x[at];
     nuisance.sigma = std::sqrt(std::max(0.0, a.cov(at, at)));
-    if (std::abs(nuisance.value) > kFar * nuisance.prior_sigma) {
+    const double prior = std::pow(nuisance.prior_sigma, 2), narrowed = prior - a.cov(at, at);
+    const double sigmas =
+        narrowed > kLeastNarrowed * prior ? std::abs(nuisance.value) / std::sqrt(narrowed) : 0;
+    if (sigmas > kFar) {
       fit.calibration.report.remarks.push_back(fmt::format(
-          "{} is {:.3g} deg beside what was given, {:.1f} of its sigmas there: the reference is "
-          "wrong, or a unit or sign of the table",
-          nuisance.name, ToDegrees(nuisance.value),
-          std::abs(nuisance.value) / nuisance.prior_sigma));
+          "{}: the readings ask for {:.3g} deg beside what was given, {:.1f} sigmas off: the "
+          "reference is wrong, or a unit or sign of the table",
+          nuisance.name, ToDegrees(nuisance.value * prior / narrowed), sigmas));
     }
     fit.nuisances.push_back(std::move(nuisance));
   }

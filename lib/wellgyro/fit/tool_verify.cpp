@@ -11,6 +11,7 @@
 #include "wellgyro/calibration/members.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/tool_rows_internal.h"
+#include "wellgyro/math/so3.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -77,10 +78,11 @@ double ByMember(const CalibrationMember& member, const ChannelAt& at, const Tool
   return row.heating;
 }
 
-// Residuals of a table against the tool model: e = B shifts + noise of covariance C.
+// Residuals of a table against the tool model: e = B shifts + noise of covariance C. In C is what
+// the bench's turn may be, by `level` and its prior.
 struct Residuals {
   Eigen::VectorXd e;
-  Eigen::MatrixXd C, B;
+  Eigen::MatrixXd C, B, level;
 };
 
 class Comparison {
@@ -116,32 +118,39 @@ class Comparison {
     return member.kind == Kind::kBias ? si * units::kDegPerHour : si * units::kDegPerHour / g;
   }
 
-  Residuals Compare() const {
+  // Linear about a turn of the bench: about north, east, down.
+  Residuals Compare(const Eigen::Vector3d& turn) const {
     Eigen::Index n = 0;
     for (const ToolRow& row : readings_.rows) n += static_cast<Eigen::Index>(row.channels.size());
     std::vector<CalibrationMember> known;
     Eigen::MatrixXd cov = KnownCovariance(known);
     const auto k = static_cast<Eigen::Index>(known.size());
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, k), level = Eigen::MatrixXd::Zero(n, 3);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, k);
     Residuals r{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n),
-                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(members_.size()))};
+                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(members_.size())),
+                Eigen::MatrixXd::Zero(n, 3)};
+    const Eigen::Matrix3d turned = Exp(turn);
     Eigen::Index first = 0;
     for (const ToolRow& row : readings_.rows) {
       const auto size = static_cast<Eigen::Index>(row.channels.size());
       Eigen::MatrixXd wobble(size, 3);
       for (Eigen::Index i = 0; i < size; ++i) {
-        Row(row, row.channels[static_cast<std::size_t>(i)], row.v[i], first + i, known,
-            wobble.row(i), level, J, r);
+        Row(row, row.channels[static_cast<std::size_t>(i)], row.v[i], first + i, known, turned,
+            wobble.row(i), J, r);
       }
       const double sigma = setup_.bench.sigma_wobble.value_or(0);
       r.C.block(first, first, size, size) += sigma * sigma * wobble * wobble.transpose();
       first += size;
     }
-    const ToolFitSetup& bench = setup_.bench;
-    const Eigen::Vector3d variance(std::pow(bench.sigma_level, 2), std::pow(bench.sigma_level, 2),
-                                   std::pow(bench.sigma_north, 2));
-    r.C += J * cov * J.transpose() + level * variance.asDiagonal() * level.transpose();
+    r.C += J * cov * J.transpose() + r.level * TurnVariance().asDiagonal() * r.level.transpose();
+    r.e += r.level * turn;
     return r;
+  }
+
+  Eigen::Vector3d TurnVariance() const {
+    const ToolFitSetup& bench = setup_.bench;
+    return {std::pow(bench.sigma_level, 2), std::pow(bench.sigma_level, 2),
+            std::pow(bench.sigma_north, 2)};
   }
 
  private:
@@ -162,15 +171,16 @@ class Comparison {
   }
 
   void Row(const ToolRow& row, int channel, double read, Eigen::Index at,
-           const std::vector<CalibrationMember>& known, Eigen::MatrixXd::RowXpr wobble,
-           Eigen::MatrixXd& level, Eigen::MatrixXd& J, Residuals& r) const {
+           const std::vector<CalibrationMember>& known, const Eigen::Matrix3d& turned,
+           Eigen::MatrixXd::RowXpr wobble, Eigen::MatrixXd& J, Residuals& r) const {
     const BenchReference& reference = setup_.bench.reference;
     const bool is_gyro = readings_.channels[static_cast<std::size_t>(channel)].is_gyro;
     const int c = channel - (is_gyro ? readings_.n_accel : 0);
     const SensorGroup& group = is_gyro ? tool_.gyro : tool_.accel;
     const double L = reference.latitude.value_or(0);
-    const Eigen::Vector3d w_L = kBenchEarthRate * Eigen::Vector3d(std::cos(L), 0, -std::sin(L));
-    const Eigen::Vector3d f_L(0, 0, -reference.gravity_mps2);
+    const Eigen::Vector3d w_L =
+        kBenchEarthRate * (turned * Eigen::Vector3d(std::cos(L), 0, -std::sin(L)));
+    const Eigen::Vector3d f_L = -reference.gravity_mps2 * turned.col(2);
     const Eigen::Matrix3d R_TB = ToolFromBench(reference.axes);
     const Eigen::Matrix3d R = R_TB * row.R_BL;
     const Eigen::Vector3d w_T = R * w_L, f_T = R * f_L;
@@ -182,7 +192,7 @@ class Comparison {
     const Eigen::RowVector3d by_f = v.by_f * group.R_TS.transpose();
     const Eigen::Vector3d own = is_gyro ? w_T : f_T, own_L = is_gyro ? w_L : f_L;
     wobble = (by_u * Cross(own) + by_f * Cross(f_T)) * R_TB;
-    level.row(at) = by_u * R * -Cross(own_L) + by_f * R * -Cross(f_L);
+    r.level.row(at) = by_u * R * -Cross(own_L) + by_f * R * -Cross(f_L);
     for (std::size_t k = 0; k < known.size(); ++k) {
       if (known[k].is_gyro != is_gyro || known[k].channel != c) continue;
       J(at, static_cast<Eigen::Index>(k)) = ByMember(known[k], v, row);
@@ -233,6 +243,32 @@ std::vector<Eigen::Index> Seen(const Eigen::MatrixXd& B) {
   return seen;
 }
 
+struct Shifts {
+  std::vector<Eigen::Index> seen;
+  Eigen::VectorXd x;
+  Eigen::MatrixXd cov;
+  double chi_square = 0;  // without shifts
+  int dof = 0;
+};
+
+// Generalised least squares, linear about the bench's turn, which becomes the likeliest.
+Shifts ShiftsOf(const Comparison& comparison, Eigen::Vector3d& turn) {
+  const Residuals r = comparison.Compare(turn);
+  const Eigen::LLT<Eigen::MatrixXd> root(r.C);
+  const Eigen::MatrixXd W = root.matrixL().solve(r.B);
+  const Eigen::VectorXd e = root.matrixL().solve(r.e);
+  Shifts found;
+  found.seen = Seen(W);
+  const Eigen::MatrixXd B = W(Eigen::all, found.seen);
+  found.cov = (B.transpose() * B).inverse();
+  found.x = found.cov * (B.transpose() * e);
+  found.chi_square = e.squaredNorm();
+  found.dof = static_cast<int>(e.size());
+  const Eigen::VectorXd left = root.matrixU().solve(Eigen::VectorXd(e - B * found.x));
+  turn = comparison.TurnVariance().asDiagonal() * (r.level.transpose() * left);
+  return found;
+}
+
 }  // namespace
 
 Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
@@ -245,24 +281,21 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
   }
   if (auto fault = Unlike(data, *readings, tool)) return *fault;
   Comparison comparison(*readings, tool, setup);
-  const Residuals r = comparison.Compare();
-  const Eigen::LLT<Eigen::MatrixXd> root(r.C);
-  const Eigen::MatrixXd W = root.matrixL().solve(r.B);
-  const Eigen::VectorXd e = root.matrixL().solve(r.e);
-  const std::vector<Eigen::Index> seen = Seen(W);
-  const Eigen::MatrixXd B = W(Eigen::all, seen);
-  const Eigen::MatrixXd cov = (B.transpose() * B).inverse();
-  const Eigen::VectorXd x = cov * (B.transpose() * e);
+  Shifts found;
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  // A tilt of a third of a degree acts on the force to the second order, by 1e-5 of it.
+  constexpr int kTurns = 3;
+  for (int k = 0; k < kTurns; ++k) found = ShiftsOf(comparison, turn);
   Verification out;
-  out.chi_square = e.squaredNorm();
-  out.dof = static_cast<int>(e.size());
+  out.chi_square = found.chi_square;
+  out.dof = found.dof;
   out.probability = 1 - ChiSquareCdf(out.chi_square, out.dof);
-  out.reach = -NormalQuantile(setup.false_alarm / 2 / static_cast<double>(seen.size()));
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    ToolShift shift = comparison.shifts()[static_cast<std::size_t>(seen[i])];
+  out.reach = -NormalQuantile(setup.false_alarm / 2 / static_cast<double>(found.seen.size()));
+  for (std::size_t i = 0; i < found.seen.size(); ++i) {
+    ToolShift shift = comparison.shifts()[static_cast<std::size_t>(found.seen[i])];
     const auto at = static_cast<Eigen::Index>(i);
-    shift.value = x[at];
-    shift.sigma = std::sqrt(cov(at, at));
+    shift.value = found.x[at];
+    shift.sigma = std::sqrt(found.cov(at, at));
     shift.shifted = std::abs(shift.value) > out.reach * shift.sigma;
     shift.within = shift.limit > 0 ? std::abs(shift.value) <= shift.limit : !shift.shifted;
     out.pass = out.pass && shift.within;
