@@ -114,7 +114,7 @@ class AllanOfFiles(FreshProgramTest):
         self.assertIn("1 spikes left out", ran.stderr)
         self.assertIn("taken off: 3", ran.stderr)
         for row in self.Rows("t.csv"):
-            if float(row["n"]) > 1000:
+            if float(row["edf"]) > 60:
                 expected = 6 / math.sqrt(10 * float(row["tau_s"]))
                 self.assertAlmostEqual(float(row["adev_deg_per_h"]) / expected, 1, delta=0.3)
         for words in ("600", "5:1", "a:b", "-1:5"):

@@ -116,7 +116,7 @@ void CompareTools(const std::string& name, std::vector<ToolHistory>& histories) 
   std::vector<double> away;
   away.reserve(logs.size());
   for (const double value : logs) away.push_back(std::abs(value - middle));
-  constexpr double kSigmaPerMad = 1.4826, kUnlike = 8;
+  constexpr double kSigmaPerMad = 1.4826, kUnlike = 5;
   // One change alone scatters by 1.1 in its logarithm, several by less.
   const double spread = std::max(kSigmaPerMad * Median(away), 0.1);
   for (std::size_t i = 0; i < of.size(); ++i) {
