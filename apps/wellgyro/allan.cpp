@@ -24,7 +24,8 @@ namespace wellgyro::apps {
 namespace {
 
 struct Options {
-  std::string data, type, channel, bus_channel, sequence, temperature;
+  std::string data, type, channel, bus_channel, sequence, temperature, time, detrend;
+  std::vector<std::string> exclude;
   std::string deviation = "oadev", taus = "octave";
   std::string out, table, plot;
   double rate_hz = 0;
@@ -47,7 +48,8 @@ Result<SampleSeries> Read(const Options& o) {
   Progress progress("reading " + o.data);
   switch (*type) {
     case SeriesType::kCsv:
-      return ReadCsvSeries(o.data, {o.channel, o.sequence, o.temperature}, Shower(progress));
+      return ReadCsvSeries(o.data, {o.channel, o.sequence, o.temperature, o.time},
+                           Shower(progress));
     case SeriesType::kLcm: {
       SeriesChannel channel{o.channel.empty() ? "gx" : o.channel, o.bus_channel, std::nullopt};
       if (o.tool >= 0) channel.tool = o.tool;
@@ -149,6 +151,23 @@ int Run(Options& o) {
   return Tell(o, **answer);
 }
 
+// "0:600": from and to in seconds from the first sample.
+void TakeExcluded(Options& o) {
+  for (const std::string& word : o.exclude) {
+    const std::size_t colon = word.find(':');
+    double from = 0, to = 0;
+    const char* const text = word.data();
+    const bool two = colon != std::string::npos;
+    const auto first = std::from_chars(text, text + (two ? colon : 0), from);
+    const auto last = std::from_chars(text + (two ? colon + 1 : 0), text + word.size(), to);
+    if (!two || first.ec != std::errc() || first.ptr != text + colon || last.ec != std::errc() ||
+        last.ptr != text + word.size() || !(from >= 0) || !(to > from)) {
+      throw std::invalid_argument("--exclude takes seconds from and to, as 0:600; not " + word);
+    }
+    o.request.exclude.emplace_back(from, to);
+  }
+}
+
 // octave, decade, or times in seconds with commas between.
 void TakeTaus(Options& o) {
   AllanRequest& request = o.request;
@@ -182,6 +201,8 @@ void TakeWords(Options& o) {
     throw std::invalid_argument("--unitless gives a table and a plot; a noise file has units");
   }
   TakeTaus(o);
+  TakeExcluded(o);
+  o.request.detrend_temperature = o.detrend == "temperature";
 }
 
 void AddInput(CLI::App& command, Options& o) {
@@ -205,10 +226,13 @@ void AddInput(CLI::App& command, Options& o) {
   command.add_option("--sequence", o.sequence,
                      "CSV: column of sample numbers; those left out are missing");
   command.add_option("--temperature", o.temperature, "CSV: column of the temperature, degC");
+  command.add_option("--time", o.time,
+                     "CSV: column of each sample's time, s or as its heading says (TOOL[s] and "
+                     "UTC[us] are found by themselves); gives the rate and what is missing");
   command
-      .add_option(
-          "--unit", o.request.unit,
-          "deg_per_h, deg_per_s, rad_per_s (default) or counts; accelerometers mps2, milli_g")
+      .add_option("--unit", o.request.unit,
+                  "deg_per_h, deg_per_s, rad_per_s (default, or as the heading says) or counts; "
+                  "accelerometers mps2, milli_g")
       ->check([](const std::string& word) {
         return IsAllanUnit(word) ? std::string() : "unknown unit " + word;
       });
@@ -218,6 +242,20 @@ void AddInput(CLI::App& command, Options& o) {
       ->each([&o](const std::string&) { o.has_scale = true; });
   command.add_flag("--phase", o.request.phases, "the readings are phases (angles), not rates");
   command.add_flag("--unitless", o.request.unitless, "plain numbers: no unit in the table");
+}
+
+void AddCleaning(CLI::App& command, Options& o) {
+  command
+      .add_option("--exclude", o.exclude,
+                  "a stretch to leave out, seconds from the first sample: 0:600; several with "
+                  "commas or by repeating it")
+      ->delimiter(',');
+  command.add_flag("--robust", o.request.robust,
+                   "leave out single readings beyond eight robust sigmas of those about them");
+  command
+      .add_option("--detrend", o.detrend,
+                  "temperature: take off what follows it, slope and bend by least squares")
+      ->check(CLI::IsMember({"temperature"}));
 }
 
 void AddAnalysis(CLI::App& command, Options& o) {
@@ -245,6 +283,7 @@ void AddAllan(CLI::App& app, int& exit_code) {
       app.add_subcommand("allan", "Finds Allan deviation and noise coefficients of a static log");
   auto options = std::make_shared<Options>();
   AddInput(*command, *options);
+  AddCleaning(*command, *options);
   AddAnalysis(*command, *options);
   command->footer(
       "Example:\n  wellgyro allan --data static.csv --channel gx_deg_per_h --unit deg_per_h \\\n"

@@ -33,6 +33,7 @@ Result<BenchOutcome> TwentyFour(const BenchTable& data, const BenchTable&, Optio
 Result<BenchOutcome> Six(const BenchTable& data, const BenchTable&, Options& o) {
   o.six.axes = o.reference.axes;
   o.six.gravity = o.reference.gravity_mps2;
+  o.six.gravity_stated = o.gravity_stated;
   return Plain(FitSixPositions(data, o.six));
 }
 

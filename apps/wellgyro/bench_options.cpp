@@ -73,12 +73,16 @@ CLI::Validator Within(double low, double high) {
 void AddGravity(CLI::App& command, BenchOptions& o) {
   BenchReference& r = o.reference;
   AddReference(command, o, "--gravity-g", "local gravity; readings are in g (default 1)",
-               Within(0.97, 1.03), [&r](double g) {
+               Within(0.97, 1.03), [&r, &o](double g) {
+                 o.gravity_stated = true;
                  r.gravity = g;
                  r.gravity_mps2 = g * units::kStandardGravity;
                });
   AddReference(command, o, "--gravity-mps2", "local gravity; readings are in m/s2",
-               Within(9.5, 10.1), [&r](double g) { r.gravity = r.gravity_mps2 = g; });
+               Within(9.5, 10.1), [&r, &o](double g) {
+                 o.gravity_stated = true;
+                 r.gravity = r.gravity_mps2 = g;
+               });
 }
 
 void AddField(CLI::App& command, BenchOptions& o) {

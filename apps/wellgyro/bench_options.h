@@ -21,6 +21,7 @@ namespace wellgyro::apps {
 struct BenchOptions {
   std::string data, joined, out, tool;
   BenchReference reference;
+  bool gravity_stated = false;
   std::vector<std::string> said;  ///< references as the user gave them, for the file
   ToolUpdate update;
   std::vector<std::string> axes;

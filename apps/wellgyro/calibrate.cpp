@@ -18,6 +18,7 @@
 
 #include "bench_methods.h"
 #include "bench_options.h"
+#include "calibrate_tool.h"
 #include "commands.h"
 #include "report.h"
 
@@ -113,6 +114,10 @@ void AddCalibrate(CLI::App& app, int& exit_code) {
       "      --gravity-mps2 9.8123 --tool tool.toml --channels 3,4,5");
   const auto options = std::make_shared<BenchOptions>();
   for (const BenchMethod& method : BenchMethods()) AddMethod(*command, exit_code, options, method);
+  AddCalibrateTool(*command, exit_code);
+  AddCalibrateVerify(*command, exit_code);
+  AddCalibratePlan(*command, exit_code);
+  AddCalibrateHistory(*command, exit_code);
 }
 
 }  // namespace wellgyro::apps

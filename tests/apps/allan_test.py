@@ -74,6 +74,53 @@ class AllanOfFiles(FreshProgramTest):
         self.assertIn("sample 777 (15.54 s)", ran.stderr)
         self.assertIn("10 samples missing by number: samples 3000 to 3009", ran.stderr)
 
+    def test_headings_say_units_and_times(self):
+        values = White(6000, 5)
+        rows = [f"{0.1 * i:.3f},{v!r},{20 + 1e-3 * i}" for i, v in enumerate(values)]
+        data = self.Write("log.csv", "TOOL[s],GX[deg/h],TEMP[degC]\n" + "\n".join(rows) + "\n")
+        ran = Allan("--data", data, "--channel", "GX", "--table", self.Path("t.csv"))
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        first = self.Rows("t.csv")[0]
+        self.assertAlmostEqual(float(first["tau_s"]), 0.1, places=9)
+        self.assertAlmostEqual(float(first["adev_deg_per_h"]), 6, delta=0.3)
+        # What contradicts the file is refused.
+        for options in (["--rate-hz", "1"], ["--unit", "rad_per_s"]):
+            self.assertEqual(Allan("--data", data, "--channel", "GX", *options).returncode, 1)
+        bad = self.Write("bad.csv", "TOOL[s],GX[furlong]\n0,1\n1,2\n2,3\n")
+        ran = Allan("--data", bad, "--channel", "GX")
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("no unit that is known", ran.stderr)
+        ran = Allan("--data", self.Write("times.csv", "TOOL[s]\n0\n1\n2\n"))
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("no column beside times", ran.stderr)
+        far = self.Write("far.csv", "TOOL[s],GX[deg/h]\n0,1\n1,2\n2,1\n3000000,2\n")
+        ran = Allan("--data", far)
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("3000001 places for 4 samples", ran.stderr)
+
+    def test_what_is_left_out_and_taken_off_is_told(self):
+        values = White(20000, 6)
+        for i in range(2000):
+            values[i] += 500 * math.exp(-i / 300)
+        values[9000] += 1000
+        rows = [f"{v + 3 * (40 + 20 * math.sin(3e-4 * i))!r},{40 + 20 * math.sin(3e-4 * i)}"
+                for i, v in enumerate(values)]
+        data = self.Write("log.csv", "GX[deg/h],T\n" + "\n".join(rows) + "\n")
+        ran = Allan("--data", data, "--channel", "GX", "--temperature", "T", "--rate-hz", "10",
+                    "--exclude", "0:200", "--robust", "--detrend", "temperature", "--table",
+                    self.Path("t.csv"))
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertIn("2000 samples from 0 to 200 s left out, as asked", ran.stderr)
+        self.assertIn("1 spikes left out", ran.stderr)
+        self.assertIn("taken off: 3", ran.stderr)
+        for row in self.Rows("t.csv"):
+            if float(row["edf"]) > 60:
+                expected = 6 / math.sqrt(10 * float(row["tau_s"]))
+                self.assertAlmostEqual(float(row["adev_deg_per_h"]) / expected, 1, delta=0.3)
+        for words in ("600", "5:1", "a:b", "-1:5"):
+            self.assertEqual(Allan("--data", data, "--channel", "GX", "--rate-hz", "10",
+                                   "--exclude=" + words).returncode, 1, words)
+
     def test_unusable_is_exit_2_and_says_why(self):
         for name, data, word in (("e.f64", b"", "empty"), ("t.f64", b"1.5\n2.5\n", "csv"),
                                  ("c.f64", b"\0" * 9, "whole samples"),

@@ -71,6 +71,19 @@ def OnTable(source):
     return Table("axis,rate_deg_s,m_x1,m_y1,m_z2,m_x2", rows)
 
 
+def WholeTool(table, source, shift=0.0):
+    """The table at rest with accelerometers as sensors have them, m/s2; the first gyro shifted."""
+    lines = table.splitlines()
+    rows = [lines[0]]
+    for line in lines[1:]:
+        cells = [float(x) for x in line.split(",")]
+        for k in range(3):
+            cells[3 + k] = 9.8195 * cells[3 + k] * (1 + 1e-3 * k) + 0.01 + source.gauss(0, 2e-4)
+        cells[6] += shift
+        rows.append(",".join(repr(x) for x in cells))
+    return "\n".join(rows) + "\n"
+
+
 def Volts(source, sigma=1e-5, tilt=0.2):
     rows = []
     for axis in range(3):
@@ -177,6 +190,45 @@ class Calibrate(FreshProgramTest):
             with open(out) as file:
                 self.assertIn(f'role = "{option[2:].replace("-", "_")}"\nfile = "{joined}"',
                               file.read())
+
+    def test_a_whole_tool_is_adjusted_certified_and_verified(self):
+        source = random.Random(11)
+        rest = self.Write("rest.csv", WholeTool(AtRest(source), source))
+        found = self.Write("found.csv", WholeTool(AtRest(source), source))
+        table = self.Write("table.csv", OnTable(source))
+        tool, page = self.Path("tool.toml"), self.Path("tool.html")
+        ran = self.Done("calibrate", "tool", "--data", rest, "--data", table, "--latitude-deg",
+                        str(LATITUDE), "--gravity-mps2", "9.8195", "--out", self.Path("c.toml"),
+                        "--tool", tool, "--certificate", page, "--traceability",
+                        "rate table <RT-5>", "--asset-serial", "A&7", "--date", "2026-01-31")
+        self.assertIn("gyro_M[0]", ran.stdout + self.Read(self.Path("c.toml")))
+        for name in (tool, self.Path("c.toml")):
+            self.Done("check", name)
+        html = self.Read(page)
+        for word in ("A&amp;7", "rate table &lt;RT-5&gt;", "gyro_bias_x", "mass_unbalance", "<svg",
+                     "level_1[0]", "k = 2"):
+            self.assertIn(word, html)
+        verify = ["calibrate", "verify", "--tool", tool, "--latitude-deg", str(LATITUDE),
+                  "--gravity-mps2", "9.8195", "--sigma-accel", "2e-4", "--sigma-deg-per-h", "0.02"]
+        self.assertIn("pass", self.Done(*verify, "--data", found).stdout)
+        moved = self.Write("moved.csv", WholeTool(AtRest(source), source, 0.3))
+        ran = Run(*verify, "--data", moved)
+        self.assertEqual(ran.returncode, 4, ran.stdout)
+        self.assertIn("gyro_b[0]", ran.stdout)
+        self.assertIn("shifted", ran.stdout)
+        later = self.Path("later.toml")
+        self.Done("calibrate", "tool", "--data", moved, "--data", table, "--latitude-deg",
+                  str(LATITUDE), "--gravity-mps2", "9.8195", "--out", self.Path("c2.toml"),
+                  "--tool", later, "--asset-serial", "A&7", "--date", "2026-07-31")
+        ran = self.Done("calibrate", "history", "--tool", tool, "--tool", later)
+        self.assertIn("shifted", "".join(x for x in ran.stdout.splitlines() if "gyro_bias_y" in x))
+        self.Done("calibrate", "plan", "--bench-latitude-deg", "52", "--latitude-deg", "60",
+                  "--azimuth-sigma-deg", "0.05", "--out", self.Path("plan.csv"))
+        self.assertTrue(self.Read(self.Path("plan.csv")).startswith("inc,az,tf,tau\n"))
+        for arguments in (["tool", "--data", rest, "--out", rest],
+                          ["verify", "--data", rest, "--tool", tool],
+                          ["history", "--tool", self.Write("blank.toml", TrueTool())]):
+            self.assertEqual(Run("calibrate", *arguments).returncode, 1, arguments)
 
     def test_readme_shows_what_the_demonstration_gives(self):
         out = self.Path("accel.toml")

@@ -51,7 +51,11 @@ TEST(StaticLog, TellsWhereItMoved) {
   auto rate = Quiet(1);
   for (std::size_t i = 60000; i < 60300; ++i) rate[i] += 5;    // turned
   for (std::size_t i = 150000; i < 200000; ++i) rate[i] += 1;  // stood differently afterwards
-  const auto moved = Of(InspectStaticLog(rate, {}), Kind::kMoved);
+  const auto findings = InspectStaticLog(rate, {});
+  auto moved = Of(findings, Kind::kMoved);
+  ASSERT_EQ(moved.size(), 1u);
+  const auto stepped = Of(findings, Kind::kStep);
+  moved.insert(moved.end(), stepped.begin(), stepped.end());
   ASSERT_EQ(moved.size(), 2u);
   EXPECT_LE(moved[0].where.begin, 60000);
   EXPECT_GE(moved[0].where.end, 60300);

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
 
 #include "wellgyro/calibration/apply.h"
+#include "wellgyro/calibration/members.h"
 
 namespace wellgyro {
 namespace {
@@ -39,6 +41,28 @@ Complaint ChannelComplaint(const SensorGroup& group, const std::string& name, in
     if (!std::isfinite(group.unit_per_count[c]) || group.unit_per_count[c] == 0) {
       return fmt::format("{}: unit_per_count of channel {} is {}", name, place,
                          group.unit_per_count[c]);
+    }
+  }
+  return std::nullopt;
+}
+
+// Of members of the tool model, names that are none and channels that it has not.
+Complaint CovarianceComplaint(const ToolCalibration& tool, const SensorGroup& group,
+                              const std::string& name) {
+  if (!group.covariance) return std::nullopt;
+  const ParameterCovariance& known = *group.covariance;
+  const auto n = static_cast<Eigen::Index>(known.names.size());
+  if (known.cov.rows() != n || known.cov.cols() != n || !known.cov.allFinite()) {
+    return fmt::format("{}: the covariance is not that of its {} parameters", name, n);
+  }
+  for (const std::string& parameter : known.names) {
+    if (parameter.rfind("gyro.", 0) != 0 && parameter.rfind("accel.", 0) != 0) continue;
+    try {
+      const CalibrationMember member = MemberOf(parameter);
+      if (member.channel < (member.is_gyro ? tool.gyro : tool.accel).n_channels) continue;
+      return fmt::format("{}: there is no channel of {}", name, parameter);
+    } catch (const std::invalid_argument& error) {
+      return fmt::format("{}: {}", name, error.what());
     }
   }
   return std::nullopt;
@@ -126,6 +150,8 @@ Complaint FindComplaint(const ToolCalibration& tool) {
   if (auto complaint = GroupComplaint(tool.gyro, "gyro", 2, thermometers)) return complaint;
   if (auto complaint = GroupComplaint(tool.accel, "accel", 3, thermometers)) return complaint;
   if (auto complaint = GroupComplaint(tool.mag, "mag", 3, thermometers)) return complaint;
+  if (auto complaint = CovarianceComplaint(tool, tool.gyro, "gyro")) return complaint;
+  if (auto complaint = CovarianceComplaint(tool, tool.accel, "accel")) return complaint;
   const bool feels_force =
       tool.gyro.n_channels > 0 &&
       (!tool.gyro.g_squared.isZero(0) ||

@@ -69,7 +69,8 @@ void TakeGroup(const ToolCalibration& tool, const SensorGroup& found, const FitR
 
 void TakeThermometer(const BenchCalibration& bench, const ToolUpdate& update,
                      ToolCalibration& tool) {
-  const bool wanted = bench.thermometer || bench.accel.thermometer >= 0;
+  const bool wanted =
+      bench.thermometer || bench.accel.thermometer >= 0 || bench.gyro.thermometer >= 0;
   const auto place = static_cast<std::size_t>(update.thermometer);
   if (wanted && tool.thermometers.size() <= place) tool.thermometers.resize(place + 1);
   if (wanted && update.thermometer_channel) {

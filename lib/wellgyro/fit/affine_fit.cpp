@@ -10,6 +10,7 @@
 #include "wellgyro/fit/affine_internal.h"
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/sensor_groups_internal.h"
 
 namespace wellgyro {
@@ -79,7 +80,7 @@ void AddGroup(const AffineReadings& readings, const AttitudeTable& table,
   const double si = is_mag ? units::kNanotesla : reference.gravity_mps2 / reference.gravity;
   SensorGroup& group = is_mag ? out.mag : out.accel;
   group = ThreeChannels(x.segment<3>(first), MatrixAt(x, first + 3), si, reference.axes,
-                        !is_mag && table.gravity_signed, is_mag ? "nT" : "g");
+                        !is_mag && table.gravity_signed, "as read");
   const int at = first + 12;
   if (readings.order == SecondOrder::kOwn) {
     AddVector(report, "K2_" + readings.suffix, at, 3);
@@ -125,22 +126,23 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   BenchCalibration out;
   out.report = *std::move(whole);
   out.report.method = "affine";
+  // What a channel varies by is its own sensitivity's, whatever its unit.
   std::vector<ChannelSignal> signals;
-  for (const std::string& channel : table->accel_channels) {
-    signals.push_back({channel, setup.reference.gravity});
-  }
-  for (const std::string& channel : table->mag_channels) {
-    signals.push_back({channel, setup.reference.field.value_or(0)});
-  }
   int first = 0;
   for (const AffineReadings& group : groups) {
     if (auto fault = WrongAxes(data, MatrixAt(out.report.values, first + 3), group.channels)) {
       return *fault;
     }
+    const Eigen::Matrix3d S = MatrixAt(out.report.values, first + 3);
+    for (int c = 0; c < 3; ++c) {
+      signals.push_back({group.channels[static_cast<std::size_t>(c)],
+                         S.row(c).norm() * group.u.rowwise().norm().mean()});
+    }
     AddGroup(group, *table, setup.reference, first, out);
     first += group.size();
   }
   if (auto fault = DoesNotFit(data, signals, out.report)) return *fault;
+  RemarkTemperature(data, out.report);
   return out;
 }
 

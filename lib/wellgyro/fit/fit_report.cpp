@@ -6,6 +6,7 @@
 
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -105,7 +106,11 @@ FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution)
 
 Result<FitReport> WholeReport(const BenchTable& data, const LinearProblem& problem,
                               const LinearSolution& solution, std::string_view advice) {
-  if (solution.unseen.empty()) return ReportOf(problem, solution);
+  if (solution.unseen.empty()) {
+    FitReport report = ReportOf(problem, solution);
+    TestTrends(data, problem, solution, report);
+    return report;
+  }
   std::string text = "the readings do not determine";
   for (std::size_t i = 0; i < solution.unseen.size() && i < 3; ++i) {
     text += fmt::format("{} {}", i > 0 ? ", nor" : "", solution.unseen[i]);

@@ -13,6 +13,7 @@
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/gyro_readings_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -334,6 +335,36 @@ void AddParity(const SensorGroup& group, FitReport& report) {
            Eigen::MatrixXd::Constant(1, 1, std::sqrt(square / std::max(1, rows))));
 }
 
+// What the readings at rest cannot show of themselves.
+void RemarkReference(const GyroReadings& readings, const BenchReference& reference,
+                     const Eigen::MatrixXd& cov, const Eigen::VectorXd& x, FitReport& report) {
+  constexpr double kLevel = 1e-3;  // g
+  if (readings.f_off > kLevel) {
+    report.remarks.push_back(fmt::format(
+        "fx, fy, fz lie {:.1f} mg (rms) beside what inc and tf say: the fixture's angles or the "
+        "accelerometers are off by {:.2f} deg, {:.2g} deg/h of the Earth's rate",
+        1e3 * readings.f_off, ToDegrees(readings.f_off),
+        readings.f_off * kBenchEarthRate / units::kDegPerHour));
+  }
+  double sum = 0, square = 0, variance = 0;
+  const auto n = static_cast<double>(readings.channels.size());
+  for (std::size_t c = 0; c < readings.channels.size(); ++c) {
+    const auto at = static_cast<Eigen::Index>(4 * c) + 1 + readings.channels[c].axis;
+    sum += x[at] / n;
+    square += x[at] * x[at] / n;
+    if (cov.size() > 0) variance += cov(at, at) / n;
+  }
+  const double scatter = std::sqrt(std::max(0.0, square - sum * sum));
+  constexpr double kUnusual = 0.01, kSigmas = 4;
+  const double off = std::abs(sum - 1);
+  if (off < kUnusual || off < kSigmas * std::sqrt(variance) || off < 3 * scatter) return;
+  const double cosine = sum * std::cos(*reference.latitude);
+  report.remarks.push_back(fmt::format(
+      "all channels read {:.4g} of the rate: the latitude is wrong{}, or their unit", sum,
+      cosine < 1 ? fmt::format(" (the readings suit {:.2f} deg)", ToDegrees(std::acos(cosine)))
+                 : std::string()));
+}
+
 }  // namespace
 
 Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table,
@@ -367,6 +398,8 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
   if (auto fault = DoesNotFit(data, {{"m_", at_rest}, {"table", largest}}, report)) return *fault;
   report.method = table.rows() > 0 && rest.rows() == 0 ? "gyro-rate-table" : "gyro-multi-position";
   report.remarks.insert(report.remarks.end(), remarks.begin(), remarks.end());
+  RemarkTemperature(data, report);
+  RemarkReference(*readings, setup.reference, report.cov, report.values, report);
   if (rest.rows() > 0 && table.rows() == 0) {
     report.remarks.push_back(
         "a wrong latitude would not show in these residuals: 0.1 deg of it is 3e-3 in U and 0.05 "

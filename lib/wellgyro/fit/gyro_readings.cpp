@@ -15,47 +15,6 @@ namespace {
 
 constexpr double kEarthDegPerHour = kBenchEarthRate / units::kDegPerHour;
 
-Result<std::vector<GyroChannel>> ChannelsOf(const BenchTable& data) {
-  std::vector<GyroChannel> channels;
-  for (const std::string& column : data.columns) {
-    if (column.rfind("m_", 0) != 0) continue;
-    const std::size_t axis = column.size() > 2 ? std::string("xyz").find(column[2]) : 9;
-    if (axis > 2 || column.size() > 4) {
-      return BenchFault(data,
-                        fmt::format("column {} names no channel, as m_x1: its input axis, and its "
-                                    "rotor where two channels share one",
-                                    column),
-                        1, FaultCode::kForeign);
-    }
-    const int rotor = column.size() == 4 ? column[3] - '0' : -1;
-    channels.push_back({column, static_cast<int>(axis), rotor});
-  }
-  if (channels.size() < 2 || channels.size() > 4) {
-    return BenchFault(data,
-                      fmt::format("the table has {} gyro channels, columns m_x1, m_y1 ...: two to "
-                                  "four are needed",
-                                  channels.size()),
-                      1, FaultCode::kForeign);
-  }
-  return channels;
-}
-
-std::vector<Rotor> RotorsOf(const std::vector<GyroChannel>& channels) {
-  std::map<int, std::vector<int>> of;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (channels[i].rotor >= 0) of[channels[i].rotor].push_back(static_cast<int>(i));
-  }
-  std::vector<Rotor> rotors;
-  for (auto& [rotor, pair] : of) {
-    if (pair.size() != 2) continue;
-    const auto axis = [&](int channel) { return channels[static_cast<std::size_t>(channel)].axis; };
-    if (axis(pair[0]) > axis(pair[1])) std::swap(pair[0], pair[1]);
-    if (axis(pair[0]) == axis(pair[1])) continue;
-    rotors.push_back({pair[0], pair[1], 3 - axis(pair[0]) - axis(pair[1])});
-  }
-  return rotors;
-}
-
 std::vector<std::string> NamesOf(const std::vector<GyroChannel>& channels) {
   std::vector<std::string> names;
   names.reserve(channels.size());
@@ -82,12 +41,15 @@ std::optional<Fault> TakeForces(const BenchTable& data, GyroReadings& readings) 
   std::vector<int> wrong;
   for (int i = 0; i < data.rows(); ++i) {
     const Eigen::Vector3d f(data.values(i, *fx), data.values(i, *fy), data.values(i, *fz));
-    if ((f - readings.f.row(i).transpose()).norm() > 0.05) {
+    const double off = (f - readings.f.row(i).transpose()).norm();
+    readings.f_off += off * off / data.rows();
+    if (off > 0.05) {
       wrong.push_back(data.lines[static_cast<std::size_t>(i)]);
     }
     // What is at right angles is so to the last digit: rounding shall not pass for a signal.
     readings.f.row(i) = (f.array().abs() < 1e-12).select(0, f).transpose();
   }
+  readings.f_off = std::sqrt(readings.f_off);
   if (wrong.empty()) return std::nullopt;
   return BenchFault(data,
                     fmt::format("{}: fx, fy, fz do not fit inc and tf: up and down or axes are "
@@ -142,10 +104,51 @@ std::optional<Fault> ReadTable(const BenchTable& data, const BenchReference& ref
 
 }  // namespace
 
+Result<std::vector<GyroChannel>> GyroChannelsOf(const BenchTable& data) {
+  std::vector<GyroChannel> channels;
+  for (const std::string& column : data.columns) {
+    if (column.rfind("m_", 0) != 0) continue;
+    const std::size_t axis = column.size() > 2 ? std::string("xyz").find(column[2]) : 9;
+    if (axis > 2 || column.size() > 4) {
+      return BenchFault(data,
+                        fmt::format("column {} names no channel, as m_x1: its input axis, and its "
+                                    "rotor where two channels share one",
+                                    column),
+                        1, FaultCode::kForeign);
+    }
+    const int rotor = column.size() == 4 ? column[3] - '0' : -1;
+    channels.push_back({column, static_cast<int>(axis), rotor});
+  }
+  if (channels.size() < 2 || channels.size() > 4) {
+    return BenchFault(data,
+                      fmt::format("the table has {} gyro channels, columns m_x1, m_y1 ...: two to "
+                                  "four are needed",
+                                  channels.size()),
+                      1, FaultCode::kForeign);
+  }
+  return channels;
+}
+
+std::vector<Rotor> RotorsOf(const std::vector<GyroChannel>& channels) {
+  std::map<int, std::vector<int>> of;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].rotor >= 0) of[channels[i].rotor].push_back(static_cast<int>(i));
+  }
+  std::vector<Rotor> rotors;
+  for (auto& [rotor, pair] : of) {
+    if (pair.size() != 2) continue;
+    const auto axis = [&](int channel) { return channels[static_cast<std::size_t>(channel)].axis; };
+    if (axis(pair[0]) > axis(pair[1])) std::swap(pair[0], pair[1]);
+    if (axis(pair[0]) == axis(pair[1])) continue;
+    rotors.push_back({pair[0], pair[1], 3 - axis(pair[0]) - axis(pair[1])});
+  }
+  return rotors;
+}
+
 Result<GyroReadings> ReadGyros(const BenchTable& rest, const BenchTable& table,
                                const BenchReference& reference) {
   if (!reference.latitude) throw std::invalid_argument("gyros need the latitude");
-  const auto channels = ChannelsOf(rest.rows() > 0 ? rest : table);
+  const auto channels = GyroChannelsOf(rest.rows() > 0 ? rest : table);
   if (!channels) return channels.fault();
   GyroReadings readings;
   readings.channels = *channels;

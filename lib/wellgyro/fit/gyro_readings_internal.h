@@ -36,9 +36,14 @@ struct GyroReadings {
   Eigen::MatrixX3d w_level;  ///< its level part, which turns with the fixture's north offset
   Eigen::MatrixX3d w_north;  ///< its change with that offset [deg/h per rad]
   Eigen::MatrixX3d f;        ///< specific force [g]
+  double f_off = 0;          ///< by how much the table's own lies beside its inc and tf, rms [g]
   Eigen::MatrixXd m;         ///< readings [deg/h], a column a channel
   int rows() const { return static_cast<int>(lines.size()); }
 };
+
+/// The channels of a table, in the order of its columns m_...; two to four.
+Result<std::vector<GyroChannel>> GyroChannelsOf(const BenchTable& data);
+std::vector<Rotor> RotorsOf(const std::vector<GyroChannel>& channels);
 
 Result<GyroReadings> ReadGyros(const BenchTable& rest, const BenchTable& table,
                                const BenchReference& reference);

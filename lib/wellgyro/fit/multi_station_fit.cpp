@@ -13,6 +13,7 @@
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/nonlinear_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -321,6 +322,7 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   out.report = *std::move(whole);
   FitReport& report = out.report;
   report.method = "multi-station";
+  RemarkTemperature(data, report);
   if (auto fault = DoesNotFit(data,
                               {{"wx", kEarthDegPerHour},
                                {"wy", kEarthDegPerHour},

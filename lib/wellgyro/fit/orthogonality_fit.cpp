@@ -71,6 +71,12 @@ Result<Waves> FitWaves(const BenchTable& data, int seq, const Setup& setup) {
     if (!wave) return BenchFault(rows, wave.fault().text, rows.lines.front());
     waves.model.x[static_cast<std::size_t>(k)] = wave->x;
     waves.sigma.row(k) = wave->sigma.transpose();
+    if (!setup.free_frequency && wave->told) {
+      waves.remarks.push_back(
+          fmt::format("x_{}2 is held at 1, and the readings tell its frequency from 1: give "
+                      "--free-frequency; its sigmas hold the difference",
+                      k + 1));
+    }
     if (setup.free_frequency && !wave->free) {
       waves.remarks.push_back(
           fmt::format("x_{}2 stays 1: the readings do not tell its frequency from 1", k + 1));

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -109,26 +110,73 @@ std::optional<Fault> Missing(const BenchTable& data, const RawRun& run, bool alo
       run.series.empty() ? 0 : run.series.begin()->second.line);
 }
 
+// Slopes of short runs against the scatter about them, pooled over all positions: those of settled
+// readings are noise, F with (series, n - 2 each) degrees of freedom, one false alarm in a
+// thousand.
+double PooledDrift(const RawRun& raw) {
+  double slopes = 0, squares = 0, freedom = 0, n_series = 0, length = 0, spread = 0;
+  for (const auto& [at, series] : raw.series) {
+    const auto n = static_cast<double>(series.volts.size());
+    if (n < 3 || n >= 8) continue;
+    const double middle = (n - 1) / 2, first = series.volts.front();
+    double tt = 0, tv = 0, sum = 0, vv = 0;
+    for (std::size_t i = 0; i < series.volts.size(); ++i) {
+      const double t = static_cast<double>(i) - middle, v = series.volts[i] - first;
+      tt += t * t;
+      tv += t * v;
+      sum += v;
+      vv += v * v;
+    }
+    slopes += tv * tv / tt;
+    squares += std::max(0.0, vv - sum * sum / n - tv * tv / tt);
+    freedom += n - 2;
+    n_series += 1;
+    length += (n - 1) * (n - 1);
+    spread += tt;
+  }
+  if (n_series < 1) return 0;
+  const double noise = squares / freedom, mean = slopes / n_series;
+  // Paulson's normal form of F.
+  const double root = std::cbrt(mean / std::max(noise, 1e-30));
+  const double a = 2 / (9 * n_series), b = 2 / (9 * freedom);
+  const double z = ((1 - b) * root - (1 - a)) / std::sqrt(b * root * root + a);
+  constexpr double kOnceInAThousand = 3.09;
+  if (!(z > kOnceInAThousand)) return 0;
+  return std::sqrt((mean - noise) * length / spread);
+}
+
 Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double tolerance,
                             bool alone) {
   if (auto fault = Missing(data, raw, alone)) return *fault;
   PositionRun run;
   run.temperature = raw.temperature_sum / raw.rows;
   for (const auto& [at, series] : raw.series) {
-    const SettledRun settled = Settle(series.volts, tolerance);
+    // Readings that differ by exactly the tolerance repeat; their decimals are not exact.
+    constexpr double kRounding = 1e-12;
+    const double largest = std::abs(series.volts.back());
+    const SettledRun settled = Settle(series.volts, tolerance * (1 + 1e-9) + kRounding * largest);
     if (!settled.settled) {
+      const std::vector<double> end(
+          series.volts.end() - std::min<std::ptrdiff_t>(3, std::ssize(series.volts)),
+          series.volts.end());
+      const double left =
+          std::abs(std::accumulate(end.begin(), end.end(), 0.0) / static_cast<double>(end.size()) -
+                   settled.value);
       return BenchFault(
           data,
           series.volts.size() < 3
               ? fmt::format("{}, channel {}: {} readings, three that repeat are needed",
                             PositionText(at), kAxes[at % 3], series.volts.size())
-              : fmt::format("{}, channel {}: the readings have not settled, the last three differ "
-                            "by {:.3g} V; read on until they repeat, or give the tolerance",
-                            PositionText(at), kAxes[at % 3], settled.spread),
+              : fmt::format("{}, channel {}: the readings have not settled, the last three {} by "
+                            "{:.3g} V; read on until they repeat, or give the tolerance",
+                            PositionText(at), kAxes[at % 3],
+                            series.volts.size() < 8 ? "differ" : "lie beside where they tend to",
+                            series.volts.size() < 8 ? settled.spread : left),
           series.line);
     }
     run.readings[at] = {settled.value, series.line};
   }
+  run.drift = PooledDrift(raw);
   return run;
 }
 

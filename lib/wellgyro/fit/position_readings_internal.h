@@ -20,6 +20,9 @@ struct PositionReading {
 struct PositionRun {
   double temperature = 0;  ///< mean [degC]
   bool has_temperature = false;
+  /// Change through the readings of a position that noise does not explain, rms of all positions;
+  /// of runs of less than eight readings, from which no transient can be taken [V].
+  double drift = 0;
   /// By axis, direction (up, down), rotation and channel.
   std::array<PositionReading, 72> readings;
 

@@ -15,6 +15,7 @@
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -125,6 +126,7 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
   out.report = *std::move(whole);
   FitReport& report = out.report;
   report.method = "roll-test";
+  RemarkTemperature(data, report);
   const double length = table->accel.rowwise().norm().maxCoeff();
   if (auto fault = DoesNotFit(data, {{"along", length}}, report)) return *fault;
   Reparametrise(report, VectorNames("axis_in_sensor", 3),

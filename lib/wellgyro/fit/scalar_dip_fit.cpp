@@ -9,6 +9,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/scalar_fit.h"
 #include "wellgyro/fit/scalar_internal.h"
 #include "wellgyro/fit/scalar_start_internal.h"
@@ -184,6 +185,8 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   if (auto fault = BadReadings(data, *table)) return *fault;
   if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
   if (auto fault = BadVectors(data, table->mag, table->mag_channels, "one unit")) return *fault;
+  const ScalarReadings accel{table->lines, table->accel, setup.reference.gravity, {}};
+  const ScalarReadings mag{table->lines, table->mag, *setup.reference.field, {}};
   const auto start = StartOf(*table, setup);
   if (!start) return BenchFault(data, start.fault().text);
   // Twice: the weights are those of the start.
@@ -192,6 +195,9 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   if (solution) solution = Problem(*table, setup, start->sigma, solution->x).Solve();
   auto whole = WholeReport(data, solution, kAdvice);
   if (!whole) return whole.fault();
+  for (const ScalarReadings* readings : {&accel, &mag}) {
+    if (auto fault = OnlyCones(data, *readings, solution->outlier_lines)) return *fault;
+  }
   BenchCalibration out;
   out.report = *std::move(whole);
   if (auto fault = DoesNotFit(
@@ -208,6 +214,8 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
     fault->text += ", against the accelerometers' axes, or a sign of theirs is wrong";
     return *fault;
   }
+  if (auto fault = OtherUnit(data, table->accel_channels, A, setup.reference)) return *fault;
+  RemarkTemperature(data, report);
   const Eigen::Vector3d ba = report.values.segment<3>(6), bm = report.values.segment<3>(kMagBias);
   TakeResult(report, setup.free_dip);
   report.remarks.push_back(

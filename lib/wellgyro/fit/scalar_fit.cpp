@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/LU>
+#include <Eigen/Dense>
 #include <fmt/core.h>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/scalar_internal.h"
 #include "wellgyro/fit/scalar_start_internal.h"
 #include "wellgyro/fit/sensor_groups_internal.h"
@@ -117,22 +119,84 @@ std::optional<Fault> BadVectors(const BenchTable& data, const Eigen::MatrixX3d& 
                     lines.front(), FaultCode::kConflict);
 }
 
+std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& readings,
+                               const std::vector<int>& outlier_lines) {
+  const Eigen::VectorXd sphere = ScalarStarts(readings.v, readings.length).front();
+  const double unit = readings.length / sphere[0];
+  std::vector<Eigen::Matrix<double, 1, 10>> rows;
+  for (std::size_t i = 0; i < readings.lines.size(); ++i) {
+    if (std::count(outlier_lines.begin(), outlier_lines.end(), readings.lines[i]) > 0) continue;
+    const Eigen::Vector3d w =
+        (readings.v.row(static_cast<Eigen::Index>(i)).transpose() - sphere.tail<3>()) / unit;
+    rows.emplace_back();
+    rows.back() << w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), w.x() * w.y(), w.y() * w.z(),
+        w.z() * w.x(), w.transpose(), 1;
+  }
+  constexpr std::size_t kUnknown = 10;
+  if (rows.size() < kUnknown) return TooFew(data, 12, "attitudes", kAdvice);
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(rows.size()), 10);
+  for (std::size_t i = 0; i < rows.size(); ++i) A.row(static_cast<Eigen::Index>(i)) = rows[i];
+  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues() /
+                                 std::sqrt(static_cast<double>(rows.size()));
+  // All readings lie on one quadric, to the noise. Where they come as close to a second, as the
+  // readings on one cone or two do to a pair of planes, noise alone tells the two apart.
+  constexpr double kApart = 6, kLeast = 2e-3;
+  if (values[8] > std::max(kApart * values[9], kLeast)) return std::nullopt;
+  return BenchFault(
+      data,
+      fmt::format("the readings lie on one or two cones, or on faces alone: beside the ellipsoid "
+                  "that is looked for they fit another surface to {:.2g} of their length, and only "
+                  "noise tells which ({:.2g}): {}",
+                  values[8], values[9], kAdvice));
+}
+
+std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::string>& channels,
+                               const Eigen::Matrix3d& K, const BenchReference& reference) {
+  if (channels.front().front() == 'v') return std::nullopt;
+  const double gain = std::cbrt(std::abs(K.determinant())) / units::kStandardGravity;
+  const bool in_g = std::abs(reference.gravity - reference.gravity_mps2) > 1;
+  constexpr double kClose = 0.03;
+  if (in_g && std::abs(gain - 1) < kClose) {
+    return BenchFault(
+        data,
+        "the readings are 9.8 times the gravity that is given in g: they are in m/s2; "
+        "give --gravity-mps2",
+        data.lines[0], FaultCode::kConflict);
+  }
+  if (!in_g && std::abs(gain * units::kStandardGravity * units::kStandardGravity - 1) < kClose) {
+    return BenchFault(data,
+                      "the readings are a 9.8th of the gravity that is given in m/s2: they are in "
+                      "g; give --gravity-g",
+                      data.lines[0], FaultCode::kConflict);
+  }
+  return std::nullopt;
+}
+
 Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& setup) {
   const auto table = ReadAttitudeTable(data, {.accel = true});
   if (!table) return table.fault();
   if (auto fault = TooFew(data, 12, "attitudes", kAdvice)) return *fault;
   if (auto fault = BadReadings(data, *table)) return *fault;
   if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
-  const auto solution =
-      SolveScalar({table->lines, table->accel, setup.reference.gravity, setup.sigma_accel});
+  const ScalarReadings readings{table->lines, table->accel, setup.reference.gravity,
+                                setup.sigma_accel};
+  const auto solution = SolveScalar(readings);
+  if (!solution) {
+    if (auto fault = OnlyCones(data, readings, {})) return *fault;
+  }
   auto whole = WholeReport(data, solution, kAdvice);
   if (!whole) return whole.fault();
+  if (auto fault = OnlyCones(data, readings, solution->outlier_lines)) return *fault;
   BenchCalibration out;
   out.report = *std::move(whole);
   FitReport& report = out.report;
   report.method = "scalar";
   if (auto fault = DoesNotFit(data, {{"length", setup.reference.gravity}}, report)) return *fault;
   const Eigen::Matrix3d M = LowerOf(report.values);
+  if (auto fault = OtherUnit(data, table->accel_channels, M.inverse(), setup.reference)) {
+    return *fault;
+  }
+  RemarkTemperature(data, report);
   std::vector<std::string> names = MatrixNames("Ka", 3, 3);
   Append(names, VectorNames("ba", 3));
   Reparametrise(report, names, [](const Eigen::VectorXd& x) {

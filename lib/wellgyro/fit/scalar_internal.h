@@ -28,4 +28,13 @@ Result<NonlinearProblem::Solution> SolveScalar(const ScalarReadings& readings);
 std::optional<Fault> BadVectors(const BenchTable& data, const Eigen::MatrixX3d& v,
                                 const std::vector<std::string>& channels, std::string_view units);
 
+/// Readings that lie on a second quadric as closely as on the ellipsoid: what only noise
+/// determines.
+std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& readings,
+                               const std::vector<int>& outlier_lines);
+
+/// Readings v = K u in m/s2 where gravity is given in g, or the other way round.
+std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::string>& channels,
+                               const Eigen::Matrix3d& K, const BenchReference& reference);
+
 }  // namespace wellgyro

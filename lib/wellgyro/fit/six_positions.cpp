@@ -10,6 +10,7 @@
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
 #include "wellgyro/fit/position_fit.h"
+#include "wellgyro/fit/residual_trends_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -67,6 +68,19 @@ Result<std::vector<Position>> Read(const BenchTable& data, const Setup& setup) {
   return positions;
 }
 
+// The forces of the table against the gravity that was stated beside it.
+std::optional<Fault> OtherGravity(const BenchTable& data, const std::vector<Position>& positions,
+                                  const Setup& setup) {
+  const double length = Mean(positions, [](const Position& p) { return p.u.norm(); });
+  constexpr double kSame = 1e-4;
+  if (!setup.gravity_stated || std::abs(length / setup.gravity - 1) < kSame) return std::nullopt;
+  return BenchFault(data,
+                    fmt::format("axb, ayb, azb are {:.6g} m/s2 long on average where the gravity "
+                                "given beside them is {:.6g}: mend the one or leave out the other",
+                                length, setup.gravity),
+                    positions.front().line, FaultCode::kConflict);
+}
+
 std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Position>& positions,
                                   const Setup& setup) {
   std::string missing;
@@ -101,7 +115,11 @@ std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Posi
   if (auto fault = MixedUnits(rates, {0, 1, 2}, 0, "the length of N/T_s", "pulses and seconds")) {
     return fault;
   }
-  return MixedUnits(forces, {0, 1, 2}, setup.gravity, "the length of (axb, ayb, azb)", "m/s2");
+  if (auto fault =
+          MixedUnits(forces, {0, 1, 2}, setup.gravity, "the length of (axb, ayb, azb)", "m/s2")) {
+    return fault;
+  }
+  return OtherGravity(data, positions, setup);
 }
 
 // Parameters, pulses a second: offset in the own pair (3), offset elsewhere (3), S (9).
@@ -248,6 +266,7 @@ Result<BenchCalibration> FitSixPositions(const BenchTable& data, const Setup& se
     return *fault;
   }
   report.method = "six-position";
+  RemarkTemperature(data, report);
   const double g = Mean(*positions, [](const Position& p) { return p.u.norm(); });
   TakeResult(report, setup.second_order, g);
   Remark(*positions, setup, report);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -60,10 +62,17 @@ Result<Readings> Read(const BenchTable& data) {
   return readings;
 }
 
+// A knee that was found is a parameter too, linear about its place.
+struct FoundKnee {
+  double knee = 0, c2 = 0;
+};
+
 LinearProblem Problem(const Readings& readings, const ThermometerFitSetup& setup, double knee,
-                      bool bends) {
+                      bool bends, const std::optional<FoundKnee>& found = {}) {
   const int n = static_cast<int>(readings.t.size());
-  LinearProblem problem(VectorNames("c", bends ? 3 : 2), n);
+  std::vector<std::string> names = VectorNames("c", bends ? 3 : 2);
+  if (found) names.emplace_back("knee_C");
+  LinearProblem problem(names, n);
   problem.y = readings.error;
   problem.sigma.setConstant(setup.sigma.value_or(1));
   problem.sigma_given = setup.sigma.has_value();
@@ -72,6 +81,10 @@ LinearProblem Problem(const Readings& readings, const ThermometerFitSetup& setup
     problem.A(i, 0) = 1;
     problem.A(i, 1) = t;
     if (bends) problem.A(i, 2) = above * above;
+    if (found) {
+      problem.A(i, 3) = -2 * found->c2 * above;
+      problem.y[i] += problem.A(i, 3) * found->knee;
+    }
     problem.rows[static_cast<std::size_t>(i)] = {readings.lines[static_cast<std::size_t>(i)], "t_m",
                                                  problem.sigma[i]};
   }
@@ -137,7 +150,9 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   }
   const double coldest = readings->t.minCoeff(), hottest = readings->t.maxCoeff();
   const bool bends = hottest > knee;
-  const LinearProblem problem = Problem(*readings, setup, knee, bends);
+  LinearProblem problem = Problem(*readings, setup, knee, bends);
+  const bool found = setup.fit_knee && bends;
+  if (found) problem = Problem(*readings, setup, knee, bends, FoundKnee{knee, Solve(problem).x[2]});
   auto whole =
       WholeReport(data, problem, Solve(problem), "read the thermometers at more temperatures");
   if (!whole) return whole.fault();
@@ -146,13 +161,20 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   FitReport& report = out.report;
   report.method = "thermometer";
   if (auto fault = DoesNotFit(data, {{"t_m", hottest - coldest}}, report)) return *fault;
-  Reparametrise(report, VectorNames("c", 3), [](const Eigen::VectorXd& c) {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(3);
+  std::vector<std::string> names = VectorNames("c", 3);
+  if (found) names.emplace_back("knee_C");
+  Reparametrise(report, names, [&names](const Eigen::VectorXd& c) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
     all.head(c.size()) = c;
     return all;
   });
   AddVector(report, "c", 0, 3);
-  AddFixed(report, "knee_C", FitQuantity::Shape::kNumber, Eigen::MatrixXd::Constant(1, 1, knee));
+  if (found) {
+    knee = report.values[3];
+    AddNumber(report, "knee_C", 3);
+  } else {
+    AddFixed(report, "knee_C", FitQuantity::Shape::kNumber, Eigen::MatrixXd::Constant(1, 1, knee));
+  }
   Remark(*readings, knee, bends, report);
   const Eigen::VectorXd& c = report.values;
   out.thermometer = ThermometerCalibration{

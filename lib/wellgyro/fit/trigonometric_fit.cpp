@@ -38,6 +38,18 @@ Wave WaveOf(const FitReport& report, bool free) {
   return wave;
 }
 
+// The wave of frequency 1 with what another frequency would change in its sigmas: their own and, as
+// an error, what the free fit makes of it.
+Wave Held(Wave fixed, const Wave& free) {
+  for (int j = 0; j < 4; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    double off = free.x[at] - fixed.x[at];
+    if (j == 2) off = WrapPi(off);
+    fixed.sigma[j] = std::hypot(free.sigma[j], off);
+  }
+  return fixed;
+}
+
 // Frequency 1: sine and cosine, linear.
 FitReport FitFixed(const Eigen::VectorXd& angles, const Eigen::VectorXd& errors,
                    const std::vector<int>& lines) {
@@ -92,15 +104,22 @@ Result<Wave> FitWave(const Eigen::VectorXd& angles, const Eigen::VectorXd& error
                  .text = "fewer than four readings in a sequence: measure every 30 deg"};
   }
   const FitReport fixed = FitFixed(angles, errors, lines);
-  if (!free_frequency || angles.size() < 6) return WaveOf(fixed, false);
+  if (angles.size() < 6) return WaveOf(fixed, false);
   const auto free = FitFree(angles, errors, lines);
   if (!free || free->dof < 1) return WaveOf(fixed, false);
   // One parameter more: F is the square of Student's t. What the last digits carry counts as noise.
   const double digits = std::pow(1e-11 * (1 + errors.cwiseAbs().maxCoeff()), 2);
   const double limit = StudentLimit(0.005, free->dof);
   const double gain = fixed.chi_square - free->chi_square;
-  if (gain < limit * limit * (free->chi_square / free->dof + digits)) return WaveOf(fixed, false);
-  return WaveOf(*free, true);
+  const bool told = gain >= limit * limit * (free->chi_square / free->dof + digits);
+  if (told == free_frequency) {
+    Wave wave = free_frequency ? WaveOf(*free, true) : WaveOf(fixed, false);
+    wave.told = told;
+    return wave;
+  }
+  Wave held = Held(WaveOf(fixed, false), WaveOf(*free, true));
+  held.told = told;
+  return held;
 }
 
 }  // namespace wellgyro

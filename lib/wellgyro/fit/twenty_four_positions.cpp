@@ -132,6 +132,22 @@ void FreeOfTilt(FitReport& report, int degree, double tilt) {
   if (report.cov.size() > 0) report.cov = factor.asDiagonal() * report.cov * factor.asDiagonal();
 }
 
+// What is left of transients in short runs of readings has the same sign in many positions and does
+// not show in their residuals: it is an error of bias and sensitivity.
+void AddDrift(const std::vector<PositionRun>& runs, double gravity, FitReport& report) {
+  double drift = 0;
+  for (const PositionRun& run : runs) drift = std::max(drift, run.drift);
+  if (drift == 0 || report.cov.size() == 0) return;
+  for (int i = 0; i < 12; ++i) {
+    report.cov(i, i) += std::pow(i < 3 ? drift : drift / gravity, 2);
+  }
+  report.remarks.push_back(fmt::format(
+      "the readings of a position still change, by {:.3g} V from the first to the last: they are "
+      "too few to follow it, the uncertainties of bias and sensitivity hold that much; wait longer "
+      "before reading, or read eight times and more",
+      drift));
+}
+
 Eigen::Matrix3d SensitivityOf(const Eigen::VectorXd& values, int power) {
   const Eigen::VectorXd nine = values.segment(12 * power + 3, 9);
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nine.data());
@@ -200,6 +216,7 @@ Result<Fitted> Fit(const BenchTable& data, const std::vector<PositionRun>& runs,
   const double sigma_M = setup.sigma.value_or(fitted.report.scatter);
   fitted.tilt = Tilt(runs, S, setup.gravity, sigma_M);
   FreeOfTilt(fitted.report, degree, fitted.tilt);
+  AddDrift(runs, setup.gravity, fitted.report);
   return fitted;
 }
 

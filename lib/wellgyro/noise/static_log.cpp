@@ -253,6 +253,7 @@ class Inspector {
     const std::vector<double> steps = Steps();
     const double usual = RobustSigma({steps.begin() + 1, steps.end()});
     const std::vector<double> moves = Moves(steps, usual);
+    const double usual_change = UsualChange();
     for (std::size_t i = 0; i < moves.size(); ++i) {
       if (!(moves[i] > 0)) continue;
       std::size_t last = i;
@@ -270,13 +271,45 @@ class Inspector {
       }
       const std::int64_t begin = stretches_[i > 0 ? i - 1 : 0].begin;
       const std::int64_t end = stretches_[last].begin + length_;
-      Add({.kind = Kind::kMoved,
+      const bool stayed = usual_change > 0 && StaysAway(last, i, kUnusual * usual_change);
+      Add({.kind = stayed ? Kind::kStep : Kind::kMoved,
            .where = {begin, end},
-           .size = largest,
+           .size = stayed ? std::abs(LevelAfter(last) - LevelBefore(i)) : largest,
            .typical = usual,
            .samples = end - begin});
       i = last;
     }
+  }
+
+  // Mean levels of up to twenty stretches beside a movement.
+  static constexpr std::size_t kBeside = 20;
+  double LevelBefore(std::size_t first) const {
+    const std::size_t end = first > 0 ? first - 1 : 0;
+    const std::size_t begin = end > kBeside ? end - kBeside : 0;
+    return end > begin ? LevelOf(begin, end) : stretches_.front().mean;
+  }
+  double LevelAfter(std::size_t last) const {
+    const std::size_t begin = std::min(last + 1, stretches_.size() - 1);
+    return LevelOf(begin, std::min(begin + kBeside, stretches_.size()));
+  }
+  double LevelOf(std::size_t begin, std::size_t end) const {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += stretches_[i].mean;
+    return sum / static_cast<double>(end - begin);
+  }
+  // Of the mean level across any one stretch: far less than between two neighbours.
+  double UsualChange() const {
+    std::vector<double> changes;
+    for (std::size_t i = kBeside + 1; i + kBeside < stretches_.size(); ++i) {
+      changes.push_back(LevelAfter(i) - LevelBefore(i));
+    }
+    return RobustSigma(changes);
+  }
+  // A movement in a few stretches after which the mean is another, for as long as can be seen.
+  bool StaysAway(std::size_t last, std::size_t first, double limit) const {
+    constexpr std::size_t kShort = 5;
+    const bool seen = first > kBeside / 2 && last + kBeside / 2 < stretches_.size();
+    return seen && last - first < kShort && std::abs(LevelAfter(last) - LevelBefore(first)) > limit;
   }
 
   struct Line {
@@ -332,7 +365,33 @@ class Inspector {
     }
     const auto time = [](const Stretch& s) { return static_cast<double>(s.begin); };
     const Line line = FitLine(time);
+    if (FindWarmUp(line.explained)) return;
     if (line.explained > kExplained) Add(DriftAlong(Kind::kDrift, line.slope, time));
+  }
+
+  // Time constants from a fortieth to a third of the log.
+  bool FindWarmUp(double explained_by_time) {
+    const auto log = static_cast<double>(samples_);
+    Line best;
+    double constant = 0;
+    for (double part = 1.0 / 40; part < 1.0 / 3; part *= 1.2) {
+      const auto decay = [&](const Stretch& s) {
+        return std::exp(-static_cast<double>(s.begin) / (part * log));
+      };
+      const Line line = FitLine(decay);
+      if (line.explained <= best.explained) continue;
+      best = line;
+      constant = part * log;
+    }
+    if (best.explained < kExplained || 1 - best.explained > (1 - explained_by_time) / 2) {
+      return false;
+    }
+    Add({.kind = Kind::kWarmUp,
+         .where = {0, static_cast<std::int64_t>(5 * constant)},
+         .size = std::abs(best.slope),
+         .samples = samples_,
+         .time_constant = constant});
+    return true;
   }
 
   // The span of the log's change along x, and the tenth with the most of it.

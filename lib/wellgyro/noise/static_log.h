@@ -16,8 +16,10 @@ struct LogFinding {
     kConstant,     ///< one value throughout: nothing measures
     kSaturated,    ///< readings pile up at the largest or smallest value
     kStuck,        ///< the reading stood still for a while
-    kMoved,        ///< the mean or the scatter jumped
+    kMoved,        ///< the mean or the scatter jumped, and came back
+    kStep,         ///< the mean jumped, and stayed
     kTemperature,  ///< the mean follows the temperature
+    kWarmUp,       ///< the mean settles from the begin of the log on
     kDrift,        ///< the mean goes one way through the log
   };
   Kind kind = Kind::kMoved;
@@ -25,8 +27,9 @@ struct LogFinding {
   double size = 0;  ///< jump, pile's value, value stood at, or drift over the log [data's unit]
   double typical =
       0;  ///< what the log does otherwise: jump or scatter between means of that length
-  std::int64_t samples = 0;          ///< affected
-  std::optional<double> per_degree;  ///< kTemperature: slope [data's unit per degC]
+  std::int64_t samples = 0;             ///< affected
+  std::optional<double> per_degree;     ///< kTemperature: slope [data's unit per degC]
+  std::optional<double> time_constant;  ///< kWarmUp [samples]
 };
 
 struct StaticLogOptions {
@@ -44,7 +47,8 @@ struct StaticLogOptions {
 /// within exceeds the usual likewise; a movement much shorter than such a stretch and no larger
 /// than the noise goes unseen. Saturated: an end of the converter, or an extreme value that comes
 /// three times in a row and more than twice as often as the next. Temperature: a straight line in
-/// temperature explains nine tenths of the slow changes. Drift: a straight line in time does.
+/// temperature explains nine tenths of the slow changes. Warm-up: an exponential from the begin
+/// does, and leaves less than half of what a straight line in time leaves. Drift: that line does.
 WELLGYRO_EXPORT std::vector<LogFinding> InspectStaticLog(std::span<const double> rate,
                                                          std::span<const SampleGap> gaps,
                                                          const StaticLogOptions& options = {});

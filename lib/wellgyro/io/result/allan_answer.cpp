@@ -10,6 +10,7 @@
 #include "wellgyro/io/result/allan_unit_internal.h"
 #include "wellgyro/io/toml/noise_file.h"
 #include "wellgyro/noise/allan_confidence.h"
+#include "wellgyro/noise/clean_series.h"
 #include "wellgyro/noise/static_log.h"
 
 namespace wellgyro {
@@ -31,6 +32,7 @@ class Analyst {
     answer_.notes = series_.notes;
     answer_.losses = series_.damaged;
     if (request_.phases) RatesFromPhases(series_);
+    Clean();
     const AllanResult octaves = OctavesOfAll();
     samples_ = octaves.samples;
     TellMissing(octaves);
@@ -63,6 +65,28 @@ class Analyst {
   static bool HasTerms(const AllanResult& result) {
     return std::any_of(result.points.begin(), result.points.end(),
                        [](const AllanPoint& p) { return p.terms > 0; });
+  }
+
+  // What was asked to be left out or taken off; neither is a loss.
+  void Clean() {
+    missing_ = series_.gaps;
+    for (const auto& [from, to] : request_.exclude) {
+      const std::int64_t out = Exclude(series_, from, to);
+      Note(fmt::format("{} samples from {:g} to {:g} s left out, as asked", out, from, to));
+    }
+    if (request_.robust) {
+      const std::int64_t spikes = ExcludeSpikes(series_);
+      Note(spikes > 0 ? fmt::format("{} spikes left out", spikes) : std::string("no spikes"));
+    }
+    if (!request_.detrend_temperature) return;
+    const auto trend = DetrendTemperature(series_);
+    if (!trend) {
+      Note("no temperature, or one that does not vary: nothing is taken off");
+      return;
+    }
+    Note(fmt::format("taken off: {} +- {} per degC at {:.4g} degC, {:.3g} of the slow changes",
+                     Reading(trend->per_degree), Reading(trend->per_degree_sigma), trend->mean,
+                     trend->explained));
   }
 
   std::int64_t samples() const { return std::ssize(series_.values); }
@@ -142,7 +166,7 @@ class Analyst {
 
   // Also puts what was found not finite among the gaps, so that it is found but once.
   void TellMissing(const AllanResult& octaves) {
-    if (!series_.gaps.empty()) TellList("missing by number", series_.gaps);
+    if (!missing_.empty()) TellList("missing by number", missing_);
     if (!series_.saturated.empty()) {
       TellList("saturated, as the source says", series_.saturated);
     }
@@ -198,6 +222,18 @@ class Analyst {
             fmt::format("moved or shook at {}: by {}, where neighbouring means differ by {}; "
                         "leave that part out",
                         Place(found.where), Reading(found.size), Reading(found.typical)));
+        break;
+      case LogFinding::Kind::kStep:
+        Note(
+            fmt::format("stepped by {} at {}, and stayed there: two logs in one; leave one out "
+                        "(--exclude)",
+                        Reading(found.size), Place(found.where)));
+        break;
+      case LogFinding::Kind::kWarmUp:
+        Note(
+            fmt::format("warms up: by {} with a time constant of {}; leave out the begin "
+                        "(--exclude), five of them",
+                        Reading(found.size), Duration(*found.time_constant * series_.period)));
         break;
       case LogFinding::Kind::kTemperature:
         Note(fmt::format("drifts with temperature: {} over the log, {} per degC, fastest at {}",
@@ -324,6 +360,7 @@ class Analyst {
   const AllanRequest& request_;
   AllanUnit unit_;
   double si_ = 1;
+  std::vector<SampleGap> missing_;  ///< before anything was left out on purpose
   std::optional<NoiseFit> fit_;
   NoiseModel model_;
   std::vector<AllanRow> rows_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "wellgyro/base/export.h"
@@ -25,6 +26,9 @@ struct AllanRequest {
   double scale = 1;              ///< the values times this are in `unit`; counts: in rad/s
   bool unitless = false;         ///< plain numbers: the table only
   bool phases = false;           ///< the values are phases, not rates
+  std::vector<std::pair<double, double>> exclude;  ///< stretches to leave out [s from the first]
+  bool robust = false;                             ///< leave out spikes
+  bool detrend_temperature = false;                ///< take off what follows the temperature
   NoiseFitOptions fit;
   std::string source;  ///< name of the log, for the noise file and the plot
   std::string channel;

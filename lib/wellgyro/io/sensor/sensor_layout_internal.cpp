@@ -59,6 +59,28 @@ constexpr std::array<Name, kColumns> kNames{{
 
 }  // namespace
 
+std::optional<HeadedUnit> HeadedUnitOf(std::string_view heading) {
+  const std::size_t bracket = heading.find('[');
+  HeadedUnit found{Trim(heading.substr(0, bracket)), {}};
+  if (bracket == std::string_view::npos) return found;
+  if (!heading.ends_with(']')) return std::nullopt;
+  found.unit = heading.substr(bracket + 1, heading.size() - bracket - 2);
+  const auto name =
+      std::ranges::find_if(kNames, [&](const Name& known) { return known.name == found.name; });
+  for (const Unit& unit : kUnits) {
+    // Seconds are those of a clock, but in DURATION.
+    if (unit.name != found.unit || (name != kNames.end() && unit.quantity != name->quantity)) {
+      continue;
+    }
+    found.clock = unit.quantity == kClock;
+    found.rate = unit.quantity == kRate;
+    found.force = unit.quantity == kForce;
+    found.factor = unit.factor;
+    return found;
+  }
+  return std::nullopt;
+}
+
 void Layout::Take(std::string_view heading, int field) {
   const std::size_t bracket = heading.find('[');
   const std::string_view name = Trim(heading.substr(0, bracket));

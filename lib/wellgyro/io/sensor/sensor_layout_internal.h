@@ -69,6 +69,16 @@ struct Layout {
   std::string Lacking() const;
 };
 
+/// A heading taken apart: name, and of a unit in brackets what it measures and its SI value (a
+/// clock's in ns); nothing of a unit that is not known.
+struct HeadedUnit {
+  std::string_view name;
+  std::string_view unit;
+  bool clock = false, rate = false, force = false;
+  double factor = 1;
+};
+std::optional<HeadedUnit> HeadedUnitOf(std::string_view heading);
+
 /// Of a header line, a byte order mark before it or not.
 Layout LayoutOf(std::string_view header);
 

@@ -8,9 +8,11 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "wellgyro/io/sensor/sensor_layout_internal.h"
 #include "wellgyro/io/sensor/series_file.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/text_internal.h"
+#include "wellgyro/noise/clean_series.h"
 
 namespace wellgyro {
 namespace {
@@ -50,6 +52,10 @@ class CsvReader {
     if (fault_) return *fault_;
     if (file.bad()) return Bad("reading this file failed half way");
     if (series_.values.empty()) return Bad("there is not one sample in it");
+    if (time_) {
+      if (sequence_) return Bad("times and sample numbers say the same twice: name one of them");
+      if (auto wrong = PlaceByTime(series_, times_)) return Bad(*wrong, FaultCode::kOrder);
+    }
     return std::move(series_);
   }
 
@@ -83,7 +89,7 @@ class CsvReader {
   std::optional<std::size_t> Find(const std::string& name, bool header) {
     if (name.empty()) return std::nullopt;
     for (std::size_t i = 0; header && i < fields_.size(); ++i) {
-      if (fields_[i] == name) return i;
+      if (fields_[i] == name || fields_[i].substr(0, fields_[i].find('[')) == name) return i;
     }
     const std::optional<int> number = IntegerOf(name);
     if (number && *number >= 1 && static_cast<std::size_t>(*number) <= fields_.size()) {
@@ -101,9 +107,52 @@ class CsvReader {
     sequence_ = Find(columns_.sequence, header);
     temperature_ = Find(columns_.temperature, header);
     value_ = Find(columns_.value, header);
-    if (fault_ || value_) return;
+    time_ = Find(columns_.time, header);
+    if (fault_) return;
+    if (header && !time_ && !sequence_) FindClock();
+    if (!value_) FindOnly(header);
+    if (!value_ && !fault_) Refuse("no column beside times, numbers and temperatures");
+    if (header && !fault_) TakeUnits();
+  }
+
+  // A clock's column under the names of tables of sensor data.
+  void FindClock() {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      if (i == sequence_ || i == temperature_) continue;
+      const auto headed = sensors::HeadedUnitOf(fields_[i]);
+      const bool clock =
+          headed && headed->clock && (headed->name == "TOOL" || headed->name == "UTC");
+      if (clock && !time_) time_ = i;
+    }
+  }
+
+  void TakeUnits() {
+    if (time_) {
+      const auto headed = sensors::HeadedUnitOf(fields_[*time_]);
+      constexpr double kPerSecond = 1e-9;
+      if (headed && headed->clock && !headed->unit.empty()) {
+        seconds_ = headed->factor * kPerSecond;
+      }
+    }
+    const auto headed = sensors::HeadedUnitOf(fields_[*value_]);
+    const bool in_brackets = fields_[*value_].find('[') != std::string_view::npos;
+    if (!in_brackets) return;
+    if (!headed || !(headed->rate || headed->force)) {
+      Refuse(fmt::format("column {} has no unit that is known: deg/h, deg/s, rad/s, m/s2, g, mg",
+                         fields_[*value_]),
+             FaultCode::kForeign, *value_);
+      return;
+    }
+    if (headed->unit == "deg/h") series_.unit = "deg_per_h";
+    if (headed->unit == "deg/s") series_.unit = "deg_per_s";
+    if (headed->unit == "rad/s") series_.unit = "rad_per_s";
+    if (headed->unit == "m/s2") series_.unit = "mps2";
+    if (headed->unit == "mg" || headed->unit == "g") series_.unit = "milli_g";
+    if (headed->unit == "g") scale_ = 1e3;
+  }
+
+  void FindOnly(bool header) {
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      if (i == sequence_ || i == temperature_ || i == time_) continue;
       if (value_) {
         Refuse(fmt::format("which of its {} columns? Give --channel by name or number from 1{}{}",
                            fields_.size(), header ? ": " : "",
@@ -134,9 +183,18 @@ class CsvReader {
     const double value = Number(*value_);
     const double temperature = temperature_ ? Number(*temperature_) : 0;
     const double sequence = sequence_ ? Number(*sequence_) : 0;
+    const double time = time_ ? Number(*time_) : 0;
     if (fault_) return;
     if (sequence_ && !LeaveGap(sequence)) return;
-    series_.values.push_back(value);
+    if (time_ && !std::isfinite(time)) {
+      Refuse("a sample without a time", FaultCode::kRange, *time_);
+      return;
+    }
+    if (time_) {
+      if (times_.empty()) first_time_ = time;
+      times_.push_back((time - first_time_) * seconds_);
+    }
+    series_.values.push_back(scale_ * value);
     if (temperature_) series_.temperature.push_back(static_cast<float>(temperature));
   }
 
@@ -175,6 +233,9 @@ class CsvReader {
   std::optional<std::size_t> value_;
   std::optional<std::size_t> sequence_;
   std::optional<std::size_t> temperature_;
+  std::optional<std::size_t> time_;
+  std::vector<double> times_;  ///< [s] from the first
+  double first_time_ = 0, seconds_ = 1, scale_ = 1;
   std::optional<std::int64_t> last_sequence_;
   const char* line_begin_ = nullptr;
   int line_number_ = 0;

@@ -27,6 +27,9 @@ struct SeriesColumns {
   std::string value;        ///< empty: the only one, or the only one not named below
   std::string sequence;     ///< numbers of the samples: those left out are missing
   std::string temperature;  ///< [degC]
+  /// Time of each sample, which gives the period and what is missing: heading with [s], [ms], [us]
+  /// or [ns], else seconds. Empty: column TOOL or UTC, where the header has one with a unit.
+  std::string time;
 };
 
 /// Reads binary samples. Faults: kIo, kSize for a size that does not go into whole samples,
@@ -37,7 +40,8 @@ WELLGYRO_EXPORT Result<SampleSeries> ReadBinarySeries(
 
 /// Reads a column of numbers. Separated by comma, semicolon, tab or blanks; one header line or
 /// none; lines with # and empty lines are left out. An empty field, "nan" or "inf" is a sample that
-/// is missing. Any other text is a Fault with line and column; so is a sequence that goes back.
+/// is missing. Any other text is a Fault with line and column; so is a sequence that goes back. A
+/// unit in the heading, as tables of sensor data have it (GX[deg/h]), is the series'.
 WELLGYRO_EXPORT Result<SampleSeries> ReadCsvSeries(
     const std::filesystem::path& path, const SeriesColumns& columns,
     const std::function<void(double)>& progress = {});

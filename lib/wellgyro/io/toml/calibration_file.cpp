@@ -1,7 +1,9 @@
 #include "wellgyro/io/toml/calibration_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,6 +16,7 @@ namespace {
 
 constexpr std::string_view kFormat = "wellgyro.calibration/1";
 using Shape = FitQuantity::Shape;
+constexpr std::size_t kResidualsShown = 4000;  // even
 
 void WriteValue(TomlWriter& out, std::string_view name, Shape shape, const Eigen::MatrixXd& value) {
   if (shape == Shape::kNumber) out.Number(name, value(0, 0));
@@ -66,15 +69,44 @@ void WriteStatistics(TomlWriter& out, const FitReport& report) {
   out.Texts("remarks", report.remarks);
 }
 
+// Of many residuals the largest, then every so many of the rest; all of them in their order.
+std::vector<std::size_t> ShownResiduals(const FitReport& report) {
+  std::vector<std::size_t> shown(report.residuals.size());
+  std::iota(shown.begin(), shown.end(), std::size_t{0});
+  if (shown.size() <= kResidualsShown) return shown;
+  const auto half = static_cast<std::ptrdiff_t>(kResidualsShown / 2);
+  std::nth_element(shown.begin(), shown.begin() + half, shown.end(),
+                   [&](std::size_t a, std::size_t b) {
+                     const auto size = [&](std::size_t i) {
+                       return std::pair(-std::abs(report.residuals[i].studentised), i);
+                     };
+                     return size(a) < size(b);
+                   });
+  std::sort(shown.begin() + half, shown.end());
+  const std::size_t rest = shown.size() - kResidualsShown / 2;
+  std::vector<std::size_t> kept(shown.begin(), shown.begin() + half);
+  for (std::size_t i = 0; i < kResidualsShown / 2; ++i) {
+    kept.push_back(shown[kResidualsShown / 2 + i * rest / (kResidualsShown / 2)]);
+  }
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
 void WriteResiduals(TomlWriter& out, const FitReport& report) {
   out.Table("residuals");
   out.Comment(
       "reading by reading: line of the data, channel, measured less fitted in the data's "
       "unit,\nover its own sigma, leverage");
+  const std::vector<std::size_t> shown = ShownResiduals(report);
+  if (shown.size() < report.residuals.size()) {
+    out.Comment(fmt::format("the {} largest of {} and as many of the others, evenly",
+                            kResidualsShown / 2, report.residuals.size()));
+  }
   std::vector<int> lines;
   std::vector<std::string> channels;
   std::vector<double> values, studentised, leverage;
-  for (const FitResidual& residual : report.residuals) {
+  for (const std::size_t i : shown) {
+    const FitResidual& residual = report.residuals[i];
     lines.push_back(residual.line);
     channels.push_back(residual.channel);
     values.push_back(residual.value);

@@ -1,0 +1,207 @@
+#include "calibrate_tool.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/calibration/error_sources.h"
+#include "wellgyro/fit/tool_fit.h"
+#include "wellgyro/io/atomic_file.h"
+#include "wellgyro/io/result/certificate.h"
+#include "wellgyro/io/sensor/bench_data.h"
+#include "wellgyro/io/sha256.h"
+#include "wellgyro/io/toml/calibration_file.h"
+#include "wellgyro/io/toml/tool_file.h"
+
+#include "bench_options.h"
+#include "commands.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+namespace {
+
+struct Options {
+  BenchOptions bench;
+  std::vector<std::string> data, traceability;
+  std::string certificate;
+  ToolFitSetup fit;
+};
+
+std::optional<Fault> Write(const std::filesystem::path& path, const std::string& bytes) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const OutputFile file{path.filename().string(), bytes};
+  if (auto fault = WriteFiles(folder, {&file, 1})) return fault;
+  fmt::print("{}\n", path.string());
+  return std::nullopt;
+}
+
+Result<std::vector<BenchTable>> Read(const Options& o, CalibrationFile& file) {
+  std::vector<BenchTable> tables;
+  for (const std::string& name : o.data) {
+    const Result<std::string> text = ReadTextFile(name);
+    if (!text) return text.fault();
+    file.inputs.push_back({"data", name, name, Sha256Hex(*text)});
+    auto table = ParseBenchTable(*text, name);
+    if (!table) return table.fault();
+    tables.push_back(*std::move(table));
+  }
+  return tables;
+}
+
+Result<ToolCalibration> ToolOf(const Options& o, const ToolFit& fit) {
+  ToolCalibration tool;
+  if (!o.bench.tool.empty() && std::filesystem::exists(o.bench.tool)) {
+    auto known = ReadToolFile(o.bench.tool);
+    if (!known) return known.fault();
+    tool = *std::move(known);
+  }
+  return Updated(std::move(tool), fit, o.bench.update);
+}
+
+// Errors left in samples, in the units that people use.
+void AddSamples(const ToolCalibration& tool, const ToolFit& fit, Certificate& certificate) {
+  const SensorGroup& group =
+      fit.calibration.gyro.n_channels > 0 ? fit.calibration.gyro : fit.calibration.accel;
+  const bool varies = group.thermometer >= 0;
+  certificate.temperature_low = varies ? group.min : 0;
+  certificate.temperature_high = varies ? group.max : 0;
+  std::vector<double> temperatures = {group.reference};
+  if (varies) temperatures = {group.min, group.reference, group.max};
+  for (const double T : temperatures) {
+    for (Certificate::Line& line : SampleErrors(SourcesOf(tool, T))) {
+      if (varies) line.name += fmt::format(" at {:.4g} degC", T);
+      certificate.samples.push_back(std::move(line));
+    }
+  }
+}
+
+std::string CertificateText(const Options& o, const CalibrationFile& file, const ToolFit& fit,
+                            const ToolCalibration& tool) {
+  Certificate certificate = CertificateOf(fit.calibration.report);
+  certificate.asset_serial = tool.asset_serial;
+  certificate.sensor_serials = tool.sensor_serials;
+  certificate.program = file.program;
+  certificate.calibrated = o.bench.date;
+  certificate.expires = o.bench.expires;
+  certificate.references = file.references;
+  certificate.traceability = o.traceability;
+  certificate.inputs = file.inputs;
+  for (const BenchNuisance& nuisance : fit.nuisances) {
+    certificate.bench.push_back({nuisance.name, "deg", ToDegrees(nuisance.value),
+                                 ToDegrees(nuisance.sigma),
+                                 nuisance.prior_sigma > 0 ? "A, B" : "A"});
+  }
+  // What the bench found has its own table.
+  std::erase_if(certificate.result, [&](const Certificate::Line& line) {
+    return std::any_of(certificate.bench.begin(), certificate.bench.end(),
+                       [&](const Certificate::Line& b) { return b.name == line.name; });
+  });
+  for (const LeftOutTerm& term : fit.left_out) certificate.left_out.push_back(TextOf(term));
+  AddSamples(tool, fit, certificate);
+  return CertificateHtml(certificate);
+}
+
+// Nothing is written over what it came from.
+void RequireOther(const Options& o) {
+  for (const std::string& name : o.data) {
+    for (const std::string* out : {&o.bench.out, &o.bench.tool, &o.certificate}) {
+      std::error_code ignored;
+      if (!out->empty() && (*out == name || std::filesystem::equivalent(*out, name, ignored))) {
+        throw std::invalid_argument("--data and what is written must be different files");
+      }
+    }
+  }
+}
+
+std::optional<Fault> Run(Options& o) {
+  Complete(o.bench);
+  RequireOther(o);
+  o.fit.reference = o.bench.reference;
+  CalibrationFile file;
+  file.program = "wellgyro " WELLGYRO_VERSION;
+  file.references = o.bench.said;
+  const auto tables = Read(o, file);
+  if (!tables) return tables.fault();
+  const auto fit = FitTool(*tables, o.fit);
+  if (!fit) return fit.fault();
+  file.report = fit->calibration.report;
+  const auto tool = ToolOf(o, *fit);
+  if (!tool) return tool.fault();
+  const std::string tool_text = o.bench.tool.empty() ? std::string() : ToolToml(*tool);
+  fmt::print("{}", CalibrationSummary(file));
+  if (auto fault = Write(o.bench.out, CalibrationToml(file))) return fault;
+  if (!o.certificate.empty()) {
+    if (auto fault = Write(o.certificate, CertificateText(o, file, *fit, *tool))) return fault;
+  }
+  if (tool_text.empty()) return std::nullopt;
+  return Write(o.bench.tool, tool_text);
+}
+
+void AddBenchSigmas(CLI::App& command, ToolFitSetup& fit) {
+  AddNumber(command, "--level-deg", fit.sigma_level, units::kDeg,
+            "1 sigma of a bench's tilt, default 0.5");
+  AddNumber(command, "--north-sigma-deg", fit.sigma_north, units::kDeg,
+            "1 sigma of a bench's north, default 1");
+  AddNumber(command, "--latitude-sigma-deg", fit.sigma_latitude, units::kDeg,
+            "1 sigma of the latitude, default 0.0006");
+  AddNumber(command, "--seat-arcsec", fit.sigma_axis, units::kArcsec,
+            "1 sigma of the tool's seat on the rate table, default 62");
+  AddNumber(command, "--drift-deg-per-h", fit.sigma_drift, 1,
+            "1 sigma of a gyro's drift from the middle to the end of a table, default 0.1");
+  AddNumber(command, "--wobble-arcsec", fit.sigma_wobble, units::kArcsec,
+            "1 sigma of each reading's attitude; found if not given");
+  AddNumber(command, "--sigma-accel", fit.sigma_accel, 1, "of a reading, its unit; found");
+  AddNumber(command, "--sigma-deg-per-h", fit.sigma_gyro, 1, "of a gyro's reading at rest; found");
+  AddNumber(command, "--sigma-table-deg-per-h", fit.sigma_gyro_table, 1,
+            "of one on the rate table; found");
+}
+
+}  // namespace
+
+void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* const command = calibrate.add_subcommand(
+      "tool", "all bench data of a tool in one adjustment, with its whole covariance");
+  command
+      ->add_option("--data", o->data,
+                   "readings (CSV), repeat it for more: positions (inc,az,tf and Gx,Gy,Gz or "
+                   "fx,fy,fz or vx,vy,vz and m_x1,m_y1 ...) or rate table (axis,rate_deg_s,m_x1 "
+                   "...), T_C and t_s where written down")
+      ->required();
+  command->add_option("--out", o->bench.out, "calibration file to write (TOML)")->required();
+  command->add_option("--certificate", o->certificate, "certificate to write (HTML)");
+  command->add_option("--traceability", o->traceability,
+                      "a reference instrument and its certificate, repeat it for more");
+  AddGravity(*command, o->bench);
+  AddLatitude(*command, o->bench);
+  AddAxes(*command, o->bench);
+  AddBenchSigmas(*command, o->fit);
+  command->add_option("--max-degree", o->fit.max_degree, "of biases in temperature, default 3")
+      ->check(CLI::Range(0, 3));
+  AddTool(*command, o->bench);
+  command->footer(
+      "Example:\n  wellgyro calibrate tool --data up.csv --data down.csv --data rates.csv \\\n"
+      "      --latitude-deg 60 --out tool-cal.toml --tool tool.toml --certificate tool.html");
+  command->callback([o, &exit_code] {
+    try {
+      const auto fault = Run(*o);
+      if (fault) Complain(*fault);
+      exit_code = fault ? kUnusable : kDone;
+    } catch (const std::invalid_argument& error) {
+      Complain(fmt::format("{}; see wellgyro calibrate tool --help", error.what()));
+      exit_code = kUsage;
+    }
+  });
+}
+
+}  // namespace wellgyro::apps

@@ -1,0 +1,145 @@
+#include "wellgyro/calibration/history.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "wellgyro/calibration/error_sources.h"
+#include "wellgyro/calibration/members.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+const ParameterCovariance& KnownOf(const ToolCalibration& tool) {
+  const SensorGroup& group = tool.gyro.covariance ? tool.gyro : tool.accel;
+  if (!group.covariance || !tool.calibrated) {
+    throw std::invalid_argument(
+        fmt::format("tool {}: a history needs calibrations with their date and the covariance that "
+                    "calibrate tool writes",
+                    tool.asset_serial));
+  }
+  return *group.covariance;
+}
+
+double DaysBetween(const ToolCalibration& a, const ToolCalibration& b) {
+  constexpr double kDay = 86'400;
+  return (*b.calibrated - *a.calibrated).seconds() / kDay;
+}
+
+// What samples calibrated by the older model would be off, were the newer one right.
+Eigen::VectorXd ChangeOf(const ToolCalibration& older, const ToolCalibration& newer,
+                         double temperature) {
+  const ParameterCovariance& known = KnownOf(newer);
+  const auto n = static_cast<Eigen::Index>(known.names.size());
+  Eigen::VectorXd moved(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const CalibrationMember member = MemberOf(known.names[static_cast<std::size_t>(k)]);
+    moved[k] = ValueOf(older, member) - ValueOf(newer, member);
+  }
+  return SourceEffects(newer, known.names, temperature) * moved;
+}
+
+double Reach(double false_alarm, std::size_t n) {
+  return -NormalQuantile(false_alarm / 2 / static_cast<double>(std::max<std::size_t>(n, 1)));
+}
+
+ToolHistory HistoryOf(std::vector<const ToolCalibration*> tools, const HistorySetup& setup) {
+  std::sort(tools.begin(), tools.end(), [](const ToolCalibration* a, const ToolCalibration* b) {
+    return *a->calibrated < *b->calibrated;
+  });
+  ToolHistory history;
+  history.asset_serial = tools.front()->asset_serial;
+  const CalibrationSources last = SourcesOf(*tools.back(), setup.temperature);
+  for (std::size_t i = 0; i < last.names.size(); ++i) {
+    if (last.cov(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) > 0) {
+      history.sources.push_back({.name = last.names[i]});
+    }
+  }
+  history.reach = Reach(setup.false_alarm, history.sources.size());
+  for (std::size_t k = 1; k < tools.size(); ++k) {
+    history.days.push_back(DaysBetween(*tools[k - 1], *tools[k]));
+    const Eigen::VectorXd change = ChangeOf(*tools[k - 1], *tools[k], setup.temperature);
+    const CalibrationSources a = SourcesOf(*tools[k - 1], setup.temperature);
+    const CalibrationSources b = SourcesOf(*tools[k], setup.temperature);
+    for (SourceHistory& source : history.sources) {
+      const Eigen::Index at = last.At(source.name);
+      source.changes.push_back(change[at]);
+      source.sigmas.push_back(std::sqrt(a.cov(at, at) + b.cov(at, at)));
+    }
+  }
+  for (SourceHistory& source : history.sources) {
+    double excess = 0, days = 0;
+    for (std::size_t k = 0; k < source.changes.size(); ++k) {
+      excess += std::pow(source.changes[k], 2) - std::pow(source.sigmas[k], 2);
+      days += history.days[k];
+    }
+    source.walk_per_sqrt_day = days > 0 ? std::sqrt(std::max(0.0, excess) / days) : 0;
+    const Eigen::Index at = last.At(source.name);
+    source.prior_sigma = std::hypot(std::sqrt(last.cov(at, at)),
+                                    source.walk_per_sqrt_day * std::sqrt(setup.days_ahead));
+    source.shifted = !source.changes.empty() &&
+                     std::abs(source.changes.back()) > history.reach * source.sigmas.back();
+  }
+  return history;
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Of one source, logarithms of the root mean square of changes against the other tools'.
+void CompareTools(const std::string& name, std::vector<ToolHistory>& histories) {
+  std::vector<double> logs;
+  std::vector<SourceHistory*> of;
+  for (ToolHistory& history : histories) {
+    for (SourceHistory& source : history.sources) {
+      if (source.name != name || source.changes.empty()) continue;
+      double square = 0, days = 0;
+      for (std::size_t k = 0; k < source.changes.size(); ++k) {
+        square += std::pow(source.changes[k], 2);
+        days += history.days[k];
+      }
+      if (!(square > 0) || !(days > 0)) continue;
+      logs.push_back(std::log(square / days) / 2);
+      of.push_back(&source);
+    }
+  }
+  constexpr std::size_t kFamily = 5;
+  if (of.size() < kFamily) return;
+  const double middle = Median(logs);
+  std::vector<double> away;
+  away.reserve(logs.size());
+  for (const double value : logs) away.push_back(std::abs(value - middle));
+  constexpr double kSigmaPerMad = 1.4826, kUnlike = 5;
+  // One change alone scatters by 1.1 in its logarithm, several by less.
+  const double spread = std::max(kSigmaPerMad * Median(away), 0.1);
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    of[i]->out_of_family = logs[i] - middle > kUnlike * spread;
+  }
+}
+
+}  // namespace
+
+std::vector<ToolHistory> HistoriesOf(std::span<const ToolCalibration> calibrations,
+                                     const HistorySetup& setup) {
+  std::map<std::string, std::vector<const ToolCalibration*>> tools;
+  for (const ToolCalibration& calibration : calibrations) {
+    KnownOf(calibration);
+    tools[calibration.asset_serial].push_back(&calibration);
+  }
+  std::vector<ToolHistory> histories;
+  for (auto& [serial, list] : tools) histories.push_back(HistoryOf(list, setup));
+  if (histories.empty()) return histories;
+  for (const std::string& name : SourcesOf(calibrations.front(), setup.temperature).names) {
+    CompareTools(name, histories);
+  }
+  return histories;
+}
+
+}  // namespace wellgyro

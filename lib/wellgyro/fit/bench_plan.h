@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/calibration/bench_axes.h"
+
+namespace wellgyro {
+
+/// What a plan of gyro positions is for. The gyros are a two-axis rotor across the hole: bias and
+/// its bend in temperature, sensitivity, mass unbalance and quadrature, anisoelasticity.
+struct BenchPlanSetup {
+  BenchAxes axes = BenchAxes::kTrade;
+  double bench_latitude = 0, well_latitude = 0;  ///< [rad]
+  double sigma_gyro = 0.02;                      ///< of a reading at rest [deg/h]
+  double sigma_azimuth = 0;                      ///< wanted, of what the calibration leaves [rad]
+  int temperatures = 1;                          ///< stops of the chamber, evenly; 1 to 5
+  enum class Criterion {
+    kAzimuth,      ///< the azimuth's variance over the hole's attitudes (c-optimal, on average)
+    kDeterminant,  ///< all parameters alike (D-optimal)
+  } criterion = Criterion::kAzimuth;
+  int most = 240;  ///< settings
+  /// Of the hole that it is for [rad]: a plan for a part of all directions needs fewer settings.
+  double inclination_from = 0.0873, inclination_to = 1.6581;  ///< 5 to 95 deg
+  double azimuth_from = 0, azimuth_to = 6.2832;               ///< clockwise, the whole circle
+};
+
+/// One setting: attitude of the bench and, from -1 to 1, the temperature in its range.
+struct BenchSetting {
+  double inclination = 0, azimuth = 0, toolface = 0;  ///< [rad]
+  double tau = 0;
+};
+
+struct BenchPlan {
+  std::vector<BenchSetting> settings;  ///< by temperature, then inclination
+  double sigma_azimuth = 0;            ///< that they give, root mean square over the hole [rad]
+  bool reached = false;                ///< what was wanted
+};
+
+/// The root mean square, over the hole's attitudes that are not near east-west and horizontal and
+/// all toolfaces, of
+/// the azimuth's sigma that a calibration from `settings` leaves; infinite where they leave a
+/// parameter open.
+WELLGYRO_EXPORT double AzimuthSigmaOf(const std::vector<BenchSetting>& settings,
+                                      const BenchPlanSetup& setup);
+
+/// The positions of a plain bench: inclinations 0, 45, 90 and 135 deg, four azimuths, six
+/// toolfaces, at every temperature.
+WELLGYRO_EXPORT std::vector<BenchSetting> PlainSettings(int temperatures);
+
+/// The fewest settings that reach `sigma_azimuth`, each read once, by exchange (Fedorov 1972) among
+/// inclinations every 15 deg, azimuths every 45 and toolfaces every 30; a local optimum, the same
+/// every time. Throws std::invalid_argument for a setup that makes no sense.
+WELLGYRO_EXPORT BenchPlan PlanBench(const BenchPlanSetup& setup);
+
+}  // namespace wellgyro

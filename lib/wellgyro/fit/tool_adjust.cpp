@@ -1,0 +1,465 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <ceres/ceres.h>
+
+#include "wellgyro/fit/tool_adjust_internal.h"
+
+namespace wellgyro {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double kOutlierSigmas = 6;
+
+// A row's readings against the model, whitened.
+class RowCost : public ceres::CostFunction {
+ public:
+  RowCost(const ToolModel& model, const ToolRow& row, Eigen::MatrixXd whitener)
+      : model_(model), row_(row), whitener_(std::move(whitener)) {
+    set_num_residuals(static_cast<int>(row.channels.size()));
+    mutable_parameter_block_sizes()->push_back(model.size());
+  }
+  bool Evaluate(const double* const* p, double* r, double** jacobians) const override {
+    const auto n = static_cast<Eigen::Index>(row_.channels.size());
+    const auto x = Eigen::Map<const Eigen::VectorXd>(p[0], model_.size());
+    const ToolModel::Prediction at = model_.At(row_, x);
+    Eigen::Map<Eigen::VectorXd>(r, n) = whitener_ * (at.v - row_.v);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<RowMajor>(jacobians[0], n, model_.size()) = whitener_ * at.J;
+    }
+    return true;
+  }
+
+ private:
+  const ToolModel& model_;
+  const ToolRow& row_;
+  Eigen::MatrixXd whitener_;
+};
+
+// What was known before: A (x - x0), rows of unit variance.
+class PriorCost : public ceres::CostFunction {
+ public:
+  PriorCost(RowMajor A, Eigen::VectorXd x0) : A_(std::move(A)), x0_(std::move(x0)) {
+    set_num_residuals(static_cast<int>(A_.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(A_.cols()));
+  }
+  bool Evaluate(const double* const* p, double* r, double** jacobians) const override {
+    const auto x = Eigen::Map<const Eigen::VectorXd>(p[0], A_.cols());
+    Eigen::Map<Eigen::VectorXd>(r, A_.rows()) = A_ * (x - x0_);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<RowMajor>(jacobians[0], A_.rows(), A_.cols()) = A_;
+    }
+    return true;
+  }
+
+ private:
+  RowMajor A_;
+  Eigen::VectorXd x0_;
+};
+
+struct Prior {
+  RowMajor A;
+  Eigen::VectorXd x0;
+};
+
+// Of the nuisances, and of terms that have one.
+Prior PriorOf(const ToolModel& model) {
+  std::vector<std::pair<int, double>> known;
+  for (int k = 0; k < model.n_terms(); ++k) {
+    const double sigma = model.terms()[static_cast<std::size_t>(k)].prior_sigma;
+    if (sigma > 0) known.emplace_back(k, sigma);
+  }
+  int at = model.n_terms();
+  for (const BenchNuisance& nuisance : model.nuisances()) {
+    known.emplace_back(at++, nuisance.prior_sigma);
+  }
+  const auto n = static_cast<Eigen::Index>(known.size());
+  Prior prior{RowMajor::Zero(n, model.size()), Eigen::VectorXd::Zero(model.size())};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& [parameter, sigma] = known[static_cast<std::size_t>(i)];
+    prior.A(i, parameter) = 1 / sigma;
+  }
+  return prior;
+}
+
+double RobustSigma(std::vector<double> sizes) {
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return 1.4826 * *middle;
+}
+
+// Which of ToolNoise's a channel's reading has.
+int KindOf(const ToolReadings& readings, const ToolRow& row, int channel) {
+  if (!readings.channels[static_cast<std::size_t>(channel)].is_gyro) return 0;
+  return row.mount >= 0 ? 2 : 1;
+}
+
+class Adjuster {
+ public:
+  Adjuster(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model)
+      : readings_(readings), setup_(setup), model_(model), out_(readings.rows.size(), 0) {}
+
+  Result<ToolAdjustment> Adjust() {
+    Start();
+    if (!x_.allFinite()) return Unsettled();
+    for (int turn = 0; turn < kRobustTurns; ++turn) {
+      if (!Minimise(true)) return Unsettled();
+      const std::vector<char> before = out_;
+      // The start's sigmas weigh the kinds of readings badly against each other.
+      if (turn > 0) MarkOutliers();
+      FindNoise(kRoughSweeps);
+      if (turn > 1 && before == out_) break;
+    }
+    for (int turn = 0; turn < kTurns; ++turn) {
+      if (!Minimise(false)) return Unsettled();
+      const ToolNoise before = noise_;
+      FindNoise(kSweeps);
+      if (Alike(before)) break;
+    }
+    return Finish();
+  }
+
+ private:
+  static constexpr int kRobustTurns = 6, kTurns = 6, kRoughSweeps = 3, kSweeps = 12;
+
+  static Fault Unsettled() {
+    return {.code = FaultCode::kRange,
+            .text =
+                "the adjustment does not settle, the readings do not fit the model: look for wrong "
+                "signs, exchanged columns, mixed units or a wrong reference"};
+  }
+
+  // Of a direction in which the readings say nothing.
+  Fault Undetermined(const Eigen::VectorXd& direction) const {
+    std::string text;
+    const std::vector<std::string> names = model_.names();
+    for (Eigen::Index i = 0; i < direction.size(); ++i) {
+      constexpr double kMuch = 0.25;
+      if (std::abs(direction[i]) < kMuch) continue;
+      text += (text.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
+    }
+    return {.code = FaultCode::kRange,
+            .text = "the readings do not tell apart " + text +
+                    ": measure inclinations every 45 deg, four azimuths and toolfaces every 60 "
+                    "deg, or join a rate table's readings"};
+  }
+
+  std::array<double*, 4> Components() {
+    return {&noise_.accel, &noise_.gyro, &noise_.gyro_table, &noise_.wobble};
+  }
+  std::array<bool, 4> Held() const {
+    return {setup_.sigma_accel.has_value(), setup_.sigma_gyro.has_value(),
+            setup_.sigma_gyro_table.has_value(), setup_.sigma_wobble.has_value()};
+  }
+  bool Alike(ToolNoise before) const {
+    const auto same = [](double a, double b) { return std::abs(a - b) <= 0.01 * std::abs(b); };
+    return same(before.accel, noise_.accel) && same(before.gyro, noise_.gyro) &&
+           same(before.gyro_table, noise_.gyro_table) && same(before.wobble, noise_.wobble);
+  }
+
+  // The coefficients by plain least squares, channel kinds weighed alike; then their scatter.
+  void Start() {
+    const Eigen::Index n = model_.n_terms();
+    x_ = Eigen::VectorXd::Zero(model_.size());
+    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+    for (const ToolRow& row : readings_.rows) {
+      const ToolModel::Prediction at = model_.At(row, x_);
+      const auto A = at.J.leftCols(n);
+      N += A.transpose() * A;
+      b += A.transpose() * row.v;
+    }
+    const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * N * scale.asDiagonal();
+    x_.head(n) =
+        scale.cwiseProduct(scaled.completeOrthogonalDecomposition().solve(scale.cwiseProduct(b)));
+    std::array<std::vector<double>, 3> sizes, readings;
+    for (const ToolRow& row : readings_.rows) {
+      const Eigen::VectorXd e = model_.At(row, x_).v - row.v;
+      for (Eigen::Index i = 0; i < e.size(); ++i) {
+        const auto kind = static_cast<std::size_t>(
+            KindOf(readings_, row, row.channels[static_cast<std::size_t>(i)]));
+        sizes[kind].push_back(std::abs(e[i]));
+        readings[kind].push_back(std::abs(row.v[i]));
+      }
+    }
+    // Below that lies the rounding of what was written down.
+    constexpr double kRounding = 1e-8;
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+      floor_[kind] = std::max(kRounding * RobustSigma(readings[kind]), 1e-300);
+    }
+    noise_.wobble = setup_.sigma_wobble.value_or(5e-5);
+    noise_.accel = setup_.sigma_accel.value_or(std::max(RobustSigma(sizes[0]), floor_[0]));
+    noise_.gyro = setup_.sigma_gyro.value_or(std::max(RobustSigma(sizes[1]), floor_[1]));
+    noise_.gyro_table =
+        setup_.sigma_gyro_table.value_or(std::max(RobustSigma(sizes[2]), floor_[2]));
+  }
+
+  Eigen::MatrixXd WhitenerOf(const ToolRow& row) const {
+    return model_.Whitener(row, model_.At(row, x_).wobble, noise_);
+  }
+
+  bool Minimise(bool robust) {
+    ceres::Problem problem;
+    problem.AddParameterBlock(x_.data(), model_.size());
+    for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
+      if (!robust && out_[i] != 0) continue;
+      const ToolRow& row = readings_.rows[i];
+      auto cost = std::make_unique<RowCost>(model_, row, WhitenerOf(row));
+      const double size = std::sqrt(static_cast<double>(row.channels.size()));
+      problem.AddResidualBlock(cost.release(), robust ? new ceres::CauchyLoss(2 * size) : nullptr,
+                               x_.data());
+    }
+    const Prior prior = PriorOf(model_);
+    problem.AddResidualBlock(new PriorCost(prior.A, prior.x0), nullptr, x_.data());
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = 200;
+    options.function_tolerance = 1e-12;
+    options.gradient_tolerance = 1e-14;
+    options.parameter_tolerance = 1e-12;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    options.minimizer_progress_to_stdout = false;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    return summary.IsSolutionUsable() && x_.allFinite();
+  }
+
+  // Rows with a reading beyond the limit, in units of what the others scatter by.
+  void MarkOutliers() {
+    std::vector<double> largest, all;
+    for (const ToolRow& row : readings_.rows) {
+      const Eigen::VectorXd r = WhitenerOf(row) * (model_.At(row, x_).v - row.v);
+      largest.push_back(r.cwiseAbs().maxCoeff());
+      for (const double value : r) all.push_back(std::abs(value));
+    }
+    const double n = static_cast<double>(all.size());
+    const double freedom = std::max(1.0, n - model_.n_terms());
+    const double scale = RobustSigma(all) * std::sqrt(n / freedom);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < out_.size(); ++i) {
+      out_[i] = largest[i] > kOutlierSigmas * scale ? 1 : 0;
+      count += out_[i] != 0 ? 1 : 0;
+    }
+    if (4 * count > out_.size()) std::fill(out_.begin(), out_.end(), 0);
+  }
+
+  // A row about x: its residual, and by what it changes.
+  struct Left {
+    const ToolRow* row;
+    Eigen::VectorXd e;
+    Eigen::MatrixXd J, wobble;
+  };
+
+  std::vector<Left> RowsLeft() const {
+    std::vector<Left> rows;
+    for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
+      if (out_[i] != 0) continue;
+      const ToolRow& row = readings_.rows[i];
+      ToolModel::Prediction at = model_.At(row, x_);
+      rows.push_back({&row, row.v - at.v, std::move(at.J), std::move(at.wobble)});
+    }
+    return rows;
+  }
+
+  // The sigmas under which what is left is likeliest, what each kind of readings loses to the
+  // parameters allowed for (restricted likelihood), in a model linear about x.
+  void FindNoise(int sweeps) {
+    const std::vector<Left> rows = RowsLeft();
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      const ToolNoise before = noise_;
+      const std::array<double, 4> ratios = SquaresOverExpected(rows);
+      const std::array<bool, 4> held = Held();
+      const std::array<double*, 4> sigmas = Components();
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (held[k] || !(ratios[k] > 0)) continue;
+        const double factor = std::clamp(std::sqrt(ratios[k]), 0.2, 5.0);
+        *sigmas[k] = std::max(*sigmas[k] * factor, floor_[k]);
+      }
+      if (Alike(before)) break;
+    }
+  }
+
+  // Of each component with covariance V: y'P V P y over tr(P V), where P takes the parameters out
+  // (Patterson and Thompson 1971). At the likeliest sigmas all are one; 0 where there is nothing.
+  std::array<double, 4> SquaresOverExpected(const std::vector<Left>& rows) const {
+    const Eigen::Index n = model_.size();
+    const Prior prior = PriorOf(model_);
+    Eigen::MatrixXd N = prior.A.transpose() * prior.A;
+    Eigen::VectorXd b = prior.A.transpose() * (prior.A * (prior.x0 - x_));
+    std::vector<Eigen::MatrixXd> weights;
+    for (const Left& left : rows) {
+      const Eigen::MatrixXd W = model_.Whitener(*left.row, left.wobble, noise_);
+      const Eigen::MatrixXd A = W * left.J;
+      N.selfadjointView<Eigen::Lower>().rankUpdate(A.transpose());
+      b += A.transpose() * (W * left.e);
+      weights.push_back(W.transpose() * W);
+    }
+    const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() *
+                                   Eigen::MatrixXd(N.selfadjointView<Eigen::Lower>()) *
+                                   scale.asDiagonal();
+    const Eigen::LDLT<Eigen::MatrixXd> root(scaled);
+    const Eigen::MatrixXd cov = scale.asDiagonal() *
+                                Eigen::MatrixXd(root.solve(Eigen::MatrixXd::Identity(n, n))) *
+                                scale.asDiagonal();
+    const Eigen::VectorXd step = cov * b;
+    std::array<double, 4> squares{}, expected{};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Left& left = rows[i];
+      const Eigen::VectorXd r = weights[i] * (left.e - left.J * step);
+      const Eigen::MatrixXd WJ = weights[i] * left.J;
+      const Eigen::MatrixXd P = weights[i] - WJ * cov * WJ.transpose();
+      for (Eigen::Index c = 0; c < r.size(); ++c) {
+        const auto kind = static_cast<std::size_t>(
+            KindOf(readings_, *left.row, left.row->channels[static_cast<std::size_t>(c)]));
+        squares[kind] += r[c] * r[c];
+        expected[kind] += P(c, c);
+      }
+      squares[3] += (left.wobble.transpose() * r).squaredNorm();
+      expected[3] += (left.wobble.transpose() * P * left.wobble).trace();
+    }
+    std::array<double, 4> ratios{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (expected[k] > 0) ratios[k] = squares[k] / expected[k];
+    }
+    return ratios;
+  }
+
+  // Linear about x, with the priors as rows of line 0.
+  LinearProblem Linearise() const {
+    Eigen::Index n = 0;
+    for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
+      if (out_[i] == 0) n += static_cast<Eigen::Index>(readings_.rows[i].channels.size());
+    }
+    const Prior prior = PriorOf(model_);
+    LinearProblem linear(model_.names(), static_cast<int>(n + prior.A.rows()));
+    linear.sigma_given = true;
+    linear.robust = false;
+    Eigen::Index at = 0;
+    for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
+      if (out_[i] != 0) continue;
+      const ToolRow& row = readings_.rows[i];
+      const ToolModel::Prediction p = model_.At(row, x_);
+      const Eigen::MatrixXd W = model_.Whitener(row, p.wobble, noise_);
+      const auto size = static_cast<Eigen::Index>(row.channels.size());
+      linear.A.middleRows(at, size) = W * p.J;
+      linear.y.segment(at, size) = W * (p.J * x_ + row.v - p.v);
+      for (Eigen::Index k = 0; k < size; ++k) {
+        const int channel = row.channels[static_cast<std::size_t>(k)];
+        linear.rows[static_cast<std::size_t>(at + k)] = {
+            static_cast<int>(i) + 1,
+            (row.mount >= 0 ? "table " : "") +
+                readings_.channels[static_cast<std::size_t>(channel)].name,
+            1 / W(k, k)};
+      }
+      at += size;
+    }
+    linear.A.bottomRows(prior.A.rows()) = prior.A;
+    linear.y.tail(prior.A.rows()) = prior.A * prior.x0;
+    return linear;
+  }
+
+  // By normal equations of scaled columns: the terms that are there are told apart well.
+  Result<ToolAdjustment> Finish() const {
+    ToolAdjustment a{x_, {}, noise_, out_, Linearise(), {}};
+    const Eigen::MatrixXd& A = a.linear.A;
+    const Eigen::VectorXd scale = A.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    const Eigen::MatrixXd scaled = A * scale.asDiagonal();
+    const Eigen::MatrixXd N = scaled.transpose() * scaled;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N);
+    const Eigen::VectorXd values = eigen.eigenvalues();
+    if (!(values[0] > 1e-13 * values[values.size() - 1])) {
+      return Undetermined(eigen.eigenvectors().col(0));
+    }
+    const Eigen::MatrixXd inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
+                                    eigen.eigenvectors().transpose();
+    a.cov = scale.asDiagonal() * inverse * scale.asDiagonal();
+    LinearSolution& s = a.solution;
+    s.x = x_;
+    s.cov = a.cov;
+    s.residual = a.linear.y - A * x_;
+    s.leverage = (scaled * inverse).cwiseProduct(scaled).rowwise().sum();
+    s.rows = a.linear.rows;
+    s.rank = model_.size();
+    s.condition = std::sqrt(values[values.size() - 1] / values[0]);
+    s.chi_square = s.residual.squaredNorm();
+    s.dof = static_cast<int>(A.rows()) - model_.size();
+    return a;
+  }
+
+  const ToolReadings& readings_;
+  const ToolFitSetup& setup_;
+  const ToolModel& model_;
+  Eigen::VectorXd x_;
+  ToolNoise noise_;
+  std::array<double, 4> floor_{1e-300, 1e-300, 1e-300, 1e-8};
+  std::vector<char> out_;
+};
+
+}  // namespace
+
+std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& setup,
+                             const std::vector<TermBundle>& bundles) {
+  std::vector<ToolTerm> terms;
+  for (const TermBundle& bundle : bundles) {
+    terms.insert(terms.end(), bundle.terms.begin(), bundle.terms.end());
+  }
+  const ToolModel model(readings, setup, terms);
+  const Eigen::Index n = model.n_terms();
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.size());
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n, n);
+  for (const ToolRow& row : readings.rows) {
+    // A rate table's large rates are read with more noise than the Earth's.
+    constexpr double kTable = 0.04;
+    const Eigen::MatrixXd A = (row.mount >= 0 ? kTable : 1) * model.At(row, zero).J.leftCols(n);
+    N += A.transpose() * A;
+  }
+  // Against the noise of a reading, as far as that is guessed.
+  constexpr double kNoise = 0.02;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double sigma = terms[static_cast<std::size_t>(k)].prior_sigma;
+    if (sigma > 0) N(k, k) += kNoise * kNoise / (sigma * sigma);
+  }
+  const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  N = scale.asDiagonal() * N * scale.asDiagonal();
+  // Row by row of a Cholesky decomposition: what is left of a column beside those before it.
+  constexpr double kTold = 1e-9;
+  std::vector<int> seen;
+  std::vector<Eigen::Index> kept;
+  Eigen::Index first = 0;
+  for (std::size_t b = 0; b < bundles.size(); ++b) {
+    const auto size = static_cast<Eigen::Index>(bundles[b].terms.size());
+    std::vector<Eigen::Index> with = kept;
+    for (Eigen::Index k = 0; k < size; ++k) with.push_back(first + k);
+    first += size;
+    const bool has_base =
+        bundles[b].after < 0 || std::find(seen.begin(), seen.end(), bundles[b].after) != seen.end();
+    const Eigen::MatrixXd part = N(with, with);
+    const Eigen::LLT<Eigen::MatrixXd> root(part);
+    const bool told =
+        root.info() == Eigen::Success &&
+        Eigen::MatrixXd(root.matrixL()).diagonal().cwiseAbs2().tail(size).minCoeff() > kTold;
+    if (!has_base || size == 0 || (!told && !bundles[b].needed)) continue;
+    seen.push_back(static_cast<int>(b));
+    kept = std::move(with);
+  }
+  return seen;
+}
+
+Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,
+                                  const std::vector<ToolTerm>& terms) {
+  const ToolModel model(readings, setup, terms);
+  return Adjuster(readings, setup, model).Adjust();
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "wellgyro/base/result.h"
+#include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/fit/tool_model_internal.h"
+
+namespace wellgyro {
+
+/// An adjustment of the tool's readings.
+struct ToolAdjustment {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd cov;
+  ToolNoise noise;
+  std::vector<char> out;  ///< by row: left out
+  LinearProblem linear;   ///< about x, whitened; rows' lines are places in readings.rows plus one
+  LinearSolution solution;
+};
+
+/// Places of the bundles whose coefficients these readings tell apart from the others'.
+std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& setup,
+                             const std::vector<TermBundle>& bundles);
+
+/// Adjusts `terms`; outliers join `out`. The Fault when it does not settle.
+Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,
+                                  const std::vector<ToolTerm>& terms);
+
+}  // namespace wellgyro

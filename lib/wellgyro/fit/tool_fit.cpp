@@ -1,0 +1,290 @@
+#include "wellgyro/fit/tool_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/Dense>
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/residual_trends_internal.h"
+#include "wellgyro/fit/tool_adjust_internal.h"
+#include "wellgyro/fit/tool_result_internal.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+std::vector<ToolTerm> TermsOf(const std::vector<TermBundle>& bundles,
+                              const std::vector<int>& places) {
+  std::vector<ToolTerm> terms;
+  for (const int place : places) {
+    const auto& more = bundles[static_cast<std::size_t>(place)].terms;
+    terms.insert(terms.end(), more.begin(), more.end());
+  }
+  return terms;
+}
+
+// Places of a bundle's coefficients in x, where `kept` are the bundles that x holds, in order.
+std::vector<Eigen::Index> PlacesIn(const std::vector<TermBundle>& bundles,
+                                   const std::vector<int>& kept, int bundle) {
+  Eigen::Index first = 0;
+  for (const int place : kept) {
+    const auto size =
+        static_cast<Eigen::Index>(bundles[static_cast<std::size_t>(place)].terms.size());
+    if (place == bundle) {
+      std::vector<Eigen::Index> places;
+      for (Eigen::Index k = 0; k < size; ++k) places.push_back(first + k);
+      return places;
+    }
+    first += size;
+  }
+  return {};
+}
+
+// By how much the sum of squares would rise without the bundle.
+double Gain(const Eigen::VectorXd& x, const Eigen::MatrixXd& cov,
+            const std::vector<Eigen::Index>& places) {
+  const Eigen::VectorXd part = x(places);
+  return part.dot(Eigen::MatrixXd(cov(places, places)).ldlt().solve(part));
+}
+
+// What noise alone gives a bundle of so many coefficients once in a hundred.
+double ByChance(std::size_t coefficients) {
+  return ChiSquareQuantile(0.99, static_cast<int>(coefficients));
+}
+
+// Backwards from all that is seen: what chance gives as well goes, one bundle a turn.
+std::vector<int> Chosen(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
+                        const ToolAdjustment& full) {
+  Eigen::VectorXd x = full.x;
+  Eigen::MatrixXd cov = full.cov;
+  std::vector<int> kept = seen;
+  while (true) {
+    int worst = -1;
+    double least = 0;
+    for (const int place : kept) {
+      const TermBundle& bundle = bundles[static_cast<std::size_t>(place)];
+      const bool carries = std::any_of(kept.begin(), kept.end(), [&](int other) {
+        return bundles[static_cast<std::size_t>(other)].after == place;
+      });
+      if (bundle.needed || carries) continue;
+      const auto places = PlacesIn(bundles, seen, place);
+      const double rise = Gain(x, cov, places) - ByChance(places.size());
+      if (rise >= least) continue;
+      least = rise;
+      worst = place;
+    }
+    if (worst < 0) return kept;
+    // What the others are where this is nothing.
+    const auto places = PlacesIn(bundles, seen, worst);
+    const Eigen::MatrixXd across = cov(Eigen::all, places);
+    const Eigen::LDLT<Eigen::MatrixXd> inner(Eigen::MatrixXd(cov(places, places)));
+    x -= across * inner.solve(Eigen::VectorXd(x(places)));
+    cov -= across * inner.solve(Eigen::MatrixXd(across.transpose()));
+    kept.erase(std::find(kept.begin(), kept.end(), worst));
+  }
+}
+
+void TellLeftOut(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
+                 const std::vector<int>& chosen, const ToolAdjustment& full, ToolFit& fit) {
+  constexpr double k95 = 1.96;
+  for (std::size_t b = 0; b < bundles.size(); ++b) {
+    const int place = static_cast<int>(b);
+    if (std::count(chosen.begin(), chosen.end(), place) > 0) continue;
+    LeftOutTerm term{bundles[b].name, 0, false};
+    for (const Eigen::Index k : PlacesIn(bundles, seen, place)) {
+      term.seen = true;
+      term.bound = std::max(term.bound,
+                            std::abs(full.x[k]) + k95 * std::sqrt(std::max(0.0, full.cov(k, k))));
+    }
+    if (!bundles[b].terms.empty()) fit.left_out.push_back(std::move(term));
+  }
+}
+
+// What the readings say of the bench against what was said before: of a prior of sigma s that the
+// readings narrow to v, the estimate scatters by sqrt(s^2 - v), however little they narrow it.
+void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
+  constexpr double kFar = 3.5, kLeastNarrowed = 1e-7;
+  for (std::size_t i = 0; i < model.nuisances().size(); ++i) {
+    BenchNuisance nuisance = model.nuisances()[i];
+    const auto at = static_cast<Eigen::Index>(i) + model.n_terms();
+    nuisance.value = a.x[at];
+    nuisance.sigma = std::sqrt(std::max(0.0, a.cov(at, at)));
+    const double prior = std::pow(nuisance.prior_sigma, 2), narrowed = prior - a.cov(at, at);
+    const double sigmas =
+        narrowed > kLeastNarrowed * prior ? std::abs(nuisance.value) / std::sqrt(narrowed) : 0;
+    if (sigmas > kFar) {
+      fit.calibration.report.remarks.push_back(fmt::format(
+          "{}: the readings ask for {:.3g} deg beside what was given, {:.1f} sigmas off: the "
+          "reference is wrong, or a unit or sign of the table",
+          nuisance.name, ToDegrees(nuisance.value * prior / narrowed), sigmas));
+    }
+    fit.nuisances.push_back(std::move(nuisance));
+  }
+  if (a.noise.wobble > 0) {
+    fit.nuisances.push_back({"wobble", a.noise.wobble, 0, 0, "rad"});
+  }
+}
+
+// The tables as one, its lines the readings' places plus one, for the report.
+BenchTable Joint(std::span<const BenchTable> tables, const ToolReadings& readings) {
+  BenchTable joint{tables.front().source, {}, {}, {}};
+  const auto n = static_cast<Eigen::Index>(readings.rows.size());
+  if (readings.has_temperature) joint.columns = {"T_C"};
+  joint.values.resize(n, readings.has_temperature ? 1 : 0);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    joint.lines.push_back(static_cast<int>(i) + 1);
+    if (readings.has_temperature) {
+      joint.values(i, 0) = readings.rows[static_cast<std::size_t>(i)].temperature;
+    }
+  }
+  return joint;
+}
+
+// Lines and tables as people know them.
+void NameLines(std::span<const BenchTable> tables, const ToolReadings& readings,
+               const ToolAdjustment& a, FitReport& report) {
+  for (FitResidual& residual : report.residuals) {
+    const ToolRow& row = readings.rows[static_cast<std::size_t>(residual.line - 1)];
+    residual.line = row.line;
+    if (tables.size() > 1) residual.channel += fmt::format(" of table {}", row.table + 1);
+  }
+  for (std::size_t i = 0; i < a.out.size(); ++i) {
+    if (a.out[i] == 0) continue;
+    const ToolRow& row = readings.rows[i];
+    report.outlier_lines.push_back(row.line);
+    if (tables.size() > 1) {
+      report.remarks.push_back(
+          fmt::format("{}, line {} is left out: it does not belong to the others",
+                      tables[static_cast<std::size_t>(row.table)].source, row.line));
+    }
+  }
+}
+
+std::optional<Fault> WrongChannels(const BenchTable& data, const ToolReadings& readings,
+                                   const ToolModel& model, const Eigen::VectorXd& x) {
+  for (std::size_t c = 0; c < readings.channels.size(); ++c) {
+    const ToolChannel& channel = readings.channels[c];
+    Eigen::Vector3d S = Eigen::Vector3d::Zero();
+    for (int k = 0; k < model.n_terms(); ++k) {
+      const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
+      const TermUse& use = term.uses.front();
+      if (term.kind == TermKind::kSensitivity && term.power == 0 &&
+          use.channel == static_cast<int>(c)) {
+        S[use.j] = x[k];
+      }
+    }
+    Eigen::Index most = 0;
+    S.cwiseAbs().maxCoeff(&most);
+    if (most == channel.axis && S[most] > 0) continue;
+    return BenchFault(
+        data,
+        most != channel.axis
+            ? fmt::format("channel {} follows {}{}: its axis is not {}; exchange the "
+                          "columns, or mend their names",
+                          channel.name, S[most] < 0 ? "-" : "", "xyz"[most], "xyz"[channel.axis])
+            : fmt::format("channel {} falls where {} rises: its sign is wrong, or up "
+                          "and down of the positions are swapped",
+                          channel.name, "xyz"[most]));
+  }
+  return std::nullopt;
+}
+
+// What a channel varies by, for DoesNotFit: at rest.
+std::vector<ChannelSignal> Signals(const ToolReadings& readings, const ToolModel& model,
+                                   const Eigen::VectorXd& x, const ToolFitSetup& setup) {
+  std::vector<ChannelSignal> signals;
+  for (std::size_t c = 0; c < readings.channels.size(); ++c) {
+    double square = 0;
+    for (int k = 0; k < model.n_terms(); ++k) {
+      const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
+      if (term.kind == TermKind::kSensitivity && term.power == 0 &&
+          term.uses.front().channel == static_cast<int>(c)) {
+        square += x[k] * x[k];
+      }
+    }
+    const double size = readings.channels[c].is_gyro ? kBenchEarthRate / units::kDegPerHour
+                                                     : setup.reference.gravity;
+    signals.push_back({readings.channels[c].name, std::sqrt(square) * size});
+  }
+  return signals;
+}
+
+// What would not show in any residual.
+void TellReferences(std::span<const BenchTable> tables, const ToolReadings& readings,
+                    const ToolFitSetup& setup, FitReport& report) {
+  if (!tables.front().Find("T_C")) {
+    report.remarks.emplace_back(
+        "no temperatures (column T_C): what they do to the sensors is in the result");
+  }
+  if (readings.n_accel == 0 || !setup.reference.latitude) return;
+  // Benches stand up to two kilometres high.
+  constexpr double kAbove = 8e-4, kAnomaly = 2e-4;
+  const double normal = SiteAt(*setup.reference.latitude, 0).gravity;
+  const double off = setup.reference.gravity_mps2 / normal - 1;
+  if (off < kAnomaly && off > -kAbove) return;
+  report.remarks.push_back(fmt::format(
+      "gravity is taken as {:.5g} m/s2 where {:.5g} is normal at the bench's latitude: the "
+      "accelerometers' sensitivities are wrong by as much ({:.1e}) if that is not so",
+      setup.reference.gravity_mps2, normal, off));
+}
+
+Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& readings,
+                      const ToolFitSetup& setup, const ToolModel& model, const ToolAdjustment& a) {
+  ToolFit fit;
+  FitReport& report = fit.calibration.report;
+  auto whole = WholeReport(Joint(tables, readings), a.linear, a.solution, "measure more");
+  if (!whole) return whole.fault();
+  report = *std::move(whole);
+  report.method = "tool";
+  if (auto fault = WrongChannels(tables.front(), readings, model, a.x)) return *fault;
+  if (auto fault = DoesNotFit(tables.front(), Signals(readings, model, a.x, setup), report)) {
+    return *fault;
+  }
+  NameLines(tables, readings, a, report);
+  TellReferences(tables, readings, setup, report);
+  TellNuisances(model, a, fit);
+  TakeToolResult(readings, setup, model, a, fit);
+  return fit;
+}
+
+}  // namespace
+
+std::string TextOf(const LeftOutTerm& term) {
+  return term.seen ? fmt::format("{}: below {:.2g}", term.name, term.bound)
+                   : fmt::format("{}: these readings cannot tell", term.name);
+}
+
+Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& setup) {
+  if (tables.empty()) throw std::invalid_argument("calibrate tool needs bench data");
+  const auto readings = ReadTool(tables, setup);
+  if (!readings) return readings.fault();
+  if (readings->n_gyro > 0 && !setup.reference.latitude) {
+    throw std::invalid_argument("gyros need the latitude");
+  }
+  const std::vector<TermBundle> bundles = CandidateTerms(*readings, setup);
+  const std::vector<int> seen = SeenBundles(*readings, setup, bundles);
+  const auto refused = [&](const Fault& fault) { return BenchFault(tables.front(), fault.text); };
+  const auto full = AdjustTool(*readings, setup, TermsOf(bundles, seen));
+  if (!full) return refused(full.fault());
+  const std::vector<int> chosen = Chosen(bundles, seen, *full);
+  const std::vector<ToolTerm> terms = TermsOf(bundles, chosen);
+  const auto last = AdjustTool(*readings, setup, terms);
+  if (!last) return refused(last.fault());
+  auto fit = Whole(tables, *readings, setup, ToolModel(*readings, setup, terms), *last);
+  if (!fit) return fit.fault();
+  TellLeftOut(bundles, seen, chosen, *full, *fit);
+  for (const LeftOutTerm& term : fit->left_out) {
+    fit->calibration.report.remarks.push_back("left out: " + TextOf(term));
+  }
+  return fit;
+}
+
+}  // namespace wellgyro

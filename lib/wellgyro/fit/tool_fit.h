@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+#include "wellgyro/calibration/bench_table.h"
+#include "wellgyro/calibration/fit_report.h"
+#include "wellgyro/calibration/tool_update.h"
+#include "wellgyro/fit/bench_reference.h"
+#include "wellgyro/fit/gyro_fit.h"
+
+namespace wellgyro {
+
+/// What is known of the bench before its readings, 1-sigma; sigmas of readings that are absent are
+/// found from their scatter.
+struct ToolFitSetup {
+  BenchReference reference;             ///< gravity; the latitude is needed for gyros
+  std::optional<GyroForceModel> force;  ///< as GyroFitSetup's
+  double sigma_level = 8.7e-3;          ///< of a bench's tilt, each direction [rad]
+  double sigma_north = 1.75e-2;         ///< of its north [rad]
+  double sigma_latitude = 1e-5;         ///< [rad]
+  double sigma_axis = 3e-4;             ///< of the tool on the rate table, each direction [rad]
+  double sigma_drift = 0.1;             ///< of a gyro from the middle to the end of a table [deg/h]
+  std::optional<double> sigma_wobble;   ///< of each reading's attitude, about each axis [rad]
+  std::optional<double> sigma_accel;    ///< of a reading [its unit]
+  std::optional<double> sigma_gyro;     ///< of a reading at rest [its unit]
+  std::optional<double> sigma_gyro_table;  ///< of a reading on the rate table [its unit]
+  int max_degree = 3;                      ///< of biases in temperature
+};
+
+/// Something of the bench, not of the tool.
+struct BenchNuisance {
+  std::string name;
+  double value = 0, sigma = 0, prior_sigma = 0;  ///< [unit]; sigma near the prior's: not seen
+  std::string unit;
+};
+
+/// Terms that the readings do not ask for.
+struct LeftOutTerm {
+  std::string name;
+  double bound = 0;  ///< its largest coefficient lies below, 95 %; [the data's unit]
+  bool seen = true;  ///< false: these readings cannot tell
+};
+
+/// "accel_hysteresis: below 1.2e-05".
+WELLGYRO_EXPORT std::string TextOf(const LeftOutTerm& term);
+
+struct ToolFit {
+  BenchCalibration calibration;
+  /// Values and covariance of everything that the tool model takes over, under the names and in the
+  /// units of CalibrationMember (calibration/members.h).
+  ParameterCovariance members;
+  Eigen::VectorXd member_values;
+  std::vector<BenchNuisance> nuisances;
+  std::vector<LeftOutTerm> left_out;
+};
+
+/// All bench data of a tool in one adjustment: tables of positions (inc, az, tf [deg], Gx.. or fx..
+/// or vx.. and m_x1 .., in any order of attitudes and temperatures) and of a rate table (axis,
+/// rate_deg_s, m_x1 ..), with T_C [degC] and t_s [s] where they were written down.
+///
+/// Channels as in SensorGroup, their polynomials in temperature, second order, force, heating and
+/// hysteresis terms (a loop that heating and cooling open, not corrected by the tool model: its
+/// size is in the biases' covariance). Of the bench: level and north of each table, its drift in
+/// time, the tool's seat on the rate table, the latitude, each with its prior; the wobble of every
+/// reading, which moves all channels together, is marginalised, its size found. Terms are chosen by
+/// likelihood (ratio, 1 %); outliers are found with Cauchy's loss (Ceres) and left out.
+WELLGYRO_EXPORT Result<ToolFit> FitTool(std::span<const BenchTable> tables,
+                                        const ToolFitSetup& setup);
+
+/// Takes the joint fit into the tool model: both groups, the covariance of their members (in the
+/// gyros' group where there are any) and the errors that it leaves (ErrorsLeft). `update.channels`
+/// and `unit_per_count` name the accelerometers' and behind them the gyros'. Throws
+/// std::invalid_argument when a list has another length.
+WELLGYRO_EXPORT ToolCalibration Updated(ToolCalibration tool, const ToolFit& fit,
+                                        const ToolUpdate& update);
+
+}  // namespace wellgyro

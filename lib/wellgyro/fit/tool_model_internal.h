@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/fit/tool_rows_internal.h"
+#include "wellgyro/fit/tool_terms_internal.h"
+
+namespace wellgyro {
+
+/// Sigmas of the readings, by what made them.
+struct ToolNoise {
+  double accel = 1, gyro = 1, gyro_table = 1;  ///< of a reading [its unit]
+  double wobble = 0;                           ///< of its attitude, about each axis [rad]
+};
+
+/// Readings of the tool as functions of the terms' coefficients, and behind them of what the bench
+/// has: level (about north and east) and north of each table, seats on the rate table, latitude.
+class ToolModel {
+ public:
+  ToolModel(const ToolReadings& readings, const ToolFitSetup& setup, std::vector<ToolTerm> terms);
+
+  int n_terms() const { return static_cast<int>(terms_.size()); }
+  int size() const { return n_terms() + static_cast<int>(nuisances_.size()); }
+  const std::vector<ToolTerm>& terms() const { return terms_; }
+  /// Of the bench: names, and in `prior_sigma` what was known before.
+  const std::vector<BenchNuisance>& nuisances() const { return nuisances_; }
+  std::vector<std::string> names() const;
+
+  struct Prediction {
+    Eigen::VectorXd v;       ///< of the row's channels
+    Eigen::MatrixXd J;       ///< by all parameters
+    Eigen::MatrixXd wobble;  ///< by small turns of the tool about the bench's axes
+  };
+  Prediction At(const ToolRow& row, const Eigen::VectorXd& x) const;
+
+  /// Inverse of the lower root of a row's covariance.
+  Eigen::MatrixXd Whitener(const ToolRow& row, const Eigen::MatrixXd& wobble,
+                           const ToolNoise& noise) const;
+
+ private:
+  struct State;
+  State StateOf(const ToolRow& row, const Eigen::VectorXd& x) const;
+  void AddNuisances();
+
+  const ToolReadings& readings_;
+  const ToolFitSetup& setup_;
+  std::vector<ToolTerm> terms_;
+  std::vector<std::vector<int>> terms_of_;  ///< by channel
+  std::vector<BenchNuisance> nuisances_;
+  std::vector<int> level_, mount_;  ///< places among the nuisances, by table; by mount
+  int latitude_ = -1;
+};
+
+}  // namespace wellgyro

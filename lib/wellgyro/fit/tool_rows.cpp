@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/attitude_table_internal.h"
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/tool_rows_internal.h"
+
+namespace wellgyro {
+namespace {
+
+bool IsRateTable(const BenchTable& data) { return data.Find("rate_deg_s").has_value(); }
+
+std::optional<Fault> TakeAccelerometers(const BenchTable& data, ToolReadings& readings) {
+  const auto table = ReadAttitudeTable(data, {.attitude = true});
+  if (!table) return table.fault();
+  if (table->accel.rows() == 0) return std::nullopt;
+  if (readings.n_accel == 0) {
+    readings.n_accel = 3;
+    readings.gravity_signed = table->gravity_signed;
+    for (int c = 0; c < 3; ++c) {
+      readings.channels.insert(readings.channels.begin() + c,
+                               {table->accel_channels[static_cast<std::size_t>(c)], false, c});
+    }
+  }
+  if (table->accel_channels.front() == readings.channels.front().name) return std::nullopt;
+  return BenchFault(data,
+                    fmt::format("the accelerometers are {}.. here and {}.. in another table: give "
+                                "all tables the same columns",
+                                table->accel_channels.front(), readings.channels.front().name),
+                    1, FaultCode::kConflict);
+}
+
+bool HasGyros(const BenchTable& data) {
+  return std::any_of(data.columns.begin(), data.columns.end(),
+                     [](const std::string& name) { return name.rfind("m_", 0) == 0; });
+}
+
+std::optional<Fault> TakeGyros(const BenchTable& data, ToolReadings& readings) {
+  if (!HasGyros(data)) return std::nullopt;
+  const auto channels = GyroChannelsOf(data);
+  if (!channels) return channels.fault();
+  if (readings.n_gyro == 0) {
+    readings.n_gyro = static_cast<int>(channels->size());
+    readings.rotors = RotorsOf(*channels);
+    for (const GyroChannel& channel : *channels) {
+      readings.channels.push_back({channel.name, true, channel.axis});
+    }
+    return std::nullopt;
+  }
+  for (const GyroChannel& channel : *channels) {
+    const bool known = std::any_of(readings.channels.begin(), readings.channels.end(),
+                                   [&](const ToolChannel& c) { return c.name == channel.name; });
+    if (!known) {
+      return BenchFault(data,
+                        fmt::format("channel {} is in no other table: give all tables the same "
+                                    "gyros",
+                                    channel.name),
+                        1, FaultCode::kConflict);
+    }
+  }
+  return std::nullopt;
+}
+
+// Places of the tool's channels in a table, -1 where it has none.
+std::vector<int> PlacesIn(const BenchTable& data, const ToolReadings& readings) {
+  std::vector<int> places;
+  const bool attitudes = !IsRateTable(data);
+  for (const ToolChannel& channel : readings.channels) {
+    // A rate table says nothing to the accelerometers.
+    const bool usable = channel.is_gyro || attitudes;
+    places.push_back(usable ? data.Find(channel.name).value_or(-1) : -1);
+  }
+  return places;
+}
+
+std::optional<Fault> Attitude(const BenchTable& data, const ToolFitSetup& setup, int i,
+                              ToolRow& row) {
+  const auto value = [&](const char* name) { return data.values(i, *data.Find(name)); };
+  if (IsRateTable(data)) {
+    const double axis = value("axis");
+    if (axis != 0 && axis != 1 && axis != 2) {
+      return BenchFault(data, "column axis must be x, y or z", row.line);
+    }
+    row.mount = 3 * row.table + static_cast<int>(axis);
+    row.rate = value("rate_deg_s") * units::kHour;
+    return std::nullopt;
+  }
+  row.R_BL = BenchFromLevel(setup.reference.axes, FromDegrees(value("inc")),
+                            FromDegrees(value("az")), FromDegrees(value("tf")));
+  return std::nullopt;
+}
+
+// Temperature, its rate and the branch that it is on, and time through the table.
+void Follow(const BenchTable& data, std::span<ToolRow> rows) {
+  const auto T = data.Find("T_C"), t = data.Find("t_s");
+  const int n = data.rows();
+  const auto second_of = [&](int i) { return t ? data.values(i, *t) : static_cast<double>(i); };
+  const double middle = (second_of(0) + second_of(n - 1)) / 2;
+  const double half = std::max(std::abs(second_of(n - 1) - second_of(0)) / 2, 1e-9);
+  constexpr double kStill = 1e-4;  // degC/s
+  double branch = 0;
+  for (int i = 0; i < n; ++i) {
+    ToolRow& row = rows[static_cast<std::size_t>(i)];
+    row.time = (second_of(i) - middle) / half;
+    if (!T) continue;
+    row.temperature = data.values(i, *T);
+    const int a = std::max(0, i - 1), b = std::min(n - 1, i + 1);
+    if (!t || !(second_of(b) > second_of(a))) continue;
+    row.heating = (data.values(b, *T) - data.values(a, *T)) / (second_of(b) - second_of(a));
+    if (std::abs(row.heating) > kStill) branch = row.heating > 0 ? 1 : -1;
+    row.branch = branch;
+  }
+}
+
+std::optional<Fault> Order(const BenchTable& data) {
+  const auto t = data.Find("t_s");
+  for (int i = 1; t && i < data.rows(); ++i) {
+    if (data.values(i, *t) > data.values(i - 1, *t)) continue;
+    return BenchFault(data, "t_s does not rise from row to row: rows stand in the order of time",
+                      data.lines[static_cast<std::size_t>(i)], FaultCode::kOrder);
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> Check(const BenchTable& data, const std::vector<int>& places) {
+  if (auto fault = Order(data)) return fault;
+  if (auto fault = Repeated(data)) return fault;
+  std::vector<int> read;
+  for (const int place : places) {
+    if (place >= 0) read.push_back(place);
+  }
+  if (read.empty()) {
+    return BenchFault(data, "the table has no channels: Gx.. or fx.. or vx.., or m_x1, m_y1 ...", 1,
+                      FaultCode::kForeign);
+  }
+  if (auto fault = Frozen(data, read)) return fault;
+  if (IsRateTable(data)) {
+    const auto found = FindColumns(data, {"axis"});
+    return found ? std::optional<Fault>() : found.fault();
+  }
+  const auto found = FindColumns(data, {"inc", "az", "tf"});
+  if (!found) return found.fault();
+  return RadiansForDegrees(data, *found);
+}
+
+std::optional<Fault> AddTable(const BenchTable& data, const ToolFitSetup& setup, int table,
+                              ToolReadings& readings) {
+  const std::vector<int> places = PlacesIn(data, readings);
+  if (auto fault = Check(data, places)) return fault;
+  const std::size_t first = readings.rows.size();
+  for (int i = 0; i < data.rows(); ++i) {
+    ToolRow row;
+    row.table = table;
+    row.line = data.lines[static_cast<std::size_t>(i)];
+    if (auto fault = Attitude(data, setup, i, row)) return fault;
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      if (places[c] < 0) continue;
+      row.channels.push_back(static_cast<int>(c));
+      row.v.conservativeResize(row.v.size() + 1);
+      row.v[row.v.size() - 1] = data.values(i, places[c]);
+    }
+    readings.rows.push_back(std::move(row));
+  }
+  Follow(data, std::span(readings.rows).subspan(first));
+  return std::nullopt;
+}
+
+std::optional<Fault> SpanTemperatures(std::span<const BenchTable> tables, ToolReadings& readings) {
+  std::size_t with = 0;
+  for (const BenchTable& data : tables) with += data.Find("T_C") ? 1 : 0;
+  if (with == 0) return std::nullopt;
+  if (with < tables.size()) {
+    const auto without = std::find_if(tables.begin(), tables.end(), [](const BenchTable& data) {
+      return !data.Find("T_C").has_value();
+    });
+    return BenchFault(*without,
+                      "no column T_C where other tables have one: say at what temperature these "
+                      "were read",
+                      1, FaultCode::kForeign);
+  }
+  readings.coldest = readings.hottest = readings.rows.front().temperature;
+  for (const ToolRow& row : readings.rows) {
+    readings.coldest = std::min(readings.coldest, row.temperature);
+    readings.hottest = std::max(readings.hottest, row.temperature);
+  }
+  constexpr double kLeastSwing = 10;  // degC
+  readings.has_temperature = readings.hottest - readings.coldest >= kLeastSwing;
+  readings.middle = (readings.coldest + readings.hottest) / 2;
+  if (readings.has_temperature) readings.half_range = (readings.hottest - readings.coldest) / 2;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<ToolReadings> ReadTool(std::span<const BenchTable> tables, const ToolFitSetup& setup) {
+  ToolReadings readings;
+  for (const BenchTable& data : tables) {
+    if (!IsRateTable(data)) {
+      if (auto fault = TakeAccelerometers(data, readings)) return *fault;
+    }
+    if (auto fault = TakeGyros(data, readings)) return *fault;
+  }
+  for (const BenchTable& data : tables) {
+    if (auto fault = AddTable(data, setup, readings.n_tables++, readings)) return *fault;
+  }
+  if (auto fault = SpanTemperatures(tables, readings)) return *fault;
+  return readings;
+}
+
+}  // namespace wellgyro

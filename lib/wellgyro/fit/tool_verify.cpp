@@ -1,0 +1,307 @@
+#include "wellgyro/fit/tool_verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Dense>
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/calibration/members.h"
+#include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/tool_rows_internal.h"
+#include "wellgyro/math/so3.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+using Kind = CalibrationMember::Kind;
+using Squares = Eigen::Matrix<double, 6, 1>;
+
+Squares SquaresOf(const Eigen::Vector3d& a) {
+  Squares q;
+  q << a.x() * a.x(), a.y() * a.y(), a.z() * a.z(), a.x() * a.y(), a.y() * a.z(), a.z() * a.x();
+  return q;
+}
+
+Eigen::Matrix3d Cross(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d C;
+  C << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return C;
+}
+
+// One channel's reading by the tool model, and how it changes.
+struct ChannelAt {
+  double tau = 0;
+  Eigen::Vector3d u, f;  // sensors' axes, SI
+  Eigen::RowVector3d by_u = Eigen::RowVector3d::Zero(), by_f = Eigen::RowVector3d::Zero();
+  double value = 0;
+};
+
+ChannelAt ReadingOf(const SensorGroup& group, int c, const Eigen::Vector3d& u_T,
+                    const Eigen::Vector3d& f_T, const ToolRow& row) {
+  ChannelAt at;
+  const double held = std::clamp(row.temperature, group.min, group.max);
+  at.tau = group.thermometer < 0 ? 0 : (held - group.reference) / group.half_range;
+  at.u = group.R_TS.transpose() * u_T;
+  at.f = group.R_TS.transpose() * f_T;
+  double power = 1;
+  for (std::size_t n = 0; n < SensorGroup::kPowers; ++n, power *= at.tau) {
+    at.value += power * group.bias[n][c];
+    at.by_u += power * group.sensitivity[n].row(c);
+    at.by_f += power * group.g_dependence[n].row(c);
+  }
+  at.value += at.by_u.dot(at.u) + at.by_f.dot(at.f) +
+              group.second_order.row(c).dot(SquaresOf(at.u)) +
+              group.g_squared.row(c).dot(SquaresOf(at.f)) + group.heating[c] * row.heating;
+  return at;
+}
+
+double ByMember(const CalibrationMember& member, const ChannelAt& at, const ToolRow& row) {
+  const double power = std::pow(at.tau, member.power);
+  switch (member.kind) {
+    case Kind::kBias:
+      return power;
+    case Kind::kSensitivity:
+      return power * at.u[member.column];
+    case Kind::kForce:
+      return power * at.f[member.column];
+    case Kind::kSecondOrder:
+      return SquaresOf(at.u)[member.column];
+    case Kind::kForceSquare:
+      return SquaresOf(at.f)[member.column];
+    case Kind::kHeating:
+      break;
+  }
+  return row.heating;
+}
+
+// Residuals of a table against the tool model: e = B shifts + noise of covariance C. In C is what
+// the bench's turn may be, by `level` and its prior.
+struct Residuals {
+  Eigen::VectorXd e;
+  Eigen::MatrixXd C, B, level;
+};
+
+class Comparison {
+ public:
+  Comparison(const ToolReadings& readings, const ToolCalibration& tool, const VerifySetup& setup)
+      : readings_(readings), tool_(tool), setup_(setup) {
+    for (int c = 0; c < readings.n_accel; ++c) {
+      shifts_.push_back({fmt::format("accel_b[{}]", c), "g", 0, 0, 3 * setup.budget_accel_bias});
+      members_.push_back({false, Kind::kBias, 0, c, 0});
+    }
+    for (int c = 0; c < readings.n_gyro; ++c) {
+      shifts_.push_back({fmt::format("gyro_b[{}]", c), "deg/h", 0, 0, 3 * setup.budget_gyro_bias});
+      members_.push_back({true, Kind::kBias, 0, c, 0});
+    }
+    for (int c = 0; c < readings.n_gyro; ++c) {
+      for (int j = 0; j < 3; ++j) {
+        shifts_.push_back(
+            {fmt::format("gyro_G[{},{}]", c, j), "deg/h/g", 0, 0, 3 * setup.budget_gyro_force});
+        members_.push_back({true, Kind::kForce, 0, c, j});
+      }
+    }
+  }
+
+  std::vector<ToolShift>& shifts() { return shifts_; }
+
+  // In the shifts' units: of one shift in the channel's.
+  double UnitOf(std::size_t k) const {
+    const CalibrationMember& member = members_[k];
+    const SensorGroup& group = member.is_gyro ? tool_.gyro : tool_.accel;
+    const double si = group.sensitivity[0].row(member.channel).norm();
+    const double g = setup_.bench.reference.gravity_mps2;
+    if (!member.is_gyro) return si * g;
+    return member.kind == Kind::kBias ? si * units::kDegPerHour : si * units::kDegPerHour / g;
+  }
+
+  // Linear about a turn of the bench: about north, east, down.
+  Residuals Compare(const Eigen::Vector3d& turn) const {
+    Eigen::Index n = 0;
+    for (const ToolRow& row : readings_.rows) n += static_cast<Eigen::Index>(row.channels.size());
+    std::vector<CalibrationMember> known;
+    Eigen::MatrixXd cov = KnownCovariance(known);
+    const auto k = static_cast<Eigen::Index>(known.size());
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, k);
+    Residuals r{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n),
+                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(members_.size())),
+                Eigen::MatrixXd::Zero(n, 3)};
+    const Eigen::Matrix3d turned = Exp(turn);
+    Eigen::Index first = 0;
+    for (const ToolRow& row : readings_.rows) {
+      const auto size = static_cast<Eigen::Index>(row.channels.size());
+      Eigen::MatrixXd wobble(size, 3);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        Row(row, row.channels[static_cast<std::size_t>(i)], row.v[i], first + i, known, turned,
+            wobble.row(i), J, r);
+      }
+      const double sigma = setup_.bench.sigma_wobble.value_or(0);
+      r.C.block(first, first, size, size) += sigma * sigma * wobble * wobble.transpose();
+      first += size;
+    }
+    r.C += J * cov * J.transpose() + r.level * TurnVariance().asDiagonal() * r.level.transpose();
+    r.e += r.level * turn;
+    return r;
+  }
+
+  Eigen::Vector3d TurnVariance() const {
+    const ToolFitSetup& bench = setup_.bench;
+    return {std::pow(bench.sigma_level, 2), std::pow(bench.sigma_level, 2),
+            std::pow(bench.sigma_north, 2)};
+  }
+
+ private:
+  Eigen::MatrixXd KnownCovariance(std::vector<CalibrationMember>& known) const {
+    Eigen::MatrixXd cov(0, 0);
+    for (const SensorGroup* group : {&tool_.gyro, &tool_.accel}) {
+      if (!group->covariance || group->covariance->names.empty()) continue;
+      const auto& names = group->covariance->names;
+      if (names.front().rfind("gyro.", 0) != 0 && names.front().rfind("accel.", 0) != 0) continue;
+      for (const std::string& name : names) known.push_back(MemberOf(name));
+      const Eigen::Index had = cov.rows(), more = group->covariance->cov.rows();
+      Eigen::MatrixXd both = Eigen::MatrixXd::Zero(had + more, had + more);
+      both.topLeftCorner(had, had) = cov;
+      both.bottomRightCorner(more, more) = group->covariance->cov;
+      cov = std::move(both);
+    }
+    return cov;
+  }
+
+  void Row(const ToolRow& row, int channel, double read, Eigen::Index at,
+           const std::vector<CalibrationMember>& known, const Eigen::Matrix3d& turned,
+           Eigen::MatrixXd::RowXpr wobble, Eigen::MatrixXd& J, Residuals& r) const {
+    const BenchReference& reference = setup_.bench.reference;
+    const bool is_gyro = readings_.channels[static_cast<std::size_t>(channel)].is_gyro;
+    const int c = channel - (is_gyro ? readings_.n_accel : 0);
+    const SensorGroup& group = is_gyro ? tool_.gyro : tool_.accel;
+    const double L = reference.latitude.value_or(0);
+    const Eigen::Vector3d w_L =
+        kBenchEarthRate * (turned * Eigen::Vector3d(std::cos(L), 0, -std::sin(L)));
+    const Eigen::Vector3d f_L = -reference.gravity_mps2 * turned.col(2);
+    const Eigen::Matrix3d R_TB = ToolFromBench(reference.axes);
+    const Eigen::Matrix3d R = R_TB * row.R_BL;
+    const Eigen::Vector3d w_T = R * w_L, f_T = R * f_L;
+    const ChannelAt v = ReadingOf(group, c, is_gyro ? w_T : f_T, f_T, row);
+    r.e[at] = read - v.value;
+    const double sigma = is_gyro ? *setup_.bench.sigma_gyro : *setup_.bench.sigma_accel;
+    r.C(at, at) += sigma * sigma;
+    const Eigen::RowVector3d by_u = v.by_u * group.R_TS.transpose();
+    const Eigen::RowVector3d by_f = v.by_f * group.R_TS.transpose();
+    const Eigen::Vector3d own = is_gyro ? w_T : f_T, own_L = is_gyro ? w_L : f_L;
+    wobble = (by_u * Cross(own) + by_f * Cross(f_T)) * R_TB;
+    r.level.row(at) = by_u * R * -Cross(own_L) + by_f * R * -Cross(f_L);
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      if (known[k].is_gyro != is_gyro || known[k].channel != c) continue;
+      J(at, static_cast<Eigen::Index>(k)) = ByMember(known[k], v, row);
+    }
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (members_[k].is_gyro != is_gyro || members_[k].channel != c) continue;
+      r.B(at, static_cast<Eigen::Index>(k)) = UnitOf(k) * ByMember(members_[k], v, row);
+    }
+  }
+
+  const ToolReadings& readings_;
+  const ToolCalibration& tool_;
+  const VerifySetup& setup_;
+  std::vector<ToolShift> shifts_;
+  std::vector<CalibrationMember> members_;
+};
+
+std::optional<Fault> Unlike(const BenchTable& data, const ToolReadings& readings,
+                            const ToolCalibration& tool) {
+  const auto differs = [](int read, const SensorGroup& group) {
+    return read > 0 && read != group.n_channels;
+  };
+  if (!differs(readings.n_gyro, tool.gyro) && !differs(readings.n_accel, tool.accel)) {
+    return std::nullopt;
+  }
+  return BenchFault(
+      data,
+      fmt::format("the table has {} gyros and {} accelerometers, the tool {} and {}",
+                  readings.n_gyro, readings.n_accel, tool.gyro.n_channels, tool.accel.n_channels),
+      1, FaultCode::kConflict);
+}
+
+// Places of the shifts that the table tells apart, in order.
+std::vector<Eigen::Index> Seen(const Eigen::MatrixXd& B) {
+  const Eigen::VectorXd scale = B.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd scaled = B * scale.asDiagonal();
+  const Eigen::MatrixXd N = scaled.transpose() * scaled;
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index k = 0; k < N.cols(); ++k) {
+    std::vector<Eigen::Index> with = seen;
+    with.push_back(k);
+    const Eigen::MatrixXd part = N(with, with);
+    const Eigen::LLT<Eigen::MatrixXd> root(part);
+    if (root.info() != Eigen::Success) continue;
+    const Eigen::MatrixXd L = root.matrixL();
+    if (std::pow(L(L.rows() - 1, L.cols() - 1), 2) > 1e-6) seen = std::move(with);
+  }
+  return seen;
+}
+
+struct Shifts {
+  std::vector<Eigen::Index> seen;
+  Eigen::VectorXd x;
+  Eigen::MatrixXd cov;
+  double chi_square = 0;  // without shifts
+  int dof = 0;
+};
+
+// Generalised least squares, linear about the bench's turn, which becomes the likeliest.
+Shifts ShiftsOf(const Comparison& comparison, Eigen::Vector3d& turn) {
+  const Residuals r = comparison.Compare(turn);
+  const Eigen::LLT<Eigen::MatrixXd> root(r.C);
+  const Eigen::MatrixXd W = root.matrixL().solve(r.B);
+  const Eigen::VectorXd e = root.matrixL().solve(r.e);
+  Shifts found;
+  found.seen = Seen(W);
+  const Eigen::MatrixXd B = W(Eigen::all, found.seen);
+  found.cov = (B.transpose() * B).inverse();
+  found.x = found.cov * (B.transpose() * e);
+  found.chi_square = e.squaredNorm();
+  found.dof = static_cast<int>(e.size());
+  const Eigen::VectorXd left = root.matrixU().solve(Eigen::VectorXd(e - B * found.x));
+  turn = comparison.TurnVariance().asDiagonal() * (r.level.transpose() * left);
+  return found;
+}
+
+}  // namespace
+
+Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
+                                const VerifySetup& setup) {
+  const auto readings = ReadTool({&data, 1}, setup.bench);
+  if (!readings) return readings.fault();
+  if ((readings->n_gyro > 0 && (!setup.bench.sigma_gyro || !setup.bench.reference.latitude)) ||
+      (readings->n_accel > 0 && !setup.bench.sigma_accel)) {
+    throw std::invalid_argument("verify needs the sigmas of the readings, and gyros the latitude");
+  }
+  if (auto fault = Unlike(data, *readings, tool)) return *fault;
+  Comparison comparison(*readings, tool, setup);
+  Shifts found;
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  // A tilt of a third of a degree acts on the force to the second order, by 1e-5 of it.
+  constexpr int kTurns = 3;
+  for (int k = 0; k < kTurns; ++k) found = ShiftsOf(comparison, turn);
+  Verification out;
+  out.chi_square = found.chi_square;
+  out.dof = found.dof;
+  out.probability = 1 - ChiSquareCdf(out.chi_square, out.dof);
+  out.reach = -NormalQuantile(setup.false_alarm / 2 / static_cast<double>(found.seen.size()));
+  for (std::size_t i = 0; i < found.seen.size(); ++i) {
+    ToolShift shift = comparison.shifts()[static_cast<std::size_t>(found.seen[i])];
+    const auto at = static_cast<Eigen::Index>(i);
+    shift.value = found.x[at];
+    shift.sigma = std::sqrt(found.cov(at, at));
+    shift.shifted = std::abs(shift.value) > out.reach * shift.sigma;
+    shift.within = shift.limit > 0 ? std::abs(shift.value) <= shift.limit : !shift.shifted;
+    out.pass = out.pass && shift.within;
+    out.shifts.push_back(std::move(shift));
+  }
+  return out;
+}
+
+}  // namespace wellgyro

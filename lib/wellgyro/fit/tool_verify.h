@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/base/result.h"
+#include "wellgyro/calibration/bench_table.h"
+#include "wellgyro/fit/tool_fit.h"
+#include "wellgyro/record/tool_calibration.h"
+
+namespace wellgyro {
+
+struct VerifySetup {
+  ToolFitSetup bench;         ///< sigmas of the readings are needed
+  double false_alarm = 0.01;  ///< that any quantity of a sound tool is called shifted
+  /// What a tool may be off and stay in service, 1-sigma of what it is used with; 0: no limit.
+  double budget_gyro_bias = 0;   ///< [deg/h]
+  double budget_gyro_force = 0;  ///< mass unbalance and quadrature [deg/h per g]
+  double budget_accel_bias = 0;  ///< [of local gravity]
+};
+
+/// By how much one quantity of the tool is not what its calibration says.
+struct ToolShift {
+  std::string name;  ///< gyro_b[0], gyro_G[1,0], accel_b[2]
+  std::string unit;
+  double value = 0, sigma = 0;  ///< sigma: of the readings, the bench and the calibration together
+  double limit = 0;             ///< three times the budget; 0: none
+  bool shifted = false;         ///< beyond what chance reaches
+  bool within = true;           ///< of the budget
+};
+
+struct Verification {
+  std::vector<ToolShift> shifts;
+  double reach = 0;  ///< sigmas that chance reaches, by the false alarm rate
+  double chi_square = 0;
+  int dof = 0;             ///< of the residuals without any shift
+  double probability = 1;  ///< that a sound tool's are as large
+  bool pass = true;        ///< everything within its budget; without budgets, nothing shifted
+};
+
+/// A tool against its calibration, as found or as left: a table of positions (columns as FitTool's)
+/// read at rest. Biases and force terms are estimated as shifts from the tool model, by generalised
+/// least squares: in the covariance are the readings' noise and wobble, level and north of the
+/// bench, and the calibration's own whole covariance. Shifts that these positions cannot tell from
+/// the others are not listed. Throws std::invalid_argument without the sigmas.
+WELLGYRO_EXPORT Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
+                                                const VerifySetup& setup);
+
+}  // namespace wellgyro

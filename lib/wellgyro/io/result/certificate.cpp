@@ -1,0 +1,222 @@
+#include "wellgyro/io/result/certificate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+
+namespace wellgyro {
+namespace {
+
+std::string Escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
+constexpr std::string_view kHead = R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>Calibration certificate</title><style>
+body{font:10.5pt/1.4 "DejaVu Sans",Arial,sans-serif;color:#1a1a1a;max-width:190mm;margin:12mm auto}
+h1{font-size:17pt;margin:0 0 4mm}h2{font-size:12pt;margin:7mm 0 2mm;border-bottom:1px solid #999}
+table{border-collapse:collapse;width:100%;font-size:9pt}
+td,th{padding:.6mm 2mm;text-align:right;border-bottom:1px solid #ddd}
+td:first-child,th:first-child{text-align:left}td.t{text-align:left;word-break:break-all}
+ul{margin:1mm 0;padding-left:5mm}figure{margin:3mm 0;page-break-inside:avoid}
+figcaption{font-size:8.5pt}@page{size:A4;margin:14mm}@media print{body{margin:0}}
+</style></head><body>
+)";
+
+void Pairs(std::string& html, const std::vector<std::pair<std::string, std::string>>& rows) {
+  html += "<table>\n";
+  for (const auto& [name, value] : rows) {
+    if (value.empty()) continue;
+    html += fmt::format("<tr><td>{}</td><td class=\"t\">{}</td></tr>\n", name, Escaped(value));
+  }
+  html += "</table>\n";
+}
+
+void List(std::string& html, std::string_view title, const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  html += fmt::format("<h2>{}</h2>\n<ul>\n", title);
+  for (const std::string& line : lines) html += fmt::format("<li>{}</li>\n", Escaped(line));
+  html += "</ul>\n";
+}
+
+// The value to the digit of its uncertainty's second.
+std::string Rounded(double value, double uncertainty) {
+  if (!(uncertainty > 0)) return fmt::format("{:.6g}", value);
+  const int place = static_cast<int>(std::floor(std::log10(uncertainty))) - 1;
+  if (place >= 0 || place < -12) return fmt::format("{:.6g}", value);
+  return fmt::format("{:.{}f}", value, -place);
+}
+
+void Lines(std::string& html, std::string_view title, const std::vector<Certificate::Line>& lines,
+           bool with_value) {
+  if (lines.empty()) return;
+  html += fmt::format(
+      "<h2>{}</h2>\n<table>\n<tr><th>quantity</th>{}<th>standard uncertainty u</th><th>expanded U "
+      "(k = 2)</th><th>unit</th><th>evaluation</th></tr>\n",
+      title, with_value ? "<th>value</th>" : "");
+  for (const Certificate::Line& line : lines) {
+    const std::string value =
+        with_value ? fmt::format("<td>{}</td>", Rounded(line.value, line.uncertainty)) : "";
+    html +=
+        fmt::format("<tr><td>{}</td>{}<td>{:.2g}</td><td>{:.2g}</td><td>{}</td><td>{}</td></tr>\n",
+                    Escaped(line.name), value, line.uncertainty, 2 * line.uncertainty,
+                    Escaped(line.unit), line.evaluation);
+  }
+  html += "</table>\n";
+}
+
+// Residuals over their sigmas in the order of the readings, with the limit of chance.
+void Picture(std::string& html, const std::string& channel,
+             const std::vector<const FitResidual*>& residuals, double limit) {
+  constexpr double kWidth = 640, kHeight = 110, kLeft = 30;
+  double most = std::max(3.0, limit);
+  for (const FitResidual* residual : residuals) {
+    most = std::max(most, std::abs(residual->studentised));
+  }
+  const auto y = [&](double value) { return kHeight / 2 * (1 - value / (1.05 * most)); };
+  html += fmt::format(
+      "<figure><svg viewBox=\"0 0 {} {}\" width=\"100%\" role=\"img\">\n<rect x=\"{}\" y=\"0\" "
+      "width=\"{}\" height=\"{}\" fill=\"#f7f7f7\"/>\n",
+      kWidth, kHeight, kLeft, kWidth - kLeft, kHeight);
+  for (const double level : {-limit, 0.0, limit}) {
+    html += fmt::format(
+        "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n<text x=\"0\" "
+        "y=\"{:.1f}\" font-size=\"9\">{:.1f}</text>\n",
+        kLeft, kWidth, y(level), y(level), level == 0 ? "#888" : "#c00", y(level) + 3, level);
+  }
+  const auto n = static_cast<double>(residuals.size());
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    html += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.6\" fill=\"#1f4e8c\"/>\n",
+                        kLeft + (kWidth - kLeft) * (static_cast<double>(i) + 0.5) / n,
+                        y(residuals[i]->studentised));
+  }
+  html += fmt::format(
+      "</svg><figcaption>{}: residual over its sigma, in the order of the readings"
+      "</figcaption></figure>\n",
+      Escaped(channel));
+}
+
+void Pictures(std::string& html, const Certificate& certificate) {
+  constexpr std::size_t kMost = 2000;  // a picture's points
+  std::map<std::string, std::vector<const FitResidual*>> of;
+  for (const FitResidual& residual : certificate.residuals) {
+    auto& list = of[residual.channel];
+    if (list.size() < kMost) list.push_back(&residual);
+  }
+  if (of.empty()) return;
+  html += "<h2>Residuals</h2>\n";
+  html += fmt::format(
+      "<p>{} readings, {} to spare; the sum of squares over their sigmas is {:.0f} (95 % of sound "
+      "fits: {:.0f} to {:.0f}). The red lines are passed by the largest of so many once in a "
+      "hundred fits.</p>\n",
+      certificate.readings, certificate.dof, certificate.chi_square, certificate.chi_low,
+      certificate.chi_high);
+  for (const auto& [channel, residuals] : of) {
+    Picture(html, channel, residuals, certificate.studentised_limit);
+  }
+}
+
+}  // namespace
+
+Certificate CertificateOf(const FitReport& report) {
+  Certificate c;
+  c.method = report.method;
+  for (const FitQuantity& quantity : report.result) {
+    for (Eigen::Index i = 0; i < quantity.sigma.rows(); ++i) {
+      for (Eigen::Index j = 0; j < quantity.sigma.cols(); ++j) {
+        if (!(quantity.sigma(i, j) > 0)) continue;
+        std::string name = quantity.name;
+        if (quantity.shape == FitQuantity::Shape::kVector) name += fmt::format("[{}]", i);
+        if (quantity.shape == FitQuantity::Shape::kMatrix) name += fmt::format("[{},{}]", i, j);
+        c.result.push_back({name, "", quantity.value(i, j), quantity.sigma(i, j), "A"});
+      }
+    }
+  }
+  c.remarks = report.remarks;
+  c.residuals = report.residuals;
+  c.studentised_limit = report.studentised_limit;
+  c.chi_square = report.chi_square;
+  c.chi_low = report.chi_low;
+  c.chi_high = report.chi_high;
+  c.readings = report.readings;
+  c.dof = report.dof;
+  return c;
+}
+
+std::vector<Certificate::Line> SampleErrors(const CalibrationSources& sources) {
+  std::vector<Certificate::Line> lines;
+  for (std::size_t i = 0; i < sources.names.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const std::string& name = sources.names[i];
+    const bool force =
+        name.rfind("gyro_force", 0) == 0 || name == "mass_unbalance" || name == "quadrature";
+    Certificate::Line line{name, "1e-6", 0, 1e6, "A, B"};
+    if (name.rfind("gyro_bias", 0) == 0) line = {name, "deg/h", 0, 1 / units::kDegPerHour, "A, B"};
+    if (force) line = {name, "deg/h/g", 0, 1 / units::kDegPerHourPerG, "A, B"};
+    if (name.rfind("accel_bias", 0) == 0) line = {name, "mg", 0, 1 / units::kMilliG, "A, B"};
+    line.uncertainty *= std::sqrt(std::max(0.0, sources.cov(at, at)));
+    if (line.uncertainty > 0) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string CertificateHtml(const Certificate& certificate) {
+  std::string html(kHead);
+  html += "<h1>Calibration certificate</h1>\n";
+  const bool range = certificate.temperature_high > certificate.temperature_low;
+  Pairs(html,
+        {{"tool", certificate.asset_serial},
+         {"sensors", certificate.sensor_serials},
+         {"method", certificate.method},
+         {"calibrated", certificate.calibrated},
+         {"expires", certificate.expires},
+         {"temperatures", range ? fmt::format("{:.4g} to {:.4g} degC", certificate.temperature_low,
+                                              certificate.temperature_high)
+                                : std::string()},
+         {"program", certificate.program}});
+  List(html, "References", certificate.references);
+  List(html, "Traceability", certificate.traceability);
+  Lines(html, "Errors left in calibrated samples", certificate.samples, false);
+  Lines(html, "Result", certificate.result, true);
+  Lines(html, "Bench", certificate.bench, true);
+  List(html, "Terms left out", certificate.left_out);
+  List(html, "Remarks", certificate.remarks);
+  Pictures(html, certificate);
+  if (!certificate.inputs.empty()) {
+    html += "<h2>Readings</h2>\n<table>\n<tr><th>file</th><th>SHA-256</th></tr>\n";
+    for (const InputFile& input : certificate.inputs) {
+      html += fmt::format("<tr><td>{}</td><td class=\"t\">{}</td></tr>\n", Escaped(input.name),
+                          Escaped(input.sha256));
+    }
+    html += "</table>\n";
+  }
+  html += "</body></html>\n";
+  return html;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,269 @@
+// Faults that benches met: what is wrong with the readings is said, sound ones are taken, and the
+// sigmas hold what they leave open.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "wellgyro/fit/affine_fit.h"
+#include "wellgyro/fit/gyro_fit.h"
+#include "wellgyro/fit/position_fit.h"
+#include "wellgyro/fit/roll_test.h"
+#include "wellgyro/fit/scalar_fit.h"
+#include "wellgyro/fit/thermometer_fit.h"
+
+#include "fit/attitude_simulation.h"
+#include "fit/bench_simulation.h"
+
+namespace wellgyro::test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+const FitQuantity& Quantity(const FitReport& report, const std::string& name) {
+  const auto found = std::find_if(report.result.begin(), report.result.end(),
+                                  [&](const FitQuantity& q) { return q.name == name; });
+  if (found == report.result.end()) throw std::runtime_error("no quantity " + name);
+  return *found;
+}
+
+// Accelerometers of 1 mg rolled at the inclinations, twelve rolls each.
+BenchTable Rolled(const std::vector<double>& inclinations, double sigma, Random& random) {
+  const VectorTool tool = VectorTool::Any(random);
+  TableMaker table({"ax", "ay", "az"});
+  for (const double inc : inclinations) {
+    for (int i = 0; i < 24; ++i) {
+      std::vector<double> row;
+      Append(row, tool.Ka * Gravity(inc, 15.0 * i) + tool.ba + Noise(random, sigma));
+      table.Add(row);
+    }
+  }
+  return table.Finish();
+}
+
+// 2026-11-22: a roll at one inclination gave a bias wrong by 0.5 g with a sigma of 6e-6 g.
+TEST(BenchFaults, ConesAreNoCalibrationWithoutATurntable) {
+  for (const double sigma : {1e-6, 1e-3}) {
+    Random random(11);
+    for (const std::vector<double>& cones : {std::vector<double>{50}, {90, 45}, {60, 120}}) {
+      const auto fitted = FitScalar(Rolled(cones, sigma, random), {});
+      ASSERT_FALSE(fitted.has_value()) << cones[0] << ' ' << sigma;
+    }
+    EXPECT_TRUE(FitScalar(Rolled({30, 90, 150}, sigma, random), {}).has_value()) << sigma;
+  }
+  Random random(12);
+  EXPECT_THAT(FitScalar(Rolled({50}, 1e-5, random), {}).fault().text,
+              HasSubstr("one or two cones"));
+}
+
+TEST(BenchFaults, ReadingsInMetresPerSecondSquaredAreNotTakenForG) {
+  Random random(13);
+  BenchTable data = Rolled({30, 90, 150}, 1e-4, random);
+  data.values *= 9.80665;
+  EXPECT_THAT(FitScalar(data, {}).fault().text, HasSubstr("--gravity-mps2"));
+  EXPECT_TRUE(
+      FitScalar(data, {.reference = {.gravity = 9.80665, .gravity_mps2 = 9.80665}}).has_value());
+  BenchTable both = AtAttitudes(VectorTool::Any(random), 36, {}, {1e-4, 20}, random);
+  both.values.middleCols(3, 3) *= 9.80665;
+  const ScalarSetup setup{.reference = {.field = 50'000, .dip = 60 * kRad}};
+  EXPECT_THAT(FitScalarDip(both, setup).fault().text, HasSubstr("--gravity-mps2"));
+}
+
+TEST(BenchFaults, CountsOfASoundSensorAreTaken) {
+  Random random(14);
+  BenchTable data = AtAttitudes(VectorTool::Any(random), 36, {}, {1e-4, 20}, random);
+  data.values.middleCols(3, 3) *= 21'000;
+  const auto fitted = FitAffine(data, {});
+  ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+  EXPECT_THAT(fitted->report.remarks, Not(Contains(HasSubstr("scatters"))));
+}
+
+// A bench of `n` positions whose bias drifts by `drift` in the data's unit over the table.
+BenchTable Drifting(double drift, Random& random) {
+  BenchTable data = AtAttitudes(VectorTool::Any(random), 48, {}, {2e-5, 20}, random);
+  for (int i = 0; i < data.rows(); ++i) data.values(i, 4) += drift * i / (data.rows() - 1);
+  return data;
+}
+
+TEST(BenchFaults, DriftOverTheSequenceIsTold) {
+  Random random(15);
+  int told = 0, false_alarms = 0;
+  constexpr int kBenches = 40;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    const auto drifts = FitAffine(Drifting(2e-4, random), {}),
+               holds = FitAffine(Drifting(0, random), {});
+    const auto says = [](const auto& fitted) {
+      return std::any_of(fitted->report.remarks.begin(), fitted->report.remarks.end(),
+                         [](const std::string& r) { return r.find("the order of") < r.size(); });
+    };
+    told += says(drifts) ? 1 : 0;
+    false_alarms += says(holds) ? 1 : 0;
+  }
+  EXPECT_EQ(told, kBenches);
+  EXPECT_LE(false_alarms, 2);  // one in a hundred tables
+}
+
+TEST(BenchFaults, TemperaturesThatPlayNoPartAreTold) {
+  Random random(16);
+  BenchTable data = AtAttitudes(VectorTool::Any(random), 48, {}, {2e-5, 20}, random);
+  data.columns.emplace_back("T_C");
+  data.values.conservativeResize(Eigen::NoChange, data.values.cols() + 1);
+  for (int i = 0; i < data.rows(); ++i) {
+    const double T = 25 + 125 * random.Uniform();
+    data.values.rightCols(1)(i, 0) = T;
+    data.values(i, 3) += 2e-6 * (T - 25);
+  }
+  const auto fitted = FitAffine(data, {});
+  ASSERT_TRUE(fitted.has_value());
+  EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr("play no part in this method")));
+  EXPECT_THAT(fitted->report.remarks,
+              Contains(HasSubstr("channel Gx: the residuals follow the temperature")));
+  EXPECT_THAT(fitted->report.remarks, Not(Contains(HasSubstr("channel Gy: the residuals"))));
+}
+
+TEST(BenchFaults, ReadingsOneStepApartRepeatWhereTheToleranceIsThatStep) {
+  Random random(17);
+  const VoltTool tool = VoltTool::Any(random);
+  BenchTable data = TwentyFour(tool, {.sigma = 4e-5}, random);
+  constexpr double kStep = 1e-4;
+  for (double& volt : data.values.rightCols(1).reshaped()) {
+    volt = kStep * std::round(volt / kStep);
+  }
+  const auto fitted = FitTwentyFourPositions(data, {.settle_tolerance = 2 * kStep});
+  ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+}
+
+TEST(BenchFaults, UnsettledReadingsNeverDifferByZero) {
+  Random random(18);
+  BenchTable data = TwentyFour(
+      VoltTool::Any(random), {.readings = 20, .transient = 5e-3, .transient_readings = 15}, random);
+  const auto last = [&](int row) -> double& { return data.values(row, 5); };
+  last(18) = last(17) = last(19);
+  const std::string text = FitTwentyFourPositions(data, {}).fault().text;
+  EXPECT_THAT(text, HasSubstr("have not settled"));
+  EXPECT_THAT(text, Not(HasSubstr("by 0 V")));
+}
+
+// Few readings a position, in a transient: sigmas three times too small.
+TEST(BenchFaults, ShortRunsOnATransientHaveItInTheirSigmas) {
+  Random random(19);
+  double square = 0;
+  constexpr int kBenches = 30;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    const VoltTool tool = VoltTool::Any(random);
+    const BenchTable data = TwentyFour(
+        tool, {.sigma = 1e-5, .readings = 5, .transient = 1e-4, .transient_readings = 4}, random);
+    const auto fitted = FitTwentyFourPositions(data, {.settle_tolerance = 2e-4});
+    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+    EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr("still change")));
+    const FitQuantity& Vb = Quantity(fitted->report, "Vb_V");
+    square += (Vb.value - tool.Vb).cwiseQuotient(Vb.sigma).squaredNorm() / 3 / kBenches;
+  }
+  EXPECT_LT(square, 1.5);
+  EXPECT_GT(square, 0.1);
+}
+
+TEST(BenchFaults, GravityBesideForcesMustAgreeWithThem) {
+  Random random(20);
+  BenchTable data = SixPositions(PulseTool::Any(random), {1e-5, 1, 4}, random);
+  for (const char* name : {"axb", "ayb", "azb"}) data.columns.emplace_back(name);
+  data.values.conservativeResize(Eigen::NoChange, 9);
+  for (int i = 0; i < data.rows(); ++i) {
+    data.values.row(i).tail<3>().setZero();
+    data.values(i, 6 + static_cast<int>(data.values(i, 0))) = 9.80665 * data.values(i, 1);
+  }
+  EXPECT_TRUE(FitSixPositions(data, {.gravity = 9.80665, .gravity_stated = true}).has_value());
+  EXPECT_TRUE(FitSixPositions(data, {.gravity = 9.82}).has_value());
+  const auto other = FitSixPositions(data, {.gravity = 9.82, .gravity_stated = true});
+  ASSERT_FALSE(other.has_value());
+  EXPECT_THAT(other.fault().text, HasSubstr("where the gravity given beside them is 9.82"));
+}
+
+TEST(BenchFaults, AFixtureBesideItsAccelerometersIsTold) {
+  Random random(21);
+  BenchTable data = GyrosAtRest(GyroTool::Any(random), 60, 0.01, random);
+  const GyroFitSetup setup{.reference = {.latitude = 60 * kRad}};
+  EXPECT_THAT(FitGyro(data, {}, setup)->report.remarks, Not(Contains(HasSubstr("mg (rms)"))));
+  for (int i = 0; i < data.rows(); ++i) {
+    data.values.row(i).segment<3>(3) =
+        -Gravity(data.values(i, 0) + 0.29, data.values(i, 2)).transpose();
+  }
+  EXPECT_THAT(FitGyro(data, {}, setup)->report.remarks, Contains(HasSubstr("5.1 mg (rms)")));
+}
+
+TEST(BenchFaults, AWrongLatitudeIsToldByWhatAllChannelsRead) {
+  Random random(22);
+  const BenchTable data = GyrosAtRest(GyroTool::Any(random), 45, 0.01, random);
+  const auto fitted = FitGyro(data, {}, {.reference = {.latitude = 60 * kRad}});
+  ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+  EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr("the latitude is wrong (the readings "
+                                                         "suit 4")));
+  EXPECT_THAT(FitGyro(data, {}, {.reference = {.latitude = 45 * kRad}})->report.remarks,
+              Not(Contains(HasSubstr("latitude is wrong"))));
+}
+
+TEST(BenchFaults, AKneeThatWasFoundHasASigma) {
+  Random random(23);
+  double square = 0;
+  constexpr int kBenches = 100;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    TableMaker table({"t_m", "ref1", "ref2"});
+    const double knee = 165 + 20 * random.Uniform();
+    for (int i = 0; i < 40; ++i) {
+      const double t = 25 + 4.5 * i, above = std::max(0.0, t - knee);
+      const double truth = t + 0.4 - 0.003 * t + 4e-3 * above * above;
+      table.Add({t, truth + 0.03 * random.Normal(), truth + 0.03 * random.Normal()});
+    }
+    const auto fitted = FitThermometer(table.Finish(), {.knee = 175, .fit_knee = true});
+    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+    const FitQuantity& found = Quantity(fitted->report, "knee_C");
+    ASSERT_EQ(found.sigma.size(), 1);
+    square += std::pow((found.value(0, 0) - knee) / found.sigma(0, 0), 2) / kBenches;
+    EXPECT_NEAR(fitted->thermometer->knee, found.value(0, 0), 1e-12);
+  }
+  // 95 % of chi-square over 100.
+  EXPECT_GT(square, 0.74);
+  EXPECT_LT(square, 1.30);
+}
+
+// Frequencies a little beside 1, which the readings do not tell from it.
+TEST(BenchFaults, HeldFrequenciesAreInThePhasesSigmas) {
+  Random random(24);
+  double square = 0;
+  int held = 0;
+  constexpr int kBenches = 40;
+  const double x[] = {0.012, 1.004, 0.7, 0.003};
+  for (int bench = 0; bench < kBenches; ++bench) {
+    BenchTable data = Sequences({Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity(),
+                                 Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()},
+                                {}, {}, 0, random);
+    for (int i = 0; i < data.rows(); ++i) {
+      const double angle = kRad * (data.values(i, 0) < 3 ? data.values(i, 1) : data.values(i, 3));
+      const auto seq = static_cast<Eigen::Index>(data.values(i, 0));
+      data.values(i, 3 + seq) += x[0] * std::sin(x[1] * angle + x[2]) + x[3];
+      for (int c = 0; c < 3; ++c) {
+        data.values(i, 4 + c) += 1e-4 * random.Normal();
+        data.values(i, 7 + c) += 20 * random.Normal();
+      }
+    }
+    const auto fitted = FitOrthogonality(
+        data, {.reference = {.field = 50'000, .dip = 60 * kRad}, .free_frequency = true});
+    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+    const FitQuantity& wave = Quantity(fitted->calibration.report, "x_kj");
+    for (int k = 0; k < 3; ++k) {
+      if (wave.value(k, 1) != 1) continue;
+      ++held;
+      square += std::pow((wave.value(k, 2) - x[2]) / wave.sigma(k, 2), 2);
+    }
+  }
+  ASSERT_GT(held, 20);
+  EXPECT_LT(square / held, 1.5);
+}
+
+}  // namespace
+}  // namespace wellgyro::test

@@ -1,0 +1,251 @@
+// All bench data of a tool in one adjustment.
+#include "wellgyro/fit/tool_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fit/tool_bench.h"
+
+namespace wellgyro::test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+struct Bench {
+  ThermalTool tool;
+  ThermalBench bench;
+  std::vector<BenchTable> tables;
+};
+
+Bench AnyBench(Random& random) {
+  Bench b{ThermalTool::Any(random), ThermalBench::Any(random), {}};
+  b.tables.push_back(ThermalPositions(b.tool, b.bench, 0, 120, 25, 150, random));
+  b.tables.push_back(ThermalPositions(b.tool, b.bench, 1, 60, 150, 25, random));
+  b.tables.push_back(ThermalRates(b.tool, b.bench, 87.5, random));
+  return b;
+}
+
+ToolFitSetup Stated() {
+  ToolFitSetup setup;
+  setup.reference.latitude = 60 * kRad;
+  setup.reference.gravity_mps2 = 9.8192;  // the readings are in this
+  setup.sigma_level = 0.3 * kRad;
+  setup.sigma_north = 0.5 * kRad;
+  setup.sigma_axis = 1.5e-4;
+  return setup;
+}
+
+bool IsOfTheTool(const std::string& name) {
+  return name.rfind("accel_", 0) == 0 || name.rfind("gyro_", 0) == 0;
+}
+
+struct Score {
+  double square = 0, number = 0;              // of the tool's parameters, with their covariance
+  double bench_square = 0, bench_number = 0;  // of the bench's, one by one
+  int missed = 0;                             // terms of the truth that were left out
+};
+
+Score ScoreOf(const ToolFit& fit, const std::map<std::string, double>& truth) {
+  const FitReport& report = fit.calibration.report;
+  Score score;
+  std::vector<Eigen::Index> places;
+  std::map<std::string, double> left = truth;
+  Eigen::VectorXd error(report.values.size());
+  for (Eigen::Index i = 0; i < report.values.size(); ++i) {
+    const std::string& name = report.parameters[static_cast<std::size_t>(i)];
+    const auto found = truth.find(name);
+    error[i] = report.values[i] - (found == truth.end() ? 0 : found->second);
+    left.erase(name);
+    if (IsOfTheTool(name)) {
+      places.push_back(i);
+    } else {
+      score.bench_square += error[i] * error[i] / report.cov(i, i);
+      score.bench_number += 1;
+    }
+  }
+  score.missed = static_cast<int>(left.size());
+  const Eigen::MatrixXd cov = report.cov(places, places);
+  const Eigen::VectorXd scale = cov.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd r = scale.asDiagonal() * cov * scale.asDiagonal();
+  const Eigen::VectorXd e = scale.cwiseProduct(error(places));
+  score.square = e.dot(r.ldlt().solve(e));
+  score.number = static_cast<double>(places.size());
+  return score;
+}
+
+void Sum(const Score& one, Score& all) {
+  all.square += one.square;
+  all.number += one.number;
+  all.bench_square += one.bench_square;
+  all.bench_number += one.bench_number;
+  all.missed += one.missed;
+}
+
+TEST(ToolFit, ParametersAndNuisancesWithinTheirSigmas) {
+  Random random(31);
+  Score all;
+  const int benches = WELLGYRO_LONG ? 200 : 1;
+  for (int i = 0; i < benches; ++i) {
+    const Bench b = AnyBench(random);
+    const auto fit = FitTool(b.tables, Stated());
+    ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+    EXPECT_TRUE(fit->calibration.report.outlier_lines.empty());
+    Sum(ScoreOf(*fit, TruthOf(b.tool, b.bench)), all);
+  }
+  std::printf(
+      "%d benches: %.0f parameters of the tool, squares over their number %.3f; %.0f of the "
+      "bench, %.3f; %d terms of the truth left out\n",
+      benches, all.number, all.square / all.number, all.bench_number,
+      all.bench_square / all.bench_number, all.missed);
+  // Beyond by chance once in a thousand.
+  const double chance = WELLGYRO_LONG ? 0.05 : 3.3 * std::sqrt(2 / all.number);
+  EXPECT_NEAR(all.square / all.number, 1, chance);
+  EXPECT_NEAR(all.bench_square / all.bench_number, 1, 3.3 * std::sqrt(2 / all.bench_number));
+  EXPECT_LE(all.missed, all.number / 20);
+}
+
+// Ways in which bench data are not what they should be.
+using Corruption = void (*)(Bench& bench, ToolFitSetup& setup, Random& random);
+
+int Column(const BenchTable& data, const char* name) { return *data.Find(name); }
+
+const std::vector<std::pair<const char*, Corruption>> kCorruptions = {
+    {"none", [](Bench&, ToolFitSetup&, Random&) {}},
+    {"accelerometers in m/s2 in a part of the rows",
+     [](Bench& b, ToolFitSetup&, Random&) {
+       b.tables[0].values.block(10, Column(b.tables[0], "Gx"), 30, 3) *= 9.80665;
+     }},
+    {"one gyro in deg/s",
+     [](Bench& b, ToolFitSetup&, Random&) {
+       for (BenchTable& t : b.tables) t.values.col(Column(t, "m_y1")) /= 3600;
+     }},
+    {"two channels swapped",
+     [](Bench& b, ToolFitSetup&, Random&) {
+       BenchTable& t = b.tables[0];
+       t.values.col(Column(t, "Gx")).swap(t.values.col(Column(t, "Gy")));
+     }},
+    {"a sign",
+     [](Bench& b, ToolFitSetup&, Random&) {
+       for (BenchTable& t : b.tables) t.values.col(Column(t, "m_x1")) *= -1;
+     }},
+    {"outliers",
+     [](Bench& b, ToolFitSetup&, Random& random) {
+       BenchTable& t = b.tables[0];
+       for (int k = 0; k < 8; ++k) {
+         const auto row = static_cast<Eigen::Index>(random.Uniform() * t.rows());
+         t.values(row, Column(t, "Gx") + k % 3) += 0.1 * random.Normal();
+         t.values(row, Column(t, "m_x1") + k % 4) += 20 * random.Normal();
+       }
+     }},
+    {"drift that bends",
+     [](Bench& b, ToolFitSetup&, Random& random) {
+       BenchTable& t = b.tables[0];
+       const double size = 0.3 * random.Normal();
+       for (int i = 0; i < t.rows(); ++i) {
+         const double time = -1 + 2.0 * i / (t.rows() - 1);
+         t.values(i, Column(t, "m_x1")) += size * (time * time - 1.0 / 3);
+       }
+     }},
+    {"wrong latitude",
+     [](Bench&, ToolFitSetup& setup, Random& random) {
+       *setup.reference.latitude += (random.Uniform() < 0.5 ? -1 : 1) * 2 * kRad;
+     }},
+    {"wrong gravity",
+     [](Bench&, ToolFitSetup& setup, Random&) {
+       setup.reference.gravity *= 1.002;
+       setup.reference.gravity_mps2 *= 1.002;
+     }},
+    {"a level beyond what was said",
+     [](Bench&, ToolFitSetup& setup, Random&) { setup.sigma_level = 0.005 * kRad; }},
+    {"no temperatures written down",
+     [](Bench& b, ToolFitSetup&, Random&) {
+       for (BenchTable& t : b.tables) t.columns[static_cast<std::size_t>(Column(t, "T_C"))] = "X";
+     }},
+    {"one cone",
+     [](Bench& b, ToolFitSetup&, Random&) {
+       for (int k = 0; k < 2; ++k) {
+         BenchTable& t = b.tables[static_cast<std::size_t>(k)];
+         std::vector<Eigen::Index> kept;
+         BenchTable cone{t.source, t.columns, {}, {}};
+         for (int i = 0; i < t.rows(); ++i) {
+           if (t.values(i, Column(t, "inc")) != 45) continue;
+           kept.push_back(i);
+           cone.lines.push_back(t.lines[static_cast<std::size_t>(i)]);
+         }
+         cone.values = t.values(kept, Eigen::all);
+         t = cone;
+       }
+       b.tables.pop_back();
+     }},
+};
+
+// A sentence beside those that every fit has.
+bool HasWord(const FitReport& report) {
+  return !report.outlier_lines.empty() ||
+         std::any_of(report.remarks.begin(), report.remarks.end(),
+                     [](const std::string& remark) { return remark.rfind("left out:", 0) != 0; });
+}
+
+// The largest error of a tool's parameter over its sigma.
+double Worst(const ToolFit& fit, const std::map<std::string, double>& truth) {
+  const FitReport& report = fit.calibration.report;
+  double worst = 0;
+  for (Eigen::Index i = 0; i < report.values.size(); ++i) {
+    const std::string& name = report.parameters[static_cast<std::size_t>(i)];
+    const auto found = truth.find(name);
+    if (!IsOfTheTool(name) || found == truth.end()) continue;
+    worst = std::max(worst, std::abs(report.values[i] - found->second) /
+                                std::sqrt(std::max(1e-300, report.cov(i, i))));
+  }
+  return worst;
+}
+
+TEST(ToolFit, CorruptedBenchesAreNeverWrongWithoutAWord) {
+  Random random(32);
+  const int of_each = WELLGYRO_LONG ? 25 : 1;
+  int refused = 0, told = 0, sound = 0, silent = 0;
+  for (const auto& [name, corrupt] : kCorruptions) {
+    const std::string_view few[] = {"one gyro in deg/s", "wrong latitude"};
+    if (!WELLGYRO_LONG && std::find(few, few + 2, name) == few + 2) continue;
+    for (int k = 0; k < of_each; ++k) {
+      Bench b = AnyBench(random);
+      ToolFitSetup setup = Stated();
+      corrupt(b, setup, random);
+      const auto fit = FitTool(b.tables, setup);
+      if (!fit) {
+        ++refused;
+        EXPECT_STRNE(name, "none") << fit.fault().text;
+        continue;
+      }
+      // The largest of a hundred passes four sigmas once in 160 sound benches: with Bonferroni.
+      constexpr double kLargest = 5;
+      const double worst = Worst(*fit, TruthOf(b.tool, b.bench));
+      if (HasWord(fit->calibration.report)) {
+        ++told;
+      } else if (worst < kLargest) {
+        ++sound;
+      } else {
+        ++silent;
+        ADD_FAILURE() << name << ": wrong by " << worst << " sigmas without a word";
+      }
+    }
+  }
+  std::printf(
+      "corrupted benches: %d refused, %d told, %d within their sigmas, %d wrong in silence\n",
+      refused, told, sound, silent);
+  EXPECT_EQ(silent, 0);
+}
+
+}  // namespace
+}  // namespace wellgyro::test

@@ -1,0 +1,307 @@
+// From the joint calibration to what is done with it: errors of samples, verification, history,
+// plans.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "wellgyro/calibration/apply.h"
+#include "wellgyro/calibration/error_sources.h"
+#include "wellgyro/calibration/history.h"
+#include "wellgyro/calibration/members.h"
+#include "wellgyro/fit/bench_plan.h"
+#include "wellgyro/fit/tool_verify.h"
+
+#include "fit/tool_bench.h"
+#include "fit/tool_model_truth.h"
+
+namespace wellgyro::test {
+namespace {
+
+// A covariance of biases, sensitivities and force terms at two powers, all of them correlated.
+ParameterCovariance AnyCovariance(Random& random) {
+  using Kind = CalibrationMember::Kind;
+  ParameterCovariance known;
+  std::vector<double> sigma;
+  const double per_h = kRad / 3600;
+  for (const bool gyro : {true, false}) {
+    for (int power = 0; power < 2; ++power) {
+      for (int c = 0; c < (gyro ? 4 : 3); ++c) {
+        known.names.push_back(NameOf({gyro, Kind::kBias, power, c, 0}));
+        sigma.push_back(gyro ? 0.02 : 2e-5);
+        for (int j = 0; j < 3; ++j) {
+          known.names.push_back(NameOf({gyro, Kind::kSensitivity, power, c, j}));
+          sigma.push_back(gyro ? 1e-4 / per_h : 2e-5 / kG);
+          if (!gyro) continue;
+          known.names.push_back(NameOf({gyro, Kind::kForce, power, c, j}));
+          sigma.push_back(0.01 / kG);
+        }
+      }
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(known.names.size());
+  Eigen::MatrixXd root = Eigen::MatrixXd::Identity(n, n);
+  for (double& element : root.reshaped()) element += 0.1 * random.Normal();
+  const Eigen::MatrixXd r = root * root.transpose();
+  const Eigen::VectorXd s = Eigen::Map<const Eigen::VectorXd>(sigma.data(), n);
+  known.cov = s.asDiagonal() * r * s.asDiagonal();
+  return known;
+}
+
+// Members moved by one draw of the covariance.
+ToolCalibration Drawn(const ToolCalibration& model, const ParameterCovariance& known,
+                      Random& random) {
+  const Eigen::MatrixXd L = known.cov.llt().matrixL();
+  Eigen::VectorXd z(L.cols());
+  for (double& value : z) value = random.Normal();
+  const Eigen::VectorXd move = L * z;
+  ToolCalibration drawn = model;
+  for (Eigen::Index k = 0; k < move.size(); ++k) {
+    ValueOf(drawn, MemberOf(known.names[static_cast<std::size_t>(k)])) += move[k];
+  }
+  return drawn;
+}
+
+// A sample of the model, its counts by the formula of SensorGroup alone.
+RawSample Sampled(const ThermalTool& tool, const Eigen::Vector3d& w_T, const Eigen::Vector3d& f_T,
+                  double T) {
+  // Bench x is -y of the tool, bench y its x.
+  const auto bench = [](const Eigen::Vector3d& a) { return Eigen::Vector3d(-a.y(), a.x(), a.z()); };
+  RawSample raw;
+  raw.n_channels = 7;
+  raw.n_temperatures = 1;
+  raw.temperature_raw[0] = static_cast<float>(T);
+  raw.stamp.period_ns = 10'000'000;
+  const double tau = (T - 87.5) / 62.5;
+  const Eigen::Vector3d a = tool.Accel(-bench(f_T) / kG, tau);
+  const Eigen::Vector4d m = tool.Gyro(bench(w_T) / (kRad / 3600), bench(f_T) / kG, tau, 0);
+  for (int c = 0; c < 7; ++c) {
+    const double value = c < 3 ? a[c] : m[c - 3];
+    raw.counts[static_cast<std::size_t>(c)] = static_cast<std::int32_t>(std::lround(value * 1e6));
+  }
+  return raw;
+}
+
+struct Sensed {
+  Eigen::Vector3d w, f;
+};
+Sensed By(const ToolCalibration& model, const RawSample& raw) {
+  SampleCalibrator calibrator(model);
+  ImuSample out;
+  EXPECT_EQ(calibrator.Apply({&raw, 1}, {&out, 1}), 1u);
+  return {out.w_IT_T, out.f_T};
+}
+
+// Draws of the calibration against its covariance: what the calibrated samples are off by has the
+// sources' covariance, at cold, middle and hot.
+TEST(ToolUse, ErrorsOfSamplesAreThoseOfTheCalibration) {
+  Random random(41);
+  const ThermalTool tool = ThermalTool::Any(random);
+  ToolCalibration model = ModelOf(tool);
+  const ParameterCovariance known = AnyCovariance(random);
+  model.gyro.covariance = known;
+  constexpr int kDraws = 300;
+  for (const double T : {30.0, 87.5, 145.0}) {
+    const CalibrationSources sources = SourcesOf(model, T);
+    double square = 0, number = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const ToolCalibration drawn = Drawn(model, known, random);
+      const Eigen::Vector3d w = 7e-5 * Noise(random, 1).normalized();
+      const Eigen::Vector3d f = kG * Noise(random, 1).normalized();
+      const RawSample raw = Sampled(tool, w, f, T);
+      const Sensed is = By(model, raw), off = By(drawn, raw);
+      Eigen::Matrix<double, 6, 1> e;
+      e << off.w - is.w, off.f - is.f;
+      EXPECT_LT((is.f - f).norm(), 5e-5);
+      Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6, sources.cov.rows());
+      for (int i = 0; i < 3; ++i) {
+        H(i, i) = 1;
+        H.block<1, 3>(i, sources.At("gyro_scale_x") + 3 * i) = w.transpose();
+        H.block<1, 3>(i, sources.At("gyro_force_xx") + 3 * i) = f.transpose();
+        H(3 + i, sources.At("accel_bias_x") + i) = 1;
+        H.block<1, 3>(3 + i, sources.At("accel_scale_x") + 3 * i) = f.transpose();
+      }
+      const Eigen::MatrixXd cov = H * sources.cov * H.transpose();
+      square += e.dot(cov.ldlt().solve(e));
+      number += 6;
+    }
+    // 99.9 % of chi-square over so many.
+    EXPECT_NEAR(square / number, 1, 3.3 * std::sqrt(2 / number)) << T;
+  }
+}
+
+// The tool's priors are the largest of each kind, of the sensors that were calibrated alone.
+TEST(ToolUse, ErrorsLeftAreThoseOfTheSensorsOnTheBench) {
+  Random random(45);
+  ToolCalibration model = ModelOf(ThermalTool::Any(random));
+  ErrorPriors before;
+  before.gyro_bias_sigma = before.gyro_scale_sigma = before.accel_noise = 1;
+  const double per_h = kRad / 3600;
+  ParameterCovariance known;
+  known.names = {"accel.bias.p0[1]", "accel.sensitivity.p0[2,2]", "accel.sensitivity.p0[0,1]"};
+  known.cov = Eigen::Vector3d(1e-10, 4e-10 / (kG * kG), 9e-10 / (kG * kG)).asDiagonal();
+  model.accel.covariance = known;
+  const ErrorPriors accel = ErrorsLeft(model, before);
+  // In g as the channels read; their sensitivities are one to a per cent.
+  EXPECT_NEAR(accel.accel_bias_sigma, 1e-5 * kG, 3e-7 * kG);
+  EXPECT_NEAR(accel.accel_scale_sigma, 2e-5, 6e-7);
+  EXPECT_NEAR(accel.accel_misalignment_sigma, 3e-5, 9e-7);
+  EXPECT_EQ(accel.gyro_bias_sigma, 1);
+  EXPECT_EQ(accel.gyro_scale_sigma, 1);
+  EXPECT_EQ(accel.accel_noise, 1);
+  model.accel.covariance.reset();
+  EXPECT_EQ(ErrorsLeft(model, before).accel_bias_sigma, before.accel_bias_sigma);
+  known.names = {"gyro.bias.p0[1]", "gyro.bias.p1[1]"};
+  known.cov = Eigen::Vector2d(9e-4, 16e-4).asDiagonal();
+  model.gyro.covariance = known;
+  // At the ends of the range, where tau is one.
+  EXPECT_NEAR(ErrorsLeft(model, before).gyro_bias_sigma, 0.05 * per_h, 1e-3 * per_h);
+}
+
+TEST(ToolUse, NamesOfMembersComeBack) {
+  Random random(42);
+  for (const std::string& name : AnyCovariance(random).names)
+    EXPECT_EQ(NameOf(MemberOf(name)), name);
+  for (const char* wrong : {"gyro.bias[0]", "gyro.bias.p4[0]", "accel.sensitivity.p0[0,3]", "x",
+                            "gyro.heating[0", "gyro.heating[-1]", "accel.second_order[1,6]"}) {
+    EXPECT_THROW(MemberOf(wrong), std::invalid_argument) << wrong;
+  }
+}
+
+// A bench of 24 positions as found, after a shift.
+BenchTable AsFound(const ThermalTool& tool, const Eigen::Vector4d& shift, Random& random) {
+  ThermalBench bench = ThermalBench::Any(random);
+  bench.latitude_error = 0;
+  bench.drift[0].setZero();
+  ThermalTool shifted = tool;
+  shifted.bg[0] += shift;
+  return ThermalPositions(shifted, bench, 0, 24, 87.4, 87.5, random);
+}
+
+TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
+  Random random(43);
+  const ThermalTool tool = ThermalTool::Any(random);
+  ToolCalibration model = ModelOf(tool);
+  model.gyro.heating.setZero();
+  ThermalTool still = tool;
+  still.heating.setZero();
+  VerifySetup setup;
+  setup.bench.reference.latitude = 60 * kRad;
+  setup.bench.sigma_accel = 2e-5;
+  setup.bench.sigma_gyro = 0.02;
+  setup.bench.sigma_wobble = 20 * kRad / 3600;
+  setup.bench.sigma_level = 0.3 * kRad;
+  setup.bench.sigma_north = 0.5 * kRad;
+  // The calibration's own errors, of an ordinary bench.
+  ParameterCovariance known;
+  for (int c = 0; c < 4; ++c) {
+    known.names.push_back(NameOf({true, CalibrationMember::Kind::kBias, 0, c, 0}));
+  }
+  known.cov = 1e-4 * Eigen::Matrix4d::Identity();
+  model.gyro.covariance = known;
+  const double budget = 0.05;  // deg/h, one sigma
+  setup.budget_gyro_bias = budget;
+  const int tools = WELLGYRO_LONG ? 1000 : 60;
+  int alarms = 0, found = 0;
+  for (int i = 0; i < tools; ++i) {
+    const ToolCalibration drawn = Drawn(model, known, random);
+    for (const double size : {0.0, 3 * budget}) {
+      const int channel = i % 4;
+      Eigen::Vector4d shift = Eigen::Vector4d::Zero();
+      shift[channel] = i % 8 < 4 ? size : -size;
+      const auto verified = VerifyTool(AsFound(still, shift, random), drawn, setup);
+      ASSERT_TRUE(verified.has_value()) << verified.fault().text;
+      int shifted = 0;
+      bool the_one = false;
+      for (const ToolShift& s : verified->shifts) {
+        shifted += s.shifted ? 1 : 0;
+        the_one = the_one || (s.shifted && s.name == "gyro_b[" + std::to_string(channel) + "]");
+      }
+      if (size == 0) alarms += shifted > 0 ? 1 : 0;
+      if (size > 0) found += the_one ? 1 : 0;
+    }
+  }
+  std::printf("%d tools: a shift of three sigmas found in %.1f %%, false alarms in %.1f %%\n",
+              tools, 100.0 * found / tools, 100.0 * alarms / tools);
+  EXPECT_GE(found, 0.95 * tools);
+  // 1 %, and what chance makes of it.
+  EXPECT_LE(alarms, 0.01 * tools + 3 * std::sqrt(0.01 * tools));
+}
+
+TEST(ToolUse, HistoriesTellWalksAndToolsOutOfFamily) {
+  Random random(44);
+  std::vector<ToolCalibration> all;
+  const ParameterCovariance known = AnyCovariance(random);
+  for (int t = 0; t < 12; ++t) {
+    ToolCalibration model = ModelOf(ThermalTool::Any(random));
+    model.asset_serial = "T" + std::to_string(100 + t);
+    for (int k = 0; k < 6; ++k) {
+      // A walk of 0.01 deg/h a root day; the last tool's is thirty times as large.
+      model.gyro.bias[0][1] += (t == 11 ? 0.3 : 0.01) * std::sqrt(60.0) * random.Normal();
+      ToolCalibration seen = Drawn(model, known, random);
+      seen.gyro.covariance = known;
+      seen.calibrated = UtcTime{86'400'000'000'000LL * (20'000 + 60 * k)};
+      all.push_back(seen);
+    }
+  }
+  const auto histories = HistoriesOf(all, {.temperature = 87.5, .days_ahead = 60});
+  ASSERT_EQ(histories.size(), 12u);
+  double walk = 0;
+  for (const ToolHistory& history : histories) {
+    ASSERT_EQ(history.days.size(), 5u);
+    EXPECT_NEAR(history.days[0], 60, 1e-9);
+    for (const SourceHistory& source : history.sources) {
+      // Channel 1 alone senses the bench's y, which is the tool's x.
+      const bool is_it = source.name == "gyro_bias_x";
+      if (source.out_of_family) {
+        EXPECT_EQ(history.asset_serial, "T111") << source.name;
+      }
+      if (!is_it) continue;
+      EXPECT_EQ(source.out_of_family, history.asset_serial == "T111");
+      if (history.asset_serial != "T111") walk += std::pow(source.walk_per_sqrt_day, 2) / 11;
+      EXPECT_GT(source.prior_sigma, source.walk_per_sqrt_day * std::sqrt(60));
+    }
+  }
+  EXPECT_NEAR(std::sqrt(walk) / (kRad / 3600), 0.01, 0.004);
+}
+
+// Of a hole whose directions are known half the settings do. For all directions no design can
+// do with fewer than 81.2, by the multiplicative algorithm of optimal design (Silvey, Titterington
+// and Torsney 1978) over the same settings, run apart from this program.
+TEST(ToolUse, APlanNeedsFewerSettingsThanThePlainBench) {
+  BenchPlanSetup setup;
+  setup.bench_latitude = 52 * kRad;
+  setup.well_latitude = 60 * kRad;
+  const std::vector<BenchSetting> plain = PlainSettings(1);
+  ASSERT_EQ(plain.size(), 96u);
+  const auto plan_of = [&](const char* hole) {
+    setup.sigma_azimuth = AzimuthSigmaOf(plain, setup);
+    EXPECT_TRUE(std::isfinite(setup.sigma_azimuth));
+    const BenchPlan plan = PlanBench(setup);
+    std::printf("plan, %s: %zu settings give %.4f deg, the plain 96 %.4f deg\n", hole,
+                plan.settings.size(), plan.sigma_azimuth / kRad, setup.sigma_azimuth / kRad);
+    EXPECT_TRUE(plan.reached);
+    EXPECT_NEAR(AzimuthSigmaOf(plan.settings, setup), plan.sigma_azimuth,
+                1e-6 * plan.sigma_azimuth);
+    return plan.settings.size();
+  };
+  const std::size_t all = plan_of("all directions");
+  EXPECT_LE(all, 84u);
+  EXPECT_GE(all, 81u);
+  setup.inclination_from = 30 * kRad;
+  setup.inclination_to = 60 * kRad;
+  setup.azimuth_from = 60 * kRad;
+  setup.azimuth_to = 80 * kRad;
+  EXPECT_LE(plan_of("30 to 60 deg, N 60 to 80 E"), 67u);
+  EXPECT_THROW(PlanBench({.sigma_gyro = 0}), std::invalid_argument);
+  // One cone leaves parameters open.
+  EXPECT_FALSE(std::isfinite(AzimuthSigmaOf({plain.begin() + 24, plain.begin() + 30}, setup)));
+}
+
+}  // namespace
+}  // namespace wellgyro::test
