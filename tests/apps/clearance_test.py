@@ -55,6 +55,17 @@ class Clearance(unittest.TestCase):
             with open(os.path.join("out", name), encoding="utf-8") as file:
                 self.assertIn("near", file.read())
 
+    def test_what_both_wells_share_drops_out(self):
+        wells = ["--reference", "plan.csv", "--offset", "near.csv"]
+        lowest = {}
+        for word in ("none", "global", "full"):
+            done = self.Clear(*wells, "--correlation", word)
+            self.assertIn(done.returncode, (0, 4), done.stderr)
+            lowest[word] = min(float(row["FACTOR"]) for row in self.Rows("clearance.csv"))
+        self.assertLess(lowest["none"], lowest["global"])
+        self.assertLessEqual(lowest["global"], lowest["full"])
+        self.assertEqual(self.Clear(*wells, "--correlation", "some").returncode, 1)
+
     def test_policy_with_wells_holes_and_a_sidetrack(self):
         Survey("side.csv", [(900, 0, 0), (930, 3, 90), (960, 6, 90), (1200, 30, 90)])
         with open("side.csv", encoding="utf-8") as file:
