@@ -14,10 +14,10 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/bus/log_tables.h"
 #include "wellgyro/earth/crs.h"
-#include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_tables.h"
+#include "wellgyro/io/file_in_pieces.h"
 #include "wellgyro/io/sensor/file_kind.h"
 
 #include "commands.h"

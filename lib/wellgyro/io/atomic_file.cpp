@@ -15,6 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "wellgyro/io/file_in_pieces.h"
+
 namespace wellgyro {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
@@ -24,31 +23,5 @@ struct OutputFile {
 /// removed. Gives the Fault, if any.
 WELLGYRO_EXPORT std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
                                                 std::span<const OutputFile> files);
-
-/// One such file in pieces, for what is more than fits into memory. What was not put in place by
-/// Finish is removed when the object ends.
-class WELLGYRO_EXPORT FileInPieces {
- public:
-  explicit FileInPieces(const std::filesystem::path& name);
-  ~FileInPieces();
-  FileInPieces(FileInPieces&& other) noexcept;
-  FileInPieces& operator=(FileInPieces&&) = delete;
-
-  /// The first call makes the folder and the temporary file.
-  std::optional<Fault> Append(std::string_view bytes);
-  /// On disk, and the name free for PutInPlace.
-  std::optional<Fault> Sync();
-  std::optional<Fault> PutInPlace();
-  std::optional<Fault> Finish();  ///< both
-
- private:
-  std::optional<Fault> Open();
-  bool direct() const;
-
-  std::filesystem::path target_, temporary_;
-  int file_ = -1;
-  unsigned mode_ = 0;
-  bool exists_ = false;
-};
 
 }  // namespace wellgyro

@@ -16,6 +16,7 @@
 #include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
+#include "wellgyro/io/exchange/wbp_internal.h"
 #include "wellgyro/io/exchange/witness_internal.h"
 #include "wellgyro/io/text_file.h"
 

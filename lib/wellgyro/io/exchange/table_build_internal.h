@@ -39,10 +39,6 @@ SurveyTable ReadP717(LineReader& lines);
 SurveyTable ReadPetrel(LineReader& lines, const ReadOptions& options, Claims& claims);
 SurveyTable ReadWitsml(std::string bytes, const std::string& source, const ReadOptions& options);
 
-/// Whether text begins as a file of Landmark's well plans.
-bool IsWbp(std::string_view head);
-SurveyTable ReadWbp(LineReader& lines, const ReadOptions& options);
-
 /// Whether XML is an export of Landmark's EDM with a definitive survey.
 bool IsEdm(std::string_view bytes);
 SurveyTable ReadEdm(std::string bytes, const std::string& source, const ReadOptions& options);

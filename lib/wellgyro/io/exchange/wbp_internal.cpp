@@ -1,16 +1,19 @@
-// Well plans of Landmark's .wbp files: lines of a letter, a colon and numbers. "P:" a point of the
-// plan and "S:" a surveyed one (MD, azimuth, inclination), "L:" where it is (east, north, up), "W:"
-// the plan that they belong to. "DEPTH n" says which of feet and metres hold across and in depth.
+#include "wellgyro/io/exchange/wbp_internal.h"
+
 #include <string>
 #include <vector>
 
 #include "wellgyro/base/units.h"
-#include "wellgyro/io/exchange/table_build_internal.h"
+#include "wellgyro/io/exchange/column_units_internal.h"
+#include "wellgyro/io/exchange/table_builder_internal.h"
 #include "wellgyro/io/text_internal.h"
 
 namespace wellgyro {
 namespace {
 
+// Well plans of Landmark's .wbp files: lines of a letter, a colon and numbers. "P:" a point of the
+// plan and "S:" a surveyed one (MD, azimuth, inclination), "L:" where it is (east, north, up), "W:"
+// the plan that they belong to. "DEPTH n" says which of feet and metres hold across and in depth.
 class WbpReader {
  public:
   WbpReader(LineReader& lines, const ReadOptions& options) : lines_(lines), options_(options) {}
