@@ -1,3 +1,4 @@
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -51,6 +52,14 @@ void AddClearance(CLI::App& app, int& exit_code) {
   command->add_option(
       "--model", r.model,
       "error model of surveys that name none: a name of 'wellgyro models' or a file");
+  command
+      ->add_option("--correlation", r.correlation,
+                   "errors that two wells share and so drop out: none, global or full; wins over "
+                   "the policy's")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Correlation>{{"none", Correlation::kNone},
+                                             {"global", Correlation::kGlobal},
+                                             {"full", Correlation::kFull}}));
   AddPlace(*command, r.surroundings, r.convergence);
   command->add_option("--out", options->out, "folder for the results")->required();
   command->footer(

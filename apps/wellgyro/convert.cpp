@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_tables.h"
+#include "wellgyro/io/file_in_pieces.h"
 #include "wellgyro/io/sensor/file_kind.h"
 
 #include "commands.h"
@@ -136,9 +138,14 @@ int ConvertLog(const ConvertOptions& o) {
     return kUsage;
   }
   const std::filesystem::path depths = out.parent_path() / (out.stem().string() + ".depth.csv");
-  const Result<LogTables> tables = WriteLogTables(o.in, Channels{}, out, depths);
-  if (!tables) {
-    Complain(tables.fault());
+  FileInPieces sample_file(out), depth_file(depths);
+  const Result<LogTables> tables = WriteLogTables(
+      o.in, Channels{}, [&](std::string_view lines) { return sample_file.Append(lines); },
+      [&](std::string_view lines) { return depth_file.Append(lines); });
+  std::optional<Fault> fault = tables ? sample_file.Finish() : tables.fault();
+  if (!fault && tables->marks > 0) fault = depth_file.Finish();
+  if (fault) {
+    Complain(*fault);
     return kUnusable;
   }
   if (tables->left_out == 0) return kDone;
@@ -154,6 +161,9 @@ std::optional<Fault> FindConvergence(ConvertOptions& o) {
   const auto grid =
       ProjectToCrs(o.crs, {FromDegrees(*o.latitude_deg), FromDegrees(*o.longitude_deg)});
   if (!grid) return grid.fault();
+  if (!grid->outside.empty()) {
+    Complain(fmt::format("note: the position is outside the area of {}, {}", o.crs, grid->outside));
+  }
   const double ours = ToDegrees(grid->point.convergence);
   if (!o.convergence_deg) {
     o.convergence_deg = ours;

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/earth/crs.h"
 #include "wellgyro/earth/magnetic.h"
+#include "wellgyro/io/toml/job_file.h"
 
 #include "commands.h"
 #include "place_options.h"
@@ -22,7 +24,7 @@ struct Options {
   std::optional<double> latitude, longitude;  // [rad]
   std::optional<double> easting, northing;    // in the system's unit
   double height = 0;                          // [m]
-  std::string crs, date, model = "wmm2025", data;
+  std::string job, crs, date, model = "wmm2025", data;
   std::optional<double> stated_convergence, stated_declination;  // [rad]
 };
 
@@ -60,6 +62,12 @@ int PrintGrid(const Options& o, const GeodeticPoint& place) {
   }
   fmt::print("\n  convergence {:+.6f} deg (true less grid azimuth), scale {:.8f}\n",
              Deg(grid->point.convergence), grid->point.scale);
+  fmt::print("  from WGS 84 by: {}", grid->operation);
+  if (grid->accuracy) fmt::print(", good to {:g} m by the registry", *grid->accuracy);
+  fmt::print("\n");
+  if (!grid->outside.empty()) {
+    Complain(fmt::format("the place is outside the area of {}, {}", o.crs, grid->outside));
+  }
   if (o.stated_convergence) {
     PrintCheck("convergence", *o.stated_convergence, grid->point.convergence);
   }
@@ -87,7 +95,41 @@ int PrintMagnetic(const Options& o, const GeodeticPoint& place) {
   return kDone;
 }
 
-int Run(const Options& o) {
+std::string DateOf(UtcTime time) {
+  namespace ch = std::chrono;
+  const ch::sys_time<ch::nanoseconds> instant{ch::nanoseconds(time.ns)};
+  const ch::year_month_day day{ch::floor<ch::days>(instant)};
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(day.year()),
+                     static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
+}
+
+/// What the job says of place, grid, date and norths, where no option does.
+std::optional<Fault> TakeJob(Options& o) {
+  const Result<JobFile> file = ReadJob(o.job);
+  if (!file) return file.fault();
+  const Job& job = file->job;
+  if (!o.latitude && !o.easting) {
+    o.latitude = job.well.latitude;
+    o.longitude = job.well.longitude;
+    if (job.well.longitude == 0) Complain("note: longitude 0, unless the job says another");
+  }
+  if (job.grid && o.crs.empty()) o.crs = job.grid->epsg;
+  if (!o.crs.empty() && o.crs.find(':') == std::string::npos) o.crs = "EPSG:" + o.crs;
+  if (job.grid && !o.stated_convergence) o.stated_convergence = job.grid->convergence;
+  if (job.magnetic && !o.stated_declination) o.stated_declination = job.magnetic->declination;
+  for (const RunSpec& run : job.runs) {
+    if (o.date.empty() && run.begin) o.date = DateOf(*run.begin);
+  }
+  return std::nullopt;
+}
+
+int Run(Options& o) {
+  if (!o.job.empty()) {
+    if (const auto fault = TakeJob(o)) {
+      Complain(*fault);
+      return kUnusable;
+    }
+  }
   GeodeticPoint place;
   if (o.easting && o.northing && !o.crs.empty()) {
     const auto found = GeodeticOfCrs(o.crs, {*o.easting, *o.northing, 0});
@@ -118,6 +160,9 @@ void AddNorth(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "north", "Says where true, grid and magnetic north are at a place and date");
   const auto o = std::make_shared<Options>();
+  command->add_option("--job", o->job,
+                      "job whose place, EPSG code, first run's date and stated norths are taken "
+                      "where no option says them");
   AddNumber(*command, "--latitude-deg", o->latitude, units::kDeg, "WGS 84")
       ->check(CLI::Range(-90.0, 90.0));
   AddNumber(*command, "--longitude-deg", o->longitude, units::kDeg, "WGS 84, east positive")

@@ -29,7 +29,7 @@ set_target_properties(wellgyro PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0
 wellgyro_install(wellgyro wellgyro)
 wellgyro_pkgconfig(wellgyro "Gyro wellbore surveying"
   REQUIRES eigen3 REQUIRES_PRIVATE geographiclib fmt tomlplusplus pugixml libcrypto sqlite3 yaml-cpp
-    proj)
+    proj libzip)
 if(TARGET wellgyro-fit)
   set_target_properties(wellgyro-fit PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0)
   wellgyro_install(wellgyro-fit wellgyro-fit)

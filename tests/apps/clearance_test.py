@@ -55,6 +55,17 @@ class Clearance(unittest.TestCase):
             with open(os.path.join("out", name), encoding="utf-8") as file:
                 self.assertIn("near", file.read())
 
+    def test_what_both_wells_share_drops_out(self):
+        wells = ["--reference", "plan.csv", "--offset", "near.csv"]
+        lowest = {}
+        for word in ("none", "global", "full"):
+            done = self.Clear(*wells, "--correlation", word)
+            self.assertIn(done.returncode, (0, 4), done.stderr)
+            lowest[word] = min(float(row["FACTOR"]) for row in self.Rows("clearance.csv"))
+        self.assertLess(lowest["none"], lowest["global"])
+        self.assertLessEqual(lowest["global"], lowest["full"])
+        self.assertEqual(self.Clear(*wells, "--correlation", "some").returncode, 1)
+
     def test_policy_with_wells_holes_and_a_sidetrack(self):
         Survey("side.csv", [(900, 0, 0), (930, 3, 90), (960, 6, 90), (1200, 30, 90)])
         with open("side.csv", encoding="utf-8") as file:
@@ -113,6 +124,28 @@ class Models(unittest.TestCase):
 
 
 class North(unittest.TestCase):
+    def test_a_job_says_place_date_and_norths(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        path = os.path.join(folder, "job.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write('format = "wellgyro.job/1"\n[well]\nlatitude_deg = 57.0\n'
+                       'longitude_deg = 7.5\n[grid]\nutm_zone = "32N"\nepsg = "23032"\n'
+                       'convergence_deg = -1.26\n[noise]\nangle_random_walk_deg_per_sqrt_h = 0.1\n'
+                       "[magnetic]\ndeclination_deg = 4.0\n"
+                       "[[run]]\nnumber = 1\nbegin_utime_us = 1768457520000000\n")
+        done = Run("north", "--job", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        # EPSG:1613, of the Norwegian North Sea, and no other operation of these latitudes.
+        self.assertIn("ED50 to WGS 84 (24), good to 1 m", done.stdout)
+        self.assertIn("on 2026-01-15", done.stdout)
+        self.assertIn("stated -1.2600 deg: it holds", done.stdout)
+        self.assertIn("stated +4.0000 deg: it holds", done.stdout)
+        self.assertNotIn("outside", done.stderr)
+        elsewhere = Run("north", "--job", path, "--longitude-deg", "2", "--latitude-deg", "57")
+        self.assertIn("outside the area of EPSG:23032", elsewhere.stderr)
+        self.assertIn("2026-01-15", elsewhere.stdout)
+
     def test_grid_and_magnetic(self):
         done = Run("north", "--latitude-deg", "58.44", "--longitude-deg", "1.93", "--crs",
                    "EPSG:32631", "--date", "2026-11-22")

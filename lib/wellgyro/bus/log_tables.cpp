@@ -1,9 +1,9 @@
 #include "wellgyro/bus/log_tables.h"
 
-#include <fstream>
+#include <cstddef>
 #include <optional>
 #include <span>
-#include <system_error>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,43 +14,35 @@
 namespace wellgyro {
 namespace {
 
-// A table under a temporary name until it is whole.
+// A table, handed over in pieces as it grows.
 class Table {
  public:
-  explicit Table(std::filesystem::path path) : path_(std::move(path)) {
-    partial_ = path_;
-    partial_ += ".partial";
-  }
-  ~Table() {
-    out_.close();
-    std::error_code ignored;
-    if (!partial_.empty()) std::filesystem::remove(partial_, ignored);
-  }
-  Table(const Table&) = delete;
-  Table& operator=(const Table&) = delete;
+  explicit Table(const TextSink& sink) : sink_(sink) {}
 
   bool begun() const { return begun_; }
   void Add(const std::string& line) {
-    if (!begun_) out_.open(partial_, std::ios::binary | std::ios::trunc);
     begun_ = true;
-    out_ << line << '\n';
+    lines_ += line;
+    lines_ += '\n';
+    if (lines_.size() >= kPiece) HandOver();
   }
 
-  std::optional<Fault> PutInPlace() {
-    if (!begun_) return std::nullopt;
-    out_.close();
-    std::error_code error;
-    if (out_) std::filesystem::rename(partial_, path_, error);
-    if (!out_ || error) {
-      return Fault{.code = FaultCode::kIo, .text = "cannot be written", .source = path_.string()};
-    }
-    partial_.clear();
-    return std::nullopt;
+  std::optional<Fault> End() {
+    if (!lines_.empty()) HandOver();
+    return fault_;
   }
 
  private:
-  std::filesystem::path path_, partial_;
-  std::ofstream out_;
+  static constexpr std::size_t kPiece = 1 << 20;
+
+  void HandOver() {
+    if (!fault_) fault_ = sink_(lines_);
+    lines_.clear();
+  }
+
+  const TextSink& sink_;
+  std::string lines_;
+  std::optional<Fault> fault_;  // the first, after which nothing more is handed over
   bool begun_ = false;
 };
 
@@ -61,8 +53,7 @@ std::string Three(const Eigen::Vector3d& v, bool with_z) {
 
 class Writer : public Listener {
  public:
-  Writer(const std::filesystem::path& samples, const std::filesystem::path& depths)
-      : samples_(samples), depths_(depths) {}
+  Writer(const TextSink& samples, const TextSink& depths) : samples_(samples), depths_(depths) {}
 
   void OnImu(std::span<const ImuSample> batch) override {
     for (const ImuSample& sample : batch) Add(sample);
@@ -86,9 +77,9 @@ class Writer : public Listener {
 
   void OnFault(const Fault& /*fault*/) override { ++tables.left_out; }
 
-  std::optional<Fault> PutInPlace() {
-    if (auto fault = samples_.PutInPlace()) return fault;
-    return depths_.PutInPlace();
+  std::optional<Fault> End() {
+    if (auto fault = samples_.End()) return fault;
+    return depths_.End();
   }
 
   LogTables tables;
@@ -122,8 +113,7 @@ class Writer : public Listener {
 }  // namespace
 
 Result<LogTables> WriteLogTables(const std::string& log, const Channels& channels,
-                                 const std::filesystem::path& samples,
-                                 const std::filesystem::path& depths) {
+                                 const TextSink& samples, const TextSink& depths) {
   Result<LogReader> reader = LogReader::Open(log);
   if (!reader) return reader.fault();
   Writer writer(samples, depths);
@@ -135,7 +125,7 @@ Result<LogTables> WriteLogTables(const std::string& log, const Channels& channel
                  .text = fmt::format("holds no sample in SI units on channel {}", channels.imu),
                  .source = log};
   }
-  if (auto fault = writer.PutInPlace()) return *std::move(fault);
+  if (auto fault = writer.End()) return *std::move(fault);
   return writer.tables;
 }
 

@@ -10,6 +10,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "wellgyro/math/median.h"
+
 namespace wellgyro {
 namespace {
 
@@ -127,17 +129,11 @@ std::vector<Edge> EdgesNear(const std::vector<Span>& tool, const std::vector<Spa
   return edges;
 }
 
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void Step(const std::vector<Edge>& edges, const StopMatchSetup& setup, Fit& fit) {
   std::vector<double> sizes;
   sizes.reserve(edges.size());
   for (const Edge& e : edges) sizes.push_back(std::abs(fit.Off(e)));
-  fit.scale = std::max(1.4826 * MedianOf(sizes), kScaleLeast);
+  fit.scale = std::max(1.4826 * Median(sizes), kScaleLeast);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double weights = 0, squares = 0;

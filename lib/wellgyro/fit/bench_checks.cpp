@@ -8,17 +8,9 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
-namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
 
 Fault BenchFault(const BenchTable& data, std::string text, int line, FaultCode code) {
   return {.code = code, .text = std::move(text), .source = data.source, .line = line};

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/math/median.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -69,12 +70,6 @@ std::string Words(const Eigen::VectorXd& direction, const std::vector<std::strin
     words += fmt::format("{:.2f} {}", std::abs(part), names[static_cast<std::size_t>(i)]);
   }
   return words;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 LinearSolution SolvePlain(const LinearProblem& problem) {

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "wellgyro/fit/scalar_start_internal.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
@@ -12,12 +13,6 @@ Eigen::VectorXd Packed(const Eigen::Matrix3d& M, const Eigen::Vector3d& b) {
   Eigen::VectorXd x(9);
   x << M(0, 0), M(1, 0), M(1, 1), M(2, 0), M(2, 1), M(2, 2), b;
   return x;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // A sphere about the middle of what the channels read.

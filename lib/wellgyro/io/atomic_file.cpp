@@ -15,6 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "wellgyro/io/file_in_pieces.h"
+
 namespace wellgyro {
 namespace {
 
@@ -65,70 +67,6 @@ void RemoveLeftovers(const std::filesystem::path& target) {
   for (const std::filesystem::path& each : left) ::unlink(each.c_str());
 }
 
-// A whole file under its temporary name, removed again unless it is put in place. A target that is
-// no regular file, such as a pipe, is written to as it is.
-class Partial {
- public:
-  explicit Partial(const std::filesystem::path& name) : target_(Followed(name)) {
-    struct stat status {};
-    exists_ = ::stat(target_.c_str(), &status) == 0;
-    mode_ = status.st_mode;
-    if (direct()) return;
-    RemoveLeftovers(target_);
-    temporary_ = target_.parent_path() /
-                 fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid());
-  }
-  ~Partial() {
-    if (file_ >= 0) ::close(file_);
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
-  }
-  Partial(Partial&& other) noexcept
-      : target_(std::move(other.target_)),
-        temporary_(std::exchange(other.temporary_, {})),
-        file_(std::exchange(other.file_, -1)),
-        mode_(other.mode_),
-        exists_(other.exists_) {}
-  Partial& operator=(Partial&&) = delete;
-
-  std::optional<Fault> Write(std::string_view bytes) {
-    if (direct()) {
-      file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-      if (file_ < 0) return Refused(target_, "open it to write", errno);
-      return WriteAll(file_, bytes, target_);
-    }
-    // What may not be written may not be replaced either.
-    if (exists_ && ::access(target_.c_str(), W_OK) != 0) return Refused(target_, "write", errno);
-    file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file_ < 0) return Refused(target_, "make a file beside it", errno);
-    if (exists_ && ::fchmod(file_, mode_ & 07777) != 0)
-      return Refused(target_, "keep its mode", errno);
-    return WriteAll(file_, bytes, target_);
-  }
-
-  std::optional<Fault> Sync() {
-    if (!direct() && ::fsync(file_) != 0) return Refused(target_, "write to disk", errno);
-    if (::close(std::exchange(file_, -1)) != 0) return Refused(target_, "close", errno);
-    return std::nullopt;
-  }
-
-  std::optional<Fault> PutInPlace() {
-    if (direct()) return std::nullopt;
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-      return Refused(target_, "put the new file in place", errno);
-    }
-    temporary_.clear();
-    return std::nullopt;
-  }
-
- private:
-  bool direct() const { return exists_ && !S_ISREG(mode_) && !S_ISDIR(mode_); }
-
-  std::filesystem::path target_, temporary_;
-  int file_ = -1;
-  mode_t mode_ = 0;
-  bool exists_ = false;
-};
-
 // So that the renames themselves survive a loss of power. Some file systems know no such thing.
 void SyncFolder(const std::filesystem::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -139,24 +77,94 @@ void SyncFolder(const std::filesystem::path& folder) {
 
 }  // namespace
 
+// A target that is no regular file, such as a pipe, is written to as it is.
+FileInPieces::FileInPieces(const std::filesystem::path& name) : target_(Followed(name)) {
+  struct stat status {};
+  exists_ = ::stat(target_.c_str(), &status) == 0;
+  mode_ = status.st_mode;
+}
+
+FileInPieces::~FileInPieces() {
+  if (file_ >= 0) ::close(file_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+FileInPieces::FileInPieces(FileInPieces&& other) noexcept
+    : target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      file_(std::exchange(other.file_, -1)),
+      mode_(other.mode_),
+      exists_(other.exists_) {}
+
+bool FileInPieces::direct() const { return exists_ && !S_ISREG(mode_) && !S_ISDIR(mode_); }
+
+std::optional<Fault> FileInPieces::Open() {
+  if (direct()) {
+    file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file_ < 0) return Refused(target_, "open it to write", errno);
+    return std::nullopt;
+  }
+  const std::filesystem::path folder = target_.parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) return Refused(folder, "make this folder", error.value());
+  RemoveLeftovers(target_);
+  // What may not be written may not be replaced either.
+  if (exists_ && ::access(target_.c_str(), W_OK) != 0) return Refused(target_, "write", errno);
+  const std::filesystem::path temporary =
+      folder / fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid());
+  file_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file_ < 0) return Refused(target_, "make a file beside it", errno);
+  temporary_ = temporary;
+  if (exists_ && ::fchmod(file_, mode_ & 07777) != 0) {
+    return Refused(target_, "keep its mode", errno);
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> FileInPieces::Append(std::string_view bytes) {
+  if (file_ < 0) {
+    if (auto fault = Open()) return fault;
+  }
+  return WriteAll(file_, bytes, target_);
+}
+
+std::optional<Fault> FileInPieces::Sync() {
+  if (!direct() && ::fsync(file_) != 0) return Refused(target_, "write to disk", errno);
+  if (::close(std::exchange(file_, -1)) != 0) return Refused(target_, "close", errno);
+  return std::nullopt;
+}
+
+std::optional<Fault> FileInPieces::PutInPlace() {
+  if (direct()) return std::nullopt;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    return Refused(target_, "put the new file in place", errno);
+  }
+  temporary_.clear();
+  return std::nullopt;
+}
+
+std::optional<Fault> FileInPieces::Finish() {
+  if (auto fault = Sync()) return fault;
+  if (auto fault = PutInPlace()) return fault;
+  SyncFolder(target_.has_parent_path() ? target_.parent_path() : ".");
+  return std::nullopt;
+}
+
 std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
                                 std::span<const OutputFile> files) {
   // An empty folder is the one that the program runs in.
   const std::filesystem::path place = folder.empty() ? "." : folder;
-  std::vector<Partial> partials;
+  std::vector<FileInPieces> partials;
   for (const OutputFile& file : files) {
-    const std::filesystem::path target = place / file.name;
-    std::error_code error;
-    std::filesystem::create_directories(target.parent_path(), error);
-    if (error) return Refused(target.parent_path(), "make this folder", error.value());
-    partials.emplace_back(target);
-    if (auto fault = partials.back().Write(file.bytes)) return fault;
+    partials.emplace_back(place / file.name);
+    if (auto fault = partials.back().Append(file.bytes)) return fault;
   }
   // All of them are written by now: the first wait for the disk is mostly the only one.
-  for (Partial& partial : partials) {
+  for (FileInPieces& partial : partials) {
     if (auto fault = partial.Sync()) return fault;
   }
-  for (Partial& partial : partials) {
+  for (FileInPieces& partial : partials) {
     if (auto fault = partial.PutInPlace()) return fault;
   }
   std::set<std::filesystem::path> folders;

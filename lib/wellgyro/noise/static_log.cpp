@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "wellgyro/math/median.h"
+
 namespace wellgyro {
 namespace {
 
@@ -15,13 +17,6 @@ constexpr std::size_t kAway = 100;       // stretches it may stand away and come
 constexpr double kExplained = 0.9;       // share of the slow variance
 constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // equal to no reading
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double RobustSigma(const std::vector<double>& values) {
   const double median = Median(values);

@@ -57,7 +57,8 @@ TEST(Las, FaultsNameTheLine) {
   EXPECT_THAT(Refusal(Las("0 1 0 50 0\n10 1 x 1 1\n")).text, HasSubstr("'x'"));
   EXPECT_THAT(Refusal(Las("0 1 0 50 0\n10 1 1 1 1\n")).text, HasSubstr("header says 20"));
   EXPECT_EQ(Refusal(Las("0 1 0 50 0\n0 1 1 1 1\n")).code, FaultCode::kOrder);
-  EXPECT_THAT(Refusal("~V\n VERS. 3.0 : \n").text, HasSubstr("LAS 2.0"));
+  EXPECT_THAT(Refusal("~V\n VERS. 4.0 : \n").text, HasSubstr("LAS 2.0"));
+  EXPECT_THAT(Refusal("~V\n VERS. 3.0 : \n").text, HasSubstr("~Inclinometry_Data"));
   EXPECT_THAT(Refusal("~V\n VERS. 2.0 : \n~C\n DEPT.M : \n~A\n1\n").text, HasSubstr("inclination"));
   EXPECT_THAT(Refusal("~V\nnonsense\n").text, HasSubstr("MNEM.UNIT"));
 }

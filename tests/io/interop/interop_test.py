@@ -1,5 +1,6 @@
 """Surveys that wellgyro writes, read by independent programs: pandas, wellpathpy, lasio, lascheck,
-komle (WITSML 1.4.1.1 write bindings), energyml (WITSML 2.1) and osdu-python-models."""
+komle (WITSML 1.4.1.1 write bindings), energyml (WITSML 2.1) and osdu-python-models; and a workbook
+that openpyxl writes, read by wellgyro."""
 import csv
 import json
 import math
@@ -266,6 +267,22 @@ class Interop(unittest.TestCase):
                 two = self.Plain(one, "two", "--to", second, "--datum-elevation-m", "25.3")
                 self.assertEqual(Rows(self.Plain(two, "three", "--to", "csv")), want,
                                  f"{first} {second}")
+
+    def test_a_workbook_of_openpyxl_is_read(self):
+        import openpyxl
+        book = openpyxl.Workbook()
+        sheet = book.active
+        sheet.append(["Survey of A-1"])
+        sheet.append([])
+        sheet.append(["MD[m]", "INC[deg]", "AZI_GRID[deg]", "Remark"])
+        for md, inc, azi in STATIONS:
+            sheet.append([md, inc, azi % 360, "a \"quoted\" remark, with commas"])
+        book.create_sheet("left empty")
+        book.save(self.Path("survey.xlsx"))
+        with open(self.Convert("survey.xlsx", "out.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.Same([[r[c] for c in ("MD[m]", "INC[deg]", "AZI_GRID[deg]", "N[m]", "E[m]", "TVD[m]")]
+                   for r in rows])
 
     def test_maps_by_gdal(self):
         import shutil

@@ -254,11 +254,22 @@ void ExpectSoundText(const std::string& text) {
   EXPECT_EQ(text.find("inf"), std::string::npos);
 }
 
+// Its first three columns: where TVD stands beside them, most damage contradicts it and is refused.
+std::string AnglesAlone(const std::string& survey) {
+  std::string text;
+  int column = 0;
+  for (const char c : survey) {
+    column = c == '\n' ? 0 : column + (c == ',' ? 1 : 0);
+    if (column < 3) text += c;
+  }
+  return text;
+}
+
 // Damaged models, surveys, programs and noise files: an answer without a NaN, or an error; no
 // crash.
 TEST_F(UncertaintyFiles, MutatedFilesNeverGiveNan) {
   Random random(90408);
-  const std::string survey = Read(kCases / "iscwsa-well-3.csv");
+  const std::string survey = AnglesAlone(Read(kCases / "iscwsa-well-3.csv"));
   const std::string noise =
       "format = \"wellgyro.noise/1\"\n[coefficients]\nangle_random_walk_deg_per_sqrt_h = 0.1\n"
       "bias_instability_deg_per_h = 0.3\nbias_instability_correlation_time_h = 0.2\n"
@@ -303,7 +314,7 @@ TEST_F(UncertaintyFiles, MutatedFilesNeverGiveNan) {
       EXPECT_NE(std::string(error.what()), "");
     }
   }
-  EXPECT_GT(answered, 50);  // rows with more or fewer fields than the header are refused
+  EXPECT_GT(answered, 100);  // rows with more or fewer fields than the header are refused
   EXPECT_GT(refused, 200);
 }
 

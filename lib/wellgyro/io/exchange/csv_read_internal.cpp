@@ -7,6 +7,7 @@
 
 #include "wellgyro/io/exchange/csv_columns_internal.h"
 #include "wellgyro/io/exchange/number_marks_internal.h"
+#include "wellgyro/io/exchange/petra_internal.h"
 #include "wellgyro/io/exchange/position_log_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
@@ -42,6 +43,8 @@ class CsvReader {
     while (NextRecord(fields)) {
       if (IsBlank(fields)) {
         ended_ = true;
+      } else if (petra_.any() && fields.front().starts_with('*')) {
+        TakeKeywords(fields);
       } else if (ended_) {
         TakeFootnote(fields);
       } else if (!OfAnotherWell(fields)) {
@@ -56,7 +59,8 @@ class CsvReader {
   SurveyHead& head() { return build_.table.head; }
 
   void Conclude() {
-    if (!options_.well.empty() && well_column_ && build_.table.rows() == 0) {
+    const bool named = well_column_ || petra_.any();
+    if (!options_.well.empty() && named && build_.table.rows() == 0) {
       lines_.Complain(FaultCode::kForeign, "no row is of well " + options_.well + WellsText());
     }
     if (build_.table.rows() == 0) {
@@ -75,7 +79,7 @@ class CsvReader {
     if (!ended_ && !lines_.certified()) {
       head().notes.emplace_back("nothing in it says where the table ends: a cut could not be seen");
     }
-    if (well_column_ && !wells_.empty()) {
+    if (named && !wells_.empty() && !wells_.front().empty()) {
       head().names.well = options_.well.empty() ? wells_.front() : options_.well;
     }
   }
@@ -114,6 +118,8 @@ class CsvReader {
         TakePreamble(text.substr(1));
         continue;
       }
+      if (petra_.Take(text, lines_)) continue;
+      if (petra_.any()) return BeginPetra();
       if (TakeHeader(line, text)) return;
       if (!options_.columns.empty() && TakeHeaderless(line)) return;
       if (TakeHeadingsAbove(line)) return;
@@ -126,6 +132,34 @@ class CsvReader {
                     "no line names columns for depth, inclination and azimuth: name them with "
                     "--columns MD=1,INC=2,AZI=3" +
                         SensorHint());
+  }
+
+  void BeginPetra() {
+    delimiter_ = ' ';
+    lines_.Back();
+    const std::vector<Heading> headings = CsvHeadingsOf(petra_.Headings(), options_);
+    claims_.position_log = NamePositions(headings);
+    MakeColumns(headings);
+    petra_headings_ = petra_.Headings();
+    BeginPetraWell();
+  }
+
+  // Another well begins; its columns and units must be those of the first.
+  void TakeKeywords(const std::vector<std::string>& fields) {
+    std::string line;
+    for (const std::string& field : fields) line += (line.empty() ? "" : " ") + field;
+    petra_.Take(line, lines_);
+    if (EqualNoCase(fields.front(), "*WELL")) BeginPetraWell();
+    keywords_again_ = true;
+  }
+
+  void BeginPetraWell() {
+    wells_.push_back(petra_.well());
+    other_well_ = !options_.well.empty() && petra_.well() != options_.well;
+    if (wells_.size() > 1 && options_.well.empty()) {
+      lines_.Complain(FaultCode::kConflict, "several wells in one file" + WellsText().substr(14) +
+                                                "; say which by --well");
+    }
   }
 
   // What samples of sensors should be called, where the first line seems to name some.
@@ -282,6 +316,11 @@ class CsvReader {
 
   // Rows of wells other than the one asked for.
   bool OfAnotherWell(const std::vector<std::string>& fields) {
+    if (other_well_) return true;
+    if (keywords_again_ && petra_.Headings() != petra_headings_) {
+      lines_.Complain(FaultCode::kConflict, "columns or units that differ from the first well's");
+    }
+    keywords_again_ = false;
     if (!well_column_ || *well_column_ >= fields.size()) return false;
     const std::string well(TrimCell(fields[*well_column_]));
     const bool known = std::find(wells_.begin(), wells_.end(), well) != wells_.end();
@@ -376,12 +415,13 @@ class CsvReader {
   Claims& claims_;
   TableBuilder build_;
   CsvColumns columns_;
-  std::vector<std::string> above_, wells_;
+  std::vector<std::string> above_, wells_, petra_headings_;
+  PetraHead petra_;
   std::string first_line_;
   std::optional<std::size_t> well_column_;
   char delimiter_ = ',';
   CommaUse commas_ = CommaUse::kNone;
-  bool ended_ = false;
+  bool ended_ = false, other_well_ = false, keywords_again_ = false;
 };
 
 }  // namespace

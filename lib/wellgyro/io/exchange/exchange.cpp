@@ -12,9 +12,11 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/exchange/geo_path_internal.h"
+#include "wellgyro/io/exchange/sheet_internal.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
+#include "wellgyro/io/exchange/wbp_internal.h"
 #include "wellgyro/io/exchange/witness_internal.h"
 #include "wellgyro/io/text_file.h"
 
@@ -166,7 +168,7 @@ SurveyTable ReadLines(LineReader& lines, SurveyFormat format, const ReadOptions&
     case SurveyFormat::kGeoPackage:
       lines.Complain(FaultCode::kForeign, "a map of a survey is written, not read");
     default:
-      return ReadCsv(lines, options, claims);
+      return IsWbp(lines.Ahead()) ? ReadWbp(lines, options) : ReadCsv(lines, options, claims);
   }
 }
 
@@ -182,6 +184,10 @@ SurveyTable ReadStream(std::istream& bytes, const std::string& source, SurveyFor
 bool IsXml(SurveyFormat format) {
   return format == SurveyFormat::kWitsml1411 || format == SurveyFormat::kWitsml20 ||
          format == SurveyFormat::kWitsml21;
+}
+
+bool IsSheet(std::string_view head, const ReadOptions& options) {
+  return IsWorkbook(head) && options.format.value_or(SurveyFormat::kCsv) == SurveyFormat::kCsv;
 }
 
 }  // namespace
@@ -207,7 +213,10 @@ Result<SurveyTable> ParseSurvey(std::string_view text, const std::string& source
     const SurveyFormat format = options.format.value_or(Recognised(text));
     SurveyTable table;
     Claims claims;
-    if (IsXml(format)) {
+    if (IsSheet(text, options)) {
+      std::istringstream rows(SheetText(std::string(text), source, options.trajectory));
+      table = ReadStream(rows, source, SurveyFormat::kCsv, options, claims);
+    } else if (IsXml(format)) {
       table = IsEdm(text) ? ReadEdm(std::string(text), source, options)
                           : ReadWitsml(std::string(text), source, options);
     } else {
@@ -225,7 +234,7 @@ Result<SurveyTable> ReadSurvey(const std::filesystem::path& path, const ReadOpti
   const Result<std::string> head = ReadTextHead(path, 1 << 16);
   if (!head) return head.fault();
   const SurveyFormat format = options.format.value_or(Recognised(*head));
-  if (IsXml(format)) {
+  if (IsXml(format) || IsSheet(*head, options)) {
     const Result<std::string> text = ReadTextFile(path, kMostXml);
     if (!text) return text.fault();
     ReadOptions by_format = options;

@@ -58,13 +58,19 @@ class LasReader {
         Header(text);
       }
     }
-    if (section_ != 'A') {
+    if (section_ != 'A' && !data_seen_) {
       lines_.Complain(FaultCode::kForeign,
-                      lines_.number() == 0 ? "this file is empty" : "no section ~A: no data");
+                      lines_.number() == 0 ? "this file is empty"
+                      : third_             ? "no section of a survey's data: no ~Inclinometry_Data"
+                                           : "no section ~A: no data");
     }
     if (!pending_.empty()) lines_.Complain(FaultCode::kSyntax, "the last row is cut short");
     if (build_.table.rows() == 0) lines_.Complain(FaultCode::kForeign, "not a single station");
-    CheckEnds();
+    if (!third_ || !inclinometry_) CheckEnds();
+    if (third_ && inclinometry_ && !lines_.certified()) {
+      head().notes.emplace_back(
+          "nothing in it says where the survey ends: a cut could not be seen");
+    }
     if (const auto problem = build_.Finish()) lines_.Complain(problem->code, problem->text);
     return std::move(build_.table);
   }
@@ -73,12 +79,61 @@ class LasReader {
   SurveyHead& head() { return build_.table.head; }
 
   void Section(std::string_view text) {
+    if (third_) return ThirdSection(text);
     if (section_ == 'A') lines_.Complain(FaultCode::kSyntax, "a section after ~A, the last one");
     section_ = text.size() > 1 ? static_cast<char>(text[1] & ~0x20) : ' ';
     if (section_ == 'A') CheckCurves();
   }
 
+  // LAS 3.0: groups of a section of parameters, one that defines columns and one of data each, in
+  // any order. The survey is the group Inclinometry; without it, the log, where that has a survey's
+  // curves. All others are passed over.
+  void ThirdSection(std::string_view text) {
+    const std::string name = Lower(text.substr(1, text.find_first_of(" |[", 1) - 1));
+    const bool survey = name.starts_with("inclinometry");
+    section_ = 'X';
+    if (name.starts_with("v")) section_ = 'V';
+    if (name.starts_with("w")) section_ = 'W';
+    if (survey && !inclinometry_) StartAgain();
+    inclinometry_ = inclinometry_ || survey;
+    const bool log = name == "curve" || name == "ascii" || name == "a" || name == "c" ||
+                     name.starts_with("log_");
+    if (name.starts_with("o")) section_ = 'O';
+    if (name == "parameter" || name == "p" || name.ends_with("_parameter")) section_ = 'P';
+    if (!survey && (!log || inclinometry_)) return;
+    if (name == "curve" || name == "c" || name.ends_with("_definition")) section_ = 'C';
+    if (name == "ascii" || name == "a" || name.ends_with("_data")) section_ = 'A';
+    if (section_ != 'A') return;
+    data_seen_ = survey || HasCurves();
+    if (survey) CheckCurves();
+    if (survey && build_.table.rows() > 0) {
+      lines_.Complain(FaultCode::kConflict, "several surveys in one file, which are not parted");
+    }
+    if (!data_seen_) section_ = 'X';
+    if (head().offsets == North::kUnknown) head().offsets = head().azimuth.north;
+  }
+
+  // What the log's curves brought gives way to the survey's own.
+  void StartAgain() {
+    SurveyHead kept = std::move(head());
+    build_ = TableBuilder();
+    head() = std::move(kept);
+    curves_.clear();
+    pending_.clear();
+    azimuth_seen_ = false;
+    first_index_.reset();
+  }
+
+  bool HasCurve(Column column) const {
+    return std::any_of(curves_.begin(), curves_.end(),
+                       [&](const Curve& c) { return c.column == column; });
+  }
+  bool HasCurves() const {
+    return HasCurve(Column::kMd) && HasCurve(Column::kInclination) && HasCurve(Column::kAzimuth);
+  }
+
   void Header(std::string_view text) {
+    if (section_ == 'X') return;
     const auto line = HeaderLine(text);
     if (section_ == 'O') {
       if (head().remarks.size() < 1000) head().remarks.push_back(las::FromDataText(text));
@@ -94,11 +149,25 @@ class LasReader {
   void Version(const LasLine& line) {
     if (line.mnemonic == "VERS") {
       const auto version = NumberOf(line.data);
-      if (!version || *version < 1.2 || *version > 2.1) {
-        lines_.Complain(FaultCode::kForeign, "LAS " + line.data + " is not LAS 2.0");
+      third_ = version && *version >= 3 && *version < 3.1;
+      if (!third_ && (!version || *version < 1.2 || *version > 2.1)) {
+        lines_.Complain(FaultCode::kForeign, "LAS " + line.data + " is neither LAS 2.0 nor 3.0");
       }
     }
+    if (line.mnemonic == "DLM") TakeDelimiter(line.data);
     if (line.mnemonic == "WRAP") wrap_ = EqualNoCase(line.data, "YES");
+  }
+
+  void TakeDelimiter(std::string_view word) {
+    if (word.empty() || EqualNoCase(word, "SPACE")) {
+      delimiter_ = ' ';
+    } else if (EqualNoCase(word, "COMMA")) {
+      delimiter_ = ',';
+    } else if (EqualNoCase(word, "TAB")) {
+      delimiter_ = '\t';
+    } else {
+      lines_.Complain(FaultCode::kSyntax, "a delimiter that is none of SPACE, COMMA and TAB");
+    }
   }
 
   void Well(const LasLine& line) {
@@ -120,10 +189,18 @@ class LasReader {
   void Parameter(const LasLine& line) {
     for (const las::ParameterKey& p : las::kParameters) {
       if (p.mnemonic != line.mnemonic || line.data.empty()) continue;
-      if (!TakePair(head(), p.key, line.data)) {
+      if (!TakePair(head(), p.key, InItsUnit(p, line))) {
         lines_.Complain(FaultCode::kSyntax, fmt::format("{}: '{}' is none", p.text, line.data));
       }
     }
+  }
+
+  // Elevations may stand in feet.
+  static std::string InItsUnit(const las::ParameterKey& p, const LasLine& line) {
+    const LengthUnit unit = LengthUnitOf(line.unit).value_or(LengthUnit::kMetre);
+    const auto number = NumberOf(line.data);
+    if (p.unit != "M" || unit == LengthUnit::kMetre || !number) return line.data;
+    return Exact(*number * FactorOf(unit));
   }
 
   void AddCurve(const LasLine& line) {
@@ -223,9 +300,7 @@ class LasReader {
 
   void CheckCurves() {
     for (const Column column : {Column::kMd, Column::kInclination, Column::kAzimuth}) {
-      const bool there = std::any_of(curves_.begin(), curves_.end(),
-                                     [&](const Curve& c) { return c.column == column; });
-      if (!there) {
+      if (!HasCurve(column)) {
         lines_.Complain(FaultCode::kForeign, fmt::format("no curve of {}", InfoOf(column).text));
       }
     }
@@ -237,9 +312,9 @@ class LasReader {
 
   void Data(std::string_view text) {
     std::vector<std::string_view> fields;
-    Split(text, ' ', fields);
+    Split(text, delimiter_, fields);
     for (const std::string_view field : fields) {
-      const auto number = NumberOf(field);
+      const auto number = third_ ? NumberOrNothing(field) : NumberOf(field);
       if (!number) {
         lines_.Complain(FaultCode::kSyntax,
                         fmt::format("'{}' is not a number", field.substr(0, 40)));
@@ -254,6 +329,16 @@ class LasReader {
       lines_.Complain(FaultCode::kSyntax, "a wrapped row has more numbers than there are curves");
     }
     if (pending_.size() == curves_.size()) Row();
+  }
+
+  // In LAS 3.0 a value may be left out, or be text in a column that is none of a survey's.
+  std::optional<double> NumberOrNothing(std::string_view field) const {
+    constexpr double kNothing = -999.25;
+    if (Trim(field).empty()) return null_.value_or(kNothing);
+    const std::size_t column = pending_.size();
+    const bool other = column < curves_.size() && !curves_[column].column;
+    const auto number = NumberOf(field);
+    return number || !other ? number : null_.value_or(kNothing);
   }
 
   void Row() {
@@ -304,8 +389,9 @@ class LasReader {
   std::optional<LengthUnit> md_unit_;
   std::string start_unit_;
   double last_index_ = 0;
-  char section_ = ' ';
+  char section_ = ' ', delimiter_ = ' ';
   bool wrap_ = false, azimuth_seen_ = false;
+  bool third_ = false, inclinometry_ = false, data_seen_ = false;
 };
 
 }  // namespace

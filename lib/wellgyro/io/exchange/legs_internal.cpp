@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/median.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/sinc.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
@@ -35,13 +36,6 @@ double WeightedMedian(std::vector<std::pair<double, double>>& values) {
     if (2 * sum >= all) return value;
   }
   return values.back().first;
-}
-
-double Median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Pairs (computed, given) that share a factor, but for some that are spoilt. The factor comes from

@@ -1,13 +1,14 @@
 #include "wellgyro/io/exchange/position_log_internal.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
@@ -56,10 +57,7 @@ std::optional<std::string> BackCalculate(SurveyTable& table) {
       table.SetStatus(to, RowStatus::kBackCalculated);
     }
   }
-  std::nth_element(stretched.begin(),
-                   stretched.begin() + static_cast<std::ptrdiff_t>(stretched.size() / 2),
-                   stretched.end());
-  const double typical = stretched[stretched.size() / 2];
+  const double typical = Median(std::move(stretched));
   if (typical > 1.002 || typical < 0.5) {
     return fmt::format(
         "positions move {:.4g} times as far as measured depth: one of them is in "

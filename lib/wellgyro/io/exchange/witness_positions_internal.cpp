@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -10,6 +11,7 @@
 #include "wellgyro/io/exchange/columns_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/witness_case_internal.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro::witness {
 namespace {
@@ -32,9 +34,7 @@ std::optional<double> TypicalDifference(const SurveyTable& table, Column a, Colu
     if (x && y) differences.push_back(*x - *y);
   }
   if (differences.empty()) return std::nullopt;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle;
+  return Median(std::move(differences));
 }
 
 // True less grid azimuth, as the head says it or two columns of azimuths do.

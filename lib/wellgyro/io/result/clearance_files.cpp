@@ -68,6 +68,7 @@ ClearanceRun::ClearanceRun(const ClearanceRequest& request) : request_(request) 
     policy_ = *std::move(read);
     folder_ = request.policy->parent_path();
   }
+  if (request.correlation) policy_.rule.correlation = *request.correlation;
   if (request.reference) policy_.reference = EntryOf(*request.reference);
   for (const auto& path : request.offsets) policy_.offsets.push_back(EntryOf(path));
   if (!policy_.reference) throw std::invalid_argument("no reference well is named");

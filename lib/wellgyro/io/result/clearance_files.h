@@ -9,6 +9,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/atomic_file.h"
+#include "wellgyro/survey/separation.h"
 #include "wellgyro/uncertainty/propagate.h"
 
 namespace wellgyro {
@@ -20,7 +21,8 @@ struct ClearanceRequest {
   std::vector<std::filesystem::path> offsets;      ///< beside those of the policy
   std::string model;                               ///< of surveys that name none: a file
   Surroundings surroundings;
-  std::optional<double> convergence;  ///< given: azimuths are grid [rad]
+  std::optional<double> convergence;       ///< given: azimuths are grid [rad]
+  std::optional<Correlation> correlation;  ///< given: wins over the policy's
   /// Hears how many of how many offsets are done; may be empty.
   std::function<void(std::size_t, std::size_t)> progress;
 };
