@@ -22,14 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Writes one file; false where it cannot be, which has been said.
-bool Write(const fs::path& path, std::string bytes) {
+bool Write(const fs::path& path, std::string bytes, bool say) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const std::vector<OutputFile> files{{path.filename().string(), std::move(bytes)}};
   if (const auto fault = WriteFiles(folder, files)) {
     Complain(*fault);
     return false;
   }
-  fmt::print("wrote {}\n", path.string());
+  if (say) fmt::print("wrote {}\n", path.string());
   return true;
 }
 
@@ -57,14 +57,14 @@ int WriteReport(const ResultReport& report) {
     Complain(json.fault());
     return kUnusable;
   }
-  if (!report.json.empty() && !Write(report.json, *json)) return kUnusable;
+  if (!report.json.empty() && !Write(report.json, *json, report.say)) return kUnusable;
   if (report.out.empty()) return kDone;
   Result<std::string> page = ReportPage(*json, report.options);
   if (!page) {
     Complain(page.fault());
     return kUnusable;
   }
-  if (!Write(report.out, *std::move(page))) return kUnusable;
+  if (!Write(report.out, *std::move(page), report.say)) return kUnusable;
   if (report.pdf.empty()) return kDone;
   if (const auto complaint = PrintByChromium(report.out, report.pdf)) {
     Complain(*complaint);
@@ -84,9 +84,11 @@ int ReportOnSurvey(const fs::path& out, bool page) {
     if (tool && fs::exists(entry->path() / "run.toml")) folders.push_back(entry->path());
   }
   std::sort(folders.begin(), folders.end());
+  // Of a former survey of one tool, where several now have folders of their own.
+  if (!fs::exists(out / "run.toml", absent)) fs::remove(out / "survey.json", absent);
   int code = kDone;
   for (const fs::path& folder : folders) {
-    ResultReport report{.result = folder, .json = folder / "survey.json"};
+    ResultReport report{.result = folder, .json = folder / "survey.json", .say = false};
     if (page) report.out = folder / "report.html";
     code = std::max(code, WriteReport(report));
   }

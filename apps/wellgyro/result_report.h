@@ -15,13 +15,14 @@ struct ResultReport {
   std::filesystem::path json;    ///< survey.json; empty: none
   std::vector<std::string> others;
   ReportOptions options;
+  bool say = true;  ///< what was written
 };
 
-/// Writes what is asked for and says where it is; the exit code.
+/// Writes what is asked for; the exit code.
 int WriteReport(const ResultReport& report);
 
 /// After a survey: survey.json, and with `page` report.html, into each folder of results in `out`.
-/// The exit code.
+/// Silently, as the last line of a survey is its verdict. The exit code.
 int ReportOnSurvey(const std::filesystem::path& out, bool page);
 
 }  // namespace wellgyro::apps
