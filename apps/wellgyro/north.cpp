@@ -60,6 +60,12 @@ int PrintGrid(const Options& o, const GeodeticPoint& place) {
   }
   fmt::print("\n  convergence {:+.6f} deg (true less grid azimuth), scale {:.8f}\n",
              Deg(grid->point.convergence), grid->point.scale);
+  fmt::print("  from WGS 84 by: {}", grid->operation);
+  if (grid->accuracy) fmt::print(", good to {:g} m by the registry", *grid->accuracy);
+  fmt::print("\n");
+  if (!grid->outside.empty()) {
+    Complain(fmt::format("the place is outside the area of {}, {}", o.crs, grid->outside));
+  }
   if (o.stated_convergence) {
     PrintCheck("convergence", *o.stated_convergence, grid->point.convergence);
   }

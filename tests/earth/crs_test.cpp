@@ -1,6 +1,7 @@
 #include "wellgyro/earth/crs.h"
 
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -85,6 +86,31 @@ TEST(Crs, RefusesWhatItDoesNotKnow) {
   }
   EXPECT_FALSE(ShiftPoint("EPSG:32631", "EPSG:4326", {NAN, 0, 0}));
   EXPECT_FALSE(ShiftPoint("EPSG:32631", "EPSG:4326", {1e30, 1e30, 0}));
+}
+
+// An operation holds in the area the registry states for it: at 57 deg N, 7.5 deg E, in the
+// Norwegian North Sea, "ED50 to WGS 84 (24)", EPSG:1613, of the sea south of 62 deg, and not (25),
+// EPSG:1627, of Denmark east of 8 deg; New Zealand lies on both sides of the antimeridian.
+TEST(Crs, TheOperationIsOneOfThePlace) {
+  const auto sea = ProjectToCrs("EPSG:23032", Place(57, 7.5));
+  ASSERT_TRUE(sea) << sea.fault().text;
+  EXPECT_NE(sea->operation.find("ED50 to WGS 84 (24)"), std::string::npos) << sea->operation;
+  EXPECT_EQ(sea->accuracy, 1);
+  const auto denmark = ProjectToCrs("EPSG:23032", Place(56, 9));
+  ASSERT_TRUE(denmark) << denmark.fault().text;
+  EXPECT_NE(denmark->operation.find("ED50 to WGS 84 (25)"), std::string::npos)
+      << denmark->operation;
+  for (const double longitude : {173.6, -178.5 + 360}) {
+    const auto zealand = ProjectToCrs("EPSG:2193", Place(-39.3, longitude));
+    ASSERT_TRUE(zealand) << zealand.fault().text;
+    EXPECT_NE(zealand->operation.find("NZGD2000 to WGS 84 (1)"), std::string::npos);
+  }
+}
+
+// PSAD56 / UTM 19S is for 72 to 66 deg W south of the equator; 20N holds at 10 deg N, 64.5 deg W.
+TEST(Crs, APlaceOutsideTheAreaOfASystemIsTold) {
+  EXPECT_EQ(ProjectToCrs("EPSG:24820", Place(10, -64.5))->outside, "");
+  EXPECT_NE(ProjectToCrs("EPSG:24879", Place(10, -64.5))->outside, "");
 }
 
 // SWEREF99 TM lists the northing first. On its central meridian true north is grid north; 3 deg

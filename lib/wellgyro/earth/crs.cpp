@@ -1,5 +1,6 @@
 #include "wellgyro/earth/crs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -86,6 +87,18 @@ std::string MissingGrid(const Session& session, const PJ* operation) {
   return {};
 }
 
+// A box of 0.1 m about longitude, latitude [deg], never across the antimeridian: before version 9.2
+// PROJ takes a box without width for one that goes round the Earth, and then offers an operation of
+// Denmark in Norway and none in New Zealand.
+void SetPlace(PJ_CONTEXT* context, PJ_OPERATION_FACTORY_CONTEXT* factory, double longitude,
+              double latitude) {
+  constexpr double kHalf = 5e-7;  // [deg]
+  const double lon = std::clamp(std::remainder(longitude, 360.0), -180 + kHalf, 180 - kHalf);
+  const double lat = std::clamp(latitude, -90 + kHalf, 90 - kHalf);
+  proj_operation_factory_context_set_area_of_interest(context, factory, lon - kHalf, lat - kHalf,
+                                                      lon + kHalf, lat + kHalf);
+}
+
 /// The best operation at longitude, latitude [deg], for x east and y north; as if every grid were
 /// here, so that a missing one is noticed.
 Held<PJ> Best(const Session& session, const PJ* from, const PJ* to, const std::string& names,
@@ -98,10 +111,7 @@ Held<PJ> Best(const Session& session, const PJ* from, const PJ* to, const std::s
                                                            PROJ_GRID_AVAILABILITY_IGNORED);
   proj_operation_factory_context_set_spatial_criterion(c, factory.get(),
                                                        PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
-  if (at) {
-    const auto [lon, lat] = *at;
-    proj_operation_factory_context_set_area_of_interest(c, factory.get(), lon, lat, lon, lat);
-  }
+  if (at) SetPlace(c, factory.get(), at->first, at->second);
   const Held<PJ_OBJ_LIST> list(proj_create_operations(c, from, to, factory.get()));
   if (!list || proj_list_get_count(list.get()) == 0) {
     Refuse(FaultCode::kRange, "the registry has no operation between these datums at this place",
@@ -173,6 +183,21 @@ void ReadUnit(const Session& session, const PJ* system, CrsGridPoint& made) {
   }
 }
 
+// The name of the area that the registry states for the system, where the place is not in it.
+std::string OutsideOf(const Session& session, const PJ* system, const CrsPoint& own) {
+  double west = 0, south = 0, east = 0, north = 0;
+  const char* name = nullptr;
+  constexpr double kUnknown = -1000;  // PROJ's
+  if (!proj_get_area_of_use(session.get(), system, &west, &south, &east, &north, &name) ||
+      west == kUnknown) {
+    return {};
+  }
+  const double lon = std::remainder(own.x, 360.0);
+  const bool along = west <= east ? lon >= west && lon <= east : lon >= west || lon <= east;
+  if (along && own.y >= south && own.y <= north) return {};
+  return name ? name : "that the registry states";
+}
+
 // Convergence and scale by central differences of the projection, which rounding and the third
 // derivative leave good to 1e-8: proj_factors of PROJ 9.1 takes the first axis for the easting even
 // where it is the northing.
@@ -214,7 +239,8 @@ CrsGridPoint Project(const std::string& code, const GeodeticPoint& place) {
     Refuse(FaultCode::kForeign, "is no projected system: it has no grid north", code);
   }
   const CrsPoint wgs{place.longitude / units::kDeg, place.latitude / units::kDeg, 0};
-  const CrsPoint grid = Shift(session, kWgs84, code, wgs).point;
+  const ShiftedPoint shifted = Shift(session, kWgs84, code, wgs);
+  const CrsPoint& grid = shifted.point;
   const CrsPoint own = OwnGeographic(session, system.get(), grid, code);
   CrsGridPoint made;
   made.name = proj_get_name(system.get());
@@ -222,6 +248,9 @@ CrsGridPoint Project(const std::string& code, const GeodeticPoint& place) {
   made.point.easting = grid.x * made.unit;
   made.point.northing = grid.y * made.unit;
   made.geographic = {own.y * units::kDeg, own.x * units::kDeg};
+  made.operation = shifted.operation;
+  made.accuracy = shifted.accuracy;
+  made.outside = OutsideOf(session, system.get(), own);
   Differentiate(session, system.get(), own, code, made);
   return made;
 }

@@ -33,11 +33,15 @@ WELLGYRO_EXPORT Result<ShiftedPoint> ShiftPoint(const std::string& from, const s
 
 /// A projected system at one place of its own geographic datum.
 struct CrsGridPoint {
-  GridPoint point;           ///< northing, easting in metres; convergence; scale
-  double unit = 1;           ///< metres in the system's unit
-  std::string unit_name;     ///< as "US survey foot"
-  std::string name;          ///< of the system
-  GeodeticPoint geographic;  ///< on its own datum
+  GridPoint point;                 ///< northing, easting in metres; convergence; scale
+  double unit = 1;                 ///< metres in the system's unit
+  std::string unit_name;           ///< as "US survey foot"
+  std::string name;                ///< of the system
+  GeodeticPoint geographic;        ///< on its own datum
+  std::string operation;           ///< from WGS 84, its name in the registry
+  std::optional<double> accuracy;  ///< of the operation, that the registry states [m]
+  std::string
+      outside;  ///< the area that the system is for, where the place is not in it; else empty
 };
 
 /// `place`, on WGS 84, in the projected system `system`: shifted to its datum as ShiftPoint does,
