@@ -191,7 +191,7 @@ TEST(ResultFiles, RunTomlComesLastAndNamesTheOthersButTheSource) {
   EXPECT_THAT(names, testing::ElementsAre("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
                                           "reliability.csv", "source.toml", "run.toml"));
   const toml::table run = toml::parse(files.back().bytes);
-  EXPECT_EQ(run["output"].as_array()->size(), 3u);
+  EXPECT_EQ(run["output"].as_array()->size(), 5u);
   EXPECT_EQ(run["output"][0]["sha256"].value<std::string>(), Sha256Hex(files[0].bytes));
 }
 
