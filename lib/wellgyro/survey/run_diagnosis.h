@@ -23,7 +23,7 @@ std::vector<CauseSpec> CausesLookedFor();
 /// What the estimator's tests of CausesLookedFor() come to, in words and where it was.
 RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots);
 
-/// The check `diagnosis`: fails where a fault is found, naming the likeliest, or several that
+/// The check `diagnosis`: warns where a fault is found, naming the likeliest, or several that
 /// together have 95 %.
 void CheckDiagnosis(const RunSummary& run, std::vector<Check>& checks);
 
