@@ -60,8 +60,8 @@ void WriteAllChecks(PageText& page, const Columns& checks) {
         100 * *rate);
   }
   HtmlTable table(page.html, "checks", "",
-                  {"Verdict", "Check", "Run", "Pass", page.Named("MD"), "Value", "Sigma", "Limit",
-                   "Unit", "Limit from, or why not done"});
+                  {"Verdict", "Check", "Run", "Pass", page.Named(">MD"), ">Value", ">Sigma",
+                   ">Limit", "Unit", "Limit from, or why not done"});
   constexpr std::array kOrder = {"fail", "warn", "pass", "not_done"};
   for (const std::string_view wanted : kOrder) {
     for (std::size_t i = 0; i < checks.rows(); ++i) {

@@ -51,7 +51,7 @@ std::string VerdictOf(const Columns& checks, std::string_view code, double run) 
 
 void WriteParts(PageText& page, const Json& fit) {
   HtmlTable table(page.html, "parts", "Residuals by kind, against the noise that the job states",
-                  {"Kind", "Chi-square", "Degrees of freedom", "Noise found over stated"});
+                  {"Kind", ">Chi-square", ">Degrees of freedom", ">Noise found over stated"});
   const auto row = [&](const char* words, const std::string& sum, const std::string& freedom) {
     const auto chi_square = NumberAt(fit, {sum}), free = NumberAt(fit, {freedom});
     const bool told = chi_square && free && *free >= 1;
@@ -70,9 +70,9 @@ void WriteParts(PageText& page, const Json& fit) {
 void WriteErrors(PageText& page, const Json& run) {
   const Json& fit = At(run, {"fit"});
   const Columns checks(At(page.survey, {"checks"}));
-  HtmlTable table(page.html, "errors",
-                  "Errors of the tool that the run tells, against their priors",
-                  {"Error", "Unit", "Found", "Sigma", "Prior sigma", "Found / prior", "Verdict"});
+  HtmlTable table(
+      page.html, "errors", "Errors of the tool that the run tells, against their priors",
+      {"Error", "Unit", ">Found", ">Sigma", ">Prior sigma", ">Found / prior", "Verdict"});
   for (const ToolError& error : kErrors) {
     const std::string name(error.name), unit(error.unit);
     const auto found = NumberAt(fit, {name + unit}),
@@ -86,7 +86,7 @@ void WriteErrors(PageText& page, const Json& run) {
         .Text(error.unit_words)
         .Short(found)
         .Short(sigma)
-        .Cell(prior ? ShortText(prior) : "of published tools")
+        .Cell(prior ? "<span class=\"n\">" + ShortText(prior) + "</span>" : "of published tools")
         .Number(ratio ? std::optional(*found / *prior) : std::nullopt, 2)
         .Text(found ? verdict : "not measured");
   }
@@ -94,9 +94,9 @@ void WriteErrors(PageText& page, const Json& run) {
 
 void WriteSamples(PageText& page, const Json& runs) {
   HtmlTable table(page.html, "samples", "Samples",
-                  {"Run", "Samples", "Lost", "Sent again", "Refused", "Gyros at full scale",
-                   "Accelerometers at full scale", "Turned too fast", "Clock doubtful",
-                   "Without depth [s]", "Temperature [\u00b0C]", "Verdict"});
+                  {"Run", ">Samples", ">Lost", ">Sent again", ">Refused", ">Gyros at full scale",
+                   ">Accelerometers at full scale", ">Turned too fast", ">Clock doubtful",
+                   ">Without depth [s]", "Temperature [\u00b0C]", "Verdict"});
   for (const Json& run : runs) {
     const auto low = NumberAt(run, {"temperature_min_degc"}),
                high = NumberAt(run, {"temperature_max_degc"});

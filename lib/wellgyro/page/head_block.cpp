@@ -1,6 +1,7 @@
 // The verdict, and block 1: what the survey is of, where it ends, and who signs.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -73,6 +74,12 @@ std::string Degrees(const std::optional<double>& value, int decimals) {
   return value ? NumberText(value, decimals) + "\u00b0" : std::string();
 }
 
+/// "28.000000° north" or, of what is negative, south.
+std::string Toward(const std::optional<double>& value, const char* word, const char* opposite) {
+  if (!value) return std::string(kNotStated);
+  return Degrees(std::abs(*value), 6) + ' ' + (*value < 0 ? opposite : word);
+}
+
 std::string DatesOf(const Json& runs) {
   std::string begin, end;
   if (runs.is_array()) {
@@ -141,8 +148,9 @@ void WriteWell(PageText& page, Facts& facts, Identity& identity) {
   facts.Text("Rig", identity.Take({"rig"}));
   facts.Text("Job", identity.Take({"jobnumber", "job"}));
   facts.Text("Dates", DatesOf(At(page.survey, {"run", "run"})));
-  facts.Html("Well head", Degrees(NumberAt(well, {"latitude_deg"}), 6) + " north, " +
-                              Degrees(NumberAt(well, {"longitude_deg"}), 6) + " east, WGS 84");
+  facts.Html("Well head", Toward(NumberAt(well, {"latitude_deg"}), "north", "south") + ", " +
+                              Toward(NumberAt(well, {"longitude_deg"}), "east", "west") +
+                              ", WGS 84");
   facts.Html("North reference", NorthText(At(page.survey, {"north"})));
   facts.Html("Depth datum",
              fmt::format("{} {} above mean sea level",

@@ -82,7 +82,9 @@ HtmlTable::HtmlTable(std::string& html, std::string_view kind, std::string_view 
   if (!caption.empty()) html_ += fmt::format("<caption>{}</caption>", Escaped(caption));
   html_ += "<thead><tr>";
   for (const std::string_view head : heads) {
-    html_ += fmt::format("<th scope=\"col\">{}</th>", Escaped(head));
+    const bool number = head.starts_with('>');
+    html_ += fmt::format("<th scope=\"col\"{}>{}</th>", number ? " class=\"n\"" : "",
+                         Escaped(head.substr(number ? 1 : 0)));
   }
   html_ += "</tr></thead><tbody>\n";
 }

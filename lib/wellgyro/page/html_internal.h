@@ -22,7 +22,8 @@ std::string NumberText(const std::optional<double>& value, int decimals);
 /// Few significant digits, for values of any size.
 std::string ShortText(const std::optional<double>& value);
 
-/// Writes a table into `html`; the end of its life closes it.
+/// Writes a table into `html`; the end of its life closes it. A head that begins with '>' stands
+/// over numbers, at their right.
 class HtmlTable {
  public:
   HtmlTable(std::string& html, std::string_view kind, std::string_view caption,

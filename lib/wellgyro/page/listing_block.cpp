@@ -54,23 +54,23 @@ void WriteStation(const PageText& page, HtmlTable& table, const Columns& station
 }
 
 void WriteHeads(PageText& page, bool grid, const Columns& stations) {
-  const std::string dls = fmt::format("DLS [{}]", page.units.dogleg_name), md = page.Named("MD"),
-                    tvd = page.Named("TVD"), north = page.Named("N"), east = page.Named("E"),
-                    major = page.Named("95 % long"), minor = page.Named("95 % short");
+  const std::string dls = fmt::format(">DLS [{}]", page.units.dogleg_name), md = page.Named(">MD"),
+                    tvd = page.Named(">TVD"), north = page.Named(">N"), east = page.Named(">E"),
+                    major = page.Named(">95 % long"), minor = page.Named(">95 % short");
   const auto write = [&](HtmlTable& table) {
     for (std::size_t i = 0; i < stations.rows(); ++i) WriteStation(page, table, stations, i, grid);
   };
   if (grid) {
     HtmlTable table(page.html, "listing", "",
-                    {md, "Inc [\u00b0]", "Azi true [\u00b0]", "Azi grid [\u00b0]", tvd, north, east,
-                     "Northing [m]", "Easting [m]", dls, "\u03c3 inc [\u00b0]",
-                     "\u03c3 azi [\u00b0]", major, minor, "Kind", "Quality"});
+                    {md, ">Inc [\u00b0]", ">Azi true [\u00b0]", ">Azi grid [\u00b0]", tvd, north,
+                     east, ">Northing [m]", ">Easting [m]", dls, ">\u03c3 inc [\u00b0]",
+                     ">\u03c3 azi [\u00b0]", major, minor, "Kind", "Quality"});
     write(table);
   } else {
     HtmlTable table(
         page.html, "listing", "",
-        {md, "Inc [\u00b0]", "Azi true [\u00b0]", tvd, north, east, dls, "\u03c3 inc [\u00b0]",
-         "\u03c3 azi [\u00b0]", major, minor, "Kind", "Quality"});
+        {md, ">Inc [\u00b0]", ">Azi true [\u00b0]", tvd, north, east, dls, ">\u03c3 inc [\u00b0]",
+         ">\u03c3 azi [\u00b0]", major, minor, "Kind", "Quality"});
     write(table);
   }
 }

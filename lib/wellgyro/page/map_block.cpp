@@ -104,14 +104,14 @@ void AddMaps(PageText& page, const MapPath& path, const std::vector<MapPath>& ot
                 .x_name = page.Named("east"),
                 .y_name = page.Named("north (true)"),
                 .equal = true,
-                .height = 560};
+                .height = 470};
   Chart on_section{
       .title = "Vertical section",
       .x_name = page.Named(fmt::format("along azimuth {:.2f}\u00b0", ToDegrees(section.azimuth))),
       .y_name = page.Named("TVD"),
       .y_down = true,
       .equal = true,
-      .height = 560};
+      .height = 470};
   for (const auto& [chart, view] :
        {std::pair(&on_plan, &plan), std::pair(&on_section, &section.view)}) {
     DrawOnMap(*chart, path, *view, kConfidence, magnify, unit);

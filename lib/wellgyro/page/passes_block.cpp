@@ -54,22 +54,39 @@ std::vector<Compared> Of(const PageText& page, const Columns& rows, bool azimuth
   return list;
 }
 
-ChartSeries Limits(const std::vector<Compared>& list, double sign, bool model) {
-  ChartSeries series{.name = model ? "3 sigma of both passes" : "field practice",
-                     .mark = model ? Mark::kLine : Mark::kDash,
-                     .colour = model ? 2 : 1};
-  // An envelope that leaves the paper hides what it is about.
-  double most = 0;
-  for (const Compared& one : list) most = std::max({most, std::abs(one.difference), one.practice});
+/// One of the limits on both sides, as far as `reach`: what leaves the frame is said in the legend.
+void AddLimits(Chart& chart, const std::vector<Compared>& list, const std::string& name, bool model,
+               double reach) {
+  ChartSeries above{
+      .name = name, .mark = model ? Mark::kLine : Mark::kDash, .colour = model ? 2 : 1};
+  bool seen = false;
   for (const Compared& one : list) {
     const double limit = model ? one.model.value_or(NAN) : one.practice;
-    series.points.emplace_back(one.md, sign * (limit > 1.5 * most ? NAN : limit));
+    const bool inside = limit <= reach;
+    seen = seen || inside;
+    above.points.emplace_back(one.md, inside ? limit : NAN);
   }
-  return series;
+  if (!seen) above.name += ", beyond the frame";
+  ChartSeries below = above;
+  for (Eigen::Vector2d& point : below.points) point.y() = -point.y();
+  below.name.clear();
+  chart.series.push_back(std::move(above));
+  chart.series.push_back(std::move(below));
+}
+
+/// How far limits are shown: what the differences themselves ask for, and a tenth of the limit of
+/// field practice where they are less.
+double ReachOf(const std::vector<Compared>& list) {
+  double most = 0, practice = 1e9;
+  for (const Compared& one : list) {
+    most = std::max(most, std::abs(one.difference));
+    practice = std::min(practice, one.practice);
+  }
+  return std::max(2 * most, 0.1 * practice);
 }
 
 void AddDifferences(PageText& page, const std::string& id, const std::string& title,
-                    const std::vector<Compared>& list) {
+                    const std::string& practice, const std::vector<Compared>& list) {
   Chart chart{.title = title, .x_name = page.Named("MD"), .y_name = "[\u00b0]", .height = 230};
   ChartSeries line{.name = "difference"},
       flags{.name = "beyond, see the table", .mark = Mark::kFlag, .colour = 1};
@@ -78,10 +95,10 @@ void AddDifferences(PageText& page, const std::string& id, const std::string& ti
     line.md.push_back(one.md);
     if (one.flagged()) flags.points.push_back(line.points.back());
   }
-  chart.series = {std::move(line)};
-  for (const bool model : {true, false}) {
-    for (const double sign : {1.0, -1.0}) chart.series.push_back(Limits(list, sign, model));
-  }
+  const double reach = ReachOf(list);
+  AddLimits(chart, list, "3 sigma of both passes", true, reach);
+  AddLimits(chart, list, practice, false, reach);
+  chart.series.push_back(std::move(line));
   if (!flags.points.empty()) chart.series.push_back(std::move(flags));
   AddChart(page, id, chart, true);
 }
@@ -124,8 +141,8 @@ void WriteBeyond(PageText& page,
   HtmlTable table(page.html, "beyond",
                   fmt::format("Beyond the limits: {} depths{}", found,
                               found > kListed ? fmt::format(", the first {}", kListed) : ""),
-                  {"Of", page.Named("MD"), "Inclination [\u00b0]", "Difference [\u00b0]",
-                   "3 sigma [\u00b0]", "Field practice [\u00b0]"});
+                  {"Of", page.Named(">MD"), ">Inclination [\u00b0]", ">Difference [\u00b0]",
+                   ">3 sigma [\u00b0]", ">Field practice [\u00b0]"});
   std::size_t listed = 0;
   for (const auto& [what, list] : both) {
     for (const Compared& one : list) {
@@ -149,14 +166,19 @@ void WritePair(PageText& page, const Json& pair) {
                         std::pair("azimuth", Of(page, rows, true))};
   page.html +=
       fmt::format("<h3>Run {}, pass {} less pass {}</h3>\n", run, Escaped(other), Escaped(first));
-  for (const auto& [what, list] : both) {
+  constexpr std::array kPractice = {"field practice 0.23\u00b0",
+                                    "field practice 1\u00b0, 5\u00b0 below 10\u00b0"};
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    const auto& [what, list] = both[i];
     AddDifferences(page, fmt::format("run-{}-{}-{}", run, other, what),
-                   fmt::format("Run {}: {}, {} less {}", run, what, other, first), list);
+                   fmt::format("Run {}: {}, {} less {}", run, what, other, first), kPractice[i],
+                   list);
   }
   {
-    HtmlTable table(page.html, "summary", "",
-                    {"Of", "Depths compared", "Mean [\u00b0]", "Rms [\u00b0]", "Largest [\u00b0]",
-                     "at " + page.Named("MD"), "Beyond 3 sigma", "Beyond field practice"});
+    HtmlTable table(
+        page.html, "summary", "",
+        {"Of", ">Depths compared", ">Mean [\u00b0]", ">Rms [\u00b0]", ">Largest [\u00b0]",
+         ">at " + page.Named("MD"), ">Beyond 3 sigma", ">Beyond field practice"});
     for (const auto& [what, list] : both) WriteSummary(table, what, list);
   }
   if (both[0].second.size() < kFewest) {
@@ -191,12 +213,18 @@ void AddAngles(PageText& page, const char* id, const char* title, const char* co
   AddChart(page, id, chart, true);
 }
 
+/// Nothing of checks of the whole job.
+std::optional<double> RunOf(const Columns& checks, std::size_t row) {
+  const auto run = checks.Number(row, "RUN");
+  return run && *run > 0 ? run : std::nullopt;
+}
+
 void WriteDepth(PageText& page) {
   page.html += "<h3>Depth</h3>\n";
   const Columns checks(At(page.survey, {"checks"}));
   HtmlTable table(
       page.html, "depth", "",
-      {"Check", "Run", page.Named("MD"), "Value", "Limit", "Unit", "Limit from", "Verdict"});
+      {"Check", ">Run", page.Named(">MD"), ">Value", ">Limit", "Unit", "Limit from", "Verdict"});
   constexpr std::array kCodes = {"depth_closure", "depth_slippage", "magnetic_marks",
                                  "depth_scale",   "depth_jump",     "depth_lag",
                                  "depth_unknown", "depth_refused"};
@@ -207,13 +235,13 @@ void WriteDepth(PageText& page) {
       found = true;
       table.Row(checks.Text(i, "VERDICT"))
           .Text(code)
-          .Number(checks.Number(i, "RUN"), 0)
+          .Number(RunOf(checks, i), 0)
           .Number(page.Length(checks.Number(i, "MD[m]")), 2)
           .Short(checks.Number(i, "VALUE"))
           .Short(checks.Number(i, "LIMIT"))
           .Text(checks.Text(i, "UNIT"))
           .Text(checks.Text(i, "LIMIT_SOURCE"))
-          .Text(checks.Text(i, "VERDICT"));
+          .Text(checks.Text(i, "VERDICT") == "not_done" ? "not done" : checks.Text(i, "VERDICT"));
     }
     if (!found)
       table.Row("not_done")

@@ -122,11 +122,16 @@
         group.append('path').attr('d', pathOf(series, x, y));
         return;
       }
+      let dots = '';
       series.x.forEach(function (value, i) {
         if (value === null || series.y[i] === null) return;
-        group.append('circle').attr('cx', x(value).toFixed(1)).attr('cy', y(series.y[i]).toFixed(1))
-          .attr('r', series.mark === 'flag' ? 6 : 2.2);
+        const at = [x(value).toFixed(1), y(series.y[i]).toFixed(1)];
+        if (series.mark === 'flag') group.append('circle').attr('cx', at[0]).attr('cy', at[1]).attr('r', 6);
+        else dots += 'M' + at[0] + ' ' + at[1] + 'h0';
       });
+      // One path of round ends is a fraction of as many circles.
+      if (dots) group.append('path').attr('d', dots).attr('fill', 'none').attr('stroke', series.colour)
+        .attr('stroke-width', 4.4).attr('stroke-linecap', 'round');
     });
     chart.notes.forEach(function (note) {
       plot.append('text').attr('x', x(note.x) + 7).attr('y', y(note.y) - 4).text(note.text);

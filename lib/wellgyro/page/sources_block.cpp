@@ -11,10 +11,13 @@
 namespace wellgyro {
 namespace {
 
-void WriteList(PageText& page, const Json& list, const char* caption,
+void WriteList(PageText& page, const Json& list, const char* caption, const char* none,
                std::initializer_list<std::string_view> heads,
                std::initializer_list<std::string_view> keys) {
-  if (!list.is_array() || list.empty()) return SayNotMeasured(page, caption);
+  if (!list.is_array() || list.empty()) {
+    page.html += fmt::format("<p class=\"absent\">{}: {}.</p>\n", Escaped(caption), none);
+    return;
+  }
   HtmlTable table(page.html, "sources", caption, heads);
   for (const Json& entry : list) {
     table.Row();
@@ -65,14 +68,16 @@ void WriteSources(PageText& page) {
   page.html += "<p>Made by " + Isolated(TextAt(run, {"program"})) + ", adjusted by " +
                Isolated(TextAt(run, {"adjuster"})) + ".</p>\n";
   WriteSource(page);
-  WriteList(page, At(run, {"input"}), "Inputs", {"Role", "Name", "SHA-256"},
+  WriteList(page, At(run, {"input"}), "Inputs", "none on record", {"Role", "Name", "SHA-256"},
             {"role", "name", "sha256"});
-  WriteList(page, At(run, {"channel"}), "Channels", {"Channel", "Type", "Messages", "SHA-256"},
-            {"name", "type", "messages", "sha256"});
-  WriteList(page, At(run, {"output"}), "Files written", {"Name", "SHA-256"}, {"name", "sha256"});
-  WriteList(page, At(run, {"operation"}), "Operations", {"Time", "Key", "Kind", "Obeyed", "Effect"},
+  WriteList(page, At(run, {"channel"}), "Channels", "none: the survey is not from messages",
+            {"Channel", "Type", "Messages", "SHA-256"}, {"name", "type", "messages", "sha256"});
+  WriteList(page, At(run, {"output"}), "Files written", "none on record", {"Name", "SHA-256"},
+            {"name", "sha256"});
+  WriteList(page, At(run, {"operation"}), "Operations", "none on record",
+            {"Time", "Key", "Kind", "Obeyed", "Effect"},
             {"time", "key", "kind", "obeyed", "effect"});
-  WriteList(page, At(run, {"fault"}), "Faults", {"Code", "Source", "Text"},
+  WriteList(page, At(run, {"fault"}), "Faults", "none", {"Code", "Source", "Text"},
             {"code", "source", "text"});
   WriteLosses(page);
   EndBlock(page);

@@ -49,7 +49,7 @@ void AddEdges(const Box& box, std::vector<SpaceSeries>& series) {
     for (const int bit : {1, 2, 4}) {
       if ((from & bit) == 0) {
         series.push_back({.mark = ChartSeries::Mark::kDash,
-                          .colour = 4,
+                          .colour = kHelpColour,
                           .points = {corner(from), corner(from | bit)}});
       }
     }

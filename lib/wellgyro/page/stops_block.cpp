@@ -91,9 +91,9 @@ void WriteStops(PageText& page) {
   {
     HtmlTable table(
         page.html, "stops", "North fixes, \u00b1 one sigma",
-        {"Run", page.Named("MD"), "Begin [UTC]", "Time used [s]", "Inclination [\u00b0]",
-         "Azimuth true [\u00b0]", "North", "Gravity less reference [mm/s\u00b2]",
-         "Earth rate less reference [\u00b0/h]", "Azimuth closure [\u00b0]", "Bias x [\u00b0/h]",
+        {"Run", page.Named(">MD"), "Begin [UTC]", ">Time used [s]", "Inclination [\u00b0]",
+         "Azimuth true [\u00b0]", "North", ">Gravity less reference [mm/s\u00b2]",
+         ">Earth rate less reference [\u00b0/h]", "Azimuth closure [\u00b0]", "Bias x [\u00b0/h]",
          "Bias y [\u00b0/h]", "Roll [\u00b0/h]", "Quality"});
     for (const Json& run : runs) {
       const Json& fixes = At(run, {"north_fix"});

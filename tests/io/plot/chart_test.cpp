@@ -48,7 +48,7 @@ TEST(ChartSvg, EqualScalesAreEqual) {
   const Chart chart{.equal = true,
                     .width = 900,
                     .height = 300,
-                    .series = {{.mark = ChartSeries::Mark::kDots,
+                    .series = {{.mark = ChartSeries::Mark::kFlag,
                                 .points = {{0, 0}, {100, 0}, {0, 100}, {50, 40}}}}};
   const std::string svg = ChartSvg(chart);
   const std::regex circle("cx=\"([-0-9.]+)\" cy=\"([-0-9.]+)\"");

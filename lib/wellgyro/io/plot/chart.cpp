@@ -20,7 +20,8 @@ using Eigen::Vector2d;
 using Mark = ChartSeries::Mark;
 
 constexpr double kLeft = 64, kRight = 14, kTop = 44, kBottom = 42;  // pixels, around the plot
-constexpr std::array kColours = {"#00558c", "#b34700", "#006b4f", "#8a3f70", "#222222", "#7a5c00"};
+constexpr std::array kColours = {"#00558c", "#b34700", "#006b4f", "#8a3f70",
+                                 "#222222", "#7a5c00", "#8c8c8c"};
 
 bool Finite(const Vector2d& p) { return std::isfinite(p.x()) && std::isfinite(p.y()); }
 
@@ -145,8 +146,21 @@ std::string Circle(const Vector2d& at, double radius) {
 void DrawSeries(std::string& svg, const Paper& paper, const ChartSeries& series) {
   svg += fmt::format("<g {}>", AttributesOf(series));
   if (IsRound(series.mark)) {
+    std::string dots;
     for (const Vector2d& p : series.points) {
-      if (Finite(p)) svg += Circle(paper(p), series.mark == Mark::kFlag ? 6 : 2.2);
+      if (!Finite(p)) continue;
+      if (series.mark == Mark::kFlag) {
+        svg += Circle(paper(p), 6);
+      } else {
+        dots += 'M' + Point(paper(p)) + "h0";
+      }
+    }
+    // One path of round ends is a fraction of as many circles.
+    if (!dots.empty()) {
+      svg += fmt::format(
+          "<path fill=\"none\" stroke=\"{}\" stroke-width=\"4.4\" stroke-linecap=\"round\" "
+          "d=\"{}\"/>",
+          ChartColour(series.colour), dots);
     }
   } else {
     svg += fmt::format("<path d=\"{}\"/>", PathOf(paper, series));

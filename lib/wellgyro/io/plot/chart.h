@@ -43,8 +43,9 @@ struct Chart {
   std::vector<ChartNote> notes = {};
 };
 
-/// Colours that readers who do not see red and green can tell apart too (Okabe and Ito), the first
-/// ones dark enough for thin lines on white.
+/// Colours that readers who do not see red and green can tell apart too (after Okabe and Ito, dark
+/// enough for thin lines on white); the last is for lines that only help the eye.
+inline constexpr int kHelpColour = 6;
 WELLGYRO_EXPORT const char* ChartColour(int index);
 
 /// The range of the axes: all points with a margin, a tenth of a unit in the last digit at least.

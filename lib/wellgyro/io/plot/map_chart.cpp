@@ -23,11 +23,16 @@ void DrawTicks(Chart& chart, const MapPath& path, const MapView& view, const std
   const double every = RoundTick(std::max(path.md.back() - path.md.front(), 1.0) / 9);
   ChartSeries ticks{.name = "MD [" + unit + "]", .mark = Mark::kDots, .colour = kTickColour};
   double next = every * std::ceil(path.md.front() / every);
+  const ChartFrame frame = FrameOf(chart);
+  const double apart = 0.04 * (frame.high - frame.low).maxCoeff();  // of two texts, to be read
   for (std::size_t i = 0; i < path.md.size(); ++i) {
     if (path.md[i] < next) continue;
     ticks.points.push_back(view(path.points[i]));
     ticks.md.push_back(path.md[i]);
-    chart.notes.push_back({view(path.points[i]), fmt::format("{:.0f}", path.md[i])});
+    const Vector2d at = view(path.points[i]);
+    if (chart.notes.empty() || (at - chart.notes.back().at).norm() > apart) {
+      chart.notes.push_back({at, fmt::format("{:.0f}", path.md[i])});
+    }
     next = every * (std::floor(path.md[i] / every) + 1);
   }
   chart.series.push_back(std::move(ticks));
