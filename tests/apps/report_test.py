@@ -1,15 +1,23 @@
 """The report of a survey, in a browser and on paper: it asks nothing of a network, says what the
-files say, shows any name as text, and can be read."""
+files say, shows any name as text, and can be read.
+report_test.py PROGRAM [--redraw]     --redraw keeps the picture of the plan as the one to compare with"""
+import gzip
 import json
+import math
 import os
 import re
 import shutil
 import subprocess
+import sys
 import unittest
 
 import browser
 from harness import DEMO, Job, Move, ProgramTest, Run, Simulation, Stop
 
+REDRAW = "--redraw" in sys.argv
+if REDRAW:
+    sys.argv.remove("--redraw")
+KEPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "report_plan.pgm.gz")
 STREAMS = "imu_hz = 10.0\ndepth_hz = 2.0\n"
 TOOL = "accel_noise_mps2_per_sqrt_hz = 2e-4\n"
 JOB = Job(25.0).replace("accel_noise_mps2_per_sqrt_hz = 0", "accel_noise_mps2_per_sqrt_hz = 2e-4")
@@ -286,6 +294,39 @@ class Report(ProgramTest):
             self.assertGreater(len(fonts), 0)
             for font in fonts:
                 self.assertRegex(font, r"\byes (yes|no ) ?(yes|no)")
+
+    def Spiral(self):
+        """A result by formula, so that its picture changes only when the drawing does."""
+        columns = self.Read("demo", "survey.csv").split("\n", 1)[0].split(",")[:18]
+        lines = [",".join(columns)]
+        for k in range(61):
+            turn = 0.05 * k
+            cells = [50 * k, 45, math.degrees(turn) % 360, 0, 35 * k, 700 * math.sin(turn),
+                     700 * (1 - math.cos(turn)), 2, (0.1 * k) ** 2, 0, 0, (0.05 * k) ** 2, 0,
+                     (0.02 * k) ** 2, 0.05, 0.3]
+            kind = "continuous" if k else "tie_in"
+            lines.append(",".join(f"{c:.6f}" for c in cells) + f",{kind},good")
+        os.makedirs(self.Path("spiral"), exist_ok=True)
+        self.Write("spiral/survey.csv", "\n".join(lines) + "\n")
+        self.Write("spiral/run.toml", 'format = "wellgyro.run/1"\n[well]\nname = "Spiral"\n')
+
+    @unittest.skipUnless(shutil.which("pdftoppm"), "no poppler-utils on this machine")
+    def test_the_plan_on_paper_is_the_one_that_was_looked_at(self):
+        self.Spiral()
+        pdf = self.Path("spiral.pdf")
+        self.Make("report", self.Path("spiral"), "--out", self.Path("spiral.html"), "--pdf", pdf)
+        drawn = subprocess.run(["pdftoppm", "-gray", "-r", "60", "-f", "2", "-l", "2", pdf],
+                               capture_output=True, check=True).stdout
+        if REDRAW:
+            with open(KEPT, "wb") as file:
+                file.write(gzip.compress(drawn, mtime=0))
+        with gzip.open(KEPT) as file:
+            kept = file.read()
+        self.assertEqual(drawn[:15], kept[:15])
+        ink = sum(255 - v for v in kept[15:])
+        differs = sum(abs(a - b) for a, b in zip(drawn[15:], kept[15:], strict=True))
+        print(f"the plan on paper: {100 * differs / ink:.3f} % of its ink differs")
+        self.assertLess(differs, 0.01 * ink)
 
 
 if __name__ == "__main__":
