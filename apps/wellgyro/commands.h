@@ -22,6 +22,8 @@ void AddAllan(CLI::App& app, int& exit_code);
 void AddCalibrate(CLI::App& app, int& exit_code);
 void AddUncertainty(CLI::App& app, int& exit_code);
 void AddClearance(CLI::App& app, int& exit_code);
+void AddCompare(CLI::App& app, int& exit_code);
+void AddMerge(CLI::App& app, int& exit_code);
 void AddModels(CLI::App& app, int& exit_code);
 void AddNorth(CLI::App& app, int& exit_code);
 void AddConvert(CLI::App& app, int& exit_code);

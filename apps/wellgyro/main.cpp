@@ -26,6 +26,8 @@ int Run(int argc, char** argv) {
   AddCalibrate(app, exit_code);
   AddUncertainty(app, exit_code);
   AddClearance(app, exit_code);
+  AddCompare(app, exit_code);
+  AddMerge(app, exit_code);
   AddModels(app, exit_code);
   AddNorth(app, exit_code);
   AddConvert(app, exit_code);

@@ -252,7 +252,8 @@ class Program(ProgramTest):
         listed = Run("--help").stdout.split("Subcommands:")[1]
         commands = [line.split()[0] for line in listed.splitlines() if line.startswith("  ")
                     and line[2] != " "]
-        self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "clearance", "convert", "models",
+        self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "clearance", "compare", "convert",
+                                            "merge", "models",
                                             "north", "record", "simulate", "survey",
                                             "uncertainty"])
         for command in commands:

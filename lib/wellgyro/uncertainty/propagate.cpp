@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "wellgyro/base/angle.h"
@@ -13,6 +14,7 @@
 #include "wellgyro/uncertainty/error_sources_internal.h"
 #include "wellgyro/uncertainty/formula_weight.h"
 #include "wellgyro/uncertainty/leg_weights_internal.h"
+#include "wellgyro/uncertainty/station_errors.h"
 #include "wellgyro/uncertainty/survey_check_internal.h"
 
 namespace wellgyro {
@@ -92,7 +94,8 @@ std::string At(const SurveyPoint& point) {
 class Propagator {
  public:
   Propagator(std::span<const SurveyPoint> survey, const Surroundings& surroundings,
-             std::span<const ToolLeg> legs, const PropagateOptions& options);
+             std::span<const ToolLeg> legs, const PropagateOptions& options,
+             SurveyErrors* told = nullptr);
   PositionUncertainty Run();
 
  private:
@@ -104,6 +107,8 @@ class Propagator {
   void AddTie();
   bool Station(std::size_t k);
   bool AddTerm(std::size_t term, std::size_t k, const Sensitivity& s);
+  void TellFirst();
+  void Tell(std::size_t term, std::size_t k, StationError error);
   void Refuse(std::size_t k, const std::string& term, const std::string& why);
   void Note();
 
@@ -121,17 +126,20 @@ class Propagator {
   std::size_t leg_ = 0;
   Direction here_;
   PositionUncertainty result_;
+  SurveyErrors* told_;  ///< hears each station's errors; null: nobody asked
 };
 
 Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& surroundings,
-                       std::span<const ToolLeg> legs, const PropagateOptions& options)
+                       std::span<const ToolLeg> legs, const PropagateOptions& options,
+                       SurveyErrors* told)
     : survey_(survey),
       surroundings_(surroundings),
       tool_legs_(legs),
       sources_(options),
       place_(PlaceIn(surroundings, survey.front())),
       tie_on_(options.tie_on),
-      zero_at_(options.zero_at) {
+      zero_at_(options.zero_at),
+      told_(told) {
   const double to_magnetic = surroundings.convergence - surroundings.declination.value_or(0);
   magnetic_sin_ = std::sin(to_magnetic);
   magnetic_cos_ = std::cos(to_magnetic);
@@ -140,6 +148,9 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
     std::vector<std::size_t>& of_leg = leg_sources_.emplace_back();
     for (const ErrorTerm& term : leg.model->terms) {
       of_leg.push_back(sources_.SourceOf(term, leg, legs_.size() - 1));
+      if (told_ && of_leg.back() == told_->sources.size()) {
+        told_->sources.push_back({term.name, term.propagation, leg.model->name, leg.run});
+      }
     }
   }
   sources_.Open(survey.size(), result_);
@@ -238,7 +249,35 @@ void Propagator::First() {
     sources_.Add(leg_sources_[0][i], 0, e, Vector3d::Zero());
   }
   if (tie_on_ == TieOn::kIndependent) AddTie();
+  if (told_) TellFirst();
   sources_.Give(result_);
+}
+
+void Propagator::Tell(std::size_t term, std::size_t k, StationError error) {
+  if (!told_) return;
+  error.source = leg_sources_[leg_][term];
+  error.group = legs_[leg_].Group(term, k);
+  error.station = k;
+  told_->errors.push_back(error);
+}
+
+/// The root's depth, or where the survey begins below it all that the model says of a station.
+void Propagator::TellFirst() {
+  const bool root = survey_[0].md == 0;
+  told_->first_is_measured = !root;
+  told_->doubled_tie_on = root && legs_[0].model().doubled_tie_on;
+  // Where the sums stay away from: nothing of it reaches a position.
+  const Sensitivity none{Matrix3d::Zero(), Matrix3d::Zero()};
+  for (std::size_t i = 0; i < legs_[0].model().terms.size(); ++i) {
+    const ErrorTerm& term = legs_[0].model().terms[i];
+    if (!root) {
+      if (!AddTerm(i, 0, none)) return;
+    } else if (term.weight->role == WeightRole::kPlain) {
+      const double md =
+          term.formula ? term.formula->At(place_.named).md : term.weight->at(place_).md;
+      if (std::isfinite(md) && md != 0) Tell(i, 0, {.md = term.magnitude * md});
+    }
+  }
 }
 
 /// The first station as another run surveyed it: its direction holds over half of the first leg,
@@ -288,6 +327,11 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
              false;
     }
     const Vector3d v = model_term.magnitude * *unit;
+    if (course) {
+      Tell(term, k, {.displacement = v});
+    } else {
+      Tell(term, k, {.direction = v});
+    }
     sources_.Add(source, group, (course ? 1 : s.along_at) * v, (course ? 1 : s.along_through) * v);
     return true;
   }
@@ -295,6 +339,7 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
   const std::optional<Weights> w = leg.Weigh(term, place_, why);
   if (!w) return Refuse(k, model_term.name, why), false;
   const Vector3d e = model_term.magnitude * Vector3d(w->md, w->inclination, w->azimuth);
+  Tell(term, k, {.md = e.x(), .direction = e.y() * here_.t_inc + e.z() * here_.t_azi});
   sources_.Add(source, group, s.at * e, s.through * e);
   return true;
 }
@@ -390,6 +435,24 @@ PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,
                            " exactly vertical stations is not used: it is taken as 0");
   }
   return result;
+}
+
+SurveyErrors ErrorsAtStations(std::span<const SurveyPoint> survey, const Surroundings& surroundings,
+                              std::span<const ToolLeg> legs) {
+  CheckSurvey(survey);
+  CheckSurroundings(surroundings);
+  CheckLegs(legs, survey.size(), surroundings);
+  int changed = 0;
+  const std::vector<SurveyPoint> points = WithoutVerticalAzimuths(survey, legs, changed);
+  const PropagateOptions options;
+  SurveyErrors errors;
+  PositionUncertainty sums = Propagator(points, surroundings, legs, options, &errors).Run();
+  errors.stations = sums.cov_p.size();
+  if (sums.refusal && sums.refusal->station == 0) errors.stations = 0;
+  errors.refusal = std::move(sums.refusal);
+  const auto order = [](const StationError& e) { return std::tuple(e.source, e.group, e.station); };
+  std::ranges::sort(errors.errors, {}, order);
+  return errors;
 }
 
 PositionUncertainty PropagateErrors(std::span<const SurveyPoint> survey,

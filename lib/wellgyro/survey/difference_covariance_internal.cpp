@@ -1,0 +1,221 @@
+#include "wellgyro/survey/difference_covariance_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "wellgyro/survey/listing_errors_internal.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr std::size_t kJointMax = 300;
+
+/// Unit vectors across the hole.
+struct Across {
+  Vector3d high, right;
+  Vector2d Of(const Vector3d& v) const { return {high.dot(v), right.dot(v)}; }
+};
+
+/// In a vertical hole high side points north.
+Across AcrossOf(const Vector3d& tangent) {
+  const double level = std::hypot(tangent.x(), tangent.y());
+  const bool vertical = level < 1e-12;
+  const double c = vertical ? 1 : tangent.x() / level, s = vertical ? 0 : tangent.y() / level;
+  return {{tangent.z() * c, tangent.z() * s, -level}, {-s, c, 0}};
+}
+
+/// What makes two errors one: term, reach, group; and for what reaches no further than a tool's
+/// run its model.
+using SourceKey = std::tuple<std::string, Propagation, std::string, std::int64_t>;
+
+/// One source and group of one survey.
+struct Factor {
+  std::span<const StationError> errors;
+  bool taken = false;
+};
+
+std::map<SourceKey, Factor> FactorsOf(const SurveyErrors& errors, int survey, bool same_run) {
+  std::map<SourceKey, Factor> factors;
+  const std::span<const StationError> all(errors.errors);
+  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+    const auto same = [&](const StationError& e) {
+      return e.source == all[begin].source && e.group == all[begin].group;
+    };
+    while (end < all.size() && same(all[end])) ++end;
+    const NamedSource& source = errors.sources[all[begin].source];
+    const bool reaches =
+        source.propagation == Propagation::kWell || source.propagation == Propagation::kGlobal;
+    const bool systematic = source.propagation == Propagation::kSystematic;
+    // Errors of one survey alone have its number in the place of the model.
+    const std::string whose =
+        reaches                  ? std::string()
+        : systematic && same_run ? source.model + "/" + std::to_string(source.run)
+                                 : std::to_string(survey) + "/" + std::to_string(all[begin].source);
+    factors[{source.term, source.propagation, whose, all[begin].group}] = {
+        all.subspan(begin, end - begin)};
+  }
+  return factors;
+}
+
+class Accumulator {
+ public:
+  Accumulator(const ComparedSurvey& first, const ComparedSurvey& second,
+              std::span<const double> depths, const CompareOptions& options);
+  DifferenceCovariance Result() &&;
+
+ private:
+  void AddModelled();
+  void Add(const ListedErrors& listed, double sign);
+  void Close();
+  void Own(const ComparedSurvey& survey, std::span<const ListedPlace> places);
+
+  const ComparedSurvey* surveys_[2];
+  const CompareOptions& options_;
+  std::span<const double> depths_;
+  std::vector<ListedPlace> places_[2];
+  std::vector<Across> across_;
+  std::vector<Eigen::Index> joint_row_;  ///< of each depth, or -1
+  DifferenceCovariance result_;
+  std::vector<Vector2d> variance_;
+  // The factor in hand.
+  std::vector<Vector2d> direction_;
+  std::vector<Vector3d> position_;
+  std::size_t begin_ = 0, end_ = 0;
+};
+
+Accumulator::Accumulator(const ComparedSurvey& first, const ComparedSurvey& second,
+                         std::span<const double> depths, const CompareOptions& options)
+    : surveys_{&first, &second},
+      options_(options),
+      depths_(depths),
+      places_{PlacesIn(first.well, depths), PlacesIn(second.well, depths)} {
+  const std::size_t rows = depths.size();
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Vector3d &a = places_[0][row].tangent, &b = places_[1][row].tangent;
+    const Across across = AcrossOf((a + b).normalized());
+    across_.push_back(across);
+    result_.difference.push_back(across.Of(b - a));
+    result_.bend.push_back(across.Of(places_[0][row].bend + places_[1][row].bend) / 2);
+  }
+  const double local = options.local_sigma * options.local_sigma;
+  variance_.assign(rows, Vector2d::Constant(local));
+  direction_.assign(rows, Vector2d::Zero());
+  position_.assign(rows, Vector3d::Zero());
+  result_.cov_p.assign(rows, first.cov_tie_in + second.cov_tie_in);
+  joint_row_.assign(rows, -1);
+  if (!first.errors || !second.errors) return;
+  const std::size_t joint = std::min(rows, kJointMax);
+  for (std::size_t j = 0; j < joint; ++j) {
+    const std::size_t row = joint > 1 ? j * (rows - 1) / (joint - 1) : 0;
+    joint_row_[row] = static_cast<Eigen::Index>(j);
+    result_.joint.push_back(row);
+  }
+  const auto n = static_cast<Eigen::Index>(joint);
+  result_.cov_direction = local * Eigen::MatrixXd::Identity(2 * n, 2 * n);
+}
+
+void Accumulator::Add(const ListedErrors& listed, double sign) {
+  const std::size_t rows = depths_.size();
+  begin_ = std::min(begin_, listed.first);
+  end_ = std::max(end_, listed.last);
+  for (std::size_t row = listed.first; row < rows; ++row) {
+    direction_[row] += sign * across_[row].Of(listed.direction[row]);
+    position_[row] += sign * listed.position[row];
+  }
+}
+
+/// The factor is whole: its square goes into the covariances.
+void Accumulator::Close() {
+  const auto n = static_cast<Eigen::Index>(result_.joint.size());
+  for (std::size_t row = begin_; row < end_; ++row) {
+    variance_[row] += direction_[row].cwiseAbs2();
+    const Eigen::Index i = joint_row_[row];
+    if (i < 0) continue;
+    for (std::size_t with = begin_; with < end_; ++with) {
+      const Eigen::Index j = joint_row_[with];
+      if (j < 0) continue;
+      const Vector2d &a = direction_[row], &b = direction_[with];
+      result_.cov_direction(i, j) += a.x() * b.x();
+      result_.cov_direction(i, n + j) += a.x() * b.y();
+      result_.cov_direction(n + i, j) += a.y() * b.x();
+      result_.cov_direction(n + i, n + j) += a.y() * b.y();
+    }
+  }
+  for (std::size_t row = begin_; row < depths_.size(); ++row) {
+    result_.cov_p[row] += position_[row] * position_[row].transpose();
+    direction_[row].setZero();
+    position_[row].setZero();
+  }
+}
+
+void Accumulator::AddModelled() {
+  std::map<SourceKey, Factor> factors[2];
+  for (int i = 0; i < 2; ++i) {
+    if (surveys_[i]->errors) {
+      factors[i] = FactorsOf(*surveys_[i]->errors, i, options_.same_run);
+    }
+  }
+  std::optional<ListingErrors> listings[2];
+  for (int i = 0; i < 2; ++i) {
+    if (surveys_[i]->errors) listings[i].emplace(surveys_[i]->well, *surveys_[i]->errors, depths_);
+  }
+  ListedErrors listed;
+  const auto add = [&](int i, const Factor& factor) {
+    listings[i]->Carry(factor.errors, listed);
+    Add(listed, i == 0 ? -1 : 1);
+  };
+  for (int i = 0; i < 2; ++i) {
+    for (const auto& [key, factor] : factors[i]) {
+      if (factor.taken) continue;
+      begin_ = depths_.size(), end_ = 0;
+      add(i, factor);
+      const auto other = i == 0 ? factors[1].find(key) : factors[1].end();
+      if (other != factors[1].end()) add(1, other->second), other->second.taken = true;
+      Close();
+    }
+  }
+}
+
+/// Sigmas that a survey states itself, straight between its stations.
+void Accumulator::Own(const ComparedSurvey& survey, std::span<const ListedPlace> places) {
+  for (std::size_t row = 0; row < depths_.size(); ++row) {
+    const ListedPlace& p = places[row];
+    const StationSigmas &a = survey.own[p.below - 1], &b = survey.own[p.below];
+    const double f = p.fraction;
+    const double level = std::hypot(p.tangent.x(), p.tangent.y());
+    const double inclination = (1 - f) * a.inclination + f * b.inclination;
+    const double azimuth = (1 - f) * a.azimuth + f * b.azimuth;
+    variance_[row] += Vector2d(inclination, level * azimuth).cwiseAbs2();
+    result_.cov_p[row] += (1 - f) * a.cov_p + f * b.cov_p;
+  }
+}
+
+DifferenceCovariance Accumulator::Result() && {
+  AddModelled();
+  for (int i = 0; i < 2; ++i) {
+    if (!surveys_[i]->errors) Own(*surveys_[i], places_[i]);
+  }
+  for (const Vector2d& v : variance_) result_.sigma.push_back(v.cwiseSqrt());
+  return std::move(result_);
+}
+
+}  // namespace
+
+DifferenceCovariance CovarianceOfDifference(const ComparedSurvey& first,
+                                            const ComparedSurvey& second,
+                                            std::span<const double> depths,
+                                            const CompareOptions& options) {
+  return Accumulator(first, second, depths, options).Result();
+}
+
+}  // namespace wellgyro

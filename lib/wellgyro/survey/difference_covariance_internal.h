@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/survey/compare.h"
+
+namespace wellgyro {
+
+/// The differences of two surveys at given depths, second less first, in directions and with their
+/// covariance. Directions are in the plane across the mean of both: (high side, right) [rad].
+struct DifferenceCovariance {
+  std::vector<Eigen::Vector2d> difference;
+  std::vector<Eigen::Vector2d> bend;   ///< of the hole [rad/m]
+  std::vector<Eigen::Vector2d> sigma;  ///< of `difference`
+  std::vector<Eigen::Matrix3d> cov_p;  ///< of the places' difference [m^2]
+  std::vector<std::size_t> joint;      ///< rows of cov_direction; empty where it is not known
+  Eigen::MatrixXd cov_direction;       ///< high side of all joint rows, then right of all
+};
+
+DifferenceCovariance CovarianceOfDifference(const ComparedSurvey& first,
+                                            const ComparedSurvey& second,
+                                            std::span<const double> depths,
+                                            const CompareOptions& options);
+
+}  // namespace wellgyro

@@ -1,0 +1,302 @@
+#include "wellgyro/survey/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/io/toml/model_catalogue.h"
+#include "wellgyro/math/random.h"
+#include "wellgyro/math/rotation.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDeg = units::kDeg;
+constexpr double kEnd = 1800;  // [m]
+
+SurveyPoint HoleAt(double md) {
+  return {md, (30 + 20 * std::sin(md / 500)) * kDeg, (40 + 30 * std::sin(md / 600 + 1)) * kDeg, 0};
+}
+
+std::vector<SurveyPoint> StationsEvery(double spacing) {
+  std::vector<SurveyPoint> stations;
+  for (double md = 0; md <= kEnd; md += spacing) stations.push_back(HoleAt(md));
+  return stations;
+}
+
+Surroundings Somewhere() {
+  Surroundings place;
+  place.latitude = 60 * kDeg;
+  place.field = 5e-5;
+  place.dip = 70 * kDeg;
+  place.declination = 0;
+  return place;
+}
+
+/// A tool so good that shifts of 0.3 m and 0.2 deg are seen sometimes.
+ErrorModel GoodTool() {
+  ErrorModel model;
+  model.name = "good";
+  const auto add = [&](const char* name, const char* weight, double magnitude, Propagation reach) {
+    model.terms.push_back({name, FindWeight(weight), magnitude, reach});
+  };
+  add("AZ", "AZ", 0.05 * kDeg, Propagation::kSystematic);
+  add("AZG", "AZ", 0.3 * kDeg, Propagation::kGlobal);
+  add("XYM1", "XYM1", 0.03 * kDeg, Propagation::kSystematic);
+  add("XYM2", "XYM2", 0.03 * kDeg, Propagation::kSystematic);
+  add("DREF", "DREF", 0.1, Propagation::kSystematic);
+  add("DSF", "DSF", 1e-4, Propagation::kSystematic);
+  add("DRFR", "DREF", 0.02, Propagation::kRandom);
+  add("AZR", "AZ", 0.03 * kDeg, Propagation::kRandom);
+  model.max_inclination = kPi;
+  model.vertical_limit = 1e-6;
+  return model;
+}
+
+/// Draws of sources by name of term: those that reach beyond a run are drawn once for both.
+using Draws = std::map<std::pair<std::string, std::int64_t>, double>;
+
+/// A survey of the hole with errors drawn from the models of its legs.
+ComparedSurvey Surveyed(double spacing, const ErrorModel& model, double local_sigma, Random& random,
+                        Draws& shared) {
+  std::vector<SurveyPoint> stations = StationsEvery(spacing);
+  const ToolLeg leg{&model, 0, stations.size(), 1};
+  const SurveyErrors errors = ErrorsAtStations(stations, Somewhere(), {&leg, 1});
+  std::vector<Vector3d> direction;
+  for (const SurveyPoint& p : stations) direction.push_back(Tangent(p.inclination, p.azimuth));
+  std::map<std::pair<std::size_t, std::int64_t>, double> own;
+  for (const StationError& e : errors.errors) {
+    const NamedSource& source = errors.sources[e.source];
+    const bool is_shared = source.propagation == Propagation::kGlobal;
+    double u = 0;
+    if (is_shared) {
+      const auto [at, is_new] = shared.try_emplace({source.term, e.group}, 0);
+      if (is_new) at->second = random.Normal();
+      u = at->second;
+    } else {
+      const auto [at, is_new] = own.try_emplace({e.source, e.group}, 0);
+      if (is_new) at->second = random.Normal();
+      u = at->second;
+    }
+    direction[e.station] += u * e.direction;
+    stations[e.station].md += u * e.md;
+  }
+  for (std::size_t k = 1; k < stations.size(); ++k) {
+    const Vector3d local(random.Normal(), random.Normal(), random.Normal());
+    const Vector3d t = (direction[k] + local_sigma * local).normalized();
+    stations[k].inclination = std::acos(t.z());
+    stations[k].azimuth = WrapTwoPi(std::atan2(t.y(), t.x()));
+  }
+  stations[0].md = 0;
+  ComparedSurvey survey;
+  survey.well = SurveyWell(stations, Vector3d::Zero());
+  const ToolLeg again{&model, 0, stations.size(), 1};
+  survey.errors = ErrorsAtStations(survey.well.survey, Somewhere(), {&again, 1});
+  return survey;
+}
+
+struct Pair {
+  ComparedSurvey first, second;
+};
+
+/// The first at wider stations, so that these are compared, and carrying all that is local.
+Pair Drawn(const ErrorModel& a, const ErrorModel& b, double local_sigma, Random& random) {
+  Draws shared;
+  Pair pair{Surveyed(60, a, local_sigma, random, shared), Surveyed(20, b, 0, random, shared)};
+  return pair;
+}
+
+const Check& CheckOf(const Comparison& c, const std::string& code) {
+  return *std::ranges::find(c.checks, code, &Check::code);
+}
+
+/// Sums over many pairs.
+struct Tally {
+  double sum = 0, freedom = 0;
+  void Add(const Check& check) {
+    if (check.freedom > 0) {
+      sum += *check.value * check.freedom;
+      freedom += check.freedom;
+    } else {
+      sum += std::pow(*check.value / *check.sigma, 2);
+      freedom += 1;
+    }
+  }
+};
+
+class Closure : public testing::TestWithParam<const char*> {};
+
+// Nothing but the models' own errors, drawn: every statistic lies in its band of four sigmas, 500
+// pairs in all, and of the pairs no more fail and warn than were promised.
+TEST_P(Closure, UnderNoDifferenceEveryStatisticIsInItsBand) {
+  const bool good = std::string(GetParam()) == "good";
+  const ErrorModel a = good ? GoodTool() : *OwnModel(GetParam());
+  const ErrorModel b = good ? GoodTool() : *OwnModel("ISCWSA MWD Rev 4");
+  Random random(20261122);
+  std::map<std::string, Tally> tallies;
+  int failed = 0, warned = 0;
+  constexpr int kPairs = 250;
+  CompareOptions options;
+  for (int i = 0; i < kPairs; ++i) {
+    const Pair pair = Drawn(a, b, options.local_sigma, random);
+    const Comparison c = Compare(pair.first, pair.second, options);
+    for (const Check& check : c.checks) {
+      ASSERT_NE(check.verdict, Verdict::kNotDone) << check.code << " " << check.limit_source;
+      tallies[check.code].Add(check);
+    }
+    failed += c.verdict.verdict == Verdict::kFail;
+    warned += c.verdict.verdict != Verdict::kPass;
+  }
+  for (const auto& [code, tally] : tallies) {
+    const double z = (tally.sum - tally.freedom) / std::sqrt(2 * tally.freedom);
+    EXPECT_LT(std::abs(z), 4) << code << ": mean " << tally.sum / tally.freedom;
+    RecordProperty(code, std::to_string(tally.sum / tally.freedom));
+  }
+  EXPECT_EQ(tallies.size(), 6u);
+  EXPECT_LE(failed, kPairs / 100 + 4 * std::sqrt(kPairs * 0.01));
+  EXPECT_LE(warned, kPairs / 10 + 4 * std::sqrt(kPairs * 0.09));
+  EXPECT_GT(warned, 0);
+}
+INSTANTIATE_TEST_SUITE_P(Models, Closure, testing::Values("good", "GYRO-NS-CT"));
+
+/// How often a check of `shift` fails by chance and shift together.
+double PowerOf(const Check& check, double shift) {
+  return NormalCdf((shift - *check.limit) / *check.sigma) +
+         NormalCdf((-shift - *check.limit) / *check.sigma);
+}
+
+// Shifts are found as often as their sigmas say, within four sigmas of that number.
+TEST(Compare, FindsShiftsAtThePredictedPower) {
+  const ErrorModel tool = GoodTool();
+  Random random(5);
+  const CompareOptions options;
+  double expected_depth = 0, expected_azimuth = 0;
+  int found_depth = 0, found_azimuth = 0;
+  constexpr int kPairs = 150;
+  for (int i = 0; i < kPairs; ++i) {
+    Pair pair = Drawn(tool, tool, options.local_sigma, random);
+    for (std::size_t k = 1; k < pair.second.well.survey.size(); ++k) {
+      pair.second.well.survey[k].md += 0.3;
+      pair.second.well.survey[k].azimuth += 0.2 * kDeg;
+    }
+    pair.second.well = SurveyWell(pair.second.well.survey, Vector3d::Zero());
+    const Comparison c = Compare(pair.first, pair.second, options);
+    const Check& depth = CheckOf(c, "compare_depth_offset");
+    const Check& azimuth = CheckOf(c, "compare_azimuth_offset");
+    expected_depth += PowerOf(depth, 0.3);
+    expected_azimuth += PowerOf(azimuth, 0.2);
+    found_depth += std::abs(*depth.value) > *depth.limit;
+    found_azimuth += std::abs(*azimuth.value) > *azimuth.limit;
+  }
+  EXPECT_GT(expected_depth, 5);
+  EXPECT_GT(expected_azimuth, 30);
+  EXPECT_NEAR(found_depth, expected_depth, 4 * std::sqrt(expected_depth) + 1);
+  EXPECT_NEAR(found_azimuth, expected_azimuth, 4 * std::sqrt(kPairs * 0.25));
+  RecordProperty("depth", std::to_string(found_depth) + " of " + std::to_string(expected_depth));
+  RecordProperty("azimuth",
+                 std::to_string(found_azimuth) + " of " + std::to_string(expected_azimuth));
+}
+
+// What is global in both drops out of the difference: 0.3 deg there leaves the sigma of 0.05 deg
+// systematic and 0.03 deg random twice, beside what is local. XYM2 is one of azimuth times sin I.
+TEST(Compare, SharedErrorsAreTakenOutOnce) {
+  const ErrorModel tool = GoodTool();
+  Random random(1);
+  const Pair pair = Drawn(tool, tool, 1e-9, random);
+  CompareOptions options;
+  options.at = {900};
+  const ComparedPlace place = Compare(pair.first, pair.second, options).places.front();
+  const double sin_inc = std::sin(place.inclination[0]);
+  const double twice = 2 * (0.05 * 0.05 + 0.03 * 0.03 / (sin_inc * sin_inc) + 0.03 * 0.03);
+  const double local = 0.05 * 0.05 / (sin_inc * sin_inc);
+  const double expected = std::sqrt(twice + local) * kDeg;
+  // Depth errors times the turn of the hole, and errors between stations, make the rest.
+  EXPECT_NEAR(*place.sigma_azimuth, expected, 0.05 * expected);
+  options.same_run = true;
+  const ComparedPlace same = Compare(pair.first, pair.second, options).places.front();
+  const double random_only = std::sqrt(2 * 0.03 * 0.03 + local) * kDeg;
+  EXPECT_NEAR(*same.sigma_azimuth, random_only, 0.05 * random_only);
+}
+
+TEST(Compare, TheOtherWayRoundEverythingChangesItsSign) {
+  const ErrorModel tool = GoodTool();
+  Random random(2);
+  const Pair pair = Drawn(tool, tool, 1e-3, random);
+  const Comparison ab = Compare(pair.first, pair.second), ba = Compare(pair.second, pair.first);
+  ASSERT_EQ(ab.places.size(), ba.places.size());
+  for (std::size_t i = 0; i < ab.places.size(); ++i) {
+    EXPECT_LT((ab.places[i].position_difference + ba.places[i].position_difference).norm(), 1e-12);
+    EXPECT_LT((ab.places[i].cov_position - ba.places[i].cov_position).norm(), 1e-12);
+    EXPECT_NEAR(*ab.places[i].azimuth_difference, -*ba.places[i].azimuth_difference, 1e-15);
+  }
+  EXPECT_NEAR(ab.depth_offset->value, -ba.depth_offset->value, 1e-3 * ab.depth_offset->sigma);
+  EXPECT_NEAR(ab.azimuth_offset->sigma, ba.azimuth_offset->sigma, 1e-3 * ab.azimuth_offset->sigma);
+}
+
+// In a straight hole no direction shows a depth offset; it is not done, and not a giant number.
+TEST(Compare, AStraightHoleShowsNoDepthOffset) {
+  const ErrorModel tool = GoodTool();
+  std::vector<SurveyPoint> stations;
+  for (int k = 0; k < 20; ++k) stations.push_back({100.0 * k, 0.7, 1.0, 0});
+  const ToolLeg leg{&tool, 0, stations.size(), 1};
+  ComparedSurvey survey;
+  survey.well = SurveyWell(stations, Vector3d::Zero());
+  survey.errors = ErrorsAtStations(survey.well.survey, Somewhere(), {&leg, 1});
+  const Comparison c = Compare(survey, survey);
+  EXPECT_FALSE(c.depth_offset);
+  ASSERT_TRUE(c.azimuth_offset);
+  EXPECT_EQ(CheckOf(c, "compare_depth_offset").verdict, Verdict::kNotDone);
+  EXPECT_EQ(c.verdict.verdict, Verdict::kPass);
+}
+
+TEST(Compare, SigmasOfTheSurveysOwnAreHeldAgainstTheWorstDepth) {
+  ComparedSurvey a, b;
+  a.well = SurveyWell(StationsEvery(30), Vector3d::Zero());
+  std::vector<SurveyPoint> moved = StationsEvery(30);
+  moved[40].azimuth += 2.0 * kDeg;
+  b.well = SurveyWell(moved, Vector3d::Zero());
+  a.own.assign(a.well.survey.size(), {0.1 * kDeg, 0.2 * kDeg, Eigen::Matrix3d::Identity()});
+  b.own = a.own;
+  const Comparison c = Compare(a, b);
+  const Check& azimuth = CheckOf(c, "compare_azimuth");
+  EXPECT_EQ(azimuth.verdict, Verdict::kFail);
+  EXPECT_NEAR(*azimuth.md, 40 * 30, 1e-9);
+  const double level = std::sin(moved[40].inclination);
+  const double sigma = std::hypot(std::sqrt(2.0) * 0.2 * level, 0.05);
+  EXPECT_NEAR(*azimuth.value, 2.0 * level / sigma, 1e-3 * *azimuth.value);
+  EXPECT_EQ(CheckOf(c, "compare_depth_offset").verdict, Verdict::kNotDone);
+}
+
+TEST(Compare, RefusesWhatMakesNoSense) {
+  const ErrorModel tool = GoodTool();
+  Random random(3);
+  const Pair pair = Drawn(tool, tool, 1e-3, random);
+  CompareOptions options;
+  options.at = {kEnd + 100};
+  EXPECT_THROW(Compare(pair.first, pair.second, options), std::invalid_argument);
+  options.at = {std::nan("")};
+  EXPECT_THROW(Compare(pair.first, pair.second, options), std::invalid_argument);
+  options.at.clear();
+  options.every = 1e-3;
+  EXPECT_THROW(Compare(pair.first, pair.second, options), std::invalid_argument);
+  options.every = 0;
+  options.local_sigma = 0;
+  EXPECT_THROW(Compare(pair.first, pair.second, options), std::invalid_argument);
+  ComparedSurvey bare;
+  bare.well = pair.first.well;
+  EXPECT_THROW(Compare(bare, pair.second), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace wellgyro
