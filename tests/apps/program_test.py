@@ -289,10 +289,16 @@ class Program(ProgramTest):
             self.assertNotIn(".cc:", done.stderr, "a line of the solver's log")
             ran.add(arguments[0])
         self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate",
-                               "clearance"})
+                               "clearance", "compare", "merge"})
 
     def OtherWells(self, folder, policy):
         self.Write(folder + "/clearance.toml", policy)
+        plan = re.search(r'(?s)```toml\n(format = "wellgyro.merge.*?)```', self.Read(TOP, "README.md"))
+        self.Write(folder + "/plan.toml", plan.group(1))
+        rows = "".join(f"{md},{min(md / 20, 60)},{40 + md / 100}\n" for md in range(0, 2001, 30))
+        for name, end in (("gyro", 40), ("mwd", 70)):
+            self.Write(f"{folder}/{name}.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n"
+                       + "".join(rows.splitlines(keepends=True)[:end]))
         head = "MD[m],INC[deg],AZI_TRUE[deg],TVD[m],N[m],E[m]\n"
         for name, north in (("plan", 0), ("a", 40), ("b", 900)):
             rows = "".join(f"{md},0,0,{md},{north},0\n" for md in range(0, 2500, 100))

@@ -48,7 +48,8 @@ def read(path: PathLike, *, format: str | None = None, columns: dict[str, str] |
     head = [line for line in text.splitlines() if line.startswith("#")]
     frame = pd.read_csv(io.StringIO(text), skiprows=len(head), float_precision="round_trip")
     frame = frame.rename(columns=_NAMES)
-    frame.attrs["head"] = "\n".join(head)
+    # A certificate is of the file's own bytes, not of a table that may be changed.
+    frame.attrs["head"] = "\n".join(h for h in head if "wellgyro certificate" not in h)
     frame.attrs["notes"] = notes
     return frame
 

@@ -37,8 +37,8 @@ struct CompareOptions {
   /// Both are passes of one tool in one run, so that what is systematic in the one model is one
   /// error too. Global errors always are, and the well's, as it is one.
   bool same_run = false;
-  /// What no model speaks of at single depths: the hole between stations, rounding of listings; 1
-  /// sigma of each direction difference [rad].
+  /// What no model speaks of: the hole between stations, rounding of listings; 1 sigma of each
+  /// direction difference [rad]. In places it counts at every station of the coarser survey.
   double local_sigma = 0.05 * 0.017453292519943295;
 };
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/listing_errors_internal.h"
 
 namespace wellgyro {
@@ -75,6 +76,7 @@ class Accumulator {
 
  private:
   void AddModelled();
+  void AddLocal();
   void Add(const ListedErrors& listed, double sign);
   void Close();
   void Own(const ComparedSurvey& survey, std::span<const ListedPlace> places);
@@ -158,6 +160,37 @@ void Accumulator::Close() {
   }
 }
 
+/// What no model speaks of, summed to places: independent at every station of the coarser survey,
+/// straight between them.
+void Accumulator::AddLocal() {
+  const double deepest = depths_.back();
+  const auto count = [&](const ComparedSurvey* s) {
+    return std::ranges::count_if(s->well.survey,
+                                 [&](const SurveyPoint& p) { return p.md <= deepest; });
+  };
+  const int coarse = count(surveys_[1]) < count(surveys_[0]) ? 1 : 0;
+  const auto& stations = surveys_[coarse]->well.survey;
+  const double local = options_.local_sigma * options_.local_sigma;
+  const auto across = [&](std::size_t k, double length) -> Matrix3d {
+    const Vector3d t = Tangent(stations[k].inclination, stations[k].azimuth);
+    return local * length * length * (Matrix3d::Identity() - t * t.transpose());
+  };
+  const auto course = [&](std::size_t k) { return stations[k].md - stations[k - 1].md; };
+  Matrix3d sum = Matrix3d::Zero();  // of stations above the one that opens the leg
+  std::size_t opens = 0;
+  for (std::size_t row = 0; row < depths_.size(); ++row) {
+    const ListedPlace& p = places_[coarse][row];
+    for (; opens + 1 < p.below; ++opens) {
+      if (opens > 0) sum += across(opens, (course(opens) + course(opens + 1)) / 2);
+    }
+    const double f = p.fraction, length = course(p.below);
+    if (opens > 0) {
+      result_.cov_p[row] += sum + across(opens, course(opens) / 2 + length * f * (1 - f / 2));
+    }
+    result_.cov_p[row] += across(p.below, length * f * f / 2);
+  }
+}
+
 void Accumulator::AddModelled() {
   std::map<SourceKey, Factor> factors[2];
   for (int i = 0; i < 2; ++i) {
@@ -201,6 +234,7 @@ void Accumulator::Own(const ComparedSurvey& survey, std::span<const ListedPlace>
 }
 
 DifferenceCovariance Accumulator::Result() && {
+  AddLocal();
   AddModelled();
   for (int i = 0; i < 2; ++i) {
     if (!surveys_[i]->errors) Own(*surveys_[i], places_[i]);
