@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""wellgyro-archive: damaged and wrong inputs as rows, killed workers, resuming, two processes. First
-argument: the program."""
+"""wellgyro-archive: damaged and wrong inputs as rows, killed workers, resuming, two processes. The
+program is what WELLGYRO_PROGRAM names."""
 import contextlib
 import io
 import os
