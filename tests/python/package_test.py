@@ -441,7 +441,7 @@ class Comparisons(Package):
             a, b = self.Drawn(rng, 90.0), self.Drawn(rng, 60.0)
             end = min(a.md_m.iloc[-1], b.md_m.iloc[-1])
             at = sorted(rng.uniform(1.0, end, 3))
-            c = wg.compare(a, b, model_a=model, model_b=model, at=at)
+            c = wg.compare(a, b, model_a=model, model_b=model, at=at, local_sigma_deg=1e-7)
             first, second = Reference(*a.to_numpy().T), Reference(*b.to_numpy().T)
             for i, md in enumerate(at):
                 expected = second.Position(md) - first.Position(md)
@@ -494,6 +494,25 @@ class Comparisons(Package):
         with self.assertRaisesRegex(wg.FileError, "choose"):
             wg.merge([{"survey": upper, "model": "GYRO-NS-CT"}], {"choose": "any"},
                      latitude_deg=60.0)
+
+
+class Plots(Package):
+    def test_every_figure_draws_what_it_is_given(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        from wellgyro import plot
+        result = wg.survey(self.Path("job.toml"), self.Log(3))
+        east, north = plot.plan(result, every=1).lines[0].get_data()
+        np.testing.assert_array_equal(east, result.stations.east_m)
+        np.testing.assert_array_equal(north, result.stations.north_m)
+        along, tvd = plot.section(result).lines[0].get_data()
+        closure = np.hypot(result.stations.north_m.iloc[-1], result.stations.east_m.iloc[-1])
+        self.assertAlmostEqual(along[-1], closure, places=9)
+        self.assertEqual(tvd[-1], result.stations.tvd_m.iloc[-1])
+        self.assertEqual(plot.hole(result).name, "3d")
+        self.assertEqual(len(plot.in_out(result).lines), len(result.passes.groupby("pass")))
+        deviation = wg.allan(np.random.default_rng(1).normal(size=2000), 10.0, fit=False)
+        self.assertEqual(len(plot.allan(deviation).lines[0].get_xdata()), len(deviation.table))
 
 
 class Files(Package):

@@ -59,6 +59,8 @@ def flag(name, value):
 def word(name, value, words):
     if not isinstance(value, str):
         raise TypeError(f"{name}: a text is expected, not {type(value).__name__}")
+    if "\0" in value:
+        raise ValueError(f"{name}: a text is expected, not {value!r}")
     if words and value not in words:
         raise ValueError(f"{name}: one of {', '.join(words)} is expected, not {value!r}")
     return value

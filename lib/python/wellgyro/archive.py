@@ -309,9 +309,11 @@ def report(out: str) -> str:
         rows = []
         for code, group in made.groupby("code"):
             share = (group.value.abs() / group.limit).where(group.limit > 0)
-            worst = group.name[share.idxmax()] if share.notna().any() else ""
+            judged = share.notna().any()
             rows.append((code, group.unit.iloc[0], len(group), f"{group.value.median():.4g}",
-                         f"{share.median():.3f}", f"{share.max():.3f}", worst,
+                         f"{share.median():.3f}" if judged else "",
+                         f"{share.max():.3f}" if judged else "",
+                         group.name[share.idxmax()] if judged else "",
                          int((group.verdict == "warn").sum()),
                          int((group.verdict == "fail").sum())))
         rows.sort(key=lambda r: (-r[-1], -r[-2], r[0]))

@@ -9,6 +9,8 @@ import pandas as pd
 from . import _checks, _wellgyro
 from .survey import PathLike
 
+# Every digit counts; from pandas 3 on that is how it reads.
+_EXACT = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
 _ENDINGS = {".csv": "csv", ".las": "las", ".p717": "p717", ".p7": "p717", ".xml": "witsml",
             ".dev": "petrel", ".txt": "compass", ".json": "osdu", ".geojson": "geojson",
             ".kml": "kml", ".gpkg": "gpkg"}
@@ -46,7 +48,7 @@ def read(path: PathLike, *, format: str | None = None, columns: dict[str, str] |
         _checks.optional("declination_deg", declination_deg, -180, 180),
         "" if well is None else _checks.word("well", well, None))
     head = [line for line in text.splitlines() if line.startswith("#")]
-    frame = pd.read_csv(io.StringIO(text), skiprows=len(head), float_precision="round_trip")
+    frame = pd.read_csv(io.StringIO(text), skiprows=len(head), **_EXACT)
     frame = frame.rename(columns=_NAMES)
     # A certificate is of the file's own bytes, not of a table that may be changed.
     frame.attrs["head"] = "\n".join(h for h in head if "wellgyro certificate" not in h)
