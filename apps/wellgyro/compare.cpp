@@ -59,9 +59,10 @@ void AddCompare(CLI::App& app, int& exit_code) {
   command->add_option("--at", r.options.at, "measured depths in m to compare at, with commas")
       ->delimiter(',');
   command->add_option("--every", r.options.every, "compare at whole multiples of so many metres")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e6));
   AddNumber(*command, "--local-sigma-deg", r.options.local_sigma, units::kDeg,
-            "1 sigma of each direction difference that no model speaks of, default 0.05");
+            "1 sigma of each direction difference that no model speaks of, default 0.05")
+      ->check(CLI::Range(1e-6, 50.0));
   AddPlace(*command, r.surroundings, r.convergence);
   command->add_option("--out", options->out, "folder for compare.csv, checks.csv, compare.toml");
   command->footer(

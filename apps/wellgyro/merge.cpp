@@ -51,7 +51,7 @@ void AddMerge(CLI::App& app, int& exit_code) {
   command->add_option("--at", r.at, "measured depths in m for resampled.csv, with commas")
       ->delimiter(',');
   command->add_option("--every", r.every, "the same at whole multiples of so many metres")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e6));
   command
       ->add_option("--to", options->formats,
                    "formats of the definitive survey besides CSV, as of 'convert', with commas")

@@ -69,7 +69,9 @@ std::vector<double> DepthsOf(const ComparedSurvey& first, const ComparedSurvey& 
   if (options.every > 0) {
     const double begin = std::ceil(common.begin / options.every - 1e-9);
     const double count = std::floor(common.end / options.every + 1e-9) - begin;
-    if (!(count < kPlacesMax)) throw std::invalid_argument("more than 20000 depths to compare");
+    if (!(count < kPlacesMax))
+      throw std::invalid_argument(
+          "more than 20000 depths to compare: give fewer, or a wider spacing");
     for (int i = 0; i <= static_cast<int>(count); ++i)
       depths.push_back((begin + i) * options.every);
   }
@@ -84,7 +86,9 @@ std::vector<double> DepthsOf(const ComparedSurvey& first, const ComparedSurvey& 
   std::ranges::sort(depths);
   const auto same = [](double a, double b) { return b - a < kSameDepth; };
   depths.erase(std::unique(depths.begin(), depths.end(), same), depths.end());
-  if (depths.size() > kPlacesMax) throw std::invalid_argument("more than 20000 depths to compare");
+  if (depths.size() > kPlacesMax)
+    throw std::invalid_argument(
+        "more than 20000 depths to compare: give fewer, or a wider spacing");
   for (double& md : depths) {
     if (!(md >= common.begin - kSameDepth && md <= common.end + kSameDepth)) {
       throw std::invalid_argument(fmt::format(
