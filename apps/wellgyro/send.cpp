@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/bus/encode.h"
@@ -257,8 +257,11 @@ void AddSend(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SendOptions>();
   auto new_key = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("send", "Orders something of a running survey, signed");
-  auto* what =
-      command->add_option("what", options->what, "What is ordered")->check(CLI::IsMember(Words()));
+  auto* what = command
+                   ->add_option("what", options->what,
+                                fmt::format("What is ordered: {}", fmt::join(Words(), ", ")))
+                   ->check(CLI::IsMember(Words()))
+                   ->option_text("WHAT");
   AddOrderOptions(*command, *options);
   auto* make = command->add_option("--new-key", *new_key, "Makes a key instead, into this file")
                    ->type_name("PEM");

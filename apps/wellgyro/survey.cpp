@@ -189,8 +189,8 @@ void AddSurvey(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SurveyOptions>();
   CLI::App* command =
       app.add_subcommand("survey",
-                         "A sensor stream into survey files: survey.csv, passes.csv, checks.csv, "
-                         "diagnosis.csv, reliability.csv, run.toml and source.toml");
+                         "A sensor stream into a folder of survey files: survey.csv, passes.csv, "
+                         "checks.csv and others");
   command->add_option("--job", options->job, "Job file, wellgyro.job/1")
       ->required()
       ->type_name("FILE");

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <random>
 #include <string>
 #include <string_view>
@@ -101,7 +100,7 @@ class Harm {
       Keep("WELLGYRO_DEPTH", mark);
     }
     mark.utc = {};
-    for (const double md : {1e300, -1e6, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const double md : {1e300, -1e6}) {
       mark.md = md;
       Keep("WELLGYRO_DEPTH", mark);
     }

@@ -93,8 +93,10 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// Of one source, logarithms of the root mean square of changes against the other tools'.
-void CompareTools(const std::string& name, std::vector<ToolHistory>& histories) {
+// Of one source, logarithms of the root mean square of changes against the other tools'. Beyond
+// five robust sigmas of these, and beyond what the few changes of a tool do by chance.
+void CompareTools(const std::string& name, double false_alarm,
+                  std::vector<ToolHistory>& histories) {
   std::vector<double> logs;
   std::vector<SourceHistory*> of;
   for (ToolHistory& history : histories) {
@@ -117,10 +119,12 @@ void CompareTools(const std::string& name, std::vector<ToolHistory>& histories) 
   away.reserve(logs.size());
   for (const double value : logs) away.push_back(std::abs(value - middle));
   constexpr double kSigmaPerMad = 1.4826, kUnlike = 5;
-  // One change alone scatters by 1.1 in its logarithm, several by less.
-  const double spread = std::max(kSigmaPerMad * Median(away), 0.1);
+  const double spread = kSigmaPerMad * Median(away);
   for (std::size_t i = 0; i < of.size(); ++i) {
-    of[i]->out_of_family = logs[i] - middle > kUnlike * spread;
+    const auto changes = static_cast<double>(of[i]->changes.size());
+    const double chance =
+        std::log(ChiSquareQuantile(1 - false_alarm, changes) / ChiSquareQuantile(0.5, changes)) / 2;
+    of[i]->out_of_family = logs[i] - middle > std::max(kUnlike * spread, chance);
   }
 }
 
@@ -136,9 +140,9 @@ std::vector<ToolHistory> HistoriesOf(std::span<const ToolCalibration> calibratio
   std::vector<ToolHistory> histories;
   for (auto& [serial, list] : tools) histories.push_back(HistoryOf(list, setup));
   if (histories.empty()) return histories;
-  for (const std::string& name : SourcesOf(calibrations.front(), setup.temperature).names) {
-    CompareTools(name, histories);
-  }
+  const auto names = SourcesOf(calibrations.front(), setup.temperature).names;
+  const double false_alarm = setup.false_alarm / static_cast<double>(names.size());
+  for (const std::string& name : names) CompareTools(name, false_alarm, histories);
   return histories;
 }
 

@@ -147,8 +147,8 @@ struct Surveyor::Rooms {
   template <class Record>
   bool Admits(const Record& record) {
     if (!Open()) return false;
-    std::string why = WhyImplausible(record);
-    if (!why.empty()) sink.OnFault(Fault{FaultCode::kRange, std::move(why)});
+    const std::string why = WhyImplausible(record);
+    if (!why.empty()) sink.OnFault(Fault{FaultCode::kRange, why});
     return why.empty();
   }
 
