@@ -254,7 +254,7 @@ class Program(ProgramTest):
                     and line[2] != " "]
         self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "clearance", "compare", "convert",
                                             "merge", "models",
-                                            "north", "record", "simulate", "survey",
+                                            "north", "record", "report", "simulate", "survey",
                                             "uncertainty"])
         for command in commands:
             done = Run(command, "--help")
@@ -289,7 +289,7 @@ class Program(ProgramTest):
             self.assertNotIn(".cc:", done.stderr, "a line of the solver's log")
             ran.add(arguments[0])
         self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate",
-                               "clearance", "compare", "merge"})
+                               "clearance", "compare", "merge", "report"})
 
     def OtherWells(self, folder, policy):
         self.Write(folder + "/clearance.toml", policy)
