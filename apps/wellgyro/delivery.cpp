@@ -81,7 +81,7 @@ RunRecord RecordOf(const JobFile& job, const std::vector<SurveyFormat>& formats,
                    const Intake& intake, const FaultBook& surveyor_faults) {
   RunRecord record;
   record.program = "wellgyro " WELLGYRO_VERSION;
-  record.adjuster = kAdjuster;
+  record.adjuster = AdjusterOf(job.job);
   record.inputs = job.files;
   record.channels = intake.Channels();
   record.tools = intake.tools();

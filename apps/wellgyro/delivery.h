@@ -14,11 +14,13 @@
 
 namespace wellgyro::apps {
 
-inline constexpr const char* kAdjuster = "least squares";  ///< in run.toml
-
 /// The job's estimator is the one that fit/ adjusts for.
 inline bool InAngles(const Job& job) {
   return job.attitude.estimator == AttitudeSpec::Estimator::kAngles;
+}
+/// What adjusts its runs, as run.toml says it.
+inline const char* AdjusterOf(const Job& job) {
+  return InAngles(job) ? "least squares in angles" : "least squares of rotations";
 }
 
 /// Says so and gives false when `folder` holds a survey that someone accepted.

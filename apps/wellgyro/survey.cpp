@@ -85,7 +85,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   surveyor.Finish();
   RunRecord record;
   record.program = "wellgyro " WELLGYRO_VERSION;
-  record.adjuster = kAdjuster;
+  record.adjuster = AdjusterOf(job.job);
   record.inputs = job.files;
   record.inputs.insert(record.inputs.end(), report->files.begin(), report->files.end());
   record.faults = faults.faults();

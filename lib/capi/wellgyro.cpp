@@ -132,7 +132,8 @@ struct wellgyro_session {
       grid.emplace(*job.grid, wellgyro::GeodeticPoint{.latitude = job.well.latitude,
                                                       .longitude = job.well.longitude});
     }
-    surveyor.emplace(job, mailbox, &adjuster);
+    const bool in_angles = job.attitude.estimator == wellgyro::AttitudeSpec::Estimator::kAngles;
+    surveyor.emplace(job, mailbox, in_angles ? &adjuster : nullptr);
   }
 
   wellgyro::Job job;

@@ -10,9 +10,9 @@
 namespace wellgyro {
 namespace {
 
-/// E[min(s, 3 sqrt s)] / n for s the sum of squares of n standard normals: Simpson's rule over
-/// their root, whose density is 2 r^(n-1) e^(-r^2/2) / (2^(n/2) Gamma(n/2)).
-long double HuberByQuadrature(int n) {
+/// E[min(s, 3 sqrt s)] for s the sum of squares of n normals of this sigma: Simpson's rule over
+/// their root, whose density is 2 r^(n-1) e^(-r^2/2) / (2^(n/2) Gamma(n/2)) in sigmas.
+long double HuberByQuadrature(int n, long double sigma) {
   constexpr int kSteps = 20000;
   constexpr long double kEnd = 12;
   const long double h = kEnd / kSteps;
@@ -20,27 +20,34 @@ long double HuberByQuadrature(int n) {
   long double sum = 0;
   for (int i = 0; i <= kSteps; ++i) {
     const long double r = h * i;
-    const long double value =
-        std::min(r * r, 3 * r) * norm * std::pow(r, n - 1.0L) * std::exp(-r * r / 2);
+    const long double value = std::min(sigma * sigma * r * r, 3 * sigma * r) * norm *
+                              std::pow(r, n - 1.0L) * std::exp(-r * r / 2);
     sum += value * (i == 0 || i == kSteps ? 1 : i % 2 == 1 ? 4 : 2);
   }
-  return sum * h / 3 / n;
+  return sum * h / 3;
 }
 
-TEST(NormalBlock, ExpectsOfSquaresWhatHubersLossLeavesOfThem) {
+// Unknowns that take up a part of the residuals leave them smaller, and fewer reach the loss.
+TEST(NormalBlock, ExpectsOfSquaresWhatUnknownsAndHubersLossLeaveOfThem) {
   Layout layout;
   for (int n = 1; n <= 3; ++n) {
-    NormalBlock block;
-    block.Clear(layout);
-    Factor f;
-    f.Begin(RowKind::kForce, n);
-    f.r.setConstant(0.5);
-    f.Column(0).setConstant(1);
-    block.Add(f);
-    const RowSum& sum = block.sums()[static_cast<std::size_t>(RowKind::kForce)];
-    EXPECT_NEAR(sum.expected / n, static_cast<double>(HuberByQuadrature(n)), 1e-9) << n;
-    EXPECT_LT(sum.expected, n);
-    EXPECT_NEAR(sum.weighted, 0.25 * n, 1e-15);
+    for (const double absorbed : {0.0, 0.3, 0.9}) {
+      NormalBlock block;
+      block.Clear(layout);
+      NormalBlock::Matrix cov = NormalBlock::Matrix::Zero(2 * layout.node, 2 * layout.node);
+      cov(0, 0) = absorbed;  // of every row, through its one column
+      block.Measure(&cov);
+      Factor f;
+      f.Begin(RowKind::kForce, n);
+      f.r.setConstant(0.5);
+      f.Column(0).setConstant(1);
+      block.Add(f);
+      const RowSum& sum = block.sums()[static_cast<std::size_t>(RowKind::kForce)];
+      const auto sigma = std::sqrt(1 - static_cast<long double>(absorbed));
+      EXPECT_NEAR(sum.freedom, static_cast<double>(HuberByQuadrature(n, sigma)), 1e-9) << n;
+      EXPECT_LE(sum.freedom, n * (1 - absorbed));
+      EXPECT_NEAR(sum.weighted, 0.25 * n, 1e-15);
+    }
   }
 }
 

@@ -15,9 +15,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Residuals of exact numbers are rounding: 1e-16 of an angle of a radian, over a knot.
-constexpr double kLeastTurn = 1e-9;   // [rad]
-constexpr double kLeastForce = 1e-7;  // [m/s^2]
+// What is left of the residuals of perfect sensors: an increment's own accuracy (see
+// IncrementBuilder), and an acceleration of the path whose curvature changes within the window
+// that it is read from, 1 deg/30 m at 0.3 m/s.
+constexpr double kLeastTurn = 1e-7;   // [rad]
+constexpr double kLeastForce = 5e-5;  // [m/s^2]
 // The turn about the axis is the unknown roll rate's; this ties it to the attitude. A tenth of the
 // finest toolface that accelerometers tell in a knot, 1e-5 g.
 constexpr double kAxialTie = 1e-6;  // [rad]
@@ -209,7 +211,10 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   if (layout_.gravity_gradient != kAbsent) {
     gravity += t.place.depth * t.border[layout_.gravity_gradient];
   }
-  const double whiten = 1 / std::max(setup_.errors.accel_noise / std::sqrt(t.dt), kLeastForce);
+  // M stands where half of the seen turn leads; half of the unseen is missing.
+  const double noise = std::hypot(setup_.errors.accel_noise / std::sqrt(t.dt),
+                                  0.5 * t.knot.unseen * t.place.site.gravity);
+  const double whiten = 1 / std::max(noise, kLeastForce);
   const Matrix3d px = Skew(p);
 
   Factor& f = factor_;

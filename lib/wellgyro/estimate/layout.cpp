@@ -22,7 +22,9 @@ ErrorVector SourceSigmas(const EstimateSetup& setup) {
   sigma[kMisalignmentX] = sigma[kMisalignmentY] = e.gyro_misalignment_sigma;
   sigma[kToolfaceOffset] = e.roll_offset_sigma;
   sigma[kTimeSkew] = e.time_skew_sigma;
-  sigma[kAccelBiasX] = sigma[kAccelBiasY] = sigma[kAccelBiasZ] = e.accel_bias_sigma;
+  sigma.segment<3>(kAccelBiasX).setConstant(e.accel_bias_sigma);
+  sigma.segment<3>(kAccelScaleX).setConstant(e.accel_scale_sigma);
+  sigma.segment<2>(kAccelMisalignmentX).setConstant(e.accel_misalignment_sigma);
   return sigma;
 }
 

@@ -17,13 +17,12 @@ constexpr double kDegrees = 5;
 struct Loss {
   double weight = 1;
   double cost = 0;
-  double expected = 1;  ///< of the weighted square, for n standard normal residuals, over n
 };
 
 /// E[min(x'x, k |x|)] / n of n standard normal x, by the upper tails Q of chi with n + 1 and n + 2
 /// degrees: E[x'x; |x| < k] = n (1 - Q_n+2), E[|x|; |x| > k] = (E |x|) Q_n+1.
-double HuberExpected(int n) {
-  const double k = kHuber, normal = std::exp(-0.5 * k * k), tail = std::erfc(k / std::sqrt(2.0));
+double HuberExpected(int n, double k) {
+  const double normal = std::exp(-0.5 * k * k), tail = std::erfc(k / std::sqrt(2.0));
   const double q2 = normal, q3 = tail + std::sqrt(2 / kPi) * k * normal,
                q4 = (1 + 0.5 * k * k) * normal,
                q5 = q3 + std::sqrt(2 / kPi) * k * k * k / 3 * normal;
@@ -36,30 +35,24 @@ double HuberExpected(int n) {
       return 1 - q5 + k * std::sqrt(8 / kPi) * q4 / 3;
   }
 }
-const std::array<double, 4> kHuberExpected{1, HuberExpected(1), HuberExpected(2), HuberExpected(3)};
+
+bool HasHuber(RowKind kind) {
+  return kind == RowKind::kTurn || kind == RowKind::kStill || kind == RowKind::kForce ||
+         kind == RowKind::kDepth;
+}
 
 /// Huber's weights never exceed 1: most of a gyro factor has no redundancy, and a weight above it
 /// would be believed.
 Loss LossOf(const Factor& f) {
   const double square = f.r.head(f.rows).squaredNorm();
-  switch (f.kind) {
-    case RowKind::kRoll: {
-      const double n = f.rows;
-      return {f.held > 0 ? f.held : RollWeight(square, f.rows),
-              (kDegrees + n) * std::log1p(square / kDegrees)};
-    }
-    case RowKind::kTurn:
-    case RowKind::kStill:
-    case RowKind::kForce:
-    case RowKind::kDepth: {
-      const double norm = std::sqrt(square);
-      const double expected = kHuberExpected[static_cast<std::size_t>(f.rows)];
-      if (norm <= kHuber) return {1, square, expected};
-      return {kHuber / norm, kHuber * (2 * norm - kHuber), expected};
-    }
-    default:
-      return {1, square};
+  if (f.kind == RowKind::kRoll) {
+    const double n = f.rows;
+    return {f.held > 0 ? f.held : RollWeight(square, f.rows),
+            (kDegrees + n) * std::log1p(square / kDegrees)};
   }
+  const double norm = std::sqrt(square);
+  if (!HasHuber(f.kind) || norm <= kHuber) return {1, square};
+  return {kHuber / norm, kHuber * (2 * norm - kHuber)};
 }
 
 /// tr(J cov J').
@@ -74,6 +67,14 @@ double Absorbed(const Factor& f, const NormalBlock::Matrix& cov) {
     }
   }
   return trace;
+}
+
+/// What the weighted square is to be, of residuals that keep the share 1 - absorbed/n of their
+/// variance: Huber's loss then begins at more of their sigmas.
+double FreedomOf(const Factor& f, double absorbed) {
+  const double left = std::max(0.0, f.rows - absorbed);
+  if (!HasHuber(f.kind) || left == 0) return left;
+  return left * HuberExpected(f.rows, kHuber / std::sqrt(left / f.rows));
 }
 
 }  // namespace
@@ -96,9 +97,8 @@ void NormalBlock::Add(const Factor& f) {
   sum.weighted += loss.weight * square;
   sum.cost += loss.cost;
   sum.rows += f.rows;
-  sum.expected += f.rows * loss.expected;
   if (covariance_ != nullptr) {
-    sum.absorbed += loss.weight * Absorbed(f, *covariance_);
+    sum.freedom += FreedomOf(f, Absorbed(f, *covariance_));
     return;
   }
   for (std::size_t j = 0; j < n; ++j) {

@@ -58,10 +58,9 @@ struct RowSum {
   double weighted = 0;  ///< with their robust weights
   double cost = 0;      ///< -2 ln of their density, but for constants
   double rows = 0;
-  double expected = 0;  ///< of `weighted`, were the residuals standard normal
-  /// What the unknowns take up of them, where the covariance was given: `expected` less this is
-  /// what `weighted` is to be.
-  double absorbed = 0;
+  /// What `weighted` is to be, of normal residuals less what the unknowns take up of them; where
+  /// the covariance was given.
+  double freedom = 0;
 };
 
 /// The normal equations of what a knot says of [node | next node | border]: J'J and J'r.

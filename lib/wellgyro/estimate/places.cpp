@@ -13,7 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLowPass = 15;  // [s], of the hole's turning
+// A whirl of the tool is no bend of the hole: what it adds to the ends of a window falls with the
+// window's length, while a bend that begins in its middle is seen so much too late.
+constexpr double kLowPass = 3;      // [s]
+constexpr double kLeastWay = 0.01;  // [m] of a window, from which it tells of the hole
 // [m] of depth marks, and not of the path: where it is renewed must not move with the solution.
 constexpr double kSiteEvery = 2;
 constexpr double kPathReach = 1e5;    // [m]; damaged depths may lead anywhere, the site stays
@@ -27,25 +30,30 @@ Site SiteBy(const Site& first, const Vector3d& p) {
                 first.height - down);
 }
 
-/// d(tangent)/dt over each knot, zero at rest.
-std::vector<Vector3d> Turning(std::span<const RunKnot> knots, std::span<const Node> nodes) {
-  std::vector<Vector3d> sums(knots.size() + 1, Vector3d::Zero());  // of the tangent's change
-  std::vector<double> times(knots.size() + 1, 0);
+/// d(tangent)/d(md) of the hole about each knot, by its way and not by its time: a tool that starts
+/// or stops within the window has gone less of it. Zero where nothing moves.
+std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+  std::vector<Vector3d> turns(knots.size() + 1, Vector3d::Zero());  // sums of the tangent's change
+  std::vector<double> ways(knots.size() + 1, 0), times(knots.size() + 1, 0);
   for (std::size_t k = 0; k < knots.size(); ++k) {
-    const Vector3d change = nodes[k + 1].tangent_L() - nodes[k].tangent_L();
-    sums[k + 1] = sums[k];
-    if (!knots[k].still) sums[k + 1] += change;
-    times[k + 1] = times[k] + knots[k].increment.seconds;
+    const double dt = knots[k].increment.seconds;
+    turns[k + 1] = turns[k];
+    ways[k + 1] = ways[k];
+    times[k + 1] = times[k] + dt;
+    if (knots[k].still) continue;
+    turns[k + 1] += nodes[k + 1].tangent_L() - nodes[k].tangent_L();
+    ways[k + 1] += 0.5 * dt * (nodes[k].speed + nodes[k + 1].speed);
   }
-  std::vector<Vector3d> turning(knots.size(), Vector3d::Zero());
+  std::vector<Vector3d> curvature(knots.size(), Vector3d::Zero());
   std::size_t begin = 0, end = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const double middle = 0.5 * (times[k] + times[k + 1]);
     while (times[begin + 1] <= middle - kLowPass / 2) ++begin;
     while (end < knots.size() && times[end] < middle + kLowPass / 2) ++end;
-    if (!knots[k].still) turning[k] = (sums[end] - sums[begin]) / (times[end] - times[begin]);
+    const double way = ways[end] - ways[begin];
+    if (std::abs(way) > kLeastWay) curvature[k] = (turns[end] - turns[begin]) / way;
   }
-  return turning;
+  return curvature;
 }
 
 }  // namespace
@@ -53,7 +61,7 @@ std::vector<Vector3d> Turning(std::span<const RunKnot> knots, std::span<const No
 void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<const Node> nodes,
                 std::vector<KnotPlace>& places) {
   places.resize(knots.size());
-  const std::vector<Vector3d> turning = Turning(knots, nodes);
+  const std::vector<Vector3d> curvature = Curvature(knots, nodes);
   Site site = first;
   Vector3d p = Vector3d::Zero();
   double md = nodes[0].md;
@@ -77,7 +85,7 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
                              -v.y() * s / (c * site.radius_east));
     place.w_IL_L = earth + transport;
     place.dw_by_latitude = kEarthRate * Vector3d(-s, 0, -c);
-    place.acceleration_L = speed * turning[k] + (2 * earth + transport).cross(v);
+    place.acceleration_L = speed * speed * curvature[k] + (2 * earth + transport).cross(v);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
     place.depth = p.z();

@@ -10,8 +10,9 @@
 namespace wellgyro {
 
 /// Where every knot of a run stands by the nodes as they are now: site, rotation of L, and the
-/// acceleration of the path across itself. That follows the hole's own curvature, the tangents
-/// low-passed over 15 s, and never the tool's shaking: a whirl would rectify with it.
+/// acceleration of the path across itself: speed squared by the hole's curvature, which is the
+/// tangents' change over 3 s by the way gone in them, and never the tool's shaking: a whirl would
+/// rectify with it. A curvature that begins is seen up to 1.5 s too early and too late.
 void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<const Node> nodes,
                 std::vector<KnotPlace>& places);
 

@@ -1,7 +1,9 @@
 #include "wellgyro/estimate/run_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -18,6 +20,11 @@ using Eigen::Vector3d;
 constexpr int kIterations = 15;
 // 2 ln of odds of 90: by less one azimuth does not beat another.
 constexpr double kDecides = 9;
+// A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
+constexpr double kTooLarge = 4;
+// Each takes the noise to what the residuals about the last solution say; the third moves it by
+// less than a per cent.
+constexpr int kNoiseRounds = 3;
 
 /// Inclination and toolface by the first knot that gravity levels, azimuth zero.
 Matrix3d LevelAttitude(std::span<const RunKnot> knots) {
@@ -145,6 +152,33 @@ class Sweep {
   Eigen::MatrixXd link_;  ///< E[(node; border) x'] of the marked node behind
 };
 
+/// By what factor the noise is larger than stated, of residuals of these kinds; 1: by none.
+double Excess(const std::array<RowSum, kRowKinds>& sums, std::initializer_list<RowKind> kinds) {
+  double weighted = 0, freedom = 0;
+  for (const RowKind kind : kinds) {
+    const RowSum& sum = sums[static_cast<std::size_t>(kind)];
+    weighted += sum.weighted;
+    freedom += sum.freedom;
+  }
+  if (!(freedom > 1) || weighted < freedom + kTooLarge * std::sqrt(2 * freedom)) return 1;
+  return std::sqrt(weighted / freedom);
+}
+
+/// Solves again with the noise that the residuals show, until they agree with it.
+void FitNoise(RunSolver& solver, std::span<const std::size_t> marked, RunEstimate& result) {
+  const std::array<RowSum, kRowKinds> stated = result.report.sums;
+  for (int i = 0; i < kNoiseRounds && result.solved; ++i) {
+    const double gyro = Excess(result.report.sums, {RowKind::kTurn, RowKind::kStill});
+    const double accel = Excess(result.report.sums, {RowKind::kForce});
+    if (gyro == 1 && accel == 1) break;
+    result.gyro_noise *= gyro;
+    result.accel_noise *= accel;
+    result.solved = solver.SolveWithNoise(gyro, accel);
+    if (result.solved) Sweep(solver, marked, result).Run();
+  }
+  result.report.sums = stated;
+}
+
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
@@ -178,6 +212,7 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
     result.ambiguous |= i != best_start && evidence[i] - result.report.evidence < kDecides;
   }
   Sweep(*best, marked, result).Run();
+  FitNoise(*best, marked, result);
   result.nodes = best->nodes();
   return result;
 }

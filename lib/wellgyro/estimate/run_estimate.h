@@ -34,7 +34,8 @@ struct LinkedErrors {
 /// A run as all its knots together tell it.
 struct RunEstimate {
   bool solved = false;  ///< false: what follows means nothing
-  SolveReport report;   ///< of the start that fits best
+  SolveReport report;   ///< of the start that fits best, with the noise as stated
+  double gyro_noise = 1, accel_noise = 1;  ///< found, over stated, where residuals are too large
   /// Another start comes so near in evidence that the azimuth is not decided: by less than 9.
   bool ambiguous = false;
   std::vector<Node> nodes;                   ///< one more than knots
@@ -44,9 +45,12 @@ struct RunEstimate {
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior
 };
 
-/// Solves the run from each start and keeps the one of greatest evidence. `marked`: nodes whose
-/// linked errors are wanted, ascending. Unsolved where there is no start or no knot, or where no
-/// start leads to a solution.
+/// Solves the run from each start and keeps the one of greatest evidence. Where the residuals of
+/// gyros or accelerometers are larger than the noise stated can make them, that sensor's noise is
+/// taken as large as they say, and the run is solved with it (variance components, Foerstner 1979):
+/// covariances hold for what was measured, not for what was promised. Noise is never taken smaller.
+/// `marked`: nodes whose linked errors are wanted, ascending. Unsolved where there is no start or
+/// no knot, or where no start leads to a solution.
 WELLGYRO_EXPORT RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
                                         std::span<const Start> starts,
                                         std::span<const std::size_t> marked);

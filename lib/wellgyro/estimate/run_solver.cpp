@@ -43,6 +43,7 @@ constexpr double kNear = 1, kFar = 1e4;
 // which no tool across the axis measures.
 constexpr double kWalkMost = 0.1, kWalkLeast = 1e-5;  // [rad/s/sqrt(s)]
 constexpr double kWalkUnseen = 1e-2;                  // of a tool whose roll is nowhere seen
+constexpr double kUnseenWalk = 1;                     // [rad/s], where the roll is any
 constexpr double kWorse = 6;                          // 2 ln 20: by which evidence decides
 /// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
 /// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
@@ -209,13 +210,27 @@ void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMat
   block_.Measure(nullptr);
 }
 
+/// 1-sigma of what a turn of the axis that no sensor saw adds to the rate about it, in this knot or
+/// the next: a tool keeps its rate of toolface, and the hole's azimuth turns by the angle over sin
+/// I and that by cos I [rad/s].
+double RunSolver::WalkOfUnseen(std::size_t knot) const {
+  double rate = 0;
+  for (std::size_t k = knot; k < std::min(knot + 2, knots_.size()); ++k) {
+    rate = std::max(rate, std::sqrt(knots_[k].var_unseen) / knots_[k].increment.seconds);
+  }
+  if (rate == 0) return 0;
+  const Vector3d t = nodes_[knot + 1].tangent_L();
+  const double across = std::hypot(t.x(), t.y()), along = rate * std::abs(t.z());
+  return along < kUnseenWalk * across ? along / across : kUnseenWalk;
+}
+
 /// 1-sigma of the change of the roll rate over a knot [rad/s].
 double RunSolver::Walk(std::size_t knot) const {
   // A third axis measures the roll: its walk then only keeps the system whole.
   const Increment& inc = knots_[knot].increment;
   if (inc.has_axial) return std::sqrt(inc.seconds);
   const double start = scales_.roll_start.empty() ? 0 : scales_.roll_start[knot];
-  return std::hypot(scales_.roll_walk * std::sqrt(inc.seconds), start);
+  return std::hypot(scales_.roll_walk * std::sqrt(inc.seconds), start, WalkOfUnseen(knot));
 }
 
 RollChange RunSolver::Change(std::size_t knot) const {
@@ -280,6 +295,15 @@ void RunSolver::FindRollWalk(SolveReport& report) {
   scales_.roll_walk = best_walk;
   nodes_ = best_nodes;
   border_ = best_border;
+}
+
+bool RunSolver::SolveWithNoise(double gyro, double accel) {
+  setup_.gyro.angle_random_walk *= gyro;
+  setup_.gyro.quantization *= gyro;
+  setup_.errors.accel_noise *= accel;
+  SolveReport report;
+  Iterate(kFinish, kStays, report);
+  return elimination_.decrement() < kNear;
 }
 
 SolveReport RunSolver::Solve(int iterations) {

@@ -45,6 +45,9 @@ class RunSolver {
   void Begin(const Eigen::Matrix3d& R_LT, std::span<const double> extra_roll);
   /// Relinearises until the attitudes stay, at most `iterations` times.
   SolveReport Solve(int iterations);
+  /// Takes the gyros' and the accelerometers' white noise so many times as large as before and goes
+  /// on from where it stands. False: it does not converge.
+  bool SolveWithNoise(double gyro, double accel);
 
   const Layout& layout() const { return layout_; }
   const EstimateSetup& setup() const { return setup_; }
@@ -68,6 +71,7 @@ class RunSolver {
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void FirstNode(EdgeMatrix& information, EdgeVector& gradient);
   void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
+  double WalkOfUnseen(std::size_t knot) const;
   double Walk(std::size_t knot) const;
   RollChange Change(std::size_t knot) const;
   void HoldRollWeights();

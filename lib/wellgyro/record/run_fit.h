@@ -11,7 +11,8 @@ namespace wellgyro {
 struct RunFit {
   /// Some of the residuals, by what they compare.
   enum Part {
-    kInclination,  ///< gyros' and accelerometers' inclination on the way: the r-channel
+    kInclination,  ///< gyros' turns against gravity on the way
+    kForce,        ///< accelerometers against gravity and the motion along the hole
     kRest,         ///< rates at rest and the Earth's
     kAzimuth,      ///< azimuths given from outside, and from vague fixes
     kRepeat,       ///< directions at depths passed more than once

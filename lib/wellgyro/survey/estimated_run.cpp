@@ -62,9 +62,9 @@ JoinedKnots Join(const Job& job, const FilterHistory& history,
       joined.node.push_back(joined.knots.size() + 1);
       ++epoch;
     }
-    const double angle = UnseenIn(knot);
-    knot.var_unseen = unseen.VarOf(angle);
-    unseen.Add(angle);
+    knot.unseen = UnseenIn(knot);
+    knot.var_unseen = unseen.VarOf(knot.unseen);
+    unseen.Add(knot.unseen);
     unseen.Pass(increment.seconds - increment.gap_seconds, UnseenHole().seconds);
     joined.knots.push_back(knot);
   }
@@ -191,13 +191,14 @@ RunFit FitOf(const RunEstimate& estimate) {
     for (const RowKind kind : kinds) {
       const RowSum& sum = estimate.report.sums[static_cast<std::size_t>(kind)];
       part.sum += sum.weighted;
-      part.freedom += sum.expected - sum.absorbed;
+      part.freedom += sum.freedom;
     }
     fit.chi_square += part.sum;
     freedom += part.freedom;
     return part;
   };
-  fit.parts[RunFit::kInclination] = squares({RowKind::kTurn, RowKind::kForce, RowKind::kAxial});
+  fit.parts[RunFit::kInclination] = squares({RowKind::kTurn, RowKind::kAxial});
+  fit.parts[RunFit::kForce] = squares({RowKind::kForce});
   fit.parts[RunFit::kRest] = squares({RowKind::kStill, RowKind::kRest});
   fit.parts[RunFit::kAzimuth] = squares({RowKind::kAzimuth});
   squares({RowKind::kDepth, RowKind::kDrift});

@@ -81,6 +81,7 @@ constexpr Words kWords[] = {
     {"earth_rate", "the gyros at rest do not read the Earth's rate"},
     {"fit", "the run as a whole does not fit together"},
     {"fit_azimuth", "azimuths given from outside do not fit the run"},
+    {"fit_force", "accelerometers and gravity disagree on the way"},
     {"fit_inclination", "gyros and accelerometers disagree on the way"},
     {"fit_repeat", "directions at depths passed more than once disagree"},
     {"fit_rest", "the gyros at rest and on the way disagree"},

@@ -1,0 +1,72 @@
+// Where a path stands within its knots, against an arc that is known in closed form.
+#include "wellgyro/estimate/places.h"
+
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/units.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kCurvature = 5 * units::kDeg / 30;  // [rad/m]
+constexpr double kSpeed = 0.8;                       // [m/s]
+constexpr int kRest = 20, kMoving = 30;              // knots of a second
+
+struct Arc {
+  Arc() {
+    double md = 0, speed = 0;
+    const auto node = [&] {
+      Node n;
+      const double inclination = 0.6 + kCurvature * md;
+      n.R_LT.col(2) = Eigen::Vector3d(std::sin(inclination), 0, std::cos(inclination));
+      n.md = md;
+      n.speed = speed;
+      return n;
+    };
+    nodes.push_back(node());
+    for (int k = 0; k < 2 * kRest + kMoving; ++k) {
+      RunKnot knot;
+      knot.increment.seconds = 1;
+      knot.still = k < kRest || k >= kRest + kMoving;
+      // It is under way, and stopped, within a tenth of a second.
+      speed = knot.still ? 0 : kSpeed;
+      if (!knot.still) md += kSpeed;
+      knot.along = {.md = md, .speed = speed, .known = true};
+      knots.push_back(knot);
+      nodes.push_back(node());
+      if (k == kRest - 1) nodes.back().speed = kSpeed;
+    }
+  }
+  std::vector<RunKnot> knots;
+  std::vector<Node> nodes;
+};
+
+// A window over time alone takes the rest beside the way for a straight hole, and finds half of the
+// acceleration in the first seconds: 1e-4 g at 0.8 m/s and 5 deg/30 m.
+TEST(Places, AToolThatStartsAndStopsIsAcceleratedAsTheHoleBends) {
+  const Arc arc;
+  std::vector<KnotPlace> places;
+  const Site site = SiteAt(0.8, 0);
+  PlaceKnots(site, arc.knots, arc.nodes, places);
+  for (int k = kRest; k < kRest + kMoving - 1; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Eigen::Vector3d middle =
+        0.5 * (arc.nodes[at].tangent_L() + arc.nodes[at + 1].tangent_L());
+    const Eigen::Vector3d coriolis =
+        2 * places[at].w_IL_L.cross(kSpeed * middle);  // transport is 1e-7 of it
+    const Eigen::Vector3d a = places[at].acceleration_L - coriolis;
+    const double want = kSpeed * kSpeed * kCurvature;
+    EXPECT_NEAR(a.norm(), want, 0.01 * want) << k;
+    EXPECT_NEAR(a.dot(middle), 0, 0.05 * want) << k;
+  }
+  for (const int k : {0, kRest - 2, kRest + kMoving + 1, 2 * kRest + kMoving - 1}) {
+    EXPECT_LT(places[static_cast<std::size_t>(k)].acceleration_L.norm(), 1e-9) << k;
+  }
+}
+
+}  // namespace
+}  // namespace wellgyro
