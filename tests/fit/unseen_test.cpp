@@ -63,9 +63,12 @@ RunMove Down(double to_md) {
   return {.to_md = to_md, .speed = 1, .roll = {3 * kTwoPi / 60, 0, 1, 0}};
 }
 
-Job JobOf() {
+enum class By { kSmoother, kAngles, kRotations };
+
+Job JobOf(By by) {
   Job job = testing::JobOf(Tool());
   job.tie_in.md = 0;
+  if (by == By::kRotations) job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
   return job;
 }
 
@@ -143,8 +146,6 @@ class RotationAdjuster : public RunAdjuster {
   Job job_;
 };
 
-enum class By { kSmoother, kAngles, kRotations };
-
 class Unseen : public ::testing::TestWithParam<By> {
  protected:
   const RunAdjuster* adjuster() const {
@@ -154,7 +155,7 @@ class Unseen : public ::testing::TestWithParam<By> {
 
  private:
   LeastSquaresAdjuster angles_;
-  RotationAdjuster rotations_{JobOf()};
+  RotationAdjuster rotations_{JobOf(By::kRotations)};
 };
 
 TEST_P(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
@@ -167,7 +168,7 @@ TEST_P(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
       return t < kStop + 49 || t >= kStop + 61.5;  // from 44 m to 56.5 m
     });
     const Keeper keeper(adjuster());
-    const Survey survey = testing::SurveyOf(simulation, JobOf(), sink, gap, &keeper);
+    const Survey survey = testing::SurveyOf(simulation, JobOf(GetParam()), sink, gap, &keeper);
     ASSERT_EQ(survey.chosen.size(), 11u) << survey.unusable;
     squares.Add(survey, simulation);
     for (const Station& s : survey.chosen) {
@@ -194,7 +195,7 @@ TEST_P(Unseen, StationsBelowASaturatedStretchAreAsGoodAsTheySay) {
     simulation.tool.errors.gyro_full_scale = 60 * units::kDegPerHour;
     testing::CollectingSink sink;
     const Keeper keeper(adjuster());
-    const Survey survey = testing::SurveyOf(simulation, JobOf(), sink, {}, &keeper);
+    const Survey survey = testing::SurveyOf(simulation, JobOf(GetParam()), sink, {}, &keeper);
     ASSERT_EQ(survey.chosen.size(), 17u) << survey.unusable;
     squares.Add(keeper.kept(), simulation);
     EXPECT_EQ(survey.verdict.verdict, Verdict::kFail) << seed;
@@ -229,7 +230,7 @@ TEST_P(Unseen, StationsAboveAClockThatStepsBackAreAsGoodAsTheySay) {
       return t < kStop + 195;
     });
     const Keeper keeper(adjuster());
-    const Survey survey = testing::SurveyOf(simulation, JobOf(), sink, steps, &keeper);
+    const Survey survey = testing::SurveyOf(simulation, JobOf(GetParam()), sink, steps, &keeper);
     ASSERT_GT(survey.chosen.size(), 17u) << survey.unusable;
     squares.Add(keeper.kept(), simulation);
     for (const Station& s : survey.chosen) {

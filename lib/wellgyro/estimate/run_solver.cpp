@@ -43,7 +43,6 @@ constexpr double kNear = 1, kFar = 1e4;
 // which no tool across the axis measures.
 constexpr double kWalkMost = 0.1, kWalkLeast = 1e-5;  // [rad/s/sqrt(s)]
 constexpr double kWalkUnseen = 1e-2;                  // of a tool whose roll is nowhere seen
-constexpr double kUnseenWalk = 1;                     // [rad/s], where the roll is any
 constexpr double kWorse = 6;                          // 2 ln 20: by which evidence decides
 /// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
 /// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
@@ -211,17 +210,18 @@ void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMat
 }
 
 /// 1-sigma of what a turn of the axis that no sensor saw adds to the rate about it, in this knot or
-/// the next: a tool keeps its rate of toolface, and the hole's azimuth turns by the angle over sin
-/// I and that by cos I [rad/s].
+/// the next [rad/s]. A tool that keeps its rate of toolface turns with the hole's azimuth, by the
+/// angle over sin I and that by cos I; nearer to vertical than 45 deg, where the high side is no
+/// hold, by no more than the angle.
 double RunSolver::WalkOfUnseen(std::size_t knot) const {
   double rate = 0;
   for (std::size_t k = knot; k < std::min(knot + 2, knots_.size()); ++k) {
-    rate = std::max(rate, std::sqrt(knots_[k].var_unseen) / knots_[k].increment.seconds);
+    rate = std::max(rate, knots_[k].unseen / knots_[k].increment.seconds);
   }
   if (rate == 0) return 0;
   const Vector3d t = nodes_[knot + 1].tangent_L();
-  const double across = std::hypot(t.x(), t.y()), along = rate * std::abs(t.z());
-  return along < kUnseenWalk * across ? along / across : kUnseenWalk;
+  const double along = std::abs(t.z());
+  return rate * along / std::max(along, std::hypot(t.x(), t.y()));
 }
 
 /// 1-sigma of the change of the roll rate over a knot [rad/s].
