@@ -7,7 +7,6 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/survey.h"
 #include "wellgyro/survey/surveyor.h"
 
