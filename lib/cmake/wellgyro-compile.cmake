@@ -22,8 +22,9 @@ endfunction()
 # the same kind (libraries are compiled with -fPIC, programs with -fPIE) and define no macro that the
 # target does not.
 #
-# Not the default, nor in tests/run: ccache shares no precompiled header between clones, a source
-# that forgot an include compiles all the same, and g++ 12 then warns of bounds that are kept.
+# Not the default: ccache shares no precompiled header between clones, a source that forgot an include
+# compiles all the same, and g++ 12 then warns of bounds that are kept. tests/run asks for them, and
+# for no warnings as errors, on a machine without ccache.
 option(WELLGYRO_PCH "Precompile the headers of others: half the time from scratch" OFF)
 function(wellgyro_precompile target)
   cmake_parse_arguments(PCH "" "LIKE" "" ${ARGN})
