@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/math/random.h"
