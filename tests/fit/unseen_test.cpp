@@ -1,5 +1,7 @@
 // Surveys of runs that did not see all of the hole: what they say of the stations there and behind.
 // 2026-11-21.
+#include "wellgyro/attitude/unseen.h"
+
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -11,7 +13,6 @@
 
 #include <gtest/gtest.h>
 
-#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/math/random.h"

@@ -199,7 +199,8 @@ std::string NoUnit(Quantity quantity, std::string_view unit, std::string_view co
   quantity = ListedAs(quantity);
   std::string known;
   const auto add = [&known](std::string_view word) {
-    const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) { return c > ' ' && c < 0x7f; });
+    const bool plain =
+        std::all_of(word.begin(), word.end(), [](unsigned char c) { return c > ' ' && c < 0x7f; });
     if (plain && !word.empty()) known += (known.empty() ? "" : ", ") + std::string(word);
   };
   for (const LengthName& length : kLengths) {
