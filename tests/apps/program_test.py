@@ -253,7 +253,7 @@ class Program(ProgramTest):
         commands = [line.split()[0] for line in listed.splitlines() if line.startswith("  ")
                     and line[2] != " "]
         self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "clearance", "convert", "models",
-                                            "north", "record", "simulate", "survey",
+                                            "north", "record", "report", "simulate", "survey",
                                             "uncertainty"])
         for command in commands:
             done = Run(command, "--help")
@@ -288,7 +288,7 @@ class Program(ProgramTest):
             self.assertNotIn(".cc:", done.stderr, "a line of the solver's log")
             ran.add(arguments[0])
         self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate",
-                               "clearance"})
+                               "clearance", "report"})
 
     def OtherWells(self, folder, policy):
         self.Write(folder + "/clearance.toml", policy)
