@@ -9,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/plot/plot_text_internal.h"
+
 namespace wellgyro {
 namespace {
 
@@ -22,26 +24,6 @@ constexpr double kBottom = 70;
 // Told apart also by readers who do not see red and green (Okabe and Ito).
 constexpr std::array<const char*, kNoiseTerms> kColours{"#cc79a7", "#0072b2", "#009e73",
                                                         "#d55e00", "#e69f00", "#56b4e9"};
-
-std::string Escaped(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '&':
-        escaped += "&amp;";
-        break;
-      default:
-        escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return escaped;
-}
 
 // One logarithmic axis on the paper.
 struct LogAxis {
@@ -171,12 +153,12 @@ class Plot {
     Text((kLeft + kWidth - kRight) / 2, kHeight - 24, "middle", "averaging time [s]");
     svg_ += fmt::format(
         "<text transform=\"translate(24 {:g}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-        (kTop + kHeight - kBottom) / 2, Escaped(labels_.deviation));
+        (kTop + kHeight - kBottom) / 2, SvgText(labels_.deviation));
     svg_ += fmt::format("<text x=\"{:g}\" y=\"30\" font-size=\"16\">{}</text>\n", kLeft,
-                        Escaped(labels_.title));
+                        SvgText(labels_.title));
     std::string facts;
     for (const std::string& fact : labels_.facts) facts += (facts.empty() ? "" : "; ") + fact;
-    Text(kLeft, 50, "start", Escaped(facts));
+    Text(kLeft, 50, "start", SvgText(facts));
   }
 
   std::string PathOf(const std::vector<Point>& points) const {
@@ -267,10 +249,10 @@ class Plot {
       const std::string& label = labels_.term[term];
       const std::size_t split = std::min(label.find('\n'), label.size());
       entry(stroke(kColours[static_cast<std::size_t>(term)], "7 4"),
-            Escaped(label.substr(0, split)));
+            SvgText(label.substr(0, split)));
       if (split < label.size()) {
         y -= 6;
-        Text(x + 34, y + 2, "start", Escaped(label.substr(split + 1)));
+        Text(x + 34, y + 2, "start", SvgText(label.substr(split + 1)));
         y += 24;
       }
     }
@@ -283,7 +265,7 @@ class Plot {
     for (const std::string& bound : labels_.bounds) {
       if (y > kHeight - kBottom) return;
       svg_ += fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"11\">{}</text>\n", x, y + 4,
-                          Escaped(bound));
+                          SvgText(bound));
       y += 16;
     }
   }
@@ -301,7 +283,7 @@ class Plot {
       }
       svg_ +=
           fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"12\" fill=\"#9c0000\">{}</text>\n",
-                      kLeft + 10, y, Escaped(text));
+                      kLeft + 10, y, SvgText(text));
       y -= 17;
     }
   }

@@ -4,7 +4,7 @@
 
 namespace wellgyro {
 
-std::string SvgText(const std::string& text) {
+std::string SvgText(std::string_view text) {
   std::string out;
   for (const char c : text) {
     if (c == '&') {
