@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What the program says at a terminal. terminal_test.py PROGRAM"""
 import os
+import struct
 import unittest
 
 from harness import DEMO, FreshProgramTest, Run
@@ -50,6 +51,40 @@ class Terminal(FreshProgramTest):
         done = Run("convert", os.path.join(DEMO, "run.lcm"), self.Path("absent/run.csv"))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.Read("absent/run.csv"), self.Read("run.csv"))
+
+    def test_units_and_headings_that_are_refused_come_with_the_known_ones(self):
+        for heads, said in (("MD[furlong],INC[deg],AZI_TRUE[deg]", "known are m, ft, ftUS"),
+                            ("MD[m],INC[turns],AZI_TRUE[deg]", "known are deg, "),
+                            ("MD[m],LEAN[deg],AZI_TRUE[deg]", "as MD[m], INC[deg], AZI_TRUE[deg]")):
+            self.Write("in.csv", heads + "\n0,0,0\n30,1.5,350\n")
+            done = Run("convert", self.Path("in.csv"), self.Path("out.las"))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(said, done.stderr)
+
+    def test_a_rotated_log_is_one_survey(self):
+        whole = os.path.join(DEMO, "run.lcm")
+        with open(whole, "rb") as file:
+            data = file.read()
+        ends = [0]
+        while ends[-1] < len(data):  # a head: sync word, number, time, lengths of channel and data
+            _, _, _, channel, size = struct.unpack_from(">IqqII", data, ends[-1])
+            ends.append(ends[-1] + 28 + channel + size)
+        cuts = [0, ends[len(ends) // 3], ends[2 * len(ends) // 3], len(data)]
+        names = ["rig.lcm", "rig.001.lcm", "rig.002.lcm"]
+        for name, begin, end in zip(names, cuts, cuts[1:]):
+            with open(self.Path(name), "wb") as part:
+                part.write(data[begin:end])
+        job = os.path.join(DEMO, "job.toml")
+        self.assertEqual(Run("survey", "--job", job, "--from", whole, "--out",
+                             self.Path("whole")).returncode, 0)
+        Run("survey", "--job", job, "--from", self.Path("rig.lcm"), "--out", self.Path("first"))
+        each = [word for name in names for word in ("--from", self.Path(name))]
+        Run("survey", "--job", job, *each, "--out", self.Path("each"))
+        for name in ("survey.csv", "passes.csv", "checks.csv"):
+            wanted = self.Read("whole/" + name)
+            self.assertEqual(self.Read("first/" + name), wanted)
+            self.assertEqual(self.Read("each/" + name), wanted)
+        self.assertIn("rig.002.lcm", self.Read("first/source.toml"))
 
 
 if __name__ == "__main__":

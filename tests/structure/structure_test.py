@@ -120,6 +120,13 @@ def Functions(path):
     return found
 
 
+def PublicHeaders():
+    """Of lib/public-headers.txt, as included: "wellgyro/base/angle.h" and so on."""
+    rows = [line.split() for line in Lines(os.path.join(TOP, "lib", "public-headers.txt"))
+            if line and not line.startswith("#")]
+    return [f"wellgyro/{header}" for _, header in rows]
+
+
 # Frames of the conventions in README.md, and of single blocks of sensors.
 FRAMES = "IEWLTHGASMB"
 ROTATION = r"R_([A-Z])([A-Z])(\.transpose\(\)|\.inverse\(\))?"
@@ -181,6 +188,19 @@ class Structure(unittest.TestCase):
                 eigen = kind == "<" and target.startswith("Eigen/")
                 if not (ours or eigen or (kind == "<" and target in STD)):
                     problems.append(f"{Place(path, number)}: a header may not include {target}")
+        self.Report(problems)
+
+    def test_public_headers_stand_on_public_headers(self):
+        public, problems = PublicHeaders(), []
+        self.assertEqual(len(set(public)), len(public))
+        for header in public:
+            path = os.path.join(TOP, "lib", header)
+            if not os.path.isfile(path):
+                problems.append(f"public-headers.txt: there is no {header}")
+                continue
+            for number, kind, target in Includes(path):
+                if kind == '"' and target not in public:
+                    problems.append(f"{Place(path, number)}: {target} is not public")
         self.Report(problems)
 
     def test_internal_headers_stay_inside(self):
