@@ -51,8 +51,8 @@ void Describe(const Intake& intake, SourceRecord& source) {
 }
 
 /// All of one log, or of a part of one, into `intake`; false where it is none.
-bool PushLog(const std::string& path, const Surveyor& surveyor, Intake& intake,
-             SourceRecord& source) {
+bool PushLog(const std::string& path, const SurveyOptions& options, const Surveyor& surveyor,
+             Intake& intake, SourceRecord& source) {
   Result<LogReader> reader = LogReader::Open(path);
   if (!reader) {
     Fault fault = reader.fault();
@@ -60,7 +60,7 @@ bool PushLog(const std::string& path, const Surveyor& surveyor, Intake& intake,
     Complain(fault);
     return false;
   }
-  Progress progress("surveying");
+  Progress progress("surveying", options.says != Says::kNothing);
   std::error_code ignored;
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(path, ignored));
   LogEvent event;
@@ -72,6 +72,13 @@ bool PushLog(const std::string& path, const Surveyor& surveyor, Intake& intake,
   return true;
 }
 
+/// The last adjustment, which may take as long as all before it.
+void FinishSurvey(Surveyor& surveyor, const SurveyOptions& options) {
+  Progress progress("adjusting", options.says != Says::kNothing);
+  progress.Show();
+  surveyor.Finish();
+}
+
 int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   FaultBook faults;
   const LeastSquaresAdjuster adjuster;
@@ -81,13 +88,14 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   const std::vector<std::string> parts =
       options.sources.size() > 1 ? options.sources : LogParts(options.from);
   for (const std::string& part : parts) {
-    if (!PushLog(part, surveyor, intake, source)) return kUnusable;
+    if (!PushLog(part, options, surveyor, intake, source)) return kUnusable;
   }
-  surveyor.Finish();
+  FinishSurvey(surveyor, options);
   for (const std::string& hint : HintsAtChannels(intake.feed())) Complain(hint);
   Describe(intake, source);
   return DeliverAll(options.out, job, surveyor,
-                    RecordOf(MakerOf(job.job), job, options.formats, intake, faults), source);
+                    RecordOf(MakerOf(job.job), job, options.formats, intake, faults), source,
+                    options.says);
 }
 
 /// From tables of sensor data: samples, averages at rest, depth.
@@ -101,7 +109,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
     Complain(report.fault());
     return kUnusable;
   }
-  surveyor.Finish();
+  FinishSurvey(surveyor, options);
   RunRecord record;
   const Maker maker = MakerOf(job.job);
   record.program = maker.program;
@@ -119,7 +127,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   source.counts["samples"] = report->samples;
   source.counts["still_windows"] = report->windows;
   source.counts["depth_marks"] = report->marks;
-  return DeliverAll(options.out, job, surveyor, record, source);
+  return DeliverAll(options.out, job, surveyor, record, source, options.says);
 }
 
 /// Says what the job lacks for one of the formats, before the work rather than after it.
@@ -173,6 +181,18 @@ void AddLiveOptions(CLI::App& command, SurveyOptions& options) {
       ->type_name("LOG");
 }
 
+void AddSays(CLI::App& command, Says& says) {
+  CLI::Option* quiet = command.add_flag_callback(
+      "--quiet", [&says] { says = Says::kNothing; },
+      "Say nothing but what went wrong; the exit code has the verdict");
+  command
+      .add_flag_callback(
+          "--json", [&says] { says = Says::kJson; },
+          "The summary as one JSON document, wellgyro.summary/1, and nothing else on standard "
+          "output")
+      ->excludes(quiet);
+}
+
 void AddFormats(CLI::App& command, SurveyOptions& options) {
   command
       .add_option_function<std::vector<std::string>>(
@@ -224,6 +244,7 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   AddLiveOptions(*command, *options);
   AddFormats(*command, *options);
+  AddSays(*command, options->says);
   auto page = std::make_shared<bool>(false);
   command->add_flag("--report", *page, "The report too, as report.html among the survey files");
   command->footer(

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """What the program says at a terminal. terminal_test.py PROGRAM"""
+import json
+import math
 import os
 import struct
 import unittest
@@ -60,6 +62,45 @@ class Terminal(FreshProgramTest):
             done = Run("convert", self.Path("in.csv"), self.Path("out.las"))
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(said, done.stderr)
+
+    def Demo(self, *more):
+        return Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                   os.path.join(DEMO, "run.lcm"), "--out", self.Path("result"), *more)
+
+    def test_a_quiet_survey_says_nothing(self):
+        done = self.Demo("--quiet")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        self.assertEqual(self.Demo("--quiet", "--json").returncode, 1)
+        with open(self.Path("empty.lcm"), "wb"):
+            pass
+        done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                   self.Path("empty.lcm"), "--out", self.Path("none"), "--quiet")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertTrue(done.stderr, "trouble is said all the same")
+
+    def test_the_summary_as_a_document_says_what_the_files_say(self):
+        done = self.Demo("--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said["format"], said["exit_code"]), ("wellgyro.summary/1", 0))
+        self.assertEqual(said["verdict"], self.Toml("result", "run.toml")["verdict"]["verdict"])
+        tool, = said["tools"]
+        for name in tool["files"]:
+            self.assertTrue(os.path.isfile(self.Path("result", name)), name)
+        rows = self.Rows("result", "survey.csv")
+        self.assertEqual(tool["stations"], len(rows))
+        for key, column in (("md_m", "MD[m]"), ("azimuth_true_deg", "AZI_TRUE[deg]"),
+                            ("north_m", "N[m]"), ("tvd_m", "TVD[m]")):
+            self.assertAlmostEqual(tool["end"][key], float(rows[-1][column]), 4)
+        self.assertAlmostEqual(tool["end"]["tvd_95_m"],
+                               1.959964 * float(rows[-1]["VAR_VV[m2]"]) ** 0.5, 5)
+        # The half axes' squares sum to the trace, as 2.4477 sigma.
+        ellipse = tool["end"]["ellipse_95"]
+        self.assertAlmostEqual(ellipse["semi_major_m"] ** 2 + ellipse["semi_minor_m"] ** 2,
+                               -2 * math.log(0.05) * (float(rows[-1]["VAR_NN[m2]"]) +
+                                                      float(rows[-1]["VAR_EE[m2]"])), 4)
+        bad = [row["CODE"] for row in self.Rows("result", "checks.csv") if row["VERDICT"] != "pass"]
+        self.assertEqual([check["code"] for check in tool["checks_not_passed"]], bad)
 
     def test_a_rotated_log_is_one_survey(self):
         whole = os.path.join(DEMO, "run.lcm")
