@@ -260,7 +260,7 @@ class Structure(unittest.TestCase):
 
     def test_functions_and_sources_are_short(self):
         problems, lengths = [], []
-        for path in list(Sources(LIB)) + list(Sources(os.path.join(TOP, "apps"))):
+        for path in [path for top in ("lib", "apps") for path in Sources(os.path.join(TOP, top))]:
             if len(Lines(path)) >= 500:
                 problems.append(f"{os.path.relpath(path, TOP)}: {len(Lines(path))} lines")
             for number, length in Functions(path):
