@@ -26,7 +26,10 @@ class SurveyConsole : public Console {
   explicit SurveyConsole(Says says) : says_(says) {}
   void OnStatus(const Status& status) override {
     NotifyManager("WATCHDOG=1");
-    if (status.text == kBusy) Show(status.text);
+    if (status.text == kBusy && says_ != Says::kNothing) Show(status.text);
+  }
+  void OnGlance(const Glance& glance) override {
+    if (says_ != Says::kNothing) Console::OnGlance(glance);
   }
   void OnStuck(const std::optional<RunVerdict>& kept) override {
     int code = kUnusable;
@@ -86,7 +89,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     return kUnusable;
   }
   const StopOnSignals stop([&session] { (*session)->Stop(); });
-  SayHowHeard((*session)->bus());
+  if (options.says != Says::kNothing) SayHowHeard((*session)->bus());
   NotifyManager("READY=1");
   const LiveOutcome outcome = (*session)->Run();
   for (const std::string& hint : outcome.hints) Complain(hint);
