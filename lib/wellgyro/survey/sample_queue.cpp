@@ -182,14 +182,14 @@ SampleQueue::Verdict SampleQueue::Join(Story& story, const ImuSample& sample) {
   return Verdict::kTaken;
 }
 
-/// What was believed so far has ended.
+/// A new session begins behind what is queued.
 void SampleQueue::Begin() {
   Drop(stories_.size());
   old_session_ = size_;
   last_is_old_ = true;
 }
 
-/// The samples put aside are the present.
+/// The samples put aside (`story`) become the stream: the clock has jumped, or a session begun.
 void SampleQueue::Believe(Story story) {
   const bool same_session = story.samples.front().stamp.session == back_->session;
   if (same_session) jumps_.push_back(counts_.accepted);
@@ -197,7 +197,7 @@ void SampleQueue::Believe(Story story) {
   for (const ImuSample& sample : story.samples) Take(size_, sample);
 }
 
-/// The oldest of what was put aside were strays.
+/// Counts the oldest `stories` put aside as strays and forgets them.
 void SampleQueue::Drop(std::size_t stories) {
   const auto end = stories_.begin() + static_cast<std::ptrdiff_t>(stories);
   for (auto story = stories_.begin(); story != end; ++story) {
