@@ -63,9 +63,20 @@ class Terminal(FreshProgramTest):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(said, done.stderr)
 
+    def DemoBegin(self):
+        """The first sixth of the demonstration, and where its messages end."""
+        with open(os.path.join(DEMO, "run.lcm"), "rb") as file:
+            data = file.read()
+        ends = [0]
+        while ends[-1] < len(data) // 6:  # a head: sync word, number, time, lengths of channel, data
+            _, _, _, channel, size = struct.unpack_from(">IqqII", data, ends[-1])
+            ends.append(ends[-1] + 28 + channel + size)
+        return data[:ends[-1]], ends
+
     def Demo(self, *more):
+        self.Write("begin.lcm", self.DemoBegin()[0])
         return Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
-                   os.path.join(DEMO, "run.lcm"), "--out", self.Path("result"), *more)
+                   self.Path("begin.lcm"), "--out", self.Path("result"), *more)
 
     def test_a_quiet_survey_says_nothing(self):
         done = self.Demo("--quiet")
@@ -103,13 +114,8 @@ class Terminal(FreshProgramTest):
         self.assertEqual([check["code"] for check in tool["checks_not_passed"]], bad)
 
     def test_a_rotated_log_is_one_survey(self):
-        whole = os.path.join(DEMO, "run.lcm")
-        with open(whole, "rb") as file:
-            data = file.read()
-        ends = [0]
-        while ends[-1] < len(data):  # a head: sync word, number, time, lengths of channel and data
-            _, _, _, channel, size = struct.unpack_from(">IqqII", data, ends[-1])
-            ends.append(ends[-1] + 28 + channel + size)
+        data, ends = self.DemoBegin()
+        whole = self.Write("whole.lcm", data)
         cuts = [0, ends[len(ends) // 3], ends[2 * len(ends) // 3], len(data)]
         names = ["rig.lcm", "rig.001.lcm", "rig.002.lcm"]
         for name, begin, end in zip(names, cuts, cuts[1:]):
