@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -141,6 +143,18 @@ bool CanExport(const Job& job, const std::vector<SurveyFormat>& formats) {
   return true;
 }
 
+/// Says so and gives true where two of `sources` are one file, whose samples would come twice.
+bool AnyTwice(const std::vector<std::string>& sources) {
+  std::set<std::filesystem::path> seen;
+  std::error_code ignored;
+  for (const std::string& source : sources) {
+    if (seen.insert(std::filesystem::weakly_canonical(source, ignored)).second) continue;
+    Complain(fmt::format("{} is named twice", source));
+    return true;
+  }
+  return false;
+}
+
 int SurveyAny(SurveyOptions options) {
   if (!options.sources.empty()) options.from = options.sources.front();
   const Result<JobFile> job = ReadJob(options.job);
@@ -154,7 +168,7 @@ int SurveyAny(SurveyOptions options) {
     Complain("--record, --resume and --fill are for a live stream: --from URL");
     return kUsage;
   }
-  if (!MayWriteTo(options.out)) return kUnusable;
+  if (AnyTwice(options.sources) || !MayWriteTo(options.out)) return kUnusable;
   // A folder that is new is nobody else's.
   std::optional<FileLock> lock;
   if (std::filesystem::is_directory(options.out)) {

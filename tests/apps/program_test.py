@@ -235,10 +235,13 @@ class Program(ProgramTest):
     def test_what_is_no_sensor_table_is_named(self):
         lacking = self.Write("lacking.csv", "UTC[s],GX[deg/h]\n1,2\n")
         other = self.Write("other.csv", "a,b,c\n1,2,3\n")
-        for files, says in (((self.log, self.log), "an LCM log, no table"),
+        depth = self.Write("depth.csv", "UTC[us],MD[m]\n1,2\n")
+        for files, says in (((self.log, self.log), "is named twice"),
+                            ((self.log, depth), "an LCM log, no table"),
                             ((lacking,), "lacks GY, AX, AY, AZ"),
                             ((other,), "no LCM log, nor a table"),
-                            ((other, self.log), "unknown kind, no table")):
+                            ((other, self.log), "no LCM log, nor a table"),
+                            ((other, depth), "unknown kind, no table")):
             sources = [word for file in files for word in ("--from", file)]
             done = Run("survey", "--job", self.job, *sources, "--out", self.Path("no_table"))
             self.assertEqual(done.returncode, 2)
