@@ -1,6 +1,7 @@
 // Holes that are vertical, nearly so, or begin so: errors against their covariance.
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 
 #include <Eigen/Core>
@@ -52,6 +53,11 @@ Simulation SimulationOf(const Case& c) {
   return s;
 }
 
+/// The horizontal part of the hole's direction.
+Eigen::Vector2d LeanOf(double inclination, double azimuth) {
+  return std::sin(inclination) * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
+}
+
 class NearVertical : public ::testing::TestWithParam<Case> {};
 
 TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
@@ -64,7 +70,8 @@ TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
   job.errors.accel_noise = 0.05 * units::kMilliG;
   job.errors.depth_sigma = 0.01;
   // Of horizontal position at four depths, of azimuth where the hole leans enough to have one.
-  double position = 0, azimuth = 0;
+  // Of the tilt: in either direction where the hole is vertical, else of the inclination.
+  double position = 0, azimuth = 0, tilt = 0;
   int azimuths = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     simulation.seed = static_cast<std::uint64_t>(seed);
@@ -81,6 +88,12 @@ TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
           (station.p_WT_W - truth.well().PlaceAt(station.md).p_WT_W).head<2>();
       const Eigen::Matrix2d cov = station.cov_p_WT_W.topLeftCorner<2, 2>();
       position += off.dot(cov.inverse() * off);
+      const Eigen::Vector2d lean =
+          LeanOf(station.inclination, station.azimuth) - LeanOf(point.inclination, point.azimuth);
+      const double wrong = point.inclination > FromDegrees(0.9)
+                               ? station.inclination - point.inclination
+                               : lean.norm();
+      tilt += wrong * wrong / station.cov_md_inc_azi(1, 1);
       if (point.inclination > FromDegrees(0.9)) {
         const double turn = WrapPi(station.azimuth - point.azimuth);
         azimuth += turn * turn / station.cov_md_inc_azi(2, 2);
@@ -91,12 +104,16 @@ TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
       }
     }
   }
-  const double tail = 0.01 / 2 / (6 * 2);  // of all cases together one in a hundred
+  const double tail = 0.01 / 2 / (6 * 3);  // of all cases together one in a hundred
   // Where a tool rolls in a vertical hole, the noise of its inclination is taken to last longer
   // than it does: its places are better than they say.
   const bool rolls = GetParam().rpm > 0 && azimuths == 0;
   EXPECT_GT(position, ChiSquareQuantile(tail, 2 * kSeeds) / (rolls ? 1.5 : 1));
   EXPECT_LT(position, ChiSquareQuantile(1 - tail, 2 * kSeeds));
+  const int tilts = azimuths == 0 ? 2 * kSeeds : kSeeds;
+  std::printf("tilt squared over its variance: %.2f of %d\n", tilt, tilts);
+  EXPECT_GT(tilt, ChiSquareQuantile(tail, tilts) / (rolls ? 1.5 : 1));
+  EXPECT_LT(tilt, ChiSquareQuantile(1 - tail, tilts));
   if (azimuths == 0) return;
   EXPECT_EQ(azimuths, kSeeds);
   EXPECT_GT(azimuth, ChiSquareQuantile(tail, kSeeds));
