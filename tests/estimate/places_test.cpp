@@ -1,7 +1,9 @@
 // Where a path stands within its knots, against an arc that is known in closed form.
 #include "wellgyro/estimate/places.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -66,6 +68,26 @@ TEST(Places, AToolThatStartsAndStopsIsAcceleratedAsTheHoleBends) {
   for (const int k : {0, kRest - 2, kRest + kMoving + 1, 2 * kRest + kMoving - 1}) {
     EXPECT_LT(places[static_cast<std::size_t>(k)].acceleration_L.norm(), 1e-9) << k;
   }
+}
+
+// Along the arc t = (sin I, 0, cos I) the Earth's rate about the axis is W (cos(lat) sin I -
+// sin(lat) cos I) = -W sin(lat - I): what a tool that only slides seems to roll by. The latitude
+// goes with the way, by 1e-4 of what the inclination does.
+TEST(Places, ASlidingToolIsTurnedByTheEarthAsTheHoleBends) {
+  const Arc arc;
+  std::vector<KnotPlace> places;
+  PlaceKnots(SiteAt(0.8, 0), arc.knots, arc.nodes, places);
+  double most = 0;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    const auto middle = [&](std::size_t at) {
+      return 0.6 + kCurvature * 0.5 * (arc.nodes[at].md + arc.nodes[at + 1].md);
+    };
+    const double want = kEarthRate * (std::sin(0.8 - middle(k)) - std::sin(0.8 - middle(k + 1)));
+    EXPECT_NEAR(places[k].axial_change, want, 2e-10) << k;
+    most = std::max(most, std::abs(want));
+  }
+  EXPECT_GT(most, 1e-7);
+  EXPECT_EQ(places.back().axial_change, 0);
 }
 
 }  // namespace

@@ -57,9 +57,9 @@ Vector2d SwingAfter(const EstimateSetup& setup, double seconds, const Vector2d& 
 
 }  // namespace
 
-RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double sigma,
-                          const Node& begin, const Node& end) {
-  RollSquares squares{Square((end.roll_rate - begin.roll_rate) / sigma), 0};
+RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double axial_change,
+                          double sigma, const Node& begin, const Node& end) {
+  RollSquares squares{Square((end.roll_rate - begin.roll_rate - axial_change) / sigma), 0};
   if (setup.swing) {
     squares.swing =
         (end.swing - SwingAfter(setup, seconds, begin.swing)).squaredNorm() / Square(sigma);
@@ -247,13 +247,15 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   block.Add(f);
 }
 
-/// The roll rate walks from knot to knot; a swing turns by its own frequency and walks too.
+/// The roll rate in the hole walks from knot to knot; a swing turns by its own frequency and walks
+/// too. The Earth's part of the rate is that of the path as it stands, and no slope is taken by it:
+/// the steadiness of the roll then tells no azimuth, which no tool across the axis measures so.
 void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block) {
   const double whiten = 1 / roll.sigma;
   Factor& f = factor_;
   f.Begin(RowKind::kRoll, 1);
   f.held = roll.weight;
-  f.r[0] = whiten * (t.end.roll_rate - t.begin.roll_rate);
+  f.r[0] = whiten * (t.end.roll_rate - t.begin.roll_rate - t.place.axial_change);
   f.Column(layout_.roll)[0] = -whiten;
   f.Column(block.next() + layout_.roll)[0] = whiten;
   block.Add(f);

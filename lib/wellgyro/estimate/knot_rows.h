@@ -23,6 +23,9 @@ struct KnotPlace {
   /// the node: a path read on the map under another azimuth bends the same way seen from the tool,
   /// and tells nothing of it.
   Eigen::Vector3d acceleration_L = Eigen::Vector3d::Zero();
+  /// What the Earth's rate about the axis changes by, from this knot to the next [rad/s]: so does
+  /// the inertial roll rate of a tool that does not turn in its hole.
+  double axial_change = 0;
   double since_start = 0;  ///< middle of the knot [s]
   double depth = 0;        ///< vertical, below node 0 [m]
 };
@@ -33,6 +36,9 @@ struct RunScales {
   /// Of each knot, how much the rate plainly changes there beyond its walk: starts and stops; empty
   /// where not yet known [rad/s].
   std::vector<double> roll_start;
+  /// The same, as much as it may with the speed along the hole, and the share of it that it does.
+  std::vector<double> speed_start;
+  double speed_share = 1;
   /// Of each knot, held while the run is brought to its end; empty: by the residuals.
   std::vector<std::array<double, 2>> roll_weight;
 };
@@ -43,12 +49,13 @@ struct RollChange {
   double weight = 0, swing_weight = 0;  ///< robust ones, held; 0: by the residuals
 };
 
-/// Sum of squares of what the rate of roll changes by over a knot, by `sigma`, and of its swing.
+/// Sum of squares of what the rate of roll in the hole changes by over a knot, by `sigma`, and of
+/// its swing.
 struct RollSquares {
   double rate = 0, swing = 0;
 };
-RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double sigma,
-                          const Node& begin, const Node& end);
+RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double axial_change,
+                          double sigma, const Node& begin, const Node& end);
 
 /// Whitened residuals of everything that a knot says of the nodes at its ends and of the border,
 /// about their present values, added to `block`. R_IT(end) = R_IT(begin) Rz Exp(turn) Rz,

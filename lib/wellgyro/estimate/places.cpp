@@ -65,7 +65,7 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
   Site site = first;
   Vector3d p = Vector3d::Zero();
   double md = nodes[0].md;
-  double time = 0;
+  double time = 0, axial = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Node& a = nodes[k];
     const Node& b = nodes[k + 1];
@@ -85,6 +85,9 @@ void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<con
                              -v.y() * s / (c * site.radius_east));
     place.w_IL_L = earth + transport;
     place.dw_by_latitude = kEarthRate * Vector3d(-s, 0, -c);
+    place.axial_change = 0;
+    if (k > 0) places[k - 1].axial_change = earth.dot(tangent) - axial;
+    axial = earth.dot(tangent);
     place.acceleration_L = speed * speed * curvature[k] + (2 * earth + transport).cross(v);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;

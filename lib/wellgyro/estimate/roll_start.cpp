@@ -65,23 +65,6 @@ double UsualOf(const std::vector<Change>& changes) {
   return kMedianToSigma * MedianOf(plain);
 }
 
-/// Where the way along the hole changes its speed the roll does, seen or not: a tool turns by so
-/// much a metre.
-void AddSpeedChanges(std::span<const RunKnot> knots, std::vector<double>& starts) {
-  std::vector<double> times{0};
-  for (const RunKnot& knot : knots) times.push_back(times.back() + knot.increment.seconds);
-  std::size_t begin = 0, end = 0;
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    while (times[begin + 1] < times[k + 1] - kSpeedReach) ++begin;
-    while (end + 1 < knots.size() && times[end + 1] < times[k + 1] + kSpeedReach) ++end;
-    const AlongHole &a = knots[begin].along, &b = knots[end].along;
-    if (!a.known || !b.known) continue;
-    const double change = std::abs(b.speed - a.speed);
-    if (change <= std::max(kLeastChange, 4 * std::hypot(a.sigma_speed, b.sigma_speed))) continue;
-    starts[k] = std::max(starts[k], kRollPerMetre * change);
-  }
-}
-
 }  // namespace
 
 std::optional<double> UsualRollChange(std::span<const RunKnot> knots) {
@@ -102,7 +85,22 @@ std::vector<double> RollStarts(std::span<const RunKnot> knots) {
       starts[c.knot] = std::max(starts[c.knot], c.rate / static_cast<double>(span));
     }
   }
-  AddSpeedChanges(knots, starts);
+  return starts;
+}
+
+std::vector<double> SpeedStarts(std::span<const RunKnot> knots) {
+  std::vector<double> starts(knots.size(), 0), times{0};
+  for (const RunKnot& knot : knots) times.push_back(times.back() + knot.increment.seconds);
+  std::size_t begin = 0, end = 0;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    while (times[begin + 1] < times[k + 1] - kSpeedReach) ++begin;
+    while (end + 1 < knots.size() && times[end + 1] < times[k + 1] + kSpeedReach) ++end;
+    const AlongHole &a = knots[begin].along, &b = knots[end].along;
+    if (!a.known || !b.known) continue;
+    const double change = std::abs(b.speed - a.speed);
+    if (change <= std::max(kLeastChange, 4 * std::hypot(a.sigma_speed, b.sigma_speed))) continue;
+    starts[k] = kRollPerMetre * change;
+  }
   return starts;
 }
 

@@ -8,12 +8,15 @@
 
 namespace wellgyro {
 
-/// Of each knot, by how much the roll rate may change behind it beyond its walk [rad/s]: where
-/// gravity plainly shows a start or a stop, over 1, 4 or 12 knots beyond 3.5 of what is usual in
-/// the run and of its own sigma, by what it shows; where the speed along the hole changes, within 5
-/// s to each side, by 2 rad/m of that, whether the roll is seen or not; else 0. A tool that once
-/// spins up is then not taken for one that always jerks.
+/// Of each knot, by how much the roll rate changes behind it beyond its walk [rad/s]: where gravity
+/// plainly shows a start or a stop, over 1, 4 or 12 knots beyond 3.5 of what is usual in the run
+/// and of its own sigma, by what it shows; else 0. A tool that once spins up is then not taken for
+/// one that always jerks.
 std::vector<double> RollStarts(std::span<const RunKnot> knots);
+
+/// Of each knot, by how much the roll rate may at most change behind it with the speed along the
+/// hole, seen or not [rad/s]: within 5 s of a change of the speed by 2 rad/m of that; else 0.
+std::vector<double> SpeedStarts(std::span<const RunKnot> knots);
 
 /// What the roll rate usually changes by from one knot to the next where it is plainest, 1-sigma
 /// [rad/s]; absent where it is nowhere seen.

@@ -38,12 +38,15 @@ constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
 constexpr double kEarthShare = 0.1;
 // Steps at which another roll walk can be told from the last, and from which it is not worth while.
 constexpr double kNear = 1, kFar = 1e4;
-// Walks of the roll rate tried, from that of a tool that jerks. The least walks in a minute by as
-// much as the Earth's rate: less, and the steadiness of the roll would tell the Earth's axial part,
-// which no tool across the axis measures.
-constexpr double kWalkMost = 0.1, kWalkLeast = 1e-5;  // [rad/s/sqrt(s)]
-constexpr double kWalkUnseen = 1e-2;                  // of a tool whose roll is nowhere seen
-constexpr double kWorse = 6;                          // 2 ln 20: by which evidence decides
+// Walks of the roll rate in the hole that are tried, from that of a tool that jerks to one that
+// turns it by a quarter of a degree in half an hour, which is as good as none.
+constexpr double kWalkMost = 0.1, kWalkLeast = 1e-7;  // [rad/s/sqrt(s)]
+// Of what the roll may start and stop by with the speed along the hole, the least share that is
+// tried: 1e-4 rad/s over 10 s are less than the gyros' noise shows.
+constexpr double kShareLeast = 1e-4;
+constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
+constexpr double kWorse = 6;          // 2 ln 20: by which evidence decides
+
 /// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
 /// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
 double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
@@ -258,8 +261,10 @@ double RunSolver::Walk(std::size_t knot) const {
   // A third axis measures the roll: its walk then only keeps the system whole.
   const Increment& inc = knots_[knot].increment;
   if (inc.has_axial) return std::sqrt(inc.seconds);
-  const double start = scales_.roll_start.empty() ? 0 : scales_.roll_start[knot];
-  return std::hypot(scales_.roll_walk * std::sqrt(inc.seconds), start, WalkOfUnseen(knot));
+  const double seen = scales_.roll_start.empty() ? 0 : scales_.roll_start[knot];
+  const double by_speed = scales_.speed_start.empty() ? 0 : scales_.speed_start[knot];
+  return std::hypot(scales_.roll_walk * std::sqrt(inc.seconds),
+                    std::max(seen, scales_.speed_share * by_speed), WalkOfUnseen(knot));
 }
 
 RollChange RunSolver::Change(std::size_t knot) const {
@@ -272,7 +277,8 @@ void RunSolver::HoldRollWeights() {
   scales_.roll_weight.resize(knots_.size());
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const RollSquares squares =
-        RollSquaresOf(setup_, knots_[k].increment.seconds, Walk(k), nodes_[k], nodes_[k + 1]);
+        RollSquaresOf(setup_, knots_[k].increment.seconds, places_[k].axial_change, Walk(k),
+                      nodes_[k], nodes_[k + 1]);
     scales_.roll_weight[k] = {RollWeight(squares.rate, 1), RollWeight(squares.swing, 2)};
   }
 }
@@ -303,27 +309,40 @@ double RunSolver::Evidence() const {
   return evidence;
 }
 
-/// The walk of greatest evidence, by decades down from the one that the run was begun with.
-void RunSolver::FindRollWalk(SolveReport& report) {
+/// The one of greatest evidence, by decades down from what it is.
+///
+/// Freedom of the roll that no tool makes use of does more than widen the result: near vertical the
+/// more the hole leans, the more of the accelerometers' noise a free roll explains, so that the
+/// solution leans too far (nuisances as many as the knots: Neyman and Scott, 1948). The evidence
+/// counts what they explain against their number.
+void RunSolver::FindScale(double least, double& scale, SolveReport& report) {
   std::vector<Node> best_nodes = nodes_;
   BorderVector best_border = border_;
-  double best = HUGE_VAL, best_walk = scales_.roll_walk;
-  for (double walk = scales_.roll_walk; walk > 0.9 * kWalkLeast; walk /= 10) {
-    scales_.roll_walk = walk;
+  double best = HUGE_VAL, best_scale = scale;
+  for (double tried = scale; tried > 0.9 * least; tried /= 10) {
+    scale = tried;
     if (!Iterate(3, kNear, report) && elimination_.decrement() > kFar) break;
     const double evidence = Evidence();
     if (evidence < best) {
       best = evidence;
-      best_walk = walk;
+      best_scale = tried;
       best_nodes = nodes_;
       best_border = border_;
     } else if (evidence > best + kWorse) {
       break;
     }
   }
-  scales_.roll_walk = best_walk;
+  scale = best_scale;
   nodes_ = best_nodes;
   border_ = best_border;
+}
+
+/// Somewhere the tool starts or stops and gravity does not show how it rolls.
+bool RunSolver::HidesAStart() const {
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    if (scales_.speed_start[k] > 0 && !knots_[k].increment.roll_seen) return true;
+  }
+  return false;
 }
 
 bool RunSolver::SolveWithNoise(double gyro, double accel) {
@@ -339,11 +358,13 @@ SolveReport RunSolver::Solve(int iterations) {
   SolveReport report;
   scales_ = {};
   scales_.roll_start = RollStarts(knots_);
+  scales_.speed_start = SpeedStarts(knots_);
   // From the decade above what the rate usually changes by, which its own noise is part of.
   const double usual = UsualRollChange(knots_).value_or(kWalkUnseen);
   scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
   Iterate(iterations, kNear, report);
-  FindRollWalk(report);
+  FindScale(kWalkLeast, scales_.roll_walk, report);
+  if (HidesAStart()) FindScale(kShareLeast, scales_.speed_share, report);
   HoldRollWeights();
   Iterate(kFinish, kStays, report);
   report.converged = elimination_.decrement() < kNear;

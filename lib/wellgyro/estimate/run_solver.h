@@ -85,7 +85,8 @@ class RunSolver : public RunRows {
   void HoldRollWeights();
   bool Iterate(int most, double stays, SolveReport& report);
   double Evidence() const;
-  void FindRollWalk(SolveReport& report);
+  bool HidesAStart() const;
+  void FindScale(double least, double& scale, SolveReport& report);
 
   EstimateSetup setup_;
   Layout layout_;
