@@ -95,6 +95,7 @@ TEST(Petra, SeveralWellsAndUnitsThatAreNone) {
   EXPECT_THAT(Refusal(kPetra + second), HasSubstr("--well"));
   EXPECT_EQ(Read(kPetra + second, {.well = "1111121110000100"}).rows(), 3u);
   EXPECT_EQ(Read(kPetra + second, {.well = "0926421110000100"}).rows(), 3u);
+  EXPECT_EQ(Read(kPetra + ("\n" + second), {.well = "1111121110000100"}).rows(), 3u);
   EXPECT_THAT(Refusal(kPetra + second, {.well = "3"}), HasSubstr("no row is of well 3"));
   std::string metric = second;
   metric.replace(metric.find("*DEPUNITS F"), 11, "*DEPUNITS M");

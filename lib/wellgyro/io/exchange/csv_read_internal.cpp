@@ -43,7 +43,7 @@ class CsvReader {
     while (NextRecord(fields)) {
       if (IsBlank(fields)) {
         ended_ = true;
-      } else if (petra_.any() && fields.front().starts_with('*')) {
+      } else if (IsPetra() && fields.front().starts_with('*')) {
         TakeKeywords(fields);
       } else if (ended_) {
         TakeFootnote(fields);
@@ -59,7 +59,7 @@ class CsvReader {
   SurveyHead& head() { return build_.table.head; }
 
   void Conclude() {
-    const bool named = well_column_ || petra_.any();
+    const bool named = well_column_ || IsPetra();
     if (!options_.well.empty() && named && build_.table.rows() == 0) {
       lines_.Complain(FaultCode::kForeign, "no row is of well " + options_.well + WellsText());
     }
@@ -120,7 +120,7 @@ class CsvReader {
       }
       if (petra_.Take(text, lines_)) continue;
       if (petra_.any()) return BeginPetra();
-      if (TakeHeader(line, text)) return;
+      if (TakeHeader(line)) return;
       if (!options_.columns.empty() && TakeHeaderless(line)) return;
       if (TakeHeadingsAbove(line)) return;
       TakeReportLine(head(), text, claims_);
@@ -145,12 +145,18 @@ class CsvReader {
     BeginPetraWell();
   }
 
+  // `petra_` itself has no columns yet while those of a further well are being named.
+  bool IsPetra() const { return !petra_headings_.empty(); }
+
   // Another well begins; its columns and units must be those of the first.
   void TakeKeywords(const std::vector<std::string>& fields) {
     std::string line;
     for (const std::string& field : fields) line += (line.empty() ? "" : " ") + field;
     petra_.Take(line, lines_);
-    if (EqualNoCase(fields.front(), "*WELL")) BeginPetraWell();
+    if (EqualNoCase(fields.front(), "*WELL")) {
+      ended_ = false;  // a blank line ended the well above
+      BeginPetraWell();
+    }
     keywords_again_ = true;
   }
 
@@ -182,9 +188,10 @@ class CsvReader {
     }
   }
 
-  bool TakeHeader(std::string_view line, std::string_view text) {
+  // The whole line: a tab at its begin stands behind an empty first column, as in the rows.
+  bool TakeHeader(std::string_view line) {
     for (const char delimiter : {',', ';', '\t', ' '}) {
-      const auto fields = SplitQuoted(text.data() == line.data() ? line : text, delimiter);
+      const auto fields = SplitQuoted(line, delimiter);
       if (!fields || std::any_of(fields->begin(), fields->end(),
                                  [](const auto& f) { return NumberOf(f).has_value(); })) {
         continue;
