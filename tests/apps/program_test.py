@@ -254,7 +254,7 @@ class Program(ProgramTest):
                     and line[2] != " "]
         self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "clearance", "compare", "convert",
                                             "merge", "models",
-                                            "north", "record", "report", "simulate", "survey",
+                                            "north", "plan", "record", "report", "simulate", "survey",
                                             "uncertainty"])
         for command in commands:
             done = Run(command, "--help")
