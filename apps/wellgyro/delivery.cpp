@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
-
-#include "wellgyro/io/result/summary.h"
 
 #include "commands.h"
 #include "report.h"
@@ -17,9 +16,17 @@ namespace {
 
 enum class Files { kToWrite, kWritten };
 
+/// How the results are handed over, and what has been.
+struct Delivery {
+  Files state;
+  Says says;
+  std::vector<ToolSummary> done = {};
+};
+
 /// Writes one tool's result where it is not written yet, and says what it is; its exit code.
-int Deliver(Files state, const std::filesystem::path& folder, const RunRecord& record,
-            const SourceRecord& source, const Job& job, const Survey& survey) {
+int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& record,
+            const SourceRecord& source, const Job& job) {
+  const Survey& survey = result.survey;
   if (!survey.unusable.empty()) {
     Complain(survey.unusable);
     const auto malformed = source.counts.find("malformed");
@@ -30,15 +37,19 @@ int Deliver(Files state, const std::filesystem::path& folder, const RunRecord& r
     return kUnusable;
   }
   const std::vector<OutputFile> files = ResultFiles(record, source, job, survey);
-  if (state == Files::kToWrite) {
-    if (const auto fault = WriteFiles(folder, files)) {
+  if (delivery.state == Files::kToWrite) {
+    if (const auto fault = WriteFiles(result.folder, files)) {
       Complain(*fault);
       return kUnusable;
     }
   }
+  ToolSummary& summary = delivery.done.emplace_back();
+  summary = {.tool = result.tool, .folder = result.folder, .survey = &survey};
+  for (const OutputFile& file : files) summary.files.push_back(file.name);
+  if (delivery.says != Says::kSummary) return kDone;
   fmt::print("{}", SummaryText(survey));
-  for (const OutputFile& file : files) {
-    fmt::print("wrote {}\n", (folder / file.name).string());
+  for (const std::string& name : summary.files) {
+    fmt::print("wrote {}\n", (result.folder / name).string());
   }
   return kDone;
 }
@@ -54,7 +65,7 @@ void SayLosses(const SourceRecord& source) {
   }
 }
 
-int DeliverTools(Files state, const std::vector<ToolResult>& results, const JobFile& job,
+int DeliverTools(Delivery& delivery, const std::vector<ToolResult>& results, const JobFile& job,
                  const RunRecord& record, const SourceRecord& source) {
   const auto nothing = std::count_if(results.begin(), results.end(), Nothing);
   const bool any = nothing < std::ssize(results);
@@ -64,10 +75,10 @@ int DeliverTools(Files state, const std::vector<ToolResult>& results, const JobF
     if (of_many && std::exchange(told, true)) continue;
     if (of_many) {
       Complain(fmt::format("{} more tools were heard of that made no survey", nothing));
-    } else if (results.size() > 1) {
+    } else if (results.size() > 1 && delivery.says == Says::kSummary) {
       fmt::print("tool {}\n", result.tool);
     }
-    const int one = Deliver(state, result.folder, record, source, job.job, result.survey);
+    const int one = Deliver(delivery, result, record, source, job.job);
     if (one == kUnusable && !Nothing(result)) return kUnusable;
     losses = losses || one == kUnusable || HasLosses(source, result.survey);
   }
@@ -90,25 +101,30 @@ bool MayWriteTo(const std::filesystem::path& folder) {
 }
 
 int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Surveyor& surveyor,
-               const RunRecord& record, const SourceRecord& source) {
+               const RunRecord& record, const SourceRecord& source, Says says) {
   const std::vector<ToolResult> results = ResultsOf(surveyor, folder);
-  const int code = DeliverTools(Files::kToWrite, results, job, record, source);
+  Delivery delivery{Files::kToWrite, says};
+  const int code = DeliverTools(delivery, results, job, record, source);
   RemoveFormer(folder, results);
-  return code == kUnusable ? code : Conclude(WorstVerdict(results), code == kDoneWithLosses);
+  if (code == kUnusable) return code;
+  return Conclude(WorstVerdict(results), code == kDoneWithLosses, says, delivery.done);
 }
 
-int Summarise(const JobFile& job, const LiveOutcome& outcome) {
-  const int code =
-      DeliverTools(Files::kWritten, outcome.tools, job, outcome.record, outcome.source);
+int Summarise(const JobFile& job, const LiveOutcome& outcome, Says says) {
+  Delivery delivery{Files::kWritten, says};
+  const int code = DeliverTools(delivery, outcome.tools, job, outcome.record, outcome.source);
   if (code == kUnusable) return code;
   if (!outcome.recording_is_whole) Complain("done, but the recording lacks messages");
   return Conclude(WorstVerdict(outcome.tools),
-                  code == kDoneWithLosses || !outcome.recording_is_whole);
+                  code == kDoneWithLosses || !outcome.recording_is_whole, says, delivery.done);
 }
 
-int Conclude(const RunVerdict& verdict, bool losses) {
-  fmt::print("{}\n", VerdictText(verdict));
-  return verdict.verdict == Verdict::kFail ? kUnfit : losses ? kDoneWithLosses : kDone;
+int Conclude(const RunVerdict& verdict, bool losses, Says says,
+             std::span<const ToolSummary> tools) {
+  const int code = verdict.verdict == Verdict::kFail ? kUnfit : losses ? kDoneWithLosses : kDone;
+  if (says == Says::kSummary) fmt::print("{}\n", VerdictText(verdict));
+  if (says == Says::kJson) fmt::print("{}", SummaryJson(tools, verdict, code));
+  return code;
 }
 
 }  // namespace wellgyro::apps

@@ -2,9 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <vector>
+#include <span>
 
 #include "wellgyro/io/result/run_file.h"
+#include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/results.h"
 #include "wellgyro/live/session.h"
@@ -17,6 +18,9 @@ inline bool InAngles(const Job& job) {
   return job.attitude.estimator == AttitudeSpec::Estimator::kAngles;
 }
 
+/// What a survey says of itself on standard output.
+enum class Says { kSummary, kNothing, kJson };
+
 /// Who wrote a result, and what adjusted its runs, in run.toml.
 Maker MakerOf(const Job& job);
 
@@ -25,12 +29,14 @@ bool MayWriteTo(const std::filesystem::path& folder);
 
 /// Writes every tool's result, prints its summary, and gives the exit code.
 int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Surveyor& surveyor,
-               const RunRecord& record, const SourceRecord& source);
+               const RunRecord& record, const SourceRecord& source, Says says);
 
 /// Of a live survey whose files are written: prints their summary and gives the exit code.
-int Summarise(const JobFile& job, const LiveOutcome& outcome);
+int Summarise(const JobFile& job, const LiveOutcome& outcome, Says says);
 
-/// Prints the verdict as the last line; the exit code.
-int Conclude(const RunVerdict& verdict, bool losses);
+/// Prints the verdict as the last line, or with what is known of `tools` as a document; the exit
+/// code.
+int Conclude(const RunVerdict& verdict, bool losses, Says says,
+             std::span<const ToolSummary> tools = {});
 
 }  // namespace wellgyro::apps

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -22,21 +23,28 @@ namespace {
 /// A survey that adjusts when it is stopped does not hold up whoever stopped it.
 class SurveyConsole : public Console {
  public:
+  explicit SurveyConsole(Says says) : says_(says) {}
   void OnStatus(const Status& status) override {
     NotifyManager("WATCHDOG=1");
-    if (status.text == kBusy) Show(status.text);
+    if (status.text == kBusy && says_ != Says::kNothing) Show(status.text);
+  }
+  void OnGlance(const Glance& glance) override {
+    if (says_ != Says::kNothing) Console::OnGlance(glance);
   }
   void OnStuck(const std::optional<RunVerdict>& kept) override {
     int code = kUnusable;
     if (kept) {
       Complain("stopped while adjusting: the survey in the folder is whole, as of before that");
-      code = Conclude(*kept, false);
+      code = Conclude(*kept, false, says_);
     } else {
       Complain("stopped while adjusting, before there was a survey");
     }
     std::fflush(stdout);
     std::_Exit(code);
   }
+
+ private:
+  Says says_;
 };
 
 /// What a survey that did not end with FINISH leaves behind; its exit code.
@@ -50,7 +58,11 @@ int Stopped(const SurveyOptions& options, const LiveOutcome& outcome) {
   }
   if (outcome.fault || outcome.ended != LiveOutcome::Ended::kInterrupted) return kUnusable;
   Complain(fmt::format("stopped: the survey in {} is whole, not adjusted{}", options.out, next));
-  return Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole);
+  std::vector<ToolSummary> tools;
+  for (const ToolResult& result : outcome.tools) {
+    tools.push_back({.tool = result.tool, .folder = result.folder, .survey = &result.survey});
+  }
+  return Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole, options.says, tools);
 }
 
 }  // namespace
@@ -68,7 +80,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
   setup.formats = options.formats;
   setup.maker = MakerOf(job.job);
   setup.clock = ThisClock();
-  SurveyConsole console;
+  SurveyConsole console(options.says);
   const LeastSquaresAdjuster adjuster;
   auto session =
       LiveSession::Open(std::move(setup), InAngles(job.job) ? &adjuster : nullptr, console);
@@ -77,7 +89,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     return kUnusable;
   }
   const StopOnSignals stop([&session] { (*session)->Stop(); });
-  SayHowHeard((*session)->bus());
+  if (options.says != Says::kNothing) SayHowHeard((*session)->bus());
   NotifyManager("READY=1");
   const LiveOutcome outcome = (*session)->Run();
   for (const std::string& hint : outcome.hints) Complain(hint);
@@ -86,7 +98,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     Complain(*outcome.fault);
     return kUnusable;
   }
-  return Summarise(job, outcome);
+  return Summarise(job, outcome, options.says);
 }
 
 }  // namespace wellgyro::apps

@@ -6,6 +6,8 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/toml/job_file.h"
 
+#include "delivery.h"
+
 namespace wellgyro::apps {
 
 struct SurveyOptions {
@@ -15,6 +17,7 @@ struct SurveyOptions {
   bool resume = false;
   std::vector<std::string> fill;  ///< other recorders' logs
   std::vector<SurveyFormat> formats;
+  Says says = Says::kSummary;
 };
 
 /// Surveys a live stream until FINISH, a signal or the loss of the bus; the exit code.

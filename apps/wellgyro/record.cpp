@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/lcm_live.h"
+#include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/loss_watch.h"
 #include "wellgyro/io/toml/job_file.h"
@@ -35,16 +35,6 @@ struct RecordOptions {
   double rotate_mb = 0, rotate_minutes = 0;
   bool append = false;
 };
-
-/// LOG, then LOG.001, LOG.002 ... with the ending kept.
-std::string Numbered(const std::string& name, int number) {
-  if (number == 0) return name;
-  const std::filesystem::path path(name);
-  std::filesystem::path result = path.parent_path() / path.stem();
-  result += fmt::format(".{:03}", number);
-  result += path.extension();
-  return result.string();
-}
 
 class Recording {
  public:
@@ -90,7 +80,7 @@ class Recording {
 std::optional<Fault> Recording::Open() {
   // Numbers of an earlier recording under the same name are passed over when appending.
   const IfExists if_exists = options_.append ? IfExists::kAppend : IfExists::kRefuse;
-  Result<LogWriter> log = LogWriter::Open(Numbered(options_.out, number_), if_exists);
+  Result<LogWriter> log = LogWriter::Open(LogPart(options_.out, number_), if_exists);
   if (!log) return log.fault();
   log_.emplace(std::move(*log));
   opened_us_ = MonotonicUs();
@@ -135,7 +125,7 @@ void Recording::Housekeeping() {
   next_second_ = now + kSecondUs;
   if (!fault_ && !log_->InPlace()) {
     Complain(
-        fmt::format("{} was moved or removed: a new one begins", Numbered(options_.out, number_)));
+        fmt::format("{} was moved or removed: a new one begins", LogPart(options_.out, number_)));
     fault_ = log_->Close();
     if (!fault_) fault_ = Open();
   }
@@ -172,7 +162,7 @@ int Recording::Report() {
   }
   fmt::print("recorded {} messages, {} bytes, {} samples; {} samples lost\n", events_, bytes_,
              watch_.samples(), watch_.lost());
-  for (int i = 0; i <= number_; ++i) fmt::print("wrote {}\n", Numbered(options_.out, i));
+  for (int i = 0; i <= number_; ++i) fmt::print("wrote {}\n", LogPart(options_.out, i));
   if (fault_) return kUnusable;
   return watch_.lost() > 0 || drops_ > 0 ? kDoneWithLosses : kDone;
 }

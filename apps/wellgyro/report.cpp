@@ -25,8 +25,11 @@ void Complain(std::string_view sentence) { fmt::print(stderr, "wellgyro: {}\n", 
 
 void Complain(const Fault& fault) { Complain(Sentence(fault)); }
 
-Progress::Progress(std::string_view doing)
-    : doing_(doing), terminal_(isatty(STDERR_FILENO) != 0), begin_ms_(NowMs()), last_ms_(0) {}
+Progress::Progress(std::string_view doing, bool shown)
+    : doing_(doing),
+      terminal_(shown && isatty(STDERR_FILENO) != 0),
+      begin_ms_(NowMs()),
+      last_ms_(0) {}
 
 Progress::~Progress() {
   if (shown_) fmt::print(stderr, "\r{:{}}\r", "", doing_.size() + 8);
@@ -39,6 +42,13 @@ void Progress::Show(std::int64_t done, std::int64_t all) {
   last_ms_ = now;
   shown_ = true;
   fmt::print(stderr, "\r{} {:3} %", doing_, 100 * done / all);
+  std::fflush(stderr);
+}
+
+void Progress::Show() {
+  if (!terminal_) return;
+  shown_ = true;
+  fmt::print(stderr, "\r{} ...", doing_);
   std::fflush(stderr);
 }
 

@@ -22,12 +22,14 @@ void Complain(const Fault& fault);
 /// elsewhere. Shown from the first second on, ten times a second at most.
 class Progress {
  public:
-  explicit Progress(std::string_view doing);
+  explicit Progress(std::string_view doing, bool shown = true);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void Show(std::int64_t done, std::int64_t all);
+  /// At once, of work whose share is not known.
+  void Show();
 
  private:
   std::string doing_;

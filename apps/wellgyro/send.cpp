@@ -268,7 +268,7 @@ void AddSend(CLI::App& app, int& exit_code) {
   what->excludes(make);
   command->footer(
       "Example:\n  wellgyro send --new-key console.pem\n"
-      "  wellgyro send reject --md-m 120 --who Ada --job job.toml --key console.pem --to "
+      "  wellgyro send finish --who Ada --job job.toml --key console.pem --to "
       "udpm://239.255.76.67:7667");
   command->callback([options, new_key, &exit_code] {
     if (!new_key->empty()) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/bus/file_lock.h"
+#include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/exchange/exchange.h"
@@ -30,49 +32,70 @@
 namespace wellgyro::apps {
 namespace {
 
-SourceRecord Describe(const std::string& name, const Intake& intake, const LogReader& reader) {
-  SourceRecord source;
-  source.name = name;
-  source.faults = reader.Faults();
+/// What a log, or a part of one, was like, beside the parts before it.
+void Describe(const std::string& name, const LogReader& reader, SourceRecord& source) {
+  source.name += (source.name.empty() ? "" : ", ") + name;
+  for (const Fault& fault : reader.Faults()) source.faults.push_back(fault);
+  source.counts["events"] += reader.health().events;
+  source.counts["bytes_lost"] += reader.health().lost_bytes;
+  source.counts["gaps"] += reader.health().gap_count;
+}
+
+void Describe(const Intake& intake, SourceRecord& source) {
   source.faults.insert(source.faults.end(), intake.faults().faults().begin(),
                        intake.faults().faults().end());
-  source.counts["events"] = reader.health().events;
-  source.counts["bytes_lost"] = reader.health().lost_bytes;
-  source.counts["gaps"] = reader.health().gap_count;
   source.counts["malformed"] = intake.feed().malformed();
   for (const auto& [channel, foreign] : intake.feed().foreign()) {
     source.counts["foreign_messages"] += foreign.messages;
   }
-  return source;
 }
 
-int SurveyLog(const SurveyOptions& options, const JobFile& job) {
-  Result<LogReader> reader = LogReader::Open(options.from);
+/// All of one log, or of a part of one, into `intake`; false where it is none.
+bool PushLog(const std::string& path, const SurveyOptions& options, const Surveyor& surveyor,
+             Intake& intake, SourceRecord& source) {
+  Result<LogReader> reader = LogReader::Open(path);
   if (!reader) {
     Fault fault = reader.fault();
     if (fault.code == FaultCode::kForeign) fault.text += ", nor a table of sensor data";
     Complain(fault);
-    return kUnusable;
+    return false;
   }
+  Progress progress("surveying", options.says != Says::kNothing);
+  std::error_code ignored;
+  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(path, ignored));
+  LogEvent event;
+  while (!surveyor.finished() && reader->Next(event)) {
+    intake.Take(event.channel, event.data, event.data_offset);
+    progress.Show(event.data_offset, ignored ? 0 : size);
+  }
+  Describe(path, *reader, source);
+  return true;
+}
+
+/// The last adjustment, which may take as long as all before it.
+void FinishSurvey(Surveyor& surveyor, const SurveyOptions& options) {
+  Progress progress("adjusting", options.says != Says::kNothing);
+  progress.Show();
+  surveyor.Finish();
+}
+
+int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   FaultBook faults;
   const LeastSquaresAdjuster adjuster;
   Surveyor surveyor(job.job, faults, InAngles(job.job) ? &adjuster : nullptr);
   Intake intake(job, surveyor);
-  {
-    Progress progress("surveying");
-    std::error_code ignored;
-    const auto size = static_cast<std::int64_t>(std::filesystem::file_size(options.from, ignored));
-    LogEvent event;
-    while (!surveyor.finished() && reader->Next(event)) {
-      intake.Take(event.channel, event.data, event.data_offset);
-      progress.Show(event.data_offset, ignored ? 0 : size);
-    }
-    surveyor.Finish();
+  SourceRecord source;
+  const std::vector<std::string> parts =
+      options.sources.size() > 1 ? options.sources : LogParts(options.from);
+  for (const std::string& part : parts) {
+    if (!PushLog(part, options, surveyor, intake, source)) return kUnusable;
   }
+  FinishSurvey(surveyor, options);
   for (const std::string& hint : HintsAtChannels(intake.feed())) Complain(hint);
-  const SourceRecord source = Describe(options.from, intake, *reader);
+  Describe(intake, source);
   return DeliverAll(options.out, job, surveyor,
-                    RecordOf(MakerOf(job.job), job, options.formats, intake, faults), source);
+                    RecordOf(MakerOf(job.job), job, options.formats, intake, faults), source,
+                    options.says);
 }
 
 /// From tables of sensor data: samples, averages at rest, depth.
@@ -86,7 +109,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
     Complain(report.fault());
     return kUnusable;
   }
-  surveyor.Finish();
+  FinishSurvey(surveyor, options);
   RunRecord record;
   const Maker maker = MakerOf(job.job);
   record.program = maker.program;
@@ -104,7 +127,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   source.counts["samples"] = report->samples;
   source.counts["still_windows"] = report->windows;
   source.counts["depth_marks"] = report->marks;
-  return DeliverAll(options.out, job, surveyor, record, source);
+  return DeliverAll(options.out, job, surveyor, record, source, options.says);
 }
 
 /// Says what the job lacks for one of the formats, before the work rather than after it.
@@ -142,7 +165,8 @@ int SurveyAny(SurveyOptions options) {
     }
     lock.emplace(std::move(*taken));
   }
-  const bool tables = options.sources.size() > 1 || IsSensorTable(options.from);
+  const bool tables = IsSensorTable(options.from) ||
+                      std::any_of(options.sources.begin(), options.sources.end(), IsSensorTable);
   return tables ? SurveyTables(options, *job) : SurveyLog(options, *job);
 }
 
@@ -155,6 +179,18 @@ void AddLiveOptions(CLI::App& command, SurveyOptions& options) {
       .add_option("--fill", options.fill,
                   "With --resume: another recorder's log, for what was sent meanwhile")
       ->type_name("LOG");
+}
+
+void AddSays(CLI::App& command, Says& says) {
+  CLI::Option* quiet = command.add_flag_callback(
+      "--quiet", [&says] { says = Says::kNothing; },
+      "Say nothing but what went wrong; the exit code has the verdict");
+  command
+      .add_flag_callback(
+          "--json", [&says] { says = Says::kJson; },
+          "The summary as one JSON document, wellgyro.summary/1, and nothing else on standard "
+          "output")
+      ->excludes(quiet);
 }
 
 void AddFormats(CLI::App& command, SurveyOptions& options) {
@@ -197,8 +233,9 @@ void AddSurvey(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "--from", options->sources,
-          "LCM log, - for standard input, or an LCM URL as udpm://239.255.76.67:7667; "
-          "by default LCM_DEFAULT_URL, or LCM's own default. Or tables of samples, of "
+          "LCM log, with the parts that follow a rotated one, - for standard input, or an LCM URL "
+          "as udpm://239.255.76.67:7667; by default LCM_DEFAULT_URL, or LCM's own default. Or "
+          "tables of samples, of "
           "averages at rest and of depth, or P7/17 with G7 records, each with its own --from")
       ->allow_extra_args(false)
       ->type_name("LOG|URL|CSV");
@@ -207,6 +244,7 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   AddLiveOptions(*command, *options);
   AddFormats(*command, *options);
+  AddSays(*command, options->says);
   auto page = std::make_shared<bool>(false);
   command->add_flag("--report", *page, "The report too, as report.html among the survey files");
   command->footer(

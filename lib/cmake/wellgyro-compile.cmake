@@ -22,8 +22,9 @@ endfunction()
 # the same kind (libraries are compiled with -fPIC, programs with -fPIE) and define no macro that the
 # target does not.
 #
-# Not the default, nor in tests/run: ccache shares no precompiled header between clones, a source
-# that forgot an include compiles all the same, and g++ 12 then warns of bounds that are kept.
+# Not the default: ccache shares no precompiled header between clones, a source that forgot an include
+# compiles all the same, and g++ 12 then warns of bounds that are kept. tests/run asks for them, and
+# for no warnings as errors, on a machine without ccache.
 option(WELLGYRO_PCH "Precompile the headers of others: half the time from scratch" OFF)
 function(wellgyro_precompile target)
   cmake_parse_arguments(PCH "" "LIKE" "" ${ARGN})
@@ -40,13 +41,14 @@ set(WELLGYRO_PCH_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <filesy
   <string> <string_view> <utility> <variant> <vector> <Eigen/Cholesky> <Eigen/Core>
   <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/LU> <Eigen/QR> <Eigen/SVD>)
 
-# A room of a library: its sources and its public headers, named relative to the room.
-#   wellgyro_room(wellgyro noise SOURCES allan.cpp HEADERS allan.h)
+# A room of a library: its sources, named relative to the room. Which headers are public is told by
+# lib/public-headers.txt.
+#   wellgyro_room(wellgyro noise SOURCES allan.cpp)
 function(wellgyro_room target room)
   cmake_parse_arguments(ROOM "" "" "SOURCES;HEADERS" ${ARGN})
+  if(ROOM_HEADERS)
+    message(FATAL_ERROR "${room}: public headers stand in lib/public-headers.txt")
+  endif()
   list(TRANSFORM ROOM_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/lib/wellgyro/${room}/)
-  list(TRANSFORM ROOM_HEADERS PREPEND ${PROJECT_SOURCE_DIR}/lib/wellgyro/${room}/)
-  target_sources(${target}
-    PRIVATE ${ROOM_SOURCES}
-    PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/lib FILES ${ROOM_HEADERS})
+  target_sources(${target} PRIVATE ${ROOM_SOURCES})
 endfunction()

@@ -509,7 +509,7 @@ class Live(ProgramTest):
     def test_a_full_disk_is_borne(self):
         disk = self.Path("disk")
         os.mkdir(disk)
-        made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=600k", "tmpfs", disk],
+        made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2400k", "tmpfs", disk],
                               check=False, capture_output=True)
         if made.returncode != 0:
             self.skipTest("no small disk can be made here")

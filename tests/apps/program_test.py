@@ -252,10 +252,12 @@ class Program(ProgramTest):
         listed = Run("--help").stdout.split("Subcommands:")[1]
         commands = [line.split()[0] for line in listed.splitlines() if line.startswith("  ")
                     and line[2] != " "]
-        self.assertEqual(sorted(commands), ["allan", "calibrate", "check", "clearance", "compare", "convert",
+        self.assertEqual(sorted(commands), ["allan", "bridge", "calibrate", "check",
+                                            "clearance", "compare", "convert",
                                             "merge", "models",
-                                            "north", "plan", "record", "report", "simulate", "survey",
-                                            "uncertainty"])
+                                            "north", "plan", "record", "report", "send",
+                                            "simulate", "survey",
+                                            "uncertainty", "watch"])
         for command in commands:
             done = Run(command, "--help")
             self.assertEqual(done.returncode, 0)

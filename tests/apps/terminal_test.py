@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """What the program says at a terminal. terminal_test.py PROGRAM"""
+import json
+import math
 import os
+import struct
 import unittest
 
 from harness import DEMO, FreshProgramTest, Run
@@ -50,6 +53,79 @@ class Terminal(FreshProgramTest):
         done = Run("convert", os.path.join(DEMO, "run.lcm"), self.Path("absent/run.csv"))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.Read("absent/run.csv"), self.Read("run.csv"))
+
+    def test_units_and_headings_that_are_refused_come_with_the_known_ones(self):
+        for heads, said in (("MD[furlong],INC[deg],AZI_TRUE[deg]", "known are m, ft, ftUS"),
+                            ("MD[m],INC[turns],AZI_TRUE[deg]", "known are deg, "),
+                            ("MD[m],LEAN[deg],AZI_TRUE[deg]", "as MD[m], INC[deg], AZI_TRUE[deg]")):
+            self.Write("in.csv", heads + "\n0,0,0\n30,1.5,350\n")
+            done = Run("convert", self.Path("in.csv"), self.Path("out.las"))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(said, done.stderr)
+
+    def Demo(self, *more):
+        return Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                   os.path.join(DEMO, "run.lcm"), "--out", self.Path("result"), *more)
+
+    def test_a_quiet_survey_says_nothing(self):
+        done = self.Demo("--quiet")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        self.assertEqual(self.Demo("--quiet", "--json").returncode, 1)
+        with open(self.Path("empty.lcm"), "wb"):
+            pass
+        done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                   self.Path("empty.lcm"), "--out", self.Path("none"), "--quiet")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertTrue(done.stderr, "trouble is said all the same")
+
+    def test_the_summary_as_a_document_says_what_the_files_say(self):
+        done = self.Demo("--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said["format"], said["exit_code"]), ("wellgyro.summary/1", 0))
+        self.assertEqual(said["verdict"], self.Toml("result", "run.toml")["verdict"]["verdict"])
+        tool, = said["tools"]
+        for name in tool["files"]:
+            self.assertTrue(os.path.isfile(self.Path("result", name)), name)
+        rows = self.Rows("result", "survey.csv")
+        self.assertEqual(tool["stations"], len(rows))
+        for key, column in (("md_m", "MD[m]"), ("azimuth_true_deg", "AZI_TRUE[deg]"),
+                            ("north_m", "N[m]"), ("tvd_m", "TVD[m]")):
+            self.assertAlmostEqual(tool["end"][key], float(rows[-1][column]), 4)
+        self.assertAlmostEqual(tool["end"]["tvd_95_m"],
+                               1.959964 * float(rows[-1]["VAR_VV[m2]"]) ** 0.5, 5)
+        # The half axes' squares sum to the trace, as 2.4477 sigma.
+        ellipse = tool["end"]["ellipse_95"]
+        self.assertAlmostEqual(ellipse["semi_major_m"] ** 2 + ellipse["semi_minor_m"] ** 2,
+                               -2 * math.log(0.05) * (float(rows[-1]["VAR_NN[m2]"]) +
+                                                      float(rows[-1]["VAR_EE[m2]"])), 4)
+        bad = [row["CODE"] for row in self.Rows("result", "checks.csv") if row["VERDICT"] != "pass"]
+        self.assertEqual([check["code"] for check in tool["checks_not_passed"]], bad)
+
+    def test_a_rotated_log_is_one_survey(self):
+        whole = os.path.join(DEMO, "run.lcm")
+        with open(whole, "rb") as file:
+            data = file.read()
+        ends = [0]
+        while ends[-1] < len(data):  # a head: sync word, number, time, lengths of channel and data
+            _, _, _, channel, size = struct.unpack_from(">IqqII", data, ends[-1])
+            ends.append(ends[-1] + 28 + channel + size)
+        cuts = [0, ends[len(ends) // 3], ends[2 * len(ends) // 3], len(data)]
+        names = ["rig.lcm", "rig.001.lcm", "rig.002.lcm"]
+        for name, begin, end in zip(names, cuts, cuts[1:]):
+            with open(self.Path(name), "wb") as part:
+                part.write(data[begin:end])
+        job = os.path.join(DEMO, "job.toml")
+        self.assertEqual(Run("survey", "--job", job, "--from", whole, "--out",
+                             self.Path("whole")).returncode, 0)
+        Run("survey", "--job", job, "--from", self.Path("rig.lcm"), "--out", self.Path("first"))
+        each = [word for name in names for word in ("--from", self.Path(name))]
+        Run("survey", "--job", job, *each, "--out", self.Path("each"))
+        for name in ("survey.csv", "passes.csv", "checks.csv"):
+            wanted = self.Read("whole/" + name)
+            self.assertEqual(self.Read("first/" + name), wanted)
+            self.assertEqual(self.Read("each/" + name), wanted)
+        self.assertIn("rig.002.lcm", self.Read("first/source.toml"))
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ testing::SmallHole LongHole(double imu_hz) {
           .stations_every = 10};
 }
 
-Job TheJob(TrackerOptions::Order order) {
+Job TheJob(AttitudeSpec::Order order) {
   Job job = JobOf(LongHole(1'000));
   job.attitude.order = order;
   return job;
@@ -137,7 +137,7 @@ class TimedListener : public SurveyorListener {
 };
 
 /// The whole: reading, decoding, surveying, and the text of the files, with the share of each.
-void LogToStations(benchmark::State& state, TrackerOptions::Order order) {
+void LogToStations(benchmark::State& state, AttitudeSpec::Order order) {
   const Log& log = Log::At(static_cast<double>(state.range(0)));
   const Job job = TheJob(order);
   Shares shares;
@@ -168,11 +168,11 @@ void LogToStations(benchmark::State& state, TrackerOptions::Order order) {
   state.counters["surveying_%"] = shares.surveying * percent;
   state.counters["writing_%"] = shares.writing * percent;
 }
-BENCHMARK_CAPTURE(LogToStations, second_order, TrackerOptions::kSecond)
+BENCHMARK_CAPTURE(LogToStations, second_order, AttitudeSpec::Order::kSecond)
     ->Arg(1'000)
     ->Arg(10'000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(LogToStations, third_order, TrackerOptions::kThird)
+BENCHMARK_CAPTURE(LogToStations, third_order, AttitudeSpec::Order::kThird)
     ->Arg(1'000)
     ->Arg(10'000)
     ->Unit(benchmark::kMillisecond);
@@ -183,7 +183,7 @@ void Tools(benchmark::State& state) {
   constexpr int kSeconds = 600;
   for (auto unused : state) {
     Sink sink;
-    Surveyor surveyor(TheJob(TrackerOptions::kThird), sink);
+    Surveyor surveyor(TheJob(AttitudeSpec::Order::kThird), sink);
     std::vector<ImuSample> batch(10);
     for (int second = 0; second < kSeconds; ++second) {
       DepthMark mark;

@@ -1,5 +1,7 @@
 // Surveys of runs that did not see all of the hole: what they say of the stations there and behind.
 // 2026-11-21.
+#include "wellgyro/attitude/unseen.h"
+
 #include <cmath>
 #include <cstdint>
 #include <functional>

@@ -18,6 +18,7 @@
 #include "wellgyro/bus/reassembly.h"
 #include "wellgyro/io/signature.h"
 #include "wellgyro/live/intake.h"
+#include "wellgyro/survey/verdict.h"
 
 #include "bus/simulated_messages.h"
 #include "support/small_hole.h"
@@ -50,11 +51,14 @@ class Subject {
   void TakeMessage(std::string_view channel, std::span<const std::byte> bytes) {
     in_.Take(channel, bytes);
   }
-  /// The files whose bytes must not change, one after the other.
-  std::string Files() {
+  Survey Result() {
     surveyor_.Finish();
+    return surveyor_.Current(0);
+  }
+  /// The files whose bytes must not change, one after the other.
+  std::string Files(const Survey& survey) const {
     std::string all;
-    for (const OutputFile& file : ResultFiles({}, {}, job_.job, surveyor_.Current(0))) {
+    for (const OutputFile& file : ResultFiles({}, {}, job_.job, survey)) {
       const bool told = file.name == "survey.csv" || file.name == "passes.csv";
       if (told) all += file.bytes;
     }
@@ -72,6 +76,26 @@ class Subject {
   Intake in_;
   Reassembly reassembly_;
 };
+
+/// Fails for the samples that were left out, and for nothing else.
+bool FailsForWhatWasLeftOut(const Survey& survey) {
+  const auto fails = [](const Check& check) { return check.verdict == Verdict::kFail; };
+  const auto other = [&](const Check& check) {
+    return fails(check) && check.code != "samples_refused";
+  };
+  return std::ranges::any_of(survey.checks, fails) && std::ranges::none_of(survey.checks, other);
+}
+
+/// As a verdict of fail leaves it.
+Survey Unfit(Survey survey) {
+  const Station tie_in = survey.chosen.front();
+  for (std::vector<Station>* stations : {&survey.chosen, &survey.passes}) {
+    for (Station& station : *stations) {
+      if (station.kind != StationKind::kTieIn) MakeUnfit(tie_in, station);
+    }
+  }
+  return survey;
+}
 
 struct Message {
   std::string channel;
@@ -206,14 +230,20 @@ int Datagrams(std::int64_t count) {
     for (; sent < until; ++sent) among.Take(harm.sender(), harm.Next(i + 1));
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  const bool same = alone.Files() == among.Files();
+  // Whose samples come twice with different contents, nobody can tell: such a survey fails, and its
+  // angles and positions stay those of the first.
+  const Survey told = among.Result();
+  const bool fails = FailsForWhatWasLeftOut(told);
+  const Survey expected = fails ? Unfit(alone.Result()) : alone.Result();
+  const bool same = alone.Files(expected) == among.Files(told);
   fmt::print(
       "{} hostile datagrams among {} true ones in {:.0f} s: {} refused unread, {} malformed, {} "
       "orders refused, {} obeyed, {} tools, {} faults told of; {:.0f} MB resident at most; the "
-      "survey is {}\n",
+      "survey is {}{}\n",
       sent, stream.size(), took.count(), among.refused(), among.intake().feed().malformed(),
       among.intake().operations().refused(), among.intake().operations().obeyed(), among.tools(),
-      among.faults(), Resident(), same ? "the same" : "ANOTHER");
+      among.faults(), Resident(), same ? "the same" : "ANOTHER",
+      fails ? " and fails for samples that were left out" : "");
   return same && Resident() < 100 && among.intake().operations().obeyed() == 0 ? 0 : 3;
 }
 

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "wellgyro/bus/encode.h"
+#include "wellgyro/survey/run_adjuster.h"
 
 #include "bus/multicast.h"
 #include "bus/simulated_messages.h"

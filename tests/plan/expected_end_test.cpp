@@ -53,29 +53,31 @@ TEST(ExpectedEnd, AToldAzimuthTurnsTheWellAboutItsBegin) {
 }
 
 TEST(ExpectedEnd, DepthStandsAlongTheHoleAndThePath) {
+  // 1000 m north, a quarter of a turn of 100 m, 1000 m east.
+  const double bend = 50 * kPi, reach = 1100;
   PlanCase c = test::CaseOf(
-      {{0, 90, 0}, {1000, 90, 0}, {1000 + 100 * kPi, 90, 180}, {2000 + 100 * kPi, 90, 180}}, 60, 0);
+      {{0, 90, 0}, {1000, 90, 0}, {1000 + bend, 90, 90}, {2000 + bend, 90, 90}}, 60, 0);
   c.errors.depth_sigma = 0.5;
-  EXPECT_NEAR(DepthCovariance(c)(0, 0), 0.25, 1e-9);
-  // A scale lengthens the way: to where it ends, 200 m east of its begin, and the tool back along
-  // it.
+  EXPECT_NEAR(DepthCovariance(c)(1, 1), 0.25, 1e-9);
+  // A scale lengthens the way: to where it ends, and the tool back along the hole.
   c.errors.depth_sigma = 0;
   c.errors.depth_scale_sigma = 1e-3;
   const Eigen::Matrix3d cov = DepthCovariance(c);
-  const double way = 2.0 + 0.1 * kPi;
-  EXPECT_NEAR(cov(0, 0), 2 * way * way, 1e-3);
-  EXPECT_NEAR(cov(1, 1), 0.04, 1e-3);
+  const double back = 1e-3 * (2000 + bend), path = 1e-3 * reach;
+  EXPECT_NEAR(cov(0, 0), path * path, 1e-3);
+  EXPECT_NEAR(cov(1, 1), back * back + (path - back) * (path - back), 1e-3);
 }
 
 // The matrices that a search works on against the whole run put through the estimator.
 TEST(StopInformation, SaysOfStopsWhatTheWholeRunDoes) {
-  for (const PlanCase& c : {test::Slant(), test::SShape(), test::Horizontal()}) {
-    const StopInformation info(c, PlacesEvery(c.way, 90));
+  for (PlanCase c : {test::Slant(), test::SShape(), test::Horizontal()}) {
+    c.way.speed_in = c.way.speed_out = 2;
+    const StopInformation info(c, PlacesEvery(c.way, 150));
     ASSERT_TRUE(info.solved());
     StopStand stand(info, 5, HUGE_VAL);
     EXPECT_NEAR(stand.Value().ellipse / ExpectEnd(c, {}, false).semi_major, 1, 1e-3);
     std::vector<PlannedStop> stops;
-    for (const std::size_t i : {std::size_t{1}, std::size_t{9}, info.places() / 2 + 7}) {
+    for (const std::size_t i : {std::size_t{1}, std::size_t{5}, info.places() / 2 + 4}) {
       stops.push_back({info.place(i).out, info.place(i).md, 200, {}});
       stand.Add({i, 0, 200});
       EXPECT_NEAR(stand.Value().ellipse / ExpectEnd(c, stops, false).semi_major, 1, 0.01);
@@ -93,7 +95,8 @@ TEST(StopInformation, SaysOfStopsWhatTheWholeRunDoes) {
 }
 
 TEST(StopInformation, ATurnBeforeAStopIsWhatTheWholeRunSays) {
-  const PlanCase c = test::Slant();
+  PlanCase c = test::Slant();
+  c.way.speed_in = c.way.speed_out = 2;
   const StopInformation info(c, PlacesEvery(c.way, 90));
   const std::size_t i = 3;
   std::vector<PlannedStop> stops{{false, info.place(0).md, 200, {}}};

@@ -12,6 +12,7 @@ namespace {
 const PlanReport& Example() {
   static const PlanReport report = [] {
     PlanReport r{.well = "slant.csv", .c = test::Slant(), .limits = {.ellipse = 7.5}, .plan = {}};
+    r.c.way.speed_in = r.c.way.speed_out = 3;
     r.plan = PlanStops(r.c, r.limits);
     r.practice_stops = Practice(r.c.way, 300, 180);
     r.practice = ExpectEnd(r.c, r.practice_stops, true);

@@ -121,6 +121,13 @@ def Functions(path):
     return found
 
 
+def PublicHeaders():
+    """Of lib/public-headers.txt, as included: "wellgyro/base/angle.h" and so on."""
+    rows = [line.split() for line in Lines(os.path.join(TOP, "lib", "public-headers.txt"))
+            if line and not line.startswith("#")]
+    return [f"wellgyro/{header}" for _, header in rows]
+
+
 # Frames of the conventions in README.md, and of single blocks of sensors.
 FRAMES = "IEWLTHGASMB"
 ROTATION = r"R_([A-Z])([A-Z])(\.transpose\(\)|\.inverse\(\))?"
@@ -184,6 +191,19 @@ class Structure(unittest.TestCase):
                     problems.append(f"{Place(path, number)}: a header may not include {target}")
         self.Report(problems)
 
+    def test_public_headers_stand_on_public_headers(self):
+        public, problems = PublicHeaders(), []
+        self.assertEqual(len(set(public)), len(public))
+        for header in public:
+            path = os.path.join(TOP, "lib", header)
+            if not os.path.isfile(path):
+                problems.append(f"public-headers.txt: there is no {header}")
+                continue
+            for number, kind, target in Includes(path):
+                if kind == '"' and target not in public:
+                    problems.append(f"{Place(path, number)}: {target} is not public")
+        self.Report(problems)
+
     def test_internal_headers_stay_inside(self):
         problems = []
         for path in Sources(LIB, (".h",)):
@@ -241,7 +261,7 @@ class Structure(unittest.TestCase):
 
     def test_functions_and_sources_are_short(self):
         problems, lengths = [], []
-        for path in list(Sources(LIB)) + list(Sources(os.path.join(TOP, "apps"))):
+        for path in [path for top in ("lib", "apps") for path in Sources(os.path.join(TOP, top))]:
             if len(Lines(path)) >= 500:
                 problems.append(f"{os.path.relpath(path, TOP)}: {len(Lines(path))} lines")
             for number, length in Functions(path):

@@ -13,10 +13,9 @@
 
 namespace wellgyro::support {
 
-/// A survey with something in every column that exchange formats know, in awkward numbers.
-inline SurveyTable FullSurvey(LengthUnit unit = LengthUnit::kMetre) {
-  SurveyTable t;
-  SurveyHead& h = t.head;
+/// The head of FullSurvey.
+inline SurveyHead FullHead(LengthUnit unit) {
+  SurveyHead h;
   h.names = {.field = "TEST FIELD",
              .region = "North Sea",
              .country = "Norway",
@@ -63,6 +62,13 @@ inline SurveyTable FullSurvey(LengthUnit unit = LengthUnit::kMetre) {
   h.memory = false;
   h.final_survey = true;
   h.planned = false;
+  return h;
+}
+
+/// A survey with something in every column that exchange formats know, in awkward numbers.
+inline SurveyTable FullSurvey(LengthUnit unit = LengthUnit::kMetre) {
+  SurveyTable t;
+  t.head = FullHead(unit);
   const double f = unit == LengthUnit::kMetre ? 1 : units::kFoot;
   const double f2 = f * f;
   const double dls = unit == LengthUnit::kMetre ? units::kDegPer30m : units::kDegPer100ft;

@@ -84,7 +84,7 @@ TEST(AttitudeOrder, OfTheJobIsThatOfTheSurvey) {
   Simulation simulation = SwingingRun(30);
   simulation.streams.imu_hz = 1;
   const Truth truth(simulation);
-  const auto worst = [&](TrackerOptions::Order order) {
+  const auto worst = [&](AttitudeSpec::Order order) {
     Job job = ExternalJob(simulation);
     job.attitude.order = order;
     CollectingSink sink;
@@ -97,7 +97,8 @@ TEST(AttitudeOrder, OfTheJobIsThatOfTheSurvey) {
     }
     return ToDegrees(most);
   };
-  const double second = worst(TrackerOptions::kSecond), third = worst(TrackerOptions::kThird);
+  const double second = worst(AttitudeSpec::Order::kSecond),
+               third = worst(AttitudeSpec::Order::kThird);
   std::printf("1 Hz: second order %.2e deg, third %.2e deg\n", second, third);
   EXPECT_GT(second, 2 * third);
   EXPECT_LT(second, 2e-3);

@@ -269,6 +269,7 @@ TEST(RunLimits, AStationOfARunCutOffLacksAnAzimuthOnlyWhereNoneIsKnown) {
   Simulation second = Slant();
   second.run.steps = {RunMove{.to_md = 200}, RunStop{.seconds = 90}};
   second.streams.session = 2;
+  second.streams.run = 2;
   second.streams.begin_utc = first.streams.begin_utc + Duration::Seconds(length + 600);
   Event begin;
   begin.kind = Event::Kind::kRunBegin;

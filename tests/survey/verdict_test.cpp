@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/survey/tie_in_check.h"
 

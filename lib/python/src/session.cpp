@@ -410,9 +410,7 @@ void AddOutcome(nb::module_& m) {
       .def_ro("fault_count", &Outcome::fault_count);
 }
 
-}  // namespace
-
-void AddSession(nb::module_& m) {
+void AddJob(nb::module_& m) {
   nb::class_<JobFile>(m, "Job")
       .def_prop_ro("name", [](const JobFile& j) { return j.job.well.name; })
       .def_prop_ro("latitude_deg", [](const JobFile& j) { return ToDegrees(j.job.well.latitude); })
@@ -427,6 +425,12 @@ void AddSession(nb::module_& m) {
         [](const std::string& text, const std::string& source, const std::string& folder) {
           return std::make_shared<JobFile>(Taken(ParseJob(text, source, folder)));
         });
+}
+
+}  // namespace
+
+void AddSession(nb::module_& m) {
+  AddJob(m);
   AddOutcome(m);
   nb::class_<Session>(m, "Session")
       .def("__init__", [](Session* self, std::shared_ptr<JobFile> job) { new (self) Session(job); })

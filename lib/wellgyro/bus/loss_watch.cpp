@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kSettleBatches = 16;
 constexpr std::size_t kSessionsKept = 4;
-// One return is a message that the network delayed over a restart.
+// A session that comes back once may be one message delayed over a restart; thrice it is a sender.
 constexpr int kReturnsOfTwoSenders = 3;
 
 }  // namespace

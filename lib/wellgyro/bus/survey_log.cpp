@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "wellgyro/bus/feed.h"
+#include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/surveyor_listener.h"
 
@@ -22,21 +23,23 @@ class FaultList : public Sink {
 }  // namespace
 
 Result<LogSurvey> SurveyLog(const Job& job, const std::string& path, const RunAdjuster* adjuster) {
-  Result<LogReader> reader = LogReader::Open(path);
-  if (!reader) return reader.fault();
   FaultList sink;
   Surveyor surveyor(job, sink, adjuster);
   SurveyorListener listener(surveyor, sink);
   Feed feed(job.channels, listener);
-  LogEvent event;
-  while (!surveyor.finished() && reader->Next(event)) {
-    feed.Take(event.channel, event.data, event.data_offset);
+  LogSurvey survey;
+  for (const std::string& part : LogParts(path)) {
+    Result<LogReader> reader = LogReader::Open(part);
+    if (!reader) return reader.fault();
+    LogEvent event;
+    while (!surveyor.finished() && reader->Next(event)) {
+      feed.Take(event.channel, event.data, event.data_offset);
+    }
+    for (const Fault& fault : reader->Faults()) survey.faults.push_back(fault);
   }
   surveyor.Finish();
-  LogSurvey survey;
   for (const std::int32_t tool : surveyor.tools()) survey.tools[tool] = surveyor.Current(tool);
   if (survey.tools.empty()) survey.tools[0] = surveyor.Current(0);
-  survey.faults = reader->Faults();
   survey.faults.insert(survey.faults.end(), sink.faults.begin(), sink.faults.end());
   survey.tally = surveyor.tally();
   return survey;

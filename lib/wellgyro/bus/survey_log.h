@@ -7,7 +7,6 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/survey.h"
 #include "wellgyro/survey/surveyor.h"
 
@@ -20,9 +19,10 @@ struct LogSurvey {
   SampleTally tally;
 };
 
-/// Surveys the LCM log at `path`, or a pipe, or "-" for standard input: what the program's `survey`
-/// does, without its files. `adjuster` as for Surveyor. A Fault where the log cannot be read at
-/// all; damage inside it is told in `faults`. Throws std::invalid_argument as Surveyor does.
+/// Surveys the LCM log at `path`, with the parts behind it where it was rotated (log_parts.h), or a
+/// pipe, or "-" for standard input: what the program's `survey` does, without its files. `adjuster`
+/// as for Surveyor. A Fault where the log cannot be read at all; damage inside it is told in
+/// `faults`. Throws std::invalid_argument as Surveyor does.
 WELLGYRO_EXPORT Result<LogSurvey> SurveyLog(const Job& job, const std::string& path,
                                             const RunAdjuster* adjuster = nullptr);
 

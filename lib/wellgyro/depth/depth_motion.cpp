@@ -29,7 +29,7 @@ void DepthMotion::Feel(UtcTime utc, double seconds, double f_z, const DepthTrack
     passed_count_ = 0;
     speed_ = way_ = 0;
   }
-  // What a short gap holds was felt as what follows it.
+  // A gap up to kGap is bridged with the force of the sample behind it.
   if (felt_until_ && *felt_until_ < utc) {
     seconds += (utc - *felt_until_).seconds();
     utc = *felt_until_;
@@ -61,7 +61,7 @@ void DepthMotion::Pass(const Passed& passed) {
   Compare();
 }
 
-/// Of one step, by the mean size of them all: of a normal distribution 0.8 sigma.
+/// 1-sigma of one step from the mean |step|: E|x| = sqrt(2/pi) sigma = sigma / 1.2533.
 double DepthMotion::Sigma() const {
   if (found_.compared < kFirst) return 0;
   return std::max(1.2533 * sum_size_ / static_cast<double>(found_.compared), kLeast);
@@ -90,7 +90,7 @@ void DepthMotion::Compare() {
     found_.step = std::copysign(beyond_lag, step);
     found_.step_md = passed_[2].md;
   }
-  // A step at a start is no lag.
+  // A step that falls on a start must not count as lag: bounded to kLagMost.
   const double lags = most + kLagMost * std::abs(felt);
   const double held = std::clamp(step, -lags, lags);
   rate2_ += felt * felt;

@@ -14,12 +14,13 @@ namespace wellgyro {
 /// Depth marks against the motion along the hole that the accelerometers feel: do marks jump where
 /// nothing was felt, and do they come late?
 ///
-/// Of four marks two seconds apart, the way between the middle two less the mean of the ways beside
-/// it knows no speed and no steady acceleration; what is left of it, after the same of the felt
-/// motion (the double integral of f_z less its mean) has been taken off, is a step between the
-/// middle two, or -lag times the same of the felt speed. Steps are told against their own scatter,
-/// the lag by least squares over all starts and stops. Memory is bounded. Marks are looked up in
-/// the track when the samples of their time come, so that how the two interleave does not matter.
+/// Third difference of four marks two seconds apart: the way between the middle two less the mean
+/// of the ways beside it, zero for any constant acceleration. Less the same third difference of the
+/// felt motion (double integral of f_z less its mean) it is a depth step between the middle two
+/// plus -lag times the third difference of the felt speed. Steps are judged against their own
+/// scatter, the lag is a least-squares fit over all starts and stops. Memory is bounded. Marks are
+/// looked up when the samples of their time come, so that how the two streams interleave does not
+/// matter.
 class WELLGYRO_EXPORT DepthMotion {
  public:
   struct Found {

@@ -43,11 +43,11 @@ struct MarkRead {
 /// both agree within 2 cm; across a jump of the counter it is unknown, and no fit spans one.
 /// A 1 cm encoder on a winch that swings by 4 cm/s gives speed and acceleration to 1 mm/s and
 /// 2 mm/s^2 rms at 10 Hz, to 2 mm/s and 5 mm/s^2 at 1 Hz; one count at rest reads as 5 mm/s. A
-/// sudden change of speed is smeared over the window. The sigmas are by the scatter that the marks
-/// show, about the fit or, where it holds too few, from mark to mark over the last of them. Marks
-/// that repeat each other tell less, and what of the rounding is not seen as scatter is common to
-/// all. What the parabola misses is in them where it stands out of the scatter: of a string that
-/// sticks within a window they are a third at worst.
+/// sudden change of speed is smeared over the window. Sigmas follow the scatter of the marks about
+/// the fit, or, where it holds too few, from mark to mark over the last of them. Marks that repeat
+/// one reading count as fewer, and quantisation that does not show as scatter is added as an error
+/// common to all. Truncation of the parabola is included where it exceeds the scatter; of a string
+/// that sticks within a window the sigmas may still be a third of the error.
 ///
 /// Depth events cut the track: from a DEPTH_ZERO, DEPTH_REZERO or DEPTH_TIE on depths read value_m
 /// there, whether or not the depth system itself was set; earlier depths stay. No fit spans one.

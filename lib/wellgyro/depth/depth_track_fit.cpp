@@ -69,21 +69,22 @@ DepthTrack::Scatter DepthTrack::ScatterAbout(UtcTime utc) const {
   return scatter;
 }
 
-/// Variance of one mark's noise. By what scatter it was told by, and as much of the encoder's
-/// rounding as keeps it from nothing; a mean over what the scatter may still be.
+/// Variance of one mark's noise: squares / (freedom - 1.5), near the mean of its posterior given
+/// the scatter; kRounding of the encoder's variance is a prior that keeps it above 0.
 double DepthTrack::Noise(Scatter scatter) const {
   const double reading = setup_.sigma_reading * setup_.sigma_reading;
   return (kRounding * reading + scatter.squares) / std::max(0.5, scatter.freedom - 1.5);
 }
 
-/// Variance of what rounding adds to all marks alike: what of it their scatter does not show.
+/// Variance of quantisation common to all marks: the encoder's less what shows as scatter.
 double DepthTrack::Common(Scatter scatter) const {
   const double reading = setup_.sigma_reading * setup_.sigma_reading;
   return std::max(0.0, reading - scatter.squares / std::max(1.0, scatter.freedom));
 }
 
-/// Squares of what the parabola `y` misses where the marks show more than noise of variance `noise`
-/// of a third or fourth power beside it. By the polynomials orthogonal under the weight 1 - u^2.
+/// Squared truncation errors of the parabola `y`: cubic and quartic terms of the residuals, as far
+/// as they exceed kSure times what noise of variance `noise` makes of them. Polynomials orthogonal
+/// under the weight 1 - u^2: u^3 - 3u/7 and u^4 - 2u^2/3 + 1/21.
 DepthTrack::Bend DepthTrack::BendOf(UtcTime utc, Span span, const LocalFit::Value& y,
                                     double noise) const {
   double norm3 = 0, norm4 = 0, sum3 = 0, sum4 = 0, var3 = 0, var4 = 0;

@@ -12,29 +12,15 @@
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/intake.h"
+#include "wellgyro/live/tool_result.h"
 #include "wellgyro/record/verdict.h"
 #include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {
 
-/// One tool's survey, and the folder that its files go to: the one given where a single tool has a
-/// survey, tool-N in it for several. A tool without a survey, which may be no more than a damaged
-/// number in a message, takes no folder of its own.
-struct ToolResult {
-  std::int32_t tool = 0;
-  std::filesystem::path folder;
-  Survey survey;
-};
-
 /// Never empty: where no tool has been heard of, tool 0 says so.
 WELLGYRO_EXPORT std::vector<ToolResult> ResultsOf(const Surveyor& surveyor,
                                                   const std::filesystem::path& folder);
-
-/// What wrote the result: in run.toml.
-struct Maker {
-  std::string program;   ///< name and version
-  std::string adjuster;  ///< of the runs
-};
 
 /// What is written about a survey besides the survey.
 WELLGYRO_EXPORT RunRecord RecordOf(const Maker& maker, const JobFile& job,

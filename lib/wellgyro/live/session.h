@@ -14,10 +14,11 @@
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/clock.h"
 #include "wellgyro/live/observer.h"
-#include "wellgyro/live/results.h"
-#include "wellgyro/survey/run_adjuster.h"
+#include "wellgyro/live/tool_result.h"
 
 namespace wellgyro {
+
+class RunAdjuster;
 
 /// What a live session is asked to do.
 struct LiveSetup {

@@ -61,7 +61,8 @@
   function pathOf(series, x, y) {
     const path = d3.line().defined(function (i) { return series.x[i] !== null && series.y[i] !== null; })
       .x(function (i) { return x(series.x[i]).toFixed(1); }).y(function (i) { return y(series.y[i]).toFixed(1); });
-    return path(d3.range(series.x.length)) + (series.mark === 'area' ? 'Z' : '');
+    const line = path(d3.range(series.x.length));
+    return line === null ? '' : line + (series.mark === 'area' ? 'Z' : '');
   }
 
   function drawLegend(svg, chart, left) {

@@ -196,6 +196,14 @@ void FaultPlayer::Turn(const SimulatedFault& f, double begin, double end, ImuSam
   s.w_IT_T = back * s.w_IT_T + (after - before) / seconds * axis;
 }
 
+/// White noise that makes the gyros' own `size` times as large.
+void FaultPlayer::AddNoise(const SimulatedFault& f, double seconds, ImuSample& s) {
+  const double more = std::sqrt(std::max(f.size * f.size - 1, 0.0) / seconds);
+  for (int i = 0; i < (s.has_gz ? 3 : 2); ++i) {
+    s.w_IT_T[i] += more * errors_.gyro_noise.angle_random_walk * noise_.Normal();
+  }
+}
+
 /// What one fault makes of what the sensors give.
 void FaultPlayer::Sense(const SimulatedFault& f, std::size_t index, double begin, double end,
                         ImuSample& s) {
@@ -235,13 +243,9 @@ void FaultPlayer::Sense(const SimulatedFault& f, std::size_t index, double begin
     case Cause::kGyroUnit:
       s.w_IT_T *= f.size;
       break;
-    case Cause::kGyroNoise: {
-      const double more = std::sqrt(std::max(f.size * f.size - 1, 0.0) / seconds);
-      for (int i = 0; i < (s.has_gz ? 3 : 2); ++i) {
-        s.w_IT_T[i] += more * errors_.gyro_noise.angle_random_walk * noise_.Normal();
-      }
+    case Cause::kGyroNoise:
+      AddNoise(f, seconds, s);
       break;
-    }
     case Cause::kVibration: {
       const double w = kTwoPi / f.period;
       value += f.size * (std::cos(w * (begin - f.begin)) - std::cos(w * (end - f.begin))) /

@@ -34,6 +34,7 @@ class WELLGYRO_EXPORT FaultPlayer {
   void Spoil(double begin, double end, ImuSample& sample);
 
  private:
+  void AddNoise(const SimulatedFault& f, double seconds, ImuSample& s);
   void Sense(const SimulatedFault& fault, std::size_t index, double begin, double end,
              ImuSample& sample);
   void Turn(const SimulatedFault& fault, double begin, double end, ImuSample& sample) const;

@@ -7,7 +7,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kShare = 100;  // one in so many is no longer single
+constexpr std::int64_t kShare = 100;  // flagged samples are isolated up to 1 in 100
 
 }  // namespace
 

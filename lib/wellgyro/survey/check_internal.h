@@ -26,7 +26,7 @@ Check CompareWith(std::string code, std::int32_t run, Measured measured, double 
 /// it hides a part of the run, in the sigma: a warning.
 Check CountOf(std::string code, std::int32_t run, std::int64_t count, std::string source);
 
-/// The same, of `all`: one in a hundred is no longer single, and fails.
+/// The same of `count` among `all`: a warning up to 1 %, beyond that a failure.
 Check ShareOf(std::string code, std::int32_t run, std::int64_t count, std::int64_t all,
               std::string source);
 

@@ -87,8 +87,8 @@ double AngleVariance(const Station& s, int angle) {
   return s.cov_md_inc_azi(angle, angle) + slope * slope * s.cov_md_inc_azi(0, 0);
 }
 
-/// The pair that differs most for its sigma. The sigma is that of independent errors, which two
-/// passes of one tool exceed at most by what they share.
+/// The pair with the largest |difference| / sigma, var = var_a + var_b. Two passes of one tool
+/// share instrument errors: in a difference these cancel where they have one sign in both passes.
 void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t run, Pass other,
                  const std::string& name, std::vector<Check>& checks) {
   struct Worst {
@@ -119,7 +119,7 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
                        const std::optional<double>& accepted) {
     Check check = Compare(code + name, run, worst.difference, accepted, units::kDeg, "deg");
     check.md = worst.md;
-    // Errors go on along the hole: so many of the pairs are independent at most.
+    // Errors are correlated along the hole: at most so many pairs count as independent trials.
     check.looks = accepted ? 0 : std::min(pairs, kPairsApart);
     checks.push_back(check);
   };

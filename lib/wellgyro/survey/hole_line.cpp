@@ -57,7 +57,7 @@ LegTree HoleLine::TreeOf(const UncertainWell& well, std::span<const HoleSection>
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const Vector3d to = Tangent(survey[i + 1].inclination, survey[i + 1].azimuth);
     legs.push_back(MakeLegArc(well.well->position[i], survey[i + 1].md - survey[i].md, from, to));
-    // No variance in any direction is above the norm.
+    // Frobenius norm >= largest eigenvalue >= variance in any direction.
     const double next = well.errors->cov_p[i + 1].norm();
     reach.push_back({std::max(variance, next), WidestOn(sections, survey[i].md, survey[i + 1].md)});
     from = to;

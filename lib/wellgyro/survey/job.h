@@ -8,12 +8,11 @@
 
 #include <Eigen/Core>
 
-#include "wellgyro/attitude/tracker.h"
 #include "wellgyro/base/depth.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
-#include "wellgyro/depth/cable.h"
 #include "wellgyro/earth/grid.h"
+#include "wellgyro/record/cable.h"
 #include "wellgyro/record/channels.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/operations.h"
@@ -48,8 +47,10 @@ struct AttitudeSpec {
     kAngles,    ///< filter, smoother and adjustment in azimuth, inclination and toolface
     kRotation,  ///< one adjustment of rotations, regular at vertical
   };
-  TrackerOptions::Order order = TrackerOptions::kThird;  ///< the second is cheaper, not better
-  Estimator estimator = Estimator::kAngles;              ///< of the final stations
+  /// Of the form that sums samples: its error falls with this power of the sample's period.
+  enum class Order { kSecond, kThird };
+  Order order = Order::kThird;               ///< the second is cheaper, not better
+  Estimator estimator = Estimator::kAngles;  ///< of the final stations
 };
 
 /// What the job says of the magnetic azimuths of a tool that has magnetometers.

@@ -126,8 +126,10 @@ constexpr std::array kGrid{
     Number<&Job::grid, &GridSpec::scale_origin>(
         "grid", "scale_origin", 1, {.min = 0.5, .max = 2},
         "scale on the central meridian, the parallel or at the pole", "1"),
-    Number<&Job::grid, &GridSpec::false_easting>("grid", "false_easting_m", 1, kAny, "", "0"),
-    Number<&Job::grid, &GridSpec::false_northing>("grid", "false_northing_m", 1, kAny, "", "0"),
+    Number<&Job::grid, &GridSpec::false_easting>("grid", "false_easting_m", 1, kAny,
+                                                 "of the natural origin", "0"),
+    Number<&Job::grid, &GridSpec::false_northing>("grid", "false_northing_m", 1, kAny,
+                                                  "of the natural origin", "0"),
     Number<&Job::grid, &GridSpec::convergence>(
         "grid", "convergence_deg", kDeg, {.min = -180, .max = 180},
         "stated by the operator: true azimuth less grid", "the projection's"),
@@ -179,13 +181,14 @@ constexpr std::array kErrors{
                                                         units::kDegPerHour, kSize, "per axis",
                                                         "the tool's, else 0.1"),
     Number<&Job::errors, &ErrorPriors::mass_unbalance_sigma>(
-        "errors", "mass_unbalance_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize, "",
-        "the tool's, else 0.5"),
+        "errors", "mass_unbalance_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize,
+        "drift with the force along the gyro's own axis", "the tool's, else 0.5"),
     Number<&Job::errors, &ErrorPriors::quadrature_sigma>(
-        "errors", "quadrature_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize, "",
-        "the tool's, else mass unbalance, else 0.5"),
+        "errors", "quadrature_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize,
+        "drift with the force along the other axis", "the tool's, else mass unbalance, else 0.5"),
     Number<&Job::errors, &ErrorPriors::gyro_scale_sigma>("errors", "gyro_scale_sigma", 1, kFraction,
-                                                         "", "the tool's, else 0.001"),
+                                                         "per axis, of the rate",
+                                                         "the tool's, else 0.001"),
     Number<&Job::errors, &ErrorPriors::gyro_misalignment_sigma>(
         "errors", "gyro_misalignment_sigma_rad", 1, kFraction, "z into x and y",
         "the tool's, else 0.05 deg"),
@@ -214,7 +217,8 @@ constexpr std::array kErrors{
         "errors", "depth_scale_sigma", 1, kFraction, "of measured depth below the tie-in",
         "the tool's, else 5.6e-4"),
     Number<&Job::errors, &ErrorPriors::latitude_sigma>(
-        "errors", "latitude_sigma_deg", kDeg, {.min = 0, .max = 90}, "", "the tool's, else 0"),
+        "errors", "latitude_sigma_deg", kDeg, {.min = 0, .max = 90}, "of the well's latitude",
+        "the tool's, else 0"),
 };
 
 constexpr std::array kFilesAndChannels{
@@ -285,9 +289,11 @@ constexpr std::array kCable{
     Number<&Job::depth, &DepthSpec::cable, &Cable::expansion>(
         "depth.cable", "expansion_per_degc", 1, {.min = 0, .max = 1e-3}, "thermal"),
     Number<&Job::depth, &DepthSpec::cable, &Cable::measuring_temperature>(
-        "depth.cable", "measuring_temperature_degc", 1, {.min = -100, .max = 300}, ""),
+        "depth.cable", "measuring_temperature_degc", 1, {.min = -100, .max = 300},
+        "at which counter or marks measured"),
     Number<&Job::depth, &DepthSpec::cable, &Cable::surface_temperature>(
-        "depth.cable", "surface_temperature_degc", 1, {.min = -100, .max = 300}, ""),
+        "depth.cable", "surface_temperature_degc", 1, {.min = -100, .max = 300},
+        "of the cable at the well head"),
     Number<&Job::depth, &DepthSpec::cable, &Cable::gradient>("depth.cable", "gradient_degc_per_km",
                                                              1e-3, {.min = -1e3, .max = 1e3},
                                                              "of temperature along the hole"),
@@ -310,7 +316,7 @@ constexpr std::array kStringAndChecks{
     Number<&Job::string, &StringSpec::sag>("string", "sag_deg", kDeg, kTilt,
                                            "of the tool axis, in a horizontal hole"),
     Number<&Job::string, &StringSpec::sigma_sag>("string", "sag_sigma_deg", kDeg,
-                                                 {.min = 0, .max = 90}, ""),
+                                                 {.min = 0, .max = 90}, "of sag_deg"),
     Number<&Job::string, &StringSpec::misalignment_x>("string", "misalignment_x_deg", kDeg, kTilt,
                                                       "tool axis against hole axis, towards Tx"),
     Number<&Job::string, &StringSpec::misalignment_y>("string", "misalignment_y_deg", kDeg, kTilt,
@@ -353,7 +359,7 @@ constexpr std::array kRunsAndEvents{
     Word("run", "begin_utime_us", "whole number", "none", "UTC since 1970"),
     Word("run", "end_utime_us", "whole number", "none", "what comes later is left out"),
     Word("run", "verdict", "ok or misrun", "ok", "a misrun gives no stations"),
-    Word("run", "remark", "text", "none", ""),
+    Word("run", "remark", "text", "none", "for the files"),
     Word("event", "utime_us", "whole number", "required", "UTC since 1970"),
     Word("event", "event",
          "depth_zero, depth_rezero, depth_tie, return_to_zero, foresight, run_begin, run_end, "
@@ -368,8 +374,8 @@ constexpr std::array kRunsAndEvents{
     Listed("event", "value_rad", "number", kAny, "none", "an angle"),
     Listed("event", "sigma_rad", "number", kSize, "0", "its sigma"),
     Word("event", "what", "text", "none", "shoe, mark ..."),
-    Word("event", "who", "text", "none", ""),
-    Word("event", "text", "text", "none", ""),
+    Word("event", "who", "text", "none", "who did it"),
+    Word("event", "text", "text", "none", "a remark's words"),
 };
 
 template <std::size_t... sizes>

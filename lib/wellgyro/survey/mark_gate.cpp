@@ -26,7 +26,7 @@ void MarkGate::Push(const DepthMark& mark) {
   // Without samples there is nothing by which to tell the wrong from the true.
   if (!heard_) return Open();
   const auto last = std::prev(aside_.end());
-  TellOf(last->second.mark);
+  TellOf(last->second.mark, Ahead(last->first));
   aside_.erase(last);
 }
 
@@ -36,6 +36,7 @@ void MarkGate::Pass(const DepthMark& mark) {
 }
 
 void MarkGate::HeardAt(UtcTime utc) {
+  if (!heard_) LeaveOutBefore(utc);
   heard_ = utc;
   Release(utc);
 }
@@ -54,17 +55,35 @@ void MarkGate::Overtake() {
       ++at;
       continue;
     }
-    TellOf(at->second.mark);
+    TellOf(at->second.mark, Ahead(at->first));
     at = aside_.erase(at);
   }
 }
 
-void MarkGate::TellOf(const DepthMark& mark) {
+/// Those that no chain of marks joins to the first sample.
+void MarkGate::LeaveOutBefore(UtcTime first) {
+  UtcTime joined = first;
+  auto at = aside_.upper_bound(first);
+  while (at != aside_.begin() && joined - std::prev(at)->first <= max_gap_) {
+    joined = (--at)->first;
+  }
+  for (auto old = aside_.begin(); old != at; old = aside_.erase(old)) {
+    const double seconds = (first - old->first).seconds();
+    TellOf(old->second.mark,
+           fmt::format("{:.0f} s before the first sample, without others between", seconds));
+  }
+}
+
+std::string MarkGate::Ahead(UtcTime utc) const {
   const UtcTime newest = passed_ ? std::max(*heard_, *passed_) : *heard_;
+  return fmt::format("{:.0f} s ahead of the samples and of all other marks",
+                     (utc - newest).seconds());
+}
+
+void MarkGate::TellOf(const DepthMark& mark, std::string_view wrong) {
   tell_({.code = FaultCode::kRange,
-         .text = fmt::format("a depth mark at utime_us {} is {:.0f} s ahead of the samples and of "
-                             "all other marks and was left out",
-                             mark.utc.ns / 1000, (mark.utc - newest).seconds())});
+         .text = fmt::format("a depth mark at utime_us {} is {} and was left out",
+                             mark.utc.ns / 1000, wrong)});
 }
 
 void MarkGate::Open() {
@@ -80,7 +99,7 @@ void MarkGate::Close() {
     if (utc <= *heard_ + ahead_) {
       Pass(aside.mark);
     } else {
-      TellOf(aside.mark);
+      TellOf(aside.mark, Ahead(utc));
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "wellgyro/base/result.h"
@@ -14,8 +16,9 @@ namespace wellgyro {
 
 /// Keeps a depth mark that is ahead of everything else in time until the samples get there, so that
 /// one wrong time does not make every true mark late. What waits is handed on in the order of time;
-/// a mark that kOthers others have overtaken contradicts them and is told. Nothing is lost by a
-/// stream that is merely ahead of the samples.
+/// a mark that kOthers others have overtaken contradicts them and is told. So are those before the
+/// first sample whose next is too far away to be joined to it. Nothing is lost by a stream that is
+/// merely ahead of the samples.
 class MarkGate {
  public:
   static constexpr int kOthers = 10;
@@ -24,9 +27,10 @@ class MarkGate {
   using Use = std::function<void(const DepthMark&)>;
   using Tell = std::function<void(const Fault&)>;
 
-  /// `ahead`: by so much a mark may be ahead of the newest sample and mark.
-  MarkGate(Duration ahead, Use use, Tell tell)
-      : ahead_(ahead), use_(std::move(use)), tell_(std::move(tell)) {}
+  /// `ahead`: by so much a mark may be ahead of the newest sample and mark; `max_gap`: between two
+  /// marks further apart there is no depth.
+  MarkGate(Duration ahead, Duration max_gap, Use use, Tell tell)
+      : ahead_(ahead), max_gap_(max_gap), use_(std::move(use)), tell_(std::move(tell)) {}
 
   void Push(const DepthMark& mark);
   /// Samples that are believed have come up to this time.
@@ -45,9 +49,11 @@ class MarkGate {
   void Pass(const DepthMark& mark);
   void Release(UtcTime utc);
   void Overtake();
-  void TellOf(const DepthMark& mark);
+  void LeaveOutBefore(UtcTime first);
+  std::string Ahead(UtcTime utc) const;
+  void TellOf(const DepthMark& mark, std::string_view wrong);
 
-  Duration ahead_;
+  Duration ahead_, max_gap_;
   Use use_;
   Tell tell_;
   bool open_ = false;  ///< before the first sample too

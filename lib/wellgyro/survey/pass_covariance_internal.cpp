@@ -34,17 +34,18 @@ Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
   return ratio * ratio * (high * high.transpose() + right * right.transpose());
 }
 
-/// Of a leg between stations that have nothing in common, as the azimuth was lost between them: its
-/// way may lead anywhere by its inclination, and so does the line it is drawn as.
+/// Covariance of a leg on which the azimuth was lost. Uniform azimuth of the true leg and of the
+/// drawn one: E[(x - x')^2] = 2 (L sin I)^2 / 2 in north and in east, with I the mean inclination.
 Eigen::Matrix3d UnknownCourse(const Station& above, const Station& below) {
   const double inclination = 0.5 * (above.inclination + below.inclination);
   const double aside = (below.md - above.md) * std::sin(inclination);
   return Eigen::Vector3d(aside * aside, aside * aside, 0).asDiagonal();
 }
 
-/// Azimuth and inclination errors taken as one and the same at all stations: for stations of their
-/// own windows, whose shared instrument errors dominate. Never smaller than what they really are.
-/// What the hole does between two stations, where nobody saw it, is random from leg to leg.
+/// Stations found at rest, each from its own window: errors of inclination and azimuth count as
+/// fully correlated from station to station (rho = 1), because shared instrument errors dominate;
+/// that is the upper bound of the sum. The course between stations is unobserved: random from leg
+/// to leg.
 class SystematicCovariance {
  public:
   SystematicCovariance(const Eigen::Matrix3d& cov_tie_in, bool legs_unseen)
@@ -76,10 +77,10 @@ class SystematicCovariance {
   std::optional<Station> last_;
 };
 
-/// What a depth error of the whole run does beside moving each station along the hole there. The
-/// start is where it is whatever its depth reads, so that the path below it moves by the difference
-/// of the two directions: none in a straight hole; from vertical to horizontal all error of the
-/// TVD.
+/// A depth error e common to the run moves station k along the hole by e t_k, which the sum over
+/// the stations has. The path starts at a fixed point whatever its depth reads, so e (t_0 - t_k)
+/// comes to it, t the unit tangents: zero in a straight hole; between a vertical start and a
+/// horizontal station e in TVD.
 class ShiftOfPath {
  public:
   explicit ShiftOfPath(const Station& first) : start_(Tangent(first.inclination, first.azimuth)) {}
@@ -92,8 +93,8 @@ class ShiftOfPath {
   Eigen::Vector3d start_;
 };
 
-/// A leg whose azimuth is off by d falls short of its way by 1 - cos d, which no first order shows.
-/// Its sign is always the same: taken as one error of all legs.
+/// Second-order term: an azimuth error d shortens a leg's horizontal reach by the factor cos d. The
+/// sign of 1 - cos d is always the same, so all legs count as fully correlated.
 class ShortOfWay {
  public:
   explicit ShortOfWay(const Station& first) : md_(first.md), last_(Of(first)) {}

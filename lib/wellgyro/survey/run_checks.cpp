@@ -108,8 +108,8 @@ constexpr std::array<ToolError, Knot::kSources> kToolErrors{
      {Knot::kAccelBiasY, "accel_bias_y", 1, "m/s2"},
      {Knot::kAccelBiasZ, "accel_bias_z", 1, "m/s2"}}};
 
-/// Of the gyro biases, whose value is the level where the run ends, with what it may become; a
-/// Gauss-Markov part is none of the level.
+/// Prior sigmas. A gyro bias is the level at the run's end: constant, walk K sqrt(t) and ramp R t;
+/// B counts only where it is a constant, since a Gauss-Markov part is a state of its own.
 Knot::SourceVector SigmasOf(const Job& job, const RunSummary& run) {
   Knot::SourceVector sigma = SourceSigmas(job.errors);
   const double seconds = (run.end - run.begin).seconds();
@@ -122,7 +122,7 @@ Knot::SourceVector SigmasOf(const Job& job, const RunSummary& run) {
   return sigma;
 }
 
-/// Squares over what is to be expected of them.
+/// Reduced chi-square: `sum` over its expectation `freedom`.
 Check CheckSquares(std::string code, std::int32_t run, double sum, double freedom) {
   constexpr double kLeastFreedom = 0.3;
   if (!(freedom >= kLeastFreedom)) {

@@ -25,8 +25,8 @@ struct Passed {
         by_utc(Apart(a.utc, b.utc)) {}
 };
 
-/// At a jump, of what goes forwards the middle one, or the smaller of two; at a new session UTC. At
-/// least a period, and no longer than a run.
+/// Length of a break [s]. At a jump: the median of those of the three that advance (of two, the
+/// smaller); at a new session: by UTC. Clamped to [period, kLongest].
 double TimePassed(const Passed& passed, double period, bool jumps) {
   constexpr double kLongest = 1e6;  // [s]
   if (!jumps) return std::clamp(passed.by_utc, period, kLongest);
@@ -38,8 +38,8 @@ double TimePassed(const Passed& passed, double period, bool jumps) {
   return std::clamp(all[3 - forwards + (forwards - 1) / 2], period, kLongest);
 }
 
-/// By which UTC contradicts number and tool clock: both where the numbers run on, else the nearer;
-/// not at all where both begin anew.
+/// How far UTC departs from what the sample numbers say, where these continue (`next`), else from
+/// the nearer of numbers and tool clock [s]; 0 where both restart.
 double Contradicted(const Passed& passed, bool next) {
   if (passed.by_seq < 0 && passed.by_tool < 0) return 0;
   const double off_seq = std::abs(passed.by_utc - passed.by_seq);

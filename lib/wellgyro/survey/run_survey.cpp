@@ -27,7 +27,8 @@ VerticalSetup VerticalSetupOf(const Job& job) {
 
 TrackerOptions TrackerOptionsOf(const Job& job) {
   TrackerOptions options;
-  options.order = job.attitude.order;
+  options.order = job.attitude.order == AttitudeSpec::Order::kSecond ? TrackerOptions::kSecond
+                                                                     : TrackerOptions::kThird;
   // Below twice this the vertical filter takes over.
   options.inclination_min = std::asin(SineNearVertical(job.errors, false)) / 2;
   options.accel_noise = job.errors.accel_noise;
@@ -45,8 +46,8 @@ StillSetup StillSetupOf(const Job& job) {
 
 IncrementOptions IncrementOptionsOf(const Job& job) {
   IncrementOptions options;
-  options.order = job.attitude.order == TrackerOptions::kSecond ? IncrementOptions::kSecond
-                                                                : IncrementOptions::kThird;
+  options.order = job.attitude.order == AttitudeSpec::Order::kSecond ? IncrementOptions::kSecond
+                                                                     : IncrementOptions::kThird;
   options.accel_noise = job.errors.accel_noise;
   options.angle_random_walk = job.noise.angle_random_walk;
   if (job.errors.accel_bias_sigma > 0) options.accel_bias = job.errors.accel_bias_sigma;

@@ -107,14 +107,7 @@ std::size_t SampleQueue::Append(std::span<const ImuSample> batch) {
 SampleQueue::Verdict SampleQueue::Sort(const ImuSample& sample) {
   const SampleStamp& stamp = sample.stamp;
   const std::int64_t seq = stamp.seq;
-  if (back_) {
-    if (stamp.session != back_->session && stamp.session != former_session_) {
-      former_session_ = back_->session;
-      Begin();
-    } else if (Contradicts(*back_, stamp)) {
-      return PutAside(sample);
-    }
-  }
+  if (back_ && Contradicts(*back_, stamp)) return PutAside(sample);
   if (last_ && !last_is_old_ && seq <= last_->seq) {
     if (InGap(seq)) {
       ++counts_.late;
@@ -163,7 +156,7 @@ SampleQueue::Verdict SampleQueue::PutAside(const ImuSample& sample) {
     if (!Contradicts(story.samples.back().stamp, sample.stamp)) return Join(story, sample);
   }
   if (stories_.size() == kStoriesMax) Drop(1);
-  stories_.push_back({{sample}, back_->tool_time});
+  stories_.push_back({{sample}, back_->tool_time, back_->tool_time});
   return Verdict::kAside;
 }
 
@@ -176,33 +169,35 @@ SampleQueue::Verdict SampleQueue::Join(Story& story, const ImuSample& sample) {
     ++counts_.duplicates;
     return Verdict::kDuplicate;
   }
+  if (samples.size() == 2 * kAgreeMax) {
+    ++counts_.strays;
+    return Verdict::kRefused;
+  }
   samples.insert(at, sample);
-  const Duration span = samples.back().stamp.tool_time - samples.front().stamp.tool_time;
-  if (span < kAgree && samples.size() < kAgreeMax) return Verdict::kAside;
+  story.alone = story.heard == back_->tool_time ? story.alone + 1 : 1;
+  story.heard = back_->tool_time;
+  const Duration filled{static_cast<std::int64_t>(story.alone) * sample.stamp.period_ns};
+  if (filled < kAgree && story.alone < kAgreeMax) return Verdict::kAside;
   Believe(std::move(story));
   return Verdict::kTaken;
 }
 
-/// What was believed so far has ended.
+/// A new session begins behind what is queued.
 void SampleQueue::Begin() {
   Drop(stories_.size());
   old_session_ = size_;
   last_is_old_ = true;
 }
 
-/// The samples put aside are the present.
+/// The samples put aside (`story`) become the stream: the clock has jumped, or a session begun.
 void SampleQueue::Believe(Story story) {
-  const std::int32_t session = story.samples.front().stamp.session;
-  if (session == back_->session) {
-    jumps_.push_back(counts_.accepted);
-  } else {
-    former_session_ = back_->session;
-  }
+  const bool same_session = story.samples.front().stamp.session == back_->session;
+  if (same_session) jumps_.push_back(counts_.accepted);
   Begin();
   for (const ImuSample& sample : story.samples) Take(size_, sample);
 }
 
-/// The oldest of what was put aside were strays.
+/// Counts the oldest `stories` put aside as strays and forgets them.
 void SampleQueue::Drop(std::size_t stories) {
   const auto end = stories_.begin() + static_cast<std::ptrdiff_t>(stories);
   for (auto story = stories_.begin(); story != end; ++story) {

@@ -17,13 +17,14 @@ namespace wellgyro {
 /// sample at least `hold` younger has come, so that whatever belongs to its time has come too.
 ///
 /// Overlapping and repeated samples are skipped, late ones sorted in. A sample that comes after a
-/// younger one was handed out is refused. A new session flushes the old one. What comes out depends
-/// only on the set of samples and never on how they were batched. Nothing is allocated per sample
-/// once the buffer has grown to `hold`; of more than kWaitingMax the oldest no longer wait.
+/// younger one was handed out is refused. What comes out depends only on the set of samples and
+/// never on how they were batched. Nothing is allocated per sample once the buffer has grown to
+/// `hold`; of more than kWaitingMax the oldest no longer wait.
 ///
-/// Samples whose number, tool clock and UTC contradict those before are put aside. When such that
-/// agree with each other cover kAgree, the clock has jumped: they follow the others as a new
-/// session would, and none is lost. While the others go on for kAgree instead, they are strays.
+/// Samples of another session, or whose number, tool clock and UTC contradict those before, are put
+/// aside. When such that agree with each other fill kAgree in which none of the others comes, the
+/// session is new or the clock has jumped: they follow the others, which no longer wait, and none
+/// is lost. When the others go on for kAgree instead, they are strays.
 ///
 /// A sample that comes again is compared with the first: with each that waits still, with one in
 /// kKeptEvery of those handed out, the last kKept of them. It is other where it differs by more
@@ -33,7 +34,7 @@ class WELLGYRO_EXPORT SampleQueue {
  public:
   static constexpr std::size_t kWaitingMax = std::size_t{1} << 21;  ///< 20 s at 100 kHz
   static constexpr Duration kAgree{10'000'000'000};
-  static constexpr std::size_t kAgreeMax = std::size_t{1} << 16;  ///< samples that are enough, too
+  static constexpr std::size_t kAgreeMax = std::size_t{1} << 15;  ///< samples that are enough, too
   static constexpr std::int64_t kKeptEvery = 64;
   static constexpr std::size_t kKept = std::size_t{1} << 13;  ///< 7 h at 20 Hz
 
@@ -95,7 +96,9 @@ class WELLGYRO_EXPORT SampleQueue {
   /// Samples put aside that agree with each other, by number.
   struct Story {
     std::vector<ImuSample> samples;
-    ToolTime begun;  ///< of the newest of the others when it began
+    ToolTime begun;         ///< of the newest of the others when it began
+    ToolTime heard;         ///< and when its newest came
+    std::size_t alone = 1;  ///< samples since then
   };
 
   /// Of a sample in the order of all.
@@ -146,11 +149,10 @@ class WELLGYRO_EXPORT SampleQueue {
   static constexpr std::size_t kGapsKept = 256;
   std::vector<std::pair<std::int64_t, std::int64_t>> gaps_;
   static constexpr std::size_t kStoriesMax = 4;
-  std::vector<Content> kept_;                   ///< by number
-  bool other_ = false;                          ///< what was compared last, and what follows it
-  std::vector<Story> stories_;                  ///< put aside, the oldest first
-  std::vector<std::int64_t> jumps_;             ///< samples taken before each, not yet handed out
-  std::optional<std::int32_t> former_session_;  ///< the one before the present
+  std::vector<Content> kept_;        ///< by number
+  bool other_ = false;               ///< what was compared last, and what follows it
+  std::vector<Story> stories_;       ///< put aside, the oldest first
+  std::vector<std::int64_t> jumps_;  ///< samples taken before each, not yet handed out
   Counts counts_;
 };
 

@@ -19,8 +19,9 @@ constexpr std::int64_t kRepeats = 10;                  // at least
 constexpr double kChance = 1e-9;                       // that noise repeats so often
 constexpr double kDead = 0.9;                          // of the run
 constexpr double kStretch = 30;                        // [s]
-// Of f_z at the ends of a stretch: starts and stops of the string, and the Earth's turn.
-constexpr double kForce = 0.03;      // [m/s^2]
+// 1-sigma of what the products do not predict of f_z's change over a stretch: the string's starts
+// and stops, the Earth's rotation [m/s^2].
+constexpr double kForce = 0.03;
 constexpr double kBetter = 25;       // chi-square by which another pairing must explain more ...
 constexpr double kLeaves = 0.25;     // ... and the share of it that it may leave
 constexpr double kUnitTells = 0.1;   // sigma of the ratio from which it says something
@@ -96,8 +97,8 @@ std::int64_t SampleWatch::Busiest(std::size_t besides) const {
   return most;
 }
 
-/// Of so many repeats in a signal that stands in the middle of a step of the axis's converter,
-/// under the stated noise: (erf(step / sqrt(8) sigma))^repeats.
+/// P(this many repeats) for a working axis: a signal amid one quantisation step, Gaussian noise as
+/// stated, erf(step / (sqrt(8) sigma))^repeats.
 double SampleWatch::ChanceOfRepeats(std::size_t i) const {
   const Axis& axis = axes_[i];
   const double noise = i < 3 ? job_.noise.angle_random_walk : job_.errors.accel_noise;
@@ -107,7 +108,7 @@ double SampleWatch::ChanceOfRepeats(std::size_t i) const {
   return std::pow(same, static_cast<double>(axis.repeats));
 }
 
-/// Of the repeats in hand, those that say that the axis is stuck.
+/// How long the axis has been stuck by the repeats in hand [s]; 0: it is not.
 double SampleWatch::StuckNow(std::size_t i) const {
   const Axis& axis = axes_[i];
   const double seconds = period_ * static_cast<double>(axis.repeats);

@@ -64,7 +64,7 @@ struct Surveyor::Rooms {
         marks(job.depth.cable, track),
         gate(
             std::max(Duration::Seconds(job.depth.latency), kAheadAtLeast),
-            [this](const DepthMark& mark) { Use(mark); },
+            Duration::Seconds(job.depth.max_gap), [this](const DepthMark& mark) { Use(mark); },
             [this](const Fault& fault) {
               ++refused.impossible;
               sink.OnFault(fault);

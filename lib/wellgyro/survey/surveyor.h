@@ -17,10 +17,11 @@
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/still_window.h"
 #include "wellgyro/survey/job.h"
-#include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/survey.h"
 
 namespace wellgyro {
+
+class RunAdjuster;
 
 /// Where results go while they are made. Override what you want to hear.
 class WELLGYRO_EXPORT Sink {

@@ -165,12 +165,11 @@ TEST(Exchange, FlippedBytesCrashNothing) {
   for (const SurveyFormat format : kReadable) {
     const std::string text = WriteSurvey(FullSurvey(), format);
     for (std::size_t at = 0; at < text.size(); at += 5) {
-      for (const char flip : {'\x01', '\x20', '\x80'}) {
-        std::string damaged = text;
-        damaged[at] = static_cast<char>(damaged[at] ^ flip);
-        const auto table = ParseSurvey(damaged, "damaged");
-        EXPECT_TRUE(table || !table.fault().text.empty());
-      }
+      constexpr std::array kFlips{'\x01', '\x20', '\x80'};
+      std::string damaged = text;
+      damaged[at] = static_cast<char>(damaged[at] ^ kFlips[at % 3]);
+      const auto table = ParseSurvey(damaged, "damaged");
+      EXPECT_TRUE(table || !table.fault().text.empty());
     }
   }
 }

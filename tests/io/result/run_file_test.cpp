@@ -151,7 +151,7 @@ TEST(RunToml, NamesWhatAdjustedTheRunsThatWere) {
 
 TEST(RunToml, NamesTheCheaperForm) {
   Job job = SmallJob();
-  job.attitude.order = TrackerOptions::kSecond;
+  job.attitude.order = AttitudeSpec::Order::kSecond;
   const toml::table run = toml::parse(RunToml(Record(), job, SmallSurvey(), {}));
   EXPECT_EQ(run["attitude_order"].value<std::string>(), "second");
 }

@@ -61,6 +61,31 @@ TEST(VerdictText, IsOneLineWithItsCauses) {
             "verdict fail: a gyro is dead; depth is missing");
 }
 
+TEST(SummaryJson, SaysOfAnUnfitEndNoEllipseAndOfUnseenFaultsTheBoundItself) {
+  Survey survey;
+  Station end;
+  end.run = 1;
+  end.quality = Quality::kUnfit;
+  survey.chosen = {Station{}, end};
+  RunSummary run;
+  run.run = 1;
+  run.fit.emplace().diagnosis.emplace();
+  run.fit->diagnosis->hidden.diagonal() << 4, 25;
+  run.fit->diagnosis->hidden_cause = "gyro_bias_step_x";
+  survey.runs = {run};
+  const ToolSummary tool{.tool = 3, .folder = "re\"sult", .files = {"a.csv"}, .survey = &survey};
+  const std::string text = SummaryJson({&tool, 1}, {Verdict::kFail, {"gyro is dead"}}, 4);
+  EXPECT_THAT(text, HasSubstr("\"verdict\": \"fail\""));
+  EXPECT_THAT(text, HasSubstr("\"exit_code\": 4"));
+  EXPECT_THAT(text, HasSubstr("\"folder\": \"re\\\"sult\""));
+  EXPECT_THAT(text, HasSubstr("\"ellipse_95\": null"));
+  EXPECT_THAT(text, HasSubstr("\"tvd_95_m\": null"));
+  EXPECT_THAT(text, HasSubstr("\"semi_major_m\": 5.0"));
+  EXPECT_THAT(text, HasSubstr("\"semi_minor_m\": 2.0"));
+  EXPECT_THAT(text, HasSubstr("\"azimuth_major_deg\": 90.0"));
+  EXPECT_THAT(text, HasSubstr("\"cause\": \"gyro_bias_step_x\""));
+}
+
 TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "wellgyro/io/sensor/sensor_files.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -15,8 +16,10 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/sensor/sensor_csv.h"
+#include "wellgyro/io/sensor/sensor_survey.h"
 #include "wellgyro/simulate/truth.h"
 
 #include "support/scratch.h"
@@ -133,6 +136,13 @@ TEST(SensorFiles, SamplesAndDepthFromTablesGiveTheSurveyOfTheMessages) {
     // The messages have the modes too, at which windows are cut.
     EXPECT_NEAR(WrapPi(a.azimuth - b.azimuth), 0, 1e-4);
   }
+  const std::array<std::filesystem::path, 2> files{scratch.path() / "tool.csv",
+                                                   scratch.path() / "depth.csv"};
+  const Result<TableSurvey> in_one_call = SurveyTables(StandsJob(), files);
+  ASSERT_TRUE(in_one_call) << in_one_call.fault().text;
+  EXPECT_EQ(SurveyCsv(in_one_call->tools.at(0).chosen, nullptr),
+            SurveyCsv(by_tables.survey.chosen, nullptr));
+  EXPECT_EQ(in_one_call->tally.received, by_tables.report->samples);
   ASSERT_TRUE(by_tables.report->clock) << "the stamps are checked by the stops";
   EXPECT_LT(std::abs(by_tables.report->stamps_less_stops.value_or(99)), 1);
 }

@@ -245,7 +245,7 @@ TEST(ReadJob, TakesWhatTheRunIsLike) {
   EXPECT_FALSE(job.alignment.at_utc);
   EXPECT_FALSE(job.alignment.use_fixes);
   EXPECT_EQ(job.alignment.min_still, 45);
-  EXPECT_EQ(job.attitude.order, TrackerOptions::kSecond);
+  EXPECT_EQ(job.attitude.order, AttitudeSpec::Order::kSecond);
   EXPECT_EQ(job.stations.every, 5);
   EXPECT_THAT(job.stations.at, testing::ElementsAre(100, 120.5));
   EXPECT_TRUE(job.stations.at_stops);
@@ -312,7 +312,7 @@ TEST(ReadJob, TheLeastJobKeepsTheDefaults) {
   EXPECT_EQ(file->job.stations.every, 10);
   EXPECT_EQ(file->job.channels.imu, "WELLGYRO_IMU");
   EXPECT_EQ(file->job.alignment.min_still, 60);
-  EXPECT_EQ(file->job.attitude.order, TrackerOptions::kThird);
+  EXPECT_EQ(file->job.attitude.order, AttitudeSpec::Order::kThird);
   EXPECT_FALSE(file->job.grid);
   ASSERT_EQ(file->files.size(), 1u);
   EXPECT_EQ(file->files[0].role, "job");
@@ -321,7 +321,8 @@ TEST(ReadJob, TheLeastJobKeepsTheDefaults) {
 
 TEST(ReadJob, AnUnknownOrderIsRefusedWithTheKnownOnes) {
   const std::string head = "format = \"wellgyro.job/1\"\nwell = {latitude_deg = 60}\n";
-  EXPECT_EQ(Parse(head + "attitude.order = 'third'")->job.attitude.order, TrackerOptions::kThird);
+  EXPECT_EQ(Parse(head + "attitude.order = 'third'")->job.attitude.order,
+            AttitudeSpec::Order::kThird);
   const auto file = Parse(head + "attitude.order = 'fourth'");
   ASSERT_FALSE(file);
   EXPECT_THAT(file.fault().text, AllOf(HasSubstr("order"), HasSubstr("fourth"), HasSubstr("second"),

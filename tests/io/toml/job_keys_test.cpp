@@ -60,6 +60,7 @@ TEST(JobKeys, AreAllThatTheReaderAsksFor) {
   std::set<std::string> listed, tables{"identity"}, asked;
   for (const JobKey& key : JobKeys()) {
     EXPECT_TRUE(listed.insert(NameOf(key)).second) << NameOf(key) << " stands twice";
+    EXPECT_FALSE(key.meaning.empty()) << NameOf(key) << " says nothing";
     const std::string table(key.table);
     tables.insert(table);
     tables.insert(table.substr(0, table.find('.')));

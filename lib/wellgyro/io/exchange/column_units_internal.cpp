@@ -195,6 +195,35 @@ std::optional<CurvatureUnit> CurvatureUnitOf(std::string_view unit) {
   return std::nullopt;
 }
 
+std::string NoUnit(Quantity quantity, std::string_view unit, std::string_view column) {
+  quantity = ListedAs(quantity);
+  std::string known;
+  const auto add = [&known](std::string_view word) {
+    const bool plain =
+        std::all_of(word.begin(), word.end(), [](unsigned char c) { return c > ' ' && c < 0x7f; });
+    if (plain && !word.empty()) known += (known.empty() ? "" : ", ") + std::string(word);
+  };
+  for (const LengthName& length : kLengths) {
+    if (quantity == Q::kLength) add(length.word);
+    if (quantity == Q::kArea) add(std::string(length.word) + '2');
+  }
+  for (const CurvatureName& curvature : kCurvatures) {
+    if (quantity == Q::kCurvature) add(curvature.word);
+  }
+  for (const UnitName& one : kUnitNames) {
+    if (one.quantity == quantity) add(one.name);
+  }
+  return fmt::format("'{}' is no unit of {}; known are {}", unit, column, known);
+}
+
+std::string NoUnitOfDepth(std::string_view unit) {
+  std::string known;
+  for (const LengthName& length : kLengths) {
+    known += (known.empty() ? "" : ", ") + std::string(length.word);
+  }
+  return fmt::format("'{}' is no unit of measured depth; known are {}", unit, known);
+}
+
 double FactorOf(LengthUnit unit) { return kLengths[static_cast<std::size_t>(unit)].factor; }
 double FactorOf(CurvatureUnit unit) { return kCurvatures[static_cast<std::size_t>(unit)].factor; }
 std::string_view WordOf(LengthUnit unit) { return kLengths[static_cast<std::size_t>(unit)].word; }

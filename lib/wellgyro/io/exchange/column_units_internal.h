@@ -29,6 +29,11 @@ std::optional<double> FactorOf(Quantity quantity, std::string_view unit);
 std::optional<LengthUnit> LengthUnitOf(std::string_view unit);
 std::optional<CurvatureUnit> CurvatureUnitOf(std::string_view unit);
 
+/// "'furlong' is no unit of measured depth; known are m, ft, ftUS".
+std::string NoUnit(Quantity quantity, std::string_view unit, std::string_view column);
+/// The same of measured depth, which has fewer.
+std::string NoUnitOfDepth(std::string_view unit);
+
 double FactorOf(LengthUnit unit);
 double FactorOf(CurvatureUnit unit);
 /// SI value of the unit in which `head` wants a quantity.

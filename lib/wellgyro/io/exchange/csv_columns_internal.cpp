@@ -54,8 +54,7 @@ class ColumnMaker {
       if (h.column != Column::kMd) continue;
       md_unit_ = LengthUnitOf(h.unit);
       if (!h.unit.empty() && !md_unit_) {
-        lines_.Complain(FaultCode::kSyntax,
-                        fmt::format("'{}' is no unit of measured depth", h.unit));
+        lines_.Complain(FaultCode::kSyntax, NoUnitOfDepth(h.unit));
       }
       break;
     }
@@ -100,7 +99,7 @@ class ColumnMaker {
     c.quantity = InfoOf(*c.column).quantity;
     auto factor = FactorOf(c.quantity, unit);
     if (!factor) {
-      const std::string text = fmt::format("'{}' is no unit of {}", unit, InfoOf(*c.column).text);
+      const std::string text = NoUnit(c.quantity, unit, InfoOf(*c.column).text);
       if (*c.column <= Column::kAzimuth) lines_.Complain(FaultCode::kSyntax, text);
       head_.notes.push_back(text + ": the column is left out");
       return c.column.reset();

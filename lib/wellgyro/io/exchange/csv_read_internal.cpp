@@ -129,8 +129,9 @@ class CsvReader {
     }
     if (lines_.number() == 0) lines_.Complain(FaultCode::kForeign, "this file is empty");
     lines_.Complain(FaultCode::kForeign,
-                    "no line names columns for depth, inclination and azimuth: name them with "
-                    "--columns MD=1,INC=2,AZI=3" +
+                    "no line names columns for depth, inclination and azimuth, as MD[m], INC[deg], "
+                    "AZI_TRUE[deg], or DEPTH, DEVI and HAZ: name them with --columns "
+                    "MD=1,INC=2,AZI=3" +
                         SensorHint());
   }
 

@@ -230,8 +230,7 @@ class LasReader {
     auto factor = FactorOf(curve.quantity, unit);
     if (!factor) {
       if (column > Column::kAzimuth) return;
-      lines_.Complain(FaultCode::kSyntax,
-                      fmt::format("'{}' is no unit of {}", unit, InfoOf(column).text));
+      lines_.Complain(FaultCode::kSyntax, NoUnit(curve.quantity, unit, InfoOf(column).text));
     }
     // An option for the unit of depth wins for what stands in the file's unit of depth.
     const auto length = LengthUnitOf(unit);

@@ -293,7 +293,7 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   toml.Whole("stations", std::ssize(survey.chosen));
   toml.Whole("stations_of_all_passes", std::ssize(survey.passes));
   toml.Text("md_kind", WordOf(job.depth.kind));
-  if (job.attitude.order == TrackerOptions::kSecond) toml.Text("attitude_order", "second");
+  if (job.attitude.order == AttitudeSpec::Order::kSecond) toml.Text("attitude_order", "second");
   // Whoever sums the stations of survey.csv again gets other positions where the run was seen.
   toml.Text("positions_summed_over", Sampled(survey) ? "run, every second" : "stations");
   toml.Table("well");

@@ -190,12 +190,11 @@ void ReadAlignment(TomlTable table, Job& job) {
 }
 
 AttitudeSpec ReadAttitude(TomlTable table) {
-  using Order = TrackerOptions::Order;
+  using Order = AttitudeSpec::Order;
   AttitudeSpec spec;
-  spec.order = table
-                   .FindWord<Order>("order", {{"second", TrackerOptions::kSecond},
-                                              {"third", TrackerOptions::kThird}})
-                   .value_or(spec.order);
+  spec.order =
+      table.FindWord<Order>("order", {{"second", Order::kSecond}, {"third", Order::kThird}})
+          .value_or(spec.order);
   using Estimator = AttitudeSpec::Estimator;
   spec.estimator = table
                        .FindWord<Estimator>("estimator", {{"angles", Estimator::kAngles},
