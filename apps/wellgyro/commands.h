@@ -24,6 +24,7 @@ void AddUncertainty(CLI::App& app, int& exit_code);
 void AddClearance(CLI::App& app, int& exit_code);
 void AddCompare(CLI::App& app, int& exit_code);
 void AddMerge(CLI::App& app, int& exit_code);
+void AddPlan(CLI::App& app, int& exit_code);
 void AddModels(CLI::App& app, int& exit_code);
 void AddNorth(CLI::App& app, int& exit_code);
 void AddConvert(CLI::App& app, int& exit_code);

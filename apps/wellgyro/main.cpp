@@ -32,6 +32,7 @@ int Run(int argc, char** argv) {
   AddClearance(app, exit_code);
   AddCompare(app, exit_code);
   AddMerge(app, exit_code);
+  AddPlan(app, exit_code);
   AddModels(app, exit_code);
   AddNorth(app, exit_code);
   AddConvert(app, exit_code);

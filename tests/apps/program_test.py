@@ -258,7 +258,7 @@ class Program(ProgramTest):
         self.assertEqual(sorted(commands), ["allan", "bridge", "calibrate", "check",
                                             "clearance", "compare", "convert",
                                             "merge", "models",
-                                            "north", "record", "report", "send",
+                                            "north", "plan", "record", "report", "send",
                                             "simulate", "survey",
                                             "uncertainty", "watch"])
         for command in commands:

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/record/noise.h"
+#include "wellgyro/trajectory/trajectory.h"
+
+namespace wellgyro {
+
+/// How the tool is to go through the well: down from `begin_md` to `end_md`, and up again.
+struct PlannedWay {
+  double begin_md = 0, end_md = 0;  ///< of the sensor point [m]
+  double speed_in = 0.8;            ///< [m/s]
+  double speed_out = 0.8;           ///< 0: what comes after the deepest point is not surveyed [m/s]
+  double roll_rate = 0;             ///< of the moving tool about its axis; 0: it slides [rad/s]
+  double swing = 0.4;               ///< amplitude by which a sliding tool swings about it [rad]
+  double swing_period = 900;        ///< [s]
+  double toolface = 0.7;            ///< at the begin, or from north where that is vertical [rad]
+};
+
+/// The tool at rest.
+struct PlannedStop {
+  bool out = false;                     ///< on the way up
+  double md = 0;                        ///< [m]
+  double seconds = 0;                   ///< [s]
+  std::optional<double> toolface = {};  ///< turned to before; absent: as it comes [rad]
+};
+
+/// What a plan rests on.
+struct PlanCase {
+  Trajectory well;         ///< true azimuths
+  Site site;               ///< of its origin
+  NoiseCoefficients gyro;  ///< of every axis
+  ErrorPriors errors;
+  bool third_axis = false;
+  PlannedWay way;
+  /// An azimuth told at the begin, 1-sigma [rad]; absent: the run finds north by itself.
+  std::optional<double> sigma_start_azimuth = {};
+};
+
+/// Stops every `spacing` on the way down from the begin, and one at the end, `seconds` each.
+std::vector<PlannedStop> Practice(const PlannedWay& way, double spacing, double seconds);
+
+/// Throws std::invalid_argument, naming the field and the value, where the case makes no sense:
+/// depths that the well has not, speeds that are not positive, no noise, a stop off the way.
+void CheckPlanCase(const PlanCase& c, std::span<const PlannedStop> stops);
+
+}  // namespace wellgyro

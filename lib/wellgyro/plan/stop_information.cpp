@@ -1,0 +1,276 @@
+#include "wellgyro/plan/stop_information.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wellgyro/estimate/end_of_run.h"
+#include "wellgyro/plan/expected_end.h"
+#include "wellgyro/plan/synthetic_run.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Kind = CauseSpec::Kind;
+
+// Steps of the gyros are looked for at every node; some eighty onsets of a run do not look alike
+// (50 to 100 on simulated runs of 900 spans).
+constexpr double kOnsets = 80;
+constexpr std::size_t kStepEvery = 4;  // places
+
+int BorderOf(const Layout& layout, int unknown) {
+  if (unknown == kLatitudeError) return layout.latitude;
+  if (unknown == kGravityError) return layout.gravity;
+  return layout.source[static_cast<std::size_t>(unknown)];
+}
+
+/// Whether column `at` of [node; border] is an error of the gyros' own, which turns with the tool.
+bool IsOfGyros(const Layout& layout, int at) {
+  const auto in = [at](int column, int count) { return at >= column && at < column + count; };
+  if (layout.walk != kAbsent && in(layout.walk, 2)) return true;
+  if (layout.markov != kAbsent && in(layout.markov, 2)) return true;
+  for (const int border : {layout.source[kGyroBiasX], layout.source[kGyroBiasY]}) {
+    if (border != kAbsent && in(layout.node + border, 1)) return true;
+  }
+  return layout.ramp != kAbsent && in(layout.node + layout.ramp, 2);
+}
+
+/// The kBasis rows over [node; border] of rest at `node`.
+MatrixXd RestRows(SyntheticRun& rows, std::size_t node) {
+  const Layout& layout = rows.layout();
+  const int n = layout.node;
+  const Factor f = rows.RestAt(node);
+  MatrixXd A = MatrixXd::Zero(StopInformation::kBasis, n + layout.border);
+  for (int j = 0; j < f.columns; ++j) {
+    // The next node is this one: the tool does not move.
+    int at = f.column[static_cast<std::size_t>(j)];
+    if (at >= n) at -= n;
+    if (at == layout.roll) continue;  // as the turn about the axis is, free
+    A.block(IsOfGyros(layout, at) ? 2 : 0, at, 2, 1) += f.J.col(j).head<2>();
+  }
+  return A;
+}
+
+}  // namespace
+
+/// Backwards through the run, with E[x y'] of the node at hand and all rows y met so far.
+class StopInformation::Sweep {
+ public:
+  Sweep(StopInformation& info, const PlanCase& c, std::span<const PlannedStop> marks)
+      : info_(info), rows_(c, marks, SetupOfPlan(c)), run_(rows_) {
+    const EstimateSetup setup = SetupOfPlan(c);
+    info_.ln_limit_ = std::log(static_cast<double>(setup.causes.size()) / setup.false_alarm_rate);
+    for (std::size_t i = 0; i < info_.places(); ++i) {
+      const Matrix3d& R = rows_.nodes()[rows_.stop_nodes()[i]].R_LT;
+      info_.places_[i].toolface = std::atan2(R(2, 1), -R(2, 0));
+    }
+    info_.solved_ = run_.Solve();
+    if (!info_.solved_) return;
+    FindConstants(setup);
+    FindSteps(setup);
+    const Index size = info_.place_row(info_.places());
+    info_.covariance_ = MatrixXd::Zero(size, size);
+    const Layout& layout = rows_.layout();
+    known_ = MatrixXd::Zero(layout.node + layout.border, size);
+    seen_.assign(static_cast<std::size_t>(size), false);
+    FindEnd(c);
+    Run();
+  }
+
+ private:
+  void FindConstants(const EstimateSetup& setup) {
+    for (const CauseSpec& cause : setup.causes) {
+      if (cause.kind != Kind::kConstant) continue;
+      const int at = BorderOf(rows_.layout(), cause.unknown);
+      if (at == kAbsent) continue;
+      constants_.push_back(at);
+      info_.faults_.push_back({rows_.layout().sigma[at], cause.size, 1});
+    }
+  }
+
+  void FindSteps(const EstimateSetup& setup) {
+    if (rows_.layout().walk == kAbsent) return;
+    const auto step =
+        std::find_if(setup.causes.begin(), setup.causes.end(), [](const CauseSpec& cause) {
+          return cause.kind == Kind::kOnset && cause.unknown == kGyroBiasX;
+        });
+    if (step == setup.causes.end()) return;
+    for (std::size_t i = 0; i < info_.places(); i += kStepEvery) {
+      const std::size_t knot = rows_.stop_nodes()[i];
+      if (knot >= rows_.size() || rows_.knots()[knot].still) continue;
+      if (!step_knots_.empty() && step_knots_.back().first == knot) continue;
+      step_knots_.emplace_back(knot, info_.faults_.size());
+      const double unit =
+          setup.gyro.rate_random_walk * std::sqrt(rows_.knots()[knot].increment.seconds);
+      for (int axis = 0; axis < 2; ++axis) info_.faults_.push_back({unit, step->size, kOnsets});
+    }
+  }
+
+  void FindEnd(const PlanCase& c) {
+    const Layout& layout = rows_.layout();
+    const std::vector<Matrix3d> by_phi = EndByPhi(rows_.nodes());
+    for (const Matrix3d& b : by_phi) {
+      MatrixXd node = MatrixXd::Zero(layout.node, 3);
+      node.middleRows<3>(layout.phi) = b.transpose();
+      end_.nodes.push_back(std::move(node));
+    }
+    end_.border = MatrixXd::Zero(layout.border, 3);
+    run_.SolveFor(end_);
+    Matrix3d cov = DepthCovariance(c);
+    for (std::size_t k = 0; k < by_phi.size(); ++k) {
+      cov += by_phi[k] * end_.nodes[k].middleRows<3>(layout.phi);
+    }
+    info_.covariance_.topLeftCorner<2, 2>() = cov.topLeftCorner<2, 2>();
+  }
+
+  void Run() {
+    const Elimination& e = run_.elimination();
+    EdgeMatrix next = e.LastCovariance();
+    ResetGain();
+    AtNode(rows_.size(), next);
+    for (std::size_t k = rows_.size(); k-- > 0;) {
+      const BehindMatrix gain = e.Gain(k);
+      BehindMatrix with_next;
+      const EdgeMatrix here = e.CovarianceBefore(k, gain, next, with_next);
+      const auto step = std::find_if(step_knots_.begin(), step_knots_.end(),
+                                     [k](const auto& s) { return s.first == k; });
+      if (step != step_knots_.end()) Bring();
+      const MatrixXd later = step != step_knots_.end() ? known_ : MatrixXd();
+      Extend(gain);
+      if (step != step_knots_.end()) AtStep(k, step->second, later, here, next, with_next);
+      AtNode(k, here);
+      next = here;
+    }
+    JoinConstants(next);
+  }
+
+  void ResetGain() {
+    const Layout& layout = rows_.layout();
+    gain_ = MatrixXd::Identity(layout.node, layout.node + layout.border);
+    moved_ = false;
+  }
+  /// x of the node at hand by [node where known_ stands; border].
+  void Extend(const BehindMatrix& gain) {
+    const Index n = rows_.layout().node, b = rows_.layout().border;
+    MatrixXd longer = gain.leftCols(n) * gain_;
+    longer.rightCols(b) += gain.rightCols(b);
+    gain_.swap(longer);
+    moved_ = true;
+  }
+  void Bring() {
+    if (!moved_) return;
+    known_.topRows(rows_.layout().node) = (gain_ * known_).eval();
+    ResetGain();
+  }
+
+  /// Covariance of `row`s A x with the end and all columns met, then the rows themselves.
+  void Join(const MatrixXd& A, std::size_t node, const EdgeMatrix& cov, Index column) {
+    MatrixXd& Z = info_.covariance_;
+    const Index count = A.rows(), n = rows_.layout().node, b = rows_.layout().border;
+    const MatrixXd with = A * known_;
+    const MatrixXd with_end =
+        A.leftCols(n) * end_.nodes[node].leftCols<2>() + A.rightCols(b) * end_.border.leftCols<2>();
+    Z.block(column, 0, count, 2) = with_end;
+    Z.block(0, column, 2, count) = with_end.transpose();
+    for (Index j = 2; j < Z.cols(); ++j) {
+      if (!seen_[static_cast<std::size_t>(j)]) continue;
+      Z.block(column, j, count, 1) = with.col(j);
+      Z.block(j, column, 1, count) = with.col(j).transpose();
+    }
+    const MatrixXd cov_A = cov * A.transpose();
+    Z.block(column, column, count, count) = A * cov_A;
+    known_.middleCols(column, count) = cov_A;
+    for (Index i = 0; i < count; ++i) seen_[static_cast<std::size_t>(column + i)] = true;
+  }
+
+  void AtNode(std::size_t node, const EdgeMatrix& cov) {
+    for (std::size_t i = 0; i < info_.places(); ++i) {
+      if (rows_.stop_nodes()[i] != node) continue;
+      Bring();
+      Join(RestRows(rows_, node), node, cov, info_.place_row(i));
+    }
+  }
+
+  /// y = (walk at the knot's end - that at its begin) / unit, of both axes; `later`: known_ at its
+  /// end, `with_next`: E[x (x_next; border)'].
+  void AtStep(std::size_t knot, std::size_t fault, const MatrixXd& later, const EdgeMatrix& here,
+              const EdgeMatrix& next, const BehindMatrix& with_next) {
+    Bring();
+    const Index n = rows_.layout().node, b = rows_.layout().border;
+    MatrixXd& Z = info_.covariance_;
+    for (int axis = 0; axis < 2; ++axis) {
+      const std::size_t i = fault + static_cast<std::size_t>(axis);
+      const Index w = rows_.layout().walk + axis, column = info_.fault_row(i);
+      const double unit = info_.faults_[i].unit;
+      Eigen::RowVectorXd with = (later.row(w) - known_.row(w)) / unit;
+      with.head(2) = (end_.nodes[knot + 1].row(w) - end_.nodes[knot].row(w)).head(2) / unit;
+      for (Index j = 0; j < Z.cols(); ++j) {
+        if (j >= 2 && (!seen_[static_cast<std::size_t>(j)] || j < info_.place_row(0))) continue;
+        Z(column, j) = Z(j, column) = with[j];
+      }
+      Z(column, column) = (next(w, w) + here(w, w) - 2 * with_next(w, w)) / (unit * unit);
+      known_.col(column).head(n) = (with_next.col(w) - here.col(w).head(n)) / unit;
+      known_.col(column).tail(b) = (next.col(w) - here.col(w)).tail(b) / unit;
+      seen_[static_cast<std::size_t>(column)] = true;
+    }
+  }
+
+  void JoinConstants(const EdgeMatrix& cov) {
+    const Index n = rows_.layout().node;
+    Bring();
+    MatrixXd& Z = info_.covariance_;
+    for (std::size_t i = 0; i < constants_.size(); ++i) {
+      const Index column = info_.fault_row(i), at = n + constants_[i];
+      const double unit = info_.faults_[i].unit;
+      Eigen::RowVectorXd with = known_.row(at) / unit;
+      with.head(2) = end_.border.row(constants_[i]).head(2) / unit;
+      for (Index j = 0; j < Z.cols(); ++j) {
+        if (j >= 2 && j < info_.place_row(0)) continue;
+        Z(column, j) = Z(j, column) = with[j];
+      }
+      Z(column, column) = cov(at, at) / (unit * unit);
+    }
+  }
+
+  StopInformation& info_;
+  SyntheticRun rows_;
+  LinearRun run_;
+  std::vector<int> constants_;  ///< border columns of the first faults
+  std::vector<std::pair<std::size_t, std::size_t>> step_knots_;  ///< and the first of two faults
+  LinearRun::Columns end_;                                       ///< N^-1 of the end's columns
+  MatrixXd known_;  ///< [node; border] with every column of the covariance
+  std::vector<bool> seen_;
+  MatrixXd gain_;
+  bool moved_ = false;
+};
+
+StopInformation::StopInformation(const PlanCase& c, std::span<const StopPlace> places)
+    : places_(places.begin(), places.end()) {
+  std::vector<PlannedStop> marks;
+  for (const StopPlace& place : places_) marks.push_back({place.out, place.md, 0, {}});
+  const Sweep sweep(*this, c, marks);
+}
+
+Eigen::Matrix<double, 2, StopInformation::kBasis> StopInformation::Mix(double turn) {
+  Eigen::Matrix<double, 2, kBasis> mix;
+  const double c = std::cos(turn), s = std::sin(turn);
+  mix << 1, 0, c, -s, 0, 1, s, c;
+  return mix;
+}
+
+std::vector<StopPlace> PlacesEvery(const PlannedWay& way, double spacing) {
+  const double length = way.end_md - way.begin_md;
+  const int count = std::max(1, static_cast<int>(std::lround(length / spacing)));
+  std::vector<StopPlace> places;
+  for (int i = 0; i <= count; ++i) {
+    places.push_back({false, way.begin_md + length * i / count});
+  }
+  for (int i = count - 1; way.speed_out > 0 && i >= 0; --i) {
+    places.push_back({true, way.begin_md + length * i / count});
+  }
+  return places;
+}
+
+}  // namespace wellgyro

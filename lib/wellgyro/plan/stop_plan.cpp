@@ -1,0 +1,140 @@
+#include "wellgyro/plan/stop_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
+
+namespace wellgyro {
+namespace {
+
+using Rest = StopStand::Rest;
+
+// Places for a stop: by this far, or as many to the way as make the matrices of a second's work.
+constexpr double kSpacing = 30;  // [m]
+constexpr double kPlacesMost = 100;
+// Rounds of search and verification; each holds the search to what the last was above the limit.
+constexpr int kVerifications = 4;
+constexpr double kBelow = 0.998;  // of the limit is sought where it was missed
+constexpr double kMet = 1.001;    // the whole run may say this much of the limit
+
+void CheckLimits(const PlanLimits& limits) {
+  const auto need = [](bool holds, const char* name, double value, const char* what) {
+    if (holds) return;
+    throw std::invalid_argument(fmt::format("{} {}, is {:g}", name, what, value));
+  };
+  need(limits.ellipse > 0, "ellipse", limits.ellipse, "must be positive");
+  if (limits.hidden) need(*limits.hidden > 0, "hidden", *limits.hidden, "must be positive");
+  need(limits.least_stop >= 10, "least_stop", limits.least_stop, "must be 10 s at least");
+  need(limits.longest_stop >= limits.least_stop && limits.longest_stop <= 7200, "longest_stop",
+       limits.longest_stop, "must lie between least_stop and two hours");
+  need(limits.overhead >= 0, "overhead", limits.overhead, "must not be negative");
+}
+
+std::vector<PlannedStop> StopsOf(const StopInformation& info, const std::vector<Rest>& rests,
+                                 bool turns) {
+  std::vector<PlannedStop> stops;
+  for (const Rest& rest : rests) {
+    const StopPlace& place = info.place(rest.place);
+    PlannedStop stop{place.out, place.md, rest.seconds, {}};
+    if (turns) stop.toolface = WrapTwoPi(place.toolface + rest.turn);
+    stops.push_back(stop);
+  }
+  return stops;
+}
+
+std::vector<StopWorth> WorthOf(const StopInformation& info, const std::vector<Rest>& rests,
+                               const PlanLimits& limits) {
+  StopStand stand(info, limits.ellipse, limits.hidden.value_or(1e3));
+  for (const Rest& rest : rests) stand.Add(rest);
+  std::vector<StopWorth> worth;
+  for (const Rest& rest : rests) {
+    const PlanValue value = stand.ValueWith({rest.place, rest.turn, -rest.seconds});
+    worth.push_back({value.ellipse, value.hidden});
+  }
+  return worth;
+}
+
+std::string WhyNot(const PlanLimits& limits, const PlanValue& best, const ExpectedEnd& expected) {
+  if (best.ellipse > limits.ellipse) {
+    return fmt::format(
+        "no plan has an ellipse of {:.2f} m: an hour at rest at every fortieth of the way leaves "
+        "{:.2f} m",
+        limits.ellipse, best.ellipse);
+  }
+  if (limits.hidden && best.hidden > *limits.hidden) {
+    return fmt::format(
+        "no plan shows every fault that moves the end by {:.2f} m: after an hour at rest at every "
+        "fortieth of the way one of {:.2f} m stays unseen",
+        *limits.hidden, best.hidden);
+  }
+  if (limits.hidden && expected.hidden > *limits.hidden * kMet) {
+    return fmt::format(
+        "{} may move the end by {:.2f} m and stay unseen, above {:.2f} m, and no stop shows it",
+        expected.hidden_cause, expected.hidden, *limits.hidden);
+  }
+  return fmt::format("the limits would take more than {:.0f} s at rest", limits.most_at_rest);
+}
+
+/// Tightened by as much as the whole run was above the limits; false: it was not.
+bool Tighten(const PlanLimits& limits, const ExpectedEnd& expected, const PlanValue& sought,
+             PlanLimits& aim) {
+  bool missed = false;
+  if (expected.semi_major > limits.ellipse * kMet) {
+    aim.ellipse *= kBelow * limits.ellipse / expected.semi_major;
+    missed = true;
+  }
+  if (limits.hidden && expected.hidden > *limits.hidden * kMet) {
+    // Of a fault that the search knows; of another no stop makes less.
+    aim.hidden = std::min(*aim.hidden, sought.hidden) * kBelow * *limits.hidden / expected.hidden;
+    missed = true;
+  }
+  return missed;
+}
+
+}  // namespace
+
+StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits) {
+  CheckLimits(limits);
+  CheckPlanCase(c, {});
+  const double length = c.way.end_md - c.way.begin_md;
+  const StopInformation info(c, PlacesEvery(c.way, std::max(kSpacing, length / kPlacesMost)));
+  StopPlan plan;
+  plan.without = ExpectEnd(c, {}, true);
+  plan.best_possible = BestPossible(info, limits);
+  const bool possible = plan.best_possible.Meets(limits.ellipse, limits.hidden.value_or(HUGE_VAL));
+  if (possible) plan.least_at_rest = LeastAtRest(info, limits);
+  PlanLimits aim = limits;
+  for (int i = 0; possible && i < kVerifications; ++i) {
+    const auto rests = FindStops(info, aim);
+    if (!rests) break;
+    plan.stops = StopsOf(info, *rests, limits.turns);
+    plan.worth = WorthOf(info, *rests, limits);
+    plan.expected = ExpectEnd(c, plan.stops, true);
+    StopStand stand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));
+    for (const Rest& rest : *rests) stand.Add(rest);
+    plan.feasible = !Tighten(limits, plan.expected, stand.Value(), aim);
+    if (plan.feasible) break;
+  }
+  for (const PlannedStop& stop : plan.stops) plan.at_rest += stop.seconds;
+  plan.cost = plan.at_rest + limits.overhead * static_cast<double>(plan.stops.size());
+  if (!plan.feasible) plan.why_not = WhyNot(limits, plan.best_possible, plan.expected);
+  return plan;
+}
+
+PlanCase WorseTool(PlanCase c, double factor) {
+  NoiseCoefficients& gyro = c.gyro;
+  gyro.bias_instability *= factor;
+  gyro.rate_random_walk *= factor;
+  gyro.rate_ramp *= factor;
+  ErrorPriors& errors = c.errors;
+  errors.gyro_bias_sigma *= factor;
+  errors.mass_unbalance_sigma *= factor;
+  errors.quadrature_sigma *= factor;
+  return c;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wellgyro/base/export.h"
+#include "wellgyro/plan/expected_end.h"
+#include "wellgyro/plan/plan_case.h"
+#include "wellgyro/plan/stop_search.h"
+
+namespace wellgyro {
+
+/// What one stop of a plan buys: what the end would be without it, all others kept.
+struct StopWorth {
+  double ellipse_without = 0;  ///< semi-major axis [m]
+  double hidden_without = 0;   ///< [m]
+};
+
+/// Where to stop and how long.
+struct StopPlan {
+  bool feasible = false;
+  std::string why_not = {};             ///< where it is not, in words
+  std::vector<PlannedStop> stops = {};  ///< in the order of time
+  std::vector<StopWorth> worth = {};    ///< of each
+  double at_rest = 0;                   ///< [s]
+  double cost = 0;                      ///< with what stops cost beside [s]
+  /// Time at rest below which no plan meets the ellipse's limit [s]; absent: none does.
+  std::optional<double> least_at_rest = {};
+  ExpectedEnd expected = {};     ///< with the stops
+  ExpectedEnd without = {};      ///< with none
+  PlanValue best_possible = {};  ///< an hour at rest at every fortieth of the way
+};
+
+/// The stops that meet `limits` in the least time found, each verified with the whole run, stops
+/// and all, put through the estimator: where that says more than the search's own sums the search
+/// is held to less. Not feasible where an hour at rest everywhere does not meet them, or a fault
+/// that no stop shows exceeds the hidden limit. Throws std::invalid_argument as CheckPlanCase(),
+/// and for limits that are not positive.
+WELLGYRO_EXPORT StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits);
+
+/// The tool with drift, g-dependent errors and bias `factor` times as large.
+WELLGYRO_EXPORT PlanCase WorseTool(PlanCase c, double factor);
+
+}  // namespace wellgyro

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "wellgyro/plan/stop_information.h"
+#include "wellgyro/plan/stop_stand.h"
+
+namespace wellgyro {
+
+/// What a plan must meet and what stops may be like.
+struct PlanLimits {
+  double ellipse = 5;  ///< semi-major axis of the end's 95 % ellipse, at most [m]
+  /// Horizontal shift of the end by a fault that stays unseen, at most [m]; absent: not asked.
+  std::optional<double> hidden = {};
+  double least_stop = 60;        ///< [s]
+  double longest_stop = 900;     ///< [s]
+  double overhead = 30;          ///< that a stop costs beside its time at rest [s]
+  double most_at_rest = 14'400;  ///< over all stops [s]
+  bool turns = false;            ///< the tool may be turned to a toolface before a stop
+};
+
+/// Stops that meet both limits in little time, or none where that is not possible.
+///
+/// Greedy by what a second buys, the overhead counted; then every stop is shortened, let go and
+/// sought anew, and moved to its neighbours, as long as that saves time. A local optimum: the bound
+/// of LeastAtRest() tells how far it can be from the best.
+std::optional<std::vector<StopStand::Rest>> FindStops(const StopInformation& info,
+                                                      const PlanLimits& limits);
+
+/// Time at rest in all without which no set of stops meets the ellipse's limit [s], any length and
+/// no overhead allowed; nothing where no time does. The end's largest eigenvalue f is convex in the
+/// times d, so that f(d) - g'(d* - d) bounds it below, g = -grad f: sum d* is at least (f(d) -
+/// limit + g'd) / max g (Joshi and Boyd, IEEE Trans. Signal Process. 57 (2009) 451).
+std::optional<double> LeastAtRest(const StopInformation& info, const PlanLimits& limits);
+
+/// What an hour at rest at some forty places would come to: no plan of use does better.
+PlanValue BestPossible(const StopInformation& info, const PlanLimits& limits);
+
+}  // namespace wellgyro

@@ -1,0 +1,140 @@
+#include "wellgyro/plan/stop_stand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "wellgyro/plan/synthetic_run.h"
+#include "wellgyro/uncertainty/ellipse.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+// As the estimator's diagnosis has them: normal quantile of 80 % power, and the size of a fault, of
+// its spec's, beyond which it need not be looked for.
+constexpr double kPower = 0.8416212335729143;
+constexpr double kLargest = 5;
+constexpr double kSoft = 16;           // order of the mean that stands for the largest
+constexpr double kLeastSeconds = 0.5;  // a stop that has less is none
+
+double Axis(const Matrix2d& cov) {
+  static const double factor = ConfidenceFactor(0.95, 2);
+  const double mean = 0.5 * cov.trace();
+  const double apart = std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1));
+  return factor * std::sqrt(std::max(0.0, mean + apart));
+}
+
+}  // namespace
+
+StopStand::StopStand(const StopInformation& info, double ellipse_limit, double hidden_limit)
+    : info_(&info),
+      ellipse_limit_(ellipse_limit),
+      hidden_limit_(hidden_limit),
+      places_(info.places()),
+      row_(info.places()),
+      covariance_(info.covariance()) {
+  std::iota(places_.begin(), places_.end(), std::size_t{0});
+  for (std::size_t i = 0; i < row_.size(); ++i) row_[i] = info.place_row(i);
+}
+
+StopStand::Pair StopStand::Columns(const Rest& rest) const {
+  constexpr int n = StopInformation::kBasis;
+  return covariance_.middleCols<n>(row_[rest.place]) * StopInformation::Mix(rest.turn).transpose();
+}
+
+/// (S + V)^-1 of the two rows of a rest.
+Matrix2d StopStand::Weight(const Rest& rest, const Pair& columns) const {
+  constexpr int n = StopInformation::kBasis;
+  const Matrix2d S = StopInformation::Mix(rest.turn) * columns.middleRows<n>(row_[rest.place]) +
+                     SyntheticRun::kRestKnot / rest.seconds * Matrix2d::Identity();
+  return S.inverse();
+}
+
+double StopStand::Hidden(std::size_t fault, double variance, const Vector2d& with_end) const {
+  const HiddenFault& f = info_->faults()[fault];
+  const double m = std::max(1e-12, 1 - variance) / (f.unit * f.unit), vm = f.size * f.size * m;
+  const double w2 = (1 + 1 / vm) * (2 * (info_->ln_limit() + std::log(f.onsets)) + std::log1p(vm));
+  const double smallest = (std::sqrt(w2) + kPower) / std::sqrt(m);
+  return std::min(smallest, kLargest * f.size) * with_end.norm() / f.unit;
+}
+
+PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns,
+                             const Matrix2d& weight) const {
+  PlanValue value;
+  value.ellipse = Axis(end);
+  double sum = std::pow(value.ellipse / ellipse_limit_, kSoft);
+  for (std::size_t i = 0; std::isfinite(hidden_limit_) && i < info_->faults().size(); ++i) {
+    const Index row = info_->fault_row(i);
+    double variance = covariance_(row, row);
+    Vector2d with_end = covariance_.col(row).head<2>();
+    if (columns != nullptr) {
+      const Vector2d u = weight * columns->row(row).transpose();
+      variance -= columns->row(row).dot(u);
+      with_end -= columns->topRows<2>() * u;
+    }
+    const double hidden = Hidden(i, variance, with_end);
+    value.hidden = std::max(value.hidden, hidden);
+    sum += std::pow(hidden / hidden_limit_, kSoft);
+  }
+  value.soft = std::pow(sum, 1 / kSoft);
+  return value;
+}
+
+PlanValue StopStand::Value() const {
+  return ValueOf(covariance_.topLeftCorner<2, 2>(), nullptr, Matrix2d::Zero());
+}
+
+PlanValue StopStand::ValueWith(const Rest& rest) const {
+  const Pair columns = Columns(rest);
+  const Matrix2d weight = Weight(rest, columns);
+  const Matrix2d end = covariance_.topLeftCorner<2, 2>() -
+                       columns.topRows<2>() * weight * columns.topRows<2>().transpose();
+  return ValueOf(end, &columns, weight);
+}
+
+void StopStand::Add(const Rest& rest) {
+  const Pair columns = Columns(rest);
+  const Matrix2d weight = Weight(rest, columns);
+  covariance_.noalias() -= (columns * weight) * columns.transpose();
+  const auto same = std::find_if(stops_.begin(), stops_.end(), [&](const Rest& r) {
+    return r.place == rest.place && r.turn == rest.turn;
+  });
+  if (same == stops_.end()) {
+    stops_.push_back(rest);
+    return;
+  }
+  same->seconds += rest.seconds;
+  if (same->seconds < kLeastSeconds) stops_.erase(same);
+}
+
+void StopStand::Keep(std::span<const std::size_t> places) {
+  std::vector<std::size_t> kept(places.begin(), places.end());
+  for (const Rest& rest : stops_) kept.push_back(rest.place);
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  std::vector<Index> rows;
+  for (Index i = 0; i < info_->place_row(0); ++i) rows.push_back(i);
+  std::vector<Index> place_row(row_.size(), -1);
+  for (const std::size_t place : kept) {
+    place_row[place] = static_cast<Index>(rows.size());
+    for (Index i = 0; i < StopInformation::kBasis; ++i) rows.push_back(row_[place] + i);
+  }
+  covariance_ = Eigen::MatrixXd(covariance_(rows, rows));
+  row_ = std::move(place_row);
+  places_ = std::move(kept);
+}
+
+double StopStand::at_rest() const {
+  double sum = 0;
+  for (const Rest& rest : stops_) sum += rest.seconds;
+  return sum;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "wellgyro/plan/stop_information.h"
+
+namespace wellgyro {
+
+/// What a set of stops comes to.
+struct PlanValue {
+  double ellipse = 0;  ///< semi-major axis of the end's 95 % ellipse [m]
+  double hidden = 0;   ///< largest horizontal shift of the end that stays unseen [m]
+  /// The largest of both by their limits, smooth: what a search goes down.
+  double soft = 0;
+  bool Meets(double ellipse_limit, double hidden_limit) const {
+    return ellipse <= ellipse_limit && hidden <= hidden_limit;
+  }
+};
+
+/// A run with the stops made so far, at some of the places of a StopInformation, to which rest is
+/// added and from which it is taken back.
+class StopStand {
+ public:
+  struct Rest {
+    std::size_t place = 0;  ///< of the information
+    double turn = 0;        ///< of the tool against how it comes [rad]
+    double seconds = 0;
+  };
+
+  /// `hidden_limit` HUGE_VAL: faults do not count. `info` must outlive this object.
+  StopStand(const StopInformation& info, double ellipse_limit, double hidden_limit);
+
+  /// The value as it stands, and with `rest` too; negative seconds take away.
+  PlanValue Value() const;
+  PlanValue ValueWith(const Rest& rest) const;
+  void Add(const Rest& rest);
+  /// Forgets all places but these, and those with stops.
+  void Keep(std::span<const std::size_t> places);
+
+  std::span<const Rest> stops() const { return stops_; }
+  std::span<const std::size_t> places() const { return places_; }
+  double at_rest() const;  ///< [s]
+  bool Meets() const { return Value().Meets(ellipse_limit_, hidden_limit_); }
+  bool MeetsWith(const Rest& rest) const {
+    return ValueWith(rest).Meets(ellipse_limit_, hidden_limit_);
+  }
+
+ private:
+  using Pair = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+  Pair Columns(const Rest& rest) const;
+  Eigen::Matrix2d Weight(const Rest& rest, const Pair& columns) const;
+  PlanValue ValueOf(const Eigen::Matrix2d& end, const Pair* columns,
+                    const Eigen::Matrix2d& weight) const;
+  double Hidden(std::size_t fault, double variance, const Eigen::Vector2d& with_end) const;
+
+  const StopInformation* info_;
+  double ellipse_limit_, hidden_limit_;
+  std::vector<std::size_t> places_;
+  std::vector<Eigen::Index> row_;  ///< of each place of the information; -1: forgotten
+  Eigen::MatrixXd covariance_;
+  std::vector<Rest> stops_;
+};
+
+}  // namespace wellgyro

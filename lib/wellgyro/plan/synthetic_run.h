@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "wellgyro/estimate/knot_rows.h"
+#include "wellgyro/estimate/layout.h"
+#include "wellgyro/estimate/linear_run.h"
+#include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/setup.h"
+#include "wellgyro/plan/plan_case.h"
+#include "wellgyro/record/run_knot.h"
+
+namespace wellgyro {
+
+/// The rows that the estimator would make of a run as planned: its own factors, linear about the
+/// path of the plan, for increments of perfect sensors. No sample is made; what they say of the
+/// unknowns depends on where the tool is and how it turns, not on what it happens to read.
+///
+/// Knots are of 4 s, less where the tool rolls fast, and of 10 s at rest: on smooth wells the end's
+/// covariance is that of 1 s knots within 1 %.
+class SyntheticRun : public RunRows {
+ public:
+  /// `stops` in any order, those of no length marking a node only. `setup` is taken but for site
+  /// and ties. Throws as CheckPlanCase().
+  SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, EstimateSetup setup);
+  SyntheticRun(const SyntheticRun&) = delete;
+  SyntheticRun& operator=(const SyntheticRun&) = delete;
+
+  const Layout& layout() const override { return layout_; }
+  std::size_t size() const override { return knots_.size(); }
+  void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const override;
+  void RowsOf(std::size_t k, std::vector<Factor>& rows) override;
+
+  std::span<const RunKnot> knots() const { return knots_; }
+  std::span<const Node> nodes() const { return nodes_; }
+  double seconds() const { return seconds_; }  ///< of the whole run
+  /// The node at which each stop is begun, in the order given.
+  std::span<const std::size_t> stop_nodes() const { return stop_nodes_; }
+  /// The gyros' factor of one knot of rest of `kRestKnot` seconds at this node, its attitude being
+  /// the node's at both ends.
+  Factor RestAt(std::size_t node);
+  static constexpr double kRestKnot = 10;  ///< [s]
+
+ private:
+  void AddMove(double to_md, double speed);
+  void AddRest(double seconds);
+  void AddTurn(double toolface);
+  void AddKnot(double seconds, double to_md, double roll, bool still);
+  void AddTies(std::size_t node, NormalBlock& block, int at) const;
+  void MakeIncrements();
+
+  const PlanCase& case_;
+  EstimateSetup setup_;
+  Layout layout_;
+  std::vector<RunKnot> knots_;
+  std::vector<Node> nodes_;
+  std::vector<double> rolls_;  ///< of each knot about the hole's axis, in the hole [rad]
+  std::vector<KnotPlace> places_;
+  std::vector<std::size_t> stop_nodes_;
+  double seconds_ = 0, moving_ = 0;
+  KnotRows rows_;
+  NormalBlock block_;
+};
+
+/// The unknowns and noise that the estimator is set up with for such a run; what a fault may make
+/// wrong that the tool is taken to be free of is an unknown too, see EstimateRun().
+EstimateSetup SetupOfPlan(const PlanCase& c);
+
+}  // namespace wellgyro

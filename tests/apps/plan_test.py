@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""The command plan, and simulate that follows one, from the command line."""
+import os
+import shutil
+import tempfile
+import tomllib
+import unittest
+
+from harness import DEMO, Run
+
+JOB = os.path.join(DEMO, "job.toml")
+SLANT = ((300, 5, 38), (600, 20, 40), (900, 40, 41), (1200, 58, 40), (1500, 60, 40), (2000, 60, 40))
+
+
+class Plan(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        os.chdir(self.folder)
+        with open("well.csv", "w", encoding="utf-8") as file:
+            file.write("MD[m],INC[deg],AZI_TRUE[deg]\n")
+            file.writelines(f"{md},{inc},{azi}\n" for md, inc, azi in SLANT)
+
+    def Plan(self, *arguments):
+        return Run("plan", "--well", "well.csv", "--tool", JOB, "--latitude-deg", "60",
+                   "--roll-rpm", "1", "--out", "out", *arguments)
+
+    def Toml(self, name="out/plan.toml"):
+        with open(name, "rb") as file:
+            return tomllib.load(file)
+
+    def test_a_plan_meets_its_limits_in_less_time_than_practice(self):
+        done = self.Plan("--ellipse-m", "2.7", "--practice", "every_m=300,stop_s=180")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        plan = self.Toml()
+        self.assertTrue(plan["feasible"])
+        self.assertLessEqual(plan["expected"]["ellipse_major_m"], 2.71)
+        self.assertGreater(plan["without_stops"]["ellipse_major_m"], 2.71)
+        self.assertEqual(sum(s["stop_s"] for s in plan["stop"]), plan["time"]["at_rest_s"])
+        self.assertLessEqual(plan["time"]["bound_at_rest_s"], plan["time"]["at_rest_s"])
+        for stop in plan["stop"]:
+            self.assertGreater(stop["ellipse_without_m"], 2.7)
+        self.assertIn("practice, 7 stops", done.stdout)
+        self.assertIn("tool 5 times worse", done.stdout)
+        self.assertEqual([i["role"] for i in plan["input"]], ["tool", "well"])
+        with open("out/plan.txt", encoding="utf-8") as file:
+            self.assertTrue(file.read().startswith(done.stdout.split("plan.toml\n")[1]))
+        with open("out/plan.svg", encoding="utf-8") as file:
+            self.assertIn("Time at rest", file.read())
+
+    def test_the_same_inputs_give_the_same_bytes(self):
+        texts = []
+        for _ in range(2):
+            self.assertEqual(self.Plan("--ellipse-m", "3").returncode, 0)
+            with open("out/plan.toml", "rb") as file:
+                texts.append(file.read())
+        self.assertEqual(*texts)
+
+    def test_what_no_plan_meets_is_said(self):
+        done = self.Plan("--ellipse-m", "0.2")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("not feasible: no plan has an ellipse of 0.20 m", done.stdout)
+        plan = self.Toml()
+        self.assertFalse(plan["feasible"])
+        self.assertNotIn("stop", plan)
+
+    def test_mistakes_are_told(self):
+        for arguments, code, says in (
+                ((), 1, "--ellipse-m is required"),
+                (("--ellipse-m", "5", "--practice", "every=3"), 1, "every_m"),
+                (("--ellipse-m", "5", "--practice", "every_m=3x"), 1, "every_m=3x"),
+                (("--ellipse-m", "5", "--end-md-m", "9000"), 1, "end_md must lie in the well"),
+                (("--ellipse-m", "5", "--speed-mps", "0"), 1, "speed_in"),
+                (("--ellipse-m", "5", "--least-stop-s", "500", "--longest-stop-s", "50"), 1,
+                 "longest_stop"),
+                (("--ellipse-m", "5", "--noise", "none.toml"), 2, "none.toml")):
+            done = self.Plan(*arguments)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(says, done.stderr)
+            self.assertTrue(done.stderr.isascii())
+        self.assertFalse(os.path.exists("out"))
+        with open("well.csv", "w", encoding="utf-8") as file:
+            file.write("MD[m],INC[deg],AZI_GRID[deg]\n0,0,0\n900,30,10\n")
+        done = self.Plan("--ellipse-m", "5")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("convergence", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
