@@ -112,7 +112,7 @@ TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
       }
     }
   }
-  const double tail = 0.01 / 2 / (12 * 3);  // of all cases together one in a hundred
+  const double tail = 0.01 / 2 / (9 * 3);  // of all cases together one in a hundred
   // Where a tool rolls in a vertical hole, the noise of its inclination is taken to last longer
   // than it does: its places are better than they say.
   const bool rolls = !by_rotations && GetParam().rpm > 0 && azimuths == 0;
