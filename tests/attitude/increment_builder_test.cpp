@@ -216,12 +216,13 @@ struct Injected {
   double size;
 };
 constexpr Injected kAllErrors[] = {
-    {kGyroBiasX, 1e-6},     {kGyroBiasY, 1e-6},          {kMassUnbalance, 1e-7},
-    {kQuadrature, 1e-7},    {kGyroScaleX, 1e-3},         {kGyroScaleY, 1e-3},
-    {kMisalignmentX, 1e-6}, {kMisalignmentY, 1e-6},      {kToolfaceOffset, 1e-3},
-    {kTimeSkew, 1e-3},      {kAccelBiasX, 1e-4},         {kAccelBiasY, 1e-4},
-    {kAccelBiasZ, 1e-4},    {kAccelScaleX, 1e-5},        {kAccelScaleY, 1e-5},
-    {kAccelScaleZ, 1e-5},   {kAccelMisalignmentX, 1e-5}, {kAccelMisalignmentY, 1e-5}};
+    {kGyroBiasX, 1e-6},     {kGyroBiasY, 1e-6},           {kMassUnbalance, 1e-7},
+    {kQuadrature, 1e-7},    {kGyroScaleX, 1e-3},          {kGyroScaleY, 1e-3},
+    {kMisalignmentX, 1e-6}, {kMisalignmentY, 1e-6},       {kToolfaceOffset, 1e-3},
+    {kTimeSkew, 1e-3},      {kAccelBiasX, 1e-4},          {kAccelBiasY, 1e-4},
+    {kAccelBiasZ, 1e-4},    {kAccelScaleX, 1e-5},         {kAccelScaleY, 1e-5},
+    {kAccelScaleZ, 1e-5},   {kAccelMisalignmentX, 1e-5},  {kAccelMisalignmentY, 1e-5},
+    {kAccelShear, 1e-5},    {kAccelMisalignmentZX, 1e-5}, {kAccelMisalignmentZY, 1e-5}};
 
 class Errors : public testing::TestWithParam<Injected> {};
 

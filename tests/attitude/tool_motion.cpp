@@ -68,9 +68,12 @@ void SenseAt(const Attitude& attitude, const Sensing& sensing, double t, Vector3
           e(kGyroScaleY) * w.y() + e(kMisalignmentY) * w.z(),
       sensing.has_gz ? w.z() * (1 + e(kGyroScaleZ)) + e(kGyroBiasZ) : 0;
   f_T = seen + Vector3d(e(kAccelBiasX), e(kAccelBiasY), e(kAccelBiasZ)) +
-        Vector3d(e(kAccelScaleX) * seen.x() + e(kAccelMisalignmentX) * seen.z(),
-                 e(kAccelScaleY) * seen.y() + e(kAccelMisalignmentY) * seen.z(),
-                 e(kAccelScaleZ) * seen.z());
+        Vector3d(e(kAccelScaleX) * seen.x() + e(kAccelShear) * seen.y() +
+                     e(kAccelMisalignmentX) * seen.z(),
+                 e(kAccelScaleY) * seen.y() + e(kAccelShear) * seen.x() +
+                     e(kAccelMisalignmentY) * seen.z(),
+                 e(kAccelScaleZ) * seen.z() + e(kAccelMisalignmentZX) * seen.x() +
+                     e(kAccelMisalignmentZY) * seen.y());
 }
 
 std::vector<ImuSample> Samples(const Attitude& attitude, const Sensing& sensing, double rate_hz,

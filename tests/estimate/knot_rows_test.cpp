@@ -49,6 +49,8 @@ Case MakeCase(double inclination, bool still, bool axial) {
                     .gyro_scale_sigma = 1e-3,
                     .gyro_misalignment_sigma = 1e-3,
                     .accel_bias_sigma = 1e-3,
+                    .accel_scale_sigma = 1e-3,
+                    .accel_misalignment_sigma = 1e-3,
                     .accel_noise = 1e-3,
                     .roll_offset_sigma = 1e-3,
                     .time_skew_sigma = 1e-3,
@@ -74,7 +76,7 @@ Case MakeCase(double inclination, bool still, bool axial) {
   inc.axial = 0.3;
   inc.has_axial = axial;
   for (int i = 0; i <= kTimeSkew; ++i) inc.turn_by_error.col(i) = pair(i < kGyroScaleX ? 1 : 0.01);
-  for (int i = kAccelBiasX; i <= kAccelMisalignmentY; ++i) {
+  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
     inc.force_by_error.col(i) << pair(0.5), 0.3 * random.Normal();
   }
   c.place.site = SiteAt(1, 0);

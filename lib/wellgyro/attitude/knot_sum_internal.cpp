@@ -98,7 +98,7 @@ struct Sums {
   double unkept = 0, coning = 0;
   Complex wx = 0, wy = 0, unit = 0, skew = 0, fx = 0, fy = 0, unit_z = 0;
   Complex back = 0, turn_moment = 0, force_moment = 0;
-  double z = 0, back_z = 0, forced = 0, axial = 0;
+  double x = 0, y = 0, z = 0, back_z = 0, forced = 0, axial = 0;
   Complex force() const { return fx + kI * fy; }
 
   void Add(const Ready& r, double from, double to, double at);
@@ -128,12 +128,17 @@ void Sums::Add(const Ready& r, double from, double to, double at) {
   const Complex f = part.Of(b.force(), r.force_first), f1 = part.FirstOf(b.force(), r.force_first);
   fx += part.share * b.fx;
   fy += part.share * b.fy;
-  const double fz = part.share * b.sum[kFz].zeroth + part.share_first * b.sum[kFz].first;
+  const auto mean = [&](Channel of) {
+    return part.share * b.sum[of].zeroth + part.share_first * b.sum[of].first;
+  };
+  const double fz = mean(kFz);
   const double fz1 =
       part.first_share * b.sum[kFz].zeroth + part.first_first * b.sum[kFz].first - centre * fz;
   const Complex rate = w / length, f1_here = f1 - centre * f;
   back += f - kI * (theta * fz + rate * fz1);
   back_z += fz + Axial(theta, f) + Axial(rate, f1_here);
+  x += mean(kFx);
+  y += mean(kFy);
   z += fz;
   unit_z += turning(b.unit) * (b.sum[kFz].zeroth / b.seconds);
   force_moment += at * f + f1;
@@ -168,6 +173,9 @@ void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
   out.force_by_error(2, kAccelScaleZ) = s.z / s.forced;
   force(kAccelMisalignmentX, s.unit_z);
   force(kAccelMisalignmentY, kI * s.unit_z);
+  force(kAccelShear, s.fy + kI * s.fx);
+  out.force_by_error(2, kAccelMisalignmentZX) = s.x / s.forced;
+  out.force_by_error(2, kAccelMisalignmentZY) = s.y / s.forced;
 }
 
 void FillFlags(const Block& b, double seconds, Increment& out) {

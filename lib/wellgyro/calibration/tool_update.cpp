@@ -118,30 +118,45 @@ double Largest(const FitReport& report, std::string_view name, Part part = Part:
   return largest;
 }
 
-// Of an accelerometer anywhere, its bias's and, at one g, its sensitivity's [m/s^2]: the priors
-// have no scale of accelerometers.
-double AccelSigma(const BenchCalibration& bench) {
+// Largest sigma of a matrix of sensitivities over their size, of the axes' own or of what they see
+// of each other.
+double LargestRelative(const FitReport& report, std::string_view name, bool own) {
+  double largest = 0;
+  for (const FitQuantity& quantity : report.result) {
+    if (quantity.name != name) continue;
+    const double size = quantity.value.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < quantity.sigma.rows(); ++i) {
+      for (Eigen::Index j = 0; j < quantity.sigma.cols(); ++j) {
+        if ((std::abs(quantity.value(i, j)) > 0.5 * size) != own) continue;
+        largest = std::max(largest, quantity.sigma(i, j) / size);
+      }
+    }
+  }
+  return largest;
+}
+
+// Second order counts with the bias, by its mean over all attitudes.
+void TakeAccelErrors(const BenchCalibration& bench, ErrorPriors& errors) {
   const FitReport& report = bench.report;
   const double S = bench.accel.sensitivity[0].topRows<3>().cwiseAbs().maxCoeff();
   double bias = Largest(report, "a0_mps2");
   for (const char* name : {"Vb_V", "b_G", "ba"}) bias = std::max(bias, Largest(report, name) / S);
-  double relative = std::max(Largest(report, "E_G"), Largest(report, "E_rad"));
+  const double square = std::max(Largest(report, "K2_V_per_g2"), Largest(report, "K2_G")) / S / 3;
+  errors.accel_bias_sigma = std::hypot(bias, square);
+  errors.accel_scale_sigma = 0;
+  errors.accel_misalignment_sigma = std::max(Largest(report, "E_G"), Largest(report, "E_rad"));
   for (const char* name : {"S_V_per_g", "S_G", "Ka", "k_pulse_per_s_per_mps2"}) {
-    for (const FitQuantity& quantity : report.result) {
-      if (quantity.name == name) {
-        relative = std::max(relative, Largest(report, name) / quantity.value.cwiseAbs().maxCoeff());
-      }
-    }
+    errors.accel_scale_sigma =
+        std::max(errors.accel_scale_sigma, LargestRelative(report, name, true));
+    errors.accel_misalignment_sigma =
+        std::max(errors.accel_misalignment_sigma, LargestRelative(report, name, false));
   }
-  return std::hypot(bias, relative * units::kStandardGravity);
 }
 
 void TakeErrors(const BenchCalibration& bench, ToolCalibration& tool) {
   const FitReport& report = bench.report;
   ErrorPriors errors = tool.errors.value_or(ErrorPriors{});
-  if (bench.accel.n_channels > 0) {
-    errors.accel_bias_sigma = AccelSigma(bench);
-  }
+  if (bench.accel.n_channels > 0) TakeAccelErrors(bench, errors);
   if (bench.gyro.n_channels > 0) {
     // The priors have no anisoelasticity: it goes with the bias, a half of it at 45 deg.
     errors.gyro_bias_sigma =

@@ -201,7 +201,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Vector3d path = t.R_LM.transpose() * t.place.acceleration_L;
   const Vector3d p = path - t.place.site.gravity * down_M;
   Vector3d force = inc.force_M;
-  for (int i = kAccelBiasX; i <= kAccelMisalignmentY; ++i) {
+  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
     const double error = SourceAt(t.border, i);
     if (error != 0) force -= error * inc.force_by_error.col(i);
   }
@@ -234,7 +234,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   }
   f.Column(layout_.speed) = whiten / t.dt * Vector3d::UnitZ();
   f.Column(block.next() + layout_.speed) = -whiten / t.dt * Vector3d::UnitZ();
-  for (int i = 0; i <= kAccelMisalignmentY; ++i) {
+  for (int i = 0; i <= kAccelMisalignmentZY; ++i) {
     const int at = layout_.source[static_cast<std::size_t>(i)];
     if (at == kAbsent) continue;
     f.Column(block.border() + at) =

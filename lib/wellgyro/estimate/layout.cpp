@@ -20,11 +20,16 @@ ErrorVector SourceSigmas(const EstimateSetup& setup) {
     sigma[kGyroScaleZ] = e.gyro_scale_sigma;
   }
   sigma[kMisalignmentX] = sigma[kMisalignmentY] = e.gyro_misalignment_sigma;
-  sigma[kToolfaceOffset] = e.roll_offset_sigma;
+  // Axes that lean towards each other by two angles: half of their sum shears, half of their
+  // difference turns the accelerometers against the gyros.
+  const double half = e.accel_misalignment_sigma / std::sqrt(2.0);
+  sigma[kToolfaceOffset] = std::hypot(e.roll_offset_sigma, half);
   sigma[kTimeSkew] = e.time_skew_sigma;
   sigma.segment<3>(kAccelBiasX).setConstant(e.accel_bias_sigma);
   sigma.segment<3>(kAccelScaleX).setConstant(e.accel_scale_sigma);
   sigma.segment<2>(kAccelMisalignmentX).setConstant(e.accel_misalignment_sigma);
+  sigma[kAccelShear] = half;
+  sigma.segment<2>(kAccelMisalignmentZX).setConstant(e.accel_misalignment_sigma);
   return sigma;
 }
 
@@ -92,6 +97,9 @@ double* PriorOf(int unknown, EstimateSetup& setup) {
       return &e.accel_scale_sigma;
     case kAccelMisalignmentX:
     case kAccelMisalignmentY:
+    case kAccelShear:
+    case kAccelMisalignmentZX:
+    case kAccelMisalignmentZY:
       return &e.accel_misalignment_sigma;
     case kLatitudeError:
       return &e.latitude_sigma;

@@ -10,7 +10,7 @@
 namespace wellgyro {
 
 inline constexpr int kNodeMax = 12;    ///< errors of one node
-inline constexpr int kBorderMax = 25;  ///< errors of the whole run
+inline constexpr int kBorderMax = 28;  ///< errors of the whole run
 inline constexpr int kAbsent = -1;
 
 using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax, 1>;
