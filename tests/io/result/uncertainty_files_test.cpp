@@ -220,7 +220,8 @@ TEST_F(UncertaintyFiles, RefusalEndsTheFileAndIsSaid) {
   EXPECT_THAT(Bytes(*answer, "uncertainty.toml"), HasSubstr("[[refusal]]"));
 }
 
-/// One to three bytes changed, cut out, doubled or put elsewhere.
+/// One to three bytes changed, cut out, doubled or put elsewhere, or a digit made another: what
+/// readers cannot see, so that numbers are computed from it.
 std::string Mutated(std::string text, Random& random) {
   const auto below = [&](std::size_t n) {
     return static_cast<std::size_t>(random.Uniform() * static_cast<double>(n));
@@ -228,7 +229,7 @@ std::string Mutated(std::string text, Random& random) {
   constexpr std::string_view kLikely = "0123456789.-+eE,\n\"[]= naif";
   for (std::size_t n = 1 + below(3); n > 0 && text.size() > 40; --n) {
     const std::size_t at = below(text.size()), size = 1 + below(20);
-    switch (below(5)) {
+    switch (below(6)) {
       case 0:
         text[at] = static_cast<char>(random.Bits());
         break;
@@ -240,6 +241,11 @@ std::string Mutated(std::string text, Random& random) {
         break;
       case 3:
         text.insert(at, text.substr(below(text.size()), size));
+        break;
+      case 4:
+        if (const std::size_t digit = text.find_first_of("0123456789", at); digit < text.size()) {
+          text[digit] = kLikely[below(10)];
+        }
         break;
       default:
         text.insert(at, 1, kLikely[below(kLikely.size())]);
