@@ -131,7 +131,7 @@ void AddPlan(CLI::App& app, int& exit_code) {
   command->footer(
       "Example:\n  wellgyro plan --well survey.csv --tool data/demo/job.toml --ellipse-m 25 \\\n"
       "      --roll-rpm 1 --practice every_m=300,stop_s=180 --out plan\n"
-      "Exit code 4 where no plan meets the limits. 'simulate --plan plan/plan.toml' follows it.");
+      "Exit code 4 where no plan meets the limits.");
   command->callback([options, &exit_code] {
     try {
       exit_code = Run(*options);

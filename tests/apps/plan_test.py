@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The command plan, and simulate that follows one, from the command line."""
+"""The command plan, from the command line, with what it makes of mistakes."""
 import os
 import shutil
 import tempfile
