@@ -115,6 +115,18 @@ TEST(StopPlan, ChosenToolfacesSaveTime) {
   for (const PlannedStop& stop : turned.stops) EXPECT_TRUE(stop.toolface);
 }
 
+// The north that a run begins with is found at rest, however loose the limit.
+TEST(StopPlan, ALooseLimitTakesOneStopForTheNorthAndNoneWhereItIsTold) {
+  PlanCase c = Fast(test::Slant());
+  const StopPlan plan = PlanStops(c, {.ellipse = 100});
+  EXPECT_TRUE(plan.feasible);
+  ASSERT_EQ(plan.stops.size(), 1u);
+  EXPECT_EQ(plan.stops[0].seconds, PlanLimits().least_stop);
+  EXPECT_EQ(plan.least_at_rest, 0);
+  c.sigma_start_azimuth = 0.5 * units::kDeg;
+  EXPECT_TRUE(PlanStops(c, {.ellipse = 100}).stops.empty());
+}
+
 TEST(StopPlan, AWorseToolIsWorse) {
   const PlanCase c = Fast(test::Slant());
   const std::vector<PlannedStop> stops = Practice(c.way, 600, 120);
