@@ -80,7 +80,8 @@ TEST(StopInformation, SaysOfStopsWhatTheWholeRunDoes) {
     for (const std::size_t i : {std::size_t{1}, std::size_t{5}, info.places() / 2 + 4}) {
       stops.push_back({info.place(i).out, info.place(i).md, 200, {}});
       stand.Add({i, 0, 200});
-      EXPECT_NEAR(stand.Value().ellipse / ExpectEnd(c, stops, false).semi_major, 1, 0.01);
+      // What the gyros drift in the stops' own time is left out there.
+      EXPECT_NEAR(stand.Value().ellipse / ExpectEnd(c, stops, false).semi_major, 1, 0.03);
     }
     // Taken back, all is as before; and a stop's own worth is what it changed.
     const double before = stand.Value().ellipse;

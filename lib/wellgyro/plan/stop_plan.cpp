@@ -17,8 +17,9 @@ using Rest = StopStand::Rest;
 constexpr double kSpacing = 30;  // [m]
 constexpr double kPlacesMost = 100;
 // Rounds of search and verification; each holds the search to what the last was above the limit.
-constexpr int kVerifications = 4;
+constexpr int kVerifications = 8;
 constexpr double kBelow = 0.998;  // of the limit is sought where it was missed
+constexpr double kStep = 0.95;    // and of a fault, which the search knows less well, at most this
 constexpr double kMet = 1.001;    // the whole run may say this much of the limit
 
 void CheckLimits(const PlanLimits& limits) {
@@ -73,7 +74,9 @@ std::string WhyNot(const PlanLimits& limits, const PlanValue& best, const Expect
   }
   if (limits.hidden && expected.hidden > *limits.hidden * kMet) {
     return fmt::format(
-        "{} may move the end by {:.2f} m and stay unseen, above {:.2f} m, and no stop shows it",
+        "{} may still move the end by {:.2f} m and stay unseen, above {:.2f} m: the search found "
+        "no "
+        "stops that show it",
         expected.hidden_cause, expected.hidden, *limits.hidden);
   }
   return fmt::format("the limits would take more than {:.0f} s at rest", limits.most_at_rest);
@@ -88,8 +91,9 @@ bool Tighten(const PlanLimits& limits, const ExpectedEnd& expected, const PlanVa
     missed = true;
   }
   if (limits.hidden && expected.hidden > *limits.hidden * kMet) {
-    // Of a fault that the search knows; of another no stop makes less.
-    aim.hidden = std::min(*aim.hidden, sought.hidden) * kBelow * *limits.hidden / expected.hidden;
+    // Of steps the search knows those of the gyros alone; what shows them shows others too.
+    const double share = std::min(kStep, kBelow * *limits.hidden / expected.hidden);
+    aim.hidden = std::min(*aim.hidden, sought.hidden) * share;
     missed = true;
   }
   return missed;
@@ -108,6 +112,7 @@ StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits) {
   const bool possible = plan.best_possible.Meets(limits.ellipse, limits.hidden.value_or(HUGE_VAL));
   if (possible) plan.least_at_rest = LeastAtRest(info, limits);
   PlanLimits aim = limits;
+  if (c.sigma_start_azimuth) aim.fewest = 0;
   for (int i = 0; possible && i < kVerifications; ++i) {
     const auto rests = FindStops(info, aim);
     if (!rests) break;

@@ -34,8 +34,9 @@ struct StopPlan {
 
 /// The stops that meet `limits` in the least time found, each verified with the whole run, stops
 /// and all, put through the estimator: where that says more than the search's own sums the search
-/// is held to less. Not feasible where an hour at rest everywhere does not meet them, or a fault
-/// that no stop shows exceeds the hidden limit. Throws std::invalid_argument as CheckPlanCase(),
+/// is held to less. Not feasible where an hour at rest everywhere does not meet them, or where a
+/// fault stays above the hidden limit whatever the search tries. One stop at least, unless an
+/// azimuth is told. Throws std::invalid_argument as CheckPlanCase(),
 /// and for limits that are not positive.
 WELLGYRO_EXPORT StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits);
 

@@ -26,8 +26,11 @@ class Search {
 
   std::optional<std::vector<Rest>> Run() {
     if (!Fill(stand_)) return std::nullopt;
-    // A north is needed, whatever the run alone would come to.
-    if (stand_.stops().empty()) stand_.Add(BestRest(stand_).rest);
+    // A north may be needed, whatever the run alone would come to.
+    if (stand_.stops().size() < limits_.fewest) {
+      const Choice best = BestRest(stand_);
+      stand_.Add(best.gain > 0 ? best.rest : Rest{0, 0, limits_.least_stop});
+    }
     Trim(stand_);
     Narrow();
     for (int round = 0; round < kRounds; ++round) {
@@ -105,7 +108,7 @@ class Search {
       Choice best{{}, -HUGE_VAL};
       const double before = std::log(stand.Value().soft);
       for (const Rest& stop : stand.stops()) {
-        const bool last = stand.stops().size() == 1;
+        const bool last = stand.stops().size() <= limits_.fewest;
         const bool shorter = stop.seconds - kGrain >= limits_.least_stop;
         for (const double less : {shorter ? kGrain : 0, last ? 0 : stop.seconds}) {
           if (less == 0) continue;
@@ -145,6 +148,7 @@ class Search {
 
   void TakeIfBetter(StopStand tried) {
     if (!Fill(tried, Cost(stand_))) return;
+    if (tried.stops().size() < limits_.fewest) return;
     Trim(tried);
     if (Cost(tried) < Cost(stand_)) stand_ = std::move(tried);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,6 +20,7 @@ struct PlanLimits {
   double overhead = 30;          ///< that a stop costs beside its time at rest [s]
   double most_at_rest = 14'400;  ///< over all stops [s]
   bool turns = false;            ///< the tool may be turned to a toolface before a stop
+  std::size_t fewest = 1;        ///< stops: the first north fix needs one
 };
 
 /// Stops that meet both limits in little time, or none where that is not possible.

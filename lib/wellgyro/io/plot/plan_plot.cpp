@@ -70,10 +70,12 @@ Chart TimeChart(const PlanCase& c, const StopPlan& plan, const std::vector<Plann
                              Bars(plan.stops, "plan, way up", 3, true)}) {
     if (!series.points.empty()) chart.series.push_back(series);
   }
-  for (const PlannedStop& stop : plan.stops) {
-    chart.notes.push_back({{stop.md, stop.seconds}, fmt::format("{:.0f} s", stop.seconds)});
-  }
   return chart;
+}
+
+std::vector<Vector2d> Closed(std::vector<Vector2d> outline) {
+  if (!outline.empty()) outline.push_back(outline.front());
+  return outline;
 }
 
 ChartSeries Ellipse(const ExpectedEnd& end, const std::string& name, int colour, Mark mark) {
@@ -83,7 +85,7 @@ ChartSeries Ellipse(const ExpectedEnd& end, const std::string& name, int colour,
   return {.name = name,
           .mark = mark,
           .colour = colour,
-          .points = EllipseOutline({0, 0}, end.semi_major * major, end.semi_minor * minor)};
+          .points = Closed(EllipseOutline({0, 0}, end.semi_major * major, end.semi_minor * minor))};
 }
 
 Chart EndChart(const PlanLimits& limits, const StopPlan& plan,
@@ -98,7 +100,7 @@ Chart EndChart(const PlanLimits& limits, const StopPlan& plan,
       {.name = "limit",
        .mark = Mark::kDash,
        .colour = kHelpColour,
-       .points = EllipseOutline({0, 0}, {limits.ellipse, 0}, {0, limits.ellipse})});
+       .points = Closed(EllipseOutline({0, 0}, {limits.ellipse, 0}, {0, limits.ellipse}))});
   if (plan.without.solved && plan.without.semi_major < 6 * limits.ellipse) {
     chart.series.push_back(Ellipse(plan.without, "without stops", kNoneColour, Mark::kLine));
   }

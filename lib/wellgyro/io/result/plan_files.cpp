@@ -106,6 +106,10 @@ PlanReport MakeReport(const PlanRequest& request, NamedFiles& files,
   if (!latitude) throw std::invalid_argument("--latitude-deg is needed beside a tool file");
   const std::optional<double> convergence =
       request.convergence ? request.convergence : tool.convergence;
+  if (!std::isfinite(*latitude + convergence.value_or(0) + request.heat.at_surface +
+                     request.heat.gradient)) {
+    throw std::invalid_argument("latitude, convergence and temperatures must be finite");
+  }
   Trajectory well = ReadWell(request, convergence, files, notes);
   PlannedWay way = request.way;
   way.begin_md = request.begin_md.value_or(well.md_begin());
