@@ -47,14 +47,16 @@ std::vector<PlannedStop> StopsOf(const StopInformation& info, const std::vector<
   return stops;
 }
 
-std::vector<StopWorth> WorthOf(const StopInformation& info, const std::vector<Rest>& rests,
-                               const PlanLimits& limits) {
-  StopStand stand(info, limits.ellipse, limits.hidden.value_or(1e3));
-  for (const Rest& rest : rests) stand.Add(rest);
+/// Of an ellipse by the whole run again, to which the search's sums are off by a tenth where few
+/// stops bear it; of a hidden fault by those sums, which know the gyros' steps.
+std::vector<StopWorth> WorthOf(const PlanCase& c, const StopPlan& plan, const StopStand& stand) {
   std::vector<StopWorth> worth;
-  for (const Rest& rest : rests) {
-    const PlanValue value = stand.ValueWith({rest.place, rest.turn, -rest.seconds});
-    worth.push_back({value.ellipse, value.hidden});
+  for (std::size_t i = 0; i < plan.stops.size(); ++i) {
+    std::vector<PlannedStop> others = plan.stops;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const Rest& rest = stand.stops()[i];
+    worth.push_back({ExpectEnd(c, others, false).semi_major,
+                     stand.ValueWith({rest.place, rest.turn, -rest.seconds}).hidden});
   }
   return worth;
 }
@@ -113,17 +115,17 @@ StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits) {
   if (possible) plan.least_at_rest = LeastAtRest(info, limits);
   PlanLimits aim = limits;
   if (c.sigma_start_azimuth) aim.fewest = 0;
-  for (int i = 0; possible && i < kVerifications; ++i) {
+  StopStand stand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));
+  for (int i = 0; possible && !plan.feasible && i < kVerifications; ++i) {
     const auto rests = FindStops(info, aim);
     if (!rests) break;
     plan.stops = StopsOf(info, *rests, limits.turns);
-    plan.worth = WorthOf(info, *rests, limits);
     plan.expected = ExpectEnd(c, plan.stops, true);
-    StopStand stand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));
+    stand = StopStand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));
     for (const Rest& rest : *rests) stand.Add(rest);
     plan.feasible = !Tighten(limits, plan.expected, stand.Value(), aim);
-    if (plan.feasible) break;
   }
+  plan.worth = WorthOf(c, plan, stand);
   for (const PlannedStop& stop : plan.stops) plan.at_rest += stop.seconds;
   plan.cost = plan.at_rest + limits.overhead * static_cast<double>(plan.stops.size());
   if (!plan.feasible) plan.why_not = WhyNot(limits, plan.best_possible, plan.expected);
