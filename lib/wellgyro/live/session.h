@@ -44,7 +44,7 @@ struct LiveOutcome {
   std::vector<std::string> hints;  ///< what the job might lack
   bool recording_is_whole = true;  ///< what was used is in the log
 
-  bool usable() const;  ///< of one tool at least
+  WELLGYRO_EXPORT bool usable() const;  ///< of one tool at least
   bool losses() const;
 };
 
