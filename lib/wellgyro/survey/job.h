@@ -49,7 +49,7 @@ struct AttitudeSpec {
     kRotation,  ///< one adjustment of rotations, regular at vertical
   };
   TrackerOptions::Order order = TrackerOptions::kThird;  ///< the second is cheaper, not better
-  Estimator estimator = Estimator::kAngles;              ///< of the final stations
+  Estimator estimator = Estimator::kRotation;            ///< of the final stations
 };
 
 /// What the job says of the magnetic azimuths of a tool that has magnetometers.
