@@ -10,7 +10,6 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/wits.h"
-#include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/io/toml/wits_file.h"
 #include "wellgyro/live/notices.h"
 
@@ -136,22 +135,15 @@ int RunBridge(const BridgeOptions& options) {
     }
     items = *read;
   }
-  Channels channels;
-  if (!options.job.empty()) {
-    const Result<JobFile> job = ReadJob(options.job);
-    if (!job) {
-      Complain(job.fault());
-      return kUnusable;
-    }
-    channels = job->job.channels;
-  }
+  const std::optional<Channels> channels = ChannelsOf(options.job);
+  if (!channels) return kUnusable;
   Result<LiveBus> bus = LiveBus::Open(UrlOr(options.to));
   if (!bus) {
     Complain(bus.fault());
     return kUnusable;
   }
   const StopOnSignals stop(*bus);
-  return Bridge(options, items, channels.depth, *bus).Run();
+  return Bridge(options, items, channels->depth, *bus).Run();
 }
 
 }  // namespace

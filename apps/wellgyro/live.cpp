@@ -18,6 +18,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/glance_line.h"
 
 #include "report.h"
@@ -67,6 +68,14 @@ std::string UrlOr(const std::string& from) {
   if (!from.empty()) return from;
   const char* set = std::getenv("LCM_DEFAULT_URL");
   return set != nullptr && *set != '\0' ? set : kDefaultLcmUrl;
+}
+
+std::optional<Channels> ChannelsOf(const std::string& job) {
+  if (job.empty()) return Channels{};
+  const Result<JobFile> read = ReadJob(job);
+  if (read) return read->job.channels;
+  Complain(read.fault());
+  return std::nullopt;
 }
 
 std::int64_t NowUs() { return Microseconds<std::chrono::system_clock>(); }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,7 @@
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/live/clock.h"
 #include "wellgyro/live/observer.h"
+#include "wellgyro/record/channels.h"
 
 /// What the commands that speak with a live bus share.
 namespace wellgyro::apps {
@@ -19,6 +21,10 @@ bool IsLive(const std::string& from);
 
 /// `from`, or LCM_DEFAULT_URL, or LCM's own default.
 std::string UrlOr(const std::string& from);
+
+/// The channels of this job, the usual ones where none is named; nothing where it cannot be read,
+/// which is said.
+std::optional<Channels> ChannelsOf(const std::string& job);
 
 std::int64_t NowUs();        ///< UTC since 1970 [us]
 std::int64_t MonotonicUs();  ///< for lengths of time [us]

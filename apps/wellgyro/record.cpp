@@ -14,7 +14,6 @@
 #include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/loss_watch.h"
-#include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/notices.h"
 
 #include "commands.h"
@@ -168,22 +167,15 @@ int Recording::Report() {
 }
 
 int Record(const RecordOptions& options) {
-  Channels channels;
-  if (!options.job.empty()) {
-    const Result<JobFile> job = ReadJob(options.job);
-    if (!job) {
-      Complain(job.fault());
-      return kUnusable;
-    }
-    channels = job->job.channels;
-  }
+  const std::optional<Channels> channels = ChannelsOf(options.job);
+  if (!channels) return kUnusable;
   Result<LiveBus> bus = LiveBus::Open(UrlOr(options.from));
   if (!bus) {
     Complain(bus.fault());
     return kUnusable;
   }
   const StopOnSignals stop(*bus);
-  Recording recording(options, channels, *bus);
+  Recording recording(options, *channels, *bus);
   if (const auto fault = recording.Begin()) {
     Complain(*fault);
     return kUnusable;

@@ -9,7 +9,6 @@
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/glance_channel.h"
 #include "wellgyro/bus/lcm_live.h"
-#include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/glance_line.h"
 
 #include "commands.h"
@@ -71,24 +70,17 @@ class Watch : private Listener {
 };
 
 int WatchBus(const WatchOptions& options) {
-  Channels channels;
-  if (!options.job.empty()) {
-    const Result<JobFile> job = ReadJob(options.job);
-    if (!job) {
-      Complain(job.fault());
-      return kUnusable;
-    }
-    channels = job->job.channels;
-  }
+  const std::optional<Channels> channels = ChannelsOf(options.job);
+  if (!channels) return kUnusable;
   Result<LiveBus> bus = LiveBus::Open(UrlOr(options.from));
   if (!bus) {
     Complain(bus.fault());
     return kUnusable;
   }
   const StopOnSignals stop(*bus);
-  Watch watch(channels);
+  Watch watch(*channels);
   if (const auto fault =
-          bus->Subscribe({channels.status, GlanceChannel(channels)},
+          bus->Subscribe({channels->status, GlanceChannel(*channels)},
                          [&watch](std::string_view channel, std::span<const std::byte> bytes,
                                   std::int64_t) { watch.Take(channel, bytes); })) {
     Complain(*fault);

@@ -71,6 +71,7 @@ TEST(StopPlan, AStopLeftOutCostsWhatThePlanSays) {
     std::vector<PlannedStop> others = plan.stops;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     const ExpectedEnd without = ExpectEnd(c, others, false);
+    // It is this stop's and no other's.
     EXPECT_NEAR(without.semi_major / plan.worth[i].ellipse_without, 1, 1e-9);
     EXPECT_GT(without.semi_major, 6) << "the plan has a stop that it does not need";
   }
