@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/record/sample.h"
 
 namespace wellgyro {
@@ -151,6 +152,7 @@ void TakeAccelErrors(const BenchCalibration& bench, ErrorPriors& errors) {
     errors.accel_misalignment_sigma =
         std::max(errors.accel_misalignment_sigma, LargestRelative(report, name, false));
   }
+  CountInBias(errors);
 }
 
 void TakeErrors(const BenchCalibration& bench, ToolCalibration& tool) {
