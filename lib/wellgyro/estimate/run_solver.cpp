@@ -363,8 +363,10 @@ SolveReport RunSolver::Solve(int iterations) {
   const double usual = UsualRollChange(knots_).value_or(kWalkUnseen);
   scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
   Iterate(iterations, kNear, report);
-  FindScale(kWalkLeast, scales_.roll_walk, report);
-  if (HidesAStart()) FindScale(kShareLeast, scales_.speed_share, report);
+  const bool measured = std::all_of(knots_.begin(), knots_.end(),
+                                    [](const RunKnot& k) { return k.increment.has_axial; });
+  if (!measured) FindScale(kWalkLeast, scales_.roll_walk, report);
+  if (!measured && HidesAStart()) FindScale(kShareLeast, scales_.speed_share, report);
   HoldRollWeights();
   Iterate(kFinish, kStays, report);
   report.converged = elimination_.decrement() < kNear;
