@@ -59,7 +59,7 @@ class Program(ProgramTest):
 
     def test_run_toml_names_the_adjuster(self):
         self.assertEqual(self.Survey(self.log, "adjusted").returncode, 0)
-        self.assertEqual(self.Toml("adjusted", "run.toml")["adjuster"], "least squares in angles")
+        self.assertEqual(self.Toml("adjusted", "run.toml")["adjuster"], "of rotations")
 
     def test_a_pipe_is_as_good_as_a_file(self):
         self.assertEqual(self.Survey(self.log, "file").returncode, 0)

@@ -52,7 +52,8 @@ Count Fly(const Case& c, int seeds, const RunAdjuster* adjuster, bool by_rotatio
     const Simulation simulation = testing::SimulationOf(hour, static_cast<std::uint64_t>(seed));
     Job job = testing::JobOf(hour);
     job.stations.at_stops = true;
-    if (by_rotations) job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
+    job.attitude.estimator =
+        by_rotations ? AttitudeSpec::Estimator::kRotation : AttitudeSpec::Estimator::kAngles;
     testing::CollectingSink sink;
     const Survey survey = testing::SurveyOf(simulation, job, sink, {}, adjuster);
     for (const NorthFix& fix : survey.runs.at(0).fixes) {

@@ -104,7 +104,8 @@ void ExpectAsSureAsItSays(const Well& well, int seeds, bool by_rotations) {
   tool.errors.gyro_scale_sigma = tool.errors.gyro_misalignment_sigma = well.skewed;
   const LeastSquaresAdjuster adjuster;
   Job job = testing::JobOf(tool);
-  if (by_rotations) job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
+  job.attitude.estimator =
+      by_rotations ? AttitudeSpec::Estimator::kRotation : AttitudeSpec::Estimator::kAngles;
   int judged = 0;  // runs whose verdict lets them be; of clean ones chance fails 1 %
   for (int seed = 1; seed <= seeds; ++seed) {
     const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));

@@ -70,7 +70,8 @@ enum class By { kSmoother, kAngles, kRotations };
 Job JobOf(By by) {
   Job job = testing::JobOf(Tool());
   job.tie_in.md = 0;
-  if (by == By::kRotations) job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
+  job.attitude.estimator =
+      by == By::kRotations ? AttitudeSpec::Estimator::kRotation : AttitudeSpec::Estimator::kAngles;
   return job;
 }
 

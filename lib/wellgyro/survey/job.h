@@ -49,8 +49,8 @@ struct AttitudeSpec {
   };
   /// Of the form that sums samples: its error falls with this power of the sample's period.
   enum class Order { kSecond, kThird };
-  Order order = Order::kThird;               ///< the second is cheaper, not better
-  Estimator estimator = Estimator::kAngles;  ///< of the final stations
+  Order order = Order::kThird;                 ///< the second is cheaper, not better
+  Estimator estimator = Estimator::kRotation;  ///< of the final stations
 };
 
 /// What the job says of the magnetic azimuths of a tool that has magnetometers.

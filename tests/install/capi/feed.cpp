@@ -8,7 +8,6 @@
 #include <wellgyro/bus/feed.h>
 #include <wellgyro/bus/log_reader.h>
 #include <wellgyro/earth/grid.h>
-#include <wellgyro/fit/adjuster.h>
 #include <wellgyro/io/exchange/survey_csv.h>
 #include <wellgyro/io/toml/job_file.h>
 #include <wellgyro/survey/surveyor.h>
@@ -91,8 +90,7 @@ int main(int argc, char** argv) {
   if (!file || !reader) return 2;
   const wellgyro::Job& job = file->job;
   wellgyro::Sink sink;
-  const auto adjuster = wellgyro::MakeAdjuster();
-  wellgyro::Surveyor surveyor(job, sink, adjuster.get());
+  wellgyro::Surveyor surveyor(job, sink);
   Copier copier(surveyor, argv[3]);
   wellgyro::Feed feed(job.channels, copier);
   wellgyro::LogEvent event;

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include <wellgyro/fit/adjuster.h>
 #include <wellgyro/live/session.h>
 
 int main(int, char** argv) {
@@ -17,9 +16,8 @@ int main(int, char** argv) {
   setup.clock.monotonic_us = [] {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::microseconds(1);
   };
-  const auto adjuster = wellgyro::MakeAdjuster();
   wellgyro::LiveObserver observer;
-  auto session = wellgyro::LiveSession::Open(setup, adjuster.get(), observer);
+  auto session = wellgyro::LiveSession::Open(setup, nullptr, observer);
   if (!session) return std::puts(session.fault().text.c_str());
   return (*session)->Run().usable() ? 0 : 1;
 }
