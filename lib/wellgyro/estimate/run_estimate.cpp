@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/swing.h"
-#include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
 namespace {
@@ -21,59 +21,13 @@ using Eigen::Vector3d;
 constexpr int kIterations = 15;
 // 2 ln of odds of 90: by less one azimuth does not beat another.
 constexpr double kDecides = 9;
+// Past it the first order is not what the angle is: sine and angle part by 2 %.
+constexpr double kVagueHeading = 20 * kPi / 180;  // [rad]
 // A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
 constexpr double kTooLarge = 4;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
-
-/// Inclination and toolface by the first knot that gravity levels, azimuth zero.
-Matrix3d LevelAttitude(std::span<const RunKnot> knots) {
-  for (const RunKnot& knot : knots) {
-    if (!knot.increment.level) continue;
-    const Vector3d& f = knot.increment.force_M;
-    return AttitudeMatrix(0, std::atan2(std::hypot(f.x(), f.y()), -f.z()),
-                          std::atan2(-f.y(), f.x())) *
-           RotationZ(-knot.increment.roll_before);
-  }
-  return Matrix3d::Identity();
-}
-
-/// The turn about the vertical that takes `from` nearest to `to`.
-double HeadingBetween(const Matrix3d& from, const Matrix3d& to) {
-  const Matrix3d turn = to * from.transpose();
-  return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
-}
-
-/// Adds to the roll of the knots between two nodes that do not show it, together `angle`.
-void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
-            std::vector<double>& extra) {
-  const auto weight = [&](std::size_t k) {
-    const bool hidden = !knots[k].increment.roll_seen && !knots[k].still;
-    return hidden ? knots[k].increment.seconds : 0.0;
-  };
-  double sum = 0;
-  for (std::size_t k = begin; k < end; ++k) sum += weight(k);
-  if (!(sum > 0)) return;
-  for (std::size_t k = begin; k < end; ++k) extra[k] += angle * weight(k) / sum;
-}
-
-void BeginAt(const Start& start, RunSolver& solver) {
-  Matrix3d first = LevelAttitude(solver.knots());
-  std::vector<double> extra(solver.knots().size(), 0);
-  const auto heading = [&](const Anchor& anchor) {
-    solver.Begin(first, extra);
-    return HeadingBetween(solver.nodes()[anchor.node].R_LT, anchor.R_LT);
-  };
-  // The Earth's rate depends on the heading: until it stays to a milliradian.
-  for (int i = 0; i < 3; ++i) first = RotationZ(heading(start.front())) * first;
-  const std::size_t* from = &start.front().node;
-  for (const Anchor& anchor : std::span(start).subspan(1)) {
-    for (int i = 0; i < 2; ++i) Spread(heading(anchor), solver.knots(), *from, anchor.node, extra);
-    from = &anchor.node;
-  }
-  solver.Begin(first, extra);
-}
 
 /// Columns of [node; border] whose errors stay linked from node to node.
 std::vector<int> LinkedColumns(const Layout& layout) {
@@ -193,43 +147,81 @@ Diagnosis DiagnosisOf(const RunSolver& solved) {
   return Diagnose(tested, setup.causes, EndByPhi(solved.nodes()), setup.false_alarm_rate);
 }
 
+std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                                 std::span<const Start> starts) {
+  if (starts.empty()) return GuessesOfHeadings(setup, knots);
+  std::vector<NodeGuess> guesses;
+  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start));
+  return guesses;
+}
+
+struct Choice {
+  std::unique_ptr<RunSolver> solver;  ///< of the solution of greatest evidence; null: none
+  SolveReport report;
+  bool rival = false;  ///< another solution comes near it
+};
+
+/// Each guess with the roll as a walk, and as a swing where it is one.
+Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
+              std::span<const NodeGuess> guesses) {
+  std::vector<EstimateSetup> setups{setup};
+  if (const std::optional<double> swing = SwingOf(knots)) {
+    setups.push_back(setup);
+    setups.back().swing = swing;
+  }
+  struct Solution {
+    double evidence = HUGE_VAL;
+    NodeGuess nodes;
+  };
+  std::vector<Solution> solutions(guesses.size());
+  Choice choice;
+  for (std::size_t i = 0; i < guesses.size(); ++i) {
+    for (const EstimateSetup& tried : setups) {
+      auto solver = std::make_unique<RunSolver>(tried, knots);
+      solver->nodes() = guesses[i];
+      const SolveReport report = solver->Solve(kIterations);
+      if (!report.converged || !(report.evidence < solutions[i].evidence)) continue;
+      solutions[i] = {report.evidence, solver->nodes()};
+      if (choice.solver && !(report.evidence < choice.report.evidence)) continue;
+      choice.report = report;
+      choice.solver = std::move(solver);
+    }
+  }
+  choice.rival = std::any_of(solutions.begin(), solutions.end(), [&choice](const Solution& s) {
+    return s.evidence - choice.report.evidence < kDecides &&
+           !SameSolution(s.nodes, choice.solver->nodes());
+  });
+  return choice;
+}
+
+/// 1-sigma of the turn about the vertical, of the node where it is known best.
+double SigmaOfHeading(std::span<const Node> nodes, std::span<const Matrix3d> cov_phi) {
+  double least = HUGE_VAL;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Vector3d down_T = nodes[k].R_LT.row(2).transpose();
+    least = std::min(least, down_T.dot(cov_phi[k] * down_T));
+  }
+  return std::sqrt(least);
+}
+
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
                         std::span<const Start> starts, std::span<const std::size_t> marked) {
   RunEstimate result;
   if (knots.empty()) return result;
-  std::vector<EstimateSetup> setups{setup};
-  if (const std::optional<double> swing = SwingOf(knots)) {
-    setups.push_back(setup);
-    setups.back().swing = swing;
-  }
-  std::unique_ptr<RunSolver> best;
-  std::size_t best_start = 0;
-  std::vector<double> evidence(starts.size(), HUGE_VAL);
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    for (const EstimateSetup& tried : setups) {
-      auto solver = std::make_unique<RunSolver>(tried, knots);
-      BeginAt(starts[i], *solver);
-      const SolveReport report = solver->Solve(kIterations);
-      if (!report.converged) continue;
-      evidence[i] = std::min(evidence[i], report.evidence);
-      if (best && !(report.evidence < result.report.evidence)) continue;
-      result.report = report;
-      best = std::move(solver);
-      best_start = i;
-    }
-  }
-  if (!best) return result;
+  Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts));
+  if (!choice.solver) return result;
+  RunSolver& best = *choice.solver;
   result.solved = true;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    result.ambiguous |= i != best_start && evidence[i] - result.report.evidence < kDecides;
-  }
-  Sweep(*best, marked, result).Run();
+  result.report = choice.report;
+  result.ambiguous = choice.rival;
+  Sweep(best, marked, result).Run();
+  result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi) > kVagueHeading;
   // Before the noise is taken larger: a fault is what makes the residuals too large.
-  if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(*best);
-  FitNoise(*best, marked, result);
-  result.nodes = best->nodes();
+  if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(best);
+  FitNoise(best, marked, result);
+  result.nodes = best.nodes();
   return result;
 }
 

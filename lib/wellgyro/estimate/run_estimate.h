@@ -11,18 +11,10 @@
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/estimate/setup.h"
+#include "wellgyro/estimate/start.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
-
-/// The attitude of one node, found at rest or told, of which the heading counts.
-struct Anchor {
-  std::size_t node = 0;
-  Eigen::Matrix3d R_LT = Eigen::Matrix3d::Identity();
-};
-/// From where a run may be begun. The first anchor gives its heading; where the roll was not seen
-/// all the way from one to the next, near vertical, what is missing of it is spread over that part.
-using Start = std::vector<Anchor>;
 
 /// Errors of a run at one of its nodes that stay linked to those of others: attitude, drift, and
 /// the tool's constants. Those of the marked nodes form a chain in time.
@@ -37,7 +29,8 @@ struct RunEstimate {
   bool solved = false;  ///< false: what follows means nothing
   SolveReport report;   ///< of the start that fits best, with the noise as stated
   double gyro_noise = 1, accel_noise = 1;  ///< found, over stated, where residuals are too large
-  /// Another start comes so near in evidence that the azimuth is not decided: by less than 9.
+  /// The azimuth is not decided: another solution comes within 9 in evidence, or no node's heading
+  /// is known within 20 deg.
   bool ambiguous = false;
   std::vector<Node> nodes;                   ///< one more than knots
   std::vector<Eigen::Matrix3d> cov_phi;      ///< of each node's attitude, R_LT Exp(phi) [rad^2]
@@ -47,12 +40,13 @@ struct RunEstimate {
   Diagnosis diagnosis;                             ///< where the setup asks for it
 };
 
-/// Solves the run from each start and keeps the one of greatest evidence. Where the residuals of
+/// Solves the run from each start and keeps the solution of greatest evidence; where there is no
+/// start, from what eight headings lead to: the motion itself shows north. Where the residuals of
 /// gyros or accelerometers are larger than the noise stated can make them, that sensor's noise is
 /// taken as large as they say, and the run is solved with it (variance components, Foerstner 1979):
 /// covariances hold for what was measured, not for what was promised. Noise is never taken smaller.
-/// `marked`: nodes whose linked errors are wanted, ascending. Unsolved where there is no start or
-/// no knot, or where no start leads to a solution.
+/// `marked`: nodes whose linked errors are wanted, ascending. Unsolved where there is no knot, or
+/// where no start leads to a solution.
 WELLGYRO_EXPORT RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
                                         std::span<const Start> starts,
                                         std::span<const std::size_t> marked);

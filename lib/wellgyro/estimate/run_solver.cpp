@@ -354,14 +354,24 @@ bool RunSolver::SolveWithNoise(double gyro, double accel) {
   return elimination_.decrement() < kNear;
 }
 
-SolveReport RunSolver::Solve(int iterations) {
-  SolveReport report;
+void RunSolver::BeginScales() {
   scales_ = {};
   scales_.roll_start = RollStarts(knots_);
   scales_.speed_start = SpeedStarts(knots_);
   // From the decade above what the rate usually changes by, which its own noise is part of.
   const double usual = UsualRollChange(knots_).value_or(kWalkUnseen);
   scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
+}
+
+bool RunSolver::Approach(int iterations) {
+  BeginScales();
+  SolveReport report;
+  return Iterate(iterations, kNear, report);
+}
+
+SolveReport RunSolver::Solve(int iterations) {
+  SolveReport report;
+  BeginScales();
   Iterate(iterations, kNear, report);
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });

@@ -44,6 +44,9 @@ class RunSolver : public RunRows {
   /// gravity turns the tool about it. `extra_roll`: of each knot, where the roll inside it was not
   /// seen and is known to be more [rad]; or empty.
   void Begin(const Eigen::Matrix3d& R_LT, std::span<const double> extra_roll);
+  /// Goes into the minimum about where it stands, near enough to know it. False: there is none
+  /// within `iterations` steps.
+  bool Approach(int iterations);
   /// Relinearises until the attitudes stay, at most `iterations` times.
   SolveReport Solve(int iterations);
   /// Takes the gyros' and the accelerometers' white noise so many times as large as before and goes
@@ -79,6 +82,7 @@ class RunSolver : public RunRows {
   void MovePlaces();
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
+  void BeginScales();
   double WalkOfUnseen(std::size_t knot) const;
   double Walk(std::size_t knot) const;
   RollChange Change(std::size_t knot) const;

@@ -1,0 +1,96 @@
+#include "wellgyro/estimate/start.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/run_solver.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+
+constexpr int kHeadings = 8;   // one of them is within 22.5 deg of any
+constexpr int kApproach = 15;  // steps from there: three for the heading, the rest for the roll
+// Steps that stop at a thousandth of a sigma end nearer to each other; no two minima of a heading
+// that are nearer than half a degree have been seen.
+constexpr double kSame = 0.01;  // [rad]
+
+/// Inclination and toolface by the first knot that gravity levels, azimuth zero.
+Matrix3d LevelAttitude(std::span<const RunKnot> knots) {
+  for (const RunKnot& knot : knots) {
+    if (!knot.increment.level) continue;
+    const Eigen::Vector3d& f = knot.increment.force_M;
+    return AttitudeMatrix(0, std::atan2(std::hypot(f.x(), f.y()), -f.z()),
+                          std::atan2(-f.y(), f.x())) *
+           RotationZ(-knot.increment.roll_before);
+  }
+  return Matrix3d::Identity();
+}
+
+/// The turn about the vertical that takes `from` nearest to `to`.
+double HeadingBetween(const Matrix3d& from, const Matrix3d& to) {
+  const Matrix3d turn = to * from.transpose();
+  return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
+}
+
+/// Adds to the roll of the knots between two nodes that do not show it, together `angle`.
+void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
+            std::vector<double>& extra) {
+  const auto weight = [&](std::size_t k) {
+    const bool hidden = !knots[k].increment.roll_seen && !knots[k].still;
+    return hidden ? knots[k].increment.seconds : 0.0;
+  };
+  double sum = 0;
+  for (std::size_t k = begin; k < end; ++k) sum += weight(k);
+  if (!(sum > 0)) return;
+  for (std::size_t k = begin; k < end; ++k) extra[k] += angle * weight(k) / sum;
+}
+
+}  // namespace
+
+NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start) {
+  RunSolver solver(setup, knots);
+  Matrix3d first = LevelAttitude(knots);
+  std::vector<double> extra(knots.size(), 0);
+  const auto heading = [&](const Anchor& anchor) {
+    solver.Begin(first, extra);
+    return HeadingBetween(solver.nodes()[anchor.node].R_LT, anchor.R_LT);
+  };
+  // The Earth's rate depends on the heading: until it stays to a milliradian.
+  for (int i = 0; i < 3; ++i) first = RotationZ(heading(start.front())) * first;
+  const std::size_t* from = &start.front().node;
+  for (const Anchor& anchor : std::span(start).subspan(1)) {
+    for (int i = 0; i < 2; ++i) Spread(heading(anchor), knots, *from, anchor.node, extra);
+    from = &anchor.node;
+  }
+  solver.Begin(first, extra);
+  return solver.nodes();
+}
+
+std::vector<NodeGuess> GuessesOfHeadings(const EstimateSetup& setup,
+                                         std::span<const RunKnot> knots) {
+  const Matrix3d level = LevelAttitude(knots);
+  RunSolver solver(setup, knots);
+  std::vector<NodeGuess> guesses;
+  for (int i = 0; i < kHeadings; ++i) {
+    solver.Begin(RotationZ(i * kTwoPi / kHeadings) * level, {});
+    if (!solver.Approach(kApproach)) continue;
+    const auto same = [&](const NodeGuess& g) { return SameSolution(g, solver.nodes()); };
+    if (std::none_of(guesses.begin(), guesses.end(), same)) guesses.push_back(solver.nodes());
+  }
+  return guesses;
+}
+
+bool SameSolution(std::span<const Node> a, std::span<const Node> b) {
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if ((a[k].R_LT - b[k].R_LT).norm() > std::sqrt(2.0) * kSame) return false;
+  }
+  return true;
+}
+
+}  // namespace wellgyro
