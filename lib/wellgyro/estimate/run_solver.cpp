@@ -44,6 +44,7 @@ constexpr double kWalkMost = 0.1, kWalkLeast = 1e-7;  // [rad/s/sqrt(s)]
 // Of what the roll may start and stop by with the speed along the hole, the least share that is
 // tried: 1e-4 rad/s over 10 s are less than the gyros' noise shows.
 constexpr double kShareLeast = 1e-4;
+constexpr double kHalfDecade = 3.1622776601683795;
 constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
 constexpr double kWorse = 6;          // 2 ln 20: by which evidence decides
 
@@ -309,7 +310,15 @@ double RunSolver::Evidence() const {
   return evidence;
 }
 
-/// The one of greatest evidence, by decades down from what it is.
+/// The evidence with `tried` in place of the scale; HUGE_VAL where it leads nowhere.
+double RunSolver::EvidenceOf(double tried, double& scale, SolveReport& report) {
+  scale = tried;
+  if (!Iterate(3, kNear, report) && elimination_.decrement() > kFar) return HUGE_VAL;
+  return Evidence();
+}
+
+/// The one of greatest evidence, by decades down from what it is, then by the parabola through it
+/// and the half decades beside it.
 ///
 /// Freedom of the roll that no tool makes use of does more than widen the result: near vertical the
 /// more the hole leans, the more of the accelerometers' noise a free roll explains, so that the
@@ -320,9 +329,8 @@ void RunSolver::FindScale(double least, double& scale, SolveReport& report) {
   BorderVector best_border = border_;
   double best = HUGE_VAL, best_scale = scale;
   for (double tried = scale; tried > 0.9 * least; tried /= 10) {
-    scale = tried;
-    if (!Iterate(3, kNear, report) && elimination_.decrement() > kFar) break;
-    const double evidence = Evidence();
+    const double evidence = EvidenceOf(tried, scale, report);
+    if (evidence == HUGE_VAL) break;
     if (evidence < best) {
       best = evidence;
       best_scale = tried;
@@ -332,9 +340,21 @@ void RunSolver::FindScale(double least, double& scale, SolveReport& report) {
       break;
     }
   }
+  const auto back = [&] {
+    nodes_ = best_nodes;
+    border_ = best_border;
+  };
+  double beside[2];
+  for (const int side : {0, 1}) {
+    back();
+    beside[side] =
+        EvidenceOf(best_scale * (side == 0 ? 1 / kHalfDecade : kHalfDecade), scale, report);
+  }
+  back();
   scale = best_scale;
-  nodes_ = best_nodes;
-  border_ = best_border;
+  const double bend = beside[0] - 2 * best + beside[1];
+  if (!std::isfinite(bend) || !(bend > 0)) return;
+  scale *= std::pow(kHalfDecade, std::clamp(0.5 * (beside[0] - beside[1]) / bend, -1.0, 1.0));
 }
 
 /// Somewhere the tool starts or stops and gravity does not show how it rolls.

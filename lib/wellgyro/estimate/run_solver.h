@@ -90,6 +90,7 @@ class RunSolver : public RunRows {
   bool Iterate(int most, double stays, SolveReport& report);
   double Evidence() const;
   bool HidesAStart() const;
+  double EvidenceOf(double tried, double& scale, SolveReport& report);
   void FindScale(double least, double& scale, SolveReport& report);
 
   EstimateSetup setup_;

@@ -151,6 +151,17 @@ Matrix3d AnglesByPhi(double inclination, double toolface) {
   return slope;
 }
 
+void ForgetAngle(int i, AttitudeSample& a) {
+  a.cov_attitude.row(i).setZero();
+  a.cov_attitude.col(i).setZero();
+  a.cov_attitude(i, i) = kUnknownAngleVariance;
+}
+
+void ForgetAzimuth(AttitudeSample& a) {
+  a.azimuth_known = false;
+  ForgetAngle(1, a);
+}
+
 AttitudeSample SampleOf(const Knot& knot, const Node& node, const Matrix3d& cov_phi) {
   AttitudeSample a;
   const Matrix3d& R = node.R_LT;
@@ -164,10 +175,7 @@ AttitudeSample SampleOf(const Knot& knot, const Node& node, const Matrix3d& cov_
   a.cov_attitude = slope * cov_phi * slope.transpose();
   if (a.cov_attitude(1, 1) > kVaguest * kVaguest) a.quality |= Quality::kVertical;
   for (const int i : {1, 2}) {
-    if (a.cov_attitude(i, i) < kUnknownAngleVariance) continue;
-    a.cov_attitude.row(i).setZero();
-    a.cov_attitude.col(i).setZero();
-    a.cov_attitude(i, i) = kUnknownAngleVariance;
+    if (!(a.cov_attitude(i, i) < kUnknownAngleVariance)) ForgetAngle(i, a);
   }
   return a;
 }
@@ -249,8 +257,8 @@ SmoothedRun EstimatedRun(const Job& job, const FilterHistory& history,
   run.fit = FitOf(estimate);
   run.fit->diagnosis = DiagnosisOf(estimate.diagnosis, joined.knots);
   if (estimate.ambiguous) {
-    for (AttitudeSample& a : run.attitude) a.azimuth_known = false;
-    for (StationState& s : run.stations) s.attitude.azimuth_known = false;
+    for (AttitudeSample& a : run.attitude) ForgetAzimuth(a);
+    for (StationState& s : run.stations) ForgetAzimuth(s.attitude);
   }
   return run;
 }
