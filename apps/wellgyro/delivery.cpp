@@ -89,10 +89,7 @@ int DeliverTools(Delivery& delivery, const std::vector<ToolResult>& results, con
 
 }  // namespace
 
-Maker MakerOf(const Job& job) {
-  return {"wellgyro " WELLGYRO_VERSION,
-          InAngles(job) ? "least squares in angles" : "least squares of rotations"};
-}
+Maker MakerOf() { return {"wellgyro " WELLGYRO_VERSION, "least squares of rotations"}; }
 
 bool MayWriteTo(const std::filesystem::path& folder) {
   const auto fault = AcceptedIn(folder);

@@ -13,16 +13,11 @@
 
 namespace wellgyro::apps {
 
-/// The job's estimator is the one that fit/ adjusts for.
-inline bool InAngles(const Job& job) {
-  return job.attitude.estimator == AttitudeSpec::Estimator::kAngles;
-}
-
 /// What a survey says of itself on standard output.
 enum class Says { kSummary, kNothing, kJson };
 
 /// Who wrote a result, and what adjusted its runs, in run.toml.
-Maker MakerOf(const Job& job);
+Maker MakerOf();
 
 /// Says so and gives false when `folder` holds a survey that someone accepted.
 bool MayWriteTo(const std::filesystem::path& folder);

@@ -9,7 +9,6 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/live/session.h"
 
 #include "commands.h"
@@ -78,12 +77,10 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
   setup.resume = options.resume;
   setup.fill = options.fill;
   setup.formats = options.formats;
-  setup.maker = MakerOf(job.job);
+  setup.maker = MakerOf();
   setup.clock = ThisClock();
   SurveyConsole console(options.says);
-  const LeastSquaresAdjuster adjuster;
-  auto session =
-      LiveSession::Open(std::move(setup), InAngles(job.job) ? &adjuster : nullptr, console);
+  auto session = LiveSession::Open(std::move(setup), nullptr, console);
   if (!session) {
     Complain(session.fault());
     return kUnusable;

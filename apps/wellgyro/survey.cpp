@@ -15,7 +15,6 @@
 #include "wellgyro/bus/file_lock.h"
 #include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_reader.h"
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/sensor/sensor_files.h"
@@ -83,8 +82,7 @@ void FinishSurvey(Surveyor& surveyor, const SurveyOptions& options) {
 
 int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   FaultBook faults;
-  const LeastSquaresAdjuster adjuster;
-  Surveyor surveyor(job.job, faults, InAngles(job.job) ? &adjuster : nullptr);
+  Surveyor surveyor(job.job, faults);
   Intake intake(job, surveyor);
   SourceRecord source;
   const std::vector<std::string> parts =
@@ -96,15 +94,14 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   for (const std::string& hint : HintsAtChannels(intake.feed())) Complain(hint);
   Describe(intake, source);
   return DeliverAll(options.out, job, surveyor,
-                    RecordOf(MakerOf(job.job), job, options.formats, intake, faults), source,
+                    RecordOf(MakerOf(), job, options.formats, intake, faults), source,
                     options.says);
 }
 
 /// From tables of sensor data: samples, averages at rest, depth.
 int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   FaultBook faults;
-  const LeastSquaresAdjuster adjuster;
-  Surveyor surveyor(job.job, faults, InAngles(job.job) ? &adjuster : nullptr);
+  Surveyor surveyor(job.job, faults);
   const std::vector<std::filesystem::path> files(options.sources.begin(), options.sources.end());
   const Result<SensorReport> report = PushSensorFiles(files, job.job, surveyor, faults);
   if (!report) {
@@ -113,7 +110,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   }
   FinishSurvey(surveyor, options);
   RunRecord record;
-  const Maker maker = MakerOf(job.job);
+  const Maker maker = MakerOf();
   record.program = maker.program;
   record.adjuster = maker.adjuster;
   record.inputs = job.files;

@@ -15,7 +15,6 @@
 #include <fmt/core.h>
 
 #include "wellgyro/earth/grid.h"
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/survey/surveyor.h"
@@ -132,14 +131,12 @@ struct wellgyro_session {
       grid.emplace(*job.grid, wellgyro::GeodeticPoint{.latitude = job.well.latitude,
                                                       .longitude = job.well.longitude});
     }
-    const bool in_angles = job.attitude.estimator == wellgyro::AttitudeSpec::Estimator::kAngles;
-    surveyor.emplace(job, mailbox, in_angles ? &adjuster : nullptr);
+    surveyor.emplace(job, mailbox);
   }
 
   wellgyro::Job job;
   std::optional<wellgyro::WellGrid> grid;
   Mailbox mailbox;
-  wellgyro::LeastSquaresAdjuster adjuster;
   std::optional<wellgyro::Surveyor> surveyor;
   std::string error;
 };

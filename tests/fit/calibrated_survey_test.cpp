@@ -111,9 +111,7 @@ double Normalised(const Eigen::VectorXd& error, const Eigen::MatrixXd& cov) {
   return error.dot(cov.ldlt().solve(error));
 }
 
-class CalibratedSurvey : public ::testing::TestWithParam<AttitudeSpec::Estimator> {};
-
-TEST_P(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
+TEST(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
   constexpr int kTools = 16;
   double direction = 0, place = 0, worst_azimuth = 0, uncalibrated = 0;
   for (std::uint64_t seed = 1; seed <= kTools; ++seed) {
@@ -125,7 +123,6 @@ TEST_P(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
 
     const Simulation simulation = HoleRun(seed);
     Job job;
-    job.attitude.estimator = GetParam();
     job.well.latitude = simulation.earth.latitude;
     job.noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
     job.errors.accel_noise = 1e-5;
@@ -162,14 +159,6 @@ TEST_P(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
   }
   EXPECT_LT(worst_azimuth, 0.1 * uncalibrated);
 }
-
-INSTANTIATE_TEST_SUITE_P(Estimators, CalibratedSurvey,
-                         ::testing::Values(AttitudeSpec::Estimator::kAngles,
-                                           AttitudeSpec::Estimator::kRotation),
-                         [](const auto& of) {
-                           return of.param == AttitudeSpec::Estimator::kAngles ? "ByAngles"
-                                                                               : "ByRotations";
-                         });
 
 }  // namespace
 }  // namespace wellgyro::test

@@ -50,8 +50,7 @@ struct Observer : LiveObserver {
 
 /// Takes its time, as the adjustment of a long run does.
 struct SlowAdjuster : RunAdjuster {
-  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment>,
-                     double) const override {
+  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment>) const override {
     ++begun;
     while (!release) std::this_thread::sleep_for(milliseconds(20));
     return Smooth(history);

@@ -14,6 +14,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/simulate/tool_errors.h"
+#include "wellgyro/survey/estimated_run.h"
 #include "wellgyro/survey/run_adjuster.h"
 
 #include "support/simulated_survey.h"
@@ -22,10 +23,10 @@
 /// sensors to what the filter leaves behind.
 namespace wellgyro::testing {
 
-/// Keeps the history and adjusts as a surveyor without adjuster does.
+/// Keeps what a run leaves, and makes of it what is known before it is estimated as a whole.
 struct KeepingAdjuster : RunAdjuster {
-  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment> increments,
-                     double) const override {
+  SmoothedRun Adjust(const FilterHistory& history,
+                     std::span<const Increment> increments) const override {
     kept = history;
     kept_increments.assign(increments.begin(), increments.end());
     return Smooth(history);
@@ -144,24 +145,30 @@ inline Job ExternalJob(const Hour& hour, std::uint64_t seed, double sigma_deg) {
 }
 
 struct Flown {
+  Job job;
   FilterHistory history;
   std::vector<Increment> increments;
   std::vector<TruthState> truth;  ///< at the end of every epoch
 };
+
+/// As a surveyor estimates it.
+inline SmoothedRun EstimateOf(const Flown& flown) {
+  return EstimatedRun(flown.job, flown.history, flown.increments);
+}
 
 inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size_t i) {
   return WrapPi(run.attitude[i].azimuth - flown.truth[i].azimuth);
 }
 
 /// Plays a run through a surveyor.
-inline Flown Fly(const Simulation& simulation, Job job) {
+inline Flown Fly(const Simulation& simulation, const Job& job) {
   Sink sink;
-  job.attitude.estimator = AttitudeSpec::Estimator::kRotation;  // for its increments
   const KeepingAdjuster keeper;
   Surveyor surveyor(job, sink, &keeper);
   Play(simulation, surveyor);
   surveyor.Finish();
   Flown flown;
+  flown.job = job;
   flown.history = std::move(keeper.kept);
   flown.increments = std::move(keeper.kept_increments);
   const Truth truth(simulation);

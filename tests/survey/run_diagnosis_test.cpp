@@ -1,4 +1,4 @@
-// Which fault explains a simulated run, by the estimator of rotations.
+// Which fault explains a simulated run.
 #include "wellgyro/survey/run_diagnosis.h"
 
 #include <algorithm>
@@ -50,7 +50,6 @@ struct Flight {
     simulation.streams.imu_hz = 10;
     simulation.streams.depth_hz = 2;
     job.well.latitude = FromDegrees(60);
-    job.attitude.estimator = AttitudeSpec::Estimator::kRotation;
     job.noise.angle_random_walk = 0.005 * units::kDegPerSqrtHour;
     job.noise.rate_random_walk = 0.01 * units::kDegPerHourSqrtHour;
     job.errors.gyro_bias_sigma = 0.1 * units::kDegPerHour;

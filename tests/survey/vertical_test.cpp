@@ -27,7 +27,6 @@ constexpr double kStopMd = 150, kEndMd = 300;
 struct Case {
   std::string name;
   double inclination_deg, build_from, rpm;
-  AttitudeSpec::Estimator estimator = AttitudeSpec::Estimator::kAngles;
 };
 
 Simulation SimulationOf(const Case& c) {
@@ -58,16 +57,12 @@ Eigen::Vector2d LeanOf(double inclination, double azimuth) {
   return std::sin(inclination) * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
 }
 
-constexpr auto kRotation = AttitudeSpec::Estimator::kRotation;
-
 class NearVertical : public ::testing::TestWithParam<Case> {};
 
 TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
   Simulation simulation = SimulationOf(GetParam());
-  const bool by_rotations = GetParam().estimator == AttitudeSpec::Estimator::kRotation;
-  const int seeds = by_rotations ? 3 : 6;
+  constexpr int kSeeds = 4;
   Job job;
-  job.attitude.estimator = GetParam().estimator;
   job.well.latitude = simulation.earth.latitude;
   job.noise.angle_random_walk = 0.01 * units::kDegPerSqrtHour;
   job.errors.gyro_bias_sigma = 0.1 * units::kDegPerHour;
@@ -78,7 +73,7 @@ TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
   // Of the tilt: in either direction where the hole is vertical, else of the inclination.
   double position = 0, azimuth = 0, tilt = 0;
   int azimuths = 0;
-  for (int seed = 1; seed <= seeds; ++seed) {
+  for (int seed = 1; seed <= kSeeds; ++seed) {
     simulation.seed = static_cast<std::uint64_t>(seed);
     simulation.tool.errors = DrawToolErrors(job.errors, job.noise, simulation.seed);
     CollectingSink sink;
@@ -107,36 +102,28 @@ TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
         EXPECT_TRUE(Has(station.quality, Quality::kVertical));
         // Two of the accelerometers' biases: no run is given up.
         const double two_biases = kEndMd * 2e-4 * std::sqrt(2.0);
-        if (by_rotations) {
-          EXPECT_LT(std::sqrt(cov.trace()), two_biases);
-        }
+        EXPECT_LT(std::sqrt(cov.trace()), two_biases);
         EXPECT_GT(std::sqrt(station.cov_md_inc_azi(2, 2)), FromDegrees(20));
       }
     }
   }
-  const double tail = 0.01 / 2 / (9 * 3);  // of all cases together one in a hundred
-  // Where a tool rolls in a vertical hole, the noise of its inclination is taken to last longer
-  // than it does: its places are better than they say.
-  const bool rolls = !by_rotations && GetParam().rpm > 0 && azimuths == 0;
-  EXPECT_GT(position, ChiSquareQuantile(tail, 2 * seeds) / (rolls ? 1.5 : 1));
-  EXPECT_LT(position, ChiSquareQuantile(1 - tail, 2 * seeds));
-  const int tilts = azimuths == 0 ? 2 * seeds : seeds;
-  EXPECT_GT(tilt, ChiSquareQuantile(tail, tilts) / (rolls ? 1.5 : 1));
+  const double tail = 0.01 / 2 / (6 * 3);  // of all cases together one in a hundred
+  EXPECT_GT(position, ChiSquareQuantile(tail, 2 * kSeeds));
+  EXPECT_LT(position, ChiSquareQuantile(1 - tail, 2 * kSeeds));
+  const int tilts = azimuths == 0 ? 2 * kSeeds : kSeeds;
+  EXPECT_GT(tilt, ChiSquareQuantile(tail, tilts));
   EXPECT_LT(tilt, ChiSquareQuantile(1 - tail, tilts));
   if (azimuths == 0) return;
-  EXPECT_EQ(azimuths, seeds);
-  EXPECT_GT(azimuth, ChiSquareQuantile(tail, seeds));
-  EXPECT_LT(azimuth, ChiSquareQuantile(1 - tail, seeds));
+  EXPECT_EQ(azimuths, kSeeds);
+  EXPECT_GT(azimuth, ChiSquareQuantile(tail, kSeeds));
+  EXPECT_LT(azimuth, ChiSquareQuantile(1 - tail, kSeeds));
 }
 
 INSTANTIATE_TEST_SUITE_P(Holes, NearVertical,
                          ::testing::Values(Case{"Vertical", 0, 0, 0},
                                            Case{"VerticalRolling", 0, 0, 3}, Case{"Slant", 1, 0, 0},
                                            Case{"SlantRolling", 1, 0, 3}, Case{"Build", 0, 100, 0},
-                                           Case{"BuildRolling", 0, 100, 3},
-                                           Case{"VerticalByRotations", 0, 0, 0, kRotation},
-                                           Case{"VerticalRollingByRotations", 0, 0, 3, kRotation},
-                                           Case{"BuildByRotations", 0, 100, 0, kRotation}),
+                                           Case{"BuildRolling", 0, 100, 3}),
                          [](const auto& of) { return of.param.name; });
 
 }  // namespace

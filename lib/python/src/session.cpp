@@ -23,7 +23,6 @@
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/surveyor_listener.h"
 #include "wellgyro/earth/grid.h"
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/sensor/sensor_files.h"
 #include "wellgyro/io/toml/job_file.h"
@@ -85,10 +84,7 @@ struct SampleArrays {
 class Session {
  public:
   explicit Session(std::shared_ptr<const JobFile> job)
-      : job_(std::move(job)),
-        surveyor_(job_->job, notes_,
-                  job_->job.attitude.estimator == AttitudeSpec::Estimator::kAngles ? &adjuster_
-                                                                                   : nullptr) {}
+      : job_(std::move(job)), surveyor_(job_->job, notes_) {}
 
   void PushImu(const SampleArrays& a);
   void PushDepth(const Input<std::int64_t, 1>& utc_ns, const Input<double, 1>& md,
@@ -108,7 +104,6 @@ class Session {
   std::mutex busy_;
   std::shared_ptr<const JobFile> job_;
   Notes notes_;
-  LeastSquaresAdjuster adjuster_;
   Surveyor surveyor_;
   std::map<std::int32_t, std::int64_t> next_seq_;
   std::int64_t next_mark_ = 0;
@@ -227,9 +222,7 @@ Outcome FromLog(const std::shared_ptr<const JobFile>& job, const std::string& pa
   Result<LogReader> reader = LogReader::Open(path);
   if (!reader) throw FileError{Sentence(reader.fault())};
   Notes notes;
-  const LeastSquaresAdjuster adjuster;
-  const bool angles = job->job.attitude.estimator == AttitudeSpec::Estimator::kAngles;
-  Surveyor surveyor(job->job, notes, angles ? &adjuster : nullptr);
+  Surveyor surveyor(job->job, notes);
   SurveyorListener listener(surveyor, notes);
   Feed feed(job->job.channels, listener);
   std::error_code ignored;
@@ -255,9 +248,7 @@ Outcome FromTables(const std::shared_ptr<const JobFile>& job, const std::vector<
   Teller teller(std::move(callback));
   const nb::gil_scoped_release released;
   Notes notes;
-  const LeastSquaresAdjuster adjuster;
-  const bool angles = job->job.attitude.estimator == AttitudeSpec::Estimator::kAngles;
-  Surveyor surveyor(job->job, notes, angles ? &adjuster : nullptr);
+  Surveyor surveyor(job->job, notes);
   const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
   Taken(PushSensorFiles(files, job->job, surveyor, notes,
                         [&](double share) { teller.Say(0.9 * share); }));

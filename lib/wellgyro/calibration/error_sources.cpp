@@ -211,9 +211,4 @@ ErrorPriors ErrorsLeft(const ToolCalibration& tool, ErrorPriors errors) {
   return errors;
 }
 
-void CountInBias(ErrorPriors& errors) {
-  const double relative = std::hypot(errors.accel_scale_sigma, errors.accel_misalignment_sigma);
-  errors.accel_bias_sigma = std::hypot(errors.accel_bias_sigma, relative * units::kStandardGravity);
-}
-
 }  // namespace wellgyro

@@ -39,9 +39,4 @@ WELLGYRO_EXPORT Eigen::MatrixXd SourceEffects(const ToolCalibration& tool,
 /// holds of them; as it is where the tool has no covariance of members.
 WELLGYRO_EXPORT ErrorPriors ErrorsLeft(const ToolCalibration& tool, ErrorPriors errors);
 
-/// Counts scale and misalignment of the accelerometers, at one g, in their bias too: the estimator
-/// of angles carries that alone, and without them would be surer than its tool. By rotations, which
-/// carry all three, sigmas are so a little too large.
-WELLGYRO_EXPORT void CountInBias(ErrorPriors& errors);
-
 }  // namespace wellgyro

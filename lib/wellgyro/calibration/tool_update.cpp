@@ -152,7 +152,6 @@ void TakeAccelErrors(const BenchCalibration& bench, ErrorPriors& errors) {
     errors.accel_misalignment_sigma =
         std::max(errors.accel_misalignment_sigma, LargestRelative(report, name, false));
   }
-  CountInBias(errors);
 }
 
 void TakeErrors(const BenchCalibration& bench, ToolCalibration& tool) {

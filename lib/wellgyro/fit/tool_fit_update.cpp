@@ -43,7 +43,6 @@ ToolCalibration Updated(ToolCalibration tool, const ToolFit& fit, const ToolUpda
   (gyro.n_channels > 0 ? tool.gyro : tool.accel).covariance = fit.members;
   if (gyro.n_channels > 0 && accel.n_channels > 0) tool.accel.covariance.reset();
   tool.errors = ErrorsLeft(tool, tool.errors.value_or(ErrorPriors{}));
-  if (accel.n_channels > 0) CountInBias(*tool.errors);
   return tool;
 }
 

@@ -74,8 +74,8 @@ JoinedKnots Join(const Job& job, const FilterHistory& history,
 
 EstimateSetup SetupOf(const Job& job, const FilterHistory& history, const JoinedKnots& joined) {
   EstimateSetup setup;
-  setup.gyro = history.setup.gyro;
-  setup.errors = history.setup.errors;
+  setup.gyro = job.noise;
+  setup.errors = job.errors;
   setup.site = history.setup.site;
   setup.third_axis = std::any_of(joined.knots.begin(), joined.knots.end(),
                                  [](const RunKnot& k) { return k.increment.has_axial; });

@@ -43,14 +43,9 @@ struct AlignmentSpec {
 
 /// How samples are summed on the run.
 struct AttitudeSpec {
-  enum class Estimator {
-    kAngles,    ///< filter, smoother and adjustment in azimuth, inclination and toolface
-    kRotation,  ///< one adjustment of rotations, regular at vertical
-  };
   /// Of the form that sums samples: its error falls with this power of the sample's period.
   enum class Order { kSecond, kThird };
-  Order order = Order::kThird;                 ///< the second is cheaper, not better
-  Estimator estimator = Estimator::kRotation;  ///< of the final stations
+  Order order = Order::kThird;  ///< the second is cheaper, not better
 };
 
 /// What the job says of the magnetic azimuths of a tool that has magnetometers.

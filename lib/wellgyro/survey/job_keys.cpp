@@ -258,8 +258,6 @@ constexpr std::array kAlignment{
 
 constexpr std::array kStations{
     Word("attitude", "order", "second or third", "third", "in which samples are summed"),
-    Word("attitude", "estimator", "angles or rotation", "rotation",
-         "what the final stations are adjusted in"),
     Number<&Job::stations, &StationSpec::every>("stations", "every_m", 1,
                                                 {.min = 0.2, .max = 1e5, .or_zero = true},
                                                 "spacing; 0: none", "10; 0 beside at_m"),

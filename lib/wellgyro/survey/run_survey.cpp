@@ -75,15 +75,13 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
       tvd_(job.tie_in.tvd),
       plan_(job),
       tracker_(TrackerOptionsOf(job)),
+      builder_(IncrementOptionsOf(job)),
       vertical_(VerticalSetupOf(job)),
       still_(StillSetupOf(job)),
       external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal),
       magnet_pending_(job.magnetic && job.magnetic->tie) {
   summary_.run = run;
   summary_.tool = tool;
-  if (job.attitude.estimator == AttitudeSpec::Estimator::kRotation) {
-    builder_.emplace(IncrementOptionsOf(job));
-  }
 }
 
 void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& along,
@@ -116,10 +114,8 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
     c.session = sample.stamp.session;
     c.rests = middle.known && std::abs(middle.speed) < kRestSpeed;
     c.for_vertical = vertical_.Wants(sample);
-    if (c.for_vertical || builder_) {
-      c.sample = sample;
-      c.middle = middle;
-    }
+    c.sample = sample;
+    c.middle = middle;
     c.utc = utc;
     c.utc_end = utc_end;
     c.along = along;
@@ -185,23 +181,21 @@ void RunSurvey::Flush() {
   if (const auto window = still_.Flush()) TakeWindow(*window);
   Release(true);
   CloseGroup();
-  if (builder_) {
-    builder_->Flush();
-    TakeIncrements();
-  }
+  builder_.Flush();
+  TakeIncrements();
 }
 
 /// The increments' knots end where the tracker's do; in a gap, once the sample behind it has come.
 void RunSurvey::CutIncrement(double fraction) {
   if (fraction <= 1) {
-    builder_->Cut(fraction);
+    builder_.Cut(fraction);
   } else {
     gap_cuts_.push_back(Duration{std::llround((fraction - 1) * current_->period_ns)});
   }
 }
 
 void RunSurvey::TakeIncrements() {
-  while (builder_->Ready()) increments_.push_back(builder_->Pop());
+  while (builder_.Ready()) increments_.push_back(builder_.Pop());
 }
 
 Draft RunSurvey::NewDraft(double md) const {
@@ -227,8 +221,8 @@ void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double
   const bool known = c.along.known && next.known;
   summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
   if (c.for_vertical) vertical_.Push(c.sample, c.middle, site_);
-  if (builder_ && builder_->Push(c.sample, c.rests)) {
-    for (const Duration into : gap_cuts_) builder_->CutGap(into);
+  if (builder_.Push(c.sample, c.rests)) {
+    for (const Duration into : gap_cuts_) builder_.CutGap(into);
     TakeIncrements();
   }
   gap_cuts_.clear();
@@ -315,7 +309,7 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
   Knot knot = fraction > 1 ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.period_ns)})
                            : tracker_.CutKnot(fraction);
   const bool again = last_knot_ && knot.time <= *last_knot_;
-  if (!again && builder_) CutIncrement(fraction);
+  if (!again) CutIncrement(fraction);
   if (again && (waiting_.empty() || waiting_.back().draft)) return;
   if (!again) {
     last_knot_ = knot.time;

@@ -60,8 +60,7 @@ class RunSurvey {
   std::vector<Draft>& drafts() { return drafts_; }
   /// Those of drafts() that are from samples stand in this order in the filter.
   const AzimuthFilter* filter() const { return filter_ ? &*filter_ : nullptr; }
-  /// Between knots, as far as they are known: some seconds behind filter(). Empty where the job's
-  /// estimator takes none.
+  /// Between knots, as far as they are known: some seconds behind filter().
   std::span<const Increment> increments() const { return increments_; }
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
@@ -135,7 +134,7 @@ class RunSurvey {
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::vector<KnotAt> cuts_;                  ///< scratch
   HighSideTracker tracker_;
-  std::optional<IncrementBuilder> builder_;
+  IncrementBuilder builder_;
   std::vector<Duration> gap_cuts_;  ///< in the gap behind the sample last given to the builder
   std::vector<Increment> increments_;
   VerticalFilter vertical_;

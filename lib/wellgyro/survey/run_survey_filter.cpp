@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/run_survey.h"
 
@@ -11,6 +12,14 @@ namespace {
 
 // The still detector knows of a block when the one after it has ended.
 constexpr Duration kMakeUpMind = Duration::Seconds(3);
+
+/// The filter carries of the accelerometers' errors a bias alone: their scale and misalignment, at
+/// one g, count in it.
+ErrorPriors WithScaleInBias(ErrorPriors errors) {
+  const double relative = std::hypot(errors.accel_scale_sigma, errors.accel_misalignment_sigma);
+  errors.accel_bias_sigma = std::hypot(errors.accel_bias_sigma, relative * units::kStandardGravity);
+  return errors;
+}
 
 }  // namespace
 
@@ -42,7 +51,7 @@ void RunSurvey::Release(bool all) {
 void RunSurvey::StartFilter(const Knot& knot) {
   FilterSetup setup;
   setup.gyro = job_.noise;
-  setup.errors = job_.errors;
+  setup.errors = WithScaleInBias(job_.errors);
   setup.site = site_;
   const AlignmentSpec& spec = job_.alignment;
   if (external_pending_ && !spec.at_md && !spec.at_utc) {

@@ -67,7 +67,7 @@ class WELLGYRO_EXPORT Surveyor {
   static constexpr std::size_t kModesKept = 1000;
 
   /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` and
-  /// `adjuster` must outlive this object; without an adjuster the smoothed run is final.
+  /// `adjuster` must outlive this object; nullptr: final stations are those of EstimatedRun().
   Surveyor(const Job& job, Sink& sink, const RunAdjuster* adjuster = nullptr);
   ~Surveyor();
   Surveyor(Surveyor&&) noexcept;

@@ -386,12 +386,10 @@ void ToolSurvey::Adjust() {
   for (RunState& run : runs_) {
     run.survey->ListLastDepth();
     if (const AzimuthFilter* filter = run.survey->filter()) {
-      SmoothedRun smoothed = adjuster_
-                                 ? adjuster_->Adjust(filter->history(), run.survey->increments(),
-                                                     job_.string.sigma_misalignment)
-                             : job_.attitude.estimator == AttitudeSpec::Estimator::kRotation
-                                 ? EstimatedRun(job_, filter->history(), run.survey->increments())
-                                 : Smooth(filter->history());
+      const FilterHistory& history = filter->history();
+      const std::span<const Increment> increments = run.survey->increments();
+      SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history, increments)
+                                       : EstimatedRun(job_, history, increments);
       run.survey->summary().fit = smoothed.fit;
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);

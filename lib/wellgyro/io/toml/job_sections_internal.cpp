@@ -195,11 +195,6 @@ AttitudeSpec ReadAttitude(TomlTable table) {
   spec.order =
       table.FindWord<Order>("order", {{"second", Order::kSecond}, {"third", Order::kThird}})
           .value_or(spec.order);
-  using Estimator = AttitudeSpec::Estimator;
-  spec.estimator = table
-                       .FindWord<Estimator>("estimator", {{"angles", Estimator::kAngles},
-                                                          {"rotation", Estimator::kRotation}})
-                       .value_or(spec.estimator);
   return spec;
 }
 

@@ -18,16 +18,13 @@ namespace {
 
 using testing::AzimuthError;
 using testing::Claims;
+using testing::EstimateOf;
 using testing::ExternalJob;
 using testing::Flown;
 using testing::Fly;
 using testing::Hour;
 using testing::JobOf;
 using testing::SimulationOf;
-
-SmoothedRun Estimate(const Job& job, const Flown& flown) {
-  return EstimatedRun(job, flown.history, flown.increments);
-}
 
 // Shorter than an hour, the same in kind.
 Hour HalfHour() {
@@ -43,7 +40,7 @@ TEST(EstimatedRun, OfAPerfectToolIsTheTruth) {
     hour.inclination_deg = inclination;
     const Job job = ExternalJob(hour, 0, 0.001);
     const Flown flown = Fly(hour, job, 0);
-    const SmoothedRun run = Estimate(job, flown);
+    const SmoothedRun run = EstimateOf(flown);
     ASSERT_TRUE(run.fit->converged);
     ASSERT_EQ(run.attitude.size(), flown.truth.size());
     double worst_azimuth = 0, worst_inclination = 0;
@@ -68,7 +65,7 @@ TEST(EstimatedRun, FindsNorthFromTheMotionAndSaysHowWell) {
       Hour hour = testing::StrongDrift();
       hour.rpm = rpm;
       const Flown flown = Fly(hour, JobOf(hour), seed);
-      const SmoothedRun run = Estimate(JobOf(hour), flown);
+      const SmoothedRun run = EstimateOf(flown);
       ASSERT_TRUE(run.fit->converged);
       const AttitudeSample& last = run.attitude.back();
       ASSERT_TRUE(last.azimuth_known);
@@ -90,7 +87,7 @@ TEST(EstimatedRun, FromAnExternalAzimuthAtTheStartIsAsGoodAsItSays) {
     hour.stops = 0;
     const Job job = ExternalJob(hour, seed, 0.001);
     const Flown flown = Fly(hour, job, seed);
-    const SmoothedRun run = Estimate(job, flown);
+    const SmoothedRun run = EstimateOf(flown);
     ASSERT_TRUE(run.fit->converged);
     const std::size_t last = flown.truth.size() - 1;
     for (const std::size_t i : {last, last / 2}) {
@@ -111,7 +108,7 @@ TEST(EstimatedRun, NamesNoAzimuthWhereTheMirrorFitsAsWell) {
   hour.swing_deg = 0;
   hour.stops = 0;
   hour.minutes = 20;
-  const SmoothedRun run = Estimate(JobOf(hour), Fly(hour, JobOf(hour), 3));
+  const SmoothedRun run = EstimateOf(Fly(hour, JobOf(hour), 3));
   ASSERT_TRUE(run.fit->converged);
   EXPECT_TRUE(run.fit->ambiguous);
   EXPECT_FALSE(run.attitude.back().azimuth_known);
@@ -125,7 +122,7 @@ TEST(EstimatedRun, FindsNorthWithoutAnyStopWhereTheHoleSwings) {
     hour.stops = 0;
     const Flown flown = Fly(hour, JobOf(hour), seed);
     ASSERT_FALSE(Smooth(flown.history).attitude.back().azimuth_known);
-    const SmoothedRun run = Estimate(JobOf(hour), flown);
+    const SmoothedRun run = EstimateOf(flown);
     ASSERT_TRUE(run.attitude.back().azimuth_known) << seed;
     end.Add(AzimuthError(flown, run, flown.truth.size() - 1),
             run.attitude.back().cov_attitude(1, 1));
@@ -141,7 +138,7 @@ TEST(EstimatedRun, FindsTheToolsErrors) {
     hour.noise.rate_random_walk = 0;
     const Simulation simulation = SimulationOf(hour, seed);
     const Job job = ExternalJob(hour, seed, 0.1);
-    const RunFit a = *Estimate(job, Fly(hour, job, seed)).fit;
+    const RunFit a = *EstimateOf(Fly(hour, job, seed)).fit;
     const ToolErrors& tool = simulation.tool.errors;
     const auto add = [&](Knot::Source source, double truth) {
       errors.Add(a.errors[source] - truth, a.sigma_errors[source] * a.sigma_errors[source]);
@@ -199,12 +196,12 @@ TEST(EstimatedRun, OfNothingIsNothing) {
 TEST(EstimatedRun, WhatDoesNotFitIsLessSure) {
   const Hour hour = HalfHour();
   Flown flown = Fly(hour, JobOf(hour), 4);
-  const SmoothedRun fits = Estimate(JobOf(hour), flown);
+  const SmoothedRun fits = EstimateOf(flown);
   double sign = 1;
   for (std::size_t i = 0; i < flown.increments.size(); i += 15, sign = -sign) {
     flown.increments[i].force_M.x() += sign * 5e-3;
   }
-  const SmoothedRun does_not = Estimate(JobOf(hour), flown);
+  const SmoothedRun does_not = EstimateOf(flown);
   const auto misfit = [](const SmoothedRun& run) {
     const RunFit::Squares& force = run.fit->parts[RunFit::kForce];
     return force.sum / force.freedom;

@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include "wellgyro/fit/run_adjustment.h"
 
 #include "support/claims.h"
 #include "support/hour.h"
@@ -45,15 +44,13 @@ struct Count {
   int flagged = 0;           ///< stations that still have a mirror
 };
 
-Count Fly(const Case& c, int seeds, const RunAdjuster* adjuster, bool by_rotations = false) {
+Count Fly(const Case& c, int seeds, const RunAdjuster* adjuster) {
   Count count;
   for (int seed = 1; seed <= seeds; ++seed) {
     const testing::Hour hour = HourOf(c);
     const Simulation simulation = testing::SimulationOf(hour, static_cast<std::uint64_t>(seed));
     Job job = testing::JobOf(hour);
     job.stations.at_stops = true;
-    job.attitude.estimator =
-        by_rotations ? AttitudeSpec::Estimator::kRotation : AttitudeSpec::Estimator::kAngles;
     testing::CollectingSink sink;
     const Survey survey = testing::SurveyOf(simulation, job, sink, {}, adjuster);
     for (const NorthFix& fix : survey.runs.at(0).fixes) {
@@ -78,19 +75,14 @@ class Mirror : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Mirror, IsNeverTakenSilently) {
   constexpr int kSeeds = 8;
-  const Count reckoned = Fly(GetParam(), kSeeds, nullptr);
+  const testing::KeepingAdjuster smoother;
+  const Count reckoned = Fly(GetParam(), kSeeds, &smoother);
   EXPECT_EQ(reckoned.silent, 0);
   EXPECT_GT(2 * reckoned.ambiguous, kSeeds) << "of the three stops of each run";
-  const LeastSquaresAdjuster adjuster;
-  const Count adjusted = Fly(GetParam(), kSeeds, &adjuster);
-  EXPECT_EQ(adjusted.silent, 0);
-  EXPECT_EQ(adjusted.none, 0) << "of " << reckoned.none << " without adjustment";
-  EXPECT_EQ(adjusted.flagged, 0);
-  // By rotations, which take a mirror for beaten by the same odds.
-  const Count rotated = Fly(GetParam(), kSeeds / 2, nullptr, true);
-  EXPECT_LE(rotated.none, 1);
-  EXPECT_EQ(rotated.silent, 0);
-  EXPECT_EQ(rotated.flagged, 0);
+  const Count estimated = Fly(GetParam(), kSeeds, nullptr);
+  EXPECT_EQ(estimated.silent, 0);
+  EXPECT_LE(estimated.none, 1) << "of " << reckoned.none << " smoothed alone";
+  EXPECT_EQ(estimated.flagged, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, Mirror,
@@ -156,7 +148,7 @@ TEST(MirrorNearEastWest, IsNotGivenAsSure) {
   const std::uint64_t seeds = WELLGYRO_LONG ? 40 : 6;
   const std::span<const Straight> cases =
       WELLGYRO_LONG ? std::span<const Straight>(kMany) : std::span<const Straight>(kFew);
-  constexpr std::array<const char*, 3> kBy = {"filtered", "smoothed", "adjusted"};
+  constexpr std::array<const char*, 3> kBy = {"filtered", "smoothed", "estimated"};
   std::array<testing::Claims, 3> claims;
   for (const Straight& c : cases) {
     const testing::Hour hour = HourOf(c);
@@ -167,7 +159,7 @@ TEST(MirrorNearEastWest, IsNotGivenAsSure) {
       const FilterEpoch& epoch = flight.history.epochs[last];
       const std::array<End, 3> ends = {
           End{epoch.azimuth_known, epoch.azimuth, epoch.sigma_azimuth * epoch.sigma_azimuth},
-          EndOf(Smooth(flight.history), last), EndOf(AdjustRun(flight.history, 0).run, last)};
+          EndOf(Smooth(flight.history), last), EndOf(EstimateOf(flight), last)};
       for (std::size_t k = 0; k < ends.size(); ++k) {
         if (!ends[k].known) continue;
         const double error = WrapPi(ends[k].azimuth - flight.truth[last].azimuth);

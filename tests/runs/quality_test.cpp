@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "wellgyro/fit/run_adjustment.h"
 
 #include "support/hour.h"
 
@@ -45,8 +44,7 @@ struct Flight {
   }
   std::vector<Check> Checks() const {
     CollectingSink sink;
-    const LeastSquaresAdjuster adjuster;
-    return testing::SurveyOf(simulation, job, sink, {}, &adjuster).checks;
+    return testing::SurveyOf(simulation, job, sink).checks;
   }
   ToolErrors& errors() { return simulation.tool.errors; }
 

@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/io/toml/simulation_file.h"
 #include "wellgyro/math/statistics.h"
@@ -50,8 +49,7 @@ TEST(Demonstration, IsAsGoodAsItSaysFromVerticalToTheEnd) {
     ASSERT_TRUE(file) << file.fault().text;
     const Simulation& simulation = file->simulation;
     Sink sink;
-    const LeastSquaresAdjuster adjuster;
-    const Survey survey = testing::SurveyOf(simulation, job->job, sink, {}, &adjuster);
+    const Survey survey = testing::SurveyOf(simulation, job->job, sink);
     ASSERT_EQ(survey.unusable, "");
     const TruthWell well = Truth(simulation).well();
     for (const Station& s : survey.chosen) {

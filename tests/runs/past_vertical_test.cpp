@@ -11,7 +11,6 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/record/knot.h"
 #include "wellgyro/record/knot_sources.h"
 #include "wellgyro/simulate/simulator.h"
@@ -160,15 +159,16 @@ TEST(PastVertical, WithinFiveThousandthsOfADegree) {
                  .legs = 2};
   for (const std::uint64_t seed : {37, 537}) {
     const testing::Flown flown = FlyOf(run, SimulationOf(run, seed));
-    const Adjustment adjusted = AdjustRun(flown.history, 0);
-    for (const SmoothedRun& by : {Smooth(flown.history), adjusted.run}) {
+    const SmoothedRun estimated = EstimateOf(flown);
+    for (const SmoothedRun& by : {Smooth(flown.history), estimated}) {
       const Known known = KnownOf(flown, by, 0.1);
       std::printf("%d azimuths, worst %.1f sigma\n", known.count, known.worst);
       EXPECT_GT(known.count, 3500) << seed;
       EXPECT_LT(known.worst, 4.5) << seed;
     }
-    std::printf("chi-square %.0f of %d\n", adjusted.chi_square, adjusted.degrees_of_freedom);
-    EXPECT_LT(adjusted.chi_square, 1.2 * adjusted.degrees_of_freedom) << seed;
+    std::printf("chi-square %.0f of %d\n", estimated.fit->chi_square,
+                estimated.fit->degrees_of_freedom);
+    EXPECT_LT(estimated.fit->chi_square, 1.2 * estimated.fit->degrees_of_freedom) << seed;
   }
 }
 
@@ -189,11 +189,11 @@ TEST(PastVertical, WhereItIsLostNothingIsClaimed) {
                  .accel_bias = 5e-4};
   for (const std::uint64_t seed : {5, 539}) {
     const testing::Flown flown = FlyOf(run, SimulationOf(run, seed));
-    const Adjustment adjusted = AdjustRun(flown.history, 0);
-    const Known known = KnownOf(flown, adjusted.run, 0.1);
+    const SmoothedRun estimated = EstimateOf(flown);
+    const Known known = KnownOf(flown, estimated, 0.1);
     std::printf("%d azimuths of %zu, worst %.1f sigma, %.1f deg\n", known.count, flown.truth.size(),
                 known.worst, known.worst_deg);
-    EXPECT_TRUE(adjusted.converged) << seed;
+    EXPECT_TRUE(estimated.fit->converged) << seed;
     EXPECT_GT(known.count, 6000) << seed;
     EXPECT_LT(known.worst, 6) << seed;
     EXPECT_LT(known.worst_deg, 20) << seed;
@@ -211,7 +211,7 @@ TEST(PastVertical, AThirdAxisHasAScale) {
     Simulation simulation = SimulationOf(run, 0);
     simulation.tool.errors.gyro_scale.z() = scale;
     const testing::Flown flown = FlyOf(run, simulation);
-    const Known known = KnownOf(flown, AdjustRun(flown.history, 0).run, 0.1);
+    const Known known = KnownOf(flown, EstimateOf(flown), 0.1);
     std::printf("worst %.3f deg, %.1f sigma\n", known.worst_deg, known.worst);
     EXPECT_GT(known.count, 400);
     EXPECT_LT(known.worst_deg, 0.1);

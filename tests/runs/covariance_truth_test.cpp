@@ -7,7 +7,6 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "wellgyro/fit/run_adjustment.h"
 
 #include "support/claims.h"
 #include "support/hour.h"
@@ -104,8 +103,7 @@ TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
     const double offset = simulation.tool.errors.depth_offset;
     Job job = TiedJob(hour, simulation, seed);
     testing::CollectingSink sink;
-    const LeastSquaresAdjuster adjuster;
-    Surveyor surveyor(job, sink, &adjuster);
+    Surveyor surveyor(job, sink);
     testing::Play(simulation, surveyor);
     surveyor.Finish();
     one.adjusted.Add(surveyor.Current(0).chosen.back(), truth, offset);

@@ -14,7 +14,6 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/record/knot.h"
 #include "wellgyro/record/knot_sources.h"
@@ -72,11 +71,8 @@ Simulation SlowWell(double rpm, std::uint64_t seed) {
   return s;
 }
 
-FilterHistory Flown(const Simulation& simulation) {
-  Sink sink;
-  const testing::KeepingAdjuster keeper;
-  testing::SurveyOf(simulation, testing::JobOf(Tool()), sink, {}, &keeper);
-  return keeper.kept;
+testing::Flown FlyOf(const Simulation& simulation) {
+  return testing::Fly(simulation, testing::JobOf(Tool()));
 }
 
 Knot::SourceVector SourcesOf(const ToolErrors& e) {
@@ -95,7 +91,7 @@ class SlowNearVertical : public ::testing::TestWithParam<double> {};
 // At the equator the hole's inclination grows by the gyros and the Earth's rate along the azimuth.
 TEST_P(SlowNearVertical, LiftsAreThoseOfTheHole) {
   const Simulation simulation = SlowWell(GetParam(), 5);
-  const FilterHistory history = Flown(simulation);
+  const FilterHistory history = FlyOf(simulation).history;
   const Knot::SourceVector errors = SourcesOf(simulation.tool.errors);
   const Truth truth(simulation);
   const double g = history.setup.site.gravity;
@@ -141,10 +137,10 @@ TEST_P(SlowNearVertical, KeepsItsAzimuthByTheMotion) {
   double worst = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Simulation simulation = SlowWell(GetParam(), seed);
-    const FilterHistory history = Flown(simulation);
-    const Adjustment adjusted = AdjustRun(history, 0);
-    EXPECT_TRUE(adjusted.converged) << seed;
-    const SmoothedRun smoothed = Smooth(history);
+    const testing::Flown flown = FlyOf(simulation);
+    const FilterHistory& history = flown.history;
+    const SmoothedRun estimated = EstimateOf(flown), smoothed = Smooth(history);
+    EXPECT_TRUE(estimated.fit->converged) << seed;
     const Truth truth(simulation);
     std::size_t next = 0;
     for (std::size_t i = 0; i < history.epochs.size() && next < depths.size(); ++i) {
@@ -152,7 +148,7 @@ TEST_P(SlowNearVertical, KeepsItsAzimuthByTheMotion) {
       ++next;
       const TruthState t = truth.At(SecondsOf(history.epochs[i].knot));
       for (const int by : {0, 1}) {
-        const AttitudeSample& a = (by == 0 ? smoothed : adjusted.run).attitude[i];
+        const AttitudeSample& a = (by == 0 ? smoothed : estimated).attitude[i];
         ASSERT_TRUE(a.azimuth_known) << seed << " at " << depths[next - 1];
         const double turned = WrapPi(a.azimuth - t.azimuth);
         inclination[by].Add(a.inclination - t.inclination, a.cov_attitude(0, 0));
@@ -166,7 +162,7 @@ TEST_P(SlowNearVertical, KeepsItsAzimuthByTheMotion) {
   const double high = 6 * ChiSquareQuantile(0.9999, kSeeds);
   for (const int by : {0, 1}) {
     std::printf("%s: inclination %.2f of %.4f deg, azimuth %.2f of %.2f deg\n",
-                by == 0 ? "smoothed" : "adjusted", inclination[by].mean(),
+                by == 0 ? "smoothed" : "estimated", inclination[by].mean(),
                 inclination[by].sigma_deg(), azimuth[by].mean(), azimuth[by].sigma_deg());
     EXPECT_EQ(azimuth[by].count, 6 * kSeeds);
     EXPECT_LT(azimuth[by].normalised, high);

@@ -14,7 +14,6 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/units.h"
-#include "wellgyro/fit/run_adjustment.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/survey/estimated_run.h"
@@ -25,8 +24,8 @@ namespace wellgyro {
 namespace {
 
 constexpr int kSeeds = 24;
-// Of the 34 sums that each of three ways has here, one in a hundred runs of all leaves its band.
-constexpr double kTail = 0.01 / (3 * 34 * 2);
+// Of the 34 sums that each of two ways has here, one in a hundred runs of all leaves its band.
+constexpr double kTail = 0.01 / (2 * 34 * 2);
 constexpr double kStop = 120;  // [s]
 
 testing::Hour Tool() {
@@ -65,13 +64,11 @@ RunMove Down(double to_md) {
   return {.to_md = to_md, .speed = 1, .roll = {3 * kTwoPi / 60, 0, 1, 0}};
 }
 
-enum class By { kSmoother, kAngles, kRotations };
+enum class By { kSmoother, kEstimator };
 
-Job JobOf(By by) {
+Job ToolsJob() {
   Job job = testing::JobOf(Tool());
   job.tie_in.md = 0;
-  job.attitude.estimator =
-      by == By::kRotations ? AttitudeSpec::Estimator::kRotation : AttitudeSpec::Estimator::kAngles;
   return job;
 }
 
@@ -104,10 +101,9 @@ struct Squares {
 class Keeper : public RunAdjuster {
  public:
   explicit Keeper(const RunAdjuster* adjuster) : adjuster_(adjuster) {}
-  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment> increments,
-                     double sigma_lie) const override {
-    SmoothedRun run =
-        adjuster_ ? adjuster_->Adjust(history, increments, sigma_lie) : Smooth(history);
+  SmoothedRun Adjust(const FilterHistory& history,
+                     std::span<const Increment> increments) const override {
+    SmoothedRun run = adjuster_ ? adjuster_->Adjust(history, increments) : Smooth(history);
     kept_ = run.stations;
     return run;
   }
@@ -134,12 +130,12 @@ testing::Arrives EachStamp(const Simulation& simulation,
   };
 }
 
-/// The job's own estimator, as something that can be kept.
-class RotationAdjuster : public RunAdjuster {
+/// What a surveyor does by itself, as something that can be kept.
+class EstimatingAdjuster : public RunAdjuster {
  public:
-  explicit RotationAdjuster(Job job) : job_(std::move(job)) {}
-  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment> increments,
-                     double) const override {
+  explicit EstimatingAdjuster(Job job) : job_(std::move(job)) {}
+  SmoothedRun Adjust(const FilterHistory& history,
+                     std::span<const Increment> increments) const override {
     SmoothedRun run = EstimatedRun(job_, history, increments);
     EXPECT_TRUE(run.fit && run.fit->converged);
     return run;
@@ -152,13 +148,11 @@ class RotationAdjuster : public RunAdjuster {
 class Unseen : public ::testing::TestWithParam<By> {
  protected:
   const RunAdjuster* adjuster() const {
-    if (GetParam() == By::kSmoother) return nullptr;
-    return GetParam() == By::kAngles ? static_cast<const RunAdjuster*>(&angles_) : &rotations_;
+    return GetParam() == By::kSmoother ? nullptr : &estimator_;
   }
 
  private:
-  LeastSquaresAdjuster angles_;
-  RotationAdjuster rotations_{JobOf(By::kRotations)};
+  EstimatingAdjuster estimator_{ToolsJob()};
 };
 
 TEST_P(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
@@ -171,7 +165,7 @@ TEST_P(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
       return t < kStop + 49 || t >= kStop + 61.5;  // from 44 m to 56.5 m
     });
     const Keeper keeper(adjuster());
-    const Survey survey = testing::SurveyOf(simulation, JobOf(GetParam()), sink, gap, &keeper);
+    const Survey survey = testing::SurveyOf(simulation, ToolsJob(), sink, gap, &keeper);
     ASSERT_EQ(survey.chosen.size(), 11u) << survey.unusable;
     squares.Add(survey, simulation);
     for (const Station& s : survey.chosen) {
@@ -198,7 +192,7 @@ TEST_P(Unseen, StationsBelowASaturatedStretchAreAsGoodAsTheySay) {
     simulation.tool.errors.gyro_full_scale = 60 * units::kDegPerHour;
     testing::CollectingSink sink;
     const Keeper keeper(adjuster());
-    const Survey survey = testing::SurveyOf(simulation, JobOf(GetParam()), sink, {}, &keeper);
+    const Survey survey = testing::SurveyOf(simulation, ToolsJob(), sink, {}, &keeper);
     ASSERT_EQ(survey.chosen.size(), 17u) << survey.unusable;
     squares.Add(keeper.kept(), simulation);
     EXPECT_EQ(survey.verdict.verdict, Verdict::kFail) << seed;
@@ -233,7 +227,7 @@ TEST_P(Unseen, StationsAboveAClockThatStepsBackAreAsGoodAsTheySay) {
       return t < kStop + 195;
     });
     const Keeper keeper(adjuster());
-    const Survey survey = testing::SurveyOf(simulation, JobOf(GetParam()), sink, steps, &keeper);
+    const Survey survey = testing::SurveyOf(simulation, ToolsJob(), sink, steps, &keeper);
     ASSERT_GT(survey.chosen.size(), 17u) << survey.unusable;
     squares.Add(keeper.kept(), simulation);
     for (const Station& s : survey.chosen) {
@@ -250,8 +244,7 @@ TEST_P(Unseen, StationsAboveAClockThatStepsBackAreAsGoodAsTheySay) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Adjusted, Unseen,
-                         ::testing::Values(By::kSmoother, By::kAngles, By::kRotations));
+INSTANTIATE_TEST_SUITE_P(Adjusted, Unseen, ::testing::Values(By::kSmoother, By::kEstimator));
 
 }  // namespace
 }  // namespace wellgyro
