@@ -73,7 +73,7 @@ Score ScoreOf(const Crossing& crossing, std::uint64_t seed) {
   setup.site.gravity = crossing.gravity;
   const Eigen::Matrix3d R0 = crossing.At(0).R_LT;
   setup.ties.push_back({0, std::atan2(R0(1, 2), R0(0, 2)), 1e-5, false});
-  const RunEstimate run = EstimateRun(setup, knots, std::vector<Start>{{{0, R0}}}, {});
+  const RunEstimate run = EstimateRun(setup, knots, {{{{0, R0}}}, {}}, {});
   EXPECT_TRUE(run.solved) << seed;
   Score score;
   if (!run.solved) return score;

@@ -7,7 +7,6 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-
 #include "support/claims.h"
 #include "support/hour.h"
 

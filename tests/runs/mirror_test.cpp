@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "support/claims.h"
 #include "support/hour.h"
 

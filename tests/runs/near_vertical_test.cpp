@@ -196,7 +196,8 @@ TEST(NearVerticalStretch, OwesNothingToThoseBefore) {
 }
 
 // A bias across the tool looks like the same lean on both sides of vertical, where it leans the
-// other way: nothing tells the one from the other.
+// other way: nothing across it tells the one from the other. Along it g sin I times a lean does, to
+// 1.7e-5 m/s^2 of 2e-4 / sqrt(100 s) on either side.
 TEST(ThroughVertical, ASlidingToolLearnsNothingOfItsAccelerometers) {
   testing::Hour tool = testing::Tactical();
   tool.errors.accel_bias_sigma = 5e-4;
@@ -215,7 +216,7 @@ TEST(ThroughVertical, ASlidingToolLearnsNothingOfItsAccelerometers) {
   simulation.tool.errors.accel_bias.x() = 6e-4;
   const testing::Flown flown = testing::Fly(simulation, testing::JobOf(tool));
   const SmoothedRun run = EstimateOf(flown);
-  EXPECT_GT(run.fit->sigma_errors[Knot::kAccelBiasX], 0.95 * tool.errors.accel_bias_sigma);
+  EXPECT_GT(run.fit->sigma_errors[Knot::kAccelBiasX], 0.65 * tool.errors.accel_bias_sigma);
   double worst = 0;
   for (std::size_t i = 0; i < flown.truth.size(); ++i) {
     const AttitudeSample& a = run.attitude[i];

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "support/hour.h"
 
 namespace wellgyro {

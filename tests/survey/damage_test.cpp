@@ -9,6 +9,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/simulate/truth.h"
 
 #include "support/simulated_survey.h"
 #include "support/small_hole.h"
@@ -126,12 +127,33 @@ TEST(Damage, AnotherRunUnderTheSameNumbersIsTold) {
   }
 }
 
-TEST(Damage, WithoutNorthThereIsNoSurvey) {
-  CollectingSink sink;
+Simulation WithoutStops() {
   Simulation quick = Slant();
   std::get<RunStop>(quick.run.steps[0]).seconds = 10;
   std::get<RunStop>(quick.run.steps[2]).seconds = 10;
+  return quick;
+}
+
+// Gyros without bias that are carried through a hole see the Earth's rate as well as held ones.
+TEST(Damage, WithoutAStopTheMotionShowsNorth) {
+  const Simulation quick = WithoutStops();
+  const Truth truth(quick);
+  Sink sink;
   const Survey survey = testing::SurveyOf(quick, SlantJob(), sink);
+  ASSERT_EQ(survey.unusable, "");
+  for (const Station& s : survey.chosen) {
+    const double sigma = std::sqrt(s.cov_md_inc_azi(2, 2));
+    EXPECT_LT(sigma, FromDegrees(0.3)) << s.md;
+    EXPECT_LT(std::abs(WrapPi(s.azimuth - truth.well().PointAt(s.md).azimuth)), 4 * sigma) << s.md;
+  }
+}
+
+// A bias that may be as large as the Earth's rate and a tool that does not roll.
+TEST(Damage, WithoutNorthThereIsNoSurvey) {
+  CollectingSink sink;
+  Job job = SlantJob();
+  job.errors.gyro_bias_sigma = 15 * units::kDegPerHour;
+  const Survey survey = testing::SurveyOf(WithoutStops(), job, sink);
   EXPECT_NE(survey.unusable.find("no north"), std::string::npos);
   EXPECT_TRUE(survey.chosen.empty());
 }

@@ -18,13 +18,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kIterations = 15;
+constexpr int kIterations = 40;
 // 2 ln of odds of 90: by less one azimuth does not beat another.
 constexpr double kDecides = 9;
 // Past it the first order is not what the angle is: sine and angle part by 2 %.
 constexpr double kVagueHeading = 20 * kPi / 180;  // [rad]
 // A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
 constexpr double kTooLarge = 4;
+constexpr double kMisfit = 1.5;  // of the gyros' noise, from which another start is tried
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
@@ -158,7 +159,8 @@ std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const Run
 struct Choice {
   std::unique_ptr<RunSolver> solver;  ///< of the solution of greatest evidence; null: none
   SolveReport report;
-  bool rival = false;  ///< another solution comes near it
+  bool rival = false;                ///< another solution comes near it
+  double least_evidence = HUGE_VAL;  ///< of all guesses, those that lead to no solution too
 };
 
 /// Each guess with the roll as a walk, and as a swing where it is one.
@@ -180,6 +182,7 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
       auto solver = std::make_unique<RunSolver>(tried, knots);
       solver->nodes() = guesses[i];
       const SolveReport report = solver->Solve(kIterations);
+      choice.least_evidence = std::min(choice.least_evidence, report.evidence);
       if (!report.converged || !(report.evidence < solutions[i].evidence)) continue;
       solutions[i] = {report.evidence, solver->nodes()};
       if (choice.solver && !(report.evidence < choice.report.evidence)) continue;
@@ -204,19 +207,38 @@ double SigmaOfHeading(std::span<const Node> nodes, std::span<const Matrix3d> cov
   return std::sqrt(least);
 }
 
-}  // namespace
-
-RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                        std::span<const Start> starts, std::span<const std::size_t> marked) {
-  RunEstimate result;
-  if (knots.empty()) return result;
-  Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts));
-  if (!choice.solver) return result;
-  RunSolver& best = *choice.solver;
+void Take(const Choice& choice, std::span<const std::size_t> marked, RunEstimate& result) {
+  if (!choice.solver) return;
   result.solved = true;
   result.report = choice.report;
   result.ambiguous = choice.rival;
-  Sweep(best, marked, result).Run();
+  Sweep(*choice.solver, marked, result).Run();
+}
+
+/// Gyros that are off by more than any noise that is stated too small: a minimum, but not the one.
+bool Misfits(const SolveReport& report) {
+  return Excess(report.sums, {RowKind::kTurn, RowKind::kStill}) > kMisfit;
+}
+
+}  // namespace
+
+RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                        const Starts& starts, std::span<const std::size_t> marked) {
+  RunEstimate result;
+  if (knots.empty()) return result;
+  Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts.anchored));
+  Take(choice, marked, result);
+  if (!result.solved || Misfits(result.report)) {
+    Choice other = Choose(setup, knots, starts.guessed);
+    if (other.solver && (!choice.solver || other.report.evidence < choice.report.evidence)) {
+      choice = std::move(other);
+      Take(choice, marked, result);
+    } else if (other.least_evidence < result.report.evidence - kDecides) {
+      return {};  // something fits better that is no solution: nothing is known
+    }
+  }
+  if (!result.solved) return result;
+  RunSolver& best = *choice.solver;
   result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi) > kVagueHeading;
   // Before the noise is taken larger: a fault is what makes the residuals too large.
   if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(best);

@@ -41,14 +41,14 @@ struct RunEstimate {
 };
 
 /// Solves the run from each start and keeps the solution of greatest evidence; where there is no
-/// start, from what eight headings lead to: the motion itself shows north. Where the residuals of
+/// start, from what eight headings lead to: the motion itself shows north. Guesses are tried where
+/// no start leads to a solution that the gyros fit. Where the residuals of
 /// gyros or accelerometers are larger than the noise stated can make them, that sensor's noise is
 /// taken as large as they say, and the run is solved with it (variance components, Foerstner 1979):
 /// covariances hold for what was measured, not for what was promised. Noise is never taken smaller.
 /// `marked`: nodes whose linked errors are wanted, ascending. Unsolved where there is no knot, or
 /// where no start leads to a solution.
 WELLGYRO_EXPORT RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                        std::span<const Start> starts,
-                                        std::span<const std::size_t> marked);
+                                        const Starts& starts, std::span<const std::size_t> marked);
 
 }  // namespace wellgyro

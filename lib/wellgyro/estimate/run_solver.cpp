@@ -30,7 +30,7 @@ constexpr double kStepMost = 0.5;  // [rad]
 // together.
 constexpr double kStays = 1e-6;
 constexpr int kFinish =
-    8;  // steps towards it; the last ones of a run with starts and stops are slow
+    30;  // steps towards it; the last ones of a run with starts and stops are slow
 // The forward pass: gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
 // about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
 constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
@@ -44,9 +44,13 @@ constexpr double kWalkMost = 0.1, kWalkLeast = 1e-7;  // [rad/s/sqrt(s)]
 // Of what the roll may start and stop by with the speed along the hole, the least share that is
 // tried: 1e-4 rad/s over 10 s are less than the gyros' noise shows.
 constexpr double kShareLeast = 1e-4;
+// The first that is tried: with all of it the weights of the demonstration's starts creep for fifty
+// steps, and its walk is found a hundred times too large.
+constexpr double kShareFirst = 1e-2;
+constexpr int kTry = 2;          // steps with each scale: by the third the evidence hardly moves
+constexpr double kCreeps = 0.5;  // Gauss-Newton takes far more off a decrement than its half
 constexpr double kHalfDecade = 3.1622776601683795;
 constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
-constexpr double kWorse = 6;          // 2 ln 20: by which evidence decides
 
 /// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
 /// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
@@ -284,10 +288,13 @@ void RunSolver::HoldRollWeights() {
   }
 }
 
-/// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas. A step that
+/// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas, or, near, by
+/// more than `creeps` of what they moved by before: robust weights that are made anew are never
+/// done, and another scale makes others. A step that
 /// takes the last one back went too far, as the next one would: half of it then.
-bool RunSolver::Iterate(int most, double stays, SolveReport& report) {
+bool RunSolver::Iterate(int most, double stays, SolveReport& report, double creeps) {
   std::vector<NodeVector> steps, before;
+  double last = HUGE_VAL;
   BorderVector border_step;
   for (int i = 0; i < most; ++i) {
     PlaceKnots(setup_.site, knots_, nodes_, places_);
@@ -295,6 +302,8 @@ bool RunSolver::Iterate(int most, double stays, SolveReport& report) {
     Step(steps, border_step, TakesBack(steps, before) ? 0.5 : 1);
     ++report.iterations;
     if (elimination_.decrement() < stays) return true;
+    if (last < kFar && elimination_.decrement() > creeps * last) return false;
+    last = elimination_.decrement();
     std::swap(steps, before);
   }
   return false;
@@ -313,46 +322,51 @@ double RunSolver::Evidence() const {
 /// The evidence with `tried` in place of the scale; HUGE_VAL where it leads nowhere.
 double RunSolver::EvidenceOf(double tried, double& scale, SolveReport& report) {
   scale = tried;
-  if (!Iterate(3, kNear, report) && elimination_.decrement() > kFar) return HUGE_VAL;
-  return Evidence();
+  Iterate(kTry, kNear, report);
+  return elimination_.decrement() < kFar ? Evidence() : HUGE_VAL;
 }
 
-/// The one of greatest evidence, by decades down from what it is, then by the parabola through it
-/// and the half decades beside it.
+/// The decade of greatest evidence, downwards from what it is or else upwards; gives its evidence.
 ///
 /// Freedom of the roll that no tool makes use of does more than widen the result: near vertical the
 /// more the hole leans, the more of the accelerometers' noise a free roll explains, so that the
 /// solution leans too far (nuisances as many as the knots: Neyman and Scott, 1948). The evidence
 /// counts what they explain against their number.
-void RunSolver::FindScale(double least, double& scale, SolveReport& report) {
-  std::vector<Node> best_nodes = nodes_;
-  BorderVector best_border = border_;
-  double best = HUGE_VAL, best_scale = scale;
-  for (double tried = scale; tried > 0.9 * least; tried /= 10) {
-    const double evidence = EvidenceOf(tried, scale, report);
-    if (evidence == HUGE_VAL) break;
-    if (evidence < best) {
+double RunSolver::FindDecade(double least, double most, double& scale, SolveReport& report) {
+  const double begin = scale;
+  double best = EvidenceOf(begin, scale, report), best_scale = begin;
+  std::vector<Node> nodes = nodes_;
+  BorderVector border = border_;
+  for (const double step : {0.1, 10.}) {
+    for (double tried = begin * step; tried > 0.9 * least && tried < 1.1 * most; tried *= step) {
+      const double evidence = EvidenceOf(tried, scale, report);
+      if (!(evidence < best)) break;
       best = evidence;
       best_scale = tried;
-      best_nodes = nodes_;
-      best_border = border_;
-    } else if (evidence > best + kWorse) {
-      break;
+      nodes = nodes_;
+      border = border_;
     }
+    nodes_ = nodes;
+    border_ = border;
+    if (best_scale != begin) break;
   }
-  const auto back = [&] {
-    nodes_ = best_nodes;
-    border_ = best_border;
-  };
+  scale = best_scale;
+  return best;
+}
+
+/// By the parabola through the scale, whose evidence this is, and the half decades beside it.
+void RunSolver::FindBetween(double evidence, double& scale, SolveReport& report) {
+  const double decade = scale;
+  const std::vector<Node> nodes = nodes_;
+  const BorderVector border = border_;
   double beside[2];
   for (const int side : {0, 1}) {
-    back();
-    beside[side] =
-        EvidenceOf(best_scale * (side == 0 ? 1 / kHalfDecade : kHalfDecade), scale, report);
+    beside[side] = EvidenceOf(decade * (side == 0 ? 1 / kHalfDecade : kHalfDecade), scale, report);
+    nodes_ = nodes;
+    border_ = border;
   }
-  back();
-  scale = best_scale;
-  const double bend = beside[0] - 2 * best + beside[1];
+  scale = decade;
+  const double bend = beside[0] - 2 * evidence + beside[1];
   if (!std::isfinite(bend) || !(bend > 0)) return;
   scale *= std::pow(kHalfDecade, std::clamp(0.5 * (beside[0] - beside[1]) / bend, -1.0, 1.0));
 }
@@ -381,22 +395,26 @@ void RunSolver::BeginScales() {
   // From the decade above what the rate usually changes by, which its own noise is part of.
   const double usual = UsualRollChange(knots_).value_or(kWalkUnseen);
   scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
+  scales_.speed_share = kShareFirst;
 }
 
 bool RunSolver::Approach(int iterations) {
   BeginScales();
   SolveReport report;
-  return Iterate(iterations, kNear, report);
+  return Iterate(iterations, kNear, report) || elimination_.decrement() < kFar;
 }
 
 SolveReport RunSolver::Solve(int iterations) {
   SolveReport report;
   BeginScales();
-  Iterate(iterations, kNear, report);
+  Iterate(iterations, kNear, report, kCreeps);
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });
-  if (!measured) FindScale(kWalkLeast, scales_.roll_walk, report);
-  if (!measured && HidesAStart()) FindScale(kShareLeast, scales_.speed_share, report);
+  if (!measured) {
+    FindBetween(FindDecade(kWalkLeast, kWalkMost, scales_.roll_walk, report), scales_.roll_walk,
+                report);
+    if (HidesAStart()) FindDecade(kShareLeast, 1, scales_.speed_share, report);
+  }
   HoldRollWeights();
   Iterate(kFinish, kStays, report);
   report.converged = elimination_.decrement() < kNear;

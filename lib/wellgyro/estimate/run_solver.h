@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -87,11 +88,12 @@ class RunSolver : public RunRows {
   double Walk(std::size_t knot) const;
   RollChange Change(std::size_t knot) const;
   void HoldRollWeights();
-  bool Iterate(int most, double stays, SolveReport& report);
+  bool Iterate(int most, double stays, SolveReport& report, double creeps = HUGE_VAL);
   double Evidence() const;
   bool HidesAStart() const;
   double EvidenceOf(double tried, double& scale, SolveReport& report);
-  void FindScale(double least, double& scale, SolveReport& report);
+  double FindDecade(double least, double most, double& scale, SolveReport& report);
+  void FindBetween(double evidence, double& scale, SolveReport& report);
 
   EstimateSetup setup_;
   Layout layout_;

@@ -72,6 +72,14 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, co
   return solver.nodes();
 }
 
+NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                  std::span<const Matrix3d> R_LT) {
+  RunSolver solver(setup, knots);
+  solver.Begin(R_LT.front(), {});
+  for (std::size_t k = 0; k < R_LT.size(); ++k) solver.nodes()[k].R_LT = R_LT[k];
+  return solver.nodes();
+}
+
 std::vector<NodeGuess> GuessesOfHeadings(const EstimateSetup& setup,
                                          std::span<const RunKnot> knots) {
   const Matrix3d level = LevelAttitude(knots);

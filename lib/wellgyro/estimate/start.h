@@ -24,6 +24,15 @@ using Start = std::vector<Anchor>;
 /// All nodes of a run, as a solver may begin from.
 using NodeGuess = std::vector<Node>;
 
+struct Starts {
+  std::vector<Start> anchored;
+  std::vector<NodeGuess> guessed;
+};
+
+/// The nodes as the depth has them, with these attitudes, one for each node.
+NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                  std::span<const Eigen::Matrix3d> R_LT);
+
 /// The nodes by a forward pass from where `start` has them. At least one knot and one anchor.
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start);
 

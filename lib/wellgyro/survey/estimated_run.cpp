@@ -114,17 +114,31 @@ Anchor AnchorOf(const AzimuthTie& tie, const FilterHistory& history, const Joine
   return {tie.node, AttitudeMatrix(tie.azimuth, inclination, toolface)};
 }
 
+/// Near east-west an azimuth and its mirror run into one, which a stop tells to its sigma: an
+/// azimuth on either side, where the mirror is within six of them; else none.
+std::vector<double> SidesOf(const NorthFix& fix) {
+  const double sigma = std::sqrt(fix.cov_attitude(1, 1));
+  const double to_middle = WrapPi(kPi - 2 * fix.azimuth) / 2;
+  if (std::abs(2 * to_middle) > 6 * sigma) return {};
+  const double half = std::max(std::abs(to_middle), sigma);
+  return {fix.azimuth + to_middle - half, fix.azimuth + to_middle + half};
+}
+
 /// From a tie, else from the surest fix and from its mirror; on the way past the fixes that have
 /// none.
 std::vector<Start> StartsOf(const EstimateSetup& setup, const FilterHistory& history,
                             const JoinedKnots& joined) {
   Start sure;
-  const FilterFix* surest = nullptr;
+  const FilterFix *surest = nullptr, *surest_alone = nullptr;  // of all; of those without a mirror
+  const auto surer = [](const FilterFix& fix, const FilterFix* than) {
+    return than == nullptr || fix.fix.cov_attitude(1, 1) < than->fix.cov_attitude(1, 1);
+  };
   for (const FilterFix& fix : history.fixes) {
     if (fix.epoch_end == 0 || fix.epoch_end > joined.node.size() || fix.fix.external) continue;
-    const double variance = fix.fix.cov_attitude(1, 1);
-    if (surest == nullptr || variance < surest->fix.cov_attitude(1, 1)) surest = &fix;
-    if (!fix.fix.mirror_azimuth) sure.push_back(AnchorOf(joined, fix, fix.fix.azimuth));
+    if (surer(fix, surest)) surest = &fix;
+    if (fix.fix.mirror_azimuth) continue;
+    if (surer(fix, surest_alone)) surest_alone = &fix;
+    sure.push_back(AnchorOf(joined, fix, fix.fix.azimuth));
   }
   const auto from = [&](const Anchor& first) {
     Start start{first};
@@ -134,7 +148,15 @@ std::vector<Start> StartsOf(const EstimateSetup& setup, const FilterHistory& his
     return start;
   };
   if (!setup.ties.empty()) return {from(AnchorOf(setup.ties.front(), history, joined))};
-  if (!sure.empty()) return {sure};
+  if (!sure.empty()) {
+    std::vector<Start> starts{sure};
+    const auto sides = SidesOf(surest_alone->fix);
+    if (!sides.empty()) starts.clear();
+    for (const double azimuth : sides) {
+      starts.push_back(from(AnchorOf(joined, *surest_alone, azimuth)));
+    }
+    return starts;
+  }
   if (surest == nullptr) return {};
   return {from(AnchorOf(joined, *surest, surest->fix.azimuth)),
           from(AnchorOf(joined, *surest, *surest->fix.mirror_azimuth))};
@@ -149,6 +171,19 @@ Matrix3d AnglesByPhi(double inclination, double toolface) {
   slope.row(1) << -ct / s, st / s, 0;
   slope.row(2) = Eigen::RowVector3d::UnitZ() - c * slope.row(1);
   return slope;
+}
+
+/// As the smoother has it, each node's attitude that of the epoch at it or before it.
+NodeGuess GuessOf(const EstimateSetup& setup, const SmoothedRun& smoothed,
+                  const JoinedKnots& joined) {
+  std::vector<Matrix3d> R_LT(joined.knots.size() + 1);
+  std::size_t epoch = 0;
+  for (std::size_t k = 0; k < R_LT.size(); ++k) {
+    while (epoch + 1 < joined.node.size() && joined.node[epoch + 1] <= k) ++epoch;
+    const AttitudeSample& a = smoothed.attitude[epoch];
+    R_LT[k] = AttitudeMatrix(a.azimuth, a.inclination, a.toolface);
+  }
+  return GuessOf(setup, joined.knots, R_LT);
 }
 
 void ForgetAngle(int i, AttitudeSample& a) {
@@ -228,17 +263,19 @@ SmoothedRun EstimatedRun(const Job& job, const FilterHistory& history,
     epochs.push_back(i);
     marked.push_back(joined.node[i]);
   }
+  SmoothedRun smoothed = Smooth(history);
   RunEstimate estimate;
   if (!joined.knots.empty() && !joined.node.empty()) {
     EstimateSetup setup = SetupOf(job, history, joined);
     setup.causes = CausesLookedFor();
     setup.false_alarm_rate = kDiagnosisFalseAlarms;
-    estimate = EstimateRun(setup, joined.knots, StartsOf(setup, history, joined), marked);
+    estimate =
+        EstimateRun(setup, joined.knots,
+                    {StartsOf(setup, history, joined), {GuessOf(setup, smoothed, joined)}}, marked);
   }
   if (!estimate.solved) {
-    SmoothedRun run = Smooth(history);
-    run.fit = RunFit{};
-    return run;
+    smoothed.fit = RunFit{};
+    return smoothed;
   }
   SmoothedRun run;
   for (std::size_t i = 0; i < joined.node.size(); ++i) {
