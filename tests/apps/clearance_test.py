@@ -7,6 +7,7 @@ import re
 import shutil
 import tempfile
 import unittest
+import xml.dom.minidom
 
 from harness import Run
 
@@ -165,6 +166,18 @@ kick_off_md_m = 900
         done = self.Clear("--reference", "plan.csv", "--offset", "near.csv", "--offset", "near.csv")
         self.assertEqual(done.returncode, 1)
         self.assertIn("named twice", done.stderr)
+
+    def test_names_of_files_break_no_page_or_picture(self):
+        names = ["x<script>1<.csv", 'a,"b.csv', "\u0628\u0626\u0631.csv", "new\nline.csv",
+                 os.fsdecode(b"bad\xff.csv")]
+        for name in names:
+            shutil.copy("near.csv", name)
+        self.Clear("--reference", "plan.csv", *(x for name in names for x in ("--offset", name)))
+        for name in ("ladder.svg", "travelling_cylinder.svg"):
+            xml.dom.minidom.parse(os.path.join("out", name))
+        with open("out/clearance.html", encoding="utf-8") as file:
+            self.assertNotIn("<script", file.read())
+        self.assertEqual(len(self.Rows("wells.csv")), len(names))
 
     def test_lines_end_at_the_edge_of_their_panel(self):
         self.Clear("--reference", "plan.csv", "--offset", "near.csv", "--offset", "far.csv",

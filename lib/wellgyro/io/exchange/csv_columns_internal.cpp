@@ -70,7 +70,7 @@ class ColumnMaker {
   CsvColumn ColumnOf(const Heading& h, const std::vector<Heading>& headings,
                      const std::vector<CsvColumn>& before) {
     CsvColumn c{.column = h.column, .text = h.text, .status = h.status, .well = h.well};
-    if (c.column) TakeNorth(c, h);
+    if (c.column) TakeNorth(c, h, before.size() + 1);
     const auto first = std::find_if(before.begin(), before.end(), [&](const CsvColumn& o) {
       return c.column && o.column == c.column;
     });
@@ -98,14 +98,14 @@ class ColumnMaker {
   }
 
   // The first azimuth is the table's own; others stand beside it.
-  void TakeNorth(CsvColumn& c, const Heading& h) {
+  void TakeNorth(CsvColumn& c, const Heading& h, std::size_t number) {
     if (c.column == Column::kAzimuth) {
       if (azimuth_seen_) {
         if (h.north == head_.azimuth.north) return;
         c.column = SecondAzimuth(h.north);
         if (!c.column) {
-          head_.notes.push_back(
-              fmt::format("'{}' is another azimuth, from no stated north: it is left out", h.text));
+          head_.notes.push_back(fmt::format(
+              "column {} is another azimuth, from no stated north: it is left out", number));
         }
         return;
       }

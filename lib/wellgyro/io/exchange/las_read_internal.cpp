@@ -252,11 +252,12 @@ class LasReader {
     TakeUnits(column, unit);
   }
 
-  // STRT, STOP and STEP stand in the unit of the index; where they do not, one of both is wrong.
+  // STRT, STOP and STEP stand in the unit of the index; where they do not, one of both is wrong. In
+  // LAS 3.0 they are the log's, not those of a survey beside it.
   void TakeIndexUnit(std::optional<LengthUnit> unit) {
     md_unit_ = unit;
     const auto start = LengthUnitOf(start_unit_);
-    if (options_.depth_unit || !unit || !start || *unit == *start) return;
+    if (third_ || options_.depth_unit || !unit || !start || *unit == *start) return;
     lines_.Complain(FaultCode::kConflict,
                     fmt::format("its depths are in {}, but STRT and STOP in {}: say --depth-unit",
                                 WordOf(*unit), WordOf(*start)));

@@ -13,6 +13,7 @@
 
 #include "wellgyro/io/plot/clearance_plot.h"
 #include "wellgyro/io/result/clearance_report_internal.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/program_file.h"
@@ -61,7 +62,7 @@ bool IsProgram(const std::filesystem::path& path) { return path.extension() == "
 
 ClearanceWell EntryOf(const std::filesystem::path& path) {
   ClearanceWell entry;
-  entry.name = path.stem().string();
+  entry.name = ToUtf8(path.stem().string());
   const std::string absolute = std::filesystem::absolute(path).string();
   (IsProgram(path) ? entry.program : entry.survey) = absolute;
   return entry;
@@ -77,7 +78,7 @@ void NameApart(std::vector<ClearanceWell>& wells) {
     if (!files.insert(file).second) {
       throw std::invalid_argument("offset " + file + " is named twice");
     }
-    if (named[well.name] > 1) well.name = file;
+    if (named[well.name] > 1) well.name = ToUtf8(file);
   }
 }
 

@@ -45,7 +45,8 @@ struct ClearancePolicy {
 /// whole); `[limits]` `stop`, `alert`, `report`; `[hole]` `reference_radius_m`, `offset_radius_m`,
 /// each a number or rows of [to MD in m, radius in m]; `[reference]` and `[[offset]]` with `name`,
 /// `survey` and `model`, or `program`; `north_m`, `east_m`, `tvd_m`, `kick_off_md_m`,
-/// `judged_from_md_m`, `hole_radius_m`. All but the format line may be left out. Faults name file and line.
+/// `judged_from_md_m`, `hole_radius_m`. All but the format line may be left out. Faults name file
+/// and line.
 WELLGYRO_EXPORT Result<ClearancePolicy> ReadClearancePolicy(const std::filesystem::path& path);
 
 }  // namespace wellgyro
