@@ -15,6 +15,7 @@
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/sensor/file_kind.h"
 #include "wellgyro/io/sensor/sensor_csv.h"
+#include "wellgyro/io/toml/clearance_file.h"
 #include "wellgyro/io/toml/error_model_file.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/io/toml/noise_file.h"
@@ -114,14 +115,17 @@ int CheckForeign(const std::string& name, const std::string& what) {
   if (!table) {
     fmt::print("{}: {}, not one of wellgyro's nor a survey it reads\n  {}\n", name, what,
                Sentence(table.fault()));
+    if (table.fault().text.find(" --") != std::string::npos) {
+      fmt::print("  options are those of wellgyro convert, which reads it with them\n");
+    }
     return kUnusable;
   }
   const std::size_t rows = table->rows();
   const bool ends = std::none_of(
       table->head.notes.begin(), table->head.notes.end(),
       [](const std::string& note) { return note.find("where the table ends") != note.npos; });
-  fmt::print("{}: {}, a survey of {} stations from MD {:.2f} to {:.2f} m{}\n", name, what, rows,
-             rows > 0 ? table->md(0) : 0, rows > 0 ? table->md(rows - 1) : 0,
+  fmt::print("{}: {}, a survey of {} station{} from MD {:.2f} to {:.2f} m{}\n", name, what, rows,
+             rows == 1 ? "" : "s", rows > 0 ? table->md(0) : 0, rows > 0 ? table->md(rows - 1) : 0,
              ends ? ", whole" : "");
   for (const std::string& note : table->head.notes) fmt::print("  {}\n", note);
   return kDone;
@@ -145,6 +149,8 @@ int CheckFile(const std::string& name) {
       return Tell(name, what, FaultOf(ReadErrorModelFile(name)), kUnusable);
     case FileKind::kProgram:
       return Tell(name, what, FaultOf(ReadSurveyProgram(name)), kUnusable);
+    case FileKind::kClearancePolicy:
+      return Tell(name, what, FaultOf(ReadClearancePolicy(name)), kUnusable);
     case FileKind::kSurveyCsv:
       return Tell(name, what, FaultOf(ReadSurveyCsv(name)), kUnusable);
     case FileKind::kSensorCsv:

@@ -155,11 +155,43 @@ int ConvertLog(const ConvertOptions& o) {
   return kDoneWithLosses;
 }
 
+/// From map coordinates in metres, which the system may count in feet.
+Result<GeodeticPoint> PlaceOnMap(const std::string& crs, double easting, double northing) {
+  const auto place = GeodeticOfCrs(crs, {easting, northing, 0});
+  if (!place) return place;
+  const auto grid = ProjectToCrs(crs, *place);
+  if (!grid) return grid.fault();
+  if (grid->unit == 1) return place;
+  return GeodeticOfCrs(crs, {easting / grid->unit, northing / grid->unit, 0});
+}
+
+/// Where the well is: by the options, or by the first station of IN that has a place.
+Result<GeodeticPoint> PlaceOf(const ConvertOptions& o) {
+  if (o.latitude_deg && o.longitude_deg) {
+    return GeodeticPoint{FromDegrees(*o.latitude_deg), FromDegrees(*o.longitude_deg)};
+  }
+  const Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
+  if (!table) return table.fault();
+  for (std::size_t row = 0; row < table->rows(); ++row) {
+    const auto latitude = table->Get(Column::kLatitude, row);
+    const auto longitude = table->Get(Column::kLongitude, row);
+    if (latitude && longitude) return GeodeticPoint{*latitude, *longitude};
+    const auto northing = table->Get(Column::kNorthing, row);
+    const auto easting = table->Get(Column::kEasting, row);
+    if (northing && easting) return PlaceOnMap(o.crs, *easting, *northing);
+  }
+  Fault fault;
+  fault.source = o.in;
+  fault.text = "it has no position for --crs: say --latitude-deg and --longitude-deg";
+  return fault;
+}
+
 /// The convergence at the well's position, where none is stated; where one is, ours is the check.
 std::optional<Fault> FindConvergence(ConvertOptions& o) {
   if (o.crs.empty()) return std::nullopt;
-  const auto grid =
-      ProjectToCrs(o.crs, {FromDegrees(*o.latitude_deg), FromDegrees(*o.longitude_deg)});
+  const auto place = PlaceOf(o);
+  if (!place) return place.fault();
+  const auto grid = ProjectToCrs(o.crs, *place);
   if (!grid) return grid.fault();
   if (!grid->outside.empty()) {
     Complain(fmt::format("note: the position is outside the area of {}, {}", o.crs, grid->outside));
@@ -176,13 +208,21 @@ std::optional<Fault> FindConvergence(ConvertOptions& o) {
 }
 
 int Convert(ConvertOptions& o) {
+  if (o.out == "-") {
+    Complain("OUT is a file's name; /dev/stdout with --to writes to the terminal or a pipe");
+    return kUsage;
+  }
   std::error_code none;
   if (std::filesystem::equivalent(o.in, o.out, none)) {
     Complain(fmt::format("{} would be written over by what it becomes: choose another OUT", o.in));
     return kUnusable;
   }
   const Result<FileIdentity> identity = IdentifyFile(o.in);
-  if (identity && identity->kind == FileKind::kLcmLog) return ConvertLog(o);
+  if (!identity) {
+    Complain(identity.fault());
+    return kUnusable;
+  }
+  if (identity->kind == FileKind::kLcmLog) return ConvertLog(o);
   const auto format = o.to.empty() ? FormatByName(o.out) : SurveyFormatOf(o.to);
   if (!format) {
     Complain(fmt::format("{}: the name does not say which format: add --to", o.out));
@@ -225,21 +265,23 @@ void AddReading(CLI::App& command, ConvertOptions& o) {
       .add_option("--azimuth-reference", o.azimuth_reference,
                   "North of IN's azimuths; wins over what it says")
       ->check(CLI::IsMember({"true", "grid", "magnetic"}));
-  command.add_option("--convergence-deg", o.convergence_deg, "True less grid azimuth");
-  CLI::Option* const latitude =
-      command.add_option("--latitude-deg", o.latitude_deg, "Of the well head, on WGS 84");
-  CLI::Option* const longitude =
-      command.add_option("--longitude-deg", o.longitude_deg, "Of the well head, on WGS 84");
-  command
-      .add_option("--crs", o.crs,
-                  "Projected system, as EPSG:23031: the convergence at the well's position")
-      ->needs(latitude)
-      ->needs(longitude);
-  command.add_option("--declination-deg", o.declination_deg, "True less magnetic azimuth");
+  command.add_option("--convergence-deg", o.convergence_deg, "True less grid azimuth")
+      ->check(CLI::Range(-180.0, 180.0));
+  command.add_option("--latitude-deg", o.latitude_deg, "Of the well head, on WGS 84")
+      ->check(CLI::Range(-90.0, 90.0));
+  command.add_option("--longitude-deg", o.longitude_deg, "Of the well head, on WGS 84")
+      ->check(CLI::Range(-180.0, 360.0));
+  command.add_option(
+      "--crs", o.crs,
+      "Projected system, as EPSG:23031: the convergence at the well's position, by the two "
+      "above or IN's own coordinates");
+  command.add_option("--declination-deg", o.declination_deg, "True less magnetic azimuth")
+      ->check(CLI::Range(-180.0, 180.0));
   command.add_option("--declination-source", o.declination_source, "Its model");
   command.add_option("--declination-date", o.declination_date, "Day it holds for, YYYY-MM-DD");
   command.add_option("--datum", o.datum, "Name of the depth datum, as RT");
-  command.add_option("--datum-elevation-m", o.datum_elevation_m, "Above mean sea level");
+  command.add_option("--datum-elevation-m", o.datum_elevation_m, "Above mean sea level")
+      ->check(CLI::Range(-12000.0, 12000.0));
   command.add_option("--well", o.well, "Name of the well; which, where IN has several");
   command.add_option("--trajectory", o.trajectory, "Name or uid, where IN has several");
   command.add_option("--decimal", o.decimal, "What a comma inside IN's numbers is, where unclear")
@@ -254,7 +296,8 @@ void AddWriting(CLI::App& command, ConvertOptions& o) {
       ->check(CLI::IsMember({"metric", "field"}));
   command.add_option("--north", o.north, "Turn azimuths, offsets and covariances to this north")
       ->check(CLI::IsMember({"true", "grid", "magnetic"}));
-  command.add_option("--section-azimuth-deg", o.section_azimuth_deg, "Plane of vertical section");
+  command.add_option("--section-azimuth-deg", o.section_azimuth_deg, "Plane of vertical section")
+      ->check(CLI::Range(-360.0, 360.0));
   command.add_flag("--derived", o.derived, "Add closure, TVD sub-sea and vertical section");
   command.add_flag("--as-it-is", o.keep, "Do not sum positions where IN has none");
   command.add_flag("--as-listed", o.as_listed,

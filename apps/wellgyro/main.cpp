@@ -1,5 +1,7 @@
+#include <cmath>
 #include <exception>
 #include <memory>
+#include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -13,6 +15,21 @@
 
 namespace wellgyro::apps {
 namespace {
+
+/// No option of any command takes "nan" or "inf" for a number, which ranges let through.
+void WantFiniteNumbers(CLI::App& command) {
+  for (CLI::Option* const option : command.get_options()) {
+    if (!option->get_type_name().starts_with("FLOAT")) continue;
+    option->check(
+        [](const std::string& text) {
+          double number = 0;
+          const bool bad = CLI::detail::lexical_cast(text, number) && !std::isfinite(number);
+          return bad ? text + " is not a finite number" : std::string();
+        },
+        "");
+  }
+  for (CLI::App* const sub : command.get_subcommands(nullptr)) WantFiniteNumbers(*sub);
+}
 
 int Run(int argc, char** argv) {
   CLI::App app{"From a gyro survey tool's sensor stream to a wellbore survey", "wellgyro"};
@@ -38,6 +55,7 @@ int Run(int argc, char** argv) {
   AddConvert(app, exit_code);
   AddCheck(app, exit_code);
   AddReport(app, exit_code);
+  WantFiniteNumbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -80,6 +80,12 @@ int PrintMagnetic(const Options& o, const GeodeticPoint& place) {
     Complain(year.fault());
     return kUsage;
   }
+  const bool known = o.model == "wmm2025" || o.model == "wmm2020" || o.model == "igrf14";
+  if (!known && o.data.empty()) {
+    Complain("--magnetic-model " + o.model +
+             ": there are wmm2025, wmm2020 and igrf14, and others by --magnetic-data");
+    return kUsage;
+  }
   const auto found = MagneticFieldAt(o.model, DataFolder(o), place, o.height, *year);
   if (!found) {
     Complain(found.fault());

@@ -7,6 +7,7 @@ import re
 import shutil
 import tempfile
 import unittest
+import xml.dom.minidom
 
 from harness import Run
 
@@ -99,8 +100,121 @@ kick_off_md_m = 900
         side = [row for row in rows if row["WELL"] == "side"]
         self.assertGreater(float(side[0]["MD[m]"]), 900)
         self.assertLess(float(side[0]["DISTANCE[m]"]), 2)
+        # Where they part both are one hole: that is listed, and judged only if the policy wants it.
+        with open("policy.toml", "a", encoding="utf-8") as file:
+            file.write("judged_from_md_m = 1150\n")
+        done = self.Clear("--policy", "policy.toml")
+        wells = {row["WELL"]: row for row in self.Rows("wells.csv")}
+        self.assertGreaterEqual(float(wells["side"]["MD[m]"]), 1150)
+        self.assertEqual(len([r for r in self.Rows("clearance.csv") if r["WELL"] == "side"]),
+                         len(side))
+        self.assertIn("judged from MD 1150.00 m", done.stderr)
+        for judged, code in ((1850, 1), (800, 2)):
+            with open("policy.toml", encoding="utf-8") as file:
+                text = re.sub("judged_from_md_m.*", f"judged_from_md_m = {judged}", file.read())
+            with open("policy.toml", "w", encoding="utf-8") as file:
+                file.write(text)
+            self.assertEqual(self.Clear("--policy", "policy.toml").returncode, code)
         # Just below the kick-off little has been gathered by either.
         self.assertLess(float(side[0]["SIGMA[m]"]), 1)
+
+    def Placed(self, name, north, east, northing, easting, head=""):
+        """Vertical, with offsets and map coordinates."""
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(head + "MD[m],INC[deg],AZI_TRUE[deg],TVD[m],N[m],E[m],NORTHING[m],"
+                       "EASTING[m]\n")
+            file.writelines(f"{30 * k},0,0,{30 * k},{north},{east},{northing},{easting}\n"
+                            for k in range(20))
+
+    def test_wells_of_two_heads_are_not_put_on_one_spot(self):
+        self.Placed("a.csv", 0, 0, 6600000, 400000)
+        self.Placed("b.csv", 0, 0, 6600300, 400400)
+        done = self.Clear("--reference", "a.csv", "--offset", "b.csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("500.0 m apart by their map coordinates, 0.0 m by north and east",
+                      done.stderr)
+        with open("policy.toml", "w", encoding="utf-8") as file:
+            file.write('format = "wellgyro.clearance/1"\n[[offset]]\nsurvey = "b.csv"\n'
+                       "north_m = 300\neast_m = 400\ntvd_m = 0\n")
+        done = self.Clear("--reference", "a.csv", "--policy", "policy.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.Placed("b.csv", 300, 400, 6600300, 400400)
+        self.assertEqual(self.Clear("--reference", "a.csv", "--offset", "b.csv").returncode, 0)
+
+    def test_depths_of_two_datums_are_held_to_one(self):
+        for name, north, elevation in (("a.csv", 0, 25), ("b.csv", 40, 37)):
+            self.Placed(name, north, 0, 6600000 + north, 4e5,
+                        f"# datum: RT\n# datum_elevation_m: {elevation}\n")
+        with open("policy.toml", "w", encoding="utf-8") as file:
+            file.write('format = "wellgyro.clearance/1"\n[rule]\nscan = "horizontal"\n'
+                       "[limits]\nreport = 1000\n")
+        done = self.Clear("--reference", "a.csv", "--offset", "b.csv", "--policy", "policy.toml")
+        self.assertIn("it is put 12.00 m higher", done.stderr)
+        rows = self.Rows("clearance.csv")
+        self.assertAlmostEqual(float(rows[5]["OTHER_MD[m]"]) - float(rows[5]["MD[m]"]), 12,
+                               places=6)
+
+    def test_files_of_one_name_are_told_apart(self):
+        for folder in ("a", "b"):
+            os.mkdir(folder)
+            shutil.copy("near.csv", f"{folder}/survey.csv")
+        self.Clear("--reference", "plan.csv", "--offset", "a/survey.csv", "--offset",
+                   "b/survey.csv")
+        names = [row["WELL"] for row in self.Rows("wells.csv")]
+        self.assertEqual(len(set(names)), 2)
+        self.assertTrue(names[0].endswith("a/survey.csv"), names)
+        done = self.Clear("--reference", "plan.csv", "--offset", "near.csv", "--offset", "near.csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("named twice", done.stderr)
+
+    def test_names_of_files_break_no_page_or_picture(self):
+        names = ["x<script>1<.csv", 'a,"b.csv', "\u0628\u0626\u0631.csv", "new\nline.csv",
+                 os.fsdecode(b"bad\xff.csv")]
+        for name in names:
+            shutil.copy("near.csv", name)
+        self.Clear("--reference", "plan.csv", *(x for name in names for x in ("--offset", name)))
+        for name in ("ladder.svg", "travelling_cylinder.svg"):
+            xml.dom.minidom.parse(os.path.join("out", name))
+        with open("out/clearance.html", encoding="utf-8") as file:
+            self.assertNotIn("<script", file.read())
+        self.assertEqual(len(self.Rows("wells.csv")), len(names))
+
+    def test_lines_end_at_the_edge_of_their_panel(self):
+        self.Clear("--reference", "plan.csv", "--offset", "near.csv", "--offset", "far.csv",
+                   "--correlation", "none")
+        with open("out/ladder.svg", encoding="utf-8") as file:
+            picture = file.read()
+        lines = re.findall(r'<path class="[sa]"[^>]*>', picture)
+        self.assertTrue(lines)
+        self.assertTrue(all('clip-path="url(#' in line for line in lines))
+        self.assertEqual(picture.count("<clipPath id="), 2)
+
+    def test_check_names_what_was_written(self):
+        self.Clear("--reference", "plan.csv", "--offset", "near.csv")
+        Run("uncertainty", "--survey", "plan.csv", "--model", "GYRO-NS-CT", *PLACE, "--terms",
+            "--plot", "--other", "near.csv", "--out", "own")
+        with open("policy.toml", "w", encoding="utf-8") as file:
+            file.write('format = "wellgyro.clearance/1"\n[rule]\nk = 3.5\n')
+        files = ["policy.toml"] + [os.path.join(folder, name) for folder in ("out", "own")
+                                   for name in sorted(os.listdir(folder))]
+        self.assertGreater(len(files), 9)
+        done = Run("check", *files)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertNotIn("not one of", done.stdout)
+        with open("policy.toml", "a", encoding="utf-8") as file:
+            file.write("K = 3\n")
+        self.assertEqual(Run("check", "policy.toml").returncode, 2)
+
+    def test_what_is_not_stated_is_told_or_refused(self):
+        with open("bare.csv", "w", encoding="utf-8") as file:
+            file.write("MD,INC,AZI\n0,0,0\n30,0,0\n")
+        done = self.Clear("--reference", "plan.csv", "--offset", "bare.csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--depth-unit", done.stderr)
+        with open("bare.csv", "w", encoding="utf-8") as file:
+            file.write("MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,0,0\n")
+        done = self.Clear("--reference", "plan.csv", "--offset", "bare.csv")
+        self.assertIn("bare: no place in its file", done.stderr)
 
     def test_mistakes(self):
         for arguments, code in (
@@ -170,6 +284,13 @@ class North(unittest.TestCase):
     def test_mistakes(self):
         place = ["--latitude-deg", "58", "--longitude-deg", "2"]
         self.assertEqual(Run("north").returncode, 1)
+        done = Run("north", *place, "--date", "2026-01-01", "--magnetic-model", "none")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("igrf14", done.stderr)
+        for latitude in ("nan", "inf", "91"):
+            done = Run("north", "--latitude-deg", latitude, "--longitude-deg", "2")
+            self.assertEqual(done.returncode, 1, latitude)
+            self.assertEqual(done.stdout, "")
         self.assertEqual(Run("north", *place, "--crs", "EPSG:4326").returncode, 2)
         self.assertEqual(Run("north", *place, "--date", "2026-02-30").returncode, 1)
         self.assertEqual(Run("north", *place, "--date", "1850-01-01").returncode, 2)

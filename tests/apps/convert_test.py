@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Runs `wellgyro convert` as a user does. convert_test.py PROGRAM"""
 import os
+import re
 import sys
 import unittest
 
@@ -68,7 +69,45 @@ class Convert(FreshProgramTest):
         self.assertIn("empty", self.Refused("empty.csv", "out.las"))
         self.assertIn("open", self.Refused("missing.csv", "out.las"))
         self.Write("opposite.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,180,0\n")
-        self.assertIn("station 1", self.Refused("opposite.csv", "out.las"))
+        self.assertIn("at depth 30 m it points opposite", self.Refused("opposite.csv", "out.las"))
+
+    def test_a_pipe_is_refused_and_not_waited_for(self):
+        os.mkfifo(self.Path("pipe.csv"))
+        self.assertIn("this is a pipe", self.Refused("pipe.csv", "out.las"))
+        done = Run("check", self.Path("pipe.csv"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("this is a pipe", done.stderr)
+
+    def test_no_number_is_no_number(self):
+        for option in ("--convergence-deg", "--declination-deg", "--datum-elevation-m",
+                       "--section-azimuth-deg", "--latitude-deg"):
+            for word in ("nan", "inf", "-inf", "1e999"):
+                done = self.Convert("in.csv", "out.p717", option, word)
+                self.assertEqual(done.returncode, 1, (option, word))
+                self.assertFalse(os.path.exists(self.Path("out.p717")))
+        self.assertEqual(self.Convert("in.csv", "out.las", "--convergence-deg", "1e300").returncode,
+                         1)
+        self.assertEqual(Run("convert", "in.csv", "-", "--to", "csv", cwd=self.folder).returncode, 1)
+        self.assertFalse(os.path.exists(self.Path("-")))
+
+    def test_convergence_of_the_files_own_position(self):
+        turns = set()
+        for name, head, place in (("map.csv", "NORTHING[m],EASTING[m]", "6652048.573,444314.836"),
+                                  ("geo.csv", "LAT[deg],LON[deg]", "60,2"), ("none.csv", "X9", "1")):
+            self.Write(name, f"MD[m],INC[deg],AZI_TRUE[deg],{head}\n0,0,0,{place}\n"
+                       f"30,0,0,{place}\n")
+            if name == "none.csv":
+                self.assertIn("no position", self.Refused(name, "x.las", "--crs", "EPSG:23031"))
+                continue
+            told = self.Convert(name, "out.csv", "--crs", "EPSG:23031", "--north", "grid").stderr
+            turns.add(re.search(r"convergence (\S+) deg, from EPSG:23031", told).group(1))
+        self.assertEqual(turns, {"-0.864609"})
+
+    def test_check_says_whose_options_it_names(self):
+        self.Write("two.csv", "WELL,MD[m],INC,AZI_TRUE\nA,0,0,0\nA,9,1,1\nB,0,0,0\nB,9,1,1\n")
+        done = Run("check", self.Path("two.csv"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("options are those of wellgyro convert", done.stdout)
 
     def test_command_line(self):
         self.assertEqual(self.Convert("in.csv", "out.unknown").returncode, 1)

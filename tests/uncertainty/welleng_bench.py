@@ -30,5 +30,5 @@ def rate(n):
 
 
 print(f"welleng {we.__version__}")
-for n in (1000, 10000):
+for n in (1000, 10000, 100000):
     print(f"{n} stations: {rate(n):.0f} stations/s")

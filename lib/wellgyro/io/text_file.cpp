@@ -49,6 +49,11 @@ Result<std::string> ReadTextFile(const std::filesystem::path& path, std::int64_t
 }
 
 Result<std::string> ReadTextHead(const std::filesystem::path& path, std::int64_t size) {
+  std::error_code ignored;
+  if (std::filesystem::is_fifo(path, ignored)) {
+    return Unreadable(path, FaultCode::kIo,
+                      "this is a pipe, which can be read only once: save it to a file first");
+  }
   Result<std::string> bytes = ReadSome(path, size);
   if (bytes && std::ssize(*bytes) > size) bytes->resize(static_cast<std::size_t>(size));
   return bytes;

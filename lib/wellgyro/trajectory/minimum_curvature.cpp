@@ -81,7 +81,11 @@ void MinimumCurvature(std::span<const double> md, std::span<const double> inclin
       const double length = md[i] - md[i - 1];
       if (!(length > 0)) Refuse(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
       const std::optional<ArcLeg> leg = MinimumCurvatureLeg(length, before, next);
-      if (!leg) Refuse(i, "it points opposite to the one before, which leaves no arc");
+      if (!leg) {
+        Refuse(i, fmt::format("at depth {} m it points opposite to the one before, which leaves "
+                              "no arc",
+                              md[i]));
+      }
       at += leg->displacement;
       dls = leg->dogleg / length;
     }

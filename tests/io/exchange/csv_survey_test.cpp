@@ -142,6 +142,20 @@ TEST(CsvSurvey, NorthOfAColumnIsOnlyWhatItSays) {
   EXPECT_EQ(Read("MD[m],INC,AZM\n0,0,0\n30,1,2\n").head.azimuth.north, North::kUnknown);
 }
 
+TEST(CsvSurvey, TwoColumnsOfOneKindAreNotChosenBetween) {
+  const std::string two = "MD[m],INC[deg],AZI_TRUE[deg],INC[deg]\n0,0,0,5\n30,2,3,7\n";
+  EXPECT_THAT(Refusal(two).text, HasSubstr("columns 2 and 4 are both inclination"));
+  EXPECT_EQ(Read(two, {.columns = {{"INC", "4"}}}).inclination(1), 7 * units::kDeg);
+  EXPECT_THAT(Refusal("MD[m],INC,AZI_TRUE,AZI_TRUE\n0,0,0,5\n30,2,3,7\n").text,
+              HasSubstr("columns 3 and 4"));
+  // Another unit, or another north, is another column.
+  EXPECT_EQ(Read("MD[ft],MD[m],INC,AZI_TRUE\n0,0,0,0\n100,30.48,1,2\n").md(1), 30.48);
+  EXPECT_TRUE(Read("MD[m],INC,AZI_TRUE,AZI_GRID\n0,0,0,1\n30,2,3,4\n").Has(Column::kAzimuthGrid));
+  const SurveyTable t = Read("MD[m],INC,AZI_TRUE,TVD[m],TVD[ft]\n0,0,0,0,0\n30,0,0,30,98.4252\n");
+  EXPECT_EQ(t.Get(Column::kTvd, 1), 30);
+  EXPECT_THAT(t.head.notes, testing::Contains(HasSubstr("the first is used")));
+}
+
 TEST(CsvSurvey, FromTheBottomUp) {
   const SurveyTable t = Read("MD[m],INC,AZI_TRUE,COMMENT\n60,2,20,c\n30,1,10,\n0,0,0,a\n");
   EXPECT_EQ(t.md(0), 0);
@@ -192,6 +206,18 @@ TEST(CsvSurvey, TvdFromAnotherDatumThanMd) {
 }
 
 // North and east stay as the file has them where it has no TVD.
+// Dated 2026-11-23: in a survey of four stations one wrong depth hid that nothing agreed.
+TEST(CsvSurvey, AWrongDepthAmongFewStationsIsSeen) {
+  const std::string head = "MD[m],INC,AZI_TRUE,TVD[m],N[m],E[m]\n0,0,0,0,0,0\n";
+  const std::string rest = "60,6,40,59.9147,2.0041,1.6816\n90,10,40,89.6149,5.1992,4.3626\n";
+  const std::string place = ",2,40,29.9939,0.4011,0.3366\n";
+  EXPECT_THAT(Read(head + "30" + place + rest).head.notes,
+              testing::Contains(HasSubstr("agree by minimum curvature with TVD")));
+  for (const std::string md : {"9.144", "3", "55"}) {
+    EXPECT_EQ(Refusal(head + md + place + rest).code, FaultCode::kConflict) << md;
+  }
+}
+
 TEST(CsvSurvey, OffsetsWithoutTvdAreKept) {
   SurveyTable t = Read("MD[m],INC,AZI_TRUE,N[m],E[m]\n0,0,0,10,20\n30,4,90,10,21.05\n");
   ASSERT_TRUE(FillPositions(t));

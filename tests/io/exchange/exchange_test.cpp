@@ -1,5 +1,6 @@
 #include "wellgyro/io/exchange/exchange.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -87,6 +88,42 @@ TEST(Exchange, EveryFormatGivesBackWhatItHoldsToTheLastBit) {
       EXPECT_NEAR(back.head.datum_elevation.value_or(0), *table.head.datum_elevation, 1e-12);
     }
   }
+}
+
+// The table of the README: numbers to the last bit through any two formats, heads as it says.
+TEST(Exchange, EveryFormatToEveryOtherAndBack) {
+  const SurveyTable table = FullSurvey();
+  const auto through = [](const SurveyTable& t, SurveyFormat format) {
+    return Reread(WriteSurvey(t, format, {.preamble = true}));
+  };
+  int pairs = 0;
+  for (const SurveyFormat first : kReadable) {
+    const SurveyTable one = through(table, first);
+    for (const SurveyFormat second : kReadable) {
+      SCOPED_TRACE(std::string(WordOf(first)) + " to " + std::string(WordOf(second)));
+      const SurveyTable back = through(one, second);
+      std::vector<Column> columns = Held(first);
+      const std::vector<Column> other = Held(second);
+      std::erase_if(columns, [&](Column c) {
+        return std::find(other.begin(), other.end(), c) == other.end();
+      });
+      ExpectSameStations(table, back, columns);
+      EXPECT_EQ(back.head.names.well, table.head.names.well);
+      EXPECT_EQ(back.head.datum, table.head.datum);
+      EXPECT_EQ(back.head.azimuth.north, table.head.azimuth.north);
+      EXPECT_EQ(back.head.offsets, table.head.offsets);
+      EXPECT_NEAR(back.head.datum_elevation.value_or(0), *table.head.datum_elevation, 1e-12);
+      ++pairs;
+      if (first == SurveyFormat::kPetrel || second == SurveyFormat::kPetrel) continue;
+      EXPECT_EQ(back.head.names.contractor, table.head.names.contractor);
+      EXPECT_EQ(back.head.tool, table.head.tool);
+      EXPECT_EQ(back.head.error_model, table.head.error_model);
+      EXPECT_EQ(back.head.method, table.head.method);
+      EXPECT_NEAR(*back.head.azimuth.convergence, *table.head.azimuth.convergence, 1e-15);
+      EXPECT_NEAR(*back.head.azimuth.declination, *table.head.azimuth.declination, 1e-15);
+    }
+  }
+  std::printf("%d pairs of formats\n", pairs);
 }
 
 TEST(Exchange, WrittenAgainTheBytesAreTheSame) {

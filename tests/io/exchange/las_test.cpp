@@ -78,6 +78,19 @@ TEST(Las, WithoutUnitsBracketsOrColons) {
   EXPECT_EQ(brackets->md(1), 30);
 }
 
+// Dated 2026-11-23: the unit of the curve was taken without a word.
+TEST(Las, UnitsOfIndexAndHeaderContradictEachOther) {
+  const std::string text =
+      "~V\n VERS. 2.0\n WRAP. NO\n~W\n STRT.M 0\n STOP.M 30\n STEP.M 30\n"
+      "~C\n DEPT.FT \n DEVI.DEG \n INCL.DEG \n AZIM.DEG \n~A\n0 0 0 0\n30 2 7 100\n";
+  EXPECT_THAT(Refusal(text).text, HasSubstr("in ft, but STRT and STOP in m: say --depth-unit"));
+  const auto told = ParseSurvey(text, "text", {.depth_unit = LengthUnit::kMetre});
+  ASSERT_TRUE(told) << told.fault().text;
+  EXPECT_EQ(told->md(1), 30);
+  EXPECT_EQ(told->inclination(1), 2 * units::kDeg);
+  EXPECT_THAT(told->head.notes, testing::Contains(HasSubstr("INCL gives inclination")));
+}
+
 TEST(Las, StepIsFixedWhereDepthsAreEven) {
   SurveyTable t = support::FullSurvey();
   EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas), testing::ContainsRegex("STEP +\\.M +30 :"));

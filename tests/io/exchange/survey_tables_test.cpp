@@ -1,11 +1,15 @@
 #include "wellgyro/io/exchange/survey_tables.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include <gmock/gmock.h>
 
 #include "wellgyro/earth/grid.h"
+#include "wellgyro/io/exchange/exchange.h"
 
 #include "support/survey_samples.h"
 
@@ -50,6 +54,31 @@ TEST(SurveyTables, PositionsAreSummedOnlyWhereTheyCanBe) {
   deep.Add(530, 0.5, 0);
   EXPECT_FALSE(FillPositions(deep));
   EXPECT_FALSE(deep.Has(Column::kTvd));
+}
+
+// Dated 2026-11-23: positions computed for a file in feet had all the digits of a conversion.
+TEST(SurveyTables, ComputedNumbersHaveSixDecimalsInTheFilesOwnUnit) {
+  for (const std::string unit : {"m", "ft", "ftUS"}) {
+    std::string text = "MD[" + unit + "],INC[deg],AZI_TRUE[deg]\n";
+    for (int k = 0; k < 60; ++k) {
+      text +=
+          std::to_string(100 * k) + "," + std::to_string(k) + "," + std::to_string(40 + k) + "\n";
+    }
+    Result<SurveyTable> table = ParseSurvey(text, "text");
+    ASSERT_TRUE(table);
+    ASSERT_TRUE(FillPositions(*table));
+    table->head.section_azimuth = 45 * units::kDeg;
+    FillDerived(*table);
+    std::istringstream lines(WriteSurvey(*table, SurveyFormat::kCsv));
+    int fields = 0;
+    for (std::string field; std::getline(lines, field, ',');) {
+      const std::size_t point = field.find('.'), end = std::min(field.find('\n'), field.size());
+      const std::size_t decimals = point < end ? end - point - 1 : 0;
+      EXPECT_LE(decimals, 6u) << unit << " " << field;
+      ++fields;
+    }
+    EXPECT_GT(fields, 500);
+  }
 }
 
 TEST(SurveyTables, DerivedColumns) {

@@ -53,6 +53,26 @@ TEST(WellStations, TakesTheStartFromThePositionsOfTheFirstRow) {
   EXPECT_FALSE(Good("MD[m],INC,AZI,TVD[m]\n0,0,0,0\n9,0,0,9\n").start_stated);
 }
 
+TEST(WellStations, OffsetsFromTwoWellHeadsContradictTheMap) {
+  const auto at = [](const std::string& place) {
+    return Good("MD[m],INC[deg],AZI_TRUE[deg],TVD[m],N[m],E[m],NORTHING[m],EASTING[m]\n0,0,0,0," +
+                place + "\n30,0,0,30," + place + "\n");
+  };
+  const WellStations a = at("0,0,6600000,400000"), b = at("0,0,6600300,400400");
+  ASSERT_TRUE(a.map);
+  EXPECT_THAT(PlacesContradict(a, b).value_or(""),
+              HasSubstr("500.0 m apart by their map coordinates, 0.0 m"));
+  // A map's scale and the turn of grid to true north are no contradiction.
+  EXPECT_FALSE(PlacesContradict(a, at("310,392.6,6600300,400400")));
+  EXPECT_FALSE(PlacesContradict(a, Good("MD[m],INC,AZI\n0,0,0\n9,0,0\n")));
+}
+
+TEST(WellStations, AFaultSaysWhoseOptionItNames) {
+  const auto well = ParseWellStations("WELL,MD[m],INC,AZI\nA,0,0,0\nB,0,0,0\n", "s.csv");
+  ASSERT_FALSE(well);
+  EXPECT_THAT(well.fault().text, HasSubstr("--well; that is an option of wellgyro convert"));
+}
+
 TEST(WellStations, FaultsNameTheirPlace) {
   const std::string head = "MD[m],INC[deg],AZI[deg]\n";
   struct Bad {

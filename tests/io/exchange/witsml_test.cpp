@@ -112,6 +112,34 @@ TEST(Witsml, NoEntitiesNoDepthsWithoutEnd) {
   EXPECT_TRUE(t) << t.fault().text;
 }
 
+TEST(Witsml, Utf16IsRead) {
+  SurveyTable table = support::FullSurvey();
+  table.head.names.well = "A \xF0\x9F\x9B\xA2 \xC3\xA6";  // beyond the first plane of Unicode
+  const std::string text = WriteSurvey(table, SurveyFormat::kWitsml1411);
+  std::u16string wide;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.compare(i, 4, "\xF0\x9F\x9B\xA2") == 0) {
+      wide += u"\xD83D\xDEE2", i += 3;
+    } else if (text[i] == '\xC3') {
+      wide += static_cast<char16_t>(0xC0 | (text[++i] & 0x3F));
+    } else {
+      wide += static_cast<char16_t>(static_cast<unsigned char>(text[i]));
+    }
+  }
+  for (const bool little : {true, false}) {
+    std::string bytes = little ? "\xFF\xFE" : "\xFE\xFF";
+    for (const char16_t unit : wide) {
+      const char low = static_cast<char>(unit & 0xFF), high = static_cast<char>(unit >> 8);
+      bytes += little ? low : high;
+      bytes += little ? high : low;
+    }
+    const auto back = ParseSurvey(bytes, "text");
+    ASSERT_TRUE(back) << back.fault().text;
+    EXPECT_EQ(back->head.names.well, table.head.names.well);
+    EXPECT_EQ(back->rows(), table.rows());
+  }
+}
+
 TEST(Witsml, NamesInLatin1) {
   const std::string text =
       "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><trajectorys><trajectory>"

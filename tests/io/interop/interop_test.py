@@ -183,6 +183,33 @@ class Interop(unittest.TestCase):
                     s.disp_ew.value, s.tvd.vertical_depth.value]
                    for s in trajectory.trajectory_station])
 
+    def test_witsml_21_by_its_schema(self):
+        """Energistics' licence keeps the schemas out of the tree: the environment names a copy."""
+        path = os.environ.get("WELLGYRO_WITSML21_XSD", "")
+        if not os.path.exists(path):
+            self.skipTest("no WITSML 2.1 schema here: WELLGYRO_WITSML21_XSD names Trajectory.xsd")
+        import lxml.etree
+        schema = lxml.etree.XMLSchema(lxml.etree.parse(path))
+        def Valid(file):
+            document = lxml.etree.parse(file)
+            self.assertTrue(schema.validate(document), schema.error_log)
+        files = 0
+        for units in ("metric", "field"):
+            for north in ("grid", "true"):
+                Valid(self.Convert("survey.csv", "s21.xml", "--to", "witsml21", "--units", units,
+                                   "--north", north, "--derived"))
+                files += 1
+        for source, options, what in self.Heads():
+            with self.subTest(what):
+                Valid(self.Plain(source, "h21.xml", "--to", "witsml21", *options))
+                files += 1
+        for element in ("TypeTrajStation", "Md", "Citation"):
+            with open(self.Path("s21.xml"), encoding="utf-8") as file:
+                text = re.sub(rf"<(\w+:)?{element}>.*?</(\w+:)?{element}>", "", file.read(),
+                              count=1, flags=re.S)
+            self.assertFalse(schema.validate(lxml.etree.fromstring(text.encode())), element)
+        print(f"{files} WITSML 2.1 files valid by the schema")
+
     def Heads(self):
         """Files with awkward heads: lengths, blanks, letters, dates, missing parts."""
         names = ("\u00d8-1 H", "\u00c6-1 H", "A" * 70, "well " * 30, "6507/7-A-42: 10:15", "a, b; c",

@@ -36,7 +36,7 @@ class ColumnMaker {
   CsvColumns Make(const std::vector<Heading>& headings) {
     TakeDepthUnit(headings);
     CsvColumns columns;
-    for (const Heading& h : headings) columns.all.push_back(ColumnOf(h, columns.all));
+    for (const Heading& h : headings) columns.all.push_back(ColumnOf(h, headings, columns.all));
     for (std::size_t i = 0; i < columns.all.size(); ++i) {
       const auto column = columns.all[i].column;
       if (column == Column::kMd) columns.md = i;
@@ -67,23 +67,46 @@ class ColumnMaker {
     claims_.md_unit = unit.has_value();
   }
 
-  CsvColumn ColumnOf(const Heading& h, const std::vector<CsvColumn>& before) {
+  CsvColumn ColumnOf(const Heading& h, const std::vector<Heading>& headings,
+                     const std::vector<CsvColumn>& before) {
     CsvColumn c{.column = h.column, .text = h.text, .status = h.status, .well = h.well};
-    if (c.column) TakeNorth(c, h);
-    const bool twice = c.column && std::any_of(before.begin(), before.end(),
-                                               [&](const auto& o) { return o.column == c.column; });
-    if (twice) c.column.reset();
+    if (c.column) TakeNorth(c, h, before.size() + 1);
+    const auto first = std::find_if(before.begin(), before.end(), [&](const CsvColumn& o) {
+      return c.column && o.column == c.column;
+    });
+    if (first != before.end()) {
+      const auto at = static_cast<std::size_t>(first - before.begin());
+      Twice(*c.column, at, before.size(), headings[at].unit == h.unit);
+      c.column.reset();
+    }
     if (c.column && h.unit.empty()) WithoutUnit(c);
     if (c.column && !h.unit.empty()) WithUnit(c, h.unit);
     if (c.column && h.either_axis) claims_.axes_named = false;
     return c;
   }
 
+  // The same in another unit is common; which of two alike holds is not ours to say.
+  void Twice(Column column, std::size_t first, std::size_t second, bool alike) {
+    const std::string_view name = InfoOf(column).text;
+    if (alike && column <= Column::kAzimuth) {
+      lines_.Complain(FaultCode::kConflict,
+                      fmt::format("columns {} and {} are both {}: say which by --columns {}={}",
+                                  first + 1, second + 1, name, InfoOf(column).csv, first + 1));
+    }
+    head_.notes.push_back(fmt::format("columns {} and {} are both {}: the first is used", first + 1,
+                                      second + 1, name));
+  }
+
   // The first azimuth is the table's own; others stand beside it.
-  void TakeNorth(CsvColumn& c, const Heading& h) {
+  void TakeNorth(CsvColumn& c, const Heading& h, std::size_t number) {
     if (c.column == Column::kAzimuth) {
       if (azimuth_seen_) {
+        if (h.north == head_.azimuth.north) return;
         c.column = SecondAzimuth(h.north);
+        if (!c.column) {
+          head_.notes.push_back(fmt::format(
+              "column {} is another azimuth, from no stated north: it is left out", number));
+        }
         return;
       }
       azimuth_seen_ = true;

@@ -8,10 +8,12 @@
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "wellgyro/io/exchange/geo_path_internal.h"
+#include "wellgyro/io/exchange/line_reader_internal.h"
 #include "wellgyro/io/exchange/sheet_internal.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
@@ -64,6 +66,14 @@ SurveyFormat Recognised(std::string_view head) {
     head.remove_prefix(end + 1);
   }
   return head.starts_with('~') ? SurveyFormat::kLas : SurveyFormat::kCsv;
+}
+
+// XML as UTF-8, also where its mark says UTF-16.
+std::string InUtf8(std::string_view text) {
+  const bool little = text.starts_with("\xFF\xFE");
+  if (!little && !text.starts_with("\xFE\xFF")) return std::string(text);
+  std::string rest;
+  return Utf8OfUtf16(text.substr(2), little, rest);
 }
 
 // What an option says holds against what the file says, with a note where they differ.
@@ -217,8 +227,9 @@ Result<SurveyTable> ParseSurvey(std::string_view text, const std::string& source
       std::istringstream rows(SheetText(std::string(text), source, options.trajectory));
       table = ReadStream(rows, source, SurveyFormat::kCsv, options, claims);
     } else if (IsXml(format)) {
-      table = IsEdm(text) ? ReadEdm(std::string(text), source, options)
-                          : ReadWitsml(std::string(text), source, options);
+      std::string xml = InUtf8(text);
+      table = IsEdm(xml) ? ReadEdm(std::move(xml), source, options)
+                         : ReadWitsml(std::move(xml), source, options);
     } else {
       std::istringstream bytes{std::string(text)};
       table = ReadStream(bytes, source, format, options, claims);

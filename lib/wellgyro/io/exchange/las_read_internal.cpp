@@ -220,6 +220,9 @@ class LasReader {
                                       [&](const Curve& c) { return c.column == heading.column; });
     if (heading.column && !twice) {
       TakeCurve(curve, *heading.column, line.unit);
+    } else if (twice) {
+      head().notes.push_back(fmt::format("{} gives {} once more: it is left out", line.mnemonic,
+                                         InfoOf(*heading.column).text));
     }
     curves_.push_back(curve);
   }
@@ -234,7 +237,7 @@ class LasReader {
     }
     // An option for the unit of depth wins for what stands in the file's unit of depth.
     const auto length = LengthUnitOf(unit);
-    if (column == Column::kMd) md_unit_ = length;
+    if (column == Column::kMd) TakeIndexUnit(length);
     if (options_.depth_unit && curve.quantity == Quantity::kLength && length == md_unit_) {
       if (column == Column::kMd && length && *length != *options_.depth_unit) {
         head().notes.push_back(
@@ -247,6 +250,17 @@ class LasReader {
     curve.column = column;
     curve.factor = *factor;
     TakeUnits(column, unit);
+  }
+
+  // STRT, STOP and STEP stand in the unit of the index; where they do not, one of both is wrong. In
+  // LAS 3.0 they are the log's, not those of a survey beside it.
+  void TakeIndexUnit(std::optional<LengthUnit> unit) {
+    md_unit_ = unit;
+    const auto start = LengthUnitOf(start_unit_);
+    if (third_ || options_.depth_unit || !unit || !start || *unit == *start) return;
+    lines_.Complain(FaultCode::kConflict,
+                    fmt::format("its depths are in {}, but STRT and STOP in {}: say --depth-unit",
+                                WordOf(*unit), WordOf(*start)));
   }
 
   // Angles are degrees; lengths are in the unit of the index, which may be told.

@@ -19,14 +19,50 @@ void AppendUtf8(std::string& text, unsigned code) {
   } else if (code < 0x800) {
     text += static_cast<char>(0xC0 | (code >> 6));
     text += static_cast<char>(0x80 | (code & 0x3F));
-  } else {
+  } else if (code < 0x10000) {
     text += static_cast<char>(0xE0 | (code >> 12));
+    text += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
+    text += static_cast<char>(0x80 | (code & 0x3F));
+  } else {
+    text += static_cast<char>(0xF0 | (code >> 18));
+    text += static_cast<char>(0x80 | ((code >> 12) & 0x3F));
     text += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
     text += static_cast<char>(0x80 | (code & 0x3F));
   }
 }
 
+constexpr unsigned kReplacement = 0xFFFD;
+bool IsHigh(unsigned unit) { return unit >= 0xD800 && unit < 0xDC00; }
+bool IsLow(unsigned unit) { return unit >= 0xDC00 && unit < 0xE000; }
+
 }  // namespace
+
+std::string Utf8OfUtf16(std::string_view raw, bool little, std::string& rest) {
+  const auto unit = [&](std::size_t i) -> unsigned {
+    const auto a = static_cast<unsigned char>(raw[i]), b = static_cast<unsigned char>(raw[i + 1]);
+    return little ? a | (b << 8U) : b | (a << 8U);
+  };
+  std::string text;
+  std::size_t i = 0;
+  for (; i + 1 < raw.size(); i += 2) {
+    unsigned code = unit(i);
+    if (IsHigh(code)) {
+      if (i + 3 >= raw.size()) break;
+      const unsigned low = unit(i + 2);
+      if (IsLow(low)) {
+        code = 0x10000 + ((code - 0xD800) << 10) + (low - 0xDC00);
+        i += 2;
+      } else {
+        code = kReplacement;
+      }
+    } else if (IsLow(code)) {
+      code = kReplacement;
+    }
+    AppendUtf8(text, code);
+  }
+  rest = raw.substr(i);
+  return text;
+}
 
 LineReader::LineReader(std::istream& bytes, std::string source)
     : bytes_(bytes), source_(std::move(source)) {}
@@ -57,17 +93,10 @@ bool LineReader::Fill() {
   return got > 0;
 }
 
-// Names beyond the first plane of Unicode are not looked for: their halves become two characters.
 void LineReader::Decode(std::size_t had) {
   const std::string raw = odd_ + block_.substr(had);
   block_.resize(had);
-  const bool little = encoding_ == Encoding::kLittleEndian;
-  std::size_t i = 0;
-  for (; i + 1 < raw.size(); i += 2) {
-    const auto a = static_cast<unsigned char>(raw[i]), b = static_cast<unsigned char>(raw[i + 1]);
-    AppendUtf8(block_, little ? a | (b << 8U) : b | (a << 8U));
-  }
-  odd_ = raw.substr(i);
+  block_ += Utf8OfUtf16(raw, encoding_ == Encoding::kLittleEndian, odd_);
 }
 
 std::string LineReader::Ahead() {

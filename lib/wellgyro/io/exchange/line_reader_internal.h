@@ -18,6 +18,10 @@ struct TextError {
   Fault fault;
 };
 
+/// UTF-16 as UTF-8; halves of pairs that stand alone become U+FFFD. `rest`: bytes at the end that
+/// are no whole character yet.
+std::string Utf8OfUtf16(std::string_view raw, bool little, std::string& rest);
+
 /// Lines of foreign text as UTF-8, one block in memory at a time: byte order mark and CR taken off,
 /// UTF-16 with its mark and, line by line, Latin-1 turned into UTF-8. Throws TextError for NUL
 /// bytes, for lines beyond 1 MiB and when the system fails.
@@ -50,7 +54,7 @@ class LineReader {
   std::istream& bytes_;
   std::string source_;
   std::string block_, line_;
-  std::string odd_;  ///< half of a UTF-16 unit
+  std::string odd_;  ///< begin of a character in UTF-16
   std::size_t at_ = 0;
   enum class Encoding { kUnseen, kBytes, kLittleEndian, kBigEndian } encoding_ = Encoding::kUnseen;
   std::optional<Certificate> certificate_;

@@ -21,7 +21,14 @@
 namespace wellgyro {
 namespace {
 
-double ToStep(double value, double step) { return std::round(value / step) * step; }
+/// Sets what was computed, with six digits behind the point in the unit that the file has.
+void SetComputed(SurveyTable& table, Column column, std::size_t row, double value) {
+  const Quantity quantity = InfoOf(column).quantity;
+  const double factor = FactorOf(quantity, table.head);
+  // A whole number over a million is the double that its decimals are read as.
+  const double number = std::round(value / factor * 1e6) / 1e6;
+  table.Set(column, row, ValueOf(quantity, number + 0.0, factor));
+}
 
 void SetCovariance(SurveyTable& table, std::size_t row, const Eigen::Matrix3d& c) {
   table.Set(Column::kVarNN, row, c(0, 0));
@@ -226,14 +233,11 @@ bool FillPositions(SurveyTable& table) {
   const bool had_offsets = table.Has(Column::kNorth) && table.Has(Column::kEast);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!had_offsets) {
-      table.Set(Column::kNorth, rows[i], ToStep(position[i].x(), 1e-6));
-      table.Set(Column::kEast, rows[i], ToStep(position[i].y(), 1e-6));
+      SetComputed(table, Column::kNorth, rows[i], position[i].x());
+      SetComputed(table, Column::kEast, rows[i], position[i].y());
     }
-    if (!had_tvd) table.Set(Column::kTvd, rows[i], ToStep(position[i].z(), 1e-6));
-    if (!had_dogleg) {
-      table.Set(Column::kDogleg, rows[i],
-                ToStep(severity[i] / units::kDegPer30m, 1e-6) * units::kDegPer30m);
-    }
+    if (!had_tvd) SetComputed(table, Column::kTvd, rows[i], position[i].z());
+    if (!had_dogleg) SetComputed(table, Column::kDogleg, rows[i], severity[i]);
   }
   if (!had_offsets) table.head.offsets = table.head.azimuth.north;
   if (table.head.method.empty()) table.head.method = "minimum curvature";
@@ -295,7 +299,7 @@ void SumAsListed(SurveyTable& table) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto put = [&](Column column, double from) {
       const auto value = shifted.Get(column, row);
-      if (value) table.Set(column, row, *value + from);
+      if (value) SetComputed(table, column, row, *value + from);
     };
     put(Column::kNorth, north.value_or(0));
     put(Column::kEast, east.value_or(0));
@@ -313,18 +317,16 @@ void FillDerived(SurveyTable& table) {
     const auto tvd = table.Get(Column::kTvd, row);
     if (n && e) {
       const Closure closure = ClosureOf(*n, *e);
-      table.Set(Column::kClosure, row, ToStep(closure.distance, 1e-6));
-      table.Set(Column::kClosureAzimuth, row,
-                ToStep(ToDegrees(closure.azimuth), 1e-6) * units::kDeg);
+      SetComputed(table, Column::kClosure, row, closure.distance);
+      SetComputed(table, Column::kClosureAzimuth, row, closure.azimuth);
       if (head.section_azimuth) {
-        table.Set(Column::kVerticalSection, row,
-                  ToStep(VerticalSection(*n, *e, *head.section_azimuth, head.section_north,
-                                         head.section_east),
-                         1e-6));
+        SetComputed(
+            table, Column::kVerticalSection, row,
+            VerticalSection(*n, *e, *head.section_azimuth, head.section_north, head.section_east));
       }
     }
     if (tvd && head.datum_elevation) {
-      table.Set(Column::kTvdSubSea, row, ToStep(TvdSubSea(*tvd, *head.datum_elevation), 1e-6));
+      SetComputed(table, Column::kTvdSubSea, row, TvdSubSea(*tvd, *head.datum_elevation));
     }
   }
 }

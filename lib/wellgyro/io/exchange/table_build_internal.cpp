@@ -154,7 +154,9 @@ void Lacks(std::string_view format, std::string_view what) {
 
 void NeedNorth(const SurveyTable& table, std::string_view format) {
   if (table.head.azimuth.north == North::kUnknown) {
-    Lacks(format, "to be told which north the azimuths count from: true, grid or magnetic");
+    Lacks(format,
+          "to be told which north the azimuths count from: true, grid or magnetic, by "
+          "--azimuth-reference");
   }
 }
 

@@ -147,7 +147,10 @@ std::optional<TableBuilder::Problem> TableBuilder::Finish() {
   if (without_inclination_ > 0) {
     notes.push_back(fmt::format("{} rows without inclination are left out", without_inclination_));
   }
-  if (repeated_ > 0) notes.push_back(fmt::format("{} rows are there twice", repeated_));
+  if (repeated_ > 0) {
+    notes.push_back(repeated_ == 1 ? std::string("a row is there twice")
+                                   : fmt::format("{} rows are there twice", repeated_));
+  }
   if (!without_azimuth_.empty()) {
     const bool none = without_azimuth_.size() == table.rows();
     const bool tilted = std::any_of(without_azimuth_.begin(), without_azimuth_.end(),

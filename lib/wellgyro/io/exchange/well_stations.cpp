@@ -1,5 +1,6 @@
 #include "wellgyro/io/exchange/well_stations.h"
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -41,6 +42,18 @@ void TakeStart(WellStations& well, const SurveyTable& table, std::size_t row) {
   const auto tvd = table.Get(Column::kTvd, row);
   well.start_stated = north && east && tvd;
   if (well.start_stated) well.start = {*north, *east, *tvd};
+  const auto northing = table.Get(Column::kNorthing, row),
+             easting = table.Get(Column::kEasting, row);
+  if (northing && easting) well.map = Eigen::Vector2d(*northing, *easting);
+  well.datum_elevation = table.head.datum_elevation;
+}
+
+// Only convert has the options that a file may need.
+Fault ForConvert(Fault fault) {
+  if (fault.text.find(" --") != std::string::npos) {
+    fault.text += "; that is an option of wellgyro convert, whose result can be taken here";
+  }
+  return fault;
 }
 
 std::optional<Fault> Fill(WellStations& well, const SurveyTable& table, const std::string& source,
@@ -84,9 +97,18 @@ Result<WellStations> ParseWellStations(std::string_view text, const std::string&
                                        North wanted) {
   WellStations well;
   const Result<SurveyTable> table = ParseInMetres(text, source, well.depth_unit_stated);
-  if (!table) return table.fault();
+  if (!table) return ForConvert(table.fault());
   if (auto fault = Fill(well, *table, source, wanted)) return *std::move(fault);
   return well;
+}
+
+std::optional<std::string> PlacesContradict(const WellStations& a, const WellStations& b) {
+  if (!a.map || !b.map) return std::nullopt;
+  const double by_map = (*a.map - *b.map).norm();
+  const double by_offsets = (a.start - b.start).head<2>().norm();
+  if (std::abs(by_map - by_offsets) <= 1 + 0.002 * by_map) return std::nullopt;
+  return fmt::format("{:.1f} m apart by their map coordinates, {:.1f} m by north and east", by_map,
+                     by_offsets);
 }
 
 }  // namespace wellgyro

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -53,7 +54,10 @@ void Witness(SurveyTable& table, const Claims& claims, const std::string& source
   witness::CheckVertical(c);
   witness::CheckPlane(c);
   if (c.agreeing.empty()) {
-    c.Note("nothing in the file checks its depths and directions: it has no positions beside them");
+    const bool some = table.Has(Column::kTvd) || table.Has(Column::kNorth) ||
+                      table.Has(Column::kNorthing) || table.Has(Column::kDown);
+    c.Note(std::string("nothing in the file checks its depths and directions: ") +
+           (some ? "its positions are too few or too near" : "it has no positions beside them"));
     return;
   }
   witness::CheckCells(c);

@@ -17,6 +17,7 @@ namespace wellgyro::witness {
 namespace {
 
 constexpr double kSame = 0.05;  // [m]; files round to centimetres, heads to decimetres
+constexpr double kEnough = 20;  // [m]; of path, that positions which do not follow from it show
 
 std::optional<std::size_t> FirstWith(const SurveyTable& table, Column column) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -275,7 +276,14 @@ void NoteOrigin(Case& c) {
 void CheckVertical(Case& c) {
   CheckDatum(c);
   CheckElevation(c);
-  if (Tells(FitVertical(c.table, c.stretches, Column::kTvd))) c.agreeing.emplace_back("TVD");
+  const LineFit fit = FitVertical(c.table, c.stretches, Column::kTvd);
+  if (Tells(fit)) return c.agreeing.emplace_back("TVD"), void();
+  // As with offsets: where there is enough of it, and no rate that most of it shares.
+  if (fit.reach > kEnough && fit.sigma >= 0.05) {
+    c.Refuse(
+        "TVD does not follow from measured depth and inclination: name the columns by --columns, "
+        "or leave it out by --columns TVD=0");
+  }
 }
 
 void CheckPlane(Case& c) {
@@ -283,7 +291,6 @@ void CheckPlane(Case& c) {
   // The map first: it tells the north of the azimuths.
   for (const Plane& plane : {kPlanes[1], kPlanes[0]}) {
     PlaneFit fit = FitPlane(c.table, c.stretches, plane.north, plane.east);
-    constexpr double kEnough = 20;  // [m] across
     if (!Tells(fit) && !MirrorTells(fit)) {
       if (fit.reach > kEnough) DoesNotFollow(c, plane);
       continue;

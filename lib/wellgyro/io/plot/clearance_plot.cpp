@@ -32,12 +32,13 @@ std::string Open(double width, double height, const std::string& title) {
       width, height, kLeft, SvgText(title));
 }
 
-/// A panel of something against MD, which goes down.
+/// A panel of something against MD, which goes down. What leaves it is cut off at its edge.
 struct Ladder {
+  const char* id = "";
   double left = 0, most = 1, md_begin = 0, md_end = 1;
 
   Vector2d operator()(double value, double md) const {
-    const double x = std::clamp(value / most, 0.0, 1.0);
+    const double x = std::clamp(value / most, 0.0, 1e3);
     return {left + kWidth * x, kTop + kHeight * (md - md_begin) / (md_end - md_begin)};
   }
 };
@@ -71,6 +72,13 @@ std::string Line(const Ladder& panel, const std::vector<Separation>& rows, const
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", p.x(), p.y());
   }
   return path;
+}
+
+std::string ClipOf(const Ladder& panel) {
+  return fmt::format(
+      "<clipPath id=\"{}\"><rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" "
+      "height=\"{:.0f}\"/></clipPath>\n",
+      panel.id, panel.left, kTop, kWidth, kHeight);
 }
 
 void DrawLimit(std::string& svg, const Ladder& panel, double value, const char* colour) {
@@ -121,24 +129,26 @@ Vector2d DepthRange(std::span<const ClearanceSeries> series) {
 std::string LadderSvg(const std::string& reference, std::span<const ClearanceSeries> series,
                       double stop, double alert) {
   const Vector2d depths = DepthRange(series);
-  const Ladder far{kLeft, MostDistance(series), depths.x(), depths.y()};
-  const Ladder factor{kLeft + kWidth + kGap, 5 * stop, depths.x(), depths.y()};
+  const Ladder far{"distances", kLeft, MostDistance(series), depths.x(), depths.y()};
+  const Ladder factor{"factors", kLeft + kWidth + kGap, 5 * stop, depths.x(), depths.y()};
   const double names = factor.left + kWidth + 16;
   std::string svg = Open(names + 160, kTop + kHeight + 50,
                          reference + ": ladder; dashed, the distance at a separation factor of 1");
+  svg += ClipOf(far) + ClipOf(factor);
   DrawGrid(svg, far, "distance between the wells [m], against MD [m]");
   DrawGrid(svg, factor, "separation factor, against MD [m]");
   DrawLimit(svg, factor, stop, "#c00");
   DrawLimit(svg, factor, alert, "#d90");
   for (std::size_t i = 0; i < series.size(); ++i) {
     const auto& rows = *series[i].rows;
-    const auto draw = [&](const char* kind, const std::string& path) {
-      svg += fmt::format("<path class=\"{}\" stroke=\"{}\" d=\"{}\"/>\n", kind, Colour(i), path);
+    const auto draw = [&](const char* kind, const Ladder& panel, const auto& value) {
+      svg += fmt::format("<path class=\"{}\" stroke=\"{}\" clip-path=\"url(#{})\" d=\"{}\"/>\n",
+                         kind, Colour(i), panel.id, Line(panel, rows, value));
     };
-    draw("s", Line(far, rows, [](const Separation& s) { return s.distance; }));
-    draw("a", Line(far, rows, [](const Separation& s) { return s.allowed; }));
-    const double beyond = factor.most;
-    draw("s", Line(factor, rows, [&](const Separation& s) { return s.factor.value_or(beyond); }));
+    draw("s", far, [](const Separation& s) { return s.distance; });
+    draw("a", far, [](const Separation& s) { return s.allowed; });
+    const double beyond = 2 * factor.most;
+    draw("s", factor, [&](const Separation& s) { return s.factor.value_or(beyond); });
   }
   DrawNames(svg, series, names);
   return svg + "</svg>\n";

@@ -1,7 +1,10 @@
 #include "wellgyro/io/result/clearance_files.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -10,6 +13,7 @@
 
 #include "wellgyro/io/plot/clearance_plot.h"
 #include "wellgyro/io/result/clearance_report_internal.h"
+#include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/program_file.h"
@@ -37,6 +41,9 @@ class ClearanceRun {
   ReadWell ReadLegs(const std::filesystem::path& path);
   std::shared_ptr<const ErrorModel> Model(const std::filesystem::path& path);
   KnownWell Known(ReadWell read, const ClearanceWell& entry, std::optional<double> kick_off);
+  void CheckUnit(const ReadWell& read, const ClearanceWell& entry);
+  void Place(ReadWell& read, const ClearanceWell& entry);
+  void PlaceBeside(ReadWell& read, const ClearanceWell& entry);
   OffsetResult Against(const ClearanceWell& entry);
   void Note(const std::string& well, const std::string& text);
 
@@ -55,10 +62,24 @@ bool IsProgram(const std::filesystem::path& path) { return path.extension() == "
 
 ClearanceWell EntryOf(const std::filesystem::path& path) {
   ClearanceWell entry;
-  entry.name = path.stem().string();
+  entry.name = ToUtf8(path.stem().string());
   const std::string absolute = std::filesystem::absolute(path).string();
   (IsProgram(path) ? entry.program : entry.survey) = absolute;
   return entry;
+}
+
+/// Files of one name in several folders are told apart by the folders; one file twice is a mistake.
+void NameApart(std::vector<ClearanceWell>& wells) {
+  std::map<std::string, int> named;
+  std::set<std::string> files;
+  for (const ClearanceWell& well : wells) ++named[well.name];
+  for (ClearanceWell& well : wells) {
+    const std::string& file = well.survey.empty() ? well.program : well.survey;
+    if (!files.insert(file).second) {
+      throw std::invalid_argument("offset " + file + " is named twice");
+    }
+    if (named[well.name] > 1) well.name = ToUtf8(file);
+  }
 }
 
 ClearanceRun::ClearanceRun(const ClearanceRequest& request) : request_(request) {
@@ -71,6 +92,7 @@ ClearanceRun::ClearanceRun(const ClearanceRequest& request) : request_(request) 
   if (request.correlation) policy_.rule.correlation = *request.correlation;
   if (request.reference) policy_.reference = EntryOf(*request.reference);
   for (const auto& path : request.offsets) policy_.offsets.push_back(EntryOf(path));
+  NameApart(policy_.offsets);
   if (!policy_.reference) throw std::invalid_argument("no reference well is named");
   if (policy_.offsets.empty()) throw std::invalid_argument("no offset well is named");
   reference_entry_ = *policy_.reference;
@@ -119,11 +141,8 @@ ReadWell ClearanceRun::Read(const ClearanceWell& entry) {
     read.models.push_back(model);
     read.legs = {{model.get(), 0, read.table.stations.size(), 1}};
   }
-  if (entry.start) read.table.start = *entry.start;
-  if (!entry.start && !read.table.start_stated && read.table.stations.front().md != 0) {
-    read.table.start.z() = read.table.stations.front().md;
-    Note(entry.name, "no TVD for the first station: taken to be its MD");
-  }
+  CheckUnit(read, entry);
+  Place(read, entry);
   if (read.table.north == North::kUnknown) {
     Note(entry.name, request_.convergence ? "azimuths taken as grid" : "azimuths taken as true");
   }
@@ -134,6 +153,45 @@ ReadWell ClearanceRun::Read(const ClearanceWell& entry) {
     throw std::invalid_argument("well " + entry.name + " has grid azimuths: give the convergence");
   }
   return read;
+}
+
+/// Metres where nothing says so would be a guess at how far wells are apart.
+void ClearanceRun::CheckUnit(const ReadWell& read, const ClearanceWell& entry) {
+  if (read.table.depth_unit_stated) return;
+  throw std::invalid_argument("well " + entry.name +
+                              ": the unit of measured depth is not stated: say it by wellgyro "
+                              "convert --depth-unit m or ft, and take its result");
+}
+
+void ClearanceRun::Place(ReadWell& read, const ClearanceWell& entry) {
+  WellStations& table = read.table;
+  if (entry.start) {
+    table.start = *entry.start;
+  } else if (!table.start_stated) {
+    table.start.z() = table.stations.front().md;
+    Note(entry.name, table.stations.front().md == 0
+                         ? "no place in its file: its first station is put where north, east and "
+                           "TVD are 0"
+                         : "no TVD for the first station: taken to be its MD");
+  }
+}
+
+/// An offset where its file and the reference's say, unless the policy does.
+void ClearanceRun::PlaceBeside(ReadWell& read, const ClearanceWell& entry) {
+  if (entry.start || reference_entry_.start) return;
+  const WellStations& reference = reference_read_.table;
+  if (const auto apart = PlacesContradict(reference, read.table)) {
+    throw std::invalid_argument(
+        "wells " + reference_entry_.name + " and " + entry.name + " are " + *apart +
+        ": give the place of the first station of each, north_m, east_m and tvd_m, in the policy");
+  }
+  const auto &datum = reference.datum_elevation, &own = read.table.datum_elevation;
+  if (!datum || !own || std::abs(*datum - *own) < 0.005) return;
+  read.table.start.z() += *datum - *own;
+  Note(entry.name,
+       fmt::format("its depths count from {:.2f} m, those of the reference from {:.2f} "
+                   "m: it is put {:.2f} m {}",
+                   *own, *datum, std::abs(*datum - *own), *datum > *own ? "deeper" : "higher"));
 }
 
 void ClearanceRun::Note(const std::string& well, const std::string& text) {
@@ -174,7 +232,9 @@ KnownWell ClearanceRun::Known(ReadWell read, const ClearanceWell& entry,
 OffsetResult ClearanceRun::Against(const ClearanceWell& entry) {
   const auto& default_hole = policy_.offset_hole;
   const auto& hole = entry.hole.empty() ? default_hole : entry.hole;
-  const KnownWell offset = Known(Read(entry), entry, entry.kick_off);
+  ReadWell read = Read(entry);
+  PlaceBeside(read, entry);
+  const KnownWell offset = Known(std::move(read), entry, entry.kick_off);
   const HoleLine line({&offset.well, &offset.errors}, hole);
   OffsetResult result;
   result.name = entry.name;
@@ -192,7 +252,17 @@ OffsetResult ClearanceRun::Against(const ClearanceWell& entry) {
     // At the kick-off itself both are one hole.
     std::erase_if(result.rows, [&](const Separation& s) { return s.md <= *entry.kick_off; });
   }
-  if (const Separation* lowest = Lowest(result.rows)) result.lowest = *lowest;
+  std::vector<Separation> judged = result.rows;
+  if (entry.judged_from) {
+    std::erase_if(judged, [&](const Separation& s) { return s.md < *entry.judged_from; });
+    if (judged.empty()) {
+      throw std::invalid_argument("well " + entry.name +
+                                  ": nothing lies below judged_from_md_m, so nothing is judged");
+    }
+    Note(entry.name,
+         fmt::format("judged from MD {:.2f} m on, as the policy says", *entry.judged_from));
+  }
+  if (const Separation* lowest = Lowest(judged)) result.lowest = *lowest;
   return result;
 }
 

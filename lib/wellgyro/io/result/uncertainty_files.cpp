@@ -28,6 +28,7 @@ namespace {
 struct Case {
   SurveyedWell well;
   std::vector<std::unique_ptr<const ErrorModel>> models;
+  WellStations place;  ///< without its stations
   UncertaintyBasis basis;
   Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();
   std::vector<InputFile> inputs;
@@ -59,6 +60,7 @@ void Place(Case& c, WellStations table) {
     c.notes.emplace_back("no TVD for the first station: taken to be its MD");
   }
   c.well = SurveyWell(std::move(table.stations), start);
+  c.place = std::move(table);
 }
 
 North Wanted(const UncertaintyRequest& request) {
@@ -214,6 +216,10 @@ void AddSeparation(const UncertaintyRequest& request, const Case& c, Uncertainty
   }
   sources.program.reset();
   Case other = ReadCase(sources, request);
+  if (const auto apart = PlacesContradict(c.place, other.place)) {
+    throw std::invalid_argument("the two surveys are " + *apart +
+                                ": wellgyro clearance takes the place of each from a policy");
+  }
   SeparationRule rule;
   rule.correlation = request.correlation;
   const auto separations =

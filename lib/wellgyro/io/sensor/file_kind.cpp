@@ -32,6 +32,13 @@ constexpr std::array kFormats{
            "the summary of a wellgyro position uncertainty"},
     Format{"wellgyro.run/1", FileKind::kRun, "the run file of a wellgyro result"},
     Format{"wellgyro.source/1", FileKind::kSource, "the source file of a wellgyro result"},
+    Format{"wellgyro.clearance/1", FileKind::kClearancePolicy, "a wellgyro clearance policy"},
+    Format{"wellgyro.merge/1", FileKind::kForeign, "the plan of a wellgyro merge"},
+    Format{"wellgyro.merged/1", FileKind::kForeign, "the summary of a wellgyro merge"},
+    Format{"wellgyro.comparison/1", FileKind::kForeign, "the summary of a wellgyro comparison"},
+    Format{"wellgyro.plan/1", FileKind::kForeign, "the plan of a wellgyro survey's stops"},
+    Format{"wellgyro.wits/1", FileKind::kForeign, "the items of a rig's WITS for wellgyro"},
+    Format{"wellgyro.journal/1", FileKind::kForeign, "the journal of a live wellgyro survey"},
 };
 
 struct Signature {
@@ -58,6 +65,13 @@ constexpr std::array kSignatures{
     Signature{"RUN,CODE,SMALLEST", "the reliability of a wellgyro survey"},
     Signature{"MD[m],VAR_NN[m2]", "the covariances of a wellgyro survey"},
     Signature{"MD[m],TERM,", "the terms of a wellgyro position uncertainty"},
+    Signature{"MD[m],OTHER_MD[m],DISTANCE[m]", "the separation of two wells by wellgyro"},
+    Signature{"WELL,MD[m],OTHER_MD[m],DISTANCE[m],N[m]", "the separations of a wellgyro clearance"},
+    Signature{"WELL,MD[m],OTHER_MD[m],DISTANCE[m],ALLOWED", "the wells of a wellgyro clearance"},
+    Signature{"MD[m],INC_A[deg]", "the differences of a wellgyro comparison"},
+    Signature{"FROM_MD[m],TO_MD[m],LEG", "the choices of a wellgyro merge"},
+    Signature{"FIRST,SECOND,FROM_MD[m]", "the comparisons of a wellgyro merge"},
+    Signature{"tau_s,adev", "the Allan deviations of a wellgyro noise analysis"},
     Signature{"<", "an XML or HTML document"},
     Signature{"{", "a JSON document"},
     Signature{"~V", "a LAS file"},
@@ -97,7 +111,19 @@ FileIdentity ByFormat(std::string_view name) {
       fmt::format("a file of format \"{}\", which this version does not know", name.substr(0, 60))};
 }
 
+/// Pages and pictures that people read; empty where the text is none of ours.
+std::string_view PageOf(std::string_view head) {
+  const auto says = [&](std::string_view words) { return head.find(words) != head.npos; };
+  if (head.starts_with("<svg")) return "an SVG picture, which wellgyro draws and does not read";
+  if (!head.starts_with("<!DOCTYPE html>")) return {};
+  if (says("<title>Clearance of ")) return "the report of a wellgyro clearance";
+  if (says("<title>Calibration certificate")) return "the certificate of a wellgyro calibration";
+  if (says(" - gyro survey report</title>")) return "the report of a wellgyro survey";
+  return {};
+}
+
 FileIdentity ByContent(std::string_view head) {
+  if (const auto page = PageOf(head); !page.empty()) return {FileKind::kForeign, std::string(page)};
   for (const Signature& signature : kSignatures) {
     if (!head.starts_with(signature.bytes)) continue;
     const bool xml = signature.bytes == "<";

@@ -21,6 +21,7 @@ enum class FileKind {
   kUncertainty,  ///< uncertainty.toml
   kRun,          ///< run.toml
   kSource,       ///< source.toml
+  kClearancePolicy,
   kLcmLog,
   kSurveyCsv,
   kPassesCsv,

@@ -86,7 +86,13 @@ ClearanceWell ReadWell(TomlTable& table, bool reference) {
     if (!north || !east || !tvd) table.Refuse("", "a place needs north_m, east_m and tvd_m");
     well.start = Eigen::Vector3d(*north, *east, *tvd);
   }
-  if (!reference) well.kick_off = table.FindNumber("kick_off_md_m", kNotNegative);
+  if (!reference) {
+    well.kick_off = table.FindNumber("kick_off_md_m", kNotNegative);
+    well.judged_from = table.FindNumber("judged_from_md_m", kNotNegative);
+    if (well.judged_from && (!well.kick_off || *well.judged_from < *well.kick_off)) {
+      table.Refuse("judged_from_md_m", "belongs to a kick_off_md_m, and not above it");
+    }
+  }
   well.hole = ReadHole(table, "hole_radius_m");
   return well;
 }

@@ -22,6 +22,8 @@ struct ClearanceWell {
   std::optional<Eigen::Vector3d> start;  ///< north, east, TVD of its first station [m]
   /// Where the reference and this one part, the one a side-track of the other [m MD].
   std::optional<double> kick_off;
+  /// Above it rows are listed but not judged: below a kick-off both begin as one hole [m MD].
+  std::optional<double> judged_from;
   std::vector<HoleSection> hole;  ///< empty: the policy's
 };
 
@@ -43,7 +45,8 @@ struct ClearancePolicy {
 /// whole); `[limits]` `stop`, `alert`, `report`; `[hole]` `reference_radius_m`, `offset_radius_m`,
 /// each a number or rows of [to MD in m, radius in m]; `[reference]` and `[[offset]]` with `name`,
 /// `survey` and `model`, or `program`; `north_m`, `east_m`, `tvd_m`, `kick_off_md_m`,
-/// `hole_radius_m`. All but the format line may be left out. Faults name file and line.
+/// `judged_from_md_m`, `hole_radius_m`. All but the format line may be left out. Faults name file
+/// and line.
 WELLGYRO_EXPORT Result<ClearancePolicy> ReadClearancePolicy(const std::filesystem::path& path);
 
 }  // namespace wellgyro

@@ -76,7 +76,14 @@ Result<ErrorModel> ParseModel(std::string_view text, const std::string& path) {
   if (ending == ".xml") {
     return ParseModelEdm(text, file, hash == std::string::npos ? "" : path.substr(hash + 1));
   }
-  return ReadErrorModel(text, file);
+  Result<ErrorModel> model = ReadErrorModel(text, file);
+  if (model || ending == ".toml") return model;
+  Fault fault = model.fault();
+  fault.text =
+      "no error model: those are wellgyro's .toml, the ISCWSA's .json, welleng's .yaml, "
+      "Compass .ipm or an EDM export .xml";
+  fault.line = fault.column = 0;
+  return fault;
 }
 
 std::optional<ErrorModel> OwnModel(const std::string& name) {

@@ -75,6 +75,8 @@ class ProgramReader {
     if (number == 1) {
       all.north = survey->north;
       all.depth_unit_stated = survey->depth_unit_stated;
+      all.map = survey->map;
+      all.datum_elevation = survey->datum_elevation;
       if (!all.start_stated) {
         all.start = survey->start;
         all.start_stated = survey->start_stated;
