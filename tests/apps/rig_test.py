@@ -43,9 +43,8 @@ class Flood(threading.Thread):
         yield Datagram("X" * chance.randrange(80), b"z" * chance.randrange(60))
         for _ in range(4):
             message = bytearray(chance.choice(self.true))
-            # Counts, times and the fingerprint: what is refused, whatever it is.
-            for _ in range(3):
-                message[chance.randrange(8)] = chance.randrange(256)
+            for _ in range(chance.randrange(1, 4)):
+                message[chance.randrange(len(message))] = chance.randrange(256)
             yield Datagram("WELLGYRO_IMU", bytes(message))
 
     def run(self):

@@ -30,6 +30,7 @@ ALLOWED_S = 1.5
 WELL = """format = "wellgyro.simulation/1"
 seed = 11
 [well]
+name = "{name}"
 file = "{file}"
 [earth]
 latitude_deg = 61.0
@@ -64,7 +65,7 @@ def Wells(folder):
     for name in ("near-vertical", "s-shape", "horizontal-turn"):
         simulation = os.path.join(folder, name + ".toml")
         with open(simulation, "w", encoding="utf-8") as file:
-            file.write(WELL.format(file=os.path.join(TOP, "data", "wells", name + ".csv")))
+            file.write(WELL.format(name=name, file=os.path.join(TOP, "data", "wells", name + ".csv")))
         yield name, simulation, job
 
 

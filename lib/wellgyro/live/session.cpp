@@ -83,6 +83,9 @@ LiveSession::Core::Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveOb
       surveyor(setup.job.job, broadcast, adjuster),
       intake(setup.job, surveyor),
       watch([this](const Fault& fault) { notices.Tell(fault); }),
+      guard(
+          setup.job.job.channels, [this](const StreamGuard::Message& message) { Accept(message); },
+          [this](const std::string& sentence) { notices.Say(sentence); }),
       catch_up(setup.job.job.channels, setup.clock, notices,
                [this](auto channel, auto bytes, auto received_us, bool fresh) {
                  Use(channel, bytes, received_us, fresh);
@@ -188,10 +191,14 @@ bool LiveSession::Core::ComesFromElsewhere(std::string_view channel,
 void LiveSession::Core::Hear(std::string_view channel, std::span<const std::byte> bytes,
                              std::int64_t received_us) {
   if (ComesFromElsewhere(channel, bytes)) return;
+  guard.Take({channel, bytes, received_us, bus.heard_from()});
+}
+
+void LiveSession::Core::Accept(const StreamGuard::Message& message) {
   if (resuming) {
-    catch_up.Hold(channel, bytes, received_us);
+    catch_up.Hold(message.channel, message.bytes, message.received_us);
   } else {
-    Use(channel, bytes, received_us, true);
+    Use(message.channel, message.bytes, message.received_us, true);
   }
 }
 
@@ -260,13 +267,17 @@ bool LiveSession::Core::DrainStopped() {
     const auto drained = bus.Drain(1);
     if (!drained || *drained == 0) break;
   }
+  guard.Flush();
   return surveyor.finished();
 }
 
 void LiveSession::Core::Housekeeping() {
   const std::int64_t now = Now();
   watchdog->Alive();
-  if (FinishIsDue(now)) surveyor.Finish();
+  if (FinishIsDue(now)) {
+    guard.Flush();
+    surveyor.Finish();
+  }
   if (log) log->Attend();
   broadcast.Pump();
   if (now >= next_status || broadcast.must_acknowledge()) SendStatus(now);
