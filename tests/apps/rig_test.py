@@ -281,6 +281,16 @@ class Rig(Live):
         said = self.End(survey)
         self.assertGreaterEqual(len(re.findall(r"^MD ", said, re.M)), 1)
 
+    def test_what_is_not_there_is_said(self):
+        url = self.Udpm()
+        nobody = Run("watch", url, "--seconds", "1")
+        self.assertEqual(nobody.returncode, 2)
+        self.assertIn("no survey was heard", nobody.stderr)
+        _, survey = self.Survey("nothing", "--record", self.Path("nothing.lcm"), "--resume")
+        survey.send_signal(signal.SIGINT)
+        survey.communicate(timeout=20)
+        self.assertIn("holds no survey to resume", "".join(survey.heard))
+
     def test_a_service_manager_hears_that_the_survey_lives(self):
         path = self.Path("notify")
         manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)

@@ -227,6 +227,8 @@ TEST_F(Streams, ThatAreInventedTakeNoMemoryAndChangeNothing) {
   Speak(kTool, 0, 10);
   for (int i = 0; i < 20'000; ++i) {
     const auto tool = static_cast<std::int32_t>(chance() % 1'000'000);
+    // Of one stream the senders are no fewer.
+    Send(kOther + static_cast<std::uint64_t>(i), "WELLGYRO_IMU", Samples(0));
     Send(kOther + chance() % 1000, "WELLGYRO_IMU",
          Samples(static_cast<std::int64_t>(chance() % 1'000'000), 3, tool));
     if (i % 100 == 0) Speak(kTool, 10 + i / 100, 11 + i / 100);

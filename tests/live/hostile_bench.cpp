@@ -77,7 +77,7 @@ class Subject {
   const Intake& intake() const { return in_; }
   std::int64_t refused() const { return reassembly_.refused(); }
   std::int64_t left_out() const { return guard_.left_out(); }
-  std::int64_t faults() const { return faults_.count(); }
+  const FaultBook& faults() const { return faults_; }
   std::size_t tools() const { return surveyor_.tools().size(); }
 
  private:
@@ -251,8 +251,11 @@ int Datagrams(std::int64_t count) {
       "resident at most; the survey is {}\n",
       sent, stream.size(), took.count(), among.refused(), among.left_out(),
       among.intake().feed().malformed(), among.intake().operations().refused(),
-      among.intake().operations().obeyed(), among.tools(), among.faults(), Resident(),
+      among.intake().operations().obeyed(), among.tools(), among.faults().count(), Resident(),
       same ? "the same" : "ANOTHER:" + other);
+  for (std::size_t i = 0; i < std::min<std::size_t>(among.faults().faults().size(), 3); ++i) {
+    fmt::print("  {}\n", among.faults().faults()[i].text);
+  }
   return same && Resident() < 100 && among.intake().operations().obeyed() == 0 ? 0 : 3;
 }
 

@@ -94,15 +94,16 @@ StreamGuard::Stream& StreamGuard::StreamOf(const Key& key, std::int64_t received
   return found->second;
 }
 
-/// Made where there is none; of too many the longest unheard but the own one gives way.
+/// Made where there is none; of too many the weakest gives way.
 StreamGuard::Speaker& StreamGuard::SpeakerOf(Stream& stream, std::uint64_t id) {
   std::list<Speaker>& all = stream.speakers;
   const auto others = stream.owned ? std::next(all.begin()) : all.begin();
   const auto found = std::find_if(others, all.end(), [id](const Speaker& s) { return s.id == id; });
   if (found != all.end()) return *found;
+  if (all.size() >= kSpeakers) DropWeakest(stream);
   Speaker speaker;
   speaker.id = id;
-  return *all.insert(others, std::move(speaker));
+  return *all.insert(stream.owned ? std::next(all.begin()) : all.begin(), std::move(speaker));
 }
 
 void StreamGuard::Take(const Message& message) {
@@ -122,6 +123,7 @@ void StreamGuard::Take(const Message& message) {
 bool StreamGuard::IsForeign(const Message& message) const {
   const auto type = message.by.sender == 0 ? std::nullopt : TypeOn(channels_, message.channel);
   bool known = false;
+  if (!type) return false;
   for (const auto& [key, stream] : streams_) {
     if (key.first != type || !stream.owned || !stream.speakers.front().proven()) continue;
     if (stream.speakers.front().id == message.by.sender) return HasCome(stream, message.by.number);
@@ -261,9 +263,6 @@ void StreamGuard::TakeOther(const Key& key, Stream& stream, const Place& place,
                       message.channel, NameOf(message.by)));
     }
     Own(stream, speaker);
-  } else if (stream.speakers.size() > kSpeakers) {
-    Forget(stream.speakers.back());
-    stream.speakers.pop_back();
   }
 }
 
@@ -318,6 +317,16 @@ void StreamGuard::Hold(Speaker& speaker, const Message& message) {
                           {message.bytes.begin(), message.bytes.end()},
                           message.received_us,
                           message.by});
+}
+
+/// Of those whose stream it is not: the longest unheard of what has no order yet.
+void StreamGuard::DropWeakest(Stream& stream) {
+  const auto others = stream.owned ? std::next(stream.speakers.begin()) : stream.speakers.begin();
+  const auto weakest =
+      std::ranges::min_element(others, stream.speakers.end(), {},
+                               [](const auto& s) { return std::pair(s.in_order > 1, s.heard_us); });
+  Forget(*weakest);
+  stream.speakers.erase(weakest);
 }
 
 void StreamGuard::DropHeld(Speaker& speaker) {

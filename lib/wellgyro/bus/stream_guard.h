@@ -39,8 +39,8 @@ class WELLGYRO_EXPORT StreamGuard {
  public:
   static constexpr int kInOrder = 4, kRising = 32;
   static constexpr std::int64_t kSilentUs = 2'000'000;
-  static constexpr std::size_t kStreams = 256, kSpeakers = 256;  ///< the latter of each stream
-  static constexpr std::size_t kHeldMax = std::size_t{8} << 20;  ///< bytes, of all that wait
+  static constexpr std::size_t kStreams = 256, kSpeakers = 1024;  ///< the latter of each stream
+  static constexpr std::size_t kHeldMax = std::size_t{8} << 20;   ///< bytes, of all that wait
 
   struct Message {
     std::string_view channel;
@@ -103,7 +103,7 @@ class WELLGYRO_EXPORT StreamGuard {
 
   std::optional<Key> Find(const Message& message, Place& place) const;
   Stream& StreamOf(const Key& key, std::int64_t received_us);
-  static Speaker& SpeakerOf(Stream& stream, std::uint64_t id);
+  Speaker& SpeakerOf(Stream& stream, std::uint64_t id);
   static bool IsOwn(const Stream& stream, const SentBy& by);
   static bool HasCome(const Stream& stream, std::uint32_t number);
   static bool NoteNumber(Stream& stream, std::uint32_t number);
@@ -120,6 +120,7 @@ class WELLGYRO_EXPORT StreamGuard {
   void Own(Stream& stream, const Speaker& speaker);
   void Leave(const Message& message);
   void Hold(Speaker& speaker, const Message& message);
+  void DropWeakest(Stream& stream);
   void DropHeld(Speaker& speaker);
   void Forget(Speaker& speaker);
   bool IsForeign(const Message& message) const;

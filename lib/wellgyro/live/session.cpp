@@ -140,6 +140,9 @@ std::optional<Fault> LiveSession::Core::TakeFolder() {
 std::optional<Fault> LiveSession::Core::BeginRecord() {
   Journal journal = JournalOf(setup.job, setup.record, resuming ? 0 : setup.clock.utc_us());
   if (resuming) {
+    if (!HasJournal(setup.out)) {
+      notices.Say(fmt::format("{} holds no survey to resume: one begins there", setup.out));
+    }
     const Result<Journal> left = ReadJournal(setup.out, journal);
     if (!left) return left.fault();
     journal = *left;
