@@ -14,6 +14,7 @@
 #include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_writer.h"
 #include "wellgyro/bus/loss_watch.h"
+#include "wellgyro/bus/stream_guard.h"
 #include "wellgyro/live/notices.h"
 
 #include "commands.h"
@@ -43,12 +44,16 @@ class Recording {
         clock_(ThisClock()),
         notices_(console_, clock_),
         watch_([this](const Fault& fault) { notices_.Tell(fault); }),
-        feed_(channels, watch_) {}
+        feed_(channels, watch_),
+        guard_(
+            channels, [this](const auto& message) { Take(message.channel, message); },
+            [this](const std::string& sentence) { notices_.Say(sentence); },
+            [this](const auto& message) { TakeAside(message); }) {}
 
   std::optional<Fault> Begin() {
     if (auto fault = Open()) return fault;
     return bus_.Subscribe({}, [this](auto channel, auto bytes, auto received_us) {
-      Take(channel, bytes, received_us);
+      guard_.Take({channel, bytes, received_us, bus_.heard_from()});
     });
   }
 
@@ -56,7 +61,8 @@ class Recording {
 
  private:
   std::optional<Fault> Open();
-  void Take(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us);
+  void Take(std::string_view channel, const StreamGuard::Message& message);
+  void TakeAside(const StreamGuard::Message& message);
   bool RotationIsDue() const;
   void Housekeeping();
   int Report();
@@ -68,6 +74,7 @@ class Recording {
   Notices notices_;
   LossWatch watch_;
   Feed feed_;
+  StreamGuard guard_;
   std::optional<LogWriter> log_;
   std::optional<Fault> fault_;
   std::map<std::string, std::int64_t, std::less<>> messages_;  ///< by channel
@@ -86,8 +93,15 @@ std::optional<Fault> Recording::Open() {
   return std::nullopt;
 }
 
-void Recording::Take(std::string_view channel, std::span<const std::byte> bytes,
-                     std::int64_t received_us) {
+/// What a survey would not read is kept under a name that it does not read either.
+void Recording::TakeAside(const StreamGuard::Message& message) {
+  constexpr std::size_t kNameMax = 63, kSenderMax = 22;
+  const std::string_view channel = message.channel.substr(0, kNameMax - kSenderMax);
+  Take(fmt::format("{}~{}", channel, NameOf(message.by)), message);
+}
+
+void Recording::Take(std::string_view channel, const StreamGuard::Message& message) {
+  const auto& [original, bytes, received_us, by] = message;
   if (fault_) return;
   if (channel.empty()) return;  // LCM lets a datagram without a name through
   if (log_->events() > 0 && RotationIsDue()) {
@@ -153,6 +167,7 @@ int Recording::Run() {
 }
 
 int Recording::Report() {
+  guard_.Flush();
   watch_.Settle();
   if (!fault_) fault_ = log_->Close();
   if (fault_) Complain(*fault_);

@@ -97,7 +97,9 @@ int WatchBus(const WatchOptions& options) {
     if (*woken == LiveBus::Woken::kStopped) break;
     watch.Look();
   }
-  return watch.heard() ? kDone : kUnusable;
+  if (watch.heard()) return kDone;
+  Complain(fmt::format("no survey was heard on {}", bus->url()));
+  return kUnusable;
 }
 
 }  // namespace

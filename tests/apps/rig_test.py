@@ -43,9 +43,8 @@ class Flood(threading.Thread):
         yield Datagram("X" * chance.randrange(80), b"z" * chance.randrange(60))
         for _ in range(4):
             message = bytearray(chance.choice(self.true))
-            # Counts, times and the fingerprint: what is refused, whatever it is.
-            for _ in range(3):
-                message[chance.randrange(8)] = chance.randrange(256)
+            for _ in range(chance.randrange(1, 4)):
+                message[chance.randrange(len(message))] = chance.randrange(256)
             yield Datagram("WELLGYRO_IMU", bytes(message))
 
     def run(self):
@@ -281,6 +280,16 @@ class Rig(Live):
         survey.send_signal(signal.SIGINT)
         said = self.End(survey)
         self.assertGreaterEqual(len(re.findall(r"^MD ", said, re.M)), 1)
+
+    def test_what_is_not_there_is_said(self):
+        url = self.Udpm()
+        nobody = Run("watch", url, "--seconds", "1")
+        self.assertEqual(nobody.returncode, 2)
+        self.assertIn("no survey was heard", nobody.stderr)
+        _, survey = self.Survey("nothing", "--record", self.Path("nothing.lcm"), "--resume")
+        survey.send_signal(signal.SIGINT)
+        survey.communicate(timeout=20)
+        self.assertIn("holds no survey to resume", "".join(survey.heard))
 
     def test_a_service_manager_hears_that_the_survey_lives(self):
         path = self.Path("notify")

@@ -30,7 +30,7 @@ ALLOWED_S = 1.5
 WELL = """format = "wellgyro.simulation/1"
 seed = 11
 [well]
-file = "{file}"
+stations = "{file}"
 [earth]
 latitude_deg = 61.0
 [run]
@@ -62,9 +62,14 @@ def Wells(folder):
     with open(job, "w", encoding="utf-8") as file:
         file.write(Job(10.0) + "[depth]\nlatency_s = 2.0\n")
     for name in ("near-vertical", "s-shape", "horizontal-turn"):
-        simulation = os.path.join(folder, name + ".toml")
+        simulation, stations = (os.path.join(folder, name + end) for end in (".toml", ".csv"))
+        with open(os.path.join(TOP, "data", "wells", name + ".csv"), encoding="utf-8") as file:
+            rows = [row.split(",")[:3] for row in file.read().splitlines()
+                    if row and row[0] in "0123456789"]
+        with open(stations, "w", encoding="utf-8") as file:
+            file.write("MD[m],INC[deg],AZI_TRUE[deg]\n" + "".join(",".join(r) + "\n" for r in rows))
         with open(simulation, "w", encoding="utf-8") as file:
-            file.write(WELL.format(file=os.path.join(TOP, "data", "wells", name + ".csv")))
+            file.write(WELL.format(file=stations))
         yield name, simulation, job
 
 

@@ -107,6 +107,7 @@ struct LiveBus::Core {
     UdpReceiver::Held held;
     if (!receiver->Next(held)) return false;
     held_is_local = held.local;
+    held_by = held.by;
     for (Subscription& subscription : subscriptions) {
       const auto& channels = subscription.channels;
       const bool wanted = channels.empty() || std::find(channels.begin(), channels.end(),
@@ -132,6 +133,7 @@ struct LiveBus::Core {
   std::list<Subscription> subscriptions;
   std::optional<UdpReceiver> receiver;  ///< udpm: liblcm's own takes what would end it
   bool held_is_local = false;
+  SentBy held_by;
   std::exception_ptr thrown;
   std::int64_t refused = 0;
 };
@@ -269,6 +271,16 @@ bool LiveBus::heard_here() const {
   if (core_->receiver) return core_->held_is_local;
   const std::string& host = core_->url.host;
   return core_->url.provider == "memq" || host == "localhost" || host.starts_with("127.");
+}
+
+SentBy LiveBus::heard_from() const {
+  return core_->receiver && !core_->url.mixed ? core_->held_by : SentBy{};
+}
+
+std::string NameOf(const SentBy& by) {
+  const std::uint64_t s = by.sender;
+  return fmt::format("{}.{}.{}.{}:{}", s >> 40 & 255, s >> 32 & 255, s >> 24 & 255, s >> 16 & 255,
+                     s & 65535);
 }
 
 std::int64_t LiveBus::refused() const {

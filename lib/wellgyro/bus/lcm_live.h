@@ -18,6 +18,15 @@ namespace wellgyro {
 /// LCM's own default, for this machine only.
 inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
 
+/// Who sent a message, as far as the transport says.
+struct SentBy {
+  std::uint64_t sender = 0;  ///< IPv4 address << 16 | port, host's order; 0: it does not say
+  std::uint32_t number = 0;  ///< of the message, LCM's: one more for each of a sender's
+};
+
+/// "10.0.0.5:40001".
+WELLGYRO_EXPORT std::string NameOf(const SentBy& by);
+
 /// A live LCM bus, to hear and to speak. One thread uses it; only Stop may come from elsewhere.
 ///
 /// URLs: `udpm://GROUP:PORT` (multicast), `tcpq://HOST:PORT` (a broker), `memq://` (this process:
@@ -67,6 +76,8 @@ class WELLGYRO_EXPORT LiveBus {
   /// While a handler is called: its message came from this machine, or from one that the URL's
   /// `from` names. Of a broker it counts where the broker is.
   bool heard_here() const;
+  /// And by whom it was sent; nobody where the transport does not say, or the URL has `mixed=1`.
+  SentBy heard_from() const;
 
   /// Ends the present and every later Wait. May be called from a signal handler or another thread.
   void Stop() noexcept;

@@ -95,15 +95,16 @@ std::string WrongOption(std::string_view option, LcmUrl& parsed, std::vector<std
   }
   const std::optional<int> number = Number(value);
   const bool ttl = name == "ttl";
-  if (!ttl && name != "recv_buf_size" && name != "transmit_only" && name != "unicast") {
+  const bool ours = name == "unicast" || name == "mixed";
+  if (!ttl && !ours && name != "recv_buf_size" && name != "transmit_only") {
     return fmt::format(
-        "the options are ttl, recv_buf_size, interface, from and unicast, not \"{}\"", name);
+        "the options are ttl, recv_buf_size, interface, from, mixed and unicast, not \"{}\"", name);
   }
   if (!number || (ttl && *number > 255)) {
     return fmt::format("{} is no number{}", option, ttl ? " from 0 to 255" : "");
   }
-  if (name == "unicast") {
-    parsed.unicast = *number != 0;
+  if (ours) {
+    (name == "unicast" ? parsed.unicast : parsed.mixed) = *number != 0;
     return {};
   }
   if (name == "recv_buf_size") parsed.receive_buffer = *number;

@@ -17,9 +17,11 @@ struct LcmUrl {
   std::string full;        ///< with our defaults added
   std::string for_lcm;     ///< without the options that are ours alone
   int receive_buffer = 0;  ///< asked for [bytes]; udpm only
-  // udpm only, of the options `interface=NAME|ADDRESS`, `unicast=1`, `from=ADDRESS,ADDRESS`:
+  // udpm only, of the options `interface=NAME|ADDRESS`, `unicast=1`, `mixed=1`,
+  // `from=ADDRESS,ADDRESS`:
   std::string interface;               ///< to hear on; empty: the one of the route to the group
   bool unicast = false;                ///< hears what is sent to this machine alone, too
+  bool mixed = false;                  ///< takes one stream from several senders
   std::vector<std::uint32_t> senders;  ///< IPv4 addresses to hear, host's order; none: all
 };
 

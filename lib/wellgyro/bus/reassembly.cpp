@@ -46,7 +46,7 @@ std::optional<Reassembly::Whole> Reassembly::Take(std::uint64_t sender,
     std::span<const std::byte> rest = datagram.subspan(kWholeHead);
     const std::string_view channel = TakeChannel(rest);
     if (channel.empty()) return Refuse();
-    return Whole{channel, rest};
+    return Whole{channel, rest, Load<std::uint32_t>(datagram.data() + 4)};
   }
   if (magic != kFragments) return Refuse();
   const std::optional<Fragment> fragment = Parse(datagram);
@@ -104,7 +104,7 @@ std::optional<Reassembly::Whole> Reassembly::Finish(Place at) {
     std::copy_n(from, piece.size, whole_.data() + piece.offset);
     from += piece.size;
   }
-  return Whole{channel_, whole_};
+  return Whole{channel_, whole_, message.number};
 }
 
 Reassembly::Place Reassembly::Begin(std::uint64_t sender, const Fragment& fragment) {

@@ -30,6 +30,7 @@ class WELLGYRO_EXPORT Reassembly {
   struct Whole {
     std::string_view channel;
     std::span<const std::byte> data;
+    std::uint32_t number = 0;  ///< that the sender gave it
   };
 
   /// `sender`: any number that tells senders apart. The message that `datagram` is, or is the last

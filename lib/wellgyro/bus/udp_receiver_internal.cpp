@@ -27,9 +27,9 @@ constexpr std::size_t kAtOnce = 16;            // datagrams that one system call
 constexpr std::size_t kDatagramMax = 1 << 16;  // [bytes]
 constexpr std::size_t kControl = 128;          // [bytes] time and drops of one datagram
 
-// Before each message that is held: when it came, the length of its channel, of its data, whether
-// it is of this machine.
-constexpr std::size_t kHead = sizeof(std::int64_t) + 3 * sizeof(std::uint32_t);
+// Before each message that is held: when it came, from whom, the length of its channel, of its
+// data, whether it is of this machine, its number.
+constexpr std::size_t kHead = 2 * sizeof(std::int64_t) + 4 * sizeof(std::uint32_t);
 
 void Signal(int event) {
   const std::uint64_t one = 1;
@@ -215,7 +215,8 @@ void UdpReceiver::Read(Buffers& buffers) {
     } else if ((head.msg_flags & MSG_TRUNC) != 0) {
       ++refused_;
     } else {
-      const std::uint64_t sender = std::uint64_t{address} << 16 | buffers.senders[i].sin_port;
+      const std::uint64_t sender =
+          std::uint64_t{address} << 16 | ntohs(buffers.senders[i].sin_port);
       Take(sender, {buffers.bytes.data() + i * kDatagramMax, buffers.heads[i].msg_len},
            received_us);
     }
@@ -227,14 +228,16 @@ void UdpReceiver::Take(std::uint64_t sender, std::span<const std::byte> datagram
   const std::int64_t before = reassembly_.refused();
   const auto whole = reassembly_.Take(sender, datagram);
   refused_ += reassembly_.refused() - before;
-  if (whole) Hold(*whole, received_us, IsLocal(static_cast<std::uint32_t>(sender >> 16)));
+  if (whole) Hold(*whole, received_us, sender);
 }
 
 bool UdpReceiver::Wanted(std::string_view channel) const {
   return all_ || wanted_.find(channel) != wanted_.end();
 }
 
-void UdpReceiver::Hold(const Reassembly::Whole& whole, std::int64_t received_us, bool local) {
+void UdpReceiver::Hold(const Reassembly::Whole& whole, std::int64_t received_us,
+                       std::uint64_t sender) {
+  const bool local = IsLocal(static_cast<std::uint32_t>(sender >> 16));
   const std::lock_guard lock(mutex_);
   if (whole.channel == awaited_) {
     awaited_.clear();
@@ -251,9 +254,11 @@ void UdpReceiver::Hold(const Reassembly::Whole& whole, std::int64_t received_us,
   const std::size_t at = bytes.size();
   bytes.resize(at + kHead);
   Store(bytes.data() + at, received_us);
-  Store(bytes.data() + at + 8, static_cast<std::uint32_t>(whole.channel.size()));
-  Store(bytes.data() + at + 12, static_cast<std::uint32_t>(whole.data.size()));
-  Store(bytes.data() + at + 16, std::uint32_t{local});
+  Store(bytes.data() + at + 8, sender);
+  Store(bytes.data() + at + 16, static_cast<std::uint32_t>(whole.channel.size()));
+  Store(bytes.data() + at + 20, static_cast<std::uint32_t>(whole.data.size()));
+  Store(bytes.data() + at + 24, std::uint32_t{local});
+  Store(bytes.data() + at + 28, whole.number);
   const auto* channel = reinterpret_cast<const std::byte*>(whole.channel.data());
   bytes.insert(bytes.end(), channel, channel + whole.channel.size());
   bytes.insert(bytes.end(), whole.data.begin(), whole.data.end());
@@ -278,8 +283,9 @@ bool UdpReceiver::Next(Held& held) {
   }
   const std::byte* at = reading_.bytes.data() + reading_.read;
   held.received_us = Load<std::int64_t>(at);
-  const auto channel = Load<std::uint32_t>(at + 8), data = Load<std::uint32_t>(at + 12);
-  held.local = Load<std::uint32_t>(at + 16) != 0;
+  const auto channel = Load<std::uint32_t>(at + 16), data = Load<std::uint32_t>(at + 20);
+  held.local = Load<std::uint32_t>(at + 24) != 0;
+  held.by = {Load<std::uint64_t>(at + 8), Load<std::uint32_t>(at + 28)};
   held.channel = {reinterpret_cast<const char*>(at + kHead), channel};
   held.data = {at + kHead + channel, data};
   reading_.read += kHead + channel + data;

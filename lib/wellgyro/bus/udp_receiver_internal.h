@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "wellgyro/base/result.h"
+#include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/lcm_url_internal.h"
 #include "wellgyro/bus/reassembly.h"
 
@@ -53,6 +54,7 @@ class UdpReceiver {
     std::span<const std::byte> data;
     std::int64_t received_us = 0;  ///< by the system's clock, when the datagram came
     bool local = false;            ///< from an address of this machine, or one that the URL names
+    SentBy by;
   };
   bool Next(Held& held);
 
@@ -80,7 +82,7 @@ class UdpReceiver {
   void Work();
   void Read(Buffers& buffers);
   void Take(std::uint64_t sender, std::span<const std::byte> datagram, std::int64_t received_us);
-  void Hold(const Reassembly::Whole& whole, std::int64_t received_us, bool local);
+  void Hold(const Reassembly::Whole& whole, std::int64_t received_us, std::uint64_t sender);
   bool Wanted(std::string_view channel) const;
 
   const LcmUrl& url_;

@@ -83,6 +83,9 @@ LiveSession::Core::Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveOb
       surveyor(setup.job.job, broadcast, adjuster),
       intake(setup.job, surveyor),
       watch([this](const Fault& fault) { notices.Tell(fault); }),
+      guard(
+          setup.job.job.channels, [this](const StreamGuard::Message& message) { Accept(message); },
+          [this](const std::string& sentence) { notices.Say(sentence); }),
       catch_up(setup.job.job.channels, setup.clock, notices,
                [this](auto channel, auto bytes, auto received_us, bool fresh) {
                  Use(channel, bytes, received_us, fresh);
@@ -137,6 +140,9 @@ std::optional<Fault> LiveSession::Core::TakeFolder() {
 std::optional<Fault> LiveSession::Core::BeginRecord() {
   Journal journal = JournalOf(setup.job, setup.record, resuming ? 0 : setup.clock.utc_us());
   if (resuming) {
+    if (!HasJournal(setup.out)) {
+      notices.Say(fmt::format("{} holds no survey to resume: one begins there", setup.out));
+    }
     const Result<Journal> left = ReadJournal(setup.out, journal);
     if (!left) return left.fault();
     journal = *left;
@@ -188,10 +194,14 @@ bool LiveSession::Core::ComesFromElsewhere(std::string_view channel,
 void LiveSession::Core::Hear(std::string_view channel, std::span<const std::byte> bytes,
                              std::int64_t received_us) {
   if (ComesFromElsewhere(channel, bytes)) return;
+  guard.Take({channel, bytes, received_us, bus.heard_from()});
+}
+
+void LiveSession::Core::Accept(const StreamGuard::Message& message) {
   if (resuming) {
-    catch_up.Hold(channel, bytes, received_us);
+    catch_up.Hold(message.channel, message.bytes, message.received_us);
   } else {
-    Use(channel, bytes, received_us, true);
+    Use(message.channel, message.bytes, message.received_us, true);
   }
 }
 
@@ -260,13 +270,17 @@ bool LiveSession::Core::DrainStopped() {
     const auto drained = bus.Drain(1);
     if (!drained || *drained == 0) break;
   }
+  guard.Flush();
   return surveyor.finished();
 }
 
 void LiveSession::Core::Housekeeping() {
   const std::int64_t now = Now();
   watchdog->Alive();
-  if (FinishIsDue(now)) surveyor.Finish();
+  if (FinishIsDue(now)) {
+    guard.Flush();
+    surveyor.Finish();
+  }
   if (log) log->Attend();
   broadcast.Pump();
   if (now >= next_status || broadcast.must_acknowledge()) SendStatus(now);

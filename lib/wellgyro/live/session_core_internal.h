@@ -14,6 +14,7 @@
 #include "wellgyro/bus/file_lock.h"
 #include "wellgyro/bus/latency.h"
 #include "wellgyro/bus/loss_watch.h"
+#include "wellgyro/bus/stream_guard.h"
 #include "wellgyro/live/broadcast.h"
 #include "wellgyro/live/catch_up.h"
 #include "wellgyro/live/intake.h"
@@ -38,6 +39,7 @@ struct LiveSession::Core {
   void Stop() noexcept;
 
   void Hear(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us);
+  void Accept(const StreamGuard::Message& message);
   void Use(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us,
            bool record);
   bool ComesFromElsewhere(std::string_view channel, std::span<const std::byte> bytes);
@@ -67,6 +69,7 @@ struct LiveSession::Core {
   Surveyor surveyor;
   Intake intake;
   LossWatch watch;
+  StreamGuard guard;
   CatchUp catch_up;
   ResultKeeper keeper;
   std::optional<FileLock> folder;

@@ -149,6 +149,7 @@ SourceRecord LiveSession::Core::Source() const {
   source.counts["malformed"] = intake.feed().malformed();
   source.counts["refused_by_size"] = bus.refused();
   if (bus.strangers() > 0) source.counts["refused_by_sender"] = bus.strangers();
+  if (guard.left_out() > 0) source.counts["messages_of_other_senders"] = guard.left_out();
   if (orders_from_elsewhere > 0) source.counts["orders_from_elsewhere"] = orders_from_elsewhere;
   if (log && log->lost() > 0) source.counts["missing_in_recording"] = log->lost();
   if (const auto drops = bus.kernel_drops()) source.counts["kernel_drops"] = *drops;
