@@ -4,7 +4,6 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 
   python3 tests/bench/verdict.py PROGRAM [--clean 100] [--faulty 5] [--sizes 0.5,1,3]
                                  [--wells slant,s,horizontal] [--causes gyro_step_x,...] [--jobs 2]
-                                 [--rotation]
 
 Simulates tools whose errors are drawn from the job's own priors, with and without one [[fault]],
 surveys the log and compares the deepest station with the truth. `named`: of those found, in how
@@ -151,7 +150,7 @@ def Steps(end_m, rpm):
                   "stop": middle[0] + 10, "stop_end": middle[1] - 10}
 
 
-def Files(well, seed, fault, size, rotation):
+def Files(well, seed, fault, size):
     inclination, azimuth, latitude, end, rpm = WELLS[well]
     steps, times = Steps(end, rpm)
     simulation = (f'format = "wellgyro.simulation/1"\nseed = {seed}\n[well]\nname = "laws"\n'
@@ -169,8 +168,7 @@ def Files(well, seed, fault, size, rotation):
     job = (f'format = "wellgyro.job/1"\n[well]\nname = "{well}"\nlatitude_deg = {latitude}\n'
            "[noise]\n" + "\n".join(lines[:NOISE_KEYS]) + "\n[errors]\n"
            + "\n".join(lines[NOISE_KEYS:]) + "\naccel_scale_sigma = 0\n"
-           "accel_misalignment_sigma_rad = 0\ndepth_scale_sigma = 0\n[stations]\nevery_m = 30\n"
-           + ('[attitude]\nestimator = "rotation"\n' if rotation else ""))
+           "accel_misalignment_sigma_rad = 0\ndepth_scale_sigma = 0\n[stations]\nevery_m = 30\n")
     return simulation, job
 
 
@@ -201,9 +199,9 @@ def Compared(folder):
     return (d * n * n - 2 * b * n * e + a * e * e) / (a * d - b * b), size
 
 
-def One(program, rotation, well, seed, fault, size):
+def One(program, well, seed, fault, size):
     with tempfile.TemporaryDirectory() as folder:
-        simulation, job = Files(well, seed, fault, size, rotation)
+        simulation, job = Files(well, seed, fault, size)
         for name, text in (("simulation.toml", simulation), ("job.toml", job)):
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
@@ -278,7 +276,6 @@ def main():
     parser.add_argument("--wells", default=",".join(WELLS))
     parser.add_argument("--causes", default=",".join(CAUSES))
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--rotation", action="store_true", help="by the estimator of rotations")
     parser.add_argument("--say", action="store_true", help="the causes of every run")
     given = parser.parse_args()
     runs = [(well, seed, None, 0.0) for well in given.wells.split(",")
@@ -290,7 +287,7 @@ def main():
             runs += [(well, 10_000 + seed, fault, size) for seed in range(given.faulty)]
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         program = os.path.abspath(given.program)
-        results = list(pool.map(lambda run: One(program, given.rotation, *run), runs))
+        results = list(pool.map(lambda run: One(program, *run), runs))
     Print(results, given.say)
     return 0
 

@@ -156,10 +156,17 @@ std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const Run
   return guesses;
 }
 
+/// Where a run may be solved.
+struct Solution {
+  double evidence = HUGE_VAL;
+  NodeGuess nodes;
+  BorderVector border;
+};
+
 struct Choice {
   std::unique_ptr<RunSolver> solver;  ///< of the solution of greatest evidence; null: none
   SolveReport report;
-  bool rival = false;                ///< another solution comes near it
+  std::vector<Solution> rivals;      ///< others that come near it
   double least_evidence = HUGE_VAL;  ///< of all guesses, those that lead to no solution too
 };
 
@@ -171,10 +178,6 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
     setups.push_back(setup);
     setups.back().swing = swing;
   }
-  struct Solution {
-    double evidence = HUGE_VAL;
-    NodeGuess nodes;
-  };
   std::vector<Solution> solutions(guesses.size());
   Choice choice;
   for (std::size_t i = 0; i < guesses.size(); ++i) {
@@ -184,17 +187,52 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
       const SolveReport report = solver->Solve(kIterations);
       choice.least_evidence = std::min(choice.least_evidence, report.evidence);
       if (!report.converged || !(report.evidence < solutions[i].evidence)) continue;
-      solutions[i] = {report.evidence, solver->nodes()};
+      solutions[i] = {report.evidence, solver->nodes(), solver->border()};
       if (choice.solver && !(report.evidence < choice.report.evidence)) continue;
       choice.report = report;
       choice.solver = std::move(solver);
     }
   }
-  choice.rival = std::any_of(solutions.begin(), solutions.end(), [&choice](const Solution& s) {
-    return s.evidence - choice.report.evidence < kDecides &&
-           !SameSolution(s.nodes, choice.solver->nodes());
-  });
+  for (Solution& s : solutions) {
+    if (!(s.evidence - choice.report.evidence < kDecides)) continue;
+    if (!SameSolution(s.nodes, choice.solver->nodes())) choice.rivals.push_back(std::move(s));
+  }
   return choice;
+}
+
+/// What the errors of node k would be if the rival were right, in [node; border].
+EdgeVector Towards(const Solution& rival, const RunSolver& best, std::size_t k) {
+  const Layout& layout = best.layout();
+  const Node &a = best.nodes()[k], &b = rival.nodes[k];
+  EdgeVector d = EdgeVector::Zero(layout.node + layout.border);
+  d.head<3>() = Log(a.R_LT.transpose() * b.R_LT);
+  if (layout.walk != kAbsent) d.segment<2>(layout.walk) = b.walk - a.walk;
+  if (layout.markov != kAbsent) d.segment<2>(layout.markov) = b.markov - a.markov;
+  d.tail(layout.border) = rival.border - best.border();
+  return d;
+}
+
+/// The second moment about `best` of it and its rival together: an azimuth near east-west is so as
+/// unsure as its mirror is likely. False where they are too far apart for one covariance.
+bool CountIn(const Solution& rival, double evidence, const RunSolver& best, RunEstimate& result) {
+  const std::vector<int> columns = LinkedColumns(best.layout());
+  const double odds = std::exp(0.5 * (evidence - rival.evidence)), weight = odds / (1 + odds);
+  if (rival.border.size() != best.border().size()) return false;
+  for (std::size_t k = 0; k < result.cov_phi.size(); ++k) {
+    const Vector3d d = Towards(rival, best, k).head<3>();
+    if (d.norm() > kVagueHeading) return false;
+    result.cov_phi[k] += weight * d * d.transpose();
+  }
+  Eigen::VectorXd before;
+  for (LinkedErrors& mark : result.marked) {
+    const Eigen::VectorXd d = Towards(rival, best, mark.node)(columns);
+    mark.cov += weight * d * d.transpose();
+    if (mark.cov_with_previous.size() > 0) {
+      mark.cov_with_previous += weight * before * d.transpose();
+    }
+    before = d;
+  }
+  return true;
 }
 
 /// 1-sigma of the turn about the vertical, of the node where it is known best.
@@ -211,7 +249,6 @@ void Take(const Choice& choice, std::span<const std::size_t> marked, RunEstimate
   if (!choice.solver) return;
   result.solved = true;
   result.report = choice.report;
-  result.ambiguous = choice.rival;
   Sweep(*choice.solver, marked, result).Run();
 }
 
@@ -239,10 +276,13 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
   }
   if (!result.solved) return result;
   RunSolver& best = *choice.solver;
-  result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi) > kVagueHeading;
   // Before the noise is taken larger: a fault is what makes the residuals too large.
   if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(best);
   FitNoise(best, marked, result);
+  for (const Solution& rival : choice.rivals) {
+    result.ambiguous |= !CountIn(rival, choice.report.evidence, best, result);
+  }
+  result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi) > kVagueHeading;
   result.nodes = best.nodes();
   return result;
 }

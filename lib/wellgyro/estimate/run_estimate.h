@@ -29,8 +29,8 @@ struct RunEstimate {
   bool solved = false;  ///< false: what follows means nothing
   SolveReport report;   ///< of the start that fits best, with the noise as stated
   double gyro_noise = 1, accel_noise = 1;  ///< found, over stated, where residuals are too large
-  /// The azimuth is not decided: another solution comes within 9 in evidence, or no node's heading
-  /// is known within 20 deg.
+  /// The azimuth is not decided: another solution, 20 deg away somewhere, comes within 9 in
+  /// evidence, or no node's heading is known within 20 deg. A nearer one counts in the covariance.
   bool ambiguous = false;
   std::vector<Node> nodes;                   ///< one more than knots
   std::vector<Eigen::Matrix3d> cov_phi;      ///< of each node's attitude, R_LT Exp(phi) [rad^2]
