@@ -192,8 +192,11 @@ void ForgetAngle(int i, AttitudeSample& a) {
   a.cov_attitude(i, i) = kUnknownAngleVariance;
 }
 
+/// Of a run whose heading is not known: its axis has a direction only where the hole hardly leans.
 void ForgetAzimuth(AttitudeSample& a) {
   a.azimuth_known = false;
+  const double leans = kVaguest * std::sin(a.inclination);
+  if (a.cov_attitude(0, 0) < leans * leans) a.quality = Without(a.quality, Quality::kVertical);
   ForgetAngle(1, a);
 }
 
