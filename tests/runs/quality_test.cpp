@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"quadrature", [](Flight& f) { f.errors().quadrature = units::kDegPerHourPerG; }},
         Wrong{"gyro_misalignment_x", [](Flight& f) { f.errors().gyro_misalignment.x() = 2e-3; }},
         Wrong{"accel_bias_y", [](Flight& f) { f.errors().accel_bias.y() = units::kMilliG; }},
-        Wrong{"fit", [](Flight& f) { f.errors().gyro_noise.angle_random_walk *= 2; }},
+        Wrong{"fit", [](Flight& f) { f.errors().accel_noise *= 2; }},
         Wrong{"fit_inclination", [](Flight& f) { f.errors().gyro_noise.angle_random_walk *= 3; }},
         Wrong{"fit_rest",
               [](Flight& f) {
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
                 f.job.alignment.azimuth = FromDegrees(140);
                 f.job.alignment.sigma_azimuth = FromDegrees(1);
               }},
-        Wrong{"fit_repeat",
+        Wrong{"inclination_in_out",
               [](Flight& f) {
                 // A mark lost on the way out.
                 Event event;

@@ -209,12 +209,11 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
 }
 
 void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
-  const std::array<std::pair<const char*, RunFit::Part>, 5> parts{
+  const std::array<std::pair<const char*, RunFit::Part>, 4> parts{
       {{"fit_inclination", RunFit::kInclination},
        {"fit_force", RunFit::kForce},
        {"fit_rest", RunFit::kRest},
-       {"fit_azimuth", RunFit::kAzimuth},
-       {"fit_repeat", RunFit::kRepeat}}};
+       {"fit_azimuth", RunFit::kAzimuth}}};
   if (!run.fit) {
     checks.push_back(NotDone("fit", run.run, "the run was not adjusted as a whole"));
     return;

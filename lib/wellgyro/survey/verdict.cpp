@@ -90,7 +90,6 @@ constexpr Words kWords[] = {
     {"fit_azimuth", "azimuths given from outside do not fit the run"},
     {"fit_force", "accelerometers and gravity disagree on the way"},
     {"fit_inclination", "gyros and accelerometers disagree on the way"},
-    {"fit_repeat", "directions at depths passed more than once disagree"},
     {"fit_rest", "the gyros at rest and on the way disagree"},
     {"foresight", "the run and the foresight differ"},
     {"gravity", "the accelerometers at rest do not read gravity"},
