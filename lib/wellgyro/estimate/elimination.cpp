@@ -48,6 +48,7 @@ void Elimination::Start(std::size_t nodes, const EdgeMatrix& information,
   information_ = information;
   gradient_ = gradient;
   log_determinant_ = decrement_ = 0;
+  solved_ = false;
 }
 
 bool Elimination::Step(NormalBlock& block) {
@@ -86,6 +87,7 @@ bool Elimination::Solve(std::vector<NodeVector>& nodes, BorderVector& border) {
   log_determinant_ += 2 * last_.diagonal().array().log().sum();
   decrement_ -= x.dot(gradient_);
   if (!x.allFinite()) return false;
+  solved_ = true;
   border = x.tail(b);
   nodes.resize(conditionals_.size() + 1);
   nodes.back() = x.head(n);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -47,8 +48,8 @@ class Elimination {
   /// ln det of the information of all unknowns, after Solve().
   double log_determinant() const { return log_determinant_; }
   /// Newton's decrement squared, g' H^-1 g, after Solve(): how far the step is in sigmas, all
-  /// unknowns together.
-  double decrement() const { return decrement_; }
+  /// unknowns together. Infinite where it did not solve.
+  double decrement() const { return solved_ ? decrement_ : HUGE_VAL; }
 
  private:
   struct Conditional {
@@ -63,6 +64,7 @@ class Elimination {
   EdgeVector gradient_;
   EdgeMatrix last_;  ///< its Cholesky factor
   double log_determinant_ = 0, decrement_ = 0;
+  bool solved_ = false;
 };
 
 }  // namespace wellgyro
