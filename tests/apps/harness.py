@@ -1,6 +1,7 @@
 """What the tests that run the program share: the program, given as the first argument, a folder
 for its files, and simulations and jobs of a slant hole."""
 import csv
+import difflib
 import filecmp
 import os
 import shutil
@@ -141,8 +142,11 @@ class ProgramTest(unittest.TestCase):
     def SameAs(self, one, other):
         """The result files of two surveys are the same to the byte."""
         for name in RESULT:
-            self.assertTrue(filecmp.cmp(self.Path(one, name), self.Path(other, name),
-                                        shallow=False), name)
+            a, b = self.Path(one, name), self.Path(other, name)
+            if not filecmp.cmp(a, b, shallow=False):
+                told = difflib.unified_diff(self.Read(a).splitlines(), self.Read(b).splitlines(),
+                                            lineterm="", n=0)
+                self.fail("\n".join([name, *list(told)[:20]]))
 
 
 class FreshProgramTest(ProgramTest):

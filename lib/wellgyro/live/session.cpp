@@ -194,7 +194,9 @@ bool LiveSession::Core::ComesFromElsewhere(std::string_view channel,
 void LiveSession::Core::Hear(std::string_view channel, std::span<const std::byte> bytes,
                              std::int64_t received_us) {
   if (ComesFromElsewhere(channel, bytes)) return;
-  guard.Take({channel, bytes, received_us, bus.heard_from()});
+  const StreamGuard::Message message{channel, bytes, received_us, bus.heard_from()};
+  // While logs are joined with what is heard, a message that waits would be used by both.
+  resuming ? Accept(message) : guard.Take(message);
 }
 
 void LiveSession::Core::Accept(const StreamGuard::Message& message) {
