@@ -33,7 +33,8 @@ int Run(Options& o) {
   if (const auto code = WriteAnswer(answer, o.out)) return *code;
   constexpr const char* kWords[] = {"pass", "warn", "fail"};
   fmt::print("{}\nverdict: {}\n", answer->summary, kWords[static_cast<int>(answer->verdict)]);
-  for (const std::string& why : answer->refusals) Complain("a model ends before " + why);
+  for (const std::string& why : answer->refusals)
+    Complain("not judged, as a model ends before " + why);
   if (answer->verdict == ClearanceVerdict::kFail) return kUnfit;
   return answer->refusals.empty() ? kDone : kDoneWithLosses;
 }
@@ -59,14 +60,16 @@ void AddClearance(CLI::App& app, int& exit_code) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Correlation>{{"none", Correlation::kNone},
                                              {"global", Correlation::kGlobal},
-                                             {"full", Correlation::kFull}}));
+                                             {"full", Correlation::kFull}}))
+      ->option_text("none|global|full");
   AddPlace(*command, r.surroundings, r.convergence);
   command->add_option("--out", options->out, "folder for the results")->required();
   command->footer(
       "Example:\n  wellgyro clearance --reference plan.csv --offset a.csv --offset b.csv \\\n"
       "      --model 'ISCWSA MWD Rev 4' --latitude-deg 60 --field-nt 50000 \\\n"
       "      --dip-deg 70 --declination-deg 0 --policy policy.toml --out clear\n"
-      "Exit code 4 where a separation factor is below the policy's stop.");
+      "Exit code 4 where a separation factor is below the policy's stop; 3, and no better than\n"
+      "warn, where a model ends before its survey does.");
   command->callback([options, &exit_code] {
     try {
       exit_code = Run(*options);

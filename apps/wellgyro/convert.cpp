@@ -14,6 +14,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/bus/log_tables.h"
 #include "wellgyro/earth/crs.h"
+#include "wellgyro/earth/magnetic.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_tables.h"
@@ -189,6 +190,7 @@ Result<GeodeticPoint> PlaceOf(const ConvertOptions& o) {
 /// The convergence at the well's position, where none is stated; where one is, ours is the check.
 std::optional<Fault> FindConvergence(ConvertOptions& o) {
   if (o.crs.empty()) return std::nullopt;
+  if (o.crs.find_first_not_of("0123456789") == std::string::npos) o.crs = "EPSG:" + o.crs;
   const auto place = PlaceOf(o);
   if (!place) return place.fault();
   const auto grid = ProjectToCrs(o.crs, *place);
@@ -207,7 +209,21 @@ std::optional<Fault> FindConvergence(ConvertOptions& o) {
   return std::nullopt;
 }
 
+/// What is wrong with the command line itself, in words.
+std::string Mistake(const ConvertOptions& o) {
+  if (o.latitude_deg.has_value() != o.longitude_deg.has_value()) {
+    return "--latitude-deg and --longitude-deg go together";
+  }
+  if (o.declination_date.empty()) return {};
+  const Result<double> date = DecimalYear(o.declination_date);
+  return date ? std::string() : "--declination-date: " + date.fault().text;
+}
+
 int Convert(ConvertOptions& o) {
+  if (const std::string mistake = Mistake(o); !mistake.empty()) {
+    Complain(mistake);
+    return kUsage;
+  }
   if (o.out == "-") {
     Complain("OUT is a file's name; /dev/stdout with --to writes to the terminal or a pipe");
     return kUsage;
@@ -249,14 +265,20 @@ int Convert(ConvertOptions& o) {
       return kUnusable;
     }
   } catch (const std::invalid_argument& error) {
-    Complain(fmt::format("{}: {}", o.in, error.what()));
+    std::string text = error.what();
+    if (text.starts_with("AzimuthFrom: ")) {
+      text = text.substr(13) + ": say --azimuth-reference, --convergence-deg or --declination-deg";
+    }
+    Complain(fmt::format("{}: {}", o.in, text));
     return kUnusable;
   }
   return kDone;
 }
 
 void AddReading(CLI::App& command, ConvertOptions& o) {
-  command.add_option("--from", o.from, "Format of IN, where its first lines do not tell");
+  command.add_option("--from", o.from, "Format of IN, where its first lines do not tell")
+      ->check(CLI::IsMember(
+          {"csv", "las", "p717", "witsml", "witsml20", "witsml21", "petrel", "compass"}));
   command.add_option("--columns", o.columns, "Columns of a table: MD=1 or INC=Neigung ...")
       ->delimiter(',');
   command.add_option("--depth-unit", o.depth_unit, "Unit of IN's depths; wins over what it says")

@@ -36,10 +36,12 @@ void PrintModel(const ErrorModel& model) {
   if (!model.description.empty()) fmt::print("description {}\n", model.description);
   fmt::print("inclination up to {:g} deg\n", ToDegrees(model.max_inclination));
   for (const std::string& note : model.notes) fmt::print("note: {}\n", note);
+  fmt::print("  {:<14} {:<12} {:<12} {}\n", "term", "weight", "propagation", "1 sigma");
   for (const ErrorTerm& term : model.terms) {
-    fmt::print("  {:<14} {:<12} {:<12} {:g} (SI)\n", term.name,
+    const std::string unit = term.unit.empty() ? "(SI)" : term.unit == "1" ? "-" : term.unit;
+    fmt::print("  {:<14} {:<12} {:<12} {:g} {}\n", term.name,
                term.formula ? "formula" : std::string(term.weight->code), Word(term.propagation),
-               term.magnitude);
+               term.magnitude / term.unit_si, unit);
   }
 }
 

@@ -77,7 +77,9 @@ int PrintGrid(const Options& o, const GeodeticPoint& place) {
 int PrintMagnetic(const Options& o, const GeodeticPoint& place) {
   const auto year = DecimalYear(o.date);
   if (!year) {
-    Complain(year.fault());
+    Fault fault = year.fault();
+    fault.source = "--date";
+    Complain(fault);
     return kUsage;
   }
   const bool known = o.model == "wmm2025" || o.model == "wmm2020" || o.model == "igrf14";
@@ -88,7 +90,11 @@ int PrintMagnetic(const Options& o, const GeodeticPoint& place) {
   }
   const auto found = MagneticFieldAt(o.model, DataFolder(o), place, o.height, *year);
   if (!found) {
-    Complain(found.fault());
+    Fault fault = found.fault();
+    if (o.data.empty() && fault.text.find("holds from") != std::string::npos) {
+      fault.text += "; --magnetic-model igrf14 holds from 1900 to 2030, wmm2020 from 2020 to 2025";
+    }
+    Complain(fault);
     return kUnusable;
   }
   const MagneticField& f = *found;
@@ -120,7 +126,9 @@ std::optional<Fault> TakeJob(Options& o) {
     if (job.well.longitude == 0) Complain("note: longitude 0, unless the job says another");
   }
   if (job.grid && o.crs.empty()) o.crs = job.grid->epsg;
-  if (!o.crs.empty() && o.crs.find(':') == std::string::npos) o.crs = "EPSG:" + o.crs;
+  if (o.crs.find_first_not_of("0123456789") == std::string::npos && !o.crs.empty()) {
+    o.crs = "EPSG:" + o.crs;
+  }
   if (job.grid && !o.stated_convergence) o.stated_convergence = job.grid->convergence;
   if (job.magnetic && !o.stated_declination) o.stated_declination = job.magnetic->declination;
   for (const RunSpec& run : job.runs) {
@@ -129,12 +137,38 @@ std::optional<Fault> TakeJob(Options& o) {
   return std::nullopt;
 }
 
+/// What of the command line would be passed over, in words; empty where nothing would.
+std::string Unused(const Options& o) {
+  if (o.easting.has_value() != o.northing.has_value())
+    return "--easting and --northing go together";
+  if (o.latitude.has_value() != o.longitude.has_value()) {
+    return "--latitude-deg and --longitude-deg go together";
+  }
+  if (o.easting && o.latitude) {
+    return "one place: --latitude-deg and --longitude-deg, or --easting and --northing";
+  }
+  if (o.easting && o.crs.empty()) return "--easting and --northing need their system: --crs";
+  if (o.stated_convergence && o.crs.empty()) {
+    return "--convergence-deg is held against a map system's: say which by --crs";
+  }
+  if (o.stated_declination && o.date.empty()) {
+    return "--declination-deg is held against a magnetic model's: say of which day by --date";
+  }
+  return {};
+}
+
 int Run(Options& o) {
+  if (!o.crs.empty() && o.crs.find_first_not_of("0123456789") == std::string::npos) {
+    o.crs = "EPSG:" + o.crs;
+  }
   if (!o.job.empty()) {
     if (const auto fault = TakeJob(o)) {
       Complain(*fault);
       return kUnusable;
     }
+  } else if (const std::string why = Unused(o); !why.empty()) {
+    Complain(why);
+    return kUsage;
   }
   GeodeticPoint place;
   if (o.easting && o.northing && !o.crs.empty()) {

@@ -43,7 +43,8 @@ void AddFiles(CLI::App& command, Options& o) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Correlation>{{"none", Correlation::kNone},
                                              {"global", Correlation::kGlobal},
-                                             {"full", Correlation::kFull}}));
+                                             {"full", Correlation::kFull}}))
+      ->option_text("none|global|full");
   command.add_option("--out", o.out, "folder for the results")->required();
 }
 

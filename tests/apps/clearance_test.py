@@ -118,6 +118,45 @@ kick_off_md_m = 900
         # Just below the kick-off little has been gathered by either.
         self.assertLess(float(side[0]["SIGMA[m]"]), 1)
 
+    def test_a_side_track_without_a_place_begins_on_its_parent_or_is_refused(self):
+        """Dated 2026-11-23: it was put at north 0, east 0, 200 m off, and passed."""
+        Survey("bent.csv", [(30.0 * k, min(2.0 * k, 40), 45) for k in range(60)])
+        with open("side.csv", "w", encoding="utf-8") as file:
+            file.write("MD[m],INC[deg],AZI_TRUE[deg]\n900,40,45\n930,42,50\n1200,50,80\n")
+        done = self.Clear("--reference", "bent.csv", "--offset", "side.csv")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("begins at MD 900.00 m", done.stderr)
+        self.assertIn("north_m", done.stderr)
+        beside = ["uncertainty", "--survey", "bent.csv", "--other", "side.csv", "--model",
+                  "GYRO-NS-CT", "--latitude-deg", "60", "--out", "own"]
+        done = Run(*beside)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("begins below MD 0", done.stderr)
+        self.assertEqual(Run(*beside, "--same-hole").returncode, 0)
+        with open("policy.toml", "w", encoding="utf-8") as file:
+            file.write('format = "wellgyro.clearance/1"\n[[offset]]\nsurvey = "side.csv"\n'
+                       "kick_off_md_m = 900\n")
+        done = self.Clear("--reference", "bent.csv", "--policy", "policy.toml")
+        self.assertIn("put where the reference is at MD 900.00 m", done.stderr)
+        rows = self.Rows("clearance.csv")
+        self.assertLess(float(rows[0]["DISTANCE[m]"]), 3)
+        again = self.Clear("--reference", "bent.csv", "--policy", "policy.toml", "--offset",
+                           "side.csv")
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("named twice", again.stderr)
+
+    def test_what_no_model_covers_does_not_pass(self):
+        Survey("up.csv", [(30.0 * k, min(160, 3.0 * k), 0) for k in range(60)], north=3000)
+        for wells in (["--reference", "plan.csv", "--offset", "up.csv"],
+                      ["--reference", "up.csv", "--offset", "plan.csv"]):
+            done = Run("clearance", "--model", "GYRO-NS-CT", *PLACE, "--out", "out", *wells)
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertIn("verdict: warn", done.stdout)
+            self.assertIn("not judged", done.stderr)
+            self.assertEqual(self.Rows("wells.csv")[0]["VERDICT"], "warn")
+            with open("out/clearance.html", encoding="utf-8") as file:
+                self.assertIn("nothing below is judged", file.read())
+
     def Placed(self, name, north, east, northing, easting, head=""):
         """Vertical, with offsets and map coordinates."""
         with open(name, "w", encoding="utf-8") as file:
@@ -236,7 +275,10 @@ class Models(unittest.TestCase):
             self.assertIn(name, listed.stdout)
         one = Run("models", "GYRO-NS-CT_Fl")
         self.assertEqual(one.returncode, 0, one.stderr)
-        self.assertRegex(one.stdout, r"DRFR +DREF +random +2\.2")
+        self.assertRegex(one.stdout, r"DRFR +DREF +random +2\.2 m\n")
+        # As published: OWSG Set A A021Gc has 0.1 deg of misalignment and 0.5 deg/h of drift.
+        self.assertRegex(one.stdout, r"XYM1 +XYM1 +systematic +0\.1 deg\n")
+        self.assertRegex(one.stdout, r"GXY-GD +GXY-GD +systematic +0\.5 deg/h\n")
         self.assertEqual(Run("models", "NOTHING").returncode, 2)
 
 
@@ -293,7 +335,19 @@ class North(unittest.TestCase):
             self.assertEqual(done.stdout, "")
         self.assertEqual(Run("north", *place, "--crs", "EPSG:4326").returncode, 2)
         self.assertEqual(Run("north", *place, "--date", "2026-02-30").returncode, 1)
-        self.assertEqual(Run("north", *place, "--date", "1850-01-01").returncode, 2)
+        done = Run("north", *place, "--date", "1850-01-01")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--magnetic-model igrf14", done.stderr)
+        # What would be passed over is said.
+        for extra, word in ((["--declination-deg", "1"], "--date"),
+                            (["--convergence-deg", "1"], "--crs"),
+                            (["--easting", "1", "--northing", "2"], "one place"),
+                            (["--easting", "1"], "go together")):
+            done = Run("north", *place, *extra)
+            self.assertEqual(done.returncode, 1, extra)
+            self.assertIn(word, done.stderr)
+        short = Run("north", *place, "--crs", "32631")
+        self.assertEqual(short.stdout, Run("north", *place, "--crs", "EPSG:32631").stdout)
 
 
 if __name__ == "__main__":

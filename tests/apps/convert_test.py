@@ -71,6 +71,18 @@ class Convert(FreshProgramTest):
         self.Write("opposite.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,180,0\n")
         self.assertIn("at depth 30 m it points opposite", self.Refused("opposite.csv", "out.las"))
 
+    def test_no_option_is_passed_over(self):
+        for options, code, word in (
+                (("--from", "foo"), 1, "not in {csv"),
+                (("--declination-date", "31.12.2020"), 1, "YYYY-MM-DD"),
+                (("--latitude-deg", "60"), 1, "go together"),
+                (("--columns", "INC=9"), 2, "no column is called so"),
+                (("--columns", "FOO=1"), 2, "there is no FOO"),
+                (("--north", "magnetic"), 2, "--declination-deg")):
+            done = Run("convert", "in.csv", "out.csv", *options, cwd=self.folder)
+            self.assertEqual(done.returncode, code, options)
+            self.assertIn(word, done.stderr)
+
     def test_a_pipe_is_refused_and_not_waited_for(self):
         os.mkfifo(self.Path("pipe.csv"))
         self.assertIn("this is a pipe", self.Refused("pipe.csv", "out.las"))

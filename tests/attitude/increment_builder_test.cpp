@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -171,30 +172,53 @@ TEST(IncrementBuilder, ThirdGyroGivesTheRollNearVerticalToo) {
   }
 }
 
-// The force of an increment, brought to the middle, is gravity there, also in a tool that whirls.
+/// By how much the force of an increment, brought to its middle, is at most not gravity there
+/// [m/s^2].
+double ForceMiss(const Attitude& attitude, double rate, const IncrementOptions& options) {
+  const auto increments = motion::Increments(motion::Samples(attitude, {}, rate, 40), 1, options);
+  double worst = 0;
+  for (std::size_t k = 3; k + 3 < increments.size(); ++k) {
+    const Increment& i = increments[k];
+    double delta = 0;
+    motion::Miss(i, attitude, static_cast<double>(k), delta);
+    Increment half = i;
+    half.turn_M = i.turn_before_M;
+    half.turn_per_roll.setZero();
+    half.roll_after = -0.5 * delta;
+    const Eigen::Matrix3d R_IM =
+        motion::InertialAttitude(attitude, static_cast<double>(k)) * motion::Turned(half, delta);
+    Eigen::Vector3d f = i.force_M;
+    f.head<2>() += delta * i.force_per_roll;
+    const double middle = static_cast<double>(k) + 0.5;
+    const Eigen::Vector3d up = motion::InertialAttitude(attitude, middle) *
+                               attitude(middle).transpose() *
+                               Eigen::Vector3d(0, 0, -motion::kGravity);
+    worst = std::max(worst, (R_IM * f - up).norm());
+  }
+  return worst;
+}
+
 TEST(IncrementBuilder, ForceIsGravityAtTheMiddle) {
   for (const double whirl : {0., 1.7}) {
     const Attitude attitude = InHole(50, Swinging(3, 0.4, 3), Whirl(whirl > 0 ? 0.1 : 0, whirl));
-    const auto increments = motion::Increments(motion::Samples(attitude, {}, 50, 40), 1, Options());
-    for (std::size_t k = 1; k + 1 < increments.size(); ++k) {
-      const Increment& i = increments[k];
-      double delta = 0;
-      motion::Miss(i, attitude, static_cast<double>(k), delta);
-      Increment half = i;
-      half.turn_M = i.turn_before_M;
-      half.turn_per_roll.setZero();
-      half.roll_after = -0.5 * delta;
-      const Eigen::Matrix3d R_IM =
-          motion::InertialAttitude(attitude, static_cast<double>(k)) * motion::Turned(half, delta);
-      Eigen::Vector3d f = i.force_M;
-      f.head<2>() += delta * i.force_per_roll;
-      const double middle = static_cast<double>(k) + 0.5;
-      const Eigen::Vector3d up = motion::InertialAttitude(attitude, middle) *
-                                 attitude(middle).transpose() *
-                                 Eigen::Vector3d(0, 0, -motion::kGravity);
-      EXPECT_LT((R_IM * f - up).norm(), 3e-5 * motion::kGravity) << whirl << " Hz, knot " << k;
-    }
+    EXPECT_LT(ForceMiss(attitude, 50, Options()), 3e-5 * motion::kGravity) << whirl << " Hz";
   }
+}
+
+// In a sample that rolls while the axis turns the force is another at either end, and its mean
+// falls short of the middle's by the roll times that: the second order in the period, which the
+// third gives back.
+TEST(IncrementBuilder, ForceToTheThirdOrderOfASlowSample) {
+  const Attitude attitude = InHole(30, Swinging(25, 1 / 23., 3));
+  std::vector<double> second, third;
+  for (const double rate : {1., 2.}) {
+    second.push_back(ForceMiss(attitude, rate, Options(IncrementOptions::kSecond)));
+    third.push_back(ForceMiss(attitude, rate, Options()));
+    std::printf("%g Hz: force %.1e by second, %.1e m/s^2 by third order\n", rate, second.back(),
+                third.back());
+  }
+  EXPECT_LT(third[1], 0.2 * second[1]);
+  EXPECT_GT(third[0] / third[1], 6);
 }
 
 // An increment in the tool's frame at its begin, the roll put right as an estimator does.

@@ -96,6 +96,38 @@ TEST(Elimination, CovariancesAreThoseOfTheDenseInverse) {
   }
 }
 
+TEST(Elimination, SolvesOtherRightHandSidesFromNodeToNode) {
+  Chain chain(3);
+  std::vector<NodeVector> nodes;
+  BorderVector border;
+  ASSERT_TRUE(chain.elimination.Solve(nodes, border));
+  const int n = chain.layout.node, b = chain.layout.border;
+  Random random(4);
+  const MatrixXd rhs =
+      MatrixXd::NullaryExpr(chain.H.rows(), 2, [&random] { return random.Normal(); });
+  const MatrixXd solution = chain.H.ldlt().solve(rhs);
+  std::vector<MatrixXd> kept;
+  MatrixXd x(2 * n + b, 2);
+  x << rhs.topRows(2 * n), rhs.bottomRows(b);
+  for (int k = 0; k < kKnots; ++k) {
+    chain.elimination.Eliminate(static_cast<std::size_t>(k), x);
+    kept.emplace_back(x.topRows(n));
+    x.topRows(n) = x.middleRows(n, n).eval();
+    if (k + 1 < kKnots) x.middleRows(n, n) = rhs.middleRows((k + 2) * n, n);
+  }
+  MatrixXd last(n + b, 2);
+  last << x.topRows(n), x.bottomRows(b);
+  last = (chain.elimination.LastCovariance() * last).eval();
+  x << MatrixXd::Zero(n, 2), last;
+  for (int k = kKnots; k-- > 0;) {
+    x.topRows(n) = kept[static_cast<std::size_t>(k)];
+    chain.elimination.Substitute(static_cast<std::size_t>(k), x);
+    EXPECT_LT((x.topRows(n) - solution.middleRows(k * n, n)).norm(), 1e-10) << k;
+    x.middleRows(n, n) = x.topRows(n).eval();
+  }
+  EXPECT_LT((x.bottomRows(b) - solution.bottomRows(b)).norm(), 1e-10);
+}
+
 TEST(Elimination, WhatIsUnobservedIsRefused) {
   Layout layout;
   Elimination elimination(layout);

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
+
+#include "wellgyro/math/random.h"
 
 namespace wellgyro {
 namespace {
@@ -48,6 +51,50 @@ TEST(NormalBlock, ExpectsOfSquaresWhatUnknownsAndHubersLossLeaveOfThem) {
       EXPECT_LE(sum.freedom, n * (1 - absorbed));
       EXPECT_NEAR(sum.weighted, 0.25 * n, 1e-15);
     }
+  }
+}
+
+// By the definition, of rows that reach few columns and of those that are added along all of them.
+TEST(NormalBlock, SumsUpJacobiansAndResiduals) {
+  Layout layout;
+  const int size = 2 * layout.node;
+  Random random(7);
+  for (int n = 1; n <= 3; ++n) {
+    NormalBlock block;
+    block.Clear(layout);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, size);
+    Factor f;
+    f.Begin(RowKind::kSpeed, n);
+    for (const int at : {9, 0, 4, 11, 3}) {
+      const Eigen::VectorXd column =
+          Eigen::VectorXd::NullaryExpr(n, [&] { return random.Normal(); });
+      f.Column(at) = column;
+      J.col(at) = column;
+    }
+    for (int i = 0; i < n; ++i) f.r[i] = random.Normal();
+    block.Add(f);
+    const Eigen::MatrixXd information = J.transpose() * J;
+    for (int at = 0; at < size; ++at) {
+      EXPECT_LT((block.Column(at) - information.col(at)).norm(), 1e-14) << n << " " << at;
+    }
+    EXPECT_LT((block.gradient() - J.transpose() * f.r.head(n)).norm(), 1e-14) << n;
+  }
+}
+
+// A Huber's loss is left out where a fault is looked for, the roll's weight is part of its model.
+TEST(NormalBlock, WithoutLossCountsAllButTheRollAsItIs) {
+  Layout layout;
+  NormalBlock block;
+  block.WithoutLoss(true);
+  for (const RowKind kind : {RowKind::kForce, RowKind::kRoll}) {
+    block.Clear(layout);
+    Factor f;
+    f.Begin(kind, 1);
+    f.r[0] = 30;
+    f.Column(0)[0] = 1;
+    block.Add(f);
+    const double weight = kind == RowKind::kRoll ? 6. / 905 : 1;  // (5 + 1)/(5 + r^2)
+    EXPECT_NEAR(block.information()(0, 0), weight, 1e-15);
   }
 }
 

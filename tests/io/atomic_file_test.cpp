@@ -70,6 +70,13 @@ TEST(WriteFiles, LinksAreFollowedAndModesKept) {
   EXPECT_EQ(scratch.Read("real/x.csv"), "new");
   EXPECT_EQ(std::filesystem::status(real).permissions(), std::filesystem::perms(0640));
   EXPECT_EQ(FilesIn(scratch.path() / "real"), 1u);
+  // Dated 2026-11-23: a link that led to nothing yet was replaced by the file.
+  std::filesystem::create_symlink("real/next.csv", scratch.path() / "link.csv.2");
+  std::filesystem::create_symlink("link.csv.2", scratch.path() / "link.csv.1");
+  EXPECT_FALSE(WriteFiles(scratch.path(), std::vector<OutputFile>{{"link.csv.1", "first"}}));
+  EXPECT_EQ(scratch.Read("real/next.csv"), "first");
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch.path() / "link.csv.1"));
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch.path() / "link.csv.2"));
 }
 
 TEST(WriteFiles, PipesAreWrittenTo) {

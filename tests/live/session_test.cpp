@@ -50,10 +50,10 @@ struct Observer : LiveObserver {
 
 /// Takes its time, as the adjustment of a long run does.
 struct SlowAdjuster : RunAdjuster {
-  SmoothedRun Adjust(const FilterHistory& history, std::span<const Increment>) const override {
+  SmoothedRun Adjust(const RunHistory& history) const override {
     ++begun;
     while (!release) std::this_thread::sleep_for(milliseconds(20));
-    return Smooth(history);
+    return {history.attitude, history.states, std::nullopt};
   }
   mutable std::atomic<int> begun = 0;
   std::atomic<bool> release = false;

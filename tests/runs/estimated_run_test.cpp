@@ -57,31 +57,6 @@ TEST(EstimatedRun, OfAPerfectToolIsTheTruth) {
   }
 }
 
-// Bias, drift and g-dependent errors as in a worn tool, no azimuth from outside, one position at
-// each stop: the motion itself finds north.
-TEST(EstimatedRun, FindsNorthFromTheMotionAndSaysHowWell) {
-  for (const double rpm : {3., 0.}) {
-    Claims end, inclination;
-    double smoothed_variance = 0;
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-      Hour hour = testing::StrongDrift();
-      hour.rpm = rpm;
-      const Flown flown = Fly(hour, JobOf(hour), seed);
-      const SmoothedRun run = EstimateOf(flown);
-      ASSERT_TRUE(run.fit->converged);
-      const AttitudeSample& last = run.attitude.back();
-      ASSERT_TRUE(last.azimuth_known);
-      end.Add(AzimuthError(flown, run, flown.truth.size() - 1), last.cov_attitude(1, 1));
-      inclination.Add(last.inclination - flown.truth.back().inclination, last.cov_attitude(0, 0));
-      smoothed_variance += Smooth(flown.history).attitude.back().cov_attitude(1, 1);
-    }
-    end.ExpectTrue("azimuth");
-    inclination.ExpectTrue("inclination");
-    EXPECT_LT(end.sigma_deg(), rpm > 0 ? 0.22 : 0.33) << rpm << " rpm";
-    EXPECT_LT(3 * end.variance, smoothed_variance) << "without the lift it is far worse";
-  }
-}
-
 TEST(EstimatedRun, FromAnExternalAzimuthAtTheStartIsAsGoodAsItSays) {
   Claims end, middle;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -123,7 +98,7 @@ TEST(EstimatedRun, FindsNorthWithoutAnyStopWhereTheHoleSwings) {
     Hour hour = testing::StrongDrift();
     hour.stops = 0;
     const Flown flown = Fly(hour, JobOf(hour), seed);
-    ASSERT_FALSE(Smooth(flown.history).attitude.back().azimuth_known);
+    ASSERT_FALSE(flown.history.attitude.back().azimuth_known);
     const SmoothedRun run = EstimateOf(flown);
     ASSERT_TRUE(run.attitude.back().azimuth_known) << seed;
     end.Add(AzimuthError(flown, run, flown.truth.size() - 1),
@@ -142,14 +117,14 @@ TEST(EstimatedRun, FindsTheToolsErrors) {
     const Job job = ExternalJob(hour, seed, 0.1);
     const RunFit a = *EstimateOf(Fly(hour, job, seed)).fit;
     const ToolErrors& tool = simulation.tool.errors;
-    const auto add = [&](Knot::Source source, double truth) {
+    const auto add = [&](ErrorSource source, double truth) {
       errors.Add(a.errors[source] - truth, a.sigma_errors[source] * a.sigma_errors[source]);
     };
-    add(Knot::kGyroBiasX, tool.gyro_bias.x());
-    add(Knot::kGyroBiasY, tool.gyro_bias.y());
-    add(Knot::kMassUnbalance, tool.mass_unbalance);
-    add(Knot::kQuadrature, tool.quadrature);
-    EXPECT_LT(a.sigma_errors[Knot::kGyroBiasX], 0.2 * hour.errors.gyro_bias_sigma);
+    add(kGyroBiasX, tool.gyro_bias.x());
+    add(kGyroBiasY, tool.gyro_bias.y());
+    add(kMassUnbalance, tool.mass_unbalance);
+    add(kQuadrature, tool.quadrature);
+    EXPECT_LT(a.sigma_errors[kGyroBiasX], 0.2 * hour.errors.gyro_bias_sigma);
   }
   errors.ExpectTrue("errors of the tool");
 }
@@ -168,31 +143,29 @@ TEST(EstimatedRun, ATimeSkewMakesNoShorterTurns) {
   const testing::KeepingAdjuster keeper;
   const Job job = ExternalJob(hour, 0, 0.001);
   testing::SurveyOf(simulation, job, sink, {}, &keeper);
-  const SmoothedRun run = EstimatedRun(job, keeper.kept, keeper.kept_increments);
+  const SmoothedRun run = EstimatedRun(job, keeper.kept);
   const Truth truth(simulation);
   ASSERT_TRUE(run.fit->converged);
   double inclination = 0, azimuth = 0;
-  for (std::size_t i = 0; i < keeper.kept.epochs.size(); ++i) {
-    if (!keeper.kept.epochs[i].station) continue;
-    const TruthState t = truth.At((keeper.kept.epochs[i].knot.time - ToolTime{}).seconds());
+  for (const std::size_t i : keeper.kept.stations) {
+    const TruthState t = truth.At((keeper.kept.knots[i].increment.time - ToolTime{}).seconds());
     const AttitudeSample& a = run.attitude[i];
     inclination = std::max(inclination, std::abs(a.inclination - t.inclination));
     azimuth = std::max(azimuth, std::abs(WrapPi(a.azimuth - t.azimuth)));
   }
   std::printf("time skew: inclination %.5f, azimuth %.5f deg, skew %.6f s\n",
-              ToDegrees(inclination), ToDegrees(azimuth), run.fit->errors[Knot::kTimeSkew]);
+              ToDegrees(inclination), ToDegrees(azimuth), run.fit->errors[kTimeSkew]);
   EXPECT_LT(ToDegrees(inclination), 0.003);
   EXPECT_LT(ToDegrees(azimuth), 0.005);
-  EXPECT_NEAR(run.fit->errors[Knot::kTimeSkew], 0.05, 2e-4);
+  EXPECT_NEAR(run.fit->errors[kTimeSkew], 0.05, 2e-4);
 }
 
 TEST(EstimatedRun, OfNothingIsNothing) {
-  FilterHistory history;
-  history.setup.site = SiteAt(1, 0);
-  EXPECT_TRUE(EstimatedRun(Job{}, history, {}).attitude.empty());
-  history.epochs.emplace_back();  // says where the run begins
-  history.epochs.back().knot.inclination = 0.5;
-  EXPECT_EQ(EstimatedRun(Job{}, history, {}).attitude.size(), 1u);
+  RunHistory history;
+  history.site = SiteAt(1, 0);
+  const SmoothedRun run = EstimatedRun(Job{}, history);
+  EXPECT_TRUE(run.attitude.empty());
+  EXPECT_FALSE(run.fit->converged);
 }
 
 TEST(EstimatedRun, WhatDoesNotFitIsLessSure) {
@@ -200,8 +173,8 @@ TEST(EstimatedRun, WhatDoesNotFitIsLessSure) {
   Flown flown = Fly(hour, JobOf(hour), 4);
   const SmoothedRun fits = EstimateOf(flown);
   double sign = 1;
-  for (std::size_t i = 0; i < flown.increments.size(); i += 15, sign = -sign) {
-    flown.increments[i].force_M.x() += sign * 5e-3;
+  for (std::size_t i = 0; i < flown.history.knots.size(); i += 15, sign = -sign) {
+    flown.history.knots[i].increment.force_M.x() += sign * 5e-3;
   }
   const SmoothedRun does_not = EstimateOf(flown);
   const auto misfit = [](const SmoothedRun& run) {
@@ -216,18 +189,37 @@ TEST(EstimatedRun, WhatDoesNotFitIsLessSure) {
   EXPECT_LT(grown, 1.3 * misfit(does_not));
 }
 
+// About other attitudes in every knot, the same factors seem to tell the heading a little each
+// time, unless a turn about the vertical stays what it was: a fortieth of the sigma was left of it
+// here. A tenth is what the second order still takes.
+TEST(OnTheWay, EndsNoSurerThanTheWholeRunAndThere) {
+  for (const double rpm : {3., 0.}) {
+    Hour hour = testing::StrongDrift();
+    hour.rpm = rpm;
+    const Flown flown = Fly(hour, JobOf(hour), 6);
+    const AttitudeSample known = flown.history.attitude.back();
+    const AttitudeSample whole = EstimateOf(flown).attitude.back();
+    ASSERT_TRUE(known.azimuth_known);
+    const double sigma = std::sqrt(whole.cov_attitude(1, 1));
+    EXPECT_GT(std::sqrt(known.cov_attitude(1, 1)), 0.85 * sigma) << rpm << " rpm";
+    EXPECT_LT(std::sqrt(known.cov_attitude(1, 1)), 2 * sigma) << rpm << " rpm";
+    EXPECT_LT(std::abs(WrapPi(known.azimuth - whole.azimuth)), 2 * sigma) << rpm << " rpm";
+  }
+}
+
 TEST(EstimatedRun, IsSentOutByASurveyor) {
   Hour hour = HalfHour();
   const Simulation simulation = SimulationOf(hour, 4);
   testing::CollectingSink sink;
   const Survey estimated = testing::SurveyOf(simulation, JobOf(hour), sink);
   testing::CollectingSink other;
-  const testing::KeepingAdjuster smoother;
-  const Survey smoothed = testing::SurveyOf(simulation, JobOf(hour), other, {}, &smoother);
-  ASSERT_EQ(estimated.chosen.size(), smoothed.chosen.size());
-  const double variance = estimated.chosen.back().cov_md_inc_azi(2, 2);
+  const testing::KeepingAdjuster keeper;
+  const Survey known = testing::SurveyOf(simulation, JobOf(hour), other, {}, &keeper);
+  ASSERT_EQ(estimated.chosen.size(), known.chosen.size());
+  const std::size_t middle = known.chosen.size() / 2;
+  const double variance = estimated.chosen[middle].cov_md_inc_azi(2, 2);
   EXPECT_GT(variance, 0);
-  EXPECT_LT(variance, 0.5 * smoothed.chosen.back().cov_md_inc_azi(2, 2));
+  EXPECT_LT(variance, 0.8 * known.chosen[middle].cov_md_inc_azi(2, 2));
 }
 
 }  // namespace

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "wellgyro/attitude/filter.h"
-#include "wellgyro/attitude/smoother.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
@@ -20,19 +18,21 @@
 #include "support/simulated_survey.h"
 
 /// One-hour runs through a hole that undulates by 1.8 deg while its azimuth swings, from simulated
-/// sensors to what the filter leaves behind.
+/// sensors to what a run leaves behind.
 namespace wellgyro::testing {
 
-/// Keeps what a run leaves, and makes of it what is known before it is estimated as a whole.
+/// What is known before the run is estimated as a whole: on the way, each knot as it came.
+inline SmoothedRun KnownOnTheWay(const RunHistory& history) {
+  return {history.attitude, history.states, std::nullopt};
+}
+
+/// Keeps what a run leaves, and adjusts nothing.
 struct KeepingAdjuster : RunAdjuster {
-  SmoothedRun Adjust(const FilterHistory& history,
-                     std::span<const Increment> increments) const override {
+  SmoothedRun Adjust(const RunHistory& history) const override {
     kept = history;
-    kept_increments.assign(increments.begin(), increments.end());
-    return Smooth(history);
+    return KnownOnTheWay(history);
   }
-  mutable FilterHistory kept;
-  mutable std::vector<Increment> kept_increments;
+  mutable RunHistory kept;
 };
 
 struct Hour {
@@ -146,15 +146,12 @@ inline Job ExternalJob(const Hour& hour, std::uint64_t seed, double sigma_deg) {
 
 struct Flown {
   Job job;
-  FilterHistory history;
-  std::vector<Increment> increments;
-  std::vector<TruthState> truth;  ///< at the end of every epoch
+  RunHistory history;
+  std::vector<TruthState> truth;  ///< at the end of every knot
 };
 
 /// As a surveyor estimates it.
-inline SmoothedRun EstimateOf(const Flown& flown) {
-  return EstimatedRun(flown.job, flown.history, flown.increments);
-}
+inline SmoothedRun EstimateOf(const Flown& flown) { return EstimatedRun(flown.job, flown.history); }
 
 inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size_t i) {
   return WrapPi(run.attitude[i].azimuth - flown.truth[i].azimuth);
@@ -170,10 +167,10 @@ inline Flown Fly(const Simulation& simulation, const Job& job) {
   Flown flown;
   flown.job = job;
   flown.history = std::move(keeper.kept);
-  flown.increments = std::move(keeper.kept_increments);
   const Truth truth(simulation);
-  for (const FilterEpoch& epoch : flown.history.epochs) {
-    const double t = (epoch.knot.time - ToolTime{}).seconds() - simulation.tool.errors.clock_offset;
+  for (const RunKnot& knot : flown.history.knots) {
+    const double t =
+        (knot.increment.time - ToolTime{}).seconds() - simulation.tool.errors.clock_offset;
     flown.truth.push_back(truth.At(t));
   }
   return flown;

@@ -16,24 +16,19 @@ namespace {
 // other, or that are known.
 constexpr double kSingular = 1e-11;
 
+using StationVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kStationErrorsMax, 1>;
+
 // The X with E[x1 x2'] = cov X, so that E[r x2'] = E[r x1'] X for every r that depends on x2 by x1
 // alone. Where cov is singular any solution will do; the smallest is taken.
-FilterMatrix SolveCovariance(const FilterMatrix& cov, const FilterMatrix& cross) {
-  const FilterVector scale =
+StationMatrix SolveCovariance(const StationMatrix& cov, const StationMatrix& cross) {
+  const StationVector scale =
       cov.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 0.0; });
-  const FilterMatrix correlation = scale.asDiagonal() * cov * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<FilterMatrix> eigen(correlation);
-  const FilterVector inverse =
+  const StationMatrix correlation = scale.asDiagonal() * cov * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<StationMatrix> eigen(correlation);
+  const StationVector inverse =
       eigen.eigenvalues().unaryExpr([](double v) { return v > kSingular ? 1 / v : 0.0; });
-  const FilterMatrix& v = eigen.eigenvectors();
+  const StationMatrix& v = eigen.eigenvectors();
   return scale.asDiagonal() * v * inverse.asDiagonal() * v.transpose() * scale.asDiagonal() * cross;
-}
-
-// d tangent / d(inclination, azimuth).
-Eigen::Matrix<double, 3, 2> TangentSlope(double inclination, double azimuth) {
-  const double ci = std::cos(inclination), si = std::sin(inclination);
-  const double ca = std::cos(azimuth), sa = std::sin(azimuth);
-  return (Eigen::Matrix<double, 3, 2>() << ci * ca, -si * sa, ci * sa, si * ca, -si, 0).finished();
 }
 
 Eigen::Matrix3d PlusTransposed(const Eigen::Matrix3d& m) { return m + m.transpose(); }
@@ -47,46 +42,32 @@ AlongHoleCovariance::AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in, doub
 // Carries the two covariances with the state from the station last seen to this one.
 void AlongHoleCovariance::Advance(const StationState& station) {
   const bool with_depth = order_ == TimeAlongHole::kWithDepth;
-  const FilterMatrix& link = with_depth ? station.cov_with_previous : state_cov_with_previous_;
+  const StationMatrix& link = with_depth ? station.cov_with_previous : state_cov_with_previous_;
   if (link.size() == 0) {
     cov_with_state_ = Rows::Zero(3, station.cov.rows());
     slope_with_state_ = Rows::Zero(3, station.cov.rows());
-    cov_with_lean_.setZero();
-    slope_with_lean_.setZero();
     return;
   }
-  if (with_depth ? station.epoch <= epoch_ : station.epoch >= epoch_) {
-    throw std::invalid_argument("AlongHoleCovariance: epoch " + std::to_string(station.epoch) +
-                                " comes after epoch " + std::to_string(epoch_));
+  if (with_depth ? station.knot <= knot_ : station.knot >= knot_) {
+    throw std::invalid_argument("AlongHoleCovariance: knot " + std::to_string(station.knot) +
+                                " comes after knot " + std::to_string(knot_));
   }
-  const FilterMatrix cross = with_depth ? link : FilterMatrix(link.transpose());
-  const FilterMatrix carry = SolveCovariance(state_cov_, cross);
+  const StationMatrix cross = with_depth ? link : StationMatrix(link.transpose());
+  const StationMatrix carry = SolveCovariance(state_cov_, cross);
   cov_with_state_ = (cov_with_state_ * carry).eval();
   slope_with_state_ = (slope_with_state_ * carry).eval();
-  const double seconds = std::abs((station.attitude.time - time_).seconds());
-  const double lasts = station.lean_seconds > 0 ? std::exp(-seconds / station.lean_seconds) : 0;
-  const double lean =
-      lean_variance_ > 0 ? lasts * std::sqrt(station.cov_white(0, 0) / lean_variance_) : 0;
-  cov_with_lean_ *= lean;
-  slope_with_lean_ *= lean;
 }
 
 void AlongHoleCovariance::Skip(const StationState& station) {
   if (any_) Advance(station);
-  epoch_ = station.epoch;
+  knot_ = station.knot;
   state_cov_ = station.cov;
   state_cov_with_previous_ = station.cov_with_previous;
-  lean_variance_ = station.cov_white(0, 0);
-  time_ = station.attitude.time;
 }
 
 Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
-  const double inclination = station.attitude.inclination, azimuth = station.attitude.azimuth;
-  const Eigen::Matrix<double, 3, 2> slope = TangentSlope(inclination, azimuth);
-  const Rows rows = slope * station.angles;
-  const Rows rows_cov = rows * station.cov;
-  const Eigen::Matrix3d cov_slope =
-      rows_cov * rows.transpose() + slope * station.cov_white * slope.transpose();
+  const Rows rows_cov = station.tangent * station.cov;
+  const Eigen::Matrix3d cov_slope = rows_cov * station.tangent.transpose();
   const bool first = !any_;
   if (!first && !(station.along.md > md_)) {
     throw std::invalid_argument("AlongHoleCovariance: depth " + std::to_string(station.along.md) +
@@ -96,28 +77,23 @@ Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
   if (first) {
     any_ = true;
     cov_with_slope_.setZero();
-    cov_with_lean_.setZero();
     cov_with_state_ = Rows::Zero(3, station.cov.rows());
   } else {
     // r' = (r + half s) + half s'
     const double half = (station.along.md - md_) / 2;
     const Rows upper = cov_with_state_ + half * slope_with_state_;
-    const Eigen::Vector3d upper_lean = cov_with_lean_ + half * slope_with_lean_;
-    const Eigen::Matrix3d upper_slope =
-        upper * rows.transpose() + upper_lean * slope.col(0).transpose();
+    const Eigen::Matrix3d upper_slope = upper * station.tangent.transpose();
     cov_ += half * PlusTransposed(cov_with_slope_ + upper_slope) +
             half * half * (cov_slope_ + cov_slope);
     cov_with_slope_ = upper_slope + half * cov_slope;
     cov_with_state_ = upper + half * rows_cov;
-    cov_with_lean_ = upper_lean + half * lean_variance_ * slope.col(0);
   }
   md_ = station.along.md;
   cov_slope_ = cov_slope;
   slope_with_state_ = rows_cov;
-  slope_with_lean_ = lean_variance_ * slope.col(0);
 
   const double sigma = std::max(depth_sigma_, station.along.sigma_md);
-  const Eigen::Vector3d tangent = Tangent(inclination, azimuth);
+  const Eigen::Vector3d tangent = Tangent(station.attitude.inclination, station.attitude.azimuth);
   return cov_ + sigma * sigma * tangent * tangent.transpose();
 }
 

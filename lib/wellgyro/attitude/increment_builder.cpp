@@ -222,12 +222,16 @@ IncrementBuilder::~IncrementBuilder() = default;
 IncrementBuilder::IncrementBuilder(IncrementBuilder&&) noexcept = default;
 IncrementBuilder& IncrementBuilder::operator=(IncrementBuilder&&) noexcept = default;
 
+bool CanFollow(const SampleStamp* before, const ImuSample& sample) {
+  if (sample.stamp.period_ns <= 0 || !IsFinite(sample)) return false;
+  return before == nullptr || !Follows(*before, sample.stamp).late;
+}
+
 bool IncrementBuilder::Push(const ImuSample& sample, bool rests) {
   State& s = *state_;
-  if (sample.stamp.period_ns <= 0 || !IsFinite(sample)) return false;
+  if (!CanFollow(s.started ? &s.open.last() : nullptr, sample)) return false;
   Following f;
   if (s.started) f = Follows(s.open.last(), sample.stamp);
-  if (f.late) return false;
   s.EndLongKnot();
   if (!s.started || f.breaks) {
     s.gap_begin = s.started ? s.open.last().tool_time + Duration{s.open.last().period_ns}

@@ -23,6 +23,10 @@ struct IncrementOptions {
   double gravity = 9.80665;  ///< near enough [m/s^2]
 };
 
+/// Whether the sample comes behind the one before, where there is one: not late, not sent twice,
+/// with a period, and finite.
+bool CanFollow(const SampleStamp* before, const ImuSample& sample);
+
 /// Sums the samples of two transverse gyros (a third where there is one) and three accelerometers
 /// to Increments between knots. It holds no attitude, no inclination and no Earth: what an
 /// increment says is the sensors' own.

@@ -50,12 +50,12 @@ Across LookAcross(std::uint64_t k, const Blocks& blocks) {
 // A block made ready to be summed in parts: integrals and first moments about its middle.
 struct Ready {
   const Block& b;
-  Complex turn, turn_first, force_first;
+  Complex turn, turn_first, force, force_first;
   double unkept;
 };
 Ready MakeReady(std::uint64_t k, bool third, const Blocks& blocks) {
   const Block& b = blocks[k];
-  Ready r{b, b.turn(), b.w_first, b.f_first, 0};
+  Ready r{b, b.turn(), b.w_first, b.force(), b.f_first, 0};
   if (b.samples == 0) {
     r.turn = k > blocks.begin() ? b.carried * b.seconds : 0;
     return r;
@@ -63,11 +63,13 @@ Ready MakeReady(std::uint64_t k, bool third, const Blocks& blocks) {
   const double within = b.period * b.period * b.seconds / 12;
   const Across across = LookAcross(k, blocks);
   r.turn_first += within * across.slope;
-  r.force_first += within * kI * (b.turn() / b.seconds) * (b.sum[kFz].zeroth / b.seconds);
+  const Complex leaning = within * kI * (b.turn() / b.seconds) * (b.sum[kFz].zeroth / b.seconds);
+  r.force_first += leaning;
   r.unkept = across.unkept;
   const Complex missing = kI * b.rate * within * across.slope;
   if (third) {
     r.turn += missing;
+    r.force += kI * b.rate * leaning;
   } else {
     r.unkept += std::abs(missing);
   }
@@ -125,7 +127,7 @@ void Sums::Add(const Ready& r, double from, double to, double at) {
   skew += b.rate * w + b.bend * w1;
   axial += part.share * b.sum[kWz].zeroth + part.share_first * b.sum[kWz].first;
   if (b.accel_full_scale) return;
-  const Complex f = part.Of(b.force(), r.force_first), f1 = part.FirstOf(b.force(), r.force_first);
+  const Complex f = part.Of(r.force, r.force_first), f1 = part.FirstOf(r.force, r.force_first);
   fx += part.share * b.fx;
   fy += part.share * b.fy;
   const auto mean = [&](Channel of) {

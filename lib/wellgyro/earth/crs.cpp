@@ -114,14 +114,17 @@ Held<PJ> Best(const Session& session, const PJ* from, const PJ* to, const std::s
   if (at) SetPlace(c, factory.get(), at->first, at->second);
   const Held<PJ_OBJ_LIST> list(proj_create_operations(c, from, to, factory.get()));
   if (!list || proj_list_get_count(list.get()) == 0) {
-    Refuse(FaultCode::kRange, "the registry has no operation between these datums at this place",
+    Refuse(FaultCode::kRange,
+           "the registry has no operation between these datums at this place: is it the right one, "
+           "the easting before the northing, in the system's own unit?",
            names);
   }
   Held<PJ> best(proj_list_get(c, list.get(), 0));
   if (const std::string grid = MissingGrid(session, best.get()); !grid.empty()) {
     Refuse(FaultCode::kRange,
-           fmt::format("the best operation, {}, needs the grid file {}, which this machine lacks",
-                       proj_get_name(best.get()), grid),
+           fmt::format("the best operation, {1}, needs the grid file {0}, which this machine "
+                       "lacks: put it into PROJ's folder of grids, as by projsync --file {0}",
+                       grid, proj_get_name(best.get())),
            names);
   }
   Held<PJ> normal(proj_normalize_for_visualization(c, best.get()));

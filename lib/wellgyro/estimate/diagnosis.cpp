@@ -15,6 +15,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Kind = CauseSpec::Kind;
 
@@ -25,6 +26,8 @@ constexpr double kPower = 0.8416212335729143;  // normal quantile of 80 %
 constexpr double kLargest = 5;
 // Knots to a stretch that is looked at as one.
 constexpr std::size_t kStretch = 20;
+
+Index At(std::size_t i) { return static_cast<Index>(i); }
 
 /// ln of the mean of exponentials, one after the other.
 class LogMean {
@@ -115,18 +118,9 @@ class Looks {
 };
 
 /// P of a factor's rows: 1 - J cov J', `cov` of [node | next node | border].
-Matrix3d Freedom(const Factor& f, const NormalBlock::Matrix& cov) {
-  Matrix3d p = Matrix3d::Zero();
-  for (int i = 0; i < f.rows; ++i) p(i, i) = 1;
-  for (int j = 0; j < f.columns; ++j) {
-    Vector3d jc = Vector3d::Zero();
-    for (int k = 0; k < f.columns; ++k) {
-      jc.head(f.rows) +=
-          cov(f.column[static_cast<std::size_t>(j)], f.column[static_cast<std::size_t>(k)]) *
-          f.J.col(k).head(f.rows);
-    }
-    p.topLeftCorner(f.rows, f.rows) -= f.J.col(j).head(f.rows) * jc.head(f.rows).transpose();
-  }
+Matrix3d Freedom(const Factor& f, const BlockMatrix& cov) {
+  Matrix3d p = -CovarianceOf(f, cov);
+  for (int i = 0; i < f.rows; ++i) p(i, i) += 1;
   return 0.5 * (p + p.transpose());
 }
 
@@ -173,9 +167,10 @@ class Diagnoser {
       onsets_of_.push_back(i);
     }
     scan_.emplace(run_, unknowns);
+    NormalBlock rows;
     for (std::size_t k = 0; k < run_.knots(); ++k) {
-      run_.RowsOf(k, rows_);
-      scan_->Forward(k, rows_, *influence_);
+      run_.BlockOf(k, rows);
+      scan_->Forward(k, rows, *influence_);
     }
   }
 
@@ -189,7 +184,7 @@ class Diagnoser {
     for (std::size_t k = run_.knots(); k-- > 0;) {
       BehindMatrix with_next;
       const EdgeMatrix here = e.CovarianceBefore(k, e.Gain(k), next, with_next);
-      NormalBlock::Matrix joint(n + m, n + m);
+      BlockMatrix joint(n + m, n + m);
       joint.topLeftCorner(n, n) = here.topLeftCorner(n, n);
       joint.topRightCorner(n, m) = with_next;
       joint.bottomLeftCorner(m, n) = with_next.transpose();
@@ -200,7 +195,7 @@ class Diagnoser {
     }
   }
 
-  void LookAt(std::size_t k, const NormalBlock::Matrix& joint) {
+  void LookAt(std::size_t k, const BlockMatrix& joint) {
     run_.RowsOf(k, rows_);
     for (const Factor& f : rows_) {
       const bool gyro = f.kind == RowKind::kTurn || f.kind == RowKind::kStill;
@@ -290,6 +285,12 @@ class Diagnoser {
     }
   }
 
+  double PriorWeight(std::size_t i) const {
+    const double sigma = run_.layout().sigma[ColumnOfSpec(i)];
+    return 1 / (sigma * sigma);
+  }
+  MatrixXd CompareOnsets(const Diagnosis& d, std::span<const std::size_t> onsets,
+                         MatrixXd& gram) const;
   void CompareSignatures(Diagnosis& d) const;
   void AddOdds(Diagnosis& d) const;
 
@@ -300,64 +301,85 @@ class Diagnoser {
   std::optional<OnsetScan> scan_;
   std::vector<std::size_t> onsets_of_;        ///< specs, in the order of the scan
   std::vector<std::vector<double>> changes_;  ///< information of one knot's part of the column
-  Eigen::MatrixXd border_covariance_;
+  MatrixXd border_covariance_;
   Scatter turns_{kStretch}, forces_{kStretch};
   mutable std::vector<Factor> rows_;
 };
 
-/// Of constants and onsets at their likeliest nodes: N^-1 J'c of each, and in `gram` c'c less what
-/// is then taken off, c_i'P c_j.
-void Diagnoser::CompareSignatures(Diagnosis& d) const {
+/// Of onsets at their likeliest nodes, by one pass forward with J'c a column each: adds
+/// c_i'c_j - (J'c_i)' N^-1 J'c_j to `gram` but for what the prior's rows have in it, and returns
+/// N^-1 J'c of the border.
+MatrixXd Diagnoser::CompareOnsets(const Diagnosis& d, std::span<const std::size_t> onsets,
+                                  MatrixXd& gram) const {
   const Layout& layout = run_.layout();
-  const std::size_t specs = specs_.size();
-  const auto count = static_cast<Index>(specs);
-  const int n = layout.node, b = layout.border;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count, count);
-  LinearRun::Columns columns;
-  columns.border = Eigen::MatrixXd::Zero(b, count);
-  columns.nodes.assign(run_.knots() + 1, Eigen::MatrixXd::Zero(n, count));
-  const auto tested = [&](std::size_t s) {
-    return d.tests[s].tested && ColumnOfSpec(s) != kAbsent;
-  };
-  for (std::size_t i = 0; i < specs; ++i) {
-    if (!tested(i)) continue;
-    const double sigma = layout.sigma[ColumnOfSpec(i)];
-    columns.border(ColumnOfSpec(i), static_cast<Index>(i)) = 1 / (sigma * sigma);
-    for (std::size_t j = 0; j < specs; ++j) {
-      if (!tested(j) || ColumnOfSpec(i) != ColumnOfSpec(j)) continue;
-      gram(static_cast<Index>(i), static_cast<Index>(j)) = 1 / (sigma * sigma);
-    }
+  const int n = layout.node, m = n + layout.border;
+  MatrixXd x = MatrixXd::Zero(n + m, At(onsets.size()));
+  MatrixXd known = MatrixXd::Zero(x.cols(), x.cols());
+  for (std::size_t q = 0; q < onsets.size(); ++q) {
+    x(2 * n + ColumnOfSpec(onsets[q]), At(q)) = PriorWeight(onsets[q]);
   }
-  Eigen::VectorXd block(2 * n + b);
+  NormalBlock rows;
+  std::size_t last = 0;
+  for (const std::size_t i : onsets) last = std::max(last, d.tests[i].node);
   for (std::size_t k = 0; k < run_.knots(); ++k) {
-    run_.RowsOf(k, rows_);
-    for (const Factor& f : rows_) {
-      Eigen::Matrix<double, 3, Eigen::Dynamic> c =
-          Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, count);
-      bool any = false;
-      for (std::size_t i = 0; i < specs; ++i) {
-        if (!tested(i) || k >= d.tests[i].node) continue;
-        const auto at = static_cast<Index>(i);
-        c.col(at) = ColumnOf(f, layout, ColumnOfSpec(i));
-        if (c.col(at).isZero(0)) continue;
-        any = true;
-        block.setZero();
-        AddTransposed(f, c.col(at), block);
-        columns.nodes[k].col(at) += block.head(n);
-        columns.nodes[k + 1].col(at) += block.segment(n, n);
-        columns.border.col(at) += block.tail(b);
+    const auto before = [&](std::size_t i) { return k < d.tests[i].node; };
+    if (k < last) run_.BlockOf(k, rows);
+    for (std::size_t q = 0; q < onsets.size(); ++q) {
+      if (!before(onsets[q])) continue;
+      const NormalBlock::Vector column = rows.Column(2 * n + ColumnOfSpec(onsets[q]));
+      x.col(At(q)) += column;
+      for (const std::size_t j : onsets) {
+        if (before(j)) gram(At(onsets[q]), At(j)) += column[2 * n + ColumnOfSpec(j)];
       }
-      if (any) gram += c.transpose() * c;
+    }
+    run_.elimination().Eliminate(k, x);
+    known.noalias() += x.topRows(n).transpose().lazyProduct(x.topRows(n));
+    x.topRows(n) = x.middleRows(n, n).eval();
+    x.middleRows(n, n).setZero();
+  }
+  MatrixXd edge(m, x.cols());
+  edge << x.topRows(n), x.bottomRows(m - n);
+  const MatrixXd solved = run_.elimination().LastCovariance() * edge;
+  known += edge.transpose() * solved;
+  for (std::size_t p = 0; p < onsets.size(); ++p) {
+    for (std::size_t q = 0; q < onsets.size(); ++q) {
+      gram(At(onsets[p]), At(onsets[q])) -= known(At(p), At(q));
     }
   }
-  const LinearRun::Columns transposed = columns;
-  run_.SolveFor(columns);
-  gram -= transposed.border.transpose() * columns.border;
-  for (std::size_t k = 0; k <= run_.knots(); ++k) {
-    gram -= transposed.nodes[k].transpose() * columns.nodes[k];
+  return solved.bottomRows(m - n);
+}
+
+/// Of constants and onsets at their likeliest nodes c_i'P c_j. A constant's c is its prior's row
+/// alone, which onsets have too.
+void Diagnoser::CompareSignatures(Diagnosis& d) const {
+  std::vector<std::size_t> constants, onsets;
+  for (std::size_t s = 0; s < specs_.size(); ++s) {
+    if (!d.tests[s].tested || ColumnOfSpec(s) == kAbsent) continue;
+    (specs_[s].kind == Kind::kOnset ? onsets : constants).push_back(s);
   }
-  for (Index i = 0; i < count; ++i) {
-    for (Index j = 0; j < count; ++j) {
+  MatrixXd gram = MatrixXd::Zero(At(specs_.size()), At(specs_.size()));
+  for (const auto* some : {&constants, &onsets}) {
+    for (const std::size_t i : *some) {
+      for (const auto* others : {&constants, &onsets}) {
+        for (const std::size_t j : *others) {
+          if (ColumnOfSpec(i) == ColumnOfSpec(j)) gram(At(i), At(j)) += PriorWeight(i);
+        }
+      }
+    }
+  }
+  const MatrixXd border = CompareOnsets(d, onsets, gram);
+  for (const std::size_t i : constants) {
+    for (const std::size_t j : constants) {
+      gram(At(i), At(j)) -=
+          PriorWeight(i) * PriorWeight(j) * border_covariance_(ColumnOfSpec(i), ColumnOfSpec(j));
+    }
+    for (std::size_t q = 0; q < onsets.size(); ++q) {
+      gram(At(i), At(onsets[q])) -= PriorWeight(i) * border(ColumnOfSpec(i), At(q));
+      gram(At(onsets[q]), At(i)) = gram(At(i), At(onsets[q]));
+    }
+  }
+  for (Index i = 0; i < gram.rows(); ++i) {
+    for (Index j = 0; j < gram.cols(); ++j) {
       const double by = std::sqrt(gram(i, i) * gram(j, j));
       if (by > 0) d.alike(i, j) = std::clamp(gram(i, j) / by, -1.0, 1.0);
     }

@@ -26,17 +26,16 @@ class Elimination {
   void Start(std::size_t nodes, const EdgeMatrix& information, const EdgeVector& gradient);
   /// Adds what ties node k to k + 1 and eliminates k. False where the information is not positive:
   /// something is unobserved, or not finite.
-  bool Step(NormalBlock& block);
-  /// Adds to the information of the newest node and the border.
-  EdgeMatrix& edge_information() { return information_; }
-  EdgeVector& edge_gradient() { return gradient_; }
+  bool Step(const NormalBlock& block);
+  /// Of the newest node and the border (lower triangle).
+  const EdgeMatrix& edge_information() const { return information_; }
 
   /// Solves for the steps of all unknowns. False as Step().
   bool Solve(std::vector<NodeVector>& nodes, BorderVector& border);
   /// Covariance of [last node; border], after Solve().
   EdgeMatrix LastCovariance() const;
 
-  std::size_t eliminated() const { return conditionals_.size(); }
+  std::size_t eliminated() const { return eliminated_; }
   /// x_k = gain [x_k+1; border] + ...
   BehindMatrix Gain(std::size_t k) const;
   /// cov(e) of node k.
@@ -45,6 +44,11 @@ class Elimination {
   /// `with_next` becomes E[x_k (x_k+1; border)'].
   EdgeMatrix CovarianceBefore(std::size_t k, const BehindMatrix& gain, const EdgeMatrix& next,
                               BehindMatrix& with_next) const;
+  /// Solves for other right-hand sides, one a column of `x` over [node k | next node | border],
+  /// from node to node: Eliminate() divides node k by L and takes from what follows what it told;
+  /// Substitute(), where what follows is solved, ends node k.
+  void Eliminate(std::size_t k, Eigen::Ref<Eigen::MatrixXd> x) const;
+  void Substitute(std::size_t k, Eigen::Ref<Eigen::MatrixXd> x) const;
   /// ln det of the information of all unknowns, after Solve().
   double log_determinant() const { return log_determinant_; }
   /// Newton's decrement squared, g' H^-1 g, after Solve(): how far the step is in sigmas, all
@@ -52,14 +56,21 @@ class Elimination {
   double decrement() const { return solved_ ? decrement_ : HUGE_VAL; }
 
  private:
-  struct Conditional {
-    NodeMatrix L;         ///< lower
-    BehindMatrix behind;  ///< L^-1 times the information with [next node; border]
-    NodeVector gradient;  ///< L^-1 times it
-  };
+  using Columns = Eigen::Map<const Eigen::MatrixXd>;
+  /// Of node k, in its n columns: L (lower) over (L^-1 times the information with [next node;
+  /// border])'. Behind them L^-1 times the gradient.
+  Columns PanelOf(std::size_t k) const {
+    return {conditionals_.data() + k * ConditionalSize(), rows_, layout_->node};
+  }
+  std::size_t ConditionalSize() const {
+    return static_cast<std::size_t>(layout_->node * (rows_ + 1));
+  }
+  void Keep(const double* panel, Eigen::Index stride, const NormalBlock::Vector& gradient);
 
   const Layout* layout_;
-  std::vector<Conditional> conditionals_;
+  std::vector<double> conditionals_;  ///< of each node the panel and the gradient
+  std::size_t eliminated_ = 0;
+  Eigen::Index rows_ = 0;   ///< of [node | next node | border]
   EdgeMatrix information_;  ///< of [newest node; border], lower
   EdgeVector gradient_;
   EdgeMatrix last_;  ///< its Cholesky factor

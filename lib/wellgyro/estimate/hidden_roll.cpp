@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "wellgyro/base/angle.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kReach = 10, kLeast = 5;  // knots to each side, and of them that tell
+constexpr std::size_t kReach = 60, kLeast = 5;  // knots to each side, and of them that tell
 constexpr double kLeastRatio = 0.7;             // of what the gyros read to the Earth's across
+
+// Where a bend begins or ends the rate across turns in L with it, and its size changes: by more
+// than a tenth, noise apart, from some knots before to as many after.
+constexpr std::size_t kAcross = 5;
+constexpr double kSteady = 0.1, kChance = 3;
 
 bool Reads(const RunKnot& knot, double horizontal) {
   const Increment& i = knot.increment;
@@ -19,32 +23,55 @@ bool Reads(const RunKnot& knot, double horizontal) {
   return !i.roll_seen && !knot.still && ratio > kLeastRatio;
 }
 
-/// Of psi against the Earth from one knot's middle to the next one's [rad/s].
-std::optional<double> SlipBetween(const RunKnot& a, const RunKnot& b, double horizontal) {
-  if (!Reads(a, horizontal) || !Reads(b, horizontal)) return std::nullopt;
-  const Eigen::Vector2d& u = a.increment.turn_M;
-  const Eigen::Vector2d& v = b.increment.turn_M;
+/// The roll rate against the Earth from one knot's middle to the next one's [rad/s].
+double RollBetween(const Increment& a, const Increment& b) {
+  const Eigen::Vector2d &u = a.turn_M, &v = b.turn_M;
   const double turned = -std::atan2(v.y() * u.x() - v.x() * u.y(), v.dot(u));
-  const double angle = WrapPi(turned - (a.increment.roll_after + b.increment.roll_before));
-  return angle / (0.5 * (a.increment.seconds + b.increment.seconds));
+  const double psi = a.roll_after + b.roll_before;
+  return (psi + WrapPi(turned - psi)) / (0.5 * (a.seconds + b.seconds));
 }
 
 }  // namespace
 
-std::vector<double> HiddenRoll(std::span<const RunKnot> knots, double horizontal) {
+std::vector<bool> SteadyAcross(std::span<const RunKnot> knots, double angle_random_walk) {
+  std::vector<double> turns{0}, times{0};
+  for (const RunKnot& knot : knots) {
+    turns.push_back(turns.back() + knot.increment.turn_M.norm());
+    times.push_back(times.back() + knot.increment.seconds);
+  }
+  std::vector<bool> steady(knots.size());
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const std::size_t begin = k > kAcross ? k - kAcross : 0;
+    const std::size_t end = std::min(k + 1 + kAcross, knots.size());
+    const double before = std::max(times[k + 1] - times[begin], 1e-9);
+    const double after = std::max(times[end] - times[k], 1e-9);
+    const double a = (turns[k + 1] - turns[begin]) / before, b = (turns[end] - turns[k]) / after;
+    const double chance = kChance * angle_random_walk * std::sqrt(1 / before + 1 / after);
+    steady[k] = std::abs(b - a) < 0.5 * kSteady * (a + b) + chance;
+  }
+  return steady;
+}
+
+std::vector<double> HiddenRoll(std::span<const RunKnot> knots, double horizontal,
+                               const std::vector<bool>& steady) {
+  const auto reads = [&](std::size_t k) { return steady[k] && Reads(knots[k], horizontal); };
   std::vector<double> hidden(knots.size(), 0), near;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     if (knots[k].increment.roll_seen || knots[k].still) continue;
     near.clear();
-    const std::size_t begin = k > kReach ? k - kReach : 0;
-    const std::size_t end = std::min(k + kReach, knots.size() - 1);
+    // What it did before a stop is not what it does after it.
+    std::size_t begin = k, end = k;
+    while (begin > 0 && begin + kReach > k && !knots[begin - 1].still) --begin;
+    while (end + 1 < knots.size() && end < k + kReach && !knots[end + 1].still) ++end;
     for (std::size_t j = begin; j < end; ++j) {
-      if (const auto slip = SlipBetween(knots[j], knots[j + 1], horizontal)) near.push_back(*slip);
+      if (!reads(j) || !reads(j + 1)) continue;
+      near.push_back(RollBetween(knots[j].increment, knots[j + 1].increment));
     }
     if (near.size() < kLeast) continue;
     const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
     std::nth_element(near.begin(), middle, near.end());
-    hidden[k] = *middle;
+    const Increment& i = knots[k].increment;
+    hidden[k] = *middle - (i.roll_before + i.roll_after) / i.seconds;
   }
   return hidden;
 }

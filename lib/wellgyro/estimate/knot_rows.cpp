@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 // IncrementBuilder), and an acceleration of the path whose curvature changes within the window
 // that it is read from, 1 deg/30 m at 0.3 m/s.
 constexpr double kLeastTurn = 1e-7;   // [rad]
-constexpr double kLeastForce = 5e-5;  // [m/s^2]
+constexpr double kLeastForce = 5e-5;  // [m/s^2 sqrt(s)], so that of a moment it tells nothing
 // The turn about the axis is the unknown roll rate's; this ties it to the attitude. A tenth of the
 // finest toolface that accelerometers tell in a knot, 1e-5 g.
 constexpr double kAxialTie = 1e-6;  // [rad]
@@ -220,9 +220,8 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
     gravity += t.place.depth * t.border[layout_.gravity_gradient];
   }
   // M stands where half of the seen turn leads; half of the unseen is missing.
-  const double noise = std::hypot(setup_.errors.accel_noise / std::sqrt(t.dt),
-                                  0.5 * t.knot.unseen * t.place.site.gravity);
-  const double whiten = 1 / std::max(noise, kLeastForce);
+  const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
+  const double whiten = 1 / std::hypot(noise, 0.5 * t.knot.unseen * t.place.site.gravity);
   const Matrix3d px = Skew(p);
 
   Factor& f = factor_;

@@ -110,4 +110,25 @@ double* PriorOf(int unknown, EstimateSetup& setup) {
   }
 }
 
+std::vector<int> LinkedColumns(const Layout& layout) {
+  std::vector<int> columns{0, 1, 2};
+  for (const int drift : {layout.walk, layout.markov}) {
+    if (drift == kAbsent) continue;
+    columns.push_back(drift);
+    columns.push_back(drift + 1);
+  }
+  for (int i = 0; i < layout.border; ++i) columns.push_back(layout.node + i);
+  return columns;
+}
+
+Eigen::MatrixXd LinkedRows(const Layout& layout) {
+  const std::vector<int> columns = LinkedColumns(layout);
+  Eigen::MatrixXd rows =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(columns.size()), layout.node + layout.border);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    rows(static_cast<Eigen::Index>(i), columns[i]) = 1;
+  }
+  return rows;
+}
+
 }  // namespace wellgyro

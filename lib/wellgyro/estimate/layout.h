@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -41,6 +42,12 @@ struct Layout {
 };
 
 Layout LayoutOf(const EstimateSetup& setup);
+
+/// Of [node; border], those whose errors stay linked from node to node: attitude, drift, the
+/// border.
+std::vector<int> LinkedColumns(const Layout& layout);
+/// The matrix that takes these from [node; border].
+Eigen::MatrixXd LinkedRows(const Layout& layout);
 
 /// The sigma in `setup` that an ErrorSource, kLatitudeError or kGravityError has; nullptr: it
 /// cannot be an unknown.

@@ -17,6 +17,13 @@ void Weigh(std::vector<Factor>& rows) {
 
 }  // namespace
 
+void RunRows::BlockOf(std::size_t k, NormalBlock& block) {
+  std::vector<Factor> rows;
+  RowsOf(k, rows);
+  block.Clear(layout());
+  for (const Factor& f : rows) block.Add(f);
+}
+
 LinearRun::LinearRun(RunRows& rows) : rows_(rows), elimination_(rows.layout()) {}
 
 bool LinearRun::Solve() {
@@ -24,16 +31,8 @@ bool LinearRun::Solve() {
   rows_.FirstRows(information, first_gradient_);
   elimination_.Start(knots(), information, first_gradient_);
   NormalBlock block;
-  std::vector<Factor> rows;
   for (std::size_t k = 0; k < knots(); ++k) {
-    rows.clear();
-    rows_.RowsOf(k, rows);
-    Weigh(rows);
-    block.Clear(layout());
-    for (Factor& f : rows) {
-      f.kind = RowKind::kPrior;  // the kind that no loss is for
-      block.Add(f);
-    }
+    BlockOf(k, block);
     if (!elimination_.Step(block)) return false;
   }
   return elimination_.Solve(step_, border_step_);
@@ -43,14 +42,23 @@ void LinearRun::RowsOf(std::size_t k, std::vector<Factor>& rows) const {
   rows.clear();
   rows_.RowsOf(k, rows);
   Weigh(rows);
-  const int n = layout().node;
-  Eigen::VectorXd step(2 * n + layout().border);
-  step << step_[k], step_[k + 1], border_step_;
+  const NormalBlock::Vector step = StepOf(k);
   for (Factor& f : rows) {
     for (int j = 0; j < f.columns; ++j) {
       f.r.head(f.rows) += step[f.column[static_cast<std::size_t>(j)]] * f.J.col(j).head(f.rows);
     }
   }
+}
+
+void LinearRun::BlockOf(std::size_t k, NormalBlock& block) const {
+  block.WithoutLoss(true);
+  rows_.BlockOf(k, block);
+}
+
+NormalBlock::Vector LinearRun::StepOf(std::size_t k) const {
+  NormalBlock::Vector step(2 * layout().node + layout().border);
+  step << step_[k], step_[k + 1], border_step_;
+  return step;
 }
 
 double LinearRun::PriorResidual(int i) const {
@@ -60,24 +68,25 @@ double LinearRun::PriorResidual(int i) const {
 
 void LinearRun::SolveFor(Columns& columns) const {
   const int n = layout().node, b = layout().border;
-  const Eigen::Index q = columns.border.cols();
-  Eigen::MatrixXd edge(n + b, q), next(n + b, q);
-  edge << columns.nodes[0], columns.border;
+  Eigen::MatrixXd x(2 * n + b, columns.border.cols());
+  x.bottomRows(b) = columns.border;
+  x.topRows(n) = columns.nodes[0];
   for (std::size_t k = 0; k < knots(); ++k) {
-    columns.nodes[k] = edge.topRows(n);
-    next.noalias() = elimination_.Gain(k).transpose() * columns.nodes[k];
-    next.topRows(n) += columns.nodes[k + 1];
-    next.bottomRows(b) += edge.bottomRows(b);
-    edge.swap(next);
+    x.middleRows(n, n) = columns.nodes[k + 1];
+    elimination_.Eliminate(k, x);
+    columns.nodes[k] = x.topRows(n);
+    x.topRows(n) = x.middleRows(n, n).eval();
   }
-  Eigen::MatrixXd behind = elimination_.LastCovariance() * edge;
-  columns.nodes.back() = behind.topRows(n);
-  columns.border = behind.bottomRows(b);
+  Eigen::MatrixXd last(n + b, x.cols());
+  last << x.topRows(n), x.bottomRows(b);
+  last = (elimination_.LastCovariance() * last).eval();
+  columns.nodes.back() = last.topRows(n);
+  columns.border = x.bottomRows(b) = last.bottomRows(b);
   for (std::size_t k = knots(); k-- > 0;) {
-    const Eigen::MatrixXd here =
-        elimination_.Gain(k) * behind + elimination_.Remainder(k) * columns.nodes[k];
-    columns.nodes[k] = here;
-    behind.topRows(n) = here;
+    x.middleRows(n, n) = columns.nodes[k + 1];
+    x.topRows(n) = columns.nodes[k];
+    elimination_.Substitute(k, x);
+    columns.nodes[k] = x.topRows(n);
   }
 }
 

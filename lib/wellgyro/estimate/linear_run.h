@@ -21,6 +21,8 @@ class RunRows {
   virtual void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const = 0;
   /// Appends what knot `k` says of [node k | node k + 1 | border]. Always the same.
   virtual void RowsOf(std::size_t k, std::vector<Factor>& rows) = 0;
+  /// Their J'J and J'r, summed up by `block` as it does; RowsOf() is what it does by default.
+  virtual void BlockOf(std::size_t k, NormalBlock& block);
 };
 
 /// A run's rows solved once as they stand, by least squares without any loss (only changes of the
@@ -49,6 +51,10 @@ class LinearRun {
   const Elimination& elimination() const { return elimination_; }
   /// What knot `k` says, with P r in place of r.
   void RowsOf(std::size_t k, std::vector<Factor>& rows) const;
+  /// Their J'J, and J'r of the r before.
+  void BlockOf(std::size_t k, NormalBlock& block) const;
+  /// N^-1 J'r with its sign turned, of [node k | node k + 1 | border]: P r = r + J step.
+  NormalBlock::Vector StepOf(std::size_t k) const;
   /// P r of the prior of the border's unknown `i`, r = value / sigma.
   double PriorResidual(int i) const;
   /// N^-1 times `columns`, in place.

@@ -55,20 +55,6 @@ Loss LossOf(const Factor& f) {
   return {kHuber / norm, kHuber * (2 * norm - kHuber)};
 }
 
-/// tr(J cov J').
-double Absorbed(const Factor& f, const NormalBlock::Matrix& cov) {
-  const auto n = static_cast<std::size_t>(f.columns);
-  double trace = 0;
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t k = 0; k < n; ++k) {
-      const double jj =
-          f.J.col(static_cast<int>(j)).head(f.rows).dot(f.J.col(static_cast<int>(k)).head(f.rows));
-      trace += jj * cov(f.column[j], f.column[k]);
-    }
-  }
-  return trace;
-}
-
 /// What the weighted square is to be, of residuals that keep the share 1 - absorbed/n of their
 /// variance: Huber's loss then begins at more of their sigmas.
 double FreedomOf(const Factor& f, double absorbed) {
@@ -78,6 +64,39 @@ double FreedomOf(const Factor& f, double absorbed) {
 }
 
 }  // namespace
+
+Factor& Factor::operator=(const Factor& other) {
+  kind = other.kind;
+  rows = other.rows;
+  held = other.held;
+  per_unit = other.per_unit;
+  columns = other.columns;
+  std::copy_n(other.column.begin(), columns, column.begin());
+  J.leftCols(columns) = other.J.leftCols(columns);
+  r = other.r;
+  return *this;
+}
+
+Eigen::Matrix3d CovarianceOf(const Factor& f, const BlockMatrix& cov) {
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 2 * kNodeMax + kBorderMax, 3> by_rows(cov.rows(), 3);
+  by_rows.setZero();
+  for (int j = 0; j < f.columns; ++j) {
+    const auto column = cov.col(f.column[static_cast<std::size_t>(j)]);
+    for (int i = 0; i < f.rows; ++i) by_rows.col(i) += f.J(i, j) * column;
+  }
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < f.columns; ++j) {
+    const int at = f.column[static_cast<std::size_t>(j)];
+    sum.topRows(f.rows) += f.J.col(j).head(f.rows) * by_rows.row(at);
+  }
+  return sum;
+}
+
+NormalBlock::Vector NormalBlock::Column(int at) const {
+  Vector column = information_.col(at);
+  column.head(at) = information_.row(at).head(at).transpose();
+  return column;
+}
 
 double RollWeight(double square, int n) { return (kDegrees + n) / (kDegrees + square); }
 
@@ -93,8 +112,8 @@ void NormalBlock::Add(const Factor& f) {
     collected_->push_back(f);
     return;
   }
-  const Loss loss = LossOf(f);
-  const auto n = static_cast<std::size_t>(f.columns);
+  Loss loss = LossOf(f);
+  if (without_loss_ && f.kind != RowKind::kRoll) loss.weight = 1;
   RowSum& sum = sums_[static_cast<std::size_t>(f.kind)];
   const double square = f.r.head(f.rows).squaredNorm();
   sum.squares += square;
@@ -102,21 +121,46 @@ void NormalBlock::Add(const Factor& f) {
   sum.cost += loss.cost;
   sum.rows += f.rows;
   if (covariance_ != nullptr) {
-    sum.freedom += FreedomOf(f, Absorbed(f, *covariance_));
+    sum.freedom += FreedomOf(f, CovarianceOf(f, *covariance_).trace());
     return;
   }
-  for (std::size_t j = 0; j < n; ++j) {
-    const int cj = f.column[j];
-    const Eigen::Vector3d wj = loss.weight * f.J.col(static_cast<int>(j));
-    double g = 0;
-    for (int i = 0; i < f.rows; ++i) g += wj[i] * f.r[i];
-    gradient_[cj] += g;
-    for (std::size_t k = 0; k <= j; ++k) {
-      const int ck = f.column[k];
+  if (f.rows == 3) {
+    AddDense(f, loss.weight);
+  } else {
+    AddSparse(f, loss.weight);
+  }
+}
+
+/// Rows that reach few columns.
+void NormalBlock::AddSparse(const Factor& f, double weight) {
+  for (int j = 0; j < f.columns; ++j) {
+    const int cj = f.column[static_cast<std::size_t>(j)];
+    const Eigen::Vector3d wj = weight * f.J.col(j);
+    for (int i = 0; i < f.rows; ++i) gradient_[cj] += wj[i] * f.r[i];
+    for (int k = 0; k <= j; ++k) {
+      const int ck = f.column[static_cast<std::size_t>(k)];
       double h = 0;
-      for (int i = 0; i < f.rows; ++i) h += wj[i] * f.J(i, static_cast<int>(k));
+      for (int i = 0; i < f.rows; ++i) h += wj[i] * f.J(i, k);
       information_(std::max(cj, ck), std::min(cj, ck)) += h;
     }
+  }
+}
+
+/// Rows that reach most columns: spread out over all of them, so that sums run along columns.
+void NormalBlock::AddDense(const Factor& f, double weight) {
+  const Eigen::Index size = information_.rows();
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 2 * kNodeMax + kBorderMax, 3> J(size, 3);
+  J.setZero();
+  for (int j = 0; j < f.columns; ++j) {
+    J.row(f.column[static_cast<std::size_t>(j)]) = f.J.col(j).transpose();
+  }
+  for (int j = 0; j < f.columns; ++j) {
+    const int at = f.column[static_cast<std::size_t>(j)];
+    const Eigen::Vector3d w = weight * f.J.col(j);
+    gradient_[at] += w.dot(f.r);
+    information_.col(at).tail(size - at) += w[0] * J.col(0).tail(size - at) +
+                                            w[1] * J.col(1).tail(size - at) +
+                                            w[2] * J.col(2).tail(size - at);
   }
 }
 

@@ -39,6 +39,11 @@ struct Factor {
   Eigen::Matrix<double, 3, kColumnsMax> J;
   Eigen::Vector3d r;
 
+  Factor() = default;
+  /// Of J only what is filled in.
+  Factor(const Factor& other) { *this = other; }
+  Factor& operator=(const Factor& other);
+
   /// Adds a column for what stands at `at` of the block; its derivative is to be filled in.
   auto Column(int at) {
     column[static_cast<std::size_t>(columns)] = at;
@@ -66,14 +71,21 @@ struct RowSum {
   double freedom = 0;
 };
 
+using BlockMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                                  2 * kNodeMax + kBorderMax, 2 * kNodeMax + kBorderMax>;
+
+/// J cov J', `cov` of [node | next node | border]; rows that the factor lacks are zero.
+Eigen::Matrix3d CovarianceOf(const Factor& factor, const BlockMatrix& cov);
+
 /// The normal equations of what a knot says of [node | next node | border]: J'J and J'r.
 class NormalBlock {
  public:
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2 * kNodeMax + kBorderMax,
-                               2 * kNodeMax + kBorderMax>;
+  using Matrix = BlockMatrix;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 * kNodeMax + kBorderMax, 1>;
 
   void Clear(const Layout& layout);
+  /// Factors that come next count as they are, without loss, but for the roll's.
+  void WithoutLoss(bool without) { without_loss_ = without; }
   /// Adds the factor with the robust weight of its kind.
   void Add(const Factor& factor);
   /// With the covariance of [node | next node | border], factors that come next are only summed up,
@@ -87,12 +99,20 @@ class NormalBlock {
   int border() const { return 2 * node_; }  ///< first of the border
   /// Lower triangle.
   Matrix& information() { return information_; }
+  const Matrix& information() const { return information_; }
   Vector& gradient() { return gradient_; }
+  const Vector& gradient() const { return gradient_; }
+  /// Of the information, its upper part too.
+  Vector Column(int at) const;
   const std::array<RowSum, kRowKinds>& sums() const { return sums_; }
   void ClearSums() { sums_ = {}; }
 
  private:
+  void AddSparse(const Factor& f, double weight);
+  void AddDense(const Factor& f, double weight);
+
   int node_ = 0;
+  bool without_loss_ = false;
   Matrix information_;
   Vector gradient_;
   const Matrix* covariance_ = nullptr;

@@ -18,12 +18,6 @@ Vector3d ColumnOf(const Factor& f, const Layout& layout, int i) {
   return c;
 }
 
-void AddTransposed(const Factor& f, const Vector3d& c, Eigen::Ref<Eigen::VectorXd> sum) {
-  for (int j = 0; j < f.columns; ++j) {
-    sum[f.column[static_cast<std::size_t>(j)]] += f.J.col(j).head(f.rows).dot(c.head(f.rows));
-  }
-}
-
 EndInfluence::EndInfluence(const LinearRun& run, std::span<const Eigen::Matrix3d> end_by_phi)
     : layout_(run.layout()) {
   solved_.border = Eigen::MatrixXd::Zero(layout_.border, 3);
@@ -47,6 +41,13 @@ Eigen::Matrix3d EndInfluence::Of(std::size_t knot, const Factor& f) const {
   return influence;
 }
 
+Vector3d EndInfluence::Of(std::size_t knot, const NormalBlock::Vector& x) const {
+  const int n = layout_.node, b = layout_.border;
+  return solved_.nodes[knot].transpose() * x.head(n) +
+         solved_.nodes[knot + 1].transpose() * x.segment(n, n) +
+         solved_.border.transpose() * x.tail(b);
+}
+
 OnsetScan::OnsetScan(const LinearRun& run, std::vector<int> unknowns)
     : run_(run), unknowns_(std::move(unknowns)), now_(unknowns_.size()) {
   const Layout& layout = run.layout();
@@ -65,8 +66,7 @@ void OnsetScan::Record() {
   scores_.push_back(now_);
 }
 
-void OnsetScan::Forward(std::size_t knot, std::span<const Factor> rows,
-                        const EndInfluence& influence) {
+void OnsetScan::Forward(std::size_t knot, const NormalBlock& rows, const EndInfluence& influence) {
   const int n = run_.layout().node, b = run_.layout().border;
   if (unknowns_.empty()) return;
   if (knot == 0) {
@@ -76,30 +76,23 @@ void OnsetScan::Forward(std::size_t knot, std::span<const Factor> rows,
     }
     Record();
   }
-  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(2 * n + b, edge_.cols());
-  block.topRows(n) = edge_.topRows(n);
-  block.bottomRows(b) = edge_.bottomRows(b);
-  for (const Factor& f : rows) {
-    Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();
-    bool known = false;
-    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      const Vector3d c = ColumnOf(f, run_.layout(), unknowns_[i]);
-      if (c.isZero(0)) continue;
-      if (!known) moved = influence.Of(knot, f);
-      known = true;
-      now_[i].score += c.head(f.rows).dot(f.r.head(f.rows));
-      now_[i].information += c.squaredNorm();
-      now_[i].shift -= moved * c;
-      AddTransposed(f, c, block.col(static_cast<Index>(i)));
-    }
-  }
-  const Eigen::MatrixXd node = block.topRows(n);
-  const Eigen::MatrixXd solved = run_.elimination().Remainder(knot) * node;
+  work_.setZero(2 * n + b, edge_.cols());
+  work_.topRows(n) = edge_.topRows(n);
+  work_.bottomRows(b) = edge_.bottomRows(b);
+  const NormalBlock::Vector step = run_.StepOf(knot);
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const auto at = static_cast<Index>(i);
-    now_[i].information -= node.col(at).dot(solved.col(at));
+    const int at = rows.border() + unknowns_[i];
+    const NormalBlock::Vector column = rows.Column(at);
+    now_[i].score += rows.gradient()[at] + column.dot(step);
+    now_[i].information += column[at];
+    now_[i].shift -= influence.Of(knot, column);
+    work_.col(static_cast<Index>(i)) += column;
   }
-  edge_ = block.bottomRows(n + b) + run_.elimination().Gain(knot).transpose() * node;
+  run_.elimination().Eliminate(knot, work_);
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    now_[i].information -= work_.col(static_cast<Index>(i)).head(n).squaredNorm();
+  }
+  edge_ = work_.bottomRows(n + b);
   Record();
 }
 

@@ -27,6 +27,8 @@ class EndInfluence {
 
   /// Of each row of the factor, how the end moves when the row's r grows by one, sign turned.
   Eigen::Matrix3d Of(std::size_t knot, const Factor& f) const;
+  /// The same of J'c, `x` over [node | next node | border].
+  Eigen::Vector3d Of(std::size_t knot, const NormalBlock::Vector& x) const;
   Eigen::Vector3d OfBorder(int i) const { return solved_.border.row(i).transpose(); }
 
  private:
@@ -43,8 +45,8 @@ class OnsetScan {
   /// `unknowns`: columns of the border.
   OnsetScan(const LinearRun& run, std::vector<int> unknowns);
 
-  /// To be called of knots 0, 1, ... in turn with their rows after Solve().
-  void Forward(std::size_t knot, std::span<const Factor> rows, const EndInfluence& influence);
+  /// To be called of knots 0, 1, ... in turn with LinearRun::BlockOf() them.
+  void Forward(std::size_t knot, const NormalBlock& rows, const EndInfluence& influence);
   /// With the covariance of [node; border], of every node, in any order after the last knot.
   void Backward(std::size_t node, const EdgeMatrix& covariance);
 
@@ -58,6 +60,7 @@ class OnsetScan {
   const LinearRun& run_;
   std::vector<int> unknowns_;
   Eigen::MatrixXd edge_;  ///< what is yet to be eliminated of J'c, one cause a column
+  Eigen::MatrixXd work_;
   std::vector<Score> now_;
   std::vector<Eigen::MatrixXd> edges_;
   std::vector<std::vector<Score>> scores_;  ///< of each node, each unknown
@@ -65,8 +68,5 @@ class OnsetScan {
 
 /// The part of a factor's columns that is of the border's unknown `i`; zero where it has none.
 Eigen::Vector3d ColumnOf(const Factor& f, const Layout& layout, int i);
-
-/// J'c of a factor's rows, added to [node | next node | border].
-void AddTransposed(const Factor& f, const Eigen::Vector3d& c, Eigen::Ref<Eigen::VectorXd> sum);
 
 }  // namespace wellgyro

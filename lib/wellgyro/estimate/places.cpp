@@ -22,14 +22,6 @@ constexpr double kSiteEvery = 2;
 constexpr double kPathReach = 1e5;    // [m]; damaged depths may lead anywhere, the site stays
 constexpr double kPoleMargin = 1e-3;  // [rad], from where the transport about the vertical grows
 
-Site SiteBy(const Site& first, const Vector3d& p) {
-  const double north = std::clamp(p.x(), -kPathReach, kPathReach);
-  const double down = std::clamp(p.z(), -kPathReach, kPathReach);
-  const double most = kPi / 2 - kPoleMargin;
-  return SiteAt(std::clamp(first.latitude + north / first.radius_north, -most, most),
-                first.height - down);
-}
-
 /// d(tangent)/d(md) of the hole about each knot, by its way and not by its time: a tool that starts
 /// or stops within the window has gone less of it. Zero where nothing moves.
 std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const Node> nodes) {
@@ -57,6 +49,14 @@ std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const 
 }
 
 }  // namespace
+
+Site SiteBy(const Site& first, const Vector3d& p) {
+  const double north = std::clamp(p.x(), -kPathReach, kPathReach);
+  const double down = std::clamp(p.z(), -kPathReach, kPathReach);
+  const double most = kPi / 2 - kPoleMargin;
+  return SiteAt(std::clamp(first.latitude + north / first.radius_north, -most, most),
+                first.height - down);
+}
 
 void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<const Node> nodes,
                 std::vector<KnotPlace>& places) {

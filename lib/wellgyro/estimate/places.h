@@ -3,11 +3,17 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/estimate/knot_rows.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
+
+/// The site at p [m] from `first`, north, east, down; within what a well can reach.
+Site SiteBy(const Site& first, const Eigen::Vector3d& p);
 
 /// Where every knot of a run stands by the nodes as they are now: site, rotation of L, and the
 /// acceleration of the path across itself: speed squared by the hole's curvature, which is the

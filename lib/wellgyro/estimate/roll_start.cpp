@@ -15,6 +15,8 @@ constexpr double kSpeedReach = 5;      // [s]
 constexpr double kLeastChange = 0.05;  // [m/s]
 constexpr double kRollPerMetre = 2;    // [rad/m]
 
+constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
+
 double MedianOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -102,6 +104,11 @@ std::vector<double> SpeedStarts(std::span<const RunKnot> knots) {
     starts[k] = kRollPerMetre * change;
   }
   return starts;
+}
+
+double RollWalkBy(std::span<const RunKnot> knots) {
+  const double usual = UsualRollChange(knots).value_or(kWalkUnseen);
+  return std::pow(10, std::ceil(std::log10(std::clamp(usual, kRollWalkLeast, kRollWalkMost))));
 }
 
 }  // namespace wellgyro

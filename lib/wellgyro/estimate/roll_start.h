@@ -22,4 +22,12 @@ std::vector<double> SpeedStarts(std::span<const RunKnot> knots);
 /// [rad/s]; absent where it is nowhere seen.
 std::optional<double> UsualRollChange(std::span<const RunKnot> knots);
 
+/// From which a roll walk is looked for, or taken where none is: the decade above what the rate
+/// usually changes by, which its own noise is part of [rad/s/sqrt(s)].
+double RollWalkBy(std::span<const RunKnot> knots);
+
+/// The roll walks that there are, from that of a tool that jerks to one that turns it by a quarter
+/// of a degree in half an hour, which is as good as none [rad/s/sqrt(s)].
+inline constexpr double kRollWalkMost = 0.1, kRollWalkLeast = 1e-7;
+
 }  // namespace wellgyro

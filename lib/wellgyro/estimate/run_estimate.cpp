@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "wellgyro/base/angle.h"
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/swing.h"
+#include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
 namespace {
@@ -21,26 +21,12 @@ using Eigen::Vector3d;
 constexpr int kIterations = 40;
 // 2 ln of odds of 90: by less one azimuth does not beat another.
 constexpr double kDecides = 9;
-// Past it the first order is not what the angle is: sine and angle part by 2 %.
-constexpr double kVagueHeading = 20 * kPi / 180;  // [rad]
 // A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
 constexpr double kTooLarge = 4;
 constexpr double kMisfit = 1.5;  // of the gyros' noise, from which another start is tried
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
-
-/// Columns of [node; border] whose errors stay linked from node to node.
-std::vector<int> LinkedColumns(const Layout& layout) {
-  std::vector<int> columns{0, 1, 2};
-  for (const int drift : {layout.walk, layout.markov}) {
-    if (drift == kAbsent) continue;
-    columns.push_back(drift);
-    columns.push_back(drift + 1);
-  }
-  for (int i = 0; i < layout.border; ++i) columns.push_back(layout.node + i);
-  return columns;
-}
 
 /// Backwards through the nodes: covariances of all, links of the marked, and what the unknowns
 /// absorb of every kind of residual.
@@ -170,13 +156,14 @@ struct Choice {
   double least_evidence = HUGE_VAL;  ///< of all guesses, those that lead to no solution too
 };
 
-/// Each guess with the roll as a walk, and as a swing where it is one.
+/// Each guess with the roll as a swing where it is one, and as a walk.
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
               std::span<const NodeGuess> guesses) {
   std::vector<EstimateSetup> setups{setup};
-  if (const std::optional<double> swing = SwingOf(knots)) {
-    setups.push_back(setup);
-    setups.back().swing = swing;
+  const std::optional<double> swing = setup.may_swing ? SwingOf(knots) : std::nullopt;
+  if (swing) {
+    setups.insert(setups.begin(), setup);
+    setups.front().swing = swing;
   }
   std::vector<Solution> solutions(guesses.size());
   Choice choice;
@@ -184,7 +171,8 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
     for (const EstimateSetup& tried : setups) {
       auto solver = std::make_unique<RunSolver>(tried, knots);
       solver->nodes() = guesses[i];
-      const SolveReport report = solver->Solve(kIterations);
+      const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
+      const SolveReport report = solver->Solve(kIterations, best + kDecides);
       choice.least_evidence = std::min(choice.least_evidence, report.evidence);
       if (!report.converged || !(report.evidence < solutions[i].evidence)) continue;
       solutions[i] = {report.evidence, solver->nodes(), solver->border()};
@@ -220,7 +208,7 @@ bool CountIn(const Solution& rival, double evidence, const RunSolver& best, RunE
   if (rival.border.size() != best.border().size()) return false;
   for (std::size_t k = 0; k < result.cov_phi.size(); ++k) {
     const Vector3d d = Towards(rival, best, k).head<3>();
-    if (d.norm() > kVagueHeading) return false;
+    if (d.norm() > kVagueAngle) return false;
     result.cov_phi[k] += weight * d * d.transpose();
   }
   Eigen::VectorXd before;
@@ -252,6 +240,25 @@ void Take(const Choice& choice, std::span<const std::size_t> marked, RunEstimate
   Sweep(*choice.solver, marked, result).Run();
 }
 
+RunEnd EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
+  const Elimination& e = solved.elimination();
+  const Layout& layout = solved.layout();
+  RunEnd end{solved.setup(),
+             solved.border(),
+             e.edge_information().selfadjointView<Eigen::Lower>(),
+             e.LastCovariance(),
+             {}};
+  end.setup.causes.clear();
+  if (marked.empty()) return end;
+  end.link = LinkedRows(layout);
+  for (std::size_t k = marked.back(); k < solved.knots().size(); ++k) {
+    const Eigen::MatrixXd by_border = end.link.rightCols(layout.border);
+    end.link = (end.link.leftCols(layout.node) * e.Gain(k)).eval();
+    end.link.rightCols(layout.border) += by_border;
+  }
+  return end;
+}
+
 /// Gyros that are off by more than any noise that is stated too small: a minimum, but not the one.
 bool Misfits(const SolveReport& report) {
   return Excess(report.sums, {RowKind::kTurn, RowKind::kStill}) > kMisfit;
@@ -265,8 +272,9 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
   if (knots.empty()) return result;
   Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts.anchored));
   Take(choice, marked, result);
-  if (!result.solved || Misfits(result.report)) {
-    Choice other = Choose(setup, knots, starts.guessed);
+  if (starts.otherwise && (!result.solved || Misfits(result.report))) {
+    const std::array otherwise{starts.otherwise()};
+    Choice other = Choose(setup, knots, otherwise);
     if (other.solver && (!choice.solver || other.report.evidence < choice.report.evidence)) {
       choice = std::move(other);
       Take(choice, marked, result);
@@ -279,11 +287,13 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
   // Before the noise is taken larger: a fault is what makes the residuals too large.
   if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(best);
   FitNoise(best, marked, result);
+  result.alone = choice.rivals.empty();
   for (const Solution& rival : choice.rivals) {
     result.ambiguous |= !CountIn(rival, choice.report.evidence, best, result);
   }
-  result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi) > kVagueHeading;
+  result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi) > kVagueAngle;
   result.nodes = best.nodes();
+  result.end = EndOf(best, marked);
   return result;
 }
 

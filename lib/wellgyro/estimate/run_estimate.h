@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/estimate/diagnosis.h"
+#include "wellgyro/estimate/layout.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/estimate/setup.h"
@@ -24,6 +25,14 @@ struct LinkedErrors {
   Eigen::MatrixXd cov_with_previous;  ///< E[x_previous x'] of the marked node before; empty: none
 };
 
+/// What it takes to go on from the last node.
+struct RunEnd {
+  EstimateSetup setup;  ///< with the noise as found
+  BorderVector border;
+  EdgeMatrix information, cov;  ///< of [last node; border]
+  Eigen::MatrixXd link;         ///< E[x (node; border)'] = link cov, x of the last marked node
+};
+
 /// A run as all its knots together tell it.
 struct RunEstimate {
   bool solved = false;  ///< false: what follows means nothing
@@ -32,17 +41,19 @@ struct RunEstimate {
   /// The azimuth is not decided: another solution, 20 deg away somewhere, comes within 9 in
   /// evidence, or no node's heading is known within 20 deg. A nearer one counts in the covariance.
   bool ambiguous = false;
+  bool alone = true;                         ///< no other solution comes so near in evidence at all
   std::vector<Node> nodes;                   ///< one more than knots
   std::vector<Eigen::Matrix3d> cov_phi;      ///< of each node's attitude, R_LT Exp(phi) [rad^2]
   std::vector<LinkedErrors> marked;          ///< in the order of time
   ErrorVector errors = ErrorVector::Zero();  ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior
-  Diagnosis diagnosis;                             ///< where the setup asks for it
+  RunEnd end;
+  Diagnosis diagnosis;  ///< where the setup asks for it
 };
 
 /// Solves the run from each start and keeps the solution of greatest evidence; where there is no
-/// start, from what eight headings lead to: the motion itself shows north. Guesses are tried where
-/// no start leads to a solution that the gyros fit. Where the residuals of
+/// start, from what eight headings lead to: the motion itself shows north. The other guess is tried
+/// where no start leads to a solution that the gyros fit. Where the residuals of
 /// gyros or accelerometers are larger than the noise stated can make them, that sensor's noise is
 /// taken as large as they say, and the run is solved with it (variance components, Foerstner 1979):
 /// covariances hold for what was measured, not for what was promised. Noise is never taken smaller.

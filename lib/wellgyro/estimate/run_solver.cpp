@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "wellgyro/estimate/hidden_roll.h"
+#include "wellgyro/estimate/guess_pass.h"
 #include "wellgyro/estimate/places.h"
 #include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/math/drift.h"
@@ -31,16 +31,12 @@ constexpr double kStepMost = 0.5;  // [rad]
 constexpr double kStays = 1e-6;
 constexpr int kFinish =
     30;  // steps towards it; the last ones of a run with starts and stops are slow
-// The forward pass: gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
-// about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
-constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
-// Near vertical the Earth's rate holds the heading, over some ten knots.
-constexpr double kEarthShare = 0.1;
+// What may be hoped for beyond what the linear model promises, or a trend over kSlow steps.
+constexpr double kGain = 10;
+constexpr int kSlow = 10;
+constexpr double kLeastFall = 0.05;  // of decrements; one step alone may fall by more than the next
 // Steps at which another roll walk can be told from the last, and from which it is not worth while.
 constexpr double kNear = 1, kFar = 1e4;
-// Walks of the roll rate in the hole that are tried, from that of a tool that jerks to one that
-// turns it by a quarter of a degree in half an hour, which is as good as none.
-constexpr double kWalkMost = 0.1, kWalkLeast = 1e-7;  // [rad/s/sqrt(s)]
 // Of what the roll may start and stop by with the speed along the hole, the least share that is
 // tried: 1e-4 rad/s over 10 s are less than the gyros' noise shows.
 constexpr double kShareLeast = 1e-4;
@@ -50,19 +46,15 @@ constexpr double kShareFirst = 1e-2;
 constexpr int kTry = 2;          // steps with each scale: by the third the evidence hardly moves
 constexpr double kCreeps = 0.5;  // Gauss-Newton takes far more off a decrement than its half
 constexpr double kHalfDecade = 3.1622776601683795;
-constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
 
-/// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
-/// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
-double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
-  const Eigen::Vector2d earth = w_IE_M.head<2>() * inc.seconds;
-  const double ratio = inc.turn_M.norm() / earth.norm();
-  if (!(ratio > 0.7 && ratio < 1.4)) return 0;
-  return -std::atan2(inc.turn_M.y() * earth.x() - inc.turn_M.x() * earth.y(),
-                     inc.turn_M.dot(earth));
+/// How far the end is after a step of this decrement, where decrements go on to fall as they did
+/// from the `last` one: the steps, their roots, sum up.
+double Left(double decrement, double last) {
+  const double falls = std::max(decrement / last, kLeastFall);
+  if (!(falls < 1)) return HUGE_VAL;
+  const double rest = 1 - std::sqrt(falls);
+  return decrement * falls / (rest * rest);
 }
-
-Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
 
 /// The attitudes go back most of the way that they came.
 bool TakesBack(const std::vector<NodeVector>& steps, const std::vector<NodeVector>& before) {
@@ -85,41 +77,12 @@ RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots)
   border_.setZero(layout_.border);
 }
 
-void RunSolver::Begin(const Matrix3d& R_LT, std::span<const double> extra_roll) {
-  nodes_.assign(knots_.size() + 1, Node{});
+void RunSolver::Begin(const Matrix3d& R_LT) {
   border_.setZero();
-  nodes_[0].R_LT = R_LT;
-  const double c = std::cos(setup_.site.latitude), s = std::sin(setup_.site.latitude);
-  const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
-  const std::vector<double> slip = HiddenRoll(knots_, kEarthRate * c);
-  for (std::size_t k = 0; k < knots_.size(); ++k) {
-    const Increment& inc = knots_[k].increment;
-    const double extra = (extra_roll.empty() ? 0 : extra_roll[k]) + slip[k] * inc.seconds;
-    const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
-    Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT *
-                 RotationZ(inc.roll_before + 0.5 * extra) * half;
-    if (!inc.roll_seen) {
-      M = M * RotationZ(kEarthShare * AngleToEarth(inc, M.transpose() * earth));
-    }
-    if (inc.level) {
-      const Vector3d f = inc.force_M.normalized();
-      const Vector3d p = -M.row(2).transpose();
-      const double sine2 = std::hypot(f.x(), f.y()) * std::hypot(p.x(), p.y());
-      // The angle about the axis from where the force should be to where it is.
-      const double angle = std::atan2(f.y() * p.x() - f.x() * p.y(), f.x() * p.x() + f.y() * p.y());
-      M = M * RotationZ(-kTurnShare * angle * sine2 / (sine2 + kTurnSine2));
-      const Vector3d down = -M.row(2).transpose();
-      M = M * Exp(kTiltShare * f.cross(down));
-    }
-    Node& next = nodes_[k + 1];
-    next.R_LT = M * half * RotationZ(inc.roll_after + 0.5 * extra);
-    nodes_[k].roll_rate = (inc.roll_before + inc.roll_after + extra) / inc.seconds;
-    next.roll_rate = nodes_[k].roll_rate;
-    next.md = knots_[k].along.known ? knots_[k].along.md : nodes_[k].md;
-    next.speed = knots_[k].along.known ? knots_[k].along.speed : 0;
-  }
-  nodes_[0].md = nodes_[1].md - nodes_[1].speed * knots_[0].increment.seconds;
-  nodes_[0].speed = nodes_[1].speed;
+  GuessPass pass(setup_, knots_);
+  pass.Begin(R_LT);
+  pass.Run(0, knots_.size());
+  nodes_ = std::move(pass).nodes();
 }
 
 /// Information of node 0 and of the border before any knot.
@@ -183,10 +146,7 @@ bool RunSolver::Linearise() {
   elimination_.Start(knots_.size(), information, gradient);
   block_.ClearSums();
   for (std::size_t k = 0; k < knots_.size(); ++k) {
-    block_.Clear(layout_);
-    if (k == 0) AddTies(0, block_, 0);
-    AddTies(k + 1, block_, block_.next());
-    rows_.Add(knots_[k], places_[k], Change(k), border_, nodes_[k], nodes_[k + 1], block_);
+    BlockOf(k, block_);
     if (!elimination_.Step(block_)) return false;
   }
   return true;
@@ -220,13 +180,17 @@ void RunSolver::TakeOver(const RunSolver& other) {
   take(layout_.gravity_gradient, theirs.gravity_gradient);
 }
 
-void RunSolver::RowsOf(std::size_t knot, std::vector<Factor>& rows) {
-  block_.Clear(layout_);
-  block_.Collect(&rows);
-  if (knot == 0) AddTies(0, block_, 0);
-  AddTies(knot + 1, block_, block_.next());
+void RunSolver::BlockOf(std::size_t knot, NormalBlock& block) {
+  block.Clear(layout_);
+  if (knot == 0) AddTies(0, block, 0);
+  AddTies(knot + 1, block, block.next());
   rows_.Add(knots_[knot], places_[knot], Change(knot), border_, nodes_[knot], nodes_[knot + 1],
-            block_);
+            block);
+}
+
+void RunSolver::RowsOf(std::size_t knot, std::vector<Factor>& rows) {
+  block_.Collect(&rows);
+  BlockOf(knot, block_);
   block_.Collect(nullptr);
 }
 
@@ -288,25 +252,48 @@ void RunSolver::HoldRollWeights() {
   }
 }
 
+/// One step of Gauss-Newton. One that takes the last one back went too far, as the next one would:
+/// half of it then.
+bool RunSolver::Advance(SolveReport& report) {
+  PlaceKnots(setup_.site, knots_, nodes_, places_);
+  BorderVector border_step;
+  if (!Linearise() || !elimination_.Solve(steps_, border_step)) return false;
+  Step(steps_, border_step, TakesBack(steps_, before_) ? 0.5 : 1);
+  ++report.iterations;
+  std::swap(steps_, before_);
+  return true;
+}
+
 /// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas, or, near, by
 /// more than `creeps` of what they moved by before: robust weights that are made anew are never
-/// done, and another scale makes others. A step that
-/// takes the last one back went too far, as the next one would: half of it then.
+/// done, and another scale makes others.
 bool RunSolver::Iterate(int most, double stays, SolveReport& report, double creeps) {
-  std::vector<NodeVector> steps, before;
+  before_.clear();
   double last = HUGE_VAL;
-  BorderVector border_step;
   for (int i = 0; i < most; ++i) {
-    PlaceKnots(setup_.site, knots_, nodes_, places_);
-    if (!Linearise() || !elimination_.Solve(steps, border_step)) return false;
-    Step(steps, border_step, TakesBack(steps, before) ? 0.5 : 1);
-    ++report.iterations;
+    if (!Advance(report)) return false;
     if (elimination_.decrement() < stays) return true;
     if (last < kFar && elimination_.decrement() > creeps * last) return false;
     last = elimination_.decrement();
-    std::swap(steps, before);
   }
   return false;
+}
+
+/// Until the run stays; not as far where it will not within kFinish steps, or where its evidence
+/// stays above `least`.
+void RunSolver::Finish(double least, SolveReport& report) {
+  before_.clear();
+  std::vector<double> decrements;
+  for (int i = 0; i < kFinish; ++i) {
+    if (!Advance(report)) return;
+    const double now = elimination_.decrement();
+    if (now < kStays || Evidence() - kGain * now > least) return;
+    if (i > 0 && Left(now, decrements.back()) < kStays) return;
+    decrements.push_back(now);
+    if (i < kSlow) continue;
+    const double falls = now / decrements[static_cast<std::size_t>(i - kSlow)];
+    if (now * std::pow(falls, static_cast<double>(kFinish - 1 - i) / kSlow) > kGain * kNear) return;
+  }
 }
 
 double RunSolver::Evidence() const {
@@ -384,7 +371,7 @@ bool RunSolver::SolveWithNoise(double gyro, double accel) {
   setup_.gyro.quantization *= gyro;
   setup_.errors.accel_noise *= accel;
   SolveReport report;
-  Iterate(kFinish, kStays, report);
+  Finish(HUGE_VAL, report);
   return elimination_.decrement() < kNear;
 }
 
@@ -392,9 +379,7 @@ void RunSolver::BeginScales() {
   scales_ = {};
   scales_.roll_start = RollStarts(knots_);
   scales_.speed_start = SpeedStarts(knots_);
-  // From the decade above what the rate usually changes by, which its own noise is part of.
-  const double usual = UsualRollChange(knots_).value_or(kWalkUnseen);
-  scales_.roll_walk = std::pow(10, std::ceil(std::log10(std::clamp(usual, kWalkLeast, kWalkMost))));
+  scales_.roll_walk = RollWalkBy(knots_);
   scales_.speed_share = kShareFirst;
 }
 
@@ -404,19 +389,19 @@ bool RunSolver::Approach(int iterations) {
   return Iterate(iterations, kNear, report) || elimination_.decrement() < kFar;
 }
 
-SolveReport RunSolver::Solve(int iterations) {
+SolveReport RunSolver::Solve(int iterations, double least) {
   SolveReport report;
   BeginScales();
   Iterate(iterations, kNear, report, kCreeps);
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });
   if (!measured) {
-    FindBetween(FindDecade(kWalkLeast, kWalkMost, scales_.roll_walk, report), scales_.roll_walk,
-                report);
+    FindBetween(FindDecade(kRollWalkLeast, kRollWalkMost, scales_.roll_walk, report),
+                scales_.roll_walk, report);
     if (HidesAStart()) FindDecade(kShareLeast, 1, scales_.speed_share, report);
   }
   HoldRollWeights();
-  Iterate(kFinish, kStays, report);
+  Finish(least, report);
   report.converged = elimination_.decrement() < kNear;
   report.sums = block_.sums();
   report.evidence = Evidence();

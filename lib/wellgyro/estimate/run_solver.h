@@ -41,15 +41,14 @@ class RunSolver : public RunRows {
   RunSolver(const RunSolver&) = delete;
   RunSolver& operator=(const RunSolver&) = delete;
 
-  /// Places every node by a forward pass from this attitude of node 0: the gyros carry the axis,
-  /// gravity turns the tool about it. `extra_roll`: of each knot, where the roll inside it was not
-  /// seen and is known to be more [rad]; or empty.
-  void Begin(const Eigen::Matrix3d& R_LT, std::span<const double> extra_roll);
+  /// Places every node by a forward pass from this attitude of node 0, see GuessPass.
+  void Begin(const Eigen::Matrix3d& R_LT);
   /// Goes into the minimum about where it stands, near enough to know it. False: there is none
   /// within `iterations` steps.
   bool Approach(int iterations);
-  /// Relinearises until the attitudes stay, at most `iterations` times.
-  SolveReport Solve(int iterations);
+  /// Relinearises until the attitudes stay, at most `iterations` times before the roll's scales are
+  /// sought. Not to the end where the evidence stays above `least`.
+  SolveReport Solve(int iterations, double least = HUGE_VAL);
   /// Takes the gyros' and the accelerometers' white noise so many times as large as before and goes
   /// on from where it stands. False: it does not converge.
   bool SolveWithNoise(double gyro, double accel);
@@ -77,6 +76,7 @@ class RunSolver : public RunRows {
   std::size_t size() const override { return knots_.size(); }
   void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const override;
   void RowsOf(std::size_t knot, std::vector<Factor>& rows) override;
+  void BlockOf(std::size_t knot, NormalBlock& block) override;
 
  private:
   bool Linearise();
@@ -88,6 +88,8 @@ class RunSolver : public RunRows {
   double Walk(std::size_t knot) const;
   RollChange Change(std::size_t knot) const;
   void HoldRollWeights();
+  bool Advance(SolveReport& report);
+  void Finish(double least, SolveReport& report);
   bool Iterate(int most, double stays, SolveReport& report, double creeps = HUGE_VAL);
   double Evidence() const;
   bool HidesAStart() const;
@@ -105,6 +107,7 @@ class RunSolver : public RunRows {
   KnotRows rows_;
   NormalBlock block_;
   Elimination elimination_;
+  std::vector<NodeVector> steps_, before_;
 };
 
 }  // namespace wellgyro

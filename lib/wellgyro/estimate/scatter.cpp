@@ -18,15 +18,14 @@ constexpr std::array<double, 6> kNoisier{0.3, 0.6, 1, 1.5, 2.2, 3};
 void Scatter::Add(std::size_t k, const Factor& f, const Eigen::Matrix3d& freedom) {
   const std::size_t at = k / stretch_;
   if (stretches_.size() <= at) stretches_.resize(at + 1);
-  const Eigen::MatrixXd p = freedom.topLeftCorner(f.rows, f.rows);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p);
-  for (Eigen::Index i = 0; i < f.rows; ++i) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(freedom);
+  for (Eigen::Index i = 0; i < 3; ++i) {
     const double l = eigen.eigenvalues()[i];
-    if (!(l > kOwn)) continue;
-    const double along = eigen.eigenvectors().col(i).dot(f.r.head(f.rows));
+    if (!(l > kOwn)) continue;  // so are rows that the factor lacks
+    const double along = eigen.eigenvectors().col(i).head(f.rows).dot(f.r.head(f.rows));
     const double square = along * along / l;
-    for (Sum* sum : {&stretches_[at], &all_, &all_fine_}) {
-      const std::array<double, kGrid>& grid = sum == &all_fine_ ? kNoisier : kBurst;
+    for (Sum* sum : {&stretches_[at], &all_}) {
+      const std::array<double, kGrid>& grid = sum == &all_ ? kNoisier : kBurst;
       for (std::size_t g = 0; g < kGrid; ++g) {
         const double x = grid[g] * l;
         sum->ln_bayes[g] += 0.5 * (square * x / (1 + x) - std::log1p(x));
@@ -46,19 +45,21 @@ double Scatter::Mean(const Sum& sum) {
 
 std::vector<double> Scatter::Stretches() const {
   std::vector<double> ln_bayes;
+  Sum all;
   for (const Sum& sum : stretches_) {
     if (sum.count > 0) ln_bayes.push_back(Mean(sum));
+    for (std::size_t g = 0; g < kGrid; ++g) all.ln_bayes[g] += sum.ln_bayes[g];
   }
-  if (all_.count > 0) ln_bayes.push_back(Mean(all_));
+  if (!ln_bayes.empty()) ln_bayes.push_back(Mean(all));
   return ln_bayes;
 }
 
 void Scatter::TestAll(CauseTest& test) const {
-  if (!(all_fine_.count > 0)) return;
+  if (!(all_.count > 0)) return;
   test.tested = true;
-  test.ln_bayes = Mean(all_fine_);
-  test.size = std::sqrt(all_fine_.squares / all_fine_.count);
-  test.sigma = test.size / std::sqrt(2 * all_fine_.count);
+  test.ln_bayes = Mean(all_);
+  test.size = std::sqrt(all_.squares / all_.count);
+  test.sigma = test.size / std::sqrt(2 * all_.count);
 }
 
 }  // namespace wellgyro

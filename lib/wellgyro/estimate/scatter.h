@@ -40,8 +40,7 @@ class Scatter {
 
   std::size_t stretch_;
   std::vector<Sum> stretches_;
-  Sum all_;       ///< on the stretches' grid, of bursts
-  Sum all_fine_;  ///< on that of noise that is a little more
+  Sum all_;  ///< on a grid of noise that is a little more
 };
 
 }  // namespace wellgyro

@@ -30,6 +30,7 @@ struct EstimateSetup {
   bool third_axis = false;  ///< some knot has one
   /// The roll swings at this angular frequency [rad/s]; absent: it walks.
   std::optional<double> swing;
+  bool may_swing = true;  ///< a swing is tried where the roll shows one
   std::vector<AzimuthTie> ties;
   std::vector<CauseSpec> causes;   ///< that are looked for in the solution; none: no diagnosis
   double false_alarm_rate = 1e-3;  ///< of the diagnosis

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/guess_pass.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/math/rotation.h"
 
@@ -54,30 +55,49 @@ void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std
 }  // namespace
 
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start) {
-  RunSolver solver(setup, knots);
+  GuessPass pass(setup, knots);
   Matrix3d first = LevelAttitude(knots);
-  std::vector<double> extra(knots.size(), 0);
+  pass.Begin(first);
+  std::size_t from = 0;
   const auto heading = [&](const Anchor& anchor) {
-    solver.Begin(first, extra);
-    return HeadingBetween(solver.nodes()[anchor.node].R_LT, anchor.R_LT);
+    pass.Run(from, anchor.node);
+    return HeadingBetween(pass.nodes()[anchor.node].R_LT, anchor.R_LT);
   };
   // The Earth's rate depends on the heading: until it stays to a milliradian.
-  for (int i = 0; i < 3; ++i) first = RotationZ(heading(start.front())) * first;
-  const std::size_t* from = &start.front().node;
-  for (const Anchor& anchor : std::span(start).subspan(1)) {
-    for (int i = 0; i < 2; ++i) Spread(heading(anchor), knots, *from, anchor.node, extra);
-    from = &anchor.node;
+  for (int i = 0; i < 3; ++i) {
+    first = RotationZ(heading(start.front())) * first;
+    pass.Begin(first);
   }
-  solver.Begin(first, extra);
-  return solver.nodes();
+  pass.Run(0, start.front().node);
+  from = start.front().node;
+  for (const Anchor& anchor : std::span(start).subspan(1)) {
+    for (int i = 0; i < 2; ++i) {
+      Spread(heading(anchor), knots, from, anchor.node, pass.extra_roll());
+    }
+    pass.Run(from, anchor.node);
+    from = anchor.node;
+  }
+  pass.Run(from, knots.size());
+  return std::move(pass).nodes();
 }
 
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
                   std::span<const Matrix3d> R_LT) {
-  RunSolver solver(setup, knots);
-  solver.Begin(R_LT.front(), {});
-  for (std::size_t k = 0; k < R_LT.size(); ++k) solver.nodes()[k].R_LT = R_LT[k];
-  return solver.nodes();
+  GuessPass pass(setup, knots);
+  pass.Begin(R_LT.front());
+  pass.Run(0, knots.size());
+  NodeGuess nodes = std::move(pass).nodes();
+  for (std::size_t k = 0; k < R_LT.size(); ++k) nodes[k].R_LT = R_LT[k];
+  return nodes;
+}
+
+Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const AzimuthTie& tie) {
+  GuessPass pass(setup, knots);
+  pass.Begin(LevelAttitude(knots));
+  pass.Run(0, tie.node);
+  const Matrix3d R_LT = pass.nodes()[tie.node].R_LT;
+  const Eigen::Vector3d d = tie.of_mark ? R_LT.col(0) : R_LT.col(2);
+  return {tie.node, RotationZ(tie.azimuth - std::atan2(d.y(), d.x())) * R_LT};
 }
 
 std::vector<NodeGuess> GuessesOfHeadings(const EstimateSetup& setup,
@@ -86,7 +106,7 @@ std::vector<NodeGuess> GuessesOfHeadings(const EstimateSetup& setup,
   RunSolver solver(setup, knots);
   std::vector<NodeGuess> guesses;
   for (int i = 0; i < kHeadings; ++i) {
-    solver.Begin(RotationZ(i * kTwoPi / kHeadings) * level, {});
+    solver.Begin(RotationZ(i * kTwoPi / kHeadings) * level);
     if (!solver.Approach(kApproach)) continue;
     const auto same = [&](const NodeGuess& g) { return SameSolution(g, solver.nodes()); };
     if (std::none_of(guesses.begin(), guesses.end(), same)) guesses.push_back(solver.nodes());

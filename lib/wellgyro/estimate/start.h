@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,7 @@ using NodeGuess = std::vector<Node>;
 
 struct Starts {
   std::vector<Start> anchored;
-  std::vector<NodeGuess> guessed;
+  std::function<NodeGuess()> otherwise;  ///< asked where none of these leads to what fits
 };
 
 /// The nodes as the depth has them, with these attitudes, one for each node.
@@ -35,6 +36,9 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
 
 /// The nodes by a forward pass from where `start` has them. At least one knot and one anchor.
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start);
+
+/// The heading that a tie gives, where the nodes would stand without any.
+Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const AzimuthTie& tie);
 
 /// The solutions that differ among those that eight headings lead to, each once: a run whose motion
 /// shows north has one, along a straight horizontal hole its mirror stands beside it.

@@ -50,16 +50,41 @@ std::vector<std::vector<Point>> Segments(std::span<const RunKnot> knots) {
   return segments;
 }
 
-/// Of the sums of squares of all segments, what a line of this frequency explains.
-double Explained(const std::vector<std::vector<Point>>& segments, double omega) {
-  double sum = 0;
-  for (const auto& segment : segments) {
-    Complex line = 0;
-    for (const Point& p : segment) line += std::polar(p.rate, omega * p.time);
-    sum += 2 * std::norm(line) / static_cast<double>(segment.size());
+/// A line of frequencies that follow each other by `step`, taken from each point in turn.
+class Lines {
+ public:
+  Lines(const std::vector<std::vector<Point>>& segments, double first, double step) {
+    for (const auto& segment : segments) {
+      sizes_.push_back(segment.size());
+      for (const Point& p : segment) {
+        lines_.push_back(std::polar(p.rate, first * p.time));
+        steps_.push_back(std::polar(1.0, step * p.time));
+      }
+    }
   }
-  return sum;
-}
+
+  /// Of the sums of squares of all segments, what the next line explains.
+  double Next() {
+    double sum = 0;
+    std::size_t at = 0;
+    for (const std::size_t size : sizes_) {
+      double re = 0, im = 0;
+      for (const std::size_t end = at + size; at < end; ++at) {
+        const double x = lines_[at].real(), y = lines_[at].imag();
+        const double c = steps_[at].real(), s = steps_[at].imag();
+        re += x;
+        im += y;
+        lines_[at] = {x * c - y * s, x * s + y * c};
+      }
+      sum += 2 * (re * re + im * im) / static_cast<double>(size);
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<std::size_t> sizes_;
+  std::vector<Complex> lines_, steps_;
+};
 
 }  // namespace
 
@@ -75,19 +100,18 @@ std::optional<double> SwingOf(std::span<const RunKnot> knots) {
   for (const RunKnot& knot : knots) seconds += knot.increment.seconds;
   const double knot = seconds / static_cast<double>(knots.size());
   const double step = kTwoPi / (kOversampled * kSegment);
-  double best = 0, omega = 0;
-  for (double w = kTwoPi / kLongest; w < kNyquist * kPi / knot; w += step) {
-    const double explained = Explained(segments, w);
-    if (explained > best) {
-      best = explained;
-      omega = w;
-    }
+  // With a neighbour before the first and behind the last.
+  const double first = kTwoPi / kLongest - step;
+  Lines lines(segments, first, step);
+  std::vector<double> explained{lines.Next(), lines.Next(), lines.Next()};
+  for (double w = first + 2 * step; w < kNyquist * kPi / knot; w += step) {
+    explained.push_back(lines.Next());
   }
-  if (best < kShare * squares) return std::nullopt;
+  const auto top = std::max_element(explained.begin() + 1, explained.end() - 1);
+  if (*top < kShare * squares) return std::nullopt;
   // The top of the parabola through the peak and its neighbours.
-  const double before = Explained(segments, omega - step),
-               after = Explained(segments, omega + step);
-  const double bend = before - 2 * best + after;
+  const double omega = first + step * static_cast<double>(top - explained.begin());
+  const double before = *(top - 1), after = *(top + 1), bend = before - 2 * *top + after;
   return bend < 0 ? omega + 0.5 * step * (before - after) / bend : omega;
 }
 

@@ -36,12 +36,16 @@ std::optional<Fault> WriteAll(int file, std::string_view bytes, const std::files
   return std::nullopt;
 }
 
-// Where a name leads: what replaces a link is to be in the link's place.
-std::filesystem::path Followed(const std::filesystem::path& name) {
+// Where a name leads, though nothing be there yet: what is written is to be in the link's place.
+std::filesystem::path Followed(std::filesystem::path name) {
+  constexpr int kMostLinks = 40;  // as the system's own limit
   std::error_code error;
-  if (!std::filesystem::is_symlink(name, error)) return name;
-  const std::filesystem::path real = std::filesystem::weakly_canonical(name, error);
-  return error ? name : real;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(name, error); ++i) {
+    const std::filesystem::path next = std::filesystem::read_symlink(name, error);
+    if (error) break;
+    name = name.parent_path() / next;  // an absolute one stands alone
+  }
+  return name;
 }
 
 // What a killed program left of writing `target`: temporary names of processes that are no more.

@@ -1,6 +1,5 @@
 #include "wellgyro/live/catch_up.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -73,11 +72,7 @@ std::optional<Fault> CatchUp::OwnLog(const std::string& path, std::int64_t begun
 
 void CatchUp::Hold(std::string_view channel, std::span<const std::byte> bytes,
                    std::int64_t received_us) {
-  // The first samples of a sender come late, when it is known to be the tool's.
-  const auto later = std::find_if(held_.rbegin(), held_.rend(), [received_us](const auto& held) {
-    return held.received_us <= received_us;
-  });
-  held_.insert(later.base(), {std::string(channel), {bytes.begin(), bytes.end()}, received_us});
+  held_.push_back({std::string(channel), {bytes.begin(), bytes.end()}, received_us});
 }
 
 void CatchUp::TakeFill(const HeldMessage& message) {

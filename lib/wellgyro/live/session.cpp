@@ -84,7 +84,8 @@ LiveSession::Core::Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveOb
       intake(setup.job, surveyor),
       watch([this](const Fault& fault) { notices.Tell(fault); }),
       guard(
-          setup.job.job.channels, [this](const StreamGuard::Message& message) { Accept(message); },
+          setup.job.job.channels,
+          [this](const StreamGuard::Message& m) { Use(m.channel, m.bytes, m.received_us, true); },
           [this](const std::string& sentence) { notices.Say(sentence); }),
       catch_up(setup.job.job.channels, setup.clock, notices,
                [this](auto channel, auto bytes, auto received_us, bool fresh) {
@@ -194,17 +195,9 @@ bool LiveSession::Core::ComesFromElsewhere(std::string_view channel,
 void LiveSession::Core::Hear(std::string_view channel, std::span<const std::byte> bytes,
                              std::int64_t received_us) {
   if (ComesFromElsewhere(channel, bytes)) return;
-  const StreamGuard::Message message{channel, bytes, received_us, bus.heard_from()};
   // While logs are joined with what is heard, a message that waits would be used by both.
-  resuming ? Accept(message) : guard.Take(message);
-}
-
-void LiveSession::Core::Accept(const StreamGuard::Message& message) {
-  if (resuming) {
-    catch_up.Hold(message.channel, message.bytes, message.received_us);
-  } else {
-    Use(message.channel, message.bytes, message.received_us, true);
-  }
+  if (resuming) return catch_up.Hold(channel, bytes, received_us);
+  guard.Take({channel, bytes, received_us, bus.heard_from()});
 }
 
 void LiveSession::Core::Use(std::string_view channel, std::span<const std::byte> bytes,

@@ -39,7 +39,6 @@ struct LiveSession::Core {
   void Stop() noexcept;
 
   void Hear(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us);
-  void Accept(const StreamGuard::Message& message);
   void Use(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us,
            bool record);
   bool ComesFromElsewhere(std::string_view channel, std::span<const std::byte> bytes);

@@ -12,23 +12,33 @@ Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
 
 Eigen::Matrix3d Exp(const Eigen::Vector3d& v) {
   const double square = v.squaredNorm();
-  double sinc = 1 - square / 6, half = 0.5 - square / 24;
-  if (square > 1e-8) {  // the next terms of the series, angle^4/120 and /720, are then below eps
+  double sinc, half;    // sin(angle)/angle, (1 - cos)/angle^2
+  if (square < 0.01) {  // the next terms of the series are below 1e-17
+    const double s = square;
+    sinc = 1 - s * (1. / 6 - s * (1. / 120 - s * (1. / 5040 - s * (1. / 362880))));
+    half = 0.5 - s * (1. / 24 - s * (1. / 720 - s * (1. / 40320 - s * (1. / 3628800))));
+  } else {
     const double angle = std::sqrt(square);
     const double s = std::sin(0.5 * angle);
     sinc = std::sin(angle) / angle;
-    half = 2 * s * s / square;  // (1 - cos)/angle^2 without cancellation
+    half = 2 * s * s / square;  // without cancellation
   }
-  const Eigen::Matrix3d K = Skew(v);
-  return Eigen::Matrix3d::Identity() + sinc * K + half * K * K;
+  Eigen::Matrix3d R = half * v * v.transpose() + sinc * Skew(v);
+  R.diagonal().array() += 1 - half * square;
+  return R;
 }
 
 Eigen::Vector3d Log(const Eigen::Matrix3d& R) {
   const Eigen::Vector3d axis(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-  const double sine = 0.5 * axis.norm();
-  const double angle = std::atan2(sine, 0.5 * (R.trace() - 1));
+  const double s = 0.25 * axis.squaredNorm(), trace = R.trace();
+  if (s < 1e-3 && trace > 0) {  // the next term of the series of the arc sine is below 1e-17
+    const double ratio =
+        1 + s * (1. / 6 + s * (3. / 40 + s * (15. / 336 + s * (105. / 3456 + s * (945. / 42240)))));
+    return 0.5 * ratio * axis;
+  }
+  const double sine = std::sqrt(s);
+  const double angle = std::atan2(sine, 0.5 * (trace - 1));
   if (sine > 1e-8) return axis * (0.5 * angle / sine);
-  if (R.trace() > 0) return 0.5 * axis;
   // Half a turn: R = 2 a a' - 1, and the largest column of R + 1 is the axis.
   const Eigen::Matrix3d twice = R + Eigen::Matrix3d::Identity();
   Eigen::Index column = 0;

@@ -62,7 +62,7 @@ void WriteParts(PageText& page, const Json& fit) {
         .Number(told ? std::optional(std::sqrt(*chi_square / *free)) : std::nullopt, 3);
   };
   row("all", "chi_square", "degrees_of_freedom");
-  for (const char* part : {"inclination", "rest", "azimuth", "repeat"}) {
+  for (const char* part : {"inclination", "force", "rest", "azimuth"}) {
     row(part, std::string(part) + "_chi_square", std::string(part) + "_degrees_of_freedom");
   }
 }

@@ -242,7 +242,7 @@ void SyntheticRun::MakeIncrements() {
 
 void SyntheticRun::FirstRows(EdgeMatrix& information, EdgeVector& gradient) const {
   RunSolver solver(setup_, std::span(knots_).first(1));
-  solver.Begin(nodes_.front().R_LT, {});
+  solver.Begin(nodes_.front().R_LT);
   solver.FirstRows(information, gradient);
 }
 

@@ -5,7 +5,7 @@
 namespace wellgyro {
 
 /// Constant errors of a tool that the estimator carries beside the attitudes, in this order
-/// (reading = truth + error). The first thirteen stand as in Knot::Source.
+/// (reading = truth + error).
 enum ErrorSource {
   kGyroBiasX,            ///< [rad/s]
   kGyroBiasY,            ///< [rad/s]

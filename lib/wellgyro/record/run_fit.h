@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "wellgyro/record/diagnosis.h"
-#include "wellgyro/record/knot.h"
+#include "wellgyro/record/error_source.h"
 
 namespace wellgyro {
 
@@ -17,7 +17,6 @@ struct RunFit {
     kForce,        ///< accelerometers against gravity and the motion along the hole
     kRest,         ///< rates at rest and the Earth's
     kAzimuth,      ///< azimuths given from outside, and from vague fixes
-    kRepeat,       ///< directions at depths passed more than once
     kParts
   };
   /// Squares of residuals over their variances, and what is to be expected of their sum: their
@@ -33,9 +32,9 @@ struct RunFit {
   /// Two azimuths fit nearly as well, differing by less than 9 in chi-square: none is given.
   bool ambiguous = false;
   std::array<Squares, kParts> parts;
-  Knot::SourceVector errors = Knot::SourceVector::Zero();        ///< of the tool, as found
-  Knot::SourceVector sigma_errors = Knot::SourceVector::Zero();  ///< of these; 0: has no prior
-  std::optional<RunDiagnosis> diagnosis;  ///< where what adjusted the run made one
+  ErrorVector errors = ErrorVector::Zero();        ///< of the tool, as found
+  ErrorVector sigma_errors = ErrorVector::Zero();  ///< of these; 0: has no prior
+  std::optional<RunDiagnosis> diagnosis;           ///< where what adjusted the run made one
 };
 
 }  // namespace wellgyro

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "wellgyro/attitude/filter_state.h"
+#include "wellgyro/attitude/station_state.h"
 #include "wellgyro/record/attitude_sample.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/survey/way.h"
@@ -15,9 +15,9 @@ namespace wellgyro {
 /// A station before it has a position: who and when it is, and where its attitude comes from.
 struct Draft {
   Station station;  ///< run, pass, depth, time, status; attitude and position come later
-  /// Index among the marked stations of the run's filter; absent: `attitude` holds.
+  /// Index among the run's stations from samples; absent: `attitude` holds.
   std::optional<std::size_t> state;
-  AttitudeSample attitude;  ///< of the tool, where it does not come from the filter
+  AttitudeSample attitude;  ///< of the tool, where it does not come from samples
   /// See NorthFix; of `attitude`.
   std::optional<double> mirror_azimuth;
   double mirror_cost = 0;
@@ -29,7 +29,7 @@ struct DraftedRun {
   std::int32_t run = 0;
   bool misrun = false;
   std::vector<Draft> drafts;         ///< in the order of time
-  std::vector<StationState> states;  ///< of the filter, or smoothed: whichever is to be told
+  std::vector<StationState> states;  ///< as known on the way, or adjusted: whichever is to be told
   std::vector<Waypoint> way;         ///< of the hole, in the order of time
   /// Stations asked for and passed that are not in `drafts` because no azimuth is known there: for
   /// good, or until the next north of a run that goes on.

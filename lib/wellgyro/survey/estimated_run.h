@@ -1,21 +1,20 @@
 #pragma once
 
-#include <span>
-
-#include "wellgyro/attitude/filter.h"
-#include "wellgyro/attitude/smoother.h"
-#include "wellgyro/record/increment.h"
+#include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/run_history.h"
 
 namespace wellgyro {
 
-/// The run as one adjustment of rotations finds it from its increments: attitudes of the epochs and
-/// states of the marked stations of `history`, as Smooth() gives them. Where the increments do not
-/// reach the last epochs, the first ones only.
-///
-/// Without a north, or where nothing is found that fits, `fit` says so and the smoothed run is
-/// given.
-SmoothedRun EstimatedRun(const Job& job, const FilterHistory& history,
-                         std::span<const Increment> increments);
+/// The run as one adjustment of rotations finds it. Where nothing is found that fits, `fit` says so
+/// and what was known on the way is given.
+SmoothedRun EstimatedRun(const Job& job, const RunHistory& history);
+
+/// The same of a run that goes on, as a ForwardRun begins with it: without a diagnosis and without
+/// another guess. Unsolved where no tie and no fix give a north.
+RunEstimate EstimateSoFar(const Job& job, const RunHistory& history);
+
+/// Attitudes and stations of what has been solved.
+SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history);
 
 }  // namespace wellgyro

@@ -1,34 +1,32 @@
 #include "wellgyro/survey/joined_states.h"
 
-#include <cmath>
 #include <cstddef>
+
+#include <Eigen/Cholesky>
 
 namespace wellgyro {
 namespace {
 
-/// E[x y'] of the state x of `before` and y of `next`, by what the filter knows of the azimuth of
-/// both: `filtered` is the station of `before` in the filter.
-FilterMatrix Bridge(const StationState& before, const StationState& filtered,
-                    const StationState& next) {
-  FilterMatrix cross = FilterMatrix::Zero(before.cov.rows(), next.cov.rows());
-  const double variance = before.cov(0, 0) * filtered.cov(0, 0);
-  if (next.cov_with_previous.rows() == 0 || !(variance > 0)) return cross;
-  cross = before.cov.col(0) * next.cov_with_previous.row(0) / std::sqrt(variance);
-  return cross;
+/// E[x y'] of the state x of `before` and y of `next`: y depends on what was before it by x alone,
+/// and `on_the_way` is x as it was known then.
+StationMatrix Bridge(const StationState& before, const StationState& on_the_way,
+                     const StationState& next) {
+  const StationMatrix& cross = next.cov_with_previous;
+  if (cross.rows() != before.cov.rows() || cross.rows() != on_the_way.cov.rows()) return {};
+  const Eigen::LDLT<StationMatrix> solver(on_the_way.cov);
+  return before.cov * solver.solve(cross);
 }
 
 }  // namespace
 
 std::vector<StationState> JoinStates(std::span<const StationState> adjusted,
-                                     std::span<const StationState> backwards,
-                                     std::span<const StationState> filtered) {
+                                     std::span<const StationState> known) {
   std::vector<StationState> states(adjusted.begin(), adjusted.end());
-  states.reserve(filtered.size());
-  for (std::size_t i = states.size(); i < filtered.size(); ++i) {
-    const bool later = filtered[i].attitude.azimuth_known || i >= backwards.size();
-    states.push_back(later ? filtered[i] : backwards[i]);
+  states.reserve(known.size());
+  for (std::size_t i = states.size(); i < known.size(); ++i) {
+    states.push_back(known[i]);
     if (i > 0 && i == adjusted.size()) {
-      states[i].cov_with_previous = Bridge(states[i - 1], filtered[i - 1], filtered[i]);
+      states[i].cov_with_previous = Bridge(states[i - 1], known[i - 1], known[i]);
     }
   }
   return states;

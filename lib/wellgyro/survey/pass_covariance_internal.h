@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "wellgyro/attitude/filter_state.h"
+#include "wellgyro/attitude/station_state.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/trajectory/path.h"

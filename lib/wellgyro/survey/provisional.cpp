@@ -69,11 +69,11 @@ std::optional<Station> ProvisionalPath::Place(const Draft& draft, const StationS
     Extend(station, state);
   } else {
     // A station of a stop comes again when the job turns out to list it.
-    const bool again = state && told_ && state->epoch <= *told_;
+    const bool again = state && told_ && state->knot <= *told_;
     if (extends && state && covariance_ && !again) covariance_->Skip(*state);
     LayOn(station);
   }
-  if (extends && state) told_ = std::max(told_.value_or(state->epoch), state->epoch);
+  if (extends && state) told_ = std::max(told_.value_or(state->knot), state->knot);
   if (!draft.listed || station.md <= job_.tie_in.md + kSameDepth) return std::nullopt;
   return station;
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "wellgyro/attitude/along_hole_covariance.h"
-#include "wellgyro/attitude/filter_state.h"
+#include "wellgyro/attitude/station_state.h"
 #include "wellgyro/survey/draft.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/trajectory/path.h"
@@ -30,7 +30,7 @@ class ProvisionalPath {
 
   const Job& job_;
   std::int32_t pass_number_ = 0;     ///< of the in-run; 0: not begun
-  std::optional<std::size_t> told_;  ///< epoch of the last station of that pass
+  std::optional<std::size_t> told_;  ///< knot of the last station of that pass
   std::optional<Path> path_;
   std::optional<AlongHoleCovariance> covariance_;
   std::vector<PathPoint> points_;

@@ -1,11 +1,7 @@
 #pragma once
 
-#include <span>
-
-#include "wellgyro/attitude/filter.h"
-#include "wellgyro/attitude/smoother.h"
 #include "wellgyro/base/export.h"
-#include "wellgyro/record/increment.h"
+#include "wellgyro/survey/run_history.h"
 
 namespace wellgyro {
 
@@ -15,11 +11,10 @@ class WELLGYRO_EXPORT RunAdjuster {
  public:
   virtual ~RunAdjuster();
 
-  /// One attitude for every epoch and one state for every marked station of `history`, as Smooth()
-  /// gives them, and how they fit: the states of neighbours in time form a Markov chain.
-  /// `increments`: see RunSurvey. Must not throw for any history that a filter leaves behind.
-  virtual SmoothedRun Adjust(const FilterHistory& history,
-                             std::span<const Increment> increments) const = 0;
+  /// One attitude for every knot and one state for every station of `history`, and how they fit:
+  /// the states of neighbours in time form a Markov chain. Must not throw for any history that a
+  /// run leaves behind.
+  virtual SmoothedRun Adjust(const RunHistory& history) const = 0;
 };
 
 }  // namespace wellgyro

@@ -11,7 +11,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/statistics.h"
-#include "wellgyro/record/knot_sources.h"
+#include "wellgyro/record/error_source.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/run_checks_internal.h"
 
@@ -85,39 +85,48 @@ void CheckMagnets(const Job& job, const RunSummary& run, std::vector<Check>& che
   checks.push_back(NotDone("magnetic_azimuth", run.run, why));
 }
 
-/// A source of a Knot as people know it.
+/// An error of the tool as people know it.
 struct ToolError {
-  Knot::Source source;
+  ErrorSource source;
   const char* code;
   double unit;
   const char* unit_name;
 };
 
-constexpr std::array<ToolError, Knot::kSources> kToolErrors{
-    {{Knot::kToolfaceOffset, "toolface_offset", units::kDeg, "deg"},
-     {Knot::kTimeSkew, "time_skew", 1, "s"},
-     {Knot::kGyroBiasX, "gyro_bias_x", units::kDegPerHour, "deg/h"},
-     {Knot::kGyroBiasY, "gyro_bias_y", units::kDegPerHour, "deg/h"},
-     {Knot::kMassUnbalance, "mass_unbalance", units::kDegPerHourPerG, "deg/h/g"},
-     {Knot::kQuadrature, "quadrature", units::kDegPerHourPerG, "deg/h/g"},
-     {Knot::kGyroScaleX, "gyro_scale_x", 1, "1"},
-     {Knot::kGyroScaleY, "gyro_scale_y", 1, "1"},
-     {Knot::kMisalignmentX, "gyro_misalignment_x", 1, "rad"},
-     {Knot::kMisalignmentY, "gyro_misalignment_y", 1, "rad"},
-     {Knot::kAccelBiasX, "accel_bias_x", 1, "m/s2"},
-     {Knot::kAccelBiasY, "accel_bias_y", 1, "m/s2"},
-     {Knot::kAccelBiasZ, "accel_bias_z", 1, "m/s2"}}};
+constexpr ToolError kToolErrors[] = {
+    {kToolfaceOffset, "toolface_offset", units::kDeg, "deg"},
+    {kTimeSkew, "time_skew", 1, "s"},
+    {kGyroBiasX, "gyro_bias_x", units::kDegPerHour, "deg/h"},
+    {kGyroBiasY, "gyro_bias_y", units::kDegPerHour, "deg/h"},
+    {kMassUnbalance, "mass_unbalance", units::kDegPerHourPerG, "deg/h/g"},
+    {kQuadrature, "quadrature", units::kDegPerHourPerG, "deg/h/g"},
+    {kGyroScaleX, "gyro_scale_x", 1, "1"},
+    {kGyroScaleY, "gyro_scale_y", 1, "1"},
+    {kMisalignmentX, "gyro_misalignment_x", 1, "rad"},
+    {kMisalignmentY, "gyro_misalignment_y", 1, "rad"},
+    {kAccelBiasX, "accel_bias_x", 1, "m/s2"},
+    {kAccelBiasY, "accel_bias_y", 1, "m/s2"},
+    {kAccelBiasZ, "accel_bias_z", 1, "m/s2"},
+};
 
 /// Prior sigmas. A gyro bias is the level at the run's end: constant, walk K sqrt(t) and ramp R t;
 /// B counts only where it is a constant, since a Gauss-Markov part is a state of its own.
-Knot::SourceVector SigmasOf(const Job& job, const RunSummary& run) {
-  Knot::SourceVector sigma = SourceSigmas(job.errors);
+ErrorVector SigmasOf(const Job& job, const RunSummary& run) {
+  const ErrorPriors& errors = job.errors;
+  ErrorVector sigma = ErrorVector::Zero();
+  sigma[kMassUnbalance] = errors.mass_unbalance_sigma;
+  sigma[kQuadrature] = errors.quadrature_sigma;
+  sigma[kGyroScaleX] = sigma[kGyroScaleY] = errors.gyro_scale_sigma;
+  sigma[kMisalignmentX] = sigma[kMisalignmentY] = errors.gyro_misalignment_sigma;
+  sigma[kToolfaceOffset] = errors.roll_offset_sigma;
+  sigma[kTimeSkew] = errors.time_skew_sigma;
+  sigma[kAccelBiasX] = sigma[kAccelBiasY] = sigma[kAccelBiasZ] = errors.accel_bias_sigma;
   const double seconds = (run.end - run.begin).seconds();
   const double walk = job.noise.rate_random_walk * std::sqrt(std::max(seconds, 0.0));
   const double constant =
       job.noise.bias_instability_correlation_time ? 0 : job.noise.bias_instability;
-  sigma[Knot::kGyroBiasX] = sigma[Knot::kGyroBiasY] =
-      std::sqrt(Square(job.errors.gyro_bias_sigma) + Square(constant) + Square(walk) +
+  sigma[kGyroBiasX] = sigma[kGyroBiasY] =
+      std::sqrt(Square(errors.gyro_bias_sigma) + Square(constant) + Square(walk) +
                 Square(job.noise.rate_ramp * seconds));
   return sigma;
 }
@@ -229,7 +238,7 @@ void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks)
     const RunFit::Squares& squares = fit.parts[part];
     checks.push_back(CheckSquares(code, run.run, squares.sum, squares.freedom));
   }
-  const Knot::SourceVector priors = SigmasOf(job, run);
+  const ErrorVector priors = SigmasOf(job, run);
   for (const ToolError& error : kToolErrors) {
     const double sigma = fit.sigma_errors[error.source];
     if (!(sigma > 0)) {

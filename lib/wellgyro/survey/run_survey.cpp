@@ -15,26 +15,9 @@ constexpr double kLeastFraction = 1e-9;  // of a sample, at which it can be cut
 // [m] in one sample, or in each second of a gap: no hole is logged so fast, the depth is wrong.
 constexpr double kJump = 50;
 constexpr double kWithoutGap = 1.5;  // periods from a sample to its successor, at most
-
-VerticalSetup VerticalSetupOf(const Job& job) {
-  VerticalSetup setup;
-  setup.gyro = job.noise;
-  setup.errors = job.errors;
-  setup.start_is_axis = job.alignment.method == AlignmentSpec::Method::kExternal &&
-                        job.alignment.of == AlignmentSpec::Of::kAxis;
-  return setup;
-}
-
-TrackerOptions TrackerOptionsOf(const Job& job) {
-  TrackerOptions options;
-  options.order = job.attitude.order == AttitudeSpec::Order::kSecond ? TrackerOptions::kSecond
-                                                                     : TrackerOptions::kThird;
-  // Below twice this the vertical filter takes over.
-  options.inclination_min = std::asin(SineNearVertical(job.errors, false)) / 2;
-  options.accel_noise = job.errors.accel_noise;
-  options.angle_random_walk = job.noise.angle_random_walk;
-  return options;
-}
+// Gravity across the tool that plainly shows its roll: no noise turns it by a right angle [m/s^2].
+constexpr double kSeenAcross = 1;
+constexpr std::int64_t kSameNs = 2;  // one place, cut twice and rounded
 
 StillSetup StillSetupOf(const Job& job) {
   StillSetup setup;
@@ -74,9 +57,7 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
       north_(job.tie_in.north),
       tvd_(job.tie_in.tvd),
       plan_(job),
-      tracker_(TrackerOptionsOf(job)),
       builder_(IncrementOptionsOf(job)),
-      vertical_(VerticalSetupOf(job)),
       still_(StillSetupOf(job)),
       external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal),
       magnet_pending_(job.magnetic && job.magnetic->tie) {
@@ -90,19 +71,20 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
   Count(sample.stamp);
   CountDepth(sample.stamp, along.known);
   const PassState& pass = along.known ? passes_.Push(utc, along.md) : passes_.state();
-  const bool taken = tracker_.Push(sample, middle, site_);
   if (sample.stamp.temperature_outside) temperature_outside_ = true;
   end_unsynced_ = sample.stamp.utc_unsynced;
-  if (WaitsForSum()) {
+  const bool taken = CanFollow(last_taken_ ? &*last_taken_ : nullptr, sample);
+  if (taken && current_) {
     const double reach = static_cast<double>((sample.stamp.tool_time - current_->begin).ns) /
                          static_cast<double>(current_->period_ns);
     if (sample.stamp.session != current_->session) {
-      Summed(current_->along, current_->pass, 1);
+      TakeCurrent(current_->along, current_->pass, 1);
     } else if (reach < kWithoutGap) {
+      CountTurn(sample);
       current_->utc_end = utc;
-      Summed(along, pass, 1);
+      TakeCurrent(along, pass, 1);
     } else {
-      Summed(along, pass, reach);
+      TakeCurrent(along, pass, reach);
     }
   }
   if (taken) {
@@ -113,13 +95,12 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
     c.period_ns = sample.stamp.period_ns;
     c.session = sample.stamp.session;
     c.rests = middle.known && std::abs(middle.speed) < kRestSpeed;
-    c.for_vertical = vertical_.Wants(sample);
     c.sample = sample;
-    c.middle = middle;
     c.utc = utc;
     c.utc_end = utc_end;
     c.along = along;
     c.pass = pass;
+    last_taken_ = sample.stamp;
     summary_.end = utc_end;
   }
   if (const auto window = still_.Push(sample, middle)) TakeWindow(*window);
@@ -127,6 +108,13 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
     const std::optional<double> md = along.known ? std::optional(along.md) : std::nullopt;
     if (!SamePlace(sample.stamp.tool_time, md)) CloseGroup();
   }
+}
+
+/// A tool that rolls by more than a right angle from one sample to the next, by gravity.
+void RunSurvey::CountTurn(const ImuSample& sample) {
+  const Eigen::Vector2d from = current_->sample.f_T.head<2>(), to = sample.f_T.head<2>();
+  const bool seen = std::min(from.squaredNorm(), to.squaredNorm()) > kSeenAcross * kSeenAcross;
+  summary_.samples_aliased += seen && from.dot(to) < 0;
 }
 
 void RunSurvey::Count(const SampleStamp& stamp) {
@@ -152,14 +140,7 @@ void RunSurvey::CountDepth(const SampleStamp& stamp, bool known) {
   }
 }
 
-/// The tracker has just summed what is in current_.
-bool RunSurvey::WaitsForSum() const {
-  return current_ && tracker_.ready() && tracker_.sample_begin() == current_->begin;
-}
-
 void RunSurvey::Cut(std::optional<std::int32_t> index_position) {
-  vertical_.Release();
-  resting_ = false;
   if (const auto window = still_.Cut(index_position)) TakeWindow(*window);
 }
 
@@ -169,23 +150,24 @@ void RunSurvey::TakeStation(std::optional<double> md) {
 }
 
 void RunSurvey::Flush() {
-  tracker_.Flush();
-  if (WaitsForSum()) {
+  if (current_) {
     // A run that ends on its way down ends in a station.
     const AlongHole& end = current_->along;
     asked_ = asked_ || (end.known && passes_.state().pass == Pass::kIn &&
                         std::abs(end.md - last_mark_md_) > kSameDepth);
-    Summed(end, passes_.state(), 1);
+    TakeCurrent(end, passes_.state(), 1);
     current_.reset();
   }
   if (const auto window = still_.Flush()) TakeWindow(*window);
-  Release(true);
+  DecideStill(true);
   CloseGroup();
   builder_.Flush();
   TakeIncrements();
+  StepReady(true);
+  UseClosedStops(std::nullopt);
 }
 
-/// The increments' knots end where the tracker's do; in a gap, once the sample behind it has come.
+/// In a gap, once the sample behind it has come.
 void RunSurvey::CutIncrement(double fraction) {
   if (fraction <= 1) {
     builder_.Cut(fraction);
@@ -194,8 +176,23 @@ void RunSurvey::CutIncrement(double fraction) {
   }
 }
 
+/// To the knots that wait for them. One that the builder ended by itself was asked for by nobody.
 void RunSurvey::TakeIncrements() {
-  while (builder_.Ready()) increments_.push_back(builder_.Pop());
+  auto next = std::find_if(waiting_.begin(), waiting_.end(),
+                           [](const Waiting& w) { return !w.increment.has_value(); });
+  while (builder_.Ready()) {
+    Increment increment = builder_.Pop();
+    const bool asked = next != waiting_.end() && next->end.ns <= increment.time.ns + kSameNs;
+    if (!asked) {
+      Waiting own;
+      own.end = increment.time;
+      own.begin = own.end - Duration::Seconds(increment.seconds);
+      own.utc = current_ ? current_->utc + (own.end - current_->begin) : summary_.end;
+      next = waiting_.insert(next, own);
+    }
+    next->increment = std::move(increment);
+    ++next;
+  }
 }
 
 Draft RunSurvey::NewDraft(double md) const {
@@ -211,22 +208,19 @@ Draft RunSurvey::NewDraft(double md) const {
   return draft;
 }
 
-/// The sample in current_ has been summed: makes the knots that fall into it.
-void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double reach) {
+/// Gives the current sample to the builder and makes the knots that fall into it.
+void RunSurvey::TakeCurrent(const AlongHole& next, const PassState& pass_next, double reach) {
   cuts_.clear();
   const Current& c = *current_;
   AlongHole mixed;
   if (reach != 1) mixed = Between(c.along, next, 1 / reach);
   const AlongHole& end = reach != 1 ? mixed : next;
   const bool known = c.along.known && next.known;
-  summary_.samples_aliased += Has(tracker_.quality(), Quality::kAliased);
-  if (c.for_vertical) vertical_.Push(c.sample, c.middle, site_);
-  if (builder_.Push(c.sample, c.rests)) {
-    for (const Duration into : gap_cuts_) builder_.CutGap(into);
-    TakeIncrements();
-  }
+  builder_.Push(c.sample, c.rests);
+  for (const Duration into : gap_cuts_) builder_.CutGap(into);
   gap_cuts_.clear();
-  resting_ = c.rests;
+  TakeIncrements();
+  StepReady(false);
   if (known && pass_next.number == c.pass.number && c.pass.pass != Pass::kStationary &&
       (pass_next.md != c.pass.md || c.pass.begins)) {
     AddTargets(pass_next.md, reach);
@@ -254,7 +248,7 @@ void RunSurvey::Summed(const AlongHole& next, const PassState& pass_next, double
   std::stable_sort(cuts_.begin(), cuts_.end(),
                    [](const KnotAt& a, const KnotAt& b) { return a.fraction < b.fraction; });
   for (const KnotAt& cut : cuts_) CutAt(cut, next, reach);
-  Release(false);
+  DecideStill(false);
 }
 
 /// The asked depths that the tool passes within the sample, and the gap after it, up to `md_next`.
@@ -291,7 +285,7 @@ void RunSurvey::ListLastMark() {
   }
   if (drafts_.empty() || drafts_.back().listed) return;
   drafts_.back().listed = true;
-  news_.push_back(drafts_.size() - 1);
+  Tell(drafts_.size() - 1);
 }
 
 /// That makes a station, listed only if the job asks for stops or if it turns out to be the
@@ -305,39 +299,30 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
   const auto& [fraction, draft, external] = cut;
   const Current& c = *current_;
   const ToolTime begin = last_knot_.value_or(c.begin);
-  const double period = 1e-9 * c.period_ns;
-  Knot knot = fraction > 1 ? tracker_.CutGap(Duration{std::llround((fraction - 1) * c.period_ns)})
-                           : tracker_.CutKnot(fraction);
-  const bool again = last_knot_ && knot.time <= *last_knot_;
-  if (!again) CutIncrement(fraction);
+  const ToolTime end = c.begin + Duration{std::llround(fraction * c.period_ns)};
+  const bool again = last_knot_ && end.ns <= last_knot_->ns + kSameNs;
   if (again && (waiting_.empty() || waiting_.back().draft)) return;
   if (!again) {
-    last_knot_ = knot.time;
-    if (temperature_outside_) knot.quality |= Quality::kTemperature;
-    temperature_outside_ = false;
+    CutIncrement(fraction);
+    last_knot_ = end;
+    Waiting knot;
+    knot.begin = begin;
+    knot.end = end;
     knot.utc = c.utc + Duration::Seconds(fraction * (c.utc_end - c.utc).seconds());
     knot.along = Between(c.along, next, fraction / reach);
-    vertical_.CutKnot((1 - fraction) * period, knot);
-    waiting_.push_back({knot, begin, std::nullopt, false, std::nullopt});
-    if (vertical_.running()) waiting_.back().from_zero = vertical_.azimuth_from_zero();
-    unseen_since_listed_ |= knot.quality & (Quality::kGap | Quality::kSaturated);
+    knot.temperature_outside = std::exchange(temperature_outside_, false);
+    waiting_.push_back(std::move(knot));
   }
-  // Two cuts within one nanosecond are one knot.
+  // Two cuts of one place are one knot.
   Waiting& last = waiting_.back();
   last.external = last.external || external;
   if (draft) {
-    last.knot.along.md = draft->station.md;
+    last.along.md = draft->station.md;
     last_mark_md_ = draft->station.md;
     marked_ = true;
     last.draft = draft;
-    Station& s = last.draft->station;
-    s.utc = last.knot.utc;
-    s.tool_time = last.knot.time;
-    s.imu_seq_begin = last.knot.seq_begin;
-    s.imu_seq_end = last.knot.seq_end;
-    s.samples_lost = last.knot.samples_lost;
-    s.quality |= unseen_since_listed_;
-    if (draft->listed) unseen_since_listed_ = Quality::kGood;
+    last.draft->station.utc = last.utc;
+    last.draft->station.tool_time = last.end;
   }
 }
 

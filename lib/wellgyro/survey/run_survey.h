@@ -2,21 +2,22 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "wellgyro/alignment/still_detector.h"
-#include "wellgyro/attitude/filter.h"
 #include "wellgyro/attitude/increment_builder.h"
-#include "wellgyro/attitude/tracker.h"
-#include "wellgyro/attitude/vertical_filter.h"
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/depth/passes.h"
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/forward_run.h"
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/survey/draft.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/run_history.h"
 #include "wellgyro/survey/station_plan.h"
 #include "wellgyro/survey/survey.h"
 
@@ -24,10 +25,10 @@ namespace wellgyro {
 
 /// One run of one tool: samples with their depth in, drafts of stations out.
 ///
-/// Every second, at every station and at rest the tracker's sums become a knot. Knots wait until
-/// the still detector has made up its mind about their time, three seconds, and then step the
-/// filter; a stop's north fix enters the filter when the tool has left the place, because until
-/// then another index position may still join it.
+/// Every second, at every station and where the tool comes to rest samples are cut into knots. A
+/// knot waits for its increment, 6 to 12 s, by when the still detector has made up its mind about
+/// its time. From the first north on the run is known as it goes; a stop's north fix counts when
+/// the tool has left the place, because until then another index position may still join it.
 class RunSurvey {
  public:
   /// `job` must outlive this object.
@@ -58,38 +59,40 @@ class RunSurvey {
   bool IsUnheard(std::size_t draft) const;
   const std::vector<Draft>& drafts() const { return drafts_; }
   std::vector<Draft>& drafts() { return drafts_; }
-  /// Those of drafts() that are from samples stand in this order in the filter.
-  const AzimuthFilter* filter() const { return filter_ ? &*filter_ : nullptr; }
-  /// Between knots, as far as they are known: some seconds behind filter().
-  std::span<const Increment> increments() const { return increments_; }
+  /// Those of drafts() that are from samples stand in this order among its stations.
+  const RunHistory& history() const { return history_; }
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
+  /// How stops near vertical agree with the run as a whole, by its attitudes at the end of every
+  /// knot.
+  void CloseOnWhole(std::span<const AttitudeSample> whole);
   /// Lists the deepest station of the in-runs, which closes the survey.
   void ListLastDepth();
 
  private:
-  /// The sample that the tracker has just summed, or is about to.
+  /// The sample that is taken when it is known where the next one is.
   struct Current {
     ToolTime begin;
     std::int32_t period_ns, session;
-    bool rests;         ///< by the depth at the middle of it
-    bool for_vertical;  ///< the vertical filter is to have it
+    bool rests;  ///< by the depth at the middle of it
     ImuSample sample;
-    AlongHole middle;  ///< at the middle of it
     UtcTime utc, utc_end;
     AlongHole along;
     PassState pass;
   };
-  /// A knot that waits for the still detector.
+  /// A knot that waits for its increment.
   struct Waiting {
-    Knot knot;
-    ToolTime begin;
+    ToolTime begin, end;
+    UtcTime utc;  ///< of its end, and there:
+    AlongHole along;
     std::optional<Draft> draft;
-    bool external = false;            ///< the job's azimuth holds here
-    std::optional<double> from_zero;  ///< azimuth by the vertical filter's own zero [rad]
+    std::optional<Increment> increment;
+    bool external = false;      ///< the job's azimuth holds here
+    std::optional<bool> still;  ///< once it is decided
+    bool temperature_outside = false;
   };
 
-  /// Where a knot is wanted within the summed sample, or (beyond 1) in the gap after it.
+  /// Where a knot is wanted within the current sample, or (beyond 1) in the gap after it.
   struct KnotAt {
     double fraction = 1;
     std::optional<Draft> draft;
@@ -98,9 +101,9 @@ class RunSurvey {
 
   void Count(const SampleStamp& stamp);
   void CountDepth(const SampleStamp& stamp, bool known);
-  bool WaitsForSum() const;
+  void CountTurn(const ImuSample& sample);
   /// `reach`: from its begin to where `next` and `pass_next` hold, in periods.
-  void Summed(const AlongHole& next, const PassState& pass_next, double reach);
+  void TakeCurrent(const AlongHole& next, const PassState& pass_next, double reach);
   void AddTargets(double md_next, double reach);
   void ListLastMark();
   void CutAt(const KnotAt& cut, const AlongHole& next, double reach);
@@ -113,17 +116,25 @@ class RunSurvey {
   void CheckStop();
   NorthFix FixOf(std::span<const StillWindow> windows) const;
   void CloseGroup();
-  bool IsStill(const Waiting& waiting, const std::optional<StillWindow>& open) const;
-  void Release(bool all);
-  void UseExternal(const Knot& knot);
-  void StepFilter(const Waiting& waiting);
-  void StartFilter(const Knot& knot);
-  double AxisAzimuth(double inclination, double toolface) const;
-  void SetTrackerAzimuth();
+  bool IsStill(const Waiting& waiting) const;
+  void DecideStill(bool all);
+  void StepReady(bool all);
+  void StepKnot(const Waiting& waiting, const Increment* next);
+  RunKnot KnotOf(const Waiting& waiting);
+  AttitudeSample AttitudeNow() const;
+  void TakeDraft(const Waiting& waiting);
+  bool AzimuthKnown() const;
+  void BeginForward();
+  void Tie(NorthFix tie, bool of_mark);
+  void UseExternal(const Waiting& waiting);
+  double AxisAzimuth(const AttitudeSample& tool) const;
   void TellUnheard();
+  void Tell(std::size_t draft);
+  void UseClosedStops(std::optional<ToolTime> until);
+  const AttitudeSample* BeforeStop(const NorthFix& fix) const;
   void UseFix(NorthFix fix);
   void TieByMagnet(const NorthFix& fix);
-  void MoveSite(const Knot& knot);
+  void MoveSite(const RunKnot& knot, const AttitudeSample& attitude);
   void ListStop(const NorthFix& fix);
 
   const Job& job_;
@@ -133,17 +144,17 @@ class RunSurvey {
   StationPlan plan_;
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::vector<KnotAt> cuts_;                  ///< scratch
-  HighSideTracker tracker_;
   IncrementBuilder builder_;
   std::vector<Duration> gap_cuts_;  ///< in the gap behind the sample last given to the builder
-  std::vector<Increment> increments_;
-  VerticalFilter vertical_;
-  std::optional<double> from_zero_;  ///< of the knot last stepped
-  bool resting_ = false;             ///< by its depth, now
+  UnseenTurn unseen_;
+  RunHistory history_;
+  std::optional<ForwardRun> forward_;  ///< from the first north on
+  bool begun_roughly_ = false;         ///< its heading was not yet sure
+  std::size_t next_try_ = 0;           ///< knots, from which a start is tried again
   StillDetector still_;
   PassTracker passes_;
-  std::optional<AzimuthFilter> filter_;
   std::optional<Current> current_;
+  std::optional<SampleStamp> last_taken_;
   std::optional<ToolTime> last_knot_;
   double last_mark_md_ = 0;
   bool marked_ = false;
@@ -156,8 +167,9 @@ class RunSurvey {
   bool temperature_outside_ = false;  ///< since the last knot
   bool end_unsynced_ = false;         ///< the sample behind the one being summed doubts its UTC
   Quality unseen_since_listed_ = Quality::kGood;  ///< since the last station that is listed
-  std::vector<Waiting> waiting_;
+  std::deque<Waiting> waiting_;
   std::vector<StillWindow> group_;  ///< windows at one place
+  std::deque<NorthFix> closed_;     ///< of stops that are over, until their knots are known
   std::vector<Draft> drafts_;
   std::vector<std::size_t> unheard_;  ///< drafts whose azimuth was not known when they were made
   std::vector<std::size_t> news_;

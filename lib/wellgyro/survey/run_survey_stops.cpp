@@ -1,5 +1,7 @@
 // What a run learns at rest: stops, their north fixes and checks.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "wellgyro/alignment/gyrocompass.h"
@@ -12,6 +14,16 @@ namespace {
 
 constexpr double kSamePlace = 0.2;         // [m], between windows of one stop
 constexpr double kSamePlaceSeconds = 120;  // the same where there is no depth
+// 2 ln of odds of 90: by less one azimuth does not beat another.
+constexpr double kDecides = 9;
+constexpr double kTells = 1e-3;  // of a variance, from which a stop has said something of it
+// Nearer to vertical the azimuth on the way hangs on a roll that gravity hardly shows, made linear
+// once: at .05 to .2 deg of swinging tools it was up to six sigmas off.
+constexpr double kNearVertical = 2 * kPi / 180;  // [rad]
+
+bool NearVertical(const NorthFix& fix) {
+  return std::sin(fix.inclination) < std::sin(kNearVertical);
+}
 
 /// What the Earth measured at the stop, and what it is.
 void TakeReferences(const NorthFix& fix, Station& station) {
@@ -19,6 +31,37 @@ void TakeReferences(const NorthFix& fix, Station& station) {
   station.gravity_ref = fix.gravity_ref;
   station.earth_rate = fix.earth_rate;
   station.earth_rate_ref = fix.earth_rate_ref;
+}
+
+/// Which of a fix's two azimuths holds, by the one known before.
+void ChooseBranch(const AttitudeSample& before, NorthFix& fix) {
+  if (!fix.mirror_azimuth) return;
+  const double var = fix.cov_attitude(1, 1) + before.cov_attitude(1, 1);
+  const auto cost = [&](double azimuth) {
+    const double off = WrapPi(azimuth - before.azimuth);
+    return off * off / var;
+  };
+  const double more = cost(*fix.mirror_azimuth) + fix.mirror_cost - cost(fix.azimuth);
+  if (std::abs(more) <= kDecides) {
+    fix.quality |= Quality::kMirror;
+    return;
+  }
+  fix.quality = Without(fix.quality, Quality::kMirror);
+  if (more > 0) return;
+  std::swap(fix.azimuth, *fix.mirror_azimuth);
+  fix.mirror_cost = -fix.mirror_cost;
+}
+
+/// What a stop says against what was known before it, errors that both share left out: the variance
+/// of the step that the estimate makes is what the stop takes off the azimuth's, and the step is
+/// that share of what the stop by itself is off.
+void CloseOn(const AttitudeSample& before, const AttitudeSample& after, NorthFix& fix) {
+  const double known = before.cov_attitude(1, 1), gained = known - after.cov_attitude(1, 1);
+  if (!(gained > kTells * known)) return;
+  const double step = WrapPi(after.azimuth - before.azimuth);
+  fix.chi_square = step * step / gained;
+  fix.closure = step * known / gained;
+  fix.sigma_closure = known / std::sqrt(gained);
 }
 
 }  // namespace
@@ -65,34 +108,37 @@ NorthFix RunSurvey::FixOf(std::span<const StillWindow> windows) const {
   return fix;
 }
 
+/// The tool has left: what lies within the stop is decided, and its north is found. It counts when
+/// the knots up to its end are known.
 void RunSurvey::CloseGroup() {
   if (group_.empty()) return;
-  // What lies before the end of the stop is decided; the fix needs it in the filter.
-  const ToolTime end = group_.back().end;
-  while (!waiting_.empty() && waiting_.front().knot.time <= end) {
-    Waiting first = waiting_.front();
-    first.knot.still = IsStill(first, std::nullopt);
-    waiting_.erase(waiting_.begin());
-    StepFilter(first);
+  for (Waiting& waiting : waiting_) {
+    if (waiting.end <= group_.back().end) waiting.still = IsStill(waiting);
   }
   CheckStop();
-  const NorthFix fix = FixOf(group_);
+  closed_.push_back(FixOf(group_));
   group_.clear();
-  if (magnet_pending_ && fix.magnetic_azimuth && !Has(fix.quality, Quality::kVertical)) {
-    TieByMagnet(fix);
+}
+
+/// Stops that end by then; all of them where no knot follows for now.
+void RunSurvey::UseClosedStops(std::optional<ToolTime> until) {
+  while (!closed_.empty() && (!until || closed_.front().end <= *until)) {
+    const NorthFix fix = closed_.front();
+    closed_.pop_front();
+    if (magnet_pending_ && fix.magnetic_azimuth && !Has(fix.quality, Quality::kVertical)) {
+      TieByMagnet(fix);
+    }
+    UseFix(fix);
   }
-  UseFix(fix);
 }
 
 /// The magnetic azimuth of a stop, before its own fix, which it may tell from its mirror. Once:
 /// what is wrong with one is wrong with all.
 void RunSurvey::TieByMagnet(const NorthFix& fix) {
   magnet_pending_ = false;
+  if (history_.knots.empty()) return;
   NorthFix tie;
-  tie.run = fix.run;
-  tie.tool = fix.tool;
   tie.md = fix.md;
-  tie.external = true;
   tie.begin = tie.end = fix.begin;
   tie.utc_begin = tie.utc_end = fix.utc_begin;
   tie.inclination = fix.inclination;
@@ -100,34 +146,55 @@ void RunSurvey::TieByMagnet(const NorthFix& fix) {
   tie.magnetic_azimuth = fix.magnetic_azimuth;
   tie.azimuth = WrapTwoPi(*fix.magnetic_azimuth + job_.magnetic->declination);
   tie.cov_attitude(1, 1) = job_.magnetic->sigma * job_.magnetic->sigma;
-  UseFix(tie);
+  Tie(tie, false);
+}
+
+/// At the end of the last knot before the stop; nullptr: there is none.
+const AttitudeSample* RunSurvey::BeforeStop(const NorthFix& fix) const {
+  const auto& known = history_.attitude;
+  const auto at = std::partition_point(
+      known.begin(), known.end(),
+      [&fix](const AttitudeSample& attitude) { return attitude.time <= fix.begin; });
+  return at == known.begin() ? nullptr : &*std::prev(at);
 }
 
 void RunSurvey::UseFix(NorthFix fix) {
-  const bool wanted = fix.external || job_.alignment.use_fixes ||
-                      job_.alignment.method == AlignmentSpec::Method::kGyrocompass;
-  if (wanted && filter_) {
-    const bool known_before = filter_->attitude().azimuth_known;
-    const FilterFix used = filter_->Update(fix);
-    if (known_before && used.use != FixUse::kNoKnot) {
-      fix.chi_square = used.chi_square;
-      fix.closure = used.closure;
-      fix.sigma_closure = used.sigma_closure;
+  const bool wanted =
+      job_.alignment.use_fixes || job_.alignment.method == AlignmentSpec::Method::kGyrocompass;
+  if (wanted && !history_.knots.empty()) {
+    history_.fixes.push_back({fix, history_.knots.size()});
+    const AttitudeSample* before = BeforeStop(fix);
+    if (AzimuthKnown() && before != nullptr && before->azimuth_known) {
+      ChooseBranch(*before, fix);
+      if (!NearVertical(fix)) CloseOn(*before, history_.attitude.back(), fix);
+    } else if (!AzimuthKnown()) {
+      BeginForward();
+      const bool alone = AzimuthKnown() || !fix.mirror_azimuth;
+      fix.quality = alone ? Without(fix.quality, Quality::kMirror) : fix.quality | Quality::kMirror;
     }
-    if (used.use == FixUse::kAmbiguous) {
-      fix.quality |= Quality::kMirror;
-    } else if (used.use != FixUse::kNoKnot) {
-      fix.quality = Without(fix.quality, Quality::kMirror);
-    }
-    if (used.use == FixUse::kMirror) {
-      std::swap(fix.azimuth, *fix.mirror_azimuth);
-      fix.mirror_cost = -fix.mirror_cost;
-    }
-    if (filter_->attitude().azimuth_known) TellUnheard();
-    SetTrackerAzimuth();
   }
   summary_.fixes.push_back(fix);
-  if (!fix.external) ListStop(fix);
+  ListStop(fix);
+}
+
+/// Of stops near vertical what the run as a whole, which every stop is part of, leaves of the
+/// stop's own azimuth: the variance of that difference is the difference of the variances.
+void RunSurvey::CloseOnWhole(std::span<const AttitudeSample> whole) {
+  for (const FixAtNode& at : history_.fixes) {
+    const auto listed =
+        std::find_if(summary_.fixes.begin(), summary_.fixes.end(), [&at](const NorthFix& fix) {
+          return !fix.external && fix.from_samples && fix.begin == at.fix.begin;
+        });
+    if (listed == summary_.fixes.end() || at.node > whole.size() || !NearVertical(*listed))
+      continue;
+    const AttitudeSample& run = whole[at.node - 1];
+    const double alone = listed->cov_attitude(1, 1), gained = alone - run.cov_attitude(1, 1);
+    const bool doubtful = Has(listed->quality, Quality::kMirror | Quality::kVertical);
+    if (doubtful || !run.azimuth_known || !(gained > kTells * alone)) continue;
+    listed->closure = WrapPi(listed->azimuth - run.azimuth);
+    listed->sigma_closure = std::sqrt(gained);
+    listed->chi_square = listed->closure * listed->closure / gained;
+  }
 }
 
 void RunSurvey::ListStop(const NorthFix& fix) {
@@ -141,7 +208,7 @@ void RunSurvey::ListStop(const NorthFix& fix) {
     s.quality |= fix.quality;
     if (job_.stations.at_stops && !draft->listed) {
       draft->listed = true;
-      news_.push_back(static_cast<std::size_t>(drafts_.rend() - draft) - 1);
+      Tell(static_cast<std::size_t>(drafts_.rend() - draft) - 1);
     }
     return;
   }

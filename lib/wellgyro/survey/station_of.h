@@ -1,13 +1,13 @@
 #pragma once
 
-#include "wellgyro/attitude/filter_state.h"
+#include "wellgyro/attitude/station_state.h"
 #include "wellgyro/survey/draft.h"
 #include "wellgyro/survey/job.h"
 
 namespace wellgyro {
 
 /// The station of a draft with the hole's attitude and its covariance, without a position. `state`
-/// is the filter's or smoother's, nullptr where the draft carries its own attitude.
+/// is as known on the way or adjusted, nullptr where the draft carries its own attitude.
 Station StationOf(const Job& job, const Draft& draft, const StationState* state);
 
 }  // namespace wellgyro

@@ -7,7 +7,6 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/attitude/smoother.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/survey/estimated_run.h"
 #include "wellgyro/survey/tool_survey_internal.h"
@@ -347,22 +346,10 @@ void ToolSurvey::Tell(RunState& run) {
   std::vector<std::size_t> news = survey.News();
   if (news.empty()) return;
   std::sort(news.begin(), news.end());
-  const std::vector<StationState>* states =
-      survey.filter() ? &survey.filter()->stations() : nullptr;
-  SmoothedRun smoothed;
-  // Stations from before the first north get their azimuth from it.
-  const bool backwards = std::any_of(news.begin(), news.end(), [&](std::size_t i) {
-    const Draft& draft = survey.drafts()[i];
-    return draft.state && !(*states)[*draft.state].attitude.azimuth_known;
-  });
-  if (backwards) {
-    smoothed = Smooth(survey.filter()->history());
-    run.backwards = smoothed.stations;
-    states = &smoothed.stations;
-  }
+  const std::vector<StationState>& states = survey.history().states;
   for (std::size_t i : news) {
     Draft& draft = survey.drafts()[i];
-    const StationState* state = draft.state ? &(*states)[*draft.state] : nullptr;
+    const StationState* state = draft.state ? &states[*draft.state] : nullptr;
     if (std::optional<Station> station = run.provisional->Place(draft, state)) {
       station->status = StatusOf(draft, false);
       TellStation(*station);
@@ -385,12 +372,11 @@ StationStatus ToolSurvey::StatusOf(const Draft& draft, bool adjusted) const {
 void ToolSurvey::Adjust() {
   for (RunState& run : runs_) {
     run.survey->ListLastDepth();
-    if (const AzimuthFilter* filter = run.survey->filter()) {
-      const FilterHistory& history = filter->history();
-      const std::span<const Increment> increments = run.survey->increments();
-      SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history, increments)
-                                       : EstimatedRun(job_, history, increments);
+    const RunHistory& history = run.survey->history();
+    if (!history.knots.empty()) {
+      SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history) : EstimatedRun(job_, history);
       run.survey->summary().fit = smoothed.fit;
+      if (smoothed.fit && smoothed.fit->converged) run.survey->CloseOnWhole(smoothed.attitude);
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);
     }

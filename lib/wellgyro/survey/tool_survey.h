@@ -70,8 +70,7 @@ class ToolSurvey {
     std::unique_ptr<ProvisionalPath> provisional;
     std::unique_ptr<SampleWatch> watch;
     std::unique_ptr<DepthMotion> motion;
-    std::vector<StationState> adjusted;   ///< as of the last Adjust
-    std::vector<StationState> backwards;  ///< as the first north showed those before it
+    std::vector<StationState> adjusted;  ///< as of the last Adjust
     std::size_t adjusted_drafts = 0;
     std::vector<AttitudeSample> attitude;  ///< smoothed, of every knot, as of the last Adjust
   };

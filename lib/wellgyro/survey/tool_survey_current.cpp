@@ -86,25 +86,17 @@ const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
 /// Where the hole points at every knot that has a depth and a direction.
 std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
   std::vector<Waypoint> way;
-  const std::vector<FilterEpoch>& epochs = run.survey->filter()->history().epochs;
-  way.reserve(epochs.size());
-  for (std::size_t i = 0; i < epochs.size(); ++i) {
-    const FilterEpoch& epoch = epochs[i];
-    AttitudeSample attitude;
-    if (i < run.attitude.size()) {
-      attitude = run.attitude[i];
-    } else {
-      attitude.inclination = epoch.knot.inclination;
-      attitude.azimuth = epoch.azimuth;
-      attitude.toolface = epoch.knot.toolface;
-      attitude.azimuth_known = epoch.azimuth_known;
-      if (epoch.knot.vertical) attitude.quality |= Quality::kVertical;
-    }
-    if (!epoch.knot.along.known || !HasDirection(attitude)) continue;
+  const RunHistory& history = run.survey->history();
+  way.reserve(history.knots.size());
+  for (std::size_t i = 0; i < history.knots.size(); ++i) {
+    const RunKnot& knot = history.knots[i];
+    const AttitudeSample& attitude =
+        i < run.attitude.size() ? run.attitude[i] : history.attitude[i];
+    if (!knot.along.known || !HasDirection(attitude)) continue;
     // A UTC that has stepped back passes the same times again.
-    if (!way.empty() && epoch.knot.utc < way.back().utc) continue;
+    if (!way.empty() && knot.utc < way.back().utc) continue;
     const HoleAttitude hole = AttitudeOfHole(attitude, job_.string);
-    way.push_back({epoch.knot.utc, {epoch.knot.along.md, hole.inclination, hole.azimuth}});
+    way.push_back({knot.utc, {knot.along.md, hole.inclination, hole.azimuth}});
   }
   return way;
 }
@@ -115,10 +107,8 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
     DraftedRun d;
     d.run = run.survey->summary().run;
     d.misrun = book_.misrun(d.run);
-    if (const AzimuthFilter* filter = run.survey->filter()) {
-      d.states = JoinStates(run.adjusted, run.backwards, filter->stations());
-      d.way = WayOf(run);
-    }
+    d.states = JoinStates(run.adjusted, run.survey->history().states);
+    d.way = WayOf(run);
     const bool contradicted = Contradiction(job_, run.survey->summary()) != nullptr;
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
       Draft draft = run.survey->drafts()[i];
@@ -149,19 +139,16 @@ std::vector<Foresight> ToolSurvey::Foresights() const {
   for (const Event& event : foresights_) {
     Foresight foresight{event.run, event.value_rad, event.sigma_rad, std::nullopt, 0};
     for (const RunState& run : runs_) {
-      if (run.survey->summary().run != event.run || !run.survey->filter()) continue;
-      const auto& epochs = run.survey->filter()->history().epochs;
-      if (epochs.empty()) continue;
-      auto at = std::lower_bound(
-          epochs.begin(), epochs.end(), event.utc,
-          [](const FilterEpoch& epoch, UtcTime utc) { return epoch.knot.utc < utc; });
-      const bool after = at == epochs.end();
+      const std::vector<RunKnot>& knots = run.survey->history().knots;
+      if (run.survey->summary().run != event.run || knots.empty()) continue;
+      auto at = std::lower_bound(knots.begin(), knots.end(), event.utc,
+                                 [](const RunKnot& knot, UtcTime utc) { return knot.utc < utc; });
+      const bool after = at == knots.end();
       if (after) --at;
-      const auto i = static_cast<std::size_t>(at - epochs.begin());
+      const auto i = static_cast<std::size_t>(at - knots.begin());
       if (i >= run.attitude.size()) continue;
-      const double away = std::abs((at->knot.utc - event.utc).seconds());
-      const AlongHole& along = at->knot.along;
-      const bool rests = at->knot.still || (along.known && std::abs(along.speed) <= kRestSpeed);
+      const double away = std::abs((at->utc - event.utc).seconds());
+      const bool rests = at->still || (at->along.known && std::abs(at->along.speed) <= kRestSpeed);
       const bool held = after && rests && away <= kHeld.seconds();
       if (away > kForesightSeconds && !held) continue;
       const AttitudeSample& attitude = run.attitude[i];

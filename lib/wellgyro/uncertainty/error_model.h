@@ -25,6 +25,8 @@ struct ErrorTerm {
   Propagation propagation = Propagation::kSystematic;
   /// Beside the weight OwnFormula: the model's own weighting function, for a magnitude in SI units.
   std::shared_ptr<const FormulaWeight> formula;
+  std::string unit;    ///< in which the magnitude was published; empty: SI
+  double unit_si = 1;  ///< SI units that one of it is
 };
 
 /// Gyrocompassing at rest, and how it starts a continuous section (SPE 90408, App. C).

@@ -45,12 +45,17 @@ void ErrorSources::Open(std::size_t stations, PositionUncertainty& result) {
 }
 
 void ErrorSources::StartLeg(const std::vector<std::size_t>& sources) {
-  active_ = sources;
+  active_.clear();
+  for (const std::size_t i : sources) {
+    if (std::ranges::find(active_, i) == active_.end()) active_.push_back(i);
+  }
+  resting_.clear();
   idle_ = tie_in_;
   std::vector<bool> is_active(sources_.size(), false);
   for (const std::size_t i : active_) is_active[i] = true;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     if (is_active[i]) continue;
+    resting_.push_back(i);
     Source& source = sources_[i];
     source.error = source.sum;
     idle_ += source.sum * source.sum.transpose();
@@ -60,7 +65,10 @@ void ErrorSources::StartLeg(const std::vector<std::size_t>& sources) {
 void ErrorSources::Close(Source& source, std::int64_t group) {
   const Matrix3d cov = source.sum * source.sum.transpose();
   ended_ += cov;
-  if (options_.terms) source.closed += cov;
+  if (options_.terms) {
+    source.closed += cov;
+    source.has_closed = true;
+  }
   source.sum.setZero();
   source.group = group;
 }
@@ -73,16 +81,30 @@ void ErrorSources::Forget() {
     source.sum.setZero();
     source.error.setZero();
     source.closed.setZero();
+    source.has_closed = false;
   }
 }
 
 void ErrorSources::Give(PositionUncertainty& result) const {
-  Matrix3d& total = result.cov_p.emplace_back(ended_ + idle_);
-  for (const std::size_t i : active_) total += sources_[i].error * sources_[i].error.transpose();
+  Matrix3d total = ended_ + idle_;
+  for (const std::size_t i : active_) {
+    const Source& s = sources_[i];
+    const Matrix3d own = s.error * s.error.transpose();
+    total += own;
+    if (!options_.terms) continue;
+    std::vector<Matrix3d>& term = result.terms[i].cov_p;
+    if (s.has_closed) {
+      term.push_back(s.closed + own);
+    } else {
+      term.push_back(own);
+    }
+  }
+  result.cov_p.push_back(total);
   for (std::size_t i = 0; i < shared_.size(); ++i) {
     result.shared[i].error_p.push_back(sources_[shared_[i]].error);
   }
-  for (std::size_t i = 0; i < result.terms.size(); ++i) {
+  if (!options_.terms) return;
+  for (const std::size_t i : resting_) {
     const Source& s = sources_[i];
     result.terms[i].cov_p.push_back(s.closed + s.error * s.error.transpose());
   }

@@ -53,6 +53,7 @@ class ErrorSources {
     Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< at this station
     Eigen::Matrix3d closed =
         Eigen::Matrix3d::Zero();  ///< of ended groups, where terms are asked for
+    bool has_closed = false;
   };
 
   void Close(Source& source, std::int64_t group);
@@ -60,7 +61,7 @@ class ErrorSources {
   const PropagateOptions& options_;
   Eigen::Matrix3d tie_in_;
   std::vector<Source> sources_;
-  std::vector<std::size_t> active_;
+  std::vector<std::size_t> active_, resting_;
   std::vector<std::size_t> shared_;                  ///< sources of result.shared
   Eigen::Matrix3d ended_ = Eigen::Matrix3d::Zero();  ///< of all ended groups
   Eigen::Matrix3d idle_ = Eigen::Matrix3d::Zero();   ///< of sources that this leg does not have

@@ -95,7 +95,9 @@ void GyroModeTracker::Gather(const SurveyPoint& previous, const SurveyPoint& poi
   }
   const double mean = (previous.inclination + point.inclination) / 2;
   const double factor = TurnFactor(zone->axes, mean);
-  if (std::min(factor, TurnFactor(zone->axes, point.inclination)) < kSmallestFactor) {
+  // A sine changes by no more than its angle: most stations need no second one.
+  const bool clear = factor - std::abs(point.inclination - mean) > kSmallestFactor;
+  if (!clear && std::min(factor, TurnFactor(zone->axes, point.inclination)) < kSmallestFactor) {
     mode_.refusal = "the gyro's axis does not feel the turn of the hole at this inclination";
     return;
   }

@@ -70,6 +70,14 @@ double LegWeights::CarriedAzimuth(std::size_t term, const WeightPlace& place) {
   return carried.azimuth;
 }
 
+double LegWeights::InitCosine() {
+  if (cosine_section_ != mode().section) {
+    cosine_section_ = mode().section;
+    init_cosine_ = std::cos(mode().init_inclination);
+  }
+  return init_cosine_;
+}
+
 std::optional<Weights> LegWeights::Weigh(std::size_t term, const WeightPlace& place,
                                          std::string& why) {
   const WeightFunction& weight = *model_.terms[term].weight;
@@ -90,8 +98,7 @@ std::optional<Weights> LegWeights::Weigh(std::size_t term, const WeightPlace& pl
   if (weight.role == WeightRole::kRamp) return Weights{0, 0, mode().ramp_time[zones_[term]]};
   const bool carried = mode().section > 0 && IsStationary(weight.role);
   if (weight.denominator) {
-    const double denominator =
-        carried ? std::cos(mode().init_inclination) : weight.denominator(place);
+    const double denominator = carried ? InitCosine() : weight.denominator(place);
     if (std::abs(denominator) < kNearSingular) {
       why = "term " + model_.terms[term].name + " of model " + model_.name +
             " is within 1 deg of where it grows beyond all bounds";

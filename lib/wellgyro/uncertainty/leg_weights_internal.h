@@ -47,12 +47,15 @@ class LegWeights {
 
   const GyroMode& mode() const { return tracker_.mode(); }
   double CarriedAzimuth(std::size_t term, const WeightPlace& place);
+  double InitCosine();
 
   const ErrorModel& model_;
   double convergence_ = 0;
   GyroModeTracker tracker_;
   std::vector<std::size_t> zones_;  ///< per term, of continuous ones
   std::vector<Carried> carried_;    ///< per term, from the fix that opened the section
+  int cosine_section_ = 0;
+  double init_cosine_ = 1;  ///< of the inclination at which that section was entered
 };
 
 }  // namespace wellgyro

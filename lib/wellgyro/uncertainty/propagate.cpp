@@ -31,6 +31,15 @@ struct Sensitivity {
   double along_at = 0, along_through = 0;  ///< [m]
 };
 
+struct Trigonometry {
+  double sin_inc, cos_inc, sin_azi, cos_azi;
+};
+
+Trigonometry TrigonometryOf(const SurveyPoint& p) {
+  return {std::sin(p.inclination), std::cos(p.inclination), std::sin(p.azimuth),
+          std::cos(p.azimuth)};
+}
+
 /// The hole's direction at a station, with its derivatives.
 struct Direction {
   Vector3d t, t_inc, t_azi;
@@ -125,6 +134,7 @@ class Propagator {
   std::optional<std::size_t> zero_at_;
   std::size_t leg_ = 0;
   Direction here_;
+  Trigonometry ahead_;  ///< of the station below the one at hand
   PositionUncertainty result_;
   SurveyErrors* told_;  ///< hears each station's errors; null: nobody asked
 };
@@ -139,6 +149,7 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
       place_(PlaceIn(surroundings, survey.front())),
       tie_on_(options.tie_on),
       zero_at_(options.zero_at),
+      ahead_(TrigonometryOf(survey.front())),
       told_(told) {
   const double to_magnetic = surroundings.convergence - surroundings.declination.value_or(0);
   magnetic_sin_ = std::sin(to_magnetic);
@@ -198,10 +209,11 @@ void Propagator::PlaceAt(std::size_t k) {
   p.inclination = point.inclination;
   p.previous_inclination = previous.inclination;
   p.azimuth_change = from_vertical ? 0 : point.azimuth - previous.azimuth;
-  p.sin_inc = std::sin(point.inclination);
-  p.cos_inc = std::cos(point.inclination);
-  p.sin_hole = std::sin(point.azimuth);
-  p.cos_hole = std::cos(point.azimuth);
+  p.sin_inc = ahead_.sin_inc;
+  p.cos_inc = ahead_.cos_inc;
+  p.sin_hole = ahead_.sin_azi;
+  p.cos_hole = ahead_.cos_azi;
+  ahead_ = TrigonometryOf(survey_[std::min(k + 1, survey_.size() - 1)]);
   p.sin_azi = p.sin_hole * p.cos_convergence + p.cos_hole * p.sin_convergence;
   p.cos_azi = p.cos_hole * p.cos_convergence - p.sin_hole * p.sin_convergence;
   p.sin_mag = p.sin_hole * magnetic_cos_ + p.cos_hole * magnetic_sin_;
@@ -319,7 +331,9 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
   const std::size_t source = leg_sources_[leg_][term];
   const std::int64_t group = leg.Group(term, k);
   const bool vertical = place_.inclination < leg.model().vertical_limit;
-  if (const auto unit = leg.Displacement(term, place_, vertical)) {
+  const bool displaces = model_term.formula || weight.vector;  // spares a call a station and term
+  const auto unit = displaces ? leg.Displacement(term, place_, vertical) : std::nullopt;
+  if (unit) {
     const bool course = weight.role == WeightRole::kCourse;  // a displacement, not a direction
     if (course && zero_at_ == k) return true;
     if (!unit->allFinite()) {
@@ -340,7 +354,11 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
   if (!w) return Refuse(k, model_term.name, why), false;
   const Vector3d e = model_term.magnitude * Vector3d(w->md, w->inclination, w->azimuth);
   Tell(term, k, {.md = e.x(), .direction = e.y() * here_.t_inc + e.z() * here_.t_azi});
-  sources_.Add(source, group, s.at * e, s.through * e);
+  if (e.x() == 0 && e.y() == 0) {  // most terms move the azimuth alone
+    sources_.Add(source, group, e.z() * s.at.col(2), e.z() * s.through.col(2));
+  } else {
+    sources_.Add(source, group, s.at * e, s.through * e);
+  }
   return true;
 }
 
@@ -356,7 +374,8 @@ bool Propagator::Station(std::size_t k) {
   const bool doubled =
       tie_on_ == TieOn::kModel ? leg.model().doubled_tie_on : tie_on_ == TieOn::kWhole;
   const bool whole = k == 1 && doubled;
-  const Vector3d below = Tangent(next.inclination, next.azimuth);
+  const Vector3d below(ahead_.sin_inc * ahead_.cos_azi, ahead_.sin_inc * ahead_.sin_azi,
+                       ahead_.cos_inc);
   const double ahead = next.md - survey_[k].md;
   Sensitivity s =
       SensitivityAt(above.t, here_, below, whole ? place_.course : place_.course / 2, ahead);

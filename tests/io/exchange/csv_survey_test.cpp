@@ -75,6 +75,17 @@ TEST(CsvSurvey, ColumnsByNameOrNumber) {
   EXPECT_EQ(numbered.Get(Column::kTvd, 1), 30 * units::kFoot);
 }
 
+// An option that would do nothing is a mistake, not a wish.
+TEST(CsvSurvey, ColumnsThatAreNotThereAreRefused) {
+  const std::string text = "MD[m],INC,AZI_TRUE\n0,0,0\n30,1,2\n";
+  EXPECT_THAT(Refusal(text, {.columns = {{"FOO", "1"}}}).text, HasSubstr("there is no FOO"));
+  EXPECT_THAT(Refusal(text, {.columns = {{"INC", "9"}}}).text, HasSubstr("called so"));
+  EXPECT_THAT(Refusal(text, {.columns = {{"INC", "Neigung"}}}).text, HasSubstr("called so"));
+  EXPECT_EQ(Read(text, {.columns = {{"TVD", "0"}}}).rows(), 2u);
+  EXPECT_THAT(Read(text, {.trajectory = "A"}).head.notes,
+              testing::Contains(HasSubstr("--trajectory is not used")));
+}
+
 TEST(CsvSurvey, NumbersOfAnyLengthAreRightOrRefused) {
   std::string digits = "10.";
   for (int i = 0; i < 200; ++i) digits += static_cast<char>('0' + i % 10);

@@ -44,6 +44,26 @@ TEST(Las, CurvesByMnemonicInAnyOrder) {
   EXPECT_EQ(t->head.names.well, "A-1, 12.30 h");
 }
 
+// Options name curves by mnemonic or number, and win over what others are called.
+TEST(Las, ColumnsAreNamedByOptions) {
+  const std::string text =
+      "~V\n VERS. 2.0 :\n WRAP. NO :\n~W\n STRT.M 0 :\n STOP.M 30 :\n STEP.M 30 :\n"
+      " NULL. -999.25 :\n~P\n I_AT. True :\n~C\n DEPT.M :\n DEVI.DEG :\n AZIM.DEG :\n"
+      " AZG.DEG :\n~A\n0 1 2 3\n30 1 2 3\n";
+  for (const char* name : {"AZG", "4"}) {
+    const auto t = ParseSurvey(text, "text", {.columns = {{"AZI_GRID", name}, {"AZI", "0"}}});
+    ASSERT_TRUE(t) << t.fault().text;
+    EXPECT_EQ(t->azimuth(1), 3 * units::kDeg) << name;
+    EXPECT_EQ(t->head.azimuth.north, North::kGrid) << name;
+    EXPECT_THAT(t->head.notes, testing::Contains(HasSubstr("from grid north as told")));
+  }
+  for (const char* name : {"9", "AZX"}) {
+    const auto t = ParseSurvey(text, "text", {.columns = {{"AZI", name}}});
+    ASSERT_FALSE(t) << name;
+    EXPECT_THAT(t.fault().text, HasSubstr("no column is called so"));
+  }
+}
+
 TEST(Las, WrappedRows) {
   const auto t = ParseSurvey(Las("0\n1 0 50\n0\n20 350\n2.5 52 6.09\n", "0", "20", "YES"), "text");
   ASSERT_TRUE(t) << t.fault().text;

@@ -126,6 +126,8 @@ TEST(ModelFiles, HostileJsonIsRefused) {
                              Json(Term("A", 1, "m", "Random", "Unknown", "0", "0")),
                              Json(Term("A", 1, "m", "Random", std::string(5000, '('), "0", "0")),
                              Json(Term("", 1, "m", "Random", "1", "0", "0")),
+                             Json(Term("A", 1, "m", "Random", "1", "0", "")),
+                             Json(Term("A", 1, "", "Random", "1", "0", "0")),
                              Json(Term("A", 1, "m", "Random", "1", "0", "0") + "," +
                                   Term("A", 1, "m", "Random", "1", "0", "0")),
                              Json(""),
@@ -207,6 +209,22 @@ TEST(ModelFiles, Ipm) {
         "abz\ti\ts\tell\t1\t1\n", "abz\ti\ts\t-\t1\tsystem(1)\n", "abz\ti\ts\t-\t1\tsin(tfo)\n"}) {
     EXPECT_FALSE(ParseModelIpm(bad, "bad.ipm")) << bad;
   }
+  // Some exports say behind the formula between which inclinations a term holds.
+  const std::string ranged =
+      "#Name\tVector\tTie-On\tUnit\tValue\tFormula\tRange Min\tRange Max\n"
+      "dref\te\tr\tm\t0.35\t1\t0\t0\nxym1\ti\ts\td\t0.1\tabs(sin(inc))\t0\t20\n";
+  const auto upper = ParseModelIpm(ranged, "ranged.ipm");
+  ASSERT_TRUE(upper) << upper.fault().text;
+  EXPECT_EQ(upper->terms.size(), 2U);
+  std::string whole = ranged;
+  whole.replace(whole.rfind("20"), 2, "0");
+  const auto all = ParseModelIpm(whole, "whole.ipm");
+  ASSERT_TRUE(all) << all.fault().text;
+  EXPECT_LT(PropagateErrors(survey, Place(), *upper).cov_p.back().trace(),
+            PropagateErrors(survey, Place(), *all).cov_p.back().trace());
+  const auto unnamed = ParseModelIpm(ranged.substr(ranged.find('\n') + 1), "unnamed.ipm");
+  ASSERT_FALSE(unnamed);
+  EXPECT_THAT(unnamed.fault().text, HasSubstr("cells follow the formula"));
   // Values that name each other cannot grow without bound.
   std::string bomb = "x0\tn\tn\t-\t1\t1\n";
   for (int i = 1; i < 40; ++i) {

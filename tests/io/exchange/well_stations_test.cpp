@@ -37,6 +37,15 @@ TEST(WellStations, HeadersOfTheTrade) {
   EXPECT_EQ(bare.stations[1].md, 30);
 }
 
+TEST(WellStations, OffsetsAreTakenWithoutATvd) {
+  const WellStations half =
+      Good("MD[m],INC[deg],AZI_TRUE[deg],N[m],E[m]\n0,0,0,5,-7\n30,0,0,5,-7\n");
+  EXPECT_FALSE(half.start_stated);
+  ASSERT_TRUE(half.offsets);
+  EXPECT_EQ(*half.offsets, Eigen::Vector2d(5, -7));
+  EXPECT_FALSE(Good("MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,0,0\n").offsets);
+}
+
 TEST(WellStations, ChoosesTheNorthThatIsWanted) {
   const std::string both = "MD[m],INC[deg],AZI_TRUE[deg],AZI_GRID[deg]\n0,1,10,20\n9,1,10,20\n";
   EXPECT_NEAR(Good(both).stations[0].azimuth, 10 * units::kDeg, 1e-15);
@@ -85,7 +94,7 @@ TEST(WellStations, FaultsNameTheirPlace) {
       {head, 1, "single station"},
       {head + "0,0,0\n", 0, "two stations"},
       {head + "0,0,0\n30,x,0\n", 3, "'x'"},
-      {head + "0,0,0\n30,1\n", 3, "''"},
+      {head + "0,0,0\n30,1\n", 3, "2 fields, and column 3"},
       {head + "0,0,0\n30,nan,1\n", 3, "'nan'"},
       {head + "0,0,0\n30,inf,1\n", 3, "'inf'"},
       {head + "0,0,0\n1e99,1,1\n", 3, "e+99"},

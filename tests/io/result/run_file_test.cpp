@@ -110,8 +110,8 @@ TEST(RunToml, SaysHowTheRunFits) {
   summary.fit->chi_square = 812.5;
   summary.fit->degrees_of_freedom = 800;
   summary.fit->parts[RunFit::kInclination] = {300.25, 310.5};
-  summary.fit->errors[Knot::kToolfaceOffset] = 0.25 * units::kDeg;
-  summary.fit->sigma_errors[Knot::kToolfaceOffset] = 0.03 * units::kDeg;
+  summary.fit->errors[kToolfaceOffset] = 0.25 * units::kDeg;
+  summary.fit->sigma_errors[kToolfaceOffset] = 0.03 * units::kDeg;
   summary.fixes[0].roll_rate = 0.5 * units::kDegPerHour;
   const toml::table run = toml::parse(RunToml(Record(), SmallJob(), survey, {}));
   const auto first = run["run"][0];

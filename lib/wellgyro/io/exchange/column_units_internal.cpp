@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -280,12 +281,15 @@ std::string UnitOf(Quantity quantity, const SurveyHead& head) {
 std::string Exact(double value, double factor) {
   if (value == 0) return "0";
   const double quotient = value / factor;
+  char text[40];
   for (const double q :
        {quotient, std::nextafter(quotient, INFINITY), std::nextafter(quotient, -INFINITY)}) {
     for (const int digits : {15, 16, 17}) {
-      std::string text = fmt::format("{:.{}g}", q, digits);
-      const std::optional<double> back = NumberOf(text);
-      if (back && *back * factor == value) return text;
+      const auto end =
+          std::to_chars(text, text + sizeof text, q, std::chars_format::general, digits);
+      const std::string_view written(text, static_cast<std::size_t>(end.ptr - text));
+      const std::optional<double> back = NumberOf(written);
+      if (back && *back * factor == value) return std::string(written);
     }
   }
   // The quotient's grid is coarser than the value's here: one rounding is lost.

@@ -221,9 +221,21 @@ std::vector<Heading> CsvHeadingsOf(const std::vector<std::string>& fields,
     headings[*at].column = want.column;
     headings[*at].north = want.north;
     headings[*at].either_axis = false;
+    headings[*at].told = true;
     if (!want.unit.empty()) headings[*at].unit = want.unit;
   }
   return headings;
+}
+
+std::string UnusedColumn(const std::vector<Heading>& headings, const ReadOptions& options) {
+  for (const auto& [canonical, name] : options.columns) {
+    const Heading want = HeadingOf(canonical);
+    const auto is = [&](const Heading& h) { return h.told && h.column == want.column; };
+    if (name == "0" || std::any_of(headings.begin(), headings.end(), is)) continue;
+    return fmt::format("--columns {}={}: no column is called so, and there are {} of them",
+                       canonical, name, headings.size());
+  }
+  return {};
 }
 
 bool NamePositions(const std::vector<Heading>& headings) {

@@ -27,6 +27,9 @@ struct CsvColumns {
   std::optional<std::size_t> md, inclination, azimuth;
 };
 
+/// A sentence on the first of --columns that names none of these columns; empty where all do.
+std::string UnusedColumn(const std::vector<Heading>& headings, const ReadOptions& options);
+
 /// Headings of a line's fields, those that the options name by name or number among them.
 std::vector<Heading> CsvHeadingsOf(const std::vector<std::string>& fields,
                                    const ReadOptions& options);

@@ -9,6 +9,7 @@
 #include "wellgyro/io/exchange/number_marks_internal.h"
 #include "wellgyro/io/exchange/petra_internal.h"
 #include "wellgyro/io/exchange/position_log_internal.h"
+#include "wellgyro/io/exchange/spaced_names_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -42,7 +43,7 @@ class CsvReader {
     std::vector<std::string> fields;
     while (NextRecord(fields)) {
       if (IsBlank(fields)) {
-        ended_ = true;
+        ended_ = build_.table.rows() > 0;  // one between the heading and its rows ends nothing
       } else if (IsPetra() && fields.front().starts_with('*')) {
         TakeKeywords(fields);
       } else if (ended_) {
@@ -111,6 +112,7 @@ class CsvReader {
       const std::string_view text = Trim(line);
       if (first_line_.empty()) first_line_ = text.substr(0, 200);
       if (text.empty()) {
+        if (!above_.empty()) before_blank_ = std::move(above_);
         above_.clear();
         continue;
       }
@@ -124,6 +126,7 @@ class CsvReader {
       if (!options_.columns.empty() && TakeHeaderless(line)) return;
       if (TakeHeadingsAbove(line)) return;
       TakeReportLine(head(), text, claims_);
+      before_blank_.clear();
       above_.emplace_back(line);
       if (above_.size() > 3) above_.erase(above_.begin());
     }
@@ -191,7 +194,8 @@ class CsvReader {
   // The whole line: a tab at its begin stands behind an empty first column, as in the rows.
   bool TakeHeader(std::string_view line) {
     for (const char delimiter : {',', ';', '\t', ' '}) {
-      const auto fields = SplitQuoted(line, delimiter);
+      const auto fields =
+          delimiter == ' ' ? SpacedNames(line, WidthBelow()) : SplitQuoted(line, delimiter);
       if (!fields || std::any_of(fields->begin(), fields->end(),
                                  [](const auto& f) { return NumberOf(f).has_value(); })) {
         continue;
@@ -209,6 +213,19 @@ class CsvReader {
       return true;
     }
     return false;
+  }
+
+  // Fields of the first row of numbers below the line last read, if there is one.
+  std::optional<std::size_t> WidthBelow() {
+    const std::string ahead = lines_.Ahead();
+    for (std::size_t at = 0; at < ahead.size();) {
+      const std::size_t end = std::min(ahead.find('\n', at), ahead.size());
+      const std::string line(Trim(std::string_view(ahead).substr(at, end - at)));
+      at = end + 1;
+      const auto fields = SplitQuoted(line, ' ');
+      if (fields && AreNumbers(*fields, line, ' ')) return fields->size();
+    }
+    return std::nullopt;
   }
 
   // A second line may hold the units.
@@ -256,6 +273,7 @@ class CsvReader {
 
   // Headings in several lines, known by the numbers that follow.
   bool TakeHeadingsAbove(std::string_view line) {
+    if (above_.empty()) above_ = before_blank_;  // a blank line between heading and numbers
     if (above_.empty()) return false;
     for (const char delimiter : {'\t', ';', ',', ' '}) {
       const auto fields = SplitQuoted(line, delimiter);
@@ -291,6 +309,8 @@ class CsvReader {
   }
 
   void MakeColumns(const std::vector<Heading>& headings) {
+    const std::string unused = UnusedColumn(headings, options_);
+    if (!unused.empty()) lines_.Complain(FaultCode::kConflict, unused);
     columns_ = CsvColumnsOf(headings, options_, head(), claims_, lines_);
     for (std::size_t i = 0; i < columns_.all.size(); ++i) {
       if (columns_.all[i].well && !well_column_) well_column_ = i;
@@ -307,7 +327,9 @@ class CsvReader {
     std::string text;
     for (const std::string& field : fields) {
       if (NumberOf(field) && text.empty()) {
-        lines_.Complain(FaultCode::kSyntax, "numbers after the blank line that ended the table");
+        lines_.Complain(FaultCode::kSyntax,
+                        "numbers after the blank line that ended the table: take that line out, or "
+                        "what follows it");
       }
       if (!field.empty()) text += (text.empty() ? "" : " ") + field;
     }
@@ -349,7 +371,11 @@ class CsvReader {
   }
 
   std::optional<double> Number(const std::vector<std::string>& fields, std::size_t i) {
-    const std::string_view cell = i < fields.size() ? TrimCell(fields[i]) : std::string_view();
+    if (i >= fields.size()) {
+      lines_.Complain(FaultCode::kSyntax,
+                      fmt::format("{} fields, and column {} is needed", fields.size(), i + 1));
+    }
+    const std::string_view cell = TrimCell(fields[i]);
     const auto number = NumberIn(cell, commas_);
     if (number) return number;
     if (commas_ == CommaUse::kUnclear && NumberIn(cell, CommaUse::kDecimal)) {
@@ -423,7 +449,7 @@ class CsvReader {
   Claims& claims_;
   TableBuilder build_;
   CsvColumns columns_;
-  std::vector<std::string> above_, wells_, petra_headings_;
+  std::vector<std::string> above_, before_blank_, wells_, petra_headings_;
   PetraHead petra_;
   std::string first_line_;
   std::optional<std::size_t> well_column_;

@@ -58,6 +58,10 @@ class EdmReader {
     SurveyHead& head = build_.table.head;
     head.md_unit = head.grid_unit = LengthUnit::kFoot;
     head.curvature_unit = CurvatureUnit::kDegPer100ft;
+    if (!options_.depth_unit) {
+      head.notes.emplace_back(
+          "its lengths are taken as feet, as EDM stores them: --depth-unit m if they are not");
+    }
     return std::move(build_.table);
   }
 

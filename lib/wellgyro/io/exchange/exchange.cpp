@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/exchange/geo_path_internal.h"
+#include "wellgyro/io/exchange/headings_internal.h"
 #include "wellgyro/io/exchange/line_reader_internal.h"
 #include "wellgyro/io/exchange/sheet_internal.h"
 #include "wellgyro/io/exchange/survey_tables.h"
@@ -162,6 +163,30 @@ void Apply(SurveyTable& table, const ReadOptions& options, const Claims& claims,
   Witness(table, claims, source);
 }
 
+// What --columns may name on its left.
+void CheckColumns(const ReadOptions& options, const std::string& source) {
+  for (const auto& [canonical, name] : options.columns) {
+    const Heading want = HeadingOf(canonical);
+    if (want.column || want.text || want.status || want.well) continue;
+    throw TextError{{.code = FaultCode::kConflict,
+                     .text = fmt::format("--columns {}={}: there is no {}; there are MD, INC, AZI, "
+                                         "AZI_TRUE, AZI_GRID, AZI_MAG, TVD, TVDSS, N, E, NORTHING, "
+                                         "EASTING, DLS and others of survey.csv",
+                                         canonical, name, canonical),
+                     .source = source}};
+  }
+}
+
+// Options that this kind of file has no use for.
+void NoteUnused(SurveyTable& table, const ReadOptions& options, bool columns, bool trajectories) {
+  if (!columns && !options.columns.empty()) {
+    table.head.notes.emplace_back("--columns is not used: the format says what its columns are");
+  }
+  if (!trajectories && !options.trajectory.empty()) {
+    table.head.notes.emplace_back("--trajectory is not used: the file has one survey");
+  }
+}
+
 SurveyTable ReadLines(LineReader& lines, SurveyFormat format, const ReadOptions& options,
                       Claims& claims) {
   switch (format) {
@@ -184,8 +209,12 @@ SurveyTable ReadLines(LineReader& lines, SurveyFormat format, const ReadOptions&
 
 SurveyTable ReadStream(std::istream& bytes, const std::string& source, SurveyFormat format,
                        const ReadOptions& options, Claims& claims) {
+  CheckColumns(options, source);
   LineReader lines(bytes, source);
+  const bool plan = format == SurveyFormat::kCsv && IsWbp(lines.Ahead());
   SurveyTable table = ReadLines(lines, format, options, claims);
+  const bool fixed = format == SurveyFormat::kP717 || format == SurveyFormat::kPetrel;
+  NoteUnused(table, options, !fixed && !plan, plan);
   const std::string changed = lines.CheckCertificate();
   if (!changed.empty()) table.head.notes.push_back(changed);
   return table;
@@ -225,11 +254,14 @@ Result<SurveyTable> ParseSurvey(std::string_view text, const std::string& source
     Claims claims;
     if (IsSheet(text, options)) {
       std::istringstream rows(SheetText(std::string(text), source, options.trajectory));
-      table = ReadStream(rows, source, SurveyFormat::kCsv, options, claims);
+      ReadOptions within = options;
+      within.trajectory.clear();  // it has named the sheet
+      table = ReadStream(rows, source, SurveyFormat::kCsv, within, claims);
     } else if (IsXml(format)) {
       std::string xml = InUtf8(text);
       table = IsEdm(xml) ? ReadEdm(std::move(xml), source, options)
                          : ReadWitsml(std::move(xml), source, options);
+      NoteUnused(table, options, false, true);
     } else {
       std::istringstream bytes{std::string(text)};
       table = ReadStream(bytes, source, format, options, claims);

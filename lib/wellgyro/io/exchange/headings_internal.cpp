@@ -27,6 +27,7 @@ constexpr std::array kAliases{
     Alias{"devi", C::kInclination},
     Alias{"sdev", C::kInclination},
     Alias{"deviation", C::kInclination},
+    Alias{"deviationangle", C::kInclination},
     Alias{"azi", C::kAzimuth},
     Alias{"azim", C::kAzimuth},
     Alias{"azimuth", C::kAzimuth},
@@ -156,6 +157,9 @@ Heading HeadingOf(std::string_view heading) {
     const std::size_t end = close == std::string_view::npos ? heading.size() : close;
     if (end > bracket) found.unit = Trim(heading.substr(bracket + 1, end - bracket - 1));
     NameHeading(found, name);
+    Heading within;  // "Azi (azimuth)" says twice what it is, and not in which unit
+    NameHeading(within, found.unit);
+    if (within.column && within.column == found.column) found.unit.clear();
     return found;
   }
   NameHeading(found, name);

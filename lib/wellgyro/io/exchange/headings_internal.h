@@ -15,6 +15,7 @@ struct Heading {
   bool status = false;
   bool well = false;         ///< names the well of its row
   bool either_axis = false;  ///< X or Y: which of them is the east must be seen
+  bool told = false;         ///< by an option, not by the file
   std::string unit;
   North north = North::kUnknown;
 };

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/csv_columns_internal.h"
 #include "wellgyro/io/exchange/headings_internal.h"
 #include "wellgyro/io/exchange/las_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
@@ -119,6 +120,7 @@ class LasReader {
     build_ = TableBuilder();
     head() = std::move(kept);
     curves_.clear();
+    headings_.clear();
     pending_.clear();
     azimuth_seen_ = false;
     first_index_.reset();
@@ -206,14 +208,13 @@ class LasReader {
   void AddCurve(const LasLine& line) {
     Curve curve;
     Heading heading = HeadingOf(line.mnemonic);
-    for (const auto& [canonical, name] : options_.columns) {
-      if (EqualNoCase(name, line.mnemonic)) heading = HeadingOf(canonical);
-    }
     for (const ColumnInfo& info : AllColumns()) {
       if (!heading.column && EqualNoCase(info.las, line.mnemonic)) heading.column = info.column;
     }
     // The first curve is the index, which need not say so.
     if (curves_.empty() && EqualNoCase(line.mnemonic, "INDEX")) heading.column = Column::kMd;
+    TakeOption(heading, line);
+    headings_.push_back(heading);
     if (heading.column == Column::kAzimuth) heading.column = AzimuthColumn(heading.north);
     const bool twice =
         heading.column && std::any_of(curves_.begin(), curves_.end(),
@@ -225,6 +226,21 @@ class LasReader {
                                          InfoOf(*heading.column).text));
     }
     curves_.push_back(curve);
+  }
+
+  // An option names a curve by its mnemonic or its number, and wins over what others are called.
+  void TakeOption(Heading& heading, const LasLine& line) const {
+    for (const auto& [canonical, name] : options_.columns) {
+      Heading want = HeadingOf(canonical);
+      const bool here = EqualNoCase(name, line.mnemonic) ||
+                        IntegerOf(name) == static_cast<int>(curves_.size()) + 1;
+      if (here) {
+        heading = want;
+        heading.told = true;
+      } else if (heading.column == want.column && heading.north == want.north && !heading.told) {
+        heading.column.reset();
+      }
+    }
   }
 
   void TakeCurve(Curve& curve, Column column, std::string unit) {
@@ -292,10 +308,23 @@ class LasReader {
     }
   }
 
+  // The north that an option or a curve's name gives, which the parameter I_AT may contradict.
+  void TakeNorth(North north, bool told) {
+    North& said = head().azimuth.north;
+    if (north == North::kUnknown || north == said) return;
+    if (said != North::kUnknown) {
+      head().notes.push_back(
+          fmt::format("azimuths are taken from {} north {}, though the file "
+                      "says {}",
+                      WordOf(north), told ? "as told" : "as their curve is called", WordOf(said)));
+    }
+    said = north;
+  }
+
   std::optional<Column> AzimuthColumn(North north) {
     if (!azimuth_seen_) {
       azimuth_seen_ = true;
-      if (north != North::kUnknown) head().azimuth.north = north;
+      TakeNorth(north, headings_.back().told);
       return Column::kAzimuth;
     }
     return SecondAzimuth(north);
@@ -312,6 +341,11 @@ class LasReader {
   }
 
   void CheckCurves() {
+    const std::string unused = UnusedColumn(headings_, options_);
+    if (!unused.empty()) lines_.Complain(FaultCode::kConflict, unused);
+    for (const Heading& h : headings_) {
+      if (h.told && h.column == Column::kAzimuth) TakeNorth(h.north, true);
+    }
     for (const Column column : {Column::kMd, Column::kInclination, Column::kAzimuth}) {
       if (!HasCurve(column)) {
         lines_.Complain(FaultCode::kForeign, fmt::format("no curve of {}", InfoOf(column).text));
@@ -365,8 +399,8 @@ class LasReader {
       if (c.column == Column::kInclination) inclination = InclinationOf(pending_[i], c.factor);
       if (c.column == Column::kAzimuth) azimuth = AzimuthOf(pending_[i], c.factor);
     }
-    // A log has rows where there was no survey.
-    if (md && (inclination || azimuth)) {
+    // A log has rows where there was no survey: they are left out, and counted.
+    if (md) {
       const auto problem = build_.Add(*md, inclination, azimuth);
       if (problem) lines_.Complain(problem->code, problem->text);
       for (std::size_t i = 0; i < curves_.size(); ++i) Keep(curves_[i], pending_[i]);
@@ -397,6 +431,7 @@ class LasReader {
   Claims& claims_;
   TableBuilder build_;
   std::vector<Curve> curves_;
+  std::vector<Heading> headings_;
   std::vector<double> pending_;
   std::optional<double> null_, start_, stop_, step_, first_index_;
   std::optional<LengthUnit> md_unit_;

@@ -151,14 +151,16 @@ class LasWriter {
 
   void Data() {
     text_ += "~A\n";
+    constexpr std::size_t kWidth = 14;
     for (const std::size_t row : rows_) {
-      std::string line;
       for (const Column column : columns_) {
         const auto value = table_.Get(column, row);
-        line +=
-            fmt::format(" {:>14}", value ? Exact(InfoOf(column).quantity, *value, head_) : null_);
+        const std::string cell = value ? Exact(InfoOf(column).quantity, *value, head_) : null_;
+        if (column != columns_.front()) text_ += ' ';
+        if (cell.size() < kWidth) text_.append(kWidth - cell.size(), ' ');
+        text_ += cell;
       }
-      text_ += line.substr(1) + "\n";
+      text_ += '\n';
     }
   }
 

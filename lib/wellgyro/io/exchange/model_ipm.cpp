@@ -172,12 +172,13 @@ class RowsToModel {
   std::map<std::pair<std::string, std::string>, std::vector<Row*>> groups_;
 };
 
-/// By tabs, or where there are too few of them by runs of two blanks and more.
+/// By tabs, or where there are too few of them by runs of two blanks and more; then the formula is
+/// the rest of the line.
 std::vector<std::string> Cells(std::string_view line) {
   std::vector<std::string> cells;
   const bool tabs = std::ranges::count(line, '\t') >= 5;
   while (!line.empty()) {
-    std::size_t end = cells.size() == 5 ? line.size() : line.find(tabs ? "\t" : "  ");
+    std::size_t end = !tabs && cells.size() == 5 ? line.size() : line.find(tabs ? "\t" : "  ");
     if (end == std::string_view::npos) end = line.size();
     cells.push_back(Trimmed(line.substr(0, end)));
     line.remove_prefix(std::min(end + 1, line.size()));
@@ -186,10 +187,38 @@ std::vector<std::string> Cells(std::string_view line) {
   return cells;
 }
 
+/// Whether the line of names says that inclinations from and to follow the formula.
+bool NamesRange(std::string_view names) {
+  const std::vector<std::string> cells = Cells(names);
+  return cells.size() == 8 && LowerCase(cells[6]).find("min") != std::string::npos &&
+         LowerCase(cells[7]).find("max") != std::string::npos;
+}
+
+Row RowOf(const std::string& line, bool ranges, const std::string& source, int number) {
+  std::vector<std::string> cells = Cells(line);
+  while (cells.size() > 6 && cells.back().empty()) cells.pop_back();
+  if (cells.size() < 6) RefuseModel(source, "a row has fewer than six cells between tabs", number);
+  Row row{LowerCase(cells[0]), LowerCase(cells[1]), LowerCase(cells[2]), LowerCase(cells[3]),
+          cells[5]};
+  const std::string term = "term " + row.name;
+  row.value = NumberOrRefuse(cells[4], term + ": the value", source, number);
+  if (ranges && cells.size() == 8) {
+    row.min_deg = NumberOrRefuse(cells[6], term + ": the least inclination", source, number);
+    row.max_deg = NumberOrRefuse(cells[7], term + ": the greatest inclination", source, number);
+  } else if (cells.size() > 6) {
+    RefuseModel(source, term + ": cells follow the formula that the line of names does not name",
+                number);
+  }
+  row.order = number;
+  row.line = number;
+  return row;
+}
+
 ErrorModel ReadIpm(std::string_view text, const std::string& source) {
   ErrorModel model;
   std::vector<Row> rows;
   int number = 0;
+  bool ranges = false;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string line = Trimmed(text.substr(0, end));
@@ -197,6 +226,7 @@ ErrorModel ReadIpm(std::string_view text, const std::string& source) {
     ++number;
     if (line.empty()) continue;
     if (line.front() == '#') {
+      ranges = ranges || NamesRange(line);
       const std::size_t colon = line.find(':');
       if (colon == std::string::npos) continue;
       const std::string key = Trimmed(std::string_view(line).substr(1, colon - 1));
@@ -206,14 +236,7 @@ ErrorModel ReadIpm(std::string_view text, const std::string& source) {
       if (key == "Remarks") model.source = value;
       continue;
     }
-    const std::vector<std::string> cells = Cells(line);
-    if (cells.size() < 6) RefuseModel(source, "a row has fewer than six cells", number);
-    Row row{LowerCase(cells[0]), LowerCase(cells[1]), LowerCase(cells[2]), LowerCase(cells[3]),
-            cells[5]};
-    row.value = NumberOrRefuse(cells[4], "term " + row.name + ": the value", source, number);
-    row.order = number;
-    row.line = number;
-    rows.push_back(std::move(row));
+    rows.push_back(RowOf(line, ranges, source, number));
   }
   if (model.name.empty()) model.name = source;
   RowsToModel(std::move(rows), source).Into(model);

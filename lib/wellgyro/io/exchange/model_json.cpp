@@ -29,6 +29,7 @@ class JsonModel {
   double Number(const json& object, const char* key) const;
   std::optional<double> Parameter(const char* key) const;
   ErrorTerm Term(const json& term);
+  ErrorTerm Weighted(const json& term) const;
   ErrorTerm Published(const std::string& name, const std::string& code, double value,
                       Propagation propagation) const;
   void AddMode();
@@ -76,10 +77,18 @@ ErrorTerm JsonModel::Published(const std::string& name, const std::string& code,
 }
 
 ErrorTerm JsonModel::Term(const json& term) {
+  ErrorTerm made = Weighted(term);
+  made.unit = Text(term, "units");
+  made.unit_si = *ModelUnit(made.unit);
+  return made;
+}
+
+ErrorTerm JsonModel::Weighted(const json& term) const {
   if (!term.is_object()) RefuseModel(source_, "a term is no object");
   const std::string name = Text(term, "name");
   if (name.empty()) RefuseModel(source_, "a term has no name");
   const std::string unit = Text(term, "units"), mode = Text(term, "propagation_mode");
+  if (unit.empty()) RefuseModel(source_, "term " + name + " lacks 'units'");
   const auto si = ModelUnit(unit);
   if (!si) RefuseModel(source_, "term " + name + ": the unit '" + unit + "' is not known");
   const auto propagation = ModelPropagation(mode);
@@ -89,10 +98,16 @@ ErrorTerm JsonModel::Term(const json& term) {
   for (const std::string& known : {code, name}) {
     if (IsStateful(known)) return Published(name, known, value, *propagation);
   }
+  // A misspelt key would make the term weigh nothing without a word.
+  const auto needed = [&](const char* key) {
+    std::string formula = Text(term, key);
+    if (!formula.empty()) return formula;
+    RefuseModel(source_, "term " + name + " lacks '" + key + "': write \"0\" where it has none");
+  };
   FormulaTexts texts;
-  texts.md = Text(term, "depth_formula");
-  texts.inclination = Text(term, "inclination_formula");
-  texts.azimuth = Text(term, "azimuth_formula");
+  texts.md = needed("depth_formula");
+  texts.inclination = needed("inclination_formula");
+  texts.azimuth = needed("azimuth_formula");
   texts.north = Text(term, "north_singularity");
   texts.east = Text(term, "east_singularity");
   texts.vertical = Text(term, "vertical_singularity");
@@ -191,7 +206,9 @@ Result<ErrorModel> ParseModelJson(std::string_view text, const std::string& sour
     Fault fault;
     fault.code = FaultCode::kSyntax;
     fault.source = source;
-    fault.text = std::string("is not JSON: ") + error.what();
+    const std::string what = error.what();  // "[json.exception.parse_error.101] parse error at ..."
+    const std::size_t bracket = what.find("] ");
+    fault.text = "is not JSON: " + what.substr(bracket == what.npos ? 0 : bracket + 2);
     return fault;
   }
 }

@@ -47,6 +47,8 @@ ErrorTerm Term(const std::string& name, const YAML::Node& node, const std::strin
   const auto magnitude = Leading(Text(node, "magnitude"));
   if (!si || !magnitude) RefuseModel(source, "term " + name + ": its magnitude or unit is none");
   term.magnitude = std::abs(*magnitude) * *si;
+  term.unit = Text(node, "unit");
+  term.unit_si = *si;
   term.propagation = *propagation;
   return term;
 }

@@ -18,6 +18,7 @@ enum class CommaUse {
 CommaUse CommaUseOf(std::string_view text, char delimiter);
 
 /// A number in a cell, with or without quotes; nothing where commas do not stand as `use` says.
+/// Blanks and apostrophes may part thousands, and points where the comma is decimal.
 std::optional<double> NumberIn(std::string_view cell, CommaUse use);
 
 }  // namespace wellgyro

@@ -1,6 +1,7 @@
 // "WELL TRACE FROM PETREL", as Petrel exports and many open readers take it.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/core.h>
 
@@ -79,6 +80,8 @@ class PetrelReader {
   void Header(std::string_view line) {
     if (line.starts_with("# WELL NAME:")) head().names.well = AfterColon(line);
     if (line.starts_with("# DEFINITIVE SURVEY:")) head().names.survey = AfterColon(line);
+    if (line.starts_with("# WELL HEAD X-COORDINATE:")) well_x_ = LengthOf(AfterColon(line));
+    if (line.starts_with("# WELL HEAD Y-COORDINATE:")) well_y_ = LengthOf(AfterColon(line));
     if (line.starts_with("# WELL DATUM")) {
       datum_ = LengthOf(AfterColon(line));
       if (!datum_) lines_.Complain(FaultCode::kSyntax, "the well datum has no length");
@@ -225,11 +228,38 @@ class PetrelReader {
                     static_cast<int>(i) + 1);
   }
 
+  // DX and DY count from the well head, so that X less DX is the head's X. Survey files of ours
+  // that begin below the head have its first station's place there.
+  void CheckWellHead(const std::optional<Length>& head, const char* axis, Column map, Column own) {
+    constexpr double kSame = 0.05;  // of either unit: heads are given to decimetres
+    const SurveyTable& table = build_.table;
+    const auto at = table.Get(map, 0), moved = table.Get(own, 0);
+    if (!head || !at || !moved) return;
+    const double factor = FactorFor(map);
+    const double said = head->number * (head->unit && across_ ? FactorOf(*head->unit) / factor : 1);
+    const double begin = *at / factor, ours = (*at - *moved) / factor;
+    // The axes of DX and DY may be turned against the map's by some degrees.
+    const double turned = 0.1 * std::abs(*moved) / factor;
+    if (std::abs(said - ours) < kSame + turned || std::abs(said - begin) < kSame) return;
+    lines_.Complain(
+        FaultCode::kConflict,
+        fmt::format("the well head lies at {0} {1:.2f} by the file's head, at {2:.2f} by "
+                    "{0} less D{0} of the first station: mend the line WELL HEAD "
+                    "{0}-COORDINATE, or take it out",
+                    axis, said, ours));
+  }
+
   void Conclude() {
     SurveyTable& table = build_.table;
+    CheckWellHead(well_x_, "X", Column::kEasting, Column::kEast);
+    CheckWellHead(well_y_, "Y", Column::kNorthing, Column::kNorth);
     if (datum_) {
       const auto unit = datum_->unit ? datum_->unit : depths_;
-      if (!unit) lines_.Complain(FaultCode::kSyntax, "the well datum has no unit: --depth-unit");
+      if (!unit) {
+        lines_.Complain(FaultCode::kSyntax,
+                        "neither the well datum nor the depths have a unit: say --depth-unit m or "
+                        "ft");
+      }
       head().datum_elevation = datum_->number * FactorOf(*unit);
     }
     const auto tvd = table.Get(Column::kTvd, 0), down = table.Get(Column::kDown, 0);
@@ -256,7 +286,7 @@ class PetrelReader {
   std::vector<std::string_view> fields_;
   std::string azimuth_;
   std::optional<LengthUnit> depths_, across_;
-  std::optional<Length> datum_;
+  std::optional<Length> datum_, well_x_, well_y_;
   bool local_ = false;
 };
 

@@ -28,6 +28,13 @@ std::optional<std::size_t> Nearest(const SurveyTable& table,
 
 }  // namespace
 
+std::string RowsText(const SurveyTable& table, const std::vector<std::size_t>& rows) {
+  const double first = table.md(rows.front()), last = table.md(rows.back());
+  if (rows.size() == 1) return fmt::format("MD {:.2f} m", first);
+  return fmt::format("{} stations from MD {:.2f} m to {:.2f} m", rows.size(), std::min(first, last),
+                     std::max(first, last));
+}
+
 bool StandsForNothing(double number) {
   for (const double nothing : {-999.25, -9999.0, -999.0, -9999.25, -99999.0, -99999.25, -999.99,
                                -9999.99, -999999.0, -999999.25, -32768.0, -32767.0}) {
@@ -127,8 +134,6 @@ void TableBuilder::FillAzimuth(std::size_t row) {
   if (table.inclination(row) <= kVertical) {
     const auto neighbour = above ? above : below;
     if (neighbour) table.Set(Column::kAzimuth, row, table.azimuth(*neighbour));
-    table.head.notes.push_back(
-        fmt::format("no azimuth at MD {:.2f} m, where the hole is vertical", table.md(row)));
     return;
   }
   double azimuth = table.azimuth(above ? *above : *below);
@@ -138,8 +143,22 @@ void TableBuilder::FillAzimuth(std::size_t row) {
   }
   table.Set(Column::kAzimuth, row, WrapTwoPi(azimuth));
   table.SetStatus(row, RowStatus::kAzimuthInterpolated);
-  table.head.notes.push_back(
-      fmt::format("no azimuth at MD {:.2f} m: interpolated from its neighbours", table.md(row)));
+}
+
+void TableBuilder::FillAzimuths() {
+  std::vector<std::size_t> vertical, tilted;
+  for (const std::size_t row : without_azimuth_) {
+    FillAzimuth(row);
+    const bool filled = table.status(row) == RowStatus::kAzimuthInterpolated;
+    (filled ? tilted : vertical).push_back(row);
+  }
+  std::vector<std::string>& notes = table.head.notes;
+  if (!vertical.empty()) {
+    notes.push_back("no azimuth at " + RowsText(table, vertical) + ", where the hole is vertical");
+  }
+  if (!tilted.empty()) {
+    notes.push_back("no azimuth at " + RowsText(table, tilted) + ": interpolated");
+  }
 }
 
 std::optional<TableBuilder::Problem> TableBuilder::Finish() {
@@ -156,7 +175,7 @@ std::optional<TableBuilder::Problem> TableBuilder::Finish() {
     const bool tilted = std::any_of(without_azimuth_.begin(), without_azimuth_.end(),
                                     [&](std::size_t row) { return table.inclination(row) > 0; });
     if (none && tilted) return Problem{FaultCode::kForeign, "not a single azimuth"};
-    for (const std::size_t row : without_azimuth_) FillAzimuth(row);
+    FillAzimuths();
   }
   if (direction_ < 0) {
     table.Reverse();

@@ -46,6 +46,7 @@ class TableBuilder {
   std::optional<Problem> Bounds(double md, double inclination) const;
   std::optional<Problem> Order(double md, double inclination, std::optional<double> azimuth);
   void FillAzimuth(std::size_t row);
+  void FillAzimuths();
 
   std::optional<double> last_md_, last_inclination_, last_azimuth_;
   std::vector<std::size_t> without_azimuth_;
@@ -58,6 +59,8 @@ class TableBuilder {
 std::optional<double> InclinationOf(double number, double factor);
 /// An azimuth [rad] in [0, 2 pi), or none for those and for what lies outside +-360 deg.
 std::optional<double> AzimuthOf(double number, double factor);
+/// Where `rows` lie, in words: "MD 30.00 m", or how many from which depth to which.
+std::string RowsText(const SurveyTable& table, const std::vector<std::size_t>& rows);
 /// Whether a number is one that files write for nothing: -999.25, -999, -9999 ...
 bool StandsForNothing(double number);
 

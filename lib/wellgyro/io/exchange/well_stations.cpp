@@ -42,6 +42,7 @@ void TakeStart(WellStations& well, const SurveyTable& table, std::size_t row) {
   const auto tvd = table.Get(Column::kTvd, row);
   well.start_stated = north && east && tvd;
   if (well.start_stated) well.start = {*north, *east, *tvd};
+  if (north && east) well.offsets = Eigen::Vector2d(*north, *east);
   const auto northing = table.Get(Column::kNorthing, row),
              easting = table.Get(Column::kEasting, row);
   if (northing && easting) well.map = Eigen::Vector2d(*northing, *easting);

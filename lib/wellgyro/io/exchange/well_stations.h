@@ -20,9 +20,10 @@ struct WellStations {
   North north = North::kUnknown;                    ///< from which their azimuths count
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< north, east, TVD of the first [m]
   bool start_stated = false;                        ///< by columns that give all three
-  bool depth_unit_stated = true;                    ///< where not, depths were taken for metres
-  std::optional<Eigen::Vector2d> map;               ///< northing, easting of the first [m]
-  std::optional<double> datum_elevation;            ///< of what depths count from [m]
+  std::optional<Eigen::Vector2d> offsets;  ///< north, east of the first, with or without TVD
+  bool depth_unit_stated = true;           ///< where not, depths were taken for metres
+  std::optional<Eigen::Vector2d> map;      ///< northing, easting of the first [m]
+  std::optional<double> datum_elevation;   ///< of what depths count from [m]
 };
 
 /// The stations of a survey in any format of exchange.h. Where the file has azimuths from

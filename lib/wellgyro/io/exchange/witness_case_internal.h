@@ -46,5 +46,7 @@ void CheckVertical(Case& c);
 void CheckPlane(Case& c);
 /// Single cells that their neighbours contradict; numbers that stand for nothing are taken out.
 void CheckCells(Case& c);
+/// A note where all legs agree well enough, but their sum does not.
+void CheckWhole(Case& c);
 
 }  // namespace wellgyro::witness

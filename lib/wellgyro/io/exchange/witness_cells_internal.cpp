@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -62,19 +63,24 @@ class CellCheck {
 
   void TakeNothingsOut() {
     std::optional<std::size_t> last;
+    std::vector<std::size_t> taken;
+    double number = 0;
     for (std::size_t row = 0; row < c_.table.rows(); ++row) {
       if (!There(row)) continue;
       if (MayStandForNothing(Number(row))) {
         const bool fits = last && std::abs(LegOf(*last, row).left) <= Limit(LegOf(*last, row));
         if (!fits) {
-          c_.Note(fmt::format("{} of {} at MD {:.2f} m is taken for no number",
-                              InfoOf(track_.column).text, Exact(Number(row)), c_.table.md(row)));
+          number = Number(row);
+          taken.push_back(row);
           c_.table.Clear(track_.column, row);
           continue;
         }
       }
       last = row;
     }
+    if (taken.empty()) return;
+    c_.Note(fmt::format("{} of {} at {} is taken for no number", InfoOf(track_.column).text,
+                        Exact(number), RowsText(c_.table, taken)));
   }
 
   void RefuseWrongOnes() const {

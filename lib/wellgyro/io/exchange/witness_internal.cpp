@@ -64,6 +64,7 @@ void Witness(SurveyTable& table, const Claims& claims, const std::string& source
   std::string what;
   for (const std::string& each : c.agreeing) what += (what.empty() ? "" : ", ") + each;
   c.Note(fmt::format("MD, inclination and azimuth agree by {} with {}", WordOf(c.method), what));
+  witness::CheckWhole(c);
 }
 
 }  // namespace wellgyro

@@ -9,6 +9,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/exchange/columns_internal.h"
+#include "wellgyro/io/exchange/headings_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/witness_case_internal.h"
 #include "wellgyro/math/median.h"
@@ -65,6 +66,22 @@ std::optional<double> TurnOf(AzimuthReference reference, const std::optional<dou
   }
 }
 
+// The same, or as two columns of azimuths beside each other show it.
+std::optional<double> TurnIn(const SurveyTable& table, North from, North to) {
+  const AzimuthReference& reference = table.head.azimuth;
+  const auto stated = TurnOf(reference, ConvergenceOf(table), from, to);
+  if (stated) return stated;
+  const std::size_t row = table.rows() / 2;
+  const auto value = [&](North north) -> std::optional<double> {
+    if (reference.north == north) return table.azimuth(row);
+    const auto column = SecondAzimuth(north);
+    return column ? table.Get(*column, row) : std::nullopt;
+  };
+  const auto a = value(from), b = value(to);
+  if (!a || !b) return std::nullopt;
+  return WrapPi(*b - *a);
+}
+
 double Degrees(double radians) { return std::round(ToDegrees(radians) * 1e3) / 1e3; }
 
 // TVD counts from the datum of MD: where MD is 0 it is 0 too, and nowhere is it deeper than MD.
@@ -109,6 +126,37 @@ void CheckElevation(Case& c) {
           "{}: say which by --datum-elevation-m",
           *stated, *elevation, InfoOf(column).text));
     }
+  }
+}
+
+// Z is a depth in some files and a height in others.
+void TurnHeights(Case& c) {
+  const LineFit fit = FitVertical(c.table, c.stretches, Column::kDown);
+  if (!Tells(fit) || fit.factor > 0) return;
+  for (std::size_t row = 0; row < c.table.rows(); ++row) {
+    if (const auto z = c.table.Get(Column::kDown, row)) c.table.Set(Column::kDown, row, -*z);
+  }
+  c.Note("Z falls along the hole: it is taken for a height");
+}
+
+// Depths below the vertical reference, where there is no TVD to hold them to.
+void CheckOtherDepths(Case& c) {
+  if (c.table.Has(Column::kTvd)) return;
+  for (const Column column : {Column::kTvdSubSea, Column::kDown}) {
+    const LineFit fit = FitVertical(c.table, c.stretches, column);
+    const std::string name(InfoOf(column).text);
+    if (fit.reach > kEnough && fit.sigma >= 0.05) {
+      c.Refuse(
+          fmt::format("{} does not follow from measured depth and inclination: name the "
+                      "columns by --columns",
+                      name));
+    }
+    if (!Tells(fit)) continue;
+    if (fit.factor < 0) {
+      c.Refuse(fmt::format("{} grows upwards: it is a height; leave it out by --columns {}=0", name,
+                           InfoOf(column).csv));
+    }
+    c.agreeing.push_back(name);
   }
 }
 
@@ -186,9 +234,8 @@ void CheckAxes(Case& c, const Plane& plane, PlaneFit& fit, double tolerance) {
 // The norths from which a plane's directions may count, given how it is turned.
 std::vector<North> NorthsThatFit(const Case& c, double turn, double tolerance) {
   std::vector<North> fitting;
-  const AzimuthReference& reference = c.table.head.azimuth;
   for (const North north : {North::kTrue, North::kGrid, North::kMagnetic}) {
-    const auto wanted = TurnOf(reference, ConvergenceOf(c.table), reference.north, north);
+    const auto wanted = TurnIn(c.table, c.table.head.azimuth.north, north);
     if (wanted && std::abs(WrapPi(turn - *wanted)) <= tolerance) fitting.push_back(north);
   }
   return fitting;
@@ -213,7 +260,7 @@ void SettleAzimuthNorth(Case& c, double turn, double tolerance) {
 void CheckMapNorth(Case& c, double turn, double tolerance) {
   const AzimuthReference& reference = c.table.head.azimuth;
   if (reference.north == North::kUnknown) return SettleAzimuthNorth(c, turn, tolerance);
-  const auto wanted = TurnOf(reference, ConvergenceOf(c.table), reference.north, North::kGrid);
+  const auto wanted = TurnIn(c.table, reference.north, North::kGrid);
   if (wanted && std::abs(WrapPi(turn - *wanted)) <= tolerance) {
     return c.agreeing.emplace_back("northing and easting"), void();
   }
@@ -274,8 +321,10 @@ void NoteOrigin(Case& c) {
 }  // namespace
 
 void CheckVertical(Case& c) {
+  TurnHeights(c);
   CheckDatum(c);
   CheckElevation(c);
+  CheckOtherDepths(c);
   const LineFit fit = FitVertical(c.table, c.stretches, Column::kTvd);
   if (Tells(fit)) return c.agreeing.emplace_back("TVD"), void();
   // As with offsets: where there is enough of it, and no rate that most of it shares.

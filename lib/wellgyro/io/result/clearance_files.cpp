@@ -43,8 +43,10 @@ class ClearanceRun {
   KnownWell Known(ReadWell read, const ClearanceWell& entry, std::optional<double> kick_off);
   void CheckUnit(const ReadWell& read, const ClearanceWell& entry);
   void Place(ReadWell& read, const ClearanceWell& entry);
+  Eigen::Vector3d ReferenceAt(double md) const;
   void PlaceBeside(ReadWell& read, const ClearanceWell& entry);
   OffsetResult Against(const ClearanceWell& entry);
+  const OffsetResult* Judge(const std::vector<OffsetResult>& results);
   void Note(const std::string& well, const std::string& text);
 
   const ClearanceRequest& request_;
@@ -69,13 +71,14 @@ ClearanceWell EntryOf(const std::filesystem::path& path) {
 }
 
 /// Files of one name in several folders are told apart by the folders; one file twice is a mistake.
-void NameApart(std::vector<ClearanceWell>& wells) {
+void NameApart(std::vector<ClearanceWell>& wells, const std::filesystem::path& folder) {
   std::map<std::string, int> named;
   std::set<std::string> files;
   for (const ClearanceWell& well : wells) ++named[well.name];
   for (ClearanceWell& well : wells) {
     const std::string& file = well.survey.empty() ? well.program : well.survey;
-    if (!files.insert(file).second) {
+    const auto whole = std::filesystem::absolute(folder / file).lexically_normal();
+    if (!files.insert(whole.string()).second) {
       throw std::invalid_argument("offset " + file + " is named twice");
     }
     if (named[well.name] > 1) well.name = ToUtf8(file);
@@ -92,9 +95,14 @@ ClearanceRun::ClearanceRun(const ClearanceRequest& request) : request_(request) 
   if (request.correlation) policy_.rule.correlation = *request.correlation;
   if (request.reference) policy_.reference = EntryOf(*request.reference);
   for (const auto& path : request.offsets) policy_.offsets.push_back(EntryOf(path));
-  NameApart(policy_.offsets);
-  if (!policy_.reference) throw std::invalid_argument("no reference well is named");
-  if (policy_.offsets.empty()) throw std::invalid_argument("no offset well is named");
+  NameApart(policy_.offsets, folder_);
+  if (!policy_.reference) {
+    throw std::invalid_argument(
+        "no reference well is named: --reference, or [reference] in --policy");
+  }
+  if (policy_.offsets.empty()) {
+    throw std::invalid_argument("no offset well is named: --offset, or [[offset]] in --policy");
+  }
   reference_entry_ = *policy_.reference;
 }
 
@@ -133,7 +141,9 @@ ReadWell ClearanceRun::Read(const ClearanceWell& entry) {
     if (!table) throw TomlError{table.fault()};
     read.table = *std::move(table);
     if (entry.model.empty() && request_.model.empty()) {
-      throw std::invalid_argument("well " + entry.name + " has no error model: name one");
+      throw std::invalid_argument("well " + entry.name +
+                                  " has no error model: name one of 'wellgyro models' or a file by "
+                                  "--model, or model in the policy");
     }
     const bool named = entry.model.empty() || OwnModel(entry.model);
     const std::string& name = entry.model.empty() ? request_.model : entry.model;
@@ -147,10 +157,13 @@ ReadWell ClearanceRun::Read(const ClearanceWell& entry) {
     Note(entry.name, request_.convergence ? "azimuths taken as grid" : "azimuths taken as true");
   }
   if (read.table.north == North::kTrue && request_.convergence && *request_.convergence != 0) {
-    throw std::invalid_argument("well " + entry.name + " has true azimuths by its header");
+    throw std::invalid_argument("well " + entry.name +
+                                " has true azimuths by its header: turn them by wellgyro convert "
+                                "--north grid, or leave --convergence-deg out");
   }
   if (read.table.north == North::kGrid && !request_.convergence) {
-    throw std::invalid_argument("well " + entry.name + " has grid azimuths: give the convergence");
+    throw std::invalid_argument("well " + entry.name +
+                                " has grid azimuths: give the convergence by --convergence-deg");
   }
   return read;
 }
@@ -165,15 +178,37 @@ void ClearanceRun::CheckUnit(const ReadWell& read, const ClearanceWell& entry) {
 
 void ClearanceRun::Place(ReadWell& read, const ClearanceWell& entry) {
   WellStations& table = read.table;
+  const double md = table.stations.front().md;
   if (entry.start) {
     table.start = *entry.start;
-  } else if (!table.start_stated) {
-    table.start.z() = table.stations.front().md;
-    Note(entry.name, table.stations.front().md == 0
-                         ? "no place in its file: its first station is put where north, east and "
-                           "TVD are 0"
-                         : "no TVD for the first station: taken to be its MD");
+  } else if (table.start_stated) {
+    return;
+  } else if (table.offsets) {
+    table.start = {table.offsets->x(), table.offsets->y(), md};
+    if (md != 0) Note(entry.name, "no TVD for the first station: taken to be its MD");
+  } else if (md == 0) {
+    table.start.setZero();
+    Note(entry.name,
+         "no place in its file: its first station is put where north, east and TVD are 0");
+  } else if (entry.kick_off && reference_) {
+    table.start = ReferenceAt(md);
+    Note(entry.name, fmt::format("no place in its file: its first station is put where the "
+                                 "reference is at MD {:.2f} m",
+                                 md));
+  } else {
+    throw std::invalid_argument(fmt::format(
+        "well {} begins at MD {:.2f} m and its file has no place for that: give north_m, east_m "
+        "and tvd_m of its first station in the policy",
+        entry.name, md));
   }
+}
+
+/// Where the reference is at a depth of its own.
+Eigen::Vector3d ClearanceRun::ReferenceAt(double md) const {
+  std::vector<SurveyPoint> stations = reference_read_.table.stations;
+  std::vector<ToolLeg> legs = reference_read_.legs;
+  const std::size_t at = StationAt(stations, legs, md);
+  return SurveyWell(std::move(stations), reference_read_.table.start).position[at];
 }
 
 /// An offset where its file and the reference's say, unless the policy does.
@@ -223,7 +258,9 @@ KnownWell ClearanceRun::Known(ReadWell read, const ClearanceWell& entry,
   basis.legs = read.legs;
   known.errors = WellUncertainty(known.well, place, basis, options);
   if (known.errors.refusal) {
-    answer_.refusals.push_back(entry.name + ": " + known.errors.refusal->text);
+    const std::string refusal = entry.name + ": " + known.errors.refusal->text;
+    auto& all = answer_.refusals;
+    if (std::ranges::find(all, refusal) == all.end()) all.push_back(refusal);
   }
   for (const std::string& note : known.errors.notes) Note(entry.name, note);
   return from == 0 ? known : FromStation(known, from);
@@ -238,6 +275,7 @@ OffsetResult ClearanceRun::Against(const ClearanceWell& entry) {
   const HoleLine line({&offset.well, &offset.errors}, hole);
   OffsetResult result;
   result.name = entry.name;
+  result.cut_short = reference_->errors.refusal || offset.errors.refusal;
   if (!entry.kick_off) {
     result.screened_out = !MayFallBelow(*line_, line, policy_.rule, policy_.report);
     if (!result.screened_out) {
@@ -266,16 +304,9 @@ OffsetResult ClearanceRun::Against(const ClearanceWell& entry) {
   return result;
 }
 
-ClearanceAnswer ClearanceRun::Answer() {
-  reference_read_ = Read(reference_entry_);
-  reference_ = std::make_unique<KnownWell>(Known(reference_read_, reference_entry_, std::nullopt));
-  const auto& hole = reference_entry_.hole.empty() ? policy_.reference_hole : reference_entry_.hole;
-  line_ = std::make_unique<HoleLine>(UncertainWell{&reference_->well, &reference_->errors}, hole);
-  std::vector<OffsetResult> results;
-  for (const ClearanceWell& entry : policy_.offsets) {
-    if (request_.progress) request_.progress(results.size(), policy_.offsets.size());
-    results.push_back(Against(entry));
-  }
+/// Sets the verdict of all wells; that with the lowest factor, if one has any. Where a model ends
+/// before its survey, what lies below is not known to be clear.
+const OffsetResult* ClearanceRun::Judge(const std::vector<OffsetResult>& results) {
   const OffsetResult* worst = nullptr;
   for (const OffsetResult& r : results) {
     if (!r.lowest || !r.lowest->factor) continue;
@@ -286,6 +317,27 @@ ClearanceAnswer ClearanceRun::Answer() {
       answer_.verdict = ClearanceVerdict::kWarn;
     }
   }
+  if (!answer_.refusals.empty() && answer_.verdict == ClearanceVerdict::kPass) {
+    answer_.verdict = ClearanceVerdict::kWarn;
+  }
+  return worst;
+}
+
+ClearanceAnswer ClearanceRun::Answer() {
+  reference_read_ = Read(reference_entry_);
+  reference_ = std::make_unique<KnownWell>(Known(reference_read_, reference_entry_, std::nullopt));
+  const auto& hole = reference_entry_.hole.empty() ? policy_.reference_hole : reference_entry_.hole;
+  line_ = std::make_unique<HoleLine>(UncertainWell{&reference_->well, &reference_->errors}, hole);
+  std::vector<OffsetResult> results;
+  for (const ClearanceWell& entry : policy_.offsets) {
+    if (request_.progress) request_.progress(results.size(), policy_.offsets.size());
+    results.push_back(Against(entry));
+  }
+  const OffsetResult* const worst = Judge(results);
+  std::vector<std::string> notes = answer_.notes;
+  for (const std::string& why : answer_.refusals) {
+    notes.push_back("nothing below is judged, as a model ends before " + why);
+  }
   const std::string ladder =
       LadderSvg(reference_entry_.name, SeriesOf(results), policy_.stop, policy_.alert);
   const std::string cylinder = TravellingCylinderSvg(reference_entry_.name, SeriesOf(results));
@@ -293,8 +345,8 @@ ClearanceAnswer ClearanceRun::Answer() {
                    {"wells.csv", WellsCsv(results, policy_)},
                    {"ladder.svg", ladder},
                    {"travelling_cylinder.svg", cylinder},
-                   {"clearance.html", ClearanceHtml(reference_entry_.name, results, policy_,
-                                                    answer_.notes, ladder, cylinder)}};
+                   {"clearance.html", ClearanceHtml(reference_entry_.name, results, policy_, notes,
+                                                    ladder, cylinder)}};
   answer_.summary =
       worst ? fmt::format(
                   "lowest separation factor {:.3f}, against {} at MD {:.2f} m, {:.2f} m "

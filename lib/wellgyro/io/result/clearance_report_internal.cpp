@@ -55,9 +55,9 @@ std::string RuleHtml(const ClearancePolicy& policy) {
 std::string WellRow(const OffsetResult& offset, const ClearancePolicy& policy) {
   if (!offset.lowest) {
     return fmt::format(
-        "<tr><td>{}</td><td colspan=\"6\">{}</td><td class=\"pass\">pass</td></tr>\n",
-        SvgText(offset.name),
-        offset.screened_out ? "screened out" : "never opposite the reference");
+        "<tr><td>{0}</td><td colspan=\"6\">{1}</td><td class=\"{2}\">{2}</td></tr>\n",
+        SvgText(offset.name), offset.screened_out ? "screened out" : "never opposite the reference",
+        VerdictWord(offset, policy));
   }
   const Separation& s = *offset.lowest;
   const char* verdict = VerdictWord(offset, policy);
@@ -83,7 +83,8 @@ std::vector<ClearanceSeries> SeriesOf(const std::vector<OffsetResult>& offsets) 
 
 const char* VerdictWord(const OffsetResult& offset, const ClearancePolicy& policy) {
   const double factor = FactorOf(offset);
-  return factor < policy.stop ? "fail" : factor < policy.alert ? "warn" : "pass";
+  if (factor < policy.stop) return "fail";
+  return factor < policy.alert || offset.cut_short ? "warn" : "pass";
 }
 
 std::string ClearanceCsv(const std::vector<OffsetResult>& offsets) {
@@ -109,7 +110,8 @@ std::string WellsCsv(const std::vector<OffsetResult>& offsets, const ClearancePo
   for (const OffsetResult& offset : offsets) {
     const std::string name = Cell(offset.name);
     if (!offset.lowest) {
-      text += fmt::format("{},,,,,,,pass,{}\n", name, offset.screened_out ? "yes" : "no");
+      text += fmt::format("{},,,,,,,{},{}\n", name, VerdictWord(offset, policy),
+                          offset.screened_out ? "yes" : "no");
       continue;
     }
     const Separation& s = *offset.lowest;

@@ -16,6 +16,7 @@ struct OffsetResult {
   bool screened_out = false;     ///< it cannot come below the policy's `report`
   std::vector<Separation> rows;  ///< empty when screened out
   std::optional<Separation> lowest;
+  bool cut_short = false;  ///< a model ends before its survey: what is below is not judged
 };
 
 /// Those that were not screened out, the lowest factor first.

@@ -124,7 +124,7 @@ void WriteFix(TomlWriter& toml, const NorthFix& fix) {
 }
 
 /// Of one kind of error, by its name without axis.
-void WriteFound(TomlWriter& toml, const RunFit& fit, Knot::Source source, const std::string& name,
+void WriteFound(TomlWriter& toml, const RunFit& fit, ErrorSource source, const std::string& name,
                 const std::string& unit_name, double unit) {
   if (!(fit.sigma_errors[source] > 0)) return;
   toml.Number(name + unit_name, fit.errors[source] / unit);
@@ -139,28 +139,27 @@ void WriteFit(TomlWriter& toml, const RunFit& fit) {
   toml.Whole("degrees_of_freedom", fit.degrees_of_freedom);
   const std::array<std::pair<std::string, RunFit::Part>, RunFit::kParts> parts{
       {{"inclination", RunFit::kInclination},
+       {"force", RunFit::kForce},
        {"rest", RunFit::kRest},
-       {"azimuth", RunFit::kAzimuth},
-       {"repeat", RunFit::kRepeat}}};
+       {"azimuth", RunFit::kAzimuth}}};
   for (const auto& [name, part] : parts) {
     toml.Number(name + "_chi_square", fit.parts[part].sum);
     toml.Number(name + "_degrees_of_freedom", fit.parts[part].freedom);
   }
-  WriteFound(toml, fit, Knot::kToolfaceOffset, "toolface_offset", "_deg", units::kDeg);
-  WriteFound(toml, fit, Knot::kTimeSkew, "time_skew", "_s", 1);
-  WriteFound(toml, fit, Knot::kGyroBiasX, "gyro_bias_x", "_deg_per_h", units::kDegPerHour);
-  WriteFound(toml, fit, Knot::kGyroBiasY, "gyro_bias_y", "_deg_per_h", units::kDegPerHour);
-  WriteFound(toml, fit, Knot::kMassUnbalance, "mass_unbalance", "_deg_per_h_per_g",
+  WriteFound(toml, fit, kToolfaceOffset, "toolface_offset", "_deg", units::kDeg);
+  WriteFound(toml, fit, kTimeSkew, "time_skew", "_s", 1);
+  WriteFound(toml, fit, kGyroBiasX, "gyro_bias_x", "_deg_per_h", units::kDegPerHour);
+  WriteFound(toml, fit, kGyroBiasY, "gyro_bias_y", "_deg_per_h", units::kDegPerHour);
+  WriteFound(toml, fit, kMassUnbalance, "mass_unbalance", "_deg_per_h_per_g",
              units::kDegPerHourPerG);
-  WriteFound(toml, fit, Knot::kQuadrature, "quadrature", "_deg_per_h_per_g",
-             units::kDegPerHourPerG);
-  WriteFound(toml, fit, Knot::kGyroScaleX, "gyro_scale_x", "", 1);
-  WriteFound(toml, fit, Knot::kGyroScaleY, "gyro_scale_y", "", 1);
-  WriteFound(toml, fit, Knot::kMisalignmentX, "gyro_misalignment_x", "_rad", 1);
-  WriteFound(toml, fit, Knot::kMisalignmentY, "gyro_misalignment_y", "_rad", 1);
-  WriteFound(toml, fit, Knot::kAccelBiasX, "accel_bias_x", "_mps2", 1);
-  WriteFound(toml, fit, Knot::kAccelBiasY, "accel_bias_y", "_mps2", 1);
-  WriteFound(toml, fit, Knot::kAccelBiasZ, "accel_bias_z", "_mps2", 1);
+  WriteFound(toml, fit, kQuadrature, "quadrature", "_deg_per_h_per_g", units::kDegPerHourPerG);
+  WriteFound(toml, fit, kGyroScaleX, "gyro_scale_x", "", 1);
+  WriteFound(toml, fit, kGyroScaleY, "gyro_scale_y", "", 1);
+  WriteFound(toml, fit, kMisalignmentX, "gyro_misalignment_x", "_rad", 1);
+  WriteFound(toml, fit, kMisalignmentY, "gyro_misalignment_y", "_rad", 1);
+  WriteFound(toml, fit, kAccelBiasX, "accel_bias_x", "_mps2", 1);
+  WriteFound(toml, fit, kAccelBiasY, "accel_bias_y", "_mps2", 1);
+  WriteFound(toml, fit, kAccelBiasZ, "accel_bias_z", "_mps2", 1);
 }
 
 void WriteSamples(TomlWriter& toml, const RunSummary& run) {

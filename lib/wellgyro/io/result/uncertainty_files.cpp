@@ -53,11 +53,13 @@ void CheckNorth(const WellStations& table, const std::optional<double>& converge
 
 void Place(Case& c, WellStations table) {
   Eigen::Vector3d start(0, 0, 0);
+  const double md = table.stations.front().md;
   if (table.start_stated) {
     start = table.start;
-  } else if (table.stations.front().md != 0) {
-    start.z() = table.stations.front().md;
-    c.notes.emplace_back("no TVD for the first station: taken to be its MD");
+  } else {
+    if (table.offsets) start.head<2>() = *table.offsets;
+    start.z() = md;
+    if (md != 0) c.notes.emplace_back("no TVD for the first station: taken to be its MD");
   }
   c.well = SurveyWell(std::move(table.stations), start);
   c.place = std::move(table);
@@ -204,6 +206,11 @@ std::optional<Separation> NearestOf(const std::vector<Separation>& separations) 
   return *nearest;
 }
 
+/// A survey that begins down its hole, in no stated place.
+bool IsNowhere(const Case& c) {
+  return !c.place.start_stated && !c.place.offsets && c.well.survey.front().md != 0;
+}
+
 /// Draws the other well on the picture too, where one is asked for.
 void AddSeparation(const UncertaintyRequest& request, const Case& c, UncertaintyAnswer& answer,
                    std::vector<InputFile>& inputs, std::optional<SurveyedWell>& beside,
@@ -219,6 +226,12 @@ void AddSeparation(const UncertaintyRequest& request, const Case& c, Uncertainty
   if (const auto apart = PlacesContradict(c.place, other.place)) {
     throw std::invalid_argument("the two surveys are " + *apart +
                                 ": wellgyro clearance takes the place of each from a policy");
+  }
+  if (request.pairing == Pairing::kTwoWells && (IsNowhere(c) || IsNowhere(other))) {
+    throw std::invalid_argument(
+        "one of the surveys begins below MD 0 and its file has no place for that: --same-hole "
+        "where "
+        "both are of one hole; else wellgyro clearance takes the place of each from a policy");
   }
   SeparationRule rule;
   rule.correlation = request.correlation;

@@ -65,7 +65,9 @@ void ReadRest(TomlTable& table, ErrorTerm& term) {
   const double magnitude = table.Need("magnitude", table.FindNumber("magnitude", kNotNegative));
   const auto unit = table.FindString("unit");
   if (!unit) table.Refuse("magnitude", "stands without its 'unit'");
-  term.magnitude = magnitude * SiPer(table, term, *unit);
+  term.unit = *unit;
+  term.unit_si = SiPer(table, term, *unit);
+  term.magnitude = magnitude * term.unit_si;
   term.propagation = table.Need(
       "propagation",
       table.FindWord<Propagation>("propagation", {{"random", Propagation::kRandom},

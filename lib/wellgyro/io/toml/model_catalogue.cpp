@@ -59,8 +59,8 @@ ErrorModel OnFloatingRig(const ErrorModel& model) {
   std::erase_if(floating.terms, [](const ErrorTerm& term) {
     return term.name == "DRFR" || term.name == "DRFS" || term.weight == FindWeight("DREF");
   });
-  ErrorTerm random{"DRFR", FindWeight("DREF"), 2.2, Propagation::kRandom, nullptr};
-  ErrorTerm run{"DRFS", FindWeight("DREF"), 1.0, Propagation::kSystematic, nullptr};
+  ErrorTerm random{"DRFR", FindWeight("DREF"), 2.2, Propagation::kRandom, nullptr, "m"};
+  ErrorTerm run{"DRFS", FindWeight("DREF"), 1.0, Propagation::kSystematic, nullptr, "m"};
   floating.terms.insert(floating.terms.begin(), {random, run});
   floating.notes.emplace_back("depth reference of a floating rig: 2.2 m random, 1.0 m systematic");
   return floating;

@@ -1,0 +1,175 @@
+#include "wellgyro/estimate/forward_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "wellgyro/estimate/normal_block.h"
+#include "wellgyro/estimate/places.h"
+#include "wellgyro/estimate/roll_start.h"
+#include "wellgyro/math/rotation.h"
+#include "wellgyro/math/so3.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Knots behind, of which what the roll rate usually changes by is taken: a minute.
+constexpr std::size_t kUsual = 60;
+// A knot is made linear anew, as in a tool whose roll nobody sees, until what it turns the begin by
+// is small: its square is below what a knot tells of any direction [rad].
+constexpr double kLinear = 3e-3;
+constexpr int kIterations = 4;
+
+double RollOf(const Increment& inc) { return inc.roll_before + inc.roll_after; }
+
+/// The node at the end of `knot` as the gyros alone carry it there from `begin`.
+Node Ahead(const RunKnot& knot, const Vector3d& w_IL_L, const Node& begin) {
+  const Increment& inc = knot.increment;
+  Node end = begin;
+  const double delta = begin.roll_rate * inc.seconds - RollOf(inc);
+  const Eigen::Vector2d turn = inc.turn_M + delta * inc.turn_per_roll;
+  end.R_LT = Exp(-inc.seconds * w_IL_L) * begin.R_LT * RotationZ(inc.roll_before + 0.5 * delta) *
+             Exp(Vector3d(turn.x(), turn.y(), 0)) * RotationZ(inc.roll_after + 0.5 * delta);
+  const AlongHole& along = knot.along;
+  end.md = along.known ? along.md : begin.md + begin.speed * inc.seconds;
+  if (along.known) end.speed = along.speed;
+  return end;
+}
+
+/// What ties the roll rate from the last knot to the next, by the minute behind it: where the speed
+/// changes it may do so by as much as that makes, which is all that is known of a roll that gravity
+/// does not show.
+double WalkBehind(std::span<const RunKnot> knots) {
+  const Increment& inc = knots.back().increment;
+  if (inc.has_axial) return std::sqrt(inc.seconds);
+  const auto recent = knots.last(std::min(knots.size(), kUsual));
+  return std::hypot(RollWalkBy(recent) * std::sqrt(inc.seconds), SpeedStarts(recent).back());
+}
+
+/// A matrix of phi and others, about an attitude that has gone on by `turn`. What is known of a
+/// turn in L stays so, and with it that a turn about the vertical is not known: in T the step would
+/// tell some of it, a little in every knot (Barrau and Bonnabel, IEEE Trans. Autom. Control 62,
+/// 2017).
+EdgeMatrix Turned(EdgeMatrix matrix, const Matrix3d& turn) {
+  matrix.topRows<3>() = (turn.transpose() * matrix.topRows<3>()).eval();
+  matrix.leftCols<3>() = (matrix.leftCols<3>() * turn).eval();
+  return matrix;
+}
+
+}  // namespace
+
+ForwardRun::ForwardRun(const RunEstimate& solved, std::span<const RunKnot> knots)
+    : setup_(solved.end.setup),
+      layout_(LayoutOf(setup_)),
+      border_(solved.end.border),
+      information_(solved.end.information),
+      cov_(solved.end.cov),
+      link_(solved.end.link) {
+  for (std::size_t i = 0; i < kTail; ++i) {
+    const std::size_t back = std::min(i, knots.size());
+    nodes_[kTail - 1 - i] = solved.nodes[knots.size() - back];
+  }
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Node &a = solved.nodes[k], &b = solved.nodes[k + 1];
+    p_ += 0.5 * (b.md - a.md) * (a.tangent_L() + b.tangent_L());
+    seconds_ += knots[k].increment.seconds;
+  }
+}
+
+/// The last knot of `tail`, between the newest node and `end`.
+KnotPlace ForwardRun::PlaceOf(std::span<const RunKnot> tail, const Node& end) const {
+  std::vector<Node> nodes(nodes_.end() - static_cast<std::ptrdiff_t>(tail.size()), nodes_.end());
+  nodes.push_back(end);
+  std::vector<KnotPlace> places;
+  PlaceKnots(SiteBy(setup_.site, p_), tail, nodes, places);
+  KnotPlace place = places.back();
+  place.since_start = seconds_ + 0.5 * tail.back().increment.seconds;
+  place.depth = p_.z();
+  return place;
+}
+
+/// From what is known of the newest node and the border to where they are made linear.
+EdgeVector ForwardRun::Away(const Node& to, const BorderVector& border) const {
+  const Node& known = nodes_.back();
+  EdgeVector away = EdgeVector::Zero(layout_.node + layout_.border);
+  away.segment<3>(layout_.phi) = Log(known.R_LT.transpose() * to.R_LT);
+  away[layout_.roll] = to.roll_rate - known.roll_rate;
+  away[layout_.depth] = to.md - known.md;
+  away[layout_.speed] = to.speed - known.speed;
+  if (layout_.walk != kAbsent) away.segment<2>(layout_.walk) = to.walk - known.walk;
+  if (layout_.markov != kAbsent) away.segment<2>(layout_.markov) = to.markov - known.markov;
+  if (layout_.swing != kAbsent) away.segment<2>(layout_.swing) = to.swing - known.swing;
+  away.tail(layout_.border) = border - border_;
+  return away;
+}
+
+bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
+  const RunKnot& knot = knots.back();
+  const double latitude = setup_.site.latitude;
+  const Vector3d earth = kEarthRate * Vector3d(std::cos(latitude), 0, -std::sin(latitude));
+  Node begin = nodes_.back();
+  const KnotPlace place =
+      PlaceOf(knots.last(std::min(knots.size(), kTail)), Ahead(knot, earth, begin));
+  // Where gravity shows the roll rate, not where its walk would have it.
+  if (knot.increment.roll_seen) begin.roll_rate = RollOf(knot.increment) / knot.increment.seconds;
+  Node end = Ahead(knot, place.w_IL_L, begin);
+  if (next != nullptr && next->roll_seen) end.roll_rate = RollOf(*next) / next->seconds;
+  BorderVector border = border_;
+  KnotRows rows(setup_, layout_);
+  // What the roll's change weighs is by what gravity shows of it, not by what is made of it.
+  const double sigma = WalkBehind(knots);
+  const RollSquares squares =
+      RollSquaresOf(setup_, knot.increment.seconds, place.axial_change, sigma, begin, end);
+  const RollChange walk{sigma, RollWeight(squares.rate, 1), RollWeight(squares.swing, 2)};
+  Elimination elimination(layout_);
+  std::vector<NodeVector> steps;
+  for (int i = 0; i < kIterations; ++i) {
+    NormalBlock block;
+    block.Clear(layout_);
+    rows.Add(knot, place, walk, border, begin, end, block);
+    elimination.Start(1, information_, information_ * Away(begin, border));
+    BorderVector border_step;
+    if (!elimination.Step(block) || !elimination.Solve(steps, border_step)) return false;
+    Move(layout_, steps.front(), begin);
+    Move(layout_, steps.back(), end);
+    border += border_step;
+    const double rolled = steps.front()[layout_.roll] * knot.increment.seconds;
+    if (std::max(steps.front().head<3>().norm(), std::abs(rolled)) < kLinear) break;
+  }
+  border_ = border;
+  const Matrix3d turn = Exp(steps.back().head<3>());
+  information_ = Turned(elimination.edge_information().selfadjointView<Eigen::Lower>(), turn);
+  cov_ = Turned(elimination.LastCovariance(), turn);
+  if (link_.size() > 0) {
+    const Eigen::MatrixXd by_border = link_.rightCols(layout_.border);
+    link_ = (link_.leftCols(layout_.node) * elimination.Gain(0)).eval();
+    link_.rightCols(layout_.border) += by_border;
+    link_.leftCols<3>() = (link_.leftCols<3>() * turn).eval();
+  }
+  const Node& before = nodes_.back();
+  p_ += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
+  seconds_ += knot.increment.seconds;
+  std::rotate(nodes_.begin(), nodes_.begin() + 1, nodes_.end());
+  nodes_.back() = end;
+  return true;
+}
+
+double ForwardRun::SigmaOfHeading() const {
+  const Vector3d down_T = node().R_LT.row(2).transpose();
+  return std::sqrt(down_T.dot(CovPhi() * down_T));
+}
+
+LinkedErrors ForwardRun::Mark(std::size_t node) {
+  const std::vector<int> columns = LinkedColumns(layout_);
+  LinkedErrors mark;
+  mark.node = node;
+  mark.cov = cov_(columns, columns);
+  if (link_.size() > 0) mark.cov_with_previous = (link_ * cov_)(Eigen::all, columns);
+  link_ = LinkedRows(layout_);
+  return mark;
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,78 @@
+#include "wellgyro/estimate/guess_pass.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "wellgyro/estimate/hidden_roll.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
+// about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
+constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
+// Near vertical the Earth's rate holds the heading, over some ten knots.
+constexpr double kEarthShare = 0.1;
+
+/// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
+/// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
+double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
+  const Eigen::Vector2d earth = w_IE_M.head<2>() * inc.seconds;
+  const double ratio = inc.turn_M.norm() / earth.norm();
+  if (!(ratio > 0.7 && ratio < 1.4)) return 0;
+  return -std::atan2(inc.turn_M.y() * earth.x() - inc.turn_M.x() * earth.y(),
+                     inc.turn_M.dot(earth));
+}
+
+Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
+
+}  // namespace
+
+GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots)
+    : latitude_(setup.site.latitude),
+      knots_(knots),
+      extra_roll_(knots.size(), 0),
+      steady_(SteadyAcross(knots, setup.gyro.angle_random_walk)),
+      slip_(HiddenRoll(knots, kEarthRate * std::cos(latitude_), steady_)),
+      nodes_(knots.size() + 1) {}
+
+void GuessPass::Run(std::size_t begin, std::size_t end) {
+  const double c = std::cos(latitude_), s = std::sin(latitude_);
+  const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
+  for (std::size_t k = begin; k < end; ++k) {
+    const Increment& inc = knots_[k].increment;
+    const double extra = extra_roll_[k] + slip_[k] * inc.seconds;
+    const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
+    Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT *
+                 RotationZ(inc.roll_before + 0.5 * extra) * half;
+    if (!inc.roll_seen && steady_[k]) {
+      M = M * RotationZ(kEarthShare * AngleToEarth(inc, M.transpose() * earth));
+    }
+    if (inc.level) {
+      const Vector3d f = inc.force_M.normalized();
+      const Vector3d p = -M.row(2).transpose();
+      const double sine2 = std::hypot(f.x(), f.y()) * std::hypot(p.x(), p.y());
+      // The angle about the axis from where the force should be to where it is.
+      const double angle = std::atan2(f.y() * p.x() - f.x() * p.y(), f.x() * p.x() + f.y() * p.y());
+      M = M * RotationZ(-kTurnShare * angle * sine2 / (sine2 + kTurnSine2));
+      const Vector3d down = -M.row(2).transpose();
+      M = M * Exp(kTiltShare * f.cross(down));
+    }
+    Node& next = nodes_[k + 1];
+    next.R_LT = M * half * RotationZ(inc.roll_after + 0.5 * extra);
+    nodes_[k].roll_rate = (inc.roll_before + inc.roll_after + extra) / inc.seconds;
+    next.roll_rate = nodes_[k].roll_rate;
+    next.md = knots_[k].along.known ? knots_[k].along.md : nodes_[k].md;
+    next.speed = knots_[k].along.known ? knots_[k].along.speed : 0;
+  }
+  if (begin > 0) return;
+  nodes_[0].md = nodes_[1].md - nodes_[1].speed * knots_[0].increment.seconds;
+  nodes_[0].speed = nodes_[1].speed;
+}
+
+}  // namespace wellgyro

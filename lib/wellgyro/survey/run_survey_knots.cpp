@@ -1,0 +1,237 @@
+// Knots into the run, once their increments are known.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/math/rotation.h"
+#include "wellgyro/record/unknown_angle.h"
+#include "wellgyro/survey/estimated_run.h"
+#include "wellgyro/survey/hole_attitude.h"
+#include "wellgyro/survey/node_attitude.h"
+#include "wellgyro/survey/run_survey.h"
+
+namespace wellgyro {
+namespace {
+
+// The still detector knows of a block when the one after it has ended.
+constexpr Duration kMakeUpMind = Duration::Seconds(3);
+// Of a heading no surer than this the Earth's rate is hardly linear: its slope changes by a tenth
+// within a sigma.
+constexpr double kRoughHeading = 5 * kPi / 180;  // [rad]
+
+/// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may
+/// bend, or, of gyros at full scale, as much again as they read.
+double UnseenIn(const RunKnot& knot) {
+  const UnseenHole hole;
+  const Increment& inc = knot.increment;
+  const double rate = knot.along.known ? hole.dogleg * std::abs(knot.along.speed) : hole.rate;
+  return inc.gap_seconds * std::max(rate, inc.turn_M.norm() / inc.seconds);
+}
+
+}  // namespace
+
+/// A stop, or what may still become one, covers all of this knot.
+bool RunSurvey::IsStill(const Waiting& waiting) const {
+  const auto covers = [&waiting](const StillWindow& window) {
+    return window.begin <= waiting.begin && waiting.end <= window.end;
+  };
+  const std::optional<StillWindow> open = still_.OpenWindow();
+  return (open && covers(*open)) || std::any_of(group_.begin(), group_.end(), covers);
+}
+
+/// Knots of which the still detector has made up its mind.
+void RunSurvey::DecideStill(bool all) {
+  for (Waiting& waiting : waiting_) {
+    if (waiting.still) continue;
+    const bool decided = all || waiting_.back().end - waiting.end >= kMakeUpMind;
+    if (const bool still = IsStill(waiting); still || decided) waiting.still = still;
+  }
+}
+
+/// What stands behind a knot tells how the tool rolls from there on.
+void RunSurvey::StepReady(bool all) {
+  while (!waiting_.empty() && waiting_.front().increment) {
+    const bool followed = waiting_.size() > 1 && waiting_[1].increment;
+    if (!followed && !all) return;
+    const Waiting knot = std::move(waiting_.front());
+    waiting_.pop_front();
+    StepKnot(knot, followed ? &*waiting_.front().increment : nullptr);
+  }
+}
+
+RunKnot RunSurvey::KnotOf(const Waiting& waiting) {
+  const bool rests =
+      job_.alignment.method == AlignmentSpec::Method::kGyrocompass || job_.alignment.use_fixes;
+  RunKnot knot{.increment = *waiting.increment, .utc = waiting.utc, .along = waiting.along};
+  knot.still = rests && waiting.still.value_or(false);
+  if (waiting.temperature_outside) knot.increment.quality |= Quality::kTemperature;
+  knot.unseen = UnseenIn(knot);
+  knot.var_unseen = unseen_.VarOf(knot.unseen);
+  unseen_.Add(knot.unseen);
+  unseen_.Pass(knot.increment.seconds - knot.increment.gap_seconds, UnseenHole().seconds);
+  return knot;
+}
+
+bool RunSurvey::AzimuthKnown() const {
+  return !history_.attitude.empty() && history_.attitude.back().azimuth_known;
+}
+
+/// At the end of the last knot.
+AttitudeSample RunSurvey::AttitudeNow() const {
+  const RunKnot& knot = history_.knots.back();
+  if (forward_) return AttitudeOf(knot, forward_->node(), forward_->CovPhi());
+  if (knot.increment.level || history_.attitude.empty()) {
+    return LevelOf(knot, job_.errors.accel_bias_sigma, site_.gravity);
+  }
+  AttitudeSample attitude = history_.attitude.back();
+  attitude.time = knot.increment.time;
+  attitude.quality |= knot.increment.quality;
+  return attitude;
+}
+
+void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
+  if (history_.knots.empty()) history_.site = site_;
+  history_.knots.push_back(KnotOf(waiting));
+  // About a heading that is lost nothing can be made linear.
+  const bool goes_on =
+      forward_ && forward_->Step(history_.knots, next) && forward_->SigmaOfHeading() < kVagueAngle;
+  if (!goes_on) forward_.reset();
+  history_.attitude.push_back(AttitudeNow());
+  MoveSite(history_.knots.back(), history_.attitude.back());
+  unseen_since_listed_ |=
+      history_.knots.back().increment.quality & (Quality::kGap | Quality::kSaturated);
+  if (waiting.draft) TakeDraft(waiting);
+  const AlignmentSpec& spec = job_.alignment;
+  if (external_pending_ && !spec.at_md && !spec.at_utc) {
+    external_pending_ = false;
+    history_.ties.push_back(
+        {0, spec.azimuth, spec.sigma_azimuth, spec.of == AlignmentSpec::Of::kMark});
+    BeginForward();
+  }
+  if (waiting.external && external_pending_) UseExternal(waiting);
+  const bool north = !history_.ties.empty() || !history_.fixes.empty();
+  if (north && (!forward_ || begun_roughly_)) BeginForward();
+  UseClosedStops(history_.knots.back().increment.time);
+}
+
+/// The draft of the knot just stepped.
+void RunSurvey::TakeDraft(const Waiting& waiting) {
+  const std::size_t index = history_.knots.size() - 1;
+  const RunKnot& knot = history_.knots.back();
+  history_.stations.push_back(index);
+  const AttitudeSample& attitude = history_.attitude.back();
+  history_.states.push_back(
+      forward_ ? StateOf(index, knot, attitude, forward_->node().R_LT, forward_->Mark(index + 1))
+               : StateOf(index, knot, attitude));
+  drafts_.push_back(*waiting.draft);
+  Draft& draft = drafts_.back();
+  draft.state = history_.states.size() - 1;
+  Station& s = draft.station;
+  const Increment& inc = knot.increment;
+  s.imu_seq_begin = inc.seq_begin;
+  s.imu_seq_end = inc.seq_end;
+  s.samples_lost = inc.samples_lost;
+  s.quality |= unseen_since_listed_;
+  if (draft.listed) unseen_since_listed_ = Quality::kGood;
+  if (!knot.along.known) s.quality |= Quality::kDepth;
+  (attitude.azimuth_known ? news_ : unheard_).push_back(drafts_.size() - 1);
+}
+
+/// Solves the run so far together and goes on from there: not while two azimuths are as likely,
+/// about one of which the way on would be made linear. Where it leads to none, or to a rough one,
+/// it is done again when the run is half as long again: all together cost three times the last.
+void RunSurvey::BeginForward() {
+  if (history_.knots.size() < next_try_) return;
+  const RunEstimate solved = EstimateSoFar(job_, history_);
+  next_try_ = history_.knots.size() + history_.knots.size() / 2 + 1;
+  forward_.reset();
+  if (!solved.solved || solved.ambiguous || !solved.alone) return;
+  SmoothedRun run = SmoothedOf(solved, history_);
+  history_.attitude = std::move(run.attitude);
+  history_.states = std::move(run.stations);
+  forward_.emplace(solved, history_.knots);
+  begun_roughly_ = !(forward_->SigmaOfHeading() < kRoughHeading);
+  if (forward_->SigmaOfHeading() < kVagueAngle) return TellUnheard();
+  forward_.reset();
+  ForgetAzimuth(history_.attitude.back());
+}
+
+/// The job's external azimuth as that of the axis of a tool at this inclination and toolface.
+double RunSurvey::AxisAzimuth(const AttitudeSample& tool) const {
+  if (job_.alignment.of == AlignmentSpec::Of::kAxis) return job_.alignment.azimuth;
+  AttitudeSample at_zero;
+  at_zero.inclination = tool.inclination;
+  at_zero.toolface = tool.toolface;
+  return job_.alignment.azimuth - DirectionOfMark(at_zero);
+}
+
+/// The job's azimuth holds at the end of the knot just stepped.
+void RunSurvey::UseExternal(const Waiting& waiting) {
+  external_pending_ = false;
+  const AttitudeSample& tool = history_.attitude.back();
+  NorthFix fix;
+  fix.begin = fix.end = waiting.end;
+  fix.utc_begin = fix.utc_end = waiting.utc;
+  fix.md = waiting.along.md;
+  fix.inclination = tool.inclination;
+  fix.toolface = tool.toolface;
+  fix.azimuth = AxisAzimuth(tool);
+  fix.cov_attitude(1, 1) = job_.alignment.sigma_azimuth * job_.alignment.sigma_azimuth;
+  Tie(fix, job_.alignment.of == AlignmentSpec::Of::kMark);
+}
+
+/// An azimuth from outside, at the end of the knot just stepped. The run so far is solved with it.
+void RunSurvey::Tie(NorthFix tie, bool of_mark) {
+  tie.run = summary_.run;
+  tie.tool = summary_.tool;
+  tie.external = true;
+  const AttitudeSample& before = history_.attitude.back();
+  if (before.azimuth_known) {
+    tie.closure = WrapPi(tie.azimuth - before.azimuth);
+    tie.sigma_closure = std::sqrt(tie.cov_attitude(1, 1) + before.cov_attitude(1, 1));
+    tie.chi_square = tie.closure * tie.closure / (tie.sigma_closure * tie.sigma_closure);
+  }
+  history_.ties.push_back({history_.knots.size(), of_mark ? job_.alignment.azimuth : tie.azimuth,
+                           std::sqrt(tie.cov_attitude(1, 1)), of_mark});
+  summary_.fixes.push_back(tie);
+  next_try_ = 0;
+  BeginForward();
+}
+
+void RunSurvey::TellUnheard() {
+  news_.insert(news_.end(), unheard_.begin(), unheard_.end());
+  unheard_.clear();
+}
+
+/// Once more, or for the first time: not one that waits for an azimuth.
+void RunSurvey::Tell(std::size_t draft) {
+  if (!IsUnheard(draft)) news_.push_back(draft);
+}
+
+bool RunSurvey::IsUnheard(std::size_t draft) const {
+  return std::binary_search(unheard_.begin(), unheard_.end(), draft);
+}
+
+/// Latitude and height follow the path, roughly: a kilometre is 1e-2 deg and 0.1 mg.
+void RunSurvey::MoveSite(const RunKnot& knot, const AttitudeSample& attitude) {
+  if (!knot.along.known || !std::isfinite(knot.along.md)) return;
+  if (!site_md_) {
+    // Where a run begins below the tie-in, the hole between counts as vertical.
+    tvd_ += std::max(knot.along.md - job_.tie_in.md, 0.0);
+  } else {
+    const Eigen::Vector3d way =
+        (knot.along.md - *site_md_) * Tangent(attitude.inclination, attitude.azimuth);
+    tvd_ += way.z();
+    if (attitude.azimuth_known) north_ += way.x();
+  }
+  site_md_ = knot.along.md;
+  // Damaged depths may lead anywhere; the site stays on the Earth.
+  constexpr double kReach = 1e5;  // [m]
+  tvd_ = std::clamp(tvd_, -kReach, kReach);
+  north_ = std::clamp(north_, -kReach, kReach);
+  const double latitude = job_.well.latitude + north_ / site_.radius_north;
+  site_ = SiteAt(std::clamp(latitude, -kPi / 2, kPi / 2), job_.well.datum_elevation - tvd_);
+}
+
+}  // namespace wellgyro
