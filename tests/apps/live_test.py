@@ -34,21 +34,22 @@ FINGERPRINTS = {"request_t": 0x5c9579a393f3035d}
 
 
 class Broker(threading.Thread):
-    """Gives every tcpq client what any client publishes."""
+    """Gives every tcpq client that subscribes what any client publishes. One that only publishes
+    never reads: it would end with a reset, which may take its last messages with it."""
+
+    PUBLISH, SUBSCRIBE = 1, 2
 
     def __init__(self):
         super().__init__(daemon=True)
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.url = f"tcpq://127.0.0.1:{self.listener.getsockname()[1]}"
-        self.clients, self.lock = [], threading.Lock()
+        self.subscribers, self.lock = set(), threading.Lock()
 
     def run(self):
         while True:
             client, _ = self.listener.accept()
             client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             client.sendall(struct.pack(">II", 0x287617fa, 0x0100))
-            with self.lock:
-                self.clients.append(client)
             threading.Thread(target=self.Serve, args=(client,), daemon=True).start()
 
     def Serve(self, client):
@@ -58,21 +59,25 @@ class Broker(threading.Thread):
             while head := file.read(8):
                 kind, size = struct.unpack(">II", head)
                 message = head + file.read(size)
-                if kind != 1:
+                if kind == self.SUBSCRIBE:
+                    with self.lock:
+                        self.subscribers.add(client)
+                if kind != self.PUBLISH:
                     continue
                 length = file.read(4)
                 message += length + file.read(struct.unpack(">I", length)[0])
                 with self.lock:
-                    for other in list(self.clients):
+                    for other in list(self.subscribers):
                         try:
                             other.sendall(message)
                         except OSError:
-                            self.clients.remove(other)
+                            self.subscribers.discard(other)
         except (OSError, struct.error):
             pass
         with self.lock:
-            if client in self.clients:
-                self.clients.remove(client)
+            self.subscribers.discard(client)
+        file.close()
+        client.close()
 
 
 def Join(port):
@@ -195,6 +200,15 @@ class Live(ProgramTest):
         time.sleep(0.1)
         return process
 
+    def EndsWell(self, process, seconds=60):
+        try:
+            text, errors = process.communicate(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            text, errors = process.communicate()
+            self.fail(f"has not ended after {seconds} s; it said:\n{text}{errors}")
+        self.assertEqual(process.returncode, 0, text + errors)
+
     def Udpm(self):
         if not HasMulticast():
             self.assertNotIn("WELLGYRO_OWN_NETWORK", os.environ, "a network of our own has it")
@@ -209,11 +223,9 @@ class Live(ProgramTest):
                                 "--record", self.Path(out + ".heard.lcm"))
         sent = Run("simulate", "--job", self.simulation, "--out", url, "--speed", "0", "--finish")
         self.assertEqual(sent.returncode, 0, sent.stderr)
-        text, errors = survey.communicate(timeout=60)
-        self.assertEqual(survey.returncode, 0, text + errors)
+        self.EndsWell(survey)
         recorder.send_signal(signal.SIGTERM)
-        text, errors = recorder.communicate(timeout=20)
-        self.assertEqual(recorder.returncode, 0, text + errors)
+        self.EndsWell(recorder)
         self.SameAs("straight", out)
         for log in (record, self.Path(out + ".heard.lcm")):
             again = Run("survey", "--job", self.job, "--from", log, "--out",

@@ -18,8 +18,10 @@ constexpr double kSingular = 1e-11;
 
 using StationVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kStationErrorsMax, 1>;
 
-// The X with E[x1 x2'] = cov X, so that E[r x2'] = E[r x1'] X for every r that depends on x2 by x1
-// alone. Where cov is singular any solution will do; the smallest is taken.
+Eigen::Matrix3d PlusTransposed(const Eigen::Matrix3d& m) { return m + m.transpose(); }
+
+}  // namespace
+
 StationMatrix SolveCovariance(const StationMatrix& cov, const StationMatrix& cross) {
   const StationVector scale =
       cov.diagonal().unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 0.0; });
@@ -30,10 +32,6 @@ StationMatrix SolveCovariance(const StationMatrix& cov, const StationMatrix& cro
   const StationMatrix& v = eigen.eigenvectors();
   return scale.asDiagonal() * v * inverse.asDiagonal() * v.transpose() * scale.asDiagonal() * cross;
 }
-
-Eigen::Matrix3d PlusTransposed(const Eigen::Matrix3d& m) { return m + m.transpose(); }
-
-}  // namespace
 
 AlongHoleCovariance::AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in, double depth_sigma,
                                          TimeAlongHole order)

@@ -14,12 +14,16 @@ namespace wellgyro {
 /// Whether the tool met the stations in the order of depth (in-run) or against it (out-run).
 enum class TimeAlongHole { kWithDepth, kAgainstDepth };
 
+/// The X with E[x1 x2'] = cov X, so that E[r x2'] = E[r x1'] X for every r that depends on x2 by x1
+/// alone; `cross`: E[x1 x2']. Where cov is singular any solution will do; the smallest is taken.
+StationMatrix SolveCovariance(const StationMatrix& cov, const StationMatrix& cross);
+
 /// Position covariance, summed from station to station down the hole.
 ///
 /// The position error of a leg is dMD/2 (s_k + s_k+1), s the error of the tangent (balanced
-/// tangential, ISCWSA); the errors of all
-/// stations are correlated as their Markov chain says, exactly, at a cost that does not grow with
-/// the number of stations before. To each station comes its depth error along the tangent.
+/// tangential, ISCWSA); the errors of all stations are correlated as their Markov chain says,
+/// exactly, at a cost that does not grow with the number of stations before. To each station comes
+/// its depth error along the tangent.
 class WELLGYRO_EXPORT AlongHoleCovariance {
  public:
   /// `cov_tie_in`: of the position of the first station [m^2]; `depth_sigma`: ErrorPriors [m], of
@@ -28,8 +32,8 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
 
   /// The next station of the survey in the order of depth. Returns cov_p_WT_W [m^2].
   /// The stations of one run must come one after the other, each the neighbour in time of the one
-  /// before; one without `cov_with_previous`, the first of a run, is taken as
-  /// independent of its neighbour. Throws std::invalid_argument when depths do not increase or
+  /// before; one without `cov_with_previous`, the first of a run, is taken as independent of its
+  /// neighbour. Throws std::invalid_argument when depths do not increase or
   /// time runs the wrong way.
   Eigen::Matrix3d Add(const StationState& station);
 

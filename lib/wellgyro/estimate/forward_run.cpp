@@ -144,9 +144,7 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   information_ = Turned(elimination.edge_information().selfadjointView<Eigen::Lower>(), turn);
   cov_ = Turned(elimination.LastCovariance(), turn);
   if (link_.size() > 0) {
-    const Eigen::MatrixXd by_border = link_.rightCols(layout_.border);
-    link_ = (link_.leftCols(layout_.node) * elimination.Gain(0)).eval();
-    link_.rightCols(layout_.border) += by_border;
+    CarryLink(layout_, elimination.Gain(0), link_);
     link_.leftCols<3>() = (link_.leftCols<3>() * turn).eval();
   }
   const Node& before = nodes_.back();

@@ -131,4 +131,10 @@ Eigen::MatrixXd LinkedRows(const Layout& layout) {
   return rows;
 }
 
+void CarryLink(const Layout& layout, const BehindMatrix& gain, Eigen::MatrixXd& link) {
+  const Eigen::MatrixXd by_border = link.rightCols(layout.border);
+  link = (link.leftCols(layout.node) * gain).eval();
+  link.rightCols(layout.border) += by_border;
+}
+
 }  // namespace wellgyro

@@ -48,6 +48,9 @@ Layout LayoutOf(const EstimateSetup& setup);
 std::vector<int> LinkedColumns(const Layout& layout);
 /// The matrix that takes these from [node; border].
 Eigen::MatrixXd LinkedRows(const Layout& layout);
+/// Of `link`, which takes them from [node; border] of a node, that from [node; border] of the next,
+/// where node = gain [next node; border].
+void CarryLink(const Layout& layout, const BehindMatrix& gain, Eigen::MatrixXd& link);
 
 /// The sigma in `setup` that an ErrorSource, kLatitudeError or kGravityError has; nullptr: it
 /// cannot be an unknown.

@@ -252,9 +252,7 @@ RunEnd EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
   if (marked.empty()) return end;
   end.link = LinkedRows(layout);
   for (std::size_t k = marked.back(); k < solved.knots().size(); ++k) {
-    const Eigen::MatrixXd by_border = end.link.rightCols(layout.border);
-    end.link = (end.link.leftCols(layout.node) * e.Gain(k)).eval();
-    end.link.rightCols(layout.border) += by_border;
+    CarryLink(layout, e.Gain(k), end.link);
   }
   return end;
 }

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include <Eigen/Cholesky>
+#include "wellgyro/attitude/along_hole_covariance.h"
 
 namespace wellgyro {
 namespace {
@@ -13,8 +13,7 @@ StationMatrix Bridge(const StationState& before, const StationState& on_the_way,
                      const StationState& next) {
   const StationMatrix& cross = next.cov_with_previous;
   if (cross.rows() != before.cov.rows() || cross.rows() != on_the_way.cov.rows()) return {};
-  const Eigen::LDLT<StationMatrix> solver(on_the_way.cov);
-  return before.cov * solver.solve(cross);
+  return before.cov * SolveCovariance(on_the_way.cov, cross);
 }
 
 }  // namespace

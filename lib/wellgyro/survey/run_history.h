@@ -18,6 +18,7 @@ namespace wellgyro {
 struct FixAtNode {
   NorthFix fix;
   std::size_t node = 0;
+  bool roll_hidden = false;  ///< somewhere since the stop before gravity did not show the roll
 };
 
 /// All that a run leaves to be estimated from. Node k + 1 is the end of knot k, node 0 the begin.

@@ -63,8 +63,8 @@ class RunSurvey {
   const RunHistory& history() const { return history_; }
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
-  /// How stops near vertical agree with the run as a whole, by its attitudes at the end of every
-  /// knot.
+  /// How stops that were reached on a roll nobody saw agree with the run as a whole, by its
+  /// attitudes at the end of every knot.
   void CloseOnWhole(std::span<const AttitudeSample> whole);
   /// Lists the deepest station of the in-runs, which closes the survey.
   void ListLastDepth();
@@ -151,6 +151,7 @@ class RunSurvey {
   std::optional<ForwardRun> forward_;  ///< from the first north on
   bool begun_roughly_ = false;         ///< its heading was not yet sure
   std::size_t next_try_ = 0;           ///< knots, from which a start is tried again
+  bool roll_hidden_ = false;           ///< on the way since the last stop
   StillDetector still_;
   PassTracker passes_;
   std::optional<Current> current_;

@@ -92,7 +92,8 @@ AttitudeSample RunSurvey::AttitudeNow() const {
 
 void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   if (history_.knots.empty()) history_.site = site_;
-  history_.knots.push_back(KnotOf(waiting));
+  const RunKnot& knot = history_.knots.emplace_back(KnotOf(waiting));
+  roll_hidden_ |= !knot.still && !knot.increment.roll_seen;
   // About a heading that is lost nothing can be made linear.
   const bool goes_on =
       forward_ && forward_->Step(history_.knots, next) && forward_->SigmaOfHeading() < kVagueAngle;

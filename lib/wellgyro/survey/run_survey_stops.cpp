@@ -17,13 +17,6 @@ constexpr double kSamePlaceSeconds = 120;  // the same where there is no depth
 // 2 ln of odds of 90: by less one azimuth does not beat another.
 constexpr double kDecides = 9;
 constexpr double kTells = 1e-3;  // of a variance, from which a stop has said something of it
-// Nearer to vertical the azimuth on the way hangs on a roll that gravity hardly shows, made linear
-// once: at .05 to .2 deg of swinging tools it was up to six sigmas off.
-constexpr double kNearVertical = 2 * kPi / 180;  // [rad]
-
-bool NearVertical(const NorthFix& fix) {
-  return std::sin(fix.inclination) < std::sin(kNearVertical);
-}
 
 /// What the Earth measured at the stop, and what it is.
 void TakeReferences(const NorthFix& fix, Station& station) {
@@ -162,11 +155,12 @@ void RunSurvey::UseFix(NorthFix fix) {
   const bool wanted =
       job_.alignment.use_fixes || job_.alignment.method == AlignmentSpec::Method::kGyrocompass;
   if (wanted && !history_.knots.empty()) {
-    history_.fixes.push_back({fix, history_.knots.size()});
+    const bool roll_hidden = std::exchange(roll_hidden_, false);
+    history_.fixes.push_back({fix, history_.knots.size(), roll_hidden});
     const AttitudeSample* before = BeforeStop(fix);
     if (AzimuthKnown() && before != nullptr && before->azimuth_known) {
       ChooseBranch(*before, fix);
-      if (!NearVertical(fix)) CloseOn(*before, history_.attitude.back(), fix);
+      if (!roll_hidden) CloseOn(*before, history_.attitude.back(), fix);
     } else if (!AzimuthKnown()) {
       BeginForward();
       const bool alone = AzimuthKnown() || !fix.mirror_azimuth;
@@ -177,16 +171,17 @@ void RunSurvey::UseFix(NorthFix fix) {
   ListStop(fix);
 }
 
-/// Of stops near vertical what the run as a whole, which every stop is part of, leaves of the
-/// stop's own azimuth: the variance of that difference is the difference of the variances.
+/// Of stops to which the tool came on a roll that gravity did not show, on which the azimuth on the
+/// way then hangs, what the run as a whole, which every stop is part of, leaves of the stop's own
+/// azimuth: the variance of that difference is the difference of the variances.
 void RunSurvey::CloseOnWhole(std::span<const AttitudeSample> whole) {
   for (const FixAtNode& at : history_.fixes) {
+    if (!at.roll_hidden || at.node > whole.size()) continue;
     const auto listed =
         std::find_if(summary_.fixes.begin(), summary_.fixes.end(), [&at](const NorthFix& fix) {
           return !fix.external && fix.from_samples && fix.begin == at.fix.begin;
         });
-    if (listed == summary_.fixes.end() || at.node > whole.size() || !NearVertical(*listed))
-      continue;
+    if (listed == summary_.fixes.end()) continue;
     const AttitudeSample& run = whole[at.node - 1];
     const double alone = listed->cov_attitude(1, 1), gained = alone - run.cov_attitude(1, 1);
     const bool doubtful = Has(listed->quality, Quality::kMirror | Quality::kVertical);
