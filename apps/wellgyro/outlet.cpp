@@ -1,6 +1,9 @@
 #include "outlet.h"
 
 #include <algorithm>
+#include <functional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "wellgyro/bus/feed.h"
@@ -45,7 +48,7 @@ class LiveOutlet : public Outlet, private Listener {
         {}, [this](std::string_view channel, std::span<const std::byte> data, std::int64_t) {
           if (channel == feed_.channels().status) {
             feed_.Take(channel, data);
-          } else {
+          } else if (ours_.contains(channel)) {
             ++echoes_;
           }
         });
@@ -55,12 +58,23 @@ class LiveOutlet : public Outlet, private Listener {
                              std::int64_t utime_us) override {
     if (auto fault = speed_ > 0 ? Pace(utime_us) : KeepUp()) return fault;
     if (stopped_) return std::nullopt;
+    ours_.insert(channel);
     if (auto fault = bus_.Publish(channel, bytes)) return fault;
     ++events_;
     bytes_ += static_cast<std::int64_t>(bytes.size());
     return std::nullopt;
   }
-  std::optional<Fault> Close() override { return std::nullopt; }
+  /// A connection that is closed with echoes unread is reset, and what the broker has not yet read
+  /// of ours goes with it.
+  std::optional<Fault> Close() override {
+    std::int64_t begin = MonotonicUs();
+    while (!stopped_ && echoes_ < events_ && MonotonicUs() - begin < kEchoPatienceUs) {
+      const std::int64_t before = echoes_;
+      if (auto fault = Wait(10)) return fault;
+      if (echoes_ > before) begin = MonotonicUs();
+    }
+    return std::nullopt;
+  }
   bool stopped() const override { return stopped_; }
 
  private:
@@ -111,6 +125,7 @@ class LiveOutlet : public Outlet, private Listener {
   double speed_;
   Feed feed_;
   bool stopped_ = false;
+  std::set<std::string, std::less<>> ours_;  ///< channels
   std::int64_t begin_us_ = 0, begin_utime_us_ = 0;
   std::int64_t echoes_ = 0;
   std::int64_t survey_samples_ = 0, status_us_ = -kStatusPatienceUs;

@@ -34,8 +34,7 @@ FINGERPRINTS = {"request_t": 0x5c9579a393f3035d}
 
 
 class Broker(threading.Thread):
-    """Gives every tcpq client that subscribes what any client publishes. One that only publishes
-    never reads: it would end with a reset, which may take its last messages with it."""
+    """Gives every tcpq client that subscribes what any client publishes."""
 
     PUBLISH, SUBSCRIBE = 1, 2
 
@@ -54,25 +53,33 @@ class Broker(threading.Thread):
 
     def Serve(self, client):
         file = client.makefile("rb")
+
+        def Exactly(size):
+            data = file.read(size)
+            if len(data) < size:
+                raise EOFError
+            return data
+
         try:
-            file.read(8)
-            while head := file.read(8):
+            Exactly(8)
+            while True:
+                head = Exactly(8)
                 kind, size = struct.unpack(">II", head)
-                message = head + file.read(size)
+                message = head + Exactly(size)
                 if kind == self.SUBSCRIBE:
                     with self.lock:
                         self.subscribers.add(client)
                 if kind != self.PUBLISH:
                     continue
-                length = file.read(4)
-                message += length + file.read(struct.unpack(">I", length)[0])
+                length = Exactly(4)
+                message += length + Exactly(struct.unpack(">I", length)[0])
                 with self.lock:
                     for other in list(self.subscribers):
                         try:
                             other.sendall(message)
                         except OSError:
                             self.subscribers.discard(other)
-        except (OSError, struct.error):
+        except (OSError, EOFError):
             pass
         with self.lock:
             self.subscribers.discard(client)
