@@ -16,9 +16,9 @@
 namespace wellgyro {
 
 /// What is known of a run while it goes on: the factors of RunSolver, each made linear about what
-/// was known then (the iterated extended Kalman filter, in information form). It goes on from where the
-/// knots so far were solved together; memory and the cost of a knot stay as they are. Values may be
-/// copied: a copy goes on alone.
+/// was known then (the iterated extended Kalman filter, in information form). It goes on from where
+/// the knots so far were solved together; memory and the cost of a knot stay as they are. Values
+/// may be copied: a copy goes on alone.
 class ForwardRun {
  public:
   /// From the end of `solved`, which has solved `knots`.
