@@ -93,9 +93,11 @@ def Worst(folder):
                 continue
             error = abs((float(row["AZI_TRUE[deg]"]) - azimuth + 180) % 360 - 180)
             off = max(off, error)
+            if not row["SIG_AZI[deg]"]:
+                continue  # withheld
             sigmas.append(float(row["SIG_AZI[deg]"]))
             worst = max(worst, error / sigmas[-1])
-    return off, worst, statistics.median(sigmas)
+    return off, worst, statistics.median(sigmas or [math.nan])
 
 
 def Run(program, name, simulation, job):
@@ -124,7 +126,8 @@ def Run(program, name, simulation, job):
         print(f"{name}: {seconds:.2f} s, {told['verdict']['verdict']}, "
               f"{'adjusted' if adjusted else 'NOT ADJUSTED'}, azimuth {off:.3f} deg, "
               f"{worst:.1f} sigma, median sigma {sigma:.3f} deg"
-              + (f", fails {', '.join(checks)}" if checks else ""), flush=True)
+              + (f", fails {', '.join(checks)}" if checks else "")
+              + (f": {told['verdict']['causes'][0]}" if checks else ""), flush=True)
         return seconds, adjusted, sigma
 
 

@@ -221,6 +221,10 @@ IncrementBuilder::IncrementBuilder(const IncrementOptions& options) {
 IncrementBuilder::~IncrementBuilder() = default;
 IncrementBuilder::IncrementBuilder(IncrementBuilder&&) noexcept = default;
 IncrementBuilder& IncrementBuilder::operator=(IncrementBuilder&&) noexcept = default;
+IncrementBuilder& IncrementBuilder::operator=(const IncrementBuilder& other) {
+  *state_ = *other.state_;
+  return *this;
+}
 
 bool CanFollow(const SampleStamp* before, const ImuSample& sample) {
   if (sample.stamp.period_ns <= 0 || !IsFinite(sample)) return false;

@@ -52,6 +52,9 @@ class WELLGYRO_EXPORT IncrementBuilder {
   ~IncrementBuilder();
   IncrementBuilder(IncrementBuilder&&) noexcept;
   IncrementBuilder& operator=(IncrementBuilder&&) noexcept;
+  /// Stands where `other` does and goes on by itself: flushed, it tells at once what the other will
+  /// tell later by more samples. Copies what waits, some 12 s, and allocates nothing.
+  IncrementBuilder& operator=(const IncrementBuilder& other);
 
   /// Takes the next sample; `rests`: the depth says that the tool makes no way. Returns false and
   /// changes nothing where the sample begins before the last one ended (late, or sent twice), has

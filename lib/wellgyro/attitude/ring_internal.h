@@ -12,6 +12,17 @@ class Ring {
  public:
   /// A power of two.
   explicit Ring(std::size_t capacity) : items_(capacity) {}
+  ~Ring() = default;
+  Ring(const Ring&) = delete;
+  Ring(Ring&&) = default;
+  Ring& operator=(Ring&&) = default;
+  /// What is there, and nothing of what stood there before; of one of the same capacity.
+  Ring& operator=(const Ring& other) {
+    begin_ = other.begin_;
+    end_ = other.end_;
+    for (std::uint64_t k = begin_; k < end_; ++k) (*this)[k] = other[k];
+    return *this;
+  }
   std::uint64_t begin() const { return begin_; }
   std::uint64_t end() const { return end_; }
   bool full() const { return end_ - begin_ == items_.size(); }

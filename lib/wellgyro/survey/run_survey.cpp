@@ -17,7 +17,6 @@ constexpr double kJump = 50;
 constexpr double kWithoutGap = 1.5;  // periods from a sample to its successor, at most
 // Gravity across the tool that plainly shows its roll: no noise turns it by a right angle [m/s^2].
 constexpr double kSeenAcross = 1;
-constexpr std::int64_t kSameNs = 2;  // one place, cut twice and rounded
 
 StillSetup StillSetupOf(const Job& job) {
   StillSetup setup;
@@ -58,6 +57,7 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
       tvd_(job.tie_in.tvd),
       plan_(job),
       builder_(IncrementOptionsOf(job)),
+      builder_ahead_(IncrementOptionsOf(job)),
       still_(StillSetupOf(job)),
       external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal),
       magnet_pending_(job.magnetic && job.magnetic->tie) {
@@ -249,6 +249,7 @@ void RunSurvey::TakeCurrent(const AlongHole& next, const PassState& pass_next, d
                    [](const KnotAt& a, const KnotAt& b) { return a.fraction < b.fraction; });
   for (const KnotAt& cut : cuts_) CutAt(cut, next, reach);
   DecideStill(false);
+  TellAhead();
 }
 
 /// The asked depths that the tool passes within the sample, and the gap after it, up to `md_next`.
@@ -280,6 +281,7 @@ void RunSurvey::AddTargets(double md_next, double reach) {
 void RunSurvey::ListLastMark() {
   for (auto waiting = waiting_.rbegin(); waiting != waiting_.rend(); ++waiting) {
     if (!waiting->draft) continue;
+    if (waiting->told) break;
     waiting->draft->listed = true;
     return;
   }

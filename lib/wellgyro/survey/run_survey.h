@@ -27,8 +27,9 @@ namespace wellgyro {
 ///
 /// Every second, at every station and where the tool comes to rest samples are cut into knots. A
 /// knot waits for its increment, 6 to 12 s, by when the still detector has made up its mind about
-/// its time. From the first north on the run is known as it goes; a stop's north fix counts when
-/// the tool has left the place, because until then another index position may still join it.
+/// its time. From the first north on the run is known as it goes, and a station is told at once, by
+/// increments that no later sample has bettered; a stop's north fix counts when the tool has left
+/// the place, because until then another index position may still join it.
 class RunSurvey {
  public:
   /// `job` must outlive this object.
@@ -59,6 +60,11 @@ class RunSurvey {
   bool IsUnheard(std::size_t draft) const;
   const std::vector<Draft>& drafts() const { return drafts_; }
   std::vector<Draft>& drafts() { return drafts_; }
+  /// Of drafts() that are from samples, in this order, as known on the way.
+  std::vector<StationState> states() const;
+  const StationState& state(std::size_t number) const;
+  /// How many of drafts(), the youngest, are told ahead: their knots still wait.
+  std::size_t ahead() const { return states_ahead_.size(); }
   /// Those of drafts() that are from samples stand in this order among its stations.
   const RunHistory& history() const { return history_; }
   const RunSummary& summary() const { return summary_; }
@@ -87,8 +93,9 @@ class RunSurvey {
     AlongHole along;
     std::optional<Draft> draft;
     std::optional<Increment> increment;
-    bool external = false;      ///< the job's azimuth holds here
-    std::optional<bool> still;  ///< once it is decided
+    bool external = false;            ///< the job's azimuth holds here
+    std::optional<bool> still;        ///< once it is decided
+    std::optional<std::size_t> told;  ///< the draft's number, where it is already among drafts_
     bool temperature_outside = false;
   };
 
@@ -120,8 +127,11 @@ class RunSurvey {
   void DecideStill(bool all);
   void StepReady(bool all);
   void StepKnot(const Waiting& waiting, const Increment* next);
-  RunKnot KnotOf(const Waiting& waiting);
+  RunKnot KnotOf(const Waiting& waiting, const Increment& increment, UnseenTurn& unseen) const;
   AttitudeSample AttitudeNow() const;
+  void TellAhead();
+  std::vector<Increment> IncrementsAhead();
+  void AddDraft(const Draft& waiting, std::size_t state, Quality unseen, bool known);
   void TakeDraft(const Waiting& waiting);
   bool AzimuthKnown() const;
   void BeginForward();
@@ -144,7 +154,7 @@ class RunSurvey {
   StationPlan plan_;
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::vector<KnotAt> cuts_;                  ///< scratch
-  IncrementBuilder builder_;
+  IncrementBuilder builder_, builder_ahead_;
   std::vector<Duration> gap_cuts_;  ///< in the gap behind the sample last given to the builder
   UnseenTurn unseen_;
   RunHistory history_;
@@ -172,6 +182,7 @@ class RunSurvey {
   std::vector<StillWindow> group_;  ///< windows at one place
   std::deque<NorthFix> closed_;     ///< of stops that are over, until their knots are known
   std::vector<Draft> drafts_;
+  std::deque<StationState> states_ahead_;  ///< of the youngest drafts, whose knots still wait
   std::vector<std::size_t> unheard_;  ///< drafts whose azimuth was not known when they were made
   std::vector<std::size_t> news_;
   RunSummary summary_;

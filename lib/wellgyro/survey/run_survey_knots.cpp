@@ -10,6 +10,7 @@
 #include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/node_attitude.h"
 #include "wellgyro/survey/run_survey.h"
+#include "wellgyro/survey/run_survey_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -60,16 +61,17 @@ void RunSurvey::StepReady(bool all) {
   }
 }
 
-RunKnot RunSurvey::KnotOf(const Waiting& waiting) {
+RunKnot RunSurvey::KnotOf(const Waiting& waiting, const Increment& increment,
+                          UnseenTurn& unseen) const {
   const bool rests =
       job_.alignment.method == AlignmentSpec::Method::kGyrocompass || job_.alignment.use_fixes;
-  RunKnot knot{.increment = *waiting.increment, .utc = waiting.utc, .along = waiting.along};
+  RunKnot knot{.increment = increment, .utc = waiting.utc, .along = waiting.along};
   knot.still = rests && waiting.still.value_or(false);
   if (waiting.temperature_outside) knot.increment.quality |= Quality::kTemperature;
   knot.unseen = UnseenIn(knot);
-  knot.var_unseen = unseen_.VarOf(knot.unseen);
-  unseen_.Add(knot.unseen);
-  unseen_.Pass(knot.increment.seconds - knot.increment.gap_seconds, UnseenHole().seconds);
+  knot.var_unseen = unseen.VarOf(knot.unseen);
+  unseen.Add(knot.unseen);
+  unseen.Pass(knot.increment.seconds - knot.increment.gap_seconds, UnseenHole().seconds);
   return knot;
 }
 
@@ -92,7 +94,7 @@ AttitudeSample RunSurvey::AttitudeNow() const {
 
 void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   if (history_.knots.empty()) history_.site = site_;
-  const RunKnot& knot = history_.knots.emplace_back(KnotOf(waiting));
+  const RunKnot& knot = history_.knots.emplace_back(KnotOf(waiting, *waiting.increment, unseen_));
   roll_hidden_ |= !knot.still && !knot.increment.roll_seen;
   // About a heading that is lost nothing can be made linear.
   const bool goes_on =
@@ -100,8 +102,7 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   if (!goes_on) forward_.reset();
   history_.attitude.push_back(AttitudeNow());
   MoveSite(history_.knots.back(), history_.attitude.back());
-  unseen_since_listed_ |=
-      history_.knots.back().increment.quality & (Quality::kGap | Quality::kSaturated);
+  unseen_since_listed_ |= knot.increment.quality & kUnseen;
   if (waiting.draft) TakeDraft(waiting);
   const AlignmentSpec& spec = job_.alignment;
   if (external_pending_ && !spec.at_md && !spec.at_utc) {
@@ -116,27 +117,39 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   UseClosedStops(history_.knots.back().increment.time);
 }
 
-/// The draft of the knot just stepped.
-void RunSurvey::TakeDraft(const Waiting& waiting) {
-  const std::size_t index = history_.knots.size() - 1;
+/// The draft of the last knot, whose state is `state` among those of the run.
+void RunSurvey::AddDraft(const Draft& waiting, std::size_t state, Quality unseen, bool known) {
   const RunKnot& knot = history_.knots.back();
-  history_.stations.push_back(index);
-  const AttitudeSample& attitude = history_.attitude.back();
-  history_.states.push_back(
-      forward_ ? StateOf(index, knot, attitude, forward_->node().R_LT, forward_->Mark(index + 1))
-               : StateOf(index, knot, attitude));
-  drafts_.push_back(*waiting.draft);
-  Draft& draft = drafts_.back();
-  draft.state = history_.states.size() - 1;
+  Draft& draft = drafts_.emplace_back(waiting);
+  draft.state = state;
   Station& s = draft.station;
   const Increment& inc = knot.increment;
   s.imu_seq_begin = inc.seq_begin;
   s.imu_seq_end = inc.seq_end;
   s.samples_lost = inc.samples_lost;
-  s.quality |= unseen_since_listed_;
-  if (draft.listed) unseen_since_listed_ = Quality::kGood;
+  s.quality |= unseen;
   if (!knot.along.known) s.quality |= Quality::kDepth;
-  (attitude.azimuth_known ? news_ : unheard_).push_back(drafts_.size() - 1);
+  (known ? news_ : unheard_).push_back(drafts_.size() - 1);
+}
+
+/// The draft of the knot just stepped.
+void RunSurvey::TakeDraft(const Waiting& waiting) {
+  const std::size_t index = history_.knots.size() - 1;
+  const RunKnot& knot = history_.knots.back();
+  const AttitudeSample& attitude = history_.attitude.back();
+  const std::size_t state = history_.stations.size();
+  history_.stations.push_back(index);
+  history_.states.push_back(
+      forward_ ? StateOf(index, knot, attitude, forward_->node().R_LT, forward_->Mark(index + 1))
+               : StateOf(index, knot, attitude));
+  if (waiting.told) {
+    states_ahead_.pop_front();
+  } else {
+    AddDraft(*waiting.draft, state, unseen_since_listed_, attitude.azimuth_known);
+  }
+  if (drafts_[waiting.told.value_or(drafts_.size() - 1)].listed) {
+    unseen_since_listed_ = Quality::kGood;
+  }
 }
 
 /// Solves the run so far together and goes on from there: not while two azimuths are as likely,

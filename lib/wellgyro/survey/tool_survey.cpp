@@ -346,10 +346,9 @@ void ToolSurvey::Tell(RunState& run) {
   std::vector<std::size_t> news = survey.News();
   if (news.empty()) return;
   std::sort(news.begin(), news.end());
-  const std::vector<StationState>& states = survey.history().states;
   for (std::size_t i : news) {
     Draft& draft = survey.drafts()[i];
-    const StationState* state = draft.state ? &states[*draft.state] : nullptr;
+    const StationState* state = draft.state ? &survey.state(*draft.state) : nullptr;
     if (std::optional<Station> station = run.provisional->Place(draft, state)) {
       station->status = StatusOf(draft, false);
       TellStation(*station);
@@ -380,7 +379,7 @@ void ToolSurvey::Adjust() {
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);
     }
-    run.adjusted_drafts = run.survey->drafts().size();
+    run.adjusted_drafts = run.survey->drafts().size() - run.survey->ahead();
     for (Draft& draft : run.survey->drafts()) ++draft.station.revision;
   }
   SendRevisions();

@@ -107,7 +107,7 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
     DraftedRun d;
     d.run = run.survey->summary().run;
     d.misrun = book_.misrun(d.run);
-    d.states = JoinStates(run.adjusted, run.survey->history().states);
+    d.states = JoinStates(run.adjusted, run.survey->states());
     d.way = WayOf(run);
     const bool contradicted = Contradiction(job_, run.survey->summary()) != nullptr;
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
