@@ -28,6 +28,7 @@ struct Depths {
   std::function<double(double)> read = [](double t) { return Depth(t); };
   double noise = 0.01, period = 0.5;
   double ahead = 5;  ///< marks of the samples [s]
+  double clock = 0;  ///< how much slower than UTC the samples' clock is, as a share
   std::uint64_t seed = 1;
 };
 
@@ -53,7 +54,8 @@ DepthMotion::Found FoundOf(const Depths& depths, double seconds) {
     }
     const double h = 0.02, middle = t + kStep / 2;
     const double felt = (Depth(middle + h) - 2 * Depth(middle) + Depth(middle - h)) / (h * h);
-    motion.Feel(begin + Duration::Seconds(t), kStep, felt - 6.5 + 1e-3 * force.Normal(), track);
+    motion.Feel(begin + Duration::Seconds(t), kStep / (1 + depths.clock),
+                felt - 6.5 + 1e-3 * force.Normal(), track);
   }
   return motion.found();
 }
@@ -75,6 +77,17 @@ TEST(DepthMotion, AGoodTrackHasNoStepAndNoLag) {
   // Chi-square of 20: 7 to 40 hold 99.7 %; neighbouring groups share marks, which widens it.
   EXPECT_GT(squares / kSeeds, 0.2);
   EXPECT_LT(squares / kSeeds, 3);
+}
+
+// Gravity, summed up by the samples' own clock for hours, against the marks' UTC.
+TEST(DepthMotion, AnHourIsJudgedAsTheFirstMinuteIs) {
+  for (const double clock : {0.0, 2e-5, -2e-5}) {
+    Depths depths;
+    depths.clock = clock;
+    const DepthMotion::Found found = FoundOf(depths, 4 * 3600);
+    EXPECT_NEAR(found.sigma_step, 2.236 * 0.01, 0.003) << clock;
+    EXPECT_LT(std::abs(found.step), 5 * found.sigma_step) << clock;
+  }
 }
 
 // How marks and samples interleave does not matter.

@@ -42,6 +42,7 @@ void DepthMotion::Feel(UtcTime utc, double seconds, double f_z, const DepthTrack
       const double t = (mark->utc - utc).seconds();
       last_mark_ = mark->utc;
       Pass({mark->utc, mark->md, speed_ + f_z * t, way_ + (speed_ + f_z * t / 2) * t});
+      FallFromOldest(utc);
     }
   }
   way_ += (speed_ + f_z * seconds / 2) * seconds;
@@ -59,6 +60,20 @@ void DepthMotion::Pass(const Passed& passed) {
   passed_[passed_count_++] = passed;
   if (passed_count_ < kMarks) return;
   Compare();
+}
+
+/// A third difference does not see a constant speed, but a clock does: gravity summed up over hours
+/// is 1e5 m/s, by which a microsecond between the samples' time and the marks' is a step of 0.1 m.
+void DepthMotion::FallFromOldest(UtcTime now) {
+  const Passed oldest = passed_.front();
+  const auto take = [&oldest](UtcTime utc, double& speed, double& way) {
+    way -= oldest.way + oldest.speed * (utc - oldest.utc).seconds();
+    speed -= oldest.speed;
+  };
+  take(now, speed_, way_);
+  for (std::size_t i = 0; i < passed_count_; ++i) {
+    take(passed_[i].utc, passed_[i].speed, passed_[i].way);
+  }
 }
 
 /// 1-sigma of one step from the mean |step|: E|x| = sqrt(2/pi) sigma = sigma / 1.2533.

@@ -42,12 +42,14 @@ class WELLGYRO_EXPORT DepthMotion {
  private:
   static constexpr std::size_t kMarks = 4;
 
-  /// A mark, and the felt speed and way there, by a datum of their own.
+  /// A mark, and the felt speed and way there, as seen from a body that falls freely from the
+  /// oldest mark at hand on.
   struct Passed {
     UtcTime utc;
     double md = 0, speed = 0, way = 0;
   };
   void Pass(const Passed& passed);
+  void FallFromOldest(UtcTime now);
   void Compare();
   double Sigma() const;
 
