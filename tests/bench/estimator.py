@@ -10,6 +10,7 @@ processor seconds of the survey (log to files), verdict, whether it was adjusted
 azimuth of the stations in survey.csv where the hole leans by more than 3 deg, in degrees and in its
 sigmas."""
 import argparse
+import bisect
 import csv
 import math
 import os
@@ -23,7 +24,7 @@ import tomllib
 
 DEMO = os.path.join(os.path.dirname(__file__), "..", "..", "data", "demo")
 SLANT = """[well]
-name = "slant"
+name = "laws"
 end_md_m = 1105.0
 [well.inclination]
 start_deg = 30.0
@@ -37,6 +38,8 @@ latitude_deg = 60.0
 def Demonstration(passes=1, slower=1, seed=None):
     with open(os.path.join(DEMO, "simulation.toml"), encoding="utf-8") as file:
         text = file.read()
+    # Depths are true, so that a station's place is: what is compared are directions.
+    text = re.sub(r"^depth_sigma_m = .*\n", "", text, flags=re.MULTILINE)
     begin, end = text.index("[[run.step]]"), text.index("[tool]")
     text = text[:begin] + text[begin:end] * passes + text[end:]
     if seed is not None:
@@ -62,33 +65,35 @@ def Hours(hours):
     steps += "[[run.step]]\nstop_s = 200.0\n"
     simulation = f'format = "wellgyro.simulation/1"\nseed = 5\n{SLANT}[run]\n{steps}{tool}{streams}'
     job = DemonstrationJob().replace("latitude_deg = 28.0", "latitude_deg = 60.0")
+    job += '[tie_in]\nmd_m = 100.0\n'
     return simulation, re.sub(r'\[grid\]\nutm_zone = "15N"\n', "", job)
 
 
 def Truth(path):
+    """Azimuth and inclination along the hole, on the way in."""
+    rows = []
     with open(path, newline="", encoding="utf-8") as file:
-        rows = [[float(row[key]) for key in ("MD[m]", "AZI_TRUE[deg]", "INC[deg]")]
-                for row in csv.DictReader(file)]
-    rows.sort()
+        for row in csv.DictReader(file):
+            here = [float(row[key]) for key in ("MD[m]", "AZI_TRUE[deg]", "INC[deg]")]
+            if not rows or here[0] > rows[-1][0]:
+                rows.append(here)
     return rows
 
 
-def AzimuthAt(rows, md):
-    low, high = 0, len(rows) - 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (middle, high) if rows[middle][0] <= md else (low, middle)
-    a, b = rows[low], rows[high]
-    part = (md - a[0]) / (b[0] - a[0]) if b[0] > a[0] else 0
+def At(rows, md):
+    """Azimuth and the lesser inclination."""
+    high = min(max(bisect.bisect(rows, [md]), 1), len(rows) - 1)
+    a, b = rows[high - 1], rows[high]
+    part = (md - a[0]) / (b[0] - a[0])
     return a[1] + part * ((b[1] - a[1] + 180) % 360 - 180), min(a[2], b[2])
 
 
 def Worst(folder):
-    rows, off, sigmas = Truth(os.path.join(folder, "truth.csv")), 0.0, []
-    worst = 0.0
-    with open(os.path.join(folder, "out", "survey.csv"), newline="", encoding="utf-8") as file:
+    rows = Truth(os.path.join(folder, "truth.csv"))
+    off, worst, sigmas = 0.0, 0.0, []
+    with open(os.path.join(folder, "out", "passes.csv"), newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
-            azimuth, inclination = AzimuthAt(rows, float(row["MD[m]"]))
+            azimuth, inclination = At(rows, float(row["MD[m]"]))
             if inclination < 3 or not row["AZI_TRUE[deg]"]:
                 continue
             error = abs((float(row["AZI_TRUE[deg]"]) - azimuth + 180) % 360 - 180)

@@ -53,7 +53,7 @@ TEST(Places, AToolThatStartsAndStopsIsAcceleratedAsTheHoleBends) {
   const Arc arc;
   std::vector<KnotPlace> places;
   const Site site = SiteAt(0.8, 0);
-  PlaceKnots(site, arc.knots, arc.nodes, places);
+  PlaceKnots(site, nullptr, arc.knots, arc.nodes, places);
   for (int k = kRest; k < kRest + kMoving - 1; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const Eigen::Vector3d middle =
@@ -76,7 +76,7 @@ TEST(Places, AToolThatStartsAndStopsIsAcceleratedAsTheHoleBends) {
 TEST(Places, ASlidingToolIsTurnedByTheEarthAsTheHoleBends) {
   const Arc arc;
   std::vector<KnotPlace> places;
-  PlaceKnots(SiteAt(0.8, 0), arc.knots, arc.nodes, places);
+  PlaceKnots(SiteAt(0.8, 0), nullptr, arc.knots, arc.nodes, places);
   double most = 0;
   for (std::size_t k = 0; k + 1 < places.size(); ++k) {
     const auto middle = [&](std::size_t at) {

@@ -61,68 +61,38 @@ EdgeMatrix Turned(EdgeMatrix matrix, const Matrix3d& turn) {
 
 }  // namespace
 
-ForwardRun::ForwardRun(const RunEstimate& solved, std::span<const RunKnot> knots)
-    : setup_(solved.end.setup),
-      layout_(LayoutOf(setup_)),
-      border_(solved.end.border),
-      information_(solved.end.information),
-      cov_(solved.end.cov),
-      link_(solved.end.link) {
-  for (std::size_t i = 0; i < kTail; ++i) {
-    const std::size_t back = std::min(i, knots.size());
-    nodes_[kTail - 1 - i] = solved.nodes[knots.size() - back];
-  }
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    const Node &a = solved.nodes[k], &b = solved.nodes[k + 1];
-    p_ += 0.5 * (b.md - a.md) * (a.tangent_L() + b.tangent_L());
-    seconds_ += knots[k].increment.seconds;
-  }
-}
+ForwardRun::ForwardRun(const RunState& state) : state_(state), layout_(LayoutOf(state.setup)) {}
 
 /// The last knot of `tail`, between the newest node and `end`.
 KnotPlace ForwardRun::PlaceOf(std::span<const RunKnot> tail, const Node& end) const {
-  std::vector<Node> nodes(nodes_.end() - static_cast<std::ptrdiff_t>(tail.size()), nodes_.end());
+  std::vector<Node> nodes(state_.nodes.end() - static_cast<std::ptrdiff_t>(tail.size()),
+                          state_.nodes.end());
   nodes.push_back(end);
   std::vector<KnotPlace> places;
-  PlaceKnots(SiteBy(setup_.site, p_), tail, nodes, places);
+  PlaceKnots(state_.setup.site, &state_, tail, nodes, places);
   KnotPlace place = places.back();
-  place.since_start = seconds_ + 0.5 * tail.back().increment.seconds;
-  place.depth = p_.z();
+  place.since_start = state_.seconds + 0.5 * tail.back().increment.seconds;
+  place.depth = state_.p.z();
   return place;
-}
-
-/// From what is known of the newest node and the border to where they are made linear.
-EdgeVector ForwardRun::Away(const Node& to, const BorderVector& border) const {
-  const Node& known = nodes_.back();
-  EdgeVector away = EdgeVector::Zero(layout_.node + layout_.border);
-  away.segment<3>(layout_.phi) = Log(known.R_LT.transpose() * to.R_LT);
-  away[layout_.roll] = to.roll_rate - known.roll_rate;
-  away[layout_.depth] = to.md - known.md;
-  away[layout_.speed] = to.speed - known.speed;
-  if (layout_.walk != kAbsent) away.segment<2>(layout_.walk) = to.walk - known.walk;
-  if (layout_.markov != kAbsent) away.segment<2>(layout_.markov) = to.markov - known.markov;
-  if (layout_.swing != kAbsent) away.segment<2>(layout_.swing) = to.swing - known.swing;
-  away.tail(layout_.border) = border - border_;
-  return away;
 }
 
 bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   const RunKnot& knot = knots.back();
-  const double latitude = setup_.site.latitude;
+  const double latitude = state_.setup.site.latitude;
   const Vector3d earth = kEarthRate * Vector3d(std::cos(latitude), 0, -std::sin(latitude));
-  Node begin = nodes_.back();
+  Node begin = state_.nodes.back();
   const KnotPlace place =
-      PlaceOf(knots.last(std::min(knots.size(), kTail)), Ahead(knot, earth, begin));
+      PlaceOf(knots.last(std::min(knots.size(), RunState::kTail)), Ahead(knot, earth, begin));
   // Where gravity shows the roll rate, not where its walk would have it.
   if (knot.increment.roll_seen) begin.roll_rate = RollOf(knot.increment) / knot.increment.seconds;
   Node end = Ahead(knot, place.w_IL_L, begin);
   if (next != nullptr && next->roll_seen) end.roll_rate = RollOf(*next) / next->seconds;
-  BorderVector border = border_;
-  KnotRows rows(setup_, layout_);
+  BorderVector border = state_.border;
+  KnotRows rows(state_.setup, layout_);
   // What the roll's change weighs is by what gravity shows of it, not by what is made of it.
   const double sigma = WalkBehind(knots);
   const RollSquares squares =
-      RollSquaresOf(setup_, knot.increment.seconds, place.axial_change, sigma, begin, end);
+      RollSquaresOf(state_.setup, knot.increment.seconds, place.axial_change, sigma, begin, end);
   const RollChange walk{sigma, RollWeight(squares.rate, 1), RollWeight(squares.swing, 2)};
   Elimination elimination(layout_);
   std::vector<NodeVector> steps;
@@ -130,7 +100,8 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
     NormalBlock block;
     block.Clear(layout_);
     rows.Add(knot, place, walk, border, begin, end, block);
-    elimination.Start(1, information_, information_ * Away(begin, border));
+    elimination.Start(1, state_.information,
+                      state_.information * AwayFrom(state_, layout_, begin, border));
     BorderVector border_step;
     if (!elimination.Step(block) || !elimination.Solve(steps, border_step)) return false;
     Move(layout_, steps.front(), begin);
@@ -139,19 +110,19 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
     const double rolled = steps.front()[layout_.roll] * knot.increment.seconds;
     if (std::max(steps.front().head<3>().norm(), std::abs(rolled)) < kLinear) break;
   }
-  border_ = border;
+  state_.border = border;
   const Matrix3d turn = Exp(steps.back().head<3>());
-  information_ = Turned(elimination.edge_information().selfadjointView<Eigen::Lower>(), turn);
-  cov_ = Turned(elimination.LastCovariance(), turn);
-  if (link_.size() > 0) {
-    CarryLink(layout_, elimination.Gain(0), link_);
-    link_.leftCols<3>() = (link_.leftCols<3>() * turn).eval();
+  state_.information = Turned(elimination.edge_information().selfadjointView<Eigen::Lower>(), turn);
+  state_.cov = Turned(elimination.LastCovariance(), turn);
+  if (state_.link.size() > 0) {
+    CarryLink(layout_, elimination.Gain(0), state_.link);
+    state_.link.leftCols<3>() = (state_.link.leftCols<3>() * turn).eval();
   }
-  const Node& before = nodes_.back();
-  p_ += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
-  seconds_ += knot.increment.seconds;
-  std::rotate(nodes_.begin(), nodes_.begin() + 1, nodes_.end());
-  nodes_.back() = end;
+  const Node& before = state_.nodes.back();
+  state_.p += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
+  state_.seconds += knot.increment.seconds;
+  std::rotate(state_.nodes.begin(), state_.nodes.begin() + 1, state_.nodes.end());
+  state_.nodes.back() = end;
   return true;
 }
 
@@ -164,9 +135,10 @@ LinkedErrors ForwardRun::Mark(std::size_t node) {
   const std::vector<int> columns = LinkedColumns(layout_);
   LinkedErrors mark;
   mark.node = node;
-  mark.cov = cov_(columns, columns);
-  if (link_.size() > 0) mark.cov_with_previous = (link_ * cov_)(Eigen::all, columns);
-  link_ = LinkedRows(layout_);
+  mark.cov = state_.cov(columns, columns);
+  if (state_.link.size() > 0)
+    mark.cov_with_previous = (state_.link * state_.cov)(Eigen::all, columns);
+  state_.link = LinkedRows(layout_);
   return mark;
 }
 

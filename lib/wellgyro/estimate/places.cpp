@@ -58,14 +58,14 @@ Site SiteBy(const Site& first, const Vector3d& p) {
                 first.height - down);
 }
 
-void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<const Node> nodes,
-                std::vector<KnotPlace>& places) {
+void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKnot> knots,
+                std::span<const Node> nodes, std::vector<KnotPlace>& places) {
   places.resize(knots.size());
   const std::vector<Vector3d> curvature = Curvature(knots, nodes);
-  Site site = first;
-  Vector3d p = Vector3d::Zero();
+  Vector3d p = before != nullptr ? before->p : Vector3d::Zero();
+  Site site = SiteBy(first, p);
   double md = nodes[0].md;
-  double time = 0, axial = 0;
+  double time = before != nullptr ? before->seconds : 0, axial = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Node& a = nodes[k];
     const Node& b = nodes[k + 1];

@@ -8,6 +8,7 @@
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/estimate/knot_rows.h"
 #include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/run_state.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
@@ -19,7 +20,8 @@ Site SiteBy(const Site& first, const Eigen::Vector3d& p);
 /// acceleration of the path across itself: speed squared by the hole's curvature, which is the
 /// tangents' change over 3 s by the way gone in them, and never the tool's shaking: a whirl would
 /// rectify with it. A curvature that begins is seen up to 1.5 s too early and too late.
-void PlaceKnots(const Site& first, std::span<const RunKnot> knots, std::span<const Node> nodes,
-                std::vector<KnotPlace>& places);
+/// `first`: of the run; `before`: where a part of it begins, nullptr: there.
+void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKnot> knots,
+                std::span<const Node> nodes, std::vector<KnotPlace>& places);
 
 }  // namespace wellgyro

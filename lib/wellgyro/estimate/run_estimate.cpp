@@ -23,13 +23,13 @@ constexpr int kIterations = 40;
 constexpr double kDecides = 9;
 // A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
 constexpr double kTooLarge = 4;
-constexpr double kMisfit = 1.5;  // of the gyros' noise, from which another start is tried
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
 
 /// Backwards through the nodes: covariances of all, links of the marked, and what the unknowns
-/// absorb of every kind of residual.
+/// absorb of every kind of residual. Of a part of a run the first of the marked is linked to the
+/// last before it.
 class Sweep {
  public:
   Sweep(RunSolver& solver, std::span<const std::size_t> marked, RunEstimate& result)
@@ -57,6 +57,10 @@ class Sweep {
       if (link_.size() > 0) link_.topRows(layout.node) = (gain * link_).eval();
       At(k, here);
       next = here;
+    }
+    const RunState* before = solver_.before();
+    if (before != nullptr && before->link.size() > 0 && link_.size() > 0) {
+      result_.marked.front().cov_with_previous = before->link * link_;
     }
     result_.report.sums = solver_.sums();
   }
@@ -158,7 +162,7 @@ struct Choice {
 
 /// Each guess with the roll as a swing where it is one, and as a walk.
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
-              std::span<const NodeGuess> guesses) {
+              std::span<const NodeGuess> guesses, const RunState* before) {
   std::vector<EstimateSetup> setups{setup};
   const std::optional<double> swing = setup.may_swing ? SwingOf(knots) : std::nullopt;
   if (swing) {
@@ -169,7 +173,7 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
   Choice choice;
   for (std::size_t i = 0; i < guesses.size(); ++i) {
     for (const EstimateSetup& tried : setups) {
-      auto solver = std::make_unique<RunSolver>(tried, knots);
+      auto solver = std::make_unique<RunSolver>(tried, knots, before);
       solver->nodes() = guesses[i];
       const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
       const SolveReport report = solver->Solve(kIterations, best + kDecides);
@@ -240,39 +244,61 @@ void Take(const Choice& choice, std::span<const std::size_t> marked, RunEstimate
   Sweep(*choice.solver, marked, result).Run();
 }
 
-RunEnd EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
+RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
   const Elimination& e = solved.elimination();
   const Layout& layout = solved.layout();
-  RunEnd end{solved.setup(),
-             solved.border(),
-             e.edge_information().selfadjointView<Eigen::Lower>(),
-             e.LastCovariance(),
-             {}};
+  const std::span<const RunKnot> knots = solved.knots();
+  const std::vector<Node>& nodes = solved.nodes();
+  const RunState* before = solved.before();
+  RunState end;
+  end.setup = solved.setup();
   end.setup.causes.clear();
-  if (marked.empty()) return end;
-  end.link = LinkedRows(layout);
-  for (std::size_t k = marked.back(); k < solved.knots().size(); ++k) {
+  end.border = solved.border();
+  end.information = e.edge_information().selfadjointView<Eigen::Lower>();
+  end.cov = e.LastCovariance();
+  for (std::size_t i = 0; i < RunState::kTail; ++i) {
+    const std::size_t back = std::min(i, knots.size());
+    end.nodes[RunState::kTail - 1 - i] = nodes[knots.size() - back];
+  }
+  if (before != nullptr) {
+    end.p = before->p;
+    end.seconds = before->seconds;
+  }
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Node &a = nodes[k], &b = nodes[k + 1];
+    end.p += 0.5 * (b.md - a.md) * (a.tangent_L() + b.tangent_L());
+    end.seconds += knots[k].increment.seconds;
+  }
+  if (!marked.empty()) {
+    end.link = LinkedRows(layout);
+  } else if (before != nullptr) {
+    end.link = before->link;
+  }
+  if (end.link.size() == 0) return end;
+  for (std::size_t k = marked.empty() ? 0 : marked.back(); k < knots.size(); ++k) {
     CarryLink(layout, e.Gain(k), end.link);
   }
   return end;
 }
 
-/// Gyros that are off by more than any noise that is stated too small: a minimum, but not the one.
+/// Gyros that are off by more than chance: their noise is stated too small, or this is a minimum
+/// but not the one.
 bool Misfits(const SolveReport& report) {
-  return Excess(report.sums, {RowKind::kTurn, RowKind::kStill}) > kMisfit;
+  return Excess(report.sums, {RowKind::kTurn, RowKind::kStill}) > 1;
 }
 
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                        const Starts& starts, std::span<const std::size_t> marked) {
+                        const Starts& starts, std::span<const std::size_t> marked,
+                        const RunState* before) {
   RunEstimate result;
   if (knots.empty()) return result;
-  Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts.anchored));
+  Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts.anchored), before);
   Take(choice, marked, result);
   if (starts.otherwise && (!result.solved || Misfits(result.report))) {
     const std::array otherwise{starts.otherwise()};
-    Choice other = Choose(setup, knots, otherwise);
+    Choice other = Choose(setup, knots, otherwise, before);
     if (other.solver && (!choice.solver || other.report.evidence < choice.report.evidence)) {
       choice = std::move(other);
       Take(choice, marked, result);

@@ -11,6 +11,7 @@
 #include "wellgyro/estimate/layout.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/run_solver.h"
+#include "wellgyro/estimate/run_state.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/estimate/start.h"
 #include "wellgyro/record/run_knot.h"
@@ -23,14 +24,6 @@ struct LinkedErrors {
   std::size_t node = 0;
   Eigen::MatrixXd cov;                ///< E[x x'], phi of the node first
   Eigen::MatrixXd cov_with_previous;  ///< E[x_previous x'] of the marked node before; empty: none
-};
-
-/// What it takes to go on from the last node.
-struct RunEnd {
-  EstimateSetup setup;  ///< with the noise as found
-  BorderVector border;
-  EdgeMatrix information, cov;  ///< of [last node; border]
-  Eigen::MatrixXd link;         ///< E[x (node; border)'] = link cov, x of the last marked node
 };
 
 /// A run as all its knots together tell it.
@@ -47,7 +40,7 @@ struct RunEstimate {
   std::vector<LinkedErrors> marked;          ///< in the order of time
   ErrorVector errors = ErrorVector::Zero();  ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior
-  RunEnd end;
+  RunState end;
   Diagnosis diagnosis;  ///< where the setup asks for it
 };
 
@@ -57,9 +50,11 @@ struct RunEstimate {
 /// gyros or accelerometers are larger than the noise stated can make them, that sensor's noise is
 /// taken as large as they say, and the run is solved with it (variance components, Foerstner 1979):
 /// covariances hold for what was measured, not for what was promised. Noise is never taken smaller.
-/// `marked`: nodes whose linked errors are wanted, ascending. Unsolved where there is no knot, or
+/// `marked`: nodes whose linked errors are wanted, ascending. Of a part of a run: what is known
+/// where it begins, whose setup counts but for what ties it. Unsolved where there is no knot, or
 /// where no start leads to a solution.
 WELLGYRO_EXPORT RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                        const Starts& starts, std::span<const std::size_t> marked);
+                                        const Starts& starts, std::span<const std::size_t> marked,
+                                        const RunState* before = nullptr);
 
 }  // namespace wellgyro

@@ -68,13 +68,16 @@ bool TakesBack(const std::vector<NodeVector>& steps, const std::vector<NodeVecto
 
 }  // namespace
 
-RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots)
+RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                     const RunState* before)
     : setup_(setup),
       layout_(LayoutOf(setup_)),
       knots_(knots),
+      before_(before),
       rows_(setup_, layout_),
       elimination_(layout_) {
   border_.setZero(layout_.border);
+  if (before_ != nullptr) border_ = before_->border;
 }
 
 void RunSolver::Begin(const Matrix3d& R_LT) {
@@ -87,6 +90,11 @@ void RunSolver::Begin(const Matrix3d& R_LT) {
 
 /// Information of node 0 and of the border before any knot.
 void RunSolver::FirstRows(EdgeMatrix& information, EdgeVector& gradient) const {
+  if (before_ != nullptr) {
+    information = before_->information;
+    gradient = information * AwayFrom(*before_, layout_, nodes_[0], border_);
+    return;
+  }
   const int n = layout_.node, b = layout_.border;
   const Node& first = nodes_[0];
   NodeVector sigma(n), value = NodeVector::Zero(n);
@@ -255,12 +263,12 @@ void RunSolver::HoldRollWeights() {
 /// One step of Gauss-Newton. One that takes the last one back went too far, as the next one would:
 /// half of it then.
 bool RunSolver::Advance(SolveReport& report) {
-  PlaceKnots(setup_.site, knots_, nodes_, places_);
+  PlaceKnots(setup_.site, before_, knots_, nodes_, places_);
   BorderVector border_step;
   if (!Linearise() || !elimination_.Solve(steps_, border_step)) return false;
-  Step(steps_, border_step, TakesBack(steps_, before_) ? 0.5 : 1);
+  Step(steps_, border_step, TakesBack(steps_, last_steps_) ? 0.5 : 1);
   ++report.iterations;
-  std::swap(steps_, before_);
+  std::swap(steps_, last_steps_);
   return true;
 }
 
@@ -268,7 +276,7 @@ bool RunSolver::Advance(SolveReport& report) {
 /// more than `creeps` of what they moved by before: robust weights that are made anew are never
 /// done, and another scale makes others.
 bool RunSolver::Iterate(int most, double stays, SolveReport& report, double creeps) {
-  before_.clear();
+  last_steps_.clear();
   double last = HUGE_VAL;
   for (int i = 0; i < most; ++i) {
     if (!Advance(report)) return false;
@@ -282,7 +290,7 @@ bool RunSolver::Iterate(int most, double stays, SolveReport& report, double cree
 /// Until the run stays; not as far where it will not within kFinish steps, or where its evidence
 /// stays above `least`.
 void RunSolver::Finish(double least, SolveReport& report) {
-  before_.clear();
+  last_steps_.clear();
   std::vector<double> decrements;
   for (int i = 0; i < kFinish; ++i) {
     if (!Advance(report)) return;

@@ -13,6 +13,7 @@
 #include "wellgyro/estimate/layout.h"
 #include "wellgyro/estimate/linear_run.h"
 #include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/run_state.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
 
@@ -36,8 +37,10 @@ struct SolveReport {
 /// proportional to the knots.
 class RunSolver : public RunRows {
  public:
-  /// `knots` must outlive this object; at least one.
-  RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots);
+  /// `knots` must outlive this object; at least one. Of a part of a run: what is known where it
+  /// begins, by the same layout; it must outlive this object too.
+  RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots,
+            const RunState* before = nullptr);
   RunSolver(const RunSolver&) = delete;
   RunSolver& operator=(const RunSolver&) = delete;
 
@@ -55,6 +58,7 @@ class RunSolver : public RunRows {
 
   const Layout& layout() const override { return layout_; }
   const EstimateSetup& setup() const { return setup_; }
+  const RunState* before() const { return before_; }
   std::span<const RunKnot> knots() const { return knots_; }
   std::vector<Node>& nodes() { return nodes_; }
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -80,7 +84,6 @@ class RunSolver : public RunRows {
 
  private:
   bool Linearise();
-  void MovePlaces();
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
   void BeginScales();
@@ -100,6 +103,7 @@ class RunSolver : public RunRows {
   EstimateSetup setup_;
   Layout layout_;
   std::span<const RunKnot> knots_;
+  const RunState* before_;
   std::vector<Node> nodes_;
   std::vector<KnotPlace> places_;
   BorderVector border_;
@@ -107,7 +111,7 @@ class RunSolver : public RunRows {
   KnotRows rows_;
   NormalBlock block_;
   Elimination elimination_;
-  std::vector<NodeVector> steps_, before_;
+  std::vector<NodeVector> steps_, last_steps_;
 };
 
 }  // namespace wellgyro

@@ -229,7 +229,7 @@ void SyntheticRun::MakeIncrements() {
   for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
     if (!knots_[k].still) nodes_[k].speed = nodes_[k + 1].speed;
   }
-  PlaceKnots(setup_.site, knots_, nodes_, places_);
+  PlaceKnots(setup_.site, nullptr, knots_, nodes_, places_);
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const Matrix3d& begin = nodes_[k].R_LT;
     Increment& inc = knots_[k].increment;

@@ -64,6 +64,17 @@ std::vector<Start> StartsOf(const EstimateSetup& setup, const RunHistory& histor
           from(AnchorOf(*surest, *surest->fix.mirror_azimuth))};
 }
 
+/// From what is known at the begin of a part, past the fixes in it that have no mirror.
+Start StartOf(std::size_t begin, const RunState& known, const RunHistory& history) {
+  Start start{{0, known.node().R_LT}};
+  for (const FixAtNode& at : history.fixes) {
+    if (at.node <= begin || at.fix.mirror_azimuth) continue;
+    start.push_back(AnchorOf(at, at.fix.azimuth));
+    start.back().node -= begin;
+  }
+  return start;
+}
+
 /// Every node as it was known on the way.
 NodeGuess GuessOf(const EstimateSetup& setup, const RunHistory& history) {
   std::vector<Eigen::Matrix3d> R_LT;
@@ -101,9 +112,19 @@ RunFit FitOf(const RunEstimate& estimate) {
   return fit;
 }
 
-std::vector<std::size_t> NodesOf(std::span<const std::size_t> stations) {
-  std::vector<std::size_t> nodes(stations.begin(), stations.end());
-  for (std::size_t& node : nodes) ++node;
+/// Of the stations from knot `begin` on, the first of them by its number.
+std::size_t FirstStation(const RunHistory& history, std::size_t begin) {
+  const auto& stations = history.stations;
+  const auto first = std::lower_bound(stations.begin(), stations.end(), begin);
+  return static_cast<std::size_t>(first - stations.begin());
+}
+
+/// The same as nodes of the part that begins there.
+std::vector<std::size_t> NodesOf(const RunHistory& history, std::size_t begin) {
+  std::vector<std::size_t> nodes;
+  for (std::size_t j = FirstStation(history, begin); j < history.stations.size(); ++j) {
+    nodes.push_back(history.stations[j] + 1 - begin);
+  }
   return nodes;
 }
 
@@ -121,22 +142,24 @@ EstimateSetup SetupOf(const Job& job, const RunHistory& history) {
 RunEstimate EstimateFrom(const EstimateSetup& setup, const RunHistory& history,
                          const Starts& starts) {
   if (history.knots.empty()) return {};
-  return EstimateRun(setup, history.knots, starts, NodesOf(history.stations));
+  return EstimateRun(setup, history.knots, starts, NodesOf(history, 0));
 }
 
 }  // namespace
 
-SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history) {
+SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history, std::size_t begin) {
   SmoothedRun run;
-  for (std::size_t k = 0; k < history.knots.size(); ++k) {
+  for (std::size_t k = begin; k < history.knots.size(); ++k) {
+    const std::size_t node = k + 1 - begin;
     run.attitude.push_back(
-        AttitudeOf(history.knots[k], estimate.nodes[k + 1], estimate.cov_phi[k + 1]));
+        AttitudeOf(history.knots[k], estimate.nodes[node], estimate.cov_phi[node]));
     if (estimate.ambiguous) ForgetAzimuth(run.attitude.back());
   }
-  for (std::size_t j = 0; j < history.stations.size(); ++j) {
+  const std::size_t first = FirstStation(history, begin);
+  for (std::size_t j = first; j < history.stations.size(); ++j) {
     const std::size_t k = history.stations[j];
-    run.stations.push_back(StateOf(k, history.knots[k], run.attitude[k], estimate.nodes[k + 1].R_LT,
-                                   estimate.marked[j]));
+    run.stations.push_back(StateOf(k, history.knots[k], run.attitude[k - begin],
+                                   estimate.nodes[k + 1 - begin].R_LT, estimate.marked[j - first]));
   }
   return run;
 }
@@ -147,6 +170,19 @@ RunEstimate EstimateSoFar(const Job& job, const RunHistory& history) {
   const std::vector<Start> starts = StartsOf(setup, history);
   if (starts.empty()) return {};
   return EstimateFrom(setup, history, {starts, nullptr});
+}
+
+RunEstimate EstimateSince(std::size_t begin, const RunState& known, const RunHistory& history) {
+  EstimateSetup setup = known.setup;
+  setup.ties.clear();
+  for (AzimuthTie tie : history.ties) {
+    if (tie.node <= begin) continue;
+    tie.node -= begin;
+    setup.ties.push_back(tie);
+  }
+  const auto part = std::span(history.knots).subspan(begin);
+  return EstimateRun(setup, part, {{StartOf(begin, known, history)}, nullptr},
+                     NodesOf(history, begin), &known);
 }
 
 SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {

@@ -135,6 +135,7 @@ class RunSurvey {
   void TakeDraft(const Waiting& waiting);
   bool AzimuthKnown() const;
   void BeginForward();
+  void KeepIfSure();
   void Tie(NorthFix tie, bool of_mark);
   void UseExternal(const Waiting& waiting);
   double AxisAzimuth(const AttitudeSample& tool) const;
@@ -158,7 +159,13 @@ class RunSurvey {
   std::vector<Duration> gap_cuts_;  ///< in the gap behind the sample last given to the builder
   UnseenTurn unseen_;
   RunHistory history_;
+  /// What was known at the end of so many knots.
+  struct Known {
+    std::size_t knots;
+    RunState state;
+  };
   std::optional<ForwardRun> forward_;  ///< from the first north on
+  std::optional<Known> sure_;          ///< when its heading was last sure
   bool begun_roughly_ = false;         ///< its heading was not yet sure
   std::size_t next_try_ = 0;           ///< knots, from which a start is tried again
   bool roll_hidden_ = false;           ///< on the way since the last stop

@@ -99,7 +99,9 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   // About a heading that is lost nothing can be made linear.
   const bool goes_on =
       forward_ && forward_->Step(history_.knots, next) && forward_->SigmaOfHeading() < kVagueAngle;
+  if (forward_ && !goes_on) next_try_ = 0;
   if (!goes_on) forward_.reset();
+  KeepIfSure();
   history_.attitude.push_back(AttitudeNow());
   MoveSite(history_.knots.back(), history_.attitude.back());
   unseen_since_listed_ |= knot.increment.quality & kUnseen;
@@ -152,23 +154,32 @@ void RunSurvey::TakeDraft(const Waiting& waiting) {
   }
 }
 
-/// Solves the run so far together and goes on from there: not while two azimuths are as likely,
-/// about one of which the way on would be made linear. Where it leads to none, or to a rough one,
-/// it is done again when the run is half as long again: all together cost three times the last.
+/// Solves the run so far together, or what of it came since its heading was last sure, and goes on
+/// from there: not while two azimuths are as likely, about one of which the way on would be made
+/// linear. Where it leads to none, or to a rough one, it is done again when that part is half as
+/// long again: all together cost three times the last.
 void RunSurvey::BeginForward() {
-  if (history_.knots.size() < next_try_) return;
-  const RunEstimate solved = EstimateSoFar(job_, history_);
-  next_try_ = history_.knots.size() + history_.knots.size() / 2 + 1;
+  const std::size_t knots = history_.knots.size(), begin = sure_ ? sure_->knots : 0;
+  if (knots < next_try_ || knots == begin) return;
+  const RunEstimate solved =
+      sure_ ? EstimateSince(begin, sure_->state, history_) : EstimateSoFar(job_, history_);
+  next_try_ = knots + (knots - begin) / 2 + 1;
   forward_.reset();
   if (!solved.solved || solved.ambiguous || !solved.alone) return;
-  SmoothedRun run = SmoothedOf(solved, history_);
-  history_.attitude = std::move(run.attitude);
-  history_.states = std::move(run.stations);
-  forward_.emplace(solved, history_.knots);
+  SmoothedRun part = SmoothedOf(solved, history_, begin);
+  std::move_backward(part.attitude.begin(), part.attitude.end(), history_.attitude.end());
+  std::move_backward(part.stations.begin(), part.stations.end(), history_.states.end());
+  forward_.emplace(solved.end);
   begun_roughly_ = !(forward_->SigmaOfHeading() < kRoughHeading);
+  KeepIfSure();
   if (forward_->SigmaOfHeading() < kVagueAngle) return TellUnheard();
   forward_.reset();
   ForgetAzimuth(history_.attitude.back());
+}
+
+void RunSurvey::KeepIfSure() {
+  if (!forward_ || begun_roughly_ || !(forward_->SigmaOfHeading() < kRoughHeading)) return;
+  sure_ = {history_.knots.size(), forward_->state()};
 }
 
 /// The job's external azimuth as that of the axis of a tool at this inclination and toolface.
@@ -210,6 +221,7 @@ void RunSurvey::Tie(NorthFix tie, bool of_mark) {
                            std::sqrt(tie.cov_attitude(1, 1)), of_mark});
   summary_.fixes.push_back(tie);
   next_try_ = 0;
+  sure_.reset();
   BeginForward();
 }
 
