@@ -103,7 +103,7 @@ RunFit FitOf(const RunEstimate& estimate) {
   };
   fit.parts[RunFit::kInclination] = squares({RowKind::kTurn, RowKind::kAxial});
   fit.parts[RunFit::kForce] = squares({RowKind::kForce});
-  fit.parts[RunFit::kRest] = squares({RowKind::kStill, RowKind::kRest});
+  fit.parts[RunFit::kRest] = squares({RowKind::kStill});
   fit.parts[RunFit::kAzimuth] = squares({RowKind::kAzimuth});
   squares({RowKind::kDepth, RowKind::kDrift});
   fit.degrees_of_freedom = static_cast<int>(std::lround(freedom));
