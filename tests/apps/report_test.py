@@ -117,7 +117,7 @@ class Report(ProgramTest):
         self.Quiet(page)
         self.SameNumbers(page, "demo")
         self.assertEqual(page.Ask("document.querySelectorAll('section[id^=block]').length"), 9)
-        self.assertIn("Verdict: warn", page.Ask("document.querySelector('.verdict').textContent"))
+        self.assertIn("Verdict: pass", page.Ask("document.querySelector('.verdict').textContent"))
         self.assertEqual(self.Bytes("demo", "report.html"), self.Bytes("demo.html"))
         document = json.loads(self.Read("demo", "survey.json"))
         self.assertEqual(document["format"], "wellgyro.survey/1")
@@ -283,7 +283,7 @@ class Report(ProgramTest):
                                    r'yMax="([-\d.]+)">([^<]*)', page)
                 top = " ".join(w[4] for w in words if float(w[1]) < 60)
                 self.assertIn("ISCWSA 2", top)
-                self.assertIn("WARN", top.upper())
+                self.assertIn("VERDICT PASS", top.upper())
                 for left, up, right, down, word in words:
                     self.assertGreater(float(left), 30, word)
                     self.assertLess(float(right), width - 30, word)

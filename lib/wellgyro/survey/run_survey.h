@@ -135,7 +135,7 @@ class RunSurvey {
   void TakeDraft(const Waiting& waiting);
   bool AzimuthKnown() const;
   void BeginForward();
-  void KeepIfSure();
+  bool KeepIfSure();
   void Tie(NorthFix tie, bool of_mark);
   void UseExternal(const Waiting& waiting);
   double AxisAzimuth(const AttitudeSample& tool) const;
@@ -166,7 +166,6 @@ class RunSurvey {
   };
   std::optional<ForwardRun> forward_;  ///< from the first north on
   std::optional<Known> sure_;          ///< when its heading was last sure
-  bool begun_roughly_ = false;         ///< its heading was not yet sure
   std::size_t next_try_ = 0;           ///< knots, from which a start is tried again
   bool roll_hidden_ = false;           ///< on the way since the last stop
   StillDetector still_;

@@ -17,9 +17,10 @@ namespace {
 
 // The still detector knows of a block when the one after it has ended.
 constexpr Duration kMakeUpMind = Duration::Seconds(3);
-// Of a heading no surer than this the Earth's rate is hardly linear: its slope changes by a tenth
-// within a sigma.
-constexpr double kRoughHeading = 5 * kPi / 180;  // [rad]
+// About a heading that may be further off nothing is made linear: the slope of the Earth's rate
+// changes by a tenth within this sigma. Let through up to 20 deg, a run that rolls in a vertical
+// hole learned an inclination from it that was eight sigmas off.
+constexpr double kSureHeading = 5 * kPi / 180;  // [rad]
 
 /// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may
 /// bend, or, of gyros at full scale, as much again as they read.
@@ -96,12 +97,10 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   if (history_.knots.empty()) history_.site = site_;
   const RunKnot& knot = history_.knots.emplace_back(KnotOf(waiting, *waiting.increment, unseen_));
   roll_hidden_ |= !knot.still && !knot.increment.roll_seen;
-  // About a heading that is lost nothing can be made linear.
-  const bool goes_on =
-      forward_ && forward_->Step(history_.knots, next) && forward_->SigmaOfHeading() < kVagueAngle;
-  if (forward_ && !goes_on) next_try_ = 0;
-  if (!goes_on) forward_.reset();
-  KeepIfSure();
+  if (forward_ && !(forward_->Step(history_.knots, next) && KeepIfSure())) {
+    forward_.reset();
+    next_try_ = 0;
+  }
   history_.attitude.push_back(AttitudeNow());
   MoveSite(history_.knots.back(), history_.attitude.back());
   unseen_since_listed_ |= knot.increment.quality & kUnseen;
@@ -115,7 +114,7 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   }
   if (waiting.external && external_pending_) UseExternal(waiting);
   const bool north = !history_.ties.empty() || !history_.fixes.empty();
-  if (north && (!forward_ || begun_roughly_)) BeginForward();
+  if (north && !forward_) BeginForward();
   UseClosedStops(history_.knots.back().increment.time);
 }
 
@@ -156,8 +155,8 @@ void RunSurvey::TakeDraft(const Waiting& waiting) {
 
 /// Solves the run so far together, or what of it came since its heading was last sure, and goes on
 /// from there: not while two azimuths are as likely, about one of which the way on would be made
-/// linear. Where it leads to none, or to a rough one, it is done again when that part is half as
-/// long again: all together cost three times the last.
+/// linear. Where it leads to none that is sure, it is done again when that part is half as long
+/// again: all together cost three times the last.
 void RunSurvey::BeginForward() {
   const std::size_t knots = history_.knots.size(), begin = sure_ ? sure_->knots : 0;
   if (knots < next_try_ || knots == begin) return;
@@ -170,16 +169,15 @@ void RunSurvey::BeginForward() {
   std::move_backward(part.attitude.begin(), part.attitude.end(), history_.attitude.end());
   std::move_backward(part.stations.begin(), part.stations.end(), history_.states.end());
   forward_.emplace(solved.end);
-  begun_roughly_ = !(forward_->SigmaOfHeading() < kRoughHeading);
-  KeepIfSure();
-  if (forward_->SigmaOfHeading() < kVagueAngle) return TellUnheard();
+  if (KeepIfSure()) return TellUnheard();
   forward_.reset();
   ForgetAzimuth(history_.attitude.back());
 }
 
-void RunSurvey::KeepIfSure() {
-  if (!forward_ || begun_roughly_ || !(forward_->SigmaOfHeading() < kRoughHeading)) return;
+bool RunSurvey::KeepIfSure() {
+  if (!(forward_->SigmaOfHeading() < kSureHeading)) return false;
   sure_ = {history_.knots.size(), forward_->state()};
+  return true;
 }
 
 /// The job's external azimuth as that of the axis of a tool at this inclination and toolface.

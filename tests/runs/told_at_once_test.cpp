@@ -1,0 +1,63 @@
+// A station is told when the samples around it have come, not when its knots are done with.
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "support/hour.h"
+#include "support/simulated_survey.h"
+
+namespace wellgyro {
+namespace {
+
+/// Knows how far the samples have come, and holds what is told against the truth.
+struct AgeSink : Sink {
+  explicit AgeSink(const Simulation& simulation)
+      : truth(simulation), begin(simulation.streams.begin_utc) {}
+  void OnStation(const Station& station) override {
+    if (station.revision > 0 || station.kind != StationKind::kContinuous) return;
+    ages.push_back((now - station.utc).seconds());
+    const double sigma = std::sqrt(station.cov_md_inc_azi(2, 2));
+    const TruthState at = truth.At((station.utc - begin).seconds());
+    const double off = WrapPi(station.azimuth - at.azimuth) / sigma;
+    worst = std::max(worst, std::abs(off));
+  }
+  Truth truth;
+  UtcTime begin, now;
+  std::vector<double> ages;
+  double worst = 0;
+};
+
+TEST(ToldAtOnce, AStationIsAsOldAsTheDepthIsLateAndASecond) {
+  for (const double inclination : {5.0, 40.0, 88.0}) {
+    for (const double rpm : {0.0, 3.0}) {
+      testing::Hour hour = testing::StrongDrift();
+      hour.inclination_deg = inclination;
+      hour.rpm = rpm;
+      hour.minutes = 20;
+      const Simulation simulation = testing::SimulationOf(hour, 3);
+      const Job job = testing::JobOf(hour);
+      AgeSink sink(simulation);
+      Surveyor surveyor(job, sink);
+      testing::Play(simulation, surveyor, [&sink](const SimulatedStep& step) {
+        if (const auto* sample = std::get_if<ImuSample>(&step)) {
+          sink.now = sample->stamp.utc + Duration{sample->stamp.period_ns};
+        }
+        return true;
+      });
+      // Before the first north no station has an azimuth to tell.
+      const double late = job.depth.latency + 1.5;
+      const auto prompt = std::count_if(sink.ages.begin(), sink.ages.end(),
+                                        [late](double age) { return age <= late; });
+      ASSERT_GT(sink.ages.size(), 20u) << inclination << " deg, " << rpm << " rpm";
+      EXPECT_GT(prompt, 0.9 * static_cast<double>(sink.ages.size()))
+          << inclination << " deg, " << rpm << " rpm, oldest "
+          << *std::max_element(sink.ages.begin(), sink.ages.end()) << " s";
+      EXPECT_LT(sink.worst, 4.5) << inclination << " deg, " << rpm << " rpm";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wellgyro
