@@ -20,7 +20,10 @@ constexpr Duration kMakeUpMind = Duration::Seconds(3);
 // About a heading that may be further off nothing is made linear: the slope of the Earth's rate
 // changes by a tenth within this sigma. Let through up to 20 deg, a run that rolls in a vertical
 // hole learned an inclination from it that was eight sigmas off.
-constexpr double kSureHeading = 5 * kPi / 180;  // [rad]
+constexpr double kRoughHeading = 5 * kPi / 180;  // [rad]
+// From what is known at a heading as sure as this the rest may be sought without what came before.
+// From 5 deg on, which a minute of rolling in a vertical hole seems to tell, it went astray.
+constexpr double kSureHeading = 1 * kPi / 180;  // [rad]
 
 /// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may
 /// bend, or, of gyros at full scale, as much again as they read.
@@ -164,6 +167,7 @@ void RunSurvey::BeginForward() {
       sure_ ? EstimateSince(begin, sure_->state, history_) : EstimateSoFar(job_, history_);
   next_try_ = knots + (knots - begin) / 2 + 1;
   forward_.reset();
+  if (!solved.solved) sure_.reset();
   if (!solved.solved || solved.ambiguous || !solved.alone) return;
   SmoothedRun part = SmoothedOf(solved, history_, begin);
   std::move_backward(part.attitude.begin(), part.attitude.end(), history_.attitude.end());
@@ -174,10 +178,11 @@ void RunSurvey::BeginForward() {
   ForgetAzimuth(history_.attitude.back());
 }
 
+/// False where what is known has lost its heading.
 bool RunSurvey::KeepIfSure() {
-  if (!(forward_->SigmaOfHeading() < kSureHeading)) return false;
-  sure_ = {history_.knots.size(), forward_->state()};
-  return true;
+  const double sigma = forward_->SigmaOfHeading();
+  if (sigma < kSureHeading) sure_ = {history_.knots.size(), forward_->state()};
+  return sigma < kRoughHeading;
 }
 
 /// The job's external azimuth as that of the axis of a tool at this inclination and toolface.
