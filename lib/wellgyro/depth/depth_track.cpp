@@ -159,17 +159,9 @@ std::optional<Fault> DepthTrack::Push(const Event& event) {
 bool DepthTrack::Settled(UtcTime utc) const {
   if (marks_.empty()) return false;
   const UtcTime final = newest_ - setup_.latency;
-  const std::size_t beyond = Beyond(utc);
-  if (!Sparse(utc) && beyond < marks_.size() && marks_[beyond].utc <= final) return true;
   if (final < utc + Reach()) return false;
   const std::size_t after = After(utc);
   return after < marks_.size() && marks_[after].utc <= final;
-}
-
-/// The mark that ends the window about `utc`: the first that is not in it.
-std::size_t DepthTrack::Beyond(UtcTime utc) const {
-  const auto it = std::ranges::lower_bound(marks_, utc + setup_.half_window, {}, &Mark::utc);
-  return static_cast<std::size_t>(it - marks_.begin());
 }
 
 std::optional<MarkRead> DepthTrack::FirstMark(UtcTime utc) const {

@@ -126,7 +126,6 @@ class WELLGYRO_EXPORT DepthTrack {
   bool Bracketed(UtcTime utc, Span span, UtcTime rest_begin, UtcTime rest_end) const;
   bool Seen(const DepthMark& mark) const;
   bool Settled(UtcTime utc) const;
-  std::size_t Beyond(UtcTime utc) const;
   void NoteJump(std::size_t i);
   std::optional<Fault> DropSpike(std::size_t last);
   /// How far from an instant the marks may be that tell its depth.

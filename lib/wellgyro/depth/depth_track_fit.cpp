@@ -42,10 +42,10 @@ AlongHole DepthTrack::Fitted(UtcTime utc, Span span) const {
           .sigma_acceleration = std::sqrt(noise * y.variance_curvature + bend.curvature) / (w * w)};
 }
 
-/// From third differences, free of any acceleration, of the marks behind, of those of the window,
-/// and the one that ends it.
+/// From third differences, free of any acceleration, of the marks behind, and of those ahead as far
+/// as they are final with those of the window.
 DepthTrack::Scatter DepthTrack::ScatterAbout(UtcTime utc) const {
-  const std::size_t end = std::min(Beyond(utc) + 1, After(utc + Reach()));
+  const std::size_t end = After(utc + Reach());
   const double gap = kDense * setup_.half_window.seconds();
   Scatter scatter;
   for (std::size_t i = end - std::min(end, kMemory); i + 3 < end; ++i) {
