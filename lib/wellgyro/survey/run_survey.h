@@ -166,6 +166,7 @@ class RunSurvey {
   };
   std::optional<ForwardRun> forward_;  ///< from the first north on
   std::optional<Known> sure_;          ///< when its heading was last sure
+  bool begun_roughly_ = false;         ///< about a heading that was not yet sure
   std::size_t next_try_ = 0;           ///< knots, from which a start is tried again
   bool roll_hidden_ = false;           ///< on the way since the last stop
   StillDetector still_;

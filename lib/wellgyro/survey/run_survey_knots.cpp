@@ -21,8 +21,9 @@ constexpr Duration kMakeUpMind = Duration::Seconds(3);
 // changes by a tenth within this sigma. Let through up to 20 deg, a run that rolls in a vertical
 // hole learned an inclination from it that was eight sigmas off.
 constexpr double kRoughHeading = 5 * kPi / 180;  // [rad]
-// From what is known at a heading as sure as this the rest may be sought without what came before.
-// From 5 deg on, which a minute of rolling in a vertical hole seems to tell, it went astray.
+// From what is known at a heading as sure as this the rest may be sought without what came before:
+// what is made linear about it is wrong by its square. From 5 deg on, which a minute of rolling in
+// a vertical hole seems to tell, it went astray, and a run at 88 deg was ten sigmas off.
 constexpr double kSureHeading = 1 * kPi / 180;  // [rad]
 
 /// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may
@@ -117,7 +118,7 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   }
   if (waiting.external && external_pending_) UseExternal(waiting);
   const bool north = !history_.ties.empty() || !history_.fixes.empty();
-  if (north && !forward_) BeginForward();
+  if (north && (!forward_ || begun_roughly_)) BeginForward();
   UseClosedStops(history_.knots.back().increment.time);
 }
 
@@ -173,6 +174,7 @@ void RunSurvey::BeginForward() {
   std::move_backward(part.attitude.begin(), part.attitude.end(), history_.attitude.end());
   std::move_backward(part.stations.begin(), part.stations.end(), history_.states.end());
   forward_.emplace(solved.end);
+  begun_roughly_ = !(forward_->SigmaOfHeading() < kSureHeading);
   if (KeepIfSure()) return TellUnheard();
   forward_.reset();
   ForgetAzimuth(history_.attitude.back());
@@ -181,7 +183,7 @@ void RunSurvey::BeginForward() {
 /// False where what is known has lost its heading.
 bool RunSurvey::KeepIfSure() {
   const double sigma = forward_->SigmaOfHeading();
-  if (sigma < kSureHeading) sure_ = {history_.knots.size(), forward_->state()};
+  if (!begun_roughly_ && sigma < kSureHeading) sure_ = {history_.knots.size(), forward_->state()};
   return sigma < kRoughHeading;
 }
 
