@@ -29,7 +29,7 @@ struct AgeSink : Sink {
   double worst = 0;
 };
 
-TEST(ToldAtOnce, AStationIsAsOldAsTheDepthIsLateAndASecond) {
+TEST(ToldAtOnce, AStationIsASecondOlderThanItsDepth) {
   for (const double inclination : {5.0, 40.0, 88.0}) {
     for (const double rpm : {0.0, 3.0}) {
       testing::Hour hour = testing::StrongDrift();
@@ -46,15 +46,10 @@ TEST(ToldAtOnce, AStationIsAsOldAsTheDepthIsLateAndASecond) {
         }
         return true;
       });
-<<<<<<< Updated upstream
-      // Before the first north no station has an azimuth to tell.
-      const double late = job.depth.latency + 1.5;
-=======
       // A sample waits for its depth: marks of two seconds ahead, each as late as it may be, or of
       // as much as may lie between two.
       const DepthSpec& depth = job.depth;
       const double late = depth.latency + std::max(2 + depth.latency, depth.max_gap) + 1;
->>>>>>> Stashed changes
       const auto prompt = std::count_if(sink.ages.begin(), sink.ages.end(),
                                         [late](double age) { return age <= late; });
       ASSERT_GT(sink.ages.size(), 20u) << inclination << " deg, " << rpm << " rpm";
