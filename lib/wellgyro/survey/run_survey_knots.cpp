@@ -103,7 +103,7 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   roll_hidden_ |= !knot.still && !knot.increment.roll_seen;
   if (forward_ && !(forward_->Step(history_.knots, next) && KeepIfSure())) {
     forward_.reset();
-    next_try_ = 0;
+    if (!begun_roughly_) next_try_ = 0;
   }
   history_.attitude.push_back(AttitudeNow());
   MoveSite(history_.knots.back(), history_.attitude.back());
