@@ -61,7 +61,20 @@ EdgeMatrix Turned(EdgeMatrix matrix, const Matrix3d& turn) {
 
 }  // namespace
 
-ForwardRun::ForwardRun(const RunState& state) : state_(state), layout_(LayoutOf(state.setup)) {}
+ForwardRun::ForwardRun(const RunState& solved, std::span<const RunKnot> knots)
+    : state_(solved), layout_(LayoutOf(solved.setup)) {
+  FreeRoll(WalkBehind(knots));
+}
+
+/// Where the tool starts or stops to roll the solver saw by what came behind; of the last knot it
+/// could not, and holds the rate for as steady as the rest. Process noise in form of information,
+/// I - I e e' I / (1 / sigma^2 + e' I e).
+void ForwardRun::FreeRoll(double sigma) {
+  const EdgeVector column = state_.information.col(layout_.roll);
+  state_.information -=
+      column * column.transpose() / (1 / (sigma * sigma) + column[layout_.roll]);
+  state_.cov(layout_.roll, layout_.roll) += sigma * sigma;
+}
 
 /// The last knot of `tail`, between the newest node and `end`.
 KnotPlace ForwardRun::PlaceOf(std::span<const RunKnot> tail, const Node& end) const {

@@ -21,7 +21,8 @@ namespace wellgyro {
 /// may be copied: a copy goes on alone.
 class ForwardRun {
  public:
-  explicit ForwardRun(const RunState& state);
+  /// From the end of `knots`, which have been solved.
+  ForwardRun(const RunState& solved, std::span<const RunKnot> knots);
 
   /// Takes the last of all `knots` of the run so far. What comes behind it, if that is known, says
   /// how the tool rolls from there on. False where the information is no longer positive: nothing
@@ -38,6 +39,7 @@ class ForwardRun {
   LinkedErrors Mark(std::size_t node);
 
  private:
+  void FreeRoll(double sigma);
   KnotPlace PlaceOf(std::span<const RunKnot> tail, const Node& end) const;
 
   RunState state_;

@@ -173,7 +173,7 @@ void RunSurvey::BeginForward() {
   SmoothedRun part = SmoothedOf(solved, history_, begin);
   std::move_backward(part.attitude.begin(), part.attitude.end(), history_.attitude.end());
   std::move_backward(part.stations.begin(), part.stations.end(), history_.states.end());
-  forward_.emplace(solved.end);
+  forward_.emplace(solved.end, history_.knots);
   begun_roughly_ = !(forward_->SigmaOfHeading() < kSureHeading);
   if (KeepIfSure()) return TellUnheard();
   forward_.reset();
