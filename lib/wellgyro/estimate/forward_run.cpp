@@ -71,8 +71,7 @@ ForwardRun::ForwardRun(const RunState& solved, std::span<const RunKnot> knots)
 /// I - I e e' I / (1 / sigma^2 + e' I e).
 void ForwardRun::FreeRoll(double sigma) {
   const EdgeVector column = state_.information.col(layout_.roll);
-  state_.information -=
-      column * column.transpose() / (1 / (sigma * sigma) + column[layout_.roll]);
+  state_.information -= column * column.transpose() / (1 / (sigma * sigma) + column[layout_.roll]);
   state_.cov(layout_.roll, layout_.roll) += sigma * sigma;
 }
 
