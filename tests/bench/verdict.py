@@ -218,7 +218,7 @@ def One(program, well, seed, fault, size):
             with open(os.path.join(out, "run.toml"), "rb") as file:
                 result["causes"] = tomllib.load(file)["verdict"]["causes"]
             with open(os.path.join(out, "diagnosis.csv"), newline="", encoding="utf-8") as file:
-                result["named"] = Named(fault, list(csv.DictReader(file)))
+                result["named"] = Named(fault or "", list(csv.DictReader(file)))
         return result
 
 
