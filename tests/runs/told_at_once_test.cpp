@@ -1,10 +1,13 @@
 // A station is told when the samples around it have come, not when its knots are done with.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "support/claims.h"
 #include "support/hour.h"
 #include "support/simulated_survey.h"
 
@@ -18,16 +21,42 @@ struct AgeSink : Sink {
   void OnStation(const Station& station) override {
     if (station.revision > 0 || station.kind != StationKind::kContinuous) return;
     ages.push_back((now - station.utc).seconds());
-    const double sigma = std::sqrt(station.cov_md_inc_azi(2, 2));
-    const TruthState at = truth.At((station.utc - begin).seconds());
-    const double off = WrapPi(station.azimuth - at.azimuth) / sigma;
-    worst = std::max(worst, std::abs(off));
+    const double seconds = (station.utc - begin).seconds();
+    const double error = WrapPi(station.azimuth - truth.At(seconds).azimuth);
+    told.push_back({seconds, error, station.cov_md_inc_azi(2, 2)});
+    worst = std::max(worst, std::abs(error) / std::sqrt(told.back().variance));
   }
+  struct Told {
+    double seconds, error, variance;
+  };
   Truth truth;
   UtcTime begin, now;
   std::vector<double> ages;
+  std::vector<Told> told;
   double worst = 0;
 };
+
+// Minutes behind the only stop, when bias and heading are just being told apart.
+TEST(ToldAtOnce, SoonAfterAStopItIsAsSureAsItSays) {
+  constexpr double kThen = 350;  // [s]
+  for (const double inclination : {40.0, 88.0}) {
+    testing::Claims claims;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      testing::Hour hour = testing::StrongDrift();
+      hour.inclination_deg = inclination;
+      hour.stops = 1;
+      hour.minutes = 8;
+      const Simulation simulation = testing::SimulationOf(hour, seed);
+      AgeSink sink(simulation);
+      testing::SurveyOf(simulation, testing::JobOf(hour), sink);
+      const auto told = std::find_if(sink.told.begin(), sink.told.end(),
+                                     [](const auto& station) { return station.seconds > kThen; });
+      ASSERT_NE(told, sink.told.end());
+      claims.Add(told->error, told->variance);
+    }
+    claims.ExpectTrue("350 s, I " + std::to_string(static_cast<int>(inclination)));
+  }
+}
 
 TEST(ToldAtOnce, AStationIsASecondOlderThanItsDepth) {
   for (const double inclination : {5.0, 40.0, 88.0}) {

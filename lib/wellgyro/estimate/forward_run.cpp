@@ -68,11 +68,18 @@ ForwardRun::ForwardRun(const RunState& solved, std::span<const RunKnot> knots)
 
 /// Where the tool starts or stops to roll the solver saw by what came behind; of the last knot it
 /// could not, and holds the rate for as steady as the rest. Process noise in form of information,
-/// I - I e e' I / (1 / sigma^2 + e' I e).
+/// I - I e s^2 e' I / (1 + s^2 e' I e), of which e' I / (1 + s^2 e' I e) is the roll's own part.
 void ForwardRun::FreeRoll(double sigma) {
-  const EdgeVector column = state_.information.col(layout_.roll);
-  state_.information -= column * column.transpose() / (1 / (sigma * sigma) + column[layout_.roll]);
-  state_.cov(layout_.roll, layout_.roll) += sigma * sigma;
+  const int roll = layout_.roll;
+  const double var = sigma * sigma;
+  const EdgeVector told = state_.information.col(roll);
+  const EdgeVector left = told / (1 + var * told[roll]);
+  state_.information -= var * told * left.transpose();
+  state_.information.col(roll) = left;
+  state_.information.row(roll) = left.transpose();
+  state_.cov(roll, roll) += var;
+  // What errors of the station before have in common with the node's stays as it was.
+  if (state_.link.size() > 0) state_.link -= var * state_.link.col(roll).eval() * left.transpose();
 }
 
 /// The last knot of `tail`, between the newest node and `end`.
