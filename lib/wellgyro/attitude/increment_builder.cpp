@@ -221,6 +221,10 @@ IncrementBuilder::IncrementBuilder(const IncrementOptions& options) {
 IncrementBuilder::~IncrementBuilder() = default;
 IncrementBuilder::IncrementBuilder(IncrementBuilder&&) noexcept = default;
 IncrementBuilder& IncrementBuilder::operator=(IncrementBuilder&&) noexcept = default;
+IncrementBuilder::IncrementBuilder(const IncrementBuilder& other)
+    : state_(std::make_unique<State>(other.state_->options)) {
+  *this = other;
+}
 IncrementBuilder& IncrementBuilder::operator=(const IncrementBuilder& other) {
   *state_ = *other.state_;
   return *this;

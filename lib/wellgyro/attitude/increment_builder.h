@@ -52,8 +52,9 @@ class WELLGYRO_EXPORT IncrementBuilder {
   ~IncrementBuilder();
   IncrementBuilder(IncrementBuilder&&) noexcept;
   IncrementBuilder& operator=(IncrementBuilder&&) noexcept;
-  /// Stands where `other` does and goes on by itself: flushed, it tells at once what the other will
-  /// tell later by more samples. Copies what waits, some 12 s, and allocates nothing.
+  /// A copy goes on by itself: flushed, it tells at once what the other will tell later by more
+  /// samples. To assign copies what waits, some 12 s, and allocates nothing.
+  IncrementBuilder(const IncrementBuilder& other);
   IncrementBuilder& operator=(const IncrementBuilder& other);
 
   /// Takes the next sample; `rests`: the depth says that the tool makes no way. Returns false and

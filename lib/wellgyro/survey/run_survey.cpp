@@ -57,7 +57,6 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
       tvd_(job.tie_in.tvd),
       plan_(job),
       builder_(IncrementOptionsOf(job)),
-      builder_ahead_(IncrementOptionsOf(job)),
       still_(StillSetupOf(job)),
       external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal),
       magnet_pending_(job.magnetic && job.magnetic->tie) {

@@ -155,7 +155,8 @@ class RunSurvey {
   StationPlan plan_;
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::vector<KnotAt> cuts_;                  ///< scratch
-  IncrementBuilder builder_, builder_ahead_;
+  IncrementBuilder builder_;
+  std::optional<IncrementBuilder> builder_ahead_;  ///< scratch
   std::vector<Duration> gap_cuts_;  ///< in the gap behind the sample last given to the builder
   UnseenTurn unseen_;
   RunHistory history_;

@@ -15,14 +15,14 @@ namespace wellgyro {
 std::vector<Increment> RunSurvey::IncrementsAhead() {
   std::vector<Increment> increments;
   builder_ahead_ = builder_;
-  builder_ahead_.Flush();
+  builder_ahead_->Flush();
   for (const Waiting& waiting : waiting_) {
     if (waiting.increment) {
       increments.push_back(*waiting.increment);
       continue;
     }
-    if (!builder_ahead_.Ready()) break;
-    increments.push_back(builder_ahead_.Pop());
+    if (!builder_ahead_->Ready()) break;
+    increments.push_back(builder_ahead_->Pop());
     if (std::abs((increments.back().time - waiting.end).ns) > kSameNs) {
       increments.pop_back();  // the builder's own, or one that ends in a gap
       break;
