@@ -46,7 +46,7 @@ void RunSurvey::TellAhead() {
     Waiting& waiting = waiting_[i];
     history_.knots.push_back(KnotOf(waiting, increments[i], turn));
     const Increment* next = i + 1 < increments.size() ? &increments[i + 1] : nullptr;
-    if (!forward.Step(history_.knots, next)) break;
+    if (!forward.Step(history_.knots, next) || !(forward.SigmaOfHeading() < kRoughHeading)) break;
     unseen |= increments[i].quality & kUnseen;
     if (!waiting.draft) continue;
     const RunKnot& knot = history_.knots.back();

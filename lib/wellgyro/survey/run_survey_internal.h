@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "wellgyro/alignment/still_detector.h"
+#include "wellgyro/base/angle.h"
 #include "wellgyro/record/quality.h"
 
 namespace wellgyro {
@@ -10,6 +11,10 @@ namespace wellgyro {
 /// Slower than this a tool is at rest [m/s].
 inline constexpr double kRestSpeed = StillSetup{}.speed_limit;
 inline constexpr Quality kUnseen = Quality::kGap | Quality::kSaturated;
-inline constexpr std::int64_t kSameNs = 2;  ///< one place, cut twice and rounded
+/// About a heading that may be further off nothing is made linear: the slope of the Earth's rate
+/// changes by a tenth within this sigma. Let through up to 20 deg, a run that rolls in a vertical
+/// hole learned an inclination from it that was eight sigmas off.
+inline constexpr double kRoughHeading = 5 * kPi / 180;  // [rad]
+inline constexpr std::int64_t kSameNs = 2;              ///< one place, cut twice and rounded
 
 }  // namespace wellgyro

@@ -17,10 +17,6 @@ namespace {
 
 // The still detector knows of a block when the one after it has ended.
 constexpr Duration kMakeUpMind = Duration::Seconds(3);
-// About a heading that may be further off nothing is made linear: the slope of the Earth's rate
-// changes by a tenth within this sigma. Let through up to 20 deg, a run that rolls in a vertical
-// hole learned an inclination from it that was eight sigmas off.
-constexpr double kRoughHeading = 5 * kPi / 180;  // [rad]
 // From what is known at a heading as sure as this the rest may be sought without what came before:
 // what is made linear about it is wrong by its square. From 5 deg on, which a minute of rolling in
 // a vertical hole seems to tell, it went astray, and a run at 88 deg was ten sigmas off.
