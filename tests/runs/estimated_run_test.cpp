@@ -129,6 +129,34 @@ TEST(EstimatedRun, FindsTheToolsErrors) {
   errors.ExpectTrue("errors of the tool");
 }
 
+// Noise times itself tells nothing of a scale (errors in variables). With the gyros' readings for
+// regressors it drew the scales of tools that are hardly calibrated 15 of their sigmas upwards at
+// long stops, and the azimuth on the way to the second one five of its own.
+TEST(EstimatedRun, NoiseDrawsNoScale) {
+  Claims scales, known;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Hour hour = testing::Tactical();
+    hour.undulation_deg = hour.swing_deg = 0;
+    hour.inclination_deg = 30;
+    hour.stops = 2;
+    hour.stop_seconds = 1200;
+    hour.minutes = 45;
+    hour.errors.gyro_scale_sigma = 1e-2;
+    const ToolErrors tool = SimulationOf(hour, seed).tool.errors;
+    const Flown flown = Fly(hour, JobOf(hour), seed);
+    const RunFit fit = *EstimateOf(flown).fit;
+    for (const int axis : {0, 1}) {
+      const std::size_t source = axis == 0 ? kGyroScaleX : kGyroScaleY;
+      scales.Add(fit.errors[source] - tool.gyro_scale[axis], std::pow(fit.sigma_errors[source], 2));
+    }
+    const std::size_t last = flown.truth.size() - 1;
+    const SmoothedRun run = testing::KnownOnTheWay(flown.history);
+    known.Add(AzimuthError(flown, run, last), run.attitude[last].cov_attitude(1, 1));
+  }
+  scales.ExpectTrue("scales");
+  known.ExpectTrue("azimuth on the way");
+}
+
 // Of a tool that turns at 10 rpm, 0.05 s are 3 deg of toolface: to the first order alone the hole
 // seems to turn by 1.4e-3 less than it does, which left 0.0064 and 0.074 deg here.
 TEST(EstimatedRun, ATimeSkewMakesNoShorterTurns) {

@@ -25,17 +25,19 @@ constexpr int kIterations = 4;
 
 double RollOf(const Increment& inc) { return inc.roll_before + inc.roll_after; }
 
-/// The node at the end of `knot` as the gyros alone carry it there from `begin`.
+/// The node at the end of `knot`: a clamped tool stays where it is, so that what its gyros read
+/// beside the Earth's rate is seen for noise; else as the gyros alone carry it there from `begin`.
 Node Ahead(const RunKnot& knot, const Vector3d& w_IL_L, const Node& begin) {
   const Increment& inc = knot.increment;
   Node end = begin;
+  const AlongHole& along = knot.along;
+  end.md = along.known ? along.md : begin.md + begin.speed * inc.seconds;
+  if (along.known) end.speed = along.speed;
+  if (knot.still) return end;
   const double delta = begin.roll_rate * inc.seconds - RollOf(inc);
   const Eigen::Vector2d turn = inc.turn_M + delta * inc.turn_per_roll;
   end.R_LT = Exp(-inc.seconds * w_IL_L) * begin.R_LT * RotationZ(inc.roll_before + 0.5 * delta) *
              Exp(Vector3d(turn.x(), turn.y(), 0)) * RotationZ(inc.roll_after + 0.5 * delta);
-  const AlongHole& along = knot.along;
-  end.md = along.known ? along.md : begin.md + begin.speed * inc.seconds;
-  if (along.known) end.speed = along.speed;
   return end;
 }
 

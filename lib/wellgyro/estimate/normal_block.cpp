@@ -102,8 +102,9 @@ double RollWeight(double square, int n) { return (kDegrees + n) / (kDegrees + sq
 
 void NormalBlock::Clear(const Layout& layout) {
   node_ = layout.node;
-  const int size = 2 * layout.node + layout.border;
-  information_.setZero(size, size);
+  const Eigen::Index size = 2 * layout.node + layout.border;
+  if (information_.rows() != size) information_.setZero(size, size);
+  for (Eigen::Index j = 0; j < size; ++j) information_.col(j).tail(size - j).setZero();
   gradient_.setZero(size);
 }
 
