@@ -1,66 +1,23 @@
 #include "wellgyro/page/report_page.h"
 
-#include <cstdint>
 #include <exception>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
-#include "wellgyro/io/sha256.h"
 #include "wellgyro/page/assets_internal.h"
+#include "wellgyro/page/html_head_internal.h"
 #include "wellgyro/page/html_internal.h"
 #include "wellgyro/page/page_internal.h"
 
 namespace wellgyro {
 namespace {
 
-/// Base64 (RFC 4648) of a SHA-256, as policies name what may run.
-std::string PolicyHash(std::string_view script) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::string hex = Sha256Hex(script);
-  std::string base64 = "'sha256-";
-  for (std::size_t i = 0; i < hex.size(); i += 6) {
-    const std::string part = hex.substr(i, 6);
-    const auto bits = static_cast<std::uint32_t>(
-        std::stoul(part + std::string(6 - part.size(), '0'), nullptr, 16));
-    const std::size_t digits = part.size() == 6 ? 4 : part.size() / 2 + 1;
-    for (std::size_t k = 0; k < 4; ++k) {
-      base64 += k < digits ? kDigits[(bits >> (18 - 6 * k)) & 63u] : '=';
-    }
-  }
-  return base64 + "'";
-}
-
-/// JSON as it may stand within a script element: no sign in it can end the element.
-std::string InScript(const Json& json) {
-  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace), safe;
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
+std::vector<std::string_view> Scripts() { return {D3Script(), ChartsScript(), ReportScript()}; }
 
 std::string_view PaperName(ReportOptions::Paper paper) {
   return paper == ReportOptions::Paper::kA4 ? "A4" : "letter";
-}
-
-void WriteHeadElement(PageText& page, const std::string& style) {
-  const std::string policy = fmt::format(
-      "default-src 'none'; script-src {} {}; style-src {}; img-src data:; base-uri 'none'; "
-      "form-action 'none'",
-      PolicyHash(D3Script()), PolicyHash(ReportScript()), PolicyHash(style));
-  page.html += fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<title>{} - gyro survey report</title>\n"
-      "<style>{}</style>\n</head>\n<body>\n",
-      policy, Escaped(Clipped(TextAt(page.survey, {"run", "well", "name"}), 100)), style);
 }
 
 /// Repeated by every print on each of its pages.
@@ -79,7 +36,7 @@ void WriteRunningHead(PageText& page) {
       Escaped(Clipped(TextAt(run, {"verdict", "verdict"}), 10)), clipped("verdict", "verdict"));
 }
 
-/// The document and the charts for the script, then D3 with its licence and the script.
+/// The document and the charts for the script, then the scripts.
 void WriteScripts(PageText& page) {
   page.html +=
       "</main></td></tr></tbody></table>\n<div id=\"readout\" role=\"status\" hidden></div>\n";
@@ -90,15 +47,7 @@ void WriteScripts(PageText& page) {
                          {"unit", page.units.length_name},
                          {"charts", page.charts}}) +
                "</script>\n";
-  page.html +=
-      "<details class=\"licence\"><summary>Licence of the charts' library D3, which is part of "
-      "this page</summary><pre>";
-  for (const char c : D3Licence()) page.html += c == '\n' ? std::string("\n") : Escaped({&c, 1});
-  page.html += "</pre></details>\n<script>";
-  page.html += D3Script();
-  page.html += "</script>\n<script>";
-  page.html += ReportScript();
-  page.html += "</script>\n</body>\n</html>\n";
+  page.html += TailElements(Scripts());
 }
 
 }  // namespace
@@ -118,7 +67,9 @@ Result<std::string> ReportPage(std::string_view survey_json, const ReportOptions
   PageText page{.survey = survey, .units = UnitsOf(options.units), .paper = options.paper};
   const std::string style = std::string(ReportStyle()) +
                             fmt::format("@page{{size:{} portrait}}\n", PaperName(options.paper));
-  WriteHeadElement(page, style);
+  page.html +=
+      HeadElement(Clipped(TextAt(survey, {"run", "well", "name"}), 100) + " - gyro survey report",
+                  style, Scripts(), "'none'");
   WriteRunningHead(page);
   WriteVerdict(page);
   WriteHead(page);

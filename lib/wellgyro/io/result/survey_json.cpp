@@ -14,11 +14,10 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
-#include "wellgyro/io/exchange/well_stations.h"
 #include "wellgyro/io/result/json_columns_internal.h"
 #include "wellgyro/io/result/json_table_internal.h"
+#include "wellgyro/io/result/other_well_internal.h"
 #include "wellgyro/io/text_file.h"
-#include "wellgyro/survey/well_uncertainty.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -125,23 +124,6 @@ Json LossesIn(const Json& run, const ResultTexts& texts) {
   return losses;
 }
 
-Json WellOf(const OtherWell& other) {
-  WellStations file = Taken(ParseWellStations(other.text, other.name));
-  if (!file.start_stated) file.start = {0, 0, file.stations.front().md};
-  std::vector<double> md;
-  for (const SurveyPoint& station : file.stations) md.push_back(station.md);
-  const SurveyedWell well = SurveyWell(std::move(file.stations), file.start);
-  Json rows = Json::array();
-  for (std::size_t i = 0; i < md.size(); ++i) {
-    const Eigen::Vector3d& p_WT_W = well.position[i];
-    rows.push_back({md[i], p_WT_W.x(), p_WT_W.y(), p_WT_W.z()});
-  }
-  return {{"name", other.name},
-          {"start_stated", file.start_stated},
-          {"columns", {"MD[m]", "N[m]", "E[m]", "TVD[m]"}},
-          {"rows", std::move(rows)}};
-}
-
 Json Document(const ResultTexts& texts, std::span<const OtherWell> others) {
   for (const char* needed : {"run.toml", "survey.csv"}) {
     if (texts.contains(needed)) continue;
@@ -178,7 +160,7 @@ Json Document(const ResultTexts& texts, std::span<const OtherWell> others) {
   }
   document["run"] = std::move(run);
   document["others"] = Json::array();
-  for (const OtherWell& other : others) document["others"].push_back(WellOf(other));
+  for (const OtherWell& other : others) document["others"].push_back(Taken(WellJson(other)));
   return document;
 }
 
