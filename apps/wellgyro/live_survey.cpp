@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/words.h"
 #include "wellgyro/live/session.h"
 
 #include "commands.h"
@@ -22,12 +23,22 @@ namespace {
 /// A survey that adjusts when it is stopped does not hold up whoever stopped it.
 class SurveyConsole : public Console {
  public:
-  explicit SurveyConsole(Says says) : says_(says) {}
+  /// `page`, which may be null, must outlive this object.
+  SurveyConsole(Says says, SurveyPage* page) : says_(says), page_(page) {}
+  void OnNotice(std::string_view sentence) override {
+    if (page_ != nullptr) page_->Say(sentence);
+    Console::OnNotice(sentence);
+  }
+  void OnStation(const Station& station) override {
+    if (page_ != nullptr) page_->Put(station);
+  }
   void OnStatus(const Status& status) override {
+    if (page_ != nullptr) page_->Put(status);
     NotifyManager("WATCHDOG=1");
     if (status.text == kBusy && says_ != Says::kNothing) Show(status.text);
   }
   void OnGlance(const Glance& glance) override {
+    if (page_ != nullptr) page_->Put(glance);
     if (says_ != Says::kNothing) Console::OnGlance(glance);
   }
   void OnStuck(const std::optional<RunVerdict>& kept) override {
@@ -44,6 +55,7 @@ class SurveyConsole : public Console {
 
  private:
   Says says_;
+  SurveyPage* page_;
 };
 
 /// What a survey that did not end with FINISH leaves behind; its exit code.
@@ -64,6 +76,26 @@ int Stopped(const SurveyOptions& options, const LiveOutcome& outcome) {
   return Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole, options.says, tools);
 }
 
+LiveSetup SetupOf(const SurveyOptions& options, const JobFile& job) {
+  LiveSetup setup{.job = job, .url = UrlOr(options.from), .out = options.out};
+  setup.record = options.record;
+  setup.resume = options.resume;
+  setup.fill = options.fill;
+  setup.formats = options.formats;
+  setup.maker = MakerOf();
+  setup.clock = ThisClock();
+  return setup;
+}
+
+/// The last words to those who look at the page.
+void Farewell(SurveyPage& page, const LiveOutcome& outcome) {
+  const char* how = outcome.ended == LiveOutcome::Ended::kFinished ? "finished and adjusted"
+                    : outcome.ended == LiveOutcome::Ended::kInterrupted
+                        ? "stopped, not adjusted"
+                        : "the bus was lost, not adjusted";
+  page.End(how, outcome.usable() ? WordOf(WorstVerdict(outcome.tools).verdict) : "none: no survey");
+}
+
 }  // namespace
 
 int SurveyLive(const SurveyOptions& options, const JobFile& job) {
@@ -72,23 +104,27 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     Complain("--resume continues from the log given with --record; --fill goes with --resume");
     return kUsage;
   }
-  LiveSetup setup{.job = job, .url = UrlOr(options.from), .out = options.out};
-  setup.record = options.record;
-  setup.resume = options.resume;
-  setup.fill = options.fill;
-  setup.formats = options.formats;
-  setup.maker = MakerOf();
-  setup.clock = ThisClock();
-  SurveyConsole console(options.says);
-  auto session = LiveSession::Open(std::move(setup), nullptr, console);
+  std::unique_ptr<SurveyPage> page;
+  if (!options.page.address.empty()) {
+    auto opened = SurveyPage::Open(options.page, job, UrlOr(options.from), options.out);
+    if (!opened) {
+      Complain(opened.fault());
+      return kUnusable;
+    }
+    page = std::move(*opened);
+  }
+  SurveyConsole console(options.says, page.get());
+  auto session = LiveSession::Open(SetupOf(options, job), nullptr, console);
   if (!session) {
     Complain(session.fault());
     return kUnusable;
   }
   const StopOnSignals stop([&session] { (*session)->Stop(); });
   if (options.says != Says::kNothing) SayHowHeard((*session)->bus());
+  if (page) fmt::print(stderr, "page: {}\n", page->Address());
   NotifyManager("READY=1");
   const LiveOutcome outcome = (*session)->Run();
+  if (page) Farewell(*page, outcome);
   for (const std::string& hint : outcome.hints) Complain(hint);
   if (outcome.ended != LiveOutcome::Ended::kFinished) return Stopped(options, outcome);
   if (outcome.fault) {

@@ -7,6 +7,7 @@
 #include "wellgyro/io/toml/job_file.h"
 
 #include "delivery.h"
+#include "survey_page.h"
 
 namespace wellgyro::apps {
 
@@ -16,6 +17,7 @@ struct SurveyOptions {
   std::string record;                ///< log that gets what is heard live
   bool resume = false;
   std::vector<std::string> fill;  ///< other recorders' logs
+  SurveyPageOptions page;         ///< none where it has no address
   std::vector<SurveyFormat> formats;
   Says says = Says::kSummary;
 };

@@ -161,8 +161,9 @@ int SurveyAny(SurveyOptions options) {
   }
   if (!CanExport(job->job, options.formats)) return kUnusable;
   if (IsLive(options.from)) return SurveyLive(options, *job);
-  if (!options.record.empty() || options.resume || !options.fill.empty()) {
-    Complain("--record, --resume and --fill are for a live stream: --from URL");
+  if (!options.record.empty() || options.resume || !options.fill.empty() ||
+      !options.page.address.empty()) {
+    Complain("--record, --resume, --fill and --page are for a live stream: --from URL");
     return kUsage;
   }
   if (AnyTwice(options.sources) || !MayWriteTo(options.out)) return kUnusable;
@@ -190,6 +191,32 @@ void AddLiveOptions(CLI::App& command, SurveyOptions& options) {
       .add_option("--fill", options.fill,
                   "With --resume: another recorder's log, for what was sent meanwhile")
       ->type_name("LOG");
+}
+
+void AddPageOptions(CLI::App& command, SurveyPageOptions& page) {
+  CLI::Option* address =
+      command
+          .add_option("--page", page.address,
+                      "Serve the live page here, as 127.0.0.1:8080; on another address than this "
+                      "machine's loopback who looks needs a token, which is said")
+          ->type_name("ADDRESS");
+  command
+      .add_option("--page-token", page.token_file,
+                  "Want a token, and keep it in this file, so that it stays the same when the "
+                  "survey is resumed; made where it is not there")
+      ->needs(address)
+      ->type_name("FILE");
+  command
+      .add_option("--page-key", page.key,
+                  "Private key, listed in the job, that signs what the page orders: adjust, "
+                  "accept, reject, remarks; who looks needs a token then")
+      ->needs(address)
+      ->type_name("PEM");
+  command
+      .add_option("--page-plan", page.plan,
+                  "The path as planned, in any format that convert reads, drawn in the page")
+      ->needs(address)
+      ->type_name("FILE");
 }
 
 void AddSays(CLI::App& command, Says& says) {
@@ -254,6 +281,7 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("DIR");
   AddLiveOptions(*command, *options);
+  AddPageOptions(*command, options->page);
   AddFormats(*command, *options);
   AddSays(*command, options->says);
   auto page = std::make_shared<bool>(false);
@@ -263,7 +291,7 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       "--out result\n"
       "  wellgyro survey --job job.toml --from tool.csv --from tally.csv --out result\n"
       "  wellgyro survey --job job.toml --from udpm://239.255.76.67:7667 --record heard.lcm "
-      "--out result");
+      "--page 127.0.0.1:8080 --out result");
   command->callback([options, page, &exit_code] { exit_code = SurveyAndReport(*options, *page); });
 }
 

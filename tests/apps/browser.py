@@ -1,4 +1,5 @@
 """A headless Chromium that tests can ask about pages: what they request, say, and show."""
+import base64
 import json
 import os
 import select
@@ -10,9 +11,34 @@ import time
 PROGRAM = next((found for name in ("chromium", "chromium-browser", "google-chrome")
                 if (found := shutil.which(name))), None)
 
+# Every text against what lies behind it, WCAG 2's ratio; those below 4.5.
+FAINT = """(() => {
+  const parts = c => (c.match(/[\\d.]+/g) || []).map(Number);
+  const light = ([r, g, b]) => [r, g, b].map(v => v / 255).map(
+    v => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = e => { for (; e; e = e.parentElement) {
+    const c = parts(getComputedStyle(e).backgroundColor);
+    if (c.length === 3 || c[3] > 0) return c; } return [255, 255, 255]; };
+  const faint = new Set();
+  document.querySelectorAll('body *').forEach(e => {
+    if (!Array.from(e.childNodes).some(n => n.nodeType === 3 && n.data.trim())) return;
+    if (['SCRIPT', 'STYLE'].includes(e.tagName)) return;
+    const svg = e.namespaceURI.endsWith('svg');
+    const a = light(parts(getComputedStyle(e)[svg ? 'fill' : 'color']));
+    const b = light(svg ? [255, 255, 255] : behind(e));
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (ratio < 4.5) faint.add(e.tagName + ' ' + e.className + ' ' + ratio.toFixed(2));
+  });
+  return Array.from(faint); })()"""
+# Names that would like to be more than text.
+HOSTILE = ["<script>alert(1)</script>", "\"><img src=x onerror=alert(2)>", "</script><b>bold",
+           "\u202eright to left \u05e9\u05dc\u05d5\u05dd", "\U0001f6e2 drill", "long " * 2000,
+           "a & b 'quoted'", "-->", "]]>"]
+
 
 class Browser:
-    """Chromium behind its DevTools pipe, without a network."""
+    """Chromium behind its DevTools pipe, without a network but this machine's loopback."""
 
     def __init__(self):
         self.profile = tempfile.mkdtemp()
@@ -21,7 +47,7 @@ class Browser:
         self.process = subprocess.Popen(
             ["bash", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "_", PROGRAM,
              "--headless", "--disable-gpu", "--no-first-run", "--no-sandbox",
-             "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe",
+             "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", "--remote-debugging-pipe",
              f"--user-data-dir={self.profile}", "about:blank"],
             pass_fds=(to_browser, from_browser), stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -60,16 +86,17 @@ class Browser:
 
 
 class Page:
-    """One page: `requests` beyond the page itself, `errors` of console, scripts and log."""
+    """One page: `requests` beyond the page itself, `errors` of console, scripts and log. Only where
+    it is `online` it reaches this machine's loopback."""
 
-    def __init__(self, browser, *, width=1280, height=900, scripts=True):
+    def __init__(self, browser, *, width=1280, height=900, scripts=True, online=False):
         self.browser, self.requests, self.errors, self.events = browser, [], [], []
         self.session = None
         target = self.Do("Target.createTarget", url="about:blank")["targetId"]
         self.session = self.Do("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Network", "Runtime", "Log"):
             self.Do(domain + ".enable")
-        self.Do("Network.emulateNetworkConditions", offline=True, latency=0,
+        self.Do("Network.emulateNetworkConditions", offline=not online, latency=0,
                 downloadThroughput=-1, uploadThroughput=-1)
         self.Do("Emulation.setDeviceMetricsOverride", width=width, height=height,
                 deviceScaleFactor=1, mobile=False)
@@ -100,8 +127,9 @@ class Page:
             self.errors.append(said["entry"]["text"])
 
     def Open(self, path, timeout=30.0):
-        """Opens a file and waits until it is loaded; what it requests beside itself is kept."""
-        url = "file://" + path
+        """Opens a file or an address and waits until it is loaded; what it requests beside itself
+        is kept."""
+        url = path if "://" in path else "file://" + path
         self.Do("Page.navigate", url=url)
         end = time.monotonic() + timeout
         while "Page.loadEventFired" not in self.events:
@@ -111,6 +139,21 @@ class Page:
             self.Hear(message)
         self.Do("Runtime.evaluate", expression="1")
         self.requests = [r for r in self.requests if r != url and not r.startswith("data:")]
+
+    def Until(self, expression, timeout=20.0):
+        """Seconds until `expression` holds; an error where it does not in time."""
+        begin = time.monotonic()
+        while not self.Ask(expression):
+            if time.monotonic() - begin > timeout:
+                raise RuntimeError(f"{expression}: not within {timeout:g} s")
+            time.sleep(0.05)
+        return time.monotonic() - begin
+
+    def Picture(self, path, whole=True):
+        """The page as a picture, for people to look at."""
+        data = self.Do("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(data))
 
     def Ask(self, expression):
         answer = self.Do("Runtime.evaluate", expression=expression, returnByValue=True)
