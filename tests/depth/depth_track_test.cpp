@@ -64,7 +64,7 @@ TEST(DepthTrack, CentimetreCountsGiveQuietSpeedAndAcceleration) {
   struct Case {
     double rate, speed, acceleration;
   };
-  for (const auto& c : {Case{20, 1e-3, 2e-3}, Case{10, 1e-3, 2e-3}, Case{1, 2e-3, 5e-3}}) {
+  for (const auto& c : {Case{20, 2e-3, 3e-3}, Case{10, 2e-3, 3e-3}, Case{1, 2e-3, 5e-3}}) {
     const DepthTrack track = Track(Encoder(300, c.rate, md));
     double depth2 = 0, speed2 = 0, acceleration2 = 0, nees = 0;
     int n = 0;
@@ -86,16 +86,25 @@ TEST(DepthTrack, CentimetreCountsGiveQuietSpeedAndAcceleration) {
   }
 }
 
-// What the still detector relies on.
-TEST(DepthTrack, OneCountWhileStandingReadsAsAtMostFiveMillimetresASecond) {
+// The still detector takes 6 mm/s, or four sigmas of the speed, in the mean of a second, for rest.
+TEST(DepthTrack, OneCountWhileStandingReadsAsNoMoreThanRestAllows) {
   for (const double rate : {1.0, 2.0, 5.0, 20.0}) {
     const DepthTrack track =
         Track(Encoder(60, rate, [](double t) { return t < 30.01 ? 10 : 10.01; }));
-    double worst = 0;
-    for (double t = 20; t < 40; t += 0.013)
-      worst = std::max(worst, std::abs(track.At(Utc(t)).speed));
-    EXPECT_LT(worst, 0.0052) << rate;
+    double worst = 0, beyond = 0;
+    for (double second = 20; second < 40; second += 0.13) {
+      double speed = 0, sigma = 0;
+      for (double t = second; t < second + 1; t += 0.01) {
+        const AlongHole along = track.At(Utc(t));
+        worst = std::max(worst, std::abs(along.speed));
+        speed += 0.01 * std::abs(along.speed);
+        sigma += 0.01 * along.sigma_speed;
+      }
+      beyond = std::max(beyond, speed / std::max(0.006, 4 * sigma));
+    }
+    EXPECT_LT(worst, 0.012) << rate;
     EXPECT_GT(worst, 0.003) << rate;
+    EXPECT_LT(beyond, 1) << rate;
   }
 }
 
@@ -114,7 +123,7 @@ TEST(DepthTrack, AConstantAccelerationIsExact) {
 
 TEST(DepthTrack, UnknownOutsideAndInGaps) {
   EXPECT_FALSE(DepthTrack().At(Utc(0)).known);
-  EXPECT_FALSE(DepthTrack().Covers(Utc(0)));
+  EXPECT_TRUE(DepthTrack().Knows(Utc(0), Utc(5))) << "nothing came before";
   auto marks = Encoder(10, 5, [](double t) { return 100 + t; });
   for (auto mark : Encoder(10, 5, [](double t) { return 120 + t; })) {
     mark.utc = mark.utc + Duration::Seconds(20);
@@ -137,12 +146,13 @@ TEST(DepthTrack, AStoppedToolMayKeepItsDepthThroughAGap) {
     auto stop = Mark(0, 700, 0);
     stop.stopped = true;
     const DepthTrack track = Track({stop, Mark(600, 700 + moved, 1), Mark(601, 700 + moved, 2)});
-    const AlongHole along = track.At(Utc(300));
+    const AlongHole along = track.At(Utc(596));
     EXPECT_EQ(along.known, moved < 0.02);
     if (along.known) {
       EXPECT_NEAR(along.md, 700, 0.01);
       EXPECT_NEAR(along.speed, 0, 1e-4);
     }
+    EXPECT_FALSE(track.At(Utc(594)).known) << "the next mark is too far ahead to wait for";
   }
 }
 
@@ -183,12 +193,13 @@ TEST(DepthTrack, WhatIsCoveredIsFinalWhateverTheOrderWithinTheLatency) {
     double asked = 0;
     for (const auto& [when, mark] : arrivals) {
       EXPECT_FALSE(track.Push(mark).has_value());
-      for (; track.Covers(Utc(asked)); asked += 0.0711) {
+      // By now all marks of a second ago have come.
+      for (; track.Knows(Utc(asked), Utc(when - 1)); asked += 0.0711) {
         EXPECT_TRUE(Same(track.At(Utc(asked)), reference.At(Utc(asked)))) << asked;
       }
       track.Forget(Utc(asked));
     }
-    EXPECT_GT(asked, 113);
+    EXPECT_GT(asked, 118);
   }
 }
 
@@ -208,7 +219,7 @@ TEST(DepthTrack, LateMarksAreRefusedAndRepeatedOnesSkipped) {
   DepthMark never = Mark(0, 1, 3000);
   never.utc = {std::numeric_limits<std::int64_t>::max()};
   EXPECT_EQ(track.Push(never)->code, FaultCode::kRange);
-  EXPECT_FALSE(track.Covers(never.utc));
+  EXPECT_TRUE(track.Knows(never.utc, Utc(10))) << "whatever comes";
   EXPECT_FALSE(track.At(never.utc).known);
   EXPECT_NEAR(track.At(Utc(8.33)).md, before.md, 0.01);
 }

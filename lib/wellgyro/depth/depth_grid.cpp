@@ -25,6 +25,13 @@ const AlongHole& DepthGrid::NodeAt(std::int64_t index) {
   return node.along;
 }
 
+bool DepthGrid::CellIsFinal(UtcTime utc, UtcTime until) {
+  const UtcTime begin{CellOf(utc) * kStep.ns};
+  const bool final = track_->Knows(begin, until) && track_->Knows(begin + kStep, until);
+  if (final) final_ns_ = begin.ns;
+  return final;
+}
+
 void DepthGrid::Enter(UtcTime utc) {
   const std::int64_t cell = CellOf(utc);
   const UtcTime begin{cell * kStep.ns};

@@ -16,7 +16,8 @@ namespace wellgyro {
 /// the instant alone, not on how often or in which order it is asked.
 ///
 /// Against the track itself, on a winch that swings by 0.3 m/s: 1 mm, 1 mm/s and 3 mm/s^2 at most
-/// with marks at 2 Hz and more; 1 cm, 5 mm/s and 25 mm/s^2 at 1 Hz, where the track has kinks.
+/// with marks at 10 Hz and more; at 2 and 1 Hz, where the track has kinks, 2 mm, 7 mm/s and
+/// 7 mm/s^2, and 1 cm, 7 mm/s and 25 mm/s^2.
 /// Where one end is unknown, or a depth event or a jump of the counter lies between, the track
 /// itself is asked.
 class WELLGYRO_EXPORT DepthGrid {
@@ -26,7 +27,12 @@ class WELLGYRO_EXPORT DepthGrid {
   /// `track` must outlive this object.
   explicit DepthGrid(const DepthTrack& track) : track_(&track) {}
 
-  /// The track must be final (Covers) up to kStep after `utc`: nodes are kept.
+  /// At(utc) is final where all marks and events up to `until` are in.
+  bool Knows(UtcTime utc, UtcTime until) {
+    const auto since = static_cast<std::uint64_t>(utc.ns) - static_cast<std::uint64_t>(final_ns_);
+    return since < static_cast<std::uint64_t>(kStep.ns) || CellIsFinal(utc, until);
+  }
+  /// Must be final: what has been asked is kept.
   AlongHole At(UtcTime utc) {
     // Unsigned, so that no nonsense overflows.
     const auto since = static_cast<std::uint64_t>(utc.ns) - static_cast<std::uint64_t>(begin_ns_);
@@ -48,6 +54,7 @@ class WELLGYRO_EXPORT DepthGrid {
     double md_low = 0, md_high = 0;  ///< the ends': a blend never turns back
   };
 
+  bool CellIsFinal(UtcTime utc, UtcTime until);
   void Enter(UtcTime utc);
   AlongHole Asked(UtcTime utc) const;
   const AlongHole& NodeAt(std::int64_t index);
@@ -69,6 +76,7 @@ class WELLGYRO_EXPORT DepthGrid {
   const DepthTrack* track_;
   std::array<Node, 4> nodes_;            ///< the latest asked, by index modulo 4
   std::int64_t begin_ns_ = -kStep.ns;    ///< of the present cell, UTC
+  std::int64_t final_ns_ = -kStep.ns;    ///< of the last cell found to be final
   bool known_ = false, smooth_ = false;  ///< anywhere in it; all over it
   Blend blend_;
 };

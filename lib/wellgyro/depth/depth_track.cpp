@@ -15,6 +15,7 @@ constexpr double kHold = 0.02;         // [m] between marks of a tool that stand
 constexpr double kStopAndGo = 5;       // [s] between marks in which a stop may hide
 constexpr double kUnseen = 0.03;       // [m/s^2], acceleration of a winch, rms
 constexpr double kSpikeAtLeast = 0.3;  // [m]
+constexpr double kHardest = 1;         // [m/s^2], that a string is started or stopped at
 constexpr double kJumpAtLeast = 1;     // [m]
 
 double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
@@ -34,6 +35,8 @@ DepthTrack::DepthTrack(const DepthTrackSetup& setup) : setup_(setup) {
     if (!good) throw std::invalid_argument(std::string("DepthTrack: ") + what);
   };
   require(setup.half_window.ns > 0, "half_window must be positive");
+  require(setup.ahead.ns > 0 && setup.ahead <= setup.half_window,
+          "ahead must be positive and no more than half_window");
   require(setup.latency.ns >= 0, "latency must not be negative");
   require(setup.max_gap.ns > 0, "max_gap must be positive");
   require(setup.speed_limit > 0, "speed_limit must be positive");
@@ -76,51 +79,70 @@ std::optional<Fault> DepthTrack::Push(const DepthMark& mark) {
                    .session = mark.session,
                    .stopped = mark.stopped,
                    .jumps = false,
+                   .doubted = false,
                    .md = mark.md,
                    .sigma = sigma};
   const auto key = [](const Mark& m) { return std::tuple(m.utc, m.session, m.seq); };
   const auto it = std::ranges::upper_bound(marks_, key(entry), {}, key);
   const auto i = static_cast<std::size_t>(it - marks_.begin());
   marks_.insert(it, entry);
-  NoteJump(i);
-  if (i + 1 < marks_.size()) NoteJump(i + 1);
+  for (std::size_t k = i; k < std::min(i + 3, marks_.size()); ++k) Note(k);
   if (marks_.size() == 1 || newest_ <= mark.utc) {
     newest_ = mark.utc;
     seq_ = mark.session == session_ ? std::max(seq_, mark.seq) : mark.seq;
     session_ = mark.session;
   }
-  std::optional<Fault> spike = i + 1 == marks_.size() ? DropSpike(i) : std::nullopt;
+  std::optional<Fault> spike = DropSpikes(i);
   for (Shift& shift : shifts_) {
-    if (!shift.offset && Settled(shift.utc)) shift.offset = Offset(shift);
+    if (!shift.offset && OffsetIsKnown(shift, newest_ - setup_.latency)) {
+      shift.offset = Offset(shift);
+    }
   }
   return spike;
 }
 
-/// The mark before `last` against those on both its sides: one reading far off two that agree.
-std::optional<Fault> DepthTrack::DropSpike(std::size_t last) {
-  if (last < 2) return std::nullopt;
-  const Mark &a = marks_[last - 2], &b = marks_[last - 1], &c = marks_[last];
+/// Among the mark `around` and those beside it, the earliest: behind a spike the next is doubted.
+std::optional<Fault> DepthTrack::DropSpikes(std::size_t around) {
+  for (std::size_t middle = std::max<std::size_t>(around, 1) - 1; middle < around + 2; ++middle) {
+    if (auto fault = DropSpike(middle)) return fault;
+  }
+  return std::nullopt;
+}
+
+/// A doubted mark against those on both its sides: one reading far off two that agree.
+std::optional<Fault> DepthTrack::DropSpike(std::size_t middle) {
+  if (middle == 0 || middle + 1 >= marks_.size() || !marks_[middle].doubted) return std::nullopt;
+  const Mark &a = marks_[middle - 1], &b = marks_[middle], &c = marks_[middle + 1];
   const double all = Seconds(c.utc, a.utc), part = Seconds(b.utc, a.utc);
   if (!(all > 0) || b.stopped != a.stopped) return std::nullopt;
   const double way = std::abs(c.md - a.md);
   if (way > kSpikeAtLeast + setup_.speed_limit * all) return std::nullopt;
   const double off = b.md - (a.md + (c.md - a.md) * part / all);
-  // An acceleration of 1 m/s^2 between them is none of it.
-  if (!(std::abs(off) > kSpikeAtLeast + 0.5 * all * all + 0.5 * way)) return std::nullopt;
+  if (!(std::abs(off) > kSpikeAtLeast + 0.5 * kHardest * all * all + 0.5 * way)) {
+    return std::nullopt;
+  }
   Fault fault{.code = FaultCode::kRange,
               .text = "depth mark" + Place(b.utc) + " reads " + std::to_string(off) +
                       " m off its neighbours and was left out"};
-  marks_.erase(marks_.begin() + static_cast<std::ptrdiff_t>(last - 1));
-  NoteJump(last - 1);
+  marks_.erase(marks_.begin() + static_cast<std::ptrdiff_t>(middle));
+  for (std::size_t k = middle; k < std::min(middle + 2, marks_.size()); ++k) Note(k);
   return fault;
 }
 
-void DepthTrack::NoteJump(std::size_t i) {
+/// How mark `i` goes on from those before it.
+void DepthTrack::Note(std::size_t i) {
   if (i == 0) return;
   const Mark& before = marks_[i - 1];
   Mark& mark = marks_[i];
-  const double way = std::abs(mark.md - before.md);
-  mark.jumps = way > kJumpAtLeast + setup_.speed_limit * Seconds(mark.utc, before.utc);
+  const double way = mark.md - before.md, dt = Seconds(mark.utc, before.utc);
+  mark.jumps = std::abs(way) > kJumpAtLeast + setup_.speed_limit * dt;
+  double speed = 0, change = 0;
+  if (i > 1 && !before.jumps && marks_[i - 2].utc < before.utc) {
+    const double last = Seconds(before.utc, marks_[i - 2].utc);
+    speed = (before.md - marks_[i - 2].md) / last;
+    change = 0.5 * kHardest * dt * (dt + last);
+  }
+  mark.doubted = std::abs(way - speed * dt) > kSpikeAtLeast + change;
 }
 
 std::optional<Fault> DepthTrack::Push(const Event& event) {
@@ -151,17 +173,8 @@ std::optional<Fault> DepthTrack::Push(const Event& event) {
                     .offset = std::nullopt};
   const auto key = [](const Shift& s) { return std::tuple(s.utc, s.seq, s.event_id); };
   const auto it = shifts_.insert(std::ranges::upper_bound(shifts_, key(entry), {}, key), entry);
-  if (!marks_.empty() && Settled(it->utc)) it->offset = Offset(*it);
+  if (!marks_.empty() && OffsetIsKnown(*it, newest_ - setup_.latency)) it->offset = Offset(*it);
   return std::nullopt;
-}
-
-/// No mark can come in any more within the window about `utc`, nor before the next one after it.
-bool DepthTrack::Settled(UtcTime utc) const {
-  if (marks_.empty()) return false;
-  const UtcTime final = newest_ - setup_.latency;
-  if (final < utc + Reach()) return false;
-  const std::size_t after = After(utc);
-  return after < marks_.size() && marks_[after].utc <= final;
 }
 
 std::optional<MarkRead> DepthTrack::FirstMark(UtcTime utc) const {
@@ -170,7 +183,39 @@ std::optional<MarkRead> DepthTrack::FirstMark(UtcTime utc) const {
   return MarkRead{it->utc, it->md};
 }
 
-bool DepthTrack::Covers(UtcTime utc) const { return IsWithinReach(utc) && Settled(utc); }
+/// Of the marks up to `last`, the youngest counts whatever comes after `until`.
+bool DepthTrack::Stands(UtcTime last, UtcTime until) const {
+  const std::size_t after = After(last);
+  if (after == 0 || !marks_[after - 1].doubted) return true;
+  const bool followed = after < marks_.size() && marks_[after].utc <= until;
+  return followed || until - marks_[after - 1].utc >= setup_.max_gap;
+}
+
+bool DepthTrack::OffsetIsKnown(const Shift& shift, UtcTime until) const {
+  const auto next = std::ranges::lower_bound(marks_, shift.utc, {}, &Mark::utc);
+  if (next == marks_.end() || next->utc > until) return until - shift.utc >= setup_.max_gap;
+  const UtcTime last = std::max(next->utc, shift.utc + setup_.half_window);
+  return last <= until && Stands(last, until);
+}
+
+bool DepthTrack::Knows(UtcTime utc, UtcTime until) const {
+  if (!IsWithinReach(utc)) return true;
+  if (until < utc + setup_.ahead) return false;
+  const auto next = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
+  if (next != shifts_.begin()) {
+    const Shift& shift = *std::prev(next);
+    if (!shift.offset && !OffsetIsKnown(shift, until)) return false;
+  }
+  const std::size_t after = After(utc);
+  if (after == 0) return true;
+  if (after == marks_.size() || marks_[after].utc > until) return until - utc >= setup_.max_gap;
+  UtcTime last = utc + AheadAt(utc);
+  if (Sparse(GapAt(utc))) {
+    last = marks_[after - 1].utc + setup_.max_gap;
+    if (after + 1 < marks_.size()) last = std::min(last, marks_[after + 1].utc);
+  }
+  return last <= until && Stands(last, until);
+}
 
 std::int32_t DepthTrack::SegmentAt(UtcTime utc) const {
   const auto it = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);
@@ -178,8 +223,8 @@ std::int32_t DepthTrack::SegmentAt(UtcTime utc) const {
 }
 
 /// The marks of the segment and of the counter's unbroken way about `utc`, from the last one at or
-/// before the window to the first one at or after it.
-DepthTrack::Span DepthTrack::SpanAt(UtcTime utc) const {
+/// before the window to the last one `ahead`, or the next after `utc`.
+DepthTrack::Span DepthTrack::SpanAt(UtcTime utc, Duration ahead) const {
   const auto first = [&](UtcTime t) {
     return static_cast<std::size_t>(std::ranges::lower_bound(marks_, t, {}, &Mark::utc) -
                                     marks_.begin());
@@ -196,8 +241,8 @@ DepthTrack::Span DepthTrack::SpanAt(UtcTime utc) const {
   while (span.end < end) {
     const Mark& mark = marks_[span.end];
     if (mark.jumps && span.end > begin) break;
+    if (mark.utc > utc + ahead && span.end > middle) break;
     ++span.end;
-    if (mark.utc >= utc + setup_.half_window) break;
   }
   return span;
 }
@@ -212,7 +257,7 @@ bool DepthTrack::Bracketed(UtcTime utc, Span span, UtcTime rest_begin, UtcTime r
   if (after == marks_.size()) return false;
   const Mark& b = marks_[after];
   if (Segment(a.utc) != Segment(b.utc)) return b.utc - a.utc <= setup_.max_gap;
-  if (b.jumps) return false;
+  if (b.jumps || b.utc - std::max(utc, rest_end) > setup_.max_gap) return false;
   if (b.utc - a.utc <= setup_.max_gap) return true;
   const Duration moving =
       (b.utc - a.utc) - (std::min(b.utc, rest_end) - std::max(a.utc, rest_begin));
@@ -222,7 +267,7 @@ bool DepthTrack::Bracketed(UtcTime utc, Span span, UtcTime rest_begin, UtcTime r
 /// What to add to the marks from `shift` on. The reading at the event is taken from marks after it
 /// alone, because the system may have been set there.
 double DepthTrack::Offset(const Shift& shift) const {
-  const Span span = SpanAt(shift.utc);
+  const Span span = SpanAt(shift.utc, setup_.half_window);
   LocalFit fit;
   for (std::size_t i = span.begin; i < span.end; ++i) {
     const double u = Seconds(marks_[i].utc, shift.utc) / setup_.half_window.seconds();
@@ -237,17 +282,29 @@ double DepthTrack::Offset(const Shift& shift) const {
   return held ? shift.value - next.md : 0;
 }
 
-/// The marks about `utc` are too far apart for a fit.
-bool DepthTrack::Sparse(UtcTime utc) const {
+/// Between the marks about `utc` [s].
+double DepthTrack::GapAt(UtcTime utc) const {
   const std::size_t after = After(utc);
-  if (after == 0 || after == marks_.size()) return false;
-  const double gap = Seconds(marks_[after].utc, marks_[after - 1].utc);
-  return gap > kDense * setup_.half_window.seconds();
+  if (after == 0 || after == marks_.size()) return 0;
+  return Seconds(marks_[after].utc, marks_[after - 1].utc);
+}
+
+/// Too far apart for any fit.
+bool DepthTrack::Sparse(double gap) const {
+  return gap > kDense * 2 * setup_.half_window.seconds();
+}
+
+/// How far ahead of `utc` marks are fitted.
+Duration DepthTrack::AheadAt(UtcTime utc) const {
+  const double ahead = setup_.ahead.seconds();
+  const double dense = std::min(kDense * (setup_.half_window.seconds() + ahead), ahead);
+  return GapAt(utc) <= dense ? setup_.ahead : setup_.half_window;
 }
 
 /// The monotone cubic between the two neighbours (slopes at the marks after Fritsch and Butland,
 /// SIAM J. Sci. Stat. Comput. 5 (1984)), or the mark itself where it is alone. Of the marks beyond
-/// the two those count that lie within max_gap of the other.
+/// the two those count that lie within max_gap of the other, and ahead where that is all that is
+/// looked at.
 AlongHole DepthTrack::Join(UtcTime utc, Span span) const {
   std::size_t i = std::clamp(After(utc), span.begin + 1, span.end) - 1;
   if (i + 1 == span.end && i > span.begin) --i;
@@ -270,7 +327,9 @@ AlongHole DepthTrack::Join(UtcTime utc, Span span) const {
     va = mean(before, v);
     change_a = std::abs(v - before);
   }
-  if (i + 2 < marks_.size() && joins(b, marks_[i + 2], a.utc, marks_[i + 2].utc)) {
+  const bool looked_at =
+      i + 2 < marks_.size() && (Sparse(h) || marks_[i + 2].utc <= utc + AheadAt(utc));
+  if (looked_at && joins(b, marks_[i + 2], a.utc, marks_[i + 2].utc)) {
     const double beyond = slope(b, marks_[i + 2]);
     vb = mean(v, beyond);
     change_b = std::abs(beyond - v);
@@ -296,9 +355,9 @@ AlongHole DepthTrack::Join(UtcTime utc, Span span) const {
 AlongHole DepthTrack::AtRest(UtcTime begin, UtcTime end) const {
   if (!IsWithinReach(begin) || !IsWithinReach(end)) return {};
   const UtcTime utc = begin + Duration{(end - begin).ns / 2};
-  const Span span = SpanAt(utc);
+  const Span span = SpanAt(utc, AheadAt(utc));
   if (!Bracketed(utc, span, begin, end)) return {};
-  AlongHole along = Sparse(utc) ? Join(utc, span) : Fitted(utc, span);
+  AlongHole along = Sparse(GapAt(utc)) ? Join(utc, span) : Fitted(utc, span);
   const Mark& nearest = marks_[std::clamp(After(utc), span.begin + 1, span.end) - 1];
   double sigma_event = 0;
   const auto next = std::ranges::upper_bound(shifts_, utc, {}, &Shift::utc);

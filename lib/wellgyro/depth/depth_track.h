@@ -17,7 +17,8 @@
 namespace wellgyro {
 
 struct DepthTrackSetup {
-  Duration half_window = Duration::Seconds(2);  ///< marks this far on both sides are fitted
+  Duration half_window = Duration::Seconds(2);  ///< marks this far behind are fitted
+  Duration ahead = Duration::Seconds(0.8);      ///< and, where they are dense, this far ahead
   Duration latency = Duration::Seconds(1);      ///< how far behind the newest a mark may come in
   Duration max_gap = Duration::Seconds(5);      ///< between marks, above which depth is unknown
   double speed_limit = 10;       ///< faster steps between marks are jumps of the counter [m/s]
@@ -33,16 +34,17 @@ struct MarkRead {
 
 /// Depth of the string's reference point against UTC, from the marks of the depth system.
 ///
-/// Depth, speed and acceleration at an instant t are a local quadratic with weights 1 - u^2 over
-/// the marks nearer to t than `half_window`, where these are no further apart than half of it: a
-/// function of these marks alone. Marks rarer than that are joined by a monotone cubic, whose
-/// sigmas say how much the speed changes from mark to mark, so that whoever needs the acceleration
-/// knows where it is not known. Depth never leaves the range of the marks it rests on, and is never
-/// extrapolated beyond the last.
-/// Between marks further apart than `max_gap` depth is unknown, unless the first says `stopped` and
-/// both agree within 2 cm; across a jump of the counter it is unknown, and no fit spans one.
-/// A 1 cm encoder on a winch that swings by 4 cm/s gives speed and acceleration to 1 mm/s and
-/// 2 mm/s^2 rms at 10 Hz, to 2 mm/s and 5 mm/s^2 at 1 Hz; one count at rest reads as 5 mm/s. A
+/// Depth, speed and acceleration at an instant t are a local quadratic over the marks from
+/// `half_window` before t to `ahead` after it, with weights 1 - u^2 by u from -1 to 1 over this
+/// time; where the marks about t are too far apart for that (0.77 s), to `half_window` after it.
+/// Marks rarer still (1.1 s) are joined by a monotone cubic, whose sigmas say how much the speed
+/// changes from mark to mark. Depth never leaves the range of the marks it rests on, is never
+/// extrapolated, and is a function of the marks of Knows() alone.
+/// Between marks further apart than `max_gap` depth is unknown, unless the first says `stopped`,
+/// both agree within 2 cm and the second is no further ahead; across a jump of the counter it is
+/// unknown, and no fit spans one.
+/// A 1 cm encoder on a winch that swings by 4 cm/s gives speed and acceleration to 2 mm/s and
+/// 3 mm/s^2 rms at 10 Hz, to 2 mm/s and 5 mm/s^2 at 1 Hz; one count at rest reads as 11 mm/s. A
 /// sudden change of speed is smeared over the window. Sigmas follow the scatter of the marks about
 /// the fit, or, where it holds too few, from mark to mark over the last of them. Marks that repeat
 /// one reading count as fewer, and quantisation that does not show as scatter is added as an error
@@ -69,12 +71,13 @@ class WELLGYRO_EXPORT DepthTrack {
   /// At the middle of a time at rest that others than the marks know of: it does not count to the
   /// gap between two marks that agree within 2 cm, and which may lie at its ends.
   AlongHole AtRest(UtcTime begin, UtcTime end) const;
-  /// At(utc) is final: no mark that may still come in changes it. Events must be in by then.
-  bool Covers(UtcTime utc) const;
-  /// How far behind the newest mark Covers() stays.
-  Duration lag() const { return Reach() + setup_.latency; }
-  /// How long after an instant the marks that tell its depth are made, or have come.
-  Duration wait() const { return std::max(setup_.half_window + setup_.latency, setup_.max_gap); }
+  /// At(utc) is final where all marks and events up to `until` are in: no other one changes it.
+  /// That takes `ahead`; where marks are rare, the next one or two of them, or `max_gap`.
+  bool Knows(UtcTime utc, UtcTime until) const;
+  Duration ahead() const { return setup_.ahead; }
+  Duration latency() const { return setup_.latency; }
+  /// How far from an instant the marks may be that tell its depth.
+  Duration reach() const { return std::max(setup_.half_window, setup_.max_gap); }
   bool empty() const { return marks_.empty(); }
   /// The first mark at or after `utc` of those that are in, as the depth system sent it.
   std::optional<MarkRead> FirstMark(UtcTime utc) const;
@@ -85,8 +88,8 @@ class WELLGYRO_EXPORT DepthTrack {
   void Forget(UtcTime utc);
 
  private:
-  /// Of the half window: marks no further apart are fitted, others joined.
-  static constexpr double kDense = 0.55;
+  /// Of the time that a fit spans: its marks are no further apart.
+  static constexpr double kDense = 0.275;
   /// Marks that tell of the scatter where the window holds too few.
   static constexpr std::size_t kMemory = 24;
 
@@ -95,7 +98,8 @@ class WELLGYRO_EXPORT DepthTrack {
     std::int64_t seq;
     std::int32_t session;
     bool stopped;
-    bool jumps;  ///< the counter jumped between the mark before and this one
+    bool jumps;    ///< the counter jumped between the mark before and this one
+    bool doubted;  ///< far off the way before: the next mark may tell that it was none
     double md;
     double sigma;
   };
@@ -107,9 +111,14 @@ class WELLGYRO_EXPORT DepthTrack {
   struct Scatter {
     double squares = 0, freedom = 0;
   };
-  /// Squares of what a fit misses, of its value and derivatives by the half window.
+  /// Squares of what a fit misses, of its value and derivatives by half the time it spans.
   struct Bend {
     double value = 0, slope = 0, curvature = 0;
+  };
+  /// A fit's time, in units of half of it: its middle, seen from the instant.
+  struct Window {
+    double half;  ///< [s]
+    double middle;
   };
   struct Shift {
     UtcTime utc;
@@ -121,16 +130,22 @@ class WELLGYRO_EXPORT DepthTrack {
 
   std::size_t After(UtcTime utc) const;
   std::int32_t SegmentAt(UtcTime utc) const;
-  Span SpanAt(UtcTime utc) const;
+  Span SpanAt(UtcTime utc, Duration ahead) const;
   double Offset(const Shift& shift) const;
   bool Bracketed(UtcTime utc, Span span, UtcTime rest_begin, UtcTime rest_end) const;
   bool Seen(const DepthMark& mark) const;
-  bool Settled(UtcTime utc) const;
-  void NoteJump(std::size_t i);
-  std::optional<Fault> DropSpike(std::size_t last);
-  /// How far from an instant the marks may be that tell its depth.
-  Duration Reach() const { return std::max(setup_.half_window, setup_.max_gap); }
-  bool Sparse(UtcTime utc) const;
+  bool OffsetIsKnown(const Shift& shift, UtcTime until) const;
+  bool Stands(UtcTime last, UtcTime until) const;
+  void Note(std::size_t i);
+  std::optional<Fault> DropSpikes(std::size_t around);
+  std::optional<Fault> DropSpike(std::size_t middle);
+  double GapAt(UtcTime utc) const;
+  bool Sparse(double gap) const;
+  Duration AheadAt(UtcTime utc) const;
+  Window WindowAt(UtcTime utc) const {
+    const double behind = setup_.half_window.seconds(), ahead = AheadAt(utc).seconds();
+    return {(behind + ahead) / 2, (ahead - behind) / (behind + ahead)};
+  }
   AlongHole Join(UtcTime utc, Span span) const;
   AlongHole Fitted(UtcTime utc, Span span) const;
   Scatter ScatterAbout(UtcTime utc) const;

@@ -15,12 +15,13 @@ double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
 }  // namespace
 
 AlongHole DepthTrack::Fitted(UtcTime utc, Span span) const {
-  const double w = setup_.half_window.seconds(), md0 = marks_[span.begin].md;
+  const Window window = WindowAt(utc);
+  const double w = window.half, md0 = marks_[span.begin].md;
   double low = md0, high = md0, values = 1, last = md0;
   LocalFit fit;
   for (std::size_t i = span.begin; i < span.end; ++i) {
-    const double u = Seconds(marks_[i].utc, utc) / w, md = marks_[i].md;
-    fit.Add(u, md - md0, 1 - u * u);
+    const double u = Seconds(marks_[i].utc, utc) / w, v = u - window.middle, md = marks_[i].md;
+    fit.Add(u, md - md0, 1 - v * v);
     low = std::min(low, md);
     high = std::max(high, md);
     if (md != last) ++values;
@@ -42,11 +43,10 @@ AlongHole DepthTrack::Fitted(UtcTime utc, Span span) const {
           .sigma_acceleration = std::sqrt(noise * y.variance_curvature + bend.curvature) / (w * w)};
 }
 
-/// From third differences, free of any acceleration, of the marks behind, and of those ahead as far
-/// as they are final with those of the window.
+/// From third differences, free of any acceleration, of the marks behind and of the window.
 DepthTrack::Scatter DepthTrack::ScatterAbout(UtcTime utc) const {
-  const std::size_t end = After(utc + Reach());
-  const double gap = kDense * setup_.half_window.seconds();
+  const std::size_t end = After(utc + AheadAt(utc));
+  const double gap = kDense * 2 * setup_.half_window.seconds();
   Scatter scatter;
   for (std::size_t i = end - std::min(end, kMemory); i + 3 < end; ++i) {
     const Mark* m = &marks_[i];
@@ -84,17 +84,19 @@ double DepthTrack::Common(Scatter scatter) const {
 
 /// Squared truncation errors of the parabola `y`: cubic and quartic terms of the residuals, as far
 /// as they exceed kSure times what noise of variance `noise` makes of them. Polynomials orthogonal
-/// under the weight 1 - u^2: u^3 - 3u/7 and u^4 - 2u^2/3 + 1/21.
+/// under the weight 1 - v^2: P3 = v^3 - 3v/7 and P4 = v^4 - 2v^2/3 + 1/21.
 DepthTrack::Bend DepthTrack::BendOf(UtcTime utc, Span span, const LocalFit::Value& y,
                                     double noise) const {
   double norm3 = 0, norm4 = 0, sum3 = 0, sum4 = 0, var3 = 0, var4 = 0;
-  const double w = setup_.half_window.seconds(), md0 = marks_[span.begin].md;
+  const Window window = WindowAt(utc);
+  const double md0 = marks_[span.begin].md;
   for (std::size_t i = span.begin; i < span.end; ++i) {
-    const double u = Seconds(marks_[i].utc, utc) / w, u2 = u * u, weight = 1 - u2;
+    const double u = Seconds(marks_[i].utc, utc) / window.half, v = u - window.middle, v2 = v * v;
+    const double weight = 1 - v2;
     if (!(weight > 0)) continue;
     const double left = marks_[i].md - md0 - (y.value + u * (y.slope + 0.5 * u * y.curvature));
-    const double third = weight * u * (u2 - 3. / 7);
-    const double fourth = weight * (u2 * (u2 - 2. / 3) + 1. / 21);
+    const double third = weight * v * (v2 - 3. / 7);
+    const double fourth = weight * (v2 * (v2 - 2. / 3) + 1. / 21);
     sum3 += third * left;
     sum4 += fourth * left;
     var3 += third * third;
@@ -106,7 +108,13 @@ DepthTrack::Bend DepthTrack::BendOf(UtcTime utc, Span span, const LocalFit::Valu
     return norm > 0 ? std::max(0.0, sum * sum - kSure * noise * var) / (norm * norm) : 0;
   };
   const double third = beyond(sum3, var3, norm3), fourth = beyond(sum4, var4, norm4);
-  return {fourth / (21 * 21), (third + fourth) * (9. / 49), (third + fourth) * (16. / 9)};
+  const double v = -window.middle, v2 = v * v;  // of the instant
+  const double p3 = v * (v2 - 3. / 7), p4 = v2 * (v2 - 2. / 3) + 1. / 21;
+  const double slope3 = 3 * v2 - 3. / 7, slope4 = v * (4 * v2 - 4. / 3);
+  const double curvature3 = 6 * v, curvature4 = 12 * v2 - 4. / 3;
+  // A cubic term seldom comes without a quartic one, and the other way round.
+  const auto both = [&](double a, double b) { return (third + fourth) * std::max(a * a, b * b); };
+  return {third * p3 * p3 + fourth * p4 * p4, both(slope3, slope4), both(curvature3, curvature4)};
 }
 
 }  // namespace wellgyro

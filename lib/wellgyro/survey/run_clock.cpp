@@ -74,6 +74,12 @@ inline void RunClock::NoteSteps() {
   doubt_ += std::abs(*step_);
 }
 
+UtcTime RunClock::Expected(const SampleStamp& stamp) const {
+  if (!in_ || stamp.session != in_->session) return stamp.utc;
+  return tie_.ToUtc(ToolTime{static_cast<std::int64_t>(
+      static_cast<std::uint64_t>(stamp.tool_time.ns) + static_cast<std::uint64_t>(ahead_.ns))});
+}
+
 const SampleStamp& RunClock::Take(const SampleStamp& stamp, bool jumps) {
   const bool breaks = in_ && (jumps || stamp.session != in_->session);
   const UtcTime utc = breaks ? Break(stamp, jumps) : stamp.utc;

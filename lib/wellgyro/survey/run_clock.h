@@ -22,6 +22,9 @@ class WELLGYRO_EXPORT RunClock {
   /// session. Marked utc_unsynced where the UTC is in doubt.
   const SampleStamp& Take(const SampleStamp& stamp, bool jumps);
 
+  /// The UTC that Take() will find for it, to what the stamp itself will teach.
+  UtcTime Expected(const SampleStamp& stamp) const;
+
   /// So far every stamp was handed on as it came.
   bool own() const { return !broken_ && doubt_ == 0; }
   /// Of the last sample, by the tie.

@@ -60,10 +60,12 @@ class WELLGYRO_EXPORT SampleQueue {
   /// The next sample in order, or nullptr while it has to wait. Valid until the next Push.
   const ImuSample* Front() const {
     if (size_ == 0) return nullptr;
-    const ImuSample& front = At(0);
-    const bool old = back_->tool_time - front.stamp.tool_time >= hold_;
-    return old || flushing_ || old_session_ > 0 || size_ > kWaitingMax ? &front : nullptr;
+    return hurries() || age() >= hold_ ? &At(0) : nullptr;
   }
+  /// Whatever is at the front does not wait.
+  bool hurries() const { return flushing_ || old_session_ > 0 || size_ > kWaitingMax; }
+  /// By how much the newest sample is younger than the one at the front, where that waits.
+  Duration age() const { return back_->tool_time - At(0).stamp.tool_time; }
   /// Within its session the clock jumps before the sample at the front.
   bool Jumps() const { return !jumps_.empty() && jumps_.front() == counts_.accepted - Waiting(); }
   void Pop() {

@@ -169,15 +169,21 @@ struct Surveyor::Rooms {
           samples, [begin](const ImuSample& s) { return IsInPart(begin, s.stamp.utc); });
       const auto count = std::max<std::ptrdiff_t>(end - samples.begin(), 1);
       const auto part = samples.first(static_cast<std::size_t>(count));
-      tool.Push(part);
-      const SampleTally tally = tool.tally();
-      if (tally.newest && tally.received >= most_heard) {
-        most_heard = tally.received;
-        gate.HeardAt(*tally.newest);
+      for (auto rest = part; !rest.empty();) {
+        rest = tool.Take(rest);
+        Hear(tool);
+        tool.Work();
       }
       Work(tool);
       samples = samples.subspan(part.size());
     }
+  }
+
+  void Hear(const ToolSurvey& tool) {
+    const SampleTally tally = tool.tally();
+    if (!tally.newest || tally.received < most_heard) return;
+    most_heard = tally.received;
+    gate.HeardAt(*tally.newest);
   }
 
   bool Open() {
@@ -200,7 +206,7 @@ struct Surveyor::Rooms {
     forgotten_at = period;
     UtcTime needed = tool.Needs();
     for (const auto& [number, other] : tools) needed = std::min(needed, other.Needs());
-    track.Forget(needed - track.lag() - DepthGrid::kStep);
+    track.Forget(needed - track.reach() - track.latency() - DepthGrid::kStep);
   }
 
   void Finish() {

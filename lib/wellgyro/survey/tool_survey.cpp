@@ -19,9 +19,10 @@ constexpr std::ptrdiff_t kDueMax = 1000;
 // An accepted or rejected depth is typed by hand, to the decimetre at best.
 constexpr double kTypedDepth = 0.5;  // [m]
 
-/// Depth marks of a second and more after a sample decide its depth; so long it waits for them.
-Duration Hold(const Job& job, const DepthTrack& track) {
-  return Duration::Seconds(job.depth.latency) + track.wait() + DepthGrid::kStep;
+/// At the least a sample waits for the depth marks after it that decide its depth, each as late as
+/// it may be.
+Duration Hold(const DepthTrack& track) {
+  return track.latency() + track.ahead() + DepthGrid::kStep;
 }
 
 UtcTime TimeOf(const Operation& operation) {
@@ -82,21 +83,17 @@ ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& trac
       adjuster_(adjuster),
       corrects_depth_(!job.depth.corrections.empty() || job.depth.cable.mark_spacing > 0),
       sensor_below_reference_(job.string.sensor_below_reference),
-      queue_(Hold(job, track)),
+      queue_(Hold(track)),
       filter_(job.noise, job.errors) {}
 
-void ToolSurvey::Push(std::span<const ImuSample> batch) {
-  while (true) {
-    batch = batch.subspan(queue_.Append(batch));
-    // What is ready goes on before another is sorted in, which must not depend on the batches.
-    Work(std::nullopt);
-    if (batch.empty()) return;
-    const ImuSample& sample = batch.front();
-    const SampleQueue::Verdict verdict = queue_.Push(sample);
-    if (verdict != SampleQueue::Verdict::kTaken) TellRefused(verdict, sample.stamp);
-    TellStrays();
-    batch = batch.subspan(1);
-  }
+std::span<const ImuSample> ToolSurvey::Take(std::span<const ImuSample> batch) {
+  if (const std::size_t taken = queue_.Append(batch); taken > 0) return batch.subspan(taken);
+  // What is ready goes on before another is sorted in, which must not depend on the batches.
+  const ImuSample& sample = batch.front();
+  const SampleQueue::Verdict verdict = queue_.Push(sample);
+  if (verdict != SampleQueue::Verdict::kTaken) TellRefused(verdict, sample.stamp);
+  TellStrays();
+  return batch.subspan(1);
 }
 
 void ToolSurvey::TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp) {
@@ -182,8 +179,17 @@ void ToolSurvey::TellWithoutDepth(const StillWindow& window) {
                                   window.utc_end.ns / 1'000'000'000, job_.depth.max_gap)});
 }
 
+/// A mark of the time m has come by a sample of m + latency.
+bool ToolSurvey::DepthIsFinal(const SampleStamp& stamp) {
+  if (queue_.hurries()) return true;
+  const UtcTime utc = clock_.Expected(stamp), until = utc + queue_.age() - track_.latency();
+  const UtcTime middle = utc + Duration{stamp.period_ns / 2};
+  return grid_.Knows(utc, until) && grid_.Knows(middle, until);
+}
+
 void ToolSurvey::Work(std::optional<UtcTime> until) {
   while (const ImuSample* sample = queue_.Front()) {
+    if (!DepthIsFinal(sample->stamp)) return;
     const bool after = finish_asked_ || (until && sample->stamp.utc >= *until);
     if (!after) {
       const bool jumps = queue_.Jumps();

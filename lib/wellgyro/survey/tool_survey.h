@@ -45,7 +45,11 @@ class ToolSurvey {
              const MarksRefused& refused, CableMarks& marks, RunBook& book, Sink& sink,
              const RunAdjuster* adjuster);
 
-  void Push(std::span<const ImuSample> batch);
+  /// Takes the samples at the begin of `batch` that come right behind each other, or one that has
+  /// to be sorted in; what is left. Work() is to follow, with the marks up to tally().newest.
+  [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch);
+  /// Works off the samples whose depth is known.
+  void Work() { Work(std::nullopt); }
   void Push(const StillWindow& window);
   void Push(const ToolInfo& info) { sensor_below_reference_ = info.sensor_below_reference; }
   void Push(const Operation& operation);
@@ -80,6 +84,7 @@ class ToolSurvey {
   };
 
   void Work(std::optional<UtcTime> until);
+  bool DepthIsFinal(const SampleStamp& stamp);
   void UseRest();
   void Use(const SpikeFilter::Out& out);
   void TellMended(const SpikeFilter::Out& out, RunSummary& summary);
