@@ -27,7 +27,7 @@ constexpr int kPatienceS = 2;                     // with who does not send or t
 constexpr Duration kBeat = Duration::Seconds(1);  // so often a reader hears that the link is there
 constexpr milliseconds kFarewell{2000};
 constexpr std::size_t kBodyMost = 8192;
-constexpr int kNice = 10;  // the survey goes first
+constexpr int kNice = 5;  // the survey goes first
 
 /// Threads for connections, made as they are needed. Where all are busy no connection is taken,
 /// which waits in the system's own short queue then: neither memory nor descriptors run out.

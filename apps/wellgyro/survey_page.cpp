@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <ctime>
 #include <exception>
 #include <system_error>
 
@@ -23,8 +24,8 @@ namespace fs = std::filesystem;
 
 // What comes within it goes out together: a page is woken five times a second at most.
 constexpr std::int64_t kTogetherUs = 200'000;
-// Between two looks at the files of the survey, which may take one 200th of the time at most.
-constexpr std::int64_t kLookUs = 1'000'000, kLookShare = 200;
+// Between two looks at the files of the survey, which may take a hundredth of a core at most.
+constexpr std::int64_t kLookUs = 1'000'000, kLookShare = 100;
 
 /// The folders of the survey's results, by the name that tells the tools apart.
 std::vector<std::pair<std::string, fs::path>> PartsOf(const fs::path& folder) {
@@ -54,6 +55,13 @@ template <class Number>
 bool Read(const std::string& text, Number& number) {
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return text.empty() || (error == std::errc() && rest == text.data() + text.size());
+}
+
+/// Of a processor, that the calling thread has used [us].
+std::int64_t UsedUs() {
+  timespec used{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return used.tv_sec * 1'000'000 + used.tv_nsec / 1000;
 }
 
 /// A page that cannot be had, for want of memory, is missed; the survey goes on.
@@ -198,9 +206,9 @@ void SurveyPage::Watch() {
   while (Sleep(pause_us)) {
     // Nobody looks: nothing is read.
     if (server_->readers() == 0) continue;
-    const std::int64_t begin_us = MonotonicUs();
+    const std::int64_t begin_us = UsedUs();
     Safely([this] { Look(); });
-    pause_us = std::max(kLookUs, kLookShare * (MonotonicUs() - begin_us));
+    pause_us = std::max(kLookUs, kLookShare * (UsedUs() - begin_us));
   }
 }
 

@@ -3,7 +3,7 @@
 (function () {
   'use strict';
   const head = JSON.parse(document.getElementById('head').textContent);
-  const SILENT_MS = 3000;  // without an event the link is dead, without a status the survey is
+  const SILENT_MS = 2500;  // without an event the link is dead, without a status the survey is
   const AGAIN_MS = 1500;   // between two attempts to connect
   const NOTICES = 200;     // shown
   const byId = function (id) { return document.getElementById(id); };
@@ -136,6 +136,7 @@
     const line = before ? before.line : document.createElement('tr');
     const at = function (name) { return heard.row[columns[name]]; };
     const quality = text(at('QUALITY'));
+    line.dataset.key = heard.key;
     line.className = quality.includes('unfit') || at('STATUS') === 'rejected' ? 'fail' : '';
     line.textContent = '';
     CELLS.forEach(function (cell) {
@@ -388,6 +389,6 @@
 
   document.addEventListener('visibilitychange', redraw);
   connect();
-  setInterval(watch, 500);
+  setInterval(watch, 250);
   setInterval(redraw, 1000);
 })();

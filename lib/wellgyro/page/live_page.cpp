@@ -45,7 +45,7 @@ std::string Now() {
          Tile("Inclination, last station [\u00b0]", "inc", "") +
          Tile("Azimuth true, last station [\u00b0]", "azi", "sigma") +
          Tile("At rest", "rest", "more") + Tile("Stations", "stations", "stop") +
-         Tile("Samples lost", "lost", "") + Tile("Checks", "checks", "turned") +
+         Tile("Samples lost", "lost", "") + Tile("Checks", "checks", "turned", "big words") +
          "</dl>\n<p id=\"causes\"></p></section>\n";
 }
 

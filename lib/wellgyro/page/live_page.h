@@ -22,7 +22,7 @@ struct LivePageHead {
 /// The page of a running survey: one HTML page in the report's look, with its charts' library and
 /// its script within. It asks for nothing but server-sent events from /events of where it came from
 /// (LiveFeed) and, where asked, sends orders to /order; its own policy forbids anything else. It
-/// says by itself, within three seconds, that these events stopped, and asks again each second.
+/// says by itself, within four seconds, that these events stopped, and asks again each second.
 /// Faults as ParseWellStations of the plan.
 WELLGYRO_EXPORT Result<std::string> LivePage(const LivePageHead& head);
 
