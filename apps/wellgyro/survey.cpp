@@ -217,6 +217,12 @@ void AddPageOptions(CLI::App& command, SurveyPageOptions& page) {
                   "The path as planned, in any format that convert reads, drawn in the page")
       ->needs(address)
       ->type_name("FILE");
+  command
+      .add_option("--page-sigma-deg", page.sigma_deg,
+                  "The azimuth's sigma that a stop is to reach: the page says how long it must "
+                  "still last, as far as the gyros' noise goes")
+      ->needs(address)
+      ->check(CLI::Range(1e-3, 90.0));
 }
 
 void AddSays(CLI::App& command, Says& says) {

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/io/result/survey_json.h"
 #include "wellgyro/io/text_file.h"
@@ -115,6 +116,11 @@ Result<std::unique_ptr<SurveyPage>> SurveyPage::Open(const SurveyPageOptions& op
   }
   Result<std::optional<OtherWell>> plan = PlanIn(options.plan);
   if (!plan) return plan.fault();
+  if (options.sigma_deg > 0) {
+    page->feed_.Ask({.sigma_azimuth = FromDegrees(options.sigma_deg),
+                     .gyro = job.job.noise,
+                     .latitude = job.job.well.latitude});
+  }
   PageService service{.token = page->token_};
   Result<std::string> html = LivePage({.well = job.job.well.name,
                                        .identity = job.job.identity,

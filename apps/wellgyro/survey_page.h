@@ -27,6 +27,7 @@ struct SurveyPageOptions {
   std::string address;     ///< as PageAddressOf
   std::string token_file;  ///< keeps the token; empty: a new one each time
   std::string key;         ///< private key that signs the page's orders; empty: it sends none
+  double sigma_deg = 0;    ///< of an azimuth, that stops are to have; 0: not asked
   std::string plan;        ///< a survey file with the path as planned; empty: none
 };
 

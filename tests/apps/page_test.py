@@ -238,7 +238,7 @@ class LivePage(Live):
         self.SameAs("alone", "crowd")
         self.SameAs("straight", "crowd")
         print(f"load alone {100 * used['alone']:.2f} %, with 100 pages {100 * used['crowd']:.2f} %")
-        # At speed 1 it is a tenth of this: tests/bench/live_page.py.
+        # At speed 1: tests/bench/live_page.py.
         self.assertLess(used["crowd"] - used["alone"], 0.05)
 
     def test_more_readers_than_there_is_room_for(self):
@@ -343,9 +343,11 @@ class LivePage(Live):
                          + f"[identity]\noperator = {quoted[1]}\nfield = {quoted[2]}\n"
                          f"rig = {quoted[3]}\n")
         plan = self.Write("plan.csv", "MD[m],INC[deg],AZI[deg]\n0,25,300\n300,25,300\n")
-        self.Survey("hostile", "--page-plan", plan, job=job)
+        self.Survey("hostile", "--page-plan", plan, "--page-sigma-deg", "0.05", job=job)
         page = self.Page()
         self.Simulate(60)
+        page.Until("document.getElementById('now-more').textContent.includes("
+                   "' s more at least for \u00b1 0.05\u00b0')")
         page.Until("document.querySelectorAll('#stations tr').length > 25", 30)
         page.Until("document.querySelectorAll('figure.chart svg').length === 6", 30)
         self.assertEqual(page.errors, [])

@@ -56,6 +56,17 @@ TEST(LiveFeed, KeepsOfEachThingTheNewest) {
   EXPECT_THAT(feed.After(place, Duration{}), IsEmpty());
 }
 
+TEST(LiveFeed, SaysHowLongAStopMustLastForTheSigmaAsked) {
+  LiveFeed feed(7);
+  // N^2 / (sigma We cos L)^2 with N = sigma We 10 sqrt(s), at the equator, vertical: 100 s.
+  feed.Ask({.sigma_azimuth = 0.01, .gyro = {.angle_random_walk = 7.292115e-6}, .latitude = 0});
+  LiveFeed::Place place;
+  feed.Put(Glance{});
+  EXPECT_THAT(Rest(feed, place), HasSubstr("\"rest_asked_s\":null"));
+  feed.Put(Glance{.inclination = 0.0, .azimuth = 1.0});
+  EXPECT_THAT(Rest(feed, place), HasSubstr("\"rest_asked_s\":100.0"));
+}
+
 TEST(LiveFeed, AStationThatIsNowOfAnotherKindIsTheSame) {
   LiveFeed feed(7);
   feed.Put(StationAt(10));

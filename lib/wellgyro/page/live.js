@@ -125,7 +125,17 @@
     say('now-time', clock(heard.utime_us));
     const more = heard.rests_s === null ? 0 : heard.rest_needed_s - heard.rests_s;
     say('now-rest', heard.rests_s === null ? 'moving' : fixed(heard.rests_s, 0) + ' s');
-    say('now-more', heard.rests_s === null ? '' : more > 0 ? fixed(more, 0) + ' s more for a north' : 'long enough for a north');
+    say('now-more', heard.rests_s === null ? '' :
+      (more > 0 ? fixed(more, 0) + ' s more for a north' : 'long enough for a north') + asked(heard));
+  }
+
+  // What the gyros' noise alone takes: the least.
+  function asked(heard) {
+    if (heard.sigma_asked_deg === undefined) return '';
+    const of = '± ' + Number(heard.sigma_asked_deg.toPrecision(3)) + '°';
+    if (heard.rest_asked_s === null) return heard.inclination_deg === null ? '' : '; no rest gives ' + of + ' here';
+    const more = heard.rest_asked_s - heard.rests_s;
+    return more > 0 ? '; ' + fixed(more, 0) + ' s more at least for ' + of : '; ' + of + ' as far as noise goes';
   }
 
   const CELLS = [['MD[m]', 2], ['INC[deg]', 3], ['AZI_TRUE[deg]', 3], ['SIG_INC[deg]', 3], ['SIG_AZI[deg]', 3],

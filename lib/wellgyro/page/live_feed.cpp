@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/alignment/rest_needed.h"
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/result/json_table_internal.h"
@@ -129,7 +130,21 @@ void LiveFeed::Put(const Station& station) {
               {"row", table["rows"][0]}}));
 }
 
-void LiveFeed::Put(const Glance& glance) { PutIn("glance", "glance", Line(JsonOf(glance))); }
+void LiveFeed::Put(const Glance& glance) {
+  Json json = JsonOf(glance);
+  if (asked_) {
+    json["sigma_asked_deg"] = ToDegrees(asked_->sigma_azimuth);
+    json["rest_asked_s"] = nullptr;
+    if (glance.inclination && glance.azimuth) {
+      json["rest_asked_s"] =
+          Rounded(RestForSigma(asked_->sigma_azimuth, asked_->gyro, asked_->latitude,
+                               *glance.inclination, *glance.azimuth),
+                  1);
+    }
+  }
+  PutIn("glance", "glance", Line(json));
+}
+
 void LiveFeed::Put(const Status& status) { PutIn("status", "status", Line(JsonOf(status))); }
 
 void LiveFeed::Say(std::string_view sentence, std::int64_t utc_us) {

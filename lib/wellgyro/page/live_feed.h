@@ -14,10 +14,18 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/glance.h"
+#include "wellgyro/record/noise.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/status.h"
 
 namespace wellgyro {
+
+/// What azimuth a stop is to have, and what that depends on beside the hole.
+struct SigmaAsked {
+  double sigma_azimuth = 0;  ///< [rad]
+  NoiseCoefficients gyro;
+  double latitude = 0;  ///< [rad]
+};
 
 /// What the readers of a live page are told, as server-sent events with JSON in them: lib/docs/
 /// live-page.md names each.
@@ -35,6 +43,8 @@ class WELLGYRO_EXPORT LiveFeed {
 
   /// `epoch` names this run of the program: numbers of another one mean nothing here.
   explicit LiveFeed(std::int64_t epoch) : epoch_(epoch) {}
+  /// Glances say from now on how long a stop must last for that (RestForSigma).
+  void Ask(const SigmaAsked& asked) { asked_ = asked; }
 
   void Put(const Station& station);
   void Put(const Glance& glance);
@@ -69,6 +79,7 @@ class WELLGYRO_EXPORT LiveFeed {
   void PutIn(const std::string& slot, std::string_view event, const std::string& json);
   using Text = std::shared_ptr<const std::string>;
   const std::int64_t epoch_;
+  std::optional<SigmaAsked> asked_;
   mutable std::mutex mutex_;
   mutable std::condition_variable woken_;
   std::map<std::int64_t, Text> events_;        ///< by number, what is newest in its slot
