@@ -327,13 +327,19 @@ class LivePage(Live):
         answer, text = self.Ask("/order", "POST", remark, **own, **cookie)
         self.assertEqual(answer.status, 200)
         self.assertIn("The survey has obeyed: remark", text)
+        for what, more in (("adjust", ""), ("accept", "&md_m=10"), ("reject", "&md_m=20&run=1")):
+            _, text = self.Ask("/order", "POST", f"what={what}&who=Ada{more}", **own, **cookie)
+            self.assertIn(f"The survey has obeyed: {what}", text)
         for body in ("what=finish", "what=remark", "what=accept&md_m=deep", "what=accept&run=-1"):
             self.assertIn("Not sent", self.Ask("/order", "POST", body, **own, **cookie)[1])
         survey.send_signal(signal.SIGINT)
         survey.communicate(timeout=20)
         orders = self.Toml("orders", "run.toml")["operation"]
-        self.assertEqual([(o["kind"], o["key"], o["obeyed"], o["who"]) for o in orders],
-                         [("remark", "Ada", True, "Ada <b>")])
+        self.assertEqual([(o["kind"], o["key"], o["obeyed"], o.get("who")) for o in orders],
+                         [("remark", "Ada", True, "Ada <b>"), ("adjust", "Ada", True, None),
+                          ("accept", "Ada", True, "Ada"), ("reject", "Ada", True, "Ada")])
+        status = {row["MD[m]"]: row["STATUS"] for row in self.Rows("orders", "passes.csv")}
+        self.assertEqual((status["10.0000"], status["20.0000"]), ("definitive", "rejected"))
 
     @unittest.skipUnless(browser.PROGRAM, "no Chromium on this machine")
     def test_names_are_text_and_the_page_can_be_read(self):
