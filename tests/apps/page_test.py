@@ -332,6 +332,10 @@ class LivePage(Live):
             self.assertIn(f"The survey has obeyed: {what}", text)
         for body in ("what=finish", "what=remark", "what=accept&md_m=deep", "what=accept&run=-1"):
             self.assertIn("Not sent", self.Ask("/order", "POST", body, **own, **cookie)[1])
+        # An order holds as from the samples of its time on, and is in the files soon after.
+        end = time.monotonic() + 10
+        while ",rejected," not in self.Read("orders", "passes.csv") and time.monotonic() < end:
+            time.sleep(0.1)
         survey.send_signal(signal.SIGINT)
         survey.communicate(timeout=20)
         orders = self.Toml("orders", "run.toml")["operation"]
