@@ -329,12 +329,14 @@ class StationColumns {
     columns_["easting_m"] = Array(std::move(easting));
   }
   void AddCovariances() {
-    std::vector<Eigen::Matrix3d> cov;
+    std::vector<Eigen::Matrix3d> cov, tangent;
     for (const Station& s : stations_) {
-      cov.push_back(Has(s.quality, Quality::kUnfit) ? Eigen::Matrix3d::Constant(kNone)
-                                                    : s.cov_p_WT_W);
+      const bool unfit = Has(s.quality, Quality::kUnfit);
+      cov.push_back(unfit ? Eigen::Matrix3d::Constant(kNone) : s.cov_p_WT_W);
+      tangent.push_back(unfit ? Eigen::Matrix3d::Constant(kNone) : s.cov_tangent_W);
     }
     columns_["cov"] = Matrices(cov);
+    columns_["cov_tangent"] = Matrices(tangent);
   }
 
   const std::vector<Station>& stations_;

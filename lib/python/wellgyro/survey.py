@@ -70,7 +70,7 @@ def _job_of(name, job):
 
 def _frame(columns):
     frame = pd.DataFrame({("pass" if k == "pass_" else k): v for k, v in columns.items()
-                          if k != "cov"})
+                          if k not in ("cov", "cov_tangent")})
     if "utc_ns" in frame:
         frame.insert(frame.columns.get_loc("utc_ns"), "utc",
                      pd.to_datetime(frame.pop("utc_ns"), unit="ns", utc=True))
@@ -110,6 +110,12 @@ class Result:
     def cov(self) -> np.ndarray:
         """(n, 3, 3): of north, east and TVD of the stations [m2]; NaN where a station is unfit."""
         return self._outcome.stations(self.tool)["cov"]
+
+    @property
+    def cov_tangent(self) -> np.ndarray:
+        """(n, 3, 3): of the hole's unit tangent, north, east and down [rad2]; regular at vertical,
+        NaN where a station is unfit."""
+        return self._outcome.stations(self.tool)["cov_tangent"]
 
     @property
     def checks(self) -> pd.DataFrame:

@@ -7,6 +7,7 @@
 
 #include "wellgyro/bus/batch_internal.h"
 #include "wellgyro/bus/fields_internal.h"
+#include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
 namespace {
@@ -47,6 +48,9 @@ Result<Message> SurveyStation(std::span<const std::byte> bytes) {
   sent.station.quality = static_cast<Quality>(quality);
   MirrorUpper(sent.station.cov_md_inc_azi);
   MirrorUpper(sent.station.cov_p_WT_W);
+  Station& s = sent.station;
+  const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(s.inclination, s.azimuth);
+  s.cov_tangent_W = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
   return Message(std::move(sent));
 }
 

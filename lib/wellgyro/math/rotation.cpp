@@ -28,4 +28,12 @@ Eigen::Vector3d Tangent(double inclination, double azimuth) {
   return {s * std::cos(azimuth), s * std::sin(azimuth), std::cos(inclination)};
 }
 
+Eigen::Matrix<double, 3, 2> TangentByAngles(double inclination, double azimuth) {
+  const double si = std::sin(inclination), ci = std::cos(inclination);
+  const double sa = std::sin(azimuth), ca = std::cos(azimuth);
+  Eigen::Matrix<double, 3, 2> slope;
+  slope << ci * ca, -si * sa, ci * sa, si * ca, -si, 0;
+  return slope;
+}
+
 }  // namespace wellgyro

@@ -17,4 +17,7 @@ WELLGYRO_EXPORT Eigen::Matrix3d AttitudeMatrix(double azimuth, double inclinatio
 /// Unit tangent of the hole in L: (sin I cos A, sin I sin A, cos I).
 WELLGYRO_EXPORT Eigen::Vector3d Tangent(double inclination, double azimuth);
 
+/// Its derivative by (inclination, azimuth): the high side and, sin I times as long, the right.
+WELLGYRO_EXPORT Eigen::Matrix<double, 3, 2> TangentByAngles(double inclination, double azimuth);
+
 }  // namespace wellgyro

@@ -39,8 +39,12 @@ struct Station {
   double inclination = 0;  ///< [rad]
   double azimuth = 0;      ///< true [rad], [0, 2 pi)
   double toolface = 0;     ///< of the tool, high side to reference mark [rad]
-  /// Of (md, inclination, azimuth) [m, rad].
+  /// Of (md, inclination, azimuth) [m, rad]: as written, at the edge. Near vertical an azimuth has
+  /// no sigma that means much; what is told of the direction there is in `cov_tangent_W`.
   Eigen::Matrix3d cov_md_inc_azi = Eigen::Matrix3d::Zero();
+  /// Of the unit tangent (sin I cos A, sin I sin A, cos I), regular at every inclination; across it
+  /// alone, so that its rank is two [rad^2].
+  Eigen::Matrix3d cov_tangent_W = Eigen::Matrix3d::Zero();
   Eigen::Vector3d p_WT_W = Eigen::Vector3d::Zero();      ///< north, east, TVD in the well frame [m]
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< [m^2]
   double dogleg_severity = 0;                            ///< over the leg that ends here [rad/m]

@@ -38,6 +38,16 @@ HoleAttitude AttitudeOfHole(const AttitudeSample& tool, const StringSpec& string
   return hole;
 }
 
+Eigen::Matrix3d CovarianceOfTangent(const HoleAttitude& hole, const Eigen::Matrix3d& cov_axis_L,
+                                    const StringSpec& string) {
+  const Eigen::Vector3d t = Tangent(hole.inclination, hole.azimuth);
+  const double sag = string.sigma_sag * std::sin(hole.inclination);
+  const double lean = string.sigma_misalignment;
+  const Eigen::Vector3d hangs = sag * TangentByAngles(hole.inclination, hole.azimuth).col(0);
+  return cov_axis_L + lean * lean * (Eigen::Matrix3d::Identity() - t * t.transpose()) +
+         hangs * hangs.transpose();
+}
+
 double DirectionOfMark(const AttitudeSample& tool) {
   // R_LT e_x = Rz(A) (cos I cos T, sin T, .)
   return WrapTwoPi(tool.azimuth + std::atan2(std::sin(tool.toolface),

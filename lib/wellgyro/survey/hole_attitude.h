@@ -24,6 +24,12 @@ struct HoleAttitude {
 /// pi^2/3, that of no knowledge at all.
 WELLGYRO_EXPORT HoleAttitude AttitudeOfHole(const AttitudeSample& tool, const StringSpec& string);
 
+/// Covariance of the hole's unit tangent [rad^2], of that of the tool's axis. Regular at every
+/// inclination: the string's errors are of directions too.
+WELLGYRO_EXPORT Eigen::Matrix3d CovarianceOfTangent(const HoleAttitude& hole,
+                                                    const Eigen::Matrix3d& cov_axis_L,
+                                                    const StringSpec& string);
+
 /// True direction in which the reference mark points, over the horizontal plane [rad]; the error of
 /// the azimuth passes into it one to one. Degenerate only for a horizontal tool with the mark
 /// straight up or down, where it is the azimuth of the axis or its opposite.

@@ -52,12 +52,10 @@ class SystematicCovariance {
       : cov_tie_in_(cov_tie_in), legs_unseen_(legs_unseen) {}
 
   Eigen::Matrix3d Add(const Station& station) {
-    const double si = std::sin(station.inclination), ci = std::cos(station.inclination);
-    const double sa = std::sin(station.azimuth), ca = std::cos(station.azimuth);
-    Eigen::Matrix<double, 3, 2> turn;
-    turn.col(0) = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::sqrt(station.cov_md_inc_azi(1, 1));
-    turn.col(1) = Eigen::Vector3d(-si * sa, si * ca, 0) * std::sqrt(station.cov_md_inc_azi(2, 2));
-    const Eigen::Vector3d tangent(si * ca, si * sa, ci);
+    const Eigen::Vector2d sigma = station.cov_md_inc_azi.diagonal().tail<2>().cwiseSqrt();
+    const Eigen::Matrix<double, 3, 2> turn =
+        TangentByAngles(station.inclination, station.azimuth) * sigma.asDiagonal();
+    const Eigen::Vector3d tangent = Tangent(station.inclination, station.azimuth);
     if (last_) {
       sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
       if (legs_unseen_) course_ += UnseenCourse(*last_, station);

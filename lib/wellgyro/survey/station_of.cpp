@@ -2,9 +2,20 @@
 
 #include <algorithm>
 
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/hole_attitude.h"
 
 namespace wellgyro {
+namespace {
+
+/// Of the tool's unit axis [rad^2].
+Eigen::Matrix3d CovarianceOfAxis(const AttitudeSample& tool, const StationState* state) {
+  if (state) return state->tangent * state->cov * state->tangent.transpose();
+  const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(tool.inclination, tool.azimuth);
+  return slope * tool.cov_attitude.topLeftCorner<2, 2>() * slope.transpose();
+}
+
+}  // namespace
 
 Station StationOf(const Job& job, const Draft& draft, const StationState* state) {
   const AttitudeSample& tool = state ? state->attitude : draft.attitude;
@@ -15,6 +26,7 @@ Station StationOf(const Job& job, const Draft& draft, const StationState* state)
   s.toolface = tool.toolface;
   s.quality |= tool.quality;
   s.cov_md_inc_azi.bottomRightCorner<2, 2>() = hole.cov;
+  s.cov_tangent_W = CovarianceOfTangent(hole, CovarianceOfAxis(tool, state), job.string);
   double sigma_md = job.errors.depth_sigma;
   if (state) sigma_md = std::max(sigma_md, state->along.sigma_md);
   s.cov_md_inc_azi(0, 0) = sigma_md * sigma_md;

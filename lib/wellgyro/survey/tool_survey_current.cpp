@@ -250,6 +250,7 @@ void ToolSurvey::KeepToWhatWasTold(std::vector<Station>& stations) const {
     station.azimuth = as.azimuth;
     station.toolface = as.toolface;
     station.cov_md_inc_azi = as.cov_md_inc_azi;
+    station.cov_tangent_W = as.cov_tangent_W;
     station.p_WT_W = as.p_WT_W;
     station.cov_p_WT_W = as.cov_p_WT_W;
     station.dogleg_severity = as.dogleg_severity;

@@ -15,6 +15,7 @@
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
@@ -23,6 +24,7 @@ namespace {
 constexpr std::string_view kColumns =
     "MD[m],INC[deg],AZI_TRUE[deg],GTF[deg],TVD[m],N[m],E[m],DLS[deg/30m],VAR_NN[m2],COV_NE[m2],"
     "COV_NV[m2],VAR_EE[m2],COV_EV[m2],VAR_VV[m2],SIG_INC[deg],SIG_AZI[deg],KIND,QUALITY";
+constexpr std::string_view kDepthColumn = ",SIG_MD[m]";  // of passes.csv
 constexpr std::string_view kGridColumns = ",AZI_GRID[deg],NORTHING[m],EASTING[m]";
 constexpr std::string_view kPassColumns = "RUN,PASS,STATUS,REVISION,";
 
@@ -31,7 +33,14 @@ constexpr std::size_t kSigmas = 8;    // the last of them, empty where a station
 constexpr std::size_t kFields = 18;
 constexpr std::size_t kFieldsWithGrid = 21;
 
-void AppendStation(std::string& text, const Station& s, const WellGrid* grid) {
+void AppendGrid(std::string& text, const Station& s, const WellGrid* grid) {
+  if (grid == nullptr) return;
+  const GridPoint p = grid->At(s.p_WT_W.x(), s.p_WT_W.y());
+  text += ',' + AzimuthDeg(s.azimuth - p.convergence) + ',' + Metres(p.northing) + ',' +
+          Metres(p.easting);
+}
+
+void AppendStation(std::string& text, const Station& s) {
   const auto& c = s.cov_p_WT_W;
   text += Metres(s.md) + ',' + AngleDeg(s.inclination) + ',' + AzimuthDeg(s.azimuth) + ',' +
           AzimuthDeg(s.toolface) + ',' + Metres(s.p_WT_W.z()) + ',' + Metres(s.p_WT_W.x()) + ',' +
@@ -48,16 +57,6 @@ void AppendStation(std::string& text, const Station& s, const WellGrid* grid) {
   text += ',';
   text += WordOf(s.kind);
   text += ',' + QualityText(s.quality);
-  if (grid) {
-    const GridPoint p = grid->At(s.p_WT_W.x(), s.p_WT_W.y());
-    text += ',' + AzimuthDeg(s.azimuth - p.convergence) + ',' + Metres(p.northing) + ',' +
-            Metres(p.easting);
-  }
-  text += '\n';
-}
-
-std::string Header(std::string_view first, const WellGrid* grid) {
-  return fmt::format("{}{}{}\n", first, kColumns, grid ? kGridColumns : "");
 }
 
 // One line cut at its commas, with the column at which each field begins.
@@ -143,6 +142,8 @@ class Reader {
     s.cov_p_WT_W << v[8], v[9], v[10], v[9], v[11], v[12], v[10], v[12], v[13];
     s.cov_md_inc_azi(1, 1) = std::pow(FromDegrees(v[14]), 2);
     s.cov_md_inc_azi(2, 2) = std::pow(FromDegrees(v[15]), 2);
+    const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(s.inclination, s.azimuth);
+    s.cov_tangent_W = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
     return s;
   }
 
@@ -164,16 +165,25 @@ class Reader {
 }  // namespace
 
 std::string SurveyCsv(std::span<const Station> stations, const WellGrid* grid) {
-  std::string text = Header("", grid);
-  for (const Station& s : stations) AppendStation(text, s, grid);
+  std::string text = fmt::format("{}{}\n", kColumns, grid ? kGridColumns : "");
+  for (const Station& s : stations) {
+    AppendStation(text, s);
+    AppendGrid(text, s, grid);
+    text += '\n';
+  }
   return text;
 }
 
 std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid) {
-  std::string text = Header(kPassColumns, grid);
+  std::string text =
+      fmt::format("{}{}{}{}\n", kPassColumns, kColumns, kDepthColumn, grid ? kGridColumns : "");
   for (const Station& s : stations) {
     text += fmt::format("{},{},{},{},", s.run, WordOf(s.pass), WordOf(s.status), s.revision);
-    AppendStation(text, s, grid);
+    AppendStation(text, s);
+    text += ',';
+    if (!Has(s.quality, Quality::kUnfit)) text += Significant(std::sqrt(s.cov_md_inc_azi(0, 0)));
+    AppendGrid(text, s, grid);
+    text += '\n';
   }
   return text;
 }

@@ -21,7 +21,8 @@ namespace wellgyro {
 /// outside the projection.
 WELLGYRO_EXPORT std::string SurveyCsv(std::span<const Station> stations, const WellGrid* grid);
 
-/// passes.csv: the same columns after RUN,PASS,STATUS,REVISION.
+/// passes.csv: the same columns after RUN,PASS,STATUS,REVISION, and SIG_MD[m] behind QUALITY: what
+/// the depth's error adds at an MD.
 WELLGYRO_EXPORT std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid);
 
 /// checks.csv: CODE,RUN,PASS,MD[m],VALUE,SIGMA,LIMIT,UNIT,LIMIT_SOURCE,VERDICT. What a check does
