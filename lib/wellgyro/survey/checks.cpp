@@ -320,7 +320,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
       checks.push_back(CheckCalibrationDate(*job.tool, run.begin));
       checks.back().run = run.run;
     }
-    CheckDiagnosis(run, checks);
+    CheckDiagnosis(run, inputs.passes, checks);
     CheckFixes(job, run, checks);
     checks.insert(checks.end(), run.stop_checks.begin(), run.stop_checks.end());
     CheckStops(job, run, checks);

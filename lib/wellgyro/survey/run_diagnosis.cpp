@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <fmt/core.h>
 
@@ -182,6 +183,20 @@ std::vector<const RunCause*> Named(const std::vector<RunCause>& causes) {
   return set;
 }
 
+/// One of the causes named moves the end by more than a sigma in its direction.
+bool MovesTheEnd(const RunDiagnosis& diagnosis, std::int32_t run, std::span<const Station> passes) {
+  const Station* end = nullptr;
+  for (const Station& s : passes) {
+    if (s.run == run && (end == nullptr || s.md > end->md)) end = &s;
+  }
+  if (end == nullptr) return false;
+  const Eigen::LDLT<Eigen::Matrix3d> cov(end->cov_p_WT_W);
+  const std::vector<const RunCause*> named = Named(diagnosis.causes);
+  return std::any_of(named.begin(), named.end(), [&](const RunCause* cause) {
+    return cause->shift_W && !(cause->shift_W->dot(cov.solve(*cause->shift_W)) <= 1);
+  });
+}
+
 std::string WordsOf(const RunCause& cause, double share) {
   std::string text = fmt::format("{} ({:.2f}", cause.code, share);
   if (cause.size) {
@@ -255,7 +270,8 @@ RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots)
   return diagnosis;
 }
 
-void CheckDiagnosis(const RunSummary& run, std::vector<Check>& checks) {
+void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
+                    std::vector<Check>& checks) {
   const RunDiagnosis* found = run.fit && run.fit->diagnosis ? &*run.fit->diagnosis : nullptr;
   if (found == nullptr || found->causes.empty()) {
     checks.push_back(NotDone("diagnosis", run.run,
@@ -266,8 +282,7 @@ void CheckDiagnosis(const RunSummary& run, std::vector<Check>& checks) {
   const double limit = -std::log(kDiagnosisFalseAlarms);
   Check check{.code = "diagnosis", .run = run.run, .value = found->ln_odds, .unit = "1"};
   const bool shown = !(found->ln_odds <= limit);
-  // A warning: what fails a run are the checks, whose rate over clean runs is measured.
-  check.verdict = shown ? Verdict::kWarn : Verdict::kPass;
+  if (shown) check.verdict = MovesTheEnd(*found, run.run, passes) ? Verdict::kFail : Verdict::kWarn;
   // Without a limit of its own: what is told of the check are the causes.
   if (shown) {
     check.limit_source = WordsOf(*found);

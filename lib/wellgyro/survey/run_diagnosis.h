@@ -23,9 +23,12 @@ std::vector<CauseSpec> CausesLookedFor();
 /// What the estimator's tests of CausesLookedFor() come to, in words and where it was.
 RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots);
 
-/// The check `diagnosis`: warns where a fault is found, naming the likeliest, or several that
-/// together have 95 %.
-void CheckDiagnosis(const RunSummary& run, std::vector<Check>& checks);
+/// The check `diagnosis`, naming the likeliest fault, or several that together have 95 %. It warns
+/// where a fault is found, and fails where one of those named has moved the end of the run by more
+/// than a sigma of its deepest station among `passes`: ends beyond their 95 % region are then more
+/// than twice as many as stated.
+void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
+                    std::vector<Check>& checks);
 
 /// The causes of a run with those that its samples alone tell, by `checks` that fail, in front: a
 /// dead, stuck or swapped axis leaves nothing that the adjustment could judge.
