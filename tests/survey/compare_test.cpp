@@ -154,7 +154,7 @@ struct Tally {
 class Closure : public testing::TestWithParam<const char*> {};
 
 // Nothing but the models' own errors, drawn: every statistic lies in its band of four sigmas, 500
-// pairs in all, and of the pairs no more fail and warn than were promised.
+// pairs each, and of the pairs no more fail and warn than were promised.
 TEST_P(Closure, UnderNoDifferenceEveryStatisticIsInItsBand) {
   const bool good = std::string(GetParam()) == "good";
   const ErrorModel a = good ? GoodTool() : *OwnModel(GetParam());
@@ -162,7 +162,7 @@ TEST_P(Closure, UnderNoDifferenceEveryStatisticIsInItsBand) {
   Random random(20261122);
   std::map<std::string, Tally> tallies;
   int failed = 0, warned = 0;
-  constexpr int kPairs = 250;
+  constexpr int kPairs = 500;
   CompareOptions options;
   for (int i = 0; i < kPairs; ++i) {
     const Pair pair = Drawn(a, b, options.local_sigma, random);
