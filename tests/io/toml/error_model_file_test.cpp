@@ -1,5 +1,6 @@
 #include "wellgyro/io/toml/error_model_file.h"
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -8,6 +9,8 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/text_file.h"
+#include "wellgyro/io/toml/model_catalogue.h"
+#include "wellgyro/uncertainty/formula_weight.h"
 
 namespace wellgyro {
 namespace {
@@ -149,6 +152,74 @@ TEST(ErrorModelFile, MissingParametersOfTerms) {
   EXPECT_THAT(without("spe90408-1.toml", "cant_deg"),
               AllOf(HasSubstr("term AXY-B"), HasSubstr("cant_deg")));
   EXPECT_THAT(without("spe90408-4.toml", "min_distance_m"), HasSubstr("min_distance_m"));
+}
+
+/// A number to the last bits: degrees and hours are taken out and put in again.
+void ExpectNear(double a, double b, const std::string& what) {
+  EXPECT_NEAR(a, b, 1e-14 * std::abs(b)) << what;
+}
+
+void ExpectSameTerms(const ErrorModel& a, const ErrorModel& b) {
+  ASSERT_EQ(a.terms.size(), b.terms.size());
+  for (std::size_t i = 0; i < a.terms.size(); ++i) {
+    EXPECT_EQ(a.terms[i].name, b.terms[i].name);
+    EXPECT_EQ(a.terms[i].weight, b.terms[i].weight);
+    EXPECT_EQ(a.terms[i].propagation, b.terms[i].propagation);
+    EXPECT_EQ(a.terms[i].unit, b.terms[i].unit);
+    ExpectNear(a.terms[i].magnitude, b.terms[i].magnitude, b.name + " " + b.terms[i].name);
+  }
+}
+
+TEST(ErrorModelFile, WhatIsWrittenIsReadBack) {
+  for (const ErrorModel& model : OwnModels()) {
+    const auto text = WriteErrorModel(model);
+    ASSERT_TRUE(text) << text.fault().text;
+    const auto again = ReadErrorModel(*text, model.name);
+    ASSERT_TRUE(again) << model.name << ": " << again.fault().text;
+    EXPECT_EQ(again->source, model.source);
+    EXPECT_EQ(again->doubled_tie_on, model.doubled_tie_on);
+    ExpectNear(again->max_inclination, model.max_inclination, model.name);
+    ExpectNear(again->cant.value_or(0), model.cant.value_or(0), model.name);
+    ExpectNear(again->tortuosity.value_or(0), model.tortuosity.value_or(0), model.name);
+    ExpectNear(again->min_course_length.value_or(0), model.min_course_length.value_or(0),
+               model.name);
+    ASSERT_EQ(again->stationary.has_value(), model.stationary.has_value());
+    if (model.stationary) {
+      EXPECT_EQ(again->stationary->axes, model.stationary->axes);
+      EXPECT_EQ(again->stationary->noise_reduction_at_stations,
+                model.stationary->noise_reduction_at_stations);
+      ExpectNear(again->stationary->initialise.value_or(-9),
+                 model.stationary->initialise.value_or(-9), model.name);
+    }
+    ASSERT_EQ(again->continuous.size(), model.continuous.size());
+    for (std::size_t i = 0; i < model.continuous.size(); ++i) {
+      ExpectNear(again->continuous[i].end, model.continuous[i].end, model.name);
+      ExpectNear(again->continuous[i].speed, model.continuous[i].speed, model.name);
+    }
+    ExpectSameTerms(*again, model);
+  }
+}
+
+TEST(ErrorModelFile, RemarksStandBesideTheirTerms) {
+  const auto model = ReadErrorModel(kGood, "small.toml");
+  const std::string remarks[] = {"", "assumed 0.3"};
+  const auto text = WriteErrorModel(*model, remarks);
+  ASSERT_TRUE(text);
+  EXPECT_GT(text->find("# assumed 0.3"), text->find("GXY-B1S"));
+  EXPECT_LT(text->find("# assumed 0.3"), text->find("GXY-GRW"));
+  EXPECT_TRUE(ReadErrorModel(*text, "again.toml"));
+}
+
+TEST(ErrorModelFile, AFormulaOfItsOwnIsNotWritten) {
+  ErrorModel model = *ReadErrorModel(kGood, "small.toml");
+  FormulaTexts texts;
+  texts.azimuth = "2";
+  const auto formula = FormulaWeight::Compile(texts);
+  ASSERT_TRUE(formula);
+  model.terms[1].formula = *formula;
+  const auto text = WriteErrorModel(model);
+  ASSERT_FALSE(text);
+  EXPECT_THAT(text.fault().text, HasSubstr("GXY-GRW"));
 }
 
 }  // namespace

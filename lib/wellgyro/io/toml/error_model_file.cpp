@@ -10,6 +10,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
+#include "wellgyro/io/toml/toml_writer_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -45,6 +46,11 @@ constexpr Unit kUnits[] = {
 const TomlWords<GyroAxes> kAxes = {
     {"xyz", GyroAxes::kXyz}, {"xy", GyroAxes::kXy}, {"z", GyroAxes::kZ}};
 
+const TomlWords<Propagation> kReaches = {{"random", Propagation::kRandom},
+                                         {"systematic", Propagation::kSystematic},
+                                         {"well", Propagation::kWell},
+                                         {"global", Propagation::kGlobal}};
+
 double SiPer(TomlTable& table, const ErrorTerm& term, const std::string& unit) {
   std::vector<std::string_view> fitting;
   for (const Unit& known : kUnits) {
@@ -68,12 +74,7 @@ void ReadRest(TomlTable& table, ErrorTerm& term) {
   term.unit = *unit;
   term.unit_si = SiPer(table, term, *unit);
   term.magnitude = magnitude * term.unit_si;
-  term.propagation = table.Need(
-      "propagation",
-      table.FindWord<Propagation>("propagation", {{"random", Propagation::kRandom},
-                                                  {"systematic", Propagation::kSystematic},
-                                                  {"well", Propagation::kWell},
-                                                  {"global", Propagation::kGlobal}}));
+  term.propagation = table.Need("propagation", table.FindWord("propagation", kReaches));
 }
 
 /// Every complaint about a term names it.
@@ -152,6 +153,49 @@ ErrorModel ReadModel(TomlTable& root) {
   return model;
 }
 
+template <class T>
+std::string_view WordIn(const TomlWords<T>& words, T value) {
+  return std::ranges::find(words, value, [](const auto& word) { return word.second; })->first;
+}
+
+void WriteModes(const ErrorModel& model, TomlWriter& out) {
+  if (model.stationary) {
+    const StationaryMode& mode = *model.stationary;
+    out.Table("stationary");
+    out.Text("axes", WordIn(kAxes, mode.axes));
+    out.Number("end_deg", mode.end / units::kDeg);
+    if (mode.initialise) out.Number("initialise_deg", *mode.initialise / units::kDeg);
+    if (mode.min_distance) out.Number("min_distance_m", *mode.min_distance);
+    if (mode.noise_reduction) out.Number("noise_reduction", *mode.noise_reduction);
+    out.Text("noise_reduction_at",
+             mode.noise_reduction_at_stations ? "every_fix" : "initialisation");
+  }
+  for (const ContinuousZone& zone : model.continuous) {
+    out.Element("continuous");
+    out.Text("axes", WordIn(kAxes, zone.axes));
+    out.Number("begin_deg", zone.begin / units::kDeg);
+    out.Number("end_deg", zone.end / units::kDeg);
+    out.Number("speed_m_per_h", zone.speed * units::kHour);
+  }
+}
+
+/// In the unit in which it was published; else the first that fits.
+void WriteTerm(const ErrorTerm& term, TomlWriter& out) {
+  const auto fits = [&](const Unit& unit) {
+    return unit.dimension == term.weight->dimension &&
+           (term.unit.empty() || unit.name == term.unit);
+  };
+  auto unit = std::ranges::find_if(kUnits, fits);
+  if (unit == std::end(kUnits)) {
+    unit = std::ranges::find(kUnits, term.weight->dimension, &Unit::dimension);
+  }
+  out.Text("name", term.name);
+  out.Text("weight", term.weight->code);
+  out.Number("magnitude", term.magnitude / unit->si);
+  out.Text("unit", unit->name);
+  out.Text("propagation", WordIn(kReaches, term.propagation));
+}
+
 }  // namespace
 
 Result<ErrorModel> ReadErrorModel(std::string_view text, const std::string& source) {
@@ -162,6 +206,35 @@ Result<ErrorModel> ReadErrorModelFile(const std::filesystem::path& path) {
   const Result<std::string> text = ReadTextFile(path);
   if (!text) return text.fault();
   return ReadErrorModel(*text, path.string());
+}
+
+Result<std::string> WriteErrorModel(const ErrorModel& model, std::span<const std::string> remarks) {
+  TomlWriter out;
+  out.Text("format", kFormat);
+  out.Text("name", model.name);
+  out.Text("revision", model.revision);
+  out.Text("source", model.source);
+  if (!model.description.empty()) out.Text("description", model.description);
+  out.Number("inclination_max_deg", model.max_inclination / units::kDeg);
+  out.Number("vertical_limit_deg", model.vertical_limit / units::kDeg);
+  out.Text("surface_tie_on", model.doubled_tie_on ? "doubled" : "single");
+  if (model.cant) out.Number("cant_deg", *model.cant / units::kDeg);
+  if (model.min_course_length) out.Number("min_course_length_m", *model.min_course_length);
+  if (model.tortuosity) {
+    out.Number("tortuosity_deg_per_100ft", *model.tortuosity / units::kDegPer100ft);
+  }
+  WriteModes(model, out);
+  for (std::size_t i = 0; i < model.terms.size(); ++i) {
+    if (model.terms[i].formula) {
+      return Fault{FaultCode::kRange,
+                   "model " + model.name + ": term " + model.terms[i].name +
+                       " has a formula of its own, for which wellgyro.error-model/1 has no word"};
+    }
+    out.Element("term");
+    if (i < remarks.size() && !remarks[i].empty()) out.Comment(remarks[i]);
+    WriteTerm(model.terms[i], out);
+  }
+  return out.text();
 }
 
 }  // namespace wellgyro

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,5 +20,11 @@ WELLGYRO_EXPORT Result<ErrorModel> ReadErrorModel(std::string_view text, const s
 
 /// The same from the file at `path`.
 WELLGYRO_EXPORT Result<ErrorModel> ReadErrorModelFile(const std::filesystem::path& path);
+
+/// The same as text, read back with magnitudes to the last bit but one, and `remarks` as comments
+/// before the terms of their numbers. A Fault names a term whose weighting function is the model's
+/// own formula, for which the format has no word.
+WELLGYRO_EXPORT Result<std::string> WriteErrorModel(const ErrorModel& model,
+                                                    std::span<const std::string> remarks = {});
 
 }  // namespace wellgyro
