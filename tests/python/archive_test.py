@@ -13,23 +13,20 @@ import threading
 import time
 import unittest
 
-import dask
+import numpy as np
 import pandas as pd
-from distributed import Client, LocalCluster
+from distributed import Client
 
-from wellgyro import archive
+import wellgyro as wg
+from wellgyro import _fleet, archive
 from package_test import JOB, PROGRAM, SIMULATION
 
 RUNS, LOGS, KILLS = 40, 8, 5
 DAMAGED, WRONG = (3, 17), (5, 23)
 
 
-dask.config.set({"distributed.scheduler.allowed-failures": 50})
-
-
 def Cluster(workers):
-    return LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None,
-                        host="127.0.0.1", silence_logs=50)
+    return archive.local_cluster(workers, dashboard_address=None, silence_logs=50)
 
 
 def Files(out):
@@ -118,6 +115,24 @@ class Archive(unittest.TestCase):
         whole = {n: b for n, b in Files(out).items() if ".part" not in n}
         self.assertEqual(whole, Files(self.serial))
 
+    def test_workers_that_die_while_they_start_are_replaced(self):
+        with Cluster(2) as cluster, Client(cluster) as client:
+            # Killed, and again as soon as there is another process: Dask gives such workers up.
+            for pid in client.run(os.getpid).values():
+                os.kill(pid, signal.SIGKILL)
+            deadline, struck = time.monotonic() + 60, 0
+            while struck < 2 and time.monotonic() < deadline:
+                for nanny in list(cluster.workers.values()):
+                    if pid := nanny.pid:
+                        with contextlib.suppress(ProcessLookupError):
+                            os.kill(pid, signal.SIGKILL)
+                            struck += 1
+                time.sleep(0.02)
+            self.assertGreaterEqual(struck, 2)
+            rows = archive.process(self.runs[:6], self.Path("starting"), client)
+        self.assertEqual(len(rows), 6)
+        self.assertEqual([r["name"] for r in rows if r["verdict"] == "error"], ["run-003"])
+
     def test_a_second_call_does_nothing_and_a_changed_input_its_runs(self):
         out = self.Path("again")
         shutil.copytree(self.serial, out)
@@ -143,8 +158,88 @@ class Archive(unittest.TestCase):
             self.assertEqual(archive.main(["report", out]), 0)
         with open(os.path.join(out, "report.html"), encoding="utf-8") as file:
             page = file.read()
-        for text in ("run-003", "run-005", "gravity", f"Archive of {RUNS} runs"):
+        for text in ("run-003", "run-005", "gravity", f"Archive of {RUNS} runs", "Causes",
+                     "Tool errors against their priors over time", "gyro_bias_x",
+                     "not judged: fewer than three tools"):
             self.assertIn(text, page)
+        self.assertNotIn("src=", page)
+        runs = pd.read_csv(os.path.join(out, "runs.csv"), keep_default_na=False)
+        self.assertEqual(set(runs.well[runs.verdict != "error"]), {"Slant"})
+
+    def test_a_tool_that_stands_apart_is_named(self):
+        random_ = np.random.default_rng(22)
+        errors = pd.DataFrame([(f"tool {t}", code, random_.normal() + 4 * (t == 3 and code == "b"))
+                               for t in range(8) for code in "abc" for _ in range(12)],
+                              columns=["tool", "code", "ratio"])
+        found = _fleet.out_of_family(errors)
+        self.assertEqual(list(zip(found.tool, found.code)), [("tool 3", "b")])
+        self.assertEqual(len(_fleet.out_of_family(errors[errors.tool < "tool 2"])), 0)
+
+    def test_an_empirical_model_of_runs_of_each_well(self):
+        """300 runs of 60 wells as folders of an archive: a misalignment of 0.2 deg, one a run, and
+        noise of 0.1 deg in both directions."""
+        out, random_ = self.Path("fleet"), np.random.default_rng(5)
+        md, rows = np.arange(0.0, 1000.0, 50.0), []
+        for well in range(60):
+            azimuth = random_.uniform(0, 360)
+            for run in range(5):
+                name = f"w{well}-{run}"
+                inclination = 20 + md / 20
+                across = np.sin(np.radians(inclination))
+                frame = pd.DataFrame({
+                    "md_m": md,
+                    "inclination_deg": inclination + random_.normal(0, 0.2) * across
+                    + random_.normal(0, 0.1, len(md)),
+                    "azimuth_true_deg": (azimuth + md / 30 + random_.normal(0, 0.1, len(md))
+                                         / across) % 360})
+                os.makedirs(os.path.join(out, name))
+                frame.to_parquet(os.path.join(out, name, "stations.parquet"))
+                rows.append((name, f"well {well}", 60.0, "pass"))
+        rows.append(("gone", "well 0", 60.0, "fail"))
+        pd.DataFrame(rows, columns=["name", "well", "latitude_deg", "verdict"]).to_csv(
+            os.path.join(out, "runs.csv"), index=False)
+        assumed = self.Write("assumed.toml", """format = "wellgyro.error-model/1"
+name = "small"
+revision = "1"
+source = "test"
+inclination_max_deg = 100
+vertical_limit_deg = 1e-4
+surface_tie_on = "doubled"
+[[term]]
+name = "XYM1"
+weight = "XYM1"
+magnitude = 0.1
+unit = "deg"
+propagation = "systematic"
+[[term]]
+name = "DSTG"
+weight = "DST"
+magnitude = 2.5e-07
+unit = "1/m"
+propagation = "global"
+""")
+        made = self.Path("made.toml")
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            code = archive.main(["model", out, "--assumed", assumed, "--out", made])
+        self.assertEqual(code, 0)
+        self.assertIn("1 of 2 terms estimated from 300 runs in 60 wells", said.getvalue())
+        table = pd.read_csv(self.Path("estimates.csv")).set_index("TERM")
+        self.assertAlmostEqual(table.MAGNITUDE["XYM1"], 0.2, delta=0.03)
+        self.assertLess(table.LOWER95["XYM1"], table.MAGNITUDE["XYM1"])
+        self.assertGreater(table.UPPER95["XYM1"], table.MAGNITUDE["XYM1"])
+        self.assertAlmostEqual(table.MAGNITUDE["LOCAL"], 0.1, delta=0.005)
+        self.assertEqual(table.MAGNITUDE["DSTG"], 2.5e-07)
+        # The model is one that `uncertainty` takes: the angle of one term goes into its positions.
+        survey = pd.DataFrame({"md_m": [0.0, 500.0, 1000.0], "inclination_deg": [30.0] * 3,
+                               "azimuth_true_deg": [0.0] * 3})
+        before = wg.uncertainty(survey, assumed, latitude_deg=60).cov
+        after = wg.uncertainty(survey, made, latitude_deg=60).cov
+        ratio = (table.MAGNITUDE["XYM1"] / 0.1) ** 2
+        self.assertAlmostEqual(after[2, 0, 0] / before[2, 0, 0], ratio, delta=1e-4 * ratio)
+        with contextlib.redirect_stderr(io.StringIO()) as told:
+            self.assertEqual(archive.main(["model", self.serial + "/none", "--assumed", assumed,
+                                           "--out", made]), 2)
+        self.assertIn("runs.csv", told.getvalue())
 
     def test_a_list_that_cannot_be_is_refused_by_its_line(self):
         for text, says in (("name,job,data\na,j.toml,\n", ":2: data is missing"),

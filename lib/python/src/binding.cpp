@@ -106,5 +106,6 @@ NB_MODULE(_wellgyro, m) {
                     std::optional<double>, std::optional<double>, std::optional<double>>());
   wellgyro::python::AddSession(m);
   wellgyro::python::AddPlanning(m);
+  wellgyro::python::AddFleet(m);
   wellgyro::python::AddFiles(m);
 }

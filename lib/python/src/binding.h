@@ -65,5 +65,6 @@ Surroundings SurroundingsOf(const PlaceArguments& place);
 void AddSession(nb::module_& m);
 void AddPlanning(nb::module_& m);
 void AddFiles(nb::module_& m);
+void AddFleet(nb::module_& m);
 
 }  // namespace wellgyro::python

@@ -406,6 +406,8 @@ void AddOutcome(nb::module_& m) {
 void AddJob(nb::module_& m) {
   nb::class_<JobFile>(m, "Job")
       .def_prop_ro("name", [](const JobFile& j) { return j.job.well.name; })
+      .def_prop_ro("tool_serial",
+                   [](const JobFile& j) { return j.job.tool ? j.job.tool->asset_serial : ""; })
       .def_prop_ro("latitude_deg", [](const JobFile& j) { return ToDegrees(j.job.well.latitude); })
       .def_prop_ro("files", [](const JobFile& j) {
         std::vector<std::string> names;

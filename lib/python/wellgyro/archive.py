@@ -2,21 +2,24 @@
 
 One folder a run, written beside its name and put in place whole, and one Parquet data set for all.
 A run is done again only where its job, data or this program changed; one that fails is a row, not
-the end. `wellgyro-archive report runs/` sums the fleet up in one page.
+the end. `wellgyro-archive report runs/` sums the fleet up in one page, and `wellgyro-archive model
+runs/ --assumed NAME` makes an error model of how runs of one well differ.
 """
 from __future__ import annotations
 
 import argparse
+import asyncio
+import contextlib
 import csv
 import dataclasses
 import hashlib
-import html
 import io
 import json
 import os
 import re
 import sys
 import tempfile
+import threading
 import tomllib
 import traceback
 
@@ -25,6 +28,8 @@ import pandas as pd
 from fsspec.implementations.local import LocalFileSystem
 
 from . import _wellgyro
+from ._fleet import report
+from .compare import empirical_model
 from .survey import Job, survey
 
 _TABLES = ("stations", "checks", "runs")
@@ -37,11 +42,14 @@ class Run:
     name: str
     job: str
     data: tuple[str, ...]
+    well: str = ""  #: absent: as the job names it
+    tool: str = ""  #: absent: the serial number of the job's tool
 
 
 def read_jobs(path: str) -> list[Run]:
-    """jobs.csv: name, job, data (paths with ';' between); relative to its folder. Names are those of
-    folders: letters, digits, '.', '_' and '-'. Raises ValueError with the line."""
+    """jobs.csv: name, job, data (paths with ';' between); relative to its folder; well and tool where
+    the job does not name them. Names are those of folders: letters, digits, '.', '_' and '-'. Raises
+    ValueError with the line."""
     with fsspec.open(path, "rt", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     base = path.rpartition("/")[0]
@@ -62,7 +70,8 @@ def read_jobs(path: str) -> list[Run]:
             raise ValueError(f"{path}:{line}: {name} stands twice")
         seen.add(name)
         runs.append(Run(name, absolute(row["job"]),
-                        tuple(absolute(p.strip()) for p in row["data"].split(";"))))
+                        tuple(absolute(p.strip()) for p in row["data"].split(";")),
+                        row.get("well") or "", row.get("tool") or ""))
     if not runs:
         raise ValueError(f"{path}: no run is listed")
     return runs
@@ -88,9 +97,10 @@ def _digest(digest, path):
 
 
 def _program():
-    """What the numbers depend on besides the inputs: the module's own bytes."""
+    """What the numbers depend on besides the inputs: the module's own bytes, and these."""
     digest = hashlib.sha256(_wellgyro.version.encode())
     _digest(digest, _wellgyro.__file__)
+    _digest(digest, __file__)
     return digest.hexdigest()
 
 
@@ -117,8 +127,8 @@ def _digest_job(digest, path):
             _digest(digest, named)
 
 
-def _fingerprint(job, data, program):
-    digest = hashlib.sha256(program.encode())
+def _fingerprint(run, job, data, program):
+    digest = hashlib.sha256(f"{program}\0{run.well}\0{run.tool}".encode())
     _digest_job(digest, job)
     for path in data:
         _digest(digest, path)
@@ -167,13 +177,13 @@ def survey_run(run: Run, out: str, program: str) -> dict:
     """One run, on whatever worker: its row of runs.csv. Never raises for what the run is."""
     fs, root = fsspec.core.url_to_fs(out)
     folder = f"{root}/{run.name}"
-    row = {"name": run.name, "verdict": "", "causes": "", "error": "", "fingerprint": "",
-           "done_again": True}
+    row = {"name": run.name, "well": run.well, "tool": run.tool, "begin": "", "verdict": "",
+           "causes": "", "error": "", "fingerprint": "", "done_again": True}
     with tempfile.TemporaryDirectory() as scratch:
         try:
             job = _local(run.job, scratch)
             data = [_local(p, scratch) for p in run.data]
-            row["fingerprint"] = _fingerprint(job, data, program)
+            row["fingerprint"] = _fingerprint(run, job, data, program)
         except OSError as error:
             row["fingerprint"] = ""
             return _failed(fs, folder, row, error)
@@ -181,7 +191,11 @@ def survey_run(run: Run, out: str, program: str) -> dict:
         if known and known["fingerprint"] == row["fingerprint"]:
             return {**known, "done_again": False}
         try:
-            result = survey(Job.load(job), data if len(data) > 1 else data[0])
+            known_job = Job.load(job)
+            row["well"] = run.well or known_job.name
+            row["tool"] = run.tool or known_job.tool_serial
+            row["latitude_deg"] = known_job.latitude_deg
+            result = survey(known_job, data if len(data) > 1 else data[0])
             if result.unusable:
                 raise ValueError(result.unusable)
         except (OSError, ValueError, RuntimeError, MemoryError) as error:
@@ -189,6 +203,7 @@ def survey_run(run: Run, out: str, program: str) -> dict:
     row["verdict"] = result.verdict
     row["causes"] = "; ".join(result.causes)
     row["faults"] = result.fault_count
+    row["begin"] = result.passes["utc"].min().isoformat() if len(result.passes) else ""
     files = {name: result.csv(name).encode() for name in ("survey.csv", "passes.csv", "checks.csv")}
     frames = {"stations": result.stations, "checks": result.checks, "runs": result.runs}
     for table, frame in frames.items():
@@ -214,8 +229,8 @@ def _gather(out, rows):
     import pyarrow.parquet as pq
     fs, root = fsspec.core.url_to_fs(out)
     rows = sorted(rows, key=lambda r: r["name"])
-    frame = pd.DataFrame(rows, columns=["name", "verdict", "causes", "error", "faults",
-                                        "fingerprint"])
+    frame = pd.DataFrame(rows, columns=["name", "well", "tool", "begin", "latitude_deg", "verdict",
+                                        "causes", "error", "faults", "fingerprint"])
     _put_root(fs, root, "runs.csv", frame.to_csv(index=False, lineterminator="\n").encode())
     for table in _TABLES:
         part, writer = f"{root}/.{table}.parquet.part", None
@@ -271,8 +286,9 @@ def process(runs: list[Run], out: str, client, *, progress=None) -> list[dict]:
         try:
             rows.append(future.result())
         except Exception as error:  # of the cluster, not of the run: nothing is left half
-            rows.append({"name": run.name, "verdict": "error", "causes": "", "fingerprint": "",
-                         "error": f"{type(error).__name__}: {error}", "done_again": True})
+            rows.append({"name": run.name, "well": run.well, "tool": run.tool, "verdict": "error",
+                         "causes": "", "fingerprint": "", "done_again": True,
+                         "error": f"{type(error).__name__}: {error}"})
         future.release()
         if progress:
             progress(len(rows), len(runs))
@@ -285,54 +301,63 @@ def process(runs: list[Run], out: str, client, *, progress=None) -> list[dict]:
     return sorted(rows, key=lambda r: r["name"])
 
 
-def report(out: str) -> str:
-    """One HTML page of the fleet, from runs.csv and checks.parquet."""
+def model(out: str, assumed: str, *, local_sigma_deg: float = 0.05):
+    """An `EmpiricalModel` (compare.py) from the runs of each well that `out` holds, `assumed` before:
+    the chosen stations of every run that did not fail, wells by their names."""
     with fsspec.open(f"{out}/runs.csv", "rt", encoding="utf-8") as file:
         runs = pd.read_csv(file, keep_default_na=False)
-    counts = runs.verdict.value_counts()
-    causes = pd.Series([c.split(" (")[0] for row in runs.causes for c in row.split("; ") if c],
-                       dtype=object).value_counts()
+    runs = runs[runs.verdict.isin(["pass", "warn"])]
+    holes = []
+    for well, group in runs.groupby("well"):
+        if len(group) < 2:
+            continue
+        surveys = []
+        for name in group.name:
+            with fsspec.open(f"{out}/{name}/stations.parquet", "rb") as file:
+                stations = pd.read_parquet(file)
+            measured = stations[["md_m", "inclination_deg", "azimuth_true_deg"]].notna().all(axis=1)
+            if measured.sum() > 2:
+                surveys.append(stations[measured].reset_index(drop=True))
+        if len(surveys) > 1:
+            holes.append({"name": well, "surveys": surveys,
+                          "latitude_deg": float(group.latitude_deg.iloc[0])})
+    if not holes:
+        raise ValueError(f"{out}: no well has two runs that passed")
+    return empirical_model(holes, assumed, local_sigma_deg=local_sigma_deg)
 
-    def table(head, rows):
-        cells = "".join(f"<th>{html.escape(h)}</th>" for h in head)
-        body = "".join("<tr>" + "".join(f"<td>{html.escape(str(c))}</td>" for c in r) + "</tr>"
-                       for r in rows)
-        return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
 
-    checks = ""
-    fs, root = fsspec.core.url_to_fs(out)
-    if fs.exists(f"{root}/checks.parquet"):
-        with fs.open(f"{root}/checks.parquet", "rb") as file:
-            frame = pd.read_parquet(file, columns=["name", "code", "value", "sigma", "limit",
-                                                   "unit", "verdict"])
-        made = frame[frame.verdict != "not_done"]
-        rows = []
-        for code, group in made.groupby("code"):
-            share = (group.value.abs() / group.limit).where(group.limit > 0)
-            judged = share.notna().any()
-            rows.append((code, group.unit.iloc[0], len(group), f"{group.value.median():.4g}",
-                         f"{share.median():.3f}" if judged else "",
-                         f"{share.max():.3f}" if judged else "",
-                         group.name[share.idxmax()] if judged else "",
-                         int((group.verdict == "warn").sum()),
-                         int((group.verdict == "fail").sum())))
-        rows.sort(key=lambda r: (-r[-1], -r[-2], r[0]))
-        checks = "<h2>Checks</h2>" + table(
-            ("check", "unit", "made", "median", "median of limit", "most of limit", "by", "warn",
-             "fail"), rows)
-    bad = runs[runs.verdict.isin(["fail", "error"])]
-    style = ("body{font:15px/1.5 sans-serif;margin:2em auto;max-width:72em;padding:0 1em;"
-             "color:#222}table{border-collapse:collapse;width:100%}th,td{text-align:left;"
-             "padding:.2em .8em .2em 0;border-bottom:1px solid #ddd;vertical-align:top}"
-             "td{overflow-wrap:anywhere}")
-    return (f"<!doctype html><html lang='en'><meta charset='utf-8'><title>Archive of {len(runs)} "
-            f"runs</title><style>{style}</style><h1>Archive of {len(runs)} runs</h1>"
-            + table(("verdict", "runs"), counts.items()) + "<h2>Causes</h2>"
-            + table(("cause", "runs"), causes.items()) + checks
-            + "<h2>Failed and unusable runs</h2>"
-            + table(("run", "verdict", "why"),
-                    [(r.name_, r.verdict, r.error or r.causes) for r in
-                     bad.rename(columns={"name": "name_"}).itertuples()]) + "</html>\n")
+@contextlib.contextmanager
+def local_cluster(workers: int | None = None, **options):
+    """A Dask cluster of processes of this machine. Workers that die are replaced as long as it
+    stands: Dask itself gives those up that die while they start."""
+    import dask
+    from distributed import LocalCluster
+    # A run whose worker is killed says nothing against the run.
+    with dask.config.set({"distributed.scheduler.allowed-failures": 1000}):
+        cluster = LocalCluster(n_workers=workers, threads_per_worker=1, host="127.0.0.1", **options)
+    over, dead = threading.Event(), set()
+
+    def replace():
+        gone = {name for name, nanny in cluster.workers.items() if not nanny.is_alive()}
+        for name in gone & dead:  # seen so twice: none that is just being started again
+            asyncio.ensure_future(cluster.workers.pop(name).close())
+        if gone & dead or set(cluster.worker_spec) - set(cluster.workers):
+            cluster.scale(len(cluster.worker_spec))
+        dead.clear()
+        dead.update(gone)
+
+    def watch():
+        while not over.wait(1.0):
+            cluster.loop.add_callback(replace)
+
+    watching = threading.Thread(target=watch, daemon=True)
+    watching.start()
+    try:
+        yield cluster
+    finally:
+        over.set()
+        watching.join()
+        cluster.close()
 
 
 def _show(done, total):
@@ -340,27 +365,65 @@ def _show(done, total):
         print(f"\r{done} of {total} runs", end="" if done < total else "\n", file=sys.stderr)
 
 
+def _main_report(arguments):
+    parser = argparse.ArgumentParser("wellgyro-archive report",
+                                     description="One page of the fleet: RUNS/report.html")
+    parser.add_argument("runs", help="folder that wellgyro-archive wrote")
+    out = parser.parse_args(arguments).runs.rstrip("/")
+    try:
+        text = report(out)
+        fs, root = fsspec.core.url_to_fs(out)
+        _put_root(fs, root, "report.html", text.encode())
+    except OSError as error:
+        print(f"wellgyro-archive: {error}", file=sys.stderr)
+        return 2
+    print(f"{out}/report.html")
+    return 0
+
+
+def _main_model(arguments):
+    parser = argparse.ArgumentParser(
+        "wellgyro-archive model", description="Magnitudes of an error model from how the runs of "
+        "each well differ, with 95 % intervals; estimates.csv and holes.csv beside it.",
+        epilog="Example: wellgyro-archive model runs/ --assumed GYRO-NS-CT --out model.toml")
+    parser.add_argument("runs", help="folder that wellgyro-archive wrote")
+    parser.add_argument("--assumed", required=True, help="error model, a name or a file")
+    parser.add_argument("--out", required=True, help="file for the model")
+    parser.add_argument("--local-sigma-deg", type=float, default=0.05,
+                        help="where the search for what no term speaks of begins")
+    options = parser.parse_args(arguments)
+    try:
+        made = model(options.runs.rstrip("/"), options.assumed,
+                     local_sigma_deg=options.local_sigma_deg)
+        folder = os.path.dirname(os.path.abspath(options.out))
+        fs = LocalFileSystem()
+        for name, text in made.files.items():
+            name = os.path.basename(options.out) if name == "model.toml" else name
+            _put_root(fs, folder, name, text.encode())
+    except (OSError, ValueError) as error:
+        print(f"wellgyro-archive: {error}", file=sys.stderr)
+        return 2
+    for note in made.notes:
+        print(f"note: {note}", file=sys.stderr)
+    found = made.terms[made.terms.kept == ""]
+    print(found.drop(columns=["weight", "kept"]).to_string(index=False))
+    print(f"{options.out}: {len(found) - 1} of {len(made.terms) - 1} terms estimated from "
+          f"{made.holes.surveys.sum()} runs in {len(made.holes)} wells")
+    return 0
+
+
 def main(arguments=None) -> int:
     """The command wellgyro-archive; its exit code: 0 every run usable, 3 some are not, 1 the command
     line, 2 nothing could be done."""
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     if arguments[:1] == ["report"]:
-        parser = argparse.ArgumentParser("wellgyro-archive report",
-                                         description="One page of the fleet: RUNS/report.html")
-        parser.add_argument("runs", help="folder that wellgyro-archive wrote")
-        options = parser.parse_args(arguments[1:])
-        try:
-            text = report(options.runs.rstrip("/"))
-            fs, root = fsspec.core.url_to_fs(options.runs.rstrip("/"))
-            _put_root(fs, root, "report.html", text.encode())
-        except OSError as error:
-            print(f"wellgyro-archive: {error}", file=sys.stderr)
-            return 2
-        print(f"{options.runs.rstrip('/')}/report.html")
-        return 0
+        return _main_report(arguments[1:])
+    if arguments[:1] == ["model"]:
+        return _main_model(arguments[1:])
     parser = argparse.ArgumentParser(
         "wellgyro-archive", description="Surveys every run of a list, again only where its inputs "
-        "or this program changed. 'wellgyro-archive report RUNS' makes a page of what came.",
+        "or this program changed. 'wellgyro-archive report RUNS' makes a page of what came, 'wellgyro-archive "
+        "model RUNS' an error model.",
         epilog="Example: wellgyro-archive jobs.csv --out runs/ --workers 8")
     parser.add_argument("jobs", help="CSV with the columns name, job, data; paths by fsspec")
     parser.add_argument("--out", required=True, help="folder for the results, by fsspec")
@@ -373,24 +436,14 @@ def main(arguments=None) -> int:
     except (OSError, ValueError) as error:
         print(f"wellgyro-archive: {error}", file=sys.stderr)
         return 2
-    import dask
-    from distributed import Client, LocalCluster
-    # A run whose worker is killed says nothing against the run.
-    dask.config.set({"distributed.scheduler.allowed-failures": 50})
-    if options.scheduler:
-        client, cluster = Client(options.scheduler), None
-    else:
-        cluster = LocalCluster(n_workers=options.workers, threads_per_worker=1,
-                               dashboard_address="127.0.0.1:0", host="127.0.0.1")
-        client = Client(cluster)
-    try:
+    from distributed import Client
+    with contextlib.ExitStack() as stack:
+        cluster = options.scheduler or stack.enter_context(
+            local_cluster(options.workers, dashboard_address="127.0.0.1:0"))
+        client = stack.enter_context(Client(cluster))
         if client.dashboard_link:
             print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
         rows = process(runs, options.out.rstrip("/"), client, progress=_show)
-    finally:
-        client.close()
-        if cluster is not None:
-            cluster.close()
     again = sum(r["done_again"] for r in rows)
     counts = pd.Series([r["verdict"] for r in rows]).value_counts()
     print(f"{len(rows)} runs, {again} done now: "

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import os
 import tempfile
 from collections.abc import Iterable, Sequence
@@ -238,6 +239,56 @@ def _merged(made):
         "east_m": position[:, 1], "dogleg_deg_per_30m": made["dogleg_deg_per_30m"]})
     return Merged(stations, made["cov"], made["files"], made["verdict"], made["causes"],
                   made["notes"], made["summary"])
+
+
+@dataclasses.dataclass(frozen=True)
+class EmpiricalModel:
+    """Magnitudes of an error model's terms from surveys of the same holes."""
+    toml: str  #: the model, for `uncertainty` and every other that takes one
+    terms: pd.DataFrame  #: assumed, magnitude, lower95, upper95 in `unit`; kept: why as assumed
+    holes: pd.DataFrame  #: chi_square of each over its freedom, by the model that came of all
+    files: dict[str, str]  #: model.toml, estimates.csv, holes.csv
+    notes: list[str]
+
+
+def empirical_model(holes: Sequence[dict], assumed: str | PathLike, *,
+                    local_sigma_deg: float = 0.05) -> EmpiricalModel:
+    """Magnitudes of a model by restricted maximum likelihood from how surveys of one hole differ.
+
+    holes: dicts of surveys (a list of path, Result or DataFrame), name, runs (a number for each
+    survey; those of one number are passes of one tool in one run; absent: all of their own) and of
+    the place: latitude_deg, convergence_deg, gravity_mps2, field_nt, dip_deg, declination_deg.
+    local_sigma_deg: where the search for what no term speaks of begins."""
+    local_sigma_deg = _checks.number("local_sigma_deg", local_sigma_deg, 0, 50, above=True)
+    if not isinstance(holes, (list, tuple)) or not all(isinstance(h, dict) for h in holes):
+        raise TypeError("holes: a list of dicts is expected")
+    assumed = os.fspath(assumed) if isinstance(assumed, os.PathLike) else assumed
+    assumed = _checks.word("assumed", assumed, None)
+    given = []
+    for i, hole in enumerate(holes):
+        hole = dict(hole)
+        surveys = hole.pop("surveys", None)
+        if not isinstance(surveys, (list, tuple)):
+            raise TypeError(f"holes[{i}]: surveys, a list, is expected")
+        runs = hole.pop("runs", list(range(len(surveys))))
+        if len(runs) != len(surveys):
+            raise ValueError(f"holes[{i}]: as many runs as surveys are expected")
+        name = _checks.word(f"name of holes[{i}]", hole.pop("name", f"hole {i + 1}"), None)
+        place = {k: hole.pop(k, None) for k in ("latitude_deg", "convergence_deg", "gravity_mps2",
+                                                "field_nt", "dip_deg", "declination_deg")}
+        if hole:
+            raise TypeError(f"holes[{i}]: there is no {sorted(hole)[0]!r}")
+        known = [(_known(f"holes[{i}].surveys[{k}]", s, None, place["convergence_deg"]),
+                  _checks.whole(f"holes[{i}].runs[{k}]", runs[k])) for k, s in enumerate(surveys)]
+        given.append((name, _place(**place), known))
+    made = _wellgyro.empirical_model(given, assumed, local_sigma_deg)
+    tables = {}
+    for name in ("estimates.csv", "holes.csv"):
+        table = pd.read_csv(io.StringIO(made["files"][name]), keep_default_na=False,
+                            na_values={c: [""] for c in ("LOWER95", "UPPER95")})
+        tables[name] = table.rename(columns=str.lower)
+    return EmpiricalModel(made["files"]["model.toml"], tables["estimates.csv"],
+                          tables["holes.csv"], made["files"], made["notes"])
 
 
 def models() -> list[str]:

@@ -56,6 +56,11 @@ class Job:
     def latitude_deg(self) -> float:
         return self._job.latitude_deg
 
+    @property
+    def tool_serial(self) -> str:
+        """Of the tool that the job names; empty: it names none."""
+        return self._job.tool_serial
+
     def __repr__(self):
         return f"<wellgyro.Job {self.name!r}, latitude {self.latitude_deg:g} deg>"
 
