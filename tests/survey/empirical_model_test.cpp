@@ -28,8 +28,8 @@ constexpr double kEarthRate = 7.292115e-5;  // [rad/s]
 struct Hole {
   double azimuth, turn, inclination, build, phase;
 
-  double Inclination(double md) const { return inclination + build * std::sin(md / 900 + phase); }
-  double Azimuth(double md) const { return azimuth + turn * std::sin(md / 1200 + 2 * phase); }
+  double Inclination(double md) const { return inclination + build * std::sin(md / 450 + phase); }
+  double Azimuth(double md) const { return azimuth + turn * std::sin(md / 600 + 2 * phase); }
 };
 
 Hole DrawnHole(Random& random) {
@@ -41,10 +41,10 @@ Hole DrawnHole(Random& random) {
 /// What magnitudes a fleet truly has, 1 sigma in SI.
 struct Truth {
   double axis = 0.06 * kDeg;          // XYM1: inclination, by sin I
-  double azimuth = 0.2 * kDeg;        // AZ: azimuth
+  double azimuth = 0.3 * kDeg;        // AZ: azimuth
   double xyb = 0.012;                 // AXYZ-XYB: inclination, by cos I / g
-  double b1 = 0.03 * kDegPerHour;     // GXY-B1: azimuth, by sin A / (Omega cos latitude cos I)
-  double b2 = 0.04 * kDegPerHour;     // GXY-B2: azimuth, by cos A / (Omega cos latitude)
+  double b1 = 0.02 * kDegPerHour;     // GXY-B1: azimuth, by sin A / (Omega cos latitude cos I)
+  double b2 = 0.03 * kDegPerHour;     // GXY-B2: azimuth, by cos A / (Omega cos latitude)
   double noise = 0.02 * kDegPerHour;  // GXY-RN
   double depth = 1.0;                 // DREF, one a run
   double local = 0.02 * kDeg;
@@ -86,7 +86,7 @@ std::vector<RepeatedHole> Fleet(int holes, int surveys, const Truth& truth, Rand
     const Hole hole = DrawnHole(random);
     RepeatedHole repeated{"hole " + std::to_string(i), Somewhere(), {}};
     for (int k = 0; k < surveys; ++k) {
-      const double spacing = k % 2 ? 75 : 150;
+      const double spacing = k % 2 ? 25 : 50;
       repeated.surveys.push_back(
           {SurveyWell(Listed(hole, truth, spacing, random), Vector3d::Zero()), k});
     }
