@@ -97,7 +97,9 @@ void Console::OnNotice(std::string_view sentence) {
   said_us_ = MonotonicUs();
 }
 
-void Console::OnGlance(const Glance& glance) { Show(LineOf(glance)); }
+void Console::OnGlance(const Glance& glance) {
+  Show(advice_.empty() ? LineOf(glance) : fmt::format("{} | {}", advice_, LineOf(glance)));
+}
 
 void Console::Show(const std::string& line) {
   const std::int64_t now = MonotonicUs();

@@ -38,6 +38,7 @@ class Console : public LiveObserver {
   ~Console() override;
   void OnNotice(std::string_view sentence) override;
   void OnGlance(const Glance& glance) override;
+  void OnAdvice(const Advice& advice) override { advice_ = advice.text; }
 
   /// Shows `line` in place of the one before.
   void Show(const std::string& line);
@@ -47,6 +48,7 @@ class Console : public LiveObserver {
   bool terminal_;
   std::size_t shown_ = 0;  ///< characters of the line that lives
   std::int64_t said_us_;
+  std::string advice_;  ///< said last, shown before the glance
 };
 
 /// Tells the service manager that started this program, if one did (sd_notify(3)): "READY=1".

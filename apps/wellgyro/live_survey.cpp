@@ -4,13 +4,16 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/toml/plan_file.h"
 #include "wellgyro/io/words.h"
 #include "wellgyro/live/session.h"
+#include "wellgyro/plan/live_advice.h"
 
 #include "commands.h"
 #include "delivery.h"
@@ -96,6 +99,19 @@ void Farewell(SurveyPage& page, const LiveOutcome& outcome) {
   page.End(how, outcome.usable() ? WordOf(WorstVerdict(outcome.tools).verdict) : "none: no survey");
 }
 
+/// What the run is to be advised by; null: by nothing.
+Result<std::shared_ptr<const AdviceCase>> AdviceOf(const SurveyOptions& options, const Job& job) {
+  if (options.advise.empty()) return std::shared_ptr<const AdviceCase>();
+  const Result<PlanFile> plan = ReadPlanFile(options.advise);
+  if (!plan) return plan.fault();
+  try {
+    return std::shared_ptr<const AdviceCase>(
+        std::make_shared<AdviceCase>(AdviceCase{CaseOf(*plan, job), plan->limits}));
+  } catch (const std::invalid_argument& error) {
+    return Fault{FaultCode::kConflict, error.what(), options.advise};
+  }
+}
+
 }  // namespace
 
 int SurveyLive(const SurveyOptions& options, const JobFile& job) {
@@ -103,6 +119,11 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
   if (fills && (options.record.empty() || !options.resume)) {
     Complain("--resume continues from the log given with --record; --fill goes with --resume");
     return kUsage;
+  }
+  const auto advise = AdviceOf(options, job.job);
+  if (!advise) {
+    Complain(advise.fault());
+    return kUnusable;
   }
   std::unique_ptr<SurveyPage> page;
   if (!options.page.address.empty()) {
@@ -114,7 +135,9 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     page = std::move(*opened);
   }
   SurveyConsole console(options.says, page.get());
-  auto session = LiveSession::Open(SetupOf(options, job), nullptr, console);
+  LiveSetup setup = SetupOf(options, job);
+  setup.advise = *advise;
+  auto session = LiveSession::Open(std::move(setup), nullptr, console);
   if (!session) {
     Complain(session.fault());
     return kUnusable;

@@ -14,6 +14,7 @@ namespace wellgyro::apps {
 struct SurveyOptions {
   std::string job, from, out;
   std::vector<std::string> sources;  ///< every --from; the first is `from`
+  std::string advise;                ///< plan by which the run is advised
   std::string record;                ///< log that gets what is heard live
   bool resume = false;
   std::vector<std::string> fill;  ///< other recorders' logs

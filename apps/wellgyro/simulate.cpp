@@ -14,6 +14,7 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/result/truth_csv.h"
+#include "wellgyro/io/toml/plan_file.h"
 #include "wellgyro/io/toml/simulation_file.h"
 #include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/simulate/raw_counts.h"
@@ -28,7 +29,7 @@ namespace wellgyro::apps {
 namespace {
 
 struct SimulateOptions {
-  std::string job, out, truth, tool;
+  std::string job, out, truth, tool, plan;
   double temperature = 20;
   double speed = 1;
   bool finish = false;
@@ -163,8 +164,17 @@ Result<std::optional<ToolCalibration>> CountingTool(const SimulateOptions& optio
   return std::optional<ToolCalibration>(*std::move(tool));
 }
 
+/// The simulation, its run that of a plan where one is named.
+Result<SimulationFile> ReadWithPlan(const SimulateOptions& options) {
+  if (options.plan.empty()) return ReadSimulation(options.job);
+  const Result<PlanFile> plan = ReadPlanFile(options.plan);
+  if (!plan) return plan.fault();
+  const SimulatedRun run = RunOf(*plan);
+  return ReadSimulation(options.job, &run);
+}
+
 std::optional<Fault> Simulate(const SimulateOptions& options) {
-  const Result<SimulationFile> file = ReadSimulation(options.job);
+  const Result<SimulationFile> file = ReadWithPlan(options);
   if (!file) return file.fault();
   const auto tool = CountingTool(options, file->simulation.tool);
   if (!tool) return tool.fault();
@@ -214,6 +224,11 @@ void AddSimulate(CLI::App& app, int& exit_code) {
       ->add_option("--truth", options->truth,
                    "Truth second by second, CSV; by default the log's name with .truth.csv, "
                    "and none with a URL")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--plan", options->plan,
+          "Plan file, wellgyro.plan/1: its way and its stops, in place of the file's [run]")
       ->type_name("FILE");
   command
       ->add_option("--tool", options->tool,

@@ -162,8 +162,8 @@ int SurveyAny(SurveyOptions options) {
   if (!CanExport(job->job, options.formats)) return kUnusable;
   if (IsLive(options.from)) return SurveyLive(options, *job);
   if (!options.record.empty() || options.resume || !options.fill.empty() ||
-      !options.page.address.empty()) {
-    Complain("--record, --resume, --fill and --page are for a live stream: --from URL");
+      !options.advise.empty() || !options.page.address.empty()) {
+    Complain("--record, --resume, --fill, --advise and --page are for a live stream: --from URL");
     return kUsage;
   }
   if (AnyTwice(options.sources) || !MayWriteTo(options.out)) return kUnusable;
@@ -185,6 +185,12 @@ int SurveyAny(SurveyOptions options) {
 void AddLiveOptions(CLI::App& command, SurveyOptions& options) {
   command.add_option("--record", options.record, "Write what is heard live to this LCM log")
       ->type_name("LOG");
+  command
+      .add_option(
+          "--advise", options.advise,
+          "Plan file, wellgyro.plan/1: say live where to stop and how long, for its limits; "
+          "the survey stays as it is")
+      ->type_name("PLAN");
   command.add_flag("--resume", options.resume,
                    "Continue a live survey that was cut off, from its --record log");
   command

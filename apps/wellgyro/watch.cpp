@@ -52,6 +52,11 @@ class Watch : private Listener {
     begin_us_ = heard_us_ = MonotonicUs();
     console_.OnGlance(glance);
   }
+  void OnAdvice(const Advice& advice) override {
+    Advice shown = advice;
+    shown.text = Printable(advice.text);
+    console_.OnAdvice(shown);
+  }
   void OnStatus(const Status& status) override {
     heard_ = true;
     begin_us_ = heard_us_ = MonotonicUs();
@@ -80,7 +85,7 @@ int WatchBus(const WatchOptions& options) {
   const StopOnSignals stop(*bus);
   Watch watch(*channels);
   if (const auto fault =
-          bus->Subscribe({channels->status, GlanceChannel(*channels)},
+          bus->Subscribe({channels->status, GlanceChannel(*channels), AdviceChannel(*channels)},
                          [&watch](std::string_view channel, std::span<const std::byte> bytes,
                                   std::int64_t) { watch.Take(channel, bytes); })) {
     Complain(*fault);

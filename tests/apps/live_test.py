@@ -30,7 +30,7 @@ SIMULATION = Simulation(Stop(90) + Move(200) + Stop(90),
                         tool="utc_jitter_s = 0.001\n")
 JOB = Job(10.0) + "[depth]\nlatency_s = 2.0\n"
 BEGIN_US = 1_767_225_600_000_000  # of the simulation's time
-FINGERPRINTS = {"request_t": 0x5c9579a393f3035d}
+FINGERPRINTS = {"request_t": 0x5c9579a393f3035d, "advice_t": 0xa1e2e346d3bab0a3}
 
 
 class Broker(threading.Thread):
@@ -245,6 +245,40 @@ class Live(ProgramTest):
 
     def test_tcpq_gives_the_bytes_of_the_log(self):
         self.LiveOver(self.broker.url, "tcpq")
+
+    def test_advice_is_told_and_changes_nothing(self):
+        url = self.Udpm()
+        job = self.Write("advised.toml", JOB.replace("gyro_bias_sigma_deg_per_h = 0\n",
+                                                     "gyro_bias_sigma_deg_per_h = 0.1\n"))
+        well = self.Write("advised.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n0,25,300\n400,25,300\n")
+        plan = self.Path("plan", "plan.toml")
+        self.Make("plan", "--well", well, "--tool", job, "--ellipse-m", "4", "--end-md-m", "200",
+                  "--speed-mps", "1", "--out", self.Path("plan"))
+        self.Make("survey", "--job", job, "--from", self.Path("straight.lcm"), "--out",
+                  self.Path("unadvised"))
+        ear = Ear(self.port)
+        watch = self.Start("watch", url)
+        survey = self.Listening("survey", "--job", job, "--from", url, "--out",
+                                self.Path("advised"), "--advise", plan)
+        self.Make("simulate", "--job", self.simulation, "--out", url, "--speed", "40", "--finish")
+        self.EndsWell(survey)
+        watch.send_signal(signal.SIGTERM)
+        _, seen = watch.communicate(timeout=10)
+        ear.ending = True
+        self.SameAs("unadvised", "advised")
+        told = ear.On("WELLGYRO_STATUS_ADVICE")
+        self.assertTrue(told)
+        for payload in told:
+            self.assertEqual(payload[:8], struct.pack(">Q", FINGERPRINTS["advice_t"]))
+        self.assertTrue(any(b" of 4.00 m" in payload for payload in told), told)
+        self.assertIn(" of 4.00 m | MD ", seen)
+        for name, says in ((self.job, "gyro_bias_sigma"), (job, "none.toml")):
+            refused = Run("survey", "--job", name, "--from", url, "--out", self.Path("refused"),
+                          "--advise", plan if name == self.job else "none.toml")
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(says, refused.stderr)
+        self.assertEqual(Run("survey", "--job", job, "--from", self.Path("straight.lcm"), "--out",
+                             self.Path("refused"), "--advise", plan).returncode, 1)
 
     def Interrupted(self, number):
         url = self.Udpm()

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The command plan, from the command line, with what it makes of mistakes."""
+import csv
 import os
 import shutil
 import tempfile
@@ -63,6 +64,46 @@ class Plan(unittest.TestCase):
         plan = self.Toml()
         self.assertFalse(plan["feasible"])
         self.assertNotIn("stop", plan)
+
+    def test_a_simulation_follows_the_plan(self):
+        self.assertEqual(self.Plan("--ellipse-m", "2.7").returncode, 0)
+        plan = self.Toml()
+        rows = ", ".join(f"[{md}.0, {inc}.0, {azi}.0]" for md, inc, azi in SLANT)
+        with open("simulation.toml", "w", encoding="utf-8") as file:
+            file.write(f"""format = "wellgyro.simulation/1"
+seed = 4
+[well]
+table = [{rows}]
+[earth]
+latitude_deg = 60.0
+[tool]
+angle_random_walk_deg_per_sqrt_h = 0.005
+[streams]
+imu_hz = 4.0
+depth_hz = 2.0
+""")
+        simulate = ("simulate", "--job", "simulation.toml", "--out", "run.lcm")
+        self.assertIn("run", Run(*simulate).stderr)
+        done = Run(*simulate, "--plan", "out/plan.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open("run.lcm.truth.csv", encoding="utf-8") as file:
+            rows = [[float(cell) for cell in row[:5]] for row in csv.reader(file)
+                    if row[0] != "T[s]"]
+        depths = [row[1] for row in rows]
+        self.assertAlmostEqual(max(depths), 2000, 2)
+        self.assertAlmostEqual(depths[-1], 300, 2)
+        turn = depths.index(max(depths))
+        for stop in plan["stop"]:
+            way = rows[:turn] if stop["pass"] == "in" else rows[turn:]
+            rested = sum(1 for row in way if abs(row[1] - stop["md_m"]) < 0.01)
+            self.assertAlmostEqual(rested, stop["stop_s"], delta=4)
+        for text, says in (("format = \"wellgyro.plan/1\"\n", "run"), ("", "format")):
+            with open("bad.toml", "w", encoding="utf-8") as file:
+                file.write(text)
+            done = Run(*simulate, "--plan", "bad.toml")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("bad.toml", done.stderr)
+            self.assertIn(says, done.stderr)
 
     def test_mistakes_are_told(self):
         for arguments, code, says in (

@@ -36,6 +36,7 @@ TEST(Feed, EveryTypeReachesItsListener) {
   Heard heard;
   std::vector<MessageType> accepted;
   const auto place = [&channels](MessageType type) {
+    if (type == MessageType::kAdvice) return AdviceChannel(channels);
     return type == MessageType::kGlance ? GlanceChannel(channels) : NameOf(channels, type);
   };
   Feed feed(channels, heard,
@@ -49,7 +50,7 @@ TEST(Feed, EveryTypeReachesItsListener) {
       {"raw", 3},  {"imu", 3},   {"still", 1},   {"depth", 1},   {"mode", 1},
       {"tool", 1}, {"event", 1}, {"command", 1}, {"station", 1}, {"status", 1}};
   EXPECT_EQ(heard.calls, expected);
-  EXPECT_EQ(accepted.size(), 13U);
+  EXPECT_EQ(accepted.size(), 14U);
   EXPECT_TRUE(heard.faults.empty());
   for (const Sample& sample : OneOfEach()) {
     EXPECT_EQ(feed.count(sample.type).messages, 1);

@@ -256,6 +256,35 @@ glance_t GeneratedGlance() {
   return m;
 }
 
+advice_t GeneratedAdvice() {
+  advice_t m{};
+  m.utime_us = kUtimeUs + 13;
+  m.seq = 9;
+  m.session = 6;
+  m.run = 2;
+  m.action = advice_t::STAY;
+  m.more_s = 70;
+  m.has_toolface = 1;
+  m.toolface_rad = 0.5;
+  m.has_next = 1;
+  m.next_out = 1;
+  m.next_md_m = 2810.5;
+  m.next_stop_s = 330;
+  m.next_has_toolface = 1;
+  m.next_toolface_rad = 3.5;
+  m.stops_left = 2;
+  m.rest_left_s = 460;
+  m.reachable = 1;
+  m.ellipse_m = 4.875;
+  m.ellipse_now_m = 6.25;
+  m.ellipse_limit_m = 5;
+  m.has_hidden = 1;
+  m.hidden_m = 5.5;
+  m.hidden_limit_m = 6;
+  m.text = "stay 70 s more";
+  return m;
+}
+
 request_t GeneratedRequest() {
   request_t m{};
   m.utime_us = kUtimeUs + 12;
@@ -280,6 +309,7 @@ std::vector<Sample> OneOfEach() {
       {MessageType::kOperation, BytesOf(GeneratedOperation())},
       {MessageType::kGlance, BytesOf(GeneratedGlance())},
       {MessageType::kRequest, BytesOf(GeneratedRequest())},
+      {MessageType::kAdvice, BytesOf(GeneratedAdvice())},
   };
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "wellgyro/advice_t.hpp"
 #include "wellgyro/bus/message.h"
 #include "wellgyro/depth_t.hpp"
 #include "wellgyro/event_t.hpp"
@@ -47,6 +48,7 @@ survey_station_t GeneratedStation();
 status_t GeneratedStatus();
 operation_t GeneratedOperation();
 glance_t GeneratedGlance();
+advice_t GeneratedAdvice();
 request_t GeneratedRequest();
 
 struct Sample {

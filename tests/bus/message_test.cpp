@@ -28,6 +28,7 @@ TEST(Message, FingerprintsAreThoseOfTheContract) {
   EXPECT_EQ(Fingerprint(MessageType::kOperation), 0x9922a77d1561fc57U);
   EXPECT_EQ(Fingerprint(MessageType::kGlance), 0xfb949bef0282ff62U);
   EXPECT_EQ(Fingerprint(MessageType::kRequest), 0x5c9579a393f3035dU);
+  EXPECT_EQ(Fingerprint(MessageType::kAdvice), 0xa1e2e346d3bab0a3U);
 }
 
 TEST(Message, EveryTypeHasItsOwnFingerprintAndName) {
@@ -45,8 +46,9 @@ TEST(Message, EveryTypeHasItsOwnFingerprintAndName) {
 TEST(Message, ChannelsHaveTheirTypes) {
   const Channels channels;
   for (const Sample& sample : OneOfEach()) {
-    const bool glance = sample.type == MessageType::kGlance;
-    const std::string name = glance ? GlanceChannel(channels) : NameOf(channels, sample.type);
+    const std::string name = sample.type == MessageType::kGlance   ? GlanceChannel(channels)
+                             : sample.type == MessageType::kAdvice ? AdviceChannel(channels)
+                                                                   : NameOf(channels, sample.type);
     EXPECT_EQ(TypeOn(channels, name, sample.bytes), sample.type);
   }
   EXPECT_EQ(TypeOn(channels, NameOf(channels, MessageType::kOperation)), MessageType::kCommand);

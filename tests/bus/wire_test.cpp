@@ -358,6 +358,36 @@ TEST(Wire, Glance) {
   EXPECT_EQ(r.turned, m.turned);
 }
 
+TEST(Wire, Advice) {
+  const advice_t m = GeneratedAdvice();
+  const auto r = Decoded<Advice>(MessageType::kAdvice, BytesOf(m));
+  EXPECT_EQ(r.utc.ns, m.utime_us * 1000);
+  EXPECT_EQ(r.run, m.run);
+  EXPECT_EQ(r.action, Advice::Action::kStay);
+  EXPECT_EQ(r.seconds, m.more_s);
+  EXPECT_EQ(r.toolface, m.toolface_rad);
+  ASSERT_TRUE(r.next);
+  EXPECT_EQ(r.next->out, m.next_out == 1);
+  EXPECT_EQ(r.next->md, m.next_md_m);
+  EXPECT_EQ(r.next->seconds, m.next_stop_s);
+  EXPECT_EQ(r.next->toolface, m.next_toolface_rad);
+  EXPECT_EQ(r.stops_left, m.stops_left);
+  EXPECT_EQ(r.rest_left, m.rest_left_s);
+  EXPECT_TRUE(r.reachable);
+  EXPECT_EQ(r.ellipse, m.ellipse_m);
+  EXPECT_EQ(r.ellipse_now, m.ellipse_now_m);
+  EXPECT_EQ(r.ellipse_limit, m.ellipse_limit_m);
+  EXPECT_EQ(r.hidden, m.hidden_m);
+  EXPECT_EQ(r.hidden_limit, m.hidden_limit_m);
+  EXPECT_EQ(r.text, m.text);
+  advice_t none = m;
+  none.has_next = none.next_out = none.next_has_toolface = none.has_hidden = none.has_toolface = 0;
+  none.next_md_m = none.next_stop_s = none.next_toolface_rad = none.toolface_rad = 0;
+  none.hidden_m = none.hidden_limit_m = 0;
+  const auto bare = Decoded<Advice>(MessageType::kAdvice, BytesOf(none));
+  EXPECT_FALSE(bare.next || bare.hidden || bare.hidden_limit || bare.toolface);
+}
+
 TEST(Wire, Request) {
   const request_t m = GeneratedRequest();
   const auto r = Decoded<StationRequest>(MessageType::kRequest, BytesOf(m));

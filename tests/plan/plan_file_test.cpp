@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/io/plot/plan_plot.h"
+#include "wellgyro/simulate/run_plan.h"
 
 #include "plan/cases.h"
 
@@ -38,6 +39,60 @@ TEST(PlanFile, ReadsBackAsItWasWritten) {
   }
 }
 
+TEST(PlanFile, HoldsWhatARunIsAdvisedBy) {
+  const PlanReport& r = Example();
+  Result<PlanFile> file = ParsePlanFile(PlanToml(r), "plan.toml");
+  ASSERT_TRUE(file) << file.fault().text;
+  EXPECT_EQ(file->limits.ellipse, r.limits.ellipse);
+  EXPECT_EQ(file->limits.hidden, r.limits.hidden);
+  EXPECT_EQ(file->limits.least_stop, r.limits.least_stop);
+  EXPECT_EQ(file->limits.overhead, r.limits.overhead);
+  Job job;
+  job.well.latitude = r.c.site.latitude;
+  job.noise = r.c.gyro;
+  job.errors = r.c.errors;
+  const PlanCase c = CaseOf(*file, job);
+  const TrajectoryPoint there = c.well.AtMd(2500), planned = r.c.well.AtMd(2500);
+  EXPECT_LT((there.position - planned.position).norm(), 0.01);
+  EXPECT_NEAR(ExpectEnd(c, file->stops, false).semi_major, r.plan.expected.semi_major, 0.02);
+  EXPECT_FALSE(c.sigma_start_azimuth);
+  job.alignment.method = AlignmentSpec::Method::kExternal;
+  job.alignment.sigma_azimuth = 0.01;
+  EXPECT_EQ(CaseOf(*file, job).sigma_start_azimuth, 0.01);
+  file->path.clear();
+  EXPECT_THROW(CaseOf(*file, job), std::invalid_argument);
+}
+
+// As the simulator lays the steps out: its stops are the plan's, and where the tool slides it
+// rests at the toolface that the plan has it rest at.
+TEST(PlanFile, ASimulatedRunGoesAsPlanned) {
+  PlanFile plan;
+  plan.way = test::SShape().way;
+  plan.stops = {{false, 300, 90, {}}, {false, 1500, 120, {}}, {true, 2000, 60, 1.25}};
+  SimulatedWell well;
+  well.stations = {{300, 0.3, 1.9}, {2900, 0.3, 1.9}};
+  const SimulatedRun run = RunOf(plan);
+  const RunPlan laid(run, TruthWell(well, {}));
+  std::vector<double> rested(3, 0.0), toolface(3, 0.0);
+  double deepest = 0;
+  for (double t = 0; t < laid.seconds(); ++t) {
+    const RunMotion now = laid.At(t);
+    deepest = std::max(deepest, now.md);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const bool up = deepest > 2800;
+      if (!now.still || now.md != plan.stops[i].md || up != plan.stops[i].out) continue;
+      ++rested[i];
+      toolface[i] = now.roll - 1.9;
+    }
+  }
+  EXPECT_EQ(deepest, 2900);
+  EXPECT_EQ(laid.At(laid.seconds()).md, 300);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(rested[i], plan.stops[i].seconds, 1) << i;
+  const double swung = plan.way.swing * std::sin(kTwoPi * 1200 / 0.8 / plan.way.swing_period);
+  EXPECT_NEAR(toolface[1], plan.way.toolface + swung, 1e-9);
+  EXPECT_NEAR(std::remainder(toolface[2] - 1.25, kTwoPi), 0, 1e-9);
+}
+
 TEST(PlanFile, RefusesMistakesWithTheirPlace) {
   const std::string run =
       "format = \"wellgyro.plan/1\"\n[run]\nbegin_md_m = 0.0\nend_md_m = 900.0\n";
@@ -55,6 +110,15 @@ TEST(PlanFile, RefusesMistakesWithTheirPlace) {
                 .find("does not follow"),
             std::string::npos);
   EXPECT_NE(why("rol_rpm = 1.0\n").find("rol_rpm"), std::string::npos);
+  EXPECT_NE(why("[limits]\nellipse_m = -2.0\n").find("ellipse_m"), std::string::npos);
+  EXPECT_NE(why("[limits]\nleast_stop_s = 90\nlongest_stop_s = 60\n").find("longest_stop_s"),
+            std::string::npos);
+  for (const char* rows : {"[[0, 0, 0]]", "[[0, 0, 0], [800, 0, 0]]", "[[0, 0, 0], [900, 181, 0]]",
+                           "[[0, 0, 0], [0, 0, 0], [900, 0, 0]]", "[[0, 0, 0], [900, nan, 0]]"}) {
+    EXPECT_NE(why(std::string("[path]\nstations = ") + rows + "\n").find("stations"),
+              std::string::npos)
+        << rows;
+  }
   EXPECT_NE(why("[[stop]]\npass = \"in\"\nmd_m = 50\nstop_s = nan\n"), "");
   const std::string text = PlanToml(Example());
   for (std::size_t n = 0; n < text.size(); n += 97) {

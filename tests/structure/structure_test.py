@@ -25,7 +25,7 @@ ALLOWED = {
     "fit": LOW | STAGES | {"survey"},
     "bus": LOW | STAGES | {"survey"},
     "page": LOW | STAGES | {"survey", "io"},
-    "live": LOW | STAGES | {"survey", "io", "bus"},
+    "live": LOW | STAGES | {"survey", "plan", "io", "bus"},
 }
 ALLOWED.update({stage: set(LOW) for stage in STAGES})
 

@@ -99,6 +99,8 @@ Result<Message> DecodeCold(MessageType type, std::span<const std::byte> bytes) {
       return Operation(bytes);
     case MessageType::kGlance:
       return Plain<Glance>(bytes);
+    case MessageType::kAdvice:
+      return Plain<Advice>(bytes);
     case MessageType::kRequest:
       return Plain<StationRequest>(bytes);
     case MessageType::kRawBatch:

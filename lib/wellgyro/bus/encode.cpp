@@ -67,6 +67,10 @@ void Encode(const Glance& glance, std::vector<std::byte>& bytes) {
   Write(MessageType::kGlance, glance, bytes);
 }
 
+void Encode(const Advice& advice, std::vector<std::byte>& bytes) {
+  Write(MessageType::kAdvice, advice, bytes);
+}
+
 void Encode(const StationRequest& request, std::vector<std::byte>& bytes) {
   Write(MessageType::kRequest, request, bytes);
 }

@@ -31,6 +31,7 @@ WELLGYRO_EXPORT void Encode(const SentStation& station, std::vector<std::byte>& 
 WELLGYRO_EXPORT void Encode(const Status& status, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const SignedOperation& operation, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const Glance& glance, std::vector<std::byte>& bytes);
+WELLGYRO_EXPORT void Encode(const Advice& advice, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const StationRequest& request, std::vector<std::byte>& bytes);
 WELLGYRO_EXPORT void Encode(const Message& message, std::vector<std::byte>& bytes);
 

@@ -24,6 +24,7 @@ struct Telling {
   void operator()(const Status& status) const { listener.OnStatus(status); }
   void operator()(const SignedOperation& operation) const { listener.OnOperation(operation); }
   void operator()(const Glance& glance) const { listener.OnGlance(glance); }
+  void operator()(const Advice& advice) const { listener.OnAdvice(advice); }
   void operator()(const StationRequest& request) const { listener.OnRequest(request); }
 };
 

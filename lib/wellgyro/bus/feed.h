@@ -33,6 +33,7 @@ class WELLGYRO_EXPORT Listener {
   virtual void OnStatus(const Status& /*status*/) {}
   virtual void OnOperation(const SignedOperation& /*operation*/) {}
   virtual void OnGlance(const Glance& /*glance*/) {}
+  virtual void OnAdvice(const Advice& /*advice*/) {}
   virtual void OnRequest(const StationRequest& /*request*/) {}
   virtual void OnFault(const Fault& /*fault*/) {}
 };

@@ -216,6 +216,42 @@ void Fields(Io& io, Record& r) requires std::is_same_v<std::remove_const_t<Recor
 }
 
 template <class Io, class Record>
+void Fields(Io& io, Record& r) requires std::is_same_v<std::remove_const_t<Record>, Advice> {
+  bool has_toolface = r.toolface.has_value();
+  bool has_next = r.next.has_value();
+  Advice::Next next = r.next.value_or(Advice::Next());
+  bool next_has_toolface = next.toolface.has_value();
+  bool has_hidden = r.hidden.has_value() && r.hidden_limit.has_value();
+  io.Utc("utime_us", r.utc);
+  io.Count("seq", r.seq);
+  io.Int("session", r.session);
+  io.Count("run", r.run);
+  io.Choice("action", r.action, Advice::Action::kNone, Advice::Action::kMoveOn);
+  io.NotNegative("more_s", r.seconds);
+  io.Flag("has_toolface", has_toolface);
+  io.Optional("toolface_rad", has_toolface, r.toolface);
+  io.Flag("has_next", has_next);
+  io.Flag("next_out", next.out);
+  io.Number("next_md_m", next.md);
+  io.NotNegative("next_stop_s", next.seconds);
+  io.Flag("next_has_toolface", next_has_toolface);
+  io.Optional("next_toolface_rad", next_has_toolface, next.toolface);
+  io.Count("stops_left", r.stops_left);
+  io.NotNegative("rest_left_s", r.rest_left);
+  io.Flag("reachable", r.reachable);
+  io.NotNegative("ellipse_m", r.ellipse);
+  io.NotNegative("ellipse_now_m", r.ellipse_now);
+  io.NotNegative("ellipse_limit_m", r.ellipse_limit);
+  io.Flag("has_hidden", has_hidden);
+  io.OptionalNotNegative("hidden_m", has_hidden, r.hidden);
+  io.OptionalNotNegative("hidden_limit_m", has_hidden, r.hidden_limit);
+  io.String("text", r.text);
+  if constexpr (!std::is_const_v<Record>) {
+    r.next = has_next ? std::optional(next) : std::nullopt;
+  }
+}
+
+template <class Io, class Record>
 void Fields(Io& io,
             Record& r) requires std::is_same_v<std::remove_const_t<Record>, StationRequest> {
   io.Utc("utime_us", r.utc);

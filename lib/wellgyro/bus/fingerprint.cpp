@@ -1,5 +1,6 @@
 #include <array>
 
+#include "wellgyro/advice_t.hpp"
 #include "wellgyro/bus/bytes_internal.h"
 #include "wellgyro/bus/message.h"
 #include "wellgyro/depth_t.hpp"
@@ -35,7 +36,7 @@ const std::array<Identity, kMessageTypes>& Identities() {
       IdentityOf<depth_t>(),     IdentityOf<tool_mode_t>(),  IdentityOf<tool_info_t>(),
       IdentityOf<event_t>(),     IdentityOf<survey_cmd_t>(), IdentityOf<survey_station_t>(),
       IdentityOf<status_t>(),    IdentityOf<operation_t>(),  IdentityOf<glance_t>(),
-      IdentityOf<request_t>(),
+      IdentityOf<request_t>(),   IdentityOf<advice_t>(),
   };
   return identities;
 }

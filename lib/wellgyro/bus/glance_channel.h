@@ -11,4 +11,7 @@ namespace wellgyro {
 /// channel's name with _GLANCE behind it.
 WELLGYRO_EXPORT std::string GlanceChannel(const Channels& channels);
 
+/// Where it says what the run had best do, if it was asked to: the same with _ADVICE.
+WELLGYRO_EXPORT std::string AdviceChannel(const Channels& channels);
+
 }  // namespace wellgyro

@@ -39,9 +39,10 @@ bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7
 }  // namespace
 
 std::string GlanceChannel(const Channels& channels) { return channels.status + "_GLANCE"; }
+std::string AdviceChannel(const Channels& channels) { return channels.status + "_ADVICE"; }
 
 const std::string& NameOf(const Channels& channels, MessageType type) {
-  if (type == MessageType::kGlance) return channels.status;
+  if (type == MessageType::kGlance || type == MessageType::kAdvice) return channels.status;
   if (type == MessageType::kOperation || type == MessageType::kRequest) return channels.command;
   return channels.*kPlaces.at(static_cast<std::size_t>(type)).name;
 }
@@ -57,6 +58,7 @@ std::optional<MessageType> TypeOn(const Channels& channels, std::string_view nam
                                   std::span<const std::byte> bytes) {
   const std::optional<MessageType> type = TypeOn(channels, name);
   if (!type && name == GlanceChannel(channels)) return MessageType::kGlance;
+  if (!type && name == AdviceChannel(channels)) return MessageType::kAdvice;
   if (type != MessageType::kCommand) return type;
   const std::optional<MessageType> said = TypeOf(bytes);
   return said && NameOf(channels, *said) == name ? said : type;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/record/advice.h"
 #include "wellgyro/record/channels.h"
 #include "wellgyro/record/depth_mark.h"
 #include "wellgyro/record/glance.h"
@@ -37,8 +38,9 @@ enum class MessageType {
   kOperation,
   kGlance,
   kRequest,
+  kAdvice,
 };
-inline constexpr int kMessageTypes = 13;
+inline constexpr int kMessageTypes = 14;
 
 struct RawBatch {
   std::vector<RawSample> samples;
@@ -58,8 +60,9 @@ struct SentStation {
 
 /// Any message of proto/ as a record. Of a StillWindow that travelled, `seq_begin` and `seq_end`
 /// are the message's number and `samples` is zero.
-using Message = std::variant<RawBatch, ImuBatch, StillWindow, DepthMark, ToolMode, ToolInfo, Event,
-                             Command, SentStation, Status, SignedOperation, Glance, StationRequest>;
+using Message =
+    std::variant<RawBatch, ImuBatch, StillWindow, DepthMark, ToolMode, ToolInfo, Event, Command,
+                 SentStation, Status, SignedOperation, Glance, StationRequest, Advice>;
 
 /// The struct's name in proto/, as "imu_batch_t".
 WELLGYRO_EXPORT std::string_view TypeName(MessageType type);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "wellgyro/math/so3.h"
-
 namespace wellgyro {
 
 std::vector<Eigen::Matrix3d> EndByPhi(std::span<const Node> nodes) {
@@ -20,7 +18,7 @@ std::vector<Eigen::Matrix3d> EndByPhi(std::span<const Node> nodes) {
   for (std::size_t k = first; k < last; ++k) {
     const double half = (down ? 0.5 : -0.5) * (nodes[k + 1].md - nodes[k].md);
     for (const std::size_t i : {k, k + 1}) {
-      end[i] -= half * nodes[i].R_LT * Skew(Eigen::Vector3d::UnitZ());
+      end[i] += half * TangentByPhi(nodes[i].R_LT);
     }
   }
   return end;

@@ -80,6 +80,9 @@ void ForwardRun::FreeRoll(double sigma) {
   state_.information.col(roll) = left;
   state_.information.row(roll) = left.transpose();
   state_.cov(roll, roll) += var;
+  const Vector3d by_roll = state_.way.by.col(roll);
+  state_.way.cov += var / (1 + var * told[roll]) * by_roll * by_roll.transpose();
+  state_.way.by -= var * by_roll * left.transpose();
   // What errors of the station before have in common with the node's stays as it was.
   if (state_.link.size() > 0) state_.link -= var * state_.link.col(roll).eval() * left.transpose();
 }
@@ -139,6 +142,8 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
     CarryLink(layout_, elimination.Gain(0), state_.link);
     state_.link.leftCols<3>() = (state_.link.leftCols<3>() * turn).eval();
   }
+  CarryWay(layout_, begin, end, elimination.Gain(0), elimination.Remainder(0), state_.way);
+  state_.way.by.leftCols<3>() = (state_.way.by.leftCols<3>() * turn).eval();
   const Node& before = state_.nodes.back();
   state_.p += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
   state_.seconds += knot.increment.seconds;

@@ -20,6 +20,11 @@ struct Node {
   Eigen::Vector3d tangent_L() const { return R_LT.col(2); }
 };
 
+/// d tangent_L / d phi = -R [e_z]x, phi of R_LT Exp(phi).
+inline Eigen::Matrix3d TangentByPhi(const Eigen::Matrix3d& R_LT) {
+  return -R_LT * Skew(Eigen::Vector3d::UnitZ());
+}
+
 /// The node moved by a step of its unknowns.
 inline void Move(const Layout& layout, const NodeVector& step, Node& node) {
   node.R_LT = node.R_LT * Exp(step.segment<3>(layout.phi));

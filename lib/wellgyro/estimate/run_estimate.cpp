@@ -264,8 +264,10 @@ RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
     end.p = before->p;
     end.seconds = before->seconds;
   }
+  end.way = before != nullptr ? before->way : WayFrom(layout, nodes.front());
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Node &a = nodes[k], &b = nodes[k + 1];
+    CarryWay(layout, a, b, e.Gain(k), e.Remainder(k), end.way);
     end.p += 0.5 * (b.md - a.md) * (a.tangent_L() + b.tangent_L());
     end.seconds += knots[k].increment.seconds;
   }

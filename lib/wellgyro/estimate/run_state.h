@@ -8,6 +8,7 @@
 #include "wellgyro/estimate/layout.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/setup.h"
+#include "wellgyro/estimate/way_behind.h"
 
 namespace wellgyro {
 
@@ -21,6 +22,7 @@ struct RunState {
   EdgeMatrix information, cov;  ///< of [newest node; border]
   /// E[x (node; border)'] = link cov, x of the last marked node; empty: none was.
   Eigen::MatrixXd link;
+  WayBehind way;                                ///< back to node 0 of the run
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< from node 0 of the run [m]
   double seconds = 0;                           ///< since then
 

@@ -77,20 +77,33 @@ void Broadcast::SayAgain(std::int32_t from_revision) {
 }
 
 void Broadcast::Send(Glance glance) {
-  std::vector<std::byte> bytes;
   glance.seq = glance_seq_++;
   glance.session = session_;
   glance.stations = stations_;
+  if (!SendBeside(GlanceChannel(channels_), glance)) return;
+  notices_.With([&glance](LiveObserver& observer) { observer.OnGlance(glance); });
+}
+
+void Broadcast::Send(Advice advice) {
+  advice.seq = advice_seq_++;
+  advice.session = session_;
+  if (!SendBeside(AdviceChannel(channels_), advice)) return;
+  notices_.With([&advice](LiveObserver& observer) { observer.OnAdvice(advice); });
+}
+
+/// On a channel beside the status'; false: it cannot travel.
+template <class Record>
+bool Broadcast::SendBeside(const std::string& channel, const Record& record) {
+  std::vector<std::byte> bytes;
   try {
-    Encode(glance, bytes);
+    Encode(record, bytes);
   } catch (const std::invalid_argument& error) {
     notices_.Tell({FaultCode::kRange, error.what()});
-    return;
+    return false;
   }
-  const std::string channel = GlanceChannel(channels_);
-  if (channel.size() > kChannelMax) return;
+  if (channel.size() > kChannelMax) return false;
   Publish(channel, bytes);
-  notices_.With([&glance](LiveObserver& observer) { observer.OnGlance(glance); });
+  return true;
 }
 
 void Broadcast::OnFault(const Fault& fault) {

@@ -15,6 +15,7 @@
 #include "wellgyro/live/clock.h"
 #include "wellgyro/live/intake.h"
 #include "wellgyro/live/notices.h"
+#include "wellgyro/record/advice.h"
 #include "wellgyro/record/channels.h"
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/station.h"
@@ -41,6 +42,7 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
   /// Every station told, in its last revision, where that is this one or later; once a second.
   void SayAgain(std::int32_t from_revision);
   void Send(Glance glance);
+  void Send(Advice advice);
   /// The last station told, muted or not.
   const std::optional<Station>& last() const { return last_; }
 
@@ -54,6 +56,8 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
   bool must_acknowledge() const { return must_acknowledge_; }
 
  private:
+  template <class Record>
+  bool SendBeside(const std::string& channel, const Record& record);
   void Publish(const std::string& channel, const std::vector<std::byte>& bytes);
 
   LiveBus& bus_;
@@ -75,7 +79,7 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
   std::deque<std::vector<std::byte>> outbox_;
   std::int64_t pump_us_ = 0, again_us_ = 0;
   int pumped_ = 0;  ///< since then
-  std::int64_t glance_seq_ = 0;
+  std::int64_t glance_seq_ = 0, advice_seq_ = 0;
   bool muted_ = false;
   bool failed_ = false;
   std::mutex mutex_;  ///< of what Send uses, which the session's watchdog calls too

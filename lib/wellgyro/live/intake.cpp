@@ -82,7 +82,8 @@ std::vector<ChannelRecord> Intake::Channels() const {
     const auto type = static_cast<MessageType>(i);
     // What surveys say, ours or another, is no input.
     if (type == MessageType::kStation || type == MessageType::kStatus ||
-        type == MessageType::kGlance || type == MessageType::kRequest) {
+        type == MessageType::kGlance || type == MessageType::kAdvice ||
+        type == MessageType::kRequest) {
       continue;
     }
     if (feed_.count(type).messages == 0) continue;

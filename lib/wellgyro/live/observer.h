@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
+#include "wellgyro/record/advice.h"
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/status.h"
@@ -24,6 +25,7 @@ class WELLGYRO_EXPORT LiveObserver {
   virtual void OnStation(const Station& /*station*/) {}    ///< as sent
   virtual void OnStatus(const Status& /*status*/) {}       ///< once a second
   virtual void OnGlance(const Glance& /*glance*/) {}       ///< once a second
+  virtual void OnAdvice(const Advice& /*advice*/) {}       ///< every few seconds, if asked for
   /// Stop was called and the session does not come to an end, because an adjustment takes long. The
   /// files in its folder are whole and nothing writes to them any more: the program may end here.
   /// `kept`: their verdict, the worst of the tools'; nothing: they hold no survey yet.

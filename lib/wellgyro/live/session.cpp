@@ -92,6 +92,7 @@ LiveSession::Core::Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveOb
                  Use(channel, bytes, received_us, fresh);
                }),
       keeper(setup.job.job, notices) {
+  if (setup.advise) adviser = std::make_unique<Adviser>(*setup.advise);
   intake.Watch(watch);
   intake.Tell([this](const OperationRecord& record, bool event) { TellOf(record, event); });
   watchdog = std::make_unique<Watchdog>(
@@ -280,6 +281,7 @@ void LiveSession::Core::Housekeeping() {
   broadcast.Pump();
   if (now >= next_status || broadcast.must_acknowledge()) SendStatus(now);
   if (now >= next_keep) KeepFiles(now);
+  if (adviser) Advise(now);
 }
 
 bool LiveSession::Core::FinishIsDue(std::int64_t now) {

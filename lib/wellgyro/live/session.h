@@ -19,6 +19,7 @@
 namespace wellgyro {
 
 class RunAdjuster;
+struct AdviceCase;
 
 /// What a live session is asked to do.
 struct LiveSetup {
@@ -31,6 +32,7 @@ struct LiveSetup {
   std::vector<SurveyFormat> formats;
   Maker maker = {"wellgyro", "none"};
   LiveClock clock;
+  std::shared_ptr<const AdviceCase> advise = {};  ///< null: it gives no advice
 };
 
 /// How a session came to its end, and what is in its folder then.

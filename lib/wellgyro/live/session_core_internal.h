@@ -15,6 +15,7 @@
 #include "wellgyro/bus/latency.h"
 #include "wellgyro/bus/loss_watch.h"
 #include "wellgyro/bus/stream_guard.h"
+#include "wellgyro/live/adviser.h"
 #include "wellgyro/live/broadcast.h"
 #include "wellgyro/live/catch_up.h"
 #include "wellgyro/live/intake.h"
@@ -54,6 +55,7 @@ struct LiveSession::Core {
   void Worsen(Status& status) const;
   void SendLate();
   Glance GlanceNow() const;
+  void Advise(std::int64_t now);
   void NoteChecks(const std::vector<ToolResult>& tools);
   void EmptyOutbox();
   void KeepFiles(std::int64_t now);
@@ -75,7 +77,8 @@ struct LiveSession::Core {
   std::unique_ptr<LogKeeper> log;
   bool resuming = false;
   Latency message_latency, station_latency;
-  std::int64_t next_status = 0, next_keep = 0;
+  std::unique_ptr<Adviser> adviser;  ///< null: nobody asked
+  std::int64_t next_status = 0, next_keep = 0, next_advice = 0;
   std::int64_t kept_news = 0;
   std::int64_t sample_messages = 0, last_sample_us = 0;
   std::int64_t kernel_drops_said = 0;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int64_t kSecondUs = 1'000'000;
 constexpr std::int64_t kKeepUs = 500'000;
+constexpr std::int64_t kAdviceUs = 2 * kSecondUs;
 constexpr double kRests = 5;                   // [s] so long without moving is a rest
 constexpr std::int64_t kOutboxUs = 1'000'000;  // for stations that were not sent yet at the end
 constexpr int kOutboxMs = 10;
@@ -95,6 +96,16 @@ Glance LiveSession::Core::GlanceNow() const {
   }
   glance.turned = turned;
   return glance;
+}
+
+/// Asks every two seconds, of the tool that was heard of first by its number.
+void LiveSession::Core::Advise(std::int64_t now) {
+  if (const auto advice = adviser->Take()) broadcast.Send(*advice);
+  if (now < next_advice) return;
+  const std::vector<std::int32_t> tools = surveyor.tools();
+  const std::optional<UtcTime> newest = surveyor.tally().newest;
+  if (tools.empty() || !newest || newest->ns <= 0) return;
+  if (adviser->Ask(surveyor.Now(tools.front()), *newest)) next_advice = now + kAdviceUs;
 }
 
 /// Which check has another verdict than in the files before.

@@ -58,8 +58,13 @@ MatrixXd RestRows(SyntheticRun& rows, std::size_t node) {
 /// Backwards through the run, with E[x y'] of the node at hand and all rows y met so far.
 class StopInformation::Sweep {
  public:
-  Sweep(StopInformation& info, const PlanCase& c, std::span<const PlannedStop> marks)
-      : info_(info), rows_(c, marks, SetupOfPlan(c)), run_(rows_) {
+  Sweep(StopInformation& info, const PlanCase& c, std::span<const PlannedStop> marks,
+        const RunSoFar* so_far, bool with_faults)
+      : info_(info),
+        so_far_(so_far),
+        rows_(so_far != nullptr ? SyntheticRun(c, marks, *so_far)
+                                : SyntheticRun(c, marks, SetupOfPlan(c))),
+        run_(rows_) {
     const EstimateSetup setup = SetupOfPlan(c);
     info_.ln_limit_ = std::log(static_cast<double>(setup.causes.size()) / setup.false_alarm_rate);
     for (std::size_t i = 0; i < info_.places(); ++i) {
@@ -68,8 +73,10 @@ class StopInformation::Sweep {
     }
     info_.solved_ = run_.Solve();
     if (!info_.solved_) return;
-    FindConstants(setup);
-    FindSteps(setup);
+    if (with_faults) {
+      FindConstants(setup);
+      FindSteps(setup);
+    }
     const Index size = info_.place_row(info_.places());
     info_.covariance_ = MatrixXd::Zero(size, size);
     const Layout& layout = rows_.layout();
@@ -108,20 +115,42 @@ class StopInformation::Sweep {
     }
   }
 
+  /// What the end is by phi of every node, see EndByPhi(); of a way that goes on, as WayBehind.
+  std::vector<Matrix3d> ByPhi() const {
+    if (so_far_ == nullptr) return EndByPhi(rows_.nodes());
+    const std::span<const Node> nodes = rows_.nodes();
+    std::vector<Matrix3d> end(nodes.size(), Matrix3d::Zero());
+    double deepest = so_far_->state->way.deepest;
+    for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+      const double half = 0.5 * Deepens(nodes[k].md, nodes[k + 1].md, deepest);
+      end[k] += half * TangentByPhi(nodes[k].R_LT);
+      end[k + 1] += half * TangentByPhi(nodes[k + 1].R_LT);
+      deepest = std::max(deepest, nodes[k + 1].md);
+    }
+    return end;
+  }
+
   void FindEnd(const PlanCase& c) {
     const Layout& layout = rows_.layout();
-    const std::vector<Matrix3d> by_phi = EndByPhi(rows_.nodes());
-    for (const Matrix3d& b : by_phi) {
+    for (const Matrix3d& b : ByPhi()) {
       MatrixXd node = MatrixXd::Zero(layout.node, 3);
       node.middleRows<3>(layout.phi) = b.transpose();
       end_.nodes.push_back(std::move(node));
     }
     end_.border = MatrixXd::Zero(layout.border, 3);
-    run_.SolveFor(end_);
     Matrix3d cov = DepthCovariance(c);
-    for (std::size_t k = 0; k < by_phi.size(); ++k) {
-      cov += by_phi[k] * end_.nodes[k].middleRows<3>(layout.phi);
+    if (so_far_ != nullptr) {
+      const WayBehind& way = so_far_->state->way;
+      end_.nodes.front() += way.by.leftCols(layout.node).transpose();
+      end_.border = way.by.rightCols(layout.border).transpose();
+      cov += way.cov;
     }
+    const LinearRun::Columns by = end_;
+    run_.SolveFor(end_);
+    for (std::size_t k = 0; k < by.nodes.size(); ++k) {
+      cov += by.nodes[k].transpose() * end_.nodes[k];
+    }
+    cov += by.border.transpose() * end_.border;
     info_.covariance_.topLeftCorner<2, 2>() = cov.topLeftCorner<2, 2>();
   }
 
@@ -235,6 +264,7 @@ class StopInformation::Sweep {
   }
 
   StopInformation& info_;
+  const RunSoFar* so_far_;
   SyntheticRun rows_;
   LinearRun run_;
   std::vector<int> constants_;  ///< border columns of the first faults
@@ -246,11 +276,12 @@ class StopInformation::Sweep {
   bool moved_ = false;
 };
 
-StopInformation::StopInformation(const PlanCase& c, std::span<const StopPlace> places)
+StopInformation::StopInformation(const PlanCase& c, std::span<const StopPlace> places,
+                                 const RunSoFar* so_far, bool with_faults)
     : places_(places.begin(), places.end()) {
   std::vector<PlannedStop> marks;
   for (const StopPlace& place : places_) marks.push_back({place.out, place.md, 0, {}});
-  const Sweep sweep(*this, c, marks);
+  const Sweep sweep(*this, c, marks, so_far, with_faults);
 }
 
 Eigen::Matrix<double, 2, StopInformation::kBasis> StopInformation::Mix(double turn) {

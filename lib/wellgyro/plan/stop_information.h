@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/plan/plan_case.h"
+#include "wellgyro/plan/run_so_far.h"
 
 namespace wellgyro {
 
@@ -35,8 +36,11 @@ class StopInformation {
  public:
   static constexpr int kBasis = 4;  ///< rows a place: rate at the tool, two; the gyros' own, two
 
-  /// solved() is false where the run cannot be linearised. Throws as CheckPlanCase().
-  StopInformation(const PlanCase& c, std::span<const StopPlace> places);
+  /// `so_far`: of what is left of a run of which so much is known; nullptr: of a whole one, whose
+  /// end is then that of the way so far and of the way left together. `with_faults`: else faults()
+  /// is empty. solved() is false where the run cannot be linearised. Throws as CheckPlanCase().
+  StopInformation(const PlanCase& c, std::span<const StopPlace> places,
+                  const RunSoFar* so_far = nullptr, bool with_faults = true);
 
   bool solved() const { return solved_; }
   std::size_t places() const { return places_.size(); }

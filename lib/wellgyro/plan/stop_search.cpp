@@ -25,11 +25,12 @@ class Search {
       : limits_(limits), stand_(info, limits.ellipse, HiddenLimit(limits)) {}
 
   std::optional<std::vector<Rest>> Run() {
+    if (Floor(0) > 0) stand_.Add({0, 0, Floor(0)});
     if (!Fill(stand_)) return std::nullopt;
     // A north may be needed, whatever the run alone would come to.
-    if (stand_.stops().size() < limits_.fewest) {
+    if (CountOf(stand_) < limits_.fewest) {
       const Choice best = BestRest(stand_);
-      stand_.Add(best.gain > 0 ? best.rest : Rest{0, 0, limits_.least_stop});
+      stand_.Add(best.gain > 0 ? best.rest : Rest{0, 0, Least(0) - Floor(0)});
     }
     Trim(stand_);
     Narrow();
@@ -51,8 +52,29 @@ class Search {
     double gain = 0;  // of ln soft, per second
   };
 
+  bool IsHere(std::size_t place) const { return limits_.here && place == 0; }
+  double Overhead(std::size_t place) const { return IsHere(place) ? 0 : limits_.overhead; }
+  /// Of the time at a place, what no plan can take back.
+  double Floor(std::size_t place) const { return IsHere(place) ? limits_.here->fresh : 0; }
+  /// More than that it is a stop only from here on.
+  double Least(std::size_t place) const {
+    if (!IsHere(place)) return limits_.least_stop;
+    return std::max(limits_.here->fresh, limits_.least_stop - limits_.here->known);
+  }
+  double Longest(std::size_t place) const {
+    return limits_.longest_stop - (IsHere(place) ? limits_.here->known : 0);
+  }
+
   double Cost(const StopStand& stand) const {
-    return stand.at_rest() + limits_.overhead * static_cast<double>(stand.stops().size());
+    double cost = stand.at_rest();
+    for (const Rest& stop : stand.stops()) cost += Overhead(stop.place);
+    return cost;
+  }
+
+  std::size_t CountOf(const StopStand& stand) const {
+    const auto counts = [this](const Rest& r) { return r.seconds >= Least(r.place); };
+    return static_cast<std::size_t>(
+        std::count_if(stand.stops().begin(), stand.stops().end(), counts));
   }
 
   /// The stop that stands at a place; the tool is turned once there.
@@ -68,17 +90,10 @@ class Search {
     if (gain > best.gain) best = {rest, gain};
   }
 
-  Choice BestRest(const StopStand& stand) const {
-    Choice best;
-    const double before = std::log(stand.Value().soft);
-    for (const std::size_t place : stand.places()) {
-      if (const Rest* stop = StopAt(stand, place)) {
-        for (const double more : {kGrain, 0.5 * limits_.least_stop, limits_.least_stop}) {
-          if (stop->seconds + more > limits_.longest_stop) continue;
-          Try(stand, {place, stop->turn, more}, more, before, best);
-        }
-        continue;
-      }
+  /// Every way to rest longer at one place.
+  void TryPlace(const StopStand& stand, std::size_t place, double before, Choice& best) const {
+    const Rest* stop = StopAt(stand, place);
+    if (stop == nullptr && !IsHere(place)) {
       const int turns = limits_.turns ? kToolfaces : 1;
       for (int i = 0; i < turns; ++i) {
         for (const double factor : {1., 2., 4.}) {
@@ -87,7 +102,20 @@ class Search {
               best);
         }
       }
+      return;
     }
+    const double seconds = stop != nullptr ? stop->seconds : 0;
+    for (const double step : {kGrain, 0.5 * limits_.least_stop, limits_.least_stop}) {
+      const double more = std::max(step, Least(place) - seconds);
+      if (seconds + more > Longest(place)) continue;
+      Try(stand, {place, stop != nullptr ? stop->turn : 0, more}, more, before, best);
+    }
+  }
+
+  Choice BestRest(const StopStand& stand) const {
+    Choice best;
+    const double before = std::log(stand.Value().soft);
+    for (const std::size_t place : stand.places()) TryPlace(stand, place, before, best);
     return best;
   }
 
@@ -108,14 +136,15 @@ class Search {
       Choice best{{}, -HUGE_VAL};
       const double before = std::log(stand.Value().soft);
       for (const Rest& stop : stand.stops()) {
-        const bool last = stand.stops().size() <= limits_.fewest;
-        const bool shorter = stop.seconds - kGrain >= limits_.least_stop;
-        for (const double less : {shorter ? kGrain : 0, last ? 0 : stop.seconds}) {
-          if (less == 0) continue;
+        const bool last = CountOf(stand) <= limits_.fewest;
+        const bool shorter = stop.seconds - kGrain >= Least(stop.place);
+        const double all = stop.seconds - Floor(stop.place);
+        for (const double less : {shorter ? kGrain : 0, last ? 0 : all}) {
+          if (!(less > 0)) continue;
           const Rest back{stop.place, stop.turn, -less};
           const PlanValue value = stand.ValueWith(back);
           if (!stand.MeetsWith(back)) continue;
-          const double saved = less + (less == stop.seconds ? limits_.overhead : 0);
+          const double saved = less + (less == all ? Overhead(stop.place) : 0);
           const double gain = (before - std::log(value.soft)) / saved;
           if (gain > best.gain) best = {back, gain};
         }
@@ -134,7 +163,7 @@ class Search {
       worth.emplace_back(before - std::log(stand_.ValueWith(rest).soft), place);
     }
     std::sort(worth.rbegin(), worth.rend());
-    std::vector<std::size_t> kept;
+    std::vector<std::size_t> kept{0};
     for (std::size_t i = 0; i < std::min(kKept, worth.size()); ++i) kept.push_back(worth[i].second);
     const std::size_t count = stand_.places().size();
     for (const Rest& stop : stand_.stops()) {
@@ -148,16 +177,18 @@ class Search {
 
   void TakeIfBetter(StopStand tried) {
     if (!Fill(tried, Cost(stand_))) return;
-    if (tried.stops().size() < limits_.fewest) return;
+    if (CountOf(tried) < limits_.fewest) return;
     Trim(tried);
     if (Cost(tried) < Cost(stand_)) stand_ = std::move(tried);
   }
 
   void Replace(std::size_t i) {
     if (i >= stand_.stops().size()) return;
-    StopStand tried = stand_;
     const Rest stop = stand_.stops()[i];
-    tried.Add({stop.place, stop.turn, -stop.seconds});
+    const double seconds = stop.seconds - Floor(stop.place);
+    if (!(seconds > 0)) return;
+    StopStand tried = stand_;
+    tried.Add({stop.place, stop.turn, -seconds});
     TakeIfBetter(std::move(tried));
   }
 
@@ -165,6 +196,7 @@ class Search {
     for (const int by : {-2, -1, 1, 2}) {
       if (i >= stand_.stops().size()) return;
       const Rest stop = stand_.stops()[i];
+      if (IsHere(stop.place)) return;
       const auto to = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(stop.place) + by);
       const auto places = stand_.places();
       if (std::find(places.begin(), places.end(), to) == places.end()) continue;

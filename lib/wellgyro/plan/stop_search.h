@@ -21,6 +21,12 @@ struct PlanLimits {
   double most_at_rest = 14'400;  ///< over all stops [s]
   bool turns = false;            ///< the tool may be turned to a toolface before a stop
   std::size_t fewest = 1;        ///< stops: the first north fix needs one
+  /// A tool at rest at the first place: what it adds there costs its time alone.
+  struct Here {
+    double known = 0;  ///< of the rest so far, what the information holds [s]
+    double fresh = 0;  ///< what it does not: part of every plan [s]
+  };
+  std::optional<Here> here = {};
 };
 
 /// Stops that meet both limits in little time, or none where that is not possible.

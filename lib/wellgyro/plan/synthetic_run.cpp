@@ -23,9 +23,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr Complex kI{0, 1};
-constexpr double kMoveKnot = 4;    // [s]
-constexpr double kRollMost = 0.6;  // [rad] in a knot: what the errors do is then even over it
-constexpr double kTurnKnot = 10;   // [s] to turn to another toolface
+// Of a plan and of what is left of a run that goes on.
+constexpr double kMoveKnot = 4, kMoveKnotLeft = 12;     // [s]
+constexpr double kRollMost = 0.6, kRollMostLeft = 1.6;  // [rad] in a knot
+constexpr double kTurnKnot = 10;                        // [s] to turn to another toolface
 constexpr double kSigmaMd = 0.05;  // [m] of a depth mark against its neighbours
 // What a rolling tool's rate does from knot to knot beyond its plan, and what it may do where the
 // speed changes; where gravity shows the roll neither counts.
@@ -144,24 +145,42 @@ SyntheticRun::SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops
   node.R_LT = AttitudeMatrix(first.azimuth, first.inclination, c.way.toolface);
   node.md = c.way.begin_md;
   nodes_.push_back(node);
+  AddWay(stops, false);
+}
+
+SyntheticRun::SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops,
+                           const RunSoFar& so_far)
+    : case_(c),
+      before_(so_far.state),
+      setup_(so_far.state->setup),
+      layout_(LayoutOf(setup_)),
+      stop_nodes_(stops.size(), 0),
+      rows_(setup_, layout_) {
+  CheckPlanCase(c, stops);
+  setup_.ties.clear();
+  nodes_.push_back(before_->node());
+  AddWay(stops, so_far.out);
+}
+
+void SyntheticRun::AddWay(std::span<const PlannedStop> stops, bool up) {
   std::vector<std::size_t> order(stops.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
     if (stops[i].out != stops[j].out) return stops[j].out;
     return stops[i].out ? stops[i].md > stops[j].md : stops[i].md < stops[j].md;
   });
-  bool up = false;
   for (const std::size_t i : order) {
     const PlannedStop& stop = stops[i];
-    if (stop.out && !up) AddMove(c.way.end_md, c.way.speed_in);
+    if (stop.out && !up) AddMove(case_.way.end_md, case_.way.speed_in);
     up = up || stop.out;
-    AddMove(stop.md, up ? c.way.speed_out : c.way.speed_in);
+    AddMove(stop.md, up ? case_.way.speed_out : case_.way.speed_in);
     if (stop.toolface && stop.seconds > 0) AddTurn(*stop.toolface);
     stop_nodes_[i] = knots_.size();
     AddRest(stop.seconds);
   }
-  if (!up) AddMove(c.way.end_md, c.way.speed_in);
-  if (c.way.speed_out > 0) AddMove(c.way.begin_md, c.way.speed_out);
+  const PlannedWay& way = case_.way;
+  if (!up) AddMove(way.end_md, way.speed_in);
+  if (way.speed_out > 0) AddMove(way.begin_md, way.speed_out);
   MakeIncrements();
 }
 
@@ -171,7 +190,7 @@ void SyntheticRun::AddKnot(double seconds, double to_md, double roll, bool still
   seconds_ += seconds;
   inc.seconds = seconds;
   inc.time = ToolTime{std::llround(seconds_ * 1e9)};
-  inc.has_axial = case_.third_axis;
+  inc.has_axial = setup_.third_axis;
   knot.utc = UtcTime{inc.time.ns};
   knot.still = still;
   knot.along = {.md = to_md, .speed = 0, .sigma_md = kSigmaMd, .known = true};
@@ -197,7 +216,9 @@ void SyntheticRun::AddMove(double to_md, double speed) {
   const bool rolls = way.roll_rate != 0;
   const double fastest =
       rolls ? std::abs(way.roll_rate) : kTwoPi * std::abs(way.swing) / way.swing_period;
-  const double knot = std::min(kMoveKnot, kRollMost / std::max(fastest, 1e-6));
+  const double most = before_ != nullptr ? kRollMostLeft : kRollMost;
+  const double knot =
+      std::min(before_ != nullptr ? kMoveKnotLeft : kMoveKnot, most / std::max(fastest, 1e-6));
   const auto count = static_cast<int>(std::ceil(seconds / knot - 1e-9));
   for (int i = 1; i <= count; ++i) {
     // By the time on the move: a stop does not change how the tool comes to the next one.
@@ -219,7 +240,7 @@ void SyntheticRun::AddRest(double seconds) {
 void SyntheticRun::AddTurn(double toolface) {
   const Matrix3d& R = nodes_.back().R_LT;
   const double roll = WrapPi(toolface - std::atan2(R(2, 1), -R(2, 0)));
-  const auto count = static_cast<int>(std::ceil(std::abs(roll) / kRollMost));
+  const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(roll) / kRollMost)));
   for (int i = 0; i < count; ++i) {
     AddKnot(kTurnKnot / count, nodes_.back().md, roll / count, false);
   }
@@ -229,7 +250,7 @@ void SyntheticRun::MakeIncrements() {
   for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
     if (!knots_[k].still) nodes_[k].speed = nodes_[k + 1].speed;
   }
-  PlaceKnots(setup_.site, nullptr, knots_, nodes_, places_);
+  PlaceKnots(setup_.site, before_, knots_, nodes_, places_);
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const Matrix3d& begin = nodes_[k].R_LT;
     Increment& inc = knots_[k].increment;
@@ -241,6 +262,11 @@ void SyntheticRun::MakeIncrements() {
 }
 
 void SyntheticRun::FirstRows(EdgeMatrix& information, EdgeVector& gradient) const {
+  if (before_ != nullptr) {
+    information = before_->information;
+    gradient.setZero(information.rows());
+    return;
+  }
   RunSolver solver(setup_, std::span(knots_).first(1));
   solver.Begin(nodes_.front().R_LT);
   solver.FirstRows(information, gradient);
@@ -272,7 +298,7 @@ void SyntheticRun::RowsOf(std::size_t k, std::vector<Factor>& rows) {
   const double speeds =
       std::abs(end.speed - begin.speed) + std::abs(k > 0 ? nodes_[k - 1].speed - begin.speed : 0.0);
   const double change = speeds > kSpeedChanges ? kRollPerSpeed * speeds : 0;
-  const double walk = case_.third_axis ? std::sqrt(dt) : kRollWalk * std::sqrt(dt);
+  const double walk = setup_.third_axis ? std::sqrt(dt) : kRollWalk * std::sqrt(dt);
   block_.Clear(layout_);
   block_.Collect(&rows);
   if (k == 0) AddTies(0, block_, 0);

@@ -10,6 +10,7 @@
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/plan/plan_case.h"
+#include "wellgyro/plan/run_so_far.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
@@ -25,6 +26,8 @@ class SyntheticRun : public RunRows {
   /// `stops` in any order, those of no length marking a node only. `setup` is taken but for site
   /// and ties. Throws as CheckPlanCase().
   SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, EstimateSetup setup);
+  /// What is left of a run of which so much is known, by its setup; that must outlive this object.
+  SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, const RunSoFar& so_far);
   SyntheticRun(const SyntheticRun&) = delete;
   SyntheticRun& operator=(const SyntheticRun&) = delete;
 
@@ -44,6 +47,7 @@ class SyntheticRun : public RunRows {
   static constexpr double kRestKnot = 10;  ///< [s]
 
  private:
+  void AddWay(std::span<const PlannedStop> stops, bool up);
   void AddMove(double to_md, double speed);
   void AddRest(double seconds);
   void AddTurn(double toolface);
@@ -52,6 +56,7 @@ class SyntheticRun : public RunRows {
   void MakeIncrements();
 
   const PlanCase& case_;
+  const RunState* before_ = nullptr;
   EstimateSetup setup_;
   Layout layout_;
   std::vector<RunKnot> knots_;

@@ -33,9 +33,6 @@ void ForgetAngle(int i, AttitudeSample& a) {
   a.cov_attitude(i, i) = kUnknownAngleVariance;
 }
 
-/// d tangent / d phi = -R [e_z]x.
-Matrix3d TangentByPhi(const Matrix3d& R_LT) { return -R_LT * Skew(Eigen::Vector3d::UnitZ()); }
-
 }  // namespace
 
 AttitudeSample AttitudeOf(const RunKnot& knot, const Node& node, const Matrix3d& cov_phi) {

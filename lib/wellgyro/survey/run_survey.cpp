@@ -338,4 +338,18 @@ void RunSurvey::ListLastDepth() {
 
 std::vector<std::size_t> RunSurvey::News() { return std::exchange(news_, {}); }
 
+RunNow RunSurvey::Now() const {
+  RunNow now;
+  now.run = summary_.run;
+  if (history_.knots.empty()) return now;
+  const RunKnot& last = history_.knots.back();
+  now.utc = last.utc;
+  if (last.along.known) now.md = last.along.md;
+  for (std::size_t k = history_.knots.size(); k-- > 0 && history_.knots[k].still;) {
+    now.rested += history_.knots[k].increment.seconds;
+  }
+  if (forward_) now.state = &forward_->state();
+  return now;
+}
+
 }  // namespace wellgyro

@@ -18,6 +18,7 @@
 #include "wellgyro/survey/draft.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/run_history.h"
+#include "wellgyro/survey/run_now.h"
 #include "wellgyro/survey/station_plan.h"
 #include "wellgyro/survey/survey.h"
 
@@ -67,6 +68,7 @@ class RunSurvey {
   std::size_t ahead() const { return states_ahead_.size(); }
   /// Those of drafts() that are from samples stand in this order among its stations.
   const RunHistory& history() const { return history_; }
+  RunNow Now() const;
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
   /// How stops that were reached on a roll nobody saw agree with the run as a whole, by its

@@ -338,6 +338,11 @@ std::vector<std::int32_t> Surveyor::tools() const {
   return numbers;
 }
 
+RunNow Surveyor::Now(std::int32_t tool) const {
+  const auto found = rooms_->tools.find(tool);
+  return found == rooms_->tools.end() ? RunNow() : found->second.Now();
+}
+
 Survey Surveyor::Current(std::int32_t tool) const {
   const auto found = rooms_->tools.find(tool);
   if (found != rooms_->tools.end()) return found->second.Current();

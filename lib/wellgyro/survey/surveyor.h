@@ -17,6 +17,7 @@
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/still_window.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/run_now.h"
 #include "wellgyro/survey/survey.h"
 
 namespace wellgyro {
@@ -99,6 +100,8 @@ class WELLGYRO_EXPORT Surveyor {
 
   /// Tools of the string that have been heard of.
   std::vector<std::int32_t> tools() const;
+  /// How far the run of one tool that goes on is known.
+  RunNow Now(std::int32_t tool) const;
   /// All stations, checks and runs of one tool as they are now.
   Survey Current(std::int32_t tool) const;
 

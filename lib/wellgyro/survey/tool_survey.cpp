@@ -449,4 +449,6 @@ SampleTally ToolSurvey::tally() const {
   return tally;
 }
 
+RunNow ToolSurvey::Now() const { return runs_.empty() ? RunNow() : runs_.back().survey->Now(); }
+
 }  // namespace wellgyro

@@ -65,6 +65,8 @@ class ToolSurvey {
 
   Survey Current() const;
   SampleTally tally() const;
+  /// Of the run that samples came for last.
+  RunNow Now() const;
   /// Depth before this instant is no longer needed.
   UtcTime Needs() const { return newest_used_; }
 

@@ -30,6 +30,27 @@ void WriteWay(TomlWriter& toml, const PlannedWay& way) {
   toml.Number("start_toolface_deg", Tidy(ToDegrees(way.toolface)));
 }
 
+void WriteLimits(TomlWriter& toml, const PlanLimits& limits) {
+  toml.Table("limits");
+  toml.Number("ellipse_m", limits.ellipse);
+  if (limits.hidden) toml.Number("hidden_m", *limits.hidden);
+  toml.Number("least_stop_s", limits.least_stop);
+  toml.Number("longest_stop_s", limits.longest_stop);
+  toml.Number("overhead_s", limits.overhead);
+  toml.Flag("toolfaces", limits.turns);
+}
+
+void WritePath(TomlWriter& toml, const Trajectory& well) {
+  toml.Table("path");
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(well.size()), 3);
+  for (std::size_t i = 0; i < well.size(); ++i) {
+    const TrajectoryPoint p = well.station(i);
+    rows.row(static_cast<Eigen::Index>(i)) << Tidy(p.md), Tidy(ToDegrees(p.inclination)),
+        Tidy(ToDegrees(p.azimuth));
+  }
+  toml.Rows("stations", rows);
+}
+
 void WriteEnd(TomlWriter& toml, std::string_view name, const ExpectedEnd& end) {
   toml.Table(name);
   toml.Number("ellipse_major_m", Tidy(end.semi_major, 1e3));
@@ -88,6 +109,37 @@ PlannedWay ReadWay(TomlTable table) {
   return way;
 }
 
+PlanLimits ReadLimits(TomlTable table) {
+  constexpr TomlRange kStop{.min = 10, .max = 7200};
+  PlanLimits limits{.ellipse = 0};
+  table.Read("ellipse_m", limits.ellipse, 1, {.min = 1e-3, .max = 1e4});
+  limits.hidden = table.FindNumber("hidden_m", {.min = 1e-3, .max = 1e5});
+  table.Read("least_stop_s", limits.least_stop, 1, kStop);
+  table.Read("longest_stop_s", limits.longest_stop, 1, kStop);
+  table.Read("overhead_s", limits.overhead, 1, {.min = 0, .max = 7200});
+  table.Read("toolfaces", limits.turns);
+  if (limits.longest_stop < limits.least_stop) {
+    table.Refuse("longest_stop_s", "must not be below least_stop_s");
+  }
+  return limits;
+}
+
+std::vector<WellPoint> ReadPath(TomlTable table, const PlannedWay& way) {
+  std::vector<WellPoint> path;
+  for (const auto& row : table.Need("stations", table.FindRows("stations", 3))) {
+    path.push_back({row[0], row[1] * units::kDeg, row[2] * units::kDeg});
+    const bool follows = path.size() < 2 || path[path.size() - 2].md < row[0];
+    const bool inclined = row[1] >= 0 && row[1] <= 180;
+    if (!follows || !inclined || !std::isfinite(row[0] + row[1] + row[2])) {
+      table.Refuse("stations", "must be MD that increases, inclination of 0 to 180, azimuth");
+    }
+  }
+  const bool holds = path.size() >= 2 && path.front().md <= way.begin_md + 0.01 &&
+                     path.back().md >= way.end_md - 0.01;
+  if (!holds) table.Refuse("stations", "must reach from begin_md_m to end_md_m of [run]");
+  return path;
+}
+
 PlannedStop ReadStop(TomlTable& table, const PlannedWay& way, const PlannedStop* before) {
   PlannedStop stop;
   stop.out = table.Need("pass", table.FindWord<bool>("pass", {{"in", false}, {"out", true}}));
@@ -111,7 +163,10 @@ PlannedStop ReadStop(TomlTable& table, const PlannedWay& way, const PlannedStop*
 
 PlanFile ReadPlan(TomlTable& root) {
   PlanFile file;
+  file.limits.ellipse = 0;
+  if (const auto table = root.FindTable("limits")) file.limits = ReadLimits(*table);
   file.way = ReadWay(root.Need("run", root.FindTable("run")));
+  if (const auto table = root.FindTable("path")) file.path = ReadPath(*table, file.way);
   for (TomlTable& table : root.FindTables("stop")) {
     file.stops.push_back(
         ReadStop(table, file.way, file.stops.empty() ? nullptr : &file.stops.back()));
@@ -122,7 +177,7 @@ PlanFile ReadPlan(TomlTable& root) {
   root.FindString("well");
   root.FindNumber("latitude_deg", kLatitudeDeg);
   for (const char* name :
-       {"limits", "time", "expected", "without_stops", "best_possible", "practice", "worse_tool"}) {
+       {"time", "expected", "without_stops", "best_possible", "practice", "worse_tool"}) {
     if (auto table = root.FindTable(name)) table->Verbatim();
   }
   for (const char* name : {"hidden", "warning", "input"}) {
@@ -141,10 +196,9 @@ std::string PlanToml(const PlanReport& report) {
   if (!plan.feasible) toml.Text("why_not", plan.why_not);
   toml.Text("well", report.well);
   toml.Number("latitude_deg", Tidy(ToDegrees(report.c.site.latitude)));
-  toml.Table("limits");
-  toml.Number("ellipse_m", report.limits.ellipse);
-  if (report.limits.hidden) toml.Number("hidden_m", *report.limits.hidden);
+  WriteLimits(toml, report.limits);
   WriteWay(toml, report.c.way);
+  WritePath(toml, report.c.well);
   toml.Table("time");
   toml.Number("at_rest_s", Tidy(plan.at_rest));
   toml.Number("with_overhead_s", Tidy(plan.cost));

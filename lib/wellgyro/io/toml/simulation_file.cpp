@@ -42,13 +42,18 @@ SimulatedTool TakeTool(TomlTable table, NamedFiles& files, std::uint64_t seed) {
   return ReadSimulatedTool(table, noise ? &*noise : nullptr, seed);
 }
 
-SimulationFile Read(TomlTable& root, NamedFiles& files) {
+SimulationFile Read(TomlTable& root, NamedFiles& files, const SimulatedRun* run) {
   SimulationFile file;
   Simulation& s = file.simulation;
   s.seed = static_cast<std::uint64_t>(
       root.FindInteger("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(0));
   s.well = TakeWell(root.Need("well", root.FindTable("well")), files);
-  s.run = ReadSimulatedRun(root.Need("run", root.FindTable("run")));
+  if (run != nullptr) {
+    if (auto own = root.FindTable("run")) own->Verbatim();
+    s.run = *run;
+  } else {
+    s.run = ReadSimulatedRun(root.Need("run", root.FindTable("run")));
+  }
   s.earth = ReadSimulatedEarth(root.Need("earth", root.FindTable("earth")));
   if (const auto table = root.FindTable("tool")) s.tool = TakeTool(*table, files, s.seed);
   if (const auto table = root.FindTable("streams")) s.streams = ReadSimulatedStreams(*table);
@@ -60,19 +65,20 @@ SimulationFile Read(TomlTable& root, NamedFiles& files) {
 }  // namespace
 
 Result<SimulationFile> ParseSimulation(std::string_view text, const std::filesystem::path& source,
-                                       const std::filesystem::path& folder) {
+                                       const std::filesystem::path& folder,
+                                       const SimulatedRun* run) {
   NamedFiles files(folder);
   files.Note("simulation", source, text);
   Result<SimulationFile> file = ReadTomlText<SimulationFile>(
-      text, source.string(), kFormat, [&](TomlTable& root) { return Read(root, files); });
+      text, source.string(), kFormat, [&](TomlTable& root) { return Read(root, files, run); });
   if (file) file->files = files.all();
   return file;
 }
 
-Result<SimulationFile> ReadSimulation(const std::filesystem::path& path) {
+Result<SimulationFile> ReadSimulation(const std::filesystem::path& path, const SimulatedRun* run) {
   const Result<std::string> text = ReadTextFile(path);
   if (!text) return text.fault();
-  return ParseSimulation(*text, path, path.parent_path());
+  return ParseSimulation(*text, path, path.parent_path(), run);
 }
 
 }  // namespace wellgyro

@@ -38,12 +38,15 @@ struct SimulationFile {
 ///
 /// Mistakes are Faults with line and column; what contradicts itself beyond single values is left
 /// to the Simulator.
-WELLGYRO_EXPORT Result<SimulationFile> ReadSimulation(const std::filesystem::path& path);
+/// `run`: in place of [run], which may then be absent.
+WELLGYRO_EXPORT Result<SimulationFile> ReadSimulation(const std::filesystem::path& path,
+                                                      const SimulatedRun* run = nullptr);
 
 /// The same of text that came from elsewhere; files it names are relative to `folder`.
 WELLGYRO_EXPORT Result<SimulationFile> ParseSimulation(std::string_view text,
                                                        const std::filesystem::path& source,
-                                                       const std::filesystem::path& folder);
+                                                       const std::filesystem::path& folder,
+                                                       const SimulatedRun* run = nullptr);
 
 /// The causes that a `[[fault]]` may have, one a line, with their keys.
 WELLGYRO_EXPORT std::string FaultHelp();

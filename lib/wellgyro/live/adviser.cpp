@@ -1,0 +1,67 @@
+#include "wellgyro/live/adviser.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace wellgyro {
+
+Adviser::Adviser(const AdviceCase& advised) : case_(advised), thread_([this] { Work(); }) {}
+
+Adviser::~Adviser() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+    changed_.notify_all();
+  }
+  thread_.join();
+}
+
+bool Adviser::Ask(const RunNow& now, UtcTime newest) {
+  const std::lock_guard lock(mutex_);
+  if (busy_) return false;
+  if (now.run != now_.run) deepest_ = 0;
+  now_ = now;
+  if (now.state != nullptr) {
+    state_ = *now.state;
+    now_.state = &state_;
+  }
+  newest_ = newest;
+  busy_ = true;
+  changed_.notify_all();
+  return true;
+}
+
+std::optional<Advice> Adviser::Take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(advice_, std::nullopt);
+}
+
+/// What cannot be advised is no reason to end a survey.
+Advice Adviser::Answer() const {
+  Advice advice;
+  try {
+    advice = Advise(case_.c, case_.limits, AskingOf(now_, newest_, deepest_));
+  } catch (const std::exception& error) {
+    advice.text = error.what();
+  }
+  advice.utc = newest_;
+  advice.run = now_.run;
+  return advice;
+}
+
+void Adviser::Work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return busy_ || ending_; });
+    if (ending_) return;
+    lock.unlock();
+    Advice advice = Answer();
+    lock.lock();
+    deepest_ = std::max(deepest_, now_.md.value_or(0));
+    advice_ = std::move(advice);
+    busy_ = false;
+  }
+}
+
+}  // namespace wellgyro
