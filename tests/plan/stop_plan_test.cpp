@@ -62,6 +62,20 @@ TEST(StopPlan, SavesTimeAgainstStopsEvery300MetresToHorizontal) {
   ExpectSaving(test::Horizontal(), 0.2);
 }
 
+// What a plan takes beyond the bound is what its stops cost, not what the search misses.
+TEST(StopPlan, WhereStopsAreFreeItComesNearTheBound) {
+  for (const PlanCase& c : {test::Slant(), test::SShape(), test::Horizontal()}) {
+    PlanLimits limits{.least_stop = 10, .overhead = 0};
+    limits.ellipse = ExpectEnd(c, Practice(c.way, 300, 180), false).semi_major;
+    const StopPlan plan = PlanStops(c, limits);
+    ASSERT_TRUE(plan.feasible && plan.least_at_rest);
+    EXPECT_GE(plan.at_rest, *plan.least_at_rest * 0.99);
+    EXPECT_LE(plan.at_rest, *plan.least_at_rest * 1.05);
+    std::printf("%zu stops, %.0f s at rest, bound %.0f s\n", plan.stops.size(), plan.at_rest,
+                *plan.least_at_rest);
+  }
+}
+
 TEST(StopPlan, AStopLeftOutCostsWhatThePlanSays) {
   const PlanCase c = Fast(test::SShape());
   const StopPlan plan = PlanStops(c, {.ellipse = 6});

@@ -26,14 +26,20 @@ constexpr int kIterations = 4;
 double RollOf(const Increment& inc) { return inc.roll_before + inc.roll_after; }
 
 /// The node at the end of `knot`: a clamped tool stays where it is, so that what its gyros read
-/// beside the Earth's rate is seen for noise; else as the gyros alone carry it there from `begin`.
+/// beside the Earth's rate is seen for noise, but for the roll, whose tie to its rate is far
+/// tighter than it is known: off it, the loss would take the gyros' reading for an outlier; else as
+/// the gyros alone carry it there from `begin`.
 Node Ahead(const RunKnot& knot, const Vector3d& w_IL_L, const Node& begin) {
   const Increment& inc = knot.increment;
   Node end = begin;
   const AlongHole& along = knot.along;
   end.md = along.known ? along.md : begin.md + begin.speed * inc.seconds;
   if (along.known) end.speed = along.speed;
-  if (knot.still) return end;
+  if (knot.still) {
+    const double earth = (begin.R_LT.transpose() * w_IL_L).z();
+    end.R_LT = begin.R_LT * RotationZ(inc.seconds * (begin.roll_rate - earth));
+    return end;
+  }
   const double delta = begin.roll_rate * inc.seconds - RollOf(inc);
   const Eigen::Vector2d turn = inc.turn_M + delta * inc.turn_per_roll;
   end.R_LT = Exp(-inc.seconds * w_IL_L) * begin.R_LT * RotationZ(inc.roll_before + 0.5 * delta) *
