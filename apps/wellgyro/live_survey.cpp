@@ -44,6 +44,12 @@ class SurveyConsole : public Console {
     if (page_ != nullptr) page_->Put(glance);
     if (says_ != Says::kNothing) Console::OnGlance(glance);
   }
+  void OnAdvice(const Advice& advice) override {
+    // The page shows sentences one under the other: those that say something else to do.
+    if (page_ != nullptr && advice.action != advised_) page_->Say("advice: " + advice.text);
+    advised_ = advice.action;
+    Console::OnAdvice(advice);
+  }
   void OnStuck(const std::optional<RunVerdict>& kept) override {
     int code = kUnusable;
     if (kept) {
@@ -59,6 +65,7 @@ class SurveyConsole : public Console {
  private:
   Says says_;
   SurveyPage* page_;
+  Advice::Action advised_ = Advice::Action::kNone;
 };
 
 /// What a survey that did not end with FINISH leaves behind; its exit code.
