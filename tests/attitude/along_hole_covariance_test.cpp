@@ -42,7 +42,6 @@ std::vector<StationState> DeadReckon(const Drift& d, double seconds, int every, 
     s.along.md = out ? 3000 - kSpeed * kStep * i : 1000 + kSpeed * kStep * i;
     s.cov = cov;
     if (i > 0) s.cov_with_previous = link;
-    s.tangent.setZero(3, 3);
     s.tangent(1, 0) = 1;
     link = cov;
   }

@@ -270,8 +270,10 @@ TEST_P(Errors, DoWhatTheIncrementSays) {
   const Increment increment = fly(size);
   const Resolved plus = AtBegin(increment, attitude, 6), minus = AtBegin(fly(-size), attitude, 6);
   const Eigen::Rotation2Dd to_begin(increment.roll_before);
-  const Eigen::Vector2d turn_by = to_begin * increment.turn_by_error.col(source);
-  Eigen::Vector3d force_by = increment.force_by_error.col(source);
+  Eigen::Vector2d turn_by = Eigen::Vector2d::Zero();
+  if (source < kTurnSources) turn_by = to_begin * increment.turn_by_error.col(source);
+  Eigen::Vector3d force_by = Eigen::Vector3d::Zero();
+  if (source >= kTurnSources) force_by = increment.ForceBy(source);
   force_by.head<2>() = to_begin * force_by.head<2>();
   Eigen::Vector2d turn = (plus.turn - minus.turn) / (2 * size);
   if (turned) {

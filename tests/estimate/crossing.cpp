@@ -134,7 +134,6 @@ std::vector<RunKnot> ReferenceKnots(const Crossing::Samples& s, const std::vecto
     Complex theta = -before;
     Vector3d force = Vector3d::Zero();
     auto& J = inc.turn_by_error;
-    auto& Jf = inc.force_by_error;
     const auto n = static_cast<double>(per);
     for (std::size_t j = 0; j < per; ++j) {
       const Complex c = unrolled(first + j), at = theta + 0.5 * W[j] * dt;
@@ -154,11 +153,11 @@ std::vector<RunKnot> ReferenceKnots(const Crossing::Samples& s, const std::vecto
       J.col(kMisalignmentX) += Pair(c * rate * dt);
       J.col(kMisalignmentY) += Pair(kI * c * rate * dt);
       J.col(kTimeSkew) += Pair(kI * W[j] * rate * dt);
-      Jf.col(kAccelBiasX).head<2>() += Pair(c / n);
-      Jf.col(kAccelBiasY).head<2>() += Pair(kI * c / n);
+      inc.ForceBy(kAccelBiasX).head<2>() += Pair(c / n);
+      inc.ForceBy(kAccelBiasY).head<2>() += Pair(kI * c / n);
       theta += W[j] * dt;
     }
-    Jf(2, kAccelBiasZ) = 1;
+    inc.ForceBy(kAccelBiasZ).z() = 1;
     J.col(kToolfaceOffset) = Pair(kI * m);
     inc.turn_M = Pair(m);
     inc.turn_before_M = Pair(before);

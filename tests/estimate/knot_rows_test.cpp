@@ -77,7 +77,7 @@ Case MakeCase(double inclination, bool still, bool axial) {
   inc.has_axial = axial;
   for (int i = 0; i <= kTimeSkew; ++i) inc.turn_by_error.col(i) = pair(i < kGyroScaleX ? 1 : 0.01);
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
-    inc.force_by_error.col(i) << pair(0.5), 0.3 * random.Normal();
+    inc.ForceBy(i) << pair(0.5), 0.3 * random.Normal();
   }
   c.place.site = SiteAt(1, 0);
   c.place.w_IL_L = w_IL_L;

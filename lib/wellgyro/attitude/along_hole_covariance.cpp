@@ -40,7 +40,8 @@ AlongHoleCovariance::AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in, doub
 // Carries the two covariances with the state from the station last seen to this one.
 void AlongHoleCovariance::Advance(const StationState& station) {
   const bool with_depth = order_ == TimeAlongHole::kWithDepth;
-  const StationMatrix& link = with_depth ? station.cov_with_previous : state_cov_with_previous_;
+  const StationMatrix link =
+      with_depth ? StationMatrix(station.cov_with_previous) : state_cov_with_previous_;
   if (link.size() == 0) {
     cov_with_state_ = Rows::Zero(3, station.cov.rows());
     slope_with_state_ = Rows::Zero(3, station.cov.rows());
@@ -64,8 +65,10 @@ void AlongHoleCovariance::Skip(const StationState& station) {
 }
 
 Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
-  const Rows rows_cov = station.tangent * station.cov;
-  const Eigen::Matrix3d cov_slope = rows_cov * station.tangent.transpose();
+  Rows by_x = Rows::Zero(3, station.cov.rows());
+  by_x.leftCols<3>() = station.tangent;
+  const Rows rows_cov = by_x * station.cov;
+  const Eigen::Matrix3d cov_slope = rows_cov * by_x.transpose();
   const bool first = !any_;
   if (!first && !(station.along.md > md_)) {
     throw std::invalid_argument("AlongHoleCovariance: depth " + std::to_string(station.along.md) +
@@ -80,7 +83,7 @@ Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
     // r' = (r + half s) + half s'
     const double half = (station.along.md - md_) / 2;
     const Rows upper = cov_with_state_ + half * slope_with_state_;
-    const Eigen::Matrix3d upper_slope = upper * station.tangent.transpose();
+    const Eigen::Matrix3d upper_slope = upper * by_x.transpose();
     cov_ += half * PlusTransposed(cov_with_slope_ + upper_slope) +
             half * half * (cov_slope_ + cov_slope);
     cov_with_slope_ = upper_slope + half * cov_slope;

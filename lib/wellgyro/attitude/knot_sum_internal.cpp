@@ -165,19 +165,19 @@ void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
   turn(kTimeSkew, kI * s.skew);
   if (!(s.forced > 0)) return;
   const auto force = [&](ErrorSource source, Complex z) {
-    out.force_by_error.col(source).head<2>() = Vector(to_M * z / s.forced);
+    out.ForceBy(source).head<2>() = Vector(to_M * z / s.forced);
   };
   force(kAccelBiasX, s.unit);
   force(kAccelBiasY, kI * s.unit);
-  out.force_by_error(2, kAccelBiasZ) = 1;
+  out.ForceBy(kAccelBiasZ).z() = 1;
   force(kAccelScaleX, s.fx);
   force(kAccelScaleY, kI * s.fy);
-  out.force_by_error(2, kAccelScaleZ) = s.z / s.forced;
+  out.ForceBy(kAccelScaleZ).z() = s.z / s.forced;
   force(kAccelMisalignmentX, s.unit_z);
   force(kAccelMisalignmentY, kI * s.unit_z);
   force(kAccelShear, s.fy + kI * s.fx);
-  out.force_by_error(2, kAccelMisalignmentZX) = s.x / s.forced;
-  out.force_by_error(2, kAccelMisalignmentZY) = s.y / s.forced;
+  out.ForceBy(kAccelMisalignmentZX).z() = s.x / s.forced;
+  out.ForceBy(kAccelMisalignmentZY).z() = s.y / s.forced;
 }
 
 void FillFlags(const Block& b, double seconds, Increment& out) {

@@ -13,11 +13,12 @@ namespace wellgyro {
 /// of tool and place, at most.
 inline constexpr int kStationErrorsMax = 36;
 
-/// Sized once for the errors that a run has; nothing is allocated.
+/// For reckoning with them: nothing is allocated.
 using StationMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kStationErrorsMax, kStationErrorsMax>;
 
-/// A run's state at one station: all that the position covariance needs.
+/// A run's state at one station: all that the position covariance needs. A run keeps thousands:
+/// matrices are as large as the errors that the run has.
 ///
 /// The errors x of the stations form a Markov chain in time, and so in either order of depth:
 /// `cov` and `cov_with_previous` of all stations of a run hold every correlation among them.
@@ -25,10 +26,10 @@ struct StationState {
   std::size_t knot = 0;  ///< of the run, at whose end it is
   AttitudeSample attitude;
   AlongHole along;
-  StationMatrix cov;                ///< E[x x'], x begins with phi of R_LT Exp(phi) [rad]
-  StationMatrix cov_with_previous;  ///< E[x_previous x'], previous in time; empty for the first
-  /// Error of the tangent in L by x: regular at every inclination.
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kStationErrorsMax> tangent;
+  Eigen::MatrixXd cov;                ///< E[x x'], x begins with phi of R_LT Exp(phi) [rad]
+  Eigen::MatrixXd cov_with_previous;  ///< E[x_previous x'], previous in time; empty for the first
+  /// Error of the tangent in L by phi: regular at every inclination.
+  Eigen::Matrix3d tangent = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace wellgyro

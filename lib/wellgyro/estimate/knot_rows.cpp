@@ -60,6 +60,16 @@ Matrix2d MeanSquareOfX(const Increment& inc) {
   return 0.5 * (Matrix2d() << 1 + c, s, s, 1 - c).finished();
 }
 
+TurnByError TurnBy(const Increment& inc) {
+  TurnByError by_error = TurnByError::Zero();
+  by_error.leftCols<kTurnSources>() = inc.turn_by_error;
+  return by_error;
+}
+
+Vector3d ForceBy(const Increment& inc, int source) {
+  return source < kTurnSources ? Vector3d(Vector3d::Zero()) : Vector3d(inc.ForceBy(source));
+}
+
 /// A scale error multiplies what the tool turned by, not the noise beside it. With readings for
 /// regressors, noise times itself draws every scale upwards, by one over its information a knot
 /// (errors in variables; Fuller, Measurement Error Models, 1987, section 1.2): in 16 h by three
@@ -112,7 +122,7 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
   const Increment& inc = knot.increment;
-  Terms t{knot, place, begin, end, inc.seconds,  0,     0, 0, inc.turn_by_error, inc.turn_M, {},
+  Terms t{knot, place, begin, end, inc.seconds,  0,     0, 0, TurnBy(inc), inc.turn_M, {},
           {},   {},    {},    {},  place.w_IL_L, border};
   if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
   double rate = begin.roll_rate;
@@ -234,7 +244,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   Vector3d force = inc.force_M;
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
     const double error = SourceAt(t.border, i);
-    if (error != 0) force -= error * inc.force_by_error.col(i);
+    if (error != 0) force -= error * inc.ForceBy(i);
   }
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
@@ -268,7 +278,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
     const int at = layout_.source[static_cast<std::size_t>(i)];
     if (at == kAbsent) continue;
     f.Column(block.border() + at) =
-        whiten * (0.5 * px * Flat(t.turn_by_error.col(i)) - inc.force_by_error.col(i));
+        whiten * (0.5 * px * Flat(t.turn_by_error.col(i)) - ForceBy(inc, i));
   }
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
   if (layout_.gravity_gradient != kAbsent) {

@@ -76,15 +76,14 @@ void FillErrors(Increment& inc, double roll, const Vector3d& force_M) {
   t.col(kMisalignmentY) = Vector2d(0, roll * edge);
   t.col(kToolfaceOffset) = Pair(kI * turn.v);
   t.col(kTimeSkew) = Pair(kI * turn.v * roll / dt);
-  auto& f = inc.force_by_error;
-  f.col(kAccelBiasX) = Vector3d(edge, 0, 0);
-  f.col(kAccelBiasY) = Vector3d(0, edge, 0);
-  f.col(kAccelBiasZ) = Vector3d::UnitZ();
-  f.col(kAccelScaleX).head<2>() = Pair(force.scale(false));
-  f.col(kAccelScaleY).head<2>() = Pair(force.scale(true));
-  f.col(kAccelScaleZ) = force_M.z() * Vector3d::UnitZ();
-  f.col(kAccelMisalignmentX) = Vector3d(force_M.z() * edge, 0, 0);
-  f.col(kAccelMisalignmentY) = Vector3d(0, force_M.z() * edge, 0);
+  inc.ForceBy(kAccelBiasX) = Vector3d(edge, 0, 0);
+  inc.ForceBy(kAccelBiasY) = Vector3d(0, edge, 0);
+  inc.ForceBy(kAccelBiasZ) = Vector3d::UnitZ();
+  inc.ForceBy(kAccelScaleX).head<2>() = Pair(force.scale(false));
+  inc.ForceBy(kAccelScaleY).head<2>() = Pair(force.scale(true));
+  inc.ForceBy(kAccelScaleZ) = force_M.z() * Vector3d::UnitZ();
+  inc.ForceBy(kAccelMisalignmentX) = Vector3d(force_M.z() * edge, 0, 0);
+  inc.ForceBy(kAccelMisalignmentY) = Vector3d(0, force_M.z() * edge, 0);
 }
 
 /// What perfect sensors say of a knot between these attitudes, `roll` being near their inertial

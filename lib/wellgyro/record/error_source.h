@@ -34,4 +34,7 @@ enum ErrorSource {
 };
 using ErrorVector = Eigen::Matrix<double, kErrorSources, 1>;
 
+/// The first kTurnSources change what the gyros say of a turn, the next kForceSources the force.
+inline constexpr int kTurnSources = kAccelBiasX, kForceSources = kGyroBiasZ - kAccelBiasX;
+
 }  // namespace wellgyro

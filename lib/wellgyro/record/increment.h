@@ -36,12 +36,16 @@ struct Increment {
   Eigen::Vector3d force_M = Eigen::Vector3d::Zero();
   Eigen::Vector2d turn_per_roll = Eigen::Vector2d::Zero();   ///< [1]
   Eigen::Vector2d force_per_roll = Eigen::Vector2d::Zero();  ///< [m/s^2 per rad]
-  /// d turn_M / d error, d force_M / d error (of the reading, uncorrected). Those of kMisalignment
-  /// and kTimeSkew hold for the roll rate of psi.
-  Eigen::Matrix<double, 2, kErrorSources> turn_by_error =
-      Eigen::Matrix<double, 2, kErrorSources>::Zero();
-  Eigen::Matrix<double, 3, kErrorSources> force_by_error =
-      Eigen::Matrix<double, 3, kErrorSources>::Zero();
+  /// d turn_M / d error, of the kTurnSources, and d force_M / d error, of the kForceSources behind
+  /// them (of the reading, uncorrected). Those of kMisalignment and kTimeSkew hold for the roll
+  /// rate of psi.
+  Eigen::Matrix<double, 2, kTurnSources> turn_by_error =
+      Eigen::Matrix<double, 2, kTurnSources>::Zero();
+  Eigen::Matrix<double, 3, kForceSources> force_by_error =
+      Eigen::Matrix<double, 3, kForceSources>::Zero();
+  /// Of an accelerometer's source.
+  auto ForceBy(int source) { return force_by_error.col(source - kTurnSources); }
+  auto ForceBy(int source) const { return force_by_error.col(source - kTurnSources); }
   /// Integral of a third gyro axis, where there is one: psi is then its integral [rad].
   double axial = 0;
   bool has_axial = false;

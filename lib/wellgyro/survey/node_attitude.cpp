@@ -84,8 +84,7 @@ StationState StateOf(std::size_t index, const RunKnot& knot, const AttitudeSampl
   state.along = knot.along;
   state.cov = errors.cov;
   state.cov_with_previous = errors.cov_with_previous;
-  state.tangent.setZero(3, errors.cov.rows());
-  state.tangent.leftCols<3>() = TangentByPhi(R_LT);
+  state.tangent = TangentByPhi(R_LT);
   return state;
 }
 
