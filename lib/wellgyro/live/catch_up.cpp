@@ -46,6 +46,7 @@ MessageKey CatchUp::Key(std::string_view channel, std::span<const std::byte> byt
 }
 
 void CatchUp::UseOne(const HeldMessage& message, bool fresh) {
+  heard_.insert(message.channel);
   splice_.Used(Key(message.channel, message.bytes));
   last_received_us_ = message.received_us;
   use_(message.channel, message.bytes, message.received_us, fresh);
@@ -64,6 +65,7 @@ std::optional<Fault> CatchUp::OwnLog(const std::string& path, std::int64_t begun
   LogEvent event;
   while (reader->Next(event)) {
     splice_.Used(Key(event.channel, event.data));
+    heard_.emplace(event.channel);
     use_(event.channel, event.data, event.received_us, false);
     last_received_us_ = event.received_us;
   }
@@ -73,6 +75,16 @@ std::optional<Fault> CatchUp::OwnLog(const std::string& path, std::int64_t begun
 void CatchUp::Hold(std::string_view channel, std::span<const std::byte> bytes,
                    std::int64_t received_us) {
   held_.push_back({std::string(channel), {bytes.begin(), bytes.end()}, received_us});
+}
+
+/// What came before the place where our log ended is in it, but for streams of which it has
+/// nothing: their sender was not known yet (see StreamGuard), and what waited for that went with
+/// the program.
+void CatchUp::UseUnheard(std::vector<HeldMessage> before) {
+  std::erase_if(before, [this](const HeldMessage& message) {
+    return !Key(message.channel, message.bytes).once || heard_.contains(message.channel);
+  });
+  for (const HeldMessage& message : before) UseOne(message, true);
 }
 
 void CatchUp::TakeFill(const HeldMessage& message) {
@@ -85,7 +97,8 @@ void CatchUp::TakeFill(const HeldMessage& message) {
   // Whether this is behind what was used shows when the last one used comes by.
   if (splice_.Find({&key, 1})) {
     joined_fill_ = true;
-    before_.clear();
+    UseUnheard(std::exchange(before_, {}));
+    splice_.Used(key);  // it is still the last
     return;
   }
   before_.push_back(message);

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -56,6 +57,7 @@ class WELLGYRO_EXPORT CatchUp {
   MessageKey Key(std::string_view channel, std::span<const std::byte> bytes) const;
   void UseOne(const HeldMessage& message, bool fresh);
   void TakeFill(const HeldMessage& message);
+  void UseUnheard(std::vector<HeldMessage> before);
   Result<std::int64_t> ReadOn(Follower& log);
   Result<bool> Follow(LiveBus& bus, Follower& log);
   std::optional<std::size_t> Joint() const;
@@ -66,6 +68,7 @@ class WELLGYRO_EXPORT CatchUp {
   Notices& notices_;
   Use use_;
   Splice splice_;
+  std::set<std::string, std::less<>> heard_;  ///< channels of which anything was used
   std::int64_t begun_us_ = 0;
   std::int64_t last_received_us_ = 0;  ///< of what was used
   bool joined_fill_ = false;           ///< behind the place where the log before ended

@@ -282,7 +282,9 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
   const double limit = -std::log(kDiagnosisFalseAlarms);
   Check check{.code = "diagnosis", .run = run.run, .value = found->ln_odds, .unit = "1"};
   const bool shown = !(found->ln_odds <= limit);
-  if (shown) check.verdict = MovesTheEnd(*found, run.run, passes) ? Verdict::kFail : Verdict::kWarn;
+  check.verdict = !shown                                 ? Verdict::kPass
+                  : MovesTheEnd(*found, run.run, passes) ? Verdict::kFail
+                                                         : Verdict::kWarn;
   // Without a limit of its own: what is told of the check are the causes.
   if (shown) {
     check.limit_source = WordsOf(*found);
