@@ -36,6 +36,7 @@ std::vector<Station> SmallSurvey() {
   s.p_WT_W = {0.0321, -12345.67894, 109.7};
   s.dogleg_severity = 1.5 * units::kDegPer30m;
   s.cov_p_WT_W << 1.0 / 3, -2e-7, 0, -2e-7, 12345678901.0, 0.25, 0, 0.25, 4;
+  s.cov_md_inc_azi(0, 0) = 0.3 * 0.3;
   s.cov_md_inc_azi(1, 1) = std::pow(FromDegrees(0.02), 2);
   s.cov_md_inc_azi(2, 2) = std::pow(FromDegrees(0.5), 2);
   return {tie, s};
@@ -70,9 +71,9 @@ TEST(SurveyCsv, AnUnfitStationHasNoSigma) {
 }
 
 TEST(PassesCsv, IsAsTheDesignSaysToTheByte) {
-  EXPECT_EQ(PassesCsv(SmallSurvey(), nullptr), "RUN,PASS,STATUS,REVISION," + kHeader +
-                                                   "\n0,stationary,provisional,0," + kTieRow +
-                                                   "\n2,out,field,3," + kRow + "\n");
+  EXPECT_EQ(PassesCsv(SmallSurvey(), nullptr),
+            "RUN,PASS,STATUS,REVISION," + kHeader + ",SIG_MD[m]\n0,stationary,provisional,0," +
+                kTieRow + ",0\n2,out,field,3," + kRow + ",0.3\n");
 }
 
 TEST(SurveyCsv, GridColumnsComeLast) {
