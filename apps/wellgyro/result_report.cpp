@@ -34,8 +34,13 @@ bool Write(const fs::path& path, std::string bytes, bool say) {
 }
 
 Result<std::string> DocumentOf(const ResultReport& report) {
-  const Result<ResultTexts> texts = ReadResultTexts(report.result);
+  Result<ResultTexts> texts = ReadResultTexts(report.result);
   if (!texts) return texts.fault();
+  if (!report.plan.empty()) {
+    Result<std::string> plan = ReadTextFile(report.plan);
+    if (!plan) return plan.fault();
+    (*texts)[kPlanFile] = *std::move(plan);
+  }
   std::vector<OtherWell> others;
   for (const std::string& name : report.others) {
     Result<std::string> text = ReadTextFile(name);
@@ -45,7 +50,11 @@ Result<std::string> DocumentOf(const ResultReport& report) {
   Result<std::string> json = SurveyJson(*texts, others);
   if (json) return json;
   Fault fault = json.fault();
-  if (texts->contains(fault.source)) fault.source = (report.result / fault.source).string();
+  if (fault.source == kPlanFile) {
+    fault.source = report.plan.string();
+  } else if (texts->contains(fault.source)) {
+    fault.source = (report.result / fault.source).string();
+  }
   return fault;
 }
 
@@ -97,7 +106,7 @@ int ReportOnSurvey(const fs::path& out, bool page) {
 
 void AddReport(CLI::App& app, int& exit_code) {
   struct Options {
-    std::string result, out, pdf, json;
+    std::string result, out, pdf, json, plan;
     std::vector<std::string> others;
     ReportOptions page;
   };
@@ -119,6 +128,9 @@ void AddReport(CLI::App& app, int& exit_code) {
                    "A survey of another well, drawn beside; in any format that convert reads")
       ->allow_extra_args(false)
       ->type_name("SURVEY");
+  command
+      ->add_option("--plan", options->plan, "What 'plan' made for the run, to show what came of it")
+      ->type_name("PLAN");
   using Units = ReportOptions::Units;
   command->add_option("--units", options->page.units, "Units of length")
       ->transform(CLI::CheckedTransformer(
@@ -137,6 +149,7 @@ void AddReport(CLI::App& app, int& exit_code) {
                              .pdf = options->pdf,
                              .json = options->json,
                              .others = options->others,
+                             .plan = options->plan,
                              .options = options->page});
   });
 }

@@ -14,6 +14,7 @@ struct ResultReport {
   std::filesystem::path pdf;     ///< the same printed; empty: none
   std::filesystem::path json;    ///< survey.json; empty: none
   std::vector<std::string> others;
+  std::filesystem::path plan;  ///< of the stops; empty: none
   ReportOptions options;
   bool say = true;  ///< what was written
 };

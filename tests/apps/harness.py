@@ -14,7 +14,8 @@ import unittest
 PROGRAM = os.path.abspath(sys.argv.pop(1))
 TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
 DEMO = os.path.join(TOP, "data", "demo")
-RESULT = ("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv", "reliability.csv", "run.toml")
+RESULT = ("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv", "reliability.csv",
+          "stretches.csv", "run.toml")
 
 
 def Stop(seconds):

@@ -351,7 +351,7 @@ class LivePage(Live):
         quoted = [json.dumps(name) for name in names]
         job = self.Write("hostile.toml", JOB.replace('name = "Slant"', "name = " + quoted[0])
                          + f"[identity]\noperator = {quoted[1]}\nfield = {quoted[2]}\n"
-                         f"rig = {quoted[3]}\n")
+                         f"rig = {quoted[3]}\nslot = {quoted[5]}\n")
         plan = self.Write("plan.csv", "MD[m],INC[deg],AZI[deg]\n0,25,300\n300,25,300\n")
         self.Survey("hostile", "--page-plan", plan, "--page-sigma-deg", "0.05", job=job)
         page = self.Page()

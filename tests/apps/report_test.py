@@ -131,6 +131,58 @@ class Report(ProgramTest):
         self.Quiet(page)
         self.assertIn("the bus was lost", page.Ask("document.querySelector('.verdict').textContent"))
 
+    def test_the_run_along_time(self):
+        page = self.Page("demo")
+        rows = self.Rows("demo", "stretches.csv")
+        charts = {chart["id"]: chart for chart in json.loads(
+            page.Ask("document.getElementById('charts').textContent"))["charts"]}
+        for chart, *columns in (("residuals", "RES_GYRO", "RES_ACCEL"), ("speed", "SPEED[m/s]"),
+                                ("rotation", "ROTATION[rpm]"), ("temperature", "TEMPERATURE[degC]")):
+            drawn = charts["run-1-" + chart]["series"]
+            for series, column in zip(drawn, columns, strict=True):
+                for x, y, row in zip(series["x"], series["y"], rows, strict=True):
+                    self.assertAlmostEqual(x, float(row["T[s]"]) / 3600, delta=1e-5)
+                    if row[column]:
+                        self.assertAlmostEqual(y, float(row[column]), delta=1e-4)
+                    else:
+                        self.assertIsNone(y)
+        self.assertNotIn("run-1-lost", charts)
+        # On the way in and on the way out.
+        page.Ask("document.getElementById('growth').dispatchEvent("
+                 "new KeyboardEvent('keydown', {key: 'ArrowRight'}))")
+        self.assertEqual(page.Ask("document.querySelectorAll('#run-1-speed .here').length"), 2)
+
+    def test_a_plan_beside_what_came_of_it(self):
+        plan = self.Write("plan.toml", """format = "wellgyro.plan/1"
+feasible = true
+[limits]
+ellipse_m = 99.0
+[expected]
+ellipse_major_m = 12.5
+[time]
+at_rest_s = 1000
+""" + "".join(f'[[stop]]\npass = "{way}"\nmd_m = {md}\nstop_s = {seconds}\nellipse_without_m = 20\n'
+              for way, md, seconds in (("in", 897, 200), ("in", 1500, 60), ("in", 2200, 180),
+                                       ("out", 1500, 180))))
+        page = self.Page("demo", "--plan", plan)
+        self.Quiet(page)
+        rows = page.Ask("""Array.from(document.querySelectorAll('table.planned-stops tbody tr')).map(
+            r => Array.from(r.cells).map(c => c.textContent))""")
+        self.assertEqual([(row[0], row[1], row[2], row[5], row[7]) for row in rows],
+                         [("in", "897.0", "200", "900.0", ""), ("in", "1500.0", "60", "\u2013", "not made"),
+                          ("in", "2200.0", "180", "2200.0", ""),
+                          ("out", "1500.0", "180", "1500.0", "")])
+        kept = page.Ask("document.querySelector('table.kept').textContent")
+        for number in ("99.00", "12.50", "1000"):
+            self.assertIn(number, kept)
+        self.assertEqual(json.loads(page.Ask("document.getElementById('survey').textContent"))
+                         ["plan"]["limits"], {"ellipse_m": 99.0})
+        for text, complaint in (("format = 3", "not wellgyro.plan/1"), ("=", "plan.toml:1")):
+            done = Run("report", self.Path("demo"), "--out", self.Path("none.html"), "--plan",
+                       self.Write("bad/plan.toml", text))
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(complaint, done.stderr)
+
     def test_a_difference_between_in_and_out_is_marked_where_it_is(self):
         def Plant(text):
             lines = text.split("\n")
@@ -214,7 +266,7 @@ class Report(ProgramTest):
                  "new KeyboardEvent('keydown', {key: 'ArrowRight'}))")
         self.assertIn("MD 10.00 m", page.Ask("document.getElementById('readout').textContent"))
         self.assertGreaterEqual(page.Ask(
-            "document.querySelectorAll('.cursor[visibility=visible], .here[visibility=visible]').length"), 8)
+            "document.querySelectorAll('.cursor[visibility=visible], .here').length"), 8)
 
     def test_in_feet(self):
         page = self.Page("demo", "--units", "field", "--paper", "letter")

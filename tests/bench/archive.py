@@ -23,40 +23,9 @@ from distributed import Client
 
 from wellgyro import archive
 
-SIMULATION = """format = "wellgyro.simulation/1"
-seed = {seed}
-[well]
-name = "slant"
-inclination_deg = {inclination}
-azimuth_true_deg = {azimuth}
-end_md_m = 80.0
-[earth]
-latitude_deg = 61.0
-[run]
-[[run.step]]
-stop_s = 150.0
-[[run.step]]
-to_md_m = 80.0
-speed_mps = 1.0
-roll_rpm = 1.0
-[[run.step]]
-stop_s = 60.0
-[tool]
-angle_random_walk_deg_per_sqrt_h = 0.005
-accel_noise_mps2_per_sqrt_hz = 2e-4
-[streams]
-imu_hz = {hz}
-"""
-JOB = """format = "wellgyro.job/1"
-[well]
-name = "Slant"
-latitude_deg = {latitude}
-longitude_deg = 3.0
-[noise]
-angle_random_walk_deg_per_sqrt_h = 0.005
-[stations]
-every_m = 20.0
-"""
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "python"))
+from small_runs import JOB, SIMULATION, Cluster, Files  # noqa: E402
+
 LOGS = 20
 
 
@@ -89,20 +58,6 @@ def Fleet(program, folder, count, bad, hz=50.0):
                     f"{'bad' if name in damaged else i % LOGS}.lcm")
     Write(f"{folder}/jobs.csv", "\n".join(rows) + "\n")
     return archive.read_jobs(f"{folder}/jobs.csv"), damaged, wrong
-
-
-def Cluster(workers):
-    return archive.local_cluster(workers, dashboard_address=None, silence_logs=50)
-
-
-def Files(out):
-    found = {}
-    for where, _, names in os.walk(out):
-        for name in names:
-            path = os.path.join(where, name)
-            with open(path, "rb") as file:
-                found[os.path.relpath(path, out)] = file.read()
-    return found
 
 
 def Serial(runs, out):

@@ -6,7 +6,8 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
                                  [--wells slant,s,horizontal] [--causes gyro_step_x,...] [--jobs 2]
 
 Simulates tools whose errors are drawn from the job's own priors, with and without one [[fault]],
-surveys the log and compares the deepest station with the truth. `named`: of those found, in how
+surveys the log and compares the deepest station with the truth. `found`: no survey is made, or its
+verdict is not "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how
 many the right cause is the first of diagnosis.csv; `in set`: or among those that together have
 95 %, or alike the first. Seeds are fixed: the same figures each time."""
 import argparse
@@ -173,17 +174,20 @@ def Files(well, seed, fault, size):
 
 
 def TruthAt(path, md):
-    """Position where the truth passes `md` on its way in; the deepest where it never does."""
-    before = deepest = None
+    """Position where the truth passes `md` on its way in; where it never does, as reads a tool
+    whose depth is too large, straight on from its deepest second of way."""
+    before = legs = None
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             here = [float(row[key]) for key in ("MD[m]", "N[m]", "E[m]", "TVD[m]")]
-            if before and before[0] <= md <= here[0] and here[0] > before[0]:
-                part = (md - before[0]) / (here[0] - before[0])
-                return [a + part * (b - a) for a, b in zip(before[1:], here[1:])]
+            if before and here[0] > before[0] + 0.1 and (not legs or here[0] > legs[1][0]):
+                legs = before, here
+                if before[0] <= md <= here[0]:
+                    break
             before = here
-            deepest = here if deepest is None or here[0] > deepest[0] else deepest
-    return deepest[1:]
+    before, here = legs
+    part = (md - before[0]) / (here[0] - before[0])
+    return [a + part * (b - a) for a, b in zip(before[1:], here[1:])]
 
 
 def Compared(folder):
@@ -212,11 +216,12 @@ def One(program, well, seed, fault, size):
                                "--from", log, "--out", out], capture_output=True, text=True,
                               check=False)
         result = {"well": well, "fault": fault, "size": size, "code": done.returncode,
-                  "square": None, "error": None, "causes": [], "named": (False, False)}
+                  "square": None, "error": None, "causes": [], "found": done.returncode == 2, "named": (False, False)}
         if done.returncode in (0, 3, 4):
             result["square"], result["error"] = Compared(folder)
             with open(os.path.join(out, "run.toml"), "rb") as file:
-                result["causes"] = tomllib.load(file)["verdict"]["causes"]
+                verdict = tomllib.load(file)["verdict"]
+            result["causes"], result["found"] = verdict["causes"], verdict["verdict"] != "pass"
             with open(os.path.join(out, "diagnosis.csv"), newline="", encoding="utf-8") as file:
                 result["named"] = Named(fault or "", list(csv.DictReader(file)))
         return result
@@ -238,13 +243,14 @@ def Print(results, said):
     for well in sorted({r["well"] for r in clean}):
         of = [r for r in clean if r["well"] == well]
         known = [r["square"] for r in of if r["square"] is not None]
-        print(f"clean {well}: fail {Rate(sum(r['code'] == 4 for r in of), len(of))}, other codes "
+        print(f"clean {well}: fail {Rate(sum(r['code'] == 4 for r in of), len(of))}, warn "
+              f"{sum(r['found'] and r['code'] != 4 for r in of)}, other codes "
               f"{sum(r['code'] not in (0, 4) for r in of)}, beyond 95 % without exit 4 "
               f"{Rate(sum(map(Misleads, of)), len(of))}, normalised square "
               f"{sum(known) / max(2 * len(known), 1):.2f}")
     faulty = [r for r in results if r["fault"]]
     for size in sorted({r["size"] for r in faulty}):
-        print(f"\nsize {size:g} x      found  named in set  misleading  crashed  worst error m"
+        print(f"\nsize {size:g} x      found   fail  named in set  misleading  crashed  worst error m"
               "  first cause")
         for fault in CAUSES:
             of = [r for r in faulty if r["fault"] == fault and r["size"] == size]
@@ -252,14 +258,16 @@ def Print(results, said):
                 continue
             causes = [r["causes"][0].split(" (")[0] for r in of if r["code"] == 4]
             first = max(set(causes), key=causes.count) if causes else ""
-            found = [r for r in of if r["code"] in (2, 4)]
+            found = [r for r in of if r["found"]]
             print(f"{fault:18s} {len(found):3d}/{len(of):<3d} "
+                  f"{sum(r['code'] in (2, 4) for r in of):6d} "
                   f"{sum(r['named'][0] for r in found):5d} {sum(r['named'][1] for r in found):6d}  "
                   f"{sum(map(Misleads, of)):8d} {sum(r['code'] < 0 for r in of):9d} "
                   f"{max((r['error'] or 0) for r in of):12.1f}  {first}")
         of = [r for r in faulty if r["size"] == size]
-        print(f"all: found {Rate(sum(r['code'] in (2, 4) for r in of), len(of))}, hazardously "
-              f"misleading {Rate(sum(map(Misleads, of)), len(of))}")
+        print(f"all: found {Rate(sum(r['found'] for r in of), len(of))}, fail "
+              f"{sum(r['code'] in (2, 4) for r in of)}, hazardously misleading "
+              f"{Rate(sum(map(Misleads, of)), len(of))}")
     if said:
         for r in results:
             if r["causes"]:

@@ -19,25 +19,12 @@ from distributed import Client
 
 import wellgyro as wg
 from wellgyro import _fleet, archive
-from package_test import JOB, PROGRAM, SIMULATION
+from small_runs import JOB, SIMULATION, Cluster, Files
+
+PROGRAM = os.path.abspath(os.environ["WELLGYRO_PROGRAM"])
 
 RUNS, LOGS, KILLS = 40, 8, 5
 DAMAGED, WRONG = (3, 17), (5, 23)
-
-
-def Cluster(workers):
-    return archive.local_cluster(workers, dashboard_address=None, silence_logs=50)
-
-
-def Files(out):
-    """Every file of the archive with its bytes, but for files half written."""
-    found = {}
-    for where, _, names in os.walk(out):
-        for name in names:
-            path = os.path.join(where, name)
-            with open(path, "rb") as file:
-                found[os.path.relpath(path, out)] = file.read()
-    return found
 
 
 class Archive(unittest.TestCase):
@@ -46,10 +33,11 @@ class Archive(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = folder.name
-        cls.Write("job.toml", JOB)
-        cls.Write("wrong.toml", JOB.replace("61.0", "1.0"))
+        cls.Write("job.toml", JOB.format(latitude=61.0))
+        cls.Write("wrong.toml", JOB.format(latitude=1.0))
         for i in range(LOGS):
-            plan = cls.Write("s.toml", SIMULATION.format(seed=i, inclination=5 + 7 * i, azimuth=40 * i))
+            plan = cls.Write("s.toml", SIMULATION.format(seed=i, inclination=5 + 7 * i, azimuth=40 * i,
+                                                         hz=20.0))
             subprocess.run([PROGRAM, "simulate", "--job", plan, "--out", cls.Path(f"{i}.lcm")],
                            check=True, capture_output=True)
         cls.Write("bad.lcm", "no log at all" * 100)

@@ -15,47 +15,12 @@ import numpy as np
 import pandas as pd
 
 import wellgyro as wg
+from small_runs import JOB, SIMULATION
 
 PROGRAM = os.path.abspath(os.environ["WELLGYRO_PROGRAM"])
 TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
 DEMO = os.path.join(TOP, "data", "demo")
 DEG = math.pi / 180
-
-SIMULATION = """format = "wellgyro.simulation/1"
-seed = {seed}
-[well]
-name = "slant"
-inclination_deg = {inclination}
-azimuth_true_deg = {azimuth}
-end_md_m = 80.0
-[earth]
-latitude_deg = 61.0
-[run]
-[[run.step]]
-stop_s = 150.0
-[[run.step]]
-to_md_m = 80.0
-speed_mps = 1.0
-roll_rpm = 1.0
-[[run.step]]
-stop_s = 60.0
-[tool]
-angle_random_walk_deg_per_sqrt_h = 0.005
-accel_noise_mps2_per_sqrt_hz = 2e-4
-[streams]
-imu_hz = 20.0
-"""
-
-JOB = """format = "wellgyro.job/1"
-[well]
-name = "Slant"
-latitude_deg = 61.0
-longitude_deg = 3.0
-[noise]
-angle_random_walk_deg_per_sqrt_h = 0.005
-[stations]
-every_m = 20.0
-"""
 
 
 def Run(*arguments):
@@ -69,7 +34,7 @@ class Package(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = folder.name
-        cls.Write("job.toml", JOB)
+        cls.Write("job.toml", JOB.format(latitude=61.0))
 
     @classmethod
     def Path(cls, *names):
@@ -86,7 +51,7 @@ class Package(unittest.TestCase):
         path = cls.Path(f"run-{seed}.lcm")
         if not os.path.exists(path):
             plan = cls.Write(f"s-{seed}.toml", SIMULATION.format(
-                seed=seed, inclination=inclination, azimuth=azimuth))
+                seed=seed, inclination=inclination, azimuth=azimuth, hz=20.0))
             done = Run("simulate", "--job", plan, "--out", path)
             assert done.returncode == 0, done.stderr
         return path

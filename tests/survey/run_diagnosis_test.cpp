@@ -160,6 +160,44 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"accel_bias_z", Cause::kAccelBias, 9e-3, 1, 0, 2},
                       Wrong{"latitude", Cause::kLatitude, 2, units::kDeg, 0}));
 
+/// Of a run whose odds of a fault are `ln_odds`, a latitude that moves its end by `shift_W`. The
+/// end has sigmas of 1, 2 and 2 m; a station further up and the end of another run have others.
+Verdict VerdictOf(double ln_odds, const Eigen::Vector3d& shift_W) {
+  RunSummary run;
+  run.run = 1;
+  RunDiagnosis& found = run.fit.emplace().diagnosis.emplace();
+  found.ln_odds = ln_odds;
+  RunCause& cause = found.causes.emplace_back();
+  cause.code = "latitude";
+  cause.posterior = 0.99;
+  cause.shift_W = shift_W;
+  RunCause& none = found.causes.emplace_back();
+  none.code = "none";
+  none.posterior = 0.01;
+  std::vector<Station> passes(3);
+  passes[0].md = 1000;
+  passes[0].cov_p_WT_W = Eigen::Vector3d(1, 4, 4).asDiagonal();
+  passes[1].md = 500;
+  passes[1].cov_p_WT_W = 1e-4 * Eigen::Matrix3d::Identity();
+  passes[2].md = 2000;
+  passes[2].cov_p_WT_W = 1e4 * Eigen::Matrix3d::Identity();
+  passes[0].run = passes[1].run = 1;
+  passes[2].run = 2;
+  std::vector<Check> checks;
+  CheckDiagnosis(run, passes, checks);
+  return checks.at(0).verdict;
+}
+
+TEST(RunDiagnosis, WhatMovesTheEndByMoreThanItsSigmaFails) {
+  constexpr double kFound = 7;  // odds of 1100, where 1000 are the limit
+  EXPECT_EQ(VerdictOf(kFound, {1.1, 0, 0}), Verdict::kFail);
+  EXPECT_EQ(VerdictOf(kFound, {0.9, 0, 0}), Verdict::kWarn);
+  EXPECT_EQ(VerdictOf(kFound, {0, 1.9, 0}), Verdict::kWarn);
+  EXPECT_EQ(VerdictOf(kFound, {0, 0, -2.1}), Verdict::kFail);
+  EXPECT_EQ(VerdictOf(kFound, {NAN, 0, 0}), Verdict::kFail);
+  EXPECT_EQ(VerdictOf(6.9, {100, 0, 0}), Verdict::kPass);
+}
+
 TEST(RunDiagnosis, FilesHaveTheirColumns) {
   const Survey survey = Flight(1).Surveyed();
   const std::string diagnosis = DiagnosisCsv(survey), reliability = ReliabilityCsv(survey);

@@ -20,8 +20,9 @@ struct StillSetup {
   /// A stop of this length gives a window. Its ragged ends, up to 4 s each, stay out of the means
   /// and are not held against it.
   Duration min_still = Duration::Seconds(60);
-  /// Along-hole speed above which the tool is not still [m/s]. One count of a 1 cm encoder reads
-  /// as at most 0.0052 m/s in a DepthTrack. Where the depth is noisier, four of its sigmas count.
+  /// Along-hole speed, as the mean of a block, above which the tool is not still [m/s]. Where four
+  /// sigmas of the depth's speed are more, they count: one count of a 1 cm encoder reads as up to
+  /// 0.011 m/s in a DepthTrack.
   double speed_limit = 0.006;
   double travel_limit = 0.1;  ///< along-hole way within one window [m]
 };

@@ -24,8 +24,6 @@ constexpr double kAbsorbed = 1e-9;
 constexpr double kPower = 0.8416212335729143;  // normal quantile of 80 %
 // No fault is larger than so many of its sizes, five sigmas of its prior.
 constexpr double kLargest = 5;
-// Knots to a stretch that is looked at as one.
-constexpr std::size_t kStretch = 20;
 
 Index At(std::size_t i) { return static_cast<Index>(i); }
 
@@ -147,6 +145,8 @@ class Diagnoser {
     AddOnsets();
     for (std::size_t i = 0; i < specs_.size(); ++i) looks_[i].AddTo(d.tests[i]);
     AddScatter(d);
+    d.turns = turns_.Residuals();
+    d.forces = forces_.Residuals();
     CompareSignatures(d);
     AddOdds(d);
     d.done = true;
@@ -302,7 +302,7 @@ class Diagnoser {
   std::vector<std::size_t> onsets_of_;        ///< specs, in the order of the scan
   std::vector<std::vector<double>> changes_;  ///< information of one knot's part of the column
   MatrixXd border_covariance_;
-  Scatter turns_{kStretch}, forces_{kStretch};
+  Scatter turns_{kStretchKnots}, forces_{kStretchKnots};
   mutable std::vector<Factor> rows_;
 };
 

@@ -30,6 +30,14 @@ struct CauseTest {
   Eigen::Vector3d hidden = Eigen::Vector3d::Zero();
 };
 
+/// Knots that are looked at as one: a disturbance of some twenty seconds shows in few of them.
+inline constexpr std::size_t kStretchKnots = 20;
+
+/// Squares of whitened residuals, each over its own variance, and how many they are.
+struct ResidualSum {
+  double squares = 0, count = 0;
+};
+
 /// Which fault explains a run.
 struct Diagnosis {
   bool done = false;
@@ -38,6 +46,8 @@ struct Diagnosis {
   double ln_odds = 0;
   double ln_odds_without_first = 0;  ///< the same once the likeliest cause is taken out
   std::vector<CauseTest> tests;      ///< of each spec
+  /// Of every stretch of kStretchKnots, of the gyros' and of the accelerometers' rows.
+  std::vector<ResidualSum> turns, forces;
   /// Correlation of the signatures of constants and onsets, each at its likeliest node; 0 of
   /// others.
   Eigen::MatrixXd alike;

@@ -1,6 +1,7 @@
 #include "wellgyro/estimate/elimination.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -15,6 +16,8 @@ using Eigen::Vector4d;
 // Products of some ten by twenty numbers: squares of four by four whose sums stay in registers are
 // four times as fast as what is made for large matrices. Every sum runs in one order, so that it
 // has one result on every processor.
+
+constexpr Index kRowsMost = 2 * kNodeMax + kBorderMax + 3;
 
 /// A B' of R and C rows of matrices whose columns stand this far apart.
 template <int R, int C>
@@ -49,24 +52,23 @@ void Multiply(const Left& A, const Right& B, Out& out) {
   for (; j < columns; ++j) column.template operator()<1>(j);
 }
 
-/// Columns that are read by fours: past the end of each stand numbers that count for nothing.
+/// Columns that are read by fours: past the end of each stand up to three numbers that count for
+/// nothing.
 struct Panel {
-  double* values;
   Index stride;
+  std::array<double, kRowsMost * kNodeMax> values{};
 
-  double* column(Index j) const { return values + j * stride; }
+  explicit Panel(Index rows) : stride((rows + 3) / 4 * 4 + 3) {}
+  double* column(Index j) { return values.data() + j * stride; }
   /// Rows i to i + 3 times the transpose of rows j to j + 3, over the first columns.
   Matrix4d Square(Index i, Index j, Index columns) const {
-    return Product<4, 4>(values + i, stride, values + j, stride, columns);
+    return Product<4, 4>(values.data() + i, stride, values.data() + j, stride, columns);
   }
 };
 
-/// Enough for rows to be read by fours from any row on.
-Index StrideOf(Index rows) { return (rows + 3) / 4 * 4 + 3; }
-
 /// Replaces `n` columns of a matrix by those of its Cholesky factor, in its lower triangle. False
 /// where it is not positive.
-bool Factorise(const Panel& panel, Index n, Index rows) {
+bool Factorise(Panel& panel, Index n, Index rows) {
   for (Index begin = 0; begin < n; begin += 4) {
     const Index end = std::min(begin + 4, n);
     for (Index i = begin; i < rows && begin > 0; i += 4) {
@@ -110,7 +112,6 @@ void Downdate(const Panel& panel, Index first, Index columns, EdgeMatrix& A) {
 void Elimination::Start(std::size_t nodes, const EdgeMatrix& information,
                         const EdgeVector& gradient) {
   rows_ = 2 * layout_->node + layout_->border;
-  stride_ = StrideOf(rows_);
   conditionals_.resize(nodes * ConditionalSize());
   eliminated_ = 0;
   information_ = information;
@@ -122,15 +123,12 @@ void Elimination::Start(std::size_t nodes, const EdgeMatrix& information,
 bool Elimination::Step(const NormalBlock& block) {
   const int n = layout_->node, b = layout_->border, m = n + b;
   const NormalBlock::Matrix& A = block.information();
-  double* const at = conditionals_.data() + eliminated_ * ConditionalSize();
-  const Panel panel{at, stride_};
+  Panel panel(rows_);
   for (Index j = 0; j < n; ++j) {
-    Eigen::Map<Eigen::VectorXd> x(panel.column(j), stride_);
-    x.head(j).setZero();
-    x.tail(stride_ - rows_).setZero();
-    x.segment(j, rows_ - j) = A.col(j).tail(rows_ - j);
+    Eigen::Map<Eigen::VectorXd> x(panel.column(j), rows_);
+    x.tail(rows_ - j) = A.col(j).tail(rows_ - j);
     x.segment(j, n - j) += information_.col(j).segment(j, n - j);
-    x.segment(rows_ - b, b) += information_.col(j).tail(b);
+    x.tail(b) += information_.col(j).tail(b);
   }
   if (!Factorise(panel, n, rows_)) return false;
   NormalBlock::Vector g = block.gradient();
@@ -143,8 +141,7 @@ bool Elimination::Step(const NormalBlock& block) {
     g[j] /= x[j];
     for (Index i = j + 1; i < rows_; ++i) g[i] -= g[j] * x[i];
   }
-  std::copy_n(g.data(), n, panel.column(n));
-  ++eliminated_;
+  Keep(panel.column(0), panel.stride, g);
   information_.leftCols(n) = A.block(n, n, m, n);
   for (Index j = n; j < m; ++j) information_.col(j).tail(m - j) += A.col(n + j).tail(m - j);
   Downdate(panel, n, n, information_);
@@ -152,6 +149,15 @@ bool Elimination::Step(const NormalBlock& block) {
   log_determinant_ += 2 * std::log(scale);
   decrement_ += g.head(n).squaredNorm();
   return std::isfinite(log_determinant_);
+}
+
+void Elimination::Keep(const double* panel, Eigen::Index stride, const NormalBlock::Vector& g) {
+  double* to = conditionals_.data() + eliminated_ * ConditionalSize();
+  for (int j = 0; j < layout_->node; ++j, to += rows_) {
+    std::copy_n(panel + j * stride, rows_, to);
+  }
+  std::copy_n(g.data(), layout_->node, to);
+  ++eliminated_;
 }
 
 bool Elimination::Solve(std::vector<NodeVector>& nodes, BorderVector& border) {
@@ -172,7 +178,7 @@ bool Elimination::Solve(std::vector<NodeVector>& nodes, BorderVector& border) {
   for (std::size_t k = eliminated_; k-- > 0;) {
     const Columns panel = PanelOf(k);
     x.segment(n, n) = nodes[k + 1];
-    x.head(n) = -Eigen::Map<const Eigen::VectorXd>(panel.data() + n * stride_, n);
+    x.head(n) = -Eigen::Map<const Eigen::VectorXd>(panel.data() + panel.size(), n);
     Substitute(k, x);
     nodes[k] = x.head(n);
   }
@@ -201,22 +207,10 @@ void Elimination::Substitute(std::size_t k, Eigen::Ref<Eigen::MatrixXd> x) const
 }
 
 EdgeMatrix Elimination::LastCovariance() const {
-  const Index m = last_.rows();
-  EdgeMatrix inverse = EdgeMatrix::Identity(m, m);  // of L, column by column
-  for (Index j = 0; j < m; ++j) {
-    auto x = inverse.col(j);
-    for (Index k = j; k < m; ++k) {
-      x[k] /= last_(k, k);
-      x.tail(m - k - 1) -= x[k] * last_.col(k).tail(m - k - 1);
-    }
-  }
-  EdgeMatrix cov(m, m);
-  for (Index j = 0; j < m; ++j) {
-    for (Index i = 0; i <= j; ++i) {
-      cov(i, j) = cov(j, i) = inverse.col(i).tail(m - j).dot(inverse.col(j).tail(m - j));
-    }
-  }
-  return cov;
+  const auto m = last_.rows();
+  EdgeMatrix inverse = EdgeMatrix::Identity(m, m);
+  last_.triangularView<Eigen::Lower>().solveInPlace(inverse);
+  return inverse.transpose() * inverse;
 }
 
 BehindMatrix Elimination::Gain(std::size_t k) const {

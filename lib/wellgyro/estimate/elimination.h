@@ -56,23 +56,22 @@ class Elimination {
   double decrement() const { return solved_ ? decrement_ : HUGE_VAL; }
 
  private:
-  using Columns = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+  using Columns = Eigen::Map<const Eigen::MatrixXd>;
   /// Of node k, in its n columns: L (lower) over (L^-1 times the information with [next node;
   /// border])'. Behind them L^-1 times the gradient.
   Columns PanelOf(std::size_t k) const {
-    return {conditionals_.data() + k * ConditionalSize(), rows_, layout_->node,
-            Eigen::OuterStride<>(stride_)};
+    return {conditionals_.data() + k * ConditionalSize(), rows_, layout_->node};
   }
   std::size_t ConditionalSize() const {
-    return static_cast<std::size_t>(layout_->node * (stride_ + 1));
+    return static_cast<std::size_t>(layout_->node * (rows_ + 1));
   }
+  void Keep(const double* panel, Eigen::Index stride, const NormalBlock::Vector& gradient);
 
   const Layout* layout_;
   std::vector<double> conditionals_;  ///< of each node the panel and the gradient
   std::size_t eliminated_ = 0;
-  Eigen::Index rows_ = 0;    ///< of [node | next node | border]
-  Eigen::Index stride_ = 0;  ///< from column to column of a panel
-  EdgeMatrix information_;   ///< of [newest node; border], lower
+  Eigen::Index rows_ = 0;   ///< of [node | next node | border]
+  EdgeMatrix information_;  ///< of [newest node; border], lower
   EdgeVector gradient_;
   EdgeMatrix last_;  ///< its Cholesky factor
   double log_determinant_ = 0, decrement_ = 0;

@@ -194,6 +194,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
 
   Factor& f = factor_;
   f.Begin(t.knot.still ? RowKind::kStill : RowKind::kTurn, 3);
+  f.measured = 2;
   f.per_unit = across;
   const Vector3d r = Log(R_end.transpose() * t.end.R_LT);
   const LogSlopes slopes(r);

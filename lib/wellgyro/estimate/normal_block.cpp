@@ -58,9 +58,9 @@ Loss LossOf(const Factor& f) {
 /// What the weighted square is to be, of residuals that keep the share 1 - absorbed/n of their
 /// variance: Huber's loss then begins at more of their sigmas.
 double FreedomOf(const Factor& f, double absorbed) {
-  const double left = std::max(0.0, f.rows - absorbed);
+  const double left = std::max(0.0, f.measured - absorbed);
   if (!HasHuber(f.kind) || left == 0) return left;
-  return left * HuberExpected(f.rows, kHuber / std::sqrt(left / f.rows));
+  return left * HuberExpected(f.measured, kHuber / std::sqrt(left / f.measured));
 }
 
 }  // namespace
@@ -68,6 +68,7 @@ double FreedomOf(const Factor& f, double absorbed) {
 Factor& Factor::operator=(const Factor& other) {
   kind = other.kind;
   rows = other.rows;
+  measured = other.measured;
   held = other.held;
   per_unit = other.per_unit;
   columns = other.columns;
@@ -102,9 +103,8 @@ double RollWeight(double square, int n) { return (kDegrees + n) / (kDegrees + sq
 
 void NormalBlock::Clear(const Layout& layout) {
   node_ = layout.node;
-  const Eigen::Index size = 2 * layout.node + layout.border;
-  if (information_.rows() != size) information_.setZero(size, size);
-  for (Eigen::Index j = 0; j < size; ++j) information_.col(j).tail(size - j).setZero();
+  const int size = 2 * layout.node + layout.border;
+  information_.setZero(size, size);
   gradient_.setZero(size);
 }
 
@@ -116,13 +116,14 @@ void NormalBlock::Add(const Factor& f) {
   Loss loss = LossOf(f);
   if (without_loss_ && f.kind != RowKind::kRoll) loss.weight = 1;
   RowSum& sum = sums_[static_cast<std::size_t>(f.kind)];
-  const double square = f.r.head(f.rows).squaredNorm();
+  const double square = f.r.head(f.measured).squaredNorm();
   sum.squares += square;
   sum.weighted += loss.weight * square;
   sum.cost += loss.cost;
-  sum.rows += f.rows;
+  sum.rows += f.measured;
   if (covariance_ != nullptr) {
-    sum.freedom += FreedomOf(f, CovarianceOf(f, *covariance_).trace());
+    const Eigen::Matrix3d absorbed = CovarianceOf(f, *covariance_);
+    sum.freedom += FreedomOf(f, absorbed.diagonal().head(f.measured).sum());
     return;
   }
   if (f.rows == 3) {

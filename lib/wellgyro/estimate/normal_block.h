@@ -31,7 +31,8 @@ struct Factor {
   static constexpr int kColumnsMax = 40;
   RowKind kind = RowKind::kPrior;
   int rows = 1;
-  double held = 0;  ///< the robust weight, where it is held; 0: by the residuals
+  int measured = 1;  ///< the first of them, whose residuals are noise; the others tie unknowns
+  double held = 0;   ///< the robust weight, where it is held; 0: by the residuals
   /// By what the rows that measure, not tie, grow with what they compare: 1 / sigma; 0: not told.
   double per_unit = 0;
   int columns = 0;
@@ -51,7 +52,7 @@ struct Factor {
   }
   void Begin(RowKind of, int n) {
     kind = of;
-    rows = n;
+    rows = measured = n;
     held = per_unit = 0;
     columns = 0;
   }
@@ -60,11 +61,11 @@ struct Factor {
 /// The robust weight of the roll's change, whose `n` whitened residuals have this sum of squares.
 double RollWeight(double square, int n);
 
-/// How squares of one kind of residual add up.
+/// How squares of one kind of residual add up, of the rows that measure.
 struct RowSum {
   double squares = 0;   ///< of the residuals as they are
   double weighted = 0;  ///< with their robust weights
-  double cost = 0;      ///< -2 ln of their density, but for constants
+  double cost = 0;      ///< -2 ln of the density of all rows, but for constants
   double rows = 0;
   /// What `weighted` is to be, of normal residuals less what the unknowns take up of them; where
   /// the covariance was given.

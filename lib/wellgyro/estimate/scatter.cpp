@@ -18,11 +18,14 @@ constexpr std::array<double, 6> kNoisier{0.3, 0.6, 1, 1.5, 2.2, 3};
 void Scatter::Add(std::size_t k, const Factor& f, const Eigen::Matrix3d& freedom) {
   const std::size_t at = k / stretch_;
   if (stretches_.size() <= at) stretches_.resize(at + 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(freedom);
+  // Rows that tie unknowns, and those that the factor lacks, have nothing of their own.
+  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+  own.topLeftCorner(f.measured, f.measured) = freedom.topLeftCorner(f.measured, f.measured);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(own);
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double l = eigen.eigenvalues()[i];
-    if (!(l > kOwn)) continue;  // so are rows that the factor lacks
-    const double along = eigen.eigenvectors().col(i).head(f.rows).dot(f.r.head(f.rows));
+    if (!(l > kOwn)) continue;
+    const double along = eigen.eigenvectors().col(i).head(f.measured).dot(f.r.head(f.measured));
     const double square = along * along / l;
     for (Sum* sum : {&stretches_[at], &all_}) {
       const std::array<double, kGrid>& grid = sum == &all_ ? kNoisier : kBurst;
@@ -30,8 +33,8 @@ void Scatter::Add(std::size_t k, const Factor& f, const Eigen::Matrix3d& freedom
         const double x = grid[g] * l;
         sum->ln_bayes[g] += 0.5 * (square * x / (1 + x) - std::log1p(x));
       }
-      sum->squares += square;
-      sum->count += 1;
+      sum->residuals.squares += square;
+      sum->residuals.count += 1;
     }
   }
 }
@@ -43,11 +46,17 @@ double Scatter::Mean(const Sum& sum) {
   return most + std::log(mean);
 }
 
+std::vector<ResidualSum> Scatter::Residuals() const {
+  std::vector<ResidualSum> residuals;
+  for (const Sum& sum : stretches_) residuals.push_back(sum.residuals);
+  return residuals;
+}
+
 std::vector<double> Scatter::Stretches() const {
   std::vector<double> ln_bayes;
   Sum all;
   for (const Sum& sum : stretches_) {
-    if (sum.count > 0) ln_bayes.push_back(Mean(sum));
+    if (sum.residuals.count > 0) ln_bayes.push_back(Mean(sum));
     for (std::size_t g = 0; g < kGrid; ++g) all.ln_bayes[g] += sum.ln_bayes[g];
   }
   if (!ln_bayes.empty()) ln_bayes.push_back(Mean(all));
@@ -55,11 +64,12 @@ std::vector<double> Scatter::Stretches() const {
 }
 
 void Scatter::TestAll(CauseTest& test) const {
-  if (!(all_.count > 0)) return;
+  const auto [squares, count] = all_.residuals;
+  if (!(count > 0)) return;
   test.tested = true;
   test.ln_bayes = Mean(all_);
-  test.size = std::sqrt(all_.squares / all_.count);
-  test.sigma = test.size / std::sqrt(2 * all_.count);
+  test.size = std::sqrt(squares / count);
+  test.sigma = test.size / std::sqrt(2 * count);
 }
 
 }  // namespace wellgyro

@@ -25,6 +25,8 @@ class Scatter {
 
   /// Rows P r of knot `k`, in any order of knots, and P of them.
   void Add(std::size_t k, const Factor& f, const Eigen::Matrix3d& freedom);
+  /// Of every stretch the squares of its rows, as far as the unknowns leave them.
+  std::vector<ResidualSum> Residuals() const;
   /// ln B of every stretch, and of all rows.
   std::vector<double> Stretches() const;
   /// Fills in the test of more noise all the while; its size is the factor of the noise.
@@ -34,7 +36,7 @@ class Scatter {
   static constexpr std::size_t kGrid = 6;
   struct Sum {
     std::array<double, kGrid> ln_bayes{};
-    double squares = 0, count = 0;
+    ResidualSum residuals;
   };
   static double Mean(const Sum& sum);
 

@@ -88,7 +88,7 @@ void RemoveFormer(const std::filesystem::path& folder, const std::vector<ToolRes
   }
   std::error_code ignored;
   for (const char* name : {"survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
-                           "reliability.csv", "source.toml", "run.toml"}) {
+                           "reliability.csv", "stretches.csv", "source.toml", "run.toml"}) {
     std::filesystem::remove(folder / name, ignored);
   }
 }

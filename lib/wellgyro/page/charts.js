@@ -101,33 +101,48 @@ function wellgyroCharts(page) {
     });
   }
 
-  // Where the cursor of depth stands in a chart: the point of its first series with depths.
-  function placeOf(chart, md) {
+  // Where a line passes a depth: at its points, and on its way from one to the next. Along time a
+  // tool is at one depth more than once.
+  function passesOf(series, md) {
+    const places = [], near = 1e-6 * Math.max(1, Math.abs(md));
+    series.md.forEach(function (from, i) {
+      const to = series.md[i + 1], last = i + 1 === series.md.length;
+      if ([from, series.x[i], series.y[i]].includes(null)) return;
+      if (Math.abs(from - md) <= near) { places.push([series.x[i], series.y[i]]); return; }
+      if (last || [to, series.x[i + 1], series.y[i + 1]].includes(null)) return;
+      if (Math.abs(to - md) <= near || (from - md) * (to - md) > 0) return;
+      const t = (md - from) / (to - from);
+      places.push([series.x[i] + t * (series.x[i + 1] - series.x[i]),
+        series.y[i] + t * (series.y[i + 1] - series.y[i])]);
+    });
+    return places;
+  }
+
+  // Where the cursor of depth stands in a chart: on its first line that reaches this depth.
+  function placesOf(chart, md) {
     for (const series of chart.series) {
-      if (!series.md.length || series.mark !== 'line') continue;
-      const i = Math.min(d3.bisectLeft(series.md, md - 1e-6), series.md.length - 1);
-      if (Math.abs(series.md[i] - md) > 1e-3 * Math.max(1, Math.abs(md))) continue;
-      return [series.x[i], series.y[i]];
+      if (series.mark !== 'line') continue;
+      const places = passesOf(series, md);
+      if (places.length) return places;
     }
-    return null;
+    return [];
   }
 
   function cursorOf(chart, parts, scales) {
     const line = parts.svg.append('line').attr('class', 'cursor').attr('visibility', 'hidden')
       .attr('clip-path', 'url(#clip-' + chart.id + ')');
-    const dot = parts.svg.append('circle').attr('class', 'here').attr('r', 4).attr('visibility', 'hidden');
+    const dots = parts.svg.append('g').attr('clip-path', 'url(#clip-' + chart.id + ')');
     return function (md) {
-      const place = placeOf(chart, md);
       if (chart.md) {
         const at = scales.x(md);
         line.attr('x1', at).attr('x2', at).attr('y1', margin.top).attr('y2', margin.top + parts.height)
           .attr('visibility', 'visible');
       }
-      if (!place) { dot.attr('visibility', 'hidden'); return; }
-      const at = [scales.x(place[0]), scales.y(place[1])];
-      const inside = at[0] >= parts.left && at[0] <= parts.left + parts.width &&
-        at[1] >= margin.top && at[1] <= margin.top + parts.height;
-      dot.attr('cx', at[0]).attr('cy', at[1]).attr('visibility', inside ? 'visible' : 'hidden');
+      const here = dots.selectAll('circle').data(placesOf(chart, md));
+      here.exit().remove();
+      here.enter().append('circle').attr('class', 'here').attr('r', 4).merge(here)
+        .attr('cx', function (at) { return scales.x(at[0]); })
+        .attr('cy', function (at) { return scales.y(at[1]); });
     };
   }
 
@@ -137,6 +152,7 @@ function wellgyroCharts(page) {
     let best = null, least = 1e9;
     chart.series.forEach(function (series) {
       series.md.forEach(function (md, i) {
+        if ([md, series.x[i], series.y[i]].includes(null)) return;
         const distance = Math.hypot(scales.x(series.x[i]) - at[0], scales.y(series.y[i]) - at[1]);
         if (distance < least) { least = distance; best = md; }
       });

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -114,6 +115,52 @@ void WriteSamples(PageText& page, const Json& runs) {
   }
 }
 
+/// A column of stretches.csv that is charted, and by which name.
+struct AlongTime {
+  const char *column, *name;
+  int colour;
+};
+
+/// One run's columns along time, each point with its depth. Nothing where no run has them.
+void AddAlongTime(PageText& page, double run, const char* id, const std::string& title,
+                  const char* unit, std::initializer_list<AlongTime> columns) {
+  constexpr double kHour = 3600;
+  const Columns stretches(At(page.survey, {"stretches"}));
+  Chart chart{.title = title, .x_name = "time since the run began [h]", .y_name = unit};
+  chart.height = 200;
+  bool any = false;
+  for (const AlongTime& column : columns) {
+    ChartSeries series{.name = column.name, .colour = column.colour};
+    for (std::size_t i = 0; i < stretches.rows(); ++i) {
+      const auto t = stretches.Number(i, "T[s]"), value = stretches.Number(i, column.column);
+      if (!t || stretches.Number(i, "RUN") != run) continue;
+      any = any || value;
+      series.points.emplace_back(*t / kHour, value.value_or(NAN));
+      series.md.push_back(page.Length(stretches.Number(i, "MD[m]")).value_or(NAN));
+    }
+    chart.series.push_back(std::move(series));
+  }
+  if (any) return AddChart(page, fmt::format("run-{:.0f}-{}", run, id), chart, false);
+  SayNotMeasured(page, title);
+}
+
+void WriteAlongTime(PageText& page, double run, const std::optional<double>& lost) {
+  AddAlongTime(page, run, "residuals", fmt::format("Run {:.0f}: residuals over their sigma", run),
+               "rms, expected 1", {{"RES_GYRO", "gyros", 0}, {"RES_ACCEL", "accelerometers", 1}});
+  AddAlongTime(page, run, "rotation", fmt::format("Run {:.0f}: rotation of the tool", run), "[rpm]",
+               {{"ROTATION[rpm]", "", 0}});
+  AddAlongTime(page, run, "speed", fmt::format("Run {:.0f}: running speed, down positive", run),
+               "[m/s]", {{"SPEED[m/s]", "", 0}});
+  AddAlongTime(page, run, "temperature", fmt::format("Run {:.0f}: temperature of the tool", run),
+               "[\u00b0C]", {{"TEMPERATURE[degC]", "", 1}});
+  if (lost == 0.) {
+    page.html += "<p>No sample was lost.</p>\n";
+    return;
+  }
+  AddAlongTime(page, run, "lost", fmt::format("Run {:.0f}: samples lost", run), "a stretch",
+               {{"SAMPLES_LOST", "", 1}});
+}
+
 }  // namespace
 
 void WriteFits(PageText& page) {
@@ -128,6 +175,7 @@ void WriteFits(PageText& page) {
     page.html += "<h3>Run " + Isolated(TextAt(run, {"number"})) + "</h3>\n";
     const std::string remark = TextAt(run, {"remark"});
     if (!remark.empty()) page.html += "<p>" + Isolated(remark) + "</p>\n";
+    WriteAlongTime(page, NumberAt(run, {"number"}).value_or(0), NumberAt(run, {"samples_lost"}));
     if (!At(run, {"fit"}).is_object()) {
       SayNotMeasured(page, "The adjustment of this run");
       continue;
@@ -139,9 +187,6 @@ void WriteFits(PageText& page) {
     WriteParts(page, At(run, {"fit"}));
     WriteErrors(page, run);
   }
-  SayNotMeasured(
-      page,
-      "Residuals, rotation and running speed along time (the result's files do not hold them)");
   EndBlock(page);
 }
 

@@ -64,5 +64,6 @@ void WriteChecks(PageText& page);
 void WriteDiagnosis(PageText& page);
 void WriteListing(PageText& page);
 void WriteSources(PageText& page);
+void WritePlan(PageText& page);  ///< nothing where the document has no plan
 
 }  // namespace wellgyro

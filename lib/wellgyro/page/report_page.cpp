@@ -81,6 +81,7 @@ Result<std::string> ReportPage(std::string_view survey_json, const ReportOptions
   WriteDiagnosis(page);
   WriteListing(page);
   WriteSources(page);
+  WritePlan(page);
   WriteScripts(page);
   return std::move(page.html);
 }

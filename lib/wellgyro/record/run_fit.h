@@ -2,9 +2,11 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "wellgyro/record/diagnosis.h"
 #include "wellgyro/record/error_source.h"
+#include "wellgyro/record/run_stretch.h"
 
 namespace wellgyro {
 
@@ -34,6 +36,7 @@ struct RunFit {
   std::array<Squares, kParts> parts;
   ErrorVector errors = ErrorVector::Zero();        ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< of these; 0: has no prior
+  std::vector<RunStretch> stretches;               ///< of the run, in time
   std::optional<RunDiagnosis> diagnosis;           ///< where what adjusted the run made one
 };
 

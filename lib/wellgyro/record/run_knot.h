@@ -12,6 +12,7 @@ struct RunKnot {
   UtcTime utc;            ///< of the end, by the clock tie
   AlongHole along;        ///< at the end
   bool still = false;     ///< the whole knot was at rest
+  float temperature = 0;  ///< of the tool, at the end [degC]
   double unseen = 0;      ///< turn of the axis that no sensor saw, 1-sigma of this knot alone [rad]
   double var_unseen = 0;  ///< of the same, as it adds to that of the knots before [rad^2]
 };

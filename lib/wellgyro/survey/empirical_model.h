@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/survey/well_uncertainty.h"
 #include "wellgyro/uncertainty/error_model.h"
 #include "wellgyro/uncertainty/propagate.h"
@@ -56,7 +57,7 @@ struct EmpiricalModel {
 
 struct EmpiricalOptions {
   /// Where the search for `local` begins [rad].
-  double local_sigma = 0.05 * 0.017453292519943295;
+  double local_sigma = 0.05 * units::kDeg;
 };
 
 /// Magnitudes of a model's terms from how surveys of the same holes differ.

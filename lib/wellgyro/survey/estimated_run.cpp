@@ -12,6 +12,7 @@
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/node_attitude.h"
 #include "wellgyro/survey/run_diagnosis.h"
+#include "wellgyro/survey/run_stretches.h"
 
 namespace wellgyro {
 namespace {
@@ -193,9 +194,14 @@ SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
   if (!history.knots.empty()) starts = StartsOf(setup, history);
   const RunEstimate estimate =
       EstimateFrom(setup, history, {starts, [&] { return GuessOf(setup, history); }});
-  if (!estimate.solved) return {history.attitude, history.states, RunFit{}};
+  if (!estimate.solved) {
+    SmoothedRun before{history.attitude, history.states, RunFit{}};
+    before.fit->stretches = StretchesOf({}, history.knots);
+    return before;
+  }
   SmoothedRun run = SmoothedOf(estimate, history);
   run.fit = FitOf(estimate);
+  run.fit->stretches = StretchesOf(estimate.diagnosis, history.knots);
   run.fit->diagnosis = DiagnosisOf(estimate.diagnosis, history.knots);
   return run;
 }

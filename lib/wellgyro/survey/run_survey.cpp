@@ -312,6 +312,7 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
     knot.utc = c.utc + Duration::Seconds(fraction * (c.utc_end - c.utc).seconds());
     knot.along = Between(c.along, next, fraction / reach);
     knot.temperature_outside = std::exchange(temperature_outside_, false);
+    knot.temperature = c.sample.stamp.temperature;
     waiting_.push_back(std::move(knot));
   }
   // Two cuts of one place are one knot.

@@ -99,6 +99,7 @@ class RunSurvey {
     std::optional<bool> still;        ///< once it is decided
     std::optional<std::size_t> told;  ///< the draft's number, where it is already among drafts_
     bool temperature_outside = false;
+    float temperature = 0;  ///< [degC]
   };
 
   /// Where a knot is wanted within the current sample, or (beyond 1) in the gap after it.

@@ -67,6 +67,7 @@ RunKnot RunSurvey::KnotOf(const Waiting& waiting, const Increment& increment,
   const bool rests =
       job_.alignment.method == AlignmentSpec::Method::kGyrocompass || job_.alignment.use_fixes;
   RunKnot knot{.increment = increment, .utc = waiting.utc, .along = waiting.along};
+  knot.temperature = waiting.temperature;
   knot.still = rests && waiting.still.value_or(false);
   if (waiting.temperature_outside) knot.increment.quality |= Quality::kTemperature;
   knot.unseen = UnseenIn(knot);

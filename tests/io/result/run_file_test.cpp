@@ -188,10 +188,11 @@ TEST(ResultFiles, RunTomlComesLastAndNamesTheOthersButTheSource) {
   const auto files = ResultFiles(Record(), {}, SmallJob(), SmallSurvey());
   std::vector<std::string> names;
   for (const OutputFile& file : files) names.push_back(file.name);
-  EXPECT_THAT(names, testing::ElementsAre("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
-                                          "reliability.csv", "source.toml", "run.toml"));
+  EXPECT_THAT(names,
+              testing::ElementsAre("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
+                                   "reliability.csv", "stretches.csv", "source.toml", "run.toml"));
   const toml::table run = toml::parse(files.back().bytes);
-  EXPECT_EQ(run["output"].as_array()->size(), 5u);
+  EXPECT_EQ(run["output"].as_array()->size(), 6u);
   EXPECT_EQ(run["output"][0]["sha256"].value<std::string>(), Sha256Hex(files[0].bytes));
 }
 

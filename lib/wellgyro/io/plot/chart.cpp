@@ -206,7 +206,9 @@ ChartFrame FrameOf(const Chart& chart) {
   for (int axis = 0; axis < 2; ++axis) {
     const double size = std::max(std::abs(frame.low(axis)), std::abs(frame.high(axis)));
     const double span = frame.high(axis) - frame.low(axis);
-    const double margin = std::max({0.04 * span, 1e-6 * size, 1e-9});
+    // What does not change has no scale of its own: a twentieth of it to either side.
+    const bool flat = span <= 1e-6 * size;
+    const double margin = size == 0 ? 1 : std::max(flat ? 0.05 * size : 0.04 * span, 1e-9);
     frame.low(axis) -= margin;
     frame.high(axis) += margin;
   }

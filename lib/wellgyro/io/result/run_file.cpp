@@ -15,6 +15,7 @@
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/result/diagnosis_csv.h"
+#include "wellgyro/io/result/stretches_csv.h"
 #include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/text_internal.h"
@@ -346,7 +347,8 @@ std::vector<OutputFile> ResultFiles(const RunRecord& record, const SourceRecord&
                                 {"passes.csv", PassesCsv(survey.passes, columns)},
                                 {"checks.csv", ChecksCsv(survey.checks)},
                                 {"diagnosis.csv", DiagnosisCsv(survey)},
-                                {"reliability.csv", ReliabilityCsv(survey)}};
+                                {"reliability.csv", ReliabilityCsv(survey)},
+                                {"stretches.csv", StretchesCsv(survey)}};
   SurveyTable table = TableOfSurvey(job, survey.chosen, columns);
   table.head.remarks.push_back(VerdictText(survey.verdict));
   for (OutputFile& file : ExportFormats(table, BesidesCsv(record.formats), kExportStem)) {

@@ -63,9 +63,9 @@ WELLGYRO_EXPORT std::string RunToml(const RunRecord& record, const Job& job, con
 WELLGYRO_EXPORT std::string SourceToml(const SourceRecord& record);
 
 /// All files of a result, run.toml last: survey.csv, passes.csv, checks.csv, diagnosis.csv,
-/// reliability.csv, those of `record.formats`, source.toml, run.toml; with grid columns when the
-/// job has a grid. Throws std::domain_error when a station lies outside the grid's projection,
-/// std::invalid_argument as RequireFormats.
+/// reliability.csv, stretches.csv, those of `record.formats`, source.toml, run.toml; with grid
+/// columns when the job has a grid. Throws std::domain_error when a station lies outside the grid's
+/// projection, std::invalid_argument as RequireFormats.
 WELLGYRO_EXPORT std::vector<OutputFile> ResultFiles(const RunRecord& record,
                                                     const SourceRecord& source, const Job& job,
                                                     const Survey& survey);

@@ -60,6 +60,17 @@ Json MemberOf(const Json& table, const char* key) {
   return table.is_object() ? table.value(key, Json()) : Json();
 }
 
+/// The plan that the run was made by, with which others may be compared.
+Json PlanIn(const ResultTexts& texts) {
+  const auto text = texts.find(kPlanFile);
+  if (text == texts.end()) return nullptr;
+  Json plan = Taken(JsonOfToml(text->second, kPlanFile));
+  if (MemberOf(plan, "format") == "wellgyro.plan/1") return plan;
+  throw Refused{{.code = FaultCode::kForeign,
+                 .text = "its format is not wellgyro.plan/1",
+                 .source = kPlanFile}};
+}
+
 /// What azimuths count from: the grid's convergence at the first station, and whose word it is.
 Json NorthOf(const Json& job, const Json& stations) {
   Json north{{"azimuths", "true"}, {"grid", nullptr}, {"convergence_deg", nullptr}};
@@ -149,6 +160,8 @@ Json Document(const ResultTexts& texts, std::span<const OtherWell> others) {
   document["checks"] = TableIn(texts, "checks.csv");
   document["diagnosis"] = TableIn(texts, "diagnosis.csv");
   document["reliability"] = TableIn(texts, "reliability.csv");
+  document["stretches"] = TableIn(texts, "stretches.csv");
+  document["plan"] = PlanIn(texts);
   document["losses"] = LossesIn(run, texts);
   document["source"] = texts.contains("source.toml")
                            ? Taken(JsonOfToml(texts.at("source.toml"), "source.toml"))
@@ -176,7 +189,7 @@ Result<ResultTexts> ReadResultTexts(const std::filesystem::path& folder) {
   }
   ResultTexts texts;
   for (const char* name : {"run.toml", "survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
-                           "reliability.csv", "source.toml"}) {
+                           "reliability.csv", "stretches.csv", "source.toml"}) {
     const bool needed = texts.size() < 2;  // the first two
     if (!needed && !std::filesystem::exists(folder / name, ignored)) continue;
     Result<std::string> text = ReadTextFile(folder / name, kLargest);

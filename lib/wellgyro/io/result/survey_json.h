@@ -10,8 +10,10 @@
 
 namespace wellgyro {
 
-/// Text files of one result folder, by name.
+/// Text files of one result folder, by name; under kPlanFile the plan of its stops
+/// (`wellgyro.plan/1`), which the folder does not hold.
 using ResultTexts = std::map<std::string, std::string>;
+inline constexpr const char* kPlanFile = "plan.toml";
 
 /// A well to be drawn beside the survey: a survey in any format that ReadSurvey knows.
 struct OtherWell {
@@ -20,7 +22,8 @@ struct OtherWell {
 };
 
 /// What SurveyJson reads of the result in `folder`: run.toml and survey.csv, without which there is
-/// none, and passes.csv, checks.csv, diagnosis.csv, reliability.csv and source.toml where they are.
+/// none, and passes.csv, checks.csv, diagnosis.csv, reliability.csv, stretches.csv and source.toml
+/// where they are.
 /// Fault as ReadTextFile; where the folder holds one folder a tool it says so.
 WELLGYRO_EXPORT Result<ResultTexts> ReadResultTexts(const std::filesystem::path& folder);
 
