@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wellgyro/attitude/roll_following_internal.h"
 #include "wellgyro/base/angle.h"
 
 namespace wellgyro::increment {
@@ -101,6 +102,7 @@ struct Sums {
   Complex wx = 0, wy = 0, unit = 0, skew = 0, fx = 0, fy = 0, unit_z = 0;
   Complex back = 0, turn_moment = 0, force_moment = 0;
   double x = 0, y = 0, z = 0, back_z = 0, forced = 0, axial = 0;
+  double followed = 0, blocks = 0;  // integral of the root of the roll's walk; phases
   Complex force() const { return fx + kI * fy; }
 
   void Add(const Ready& r, double from, double to, double at);
@@ -127,6 +129,8 @@ void Sums::Add(const Ready& r, double from, double to, double at) {
   skew += b.rate * w + b.bend * w1;
   axial += part.share * b.sum[kWz].zeroth + part.share_first * b.sum[kWz].first;
   if (b.accel_full_scale) return;
+  followed += length * std::sqrt(b.walk);
+  blocks += part.share;
   const Complex f = part.Of(r.force, r.force_first), f1 = part.FirstOf(r.force, r.force_first);
   fx += part.share * b.fx;
   fy += part.share * b.fy;
@@ -264,9 +268,10 @@ void FillForce(const Sums& s, const Middle& middle, double accel_noise, Complex 
   out.force_per_roll =
       Vector(to_M * kI * (s.force_moment / out.seconds - 0.5 * s.force()) / s.forced);
   // Of the slope of a line through phases of white noise.
-  if (std::abs(f) * kTwoPi > std::sqrt(12 / s.forced) * accel_noise) {
-    out.sigma_roll = std::sqrt(12 / s.forced) * accel_noise / std::abs(f);
-  }
+  if (!(std::abs(f) * kTwoPi > std::sqrt(12 / s.forced) * accel_noise)) return;
+  const double density = accel_noise / std::abs(f);  // of the phase, root of R
+  out.sigma_roll = std::sqrt(12 / s.forced) * density;
+  if (density > 0) out.lateral = LateralVariance(s.followed / std::sqrt(density), s.blocks);
 }
 
 }  // namespace

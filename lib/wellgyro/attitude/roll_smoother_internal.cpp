@@ -116,6 +116,7 @@ double RollSmoother::Backward(std::uint64_t begin, std::uint64_t end, std::uint6
     if (k >= begin && k < end) {
       blocks[k].roll = roll;
       blocks[k].rate = rate;
+      blocks[k].walk = blocks[k].has_gz || !seen_[k].measured ? 0 : walk;
     }
   }
   return roll;

@@ -44,6 +44,7 @@ struct Block {
   bool linked = true;  ///< to the phase before it; else only its changes count from here on
 
   double roll = 0, rate = 0, bend = 0;  ///< psi, psi', psi'' at the middle [rad, rad/s, rad/s^2]
+  double walk = 0;  ///< of the rate as psi was smoothed by; 0: not by gravity [rad/s/sqrt(s)]
 
   // Turned to U by e^{i psi}: integrals over the block, and first moments from its middle.
   Complex unit;              ///< of e^{i psi}

@@ -223,9 +223,9 @@ class Diagnoser {
       if (specs_[s].kind != kind) continue;
       const Matrix3d moved = influence_->Of(k, f);
       for (int i = 0; i < count; ++i) {
-        const double by = f.per_unit;
-        if (!(by > 0) || !(freedom(i, i) > kAbsorbed)) continue;
-        looks_[s].Add(k, {by * f.r[i], by * by * freedom(i, i), -by * moved.col(i)});
+        const Vector3d c = f.UnitOf(i);
+        if (!(f.per_unit > 0) || !(freedom(i, i) > kAbsorbed)) continue;
+        looks_[s].Add(k, {c.dot(f.r), c.dot(freedom * c), -moved * c});
       }
     }
   }

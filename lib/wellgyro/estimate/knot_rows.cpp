@@ -256,7 +256,8 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   }
   // M stands where half of the seen turn leads; half of the unseen is missing.
   const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
-  const double whiten = 1 / std::hypot(noise, 0.5 * t.knot.unseen * t.place.site.gravity);
+  const double seen = Square(noise), missed = Square(0.5 * t.knot.unseen * t.place.site.gravity);
+  const double whiten = 1 / std::sqrt(seen + missed);
   const Matrix3d px = Skew(p);
 
   Factor& f = factor_;
@@ -284,6 +285,11 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
   if (layout_.gravity_gradient != kAbsent) {
     f.Column(block.border() + layout_.gravity_gradient) = whiten * t.place.depth * down_M;
+  }
+  const double norm = inc.force_M.head<2>().norm();
+  if (inc.lateral != 1 && norm > 0) {
+    const Vector3d lateral(-inc.force_M.y() / norm, inc.force_M.x() / norm, 0);
+    f.Shrink(lateral, std::sqrt((inc.lateral * seen + missed) / (seen + missed)));
   }
   block.Add(f);
 }

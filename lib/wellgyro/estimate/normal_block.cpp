@@ -71,6 +71,8 @@ Factor& Factor::operator=(const Factor& other) {
   measured = other.measured;
   held = other.held;
   per_unit = other.per_unit;
+  u = other.u;
+  shrink = other.shrink;
   columns = other.columns;
   std::copy_n(other.column.begin(), columns, column.begin());
   J.leftCols(columns) = other.J.leftCols(columns);

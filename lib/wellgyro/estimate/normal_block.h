@@ -35,6 +35,10 @@ struct Factor {
   double held = 0;   ///< the robust weight, where it is held; 0: by the residuals
   /// By what the rows that measure, not tie, grow with what they compare: 1 / sigma; 0: not told.
   double per_unit = 0;
+  /// Unit direction in which the noise is another, and what the residuals are short of there: they
+  /// are whitened by per_unit (1 - shrink u u').
+  Eigen::Vector3d u = Eigen::Vector3d::Zero();
+  double shrink = 0;
   int columns = 0;
   std::array<int, kColumnsMax> column{};  ///< of the block: node, next node, border
   Eigen::Matrix<double, 3, kColumnsMax> J;
@@ -50,10 +54,22 @@ struct Factor {
     column[static_cast<std::size_t>(columns)] = at;
     return J.col(columns++).head(rows);
   }
+  /// Rows that are filled in, whitened by one sigma, for one that is `sigma` times it along
+  /// `along`.
+  void Shrink(const Eigen::Vector3d& along, double sigma) {
+    u = along;
+    shrink = 1 - 1 / sigma;
+    r -= shrink * u.dot(r) * u;
+    for (int j = 0; j < columns; ++j) J.col(j) -= shrink * u.dot(J.col(j)) * u;
+  }
+  /// What a unit of what row i compares, by itself, adds to the residuals.
+  Eigen::Vector3d UnitOf(int i) const {
+    return per_unit * (Eigen::Vector3d::Unit(i) - shrink * u[i] * u);
+  }
   void Begin(RowKind of, int n) {
     kind = of;
     rows = measured = n;
-    held = per_unit = 0;
+    held = per_unit = shrink = 0;
     columns = 0;
   }
 };

@@ -55,6 +55,9 @@ struct Increment {
   /// 1-sigma of what gravity says of the roll over the knot, the change of psi, by noise alone and
   /// from this knot's samples alone [rad]; 2 pi where there are none.
   double sigma_roll = 0;
+  /// Variance of force_M across gravity, about the axis, over that of the accelerometers' mean: psi
+  /// follows their noise.
+  double lateral = 1;
   bool roll_seen = false;  ///< psi follows gravity (or a third axis) all through the knot
   bool level = true;       ///< force_M counts: of half the knot, off full scale and outside gaps
   double gap_seconds = 0;  ///< of the knot, without usable gyro samples: turn goes on as before it
