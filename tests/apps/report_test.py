@@ -169,9 +169,9 @@ at_rest_s = 1000
         rows = page.Ask("""Array.from(document.querySelectorAll('table.planned-stops tbody tr')).map(
             r => Array.from(r.cells).map(c => c.textContent))""")
         self.assertEqual([(row[0], row[1], row[2], row[5], row[7]) for row in rows],
-                         [("in", "897.0", "200", "900.0", ""), ("in", "1500.0", "60", "\u2013", "not made"),
-                          ("in", "2200.0", "180", "2200.0", ""),
-                          ("out", "1500.0", "180", "1500.0", "")])
+                         [("in", "897.0", "200", "900.2", "made"), ("in", "1500.0", "60", "\u2013", "not made"),
+                          ("in", "2200.0", "180", "2200.2", "made"),
+                          ("out", "1500.0", "180", "1500.2", "made")])
         kept = page.Ask("document.querySelector('table.kept').textContent")
         for number in ("99.00", "12.50", "1000"):
             self.assertIn(number, kept)

@@ -3,7 +3,9 @@
 #include <functional>
 #include <ostream>
 #include <string>
+#include <utility>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "wellgyro/attitude/increment_builder.h"
@@ -65,9 +67,15 @@ TEST_P(Following, IsOfTheSizeTold) {
     sample.stamp.seq = i;
     sample.stamp.tool_time.ns = std::llround(1e9 * i * period);
     sample.stamp.period_ns = static_cast<std::int32_t>(std::lround(1e9 * period));
-    const double roll = way.roll((i + 0.5) * period), sigma = noise / std::sqrt(period);
-    sample.f_T << across * std::cos(roll) + sigma * random.Normal(),
-        -across * std::sin(roll) + sigma * random.Normal(), -5 + sigma * random.Normal();
+    // The mean over the sample, by Simpson's rule.
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const auto& [at, weight] : {std::pair(0., 1.), {0.5, 4.}, {1., 1.}}) {
+      const double roll = way.roll((i + at) * period);
+      mean += weight / 6 * Eigen::Vector2d(std::cos(roll), -std::sin(roll));
+    }
+    const double sigma = noise / std::sqrt(period);
+    sample.f_T << across * mean.x() + sigma * random.Normal(),
+        across * mean.y() + sigma * random.Normal(), -5 + sigma * random.Normal();
     ASSERT_TRUE(builder.Push(sample, false));
     if ((i + 1) % static_cast<int>(way.hz) == 0) builder.Cut();
     if (i + 1 == samples) builder.Flush();
@@ -91,14 +99,15 @@ TEST_P(Following, IsOfTheSizeTold) {
   EXPECT_NEAR(squares / told, 1, 0.15) << squares / count << " " << told / count;
 }
 
+double Sway(double t) { return FromDegrees(2) * std::sin(kTwoPi * 0.15 * t); }
+
 double Swing(double t) { return FromDegrees(8) * std::sin(kTwoPi * 0.7 * t); }
 
 INSTANTIATE_TEST_SUITE_P(Tool, Following,
                          testing::Values(Way{"rests", [](double) { return 0.4; }, 100},
                                          Way{"rests_10_Hz", [](double) { return 0.4; }, 10},
                                          Way{"rolls", [](double t) { return 0.2 * t; }, 50},
-                                         Way{"swings", Swing, 100},
-                                         Way{"swings_10_Hz", Swing, 10}));
+                                         Way{"swings", Swing, 100}, Way{"sways_10_Hz", Sway, 10}));
 
 }  // namespace
 }  // namespace wellgyro::increment

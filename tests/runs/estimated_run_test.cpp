@@ -53,7 +53,8 @@ TEST(EstimatedRun, OfAPerfectToolIsTheTruth) {
     }
     EXPECT_LT(ToDegrees(worst_azimuth), 0.003) << inclination;
     EXPECT_LT(ToDegrees(worst_inclination), 2e-4) << inclination;
-    EXPECT_LT(run.fit->chi_square, 1e-3 * run.fit->degrees_of_freedom) << inclination;
+    // What the orders kept leave of residuals, 4 % of the noise that the job states.
+    EXPECT_LT(run.fit->chi_square, 2e-3 * run.fit->degrees_of_freedom) << inclination;
   }
 }
 

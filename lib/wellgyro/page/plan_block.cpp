@@ -88,7 +88,7 @@ void WriteStopTable(PageText& page, const Json& planned,
         .Number(page.Length(NumberAt(stop, {"ellipse_without_m"})), 2)
         .Number(page.Length(stood ? std::optional(stood->md) : std::nullopt), 1)
         .Number(stood ? std::optional(stood->seconds) : std::nullopt, 0)
-        .Text(stood ? "" : "not made");
+        .Text(stood ? "made" : "not made");
   }
 }
 
