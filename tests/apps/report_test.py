@@ -177,9 +177,9 @@ at_rest_s = 1000
             self.assertIn(number, kept)
         self.assertEqual(json.loads(page.Ask("document.getElementById('survey').textContent"))
                          ["plan"]["limits"], {"ellipse_m": 99.0})
-        for text, complaint in (("format = 3", "not wellgyro.plan/1"), ("=", "plan.toml:1")):
+        for text, complaint in (("format = 3", "not wellgyro.plan/1"), ("=", "odd-plan.toml:1")):
             done = Run("report", self.Path("demo"), "--out", self.Path("none.html"), "--plan",
-                       self.Write("bad/plan.toml", text))
+                       self.Write("odd-plan.toml", text))
             self.assertEqual(done.returncode, 2)
             self.assertIn(complaint, done.stderr)
 

@@ -57,6 +57,10 @@ TEST(Followed, FiftyRunsMeetTheirLimitInTheTimeOfAPlanThatKnowsTheTruth) {
         continue;
       }
       ++told;
+      if (run.ellipse > 1.01 * limits.ellipse) {
+        std::printf("seed %d: %.2f m after %.0f s\n", static_cast<int>(seed), run.ellipse,
+                    run.cost);
+      }
       ellipse += run.ellipse;
       met += run.ellipse <= 1.01 * limits.ellipse ? 1 : 0;
     }

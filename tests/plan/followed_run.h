@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "wellgyro/io/toml/plan_file.h"
 #include "wellgyro/plan/live_advice.h"
 #include "wellgyro/plan/plan_case.h"
 #include "wellgyro/plan/stop_search.h"
@@ -129,8 +130,11 @@ class FollowedRun {
   double Speed() const { return up_ && deepest_ > md_ ? case_.way.speed_out : case_.way.speed_in; }
   RunMove& Move() { return std::get<RunMove>(simulation_.run.steps.back()); }
   void BeginMove(double md) {
-    const RunMove move{
-        .to_md = md, .speed = Speed(), .ramp = kRamp, .roll = {.rate = case_.way.roll_rate}};
+    const double seconds = std::max(std::abs(md - md_) / Speed(), kRamp);
+    const RunMove move{.to_md = md,
+                       .speed = Speed(),
+                       .ramp = kRamp,
+                       .roll = PlannedRoll(case_.way, moved_, seconds)};
     simulation_.run.steps.emplace_back(move);
     begin_ = time_;
   }
@@ -144,6 +148,7 @@ class FollowedRun {
   }
   void EndMove() {
     PlayUntil(MoveEnd());
+    moved_ += std::abs(Move().to_md - md_) / Move().speed;
     md_ = Move().to_md;
     deepest_ = std::max(deepest_, md_);
   }
@@ -193,7 +198,7 @@ class FollowedRun {
   } sink_;
   Surveyor surveyor_;
   Simulation simulation_;
-  double md_ = 0, time_ = 0, begin_ = 0, deepest_ = 0;
+  double md_ = 0, time_ = 0, begin_ = 0, moved_ = 0, deepest_ = 0;
   bool up_ = false;
   std::int64_t played_ = 0;
   Followed followed_;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/base/export.h"
-#include "wellgyro/base/units.h"
 #include "wellgyro/survey/well_uncertainty.h"
 #include "wellgyro/uncertainty/error_model.h"
 #include "wellgyro/uncertainty/propagate.h"
@@ -57,7 +57,7 @@ struct EmpiricalModel {
 
 struct EmpiricalOptions {
   /// Where the search for `local` begins [rad].
-  double local_sigma = 0.05 * units::kDeg;
+  double local_sigma = FromDegrees(0.05);
 };
 
 /// Magnitudes of a model's terms from how surveys of the same holes differ.

@@ -19,7 +19,8 @@ class Steps {
   void MoveTo(double md, double speed) {
     const double seconds = std::abs(md - md_) / speed;
     if (seconds == 0) return;
-    run_.steps.emplace_back(RunMove{.to_md = md, .speed = speed, .roll = RollFor(seconds)});
+    run_.steps.emplace_back(
+        RunMove{.to_md = md, .speed = speed, .roll = PlannedRoll(way_, moving_, seconds)});
     md_ = md;
     moving_ += seconds;
   }
@@ -32,26 +33,24 @@ class Steps {
   const SimulatedRun& run() const { return run_; }
 
  private:
-  /// A simulated swing fades where the tool starts and stops. What the planned one has turned the
-  /// tool by from stop to stop comes to it as an even roll, so that it rests as it was planned to.
-  RunRoll RollFor(double seconds) const {
-    if (way_.roll_rate != 0) return {.rate = way_.roll_rate};
-    const double at = kTwoPi * moving_ / way_.swing_period;
-    const double turns = kTwoPi * seconds / way_.swing_period;
-    RunRoll roll{.rate = way_.swing * (std::sin(at + turns) - std::sin(at)) / seconds};
-    if (turns < kTwoPi) return roll;
-    roll.amplitude = way_.swing;
-    roll.period = way_.swing_period;
-    roll.phase = at;
-    return roll;
-  }
-
   const PlannedWay& way_;
   SimulatedRun run_;
   double md_ = 0, moving_ = 0;
 };
 
 }  // namespace
+
+RunRoll PlannedRoll(const PlannedWay& way, double moved, double seconds) {
+  if (way.roll_rate != 0) return {.rate = way.roll_rate};
+  const double at = kTwoPi * moved / way.swing_period;
+  const double turns = kTwoPi * seconds / way.swing_period;
+  RunRoll roll{.rate = way.swing * (std::sin(at + turns) - std::sin(at)) / seconds};
+  if (turns < kTwoPi) return roll;
+  roll.amplitude = way.swing;
+  roll.period = way.swing_period;
+  roll.phase = at;
+  return roll;
+}
 
 SimulatedRun RunOf(const PlanFile& plan) {
   const PlannedWay& way = plan.way;
