@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """The Python package against the program, which WELLGYRO_PROGRAM names, and against numpy."""
+import json
 import math
 import os
 import random
+import re
 import resource
 import subprocess
 import sys
@@ -59,7 +61,8 @@ class Package(unittest.TestCase):
 
 class Surveys(Package):
     def Same(self, result, folder):
-        for name in ("survey.csv", "passes.csv", "checks.csv"):
+        for name in ("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv", "reliability.csv",
+                     "stretches.csv"):
             with open(os.path.join(folder, name), encoding="utf-8", newline="") as file:
                 self.assertEqual(result.csv(name), file.read(), f"{folder} {name}")
 
@@ -134,6 +137,31 @@ class Surveys(Package):
         result.write(self.Path("written"))
         with open(self.Path("written", "survey.csv"), encoding="utf-8") as file:
             self.assertEqual(file.read(), result.csv())
+
+    def test_a_report_is_the_programs(self):
+        log, out = self.Log(3), self.Path("out-report")
+        done = Run("survey", "--job", self.Path("job.toml"), "--from", log, "--out", out, "--report")
+        self.assertIn(done.returncode, (0, 3, 4), done.stderr)
+        result = wg.survey(self.Path("job.toml"), log)
+        self.assertEqual(list(result.diagnosis.columns)[:2], ["RUN", "CODE"])
+        self.assertAlmostEqual(result.diagnosis.POSTERIOR.sum(), 1, delta=1e-6)
+        self.assertGreater(len(result.reliability), 10)
+        self.assertTrue((result.stretches["T[s]"].diff().dropna() > 0).all())
+        result.report(self.Path("of-python.html"))
+        def Document(path):
+            with open(path, encoding="utf-8") as file:
+                page = file.read()
+            self.assertTrue(page.endswith("</html>\n"))
+            return json.loads(re.search(r'id="survey">(.*?)</script>', page, re.S).group(1))
+        ours, theirs = Document(self.Path("of-python.html")), Document(os.path.join(out, "report.html"))
+        self.assertEqual(set(ours), set(theirs))
+        for part in ("job", "stations", "passes", "checks", "diagnosis", "stretches", "end"):
+            self.assertEqual(ours[part], theirs[part], part)
+        for arguments in ({"units": "yards"}, {"paper": "a3"}):
+            with self.assertRaises(ValueError):
+                result.report(self.Path("none.html"), **arguments)
+        with self.assertRaises(TypeError):
+            result.report(3)
 
     def test_what_the_callback_raises_ends_the_work(self):
         def Stop(share):

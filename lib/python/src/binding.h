@@ -62,6 +62,9 @@ struct PlaceArguments {
 };
 Surroundings SurroundingsOf(const PlaceArguments& place);
 
+/// The report of a survey.json; in metres and on A4 unless told.
+std::string ReportHtml(const std::string& survey_json, bool field_units, bool letter);
+
 void AddSession(nb::module_& m);
 void AddPlanning(nb::module_& m);
 void AddFiles(nb::module_& m);

@@ -24,6 +24,10 @@
 #include "wellgyro/bus/surveyor_listener.h"
 #include "wellgyro/earth/grid.h"
 #include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/result/diagnosis_csv.h"
+#include "wellgyro/io/result/run_file.h"
+#include "wellgyro/io/result/stretches_csv.h"
+#include "wellgyro/io/result/survey_json.h"
 #include "wellgyro/io/sensor/sensor_files.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/io/words.h"
@@ -368,7 +372,22 @@ std::string CsvOf(const Outcome& o, std::int32_t tool, const std::string& name) 
   const std::optional<WellGrid> grid = o.Grid();
   if (name == "survey.csv") return SurveyCsv(survey.chosen, grid ? &*grid : nullptr);
   if (name == "passes.csv") return PassesCsv(survey.passes, grid ? &*grid : nullptr);
+  if (name == "diagnosis.csv") return DiagnosisCsv(survey);
+  if (name == "reliability.csv") return ReliabilityCsv(survey);
+  if (name == "stretches.csv") return StretchesCsv(survey);
   return ChecksCsv(survey.checks);
+}
+
+/// As the program's survey.json, but for what only a program knows: channels, tools, its name.
+std::string JsonOf(const Outcome& o, std::int32_t tool) {
+  RunRecord record;
+  record.program = "wellgyro for Python " WELLGYRO_VERSION;
+  record.inputs = o.job->files;
+  ResultTexts texts;
+  for (OutputFile& file : ResultFiles(record, {.name = "Python"}, o.job->job, o.Of(tool))) {
+    texts[file.name] = std::move(file.bytes);
+  }
+  return Taken(SurveyJson(texts));
 }
 
 void AddOutcome(nb::module_& m) {
@@ -399,11 +418,13 @@ void AddOutcome(nb::module_& m) {
       .def("causes", [](const Outcome& o, std::int32_t tool) { return o.Of(tool).verdict.causes; })
       .def("unusable", [](const Outcome& o, std::int32_t tool) { return o.Of(tool).unusable; })
       .def("csv", &CsvOf)
+      .def("survey_json", &JsonOf)
       .def_ro("faults", &Outcome::faults)
       .def_ro("fault_count", &Outcome::fault_count);
 }
 
 void AddJob(nb::module_& m) {
+  m.def("report", &ReportHtml);
   nb::class_<JobFile>(m, "Job")
       .def_prop_ro("name", [](const JobFile& j) { return j.job.well.name; })
       .def_prop_ro("tool_serial",

@@ -1,6 +1,7 @@
 """Jobs, surveys of arrays, logs and tables, and what comes of them."""
 from __future__ import annotations
 
+import io
 import os
 import tempfile
 from collections.abc import Callable, Sequence
@@ -13,6 +14,8 @@ from . import _checks, _toml, _wellgyro
 PathLike = str | os.PathLike
 
 _GYRO = {"rad_per_s": 1.0, "deg_per_s": np.pi / 180, "deg_per_h": np.pi / 180 / 3600}
+_FILES = ("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv", "reliability.csv",
+          "stretches.csv")
 _ACCEL = {"mps2": 1.0, "g": 9.80665}
 
 
@@ -73,6 +76,13 @@ def _job_of(name, job):
     raise TypeError(f"{name}: a Job or the path of one is expected, not {type(job).__name__}")
 
 
+def _write(path, text):
+    with tempfile.NamedTemporaryFile("w", dir=os.path.dirname(path) or ".", delete=False,
+                                     encoding="utf-8", newline="") as file:
+        file.write(text)
+    os.replace(file.name, path)
+
+
 def _frame(columns):
     frame = pd.DataFrame({("pass" if k == "pass_" else k): v for k, v in columns.items()
                           if k not in ("cov", "cov_tangent")})
@@ -127,6 +137,24 @@ class Result:
         return _frame(self._outcome.checks(self.tool))
 
     @property
+    def diagnosis(self) -> pd.DataFrame:
+        """Which fault explains each run, the likeliest first; as diagnosis.csv."""
+        return self._table("diagnosis.csv")
+
+    @property
+    def reliability(self) -> pd.DataFrame:
+        """Of each fault the smallest that would have been noticed, and what it could have done."""
+        return self._table("reliability.csv")
+
+    @property
+    def stretches(self) -> pd.DataFrame:
+        """Every run along time: depth, speed, rotation, temperature, samples lost, residuals."""
+        return self._table("stretches.csv")
+
+    def _table(self, name: str) -> pd.DataFrame:
+        return pd.read_csv(io.StringIO(self.csv(name)))
+
+    @property
     def runs(self) -> pd.DataFrame:
         return _frame(self._outcome.runs(self.tool))
 
@@ -150,19 +178,27 @@ class Result:
         return self._outcome.fault_count
 
     def csv(self, name: str = "survey.csv") -> str:
-        """The program's survey.csv, passes.csv or checks.csv, to the byte."""
-        name = _checks.word("name", name, ("survey.csv", "passes.csv", "checks.csv"))
+        """The program's survey.csv, passes.csv, checks.csv, diagnosis.csv, reliability.csv or
+        stretches.csv, to the byte."""
+        name = _checks.word("name", name, _FILES)
         return self._outcome.csv(self.tool, name)
+
+    def report(self, path: PathLike, *, units: str = "metric", paper: str = "a4") -> None:
+        """The report as one HTML page: `units` metric or field, `paper` a4 or letter."""
+        path = _checks.path("path", path)
+        units = _checks.word("units", units, ("metric", "field"))
+        paper = _checks.word("paper", paper, ("a4", "letter"))
+        if self.unusable:
+            raise ValueError(f"report: there is no survey: {self.unusable}")
+        _write(path, _wellgyro.report(self._outcome.survey_json(self.tool), units == "field",
+                                      paper == "letter"))
 
     def write(self, folder: PathLike) -> None:
         """Those three into `folder`, which is made: each whole or as it was."""
         folder = _checks.path("folder", folder)
         os.makedirs(folder, exist_ok=True)
         for name in ("passes.csv", "checks.csv", "survey.csv"):
-            with tempfile.NamedTemporaryFile("w", dir=folder, delete=False, encoding="utf-8",
-                                             newline="") as file:
-                file.write(self.csv(name))
-            os.replace(file.name, os.path.join(folder, name))
+            _write(os.path.join(folder, name), self.csv(name))
 
     def __repr__(self):
         if self.unusable:
