@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A live survey at 10 kHz in batches of 32, in real time, stopped for a second on the way: losses,
-latency of its stations, load.  live_load.py PROGRAM [--seconds 600]
+latency of its stations, load.  live_load.py PROGRAM [--seconds 600] [--every 0.2] [--hz 10000]
+[--speed 1]     stations [m], samples a second, simulated seconds a second
 The goal: nothing lost, median 2 ms, p99 20 ms, 5 % of one core. What fails is a loss alone: how
 fast it is depends on who else uses the machine."""
 import argparse
@@ -16,7 +17,7 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "apps"))
 from harness import PROGRAM, Job, Listening, Move, Simulation, Start
 
-JOB = Job(0.2) + """[alignment]
+JOB = """[alignment]
 method = "external"
 azimuth_true_deg = 300.0
 sigma_azimuth_deg = 0.1
@@ -41,17 +42,21 @@ def Resident(pid):
 def Main():
     options = argparse.ArgumentParser()
     options.add_argument("--seconds", type=float, default=600)
-    length = options.parse_args().seconds
+    options.add_argument("--every", type=float, default=0.2)
+    options.add_argument("--hz", type=float, default=10000.0)
+    options.add_argument("--speed", type=float, default=1.0)
+    given = options.parse_args()
+    length, real = given.seconds, given.seconds / given.speed
     folder = tempfile.mkdtemp()
 
     def path(name):
         return os.path.join(folder, name)
 
     with open(path("simulation.toml"), "w") as file:
-        file.write(Simulation(Move(length), "imu_hz = 10000.0\ndepth_hz = 10.0\nbatch = 32\n",
+        file.write(Simulation(Move(length), f"imu_hz = {given.hz}\ndepth_hz = 10.0\nbatch = 32\n",
                               seed=5, end_md_m=length + 10))
     with open(path("job.toml"), "w") as file:
-        file.write(JOB)
+        file.write(Job(given.every) + JOB)
     url = f"udpm://239.255.76.67:{20000 + os.getpid() % 20000}"
     survey = Start("survey", "--job", path("job.toml"), "--from", url, "--out", path("out"))
     listening, heard = Listening(survey)
@@ -59,15 +64,15 @@ def Main():
     buffer = survey.stderr.readline().strip()
     time.sleep(0.2)
     sender = subprocess.Popen([PROGRAM, "simulate", "--job", path("simulation.toml"),
-                               "--out", url, "--speed", "1", "--finish"],
+                               "--out", url, "--speed", str(given.speed), "--finish"],
                               stdout=subprocess.DEVNULL)
-    time.sleep(length * 0.5)
+    time.sleep(real * 0.5)
     survey.send_signal(signal.SIGSTOP)
     time.sleep(1)
     survey.send_signal(signal.SIGCONT)
-    time.sleep(length * 0.05)
+    time.sleep(real * 0.05)
     begin, busy, memory = time.monotonic(), Seconds(survey.pid), Resident(survey.pid)
-    time.sleep(length * 0.3)
+    time.sleep(real * 0.3)
     grown = Resident(survey.pid) - memory
     load = (Seconds(survey.pid) - busy) / (time.monotonic() - begin)
     sender.wait()
@@ -84,7 +89,7 @@ def Main():
         return int(re.search(rf"^{name} = (\d+)", source, re.M).group(1))
 
     median, p99 = count("station_latency_median_us"), count("station_latency_p99_us")
-    print(f"{length:g} s at 10 kHz, batches of 32, the process stopped for 1 s; {buffer}")
+    print(f"{length:g} s at {given.hz:g} Hz, batches of 32, the process stopped for 1 s; {buffer}")
     print(f"resident memory {memory:.1f} MB, {grown:+.2f} MB in the {length * 0.3:.0f} s after that")
     print(f"samples {samples}, lost {lost}; kernel drops {count('kernel_drops')}")
     print(f"{stations} stations; latency median {median / 1000:.2f} ms, p99 {p99 / 1000:.2f} ms")
