@@ -8,10 +8,13 @@ namespace wellgyro {
 namespace {
 
 constexpr double kOwn = 0.3;  // of a row, what its own residual must keep
-// tau^2, in the variances that rows should have: of bursts, and of a sensor that is out of its
-// class.
-constexpr std::array<double, 6> kBurst{0.5, 2, 8, 40, 400, 1e4};
-constexpr std::array<double, 6> kNoisier{0.3, 0.6, 1, 1.5, 2.2, 3};
+// tau^2, in the variances that rows should have: of a sensor that is out of its class, up to five
+// times its noise by steps of 1.5, and of bursts, by every second of these and on to shocks. What
+// is noisier all the while thus never fits the bursts' better.
+constexpr std::array<double, 12> kNoisier{0.3,  0.45, 0.675, 1.01, 1.52, 2.28,
+                                          3.42, 5.13, 7.69,  11.5, 17.3, 25.9};
+constexpr std::array<double, 12> kBurst{0.45, 1.01, 2.28, 5.13, 11.5, 25.9,
+                                        60,   140,  400,  1000, 3000, 1e4};
 
 }  // namespace
 

@@ -33,7 +33,7 @@ class Scatter {
   void TestAll(CauseTest& test) const;
 
  private:
-  static constexpr std::size_t kGrid = 6;
+  static constexpr std::size_t kGrid = 12;
   struct Sum {
     std::array<double, kGrid> ln_bayes{};
     ResidualSum residuals;
