@@ -14,6 +14,7 @@
 #include "wellgyro/live/notices.h"
 
 #include "commands.h"
+#include "console.h"
 #include "live.h"
 #include "live_commands.h"
 #include "report.h"
@@ -111,12 +112,13 @@ int Bridge::Run() {
     if (!line_) Connect();
     const auto woken = bus_.Wait(line_ ? 0 : 100);
     if (!woken) {
-      Complain(woken.fault());
+      console_.OnNotice(Sentence(woken.fault()));
       return kUnusable;
     }
     if (*woken == LiveBus::Woken::kStopped) break;
     if (line_) Read();
   }
+  console_.End();
   fmt::print("{} depth marks, {} records left out\n", reader_.marks(), reader_.bad());
   return reader_.bad() > 0 ? kDoneWithLosses : kDone;
 }

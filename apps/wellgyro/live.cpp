@@ -1,6 +1,5 @@
 #include "live.h"
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -13,20 +12,16 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include "wellgyro/io/toml/job_file.h"
-#include "wellgyro/live/glance_line.h"
 
 #include "report.h"
 
 namespace wellgyro::apps {
 namespace {
-
-constexpr std::int64_t kPlainUs = 4'500'000;  // so that no silence is longer than 5 s
 
 constexpr std::array<int, 2> kSignals = {SIGINT, SIGTERM};
 
@@ -43,13 +38,6 @@ void Handle(int signal, void (*handler)(int)) {
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
   sigaction(signal, &action, nullptr);
-}
-
-/// Of the terminal; two at least.
-std::size_t Columns() {
-  winsize size{};
-  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  return known ? size.ws_col : 80;
 }
 
 template <class Clock>
@@ -82,38 +70,6 @@ std::int64_t NowUs() { return Microseconds<std::chrono::system_clock>(); }
 std::int64_t MonotonicUs() { return Microseconds<std::chrono::steady_clock>(); }
 
 LiveClock ThisClock() { return {NowUs, MonotonicUs}; }
-
-Console::Console() : terminal_(isatty(STDERR_FILENO) != 0), said_us_(MonotonicUs()) {}
-Console::~Console() { Clear(); }
-
-void Console::Clear() {
-  if (shown_ > 0) fmt::print(stderr, "\r{:{}}\r", "", shown_);
-  shown_ = 0;
-}
-
-void Console::OnNotice(std::string_view sentence) {
-  Clear();
-  Complain(sentence);
-  said_us_ = MonotonicUs();
-}
-
-void Console::OnGlance(const Glance& glance) {
-  Show(advice_.empty() ? LineOf(glance) : fmt::format("{} | {}", advice_, LineOf(glance)));
-}
-
-void Console::Show(const std::string& line) {
-  const std::int64_t now = MonotonicUs();
-  if (terminal_) {
-    Clear();
-    // A line that wraps could not be taken back.
-    shown_ = std::min(line.size(), Columns() - 1);
-    fmt::print(stderr, "{}", line.substr(0, shown_));
-    std::fflush(stderr);
-  } else if (now - said_us_ >= kPlainUs) {
-    fmt::print(stderr, "{}\n", line);
-    said_us_ = now;
-  }
-}
 
 void NotifyManager(std::string_view state) {
   const char* name = std::getenv("NOTIFY_SOCKET");

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -10,7 +9,6 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/live/clock.h"
-#include "wellgyro/live/observer.h"
 #include "wellgyro/record/channels.h"
 
 /// What the commands that speak with a live bus share.
@@ -29,27 +27,6 @@ std::optional<Channels> ChannelsOf(const std::string& job);
 std::int64_t NowUs();        ///< UTC since 1970 [us]
 std::int64_t MonotonicUs();  ///< for lengths of time [us]
 LiveClock ThisClock();       ///< both
-
-/// Says what a live program has to say on standard error.
-/// On a terminal one line lives below what was said; else it is a plain line every few seconds.
-class Console : public LiveObserver {
- public:
-  Console();
-  ~Console() override;
-  void OnNotice(std::string_view sentence) override;
-  void OnGlance(const Glance& glance) override;
-  void OnAdvice(const Advice& advice) override { advice_ = advice.text; }
-
-  /// Shows `line` in place of the one before.
-  void Show(const std::string& line);
-
- private:
-  void Clear();
-  bool terminal_;
-  std::size_t shown_ = 0;  ///< characters of the line that lives
-  std::int64_t said_us_;
-  std::string advice_;  ///< said last, shown before the glance
-};
 
 /// Tells the service manager that started this program, if one did (sd_notify(3)): "READY=1".
 void NotifyManager(std::string_view state);

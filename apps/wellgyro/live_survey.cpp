@@ -16,6 +16,7 @@
 #include "wellgyro/plan/live_advice.h"
 
 #include "commands.h"
+#include "console.h"
 #include "delivery.h"
 #include "live.h"
 #include "report.h"
@@ -51,6 +52,7 @@ class SurveyConsole : public Console {
     Console::OnAdvice(advice);
   }
   void OnStuck(const std::optional<RunVerdict>& kept) override {
+    End();
     int code = kUnusable;
     if (kept) {
       Complain("stopped while adjusting: the survey in the folder is whole, as of before that");
@@ -154,6 +156,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
   if (page) fmt::print(stderr, "page: {}\n", page->Address());
   NotifyManager("READY=1");
   const LiveOutcome outcome = (*session)->Run();
+  console.End();
   if (page) Farewell(*page, outcome);
   for (const std::string& hint : outcome.hints) Complain(hint);
   if (outcome.ended != LiveOutcome::Ended::kFinished) return Stopped(options, outcome);

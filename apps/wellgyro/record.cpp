@@ -18,6 +18,7 @@
 #include "wellgyro/live/notices.h"
 
 #include "commands.h"
+#include "console.h"
 #include "live.h"
 #include "report.h"
 
@@ -137,14 +138,14 @@ void Recording::Housekeeping() {
   if (now < next_second_) return;
   next_second_ = now + kSecondUs;
   if (!fault_ && !log_->InPlace()) {
-    Complain(
+    console_.OnNotice(
         fmt::format("{} was moved or removed: a new one begins", LogPart(options_.out, number_)));
     fault_ = log_->Close();
     if (!fault_) fault_ = Open();
   }
   const std::int64_t drops = bus_.kernel_drops().value_or(0);
   if (drops > drops_) {
-    Complain(
+    console_.OnNotice(
         fmt::format("the system has thrown away {} datagrams: its receive buffer was full", drops));
   }
   drops_ = drops;
@@ -156,7 +157,7 @@ int Recording::Run() {
     if (fault_) break;
     const auto woken = bus_.Wait(200);
     if (!woken) {
-      Complain(woken.fault());
+      console_.OnNotice(Sentence(woken.fault()));
       break;
     }
     if (*woken != LiveBus::Woken::kStopped) continue;
@@ -169,6 +170,7 @@ int Recording::Run() {
 int Recording::Report() {
   guard_.Flush();
   watch_.Settle();
+  console_.End();
   if (!fault_) fault_ = log_->Close();
   if (fault_) Complain(*fault_);
   for (const auto& [channel, count] : messages_) {

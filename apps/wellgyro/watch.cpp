@@ -12,6 +12,7 @@
 #include "wellgyro/live/glance_line.h"
 
 #include "commands.h"
+#include "console.h"
 #include "live.h"
 #include "live_commands.h"
 #include "report.h"
@@ -41,6 +42,7 @@ class Watch : private Listener {
     heard_us_ = now;
   }
   bool heard() const { return heard_; }
+  void End() { console_.End(); }
 
  private:
   void OnGlance(const Glance& glance) override {
@@ -102,6 +104,7 @@ int WatchBus(const WatchOptions& options) {
     if (*woken == LiveBus::Woken::kStopped) break;
     watch.Look();
   }
+  watch.End();
   if (watch.heard()) return kDone;
   Complain(fmt::format("no survey was heard on {}", bus->url()));
   return kUnusable;

@@ -214,7 +214,7 @@ class Live(ProgramTest):
             process.kill()
             text, errors = process.communicate()
             self.fail(f"has not ended after {seconds} s; it said:\n{text}{errors}")
-        self.assertEqual(process.returncode, 0, text + errors)
+        self.assertEqual(process.returncode, 0, f"{text}{errors}")
 
     def Udpm(self):
         if not HasMulticast():
@@ -385,6 +385,44 @@ class Live(ProgramTest):
             process.terminate()
         survey.send_signal(signal.SIGINT)
         self.assertIn("two senders", survey.communicate(timeout=20)[1])
+
+    def Unread(self, name, reading, writing):
+        """A survey that ends as well as any although nobody reads its standard error: all it could
+        say is in the way from the moment it listens."""
+        url, out = self.Udpm(), self.Path(name)
+        survey = subprocess.Popen([PROGRAM, "survey", "--job", self.job, "--from", url, "--out",
+                                   out], stdout=subprocess.PIPE, stderr=writing, text=True)
+        self.addCleanup(self.Reap, survey)
+        said = b""
+        while b"granted" not in said:
+            said += os.read(reading, 1 << 16)
+        time.sleep(0.1)
+        # By a description of our own: what is not to block here is to block there.
+        filler = os.open(f"/proc/self/fd/{writing}", os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY)
+        filled = 0
+        for size in (64, 1):
+            try:
+                while filled < 1 << 22:
+                    filled += os.write(filler, b"." * size)
+            except BlockingIOError:
+                pass
+        os.close(filler)
+        self.assertLess(filled, 1 << 22, "it takes everything")
+        self.Make("simulate", "--job", self.simulation, "--out", url, "--speed", "40", "--finish")
+        self.EndsWell(survey, 20)
+        self.SameAs("straight", name)
+
+    def test_nobody_reads_what_it_says_to_a_pipe(self):
+        reading, writing = os.pipe()
+        self.addCleanup(os.close, reading)
+        self.addCleanup(os.close, writing)
+        self.Unread("pipe", reading, writing)
+
+    def test_nobody_reads_what_it_says_to_a_terminal(self):
+        reading, writing = os.openpty()
+        self.addCleanup(os.close, reading)
+        self.addCleanup(os.close, writing)
+        self.Unread("terminal", reading, writing)
 
     def test_a_folder_that_goes_away_is_waited_for(self):
         url = self.Udpm()

@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "apps"))
@@ -62,6 +63,9 @@ def Main():
     listening, heard = Listening(survey)
     assert listening, "".join(heard)
     buffer = survey.stderr.readline().strip()
+    said = []
+    reader = threading.Thread(target=lambda: said.extend(survey.stderr))
+    reader.start()
     time.sleep(0.2)
     sender = subprocess.Popen([PROGRAM, "simulate", "--job", path("simulation.toml"),
                                "--out", url, "--speed", str(given.speed), "--finish"],
@@ -76,7 +80,8 @@ def Main():
     grown = Resident(survey.pid) - memory
     load = (Seconds(survey.pid) - busy) / (time.monotonic() - begin)
     sender.wait()
-    errors = survey.communicate()[1]
+    survey.wait()
+    reader.join()
     with open(path("out/source.toml")) as file:
         source = file.read()
     with open(path("out/run.toml")) as file:
@@ -94,7 +99,7 @@ def Main():
     print(f"samples {samples}, lost {lost}; kernel drops {count('kernel_drops')}")
     print(f"{stations} stations; latency median {median / 1000:.2f} ms, p99 {p99 / 1000:.2f} ms")
     print(f"load {100 * load:.1f} % of one core; machine's load average {os.getloadavg()[0]:.1f}")
-    print(errors, end="")
+    print("".join(said[-20:]), end="")
     shutil.rmtree(folder)
     granted = count("receive_buffer_bytes") >= 4 << 20
     good = survey.returncode == 0 and (lost == 0 or not granted)
