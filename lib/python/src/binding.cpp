@@ -108,4 +108,5 @@ NB_MODULE(_wellgyro, m) {
   wellgyro::python::AddPlanning(m);
   wellgyro::python::AddFleet(m);
   wellgyro::python::AddFiles(m);
+  wellgyro::python::AddBench(m);
 }

@@ -69,5 +69,6 @@ void AddSession(nb::module_& m);
 void AddPlanning(nb::module_& m);
 void AddFiles(nb::module_& m);
 void AddFleet(nb::module_& m);
+void AddBench(nb::module_& m);
 
 }  // namespace wellgyro::python

@@ -23,10 +23,13 @@
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/surveyor_listener.h"
 #include "wellgyro/earth/grid.h"
+#include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/result/diagnosis_csv.h"
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/result/stretches_csv.h"
+#include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/result/survey_json.h"
 #include "wellgyro/io/sensor/sensor_files.h"
 #include "wellgyro/io/toml/job_file.h"
@@ -378,6 +381,15 @@ std::string CsvOf(const Outcome& o, std::int32_t tool, const std::string& name) 
   return ChecksCsv(survey.checks);
 }
 
+/// The survey as the program exports it: head, covariances and verdict, with every digit.
+std::string ExportOf(const Outcome& o, std::int32_t tool) {
+  const Survey& survey = o.Of(tool);
+  const std::optional<WellGrid> grid = o.Grid();
+  SurveyTable table = TableOfSurvey(o.job->job, survey.chosen, grid ? &*grid : nullptr);
+  table.head.remarks.push_back(VerdictText(survey.verdict));
+  return WriteSurvey(table, SurveyFormat::kCsv, {.preamble = true});
+}
+
 /// As the program's survey.json, but for what only a program knows: channels, tools, its name.
 std::string JsonOf(const Outcome& o, std::int32_t tool) {
   RunRecord record;
@@ -419,6 +431,7 @@ void AddOutcome(nb::module_& m) {
       .def("unusable", [](const Outcome& o, std::int32_t tool) { return o.Of(tool).unusable; })
       .def("csv", &CsvOf)
       .def("survey_json", &JsonOf)
+      .def("export", &ExportOf)
       .def_ro("faults", &Outcome::faults)
       .def_ro("fault_count", &Outcome::fault_count);
 }

@@ -12,12 +12,13 @@ Units stand in the names; arrays are numpy's, in SI: rad/s, m/s2, T, m, ns. Tabl
 """
 from ._wellgyro import FileError
 from ._wellgyro import version as __version__
+from .bench import Calibration, calibrate
 from .compare import (Comparison, EmpiricalModel, Merged, Uncertainty, compare, empirical_model, merge,
                       models, uncertainty)
 from .files import read, write
 from .noise import Allan, allan
 from .survey import Job, Result, Survey, survey
 
-__all__ = ["Allan", "Comparison", "EmpiricalModel", "FileError", "Job", "Merged", "Result", "Survey",
-           "Uncertainty", "__version__", "allan", "compare", "empirical_model", "merge", "models",
-           "read", "survey", "uncertainty", "write"]
+__all__ = ["Allan", "Calibration", "Comparison", "EmpiricalModel", "FileError", "Job", "Merged",
+           "Result", "Survey", "Uncertainty", "__version__", "allan", "calibrate", "compare",
+           "empirical_model", "merge", "models", "read", "survey", "uncertainty", "write"]

@@ -7,7 +7,7 @@ import os
 import pandas as pd
 
 from . import _checks, _wellgyro
-from .survey import PathLike
+from .survey import PathLike, Result
 
 # Every digit counts; from pandas 3 on that is how it reads.
 _EXACT = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
@@ -56,21 +56,29 @@ def read(path: PathLike, *, format: str | None = None, columns: dict[str, str] |
     return frame
 
 
-def write(table: pd.DataFrame, path: PathLike, *, format: str | None = None) -> list[str]:
-    """Writes a table as `read` gives it, or a Result's stations, in the format that the ending of
-    `path` says, or `format`. Gives what the format cannot hold, a sentence each."""
+def _text(table):
+    back = {v: k for k, v in _NAMES.items()}
+    known = [c for c in table.columns if c in back or "[" in str(c) or str(c).isupper()]
+    if "revision" in table:  # of a Result: its status says which revision it is of, not what it is
+        known = [c for c in known if c != "status"]
+    head = table.attrs.get("head", "")
+    return (head + "\n" if head else "") + table[known].rename(columns=back).to_csv(index=False)
+
+
+def write(table: Result | pd.DataFrame, path: PathLike, *,
+          format: str | None = None) -> list[str]:
+    """Writes a Result, with its covariances and its verdict, or a table as `read` gives it or as
+    stations are, in the format that the ending of `path` says, or `format`. Gives what the format
+    cannot hold, a sentence each."""
     path = _checks.path("path", path)
-    if not isinstance(table, pd.DataFrame):
-        raise TypeError(f"table: a DataFrame is expected, not {type(table).__name__}")
+    if not isinstance(table, (Result, pd.DataFrame)):
+        raise TypeError(f"table: a Result or a DataFrame is expected, not {type(table).__name__}")
     if format is None:
         format = _ENDINGS.get(os.path.splitext(path)[1].lower())
         if format is None:
             raise ValueError(f"path: an ending of {', '.join(_ENDINGS)} is expected, or a format")
     format = _checks.word("format", format, _FORMATS)
-    back = {v: k for k, v in _NAMES.items()}
-    known = [c for c in table.columns if c in back or "[" in str(c) or str(c).isupper()]
-    head = table.attrs.get("head", "")
-    text = (head + "\n" if head else "") + table[known].rename(columns=back).to_csv(index=False)
+    text = table._export() if isinstance(table, Result) else _text(table)
     files, losses = _wellgyro.files_of_csv(text, format, os.path.basename(path))
     folder = os.path.dirname(os.path.abspath(path))
     for name, content in files.items():

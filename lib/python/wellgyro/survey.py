@@ -183,6 +183,11 @@ class Result:
         name = _checks.word("name", name, _FILES)
         return self._outcome.csv(self.tool, name)
 
+    def _export(self) -> str:
+        if self.unusable:
+            raise ValueError(f"table: there is no survey: {self.unusable}")
+        return self._outcome.export(self.tool)
+
     def report(self, path: PathLike, *, units: str = "metric", paper: str = "a4") -> None:
         """The report as one HTML page: `units` metric or field, `paper` a4 or letter."""
         path = _checks.path("path", path)
@@ -194,7 +199,8 @@ class Result:
                                       paper == "letter"))
 
     def write(self, folder: PathLike) -> None:
-        """Those three into `folder`, which is made: each whole or as it was."""
+        """passes.csv, checks.csv and survey.csv into `folder`, which is made: each whole or as it
+        was."""
         folder = _checks.path("folder", folder)
         os.makedirs(folder, exist_ok=True)
         for name in ("passes.csv", "checks.csv", "survey.csv"):

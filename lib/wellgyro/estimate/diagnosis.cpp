@@ -313,6 +313,7 @@ MatrixXd Diagnoser::CompareOnsets(const Diagnosis& d, std::span<const std::size_
                                   MatrixXd& gram) const {
   const Layout& layout = run_.layout();
   const int n = layout.node, m = n + layout.border;
+  if (onsets.empty()) return MatrixXd(layout.border, 0);
   MatrixXd x = MatrixXd::Zero(n + m, At(onsets.size()));
   MatrixXd known = MatrixXd::Zero(x.cols(), x.cols());
   for (std::size_t q = 0; q < onsets.size(); ++q) {

@@ -404,8 +404,9 @@ SolveReport RunSolver::Solve(int iterations, double least) {
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });
   if (!measured) {
-    FindBetween(FindDecade(kRollWalkLeast, kRollWalkMost, scales_.roll_walk, report),
-                scales_.roll_walk, report);
+    const double evidence = FindDecade(kRollWalkLeast, kRollWalkMost, scales_.roll_walk, report);
+    // At the least walk that counts, less or somewhat more says the same.
+    if (scales_.roll_walk > 1.1 * kRollWalkLeast) FindBetween(evidence, scales_.roll_walk, report);
     if (HidesAStart()) FindDecade(kShareLeast, 1, scales_.speed_share, report);
   }
   HoldRollWeights();

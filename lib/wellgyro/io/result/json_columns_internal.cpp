@@ -44,8 +44,8 @@ Json DifferencesOf(const Columns& passes, const PassRows& first, const PassRows&
   for (const auto& [md, row] : first.by_md) {
     const auto match = other.by_md.find(md);
     if (match == other.by_md.end()) continue;
-    const auto of = [&](const char* name) {
-      return std::pair(passes.Number(row, name), passes.Number(match->second, name));
+    const auto of = [&passes, here = row, there = match->second](const char* name) {
+      return std::pair(passes.Number(here, name), passes.Number(there, name));
     };
     const auto [inc, inc_other] = of("INC[deg]");
     const auto [azi, azi_other] = of("AZI_TRUE[deg]");

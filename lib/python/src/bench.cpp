@@ -1,0 +1,205 @@
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/tool_fit.h"
+#include "wellgyro/io/sensor/bench_data.h"
+#include "wellgyro/io/sha256.h"
+#include "wellgyro/io/toml/calibration_file.h"
+#include "wellgyro/io/toml/tool_file.h"
+
+#include "binding.h"
+
+namespace wellgyro::python {
+namespace {
+
+using Number = std::optional<double>;
+
+/// What `wellgyro calibrate tool` takes as options, in their units; absent: its defaults.
+struct Bench {
+  Number gravity_g, gravity_mps2, latitude_deg;
+  bool tool_axes = false;
+  Number level_deg, north_sigma_deg, latitude_sigma_deg, seat_arcsec, drift_deg_per_h,
+      wobble_arcsec;
+  Number sigma_accel, sigma_deg_per_h, sigma_table_deg_per_h;
+  int max_degree = 3;
+  std::optional<std::string> tool;  ///< a tool file to bring up to date; empty: a new one
+  ToolUpdate update;
+  std::string date, expires;
+};
+
+template <class Held>
+void Take(const Number& given, double unit, Held& held) {
+  if (given) held = *given * unit;
+}
+
+std::optional<UtcTime> DateFrom(const char* name, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto date = DateOf(text);
+  if (!date) {
+    throw std::invalid_argument(
+        fmt::format("{}: a date is expected, as 2026-01-31, not {}", name, text));
+  }
+  return date;
+}
+
+ToolFitSetup SetupOf(const Bench& bench, std::vector<std::string>& said) {
+  ToolFitSetup setup;
+  BenchReference& r = setup.reference;
+  const auto say = [&said](const char* name, const Number& value) {
+    if (value) said.push_back(fmt::format("{} {}", name, *value));
+  };
+  say("gravity-g", bench.gravity_g);
+  say("gravity-mps2", bench.gravity_mps2);
+  say("latitude-deg", bench.latitude_deg);
+  Take(bench.gravity_g, 1, r.gravity);
+  Take(bench.gravity_g, units::kStandardGravity, r.gravity_mps2);
+  Take(bench.gravity_mps2, 1, r.gravity);
+  Take(bench.gravity_mps2, 1, r.gravity_mps2);
+  Take(bench.latitude_deg, units::kDeg, r.latitude);
+  if (bench.tool_axes) r.axes = BenchAxes::kTool;
+  Take(bench.level_deg, units::kDeg, setup.sigma_level);
+  Take(bench.north_sigma_deg, units::kDeg, setup.sigma_north);
+  Take(bench.latitude_sigma_deg, units::kDeg, setup.sigma_latitude);
+  Take(bench.seat_arcsec, units::kArcsec, setup.sigma_axis);
+  Take(bench.drift_deg_per_h, 1, setup.sigma_drift);
+  Take(bench.wobble_arcsec, units::kArcsec, setup.sigma_wobble);
+  Take(bench.sigma_accel, 1, setup.sigma_accel);
+  Take(bench.sigma_deg_per_h, 1, setup.sigma_gyro);
+  Take(bench.sigma_table_deg_per_h, 1, setup.sigma_gyro_table);
+  setup.max_degree = bench.max_degree;
+  return setup;
+}
+
+/// The tables: of a name and text, or of a file's name alone.
+std::vector<BenchTable> TablesOf(
+    const std::vector<std::pair<std::string, std::optional<std::string>>>& data,
+    CalibrationFile& file) {
+  std::vector<BenchTable> tables;
+  for (const auto& [name, given] : data) {
+    const std::string text = given ? *given : Taken(ReadTextFile(name));
+    file.inputs.push_back({"data", name, name, Sha256Hex(text)});
+    tables.push_back(Taken(ParseBenchTable(text, name)));
+  }
+  return tables;
+}
+
+std::optional<std::string> ToolOf(const Bench& bench, const ToolFit& fit) {
+  if (!bench.tool) return std::nullopt;
+  ToolUpdate update = bench.update;
+  update.axes = bench.tool_axes ? BenchAxes::kTool : BenchAxes::kTrade;
+  update.calibrated = DateFrom("date", bench.date);
+  update.expires = DateFrom("expires", bench.expires);
+  if (update.calibrated && update.expires && !(*update.calibrated < *update.expires)) {
+    throw std::invalid_argument("expires: a date after that of the calibration is expected");
+  }
+  ToolCalibration tool;
+  if (!bench.tool->empty()) tool = Taken(ParseTool(*bench.tool, "tool"));
+  return ToolToml(Updated(std::move(tool), fit, update));
+}
+
+nb::dict Nuisances(const std::vector<BenchNuisance>& nuisances) {
+  nb::list name, unit;
+  std::vector<double> value, sigma, prior;
+  for (const BenchNuisance& n : nuisances) {
+    name.append(n.name);
+    unit.append(n.unit);
+    value.push_back(n.value);
+    sigma.push_back(n.sigma);
+    prior.push_back(n.prior_sigma);
+  }
+  nb::dict columns;
+  columns["name"] = name;
+  columns["value"] = Array(std::move(value));
+  columns["sigma"] = Array(std::move(sigma));
+  columns["prior_sigma"] = Array(std::move(prior));
+  columns["unit"] = unit;
+  return columns;
+}
+
+nb::dict Calibrate(const std::vector<std::pair<std::string, std::optional<std::string>>>& data,
+                   const Bench& bench) {
+  CalibrationFile file;
+  ToolFit fit;
+  std::optional<std::string> tool;
+  std::string text, summary;
+  {
+    const nb::gil_scoped_release released;
+    file.program = "wellgyro " WELLGYRO_VERSION;
+    const ToolFitSetup setup = SetupOf(bench, file.references);
+    fit = Taken(FitTool(TablesOf(data, file), setup));
+    file.report = fit.calibration.report;
+    tool = ToolOf(bench, fit);
+    text = CalibrationToml(file);
+    summary = CalibrationSummary(file);
+  }
+  const FitReport& report = file.report;
+  const auto n = static_cast<std::size_t>(report.values.size());
+  std::vector<double> cov(report.cov.size() > 0 ? n * n : 0);
+  for (std::size_t i = 0; i < cov.size(); ++i) {
+    cov[i] = report.cov(static_cast<int>(i / n), static_cast<int>(i % n));
+  }
+  const std::size_t m = cov.empty() ? 0 : n;
+  std::vector<std::string> left_out;
+  for (const LeftOutTerm& term : fit.left_out) left_out.push_back(TextOf(term));
+  nb::dict all;
+  all["parameters"] = report.parameters;
+  all["values"] = Array(std::vector<double>(report.values.begin(), report.values.end()));
+  all["cov"] = Array(std::move(cov), {m, m});
+  all["bench"] = Nuisances(fit.nuisances);
+  all["left_out"] = left_out;
+  all["remarks"] = report.remarks;
+  all["outlier_lines"] = report.outlier_lines;
+  all["text"] = text;
+  all["tool"] = tool ? nb::object(nb::cast(*tool)) : nb::none();
+  all["summary"] = summary;
+  return all;
+}
+
+}  // namespace
+
+void AddBench(nb::module_& m) {
+  nb::class_<Bench>(m, "Bench")
+      .def(nb::init<>())
+      .def_rw("gravity_g", &Bench::gravity_g)
+      .def_rw("gravity_mps2", &Bench::gravity_mps2)
+      .def_rw("latitude_deg", &Bench::latitude_deg)
+      .def_rw("tool_axes", &Bench::tool_axes)
+      .def_rw("level_deg", &Bench::level_deg)
+      .def_rw("north_sigma_deg", &Bench::north_sigma_deg)
+      .def_rw("latitude_sigma_deg", &Bench::latitude_sigma_deg)
+      .def_rw("seat_arcsec", &Bench::seat_arcsec)
+      .def_rw("drift_deg_per_h", &Bench::drift_deg_per_h)
+      .def_rw("wobble_arcsec", &Bench::wobble_arcsec)
+      .def_rw("sigma_accel", &Bench::sigma_accel)
+      .def_rw("sigma_deg_per_h", &Bench::sigma_deg_per_h)
+      .def_rw("sigma_table_deg_per_h", &Bench::sigma_table_deg_per_h)
+      .def_rw("max_degree", &Bench::max_degree)
+      .def_rw("tool", &Bench::tool)
+      .def_rw("date", &Bench::date)
+      .def_rw("expires", &Bench::expires)
+      .def_prop_rw(
+          "channels", [](const Bench& b) { return b.update.channels; },
+          [](Bench& b, std::vector<int> channels) { b.update.channels = std::move(channels); })
+      .def_prop_rw(
+          "unit_per_count", [](const Bench& b) { return b.update.unit_per_count; },
+          [](Bench& b, std::vector<double> units) { b.update.unit_per_count = std::move(units); })
+      .def_prop_rw(
+          "asset_serial", [](const Bench& b) { return b.update.asset_serial; },
+          [](Bench& b, std::string serial) { b.update.asset_serial = std::move(serial); })
+      .def_prop_rw(
+          "sensor_serials", [](const Bench& b) { return b.update.sensor_serials; },
+          [](Bench& b, std::string serials) { b.update.sensor_serials = std::move(serials); });
+  m.def("calibrate", &Calibrate);
+}
+
+}  // namespace wellgyro::python
