@@ -467,6 +467,25 @@ TEST(Gyrocompass, RefusesWhatIsNoWindow) {
   EXPECT_THROW(Gyrocompass(good, nowhere, {}), std::invalid_argument);
 }
 
+// Two gyros that see two and three thousandths of the axial rate: known, it takes nothing off the
+// azimuth; unknown, some of it.
+TEST(Gyrocompass, WhatIsKnownOfTheAxialRateIsNoError) {
+  Random random(16);
+  const Truth truth{.inclination = 70 * kDeg, .azimuth = 40 * kDeg};
+  auto windows = truth.Windows({20 * kDeg}, random);
+  const double sL = std::sin(truth.latitude), cL = std::cos(truth.latitude);
+  const double axial = kOmega * (cL * std::cos(truth.azimuth) * std::sin(truth.inclination) -
+                                 sL * std::cos(truth.inclination));
+  windows[0].w_IT_T += Eigen::Vector3d(2e-3 * axial, -3e-3 * axial, 0);
+  GyrocompassSetup setup;
+  const double off = WrapPi(Gyrocompass(windows, truth.Place(), setup).azimuth - truth.azimuth);
+  EXPECT_GT(std::abs(off), 5e-4);
+  setup.errors.gyro_misalignment_x = 2e-3;
+  setup.errors.gyro_misalignment_y = -3e-3;
+  const NorthFix known = Gyrocompass(windows, truth.Place(), setup);
+  EXPECT_NEAR(WrapPi(known.azimuth - truth.azimuth), 0, 1e-6);
+}
+
 // At the pole nothing tells north; the covariance is that of not knowing.
 TEST(Gyrocompass, AtThePoleNorthIsUnknown) {
   Random random(15);

@@ -5,9 +5,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/simulate/raw_counts.h"
 
 #include "calibration/random_tool.h"
@@ -61,6 +63,24 @@ TEST(Apply, UndoesWhatTheToolDoesToItsSensors) {
       EXPECT_NEAR(static_cast<double>(found.stamp.temperature), temperature, 2e-5);
     }
   }
+}
+
+// Two gyros whose axes lean out of their plane: what their samples keep of the axial rate is told.
+TEST(Apply, TwoGyrosKeepWhatTheySeeOfTheThirdAxis) {
+  ToolCalibration tool = RandomTool(9, {.gyro_channels = 2});
+  tool.gyro.sensitivity[0].topRows<2>() *=
+      Eigen::AngleAxisd(2e-3, Eigen::Vector3d(3, 4, 0) / 5).toRotationMatrix();
+  const Eigen::Vector2d known = AxialCoupling(tool.gyro);
+  EXPECT_NEAR(known.norm(), 2e-3, 1e-4);
+  RawCounter counter(tool);
+  Random random(10);
+  for (int i = 0; i < 20; ++i) {
+    const ImuSample truth = RandomSample(random, true);
+    const ImuSample found = Calibrate(tool, counter.Count(truth, 25));
+    const Eigen::Vector2d kept = truth.w_IT_T.head<2>() + known * truth.w_IT_T.z();
+    EXPECT_LT((found.w_IT_T.head<2>() - kept).norm(), 1e-8);
+  }
+  EXPECT_EQ(AxialCoupling(RandomTool(9, {}).gyro), Eigen::Vector2d::Zero());
 }
 
 TEST(Apply, FollowsTheFormulaOfAToolWrittenByHand) {

@@ -489,6 +489,76 @@ class Comparisons(Package):
                      latitude_deg=60.0)
 
 
+class Bench(Package):
+    """A tool of two gyros and three accelerometers on a bench, axes of the bench the tool's."""
+
+    def Tables(self):
+        drawn = np.random.default_rng(4)
+        earth, latitude = 15.041067178669, 61 * DEG
+        rows = []
+        for inc in range(0, 181, 45):
+            for az in range(0, 360, 90):
+                for tf in range(0, 360, 60):
+                    i, a, t = np.array([inc, az, tf]) * DEG
+                    rolled = np.array([[np.cos(t), np.sin(t), 0], [-np.sin(t), np.cos(t), 0],
+                                       [0, 0, 1]])
+
+                    def In(n, d):
+                        return rolled @ [n * np.cos(i) * np.cos(a) - d * np.sin(i), -n * np.sin(a),
+                                         n * np.sin(i) * np.cos(a) + d * np.cos(i)]
+                    f = 9.8195 * -In(0, 1) + 0.01 + drawn.normal(0, 2e-4, 3)
+                    w = In(earth * np.cos(latitude), -earth * np.sin(latitude))[:2]
+                    rows.append([inc, az, tf, *f, *(w + 0.5 + drawn.normal(0, 0.02, 2))])
+        rest = pd.DataFrame(rows, columns=["inc", "az", "tf", "fx", "fy", "fz", "m_x1", "m_y1"])
+        rows = [[axis, rate, *((3600 * rate + earth * np.sin(latitude)) * np.eye(3)[k, :2] + 0.5
+                               + drawn.normal(0, 0.5, 2))]
+                for k, axis in enumerate("xyz") for rate in (-100, -50, 50, 100)]
+        return rest, pd.DataFrame(rows, columns=["axis", "rate_deg_s", "m_x1", "m_y1"])
+
+    def test_a_calibration_is_the_programs(self):
+        rest, turned = self.Tables()
+        paths = [self.Path("rest.csv"), self.Path("turned.csv")]
+        for table, path in zip((rest, turned), paths):
+            table.to_csv(path, index=False, float_format="%.17g")
+        done = Run("calibrate", "tool", "--data", paths[0], "--data", paths[1], "--latitude-deg",
+                   "61", "--gravity-mps2", "9.8195", "--bench-axes", "tool", "--level-deg", "0.3",
+                   "--out", self.Path("c.toml"), "--tool", self.Path("t.toml"), "--channels",
+                   "0,1,2,3,4", "--asset-serial", "A-7", "--date", "2026-01-31")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        known = dict(latitude_deg=61, gravity_mps2=9.8195, bench_axes="tool", level_deg=0.3,
+                     tool=True, channels=[0, 1, 2, 3, 4], asset_serial="A-7", date="2026-01-31")
+        made = wg.calibrate(paths, **known)
+        made.write(self.Path("c2.toml"), tool=self.Path("t2.toml"))
+        for name in ("c", "t"):
+            with open(self.Path(name + ".toml")) as a, open(self.Path(name + "2.toml")) as b:
+                self.assertEqual(a.read(), b.read())
+        of_tables = wg.calibrate([rest, turned], **known)
+        pd.testing.assert_frame_equal(of_tables.parameters, made.parameters)
+        self.assertEqual(of_tables.tool, made.tool)
+        bias = made.parameters.set_index("name").loc["gyro_b[0]"]
+        self.assertLess(abs(bias.value - 0.5), 4 * bias.sigma)
+        self.assertEqual(made.cov.shape, 2 * (len(made.parameters),))
+        self.assertIn("north_1", set(made.bench.name))
+
+    def test_what_is_no_bench_has_its_name(self):
+        rest, _ = self.Tables()
+        for arguments, wrong in (((3,), "data"), (([],), "data"), (([3],), r"data\[0\]")):
+            with self.assertRaisesRegex(TypeError, wrong):
+                wg.calibrate(*arguments)
+        for given in (dict(latitude_deg=91), dict(gravity_g=9.8), dict(level_deg=0.0),
+                      dict(bench_axes="mine"), dict(max_degree=9), dict(tool=True, date="soon"),
+                      dict(gravity_g=1, gravity_mps2=9.81), dict(tool=True, channels=[1])):
+            with self.assertRaises(ValueError, msg=given):
+                wg.calibrate(rest, **{"latitude_deg": 61, "bench_axes": "tool", **given})
+        with self.assertRaisesRegex(ValueError, "latitude"):
+            wg.calibrate(rest, gravity_mps2=9.8195, bench_axes="tool")
+        with self.assertRaises(wg.FileError):
+            wg.calibrate(self.Path("none.csv"))
+        with self.assertRaisesRegex(ValueError, "tool"):
+            wg.calibrate(rest, latitude_deg=61, gravity_mps2=9.8195, bench_axes="tool").write(
+                self.Path("c.toml"), tool=self.Path("t.toml"))
+
+
 class Plots(Package):
     def test_every_figure_draws_what_it_is_given(self):
         import matplotlib
@@ -524,6 +594,22 @@ class Files(Package):
             wg.write(first, self.Path("c.dev"))
         with self.assertRaisesRegex(ValueError, "ending"):
             wg.write(first, self.Path("c.unknown"))
+
+    def test_a_result_is_written_whole(self):
+        result = wg.survey(self.Path("job.toml"), self.Log(1))
+        self.assertTrue(wg.write(result, self.Path("r.las")))
+        done = Run("survey", "--job", self.Path("job.toml"), "--from", self.Log(1), "--out",
+                   self.Path("r"), "--formats", "las")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ours, theirs = wg.read(self.Path("r.las")), wg.read(self.Path("r", "survey.las"))
+        self.assertEqual(list(ours.columns), list(theirs.columns))
+        for column in ("md_m", "inclination_deg", "azimuth_true_deg", "var_nn_m2", "cov_ne_m2"):
+            np.testing.assert_allclose(ours[column], theirs[column], rtol=1e-4, atol=1e-6)
+        with open(self.Path("r.las")) as file:
+            self.assertIn("verdict", file.read())
+        wg.write(result.stations, self.Path("stations.csv"))
+        again = wg.read(self.Path("stations.csv"))
+        np.testing.assert_allclose(again.md_m, result.stations.md_m)
 
     def test_allan_is_the_programs(self):
         x = np.random.default_rng(8).normal(0, 1e-5, 20_000)

@@ -83,6 +83,20 @@ TEST(Quality, DepthsThatScatterArePassed) {
   }
 }
 
+// Twenty sigmas of the prior, but known: nothing is wrong.
+TEST(Quality, WhatIsKnownOfTheAxialRatePasses) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    Flight flight(seed);
+    flight.errors().gyro_misalignment = {2e-3, -2e-3};
+    flight.job.errors.gyro_misalignment_x = 2e-3;
+    flight.job.errors.gyro_misalignment_y = -2e-3;
+    for (const Check& check : flight.Checks()) {
+      EXPECT_NE(check.verdict, Verdict::kFail)
+          << check.code << " " << check.value.value_or(0) << " of " << check.limit.value_or(0);
+    }
+  }
+}
+
 struct Wrong {
   std::string code;
   std::function<void(Flight&)> make;

@@ -89,6 +89,7 @@ class Problem {
   std::array<Eigen::LLT<Eigen::MatrixXd>, 3> whiten_rate_;
   std::vector<Eigen::Vector3d> sigma_f_;
   std::array<double, kErrors> sigma_{};
+  std::array<double, kErrors> known_{};  ///< what of them is no error: the samples have it
   std::vector<Error> free_;
   std::array<Eigen::Index, kErrors> column_{};  ///< -1: not estimated
   Eigen::Index count_, errors_at_;

@@ -140,6 +140,10 @@ void Problem::ChooseErrors(const GyrocompassSetup& setup) {
   sigma_[kRoll] = e.roll_offset_sigma;
   sigma_[kScaleX] = sigma_[kScaleY] = e.gyro_scale_sigma;
   sigma_[kMisX] = sigma_[kMisY] = e.gyro_misalignment_sigma;
+  if (axes_ == 2) {
+    known_[kMisX] = e.gyro_misalignment_x;
+    known_[kMisY] = e.gyro_misalignment_y;
+  }
   column_.fill(-1);
   for (int i = 0; i < kErrors; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -203,7 +207,7 @@ void Problem::Rates(const State& state, System& system) const {
     const Vector3d f = to_tool * Vector3d(0, 0, -gravity_ - x[kGravity]);
     std::array<Vector3d, kErrors> effect = Effects(e, f);
     Vector3d model = e;
-    for (std::size_t i = 0; i < kErrors; ++i) model += x[i] * effect[i];
+    for (std::size_t i = 0; i < kErrors; ++i) model += (known_[i] + x[i]) * effect[i];
     effect[kLatitude] = to_tool * d_latitude;
     const Matrix3d d_attitude = to_tool * Skew(earth);
     const Vector3d d_roll(e.y(), -e.x(), 0);

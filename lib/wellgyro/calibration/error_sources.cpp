@@ -190,6 +190,13 @@ CalibrationSources SourcesOf(const ToolCalibration& tool, double temperature) {
   return sources;
 }
 
+Eigen::Vector2d AxialCoupling(const SensorGroup& gyro) {
+  if (gyro.n_channels != 2) return Eigen::Vector2d::Zero();
+  const SensorGroup::Rows S_T = gyro.sensitivity[0] * gyro.R_TS.transpose();
+  const Eigen::Matrix2d across = S_T.topLeftCorner<2, 2>();
+  return across.inverse() * S_T.col(2).head<2>();
+}
+
 ErrorPriors ErrorsLeft(const ToolCalibration& tool, ErrorPriors errors) {
   const bool gyro = KnowsMembers(tool, "gyro."), accel = KnowsMembers(tool, "accel.");
   if (gyro) {

@@ -35,6 +35,10 @@ WELLGYRO_EXPORT Eigen::MatrixXd SourceEffects(const ToolCalibration& tool,
                                               const std::vector<std::string>& members,
                                               double temperature);
 
+/// What two gyros across the hole see of the rate about the third axis, x and y in T [rad]: nothing
+/// measures that rate, so that samples keep it. Zero where there are more channels, or none.
+WELLGYRO_EXPORT Eigen::Vector2d AxialCoupling(const SensorGroup& gyro);
+
 /// `errors` with the largest sigmas of these sources over the calibrated range in place of what it
 /// holds of them; as it is where the tool has no covariance of members.
 WELLGYRO_EXPORT ErrorPriors ErrorsLeft(const ToolCalibration& tool, ErrorPriors errors);

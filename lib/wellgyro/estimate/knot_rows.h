@@ -63,7 +63,10 @@ RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double axi
 class KnotRows {
  public:
   /// Both must outlive this object.
-  KnotRows(const EstimateSetup& setup, const Layout& layout) : setup_(setup), layout_(layout) {}
+  KnotRows(const EstimateSetup& setup, const Layout& layout) : setup_(setup), layout_(layout) {
+    known_[kMisalignmentX] = setup.errors.gyro_misalignment_x;
+    known_[kMisalignmentY] = setup.errors.gyro_misalignment_y;
+  }
 
   void Add(const RunKnot& knot, const KnotPlace& place, const RollChange& roll,
            const BorderVector& border, const Node& begin, const Node& end, NormalBlock& block);
@@ -79,13 +82,15 @@ class KnotRows {
   void AddDepth(const Terms& t, NormalBlock& block);
   void AddDrift(const Terms& t, NormalBlock& block);
   void AddRest(const Terms& t, NormalBlock& block);
+  /// An error as it stands: the border has what it is beside what is known of it.
   double SourceAt(const BorderVector& border, int source) const {
     const int at = layout_.source[static_cast<std::size_t>(source)];
-    return at == kAbsent ? 0 : border[at];
+    return known_[source] + (at == kAbsent ? 0 : border[at]);
   }
 
   const EstimateSetup& setup_;
   const Layout& layout_;
+  ErrorVector known_ = ErrorVector::Zero();
   Factor factor_;
 };
 

@@ -34,6 +34,9 @@ struct ErrorPriors {
   double depth_sigma = 0;               ///< [m]
   double depth_scale_sigma = 0;         ///< [1]
   double latitude_sigma = 0;            ///< [rad]
+  /// What two gyros across the hole are known to see of the third axis, x and y: the misalignment's
+  /// sigma is about it [rad].
+  double gyro_misalignment_x = 0, gyro_misalignment_y = 0;
 };
 
 }  // namespace wellgyro

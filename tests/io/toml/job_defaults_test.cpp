@@ -80,6 +80,16 @@ TEST(JobDefaults, JobAndToolMergeKeyByKeyAndTheJobWins) {
   EXPECT_DOUBLE_EQ(e.gyro_scale_sigma, 1e-3) << "nobody's";
 }
 
+TEST(JobDefaults, WhatATwoAxisToolSeesOfTheThirdIsKnown) {
+  ToolCalibration tool;
+  tool.gyro.n_channels = 2;
+  tool.gyro.sensitivity[0].topRows<2>() << 2, 0, 0.004, 0, 4, -0.004;
+  const ErrorPriors e = PriorsOfJob(nullptr, &tool);
+  EXPECT_DOUBLE_EQ(e.gyro_misalignment_x, 0.002);
+  EXPECT_DOUBLE_EQ(e.gyro_misalignment_y, -0.001);
+  EXPECT_EQ(PriorsOfJob(nullptr, nullptr).gyro_misalignment_x, 0);
+}
+
 TEST(JobDefaults, ANoiseThatNobodyStatesIsTold) {
   const Job silent = JobOf("");
   EXPECT_FALSE(silent.noise_stated);

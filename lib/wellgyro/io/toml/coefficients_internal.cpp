@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/survey/job_keys.h"
 
 namespace wellgyro {
@@ -141,6 +142,11 @@ ErrorPriors PriorsOfJob(TomlTable* job, const ToolCalibration* tool) {
     if (by_job || none || priors.*prior.member != 0) stated.push_back(prior.member);
   }
   FillUnstated(stated, priors);
+  if (tool != nullptr) {
+    const Eigen::Vector2d known = AxialCoupling(tool->gyro);
+    priors.gyro_misalignment_x = known.x();
+    priors.gyro_misalignment_y = known.y();
+  }
   return priors;
 }
 
