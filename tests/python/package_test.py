@@ -292,6 +292,9 @@ class Arguments(Package):
             "write": ({"table": frame, "path": self.Path("w.csv")}, wg.write),
             "Job": ({"well": {"name": "a", "latitude_deg": 3.0}}, wg.Job),
             "survey": ({"job": self.Path("job.toml"), "data": self.Path("none")}, wg.survey),
+            "calibrate": ({"data": [pd.DataFrame({"inc": [0.0], "fx": [1.0]})], "level_deg": 0.5,
+                           "latitude_deg": 60.0, "tool": False, "channels": [0], "date": ""},
+                          wg.calibrate),
         }
         raised = 0
         for i in range(1000):

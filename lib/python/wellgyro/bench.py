@@ -51,8 +51,12 @@ def _tool(tool):
         return None
     if tool is True:
         return ""
-    with open(_checks.path("tool", tool), encoding="utf-8") as file:
-        return file.read()
+    path = _checks.path("tool", tool)
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.read()
+    except (OSError, UnicodeError) as error:
+        raise _wellgyro.FileError(f"{path}: {error}") from None
 
 
 def calibrate(data: PathLike | pd.DataFrame | Sequence[PathLike | pd.DataFrame], *,

@@ -52,13 +52,18 @@ void Multiply(const Left& A, const Right& B, Out& out) {
   for (; j < columns; ++j) column.template operator()<1>(j);
 }
 
-/// Columns that are read by fours: past the end of each stand up to three numbers that count for
-/// nothing.
+/// Columns of a lower triangle that are read by fours: past the end of each stand up to six numbers
+/// that count for nothing.
 struct Panel {
   Index stride;
-  std::array<double, kRowsMost * kNodeMax> values{};
+  std::array<double, kRowsMost * kNodeMax> values;
 
-  explicit Panel(Index rows) : stride((rows + 3) / 4 * 4 + 3) {}
+  Panel(Index rows, Index columns) : stride((rows + 3) / 4 * 4 + 3) {
+    for (Index j = 0; j < columns; ++j) {
+      std::fill_n(column(j), j, 0.0);
+      std::fill(column(j) + rows, column(j) + stride, 0.0);
+    }
+  }
   double* column(Index j) { return values.data() + j * stride; }
   /// Rows i to i + 3 times the transpose of rows j to j + 3, over the first columns.
   Matrix4d Square(Index i, Index j, Index columns) const {
@@ -123,7 +128,7 @@ void Elimination::Start(std::size_t nodes, const EdgeMatrix& information,
 bool Elimination::Step(const NormalBlock& block) {
   const int n = layout_->node, b = layout_->border, m = n + b;
   const NormalBlock::Matrix& A = block.information();
-  Panel panel(rows_);
+  Panel panel(rows_, n);
   for (Index j = 0; j < n; ++j) {
     Eigen::Map<Eigen::VectorXd> x(panel.column(j), rows_);
     x.tail(rows_ - j) = A.col(j).tail(rows_ - j);

@@ -314,10 +314,16 @@ double RunSolver::Evidence() const {
   return evidence;
 }
 
-/// The evidence with `tried` in place of the scale; HUGE_VAL where it leads nowhere.
-double RunSolver::EvidenceOf(double tried, double& scale, SolveReport& report) {
+/// The evidence with `tried` in place of the scale; HUGE_VAL where it leads nowhere. One so far
+/// below `least` that no further step takes it back is taken for what its next step promises.
+double RunSolver::EvidenceOf(double tried, double least, double& scale, SolveReport& report) {
   scale = tried;
-  Iterate(kTry, kNear, report);
+  last_steps_.clear();
+  for (int i = 0; i < kTry && Advance(report); ++i) {
+    const double now = elimination_.decrement();
+    if (now < kNear) break;
+    if (Evidence() + kGain * now < least) return Evidence() - now;
+  }
   return elimination_.decrement() < kFar ? Evidence() : HUGE_VAL;
 }
 
@@ -329,12 +335,12 @@ double RunSolver::EvidenceOf(double tried, double& scale, SolveReport& report) {
 /// counts what they explain against their number.
 double RunSolver::FindDecade(double least, double most, double& scale, SolveReport& report) {
   const double begin = scale;
-  double best = EvidenceOf(begin, scale, report), best_scale = begin;
+  double best = EvidenceOf(begin, -HUGE_VAL, scale, report), best_scale = begin;
   std::vector<Node> nodes = nodes_;
   BorderVector border = border_;
   for (const double step : {0.1, 10.}) {
     for (double tried = begin * step; tried > 0.9 * least && tried < 1.1 * most; tried *= step) {
-      const double evidence = EvidenceOf(tried, scale, report);
+      const double evidence = EvidenceOf(tried, best, scale, report);
       if (!(evidence < best)) break;
       best = evidence;
       best_scale = tried;
@@ -356,7 +362,8 @@ void RunSolver::FindBetween(double evidence, double& scale, SolveReport& report)
   const BorderVector border = border_;
   double beside[2];
   for (const int side : {0, 1}) {
-    beside[side] = EvidenceOf(decade * (side == 0 ? 1 / kHalfDecade : kHalfDecade), scale, report);
+    const double tried = decade * (side == 0 ? 1 / kHalfDecade : kHalfDecade);
+    beside[side] = EvidenceOf(tried, -HUGE_VAL, scale, report);
     nodes_ = nodes;
     border_ = border;
   }

@@ -96,7 +96,7 @@ class RunSolver : public RunRows {
   bool Iterate(int most, double stays, SolveReport& report, double creeps = HUGE_VAL);
   double Evidence() const;
   bool HidesAStart() const;
-  double EvidenceOf(double tried, double& scale, SolveReport& report);
+  double EvidenceOf(double tried, double least, double& scale, SolveReport& report);
   double FindDecade(double least, double most, double& scale, SolveReport& report);
   void FindBetween(double evidence, double& scale, SolveReport& report);
 
