@@ -479,7 +479,7 @@ TEST(Gyrocompass, WhatIsKnownOfTheAxialRateIsNoError) {
   windows[0].w_IT_T += Eigen::Vector3d(2e-3 * axial, -3e-3 * axial, 0);
   GyrocompassSetup setup;
   const double off = WrapPi(Gyrocompass(windows, truth.Place(), setup).azimuth - truth.azimuth);
-  EXPECT_GT(std::abs(off), 5e-4);
+  EXPECT_GT(std::abs(off), 1e-4);
   setup.errors.gyro_misalignment_x = 2e-3;
   setup.errors.gyro_misalignment_y = -3e-3;
   const NorthFix known = Gyrocompass(windows, truth.Place(), setup);
