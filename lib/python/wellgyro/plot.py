@@ -70,14 +70,19 @@ def hole(survey, *, ax=None):
 
 
 def in_out(result: Result, *, ax=None):
-    """Azimuth of every pass against depth, less that of the chosen stations."""
+    """Azimuth of every pass against depth, less that of the chosen stations, with bands of 2 sigma;
+    where it is surer than a degree: near vertical it says nothing."""
     stations = result.stations
     ax = ax or plt.subplots()[1]
     turns = np.unwrap(np.radians(stations.azimuth_true_deg))
     for (run, name), rows in result.passes.groupby(["run", "pass"]):
-        chosen = np.degrees(np.interp(rows.md_m, stations.md_m, turns))
-        ax.plot((rows.azimuth_true_deg - chosen + 180) % 360 - 180, rows.md_m, ".-",
-                label=f"run {run}, {name}")
+        known = ~rows.quality.str.contains("vertical") & ~(rows.sigma_azimuth_deg > 1)
+        rows = rows[known].sort_values("md_m")
+        off = (rows.azimuth_true_deg - np.degrees(np.interp(rows.md_m, stations.md_m, turns))
+               + 180) % 360 - 180
+        line, = ax.plot(off, rows.md_m, ".-", label=f"run {run}, {name}")
+        band = 2 * rows.sigma_azimuth_deg
+        ax.fill_betweenx(rows.md_m, off - band, off + band, color=line.get_color(), alpha=0.15, lw=0)
     ax.invert_yaxis()
     ax.set_xlabel("azimuth less the chosen one's [deg]")
     ax.set_ylabel("MD [m]")
