@@ -1,5 +1,6 @@
 #include "wellgyro/live/catch_up.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -77,6 +78,99 @@ TEST(CatchUp, WhatWaitedForItsSenderComesFromTheRecordersLog) {
   ASSERT_TRUE(catch_up.FillAndJoin(*bus, {theirs}));
   EXPECT_EQ(used.size(), sent.size());
   for (const auto& [message, times] : used) EXPECT_EQ(times, 1) << message.first;
+}
+
+// A recorder's log that has just begun has the first samples behind the depths that came with them,
+// when their sender is known. A survey that hears the bus from the fourth depth on does not join
+// before that, and takes from the log what came before it listened.
+TEST(CatchUp, WhatWaitsInTheRecorderIsWaitedFor) {
+  const Channels channels;
+  const Sent sent = FirstMessages(200);
+  const auto is_sample = [&](const HeldMessage& m) { return m.channel == channels.imu; };
+  const auto nth_sample = [&](int n) {
+    auto at = sent.begin();
+    while (!is_sample(*at) || --n > 0) ++at;
+    return at;
+  };
+  const auto listens = nth_sample(3), known = nth_sample(4);
+  const support::Scratch scratch;
+  const std::string theirs = (scratch.path() / "recorder.lcm").string();
+  auto log = LogWriter::Open(theirs);
+  ASSERT_TRUE(log);
+  const auto write = [&](auto begin, auto end, bool samples) {
+    for (auto m = begin; m != end; ++m) {
+      if (is_sample(*m) == samples) ASSERT_FALSE(log->Write(m->channel, m->bytes, m->received_us));
+    }
+    ASSERT_FALSE(log->Flush());
+  };
+  write(sent.begin(), known, false);
+
+  LiveObserver observer;
+  std::int64_t now = 0;
+  int looks = 0;
+  const LiveClock clock{[&] { return now += 100'000; },
+                        [&] {
+                          // The fourth sample comes between the third look at the log and the next.
+                          if (++looks == 4) {
+                            write(sent.begin(), known + 1, true);
+                            for (auto m = known + 1; m != sent.end(); ++m) {
+                              EXPECT_FALSE(log->Write(m->channel, m->bytes, m->received_us));
+                            }
+                            EXPECT_FALSE(log->Flush());
+                          }
+                          return now += 100'000;
+                        }};
+  Notices notices(observer, clock);
+  std::map<std::pair<std::string, std::vector<std::byte>>, int> used;
+  CatchUp catch_up(
+      channels, clock, notices,
+      [&](std::string_view channel, std::span<const std::byte> bytes, std::int64_t, bool) {
+        ++used[{std::string(channel), {bytes.begin(), bytes.end()}}];
+      });
+  for (auto m = listens; m != sent.end(); ++m) catch_up.Hold(m->channel, m->bytes, m->received_us);
+  auto bus = LiveBus::Open("memq://");
+  ASSERT_TRUE(bus);
+  ASSERT_TRUE(catch_up.FillAndJoin(*bus, {theirs}));
+  EXPECT_EQ(used.size(), sent.size());
+  for (const auto& [message, times] : used) EXPECT_EQ(times, 1) << message.first;
+}
+
+// Killed before it had used any sample or depth, a survey has only what is sent again in its log:
+// what is behind that is told by the time it was heard at, in whatever order the recorder wrote it.
+TEST(CatchUp, WhatWasHeardSinceIsUsedInTheRecordersOrder) {
+  const Channels channels;
+  Sent sent = FirstMessages(200);
+  const auto sent_again = [&](const HeldMessage& m) {
+    return m.channel != channels.imu && m.channel != channels.depth;
+  };
+  const auto begin = std::find_if_not(sent.begin(), sent.end(), sent_again);
+  ASSERT_GT(begin - sent.begin(), 0);
+  std::int64_t at = 1'000'000;
+  for (HeldMessage& m : sent) m.received_us = at += 50'000;
+  const support::Scratch scratch;
+  const std::string ours = (scratch.path() / "own.lcm").string();
+  const std::string theirs = (scratch.path() / "recorder.lcm").string();
+  Log(ours, {sent.begin(), begin});
+  // The first samples behind the depths that came with them.
+  Sent written = sent;
+  const auto first = written.begin() + (begin - sent.begin());
+  std::stable_partition(first, first + 30,
+                        [&](const HeldMessage& m) { return m.channel != channels.imu; });
+  Log(theirs, written);
+
+  LiveObserver observer;
+  std::int64_t now = 0;
+  const LiveClock clock{[&] { return now += 1'000'000; }, [&] { return now += 1'000'000; }};
+  Notices notices(observer, clock);
+  std::size_t used = 0;
+  CatchUp catch_up(
+      channels, clock, notices,
+      [&](std::string_view, std::span<const std::byte>, std::int64_t, bool) { ++used; });
+  ASSERT_FALSE(catch_up.OwnLog(ours, 0));
+  auto bus = LiveBus::Open("memq://");
+  ASSERT_TRUE(bus);
+  ASSERT_TRUE(catch_up.FillAndJoin(*bus, {theirs}));
+  EXPECT_EQ(used, sent.size());
 }
 
 }  // namespace

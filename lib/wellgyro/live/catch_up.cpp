@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/bus/log_reader.h"
+#include "wellgyro/bus/stream_guard.h"
 
 namespace wellgyro {
 namespace {
@@ -15,6 +16,8 @@ constexpr std::int64_t kQuietUs = 2'000'000;      // neither log nor bus says an
 constexpr int kPollMs = 50;
 // A recorder that began after the own log ended has all that came since, or it is lost.
 constexpr std::size_t kLookedBackAt = Splice::kKept;
+// A log that has just begun may lack what waits for its sender to be known (see StreamGuard).
+constexpr std::int64_t kWaitsUs = 2 * StreamGuard::kSilentUs;
 
 }  // namespace
 
@@ -45,9 +48,20 @@ MessageKey CatchUp::Key(std::string_view channel, std::span<const std::byte> byt
   return KeyOf(channel, bytes, once);
 }
 
+void CatchUp::NoteUsed(std::string_view channel, const MessageKey& key) {
+  splice_.Used(key);
+  if (heard_.find(channel) == heard_.end()) heard_.emplace(channel);
+  if (!key.once) return;
+  const auto found = last_.find(channel);
+  if (found == last_.end()) {
+    last_.emplace(channel, key);
+  } else {
+    found->second = key;
+  }
+}
+
 void CatchUp::UseOne(const HeldMessage& message, bool fresh) {
-  heard_.insert(message.channel);
-  splice_.Used(Key(message.channel, message.bytes));
+  NoteUsed(message.channel, Key(message.channel, message.bytes));
   last_received_us_ = message.received_us;
   use_(message.channel, message.bytes, message.received_us, fresh);
 }
@@ -64,8 +78,7 @@ std::optional<Fault> CatchUp::OwnLog(const std::string& path, std::int64_t begun
   }
   LogEvent event;
   while (reader->Next(event)) {
-    splice_.Used(Key(event.channel, event.data));
-    heard_.emplace(event.channel);
+    NoteUsed(event.channel, Key(event.channel, event.data));
     use_(event.channel, event.data, event.received_us, false);
     last_received_us_ = event.received_us;
   }
@@ -89,6 +102,7 @@ void CatchUp::UseUnheard(std::vector<HeldMessage> before) {
 
 void CatchUp::TakeFill(const HeldMessage& message) {
   if (message.received_us < begun_us_) return;
+  if (!fill_begun_us_) fill_begun_us_ = message.received_us;
   const MessageKey key = Key(message.channel, message.bytes);
   if (joined_fill_) {
     if (!splice_.WasUsed(key)) UseOne(message, true);
@@ -109,25 +123,58 @@ void CatchUp::TakeFill(const HeldMessage& message) {
     return;
   }
   joined_fill_ = true;
+  // Not by the last one used here: what waited for its sender stands behind what came after it.
+  const std::optional<std::int64_t> ended =
+      splice_.empty() ? std::nullopt : std::optional(last_received_us_);
   for (const HeldMessage& since : std::exchange(before_, {})) {
-    if (splice_.empty() || since.received_us > last_received_us_) UseOne(since, true);
+    if (!ended || since.received_us > *ended) UseOne(since, true);
   }
 }
 
-std::optional<std::size_t> CatchUp::Joint() const {
+std::vector<MessageKey> CatchUp::HeldKeys() const {
   std::vector<MessageKey> keys;
   for (const HeldMessage& m : held_) keys.push_back(Key(m.channel, m.bytes));
-  return splice_.Find(keys);
+  return keys;
+}
+
+/// Where in what is held the last one used of each channel stands.
+std::map<std::string_view, std::size_t> CatchUp::Joints(const std::vector<MessageKey>& keys) const {
+  std::map<std::string_view, std::size_t> joints;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto last = last_.find(held_[i].channel);
+    if (last == last_.end() || !keys[i].once || last->second.hash != keys[i].hash) continue;
+    joints.try_emplace(last->first, i);
+  }
+  return joints;
+}
+
+/// Whether the log has reached the stream on every channel that is heard, and lacks nothing that
+/// may still wait.
+bool CatchUp::Reached(bool quiet) const {
+  const std::vector<MessageKey> keys = HeldKeys();
+  const auto joints = Joints(keys);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (keys[i].once && !joints.contains(held_[i].channel)) return false;
+  }
+  return !joints.empty() &&
+         (quiet || last_received_us_ - fill_begun_us_.value_or(last_received_us_) > kWaitsUs);
 }
 
 void CatchUp::Join() {
   splice_.Turn();
-  if (const auto joint = Joint()) {
-    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(*joint) + 1);
+  const std::vector<MessageKey> keys = HeldKeys();
+  const auto joints = Joints(keys);
+  const std::optional<std::size_t> joint = splice_.Find(keys);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const HeldMessage& message = held_[i];
+    if (keys[i].once) {
+      const auto last = joints.find(message.channel);
+      if (last == joints.end() || i > last->second) UseOne(message, true);
+    } else if ((!joint || i > *joint) && !splice_.WasUsed(keys[i])) {
+      UseOne(message, true);
+    }
   }
-  for (const HeldMessage& message : std::exchange(held_, {})) {
-    if (!splice_.WasUsed(Key(message.channel, message.bytes))) UseOne(message, true);
-  }
+  held_.clear();
 }
 
 Result<std::int64_t> CatchUp::ReadOn(Follower& log) {
@@ -147,10 +194,10 @@ Result<bool> CatchUp::Follow(LiveBus& bus, Follower& log) {
     const auto woken = bus.Wait(kPollMs);
     if (!woken) return woken.fault();
     if (*woken == LiveBus::Woken::kStopped) return true;
-    if (Joint()) return false;
     const std::int64_t now = clock_.monotonic_us();
     if (*count > 0 || held_.size() > held_before) last_news = now;
-    if (held_.empty() && now - last_news > kQuietUs) return false;
+    const bool quiet = now - last_news > kQuietUs;
+    if (Reached(quiet) || (held_.empty() && quiet)) return false;
     if (now - begin < kPatienceUs) continue;
     notices_.Say(fmt::format("{} does not reach the live stream: what was sent between may be lost",
                              log.path));
@@ -163,6 +210,7 @@ Result<bool> CatchUp::FillAndJoin(LiveBus& bus, const std::vector<std::string>& 
   for (std::size_t i = 0; i < logs.size() && !stopped; ++i) {
     splice_.Turn();
     joined_fill_ = false;
+    fill_begun_us_.reset();
     before_.clear();
     Follower log{logs[i]};
     if (i + 1 < logs.size()) {

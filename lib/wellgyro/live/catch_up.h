@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -60,7 +61,10 @@ class WELLGYRO_EXPORT CatchUp {
   void UseUnheard(std::vector<HeldMessage> before);
   Result<std::int64_t> ReadOn(Follower& log);
   Result<bool> Follow(LiveBus& bus, Follower& log);
-  std::optional<std::size_t> Joint() const;
+  void NoteUsed(std::string_view channel, const MessageKey& key);
+  std::vector<MessageKey> HeldKeys() const;
+  std::map<std::string_view, std::size_t> Joints(const std::vector<MessageKey>& keys) const;
+  bool Reached(bool quiet) const;
   void Join();
 
   const Channels& channels_;
@@ -69,10 +73,14 @@ class WELLGYRO_EXPORT CatchUp {
   Use use_;
   Splice splice_;
   std::set<std::string, std::less<>> heard_;  ///< channels of which anything was used
+  /// Of each channel whose messages are sent once, the last one used: every recorder has a channel
+  /// in its order, but not the channels among each other, while their sender was not yet known.
+  std::map<std::string, MessageKey, std::less<>> last_;
   std::int64_t begun_us_ = 0;
-  std::int64_t last_received_us_ = 0;  ///< of what was used
-  bool joined_fill_ = false;           ///< behind the place where the log before ended
-  std::vector<HeldMessage> before_;    ///< of a fill log, as long as that place has not come
+  std::int64_t last_received_us_ = 0;          ///< of what was used
+  std::optional<std::int64_t> fill_begun_us_;  ///< first message of the fill log
+  bool joined_fill_ = false;                   ///< behind the place where the log before ended
+  std::vector<HeldMessage> before_;  ///< of a fill log, as long as that place has not come
   std::deque<HeldMessage> held_;
 };
 
