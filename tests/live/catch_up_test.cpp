@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -42,6 +43,41 @@ void Log(const std::string& path, std::span<const HeldMessage> messages) {
   ASSERT_FALSE(log->Close());
 }
 
+/// A survey that catches up, what it has used, and a clock that goes on by `tick_us` at each look.
+struct Catching {
+  explicit Catching(std::int64_t tick_us, std::function<void(int look)> look = {})
+      : clock{[this, tick_us] { return now += tick_us; },
+              [this, tick_us, look = std::move(look)] {
+                if (look) look(++looks);
+                return now += tick_us;
+              }} {}
+  Catching(const Catching&) = delete;
+  Catching& operator=(const Catching&) = delete;
+
+  void Fill(const std::string& log) {
+    auto bus = LiveBus::Open("memq://");
+    ASSERT_TRUE(bus);
+    ASSERT_TRUE(catch_up.FillAndJoin(*bus, {log}));
+  }
+  void ExpectOnceEachOf(const Sent& sent) const {
+    EXPECT_EQ(used.size(), sent.size());
+    for (const auto& [message, times] : used) EXPECT_EQ(times, 1) << message.first;
+  }
+
+  Channels channels;
+  LiveObserver observer;
+  std::int64_t now = 0;
+  int looks = 0;
+  LiveClock clock;
+  Notices notices{observer, clock};
+  std::map<std::pair<std::string, std::vector<std::byte>>, int> used;
+  CatchUp catch_up{
+      channels, clock, notices,
+      [this](std::string_view channel, std::span<const std::byte> bytes, std::int64_t, bool) {
+        ++used[{std::string(channel), {bytes.begin(), bytes.end()}}];
+      }};
+};
+
 // Killed while the first samples still waited for their sender to be known, a survey has depths in
 // its log and no sample. A recorder beside it has both.
 TEST(CatchUp, WhatWaitedForItsSenderComesFromTheRecordersLog) {
@@ -62,22 +98,10 @@ TEST(CatchUp, WhatWaitedForItsSenderComesFromTheRecordersLog) {
   Log(ours, own);
   Log(theirs, sent);
 
-  LiveObserver observer;
-  std::int64_t now = 0;
-  const LiveClock clock{[&] { return now += 1'000'000; }, [&] { return now += 1'000'000; }};
-  Notices notices(observer, clock);
-  std::map<std::pair<std::string, std::vector<std::byte>>, int> used;
-  CatchUp catch_up(
-      channels, clock, notices,
-      [&](std::string_view channel, std::span<const std::byte> bytes, std::int64_t, bool) {
-        ++used[{std::string(channel), {bytes.begin(), bytes.end()}}];
-      });
-  ASSERT_FALSE(catch_up.OwnLog(ours, 0));
-  auto bus = LiveBus::Open("memq://");
-  ASSERT_TRUE(bus);
-  ASSERT_TRUE(catch_up.FillAndJoin(*bus, {theirs}));
-  EXPECT_EQ(used.size(), sent.size());
-  for (const auto& [message, times] : used) EXPECT_EQ(times, 1) << message.first;
+  Catching survey(1'000'000);
+  ASSERT_FALSE(survey.catch_up.OwnLog(ours, 0));
+  survey.Fill(theirs);
+  survey.ExpectOnceEachOf(sent);
 }
 
 // A recorder's log that has just begun has the first samples behind the depths that came with them,
@@ -99,40 +123,27 @@ TEST(CatchUp, WhatWaitsInTheRecorderIsWaitedFor) {
   ASSERT_TRUE(log);
   const auto write = [&](auto begin, auto end, bool samples) {
     for (auto m = begin; m != end; ++m) {
-      if (is_sample(*m) == samples) ASSERT_FALSE(log->Write(m->channel, m->bytes, m->received_us));
+      if (is_sample(*m) != samples) continue;
+      ASSERT_FALSE(log->Write(m->channel, m->bytes, m->received_us));
     }
     ASSERT_FALSE(log->Flush());
   };
   write(sent.begin(), known, false);
 
-  LiveObserver observer;
-  std::int64_t now = 0;
-  int looks = 0;
-  const LiveClock clock{[&] { return now += 100'000; },
-                        [&] {
-                          // The fourth sample comes between the third look at the log and the next.
-                          if (++looks == 4) {
-                            write(sent.begin(), known + 1, true);
-                            for (auto m = known + 1; m != sent.end(); ++m) {
-                              EXPECT_FALSE(log->Write(m->channel, m->bytes, m->received_us));
-                            }
-                            EXPECT_FALSE(log->Flush());
-                          }
-                          return now += 100'000;
-                        }};
-  Notices notices(observer, clock);
-  std::map<std::pair<std::string, std::vector<std::byte>>, int> used;
-  CatchUp catch_up(
-      channels, clock, notices,
-      [&](std::string_view channel, std::span<const std::byte> bytes, std::int64_t, bool) {
-        ++used[{std::string(channel), {bytes.begin(), bytes.end()}}];
-      });
-  for (auto m = listens; m != sent.end(); ++m) catch_up.Hold(m->channel, m->bytes, m->received_us);
-  auto bus = LiveBus::Open("memq://");
-  ASSERT_TRUE(bus);
-  ASSERT_TRUE(catch_up.FillAndJoin(*bus, {theirs}));
-  EXPECT_EQ(used.size(), sent.size());
-  for (const auto& [message, times] : used) EXPECT_EQ(times, 1) << message.first;
+  // The fourth sample comes between the third look at the log and the next.
+  Catching survey(100'000, [&](int look) {
+    if (look != 4) return;
+    write(sent.begin(), known + 1, true);
+    for (auto m = known + 1; m != sent.end(); ++m) {
+      EXPECT_FALSE(log->Write(m->channel, m->bytes, m->received_us));
+    }
+    EXPECT_FALSE(log->Flush());
+  });
+  for (auto m = listens; m != sent.end(); ++m) {
+    survey.catch_up.Hold(m->channel, m->bytes, m->received_us);
+  }
+  survey.Fill(theirs);
+  survey.ExpectOnceEachOf(sent);
 }
 
 // Killed before it had used any sample or depth, a survey has only what is sent again in its log:
@@ -158,19 +169,10 @@ TEST(CatchUp, WhatWasHeardSinceIsUsedInTheRecordersOrder) {
                         [&](const HeldMessage& m) { return m.channel != channels.imu; });
   Log(theirs, written);
 
-  LiveObserver observer;
-  std::int64_t now = 0;
-  const LiveClock clock{[&] { return now += 1'000'000; }, [&] { return now += 1'000'000; }};
-  Notices notices(observer, clock);
-  std::size_t used = 0;
-  CatchUp catch_up(
-      channels, clock, notices,
-      [&](std::string_view, std::span<const std::byte>, std::int64_t, bool) { ++used; });
-  ASSERT_FALSE(catch_up.OwnLog(ours, 0));
-  auto bus = LiveBus::Open("memq://");
-  ASSERT_TRUE(bus);
-  ASSERT_TRUE(catch_up.FillAndJoin(*bus, {theirs}));
-  EXPECT_EQ(used, sent.size());
+  Catching survey(1'000'000);
+  ASSERT_FALSE(survey.catch_up.OwnLog(ours, 0));
+  survey.Fill(theirs);
+  survey.ExpectOnceEachOf(sent);
 }
 
 }  // namespace
