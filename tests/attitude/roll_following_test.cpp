@@ -99,6 +99,8 @@ TEST_P(Following, IsOfTheSizeTold) {
   EXPECT_NEAR(squares / told, 1, 0.15) << squares / count << " " << told / count;
 }
 
+double Rolling(double t) { return 0.2 * t; }
+
 double Sway(double t) { return FromDegrees(2) * std::sin(kTwoPi * 0.15 * t); }
 
 double Swing(double t) { return FromDegrees(8) * std::sin(kTwoPi * 0.7 * t); }
@@ -106,8 +108,8 @@ double Swing(double t) { return FromDegrees(8) * std::sin(kTwoPi * 0.7 * t); }
 INSTANTIATE_TEST_SUITE_P(Tool, Following,
                          testing::Values(Way{"rests", [](double) { return 0.4; }, 100},
                                          Way{"rests_10_Hz", [](double) { return 0.4; }, 10},
-                                         Way{"rolls", [](double t) { return 0.2 * t; }, 50},
-                                         Way{"swings", Swing, 100}, Way{"sways_10_Hz", Sway, 10}));
+                                         Way{"rolls", Rolling, 50}, Way{"swings", Swing, 100},
+                                         Way{"sways_10_Hz", Sway, 10}));
 
 }  // namespace
 }  // namespace wellgyro::increment

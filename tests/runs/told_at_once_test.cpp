@@ -42,9 +42,10 @@ struct AgeSink : Sink {
   double worst = 0;
 };
 
+constexpr double kThen = 350;  // [s]
+
 // Minutes behind the only stop, when bias and heading are just being told apart.
 TEST(ToldAtOnce, SoonAfterAStopItIsAsSureAsItSays) {
-  constexpr double kThen = 350;  // [s]
   for (const double inclination : {40.0, 88.0}) {
     testing::Claims claims;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
