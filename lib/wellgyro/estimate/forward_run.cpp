@@ -121,9 +121,12 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   KnotRows rows(state_.setup, layout_);
   // What the roll's change weighs is by what gravity shows of it, not by what is made of it.
   const double sigma = WalkBehind(knots);
+  RollChange walk{.sigma = sigma, .swing_sigma = sigma};
   const RollSquares squares =
-      RollSquaresOf(state_.setup, knot.increment.seconds, place.axial_change, sigma, begin, end);
-  const RollChange walk{sigma, RollWeight(squares.rate, 1), RollWeight(squares.swing, 2)};
+      RollSquaresOf(FrequencyOf(state_.setup, layout_, border), knot.increment.seconds,
+                    place.axial_change, walk, begin, end);
+  walk.weight = RollWeight(squares.rate, 1);
+  walk.swing_weight = RollWeight(squares.swing, 2);
   Elimination elimination(layout_);
   std::vector<NodeVector> steps;
   for (int i = 0; i < kIterations; ++i) {

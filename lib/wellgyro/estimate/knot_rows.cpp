@@ -82,23 +82,7 @@ TurnByError WithoutNoise(const Increment& inc, TurnByError by_error, const Vecto
   return by_error;
 }
 
-/// What a swing is after `seconds`, of what it was: [c s; -s c].
-Vector2d SwingAfter(const EstimateSetup& setup, double seconds, const Vector2d& a) {
-  const double c = std::cos(*setup.swing * seconds), s = std::sin(*setup.swing * seconds);
-  return {c * a.x() + s * a.y(), c * a.y() - s * a.x()};
-}
-
 }  // namespace
-
-RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double axial_change,
-                          double sigma, const Node& begin, const Node& end) {
-  RollSquares squares{Square((end.roll_rate - begin.roll_rate - axial_change) / sigma), 0};
-  if (setup.swing) {
-    squares.swing =
-        (end.swing - SwingAfter(setup, seconds, begin.swing)).squaredNorm() / Square(sigma);
-  }
-  return squares;
-}
 
 /// What several factors of a knot share.
 struct KnotRows::Terms {
@@ -107,11 +91,12 @@ struct KnotRows::Terms {
   const Node& begin;
   const Node& end;
   double dt;
-  double delta;                    // psi's error at the end, from that at the begin
-  double in_phase, in_quadrature;  // of the swing in the mean rate of roll
-  TurnByError turn_by_error;       // at the roll rate of now
-  Vector2d turn;                   // of what is known of the errors corrected
-  Vector2d turn_per_roll;          // at delta
+  double delta;               // psi's error at the end, from that at the begin
+  double frequency;           // of the swing
+  Vector2d of_swing;          // in the mean rate of roll
+  TurnByError turn_by_error;  // at the roll rate of now
+  Vector2d turn;              // of what is known of the errors corrected
+  Vector2d turn_per_roll;     // at delta
   Matrix3d Ha, Hb, Xh;
   Matrix3d R_LM;
   Vector3d w_IL_L;  // at the latitude as it is now known
@@ -122,16 +107,15 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
   const Increment& inc = knot.increment;
-  Terms t{knot, place, begin, end, inc.seconds,  0,     0, 0, TurnBy(inc), inc.turn_M, {},
-          {},   {},    {},    {},  place.w_IL_L, border};
+  Terms t{knot,        place,      begin, end, inc.seconds, 0,  0,  Vector2d::Zero(),
+          TurnBy(inc), inc.turn_M, {},    {},  {},          {}, {}, place.w_IL_L,
+          border};
   if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
   double rate = begin.roll_rate;
   if (layout_.swing != kAbsent) {
-    const double angle = *setup_.swing * t.dt;
-    const double half = std::sin(0.5 * angle);
-    t.in_phase = std::sin(angle) / angle;
-    t.in_quadrature = 2 * half * half / angle;
-    rate += t.in_phase * begin.swing.x() + t.in_quadrature * begin.swing.y();
+    t.frequency = *FrequencyOf(setup_, layout_, border);
+    t.of_swing = MeanOfSwing(t.frequency, t.dt);
+    rate += t.of_swing.dot(begin.swing);
   }
   t.delta = rate * t.dt - (inc.roll_before + inc.roll_after);
   // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
@@ -178,6 +162,16 @@ void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RollChange
   if (knot.still) AddRest(t, block);
 }
 
+/// What a unit of the mean rate of roll adds to the factor's residuals, for all that it is made of.
+void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, NormalBlock& block) {
+  const auto rows = by_rate.head(factor_.rows);
+  factor_.Column(layout_.roll) = rows;
+  if (layout_.swing == kAbsent) return;
+  for (int i = 0; i < 2; ++i) factor_.Column(layout_.swing + i) = t.of_swing[i] * rows;
+  factor_.Column(block.border() + layout_.frequency) =
+      MeanByFrequency(t.frequency, t.dt).dot(t.begin.swing) * rows;
+}
+
 /// Log[(E R_k Ha Exp(turn) Hb)' R_k+1], E = Exp(-w_IL dt): across the axis the gyros' noise, about
 /// it the tie of roll rate and attitude.
 void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
@@ -205,11 +199,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Vector3d by_delta =
       -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * t.turn_per_roll;
   const Vector3d by_rate = by * (t.dt * by_delta);
-  f.Column(layout_.roll) = by_rate;
-  if (layout_.swing != kAbsent) {
-    f.Column(layout_.swing) = t.in_phase * by_rate;
-    f.Column(layout_.swing + 1) = t.in_quadrature * by_rate;
-  }
+  AddRate(t, by_rate, block);
   const Eigen::Matrix<double, 3, kErrorSources> by_error =
       by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
   for (const int drift : {layout_.walk, layout_.markov}) {
@@ -269,11 +259,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
       -(px + down_M.cross(path) * down_M.transpose()) * (t.Ha * t.Xh).transpose();
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);
   const Vector3d by_rate = whiten * t.dt * (-0.5 * px * t.Xh.row(2).transpose() + force_per_roll);
-  f.Column(layout_.roll) = by_rate;
-  if (layout_.swing != kAbsent) {
-    f.Column(layout_.swing) = t.in_phase * by_rate;
-    f.Column(layout_.swing + 1) = t.in_quadrature * by_rate;
-  }
+  AddRate(t, by_rate, block);
   f.Column(layout_.speed) = whiten / t.dt * Vector3d::UnitZ();
   f.Column(block.next() + layout_.speed) = -whiten / t.dt * Vector3d::UnitZ();
   for (int i = 0; i <= kAccelMisalignmentZY; ++i) {
@@ -309,13 +295,16 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
   if (layout_.swing == kAbsent) return;
   f.Begin(RowKind::kRoll, 2);
   f.held = roll.swing_weight;
-  f.r.head<2>() = whiten * (t.end.swing - SwingAfter(setup_, t.dt, t.begin.swing));
+  const double of_swing = 1 / roll.swing_sigma;
+  f.r.head<2>() = of_swing * (t.end.swing - SwingAfter(t.frequency, t.dt, t.begin.swing));
   for (int i = 0; i < 2; ++i) {
-    f.Column(layout_.swing + i) = -whiten * SwingAfter(setup_, t.dt, Vector2d::Unit(i));
+    f.Column(layout_.swing + i) = -of_swing * SwingAfter(t.frequency, t.dt, Vector2d::Unit(i));
   }
   for (int i = 0; i < 2; ++i) {
-    f.Column(block.next() + layout_.swing + i) = whiten * Vector2d::Unit(i);
+    f.Column(block.next() + layout_.swing + i) = of_swing * Vector2d::Unit(i);
   }
+  f.Column(block.border() + layout_.frequency).head<2>() =
+      -of_swing * SwingByFrequency(t.frequency, t.dt, t.begin.swing);
   block.Add(f);
 }
 
@@ -328,11 +317,7 @@ void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   f.Begin(RowKind::kAxial, 1);
   f.r[0] = whiten * (t.delta + t.dt * SourceAt(t.border, kGyroBiasZ) +
                      axial * SourceAt(t.border, kGyroScaleZ));
-  f.Column(layout_.roll)[0] = whiten * t.dt;
-  if (layout_.swing != kAbsent) {
-    f.Column(layout_.swing)[0] = whiten * t.dt * t.in_phase;
-    f.Column(layout_.swing + 1)[0] = whiten * t.dt * t.in_quadrature;
-  }
+  AddRate(t, {whiten * t.dt, 0, 0}, block);
   const int bias = layout_.source[kGyroBiasZ], scale = layout_.source[kGyroScaleZ];
   if (bias != kAbsent) f.Column(block.border() + bias)[0] = whiten * t.dt;
   if (scale != kAbsent) f.Column(block.border() + scale)[0] = whiten * (axial + t.delta);

@@ -9,6 +9,7 @@
 #include "wellgyro/estimate/layout.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/normal_block.h"
+#include "wellgyro/estimate/roll_change.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
 
@@ -32,7 +33,8 @@ struct KnotPlace {
 
 /// What a run has been found to be, beside its nodes and constants.
 struct RunScales {
-  double roll_walk = 0.1;  ///< of the roll rate [rad/s/sqrt(s)]
+  double roll_walk = 0.1;   ///< of the roll rate [rad/s/sqrt(s)]
+  double swing_walk = 0.1;  ///< of the swing, in phase and in quadrature [rad/s/sqrt(s)]
   /// Of each knot, how much the rate plainly changes there beyond its walk: starts and stops; empty
   /// where not yet known [rad/s].
   std::vector<double> roll_start;
@@ -42,20 +44,6 @@ struct RunScales {
   /// Of each knot, held while the run is brought to its end; empty: by the residuals.
   std::vector<std::array<double, 2>> roll_weight;
 };
-
-/// How the roll rate may change over a knot.
-struct RollChange {
-  double sigma = 0.1;                   ///< [rad/s]
-  double weight = 0, swing_weight = 0;  ///< robust ones, held; 0: by the residuals
-};
-
-/// Sum of squares of what the rate of roll in the hole changes by over a knot, by `sigma`, and of
-/// its swing.
-struct RollSquares {
-  double rate = 0, swing = 0;
-};
-RollSquares RollSquaresOf(const EstimateSetup& setup, double seconds, double axial_change,
-                          double sigma, const Node& begin, const Node& end);
 
 /// Whitened residuals of everything that a knot says of the nodes at its ends and of the border,
 /// about their present values, added to `block`. R_IT(end) = R_IT(begin) Rz Exp(turn) Rz,
@@ -75,6 +63,7 @@ class KnotRows {
   struct Terms;
   Terms TermsOf(const RunKnot& knot, const KnotPlace& place, const BorderVector& border,
                 const Node& begin, const Node& end) const;
+  void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, NormalBlock& block);
   void AddTurn(const Terms& t, NormalBlock& block);
   void AddForce(const Terms& t, NormalBlock& block);
   void AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block);

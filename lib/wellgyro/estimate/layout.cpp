@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "wellgyro/estimate/swing.h"
+
 namespace wellgyro {
 namespace {
 
@@ -63,6 +65,7 @@ Layout LayoutOf(const EstimateSetup& setup) {
   layout.latitude = border(setup.errors.latitude_sigma);
   layout.gravity = border(setup.sigma_gravity);
   layout.gravity_gradient = border(setup.sigma_gravity_gradient);
+  if (setup.swing) layout.frequency = border(kSwingSigma);
   layout.sigma.conservativeResize(layout.border);
   return layout;
 }

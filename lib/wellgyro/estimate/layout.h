@@ -11,7 +11,7 @@
 namespace wellgyro {
 
 inline constexpr int kNodeMax = 12;    ///< errors of one node
-inline constexpr int kBorderMax = 28;  ///< errors of the whole run
+inline constexpr int kBorderMax = 29;  ///< errors of the whole run
 inline constexpr int kAbsent = -1;
 
 using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax, 1>;
@@ -37,6 +37,7 @@ struct Layout {
   std::array<int, kErrorSources> source{};
   int ramp = kAbsent;  ///< two [rad/s^2]
   int latitude = kAbsent, gravity = kAbsent, gravity_gradient = kAbsent;
+  int frequency = kAbsent;  ///< of the swing, beside that of the setup [rad/s]
   int border = 0;
   BorderVector sigma;  ///< priors of the border
 };

@@ -28,10 +28,10 @@ struct Sums {
   std::vector<double> roll{0}, var{0}, seconds{0};
   std::vector<std::size_t> unseen{0};
 
-  explicit Sums(std::span<const RunKnot> knots) {
-    for (const RunKnot& knot : knots) {
-      const Increment& i = knot.increment;
-      roll.push_back(roll.back() + i.roll_before + i.roll_after);
+  explicit Sums(std::span<const RunKnot> knots, std::span<const double> swung = {}) {
+    for (std::size_t k = 0; k < knots.size(); ++k) {
+      const Increment& i = knots[k].increment;
+      roll.push_back(roll.back() + i.roll_before + i.roll_after - (swung.empty() ? 0 : swung[k]));
       var.push_back(var.back() + (i.roll_seen ? i.sigma_roll * i.sigma_roll : 0));
       seconds.push_back(seconds.back() + i.seconds);
       unseen.push_back(unseen.back() + (i.roll_seen ? 0 : 1));
@@ -75,8 +75,8 @@ std::optional<double> UsualRollChange(std::span<const RunKnot> knots) {
   return UsualOf(changes);
 }
 
-std::vector<double> RollStarts(std::span<const RunKnot> knots) {
-  const Sums sums(knots);
+std::vector<double> RollStarts(std::span<const RunKnot> knots, std::span<const double> swung) {
+  const Sums sums(knots, swung);
   std::vector<double> starts(knots.size(), 0);
   for (const std::size_t span : kSpans) {
     const std::vector<Change> changes = ChangesOver(sums, span);

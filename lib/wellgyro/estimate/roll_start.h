@@ -11,8 +11,9 @@ namespace wellgyro {
 /// Of each knot, by how much the roll rate changes behind it beyond its walk [rad/s]: where gravity
 /// plainly shows a start or a stop, over 1, 4 or 12 knots beyond 3.5 of what is usual in the run
 /// and of its own sigma, by what it shows; else 0. A tool that once spins up is then not taken for
-/// one that always jerks.
-std::vector<double> RollStarts(std::span<const RunKnot> knots);
+/// one that always jerks. `swung`: of each knot, what a swing turns the tool by in it, which is no
+/// start; empty: nothing swings [rad].
+std::vector<double> RollStarts(std::span<const RunKnot> knots, std::span<const double> swung = {});
 
 /// Of each knot, by how much the roll rate may at most change behind it with the speed along the
 /// hole, seen or not [rad/s]: within 5 s of a change of the speed by 2 rad/m of that; else 0.

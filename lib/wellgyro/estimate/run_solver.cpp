@@ -186,6 +186,7 @@ void RunSolver::TakeOver(const RunSolver& other) {
   take(layout_.latitude, theirs.latitude);
   take(layout_.gravity, theirs.gravity);
   take(layout_.gravity_gradient, theirs.gravity_gradient);
+  take(layout_.frequency, theirs.frequency);
 }
 
 void RunSolver::BlockOf(std::size_t knot, NormalBlock& block) {
@@ -233,31 +234,37 @@ double RunSolver::WalkOfUnseen(std::size_t knot) const {
   return rate * along / std::max(along, std::hypot(t.x(), t.y()));
 }
 
-/// 1-sigma of the change of the roll rate over a knot [rad/s].
-double RunSolver::Walk(std::size_t knot) const {
+/// 1-sigma of the change over a knot of the roll rate, or of its swing, that walks by `walk` and
+/// starts and stops with the tool [rad/s].
+double RunSolver::Walk(std::size_t knot, double walk) const {
   // A third axis measures the roll: its walk then only keeps the system whole.
   const Increment& inc = knots_[knot].increment;
   if (inc.has_axial) return std::sqrt(inc.seconds);
   const double seen = scales_.roll_start.empty() ? 0 : scales_.roll_start[knot];
   const double by_speed = scales_.speed_start.empty() ? 0 : scales_.speed_start[knot];
-  return std::hypot(scales_.roll_walk * std::sqrt(inc.seconds),
-                    std::max(seen, scales_.speed_share * by_speed), WalkOfUnseen(knot));
+  return std::hypot(walk * std::sqrt(inc.seconds), std::max(seen, scales_.speed_share * by_speed),
+                    WalkOfUnseen(knot));
 }
 
 RollChange RunSolver::Change(std::size_t knot) const {
-  if (scales_.roll_weight.empty()) return {Walk(knot), 0, 0};
-  return {Walk(knot), scales_.roll_weight[knot][0], scales_.roll_weight[knot][1]};
+  RollChange change{Walk(knot, scales_.roll_walk), Walk(knot, scales_.swing_walk), 0, 0};
+  if (scales_.roll_weight.empty()) return change;
+  change.weight = scales_.roll_weight[knot][0];
+  change.swing_weight = scales_.roll_weight[knot][1];
+  return change;
 }
 
 /// From here on the problem is one of least squares, which Gauss-Newton ends in few steps.
 void RunSolver::HoldRollWeights() {
-  scales_.roll_weight.resize(knots_.size());
+  const std::optional<double> frequency = FrequencyOf(setup_, layout_, border_);
+  std::vector<std::array<double, 2>> weights(knots_.size());
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const RollSquares squares =
-        RollSquaresOf(setup_, knots_[k].increment.seconds, places_[k].axial_change, Walk(k),
+        RollSquaresOf(frequency, knots_[k].increment.seconds, places_[k].axial_change, Change(k),
                       nodes_[k], nodes_[k + 1]);
-    scales_.roll_weight[k] = {RollWeight(squares.rate, 1), RollWeight(squares.swing, 2)};
+    weights[k] = {RollWeight(squares.rate, 1), RollWeight(squares.swing, 2)};
   }
+  scales_.roll_weight = std::move(weights);
 }
 
 /// One step of Gauss-Newton. One that takes the last one back went too far, as the next one would:
@@ -308,16 +315,20 @@ double RunSolver::Evidence() const {
   double evidence =
       elimination_.log_determinant() + border_.cwiseQuotient(layout_.sigma).squaredNorm();
   for (const RowSum& sum : block_.sums()) evidence += sum.cost;
-  const double rows = layout_.swing == kAbsent ? 1 : 3;
-  if (layout_.swing != kAbsent) evidence += 4 * std::log(kAnyRoll);  // of its prior
-  for (std::size_t k = 0; k < knots_.size(); ++k) evidence += 2 * rows * std::log(Walk(k));
+  const bool swings = layout_.swing != kAbsent;
+  if (swings) evidence += 4 * std::log(kAnyRoll);  // of its prior
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    const RollChange change = Change(k);
+    evidence += 2 * std::log(change.sigma);
+    if (swings) evidence += 4 * std::log(change.swing_sigma);
+  }
   return evidence;
 }
 
-/// The evidence with `tried` in place of the scale; HUGE_VAL where it leads nowhere. One so far
+/// The evidence with `tried` in place of the scales; HUGE_VAL where it leads nowhere. One so far
 /// below `least` that no further step takes it back is taken for what its next step promises.
-double RunSolver::EvidenceOf(double tried, double least, double& scale, SolveReport& report) {
-  scale = tried;
+double RunSolver::EvidenceOf(double tried, double least, Scales scales, SolveReport& report) {
+  for (double* scale : scales) *scale = tried;
   last_steps_.clear();
   for (int i = 0; i < kTry && Advance(report); ++i) {
     const double now = elimination_.decrement();
@@ -333,14 +344,14 @@ double RunSolver::EvidenceOf(double tried, double least, double& scale, SolveRep
 /// more the hole leans, the more of the accelerometers' noise a free roll explains, so that the
 /// solution leans too far (nuisances as many as the knots: Neyman and Scott, 1948). The evidence
 /// counts what they explain against their number.
-double RunSolver::FindDecade(double least, double most, double& scale, SolveReport& report) {
-  const double begin = scale;
-  double best = EvidenceOf(begin, -HUGE_VAL, scale, report), best_scale = begin;
+double RunSolver::FindDecade(double least, double most, Scales scales, SolveReport& report) {
+  const double begin = **scales.begin();
+  double best = EvidenceOf(begin, -HUGE_VAL, scales, report), best_scale = begin;
   std::vector<Node> nodes = nodes_;
   BorderVector border = border_;
   for (const double step : {0.1, 10.}) {
     for (double tried = begin * step; tried > 0.9 * least && tried < 1.1 * most; tried *= step) {
-      const double evidence = EvidenceOf(tried, best, scale, report);
+      const double evidence = EvidenceOf(tried, best, scales, report);
       if (!(evidence < best)) break;
       best = evidence;
       best_scale = tried;
@@ -351,7 +362,7 @@ double RunSolver::FindDecade(double least, double most, double& scale, SolveRepo
     border_ = border;
     if (best_scale != begin) break;
   }
-  scale = best_scale;
+  for (double* scale : scales) *scale = best_scale;
   return best;
 }
 
@@ -363,7 +374,7 @@ void RunSolver::FindBetween(double evidence, double& scale, SolveReport& report)
   double beside[2];
   for (const int side : {0, 1}) {
     const double tried = decade * (side == 0 ? 1 / kHalfDecade : kHalfDecade);
-    beside[side] = EvidenceOf(tried, -HUGE_VAL, scale, report);
+    beside[side] = EvidenceOf(tried, -HUGE_VAL, {&scale}, report);
     nodes_ = nodes;
     border_ = border;
   }
@@ -381,6 +392,32 @@ bool RunSolver::HidesAStart() const {
   return false;
 }
 
+/// What the swing turns the tool by in each knot [rad].
+std::vector<double> RunSolver::Swung() const {
+  std::vector<double> swung;
+  const double frequency = *FrequencyOf(setup_, layout_, border_);
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    const double seconds = knots_[k].increment.seconds;
+    swung.push_back(seconds * MeanOfSwing(frequency, seconds).dot(nodes_[k].swing));
+  }
+  return swung;
+}
+
+/// What the roll rate and its swing walk by: first both by the same, so that neither takes the
+/// other's part, then each by itself. A swing of one frequency goes on as it is while the rate
+/// follows the hole and the string, or the other way round.
+void RunSolver::FindWalks(SolveReport& report) {
+  double &roll = scales_.roll_walk, &swing = scales_.swing_walk;
+  double evidence = FindDecade(kRollWalkLeast, kRollWalkMost, {&roll, &swing}, report);
+  if (layout_.swing != kAbsent) {
+    scales_.roll_start = RollStarts(knots_, Swung());
+    FindDecade(kRollWalkLeast, kRollWalkMost, {&swing}, report);
+    evidence = FindDecade(kRollWalkLeast, kRollWalkMost, {&roll}, report);
+  }
+  // At the least walk that counts, less or somewhat more says the same.
+  if (roll > 1.1 * kRollWalkLeast) FindBetween(evidence, roll, report);
+}
+
 bool RunSolver::SolveWithNoise(double gyro, double accel) {
   setup_.gyro.angle_random_walk *= gyro;
   setup_.gyro.quantization *= gyro;
@@ -394,7 +431,7 @@ void RunSolver::BeginScales() {
   scales_ = {};
   scales_.roll_start = RollStarts(knots_);
   scales_.speed_start = SpeedStarts(knots_);
-  scales_.roll_walk = RollWalkBy(knots_);
+  scales_.roll_walk = scales_.swing_walk = RollWalkBy(knots_);
   scales_.speed_share = kShareFirst;
 }
 
@@ -411,10 +448,8 @@ SolveReport RunSolver::Solve(int iterations, double least) {
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });
   if (!measured) {
-    const double evidence = FindDecade(kRollWalkLeast, kRollWalkMost, scales_.roll_walk, report);
-    // At the least walk that counts, less or somewhat more says the same.
-    if (scales_.roll_walk > 1.1 * kRollWalkLeast) FindBetween(evidence, scales_.roll_walk, report);
-    if (HidesAStart()) FindDecade(kShareLeast, 1, scales_.speed_share, report);
+    FindWalks(report);
+    if (HidesAStart()) FindDecade(kShareLeast, 1, {&scales_.speed_share}, report);
   }
   HoldRollWeights();
   Finish(least, report);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -83,12 +84,15 @@ class RunSolver : public RunRows {
   void BlockOf(std::size_t knot, NormalBlock& block) override;
 
  private:
+  /// Scales that are sought together, all of one size.
+  using Scales = std::initializer_list<double*>;
+
   bool Linearise();
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
   void BeginScales();
   double WalkOfUnseen(std::size_t knot) const;
-  double Walk(std::size_t knot) const;
+  double Walk(std::size_t knot, double walk) const;
   RollChange Change(std::size_t knot) const;
   void HoldRollWeights();
   bool Advance(SolveReport& report);
@@ -96,9 +100,11 @@ class RunSolver : public RunRows {
   bool Iterate(int most, double stays, SolveReport& report, double creeps = HUGE_VAL);
   double Evidence() const;
   bool HidesAStart() const;
-  double EvidenceOf(double tried, double least, double& scale, SolveReport& report);
-  double FindDecade(double least, double most, double& scale, SolveReport& report);
+  double EvidenceOf(double tried, double least, Scales scales, SolveReport& report);
+  double FindDecade(double least, double most, Scales scales, SolveReport& report);
   void FindBetween(double evidence, double& scale, SolveReport& report);
+  std::vector<double> Swung() const;
+  void FindWalks(SolveReport& report);
 
   EstimateSetup setup_;
   Layout layout_;
