@@ -23,7 +23,7 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct AllanOptions {
   std::string data, type, channel, bus_channel, sequence, temperature, time, detrend;
   std::vector<std::string> exclude;
   std::string deviation = "oadev", taus = "octave";
@@ -38,7 +38,7 @@ std::function<void(double)> Shower(Progress& progress) {
   return [&progress](double part) { progress.Show(std::lround(1000 * part), 1000); };
 }
 
-Result<SampleSeries> Read(const Options& o) {
+Result<SampleSeries> ReadSeries(const AllanOptions& o) {
   std::optional<SeriesType> type = SeriesTypeOf(o.type);
   if (!type) {
     const Result<SeriesType> found = SeriesTypeOfFile(o.data);
@@ -65,7 +65,7 @@ Result<SampleSeries> Read(const Options& o) {
 }
 
 // 1e-3 off is another rate, less may be rounding of a period to whole nanoseconds.
-void SetPeriod(const Options& o, SampleSeries& series) {
+void SetPeriod(const AllanOptions& o, SampleSeries& series) {
   if (o.rate_hz == 0 && series.period == 0) {
     throw std::invalid_argument("--rate-hz is needed: " + o.data + " does not say its rate");
   }
@@ -76,7 +76,7 @@ void SetPeriod(const Options& o, SampleSeries& series) {
   if (series.period == 0) series.period = 1 / o.rate_hz;
 }
 
-void CheckUnit(const Options& o, const SampleSeries& series) {
+void CheckUnit(const AllanOptions& o, const SampleSeries& series) {
   const std::string& unit = o.request.unit;
   const std::string& own = series.unit;
   const bool counts = unit == "counts" || (unit.empty() && own == "counts");
@@ -91,7 +91,7 @@ void CheckUnit(const Options& o, const SampleSeries& series) {
   }
 }
 
-bool Write(const std::string& name, const std::string& text) {
+bool WriteOrSay(const std::string& name, const std::string& text) {
   if (name.empty()) return true;
   const std::filesystem::path path(name);
   // A device or a link to one, as /dev/stdout, is written to; whole files take the place of files.
@@ -112,12 +112,12 @@ bool Write(const std::string& name, const std::string& text) {
   return true;
 }
 
-int Tell(const Options& o, const AllanAnswer& answer) {
+int Tell(const AllanOptions& o, const AllanAnswer& answer) {
   fmt::print("{}", answer.summary);
   for (const auto& note : answer.notes) fmt::print(stderr, "note: {}\n", note);
-  bool good = Write(o.table, answer.table);
-  if (!answer.plot.empty()) good &= Write(o.plot, answer.plot);
-  if (answer.noise) good &= Write(o.out, *answer.noise);
+  bool good = WriteOrSay(o.table, answer.table);
+  if (!answer.plot.empty()) good &= WriteOrSay(o.plot, answer.plot);
+  if (answer.noise) good &= WriteOrSay(o.out, *answer.noise);
   if (answer.unfit) {
     Complain(fmt::format("no coefficients: {}", answer.unfit->text));
     good &= o.out.empty();
@@ -126,8 +126,8 @@ int Tell(const Options& o, const AllanAnswer& answer) {
   return answer.losses ? kDoneWithLosses : kDone;
 }
 
-int Run(Options& o) {
-  Result<SampleSeries> series = Read(o);
+int RunAllan(AllanOptions& o) {
+  Result<SampleSeries> series = ReadSeries(o);
   if (!series) {
     Complain(series.fault());
     return kUnusable;
@@ -152,7 +152,7 @@ int Run(Options& o) {
 }
 
 // "0:600": from and to in seconds from the first sample.
-void TakeExcluded(Options& o) {
+void TakeExcluded(AllanOptions& o) {
   for (const std::string& word : o.exclude) {
     const std::size_t colon = word.find(':');
     double from = 0, to = 0;
@@ -169,7 +169,7 @@ void TakeExcluded(Options& o) {
 }
 
 // octave, decade, or times in seconds with commas between.
-void TakeTaus(Options& o) {
+void TakeTaus(AllanOptions& o) {
   AllanRequest& request = o.request;
   if (o.taus == "octave") {
     request.taus = AllanRequest::Taus::kOctave;
@@ -192,7 +192,7 @@ void TakeTaus(Options& o) {
   }
 }
 
-void TakeWords(Options& o) {
+void TakeWords(AllanOptions& o) {
   AllanRequest& request = o.request;
   request.deviation = o.deviation == "adev"   ? Deviation::kAllan
                       : o.deviation == "mdev" ? Deviation::kModified
@@ -205,7 +205,7 @@ void TakeWords(Options& o) {
   o.request.detrend_temperature = o.detrend == "temperature";
 }
 
-void AddInput(CLI::App& command, Options& o) {
+void AddInput(CLI::App& command, AllanOptions& o) {
   const CLI::Validator finite(
       [](std::string& text) {
         return text.find_first_of("nN") == std::string::npos ? "" : "must be a number";
@@ -244,7 +244,7 @@ void AddInput(CLI::App& command, Options& o) {
   command.add_flag("--unitless", o.request.unitless, "plain numbers: no unit in the table");
 }
 
-void AddCleaning(CLI::App& command, Options& o) {
+void AddCleaning(CLI::App& command, AllanOptions& o) {
   command
       .add_option("--exclude", o.exclude,
                   "a stretch to leave out, seconds from the first sample: 0:600; several with "
@@ -258,7 +258,7 @@ void AddCleaning(CLI::App& command, Options& o) {
       ->check(CLI::IsMember({"temperature"}));
 }
 
-void AddAnalysis(CLI::App& command, Options& o) {
+void AddAnalysis(CLI::App& command, AllanOptions& o) {
   command
       .add_option("--deviation", o.deviation,
                   "of the table: adev (side by side), oadev (overlapped, default) or mdev")
@@ -281,7 +281,7 @@ void AddAnalysis(CLI::App& command, Options& o) {
 void AddAllan(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("allan", "Finds Allan deviation and noise coefficients of a static log");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AllanOptions>();
   AddInput(*command, *options);
   AddCleaning(*command, *options);
   AddAnalysis(*command, *options);
@@ -292,7 +292,7 @@ void AddAllan(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] {
     try {
       TakeWords(*options);
-      exit_code = Run(*options);
+      exit_code = RunAllan(*options);
     } catch (const std::invalid_argument& error) {
       Complain(fmt::format("{}; see wellgyro allan --help", error.what()));
       exit_code = kUsage;

@@ -9,8 +9,6 @@
 namespace wellgyro::apps {
 namespace {
 
-using Options = BenchOptions;
-
 Result<BenchOutcome> Plain(Result<BenchCalibration> fitted) {
   if (!fitted) return fitted.fault();
   return BenchOutcome{*std::move(fitted), std::nullopt};
@@ -18,51 +16,52 @@ Result<BenchOutcome> Plain(Result<BenchCalibration> fitted) {
 
 // A fit of one table against what stands around the bench.
 template <auto kFit, auto kSetup>
-Result<BenchOutcome> AgainstReference(const BenchTable& data, const BenchTable&, Options& o) {
+Result<BenchOutcome> AgainstReference(const BenchTable& data, const BenchTable&, BenchOptions& o) {
   auto& setup = o.*kSetup;
   setup.reference = o.reference;
   return Plain(kFit(data, setup));
 }
 
-Result<BenchOutcome> TwentyFour(const BenchTable& data, const BenchTable&, Options& o) {
+Result<BenchOutcome> TwentyFour(const BenchTable& data, const BenchTable&, BenchOptions& o) {
   o.twenty_four.axes = o.reference.axes;
   o.twenty_four.gravity = o.reference.gravity_mps2 / units::kStandardGravity;
   return Plain(FitTwentyFourPositions(data, o.twenty_four));
 }
 
-Result<BenchOutcome> Six(const BenchTable& data, const BenchTable&, Options& o) {
+Result<BenchOutcome> Six(const BenchTable& data, const BenchTable&, BenchOptions& o) {
   o.six.axes = o.reference.axes;
   o.six.gravity = o.reference.gravity_mps2;
   o.six.gravity_stated = o.gravity_stated;
   return Plain(FitSixPositions(data, o.six));
 }
 
-Result<BenchOutcome> Thermometer(const BenchTable& data, const BenchTable&, Options& o) {
+Result<BenchOutcome> Thermometer(const BenchTable& data, const BenchTable&, BenchOptions& o) {
   return Plain(FitThermometer(data, o.thermometer));
 }
 
-Result<BenchOutcome> Orthogonality(const BenchTable& data, const BenchTable&, Options& o) {
+Result<BenchOutcome> Orthogonality(const BenchTable& data, const BenchTable&, BenchOptions& o) {
   o.orthogonality.reference = o.reference;
   auto fitted = FitOrthogonality(data, o.orthogonality);
   if (!fitted) return fitted.fault();
   return BenchOutcome{std::move(fitted->calibration), fitted->check};
 }
 
-Result<BenchOutcome> GyrosAtRest(const BenchTable& rest, const BenchTable& table, Options& o) {
+Result<BenchOutcome> GyrosAtRest(const BenchTable& rest, const BenchTable& table, BenchOptions& o) {
   o.gyro.reference = o.reference;
   return Plain(FitGyro(rest, table, o.gyro));
 }
 
-Result<BenchOutcome> GyrosOnTable(const BenchTable& table, const BenchTable& rest, Options& o) {
+Result<BenchOutcome> GyrosOnTable(const BenchTable& table, const BenchTable& rest,
+                                  BenchOptions& o) {
   return GyrosAtRest(rest, table, o);
 }
 
-void TwentyFourOptions(CLI::App& command, Options& o) {
+void TwentyFourOptions(CLI::App& command, BenchOptions& o) {
   AddGravity(command, o);
   AddAxes(command, o);
-  AddNumber(command, "--sigma-v", o.twenty_four.sigma, 1, "of a settled mean");
-  AddNumber(command, "--settle-v", o.twenty_four.settle_tolerance, 1,
-            "readings that agree within it have settled, default 1e-4");
+  AddPositive(command, "--sigma-v", o.twenty_four.sigma, 1, "of a settled mean");
+  AddPositive(command, "--settle-v", o.twenty_four.settle_tolerance, 1,
+              "readings that agree within it have settled, default 1e-4");
   command
       .add_option("--max-degree", o.twenty_four.max_degree,
                   "of the polynomials in temperature, default 3")
@@ -70,28 +69,28 @@ void TwentyFourOptions(CLI::App& command, Options& o) {
   AddTool(command, o);
 }
 
-void SixOptions(CLI::App& command, Options& o) {
+void SixOptions(CLI::App& command, BenchOptions& o) {
   AddGravity(command, o);
   AddAxes(command, o);
   command.add_flag_callback(
       "--no-k2", [&o] { o.six.second_order = false; },
       "leave the second-order term out; the bias is that of each own pair");
-  AddNumber(command, "--sigma-pulses", o.six.sigma, 1, "of the pulses counted in a position");
-  AddNumber(command, "--tilt-arcsec", o.six.tilt_sigma, units::kArcsec,
-            "1 sigma of the fixture's tilt, each position anew");
+  AddPositive(command, "--sigma-pulses", o.six.sigma, 1, "of the pulses counted in a position");
+  AddPositive(command, "--tilt-arcsec", o.six.tilt_sigma, units::kArcsec,
+              "1 sigma of the fixture's tilt, each position anew");
   AddTool(command, o);
 }
 
-void ThermometerOptions(CLI::App& command, Options& o) {
+void ThermometerOptions(CLI::App& command, BenchOptions& o) {
   command.add_option("--knee-degc", o.thermometer.knee, "where the readings bend, default 175")
       ->check(Within(-273, 1000));
   command.add_flag("--fit-knee", o.thermometer.fit_knee, "find the knee");
-  AddNumber(command, "--sigma-degc", o.thermometer.sigma, 1, "of a reading");
+  AddPositive(command, "--sigma-degc", o.thermometer.sigma, 1, "of a reading");
   AddTool(command, o);
 }
 
 // Of sensors at known attitudes in gravity and the field.
-void AttitudeOptions(CLI::App& command, Options& o) {
+void AttitudeOptions(CLI::App& command, BenchOptions& o) {
   AddGravity(command, o);
   AddField(command, o);
   AddDeclination(command, o);
@@ -99,7 +98,7 @@ void AttitudeOptions(CLI::App& command, Options& o) {
   AddTool(command, o);
 }
 
-void AffineOptions(CLI::App& command, Options& o) {
+void AffineOptions(CLI::App& command, BenchOptions& o) {
   using Order = AffineSetup::Order;
   const std::map<std::string, Order> orders{
       {"none", Order::kNone}, {"own", Order::kOwn}, {"full", Order::kFull}};
@@ -108,39 +107,39 @@ void AffineOptions(CLI::App& command, Options& o) {
                   "of the accelerometers: none (default), own axis, or full with products")
       ->transform(CLI::CheckedTransformer(orders).description(""))
       ->type_name("none|own|full");
-  AddNumber(command, "--sigma-accel", o.affine.sigma_accel, 1, "of a reading, its unit");
-  AddNumber(command, "--sigma-mag", o.affine.sigma_mag, 1, "of a reading, its unit");
-  AddNumber(command, "--tilt-deg", o.affine.tilt_sigma, units::kDeg,
-            "1 sigma of each attitude, about each axis; needs the sigmas");
+  AddPositive(command, "--sigma-accel", o.affine.sigma_accel, 1, "of a reading, its unit");
+  AddPositive(command, "--sigma-mag", o.affine.sigma_mag, 1, "of a reading, its unit");
+  AddPositive(command, "--tilt-deg", o.affine.tilt_sigma, units::kDeg,
+              "1 sigma of each attitude, about each axis; needs the sigmas");
   AttitudeOptions(command, o);
 }
 
-void OrthogonalityOptions(CLI::App& command, Options& o) {
+void OrthogonalityOptions(CLI::App& command, BenchOptions& o) {
   command.add_flag("--free-frequency", o.orthogonality.free_frequency,
                    "find the frequencies x_k2, where they differ from 1");
-  AddNumber(command, "--sigma-accel", o.orthogonality.sigma_accel, 1, "of a reading");
-  AddNumber(command, "--sigma-mag", o.orthogonality.sigma_mag, 1, "of a reading");
+  AddPositive(command, "--sigma-accel", o.orthogonality.sigma_accel, 1, "of a reading");
+  AddPositive(command, "--sigma-mag", o.orthogonality.sigma_mag, 1, "of a reading");
   AttitudeOptions(command, o);
 }
 
 // Of accelerometers in gravity alone.
 template <auto kSetup, auto kSigma>
-void GravityOptions(CLI::App& command, Options& o) {
+void GravityOptions(CLI::App& command, BenchOptions& o) {
   AddGravity(command, o);
-  AddNumber(command, "--sigma-accel", (o.*kSetup).*kSigma, 1, "of a reading, its unit");
+  AddPositive(command, "--sigma-accel", (o.*kSetup).*kSigma, 1, "of a reading, its unit");
   AddAxes(command, o);
   AddTool(command, o);
 }
-constexpr auto kScalarOptions = GravityOptions<&Options::scalar, &ScalarSetup::sigma_accel>;
+constexpr auto kScalarOptions = GravityOptions<&BenchOptions::scalar, &ScalarSetup::sigma_accel>;
 
-void ScalarDipOptions(CLI::App& command, Options& o) {
+void ScalarDipOptions(CLI::App& command, BenchOptions& o) {
   AddField(command, o);
   command.add_flag("--free-dip", o.scalar.free_dip, "find the dip");
-  AddNumber(command, "--sigma-mag", o.scalar.sigma_mag, 1, "of a reading, its unit");
+  AddPositive(command, "--sigma-mag", o.scalar.sigma_mag, 1, "of a reading, its unit");
   kScalarOptions(command, o);
 }
 
-void GyroOptions(CLI::App& command, Options& o) {
+void GyroOptions(CLI::App& command, BenchOptions& o) {
   const std::map<std::string, GyroForceModel> models{{"dual-axis", GyroForceModel::kDualAxis},
                                                      {"full", GyroForceModel::kFull},
                                                      {"none", GyroForceModel::kNone}};
@@ -152,34 +151,35 @@ void GyroOptions(CLI::App& command, Options& o) {
           "what they feel of it: dual-axis (tuned rotors), full (vibrating), none (optical); by "
           "the channels' names if not given")
       ->check(CLI::IsMember({"dual-axis", "full", "none"}));
-  AddNumber(command, "--sigma-deg-per-h", o.gyro.sigma, 1, "of a reading at rest");
-  AddNumber(command, "--sigma-table-deg-per-h", o.gyro.sigma_table, 1, "of a reading on the table");
+  AddPositive(command, "--sigma-deg-per-h", o.gyro.sigma, 1, "of a reading at rest");
+  AddPositive(command, "--sigma-table-deg-per-h", o.gyro.sigma_table, 1,
+              "of a reading on the table");
   AddTool(command, o);
 }
 
-void AtRestOptions(CLI::App& command, Options& o) {
+void AtRestOptions(CLI::App& command, BenchOptions& o) {
   command.add_option("--rate-table", o.joined,
                      "readings of a rate table to join: axis,rate_deg_s and the same channels");
   command.add_flag("--fit-north", o.gyro.fit_north, "find the fixture's north offset");
   GyroOptions(command, o);
 }
 
-void OnTableOptions(CLI::App& command, Options& o) {
+void OnTableOptions(CLI::App& command, BenchOptions& o) {
   command.add_option("--multi-position", o.joined,
                      "readings at rest to join: inc,az,tf,fx,fy,fz and the same channels");
   GyroOptions(command, o);
 }
 
-void StationOptions(CLI::App& command, Options& o) {
+void StationOptions(CLI::App& command, BenchOptions& o) {
   AddGravity(command, o);
   AddField(command, o);
   AddLatitude(command, o);
   MultiStationSetup& s = o.stations;
-  AddNumber(command, "--sigma-field-nt", s.sigma_field, 1, "of the field at a station");
-  AddNumber(command, "--sigma-dip-deg", s.sigma_dip, units::kDeg, "of the dip at a station");
-  AddNumber(command, "--sigma-rate-deg-per-h", s.sigma_rate, 1, "of the rate at a station");
-  AddNumber(command, "--prior-bias", s.prior_bias, 1, "1 sigma about zero, nT or deg/h");
-  AddNumber(command, "--prior-scale", s.prior_scale, 1, "1 sigma about zero");
+  AddPositive(command, "--sigma-field-nt", s.sigma_field, 1, "of the field at a station");
+  AddPositive(command, "--sigma-dip-deg", s.sigma_dip, units::kDeg, "of the dip at a station");
+  AddPositive(command, "--sigma-rate-deg-per-h", s.sigma_rate, 1, "of the rate at a station");
+  AddPositive(command, "--prior-bias", s.prior_bias, 1, "1 sigma about zero, nT or deg/h");
+  AddPositive(command, "--prior-scale", s.prior_scale, 1, "1 sigma about zero");
 }
 
 constexpr const char* kField = " --field-nt 50000 --dip-deg 65";
@@ -195,7 +195,7 @@ constexpr BenchMethod kMethods[] = {
      ThermometerOptions, Thermometer},
     {"affine", "accelerometers and magnetometers at known attitudes",
      "inc,az,tf in deg, Gx,Gy,Gz (gravity) or fx,fy,fz or vx,vy,vz (force), Mx,My,Mz", kField,
-     AffineOptions, AgainstReference<FitAffine, &Options::affine>},
+     AffineOptions, AgainstReference<FitAffine, &BenchOptions::affine>},
     {"orthogonality",
      "three accelerometers and three fluxgates: trigonometric coefficients, and the affine model "
      "from the same readings",
@@ -203,14 +203,14 @@ constexpr BenchMethod kMethods[] = {
      Orthogonality},
     {"scalar", "accelerometers without a turntable: gravity has one length",
      "ax,ay,az or Gx,Gy,Gz (gravity), or fx,fy,fz or vx,vy,vz (force)", "", kScalarOptions,
-     AgainstReference<FitScalar, &Options::scalar>},
+     AgainstReference<FitScalar, &BenchOptions::scalar>},
     {"scalar-dip", "accelerometers and magnetometers together, by lengths and dip",
      "ax,ay,az,mx,my,mz", kField, ScalarDipOptions,
-     AgainstReference<FitScalarDip, &Options::scalar>},
+     AgainstReference<FitScalarDip, &BenchOptions::scalar>},
     {"roll-test", "the housing's axis in the accelerometers' frame",
      "set,fx,fy,fz, calibrated, rolled in V-blocks", "",
-     GravityOptions<&Options::roll, &RollTestSetup::sigma>,
-     AgainstReference<FitRollTest, &Options::roll>},
+     GravityOptions<&BenchOptions::roll, &RollTestSetup::sigma>,
+     AgainstReference<FitRollTest, &BenchOptions::roll>},
     {"gyro-multi-position", "gyros at rest against the Earth's rate",
      "inc,az,tf,fx,fy,fz,m_x1,m_y1 ... in deg, g, deg/h", kLatitude, AtRestOptions, GyrosAtRest,
      "rate_table"},
@@ -219,7 +219,7 @@ constexpr BenchMethod kMethods[] = {
      "multi_position"},
     {"multi-station", "bias of magnetometers or gyros from the stations of a run",
      "Gx,Gy,Gz and Mx,My,Mz or wx,wy or wx,wy,wz", kField, StationOptions,
-     AgainstReference<FitMultiStation, &Options::stations>},
+     AgainstReference<FitMultiStation, &BenchOptions::stations>},
 };
 
 }  // namespace

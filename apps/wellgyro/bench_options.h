@@ -43,8 +43,8 @@ CLI::Validator Within(double low, double high);
 
 /// An option whose number above zero, in the unit of its name, is held in another.
 template <class T>
-void AddNumber(CLI::App& command, const std::string& name, T& held, double unit,
-               const std::string& help) {
+void AddPositive(CLI::App& command, const std::string& name, T& held, double unit,
+                 const std::string& help) {
   constexpr double kLeast = 1e-15, kMost = 1e15;
   command
       .add_option_function<double>(

@@ -22,8 +22,8 @@
 namespace wellgyro::apps {
 namespace {
 
-constexpr std::int64_t kAgainUs = 1'000'000;     // between two tries to connect
-constexpr std::int64_t kSilenceUs = 30'000'000;  // a line that says nothing for so long is cut
+constexpr std::int64_t kAgainUs = 1'000'000;         // between two tries to connect
+constexpr std::int64_t kLineSilenceUs = 30'000'000;  // a line that says nothing for so long is cut
 constexpr const char* kWits = "wits0:";
 
 struct BridgeOptions {
@@ -102,7 +102,7 @@ void Bridge::Read() {
   if (!bytes->empty()) {
     heard_us_ = MonotonicUs();
     reader_.Take(*bytes);
-  } else if (MonotonicUs() - heard_us_ > kSilenceUs) {
+  } else if (MonotonicUs() - heard_us_ > kLineSilenceUs) {
     Lose({FaultCode::kIo, "the line says nothing"});
   }
 }

@@ -26,21 +26,13 @@ namespace wellgyro::apps {
 namespace {
 
 /// The readings of one file, which joins the inputs; none where no file is named.
-Result<BenchTable> Read(const std::string& name, const std::string& role,
-                        std::vector<InputFile>& inputs) {
+Result<BenchTable> ReadInput(const std::string& name, const std::string& role,
+                             std::vector<InputFile>& inputs) {
   if (name.empty()) return BenchTable{};
   const Result<std::string> text = ReadTextFile(name);
   if (!text) return text.fault();
   inputs.push_back({role, name, name, Sha256Hex(*text)});
   return ParseBenchTable(*text, name);
-}
-
-std::optional<Fault> WriteFile(const std::filesystem::path& path, const std::string& bytes) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const OutputFile file{path.filename().string(), bytes};
-  if (auto fault = WriteFiles(folder, {&file, 1})) return fault;
-  fmt::print("{}\n", path.string());
-  return std::nullopt;
 }
 
 Result<std::string> ToolText(const BenchOptions& o, const BenchCalibration& calibration) {
@@ -53,14 +45,14 @@ Result<std::string> ToolText(const BenchOptions& o, const BenchCalibration& cali
   return ToolToml(Updated(std::move(tool), calibration, o.update));
 }
 
-std::optional<Fault> Run(BenchOptions& o, const BenchMethod& method) {
+std::optional<Fault> RunMethod(BenchOptions& o, const BenchMethod& method) {
   Complete(o);
   CalibrationFile file;
   file.program = "wellgyro " WELLGYRO_VERSION;
   file.references = o.said;
-  const Result<BenchTable> data = Read(o.data, "data", file.inputs);
+  const Result<BenchTable> data = ReadInput(o.data, "data", file.inputs);
   if (!data) return data.fault();
-  const Result<BenchTable> joined = Read(o.joined, method.joined_role, file.inputs);
+  const Result<BenchTable> joined = ReadInput(o.joined, method.joined_role, file.inputs);
   if (!joined) return joined.fault();
   Result<BenchOutcome> outcome = method.fit(*data, *joined, o);
   if (!outcome) return outcome.fault();
@@ -74,9 +66,9 @@ std::optional<Fault> Run(BenchOptions& o, const BenchMethod& method) {
     tool = *std::move(text);
   }
   fmt::print("{}", CalibrationSummary(file));
-  if (auto fault = WriteFile(o.out, CalibrationToml(file))) return fault;
+  if (auto fault = WriteAndName(o.out, CalibrationToml(file))) return fault;
   if (o.tool.empty()) return std::nullopt;
-  return WriteFile(o.tool, tool);
+  return WriteAndName(o.tool, tool);
 }
 
 void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchOptions>& o,
@@ -93,7 +85,7 @@ void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchO
                   method.name, method.needs));
   command->callback([o, &exit_code, &method] {
     try {
-      const auto fault = Run(*o, method);
+      const auto fault = RunMethod(*o, method);
       if (fault) Complain(*fault);
       exit_code = fault ? kUnusable : kDone;
     } catch (const std::invalid_argument& error) {

@@ -26,15 +26,6 @@
 namespace wellgyro::apps {
 namespace {
 
-std::optional<Fault> Write(const std::string& name, const std::string& bytes) {
-  const std::filesystem::path path(name);
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const OutputFile file{path.filename().string(), bytes};
-  if (auto fault = WriteFiles(folder, {&file, 1})) return fault;
-  fmt::print("{}\n", name);
-  return std::nullopt;
-}
-
 // A command's callback: its faults and mistakes to the exit code.
 template <class Run>
 void OnCall(CLI::App* command, int& exit_code, Run run) {
@@ -81,7 +72,7 @@ int Verify(VerifyOptions& o) {
   return found->pass ? kDone : kFailed;
 }
 
-struct PlanOptions {
+struct BenchPlanOptions {
   BenchPlanSetup setup;
   std::string out;
   double bench_latitude_deg = 0, well_latitude_deg = 0, sigma_azimuth_deg = 0.1;
@@ -97,7 +88,7 @@ std::string PlanText(const BenchPlan& plan) {
   return text;
 }
 
-int Plan(PlanOptions& o) {
+int Plan(BenchPlanOptions& o) {
   o.setup.bench_latitude = FromDegrees(o.bench_latitude_deg);
   o.setup.well_latitude = FromDegrees(o.well_latitude_deg);
   o.setup.sigma_azimuth = FromDegrees(o.sigma_azimuth_deg);
@@ -120,7 +111,7 @@ int Plan(PlanOptions& o) {
         fmt::format("{} settings do not reach {:g} deg; read longer in each (--sigma-deg-per-h)",
                     plan.settings.size(), o.sigma_azimuth_deg));
   }
-  if (const auto fault = Write(o.out, PlanText(plan))) return Unusable(*fault);
+  if (const auto fault = WriteAndName(o.out, PlanText(plan))) return Unusable(*fault);
   return plan.reached ? kDone : kUnusable;
 }
 
@@ -162,20 +153,20 @@ void AddCalibrateVerify(CLI::App& calibrate, int& exit_code) {
   AddGravity(*command, o->bench);
   AddLatitude(*command, o->bench);
   AddAxes(*command, o->bench);
-  AddNumber(*command, "--sigma-accel", o->setup.bench.sigma_accel, 1, "of a reading, its unit");
-  AddNumber(*command, "--sigma-deg-per-h", o->setup.bench.sigma_gyro, 1, "of a gyro's reading");
-  AddNumber(*command, "--wobble-arcsec", o->setup.bench.sigma_wobble, units::kArcsec,
-            "1 sigma of each reading's attitude");
-  AddNumber(*command, "--level-deg", o->setup.bench.sigma_level, units::kDeg,
-            "1 sigma of the bench's tilt, default 0.5");
-  AddNumber(*command, "--north-sigma-deg", o->setup.bench.sigma_north, units::kDeg,
-            "1 sigma of its north, default 1");
-  AddNumber(*command, "--budget-bias-deg-per-h", o->setup.budget_gyro_bias, 1,
-            "1 sigma of gyro biases that the tool may have");
-  AddNumber(*command, "--budget-force-deg-per-h-per-g", o->setup.budget_gyro_force, 1,
-            "of their force terms");
-  AddNumber(*command, "--budget-accel-mg", o->setup.budget_accel_bias, 1e-3,
-            "of accelerometer biases");
+  AddPositive(*command, "--sigma-accel", o->setup.bench.sigma_accel, 1, "of a reading, its unit");
+  AddPositive(*command, "--sigma-deg-per-h", o->setup.bench.sigma_gyro, 1, "of a gyro's reading");
+  AddPositive(*command, "--wobble-arcsec", o->setup.bench.sigma_wobble, units::kArcsec,
+              "1 sigma of each reading's attitude");
+  AddPositive(*command, "--level-deg", o->setup.bench.sigma_level, units::kDeg,
+              "1 sigma of the bench's tilt, default 0.5");
+  AddPositive(*command, "--north-sigma-deg", o->setup.bench.sigma_north, units::kDeg,
+              "1 sigma of its north, default 1");
+  AddPositive(*command, "--budget-bias-deg-per-h", o->setup.budget_gyro_bias, 1,
+              "1 sigma of gyro biases that the tool may have");
+  AddPositive(*command, "--budget-force-deg-per-h-per-g", o->setup.budget_gyro_force, 1,
+              "of their force terms");
+  AddPositive(*command, "--budget-accel-mg", o->setup.budget_accel_bias, 1e-3,
+              "of accelerometer biases");
   command->footer(
       "Example:\n  wellgyro calibrate verify --data found.csv --tool tool.toml --latitude-deg 60 "
       "\\\n"
@@ -185,7 +176,7 @@ void AddCalibrateVerify(CLI::App& calibrate, int& exit_code) {
 }
 
 void AddCalibratePlan(CLI::App& calibrate, int& exit_code) {
-  const auto o = std::make_shared<PlanOptions>();
+  const auto o = std::make_shared<BenchPlanOptions>();
   CLI::App* const command = calibrate.add_subcommand(
       "plan", "the fewest gyro positions that reach an azimuth sigma at the job's latitude");
   command->add_option("--bench-latitude-deg", o->bench_latitude_deg, "of the bench")
@@ -202,7 +193,7 @@ void AddCalibratePlan(CLI::App& calibrate, int& exit_code) {
   command->add_option("--azimuth-deg", o->azimuth_deg, "of the hole: from, to (clockwise)")
       ->expected(2)
       ->check(Within(-360, 360));
-  AddNumber(*command, "--sigma-deg-per-h", o->setup.sigma_gyro, 1, "of a reading, default 0.02");
+  AddPositive(*command, "--sigma-deg-per-h", o->setup.sigma_gyro, 1, "of a reading, default 0.02");
   command->add_option("--temperatures", o->setup.temperatures, "stops of the chamber, 1 to 5")
       ->check(CLI::Range(1, 5));
   command->add_flag_callback(

@@ -30,22 +30,14 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct ToolFitOptions {
   BenchOptions bench;
   std::vector<std::string> data, traceability;
   std::string certificate;
   ToolFitSetup fit;
 };
 
-std::optional<Fault> Write(const std::filesystem::path& path, const std::string& bytes) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const OutputFile file{path.filename().string(), bytes};
-  if (auto fault = WriteFiles(folder, {&file, 1})) return fault;
-  fmt::print("{}\n", path.string());
-  return std::nullopt;
-}
-
-Result<std::vector<BenchTable>> Read(const Options& o, CalibrationFile& file) {
+Result<std::vector<BenchTable>> ReadInputs(const ToolFitOptions& o, CalibrationFile& file) {
   std::vector<BenchTable> tables;
   for (const std::string& name : o.data) {
     const Result<std::string> text = ReadTextFile(name);
@@ -58,7 +50,7 @@ Result<std::vector<BenchTable>> Read(const Options& o, CalibrationFile& file) {
   return tables;
 }
 
-Result<ToolCalibration> ToolOf(const Options& o, const ToolFit& fit) {
+Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit) {
   ToolCalibration tool;
   if (!o.bench.tool.empty() && std::filesystem::exists(o.bench.tool)) {
     auto known = ReadToolFile(o.bench.tool);
@@ -85,8 +77,8 @@ void AddSamples(const ToolCalibration& tool, const ToolFit& fit, Certificate& ce
   }
 }
 
-std::string CertificateText(const Options& o, const CalibrationFile& file, const ToolFit& fit,
-                            const ToolCalibration& tool) {
+std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file,
+                            const ToolFit& fit, const ToolCalibration& tool) {
   Certificate certificate = CertificateOf(fit.calibration.report);
   certificate.asset_serial = tool.asset_serial;
   certificate.sensor_serials = tool.sensor_serials;
@@ -112,7 +104,7 @@ std::string CertificateText(const Options& o, const CalibrationFile& file, const
 }
 
 // Nothing is written over what it came from.
-void RequireOther(const Options& o) {
+void RequireOther(const ToolFitOptions& o) {
   for (const std::string& name : o.data) {
     for (const std::string* out : {&o.bench.out, &o.bench.tool, &o.certificate}) {
       std::error_code ignored;
@@ -123,14 +115,14 @@ void RequireOther(const Options& o) {
   }
 }
 
-std::optional<Fault> Run(Options& o) {
+std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   Complete(o.bench);
   RequireOther(o);
   o.fit.reference = o.bench.reference;
   CalibrationFile file;
   file.program = "wellgyro " WELLGYRO_VERSION;
   file.references = o.bench.said;
-  const auto tables = Read(o, file);
+  const auto tables = ReadInputs(o, file);
   if (!tables) return tables.fault();
   const auto fit = FitTool(*tables, o.fit);
   if (!fit) return fit.fault();
@@ -139,37 +131,47 @@ std::optional<Fault> Run(Options& o) {
   if (!tool) return tool.fault();
   const std::string tool_text = o.bench.tool.empty() ? std::string() : ToolToml(*tool);
   fmt::print("{}", CalibrationSummary(file));
-  if (auto fault = Write(o.bench.out, CalibrationToml(file))) return fault;
+  if (auto fault = WriteAndName(o.bench.out, CalibrationToml(file))) return fault;
   if (!o.certificate.empty()) {
-    if (auto fault = Write(o.certificate, CertificateText(o, file, *fit, *tool))) return fault;
+    if (auto fault = WriteAndName(o.certificate, CertificateText(o, file, *fit, *tool)))
+      return fault;
   }
   if (tool_text.empty()) return std::nullopt;
-  return Write(o.bench.tool, tool_text);
+  return WriteAndName(o.bench.tool, tool_text);
 }
 
 void AddBenchSigmas(CLI::App& command, ToolFitSetup& fit) {
-  AddNumber(command, "--level-deg", fit.sigma_level, units::kDeg,
-            "1 sigma of a bench's tilt, default 0.5");
-  AddNumber(command, "--north-sigma-deg", fit.sigma_north, units::kDeg,
-            "1 sigma of a bench's north, default 1");
-  AddNumber(command, "--latitude-sigma-deg", fit.sigma_latitude, units::kDeg,
-            "1 sigma of the latitude, default 0.0006");
-  AddNumber(command, "--seat-arcsec", fit.sigma_axis, units::kArcsec,
-            "1 sigma of the tool's seat on the rate table, default 62");
-  AddNumber(command, "--drift-deg-per-h", fit.sigma_drift, 1,
-            "1 sigma of a gyro's drift from the middle to the end of a table, default 0.1");
-  AddNumber(command, "--wobble-arcsec", fit.sigma_wobble, units::kArcsec,
-            "1 sigma of each reading's attitude; found if not given");
-  AddNumber(command, "--sigma-accel", fit.sigma_accel, 1, "of a reading, its unit; found");
-  AddNumber(command, "--sigma-deg-per-h", fit.sigma_gyro, 1, "of a gyro's reading at rest; found");
-  AddNumber(command, "--sigma-table-deg-per-h", fit.sigma_gyro_table, 1,
-            "of one on the rate table; found");
+  AddPositive(command, "--level-deg", fit.sigma_level, units::kDeg,
+              "1 sigma of a bench's tilt, default 0.5");
+  AddPositive(command, "--north-sigma-deg", fit.sigma_north, units::kDeg,
+              "1 sigma of a bench's north, default 1");
+  AddPositive(command, "--latitude-sigma-deg", fit.sigma_latitude, units::kDeg,
+              "1 sigma of the latitude, default 0.0006");
+  AddPositive(command, "--seat-arcsec", fit.sigma_axis, units::kArcsec,
+              "1 sigma of the tool's seat on the rate table, default 62");
+  AddPositive(command, "--drift-deg-per-h", fit.sigma_drift, 1,
+              "1 sigma of a gyro's drift from the middle to the end of a table, default 0.1");
+  AddPositive(command, "--wobble-arcsec", fit.sigma_wobble, units::kArcsec,
+              "1 sigma of each reading's attitude; found if not given");
+  AddPositive(command, "--sigma-accel", fit.sigma_accel, 1, "of a reading, its unit; found");
+  AddPositive(command, "--sigma-deg-per-h", fit.sigma_gyro, 1,
+              "of a gyro's reading at rest; found");
+  AddPositive(command, "--sigma-table-deg-per-h", fit.sigma_gyro_table, 1,
+              "of one on the rate table; found");
 }
 
 }  // namespace
 
+std::optional<Fault> WriteAndName(const std::filesystem::path& path, const std::string& bytes) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const OutputFile file{path.filename().string(), bytes};
+  if (auto fault = WriteFiles(folder, {&file, 1})) return fault;
+  fmt::print("{}\n", path.string());
+  return std::nullopt;
+}
+
 void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ToolFitOptions>();
   CLI::App* const command = calibrate.add_subcommand(
       "tool", "all bench data of a tool in one adjustment, with its whole covariance");
   command
@@ -194,7 +196,7 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
       "      --latitude-deg 60 --out tool-cal.toml --tool tool.toml --certificate tool.html");
   command->callback([o, &exit_code] {
     try {
-      const auto fault = Run(*o);
+      const auto fault = RunToolFit(*o);
       if (fault) Complain(*fault);
       exit_code = fault ? kUnusable : kDone;
     } catch (const std::invalid_argument& error) {

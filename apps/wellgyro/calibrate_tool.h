@@ -1,6 +1,12 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
+#include <string>
+
 #include <CLI/CLI.hpp>
+
+#include "wellgyro/base/result.h"
 
 namespace wellgyro::apps {
 
@@ -9,5 +15,8 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code);
 void AddCalibrateVerify(CLI::App& calibrate, int& exit_code);
 void AddCalibratePlan(CLI::App& calibrate, int& exit_code);
 void AddCalibrateHistory(CLI::App& calibrate, int& exit_code);
+
+// Writes a whole file and prints its name.
+std::optional<Fault> WriteAndName(const std::filesystem::path& path, const std::string& bytes);
 
 }  // namespace wellgyro::apps

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array kNames = {"chromium", "chromium-browser", "google-chrome", "chrome"};
-constexpr std::chrono::seconds kPatience(60);
+constexpr std::chrono::seconds kDrawPatience(60);
 
 std::string FindChromium() {
   const char* const path = std::getenv("PATH");
@@ -89,7 +89,7 @@ bool RunQuietly(std::vector<std::string> command) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) return false;
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = std::chrono::steady_clock::now() + kDrawPatience;
   int status = 0;
   while (waitpid(child, &status, WNOHANG) == 0) {
     if (std::chrono::steady_clock::now() > end) {

@@ -17,13 +17,13 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct ClearanceOptions {
   ClearanceRequest request;
   std::vector<std::string> offsets;
   std::string out;
 };
 
-int Run(Options& o) {
+int RunClearance(ClearanceOptions& o) {
   o.request.offsets.assign(o.offsets.begin(), o.offsets.end());
   Progress progress("offset wells");
   o.request.progress = [&](std::size_t done, std::size_t all) {
@@ -44,7 +44,7 @@ int Run(Options& o) {
 void AddClearance(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("clearance", "Holds a well against others by the ISCWSA separation rule");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ClearanceOptions>();
   ClearanceRequest& r = options->request;
   command->add_option("--policy", r.policy,
                       "clearance policy (TOML): rule, limits, radii of holes, wells");
@@ -72,7 +72,7 @@ void AddClearance(CLI::App& app, int& exit_code) {
       "warn, where a model ends before its survey does.");
   command->callback([options, &exit_code] {
     try {
-      exit_code = Run(*options);
+      exit_code = RunClearance(*options);
     } catch (const std::invalid_argument& error) {
       Complain(fmt::format("{}; see wellgyro clearance --help", error.what()));
       exit_code = kUsage;

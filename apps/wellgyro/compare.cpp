@@ -17,12 +17,12 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct CompareOptions {
   CompareRequest request;
   std::string first, second, out;
 };
 
-int Run(Options& o) {
+int RunCompare(CompareOptions& o) {
   o.request.first = o.first;
   o.request.second = o.second;
   const Result<CompareAnswer> answer = AnswerCompare(o.request);
@@ -46,7 +46,7 @@ int Run(Options& o) {
 void AddCompare(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "compare", "Holds two surveys of one hole against each other, each difference in its sigmas");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   CompareRequest& r = options->request;
   command->add_option("A", options->first, "survey file, or program of legs (.toml)")->required();
   command->add_option("B", options->second, "the same of the other")->required();
@@ -72,7 +72,7 @@ void AddCompare(CLI::App& app, int& exit_code) {
       "Exit code 4 where the surveys differ by more than their errors allow.");
   command->callback([options, &exit_code] {
     try {
-      exit_code = Run(*options);
+      exit_code = RunCompare(*options);
     } catch (const std::invalid_argument& error) {
       Complain(fmt::format("{}; see wellgyro compare --help", error.what()));
       exit_code = kUsage;

@@ -17,13 +17,13 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct MergeOptions {
   MergeRequest request;
   std::string plan, out;
   std::vector<std::string> formats;
 };
 
-int Run(Options& o) {
+int RunMerge(MergeOptions& o) {
   o.request.plan = o.plan;
   o.request.formats.clear();
   for (const std::string& word : o.formats) {
@@ -44,7 +44,7 @@ int Run(Options& o) {
 void AddMerge(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "merge", "Makes one definitive survey of legs of several tools, with every choice's reason");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MergeOptions>();
   MergeRequest& r = options->request;
   command->add_option("PLAN", options->plan, "legs and policy (TOML)")->required();
   AddPlace(*command, r.surroundings, r.convergence);
@@ -80,7 +80,7 @@ void AddMerge(CLI::App& app, int& exit_code) {
       "Exit code 4 where legs that overlap differ by more than their errors allow.");
   command->callback([options, &exit_code] {
     try {
-      exit_code = Run(*options);
+      exit_code = RunMerge(*options);
     } catch (const std::invalid_argument& error) {
       Complain(fmt::format("{}; see wellgyro merge --help", error.what()));
       exit_code = kUsage;

@@ -14,7 +14,7 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct ModelsOptions {
   std::string name;
 };
 
@@ -45,7 +45,7 @@ void PrintModel(const ErrorModel& model) {
   }
 }
 
-int Run(const Options& o) {
+int RunModels(const ModelsOptions& o) {
   if (o.name.empty()) {
     PrintList();
     return kDone;
@@ -64,14 +64,14 @@ int Run(const Options& o) {
 void AddModels(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("models", "Lists the error models there are, or says what one holds");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ModelsOptions>();
   command->add_option("name", options->name,
                       "a model's name, or a file: .toml, .json (ISCWSA, OWSG), .yaml (welleng), "
                       ".ipm (Compass), export.xml#TOOL (EDM)");
   command->footer(
       "Examples:\n  wellgyro models\n  wellgyro models GYRO-NS-CT_Fl\n"
       "  wellgyro models MWD+IFR1+MS.json");
-  command->callback([options, &exit_code] { exit_code = Run(*options); });
+  command->callback([options, &exit_code] { exit_code = RunModels(*options); });
 }
 
 }  // namespace wellgyro::apps

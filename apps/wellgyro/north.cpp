@@ -20,7 +20,7 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct NorthOptions {
   std::optional<double> latitude, longitude;  // [rad]
   std::optional<double> easting, northing;    // in the system's unit
   double height = 0;                          // [m]
@@ -31,7 +31,7 @@ struct Options {
 double Deg(double radians) { return radians / units::kDeg; }
 
 /// Beside the program where it is installed, else where it was built.
-std::string DataFolder(const Options& o) {
+std::string DataFolder(const NorthOptions& o) {
   if (!o.data.empty()) return o.data;
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -48,7 +48,7 @@ void PrintCheck(const char* what, double stated, double ours) {
   }
 }
 
-int PrintGrid(const Options& o, const GeodeticPoint& place) {
+int PrintGrid(const NorthOptions& o, const GeodeticPoint& place) {
   const auto grid = ProjectToCrs(o.crs, place);
   if (!grid) {
     Complain(grid.fault());
@@ -74,7 +74,7 @@ int PrintGrid(const Options& o, const GeodeticPoint& place) {
   return kDone;
 }
 
-int PrintMagnetic(const Options& o, const GeodeticPoint& place) {
+int PrintMagnetic(const NorthOptions& o, const GeodeticPoint& place) {
   const auto year = DecimalYear(o.date);
   if (!year) {
     Fault fault = year.fault();
@@ -116,7 +116,7 @@ std::string DateOf(UtcTime time) {
 }
 
 /// What the job says of place, grid, date and norths, where no option does.
-std::optional<Fault> TakeJob(Options& o) {
+std::optional<Fault> TakeJob(NorthOptions& o) {
   const Result<JobFile> file = ReadJob(o.job);
   if (!file) return file.fault();
   const Job& job = file->job;
@@ -138,7 +138,7 @@ std::optional<Fault> TakeJob(Options& o) {
 }
 
 /// What of the command line would be passed over, in words; empty where nothing would.
-std::string Unused(const Options& o) {
+std::string Unused(const NorthOptions& o) {
   if (o.easting.has_value() != o.northing.has_value())
     return "--easting and --northing go together";
   if (o.latitude.has_value() != o.longitude.has_value()) {
@@ -157,7 +157,7 @@ std::string Unused(const Options& o) {
   return {};
 }
 
-int Run(Options& o) {
+int RunNorth(NorthOptions& o) {
   if (!o.crs.empty() && o.crs.find_first_not_of("0123456789") == std::string::npos) {
     o.crs = "EPSG:" + o.crs;
   }
@@ -199,7 +199,7 @@ int Run(Options& o) {
 void AddNorth(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "north", "Says where true, grid and magnetic north are at a place and date");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<NorthOptions>();
   command->add_option("--job", o->job,
                       "job whose place, EPSG code, first run's date and stated norths are taken "
                       "where no option says them");
@@ -220,7 +220,7 @@ void AddNorth(CLI::App& app, int& exit_code) {
   command->footer(
       "Example:\n  wellgyro north --latitude-deg 58.44 --longitude-deg 1.93 --crs EPSG:23031 \\\n"
       "      --date 2026-11-22");
-  command->callback([o, &exit_code] { exit_code = Run(*o); });
+  command->callback([o, &exit_code] { exit_code = RunNorth(*o); });
 }
 
 }  // namespace wellgyro::apps

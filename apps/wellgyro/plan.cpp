@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kRpm = kTwoPi / 60;
 
-struct Options {
+struct PlanOptions {
   PlanRequest request;
   std::string practice, out;
 };
@@ -47,7 +47,7 @@ PracticeSpec PracticeOf(const std::string& text) {
   return spec;
 }
 
-void AddFiles(CLI::App& command, Options& o) {
+void AddPlanFiles(CLI::App& command, PlanOptions& o) {
   PlanRequest& r = o.request;
   command
       .add_option("--well", r.well,
@@ -66,7 +66,7 @@ void AddFiles(CLI::App& command, Options& o) {
   command.add_option("--out", o.out, "folder for plan.toml, plan.svg and plan.txt")->required();
 }
 
-void AddLimits(CLI::App& command, Options& o) {
+void AddLimits(CLI::App& command, PlanOptions& o) {
   PlanLimits& l = o.request.limits;
   command
       .add_option("--ellipse-m", l.ellipse, "semi-major axis of the end's 95 % ellipse, at most")
@@ -88,7 +88,7 @@ void AddLimits(CLI::App& command, Options& o) {
                    "the tool can be turned before a stop: toolfaces are chosen too");
 }
 
-void AddWay(CLI::App& command, Options& o) {
+void AddWay(CLI::App& command, PlanOptions& o) {
   PlanRequest& r = o.request;
   AddNumber(command, "--latitude-deg", r.latitude, units::kDeg, "else the job's")
       ->check(CLI::Range(-89.0, 89.0));
@@ -111,7 +111,7 @@ void AddWay(CLI::App& command, Options& o) {
       ->check(CLI::Range(0.0, 200.0));
 }
 
-int Run(Options& o) {
+int RunPlan(PlanOptions& o) {
   if (!o.practice.empty()) o.request.practice = PracticeOf(o.practice);
   const Result<PlanAnswer> answer = AnswerPlan(o.request);
   if (const auto code = WriteAnswer(answer, o.out)) return *code;
@@ -124,8 +124,8 @@ int Run(Options& o) {
 void AddPlan(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "plan", "Finds where a run should stop, how long, and what each stop buys");
-  const auto options = std::make_shared<Options>();
-  AddFiles(*command, *options);
+  const auto options = std::make_shared<PlanOptions>();
+  AddPlanFiles(*command, *options);
   AddLimits(*command, *options);
   AddWay(*command, *options);
   command->footer(
@@ -134,7 +134,7 @@ void AddPlan(CLI::App& app, int& exit_code) {
       "Exit code 4 where no plan meets the limits.");
   command->callback([options, &exit_code] {
     try {
-      exit_code = Run(*options);
+      exit_code = RunPlan(*options);
     } catch (const std::invalid_argument& error) {
       Complain(fmt::format("{}; see wellgyro plan --help", error.what()));
       exit_code = kUsage;

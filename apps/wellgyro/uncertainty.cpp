@@ -18,14 +18,14 @@
 namespace wellgyro::apps {
 namespace {
 
-struct Options {
+struct UncertaintyOptions {
   UncertaintyRequest request;
   std::string allan;
   std::string out;
   bool same_hole = false;
 };
 
-void AddFiles(CLI::App& command, Options& o) {
+void AddSurveyFiles(CLI::App& command, UncertaintyOptions& o) {
   UncertaintySources& s = o.request.sources;
   command.add_option("--survey", s.survey,
                      "survey CSV: MD, INC, AZI; metres or feet by its header");
@@ -48,7 +48,7 @@ void AddFiles(CLI::App& command, Options& o) {
   command.add_option("--out", o.out, "folder for the results")->required();
 }
 
-void AddNumbers(CLI::App& command, Options& o) {
+void AddNumbers(CLI::App& command, UncertaintyOptions& o) {
   UncertaintyRequest& r = o.request;
   AddPlace(command, r.surroundings, r.convergence);
   AddNumber(command, "--speed-mps", r.speed, 1, "of the tool along hole, with --noise");
@@ -70,7 +70,7 @@ void AddNumbers(CLI::App& command, Options& o) {
       ->check(CLI::Range(1e-6, 1 - 1e-9));
 }
 
-int Run(Options& o) {
+int RunUncertainty(UncertaintyOptions& o) {
   o.request.form = o.allan == "printed" ? AllanForm::kPrinted : AllanForm::kExact;
   o.request.pairing = o.same_hole ? Pairing::kSameHole : Pairing::kTwoWells;
   const Result<UncertaintyAnswer> answer = AnswerUncertainty(o.request);
@@ -85,8 +85,8 @@ int Run(Options& o) {
 void AddUncertainty(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "uncertainty", "Finds position covariances and ellipses of a survey by an error model");
-  const auto options = std::make_shared<Options>();
-  AddFiles(*command, *options);
+  const auto options = std::make_shared<UncertaintyOptions>();
+  AddSurveyFiles(*command, *options);
   AddNumbers(*command, *options);
   command
       ->add_option("--allan", options->allan,
@@ -108,7 +108,7 @@ void AddUncertainty(CLI::App& app, int& exit_code) {
       throw CLI::RequiredError("--noise beside --allan");
     }
     try {
-      exit_code = Run(*options);
+      exit_code = RunUncertainty(*options);
     } catch (const std::invalid_argument& error) {
       Complain(fmt::format("{}; see wellgyro uncertainty --help", error.what()));
       exit_code = kUsage;

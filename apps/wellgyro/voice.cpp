@@ -20,7 +20,7 @@ namespace wellgyro::apps {
 namespace {
 
 constexpr std::size_t kHeldMax = 64 << 10;
-constexpr std::chrono::seconds kPatience{1};
+constexpr std::chrono::seconds kLastWordPatience{1};
 
 /// Of the terminal; two at least.
 std::size_t Columns() {
@@ -123,7 +123,8 @@ void Voice::Close() {
   std::unique_lock lock(state_->mutex);
   state_->ended = true;
   state_->changed.notify_all();
-  const bool done = state_->changed.wait_for(lock, kPatience, [this] { return state_->done; });
+  const bool done =
+      state_->changed.wait_for(lock, kLastWordPatience, [this] { return state_->done; });
   lock.unlock();
   if (done) return thread_.join();
   thread_.detach();

@@ -20,7 +20,7 @@
 namespace wellgyro::apps {
 namespace {
 
-constexpr std::int64_t kSilenceUs = 5'000'000;
+constexpr std::int64_t kSurveySilenceUs = 5'000'000;
 
 struct WatchOptions {
   std::string from, job;
@@ -37,7 +37,7 @@ class Watch : private Listener {
   }
   void Look() {
     const std::int64_t now = MonotonicUs();
-    if (now - heard_us_ < kSilenceUs) return;
+    if (now - heard_us_ < kSurveySilenceUs) return;
     console_.OnNotice(fmt::format("no survey is heard for {} s", (now - begin_us_) / 1'000'000));
     heard_us_ = now;
   }

@@ -121,6 +121,48 @@ def Functions(path):
     return found
 
 
+def Unnamed(path):
+    """Line, name and kind of what stands in a source's unnamed namespace. A function's kind is its
+    parameters' types in brackets, an alias's what it stands for."""
+    text = re.sub(r"'(\\.|[^'\\])'", "' '", "\n".join(line for _, line in Code(path)))
+    text = re.sub(r"^\s*#.*", "", text, flags=re.M)
+    found, scopes, head, begin, number = [], [], "", 1, 1
+
+    def Take():
+        code = re.sub(r"^template <.*?> (?=\w)|\[\[.*?\]\]", "", " ".join(head.split())).strip()
+        defined = re.match(r"(?:struct|class|enum class|enum|union) (\w+)", code)
+        alias = re.match(r"using (\w+) = (.*)", code)
+        function = re.match(r"[^=(]*?([\w:]+)\((.*)\)", code)
+        value = re.match(r"[^=({]*?([A-Za-z_]\w*)(?:\[.*?\])*(?: = .*|)$", code)
+        if defined:
+            found.append((begin, defined.group(1), "type"))
+        elif alias:
+            found.append((begin, alias.group(1), f"alias {alias.group(2)}"))
+        elif function and "::" not in function.group(1) and "=" not in code.split("(")[0]:
+            types = re.sub(r" = [^,]*|(?<=[\w>&*]) ?\b\w+(?=,|$)", "", function.group(2))
+            found.append((begin, function.group(1), f"({types})"))
+        elif value and not code.startswith(("using ", "namespace ")):
+            found.append((begin, value.group(1), "value"))
+
+    for c in text:
+        if c == "\n":
+            number += 1
+        if c not in "{};":
+            begin = number if not head.strip() and not c.isspace() else begin
+            head += c
+            continue
+        here = "unnamed" in scopes and "inside" not in scopes
+        name = re.search(r"\bnamespace( [\w:]+)?\s*$", head)
+        if here and head.strip() and c != "}" and not name:
+            Take()
+        if c == "{":
+            scopes.append(("named" if name.group(1) else "unnamed") if name else "inside")
+        elif c == "}" and scopes:
+            scopes.pop()
+        head = ""
+    return found
+
+
 def PublicHeaders():
     """Of lib/public-headers.txt, as included: "wellgyro/base/angle.h" and so on."""
     rows = [line.split() for line in Lines(os.path.join(TOP, "lib", "public-headers.txt"))
@@ -274,6 +316,27 @@ class Structure(unittest.TestCase):
         self.assertGreaterEqual(short, 0.95, "share of functions of at most 40 lines")
         print(f"{len(lengths)} functions, {100 * short:.1f} % of at most 40 lines, "
               f"the longest of {max(lengths)}")
+
+    def test_an_unnamed_namespace_shares_no_name_with_another_of_its_room(self):
+        def Collide(one, other):
+            if one[0] == other[0] == "(":  # functions of one name may differ in their parameters
+                return one == other
+            return not (one == other and one.startswith("alias"))
+
+        problems, rooms, count = [], {}, 0
+        for path in (p for top in (LIB, os.path.join(TOP, "apps")) for p in Sources(top, (".cpp",))):
+            namespace = re.findall(r"^namespace (.*) {", "\n".join(Lines(path)), re.M)[0]
+            for number, name, kind in Unnamed(path):
+                count += 1
+                known = rooms.setdefault((os.path.dirname(path), namespace, name), [])
+                for other, there in known:
+                    if other != path and Collide(kind, there):
+                        problems.append(f"{Place(path, number)}: {name} is also "
+                                        f"{os.path.basename(other)}'s; say in the name what it is of")
+                        break
+                known.append((path, kind))
+        self.Report(problems)
+        self.assertGreater(count, 2000)
 
     def test_chains_of_frames_telescope(self):
         problems, products = [], 0

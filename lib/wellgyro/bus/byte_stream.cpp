@@ -18,7 +18,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kAtOnce = 65536;  // [bytes]
+constexpr std::size_t kBytesAtOnce = 65536;  // [bytes]
 
 Fault Refused(const std::string& where, const std::string& why) {
   return {FaultCode::kIo, fmt::format("{}: {}", where, why), where};
@@ -101,7 +101,7 @@ Result<int> OpenSerial(const std::string& where, int baud) {
 }  // namespace
 
 ByteStream::ByteStream(std::string where, int descriptor)
-    : where_(std::move(where)), buffer_(kAtOnce, '\0'), descriptor_(descriptor) {}
+    : where_(std::move(where)), buffer_(kBytesAtOnce, '\0'), descriptor_(descriptor) {}
 
 ByteStream::~ByteStream() {
   if (descriptor_ >= 0) ::close(descriptor_);

@@ -22,7 +22,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kChannelMax = 63;
+constexpr std::size_t kLcmChannelMax = 63;
 
 constexpr int kSelfTests = 10;
 constexpr int kSelfTestMs = 100;
@@ -38,9 +38,9 @@ std::string Escaped(std::string_view channel) {
 }
 
 void RequireChannel(std::string_view channel) {
-  if (!channel.empty() && channel.size() <= kChannelMax) return;
+  if (!channel.empty() && channel.size() <= kLcmChannelMax) return;
   throw std::invalid_argument(
-      fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, kChannelMax));
+      fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, kLcmChannelMax));
 }
 
 /// poll(2), begun again after a signal.

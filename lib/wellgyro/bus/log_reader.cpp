@@ -42,7 +42,7 @@ enum class Found {
   kCut,  ///< the beginning of a head, and the end of the file
 };
 
-bool IsControl(std::byte b) { return b < std::byte{0x20} || b == std::byte{0x7F}; }
+bool IsControlByte(std::byte b) { return b < std::byte{0x20} || b == std::byte{0x7F}; }
 
 struct Magic {
   std::string_view bytes;
@@ -156,7 +156,8 @@ Found LogReader::Parser::LookClosely(std::size_t at, Head& head) {
   if (found != Found::kHead) return found;
   if (!source_.Grow(at + kHeadSize + head.channel_size)) return Found::kCut;
   const auto channel = source_.view().subspan(at + kHeadSize, head.channel_size);
-  return std::none_of(channel.begin(), channel.end(), IsControl) ? Found::kHead : Found::kNothing;
+  return std::none_of(channel.begin(), channel.end(), IsControlByte) ? Found::kHead
+                                                                     : Found::kNothing;
 }
 
 /// The usual case, told without looking at the data: the next event begins where this one ends and

@@ -23,7 +23,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kAtOnce = 16;            // datagrams that one system call brings
+constexpr std::size_t kDatagramsAtOnce = 16;   // datagrams that one system call brings
 constexpr std::size_t kDatagramMax = 1 << 16;  // [bytes]
 constexpr std::size_t kControl = 128;          // [bytes] time and drops of one datagram
 
@@ -49,13 +49,13 @@ bool Set(int socket, int level, int name, const Option& value) {
 }  // namespace
 
 struct UdpReceiver::Buffers {
-  Buffers() : bytes(kAtOnce * kDatagramMax), control(kAtOnce * kControl) {
-    for (std::size_t i = 0; i < kAtOnce; ++i) {
+  Buffers() : bytes(kDatagramsAtOnce * kDatagramMax), control(kDatagramsAtOnce * kControl) {
+    for (std::size_t i = 0; i < kDatagramsAtOnce; ++i) {
       parts[i] = {bytes.data() + i * kDatagramMax, kDatagramMax};
     }
   }
   void Reset() {
-    for (std::size_t i = 0; i < kAtOnce; ++i) {
+    for (std::size_t i = 0; i < kDatagramsAtOnce; ++i) {
       msghdr& head = heads[i].msg_hdr;
       head = {};
       head.msg_name = &senders[i];
@@ -67,9 +67,9 @@ struct UdpReceiver::Buffers {
     }
   }
   std::vector<std::byte> bytes, control;
-  std::array<iovec, kAtOnce> parts{};
-  std::array<sockaddr_in, kAtOnce> senders{};
-  std::array<mmsghdr, kAtOnce> heads{};
+  std::array<iovec, kDatagramsAtOnce> parts{};
+  std::array<sockaddr_in, kDatagramsAtOnce> senders{};
+  std::array<mmsghdr, kDatagramsAtOnce> heads{};
 };
 
 UdpReceiver::~UdpReceiver() {
@@ -190,7 +190,8 @@ void UdpReceiver::Work() {
 
 void UdpReceiver::Read(Buffers& buffers) {
   buffers.Reset();
-  const int count = ::recvmmsg(socket_, buffers.heads.data(), kAtOnce, MSG_DONTWAIT, nullptr);
+  const int count =
+      ::recvmmsg(socket_, buffers.heads.data(), kDatagramsAtOnce, MSG_DONTWAIT, nullptr);
   for (int n = 0; n < count; ++n) {
     const auto i = static_cast<std::size_t>(n);
     msghdr& head = buffers.heads[i].msg_hdr;

@@ -6,13 +6,13 @@
 namespace wellgyro {
 namespace {
 
-constexpr Duration kApart{1'900'000'000};  // marks at least
-constexpr double kFar = 10;                // and at most [s]
-constexpr double kGap = 0.5;               // between samples, from which nothing is felt [s]
-constexpr double kLeast = 1e-3;            // sigma of a step: no depth is read to less [m]
-constexpr double kLag = 1;                 // that a step at a start may be in place of itself [s]
-constexpr double kLagMost = 3;             // that is told in full [s]
-constexpr std::int64_t kFirst = 20;        // steps before their scatter is known
+constexpr Duration kMarksApart{1'900'000'000};  // marks at least
+constexpr double kFar = 10;                     // and at most [s]
+constexpr double kGap = 0.5;                    // between samples, from which nothing is felt [s]
+constexpr double kLeast = 1e-3;                 // sigma of a step: no depth is read to less [m]
+constexpr double kLag = 1;           // that a step at a start may be in place of itself [s]
+constexpr double kLagMost = 3;       // that is told in full [s]
+constexpr std::int64_t kFirst = 20;  // steps before their scatter is known
 
 /// The way between the middle two less the mean of the ways beside it, of values at four times.
 double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
@@ -35,7 +35,7 @@ void DepthMotion::Feel(UtcTime utc, double seconds, double f_z, const DepthTrack
     utc = *felt_until_;
   }
   felt_until_ = utc + Duration::Seconds(seconds);
-  const UtcTime wanted = last_mark_ ? std::max(utc, *last_mark_ + kApart) : utc;
+  const UtcTime wanted = last_mark_ ? std::max(utc, *last_mark_ + kMarksApart) : utc;
   if (wanted < *felt_until_) {
     const std::optional<MarkRead> mark = track.FirstMark(wanted);
     if (mark && mark->utc < *felt_until_) {

@@ -10,8 +10,6 @@ constexpr double kEnough = 8;       // degrees of freedom that tell a scatter, t
 constexpr double kSure = 4;         // times the variance, what noise seldom makes
 constexpr double kRounding = 0.05;  // marks that the rounding counts for where none scatter
 
-double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
-
 }  // namespace
 
 AlongHole DepthTrack::Fitted(UtcTime utc, Span span) const {
@@ -20,7 +18,7 @@ AlongHole DepthTrack::Fitted(UtcTime utc, Span span) const {
   double low = md0, high = md0, values = 1, last = md0;
   LocalFit fit;
   for (std::size_t i = span.begin; i < span.end; ++i) {
-    const double u = Seconds(marks_[i].utc, utc) / w, v = u - window.middle, md = marks_[i].md;
+    const double u = (marks_[i].utc - utc).seconds() / w, v = u - window.middle, md = marks_[i].md;
     fit.Add(u, md - md0, 1 - v * v);
     low = std::min(low, md);
     high = std::max(high, md);
@@ -51,8 +49,8 @@ DepthTrack::Scatter DepthTrack::ScatterAbout(UtcTime utc) const {
   for (std::size_t i = end - std::min(end, kMemory); i + 3 < end; ++i) {
     const Mark* m = &marks_[i];
     if (m[1].jumps || m[2].jumps || m[3].jumps || Segment(m[0].utc) != Segment(m[3].utc)) continue;
-    const double t1 = Seconds(m[1].utc, m[0].utc), t2 = Seconds(m[2].utc, m[0].utc),
-                 t3 = Seconds(m[3].utc, m[0].utc);
+    const double t1 = (m[1].utc - m[0].utc).seconds(), t2 = (m[2].utc - m[0].utc).seconds(),
+                 t3 = (m[3].utc - m[0].utc).seconds();
     if (!(t1 > 0 && t2 > t1 && t3 > t2) || std::max({t1, t2 - t1, t3 - t2}) > gap) continue;
     // Times t1 t2 t3, divided differences.
     const double c1 = t2 * t3 / ((t2 - t1) * (t3 - t1)), c2 = -t1 * t3 / ((t2 - t1) * (t3 - t2)),
@@ -91,7 +89,8 @@ DepthTrack::Bend DepthTrack::BendOf(UtcTime utc, Span span, const LocalFit::Valu
   const Window window = WindowAt(utc);
   const double md0 = marks_[span.begin].md;
   for (std::size_t i = span.begin; i < span.end; ++i) {
-    const double u = Seconds(marks_[i].utc, utc) / window.half, v = u - window.middle, v2 = v * v;
+    const double u = (marks_[i].utc - utc).seconds() / window.half, v = u - window.middle,
+                 v2 = v * v;
     const double weight = 1 - v2;
     if (!(weight > 0)) continue;
     const double left = marks_[i].md - md0 - (y.value + u * (y.slope + 0.5 * u * y.curvature));

@@ -15,12 +15,12 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kMost = 1000;     // rests of either clock
-constexpr double kSearch = 5;           // [s], width of the first search; drift is within it
-constexpr double kApart = 4 * kSearch;  // [s], between offsets that are not the same
-constexpr double kNearly = 0.8;         // of the best one's worth, from which another is as good
-constexpr double kTukey = 4.685;        // scales at which an edge counts no more
-constexpr double kScaleLeast = 0.01;    // [s]
+constexpr std::size_t kMost = 1000;            // rests of either clock
+constexpr double kSearch = 5;                  // [s], width of the first search; drift is within it
+constexpr double kOffsetsApart = 4 * kSearch;  // [s], between offsets that are not the same
+constexpr double kNearly = 0.8;       // of the best one's worth, from which another is as good
+constexpr double kTukey = 4.685;      // scales at which an edge counts no more
+constexpr double kScaleLeast = 0.01;  // [s]
 constexpr int kRounds = 30;
 
 /// A rest in seconds of its own clock.
@@ -88,7 +88,7 @@ Result<double> FindOffset(const std::vector<Span>& tool, const std::vector<Span>
   }
   double second = 0;
   for (const Candidate& c : candidates) {
-    if (std::abs(c.offset - best->offset) > kApart) second = std::max(second, c.worth);
+    if (std::abs(c.offset - best->offset) > kOffsetsApart) second = std::max(second, c.worth);
   }
   if (second > kNearly * best->worth) {
     return Fault{.code = FaultCode::kConflict,

@@ -21,7 +21,7 @@ constexpr std::size_t kUsual = 60;
 // A knot is made linear anew, as in a tool whose roll nobody sees, until what it turns the begin by
 // is small: its square is below what a knot tells of any direction [rad].
 constexpr double kLinear = 3e-3;
-constexpr int kIterations = 4;
+constexpr int kKnotIterations = 4;
 
 double RollOf(const Increment& inc) { return inc.roll_before + inc.roll_after; }
 
@@ -129,7 +129,7 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   walk.swing_weight = RollWeight(squares.swing, 2);
   Elimination elimination(layout_);
   std::vector<NodeVector> steps;
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < kKnotIterations; ++i) {
     NormalBlock block;
     block.Clear(layout_);
     rows.Add(knot, place, walk, border, begin, end, block);

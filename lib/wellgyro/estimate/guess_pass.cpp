@@ -29,8 +29,6 @@ double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
                      inc.turn_M.dot(earth));
 }
 
-Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
-
 }  // namespace
 
 GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots)

@@ -36,8 +36,6 @@ constexpr double kLeastDepth = 1e-3;  // [m], of a mark
 constexpr double kLeastWay = 1e-4;    // [m], of a knot's way
 constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 
-Vector3d Flat(const Vector2d& v) { return {v.x(), v.y(), 0}; }
-
 double Square(double x) { return x * x; }
 
 /// How r = Log(R) changes where R becomes Exp(-a) R Exp(b): by right b - left a, to the second

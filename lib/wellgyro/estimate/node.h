@@ -20,6 +20,9 @@ struct Node {
   Eigen::Vector3d tangent_L() const { return R_LT.col(2); }
 };
 
+/// What acts across the axis alone.
+inline Eigen::Vector3d Flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0}; }
+
 /// d tangent_L / d phi = -R [e_z]x, phi of R_LT Exp(phi).
 inline Eigen::Matrix3d TangentByPhi(const Eigen::Matrix3d& R_LT) {
   return -R_LT * Skew(Eigen::Vector3d::UnitZ());

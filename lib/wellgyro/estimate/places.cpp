@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 
 // A whirl of the tool is no bend of the hole: what it adds to the ends of a window falls with the
 // window's length, while a bend that begins in its middle is seen so much too late.
-constexpr double kLowPass = 3;      // [s]
-constexpr double kLeastWay = 0.01;  // [m] of a window, from which it tells of the hole
+constexpr double kLowPass = 3;        // [s]
+constexpr double kTellingWay = 0.01;  // [m] of a window, from which it tells of the hole
 // [m] of depth marks, and not of the path: where it is renewed must not move with the solution.
 constexpr double kSiteEvery = 2;
 constexpr double kPathReach = 1e5;    // [m]; damaged depths may lead anywhere, the site stays
@@ -43,7 +43,7 @@ std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const 
     while (times[begin + 1] <= middle - kLowPass / 2) ++begin;
     while (end < knots.size() && times[end] < middle + kLowPass / 2) ++end;
     const double way = ways[end] - ways[begin];
-    if (std::abs(way) > kLeastWay) curvature[k] = (turns[end] - turns[begin]) / way;
+    if (std::abs(way) > kTellingWay) curvature[k] = (turns[end] - turns[begin]) / way;
   }
   return curvature;
 }

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kIterations = 40;
+constexpr int kSolveIterations = 40;
 // 2 ln of odds of 90: by less one azimuth does not beat another.
 constexpr double kDecides = 9;
 // A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
@@ -176,7 +176,7 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
       auto solver = std::make_unique<RunSolver>(tried, knots, before);
       solver->nodes() = guesses[i];
       const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
-      const SolveReport report = solver->Solve(kIterations, best + kDecides);
+      const SolveReport report = solver->Solve(kSolveIterations, best + kDecides);
       choice.least_evidence = std::min(choice.least_evidence, report.evidence);
       if (!report.converged || !(report.evidence < solutions[i].evidence)) continue;
       solutions[i] = {report.evidence, solver->nodes(), solver->border()};

@@ -4,15 +4,10 @@
 #include <Eigen/Dense>
 
 #include "wellgyro/fit/affine_internal.h"
+#include "wellgyro/math/so3.h"
 
 namespace wellgyro {
 namespace {
-
-Eigen::Matrix3d Cross(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d C;
-  C << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return C;
-}
 
 // The three rows of one group at one position.
 void Fill(const Eigen::Vector3d& u, SecondOrder order, int first, int row, Eigen::MatrixXd& A) {
@@ -80,7 +75,7 @@ LinearProblem AffineProblem(const std::vector<AffineReadings>& groups,
       problem.y.segment<3>(row) = groups[g].v.row(i).transpose();
       const double sigma = groups[g].sigma.value_or(1);
       problem.sigma.segment<3>(row).setConstant(sigma);
-      tilt.middleRows<3>(row - i * width) = tilt_sigma / sigma * rough[g] * Cross(u);
+      tilt.middleRows<3>(row - i * width) = tilt_sigma / sigma * rough[g] * Skew(u);
       for (int c = 0; c < 3; ++c) {
         const int at = row + c;
         problem.rows[static_cast<std::size_t>(at)] = {

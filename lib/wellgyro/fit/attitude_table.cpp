@@ -9,9 +9,8 @@
 namespace wellgyro {
 namespace {
 
-using Names = std::vector<std::string>;
-
-std::optional<std::vector<int>> FindAll(const BenchTable& data, const Names& names) {
+std::optional<std::vector<int>> FindAll(const BenchTable& data,
+                                        const std::vector<std::string>& names) {
   std::vector<int> places;
   for (const std::string& name : names) {
     const auto place = data.Find(name);
@@ -43,7 +42,7 @@ std::optional<Fault> ReadSensors(const BenchTable& data, const AttitudeNeeds& ne
                                  AttitudeTable& table) {
   for (const char* kind : {"G", "a", "f", "v"}) {
     const std::string k(kind);
-    const Names names = {k + "x", k + "y", k + "z"};
+    const std::vector<std::string> names = {k + "x", k + "y", k + "z"};
     const auto places = FindAll(data, names);
     if (!places) continue;
     // In a table with attitudes az is the azimuth.
@@ -55,7 +54,7 @@ std::optional<Fault> ReadSensors(const BenchTable& data, const AttitudeNeeds& ne
   }
   for (const char* kind : {"M", "m"}) {
     const std::string k(kind);
-    const Names names = {k + "x", k + "y", k + "z"};
+    const std::vector<std::string> names = {k + "x", k + "y", k + "z"};
     const auto places = FindAll(data, names);
     if (!places) continue;
     table.mag = data.values(Eigen::all, *places);
@@ -96,7 +95,7 @@ std::vector<int> ColumnsOf(const BenchTable& data, const std::vector<std::string
 
 std::optional<Fault> BadReadings(const BenchTable& data, const AttitudeTable& table) {
   if (auto fault = Repeated(data)) return fault;
-  Names used = table.accel_channels;
+  std::vector<std::string> used = table.accel_channels;
   used.insert(used.end(), table.mag_channels.begin(), table.mag_channels.end());
   return Frozen(data, ColumnsOf(data, used));
 }

@@ -6,10 +6,14 @@
 #include <vector>
 
 #include "wellgyro/base/result.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/calibration/bench_table.h"
 #include "wellgyro/calibration/fit_report.h"
+#include "wellgyro/fit/bench_reference.h"
 
 namespace wellgyro {
+
+inline constexpr double kBenchEarthDegPerHour = kBenchEarthRate / units::kDegPerHour;
 
 /// The complaint about a table of readings; `advice` says what to measure next.
 Fault BenchFault(const BenchTable& data, std::string text, int line = 0,

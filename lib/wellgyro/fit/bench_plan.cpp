@@ -12,12 +12,11 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/bench_reference.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr double kEarth = kBenchEarthRate / units::kDegPerHour;
 
 // Parameters: b and U of two channels, M, Q, N of two; then, where temperatures vary, b tau and
 // b tau^2 of two, M tau, Q tau.
@@ -34,7 +33,7 @@ int SizeOf(const BenchPlanSetup& setup) {
 Pair RowsOf(const BenchSetting& at, BenchAxes axes, double latitude) {
   const Eigen::Matrix3d R = BenchFromLevel(axes, at.inclination, at.azimuth, at.toolface);
   const Eigen::Vector3d w =
-      R * kEarth * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
+      R * kBenchEarthDegPerHour * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
   const Eigen::Vector3d f = -R.col(2);
   Pair rows = Pair::Zero();
   for (int c = 0; c < 2; ++c) {
@@ -82,7 +81,7 @@ Square WeightOf(const BenchPlanSetup& setup) {
   Square W = Square::Zero();
   double count = 0;
   constexpr double kStep = 1e-5;
-  const double least = 0.5 * kEarth * std::cos(setup.well_latitude);
+  const double least = 0.5 * kBenchEarthDegPerHour * std::cos(setup.well_latitude);
   for (BenchSetting at : HoleOf(setup)) {
     const Pair rows = RowsOf(at, setup.axes, setup.well_latitude);
     at.azimuth += kStep;
@@ -107,7 +106,7 @@ std::vector<double> TausOf(int temperatures) {
   return taus;
 }
 
-std::vector<BenchSetting> Candidates(const BenchPlanSetup& setup) {
+std::vector<BenchSetting> CandidateSettings(const BenchPlanSetup& setup) {
   std::vector<BenchSetting> all;
   for (const double tau : TausOf(setup.temperatures)) {
     for (int inc = 0; inc <= 180; inc += 15) {
@@ -126,7 +125,7 @@ std::vector<BenchSetting> Candidates(const BenchPlanSetup& setup) {
 class Design {
  public:
   explicit Design(const BenchPlanSetup& setup)
-      : setup_(setup), n_(SizeOf(setup)), candidates_(Candidates(setup)) {
+      : setup_(setup), n_(SizeOf(setup)), candidates_(CandidateSettings(setup)) {
     rows_.reserve(candidates_.size());
     for (const BenchSetting& at : candidates_) {
       rows_.push_back(RowsOf(at, setup.axes, setup.bench_latitude) / setup.sigma_gyro);

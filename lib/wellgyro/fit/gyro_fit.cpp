@@ -111,19 +111,19 @@ LinearProblem Problem(const GyroReadings& readings, const GyroFitSetup& setup, c
   return problem;
 }
 
-struct Fitted {
+struct FittedGyros {
   LinearProblem problem;
   LinearSolution solution;
 };
 
-Fitted FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout,
-               double on_table, bool robust) {
+FittedGyros FitWith(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout,
+                    double on_table, bool robust) {
   Eigen::MatrixX3d U = Eigen::MatrixX3d::Zero(layout.channels, 3);
   for (int c = 0; c < layout.channels; ++c) {
     U(c, readings.channels[static_cast<std::size_t>(c)].axis) = 1;
   }
   double north = 0;
-  Fitted fitted{Problem(readings, setup, layout, north, U, on_table), {}};
+  FittedGyros fitted{Problem(readings, setup, layout, north, U, on_table), {}};
   fitted.problem.robust = robust;
   fitted.solution = Solve(fitted.problem);
   // Bilinear in U and the north offset: Gauss and Newton.
@@ -169,10 +169,11 @@ double TableRatio(const LinearSolution& s, bool sigma_given, bool by_median) {
 }
 
 // The table's own scatter where no sigma of it is given: Helmert's variance components.
-Fitted Fit(const GyroReadings& readings, const GyroFitSetup& setup, const Layout& layout) {
+FittedGyros FitLayout(const GyroReadings& readings, const GyroFitSetup& setup,
+                      const Layout& layout) {
   double on_table = setup.sigma_table.value_or(setup.sigma.value_or(1));
   const bool robust = setup.sigma_table || !readings.joined;
-  Fitted fitted = FitWith(readings, setup, layout, on_table, robust);
+  FittedGyros fitted = FitWith(readings, setup, layout, on_table, robust);
   if (robust) return fitted;
   // All readings first, their medians; then without the outliers, their squares.
   for (const bool last : {false, true}) {
@@ -373,11 +374,11 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
   if (!readings) return readings.fault();
   const BenchTable& data = rest.rows() > 0 ? rest : table;
   Layout layout = LayoutOf(*readings, setup);
-  Fitted fitted = Fit(*readings, setup, layout);
+  FittedGyros fitted = FitLayout(*readings, setup, layout);
   std::vector<std::string> remarks;
   if (layout.aniso && !fitted.solution.unseen.empty()) {
     layout.aniso = false;
-    fitted = Fit(*readings, setup, layout);
+    fitted = FitLayout(*readings, setup, layout);
     remarks.emplace_back(
         "the anisoelastic terms are left out: no attitude has force along input and spin axis at "
         "once; add inclinations of 45 deg and toolfaces that are no multiples of 90 deg");

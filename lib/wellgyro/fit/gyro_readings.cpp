@@ -13,8 +13,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kEarthDegPerHour = kBenchEarthRate / units::kDegPerHour;
-
 std::vector<std::string> NamesOf(const std::vector<GyroChannel>& channels) {
   std::vector<std::string> names;
   names.reserve(channels.size());
@@ -22,8 +20,8 @@ std::vector<std::string> NamesOf(const std::vector<GyroChannel>& channels) {
   return names;
 }
 
-std::optional<Fault> Columns(const BenchTable& data, const std::vector<GyroChannel>& channels,
-                             std::vector<int>* places) {
+std::optional<Fault> FindChannels(const BenchTable& data, const std::vector<GyroChannel>& channels,
+                                  std::vector<int>* places) {
   auto found = FindColumns(data, NamesOf(channels));
   if (!found) return found.fault();
   *places = *std::move(found);
@@ -64,9 +62,9 @@ std::optional<Fault> ReadRest(const BenchTable& data, const BenchReference& refe
   if (!angles) return angles.fault();
   if (auto fault = RadiansForDegrees(data, *angles)) return fault;
   std::vector<int> places;
-  if (auto fault = Columns(data, readings.channels, &places)) return fault;
-  const double level = kEarthDegPerHour * std::cos(*reference.latitude);
-  const double down = -kEarthDegPerHour * std::sin(*reference.latitude);
+  if (auto fault = FindChannels(data, readings.channels, &places)) return fault;
+  const double level = kBenchEarthDegPerHour * std::cos(*reference.latitude);
+  const double down = -kBenchEarthDegPerHour * std::sin(*reference.latitude);
   for (int i = 0; i < data.rows(); ++i) {
     const auto angle = [&](std::size_t k) { return FromDegrees(data.values(i, (*angles)[k])); };
     const Eigen::Matrix3d R = BenchFromLevel(reference.axes, angle(0), angle(1), angle(2));
@@ -85,9 +83,9 @@ std::optional<Fault> ReadTable(const BenchTable& data, const BenchReference& ref
   const auto found = FindColumns(data, {"axis", "rate_deg_s"});
   if (!found) return found.fault();
   std::vector<int> places;
-  if (auto fault = Columns(data, readings.channels, &places)) return fault;
+  if (auto fault = FindChannels(data, readings.channels, &places)) return fault;
   // Over whole turns the level part of the Earth's rate is nothing; the axis points up.
-  const double up = kEarthDegPerHour * std::sin(*reference.latitude);
+  const double up = kBenchEarthDegPerHour * std::sin(*reference.latitude);
   for (int i = 0; i < data.rows(); ++i) {
     const double axis = data.values(i, (*found)[0]);
     if (axis != 0 && axis != 1 && axis != 2) {

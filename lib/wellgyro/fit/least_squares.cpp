@@ -148,8 +148,6 @@ LinearProblem Without(const LinearProblem& problem, const std::set<int>& lines) 
   return rest;
 }
 
-constexpr double kOutlierSigmas = 6;
-
 // Lines with a residual beyond the limit.
 std::set<int> Beyond(const LinearProblem& problem, const Eigen::VectorXd& residual, double scale) {
   std::set<int> lines;

@@ -14,6 +14,10 @@
 
 namespace wellgyro {
 
+/// A reading further off than this many of the residuals' robust scale is an outlier: one in 5e8 of
+/// a normal distribution.
+inline constexpr double kOutlierSigmas = 6;
+
 /// A row of a fit: which reading it is. Line 0 is a prior; of a second table it is negative.
 struct FitRow {
   int line = 0;

@@ -18,11 +18,7 @@
 namespace wellgyro {
 namespace {
 
-using Setup = MultiStationSetup;
-
-constexpr double kEarthDegPerHour = kBenchEarthRate / units::kDegPerHour;
-
-constexpr std::string_view kAdvice =
+constexpr std::string_view kStationAdvice =
     "add stations at other toolfaces and inclinations, or give priors of the biases and scales";
 
 template <class T>
@@ -100,7 +96,7 @@ Eigen::Vector3d DownOf(const AttitudeTable& table, int i) {
   return table.gravity_signed ? a : Eigen::Vector3d(-a);
 }
 
-void AddPriors(const Setup& setup, int axes, bool scales, NonlinearProblem& problem) {
+void AddPriors(const MultiStationSetup& setup, int axes, bool scales, NonlinearProblem& problem) {
   for (int i = 0; i < axes; ++i) {
     if (setup.prior_bias) problem.Add({{0, "prior", 1}}, PriorResidual{i, *setup.prior_bias});
     if (scales && setup.prior_scale) {
@@ -109,7 +105,7 @@ void AddPriors(const Setup& setup, int axes, bool scales, NonlinearProblem& prob
   }
 }
 
-NonlinearProblem Magnetic(const AttitudeTable& table, const Setup& setup) {
+NonlinearProblem Magnetic(const AttitudeTable& table, const MultiStationSetup& setup) {
   std::vector<std::string> names = VectorNames("bm_nT", 3);
   Append(names, VectorNames("sm", 3));
   NonlinearProblem problem(names, Eigen::VectorXd::Zero(6));
@@ -130,7 +126,7 @@ NonlinearProblem Magnetic(const AttitudeTable& table, const Setup& setup) {
 }
 
 NonlinearProblem Gyros(const BenchTable& data, const std::vector<int>& columns,
-                       const AttitudeTable& table, const Setup& setup) {
+                       const AttitudeTable& table, const MultiStationSetup& setup) {
   NonlinearProblem problem(VectorNames("bg_degh", 3), Eigen::VectorXd::Zero(3));
   problem.sigma_given = setup.sigma_rate.has_value();
   const double sigma = setup.sigma_rate.value_or(1);
@@ -138,15 +134,16 @@ NonlinearProblem Gyros(const BenchTable& data, const std::vector<int>& columns,
     const int line = table.lines[static_cast<std::size_t>(i)];
     problem.Add({{line, "level", sigma}, {line, "vertical", sigma}},
                 RateResidual{DownOf(table, i), data.values(i, columns).transpose(),
-                             kEarthDegPerHour * std::cos(*setup.reference.latitude),
-                             kEarthDegPerHour * std::sin(*setup.reference.latitude), sigma});
+                             kBenchEarthDegPerHour * std::cos(*setup.reference.latitude),
+                             kBenchEarthDegPerHour * std::sin(*setup.reference.latitude), sigma});
   }
   AddPriors(setup, 3, false, problem);
   return problem;
 }
 
 std::vector<AcrossResidual> AcrossStations(const BenchTable& data, const std::vector<int>& columns,
-                                           const AttitudeTable& table, const Setup& setup) {
+                                           const AttitudeTable& table,
+                                           const MultiStationSetup& setup) {
   std::vector<AcrossResidual> stations;
   stations.reserve(static_cast<std::size_t>(table.rows()));
   for (int i = 0; i < table.rows(); ++i) {
@@ -160,8 +157,8 @@ std::vector<AcrossResidual> AcrossStations(const BenchTable& data, const std::ve
                         data.values(i, columns).transpose(),
                         sine,
                         down.z(),
-                        kEarthDegPerHour * std::cos(*setup.reference.latitude),
-                        kEarthDegPerHour * std::sin(*setup.reference.latitude),
+                        kBenchEarthDegPerHour * std::cos(*setup.reference.latitude),
+                        kBenchEarthDegPerHour * std::sin(*setup.reference.latitude),
                         setup.sigma_rate.value_or(1),
                         2 + i});
   }
@@ -192,7 +189,8 @@ void TakeBestAzimuths(const std::vector<AcrossResidual>& stations, Eigen::Vector
 
 Result<NonlinearProblem::Solution> SolveTwoGyros(const BenchTable& data,
                                                  const std::vector<int>& columns,
-                                                 const AttitudeTable& table, const Setup& setup) {
+                                                 const AttitudeTable& table,
+                                                 const MultiStationSetup& setup) {
   const std::vector<AcrossResidual> stations = AcrossStations(data, columns, table, setup);
   std::vector<std::string> names = VectorNames("bg_degh", 2);
   Append(names, VectorNames("azimuth", table.rows()));
@@ -218,7 +216,7 @@ Result<NonlinearProblem::Solution> SolveTwoGyros(const BenchTable& data,
   return best;
 }
 
-void RemarkPriors(const Setup& setup, FitReport& report) {
+void RemarkPriors(const MultiStationSetup& setup, FitReport& report) {
   for (Eigen::Index i = 0; i < report.values.size() && report.cov.size() > 0; ++i) {
     const auto& prior = i < 3 ? setup.prior_bias : setup.prior_scale;
     if (prior && std::sqrt(report.cov(i, i)) > 0.7 * *prior) {
@@ -231,8 +229,8 @@ void RemarkPriors(const Setup& setup, FitReport& report) {
 }
 
 std::optional<Fault> BadStations(const BenchTable& data, const AttitudeTable& table,
-                                 const Setup& setup) {
-  if (auto fault = TooFew(data, 4, "stations", kAdvice)) return fault;
+                                 const MultiStationSetup& setup) {
+  if (auto fault = TooFew(data, 4, "stations", kStationAdvice)) return fault;
   if (auto fault = BadReadings(data, table)) return fault;
   return MixedUnits(data, ColumnsOf(data, table.accel_channels), setup.reference.gravity,
                     "the length of the accelerometers", "g, or m/s2");
@@ -270,7 +268,7 @@ Result<std::vector<int>> RateColumns(const BenchTable& data) {
   auto rates = FindColumns(data, {"wx", "wy", "wz"});
   if (!rates) return rates;
   if (auto fault =
-          MixedUnits(data, *rates, kEarthDegPerHour, "the length of (wx, wy, wz)", "deg/h")) {
+          MixedUnits(data, *rates, kBenchEarthDegPerHour, "the length of (wx, wy, wz)", "deg/h")) {
     return *fault;
   }
   return rates;
@@ -286,7 +284,8 @@ void RequireReference(const BenchReference& reference, bool gyros) {
 // From two gyros, from three, or from the magnetometers where `rates` has no columns.
 Result<NonlinearProblem::Solution> SolveStations(const BenchTable& data,
                                                  const std::vector<int>& rates,
-                                                 const AttitudeTable& table, const Setup& setup) {
+                                                 const AttitudeTable& table,
+                                                 const MultiStationSetup& setup) {
   if (rates.empty()) return Magnetic(table, setup).Solve();
   if (rates.size() == 2) return SolveTwoGyros(data, rates, table, setup);
   return Gyros(data, rates, table, setup).Solve();
@@ -304,7 +303,7 @@ void TakeResult(std::size_t gyros, FitReport& report) {
 
 }  // namespace
 
-Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& setup) {
+Result<BenchCalibration> FitMultiStation(const BenchTable& data, const MultiStationSetup& setup) {
   const bool gyros = data.Find("wx").has_value();
   const auto table = ReadAttitudeTable(data, {.accel = true, .mag = !gyros});
   if (!table) return table.fault();
@@ -316,7 +315,7 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
     if (auto fault = BadField(data, *table, setup.reference)) return *fault;
   }
   const auto solution = SolveStations(data, *rates, *table, setup);
-  auto whole = WholeReport(data, solution, kAdvice);
+  auto whole = WholeReport(data, solution, kStationAdvice);
   if (!whole) return whole.fault();
   BenchCalibration out;
   out.report = *std::move(whole);
@@ -324,12 +323,12 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const Setup& se
   report.method = "multi-station";
   RemarkTemperature(data, report);
   if (auto fault = DoesNotFit(data,
-                              {{"wx", kEarthDegPerHour},
-                               {"wy", kEarthDegPerHour},
+                              {{"wx", kBenchEarthDegPerHour},
+                               {"wy", kBenchEarthDegPerHour},
                                {"field", setup.reference.field.value_or(0)},
                                {"dip", 1},
-                               {"level", kEarthDegPerHour},
-                               {"vertical", kEarthDegPerHour}},
+                               {"level", kBenchEarthDegPerHour},
+                               {"vertical", kBenchEarthDegPerHour}},
                               report)) {
     return *fault;
   }

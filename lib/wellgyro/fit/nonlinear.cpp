@@ -11,8 +11,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kOutlierSigmas = 6;
-
 ceres::Solver::Options SolverOptions() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

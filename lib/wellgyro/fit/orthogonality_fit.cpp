@@ -16,8 +16,6 @@
 namespace wellgyro {
 namespace {
 
-using Setup = OrthogonalitySetup;
-
 Eigen::VectorXd Quantity(const FitReport& report, std::string_view name) {
   for (const FitQuantity& quantity : report.result) {
     if (quantity.name == name) return Eigen::MatrixXd(quantity.value.transpose()).reshaped();
@@ -50,7 +48,7 @@ struct Waves {
 };
 
 // Each channel against its own sequence.
-Result<Waves> FitWaves(const BenchTable& data, int seq, const Setup& setup) {
+Result<Waves> FitWaves(const BenchTable& data, int seq, const OrthogonalitySetup& setup) {
   Waves waves;
   for (int k = 0; k < 6; ++k) {
     const int axis = k % 3, sequence = axis + 1;
@@ -180,7 +178,7 @@ std::optional<Fault> BadSequences(const BenchTable& data, int column) {
 
 }  // namespace
 
-Result<OrthogonalityFit> FitOrthogonality(const BenchTable& data, const Setup& setup) {
+Result<OrthogonalityFit> FitOrthogonality(const BenchTable& data, const OrthogonalitySetup& setup) {
   if (!setup.reference.field || !setup.reference.dip) {
     throw std::invalid_argument("the orthogonality method needs the field and its dip");
   }

@@ -16,7 +16,7 @@ namespace wellgyro {
 namespace {
 
 constexpr double kFalseAlarm = 0.01;
-constexpr int kFewest = 8;         // rows of a channel, below which nothing is tested
+constexpr int kFewestRows = 8;     // rows of a channel, below which nothing is tested
 constexpr double kLeastSwing = 1;  // degC
 
 // Rows of one channel of one table, among those that the solution used.
@@ -41,7 +41,7 @@ std::vector<ChannelRows> ChannelsOf(const LinearProblem& problem, const LinearSo
   }
   std::vector<ChannelRows> list;
   for (auto& [key, channel] : channels) {
-    if (static_cast<int>(channel.rows.size()) >= kFewest) list.push_back(std::move(channel));
+    if (static_cast<int>(channel.rows.size()) >= kFewestRows) list.push_back(std::move(channel));
   }
   return list;
 }

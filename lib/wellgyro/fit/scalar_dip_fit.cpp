@@ -20,7 +20,7 @@ namespace {
 
 // Parameters: Ma (6), ba (3), Mm (9 by rows), bm (3) and, where it is found, the dip.
 constexpr int kMag = 9, kMagBias = 18, kDip = 21;
-constexpr std::string_view kAdvice =
+constexpr std::string_view kDipAdvice =
     "turn the tool through attitudes between the axes, 18 to 24 in all, and give the field";
 
 struct DipResidual {
@@ -181,7 +181,7 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   }
   const auto table = ReadAttitudeTable(data, {.accel = true, .mag = true});
   if (!table) return table.fault();
-  if (auto fault = TooFew(data, 12, "attitudes", kAdvice)) return *fault;
+  if (auto fault = TooFew(data, 12, "attitudes", kDipAdvice)) return *fault;
   if (auto fault = BadReadings(data, *table)) return *fault;
   if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
   if (auto fault = BadVectors(data, table->mag, table->mag_channels, "one unit")) return *fault;
@@ -193,7 +193,7 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   Eigen::VectorXd x = start->x;
   Result<NonlinearProblem::Solution> solution = Problem(*table, setup, start->sigma, x).Solve();
   if (solution) solution = Problem(*table, setup, start->sigma, solution->x).Solve();
-  auto whole = WholeReport(data, solution, kAdvice);
+  auto whole = WholeReport(data, solution, kDipAdvice);
   if (!whole) return whole.fault();
   for (const ScalarReadings* readings : {&accel, &mag}) {
     if (auto fault = OnlyCones(data, *readings, solution->outlier_lines)) return *fault;

@@ -17,7 +17,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kAdvice =
+constexpr std::string_view kScalarAdvice =
     "faces alone, or one cone, do not do: add attitudes with gravity between the axes, 18 to 24 in "
     "all";
 
@@ -133,7 +133,7 @@ std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& rea
         w.z() * w.x(), w.transpose(), 1;
   }
   constexpr std::size_t kUnknown = 10;
-  if (rows.size() < kUnknown) return TooFew(data, 12, "attitudes", kAdvice);
+  if (rows.size() < kUnknown) return TooFew(data, 12, "attitudes", kScalarAdvice);
   Eigen::MatrixXd A(static_cast<Eigen::Index>(rows.size()), 10);
   for (std::size_t i = 0; i < rows.size(); ++i) A.row(static_cast<Eigen::Index>(i)) = rows[i];
   const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues() /
@@ -147,7 +147,7 @@ std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& rea
       fmt::format("the readings lie on one or two cones, or on faces alone: beside the ellipsoid "
                   "that is looked for they fit another surface to {:.2g} of their length, and only "
                   "noise tells which ({:.2g}): {}",
-                  values[8], values[9], kAdvice));
+                  values[8], values[9], kScalarAdvice));
 }
 
 std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::string>& channels,
@@ -175,7 +175,7 @@ std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::st
 Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& setup) {
   const auto table = ReadAttitudeTable(data, {.accel = true});
   if (!table) return table.fault();
-  if (auto fault = TooFew(data, 12, "attitudes", kAdvice)) return *fault;
+  if (auto fault = TooFew(data, 12, "attitudes", kScalarAdvice)) return *fault;
   if (auto fault = BadReadings(data, *table)) return *fault;
   if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
   const ScalarReadings readings{table->lines, table->accel, setup.reference.gravity,
@@ -184,7 +184,7 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   if (!solution) {
     if (auto fault = OnlyCones(data, readings, {})) return *fault;
   }
-  auto whole = WholeReport(data, solution, kAdvice);
+  auto whole = WholeReport(data, solution, kScalarAdvice);
   if (!whole) return whole.fault();
   if (auto fault = OnlyCones(data, readings, solution->outlier_lines)) return *fault;
   BenchCalibration out;

@@ -7,7 +7,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kFewest = 3;
+constexpr std::size_t kFewestReadings = 3;
 constexpr std::size_t kForTransient = 8;
 
 double Spread(std::span<const double> readings) {
@@ -79,11 +79,11 @@ Decay BestDecay(std::span<const double> v) {
 SettledRun Settle(std::span<const double> readings, double tolerance) {
   SettledRun run;
   const std::size_t n = readings.size();
-  if (n > 0) run.value = Mean(readings.last(std::min(n, kFewest)));
-  if (n < kFewest) return run;
-  run.spread = Spread(readings.last(kFewest));
+  if (n > 0) run.value = Mean(readings.last(std::min(n, kFewestReadings)));
+  if (n < kFewestReadings) return run;
+  run.spread = Spread(readings.last(kFewestReadings));
   if (n < kForTransient) {
-    std::size_t used = kFewest;
+    std::size_t used = kFewestReadings;
     while (used < n && Spread(readings.last(used + 1)) <= tolerance) ++used;
     run.used = static_cast<int>(used);
     run.value = Mean(readings.last(used));

@@ -15,8 +15,6 @@
 namespace wellgyro {
 namespace {
 
-using Setup = SixPositionSetup;
-
 struct Position {
   int axis = 0, line = 0;
   double sign = 1;
@@ -31,7 +29,7 @@ double Mean(const std::vector<Position>& positions, double (*of)(const Position&
   return sum / static_cast<double>(positions.size());
 }
 
-Result<std::vector<Position>> Read(const BenchTable& data, const Setup& setup) {
+Result<std::vector<Position>> ReadPositions(const BenchTable& data, const SixPositionSetup& setup) {
   const auto places = FindColumns(data, {"axis", "sign", "T_s", "Nx", "Ny", "Nz"});
   if (!places) return places.fault();
   const std::vector<int>& p = *places;
@@ -70,7 +68,7 @@ Result<std::vector<Position>> Read(const BenchTable& data, const Setup& setup) {
 
 // The forces of the table against the gravity that was stated beside it.
 std::optional<Fault> OtherGravity(const BenchTable& data, const std::vector<Position>& positions,
-                                  const Setup& setup) {
+                                  const SixPositionSetup& setup) {
   const double length = Mean(positions, [](const Position& p) { return p.u.norm(); });
   constexpr double kSame = 1e-4;
   if (!setup.gravity_stated || std::abs(length / setup.gravity - 1) < kSame) return std::nullopt;
@@ -82,7 +80,7 @@ std::optional<Fault> OtherGravity(const BenchTable& data, const std::vector<Posi
 }
 
 std::optional<Fault> BadPositions(const BenchTable& data, const std::vector<Position>& positions,
-                                  const Setup& setup) {
+                                  const SixPositionSetup& setup) {
   std::string missing;
   for (int at = 0; at < 6; ++at) {
     const bool there = std::any_of(positions.begin(), positions.end(), [&](const Position& p) {
@@ -179,7 +177,7 @@ Classes Scatter(const std::vector<Position>& positions, LinearProblem problem) {
   return sigma;
 }
 
-Classes SigmaOf(const std::vector<Position>& positions, const Setup& setup,
+Classes SigmaOf(const std::vector<Position>& positions, const SixPositionSetup& setup,
                 const LinearProblem& problem) {
   if (!setup.sigma && !setup.tilt_sigma) return Scatter(positions, problem);
   const double seconds = Mean(positions, [](const Position& p) { return p.seconds; });
@@ -212,7 +210,8 @@ void TakeResult(FitReport& report, bool second_order, double g) {
   if (second_order) AddVector(report, "k2_g_per_g2", 15, 3);
 }
 
-void Remark(const std::vector<Position>& positions, const Setup& setup, FitReport& report) {
+void Remark(const std::vector<Position>& positions, const SixPositionSetup& setup,
+            FitReport& report) {
   std::set<std::pair<int, double>> distinct;
   for (const Position& position : positions) distinct.insert({position.axis, position.sign});
   const bool repeated = positions.size() >= 3 * distinct.size();
@@ -245,8 +244,8 @@ SensorGroup Group(const Eigen::VectorXd& x, bool second_order) {
 
 }  // namespace
 
-Result<BenchCalibration> FitSixPositions(const BenchTable& data, const Setup& setup) {
-  const auto positions = Read(data, setup);
+Result<BenchCalibration> FitSixPositions(const BenchTable& data, const SixPositionSetup& setup) {
+  const auto positions = ReadPositions(data, setup);
   if (!positions) return positions.fault();
   if (auto fault = BadPositions(data, *positions, setup)) return *fault;
   LinearProblem problem = Problem(*positions);

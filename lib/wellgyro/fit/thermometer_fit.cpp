@@ -15,13 +15,13 @@
 namespace wellgyro {
 namespace {
 
-struct Readings {
+struct ThermometerReadings {
   Eigen::VectorXd t, error;
   std::vector<int> lines;
   double spread = 0;  ///< of the references about their mean, 1-sigma
 };
 
-Result<Readings> Read(const BenchTable& data) {
+Result<ThermometerReadings> ReadThermometers(const BenchTable& data) {
   const auto place = FindColumns(data, {"t_m"});
   if (!place) return place.fault();
   std::vector<int> refs;
@@ -39,7 +39,7 @@ Result<Readings> Read(const BenchTable& data) {
   std::vector<int> all = refs;
   all.push_back(place->front());
   if (auto fault = Frozen(data, all)) return *fault;
-  Readings readings{data.values.col(place->front()), {}, data.lines, 0};
+  ThermometerReadings readings{data.values.col(place->front()), {}, data.lines, 0};
   const Eigen::MatrixXd references = data.values(Eigen::all, refs);
   const Eigen::VectorXd mean = references.rowwise().mean();
   readings.error = mean - readings.t;
@@ -67,8 +67,8 @@ struct FoundKnee {
   double knee = 0, c2 = 0;
 };
 
-LinearProblem Problem(const Readings& readings, const ThermometerFitSetup& setup, double knee,
-                      bool bends, const std::optional<FoundKnee>& found = {}) {
+LinearProblem Problem(const ThermometerReadings& readings, const ThermometerFitSetup& setup,
+                      double knee, bool bends, const std::optional<FoundKnee>& found = {}) {
   const int n = static_cast<int>(readings.t.size());
   std::vector<std::string> names = VectorNames("c", bends ? 3 : 2);
   if (found) names.emplace_back("knee_C");
@@ -92,7 +92,7 @@ LinearProblem Problem(const Readings& readings, const ThermometerFitSetup& setup
 }
 
 // The knee with the least sum of squares, between the third reading from either end.
-double FindKnee(const Readings& readings, const ThermometerFitSetup& setup) {
+double FindKnee(const ThermometerReadings& readings, const ThermometerFitSetup& setup) {
   std::vector<double> t(readings.t.begin(), readings.t.end());
   std::sort(t.begin(), t.end());
   const auto cost = [&](double knee) {
@@ -122,7 +122,7 @@ double FindKnee(const Readings& readings, const ThermometerFitSetup& setup) {
   return (low + high) / 2;
 }
 
-void Remark(const Readings& readings, double knee, bool bends, FitReport& report) {
+void Remark(const ThermometerReadings& readings, double knee, bool bends, FitReport& report) {
   if (!bends) {
     report.remarks.push_back(fmt::format(
         "no reading beyond the knee at {:.4g} degC: c[2] is left at zero, and the range ends at "
@@ -139,7 +139,7 @@ void Remark(const Readings& readings, double knee, bool bends, FitReport& report
 }  // namespace
 
 Result<BenchCalibration> FitThermometer(const BenchTable& data, const ThermometerFitSetup& setup) {
-  const Result<Readings> readings = Read(data);
+  const Result<ThermometerReadings> readings = ReadThermometers(data);
   if (!readings) return readings.fault();
   double knee = setup.knee;
   if (setup.fit_knee) {

@@ -16,8 +16,6 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kOutlierSigmas = 6;
-
 // A row's readings against the model, whitened.
 class RowCost : public ceres::CostFunction {
  public:
@@ -192,9 +190,9 @@ class Adjuster {
       }
     }
     // Below that lies the rounding of what was written down.
-    constexpr double kRounding = 1e-8;
+    constexpr double kWrittenRounding = 1e-8;
     for (std::size_t kind = 0; kind < 3; ++kind) {
-      floor_[kind] = std::max(kRounding * RobustSigma(readings[kind]), 1e-300);
+      floor_[kind] = std::max(kWrittenRounding * RobustSigma(readings[kind]), 1e-300);
     }
     noise_.wobble = setup_.sigma_wobble.value_or(5e-5);
     noise_.accel = setup_.sigma_accel.value_or(std::max(RobustSigma(sizes[0]), floor_[0]));

@@ -5,31 +5,25 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/tool_model_internal.h"
+#include "wellgyro/math/so3.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr double kEarth = kBenchEarthRate / units::kDegPerHour;
-
-Eigen::Matrix3d Cross(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d C;
-  C << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return C;
-}
 
 // Exp(e) v and its change with e.
 std::pair<Eigen::Vector3d, Eigen::Matrix3d> Turned(const Eigen::Vector3d& e,
                                                    const Eigen::Vector3d& v) {
   const double angle = e.norm();
-  const Eigen::Matrix3d C = Cross(e);
+  const Eigen::Matrix3d C = Skew(e);
   const double a = angle < 1e-8 ? 1 : std::sin(angle) / angle;
   const double b = angle < 1e-8 ? 0.5 : (1 - std::cos(angle)) / (angle * angle);
   const double c = angle < 1e-8 ? 1.0 / 6 : (angle - std::sin(angle)) / (angle * angle * angle);
   const Eigen::Matrix3d R = Eigen::Matrix3d::Identity() + a * C + b * C * C;
   const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() + b * C + c * C * C;
   const Eigen::Vector3d turned = R * v;
-  return {turned, -Cross(turned) * left};
+  return {turned, -Skew(turned) * left};
 }
 
 }  // namespace
@@ -105,20 +99,20 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
                                  Eigen::Vector3d::Unit((axis + 2) % 3)};
     const Eigen::Vector3d leaning = n + z[place] * e[0] + z[place + 1] * e[1];
     const Eigen::Vector3d up = leaning.normalized();
-    const double rate = row.rate + kEarth * std::sin(latitude);
+    const double rate = row.rate + kBenchEarthDegPerHour * std::sin(latitude);
     state.row.w = rate * up;
     state.row.f = up;
     for (int k = 0; k < 2; ++k) {
       const Eigen::Vector3d by = (e[k] - up * up.dot(e[k])) / leaning.norm();
       state.slopes.push_back({place + k, rate * by, by});
     }
-    state.slopes.push_back({latitude_, kEarth * std::cos(latitude) * up, {0, 0, 0}});
+    state.slopes.push_back({latitude_, kBenchEarthDegPerHour * std::cos(latitude) * up, {0, 0, 0}});
   } else {
     const int place = level_[static_cast<std::size_t>(row.table)];
     const bool north = readings_.n_gyro > 0;
     const Eigen::Vector3d e(z[place], z[place + 1], north ? z[place + 2] : 0);
     const Eigen::Vector3d w_L =
-        kEarth * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
+        kBenchEarthDegPerHour * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
     const auto [w, dw] = Turned(e, w_L);
     const auto [f, df] = Turned(e, -Eigen::Vector3d::UnitZ());
     state.row.w = row.R_BL * w;
@@ -128,7 +122,8 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
     }
     if (latitude_ >= 0) {
       const Eigen::Vector3d by(-std::sin(latitude), 0, -std::cos(latitude));
-      state.slopes.push_back({latitude_, row.R_BL * Turned(e, kEarth * by).first, {0, 0, 0}});
+      state.slopes.push_back(
+          {latitude_, row.R_BL * Turned(e, kBenchEarthDegPerHour * by).first, {0, 0, 0}});
     }
   }
   const double unit =
@@ -164,7 +159,7 @@ ToolModel::Prediction ToolModel::At(const ToolRow& row, const Eigen::VectorXd& x
       p.J(i, n_terms() + slope.place) += by_w.dot(slope.w) + by_f.dot(slope.f);
     }
     // A tool turned by e sees v as v - e x v.
-    p.wobble.row(i) = by_w.transpose() * Cross(state.row.w) + by_f.transpose() * Cross(state.row.f);
+    p.wobble.row(i) = by_w.transpose() * Skew(state.row.w) + by_f.transpose() * Skew(state.row.f);
   }
   return p;
 }

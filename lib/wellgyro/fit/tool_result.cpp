@@ -19,11 +19,11 @@ using Kind = CalibrationMember::Kind;
 // "gyro_S_tau1[2,0]" to its quantity and its place there.
 std::string QuantityOf(const std::string& name) { return name.substr(0, name.find('[')); }
 
-struct Place {
+struct TermPlace {
   int row = 0, column = 0;
 };
-Place PlaceOf(const std::string& name) {
-  Place place;
+TermPlace PlaceOf(const std::string& name) {
+  TermPlace place;
   const std::size_t open = name.find('['), comma = name.find(',');
   if (open == std::string::npos) return place;
   place.row = std::stoi(name.substr(open + 1));
@@ -38,7 +38,7 @@ void AddQuantities(FitReport& report) {
   for (Eigen::Index i = 0; i < report.values.size(); ++i) {
     const std::string& name = report.parameters[static_cast<std::size_t>(i)];
     const std::string quantity_name = QuantityOf(name);
-    const Place place = PlaceOf(name);
+    const TermPlace place = PlaceOf(name);
     auto [found, is_new] = of.try_emplace(quantity_name);
     FitQuantity& quantity = found->second;
     if (is_new) order.push_back(quantity_name);

@@ -118,7 +118,7 @@ void Follow(const BenchTable& data, std::span<ToolRow> rows) {
   }
 }
 
-std::optional<Fault> Order(const BenchTable& data) {
+std::optional<Fault> CheckOrder(const BenchTable& data) {
   const auto t = data.Find("t_s");
   for (int i = 1; t && i < data.rows(); ++i) {
     if (data.values(i, *t) > data.values(i - 1, *t)) continue;
@@ -129,7 +129,7 @@ std::optional<Fault> Order(const BenchTable& data) {
 }
 
 std::optional<Fault> Check(const BenchTable& data, const std::vector<int>& places) {
-  if (auto fault = Order(data)) return fault;
+  if (auto fault = CheckOrder(data)) return fault;
   if (auto fault = Repeated(data)) return fault;
   std::vector<int> read;
   for (const int place : places) {
@@ -189,8 +189,8 @@ std::optional<Fault> SpanTemperatures(std::span<const BenchTable> tables, ToolRe
     readings.coldest = std::min(readings.coldest, row.temperature);
     readings.hottest = std::max(readings.hottest, row.temperature);
   }
-  constexpr double kLeastSwing = 10;  // degC
-  readings.has_temperature = readings.hottest - readings.coldest >= kLeastSwing;
+  constexpr double kLeastSweep = 10;  // degC
+  readings.has_temperature = readings.hottest - readings.coldest >= kLeastSweep;
   readings.middle = (readings.coldest + readings.hottest) / 2;
   if (readings.has_temperature) readings.half_range = (readings.hottest - readings.coldest) / 2;
   return std::nullopt;

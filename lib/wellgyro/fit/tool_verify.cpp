@@ -26,12 +26,6 @@ Squares SquaresOf(const Eigen::Vector3d& a) {
   return q;
 }
 
-Eigen::Matrix3d Cross(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d C;
-  C << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return C;
-}
-
 // One channel's reading by the tool model, and how it changes.
 struct ChannelAt {
   double tau = 0;
@@ -191,8 +185,8 @@ class Comparison {
     const Eigen::RowVector3d by_u = v.by_u * group.R_TS.transpose();
     const Eigen::RowVector3d by_f = v.by_f * group.R_TS.transpose();
     const Eigen::Vector3d own = is_gyro ? w_T : f_T, own_L = is_gyro ? w_L : f_L;
-    wobble = (by_u * Cross(own) + by_f * Cross(f_T)) * R_TB;
-    r.level.row(at) = by_u * R * -Cross(own_L) + by_f * R * -Cross(f_L);
+    wobble = (by_u * Skew(own) + by_f * Skew(f_T)) * R_TB;
+    r.level.row(at) = by_u * R * -Skew(own_L) + by_f * R * -Skew(f_L);
     for (std::size_t k = 0; k < known.size(); ++k) {
       if (known[k].is_gyro != is_gyro || known[k].channel != c) continue;
       J(at, static_cast<Eigen::Index>(k)) = ByMember(known[k], v, row);

@@ -17,8 +17,6 @@
 namespace wellgyro {
 namespace {
 
-using Setup = TwentyFourPositionSetup;
-
 struct Reduced {
   double middle = 0, half_range = 1;  ///< [degC]
   double Of(double temperature) const { return (temperature - middle) / half_range; }
@@ -46,7 +44,8 @@ std::vector<std::string> Names(int degree) {
 }
 
 // The rotations' means and what is left of them, two rows for every axis, direction and channel.
-LinearProblem Problem(const std::vector<PositionRun>& runs, const Setup& setup, int degree) {
+LinearProblem Problem(const std::vector<PositionRun>& runs, const TwentyFourPositionSetup& setup,
+                      int degree) {
   const Reduced reduced = ReducedTemperature(runs);
   LinearProblem problem(Names(degree), static_cast<int>(runs.size()) * 36);
   problem.sigma.setConstant(setup.sigma.value_or(1) / 2);
@@ -81,7 +80,7 @@ double Criterion(const LinearProblem& problem, const LinearSolution& solution) {
   return n * std::log(solution.chi_square / n + digits * digits) + problem.size() * std::log(n);
 }
 
-int Degree(const std::vector<PositionRun>& runs, const Setup& setup) {
+int Degree(const std::vector<PositionRun>& runs, const TwentyFourPositionSetup& setup) {
   std::vector<double> temperatures;
   temperatures.reserve(runs.size());
   for (const PositionRun& run : runs) temperatures.push_back(run.temperature);
@@ -198,17 +197,17 @@ SensorGroup Group(const FitReport& report, int degree, const std::vector<Positio
   return group;
 }
 
-struct Fitted {
+struct FittedPositions {
   FitReport report;
   double tilt = 0;
 };
 
-Result<Fitted> Fit(const BenchTable& data, const std::vector<PositionRun>& runs, const Setup& setup,
-                   int degree) {
+Result<FittedPositions> Fit(const BenchTable& data, const std::vector<PositionRun>& runs,
+                            const TwentyFourPositionSetup& setup, int degree) {
   const LinearProblem problem = Problem(runs, setup, degree);
   auto whole = WholeReport(data, problem, Solve(problem), "measure all 24 positions");
   if (!whole) return whole.fault();
-  Fitted fitted{*std::move(whole), 0};
+  FittedPositions fitted{*std::move(whole), 0};
   const Eigen::Matrix3d S = SensitivityOf(fitted.report.values, 0);
   if (auto fault = WrongAxes(data, S, {"x", "y", "z"})) return *fault;
   const double volts_per_g = S.diagonal().cwiseAbs().minCoeff() * setup.gravity;
@@ -242,8 +241,8 @@ std::optional<Fault> BadReadings(const BenchTable& data, const std::vector<Posit
   return MixedUnits(positions, {0, 1, 2}, 0, "the length of (x, y, z)", "volts");
 }
 
-void AddRuns(const BenchTable& data, const std::vector<PositionRun>& runs, const Setup& setup,
-             FitReport& report) {
+void AddRuns(const BenchTable& data, const std::vector<PositionRun>& runs,
+             const TwentyFourPositionSetup& setup, FitReport& report) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto fitted = Fit(data, {runs[i]}, setup, 0);
     if (!fitted) continue;
@@ -261,7 +260,8 @@ void AddRuns(const BenchTable& data, const std::vector<PositionRun>& runs, const
 
 }  // namespace
 
-Result<BenchCalibration> FitTwentyFourPositions(const BenchTable& data, const Setup& setup) {
+Result<BenchCalibration> FitTwentyFourPositions(const BenchTable& data,
+                                                const TwentyFourPositionSetup& setup) {
   const auto runs = ReadPositionRuns(data, setup.settle_tolerance);
   if (!runs) return runs.fault();
   if (auto fault = BadReadings(data, *runs)) return *fault;

@@ -5,21 +5,18 @@
 
 #include <openssl/evp.h>
 
+#include "wellgyro/io/digest_context_internal.h"
+
 namespace wellgyro {
 namespace {
-
-struct FreeContext {
-  void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
-};
-using Context = std::unique_ptr<EVP_MD_CTX, FreeContext>;
 
 // SHA-256 is always there, so that all OpenSSL can refuse us is memory.
 void Demand(int done) {
   if (done != 1) throw std::bad_alloc();
 }
 
-Context NewContext() {
-  Context context(EVP_MD_CTX_new());
+DigestContext NewContext() {
+  DigestContext context(EVP_MD_CTX_new());
   if (!context) throw std::bad_alloc();
   return context;
 }
@@ -27,7 +24,7 @@ Context NewContext() {
 }  // namespace
 
 struct Sha256::State {
-  Context context = NewContext();
+  DigestContext context = NewContext();
 };
 
 Sha256::Sha256() : state_(std::make_unique<State>()) {
@@ -44,7 +41,7 @@ void Sha256::Update(std::span<const std::byte> bytes) {
 void Sha256::Update(std::string_view bytes) { Update(std::as_bytes(std::span(bytes))); }
 
 std::string Sha256::HexDigest() const {
-  const Context copy = NewContext();
+  const DigestContext copy = NewContext();
   Demand(EVP_MD_CTX_copy_ex(copy.get(), state_->context.get()));
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int size = 0;

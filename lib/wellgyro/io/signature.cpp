@@ -8,6 +8,7 @@
 #include <openssl/pem.h>
 
 #include "wellgyro/io/atomic_file.h"
+#include "wellgyro/io/digest_context_internal.h"
 #include "wellgyro/io/text_file.h"
 
 namespace wellgyro {
@@ -16,14 +17,10 @@ namespace {
 struct FreeKey {
   void operator()(EVP_PKEY* key) const { EVP_PKEY_free(key); }
 };
-struct FreeContext {
-  void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
-};
 struct FreeBio {
   void operator()(BIO* bio) const { BIO_free(bio); }
 };
 using Key = std::unique_ptr<EVP_PKEY, FreeKey>;
-using Context = std::unique_ptr<EVP_MD_CTX, FreeContext>;
 using Bio = std::unique_ptr<BIO, FreeBio>;
 
 // Ed25519 is always there, so that all OpenSSL can refuse us is memory.
@@ -101,7 +98,7 @@ std::vector<std::byte> PublicKeyOf(const PrivateKey& key) {
 
 std::vector<std::byte> Sign(const PrivateKey& key, std::span<const std::byte> message) {
   const Key made = KeyOf(key);
-  const Context context(EVP_MD_CTX_new());
+  const DigestContext context(EVP_MD_CTX_new());
   std::vector<std::byte> signature(kSignatureSize);
   std::size_t size = signature.size();
   Demand(context != nullptr &&
@@ -115,7 +112,7 @@ bool Verify(std::span<const std::byte> public_key, std::span<const std::byte> me
   if (public_key.size() != kPublicKeySize || signature.size() != kSignatureSize) return false;
   const Key key(
       EVP_PKEY_new_raw_public_key(EVP_PKEY_ED25519, nullptr, Raw(public_key), public_key.size()));
-  const Context context(EVP_MD_CTX_new());
+  const DigestContext context(EVP_MD_CTX_new());
   return key && context &&
          EVP_DigestVerifyInit(context.get(), nullptr, nullptr, nullptr, key.get()) == 1 &&
          EVP_DigestVerify(context.get(), Raw(signature), signature.size(), Raw(message),

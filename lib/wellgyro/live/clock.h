@@ -5,6 +5,8 @@
 
 namespace wellgyro {
 
+inline constexpr std::int64_t kSecondUs = 1'000'000;
+
 /// The clocks of the program that runs a live session: the library itself reads none, so that a
 /// test may give it any time. Both are called from several threads.
 struct LiveClock {

@@ -5,12 +5,10 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/live/clock.h"
+
 namespace wellgyro {
-namespace {
-
-constexpr std::int64_t kSecondUs = 1'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 Result<std::unique_ptr<LogKeeper>> LogKeeper::Open(const std::string& path, IfExists if_exists,
                                                    const LiveClock& clock, Notices& notices) {

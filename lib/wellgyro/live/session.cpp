@@ -9,13 +9,13 @@
 
 #include "wellgyro/bus/decode.h"
 #include "wellgyro/bus/log_reader.h"
+#include "wellgyro/live/clock.h"
 #include "wellgyro/live/journal.h"
 #include "wellgyro/live/session_core_internal.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kSecondUs = 1'000'000;
 // A FINISH that no sample reaches, because the tool is off, holds after so long without samples.
 constexpr std::int64_t kFinishPatienceUs = 5 * kSecondUs;
 // What is still used of a backlog when the session is stopped.

@@ -8,12 +8,12 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/words.h"
+#include "wellgyro/live/clock.h"
 #include "wellgyro/live/session_core_internal.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kSecondUs = 1'000'000;
 constexpr std::int64_t kKeepUs = 500'000;
 constexpr std::int64_t kAdviceUs = 2 * kSecondUs;
 constexpr double kRests = 5;                   // [s] so long without moving is a rest

@@ -4,11 +4,12 @@
 #include <optional>
 #include <utility>
 
+#include "wellgyro/live/clock.h"
+
 namespace wellgyro {
 namespace {
 
 constexpr int kLookMs = 100;
-constexpr std::int64_t kSecondUs = 1'000'000;
 
 }  // namespace
 

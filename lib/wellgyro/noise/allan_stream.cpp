@@ -6,11 +6,10 @@
 #include <string>
 
 #include "wellgyro/noise/difference_sums_internal.h"
+#include "wellgyro/noise/gap_terms_internal.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr double kBeyondAnySensor = 1e140;
 
 // Running sums of `rates`; returns the last. Quarters are summed side by side, because one sum
 // waits for itself.

@@ -8,6 +8,8 @@
 #include <Eigen/Dense>
 #include <fmt/core.h>
 
+#include "wellgyro/math/median.h"
+
 namespace wellgyro {
 namespace {
 
@@ -40,12 +42,6 @@ std::vector<char> MissingOf(const SampleSeries& series) {
   return missing;
 }
 
-double Median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Places of the spikes among the readings [begin, end).
 void FindSpikes(const SampleSeries& series, const std::vector<char>& missing, std::size_t begin,
                 std::size_t end, std::vector<std::size_t>& spikes) {
@@ -57,7 +53,7 @@ void FindSpikes(const SampleSeries& series, const std::vector<char>& missing, st
   const double middle = Median(values);
   for (double& value : values) value = std::abs(value - middle);
   constexpr double kSigmas = 8, kSigmaPerMad = 1.4826;
-  const double limit = kSigmas * kSigmaPerMad * Median(values);
+  const double limit = kSigmas * kSigmaPerMad * Median(std::move(values));
   if (!(limit > 0)) return;
   for (std::size_t i = begin; i < end; ++i) {
     if (missing[i] == 0 && std::abs(series.values[i] - middle) > limit) spikes.push_back(i);
@@ -111,7 +107,7 @@ std::optional<std::string> PlaceByTime(SampleSeries& series, std::span<const dou
   for (std::size_t i = 1; i < times.size() && i < 100'001; ++i) {
     steps.push_back(times[i] - times[i - 1]);
   }
-  const double period = Median(steps);
+  const double period = Median(std::move(steps));
   if (!(period > 0)) return "the times do not rise";
   std::vector<std::int64_t> place(times.size(), 0);
   constexpr double kLongest = 1e9;

@@ -7,8 +7,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kBeyondAnySensor = 1e140;
-
 void Append(std::vector<TermRange>& ranges, std::int64_t begin, std::int64_t end) {
   if (begin >= end) return;
   if (!ranges.empty() && ranges.back().end == begin) {

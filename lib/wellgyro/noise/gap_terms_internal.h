@@ -8,6 +8,10 @@
 
 namespace wellgyro {
 
+/// A rate whose size is above this is no number, and so is a sum: its square would overflow.
+inline constexpr double kBeyondAnySensor = 1e140;
+inline constexpr double kBeyondAnySum = 1e150;
+
 /// Terms [begin, end) by their first sample.
 struct TermRange {
   std::int64_t begin = 0;

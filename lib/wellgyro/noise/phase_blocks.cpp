@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::int64_t kQuarter = PhaseBlocks::kBlock / 4;
 constexpr std::int64_t kRingBlocks = 130;  // 8 MiB, a little more than 2^20 phases
-constexpr double kBeyondAnySum = 1e150;    // its square would overflow
 
 }  // namespace
 

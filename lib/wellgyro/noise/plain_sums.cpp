@@ -6,8 +6,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kBeyondAnySum = 1e150;  // its square would overflow
-
 // A sum that keeps what rounding takes from it.
 class CarriedSum {
  public:
@@ -40,11 +38,11 @@ double SumOf(std::span<const double> y, double shift) {
 
 // In blocks, so that the rounding of long sums stays that of short ones.
 double WindowSum(std::span<const double> y, double shift) {
-  constexpr std::size_t kBlock = 1024;
-  if (y.size() <= kBlock) return SumOf(y, shift);
+  constexpr std::size_t kShortSum = 1024;
+  if (y.size() <= kShortSum) return SumOf(y, shift);
   CarriedSum sum;
-  for (std::size_t i = 0; i < y.size(); i += kBlock) {
-    sum.Add(SumOf(y.subspan(i, std::min(kBlock, y.size() - i)), shift));
+  for (std::size_t i = 0; i < y.size(); i += kShortSum) {
+    sum.Add(SumOf(y.subspan(i, std::min(kShortSum, y.size() - i)), shift));
   }
   return sum.value();
 }

@@ -14,8 +14,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kConfidence = 0.95;
-
 std::string KindLetter(const std::string& kind) {
   if (kind == "tie_in") return "T";
   if (kind == "gyrocompass") return "G";

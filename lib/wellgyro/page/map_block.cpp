@@ -24,7 +24,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Mark = ChartSeries::Mark;
 
-constexpr double kConfidence = 0.95;
 constexpr int kSurveyColour = 0, kEllipseColour = 1;
 constexpr std::size_t kNameShown = 40;  // letters of another well's
 

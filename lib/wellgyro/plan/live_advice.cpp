@@ -15,15 +15,15 @@ namespace {
 using Rest = StopStand::Rest;
 using Action = Advice::Action;
 
-constexpr double kSpacing = 30;  // [m] of places for a stop, or ...
-constexpr double kPlaces = 40;   // ... so many to a way
-constexpr double kHere = 10;     // [m] within which a place is this one
-constexpr double kGoesUp = 10;   // [m] above its deepest place the run is on its way up
+constexpr double kAdviceSpacing = 30;  // [m] of places for a stop, or ...
+constexpr double kPlaces = 40;         // ... so many to a way
+constexpr double kHere = 10;           // [m] within which a place is this one
+constexpr double kGoesUp = 10;         // [m] above its deepest place the run is on its way up
 
 /// This place, then those of the plan's way that are still ahead.
 std::vector<StopPlace> PlacesAhead(const PlannedWay& way, double md, bool out) {
   std::vector<StopPlace> places{{out, md}};
-  const double spacing = std::max(kSpacing, (way.end_md - way.begin_md) / kPlaces);
+  const double spacing = std::max(kAdviceSpacing, (way.end_md - way.begin_md) / kPlaces);
   for (const StopPlace& place : PlacesEvery(way, spacing)) {
     const bool down = !place.out && !out && place.md > md + kHere;
     const bool up = place.out && (!out || place.md < md - kHere);

@@ -19,7 +19,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kToolfaces = 8;
 constexpr int kIterations = 400;
 constexpr double kCloseEnough = 0.998;  // bound over time
 constexpr double kTooLong = 1e8;        // [s]

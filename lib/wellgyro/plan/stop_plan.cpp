@@ -19,8 +19,9 @@ constexpr double kPlacesMost = 100;
 // Rounds of search and verification; each holds the search to what the last was above the limit.
 constexpr int kVerifications = 8;
 constexpr double kBelow = 0.998;  // of the limit is sought where it was missed
-constexpr double kStep = 0.95;    // and of a fault, which the search knows less well, at most this
-constexpr double kMet = 1.001;    // the whole run may say this much of the limit
+constexpr double kHiddenShare =
+    0.95;                       // and of a fault, which the search knows less well, at most this
+constexpr double kMet = 1.001;  // the whole run may say this much of the limit
 
 void CheckLimits(const PlanLimits& limits) {
   const auto need = [](bool holds, const char* name, double value, const char* what) {
@@ -94,7 +95,7 @@ bool Tighten(const PlanLimits& limits, const ExpectedEnd& expected, const PlanVa
   }
   if (limits.hidden && expected.hidden > *limits.hidden * kMet) {
     // Of steps the search knows those of the gyros alone; what shows them shows others too.
-    const double share = std::min(kStep, kBelow * *limits.hidden / expected.hidden);
+    const double share = std::min(kHiddenShare, kBelow * *limits.hidden / expected.hidden);
     aim.hidden = std::min(*aim.hidden, sought.hidden) * share;
     missed = true;
   }

@@ -10,7 +10,6 @@ namespace {
 
 using Rest = StopStand::Rest;
 
-constexpr int kToolfaces = 8;
 constexpr double kGrain = 10;        // [s] to which times are found
 constexpr double kLeastGain = 1e-7;  // of the logarithm, per second
 constexpr std::size_t kKept = 24;    // places looked at again, beside those near the stops

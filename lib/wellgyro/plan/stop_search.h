@@ -10,6 +10,9 @@
 
 namespace wellgyro {
 
+/// To which a tool may be turned before a stop, evenly spread.
+inline constexpr int kToolfaces = 8;
+
 /// What a plan must meet and what stops may be like.
 struct PlanLimits {
   double ellipse = 5;  ///< semi-major axis of the end's 95 % ellipse, at most [m]

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <fmt/core.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/simulate/random_stream.h"
 
 namespace wellgyro {
@@ -20,7 +21,6 @@ using Eigen::Vector3d;
 
 constexpr std::uint64_t kNoiseStream = 5000;
 constexpr double kTurnSeconds = 10;  // of a turn at rest, and of a creep's way back
-constexpr double kTwoPi = 6.283185307179586;
 
 bool Acts(const SimulatedFault& f, double time) { return time >= f.begin && time < f.end; }
 

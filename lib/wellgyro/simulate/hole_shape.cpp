@@ -11,6 +11,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/simulate/require_internal.h"
 #include "wellgyro/simulate/smooth_window.h"
 
 namespace wellgyro {
@@ -19,10 +20,6 @@ namespace {
 constexpr double kLargestBend = FromDegrees(60);  // between stations
 constexpr double kLeastDetail = 0.1;              // [m]
 constexpr double kStraightUp = FromDegrees(1);
-
-void Require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
 
 // The direction `u` of the way from `a` to `b` along their great circle, also beyond either.
 Eigen::Vector3d OnArc(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double u) {

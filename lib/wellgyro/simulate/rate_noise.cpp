@@ -18,7 +18,7 @@ constexpr double kFlickerShortest = 0.25;  // [s]
 constexpr int kFlickerProcesses = 11;
 
 // Streams of one axis, apart from every other axis' by the caller's stream number.
-enum Stream : std::uint64_t { kWhite, kWalk, kDrawn, kInstability, kStreamsPerAxis = 32 };
+enum RateStream : std::uint64_t { kWhite, kWalk, kDrawn, kInstability, kStreamsPerAxis = 32 };
 
 // Covariance of (state at the end, integral) of a unit Gauss-Markov process that began at a known
 // value, x correlation times ago; times in correlation times.

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/simulate/require_internal.h"
 #include "wellgyro/simulate/smooth_window.h"
 
 namespace wellgyro {
@@ -18,10 +19,6 @@ constexpr double kTurnPerShortTime = 0.1;  // [rad]
 constexpr double kWavePerShortTime = 0.5;  // [rad]
 constexpr double kLongest = 1e7;           // [s], of a run: nothing would ever come of a longer one
 constexpr double kShortest = 1e-5;         // [s], which the truth is integrated by
-
-void Require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
 
 double CommandedRoll(double toolface, double md, RollReference reference, const TruthWell& well) {
   return reference == RollReference::kHighSide ? toolface : toolface + well.PointAt(md).azimuth;

@@ -14,7 +14,7 @@ namespace wellgyro {
 namespace {
 
 // Streams of the simulation's seed beside those of the sensors.
-enum Stream : std::uint64_t { kJitter = 4000, kDepthNoise = 4001 };
+enum TimingStream : std::uint64_t { kJitter = 4000, kDepthNoise = 4001 };
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;  // of one period, so that a last sample is not lost
 

@@ -9,7 +9,7 @@ namespace wellgyro {
 namespace {
 
 // Streams of the simulation's seed; those of the gyros' noises lie below 3 * 32.
-enum Stream : std::uint64_t { kAccelNoise = 1000, kMagNoise = 1010, kDrawn = 2000 };
+enum ToolStream : std::uint64_t { kAccelNoise = 1000, kMagNoise = 1010, kDrawnErrors = 2000 };
 
 double Clip(double value, double full_scale, bool& saturated) {
   if (full_scale <= 0 || std::abs(value) < full_scale) return value;
@@ -21,7 +21,7 @@ double Clip(double value, double full_scale, bool& saturated) {
 
 ToolErrors DrawToolErrors(const ErrorPriors& priors, const NoiseCoefficients& noise,
                           std::uint64_t seed) {
-  std::uint64_t stream = kDrawn;
+  std::uint64_t stream = kDrawnErrors;
   const auto draw = [&](double sigma) { return sigma * RandomStream(seed, stream++).Normal(); };
   ToolErrors errors;
   for (double& bias : errors.gyro_bias) bias = draw(priors.gyro_bias_sigma);

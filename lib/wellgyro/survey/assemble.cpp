@@ -110,7 +110,7 @@ double SeverityOf(double length, const Eigen::Vector3d& t1, const Eigen::Vector3
 }
 
 /// Sums a pass over its way, from station to station.
-PassLine Place(const Site& head, const Job& job, const PathStart& start, PassItems& pass) {
+PassLine PlaceStations(const Site& head, const Job& job, const PathStart& start, PassItems& pass) {
   const std::vector<Eigen::Matrix3d> covs = PassCovariances(job, pass, start);
   Path path(head, start.point.station, start.point.p_WT_W);
   PassLine line{pass.front().station.run,
@@ -203,7 +203,7 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
     const double first = passes[i].front().station.md;
     std::optional<PathStart> start;
     if (main_line < lines.size()) start = StartOnLine(head, lines[main_line], first);
-    lines.push_back(Place(head, job, start && first > top ? *start : tie, passes[i]));
+    lines.push_back(PlaceStations(head, job, start && first > top ? *start : tie, passes[i]));
     if (depth(lines.size() - 1) > depth(main_line)) main_line = lines.size() - 1;
   }
 }

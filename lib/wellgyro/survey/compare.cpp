@@ -13,6 +13,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/survey/difference_covariance_internal.h"
+#include "wellgyro/survey/same_depth_internal.h"
 #include "wellgyro/survey/verdict.h"
 #include "wellgyro/trajectory/trajectory.h"
 
@@ -25,7 +26,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr std::size_t kPlacesMax = 20'000;
-constexpr double kSameDepth = 1e-6;            // [m]
 constexpr double kVertical = 0.1 * kPi / 180;  // below it an azimuth says nothing [rad]
 constexpr double kPower = 0.8;
 
@@ -52,7 +52,7 @@ Common CommonOf(const ComparedSurvey& first, const ComparedSurvey& second) {
 
 /// A first station at MD 0 is a convention, not a measurement.
 bool IsConvention(const ComparedSurvey& s, double md) {
-  return md <= kSameDepth && s.well.survey.front().md == 0;
+  return md <= kRoundedDepth && s.well.survey.front().md == 0;
 }
 
 std::vector<double> StationsIn(const ComparedSurvey& s, const Common& common) {
@@ -84,13 +84,13 @@ std::vector<double> DepthsOf(const ComparedSurvey& first, const ComparedSurvey& 
     if (depths.empty()) throw std::invalid_argument("no station of the one lies in the other");
   }
   std::ranges::sort(depths);
-  const auto same = [](double a, double b) { return b - a < kSameDepth; };
+  const auto same = [](double a, double b) { return b - a < kRoundedDepth; };
   depths.erase(std::unique(depths.begin(), depths.end(), same), depths.end());
   if (depths.size() > kPlacesMax)
     throw std::invalid_argument(
         "more than 20000 depths to compare: give fewer, or a wider spacing");
   for (double& md : depths) {
-    if (!(md >= common.begin - kSameDepth && md <= common.end + kSameDepth)) {
+    if (!(md >= common.begin - kRoundedDepth && md <= common.end + kRoundedDepth)) {
       throw std::invalid_argument(fmt::format(
           "MD {} m is not in both surveys, which have {} to {} m", md, common.begin, common.end));
     }
@@ -154,7 +154,7 @@ Check CheckOf(const char* code, const char* unit) {
   return check;
 }
 
-Check NotDone(const char* code, const char* unit, const char* why) {
+Check NotCompared(const char* code, const char* unit, const char* why) {
   Check check = CheckOf(code, unit);
   check.looks = 0;
   check.limit_source = why;
@@ -165,7 +165,7 @@ Check NotDone(const char* code, const char* unit, const char* why) {
 /// d' C^-1 d over its degrees of freedom.
 Check ChiSquare(const char* code, const VectorXd& d, const MatrixXd& cov) {
   const Eigen::LLT<MatrixXd> solver(cov);
-  if (solver.info() != Eigen::Success) return NotDone(code, "1", "its covariance is singular");
+  if (solver.info() != Eigen::Success) return NotCompared(code, "1", "its covariance is singular");
   Check check = CheckOf(code, "1");
   check.freedom = static_cast<double>(d.size());
   check.value = d.dot(solver.solve(d)) / check.freedom;
@@ -244,7 +244,7 @@ void EstimateShifts(const VectorXd& d, const MatrixXd& cov, const MatrixXd& shap
 void AddShift(const char* code, const char* unit, double in_unit,
               const std::optional<ShiftEstimate>& shift, std::vector<Check>& checks) {
   if (!shift) {
-    checks.push_back(NotDone(code, unit, "the surveys cannot show it"));
+    checks.push_back(NotCompared(code, unit, "the surveys cannot show it"));
     return;
   }
   Check check = CheckOf(code, unit);
@@ -287,15 +287,15 @@ void TestWorst(const DifferenceCovariance& covariance, Comparison& comparison) {
     comparison.checks.push_back(check);
   }
   constexpr const char* kWhy = "needs an error model of each survey";
-  comparison.checks.push_back(NotDone("compare_depth_offset", "m", kWhy));
-  comparison.checks.push_back(NotDone("compare_depth_stretch", "m/km", kWhy));
-  comparison.checks.push_back(NotDone("compare_azimuth_offset", "deg", kWhy));
+  comparison.checks.push_back(NotCompared("compare_depth_offset", "m", kWhy));
+  comparison.checks.push_back(NotCompared("compare_depth_stretch", "m/km", kWhy));
+  comparison.checks.push_back(NotCompared("compare_azimuth_offset", "deg", kWhy));
 }
 
 void TestPosition(Comparison& comparison) {
   const ComparedPlace& deepest = comparison.places.back();
   if (!deepest.position_sigmas) {
-    comparison.checks.push_back(NotDone("compare_position", "1", "its covariance is singular"));
+    comparison.checks.push_back(NotCompared("compare_position", "1", "its covariance is singular"));
     return;
   }
   Check check = CheckOf("compare_position", "1");
@@ -317,7 +317,7 @@ void SaySmallest(Comparison& comparison) {
   say("compare_azimuth_offset", kPi / 180, comparison.azimuth_offset);
 }
 
-void CheckInputs(const ComparedSurvey& s, const CompareOptions& options) {
+void CheckCompared(const ComparedSurvey& s, const CompareOptions& options) {
   const std::size_t n = s.well.survey.size();
   if (n < 2 || s.well.position.size() != n || (!s.errors && s.own.size() != n)) {
     throw std::invalid_argument(
@@ -337,8 +337,8 @@ void CheckInputs(const ComparedSurvey& s, const CompareOptions& options) {
 
 Comparison Compare(const ComparedSurvey& first, const ComparedSurvey& second,
                    const CompareOptions& options) {
-  CheckInputs(first, options);
-  CheckInputs(second, options);
+  CheckCompared(first, options);
+  CheckCompared(second, options);
   const Common common = CommonOf(first, second);
   const std::vector<double> depths = DepthsOf(first, second, common, options);
   Comparison comparison;

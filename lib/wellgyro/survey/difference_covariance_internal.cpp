@@ -40,13 +40,13 @@ Across AcrossOf(const Vector3d& tangent) {
 using SourceKey = std::tuple<std::string, Propagation, std::string, std::int64_t>;
 
 /// One source and group of one survey.
-struct Factor {
+struct GroupErrors {
   std::span<const StationError> errors;
   bool taken = false;
 };
 
-std::map<SourceKey, Factor> FactorsOf(const SurveyErrors& errors, int survey, bool same_run) {
-  std::map<SourceKey, Factor> factors;
+std::map<SourceKey, GroupErrors> FactorsOf(const SurveyErrors& errors, int survey, bool same_run) {
+  std::map<SourceKey, GroupErrors> factors;
   const std::span<const StationError> all(errors.errors);
   for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
     const auto same = [&](const StationError& e) {
@@ -192,7 +192,7 @@ void Accumulator::AddLocal() {
 }
 
 void Accumulator::AddModelled() {
-  std::map<SourceKey, Factor> factors[2];
+  std::map<SourceKey, GroupErrors> factors[2];
   for (int i = 0; i < 2; ++i) {
     if (surveys_[i]->errors) {
       factors[i] = FactorsOf(*surveys_[i]->errors, i, options_.same_run);
@@ -203,7 +203,7 @@ void Accumulator::AddModelled() {
     if (surveys_[i]->errors) listings[i].emplace(surveys_[i]->well, *surveys_[i]->errors, depths_);
   }
   ListedErrors listed;
-  const auto add = [&](int i, const Factor& factor) {
+  const auto add = [&](int i, const GroupErrors& factor) {
     listings[i]->Carry(factor.errors, listed);
     Add(listed, i == 0 ? -1 : 1);
   };

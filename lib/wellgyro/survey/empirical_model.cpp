@@ -17,7 +17,7 @@ namespace {
 constexpr double kProbability = 0.95;
 constexpr const char* kShared =
     "one error in all surveys of a hole: their differences do not show it";
-constexpr const char* kAbsent = "no survey that was compared has it";
+constexpr const char* kInNoSurvey = "no survey that was compared has it";
 constexpr const char* kVague = "the surveys tell it neither from 0 nor from what is assumed";
 
 bool IsShared(const ErrorTerm& term) {
@@ -96,7 +96,7 @@ void Estimator::HoldWhatIsAbsent() {
     }
   }
   for (std::size_t j = 0; j < result_.terms.size(); ++j) {
-    if (!has[j] && !start_.held[j]) Hold(j, kAbsent);
+    if (!has[j] && !start_.held[j]) Hold(j, kInNoSurvey);
   }
 }
 

@@ -5,12 +5,11 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/survey/same_depth_internal.h"
 #include "wellgyro/trajectory/trajectory.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr double kSameDepth = 1e-6;  // [m]
 
 template <class T>
 void DropFirst(std::vector<T>& values, std::size_t count) {
@@ -21,9 +20,9 @@ void DropFirst(std::vector<T>& values, std::size_t count) {
 }  // namespace
 
 std::size_t StationAt(std::vector<SurveyPoint>& stations, std::vector<ToolLeg>& legs, double md) {
-  const auto next = std::ranges::lower_bound(stations, md - kSameDepth, {}, &SurveyPoint::md);
+  const auto next = std::ranges::lower_bound(stations, md - kRoundedDepth, {}, &SurveyPoint::md);
   const auto at = static_cast<std::size_t>(next - stations.begin());
-  if (next != stations.end() && next->md <= md + kSameDepth) return at;
+  if (next != stations.end() && next->md <= md + kRoundedDepth) return at;
   if (next == stations.end() || at == 0) {
     throw std::domain_error("the kick-off is outside the survey");
   }

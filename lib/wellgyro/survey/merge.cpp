@@ -9,12 +9,12 @@
 #include <Eigen/LU>
 #include <fmt/core.h>
 
+#include "wellgyro/survey/same_depth_internal.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr double kSameDepth = 1e-6;  // [m]
 constexpr std::size_t kOrdersMax = 64;
 
 /// One leg for each stretch between two breaks.
@@ -68,7 +68,7 @@ class Merger {
 bool Merger::Reaches(std::size_t leg, double begin, double end) const {
   const auto& stations = legs_[leg].stations;
   if (!legs_[leg].left_out.empty()) return false;
-  return stations.front().md <= begin + kSameDepth && stations.back().md >= end - kSameDepth;
+  return stations.front().md <= begin + kRoundedDepth && stations.back().md >= end - kRoundedDepth;
 }
 
 /// Breaks are where a leg begins or ends. Stretches that no leg reaches through are courses between
@@ -82,7 +82,7 @@ void Merger::FindStretches() {
   }
   if (breaks.empty()) throw std::invalid_argument("every leg is ruled out");
   std::ranges::sort(breaks);
-  const auto same = [](double a, double b) { return b - a < kSameDepth; };
+  const auto same = [](double a, double b) { return b - a < kRoundedDepth; };
   breaks.erase(std::unique(breaks.begin(), breaks.end(), same), breaks.end());
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     Stretch stretch{breaks[i], breaks[i + 1], {}};
@@ -111,8 +111,8 @@ Assembled Merger::Assemble(const Order& order) const {
     for (const SurveyPoint& p : leg.stations) {
       const double above = made.stations.empty() ? -std::numeric_limits<double>::infinity()
                                                  : made.stations.back().md;
-      if (p.md > above + kSameDepth && p.md >= stretches_[i].begin - kSameDepth &&
-          p.md <= stretches_[i].end + kSameDepth) {
+      if (p.md > above + kRoundedDepth && p.md >= stretches_[i].begin - kRoundedDepth &&
+          p.md <= stretches_[i].end + kRoundedDepth) {
         made.stations.push_back(p);
       }
     }
@@ -144,7 +144,7 @@ double Merger::MeasureOf(const Order& order) const {
   std::size_t at = well.survey.size() - 1;
   if (policy_.at_md && *policy_.at_md < well.survey.back().md) {
     const auto place =
-        std::ranges::lower_bound(well.survey, *policy_.at_md - kSameDepth, {}, &SurveyPoint::md);
+        std::ranges::lower_bound(well.survey, *policy_.at_md - kRoundedDepth, {}, &SurveyPoint::md);
     at = static_cast<std::size_t>(place - well.survey.begin());
   }
   const Eigen::Matrix3d& cov = errors.cov_p[at];

@@ -14,12 +14,12 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kBend = 1.7e-3;    // of a hole, 1-sigma [rad/m]
-constexpr double kLeastLength = 1;  // [m], of a leg between stations at one place
-constexpr double kMargin = 9;       // chi-square by which one path must beat another
+constexpr double kBendSigma = 1.7e-3;  // of a hole, 1-sigma [rad/m]
+constexpr double kLeastLength = 1;     // [m], of a leg between stations at one place
+constexpr double kMargin = 9;          // chi-square by which one path must beat another
 
 /// A place where the hole has one of up to two directions.
-struct Node {
+struct MirrorNode {
   double md = 0;
   Draft* draft = nullptr;  ///< absent: the tie-in
   double variance = 0;     ///< of the direction [rad^2]
@@ -29,10 +29,10 @@ struct Node {
   std::array<double, 2> above{}, below{};  ///< least cost of a path from there, its own included
 };
 
-Node NodeOf(Draft& draft, double share) {
+MirrorNode NodeOf(Draft& draft, double share) {
   const AttitudeSample& a = draft.attitude;
   const double sine = std::sin(a.inclination);
-  Node node{.md = draft.station.md, .draft = &draft};
+  MirrorNode node{.md = draft.station.md, .draft = &draft};
   node.variance = sine * sine * a.cov_attitude(1, 1) + a.cov_attitude(0, 0);
   node.tangent[0] = Tangent(a.inclination, a.azimuth);
   if (!draft.mirror_azimuth) return node;
@@ -42,10 +42,10 @@ Node NodeOf(Draft& draft, double share) {
   return node;
 }
 
-std::vector<Node> NodesOf(const Job& job, std::vector<Draft>& drafts) {
+std::vector<MirrorNode> NodesOf(const Job& job, std::vector<Draft>& drafts) {
   const auto mirrored = static_cast<double>(std::count_if(
       drafts.begin(), drafts.end(), [](const Draft& d) { return d.mirror_azimuth.has_value(); }));
-  std::vector<Node> nodes;
+  std::vector<MirrorNode> nodes;
   if (mirrored == 0) return nodes;
   if (job.tie_in.azimuth) {
     nodes.push_back({.md = job.tie_in.md});
@@ -55,19 +55,20 @@ std::vector<Node> NodesOf(const Job& job, std::vector<Draft>& drafts) {
     if (!draft.state) nodes.push_back(NodeOf(draft, 1 / mirrored));
   }
   std::stable_sort(nodes.begin(), nodes.end(),
-                   [](const Node& a, const Node& b) { return a.md < b.md; });
+                   [](const MirrorNode& a, const MirrorNode& b) { return a.md < b.md; });
   return nodes;
 }
 
-double CostOfBend(const Node& a, std::size_t i, const Node& b, std::size_t j) {
-  const double bend = kBend * std::max(b.md - a.md, kLeastLength);
+double CostOfBend(const MirrorNode& a, std::size_t i, const MirrorNode& b, std::size_t j) {
+  const double bend = kBendSigma * std::max(b.md - a.md, kLeastLength);
   const double angle =
       std::atan2(a.tangent[i].cross(b.tangent[j]).norm(), a.tangent[i].dot(b.tangent[j]));
   return angle * angle / (bend * bend + a.variance + b.variance);
 }
 
 /// Least cost of each direction of `node` and a path on the far side of `next`.
-void Extend(const Node& next, std::array<double, 2> Node::*sum, Node& node, bool next_is_deeper) {
+void Extend(const MirrorNode& next, std::array<double, 2> MirrorNode::*sum, MirrorNode& node,
+            bool next_is_deeper) {
   for (std::size_t i = 0; i < node.directions; ++i) {
     double least = HUGE_VAL;
     for (std::size_t j = 0; j < next.directions; ++j) {
@@ -92,14 +93,14 @@ void TakeMirror(Draft& draft) {
 }  // namespace
 
 void ResolveMirrors(const Job& job, std::vector<Draft>& drafts) {
-  std::vector<Node> nodes = NodesOf(job, drafts);
+  std::vector<MirrorNode> nodes = NodesOf(job, drafts);
   if (nodes.empty()) return;
   const std::size_t n = nodes.size();
   nodes.front().above = nodes.front().cost;
   nodes.back().below = nodes.back().cost;
-  for (std::size_t i = 1; i < n; ++i) Extend(nodes[i - 1], &Node::above, nodes[i], false);
-  for (std::size_t i = n - 1; i-- > 0;) Extend(nodes[i + 1], &Node::below, nodes[i], true);
-  for (Node& node : nodes) {
+  for (std::size_t i = 1; i < n; ++i) Extend(nodes[i - 1], &MirrorNode::above, nodes[i], false);
+  for (std::size_t i = n - 1; i-- > 0;) Extend(nodes[i + 1], &MirrorNode::below, nodes[i], true);
+  for (MirrorNode& node : nodes) {
     if (node.directions < 2) continue;
     const auto total = [&node](std::size_t i) {
       return node.above[i] + node.below[i] - node.cost[i];

@@ -13,6 +13,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/listing_errors_internal.h"
+#include "wellgyro/survey/same_depth_internal.h"
 #include "wellgyro/uncertainty/station_errors.h"
 
 namespace wellgyro {
@@ -22,8 +23,6 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr double kSameDepth = 1e-6;  // [m]
 
 /// A survey, the errors of its stations, and where in it the hole's common depths lie.
 struct Listing {
@@ -38,7 +37,7 @@ struct Listing {
   std::vector<std::size_t> place;  // of each, in the hole's
   std::vector<ListedPlace> listed;
 
-  bool Covers(double md) const { return md >= begin - kSameDepth && md <= end + kSameDepth; }
+  bool Covers(double md) const { return md >= begin - kRoundedDepth && md <= end + kRoundedDepth; }
 };
 
 /// Inclination and azimuth at each of a survey's stations, of the mean direction of all surveys
@@ -110,7 +109,7 @@ std::vector<double> CommonDepths(const std::vector<Listing>& listings) {
 }
 
 /// One common depth: the surveys that reach it, and the plane across the mean of their directions.
-struct Place {
+struct CommonDepth {
   std::vector<std::size_t> listings;
   Vector3d high = Vector3d::Zero(), right = Vector3d::Zero();
   Index row = 0;
@@ -171,12 +170,12 @@ class Contrasts {
   void AddSources(const std::vector<bool>& known);
   void AddLocal(double sigma);
   std::pair<Index, Index> RowsOf(const Listing& listing, std::size_t first, std::size_t last) const;
-  void AddTo(VectorXd& rows, Index first, const Place& place, std::size_t listing,
+  void AddTo(VectorXd& rows, Index first, const CommonDepth& place, std::size_t listing,
              const Vector2d& v) const;
 
   const ErrorModel& model_;
   std::vector<Listing> listings_;
-  std::vector<Place> places_;
+  std::vector<CommonDepth> places_;
   RepeatContrasts result_;
 };
 
@@ -195,7 +194,7 @@ Contrasts::Contrasts(const RepeatedHole& hole, const ErrorModel& model) : model_
 }
 
 void Contrasts::AddPlace(double md) {
-  Place place;
+  CommonDepth place;
   for (std::size_t i = 0; i < listings_.size(); ++i) {
     Listing& l = listings_[i];
     if (!l.Covers(md)) continue;
@@ -207,7 +206,7 @@ void Contrasts::AddPlace(double md) {
   places_.push_back(std::move(place));
 }
 
-void Contrasts::AddTo(VectorXd& rows, Index first, const Place& place, std::size_t listing,
+void Contrasts::AddTo(VectorXd& rows, Index first, const CommonDepth& place, std::size_t listing,
                       const Vector2d& v) const {
   const auto at =
       static_cast<Index>(std::ranges::find(place.listings, listing) - place.listings.begin());
@@ -233,7 +232,7 @@ void Contrasts::AddDirections() {
   result_.cluster.y = VectorXd::Zero(places_.back().row + places_.back().rows());
   for (std::size_t l = 0; l < listings_.size(); ++l) {
     for (std::size_t i = 0; i < listings_[l].place.size(); ++i) {
-      const Place& place = places_[listings_[l].place[i]];
+      const CommonDepth& place = places_[listings_[l].place[i]];
       AddTo(result_.cluster.y, 0, place, l, place.Of(listings_[l].listed[i].tangent));
     }
   }
@@ -242,7 +241,7 @@ void Contrasts::AddDirections() {
 /// Rows [begin, end) of the places that a listing has in [first, last).
 std::pair<Index, Index> Contrasts::RowsOf(const Listing& listing, std::size_t first,
                                           std::size_t last) const {
-  const Place& end = places_[listing.place[last - 1]];
+  const CommonDepth& end = places_[listing.place[last - 1]];
   return {places_[listing.place[first]].row, end.row + end.rows()};
 }
 
@@ -264,7 +263,7 @@ void Contrasts::Gather(std::size_t l, std::map<Shared, Effect>& effects) const {
     const auto [first, last] = RowsOf(listing, listed.first, listed.last);
     effect.Reach(first, last);
     for (std::size_t i = listed.first; i < listed.last; ++i) {
-      const Place& place = places_[listing.place[i]];
+      const CommonDepth& place = places_[listing.place[i]];
       AddTo(effect.rows, effect.first, place, l, place.Of(listed.direction[i]));
     }
   }

@@ -7,7 +7,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kStep = 0.1;  // [s], less is the jitter of messages and moves no depth by much
+constexpr double kClockStep =
+    0.1;  // [s], less is the jitter of messages and moves no depth by much
 constexpr Duration kTies = Duration::Seconds(5);  // until a new tie knows its UTC
 
 // Times come from outside: nonsense must not overflow.
@@ -57,7 +58,7 @@ UtcTime RunClock::Break(const SampleStamp& stamp, bool jumps) {
   ahead_.ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(begin.ns) -
                                         static_cast<std::uint64_t>(stamp.tool_time.ns));
   const double off = jumps ? Contradicted(passed, stamp.seq == in_->seq + 1) : 0;
-  doubt_ = jumps ? std::max(doubt_, off > kStep ? off : 0) : 0;
+  doubt_ = jumps ? std::max(doubt_, off > kClockStep ? off : 0) : 0;
   if (jumps) restless_ = begin + kTies;
   session_ = static_cast<std::int32_t>(static_cast<std::uint32_t>(out_.session) + 1u);
   broken_ = true;
@@ -69,7 +70,7 @@ inline void RunClock::NoteSteps() {
   step_.reset();
   if (tie_.steps() == steps_) return;
   steps_ = tie_.steps();
-  if (std::abs(tie_.step()) <= kStep) return;
+  if (std::abs(tie_.step()) <= kClockStep) return;
   step_ = tie_.step();
   doubt_ += std::abs(*step_);
 }

@@ -12,7 +12,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kSamePlace = 0.2;         // [m], between windows of one stop
+constexpr double kOneStop = 0.2;           // [m], between windows of one stop
 constexpr double kSamePlaceSeconds = 120;  // the same where there is no depth
 // 2 ln of odds of 90: by less one azimuth does not beat another.
 constexpr double kDecides = 9;
@@ -63,7 +63,7 @@ void CloseOn(const AttitudeSample& before, const AttitudeSample& after, NorthFix
 bool RunSurvey::SamePlace(ToolTime time, std::optional<double> md) const {
   if (group_.empty()) return true;
   const StillWindow& last = group_.back();
-  return last.md && md ? std::abs(*md - *last.md) <= kSamePlace
+  return last.md && md ? std::abs(*md - *last.md) <= kOneStop
                        : (time - last.end).seconds() <= kSamePlaceSeconds;
 }
 
@@ -197,7 +197,7 @@ void RunSurvey::ListStop(const NorthFix& fix) {
   for (auto draft = drafts_.rbegin(); draft != drafts_.rend(); ++draft) {
     Station& s = draft->station;
     if (s.utc > fix.utc_end) continue;
-    if (std::abs(s.md - *fix.md) > kSamePlace) return;
+    if (std::abs(s.md - *fix.md) > kOneStop) return;
     s.kind = StationKind::kGyrocompass;
     TakeReferences(fix, s);
     s.quality |= fix.quality;

@@ -17,8 +17,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Place = HoleLine::Place;
 
-constexpr double kMeet = 1e-9;       // [m]
-constexpr double kSamePlace = 1e-3;  // along hole [m]
+constexpr double kMeet = 1e-9;             // [m]
+constexpr double kPlaceResolution = 1e-3;  // along hole [m]
 
 /// Shared sources of both, by index.
 std::vector<std::pair<std::size_t, std::size_t>> Pairs(const PositionUncertainty& a,
@@ -176,7 +176,7 @@ double PairOfLines::LowestIn(std::size_t leg, double low, double high) const {
   const auto factor = [&](double s) { return FactorAt({leg, s}).value_or(0); };
   double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
   double fa = factor(a), fb = factor(b);
-  while (high - low > kSamePlace) {
+  while (high - low > kPlaceResolution) {
     if (fa < fb) {
       high = b, b = a, fb = fa;
       a = high - kGolden * (high - low), fa = factor(a);
@@ -207,7 +207,7 @@ void PairOfLines::AddMinima(std::size_t i, std::vector<Separation>& rows) const 
   const double part = leg.length / kParts;
   const double s = LowestIn(i, std::max(0, at - 1) * part, std::min(kParts, at + 1) * part);
   const auto lowest = At({i, s}, Separation::Kind::kLowest);
-  const bool known = !found.empty() && std::abs(found[0].md - lowest->md) < 10 * kSamePlace;
+  const bool known = !found.empty() && std::abs(found[0].md - lowest->md) < 10 * kPlaceResolution;
   if (lowest->factor && *lowest->factor < std::min(factors[0], factors[kParts]) - 1e-6 && !known) {
     found.push_back(*lowest);
   }

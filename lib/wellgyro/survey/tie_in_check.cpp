@@ -12,9 +12,9 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kReach = 30;                  // [m]
-constexpr double kSurveys = FromDegrees(0.5);  // of two surveys of one hole
-constexpr double kBend = FromDegrees(5) / 30;  // of a hole, at most [rad/m]
+constexpr double kReach = 30;                      // [m]
+constexpr double kSurveys = FromDegrees(0.5);      // of two surveys of one hole
+constexpr double kBendMost = FromDegrees(5) / 30;  // of a hole, at most [rad/m]
 
 Eigen::Vector3d Along(double inclination, double azimuth) {
   return {std::sin(inclination) * std::cos(azimuth), std::sin(inclination) * std::sin(azimuth),
@@ -43,7 +43,7 @@ Check CheckTieIn(const Job& job, std::span<const Station> stations) {
   const double angle = std::atan2(tie.cross(run).norm(), tie.dot(run));
   const double sigma = SigmaOfDirection(*nearest);
   Check check = CompareWith("tie_in", nearest->run, {angle, sigma},
-                            kSurveys + kBend * away(*nearest) + 3 * sigma, units::kDeg, "deg",
+                            kSurveys + kBendMost * away(*nearest) + 3 * sigma, units::kDeg, "deg",
                             "3 sigma, 0.5 deg of two surveys and 5 deg in 30 m of hole");
   check.md = nearest->md;
   return check;

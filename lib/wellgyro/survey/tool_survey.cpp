@@ -35,14 +35,14 @@ UtcTime TimeOf(const Operation& operation) {
 bool CanBe(const StillWindow& window) {
   constexpr double kRate = 0.5 * units::kDeg;  // [rad/s]
   constexpr double kLeastForce = 9.3, kMostForce = 10.3;
-  constexpr double kDepth = 1e5;  // [m]
+  constexpr double kDepthMost = 1e5;  // [m]
   constexpr double kSeconds = 1e5;
   const double f = window.f_T.norm();
   const double seconds = window.seconds();
   const bool sigmas = window.sigma_w_IT_T.allFinite() && window.sigma_f_T.allFinite() &&
                       window.sigma_w_IT_T.minCoeff() >= 0 && window.sigma_f_T.minCoeff() >= 0 &&
                       window.sigma_w_IT_T.maxCoeff() < kRate && window.sigma_f_T.maxCoeff() < 100;
-  const bool depth = !window.md || std::abs(*window.md) < kDepth;
+  const bool depth = !window.md || std::abs(*window.md) < kDepthMost;
   return f > kLeastForce && f < kMostForce && window.w_IT_T.norm() < kRate && sigmas && depth &&
          seconds > 0 && seconds < kSeconds;
 }

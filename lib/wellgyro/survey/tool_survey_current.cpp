@@ -55,8 +55,8 @@ void AddDepthChecks(const DepthMotion::Found& found, RunSummary& run) {
                                             limit, 1, "m", "8 sigma of the marks, 0.2 m"));
     run.sample_checks.back().md = found.step_md;
   }
-  constexpr double kTells = 0.1;  // sigma of a lag that says something [s]
-  if (!(found.sigma_lag > 0 && found.sigma_lag < kTells)) {
+  constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]
+  if (!(found.sigma_lag > 0 && found.sigma_lag < kToldLag)) {
     run.sample_checks.push_back(NotDone("depth_lag", run.run, "no starts and stops that tell it"));
     return;
   }

@@ -51,12 +51,12 @@ void Judge(double share, double looks_of_all, Check& check) {
                                            : Verdict::kPass;
 }
 
-struct Words {
+struct CodeWords {
   std::string_view code, words;
 };
 
 // What a check that fails says, by the begin of its code; the longest that fits holds.
-constexpr Words kWords[] = {
+constexpr CodeWords kCodeWords[] = {
     {"accel_bias", "an accelerometer's bias is beyond its prior"},
     {"accel_dead", "an accelerometer axis does not answer"},
     {"accel_saturated", "accelerometers reached full scale"},
@@ -125,7 +125,7 @@ constexpr Words kWords[] = {
 
 std::string_view WordsFor(std::string_view code) {
   std::string_view words, longest;
-  for (const Words& entry : kWords) {
+  for (const CodeWords& entry : kCodeWords) {
     if (!code.starts_with(entry.code) || entry.code.size() < longest.size()) continue;
     longest = entry.code;
     words = entry.words;

@@ -8,8 +8,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kStep = 0.2;  // [m]
-constexpr double kTurn = 1;    // [m], back from the shallowest point: there another pass begins
+constexpr double kNearMd = 0.2;  // [m]
+constexpr double kTurn = 1;      // [m], back from the shallowest point: there another pass begins
 
 std::optional<Eigen::Vector3d> BulgeOf(const Site& head, const PassLine& line, double from,
                                        double to) {
@@ -33,7 +33,7 @@ std::vector<PathStation> WayBetween(std::span<const Waypoint> way, const Station
   std::vector<PathStation> between;
   double md = above.md;
   const auto take = [&](const Waypoint& point) {
-    if (point.station.md < md + kStep || point.station.md > below.md - kStep) return;
+    if (point.station.md < md + kNearMd || point.station.md > below.md - kNearMd) return;
     between.push_back(point.station);
     md = point.station.md;
   };
@@ -52,7 +52,7 @@ std::vector<PathStation> WayAbove(std::span<const Waypoint> way, const Station& 
   double md = shallowest.md;
   const auto take = [&](const Waypoint& point) {
     if (point.station.md > md + kTurn) return false;
-    if (point.station.md > md - kStep) return true;
+    if (point.station.md > md - kNearMd) return true;
     above.push_back(point.station);
     md = point.station.md;
     return true;

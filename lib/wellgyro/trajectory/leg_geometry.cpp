@@ -41,7 +41,7 @@ Eigen::Vector3d Step(SurveyMethod method, double length, const Attitude& a, cons
   return {horizontal * along.x(), horizontal * along.y(), vertical * along.z()};
 }
 
-[[noreturn]] void Refuse(std::size_t station, std::string_view why) {
+[[noreturn]] void RefusePosition(std::size_t station, std::string_view why) {
   throw std::invalid_argument(fmt::format("PositionsBy: station {}: {}", station, why));
 }
 
@@ -97,14 +97,14 @@ void PositionsBy(SurveyMethod method, std::span<const double> md,
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(md[i]) || !std::isfinite(inclination[i]) || !std::isfinite(azimuth[i])) {
-      Refuse(i, "a value is not finite");
+      RefusePosition(i, "a value is not finite");
     }
     if (i == 0) {
       position[i] = start;
       continue;
     }
     const double length = md[i] - md[i - 1];
-    if (!(length > 0)) Refuse(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
+    if (!(length > 0)) RefusePosition(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
     position[i] = position[i - 1] + Step(method, length, {inclination[i - 1], azimuth[i - 1]},
                                          {inclination[i], azimuth[i]});
   }

@@ -23,7 +23,7 @@ double RatioFactor(double q2) {
   return q / std::atan(q);
 }
 
-[[noreturn]] void Refuse(std::size_t station, std::string_view why) {
+[[noreturn]] void RefuseStation(std::size_t station, std::string_view why) {
   throw std::invalid_argument(fmt::format("MinimumCurvature: station {}: {}", station, why));
 }
 
@@ -75,16 +75,17 @@ void MinimumCurvature(std::span<const double> md, std::span<const double> inclin
   Eigen::Vector3d at = start;
   for (std::size_t i = 0; i < md.size(); ++i) {
     const Eigen::Vector3d next = Tangent(inclination[i], azimuth[i]);
-    if (!std::isfinite(md[i]) || !next.allFinite()) Refuse(i, "a value is not finite");
+    if (!std::isfinite(md[i]) || !next.allFinite()) RefuseStation(i, "a value is not finite");
     double dls = 0;
     if (i > 0) {
       const double length = md[i] - md[i - 1];
-      if (!(length > 0)) Refuse(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
+      if (!(length > 0)) RefuseStation(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
       const std::optional<ArcLeg> leg = MinimumCurvatureLeg(length, before, next);
       if (!leg) {
-        Refuse(i, fmt::format("at depth {} m it points opposite to the one before, which leaves "
-                              "no arc",
-                              md[i]));
+        RefuseStation(
+            i, fmt::format("at depth {} m it points opposite to the one before, which leaves "
+                           "no arc",
+                           md[i]));
       }
       at += leg->displacement;
       dls = leg->dogleg / length;

@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/drift.h"
+#include "wellgyro/uncertainty/gyro_mode.h"
 #include "wellgyro/uncertainty/hole_arc_internal.h"
 #include "wellgyro/uncertainty/survey_check_internal.h"
 
@@ -20,8 +21,6 @@ using Eigen::Matrix4d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Matrix24 = Eigen::Matrix<double, 2, 4>;
-
-constexpr double kSmallestFactor = 0.01;  // of sin I or cos I
 
 double TurnFactor(GyroAxes axes, const Vector3d& t) {
   switch (axes) {
@@ -220,7 +219,7 @@ class AllanPropagator {
 
   bool Open(const HoleArc& arc, double at, std::size_t k) {
     const double factor = TurnFactor(run_.axes, arc.Tangent(at));
-    if (factor < kSmallestFactor) return Refuse(k);
+    if (factor < kSmallestTurnFactor) return Refuse(k);
     for (Process& p : processes_) {
       Fix(p, 1 / factor);
       p.gain = 1 / factor;
@@ -236,7 +235,7 @@ class AllanPropagator {
     double change = 0, last = 0;
     for (int i = 0; i <= kProbes; ++i) {
       const double factor = TurnFactor(run_.axes, arc.Tangent(from + (to - from) * i / kProbes));
-      if (factor < kSmallestFactor) return 0;
+      if (factor < kSmallestTurnFactor) return 0;
       if (i > 0) change = std::max(change, kProbes * std::abs(std::log(factor / last)));
       last = factor;
     }

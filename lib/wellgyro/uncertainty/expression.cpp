@@ -17,7 +17,7 @@ bool IsLetter(char c) { return (Lower(c) >= 'a' && Lower(c) <= 'z') || c == '_';
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 /// What leaves the compiler when a text is refused; never leaves this file.
-struct Refusal {
+struct BadExpression {
   Fault fault;
 };
 
@@ -44,7 +44,7 @@ class ExpressionCompiler {
     Fault fault;
     fault.code = FaultCode::kSyntax;
     fault.text = "the formula " + why + ", at its character " + std::to_string(at_ + 1);
-    throw Refusal{std::move(fault)};
+    throw BadExpression{std::move(fault)};
   }
   void Skip() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
@@ -205,7 +205,7 @@ Result<Expression> Expression::Compile(std::string_view text,
                                        std::span<const std::string_view> names) {
   try {
     return ExpressionCompiler(text, names).Run();
-  } catch (const Refusal& refusal) {
+  } catch (const BadExpression& refusal) {
     return refusal.fault;
   }
 }

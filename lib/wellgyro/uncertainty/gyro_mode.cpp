@@ -12,8 +12,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kSmallestFactor = 0.01;  // of sin I or cos I: 0.6 deg from where it vanishes
-
 /// Azimuth at which the arc from `a` to `b` reaches `inclination`, which lies between theirs.
 double AzimuthOnArc(const SurveyPoint& a, const SurveyPoint& b, double inclination) {
   const HoleArc arc(a, b);
@@ -96,8 +94,8 @@ void GyroModeTracker::Gather(const SurveyPoint& previous, const SurveyPoint& poi
   const double mean = (previous.inclination + point.inclination) / 2;
   const double factor = TurnFactor(zone->axes, mean);
   // A sine changes by no more than its angle: most stations need no second one.
-  const bool clear = factor - std::abs(point.inclination - mean) > kSmallestFactor;
-  if (!clear && std::min(factor, TurnFactor(zone->axes, point.inclination)) < kSmallestFactor) {
+  const bool clear = factor - std::abs(point.inclination - mean) > kSmallestTurnFactor;
+  if (!clear && std::min(factor, TurnFactor(zone->axes, point.inclination)) < kSmallestTurnFactor) {
     mode_.refusal = "the gyro's axis does not feel the turn of the hole at this inclination";
     return;
   }

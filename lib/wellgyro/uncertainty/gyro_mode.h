@@ -12,6 +12,9 @@ namespace wellgyro {
 
 inline constexpr std::size_t kMaxZones = 3;
 
+/// Of sin I or cos I, by which a drift is divided: 0.6 deg from where it vanishes no error is told.
+inline constexpr double kSmallestTurnFactor = 0.01;
+
 /// What a gyro tool does at one station.
 struct GyroMode {
   int section = 0;  ///< of continuous survey, from 1; 0: gyrocompassing at rest

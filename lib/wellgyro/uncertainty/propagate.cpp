@@ -297,7 +297,7 @@ void Propagator::TellFirst() {
 /// What reaches beyond a run goes on in its group; the rest has one of its own, shared with
 /// nothing.
 void Propagator::AddTie() {
-  constexpr std::int64_t kOwn = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kOfThisRun = std::numeric_limits<std::int64_t>::min();
   LegWeights& leg = legs_[0];
   const double half = (survey_[1].md - survey_[0].md) / 2;
   const bool vertical = place_.inclination < leg.model().vertical_limit;
@@ -315,7 +315,7 @@ void Propagator::AddTie() {
     } else if (const auto w = leg.Weigh(i, place_, why)) {
       e = through * Vector3d(w->md, w->inclination, w->azimuth);
     }
-    sources_.Add(leg_sources_[0][i], reaches ? leg.Group(i, 0) : kOwn, Vector3d::Zero(),
+    sources_.Add(leg_sources_[0][i], reaches ? leg.Group(i, 0) : kOfThisRun, Vector3d::Zero(),
                  term.magnitude * e);
   }
 }

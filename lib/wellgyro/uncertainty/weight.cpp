@@ -21,8 +21,6 @@ constexpr auto kXy = GyroAxes::kXy;
 constexpr auto kZ = GyroAxes::kZ;
 
 constexpr Weights Depth(double w) { return {w, 0, 0}; }
-constexpr Weights Inc(double w) { return {0, w, 0}; }
-constexpr Weights Azi(double w) { return {0, 0, w}; }
 
 // Depth, sag: SPE 67616. Misalignment: SPE 90408 table 9, alternative 3.
 constexpr WeightFunction kDepthAndAlignment[] = {
@@ -235,7 +233,6 @@ constexpr WeightFunction kExternalAndContinuous[] = {
 };
 
 // Magnetic tools, toolface-independent: SPE 67616 as revised (ISCWSA MWD Rev 4 and 5.1).
-constexpr double kHalfSqrt2 = std::numbers::sqrt2 / 2;
 
 Weights MagneticZ(const P& p) { return Azi(-p.sin_inc * p.sin_mag / p.horizontal_field); }
 Weights AccelScale(const P& p, double share) {

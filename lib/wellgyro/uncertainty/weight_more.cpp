@@ -11,11 +11,6 @@ using Eigen::Vector3d;
 using D = Dimension;
 using R = WeightRole;
 
-constexpr double kHalfSqrt2 = std::numbers::sqrt2 / 2;
-
-constexpr Weights Inc(double w) { return {0, w, 0}; }
-constexpr Weights Azi(double w) { return {0, 0, w}; }
-
 /// The axial field is taken from the model, not measured: all grows towards horizontal east-west,
 /// with the square of this, the sine of the angle from there.
 double FromEastWest(const P& p) {

@@ -68,7 +68,7 @@ bool NeedsStatus(const SurveyTable& table) {
   return false;
 }
 
-std::string Heading(const SurveyTable& table, const std::vector<Column>& columns) {
+std::string HeadingLine(const SurveyTable& table, const std::vector<Column>& columns) {
   std::string line;
   for (const Column column : columns) {
     const ColumnInfo& info = InfoOf(column);
@@ -104,7 +104,7 @@ std::string WriteCsv(const SurveyTable& table, const WriteOptions& options) {
   const std::vector<Column> columns = CsvOrder(table);
   const bool status = NeedsStatus(table);
   std::string text = options.preamble ? Preamble(table.head) : "";
-  text += Heading(table, columns) + (status ? ",STATUS\n" : "\n");
+  text += HeadingLine(table, columns) + (status ? ",STATUS\n" : "\n");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     AppendRow(table, columns, row, text);
     if (status) text += "," + std::string(WordOf(table.status(row)));

@@ -13,8 +13,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kLargest = 1 << 20;  // bytes, of an .ipm
-constexpr std::size_t kMostRows = 2000;
+constexpr std::size_t kIpmBytes = 1 << 20;  // bytes, of an .ipm
+constexpr std::size_t kIpmRows = 2000;
 constexpr std::size_t kLongest = 4000;  // characters of a formula with its values put in
 
 /// One row: a component of an error source, or a value that formulas name.
@@ -108,7 +108,7 @@ class RowsToModel {
 
   void Into(ErrorModel& model) {
     if (rows_.empty()) RefuseModel(source_, "has no row of terms");
-    if (rows_.size() > kMostRows) RefuseModel(source_, "has more than 2000 rows");
+    if (rows_.size() > kIpmRows) RefuseModel(source_, "has more than 2000 rows");
     for (Row& row : rows_) {
       Resolve(row);
       if (row.tie_on == "n") {
@@ -305,7 +305,7 @@ ErrorModel ReadEdm(std::string_view text, const std::string& source, std::string
 
 Result<ErrorModel> ParseModelIpm(std::string_view text, const std::string& source) {
   try {
-    if (text.size() > kLargest) RefuseModel(source, "is larger than 1 MiB");
+    if (text.size() > kIpmBytes) RefuseModel(source, "is larger than 1 MiB");
     return ReadIpm(text, source);
   } catch (const ModelError& error) {
     return error.fault;

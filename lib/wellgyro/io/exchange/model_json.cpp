@@ -14,8 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLargest = 1 << 22;  // bytes
-constexpr std::size_t kMostTerms = 1000;
+constexpr std::size_t kJsonBytes = 1 << 22;  // bytes
 
 class JsonModel {
  public:
@@ -197,7 +196,7 @@ ErrorModel JsonModel::Read() {
 Result<ErrorModel> ParseModelJson(std::string_view text, const std::string& source,
                                   const std::vector<ErrorModel>& elsewhere) {
   try {
-    if (text.size() > kLargest) RefuseModel(source, "is larger than 4 MiB");
+    if (text.size() > kJsonBytes) RefuseModel(source, "is larger than 4 MiB");
     const json root = json::parse(text, nullptr, true, true);
     return JsonModel(root, source, elsewhere).Read();
   } catch (const ModelError& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,8 @@
 #include "wellgyro/uncertainty/formula_weight.h"
 
 namespace wellgyro {
+
+inline constexpr std::size_t kMostTerms = 1000;
 
 /// Carries a Fault to the door of a model reader. Never leaves io/exchange.
 struct ModelError {

@@ -12,8 +12,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kLargest = 1 << 20;  // bytes
-constexpr std::size_t kMostTerms = 1000;
+constexpr std::size_t kYamlBytes = 1 << 20;  // bytes
 
 std::string Text(const YAML::Node& map, const char* key) {
   const YAML::Node node = map[key];
@@ -84,7 +83,7 @@ ErrorModel Read(const YAML::Node& root, const std::string& source) {
 
 Result<ErrorModel> ParseModelYaml(std::string_view text, const std::string& source) {
   try {
-    if (text.size() > kLargest) RefuseModel(source, "is larger than 1 MiB");
+    if (text.size() > kYamlBytes) RefuseModel(source, "is larger than 1 MiB");
     return Read(YAML::Load(std::string(text)), source);
   } catch (const ModelError& error) {
     return error.fault;

@@ -26,7 +26,7 @@ bool IsGrouped(std::string_view cell) {
 // A number as typeset: blanks, apostrophes or thin spaces between groups of three digits are taken
 // out, a minus sign of Unicode becomes a hyphen. As it is where there is none of them, or where
 // they part no groups.
-std::string Plain(std::string_view cell) {
+std::string PlainNumber(std::string_view cell) {
   constexpr std::array<std::string_view, 6> kGaps{" ", "'", "\u00A0", "\u2009", "\u202F", "\u2019"};
   constexpr std::string_view kMinus = "\u2212";
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -84,7 +84,7 @@ CommaUse CommaUseOf(std::string_view text, char delimiter) {
     text.remove_prefix(std::min(end + 1, text.size()));
     if (!fields) continue;
     for (const std::string& field : *fields) {
-      const std::string cell = Plain(TrimCell(field));
+      const std::string cell = PlainNumber(TrimCell(field));
       if (!IsNumberLike(cell)) continue;
       const bool point = cell.find('.') != std::string::npos;
       const auto commas = std::count(cell.begin(), cell.end(), ',');
@@ -110,7 +110,7 @@ std::optional<double> NumberIn(std::string_view cell, CommaUse use) {
   if (!comma && use != CommaUse::kDecimal) {
     if (const auto number = NumberOf(cell)) return number;
   }
-  const std::string plain = Plain(cell);
+  const std::string plain = PlainNumber(cell);
   if (use == CommaUse::kDecimal) {
     const auto number = WithPointsBetween(plain);
     return number || comma ? number : NumberOf(plain);

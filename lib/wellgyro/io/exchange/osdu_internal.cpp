@@ -37,7 +37,7 @@ std::string Reference(std::string_view type, std::string_view code) {
 struct UnitText {
   std::string symbol, key;
 };
-UnitText TextOf(LengthUnit unit) {
+UnitText UnitTextOf(LengthUnit unit) {
   if (unit == LengthUnit::kUsFoot) return {"ft[US]", "ft%5BUS%5D"};
   const std::string word(WordOf(unit));
   return {word, word};
@@ -47,7 +47,7 @@ UnitText TextOf(LengthUnit unit) {
 struct NorthText {
   std::string_view reference, azimuth;
 };
-NorthText TextOf(North north) {
+NorthText NorthTextOf(North north) {
   if (north == North::kTrue) return {"TrueNorth", "AzimuthTN"};
   if (north == North::kGrid) return {"GridNorth", "AzimuthGN"};
   return {"MagneticNorth", "AzimuthMN"};
@@ -77,14 +77,14 @@ struct Property {
   std::string type, unit;
 };
 std::vector<Property> PropertiesOf(const SurveyTable& table) {
-  const std::string unit = TextOf(table.head.md_unit).key;
+  const std::string unit = UnitTextOf(table.head.md_unit).key;
   const std::string area = unit == "m" ? "m2" : unit == "ft" ? "ft2" : "ft%5BUS%5D2";
   const std::string dls =
       table.head.curvature_unit == CurvatureUnit::kDegPer100ft ? "dega%2F100ft" : "dega%2F30m";
   std::vector<Property> properties{
       {Column::kMd, "MD", unit},
       {Column::kInclination, "Inclination", "dega"},
-      {Column::kAzimuth, std::string(TextOf(table.head.azimuth.north).azimuth), "dega"},
+      {Column::kAzimuth, std::string(NorthTextOf(table.head.azimuth.north).azimuth), "dega"},
       {Column::kTvd, "TVD", unit},
       {Column::kEast, "DX", unit},
       {Column::kNorth, "DY", unit},
@@ -137,7 +137,7 @@ std::string DataOf(const SurveyTable& table, const std::string& bulk) {
                        Reference("VerticalMeasurementType", Key(head.datum)),
                        Reference("VerticalMeasurementPath", "Elevation")));
   data.Add("AzimuthReferenceType",
-           Reference("AzimuthReferenceType", TextOf(head.azimuth.north).reference));
+           Reference("AzimuthReferenceType", NorthTextOf(head.azimuth.north).reference));
   if (head.method == "minimum curvature") {
     data.Add("CalculationMethodType", Reference("CalculationMethodType", "MinimumCurvature"));
   }
@@ -191,7 +191,7 @@ std::string WriteOsdu(const SurveyTable& table, const std::string& bulk) {
   if (!head.datum_elevation) {
     Lacks("an OSDU manifest", "the elevation of the depth datum (datum_elevation_m)");
   }
-  const UnitText unit = TextOf(head.md_unit);
+  const UnitText unit = UnitTextOf(head.md_unit);
   const std::string reference = fmt::format(
       "{{\"abcd\":{{\"a\":0.0,\"b\":{},\"c\":1.0,\"d\":0.0}},\"symbol\":\"{}\","
       "\"baseMeasurement\":{{\"ancestry\":\"L\",\"type\":\"UM\"}},\"type\":\"UAD\"}}",

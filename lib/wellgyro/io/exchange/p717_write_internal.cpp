@@ -15,7 +15,7 @@ namespace {
 using p717::ColonDate;
 
 // The format parts fields by commas and extension fields by semicolons, and knows no quotes.
-std::string Plain(std::string_view text) {
+std::string PlainField(std::string_view text) {
   std::string plain(text);
   for (char& c : plain) c = c == ',' || c == ';' || c == '\n' || c == '\r' ? ' ' : c;
   return plain;
@@ -68,11 +68,12 @@ class P717Writer {
     for (const SurveyRun& run : runs_) Survey(run);
     if (!head_.azimuth.declination_source.empty()) {
       Record("H7,3,0,0", "Geomagnetic Model Definition",
-             {"1", "", Plain(head_.azimuth.declination_source), "", ""});
+             {"1", "", PlainField(head_.azimuth.declination_source), "", ""});
     }
     Objects();
     TableDefinition();
-    for (const std::string& remark : head_.remarks) text_ += "CC,0,0,0," + Plain(remark) + "\n";
+    for (const std::string& remark : head_.remarks)
+      text_ += "CC,0,0,0," + PlainField(remark) + "\n";
     for (std::size_t row = 0; row < table_.rows(); ++row) Station(row);
     for (const GyroRawRecord& g : head_.gyro_raw) GyroRaw(g);
     return Identification() + "CC,0,0,0," + CertificateText(table_.rows(), text_) + "\n" + text_;
@@ -118,7 +119,7 @@ class P717Writer {
   }
 
   static std::string Or(const std::string& text, std::string_view otherwise) {
-    return Plain(text.empty() ? otherwise : std::string_view{text});
+    return PlainField(text.empty() ? otherwise : std::string_view{text});
   }
 
   double Md() const { return FactorOf(head_.md_unit); }
@@ -145,9 +146,10 @@ class P717Writer {
     const auto write = [&](std::string_view id, std::string_view name,
                            const std::vector<CrsEntry>& list) {
       for (const CrsEntry& e : list) {
-        Record(id, name,
-               {std::to_string(e.number), Plain(e.code), Plain(e.name), Plain(e.version),
-                ColonDate(e.date), Plain(e.source), Plain(e.text)});
+        Record(
+            id, name,
+            {std::to_string(e.number), PlainField(e.code), PlainField(e.name),
+             PlainField(e.version), ColonDate(e.date), PlainField(e.source), PlainField(e.text)});
       }
     };
     write("HC,1,3,0", "CRS Number/EPSG Code/Name/Source", entries);
@@ -165,21 +167,21 @@ class P717Writer {
   void Names() {
     const SurveyIdentity& n = head_.names;
     Record("H7,1,0,0", "Project Information",
-           {Or(n.field, "project"), Plain(n.field), Plain(n.region), Plain(n.country),
-            Plain(n.country_code)});
+           {Or(n.field, "project"), PlainField(n.field), PlainField(n.region),
+            PlainField(n.country), PlainField(n.country_code)});
     Record("H7,1,1,0", "Structure Definition",
            {"1", Or(n.structure, "structure"), "SRP", NumberOfObject("SRP"), "",
-            n.structure_kind == "offshore" ? "2" : "1", Plain(n.structure_kind), "", "", ""});
+            n.structure_kind == "offshore" ? "2" : "1", PlainField(n.structure_kind), "", "", ""});
     Record("H7,1,2,0", "Well Definition",
-           {"1", "1", "WRP", NumberOfObject("WRP"), Plain(n.uwi), Plain(n.well), "", "", "", "",
-            "As-built", "", ""});
+           {"1", "1", "WRP", NumberOfObject("WRP"), PlainField(n.uwi), PlainField(n.well), "", "",
+            "", "", "As-built", "", ""});
     Record("H7,1,2,1", "Well Details", {"1", "", "", "", "", ""});
-    Record(
-        "H7,1,3,0", "Wellbore Definition",
-        {"1", "1", Plain(n.uwi_wellbore), Plain(n.wellbore), "", "", "", "", "Actual", "", "", ""});
+    Record("H7,1,3,0", "Wellbore Definition",
+           {"1", "1", PlainField(n.uwi_wellbore), PlainField(n.wellbore), "", "", "", "", "Actual",
+            "", "", ""});
     Record("H7,1,4,0", "Rig/Workover ZDP Definition",
-           {"1", Plain(n.rig), "ZDP", NumberOfObject("ZDP"), "1", Or(head_.datum, "unknown"), "1",
-            "1"});
+           {"1", PlainField(n.rig), "ZDP", NumberOfObject("ZDP"), "1", Or(head_.datum, "unknown"),
+            "1", "1"});
   }
 
   std::string NumberOfObject(std::string_view kind) const {
@@ -205,8 +207,8 @@ class P717Writer {
             ColonDate(run.end), "ST=N", "", "", ""});
     Details(run, unit);
     Record("H7,1,5,2", "Operator/Survey Contractor",
-           {std::to_string(run.number), Plain(run.operator_name), Plain(run.contractor),
-            Plain(run.job)});
+           {std::to_string(run.number), PlainField(run.operator_name), PlainField(run.contractor),
+            PlainField(run.job)});
   }
 
   void Details(const SurveyRun& run, const std::string& unit) {
@@ -234,17 +236,17 @@ class P717Writer {
     for (const PositionObject& o : objects_) {
       const p717::ObjectType* type = p717::TypeOfCode(o.kind);
       Record("H7,4,0,0", "Position Object Definition",
-             {std::to_string(o.number), Plain(o.name), std::to_string(type ? type->number : 8),
-              std::string(type ? type->name : "Surveyed Data Point"), Plain(o.text), "1",
+             {std::to_string(o.number), PlainField(o.name), std::to_string(type ? type->number : 8),
+              std::string(type ? type->name : "Surveyed Data Point"), PlainField(o.text), "1",
               Number(o.md, Md()), "", "", "", "", ""});
     }
     for (const PositionObject& o : objects_) {
-      text_ +=
-          fmt::format("O7,0,{},{},{},{},{},{},{},{},{},{},{},{}\n", o.number, o.kind, Plain(o.name),
-                      Number(o.northing, Grid()), Number(o.easting, Grid()), Number(o.down, Grid()),
-                      Number(o.latitude, units::kDeg), Number(o.longitude, units::kDeg),
-                      Number(o.latitude_wgs84, units::kDeg), Number(o.longitude_wgs84, units::kDeg),
-                      Number(o.sigma_horizontal, Grid()), Number(o.sigma_vertical, Grid()));
+      text_ += fmt::format(
+          "O7,0,{},{},{},{},{},{},{},{},{},{},{},{}\n", o.number, o.kind, PlainField(o.name),
+          Number(o.northing, Grid()), Number(o.easting, Grid()), Number(o.down, Grid()),
+          Number(o.latitude, units::kDeg), Number(o.longitude, units::kDeg),
+          Number(o.latitude_wgs84, units::kDeg), Number(o.longitude_wgs84, units::kDeg),
+          Number(o.sigma_horizontal, Grid()), Number(o.sigma_vertical, Grid()));
     }
   }
 
@@ -264,7 +266,7 @@ class P717Writer {
         "1",
         Or(head_.names.survey, "Definitive Survey"),
         head_.method == "minimum curvature" ? "1" : "",
-        head_.method == "minimum curvature" ? "Minimum Curvature" : Plain(head_.method),
+        head_.method == "minimum curvature" ? "Minimum Curvature" : PlainField(head_.method),
         "",
         "",
         head_.scale ? "1" : "0",
@@ -284,7 +286,7 @@ class P717Writer {
     for (const p717::Extension* e : extensions_) {
       if (e != extensions_.front()) text += ';';
       if (e->text) {
-        text += Plain(table_.Get(*e->text, row));
+        text += PlainField(table_.Get(*e->text, row));
         continue;
       }
       const auto value = table_.Get(*e->column, row);
@@ -313,9 +315,9 @@ class P717Writer {
                                   : table_.Get(TextColumn::kErrorModel, row);
     text_ += fmt::format(
         "P7,0,1,{},,{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-        get(Column::kSurvey, 1).empty() ? "1" : get(Column::kSurvey, 1), Plain(model),
+        get(Column::kSurvey, 1).empty() ? "1" : get(Column::kSurvey, 1), PlainField(model),
         get(Column::kObject, 1),
-        point.empty() ? (status == RowStatus::kTieIn ? "TP" : "D") : Plain(point), number,
+        point.empty() ? (status == RowStatus::kTieIn ? "TP" : "D") : PlainField(point), number,
         p717::StatusText(number), Exact(table_.md(row), Md()),
         Exact(table_.inclination(row), units::kDeg),
         Exact(Quantity::kDirection, table_.azimuth(row), head_), get(Column::kNorth, Md()),
@@ -325,10 +327,10 @@ class P717Writer {
   }
 
   void GyroRaw(const GyroRawRecord& g) {
-    text_ += fmt::format("G7,0,{},{},{},{},{},{},{},{},{},{},{}", g.survey, g.number, Plain(g.time),
-                         g.used ? 1 : 0, Real(g.md, Md()), Real(g.inclination, units::kDeg),
-                         Real(g.azimuth, units::kDeg), Real(g.north, Md()), Real(g.east, Md()),
-                         Real(g.down, Md()), g.tool);
+    text_ += fmt::format("G7,0,{},{},{},{},{},{},{},{},{},{},{}", g.survey, g.number,
+                         PlainField(g.time), g.used ? 1 : 0, Real(g.md, Md()),
+                         Real(g.inclination, units::kDeg), Real(g.azimuth, units::kDeg),
+                         Real(g.north, Md()), Real(g.east, Md()), Real(g.down, Md()), g.tool);
     for (int k = 0; k < 3; ++k) text_ += "," + Real(g.f[k]);
     for (int k = 0; k < 3; ++k) text_ += "," + Real(g.w[k], units::kDegPerHour);
     text_ +=

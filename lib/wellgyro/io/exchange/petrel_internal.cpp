@@ -290,9 +290,9 @@ class PetrelReader {
   bool local_ = false;
 };
 
-using Row = std::array<std::string, 10>;
+using TraceRow = std::array<std::string, 10>;
 
-std::string Line(const Row& cells) {
+std::string TraceLine(const TraceRow& cells) {
   std::string line;
   for (const std::string& cell : cells) line += fmt::format(" {:>18}", cell);
   return line + "\n";
@@ -306,12 +306,12 @@ class PetrelWriter {
     std::string text = Head();
     std::size_t stations = 0;
     text += kRule;
-    text += Line({"MD", "X", "Y", "Z", "TVD", "DX", "DY", grid_north_ ? "AZIM_GN" : "AZIM_TN",
-                  "INCL", "DLS"});
+    text += TraceLine({"MD", "X", "Y", "Z", "TVD", "DX", "DY", grid_north_ ? "AZIM_GN" : "AZIM_TN",
+                       "INCL", "DLS"});
     text += kRule;
     for (std::size_t row = 0; row < table_.rows(); ++row) {
       if (!OnPath(table_.status(row))) continue;
-      text += Line(Station(row));
+      text += TraceLine(Station(row));
       ++stations;
     }
     return "# WELL TRACE FROM PETREL\n# " + CertificateText(stations, text) + "\n" + text;
@@ -339,7 +339,7 @@ class PetrelWriter {
     return text;
   }
 
-  Row Station(std::size_t row) const {
+  TraceRow Station(std::size_t row) const {
     const double below_datum = table_.Get(Column::kTvd, row).value_or(0);
     const double down =
         table_.Get(Column::kDown, row).value_or(below_datum - *head_.datum_elevation);

@@ -16,7 +16,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr zip_uint64_t kMostBytes = 1 << 26;  // of a part, unpacked
+constexpr zip_uint64_t kPartBytes = 1 << 26;  // of a part, unpacked
 constexpr std::size_t kMostColumns = 1024, kMostRows = 1 << 20;
 
 [[noreturn]] void Refuse(FaultCode code, std::string text, const std::string& source,
@@ -56,7 +56,7 @@ class Archive {
       if (got < 0) Refuse(FaultCode::kSyntax, name + " is damaged", source_);
       if (got == 0) return text;
       text.append(piece.data(), static_cast<std::size_t>(got));
-      if (text.size() > kMostBytes) Refuse(FaultCode::kSize, name + " is too large", source_);
+      if (text.size() > kPartBytes) Refuse(FaultCode::kSize, name + " is too large", source_);
     }
   }
 

@@ -21,7 +21,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kColumns =
+constexpr std::string_view kSurveyColumns =
     "MD[m],INC[deg],AZI_TRUE[deg],GTF[deg],TVD[m],N[m],E[m],DLS[deg/30m],VAR_NN[m2],COV_NE[m2],"
     "COV_NV[m2],VAR_EE[m2],COV_EV[m2],VAR_VV[m2],SIG_INC[deg],SIG_AZI[deg],KIND,QUALITY";
 constexpr std::string_view kDepthColumn = ",SIG_MD[m]";  // of passes.csv
@@ -165,7 +165,7 @@ class Reader {
 }  // namespace
 
 std::string SurveyCsv(std::span<const Station> stations, const WellGrid* grid) {
-  std::string text = fmt::format("{}{}\n", kColumns, grid ? kGridColumns : "");
+  std::string text = fmt::format("{}{}\n", kSurveyColumns, grid ? kGridColumns : "");
   for (const Station& s : stations) {
     AppendStation(text, s);
     AppendGrid(text, s, grid);
@@ -175,8 +175,8 @@ std::string SurveyCsv(std::span<const Station> stations, const WellGrid* grid) {
 }
 
 std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid) {
-  std::string text =
-      fmt::format("{}{}{}{}\n", kPassColumns, kColumns, kDepthColumn, grid ? kGridColumns : "");
+  std::string text = fmt::format("{}{}{}{}\n", kPassColumns, kSurveyColumns, kDepthColumn,
+                                 grid ? kGridColumns : "");
   for (const Station& s : stations) {
     text += fmt::format("{},{},{},{},", s.run, WordOf(s.pass), WordOf(s.status), s.revision);
     AppendStation(text, s);
@@ -201,8 +201,8 @@ std::string ChecksCsv(std::span<const Check> checks) {
 }
 
 bool IsSurveyCsvHeader(std::string_view line) {
-  return line.starts_with(kColumns) &&
-         (line.size() == kColumns.size() || line.substr(kColumns.size()) == kGridColumns);
+  return line.starts_with(kSurveyColumns) && (line.size() == kSurveyColumns.size() ||
+                                              line.substr(kSurveyColumns.size()) == kGridColumns);
 }
 
 Result<std::vector<Station>> ParseSurveyCsv(std::string_view text, const std::string& source) {
@@ -217,7 +217,7 @@ Result<std::vector<Station>> ParseSurveyCsv(std::string_view text, const std::st
     ++line_number;
     if (!reader) {
       if (!IsSurveyCsvHeader(line)) break;
-      reader.emplace(source, line.size() > kColumns.size());
+      reader.emplace(source, line.size() > kSurveyColumns.size());
     } else if (auto fault = reader->Take(line, line_number)) {
       return *std::move(fault);
     }

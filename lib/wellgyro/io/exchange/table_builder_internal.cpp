@@ -128,10 +128,10 @@ void TableBuilder::SetStatus(RowStatus status) {
 }
 
 void TableBuilder::FillAzimuth(std::size_t row) {
-  constexpr double kVertical = FromDegrees(0.05);
+  constexpr double kNoAzimuth = FromDegrees(0.05);
   const auto above = Nearest(table, without_azimuth_, row, -1);
   const auto below = Nearest(table, without_azimuth_, row, 1);
-  if (table.inclination(row) <= kVertical) {
+  if (table.inclination(row) <= kNoAzimuth) {
     const auto neighbour = above ? above : below;
     if (neighbour) table.Set(Column::kAzimuth, row, table.azimuth(*neighbour));
     return;

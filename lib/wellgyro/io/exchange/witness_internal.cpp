@@ -40,16 +40,16 @@ Ratio RatioOf(double factor, double tolerance) {
 }  // namespace witness
 
 void Witness(SurveyTable& table, const Claims& claims, const std::string& source) {
-  constexpr std::size_t kMost = 2048;
+  constexpr std::size_t kMostStretches = 2048;
   if (claims.position_log) return;
   witness::Case c{table, claims, source, {}, {}, {}, 0};
   if (table.rows() < 2) {
     if (!claims.md_unit) witness::SettleUnits(c);
     return;
   }
-  c.stretches = witness::StretchesOf(table, c.method, kMost);
+  c.stretches = witness::StretchesOf(table, c.method, kMostStretches);
   witness::SettleUnits(c);
-  c.stretches = witness::StretchesOf(table, c.method, kMost);
+  c.stretches = witness::StretchesOf(table, c.method, kMostStretches);
   witness::SettleMethod(c);
   witness::CheckVertical(c);
   witness::CheckPlane(c);

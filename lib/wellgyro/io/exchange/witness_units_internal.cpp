@@ -18,8 +18,8 @@ constexpr std::array kDepths{Column::kTvd, Column::kDown, Column::kTvdSubSea};
 struct Pair {
   Column north, east;
 };
-constexpr std::array kPlanes{Pair{Column::kNorth, Column::kEast},
-                             Pair{Column::kNorthing, Column::kEasting}};
+constexpr std::array kPlanePairs{Pair{Column::kNorth, Column::kEast},
+                                 Pair{Column::kNorthing, Column::kEasting}};
 
 void Rescale(SurveyTable& table, Column column, double factor) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -38,7 +38,7 @@ std::vector<Found> LengthsOf(const Case& c) {
     const LineFit fit = FitVertical(c.table, c.stretches, column);
     if (Tells(fit)) found.push_back({column, std::abs(fit.factor), kScale + 4 * fit.sigma});
   }
-  for (const Pair& plane : kPlanes) {
+  for (const Pair& plane : kPlanePairs) {
     const PlaneFit fit = FitPlane(c.table, c.stretches, plane.north, plane.east);
     if (!Tells(fit)) continue;
     found.push_back({plane.north, std::abs(fit.z), kScale + 4 * fit.sigma});
@@ -130,7 +130,7 @@ void SettleOpenColumns(Case& c) {
     const double factor = feet ? units::kFoot : 1 / md;
     c.Note(fmt::format("{} is in {}, as measured depth, inclination and azimuth show", name,
                        feet ? "feet" : "metres"));
-    for (const Pair& plane : kPlanes) {
+    for (const Pair& plane : kPlanePairs) {
       if (plane.north == found.column) Rescale(c.table, plane.east, factor);
     }
     Rescale(c.table, found.column, factor);
@@ -189,7 +189,7 @@ void SettleMethod(Case& c) {
     const auto stretches = StretchesOf(c.table, method, 2048);
     double remains = 0;
     bool any = false;
-    for (const Pair& plane : kPlanes) {
+    for (const Pair& plane : kPlanePairs) {
       const PlaneFit fit = FitPlane(c.table, stretches, plane.north, plane.east);
       if (!Tells(fit)) continue;
       remains = std::max(remains, std::min(fit.median, fit.mirrored_median));

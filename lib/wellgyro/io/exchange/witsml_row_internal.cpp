@@ -27,7 +27,7 @@ std::string Escaped(std::string_view text) {
   return escaped;
 }
 
-std::string Plain(std::string_view text) {
+std::string Unescaped(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
     unsigned code = 0;
@@ -106,7 +106,7 @@ void UnpackRow(std::string_view text, SurveyTable& table, std::size_t row) {
       continue;
     }
     for (const TextColumnInfo& info : AllTextColumns()) {
-      if (info.csv == key) table.Set(info.column, row, Plain(value));
+      if (info.csv == key) table.Set(info.column, row, Unescaped(value));
     }
     Heading heading = HeadingOf(key);
     heading.column = ColumnOf(Trim(key.substr(0, key.find('['))));

@@ -11,7 +11,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 28;
+constexpr std::size_t kXmlBytes = std::size_t{1} << 28;
 constexpr int kMostDepth = 64;
 
 int LineAt(std::string_view bytes, std::size_t offset) {
@@ -94,7 +94,7 @@ std::string Escaped(std::string_view text) {
 
 XmlFile::XmlFile(std::string bytes, std::string source)
     : bytes_(std::move(bytes)), source_(std::move(source)) {
-  if (bytes_.size() > kMostBytes) {
+  if (bytes_.size() > kXmlBytes) {
     throw TextError{{.code = FaultCode::kSize,
                      .text = "XML of more than 256 MiB: split the file",
                      .source = source_}};

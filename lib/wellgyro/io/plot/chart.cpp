@@ -19,9 +19,10 @@ namespace {
 using Eigen::Vector2d;
 using Mark = ChartSeries::Mark;
 
-constexpr double kLeft = 64, kRight = 14, kTop = 44, kBottom = 42;  // pixels, around the plot
-constexpr std::array kColours = {"#00558c", "#b34700", "#006b4f", "#8a3f70",
-                                 "#222222", "#7a5c00", "#8c8c8c"};
+constexpr double kChartLeft = 64, kChartRight = 14, kChartTop = 44,
+                 kChartBottom = 42;  // pixels, around the plot
+constexpr std::array kChartColours = {"#00558c", "#b34700", "#006b4f", "#8a3f70",
+                                      "#222222", "#7a5c00", "#8c8c8c"};
 
 bool Finite(const Vector2d& p) { return std::isfinite(p.x()) && std::isfinite(p.y()); }
 
@@ -39,10 +40,11 @@ struct Paper {
 
 Paper PaperOf(const Chart& chart) {
   const ChartFrame frame = FrameOf(chart);
-  Paper paper{frame.low, frame.high, Vector2d(chart.axes ? kLeft : kRight, kTop), Vector2d::Zero(),
-              chart.y_down};
-  paper.size =
-      Vector2d(chart.width - kRight, chart.height - (chart.axes ? kBottom : kRight)) - paper.corner;
+  Paper paper{frame.low, frame.high, Vector2d(chart.axes ? kChartLeft : kChartRight, kChartTop),
+              Vector2d::Zero(), chart.y_down};
+  paper.size = Vector2d(chart.width - kChartRight,
+                        chart.height - (chart.axes ? kChartBottom : kChartRight)) -
+               paper.corner;
   if (!chart.equal) return paper;
   const Vector2d span = paper.high - paper.low, middle = (paper.low + paper.high) / 2;
   const double metres_per_pixel = span.cwiseQuotient(paper.size).maxCoeff();
@@ -51,7 +53,7 @@ Paper PaperOf(const Chart& chart) {
   return paper;
 }
 
-std::string Point(const Vector2d& p) { return Fixed(p.x(), 1) + ' ' + Fixed(p.y(), 1); }
+std::string PointText(const Vector2d& p) { return Fixed(p.x(), 1) + ' ' + Fixed(p.y(), 1); }
 
 std::string Text(const Vector2d& at, const char* anchor, const std::string& text) {
   return fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", Fixed(at.x(), 1),
@@ -100,7 +102,7 @@ void DrawBar(std::string& svg, const Paper& paper) {
   const double per_pixel = (paper.high.x() - paper.low.x()) / paper.size.x();
   const double length = RoundTick(60 * per_pixel);
   const Vector2d at = paper.corner + Vector2d(12, paper.size.y() - 12);
-  svg += fmt::format("<path fill=\"none\" stroke=\"#222\" d=\"M{}v4h{}v-4\"/>", Point(at),
+  svg += fmt::format("<path fill=\"none\" stroke=\"#222\" d=\"M{}v4h{}v-4\"/>", PointText(at),
                      Fixed(length / per_pixel, 1));
   svg += Text(at + Vector2d(0, -4), "start", fmt::format("{:g}", length));
 }
@@ -110,7 +112,7 @@ std::string PathOf(const Paper& paper, const ChartSeries& series) {
   bool drawing = false;
   for (const Vector2d& p : series.points) {
     const bool finite = Finite(p);
-    if (finite) path += (drawing ? 'L' : 'M') + Point(paper(p));
+    if (finite) path += (drawing ? 'L' : 'M') + PointText(paper(p));
     drawing = finite;
   }
   if (series.mark == Mark::kArea) path += 'Z';
@@ -152,7 +154,7 @@ void DrawSeries(std::string& svg, const Paper& paper, const ChartSeries& series)
       if (series.mark == Mark::kFlag) {
         svg += Circle(paper(p), 6);
       } else {
-        dots += 'M' + Point(paper(p)) + "h0";
+        dots += 'M' + PointText(paper(p)) + "h0";
       }
     }
     // One path of round ends is a fraction of as many circles.
@@ -172,7 +174,7 @@ void DrawSeries(std::string& svg, const Paper& paper, const ChartSeries& series)
 void DrawLegend(std::string& svg, const Chart& chart) {
   constexpr double kLetter = 6;  // pixels, on average
   std::set<std::string> told;
-  double x = chart.axes ? kLeft : kRight;
+  double x = chart.axes ? kChartLeft : kChartRight;
   for (const ChartSeries& series : chart.series) {
     if (series.name.empty() || !told.insert(series.name).second) continue;
     const std::string outline = series.mark == Mark::kArea ? "v6h-18Z" : "";
@@ -189,7 +191,7 @@ void DrawLegend(std::string& svg, const Chart& chart) {
 }  // namespace
 
 const char* ChartColour(int index) {
-  return kColours[static_cast<std::size_t>(std::max(index, 0)) % kColours.size()];
+  return kChartColours[static_cast<std::size_t>(std::max(index, 0)) % kChartColours.size()];
 }
 
 ChartFrame FrameOf(const Chart& chart) {
@@ -224,7 +226,7 @@ std::string ChartSvg(const Chart& chart) {
   svg += fmt::format("<rect width=\"{:g}\" height=\"{:g}\" fill=\"#fff\"/>\n", chart.width,
                      chart.height);
   svg += fmt::format("<text x=\"{:g}\" y=\"16\" font-size=\"13\" font-weight=\"bold\">{}</text>\n",
-                     chart.axes ? kLeft : kRight, SvgText(chart.title));
+                     chart.axes ? kChartLeft : kChartRight, SvgText(chart.title));
   const bool empty = std::ranges::none_of(
       chart.series, [](const ChartSeries& s) { return std::ranges::any_of(s.points, Finite); });
   if (empty) {
@@ -261,10 +263,10 @@ std::string ChartSheetSvg(const std::string& title, const std::vector<std::strin
       "height=\"{1:g}\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#222\">\n"
       "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"#fff\"/>\n"
       "<text x=\"{2:g}\" y=\"22\" font-size=\"15\" font-weight=\"bold\">{3}</text>\n",
-      width, top + height, kRight, SvgText(title));
+      width, top + height, kChartRight, SvgText(title));
   double y = kTitle + kLine - 6;
   for (const std::string& fact : facts) {
-    svg += Text({kRight, y}, "start", fact);
+    svg += Text({kChartRight, y}, "start", fact);
     y += kLine;
   }
   return svg + drawn + "</svg>\n";

@@ -15,11 +15,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kHeight = 560, kWidth = 380, kTop = 56, kLeft = 70, kGap = 90;  // pixels
-constexpr std::array kColours = {"#1b6ca8", "#c0392b", "#27804b", "#8e44ad", "#b9770e",
-                                 "#117a8b", "#7b241c", "#566573", "#a04000", "#2e4053"};
+constexpr double kLadderHeight = 560, kLadderWidth = 380, kLadderTop = 56, kLadderLeft = 70,
+                 kLadderGap = 90;  // pixels
+constexpr std::array kOffsetColours = {"#1b6ca8", "#c0392b", "#27804b", "#8e44ad", "#b9770e",
+                                       "#117a8b", "#7b241c", "#566573", "#a04000", "#2e4053"};
 
-const char* Colour(std::size_t i) { return kColours[i % kColours.size()]; }
+const char* Colour(std::size_t i) { return kOffsetColours[i % kOffsetColours.size()]; }
 
 std::string Open(double width, double height, const std::string& title) {
   return fmt::format(
@@ -29,7 +30,7 @@ std::string Open(double width, double height, const std::string& title) {
       ".a{{fill:none;stroke-width:1;stroke-dasharray:4 3}}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
       "<text x=\"{2:.0f}\" y=\"22\" font-size=\"15\">{3}</text>\n",
-      width, height, kLeft, SvgText(title));
+      width, height, kLadderLeft, SvgText(title));
 }
 
 /// A panel of something against MD, which goes down. What leaves it is cut off at its edge.
@@ -39,7 +40,8 @@ struct Ladder {
 
   Vector2d operator()(double value, double md) const {
     const double x = std::clamp(value / most, 0.0, 1e3);
-    return {left + kWidth * x, kTop + kHeight * (md - md_begin) / (md_end - md_begin)};
+    return {left + kLadderWidth * x,
+            kLadderTop + kLadderHeight * (md - md_begin) / (md_end - md_begin)};
   }
 };
 
@@ -51,17 +53,17 @@ void DrawGrid(std::string& svg, const Ladder& panel, const char* name) {
     svg += fmt::format(
         "<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" class=\"g\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\" "
         "text-anchor=\"middle\">{4:g}</text>\n",
-        p.x(), kTop, kTop + kHeight, kTop + kHeight + 16, v);
+        p.x(), kLadderTop, kLadderTop + kLadderHeight, kLadderTop + kLadderHeight + 16, v);
   }
   for (double md = step * std::ceil(panel.md_begin / step); md <= panel.md_end; md += step) {
     const Vector2d p = panel(0, md);
     svg += fmt::format(
         "<path d=\"M{0:.1f} {1:.1f}H{2:.1f}\" class=\"g\"/><text x=\"{3:.1f}\" y=\"{4:.1f}\" "
         "text-anchor=\"end\">{5:g}</text>\n",
-        p.x(), p.y(), p.x() + kWidth, p.x() - 6, p.y() + 4, md);
+        p.x(), p.y(), p.x() + kLadderWidth, p.x() - 6, p.y() + 4, md);
   }
   svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
-                     panel.left + kWidth / 2, kTop + kHeight + 34, name);
+                     panel.left + kLadderWidth / 2, kLadderTop + kLadderHeight + 34, name);
 }
 
 template <class Value>
@@ -78,7 +80,7 @@ std::string ClipOf(const Ladder& panel) {
   return fmt::format(
       "<clipPath id=\"{}\"><rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" "
       "height=\"{:.0f}\"/></clipPath>\n",
-      panel.id, panel.left, kTop, kWidth, kHeight);
+      panel.id, panel.left, kLadderTop, kLadderWidth, kLadderHeight);
 }
 
 void DrawLimit(std::string& svg, const Ladder& panel, double value, const char* colour) {
@@ -86,18 +88,19 @@ void DrawLimit(std::string& svg, const Ladder& panel, double value, const char* 
   const Vector2d p = panel(value, panel.md_begin);
   svg += fmt::format(
       "<path d=\"M{:.1f} {:.1f}V{:.1f}\" stroke=\"{}\" stroke-width=\"1.2\" fill=\"none\"/>\n",
-      p.x(), kTop, kTop + kHeight, colour);
+      p.x(), kLadderTop, kLadderTop + kLadderHeight, colour);
 }
 
 void DrawNames(std::string& svg, std::span<const ClearanceSeries> series, double x) {
   constexpr std::size_t kMost = 30;
   for (std::size_t i = 0; i < std::min(series.size(), kMost); ++i) {
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n", x,
-                       kTop + 14 + 16 * static_cast<double>(i), Colour(i), SvgText(series[i].name));
+                       kLadderTop + 14 + 16 * static_cast<double>(i), Colour(i),
+                       SvgText(series[i].name));
   }
   if (series.size() > kMost) {
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">and {} more</text>\n", x,
-                       kTop + 14 + 16.0 * kMost, series.size() - kMost);
+                       kLadderTop + 14 + 16.0 * kMost, series.size() - kMost);
   }
 }
 
@@ -129,10 +132,11 @@ Vector2d DepthRange(std::span<const ClearanceSeries> series) {
 std::string LadderSvg(const std::string& reference, std::span<const ClearanceSeries> series,
                       double stop, double alert) {
   const Vector2d depths = DepthRange(series);
-  const Ladder far{"distances", kLeft, MostDistance(series), depths.x(), depths.y()};
-  const Ladder factor{"factors", kLeft + kWidth + kGap, 5 * stop, depths.x(), depths.y()};
-  const double names = factor.left + kWidth + 16;
-  std::string svg = Open(names + 160, kTop + kHeight + 50,
+  const Ladder far{"distances", kLadderLeft, MostDistance(series), depths.x(), depths.y()};
+  const Ladder factor{"factors", kLadderLeft + kLadderWidth + kLadderGap, 5 * stop, depths.x(),
+                      depths.y()};
+  const double names = factor.left + kLadderWidth + 16;
+  std::string svg = Open(names + 160, kLadderTop + kLadderHeight + 50,
                          reference + ": ladder; dashed, the distance at a separation factor of 1");
   svg += ClipOf(far) + ClipOf(factor);
   DrawGrid(svg, far, "distance between the wells [m], against MD [m]");
@@ -156,10 +160,10 @@ std::string LadderSvg(const std::string& reference, std::span<const ClearanceSer
 
 std::string TravellingCylinderSvg(const std::string& reference,
                                   std::span<const ClearanceSeries> series) {
-  constexpr double kRadius = 280, kMiddle = kLeft + kRadius;
-  const Vector2d centre(kMiddle, kTop + kRadius + 10);
+  constexpr double kRadius = 280, kMiddle = kLadderLeft + kRadius;
+  const Vector2d centre(kMiddle, kLadderTop + kRadius + 10);
   const double most = MostDistance(series);
-  std::string svg = Open(kMiddle + kRadius + 220, kTop + 2 * kRadius + 50,
+  std::string svg = Open(kMiddle + kRadius + 220, kLadderTop + 2 * kRadius + 50,
                          reference + ": travelling cylinder, north up; distances [m], MD [m]");
   const double tick = RoundTick(most / 4);
   for (double r = tick; r <= most * (1 + 1e-9); r += tick) {

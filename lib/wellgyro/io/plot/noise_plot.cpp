@@ -14,16 +14,16 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kWidth = 900;
-constexpr double kHeight = 620;
-constexpr double kLeft = 90;
-constexpr double kTop = 66;
-constexpr double kRight = 290;  // the legend stands here
-constexpr double kBottom = 70;
+constexpr double kNoiseWidth = 900;
+constexpr double kNoiseHeight = 620;
+constexpr double kNoiseLeft = 90;
+constexpr double kNoiseTop = 66;
+constexpr double kNoiseRight = 290;  // the legend stands here
+constexpr double kNoiseBottom = 70;
 
 // Told apart also by readers who do not see red and green (Okabe and Ito).
-constexpr std::array<const char*, kNoiseTerms> kColours{"#cc79a7", "#0072b2", "#009e73",
-                                                        "#d55e00", "#e69f00", "#56b4e9"};
+constexpr std::array<const char*, kNoiseTerms> kTermColours{"#cc79a7", "#0072b2", "#009e73",
+                                                            "#d55e00", "#e69f00", "#56b4e9"};
 
 // One logarithmic axis on the paper.
 struct LogAxis {
@@ -63,8 +63,8 @@ class Plot {
             Deviation(b * b * UnitAllanVariance(NoiseTerm::kBiasInstability, fit->model.shape, 1)));
       }
     }
-    x_ = Axis(rows.front().point.tau, rows.back().point.tau, kLeft, kWidth - kRight);
-    y_ = Axis(least, most, kHeight - kBottom, kTop);
+    x_ = Axis(rows.front().point.tau, rows.back().point.tau, kNoiseLeft, kNoiseWidth - kNoiseRight);
+    y_ = Axis(least, most, kNoiseHeight - kNoiseBottom, kNoiseTop);
   }
 
   std::string Svg() {
@@ -74,7 +74,8 @@ class Plot {
         "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
         "<clipPath id=\"paper\"><rect x=\"{2:g}\" y=\"{3:g}\" width=\"{4:g}\" height=\"{5:g}\"/>"
         "</clipPath>\n",
-        kWidth, kHeight, kLeft, kTop, kWidth - kRight - kLeft, kHeight - kBottom - kTop);
+        kNoiseWidth, kNoiseHeight, kNoiseLeft, kNoiseTop, kNoiseWidth - kNoiseRight - kNoiseLeft,
+        kNoiseHeight - kNoiseBottom - kNoiseTop);
     DrawGrid();
     svg_ += "<g clip-path=\"url(#paper)\">\n";
     DrawBand();
@@ -115,8 +116,8 @@ class Plot {
   }
 
   void DrawAxis(const LogAxis& axis, bool horizontal) {
-    const double paper_end = horizontal ? kHeight - kBottom : kWidth - kRight;
-    const double paper_begin = horizontal ? kTop : kLeft;
+    const double paper_end = horizontal ? kNoiseHeight - kNoiseBottom : kNoiseWidth - kNoiseRight;
+    const double paper_begin = horizontal ? kNoiseTop : kNoiseLeft;
     const bool wide = axis.high - axis.low > 8;
     const bool narrow = axis.high - axis.low < 2.2;
     for (int power = static_cast<int>(std::floor(axis.low)); power <= axis.high; ++power) {
@@ -137,7 +138,7 @@ class Plot {
         if (horizontal) {
           Text(at, paper_end + 20, "middle", text);
         } else {
-          Text(kLeft - 8, at + 4, "end", text);
+          Text(kNoiseLeft - 8, at + 4, "end", text);
         }
       }
     }
@@ -149,16 +150,18 @@ class Plot {
     svg_ += fmt::format(
         "<rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" fill=\"none\" "
         "stroke=\"#222\"/>\n",
-        kLeft, kTop, kWidth - kRight - kLeft, kHeight - kBottom - kTop);
-    Text((kLeft + kWidth - kRight) / 2, kHeight - 24, "middle", "averaging time [s]");
+        kNoiseLeft, kNoiseTop, kNoiseWidth - kNoiseRight - kNoiseLeft,
+        kNoiseHeight - kNoiseBottom - kNoiseTop);
+    Text((kNoiseLeft + kNoiseWidth - kNoiseRight) / 2, kNoiseHeight - 24, "middle",
+         "averaging time [s]");
     svg_ += fmt::format(
         "<text transform=\"translate(24 {:g}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-        (kTop + kHeight - kBottom) / 2, SvgText(labels_.deviation));
-    svg_ += fmt::format("<text x=\"{:g}\" y=\"30\" font-size=\"16\">{}</text>\n", kLeft,
+        (kNoiseTop + kNoiseHeight - kNoiseBottom) / 2, SvgText(labels_.deviation));
+    svg_ += fmt::format("<text x=\"{:g}\" y=\"30\" font-size=\"16\">{}</text>\n", kNoiseLeft,
                         SvgText(labels_.title));
     std::string facts;
     for (const std::string& fact : labels_.facts) facts += (facts.empty() ? "" : "; ") + fact;
-    Text(kLeft, 50, "start", SvgText(facts));
+    Text(kNoiseLeft, 50, "start", SvgText(facts));
   }
 
   std::string PathOf(const std::vector<Point>& points) const {
@@ -207,7 +210,7 @@ class Plot {
           "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" "
           "stroke-dasharray=\"7 4\"/>\n",
           Curve([&](double tau) { return c * c * UnitAllanVariance(term, model.shape, tau); }),
-          kColours[static_cast<std::size_t>(term)]);
+          kTermColours[static_cast<std::size_t>(term)]);
     }
     svg_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#222\" stroke-width=\"1.5\"/>\n",
                         Curve([&](double tau) { return ModelAllanVariance(model, tau); }));
@@ -223,8 +226,8 @@ class Plot {
   }
 
   void DrawLegend() {
-    const double x = kWidth - kRight + 16;
-    double y = kTop + 12;
+    const double x = kNoiseWidth - kNoiseRight + 16;
+    double y = kNoiseTop + 12;
     const auto entry = [&](const std::string& mark, const std::string& text) {
       svg_ += mark;
       Text(x + 34, y + 4, "start", text);
@@ -248,7 +251,7 @@ class Plot {
       // Name on one line, value on the next.
       const std::string& label = labels_.term[term];
       const std::size_t split = std::min(label.find('\n'), label.size());
-      entry(stroke(kColours[static_cast<std::size_t>(term)], "7 4"),
+      entry(stroke(kTermColours[static_cast<std::size_t>(term)], "7 4"),
             SvgText(label.substr(0, split)));
       if (split < label.size()) {
         y -= 6;
@@ -261,9 +264,9 @@ class Plot {
 
   /// What is not observable, as far as the paper goes.
   void DrawBounds(double y) {
-    const double x = kWidth - kRight + 16;
+    const double x = kNoiseWidth - kNoiseRight + 16;
     for (const std::string& bound : labels_.bounds) {
-      if (y > kHeight - kBottom) return;
+      if (y > kNoiseHeight - kNoiseBottom) return;
       svg_ += fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"11\">{}</text>\n", x, y + 4,
                           SvgText(bound));
       y += 16;
@@ -273,7 +276,7 @@ class Plot {
   void DrawWarnings() {
     constexpr std::size_t kMost = 6;
     constexpr std::size_t kLetters = 86;  // of a line that stays on the paper
-    double y = kHeight - kBottom - 12;
+    double y = kNoiseHeight - kNoiseBottom - 12;
     for (std::size_t i = std::min(labels_.warnings.size(), kMost); i-- > 0;) {
       std::string text = labels_.warnings[i];
       if (text.size() > kLetters) {
@@ -283,7 +286,7 @@ class Plot {
       }
       svg_ +=
           fmt::format("<text x=\"{:g}\" y=\"{:g}\" font-size=\"12\" fill=\"#9c0000\">{}</text>\n",
-                      kLeft + 10, y, SvgText(text));
+                      kNoiseLeft + 10, y, SvgText(text));
       y -= 17;
     }
   }

@@ -15,13 +15,13 @@ using Eigen::Vector2d;
 using Mark = ChartSeries::Mark;
 
 constexpr int kPlanColour = 0, kPracticeColour = 1, kNoneColour = 2;
-constexpr double kWidth = 620;
+constexpr double kPlanWidth = 620;
 
 Chart InclinationChart(const PlanCase& c, const StopPlan& plan) {
   Chart chart{.title = "Inclination, and where the tool stops",
               .x_name = "MD [m]",
               .y_name = "inclination [deg]",
-              .width = kWidth,
+              .width = kPlanWidth,
               .height = 260};
   const auto at = [&c](double md) {
     const double inside = std::clamp(md, c.well.md_begin(), c.well.md_end());
@@ -60,7 +60,7 @@ Chart TimeChart(const PlanCase& c, const StopPlan& plan, const std::vector<Plann
   Chart chart{.title = "Time at rest",
               .x_name = "MD [m]",
               .y_name = "at rest [s]",
-              .width = kWidth,
+              .width = kPlanWidth,
               .height = 260};
   ChartSeries base{.colour = kHelpColour};
   base.points = {{c.way.begin_md, 0}, {c.way.end_md, 0}};

@@ -233,7 +233,7 @@ class Analyst {
         Note(
             fmt::format("warms up: by {} with a time constant of {}; leave out the begin "
                         "(--exclude), five of them",
-                        Reading(found.size), Duration(*found.time_constant * series_.period)));
+                        Reading(found.size), DurationText(*found.time_constant * series_.period)));
         break;
       case LogFinding::Kind::kTemperature:
         Note(fmt::format("drifts with temperature: {} over the log, {} per degC, fastest at {}",
@@ -298,7 +298,7 @@ class Analyst {
     auto& text = answer_.summary;
     text = fmt::format("{}: {} samples at {:g} Hz, {}\n", request_.source, octaves.samples,
                        1 / series_.period,
-                       Duration(static_cast<double>(octaves.samples) * series_.period));
+                       DurationText(static_cast<double>(octaves.samples) * series_.period));
     if (!fit_) return;
     for (const auto term : kAllNoiseTerms) {
       const bool asked = term != NoiseTerm::kSinusoid || model_.shape.sinusoid_frequency > 0;
@@ -306,8 +306,8 @@ class Analyst {
     }
     const auto time = CoefficientsOf(*fit_).bias_instability_correlation_time;
     if (time) {
-      text += fmt::format("  {:<26} {} +- {}\n", "correlation time of B", Duration(*time),
-                          Duration(fit_->sigma_correlation_time.value_or(0)));
+      text += fmt::format("  {:<26} {} +- {}\n", "correlation time of B", DurationText(*time),
+                          DurationText(fit_->sigma_correlation_time.value_or(0)));
     }
   }
 
@@ -337,7 +337,7 @@ class Analyst {
   /// Length and rate of the log, what it cannot show, and what is wrong with it.
   void SayBesides(NoisePlotLabels& labels) const {
     labels.facts = {
-        fmt::format("{} at {:g} Hz", Duration(static_cast<double>(samples_) * series_.period),
+        fmt::format("{} at {:g} Hz", DurationText(static_cast<double>(samples_) * series_.period),
                     1 / series_.period),
         "\u00b1 is one sigma, the band 95 %"};
     if (request_.deviation == Deviation::kModified) {

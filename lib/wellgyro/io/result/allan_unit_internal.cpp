@@ -16,15 +16,15 @@ struct Word {
   double si;
   bool accelerometer;
 };
-constexpr std::array kWords{Word{"deg_per_h", units::kDegPerHour, false},
-                            Word{"deg_per_s", units::kDeg, false},
-                            Word{"rad_per_s", 1, false},
-                            Word{"counts", 1, false},
-                            Word{"mps2", 1, true},
-                            Word{"milli_g", units::kMilliG, true}};
+constexpr std::array kUnitWords{Word{"deg_per_h", units::kDegPerHour, false},
+                                Word{"deg_per_s", units::kDeg, false},
+                                Word{"rad_per_s", 1, false},
+                                Word{"counts", 1, false},
+                                Word{"mps2", 1, true},
+                                Word{"milli_g", units::kMilliG, true}};
 
 const Word* Find(std::string_view word) {
-  for (const auto& known : kWords) {
+  for (const auto& known : kUnitWords) {
     if (known.word == word) return &known;
   }
   return nullptr;
@@ -80,7 +80,7 @@ std::string Shown(double si, double unit_si, const std::string& unit) {
   return fmt::format("{:.3g}{}{}", si / unit_si, unit.empty() ? "" : " ", unit);
 }
 
-std::string Duration(double seconds) {
+std::string DurationText(double seconds) {
   if (seconds >= 3600) return fmt::format("{:.3g} h", seconds / 3600);
   if (seconds >= 120) return fmt::format("{:.3g} min", seconds / 60);
   return fmt::format("{:.3g} s", seconds);

@@ -34,6 +34,6 @@ TermText TextOf(NoiseTerm term, const AllanUnit& unit);
 std::string Shown(double si, double unit_si, const std::string& unit);
 
 /// "12.3 s", "4.56 h".
-std::string Duration(double seconds);
+std::string DurationText(double seconds);
 
 }  // namespace wellgyro

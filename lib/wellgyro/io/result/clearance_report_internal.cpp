@@ -30,12 +30,12 @@ std::string Cell(const std::string& name) {
   return cell;
 }
 
-const char* Word(Correlation correlation) {
+const char* WordFor(Correlation correlation) {
   constexpr const char* kWords[] = {"none", "global", "full"};
   return kWords[static_cast<int>(correlation)];
 }
 
-const char* Word(Scan scan) {
+const char* WordFor(Scan scan) {
   constexpr const char* kWords[] = {"nearest in space", "horizontal", "travelling cylinder"};
   return kWords[static_cast<int>(scan)];
 }
@@ -47,8 +47,8 @@ std::string RuleHtml(const ClearancePolicy& policy) {
       "surface margin {:g} m; correlation {}; {}; scan {}. Stop below {:g}, alert below {:g}; "
       "wells "
       "that cannot come below {:g} are screened out.</p>\n",
-      rule.k, rule.sigma_ahead, rule.surface_margin, Word(rule.correlation),
-      rule.surface == ErrorSurface::kPedal ? "pedal curve" : "ellipsoid", Word(rule.scan),
+      rule.k, rule.sigma_ahead, rule.surface_margin, WordFor(rule.correlation),
+      rule.surface == ErrorSurface::kPedal ? "pedal curve" : "ellipsoid", WordFor(rule.scan),
       policy.stop, policy.alert, policy.report);
 }
 

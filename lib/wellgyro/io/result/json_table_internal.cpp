@@ -16,12 +16,12 @@ namespace wellgyro {
 namespace {
 
 // Columns whose cells are words even where they look like numbers, as the unit 1.
-constexpr std::array<std::string_view, 12> kWords = {"KIND",  "QUALITY", "PASS",         "STATUS",
-                                                     "CODE",  "UNIT",    "LIMIT_SOURCE", "VERDICT",
-                                                     "ALIKE", "REMEDY",  "BEGIN_UTC",    "WELL"};
+constexpr std::array<std::string_view, 12> kWordColumns = {
+    "KIND",         "QUALITY", "PASS",  "STATUS", "CODE",      "UNIT",
+    "LIMIT_SOURCE", "VERDICT", "ALIKE", "REMEDY", "BEGIN_UTC", "WELL"};
 
 bool IsWords(std::string_view column) {
-  return std::find(kWords.begin(), kWords.end(), column) != kWords.end();
+  return std::find(kWordColumns.begin(), kWordColumns.end(), column) != kWordColumns.end();
 }
 
 /// The next record of `text`, which may go over several lines within quotes; moves `line` on.

@@ -73,7 +73,7 @@ ToolSide ReadToolSide(const PlanRequest& request, NamedFiles& files,
   return side;
 }
 
-Trajectory ReadWell(const PlanRequest& request, const std::optional<double>& convergence,
+Trajectory ReadPlannedWell(const PlanRequest& request, const std::optional<double>& convergence,
                     NamedFiles& files, std::vector<std::string>& notes) {
   const std::string name = request.well.string();
   const North wanted = convergence ? North::kGrid : North::kTrue;
@@ -110,7 +110,7 @@ PlanReport MakeReport(const PlanRequest& request, NamedFiles& files,
                      request.heat.gradient)) {
     throw std::invalid_argument("latitude, convergence and temperatures must be finite");
   }
-  Trajectory well = ReadWell(request, convergence, files, notes);
+  Trajectory well = ReadPlannedWell(request, convergence, files, notes);
   PlannedWay way = request.way;
   way.begin_md = request.begin_md.value_or(well.md_begin());
   way.end_md = request.end_md.value_or(well.md_end());

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/result/json_columns_internal.h"
 #include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/words.h"
 #include "wellgyro/uncertainty/ellipse.h"
@@ -14,8 +15,6 @@ namespace wellgyro {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kConfidence = 0.95;
 
 template <class T>
 Json OrNull(const std::optional<T>& value) {

@@ -24,7 +24,6 @@ namespace wellgyro {
 namespace {
 
 constexpr std::int64_t kLargest = std::int64_t{1} << 28;  // bytes of one file
-constexpr double kConfidence = 0.95;
 
 /// Carries a Fault out of the parts of the document, to SurveyJson.
 struct Refused {

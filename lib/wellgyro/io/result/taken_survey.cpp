@@ -13,15 +13,15 @@
 namespace wellgyro {
 namespace {
 
-constexpr Column kNev[3][3] = {{Column::kVarNN, Column::kCovNE, Column::kCovNV},
-                               {Column::kCovNE, Column::kVarEE, Column::kCovEV},
-                               {Column::kCovNV, Column::kCovEV, Column::kVarVV}};
+constexpr Column kNevColumns[3][3] = {{Column::kVarNN, Column::kCovNE, Column::kCovNV},
+                                      {Column::kCovNE, Column::kVarEE, Column::kCovEV},
+                                      {Column::kCovNV, Column::kCovEV, Column::kVarVV}};
 
 std::optional<StationSigmas> SigmasOf(const SurveyTable& table, std::size_t row) {
   StationSigmas own;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const auto value = table.Get(kNev[i][j], row);
+      const auto value = table.Get(kNevColumns[i][j], row);
       if (!value) return std::nullopt;
       own.cov_p(i, j) = *value;
     }

@@ -166,7 +166,7 @@ std::string AboutEnd(const Case& c, double confidence) {
 
 /// Without the last digits that a unit's conversion leaves.
 double Tidy(double value) { return std::round(value * 1e9) / 1e9; }
-double Degrees(double angle) { return Tidy(ToDegrees(angle)); }
+double TidyDegrees(double angle) { return Tidy(ToDegrees(angle)); }
 
 std::string SummaryToml(const UncertaintyRequest& request, const std::vector<InputFile>& inputs,
                         const UncertaintyAnswer& answer, bool allan) {
@@ -175,19 +175,19 @@ std::string SummaryToml(const UncertaintyRequest& request, const std::vector<Inp
   toml.Number("confidence", request.confidence);
   if (allan) toml.Text("allan", request.form == AllanForm::kExact ? "exact" : "printed");
   const Surroundings& place = request.surroundings;
-  if (place.latitude) toml.Number("latitude_deg", Degrees(*place.latitude));
+  if (place.latitude) toml.Number("latitude_deg", TidyDegrees(*place.latitude));
   toml.Number("gravity_mps2", place.gravity);
-  if (request.convergence) toml.Number("convergence_deg", Degrees(*request.convergence));
+  if (request.convergence) toml.Number("convergence_deg", TidyDegrees(*request.convergence));
   if (place.field) toml.Number("field_nt", Tidy(*place.field / units::kNanotesla));
-  if (place.dip) toml.Number("dip_deg", Degrees(*place.dip));
-  if (place.declination) toml.Number("declination_deg", Degrees(*place.declination));
+  if (place.dip) toml.Number("dip_deg", TidyDegrees(*place.dip));
+  if (place.declination) toml.Number("declination_deg", TidyDegrees(*place.declination));
   if (!request.sigma_tie_in.isZero(0)) {
     toml.Number("tie_in_sigma_north_m", request.sigma_tie_in.x());
     toml.Number("tie_in_sigma_east_m", request.sigma_tie_in.y());
     toml.Number("tie_in_sigma_tvd_m", request.sigma_tie_in.z());
   }
   if (request.speed) toml.Number("speed_mps", *request.speed);
-  if (request.initialise) toml.Number("initialise_deg", Degrees(*request.initialise));
+  if (request.initialise) toml.Number("initialise_deg", TidyDegrees(*request.initialise));
   for (const std::string& note : answer.notes) toml.Element("note"), toml.Text("text", note);
   for (const std::string& why : answer.refusals) toml.Element("refusal"), toml.Text("text", why);
   for (const InputFile& input : inputs) {

@@ -20,9 +20,9 @@
 namespace wellgyro {
 namespace {
 
-using sensors::Column;
 using sensors::Layout;
-using enum sensors::Column;
+using sensors::SensorColumn;
+using enum sensors::SensorColumn;
 
 /// Nothing where the text is no number; a missing one is empty or nan.
 struct Number {
@@ -91,12 +91,12 @@ struct SensorCsv::Impl {
   std::optional<Fault> Begin();
   std::optional<Fault> FindPeriod();
 
-  std::string_view Text(Column column) const {
+  std::string_view Text(SensorColumn column) const {
     const auto field = static_cast<std::size_t>(layout.places[column].field);
     return field < fields.size() ? fields[field] : std::string_view();
   }
   /// Absent where the column is, or the field empty; also where it is no number, which is refused.
-  std::optional<double> Get(Column column) {
+  std::optional<double> Get(SensorColumn column) {
     if (!layout.Has(column)) return std::nullopt;
     const auto value = NumberIn(Text(column));
     if (!value) {
@@ -107,7 +107,7 @@ struct SensorCsv::Impl {
     return value->value * layout.places[column].factor;
   }
   /// Whole numbers of nanoseconds stay exact.
-  std::optional<std::int64_t> GetTime(Column column) {
+  std::optional<std::int64_t> GetTime(SensorColumn column) {
     if (!layout.Has(column)) return std::nullopt;
     const std::string_view text = Text(column);
     const auto factor = static_cast<std::int64_t>(layout.places[column].factor);
@@ -124,7 +124,7 @@ struct SensorCsv::Impl {
            layout.places[column].field);
     return std::nullopt;
   }
-  std::int32_t Whole(Column column) {
+  std::int32_t Whole(SensorColumn column) {
     const double value = Get(column).value_or(0);
     if (value != std::floor(value) || std::abs(value) > 1e9) {
       Refuse(fmt::format("{} is no whole number", value), FaultCode::kRange,
@@ -133,10 +133,10 @@ struct SensorCsv::Impl {
     }
     return static_cast<std::int32_t>(value);
   }
-  bool Triple(Column first, Eigen::Vector3d& v) {
+  bool Triple(SensorColumn first, Eigen::Vector3d& v) {
     bool all = true;
     for (int i = 0; i < 3; ++i) {
-      const auto value = Get(static_cast<Column>(first + i));
+      const auto value = Get(static_cast<SensorColumn>(first + i));
       v[i] = value.value_or(0);
       all = all && value;
     }
@@ -152,7 +152,7 @@ struct SensorCsv::Impl {
     record.has_mag = layout.HasAll({kMx, kMy, kMz}) && Triple(kMx, record.b_T);
     return force && gx && gy;
   }
-  bool InOrder(std::int64_t ns, Column column) {
+  bool InOrder(std::int64_t ns, SensorColumn column) {
     if (rows > 0 && ns <= last_ns) {
       Refuse("time does not go on from the row before", FaultCode::kOrder,
              layout.places[column].field);
@@ -192,7 +192,7 @@ std::optional<Fault> SensorCsv::Impl::Begin() {
 }
 
 std::optional<Fault> SensorCsv::Impl::FindPeriod() {
-  const Column clock = layout.Has(kTool) ? kTool : kUtc;
+  const SensorColumn clock = layout.Has(kTool) ? kTool : kUtc;
   const auto place = file.tellg();
   const int header = number;
   std::vector<std::int64_t> steps;
@@ -220,7 +220,7 @@ std::optional<Fault> SensorCsv::Impl::FindPeriod() {
 
 bool SensorCsv::Impl::NextSample(ImuSample& sample) {
   while (ReadLine()) {
-    const Column clock = layout.Has(kTool) ? kTool : kUtc;
+    const SensorColumn clock = layout.Has(kTool) ? kTool : kUtc;
     const auto ns = GetTime(clock);
     if (!ns || !InOrder(*ns, clock)) return false;
     sample = ImuSample{};
@@ -287,7 +287,7 @@ bool SensorCsv::Impl::NextDepth(DepthMark& mark) {
   }
   if (!ReadLine()) return false;
   const auto utc = GetTime(kUtc);
-  const Column depth = layout.Has(kMd) ? kMd : kLengthOf;
+  const SensorColumn depth = layout.Has(kMd) ? kMd : kLengthOf;
   const auto value = Get(depth);
   if (!fault && !value) {
     Refuse("a depth is missing", FaultCode::kSyntax, layout.places[depth].field);

@@ -121,7 +121,7 @@ std::optional<SensorTable> Layout::Kind() const {
 
 std::string Layout::Lacking() const {
   const std::array sensors{kGx, kGy, kAx, kAy, kAz};
-  const bool any = std::ranges::any_of(sensors, [this](Column c) { return Has(c); });
+  const bool any = std::ranges::any_of(sensors, [this](SensorColumn c) { return Has(c); });
   std::string missing;
   const auto need = [&missing](bool has, std::string_view name) {
     if (!has) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", name);
@@ -131,7 +131,7 @@ std::string Layout::Lacking() const {
     need(Has(kMd) || Has(kLengthOf), "MD or LENGTH");
     return fmt::format("a table of depths lacks {}", missing);
   }
-  for (const Column c : sensors) need(Has(c), kNames[c].name);
+  for (const SensorColumn c : sensors) need(Has(c), kNames[c].name);
   if (Has(kDuration)) {
     need(Has(kUtc), "UTC");
   } else {

@@ -12,7 +12,7 @@
 /// The columns of tables of sensor data.
 namespace wellgyro::sensors {
 
-enum Column : std::uint8_t {
+enum SensorColumn : std::uint8_t {
   kUtc,
   kEndUtc,
   kTool,
@@ -56,9 +56,9 @@ struct Layout {
   std::string complaint;  ///< about a heading
   int complaint_field = 0;
 
-  bool Has(Column column) const { return places[column].field >= 0; }
-  bool HasAll(std::initializer_list<Column> columns) const {
-    for (const Column column : columns) {
+  bool Has(SensorColumn column) const { return places[column].field >= 0; }
+  bool HasAll(std::initializer_list<SensorColumn> columns) const {
+    for (const SensorColumn column : columns) {
       if (!Has(column)) return false;
     }
     return true;

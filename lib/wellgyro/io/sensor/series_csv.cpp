@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kLongestGap = 1'000'000'000;
 
 // Nothing when it is no number; NaN for an empty field.
-std::optional<double> NumberIn(std::string_view field) {
+std::optional<double> NumberOrGap(std::string_view field) {
   return field.empty() ? std::numeric_limits<double>::quiet_NaN() : AnyNumberOf(field);
 }
 
@@ -78,7 +78,7 @@ class CsvReader {
     SplitCells(line, *delimiter_, fields_);
     if (!columns_known_) {
       const bool header = std::any_of(fields_.begin(), fields_.end(),
-                                      [](std::string_view f) { return !NumberIn(f); });
+                                      [](std::string_view f) { return !NumberOrGap(f); });
       FindColumns(header);
       columns_known_ = true;
       if (header || fault_) return;
@@ -171,7 +171,7 @@ class CsvReader {
              FaultCode::kSyntax, fields_.size());
       return 0;
     }
-    const std::optional<double> number = NumberIn(fields_[column]);
+    const std::optional<double> number = NumberOrGap(fields_[column]);
     if (!number) {
       Refuse(fmt::format("\"{}\" is not a number", fields_[column].substr(0, 40)),
              FaultCode::kSyntax, column);

@@ -14,7 +14,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kFormat = "wellgyro.calibration/1";
+constexpr std::string_view kCalibrationFormat = "wellgyro.calibration/1";
 using Shape = FitQuantity::Shape;
 constexpr std::size_t kResidualsShown = 4000;  // even
 
@@ -258,7 +258,7 @@ OrthogonalityCheck ReadCheck(TomlTable& table) {
   return check;
 }
 
-CalibrationFile Read(TomlTable& root) {
+CalibrationFile TakeCalibration(TomlTable& root) {
   CalibrationFile file;
   FitReport& report = file.report;
   report.method = root.Need("method", root.FindString("method"));
@@ -288,7 +288,7 @@ CalibrationFile Read(TomlTable& root) {
 std::string CalibrationToml(const CalibrationFile& file) {
   const FitReport& report = file.report;
   TomlWriter out;
-  out.Text("format", kFormat);
+  out.Text("format", kCalibrationFormat);
   out.Text("method", report.method);
   out.Text("program", file.program);
   out.Texts("references", file.references);
@@ -312,7 +312,7 @@ std::string CalibrationToml(const CalibrationFile& file) {
 }
 
 Result<CalibrationFile> ParseCalibration(std::string_view text, const std::string& source) {
-  return ReadTomlText<CalibrationFile>(text, source, kFormat, Read);
+  return ReadTomlText<CalibrationFile>(text, source, kCalibrationFormat, TakeCalibration);
 }
 
 Result<CalibrationFile> ReadCalibrationFile(const std::filesystem::path& path) {

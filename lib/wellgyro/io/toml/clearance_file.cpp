@@ -97,7 +97,7 @@ ClearanceWell ReadWell(TomlTable& table, bool reference) {
   return well;
 }
 
-ClearancePolicy Read(TomlTable& root) {
+ClearancePolicy TakeClearance(TomlTable& root) {
   ClearancePolicy policy;
   if (auto table = root.FindTable("rule")) ReadRule(*table, policy);
   if (auto table = root.FindTable("limits")) ReadLimits(*table, policy);
@@ -122,7 +122,7 @@ ClearancePolicy Read(TomlTable& root) {
 Result<ClearancePolicy> ReadClearancePolicy(const std::filesystem::path& path) {
   const Result<std::string> text = ReadTextFile(path);
   if (!text) return text.fault();
-  return ReadTomlText<ClearancePolicy>(*text, path.string(), "wellgyro.clearance/1", Read);
+  return ReadTomlText<ClearancePolicy>(*text, path.string(), "wellgyro.clearance/1", TakeClearance);
 }
 
 }  // namespace wellgyro

@@ -15,7 +15,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kFormat = "wellgyro.error-model/1";
+constexpr std::string_view kErrorModelFormat = "wellgyro.error-model/1";
 
 struct Unit {
   Dimension dimension;
@@ -199,7 +199,7 @@ void WriteTerm(const ErrorTerm& term, TomlWriter& out) {
 }  // namespace
 
 Result<ErrorModel> ReadErrorModel(std::string_view text, const std::string& source) {
-  return ReadTomlText<ErrorModel>(text, source, kFormat, ReadModel);
+  return ReadTomlText<ErrorModel>(text, source, kErrorModelFormat, ReadModel);
 }
 
 Result<ErrorModel> ReadErrorModelFile(const std::filesystem::path& path) {
@@ -210,7 +210,7 @@ Result<ErrorModel> ReadErrorModelFile(const std::filesystem::path& path) {
 
 Result<std::string> WriteErrorModel(const ErrorModel& model, std::span<const std::string> remarks) {
   TomlWriter out;
-  out.Text("format", kFormat);
+  out.Text("format", kErrorModelFormat);
   out.Text("name", model.name);
   out.Text("revision", model.revision);
   out.Text("source", model.source);

@@ -19,7 +19,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kFormat = "wellgyro.job/1";
+constexpr std::string_view kJobFormat = "wellgyro.job/1";
 
 TieIn TieInOfSurvey(const std::string& text, const std::string& source) {
   const auto stations = ParseSurveyCsv(text, source);
@@ -148,15 +148,16 @@ Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& sou
                          const std::filesystem::path& folder) {
   NamedFiles files(folder);
   files.Note("job", source, text);
-  Result<JobFile> file = ReadTomlText<JobFile>(
-      text, source.string(), kFormat, [&](TomlTable& root) { return JobReader(files).Read(root); });
+  Result<JobFile> file =
+      ReadTomlText<JobFile>(text, source.string(), kJobFormat,
+                            [&](TomlTable& root) { return JobReader(files).Read(root); });
   if (file) file->files = files.all();
   return file;
 }
 
 std::set<std::string> KeysAskedOfJob(std::string_view text, const std::filesystem::path& folder) {
   NamedFiles files(folder);
-  TomlDocument document(text, "job", kFormat);
+  TomlDocument document(text, "job", kJobFormat);
   TomlTable root(document);
   try {
     JobReader(files).Read(root);

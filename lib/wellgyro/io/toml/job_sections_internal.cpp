@@ -22,7 +22,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kInt32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t kUtimeMax = std::numeric_limits<std::int64_t>::max() / 1000;  // [us]
 
 std::optional<UtcTime> FindUtime(TomlTable& table, std::string_view key) {
@@ -32,7 +31,7 @@ std::optional<UtcTime> FindUtime(TomlTable& table, std::string_view key) {
 }
 
 std::int32_t Small(TomlTable& table, std::string_view key, std::int64_t min, std::int32_t absent) {
-  return static_cast<std::int32_t>(table.FindInteger(key, min, kInt32).value_or(absent));
+  return static_cast<std::int32_t>(table.FindInteger(key, min, kInt32Most).value_or(absent));
 }
 
 // Three rows of (north, east, TVD) [m2].
@@ -267,7 +266,7 @@ OperationSpec ReadOperations(TomlTable& root) {
 RunSpec ReadRun(TomlTable table) {
   RunSpec run;
   run.number =
-      static_cast<std::int32_t>(table.Need("number", table.FindInteger("number", 1, kInt32)));
+      static_cast<std::int32_t>(table.Need("number", table.FindInteger("number", 1, kInt32Most)));
   run.begin = FindUtime(table, "begin_utime_us");
   run.end = FindUtime(table, "end_utime_us");
   if (run.begin && run.end && !(*run.end > *run.begin)) {

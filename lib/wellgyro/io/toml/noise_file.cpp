@@ -9,7 +9,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kFormat = "wellgyro.noise/1";
+constexpr std::string_view kNoiseFormat = "wellgyro.noise/1";
 
 struct Key {
   NoiseTerm term;
@@ -76,7 +76,7 @@ NoiseCoefficients TakeNoise(TomlTable& root) {
 
 std::string NoiseFileText(const NoiseFit& fit, const NoiseFileHead& head) {
   TomlWriter toml;
-  toml.Text("format", kFormat);
+  toml.Text("format", kNoiseFormat);
   toml.Text("sensor", head.accelerometer ? "accelerometer" : "gyro");
   toml.Table("coefficients");
   for (const auto& key : kKeys) {
@@ -107,7 +107,7 @@ std::string NoiseFileText(const NoiseFit& fit, const NoiseFileHead& head) {
 }
 
 Result<NoiseCoefficients> ParseNoiseFile(std::string_view text, const std::string& source) {
-  return ReadTomlText<NoiseCoefficients>(text, source, kFormat, TakeNoise);
+  return ReadTomlText<NoiseCoefficients>(text, source, kNoiseFormat, TakeNoise);
 }
 
 Result<NoiseCoefficients> ReadNoiseFile(const std::filesystem::path& path) {

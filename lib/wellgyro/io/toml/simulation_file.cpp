@@ -17,7 +17,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kFormat = "wellgyro.simulation/1";
+constexpr std::string_view kSimulationFormat = "wellgyro.simulation/1";
 
 SimulatedWell TakeWell(TomlTable table, NamedFiles& files) {
   Eigen::Vector3d begin = Eigen::Vector3d::Zero();
@@ -42,7 +42,7 @@ SimulatedTool TakeTool(TomlTable table, NamedFiles& files, std::uint64_t seed) {
   return ReadSimulatedTool(table, noise ? &*noise : nullptr, seed);
 }
 
-SimulationFile Read(TomlTable& root, NamedFiles& files, const SimulatedRun* run) {
+SimulationFile TakeSimulation(TomlTable& root, NamedFiles& files, const SimulatedRun* run) {
   SimulationFile file;
   Simulation& s = file.simulation;
   s.seed = static_cast<std::uint64_t>(
@@ -70,7 +70,8 @@ Result<SimulationFile> ParseSimulation(std::string_view text, const std::filesys
   NamedFiles files(folder);
   files.Note("simulation", source, text);
   Result<SimulationFile> file = ReadTomlText<SimulationFile>(
-      text, source.string(), kFormat, [&](TomlTable& root) { return Read(root, files, run); });
+      text, source.string(), kSimulationFormat,
+      [&](TomlTable& root) { return TakeSimulation(root, files, run); });
   if (file) file->files = files.all();
   return file;
 }

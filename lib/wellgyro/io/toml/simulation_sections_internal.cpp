@@ -18,7 +18,6 @@ namespace wellgyro {
 namespace {
 
 constexpr double kDeg = units::kDeg;
-constexpr std::int64_t kInt32 = std::numeric_limits<std::int32_t>::max();
 
 template <class Vector>
 void ReadVector(TomlTable& table, std::string_view key, Vector& value, double unit) {
@@ -33,7 +32,7 @@ void ReadVector(TomlTable& table, std::string_view key, Vector& value, double un
 }
 
 void ReadInt32(TomlTable& table, std::string_view key, std::int32_t& value, std::int64_t min) {
-  value = static_cast<std::int32_t>(table.FindInteger(key, min, kInt32).value_or(value));
+  value = static_cast<std::int32_t>(table.FindInteger(key, min, kInt32Most).value_or(value));
 }
 
 AngleLaw ReadLaw(TomlTable& well, std::string_view key) {
@@ -237,8 +236,8 @@ SimulatedStreams ReadSimulatedStreams(TomlTable table) {
     if (!(row[1] > row[0])) table.Refuse("outages_s", "an outage ends later than it begins");
     streams.outages.push_back({.begin = row[0], .end = row[1]});
   }
-  constexpr std::int64_t kUtimeMax = std::numeric_limits<std::int64_t>::max() / 2000;
-  if (const auto us = table.FindInteger("begin_utime_us", 0, kUtimeMax)) {
+  constexpr std::int64_t kBeginMax = std::numeric_limits<std::int64_t>::max() / 2000;
+  if (const auto us = table.FindInteger("begin_utime_us", 0, kBeginMax)) {
     streams.begin_utc.ns = *us * 1000;
   }
   ReadInt32(table, "session", streams.session, 0);

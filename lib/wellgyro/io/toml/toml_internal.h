@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -33,6 +34,8 @@ inline constexpr TomlRange kLatitudeDeg{.min = -90, .max = 90};
 inline constexpr TomlRange kLongitudeDeg{.min = -180, .max = 360};
 inline constexpr TomlRange kAzimuthDeg{.min = -360, .max = 360};
 inline constexpr TomlRange kInclinationDeg{.min = 0, .max = 180};
+
+inline constexpr std::int64_t kInt32Most = std::numeric_limits<std::int32_t>::max();
 
 /// A word of a file and what it stands for.
 template <class T>

@@ -18,7 +18,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kFormat = "wellgyro.tool/1";
+constexpr std::string_view kToolFormat = "wellgyro.tool/1";
 
 constexpr std::string_view kHead =
     "From counts of raw_batch_t to SI units in tool axes T (z down-hole, x to the reference mark,\n"
@@ -59,7 +59,7 @@ std::optional<UtcTime> ReadDate(TomlTable& table, std::string_view key) {
   return date;
 }
 
-ToolCalibration Read(TomlTable& root) {
+ToolCalibration TakeToolFile(TomlTable& root) {
   ToolCalibration tool;
   root.Read("asset_serial", tool.asset_serial);
   root.Read("sensor_serials", tool.sensor_serials);
@@ -185,7 +185,7 @@ void WriteGroup(TomlWriter& out, const SensorGroup& group, const GroupWords& wor
 }  // namespace
 
 Result<ToolCalibration> ParseTool(std::string_view text, const std::string& source) {
-  return ReadTomlText<ToolCalibration>(text, source, kFormat, Read);
+  return ReadTomlText<ToolCalibration>(text, source, kToolFormat, TakeToolFile);
 }
 
 Result<ToolCalibration> ReadToolFile(const std::filesystem::path& path) {
@@ -197,7 +197,7 @@ Result<ToolCalibration> ReadToolFile(const std::filesystem::path& path) {
 std::string ToolToml(const ToolCalibration& tool) {
   if (const auto complaint = FindComplaint(tool)) throw std::invalid_argument(*complaint);
   TomlWriter out;
-  out.Text("format", kFormat);
+  out.Text("format", kToolFormat);
   out.Comment(kHead);
   if (!tool.asset_serial.empty()) out.Text("asset_serial", tool.asset_serial);
   if (!tool.sensor_serials.empty()) out.Text("sensor_serials", tool.sensor_serials);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSecondsPerHour = 3600;
 
-WitsItems Read(TomlTable& root) {
+WitsItems TakeWits(TomlTable& root) {
   WitsItems items;
   if (auto table = root.FindTable("items")) {
     const auto item = [&table](std::string_view key, int& value) {
@@ -37,7 +37,7 @@ WitsItems Read(TomlTable& root) {
 }  // namespace
 
 Result<WitsItems> ParseWitsItems(std::string_view text, const std::filesystem::path& source) {
-  return ReadTomlText<WitsItems>(text, source.string(), "wellgyro.wits/1", Read);
+  return ReadTomlText<WitsItems>(text, source.string(), "wellgyro.wits/1", TakeWits);
 }
 
 Result<WitsItems> ReadWitsItems(const std::filesystem::path& path) {
