@@ -377,7 +377,7 @@ StationStatus ToolSurvey::StatusOf(const Draft& draft, bool adjusted) const {
 void ToolSurvey::Adjust() {
   for (RunState& run : runs_) {
     run.survey->ListLastDepth();
-    const RunHistory& history = run.survey->history();
+    const RunHistory history = run.survey->History();
     if (!history.knots.empty()) {
       SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history) : EstimatedRun(job_, history);
       run.survey->summary().fit = smoothed.fit;
