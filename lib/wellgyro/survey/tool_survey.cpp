@@ -397,7 +397,7 @@ void ToolSurvey::SendRevisions() {
 }
 
 void ToolSurvey::TellStation(const Station& station) {
-  told_.insert_or_assign(std::tuple(station.run, station.utc.ns, station.kind), station);
+  told_.insert_or_assign(KeyOf(station), station);
   sink_.OnStation(station);
 }
 

@@ -254,7 +254,7 @@ std::string ToolSurvey::WithoutNorth(const std::vector<DraftedRun>& drafted,
 /// The numbers of the revision that was told; a later one brings others.
 void ToolSurvey::KeepToWhatWasTold(std::vector<Station>& stations) const {
   for (Station& station : stations) {
-    const auto told = told_.find(std::tuple(station.run, station.utc.ns, station.kind));
+    const auto told = told_.find(KeyOf(station));
     if (told == told_.end() || told->second.revision != station.revision) continue;
     const Station& as = told->second;
     station.md = as.md;
