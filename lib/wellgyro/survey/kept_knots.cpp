@@ -21,7 +21,7 @@ std::uint64_t Bits(std::int64_t value) { return static_cast<std::uint64_t>(value
 void Take(std::uint64_t bits, double& value) { value = std::bit_cast<double>(bits); }
 void Take(std::uint64_t bits, std::int64_t& value) { value = static_cast<std::int64_t>(bits); }
 
-/// Of what is expected. The sign of no number is whatever the compiler's order of operands makes it.
+/// Of what is expected; not of no number, whose sign is as the compiler happens to order operands.
 std::uint64_t Base(double expected) { return std::isfinite(expected) ? Bits(expected) : 0; }
 std::uint64_t Base(std::int64_t expected) { return Bits(expected); }
 
