@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include "wellgyro/io/toml/plan_file.h"
 #include "wellgyro/io/words.h"
@@ -88,6 +89,17 @@ int Stopped(const SurveyOptions& options, const LiveOutcome& outcome) {
   return Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole, options.says, tools);
 }
 
+/// What a look at the whole survey takes for a moment, the more the longer the run, goes back to
+/// the system. By itself glibc raises these limits to the largest block that was ever freed, and
+/// twice that (mallopt(3)).
+void GiveMemoryBack() {
+#ifdef __GLIBC__
+  constexpr int kBytes = 128 << 10;  // the limits that glibc begins with
+  ::mallopt(M_MMAP_THRESHOLD, kBytes);
+  ::mallopt(M_TRIM_THRESHOLD, kBytes);
+#endif
+}
+
 LiveSetup SetupOf(const SurveyOptions& options, const JobFile& job) {
   LiveSetup setup{.job = job, .url = UrlOr(options.from), .out = options.out};
   setup.record = options.record;
@@ -143,6 +155,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     }
     page = std::move(*opened);
   }
+  GiveMemoryBack();
   SurveyConsole console(options.says, page.get());
   LiveSetup setup = SetupOf(options, job);
   setup.advise = *advise;

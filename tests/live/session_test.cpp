@@ -129,6 +129,24 @@ TEST_F(Session, SurveysRecordsAndResumesInTheSameFolder) {
   EXPECT_GT(observer_.stations, 5);
 }
 
+// 2026-11-24: what was sent just before a stop was in the receiver's hands only, or waited for
+// samples behind it: run.toml named a FINISH as obeyed, or nothing, of a survey that had not ended.
+TEST_F(Session, AnOrderJustBeforeAStopIsObeyed) {
+  auto speaking = LiveBus::Open(setup_.url);
+  ASSERT_TRUE(speaking);
+  auto session = LiveSession::Open(setup_, nullptr, observer_);
+  ASSERT_TRUE(session) << session.fault().text;
+  std::thread sender([&] {
+    Send(*speaking, true);
+    (*session)->Stop();
+  });
+  const LiveOutcome outcome = (*session)->Run();
+  sender.join();
+  EXPECT_EQ(outcome.ended, LiveOutcome::Ended::kFinished);
+  EXPECT_EQ(outcome.record.operations.size(), 1u);
+  EXPECT_TRUE(outcome.usable());
+}
+
 TEST_F(Session, AFolderHasOneSession) {
   auto session = LiveSession::Open(setup_, nullptr, observer_);
   ASSERT_TRUE(session) << session.fault().text;

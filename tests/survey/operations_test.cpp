@@ -208,6 +208,28 @@ TEST_F(Operations, AcceptedStationsAreDefinitiveAndRejectedOnesAreNotChosen) {
   }
 }
 
+// 2026-11-24: an order of the samples' newest time waited for samples behind it, and a survey that
+// was broken off then was written without it.
+TEST_F(Operations, WhatWasSaidLastHoldsWhereASurveyIsBrokenOff) {
+  CollectingSink sink;
+  Surveyor surveyor(SlantJob(), sink);
+  Run(surveyor);
+  Event reject = At(*surveyor.tally().newest, Event::Kind::kReject);
+  reject.run = 2;
+  reject.has_value = true;
+  reject.value_m = 500;
+  surveyor.Push(reject);
+  const auto rejected = [&] {
+    const Survey survey = surveyor.Current(0);
+    return std::count_if(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
+      return s.status == StationStatus::kRejected && s.md == 500;
+    });
+  };
+  EXPECT_EQ(rejected(), 0) << "its time has not come";
+  surveyor.Flush();
+  EXPECT_GE(rejected(), 1);
+}
+
 TEST_F(Operations, EveryStationGoesOutProvisionalFirstAndRevisedAfter) {
   CollectingSink sink;
   Surveyor surveyor(SlantJob(), sink);

@@ -16,8 +16,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Knots behind, of which what the roll rate usually changes by is taken: a minute.
-constexpr std::size_t kUsual = 60;
 // A knot is made linear anew, as in a tool whose roll nobody sees, until what it turns the begin by
 // is small: its square is below what a knot tells of any direction [rad].
 constexpr double kLinear = 3e-3;
@@ -53,7 +51,7 @@ Node Ahead(const RunKnot& knot, const Vector3d& w_IL_L, const Node& begin) {
 double WalkBehind(std::span<const RunKnot> knots) {
   const Increment& inc = knots.back().increment;
   if (inc.has_axial) return std::sqrt(inc.seconds);
-  const auto recent = knots.last(std::min(knots.size(), kUsual));
+  const auto recent = knots.last(std::min(knots.size(), ForwardRun::kLooksBack));
   return std::hypot(RollWalkBy(recent) * std::sqrt(inc.seconds), SpeedStarts(recent).back());
 }
 

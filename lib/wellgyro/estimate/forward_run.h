@@ -21,12 +21,15 @@ namespace wellgyro {
 /// may be copied: a copy goes on alone.
 class ForwardRun {
  public:
-  /// From the end of `knots`, which have been solved.
+  /// Of the knots behind, so many are looked at: what the roll rate usually changes by in a minute.
+  static constexpr std::size_t kLooksBack = 60;
+
+  /// From the end of `knots`, the last of those that have been solved.
   ForwardRun(const RunState& solved, std::span<const RunKnot> knots);
 
-  /// Takes the last of all `knots` of the run so far. What comes behind it, if that is known, says
-  /// how the tool rolls from there on. False where the information is no longer positive: nothing
-  /// changed then.
+  /// Takes the last of `knots`, the last of the run so far. What comes behind it, if that is known,
+  /// says how the tool rolls from there on. False where the information is no longer positive:
+  /// nothing changed then.
   bool Step(std::span<const RunKnot> knots, const Increment* next);
 
   /// At the end of the last knot taken.

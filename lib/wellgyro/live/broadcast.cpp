@@ -34,7 +34,7 @@ void Broadcast::OnStation(const Station& station) {
   ++stations_;
   ++news_;
   last_ = station;
-  told_.insert_or_assign(Key(station.tool, station.run, station.utc.ns, station.kind), station);
+  told_.insert_or_assign(KeyOf(station), station);
   if (muted_) return;
   Queue(station);
   Pump();

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "wellgyro/bus/lcm_live.h"
@@ -20,6 +19,7 @@
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/status.h"
+#include "wellgyro/survey/station_key.h"
 
 namespace wellgyro {
 
@@ -71,10 +71,9 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
   std::atomic<bool> must_acknowledge_ = false;
   static constexpr int kAtOnce = 20;
   static constexpr std::int64_t kPauseUs = 10'000;
-  using Key = std::tuple<std::int32_t, std::int32_t, std::int64_t, StationKind>;
   void Queue(const Station& station);
 
-  std::map<Key, Station> told_;  ///< by tool, run, time and kind
+  std::map<StationKey, Station> told_;
   std::optional<Station> last_;
   std::deque<std::vector<std::byte>> outbox_;
   std::int64_t pump_us_ = 0, again_us_ = 0;

@@ -20,6 +20,8 @@ namespace {
 constexpr std::int64_t kFinishPatienceUs = 5 * kSecondUs;
 // What is still used of a backlog when the session is stopped.
 constexpr std::int64_t kDrainUs = 200'000;
+// Within which the receiver's thread hands over what the system holds for it already.
+constexpr int kQuietMs = 20;
 constexpr std::int64_t kPumpMs = 10, kIdleMs = 100;  // waited at most for a message
 // Messages used between two looks at what else there is to do.
 constexpr std::int64_t kAtOnce = 200;
@@ -259,14 +261,16 @@ LiveOutcome::Ended LiveSession::Core::Work() {
   }
 }
 
-/// What had come before the stop, as far as there is time; true: a FINISH was among it.
+/// What had come before the stop, as far as there is time; true: a FINISH was among it, or waits
+/// for samples, of which none come any more.
 bool LiveSession::Core::DrainStopped() {
   const std::int64_t end = Now() + kDrainUs;
   while (Now() < end && !surveyor.finished()) {
-    const auto drained = bus.Drain(1);
+    const auto drained = bus.Drain(1, kQuietMs);
     if (!drained || *drained == 0) break;
   }
   guard.Flush();
+  if (intake.operations().finish_obeyed()) surveyor.Finish();
   return surveyor.finished();
 }
 

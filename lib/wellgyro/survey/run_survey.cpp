@@ -337,18 +337,28 @@ void RunSurvey::ListLastDepth() {
   if (deepest && job_.stations.every > 0) deepest->listed = true;
 }
 
+RunHistory RunSurvey::History() const {
+  RunHistory history = history_;
+  history.knots.reserve(knots_.size());
+  history.attitude.reserve(knots_.size());
+  KeptKnots::Reader reader(knots_);
+  while (const KeptKnot* kept = reader.Next()) {
+    history.knots.push_back(kept->knot);
+    history.attitude.push_back(kept->attitude);
+  }
+  return history;
+}
+
 std::vector<std::size_t> RunSurvey::News() { return std::exchange(news_, {}); }
 
 RunNow RunSurvey::Now() const {
   RunNow now;
   now.run = summary_.run;
-  if (history_.knots.empty()) return now;
-  const RunKnot& last = history_.knots.back();
+  if (knots_.empty()) return now;
+  const RunKnot& last = recent_.back();
   now.utc = last.utc;
   if (last.along.known) now.md = last.along.md;
-  for (std::size_t k = history_.knots.size(); k-- > 0 && history_.knots[k].still;) {
-    now.rested += history_.knots[k].increment.seconds;
-  }
+  now.rested = rested_;
   if (forward_) now.state = &forward_->state();
   return now;
 }

@@ -17,6 +17,7 @@
 #include "wellgyro/record/sample.h"
 #include "wellgyro/survey/draft.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/kept_knots.h"
 #include "wellgyro/survey/run_history.h"
 #include "wellgyro/survey/run_now.h"
 #include "wellgyro/survey/station_plan.h"
@@ -66,8 +67,10 @@ class RunSurvey {
   const StationState& state(std::size_t number) const;
   /// How many of drafts(), the youngest, are told ahead: their knots still wait.
   std::size_t ahead() const { return states_ahead_.size(); }
-  /// Those of drafts() that are from samples stand in this order among its stations.
-  const RunHistory& history() const { return history_; }
+  /// All that is to be estimated from. Those of drafts() that are from samples stand in this order
+  /// among its stations.
+  RunHistory History() const;
+  const KeptKnots& knots() const { return knots_; }
   RunNow Now() const;
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
@@ -138,14 +141,13 @@ class RunSurvey {
   void TakeDraft(const Waiting& waiting);
   bool AzimuthKnown() const;
   void BeginForward();
-  bool KeepIfSure();
+  bool KeepIfSure(std::size_t knots);
   void Tie(NorthFix tie, bool of_mark);
   void UseExternal(const Waiting& waiting);
   double AxisAzimuth(const AttitudeSample& tool) const;
   void TellUnheard();
   void Tell(std::size_t draft);
   void UseClosedStops(std::optional<ToolTime> until);
-  const AttitudeSample* BeforeStop(const NorthFix& fix) const;
   void UseFix(NorthFix fix);
   void TieByMagnet(const NorthFix& fix);
   void MoveSite(const RunKnot& knot, const AttitudeSample& attitude);
@@ -162,7 +164,11 @@ class RunSurvey {
   std::optional<IncrementBuilder> builder_ahead_;  ///< scratch
   std::vector<Duration> gap_cuts_;  ///< in the gap behind the sample last given to the builder
   UnseenTurn unseen_;
-  RunHistory history_;
+  RunHistory history_;           ///< but for knots and attitudes, which are in ...
+  KeptKnots knots_;              ///< ... here, and the last of them in ...
+  std::vector<RunKnot> recent_;  ///< ... here, ForwardRun::kLooksBack or all
+  AttitudeSample known_;         ///< at the end of the last one
+  double rested_ = 0;            ///< at rest until there [s]
   /// What was known at the end of so many knots.
   struct Known {
     std::size_t knots;

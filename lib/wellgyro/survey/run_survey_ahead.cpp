@@ -41,15 +41,15 @@ void RunSurvey::TellAhead() {
   ForwardRun forward = *forward_;
   UnseenTurn turn = unseen_;
   Quality unseen = unseen_since_listed_;
-  const std::size_t known = history_.knots.size();
+  const std::size_t known = knots_.size(), recent = recent_.size();
   for (std::size_t i = 0; i < increments.size(); ++i) {
     Waiting& waiting = waiting_[i];
-    history_.knots.push_back(KnotOf(waiting, increments[i], turn));
+    recent_.push_back(KnotOf(waiting, increments[i], turn));
     const Increment* next = i + 1 < increments.size() ? &increments[i + 1] : nullptr;
-    if (!forward.Step(history_.knots, next) || !(forward.SigmaOfHeading() < kRoughHeading)) break;
+    if (!forward.Step(recent_, next) || !(forward.SigmaOfHeading() < kRoughHeading)) break;
     unseen |= increments[i].quality & kUnseen;
     if (!waiting.draft) continue;
-    const RunKnot& knot = history_.knots.back();
+    const RunKnot& knot = recent_.back();
     const LinkedErrors errors = forward.Mark(known + i + 1);
     if (!waiting.told) {
       const AttitudeSample attitude = AttitudeOf(knot, forward.node(), forward.CovPhi());
@@ -60,8 +60,7 @@ void RunSurvey::TellAhead() {
     }
     if (drafts_[*waiting.told].listed) unseen = Quality::kGood;
   }
-  history_.knots.erase(history_.knots.begin() + static_cast<std::ptrdiff_t>(known),
-                       history_.knots.end());
+  recent_.erase(recent_.begin() + static_cast<std::ptrdiff_t>(recent), recent_.end());
 }
 
 const StationState& RunSurvey::state(std::size_t number) const {

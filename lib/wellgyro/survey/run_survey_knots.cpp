@@ -77,33 +77,37 @@ RunKnot RunSurvey::KnotOf(const Waiting& waiting, const Increment& increment,
   return knot;
 }
 
-bool RunSurvey::AzimuthKnown() const {
-  return !history_.attitude.empty() && history_.attitude.back().azimuth_known;
-}
+bool RunSurvey::AzimuthKnown() const { return !knots_.empty() && known_.azimuth_known; }
 
 /// At the end of the last knot.
 AttitudeSample RunSurvey::AttitudeNow() const {
-  const RunKnot& knot = history_.knots.back();
+  const RunKnot& knot = recent_.back();
   if (forward_) return AttitudeOf(knot, forward_->node(), forward_->CovPhi());
-  if (knot.increment.level || history_.attitude.empty()) {
+  if (knot.increment.level || knots_.empty()) {
     return LevelOf(knot, job_.errors.accel_bias_sigma, site_.gravity);
   }
-  AttitudeSample attitude = history_.attitude.back();
+  AttitudeSample attitude = known_;
   attitude.time = knot.increment.time;
   attitude.quality |= knot.increment.quality;
   return attitude;
 }
 
 void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
-  if (history_.knots.empty()) history_.site = site_;
-  const RunKnot& knot = history_.knots.emplace_back(KnotOf(waiting, *waiting.increment, unseen_));
+  if (knots_.empty()) history_.site = site_;
+  if (recent_.size() >= 2 * ForwardRun::kLooksBack) {
+    recent_.erase(recent_.begin(), recent_.end() - ForwardRun::kLooksBack);
+  }
+  const RunKnot& knot = recent_.emplace_back(KnotOf(waiting, *waiting.increment, unseen_));
   roll_hidden_ |= !knot.still && !knot.increment.roll_seen;
-  if (forward_ && !(forward_->Step(history_.knots, next) && KeepIfSure())) {
+  rested_ = knot.still ? rested_ + knot.increment.seconds : 0;
+  const std::size_t knots = knots_.size() + 1;
+  if (forward_ && !(forward_->Step(recent_, next) && KeepIfSure(knots))) {
     forward_.reset();
     if (!begun_roughly_) next_try_ = 0;
   }
-  history_.attitude.push_back(AttitudeNow());
-  MoveSite(history_.knots.back(), history_.attitude.back());
+  known_ = AttitudeNow();
+  knots_.Add(knot, known_);
+  MoveSite(knot, known_);
   unseen_since_listed_ |= knot.increment.quality & kUnseen;
   if (waiting.draft) TakeDraft(waiting);
   const AlignmentSpec& spec = job_.alignment;
@@ -116,12 +120,12 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   if (waiting.external && external_pending_) UseExternal(waiting);
   const bool north = !history_.ties.empty() || !history_.fixes.empty();
   if (north && (!forward_ || begun_roughly_)) BeginForward();
-  UseClosedStops(history_.knots.back().increment.time);
+  UseClosedStops(recent_.back().increment.time);
 }
 
 /// The draft of the last knot, whose state is `state` among those of the run.
 void RunSurvey::AddDraft(const Draft& waiting, std::size_t state, Quality unseen, bool known) {
-  const RunKnot& knot = history_.knots.back();
+  const RunKnot& knot = recent_.back();
   Draft& draft = drafts_.emplace_back(waiting);
   draft.state = state;
   Station& s = draft.station;
@@ -136,9 +140,9 @@ void RunSurvey::AddDraft(const Draft& waiting, std::size_t state, Quality unseen
 
 /// The draft of the knot just stepped.
 void RunSurvey::TakeDraft(const Waiting& waiting) {
-  const std::size_t index = history_.knots.size() - 1;
-  const RunKnot& knot = history_.knots.back();
-  const AttitudeSample& attitude = history_.attitude.back();
+  const std::size_t index = knots_.size() - 1;
+  const RunKnot& knot = recent_.back();
+  const AttitudeSample& attitude = known_;
   const std::size_t state = history_.stations.size();
   history_.stations.push_back(index);
   history_.states.push_back(
@@ -159,28 +163,33 @@ void RunSurvey::TakeDraft(const Waiting& waiting) {
 /// linear. Where it leads to none that is sure, it is done again when that part is half as long
 /// again: all together cost three times the last.
 void RunSurvey::BeginForward() {
-  const std::size_t knots = history_.knots.size(), begin = sure_ ? sure_->knots : 0;
+  const std::size_t knots = knots_.size(), begin = sure_ ? sure_->knots : 0;
   if (knots < next_try_ || knots == begin) return;
+  const RunHistory history = History();
   const RunEstimate solved =
-      sure_ ? EstimateSince(begin, sure_->state, history_) : EstimateSoFar(job_, history_);
+      sure_ ? EstimateSince(begin, sure_->state, history) : EstimateSoFar(job_, history);
   next_try_ = knots + (knots - begin) / 2 + 1;
   forward_.reset();
   if (!solved.solved) sure_.reset();
   if (!solved.solved || solved.ambiguous || !solved.alone) return;
-  SmoothedRun part = SmoothedOf(solved, history_, begin);
-  std::move_backward(part.attitude.begin(), part.attitude.end(), history_.attitude.end());
+  SmoothedRun part = SmoothedOf(solved, history, begin);
   std::move_backward(part.stations.begin(), part.stations.end(), history_.states.end());
-  forward_.emplace(solved.end, history_.knots);
+  forward_.emplace(solved.end, recent_);
   begun_roughly_ = !(forward_->SigmaOfHeading() < kSureHeading);
-  if (KeepIfSure()) return TellUnheard();
-  forward_.reset();
-  ForgetAzimuth(history_.attitude.back());
+  const bool sure = KeepIfSure(knots);
+  if (!sure) {
+    forward_.reset();
+    ForgetAzimuth(part.attitude.back());
+  }
+  knots_.Revise(begin, part.attitude);
+  known_ = part.attitude.back();
+  if (sure) TellUnheard();
 }
 
-/// False where what is known has lost its heading.
-bool RunSurvey::KeepIfSure() {
+/// False where what is known at the end of so many knots has lost its heading.
+bool RunSurvey::KeepIfSure(std::size_t knots) {
   const double sigma = forward_->SigmaOfHeading();
-  if (!begun_roughly_ && sigma < kSureHeading) sure_ = {history_.knots.size(), forward_->state()};
+  if (!begun_roughly_ && sigma < kSureHeading) sure_ = {knots, forward_->state()};
   return sigma < kRoughHeading;
 }
 
@@ -196,7 +205,7 @@ double RunSurvey::AxisAzimuth(const AttitudeSample& tool) const {
 /// The job's azimuth holds at the end of the knot just stepped.
 void RunSurvey::UseExternal(const Waiting& waiting) {
   external_pending_ = false;
-  const AttitudeSample& tool = history_.attitude.back();
+  const AttitudeSample& tool = known_;
   NorthFix fix;
   fix.begin = fix.end = waiting.end;
   fix.utc_begin = fix.utc_end = waiting.utc;
@@ -213,13 +222,13 @@ void RunSurvey::Tie(NorthFix tie, bool of_mark) {
   tie.run = summary_.run;
   tie.tool = summary_.tool;
   tie.external = true;
-  const AttitudeSample& before = history_.attitude.back();
+  const AttitudeSample& before = known_;
   if (before.azimuth_known) {
     tie.closure = WrapPi(tie.azimuth - before.azimuth);
     tie.sigma_closure = std::sqrt(tie.cov_attitude(1, 1) + before.cov_attitude(1, 1));
     tie.chi_square = tie.closure * tie.closure / (tie.sigma_closure * tie.sigma_closure);
   }
-  history_.ties.push_back({history_.knots.size(), of_mark ? job_.alignment.azimuth : tie.azimuth,
+  history_.ties.push_back({knots_.size(), of_mark ? job_.alignment.azimuth : tie.azimuth,
                            std::sqrt(tie.cov_attitude(1, 1)), of_mark});
   summary_.fixes.push_back(tie);
   next_try_ = 0;

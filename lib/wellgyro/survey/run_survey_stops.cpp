@@ -129,7 +129,7 @@ void RunSurvey::UseClosedStops(std::optional<ToolTime> until) {
 /// what is wrong with one is wrong with all.
 void RunSurvey::TieByMagnet(const NorthFix& fix) {
   magnet_pending_ = false;
-  if (history_.knots.empty()) return;
+  if (knots_.empty()) return;
   NorthFix tie;
   tie.md = fix.md;
   tie.begin = tie.end = fix.begin;
@@ -142,25 +142,16 @@ void RunSurvey::TieByMagnet(const NorthFix& fix) {
   Tie(tie, false);
 }
 
-/// At the end of the last knot before the stop; nullptr: there is none.
-const AttitudeSample* RunSurvey::BeforeStop(const NorthFix& fix) const {
-  const auto& known = history_.attitude;
-  const auto at = std::partition_point(
-      known.begin(), known.end(),
-      [&fix](const AttitudeSample& attitude) { return attitude.time <= fix.begin; });
-  return at == known.begin() ? nullptr : &*std::prev(at);
-}
-
 void RunSurvey::UseFix(NorthFix fix) {
   const bool wanted =
       job_.alignment.use_fixes || job_.alignment.method == AlignmentSpec::Method::kGyrocompass;
-  if (wanted && !history_.knots.empty()) {
+  if (wanted && !knots_.empty()) {
     const bool roll_hidden = std::exchange(roll_hidden_, false);
-    history_.fixes.push_back({fix, history_.knots.size(), roll_hidden});
-    const AttitudeSample* before = BeforeStop(fix);
-    if (AzimuthKnown() && before != nullptr && before->azimuth_known) {
+    history_.fixes.push_back({fix, knots_.size(), roll_hidden});
+    const std::optional<AttitudeSample> before = knots_.KnownAt(fix.begin);
+    if (AzimuthKnown() && before && before->azimuth_known) {
       ChooseBranch(*before, fix);
-      if (!roll_hidden) CloseOn(*before, history_.attitude.back(), fix);
+      if (!roll_hidden) CloseOn(*before, known_, fix);
     } else if (!AzimuthKnown()) {
       BeginForward();
       const bool alone = AzimuthKnown() || !fix.mirror_azimuth;

@@ -377,7 +377,7 @@ StationStatus ToolSurvey::StatusOf(const Draft& draft, bool adjusted) const {
 void ToolSurvey::Adjust() {
   for (RunState& run : runs_) {
     run.survey->ListLastDepth();
-    const RunHistory& history = run.survey->history();
+    const RunHistory history = run.survey->History();
     if (!history.knots.empty()) {
       SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history) : EstimatedRun(job_, history);
       run.survey->summary().fit = smoothed.fit;
@@ -397,7 +397,7 @@ void ToolSurvey::SendRevisions() {
 }
 
 void ToolSurvey::TellStation(const Station& station) {
-  told_.insert_or_assign(std::tuple(station.run, station.utc.ns, station.kind), station);
+  told_.insert_or_assign(KeyOf(station), station);
   sink_.OnStation(station);
 }
 
@@ -411,20 +411,24 @@ void ToolSurvey::Flush(std::optional<UtcTime> until) {
     run.survey->Flush();
     Tell(run);
   }
+  // What people have said holds, though no sample reaches its time any more.
+  const auto commands = std::stable_partition(due_.begin(), due_.end(), [](const Due& due) {
+    return !std::holds_alternative<Command>(due.operation);
+  });
+  std::for_each(due_.begin(), commands, [this](const Due& due) { Obey(due.operation); });
+  due_.erase(due_.begin(), commands);
 }
 
 void ToolSurvey::Finish(std::optional<UtcTime> until) {
   if (finished_) return;
   Flush(until);
-  const std::vector<Due> rest = std::exchange(due_, {});
-  for (const Due& due : rest) {
-    const auto* command = std::get_if<Command>(&due.operation);
-    if (command == nullptr) Obey(due.operation);
+  for (const Due& due : std::exchange(due_, {})) {
+    const Command& command = std::get<Command>(due.operation);
     // One that no sample reached any more is obeyed by ending.
-    if (command != nullptr && command->kind == Command::Kind::kFinish &&
-        (command->command_id == 0 ||
-         commands_.insert({command->session, command->command_id}).second)) {
-      sink_.OnAcknowledged(command->command_id);
+    if (command.kind == Command::Kind::kFinish &&
+        (command.command_id == 0 ||
+         commands_.insert({command.session, command.command_id}).second)) {
+      sink_.OnAcknowledged(command.command_id);
     }
   }
   Adjust();

@@ -8,7 +8,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -28,6 +27,7 @@
 #include "wellgyro/survey/run_survey.h"
 #include "wellgyro/survey/sample_queue.h"
 #include "wellgyro/survey/sample_watch.h"
+#include "wellgyro/survey/station_key.h"
 #include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {
@@ -155,9 +155,8 @@ class ToolSurvey {
   UtcTime newest_used_;
   std::optional<UtcTime> finish_asked_;
   bool finished_ = false;
-  /// As last told, by run, time and kind: of one revision a station has one position and
-  /// covariance, wherever it is read.
-  std::map<std::tuple<std::int32_t, std::int64_t, StationKind>, Station> told_;
+  /// As last told: of one revision a station has one position and covariance, wherever it is read.
+  std::map<StationKey, Station> told_;
   std::vector<Event> verdicts_;  ///< accepts and rejects, in the order in which they came
   std::vector<Event> foresights_;
   std::vector<ReturnToZero> returns_;

@@ -70,6 +70,23 @@ bool HasDirection(const AttitudeSample& attitude) {
   return attitude.azimuth_known || Has(attitude.quality, Quality::kVertical);
 }
 
+struct KnotOfTime {
+  RunKnot knot;
+  std::size_t number = 0;
+  bool before = false;
+};
+
+/// The first that does not end before `utc`, or the last, which ends before it; there is one.
+KnotOfTime KnotAt(UtcTime utc, const KeptKnots& knots) {
+  KnotOfTime at;
+  KeptKnots::Reader reader(knots);
+  for (std::size_t i = 0; const KeptKnot* kept = reader.Next(); ++i) {
+    at = {kept->knot, i, kept->knot.utc < utc};
+    if (!at.before) break;
+  }
+  return at;
+}
+
 }  // namespace
 
 const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
@@ -86,12 +103,11 @@ const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
 /// Where the hole points at every knot that has a depth and a direction.
 std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
   std::vector<Waypoint> way;
-  const RunHistory& history = run.survey->history();
-  way.reserve(history.knots.size());
-  for (std::size_t i = 0; i < history.knots.size(); ++i) {
-    const RunKnot& knot = history.knots[i];
-    const AttitudeSample& attitude =
-        i < run.attitude.size() ? run.attitude[i] : history.attitude[i];
+  way.reserve(run.survey->knots().size());
+  KeptKnots::Reader reader(run.survey->knots());
+  for (std::size_t i = 0; const KeptKnot* kept = reader.Next(); ++i) {
+    const RunKnot& knot = kept->knot;
+    const AttitudeSample& attitude = i < run.attitude.size() ? run.attitude[i] : kept->attitude;
     if (!knot.along.known || !HasDirection(attitude)) continue;
     // A UTC that has stepped back passes the same times again.
     if (!way.empty() && knot.utc < way.back().utc) continue;
@@ -139,19 +155,15 @@ std::vector<Foresight> ToolSurvey::Foresights() const {
   for (const Event& event : foresights_) {
     Foresight foresight{event.run, event.value_rad, event.sigma_rad, std::nullopt, 0};
     for (const RunState& run : runs_) {
-      const std::vector<RunKnot>& knots = run.survey->history().knots;
-      if (run.survey->summary().run != event.run || knots.empty()) continue;
-      auto at = std::lower_bound(knots.begin(), knots.end(), event.utc,
-                                 [](const RunKnot& knot, UtcTime utc) { return knot.utc < utc; });
-      const bool after = at == knots.end();
-      if (after) --at;
-      const auto i = static_cast<std::size_t>(at - knots.begin());
-      if (i >= run.attitude.size()) continue;
-      const double away = std::abs((at->utc - event.utc).seconds());
-      const bool rests = at->still || (at->along.known && std::abs(at->along.speed) <= kRestSpeed);
-      const bool held = after && rests && away <= kHeld.seconds();
+      if (run.survey->summary().run != event.run || run.survey->knots().empty()) continue;
+      const KnotOfTime at = KnotAt(event.utc, run.survey->knots());
+      if (at.number >= run.attitude.size()) continue;
+      const double away = std::abs((at.knot.utc - event.utc).seconds());
+      const AlongHole& along = at.knot.along;
+      const bool rests = at.knot.still || (along.known && std::abs(along.speed) <= kRestSpeed);
+      const bool held = at.before && rests && away <= kHeld.seconds();
       if (away > kForesightSeconds && !held) continue;
-      const AttitudeSample& attitude = run.attitude[i];
+      const AttitudeSample& attitude = run.attitude[at.number];
       if (!attitude.azimuth_known) continue;
       foresight.measured = DirectionOfMark(attitude);
       foresight.sigma_measured = std::sqrt(attitude.cov_attitude(1, 1));
@@ -242,7 +254,7 @@ std::string ToolSurvey::WithoutNorth(const std::vector<DraftedRun>& drafted,
 /// The numbers of the revision that was told; a later one brings others.
 void ToolSurvey::KeepToWhatWasTold(std::vector<Station>& stations) const {
   for (Station& station : stations) {
-    const auto told = told_.find(std::tuple(station.run, station.utc.ns, station.kind));
+    const auto told = told_.find(KeyOf(station));
     if (told == told_.end() || told->second.revision != station.revision) continue;
     const Station& as = told->second;
     station.md = as.md;
