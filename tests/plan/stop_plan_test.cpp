@@ -77,6 +77,17 @@ TEST(StopPlan, ChosenToolfacesSaveMostOfTheTimeOfASlidingTool) {
   ExpectSaving(test::SShape(), true, 0.12);
 }
 
+// One after the other on a tool that rolls, each shows the gyros another face: what by itself buys
+// little is found from the times of the bound.
+TEST(StopPlan, StopsNearEachOtherAreFound) {
+  const PlanCase c =
+      test::CaseOf({{300, 5, 38}, {900, 40, 41}, {1500, 60, 40}, {3000, 60, 40}}, 80, 1);
+  const StopPlan plan = PlanStops(c, {.ellipse = 18});
+  ASSERT_TRUE(plan.feasible && plan.least_cost);
+  EXPECT_LE(plan.cost, 1.05 * *plan.least_cost);
+  EXPECT_GE(plan.cost, 0.99 * *plan.least_cost);
+}
+
 // What a plan takes beyond the bound is what its stops cost, not what the search misses.
 TEST(StopPlan, WhereStopsAreFreeItComesNearTheBound) {
   for (const PlanCase& c : {test::Slant(), test::SShape(), test::Horizontal()}) {

@@ -211,30 +211,17 @@ class Search {
     return stand;
   }
 
-  /// Times at neighbours, the tool turned the same way, as one stop where most of them are; those
-  /// of which half a stop comes.
+  /// Those times that make more than half a stop, the longest at a place.
   std::vector<Rest> StopsOf(std::span<const Rest> times) const {
     std::vector<Rest> left(times.begin(), times.end()), stops;
     std::sort(left.begin(), left.end(),
               [](const Rest& a, const Rest& b) { return a.seconds > b.seconds; });
-    for (const Rest& rest : left) {
-      const auto near = std::find_if(stops.begin(), stops.end(), [&rest](const Rest& stop) {
-        const std::size_t apart =
-            stop.place > rest.place ? stop.place - rest.place : rest.place - stop.place;
-        return apart <= kNear && stop.turn == rest.turn;
-      });
-      const bool taken = StopIn(stops, rest.place) != nullptr;
-      if (near != stops.end()) {
-        near->seconds += rest.seconds;
-      } else if (!taken) {
-        stops.push_back(rest);
-      }
-    }
-    std::erase_if(stops, [this](const Rest& r) { return r.seconds < 0.5 * limits_.least_stop; });
-    for (Rest& stop : stops) {
-      const double grains = std::ceil((stop.seconds - limits_.least_stop) / kStopGrain);
-      stop.seconds =
+    for (Rest rest : left) {
+      if (rest.seconds < 0.5 * limits_.least_stop || StopIn(stops, rest.place) != nullptr) continue;
+      const double grains = std::ceil((rest.seconds - limits_.least_stop) / kStopGrain);
+      rest.seconds =
           std::min(limits_.least_stop + kStopGrain * std::max(0., grains), limits_.longest_stop);
+      stops.push_back(rest);
     }
     return stops;
   }
