@@ -85,7 +85,7 @@ void AddLimits(CLI::App& command, PlanOptions& o) {
   command.add_option("--overhead-s", l.overhead, "what a stop costs beside its rest, default 30")
       ->check(CLI::Range(0.0, 7200.0));
   command.add_flag("--toolfaces", l.turns,
-                   "the tool can be turned before a stop: toolfaces are chosen too");
+                   "the tool can be turned before a stop, and back: toolfaces are chosen too");
 }
 
 void AddWay(CLI::App& command, PlanOptions& o) {

@@ -2,7 +2,7 @@
 """What a plan says of the well's end against runs that follow it: simulated, surveyed, compared.
 
   python3 tests/bench/plan.py PROGRAM [--runs 4] [--long] [--wells slant,s,...] [--tools fine,...]
-                              [--jobs 2]
+                              [--jobs 2] [--toolfaces]
 
 For each well and tool the stops are planned for the ellipse that three minutes every 300 m come to.
 `--long`: 200 runs each. Their tools' errors are drawn from the job's own priors. `stated`: root of
@@ -62,7 +62,7 @@ def Write(folder, name, text):
     return path
 
 
-def Prepare(program, folder, well, tool):
+def Prepare(program, folder, well, tool, more):
     """Writes well, job and plan; what the plan says of the end."""
     stations, latitude, rpm = WELLS[well]
     noise, errors = Scaled(NOISE, TOOLS[tool]), Scaled(ERRORS, TOOLS[tool])
@@ -83,7 +83,7 @@ def Prepare(program, folder, well, tool):
             return tomllib.load(file)
 
     practice = Plan(1e4, "--practice", "every_m=300,stop_s=180")["practice"]
-    return Plan(practice["ellipse_major_m"])
+    return Plan(practice["ellipse_major_m"], *more)
 
 
 def Follow(program, folder, well, seed):
@@ -138,6 +138,7 @@ def main():
     parser.add_argument("--wells", default=",".join(WELLS))
     parser.add_argument("--tools", default=",".join(TOOLS))
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--toolfaces", action="store_true", help="plans choose toolfaces too")
     options = parser.parse_args()
     program = os.path.abspath(options.program)
     seeds = range(1, (200 if options.long else options.runs) + 1)
@@ -147,7 +148,8 @@ def main():
     for well, tool in itertools.product(options.wells.split(","), options.tools.split(",")):
         with tempfile.TemporaryDirectory() as folder, \
                 concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            plan = Prepare(program, folder, well, tool)
+            plan = Prepare(program, folder, well, tool,
+                           ["--toolfaces"] if options.toolfaces else [])
             runs = list(pool.map(lambda seed: Follow(program, folder, well, seed), seeds))
             if any(runs):
                 ratios.append(Show(well, tool, plan, runs))

@@ -130,11 +130,8 @@ class FollowedRun {
   double Speed() const { return up_ && deepest_ > md_ ? case_.way.speed_out : case_.way.speed_in; }
   RunMove& Move() { return std::get<RunMove>(simulation_.run.steps.back()); }
   void BeginMove(double md) {
-    const double seconds = std::max(std::abs(md - md_) / Speed(), kRamp);
-    const RunMove move{.to_md = md,
-                       .speed = Speed(),
-                       .ramp = kRamp,
-                       .roll = PlannedRoll(case_.way, moved_, seconds)};
+    const RunMove move{
+        .to_md = md, .speed = Speed(), .ramp = kRamp, .roll = PlannedRoll(case_.way, moved_)};
     simulation_.run.steps.emplace_back(move);
     begin_ = time_;
   }

@@ -89,6 +89,16 @@ TEST(Truth, RatesGiveTheAttitudeThroughVertical) {
   ExpectRatesLeadToAttitudes(s, 2e-11);
 }
 
+TEST(Truth, RatesGiveTheAttitudeOfAToolThatRestsWhereItHasSwungTo) {
+  Simulation s = WeavingRun();
+  const RunRoll roll{.amplitude = 0.4, .period = 90, .phase = 0.7, .rests_there = true};
+  s.run.steps = {RunMove{.to_md = 1300, .speed = 0.9, .ramp = 8, .roll = roll},
+                 RunStop{.seconds = 30},
+                 RunMove{.to_md = 2500, .speed = 0.7, .ramp = 12, .roll = roll},
+                 RunMove{.to_md = 1700, .speed = 0.9, .ramp = 12, .roll = roll}};
+  ExpectRatesLeadToAttitudes(s, 2e-11);
+}
+
 TEST(Truth, AttitudeIsOfItsAngles) {
   const Truth truth(WeavingRun());
   for (double t = 1; t < truth.seconds(); t += 13.3) {

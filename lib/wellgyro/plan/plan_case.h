@@ -23,10 +23,12 @@ struct PlannedWay {
 
 /// The tool at rest.
 struct PlannedStop {
-  bool out = false;                     ///< on the way up
-  double md = 0;                        ///< [m]
-  double seconds = 0;                   ///< [s]
-  std::optional<double> toolface = {};  ///< turned to before; absent: as it comes [rad]
+  bool out = false;    ///< on the way up
+  double md = 0;       ///< [m]
+  double seconds = 0;  ///< [s]
+  /// Turned to before, and back after it, so that a stop changes nothing but by what it measures;
+  /// absent: as it comes [rad].
+  std::optional<double> toolface = {};
 };
 
 /// What a plan rests on.

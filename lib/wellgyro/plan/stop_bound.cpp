@@ -61,6 +61,15 @@ class Relaxation {
     return bound;
   }
 
+  std::vector<StopStand::Rest> Rests() const {
+    std::vector<StopStand::Rest> rests;
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+      rests.push_back({active_[i].place, kTwoPi * active_[i].turn / kToolfaces,
+                       seconds_[static_cast<Index>(i)]});
+    }
+    return rests;
+  }
+
  private:
   struct Place {
     std::size_t place = 0;
@@ -164,18 +173,19 @@ class Relaxation {
 
 }  // namespace
 
-std::optional<double> LeastAtRest(const StopInformation& info, const PlanLimits& limits) {
+std::optional<RelaxedPlan> LeastAtRest(const StopInformation& info, const PlanLimits& limits) {
   const double axis = limits.ellipse / ConfidenceFactor(0.95, 2);
   Relaxation relaxation(info, limits.turns);
-  double least = 0;
+  RelaxedPlan plan;
   for (int i = 0; i < kIterations; ++i) {
     const auto bound = relaxation.Step(axis * axis);
-    least = std::max(least, bound.least);
-    if (i == 0 && bound.met) return 0;
-    if (bound.takes > kTooLong || least > kTooLong) return std::nullopt;
-    if (bound.met && least > kCloseEnough * bound.takes) break;
+    if (i == 0 && bound.met) return RelaxedPlan{};
+    plan.least = std::max(plan.least, bound.least);
+    if (bound.takes > kTooLong || plan.least > kTooLong) return std::nullopt;
+    if (bound.met && plan.least > kCloseEnough * bound.takes) break;
   }
-  return least;
+  plan.rests = relaxation.Rests();
+  return plan;
 }
 
 }  // namespace wellgyro

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/plan/stop_pairs.h"
 
 namespace wellgyro {
 namespace {
@@ -102,30 +103,53 @@ bool Tighten(const PlanLimits& limits, const ExpectedEnd& expected, const PlanVa
   return missed;
 }
 
+double LeastCost(const StopInformation& info, const PlanLimits& limits, double at_rest) {
+  if (limits.fewest == 0 && at_rest == 0) return 0;
+  const double stops = std::max(3.0, std::ceil(at_rest / limits.longest_stop));
+  const double more = stops * limits.overhead + std::max(at_rest, stops * limits.least_stop);
+  const auto few = BestOfTwo(info, limits, more + kStopGrain);
+  if (!few) return more;
+  double cost = limits.overhead * static_cast<double>(few->size());
+  for (const Rest& rest : *few) cost += rest.seconds;
+  return std::min(cost, more);
+}
+
+/// Bounds of what a plan takes; the times that come to the first.
+std::vector<Rest> AddBounds(const StopInformation& info, const PlanLimits& limits, StopPlan& plan) {
+  const auto relaxed = LeastAtRest(info, limits);
+  if (!relaxed) return {};
+  plan.least_at_rest = relaxed->least;
+  plan.least_cost = LeastCost(info, limits, relaxed->least);
+  return relaxed->rests;
+}
+
 }  // namespace
 
 StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits) {
   CheckLimits(limits);
   CheckPlanCase(c, {});
   const double length = c.way.end_md - c.way.begin_md;
-  const StopInformation info(c, PlacesEvery(c.way, std::max(kSpacing, length / kPlacesMost)));
+  const StopInformation info(c, PlacesEvery(c.way, std::max(kSpacing, length / kPlacesMost)),
+                             nullptr, limits.hidden.has_value());
   StopPlan plan;
   plan.without = ExpectEnd(c, {}, true);
   plan.best_possible = BestPossible(info, limits);
   const bool possible = plan.best_possible.Meets(limits.ellipse, limits.hidden.value_or(HUGE_VAL));
-  if (possible) plan.least_at_rest = LeastAtRest(info, limits);
   PlanLimits aim = limits;
   if (c.sigma_start_azimuth) aim.fewest = 0;
+  std::vector<Rest> start;
+  if (possible) start = AddBounds(info, aim, plan);
   StopStand stand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));
   for (int i = 0; possible && !plan.feasible && i < kVerifications; ++i) {
-    const auto rests = FindStops(info, aim);
+    const auto rests = FindStops(info, aim, start);
     if (!rests) break;
     plan.stops = StopsOf(info, *rests, limits.turns);
-    plan.expected = ExpectEnd(c, plan.stops, true);
+    plan.expected = ExpectEnd(c, plan.stops, limits.hidden.has_value());
     stand = StopStand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));
     for (const Rest& rest : *rests) stand.Add(rest);
     plan.feasible = !Tighten(limits, plan.expected, stand.Value(), aim);
   }
+  if (!limits.hidden && !plan.stops.empty()) plan.expected = ExpectEnd(c, plan.stops, true);
   plan.worth = WorthOf(c, plan, stand);
   for (const PlannedStop& stop : plan.stops) plan.at_rest += stop.seconds;
   plan.cost = plan.at_rest + limits.overhead * static_cast<double>(plan.stops.size());

@@ -27,6 +27,9 @@ struct StopPlan {
   double cost = 0;                      ///< with what stops cost beside [s]
   /// Time at rest below which no plan meets the ellipse's limit [s]; absent: none does.
   std::optional<double> least_at_rest = {};
+  /// Of its cost, stops being at the places and of the lengths that were looked at: the best plan
+  /// of one stop or two, all tried, or what three cost beside least_at_rest [s].
+  std::optional<double> least_cost = {};
   ExpectedEnd expected = {};     ///< with the stops
   ExpectedEnd without = {};      ///< with none
   PlanValue best_possible = {};  ///< an hour at rest at every fortieth of the way

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/plan/stop_pairs.h"
 
 namespace wellgyro {
 namespace {
 
 using Rest = StopStand::Rest;
 
-constexpr double kGrain = 10;        // [s] to which times are found
 constexpr double kLeastGain = 1e-7;  // of the logarithm, per second
 constexpr std::size_t kKept = 24;    // places looked at again, beside those near the stops
 constexpr std::size_t kNear = 2;     // places to either side
@@ -21,24 +21,31 @@ double HiddenLimit(const PlanLimits& limits) { return limits.hidden.value_or(HUG
 class Search {
  public:
   Search(const StopInformation& info, const PlanLimits& limits)
-      : limits_(limits), stand_(info, limits.ellipse, HiddenLimit(limits)) {}
+      : info_(info), limits_(limits), stand_(info, limits.ellipse, HiddenLimit(limits)) {}
 
-  std::optional<std::vector<Rest>> Run() {
+  std::optional<std::vector<Rest>> Run(std::span<const Rest> start) {
     if (Floor(0) > 0) stand_.Add({0, 0, Floor(0)});
-    if (!Fill(stand_)) return std::nullopt;
-    // A north may be needed, whatever the run alone would come to.
-    if (CountOf(stand_) < limits_.fewest) {
-      const Choice best = BestRest(stand_);
-      stand_.Add(best.gain > 0 ? best.rest : Rest{0, 0, Least(0) - Floor(0)});
+    bool met = Fill(stand_);
+    if (met) {
+      // A north may be needed, whatever the run alone would come to.
+      if (CountOf(stand_) < limits_.fewest) {
+        const Choice best = BestRest(stand_);
+        stand_.Add(best.gain > 0 ? best.rest : Rest{0, 0, Least(0) - Floor(0)});
+      }
+      Trim(stand_);
+      Improve();
     }
-    Trim(stand_);
-    Narrow();
-    for (int round = 0; round < kRounds; ++round) {
-      const double before = Cost(stand_);
-      for (std::size_t i = 0; i < stand_.stops().size(); ++i) Replace(i);
-      for (std::size_t i = 0; i < stand_.stops().size(); ++i) Shift(i);
-      if (!(Cost(stand_) < before)) break;
+    const auto take = [&](const std::vector<Rest>& rests) {
+      if (rests.empty() || !TakeIfBelow(met ? Cost(stand_) : HUGE_VAL, StandOf(rests))) return;
+      met = true;
+      Improve();
+    };
+    if (!limits_.here) {
+      take(StopsOf(start));
+      const double cost = met ? Cost(stand_) : HUGE_VAL;
+      take(BestOfTwo(info_, limits_, cost).value_or(std::vector<Rest>()));
     }
+    if (!met) return std::nullopt;
     std::vector<Rest> stops(stand_.stops().begin(), stand_.stops().end());
     std::sort(stops.begin(), stops.end(),
               [](const Rest& a, const Rest& b) { return a.place < b.place; });
@@ -77,10 +84,13 @@ class Search {
   }
 
   /// The stop that stands at a place; the tool is turned once there.
-  static const Rest* StopAt(const StopStand& stand, std::size_t place) {
-    const auto found = std::find_if(stand.stops().begin(), stand.stops().end(),
+  static const Rest* StopIn(std::span<const Rest> stops, std::size_t place) {
+    const auto found = std::find_if(stops.begin(), stops.end(),
                                     [place](const Rest& r) { return r.place == place; });
-    return found == stand.stops().end() ? nullptr : &*found;
+    return found == stops.end() ? nullptr : &*found;
+  }
+  static const Rest* StopAt(const StopStand& stand, std::size_t place) {
+    return StopIn(stand.stops(), place);
   }
 
   void Try(const StopStand& stand, const Rest& rest, double cost, double before,
@@ -104,7 +114,7 @@ class Search {
       return;
     }
     const double seconds = stop != nullptr ? stop->seconds : 0;
-    for (const double step : {kGrain, 0.5 * limits_.least_stop, limits_.least_stop}) {
+    for (const double step : {kStopGrain, 0.5 * limits_.least_stop, limits_.least_stop}) {
       const double more = std::max(step, Least(place) - seconds);
       if (seconds + more > Longest(place)) continue;
       Try(stand, {place, stop != nullptr ? stop->turn : 0, more}, more, before, best);
@@ -136,9 +146,9 @@ class Search {
       const double before = std::log(stand.Value().soft);
       for (const Rest& stop : stand.stops()) {
         const bool last = CountOf(stand) <= limits_.fewest;
-        const bool shorter = stop.seconds - kGrain >= Least(stop.place);
+        const bool shorter = stop.seconds - kStopGrain >= Least(stop.place);
         const double all = stop.seconds - Floor(stop.place);
-        for (const double less : {shorter ? kGrain : 0, last ? 0 : all}) {
+        for (const double less : {shorter ? kStopGrain : 0, last ? 0 : all}) {
           if (!(less > 0)) continue;
           const Rest back{stop.place, stop.turn, -less};
           const PlanValue value = stand.ValueWith(back);
@@ -174,11 +184,46 @@ class Search {
     stand_.Keep(kept);
   }
 
-  void TakeIfBetter(StopStand tried) {
-    if (!Fill(tried, Cost(stand_))) return;
-    if (CountOf(tried) < limits_.fewest) return;
+  void Improve() {
+    Narrow();
+    for (int round = 0; round < kRounds; ++round) {
+      const double before = Cost(stand_);
+      for (std::size_t i = 0; i < stand_.stops().size(); ++i) Replace(i);
+      for (std::size_t i = 0; i < stand_.stops().size(); ++i) Shift(i);
+      for (std::size_t i = 0; i < stand_.stops().size(); ++i) Turn(i);
+      if (!(Cost(stand_) < before)) break;
+    }
+  }
+
+  bool TakeIfBelow(double cost, StopStand tried) {
+    if (!Fill(tried, cost)) return false;
+    if (CountOf(tried) < limits_.fewest) return false;
     Trim(tried);
-    if (Cost(tried) < Cost(stand_)) stand_ = std::move(tried);
+    if (!(Cost(tried) < cost)) return false;
+    stand_ = std::move(tried);
+    return true;
+  }
+  void TakeIfBetter(StopStand tried) { TakeIfBelow(Cost(stand_), std::move(tried)); }
+
+  StopStand StandOf(const std::vector<Rest>& rests) const {
+    StopStand stand(info_, limits_.ellipse, HiddenLimit(limits_));
+    for (const Rest& rest : rests) stand.Add(rest);
+    return stand;
+  }
+
+  /// Those times that make more than half a stop, the longest at a place.
+  std::vector<Rest> StopsOf(std::span<const Rest> times) const {
+    std::vector<Rest> left(times.begin(), times.end()), stops;
+    std::sort(left.begin(), left.end(),
+              [](const Rest& a, const Rest& b) { return a.seconds > b.seconds; });
+    for (Rest rest : left) {
+      if (rest.seconds < 0.5 * limits_.least_stop || StopIn(stops, rest.place) != nullptr) continue;
+      const double grains = std::ceil((rest.seconds - limits_.least_stop) / kStopGrain);
+      rest.seconds =
+          std::min(limits_.least_stop + kStopGrain * std::max(0., grains), limits_.longest_stop);
+      stops.push_back(rest);
+    }
+    return stops;
   }
 
   void Replace(std::size_t i) {
@@ -207,14 +252,28 @@ class Search {
     }
   }
 
+  void Turn(std::size_t i) {
+    for (const int by : {-1, 1}) {
+      if (!limits_.turns || i >= stand_.stops().size()) return;
+      const Rest stop = stand_.stops()[i];
+      if (IsHere(stop.place)) return;
+      StopStand tried = stand_;
+      tried.Add({stop.place, stop.turn, -stop.seconds});
+      tried.Add({stop.place, stop.turn + by * kTwoPi / kToolfaces, stop.seconds});
+      TakeIfBetter(std::move(tried));
+    }
+  }
+
+  const StopInformation& info_;
   const PlanLimits limits_;
   StopStand stand_;
 };
 
 }  // namespace
 
-std::optional<std::vector<Rest>> FindStops(const StopInformation& info, const PlanLimits& limits) {
-  return Search(info, limits).Run();
+std::optional<std::vector<Rest>> FindStops(const StopInformation& info, const PlanLimits& limits,
+                                           std::span<const Rest> start) {
+  return Search(info, limits).Run(start);
 }
 
 PlanValue BestPossible(const StopInformation& info, const PlanLimits& limits) {

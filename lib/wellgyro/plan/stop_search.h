@@ -12,6 +12,7 @@ namespace wellgyro {
 
 /// To which a tool may be turned before a stop, evenly spread.
 inline constexpr int kToolfaces = 8;
+inline constexpr double kStopGrain = 10;  ///< to which times at rest are found [s]
 
 /// What a plan must meet and what stops may be like.
 struct PlanLimits {
@@ -35,16 +36,25 @@ struct PlanLimits {
 /// Stops that meet both limits in little time, or none where that is not possible.
 ///
 /// Greedy by what a second buys, the overhead counted; then every stop is shortened, let go and
-/// sought anew, and moved to its neighbours, as long as that saves time. A local optimum: the bound
-/// of LeastAtRest() tells how far it can be from the best.
+/// sought anew, turned, and moved to its neighbours, as long as that saves time. The same from
+/// `start`, times that may be as those of LeastAtRest(). Against both stands the best plan of one
+/// or two stops, see BestOfTwo(): two toolfaces half a turn apart part the gyros' biases from the
+/// Earth's rate, where the first alone buys little. With more stops a local optimum: the bound of
+/// LeastAtRest() tells how far it can be from the best.
 std::optional<std::vector<StopStand::Rest>> FindStops(const StopInformation& info,
-                                                      const PlanLimits& limits);
+                                                      const PlanLimits& limits,
+                                                      std::span<const StopStand::Rest> start = {});
 
-/// Time at rest in all without which no set of stops meets the ellipse's limit [s], any length and
-/// no overhead allowed; nothing where no time does. The end's largest eigenvalue f is convex in the
-/// times d, so that f(d) - g'(d* - d) bounds it below, g = -grad f: sum d* is at least (f(d) -
-/// limit + g'd) / max g (Joshi and Boyd, IEEE Trans. Signal Process. 57 (2009) 451).
-std::optional<double> LeastAtRest(const StopInformation& info, const PlanLimits& limits);
+/// Times at rest that meet the ellipse's limit were any length allowed and no overhead.
+struct RelaxedPlan {
+  double least = 0;                         ///< no set of stops meets it with less in all [s]
+  std::vector<StopStand::Rest> rests = {};  ///< that come to it within 0.2 %
+};
+
+/// Nothing where no time does. The end's largest eigenvalue f is convex in the times d, so that
+/// f(d) - g'(d* - d) bounds it below, g = -grad f: sum d* is at least (f(d) - limit + g'd) / max g
+/// (Joshi and Boyd, IEEE Trans. Signal Process. 57 (2009) 451).
+std::optional<RelaxedPlan> LeastAtRest(const StopInformation& info, const PlanLimits& limits);
 
 /// What an hour at rest at some forty places would come to: no plan of use does better.
 PlanValue BestPossible(const StopInformation& info, const PlanLimits& limits);

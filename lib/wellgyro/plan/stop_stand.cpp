@@ -44,15 +44,19 @@ StopStand::StopStand(const StopInformation& info, double ellipse_limit, double h
   for (std::size_t i = 0; i < row_.size(); ++i) row_[i] = info.place_row(i);
 }
 
-StopStand::Pair StopStand::Columns(const Rest& rest) const {
+/// The first `rows` of the covariance with the two rows of a rest.
+StopStand::Pair StopStand::Columns(const Rest& rest, Index rows) const {
   constexpr int n = StopInformation::kBasis;
-  return covariance_.middleCols<n>(row_[rest.place]) * StopInformation::Mix(rest.turn).transpose();
+  return covariance_.block(0, row_[rest.place], rows, n) *
+         StopInformation::Mix(rest.turn).transpose();
 }
 
 /// (S + V)^-1 of the two rows of a rest.
-Matrix2d StopStand::Weight(const Rest& rest, const Pair& columns) const {
+Matrix2d StopStand::Weight(const Rest& rest) const {
   constexpr int n = StopInformation::kBasis;
-  const Matrix2d S = StopInformation::Mix(rest.turn) * columns.middleRows<n>(row_[rest.place]) +
+  const auto mix = StopInformation::Mix(rest.turn);
+  const Index row = row_[rest.place];
+  const Matrix2d S = mix * covariance_.block<n, n>(row, row) * mix.transpose() +
                      SyntheticRun::kRestKnot / rest.seconds * Matrix2d::Identity();
   return S.inverse();
 }
@@ -92,16 +96,16 @@ PlanValue StopStand::Value() const {
 }
 
 PlanValue StopStand::ValueWith(const Rest& rest) const {
-  const Pair columns = Columns(rest);
-  const Matrix2d weight = Weight(rest, columns);
+  const Pair columns = Columns(rest, std::isfinite(hidden_limit_) ? info_->place_row(0) : 2);
+  const Matrix2d weight = Weight(rest);
   const Matrix2d end = covariance_.topLeftCorner<2, 2>() -
                        columns.topRows<2>() * weight * columns.topRows<2>().transpose();
   return ValueOf(end, &columns, weight);
 }
 
 void StopStand::Add(const Rest& rest) {
-  const Pair columns = Columns(rest);
-  const Matrix2d weight = Weight(rest, columns);
+  const Pair columns = Columns(rest, covariance_.rows());
+  const Matrix2d weight = Weight(rest);
   covariance_.noalias() -= (columns * weight) * columns.transpose();
   const auto same = std::find_if(stops_.begin(), stops_.end(), [&](const Rest& r) {
     return r.place == rest.place && r.turn == rest.turn;

@@ -51,8 +51,8 @@ class StopStand {
 
  private:
   using Pair = Eigen::Matrix<double, Eigen::Dynamic, 2>;
-  Pair Columns(const Rest& rest) const;
-  Eigen::Matrix2d Weight(const Rest& rest, const Pair& columns) const;
+  Pair Columns(const Rest& rest, Eigen::Index rows) const;
+  Eigen::Matrix2d Weight(const Rest& rest) const;
   PlanValue ValueOf(const Eigen::Matrix2d& end, const Pair* columns,
                     const Eigen::Matrix2d& weight) const;
   double Hidden(std::size_t fault, double variance, const Eigen::Vector2d& with_end) const;

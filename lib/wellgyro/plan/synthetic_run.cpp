@@ -173,9 +173,12 @@ void SyntheticRun::AddWay(std::span<const PlannedStop> stops, bool up) {
     if (stop.out && !up) AddMove(case_.way.end_md, case_.way.speed_in);
     up = up || stop.out;
     AddMove(stop.md, up ? case_.way.speed_out : case_.way.speed_in);
-    if (stop.toolface && stop.seconds > 0) AddTurn(*stop.toolface);
+    const double before = ToolfaceNow();
+    const bool turns = stop.toolface && stop.seconds > 0;
+    if (turns) AddTurn(*stop.toolface);
     stop_nodes_[i] = knots_.size();
     AddRest(stop.seconds);
+    if (turns) AddTurn(before);
   }
   const PlannedWay& way = case_.way;
   if (!up) AddMove(way.end_md, way.speed_in);
@@ -236,9 +239,13 @@ void SyntheticRun::AddRest(double seconds) {
   for (int i = 0; i < count; ++i) AddKnot(seconds / count, nodes_.back().md, 0, true);
 }
 
-void SyntheticRun::AddTurn(double toolface) {
+double SyntheticRun::ToolfaceNow() const {
   const Matrix3d& R = nodes_.back().R_LT;
-  const double roll = WrapPi(toolface - std::atan2(R(2, 1), -R(2, 0)));
+  return std::atan2(R(2, 1), -R(2, 0));
+}
+
+void SyntheticRun::AddTurn(double toolface) {
+  const double roll = WrapPi(toolface - ToolfaceNow());
   const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(roll) / kRollMost)));
   for (int i = 0; i < count; ++i) {
     AddKnot(kTurnKnot / count, nodes_.back().md, roll / count, false);
@@ -292,18 +299,22 @@ void SyntheticRun::AddTies(std::size_t node, NormalBlock& block, int at) const {
 }
 
 void SyntheticRun::RowsOf(std::size_t k, std::vector<Factor>& rows) {
+  block_.Collect(&rows);
+  BlockOf(k, block_);
+  block_.Collect(nullptr);
+}
+
+void SyntheticRun::BlockOf(std::size_t k, NormalBlock& block) {
   const Node &begin = nodes_[k], &end = nodes_[k + 1];
   const double dt = knots_[k].increment.seconds;
   const double speeds =
       std::abs(end.speed - begin.speed) + std::abs(k > 0 ? nodes_[k - 1].speed - begin.speed : 0.0);
   const double change = speeds > kSpeedChanges ? kRollPerSpeed * speeds : 0;
   const double walk = setup_.third_axis ? std::sqrt(dt) : kRollWalk * std::sqrt(dt);
-  block_.Clear(layout_);
-  block_.Collect(&rows);
-  if (k == 0) AddTies(0, block_, 0);
+  block.Clear(layout_);
+  if (k == 0) AddTies(0, block, 0);
   rows_.Add(knots_[k], places_[k], {std::hypot(walk, change), 1, 1},
-            BorderVector(BorderVector::Zero(layout_.border)), begin, end, block_);
-  block_.Collect(nullptr);
+            BorderVector(BorderVector::Zero(layout_.border)), begin, end, block);
 }
 
 Factor SyntheticRun::RestAt(std::size_t node) {

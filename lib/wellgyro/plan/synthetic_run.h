@@ -35,6 +35,7 @@ class SyntheticRun : public RunRows {
   std::size_t size() const override { return knots_.size(); }
   void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const override;
   void RowsOf(std::size_t k, std::vector<Factor>& rows) override;
+  void BlockOf(std::size_t k, NormalBlock& block) override;
 
   std::span<const RunKnot> knots() const { return knots_; }
   std::span<const Node> nodes() const { return nodes_; }
@@ -51,6 +52,7 @@ class SyntheticRun : public RunRows {
   void AddMove(double to_md, double speed);
   void AddRest(double seconds);
   void AddTurn(double toolface);
+  double ToolfaceNow() const;
   void AddKnot(double seconds, double to_md, double roll, bool still);
   void AddTies(std::size_t node, NormalBlock& block, int at) const;
   void MakeIncrements();

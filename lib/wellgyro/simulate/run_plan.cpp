@@ -24,6 +24,21 @@ double CommandedRoll(double toolface, double md, RollReference reference, const 
   return reference == RollReference::kHighSide ? toolface : toolface + well.PointAt(md).azimuth;
 }
 
+/// What an oscillation has turned the tool by, `since` seconds into a move with its speed at `w`.
+void AddWave(const RunRoll& wave, double since, const SmoothWindow& w, RunMotion& motion) {
+  const double frequency = kTwoPi / wave.period;
+  if (wave.rests_there) {
+    const double angle = wave.phase + frequency * w.integral;
+    motion.roll += wave.amplitude * (std::sin(angle) - std::sin(wave.phase));
+    motion.roll_rate += wave.amplitude * frequency * w.value * std::cos(angle);
+    return;
+  }
+  const double s = std::sin(frequency * since + wave.phase);
+  const double c = std::cos(frequency * since + wave.phase);
+  motion.roll += wave.amplitude * w.value * s;
+  motion.roll_rate += wave.amplitude * (w.slope * s + w.value * frequency * c);
+}
+
 }  // namespace
 
 RunPlan::RunPlan(const SimulatedRun& run, const TruthWell& well) {
@@ -76,6 +91,7 @@ void RunPlan::AddStop(const RunStop& stop, const SimulatedRun& run, const TruthW
           fmt::format("run.steps[{}].seconds {} is no length of time", number, stop.seconds));
   Require(stop.turn_seconds > 0,
           fmt::format("run.steps[{}].turn_seconds {} is not positive", number, stop.turn_seconds));
+  const double before = end_.roll;
   if (stop.toolface) {
     const double target = CommandedRoll(*stop.toolface, end_.md, run.roll_reference, well);
     AddTurn(WrapPi(target - end_.roll), stop.turn_seconds);
@@ -95,6 +111,7 @@ void RunPlan::AddStop(const RunStop& stop, const SimulatedRun& run, const TruthW
     modes_.push_back(change);
     AddLeg({.seconds = stop.seconds});
   }
+  if (stop.turns_back) AddTurn(before - end_.roll, stop.turn_seconds);
 }
 
 void RunPlan::AddMove(const RunMove& move, const TruthWell& well, std::size_t number) {
@@ -119,6 +136,11 @@ void RunPlan::AddMove(const RunMove& move, const TruthWell& well, std::size_t nu
           .wave = move.roll});
   end_.md = move.to_md;
   end_.roll += move.roll.rate * whole;
+  if (waves && move.roll.rests_there) {
+    const double turned = kTwoPi * whole / move.roll.period;
+    end_.roll +=
+        move.roll.amplitude * (std::sin(move.roll.phase + turned) - std::sin(move.roll.phase));
+  }
   if (move.roll.rate != 0) {
     short_time_ = std::min(short_time_, kTurnPerShortTime / std::abs(move.roll.rate));
   }
@@ -149,13 +171,7 @@ RunMotion RunPlan::At(double time) const {
     motion.roll += leg.wave.rate * w.integral;
     motion.roll_rate = leg.wave.rate * w.value;
     motion.still = false;
-    if (leg.wave.amplitude != 0) {
-      const double frequency = kTwoPi / leg.wave.period;
-      const double s = std::sin(frequency * x + leg.wave.phase);
-      const double c = std::cos(frequency * x + leg.wave.phase);
-      motion.roll += leg.wave.amplitude * w.value * s;
-      motion.roll_rate += leg.wave.amplitude * (w.slope * s + w.value * frequency * c);
-    }
+    if (leg.wave.amplitude != 0) AddWave(leg.wave, x, w, motion);
   }
   return motion;
 }

@@ -66,6 +66,7 @@ struct RunStop {
   std::vector<double> index_angles = {};  ///< roll from the stop's first position [rad]
   double turn_seconds = 10;               ///< of each turn, twice differentiable [s]
   std::optional<double> toolface = {};    ///< turn here first, the shorter way [rad]
+  bool turns_back = false;                ///< to where it was before that, at the end
   ToolMode::Mode mode = ToolMode::Mode::kGyrocompass;  ///< announced while at rest
 };
 
@@ -74,7 +75,10 @@ struct RunRoll {
   double rate = 0;       ///< [rad/s]
   double amplitude = 0;  ///< of an oscillation [rad]
   double period = 0;     ///< of the oscillation [s]
-  double phase = 0;      ///< [rad]
+  double phase = 0;      ///< at the begin of the move [rad]
+  /// The phase, and not the amplitude, comes and goes with the speed: the tool rests where the
+  /// oscillation has brought it.
+  bool rests_there = false;
 };
 
 /// A move along the hole; speed rises and falls over `ramp` with a continuous second derivative.

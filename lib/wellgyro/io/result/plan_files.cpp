@@ -196,8 +196,13 @@ std::string Summary(const PlanReport& report) {
   }
   text += "without stops: " + EndLine(plan.without) + "\n";
   if (plan.least_at_rest) {
-    text += fmt::format("bound: no plan meets the ellipse with less than {:.0f} s at rest\n",
+    text += fmt::format("bound: no plan meets the ellipse with less than {:.0f} s at rest",
                         *plan.least_at_rest);
+    if (plan.least_cost) {
+      text += fmt::format(", {:.0f} s with {:.0f} s to each stop", *plan.least_cost,
+                          report.limits.overhead);
+    }
+    text += "\n";
   }
   if (report.practice) text += PracticeLine(report);
   if (report.worse) {

@@ -203,6 +203,7 @@ std::string PlanToml(const PlanReport& report) {
   toml.Number("at_rest_s", Tidy(plan.at_rest));
   toml.Number("with_overhead_s", Tidy(plan.cost));
   if (plan.least_at_rest) toml.Number("bound_at_rest_s", Tidy(*plan.least_at_rest, 1e1));
+  if (plan.least_cost) toml.Number("bound_with_overhead_s", Tidy(*plan.least_cost, 1e1));
   WriteStops(toml, plan);
   if (!plan.stops.empty()) WriteEnd(toml, "expected", plan.expected);
   WriteEnd(toml, "without_stops", plan.without);

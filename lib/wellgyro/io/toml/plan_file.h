@@ -49,10 +49,9 @@ struct PlanFile {
 WELLGYRO_EXPORT Result<PlanFile> ParsePlanFile(std::string_view text, const std::string& source);
 WELLGYRO_EXPORT Result<PlanFile> ReadPlanFile(const std::filesystem::path& path);
 
-/// How the tool rolls over `seconds` of a move, `moved` seconds on the move after the begin. A
-/// simulated swing fades where the tool starts and stops: what the planned one has turned the tool
-/// by from stop to stop comes to it as an even roll, so that it rests as it was planned to.
-WELLGYRO_EXPORT RunRoll PlannedRoll(const PlannedWay& way, double moved, double seconds);
+/// How the tool rolls on a move that begins `moved` seconds on the move after the begin: as
+/// SyntheticRun has it, by the time on the move.
+WELLGYRO_EXPORT RunRoll PlannedRoll(const PlannedWay& way, double moved);
 
 /// The run that the plan wants, as steps of a simulation: a tool that slides swings between its
 /// stops as planned.

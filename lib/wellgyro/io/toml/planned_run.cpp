@@ -20,7 +20,7 @@ class Steps {
     const double seconds = std::abs(md - md_) / speed;
     if (seconds == 0) return;
     run_.steps.emplace_back(
-        RunMove{.to_md = md, .speed = speed, .roll = PlannedRoll(way_, moving_, seconds)});
+        RunMove{.to_md = md, .speed = speed, .roll = PlannedRoll(way_, moving_)});
     md_ = md;
     moving_ += seconds;
   }
@@ -28,6 +28,7 @@ class Steps {
     RunStop rest;
     rest.seconds = stop.seconds;
     rest.toolface = stop.toolface;
+    rest.turns_back = true;
     run_.steps.emplace_back(rest);
   }
   const SimulatedRun& run() const { return run_; }
@@ -40,16 +41,12 @@ class Steps {
 
 }  // namespace
 
-RunRoll PlannedRoll(const PlannedWay& way, double moved, double seconds) {
+RunRoll PlannedRoll(const PlannedWay& way, double moved) {
   if (way.roll_rate != 0) return {.rate = way.roll_rate};
-  const double at = kTwoPi * moved / way.swing_period;
-  const double turns = kTwoPi * seconds / way.swing_period;
-  RunRoll roll{.rate = way.swing * (std::sin(at + turns) - std::sin(at)) / seconds};
-  if (turns < kTwoPi) return roll;
-  roll.amplitude = way.swing;
-  roll.period = way.swing_period;
-  roll.phase = at;
-  return roll;
+  return {.amplitude = way.swing,
+          .period = way.swing_period,
+          .phase = kTwoPi * moved / way.swing_period,
+          .rests_there = true};
 }
 
 SimulatedRun RunOf(const PlanFile& plan) {
