@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <variant>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -118,8 +119,19 @@ TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
     const Survey survey = testing::SurveyOf(simulation, testing::JobOf(tool), sink);
     if (survey.verdict.verdict == Verdict::kFail) {
       ++failed;
-      std::printf("well %d fails: %s\n", static_cast<int>(seed),
-                  survey.verdict.causes.front().c_str());
+      double rpm = 0, swing = 0, period = 0, speed = 0;
+      for (const RunStep& step : simulation.run.steps) {
+        if (const auto* move = std::get_if<RunMove>(&step)) {
+          rpm = move->roll.rate * 60 / kTwoPi, swing = ToDegrees(move->roll.amplitude);
+          period = move->roll.period, speed = move->speed;
+        }
+      }
+      std::printf(
+          "well %d (%.1f rpm, %.0f deg in %.0f s, %.1f m/s, kinks over %.0f m, latitude %.0f, "
+          "steps %d) fails: %.90s\n",
+          static_cast<int>(seed), rpm, swing, period, speed, simulation.well.smoothing,
+          tool.latitude_deg, (int)simulation.run.steps.size(),
+          survey.verdict.causes.front().c_str());
       continue;
     }
     const Truth truth(simulation);

@@ -194,7 +194,7 @@ void GoThrough(Code& code, KeptKnot& kept, const KeptKnot& before) {
   GoThrough(code, kept.attitude, before.attitude, inc.time);
 }
 
-int BytesIn(std::uint64_t word) { return (std::bit_width(word) + 7) / 8; }
+int BytesIn(std::uint64_t word) { return static_cast<int>(std::bit_width(word) + 7) / 8; }
 
 /// How many bytes each word has, two in one, then these.
 void Write(const Words& words, std::vector<std::byte>& to) {
