@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <ctime>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -85,6 +86,7 @@ class FollowedRun {
   /// Rests for as long as it is told to; what was said last.
   Advice Rest() {
     simulation_.run.steps.emplace_back(RunStop{.seconds = 3600});
+    Changed();
     const double begin = time_;
     Advice advice;
     for (double rested = kReact; rested < 3600; rested += kAsk) {
@@ -94,6 +96,7 @@ class FollowedRun {
     }
     const double seconds = time_ - begin + 2;
     std::get<RunStop>(simulation_.run.steps.back()).seconds = seconds;
+    Changed();
     time_ = begin + seconds;
     followed_.stops.push_back({up_, md_, seconds, {}});
     followed_.cost += seconds + limits_.overhead;
@@ -133,9 +136,14 @@ class FollowedRun {
     const RunMove move{
         .to_md = md, .speed = Speed(), .ramp = kRamp, .roll = PlannedRoll(case_.way, moved_)};
     simulation_.run.steps.emplace_back(move);
+    Changed();
     begin_ = time_;
   }
-  void Retarget(double md) { Move().to_md = md; }
+  void Retarget(double md) {
+    if (Move().to_md == md) return;
+    Move().to_md = md;
+    Changed();
+  }
   double MoveEnd() {
     return begin_ + std::max(std::abs(Move().to_md - md_) / Move().speed, kRamp) + kRamp;
   }
@@ -150,16 +158,21 @@ class FollowedRun {
     deepest_ = std::max(deepest_, md_);
   }
 
+  /// The run has been given other steps; those that were made stay as they were.
+  void Changed() { simulator_.reset(); }
+
   void PlayUntil(double time) {
-    Simulator simulator(simulation_);
     SimulatedStep step;
-    if (played_ == 0) surveyor_.Push(simulator.tool_info());
-    for (std::int64_t i = 0; simulator.Next(step); ++i) {
-      if (i < played_) continue;
+    if (!simulator_) {
+      simulator_.emplace(simulation_);
+      for (std::int64_t i = 0; i < played_; ++i) simulator_->Next(step);
+    }
+    if (played_ == 0) surveyor_.Push(simulator_->tool_info());
+    while (simulator_->Next(step)) {
       std::visit([this](const auto& record) { surveyor_.Push(record); }, step);
       ++played_;
       const auto* sample = std::get_if<ImuSample>(&step);
-      if (sample != nullptr && simulator.SampleTime(sample->stamp.seq) > time) break;
+      if (sample != nullptr && simulator_->SampleTime(sample->stamp.seq) > time) break;
     }
     time_ = time;
   }
@@ -195,6 +208,7 @@ class FollowedRun {
   } sink_;
   Surveyor surveyor_;
   Simulation simulation_;
+  std::optional<Simulator> simulator_;
   double md_ = 0, time_ = 0, begin_ = 0, moved_ = 0, deepest_ = 0;
   bool up_ = false;
   std::int64_t played_ = 0;
