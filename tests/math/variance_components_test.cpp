@@ -1,5 +1,6 @@
 #include "wellgyro/math/variance_components.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -99,6 +100,39 @@ TEST(VarianceComponents, WhatIsFoundIsTheHighest) {
       EXPECT_LE(at(beside), highest + 1e-9) << j << " " << step;
     }
   }
+}
+
+// Second differences of a random walk, where there might be noise and the integral of a walk too:
+// the three look so much alike that a step which cuts some of them at 0 and leaves the others as
+// they were goes downhill. What is found is no lower than where only the walk is.
+TEST(VarianceComponents, AtABoundTheOthersGoToTheirBest) {
+  Random random(7);
+  std::vector<VarianceCluster> clusters;
+  constexpr Index kRows = 30;
+  for (int i = 0; i < 20; ++i) {
+    VarianceCluster cluster;
+    cluster.cells = {0};
+    cluster.y = VectorXd::Zero(kRows);
+    const auto add = [&](std::size_t component, Index first, const VectorXd& effect, double draw) {
+      const Index begin = std::max<Index>(first, 0);
+      const Index end = std::min(first + effect.size(), kRows);
+      if (end <= begin) return;
+      const VectorXd part = effect.segment(begin - first, end - begin);
+      cluster.y.segment(begin, end - begin) += draw * part;
+      cluster.sources.push_back({component, begin, part});
+    };
+    for (Index k = -2; k < kRows; ++k) add(0, k, Eigen::Vector3d(-0.5, 1, -0.5), 0);
+    for (Index k = -1; k < kRows; ++k) {
+      add(1, k, Eigen::Vector2d(-0.5, 0.5), random.Normal());
+      add(2, k, Eigen::Vector2d(0.25, 0.5) / std::sqrt(3), 0);
+      add(2, k, Eigen::Vector2d(0.25, 0), 0);
+    }
+    clusters.push_back(cluster);
+  }
+  const VarianceFit fit = FitVariances(clusters, Free({0.3, 0.3, 1.0}));
+  const VarianceFit at_bound = FitVariances(clusters, {{0, 0.3, 0}, {true, false, true}});
+  EXPECT_GE(fit.log_likelihood, at_bound.log_likelihood - 1e-6);
+  EXPECT_NEAR(at_bound.components[1].value, 1, 4 * std::sqrt(2.0 / (20 * kRows)));
 }
 
 // Balanced one-way layout of g groups of n: within and between mean squares MSW, MSB give REML's

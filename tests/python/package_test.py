@@ -354,12 +354,10 @@ class Reference:
         k, f = self.Place(md)
         return self.p[k - 1] + self.Leg(k, f)
 
-    def Errors(self, md):
-        """Position errors at a listed depth, a column a source: AZ and XYM1 systematic, DREF
-        systematic, AZ random; the model of MODEL below, not doubled at the surface."""
+    def Sources(self):
+        """Errors of direction and depth at the stations, a pair a source: AZ and XYM1 systematic,
+        DREF systematic, AZ random; the model of MODEL below, not doubled at the surface."""
         n = len(self.md)
-        k, f = self.Place(md)
-        here = self.At(k, f)
         t_azi = np.stack([-np.sin(self.inc) * np.sin(self.azi), np.sin(self.inc) * np.cos(self.azi),
                           0 * self.inc], axis=1)
         t_inc = np.stack([np.cos(self.inc) * np.cos(self.azi), np.cos(self.inc) * np.sin(self.azi),
@@ -372,8 +370,50 @@ class Reference:
             one = np.zeros((n, 3))
             one[j] = 0.2 * DEG * t_azi[j]
             sources.append((one, np.zeros(n)))
+        return sources
+
+    def Spline(self, md):
+        """By the cubic spline through all stations, not a knot at either second one: a cubic a leg
+        in f, its four coefficients each from the conditions on them, one after the other."""
+        legs, h = len(self.md) - 1, np.diff(self.md)
+        rows, right = [], []
+
+        def Row(*parts, equals=np.zeros(3)):
+            row = np.zeros(4 * legs)
+            for leg, powers in parts:
+                row[4 * leg:4 * leg + 4] += powers
+            rows.append(row)
+            right.append(equals)
+        for j in range(legs):
+            Row((j, [1, 0, 0, 0]), equals=self.t[j])
+            Row((j, [1, 1, 1, 1]), equals=self.t[j + 1])
+        for j in range(legs - 1):
+            Row((j, np.array([0, 1, 2, 3]) / h[j]), (j + 1, np.array([0, -1, 0, 0]) / h[j + 1]))
+            Row((j, np.array([0, 0, 2, 6]) / h[j]**2), (j + 1, np.array([0, 0, -2, 0]) / h[j + 1]**2))
+        for j in (0, legs - 2):
+            Row((j, np.array([0, 0, 0, 1]) / h[j]**3), (j + 1, np.array([0, 0, 0, -1]) / h[j + 1]**3))
+        k, f = self.Place(md)
+        cubic = np.linalg.solve(np.array(rows), np.array(right))[4 * k - 4:4 * k]
+        t = np.array([1, f, f**2, f**3]) @ cubic
+        return t / np.linalg.norm(t)
+
+    def Through(self, nodes):
+        """Its listing at `nodes`, and its sources there, straight between stations."""
+        t = np.array([self.Spline(md) for md in nodes])
+        other = Reference(nodes, np.degrees(np.arctan2(np.hypot(t[:, 0], t[:, 1]), t[:, 2])),
+                          np.degrees(np.arctan2(t[:, 1], t[:, 0])))
+
+        def At(x):
+            return np.array([np.interp(nodes, self.md, column) for column in x.T]).T
+        other.sources = [(At(e), At(m[:, None])[:, 0]) for e, m in self.Sources()]
+        return other
+
+    def Errors(self, md):
+        """Position errors at a listed depth, a column a source of `sources`."""
+        k, f = self.Place(md)
+        here = self.At(k, f)
         columns = []
-        for e, m in sources:
+        for e, m in self.sources:
             total = np.zeros(3)
             for j in range(1, k):
                 gained = m[j] - (m[j - 1] if j > 1 else 0)
@@ -385,6 +425,38 @@ class Reference:
             total += (m_here - (m[k - 1] if k > 1 else 0)) / 2 * (self.t[k - 1] + here)
             columns.append(total - here * m_here)
         return np.array(columns).T
+
+    def OffSpline(self, md, kink, wander):
+        """Variance of how far the hole is from the spline at a depth: of four even stations' cubic
+        in the middle, less as a bow towards the ends."""
+        k, f = self.Place(md)
+        length = self.md[k] - self.md[k - 1]
+        return (66 * kink * length + 3 * wander * length**3) / 256 * (4 * f * (1 - f))**2
+
+    def Local(self, md, variance, other):
+        """Covariance of the place where the direction at each node has `variance` across the mean
+        of both listings."""
+        k, f = self.Place(md)
+        total = np.zeros((3, 3))
+        for j in range(k + 1):
+            gained = 0.0  # the integral of the hat of node j down to md
+            if 0 < j <= k:
+                part = f if j == k else 1.0
+                gained += (self.md[j] - self.md[j - 1]) * part**2 / 2
+            if j < k:
+                part = f if j == k - 1 else 1.0
+                gained += (self.md[j + 1] - self.md[j]) * (part - part**2 / 2)
+            t = (self.t[j] + other.t[j]) / np.linalg.norm(self.t[j] + other.t[j])
+            total += variance[j] * gained**2 * (np.eye(3) - np.outer(t, t))
+        return total
+
+
+def Nodes(a, b):
+    """Stations of the coarser of two surveys wherever it is so, from 0 to where both end."""
+    end, nodes = min(a[-1], b[-1]), [0.0]
+    while (further := max(a[a > nodes[-1]][0], b[b > nodes[-1]][0])) < end:
+        nodes.append(further)
+    return np.array(nodes + [end])
 
 
 MODEL = """format = "wellgyro.error-model/1"
@@ -439,12 +511,22 @@ class Comparisons(Package):
             at = sorted(rng.uniform(1.0, end, 3))
             c = wg.compare(a, b, model_a=model, model_b=model, at=at, local_sigma_deg=1e-7)
             first, second = Reference(*a.to_numpy().T), Reference(*b.to_numpy().T)
+            nodes = Nodes(first.md, second.md)
+            alike = [s.Through(nodes) for s in (first, second)]
+            roughness = c.kink_deg2_per_m * DEG**2, c.wander_deg2_per_m3 * DEG**2
+            local = [sum(s.OffSpline(md, *roughness) for s in (first, second)) for md in nodes]
             for i, md in enumerate(at):
                 expected = second.Position(md) - first.Position(md)
                 found = c.places[["d_north_m", "d_east_m", "d_down_m"]].iloc[i].to_numpy()
                 worst = max(worst, float(np.abs(found - expected).max()))
-                cov = sum((e := s.Errors(md)) @ e.T for s in (first, second))
+                rest = found - c.places[["between_north_m", "between_east_m",
+                                         "between_down_m"]].iloc[i].to_numpy()
+                d = alike[1].Position(md) - alike[0].Position(md)
+                worst = max(worst, float(np.abs(rest - d).max()))
+                cov = sum((e := s.Errors(md)) @ e.T for s in alike) + alike[0].Local(md, local, alike[1])
                 worst_cov = max(worst_cov, np.abs(c.cov[i] - cov).max() / np.abs(cov).max())
+                sigmas = math.sqrt(d @ np.linalg.solve(cov, d))
+                self.assertAlmostEqual(c.places.position_sigmas.iloc[i], sigmas, delta=1e-6)
         print(f"100 pairs: {worst:.1e} m, covariances {worst_cov:.1e} of their largest")
         self.assertLess(worst, 1e-9)
         self.assertLess(worst_cov, 1e-9)

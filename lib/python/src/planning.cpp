@@ -98,6 +98,9 @@ nb::dict PlacesOf(const std::vector<ComparedPlace>& places) {
                                "d_north_m",
                                "d_east_m",
                                "d_down_m",
+                               "between_north_m",
+                               "between_east_m",
+                               "between_down_m",
                                "position_sigmas"};
   Numbers columns[std::size(names)];
   std::vector<Eigen::Matrix3d> cov;
@@ -115,6 +118,9 @@ nb::dict PlacesOf(const std::vector<ComparedPlace>& places) {
                                                             {p.position_difference.x(), 1},
                                                             {p.position_difference.y(), 1},
                                                             {p.position_difference.z(), 1},
+                                                            {p.between_stations.x(), 1},
+                                                            {p.between_stations.y(), 1},
+                                                            {p.between_stations.z(), 1},
                                                             {p.position_sigmas, 1}};
     for (std::size_t i = 0; i < std::size(names); ++i) columns[i].Add(row[i].first, row[i].second);
     cov.push_back(p.cov_position);
@@ -155,6 +161,9 @@ nb::dict CompareThem(const TakenSurvey& a, const TakenSurvey& b, const PlaceArgu
   all["depth_offset_m"] = ShiftOf(c.depth_offset, 1);
   all["depth_stretch_m_per_km"] = ShiftOf(c.depth_stretch, 1e-3);
   all["azimuth_offset_deg"] = ShiftOf(c.azimuth_offset, units::kDeg);
+  constexpr double kSquare = units::kDeg * units::kDeg;
+  all["kink_deg2_per_m"] = c.kink / kSquare;
+  all["wander_deg2_per_m3"] = c.wander / kSquare;
   return all;
 }
 

@@ -20,6 +20,7 @@ import re
 import sys
 import tempfile
 import threading
+import time
 import tomllib
 import traceback
 
@@ -33,7 +34,9 @@ from .compare import empirical_model
 from .survey import Job, survey
 
 _TABLES = ("stations", "checks", "runs")
-_MANY = 2000  # runs in flight: memory of the scheduler stays flat however many there are
+_MANY = 2000  # tasks in flight: memory of the scheduler stays flat however many runs there are
+_FIRST = 200  # of these, before it is known how long a run takes
+_SECONDS = 1.0  # of work in a task, beside some 5 ms that scheduling it takes
 
 
 @dataclasses.dataclass(frozen=True)
@@ -215,6 +218,13 @@ def survey_run(run: Run, out: str, program: str) -> dict:
     return row
 
 
+def survey_runs(runs: list[Run], out: str, program: str) -> tuple[list[dict], float]:
+    """Several runs in one task: their rows, and the seconds that they took."""
+    begin = time.monotonic()
+    rows = [survey_run(run, out, program) for run in runs]
+    return rows, time.monotonic() - begin
+
+
 def _failed(fs, folder, row, error):
     text = str(error).strip() or traceback.format_exception_only(error)[-1].strip()
     row.update(verdict="error", error=f"{type(error).__name__}: {text}")
@@ -264,39 +274,76 @@ def _put_root(fs, root, name, content):
     _rename(fs, part, f"{root}/{name}")
 
 
+class _Tasks:
+    """Runs as tasks of a cluster, short runs several in one: as many as take a second by how long
+    those before took, towards the end fewer, that all workers end together (guided
+    self-scheduling; Polychronopoulos and Kuck, IEEE Transactions on Computers 36, 1987)."""
+
+    def __init__(self, runs, out, program, client):
+        from distributed import as_completed
+        self._runs, self._out, self._program, self._client = runs, out, program, client
+        self._next, self._done, self._seconds = 0, 0, 0.0
+        self._pending = {}  # key of a future: its runs
+        self._queue = as_completed()
+        self._submit_more()
+
+    def rows(self):
+        """Those of one task after the other."""
+        for future in self._queue:
+            runs = self._pending.pop(future.key)
+            try:
+                rows, seconds = future.result()
+            except Exception as error:  # of the cluster, not of the run: nothing is left half
+                rows, seconds = self._lost(runs, error), 0.0
+            future.release()
+            self._done += len(rows)
+            self._seconds += seconds
+            self._submit_more()
+            yield rows
+
+    def _lost(self, runs, error):
+        """Of many runs it is not known whose the error is: each is done again by itself."""
+        if len(runs) > 1:
+            for run in runs:
+                self._submit([run])
+            return []
+        return [{"name": run.name, "well": run.well, "tool": run.tool, "verdict": "error",
+                 "causes": "", "fingerprint": "", "done_again": True,
+                 "error": f"{type(error).__name__}: {error}"} for run in runs]
+
+    def _size(self):
+        if self._seconds == 0:
+            return 1
+        in_time = int(_SECONDS * self._done / self._seconds)
+        if in_time < 2:
+            return 1
+        threads = max(1, sum(self._client.nthreads().values()))
+        return max(1, min(in_time, (len(self._runs) - self._next) // (2 * threads)))
+
+    def _submit_more(self):
+        size, most = self._size(), min(_MANY, _FIRST + self._done)
+        while self._next < len(self._runs) and len(self._pending) < most:
+            self._submit(self._runs[self._next:self._next + size])
+            self._next += size
+
+    def _submit(self, runs):
+        # A killed worker's runs are done by another, however often that happens.
+        key = f"wellgyro-{runs[0].name}-{len(runs)}-{self._program[:8]}"
+        future = self._client.submit(survey_runs, runs, self._out, self._program, key=key,
+                                     pure=False, retries=3)
+        self._pending[future.key] = runs
+        self._queue.add(future)
+
+
 def process(runs: list[Run], out: str, client, *, progress=None) -> list[dict]:
     """Surveys `runs` into `out` on `client`, a dask.distributed.Client; their rows, by name."""
-    from distributed import as_completed
     fs, root = fsspec.core.url_to_fs(out)
     fs.makedirs(root, exist_ok=True)
-    program = _program()
-    waiting = iter(runs)
     rows = []
-
-    def submit(run):
-        # A killed worker's run is done by another, however often that happens.
-        return client.submit(survey_run, run, out, program, key=f"wellgyro-{run.name}-{program[:8]}",
-                             pure=False, retries=3)
-
-    first = [submit(run) for _, run in zip(range(_MANY), waiting)]
-    names = {future.key: run for future, run in zip(first, runs)}
-    queue = as_completed(first)
-    for future in queue:
-        run = names.pop(future.key)
-        try:
-            rows.append(future.result())
-        except Exception as error:  # of the cluster, not of the run: nothing is left half
-            rows.append({"name": run.name, "well": run.well, "tool": run.tool, "verdict": "error",
-                         "causes": "", "fingerprint": "", "done_again": True,
-                         "error": f"{type(error).__name__}: {error}"})
-        future.release()
+    for some in _Tasks(runs, out, _program(), client).rows():
+        rows += some
         if progress:
             progress(len(rows), len(runs))
-        following = next(waiting, None)
-        if following is not None:
-            added = submit(following)
-            names[added.key] = following
-            queue.add(added)
     _gather(out, rows)
     return sorted(rows, key=lambda r: r["name"])
 

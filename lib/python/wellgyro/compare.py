@@ -121,14 +121,16 @@ class Shift:
 @dataclasses.dataclass(frozen=True)
 class Comparison:
     """Two surveys of one hole at equal depths: the second less the first, 1 sigma."""
-    places: pd.DataFrame
-    cov: np.ndarray  #: (n, 3, 3) of the difference north, east, down [m2]
+    places: pd.DataFrame  #: of d_north_m.. what different stations make is between_north_m..
+    cov: np.ndarray  #: (n, 3, 3) of the rest of the difference, north, east, down [m2]
     checks: pd.DataFrame
     verdict: str  #: pass, warn or fail
     causes: list[str]
     depth_offset_m: Shift | None  #: None where the surveys cannot show it
     depth_stretch_m_per_km: Shift | None
     azimuth_offset_deg: Shift | None
+    kink_deg2_per_m: float  #: how the hole leaves the arcs between stations: its curvature as
+    wander_deg2_per_m3: float  #: white noise, and as a random walk
     notes: list[str]
 
 
@@ -143,6 +145,8 @@ def compare(a: SurveyLike, b: SurveyLike, *, model_a: str | PathLike | None = No
     without one, by the sigmas that it has.
 
     at: depths [m]; every: whole multiples of so many metres; else the stations of the coarser one.
+    Places are held against each other summed over stations in common, that a coarser survey's arcs
+    are no difference.
     same_run: both are passes of one tool in one run. local_sigma_deg: of each difference of
     direction, for what no model speaks of."""
     place = _place(latitude_deg, convergence_deg, gravity_mps2, field_nt, dip_deg, declination_deg)
@@ -156,8 +160,8 @@ def compare(a: SurveyLike, b: SurveyLike, *, model_a: str | PathLike | None = No
     shifts = [None if made[n] is None else Shift(*made[n])
               for n in ("depth_offset_m", "depth_stretch_m_per_km", "azimuth_offset_deg")]
     return Comparison(_frame(made["places"]), made["places"]["cov"], _frame(made["checks"]),
-                      made["verdict"], made["causes"], *shifts,
-                      first.notes + second.notes + made["notes"])
+                      made["verdict"], made["causes"], *shifts, made["kink_deg2_per_m"],
+                      made["wander_deg2_per_m3"], first.notes + second.notes + made["notes"])
 
 
 @dataclasses.dataclass(frozen=True)

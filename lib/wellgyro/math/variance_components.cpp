@@ -225,17 +225,20 @@ Slope Likelihood::At(const VectorXd& theta) const {
   return slope;
 }
 
-/// Newton's step of the components in `free`; those that it would take below 0 stop there.
+/// The step to the greatest value of the quadratic model over all that stays at 0 or above, of the
+/// components in `free`: those that it would take below 0 go there and the others to where they are
+/// best for that. A step of them all that is cut at 0 may go downhill.
 VectorXd StepOf(const Slope& slope, const VectorXd& theta, std::vector<Index> free) {
   VectorXd step = VectorXd::Zero(theta.size());
   while (!free.empty()) {
     MatrixXd information = slope.information(free, free);
     information.diagonal() *= 1 + kHold;
-    const VectorXd part = information.ldlt().solve(slope.gradient(free));
+    const VectorXd gradient = slope.gradient(free) - slope.information(free, Eigen::all) * step;
+    const VectorXd part = information.ldlt().solve(gradient);
     std::vector<Index> still;
     for (std::size_t i = 0; i < free.size(); ++i) {
-      const double to = theta(free[i]) + part(static_cast<Index>(i));
-      const bool stopped = theta(free[i]) == 0 && !(to > 0);
+      const bool stopped = theta(free[i]) + part(static_cast<Index>(i)) < 0;
+      if (stopped) step(free[i]) = -theta(free[i]);
       if (!stopped) still.push_back(free[i]);
     }
     if (still.size() == free.size()) {
@@ -244,7 +247,7 @@ VectorXd StepOf(const Slope& slope, const VectorXd& theta, std::vector<Index> fr
     }
     free = std::move(still);
   }
-  return (theta + step).cwiseMax(0) - theta;
+  return step;
 }
 
 Slope Likelihood::Climb(const std::vector<bool>& held, double gain, VectorXd& theta,

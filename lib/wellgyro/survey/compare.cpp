@@ -134,14 +134,15 @@ void Weigh(ComparedPlace& place, const DifferenceCovariance& covariance, std::si
   place.sigma_inclination = covariance.sigma[row].x();
   const double across = std::sin((place.inclination[0] + place.inclination[1]) / 2);
   if (place.azimuth_difference) place.sigma_azimuth = covariance.sigma[row].y() / across;
+  place.between_stations = place.position_difference - covariance.summed_alike[row];
   place.cov_position = covariance.cov_p[row];
   const Eigen::LLT<Matrix3d> solver(place.cov_position);
   const bool regular =
       solver.info() == Eigen::Success &&
       place.cov_position.determinant() > 1e-12 * std::pow(place.cov_position.trace(), 3);
   if (regular) {
-    place.position_sigmas =
-        std::sqrt(place.position_difference.dot(solver.solve(place.position_difference)));
+    const Vector3d& d = covariance.summed_alike[row];
+    place.position_sigmas = std::sqrt(d.dot(solver.solve(d)));
   }
 }
 
@@ -343,7 +344,10 @@ Comparison Compare(const ComparedSurvey& first, const ComparedSurvey& second,
   const std::vector<double> depths = DepthsOf(first, second, common, options);
   Comparison comparison;
   comparison.places = Listed(first, second, depths);
-  const DifferenceCovariance covariance = CovarianceOfDifference(first, second, depths, options);
+  const DifferenceCovariance covariance =
+      CovarianceOfDifference(first, second, common.begin, common.end, depths, options);
+  comparison.kink = covariance.roughness.kink;
+  comparison.wander = covariance.roughness.wander;
   for (std::size_t row = 0; row < depths.size(); ++row) {
     Weigh(comparison.places[row], covariance, row);
   }

@@ -37,8 +37,8 @@ struct CompareOptions {
   /// Both are passes of one tool in one run, so that what is systematic in the one model is one
   /// error too. Global errors always are, and the well's, as it is one.
   bool same_run = false;
-  /// What no model speaks of: the hole between stations, rounding of listings; 1 sigma of each
-  /// direction difference [rad]. In places it counts at every station of the coarser survey.
+  /// What no model speaks of, as rounding of listings and a tool's seat in the hole; 1 sigma of
+  /// each direction difference [rad]. In places it counts at every common station.
   double local_sigma = 0.05 * 0.017453292519943295;
 };
 
@@ -50,8 +50,11 @@ struct ComparedPlace {
   /// Absent where the hole is within 0.1 deg of vertical [rad].
   std::optional<double> azimuth_difference, sigma_azimuth;
   Eigen::Vector3d position_difference = Eigen::Vector3d::Zero();  ///< north, east, down [m]
-  Eigen::Matrix3d cov_position = Eigen::Matrix3d::Zero();         ///< of it [m^2]
-  /// sqrt(d' C^-1 d) of it; absent where C is singular.
+  /// Of that what the surveys lose differently between their stations: it is not there where both
+  /// are summed over stations in common [m].
+  Eigen::Vector3d between_stations = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d cov_position = Eigen::Matrix3d::Zero();  ///< of the rest, d [m^2]
+  /// sqrt(d' C^-1 d); absent where C is singular.
   std::optional<double> position_sigmas;
 };
 
@@ -67,6 +70,9 @@ struct Comparison {
   std::size_t joint =
       0;  ///< places in the joint statistics, which take the correlations along hole
   double joint_middle = 0;  ///< depth that the stretch turns about [m]
+  /// How the hole bends between stations: its curvature as white noise [rad^2/m] and as a random
+  /// walk [rad^2/m^3], in either way across.
+  double kink = 0, wander = 0;
   /// Absent without error models of both, or where the hole is too straight to show it.
   std::optional<ShiftEstimate> depth_offset;    ///< what the second reads more [m]
   std::optional<ShiftEstimate> depth_stretch;   ///< likewise, per metre
@@ -81,11 +87,16 @@ struct Comparison {
 /// An error of depth moves a listing along the hole: of direction e, of depth m and of the
 /// station's place p a listing read at a given depth is wrong by e - t' m and p - t m. These are
 /// carried from station to station by error source, so that differences have their whole covariance
-/// along the hole, shared sources taken out once. Tested are chi-square of all inclinations, of all
-/// lateral directions, of the deepest place, and the three shifts; all checks of a pair together
-/// fail 1 % of pairs without a difference and warn of 10 % (survey/verdict.h). Where a survey has
-/// sigmas of its own only, the worst depth takes the place of the first two, and shifts are not
-/// done.
+/// along the hole, shared sources taken out once.
+///
+/// Between stations a listing knows nothing of the hole. Places are held against each other summed
+/// over common stations, where no survey has seen more than the other; at a depth that is none of
+/// its stations a direction is read off the spline through them, and wrong by what the hole leaves
+/// it, whose variance is estimated from how far stations lie off the arcs between their neighbours.
+/// Tested are chi-square of all inclinations, of all lateral directions, of the deepest place, and
+/// the three shifts; all checks of a pair together fail 1 % of pairs without a difference and warn
+/// of 10 % (survey/verdict.h). Where a survey has sigmas of its own only, the worst depth takes the
+/// place of the first two, and shifts are not done.
 ///
 /// Joint statistics take at most 300 places, evenly chosen; O(places^2 x random terms). Throws
 /// std::invalid_argument for surveys without common depth, sizes that differ, depths outside what

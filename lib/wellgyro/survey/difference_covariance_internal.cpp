@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/survey/common_courses_internal.h"
 #include "wellgyro/survey/listing_errors_internal.h"
 
 namespace wellgyro {
@@ -68,16 +70,31 @@ std::map<SourceKey, GroupErrors> FactorsOf(const SurveyErrors& errors, int surve
   return factors;
 }
 
+/// Of each station's direction in either way across what is its own: of what is local in a
+/// difference a half, and the random terms.
+std::vector<double> NoiseOf(const ComparedSurvey& survey, const CompareOptions& options) {
+  const std::size_t n = survey.well.survey.size();
+  std::vector<double> noise(n, options.local_sigma * options.local_sigma / 2);
+  if (!survey.errors) return noise;
+  for (const StationError& e : survey.errors->errors) {
+    if (survey.errors->sources[e.source].propagation != Propagation::kRandom) continue;
+    noise[e.station] += e.direction.squaredNorm() / 2;
+  }
+  return noise;
+}
+
 class Accumulator {
  public:
-  Accumulator(const ComparedSurvey& first, const ComparedSurvey& second,
+  Accumulator(const ComparedSurvey& first, const ComparedSurvey& second, double begin, double end,
               std::span<const double> depths, const CompareOptions& options);
   DifferenceCovariance Result() &&;
 
  private:
   void AddModelled();
+  void AddOffSplines(int survey);
   void AddLocal();
-  void Add(const ListedErrors& listed, double sign);
+  std::vector<double> LocalAtStations() const;
+  void Add(const ListedErrors& listed, std::span<const Vector3d> position, double sign);
   void Close();
   void Own(const ComparedSurvey& survey, std::span<const ListedPlace> places);
 
@@ -85,6 +102,8 @@ class Accumulator {
   const CompareOptions& options_;
   std::span<const double> depths_;
   std::vector<ListedPlace> places_[2];
+  std::vector<double> common_;  ///< depths of the stations that places are summed over
+  std::vector<CommonCourses> courses_;
   std::vector<Across> across_;
   std::vector<Eigen::Index> joint_row_;  ///< of each depth, or -1
   DifferenceCovariance result_;
@@ -95,19 +114,25 @@ class Accumulator {
   std::size_t begin_ = 0, end_ = 0;
 };
 
-Accumulator::Accumulator(const ComparedSurvey& first, const ComparedSurvey& second,
-                         std::span<const double> depths, const CompareOptions& options)
+Accumulator::Accumulator(const ComparedSurvey& first, const ComparedSurvey& second, double begin,
+                         double end, std::span<const double> depths, const CompareOptions& options)
     : surveys_{&first, &second},
       options_(options),
       depths_(depths),
-      places_{PlacesIn(first.well, depths), PlacesIn(second.well, depths)} {
+      places_{PlacesIn(first.well, depths), PlacesIn(second.well, depths)},
+      common_(CommonStations(first.well, second.well, begin, end)),
+      courses_{{first.well, common_, depths}, {second.well, common_, depths}} {
+  const RoughListing listings[] = {{&first.well, NoiseOf(first, options)},
+                                   {&second.well, NoiseOf(second, options)}};
+  result_.roughness = RoughnessOf(listings, begin, end);
   const std::size_t rows = depths.size();
   for (std::size_t row = 0; row < rows; ++row) {
-    const Vector3d &a = places_[0][row].tangent, &b = places_[1][row].tangent;
+    const Vector3d &a = places_[0][row].smooth, &b = places_[1][row].smooth;
     const Across across = AcrossOf((a + b).normalized());
     across_.push_back(across);
     result_.difference.push_back(across.Of(b - a));
     result_.bend.push_back(across.Of(places_[0][row].bend + places_[1][row].bend) / 2);
+    result_.summed_alike.push_back(courses_[1].Position(row) - courses_[0].Position(row));
   }
   const double local = options.local_sigma * options.local_sigma;
   variance_.assign(rows, Vector2d::Constant(local));
@@ -126,14 +151,13 @@ Accumulator::Accumulator(const ComparedSurvey& first, const ComparedSurvey& seco
   result_.cov_direction = local * Eigen::MatrixXd::Identity(2 * n, 2 * n);
 }
 
-void Accumulator::Add(const ListedErrors& listed, double sign) {
-  const std::size_t rows = depths_.size();
+void Accumulator::Add(const ListedErrors& listed, std::span<const Vector3d> position, double sign) {
   begin_ = std::min(begin_, listed.first);
   end_ = std::max(end_, listed.last);
-  for (std::size_t row = listed.first; row < rows; ++row) {
+  for (std::size_t row = listed.first; row < listed.last; ++row) {
     direction_[row] += sign * across_[row].Of(listed.direction[row]);
-    position_[row] += sign * listed.position[row];
   }
+  for (std::size_t row = 0; row < position.size(); ++row) position_[row] += sign * position[row];
 }
 
 /// The factor is whole: its square goes into the covariances.
@@ -153,41 +177,81 @@ void Accumulator::Close() {
       result_.cov_direction(n + i, n + j) += a.y() * b.y();
     }
   }
-  for (std::size_t row = begin_; row < depths_.size(); ++row) {
+  for (std::size_t row = 0; row < depths_.size(); ++row) {
     result_.cov_p[row] += position_[row] * position_[row].transpose();
     direction_[row].setZero();
     position_[row].setZero();
   }
 }
 
-/// What no model speaks of, summed to places: independent at every station of the coarser survey,
-/// straight between them.
+/// How far the hole is from a survey's spline at depths that are none of its stations.
+void Accumulator::AddOffSplines(int survey) {
+  const auto& stations = surveys_[survey]->well.survey;
+  const auto& places = places_[survey];
+  const auto n = static_cast<Eigen::Index>(result_.joint.size());
+  for (std::size_t row = 0; row < places.size(); ++row) {
+    const ListedPlace& p = places[row];
+    const double length = stations[p.below].md - stations[p.below - 1].md;
+    variance_[row].array() += result_.roughness.OffSpline(length, p.fraction, p.fraction);
+    const Eigen::Index i = joint_row_[row];
+    if (i < 0) continue;
+    for (std::size_t with = row; with < places.size() && places[with].below == p.below; ++with) {
+      const Eigen::Index j = joint_row_[with];
+      if (j < 0) continue;
+      const double cov = result_.roughness.OffSpline(length, p.fraction, places[with].fraction);
+      for (const Eigen::Index part : {Eigen::Index{0}, n}) {
+        result_.cov_direction(part + i, part + j) += cov;
+        if (i != j) result_.cov_direction(part + j, part + i) += cov;
+      }
+    }
+  }
+}
+
+/// Of each direction at the common stations: what no model speaks of, but at the first one, and how
+/// far the hole is from either survey's spline.
+std::vector<double> Accumulator::LocalAtStations() const {
+  std::vector<double> variance(common_.size(), options_.local_sigma * options_.local_sigma);
+  variance.front() = 0;
+  for (const ComparedSurvey* survey : surveys_) {
+    const std::vector<ListedPlace> places = PlacesIn(survey->well, common_);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const auto below = survey->well.survey.begin() + static_cast<std::ptrdiff_t>(places[k].below);
+      const double length = below->md - std::prev(below)->md, f = places[k].fraction;
+      variance[k] += result_.roughness.OffSpline(length, f, f);
+    }
+  }
+  return variance;
+}
+
+/// What no model speaks of, summed to places: independent at every common station, straight between
+/// them.
 void Accumulator::AddLocal() {
-  const double deepest = depths_.back();
-  const auto count = [&](const ComparedSurvey* s) {
-    return std::ranges::count_if(s->well.survey,
-                                 [&](const SurveyPoint& p) { return p.md <= deepest; });
+  const std::vector<double> local = LocalAtStations();
+  const std::size_t first = courses_[0].first_common();
+  const auto tangent = [&](std::size_t k) -> Vector3d {
+    Vector3d sum = Vector3d::Zero();
+    for (const CommonCourses& c : courses_) {
+      const SurveyPoint& p = c.well().survey[c.first_common() + k];
+      sum += Tangent(p.inclination, p.azimuth);
+    }
+    return sum.normalized();
   };
-  const int coarse = count(surveys_[1]) < count(surveys_[0]) ? 1 : 0;
-  const auto& stations = surveys_[coarse]->well.survey;
-  const double local = options_.local_sigma * options_.local_sigma;
   const auto across = [&](std::size_t k, double length) -> Matrix3d {
-    const Vector3d t = Tangent(stations[k].inclination, stations[k].azimuth);
-    return local * length * length * (Matrix3d::Identity() - t * t.transpose());
+    const Vector3d t = tangent(k);
+    return local[k] * length * length * (Matrix3d::Identity() - t * t.transpose());
   };
-  const auto course = [&](std::size_t k) { return stations[k].md - stations[k - 1].md; };
+  const auto course = [&](std::size_t k) { return k > 0 ? common_[k] - common_[k - 1] : 0; };
   Matrix3d sum = Matrix3d::Zero();  // of stations above the one that opens the leg
   std::size_t opens = 0;
   for (std::size_t row = 0; row < depths_.size(); ++row) {
-    const ListedPlace& p = places_[coarse][row];
-    for (; opens + 1 < p.below; ++opens) {
-      if (opens > 0) sum += across(opens, (course(opens) + course(opens + 1)) / 2);
+    const ListedPlace& p = courses_[0].places()[row];
+    const std::size_t below = p.below - first;
+    for (; opens + 1 < below; ++opens) {
+      sum += across(opens, (course(opens) + course(opens + 1)) / 2);
     }
-    const double f = p.fraction, length = course(p.below);
-    if (opens > 0) {
-      result_.cov_p[row] += sum + across(opens, course(opens) / 2 + length * f * (1 - f / 2));
-    }
-    result_.cov_p[row] += across(p.below, length * f * f / 2);
+    const double f = p.fraction, length = course(below);
+    result_.cov_p[row] += sum + across(opens, course(opens) / 2 + length * f * (1 - f / 2)) +
+                          across(below, length * f * f / 2);
   }
 }
 
@@ -198,14 +262,17 @@ void Accumulator::AddModelled() {
       factors[i] = FactorsOf(*surveys_[i]->errors, i, options_.same_run);
     }
   }
-  std::optional<ListingErrors> listings[2];
+  std::optional<ListingErrors> listings[2], at_stations[2];
   for (int i = 0; i < 2; ++i) {
-    if (surveys_[i]->errors) listings[i].emplace(surveys_[i]->well, *surveys_[i]->errors, depths_);
+    if (!surveys_[i]->errors) continue;
+    listings[i].emplace(surveys_[i]->well, *surveys_[i]->errors, depths_);
+    at_stations[i].emplace(surveys_[i]->well, *surveys_[i]->errors, courses_[i].stations());
   }
-  ListedErrors listed;
+  ListedErrors listed, summed;
   const auto add = [&](int i, const GroupErrors& factor) {
     listings[i]->Carry(factor.errors, listed);
-    Add(listed, i == 0 ? -1 : 1);
+    at_stations[i]->Carry(factor.errors, summed);
+    Add(listed, courses_[i].Displaced(summed), i == 0 ? -1 : 1);
   };
   for (int i = 0; i < 2; ++i) {
     for (const auto& [key, factor] : factors[i]) {
@@ -237,6 +304,7 @@ DifferenceCovariance Accumulator::Result() && {
   AddLocal();
   AddModelled();
   for (int i = 0; i < 2; ++i) {
+    AddOffSplines(i);
     if (!surveys_[i]->errors) Own(*surveys_[i], places_[i]);
   }
   for (const Vector2d& v : variance_) result_.sigma.push_back(v.cwiseSqrt());
@@ -246,10 +314,10 @@ DifferenceCovariance Accumulator::Result() && {
 }  // namespace
 
 DifferenceCovariance CovarianceOfDifference(const ComparedSurvey& first,
-                                            const ComparedSurvey& second,
+                                            const ComparedSurvey& second, double begin, double end,
                                             std::span<const double> depths,
                                             const CompareOptions& options) {
-  return Accumulator(first, second, depths, options).Result();
+  return Accumulator(first, second, begin, end, depths, options).Result();
 }
 
 }  // namespace wellgyro

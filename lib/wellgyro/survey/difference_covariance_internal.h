@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/survey/compare.h"
+#include "wellgyro/survey/hole_roughness_internal.h"
 
 namespace wellgyro {
 
@@ -16,13 +17,17 @@ struct DifferenceCovariance {
   std::vector<Eigen::Vector2d> difference;
   std::vector<Eigen::Vector2d> bend;   ///< of the hole [rad/m]
   std::vector<Eigen::Vector2d> sigma;  ///< of `difference`
-  std::vector<Eigen::Matrix3d> cov_p;  ///< of the places' difference [m^2]
-  std::vector<std::size_t> joint;      ///< rows of cov_direction; empty where it is not known
-  Eigen::MatrixXd cov_direction;       ///< high side of all joint rows, then right of all
+  /// Of the places, each survey summed over the stations of CommonStations [m].
+  std::vector<Eigen::Vector3d> summed_alike;
+  std::vector<Eigen::Matrix3d> cov_p;  ///< of `summed_alike` [m^2]
+  HoleRoughness roughness;
+  std::vector<std::size_t> joint;  ///< rows of cov_direction; empty where it is not known
+  Eigen::MatrixXd cov_direction;   ///< high side of all joint rows, then right of all
 };
 
+/// `depths` lie in [begin, end], which both surveys reach.
 DifferenceCovariance CovarianceOfDifference(const ComparedSurvey& first,
-                                            const ComparedSurvey& second,
+                                            const ComparedSurvey& second, double begin, double end,
                                             std::span<const double> depths,
                                             const CompareOptions& options);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/math/spline.h"
 #include "wellgyro/trajectory/leg_arc.h"
 
 namespace wellgyro {
@@ -17,20 +18,22 @@ std::vector<Vector3d> TangentsOf(const SurveyedWell& well) {
   return tangents;
 }
 
+/// Of the hole at stations.
+std::vector<Vector3d> BendsOf(const SurveyedWell& well, std::span<const Vector3d> tangents) {
+  std::vector<double> md;
+  for (const SurveyPoint& p : well.survey) md.push_back(p.md);
+  return SplineSlopes(md, tangents);
+}
+
 /// One factor's errors of one station.
 struct Here {
-  Vector3d direction = Vector3d::Zero();
+  Vector3d direction = Vector3d::Zero(), displacement = Vector3d::Zero();
   double md = 0;
 };
 
-}  // namespace
-
-std::vector<ListedPlace> PlacesIn(const SurveyedWell& well, std::span<const double> depths) {
-  const std::vector<Vector3d> t = TangentsOf(well);
+std::vector<ListedPlace> Places(const SurveyedWell& well, const std::vector<Vector3d>& t,
+                                const std::vector<Vector3d>& bend, std::span<const double> depths) {
   const auto& stations = well.survey;
-  const auto bend_of = [&](std::size_t below) -> Vector3d {
-    return (t[below] - t[below - 1]) / (stations[below].md - stations[below - 1].md);
-  };
   std::vector<ListedPlace> places;
   places.reserve(depths.size());
   for (const double md : depths) {
@@ -43,34 +46,51 @@ std::vector<ListedPlace> PlacesIn(const SurveyedWell& well, std::span<const doub
     const LegArc arc =
         MakeLegArc(Vector3d::Zero(), b.md - a.md, t[place.below - 1], t[place.below]);
     place.tangent = place.fraction == 1 ? t[place.below] : DirectionOn(arc, md - a.md);
-    place.bend = bend_of(place.below);
-    // At a station the listing bends differently above and below it.
-    if (place.fraction == 1 && place.below + 1 < stations.size()) {
-      place.bend = (place.bend + bend_of(place.below + 1)) / 2;
-    }
+    const double f = place.fraction;
+    const Vector3d &bend_a = bend[place.below - 1], &bend_b = bend[place.below];
+    place.bend = (1 - f) * bend_a + f * bend_b;
+    // Hermite's cubic: the chord and how far the slopes at its ends are from it.
+    const Vector3d chord = t[place.below] - t[place.below - 1];
+    place.smooth =
+        (t[place.below - 1] + f * chord +
+         f * (1 - f) *
+             ((1 - f) * (arc.length * bend_a - chord) - f * (arc.length * bend_b - chord)))
+            .normalized();
     places.push_back(place);
   }
   return places;
 }
 
+}  // namespace
+
+std::vector<ListedPlace> PlacesIn(const SurveyedWell& well, std::span<const double> depths) {
+  const std::vector<Vector3d> tangents = TangentsOf(well);
+  return Places(well, tangents, BendsOf(well, tangents), depths);
+}
+
 ListingErrors::ListingErrors(const SurveyedWell& well, const SurveyErrors& errors,
                              std::span<const double> depths)
-    : well_(well), errors_(errors), tangent_(TangentsOf(well)), places_(PlacesIn(well, depths)) {}
+    : errors_(errors) {
+  const std::vector<Vector3d> tangents = TangentsOf(well);
+  bend_ = BendsOf(well, tangents);
+  places_ = Places(well, tangents, bend_, depths);
+}
 
 void ListingErrors::Carry(std::span<const StationError> factor, ListedErrors& listed) const {
   const std::size_t rows = places_.size();
   listed.direction.assign(rows, Vector3d::Zero());
-  listed.position.assign(rows, Vector3d::Zero());
+  listed.measured.assign(rows, Vector3d::Zero());
+  listed.md.assign(rows, 0);
+  listed.displacements.assign(rows, Vector3d::Zero());
   const std::size_t begin = factor.front().station == 0 ? 1 : factor.front().station;
   const std::size_t end = factor.back().station + 1;  // the leg below the last is wrong too
   auto next = factor.begin();
-  const auto take = [&](std::size_t station, Vector3d& displacement) {
+  const auto take = [&](std::size_t station) {
     Here here;
-    displacement.setZero();
     for (; next != factor.end() && next->station == station; ++next) {
       here.direction += next->direction;
       here.md += next->md;
-      displacement += next->displacement;
+      here.displacement += next->displacement;
     }
     return here;
   };
@@ -78,31 +98,25 @@ void ListingErrors::Carry(std::span<const StationError> factor, ListedErrors& li
   std::size_t row = static_cast<std::size_t>(
       std::lower_bound(places_.begin(), places_.end(), begin, is_below) - places_.begin());
   listed.first = row;
-  Vector3d sum = Vector3d::Zero(), displacement;
+  Vector3d displaced = Vector3d::Zero();
   Here above;
-  if (factor.front().station == 0) above = take(0, displacement);
-  for (std::size_t k = begin; k <= std::min(end, tangent_.size() - 1); ++k) {
-    const Here here = take(k, displacement);
-    const double course = well_.survey[k].md - well_.survey[k - 1].md;
+  if (factor.front().station == 0) above = take(0);
+  for (std::size_t k = begin; k <= std::min(end, bend_.size() - 1); ++k) {
+    const Here here = take(k);
     if (k == 1 && errors_.doubled_tie_on) above.direction = here.direction;
-    // Depths count from the datum, not from the first station.
-    const double md_above = k == 1 ? 0 : above.md;
     for (; row < rows && places_[row].below == k; ++row) {
-      const ListedPlace& p = places_[row];
-      const double f = p.fraction;
-      const Vector3d e = (1 - f) * above.direction + f * here.direction;
-      const double md = (1 - f) * above.md + f * here.md;
-      listed.direction[row] = e - p.bend * md;
-      listed.position[row] = sum + f * course / 2 * (above.direction + e) +
-                             (md - md_above) / 2 * (tangent_[k - 1] + p.tangent) +
-                             f * displacement - p.tangent * md;
+      const double f = places_[row].fraction;
+      listed.measured[row] = (1 - f) * above.direction + f * here.direction;
+      listed.md[row] = (1 - f) * above.md + f * here.md;
+      listed.direction[row] =
+          listed.measured[row] - (1 - f) * above.md * bend_[k - 1] - f * here.md * bend_[k];
+      listed.displacements[row] = displaced + f * here.displacement;
     }
-    sum += course / 2 * (above.direction + here.direction) +
-           (here.md - md_above) / 2 * (tangent_[k - 1] + tangent_[k]) + displacement;
+    displaced += here.displacement;
     above = here;
   }
   listed.last = row;
-  for (; row < rows; ++row) listed.position[row] = sum;
+  for (; row < rows; ++row) listed.displacements[row] = displaced;
 }
 
 }  // namespace wellgyro

@@ -16,16 +16,19 @@ namespace wellgyro {
 struct ListedPlace {
   std::size_t below = 1;
   double fraction = 1;  ///< of the leg, in (0, 1]; 0 only at the first station
-  Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d bend = Eigen::Vector3d::Zero();  ///< d tangent / d MD [rad/m]
+  Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();  ///< as listed, by the leg's arc
+  Eigen::Vector3d smooth = Eigen::Vector3d::UnitZ();   ///< by the spline through all stations
+  Eigen::Vector3d bend = Eigen::Vector3d::Zero();      ///< d tangent / d MD of the hole [rad/m]
 };
 
 /// What one source does to a listing at given depths, from row `first` on.
 struct ListedErrors {
   std::size_t first = 0;
-  std::size_t last = 0;                    ///< below this row no direction is wrong
-  std::vector<Eigen::Vector3d> direction;  ///< [rad]
-  std::vector<Eigen::Vector3d> position;   ///< [m]
+  std::size_t last = 0;                        ///< below this row no direction is wrong
+  std::vector<Eigen::Vector3d> direction;      ///< as listed for that depth [rad]
+  std::vector<Eigen::Vector3d> measured;       ///< of it what is not the depth's [rad]
+  std::vector<double> md;                      ///< listed less true [m]
+  std::vector<Eigen::Vector3d> displacements;  ///< of all courses above, summed [m]
 };
 
 /// Carries the station errors of a survey to its listing at given depths.
@@ -40,13 +43,14 @@ class ListingErrors {
   void Carry(std::span<const StationError> factor, ListedErrors& listed) const;
 
  private:
-  const SurveyedWell& well_;
   const SurveyErrors& errors_;
-  std::vector<Eigen::Vector3d> tangent_;
+  std::vector<Eigen::Vector3d> bend_;  ///< of the hole at stations [rad/m]
   std::vector<ListedPlace> places_;
 };
 
-/// Places of `depths` in a survey.
+/// Places of `depths` in a survey. Bends are at stations those of the cubic spline through all of
+/// them, which errs by the fourth power of the spacing where a mean of the two arcs errs by the
+/// second, and straight between: an error of depth moves every station along the hole.
 std::vector<ListedPlace> PlacesIn(const SurveyedWell& well, std::span<const double> depths);
 
 }  // namespace wellgyro

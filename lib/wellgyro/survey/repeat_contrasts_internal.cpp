@@ -58,7 +58,7 @@ SurveyedWell MeanHole(const SurveyedWell& well, std::span<const RepeatedSurvey> 
     const std::vector<ListedPlace> places = PlacesIn(other.well, depths);
     for (std::size_t i = 0; i < at.size(); ++i) {
       sum[at[i]] += places[i].fraction > 0
-                        ? places[i].tangent
+                        ? places[i].smooth
                         : Tangent(stations.front().inclination, stations.front().azimuth);
     }
   }

@@ -68,7 +68,10 @@ std::string Summary(const Comparison& c) {
   const Eigen::Vector3d& d = end.position_difference;
   text += fmt::format("at MD {:.2f} m: {:.2f} m north, {:.2f} m east, {:.2f} m down", end.md, d.x(),
                       d.y(), d.z());
-  if (end.position_sigmas) text += fmt::format(", {:.2f} sigmas", *end.position_sigmas);
+  const Eigen::Vector3d& between = end.between_stations;
+  text += fmt::format("; of that by different stations {:.2f}, {:.2f}, {:.2f} m", between.x(),
+                      between.y(), between.z());
+  if (end.position_sigmas) text += fmt::format("; the rest {:.2f} sigmas", *end.position_sigmas);
   return text;
 }
 
@@ -91,6 +94,9 @@ std::string CompareToml(const CompareRequest& request, const CompareAnswer& answ
   toml.Whole("joint_places", static_cast<std::int64_t>(c.joint));
   toml.Number("local_sigma_deg", ToDegrees(request.options.local_sigma));
   toml.Flag("same_run", request.options.same_run);
+  constexpr double kSquare = units::kDeg * units::kDeg;
+  toml.Number("hole_kink_deg2_per_m", c.kink / kSquare);
+  toml.Number("hole_wander_deg2_per_m3", c.wander / kSquare);
   for (const ShiftLine& line : ShiftLines(c)) {
     const auto& shift = *line.shift;
     if (!shift) continue;
@@ -140,7 +146,7 @@ std::string CompareCsv(const std::vector<ComparedPlace>& places) {
   std::string text =
       "MD[m],INC_A[deg],INC_B[deg],D_INC[deg],SIG_D_INC[deg],AZI_A[deg],AZI_B[deg],D_AZI[deg],"
       "SIG_D_AZI[deg],DN[m],DE[m],DV[m],VAR_NN[m2],COV_NE[m2],COV_NV[m2],VAR_EE[m2],COV_EV[m2],"
-      "VAR_VV[m2],POS_SIGMAS\n";
+      "VAR_VV[m2],POS_SIGMAS,BETWEEN_N[m],BETWEEN_E[m],BETWEEN_V[m]\n";
   const auto angle = [](const std::optional<double>& value) {
     return value ? AngleDeg(*value) : std::string();
   };
@@ -156,7 +162,9 @@ std::string CompareCsv(const std::vector<ComparedPlace>& places) {
         text.append(",").append(Significant(p.cov_position(row, column)));
       }
     }
-    text.append(",").append(p.position_sigmas ? Significant(*p.position_sigmas) : "").append("\n");
+    text.append(",").append(p.position_sigmas ? Significant(*p.position_sigmas) : "");
+    for (const double d : p.between_stations) text.append(",").append(Metres(d));
+    text.append("\n");
   }
   return text;
 }
