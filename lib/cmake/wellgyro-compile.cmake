@@ -41,6 +41,42 @@ set(WELLGYRO_PCH_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <filesy
   <string> <string_view> <utility> <variant> <vector> <Eigen/Cholesky> <Eigen/Core>
   <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/LU> <Eigen/QR> <Eigen/SVD>)
 
+# Unity builds, where asked for: wellgyro_unity(target <source>...) has the compiler read the sources of
+# each folder together, two dozen at a time, so that what they all include and instantiate is done once.
+# A name in an unnamed namespace must then be one source's in its folder; tests/structure says where in
+# the libraries it is not.
+#
+# Not the default: after a change all of the two dozen are compiled anew, and ccache shares less.
+option(WELLGYRO_UNITY "Compile the sources of a room together: faster from scratch" OFF)
+function(wellgyro_unity target)
+  if(NOT WELLGYRO_UNITY)
+    return()
+  endif()
+  set(most 24)
+  set(folders)
+  foreach(source IN LISTS ARGN)
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+    cmake_path(GET source PARENT_PATH folder)
+    list(APPEND folders ${folder})
+    list(APPEND "in ${folder}" ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder IN LISTS folders)
+    list(LENGTH "in ${folder}" count)
+    math(EXPR parts "(${count} + ${most} - 1) / ${most}")
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE group)
+    string(MAKE_C_IDENTIFIER ${group} group)
+    set(place 0)
+    foreach(source IN LISTS "in ${folder}")
+      math(EXPR part "${place} * ${parts} / ${count}")
+      set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES
+        UNITY_GROUP ${group}_${part})
+      math(EXPR place "${place} + 1")
+    endforeach()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # A room of a library: its sources, named relative to the room. Which headers are public is told by
 # lib/public-headers.txt.
 #   wellgyro_room(wellgyro noise SOURCES allan.cpp)
@@ -51,4 +87,5 @@ function(wellgyro_room target room)
   endif()
   list(TRANSFORM ROOM_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/lib/wellgyro/${room}/)
   target_sources(${target} PRIVATE ${ROOM_SOURCES})
+  wellgyro_unity(${target} ${ROOM_SOURCES})
 endfunction()

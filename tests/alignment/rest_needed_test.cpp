@@ -16,14 +16,15 @@ using units::kDeg;
 
 /// Two transverse axes at rest without error, toolface 0: We (cL cA cI + sL sI) - i We cL sA.
 StillWindow Rest(double latitude, double inclination, double azimuth, double seconds, double walk) {
-  constexpr double kOmega = 7.292115e-5;
+  constexpr double kEarthRate = 7.292115e-5;
   const double sI = std::sin(inclination), cI = std::cos(inclination);
   const double g = SiteAt(latitude, 0).gravity;
   StillWindow window;
   window.end = {Duration::Seconds(seconds).ns};
   window.samples = 100;
-  window.w_IT_T = {kOmega * (std::cos(latitude) * std::cos(azimuth) * cI + std::sin(latitude) * sI),
-                   -kOmega * std::cos(latitude) * std::sin(azimuth), 0};
+  window.w_IT_T = {
+      kEarthRate * (std::cos(latitude) * std::cos(azimuth) * cI + std::sin(latitude) * sI),
+      -kEarthRate * std::cos(latitude) * std::sin(azimuth), 0};
   window.f_T = {g * sI, 0, -g * cI};
   window.sigma_w_IT_T = Eigen::Vector3d::Constant(walk / std::sqrt(seconds));
   window.sigma_f_T = Eigen::Vector3d::Constant(1e-7);

@@ -21,7 +21,7 @@ using motion::Attitude;
 using motion::InHole;
 using motion::Turning;
 
-IncrementOptions Options() {
+IncrementOptions GapOptions() {
   IncrementOptions options;
   options.accel_noise = 5e-4;
   return options;
@@ -44,7 +44,7 @@ bool Same(const Increment& a, const Increment& b) {
 
 TEST(IncrementKnots, DoNotDependOnOtherKnotsOrOnWhenTheyAreFetched) {
   const auto samples = Steady(20, 40);
-  IncrementBuilder often(Options()), seldom(Options());
+  IncrementBuilder often(GapOptions()), seldom(GapOptions());
   std::vector<Increment> a, b;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     often.Push(samples[k], false);
@@ -69,7 +69,7 @@ TEST(IncrementKnots, DoNotDependOnOtherKnotsOrOnWhenTheyAreFetched) {
     EXPECT_EQ(a[2 * k].seq_begin, b[k].seq_begin);
     EXPECT_EQ(a[2 * k + 1].seq_end, b[k].seq_end);
   }
-  const auto again = motion::Increments(samples, 1, Options());
+  const auto again = motion::Increments(samples, 1, GapOptions());
   ASSERT_EQ(again.size(), b.size());
   for (std::size_t k = 0; k < b.size(); ++k) EXPECT_TRUE(Same(again[k], b[k])) << k;
 }
@@ -77,7 +77,7 @@ TEST(IncrementKnots, DoNotDependOnOtherKnotsOrOnWhenTheyAreFetched) {
 // What was given away as the last stays what it was when more comes after all.
 TEST(IncrementKnots, StayWhatTheyWereWhenSamplesFollowAFlush) {
   const auto samples = Steady(20, 30);
-  IncrementBuilder at_once(Options()), late(Options());
+  IncrementBuilder at_once(GapOptions()), late(GapOptions());
   std::vector<Increment> a, b;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     at_once.Push(samples[k], false);
@@ -103,7 +103,7 @@ TEST(IncrementKnots, StayWhatTheyWereWhenSamplesFollowAFlush) {
 
 TEST(IncrementKnots, AllocateNothingOnTheWay) {
   const auto samples = Steady(20, 60);
-  IncrementBuilder builder(Options());
+  IncrementBuilder builder(GapOptions());
   const long before = AllocationCount();
   double seconds = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -117,7 +117,7 @@ TEST(IncrementKnots, AllocateNothingOnTheWay) {
 
 TEST(IncrementKnots, SayWhichSamplesTheyAreMadeOf) {
   const auto samples = Steady(20, 3);
-  IncrementBuilder builder(Options());
+  IncrementBuilder builder(GapOptions());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     builder.Push(samples[k], false);
     if (k == 10) {
@@ -155,7 +155,7 @@ TEST(IncrementKnots, BridgeAGap) {
   for (const bool has_gz : {false, true}) {
     const auto samples = Steady(20, 40, has_gz);
     const Attitude attitude = InHole(40, Turning(3));
-    IncrementBuilder builder(Options());
+    IncrementBuilder builder(GapOptions());
     std::vector<Increment> increments;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       if (k >= 412 && k < 450) continue;  // 20.6 to 22.5 s
@@ -198,7 +198,7 @@ TEST(IncrementKnots, GoOnInANewSession) {
     samples[k].stamp.seq -= 290;
   }
   const Attitude attitude = InHole(40, Turning(3));
-  IncrementBuilder builder(Options());
+  IncrementBuilder builder(GapOptions());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     ASSERT_TRUE(builder.Push(samples[k], false));
     if (k % 20 == 9) builder.Cut();
@@ -216,7 +216,7 @@ TEST(IncrementKnots, GoOnInANewSession) {
 
 TEST(IncrementKnots, RefuseWhatCannotBeASample) {
   auto samples = Steady(20, 1);
-  IncrementBuilder builder(Options());
+  IncrementBuilder builder(GapOptions());
   EXPECT_THROW(builder.Cut(), std::invalid_argument);
   EXPECT_THROW(builder.CutGap(Duration{1}), std::invalid_argument);
   for (const ImuSample& s : samples) ASSERT_TRUE(builder.Push(s, false));
@@ -244,7 +244,7 @@ TEST(IncrementKnots, SayWhatStoodAtFullScale) {
   samples[204].stamp.accel_saturated = true;
   samples[204].f_T.setConstant(1);
   samples[404].stamp.gyro_saturated = true;
-  const auto increments = motion::Increments(samples, 1, Options());
+  const auto increments = motion::Increments(samples, 1, GapOptions());
   ASSERT_EQ(increments.size(), 30u);
   for (std::size_t k = 0; k < increments.size(); ++k) {
     EXPECT_EQ(Has(increments[k].quality, Quality::kSaturated), k == 10 || k == 20) << k;
@@ -258,7 +258,7 @@ TEST(IncrementKnots, SayWhatStoodAtFullScale) {
 // A knot nobody ends ends by itself: memory stays what it is.
 TEST(IncrementKnots, EndByThemselvesAfterSomeTime) {
   const auto samples = Steady(20, 100);
-  IncrementBuilder builder(Options());
+  IncrementBuilder builder(GapOptions());
   std::vector<Increment> increments;
   for (const ImuSample& s : samples) {
     builder.Push(s, false);
@@ -271,7 +271,7 @@ TEST(IncrementKnots, EndByThemselvesAfterSomeTime) {
 // Samples lost all the time make a block of every sample.
 TEST(IncrementKnots, HoldOutWhereEverySecondSampleIsLost) {
   const auto samples = Steady(20, 10);
-  IncrementBuilder builder(Options());
+  IncrementBuilder builder(GapOptions());
   long fetched = 0;
   for (std::int64_t k = 0; k < 100'000; ++k) {
     ImuSample s = samples[0];

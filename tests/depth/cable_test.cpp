@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "depth/utc.h"
+
 namespace wellgyro {
 namespace {
-
-UtcTime Utc(double seconds) { return {1'700'000'000'000'000'000 + Duration::Seconds(seconds).ns}; }
 
 TEST(Cable, StretchIsThatOfTheChart) {
   // 0.6 ft per 1000 ft and 1000 lbf: 12000 ft under 3500 lbf at the wheel and 1500 at the tool,

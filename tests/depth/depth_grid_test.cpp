@@ -8,10 +8,10 @@
 
 #include "wellgyro/base/angle.h"
 
+#include "depth/utc.h"
+
 namespace wellgyro {
 namespace {
-
-UtcTime Utc(double seconds) { return {1'700'000'000'000'000'000 + Duration::Seconds(seconds).ns}; }
 
 void Push(DepthTrack& track, double seconds, double md, std::int64_t seq) {
   DepthMark mark;

@@ -13,12 +13,12 @@
 #include "wellgyro/math/random.h"
 #include "wellgyro/math/statistics.h"
 
+#include "depth/utc.h"
+
 namespace wellgyro {
 namespace {
 
 constexpr double kSeconds = 120;
-
-UtcTime Utc(double seconds) { return {1'700'000'000'000'000'000 + Duration::Seconds(seconds).ns}; }
 
 struct Motion {
   double md = 0, speed = 0, acceleration = 0;
@@ -59,7 +59,7 @@ struct Way {
   }
 };
 
-const Way kRest{.name = "rest", .speed = 0};
+const Way kAtRest{.name = "rest", .speed = 0};
 const Way kSteady{.name = "steady", .speed = 0.513};
 /// A winch's: ten seconds of getting under way and of coming to a stop.
 const Way kRamps{.name = "ramps",
@@ -109,7 +109,7 @@ constexpr std::array<const char*, 3> kNames{"depth", "speed", "acceleration"};
 class Scatter : public ::testing::TestWithParam<double> {};
 
 TEST_P(Scatter, OfTheMarksIsInTheSigmasAsLargeAsItIs) {
-  for (const Way& way : {kRest, kSteady}) {
+  for (const Way& way : {kAtRest, kSteady}) {
     for (const double rate : {1.0, 2.0, 4.0, 10.0}) {
       const Errors errors = ErrorsOn(way, rate, GetParam(), 10);
       for (std::size_t k = 0; k < 3; ++k) {

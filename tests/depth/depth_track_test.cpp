@@ -12,10 +12,10 @@
 
 #include "wellgyro/math/random.h"
 
+#include "depth/utc.h"
+
 namespace wellgyro {
 namespace {
-
-UtcTime Utc(double seconds) { return {1'700'000'000'000'000'000 + Duration::Seconds(seconds).ns}; }
 
 DepthMark Mark(double seconds, double md, std::int64_t seq, std::int32_t session = 1) {
   DepthMark mark;

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Kind = CauseSpec::Kind;
 
-constexpr int kKnots = 30;
+constexpr int kDenseKnots = 30;
 
 /// A made-up run of random derivatives whose drift steps from node to node, beside it the same as
 /// one dense system.
@@ -38,13 +38,13 @@ class ToyRun : public RunRows {
     layout_.sigma << 1, 2, 0.5, 3;
     information_.setZero(12, 12);
     information_.diagonal() << VectorXd::Constant(6, 0.01), 1e6, 1e6, 1, 0.25, 4, 1. / 9;
-    for (int i = 0; i < 12; ++i) Row(i < 8 ? i : (kKnots + 1) * 8 + i - 8, i);
-    for (int k = 0; k < kKnots; ++k) AddKnot(k);
+    for (int i = 0; i < 12; ++i) Row(i < 8 ? i : (kDenseKnots + 1) * 8 + i - 8, i);
+    for (int k = 0; k < kDenseKnots; ++k) AddKnot(k);
     for (int i = 0; i < 4; ++i) border_[i] = layout_.sigma[i] * noise_[8 + i];
   }
 
   const Layout& layout() const override { return layout_; }
-  std::size_t size() const override { return kKnots; }
+  std::size_t size() const override { return kDenseKnots; }
   void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const override {
     information = information_;
     gradient.resize(12);
@@ -67,7 +67,8 @@ class ToyRun : public RunRows {
   }
 
   MatrixXd J() const {
-    MatrixXd j = MatrixXd::Zero(static_cast<Eigen::Index>(dense_.size()), (kKnots + 1) * 8 + 4);
+    MatrixXd j =
+        MatrixXd::Zero(static_cast<Eigen::Index>(dense_.size()), (kDenseKnots + 1) * 8 + 4);
     for (std::size_t i = 0; i < dense_.size(); ++i) j.row(static_cast<Eigen::Index>(i)) = dense_[i];
     return j;
   }
@@ -76,7 +77,7 @@ class ToyRun : public RunRows {
   /// Column of a step of an unknown of the border from node t on, as written in the header.
   VectorXd Step(int unknown, int t) const {
     VectorXd column = VectorXd::Zero(rows());
-    for (std::size_t k = static_cast<std::size_t>(t); k < kKnots; ++k) {
+    for (std::size_t k = static_cast<std::size_t>(t); k < kDenseKnots; ++k) {
       for (const Factor& f : factors_[k]) {
         column.segment(static_cast<Eigen::Index>(RowAt(f)), f.rows) -=
             ColumnOf(f, layout_, unknown).head(f.rows);
@@ -97,7 +98,7 @@ class ToyRun : public RunRows {
   static std::size_t RowAt(const Factor& f) { return static_cast<std::size_t>(f.held); }
 
   void Row(int column, int i) {
-    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero((kKnots + 1) * 8 + 4);
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero((kDenseKnots + 1) * 8 + 4);
     row[column] = std::sqrt(information_(i, i));
     dense_.push_back(row);
     noise_.push_back(random_.Normal());
@@ -130,10 +131,10 @@ class ToyRun : public RunRows {
         if (turn) f.Column(19) = Normals();
       }
       for (int i = 0; i < f.rows; ++i) {
-        Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero((kKnots + 1) * 8 + 4);
+        Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero((kDenseKnots + 1) * 8 + 4);
         for (int j = 0; j < f.columns; ++j) {
           const int at = f.column[static_cast<std::size_t>(j)];
-          row[at < 16 ? k * 8 + at : (kKnots + 1) * 8 + at - 16] += f.J(i, j);
+          row[at < 16 ? k * 8 + at : (kDenseKnots + 1) * 8 + at - 16] += f.J(i, j);
         }
         dense_.push_back(row);
         noise_.push_back(random_.Normal());
@@ -183,7 +184,7 @@ struct Dense {
 std::vector<Matrix3d> Slopes() {
   std::vector<Matrix3d> slopes;
   Random random(77);
-  for (int k = 0; k <= kKnots; ++k) {
+  for (int k = 0; k <= kDenseKnots; ++k) {
     slopes.push_back(Matrix3d::NullaryExpr([&random] { return random.Normal(); }));
   }
   return slopes;
@@ -222,11 +223,11 @@ TEST(Diagnosis, IsThatOfTheDenseAlgebra) {
     EXPECT_LT((test.shift - test.size * dense.Shift(likeliest, slopes)).norm(), 1e-7) << spec;
   };
   std::vector<VectorXd> bias_steps, toolface_steps, spikes, motions;
-  for (int t = 1; t < kKnots; ++t) {
+  for (int t = 1; t < kDenseKnots; ++t) {
     bias_steps.push_back(run.Step(0, t));
     toolface_steps.push_back(run.Step(2, t));
   }
-  for (std::size_t k = 0; k < kKnots; ++k) {
+  for (std::size_t k = 0; k < kDenseKnots; ++k) {
     const double by = 2 + static_cast<double>(k % 3);
     for (int i = 0; i < 2; ++i) {
       spikes.push_back(Unit(dense, run.RowOf(k, RowKind::kTurn) + i, by));

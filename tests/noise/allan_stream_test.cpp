@@ -9,7 +9,7 @@
 namespace wellgyro {
 namespace {
 
-std::vector<double> White(std::size_t samples, std::uint64_t seed, double bias) {
+std::vector<double> WhiteAbout(std::size_t samples, std::uint64_t seed, double bias) {
   Random random(seed);
   std::vector<double> rate(samples);
   for (auto& y : rate) y = bias + random.Normal();
@@ -34,7 +34,7 @@ long double ByDefinition(std::span<const double> rate, std::int64_t m) {
 
 TEST(AllanStream, TakesTheDifferencesItSays) {
   for (const std::size_t samples : {2u, 3u, 31u, 32u, 33u, 1000u, 1024u, 2047u, 4096u, 33001u}) {
-    const auto rate = White(samples, samples, 1e3);
+    const auto rate = WhiteAbout(samples, samples, 1e3);
     AllanStream stream(0.5);
     stream.Push(rate);
     const AllanResult result = stream.Result();
@@ -49,7 +49,7 @@ TEST(AllanStream, TakesTheDifferencesItSays) {
 }
 
 TEST(AllanStream, DoesNotCareHowTheStreamIsCut) {
-  const auto rate = White(20000, 5, -3);
+  const auto rate = WhiteAbout(20000, 5, -3);
   AllanStream whole(1);
   whole.Push(rate);
   AllanStream pieces(1);
@@ -67,7 +67,7 @@ TEST(AllanStream, DoesNotCareHowTheStreamIsCut) {
 }
 
 TEST(AllanStream, AgreesWithFullOverlapWithinItsScatter) {
-  const auto rate = White(1 << 20, 6, 0);
+  const auto rate = WhiteAbout(1 << 20, 6, 0);
   AllanStream stream(1);
   stream.Push(rate);
   const auto full = AllanVariance(rate, 1, OctaveFactors(1 << 20)).points;
@@ -83,8 +83,8 @@ TEST(AllanStream, AgreesWithFullOverlapWithinItsScatter) {
 }
 
 TEST(AllanStream, TakesNoDifferenceAcrossAGapAndNamesWhatIsNotFinite) {
-  auto a = White(5000, 7, 0);
-  const auto b = White(3000, 8, 50);
+  auto a = WhiteAbout(5000, 7, 0);
+  const auto b = WhiteAbout(3000, 8, 50);
   AllanStream stream(1);
   stream.Push(a);
   stream.Push(std::vector<double>{std::nan(""), std::nan("")});

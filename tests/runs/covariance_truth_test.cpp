@@ -17,7 +17,7 @@ using testing::Claims;
 using testing::Hour;
 
 // Two hundred seeds where WELLGYRO_LONG.
-constexpr std::uint64_t kSeeds = WELLGYRO_LONG ? 200 : 2;
+constexpr std::uint64_t kTruthSeeds = WELLGYRO_LONG ? 200 : 2;
 // Seventy-two tests, of which all are to hold with 99 %.
 constexpr double kRisk = 0.01 / 72;
 
@@ -96,7 +96,7 @@ TEST_P(CovarianceTruth, OfAzimuthInclinationAndPosition) {
   // Few seeds are each case's own, so that all cases together are as many independent runs.
   const std::uint64_t first =
       WELLGYRO_LONG ? 1 : static_cast<std::uint64_t>(10 * hour.inclination_deg + hour.rpm);
-  for (std::uint64_t seed = first; seed < first + kSeeds; ++seed) {
+  for (std::uint64_t seed = first; seed < first + kTruthSeeds; ++seed) {
     const Simulation simulation = testing::SimulationOf(hour, seed);
     const Truth truth(simulation);
     const double offset = simulation.tool.errors.depth_offset;

@@ -26,7 +26,7 @@ using testing::Hour;
 using testing::JobOf;
 using testing::SimulationOf;
 
-constexpr std::uint64_t kSeeds = 4;
+constexpr std::uint64_t kRunSeeds = 4;
 
 // Shorter than an hour, the same in kind.
 Hour HalfHour() {
@@ -60,7 +60,7 @@ TEST(EstimatedRun, OfAPerfectToolIsTheTruth) {
 
 TEST(EstimatedRun, FromAnExternalAzimuthAtTheStartIsAsGoodAsItSays) {
   Claims end, middle;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kRunSeeds; ++seed) {
     Hour hour = testing::StrongDrift();
     hour.stops = 0;
     const Job job = ExternalJob(hour, seed, 0.001);
@@ -95,7 +95,7 @@ TEST(EstimatedRun, NamesNoAzimuthWhereTheMirrorFitsAsWell) {
 
 TEST(EstimatedRun, FindsNorthWithoutAnyStopWhereTheHoleSwings) {
   Claims end;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kRunSeeds; ++seed) {
     Hour hour = testing::StrongDrift();
     hour.stops = 0;
     const Flown flown = Fly(hour, JobOf(hour), seed);
@@ -111,7 +111,7 @@ TEST(EstimatedRun, FindsNorthWithoutAnyStopWhereTheHoleSwings) {
 
 TEST(EstimatedRun, FindsTheToolsErrors) {
   Claims errors;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kRunSeeds; ++seed) {
     Hour hour = HalfHour();
     hour.noise.rate_random_walk = 0;
     const Simulation simulation = SimulationOf(hour, seed);

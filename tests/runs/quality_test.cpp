@@ -52,7 +52,7 @@ struct Flight {
 };
 
 // One in 370 of some two hundred verdicts may fail by chance.
-TEST(Quality, TrueRunsPass) {
+TEST(FlaggedRuns, TrueRunsPass) {
   int judged = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     for (const Check& check : Flight(seed).Checks()) {
@@ -67,7 +67,7 @@ TEST(Quality, TrueRunsPass) {
 }
 
 // Depths that scatter by what the job says of them, at rest as well.
-TEST(Quality, DepthsThatScatterArePassed) {
+TEST(FlaggedRuns, DepthsThatScatterArePassed) {
   for (const double hz : {1.0, 4.0}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       Flight flight(seed);
@@ -84,7 +84,7 @@ TEST(Quality, DepthsThatScatterArePassed) {
 }
 
 // Twenty sigmas of the prior, but known: nothing is wrong.
-TEST(Quality, WhatIsKnownOfTheAxialRatePasses) {
+TEST(FlaggedRuns, WhatIsKnownOfTheAxialRatePasses) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     Flight flight(seed);
     flight.errors().gyro_misalignment = {2e-3, -2e-3};
@@ -104,9 +104,9 @@ struct Wrong {
 
 void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.code; }
 
-class Quality : public ::testing::TestWithParam<Wrong> {};
+class FlaggedRuns : public ::testing::TestWithParam<Wrong> {};
 
-TEST_P(Quality, AFaultFailsItsCheck) {
+TEST_P(FlaggedRuns, AFaultFailsItsCheck) {
   Flight flight(1);
   GetParam().make(flight);
   bool there = false, failed = false;
@@ -120,7 +120,7 @@ TEST_P(Quality, AFaultFailsItsCheck) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, Quality,
+    Each, FlaggedRuns,
     ::testing::Values(
         Wrong{"toolface_offset", [](Flight& f) { f.errors().roll_offset = FromDegrees(0.6); }},
         Wrong{"time_skew", [](Flight& f) { f.errors().time_skew = 0.02; }},

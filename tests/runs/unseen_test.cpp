@@ -23,12 +23,12 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kSeeds = 24;
+constexpr int kUnseenSeeds = 24;
 // Of the 34 sums here, one in a hundred runs of all leaves its band.
 constexpr double kTail = 0.01 / (2 * 34);
 constexpr double kStop = 120;  // [s]
 
-testing::Hour Tool() {
+testing::Hour UnseenTool() {
   testing::Hour hour = testing::Tactical();
   hour.errors.gyro_scale_sigma = 1e-4;
   hour.errors.gyro_misalignment_sigma = 1e-4;
@@ -40,7 +40,7 @@ testing::Hour Tool() {
 /// From a stop at 0 m down at 1 m/s and 3 rpm, through a hole that bends, by as much
 /// as is taken for one that nobody sees, between `bend_begin` and `bend_end`.
 Simulation HoleOf(std::uint64_t seed, double bend_begin, double bend_end) {
-  const testing::Hour hour = Tool();
+  const testing::Hour hour = UnseenTool();
   Random random(500 + seed);
   Simulation s;
   s.well.end_md = 200;
@@ -65,7 +65,7 @@ RunMove Down(double to_md) {
 }
 
 Job ToolsJob() {
-  Job job = testing::JobOf(Tool());
+  Job job = testing::JobOf(UnseenTool());
   job.tie_in.md = 0;
   return job;
 }
@@ -112,8 +112,8 @@ class Keeper : public RunAdjuster {
 };
 
 void ExpectHonest(double sum, const char* what, double md) {
-  EXPECT_GT(sum, ChiSquareQuantile(kTail, kSeeds)) << what << " at " << md;
-  EXPECT_LT(sum, ChiSquareQuantile(1 - kTail, kSeeds)) << what << " at " << md;
+  EXPECT_GT(sum, ChiSquareQuantile(kTail, kUnseenSeeds)) << what << " at " << md;
+  EXPECT_LT(sum, ChiSquareQuantile(1 - kTail, kUnseenSeeds)) << what << " at " << md;
 }
 
 /// Changes the stamps of samples, by their time from the begin of the run [s]; false: lost.
@@ -129,7 +129,7 @@ testing::Arrives EachStamp(const Simulation& simulation,
 
 TEST(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
   Squares squares;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kUnseenSeeds; ++seed) {
     Simulation simulation = HoleOf(seed, 20, 80);
     simulation.run.steps.push_back(Down(100));
     testing::CollectingSink sink;
@@ -146,8 +146,8 @@ TEST(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
     // There it is not better known than by half of what the hole may bend.
     EXPECT_GT(std::sqrt(survey.chosen[5].cov_md_inc_azi(1, 1)), 0.4 * 12.5 * UnseenHole().dogleg);
   }
-  EXPECT_LT(squares.inclination[50], ChiSquareQuantile(1 - kTail, kSeeds));
-  EXPECT_LT(squares.azimuth[50], ChiSquareQuantile(1 - kTail, kSeeds));
+  EXPECT_LT(squares.inclination[50], ChiSquareQuantile(1 - kTail, kUnseenSeeds));
+  EXPECT_LT(squares.azimuth[50], ChiSquareQuantile(1 - kTail, kUnseenSeeds));
   for (const double md : {40., 60., 70., 90.}) {
     ExpectHonest(squares.inclination[md], "inclination", md);
     ExpectHonest(squares.azimuth[md], "azimuth", md);
@@ -157,7 +157,7 @@ TEST(Unseen, StationsInAGapAndBehindItAreAsGoodAsTheySay) {
 // Beyond 60 deg/h the gyros see nothing; below it, a stop, and a straight hole.
 TEST(Unseen, StationsBelowASaturatedStretchAreAsGoodAsTheySay) {
   Squares squares;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kUnseenSeeds; ++seed) {
     Simulation simulation = HoleOf(seed, 20, 80);
     simulation.run.steps = {RunStop{.seconds = kStop}, Down(100), RunStop{.seconds = kStop},
                             Down(160)};
@@ -173,8 +173,8 @@ TEST(Unseen, StationsBelowASaturatedStretchAreAsGoodAsTheySay) {
     }
   }
   for (const double md : {20., 30., 50., 80., 90.}) {
-    EXPECT_LT(squares.inclination[md], ChiSquareQuantile(1 - kTail, kSeeds)) << md;
-    EXPECT_LT(squares.azimuth[md], ChiSquareQuantile(1 - kTail, kSeeds)) << md;
+    EXPECT_LT(squares.inclination[md], ChiSquareQuantile(1 - kTail, kUnseenSeeds)) << md;
+    EXPECT_LT(squares.azimuth[md], ChiSquareQuantile(1 - kTail, kUnseenSeeds)) << md;
   }
   for (const double md : {110., 130., 150.}) {
     ExpectHonest(squares.inclination[md], "inclination", md);
@@ -188,7 +188,7 @@ TEST(Unseen, StationsBelowASaturatedStretchAreAsGoodAsTheySay) {
 TEST(Unseen, StationsAboveAClockThatStepsBackAreAsGoodAsTheySay) {
   Squares squares;
   const Duration back = Duration::Seconds(10);
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kUnseenSeeds; ++seed) {
     Simulation simulation = HoleOf(seed, 20, 180);
     simulation.run.steps.push_back(Down(200));
     testing::CollectingSink sink;

@@ -17,16 +17,16 @@
 namespace wellgyro {
 namespace {
 
-struct Played {
+struct PlayedSteps {
   std::vector<SimulatedStep> steps;
   std::vector<ToolMode> modes;
   std::vector<ImuSample> samples;
   std::vector<DepthMark> marks;
 };
 
-Played Play(const Simulation& simulation) {
+PlayedSteps PlaySteps(const Simulation& simulation) {
   Simulator simulator(simulation);
-  Played played;
+  PlayedSteps played;
   SimulatedStep step;
   while (simulator.Next(step)) {
     played.steps.push_back(step);
@@ -60,10 +60,10 @@ bool SameBits(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 TEST(Simulator, TheSameSeedGivesTheSameBits) {
-  const Played a = Play(ShortRun()), b = Play(ShortRun());
+  const PlayedSteps a = PlaySteps(ShortRun()), b = PlaySteps(ShortRun());
   Simulation other = ShortRun();
   other.seed = 13;
-  const Played c = Play(other);
+  const PlayedSteps c = PlaySteps(other);
   ASSERT_EQ(a.samples.size(), b.samples.size());
   ASSERT_EQ(a.marks.size(), b.marks.size());
   std::size_t same = 0;
@@ -80,7 +80,7 @@ TEST(Simulator, TheSameSeedGivesTheSameBits) {
 TEST(Simulator, StreamsComeInTimeAndWhole) {
   Simulation s = ShortRun();
   s.tool.errors.utc_jitter = 0;
-  const Played played = Play(s);
+  const PlayedSteps played = PlaySteps(s);
   // 20 + 10 + 20 stand and turn, 30 m and a ramp, 10.
   const double seconds = 50 + 34 + 10;
   ASSERT_EQ(played.samples.size(), static_cast<std::size_t>(seconds * 50));
@@ -108,7 +108,7 @@ TEST(Simulator, StreamsComeInTimeAndWhole) {
 }
 
 TEST(Simulator, ModesNameTheFirstSampleTheyHoldFor) {
-  const Played played = Play(ShortRun());
+  const PlayedSteps played = PlaySteps(ShortRun());
   ASSERT_EQ(played.modes.size(), 5u);
   const std::int64_t expected[5] = {0, 1000, 1500, 2500, 4200};
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(played.modes[i].imu_seq, expected[i]) << i;
@@ -139,7 +139,7 @@ TEST(Simulator, ToolClockRunsAtItsOwnRate) {
   s.streams.imu_hz = 10;
   s.tool.errors.clock_offset = 77.5;
   s.tool.errors.clock_drift = 1e-3;
-  const Played played = Play(s);
+  const PlayedSteps played = PlaySteps(s);
   ASSERT_EQ(played.samples.size(), 10010u);
   const SampleStamp& last = played.samples.back().stamp;
   EXPECT_EQ(last.tool_time.ns, 77'500'000'000 + 10009 * 100'000'000LL);
@@ -151,7 +151,7 @@ TEST(Simulator, JitterOfUtcDoesNotTouchTheToolsClock) {
   Simulation s = AtRest(0.3, 1, 0, 100);
   s.tool.errors.utc_jitter = 0.02;
   double sum = 0;
-  const Played played = Play(s);
+  const PlayedSteps played = PlaySteps(s);
   for (const ImuSample& sample : played.samples) {
     const double off = (sample.stamp.utc - s.streams.begin_utc).seconds() -
                        static_cast<double>(sample.stamp.seq) * 0.01;
@@ -165,7 +165,7 @@ TEST(Simulator, DepthMarksAreTheReferencesAndTheEncoders) {
   Simulation s = ShortRun();
   s.tool.errors.depth_noise = 0;
   s.tool.sensor_below_reference = 12.5;
-  const Played exact = Play(s);
+  const PlayedSteps exact = PlaySteps(s);
   const Truth truth(s);
   for (const DepthMark& mark : exact.marks) {
     const double time = (mark.utc - s.streams.begin_utc).seconds();
@@ -175,7 +175,7 @@ TEST(Simulator, DepthMarksAreTheReferencesAndTheEncoders) {
   s.tool.errors.depth_resolution = 0.1;
   s.tool.errors.depth_scale = 1e-3;
   s.tool.errors.depth_offset = 0.35;
-  const Played coarse = Play(s);
+  const PlayedSteps coarse = PlaySteps(s);
   for (std::size_t i = 0; i < exact.marks.size(); ++i) {
     EXPECT_NEAR(std::remainder(coarse.marks[i].md, 0.1), 0, 1e-12);
     EXPECT_NEAR(coarse.marks[i].md, exact.marks[i].md * 1.001 + 0.35, 0.05 + 1e-12);

@@ -9,6 +9,8 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/statistics.h"
 
+#include "support/testing.h"
+
 namespace wellgyro::testing {
 
 /// Errors of many runs against the variances that were claimed for them.

@@ -9,6 +9,8 @@
 #include "wellgyro/simulate/simulator.h"
 #include "wellgyro/survey/surveyor.h"
 
+#include "support/testing.h"
+
 namespace wellgyro::testing {
 
 /// Keeps what a surveyor tells.

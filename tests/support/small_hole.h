@@ -5,6 +5,8 @@
 #include "wellgyro/simulate/simulation.h"
 #include "wellgyro/survey/job.h"
 
+#include "support/testing.h"
+
 /// A hole of some hundred metres, a stop at either end, and the job of its survey.
 namespace wellgyro::testing {
 
@@ -49,5 +51,9 @@ inline Job JobOf(const SmallHole& hole) {
   job.stations.every = hole.stations_every;
   return job;
 }
+
+/// Of the hole as it stands above.
+inline Simulation Slant() { return SimulationOf(SmallHole{}); }
+inline Job SlantJob() { return JobOf(SmallHole{}); }
 
 }  // namespace wellgyro::testing

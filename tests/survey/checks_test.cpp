@@ -16,7 +16,7 @@
 namespace wellgyro {
 namespace {
 
-Station At(double md, Pass pass, double azimuth_deg, double sigma_deg) {
+Station PassAt(double md, Pass pass, double azimuth_deg, double sigma_deg) {
   Station s;
   s.run = 1;
   s.md = md;
@@ -55,9 +55,10 @@ TEST(Checks, VerdictsFollowTheLimit) {
 }
 
 TEST(Checks, TakesTheWorstPairOfPassesForItsSigma) {
-  const std::vector<Station> passes = {At(100, Pass::kIn, 359.9, 0.1), At(200, Pass::kIn, 10, 1),
-                                       At(200.05, Pass::kOut, 10.5, 1),
-                                       At(100, Pass::kOut, 0.3, 0.1), At(900, Pass::kOut, 0, 0.1)};
+  const std::vector<Station> passes = {
+      PassAt(100, Pass::kIn, 359.9, 0.1), PassAt(200, Pass::kIn, 10, 1),
+      PassAt(200.05, Pass::kOut, 10.5, 1), PassAt(100, Pass::kOut, 0.3, 0.1),
+      PassAt(900, Pass::kOut, 0, 0.1)};
   const Check& check = Find(Checks({}, passes), "azimuth_in_out");
   ASSERT_TRUE(check.value && check.sigma && check.md);
   EXPECT_NEAR(*check.value, 0.4, 1e-9) << "across north, the short way";
@@ -70,7 +71,8 @@ TEST(Checks, TakesTheWorstPairOfPassesForItsSigma) {
 TEST(Checks, TheJobsLimitWins) {
   Job job;
   job.acceptance.azimuth_difference = FromDegrees(0.2);
-  const std::vector<Station> passes = {At(100, Pass::kIn, 0, 1), At(100, Pass::kOut, 0.3, 1)};
+  const std::vector<Station> passes = {PassAt(100, Pass::kIn, 0, 1),
+                                       PassAt(100, Pass::kOut, 0.3, 1)};
   const Check& check = Find(Checks(job, passes), "azimuth_in_out");
   EXPECT_EQ(check.verdict, Verdict::kFail);
   EXPECT_EQ(check.limit_source, "acceptance");
@@ -182,12 +184,12 @@ TEST(Checks, ACalibrationThatHasExpiredIsTold) {
 TEST(Checks, InAndOutRunAreHeldToFieldPracticeFromTenPairsOn) {
   std::vector<Station> passes;
   for (int i = 1; i <= 9; ++i) {
-    passes.push_back(At(100.0 * i, Pass::kIn, 50, 1));
-    passes.push_back(At(100.0 * i, Pass::kOut, 50.9, 1));
+    passes.push_back(PassAt(100.0 * i, Pass::kIn, 50, 1));
+    passes.push_back(PassAt(100.0 * i, Pass::kOut, 50.9, 1));
   }
   EXPECT_EQ(Find(Checks({}, passes), "azimuth_in_out_practice").verdict, Verdict::kNotDone);
-  passes.push_back(At(1000, Pass::kIn, 50, 1));
-  passes.push_back(At(1000, Pass::kOut, 51.2, 1));
+  passes.push_back(PassAt(1000, Pass::kIn, 50, 1));
+  passes.push_back(PassAt(1000, Pass::kOut, 51.2, 1));
   const std::vector<Check> at_40 = Checks({}, passes);
   const Check& steep = Find(at_40, "azimuth_in_out_practice");
   EXPECT_EQ(steep.verdict, Verdict::kFail);
@@ -205,8 +207,8 @@ TEST(Checks, InAndOutRunAreHeldToFieldPracticeFromTenPairsOn) {
 TEST(Checks, FieldPracticeAsksNoAzimuthThatIsUnsureNearVertical) {
   std::vector<Station> passes;
   const auto fly = [&](int i, double inclination_deg, double sigma_deg, double apart_deg) {
-    passes.push_back(At(100.0 * i, Pass::kIn, 50, sigma_deg));
-    passes.push_back(At(100.0 * i, Pass::kOut, 50 + apart_deg, sigma_deg));
+    passes.push_back(PassAt(100.0 * i, Pass::kIn, 50, sigma_deg));
+    passes.push_back(PassAt(100.0 * i, Pass::kOut, 50 + apart_deg, sigma_deg));
     for (Station& s : std::span(passes).last(2)) s.inclination = FromDegrees(inclination_deg);
   };
   for (int i = 1; i <= 10; ++i) fly(i, 0.4, 8, 12);
@@ -227,7 +229,7 @@ TEST(Checks, FieldPracticeAsksNoAzimuthThatIsUnsureNearVertical) {
 }
 
 TEST(Checks, SlippageIsPerKilometreThereAndBack) {
-  const std::vector<Station> passes = {At(2000, Pass::kIn, 50, 1)};
+  const std::vector<Station> passes = {PassAt(2000, Pass::kIn, 50, 1)};
   RunSummary run;
   run.run = 1;
   const std::vector<RunSummary> runs = {run};
@@ -244,7 +246,7 @@ TEST(Checks, SlippageIsPerKilometreThereAndBack) {
 TEST(Checks, AskedDepthsWithoutAStationAreCounted) {
   Job job;
   job.stations.at = {0, 100, 200, 300};
-  const std::vector<Station> chosen = {At(100.05, Pass::kIn, 0, 1)};
+  const std::vector<Station> chosen = {PassAt(100.05, Pass::kIn, 0, 1)};
   const Check check = CheckAsked(job, chosen);
   EXPECT_EQ(check.value.value_or(0), 2) << "200 and 300; the tie-in is the station of 0";
   EXPECT_EQ(check.md.value_or(0), 200);

@@ -26,7 +26,7 @@ constexpr char kSidetrack[] = "10 - well";
 constexpr double kKickOff = 900;  // [m]
 
 /// Stations and positions as the set lists them.
-SurveyedWell Listed(const json& well) {
+SurveyedWell PublishedWell(const json& well) {
   SurveyedWell made;
   for (std::size_t i = 0; i < well["MD"].size(); ++i) {
     const auto at = [&](const char* column) { return well[column][i].get<double>(); };
@@ -42,7 +42,7 @@ struct Known {
   PositionUncertainty errors;
 };
 
-Known Surveyed(const json& well, const ErrorModel& model, const PropagateOptions& options) {
+Known PublishedSurvey(const json& well, const ErrorModel& model, const PropagateOptions& options) {
   const json& header = well["header"];
   Surroundings place;
   place.latitude = header["latitude"].get<double>() * units::kDeg;
@@ -52,7 +52,7 @@ Known Surveyed(const json& well, const ErrorModel& model, const PropagateOptions
   place.declination = header["declination"].get<double>();
   place.convergence = header["convergence"].get<double>();
   Known known;
-  known.well = Listed(well);
+  known.well = PublishedWell(well);
   known.errors = PropagateErrors(known.well.survey, place, model, options);
   return known;
 }
@@ -90,11 +90,11 @@ TEST(ClearancePublished, IscwsaSet) {
   tied.tie_on = TieOn::kIndependent;
 
   const json& wells = set["wells"];
-  const Known reference = Surveyed(wells["Reference well"], *model, whole);
+  const Known reference = PublishedSurvey(wells["Reference well"], *model, whole);
   const auto& survey = reference.well.survey;
   kicked.zero_at = static_cast<std::size_t>(std::ranges::find(survey, kKickOff, &SurveyPoint::md) -
                                             survey.begin());
-  const Known below = Surveyed(wells["Reference well"], *model, kicked);
+  const Known below = PublishedSurvey(wells["Reference well"], *model, kicked);
 
   const HoleSection wide[] = {{1e5, 0.4572}}, narrow[] = {{1e5, 0.3048}};
   SeparationRule rule;
@@ -104,7 +104,7 @@ TEST(ClearancePublished, IscwsaSet) {
   for (const auto& [name, well] : wells.items()) {
     if (!well.contains("SF")) continue;
     const bool sidetrack = name == kSidetrack;
-    const Known offset = Surveyed(well, *model, sidetrack ? tied : whole);
+    const Known offset = PublishedSurvey(well, *model, sidetrack ? tied : whole);
     worst_sigma = std::max(worst_sigma, SigmaDifference(offset, well));
     const Known& first = sidetrack ? below : reference;
     const auto rows =

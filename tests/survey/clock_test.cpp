@@ -64,7 +64,7 @@ double WorstInclination(const Survey& survey) {
   return worst;
 }
 
-bool Told(const CollectingSink& sink, const std::string& what) {
+bool IsTold(const CollectingSink& sink, const std::string& what) {
   return std::any_of(sink.faults.begin(), sink.faults.end(), [&](const Fault& fault) {
     return fault.code == FaultCode::kOrder && fault.text.find(what) != std::string::npos;
   });
@@ -102,7 +102,7 @@ TEST(Clock, BehindAJumpOfTheToolsClockOrNumbersTheSurveyGoesOn) {
     EXPECT_NEAR(Deepest(survey).md, Deepest(undisturbed).md, 1e-6);
     EXPECT_LT(WorstInclination(survey), 0.05);
     EXPECT_LT((Deepest(survey).p_WT_W - Deepest(undisturbed).p_WT_W).norm(), 0.1);
-    EXPECT_TRUE(Told(sink, "the clock jumps before sample"));
+    EXPECT_TRUE(IsTold(sink, "the clock jumps before sample"));
     EXPECT_EQ(survey.runs[0].clock_jumps, 1);
     EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kWarn);
     EXPECT_EQ(Flagged(survey, 0, 100), 0);
@@ -120,7 +120,7 @@ TEST(Clock, AUtcThatMovesAgainstTheNumbersMakesAllDepthsBehindItDoubtful) {
           WithStamps(sink, [&](SampleStamp& stamp) { Move(stamp, tool * seconds, seconds); });
       ASSERT_EQ(survey.unusable, "");
       EXPECT_GT(Deepest(survey).md, 260);
-      EXPECT_TRUE(Told(sink, tool > 0 ? "the clock jumps before sample" : "UTC steps by"));
+      EXPECT_TRUE(IsTold(sink, tool > 0 ? "the clock jumps before sample" : "UTC steps by"));
       EXPECT_EQ(survey.runs[0].clock_jumps, 1);
       EXPECT_EQ(Find(survey, "clock_jumps")->verdict, Verdict::kWarn);
       EXPECT_EQ(Flagged(survey, 0, 90), 0);
@@ -251,7 +251,7 @@ TEST(Clock, StraysAreToldAndWarnedOf) {
   EXPECT_EQ(survey.runs[0].samples_lost, 40);
   EXPECT_EQ(survey.runs[0].clock_jumps, 0);
   EXPECT_EQ(Find(survey, "samples_refused")->verdict, Verdict::kWarn);
-  EXPECT_TRUE(Told(sink, "40 samples were left out"));
+  EXPECT_TRUE(IsTold(sink, "40 samples were left out"));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 constexpr double kEnd = 1800;  // [m]
 
 /// Arcs of 180 m, a whole number of which is between any stations of these tests, so that nothing

@@ -19,14 +19,11 @@ namespace {
 
 using testing::CollectingSink;
 
-Simulation Slant() { return SimulationOf(testing::SmallHole{}); }
-Job SlantJob() { return JobOf(testing::SmallHole{}); }
-
 /// A survey in which `damage` may change each depth mark, given its number.
 template <class Damage>
 Survey Damaged(Sink& sink, Damage damage) {
   int marks = 0;
-  return testing::SurveyOf(Slant(), SlantJob(), sink, [&](SimulatedStep& step) {
+  return testing::SurveyOf(testing::Slant(), testing::SlantJob(), sink, [&](SimulatedStep& step) {
     if (auto* mark = std::get_if<DepthMark>(&step)) damage(*mark, marks++);
     return true;
   });
@@ -85,13 +82,14 @@ TEST(Damage, DepthsThatNoHoleHasEndNothing) {
 TEST(Damage, ImpossibleSamplesAreRefused) {
   CollectingSink sink;
   int k = 0;
-  const Survey survey = testing::SurveyOf(Slant(), SlantJob(), sink, [&k](SimulatedStep& step) {
-    if (auto* sample = std::get_if<ImuSample>(&step)) {
-      if (++k == 3000) sample->w_IT_T.x() = 1e300;
-      if (k == 4000) sample->f_T.z() = -1e300;
-    }
-    return true;
-  });
+  const Survey survey =
+      testing::SurveyOf(testing::Slant(), testing::SlantJob(), sink, [&k](SimulatedStep& step) {
+        if (auto* sample = std::get_if<ImuSample>(&step)) {
+          if (++k == 3000) sample->w_IT_T.x() = 1e300;
+          if (k == 4000) sample->f_T.z() = -1e300;
+        }
+        return true;
+      });
   ASSERT_EQ(survey.unusable, "");
   EXPECT_EQ(survey.runs[0].samples_lost, 2);
   for (const Station& s : survey.chosen) {
@@ -103,13 +101,13 @@ TEST(Damage, ImpossibleSamplesAreRefused) {
 // Two recordings under one session and its numbers. Until 2026-11-21 the second was taken for a
 // repetition of the first.
 TEST(Damage, AnotherRunUnderTheSameNumbersIsTold) {
-  Simulation turned = Slant();
+  Simulation turned = testing::Slant();
   turned.run.steps[1] = RunMove{.to_md = 300, .roll = {.rate = 0.3}};
   for (const bool other : {false, true}) {
     CollectingSink sink;
-    Surveyor surveyor(SlantJob(), sink);
-    testing::Play(Slant(), surveyor);
-    testing::Play(other ? turned : Slant(), surveyor, [](const SimulatedStep& step) {
+    Surveyor surveyor(testing::SlantJob(), sink);
+    testing::Play(testing::Slant(), surveyor);
+    testing::Play(other ? turned : testing::Slant(), surveyor, [](const SimulatedStep& step) {
       return std::holds_alternative<ImuSample>(step);
     });
     surveyor.Finish();
@@ -129,7 +127,7 @@ TEST(Damage, AnotherRunUnderTheSameNumbersIsTold) {
 }
 
 Simulation WithoutStops() {
-  Simulation quick = Slant();
+  Simulation quick = testing::Slant();
   std::get<RunStop>(quick.run.steps[0]).seconds = 10;
   std::get<RunStop>(quick.run.steps[2]).seconds = 10;
   return quick;
@@ -140,7 +138,7 @@ TEST(Damage, WithoutAStopTheMotionShowsNorth) {
   const Simulation quick = WithoutStops();
   const Truth truth(quick);
   Sink sink;
-  const Survey survey = testing::SurveyOf(quick, SlantJob(), sink);
+  const Survey survey = testing::SurveyOf(quick, testing::SlantJob(), sink);
   ASSERT_EQ(survey.unusable, "");
   for (const Station& s : survey.chosen) {
     const double sigma = std::sqrt(s.cov_md_inc_azi(2, 2));
@@ -152,7 +150,7 @@ TEST(Damage, WithoutAStopTheMotionShowsNorth) {
 // A bias that may be as large as the Earth's rate and a tool that does not roll.
 TEST(Damage, WithoutNorthThereIsNoSurvey) {
   CollectingSink sink;
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   job.errors.gyro_bias_sigma = 15 * units::kDegPerHour;
   const Survey survey = testing::SurveyOf(WithoutStops(), job, sink);
   EXPECT_NE(survey.unusable.find("no north"), std::string::npos);
@@ -161,7 +159,7 @@ TEST(Damage, WithoutNorthThereIsNoSurvey) {
 
 TEST(Damage, FloodsAreBounded) {
   CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(testing::SlantJob(), sink);
   std::vector<ImuSample> batch(1);
   ImuSample& sample = batch[0];
   sample.stamp.period_ns = 10'000'000;

@@ -20,26 +20,26 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeg = units::kDeg, kDegPerHour = units::kDegPerHour;
-constexpr double kLatitude = 55 * kDeg;
+using units::kDeg, units::kDegPerHour;
+constexpr double kFleetLatitude = 55 * kDeg;
 constexpr double kEarthRate = 7.292115e-5;  // [rad/s]
 
 /// A hole that builds and turns: inclination and azimuth at a depth, in closed form.
-struct Hole {
+struct FleetHole {
   double azimuth, turn, inclination, build, phase;
 
   double Inclination(double md) const { return inclination + build * std::sin(md / 450 + phase); }
   double Azimuth(double md) const { return azimuth + turn * std::sin(md / 600 + 2 * phase); }
 };
 
-Hole DrawnHole(Random& random) {
+FleetHole DrawnHole(Random& random) {
   return {2 * kPi * random.Uniform(), (60 + 60 * random.Uniform()) * kDeg,
           (30 + 10 * random.Uniform()) * kDeg, (10 + 15 * random.Uniform()) * kDeg,
           2 * kPi * random.Uniform()};
 }
 
 /// What magnitudes a fleet truly has, 1 sigma in SI.
-struct Truth {
+struct FleetTruth {
   double axis = 0.06 * kDeg;          // XYM1: inclination, by sin I
   double azimuth = 0.3 * kDeg;        // AZ: azimuth
   double xyb = 0.012;                 // AXYZ-XYB: inclination, by cos I / g
@@ -52,12 +52,12 @@ struct Truth {
 
 /// A listing of the hole as a tool with drawn errors makes it. Written out from the published
 /// tables of SPE 90408 for a two-axis gyrocompass, apart from the library's weights.
-std::vector<SurveyPoint> Listed(const Hole& hole, const Truth& truth, double spacing,
+std::vector<SurveyPoint> Listed(const FleetHole& hole, const FleetTruth& truth, double spacing,
                                 Random& random) {
   const auto draw = [&](double sigma) { return sigma * random.Normal(); };
   const double axis = draw(truth.axis), azimuth = draw(truth.azimuth), xyb = draw(truth.xyb);
   const double b1 = draw(truth.b1), b2 = draw(truth.b2), depth = draw(truth.depth);
-  const double north = kEarthRate * std::cos(kLatitude);
+  const double north = kEarthRate * std::cos(kFleetLatitude);
   std::vector<SurveyPoint> stations;
   for (double md = 0; md <= 1500; md += spacing) {
     const double inc = hole.Inclination(md - depth), azi = hole.Azimuth(md - depth);
@@ -74,17 +74,17 @@ std::vector<SurveyPoint> Listed(const Hole& hole, const Truth& truth, double spa
   return stations;
 }
 
-Surroundings Somewhere() {
+Surroundings FleetPlace() {
   Surroundings place;
-  place.latitude = kLatitude;
+  place.latitude = kFleetLatitude;
   return place;
 }
 
-std::vector<RepeatedHole> Fleet(int holes, int surveys, const Truth& truth, Random& random) {
+std::vector<RepeatedHole> Fleet(int holes, int surveys, const FleetTruth& truth, Random& random) {
   std::vector<RepeatedHole> fleet;
   for (int i = 0; i < holes; ++i) {
-    const Hole hole = DrawnHole(random);
-    RepeatedHole repeated{"hole " + std::to_string(i), Somewhere(), {}};
+    const FleetHole hole = DrawnHole(random);
+    RepeatedHole repeated{"hole " + std::to_string(i), FleetPlace(), {}};
     for (int k = 0; k < surveys; ++k) {
       const double spacing = k % 2 ? 25 : 50;
       repeated.surveys.push_back(
@@ -116,7 +116,7 @@ ErrorModel Assumed() {
   return model;
 }
 
-std::map<std::string, double> Magnitudes(const Truth& truth) {
+std::map<std::string, double> Magnitudes(const FleetTruth& truth) {
   return {{"XYM1", truth.axis},  {"AZ", truth.azimuth}, {"AXYZ-XYB", truth.xyb},
           {"GXY-B1", truth.b1},  {"GXY-B2", truth.b2},  {"GXY-RN", truth.noise},
           {"DREF", truth.depth}, {"local", truth.local}};
@@ -133,8 +133,8 @@ std::vector<TermEstimate> Estimates(const EmpiricalModel& made) {
 }
 
 /// Each magnitude between 0.6 and 1.6 times its own.
-Truth DrawnTruth(Random& random) {
-  Truth truth;
+FleetTruth DrawnTruth(Random& random) {
+  FleetTruth truth;
   for (double* m : {&truth.axis, &truth.azimuth, &truth.xyb, &truth.b1, &truth.b2, &truth.noise,
                     &truth.depth, &truth.local}) {
     *m *= 0.6 + random.Uniform();
@@ -145,7 +145,7 @@ Truth DrawnTruth(Random& random) {
 // 300 runs in 60 holes: every magnitude within 15 % of the truth.
 TEST(EmpiricalModel, ThreeHundredRunsTellTheirMagnitudes) {
   Random random(22);
-  const Truth truth;
+  const FleetTruth truth;
   const std::vector<RepeatedHole> fleet = Fleet(60, 5, truth, random);
   const EmpiricalModel made = EstimateModel(fleet, Assumed());
   EXPECT_EQ(made.holes.size(), 60u);
@@ -176,7 +176,7 @@ TEST(EmpiricalModelFleets, IntervalsHoldAsOftenAsTheySay) {
   std::map<std::string, int> held, near;
   int all = 0, all_held = 0, all_near = 0;
   for (int i = 0; i < kFleets; ++i) {
-    const Truth truth = DrawnTruth(random);
+    const FleetTruth truth = DrawnTruth(random);
     const std::vector<RepeatedHole> fleet = Fleet(60, 5, truth, random);
     for (const TermEstimate& e : Estimates(EstimateModel(fleet, Assumed()))) {
       const double is = Magnitudes(truth).at(e.term);
@@ -200,7 +200,7 @@ TEST(EmpiricalModelFleets, IntervalsHoldAsOftenAsTheySay) {
 // In which order a hole's surveys stand makes no difference.
 TEST(EmpiricalModel, TheOrderOfSurveysMakesNoDifference) {
   Random random(1);
-  std::vector<RepeatedHole> fleet = Fleet(10, 3, Truth(), random);
+  std::vector<RepeatedHole> fleet = Fleet(10, 3, FleetTruth(), random);
   const EmpiricalModel made = EstimateModel(fleet, Assumed());
   for (RepeatedHole& hole : fleet) std::ranges::reverse(hole.surveys);
   const EmpiricalModel again = EstimateModel(fleet, Assumed());
@@ -215,7 +215,7 @@ TEST(EmpiricalModel, TheOrderOfSurveysMakesNoDifference) {
 // systematic magnitude moves.
 TEST(EmpiricalModel, PassesOfOneRunTellOnlyWhatChangesBetweenStations) {
   Random random(2);
-  Truth still;
+  FleetTruth still;
   still.axis = still.azimuth = still.xyb = still.b1 = still.b2 = still.depth = 0;
   std::vector<RepeatedHole> fleet = Fleet(30, 2, still, random);
   for (RepeatedHole& hole : fleet) hole.surveys[1].run = hole.surveys[0].run;
@@ -234,7 +234,7 @@ TEST(EmpiricalModel, PassesOfOneRunTellOnlyWhatChangesBetweenStations) {
 // come down to the truth from wherever they begin.
 TEST(EmpiricalModel, WhatIsAssumedMovesNoEstimate) {
   Random random(3);
-  const std::vector<RepeatedHole> fleet = Fleet(40, 5, Truth(), random);
+  const std::vector<RepeatedHole> fleet = Fleet(40, 5, FleetTruth(), random);
   const EmpiricalModel made = EstimateModel(fleet, Assumed());
   ErrorModel greater = Assumed();
   for (ErrorTerm& term : greater.terms) {
@@ -251,8 +251,8 @@ TEST(EmpiricalModel, WhatIsAssumedMovesNoEstimate) {
 
 TEST(EmpiricalModel, WhatTellsNothingIsNamed) {
   Random random(4);
-  std::vector<RepeatedHole> fleet = Fleet(2, 2, Truth(), random);
-  fleet.push_back({"alone", Somewhere(), {fleet[0].surveys[0]}});
+  std::vector<RepeatedHole> fleet = Fleet(2, 2, FleetTruth(), random);
+  fleet.push_back({"alone", FleetPlace(), {fleet[0].surveys[0]}});
   const EmpiricalModel made = EstimateModel(fleet, Assumed());
   EXPECT_EQ(made.holes.size(), 2u);
   ASSERT_FALSE(made.notes.empty());
@@ -260,7 +260,7 @@ TEST(EmpiricalModel, WhatTellsNothingIsNamed) {
   fleet.erase(fleet.begin(), fleet.end() - 1);
   EXPECT_THROW(EstimateModel(fleet, Assumed()), std::invalid_argument);
   EXPECT_THROW(EstimateModel({}, Assumed()), std::invalid_argument);
-  fleet = Fleet(2, 2, Truth(), random);
+  fleet = Fleet(2, 2, FleetTruth(), random);
   EmpiricalOptions options;
   options.local_sigma = 0;
   EXPECT_THROW(EstimateModel(fleet, Assumed(), options), std::invalid_argument);

@@ -18,20 +18,17 @@ namespace {
 
 using testing::CollectingSink;
 
-Simulation Slant() { return SimulationOf(testing::SmallHole{}); }
-Job SlantJob() { return JobOf(testing::SmallHole{}); }
-
 Survey Straight() {
   Sink sink;
-  return testing::SurveyOf(Slant(), SlantJob(), sink);
+  return testing::SurveyOf(testing::Slant(), testing::SlantJob(), sink);
 }
 
 /// The survey of the true stream, into which `also` pushes before each step what it likes.
 template <class Also>
 Survey With(CollectingSink& sink, Also also) {
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(testing::SlantJob(), sink);
   int k = 0;
-  testing::Play(Slant(), surveyor, [&](SimulatedStep& step) {
+  testing::Play(testing::Slant(), surveyor, [&](SimulatedStep& step) {
     also(surveyor, step, k++);
     return true;
   });
@@ -108,9 +105,9 @@ TEST(HostileInput, MarksThatAreMerelyAheadOfTheSamplesAreAllUsed) {
   const Survey straight = Straight();
   // Every mark comes a minute early, with a latency of five seconds.
   CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(testing::SlantJob(), sink);
   std::vector<SimulatedStep> samples;
-  Simulator simulator(Slant());
+  Simulator simulator(testing::Slant());
   surveyor.Push(simulator.tool_info());
   std::size_t next = 0;
   SimulatedStep step;
@@ -165,16 +162,16 @@ TEST(HostileInput, AfterAHundredThousandModesACommandIsObeyed) {
   EXPECT_EQ(survey.chosen.size(), straight.chosen.size());
 
   CollectingSink obeyed;
-  Surveyor surveyor(SlantJob(), obeyed);
+  Surveyor surveyor(testing::SlantJob(), obeyed);
   ToolMode mode;
-  mode.utc = Slant().streams.begin_utc;
+  mode.utc = testing::Slant().streams.begin_utc;
   for (int i = 0; i < 120'000; ++i) surveyor.Push(mode);
   Command command;
   command.utc = mode.utc + Duration::Seconds(100);
   command.command_id = 5;
   command.kind = Command::Kind::kAdjust;
   surveyor.Push(command);
-  testing::Play(Slant(), surveyor);
+  testing::Play(testing::Slant(), surveyor);
   EXPECT_EQ(obeyed.acknowledged, std::vector<std::int32_t>{5});
 }
 
@@ -229,7 +226,7 @@ TEST(HostileInput, WhatNoJobMayHoldIsRefusedOnTheWireToo) {
 
 TEST(HostileInput, ATextOfMegabytesIsRefused) {
   CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(testing::SlantJob(), sink);
   Event event;
   event.text.assign(1 << 20, 'x');
   surveyor.Push(event);

@@ -82,7 +82,7 @@ std::string TextOf(const Station& s) {
 }
 
 /// All that is told, the depths that were refused, and what the survey makes of it.
-std::string Told(const Simulation& simulation, const Job& job, const Messages& messages) {
+std::string AllTold(const Simulation& simulation, const Job& job, const Messages& messages) {
   testing::CollectingSink sink;
   Surveyor surveyor(job, sink);
   for (const auto& [when, message] : messages) {
@@ -128,7 +128,7 @@ TEST_P(Interleaving, DoesNotMatterWithinTheLatency) {
         (rezero.utc - begin).seconds() + 0.33 * static_cast<double>(seed) * c.latency;
     const auto at = std::ranges::lower_bound(messages, said, {}, &Messages::value_type::first);
     messages.insert(at, {said, rezero});
-    const std::string told = Told(simulation, job, messages);
+    const std::string told = AllTold(simulation, job, messages);
     EXPECT_GT(told.size(), 3000u) << told;
     if (seed == 0) first = told;
     EXPECT_EQ(told, first) << c.name << ", order " << seed;

@@ -12,8 +12,8 @@ namespace {
 constexpr double kDeclination = FromDegrees(4);
 
 /// Twenty minutes with two stops, in a field of 50 microtesla that dips by 72 deg.
-struct Flight {
-  explicit Flight(double inclination_deg, double undulation_deg = 1.8) {
+struct MagneticFlight {
+  explicit MagneticFlight(double inclination_deg, double undulation_deg = 1.8) {
     hour = testing::Tactical();
     hour.inclination_deg = inclination_deg;
     hour.azimuth_deg = 45;
@@ -47,7 +47,7 @@ int Count(const Survey& survey, const std::string& code, Verdict verdict) {
 }
 
 TEST(Magnetic, IsComparedAtEveryStop) {
-  Flight flight(50);
+  MagneticFlight flight(50);
   const Survey without = flight.Surveyed();
   EXPECT_EQ(Count(without, "magnetic_azimuth", Verdict::kNotDone), 1) << "no declination";
   for (const NorthFix& fix : without.runs.at(0).fixes) {
@@ -74,7 +74,7 @@ TEST(Magnetic, IsComparedAtEveryStop) {
 // At 90 deg, in a straight hole, the gyros do not tell 45 from 135 deg: two stops at other
 // inclinations or azimuths do.
 TEST(Magnetic, TiesOnceWhereTheJobSaysSo) {
-  Flight flight(90, 0);
+  MagneticFlight flight(90, 0);
   flight.job.magnetic = MagneticSpec{.declination = kDeclination, .sigma = FromDegrees(3)};
   EXPECT_LT(flight.Surveyed().chosen.size(), 2u) << "no north";
   flight.job.magnetic->tie = true;

@@ -26,9 +26,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 
-Surroundings Somewhere() {
+Surroundings MergePlace() {
   Surroundings place;
   place.latitude = 60 * kDeg;
   place.field = 5e-5;
@@ -37,7 +37,7 @@ Surroundings Somewhere() {
   return place;
 }
 
-SurveyPoint HoleAt(double md) {
+SurveyPoint MergeHoleAt(double md) {
   const double inclination = md < 300 ? 0 : 50 * (1 - std::exp(-(md - 300) / 600));
   return {md, inclination * kDeg, (70 + 40 * std::sin(md / 900)) * kDeg, 0};
 }
@@ -48,7 +48,7 @@ MergeLeg Leg(const char* name, const ErrorModel& model, int run, double from, do
   leg.name = name;
   leg.model = &model;
   leg.run = run;
-  for (double md = from; md <= to; md += spacing) leg.stations.push_back(HoleAt(md));
+  for (double md = from; md <= to; md += spacing) leg.stations.push_back(MergeHoleAt(md));
   return leg;
 }
 
@@ -57,7 +57,7 @@ double SemiMajor(const Matrix3d& cov) {
 }
 
 MergedSurvey Merged(const std::vector<MergeLeg>& legs, const MergePolicy& policy = {}) {
-  return Merge(legs, Vector3d::Zero(), Matrix3d::Zero(), Somewhere(), policy);
+  return Merge(legs, Vector3d::Zero(), Matrix3d::Zero(), MergePlace(), policy);
 }
 
 class MergeLegs : public testing::Test {
@@ -98,13 +98,13 @@ TEST_F(MergeLegs, ItsErrorsAreAsLargeAsItsCovarianceSays) {
                                   Leg("mwd", mwd_, 2, 900, 2100, 60)};
     std::vector<SurveyPoint> truth;
     Vector3d of_courses = Vector3d::Zero();
-    for (double md = 0; md <= 2100; md += 60) truth.push_back(HoleAt(md));
+    for (double md = 0; md <= 2100; md += 60) truth.push_back(MergeHoleAt(md));
     for (MergeLeg& leg : legs) {
       const ToolLeg whole{leg.model, 0, leg.stations.size(), leg.run};
       // The tool's mode is that of a tool which has run in from the top.
       std::vector<SurveyPoint> from_top = truth;
       const ToolLeg all{leg.model, 0, from_top.size(), leg.run};
-      const SurveyErrors errors = ErrorsAtStations(from_top, Somewhere(), {&all, 1});
+      const SurveyErrors errors = ErrorsAtStations(from_top, MergePlace(), {&all, 1});
       std::map<std::pair<std::size_t, std::int64_t>, double> drawn;
       std::map<double, Vector3d> direction;
       std::map<double, double> depth;

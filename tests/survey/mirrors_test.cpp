@@ -26,7 +26,7 @@ struct Shot {
 };
 
 /// Builds from `first` to `end` and goes on there, a shot every 30 m.
-std::vector<Shot> Hole(double first, double end, double azimuth) {
+std::vector<Shot> ShotsOf(double first, double end, double azimuth) {
   std::vector<Shot> hole;
   for (int i = 0; i < 30; ++i) {
     hole.push_back({30.0 * i, std::min(end, first + 4 * i), azimuth + 5 * std::sin(0.4 * i)});
@@ -70,13 +70,13 @@ std::vector<Draft> Shoot(const std::vector<Shot>& hole, std::uint64_t seed) {
   return drafts;
 }
 
-struct Count {
+struct MirrorCount {
   int wrong = 0, silent = 0, flagged = 0, all = 0;
 };
 
 /// A wrong one is nearer to the truth's mirror than to the truth.
-Count Judge(const std::vector<Shot>& hole, const std::vector<Draft>& drafts) {
-  Count count;
+MirrorCount Judge(const std::vector<Shot>& hole, const std::vector<Draft>& drafts) {
+  MirrorCount count;
   for (std::size_t i = 0; i < hole.size(); ++i) {
     const double truth = FromDegrees(hole[i].azimuth_deg), found = drafts[i].attitude.azimuth;
     const bool wrong = std::abs(WrapPi(found - truth)) > std::abs(WrapPi(found - (kPi - truth)));
@@ -89,12 +89,12 @@ Count Judge(const std::vector<Shot>& hole, const std::vector<Draft>& drafts) {
   return count;
 }
 
-Count Many(const Job& job, const std::vector<Shot>& hole, bool resolve) {
-  Count sum;
+MirrorCount Many(const Job& job, const std::vector<Shot>& hole, bool resolve) {
+  MirrorCount sum;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     std::vector<Draft> drafts = Shoot(hole, seed);
     if (resolve) ResolveMirrors(job, drafts);
-    const Count count = Judge(hole, drafts);
+    const MirrorCount count = Judge(hole, drafts);
     sum.wrong += count.wrong;
     sum.silent += count.silent;
     sum.flagged += count.flagged;
@@ -109,8 +109,8 @@ Count Many(const Job& job, const std::vector<Shot>& hole, bool resolve) {
 // picks none.
 TEST(Mirrors, AHoleThatBuildsFromASureStationHasNone) {
   for (const double end : {88.0, 90.0}) {
-    const std::vector<Shot> hole = Hole(40, end, 45);
-    const Count alone = Many({}, hole, false), resolved = Many({}, hole, true);
+    const std::vector<Shot> hole = ShotsOf(40, end, 45);
+    const MirrorCount alone = Many({}, hole, false), resolved = Many({}, hole, true);
     EXPECT_GT(alone.wrong, 100);
     EXPECT_EQ(alone.silent, 0);
     EXPECT_GT(alone.flagged, alone.all / 3);
@@ -123,8 +123,8 @@ TEST(Mirrors, AHoleThatBuildsFromASureStationHasNone) {
 // All near horizontal: the shots become one hole, the right or the wrong, and all of them say so.
 TEST(Mirrors, AHoleWithoutASureStationStaysFlagged) {
   for (const double inclination : {88.0, 90.0}) {
-    const std::vector<Shot> hole = Hole(inclination, inclination, 45);
-    const Count resolved = Many({}, hole, true);
+    const std::vector<Shot> hole = ShotsOf(inclination, inclination, 45);
+    const MirrorCount resolved = Many({}, hole, true);
     EXPECT_GT(resolved.wrong, 0);
     EXPECT_EQ(resolved.silent, 0);
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -136,7 +136,7 @@ TEST(Mirrors, AHoleWithoutASureStationStaysFlagged) {
     Job job;
     job.tie_in.inclination = FromDegrees(inclination);
     job.tie_in.azimuth = FromDegrees(45);
-    const Count tied = Many(job, hole, true);
+    const MirrorCount tied = Many(job, hole, true);
     EXPECT_EQ(tied.wrong, 0);
     EXPECT_LT(tied.flagged, tied.all / 40);
   }

@@ -30,7 +30,7 @@ const testing::SmallHole kSlant = {.inclination_deg = 20,
                                    .accel_noise_g = 2e-5,
                                    .stations_every = 25};
 
-Simulation Slant() {
+Simulation OperatedRun() {
   Simulation simulation = SimulationOf(kSlant);
   simulation.streams.run = 0;
   simulation.tool.errors.depth_resolution = 0.01;
@@ -43,7 +43,7 @@ RunMove Move(double to_md) {
   return {.to_md = to_md, .speed = 1.5, .ramp = 5, .roll = {.rate = kTwoPi / 60}};
 }
 
-Job SlantJob() {
+Job OperatedJob() {
   Job job = JobOf(kSlant);
   job.errors.depth_sigma = 0.02;
   return job;
@@ -51,7 +51,7 @@ Job SlantJob() {
 
 UtcTime Later(UtcTime begin, double seconds) { return begin + Duration::Seconds(seconds); }
 
-Event At(UtcTime utc, Event::Kind kind) {
+Event EventAt(UtcTime utc, Event::Kind kind) {
   Event event;
   event.utc = utc;
   event.kind = kind;
@@ -75,35 +75,35 @@ class Operations : public ::testing::Test {
   /// A misrun; then in, a repeat section, in to the bottom, out, and a foresight on deck. Half way
   /// up the depth counter jumps by 3 m and is re-zeroed at once.
   void Run(Surveyor& surveyor) {
-    Simulation first = Slant();
+    Simulation first = OperatedRun();
     first.run.steps = {Stop(90), Move(200), Stop(5)};
     first.streams.session = 1;
     begin_ = first.streams.begin_utc;
     const double length = Play(first, surveyor);
-    Event misrun = At(Later(begin_, length), Event::Kind::kRunEnd);
+    Event misrun = EventAt(Later(begin_, length), Event::Kind::kRunEnd);
     misrun.what = "misrun";
     surveyor.Push(misrun);
 
-    Simulation second = Slant();
+    Simulation second = OperatedRun();
     second.seed = 7;
     second.streams.session = 2;
     second.streams.begin_utc = Later(begin_, length + 600);
     second.run.steps = {Stop(90),  Move(400), Stop(5),   Move(300), Stop(5),
                         Move(600), Stop(120), Move(0.5), Stop(60)};
-    surveyor.Push(At(Later(second.streams.begin_utc, -1), Event::Kind::kRunBegin));
+    surveyor.Push(EventAt(Later(second.streams.begin_utc, -1), Event::Kind::kRunBegin));
     const Truth truth(second);
     rezero_ = 0.6 * truth.seconds();
-    Event rezero = At(Later(second.streams.begin_utc, rezero_), Event::Kind::kDepthRezero);
+    Event rezero = EventAt(Later(second.streams.begin_utc, rezero_), Event::Kind::kDepthRezero);
     rezero.has_value = true;
     rezero.value_m = truth.At(rezero_).md;
     surveyor.Push(rezero);
     const double end = truth.seconds();
     const TruthState out = truth.At(end - 5);
-    Event foresight = At(Later(second.streams.begin_utc, end - 5), Event::Kind::kForesight);
+    Event foresight = EventAt(Later(second.streams.begin_utc, end - 5), Event::Kind::kForesight);
     foresight.value_rad = std::atan2(out.R_LT(1, 0), out.R_LT(0, 0)) + FromDegrees(2);
     foresight.sigma_rad = FromDegrees(0.05);
     surveyor.Push(foresight);
-    Event back = At(Later(second.streams.begin_utc, end - 5), Event::Kind::kReturnToZero);
+    Event back = EventAt(Later(second.streams.begin_utc, end - 5), Event::Kind::kReturnToZero);
     back.has_value = true;
     back.value_m = 0.4;
     back.sigma_m = 0.1;
@@ -119,7 +119,7 @@ class Operations : public ::testing::Test {
 
 TEST_F(Operations, TheRightStationsAreChosenAndTheChecksSayWhatWasDone) {
   CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(OperatedJob(), sink);
   Run(surveyor);
   surveyor.Finish();
   const Survey survey = surveyor.Current(0);
@@ -188,9 +188,9 @@ TEST_F(Operations, TheRightStationsAreChosenAndTheChecksSayWhatWasDone) {
 
 TEST_F(Operations, AcceptedStationsAreDefinitiveAndRejectedOnesAreNotChosen) {
   CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(OperatedJob(), sink);
   Run(surveyor);
-  Event accept = At(Later(begin_, 10'000), Event::Kind::kAccept);
+  Event accept = EventAt(Later(begin_, 10'000), Event::Kind::kAccept);
   accept.run = 2;
   Event reject = accept;
   reject.kind = Event::Kind::kReject;
@@ -232,7 +232,7 @@ TEST_F(Operations, WhatWasSaidLastHoldsWhereASurveyIsBrokenOff) {
 
 TEST_F(Operations, EveryStationGoesOutProvisionalFirstAndRevisedAfter) {
   CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(OperatedJob(), sink);
   Run(surveyor);
   const std::size_t before = sink.stations.size();
   EXPECT_GT(before, 20u);

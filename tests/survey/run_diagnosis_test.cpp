@@ -28,8 +28,8 @@ using Cause = SimulatedFault::Cause;
 constexpr double kHalf = 600;  // [s]
 
 /// Twenty minutes down a hole that builds and turns, with four stops.
-struct Flight {
-  explicit Flight(std::uint64_t seed) {
+struct DiagnosedFlight {
+  explicit DiagnosedFlight(std::uint64_t seed) {
     simulation.well.end_md = 900;
     simulation.well.inclination.start = FromDegrees(30);
     simulation.well.inclination.terms.push_back({.rate = 1.5 * units::kDegPer30m});
@@ -81,7 +81,7 @@ double Sum(const std::vector<RunCause>& causes) {
 
 TEST(RunDiagnosis, OfARunWithoutFaultIsNone) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Survey survey = Flight(seed).Surveyed();
+    const Survey survey = DiagnosedFlight(seed).Surveyed();
     ASSERT_EQ(survey.unusable, "");
     ASSERT_TRUE(survey.runs[0].fit && survey.runs[0].fit->diagnosis);
     const Check* check = Find(survey, "diagnosis");
@@ -103,7 +103,7 @@ TEST(RunDiagnosis, OfARunWithoutFaultIsNone) {
   }
 }
 
-struct Wrong {
+struct PlantedCause {
   std::string code;
   Cause cause;
   double size;
@@ -111,15 +111,15 @@ struct Wrong {
   double begin;
   int axis = 0;
 };
-void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.code; }
+void PrintTo(const PlantedCause& wrong, std::ostream* out) { *out << wrong.code; }
 
-class FaultIsNamed : public ::testing::TestWithParam<Wrong> {};
+class FaultIsNamed : public ::testing::TestWithParam<PlantedCause> {};
 
 // The code itself or one that this run hardly tells from it comes first. The job takes the latitude
 // as exact, so that it is no unknown of the run.
 TEST_P(FaultIsNamed, WithItsSize) {
-  const Wrong& wrong = GetParam();
-  Flight flight(3);
+  const PlantedCause& wrong = GetParam();
+  DiagnosedFlight flight(3);
   flight.simulation.faults.push_back({.cause = wrong.cause,
                                       .axis = wrong.axis,
                                       .begin = wrong.begin,
@@ -153,12 +153,13 @@ TEST_P(FaultIsNamed, WithItsSize) {
 // At 600 s the tool is at 285 m or so.
 INSTANTIATE_TEST_SUITE_P(
     Of, FaultIsNamed,
-    ::testing::Values(Wrong{"toolface_slip", Cause::kToolfaceSlip, 0.6, units::kDeg, kHalf},
-                      Wrong{"toolface_offset", Cause::kToolfaceSlip, 0.6, units::kDeg, 0},
-                      Wrong{"gyro_step_x", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 0},
-                      Wrong{"gyro_step_y", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 1},
-                      Wrong{"accel_bias_z", Cause::kAccelBias, 9e-3, 1, 0, 2},
-                      Wrong{"latitude", Cause::kLatitude, 2, units::kDeg, 0}));
+    ::testing::Values(
+        PlantedCause{"toolface_slip", Cause::kToolfaceSlip, 0.6, units::kDeg, kHalf},
+        PlantedCause{"toolface_offset", Cause::kToolfaceSlip, 0.6, units::kDeg, 0},
+        PlantedCause{"gyro_step_x", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 0},
+        PlantedCause{"gyro_step_y", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 1},
+        PlantedCause{"accel_bias_z", Cause::kAccelBias, 9e-3, 1, 0, 2},
+        PlantedCause{"latitude", Cause::kLatitude, 2, units::kDeg, 0}));
 
 /// Of a run whose odds of a fault are `ln_odds`, a latitude that moves its end by `shift_W`. The
 /// end has sigmas of 1, 2 and 2 m; a station further up and the end of another run have others.
@@ -199,7 +200,7 @@ TEST(RunDiagnosis, WhatMovesTheEndByMoreThanItsSigmaFails) {
 }
 
 TEST(RunDiagnosis, FilesHaveTheirColumns) {
-  const Survey survey = Flight(1).Surveyed();
+  const Survey survey = DiagnosedFlight(1).Surveyed();
   const std::string diagnosis = DiagnosisCsv(survey), reliability = ReliabilityCsv(survey);
   EXPECT_TRUE(diagnosis.starts_with(
       "RUN,CODE,BEGIN_UTC,BEGIN_MD[m],SIZE,SIGMA,UNIT,LN_BAYES,POSTERIOR,DN[m],DE[m],DV[m],ALIKE,"

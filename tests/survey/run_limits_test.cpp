@@ -23,30 +23,27 @@ namespace {
 
 using testing::CollectingSink;
 
-Simulation Slant() { return SimulationOf(testing::SmallHole{}); }
-Job SlantJob() { return JobOf(testing::SmallHole{}); }
-
 TEST(RunLimits, ATieInBelowTheRunIsNoSurvey) {
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   job.tie_in.md = 350;
   job.tie_in.inclination = FromDegrees(30);
   job.tie_in.azimuth = FromDegrees(45);
   Sink sink;
-  const Survey survey = testing::SurveyOf(Slant(), job, sink);
+  const Survey survey = testing::SurveyOf(testing::Slant(), job, sink);
   EXPECT_NE(survey.unusable.find("no deeper than the tie-in at 350.00 m"), std::string::npos)
       << survey.unusable;
   EXPECT_TRUE(survey.chosen.empty());
 }
 
 TEST(RunLimits, DepthsOutsideTheRunAreNoSurvey) {
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   job.stations.every = 0;
   job.stations.at = {1000, 2000};
   Sink sink;
-  EXPECT_NE(testing::SurveyOf(Slant(), job, sink).unusable.find("none of the depths"),
+  EXPECT_NE(testing::SurveyOf(testing::Slant(), job, sink).unusable.find("none of the depths"),
             std::string::npos);
   job.stations.at = {100, 1000};
-  const Survey part = testing::SurveyOf(Slant(), job, sink);
+  const Survey part = testing::SurveyOf(testing::Slant(), job, sink);
   EXPECT_EQ(part.unusable, "");
   EXPECT_EQ(part.chosen.size(), 2u);
   const Check* asked = testing::Find(part, "stations_asked");
@@ -56,21 +53,21 @@ TEST(RunLimits, DepthsOutsideTheRunAreNoSurvey) {
 }
 
 TEST(RunLimits, RejectingEverythingLeavesNoSurvey) {
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   Event reject;
-  reject.utc = Slant().streams.begin_utc;
+  reject.utc = testing::Slant().streams.begin_utc;
   reject.kind = Event::Kind::kReject;
   job.events.push_back(reject);
   Sink sink;
-  EXPECT_EQ(testing::SurveyOf(Slant(), job, sink).unusable, "every station was rejected");
+  EXPECT_EQ(testing::SurveyOf(testing::Slant(), job, sink).unusable, "every station was rejected");
 }
 
 TEST(RunLimits, SamplesAfterTheJobsEndOfARunAreLeftOut) {
-  const Simulation simulation = Slant();
+  const Simulation simulation = testing::Slant();
   const Truth truth(simulation);
   double at_200 = 0;
   while (truth.At(at_200).md < 200) at_200 += 0.5;
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   RunSpec run;
   run.number = simulation.streams.run > 0 ? simulation.streams.run : 1;
   run.end = simulation.streams.begin_utc + Duration::Seconds(at_200);
@@ -88,12 +85,12 @@ TEST(RunLimits, SamplesAfterTheJobsEndOfARunAreLeftOut) {
 }
 
 TEST(RunLimits, ReturnToZeroAndForesightCountAfterTheLastSample) {
-  Simulation simulation = Slant();
+  Simulation simulation = testing::Slant();
   simulation.run.steps.push_back(RunMove{.to_md = 1});
   simulation.run.steps.push_back(RunStop{.seconds = 30});
   const Truth truth(simulation);
   const TruthState end = truth.At(truth.seconds() - 1);
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   Event back;
   back.utc = simulation.streams.begin_utc + Duration::Seconds(truth.seconds() + 120);
   back.kind = Event::Kind::kReturnToZero;
@@ -121,9 +118,9 @@ TEST(RunLimits, ReturnToZeroAndForesightCountAfterTheLastSample) {
 }
 
 TEST(RunLimits, AnExternalAzimuthThatTheStopsContradictIsToldAtEveryStation) {
-  const Simulation simulation = Slant();
+  const Simulation simulation = testing::Slant();
   for (const double wrong : {0.0, 8.0}) {
-    Job job = SlantJob();
+    Job job = testing::SlantJob();
     job.alignment.method = AlignmentSpec::Method::kExternal;
     job.alignment.azimuth = simulation.well.azimuth.start + FromDegrees(wrong);
     job.alignment.sigma_azimuth = FromDegrees(0.5);
@@ -149,7 +146,7 @@ TEST(RunLimits, AveragesThatCannotBeAreLeftOutAndTold) {
     StillWindow window = good;
     change(window);
     CollectingSink sink;
-    Surveyor surveyor(SlantJob(), sink);
+    Surveyor surveyor(testing::SlantJob(), sink);
     surveyor.Push(window);
     surveyor.Finish();
     return sink.faults.size();
@@ -186,7 +183,7 @@ std::vector<StillWindow> ThreeRests() {
   return windows;
 }
 
-DepthMark MarkAt(UtcTime utc, double md, std::int64_t seq) {
+DepthMark NumberedMark(UtcTime utc, double md, std::int64_t seq) {
   DepthMark mark;
   mark.utc = utc;
   mark.md = md;
@@ -196,7 +193,7 @@ DepthMark MarkAt(UtcTime utc, double md, std::int64_t seq) {
 
 // Until 2026-11-21: "no north was found: no stop of 60 s ...".
 TEST(RunLimits, MarksAtBothEndsOfAveragesAtRestGiveTheirDepth) {
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   job.well.latitude = FromDegrees(60);
   job.stations.every = 0;
   job.stations.at_stops = true;
@@ -208,8 +205,8 @@ TEST(RunLimits, MarksAtBothEndsOfAveragesAtRestGiveTheirDepth) {
     for (std::size_t i = 0; i < windows.size(); ++i) {
       const double md = 100.0 * static_cast<double>(i);
       const auto seq = static_cast<std::int64_t>(2 * i);
-      surveyor.Push(MarkAt(windows[i].utc_begin, md, seq));
-      surveyor.Push(MarkAt(windows[i].utc_end, md + (i == 1 ? off : 0), seq + 1));
+      surveyor.Push(NumberedMark(windows[i].utc_begin, md, seq));
+      surveyor.Push(NumberedMark(windows[i].utc_end, md + (i == 1 ? off : 0), seq + 1));
     }
     for (const StillWindow& window : windows) surveyor.Push(window);
     surveyor.Finish();
@@ -230,7 +227,7 @@ TEST(RunLimits, MarksAtBothEndsOfAveragesAtRestGiveTheirDepth) {
 
 TEST(RunLimits, AveragesAtRestWithoutAnyDepthAreToldAsSuch) {
   Sink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(testing::SlantJob(), sink);
   for (const StillWindow& window : ThreeRests()) surveyor.Push(window);
   surveyor.Finish();
   const std::string why = surveyor.Current(0).unusable;
@@ -246,7 +243,7 @@ TEST(RunLimits, AStationOfARunCutOffLacksAnAzimuthOnlyWhereNoneIsKnown) {
     const Check* check = testing::Find(survey, "stations_without_azimuth");
     return check == nullptr ? Check{} : *check;
   };
-  const Simulation first = Slant();
+  const Simulation first = testing::Slant();
   const double length = Truth(first).seconds();
   const auto before = [](UtcTime end) {
     return [end](const SimulatedStep& step) {
@@ -257,7 +254,7 @@ TEST(RunLimits, AStationOfARunCutOffLacksAnAzimuthOnlyWhereNoneIsKnown) {
   };
   for (const double part : {0.5, 0.7}) {
     Sink sink;
-    Surveyor surveyor(SlantJob(), sink);
+    Surveyor surveyor(testing::SlantJob(), sink);
     testing::Play(first, surveyor,
                   before(first.streams.begin_utc + Duration::Seconds(part * length)));
     const Survey survey = surveyor.Current(0);
@@ -266,7 +263,7 @@ TEST(RunLimits, AStationOfARunCutOffLacksAnAzimuthOnlyWhereNoneIsKnown) {
     EXPECT_EQ(azimuths(surveyor).verdict, Verdict::kPass) << azimuths(surveyor).limit_source;
   }
   // Another run, without a stop at its begin.
-  Simulation second = Slant();
+  Simulation second = testing::Slant();
   second.run.steps = {RunMove{.to_md = 200}, RunStop{.seconds = 90}};
   second.streams.session = 2;
   second.streams.run = 2;
@@ -275,7 +272,7 @@ TEST(RunLimits, AStationOfARunCutOffLacksAnAzimuthOnlyWhereNoneIsKnown) {
   begin.kind = Event::Kind::kRunBegin;
   begin.utc = second.streams.begin_utc - Duration::Seconds(1);
   Sink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(testing::SlantJob(), sink);
   testing::Play(first, surveyor);
   surveyor.Push(begin);
   const double moving = Truth(second).seconds() - 90;
@@ -290,21 +287,22 @@ TEST(RunLimits, AStationOfARunCutOffLacksAnAzimuthOnlyWhereNoneIsKnown) {
 }
 
 TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
-  const Simulation simulation = Slant();
+  const Simulation simulation = testing::Slant();
   const Truth truth(simulation);
   double lost_md = 0;
   int lost = 0;
   Sink sink;
-  const Survey survey = testing::SurveyOf(simulation, SlantJob(), sink, [&](SimulatedStep& step) {
-    const auto* sample = std::get_if<ImuSample>(&step);
-    if (sample == nullptr || lost == 10) return true;
-    const double md = truth.At(static_cast<double>(sample->stamp.seq) / 20.0).md;
-    // Half a second, five metres before the station at 120 m.
-    if (md <= 115) return true;
-    ++lost;
-    lost_md = md;
-    return false;
-  });
+  const Survey survey =
+      testing::SurveyOf(simulation, testing::SlantJob(), sink, [&](SimulatedStep& step) {
+        const auto* sample = std::get_if<ImuSample>(&step);
+        if (sample == nullptr || lost == 10) return true;
+        const double md = truth.At(static_cast<double>(sample->stamp.seq) / 20.0).md;
+        // Half a second, five metres before the station at 120 m.
+        if (md <= 115) return true;
+        ++lost;
+        lost_md = md;
+        return false;
+      });
   ASSERT_EQ(survey.unusable, "");
   EXPECT_EQ(survey.runs[0].samples_lost, 10);
   EXPECT_NEAR(lost_md, 115, 2);
@@ -315,10 +313,10 @@ TEST(RunLimits, AStationAfterLostSamplesSaysSo) {
 
 TEST(RunLimits, ADepthErrorCountsOnceInAPassThatBeginsBelowTheTieIn) {
   // An hour of stops makes the depth error the largest by far.
-  Simulation simulation = Slant();
+  Simulation simulation = testing::Slant();
   simulation.run.steps.push_back(RunMove{.to_md = 150});
   simulation.run.steps.push_back(RunMove{.to_md = 250});
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   job.errors.depth_sigma = 2;
   Sink sink;
   const Survey survey = testing::SurveyOf(simulation, job, sink);
@@ -335,11 +333,11 @@ TEST(RunLimits, ADepthErrorCountsOnceInAPassThatBeginsBelowTheTieIn) {
 
 // The encoder reads 0.5 m too much all the way: below a build from 10 to 88 deg that is in the TVD.
 TEST(RunLimits, ADepthErrorFromTheStartIsInTheTvdBelowABuild) {
-  Simulation simulation = Slant();
+  Simulation simulation = testing::Slant();
   simulation.well.inclination.start = FromDegrees(10);
   simulation.well.inclination.terms.push_back({.rate = FromDegrees(78) / 300});
   simulation.tool.errors.depth_offset = 0.5;
-  Job job = SlantJob();
+  Job job = testing::SlantJob();
   job.errors.depth_sigma = 0.5;
   Sink sink;
   const Survey survey = testing::SurveyOf(simulation, job, sink);

@@ -16,21 +16,21 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kRest = 300, kSpeed = 0.8, kEnd = 720, kRamp = 10, kTemperature = 47;
+constexpr double kRest = 300, kSpeed = 0.8, kRunEnd = 720, kRamp = 10, kTemperature = 47;
 constexpr double kRollRate = -kTwoPi / 60;
 
 /// Rests five minutes, goes down for a quarter of an hour, rests again; `noise` times the noise
 /// that the job states.
 Simulation RunWithNoise(const Job& job, double noise) {
   Simulation s;
-  s.well.end_md = kEnd;
+  s.well.end_md = kRunEnd;
   s.well.inclination.start = FromDegrees(40);
   s.well.azimuth.start = FromDegrees(70);
   s.earth.latitude = job.well.latitude;
   s.run.roll_reference = RollReference::kHighSide;
   s.run.steps.push_back(RunStop{.seconds = kRest});
   RunMove down;
-  down.to_md = kEnd;
+  down.to_md = kRunEnd;
   down.speed = kSpeed;
   down.ramp = kRamp;
   down.roll.rate = kRollRate;
@@ -77,7 +77,7 @@ TEST(RunStretches, TellWhatTheToolDid) {
   const std::vector<RunStretch> stretches = StretchesFor(1);
   ASSERT_GT(stretches.size(), 50u);
   EXPECT_NEAR((stretches.back().end - stretches.front().begin).seconds(),
-              2 * kRest + kEnd / kSpeed + kRamp, 1);
+              2 * kRest + kRunEnd / kSpeed + kRamp, 1);
   int moving = 0, resting = 0;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const RunStretch& s = stretches[i];
@@ -85,7 +85,7 @@ TEST(RunStretches, TellWhatTheToolDid) {
     EXPECT_NEAR(s.temperature, kTemperature, 1e-3);
     EXPECT_EQ(s.samples_lost, 0);
     ASSERT_TRUE(s.md && s.speed);
-    if (*s.md > 40 && *s.md < kEnd - 40) {
+    if (*s.md > 40 && *s.md < kRunEnd - 40) {
       EXPECT_NEAR(*s.speed, kSpeed, 0.01);
       EXPECT_NEAR(s.roll_rate, kRollRate, 0.02 * -kRollRate);
       ++moving;

@@ -11,9 +11,9 @@
 namespace wellgyro {
 namespace {
 
-using Verdict = SampleQueue::Verdict;
+using QueueVerdict = SampleQueue::Verdict;
 
-ImuSample At(std::int64_t seq, std::int32_t session = 1) {
+ImuSample SampleAt(std::int64_t seq, std::int32_t session = 1) {
   ImuSample sample;
   sample.stamp.seq = seq;
   sample.stamp.session = session;
@@ -33,9 +33,9 @@ std::vector<std::int64_t> Drain(SampleQueue& queue) {
 
 TEST(SampleQueue, HoldsASampleUntilOneSoMuchYoungerHasCome) {
   SampleQueue queue(Duration::Seconds(0.05));
-  for (int k = 0; k < 5; ++k) queue.Push(At(k));
+  for (int k = 0; k < 5; ++k) queue.Push(SampleAt(k));
   EXPECT_EQ(queue.Front(), nullptr);
-  queue.Push(At(5));
+  queue.Push(SampleAt(5));
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0}));
   queue.Flush();
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{1, 2, 3, 4, 5}));
@@ -43,7 +43,7 @@ TEST(SampleQueue, HoldsASampleUntilOneSoMuchYoungerHasCome) {
 
 TEST(SampleQueue, OrderAndRepetitionOfWhatComesWithinTheHoldDoNotMatter) {
   SampleQueue queue(Duration::Seconds(1));
-  for (std::int64_t k : {0, 3, 1, 1, 2, 5, 4, 0, 5}) queue.Push(At(k));
+  for (std::int64_t k : {0, 3, 1, 1, 2, 5, 4, 0, 5}) queue.Push(SampleAt(k));
   queue.Flush();
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(queue.counts().accepted, 6);
@@ -52,35 +52,35 @@ TEST(SampleQueue, OrderAndRepetitionOfWhatComesWithinTheHoldDoNotMatter) {
 
 TEST(SampleQueue, TellsALateSampleFromARepeatedOne) {
   SampleQueue queue(Duration::Seconds(0.05));
-  for (std::int64_t k : {0, 1, 4, 5, 6, 7, 8, 20}) queue.Push(At(k));
+  for (std::int64_t k : {0, 1, 4, 5, 6, 7, 8, 20}) queue.Push(SampleAt(k));
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0, 1, 4, 5, 6, 7, 8}));
-  EXPECT_EQ(queue.Push(At(2)), Verdict::kLate);
-  EXPECT_EQ(queue.Push(At(4)), Verdict::kDuplicate);
-  EXPECT_EQ(queue.Push(At(10)), Verdict::kTaken);
+  EXPECT_EQ(queue.Push(SampleAt(2)), QueueVerdict::kLate);
+  EXPECT_EQ(queue.Push(SampleAt(4)), QueueVerdict::kDuplicate);
+  EXPECT_EQ(queue.Push(SampleAt(10)), QueueVerdict::kTaken);
   EXPECT_EQ(queue.counts().late, 1);
 }
 
 /// Two milli-g off the first.
 ImuSample Other(std::int64_t seq, std::int32_t session = 1) {
-  ImuSample sample = At(seq, session);
+  ImuSample sample = SampleAt(seq, session);
   sample.f_T.x() = 0.02;
   return sample;
 }
 
 TEST(SampleQueue, TellsAnotherContentFromARepeatedSampleWhileItWaits) {
   SampleQueue queue(Duration::Seconds(10));
-  for (int k = 0; k < 100; ++k) queue.Push(At(k));
-  EXPECT_EQ(queue.Push(At(7)), Verdict::kDuplicate);
-  EXPECT_EQ(queue.Push(Other(8)), Verdict::kOther);
-  EXPECT_EQ(queue.Push(At(9)), Verdict::kDuplicate);
-  ImuSample turned = At(10);
+  for (int k = 0; k < 100; ++k) queue.Push(SampleAt(k));
+  EXPECT_EQ(queue.Push(SampleAt(7)), QueueVerdict::kDuplicate);
+  EXPECT_EQ(queue.Push(Other(8)), QueueVerdict::kOther);
+  EXPECT_EQ(queue.Push(SampleAt(9)), QueueVerdict::kDuplicate);
+  ImuSample turned = SampleAt(10);
   turned.w_IT_T.y() = 3e-5;
-  EXPECT_EQ(queue.Push(turned), Verdict::kOther);
-  ImuSample warmer = At(11);  // the same counts by another batch's temperature
+  EXPECT_EQ(queue.Push(turned), QueueVerdict::kOther);
+  ImuSample warmer = SampleAt(11);  // the same counts by another batch's temperature
   warmer.w_IT_T.setConstant(1e-6);
   warmer.f_T.setConstant(1e-3);
   warmer.stamp.temperature = 1;
-  EXPECT_EQ(queue.Push(warmer), Verdict::kDuplicate);
+  EXPECT_EQ(queue.Push(warmer), QueueVerdict::kDuplicate);
   EXPECT_EQ(queue.counts().others, 2);
   EXPECT_EQ(queue.counts().duplicates, 3);
 }
@@ -89,33 +89,34 @@ TEST(SampleQueue, TellsAnotherContentLongAfterTheFirst) {
   constexpr int kAll = 50'000, kAgain = 5'000;
   SampleQueue queue(Duration::Seconds(1));
   for (int k = 0; k < kAll; ++k) {
-    queue.Push(At(k));
+    queue.Push(SampleAt(k));
     Drain(queue);
   }
-  for (int k = 0; k < kAgain; ++k) queue.Push(At(k));
+  for (int k = 0; k < kAgain; ++k) queue.Push(SampleAt(k));
   EXPECT_EQ(queue.counts().duplicates, kAgain);
   EXPECT_EQ(queue.counts().others, 0);
   for (int k = 100; k < kAgain; ++k) queue.Push(Other(k));
   // From the first that is kept on.
   EXPECT_EQ(queue.counts().others, kAgain - 128);
-  queue.Push(At(kAll));
-  EXPECT_EQ(queue.Push(At(kAll - 1)), Verdict::kDuplicate);
+  queue.Push(SampleAt(kAll));
+  EXPECT_EQ(queue.Push(SampleAt(kAll - 1)), QueueVerdict::kDuplicate);
   // Of what is forgotten nothing is said.
   for (int k = kAll; k < 700'000; ++k) {
-    queue.Push(At(k));
+    queue.Push(SampleAt(k));
     Drain(queue);
   }
-  EXPECT_EQ(queue.Push(Other(64)), Verdict::kDuplicate);
-  EXPECT_EQ(queue.Push(Other(640'000)), Verdict::kOther);
+  EXPECT_EQ(queue.Push(Other(64)), QueueVerdict::kDuplicate);
+  EXPECT_EQ(queue.Push(Other(640'000)), QueueVerdict::kOther);
 }
 
 TEST(SampleQueue, ANewSessionFlushesTheOldOneOnceItIsBelieved) {
   SampleQueue queue(Duration::Seconds(10));
-  queue.Push(At(7, 1));
-  queue.Push(At(8, 1));
-  for (std::int64_t k = 0; k < 999; ++k) EXPECT_EQ(queue.Push(At(k, 2)), Verdict::kAside);
+  queue.Push(SampleAt(7, 1));
+  queue.Push(SampleAt(8, 1));
+  for (std::int64_t k = 0; k < 999; ++k)
+    EXPECT_EQ(queue.Push(SampleAt(k, 2)), QueueVerdict::kAside);
   EXPECT_EQ(queue.Front(), nullptr);
-  EXPECT_EQ(queue.Push(At(999, 2)), Verdict::kTaken);
+  EXPECT_EQ(queue.Push(SampleAt(999, 2)), QueueVerdict::kTaken);
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{7, 8}));
   EXPECT_EQ(queue.waiting(), 1'000u);
 }
@@ -125,10 +126,10 @@ TEST(SampleQueue, SamplesOfAnotherSessionHereAndThereAreStrays) {
   SampleQueue queue(Duration::Seconds(1));
   std::vector<std::int64_t> all;
   for (std::int64_t k = 0; k < 20'000; ++k) {
-    EXPECT_EQ(queue.Push(At(k, 1)), Verdict::kTaken);
+    EXPECT_EQ(queue.Push(SampleAt(k, 1)), QueueVerdict::kTaken);
     all.push_back(k);
     if (k % 100 != 7) continue;
-    EXPECT_EQ(queue.Push(At(k, 2 + static_cast<int>(k) % 3)), Verdict::kAside);
+    EXPECT_EQ(queue.Push(SampleAt(k, 2 + static_cast<int>(k) % 3)), QueueVerdict::kAside);
   }
   queue.Flush();
   EXPECT_EQ(Drain(queue), all);
@@ -137,17 +138,17 @@ TEST(SampleQueue, SamplesOfAnotherSessionHereAndThereAreStrays) {
 
 TEST(SampleQueue, RefusesWhatMakesNoSense) {
   SampleQueue queue(Duration::Seconds(1));
-  EXPECT_EQ(queue.Push(At(0)), Verdict::kTaken);
-  ImuSample nan = At(1);
+  EXPECT_EQ(queue.Push(SampleAt(0)), QueueVerdict::kTaken);
+  ImuSample nan = SampleAt(1);
   nan.f_T.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(queue.Push(nan), Verdict::kRefused);
-  ImuSample jumped = At(1);
+  EXPECT_EQ(queue.Push(nan), QueueVerdict::kRefused);
+  ImuSample jumped = SampleAt(1);
   jumped.stamp.tool_time.ns += 3'600'000'000'000;  // an hour by time, one sample by number
-  EXPECT_EQ(queue.Push(jumped), Verdict::kAside);
-  ImuSample timeless = At(1);
+  EXPECT_EQ(queue.Push(jumped), QueueVerdict::kAside);
+  ImuSample timeless = SampleAt(1);
   timeless.stamp.period_ns = 0;
-  EXPECT_EQ(queue.Push(timeless), Verdict::kRefused);
-  EXPECT_EQ(queue.Push(At(1)), Verdict::kTaken);
+  EXPECT_EQ(queue.Push(timeless), QueueVerdict::kRefused);
+  EXPECT_EQ(queue.Push(SampleAt(1)), QueueVerdict::kTaken);
   queue.Flush();
   EXPECT_EQ(queue.counts().refused, 2);
   EXPECT_EQ(queue.counts().strays, 1);
@@ -155,7 +156,7 @@ TEST(SampleQueue, RefusesWhatMakesNoSense) {
 
 /// Sample number `k` of a stream whose UTC runs on, whatever its number and tool clock say.
 ImuSample Wild(int k, std::int64_t seq_ahead, std::int64_t tool_ahead_ns) {
-  ImuSample sample = At(k);
+  ImuSample sample = SampleAt(k);
   sample.stamp.utc.ns = 1'700'000'000'000'000'000 + 10'000'000LL * k;
   sample.stamp.seq += seq_ahead;
   sample.stamp.tool_time.ns += tool_ahead_ns;
@@ -221,10 +222,10 @@ TEST(SampleQueue, AMessageOfWildTimesIsAStrayAndMakesNoOtherLate) {
 
 TEST(SampleQueue, ASampleOfTheSessionBeforeDoesNotBringItBack) {
   SampleQueue queue(Duration::Seconds(1));
-  queue.Push(At(7, 1));
-  for (std::int64_t k = 0; k < 1'001; ++k) queue.Push(At(k, 2));
-  EXPECT_EQ(queue.Push(At(8, 1)), Verdict::kAside);
-  queue.Push(At(1'001, 2));
+  queue.Push(SampleAt(7, 1));
+  for (std::int64_t k = 0; k < 1'001; ++k) queue.Push(SampleAt(k, 2));
+  EXPECT_EQ(queue.Push(SampleAt(8, 1)), QueueVerdict::kAside);
+  queue.Push(SampleAt(1'001, 2));
   queue.Flush();
   EXPECT_EQ(Drain(queue).size(), 1'003u);
   EXPECT_EQ(queue.counts().strays, 1);
@@ -232,9 +233,10 @@ TEST(SampleQueue, ASampleOfTheSessionBeforeDoesNotBringItBack) {
 
 TEST(SampleQueue, AppendTakesOfABatchWhatPushOfEachWouldUpToTheFirstThatIsSortedIn) {
   std::vector<ImuSample> batch;
-  for (std::int64_t k : {0, 1, 2, 3, 5, 4, 6, 7, 7, 8, 8, 20, 21, 22, 9}) batch.push_back(At(k));
+  for (std::int64_t k : {0, 1, 2, 3, 5, 4, 6, 7, 7, 8, 8, 20, 21, 22, 9})
+    batch.push_back(SampleAt(k));
   batch[7].f_T.x() = 1e6;
-  for (std::int64_t k = 0; k < 2'000; ++k) batch.push_back(At(k, 2));
+  for (std::int64_t k = 0; k < 2'000; ++k) batch.push_back(SampleAt(k, 2));
   SampleQueue one(Duration::Seconds(1)), many(Duration::Seconds(1));
   for (const ImuSample& sample : batch) one.Push(sample);
   std::vector<std::size_t> taken;
@@ -265,7 +267,7 @@ TEST(SampleQueue, AppendTakesOfABatchWhatPushOfEachWouldUpToTheFirstThatIsSorted
 
 TEST(SampleQueue, GrowsPastItsFirstBufferInOrder) {
   SampleQueue queue(Duration::Seconds(1000));
-  for (std::int64_t k = 0; k < 5000; ++k) queue.Push(At(k ^ 1));
+  for (std::int64_t k = 0; k < 5000; ++k) queue.Push(SampleAt(k ^ 1));
   queue.Flush();
   const std::vector<std::int64_t> seqs = Drain(queue);
   ASSERT_EQ(seqs.size(), 5000u);

@@ -31,12 +31,12 @@ SurveyedWell Straight(const Vector3d& start, double inclination, double azimuth)
   return SurveyWell(stations, start);
 }
 
-struct Known {
+struct KnownLine {
   SurveyedWell well;
   ErrorModel model;
   PositionUncertainty errors;
 
-  Known(SurveyedWell surveyed, Propagation propagation)
+  KnownLine(SurveyedWell surveyed, Propagation propagation)
       : well(std::move(surveyed)), model(OneTerm(propagation)) {
     const ToolLeg leg{&model, 0, well.survey.size(), 1};
     errors = PropagateErrors(well.survey, {}, std::span(&leg, 1));
@@ -44,7 +44,7 @@ struct Known {
   HoleLine line() const { return HoleLine({&well, &errors}); }
 };
 
-std::vector<Separation> Shared(const Known& a, const Known& b, Pairing pairing) {
+std::vector<Separation> Shared(const KnownLine& a, const KnownLine& b, Pairing pairing) {
   SeparationRule rule;
   rule.correlation = Correlation::kGlobal;
   rule.minima = false;
@@ -56,7 +56,7 @@ std::vector<Separation> Shared(const Known& a, const Known& b, Pairing pairing) 
 TEST(Separations, SharedErrorsCancelBetweenParallelWells) {
   const double i = 1.2, x = 2000 * std::sin(i);
   const SurveyedWell a = Straight({0, 0, 0}, i, 0), b = Straight({0, 50, 0}, i, 0);
-  const Known own_a(a, Propagation::kSystematic), own_b(b, Propagation::kSystematic);
+  const KnownLine own_a(a, Propagation::kSystematic), own_b(b, Propagation::kSystematic);
   const Separation own = Shared(own_a, own_b, Pairing::kTwoWells).back();
   EXPECT_NEAR(own.distance, 50, 1e-9);
   EXPECT_NEAR(own.vector.y(), 50, 1e-9);
@@ -64,12 +64,12 @@ TEST(Separations, SharedErrorsCancelBetweenParallelWells) {
   EXPECT_NEAR(own.sigma, std::sqrt(2) * 0.01 * x, 1e-9 * x);
   EXPECT_NEAR(*own.sigmas, 50 / own.sigma, 1e-12);
 
-  const Known same_a(a, Propagation::kGlobal), same_b(b, Propagation::kGlobal);
+  const KnownLine same_a(a, Propagation::kGlobal), same_b(b, Propagation::kGlobal);
   const Separation same = Shared(same_a, same_b, Pairing::kTwoWells).back();
   EXPECT_NEAR(same.sigma, 0, 1e-6);
 
   // Well-by-well errors are another well's own, but one hole's common.
-  const Known well_a(a, Propagation::kWell), well_b(b, Propagation::kWell);
+  const KnownLine well_a(a, Propagation::kWell), well_b(b, Propagation::kWell);
   EXPECT_NEAR(Shared(well_a, well_b, Pairing::kTwoWells).back().sigma, own.sigma, 1e-9);
   EXPECT_NEAR(Shared(well_a, well_b, Pairing::kSameHole).back().sigma, 0, 1e-6);
 }
@@ -77,8 +77,8 @@ TEST(Separations, SharedErrorsCancelBetweenParallelWells) {
 // Antiparallel wells: the same azimuth error moves them apart, twice as far.
 TEST(Separations, SharedErrorsAddBetweenOppositeWells) {
   const double i = kPi / 2, x = 2000;
-  const Known a(Straight({0, 0, 0}, i, 0), Propagation::kGlobal);
-  const Known b(Straight({4000, 30, 0}, i, kPi), Propagation::kGlobal);
+  const KnownLine a(Straight({0, 0, 0}, i, 0), Propagation::kGlobal);
+  const KnownLine b(Straight({4000, 30, 0}, i, kPi), Propagation::kGlobal);
   const Separation s = Shared(a, b, Pairing::kTwoWells).back();
   EXPECT_NEAR(s.distance, 30, 1e-9);
   EXPECT_NEAR(s.sigma, 2 * 0.01 * x, 1e-6 * x);
@@ -89,7 +89,7 @@ TEST(Separations, CorrelationIsChosen) {
   const double i = 1.2, x = 2000 * std::sin(i);
   const SurveyedWell a = Straight({0, 0, 0}, i, 0), b = Straight({0, 50, 0}, i, 0);
   const auto sigma = [&](Propagation propagation, Correlation correlation) {
-    const Known first(a, propagation), second(b, propagation);
+    const KnownLine first(a, propagation), second(b, propagation);
     SeparationRule rule;
     rule.correlation = correlation;
     return Separations(first.line(), second.line(), Pairing::kTwoWells, rule).back().sigma;
@@ -113,10 +113,10 @@ SurveyedWell Bend(double start_tvd) {
 
 // Outside a bend the true distance is that of the arcs: 2.000 m, not that of chords.
 TEST(Separations, OutsideABendTheDistanceIsTheArcs) {
-  const Known bend(Bend(0), Propagation::kSystematic);
+  const KnownLine bend(Bend(0), Propagation::kSystematic);
   // Through the point 2 m below the arc's own at 45 deg, half way between two stations, to east.
   const double c = 100 - 102 * std::sqrt(0.5), z = 102 * std::sqrt(0.5);
-  const Known across(Straight({c, -1015, z}, kPi / 2, kPi / 2), Propagation::kSystematic);
+  const KnownLine across(Straight({c, -1015, z}, kPi / 2, kPi / 2), Propagation::kSystematic);
   const auto rows = Separations(across.line(), bend.line(), Pairing::kTwoWells, SeparationRule{});
   double nearest = 1e9;
   for (const Separation& s : rows) nearest = std::min(nearest, s.distance);
@@ -128,8 +128,8 @@ TEST(Separations, OutsideABendTheDistanceIsTheArcs) {
 }
 
 TEST(Separations, HorizontalAndTravellingCylinder) {
-  const Known level(Straight({0, 0, 1000}, kPi / 2, 0), Propagation::kSystematic);
-  const Known steep(Straight({500, 30, 0}, kPi / 4, 0), Propagation::kSystematic);
+  const KnownLine level(Straight({0, 0, 1000}, kPi / 2, 0), Propagation::kSystematic);
+  const KnownLine steep(Straight({500, 30, 0}, kPi / 4, 0), Propagation::kSystematic);
   SeparationRule rule;
   rule.scan = Scan::kTravellingCylinder;
   const auto across = Separations(level.line(), steep.line(), Pairing::kTwoWells, rule);
@@ -142,7 +142,7 @@ TEST(Separations, HorizontalAndTravellingCylinder) {
   rule.scan = Scan::kHorizontal;
   const auto flat = Separations(steep.line(), level.line(), Pairing::kTwoWells, rule);
   EXPECT_TRUE(flat.empty());  // no station of the steep one is at TVD 1000
-  const Known upright(Straight({700, 0, 0}, 0, 0), Propagation::kSystematic);
+  const KnownLine upright(Straight({700, 0, 0}, 0, 0), Propagation::kSystematic);
   const auto at_tvd = Separations(upright.line(), steep.line(), Pairing::kTwoWells, rule);
   ASSERT_GE(at_tvd.size(), 10U);
   EXPECT_NEAR(at_tvd[2].distance, std::hypot(0, 30), 1e-9);  // TVD 200: 500 + 200 north
@@ -151,8 +151,8 @@ TEST(Separations, HorizontalAndTravellingCylinder) {
 // Straight down the vector both surfaces agree; across an elongated ellipsoid the pedal curve is
 // the wider.
 TEST(Separations, PedalCurveAndEllipsoid) {
-  const Known a(Straight({0, 0, 0}, kPi / 2, 0), Propagation::kSystematic);
-  const Known b(Straight({0, 40, 30}, kPi / 2, 0), Propagation::kSystematic);
+  const KnownLine a(Straight({0, 0, 0}, kPi / 2, 0), Propagation::kSystematic);
+  const KnownLine b(Straight({0, 40, 30}, kPi / 2, 0), Propagation::kSystematic);
   SeparationRule rule;
   const auto pedal = Separations(a.line(), b.line(), Pairing::kTwoWells, rule).back();
   rule.surface = ErrorSurface::kEllipsoid;
@@ -171,8 +171,9 @@ TEST(Separations, ScreenedOutIsNeverBelow) {
   int kept = 0, left = 0;
   for (int i = 0; i < 60; ++i) {
     const double away = 4.0 * i;
-    const Known a(Straight({0, 0, 0}, 1.0, 0.2), Propagation::kSystematic);
-    const Known b(Straight({100, away, 0}, 1.1, 0.2 + 0.01 * (i % 7)), Propagation::kSystematic);
+    const KnownLine a(Straight({0, 0, 0}, 1.0, 0.2), Propagation::kSystematic);
+    const KnownLine b(Straight({100, away, 0}, 1.1, 0.2 + 0.01 * (i % 7)),
+                      Propagation::kSystematic);
     const auto rows = Separations(a.line(), b.line(), Pairing::kTwoWells, rule);
     const double lowest = Lowest(rows)->factor.value();
     if (MayFallBelow(a.line(), b.line(), rule, 2)) {
@@ -188,8 +189,8 @@ TEST(Separations, ScreenedOutIsNeverBelow) {
 
 // The closest point lies between stations.
 TEST(Separations, ClosestPointBetweenStations) {
-  const Known a(Straight({0, 0, 0}, kPi / 2, 0), Propagation::kSystematic);
-  const Known b(Straight({-70, 40, 0}, kPi / 2, 0), Propagation::kSystematic);
+  const KnownLine a(Straight({0, 0, 0}, kPi / 2, 0), Propagation::kSystematic);
+  const KnownLine b(Straight({-70, 40, 0}, kPi / 2, 0), Propagation::kSystematic);
   const auto all = Shared(a, b, Pairing::kTwoWells);
   EXPECT_NEAR(all[5].other_md, 570, 1e-9);
   EXPECT_NEAR(all[5].distance, 40, 1e-9);
@@ -198,8 +199,8 @@ TEST(Separations, ClosestPointBetweenStations) {
 }
 
 TEST(Separations, WhereNothingIsUncertainThereIsNoNumberOfSigmas) {
-  const Known a(Straight({0, 0, 0}, 1, 0), Propagation::kSystematic);
-  const Known b(Straight({0, 9, 0}, 1, 0), Propagation::kSystematic);
+  const KnownLine a(Straight({0, 0, 0}, 1, 0), Propagation::kSystematic);
+  const KnownLine b(Straight({0, 9, 0}, 1, 0), Propagation::kSystematic);
   EXPECT_FALSE(Shared(a, b, Pairing::kSameHole)[0].sigmas);
   const auto met = Shared(a, a, Pairing::kTwoWells);
   EXPECT_EQ(met[3].distance, 0);

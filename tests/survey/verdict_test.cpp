@@ -76,7 +76,7 @@ TEST(ShareFalseAlarms, LeavesOtherLimitsAndOtherRunsAlone) {
   EXPECT_NEAR(*checks[1].limit, *checks[2].limit, 0) << "each run has its own 1 %";
 }
 
-Station At(std::int32_t run, double md, StationKind kind = StationKind::kContinuous) {
+Station StationAtMd(std::int32_t run, double md, StationKind kind = StationKind::kContinuous) {
   Station s;
   s.run = run;
   s.md = md;
@@ -89,8 +89,8 @@ Survey TwoRuns() {
   survey.runs.resize(2);
   survey.runs[0].run = 1;
   survey.runs[1].run = 2;
-  survey.passes = {At(1, 10), At(2, 10), At(2, 20)};
-  survey.chosen = {At(0, 0, StationKind::kTieIn), At(1, 10), At(2, 20)};
+  survey.passes = {StationAtMd(1, 10), StationAtMd(2, 10), StationAtMd(2, 20)};
+  survey.chosen = {StationAtMd(0, 0, StationKind::kTieIn), StationAtMd(1, 10), StationAtMd(2, 20)};
   return survey;
 }
 
@@ -142,11 +142,11 @@ TEST(CheckTieIn, ATieInThatIsNotTheRunsFails) {
   EXPECT_EQ(CheckTieIn(job, {}).verdict, Verdict::kNotDone);
   job.tie_in.inclination = 5 * kPi / 180;
   job.tie_in.azimuth = 0;
-  Station near = At(1, 105);
+  Station near = StationAtMd(1, 105);
   near.inclination = 0.01 * kPi / 180;
   near.cov_md_inc_azi(1, 1) = std::pow(0.01 * kPi / 180, 2);
   near.cov_md_inc_azi(2, 2) = 1;
-  const std::vector<Station> stations{At(1, 160), near};
+  const std::vector<Station> stations{StationAtMd(1, 160), near};
   const Check check = CheckTieIn(job, stations);
   EXPECT_EQ(check.verdict, Verdict::kFail);
   EXPECT_NEAR(check.value.value_or(0), 5, 0.02);

@@ -24,12 +24,12 @@ using testing::SurveyOf;
 
 constexpr double kStopMd = 150, kEndMd = 300;
 
-struct Case {
+struct VerticalCase {
   std::string name;
   double inclination_deg, build_from, rpm;
 };
 
-Simulation SimulationOf(const Case& c) {
+Simulation SimulationOf(const VerticalCase& c) {
   Simulation s;
   s.well.begin_md = 0;
   s.well.end_md = kEndMd + 40;
@@ -57,7 +57,7 @@ Eigen::Vector2d LeanOf(double inclination, double azimuth) {
   return std::sin(inclination) * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
 }
 
-class NearVertical : public ::testing::TestWithParam<Case> {};
+class NearVertical : public ::testing::TestWithParam<VerticalCase> {};
 
 TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
   Simulation simulation = SimulationOf(GetParam());
@@ -119,12 +119,12 @@ TEST_P(NearVertical, ErrorsAreWhatTheirCovarianceSays) {
   EXPECT_LT(azimuth, ChiSquareQuantile(1 - tail, kSeeds));
 }
 
-INSTANTIATE_TEST_SUITE_P(Holes, NearVertical,
-                         ::testing::Values(Case{"Vertical", 0, 0, 0},
-                                           Case{"VerticalRolling", 0, 0, 3}, Case{"Slant", 1, 0, 0},
-                                           Case{"SlantRolling", 1, 0, 3}, Case{"Build", 0, 100, 0},
-                                           Case{"BuildRolling", 0, 100, 3}),
-                         [](const auto& of) { return of.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Holes, NearVertical,
+    ::testing::Values(VerticalCase{"Vertical", 0, 0, 0}, VerticalCase{"VerticalRolling", 0, 0, 3},
+                      VerticalCase{"Slant", 1, 0, 0}, VerticalCase{"SlantRolling", 1, 0, 3},
+                      VerticalCase{"Build", 0, 100, 0}, VerticalCase{"BuildRolling", 0, 100, 3}),
+    [](const auto& of) { return of.param.name; });
 
 }  // namespace
 }  // namespace wellgyro

@@ -20,7 +20,7 @@ using test::Profile;
 using test::Split;
 
 constexpr double kHour = units::kHour;
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 
 AllanRun Everything() {
   AllanRun run;

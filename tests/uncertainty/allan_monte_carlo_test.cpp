@@ -21,12 +21,12 @@ namespace {
 using test::AllanProfiles;
 using test::Profile;
 
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 constexpr int kSubsteps = 6;
 constexpr int kRuns = WELLGYRO_MONTE_CARLO_RUNS;
 
 enum Part { kN, kBiasConstant, kBiasMarkov, kK, kR, kParts };
-constexpr const char* kNames[] = {"ALLAN-N", "ALLAN-B", "ALLAN-B", "ALLAN-K", "ALLAN-R"};
+constexpr const char* kNoiseNames[] = {"ALLAN-N", "ALLAN-B", "ALLAN-B", "ALLAN-K", "ALLAN-R"};
 constexpr double kN_ = 0.25 * units::kDegPerSqrtHour;
 constexpr double kB = 0.5 * units::kDegPerHour;
 constexpr double kTc = 0.5 * units::kHour;
@@ -126,8 +126,8 @@ TEST_P(AllanMonteCarlo, SigmasOfAzimuthAndPositionAgree) {
   for (std::size_t p = 0; p < kParts; ++p) {
     const AllanUncertainty exact = Exact(profile, p == kBiasMarkov);
     ASSERT_FALSE(exact.refusal);
-    const auto term = std::ranges::find(exact.terms, kNames[p], &AllanTerm::term);
-    ASSERT_NE(term, exact.terms.end()) << kNames[p];
+    const auto term = std::ranges::find(exact.terms, kNoiseNames[p], &AllanTerm::term);
+    ASSERT_NE(term, exact.terms.end()) << kNoiseNames[p];
     const double azimuth = std::sqrt(term->var_azimuth.back() / (sums[p][0] / kRuns)) - 1;
     const double position = std::sqrt(term->cov_p.back().trace() / (sums[p][1] / kRuns)) - 1;
     EXPECT_NEAR(azimuth, 0, tolerance) << profile.name << " " << p;

@@ -11,10 +11,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kNames[] = {"inc", "azm", "md"};
+constexpr std::string_view kVariables[] = {"inc", "azm", "md"};
 
 double Value(const std::string& text, double inc = 0.5, double azm = 1.2, double md = 900) {
-  const auto made = Expression::Compile(text, kNames);
+  const auto made = Expression::Compile(text, kVariables);
   EXPECT_TRUE(made) << text << ": " << (made ? "" : made.fault().text);
   const double values[] = {inc, azm, md};
   return made ? made->At(values) : NAN;
@@ -46,12 +46,12 @@ TEST(Expression, PublishedFormula) {
 }
 
 TEST(Expression, UsesAndConstants) {
-  const auto made = Expression::Compile("md * 2", kNames);
+  const auto made = Expression::Compile("md * 2", kVariables);
   ASSERT_TRUE(made);
   EXPECT_TRUE(made->Uses(2));
   EXPECT_FALSE(made->Uses(0));
   EXPECT_FALSE(made->Constant());
-  EXPECT_EQ(Expression::Compile("3 * 4", kNames)->Constant(), 12);
+  EXPECT_EQ(Expression::Compile("3 * 4", kVariables)->Constant(), 12);
 }
 
 TEST(Expression, HostileTextIsRefused) {
@@ -88,16 +88,16 @@ TEST(Expression, HostileTextIsRefused) {
                                  std::string(2001, '1'),
                                  std::string(400, '-') + "1" + std::string(1500, '+')};
   for (const std::string& text : hostile) {
-    const auto made = Expression::Compile(text, kNames);
+    const auto made = Expression::Compile(text, kVariables);
     EXPECT_FALSE(made) << text.substr(0, 40);
   }
   // Power chains nest too.
   std::string power = "2";
   for (int i = 0; i < 300; ++i) power += "^2";
-  EXPECT_FALSE(Expression::Compile(power, kNames));
+  EXPECT_FALSE(Expression::Compile(power, kVariables));
   std::string many = "1";
   for (int i = 0; i < 400; ++i) many += "+1";
-  EXPECT_FALSE(Expression::Compile(many, kNames));  // more than 512 operations
+  EXPECT_FALSE(Expression::Compile(many, kVariables));  // more than 512 operations
 }
 
 TEST(Expression, RandomTextNeverBreaksIt) {
@@ -108,7 +108,7 @@ TEST(Expression, RandomTextNeverBreaksIt) {
     std::string text;
     const int length = static_cast<int>(engine() % 24);
     for (int k = 0; k < length; ++k) text += letters[engine() % letters.size()];
-    const auto made = Expression::Compile(text, kNames);
+    const auto made = Expression::Compile(text, kVariables);
     if (!made) continue;
     ++good;
     const double values[] = {0.1, 0.2, 0.3};

@@ -12,7 +12,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 
 std::vector<GyroMode> Modes(const ErrorModel& model, const std::vector<SurveyPoint>& survey) {
   GyroModeTracker tracker(model);

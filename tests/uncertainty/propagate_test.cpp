@@ -17,7 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 using Vector3L = Eigen::Matrix<long double, 3, 1>;
 
 ErrorModel OneTerm(const std::string& code, double magnitude, Propagation propagation) {

@@ -16,7 +16,7 @@ using test::CaseValues;
 using test::CaseWell;
 using test::StandardWell;
 
-constexpr const char* kNames[] = {"NN", "NE", "NV", "EE", "EV", "VV"};
+constexpr const char* kModelNames[] = {"NN", "NE", "NV", "EE", "EV", "VV"};
 
 double Element(const Eigen::Matrix3d& c, int i) {
   constexpr int kRow[] = {0, 0, 0, 1, 1, 2};
@@ -51,7 +51,7 @@ TEST_P(AppendixE, EveryPublishedNumber) {
         EXPECT_NEAR(ours, 123.0, 0.1);  // published 118: an exception once met is none
         continue;
       }
-      EXPECT_NEAR(ours, published, tolerance) << "MD " << md << " " << kNames[i];
+      EXPECT_NEAR(ours, published, tolerance) << "MD " << md << " " << kModelNames[i];
     }
   }
   EXPECT_GE(seen, 18);

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 
 /// From a vertical root up to 60 deg, turning, at uneven stations.
 std::vector<SurveyPoint> Building() {
@@ -34,7 +34,7 @@ std::vector<SurveyPoint> Building() {
   return survey;
 }
 
-Surroundings Somewhere() {
+Surroundings MagneticPlace() {
   Surroundings place;
   place.latitude = 50 * kDeg;
   place.field = 5e-5;
@@ -78,9 +78,9 @@ TEST(ErrorsAtStations, AddUpToTheCovarianceOfPropagateErrors) {
   const std::vector<SurveyPoint> survey = Building();
   int models = 0;
   for (const ErrorModel& model : OwnModels()) {
-    const PositionUncertainty expected = PropagateErrors(survey, Somewhere(), model);
+    const PositionUncertainty expected = PropagateErrors(survey, MagneticPlace(), model);
     const ToolLeg leg{&model, 0, survey.size(), 1};
-    const SurveyErrors errors = ErrorsAtStations(survey, Somewhere(), {&leg, 1});
+    const SurveyErrors errors = ErrorsAtStations(survey, MagneticPlace(), {&leg, 1});
     EXPECT_EQ(errors.stations, expected.cov_p.size()) << model.name;
     if (expected.refusal) continue;
     ++models;
@@ -99,8 +99,8 @@ TEST(ErrorsAtStations, LegsOfOneRunShareWhatIsSystematic) {
   const ErrorModel model = *OwnModel("ISCWSA MWD Rev 4");
   for (const int second_run : {1, 2}) {
     const ToolLeg legs[] = {{&model, 0, 30, 1}, {&model, 30, survey.size(), second_run}};
-    const PositionUncertainty expected = PropagateErrors(survey, Somewhere(), legs);
-    const SurveyErrors errors = ErrorsAtStations(survey, Somewhere(), legs);
+    const PositionUncertainty expected = PropagateErrors(survey, MagneticPlace(), legs);
+    const SurveyErrors errors = ErrorsAtStations(survey, MagneticPlace(), legs);
     const Matrix3d cov = Summed(survey, errors).back();
     EXPECT_LE((cov - expected.cov_p.back()).norm(), 1e-9 * cov.norm());
   }
@@ -112,7 +112,7 @@ TEST(ErrorsAtStations, AFirstStationBelowTheDatumIsMeasured) {
   survey.erase(survey.begin(), survey.begin() + 20);
   const ErrorModel model = *OwnModel("ISCWSA MWD Rev 4");
   const ToolLeg leg{&model, 0, survey.size(), 1};
-  const SurveyErrors errors = ErrorsAtStations(survey, Somewhere(), {&leg, 1});
+  const SurveyErrors errors = ErrorsAtStations(survey, MagneticPlace(), {&leg, 1});
   EXPECT_TRUE(errors.first_is_measured);
   double of_first = 0, of_second = 0;
   for (const StationError& e : errors.errors) {

@@ -11,6 +11,7 @@
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 
+#include "io/exchange/parsed.h"
 #include "support/scratch.h"
 #include "support/survey_samples.h"
 
@@ -20,12 +21,6 @@ namespace {
 using support::FullSurvey;
 using testing::Contains;
 using testing::HasSubstr;
-
-SurveyTable Read(const std::string& text, const ReadOptions& options = {}) {
-  auto table = ParseSurvey(text, "text", options);
-  EXPECT_TRUE(table) << (table ? "" : table.fault().text) << text.substr(0, 400);
-  return table ? *table : SurveyTable();
-}
 
 constexpr std::array kMaps{SurveyFormat::kGeoJson, SurveyFormat::kKml, SurveyFormat::kGeoPackage};
 
@@ -89,7 +84,7 @@ TEST(Delivery, AwkwardHeadsComeBack) {
       table.head.names.uid_well = table.head.names.uid_wellbore = "";
       for (const SurveyFormat format :
            {SurveyFormat::kWitsml1411, SurveyFormat::kWitsml21, SurveyFormat::kLas}) {
-        const SurveyTable back = Read(WriteSurvey(table, format));
+        const SurveyTable back = Parsed(WriteSurvey(table, format));
         const std::string where(WordOf(format));
         EXPECT_EQ(back.head.names.well, name) << where;
         EXPECT_EQ(back.head.names.survey, name) << where;
@@ -97,7 +92,7 @@ TEST(Delivery, AwkwardHeadsComeBack) {
         EXPECT_EQ(back.head.datum, name) << where;
         EXPECT_EQ(back.head.names.begin, date) << where;
       }
-      const SurveyTable p717 = Read(WriteSurvey(table, SurveyFormat::kP717));
+      const SurveyTable p717 = Parsed(WriteSurvey(table, SurveyFormat::kP717));
       EXPECT_EQ(p717.head.names.created, date == "January" ? p717.head.names.created : date);
     }
   }
@@ -132,7 +127,7 @@ TEST(Delivery, Witsml21HoldsEverythingOfAStation) {
   SurveyTable table = FullSurvey();
   table.Set(TextColumn::kComment, 2, "50 % = a;b");
   table.SetStatus(3, RowStatus::kTrended);
-  const SurveyTable back = Read(WriteSurvey(table, SurveyFormat::kWitsml21));
+  const SurveyTable back = Parsed(WriteSurvey(table, SurveyFormat::kWitsml21));
   support::ExpectSameStations(
       table, back,
       std::vector{Column::kNorthing, Column::kEasting, Column::kDown, Column::kSigmaInclination,
@@ -177,7 +172,7 @@ TEST(Delivery, EveryDirectionTurns) {
 }
 
 TEST(Layouts, PositionLogs) {
-  const SurveyTable t = Read(
+  const SurveyTable t = Parsed(
       "MD[m],X[m],Y[m],Z[m]\n0,400000,6500000,25\n100,400000,6500000,-75\n"
       "200,400050,6500000,-161.6\n\n");
   ASSERT_EQ(t.rows(), 3u);
@@ -207,7 +202,7 @@ TEST(Layouts, Edm) {
       "name=\"Gyro\" phase=\"ACTUAL\"/>" +
       station(200, 4, 90, 199.85, 0, 6.98) + station(0, 0, 0, 0, 0, 0) +
       station(100, 2, 90, 99.98, 0, 1.75) + "</export>";
-  const SurveyTable t = Read(text, {.north = North::kGrid});
+  const SurveyTable t = Parsed(text, {.north = North::kGrid});
   ASSERT_EQ(t.rows(), 3u);
   EXPECT_EQ(t.md(1), 100 * units::kFoot);
   EXPECT_EQ(t.head.names.well, "A-1");
@@ -227,13 +222,13 @@ TEST(Layouts, PetrelWithoutUnitLinesAndLocal) {
     const std::size_t at = text.find(start);
     text.erase(at, text.find('\n', at) + 1 - at);
   }
-  const SurveyTable feet = Read(text);
+  const SurveyTable feet = Parsed(text);
   EXPECT_EQ(feet.head.md_unit, LengthUnit::kFoot);
   EXPECT_NEAR(feet.md(6), 180 * units::kFoot, 1e-9);
   EXPECT_THAT(feet.head.notes, Contains(HasSubstr("in feet")));
   const std::size_t system = text.find("EPSG:23031");
   text.replace(system, 10, "LOCAL");
-  const SurveyTable local = Read(text);
+  const SurveyTable local = Parsed(text);
   EXPECT_FALSE(local.Has(Column::kNorthing));
   EXPECT_THAT(local.head.notes, Contains(HasSubstr("local")));
 }

@@ -4,6 +4,7 @@
 
 #include "wellgyro/io/exchange/exchange.h"
 
+#include "io/exchange/parsed.h"
 #include "support/survey_samples.h"
 
 namespace wellgyro {
@@ -11,8 +12,8 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string Las(const std::string& rows, const std::string& step = "10",
-                const std::string& stop = "20", const std::string& wrap = "NO") {
+std::string LasOf(const std::string& rows, const std::string& step = "10",
+                  const std::string& stop = "20", const std::string& wrap = "NO") {
   return "# a comment before everything\n~Version\n VERS. 2.0 : CWLS\n WRAP. " + wrap +
          " : \n~Well\n STRT.FT 0 : \n STOP.FT " + stop + " :\n STEP.FT " + step +
          " :\n NULL. -999.25 :\n WELL. A-1, 12.30 h : WELL\n COMP. : COMPANY\n"
@@ -22,15 +23,9 @@ std::string Las(const std::string& rows, const std::string& step = "10",
          rows;
 }
 
-Fault Refusal(const std::string& text) {
-  const auto table = ParseSurvey(text, "text");
-  EXPECT_FALSE(table);
-  return table ? Fault{} : table.fault();
-}
-
-TEST(Las, CurvesByMnemonicInAnyOrder) {
+TEST(LasOf, CurvesByMnemonicInAnyOrder) {
   const auto t =
-      ParseSurvey(Las("0 1 0 50 0\n10 -999.25 -999.25 51 3\n20 350 2.5 52 -999.25\n"), "text");
+      ParseSurvey(LasOf("0 1 0 50 0\n10 -999.25 -999.25 51 3\n20 350 2.5 52 -999.25\n"), "text");
   ASSERT_TRUE(t) << t.fault().text;
   // A row without attitude is a row of the log, not a station.
   ASSERT_EQ(t->rows(), 2u);
@@ -45,7 +40,7 @@ TEST(Las, CurvesByMnemonicInAnyOrder) {
 }
 
 // Options name curves by mnemonic or number, and win over what others are called.
-TEST(Las, ColumnsAreNamedByOptions) {
+TEST(LasOf, ColumnsAreNamedByOptions) {
   const std::string text =
       "~V\n VERS. 2.0 :\n WRAP. NO :\n~W\n STRT.M 0 :\n STOP.M 30 :\n STEP.M 30 :\n"
       " NULL. -999.25 :\n~P\n I_AT. True :\n~C\n DEPT.M :\n DEVI.DEG :\n AZIM.DEG :\n"
@@ -64,29 +59,31 @@ TEST(Las, ColumnsAreNamedByOptions) {
   }
 }
 
-TEST(Las, WrappedRows) {
-  const auto t = ParseSurvey(Las("0\n1 0 50\n0\n20 350\n2.5 52 6.09\n", "0", "20", "YES"), "text");
+TEST(LasOf, WrappedRows) {
+  const auto t =
+      ParseSurvey(LasOf("0\n1 0 50\n0\n20 350\n2.5 52 6.09\n", "0", "20", "YES"), "text");
   ASSERT_TRUE(t) << t.fault().text;
   EXPECT_EQ(t->Get(Column::kTvd, 1), 6.09);
-  EXPECT_THAT(Refusal(Las("0\n1 0 50\n0\n20 350\n", "0", "20", "YES")).text,
+  EXPECT_THAT(ParseFault(LasOf("0\n1 0 50\n0\n20 350\n", "0", "20", "YES")).text,
               HasSubstr("cut short"));
 }
 
-TEST(Las, FaultsNameTheLine) {
-  EXPECT_EQ(Refusal(Las("0 1 0 50 0\n10 1 1 1\n")).line, 23);
-  EXPECT_THAT(Refusal(Las("0 1 0 50 0\n10 1 x 1 1\n")).text, HasSubstr("'x'"));
-  EXPECT_THAT(Refusal(Las("0 1 0 50 0\n10 1 1 1 1\n")).text, HasSubstr("header says 20"));
-  EXPECT_EQ(Refusal(Las("0 1 0 50 0\n0 1 1 1 1\n")).code, FaultCode::kOrder);
-  EXPECT_THAT(Refusal("~V\n VERS. 4.0 : \n").text, HasSubstr("LAS 2.0"));
-  EXPECT_THAT(Refusal("~V\n VERS. 3.0 : \n").text, HasSubstr("~Inclinometry_Data"));
-  EXPECT_THAT(Refusal("~V\n VERS. 2.0 : \n~C\n DEPT.M : \n~A\n1\n").text, HasSubstr("inclination"));
-  EXPECT_THAT(Refusal("~V\nnonsense\n").text, HasSubstr("MNEM.UNIT"));
+TEST(LasOf, FaultsNameTheLine) {
+  EXPECT_EQ(ParseFault(LasOf("0 1 0 50 0\n10 1 1 1\n")).line, 23);
+  EXPECT_THAT(ParseFault(LasOf("0 1 0 50 0\n10 1 x 1 1\n")).text, HasSubstr("'x'"));
+  EXPECT_THAT(ParseFault(LasOf("0 1 0 50 0\n10 1 1 1 1\n")).text, HasSubstr("header says 20"));
+  EXPECT_EQ(ParseFault(LasOf("0 1 0 50 0\n0 1 1 1 1\n")).code, FaultCode::kOrder);
+  EXPECT_THAT(ParseFault("~V\n VERS. 4.0 : \n").text, HasSubstr("LAS 2.0"));
+  EXPECT_THAT(ParseFault("~V\n VERS. 3.0 : \n").text, HasSubstr("~Inclinometry_Data"));
+  EXPECT_THAT(ParseFault("~V\n VERS. 2.0 : \n~C\n DEPT.M : \n~A\n1\n").text,
+              HasSubstr("inclination"));
+  EXPECT_THAT(ParseFault("~V\nnonsense\n").text, HasSubstr("MNEM.UNIT"));
 }
 
-TEST(Las, WithoutUnitsBracketsOrColons) {
+TEST(LasOf, WithoutUnitsBracketsOrColons) {
   const std::string head = "~V\n VERS. 2.0\n WRAP. NO\n~W\n STRT. 30\n STOP. 0\n STEP. -30\n";
   const std::string curves = "~C\n DEPT. \n DEVI. \n AZIM. \n~A\n30 2 100\n0 0 0\n";
-  EXPECT_THAT(Refusal(head + curves).text, HasSubstr("--depth-unit"));
+  EXPECT_THAT(ParseFault(head + curves).text, HasSubstr("--depth-unit"));
   const auto t = ParseSurvey(head + curves, "text", {.depth_unit = LengthUnit::kFoot});
   ASSERT_TRUE(t) << t.fault().text;
   // A log from the bottom up is turned round.
@@ -99,11 +96,11 @@ TEST(Las, WithoutUnitsBracketsOrColons) {
 }
 
 // Dated 2026-11-23: the unit of the curve was taken without a word.
-TEST(Las, UnitsOfIndexAndHeaderContradictEachOther) {
+TEST(LasOf, UnitsOfIndexAndHeaderContradictEachOther) {
   const std::string text =
       "~V\n VERS. 2.0\n WRAP. NO\n~W\n STRT.M 0\n STOP.M 30\n STEP.M 30\n"
       "~C\n DEPT.FT \n DEVI.DEG \n INCL.DEG \n AZIM.DEG \n~A\n0 0 0 0\n30 2 7 100\n";
-  EXPECT_THAT(Refusal(text).text, HasSubstr("in ft, but STRT and STOP in m: say --depth-unit"));
+  EXPECT_THAT(ParseFault(text).text, HasSubstr("in ft, but STRT and STOP in m: say --depth-unit"));
   const auto told = ParseSurvey(text, "text", {.depth_unit = LengthUnit::kMetre});
   ASSERT_TRUE(told) << told.fault().text;
   EXPECT_EQ(told->md(1), 30);
@@ -111,7 +108,7 @@ TEST(Las, UnitsOfIndexAndHeaderContradictEachOther) {
   EXPECT_THAT(told->head.notes, testing::Contains(HasSubstr("INCL gives inclination")));
 }
 
-TEST(Las, StepIsFixedWhereDepthsAreEven) {
+TEST(LasOf, StepIsFixedWhereDepthsAreEven) {
   SurveyTable t = support::FullSurvey();
   EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas), testing::ContainsRegex("STEP +\\.M +30 :"));
   EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas, {.variable_step = true}),
@@ -120,7 +117,7 @@ TEST(Las, StepIsFixedWhereDepthsAreEven) {
   EXPECT_THAT(WriteSurvey(t, SurveyFormat::kLas), testing::ContainsRegex("STEP +\\.M +0 :"));
 }
 
-TEST(Las, ColonsComeBackAndNoNullIsANumber) {
+TEST(LasOf, ColonsComeBackAndNoNullIsANumber) {
   SurveyTable t = support::FullSurvey();
   t.head.names.well = "A:1\nB";
   t.Set(Column::kVerticalSection, 2, -999.25);

@@ -10,23 +10,13 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/exchange.h"
 
+#include "io/exchange/parsed.h"
+
 namespace wellgyro {
 namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
-
-SurveyTable Read(const std::string& text, const ReadOptions& options = {}) {
-  const auto table = ParseSurvey(text, "text", options);
-  EXPECT_TRUE(table) << table.fault().text;
-  return table ? *table : SurveyTable();
-}
-
-std::string Refusal(const std::string& text, const ReadOptions& options = {}) {
-  const auto table = ParseSurvey(text, "text", options);
-  EXPECT_FALSE(table);
-  return table ? std::string() : table.fault().text;
-}
 
 constexpr char kLas3Head[] =
     "~Version\n VERS. 3.0 : CWLS\n WRAP. NO :\n DLM. COMMA : \n~Well\n STRT.M 1000 :\n"
@@ -44,7 +34,7 @@ constexpr char kLas3Survey[] =
 TEST(Las3, TheSurveyIsTheGroupInclinometry) {
   for (const std::string& text : {std::string(kLas3Head) + kLas3Log + kLas3Survey,
                                   std::string(kLas3Head) + kLas3Survey + kLas3Log}) {
-    const SurveyTable t = Read(text);
+    const SurveyTable t = Parsed(text);
     ASSERT_EQ(t.rows(), 3u);
     EXPECT_EQ(t.md(2), 200 * units::kFoot);
     EXPECT_EQ(t.inclination(1), 2 * units::kDeg);
@@ -55,16 +45,16 @@ TEST(Las3, TheSurveyIsTheGroupInclinometry) {
     EXPECT_NEAR(t.head.datum_elevation.value_or(0), 30.48, 1e-12);
     EXPECT_THAT(t.head.notes, Contains(HasSubstr("a cut could not be seen")));
   }
-  EXPECT_THAT(Refusal(std::string(kLas3Head) + kLas3Log), HasSubstr("~Inclinometry_Data"));
-  EXPECT_THAT(Refusal(std::string(kLas3Head) + kLas3Survey + kLas3Survey),
+  EXPECT_THAT(ParseFault(std::string(kLas3Head) + kLas3Log).text, HasSubstr("~Inclinometry_Data"));
+  EXPECT_THAT(ParseFault(std::string(kLas3Head) + kLas3Survey + kLas3Survey).text,
               HasSubstr("several surveys"));
 }
 
 // A survey among the curves of the log, under the names of LAS 2.0.
 TEST(Las3, TheLogWhereItHoldsTheSurvey) {
-  const SurveyTable t = Read(std::string(kLas3Head) +
-                             "~Curve\n DEPT.M :\n DEVI.DEG :\n AZIM.DEG :\n~ASCII | Curve\n"
-                             "1000,1,20\n1000.5,-999.25,-999.25\n1001,1.5,21\n");
+  const SurveyTable t = Parsed(std::string(kLas3Head) +
+                               "~Curve\n DEPT.M :\n DEVI.DEG :\n AZIM.DEG :\n~ASCII | Curve\n"
+                               "1000,1,20\n1000.5,-999.25,-999.25\n1001,1.5,21\n");
   ASSERT_EQ(t.rows(), 2u);
   EXPECT_EQ(t.md(1), 1001);
 }
@@ -74,14 +64,14 @@ constexpr char kPetra[] =
     "*NS\n0 0 0 0 0 0\n100 2 90 99.98 1.75 0\n200 4 90 199.85 6.98 0\n";
 
 TEST(Petra, KeywordsNameColumnsAndUnits) {
-  const SurveyTable t = Read(kPetra);
+  const SurveyTable t = Parsed(kPetra);
   ASSERT_EQ(t.rows(), 3u);
   EXPECT_EQ(t.md(1), 100 * units::kFoot);
   EXPECT_EQ(t.azimuth(2), 90 * units::kDeg);
   EXPECT_EQ(t.Get(Column::kEast, 2), 6.98 * units::kFoot);
   EXPECT_EQ(t.head.names.well, "0926421110000100");
   // All keywords on one line, and positions without angles, as its manual shows them.
-  const SurveyTable positions = Read(
+  const SurveyTable positions = Parsed(
       "*WELL 1 *XYUNITS M *DEPUNITS M *COLUMNS *MD *TVD *EW *NS\n0 0 0 0\n100 100 0 0\n"
       "200 186.6 50 0\n");
   ASSERT_EQ(positions.rows(), 3u);
@@ -92,15 +82,15 @@ TEST(Petra, KeywordsNameColumnsAndUnits) {
 TEST(Petra, SeveralWellsAndUnitsThatAreNone) {
   std::string second = kPetra;
   second.replace(second.find("09264"), 5, "11111");
-  EXPECT_THAT(Refusal(kPetra + second), HasSubstr("--well"));
-  EXPECT_EQ(Read(kPetra + second, {.well = "1111121110000100"}).rows(), 3u);
-  EXPECT_EQ(Read(kPetra + second, {.well = "0926421110000100"}).rows(), 3u);
-  EXPECT_EQ(Read(kPetra + ("\n" + second), {.well = "1111121110000100"}).rows(), 3u);
-  EXPECT_THAT(Refusal(kPetra + second, {.well = "3"}), HasSubstr("no row is of well 3"));
+  EXPECT_THAT(ParseFault(kPetra + second).text, HasSubstr("--well"));
+  EXPECT_EQ(Parsed(kPetra + second, {.well = "1111121110000100"}).rows(), 3u);
+  EXPECT_EQ(Parsed(kPetra + second, {.well = "0926421110000100"}).rows(), 3u);
+  EXPECT_EQ(Parsed(kPetra + ("\n" + second), {.well = "1111121110000100"}).rows(), 3u);
+  EXPECT_THAT(ParseFault(kPetra + second, {.well = "3"}).text, HasSubstr("no row is of well 3"));
   std::string metric = second;
   metric.replace(metric.find("*DEPUNITS F"), 11, "*DEPUNITS M");
-  EXPECT_THAT(Refusal(kPetra + metric, {.well = "1111121110000100"}), HasSubstr("differ"));
-  EXPECT_THAT(Refusal("*WELL 1\n*DEPUNITS yards\n"), HasSubstr("F nor M"));
+  EXPECT_THAT(ParseFault(kPetra + metric, {.well = "1111121110000100"}).text, HasSubstr("differ"));
+  EXPECT_THAT(ParseFault("*WELL 1\n*DEPUNITS yards\n").text, HasSubstr("F nor M"));
 }
 
 std::string Plan(const std::string& name) {
@@ -118,7 +108,7 @@ std::string Plan(const std::string& name) {
 // A build of 30 deg in 300 m has the radius 300 / (pi/6) = 572.96 m: 76.76 m east, 286.48 m down.
 TEST(Wbp, PlansOfLandmark) {
   const std::string head = "DEPTH 2\n! a comment\nTARGETS:\nT:one\nL: 1 2 3\nWELLPLANS:\n";
-  const SurveyTable t = Read(head + Plan("A-1"), {.north = North::kGrid});
+  const SurveyTable t = Parsed(head + Plan("A-1"), {.north = North::kGrid});
   ASSERT_EQ(t.rows(), 3u);
   EXPECT_EQ(t.md(2), 400);
   EXPECT_EQ(t.inclination(2), 30 * units::kDeg);
@@ -128,11 +118,11 @@ TEST(Wbp, PlansOfLandmark) {
   EXPECT_TRUE(t.head.planned);
   EXPECT_EQ(t.status(1), RowStatus::kPlanned);
   const std::string two = head + Plan("A-1") + Plan("B-2");
-  EXPECT_THAT(Refusal(two), HasSubstr("A-1, B-2; say which by --trajectory"));
-  EXPECT_EQ(Read(two, {.north = North::kGrid, .trajectory = "B-2"}).head.names.survey, "B-2");
-  EXPECT_THAT(Refusal(two, {.trajectory = "C"}), HasSubstr("A-1, B-2"));
-  EXPECT_THAT(Refusal("DEPTH 9\nWELLPLANS:\n" + Plan("A")), HasSubstr("units 1 to 4"));
-  EXPECT_THAT(Refusal("! none\nWELLPLANS:\n" + Plan("A")), HasSubstr("DEPTH"));
+  EXPECT_THAT(ParseFault(two).text, HasSubstr("A-1, B-2; say which by --trajectory"));
+  EXPECT_EQ(Parsed(two, {.north = North::kGrid, .trajectory = "B-2"}).head.names.survey, "B-2");
+  EXPECT_THAT(ParseFault(two, {.trajectory = "C"}).text, HasSubstr("A-1, B-2"));
+  EXPECT_THAT(ParseFault("DEPTH 9\nWELLPLANS:\n" + Plan("A")).text, HasSubstr("units 1 to 4"));
+  EXPECT_THAT(ParseFault("! none\nWELLPLANS:\n" + Plan("A")).text, HasSubstr("DEPTH"));
   // What holds across is feet where the depths are metres: east by 76.76 ft does not fit the
   // angles.
   EXPECT_FALSE(ParseSurvey("DEPTH 3\nWELLPLANS:\n" + Plan("A"), "text"));
@@ -182,7 +172,7 @@ Parts Book() {
 }
 
 TEST(Workbook, TheSheetThatIsFilled) {
-  const SurveyTable t = Read(Zip(Book()));
+  const SurveyTable t = Parsed(Zip(Book()));
   ASSERT_EQ(t.rows(), 2u);
   EXPECT_EQ(t.md(1), 100 * units::kFoot);
   EXPECT_EQ(t.inclination(1), 2.4999999999999996 * units::kDeg);
@@ -190,8 +180,8 @@ TEST(Workbook, TheSheetThatIsFilled) {
   EXPECT_EQ(t.head.azimuth.north, North::kGrid);
   Parts two = Book();
   two["xl/worksheets/sheet2.xml"] = two["xl/worksheets/sheet1.xml"];
-  EXPECT_THAT(Refusal(Zip(two)), HasSubstr("Survey, Empty; say which by --trajectory"));
-  EXPECT_EQ(Read(Zip(two), {.trajectory = "Empty"}).rows(), 2u);
+  EXPECT_THAT(ParseFault(Zip(two)).text, HasSubstr("Survey, Empty; say which by --trajectory"));
+  EXPECT_EQ(Parsed(Zip(two), {.trajectory = "Empty"}).rows(), 2u);
 }
 
 TEST(Workbook, FaultsNameTheRow) {
@@ -205,19 +195,19 @@ TEST(Workbook, FaultsNameTheRow) {
   bad["xl/worksheets/sheet1.xml"] =
       "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"s\">"
       "<v>7</v></c></row></sheetData></worksheet>";
-  EXPECT_THAT(Refusal(Zip(bad)), HasSubstr("does not hold"));
-  EXPECT_THAT(Refusal(Zip({{"readme", "x"}})), HasSubstr("no workbook"));
+  EXPECT_THAT(ParseFault(Zip(bad)).text, HasSubstr("does not hold"));
+  EXPECT_THAT(ParseFault(Zip({{"readme", "x"}})).text, HasSubstr("no workbook"));
   bad["xl/worksheets/sheet1.xml"] =
       "<worksheet><sheetData><row r=\"2000000\"/></sheetData>"
       "</worksheet>";
-  EXPECT_THAT(Refusal(Zip(bad)), HasSubstr("out of order"));
+  EXPECT_THAT(ParseFault(Zip(bad)).text, HasSubstr("out of order"));
 }
 
 // An archive that unpacks to more than it may is left unread.
 TEST(Workbook, ABombIsRefused) {
   Parts bomb = Book();
   bomb["xl/sharedStrings.xml"] = std::string((std::size_t{1} << 26) + 100'000, ' ');
-  EXPECT_THAT(Refusal(Zip(bomb)), HasSubstr("too large"));
+  EXPECT_THAT(ParseFault(Zip(bomb)).text, HasSubstr("too large"));
 }
 
 TEST(Layouts, CutsAndFlipsHarmNothing) {

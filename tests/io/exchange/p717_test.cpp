@@ -4,6 +4,7 @@
 
 #include "wellgyro/io/exchange/exchange.h"
 
+#include "io/exchange/parsed.h"
 #include "support/survey_samples.h"
 
 namespace wellgyro {
@@ -35,20 +36,8 @@ const std::string kG7Of2019 =
     "G7,0,1,1,2026:01:15:06:12:00.5,2,1,30.0,1.5,358.5,0.39,-0.01,30.0,0.2,-0.1,-9.81,7.1,-1.2,"
     "13.2,9.8126,59.75,15.04,12.5,100.25,9.81234,59.7553,15.041,-1.2345,\n";
 
-SurveyTable Read(const std::string& text) {
-  auto table = ParseSurvey(text, "text");
-  EXPECT_TRUE(table) << (table ? "" : table.fault().text);
-  return table ? *table : SurveyTable();
-}
-
-Fault Refusal(const std::string& text) {
-  const auto table = ParseSurvey(text, "text");
-  EXPECT_FALSE(table);
-  return table ? Fault{} : table.fault();
-}
-
 TEST(P717, RecordsMeanWhatTheyShould) {
-  const SurveyTable t = Read(kHead);
+  const SurveyTable t = Parsed(kHead);
   ASSERT_EQ(t.rows(), 2u);
   EXPECT_EQ(t.head.datum, "Rotary Table");
   EXPECT_EQ(t.head.datum_elevation, 25.5);
@@ -65,7 +54,7 @@ TEST(P717, RecordsMeanWhatTheyShould) {
 
 TEST(P717, GyroRawRecordsOfBothDrafts) {
   for (const std::string& record : {kG7, kG7Of2019}) {
-    const SurveyTable t = Read(kHead + record);
+    const SurveyTable t = Parsed(kHead + record);
     ASSERT_EQ(t.head.gyro_raw.size(), 1u);
     const GyroRawRecord& g = t.head.gyro_raw[0];
     EXPECT_EQ(g.tool, 2);
@@ -87,21 +76,21 @@ TEST(P717, GyroRawRecordsOfBothDrafts) {
 }
 
 TEST(P717, FaultsNameTheLine) {
-  EXPECT_EQ(Refusal(kHead + "P7,0,1,1,,,,D,1,Surveyed,30,1,1,,,,,,,,,\n").line, 12);
-  EXPECT_EQ(Refusal(kHead + "P7,0,1,1,,,,D,1,Surveyed,x,1,1,,,,,,,,,\n").column, 11);
-  EXPECT_EQ(Refusal(kHead + "P7,0,1\n").line, 12);
-  EXPECT_THAT(Refusal(kHead + "Q7,0,1,2,3\n").text, HasSubstr("Q7"));
-  EXPECT_THAT(Refusal(kHead + "G7,0,1,1\n").text, HasSubstr("G7"));
-  EXPECT_THAT(Refusal("IOGP,x,1,1.1,1,,,,\n").text, HasSubstr("P7"));
+  EXPECT_EQ(ParseFault(kHead + "P7,0,1,1,,,,D,1,Surveyed,30,1,1,,,,,,,,,\n").line, 12);
+  EXPECT_EQ(ParseFault(kHead + "P7,0,1,1,,,,D,1,Surveyed,x,1,1,,,,,,,,,\n").column, 11);
+  EXPECT_EQ(ParseFault(kHead + "P7,0,1\n").line, 12);
+  EXPECT_THAT(ParseFault(kHead + "Q7,0,1,2,3\n").text, HasSubstr("Q7"));
+  EXPECT_THAT(ParseFault(kHead + "G7,0,1,1\n").text, HasSubstr("G7"));
+  EXPECT_THAT(ParseFault("IOGP,x,1,1.1,1,,,,\n").text, HasSubstr("P7"));
   const std::string no_survey = "IOGP,x,7,1.0,1,,,,\nP7,0,1,1,,,,D,1,Surveyed,1,1,1,,,,,,,,,\n";
-  EXPECT_THAT(Refusal(no_survey).text, HasSubstr("H7,1,5,0"));
+  EXPECT_THAT(ParseFault(no_survey).text, HasSubstr("H7,1,5,0"));
 }
 
 TEST(P717, TextKeepsOutOfTheWayOfTheFormat) {
   SurveyTable t = support::FullSurvey();
   t.head.names.well = "A,1;2";
   t.Set(TextColumn::kComment, 1, "one, two; three");
-  const SurveyTable back = Read(WriteSurvey(t, SurveyFormat::kP717));
+  const SurveyTable back = Parsed(WriteSurvey(t, SurveyFormat::kP717));
   EXPECT_EQ(back.head.names.well, "A 1 2");
   EXPECT_EQ(back.Get(TextColumn::kComment, 1), "one  two  three");
   EXPECT_EQ(back.md(6), t.md(6));

@@ -17,12 +17,12 @@ namespace {
 
 using support::ExpectSameStations;
 
-std::filesystem::path Reference(const std::string& name) {
+std::filesystem::path ReferencePath(const std::string& name) {
   return std::filesystem::path(WELLGYRO_REFERENCE_DIR) / name;
 }
 
-SurveyTable Read(const std::string& name, const ReadOptions& options = {}) {
-  auto table = ReadSurvey(Reference(name), options);
+SurveyTable ReadReference(const std::string& name, const ReadOptions& options = {}) {
+  auto table = ReadSurvey(ReferencePath(name), options);
   EXPECT_TRUE(table) << (table ? "" : table.fault().text) << " line "
                      << (table ? 0 : table.fault().line);
   return table ? *table : SurveyTable();
@@ -44,14 +44,14 @@ const std::vector<Column> kPositions{Column::kMd,       Column::kInclination, Co
 class ReferenceFormats : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(Reference("wells"))) {
+    if (!std::filesystem::exists(ReferencePath("wells"))) {
       GTEST_SKIP() << "the reference data are not here";
     }
   }
 };
 
 TEST_F(ReferenceFormats, P717ExampleA) {
-  const SurveyTable t = Read("wells/p717/exampleA.p717");
+  const SurveyTable t = ReadReference("wells/p717/exampleA.p717");
   ASSERT_EQ(t.rows(), 440u);
   EXPECT_EQ(t.head.md_unit, LengthUnit::kFoot);
   EXPECT_EQ(t.head.grid_unit, LengthUnit::kUsFoot);
@@ -76,7 +76,7 @@ TEST_F(ReferenceFormats, P717ExampleA) {
 }
 
 TEST_F(ReferenceFormats, P717ExampleB) {
-  const SurveyTable t = Read("wells/p717/exampleB.p717");
+  const SurveyTable t = ReadReference("wells/p717/exampleB.p717");
   ASSERT_EQ(t.rows(), 23u);
   EXPECT_EQ(t.head.runs.size(), 2u);
   EXPECT_EQ(t.head.runs[1].tool, SurveyTool::kMagneticMwd);
@@ -107,7 +107,7 @@ TEST_F(ReferenceFormats, P717ExampleB) {
 }
 
 TEST_F(ReferenceFormats, WitsmlOfARealServer) {
-  const SurveyTable t = Read("wells/witsml/energistics_2016_trajectory_1411.xml");
+  const SurveyTable t = ReadReference("wells/witsml/energistics_2016_trajectory_1411.xml");
   ASSERT_EQ(t.rows(), 82u);
   EXPECT_EQ(t.head.names.well, "EnergisticsWell2016-A");
   EXPECT_EQ(t.head.azimuth.north, North::kGrid);
@@ -137,7 +137,7 @@ TEST_F(ReferenceFormats, WitsmlOfARealServer) {
 }
 
 TEST_F(ReferenceFormats, WitsmlExampleWithMatrix) {
-  const SurveyTable t = Read("wells/witsml/energistics_example_1411.xml");
+  const SurveyTable t = ReadReference("wells/witsml/energistics_example_1411.xml");
   ASSERT_EQ(t.rows(), 1u);
   EXPECT_EQ(t.head.md_unit, LengthUnit::kFoot);
   EXPECT_EQ(t.head.azimuth.declination, -4.038 * units::kDeg);
@@ -157,7 +157,7 @@ TEST_F(ReferenceFormats, WitsmlExampleWithMatrix) {
 
 // One survey in eight files that independent programs accept.
 TEST_F(ReferenceFormats, TheSameSurveyInEveryFormat) {
-  const SurveyTable csv = Read("formats/gyro_survey.csv");
+  const SurveyTable csv = ReadReference("formats/gyro_survey.csv");
   ASSERT_EQ(csv.rows(), 7u);
   EXPECT_EQ(csv.head.azimuth.north, North::kGrid);
   struct Other {
@@ -169,7 +169,7 @@ TEST_F(ReferenceFormats, TheSameSurveyInEveryFormat) {
         Other{"gyro_trajectory_1411.xml", 5e-5, 5e-5}, Other{"gyro_trajectory_20.xml", 5e-5, 5e-5},
         Other{"gyro_trajectory_21.xml", 5e-5, 5e-5}, Other{"gyro_survey.p717", 5e-4, 6e-3}}) {
     SCOPED_TRACE(other.name);
-    const SurveyTable t = Read(std::string("formats/") + other.name);
+    const SurveyTable t = ReadReference(std::string("formats/") + other.name);
     ASSERT_EQ(t.rows(), csv.rows());
     for (std::size_t row = 0; row < csv.rows(); ++row) {
       EXPECT_NEAR(t.md(row), csv.md(row), other.length);
@@ -183,22 +183,22 @@ TEST_F(ReferenceFormats, TheSameSurveyInEveryFormat) {
 
 TEST_F(ReferenceFormats, TablesOfEveryStyle) {
   const ReadOptions metres{.depth_unit = LengthUnit::kMetre, .north = North::kGrid};
-  EXPECT_EQ(Read("wells/wellpathpy/well9.csv").rows(), 121u);
-  EXPECT_EQ(Read("wells/wellpathpy/well10.csv").rows(), 121u);
+  EXPECT_EQ(ReadReference("wells/wellpathpy/well9.csv").rows(), 121u);
+  EXPECT_EQ(ReadReference("wells/wellpathpy/well10.csv").rows(), 121u);
   const SurveyTable report =
-      Read("wells/wellpathpy/Well_Surveys_Projected_to_TD.csv", {.north = North::kGrid});
+      ReadReference("wells/wellpathpy/Well_Surveys_Projected_to_TD.csv", {.north = North::kGrid});
   EXPECT_EQ(report.rows(), 80u);
   EXPECT_THAT(report.head.remarks, testing::ElementsAre(testing::HasSubstr("430.1m")));
-  EXPECT_EQ(Read("wells/volve/15_9-F-12_Survey_Data.csv", metres).rows(), 126u);
-  const SurveyTable nlog = Read("wells/nlog/P11-A-02_SURV.csv", metres);
+  EXPECT_EQ(ReadReference("wells/volve/15_9-F-12_Survey_Data.csv", metres).rows(), 126u);
+  const SurveyTable nlog = ReadReference("wells/nlog/P11-A-02_SURV.csv", metres);
   EXPECT_EQ(nlog.rows(), 91u);
   EXPECT_EQ(nlog.md(90), 2691);
   EXPECT_EQ(nlog.inclination(90), 89.66 * units::kDeg);
   EXPECT_EQ(nlog.azimuth(90), 319.61 * units::kDeg);
-  EXPECT_EQ(Read("wells/wellpathpy/mock_data_set.csv", metres).rows(), 94u);
+  EXPECT_EQ(ReadReference("wells/wellpathpy/mock_data_set.csv", metres).rows(), 94u);
   const ReadOptions by_number{
       .columns = {{"MD[m]", "1"}, {"INC", "2"}, {"AZI_GRID", "3"}, {"TVD[m]", "4"}}};
-  const SurveyTable iscwsa = Read("wells/iscwsa-1.txt", by_number);
+  const SurveyTable iscwsa = ReadReference("wells/iscwsa-1.txt", by_number);
   EXPECT_EQ(iscwsa.md(iscwsa.rows() - 1), 8000);
   EXPECT_EQ(iscwsa.Get(Column::kTvd, iscwsa.rows() - 1), 3521.06);
 }

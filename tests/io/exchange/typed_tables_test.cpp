@@ -12,6 +12,8 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/exchange.h"
 
+#include "io/exchange/parsed.h"
+
 namespace wellgyro {
 namespace {
 
@@ -23,7 +25,7 @@ struct Truth {
   double md, inclination, tvd, north, east;  // m and deg
 };
 
-std::vector<Truth> Hole() {
+std::vector<Truth> TypedHole() {
   constexpr double kDegree = std::numbers::pi / 180, kRadius = 30 / (3 * kDegree);
   std::vector<Truth> hole;
   for (int k = 0; k < 30; ++k) hole.push_back({30.0 * k, 0, 30.0 * k, 0, 0});
@@ -35,26 +37,14 @@ std::vector<Truth> Hole() {
   return hole;
 }
 
-std::string Rows(const std::function<std::string(const Truth&)>& row) {
+std::string TypedRows(const std::function<std::string(const Truth&)>& row) {
   std::string text;
-  for (const Truth& t : Hole()) text += row(t) + "\n";
+  for (const Truth& t : TypedHole()) text += row(t) + "\n";
   return text;
 }
 
-SurveyTable Read(const std::string& text, const ReadOptions& options = {}) {
-  const auto table = ParseSurvey(text, "text", options);
-  EXPECT_TRUE(table) << (table ? "" : table.fault().text);
-  return table ? *table : SurveyTable();
-}
-
-std::string Refusal(const std::string& text, const ReadOptions& options = {}) {
-  const auto table = ParseSurvey(text, "text", options);
-  EXPECT_FALSE(table) << text.substr(0, 200);
-  return table ? std::string() : table.fault().text;
-}
-
 void ExpectTheHole(const SurveyTable& table) {
-  const std::vector<Truth> hole = Hole();
+  const std::vector<Truth> hole = TypedHole();
   ASSERT_EQ(table.rows(), hole.size());
   for (std::size_t row = 0; row < hole.size(); ++row) {
     EXPECT_NEAR(table.md(row), hole[row].md, 0.006) << row;
@@ -80,22 +70,22 @@ std::string Typeset(double number, const std::string& between, const std::string
 TEST(TypedTables, NumbersAsCountriesTypesetThem) {
   for (const std::string between : {" ", "\u00A0", "\u202F", "'", "."}) {
     const std::string mark = between == "'" ? "." : ",";
-    const std::string text = "MD[m];INC[deg];AZI_GRID[deg];TVD[m]\n" + Rows([&](const Truth& t) {
-                               return Typeset(t.md, between, mark) + ";" +
-                                      Typeset(t.inclination, between, mark) + ";40;" +
-                                      Typeset(t.tvd, between, mark);
-                             });
+    const std::string text =
+        "MD[m];INC[deg];AZI_GRID[deg];TVD[m]\n" + TypedRows([&](const Truth& t) {
+          return Typeset(t.md, between, mark) + ";" + Typeset(t.inclination, between, mark) +
+                 ";40;" + Typeset(t.tvd, between, mark);
+        });
     SCOPED_TRACE(between);
-    ExpectTheHole(Read(text));
+    ExpectTheHole(Parsed(text));
   }
   const SurveyTable west =
-      Read("MD[m],INC,AZI_TRUE,N[m],E[m]\n0,0,270,0,0\n30,4,270,0,\u22121.05\n");
+      Parsed("MD[m],INC,AZI_TRUE,N[m],E[m]\n0,0,270,0,0\n30,4,270,0,\u22121.05\n");
   EXPECT_EQ(west.Get(Column::kEast, 1), -1.05);
 }
 
 TEST(TypedTables, GapsThatPartNoThousandsAreNoNumbers) {
   for (const std::string md : {"1 02", "10 2000", "1.02.5,5", "1 0200", "1' 020"}) {
-    EXPECT_THAT(Refusal("MD[m];INC[deg];AZI_GRID[deg]\n0;1,5;2\n" + md + ";1,5;2\n"),
+    EXPECT_THAT(ParseFault("MD[m];INC[deg];AZI_GRID[deg]\n0;1,5;2\n" + md + ";1,5;2\n").text,
                 HasSubstr("is not a number"))
         << md;
   }
@@ -111,7 +101,7 @@ TEST(TypedTables, NamesWithBlanksInThem) {
         "MD (m) East (m) North (m) TVD (m) Inc (deg) AZI_GRID (deg)\n",
         "MD East North TVD Inc Azi (azimuth)\n(m) (m) (m) (m) (deg) (deg)\n\n"}) {
     SCOPED_TRACE(names);
-    ExpectTheHole(Read(names + Rows(row), {.north = North::kGrid}));
+    ExpectTheHole(Parsed(names + TypedRows(row), {.north = North::kGrid}));
   }
 }
 
@@ -120,8 +110,8 @@ TEST(TypedTables, ABlankLineBelowTheHeadingEndsNothing) {
     return fmt::format("{:.2f},{:.2f},40,{:.2f}", t.md, t.inclination, t.tvd);
   };
   const std::string head = "MD[m],INC[deg],AZI_GRID[deg],TVD[m]\n";
-  ExpectTheHole(Read(head + "\n" + Rows(row)));
-  EXPECT_THAT(Refusal(head + "0,0,0,0\n\n30,0,0,30\n"), HasSubstr("take that line out"));
+  ExpectTheHole(Parsed(head + "\n" + TypedRows(row)));
+  EXPECT_THAT(ParseFault(head + "0,0,0,0\n\n30,0,0,30\n").text, HasSubstr("take that line out"));
 }
 
 TEST(TypedTables, ManyRowsAreToldInOneNote) {
@@ -129,7 +119,7 @@ TEST(TypedTables, ManyRowsAreToldInOneNote) {
     return fmt::format("{:.2f},{:.2f},{},{:.2f}", at.md, at.inclination,
                        at.inclination == 0 ? "" : "40", at.tvd);
   };
-  const SurveyTable t = Read("MD[m],INC[deg],AZI_GRID[deg],TVD[m]\n" + Rows(row));
+  const SurveyTable t = Parsed("MD[m],INC[deg],AZI_GRID[deg],TVD[m]\n" + TypedRows(row));
   EXPECT_THAT(t.head.notes, Contains(HasSubstr("31 stations from MD 0.00 m to 900.00 m")));
   EXPECT_THAT(t.head.notes, Not(Contains(HasSubstr("at MD 30.00 m"))));
 }
@@ -138,35 +128,35 @@ TEST(TypedTables, ManyRowsAreToldInOneNote) {
 // little, the path by much.
 TEST(TypedTables, WhatAddsUpAlongThePathIsTold) {
   const auto text = [](double more) {
-    return "MD[m],INC[deg],AZI_GRID[deg],TVD[m]\n" + Rows([&](const Truth& t) {
+    return "MD[m],INC[deg],AZI_GRID[deg],TVD[m]\n" + TypedRows([&](const Truth& t) {
              return fmt::format("{:.2f},{:.2f},40,{:.2f}", t.md,
                                 t.inclination + (t.inclination > 0 ? more : 0), t.tvd);
            });
   };
-  EXPECT_THAT(Read(text(0)).head.notes, Not(Contains(HasSubstr("part by up to"))));
-  EXPECT_THAT(Read(text(0.3)).head.notes, Contains(HasSubstr("part by up to")));
+  EXPECT_THAT(Parsed(text(0)).head.notes, Not(Contains(HasSubstr("part by up to"))));
+  EXPECT_THAT(Parsed(text(0.3)).head.notes, Contains(HasSubstr("part by up to")));
 }
 
 TEST(TypedTables, DepthsBelowAndHeightsAboveTheSea) {
   const auto text = [](const std::string& column, double sign) {
-    return "MD[m],INC[deg],AZI_GRID[deg]," + column + "\n" + Rows([&](const Truth& t) {
+    return "MD[m],INC[deg],AZI_GRID[deg]," + column + "\n" + TypedRows([&](const Truth& t) {
              return fmt::format("{:.2f},{:.2f},40,{:.2f}", t.md, t.inclination,
                                 sign * (t.tvd - 25));
            });
   };
-  const SurveyTable depth = Read(text("TVDSS[m]", 1));
+  const SurveyTable depth = Parsed(text("TVDSS[m]", 1));
   EXPECT_THAT(depth.head.notes, Contains(HasSubstr("agree by minimum curvature")));
-  EXPECT_THAT(Refusal(text("TVDSS[m]", -1)), HasSubstr("--columns TVDSS=0"));
+  EXPECT_THAT(ParseFault(text("TVDSS[m]", -1)).text, HasSubstr("--columns TVDSS=0"));
   for (const double sign : {1, -1}) {
-    const SurveyTable z = Read(text("Z[m]", sign));
-    EXPECT_NEAR(*z.Get(Column::kDown, z.rows() - 1), Hole().back().tvd - 25, 0.006) << sign;
+    const SurveyTable z = Parsed(text("Z[m]", sign));
+    EXPECT_NEAR(*z.Get(Column::kDown, z.rows() - 1), TypedHole().back().tvd - 25, 0.006) << sign;
   }
   // Beside TVD a height does not stand for the elevation of the datum.
   const SurveyTable both =
-      Read("MD[m],INC[deg],AZI_GRID[deg],TVD[m],Z[m]\n" + Rows([](const Truth& t) {
-             return fmt::format("{:.2f},{:.2f},40,{:.2f},{:.2f}", t.md, t.inclination, t.tvd,
-                                25 - t.tvd);
-           }));
+      Parsed("MD[m],INC[deg],AZI_GRID[deg],TVD[m],Z[m]\n" + TypedRows([](const Truth& t) {
+               return fmt::format("{:.2f},{:.2f},40,{:.2f},{:.2f}", t.md, t.inclination, t.tvd,
+                                  25 - t.tvd);
+             }));
   EXPECT_NEAR(both.head.datum_elevation.value_or(0), 25, 0.006);
 }
 
@@ -175,7 +165,8 @@ TEST(TypedTables, TwoAzimuthsShowTheTurnBetweenTheirNorths) {
     return fmt::format("{:.2f},{:.2f},42.67,40,{:.2f},{:.2f}", at.md, at.inclination, at.north,
                        at.east);
   };
-  const SurveyTable t = Read("MD[m],INC[deg],AZI_MAG[deg],AZI_GRID[deg],N[m],E[m]\n" + Rows(row));
+  const SurveyTable t =
+      Parsed("MD[m],INC[deg],AZI_MAG[deg],AZI_GRID[deg],N[m],E[m]\n" + TypedRows(row));
   EXPECT_EQ(t.head.azimuth.north, North::kMagnetic);
   EXPECT_EQ(t.head.offsets, North::kGrid);
   EXPECT_THAT(t.head.notes, Contains(HasSubstr("agree by minimum curvature with north and east")));
@@ -188,7 +179,7 @@ std::string Petrel(double head) {
              "# WELL DATUM (KB, Kelly bushing, from MSL): 25.00 (m)\n"
              "MD X Y Z TVD DX DY AZIM_GN INCL\n",
              head) +
-         Rows([](const Truth& t) {
+         TypedRows([](const Truth& t) {
            return fmt::format("{:.2f} {:.2f} {:.2f} {:.2f} {:.2f} {:.2f} {:.2f} 40 {:.2f}", t.md,
                               4e5 + t.east, 6.5e6 + t.north, 25 - t.tvd, t.tvd, t.east, t.north,
                               t.inclination);
@@ -196,12 +187,13 @@ std::string Petrel(double head) {
 }
 
 TEST(TypedTables, PetrelsHeadAndColumnsNameOneWellHead) {
-  ExpectTheHole(Read(Petrel(4e5)));
-  EXPECT_THAT(Refusal(Petrel(4e5 + 300)), HasSubstr("mend the line WELL HEAD X-COORDINATE"));
+  ExpectTheHole(Parsed(Petrel(4e5)));
+  EXPECT_THAT(ParseFault(Petrel(4e5 + 300)).text,
+              HasSubstr("mend the line WELL HEAD X-COORDINATE"));
 }
 
 TEST(TypedTables, RowsOfALogWithoutASurveyAreCounted) {
-  const SurveyTable t = Read(
+  const SurveyTable t = Parsed(
       "~V\n VERS. 2.0 :\n WRAP. NO :\n~W\n STRT.M 0 :\n STOP.M 60 :\n STEP.M 30 :\n"
       " NULL. -999.25 :\n~P\n I_AT. Grid :\n~C\n DEPT.M :\n DEVI.DEG :\n AZIM.DEG :\n~A\n"
       "0 1 2\n30 -999.25 -999.25\n60 1 2\n");

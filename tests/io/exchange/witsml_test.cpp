@@ -4,6 +4,7 @@
 
 #include "wellgyro/io/exchange/exchange.h"
 
+#include "io/exchange/parsed.h"
 #include "support/survey_samples.h"
 
 namespace wellgyro {
@@ -21,12 +22,6 @@ std::string Station(const std::string& md, const std::string& more = "") {
   return "<trajectoryStation uid=\"s\">\n<md uom=\"ft\" datum=\"KB\">" + md +
          "</md>\n<incl uom=\"dega\">1.5</incl><azi uom=\"rad\">0.5</azi>" + more +
          "</trajectoryStation>\n";
-}
-
-Fault Refusal(const std::string& text) {
-  const auto table = ParseSurvey(text, "text");
-  EXPECT_FALSE(table);
-  return table ? Fault{} : table.fault();
 }
 
 TEST(Witsml, UnitsAreEachElementsOwn) {
@@ -50,7 +45,7 @@ TEST(Witsml, SeveralTrajectoriesAndStationsWithoutAzimuth) {
            Station("100") + "</trajectory>";
   };
   const std::string text = "<trajectorys>" + one("A") + one("B") + "</trajectorys>";
-  EXPECT_THAT(Refusal(text).text, HasSubstr("A, B; say which by --trajectory"));
+  EXPECT_THAT(ParseFault(text).text, HasSubstr("A, B; say which by --trajectory"));
   const auto t = ParseSurvey(text, "text", {.trajectory = "u-B"});
   ASSERT_TRUE(t) << t.fault().text;
   EXPECT_EQ(t->head.names.survey, "B");
@@ -82,30 +77,30 @@ TEST(Witsml, Version2WithPrefixesAndSigma) {
 }
 
 TEST(Witsml, FaultsNameTheElementAndItsLine) {
-  const Fault number = Refusal(Trajectory(Station("1") + Station("x")));
+  const Fault number = ParseFault(Trajectory(Station("1") + Station("x")));
   EXPECT_THAT(number.text, HasSubstr("/trajectorys/trajectory/trajectoryStation[2]/md: 'x'"));
   EXPECT_EQ(number.line, 9);
-  EXPECT_EQ(Refusal(Trajectory(Station("1") + Station("3") + Station("2"))).code,
+  EXPECT_EQ(ParseFault(Trajectory(Station("1") + Station("3") + Station("2"))).code,
             FaultCode::kOrder);
-  EXPECT_THAT(Refusal(Trajectory(Station("1", "<tvd uom=\"parsec\">1</tvd>"))).text,
+  EXPECT_THAT(ParseFault(Trajectory(Station("1", "<tvd uom=\"parsec\">1</tvd>"))).text,
               HasSubstr("parsec"));
-  EXPECT_THAT(Refusal(Trajectory("<trajectoryStation uid=\"s\"><md uom=\"m\">1</md>"
-                                 "</trajectoryStation>"))
+  EXPECT_THAT(ParseFault(Trajectory("<trajectoryStation uid=\"s\"><md uom=\"m\">1</md>"
+                                    "</trajectoryStation>"))
                   .text,
               HasSubstr("no incl"));
-  EXPECT_THAT(Refusal(Trajectory("")).text, HasSubstr("station"));
-  EXPECT_THAT(Refusal("<logs/>").text, HasSubstr("no WITSML trajectory"));
-  EXPECT_EQ(Refusal("<a>\n<b>\n</a>").line, 3);
+  EXPECT_THAT(ParseFault(Trajectory("")).text, HasSubstr("station"));
+  EXPECT_THAT(ParseFault("<logs/>").text, HasSubstr("no WITSML trajectory"));
+  EXPECT_EQ(ParseFault("<a>\n<b>\n</a>").line, 3);
 }
 
 TEST(Witsml, NoEntitiesNoDepthsWithoutEnd) {
   const std::string bomb =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE t [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;\">]>\n<t/>";
-  EXPECT_THAT(Refusal(bomb).text, HasSubstr("document type"));
-  EXPECT_EQ(Refusal(bomb).line, 2);
+  EXPECT_THAT(ParseFault(bomb).text, HasSubstr("document type"));
+  EXPECT_EQ(ParseFault(bomb).line, 2);
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
-  EXPECT_THAT(Refusal(deep).text, HasSubstr("deep"));
+  EXPECT_THAT(ParseFault(deep).text, HasSubstr("deep"));
   // '>' in a value and in comments is no end.
   const auto t = ParseSurvey(
       Trajectory("<!-- <<< > --><x a=\"1>2\" b='</a>'/>" + Station("1") + "<![CDATA[<<<]]>"), "t");

@@ -16,16 +16,16 @@ using units::kDeg;
 using units::kDegPerHour;
 using units::kDegPerHourPerG;
 
-const std::string kHead = "format = \"wellgyro.job/1\"\n[well]\nlatitude_deg = 60\n";
+const std::string kWellHead = "format = \"wellgyro.job/1\"\n[well]\nlatitude_deg = 60\n";
 
 Job JobOf(const std::string& text) {
-  const Result<JobFile> file = ParseJob(kHead + text, "job.toml", ".");
+  const Result<JobFile> file = ParseJob(kWellHead + text, "job.toml", ".");
   if (!file) ADD_FAILURE() << file.fault().text;
   return file ? file->job : Job{};
 }
 
-std::string FaultOf(const std::string& text) {
-  const Result<JobFile> file = ParseJob(kHead + text, "job.toml", ".");
+std::string DefaultsFault(const std::string& text) {
+  const Result<JobFile> file = ParseJob(kWellHead + text, "job.toml", ".");
   return file ? "" : file.fault().text;
 }
 
@@ -99,9 +99,9 @@ TEST(JobDefaults, ANoiseThatNobodyStatesIsTold) {
 }
 
 TEST(JobDefaults, ATieInBelowTheDatumSaysHowDeepItIs) {
-  EXPECT_THAT(FaultOf("[tie_in]\nmd_m = 100\n"), HasSubstr("tvd_m: is missing beside md_m"));
-  EXPECT_EQ(FaultOf("[tie_in]\nmd_m = 100\ntvd_m = 99\n"), "");
-  EXPECT_EQ(FaultOf("[tie_in]\nmd_m = 0\n"), "");
+  EXPECT_THAT(DefaultsFault("[tie_in]\nmd_m = 100\n"), HasSubstr("tvd_m: is missing beside md_m"));
+  EXPECT_EQ(DefaultsFault("[tie_in]\nmd_m = 100\ntvd_m = 99\n"), "");
+  EXPECT_EQ(DefaultsFault("[tie_in]\nmd_m = 0\n"), "");
 }
 
 }  // namespace

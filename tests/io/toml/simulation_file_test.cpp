@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using units::kDeg;
 using units::kDegPerHour;
 
-constexpr std::string_view kWhole = R"(format = "wellgyro.simulation/1"
+constexpr std::string_view kWholeSimulation = R"(format = "wellgyro.simulation/1"
 seed = 42
 [well]
 table = [[0, 0, 10], [500, 5, 20], [1000, 30, 40]]
@@ -97,10 +97,12 @@ tool = 1
 imu = "SIM_IMU"
 )";
 
-Result<SimulationFile> Parse(std::string_view text) { return ParseSimulation(text, "s.toml", "."); }
+Result<SimulationFile> ParseWhole(std::string_view text) {
+  return ParseSimulation(text, "s.toml", ".");
+}
 
 TEST(ReadSimulation, TakesWellRunAndEarth) {
-  const auto file = Parse(kWhole);
+  const auto file = ParseWhole(kWholeSimulation);
   ASSERT_TRUE(file) << file.fault().line << " " << file.fault().text;
   const Simulation& s = file->simulation;
   EXPECT_EQ(s.seed, 42u);
@@ -136,7 +138,7 @@ TEST(ReadSimulation, TakesWellRunAndEarth) {
 }
 
 TEST(ReadSimulation, TakesToolAndStreams) {
-  const auto file = Parse(kWhole);
+  const auto file = ParseWhole(kWholeSimulation);
   ASSERT_TRUE(file);
   const SimulatedTool& tool = file->simulation.tool;
   EXPECT_TRUE(tool.has_gz && tool.has_mag && tool.errors.flicker);
@@ -189,7 +191,7 @@ run.step = [{stop_s = 1}]
 earth.latitude_deg = 60
 tool = {gyro_bias_sigma_deg_per_h = 2.0, accel_bias_mps2 = [1, 2, 3]}
 )";
-  const auto file = Parse(text);
+  const auto file = ParseWhole(text);
   ASSERT_TRUE(file) << file.fault().text;
   ErrorPriors priors;
   priors.gyro_bias_sigma = 2 * kDegPerHour;
@@ -201,7 +203,7 @@ tool = {gyro_bias_sigma_deg_per_h = 2.0, accel_bias_mps2 = [1, 2, 3]}
 
 // The inclination that the named well is meant to hold, by the simulator's own truth.
 TEST(ReadSimulation, ABuiltWellHoldsItsInclination) {
-  const auto file = Parse(R"(format = "wellgyro.simulation/1"
+  const auto file = ParseWhole(R"(format = "wellgyro.simulation/1"
 run.step = [{stop_s = 1}]
 earth.latitude_deg = 60
 [well]
@@ -244,7 +246,7 @@ TEST(ReadSimulation, LawsAndStationsOfAFile) {
     EXPECT_THAT(refused.fault().source, HasSubstr("well.csv"));
     EXPECT_GT(refused.fault().line, 0);
   }
-  const auto laws = Parse(R"(format = "wellgyro.simulation/1"
+  const auto laws = ParseWhole(R"(format = "wellgyro.simulation/1"
 run.step = [{stop_s = 1}]
 earth.latitude_deg = 60
 [well]
@@ -273,7 +275,7 @@ start_deg = 200
 }
 
 TEST(ReadSimulation, FaultsHaveTheirSizeInTheUnitOfItsKey) {
-  const auto file = Parse(std::string(kWhole) + R"(
+  const auto file = ParseWhole(std::string(kWholeSimulation) + R"(
 [[fault]]
 cause = "gyro_step"
 axis = "y"
@@ -305,7 +307,7 @@ cause = "accels_swapped"
 
 TEST(ReadSimulation, AFaultThatCannotBeIsNamed) {
   const auto complaint = [](const std::string& fault) {
-    const auto file = Parse(std::string(kWhole) + "\n[[fault]]\n" + fault);
+    const auto file = ParseWhole(std::string(kWholeSimulation) + "\n[[fault]]\n" + fault);
     return file ? std::string() : file.fault().text;
   };
   EXPECT_THAT(complaint("cause = \"rust\""), HasSubstr("is none of gyro_step, gyro_ramp"));
@@ -317,7 +319,7 @@ TEST(ReadSimulation, AFaultThatCannotBeIsNamed) {
 }
 
 TEST(ReadSimulation, MistakesHaveTheirLine) {
-  std::istringstream text{std::string(kWhole)};
+  std::istringstream text{std::string(kWholeSimulation)};
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -327,7 +329,7 @@ TEST(ReadSimulation, MistakesHaveTheirLine) {
          {key + "_x" + lines[i].substr(key.size()), key + " = {}", key + " = nan"}) {
       std::string changed;
       for (std::size_t j = 0; j < lines.size(); ++j) changed += (j == i ? odd : lines[j]) + "\n";
-      const auto file = Parse(changed);
+      const auto file = ParseWhole(changed);
       ASSERT_FALSE(file) << odd;
       const bool whole_table =
           odd.starts_with("table_x") || odd.starts_with("stop_s_x") || odd.starts_with("to_md_m_x");
@@ -336,8 +338,8 @@ TEST(ReadSimulation, MistakesHaveTheirLine) {
       }
     }
   }
-  EXPECT_FALSE(Parse(""));
-  EXPECT_THAT(Parse("format = \"wellgyro.simulation/1\"").fault().text, HasSubstr("well"));
+  EXPECT_FALSE(ParseWhole(""));
+  EXPECT_THAT(ParseWhole("format = \"wellgyro.simulation/1\"").fault().text, HasSubstr("well"));
 }
 
 }  // namespace
