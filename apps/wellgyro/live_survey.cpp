@@ -25,6 +25,14 @@
 namespace wellgyro::apps {
 namespace {
 
+/// What a look at the whole survey took for a moment, the more the longer the run, goes back to the
+/// system.
+void GiveMemoryBack() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
+}
+
 /// A survey that adjusts when it is stopped does not hold up whoever stopped it.
 class SurveyConsole : public Console {
  public:
@@ -40,6 +48,7 @@ class SurveyConsole : public Console {
   void OnStatus(const Status& status) override {
     if (page_ != nullptr) page_->Put(status);
     NotifyManager("WATCHDOG=1");
+    GiveMemoryBack();
     if (status.text == kBusy && says_ != Says::kNothing) Show(status.text);
   }
   void OnGlance(const Glance& glance) override {
@@ -87,17 +96,6 @@ int Stopped(const SurveyOptions& options, const LiveOutcome& outcome) {
     tools.push_back({.tool = result.tool, .folder = result.folder, .survey = &result.survey});
   }
   return Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole, options.says, tools);
-}
-
-/// What a look at the whole survey takes for a moment, the more the longer the run, goes back to
-/// the system. By itself glibc raises these limits to the largest block that was ever freed, and
-/// twice that (mallopt(3)).
-void GiveMemoryBack() {
-#ifdef __GLIBC__
-  constexpr int kBytes = 128 << 10;  // the limits that glibc begins with
-  ::mallopt(M_MMAP_THRESHOLD, kBytes);
-  ::mallopt(M_TRIM_THRESHOLD, kBytes);
-#endif
 }
 
 LiveSetup SetupOf(const SurveyOptions& options, const JobFile& job) {
@@ -155,7 +153,6 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     }
     page = std::move(*opened);
   }
-  GiveMemoryBack();
   SurveyConsole console(options.says, page.get());
   LiveSetup setup = SetupOf(options, job);
   setup.advise = *advise;

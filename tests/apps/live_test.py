@@ -432,9 +432,14 @@ class Live(ProgramTest):
         sender = self.Start("simulate", "--job", self.simulation, "--out", url, "--speed", "40",
                             "--finish")
         self.WaitFor(self.Path(out, "run.toml"))
+        ear = Ear(self.port)
         shutil.rmtree(parent)
         self.Write(parent, "in the way")
-        time.sleep(1.5)
+        # On a busy machine the files are written seldom: until they cannot be.
+        end = time.monotonic() + 30
+        while not any(state == 2 for state, *_ in ear.Statuses()):
+            self.assertLess(time.monotonic(), end, "nobody says that the folder is gone")
+            time.sleep(0.1)
         os.remove(parent)
         text, errors = survey.communicate(timeout=60)
         sender.communicate(timeout=60)

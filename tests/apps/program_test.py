@@ -56,6 +56,8 @@ class Program(ProgramTest):
         same, differ, odd = filecmp.cmpfiles(self.Path("one"), self.Path("two"), names,
                                              shallow=False)
         self.assertEqual((len(same), differ, odd), (len(names), [], []))
+        known = Run("check", *(self.Path("one", name) for name in names))
+        self.assertNotIn("unknown kind", known.stdout)
 
     def test_run_toml_names_the_adjuster(self):
         self.assertEqual(self.Survey(self.log, "adjusted").returncode, 0)

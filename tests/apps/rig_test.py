@@ -163,6 +163,34 @@ class Rig(Live):
         self.assertEqual(again.returncode, 0, again.stderr)
         self.SameAs("straight", "full.again")
 
+    # 2026-11-24: it was tried once, and the adjusted survey was gone.
+    def test_a_survey_that_ends_on_a_full_disk_is_written_when_there_is_room(self):
+        disk = self.Path("narrow")
+        os.mkdir(disk)
+        made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", disk],
+                              check=False, capture_output=True)
+        if made.returncode != 0:
+            self.skipTest("no small disk can be made here")
+        self.addCleanup(subprocess.run, ["umount", disk], check=False)
+        url, survey = self.Survey(os.path.join("narrow", "out"))
+        self.Simulate(url, speed="100")
+        full = self.Path("narrow", "fill")
+        with open(full, "wb") as file, self.assertRaises(OSError):
+            while True:
+                os.write(file.fileno(), b"x" * 1024)
+        ear = Ear(self.port)
+        self.assertEqual(Run("send", "finish", "--job", self.job, "--to", url).returncode, 0)
+        end = time.monotonic() + 30
+        while not any(state == 2 for state, *_ in ear.Statuses()):
+            self.assertLess(time.monotonic(), end, "nobody says that the disk is full")
+            time.sleep(0.1)
+        time.sleep(1.5)
+        self.assertIsNone(survey.poll(), "it gave up")
+        os.remove(full)
+        errors = self.End(survey)
+        self.assertIn("tried again every second; a stop gives them up", errors)
+        self.assertIn("adjusted", self.Read("narrow", "out", "source.toml"))
+
     def test_without_power_what_was_not_on_the_disk_comes_from_another_recorder(self):
         full, heard = self.Path("power.all.lcm"), self.Path("power.lcm")
         url = self.Udpm()
@@ -283,6 +311,9 @@ class Rig(Live):
 
     def test_what_is_not_there_is_said(self):
         url = self.Udpm()
+        # 2026-11-24: a time before all others was taken for now.
+        never = Run("send", "finish", "--at-utime-us", "-5", "--job", self.job, "--to", url)
+        self.assertEqual(never.returncode, 1, never.stdout + never.stderr)
         nobody = Run("watch", url, "--seconds", "1")
         self.assertEqual(nobody.returncode, 2)
         self.assertIn("no survey was heard", nobody.stderr)

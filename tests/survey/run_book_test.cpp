@@ -1,5 +1,8 @@
 #include "wellgyro/survey/run_book.h"
 
+#include <cstdint>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace wellgyro {
@@ -19,6 +22,14 @@ TEST(RunBook, EverythingIsRunOneWhereNobodySaysOtherwise) {
   const RunBook book({});
   EXPECT_EQ(book.RunAt(Utc(5), 0), 1);
   EXPECT_EQ(book.RunAt(Utc(5), 3), 3) << "a source that knows its run is believed";
+}
+
+// 2026-11-24: two events of the wire made a number that no run has, by an overflow.
+TEST(RunBook, BehindTheLastNumberThereIsAnother) {
+  RunBook book({});
+  book.Take(RunEvent(Event::Kind::kRunBegin, 100, std::numeric_limits<std::int32_t>::max()));
+  book.Take(RunEvent(Event::Kind::kRunBegin, 200));
+  EXPECT_EQ(book.RunAt(Utc(250), 0), 1);
 }
 
 TEST(RunBook, EventsOpenAndCloseRuns) {

@@ -1,8 +1,10 @@
 #include "wellgyro/bus/wits.h"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
@@ -13,7 +15,7 @@ namespace wellgyro {
 namespace {
 
 // What a sender puts where it has no value.
-constexpr double kNull = -9999, kNullComputed = -8888;
+constexpr double kNulls[] = {-9999, -8888, -999.25};
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -128,7 +130,7 @@ void WitsReader::EndRecord() {
   const std::optional<UtcTime> utc = Time();
   if (!utc) return Bad("has no time that can be");
   std::optional<double> depth = Number(items_.bit_depth);
-  if (depth == kNull || depth == kNullComputed) depth.reset();
+  if (depth && std::ranges::find(kNulls, *depth) != std::end(kNulls)) depth.reset();
   const double md = depth.value_or(0) * items_.length_unit;
   if (!depth || std::abs(md) > limits::kMd) return Bad("has no depth that can be");
   if (last_ && *last_ == *utc) return;

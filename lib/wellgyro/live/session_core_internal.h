@@ -58,6 +58,7 @@ struct LiveSession::Core {
   void Advise(std::int64_t now);
   void NoteChecks(const std::vector<ToolResult>& tools);
   void EmptyOutbox();
+  std::optional<Fault> WriteLast(const Snapshot& snapshot, bool patient);
   void KeepFiles(std::int64_t now);
   Snapshot Take() const;
   SourceRecord Source() const;

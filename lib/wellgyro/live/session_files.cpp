@@ -191,6 +191,28 @@ void LiveSession::Core::EmptyOutbox() {
   }
 }
 
+/// The last files. Those of a survey that has ended are made once, and without a recording never
+/// again: where the disk is full they are tried until it is not, or a stop gives them up.
+std::optional<Fault> LiveSession::Core::WriteLast(const Snapshot& snapshot, bool patient) {
+  auto fault = ResultKeeper::Write(setup.job.job, snapshot);
+  if (!fault || !patient) return fault;
+  notices.Say(*fault);
+  notices.Say("the last files of the survey are tried again every second; a stop gives them up");
+  while (fault) {
+    Status status = StatusNow(true);
+    status.state = Status::State::kFault;
+    status.text = "the survey's files cannot be written";
+    broadcast.Send(status);
+    for (const std::int64_t next = Now() + kSecondUs; Now() < next;) {
+      const auto woken = bus.Wait(kOutboxMs);
+      if (!woken || *woken == LiveBus::Woken::kStopped) return fault;
+    }
+    fault = ResultKeeper::Write(setup.job.job, snapshot);
+  }
+  notices.Say("the survey's files are up to date again");
+  return fault;
+}
+
 LiveOutcome LiveSession::Core::End(Ended ended) {
   watchdog->Through();
   if (ended == Ended::kFinished) {
@@ -208,7 +230,7 @@ LiveOutcome LiveSession::Core::End(Ended ended) {
   keeper.End();
   if (log) log->Close();
   LiveOutcome outcome;
-  outcome.fault = ResultKeeper::Write(setup.job.job, snapshot);
+  outcome.fault = WriteLast(snapshot, ended == Ended::kFinished);
   outcome.ended = ended;
   outcome.recording_is_whole = !log || (!log->failing() && log->lost() == 0);
   outcome.hints = HintsAtChannels(intake.feed());

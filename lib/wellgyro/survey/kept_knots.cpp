@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 
 // Numbers of a knot and its attitude, each a word of 64 bits.
 constexpr std::size_t kWords = 100;
-using Words = std::array<std::uint64_t, kWords>;
+using KnotWords = std::array<std::uint64_t, kWords>;
 
 std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 std::uint64_t Bits(std::int64_t value) { return static_cast<std::uint64_t>(value); }
@@ -35,7 +35,7 @@ std::uint64_t Unfolded(std::uint64_t folded) {
 
 /// Takes what a knot's numbers are above the expected ones.
 struct Measure {
-  Words words{};
+  KnotWords words{};
   std::size_t n = 0;
   template <class Number>
   void operator()(Number& value, Number expected) {
@@ -45,7 +45,7 @@ struct Measure {
 
 /// Gives a knot the numbers that are so much above the expected ones.
 struct Restore {
-  Words words{};
+  KnotWords words{};
   std::size_t n = 0;
   template <class Number>
   void operator()(Number& value, Number expected) {
@@ -197,7 +197,7 @@ void GoThrough(Code& code, KeptKnot& kept, const KeptKnot& before) {
 int BytesIn(std::uint64_t word) { return static_cast<int>(std::bit_width(word) + 7) / 8; }
 
 /// How many bytes each word has, two in one, then these.
-void Write(const Words& words, std::vector<std::byte>& to) {
+void Write(const KnotWords& words, std::vector<std::byte>& to) {
   for (std::size_t i = 0; i < kWords; i += 2) {
     to.push_back(static_cast<std::byte>(BytesIn(words[i]) << 4 | BytesIn(words[i + 1])));
   }
@@ -207,7 +207,7 @@ void Write(const Words& words, std::vector<std::byte>& to) {
 }
 
 /// Returns where the next ones stand.
-std::size_t Read(const std::vector<std::byte>& from, std::size_t at, Words& words) {
+std::size_t Read(const std::vector<std::byte>& from, std::size_t at, KnotWords& words) {
   std::size_t next = at + kWords / 2;
   for (std::size_t i = 0; i < kWords; ++i) {
     const auto both = static_cast<unsigned>(from[at + i / 2]);

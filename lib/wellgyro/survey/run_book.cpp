@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace wellgyro {
 namespace {
 
 // Every sample looks them through; more come from a broken sender alone.
 constexpr std::size_t kEventsMax = 2000;
+
+/// Behind the last number there is they begin anew.
+std::int32_t NextTo(std::int32_t number) {
+  return number < std::numeric_limits<std::int32_t>::max() ? number + 1 : 1;
+}
 
 }  // namespace
 
@@ -41,7 +47,7 @@ std::int32_t RunBook::RunBegunBy(UtcTime utc) const {
   std::int32_t number = before_first ? 1 : 0;
   for (const Begin& begin : begins_) {
     if (utc < begin.utc) break;
-    number = begin.number > 0 ? begin.number : number + 1;
+    number = begin.number > 0 ? begin.number : NextTo(number);
   }
   return number;
 }

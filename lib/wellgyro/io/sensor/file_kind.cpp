@@ -63,6 +63,7 @@ constexpr std::array kSignatures{
     Signature{"Survey Report", "a text report of a survey"},
     Signature{"RUN,CODE,BEGIN_UTC", "the diagnosis of a wellgyro survey"},
     Signature{"RUN,CODE,SMALLEST", "the reliability of a wellgyro survey"},
+    Signature{"RUN,END_UTC,T[s]", "the stretches of a wellgyro survey"},
     Signature{"MD[m],VAR_NN[m2]", "the covariances of a wellgyro survey"},
     Signature{"MD[m],TERM,", "the terms of a wellgyro position uncertainty"},
     Signature{"MD[m],OTHER_MD[m],DISTANCE[m]", "the separation of two wells by wellgyro"},
