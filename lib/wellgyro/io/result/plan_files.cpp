@@ -74,7 +74,7 @@ ToolSide ReadToolSide(const PlanRequest& request, NamedFiles& files,
 }
 
 Trajectory ReadPlannedWell(const PlanRequest& request, const std::optional<double>& convergence,
-                    NamedFiles& files, std::vector<std::string>& notes) {
+                           NamedFiles& files, std::vector<std::string>& notes) {
   const std::string name = request.well.string();
   const North wanted = convergence ? North::kGrid : North::kTrue;
   const Result<WellStations> read = ParseWellStations(files.Take("well", name), name, wanted);
