@@ -316,6 +316,8 @@ class Program(ProgramTest):
         done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
                    os.path.join(DEMO, "run.lcm"), "--out", self.Path("demo"))
         self.assertEqual(done.returncode, 0, done.stderr)
+        # Dated 2026-11-22: it was, though an azimuth is given.
+        self.assertIs(self.Toml("demo", "run.toml")["run"][0]["fit"]["ambiguous"], False)
         deepest = max(self.Rows(DEMO, "truth.csv"), key=lambda row: float(row["MD[m]"]))
         last = self.Rows("demo", "survey.csv")[-1]
         for column, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]"),

@@ -58,14 +58,16 @@ TEST(ExpectedEnd, DepthStandsAlongTheHoleAndThePath) {
   PlanCase c = test::CaseOf(
       {{0, 90, 0}, {1000, 90, 0}, {1000 + bend, 90, 90}, {2000 + bend, 90, 90}}, 60, 0);
   c.errors.depth_sigma = 0.5;
+  // Where the tool is, off by 0.5 m north; and the hole at that depth, by as much west beside that.
+  EXPECT_NEAR(DepthCovariance(c)(0, 0), 0.5, 1e-9);
   EXPECT_NEAR(DepthCovariance(c)(1, 1), 0.25, 1e-9);
-  // A scale lengthens the way: to where it ends, and the tool back along the hole.
+  // A scale lengthens the way to the tool; the hole at that depth is back along it.
   c.errors.depth_sigma = 0;
   c.errors.depth_scale_sigma = 1e-3;
   const Eigen::Matrix3d cov = DepthCovariance(c);
   const double back = 1e-3 * (2000 + bend), path = 1e-3 * reach;
-  EXPECT_NEAR(cov(0, 0), path * path, 1e-3);
-  EXPECT_NEAR(cov(1, 1), back * back + (path - back) * (path - back), 1e-3);
+  EXPECT_NEAR(cov(0, 0), 2 * path * path, 1e-3);
+  EXPECT_NEAR(cov(1, 1), path * path + (path - back) * (path - back), 1e-3);
 }
 
 // The matrices that a search works on against the whole run put through the estimator.

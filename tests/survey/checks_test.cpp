@@ -107,6 +107,19 @@ TEST(Checks, AStopIsHeldToGravityAndEarthRate) {
   EXPECT_EQ(Find(checks, "earth_rate").md.value_or(0), 750);
 }
 
+// Dated 2026-11-22: "no stop long enough" stood beside a fix of 298 s.
+TEST(Checks, AStopThatTellsNoEarthRateIsNotCalledTooShort) {
+  NorthFix fix;
+  fix.end.ns = 298'000'000'000;
+  const auto why = [](const std::vector<NorthFix>& fixes) {
+    return Find(Checks({}, {}, fixes), "earth_rate").limit_source;
+  };
+  EXPECT_EQ(why({}), "no stop long enough");
+  EXPECT_NE(why({fix}).find("hide the Earth's rate at every stop"), std::string::npos);
+  fix.external = true;
+  EXPECT_EQ(why({fix}), "no stop long enough");
+}
+
 TEST(Checks, AStopThatRollsFails) {
   NorthFix fix;
   fix.md = 750;

@@ -1,9 +1,11 @@
 #include <cmath>
 
+#include <Eigen/QR>
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/random.h"
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/pass_covariance_internal.h"
 
 namespace wellgyro {
@@ -24,7 +26,7 @@ double VarianceAlong(double sigma_azimuth) {
   PathStart start;
   start.point.station.md = 0;
   const Eigen::Vector3d along(std::cos(kAzimuth), std::sin(kAzimuth), 0);
-  return along.dot(PassCovariances({}, pass, start).back() * along);
+  return along.dot(PassCovariancesOf({}, pass, start).of_sensors.back() * along);
 }
 
 // Surveyed in one wrong direction, as drawn, its end falls short of its way.
@@ -41,6 +43,23 @@ TEST(PassCovariance, AnAzimuthFarOffFallsShortOfItsWay) {
     EXPECT_NEAR(VarianceAlong(sigma) - VarianceAlong(0), expected, 0.03 * expected)
         << sigma_deg << " deg";
   }
+}
+
+// One error e of all depths moves where the tool was by e top, and the hole at that measured depth
+// by e (top - tangent): neither has more than its one share in the covariance, and along a straight
+// hole both are one.
+TEST(PassCovariance, ACommonDepthErrorCountsOnce) {
+  const Eigen::Vector3d top(0.1, 0, std::sqrt(0.99));
+  for (const double inclination : {0.2, 0.8, 1.2, 1.6, 2.0}) {
+    const Eigen::Vector3d tangent = Tangent(inclination, 0.3);
+    const Eigen::Matrix3d cov = ByCommonDepth(top, tangent);
+    // Of the plane of both, to which the covariance belongs.
+    const Eigen::Matrix3d inverse = cov.completeOrthogonalDecomposition().pseudoInverse();
+    for (const Eigen::Vector3d& error : {top, Eigen::Vector3d(top - tangent)}) {
+      EXPECT_NEAR(error.dot(inverse * error), 1, 1e-9) << inclination;
+    }
+  }
+  EXPECT_LT((ByCommonDepth(top, top) - top * top.transpose()).norm(), 1e-12);
 }
 
 }  // namespace

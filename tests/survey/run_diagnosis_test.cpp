@@ -87,6 +87,8 @@ TEST(RunDiagnosis, OfARunWithoutFaultIsNone) {
     const Check* check = Find(survey, "diagnosis");
     ASSERT_NE(check, nullptr);
     EXPECT_EQ(check->verdict, Verdict::kPass) << check->value.value_or(0) << check->limit_source;
+    // Some 3500 rows, so that chance makes 2.4 % of it. With the depth's it was .70.
+    EXPECT_NEAR(survey.runs[0].fit->chi_square / survey.runs[0].fit->degrees_of_freedom, 1, 0.08);
     const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
     EXPECT_GE(causes.size(), 26u);
     EXPECT_EQ(causes.front().code, "none");
@@ -159,7 +161,50 @@ INSTANTIATE_TEST_SUITE_P(
         PlantedCause{"gyro_step_x", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 0},
         PlantedCause{"gyro_step_y", Cause::kGyroStep, 1.5, units::kDegPerHour, kHalf, 1},
         PlantedCause{"accel_bias_z", Cause::kAccelBias, 9e-3, 1, 0, 2},
+        PlantedCause{"time_skew", Cause::kTimeSkew, 0.03, 1, 0},
+        PlantedCause{"depth_scale", Cause::kDepthScale, 9e-3, 1, 0},
         PlantedCause{"latitude", Cause::kLatitude, 2, units::kDeg, 0}));
+
+// A tool that hardly rolls shows a skew of 30 ms by what gravity says in a build, from stop to
+// motion: told by its roll alone, it was called a spike of the gyros at a start.
+TEST(RunDiagnosis, ASkewIsToldByABend) {
+  Flight flight(3);
+  for (auto& step : flight.simulation.run.steps) {
+    if (auto* move = std::get_if<RunMove>(&step)) move->roll.rate *= 0.2;
+  }
+  flight.simulation.well.inclination.terms[0].rate = 3 * units::kDegPer30m;
+  flight.simulation.faults.push_back({.cause = Cause::kTimeSkew, .size = 0.03});
+  const Survey survey = flight.Surveyed();
+  ASSERT_EQ(survey.unusable, "");
+  const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
+  const auto skew = std::find_if(causes.begin(), causes.end(),
+                                 [](const RunCause& c) { return c.code == "time_skew"; });
+  ASSERT_TRUE(skew != causes.end() && skew->size && skew->sigma && skew->ln_bayes);
+  EXPECT_TRUE(causes[0].code == "time_skew" || causes[0].code == "samples_lost") << causes[0].code;
+  EXPECT_NEAR(*skew->size, 0.03, 5 * *skew->sigma);
+  EXPECT_LT(*skew->sigma, 0.003);
+  EXPECT_GT(*skew->ln_bayes, 20);
+}
+
+/// Odds, and what is found of the depth's scale beside a prior of 1e-3 that leaves a sigma of 6e-4.
+double FoundOfDepthScale(double ln_odds, double found) {
+  Job job;
+  job.errors.depth_scale_sigma = 1e-3;
+  RunDiagnosis diagnosis;
+  diagnosis.ln_odds = ln_odds;
+  RunCause& cause = diagnosis.causes.emplace_back();
+  cause.code = "depth_scale";
+  cause.posterior = 0.9;
+  cause.size = found / 0.64;  // 1 - .6^2, of the prior's variance
+  cause.sigma = 1e-3 / 0.8;
+  return DepthScaleFound(job, diagnosis);
+}
+
+TEST(RunDiagnosis, WhatIsFoundOfTheDepthsScaleCountsUntilItIsAFault) {
+  EXPECT_NEAR(FoundOfDepthScale(2, 0), 6e-4, 1e-12);
+  EXPECT_NEAR(FoundOfDepthScale(2, 8e-4), 1e-3, 1e-12);
+  EXPECT_EQ(FoundOfDepthScale(7, 8e-4), 0);
+}
 
 /// Of a run whose odds of a fault are `ln_odds`, a latitude that moves its end by `shift_W`. The
 /// end has sigmas of 1, 2 and 2 m; a station further up and the end of another run have others.

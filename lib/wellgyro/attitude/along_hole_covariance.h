@@ -41,6 +41,9 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   /// depth does not matter.
   void Skip(const StationState& station);
 
+  /// Of the station last added, less its own depth error [m^2].
+  const Eigen::Matrix3d& without_depth() const { return cov_; }
+
  private:
   using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kStationErrorsMax>;
   void Advance(const StationState& station);

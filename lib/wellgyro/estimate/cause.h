@@ -7,6 +7,8 @@ namespace wellgyro {
 /// Unknowns of the whole run that are no tool's, beside ErrorSource.
 inline constexpr int kLatitudeError = kErrorSources;     ///< [rad]
 inline constexpr int kGravityError = kErrorSources + 1;  ///< [m/s^2]
+/// Depth marks read (1 + error) of the way that the accelerometers feel [1].
+inline constexpr int kDepthScaleError = kErrorSources + 2;
 
 /// A fault that is looked for.
 struct CauseSpec {

@@ -51,12 +51,6 @@ double LnBayes(const Score& score, double size) {
   return 0.5 * s * s / (m + 1 / v) - 0.5 * std::log1p(v * m);
 }
 
-int BorderColumn(const Layout& layout, int unknown) {
-  if (unknown == kLatitudeError) return layout.latitude;
-  if (unknown == kGravityError) return layout.gravity;
-  return layout.source[static_cast<std::size_t>(unknown)];
-}
-
 /// All looks at one cause.
 class Looks {
  public:
@@ -124,8 +118,9 @@ Matrix3d Freedom(const Factor& f, const BlockMatrix& cov) {
 
 class Diagnoser {
  public:
-  Diagnoser(RunRows& rows, std::span<const CauseSpec> specs, double false_alarm_rate)
-      : run_(rows), specs_(specs) {
+  Diagnoser(RunRows& rows, std::span<const CauseSpec> specs, double false_alarm_rate,
+            const Vector3d& end_by_depth_scale)
+      : run_(rows), specs_(specs), end_by_depth_scale_(end_by_depth_scale) {
     // The odds of one cause alone must reach this for those of all to pass the alarm.
     const double limit =
         std::log(static_cast<double>(std::max<std::size_t>(specs.size(), 1)) / false_alarm_rate);
@@ -237,8 +232,9 @@ class Diagnoser {
       const double sigma = run_.layout().sigma[i];
       const double freedom = 1 - border_covariance_(i, i) / (sigma * sigma);
       if (!(freedom > kAbsorbed)) continue;
-      looks_[s].Add(0, {run_.PriorResidual(i) / sigma, freedom / (sigma * sigma),
-                        -influence_->OfBorder(i) / (sigma * sigma)});
+      Vector3d shift = -influence_->OfBorder(i) / (sigma * sigma);
+      if (specs_[s].unknown == kDepthScaleError) shift += end_by_depth_scale_;
+      looks_[s].Add(0, {run_.PriorResidual(i) / sigma, freedom / (sigma * sigma), shift});
     }
   }
 
@@ -296,6 +292,7 @@ class Diagnoser {
 
   LinearRun run_;
   std::span<const CauseSpec> specs_;
+  Vector3d end_by_depth_scale_;
   std::vector<Looks> looks_;
   std::optional<EndInfluence> influence_;
   std::optional<OnsetScan> scan_;
@@ -414,8 +411,9 @@ void Diagnoser::AddOdds(Diagnosis& d) const {
 }  // namespace
 
 Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
-                   std::span<const Matrix3d> end_by_phi, double false_alarm_rate) {
-  return Diagnoser(rows, specs, false_alarm_rate).Run(end_by_phi);
+                   std::span<const Matrix3d> end_by_phi, double false_alarm_rate,
+                   const Vector3d& end_by_depth_scale) {
+  return Diagnoser(rows, specs, false_alarm_rate, end_by_depth_scale).Run(end_by_phi);
 }
 
 }  // namespace wellgyro

@@ -59,10 +59,11 @@ struct Diagnosis {
 /// c may be replaced by c + J v, so that a constant beyond its prior is its prior's row, and a step
 /// at node t is that row and the columns of the knots before t: one pass forward for all onsets.
 /// Baarda (1968); de Jong and Penzer, "Diagnosing shocks in time series", JASA 93 (1998).
-/// `end_by_phi`: derivative of the end by every node's phi [m]. `false_alarm_rate`: of `ln_odds`
-/// above which a fault is taken as noticed. Time and memory are proportional to the knots.
-WELLGYRO_EXPORT Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
-                                   std::span<const Eigen::Matrix3d> end_by_phi,
-                                   double false_alarm_rate);
+/// `end_by_phi`: derivative of the end by every node's phi [m]; `end_by_depth_scale`: what an error
+/// of the depth's scale moves it by beside that. `false_alarm_rate`: of `ln_odds` above which a
+/// fault is taken as noticed. Time and memory are proportional to the knots.
+WELLGYRO_EXPORT Diagnosis Diagnose(
+    RunRows& rows, std::span<const CauseSpec> specs, std::span<const Eigen::Matrix3d> end_by_phi,
+    double false_alarm_rate, const Eigen::Vector3d& end_by_depth_scale = Eigen::Vector3d::Zero());
 
 }  // namespace wellgyro

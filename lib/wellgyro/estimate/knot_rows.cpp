@@ -244,6 +244,9 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
     const double error = SourceAt(t.border, i);
     if (error != 0) force -= error * inc.ForceBy(i);
   }
+  // Forces read later than they are stamped are those of a tool that has turned on: dF/dt = F x w.
+  const Vector3d by_skew = inc.force_M.cross(Flat(t.turn)) / t.dt;
+  force -= SourceAt(t.border, kTimeSkew) * by_skew;
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
   const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
@@ -273,8 +276,8 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   for (int i = 0; i <= kAccelMisalignmentZY; ++i) {
     const int at = layout_.source[static_cast<std::size_t>(i)];
     if (at == kAbsent) continue;
-    f.Column(block.border() + at) =
-        whiten * (0.5 * px * Flat(t.turn_by_error.col(i)) - ForceBy(inc, i));
+    const Vector3d by_error = i == kTimeSkew ? by_skew : ForceBy(inc, i);
+    f.Column(block.border() + at) = whiten * (0.5 * px * Flat(t.turn_by_error.col(i)) - by_error);
   }
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
   if (layout_.gravity_gradient != kAbsent) {
@@ -332,15 +335,20 @@ void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   block.Add(f);
 }
 
+/// Marks, and the depth, speed and its change that the nodes have.
 void KnotRows::AddDepth(const Terms& t, NormalBlock& block) {
   Factor& f = factor_;
   const AlongHole& along = t.knot.along;
   const int depth = layout_.depth, speed = layout_.speed, next = block.next();
   if (along.known) {
+    // Where a scale of 1 begins does not matter: no other row knows a depth but from another.
     const double whiten = 1 / std::max(along.sigma_md, kLeastDepth);
+    const int at = layout_.depth_scale;
+    const double scale = at == kAbsent ? 1 : 1 + t.border[at];
     f.Begin(RowKind::kDepth, 1);
-    f.r[0] = whiten * (t.end.md - along.md);
-    f.Column(next + depth)[0] = whiten;
+    f.r[0] = whiten * (scale * t.end.md - along.md);
+    f.Column(next + depth)[0] = whiten * scale;
+    if (at != kAbsent) f.Column(block.border() + at)[0] = whiten * t.end.md;
     block.Add(f);
   } else {
     f.Begin(RowKind::kSpeed, 1);

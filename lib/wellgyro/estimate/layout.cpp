@@ -66,8 +66,22 @@ Layout LayoutOf(const EstimateSetup& setup) {
   layout.gravity = border(setup.sigma_gravity);
   layout.gravity_gradient = border(setup.sigma_gravity_gradient);
   if (setup.swing) layout.frequency = border(kSwingSigma);
+  layout.depth_scale = border(setup.sigma_depth_scale);
   layout.sigma.conservativeResize(layout.border);
   return layout;
+}
+
+int BorderColumn(const Layout& layout, int unknown) {
+  switch (unknown) {
+    case kLatitudeError:
+      return layout.latitude;
+    case kGravityError:
+      return layout.gravity;
+    case kDepthScaleError:
+      return layout.depth_scale;
+    default:
+      return layout.source[static_cast<std::size_t>(unknown)];
+  }
 }
 
 double* PriorOf(int unknown, EstimateSetup& setup) {
@@ -108,6 +122,8 @@ double* PriorOf(int unknown, EstimateSetup& setup) {
       return &e.latitude_sigma;
     case kGravityError:
       return &setup.sigma_gravity;
+    case kDepthScaleError:
+      return &setup.sigma_depth_scale;
     default:
       return nullptr;
   }

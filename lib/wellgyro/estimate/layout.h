@@ -11,7 +11,7 @@
 namespace wellgyro {
 
 inline constexpr int kNodeMax = 12;    ///< errors of one node
-inline constexpr int kBorderMax = 29;  ///< errors of the whole run
+inline constexpr int kBorderMax = 30;  ///< errors of the whole run
 inline constexpr int kAbsent = -1;
 
 using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax, 1>;
@@ -36,13 +36,15 @@ struct Layout {
   int node = 6;
   std::array<int, kErrorSources> source{};
   int ramp = kAbsent;  ///< two [rad/s^2]
-  int latitude = kAbsent, gravity = kAbsent, gravity_gradient = kAbsent;
+  int latitude = kAbsent, gravity = kAbsent, gravity_gradient = kAbsent, depth_scale = kAbsent;
   int frequency = kAbsent;  ///< of the swing, beside that of the setup [rad/s]
   int border = 0;
   BorderVector sigma;  ///< priors of the border
 };
 
 Layout LayoutOf(const EstimateSetup& setup);
+/// Column of the border of an ErrorSource or another unknown of cause.h.
+int BorderColumn(const Layout& layout, int unknown);
 
 /// Of [node; border], those whose errors stay linked from node to node: attitude, drift, the
 /// border.
@@ -53,7 +55,7 @@ Eigen::MatrixXd LinkedRows(const Layout& layout);
 /// where node = gain [next node; border].
 void CarryLink(const Layout& layout, const BehindMatrix& gain, Eigen::MatrixXd& link);
 
-/// The sigma in `setup` that an ErrorSource, kLatitudeError or kGravityError has; nullptr: it
+/// The sigma in `setup` that an ErrorSource or another unknown of cause.h has; nullptr: it
 /// cannot be an unknown.
 double* PriorOf(int unknown, EstimateSetup& setup);
 

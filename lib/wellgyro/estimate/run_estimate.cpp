@@ -125,17 +125,20 @@ void FitNoise(RunSolver& solver, std::span<const std::size_t> marked, RunEstimat
   result.report.sums = stated;
 }
 
-/// What the run's errors are taken as none, a fault may make all the same: they become unknowns
-/// whose prior is a thousandth of that.
+/// Errors that the run takes as none a fault may make all the same: they become unknowns whose
+/// prior is a thousandth of that. So does the scale of depth, with the job's prior: what the
+/// accelerometers feel tells it.
 Diagnosis DiagnosisOf(const RunSolver& solved) {
   EstimateSetup setup = solved.setup();
+  setup.sigma_depth_scale = setup.errors.depth_scale_sigma;
   for (const CauseSpec& cause : setup.causes) {
     if (cause.kind != CauseSpec::Kind::kConstant && cause.kind != CauseSpec::Kind::kOnset) continue;
     if (double* sigma = PriorOf(cause.unknown, setup)) *sigma = std::max(*sigma, 1e-3 * cause.size);
   }
   RunSolver tested(setup, solved.knots());
   tested.TakeOver(solved);
-  return Diagnose(tested, setup.causes, EndByPhi(solved.nodes()), setup.false_alarm_rate);
+  return Diagnose(tested, setup.causes, EndByPhi(solved.nodes()), setup.false_alarm_rate,
+                  EndByDepthScale(solved.nodes()));
 }
 
 std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const RunKnot> knots,

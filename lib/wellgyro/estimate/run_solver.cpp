@@ -187,6 +187,7 @@ void RunSolver::TakeOver(const RunSolver& other) {
   take(layout_.gravity, theirs.gravity);
   take(layout_.gravity_gradient, theirs.gravity_gradient);
   take(layout_.frequency, theirs.frequency);
+  take(layout_.depth_scale, theirs.depth_scale);
 }
 
 void RunSolver::BlockOf(std::size_t knot, NormalBlock& block) {

@@ -27,6 +27,9 @@ struct EstimateSetup {
   /// Of its growth with depth: a Bouguer plate counted twice, whose density is 2670 kg/m^3 within 9
   /// % [m/s^2 per m].
   double sigma_gravity_gradient = 2e-7;
+  /// Of the depth marks' scale, as an unknown of the run; 0: it is none, and depth is what they
+  /// say.
+  double sigma_depth_scale = 0;
   bool third_axis = false;  ///< some knot has one
   /// The roll swings at this angular frequency [rad/s]; absent: it walks.
   std::optional<double> swing;

@@ -225,9 +225,9 @@ void WriteDepth(PageText& page) {
   HtmlTable table(
       page.html, "depth", "",
       {"Check", ">Run", page.Named(">MD"), ">Value", ">Limit", "Unit", "Limit from", "Verdict"});
-  constexpr std::array kCodes = {"depth_closure", "depth_slippage", "magnetic_marks",
-                                 "depth_scale",   "depth_jump",     "depth_lag",
-                                 "depth_unknown", "depth_refused"};
+  constexpr std::array kCodes = {"depth_closure", "depth_slippage",   "magnetic_marks",
+                                 "depth_scale",   "depth_scale_felt", "depth_jump",
+                                 "depth_lag",     "depth_unknown",    "depth_refused"};
   for (const char* code : kCodes) {
     bool found = false;
     for (std::size_t i = 0; i < checks.rows(); ++i) {

@@ -20,12 +20,6 @@ using Kind = CauseSpec::Kind;
 constexpr double kOnsets = 80;
 constexpr std::size_t kStepEvery = 4;  // places
 
-int BorderOf(const Layout& layout, int unknown) {
-  if (unknown == kLatitudeError) return layout.latitude;
-  if (unknown == kGravityError) return layout.gravity;
-  return layout.source[static_cast<std::size_t>(unknown)];
-}
-
 /// Whether column `at` of [node; border] is an error of the gyros' own, which turns with the tool.
 bool IsOfGyros(const Layout& layout, int at) {
   const auto in = [at](int column, int count) { return at >= column && at < column + count; };
@@ -90,7 +84,7 @@ class StopInformation::Sweep {
   void FindConstants(const EstimateSetup& setup) {
     for (const CauseSpec& cause : setup.causes) {
       if (cause.kind != Kind::kConstant) continue;
-      const int at = BorderOf(rows_.layout(), cause.unknown);
+      const int at = BorderColumn(rows_.layout(), cause.unknown);
       if (at == kAbsent) continue;
       constants_.push_back(at);
       info_.faults_.push_back({rows_.layout().sigma[at], cause.size, 1});

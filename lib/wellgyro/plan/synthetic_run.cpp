@@ -119,6 +119,8 @@ EstimateSetup SetupOfPlan(const PlanCase& c) {
   setup.false_alarm_rate = kDiagnosisFalseAlarms;
   for (const CauseSpec& cause : setup.causes) {
     if (cause.kind != CauseSpec::Kind::kConstant && cause.kind != CauseSpec::Kind::kOnset) continue;
+    // No stop helps against it, and a planned tool starts and stops at once.
+    if (cause.unknown == kDepthScaleError) continue;
     if (double* sigma = PriorOf(cause.unknown, setup)) {
       *sigma = std::max(*sigma, kUnknownShare * cause.size);
     }

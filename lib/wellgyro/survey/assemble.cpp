@@ -88,19 +88,11 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
 
 PathStation PathOf(const Station& s) { return {s.md, s.inclination, s.azimuth}; }
 
-std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, double md) {
+std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, double md,
+                                     const Eigen::Vector3d& top) {
   const auto i = line.Below(md);
   if (!i) return std::nullopt;
-  return PathStart{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs[*i]};
-}
-
-/// What starts from a station has a depth error of its own, and must not have the station's too.
-Eigen::Matrix3d WithoutDepthError(const Eigen::Matrix3d& cov, const Station& s,
-                                  const StationState* state) {
-  const Eigen::Vector3d tangent =
-      state ? Tangent(state->attitude.inclination, state->attitude.azimuth)
-            : Tangent(s.inclination, s.azimuth);
-  return cov - s.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
+  return PathStart{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs[*i], top};
 }
 
 /// Of the leg from one direction to another [rad/m].
@@ -111,7 +103,7 @@ double SeverityOf(double length, const Eigen::Vector3d& t1, const Eigen::Vector3
 
 /// Sums a pass over its way, from station to station.
 PassLine PlaceStations(const Site& head, const Job& job, const PathStart& start, PassItems& pass) {
-  const std::vector<Eigen::Matrix3d> covs = PassCovariances(job, pass, start);
+  const PassCovariances covs = PassCovariancesOf(job, pass, start);
   Path path(head, start.point.station, start.point.p_WT_W);
   PassLine line{pass.front().station.run,
                 pass.front().station.pass_number,
@@ -120,12 +112,13 @@ PassLine PlaceStations(const Site& head, const Job& job, const PathStart& start,
   PathPoint above = start.point;
   for (std::size_t i = 0; i < pass.size(); ++i) {
     Station& s = pass[i].station;
-    s.cov_p_WT_W = covs[i];
+    s.cov_p_WT_W = covs.of_sensors[i] + covs.of_depth[i];
     if (!pass[i].on_line || s.md <= start.point.station.md) {
       s.p_WT_W = path.last().p_WT_W;
       continue;
     }
-    const Eigen::Matrix3d cov = WithoutDepthError(covs[i], s, pass[i].state);
+    // What starts from a station has a depth error of its own.
+    const Eigen::Matrix3d& cov = covs.of_sensors[i];
     const auto add = [&](const PathStation& station) {
       const auto point = path.Add(station);
       if (!point) return false;  // opposite directions: it stays where the one before is
@@ -187,6 +180,7 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
   tie.point.p_WT_W = opening.p_WT_W;
   tie.point.tangent_W = Tangent(opening.inclination, opening.azimuth);
   tie.cov_p_WT_W = opening.cov_p_WT_W;
+  tie.top_tangent_W = tie.point.tangent_W;
   // The pass that reaches deepest from the tie-in comes first: others may have to start on it.
   std::vector<std::size_t> order(passes.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -202,7 +196,9 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
   for (std::size_t i : order) {
     const double first = passes[i].front().station.md;
     std::optional<PathStart> start;
-    if (main_line < lines.size()) start = StartOnLine(head, lines[main_line], first);
+    if (main_line < lines.size()) {
+      start = StartOnLine(head, lines[main_line], first, tie.top_tangent_W);
+    }
     lines.push_back(PlaceStations(head, job, start && first > top ? *start : tie, passes[i]));
     if (depth(lines.size() - 1) > depth(main_line)) main_line = lines.size() - 1;
   }
@@ -259,20 +255,23 @@ void Choose(const Site& head, const Station& opening, const std::vector<PassLine
 }
 
 /// What an error e of the depth's scale does to stations below the tie-in at `origin`. The path to
-/// what was measured at a station grows by e (p - origin), and the station lies e (md - md_tie) up
-/// the hole from where its depth says.
-void AddDepthScale(const Job& job, const Eigen::Vector3d& origin, std::vector<Station>& stations) {
-  const double scale = job.errors.depth_scale_sigma;
-  if (!(scale > 0)) return;
+/// where the tool was grows by e (p - origin), and the hole at that depth lies e (md - md_tie) up
+/// from there; both as in ByCommonDepth(). What is found of e and not corrected counts as an error.
+void AddDepthScale(const Job& job, const std::vector<DraftedRun>& runs,
+                   const Eigen::Vector3d& origin, std::vector<Station>& stations) {
   for (Station& s : stations) {
+    const auto run =
+        std::find_if(runs.begin(), runs.end(), [&](const DraftedRun& r) { return r.run == s.run; });
+    const double scale =
+        std::max(job.errors.depth_scale_sigma, run == runs.end() ? 0 : run->depth_scale_found);
     const double way = s.md - job.tie_in.md;
-    if (s.kind == StationKind::kTieIn || !(way > 0)) continue;
+    if (s.kind == StationKind::kTieIn || !(way > 0) || !(scale > 0)) continue;
     const Eigen::Vector3d along =
         scale * way *
         Eigen::Vector3d(std::sin(s.inclination) * std::cos(s.azimuth),
                         std::sin(s.inclination) * std::sin(s.azimuth), std::cos(s.inclination));
-    const Eigen::Vector3d path = scale * (s.p_WT_W - origin) - along;
-    s.cov_p_WT_W += along * along.transpose() + path * path.transpose();
+    const Eigen::Vector3d path = scale * (s.p_WT_W - origin), there = path - along;
+    s.cov_p_WT_W += path * path.transpose() + there * there.transpose();
     s.cov_md_inc_azi(0, 0) += scale * way * scale * way;
   }
 }
@@ -333,8 +332,8 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
     List(by_run[i], job.tie_in.md, runs[i].misrun, placed);
   }
   Choose(head, *opening, lines, placed);
-  AddDepthScale(job, placed.chosen.front().p_WT_W, placed.passes);
-  AddDepthScale(job, placed.chosen.front().p_WT_W, placed.chosen);
+  AddDepthScale(job, runs, placed.chosen.front().p_WT_W, placed.passes);
+  AddDepthScale(job, runs, placed.chosen.front().p_WT_W, placed.chosen);
   if (placed.chosen.size() == 1) placed.unusable = WhyNothing(job, good, placed);
   return placed;
 }

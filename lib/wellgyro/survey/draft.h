@@ -34,6 +34,9 @@ struct DraftedRun {
   /// Stations asked for and passed that are not in `drafts` because no azimuth is known there: for
   /// good, or until the next north of a run that goes on.
   std::int64_t without_azimuth = 0, waiting_for_azimuth = 0;
+  /// Root of the second moment of the depth scale's error, as the accelerometers tell it; 0: they
+  /// do not.
+  double depth_scale_found = 0;
 };
 
 }  // namespace wellgyro

@@ -106,7 +106,9 @@ RunFit FitOf(const RunEstimate& estimate) {
   fit.parts[RunFit::kForce] = squares({RowKind::kForce});
   fit.parts[RunFit::kRest] = squares({RowKind::kStill});
   fit.parts[RunFit::kAzimuth] = squares({RowKind::kAzimuth});
-  squares({RowKind::kDepth, RowKind::kDrift});
+  // Depth is read off a smooth track: its errors go together over many knots, and their squares are
+  // a two-hundredth of their number.
+  squares({RowKind::kDrift});
   fit.degrees_of_freedom = static_cast<int>(std::lround(freedom));
   fit.errors = estimate.errors;
   fit.sigma_errors = estimate.sigma_errors;

@@ -55,15 +55,13 @@ class SystematicCovariance {
     const Eigen::Vector2d sigma = station.cov_md_inc_azi.diagonal().tail<2>().cwiseSqrt();
     const Eigen::Matrix<double, 3, 2> turn =
         TangentByAngles(station.inclination, station.azimuth) * sigma.asDiagonal();
-    const Eigen::Vector3d tangent = Tangent(station.inclination, station.azimuth);
     if (last_) {
       sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
       if (legs_unseen_) course_ += UnseenCourse(*last_, station);
     }
     last_ = station;
     last_turn_ = turn;
-    return cov_tie_in_ + sum_ * sum_.transpose() + course_ +
-           station.cov_md_inc_azi(0, 0) * tangent * tangent.transpose();
+    return cov_tie_in_ + sum_ * sum_.transpose() + course_;
   }
 
  private:
@@ -73,22 +71,6 @@ class SystematicCovariance {
   Eigen::Matrix<double, 3, 2> sum_ = Eigen::Matrix<double, 3, 2>::Zero();
   Eigen::Matrix<double, 3, 2> last_turn_ = Eigen::Matrix<double, 3, 2>::Zero();
   std::optional<Station> last_;
-};
-
-/// A depth error e common to the run moves station k along the hole by e t_k, which the sum over
-/// the stations has. The path starts at a fixed point whatever its depth reads, so e (t_0 - t_k)
-/// comes to it, t the unit tangents: zero in a straight hole; between a vertical start and a
-/// horizontal station e in TVD.
-class ShiftOfPath {
- public:
-  explicit ShiftOfPath(const Station& first) : start_(Tangent(first.inclination, first.azimuth)) {}
-  Eigen::Matrix3d At(const Station& s) const {
-    const Eigen::Vector3d turned = start_ - Tangent(s.inclination, s.azimuth);
-    return s.cov_md_inc_azi(0, 0) * turned * turned.transpose();
-  }
-
- private:
-  Eigen::Vector3d start_;
 };
 
 /// Second-order term: an azimuth error d shortens a leg's horizontal reach by the factor cos d. The
@@ -117,31 +99,27 @@ class ShortOfWay {
 };
 
 std::vector<Eigen::Matrix3d> OfWindows(const PassItems& pass, const PathStart& start,
-                                       const Station& origin, const ShiftOfPath& shift) {
+                                       const Station& origin) {
   std::vector<Eigen::Matrix3d> covs;
   SystematicCovariance sum(start.cov_p_WT_W, true);
   sum.Add(origin);
   ShortOfWay shortfall(origin);
   for (const PassItem& item : pass) {
     const Station& s = item.station;
-    covs.push_back(sum.Add(s) + shift.At(s) + shortfall.To(s));
+    covs.push_back(sum.Add(s) + shortfall.To(s));
   }
   return covs;
 }
 
-std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
-                                       const PathStart& start, Station origin,
-                                       const ShiftOfPath& shift) {
+std::vector<Eigen::Matrix3d> OfSamples(const PassItems& pass, const PathStart& start,
+                                       const Station& origin) {
   std::vector<Eigen::Matrix3d> covs;
   const bool out = pass.front().station.pass == Pass::kOut;
   const auto order = out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth;
-  // Its depth error is left to the sum over the stations, which has it too.
-  Station entry = pass.front().station;
-  origin.cov_md_inc_azi(0, 0) = entry.cov_md_inc_azi(0, 0) = 0;
   SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty());
   first.Add(origin);
   ShortOfWay shortfall(origin);
-  AlongHoleCovariance sum(first.Add(entry), job.errors.depth_sigma, order);
+  AlongHoleCovariance sum(first.Add(pass.front().station), 0, order);
   Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
   const PassItem* above = nullptr;
   for (const PassItem& item : pass) {
@@ -155,8 +133,8 @@ std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
         unseen += UnknownCourse(above->station, item.station);
       }
       above = &item;
-      covs.push_back(sum.Add(*item.state) + unseen + shift.At(item.station) +
-                     shortfall.To(item.station));
+      sum.Add(*item.state);
+      covs.push_back(sum.without_depth() + unseen + shortfall.To(item.station));
     } else {
       sum.Skip(*item.state);
       covs.push_back(covs.back());
@@ -165,18 +143,34 @@ std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
   return covs;
 }
 
+/// The job's sigma is of an error common to all depths; what a station's own depth is less sure by
+/// moves it along the hole alone.
+Eigen::Matrix3d OfDepth(const Job& job, const Eigen::Vector3d& top, const Station& s) {
+  const Eigen::Vector3d tangent = Tangent(s.inclination, s.azimuth);
+  const double variance = s.cov_md_inc_azi(0, 0);
+  const double common = std::min(job.errors.depth_sigma * job.errors.depth_sigma, variance);
+  return common * ByCommonDepth(top, tangent) + (variance - common) * tangent * tangent.transpose();
+}
+
 }  // namespace
 
-std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pass,
-                                             const PathStart& start) {
-  const ShiftOfPath shift(pass.front().station);
+Eigen::Matrix3d ByCommonDepth(const Eigen::Vector3d& top, const Eigen::Vector3d& tangent) {
+  const Eigen::Vector3d turned = top - tangent;
+  return top * top.transpose() + turned * turned.transpose();
+}
+
+PassCovariances PassCovariancesOf(const Job& job, const PassItems& pass, const PathStart& start) {
   // The first leg runs from the start to the first station with the first station's error.
   Station origin = pass.front().station;
   origin.md = start.point.station.md;
   const bool windows = std::any_of(pass.begin(), pass.end(),
                                    [](const PassItem& item) { return item.state == nullptr; });
-  return windows ? OfWindows(pass, start, origin, shift)
-                 : OfSamples(job, pass, start, origin, shift);
+  PassCovariances covs;
+  covs.of_sensors = windows ? OfWindows(pass, start, origin) : OfSamples(pass, start, origin);
+  for (const PassItem& item : pass) {
+    covs.of_depth.push_back(OfDepth(job, start.top_tangent_W, item.station));
+  }
+  return covs;
 }
 
 }  // namespace wellgyro

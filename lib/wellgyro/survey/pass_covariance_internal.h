@@ -24,12 +24,24 @@ using PassItems = std::vector<PassItem>;  ///< in the order of depth
 /// Where a sum of legs starts.
 struct PathStart {
   PathPoint point;
-  Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< without the depth's error [m^2]
+  /// Where the well begins, at the tie-in: an error of the depth moves all that is below.
+  Eigen::Vector3d top_tangent_W = Eigen::Vector3d::UnitZ();
 };
 
-/// Position covariances of a pass's stations, in their order, from its start on: the sensors' and
-/// the depth's errors, and what the hole may do where nobody saw it.
-std::vector<Eigen::Matrix3d> PassCovariances(const Job& job, const PassItems& pass,
-                                             const PathStart& start);
+/// Position covariances of a pass's stations, in their order, from its start on [m^2].
+struct PassCovariances {
+  std::vector<Eigen::Matrix3d> of_sensors;  ///< and what the hole may do where nobody saw it
+  std::vector<Eigen::Matrix3d> of_depth;    ///< what its error adds
+};
+
+PassCovariances PassCovariancesOf(const Job& job, const PassItems& pass, const PathStart& start);
+
+/// Of a place at which the hole points along `tangent`, when depth errs by one common amount of
+/// variance one from the begin, where it points along `top`. With e the error, the path to where
+/// the tool was begins e deeper or less deep and is off by e top; the hole at that measured depth
+/// is e further up, and it is off by e (top - tangent) ("survey station" and "assigned depth" of
+/// the ISCWSA model, SPE 67616). Both are asked for: this is the least ellipsoid that holds both.
+Eigen::Matrix3d ByCommonDepth(const Eigen::Vector3d& top, const Eigen::Vector3d& tangent);
 
 }  // namespace wellgyro

@@ -37,6 +37,7 @@ struct Entry {
 };
 
 constexpr double kOne = 1;
+constexpr std::string_view kDepthScale = "depth_scale";
 constexpr std::string_view kCalibrate =
     "widen its sigma in [errors], run again, calibrate the tool";
 constexpr std::string_view kBench =
@@ -74,6 +75,8 @@ constexpr Entry kEntries[] = {
      "correct the latitude of the job, run again"},
     {"gravity", Kind::kConstant, kGravityError, 5e-3, kOne, "m/s2",
      "correct the well's place or elevation in the job, run again"},
+    {kDepthScale, Kind::kConstant, kDepthScaleError, 3e-3, kOne, "1",
+     "compare depth with a tally, marks or a shoe, correct it, run again"},
     {"gyro_step_x", Kind::kOnset, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kBench},
     {"gyro_step_y", Kind::kOnset, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kBench},
     {"mass_unbalance_step", Kind::kOnset, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
@@ -183,6 +186,10 @@ std::vector<const RunCause*> Named(const std::vector<RunCause>& causes) {
   return set;
 }
 
+bool IsShown(const RunDiagnosis& diagnosis) {
+  return !(diagnosis.ln_odds <= -std::log(kDiagnosisFalseAlarms));
+}
+
 /// One of the causes named moves the end by more than a sigma in its direction.
 bool MovesTheEnd(const RunDiagnosis& diagnosis, std::int32_t run, std::span<const Station> passes) {
   const Station* end = nullptr;
@@ -270,6 +277,23 @@ RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots)
   return diagnosis;
 }
 
+double DepthScaleFound(const Job& job, const RunDiagnosis& diagnosis) {
+  const double prior = job.errors.depth_scale_sigma;
+  if (IsShown(diagnosis)) {
+    for (const RunCause* cause : Named(diagnosis.causes)) {
+      if (cause->code == kDepthScale) return 0;
+    }
+  }
+  for (const RunCause& cause : diagnosis.causes) {
+    if (cause.code != kDepthScale || !cause.size || !cause.sigma) continue;
+    // The size beyond the prior has the variance prior^2 / (1 - rest), the scale as found
+    // size (1 - rest) that of prior^2 rest.
+    const double told = std::min(prior * prior / (*cause.sigma * *cause.sigma), 1.0);
+    return std::hypot(*cause.size * told, prior * std::sqrt(1 - told));
+  }
+  return 0;
+}
+
 void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
                     std::vector<Check>& checks) {
   const RunDiagnosis* found = run.fit && run.fit->diagnosis ? &*run.fit->diagnosis : nullptr;
@@ -281,7 +305,7 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
   }
   const double limit = -std::log(kDiagnosisFalseAlarms);
   Check check{.code = "diagnosis", .run = run.run, .value = found->ln_odds, .unit = "1"};
-  const bool shown = !(found->ln_odds <= limit);
+  const bool shown = IsShown(*found);
   check.verdict = !shown                                 ? Verdict::kPass
                   : MovesTheEnd(*found, run.run, passes) ? Verdict::kFail
                                                          : Verdict::kWarn;
@@ -294,6 +318,11 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
         fmt::format("ln of the odds, {:g} % of clean runs", 100 * kDiagnosisFalseAlarms);
   }
   checks.push_back(check);
+  for (const RunCause& cause : found->causes) {
+    if (cause.code != kDepthScale || !cause.size || !cause.sigma) continue;
+    checks.push_back(
+        Compare("depth_scale_felt", run.run, {*cause.size, *cause.sigma}, std::nullopt, kOne, "1"));
+  }
 }
 
 std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> checks) {

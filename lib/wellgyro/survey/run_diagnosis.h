@@ -9,6 +9,7 @@
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/diagnosis.h"
 #include "wellgyro/record/run_knot.h"
+#include "wellgyro/survey/job.h"
 #include "wellgyro/survey/survey.h"
 
 namespace wellgyro {
@@ -23,10 +24,16 @@ std::vector<CauseSpec> CausesLookedFor();
 /// What the estimator's tests of CausesLookedFor() come to, in words and where it was.
 RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots);
 
+/// Root of the second moment of the depth scale's error, by what the accelerometers feel of the way
+/// and the job's prior together: depth is not corrected, so that what is found of it counts. 0
+/// where nothing tells it, and where it is named as the run's fault.
+double DepthScaleFound(const Job& job, const RunDiagnosis& diagnosis);
+
 /// The check `diagnosis`, naming the likeliest fault, or several that together have 95 %. It warns
 /// where a fault is found, and fails where one of those named has moved the end of the run by more
 /// than a sigma of its deepest station among `passes`: ends beyond their 95 % region are then more
-/// than twice as many as stated.
+/// than twice as many as stated. And `depth_scale_felt`: depth against the way that the
+/// accelerometers feel, as other errors against their priors.
 void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
                     std::vector<Check>& checks);
 

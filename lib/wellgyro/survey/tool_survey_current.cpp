@@ -11,6 +11,7 @@
 #include "wellgyro/survey/joined_states.h"
 #include "wellgyro/survey/mirrors.h"
 #include "wellgyro/survey/model_covariance.h"
+#include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/run_survey_internal.h"
 #include "wellgyro/survey/tool_survey.h"
 #include "wellgyro/survey/tool_survey_internal.h"
@@ -125,6 +126,8 @@ std::vector<DraftedRun> ToolSurvey::Drafted() const {
     d.misrun = book_.misrun(d.run);
     d.states = JoinStates(run.adjusted, run.survey->states());
     d.way = WayOf(run);
+    const std::optional<RunFit>& fit = run.survey->summary().fit;
+    if (fit && fit->diagnosis) d.depth_scale_found = DepthScaleFound(job_, *fit->diagnosis);
     const bool contradicted = Contradiction(job_, run.survey->summary()) != nullptr;
     for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
       Draft draft = run.survey->drafts()[i];

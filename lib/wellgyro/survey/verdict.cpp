@@ -81,6 +81,7 @@ constexpr CodeWords kCodeWords[] = {
     {"depth_jump", "depth jumps where the accelerometers feel no motion"},
     {"depth_refused", "depth marks were left out"},
     {"depth_scale", "the scale of depth is unverified"},
+    {"depth_scale_felt", "depth and the way that the accelerometers feel differ in scale"},
     {"depth_slippage", "depth slips on the way"},
     {"depth_unknown", "depth is missing"},
     {"diagnosis", "the run shows a fault"},
