@@ -161,7 +161,7 @@ def Overhead(program, options):
         memory = []
 
         def Progress(done, total):
-            if done % max(1, total // 10) == 0:
+            if 10 * done >= total * (len(memory) + 1):
                 memory.append(round(Memory()))
 
         with Cluster(1) as cluster, Client(cluster) as client:
