@@ -232,7 +232,7 @@ Order Merger::WithoutSmallGains(Order order) const {
   return order;
 }
 
-std::string Words(MergeMeasure measure) {
+std::string MeasureWords(MergeMeasure measure) {
   switch (measure) {
     case MergeMeasure::kVertical:
       return "vertical sigma";
@@ -257,7 +257,7 @@ std::string Merger::ReasonFor(const Order& order, std::size_t first, std::size_t
   if (others.empty()) return "no other leg reaches here";
   if (policy_.in_order) return "the first in the list that reaches here";
   const double measure = MeasureOf(order);
-  std::string reason = fmt::format("{} {:.2f} m", Words(policy_.measure), measure);
+  std::string reason = fmt::format("{} {:.2f} m", MeasureWords(policy_.measure), measure);
   for (const std::size_t other : others) {
     Order instead = order;
     for (std::size_t i = first; i <= last; ++i) {
