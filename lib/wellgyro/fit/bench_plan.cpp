@@ -16,7 +16,7 @@
 namespace wellgyro {
 namespace {
 
-using Criterion = BenchPlanSetup::Criterion;
+using PlanCriterion = BenchPlanSetup::Criterion;
 
 std::vector<double> TausOf(int temperatures) {
   std::vector<double> taus;
@@ -42,13 +42,13 @@ std::vector<BenchSetting> CandidateSettings(const BenchPlanSetup& setup) {
   return all;
 }
 
-double LargestOrMean(const Eigen::VectorXd& variances, Criterion criterion) {
-  return criterion == Criterion::kMean ? variances.mean() : variances.maxCoeff();
+double LargestOrMean(const Eigen::VectorXd& variances, PlanCriterion criterion) {
+  return criterion == PlanCriterion::kMean ? variances.mean() : variances.maxCoeff();
 }
 
 class Exchange {
  public:
-  Exchange(const BenchDesign& design, Criterion criterion, double variance)
+  Exchange(const BenchDesign& design, PlanCriterion criterion, double variance)
       : design_(design), criterion_(criterion), variance_(variance) {}
 
   /// Settings that reach the variance, from `optimum` upwards; at most `most` of them.
@@ -89,9 +89,9 @@ class Exchange {
   // A norm of the variances stands for the largest, which has no slope: of 670 attitudes this one
   // is within 1.5 of it. Powers of 4, 8, 16 and 40 end at 80, 77, 76 and 77 settings where the
   // plain bench has 96.
-  double Power() const { return criterion_ == Criterion::kMean ? 1 : 16; }
+  double Power() const { return criterion_ == PlanCriterion::kMean ? 1 : 16; }
   double Value() const {
-    if (criterion_ == Criterion::kDeterminant) {
+    if (criterion_ == PlanCriterion::kDeterminant) {
       return -information_.ldlt().vectorD().array().abs().log().sum();
     }
     const Eigen::VectorXd s = AzimuthVariances(design_.hole, Covariance());
@@ -104,7 +104,7 @@ class Exchange {
   Eigen::Index Best(const Eigen::MatrixXd& C, const Eigen::MatrixXd& now) const {
     const Eigen::MatrixXd XC = design_.rows * C;
     Eigen::MatrixXd XQ = XC;
-    if (criterion_ != Criterion::kDeterminant) {
+    if (criterion_ != PlanCriterion::kDeterminant) {
       const Eigen::VectorXd s = AzimuthVariances(design_.hole, now);
       const Eigen::VectorXd r = (s / s.maxCoeff()).array().pow(Power() - 1);
       XQ = XC * (design_.hole.transpose() * r.asDiagonal() * design_.hole) * C;
@@ -115,8 +115,9 @@ class Exchange {
       const Eigen::Matrix2d inner =
           Eigen::Matrix2d::Identity() + XC.middleRows<2>(2 * place) * X.transpose();
       const Eigen::Matrix2d gain = XQ.middleRows<2>(2 * place) * X.transpose();
-      const double worth = criterion_ == Criterion::kDeterminant ? inner.determinant()
-                                                                 : (inner.inverse() * gain).trace();
+      const double worth = criterion_ == PlanCriterion::kDeterminant
+                               ? inner.determinant()
+                               : (inner.inverse() * gain).trace();
       if (worth > best.second) best = {place, worth};
     }
     return best.first;
@@ -146,15 +147,16 @@ class Exchange {
   }
 
   const BenchDesign& design_;
-  Criterion criterion_;
+  PlanCriterion criterion_;
   double variance_;
   Eigen::MatrixXd information_;
   std::vector<Eigen::Index> chosen_;
 };
 
 // The candidates that the optimum of continuous weights uses; all of them for another criterion.
-std::vector<Eigen::Index> Support(const DesignWeights& optimum, Criterion criterion) {
-  const double least = criterion == Criterion::kDeterminant ? 0 : 1e-3 * optimum.weights.maxCoeff();
+std::vector<Eigen::Index> Support(const DesignWeights& optimum, PlanCriterion criterion) {
+  const double least =
+      criterion == PlanCriterion::kDeterminant ? 0 : 1e-3 * optimum.weights.maxCoeff();
   std::vector<Eigen::Index> support;
   for (Eigen::Index k = 0; k < optimum.weights.size(); ++k) {
     if (optimum.weights[k] >= least) support.push_back(k);
@@ -162,7 +164,7 @@ std::vector<Eigen::Index> Support(const DesignWeights& optimum, Criterion criter
   return support;
 }
 
-BenchDesign Reduced(const BenchDesign& design, const std::vector<Eigen::Index>& places) {
+BenchDesign DesignAt(const BenchDesign& design, const std::vector<Eigen::Index>& places) {
   BenchDesign reduced{
       Eigen::MatrixXd(2 * static_cast<Eigen::Index>(places.size()), design.rows.cols()),
       design.hole, design.before};
@@ -224,11 +226,11 @@ BenchPlan PlanBench(const BenchPlanSetup& setup) {
   plan.wanted = setup.sigma_azimuth > 0 ? setup.sigma_azimuth
                                         : AzimuthSigmaOf(PlainSettings(setup.temperatures), setup);
   const double variance = plan.wanted * plan.wanted;
-  DesignWeights optimum = OptimalWeights(design, variance, setup.criterion != Criterion::kMean);
+  DesignWeights optimum = OptimalWeights(design, variance, setup.criterion != PlanCriterion::kMean);
   plan.fewest = optimum.fewest;
   const auto most = static_cast<std::size_t>(setup.most * setup.temperatures);
   const std::vector<Eigen::Index> support = Support(optimum, setup.criterion);
-  const BenchDesign reduced = Reduced(design, support);
+  const BenchDesign reduced = DesignAt(design, support);
   optimum.weights = Eigen::VectorXd(optimum.weights(support));
   for (const Eigen::Index at : Exchange(reduced, setup.criterion, variance).Find(optimum, most)) {
     plan.settings.push_back(
