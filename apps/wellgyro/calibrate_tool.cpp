@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -24,6 +25,7 @@
 #include "wellgyro/io/toml/tool_file.h"
 
 #include "bench_options.h"
+#include "chromium.h"
 #include "commands.h"
 #include "report.h"
 
@@ -33,7 +35,7 @@ namespace {
 struct ToolFitOptions {
   BenchOptions bench;
   std::vector<std::string> data, traceability;
-  std::string certificate;
+  std::string certificate, pdf, number, laboratory;
   ToolFitSetup fit;
 };
 
@@ -77,9 +79,39 @@ void AddSamples(const ToolCalibration& tool, const ToolFit& fit, Certificate& ce
   }
 }
 
+// What the readings say of the bench, and of drift through a table, apart from the tool's result.
+void MoveBench(const ToolFit& fit, Certificate& certificate) {
+  for (const BenchNuisance& nuisance : fit.nuisances) {
+    certificate.bench.push_back({nuisance.name, "deg", ToDegrees(nuisance.value),
+                                 ToDegrees(nuisance.sigma),
+                                 nuisance.prior_sigma > 0 ? "A, B" : "A"});
+  }
+  std::erase_if(certificate.result, [&](const Certificate::Line& line) {
+    return std::any_of(certificate.bench.begin(), certificate.bench.end(),
+                       [&](const Certificate::Line& b) { return b.name == line.name; });
+  });
+  const auto is_drift = [](const Certificate::Line& line) {
+    return line.name.find("_drift_") != std::string::npos;
+  };
+  std::copy_if(certificate.result.begin(), certificate.result.end(),
+               std::back_inserter(certificate.bench), is_drift);
+  std::erase_if(certificate.result, is_drift);
+}
+
+// Its terms left out have a list of their own.
+void MoveLeftOut(const ToolFit& fit, Certificate& certificate) {
+  for (const LeftOutTerm& term : fit.left_out) certificate.left_out.push_back(TextOf(term));
+  std::erase_if(certificate.remarks,
+                [](const std::string& remark) { return remark.rfind("left out:", 0) == 0; });
+}
+
 std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file,
-                            const ToolFit& fit, const ToolCalibration& tool) {
+                            const ToolFit& fit, const ToolCalibration& tool,
+                            std::vector<InputFile> outputs) {
   Certificate certificate = CertificateOf(fit.calibration.report);
+  certificate.number = o.number;
+  certificate.laboratory = o.laboratory;
+  certificate.outputs = std::move(outputs);
   certificate.asset_serial = tool.asset_serial;
   certificate.sensor_serials = tool.sensor_serials;
   certificate.program = file.program;
@@ -88,17 +120,8 @@ std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file
   certificate.references = file.references;
   certificate.traceability = o.traceability;
   certificate.inputs = file.inputs;
-  for (const BenchNuisance& nuisance : fit.nuisances) {
-    certificate.bench.push_back({nuisance.name, "deg", ToDegrees(nuisance.value),
-                                 ToDegrees(nuisance.sigma),
-                                 nuisance.prior_sigma > 0 ? "A, B" : "A"});
-  }
-  // What the bench found has its own table.
-  std::erase_if(certificate.result, [&](const Certificate::Line& line) {
-    return std::any_of(certificate.bench.begin(), certificate.bench.end(),
-                       [&](const Certificate::Line& b) { return b.name == line.name; });
-  });
-  for (const LeftOutTerm& term : fit.left_out) certificate.left_out.push_back(TextOf(term));
+  MoveBench(fit, certificate);
+  MoveLeftOut(fit, certificate);
   AddSamples(tool, fit, certificate);
   return CertificateHtml(certificate);
 }
@@ -106,7 +129,7 @@ std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file
 // Nothing is written over what it came from.
 void RequireOther(const ToolFitOptions& o) {
   for (const std::string& name : o.data) {
-    for (const std::string* out : {&o.bench.out, &o.bench.tool, &o.certificate}) {
+    for (const std::string* out : {&o.bench.out, &o.bench.tool, &o.certificate, &o.pdf}) {
       std::error_code ignored;
       if (!out->empty() && (*out == name || std::filesystem::equivalent(*out, name, ignored))) {
         throw std::invalid_argument("--data and what is written must be different files");
@@ -131,13 +154,25 @@ std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   if (!tool) return tool.fault();
   const std::string tool_text = o.bench.tool.empty() ? std::string() : ToolToml(*tool);
   fmt::print("{}", CalibrationSummary(file));
-  if (auto fault = WriteAndName(o.bench.out, CalibrationToml(file))) return fault;
+  const std::string text = CalibrationToml(file);
+  if (auto fault = WriteAndName(o.bench.out, text)) return fault;
   if (!o.certificate.empty()) {
-    if (auto fault = WriteAndName(o.certificate, CertificateText(o, file, *fit, *tool)))
-      return fault;
+    std::vector<InputFile> outputs = {{"calibration", o.bench.out, o.bench.out, Sha256Hex(text)}};
+    if (!tool_text.empty()) {
+      outputs.push_back({"tool", o.bench.tool, o.bench.tool, Sha256Hex(tool_text)});
+    }
+    const std::string html = CertificateText(o, file, *fit, *tool, std::move(outputs));
+    if (auto fault = WriteAndName(o.certificate, html)) return fault;
   }
-  if (tool_text.empty()) return std::nullopt;
-  return WriteAndName(o.bench.tool, tool_text);
+  if (!tool_text.empty()) {
+    if (auto fault = WriteAndName(o.bench.tool, tool_text)) return fault;
+  }
+  if (o.pdf.empty()) return std::nullopt;
+  if (const auto complaint = PrintByChromium(o.certificate, o.pdf)) {
+    return Fault{.text = *complaint, .source = o.pdf};
+  }
+  fmt::print("{}\n", o.pdf);
+  return std::nullopt;
 }
 
 void AddBenchSigmas(CLI::App& command, ToolFitSetup& fit) {
@@ -181,7 +216,12 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
                    "...), T_C and t_s where written down")
       ->required();
   command->add_option("--out", o->bench.out, "calibration file to write (TOML)")->required();
-  command->add_option("--certificate", o->certificate, "certificate to write (HTML)");
+  CLI::Option* const certificate =
+      command->add_option("--certificate", o->certificate, "certificate to write (HTML)");
+  command->add_option("--pdf", o->pdf, "the certificate printed too, by a Chromium that is here")
+      ->needs(certificate);
+  command->add_option("--certificate-number", o->number, "of the certificate")->needs(certificate);
+  command->add_option("--laboratory", o->laboratory, "that issues it")->needs(certificate);
   command->add_option("--traceability", o->traceability,
                       "a reference instrument and its certificate, repeat it for more");
   AddGravity(*command, o->bench);

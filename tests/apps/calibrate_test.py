@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """From a bench to a survey by the program, and benches that cannot give a calibration: files, exit
 codes, sentences. calibrate_test.py PROGRAM"""
+import hashlib
 import math
 import os
 import random
@@ -200,14 +201,21 @@ class Calibrate(FreshProgramTest):
         ran = self.Done("calibrate", "tool", "--data", rest, "--data", table, "--latitude-deg",
                         str(LATITUDE), "--gravity-mps2", "9.8195", "--out", self.Path("c.toml"),
                         "--tool", tool, "--certificate", page, "--traceability",
-                        "rate table <RT-5>", "--asset-serial", "A&7", "--date", "2026-01-31")
+                        "rate table <RT-5>", "--certificate-number", "C-17", "--laboratory",
+                        "Bench 2", "--asset-serial", "A&7", "--date", "2026-01-31")
         self.assertIn("gyro_M[0]", ran.stdout + self.Read(self.Path("c.toml")))
         for name in (tool, self.Path("c.toml")):
             self.Done("check", name)
         html = self.Read(page)
         for word in ("A&amp;7", "rate table &lt;RT-5&gt;", "gyro_bias_x", "mass_unbalance", "<svg",
-                     "level_1[0]", "k = 2"):
+                     "level_1[0]", "k = 2", "C-17", "Bench 2", "deg/h/g</td>"):
             self.assertIn(word, html)
+        # What it certifies, to the byte; each term left out once.
+        for name in (tool, self.Path("c.toml")):
+            with open(name, "rb") as file:
+                self.assertIn(hashlib.sha256(file.read()).hexdigest(), html)
+        self.assertEqual(html.count("accel_K2_cross"), 1)
+        self.assertLess(html.index("<h2>Bench</h2>"), html.index("gyro_drift_1"))
         verify = ["calibrate", "verify", "--tool", tool, "--latitude-deg", str(LATITUDE),
                   "--gravity-mps2", "9.8195", "--sigma-accel", "2e-4", "--sigma-deg-per-h", "0.02"]
         self.assertIn("pass", self.Done(*verify, "--data", found).stdout)
@@ -225,6 +233,15 @@ class Calibrate(FreshProgramTest):
         self.Done("calibrate", "plan", "--bench-latitude-deg", "52", "--latitude-deg", "60",
                   "--azimuth-sigma-deg", "0.05", "--out", self.Path("plan.csv"))
         self.assertTrue(self.Read(self.Path("plan.csv")).startswith("inc,az,tf,tau\n"))
+        # For a well as good as the plain bench by half its settings, and near the bound.
+        planned = self.Write("planned.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n" + "".join(
+            f"{30 * i},{min(3 * i, 60)},70\n" for i in range(40)))
+        ran = self.Done("calibrate", "plan", "--bench-latitude-deg", "52", "--latitude-deg", "60",
+                        "--well", planned, "--out", self.Path("plan.csv"))
+        settings = len(self.Read(self.Path("plan.csv")).splitlines()) - 1
+        self.assertLessEqual(settings, 67)
+        bound = float(ran.stdout.split("in less than ")[1].split()[0])
+        self.assertTrue(0.85 * settings < bound <= settings, ran.stdout)
         for arguments in (["tool", "--data", rest, "--out", rest],
                           ["verify", "--data", rest, "--tool", tool],
                           ["history", "--tool", self.Write("blank.toml", TrueTool())]):

@@ -67,5 +67,48 @@ BENCHMARK_CAPTURE(Apply, g_terms, test::ToolShape{.temperature = true, .g_terms 
 BENCHMARK_CAPTURE(Apply, second_order,
                   test::ToolShape{.temperature = true, .second_order = true, .g_terms = true});
 
+// What a calibration by temperature leaves to be applied (calibrate tool): two rotors of four
+// channels with polynomials in temperature, mass unbalance, quadrature, anisoelasticity and
+// heating; accelerometers whose second order, 20 ug/g^2, is their own axis's.
+ToolCalibration FullTool() {
+  ToolCalibration tool = test::RandomTool(1, {.gyro_channels = 4, .temperature = true});
+  Random random(3);
+  for (std::size_t n = 0; n < 2; ++n) {
+    const double M = 1e-3 * random.Normal(), Q = 1e-3 * random.Normal();
+    auto& force = tool.gyro.g_dependence[n];
+    force(0, 0) = force(1, 1) = M;
+    force(0, 1) = Q;
+    force(1, 0) = -Q;
+    force(3, 0) = force(2, 2) = M;
+    force(3, 2) = Q;
+    force(2, 0) = -Q;
+  }
+  const int place[] = {5, 4, 4, 3};
+  for (int c = 0; c < 4; ++c) tool.gyro.g_squared(c, place[c]) = 1e-5 * random.Normal();
+  // Of sensitivities of 0.3 V per m/s^2.
+  for (int c = 0; c < 3; ++c) tool.accel.second_order(c, c) = 20e-6 / 9.8 * 0.3;
+  tool.gyro.heating.setConstant(1e-3);
+  return tool;
+}
+
+void Calibrate(benchmark::State& state, const ToolCalibration& tool, bool heats) {
+  std::vector<RawSample> raw = Counts(tool);
+  std::vector<ImuSample> out(raw.size());
+  SampleCalibrator calibrator(tool);
+  std::int64_t now = 0;
+  for (auto _ : state) {
+    for (RawSample& sample : raw) {
+      sample.stamp.tool_time.ns = now;
+      if (heats) now += 10'000'000;
+    }
+    calibrator.Apply(raw, out);
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * kBatch);
+}
+void FullThermal(benchmark::State& state) { Calibrate(state, FullTool(), true); }
+BENCHMARK(FullThermal);
+
 }  // namespace
 }  // namespace wellgyro

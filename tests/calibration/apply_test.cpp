@@ -149,6 +149,46 @@ TEST(Apply, DoesNotDependOnTheCutsOfBatches) {
   }
 }
 
+// What u leaves of the channels' formula, over its size: a fiftieth of the finest count at most,
+// 2^-31 of full scale, however large the second order, beside samples of any size.
+TEST(Apply, SecondOrderIsSolvedToAFiftiethOfACount) {
+  for (const double size : {1e-5, 1e-3, 0.03, 0.19}) {
+    Random random(31);
+    ToolCalibration tool;
+    SensorGroup& accel = tool.accel;
+    accel.n_channels = 3;
+    accel.channel = {0, 1, 2};
+    accel.unit_per_count.setConstant(1e-8);
+    accel.sensitivity[0].topRows<3>().setIdentity();
+    // Rows whose sums are `size` at 1, which is full scale.
+    for (int c = 0; c < 3; ++c) {
+      for (int p = 0; p < 6; ++p) accel.second_order(c, p) = random.Normal();
+      accel.second_order.row(c) *= size / accel.second_order.row(c).cwiseAbs().sum();
+    }
+    std::vector<RawSample> raw(64);
+    for (RawSample& sample : raw) {
+      sample.n_channels = 3;
+      const double scale = std::pow(10, -3 * random.Uniform());
+      for (std::size_t c = 0; c < 3; ++c) {
+        sample.counts[c] = static_cast<std::int32_t>(1e8 * scale * (2 * random.Uniform() - 1));
+      }
+    }
+    std::vector<ImuSample> out(raw.size());
+    SampleCalibrator calibrator(tool);
+    ASSERT_EQ(calibrator.Apply(raw, out), raw.size());
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      const Eigen::Vector3d& u = out[i].f_T;
+      Eigen::Matrix<double, 6, 1> q;
+      q << u.x() * u.x(), u.y() * u.y(), u.z() * u.z(), u.x() * u.y(), u.y() * u.z(), u.z() * u.x();
+      for (int c = 0; c < 3; ++c) {
+        const double v = 1e-8 * raw[i].counts[static_cast<std::size_t>(c)];
+        EXPECT_NEAR(u[c] + accel.second_order.row(c).dot(q), v, 2e-11 * u.cwiseAbs().maxCoeff())
+            << size;
+      }
+    }
+  }
+}
+
 TEST(Apply, TakesTheHeatingRateFromALaggedTemperature) {
   ToolCalibration tool = RandomTool(9, {.temperature = true});
   tool.thermometers[0] = {.channel = 0};

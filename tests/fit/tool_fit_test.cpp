@@ -115,6 +115,20 @@ TEST(ToolFit, ParametersAndNuisancesWithinTheirSigmas) {
   EXPECT_LE(all.missed, all.number / 20);
 }
 
+// 2026-11-24: of 200 benches some had a loop and a bend of drift for what heating does, and biases
+// wrong by 0.3 deg/h with sigmas of 0.003. These two of them, of the run of 200.
+TEST(ToolFit, ALoopAndABendDoNotStandForHeating) {
+  Random random(31);
+  for (int i = 0; i <= 18; ++i) {
+    const Bench b = AnyBench(random);
+    if (i != 5 && i != 18) continue;
+    const auto fit = FitTool(b.tables, Stated());
+    ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+    const Score score = ScoreOf(*fit, TruthOf(b.tool, b.bench));
+    EXPECT_LT(score.square / score.number, 1 + 3.3 * std::sqrt(2 / score.number)) << i;
+  }
+}
+
 // Ways in which bench data are not what they should be.
 using Corruption = void (*)(Bench& bench, ToolFitSetup& setup, Random& random);
 

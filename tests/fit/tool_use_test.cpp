@@ -1,5 +1,4 @@
-// From the joint calibration to what is done with it: errors of samples, verification, history,
-// plans.
+// From the joint calibration to what is done with it: errors of samples, verification, history.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +13,6 @@
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/calibration/history.h"
 #include "wellgyro/calibration/members.h"
-#include "wellgyro/fit/bench_plan.h"
 #include "wellgyro/fit/tool_verify.h"
 
 #include "fit/tool_bench.h"
@@ -268,39 +266,6 @@ TEST(ToolUse, HistoriesTellWalksAndToolsOutOfFamily) {
     }
   }
   EXPECT_NEAR(std::sqrt(walk) / (kRad / 3600), 0.01, 0.004);
-}
-
-// Of a hole whose directions are known half the settings do. For all directions no design can
-// do with fewer than 81.2, by the multiplicative algorithm of optimal design (Silvey, Titterington
-// and Torsney 1978) over the same settings, run apart from this program.
-TEST(ToolUse, APlanNeedsFewerSettingsThanThePlainBench) {
-  BenchPlanSetup setup;
-  setup.bench_latitude = 52 * kRad;
-  setup.well_latitude = 60 * kRad;
-  const std::vector<BenchSetting> plain = PlainSettings(1);
-  ASSERT_EQ(plain.size(), 96u);
-  const auto plan_of = [&](const char* hole) {
-    setup.sigma_azimuth = AzimuthSigmaOf(plain, setup);
-    EXPECT_TRUE(std::isfinite(setup.sigma_azimuth));
-    const BenchPlan plan = PlanBench(setup);
-    std::printf("plan, %s: %zu settings give %.4f deg, the plain 96 %.4f deg\n", hole,
-                plan.settings.size(), plan.sigma_azimuth / kRad, setup.sigma_azimuth / kRad);
-    EXPECT_TRUE(plan.reached);
-    EXPECT_NEAR(AzimuthSigmaOf(plan.settings, setup), plan.sigma_azimuth,
-                1e-6 * plan.sigma_azimuth);
-    return plan.settings.size();
-  };
-  const std::size_t all = plan_of("all directions");
-  EXPECT_LE(all, 84u);
-  EXPECT_GE(all, 81u);
-  setup.inclination_from = 30 * kRad;
-  setup.inclination_to = 60 * kRad;
-  setup.azimuth_from = 60 * kRad;
-  setup.azimuth_to = 80 * kRad;
-  EXPECT_LE(plan_of("30 to 60 deg, N 60 to 80 E"), 67u);
-  EXPECT_THROW(PlanBench({.sigma_gyro = 0}), std::invalid_argument);
-  // One cone leaves parameters open.
-  EXPECT_FALSE(std::isfinite(AzimuthSigmaOf({plain.begin() + 24, plain.begin() + 30}, setup)));
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -18,17 +18,43 @@ namespace wellgyro {
 
 namespace {
 
-// Adds what the linear part of a group leaves out.
-void Complete(const GroupSolution& group, std::span<const RawSample> raw, std::span<ImuSample> out,
-              Eigen::Vector3d ImuSample::*u) {
-  if (!group.has_fourth() && !group.feels_force() && !group.has_second_order()) return;
-  for (std::size_t i = 0; i < raw.size(); ++i) {
-    Eigen::Vector3d value = out[i].*u;
-    if (group.has_fourth()) value += group.Fourth(raw[i]);
-    if (group.feels_force()) value += group.OfForce(out[i].f_T);
-    if (group.has_second_order()) value = group.Refine(value);
-    out[i].*u = value;
+/// Samples that are calibrated side by side, and that are looked at together.
+constexpr int kSide = 4;
+constexpr std::size_t kRun = 32;
+
+struct HeatingRates {
+  std::array<double, kRun> gyro{}, accel{}, mag{};
+};
+
+struct Kernels {
+  const GroupKernel &gyro, &accel, &mag;
+};
+
+template <int kN>
+[[gnu::always_inline]] inline void Solve(const GroupKernel& group, const RawSample* raw,
+                                         const double* rates, const Side<kN>& f, Side<kN>& u) {
+  Linear<kN>(group, raw, rates, u);
+  if (group.feels_force) TakeForce<kN>(group, f, u);
+  if (group.squares.count > 0) Refine<kN>(group, u);
+}
+
+// kN samples from the `first` of a run at one temperature.
+template <int kN>
+void CalibrateSide(const Kernels& groups, const RawSample* raw, const HeatingRates& rates,
+                   std::size_t first, ImuSample* out) {
+  // The force first: the gyros feel it.
+  Side<kN> f, u;
+  Linear<kN>(groups.accel, raw + first, rates.accel.data() + first, f);
+  if (groups.accel.squares.count > 0) Refine<kN>(groups.accel, f);
+  Put<kN>(f, out + first, &ImuSample::f_T);
+  Solve<kN>(groups.gyro, raw + first, rates.gyro.data() + first, f, u);
+  Put<kN>(u, out + first, &ImuSample::w_IT_T);
+  if (groups.mag.n_channels > 0) {
+    Solve<kN>(groups.mag, raw + first, rates.mag.data() + first, f, u);
+  } else {
+    for (Lanes<kN>& component : u) component.setZero();
   }
+  Put<kN>(u, out + first, &ImuSample::b_T);
 }
 
 }  // namespace
@@ -44,7 +70,9 @@ struct SampleCalibrator::State {
   void PrepareGroup(const SensorGroup& group, double seconds, GroupSolution& solution);
   void Meet(const RawSample& raw);
   void Heat(const RawSample& raw);
-  void CalibrateRun(std::span<const RawSample> raw, std::span<ImuSample> out) const;
+  void Note(std::size_t k, HeatingRates& rates) const;
+  void Calibrate(std::span<const RawSample> raw, const HeatingRates& rates,
+                 std::span<ImuSample> out) const;
   void Stamp(std::span<const RawSample> raw, std::span<ImuSample> out) const;
 
   ToolCalibration tool;
@@ -81,9 +109,8 @@ SampleCalibrator::State::State(const ToolCalibration& model)
 
 bool SampleCalibrator::State::Changed(const RawSample& raw) const {
   // By bits: a reading that is no number is the same as itself.
-  using Bits = std::array<std::uint32_t, RawSample::kTemperaturesMax>;
   return raw.stamp.period_ns != period_ns || !prepared ||
-         std::bit_cast<Bits>(raw.temperature_raw) != std::bit_cast<Bits>(raw_temperature);
+         std::memcmp(&raw.temperature_raw, &raw_temperature, sizeof(raw_temperature)) != 0;
 }
 
 void SampleCalibrator::State::PrepareGroup(const SensorGroup& group, double seconds,
@@ -124,17 +151,14 @@ void SampleCalibrator::State::Heat(const RawSample& raw) {
   const ToolTime now = raw.stamp.tool_time;
   const bool follows = heating && raw.stamp.session == session && now > heated_to;
   const double seconds = follows ? (now - heated_to).seconds() : 0;
-  const auto heat = [&](const SensorGroup& group, GroupSolution& solution) {
-    if (group.n_channels == 0 || group.heating.isZero(0)) return;
+  for (GroupSolution* group : {&gyro, &accel, &mag}) {
+    if (!group->heats()) continue;
     if (follows) {
-      solution.Heat(group, seconds);
+      group->Heat(seconds);
     } else if (!heating || raw.stamp.session != session) {
-      solution.Settle();
+      group->Settle();
     }
-  };
-  heat(tool.gyro, gyro);
-  heat(tool.accel, accel);
-  heat(tool.mag, mag);
+  }
   if (follows || !heating || raw.stamp.session != session) heated_to = now;
   session = raw.stamp.session;
   heating = true;
@@ -155,27 +179,29 @@ void SampleCalibrator::State::Stamp(std::span<const RawSample> raw,
   const float shown = shown_temperature;
   for (std::size_t i = 0; i < raw.size(); ++i) {
     SampleStamp& stamp = out[i].stamp = raw[i].stamp;
-    stamp.temperature_outside = stamp.temperature_outside || flag;
+    stamp.temperature_outside = raw[i].stamp.temperature_outside || flag;
     stamp.temperature = shown;
     out[i].has_gz = has_gz;
     out[i].has_mag = has_mag;
   }
 }
 
-// Samples at one temperature.
-void SampleCalibrator::State::CalibrateRun(std::span<const RawSample> raw,
-                                           std::span<ImuSample> out) const {
+// At most kRun samples at one temperature.
+void SampleCalibrator::State::Calibrate(std::span<const RawSample> raw, const HeatingRates& rates,
+                                        std::span<ImuSample> out) const {
   Stamp(raw, out);
-  const LinearPart of_gyro = gyro.linear(), of_accel = accel.linear(), of_mag = mag.linear();
-  for (std::size_t i = 0; i < raw.size(); ++i) {
-    out[i].f_T = of_accel(raw[i]);
-    out[i].w_IT_T = of_gyro(raw[i]);
-    out[i].b_T = of_mag(raw[i]);
+  const Kernels groups{gyro.kernel(), accel.kernel(), mag.kernel()};
+  std::size_t i = 0;
+  for (; i + kSide <= raw.size(); i += kSide) {
+    CalibrateSide<kSide>(groups, raw.data(), rates, i, out.data());
   }
-  // The force first: the gyros feel it.
-  Complete(accel, raw, out, &ImuSample::f_T);
-  Complete(gyro, raw, out, &ImuSample::w_IT_T);
-  Complete(mag, raw, out, &ImuSample::b_T);
+  for (; i < raw.size(); ++i) CalibrateSide<1>(groups, raw.data(), rates, i, out.data());
+}
+
+void SampleCalibrator::State::Note(std::size_t k, HeatingRates& rates) const {
+  rates.gyro[k] = gyro.heating_rate();
+  rates.accel[k] = accel.heating_rate();
+  rates.mag[k] = mag.heating_rate();
 }
 
 SampleCalibrator::SampleCalibrator(const ToolCalibration& tool) {
@@ -194,14 +220,20 @@ std::size_t SampleCalibrator::Apply(std::span<const RawSample> raw, std::span<Im
   }
   State& state = *state_;
   std::size_t done = 0;
+  HeatingRates rates;
   while (done < raw.size() && state.Fits(raw[done])) {
     state.Meet(raw[done]);
-    std::size_t end = done + 1;
-    if (!state.heats) {
-      while (end < raw.size() && state.Fits(raw[end]) && !state.Changed(raw[end])) ++end;
+    state.Note(0, rates);
+    std::size_t n = 1;
+    for (; n < kRun && done + n < raw.size(); ++n) {
+      const RawSample& next = raw[done + n];
+      if (!state.Fits(next) || state.Changed(next)) break;
+      if (!state.heats) continue;
+      state.Heat(next);
+      state.Note(n, rates);
     }
-    state.CalibrateRun(raw.subspan(done, end - done), out.subspan(done, end - done));
-    done = end;
+    state.Calibrate(raw.subspan(done, n), rates, out.subspan(done, n));
+    done += n;
   }
   return done;
 }
@@ -210,7 +242,9 @@ std::optional<double> SampleCalibrator::Parity(const RawSample& raw) const {
   const State& state = *state_;
   if (state.tool.gyro.n_channels != 4 || !state.prepared || !state.Fits(raw)) return std::nullopt;
   ImuSample sample;
-  state.CalibrateRun({&raw, 1}, {&sample, 1});
+  HeatingRates rates;
+  state.Note(0, rates);
+  state.Calibrate({&raw, 1}, rates, {&sample, 1});
   return state.gyro.Parity(raw, sample.w_IT_T, sample.f_T);
 }
 

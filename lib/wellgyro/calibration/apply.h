@@ -19,7 +19,8 @@ WELLGYRO_EXPORT std::optional<std::string> FindComplaint(const ToolCalibration& 
 /// Turns a tool's counts into SI units and tool axes by the formula of SensorGroup, solved for u:
 /// three channels exactly, four by least squares, two for the rates across the tool (has_gz is then
 /// false and what the channels see of w_z stays in the rates: AxialCoupling). Exact to rounding;
-/// second-order terms by fixed point to the last bits, while |K u| stays below 0.2 |S|.
+/// second-order terms by fixed point to 1e-11 of u, a fiftieth of the finest count of full scale,
+/// while |K u| stays below 0.2 |S|.
 ///
 /// Polynomials in temperature are evaluated where a thermometer's value changes, that is once a
 /// batch; beyond the calibrated range they stay at its end and `temperature_outside` is set. The

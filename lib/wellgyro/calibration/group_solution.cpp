@@ -55,18 +55,59 @@ Eigen::Vector4d Parity(const SensorGroup::Rows& S) {
   return Q.col(3);
 }
 
+template <int kColumns>
+void Put(const Eigen::Matrix<double, 3, kColumns>& from, double (&to)[3][kColumns]) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < kColumns; ++j) to[i][j] = from(i, j);
+  }
+}
+
+// Of q's components those that move anything.
+GroupKernel::Products ProductsOf(const Eigen::Matrix<double, 3, 6>& out) {
+  constexpr std::size_t kFirst[] = {0, 1, 2, 0, 1, 2}, kSecond[] = {0, 1, 2, 1, 2, 0};
+  GroupKernel::Products products;
+  for (int p = 0; p < 6; ++p) {
+    if (out.col(p).isZero(0)) continue;
+    GroupKernel::Product& product = products.each[products.count++];
+    product.first = kFirst[p];
+    product.second = kSecond[p];
+    Eigen::Vector3d::Map(product.out) = out.col(p);
+  }
+  return products;
+}
+
+// Sizes e = K |u_0|, K the largest sum of a row of squares, for which n turns u <- u_0 - squares(u)
+// leave less than a fiftieth of the finest count, 2^-31 of full scale. All u_n are below |u_0| s, s
+// = 1 / (1 - 2 e); the first is off by e s^2 |u_0|, and each turn leaves 2 e s of it.
+std::array<double, GroupKernel::kTurns> Sizes() {
+  constexpr double kLeft = 1e-11;
+  std::array<double, GroupKernel::kTurns> sizes{};
+  for (std::size_t turns = 0; turns < sizes.size(); ++turns) {
+    double low = 0, high = 0.25;
+    for (int halving = 0; halving < 60; ++halving) {
+      const double e = (low + high) / 2, s = 1 / (1 - 2 * e);
+      const double left = std::pow(2 * e * s, static_cast<double>(turns)) * e * s * s;
+      (left < kLeft ? low : high) = e;
+    }
+    sizes[turns] = low;
+  }
+  return sizes;
+}
+
+void SetReach(const Eigen::Matrix<double, 3, 6>& squares, GroupKernel& kernel) {
+  static const std::array<double, GroupKernel::kTurns> kSizes = Sizes();
+  const double K = squares.cwiseAbs().rowwise().sum().maxCoeff();
+  for (std::size_t turn = 0; turn < kSizes.size(); ++turn) {
+    kernel.reach[turn] = K > 0 ? kSizes[turn] / K : std::numeric_limits<double>::infinity();
+  }
+}
+
 }  // namespace
 
 bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double seconds) {
-  n_channels_ = group.n_channels;
   temperature_ = temperature;
   const double held = std::clamp(temperature, group.min, group.max);
   const double tau = group.thermometer < 0 ? 0 : (held - group.reference) / group.half_range;
-  for (std::size_t c = 0; c < channel_.size(); ++c) {
-    channel_[c] =
-        static_cast<std::size_t>(group.channel[static_cast<int>(c) < n_channels_ ? c : 0]);
-  }
-
   const Eigen::Matrix3d R_ST = group.R_TS.transpose();
   const Eigen::Matrix<double, 6, 6> squares_ST = OfSquares(R_ST);
   const SensorGroup::Rows S_T = Polynomial(group.sensitivity, tau) * R_ST;
@@ -74,72 +115,45 @@ bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double
   if (group.per_second) unit_per_count_ /= seconds;
   bias_ = Polynomial(group.bias, tau);
   heating_ = group.heating;
+  per_lag_ = 1 / group.heating_lag;
   g_dependence_ = Polynomial(group.g_dependence, tau) * R_ST;
   squares_ = group.second_order * squares_ST;
   g_squares_ = group.g_squared * squares_ST;
+  parity_ = group.n_channels == 4 ? wellgyro::Parity(S_T) : Eigen::Vector4d::Zero();
 
-  from_units_ = Inverse(S_T, n_channels_);
-  from_counts_ = from_units_ * unit_per_count_.asDiagonal();
-  from_force_ = from_units_ * g_dependence_;
-  from_squares_ = from_units_ * squares_;
-  from_force_squares_ = from_units_ * g_squares_;
-  second_order_ = !from_squares_.isZero(0);
-  feels_force_ = !from_force_.isZero(0) || !from_force_squares_.isZero(0);
-  g_squared_ = !from_force_squares_.isZero(0);
-  parity_ = n_channels_ == 4 ? wellgyro::Parity(S_T) : Eigen::Vector4d::Zero();
+  const Eigen::Matrix<double, 3, 4> from_units = Inverse(S_T, group.n_channels);
+  kernel_.n_channels = group.n_channels;
+  for (std::size_t c = 0; c < kernel_.channel.size(); ++c) {
+    const std::size_t of = static_cast<int>(c) < group.n_channels ? c : 0;
+    kernel_.channel[c] = static_cast<std::size_t>(group.channel[of]);
+  }
+  const Eigen::Matrix<double, 3, 4> from_counts = from_units * unit_per_count_.asDiagonal();
+  Put(from_counts, kernel_.A);
+  const Eigen::Vector3d offset = -(from_units * bias_), heat = -(from_units * heating_);
+  const Eigen::Matrix3d force = from_units * g_dependence_;
+  Put(force, kernel_.force);
+  Eigen::Vector3d::Map(kernel_.b) = offset;
+  Eigen::Vector3d::Map(kernel_.heat) = heat;
+  kernel_.heats = !heat.isZero(0);
+  kernel_.squares = ProductsOf(from_units * squares_);
+  kernel_.force_squares = ProductsOf(from_units * g_squares_);
+  kernel_.feels_force = !force.isZero(0) || kernel_.force_squares.count > 0;
+  SetReach(from_units * squares_, kernel_);
   if (!settled_) Settle();
-  Offset();
   return group.thermometer < 0 || held == temperature;
 }
-
-void GroupSolution::Offset() { offset_ = -(from_units_ * (bias_ + heating_ * heating_rate_)); }
 
 void GroupSolution::Settle() {
   settled_ = true;
   lagged_ = temperature_;
   heating_rate_ = 0;
-  Offset();
-}
-
-void GroupSolution::Heat(const SensorGroup& group, double seconds) {
-  lagged_ += (temperature_ - lagged_) * -std::expm1(-seconds / group.heating_lag);
-  heating_rate_ = (temperature_ - lagged_) / group.heating_lag;
-  Offset();
-}
-
-LinearPart GroupSolution::linear() const {
-  return {from_counts_.leftCols<3>(), offset_, channel_[0], channel_[1], channel_[2]};
-}
-
-Eigen::Vector3d GroupSolution::Fourth(const RawSample& raw) const {
-  return from_counts_.col(3) * static_cast<double>(raw.counts[channel_[3]]);
-}
-
-Eigen::Vector3d GroupSolution::OfForce(const Eigen::Vector3d& f_T) const {
-  Eigen::Vector3d u = from_force_ * f_T;
-  if (g_squared_) u += from_force_squares_ * SquaresOf(f_T);
-  return -u;
-}
-
-Eigen::Vector3d GroupSolution::Refine(const Eigen::Vector3d& linear) const {
-  // Contracts by 2 |K u| / |S| a turn.
-  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
-  constexpr int kTurns = 40;
-  Eigen::Vector3d u = linear;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const Eigen::Vector3d next = linear - from_squares_ * SquaresOf(u);
-    const double change = (next - u).cwiseAbs().maxCoeff();
-    u = next;
-    if (!(change > kRounding * u.cwiseAbs().maxCoeff())) break;
-  }
-  return u;
 }
 
 double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
                              const Eigen::Vector3d& f_T) const {
   Eigen::Vector4d units;
   for (int c = 0; c < 4; ++c) {
-    units[c] = static_cast<double>(raw.counts[channel_[static_cast<std::size_t>(c)]]);
+    units[c] = static_cast<double>(raw.counts[kernel_.channel[static_cast<std::size_t>(c)]]);
   }
   units = units.cwiseProduct(unit_per_count_) - bias_ - heating_ * heating_rate_;
   units -= g_dependence_ * f_T + g_squares_ * SquaresOf(f_T) + squares_ * SquaresOf(u_T);

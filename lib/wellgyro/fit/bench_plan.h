@@ -13,16 +13,24 @@ struct BenchPlanSetup {
   BenchAxes axes = BenchAxes::kTrade;
   double bench_latitude = 0, well_latitude = 0;  ///< [rad]
   double sigma_gyro = 0.02;                      ///< of a reading at rest [deg/h]
-  double sigma_azimuth = 0;                      ///< wanted, of what the calibration leaves [rad]
-  int temperatures = 1;                          ///< stops of the chamber, evenly; 1 to 5
+  /// Wanted, of what the calibration leaves [rad]; 0: that of the plain bench (PlainSettings).
+  double sigma_azimuth = 0;
+  /// Of the sensitivities where a rate table is read too, scale and misalignment [1]; 0: it is not.
+  double sigma_sensitivity = 0;
+  int temperatures = 1;  ///< stops of the chamber, evenly; 1 to 5
   enum class Criterion {
-    kAzimuth,      ///< the azimuth's variance over the hole's attitudes (c-optimal, on average)
-    kDeterminant,  ///< all parameters alike (D-optimal)
-  } criterion = Criterion::kAzimuth;
-  int most = 240;  ///< settings
+    kLargest,      ///< the azimuth's largest sigma over the hole (c-optimal, minimax)
+    kMean,         ///< its root mean square
+    kDeterminant,  ///< all parameters alike (D-optimal); the largest sigma is what must be reached
+  } criterion = Criterion::kLargest;
+  int most = 240;  ///< settings at a temperature
   /// Of the hole that it is for [rad]: a plan for a part of all directions needs fewer settings.
   double inclination_from = 0.0873, inclination_to = 1.6581;  ///< 5 to 95 deg
   double azimuth_from = 0, azimuth_to = 6.2832;               ///< clockwise, the whole circle
+  struct Direction {
+    double inclination = 0, azimuth = 0;
+  };
+  std::vector<Direction> hole;  ///< its stations, in place of the ranges
 };
 
 /// One setting: attitude of the bench and, from -1 to 1, the temperature in its range.
@@ -33,14 +41,17 @@ struct BenchSetting {
 
 struct BenchPlan {
   std::vector<BenchSetting> settings;  ///< by temperature, then inclination
-  double sigma_azimuth = 0;            ///< that they give, root mean square over the hole [rad]
+  double sigma_azimuth = 0;            ///< that they give, by AzimuthSigmaOf [rad]
+  double wanted = 0;                   ///< [rad]
   bool reached = false;                ///< what was wanted
+  /// With less time than that of so many settings no choice among the same attitudes reaches what
+  /// was wanted, however the time is divided among them.
+  double fewest = 0;
 };
 
-/// The root mean square, over the hole's attitudes that are not near east-west and horizontal and
-/// all toolfaces, of
-/// the azimuth's sigma that a calibration from `settings` leaves; infinite where they leave a
-/// parameter open.
+/// The azimuth's sigma that a calibration from `settings` leaves, over the hole's attitudes that
+/// are not near east-west and horizontal and all toolfaces: the largest, or the root mean square
+/// for Criterion::kMean; infinite where they leave a parameter open.
 WELLGYRO_EXPORT double AzimuthSigmaOf(const std::vector<BenchSetting>& settings,
                                       const BenchPlanSetup& setup);
 
@@ -50,7 +61,8 @@ WELLGYRO_EXPORT std::vector<BenchSetting> PlainSettings(int temperatures);
 
 /// The fewest settings that reach `sigma_azimuth`, each read once, by exchange (Fedorov 1972) among
 /// inclinations every 15 deg, azimuths every 45 and toolfaces every 30; a local optimum, the same
-/// every time. Throws std::invalid_argument for a setup that makes no sense.
+/// every time, with the bound that no optimum passes (BenchPlan::fewest). Throws
+/// std::invalid_argument for a setup that makes no sense.
 WELLGYRO_EXPORT BenchPlan PlanBench(const BenchPlanSetup& setup);
 
 }  // namespace wellgyro

@@ -275,7 +275,7 @@ class Adjuster {
     const std::vector<Left> rows = RowsLeft();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       const ToolNoise before = noise_;
-      const std::array<double, 4> ratios = SquaresOverExpected(rows);
+      const std::array<double, 4> ratios = SquaresOverExpected(rows).ratios;
       const std::array<bool, 4> held = Held();
       const std::array<double*, 4> sigmas = Components();
       for (std::size_t k = 0; k < 4; ++k) {
@@ -289,7 +289,12 @@ class Adjuster {
 
   // Of each component with covariance V: y'P V P y over tr(P V), where P takes the parameters out
   // (Patterson and Thompson 1971). At the likeliest sigmas all are one; 0 where there is nothing.
-  std::array<double, 4> SquaresOverExpected(const std::vector<Left>& rows) const {
+  // The information on the wobble's variance is tr(V P V P) / 2, row by row.
+  struct NoiseFound {
+    std::array<double, 4> ratios{};
+    double wobble_information = 0;
+  };
+  NoiseFound SquaresOverExpected(const std::vector<Left>& rows) const {
     const Eigen::Index n = model_.size();
     const Prior prior = PriorOf(model_);
     Eigen::MatrixXd N = prior.A.transpose() * prior.A;
@@ -311,6 +316,7 @@ class Adjuster {
                                 Eigen::MatrixXd(root.solve(Eigen::MatrixXd::Identity(n, n))) *
                                 scale.asDiagonal();
     const Eigen::VectorXd step = cov * b;
+    NoiseFound found;
     std::array<double, 4> squares{}, expected{};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const Left& left = rows[i];
@@ -324,13 +330,14 @@ class Adjuster {
         expected[kind] += P(c, c);
       }
       squares[3] += (left.wobble.transpose() * r).squaredNorm();
-      expected[3] += (left.wobble.transpose() * P * left.wobble).trace();
+      const Eigen::Matrix3d of_wobble = left.wobble.transpose() * P * left.wobble;
+      expected[3] += of_wobble.trace();
+      found.wobble_information += of_wobble.squaredNorm() / 2;
     }
-    std::array<double, 4> ratios{};
     for (std::size_t k = 0; k < 4; ++k) {
-      if (expected[k] > 0) ratios[k] = squares[k] / expected[k];
+      if (expected[k] > 0) found.ratios[k] = squares[k] / expected[k];
     }
-    return ratios;
+    return found;
   }
 
   // Linear about x, with the priors as rows of line 0.
@@ -370,6 +377,8 @@ class Adjuster {
   // By normal equations of scaled columns: the terms that are there are told apart well.
   Result<ToolAdjustment> Finish() const {
     ToolAdjustment a{x_, {}, noise_, out_, Linearise(), {}};
+    const double information = SquaresOverExpected(RowsLeft()).wobble_information;
+    if (information > 0 && !setup_.sigma_wobble) a.sigma_wobble_square = 1 / std::sqrt(information);
     const Eigen::MatrixXd& A = a.linear.A;
     const Eigen::VectorXd scale = A.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
     const Eigen::MatrixXd scaled = A * scale.asDiagonal();

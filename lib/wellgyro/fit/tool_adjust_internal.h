@@ -16,6 +16,7 @@ struct ToolAdjustment {
   std::vector<char> out;  ///< by row: left out
   LinearProblem linear;   ///< about x, whitened; rows' lines are places in readings.rows plus one
   LinearSolution solution;
+  double sigma_wobble_square = 0;  ///< of the wobble's variance; 0 where it was given [rad^2]
 };
 
 /// Places of the bundles whose coefficients these readings tell apart from the others'.

@@ -48,49 +48,106 @@ std::vector<Eigen::Index> PlacesIn(const std::vector<TermBundle>& bundles,
   return {};
 }
 
-// By how much the sum of squares would rise without the bundle.
-double Gain(const Eigen::VectorXd& x, const Eigen::MatrixXd& cov,
-            const std::vector<Eigen::Index>& places) {
-  const Eigen::VectorXd part = x(places);
-  return part.dot(Eigen::MatrixXd(cov(places, places)).ldlt().solve(part));
-}
-
 // What noise alone gives a bundle of so many coefficients once in a hundred.
 double ByChance(std::size_t coefficients) {
   return ChiSquareQuantile(0.99, static_cast<int>(coefficients));
 }
 
-// Backwards from all that is seen: what chance gives as well goes, one bundle a turn.
-std::vector<int> Chosen(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
-                        const ToolAdjustment& full) {
-  Eigen::VectorXd x = full.x;
-  Eigen::MatrixXd cov = full.cov;
-  std::vector<int> kept = seen;
-  while (true) {
-    int worst = -1;
-    double least = 0;
-    for (const int place : kept) {
-      const TermBundle& bundle = bundles[static_cast<std::size_t>(place)];
-      const bool carries = std::any_of(kept.begin(), kept.end(), [&](int other) {
-        return bundles[static_cast<std::size_t>(other)].after == place;
-      });
-      if (bundle.needed || carries) continue;
-      const auto places = PlacesIn(bundles, seen, place);
-      const double rise = Gain(x, cov, places) - ByChance(places.size());
-      if (rise >= least) continue;
-      least = rise;
-      worst = place;
+// Which of the bundles that are seen are kept, by the adjustment of all of them.
+class Choice {
+ public:
+  Choice(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
+         const ToolAdjustment& full)
+      : bundles_(bundles), seen_(seen), full_(full) {}
+
+  // Backwards from all that is seen. Of terms that do the work of each other the first to go is
+  // chance: a loop and a bend of drift stand for what heating does, and are two for one. So each
+  // that went is put back, and those go that are no longer needed beside it.
+  std::vector<int> Best() const {
+    std::vector<int> kept = Eliminated(seen_, {});
+    double cost = Cost(kept);
+    for (bool better = true; better;) {
+      better = false;
+      for (const int place : seen_) {
+        if (Has(kept, place)) continue;
+        const std::vector<int> back = WithBases(place);
+        const std::vector<int> other = Eliminated(Joined(kept, back), back);
+        const double its = Cost(other);
+        if (!(its < cost - kLess)) continue;
+        kept = other;
+        cost = its;
+        better = true;
+      }
     }
-    if (worst < 0) return kept;
-    // What the others are where this is nothing.
-    const auto places = PlacesIn(bundles, seen, worst);
-    const Eigen::MatrixXd across = cov(Eigen::all, places);
-    const Eigen::LDLT<Eigen::MatrixXd> inner(Eigen::MatrixXd(cov(places, places)));
-    x -= across * inner.solve(Eigen::VectorXd(x(places)));
-    cov -= across * inner.solve(Eigen::MatrixXd(across.transpose()));
-    kept.erase(std::find(kept.begin(), kept.end(), worst));
+    return kept;
   }
-}
+
+ private:
+  static constexpr double kLess = 1e-6;  // of a sum of squares: not by rounding
+
+  static bool Has(const std::vector<int>& places, int place) {
+    return std::find(places.begin(), places.end(), place) != places.end();
+  }
+  const TermBundle& At(int place) const { return bundles_[static_cast<std::size_t>(place)]; }
+  std::vector<int> WithBases(int place) const {
+    std::vector<int> all;
+    for (int at = place; at >= 0; at = At(at).after) all.push_back(at);
+    return all;
+  }
+  std::vector<int> Joined(const std::vector<int>& kept, const std::vector<int>& more) const {
+    std::vector<int> all;
+    for (const int place : seen_) {
+      if (Has(kept, place) || Has(more, place)) all.push_back(place);
+    }
+    return all;
+  }
+
+  // By how much the sum of squares rises without what is not kept, and what chance gives the rest.
+  double Cost(const std::vector<int>& kept) const {
+    double cost = 0;
+    std::vector<Eigen::Index> gone;
+    for (const int place : seen_) {
+      const auto places = PlacesIn(bundles_, seen_, place);
+      if (Has(kept, place)) {
+        cost += At(place).needed ? 0 : ByChance(places.size());
+      } else {
+        gone.insert(gone.end(), places.begin(), places.end());
+      }
+    }
+    if (gone.empty()) return cost;
+    const Eigen::MatrixXd cov = full_.cov(gone, gone);
+    const Eigen::VectorXd scale = cov.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::VectorXd part = scale.cwiseProduct(Eigen::VectorXd(full_.x(gone)));
+    return cost +
+           part.dot(
+               Eigen::MatrixXd(scale.asDiagonal() * cov * scale.asDiagonal()).ldlt().solve(part));
+  }
+
+  // What costs more than it explains goes, one bundle a turn; never of `held`.
+  std::vector<int> Eliminated(std::vector<int> kept, const std::vector<int>& held) const {
+    double cost = Cost(kept);
+    while (true) {
+      std::vector<int> best;
+      for (const int place : kept) {
+        const bool carries = std::any_of(kept.begin(), kept.end(),
+                                         [&](int other) { return At(other).after == place; });
+        if (At(place).needed || carries || Has(held, place)) continue;
+        std::vector<int> fewer = kept;
+        fewer.erase(std::find(fewer.begin(), fewer.end(), place));
+        const double its = Cost(fewer);
+        if (!(its < cost)) continue;
+        cost = its;
+        best = std::move(fewer);
+      }
+      if (best.empty()) return kept;
+      kept = std::move(best);
+    }
+  }
+
+  const std::vector<TermBundle>& bundles_;
+  const std::vector<int>& seen_;
+  const ToolAdjustment& full_;
+};
 
 void TellLeftOut(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
                  const std::vector<int>& chosen, const ToolAdjustment& full, ToolFit& fit) {
@@ -129,7 +186,10 @@ void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit
     fit.nuisances.push_back(std::move(nuisance));
   }
   if (a.noise.wobble > 0) {
-    fit.nuisances.push_back({"wobble", a.noise.wobble, 0, 0, "rad"});
+    // Of a variance v known to s, its root's sigma; where v is nothing beside s, what it may be.
+    const double v = a.noise.wobble * a.noise.wobble, s = a.sigma_wobble_square;
+    const double sigma = v > 2 * s ? s / (2 * a.noise.wobble) : std::sqrt(v + s);
+    fit.nuisances.push_back({"wobble", a.noise.wobble, s > 0 ? sigma : 0, 0, "rad"});
   }
 }
 
@@ -274,7 +334,7 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
   const auto refused = [&](const Fault& fault) { return BenchFault(tables.front(), fault.text); };
   const auto full = AdjustTool(*readings, setup, TermsOf(bundles, seen));
   if (!full) return refused(full.fault());
-  const std::vector<int> chosen = Chosen(bundles, seen, *full);
+  const std::vector<int> chosen = Choice(bundles, seen, *full).Best();
   const std::vector<ToolTerm> terms = TermsOf(bundles, chosen);
   const auto last = AdjustTool(*readings, setup, terms);
   if (!last) return refused(last.fault());

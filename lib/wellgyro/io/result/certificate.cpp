@@ -82,12 +82,27 @@ void Lines(std::string& html, std::string_view title, const std::vector<Certific
   for (const Certificate::Line& line : lines) {
     const std::string value =
         with_value ? fmt::format("<td>{}</td>", Rounded(line.value, line.uncertainty)) : "";
-    html +=
-        fmt::format("<tr><td>{}</td>{}<td>{:.2g}</td><td>{:.2g}</td><td>{}</td><td>{}</td></tr>\n",
-                    Escaped(line.name), value, line.uncertainty, 2 * line.uncertainty,
-                    Escaped(line.unit), line.evaluation);
+    const auto known = [&](double u) {
+      return u > 0 ? fmt::format("{:.2g}", u) : std::string("not known");
+    };
+    html += fmt::format("<tr><td>{}</td>{}<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                        Escaped(line.name), value, known(line.uncertainty),
+                        known(2 * line.uncertainty), Escaped(line.unit), line.evaluation);
   }
   html += "</table>\n";
+}
+
+// Units of the joint fit's parameters; of accelerometers as they were read.
+std::string UnitOf(std::string_view name) {
+  const auto begins = [&](std::string_view with) { return name.substr(0, with.size()) == with; };
+  if (begins("gyro_b") || begins("gyro_drift") || begins("gyro_hysteresis")) return "deg/h";
+  if (begins("gyro_heating")) return "deg/h per degC/s";
+  if (begins("gyro_N")) return "deg/h/g^2";
+  if (begins("gyro_M") || begins("gyro_Q") || begins("gyro_G")) return "deg/h/g";
+  if (begins("gyro_S")) return "1";
+  if (begins("accel_b") || begins("accel_drift") || begins("accel_hysteresis")) return "reading";
+  if (begins("accel_S")) return "reading/gravity";
+  return "";
 }
 
 // Residuals over their sigmas in the order of the readings, with the limit of chance.
@@ -141,6 +156,16 @@ void Pictures(std::string& html, const Certificate& certificate) {
   }
 }
 
+void Files(std::string& html, std::string_view title, const std::vector<InputFile>& files) {
+  if (files.empty()) return;
+  html += fmt::format("<h2>{}</h2>\n<table>\n<tr><th>file</th><th>SHA-256</th></tr>\n", title);
+  for (const InputFile& file : files) {
+    html += fmt::format("<tr><td>{}</td><td class=\"t\">{}</td></tr>\n", Escaped(file.name),
+                        Escaped(file.sha256));
+  }
+  html += "</table>\n";
+}
+
 }  // namespace
 
 Certificate CertificateOf(const FitReport& report) {
@@ -153,7 +178,7 @@ Certificate CertificateOf(const FitReport& report) {
         std::string name = quantity.name;
         if (quantity.shape == FitQuantity::Shape::kVector) name += fmt::format("[{}]", i);
         if (quantity.shape == FitQuantity::Shape::kMatrix) name += fmt::format("[{},{}]", i, j);
-        c.result.push_back({name, "", quantity.value(i, j), quantity.sigma(i, j), "A"});
+        c.result.push_back({name, UnitOf(name), quantity.value(i, j), quantity.sigma(i, j), "A"});
       }
     }
   }
@@ -190,7 +215,9 @@ std::string CertificateHtml(const Certificate& certificate) {
   html += "<h1>Calibration certificate</h1>\n";
   const bool range = certificate.temperature_high > certificate.temperature_low;
   Pairs(html,
-        {{"tool", certificate.asset_serial},
+        {{"certificate", certificate.number},
+         {"issued by", certificate.laboratory},
+         {"tool", certificate.asset_serial},
          {"sensors", certificate.sensor_serials},
          {"method", certificate.method},
          {"calibrated", certificate.calibrated},
@@ -200,21 +227,22 @@ std::string CertificateHtml(const Certificate& certificate) {
                                 : std::string()},
          {"program", certificate.program}});
   List(html, "References", certificate.references);
-  List(html, "Traceability", certificate.traceability);
+  List(html, "Traceability",
+       certificate.traceability.empty()
+           ? std::vector<std::string>{"none was stated: no reference instrument is named"}
+           : certificate.traceability);
+  html +=
+      "<p>u is the standard uncertainty; U = 2 u covers some 95 % where errors are normal (JCGM "
+      "100). "
+      "A: evaluated from the scatter of the readings; B: from what was stated of the bench.</p>\n";
   Lines(html, "Errors left in calibrated samples", certificate.samples, false);
   Lines(html, "Result", certificate.result, true);
   Lines(html, "Bench", certificate.bench, true);
   List(html, "Terms left out", certificate.left_out);
   List(html, "Remarks", certificate.remarks);
   Pictures(html, certificate);
-  if (!certificate.inputs.empty()) {
-    html += "<h2>Readings</h2>\n<table>\n<tr><th>file</th><th>SHA-256</th></tr>\n";
-    for (const InputFile& input : certificate.inputs) {
-      html += fmt::format("<tr><td>{}</td><td class=\"t\">{}</td></tr>\n", Escaped(input.name),
-                          Escaped(input.sha256));
-    }
-    html += "</table>\n";
-  }
+  Files(html, "Readings", certificate.inputs);
+  Files(html, "Files that this certifies", certificate.outputs);
   html += "</body></html>\n";
   return html;
 }

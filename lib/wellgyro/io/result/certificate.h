@@ -13,10 +13,12 @@ namespace wellgyro {
 /// What a calibration certificate says, in the units it is shown in.
 struct Certificate {
   std::string asset_serial, sensor_serials, method, program;
+  std::string number, laboratory;         ///< of the certificate, and who issues it
   std::string calibrated, expires;        ///< dates, as 2026-01-31; empty where not said
   std::vector<std::string> references;    ///< what stood around the bench
   std::vector<std::string> traceability;  ///< reference instruments and their certificates
   std::vector<InputFile> inputs;
+  std::vector<InputFile> outputs;  ///< the files that it certifies
 
   /// A quantity with its standard uncertainty.
   struct Line {
