@@ -4,18 +4,25 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 
   python3 tests/bench/verdict.py PROGRAM [--clean 100] [--faulty 5] [--sizes 0.5,1,3]
                                  [--wells slant,s,horizontal] [--causes gyro_step_x,...] [--jobs 2]
+                                 [--power 40] [--pairs 4]
 
 Simulates tools whose errors are drawn from the job's own priors, with and without one [[fault]],
 surveys the log and compares the deepest station with the truth. `found`: no survey is made, or its
 verdict is not "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how
 many the right cause is the first of diagnosis.csv; `in set`: or among those that together have
-95 %, or alike the first. Seeds are fixed: the same figures each time."""
+95 %, or alike the first. Of clean runs every check of chance is tabled by its share of chance, p,
+which is uniform where the check's sigma is true. `--power`: so many runs of each cause in POWER with
+the smallest size that reliability.csv of a clean run has, four in five of which are to be noticed.
+`--pairs`: so many runs a cause and two of each draw, with the fault at once its size, whose cause is
+taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each time.
+"""
 import argparse
 import concurrent.futures
 import csv
 import itertools
 import math
 import os
+import random
 import subprocess
 import sys
 import tempfile
@@ -37,6 +44,8 @@ time_skew_sigma_s = 1e-3
 depth_sigma_m = 0.3
 """
 NOISE_KEYS = 4  # of them, the first
+# What a job has that states nothing: drawn for every tool too.
+DEPTH_SCALE_SIGMA = 5.6e-4
 
 # Inclination and azimuth laws, latitude, end [m], turns a minute.
 WELLS = {
@@ -130,8 +139,9 @@ def Named(fault, causes):
     return right[0], inside
 
 
-def Steps(end_m, rpm):
+def Steps(well):
     """In and out with stops of two minutes every 300 m on the way in; text, and its times."""
+    *_, end_m, rpm = WELLS[well]
     speed, time, stops = 1.0, 0.0, []
     text = "start_md_m = 0.0\n"
     depth = 0.0
@@ -151,25 +161,30 @@ def Steps(end_m, rpm):
                   "stop": middle[0] + 10, "stop_end": middle[1] - 10}
 
 
-def Files(well, seed, fault, size):
-    inclination, azimuth, latitude, end, rpm = WELLS[well]
-    steps, times = Steps(end, rpm)
+def Fault(well, fault, size):
+    """The simulation's [[fault]] of a cause at `size` times its size."""
+    cause, key, one, when = CAUSES[fault]
+    text = f"[[fault]]\ncause = {cause}\n{when.format(**Steps(well)[1])}"
+    # What is a factor grows from 1.
+    value = 1 + (one - 1) * size if fault in ("gyro_noise", "accel_noise") else (one or 0) * size
+    return text + (f"{key} = {float(value)!r}\n" if key else "")
+
+
+def Files(well, seed, fault):
+    """Simulation and job; `fault`: its text, empty of a clean run."""
+    inclination, azimuth, latitude, end, _ = WELLS[well]
+    steps, _ = Steps(well)
+    scale = random.Random(seed).gauss(0, DEPTH_SCALE_SIGMA)
     simulation = (f'format = "wellgyro.simulation/1"\nseed = {seed}\n[well]\nname = "laws"\n'
                   f"end_md_m = {end + 5}\n[well.inclination]\n{inclination}[well.azimuth]\n"
                   f"{azimuth}[earth]\nlatitude_deg = {latitude}\n[run]\n{steps}[tool]\n{TOOL}"
-                  "depth_resolution_m = 0.01\n[streams]\nimu_hz = 10.0\ndepth_hz = 2.0\n")
-    if fault:
-        cause, key, one, when = CAUSES[fault]
-        simulation += f"[[fault]]\ncause = {cause}\n{when.format(**times)}"
-        if key:
-            # What is a factor grows from 1.
-            value = 1 + (one - 1) * size if fault in ("gyro_noise", "accel_noise") else one * size
-            simulation += f"{key} = {float(value)!r}\n"
+                  f"depth_scale = {scale!r}\ndepth_resolution_m = 0.01\n[streams]\nimu_hz = 10.0\n"
+                  f"depth_hz = 2.0\n{fault}")
     lines = TOOL.splitlines()
     job = (f'format = "wellgyro.job/1"\n[well]\nname = "{well}"\nlatitude_deg = {latitude}\n'
            "[noise]\n" + "\n".join(lines[:NOISE_KEYS]) + "\n[errors]\n"
            + "\n".join(lines[NOISE_KEYS:]) + "\naccel_scale_sigma = 0\n"
-           "accel_misalignment_sigma_rad = 0\ndepth_scale_sigma = 0\n[stations]\nevery_m = 30\n")
+           "accel_misalignment_sigma_rad = 0\n[stations]\nevery_m = 30\n")
     return simulation, job
 
 
@@ -190,22 +205,40 @@ def TruthAt(path, md):
     return [a + part * (b - a) for a, b in zip(before[1:], here[1:])]
 
 
-def Compared(folder):
-    """Normalised square of the end's horizontal error (None: withheld), and its size."""
-    with open(os.path.join(folder, "out", "survey.csv"), newline="", encoding="utf-8") as file:
-        last = list(csv.DictReader(file))[-1]
-    truth = TruthAt(os.path.join(folder, "run.lcm.truth.csv"), float(last["MD[m]"]))
-    n, e = float(last["N[m]"]) - truth[0], float(last["E[m]"]) - truth[1]
-    size = math.hypot(n, e, float(last["TVD[m]"]) - truth[2])
-    if not last["VAR_NN[m2]"]:
-        return None, size
-    a, b, d = (float(last[key]) for key in ("VAR_NN[m2]", "COV_NE[m2]", "VAR_EE[m2]"))
-    return (d * n * n - 2 * b * n * e + a * e * e) / (a * d - b * b), size
+def Square(error, cov):
+    """Normalised, of north and east; None where the covariance is withheld."""
+    if cov is None:
+        return None
+    (n, e, *_), (a, b, d) = error, cov
+    return (d * n * n - 2 * b * n * e + a * e * e) / (a * d - b * b)
 
 
-def One(program, well, seed, fault, size):
+def Compare(folder, result):
+    """The end against the hole at its depth, `error`, and against where the tool was there,
+    `error_of_tool` [m]; its covariance in the horizontal plane."""
+    last = Rows(os.path.join(folder, "out", "survey.csv"))[-1]
+    path = os.path.join(folder, "run.lcm.truth.csv")
+    here = [float(last[key]) for key in ("N[m]", "E[m]", "TVD[m]")]
+    deepest = max(Rows(path), key=lambda row: float(row["MD[m]"]))
+    tool = [float(deepest[key]) for key in ("N[m]", "E[m]", "TVD[m]")]
+    truth = TruthAt(path, float(last["MD[m]"]))
+    result["error"] = [a - b for a, b in zip(here, truth)]
+    result["error_of_tool"] = [a - b for a, b in zip(here, tool)]
+    if last["VAR_NN[m2]"]:
+        result["cov"] = [float(last[k]) for k in ("VAR_NN[m2]", "COV_NE[m2]", "VAR_EE[m2]")]
+
+
+def Rows(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def One(program, well, seed, fault, size, text=None):
+    """One run; `text`: its fault, in place of that of its size."""
+    if text is None:
+        text = Fault(well, fault, size) if fault else ""
     with tempfile.TemporaryDirectory() as folder:
-        simulation, job = Files(well, seed, fault, size)
+        simulation, job = Files(well, seed, text)
         for name, text in (("simulation.toml", simulation), ("job.toml", job)):
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
@@ -215,15 +248,18 @@ def One(program, well, seed, fault, size):
         done = subprocess.run([program, "survey", "--job", os.path.join(folder, "job.toml"),
                                "--from", log, "--out", out], capture_output=True, text=True,
                               check=False)
-        result = {"well": well, "fault": fault, "size": size, "code": done.returncode,
-                  "square": None, "error": None, "causes": [], "found": done.returncode == 2, "named": (False, False)}
+        result = {"well": well, "seed": seed, "fault": fault, "size": size,
+                  "code": done.returncode, "error": None, "error_of_tool": None, "cov": None,
+                  "causes": [], "found": done.returncode == 2, "named": (False, False),
+                  "checks": [], "diagnosis": [], "reliability": []}
         if done.returncode in (0, 3, 4):
-            result["square"], result["error"] = Compared(folder)
+            Compare(folder, result)
             with open(os.path.join(out, "run.toml"), "rb") as file:
                 verdict = tomllib.load(file)["verdict"]
             result["causes"], result["found"] = verdict["causes"], verdict["verdict"] != "pass"
-            with open(os.path.join(out, "diagnosis.csv"), newline="", encoding="utf-8") as file:
-                result["named"] = Named(fault or "", list(csv.DictReader(file)))
+            for name in ("checks", "diagnosis", "reliability"):
+                result[name] = Rows(os.path.join(out, name + ".csv"))
+            result["named"] = Named(fault or "", result["diagnosis"])
         return result
 
 
@@ -231,7 +267,57 @@ BEYOND = 5.991  # chi-square of two, 95 %
 
 
 def Misleads(result):
-    return result["code"] in (0, 3) and result["square"] is not None and result["square"] > BEYOND
+    square = Square(result["error"], result["cov"])
+    return result["code"] in (0, 3) and square is not None and square > BEYOND
+
+
+def ChiSquareTail(x, freedom):
+    """By Wilson and Hilferty's cube root."""
+    spread = 2 / (9 * freedom)
+    return NormalTail(((x / freedom) ** (1 / 3) - 1 + spread) / math.sqrt(spread))
+
+
+def NormalTail(z):
+    return 0.5 * math.erfc(z / math.sqrt(2))
+
+
+def ChanceOf(check):
+    """Share of chance beyond a check's value; None of one that is not by chance alone."""
+    if check["VERDICT"] == "not_done" or not check["VALUE"] or not check["SIGMA"]:
+        return None
+    if "of clean runs, shared" not in check["LIMIT_SOURCE"] or " here" in check["LIMIT_SOURCE"]:
+        return None
+    value, sigma = float(check["VALUE"]), float(check["SIGMA"])
+    if not sigma > 0:
+        return None
+    if check["CODE"].startswith("fit"):
+        freedom = 2 / sigma**2
+        return ChiSquareTail(value * freedom, freedom)
+    return 2 * NormalTail(abs(value / sigma))
+
+
+def Chances(clean):
+    """Each check's p of clean runs: how many, below .05 and .01, largest distance of their
+    distribution from the uniform one times its root of the number (1.36 at 5 %); warnings, fails;
+    of squares the mean of value, else of (value / sigma)^2."""
+    checks = {}
+    for check in itertools.chain.from_iterable(r["checks"] for r in clean):
+        checks.setdefault(check["CODE"], []).append(check)
+    print("\ncheck                 values   mean  <.05  <.01  Kolmogorov  warn  fail")
+    for code, of in sorted(checks.items()):
+        warn, fail = (sum(c["VERDICT"] == v for c in of) for v in ("warn", "fail"))
+        ps = sorted(p for p in map(ChanceOf, of) if p is not None)
+        if not ps:
+            if warn or fail:
+                print(f"{code:22s} {'':5s} {'':6s} {'':5s} {'':5s} {'':11s} {warn:5d} {fail:5d}")
+            continue
+        far = max(max((i + 1) / len(ps) - p, p - i / len(ps)) for i, p in enumerate(ps))
+        sizes = [float(c["VALUE"]) if code.startswith("fit") else
+                 (float(c["VALUE"]) / float(c["SIGMA"])) ** 2
+                 for c in of if ChanceOf(c) is not None]
+        below = [sum(p < share for p in ps) / len(ps) for share in (.05, .01)]
+        print(f"{code:22s} {len(ps):5d} {sum(sizes) / len(ps):6.2f} {below[0]:5.3f} "
+              f"{below[1]:5.3f} {far * math.sqrt(len(ps)):11.2f} {warn:5d} {fail:5d}")
 
 
 def Rate(part, whole):
@@ -242,12 +328,15 @@ def Print(results, said):
     clean = [r for r in results if not r["fault"]]
     for well in sorted({r["well"] for r in clean}):
         of = [r for r in clean if r["well"] == well]
-        known = [r["square"] for r in of if r["square"] is not None]
+        known = [Square(r["error"], r["cov"]) for r in of if r["cov"]]
+        tool = [Square(r["error_of_tool"], r["cov"]) for r in of if r["cov"]]
         print(f"clean {well}: fail {Rate(sum(r['code'] == 4 for r in of), len(of))}, warn "
               f"{sum(r['found'] and r['code'] != 4 for r in of)}, other codes "
               f"{sum(r['code'] not in (0, 4) for r in of)}, beyond 95 % without exit 4 "
               f"{Rate(sum(map(Misleads, of)), len(of))}, normalised square "
-              f"{sum(known) / max(2 * len(known), 1):.2f}")
+              f"{sum(known) / max(2 * len(known), 1):.2f}, of where the tool was "
+              f"{sum(tool) / max(2 * len(tool), 1):.2f}")
+    Chances(clean)
     faulty = [r for r in results if r["fault"]]
     for size in sorted({r["size"] for r in faulty}):
         print(f"\nsize {size:g} x      found   fail  named in set  misleading  crashed  worst error m"
@@ -263,7 +352,7 @@ def Print(results, said):
                   f"{sum(r['code'] in (2, 4) for r in of):6d} "
                   f"{sum(r['named'][0] for r in found):5d} {sum(r['named'][1] for r in found):6d}  "
                   f"{sum(map(Misleads, of)):8d} {sum(r['code'] < 0 for r in of):9d} "
-                  f"{max((r['error'] or 0) for r in of):12.1f}  {first}")
+                  f"{max(math.hypot(*(r['error'] or [0])) for r in of):12.1f}  {first}")
         of = [r for r in faulty if r["size"] == size]
         print(f"all: found {Rate(sum(r['found'] for r in of), len(of))}, fail "
               f"{sum(r['code'] in (2, 4) for r in of)}, hazardously misleading "
@@ -271,7 +360,92 @@ def Print(results, said):
     if said:
         for r in results:
             if r["causes"]:
-                print(r["well"], r["fault"], r["size"], r["code"], r["causes"])
+                print(r["well"], r["seed"], r["fault"], r["size"], r["code"], r["causes"])
+
+
+# Faults as reliability.csv calls them; of what acts all the while.
+POWER = {"gyro_step_x": "gyro_bias_x", "mass_unbalance": "mass_unbalance",
+         "quadrature": "quadrature", "gyro_scale": "gyro_scale_x",
+         "gyro_misalignment": "gyro_misalignment_y", "accel_bias_x": "accel_bias_x",
+         "accel_bias_z": "accel_bias_z", "accel_scale": "accel_scale_z",
+         "toolface_offset": "toolface_offset", "time_skew": "time_skew", "latitude": "latitude",
+         "depth_scale": "depth_scale"}
+
+
+def Power(program, pool, wells, causes, count):
+    """Runs with the smallest fault that is said to be noticed four times in five."""
+    print("\nsmallest that is noticed four times in five: runs, of which by the diagnosis; by any "
+          "check")
+    every = []
+    for well in wells:
+        reliability = {row["CODE"]: row for row in One(program, well, 1, None, 0)["reliability"]}
+        for fault in causes:
+            row = reliability.get(POWER[fault])
+            if not row or not row["SMALLEST"]:
+                print(f"{well:11s} {fault:18s} none would be")
+                continue
+            cause, key, *_ = CAUSES[fault]
+            text = f"[[fault]]\ncause = {cause}\n{key} = {float(row['SMALLEST'])!r}\n"
+            seeds = [20_000 + seed for seed in range(count)]
+            runs = list(pool.map(lambda seed: One(program, well, seed, fault, 1, text), seeds))
+            noticed = [any(c["CODE"] == "diagnosis" and c["VERDICT"] in ("warn", "fail")
+                           for c in r["checks"]) for r in runs]
+            every += noticed
+            print(f"{well:11s} {fault:18s} {float(row['SMALLEST']):9.3g} {row['UNIT']:8s} "
+                  f"{Rate(sum(noticed), len(runs))}; {sum(r['found'] for r in runs)}", flush=True)
+    print(f"all: {Rate(sum(every), len(every))}")
+
+
+# Causes with a column of their own, and what diagnosis.csv calls them.
+TAKEN_OUT = {**{fault: name for fault, name in POWER.items() if fault != "gyro_step_x"},
+             "gyro_step_x": "gyro_step_x", "gyro_step_y": "gyro_step_y",
+             "toolface_slip": "toolface_slip"}
+
+
+def TakeOut(row, faulty, clean):
+    """Error of the tool's place once the cause of this row is taken out, and its normalised square:
+    by the covariance of the run without fault and that of the cause's size."""
+    shift = [float(row[key]) for key in ("DN[m]", "DE[m]", "DV[m]")]
+    error = [a - b for a, b in zip(faulty["error_of_tool"], shift)]
+    spread = (float(row["SIGMA"]) / float(row["SIZE"])) ** 2
+    cov = [a + spread * shift[i] * shift[j]
+           for a, (i, j) in zip(clean["cov"], ((0, 0), (0, 1), (1, 1)))]
+    return error, Square(error, cov)
+
+
+def Rms(errors):
+    return math.sqrt(sum(e[0]**2 + e[1]**2 for e in errors) / max(len(errors), 1))
+
+
+def Pairs(program, pool, wells, causes, count):
+    print("\ncause taken out, rms of the end's horizontal error [m]: clean; with the fault; taken "
+          "out; over clean; normalised square, clean, taken out")
+    every, squares, cleans, before = [], [], [], []
+    for fault in causes:
+        errors, outs, ends, wrong, held = [], [], [], [], []
+        runs = [(well, 30_000 + seed) for well in wells for seed in range(count)]
+        clean = pool.map(lambda run: One(program, *run, None, 0), runs)
+        faulty = pool.map(lambda run: One(program, *run, fault, 1), runs)
+        for without, with_it in zip(clean, faulty):
+            row = [r for r in with_it["diagnosis"] if r["CODE"] == TAKEN_OUT[fault]]
+            if not without["cov"] or not row or not row[0]["DN[m]"]:
+                continue
+            error, square = TakeOut(row[0], with_it, without)
+            outs.append(error)
+            held.append(square)
+            ends.append(without["error_of_tool"])
+            wrong.append(with_it["error_of_tool"])
+            errors.append(Square(without["error_of_tool"], without["cov"]))
+        if not outs:
+            continue
+        print(f"{fault:18s} {len(outs):3d} {Rms(ends):7.2f} {Rms(wrong):7.2f} {Rms(outs):7.2f} "
+              f"{Rms(outs) / Rms(ends):7.2f} {sum(errors) / 2 / len(errors):7.2f} "
+              f"{sum(held) / 2 / len(held):7.2f}", flush=True)
+        every, squares = every + outs, squares + held
+        cleans, before = cleans + ends, before + wrong
+    print(f"{'all':18s} {len(every):3d} {Rms(cleans):7.2f} {Rms(before):7.2f} {Rms(every):7.2f} "
+          f"{Rms(every) / max(Rms(cleans), 1e-9):7.2f} {'':7s} "
+          f"{sum(squares) / 2 / max(len(squares), 1):7.2f}")
 
 
 def main():
@@ -284,6 +458,8 @@ def main():
     parser.add_argument("--wells", default=",".join(WELLS))
     parser.add_argument("--causes", default=",".join(CAUSES))
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--power", type=int, default=0, help="runs a cause and well at its smallest")
+    parser.add_argument("--pairs", type=int, default=0, help="runs a cause and well, and clean")
     parser.add_argument("--say", action="store_true", help="the causes of every run")
     given = parser.parse_args()
     runs = [(well, seed, None, 0.0) for well in given.wells.split(",")
@@ -293,10 +469,16 @@ def main():
         first_size = size == float(given.sizes.split(",")[0])
         if fault and (CAUSES[fault][1] or first_size):
             runs += [(well, 10_000 + seed, fault, size) for seed in range(given.faulty)]
+    program, wells = os.path.abspath(given.program), given.wells.split(",")
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        program = os.path.abspath(given.program)
         results = list(pool.map(lambda run: One(program, *run), runs))
-    Print(results, given.say)
+        Print(results, given.say)
+        causes = given.causes.split(",")
+        if given.power:
+            Power(program, pool, wells, [cause for cause in POWER if cause in causes], given.power)
+        if given.pairs:
+            Pairs(program, pool, wells, [cause for cause in TAKEN_OUT if cause in causes],
+                  given.pairs)
     return 0
 
 
