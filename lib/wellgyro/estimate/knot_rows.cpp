@@ -58,11 +58,6 @@ Matrix2d MeanSquareOfX(const Increment& inc) {
   return 0.5 * (Matrix2d() << 1 + c, s, s, 1 - c).finished();
 }
 
-/// Of a knot's mean force, by the accelerometers' noise.
-double VarianceOfForce(const EstimateSetup& setup, const RunKnot& knot) {
-  return Square(std::max(setup.errors.accel_noise, kLeastForce)) / knot.increment.seconds;
-}
-
 TurnByError TurnBy(const Increment& inc) {
   TurnByError by_error = TurnByError::Zero();
   by_error.leftCols<kTurnSources>() = inc.turn_by_error;
@@ -86,10 +81,6 @@ TurnByError WithoutNoise(const Increment& inc, TurnByError by_error, const Vecto
 }
 
 }  // namespace
-
-double ForceWidening(const EstimateSetup& setup, const RunKnot& knot, const KnotPlace& place) {
-  return 1 + Square(place.sigma_acceleration) / VarianceOfForce(setup, knot);
-}
 
 /// What several factors of a knot share.
 struct KnotRows::Terms {
@@ -255,9 +246,8 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
     gravity += t.place.depth * t.border[layout_.gravity_gradient];
   }
   // M stands where half of the seen turn leads; half of the unseen is missing.
-  const double seen = VarianceOfForce(setup_, t.knot);
-  const double missed =
-      Square(0.5 * t.knot.unseen * t.place.site.gravity) + Square(t.place.sigma_acceleration);
+  const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
+  const double seen = Square(noise), missed = Square(0.5 * t.knot.unseen * t.place.site.gravity);
   const double whiten = 1 / std::sqrt(seen + missed);
   const Matrix3d px = Skew(p);
 

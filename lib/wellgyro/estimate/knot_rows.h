@@ -24,8 +24,6 @@ struct KnotPlace {
   /// the node: a path read on the map under another azimuth bends the same way seen from the tool,
   /// and tells nothing of it.
   Eigen::Vector3d acceleration_L = Eigen::Vector3d::Zero();
-  /// Of it across the axis, where the hole's curvature changes, 1-sigma [m/s^2].
-  double sigma_acceleration = 0;
   /// What the Earth's rate about the axis changes by, from this knot to the next [rad/s]: so does
   /// the inertial roll rate of a tool that does not turn in its hole.
   double axial_change = 0;
@@ -46,10 +44,6 @@ struct RunScales {
   /// Of each knot, held while the run is brought to its end; empty: by the residuals.
   std::vector<std::array<double, 2>> roll_weight;
 };
-
-/// By what factor the variance of the mean force of a knot is larger for what is not known of its
-/// path.
-double ForceWidening(const EstimateSetup& setup, const RunKnot& knot, const KnotPlace& place);
 
 /// Whitened residuals of everything that a knot says of the nodes at its ends and of the border,
 /// about their present values, added to `block`. R_IT(end) = R_IT(begin) Rz Exp(turn) Rz,

@@ -48,14 +48,6 @@ std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const 
   return curvature;
 }
 
-/// A step of the curvature one knot of a second away from the middle of its window: the window
-/// holds a sixth of it, and those of the neighbours differ by half of it.
-double SigmaOfCurvature(const std::vector<Vector3d>& curvature, std::size_t k) {
-  const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, curvature.size() - 1);
-  if (a == b) return 0;
-  return (curvature[b] - curvature[a]).norm() * 2 / (3 * static_cast<double>(b - a));
-}
-
 }  // namespace
 
 Site SiteBy(const Site& first, const Vector3d& p) {
@@ -97,7 +89,6 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     if (k > 0) places[k - 1].axial_change = earth.dot(tangent) - axial;
     axial = earth.dot(tangent);
     place.acceleration_L = speed * speed * curvature[k] + (2 * earth + transport).cross(v);
-    place.sigma_acceleration = speed * speed * SigmaOfCurvature(curvature, k);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
     place.depth = p.z();

@@ -322,9 +322,6 @@ double RunSolver::Evidence() const {
     const RollChange change = Change(k);
     evidence += 2 * std::log(change.sigma);
     if (swings) evidence += 4 * std::log(change.swing_sigma);
-    if (knots_[k].increment.level) {
-      evidence += 3 * std::log(ForceWidening(setup_, knots_[k], places_[k]));
-    }
   }
   return evidence;
 }
