@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(
 // A tool that hardly rolls shows a skew of 30 ms by what gravity says in a build, from stop to
 // motion: told by its roll alone, it was called a spike of the gyros at a start.
 TEST(RunDiagnosis, ASkewIsToldByABend) {
-  Flight flight(3);
+  DiagnosedFlight flight(3);
   for (auto& step : flight.simulation.run.steps) {
     if (auto* move = std::get_if<RunMove>(&step)) move->roll.rate *= 0.2;
   }
