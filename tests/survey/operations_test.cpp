@@ -212,9 +212,9 @@ TEST_F(Operations, AcceptedStationsAreDefinitiveAndRejectedOnesAreNotChosen) {
 // was broken off then was written without it.
 TEST_F(Operations, WhatWasSaidLastHoldsWhereASurveyIsBrokenOff) {
   CollectingSink sink;
-  Surveyor surveyor(SlantJob(), sink);
+  Surveyor surveyor(OperatedJob(), sink);
   Run(surveyor);
-  Event reject = At(*surveyor.tally().newest, Event::Kind::kReject);
+  Event reject = EventAt(*surveyor.tally().newest, Event::Kind::kReject);
   reject.run = 2;
   reject.has_value = true;
   reject.value_m = 500;
