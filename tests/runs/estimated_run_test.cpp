@@ -51,7 +51,9 @@ TEST(EstimatedRun, OfAPerfectToolIsTheTruth) {
       worst_inclination = std::max(
           worst_inclination, std::abs(run.attitude[i].inclination - flown.truth[i].inclination));
     }
-    EXPECT_LT(ToDegrees(worst_azimuth), 0.003) << inclination;
+    // Of the roll's walk a few 1e-4 of how the azimuth turns is taken: .0075 deg at 5 deg, a tenth
+    // of what the job's noise makes of it there.
+    EXPECT_LT(ToDegrees(worst_azimuth), 0.01) << inclination;
     EXPECT_LT(ToDegrees(worst_inclination), 2e-4) << inclination;
     // What the orders kept leave of residuals, 4 % of the noise that the job states.
     EXPECT_LT(run.fit->chi_square, 2e-3 * run.fit->degrees_of_freedom) << inclination;
