@@ -106,8 +106,7 @@ void AddOrderOptions(CLI::App& command, SendOptions& options) {
   command.add_option("--what", options.order.object, "Shoe, tag, mark; of run-end: misrun");
   command.add_option("--who", options.order.who, "Your name");
   command.add_option("--text", options.order.text, "A remark");
-  command
-      .add_option("--at-utime-us", options.order.utime_us, "When it holds; by default now")
+  command.add_option("--at-utime-us", options.order.utime_us, "When it holds; by default now")
       ->check(CLI::PositiveNumber);
   command.add_option("--id", options.order.id, "Number; the same number again is the same order");
 }
