@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Bytes BytesOf(std::string_view text) {
+Bytes BytesOfText(std::string_view text) {
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
   return {bytes, bytes + text.size()};
 }
@@ -44,7 +44,7 @@ void Append(Bytes& log, const Kept& event) {
   big_endian(static_cast<std::uint64_t>(event.received_us), 8);
   big_endian(event.channel.size(), 4);
   big_endian(event.data.size(), 4);
-  const Bytes channel = BytesOf(event.channel);
+  const Bytes channel = BytesOfText(event.channel);
   log.insert(log.end(), channel.begin(), channel.end());
   log.insert(log.end(), event.data.begin(), event.data.end());
 }
@@ -326,8 +326,8 @@ TEST(LogReader, ADamagedPlaceIsNamedWithItsLength) {
 
 TEST(LogReader, ForeignFilesAreNamedForWhatTheyAre) {
   const auto said = [](std::string_view contents) {
-    const auto file = FromFile(BytesOf(contents));
-    const auto pipe = FromPipe(BytesOf(contents), 5);
+    const auto file = FromFile(BytesOfText(contents));
+    const auto pipe = FromPipe(BytesOfText(contents), 5);
     if (file || pipe) return std::string("a log");
     EXPECT_EQ(file.fault().code, FaultCode::kForeign);
     EXPECT_EQ(pipe.fault().code, FaultCode::kForeign);
