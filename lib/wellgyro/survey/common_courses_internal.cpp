@@ -7,24 +7,12 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/survey/well_line.h"
 #include "wellgyro/trajectory/trajectory.h"
 
 namespace wellgyro {
-namespace {
 
 using Eigen::Vector3d;
-
-Trajectory ArcsThrough(const SurveyedWell& well) {
-  std::vector<double> md, inclination, azimuth;
-  for (const SurveyPoint& p : well.survey) {
-    md.push_back(p.md);
-    inclination.push_back(p.inclination);
-    azimuth.push_back(p.azimuth);
-  }
-  return Trajectory(md, inclination, azimuth, well.position.front());
-}
-
-}  // namespace
 
 std::vector<double> CommonStations(const SurveyedWell& first, const SurveyedWell& second,
                                    double begin, double end) {
@@ -64,7 +52,7 @@ CommonCourses::CommonCourses(const SurveyedWell& well, std::span<const double> c
   well_ = SurveyWell(std::move(stations), well.position.front());
   for (const SurveyPoint& p : well_.survey) tangent_.push_back(Tangent(p.inclination, p.azimuth));
   places_ = PlacesIn(well_, depths);
-  const Trajectory line = ArcsThrough(well_);
+  const Trajectory line = LineOf(well_);
   for (const double md : depths) position_.push_back(line.AtMd(md).position);
 }
 

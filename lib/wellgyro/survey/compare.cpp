@@ -15,6 +15,7 @@
 #include "wellgyro/survey/difference_covariance_internal.h"
 #include "wellgyro/survey/same_depth_internal.h"
 #include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/well_line.h"
 #include "wellgyro/trajectory/trajectory.h"
 
 namespace wellgyro {
@@ -97,16 +98,6 @@ std::vector<double> DepthsOf(const ComparedSurvey& first, const ComparedSurvey& 
     md = std::clamp(md, common.begin, common.end);
   }
   return depths;
-}
-
-Trajectory LineOf(const SurveyedWell& well) {
-  std::vector<double> md, inclination, azimuth;
-  for (const SurveyPoint& p : well.survey) {
-    md.push_back(p.md);
-    inclination.push_back(p.inclination);
-    azimuth.push_back(p.azimuth);
-  }
-  return Trajectory(md, inclination, azimuth, well.position.front());
 }
 
 std::vector<ComparedPlace> Listed(const ComparedSurvey& first, const ComparedSurvey& second,

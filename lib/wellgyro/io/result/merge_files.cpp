@@ -21,6 +21,7 @@
 #include "wellgyro/survey/compare.h"
 #include "wellgyro/survey/hole_line.h"
 #include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/well_line.h"
 #include "wellgyro/trajectory/trajectory.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
@@ -164,16 +165,6 @@ std::string MergeToml(const MergePlan& plan, const MergeAnswer& answer) {
     toml.Text("sha256", input.sha256);
   }
   return toml.text();
-}
-
-Trajectory LineOf(const SurveyedWell& well) {
-  std::vector<double> md, inclination, azimuth;
-  for (const SurveyPoint& p : well.survey) {
-    md.push_back(p.md);
-    inclination.push_back(p.inclination);
-    azimuth.push_back(p.azimuth);
-  }
-  return Trajectory(md, inclination, azimuth, well.position.front());
 }
 
 void SetPlace(const Eigen::Vector3d& position, const Eigen::Matrix3d& cov, double severity,
