@@ -115,7 +115,7 @@ BenchTable ReadAt(const std::vector<BenchSetting>& settings, const GyroTool& too
   return table.Finish();
 }
 
-const Eigen::MatrixXd& Quantity(const FitReport& report, const std::string& name) {
+const Eigen::MatrixXd& MatrixOf(const FitReport& report, const std::string& name) {
   const auto found = std::find_if(report.result.begin(), report.result.end(),
                                   [&](const FitQuantity& q) { return q.name == name; });
   if (found == report.result.end()) throw std::runtime_error("no quantity " + name);
@@ -129,10 +129,10 @@ GyroTool Fitted(const FitReport& report) {
   tool.b.setZero();
   tool.N.setZero();
   tool.MQ.setZero();
-  tool.b.head<2>() = Quantity(report, "b_degh").reshaped();
-  tool.U.topRows<2>() = Quantity(report, "U");
-  tool.MQ.head<2>() = Quantity(report, "MQ").reshaped();
-  tool.N.head<2>() = Quantity(report, "aniso_degh_per_g2").reshaped();
+  tool.b.head<2>() = MatrixOf(report, "b_degh").reshaped();
+  tool.U.topRows<2>() = MatrixOf(report, "U");
+  tool.MQ.head<2>() = MatrixOf(report, "MQ").reshaped();
+  tool.N.head<2>() = MatrixOf(report, "aniso_degh_per_g2").reshaped();
   return tool;
 }
 

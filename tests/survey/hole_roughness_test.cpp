@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeg = units::kDeg;
+using units::kDeg;
 
 /// A hole about the horizontal north whose curvature is white noise and walks at random by 0.5 m;
 /// stations are where `spacing` leads, with a noise of their own.
