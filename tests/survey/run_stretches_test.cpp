@@ -81,7 +81,9 @@ TEST(RunStretches, TellWhatTheToolDid) {
   int moving = 0, resting = 0;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const RunStretch& s = stretches[i];
-    if (i > 0) EXPECT_NEAR((s.begin - stretches[i - 1].end).seconds(), 0, 1e-3);
+    if (i > 0) {
+      EXPECT_NEAR((s.begin - stretches[i - 1].end).seconds(), 0, 1e-3);
+    }
     EXPECT_NEAR(s.temperature, kTemperature, 1e-3);
     EXPECT_EQ(s.samples_lost, 0);
     ASSERT_TRUE(s.md && s.speed);

@@ -124,10 +124,10 @@ void CatchUp::TakeFill(const HeldMessage& message) {
   }
   joined_fill_ = true;
   // Not by the last one used here: what waited for its sender stands behind what came after it.
-  const std::optional<std::int64_t> ended =
-      splice_.empty() ? std::nullopt : std::optional(last_received_us_);
+  const bool all = splice_.empty();
+  const std::int64_t ended = last_received_us_;
   for (const HeldMessage& since : std::exchange(before_, {})) {
-    if (!ended || since.received_us > *ended) UseOne(since, true);
+    if (all || since.received_us > ended) UseOne(since, true);
   }
 }
 
