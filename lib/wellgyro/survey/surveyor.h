@@ -57,7 +57,7 @@ struct SampleTally {
 /// to it is known, or until samples a latency later have come.
 ///
 /// Data never make Push throw: what cannot be used reaches the sink as a Fault, hard physics as
-/// Quality. Memory grows with stations and knots only (one knot a second, about 1 kB).
+/// Quality. Memory grows with stations and knots only (one knot a second, about .35 kB).
 class WELLGYRO_EXPORT Surveyor {
  public:
   /// What comes beyond these is left out with a Fault; of more tools those with the most samples
