@@ -25,10 +25,11 @@ bool SpikeFilter::Continues(const SampleStamp& stamp) const {
 
 const SpikeFilter::Out* SpikeFilter::Push(const ImuSample& sample, bool mark) {
   if (size_ == kWindow) {
-    first_ = (first_ + 1) % kWindow;
+    first_ = (first_ + 1) % kRing;
     --size_;
   }
   Out& out = At(size_);
+  values_[Slot(size_)] << sample.w_IT_T, sample.f_T;
   ++size_;
   ++waiting_;
   out.sample = sample;
@@ -47,27 +48,34 @@ const SpikeFilter::Out* SpikeFilter::Flush() {
   return &At(size_ - waiting_--);
 }
 
-/// One axis of the sample in the middle; `value` gives it of a sample.
-template <class Value>
-bool SpikeFilter::MendAxis(double floor, Value value) {
-  const auto at = [&](std::size_t i) { return value(At(i).sample); };
-  // What a sample has that the cubic through the four about it has not.
-  const auto beyond = [&](std::size_t i) {
-    return at(i) - (4 * (at(i - 1) + at(i + 1)) - at(i - 2) - at(i + 2)) / 6;
-  };
-  const double off = beyond(kMiddle);
-  // Nearly all samples are done with this.
-  if (std::abs(off) <= floor) return false;
-  double& x = value(At(kMiddle).sample);
+void SpikeFilter::SetFloor(std::int32_t period_ns) {
+  if (period_ns == floor_period_ns_) return;
+  floor_period_ns_ = period_ns;
+  const double rate = 1 / std::sqrt(1e-9 * static_cast<double>(period_ns));
+  floor_.head<3>() = kSigmas * gyro_noise_ * rate + kLeastRate;
+  floor_.tail<3>() = kSigmas * accel_noise_ * rate + kLeastForce;
+}
+
+/// What a sample has that the cubic through the four about it has not.
+SpikeFilter::Values SpikeFilter::Beyond(std::size_t i) const {
+  const Values near = 4 * (ValuesAt(i - 1) + ValuesAt(i + 1)) - ValuesAt(i - 2) - ValuesAt(i + 2);
+  return ValuesAt(i) - near / 6;
+}
+
+/// One axis of the sample in the middle, which has `off` that its cubic has not.
+bool SpikeFilter::MendAxis(Eigen::Index axis, double off) {
+  const double floor = floor_[axis];
+  double& x = values_[Slot(kMiddle)][axis];
   // A single bad sample leaves -2/3 of itself with either neighbour; what else these have is how
   // much the signal itself departs from cubics here.
-  const double lively = std::max(std::abs(beyond(kMiddle - 1) + off * kShared),
-                                 std::abs(beyond(kMiddle + 1) + off * kShared));
+  const double lively = std::max(std::abs(Beyond(kMiddle - 1)[axis] + off * kShared),
+                                 std::abs(Beyond(kMiddle + 1)[axis] + off * kShared));
   if (std::abs(off) > kTimes * lively + floor) {
     x -= off;
     return true;
   }
-  std::array<double, 6> near{at(0), at(1), at(2), at(4), at(5), at(6)};
+  std::array<double, 6> near;
+  for (std::size_t i = 0; i < near.size(); ++i) near[i] = ValuesAt(i < kMiddle ? i : i + 1)[axis];
   std::sort(near.begin(), near.end());
   const double median = (near[2] + near[3]) / 2;
   if (!(std::abs(x - median) > kSpreads * (near[4] - near[1]) + floor)) return false;
@@ -77,18 +85,18 @@ bool SpikeFilter::MendAxis(double floor, Value value) {
 
 void SpikeFilter::MendMiddle() {
   Out& out = At(kMiddle);
-  const double rate = 1 / std::sqrt(1e-9 * static_cast<double>(out.sample.stamp.period_ns));
-  const double gyro_floor = kSigmas * gyro_noise_ * rate + kLeastRate;
-  const double accel_floor = kSigmas * accel_noise_ * rate + kLeastForce;
-  const int axes = out.sample.has_gz ? 3 : 2;
-  for (int axis = 0; axis < axes; ++axis) {
-    const auto value = [axis](auto& sample) -> auto& { return sample.w_IT_T[axis]; };
-    if (MendAxis(gyro_floor, value)) out.gyro = true;
+  SetFloor(out.sample.stamp.period_ns);
+  const Values off = Beyond(kMiddle);
+  // Nearly all samples are done with this.
+  if ((off.abs() <= floor_).all()) return;
+  for (Eigen::Index axis = 0; axis < off.size(); ++axis) {
+    const bool there = axis != 2 || out.sample.has_gz;
+    if (!there || std::abs(off[axis]) <= floor_[axis] || !MendAxis(axis, off[axis])) continue;
+    (axis < 3 ? out.gyro : out.accel) = true;
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto value = [axis](auto& sample) -> auto& { return sample.f_T[axis]; };
-    if (MendAxis(accel_floor, value)) out.accel = true;
-  }
+  const Values& mended = ValuesAt(kMiddle);
+  out.sample.w_IT_T = mended.head<3>();
+  out.sample.f_T = mended.tail<3>();
 }
 
 }  // namespace wellgyro

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/noise.h"
@@ -45,15 +48,24 @@ class WELLGYRO_EXPORT SpikeFilter {
 
  private:
   static constexpr std::size_t kWindow = 7, kMiddle = 3;
+  static constexpr std::size_t kRing = 8;  // the least power of two that holds the window
+  /// Rates x, y, z and forces x, y, z of a sample.
+  using Values = Eigen::Array<double, 6, 1>;
 
-  Out& At(std::size_t i) { return ring_[(first_ + i) % kWindow]; }
-  const Out& At(std::size_t i) const { return ring_[(first_ + i) % kWindow]; }
+  std::size_t Slot(std::size_t i) const { return (first_ + i) % kRing; }
+  Out& At(std::size_t i) { return ring_[Slot(i)]; }
+  const Out& At(std::size_t i) const { return ring_[Slot(i)]; }
+  const Values& ValuesAt(std::size_t i) const { return values_[Slot(i)]; }
+  void SetFloor(std::int32_t period_ns);
+  Values Beyond(std::size_t i) const;
   void MendMiddle();
-  template <class Value>
-  bool MendAxis(double floor, Value value);
+  bool MendAxis(Eigen::Index axis, double off);
 
   double gyro_noise_, accel_noise_;  // of a mean over 1 s [rad/s], [m/s^2]
-  std::array<Out, kWindow> ring_;
+  Values floor_ = Values::Zero();    // below which a departure is noise, at this period
+  std::int32_t floor_period_ns_ = 0;
+  std::array<Out, kRing> ring_;
+  std::array<Values, kRing> values_;
   std::size_t first_ = 0, size_ = 0;
   std::size_t waiting_ = 0;  // at the end of the window, not yet done
 };
