@@ -116,16 +116,37 @@ TEST(ToolFit, ParametersAndNuisancesWithinTheirSigmas) {
 }
 
 // 2026-11-24: of 200 benches some had a loop and a bend of drift for what heating does, and biases
-// wrong by 0.3 deg/h with sigmas of 0.003. These two of them, of the run of 200.
+// wrong by 0.3 deg/h with sigmas of 0.003. These three of them, of the run of 200: the sum of
+// squares alone prefers a loop and two bends in the last.
 TEST(ToolFit, ALoopAndABendDoNotStandForHeating) {
   Random random(31);
-  for (int i = 0; i <= 18; ++i) {
+  for (int i = 0; i <= 186; ++i) {
     const Bench b = AnyBench(random);
-    if (i != 5 && i != 18) continue;
+    if (i != 5 && i != 18 && i != 186) continue;
     const auto fit = FitTool(b.tables, Stated());
     ASSERT_TRUE(fit.has_value()) << fit.fault().text;
     const Score score = ScoreOf(*fit, TruthOf(b.tool, b.bench));
     EXPECT_LT(score.square / score.number, 1 + 3.3 * std::sqrt(2 / score.number)) << i;
+  }
+}
+
+bool IsRival(const std::string& remark) {
+  return remark.find("gyro_heating") != std::string::npos &&
+         remark.find("could as well be") != std::string::npos;
+}
+
+// Heating of a hundredth, and no rate table at the middle temperature: a loop explains as much.
+TEST(ToolFit, TermsThatDoTheSameWorkAreTold) {
+  for (const double part : {1.0, 0.01}) {
+    Random random(31);
+    Bench b{ThermalTool::Any(random), ThermalBench::Any(random), {}};
+    b.tool.heating *= part;
+    b.tables.push_back(ThermalPositions(b.tool, b.bench, 0, 120, 25, 150, random));
+    b.tables.push_back(ThermalPositions(b.tool, b.bench, 1, 60, 150, 25, random));
+    const auto fit = FitTool(b.tables, Stated());
+    ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+    const std::vector<std::string>& remarks = fit->calibration.report.remarks;
+    EXPECT_EQ(std::any_of(remarks.begin(), remarks.end(), IsRival), part < 1);
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -15,8 +14,8 @@
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/tool_adjust_internal.h"
+#include "wellgyro/fit/tool_choice_internal.h"
 #include "wellgyro/fit/tool_result_internal.h"
-#include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
 namespace {
@@ -30,124 +29,6 @@ std::vector<ToolTerm> TermsOf(const std::vector<TermBundle>& bundles,
   }
   return terms;
 }
-
-// Places of a bundle's coefficients in x, where `kept` are the bundles that x holds, in order.
-std::vector<Eigen::Index> PlacesIn(const std::vector<TermBundle>& bundles,
-                                   const std::vector<int>& kept, int bundle) {
-  Eigen::Index first = 0;
-  for (const int place : kept) {
-    const auto size =
-        static_cast<Eigen::Index>(bundles[static_cast<std::size_t>(place)].terms.size());
-    if (place == bundle) {
-      std::vector<Eigen::Index> places;
-      for (Eigen::Index k = 0; k < size; ++k) places.push_back(first + k);
-      return places;
-    }
-    first += size;
-  }
-  return {};
-}
-
-// What noise alone gives a bundle of so many coefficients once in a hundred.
-double ByChance(std::size_t coefficients) {
-  return ChiSquareQuantile(0.99, static_cast<int>(coefficients));
-}
-
-// Which of the bundles that are seen are kept, by the adjustment of all of them.
-class Choice {
- public:
-  Choice(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
-         const ToolAdjustment& full)
-      : bundles_(bundles), seen_(seen), full_(full) {}
-
-  // Backwards from all that is seen. Of terms that do the work of each other the first to go is
-  // chance: a loop and a bend of drift stand for what heating does, and are two for one. So each
-  // that went is put back, and those go that are no longer needed beside it.
-  std::vector<int> Best() const {
-    std::vector<int> kept = Eliminated(seen_, {});
-    double cost = Cost(kept);
-    for (bool better = true; better;) {
-      better = false;
-      for (const int place : seen_) {
-        if (Has(kept, place)) continue;
-        const std::vector<int> back = WithBases(place);
-        const std::vector<int> other = Eliminated(Joined(kept, back), back);
-        const double its = Cost(other);
-        if (!(its < cost - kLess)) continue;
-        kept = other;
-        cost = its;
-        better = true;
-      }
-    }
-    return kept;
-  }
-
- private:
-  static constexpr double kLess = 1e-6;  // of a sum of squares: not by rounding
-
-  static bool Has(const std::vector<int>& places, int place) {
-    return std::find(places.begin(), places.end(), place) != places.end();
-  }
-  const TermBundle& At(int place) const { return bundles_[static_cast<std::size_t>(place)]; }
-  std::vector<int> WithBases(int place) const {
-    std::vector<int> all;
-    for (int at = place; at >= 0; at = At(at).after) all.push_back(at);
-    return all;
-  }
-  std::vector<int> Joined(const std::vector<int>& kept, const std::vector<int>& more) const {
-    std::vector<int> all;
-    for (const int place : seen_) {
-      if (Has(kept, place) || Has(more, place)) all.push_back(place);
-    }
-    return all;
-  }
-
-  // By how much the sum of squares rises without what is not kept, and what chance gives the rest.
-  double Cost(const std::vector<int>& kept) const {
-    double cost = 0;
-    std::vector<Eigen::Index> gone;
-    for (const int place : seen_) {
-      const auto places = PlacesIn(bundles_, seen_, place);
-      if (Has(kept, place)) {
-        cost += At(place).needed ? 0 : ByChance(places.size());
-      } else {
-        gone.insert(gone.end(), places.begin(), places.end());
-      }
-    }
-    if (gone.empty()) return cost;
-    const Eigen::MatrixXd cov = full_.cov(gone, gone);
-    const Eigen::VectorXd scale = cov.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::VectorXd part = scale.cwiseProduct(Eigen::VectorXd(full_.x(gone)));
-    return cost +
-           part.dot(
-               Eigen::MatrixXd(scale.asDiagonal() * cov * scale.asDiagonal()).ldlt().solve(part));
-  }
-
-  // What costs more than it explains goes, one bundle a turn; never of `held`.
-  std::vector<int> Eliminated(std::vector<int> kept, const std::vector<int>& held) const {
-    double cost = Cost(kept);
-    while (true) {
-      std::vector<int> best;
-      for (const int place : kept) {
-        const bool carries = std::any_of(kept.begin(), kept.end(),
-                                         [&](int other) { return At(other).after == place; });
-        if (At(place).needed || carries || Has(held, place)) continue;
-        std::vector<int> fewer = kept;
-        fewer.erase(std::find(fewer.begin(), fewer.end(), place));
-        const double its = Cost(fewer);
-        if (!(its < cost)) continue;
-        cost = its;
-        best = std::move(fewer);
-      }
-      if (best.empty()) return kept;
-      kept = std::move(best);
-    }
-  }
-
-  const std::vector<TermBundle>& bundles_;
-  const std::vector<int>& seen_;
-  const ToolAdjustment& full_;
-};
 
 void TellLeftOut(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
                  const std::vector<int>& chosen, const ToolAdjustment& full, ToolFit& fit) {
@@ -334,7 +215,8 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
   const auto refused = [&](const Fault& fault) { return BenchFault(tables.front(), fault.text); };
   const auto full = AdjustTool(*readings, setup, TermsOf(bundles, seen));
   if (!full) return refused(full.fault());
-  const std::vector<int> chosen = Choice(bundles, seen, *full).Best();
+  const TermChoice choice(bundles, seen, *full);
+  const std::vector<int> chosen = choice.Best();
   const std::vector<ToolTerm> terms = TermsOf(bundles, chosen);
   const auto last = AdjustTool(*readings, setup, terms);
   if (!last) return refused(last.fault());
@@ -343,6 +225,10 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
   TellLeftOut(bundles, seen, chosen, *full, *fit);
   for (const LeftOutTerm& term : fit->left_out) {
     fit->calibration.report.remarks.push_back("left out: " + TextOf(term));
+  }
+  for (const std::string& rival : choice.Rivals(chosen)) {
+    fit->calibration.report.remarks.push_back(
+        rival + ": these readings hardly tell, and the sigmas take the first for certain");
   }
   return fit;
 }

@@ -68,7 +68,9 @@ struct ToolFit {
 /// size is in the biases' covariance). Of the bench: level and north of each table, its drift in
 /// time, the tool's seat on the rate table, the latitude, each with its prior; the wobble of every
 /// reading, which moves all channels together, is marginalised, its size found. Terms are chosen by
-/// likelihood (ratio, 1 %); outliers are found with Cauchy's loss (Ceres) and left out.
+/// marginal likelihood, each bundle's prior variance found from it, at 1 % against noise alone;
+/// other terms that explain nearly as much are told. Outliers are found with Cauchy's loss (Ceres)
+/// and left out.
 WELLGYRO_EXPORT Result<ToolFit> FitTool(std::span<const BenchTable> tables,
                                         const ToolFitSetup& setup);
 
