@@ -27,6 +27,9 @@ struct KnotPlace {
   /// What the Earth's rate about the axis changes by, from this knot to the next [rad/s]: so does
   /// the inertial roll rate of a tool that does not turn in its hole.
   double axial_change = 0;
+  /// Of the inertial roll rate of a tool that keeps its toolface in a hole that bends: that rate is
+  /// A' cos I [rad/s/sqrt(s)].
+  double roll_walk = 0;
   double since_start = 0;  ///< middle of the knot [s]
   double depth = 0;        ///< vertical, below node 0 [m]
 };
@@ -41,6 +44,7 @@ struct RunScales {
   /// The same, as much as it may with the speed along the hole, and the share of it that it does.
   std::vector<double> speed_start;
   double speed_share = 1;
+  bool follows_hole = false;  ///< the rate may change with the hole's bends too, see KnotPlace
   /// Of each knot, held while the run is brought to its end; empty: by the residuals.
   std::vector<std::array<double, 2>> roll_weight;
 };

@@ -19,6 +19,8 @@ constexpr double kLowPass = 3;        // [s]
 constexpr double kTellingWay = 0.01;  // [m] of a window, from which it tells of the hole
 // [m] of depth marks, and not of the path: where it is renewed must not move with the solution.
 constexpr double kSiteEvery = 2;
+// Curvature is another one from stand to stand, to which doglegs are quoted.
+constexpr double kStand = 30;         // [m]
 constexpr double kPathReach = 1e5;    // [m]; damaged depths may lead anywhere, the site stays
 constexpr double kPoleMargin = 1e-3;  // [rad], from where the transport about the vertical grows
 
@@ -48,6 +50,39 @@ std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const 
   return curvature;
 }
 
+/// How much the hole bends about each knot: root mean square of its curvature over a stand on
+/// either side [rad/m].
+std::vector<double> Bends(std::span<const RunKnot> knots, std::span<const Node> nodes,
+                          std::span<const Vector3d> curvature) {
+  std::vector<double> ways(knots.size() + 1, 0), squares(knots.size() + 1, 0);
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const double way =
+        0.5 * knots[k].increment.seconds * std::abs(nodes[k].speed + nodes[k + 1].speed);
+    ways[k + 1] = ways[k] + way;
+    squares[k + 1] = squares[k] + way * curvature[k].squaredNorm();
+  }
+  std::vector<double> bends(knots.size(), 0);
+  std::size_t begin = 0, end = 0;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    while (ways[begin + 1] < ways[k] - kStand) ++begin;
+    end = std::max(end, k + 1);
+    while (end < knots.size() && ways[end] < ways[k] + kStand) ++end;
+    const double way = ways[end] - ways[begin];
+    if (way > kTellingWay) bends[k] = std::sqrt((squares[end] - squares[begin]) / way);
+  }
+  return bends;
+}
+
+/// A tool that keeps its toolface rolls, in inertial space, by A' cos I = |t'| cot I at most, which
+/// changes by as much within a stand: a random walk of that variance over its way. What keeps it is
+/// gravity, whose pull across the axis and whose lever go as sin I: of |t'| cot I it follows sin^2
+/// I. As if such a tool rolled as evenly as its string, the roll would tell how the azimuth turns,
+/// and wrongly.
+double RollWalkOf(const Vector3d& tangent, double bend, double speed) {
+  const double follows = std::abs(tangent.z()) * std::hypot(tangent.x(), tangent.y());
+  return std::abs(speed) * bend * std::sqrt(std::abs(speed) / kStand) * follows;
+}
+
 }  // namespace
 
 Site SiteBy(const Site& first, const Vector3d& p) {
@@ -62,6 +97,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
                 std::span<const Node> nodes, std::vector<KnotPlace>& places) {
   places.resize(knots.size());
   const std::vector<Vector3d> curvature = Curvature(knots, nodes);
+  const std::vector<double> bends = Bends(knots, nodes, curvature);
   Vector3d p = before != nullptr ? before->p : Vector3d::Zero();
   Site site = SiteBy(first, p);
   double md = nodes[0].md;
@@ -89,6 +125,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     if (k > 0) places[k - 1].axial_change = earth.dot(tangent) - axial;
     axial = earth.dot(tangent);
     place.acceleration_L = speed * speed * curvature[k] + (2 * earth + transport).cross(v);
+    place.roll_walk = RollWalkOf(tangent, bends[k], speed);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
     place.depth = p.z();

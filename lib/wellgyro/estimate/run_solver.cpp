@@ -248,7 +248,9 @@ double RunSolver::Walk(std::size_t knot, double walk) const {
 }
 
 RollChange RunSolver::Change(std::size_t knot) const {
-  RollChange change{Walk(knot, scales_.roll_walk), Walk(knot, scales_.swing_walk), 0, 0};
+  const double by_hole = scales_.follows_hole ? places_[knot].roll_walk : 0;
+  const double with_hole = std::hypot(scales_.roll_walk, by_hole);
+  RollChange change{Walk(knot, with_hole), Walk(knot, scales_.swing_walk), 0, 0};
   if (scales_.roll_weight.empty()) return change;
   change.weight = scales_.roll_weight[knot][0];
   change.swing_weight = scales_.roll_weight[knot][1];
@@ -452,6 +454,9 @@ SolveReport RunSolver::Solve(int iterations, double least) {
     FindWalks(report);
     if (HidesAStart()) FindDecade(kShareLeast, 1, {&scales_.speed_share}, report);
   }
+  // Not before: that the hole changes the rate slowly and one way, evidence takes for a smaller
+  // walk.
+  scales_.follows_hole = true;
   HoldRollWeights();
   Finish(least, report);
   report.converged = elimination_.decrement() < kNear;
