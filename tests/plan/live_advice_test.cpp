@@ -113,6 +113,23 @@ TEST(LiveAdvice, SaysWhyItHasNone) {
 }
 
 // A depth that jumps, or a plan that ends short of the hole, takes nothing down.
+// 2026-11-24: a plan's last stop was where its way ends, and there nothing was said.
+TEST(LiveAdvice, ARestWhereTheWayEndsIsToldItsLength) {
+  const PlanCase c = DownTo(test::Slant(), 3000);
+  const std::vector<PlannedStop> first{{false, 300, 120, {}}};
+  const RunState end = StateAfter(c, first);
+  const double without = ExpectEnd(c, first, false).semi_major;
+  for (const double md : {2995.0, 3000.0, 3001.0}) {
+    AskingRun run{.md = md, .deepest = md, .rested = 20, .state = &end};
+    const Advice stay = Advise(c, {.ellipse = 0.95 * without}, run);
+    EXPECT_EQ(stay.action, Advice::Action::kStay) << stay.text;
+    EXPECT_GT(stay.seconds, 10);
+    EXPECT_EQ(Advise(c, {.ellipse = 1.1 * without}, run).action, Advice::Action::kMoveOn);
+    run.rested = 0;
+    EXPECT_EQ(Advise(c, {.ellipse = 0.95 * without}, run).action, Advice::Action::kNone);
+  }
+}
+
 TEST(LiveAdvice, ADepthOffThePlansWayIsTakenToItsEnds) {
   const PlanCase c = test::Slant();
   const RunState state = StateAfter(DownTo(c, 1500), {{false, 300, 200, {}}});

@@ -129,7 +129,8 @@ Advice Advise(const PlanCase& c, const PlanLimits& limits, const AskingRun& run)
   if (ahead.out && run.state == nullptr) return None(limits, "no north was found on the way down");
   const double left = ahead.out ? (way.speed_out > 0 ? *run.md - way.begin_md : 0)
                                 : way.end_md - *run.md + (way.speed_out > 0 ? kGoesUp : 0);
-  if (!(left >= kGoesUp)) return None(limits, "no way is left");
+  // The last stop may be where the way ends: while it rests there, the tool is told for how long.
+  if (!(left >= kGoesUp) && !(run.rested > 0)) return None(limits, "no way is left");
   const RunSoFar so_far{run.state, ahead.out};
   // What is known of a tool at rest is known of where it rests.
   const bool rests = run.state != nullptr && run.rest_known > 0;

@@ -185,6 +185,8 @@ void SyntheticRun::AddWay(std::span<const PlannedStop> stops, bool up) {
   const PlannedWay& way = case_.way;
   if (!up) AddMove(way.end_md, way.speed_in);
   if (way.speed_out > 0) AddMove(way.begin_md, way.speed_out);
+  // A tool whose way is gone has its next second at rest.
+  if (knots_.empty()) AddRest(1);
   MakeIncrements();
 }
 
