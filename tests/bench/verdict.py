@@ -4,7 +4,7 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 
   python3 tests/bench/verdict.py PROGRAM [--clean 100] [--faulty 5] [--sizes 0.5,1,3]
                                  [--wells slant,s,horizontal] [--causes gyro_step_x,...] [--jobs 2]
-                                 [--power 40] [--pairs 4]
+                                 [--power 40] [--pairs 4] [--first 1]
 
 Simulates tools whose errors are drawn from the job's own priors, with and without one [[fault]],
 surveys the log and compares the deepest station with the truth. `found`: no survey is made, or its
@@ -14,12 +14,15 @@ many the right cause is the first of diagnosis.csv; `in set`: or among those tha
 which is uniform where the check's sigma is true. `--power`: so many runs of each cause in POWER with
 the smallest size that reliability.csv of a clean run has, four in five of which are to be noticed.
 `--pairs`: so many runs a cause and two of each draw, with the fault at once its size, whose cause is
-taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each time.
+taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each time;
+`--first`: the first of clean runs, so that a long row can be run in parts. "Beyond both": beyond the
+95 % ellipse and beyond that of the largest fault which could stay unseen, as aviation counts it.
 """
 import argparse
 import concurrent.futures
 import csv
 import itertools
+import json
 import math
 import os
 import random
@@ -228,6 +231,17 @@ def Compare(folder, result):
         result["cov"] = [float(last[k]) for k in ("VAR_NN[m2]", "COV_NE[m2]", "VAR_EE[m2]")]
 
 
+def Unseen(ellipse):
+    """North-east matrix H of the summary's bound e' H^-1 e <= 1; None where it has none."""
+    if not ellipse or not ellipse["semi_minor_m"]:
+        return None
+    major, minor = ellipse["semi_major_m"] ** 2, ellipse["semi_minor_m"] ** 2
+    azimuth = math.radians(ellipse["azimuth_major_deg"])
+    n, e = math.cos(azimuth), math.sin(azimuth)
+    return [major * n * n + minor * e * e, (major - minor) * n * e,
+            major * e * e + minor * n * n]
+
+
 def Rows(path):
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
@@ -246,14 +260,16 @@ def One(program, well, seed, fault, size, text=None):
         subprocess.run([program, "simulate", "--job", os.path.join(folder, "simulation.toml"),
                         "--out", log], check=True, capture_output=True)
         done = subprocess.run([program, "survey", "--job", os.path.join(folder, "job.toml"),
-                               "--from", log, "--out", out], capture_output=True, text=True,
+                               "--from", log, "--out", out, "--json"], capture_output=True, text=True,
                               check=False)
         result = {"well": well, "seed": seed, "fault": fault, "size": size,
                   "code": done.returncode, "error": None, "error_of_tool": None, "cov": None,
+                  "unseen": None,
                   "causes": [], "found": done.returncode == 2, "named": (False, False),
                   "checks": [], "diagnosis": [], "reliability": []}
         if done.returncode in (0, 3, 4):
             Compare(folder, result)
+            result["unseen"] = Unseen(json.loads(done.stdout)["tools"][0]["unseen_faults"])
             with open(os.path.join(out, "run.toml"), "rb") as file:
                 verdict = tomllib.load(file)["verdict"]
             result["causes"], result["found"] = verdict["causes"], verdict["verdict"] != "pass"
@@ -269,6 +285,11 @@ BEYOND = 5.991  # chi-square of two, 95 %
 def Misleads(result):
     square = Square(result["error"], result["cov"])
     return result["code"] in (0, 3) and square is not None and square > BEYOND
+
+
+def MisleadsBoth(result):
+    unseen = Square(result["error"], result["unseen"])
+    return Misleads(result) and not (unseen is not None and unseen <= 1)
 
 
 def ChiSquareTail(x, freedom):
@@ -333,7 +354,8 @@ def Print(results, said):
         print(f"clean {well}: fail {Rate(sum(r['code'] == 4 for r in of), len(of))}, warn "
               f"{sum(r['found'] and r['code'] != 4 for r in of)}, other codes "
               f"{sum(r['code'] not in (0, 4) for r in of)}, beyond 95 % without exit 4 "
-              f"{Rate(sum(map(Misleads, of)), len(of))}, normalised square "
+              f"{Rate(sum(map(Misleads, of)), len(of))}, beyond both "
+              f"{sum(map(MisleadsBoth, of))}, normalised square "
               f"{sum(known) / max(2 * len(known), 1):.2f}, of where the tool was "
               f"{sum(tool) / max(2 * len(tool), 1):.2f}")
     Chances(clean)
@@ -356,7 +378,8 @@ def Print(results, said):
         of = [r for r in faulty if r["size"] == size]
         print(f"all: found {Rate(sum(r['found'] for r in of), len(of))}, fail "
               f"{sum(r['code'] in (2, 4) for r in of)}, hazardously misleading "
-              f"{Rate(sum(map(Misleads, of)), len(of))}")
+              f"{Rate(sum(map(Misleads, of)), len(of))}, beyond both "
+              f"{sum(map(MisleadsBoth, of))}")
     if said:
         for r in results:
             if r["causes"]:
@@ -460,10 +483,11 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--power", type=int, default=0, help="runs a cause and well at its smallest")
     parser.add_argument("--pairs", type=int, default=0, help="runs a cause and well, and clean")
+    parser.add_argument("--first", type=int, default=1, help="seed of the first clean run")
     parser.add_argument("--say", action="store_true", help="the causes of every run")
     given = parser.parse_args()
     runs = [(well, seed, None, 0.0) for well in given.wells.split(",")
-            for seed in range(1, given.clean + 1)]
+            for seed in range(given.first, given.first + given.clean)]
     for well, fault, size in itertools.product(given.wells.split(","), given.causes.split(","),
                                                map(float, given.sizes.split(","))):
         first_size = size == float(given.sizes.split(",")[0])
