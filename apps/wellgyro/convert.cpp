@@ -219,6 +219,34 @@ std::string Mistake(const ConvertOptions& o) {
   return date ? std::string() : "--declination-date: " + date.fault().text;
 }
 
+int WriteAs(SurveyFormat format, ConvertOptions& o) {
+  try {
+    Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
+    if (!table) {
+      Complain(table.fault());
+      return kUnusable;
+    }
+    for (const std::string& note : table->head.notes) Complain(o.in + ": note: " + note);
+    Prepare(*table, o);
+    const WriteOptions writing{.preamble = o.preamble, .variable_step = o.variable_step};
+    if (Loses(*table, format, o, writing)) return kUnusable;
+    const auto files =
+        SurveyFiles(*table, format, std::filesystem::path(o.out).filename().string(), writing);
+    if (const auto fault = WriteFiles(std::filesystem::path(o.out).parent_path(), files)) {
+      Complain(*fault);
+      return kUnusable;
+    }
+  } catch (const std::invalid_argument& error) {
+    std::string text = error.what();
+    if (text.starts_with("AzimuthFrom: ")) {
+      text = text.substr(13) + ": say --azimuth-reference, --convergence-deg or --declination-deg";
+    }
+    Complain(fmt::format("{}: {}", o.in, text));
+    return kUnusable;
+  }
+  return kDone;
+}
+
 int Convert(ConvertOptions& o) {
   if (const std::string mistake = Mistake(o); !mistake.empty()) {
     Complain(mistake);
@@ -248,31 +276,7 @@ int Convert(ConvertOptions& o) {
     Complain(*fault);
     return kUnusable;
   }
-  try {
-    Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
-    if (!table) {
-      Complain(table.fault());
-      return kUnusable;
-    }
-    for (const std::string& note : table->head.notes) Complain(o.in + ": note: " + note);
-    Prepare(*table, o);
-    const WriteOptions writing{.preamble = o.preamble, .variable_step = o.variable_step};
-    if (Loses(*table, *format, o, writing)) return kUnusable;
-    const auto files =
-        SurveyFiles(*table, *format, std::filesystem::path(o.out).filename().string(), writing);
-    if (const auto fault = WriteFiles(std::filesystem::path(o.out).parent_path(), files)) {
-      Complain(*fault);
-      return kUnusable;
-    }
-  } catch (const std::invalid_argument& error) {
-    std::string text = error.what();
-    if (text.starts_with("AzimuthFrom: ")) {
-      text = text.substr(13) + ": say --azimuth-reference, --convergence-deg or --declination-deg";
-    }
-    Complain(fmt::format("{}: {}", o.in, text));
-    return kUnusable;
-  }
-  return kDone;
+  return WriteAs(*format, o);
 }
 
 void AddReading(CLI::App& command, ConvertOptions& o) {

@@ -104,13 +104,18 @@ int ReportOnSurvey(const fs::path& out, bool page) {
   return code;
 }
 
+namespace {
+
+struct PageOptions {
+  std::string result, out, pdf, json, plan;
+  std::vector<std::string> others;
+  ReportOptions page;
+};
+
+}  // namespace
+
 void AddReport(CLI::App& app, int& exit_code) {
-  struct Options {
-    std::string result, out, pdf, json, plan;
-    std::vector<std::string> others;
-    ReportOptions page;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PageOptions>();
   CLI::App* command =
       app.add_subcommand("report", "The report of a survey's result folder, as one page");
   command->add_option("RESULT", options->result, "Folder with run.toml and survey.csv")

@@ -85,24 +85,14 @@ ComparedSurvey Compared(const TakenSurvey& taken, const Surroundings& place, con
   return survey;
 }
 
+constexpr const char* kPlaceNames[] = {
+    "md_m", "inclination_a_deg", "inclination_b_deg", "d_inclination_deg",
+    "sigma_d_inclination_deg", "azimuth_a_deg", "azimuth_b_deg", "d_azimuth_deg",
+    "sigma_d_azimuth_deg", "d_north_m", "d_east_m", "d_down_m", "between_north_m",
+    "between_east_m", "between_down_m", "position_sigmas"};
+
 nb::dict PlacesOf(const std::vector<ComparedPlace>& places) {
-  const char* const names[] = {"md_m",
-                               "inclination_a_deg",
-                               "inclination_b_deg",
-                               "d_inclination_deg",
-                               "sigma_d_inclination_deg",
-                               "azimuth_a_deg",
-                               "azimuth_b_deg",
-                               "d_azimuth_deg",
-                               "sigma_d_azimuth_deg",
-                               "d_north_m",
-                               "d_east_m",
-                               "d_down_m",
-                               "between_north_m",
-                               "between_east_m",
-                               "between_down_m",
-                               "position_sigmas"};
-  Numbers columns[std::size(names)];
+  Numbers columns[std::size(kPlaceNames)];
   std::vector<Eigen::Matrix3d> cov;
   constexpr double kDeg = units::kDeg;
   for (const ComparedPlace& p : places) {
@@ -122,12 +112,14 @@ nb::dict PlacesOf(const std::vector<ComparedPlace>& places) {
                                                             {p.between_stations.y(), 1},
                                                             {p.between_stations.z(), 1},
                                                             {p.position_sigmas, 1}};
-    for (std::size_t i = 0; i < std::size(names); ++i) columns[i].Add(row[i].first, row[i].second);
+    for (std::size_t i = 0; i < std::size(kPlaceNames); ++i) {
+      columns[i].Add(row[i].first, row[i].second);
+    }
     cov.push_back(p.cov_position);
   }
   nb::dict all;
-  for (std::size_t i = 0; i < std::size(names); ++i) {
-    all[names[i]] = Array(std::move(columns[i].values));
+  for (std::size_t i = 0; i < std::size(kPlaceNames); ++i) {
+    all[kPlaceNames[i]] = Array(std::move(columns[i].values));
   }
   all["cov"] = Matrices(cov);
   return all;

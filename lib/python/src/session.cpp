@@ -253,6 +253,21 @@ void AddJob(nb::module_& m) {
         });
 }
 
+void AddSurveys(nb::module_& m) {
+  m.def(
+      "survey_log",
+      [](const std::shared_ptr<JobFile>& job, const std::string& path, nb::object callback) {
+        return FromLog(job, path, std::move(callback));
+      },
+      nb::arg("job"), nb::arg("path"), nb::arg("progress").none());
+  m.def(
+      "survey_tables",
+      [](const std::shared_ptr<JobFile>& job, const std::vector<std::string>& paths,
+         nb::object callback) { return FromTables(job, paths, std::move(callback)); },
+      nb::arg("job"), nb::arg("paths"), nb::arg("progress").none());
+  m.def("is_sensor_table", [](const std::string& path) { return IsSensorTable(path); });
+}
+
 }  // namespace
 
 void AddSession(nb::module_& m) {
@@ -290,18 +305,7 @@ void AddSession(nb::module_& m) {
       .def("finish", &Session::Finish, nb::call_guard<nb::gil_scoped_release>())
       .def("current", &Session::Current, nb::call_guard<nb::gil_scoped_release>())
       .def_prop_ro("fault_count", &Session::fault_count);
-  m.def(
-      "survey_log",
-      [](const std::shared_ptr<JobFile>& job, const std::string& path, nb::object callback) {
-        return FromLog(job, path, std::move(callback));
-      },
-      nb::arg("job"), nb::arg("path"), nb::arg("progress").none());
-  m.def(
-      "survey_tables",
-      [](const std::shared_ptr<JobFile>& job, const std::vector<std::string>& paths,
-         nb::object callback) { return FromTables(job, paths, std::move(callback)); },
-      nb::arg("job"), nb::arg("paths"), nb::arg("progress").none());
-  m.def("is_sensor_table", [](const std::string& path) { return IsSensorTable(path); });
+  AddSurveys(m);
 }
 
 }  // namespace wellgyro::python

@@ -142,7 +142,15 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
     if (std::max(steps.front().head<3>().norm(), std::abs(rolled)) < kLinear) break;
   }
   state_.border = border;
-  const Matrix3d turn = Exp(steps.back().head<3>());
+  Arrive(elimination, begin, end, steps.back());
+  state_.seconds += knot.increment.seconds;
+  return true;
+}
+
+/// Information, covariance and links are of small turns about the end, which the last step turns.
+void ForwardRun::Arrive(const Elimination& elimination, const Node& begin, const Node& end,
+                        const NodeVector& last_step) {
+  const Matrix3d turn = Exp(last_step.head<3>());
   state_.information = Turned(elimination.edge_information().selfadjointView<Eigen::Lower>(), turn);
   state_.cov = Turned(elimination.LastCovariance(), turn);
   if (state_.link.size() > 0) {
@@ -153,10 +161,8 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   state_.way.by.leftCols<3>() = (state_.way.by.leftCols<3>() * turn).eval();
   const Node& before = state_.nodes.back();
   state_.p += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
-  state_.seconds += knot.increment.seconds;
   std::rotate(state_.nodes.begin(), state_.nodes.begin() + 1, state_.nodes.end());
   state_.nodes.back() = end;
-  return true;
 }
 
 double ForwardRun::SigmaOfHeading() const {

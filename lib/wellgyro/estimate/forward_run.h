@@ -43,6 +43,8 @@ class ForwardRun {
 
  private:
   void FreeRoll(double sigma);
+  void Arrive(const Elimination& elimination, const Node& begin, const Node& end,
+              const NodeVector& last_step);
   KnotPlace PlaceOf(std::span<const RunKnot> tail, const Node& end) const;
 
   RunState state_;

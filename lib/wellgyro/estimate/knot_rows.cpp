@@ -200,22 +200,10 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   AddRate(t, by_rate, block);
   const Eigen::Matrix<double, 3, kErrorSources> by_error =
       by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
-  for (const int drift : {layout_.walk, layout_.markov}) {
-    if (drift == kAbsent) continue;
-    for (int i = 0; i < 2; ++i) {
-      f.Column(drift + i) = 0.5 * by_error.col(kGyroBiasX + i);
-      f.Column(block.next() + drift + i) = 0.5 * by_error.col(kGyroBiasX + i);
-    }
-  }
+  AddGyroDrift(t, by_error, block);
   for (int i = 0; i <= kTimeSkew; ++i) {
     const int at = layout_.source[static_cast<std::size_t>(i)];
     if (at != kAbsent) f.Column(block.border() + at) = by_error.col(i);
-  }
-  if (layout_.ramp != kAbsent) {
-    for (int i = 0; i < 2; ++i) {
-      f.Column(block.border() + layout_.ramp + i) =
-          t.place.since_start * by_error.col(kGyroBiasX + i);
-    }
   }
   if (layout_.latitude != kAbsent) {
     f.Column(block.border() + layout_.latitude) =
@@ -224,27 +212,53 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   block.Add(f);
 }
 
+/// A bias that walks, that is correlated in time or that grows: of the knot, its mean.
+void KnotRows::AddGyroDrift(const Terms& t, const Eigen::Matrix<double, 3, kErrorSources>& by_error,
+                            NormalBlock& block) {
+  for (int i = 0; i < 2; ++i) {
+    const Vector3d by_bias = by_error.col(kGyroBiasX + i);
+    for (const int drift : {layout_.walk, layout_.markov}) {
+      if (drift == kAbsent) continue;
+      factor_.Column(drift + i) = 0.5 * by_bias;
+      factor_.Column(block.next() + drift + i) = 0.5 * by_bias;
+    }
+    if (layout_.ramp == kAbsent) continue;
+    factor_.Column(block.border() + layout_.ramp + i) = t.place.since_start * by_bias;
+  }
+}
+
+/// The mean force in M without the tool's errors.
+Vector3d KnotRows::ForceOf(const Terms& t, const Vector3d& by_skew) const {
+  const Increment& inc = t.knot.increment;
+  Vector3d force = inc.force_M;
+  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
+    const double error = SourceAt(t.border, i);
+    if (error != 0) force -= error * inc.ForceBy(i);
+  }
+  return force - SourceAt(t.border, kTimeSkew) * by_skew;
+}
+
+/// Gravity beyond the model's, where it is unknown [m/s^2].
+double KnotRows::GravityOffset(const Terms& t) const {
+  double gravity = layout_.gravity == kAbsent ? 0 : t.border[layout_.gravity];
+  if (layout_.gravity_gradient != kAbsent) {
+    gravity += t.place.depth * t.border[layout_.gravity_gradient];
+  }
+  return gravity;
+}
+
 /// Mean force in M less R_LM' (a - g) less the change of speed along the axis.
 void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Increment& inc = t.knot.increment;
   const Vector3d down_M = t.R_LM.row(2).transpose();
   const Vector3d path = t.R_LM.transpose() * t.place.acceleration_L;
   const Vector3d p = path - t.place.site.gravity * down_M;
-  Vector3d force = inc.force_M;
-  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
-    const double error = SourceAt(t.border, i);
-    if (error != 0) force -= error * inc.ForceBy(i);
-  }
   // Forces read later than they are stamped are those of a tool that has turned on: dF/dt = F x w.
   const Vector3d by_skew = inc.force_M.cross(Flat(t.turn)) / t.dt;
-  force -= SourceAt(t.border, kTimeSkew) * by_skew;
+  Vector3d force = ForceOf(t, by_skew);
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
   const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
-  double gravity = layout_.gravity == kAbsent ? 0 : t.border[layout_.gravity];
-  if (layout_.gravity_gradient != kAbsent) {
-    gravity += t.place.depth * t.border[layout_.gravity_gradient];
-  }
   // M stands where half of the seen turn leads; half of the unseen is missing.
   const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
   const double seen = Square(noise), missed = Square(0.5 * t.knot.unseen * t.place.site.gravity);
@@ -254,8 +268,8 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   Factor& f = factor_;
   f.Begin(RowKind::kForce, 3);
   f.per_unit = whiten;
-  f.r = whiten *
-        (force - p + gravity * down_M - (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
+  f.r = whiten * (force - p + GravityOffset(t) * down_M -
+                  (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
   const Matrix3d by_phi =
       -(px + down_M.cross(path) * down_M.transpose()) * (t.Ha * t.Xh).transpose();
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);

@@ -69,6 +69,10 @@ class KnotRows {
                 const Node& begin, const Node& end) const;
   void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, NormalBlock& block);
   void AddTurn(const Terms& t, NormalBlock& block);
+  void AddGyroDrift(const Terms& t, const Eigen::Matrix<double, 3, kErrorSources>& by_error,
+                    NormalBlock& block);
+  Eigen::Vector3d ForceOf(const Terms& t, const Eigen::Vector3d& by_skew) const;
+  double GravityOffset(const Terms& t) const;
   void AddForce(const Terms& t, NormalBlock& block);
   void AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block);
   void AddAxial(const Terms& t, NormalBlock& block);

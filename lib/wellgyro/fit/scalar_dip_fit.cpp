@@ -172,6 +172,20 @@ void TakeResult(FitReport& report, bool free_dip) {
   if (free_dip) AddNumber(report, "dip_deg", 24);
 }
 
+std::optional<Fault> DoesNotFitAsDip(const BenchTable& data, const ScalarSetup& setup,
+                                     FitReport& report) {
+  return DoesNotFit(
+      data, {{"gravity", setup.reference.gravity}, {"field", *setup.reference.field}, {"dip", 1}},
+      report);
+}
+
+std::optional<Fault> BadTable(const BenchTable& data, const AttitudeTable& table) {
+  if (auto fault = TooFew(data, 12, "attitudes", kDipAdvice)) return fault;
+  if (auto fault = BadReadings(data, table)) return fault;
+  if (auto fault = BadVectors(data, table.accel, table.accel_channels, "one unit")) return fault;
+  return BadVectors(data, table.mag, table.mag_channels, "one unit");
+}
+
 }  // namespace
 
 Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup& setup) {
@@ -181,10 +195,7 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   }
   const auto table = ReadAttitudeTable(data, {.accel = true, .mag = true});
   if (!table) return table.fault();
-  if (auto fault = TooFew(data, 12, "attitudes", kDipAdvice)) return *fault;
-  if (auto fault = BadReadings(data, *table)) return *fault;
-  if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
-  if (auto fault = BadVectors(data, table->mag, table->mag_channels, "one unit")) return *fault;
+  if (auto fault = BadTable(data, *table)) return *fault;
   const ScalarReadings accel{table->lines, table->accel, setup.reference.gravity, {}};
   const ScalarReadings mag{table->lines, table->mag, *setup.reference.field, {}};
   const auto start = StartOf(*table, setup);
@@ -200,12 +211,7 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   }
   BenchCalibration out;
   out.report = *std::move(whole);
-  if (auto fault = DoesNotFit(
-          data,
-          {{"gravity", setup.reference.gravity}, {"field", *setup.reference.field}, {"dip", 1}},
-          out.report)) {
-    return *fault;
-  }
+  if (auto fault = DoesNotFitAsDip(data, setup, out.report)) return *fault;
   FitReport& report = out.report;
   report.method = "scalar-dip";
   const Eigen::Matrix3d A = LowerOf(report.values).inverse(), M = FullOf(report.values).inverse();

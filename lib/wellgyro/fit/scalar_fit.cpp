@@ -172,6 +172,18 @@ std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::st
   return std::nullopt;
 }
 
+namespace {
+
+void RemarkFew(const BenchTable& data, FitReport& report) {
+  if (data.rows() >= 18) return;
+  report.remarks.push_back(
+      fmt::format("{} attitudes are few for nine parameters: 18 to 24, some with gravity between "
+                  "the axes, halve the uncertainty",
+                  data.rows()));
+}
+
+}  // namespace
+
 Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& setup) {
   const auto table = ReadAttitudeTable(data, {.accel = true});
   if (!table) return table.fault();
@@ -208,12 +220,7 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   AddMatrix(report, "Ka", 0, 3, 3);
   AddVector(report, "ba", 9, 3);
   AddFixed(report, "MtM", FitQuantity::Shape::kMatrix, M.transpose() * M);
-  if (data.rows() < 18) {
-    report.remarks.push_back(
-        fmt::format("{} attitudes are few for nine parameters: 18 to 24, some with gravity between "
-                    "the axes, halve the uncertainty",
-                    data.rows()));
-  }
+  RemarkFew(data, report);
   report.remarks.push_back("the frame is the sensors' own: tie it to the housing by a roll test");
   const double si = setup.reference.gravity_mps2 / setup.reference.gravity;
   out.accel = ThreeChannels(report.values.tail<3>(), M.inverse(), si, setup.reference.axes,

@@ -413,14 +413,9 @@ class Adjuster {
   std::vector<char> out_;
 };
 
-}  // namespace
-
-std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& setup,
-                             const std::vector<TermBundle>& bundles) {
-  std::vector<ToolTerm> terms;
-  for (const TermBundle& bundle : bundles) {
-    terms.insert(terms.end(), bundle.terms.begin(), bundle.terms.end());
-  }
+/// Information of the readings about `terms` at none of them, its diagonal brought to one.
+Eigen::MatrixXd CorrelationsOf(const ToolReadings& readings, const ToolFitSetup& setup,
+                               const std::vector<ToolTerm>& terms) {
   const ToolModel model(readings, setup, terms);
   const Eigen::Index n = model.n_terms();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.size());
@@ -438,7 +433,18 @@ std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& s
     if (sigma > 0) N(k, k) += kNoise * kNoise / (sigma * sigma);
   }
   const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  N = scale.asDiagonal() * N * scale.asDiagonal();
+  return scale.asDiagonal() * N * scale.asDiagonal();
+}
+
+}  // namespace
+
+std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& setup,
+                             const std::vector<TermBundle>& bundles) {
+  std::vector<ToolTerm> terms;
+  for (const TermBundle& bundle : bundles) {
+    terms.insert(terms.end(), bundle.terms.begin(), bundle.terms.end());
+  }
+  const Eigen::MatrixXd N = CorrelationsOf(readings, setup, terms);
   // Row by row of a Cholesky decomposition: what is left of a column beside those before it.
   constexpr double kTold = 1e-9;
   std::vector<int> seen;

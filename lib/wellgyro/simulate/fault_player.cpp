@@ -71,6 +71,20 @@ double AngleAt(const SimulatedFault& f, double time) {
   }
 }
 
+/// A step, a ramp [s], or the rise and fall of a temperature as sine squared.
+double ShapeOfBias(const SimulatedFault& f, double time) {
+  const double since = time - f.begin;
+  if (f.cause == Cause::kGyroStep) return 1;
+  if (f.cause == Cause::kGyroRamp) return since;
+  return std::pow(std::sin(kTwoPi / 2 * since / (f.end - f.begin)), 2);
+}
+
+/// Mean of a cosine of the fault's period over a sample.
+double MeanOfVibration(const SimulatedFault& f, double begin, double end) {
+  const double w = kTwoPi / f.period;
+  return (std::cos(w * (begin - f.begin)) - std::cos(w * (end - f.begin))) / (w * (end - begin));
+}
+
 }  // namespace
 
 Simulation WithTruth(Simulation simulation) {
@@ -96,14 +110,9 @@ ToolErrors FaultPlayer::ErrorsAt(double time) const {
     if (!Acts(f, time)) continue;
     switch (f.cause) {
       case Cause::kGyroStep:
-        e.gyro_bias[f.axis] += f.size;
-        break;
       case Cause::kGyroRamp:
-        e.gyro_bias[f.axis] += f.size * (time - f.begin);
-        break;
       case Cause::kGyroTemperature:
-        e.gyro_bias[f.axis] +=
-            f.size * std::pow(std::sin(kTwoPi / 2 * (time - f.begin) / (f.end - f.begin)), 2);
+        e.gyro_bias[f.axis] += f.size * ShapeOfBias(f, time);
         break;
       case Cause::kGyroScale:
         e.gyro_scale[f.axis] += f.size;
@@ -204,13 +213,20 @@ void FaultPlayer::AddNoise(const SimulatedFault& f, double seconds, ImuSample& s
   }
 }
 
+/// Once, or once a period.
+bool FaultPlayer::Strikes(const SimulatedFault& f, std::size_t index, double begin) {
+  const double next = f.begin + static_cast<double>(done_[index]) * f.period;
+  if ((done_[index] > 0 && f.period == 0) || begin < next) return false;
+  ++done_[index];
+  return true;
+}
+
 /// What one fault makes of what the sensors give.
 void FaultPlayer::Sense(const SimulatedFault& f, std::size_t index, double begin, double end,
                         ImuSample& s) {
   const bool gyro = f.cause == Cause::kGyroStuck || f.cause == Cause::kGyroDead ||
                     f.cause == Cause::kGyroInverted || f.cause == Cause::kGyroSpike;
   double& value = gyro ? s.w_IT_T[f.axis] : s.f_T[f.axis];
-  const double seconds = end - begin;
   switch (f.cause) {
     case Cause::kGyroStuck:
     case Cause::kAccelStuck:
@@ -227,13 +243,9 @@ void FaultPlayer::Sense(const SimulatedFault& f, std::size_t index, double begin
       value = -value;
       break;
     case Cause::kGyroSpike:
-    case Cause::kAccelSpike: {
-      const double next = f.begin + static_cast<double>(done_[index]) * f.period;
-      if ((done_[index] > 0 && f.period == 0) || begin < next) break;
-      ++done_[index];
-      value += f.size;
+    case Cause::kAccelSpike:
+      if (Strikes(f, index, begin)) value += f.size;
       break;
-    }
     case Cause::kGyrosSwapped:
       std::swap(s.w_IT_T.x(), s.w_IT_T.y());
       break;
@@ -244,14 +256,11 @@ void FaultPlayer::Sense(const SimulatedFault& f, std::size_t index, double begin
       s.w_IT_T *= f.size;
       break;
     case Cause::kGyroNoise:
-      AddNoise(f, seconds, s);
+      AddNoise(f, end - begin, s);
       break;
-    case Cause::kVibration: {
-      const double w = kTwoPi / f.period;
-      value += f.size * (std::cos(w * (begin - f.begin)) - std::cos(w * (end - f.begin))) /
-               (w * seconds);
+    case Cause::kVibration:
+      value += f.size * MeanOfVibration(f, begin, end);
       break;
-    }
     case Cause::kMagneticTurn:
       s.b_T = AngleAxisd(f.size, s.f_T.normalized()) * s.b_T;
       break;

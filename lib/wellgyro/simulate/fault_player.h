@@ -35,6 +35,7 @@ class WELLGYRO_EXPORT FaultPlayer {
 
  private:
   void AddNoise(const SimulatedFault& f, double seconds, ImuSample& s);
+  bool Strikes(const SimulatedFault& fault, std::size_t index, double begin);
   void Sense(const SimulatedFault& fault, std::size_t index, double begin, double end,
              ImuSample& sample);
   void Turn(const SimulatedFault& fault, double begin, double end, ImuSample& sample) const;
