@@ -85,11 +85,22 @@ ComparedSurvey Compared(const TakenSurvey& taken, const Surroundings& place, con
   return survey;
 }
 
-constexpr const char* kPlaceNames[] = {
-    "md_m", "inclination_a_deg", "inclination_b_deg", "d_inclination_deg",
-    "sigma_d_inclination_deg", "azimuth_a_deg", "azimuth_b_deg", "d_azimuth_deg",
-    "sigma_d_azimuth_deg", "d_north_m", "d_east_m", "d_down_m", "between_north_m",
-    "between_east_m", "between_down_m", "position_sigmas"};
+constexpr const char* kPlaceNames[] = {"md_m",
+                                       "inclination_a_deg",
+                                       "inclination_b_deg",
+                                       "d_inclination_deg",
+                                       "sigma_d_inclination_deg",
+                                       "azimuth_a_deg",
+                                       "azimuth_b_deg",
+                                       "d_azimuth_deg",
+                                       "sigma_d_azimuth_deg",
+                                       "d_north_m",
+                                       "d_east_m",
+                                       "d_down_m",
+                                       "between_north_m",
+                                       "between_east_m",
+                                       "between_down_m",
+                                       "position_sigmas"};
 
 nb::dict PlacesOf(const std::vector<ComparedPlace>& places) {
   Numbers columns[std::size(kPlaceNames)];
