@@ -109,7 +109,7 @@ int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Su
 
 int Summarise(const JobFile& job, const LiveOutcome& outcome, Says says) {
   Delivery delivery{Files::kWritten, says};
-  const int code = DeliverTools(delivery, outcome.tools, job, outcome.record, outcome.source);
+  const int code = DeliverTools(delivery, outcome.tools, job, *outcome.record, *outcome.source);
   if (code == kUnusable) return code;
   if (!outcome.recording_is_whole) Complain("done, but the recording lacks messages");
   return Conclude(WorstVerdict(outcome.tools),

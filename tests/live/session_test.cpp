@@ -1,4 +1,5 @@
 // A live session as a vendor's program runs it: over multicast, in this process.
+#include "wellgyro/io/result/run_file.h"
 #include "wellgyro/live/session.h"
 
 #include <atomic>
@@ -125,7 +126,7 @@ TEST_F(Session, SurveysRecordsAndResumesInTheSameFolder) {
   EXPECT_EQ(outcome.ended, LiveOutcome::Ended::kFinished);
   EXPECT_FALSE(outcome.fault);
   ASSERT_TRUE(outcome.usable());
-  EXPECT_EQ(outcome.record.operations.size(), 1u);
+  EXPECT_EQ(outcome.record->operations.size(), 1u);
   EXPECT_GT(observer_.stations, 5);
 }
 
@@ -143,7 +144,7 @@ TEST_F(Session, AnOrderJustBeforeAStopIsObeyed) {
   const LiveOutcome outcome = (*session)->Run();
   sender.join();
   EXPECT_EQ(outcome.ended, LiveOutcome::Ended::kFinished);
-  EXPECT_EQ(outcome.record.operations.size(), 1u);
+  EXPECT_EQ(outcome.record->operations.size(), 1u);
   EXPECT_TRUE(outcome.usable());
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/bus/decode.h"
+#include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/live/clock.h"
 #include "wellgyro/live/journal.h"
@@ -52,7 +53,7 @@ bool LiveOutcome::usable() const { return AnyUsable(tools); }
 bool LiveOutcome::losses() const {
   return !recording_is_whole ||
          std::any_of(tools.begin(), tools.end(), [this](const ToolResult& tool) {
-           return !tool.survey.unusable.empty() || HasLosses(source, tool.survey);
+           return !tool.survey.unusable.empty() || HasLosses(*source, tool.survey);
          });
 }
 
@@ -62,7 +63,7 @@ LiveSession::~LiveSession() = default;
 Result<std::unique_ptr<LiveSession>> LiveSession::Open(LiveSetup setup, const RunAdjuster* adjuster,
                                                        LiveObserver& observer) {
   if (auto fault = Complaint(setup)) return *std::move(fault);
-  Result<LiveBus> bus = LiveBus::Open(setup.url);
+  Result<LiveBus> bus = LiveBus::Open(setup.url.empty() ? kDefaultLcmUrl : setup.url);
   if (!bus) return bus.fault();
   auto core = std::make_unique<Core>(std::move(setup), adjuster, observer, std::move(*bus));
   if (auto fault = core->Begin()) return *std::move(fault);

@@ -8,9 +8,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/io/exchange/exchange.h"
-#include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/clock.h"
 #include "wellgyro/live/observer.h"
@@ -18,13 +16,16 @@
 
 namespace wellgyro {
 
+class LiveBus;
 class RunAdjuster;
 struct AdviceCase;
+struct RunRecord;
+struct SourceRecord;
 
 /// What a live session is asked to do.
 struct LiveSetup {
   JobFile job;
-  std::string url = kDefaultLcmUrl;
+  std::string url = {};           ///< of the bus; empty: LCM's own default, this machine only
   std::string out;                ///< folder of the result
   std::string record = {};        ///< log of what is heard; empty: none
   bool resume = false;            ///< continues what was cut off, from `record`
@@ -39,12 +40,12 @@ struct LiveSetup {
 struct LiveOutcome {
   enum class Ended { kFinished, kInterrupted, kBusLost };
   Ended ended = Ended::kFinished;
-  std::vector<ToolResult> tools;  ///< one at least
-  RunRecord record;
-  SourceRecord source;
-  std::optional<Fault> fault;      ///< the files could not be written
-  std::vector<std::string> hints;  ///< what the job might lack
-  bool recording_is_whole = true;  ///< what was used is in the log
+  std::vector<ToolResult> tools;               ///< one at least
+  std::shared_ptr<const RunRecord> record;     ///< what run.toml says of it
+  std::shared_ptr<const SourceRecord> source;  ///< what source.toml says of it
+  std::optional<Fault> fault;                  ///< the files could not be written
+  std::vector<std::string> hints;              ///< what the job might lack
+  bool recording_is_whole = true;              ///< what was used is in the log
 
   WELLGYRO_EXPORT bool usable() const;  ///< of one tool at least
   bool losses() const;

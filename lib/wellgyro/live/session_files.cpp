@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -235,8 +236,8 @@ LiveOutcome LiveSession::Core::End(Ended ended) {
   outcome.recording_is_whole = !log || (!log->failing() && log->lost() == 0);
   outcome.hints = HintsAtChannels(intake.feed());
   outcome.tools = std::move(snapshot.tools);
-  outcome.record = std::move(snapshot.record);
-  outcome.source = std::move(snapshot.source);
+  outcome.record = std::make_shared<const RunRecord>(std::move(snapshot.record));
+  outcome.source = std::make_shared<const SourceRecord>(std::move(snapshot.source));
   return outcome;
 }
 

@@ -1,8 +1,9 @@
-// A vendor's program: one sample into a surveyor, and a message decoded, with installed headers.
+// A vendor's program: one sample into a surveyor, and a message that is none of ours refused by a
+// feed, with installed headers.
 #include <cstdio>
 
 #include <wellgyro/base/angle.h>
-#include <wellgyro/bus/decode.h>
+#include <wellgyro/bus/surveyor_listener.h>
 #include <wellgyro/earth/earth.h>
 #include <wellgyro/survey/surveyor.h>
 
@@ -15,9 +16,12 @@ int main() {
   sample.stamp.period_ns = 10'000'000;
   sample.f_T = {0, 0, -9.82};
   surveyor.Push(sample);
+  wellgyro::SurveyorListener listener(surveyor, sink);
+  wellgyro::Feed feed(wellgyro::Channels{}, listener);
+  feed.Take("WELLGYRO_IMU", {});
   surveyor.Finish();
   const wellgyro::Survey survey = surveyor.Current(0);
   std::printf("%.6f m/s2; %s\n", wellgyro::SiteAt(job.well.latitude, 0).gravity,
               survey.unusable.c_str());
-  return survey.unusable.empty() ? 1 : 0;
+  return survey.unusable.empty() || feed.malformed() != 1 ? 1 : 0;
 }

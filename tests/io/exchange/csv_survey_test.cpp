@@ -6,6 +6,7 @@
 
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/exchange/survey_files.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 
 #include "io/exchange/parsed.h"

@@ -9,6 +9,7 @@
 #include "wellgyro/io/exchange/delivery_check.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
+#include "wellgyro/io/exchange/survey_files.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 
 #include "io/exchange/parsed.h"

@@ -10,6 +10,7 @@
 
 #include <gmock/gmock.h>
 
+#include "wellgyro/io/exchange/survey_files.h"
 #include "wellgyro/io/exchange/survey_tables.h"
 
 #include "support/scratch.h"

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,7 +9,6 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/io/atomic_file.h"
 #include "wellgyro/record/survey_table.h"
 
 /// Surveys in the files that people exchange. Every format reads into a SurveyTable and writes from
@@ -83,21 +81,5 @@ struct WriteOptions {
 /// saying what the format needs and the table lacks; north is never guessed.
 WELLGYRO_EXPORT std::string WriteSurvey(const SurveyTable& table, SurveyFormat format,
                                         const WriteOptions& options = {});
-
-/// The file of a format as `name`, and beside an OSDU manifest the CSV of its stations, whose
-/// columns are called as the manifest says; ready for WriteFiles. Throws as WriteSurvey.
-WELLGYRO_EXPORT std::vector<OutputFile> SurveyFiles(const SurveyTable& table, SurveyFormat format,
-                                                    const std::string& name,
-                                                    const WriteOptions& options = {});
-
-/// Adds a remark where positions part by more than 5 mm from the minimum curvature of the listed
-/// stations.
-WELLGYRO_EXPORT void SayDeparture(SurveyTable& table);
-
-/// A file of each format named after `stem`, ready for WriteFiles: angles to 1e-6 deg, lengths to
-/// 1e-4, as survey.csv has them.
-WELLGYRO_EXPORT std::vector<OutputFile> ExportFormats(const SurveyTable& table,
-                                                      std::span<const SurveyFormat> formats,
-                                                      const std::string& stem);
 
 }  // namespace wellgyro
