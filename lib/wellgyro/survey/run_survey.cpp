@@ -52,14 +52,11 @@ AlongHole Between(const AlongHole& a, const AlongHole& b, double fraction) {
 
 RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
     : job_(job),
-      site_(SiteAt(job.well.latitude, job.well.datum_elevation - job.tie_in.tvd)),
-      north_(job.tie_in.north),
-      tvd_(job.tie_in.tvd),
+      site_(job),
+      outside_(job),
       plan_(job),
       builder_(IncrementOptionsOf(job)),
-      still_(StillSetupOf(job)),
-      external_pending_(job.alignment.method == AlignmentSpec::Method::kExternal),
-      magnet_pending_(job.magnetic && job.magnetic->tie) {
+      still_(StillSetupOf(job)) {
   summary_.run = run;
   summary_.tool = tool;
 }
@@ -284,9 +281,7 @@ void RunSurvey::ListLastMark() {
     waiting->draft->listed = true;
     return;
   }
-  if (drafts_.empty() || drafts_.back().listed) return;
-  drafts_.back().listed = true;
-  Tell(drafts_.size() - 1);
+  if (!drafts().empty()) book_.List(drafts().size() - 1);
 }
 
 /// That makes a station, listed only if the job asks for stops or if it turns out to be the
@@ -330,7 +325,7 @@ void RunSurvey::CutAt(const KnotAt& cut, const AlongHole& next, double reach) {
 
 void RunSurvey::ListLastDepth() {
   Draft* deepest = nullptr;
-  for (Draft& draft : drafts_) {
+  for (Draft& draft : drafts()) {
     if (draft.station.pass == Pass::kOut) continue;
     if (!deepest || draft.station.md > deepest->station.md) deepest = &draft;
   }
@@ -348,8 +343,6 @@ RunHistory RunSurvey::History() const {
   }
   return history;
 }
-
-std::vector<std::size_t> RunSurvey::News() { return std::exchange(news_, {}); }
 
 RunNow RunSurvey::Now() const {
   RunNow now;

@@ -11,13 +11,14 @@
 #include "wellgyro/attitude/increment_builder.h"
 #include "wellgyro/attitude/unseen.h"
 #include "wellgyro/depth/passes.h"
-#include "wellgyro/earth/earth.h"
 #include "wellgyro/estimate/forward_run.h"
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/sample.h"
-#include "wellgyro/survey/draft.h"
+#include "wellgyro/survey/draft_book.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/kept_knots.h"
+#include "wellgyro/survey/outside_azimuth.h"
+#include "wellgyro/survey/path_site.h"
 #include "wellgyro/survey/run_history.h"
 #include "wellgyro/survey/run_now.h"
 #include "wellgyro/survey/station_plan.h"
@@ -52,16 +53,16 @@ class RunSurvey {
   void Flush();
 
   /// Drafts that have become ready to be told since the last call: indices into drafts().
-  std::vector<std::size_t> News();
-  bool has_news() const { return !news_.empty(); }
+  std::vector<std::size_t> News() { return book_.News(); }
+  bool has_news() const { return book_.has_news(); }
   /// Some sample had a depth.
   bool depth_seen() const { return depth_seen_; }
   /// How long it has been since the last that had one [s].
   double seconds_without_depth() const { return depth_seen_ ? seconds_unknown_ : 0; }
   /// The draft still waits for an azimuth to become known.
-  bool IsUnheard(std::size_t draft) const;
-  const std::vector<Draft>& drafts() const { return drafts_; }
-  std::vector<Draft>& drafts() { return drafts_; }
+  bool IsUnheard(std::size_t draft) const { return book_.IsUnheard(draft); }
+  const std::vector<Draft>& drafts() const { return book_.drafts(); }
+  std::vector<Draft>& drafts() { return book_.drafts(); }
   /// Of drafts() that are from samples, in this order, as known on the way.
   std::vector<StationState> states() const;
   const StationState& state(std::size_t number) const;
@@ -100,7 +101,7 @@ class RunSurvey {
     std::optional<Increment> increment;
     bool external = false;            ///< the job's azimuth holds here
     std::optional<bool> still;        ///< once it is decided
-    std::optional<std::size_t> told;  ///< the draft's number, where it is already among drafts_
+    std::optional<std::size_t> told;  ///< the draft's number, where it is already among drafts()
     bool temperature_outside = false;
     float temperature = 0;  ///< [degC]
   };
@@ -143,20 +144,13 @@ class RunSurvey {
   void BeginForward();
   bool KeepIfSure(std::size_t knots);
   void Tie(NorthFix tie, bool of_mark);
-  void UseExternal(const Waiting& waiting);
-  double AxisAzimuth(const AttitudeSample& tool) const;
-  void TellUnheard();
-  void Tell(std::size_t draft);
   void UseClosedStops(std::optional<ToolTime> until);
   void UseFix(NorthFix fix);
-  void TieByMagnet(const NorthFix& fix);
-  void MoveSite(const RunKnot& knot, const AttitudeSample& attitude);
   void ListStop(const NorthFix& fix);
 
   const Job& job_;
-  Site site_;
-  double north_ = 0, tvd_ = 0;
-  std::optional<double> site_md_;
+  PathSite site_;  ///< at the end of the last knot
+  OutsideAzimuth outside_;
   StationPlan plan_;
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::vector<KnotAt> cuts_;                  ///< scratch
@@ -188,8 +182,6 @@ class RunSurvey {
   bool marked_ = false;
   bool depth_seen_ = false;
   double seconds_unknown_ = 0;  ///< since the last sample with a depth [s]
-  bool external_pending_ = false;
-  bool magnet_pending_ = false;  ///< a magnetic azimuth is still to tie the run
   std::optional<double> asked_md_;
   bool asked_ = false;
   bool temperature_outside_ = false;  ///< since the last knot
@@ -198,10 +190,8 @@ class RunSurvey {
   std::deque<Waiting> waiting_;
   std::vector<StillWindow> group_;  ///< windows at one place
   std::deque<NorthFix> closed_;     ///< of stops that are over, until their knots are known
-  std::vector<Draft> drafts_;
+  DraftBook book_;
   std::deque<StationState> states_ahead_;  ///< of the youngest drafts, whose knots still wait
-  std::vector<std::size_t> unheard_;  ///< drafts whose azimuth was not known when they were made
-  std::vector<std::size_t> news_;
   RunSummary summary_;
 };
 

@@ -53,12 +53,12 @@ void RunSurvey::TellAhead() {
     const LinkedErrors errors = forward.Mark(known + i + 1);
     if (!waiting.told) {
       const AttitudeSample attitude = AttitudeOf(knot, forward.node(), forward.CovPhi());
-      waiting.told = drafts_.size();
+      waiting.told = drafts().size();
       states_ahead_.push_back(StateOf(known + i, knot, attitude, forward.node().R_LT, errors));
       AddDraft(*waiting.draft, history_.states.size() + states_ahead_.size() - 1, unseen,
                attitude.azimuth_known);
     }
-    if (drafts_[*waiting.told].listed) unseen = Quality::kGood;
+    if (drafts()[*waiting.told].listed) unseen = Quality::kGood;
   }
   recent_.erase(recent_.begin() + static_cast<std::ptrdiff_t>(recent), recent_.end());
 }

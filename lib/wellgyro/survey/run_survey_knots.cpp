@@ -4,10 +4,8 @@
 #include <utility>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/math/rotation.h"
 #include "wellgyro/record/unknown_angle.h"
 #include "wellgyro/survey/estimated_run.h"
-#include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/node_attitude.h"
 #include "wellgyro/survey/run_survey.h"
 #include "wellgyro/survey/run_survey_internal.h"
@@ -84,7 +82,7 @@ AttitudeSample RunSurvey::AttitudeNow() const {
   const RunKnot& knot = recent_.back();
   if (forward_) return AttitudeOf(knot, forward_->node(), forward_->CovPhi());
   if (knot.increment.level || knots_.empty()) {
-    return LevelOf(knot, job_.errors.accel_bias_sigma, site_.gravity);
+    return LevelOf(knot, job_.errors.accel_bias_sigma, site_.site().gravity);
   }
   AttitudeSample attitude = known_;
   attitude.time = knot.increment.time;
@@ -93,7 +91,7 @@ AttitudeSample RunSurvey::AttitudeNow() const {
 }
 
 void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
-  if (knots_.empty()) history_.site = site_;
+  if (knots_.empty()) history_.site = site_.site();
   if (recent_.size() >= 2 * ForwardRun::kLooksBack) {
     recent_.erase(recent_.begin(), recent_.end() - ForwardRun::kLooksBack);
   }
@@ -107,17 +105,17 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
   }
   known_ = AttitudeNow();
   knots_.Add(knot, known_);
-  MoveSite(knot, known_);
+  site_.Move(knot.along, known_);
   unseen_since_listed_ |= knot.increment.quality & kUnseen;
   if (waiting.draft) TakeDraft(waiting);
-  const AlignmentSpec& spec = job_.alignment;
-  if (external_pending_ && !spec.at_md && !spec.at_utc) {
-    external_pending_ = false;
-    history_.ties.push_back(
-        {0, spec.azimuth, spec.sigma_azimuth, spec.of == AlignmentSpec::Of::kMark});
+  if (const auto tie = outside_.AtBegin()) {
+    history_.ties.push_back(*tie);
     BeginForward();
   }
-  if (waiting.external && external_pending_) UseExternal(waiting);
+  if (waiting.external) {
+    const auto fix = outside_.At(waiting.end, waiting.utc, waiting.along, known_);
+    if (fix) Tie(*fix, job_.alignment.of == AlignmentSpec::Of::kMark);
+  }
   const bool north = !history_.ties.empty() || !history_.fixes.empty();
   if (north && (!forward_ || begun_roughly_)) BeginForward();
   UseClosedStops(recent_.back().increment.time);
@@ -126,7 +124,7 @@ void RunSurvey::StepKnot(const Waiting& waiting, const Increment* next) {
 /// The draft of the last knot, whose state is `state` among those of the run.
 void RunSurvey::AddDraft(const Draft& waiting, std::size_t state, Quality unseen, bool known) {
   const RunKnot& knot = recent_.back();
-  Draft& draft = drafts_.emplace_back(waiting);
+  Draft draft = waiting;
   draft.state = state;
   Station& s = draft.station;
   const Increment& inc = knot.increment;
@@ -135,7 +133,7 @@ void RunSurvey::AddDraft(const Draft& waiting, std::size_t state, Quality unseen
   s.samples_lost = inc.samples_lost;
   s.quality |= unseen;
   if (!knot.along.known) s.quality |= Quality::kDepth;
-  (known ? news_ : unheard_).push_back(drafts_.size() - 1);
+  book_.Add(draft, known);
 }
 
 /// The draft of the knot just stepped.
@@ -153,7 +151,7 @@ void RunSurvey::TakeDraft(const Waiting& waiting) {
   } else {
     AddDraft(*waiting.draft, state, unseen_since_listed_, attitude.azimuth_known);
   }
-  if (drafts_[waiting.told.value_or(drafts_.size() - 1)].listed) {
+  if (drafts()[waiting.told.value_or(drafts().size() - 1)].listed) {
     unseen_since_listed_ = Quality::kGood;
   }
 }
@@ -183,7 +181,7 @@ void RunSurvey::BeginForward() {
   }
   knots_.Revise(begin, part.attitude);
   known_ = part.attitude.back();
-  if (sure) TellUnheard();
+  if (sure) book_.TellUnheard();
 }
 
 /// False where what is known at the end of so many knots has lost its heading.
@@ -191,30 +189,6 @@ bool RunSurvey::KeepIfSure(std::size_t knots) {
   const double sigma = forward_->SigmaOfHeading();
   if (!begun_roughly_ && sigma < kSureHeading) sure_ = {knots, forward_->state()};
   return sigma < kRoughHeading;
-}
-
-/// The job's external azimuth as that of the axis of a tool at this inclination and toolface.
-double RunSurvey::AxisAzimuth(const AttitudeSample& tool) const {
-  if (job_.alignment.of == AlignmentSpec::Of::kAxis) return job_.alignment.azimuth;
-  AttitudeSample at_zero;
-  at_zero.inclination = tool.inclination;
-  at_zero.toolface = tool.toolface;
-  return job_.alignment.azimuth - DirectionOfMark(at_zero);
-}
-
-/// The job's azimuth holds at the end of the knot just stepped.
-void RunSurvey::UseExternal(const Waiting& waiting) {
-  external_pending_ = false;
-  const AttitudeSample& tool = known_;
-  NorthFix fix;
-  fix.begin = fix.end = waiting.end;
-  fix.utc_begin = fix.utc_end = waiting.utc;
-  fix.md = waiting.along.md;
-  fix.inclination = tool.inclination;
-  fix.toolface = tool.toolface;
-  fix.azimuth = AxisAzimuth(tool);
-  fix.cov_attitude(1, 1) = job_.alignment.sigma_azimuth * job_.alignment.sigma_azimuth;
-  Tie(fix, job_.alignment.of == AlignmentSpec::Of::kMark);
 }
 
 /// An azimuth from outside, at the end of the knot just stepped. The run so far is solved with it.
@@ -234,41 +208,6 @@ void RunSurvey::Tie(NorthFix tie, bool of_mark) {
   next_try_ = 0;
   sure_.reset();
   BeginForward();
-}
-
-void RunSurvey::TellUnheard() {
-  news_.insert(news_.end(), unheard_.begin(), unheard_.end());
-  unheard_.clear();
-}
-
-/// Once more, or for the first time: not one that waits for an azimuth.
-void RunSurvey::Tell(std::size_t draft) {
-  if (!IsUnheard(draft)) news_.push_back(draft);
-}
-
-bool RunSurvey::IsUnheard(std::size_t draft) const {
-  return std::binary_search(unheard_.begin(), unheard_.end(), draft);
-}
-
-/// Latitude and height follow the path, roughly: a kilometre is 1e-2 deg and 0.1 mg.
-void RunSurvey::MoveSite(const RunKnot& knot, const AttitudeSample& attitude) {
-  if (!knot.along.known || !std::isfinite(knot.along.md)) return;
-  if (!site_md_) {
-    // Where a run begins below the tie-in, the hole between counts as vertical.
-    tvd_ += std::max(knot.along.md - job_.tie_in.md, 0.0);
-  } else {
-    const Eigen::Vector3d way =
-        (knot.along.md - *site_md_) * Tangent(attitude.inclination, attitude.azimuth);
-    tvd_ += way.z();
-    if (attitude.azimuth_known) north_ += way.x();
-  }
-  site_md_ = knot.along.md;
-  // Damaged depths may lead anywhere; the site stays on the Earth.
-  constexpr double kReach = 1e5;  // [m]
-  tvd_ = std::clamp(tvd_, -kReach, kReach);
-  north_ = std::clamp(north_, -kReach, kReach);
-  const double latitude = job_.well.latitude + north_ / site_.radius_north;
-  site_ = SiteAt(std::clamp(latitude, -kPi / 2, kPi / 2), job_.well.datum_elevation - tvd_);
 }
 
 }  // namespace wellgyro

@@ -74,8 +74,8 @@ void RunSurvey::TakeWindow(const StillWindow& window) {
 
 void RunSurvey::CheckStop() {
   FieldCheckSetup setup;
-  setup.reference.gravity = site_.gravity;
-  setup.reference.latitude = site_.latitude;
+  setup.reference.gravity = site_.site().gravity;
+  setup.reference.latitude = site_.site().latitude;
   setup.gyro = job_.noise;
   setup.errors = job_.errors;
   for (const StillWindow& window : group_) {
@@ -94,7 +94,7 @@ NorthFix RunSurvey::FixOf(std::span<const StillWindow> windows) const {
   GyrocompassSetup setup;
   setup.gyro = job_.noise;
   setup.errors = job_.errors;
-  NorthFix fix = Gyrocompass(windows, site_, setup);
+  NorthFix fix = Gyrocompass(windows, site_.site(), setup);
   fix.md = windows.back().md;
   fix.run = summary_.run;
   fix.tool = summary_.tool;
@@ -118,28 +118,11 @@ void RunSurvey::UseClosedStops(std::optional<ToolTime> until) {
   while (!closed_.empty() && (!until || closed_.front().end <= *until)) {
     const NorthFix fix = closed_.front();
     closed_.pop_front();
-    if (magnet_pending_ && fix.magnetic_azimuth && !Has(fix.quality, Quality::kVertical)) {
-      TieByMagnet(fix);
-    }
+    // Before its own fix, which the magnetic azimuth may tell from its mirror.
+    const auto magnetic = outside_.Magnetic(fix);
+    if (magnetic && !knots_.empty()) Tie(*magnetic, false);
     UseFix(fix);
   }
-}
-
-/// The magnetic azimuth of a stop, before its own fix, which it may tell from its mirror. Once:
-/// what is wrong with one is wrong with all.
-void RunSurvey::TieByMagnet(const NorthFix& fix) {
-  magnet_pending_ = false;
-  if (knots_.empty()) return;
-  NorthFix tie;
-  tie.md = fix.md;
-  tie.begin = tie.end = fix.begin;
-  tie.utc_begin = tie.utc_end = fix.utc_begin;
-  tie.inclination = fix.inclination;
-  tie.toolface = fix.toolface;
-  tie.magnetic_azimuth = fix.magnetic_azimuth;
-  tie.azimuth = WrapTwoPi(*fix.magnetic_azimuth + job_.magnetic->declination);
-  tie.cov_attitude(1, 1) = job_.magnetic->sigma * job_.magnetic->sigma;
-  Tie(tie, false);
 }
 
 void RunSurvey::UseFix(NorthFix fix) {
@@ -185,17 +168,14 @@ void RunSurvey::CloseOnWhole(std::span<const AttitudeSample> whole) {
 
 void RunSurvey::ListStop(const NorthFix& fix) {
   if (!fix.md) return;
-  for (auto draft = drafts_.rbegin(); draft != drafts_.rend(); ++draft) {
-    Station& s = draft->station;
+  for (std::size_t i = drafts().size(); i-- > 0;) {
+    Station& s = drafts()[i].station;
     if (s.utc > fix.utc_end) continue;
     if (std::abs(s.md - *fix.md) > kOneStop) return;
     s.kind = StationKind::kGyrocompass;
     TakeReferences(fix, s);
     s.quality |= fix.quality;
-    if (job_.stations.at_stops && !draft->listed) {
-      draft->listed = true;
-      Tell(static_cast<std::size_t>(drafts_.rend() - draft) - 1);
-    }
+    if (job_.stations.at_stops) book_.List(i);
     return;
   }
 }
@@ -227,8 +207,7 @@ void RunSurvey::Push(const StillWindow& window, const AlongHole& along) {
                     true,       fix.cov_attitude, fix.quality};
   draft.mirror_azimuth = fix.mirror_azimuth;
   draft.mirror_cost = fix.mirror_cost;
-  drafts_.push_back(draft);
-  news_.push_back(drafts_.size() - 1);
+  book_.Add(draft, true);
 }
 
 }  // namespace wellgyro

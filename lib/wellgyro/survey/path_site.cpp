@@ -1,0 +1,36 @@
+#include "wellgyro/survey/path_site.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/math/rotation.h"
+
+namespace wellgyro {
+
+PathSite::PathSite(const Job& job)
+    : job_(job),
+      site_(SiteAt(job.well.latitude, job.well.datum_elevation - job.tie_in.tvd)),
+      north_(job.tie_in.north),
+      tvd_(job.tie_in.tvd) {}
+
+void PathSite::Move(const AlongHole& along, const AttitudeSample& attitude) {
+  if (!along.known || !std::isfinite(along.md)) return;
+  if (!md_) {
+    // Where a run begins below the tie-in, the hole between counts as vertical.
+    tvd_ += std::max(along.md - job_.tie_in.md, 0.0);
+  } else {
+    const Eigen::Vector3d way = (along.md - *md_) * Tangent(attitude.inclination, attitude.azimuth);
+    tvd_ += way.z();
+    if (attitude.azimuth_known) north_ += way.x();
+  }
+  md_ = along.md;
+  // Damaged depths may lead anywhere; the site stays on the Earth.
+  constexpr double kReach = 1e5;  // [m]
+  tvd_ = std::clamp(tvd_, -kReach, kReach);
+  north_ = std::clamp(north_, -kReach, kReach);
+  const double latitude = job_.well.latitude + north_ / site_.radius_north;
+  site_ = SiteAt(std::clamp(latitude, -kPi / 2, kPi / 2), job_.well.datum_elevation - tvd_);
+}
+
+}  // namespace wellgyro
