@@ -1,6 +1,9 @@
 #include "help.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
 #include <sstream>
 #include <vector>
 
@@ -15,10 +18,16 @@ namespace {
 
 constexpr std::size_t kColumn = 32;
 
+/// Of the terminal; where there is none, what COLUMNS says, as other programs take it.
 std::size_t TerminalWidth() {
   winsize size{};
-  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 100;
-  return std::clamp<std::size_t>(size.ws_col, 60, 100);
+  std::size_t columns = 100;
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    columns = size.ws_col;
+  } else if (const char* told = std::getenv("COLUMNS")) {
+    std::from_chars(told, told + std::strlen(told), columns);
+  }
+  return std::clamp<std::size_t>(columns, 60, 100);
 }
 
 /// The command that was named, or the program.
@@ -78,16 +87,24 @@ std::string HelpText::make_subcommand(const CLI::App* command) const {
 
 std::string Complaint(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& named = Named(app);
+  std::string stray;
   for (const std::string& word : app.remaining(true)) {
     const std::string name = word.substr(0, word.find('='));
     const bool option = name.starts_with("--");
-    if (!option && &named != &app) continue;
+    if (!option && &named != &app) {
+      stray = word;
+      continue;
+    }
     const std::string meant = Nearest(name, KnownTo(named));
     return fmt::format("'{}' is no {}{}", name,
                        option ? "option of " + named.get_name() : std::string("command"),
                        meant.empty() ? "" : fmt::format("; is '{}' meant?", meant));
   }
-  return error.what();
+  if (stray.empty()) return error.what();
+  return fmt::format(
+      "'{}' belongs to no option of {}; one that may be given several times stands before each "
+      "value",
+      stray, named.get_name());
 }
 
 }  // namespace wellgyro::apps

@@ -4,9 +4,10 @@ import json
 import math
 import os
 import struct
+import subprocess
 import unittest
 
-from harness import DEMO, FreshProgramTest, Run
+from harness import DEMO, PROGRAM, FreshProgramTest, Run
 
 
 class Terminal(FreshProgramTest):
@@ -19,12 +20,20 @@ class Terminal(FreshProgramTest):
             for line in text.splitlines():
                 self.assertLessEqual(len(line), 100, line)
             self.assertIn("Usage: wellgyro", text)
+            narrow = subprocess.run([PROGRAM, *words, "--help"], capture_output=True, text=True,
+                                    env=os.environ | {"COLUMNS": "80"}, check=True).stdout
+            entries = [line for line in narrow.split("Example:\n")[0].splitlines() if line[:2] == "  "]
+            self.assertEqual([line for line in entries if len(line) > 80], [])
+            self.assertEqual(narrow.split(), text.split())
 
     def test_a_slip_is_named_with_what_seems_to_be_meant(self):
         for words, said in ((("survy", "--job", "x"), "'survy' is no command; is 'survey' meant?"),
                             (("survey", "--jop", "x"), "'--jop' is no option of survey; is '--job'"),
                             (("check", "--job-key"), "'--job-key' is no option of check"),
-                            (("zzz",), "'zzz' is no command\n")):
+                            (("zzz",), "'zzz' is no command\n"),
+                            (("survey", "--from", "a.csv", "b.csv"),
+                             "'b.csv' belongs to no option of survey; one that may be given several "
+                             "times stands before each value\n")):
             done = Run(*words)
             self.assertEqual(done.returncode, 1)
             self.assertIn(said, done.stderr)
@@ -118,18 +127,21 @@ class Terminal(FreshProgramTest):
         whole = self.Write("whole.lcm", data)
         cuts = [0, ends[len(ends) // 3], ends[2 * len(ends) // 3], len(data)]
         names = ["rig.lcm", "rig.001.lcm", "rig.002.lcm"]
-        for name, begin, end in zip(names, cuts, cuts[1:]):
+        logger = ["rig.lcm.07", "rig.lcm.08", "rig.lcm.09"]  # lcm-logger --increment --split-mb
+        for name, begin, end in zip(names + logger, 2 * cuts[:-1], 2 * cuts[1:]):
             with open(self.Path(name), "wb") as part:
                 part.write(data[begin:end])
         job = os.path.join(DEMO, "job.toml")
         self.assertEqual(Run("survey", "--job", job, "--from", whole, "--out",
                              self.Path("whole")).returncode, 0)
-        Run("survey", "--job", job, "--from", self.Path("rig.lcm"), "--out", self.Path("first"))
+        for name, out in (("rig.lcm", "first"), ("rig.lcm.07", "logger")):
+            Run("survey", "--job", job, "--from", self.Path(name), "--out", self.Path(out))
         each = [word for name in names for word in ("--from", self.Path(name))]
         Run("survey", "--job", job, *each, "--out", self.Path("each"))
         for name in ("survey.csv", "passes.csv", "checks.csv"):
             wanted = self.Read("whole/" + name)
             self.assertEqual(self.Read("first/" + name), wanted)
+            self.assertEqual(self.Read("logger/" + name), wanted)
             self.assertEqual(self.Read("each/" + name), wanted)
         self.assertIn("rig.002.lcm", self.Read("first/source.toml"))
 

@@ -286,7 +286,8 @@ bool SensorCsv::Impl::NextDepth(DepthMark& mark) {
     return true;
   }
   if (!ReadLine()) return false;
-  const auto utc = GetTime(kUtc);
+  const SensorColumn clock = layout.Has(kUtc) ? kUtc : kTool;
+  const auto utc = GetTime(clock);
   const SensorColumn depth = layout.Has(kMd) ? kMd : kLengthOf;
   const auto value = Get(depth);
   if (!fault && !value) {
@@ -299,7 +300,7 @@ bool SensorCsv::Impl::NextDepth(DepthMark& mark) {
   mark.magnetic_mark = Whole(kMark) != 0;
   mark.corrected = Whole(kCorrected) != 0;
   mark.run = Whole(kRun);
-  if (fault || !InOrder(*utc, kUtc)) return false;
+  if (fault || !InOrder(*utc, clock)) return false;
   md = depth == kMd ? *value : md + *value;
   mark.md = md;
   mark.kind = depth == kMd ? DepthKind::kIndicated : DepthKind::kDrillPipe;

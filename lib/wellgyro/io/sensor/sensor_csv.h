@@ -19,7 +19,7 @@ namespace wellgyro {
 enum class SensorTable {
   kSamples,  ///< a time, AX AY AZ, GX GY
   kStill,    ///< averages at rest: the same with DURATION
-  kDepth,    ///< UTC and MD, or LENGTH of the pipe run since the row before
+  kDepth,    ///< a time and MD, or LENGTH of the pipe run since the row before
 };
 
 /// By the header line; nothing where it is no such table. Columns are NAME[unit] in any order,
@@ -49,7 +49,7 @@ class WELLGYRO_EXPORT SensorCsv {
   SensorCsv& operator=(SensorCsv&&) noexcept;
 
   SensorTable kind() const;
-  bool has_utc() const;   ///< else samples have the tool's time alone, and utc = tool time
+  bool has_utc() const;   ///< else rows have the tool's time alone, and utc = tool time
   bool has_tool() const;  ///< samples have a tool time of their own; else it is counted from UTC
 
   /// The next record; nothing at the end and where a row cannot be used, which fault() tells. A

@@ -27,6 +27,8 @@ constexpr double kSameDepth = 0.02;  // [m], between marks of a string at rest
 constexpr double kRestGap = 60;      // [s] between marks of one rest
 constexpr double kAhead = 120;       // [s] that depth is pushed ahead of samples
 constexpr double kStampSigmas = 3;
+constexpr double kPairEvery =
+    10;  // [s] between pairs of clocks, over which a crystal keeps its rate
 constexpr std::int64_t kProgressRows = 65536;
 
 struct Opened {
@@ -61,6 +63,36 @@ std::optional<Fault> ForEach(const std::filesystem::path& path, Take take) {
   while (table->Next(row)) take(std::get<Record>(row));
   return table->fault();
 }
+
+/// UTC against the tool's clock, from the pairs that samples carry: straight between two of them,
+/// at the tool's own rate before the first and after the last.
+class ClockPairs {
+ public:
+  void Take(const SampleStamp& stamp) {
+    if (!pairs_.empty() && (stamp.tool_time - pairs_.back().tool).seconds() < kPairEvery) return;
+    pairs_.push_back({stamp.tool_time, stamp.utc});
+  }
+  /// As it is where no pair was taken: one clock serves both.
+  UtcTime UtcOf(ToolTime at) const {
+    if (pairs_.empty()) return UtcTime{at.ns};
+    const auto after =
+        std::ranges::upper_bound(pairs_, at.ns, {}, [](const Pair& pair) { return pair.tool.ns; });
+    const Pair& before = after == pairs_.begin() ? *after : *(after - 1);
+    const double since = (at - before.tool).seconds();
+    if (after == pairs_.begin() || after == pairs_.end()) {
+      return before.utc + Duration::Seconds(since);
+    }
+    const double rate = (after->utc - before.utc).seconds() / (after->tool - before.tool).seconds();
+    return before.utc + Duration::Seconds(rate * since);
+  }
+
+ private:
+  struct Pair {
+    ToolTime tool;
+    UtcTime utc;
+  };
+  std::vector<Pair> pairs_;
+};
 
 class RigRests {
  public:
@@ -98,9 +130,7 @@ class Joiner {
     for (const std::filesystem::path& path : files) {
       if (const auto fault = Take(path)) return *fault;
     }
-    if (!samples_.empty()) {
-      if (const auto fault = JoinClocks()) return *fault;
-    }
+    if (const auto fault = depth_by_tool_ ? PairClocks() : JoinClocks()) return *fault;
     // Averages ask for their depth at once.
     if (samples_.empty() || !stills_.empty()) {
       if (const auto fault = PushDepth()) return *fault;
@@ -164,9 +194,24 @@ class Joiner {
       case SensorTable::kDepth:
         if (!depth_.empty()) return second("depth");
         depth_ = path;
+        depth_by_tool_ = !table->has_utc();
         break;
     }
     return std::nullopt;
+  }
+
+  /// Of depths on the tool's clock: what UTC they are.
+  std::optional<Fault> PairClocks() {
+    if (!has_tool_) {
+      return Fault{.code = FaultCode::kConflict,
+                   .text =
+                       "the depths are on the tool's clock, which no sample has: give samples "
+                       "with TOOL, or depths with UTC",
+                   .source = depth_.string()};
+    }
+    if (!has_utc_) return std::nullopt;
+    return ForEach<ImuSample>(samples_,
+                              [&](const ImuSample& sample) { pairs_.Take(sample.stamp); });
   }
 
   /// Ties the samples' tool time to UTC by the stops, where there is anything to be learnt.
@@ -231,11 +276,13 @@ class Joiner {
     if (depth_.empty()) return std::nullopt;
     return ForEach<DepthMark>(depth_, [&](const DepthMark& mark) {
       ++report_.marks;
-      surveyor_.Push(WithKind(mark));
+      surveyor_.Push(Completed(mark));
     });
   }
 
-  DepthMark WithKind(DepthMark mark) const {
+  /// With the job's kind of depth and UTC.
+  DepthMark Completed(DepthMark mark) const {
+    if (depth_by_tool_) mark.utc = pairs_.UtcOf(ToolTime{mark.utc.ns});
     if (mark.kind == DepthKind::kIndicated) mark.kind = job_.depth.kind;
     return mark;
   }
@@ -251,18 +298,20 @@ class Joiner {
     bool more = depth && depth->Next(row);
     std::error_code ignored;
     std::int64_t next_progress = kProgressRows;
-    const bool by_stops = !has_utc_;
+    const bool by_stops = !has_utc_ && !depth_by_tool_;
     auto fault = ForEach<ImuSample>(samples_, [&](ImuSample sample) {
       if (by_stops) {
         sample.stamp.utc = report_.clock->ToUtc(sample.stamp.tool_time);
-        sample.stamp.utc_unsynced = false;
       } else if (!has_tool_) {
         sample.stamp.tool_time = ToolTime{sample.stamp.utc.ns};
       }
+      sample.stamp.utc_unsynced = false;
       const UtcTime until = sample.stamp.utc + Duration::Seconds(kAhead);
-      while (more && std::get<DepthMark>(row).utc <= until) {
+      while (more) {
+        const DepthMark mark = Completed(std::get<DepthMark>(row));
+        if (mark.utc > until) break;
         ++report_.marks;
-        surveyor_.Push(WithKind(std::get<DepthMark>(row)));
+        surveyor_.Push(mark);
         more = depth->Next(row);
       }
       surveyor_.Push(sample);
@@ -283,7 +332,8 @@ class Joiner {
   std::filesystem::path samples_, depth_;
   std::vector<std::filesystem::path> stills_;
   std::vector<StillWindow> gyro_raw_;
-  bool has_utc_ = false, has_tool_ = false;
+  ClockPairs pairs_;
+  bool has_utc_ = false, has_tool_ = false, depth_by_tool_ = false;
 };
 
 }  // namespace

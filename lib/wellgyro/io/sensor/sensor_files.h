@@ -30,8 +30,10 @@ struct SensorReport {
 ///
 /// Samples of a memory or drop tool, which have the tool's time alone, get UTC from its stops
 /// against those of the depth or tally table (stop_match.h). Where they have both, stops more than
-/// three sigmas from the stamps are told to `faults` (kConflict). Faults: a file or row that cannot
-/// be used, two tables of samples, samples without UTC that cannot be joined.
+/// three sigmas from the stamps are told to `faults` (kConflict). Depths on the tool's own clock
+/// get UTC from the samples' pairs of both clocks; where nothing has UTC, the tool's time stands
+/// for it. Faults: a file or row that cannot be used, two tables of samples, samples without UTC
+/// that cannot be joined, depths on a clock that the samples lack.
 WELLGYRO_EXPORT Result<SensorReport> PushSensorFiles(
     std::span<const std::filesystem::path> files, const Job& job, Surveyor& surveyor, Sink& faults,
     const std::function<void(double)>& progress = {});

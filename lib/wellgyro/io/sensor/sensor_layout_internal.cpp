@@ -115,7 +115,8 @@ std::optional<SensorTable> Layout::Kind() const {
   const bool sensors = HasAll({kGx, kGy, kAx, kAy, kAz});
   if (sensors && Has(kDuration) && Has(kUtc)) return SensorTable::kStill;
   if (sensors && !Has(kDuration) && (Has(kUtc) || Has(kTool))) return SensorTable::kSamples;
-  if (!sensors && Has(kUtc) && (Has(kMd) || Has(kLengthOf))) return SensorTable::kDepth;
+  const bool timed = Has(kUtc) || (Has(kTool) && !Has(kEndUtc));
+  if (!sensors && timed && (Has(kMd) || Has(kLengthOf))) return SensorTable::kDepth;
   return std::nullopt;
 }
 
@@ -127,7 +128,11 @@ std::string Layout::Lacking() const {
     if (!has) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", name);
   };
   if (!any) {
-    need(Has(kUtc), "UTC");
+    if (Has(kEndUtc)) {
+      need(Has(kUtc), "UTC");
+    } else {
+      need(Has(kUtc) || Has(kTool), "UTC or TOOL");
+    }
     need(Has(kMd) || Has(kLengthOf), "MD or LENGTH");
     return fmt::format("a table of depths lacks {}", missing);
   }

@@ -12,6 +12,7 @@
 /// The columns of tables of sensor data.
 namespace wellgyro::sensors {
 
+/// Columns by their names in a header, see sensor_csv.h; the three of an axis follow each other.
 enum SensorColumn : std::uint8_t {
   kUtc,
   kEndUtc,
@@ -48,8 +49,8 @@ enum SensorColumn : std::uint8_t {
 /// Where each column stands, and its unit.
 struct Layout {
   struct Place {
-    int field = -1;
-    double factor = 1;
+    int field = -1;     ///< number of the column from 0; -1: it is not there
+    double factor = 1;  ///< SI units that one of its units is
   };
   std::array<Place, kColumns> places;
   bool meant = false;     ///< a heading has a name that is known, be its unit so or not
@@ -63,7 +64,10 @@ struct Layout {
     }
     return true;
   }
+  /// Places one heading; a name that is not known, stands twice or has no known unit is the
+  /// complaint.
   void Take(std::string_view heading, int field);
+  /// What such columns make together; nothing where one is missing.
   std::optional<SensorTable> Kind() const;
   /// Where that is none: the columns that are missing, in words.
   std::string Lacking() const;
