@@ -58,9 +58,11 @@ class Problem {
   Problem(std::span<const StillWindow> windows, const Site& site, const GyrocompassSetup& setup);
 
   Eigen::Index unknowns() const { return errors_at_ + static_cast<Eigen::Index>(free_.size()); }
+  /// Level by the windows' forces, at this heading, errors zero.
   State Start(double azimuth) const;
   /// Cost least over all but the heading, by one linear step.
   double Profile(double azimuth) const;
+  /// Gauss-Newton from `state` to the minimum about it.
   Solution Descend(State state) const;
   /// One of the estimated errors as the data alone tell it, its prior taken out again, and sigma of
   /// that [SI]; absent where they tell less than half of what the prior does.
@@ -73,11 +75,14 @@ class Problem {
     Eigen::MatrixXd J;
     Eigen::VectorXd r;
   };
+  /// Whitened residuals with their derivatives by all unknowns, priors among them.
   System Linear(const State& state) const;
   Eigen::VectorXd Residual(const State& state) const { return Linear(state).r; }
   Eigen::MatrixXd Normal(const Eigen::MatrixXd& J) const;
   void Rates(const State& state, System& system) const;
   void Forces(const State& state, System& system) const;
+  /// Of the mean rates of all windows about one axis [(rad/s)^2]: white noise in each, bias
+  /// instability and walk from window to window.
   Eigen::MatrixXd RateCovariance(int axis, const NoiseCoefficients& gyro) const;
   void ChooseErrors(const GyrocompassSetup& setup);
   bool Separated() const;

@@ -19,15 +19,18 @@ namespace wellgyro {
 static_assert(kBatchMax == imu_batch_t::N_MAX && kBatchMax == raw_batch_t::N_MAX);
 static_assert(RawSample::kChannelsMax == raw_batch_t::CHANNELS_MAX);
 
-inline constexpr std::size_t kFingerprintSize = 8;
-inline constexpr std::size_t kArraysAt = 68;  ///< byte in both types
+inline constexpr std::size_t kFingerprintSize = 8;  ///< [bytes], before all fields
+inline constexpr std::size_t kArraysAt = 68;        ///< byte in both types
 
+/// The fields of imu_batch_t before its arrays: all that says how long it is.
 struct ImuHead {
   SampleStamp stamp;  ///< of sample 0
   std::int32_t n = 0;
   std::int32_t n_gz = 0;
   std::int32_t n_mag = 0;
 
+  /// Doubles in the arrays: two gyros and three accelerometers a sample, a third gyro and a field
+  /// where the counts say so.
   std::size_t values() const {
     return 5 * static_cast<std::size_t>(n) + static_cast<std::size_t>(n_gz) +
            3 * static_cast<std::size_t>(n_mag);
@@ -35,6 +38,7 @@ struct ImuHead {
   std::size_t size() const { return kArraysAt + values() * sizeof(double); }
 };
 
+/// The fields of raw_batch_t before its arrays.
 struct RawHead {
   SampleStamp stamp;  ///< of sample 0
   std::int32_t n = 0;
@@ -42,6 +46,7 @@ struct RawHead {
   std::int32_t n_values = 0;
   std::int32_t n_temperatures = 0;
 
+  /// 32-bit counts in the arrays.
   std::size_t values() const {
     return static_cast<std::size_t>(n_values) + static_cast<std::size_t>(n_temperatures);
   }
@@ -55,6 +60,7 @@ constexpr std::int32_t CountsIn(std::int32_t n, std::int32_t n_channels) {
   return good ? n * n_channels : 0;
 }
 
+/// Status bits that both types of batch have.
 template <class Io, class Stamp>
 void StatusBits(Io& io, Stamp& stamp) {
   io.Bits("status", Bit{imu_batch_t::GYRO_SATURATED, stamp.gyro_saturated},
@@ -63,11 +69,13 @@ void StatusBits(Io& io, Stamp& stamp) {
           Bit{imu_batch_t::SIMULATED, stamp.simulated});
 }
 
+/// Length of a sample, at least 1 ns.
 template <class Io, class Stamp>
 void PeriodOf(Io& io, Stamp& stamp) {
   io.Within("period_ns", stamp.period_ns, std::int32_t{1}, INT32_MAX);
 }
 
+/// Both clocks, number, session and run of sample 0.
 template <class Io, class Stamp>
 void TimesOf(Io& io, Stamp& stamp) {
   io.Utc("utime_us", stamp.utc);
@@ -77,6 +85,7 @@ void TimesOf(Io& io, Stamp& stamp) {
   io.Count("run", stamp.run);
 }
 
+/// A third gyro and a field are there for every sample or for none.
 template <class Io, class Head>
 void Fields(Io& io, Head& h) requires std::is_same_v<std::remove_const_t<Head>, ImuHead> {
   TimesOf(io, h.stamp);
@@ -89,6 +98,7 @@ void Fields(Io& io, Head& h) requires std::is_same_v<std::remove_const_t<Head>, 
   io.ZeroOr("n_mag", h.n_mag, h.n);
 }
 
+/// The number of values must be that of samples times channels.
 template <class Io, class Head>
 void Fields(Io& io, Head& h) requires std::is_same_v<std::remove_const_t<Head>, RawHead> {
   TimesOf(io, h.stamp);

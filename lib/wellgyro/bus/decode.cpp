@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "wellgyro/bus/batch_internal.h"
-#include "wellgyro/bus/fields_internal.h"
+#include "wellgyro/bus/said_fields_internal.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {

@@ -4,7 +4,7 @@
 
 #include "wellgyro/bus/bytes_internal.h"
 #include "wellgyro/bus/field_writer_internal.h"
-#include "wellgyro/bus/fields_internal.h"
+#include "wellgyro/bus/said_fields_internal.h"
 
 namespace wellgyro {
 namespace {

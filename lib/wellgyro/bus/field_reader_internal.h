@@ -33,16 +33,20 @@ class FieldReader {
   /// Of a whole message, or of its beginning; the fields stand from byte `at` on.
   FieldReader(std::span<const std::byte> message, std::size_t at) : bytes_(message), at_(at) {}
 
+  /// Microseconds since 1970 up to kUtcMaxUs; left as it was where out of range.
   void Utc(const char* name, UtcTime& time) {
     const auto us = Take<std::int64_t>();
     if (Require(IsUtc(us), name, us)) time.ns = us * 1000;
   }
+  /// Any value.
   void Int(const char* /*name*/, std::int32_t& value) { value = Take<std::int32_t>(); }
+  /// From 0 to kCountMax, so that differences and sums of two stay inside 64 bits.
   template <class Integer>
   void Count(const char* name, Integer& value) {
     value = Take<Integer>();
     Require(IsCount(value), name, value);
   }
+  /// In [least, most].
   template <class Integer>
   void Within(const char* name, Integer& value, Integer least, Integer most) {
     value = Take<Integer>();
@@ -53,6 +57,7 @@ class FieldReader {
     value = Take<std::int32_t>();
     Require(value == 0 || value == n, name, value);
   }
+  /// A 32-bit word that must be 0 or 1.
   void Flag(const char* name, bool& value) {
     const auto word = Take<std::int32_t>();
     Require(word == 0 || word == 1, name, word);
@@ -64,6 +69,7 @@ class FieldReader {
     const auto word = Take<std::int32_t>();
     ((bits.on = (word & bits.mask) != 0), ...);
   }
+  /// An enumerator by its number; the value stays as it was where that is none of [first, last].
   template <class Enum>
   void Choice(const char* name, Enum& value, Enum first, Enum last) {
     const auto word = Take<std::int32_t>();
@@ -71,15 +77,18 @@ class FieldReader {
         word >= static_cast<std::int32_t>(first) && word <= static_cast<std::int32_t>(last);
     if (Require(known, name, word)) value = static_cast<Enum>(word);
   }
+  /// Non-finite values are out of range.
   template <class Real>
   void Number(const char* name, Real& value) {
     value = Take<Real>();
     Require(std::isfinite(value), name, value);
   }
+  /// Finite and not negative, as a sigma or a length of time.
   void NotNegative(const char* name, double& value) {
     value = Take<double>();
     Require(std::isfinite(value) && value >= 0, name, value);
   }
+  /// Where it is not present, its bytes are skipped without a look and the value is 0.
   void NumberIf(const char* name, bool present, double& value) {
     if (present) return Number(name, value);
     Take<double>();
@@ -90,12 +99,14 @@ class FieldReader {
     Take<double>();
     value = 0;
   }
+  /// As Number where present, skipped without a look where not.
   void Optional(const char* name, bool present, std::optional<double>& value) {
     present ? Number(name, value.emplace()) : NumberIf(name, false, ignored_);
   }
   void OptionalNotNegative(const char* name, bool present, std::optional<double>& value) {
     present ? NotNegative(name, value.emplace()) : NumberIf(name, false, ignored_);
   }
+  /// The value stays absent where it is not present.
   void OptionalInt(const char* /*name*/, bool present, std::optional<std::int32_t>& value) {
     const auto word = Take<std::int32_t>();
     if (present) value = word;

@@ -23,54 +23,66 @@ class FieldWriter {
  public:
   explicit FieldWriter(std::vector<std::byte>& bytes) : bytes_(bytes) {}
 
+  /// Whole microseconds since 1970, rounded down; up to kUtcMaxUs.
   void Utc(const char* name, UtcTime time) {
     const std::int64_t us = time.ns / 1000;
     Require(IsUtc(us) && time.ns >= 0, name, time.ns);
     Put(us);
   }
+  /// Any value.
   void Int(const char* /*name*/, std::int32_t value) { Put(value); }
+  /// From 0 to kCountMax.
   template <class Integer>
   void Count(const char* name, Integer value) {
     Require(IsCount(value), name, value);
     Put(value);
   }
+  /// In [least, most].
   template <class Integer>
   void Within(const char* name, Integer value, Integer least, Integer most) {
     Require(value >= least && value <= most, name, value);
     Put(value);
   }
+  /// A count of values that a message has for all of its `n` samples or for none.
   void ZeroOr(const char* name, std::int32_t value, std::int32_t n) {
     Require(value == 0 || value == n, name, value);
     Put(value);
   }
+  /// A 32-bit 0 or 1, as LCM has no type for it that every language reads alike.
   void Flag(const char* /*name*/, bool value) { Put(std::int32_t{value}); }
+  /// A word of status bits; those that are not named are 0.
   template <class... Bools>
   void Bits(const char* /*name*/, Bit<Bools>... bits) {
     std::int32_t word = 0;
     ((word |= bits.on ? bits.mask : 0), ...);
     Put(word);
   }
+  /// An enumerator by its number, in [first, last].
   template <class Enum>
   void Choice(const char* name, Enum value, Enum first, Enum last) {
     const auto word = static_cast<std::int32_t>(value);
     Require(value >= first && value <= last, name, word);
     Put(word);
   }
+  /// Finite: NaN and infinity do not travel.
   template <class Real>
   void Number(const char* name, Real value) {
     Require(std::isfinite(value), name, value);
     Put(value);
   }
+  /// Finite and not negative, as a sigma or a length of time.
   void NotNegative(const char* name, double value) {
     Require(std::isfinite(value) && value >= 0, name, value);
     Put(value);
   }
+  /// 0 where it is not present, whatever the record holds there.
   void NumberIf(const char* name, bool present, double value) {
     Number(name, present ? value : 0.0);
   }
   void NotNegativeIf(const char* name, bool present, double value) {
     NotNegative(name, present ? value : 0.0);
   }
+  /// 0 where it is absent; the flag for it is a field of its own.
   void Optional(const char* name, bool /*present*/, const std::optional<double>& value) {
     Number(name, value.value_or(0.0));
   }
@@ -84,6 +96,8 @@ class FieldWriter {
   void OptionalCount(const char* name, bool /*present*/, const std::optional<std::int64_t>& value) {
     Count(name, value.value_or(std::int64_t{0}));
   }
+  /// LCM's string: its length with the closing NUL, its bytes, the NUL. Below kStringMax, without a
+  /// NUL inside.
   void String(const char* name, const std::string& text) {
     Require(text.size() < kStringMax, name, text.size());
     Require(text.find('\0') == std::string::npos, name, "a string with a NUL inside");
@@ -92,6 +106,7 @@ class FieldWriter {
     bytes_.insert(bytes_.end(), bytes, bytes + text.size() + 1);
   }
 
+  /// Bytes whose number `n` was written before.
   void Bytes(const char* name, const std::vector<std::byte>& bytes, std::int32_t n) {
     Require(std::ssize(bytes) == n, name, bytes.size());
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());

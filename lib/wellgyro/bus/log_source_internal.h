@@ -15,6 +15,7 @@ namespace wellgyro {
 /// for from a pipe.
 class LogSource {
  public:
+  /// A regular file is mapped, a FIFO or - is read. A Fault where it cannot be opened.
   static Result<LogSource> Open(const std::string& path);
   ~LogSource();
   LogSource(LogSource&& other) noexcept;
@@ -26,6 +27,7 @@ class LogSource {
   /// At least `size` bytes in view(); false when the file ends before.
   bool Grow(std::size_t size) { return view_.size() >= size || Read(size); }
 
+  /// Moves the cursor on by `size`, which is in view.
   void Drop(std::size_t size) {
     view_ = view_.subspan(size);
     offset_ += static_cast<std::int64_t>(size);

@@ -118,10 +118,12 @@ class WELLGYRO_EXPORT StreamGuard {
   void TakeOwn(Stream& stream, const Place& place, const Message& message);
   void TakeOther(const Key& key, Stream& stream, const Place& place, const Message& message);
   void Own(Stream& stream, const Speaker& speaker);
+  /// Counts it as left out, and tells who wants to hear it.
   void Leave(const Message& message);
   void Hold(Speaker& speaker, const Message& message);
   void DropWeakest(Stream& stream);
   void DropHeld(Speaker& speaker);
+  /// Its order so far, with what it held.
   void Forget(Speaker& speaker);
   bool IsForeign(const Message& message) const;
   void TellOf(const Key& key, Stream& stream, Speaker& speaker, const SentBy& by);

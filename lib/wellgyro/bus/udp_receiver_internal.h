@@ -75,13 +75,21 @@ class UdpReceiver {
   };
   struct Buffers;
   Fault Refused(const std::string& doing) const;
+  /// Socket on group and port, shared with other receivers, its buffer as the URL asks.
   std::optional<Fault> Bind();
+  /// Joins the group on the URL's interface, or the one that its route leads to.
   std::optional<Fault> JoinGroup();
+  /// By which messages of this machine are told from others.
   void FindOwnAddresses();
+  /// `address` in the host's order; true also of senders that the URL names.
   bool IsLocal(std::uint32_t address) const;
+  /// The thread: reads until told to stop, and waits while kHeldMax bytes are held.
   void Work();
+  /// As many datagrams as there are, in one call of the system.
   void Read(Buffers& buffers);
+  /// One datagram, a message or a fragment of one.
   void Take(std::uint64_t sender, std::span<const std::byte> datagram, std::int64_t received_us);
+  /// A whole message for the consumer, where its channel is wanted.
   void Hold(const Reassembly::Whole& whole, std::int64_t received_us, std::uint64_t sender);
   bool Wanted(std::string_view channel) const;
 

@@ -39,6 +39,7 @@ struct LinearProblem {
   int size() const { return static_cast<int>(parameters.size()); }
 };
 
+/// What least squares gives, of the rows that were used; see Solve.
 struct LinearSolution {
   Eigen::VectorXd x;
   Eigen::MatrixXd cov;       ///< empty where it cannot be known

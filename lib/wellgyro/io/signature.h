@@ -22,13 +22,17 @@ struct PrivateKey {
   std::vector<std::byte> bytes;  ///< 32, secret
 };
 
+/// A key from OpenSSL's random generator.
 WELLGYRO_EXPORT PrivateKey NewPrivateKey();
+/// A Fault where the file cannot be read or holds no Ed25519 key.
 WELLGYRO_EXPORT Result<PrivateKey> ReadPrivateKey(const std::filesystem::path& path);
 /// For the owner's eyes alone; a Fault where the file exists.
 WELLGYRO_EXPORT std::optional<Fault> WritePrivateKey(const PrivateKey& key,
                                                      const std::filesystem::path& path);
 
+/// kPublicKeySize bytes.
 WELLGYRO_EXPORT std::vector<std::byte> PublicKeyOf(const PrivateKey& key);
+/// Ed25519 (RFC 8032), kSignatureSize bytes: the same for the same message.
 WELLGYRO_EXPORT std::vector<std::byte> Sign(const PrivateKey& key,
                                             std::span<const std::byte> message);
 /// False also for a key or signature of another size.

@@ -32,13 +32,14 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
 
   void OnStation(const Station& station) override;
   void OnFault(const Fault& fault) override;
+  /// The next status, which is due at once then, says so.
   void OnAcknowledged(std::int32_t command_id) override;
 
   /// Sends of what waits as much as the bus may carry now; to be called every few milliseconds
   /// while something waits. A burst of revised stations would overrun the queue of 30 messages that
   /// an LCM receiver has by default.
   void Pump();
-  bool waiting() const { return !outbox_.empty(); }
+  bool waiting() const { return !outbox_.empty(); }  ///< stations that Pump has still to send
   /// Every station told, in its last revision, where that is this one or later; once a second.
   void SayAgain(std::int32_t from_revision);
   void Send(Glance glance);
@@ -51,9 +52,9 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
   /// Fills in what only the broadcast knows and sends it.
   void Send(Status status);
 
-  std::int64_t stations() const { return stations_; }  ///< told by the surveyor
-  std::int64_t news() const { return news_; }          ///< anything the files show
-  bool must_acknowledge() const { return must_acknowledge_; }
+  std::int64_t stations() const { return stations_; }          ///< told by the surveyor
+  std::int64_t news() const { return news_; }                  ///< anything the files show
+  bool must_acknowledge() const { return must_acknowledge_; }  ///< a status is due at once
 
  private:
   template <class Record>

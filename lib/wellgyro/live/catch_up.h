@@ -55,16 +55,22 @@ class WELLGYRO_EXPORT CatchUp {
 
  private:
   struct Follower;
+  /// By which a message is known again in another recorder's log.
   MessageKey Key(std::string_view channel, std::span<const std::byte> bytes) const;
+  /// Into the survey, and noted as the last of its channel.
   void UseOne(const HeldMessage& message, bool fresh);
+  /// One message of a fill log: used once the place where the log before ended has come.
   void TakeFill(const HeldMessage& message);
   void UseUnheard(std::vector<HeldMessage> before);
+  /// What has been added to a log since it was read; how many messages.
   Result<std::int64_t> ReadOn(Follower& log);
+  /// Reads on until the log reaches the live stream; true: stopped meanwhile.
   Result<bool> Follow(LiveBus& bus, Follower& log);
   void NoteUsed(std::string_view channel, const MessageKey& key);
   std::vector<MessageKey> HeldKeys() const;
   std::map<std::string_view, std::size_t> Joints(const std::vector<MessageKey>& keys) const;
   bool Reached(bool quiet) const;
+  /// Uses what is held beyond what was used, each message once.
   void Join();
 
   const Channels& channels_;

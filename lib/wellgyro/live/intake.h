@@ -55,10 +55,12 @@ class WELLGYRO_EXPORT ToolBook : public SurveyorListener {
                 if (tell_) tell_(record, event);
               }),
         surveyor_(surveyor) {}
+  /// Kept as the latest of its tool and run, then handed on.
   void OnTool(const ToolInfo& info) override;
   void OnImu(std::span<const ImuSample> batch) override;
   void OnRaw(std::span<const RawSample> batch) override;
   void OnStill(const StillWindow& window) override;
+  /// Follows rests and speed for DepthNow, then handed on.
   void OnDepth(const DepthMark& mark) override;
   void OnMode(const ToolMode& mode) override;
   void OnEvent(const Event& event) override { gate_.Take(event); }
@@ -92,6 +94,7 @@ class WELLGYRO_EXPORT Intake {
     feed_.Take(channel, bytes, offset);
   }
 
+  /// What came on each channel so far, with the digest of its accepted payloads.
   std::vector<ChannelRecord> Channels() const;
   const std::vector<ToolInfo>& tools() const { return listener_.tools(); }
   /// `watch`, which must outlive this object, sees all samples too.
@@ -100,6 +103,7 @@ class WELLGYRO_EXPORT Intake {
   void Tell(OperationGate::Tell tell) { listener_.Tell(std::move(tell)); }
   const OperationGate& operations() const { return listener_.gate(); }
   const DepthNow& depth() const { return listener_.depth(); }
+  /// Batches of either type: whether the tool still sends.
   std::int64_t sample_messages() const {
     return feed_.count(MessageType::kImuBatch).messages +
            feed_.count(MessageType::kRawBatch).messages;

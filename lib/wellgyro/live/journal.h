@@ -18,9 +18,13 @@ struct Journal {
   std::int64_t begun_us = 0;  ///< when the survey began to listen, since 1970; 0: not known
 };
 
+/// Of a job's files as they were read. `log` is made absolute, so that a session may be resumed
+/// from another folder.
 Journal JournalOf(const JobFile& job, const std::string& log, std::int64_t begun_us);
 
+/// Whether a survey that was cut off can be continued in this folder.
 bool HasJournal(const std::filesystem::path& folder);
+/// Whole or not at all; before the first message is recorded.
 std::optional<Fault> WriteJournal(const std::filesystem::path& folder, const Journal& journal);
 
 /// The journal in `folder`; `now` itself where there is none, because the survey was cut off before

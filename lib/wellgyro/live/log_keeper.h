@@ -26,7 +26,7 @@ namespace wellgyro {
 /// LogWriter::kHeldMax bytes are held, and what finds no room in them is counted.
 class WELLGYRO_EXPORT LogKeeper {
  public:
-  static constexpr std::int64_t kSyncMs = 1000;
+  static constexpr std::int64_t kSyncMs = 1000;  ///< of data that a loss of power may take
 
   /// `clock` and `notices` must outlive the object.
   static Result<std::unique_ptr<LogKeeper>> Open(const std::string& path, IfExists if_exists,
@@ -35,13 +35,15 @@ class WELLGYRO_EXPORT LogKeeper {
   LogKeeper(const LogKeeper&) = delete;
   LogKeeper& operator=(const LogKeeper&) = delete;
 
+  /// In the session's thread. Never fails for the caller: a full disk is told to `notices` and
+  /// tried again.
   void Write(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us);
   /// To be called now and then: tries a disk again, looks whether the log is in its place.
   void Attend();
   void Close();
 
-  bool failing() const { return failing_; }
-  bool moved() const { return moved_; }
+  bool failing() const { return failing_; }  ///< the disk takes nothing at present
+  bool moved() const { return moved_; }      ///< the log was renamed or removed under the session
   std::int64_t lost() const { return log_.lost(); }  ///< messages that are in no recording
 
  private:

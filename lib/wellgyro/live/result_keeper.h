@@ -38,7 +38,7 @@ class WELLGYRO_EXPORT ResultKeeper {
   void Keep(Snapshot snapshot);
   /// Nothing is being written or waits to be, and the last writing went well.
   bool idle() const;
-  bool failing() const;
+  bool failing() const;  ///< the last writing went wrong
   /// The verdict in the files, the worst of the tools'; nothing: no survey has been written.
   std::optional<RunVerdict> kept() const;
 

@@ -34,33 +34,58 @@ struct LiveSession::Core {
 
   Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveObserver& observer, LiveBus the_bus);
 
+  /// Takes the folder, subscribes, and opens or resumes the log. A Fault: nothing has been written.
   std::optional<Fault> Begin();
+  /// The session's loop: hears, uses, publishes, keeps files, until it ends.
   Ended Work();
+  /// Settles what waits and writes the last files.
   LiveOutcome End(Ended ended);
+  /// From a signal handler or another thread.
   void Stop() noexcept;
 
+  /// A message off the bus: held while logs are joined with what is heard, else to the guard, which
+  /// hands it to Use.
   void Hear(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us);
+  /// A message into the survey, live or from a log; `record`: into the log first.
   void Use(std::string_view channel, std::span<const std::byte> bytes, std::int64_t received_us,
            bool record);
+  /// An order of a sender outside this machine, where unsigned ones are obeyed from here only.
   bool ComesFromElsewhere(std::string_view channel, std::span<const std::byte> bytes);
+  /// What became of an order, to the observer and onto the bus.
   void TellOf(const OperationRecord& record, bool event);
+  /// Makes the folder and locks it: one session writes there.
   std::optional<Fault> TakeFolder();
   std::optional<Fault> BeginRecord();
+  /// Joins logs and stream, then tells all stations; true: stopped meanwhile.
   Result<bool> Resume();
+  /// Uses what had come before Stop, for kDrainUs at most; true: a FINISH among it ended the
+  /// survey.
   bool DrainStopped();
+  /// What is due besides messages: status, files, advice, the log's disk.
   void Housekeeping();
+  /// FINISH was obeyed and kFinishPatienceUs went by without samples, as of a tool that is off.
   bool FinishIsDue(std::int64_t now);
+  /// Once a second, with a glance; without one where a command is to be acknowledged.
   void SendStatus(std::int64_t now);
   Status StatusNow(bool on_time);
+  /// Degraded, or at fault where recording or files cannot be written; why, in its text.
   void Worsen(Status& status) const;
+  /// From the watchdog: the last status again, busy, while the survey is adjusted.
   void SendLate();
   Glance GlanceNow() const;
+  /// Asks the adviser, and publishes what it has come to.
   void Advise(std::int64_t now);
+  /// Which check's verdict changed last, for the glance.
   void NoteChecks(const std::vector<ToolResult>& tools);
+  /// Sends stations that still wait, before the end.
   void EmptyOutbox();
+  /// The last files; `patient`: tries a full disk again until Stop.
   std::optional<Fault> WriteLast(const Snapshot& snapshot, bool patient);
+  /// Hands a snapshot to the keeper when there is news and it is due.
   void KeepFiles(std::int64_t now);
+  /// All tools' surveys and the records beside them, as they are now.
   Snapshot Take() const;
+  /// How the stream came: counts of messages, losses, drops.
   SourceRecord Source() const;
   std::int64_t Now() const { return setup.clock.monotonic_us(); }
 

@@ -39,10 +39,12 @@ class PhaseBlocks {
   const double* At(std::int64_t n, std::int64_t count);
 
  private:
+  /// The phase at a block's begin as the unevaluated sum high + low.
   struct Base {
     double high = 0;
     double low = 0;
   };
+  /// Phases made again, or joined from two blocks, for one that asks for them.
   struct Stretch {
     std::int64_t begin = -1;
     std::int64_t count = 0;
@@ -52,6 +54,7 @@ class PhaseBlocks {
   const double* Rates(std::int64_t from, std::int64_t n);
   double Make(std::int64_t block, const Base& base, double* local, double* phases);
   const double* Remake(std::int64_t block);
+  /// Where the ring holds a block, or would.
   double* Slot(std::int64_t block) { return ring_.get() + (block % slots_) * kBlock; }
 
   std::span<const double> rate_;

@@ -18,6 +18,7 @@ struct PageUnits {
   double dogleg = 1;  ///< of one deg/30m
   std::string_view dogleg_name = "deg/30m";
 };
+/// Metres, or feet with doglegs in deg/100ft.
 PageUnits UnitsOf(ReportOptions::Units units);
 
 /// A page while it is written.
@@ -31,6 +32,7 @@ struct PageText {
   std::string LengthName() const { return "[" + std::string(units.length_name) + "]"; }
   /// "MD [m]".
   std::string Named(std::string_view quantity) const;
+  /// In the page's units; absent stays absent.
   std::optional<double> Length(const std::optional<double>& metres) const;
 };
 

@@ -21,8 +21,8 @@ namespace wellgyro {
 /// merely ahead of the samples.
 class MarkGate {
  public:
-  static constexpr int kOthers = 10;
-  static constexpr std::size_t kAsideMax = 10'000;
+  static constexpr int kOthers = 10;  ///< marks that contradict one which they overtake
+  static constexpr std::size_t kAsideMax = 10'000;  ///< that wait at most
 
   using Use = std::function<void(const DepthMark&)>;
   using Tell = std::function<void(const Fault&)>;
@@ -45,6 +45,8 @@ class MarkGate {
     DepthMark mark;
     int overtaken = 0;
   };
+  /// Further on than the newest sample and mark by more than `ahead`; before the first sample
+  /// every mark is, until Open.
   bool IsAhead(UtcTime utc) const;
   void Pass(const DepthMark& mark);
   void Release(UtcTime utc);

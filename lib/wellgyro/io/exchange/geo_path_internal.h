@@ -28,8 +28,11 @@ inline constexpr double kEllipseConfidence = 0.95;
 /// What a path says of itself, in pairs of name and text.
 std::vector<std::pair<std::string, std::string>> GeoFactsOf(const SurveyTable& table);
 
+/// RFC 7946: path, stations and ellipses as features, longitude before latitude.
 std::string WriteGeoJson(const SurveyTable& table);
+/// KML 2.2, for globes.
 std::string WriteKml(const SurveyTable& table);
+/// The bytes of an SQLite database, the same for the same table.
 std::string WriteGeoPackage(const SurveyTable& table);
 
 /// A JSON string with its quotes.

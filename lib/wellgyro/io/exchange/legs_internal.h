@@ -14,6 +14,7 @@
 /// that a file gives.
 namespace wellgyro::witness {
 
+/// How positions are summed from angles; each as the field's textbooks have it.
 enum class Method {
   kMinimumCurvature,
   kRadiusOfCurvature,
@@ -48,6 +49,7 @@ struct LineFit {
   double sigma = 0;   ///< of the factor
   double median = 0;  ///< of what remains, over stretches [m]
 };
+/// Of a column of depths, as TVD, against the legs' vertical parts.
 LineFit FitVertical(const SurveyTable& table, const std::vector<Stretch>& stretches, Column column);
 
 /// The same in the plane: north + i east given = z times computed; and of the mirror image, z times
@@ -59,6 +61,7 @@ struct PlaneFit {
   double sigma = 0, mirrored_sigma = 0;
   double median = 0, mirrored_median = 0;
 };
+/// Of two columns, offsets or map coordinates, against the legs' horizontal parts.
 PlaneFit FitPlane(const SurveyTable& table, const std::vector<Stretch>& stretches, Column north,
                   Column east);
 

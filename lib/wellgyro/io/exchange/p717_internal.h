@@ -18,14 +18,17 @@ namespace wellgyro::p717 {
 std::string_view UnitName(int number, bool draft_2018);
 int UnitNumber(std::string_view name);
 
+/// A kind of object that positions are of, by number and code.
 struct ObjectType {
   int number;
   std::string_view code, name;
 };
+/// Null for a code or number that the format does not have.
 const ObjectType* TypeOfCode(std::string_view code);
 const ObjectType* TypeOfNumber(int number);
 
 std::string_view StatusText(int number);  ///< of rows
+/// The format has no number for a tie-in: 9, other, and the point's code TP stand for it.
 int NumberOfStatus(RowStatus status);
 RowStatus StatusOf(int number, std::string_view point);
 

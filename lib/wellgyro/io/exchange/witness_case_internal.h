@@ -12,6 +12,7 @@
 /// The steps of Witness, over one survey.
 namespace wellgyro::witness {
 
+/// A survey whose positions are held against its angles, as far as it has been settled.
 struct Case {
   SurveyTable& table;
   const Claims& claims;
@@ -21,8 +22,10 @@ struct Case {
   std::vector<std::string> agreeing;  ///< what was found to agree
   double worst = 0;                   ///< typical remainder over a stretch [m]
 
+  /// The file left open in what the column is written.
   bool Open(Column column) const;
   void Note(std::string text) const { table.head.notes.push_back(std::move(text)); }
+  /// Throws the Fault kConflict with the file's name.
   [[noreturn]] void Refuse(std::string text) const;
 };
 

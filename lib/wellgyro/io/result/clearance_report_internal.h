@@ -22,8 +22,11 @@ struct OffsetResult {
 /// Those that were not screened out, the lowest factor first.
 std::vector<ClearanceSeries> SeriesOf(const std::vector<OffsetResult>& offsets);
 
+/// clearance.csv: every row of every well that was not screened out, columns with their units.
 std::string ClearanceCsv(const std::vector<OffsetResult>& offsets);
+/// wells.csv: one row a well, its lowest factor and verdict.
 std::string WellsCsv(const std::vector<OffsetResult>& offsets, const ClearancePolicy& policy);
+/// The report as one self-contained page; `ladder` and `cylinder` are its pictures in SVG.
 std::string ClearanceHtml(const std::string& reference, const std::vector<OffsetResult>& offsets,
                           const ClearancePolicy& policy, const std::vector<std::string>& notes,
                           const std::string& ladder, const std::string& cylinder);

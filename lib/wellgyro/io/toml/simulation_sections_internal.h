@@ -12,11 +12,14 @@ namespace wellgyro {
 
 /// By table, name or laws.
 SimulatedWell ReadSimulatedWell(TomlTable& table);
+/// [run]: speeds, stops, index turns and roll, step by step.
 SimulatedRun ReadSimulatedRun(TomlTable table);
+/// [earth]: the place, its gravity and field.
 SimulatedEarth ReadSimulatedEarth(TomlTable table);
 /// `noise` stands in for coefficients in the table where they come from a file.
 SimulatedTool ReadSimulatedTool(TomlTable table, const NoiseCoefficients* noise,
                                 std::uint64_t seed);
+/// [streams]: rates, batches, overlap and losses.
 SimulatedStreams ReadSimulatedStreams(TomlTable table);
 
 }  // namespace wellgyro
