@@ -205,12 +205,16 @@ void TakeWords(AllanOptions& o) {
   o.request.detrend_temperature = o.detrend == "temperature";
 }
 
+/// Refuses nan and inf, which CLI11 takes for numbers.
+CLI::Validator Finite() {
+  const auto check = [](std::string& text) {
+    return text.find_first_of("nN") == std::string::npos ? "" : "must be a number";
+  };
+  return CLI::Validator(check, "", "");
+}
+
 void AddInput(CLI::App& command, AllanOptions& o) {
-  const CLI::Validator finite(
-      [](std::string& text) {
-        return text.find_first_of("nN") == std::string::npos ? "" : "must be a number";
-      },
-      "", "");
+  const CLI::Validator finite = Finite();
   command.add_option("--data", o.data, "the log: binary numbers, CSV, or LCM")->required();
   command
       .add_option("--type", o.type, "f64, i16, i32 (little-endian), csv or lcm; default: by ending")

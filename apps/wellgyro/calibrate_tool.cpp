@@ -205,6 +205,17 @@ std::optional<Fault> WriteAndName(const std::filesystem::path& path, const std::
   return std::nullopt;
 }
 
+int CalibrateTool(const ToolFitOptions& options) {
+  try {
+    const auto fault = RunToolFit(options);
+    if (fault) Complain(*fault);
+    return fault ? kUnusable : kDone;
+  } catch (const std::invalid_argument& error) {
+    Complain(fmt::format("{}; see wellgyro calibrate tool --help", error.what()));
+    return kUsage;
+  }
+}
+
 void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
   const auto o = std::make_shared<ToolFitOptions>();
   CLI::App* const command = calibrate.add_subcommand(
@@ -234,16 +245,7 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
   command->footer(
       "Example:\n  wellgyro calibrate tool --data up.csv --data down.csv --data rates.csv \\\n"
       "      --latitude-deg 60 --out tool-cal.toml --tool tool.toml --certificate tool.html");
-  command->callback([o, &exit_code] {
-    try {
-      const auto fault = RunToolFit(*o);
-      if (fault) Complain(*fault);
-      exit_code = fault ? kUnusable : kDone;
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro calibrate tool --help", error.what()));
-      exit_code = kUsage;
-    }
-  });
+  command->callback([o, &exit_code] { exit_code = CalibrateTool(*o); });
 }
 
 }  // namespace wellgyro::apps

@@ -39,6 +39,15 @@ int RunClearance(ClearanceOptions& o) {
   return answer->refusals.empty() ? kDone : kDoneWithLosses;
 }
 
+int ClearanceOrUsage(ClearanceOptions& o) {
+  try {
+    return RunClearance(o);
+  } catch (const std::invalid_argument& error) {
+    Complain(fmt::format("{}; see wellgyro clearance --help", error.what()));
+    return kUsage;
+  }
+}
+
 }  // namespace
 
 void AddClearance(CLI::App& app, int& exit_code) {
@@ -70,14 +79,7 @@ void AddClearance(CLI::App& app, int& exit_code) {
       "      --dip-deg 70 --declination-deg 0 --policy policy.toml --out clear\n"
       "Exit code 4 where a separation factor is below the policy's stop; 3, and no better than\n"
       "warn, where a model ends before its survey does.");
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = RunClearance(*options);
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro clearance --help", error.what()));
-      exit_code = kUsage;
-    }
-  });
+  command->callback([options, &exit_code] { exit_code = ClearanceOrUsage(*options); });
 }
 
 }  // namespace wellgyro::apps

@@ -131,11 +131,30 @@ Result<std::shared_ptr<const AdviceCase>> AdviceOf(const SurveyOptions& options,
   }
 }
 
+bool MayResume(const SurveyOptions& options) {
+  const bool fills = options.resume || !options.fill.empty();
+  return !fills || (options.resume && !options.record.empty());
+}
+
+/// The live page, where one is asked for; null: none is.
+Result<std::unique_ptr<SurveyPage>> PageOf(const SurveyOptions& options, const JobFile& job) {
+  if (options.page.address.empty()) return std::unique_ptr<SurveyPage>();
+  return SurveyPage::Open(options.page, job, UrlOr(options.from), options.out);
+}
+
+int Conclusion(const SurveyOptions& options, const JobFile& job, const LiveOutcome& outcome) {
+  if (outcome.ended != LiveOutcome::Ended::kFinished) return Stopped(options, outcome);
+  if (outcome.fault) {
+    Complain(*outcome.fault);
+    return kUnusable;
+  }
+  return Summarise(job, outcome, options.says);
+}
+
 }  // namespace
 
 int SurveyLive(const SurveyOptions& options, const JobFile& job) {
-  const bool fills = options.resume || !options.fill.empty();
-  if (fills && (options.record.empty() || !options.resume)) {
+  if (!MayResume(options)) {
     Complain("--resume continues from the log given with --record; --fill goes with --resume");
     return kUsage;
   }
@@ -144,15 +163,12 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     Complain(advise.fault());
     return kUnusable;
   }
-  std::unique_ptr<SurveyPage> page;
-  if (!options.page.address.empty()) {
-    auto opened = SurveyPage::Open(options.page, job, UrlOr(options.from), options.out);
-    if (!opened) {
-      Complain(opened.fault());
-      return kUnusable;
-    }
-    page = std::move(*opened);
+  auto opened = PageOf(options, job);
+  if (!opened) {
+    Complain(opened.fault());
+    return kUnusable;
   }
+  const std::unique_ptr<SurveyPage> page = std::move(*opened);
   SurveyConsole console(options.says, page.get());
   LiveSetup setup = SetupOf(options, job);
   setup.advise = *advise;
@@ -169,12 +185,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
   console.End();
   if (page) Farewell(*page, outcome);
   for (const std::string& hint : outcome.hints) Complain(hint);
-  if (outcome.ended != LiveOutcome::Ended::kFinished) return Stopped(options, outcome);
-  if (outcome.fault) {
-    Complain(*outcome.fault);
-    return kUnusable;
-  }
-  return Summarise(job, outcome, options.says);
+  return Conclusion(options, job, outcome);
 }
 
 }  // namespace wellgyro::apps

@@ -23,6 +23,28 @@ struct MergeOptions {
   std::vector<std::string> formats;
 };
 
+constexpr const char* kHelp =
+    "Example:\n  wellgyro merge plan.toml --latitude-deg 60 --out merged\n"
+    "where plan.toml holds\n"
+    "  format = \"wellgyro.merge/1\"\n"
+    "  [policy]\n"
+    "  choose = \"smallest\"            # or \"order\": of the legs as listed\n"
+    "  measure = \"horizontal\"         # or vertical, volume: at the end, or at_md_m\n"
+    "  min_gain = 0.05                # a change of leg must gain this share\n"
+    "  max_gap_m = 60\n"
+    "  on_disagreement = \"fail\"       # or \"note\": of legs that overlap\n"
+    "  [parent]                       # of a side-track\n"
+    "  program = \"parent/program.toml\"\n"
+    "  kick_off_md_m = 900\n"
+    "  [[leg]]\n"
+    "  survey = \"gyro.csv\"\n"
+    "  model = \"GYRO-NS-CT\"\n"
+    "  run = 1                        # legs of one run share systematic errors\n"
+    "  from_md_m = 0\n"
+    "  to_md_m = 1200\n"
+    "  left_out = \"a reason\"          # to rule it out\n"
+    "Exit code 4 where legs that overlap differ by more than their errors allow.";
+
 int RunMerge(MergeOptions& o) {
   o.request.plan = o.plan;
   o.request.formats.clear();
@@ -37,6 +59,15 @@ int RunMerge(MergeOptions& o) {
   for (const std::string& cause : answer->verdict.causes) fmt::print("{}\n", cause);
   fmt::print("verdict: {}\n", WordOf(answer->verdict.verdict));
   return answer->verdict.verdict == Verdict::kFail ? kUnfit : kDone;
+}
+
+int MergeOrUsage(MergeOptions& o) {
+  try {
+    return RunMerge(o);
+  } catch (const std::invalid_argument& error) {
+    Complain(fmt::format("{}; see wellgyro merge --help", error.what()));
+    return kUsage;
+  }
 }
 
 }  // namespace
@@ -57,35 +88,8 @@ void AddMerge(CLI::App& app, int& exit_code) {
                    "formats of the definitive survey besides CSV, as of 'convert', with commas")
       ->delimiter(',');
   command->add_option("--out", options->out, "folder for the results")->required();
-  command->footer(
-      "Example:\n  wellgyro merge plan.toml --latitude-deg 60 --out merged\n"
-      "where plan.toml holds\n"
-      "  format = \"wellgyro.merge/1\"\n"
-      "  [policy]\n"
-      "  choose = \"smallest\"            # or \"order\": of the legs as listed\n"
-      "  measure = \"horizontal\"         # or vertical, volume: at the end, or at_md_m\n"
-      "  min_gain = 0.05                # a change of leg must gain this share\n"
-      "  max_gap_m = 60\n"
-      "  on_disagreement = \"fail\"       # or \"note\": of legs that overlap\n"
-      "  [parent]                       # of a side-track\n"
-      "  program = \"parent/program.toml\"\n"
-      "  kick_off_md_m = 900\n"
-      "  [[leg]]\n"
-      "  survey = \"gyro.csv\"\n"
-      "  model = \"GYRO-NS-CT\"\n"
-      "  run = 1                        # legs of one run share systematic errors\n"
-      "  from_md_m = 0\n"
-      "  to_md_m = 1200\n"
-      "  left_out = \"a reason\"          # to rule it out\n"
-      "Exit code 4 where legs that overlap differ by more than their errors allow.");
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = RunMerge(*options);
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro merge --help", error.what()));
-      exit_code = kUsage;
-    }
-  });
+  command->footer(kHelp);
+  command->callback([options, &exit_code] { exit_code = MergeOrUsage(*options); });
 }
 
 }  // namespace wellgyro::apps

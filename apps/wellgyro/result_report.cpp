@@ -112,6 +112,19 @@ struct PageOptions {
   ReportOptions page;
 };
 
+void AddLook(CLI::App& command, ReportOptions& page) {
+  using Units = ReportOptions::Units;
+  command.add_option("--units", page.units, "Units of length")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Units>{{"metric", Units::kMetric}, {"field", Units::kField}}))
+      ->type_name("metric|field");
+  using Paper = ReportOptions::Paper;
+  command.add_option("--paper", page.paper, "Paper of the print")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Paper>{{"a4", Paper::kA4}, {"letter", Paper::kLetter}}))
+      ->type_name("a4|letter");
+}
+
 }  // namespace
 
 void AddReport(CLI::App& app, int& exit_code) {
@@ -136,16 +149,7 @@ void AddReport(CLI::App& app, int& exit_code) {
   command
       ->add_option("--plan", options->plan, "What 'plan' made for the run, to show what came of it")
       ->type_name("PLAN");
-  using Units = ReportOptions::Units;
-  command->add_option("--units", options->page.units, "Units of length")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Units>{{"metric", Units::kMetric}, {"field", Units::kField}}))
-      ->type_name("metric|field");
-  using Paper = ReportOptions::Paper;
-  command->add_option("--paper", options->page.paper, "Paper of the print")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Paper>{{"a4", Paper::kA4}, {"letter", Paper::kLetter}}))
-      ->type_name("a4|letter");
+  AddLook(*command, options->page);
   command->footer(
       "Example:\n  wellgyro report result --out report.html --pdf report.pdf --other plan.csv");
   command->callback([options, &exit_code] {

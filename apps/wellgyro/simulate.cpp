@@ -203,6 +203,26 @@ std::optional<Fault> Simulate(const SimulateOptions& options) {
   return std::nullopt;
 }
 
+std::string Help() {
+  return std::string(
+             "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
+             "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "
+             "--speed 10\n\n"
+             "[[fault]] in the file: cause, its keys, begin_s and end_s since the begin of the "
+             "run, "
+             "every_s\n"
+             "for what repeats (spikes, swing, vibration, whirl)\n") +
+         FaultHelp();
+}
+
+void AddTool(CLI::App& command, SimulateOptions& o) {
+  command
+      .add_option("--tool", o.tool,
+                  "Tool file, wellgyro.tool/1: samples go out as its counts (raw_batch_t)")
+      ->type_name("FILE");
+  command.add_option("--temperature-degc", o.temperature, "Of that tool's sensors, default 20");
+}
+
 }  // namespace
 
 void AddSimulate(CLI::App& app, int& exit_code) {
@@ -230,21 +250,8 @@ void AddSimulate(CLI::App& app, int& exit_code) {
           "--plan", options->plan,
           "Plan file, wellgyro.plan/1: its way and its stops, in place of the file's [run]")
       ->type_name("FILE");
-  command
-      ->add_option("--tool", options->tool,
-                   "Tool file, wellgyro.tool/1: samples go out as its counts (raw_batch_t)")
-      ->type_name("FILE");
-  command->add_option("--temperature-degc", options->temperature,
-                      "Of that tool's sensors, default 20");
-  command->footer(
-      std::string(
-          "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
-          "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "
-          "--speed 10\n\n"
-          "[[fault]] in the file: cause, its keys, begin_s and end_s since the begin of the run, "
-          "every_s\n"
-          "for what repeats (spikes, swing, vibration, whirl)\n") +
-      FaultHelp());
+  AddTool(*command, *options);
+  command->footer(Help());
   command->callback([options, &exit_code] {
     const auto fault = Simulate(*options);
     if (fault) Complain(*fault);

@@ -65,6 +65,23 @@ std::int64_t UsedUs() {
   return used.tv_sec * 1'000'000 + used.tv_nsec / 1000;
 }
 
+Result<std::string> TokenBy(const SurveyPageOptions& options) {
+  std::string token = options.token_file.empty() ? NewToken() : TokenIn(options.token_file);
+  if (!token.empty()) return token;
+  return Fault{.code = FaultCode::kIo,
+               .text = "--page-token: no token of 16 letters and digits can be had there",
+               .source = options.token_file};
+}
+
+/// The address that the page is to be served at.
+Result<PageAddress> AddressBy(const SurveyPageOptions& options) {
+  const auto address = PageAddressOf(options.address);
+  if (address) return *address;
+  return Fault{.code = FaultCode::kSyntax,
+               .text = fmt::format("--page: {} is no address with a port, as 127.0.0.1:8080",
+                                   options.address)};
+}
+
 /// A page that cannot be had, for want of memory, is missed; the survey goes on.
 template <class Work>
 void Safely(Work work) {
@@ -97,22 +114,15 @@ std::optional<Fault> SurveyPage::ReadKey(const std::string& path) {
 Result<std::unique_ptr<SurveyPage>> SurveyPage::Open(const SurveyPageOptions& options,
                                                      const JobFile& job, const std::string& url,
                                                      const fs::path& folder) {
-  const auto address = PageAddressOf(options.address);
-  if (!address) {
-    return Fault{.code = FaultCode::kSyntax,
-                 .text = fmt::format("--page: {} is no address with a port, as 127.0.0.1:8080",
-                                     options.address)};
-  }
+  const Result<PageAddress> address = AddressBy(options);
+  if (!address) return address.fault();
   std::unique_ptr<SurveyPage> page(new SurveyPage(job, url, folder));
   if (auto fault = page->ReadKey(options.key)) return *std::move(fault);
   // Others on this machine may look, but not give orders under somebody's key.
   if (!address->loopback || page->key_ || !options.token_file.empty()) {
-    page->token_ = options.token_file.empty() ? NewToken() : TokenIn(options.token_file);
-    if (page->token_.empty()) {
-      return Fault{.code = FaultCode::kIo,
-                   .text = "--page-token: no token of 16 letters and digits can be had there",
-                   .source = options.token_file};
-    }
+    Result<std::string> token = TokenBy(options);
+    if (!token) return token.fault();
+    page->token_ = *std::move(token);
   }
   Result<std::optional<OtherWell>> plan = PlanIn(options.plan);
   if (!plan) return plan.fault();
@@ -122,10 +132,9 @@ Result<std::unique_ptr<SurveyPage>> SurveyPage::Open(const SurveyPageOptions& op
                      .latitude = job.job.well.latitude});
   }
   PageService service{.token = page->token_};
-  Result<std::string> html = LivePage({.well = job.job.well.name,
-                                       .identity = job.job.identity,
-                                       .plan = *std::move(plan),
-                                       .orders = page->key_.has_value()});
+  const Job& of = job.job;
+  Result<std::string> html =
+      LivePage({of.well.name, of.identity, *std::move(plan), page->key_.has_value()});
   if (!html) return html.fault();
   service.html = *std::move(html);
   if (page->key_) {

@@ -1,5 +1,4 @@
 // A live session as a vendor's program runs it: over multicast, in this process.
-#include "wellgyro/io/result/run_file.h"
 #include "wellgyro/live/session.h"
 
 #include <atomic>
@@ -15,6 +14,8 @@
 #include <unistd.h>
 
 #include "wellgyro/bus/encode.h"
+#include "wellgyro/bus/lcm_live.h"
+#include "wellgyro/io/result/run_file.h"
 #include "wellgyro/survey/run_adjuster.h"
 
 #include "bus/multicast.h"
