@@ -77,7 +77,8 @@ struct Factor {
 /// The robust weight of the roll's change, whose `n` whitened residuals have this sum of squares.
 double RollWeight(double square, int n);
 
-/// How squares of one kind of residual add up, of the rows that measure.
+/// How squares of one kind of residual add up, of the rows that measure; of forces without what is
+/// lateral, which the roll takes up.
 struct RowSum {
   double squares = 0;   ///< of the residuals as they are
   double weighted = 0;  ///< with their robust weights
