@@ -63,9 +63,9 @@ class Family {
   }
   std::string WordsOf(const Check& check) const {
     const double looks = looks_.at(check.code);
-    std::string text = fmt::format("{:g} % of clean runs, shared by {} kind{} of comparison",
-                                   100 * kFalseAlarmRate, failing_.size(),
-                                   failing_.size() == 1 ? "" : "s");
+    std::string text =
+        fmt::format("{:g} % of clean runs, shared by {} kind{} of comparison",
+                    100 * kFalseAlarmRate, failing_.size(), failing_.size() == 1 ? "" : "s");
     if (looks > 1) text += fmt::format(", {:.0f} of this kind", looks);
     if (check.looks > 1) text += fmt::format(", {:.0f} here", check.looks);
     return text;
