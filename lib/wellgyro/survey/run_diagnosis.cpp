@@ -47,7 +47,7 @@ constexpr std::string_view kSpike = "look at the samples there; leave them out a
 constexpr std::string_view kRestMotion = "rest_motion";
 constexpr std::string_view kNotAtRest =
     "the tool was not at rest: leave the stop out and run again";
-constexpr double kOneStop = 0.5;  // [m], from a stop to what the diagnosis says began there
+constexpr double kThatStop = 0.5;  // [m], from a stop to what the diagnosis says began there
 
 // Sizes by which a tool, or a job, is out of its class: a judgement, some five to ten times what
 // calibrated tools have. Bayes factors change little with them, by ln 4 where they are wrong by 4.
@@ -215,7 +215,7 @@ bool MovedAtRest(const RunSummary& run, const Check& check) {
   if (!run.fit || !run.fit->diagnosis || !IsShown(*run.fit->diagnosis)) return false;
   const std::vector<const RunCause*> named = Named(run.fit->diagnosis->causes);
   return !named.empty() && named[0]->begin_md &&
-         std::abs(*named[0]->begin_md - *check.md) < kOneStop;
+         std::abs(*named[0]->begin_md - *check.md) < kThatStop;
 }
 
 std::string WordsOf(const RunCause& cause, double share) {
