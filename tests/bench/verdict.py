@@ -306,7 +306,9 @@ def ChanceOf(check):
     """Share of chance beyond a check's value; None of one that is not by chance alone."""
     if check["VERDICT"] == "not_done" or not check["VALUE"] or not check["SIGMA"]:
         return None
-    if "of clean runs, shared" not in check["LIMIT_SOURCE"] or " here" in check["LIMIT_SOURCE"]:
+    source = check["LIMIT_SOURCE"]
+    by_chance = "of clean runs, shared" in source or "beyond all chance" in source
+    if not by_chance or " here" in source:
         return None
     value, sigma = float(check["VALUE"]), float(check["SIGMA"])
     if not sigma > 0:

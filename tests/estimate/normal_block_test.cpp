@@ -54,6 +54,34 @@ TEST(NormalBlock, ExpectsOfSquaresWhatUnknownsAndHubersLossLeaveOfThem) {
   }
 }
 
+// A force's lateral part measures the roll: its square counts neither as found nor as expected.
+TEST(NormalBlock, LeavesTheLateralForceOutOfTheSquares) {
+  Layout layout;
+  NormalBlock::Matrix cov = NormalBlock::Matrix::Zero(2 * layout.node, 2 * layout.node);
+  cov(0, 0) = 0.2;
+  const Eigen::Vector3d lateral = Eigen::Vector3d(0.6, 0.8, 0);
+  const auto sums = [&](const Eigen::Vector3d& r) {
+    NormalBlock block;
+    block.Clear(layout);
+    block.Measure(&cov);
+    Factor f;
+    f.Begin(RowKind::kForce, 3);
+    f.r = r;
+    f.Column(0) = lateral;
+    f.Shrink(lateral, 0.5);
+    block.Add(f);
+    return block.sums()[static_cast<std::size_t>(RowKind::kForce)];
+  };
+  const RowSum none = sums(0.7 * lateral), radial = sums({0.8, -0.6, 0}), axial = sums({0, 0, 1});
+  EXPECT_NEAR(none.weighted, 0, 1e-15);
+  EXPECT_NEAR(radial.weighted, 1, 1e-15);
+  EXPECT_NEAR(axial.weighted, 1, 1e-15);
+  EXPECT_EQ(none.rows, 2);
+  // The column lies along what is left out, so that both other rows are whole.
+  EXPECT_NEAR(none.freedom, 2, 0.05);
+  EXPECT_LT(none.freedom, 2) << "less what Huber's loss leaves";
+}
+
 // By the definition, of rows that reach few columns and of those that are added along all of them.
 TEST(NormalBlock, SumsUpJacobiansAndResiduals) {
   Layout layout;

@@ -206,6 +206,33 @@ TEST(RunDiagnosis, WhatIsFoundOfTheDepthsScaleCountsUntilItIsAFault) {
   EXPECT_EQ(FoundOfDepthScale(7, 8e-4), 0);
 }
 
+// A creep of a stop and its way back are, to the gyros' rows, one turn that is wrong.
+TEST(RunDiagnosis, MotionAtTheStopWhereAFaultBeginsIsTheFault) {
+  RunSummary run;
+  run.run = 1;
+  RunDiagnosis& found = run.fit.emplace().diagnosis.emplace();
+  found.ln_odds = 50;
+  RunCause& spike = found.causes.emplace_back();
+  spike.code = "gyro_spike";
+  spike.posterior = 1;
+  spike.begin_md = 899.9;
+  Check moved{.code = "rest_motion", .run = 1, .md = 900, .value = 101, .unit = "s"};
+  moved.verdict = Verdict::kWarn;
+  const auto first = [&](const Check& check) {
+    return CausesOf(run, std::vector<Check>{check}).front().code;
+  };
+  EXPECT_EQ(first(moved), "rest_motion");
+  EXPECT_EQ(CausesOf(run, std::vector<Check>{moved}).back().posterior, 0);
+  Check elsewhere = moved;
+  elsewhere.md = 600;
+  EXPECT_EQ(first(elsewhere), "gyro_spike");
+  Check still = moved;
+  still.verdict = Verdict::kPass;
+  EXPECT_EQ(first(still), "gyro_spike");
+  found.ln_odds = 2;
+  EXPECT_EQ(first(moved), "gyro_spike") << "nothing is found";
+}
+
 /// Of a run whose odds of a fault are `ln_odds`, a latitude that moves its end by `shift_W`. The
 /// end has sigmas of 1, 2 and 2 m; a station further up and the end of another run have others.
 Verdict VerdictOf(double ln_odds, const Eigen::Vector3d& shift_W) {

@@ -56,13 +56,23 @@ Loss LossOf(const Factor& f) {
   return {kHuber / norm, kHuber * (2 * norm - kHuber)};
 }
 
+/// Of the rows that measure, the sum of squares that is noise. What of a force is lateral measures
+/// the roll alone, whose walk is wider than most tools roll: it keeps less than the model says, on
+/// clean runs .83 to .88 of it.
+double SquareOf(const Factor& f) {
+  const double lateral = f.shrink != 0 ? f.u.dot(f.r) : 0;
+  return f.r.head(f.measured).squaredNorm() - lateral * lateral;
+}
+
 /// Expectation of the weighted sum of squares, where the unknowns absorb `absorbed` of n rows:
 /// residuals keep the variance 1 - absorbed/n, so that Huber's loss begins at
 /// kHuber / sqrt(1 - absorbed/n) of their own sigmas.
-double FreedomOf(const Factor& f, double absorbed) {
-  const double left = std::max(0.0, f.measured - absorbed);
+double FreedomOf(const Factor& f, const Eigen::Matrix3d& absorbed) {
+  const double all = std::max(0.0, f.measured - absorbed.diagonal().head(f.measured).sum());
+  const double lateral = f.shrink != 0 ? std::max(0.0, 1 - f.u.dot(absorbed * f.u)) : 0;
+  const double left = std::max(0.0, all - lateral);
   if (!HasHuber(f.kind) || left == 0) return left;
-  return left * HuberExpected(f.measured, kHuber / std::sqrt(left / f.measured));
+  return left * HuberExpected(f.measured, kHuber / std::sqrt(all / f.measured));
 }
 
 }  // namespace
@@ -120,14 +130,13 @@ void NormalBlock::Add(const Factor& f) {
   Loss loss = LossOf(f);
   if (without_loss_ && f.kind != RowKind::kRoll) loss.weight = 1;
   RowSum& sum = sums_[static_cast<std::size_t>(f.kind)];
-  const double square = f.r.head(f.measured).squaredNorm();
+  const double square = SquareOf(f);
   sum.squares += square;
   sum.weighted += loss.weight * square;
   sum.cost += loss.cost;
-  sum.rows += f.measured;
+  sum.rows += f.shrink != 0 ? f.measured - 1 : f.measured;
   if (covariance_ != nullptr) {
-    const Eigen::Matrix3d absorbed = CovarianceOf(f, *covariance_);
-    sum.freedom += FreedomOf(f, absorbed.diagonal().head(f.measured).sum());
+    sum.freedom += FreedomOf(f, CovarianceOf(f, *covariance_));
     return;
   }
   if (f.rows == 3) {

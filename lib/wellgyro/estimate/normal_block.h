@@ -79,7 +79,7 @@ double RollWeight(double square, int n);
 
 /// How squares of one kind of residual add up, of the rows that measure.
 struct RowSum {
-  double squares = 0;   ///< of the residuals as they are
+  double squares = 0;   ///< of the residuals as they are; of forces but for what is lateral
   double weighted = 0;  ///< with their robust weights
   double cost = 0;      ///< -2 ln of the density of all rows, but for constants
   double rows = 0;

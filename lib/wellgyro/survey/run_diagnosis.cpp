@@ -44,6 +44,10 @@ constexpr std::string_view kBench =
     "the run is good to its end only with the step told: bench "
     "the tool, survey the part below again";
 constexpr std::string_view kSpike = "look at the samples there; leave them out and run again";
+constexpr std::string_view kRestMotion = "rest_motion";
+constexpr std::string_view kNotAtRest =
+    "the tool was not at rest: leave the stop out and run again";
+constexpr double kThatStop = 0.5;  // [m], from a stop to what the diagnosis says began there
 
 // Sizes by which a tool, or a job, is out of its class: a judgement, some five to ten times what
 // calibrated tools have. Bayes factors change little with them, by ln 4 where they are wrong by 4.
@@ -90,8 +94,7 @@ constexpr Entry kEntries[] = {
      "restore the numbering of the samples, run again"},
     {"gyro_spike", Kind::kGyroSpike, 0, 0.05, units::kDeg, "deg", kSpike},
     {"accel_spike", Kind::kAccelSpike, 0, 0.05, kOne, "m/s2", kSpike},
-    {"rest_motion", Kind::kRestMotion, 0, 0.01, units::kDeg, "deg",
-     "the tool was not at rest: leave the stop out and run again"},
+    {kRestMotion, Kind::kRestMotion, 0, 0.01, units::kDeg, "deg", kNotAtRest},
     {"azimuth_tie", Kind::kTie, 0, 2.5, units::kDeg, "deg",
      "leave the azimuth from outside out, run again"},
     {"gyro_noise", Kind::kGyroNoise, 0, 1, kOne, "1",
@@ -116,6 +119,7 @@ constexpr SampleWords kOfSamples[] = {
     {"gyro_stuck", "leave the stretch out; where it is long, survey the well again"},
     {"gyro_unit", "correct the unit or scale in the tool file, run again"},
     {"latitude", "correct the latitude of the job, run again"},
+    {kRestMotion, kNotAtRest},
 };
 
 /// ln(e^a + e^b).
@@ -202,6 +206,16 @@ bool MovesTheEnd(const RunDiagnosis& diagnosis, std::int32_t run, std::span<cons
   return std::any_of(named.begin(), named.end(), [&](const RunCause* cause) {
     return cause->shift_W && !(cause->shift_W->dot(cov.solve(*cause->shift_W)) <= 1);
   });
+}
+
+/// The check says that the tool moved at a stop, and there the likeliest fault of the rows begins:
+/// a slow motion and its end look to them as one turn that the gyros have wrong.
+bool MovedAtRest(const RunSummary& run, const Check& check) {
+  if (check.code != kRestMotion || check.verdict == Verdict::kPass || !check.md) return false;
+  if (!run.fit || !run.fit->diagnosis || !IsShown(*run.fit->diagnosis)) return false;
+  const std::vector<const RunCause*> named = Named(run.fit->diagnosis->causes);
+  return !named.empty() && named[0]->begin_md &&
+         std::abs(*named[0]->begin_md - *check.md) < kThatStop;
 }
 
 std::string WordsOf(const RunCause& cause, double share) {
@@ -328,7 +342,8 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
 std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> checks) {
   std::vector<RunCause> causes;
   for (const Check& check : checks) {
-    if (check.run != run.run || check.verdict != Verdict::kFail) continue;
+    if (check.run != run.run) continue;
+    if (check.verdict != Verdict::kFail && !MovedAtRest(run, check)) continue;
     for (const SampleWords& words : kOfSamples) {
       if (!check.code.starts_with(words.code)) continue;
       RunCause& cause = causes.emplace_back();

@@ -38,7 +38,8 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
                     std::vector<Check>& checks);
 
 /// The causes of a run with those that its samples alone tell, by `checks` that fail, in front: a
-/// dead, stuck or swapped axis leaves nothing that the adjustment could judge.
+/// dead, stuck or swapped axis leaves nothing that the adjustment could judge. So is motion at a
+/// stop, which is a warning, where the likeliest cause begins at that stop.
 WELLGYRO_EXPORT std::vector<RunCause> CausesOf(const RunSummary& run,
                                                std::span<const Check> checks);
 

@@ -23,33 +23,57 @@ constexpr double kNoiseTold = 1.15;
 // A limit of chance for ever fewer clean runs is one for ever stranger distributions.
 constexpr double kLeastShare = 1e-7;
 
-struct Limits {
-  double warn = 0, fail = 0;
-};
+bool ByChance(const Check& check) {
+  return check.looks > 0 && check.value && check.verdict != Verdict::kNotDone;
+}
 
-/// Of |value| where chance exceeds it with `share` and, for a warning, with ten times that.
-Limits LimitsOf(const Check& check, double share) {
-  const double more = std::min(10 * share, 0.5);
-  if (check.freedom > 0) {
-    return {ChiSquareQuantile(1 - more, check.freedom) / check.freedom,
-            std::max(ChiSquareQuantile(1 - share, check.freedom) / check.freedom, kNoiseTold)};
+/// |value| that chance exceeds with `share`.
+double LimitOf(const Check& check, double share) {
+  const double p = std::clamp(share, kLeastShare, 0.5);
+  if (check.freedom > 0) return ChiSquareQuantile(1 - p, check.freedom) / check.freedom;
+  return -NormalQuantile(p / 2) * check.sigma.value_or(0);
+}
+
+/// The checks of one run whose limit is one of chance. Each kind has the same share of the rate, so
+/// that what is looked at in many places at once does not take it from what is looked at once.
+class Family {
+ public:
+  void Add(const Check& check) { looks_[check.code] += check.looks; }
+  /// Once all are added: squares of so many rows that chance never takes them as far as
+  /// kNoiseTold hold no share of the rate.
+  void Count(const Check& check) {
+    if (check.freedom > 0 && !(LimitOf(check, Share(looks_.size(), check)) > kNoiseTold)) return;
+    failing_.insert(check.code);
   }
-  const double sigma = check.sigma.value_or(0);
-  return {-NormalQuantile(more / 2) * sigma, -NormalQuantile(share / 2) * sigma};
-}
+  void Judge(Check& check) const {
+    const double warn = LimitOf(check, 10 * Share(looks_.size(), check));
+    const bool fails = failing_.contains(check.code);
+    const double least = check.freedom > 0 ? kNoiseTold : 0;
+    check.limit = fails ? std::max(LimitOf(check, Share(failing_.size(), check)), least) : least;
+    check.limit_source = fails ? WordsOf(check) : "what is known of noise, beyond all chance";
+    const double size = std::abs(*check.value);
+    check.verdict = !(size <= *check.limit) ? Verdict::kFail
+                    : !(size <= warn)       ? Verdict::kWarn
+                                            : Verdict::kPass;
+  }
 
-void Judge(double share, double looks_of_all, Check& check) {
-  if (!check.value || check.verdict == Verdict::kNotDone) return;
-  const Limits limits = LimitsOf(check, std::max(share, kLeastShare));
-  check.limit = limits.fail;
-  check.limit_source =
-      fmt::format("{:g} % of clean runs, shared by {:.0f} comparisons{}", 100 * kFalseAlarmRate,
-                  looks_of_all, check.looks > 1 ? fmt::format(", {:.0f} here", check.looks) : "");
-  const double size = std::abs(*check.value);
-  check.verdict = !(size <= limits.fail)   ? Verdict::kFail
-                  : !(size <= limits.warn) ? Verdict::kWarn
-                                           : Verdict::kPass;
-}
+ private:
+  double Share(std::size_t kinds, const Check& check) const {
+    return kFalseAlarmRate / static_cast<double>(kinds) / looks_.at(check.code);
+  }
+  std::string WordsOf(const Check& check) const {
+    const double looks = looks_.at(check.code);
+    std::string text =
+        fmt::format("{:g} % of clean runs, shared by {} kind{} of comparison",
+                    100 * kFalseAlarmRate, failing_.size(), failing_.size() == 1 ? "" : "s");
+    if (looks > 1) text += fmt::format(", {:.0f} of this kind", looks);
+    if (check.looks > 1) text += fmt::format(", {:.0f} here", check.looks);
+    return text;
+  }
+
+  std::map<std::string, double> looks_;  ///< comparisons of each kind
+  std::set<std::string> failing_;        ///< kinds that chance can fail
+};
 
 struct CodeWords {
   std::string_view code, words;
@@ -155,14 +179,15 @@ RunVerdict VerdictOf(std::span<const Check> checks, Take take) {
 }  // namespace
 
 void ShareFalseAlarms(std::vector<Check>& checks) {
-  std::map<std::int32_t, double> looks;
+  std::map<std::int32_t, Family> families;
   for (const Check& check : checks) {
-    if (check.value && check.verdict != Verdict::kNotDone) looks[check.run] += check.looks;
+    if (ByChance(check)) families[check.run].Add(check);
+  }
+  for (const Check& check : checks) {
+    if (ByChance(check)) families[check.run].Count(check);
   }
   for (Check& check : checks) {
-    if (!(check.looks > 0)) continue;
-    const double all = std::max(looks[check.run], 1.0);
-    Judge(kFalseAlarmRate / all, all, check);
+    if (ByChance(check)) families[check.run].Judge(check);
   }
 }
 

@@ -17,10 +17,11 @@ namespace wellgyro {
 inline constexpr double kFalseAlarmRate = 0.01;
 
 /// Gives the checks whose limit is one of chance (Check::looks > 0) a limit and a verdict such that
-/// all of one run together fail with kFalseAlarmRate: each of its `looks` comparisons has the same
-/// share of that rate (Bonferroni; where comparisons depend on each other the rate is lower).
-/// Checks of no run (0) are a family of their own. value / sigma is taken as standard normal, or
-/// value freedom as chi-square. A check that has failed for another reason keeps its verdict.
+/// all of one run together fail with kFalseAlarmRate: each kind, by its code, has the same share of
+/// that rate, and within it each of its `looks` comparisons (Bonferroni; where comparisons depend
+/// on each other the rate is lower). Checks of no run (0) are a family of their own. value / sigma
+/// is taken as standard normal, or value freedom as chi-square. Squares of so many rows that chance
+/// keeps them within what is known of noise fail beyond that, and have no share.
 WELLGYRO_EXPORT void ShareFalseAlarms(std::vector<Check>& checks);
 
 /// The worst of the checks of `run`, and of those of no run; not_done counts as pass.
