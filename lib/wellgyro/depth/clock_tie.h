@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -33,6 +34,11 @@ class WELLGYRO_EXPORT ClockTie {
 
   /// Takes a pair; times that do not advance within a session are ignored.
   void Push(const SampleStamp& stamp);
+
+  /// Takes the pairs of `count` samples that follow the one pushed last, of `last`, each a period
+  /// behind the one before on both clocks, as long as they bring nothing new; says how many. As Push
+  /// of each would, at less cost.
+  std::size_t Follow(ToolTime last, Duration period, std::size_t count);
 
   /// True from the first pair on; the conversions need it.
   bool known() const { return known_; }

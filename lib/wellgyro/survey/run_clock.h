@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -22,13 +24,21 @@ class WELLGYRO_EXPORT RunClock {
   /// session. Marked utc_unsynced where the UTC is in doubt.
   const SampleStamp& Take(const SampleStamp& stamp, bool jumps);
 
+  /// Takes the stamps of samples that follow the one of Take() in a SampleBlock, as long as its tie
+  /// has nothing to learn of them and says the same of all; says how many. They are handed on as
+  /// Continued(), at UtcAt() their times.
+  std::size_t Follow(std::span<const ImuSample> samples);
+  SampleStamp Continued(SampleStamp stamp) const;
+
   /// The UTC that Take() will find for it, to what the stamp itself will teach.
   UtcTime Expected(const SampleStamp& stamp) const;
 
   /// So far every stamp was handed on as it came.
   bool own() const { return !broken_ && doubt_ == 0; }
   /// Of the last sample, by the tie.
-  UtcTime utc() const { return tie_.ToUtc(out_.tool_time); }
+  UtcTime utc() const { return UtcAt(out_.tool_time); }
+  /// Of any in times as they are handed on.
+  UtcTime UtcAt(ToolTime time) const { return tie_.ToUtc(time); }
   /// By which UTC may be wrong since it jumped against the tool's clock [s]; 0: it has not.
   double doubt() const { return doubt_; }
   /// By which the last sample's UTC was found to have stepped against the tool's clock [s].

@@ -12,9 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "wellgyro/calibration/spike_filter.h"
 #include "wellgyro/depth/cable.h"
-#include "wellgyro/depth/depth_grid.h"
 #include "wellgyro/depth/depth_motion.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/record/operations.h"
@@ -23,9 +21,8 @@
 #include "wellgyro/survey/provisional.h"
 #include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/run_book.h"
-#include "wellgyro/survey/run_clock.h"
 #include "wellgyro/survey/run_survey.h"
-#include "wellgyro/survey/sample_queue.h"
+#include "wellgyro/survey/sample_intake.h"
 #include "wellgyro/survey/sample_watch.h"
 #include "wellgyro/survey/station_key.h"
 #include "wellgyro/survey/surveyor.h"
@@ -47,11 +44,15 @@ class ToolSurvey {
 
   /// Takes the samples at the begin of `batch` that come right behind each other, or one that has
   /// to be sorted in; what is left. Work() is to follow, with the marks up to tally().newest.
-  [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch);
+  [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch) {
+    return intake_.Take(batch);
+  }
   /// Works off the samples whose depth is known.
   void Work() { Work(std::nullopt); }
   void Push(const StillWindow& window);
-  void Push(const ToolInfo& info) { sensor_below_reference_ = info.sensor_below_reference; }
+  void Push(const ToolInfo& info) {
+    intake_.depth().SetSensorBelowReference(info.sensor_below_reference);
+  }
   void Push(const Operation& operation);
 
   void Adjust();
@@ -64,7 +65,7 @@ class ToolSurvey {
   std::optional<UtcTime> finish_asked_at() const { return finish_asked_; }
 
   Survey Current() const;
-  SampleTally tally() const;
+  SampleTally tally() const { return intake_.tally(); }
   /// Of the run that samples came for last.
   RunNow Now() const;
   /// Depth before this instant is no longer needed.
@@ -86,16 +87,10 @@ class ToolSurvey {
   };
 
   void Work(std::optional<UtcTime> until);
-  bool DepthIsFinal(const SampleStamp& stamp);
-  void UseRest();
-  void Use(const SpikeFilter::Out& out);
-  void TellMended(const SpikeFilter::Out& out, RunSummary& summary);
-  void TellMendedRange();
+  bool IsUniform(const AdmittedBlock& block, std::size_t at) const;
+  void Use(const AdmittedBlock& block, std::size_t at, std::size_t end);
+  void Feel(const AdmittedBlock& block, std::size_t at, std::size_t end, DepthMotion& motion) const;
   bool ObeyDue(const SampleStamp& stamp, UtcTime utc);
-  void CountLost(const SampleStamp& stamp, RunSummary& summary);
-  void TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp);
-  void TellClock(const SampleStamp& stamp, bool jumps, RunSummary& summary);
-  void TellStrays();
   void TellWithoutDepth(const StillWindow& window);
   bool MakeRoom(const Due& due);
   void Obey(const Operation& operation);
@@ -104,7 +99,6 @@ class ToolSurvey {
   void Obey(const Command& command);
   bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
   AlongHole DepthHeldAt(UtcTime utc) const;
-  void ShiftToSensor(UtcTime utc, AlongHole& along) const;
   RunState* RunFor(std::int32_t run);
   RunState* FindRun(std::int32_t run);
   void Tell(RunState& run);
@@ -125,31 +119,15 @@ class ToolSurvey {
   std::int32_t tool_;
   const DepthTrack& track_;
   const MarksRefused& refused_;
-  DepthGrid grid_;
   CableMarks& marks_;
   RunBook& book_;
   Sink& sink_;
   const RunAdjuster* adjuster_;
-  bool corrects_depth_;  ///< by the job's table or its cable's marks
-  double sensor_below_reference_;
-  SampleQueue queue_;
-  SpikeFilter filter_;
-  /// Samples that the filter has mended and of which nobody has been told.
-  struct Mended {
-    std::int32_t session = 0;
-    std::int64_t first = 0, last = 0, count = 0;
-  };
-  Mended mended_;
-  RunClock clock_;
-  std::int64_t strays_told_ = 0;      ///< of the queue's
-  std::optional<SampleStamp> other_;  ///< the last that came again with another content
-  ImuSample changed_;                 ///< scratch
+  SampleIntake intake_;
   std::vector<Due> due_;              ///< not yet obeyed, by time
   /// Obeyed: session and id. Another console may count the same numbers.
   std::set<std::pair<std::int32_t, std::int32_t>> commands_, events_;
   std::vector<RunState> runs_;
-  std::optional<SampleStamp> last_;
-  std::int64_t lost_ = 0, gaps_ = 0;  ///< samples, and places
   std::int32_t depth_segment_ = 0;
   std::optional<ToolMode> mode_;
   UtcTime newest_used_;

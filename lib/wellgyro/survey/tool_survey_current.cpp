@@ -200,7 +200,7 @@ std::vector<RunSummary> ToolSurvey::Summaries() const {
     summary.sample_checks = run.watch->Checks(summary.run, summary.fixes);
     AddDepthChecks(run.motion->found(), summary);
     summary.remark = book_.remark(summary.run);
-    const SampleQueue::Counts& counts = queue_.counts();
+    const SampleQueue::Counts& counts = intake_.counts();
     summary.duplicates = counts.duplicates;
     summary.samples_other = counts.others;
     summary.samples_refused = counts.refused + counts.strays + counts.late + counts.others;
