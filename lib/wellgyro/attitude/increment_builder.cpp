@@ -271,8 +271,8 @@ std::size_t IncrementBuilder::Room(const SampleStamp& next) const {
   if (f.late || f.breaks) return 0;
   const std::int64_t left = kKnotNs - 1 - (s.last_begin_ns - s.last_cut_ns);
   if (left < 0 || s.blocks.end() - s.last_cut_block >= kKnotBlocks) return 0;
-  return static_cast<std::size_t>(std::min<std::int64_t>(s.block_samples - s.open.samples(),
-                                                         left / next.period_ns + 1));
+  return static_cast<std::size_t>(
+      std::min<std::int64_t>(s.block_samples - s.open.samples(), left / next.period_ns + 1));
 }
 
 void IncrementBuilder::Append(const SampleBlock& samples, bool rest) {

@@ -219,6 +219,16 @@ UtcTime ClockTie::ToUtc(ToolTime time) const {
   return {Sum(Sum(utc0_.ns, tool_ns), offset_ns)};
 }
 
+void ClockTie::ToUtc(ToolTime first, Duration period, std::span<UtcTime> utc) const {
+  assert(known_);
+  std::int64_t tool_ns = Since(first, tool0_);
+  for (UtcTime& time : utc) {
+    const std::int64_t offset_ns = Nanoseconds(offset_ + drift_ * Seconds(tool_ns - mid_ns_));
+    time = {Sum(Sum(utc0_.ns, tool_ns), offset_ns)};
+    tool_ns = Sum(tool_ns, period.ns);
+  }
+}
+
 ToolTime ClockTie::ToTool(UtcTime utc) const {
   assert(known_);
   const std::int64_t utc_ns = Since(utc, utc0_);

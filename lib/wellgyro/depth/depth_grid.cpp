@@ -56,9 +56,8 @@ void DepthGrid::Smooth(std::span<const UtcTime> utc, std::size_t begin,
   }
   const auto t = seconds.head(n);
   const Blend& c = blend_;
-  along.md.segment(at, n) = (c.md[0] + t * (c.md[1] + t * (c.md[2] + t * c.md[3])))
-                                .max(c.md_low)
-                                .min(c.md_high);
+  along.md.segment(at, n) =
+      (c.md[0] + t * (c.md[1] + t * (c.md[2] + t * c.md[3]))).max(c.md_low).min(c.md_high);
   along.speed.segment(at, n) = c.speed[0] + t * (c.speed[1] + t * c.speed[2]);
   along.acceleration.segment(at, n) = c.begin[0] + t * c.slope[0];
   along.sigma_md.segment(at, n) = c.begin[1] + t * c.slope[1];

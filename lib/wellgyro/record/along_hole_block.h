@@ -19,7 +19,7 @@ struct AlongHoleBlock {
   AlongHole At(std::size_t i) const {
     const auto k = static_cast<Eigen::Index>(i);
     if (!known[k]) return {};
-    return {md[k],       speed[k], acceleration[k], sigma_md[k],
+    return {md[k],    speed[k],       acceleration[k],      sigma_md[k],
             known[k], sigma_speed[k], sigma_acceleration[k]};
   }
   void Set(std::size_t i, const AlongHole& along) {

@@ -36,8 +36,8 @@ inline bool IsEven(const ImuSample& a, const ImuSample& b) {
   const SampleStamp& t = b.stamp;
   const bool next = t.seq == s.seq + 1 && (t.tool_time - s.tool_time).ns == s.period_ns &&
                     (t.utc - s.utc).ns == s.period_ns;
-  const bool source = t.session == s.session && t.run == s.run && t.tool == s.tool &&
-                      t.period_ns == s.period_ns;
+  const bool source =
+      t.session == s.session && t.run == s.run && t.tool == s.tool && t.period_ns == s.period_ns;
   const bool flags = t.gyro_saturated == s.gyro_saturated &&
                      t.accel_saturated == s.accel_saturated && t.utc_unsynced == s.utc_unsynced &&
                      t.simulated == s.simulated && t.temperature_outside == s.temperature_outside;

@@ -93,8 +93,7 @@ SampleStamp RunClock::Continued(SampleStamp stamp) const {
 
 std::size_t RunClock::Follow(std::span<const ImuSample> samples) {
   if (!in_ || samples.empty() || (restless_ && out_.tool_time < *restless_)) return 0;
-  const std::size_t n =
-      tie_.Follow(out_.tool_time, Duration{in_->period_ns}, samples.size());
+  const std::size_t n = tie_.Follow(out_.tool_time, Duration{in_->period_ns}, samples.size());
   if (n == 0) return 0;
   in_ = samples[n - 1].stamp;
   out_ = Continued(*in_);

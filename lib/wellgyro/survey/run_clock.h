@@ -26,7 +26,7 @@ class WELLGYRO_EXPORT RunClock {
 
   /// Takes the stamps of samples that follow the one of Take() in a SampleBlock, as long as its tie
   /// has nothing to learn of them and says the same of all; says how many. They are handed on as
-  /// Continued(), at UtcAt() their times.
+  /// Continued(), at ToUtc() of their times.
   std::size_t Follow(std::span<const ImuSample> samples);
   SampleStamp Continued(SampleStamp stamp) const;
 
@@ -36,9 +36,11 @@ class WELLGYRO_EXPORT RunClock {
   /// So far every stamp was handed on as it came.
   bool own() const { return !broken_ && doubt_ == 0; }
   /// Of the last sample, by the tie.
-  UtcTime utc() const { return UtcAt(out_.tool_time); }
-  /// Of any in times as they are handed on.
-  UtcTime UtcAt(ToolTime time) const { return tie_.ToUtc(time); }
+  UtcTime utc() const { return tie_.ToUtc(out_.tool_time); }
+  /// Of times a period after each other, as they are handed on, from `first` on.
+  void ToUtc(ToolTime first, Duration period, std::span<UtcTime> utc) const {
+    tie_.ToUtc(first, period, utc);
+  }
   /// By which UTC may be wrong since it jumped against the tool's clock [s]; 0: it has not.
   double doubt() const { return doubt_; }
   /// By which the last sample's UTC was found to have stepped against the tool's clock [s].

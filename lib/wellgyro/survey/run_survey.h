@@ -41,8 +41,8 @@ class RunSurvey {
   /// The next sample, in order; `along` is the sensor point's at the sample's begin, `middle` at
   /// its middle.
   void Push(const ImuSample& sample, UtcTime utc, const AlongHole& along, const AlongHole& middle);
-  /// Samples [at, end) of a block, up to the first that brings news: the number behind it. As Push of
-  /// each would, at less cost.
+  /// Samples [at, end) of a block, up to the first that brings news: the number behind it. As Push
+  /// of each would, at less cost.
   std::size_t Push(const LocatedBlock& block, std::size_t at, std::size_t end);
   /// Averages at rest, from a tool that sends no samples. `along` at their middle.
   void Push(const StillWindow& window, const AlongHole& along);

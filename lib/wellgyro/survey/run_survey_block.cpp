@@ -35,7 +35,8 @@ std::size_t RunSurvey::Plain(const LocatedBlock& block, std::size_t at, std::siz
   const SampleStamp& first = block.samples.samples[at].stamp;
   if (!current_ || asked_ || !gap_cuts_.empty() || !depth_seen_ || seconds_unknown_ > 0) return 0;
   const Current& c = *current_;
-  if (!c.along.known || c.pass.begins || c.begin + Duration{c.period_ns} != first.tool_time) return 0;
+  if (!c.along.known || c.pass.begins || c.begin + Duration{c.period_ns} != first.tool_time)
+    return 0;
   // The samples given to the builder are those from the current to the last but one.
   const std::int64_t second = (c.begin.ns / kKnotNs + 1) * kKnotNs;
   const std::int64_t before = (second - c.begin.ns - 1) / c.period_ns;
@@ -65,8 +66,7 @@ std::size_t RunSurvey::PlainByPlace(const LocatedBlock& block, std::size_t at,
     const bool moves =
         std::abs(block.begin.speed[k]) > std::max(kRestSpeed, 2 * block.begin.sigma_speed[k]);
     const bool marked = marked_ && std::abs(md - last_mark_md_) <= kSameDepth;
-    const bool there =
-        group_.empty() || SamePlace(block.samples.samples[i].stamp.tool_time, md);
+    const bool there = group_.empty() || SamePlace(block.samples.samples[i].stamp.tool_time, md);
     if (!known || !(moves || marked) || !there) return i - at;
   }
   return end - at;

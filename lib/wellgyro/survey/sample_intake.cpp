@@ -128,13 +128,12 @@ void SampleIntake::Admit() {
     }
     out.samples.samples = std::span(continued_).first(count);
   }
+  const Duration period{first.period_ns};
+  const std::span<UtcTime> utc = std::span(out.utc).first(count);
+  clock_.ToUtc(first.tool_time, period, utc);
+  depth_.At(utc, clock_.doubt(), out.begin);
   std::array<UtcTime, SampleBlock::kMost> middle;
-  for (std::size_t i = 0; i < count; ++i) {
-    const SampleStamp& stamp = out.samples.samples[i].stamp;
-    out.utc[i] = clock_.UtcAt(stamp.tool_time);
-    middle[i] = out.utc[i] + Duration{stamp.period_ns / 2};
-  }
-  depth_.At(std::span(out.utc).first(count), clock_.doubt(), out.begin);
+  for (std::size_t i = 0; i < count; ++i) middle[i] = utc[i] + Duration{period.ns / 2};
   depth_.At(std::span(middle).first(count), clock_.doubt(), out.middle);
   done_ = {done_.samples.subspan(count), done_.axes.subspan(count), done_.mended.subspan(count), 0};
 }

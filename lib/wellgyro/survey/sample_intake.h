@@ -26,8 +26,8 @@ struct AdmittedBlock : LocatedBlock {
   std::optional<double> step;       ///< of UTC at the first, see RunClock [s]
 };
 
-/// Lets one tool's samples in: puts them in order, mends single impossible ones, runs their clock on
-/// and finds their depth, in blocks as long as nothing changes; and says what was left out, lost
+/// Lets one tool's samples in: puts them in order, mends single impossible ones, runs their clock
+/// on and finds their depth, in blocks as long as nothing changes; and says what was left out, lost
 /// and mended. How the samples came in batches does not matter, but to where blocks end.
 class SampleIntake {
  public:
@@ -37,9 +37,9 @@ class SampleIntake {
   SampleIntake(const SampleIntake&) = delete;
   SampleIntake& operator=(const SampleIntake&) = delete;
 
-  /// Takes the samples at the begin of `batch` that come right behind each other, or one that has to
-  /// be sorted in; what is left. What Next() has is to be used before more come, by the marks up to
-  /// newest().
+  /// Takes the samples at the begin of `batch` that come right behind each other, or one that has
+  /// to be sorted in; what is left. What Next() has is to be used before more come, by the marks up
+  /// to newest().
   [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch);
   /// The next samples, or nullptr while they have to wait; those that begin at `until` or later are
   /// left out. Valid until the next call.

@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <iterator>
 
 #include "wellgyro/base/time_range.h"
@@ -93,12 +92,12 @@ std::span<const ImuSample> SampleQueue::Ready() const {
   } else if (!flushing_ && size_ > kWaitingMax) {
     n = std::min(n, size_ - kWaitingMax);
   } else if (!flushing_) {
-    const auto waits = [this](const ImuSample& sample) { return Age(sample.stamp) < hold_; };
-    const std::span<const ImuSample> piece(ring_.data() + head_, n);
-    if (waits(piece.back())) {
-      const auto first = std::ranges::partition_point(piece, std::not_fn(waits));
-      n = static_cast<std::size_t>(first - piece.begin());
-    }
+    const SampleStamp& first = At(0).stamp;
+    if (Age(first) < hold_) return {};
+    // As many as there are where none is missing; where one is, the first is sure.
+    const std::int64_t even = (Age(first) - hold_).ns / first.period_ns + 1;
+    n = static_cast<std::size_t>(std::min(even, static_cast<std::int64_t>(n)));
+    if (Age(At(n - 1).stamp) < hold_) n = 1;
   }
   if (!jumps_.empty()) {
     const std::int64_t before = jumps_.front() - (counts_.accepted - Waiting());

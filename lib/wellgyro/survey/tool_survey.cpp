@@ -15,15 +15,6 @@
 namespace wellgyro {
 namespace {
 
-// Modes, and commands and events, that wait for their time; more come from a broken sender alone.
-constexpr std::ptrdiff_t kDueMax = 1000;
-// An accepted or rejected depth is typed by hand, to the decimetre at best.
-constexpr double kTypedDepth = 0.5;  // [m]
-
-UtcTime TimeOf(const Operation& operation) {
-  return std::visit([](const auto& record) { return record.utc; }, operation);
-}
-
 /// Values that a tool at rest can send; what else comes, is damage or was no rest. Gravity is 9.78
 /// to 9.83 m/s^2 on the Earth and 9.90 below 15 km of it; what is left of both limits is the error
 /// of an uncalibrated tool.
@@ -53,43 +44,16 @@ double FeltAlong(const Eigen::Vector3d& f_T) {
 
 }  // namespace
 
-ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track,
-                       const MarksRefused& refused, CableMarks& marks, RunBook& book, Sink& sink,
+ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const StringRecords& string, Sink& sink,
                        const RunAdjuster* adjuster)
     : job_(job),
       tool_(tool),
-      track_(track),
-      refused_(refused),
-      marks_(marks),
-      book_(book),
+      string_(string),
       sink_(sink),
       adjuster_(adjuster),
-      intake_(job, track, marks, sink) {}
-
-/// Modes do not take the place of what people say. Of too many, the latest is left out; false: that
-/// is `due` itself.
-bool ToolSurvey::MakeRoom(const Due& due) {
-  const bool mode = std::holds_alternative<ToolMode>(due.operation);
-  const auto alike = [mode](const Due& d) {
-    return std::holds_alternative<ToolMode>(d.operation) == mode;
-  };
-  if (std::count_if(due_.begin(), due_.end(), alike) < kDueMax) return true;
-  sink_.OnFault(Fault{FaultCode::kRange,
-                      fmt::format("more than {} {} wait for samples of tool {}: one is left out",
-                                  kDueMax, mode ? "modes" : "commands and events", tool_)});
-  const auto last = std::find_if(due_.rbegin(), due_.rend(), alike);
-  if (!mode || last->utc <= due.utc) return false;
-  due_.erase(std::next(last).base());
-  return true;
-}
-
-void ToolSurvey::Push(const Operation& operation) {
-  const Due due{TimeOf(operation), operation};
-  if (!MakeRoom(due)) return;
-  const auto after = std::upper_bound(due_.begin(), due_.end(), due.utc,
-                                      [](UtcTime utc, const Due& d) { return utc < d.utc; });
-  due_.insert(after, due);
-}
+      intake_(job, string.track, string.marks, sink),
+      operations_(tool, sink),
+      told_(sink) {}
 
 void ToolSurvey::Push(const StillWindow& window) {
   if (!CanBe(window)) {
@@ -100,11 +64,11 @@ void ToolSurvey::Push(const StillWindow& window) {
                           window.utc_begin.ns / 1'000'000'000)});
     return;
   }
-  RunState* found = RunFor(book_.RunAt(window.utc_begin, window.run));
+  ToolRun* found = RunFor(string_.book.RunAt(window.utc_begin, window.run));
   if (found == nullptr) return;
-  RunState& run = *found;
+  ToolRun& run = *found;
   const UtcTime middle = window.utc_begin + Duration{(window.utc_end - window.utc_begin).ns / 2};
-  AlongHole along = track_.AtRest(window.utc_begin, window.utc_end);
+  AlongHole along = string_.track.AtRest(window.utc_begin, window.utc_end);
   intake_.depth().ShiftToSensor(middle, intake_.clock_doubt(), along);
   if (!window.md && !along.known) TellWithoutDepth(window);
   run.survey->Push(window, along);
@@ -132,7 +96,7 @@ void ToolSurvey::Work(std::optional<UtcTime> until) {
   }
 }
 
-inline ToolSurvey::RunState* ToolSurvey::RunFor(std::int32_t run) {
+ToolRun* ToolSurvey::RunFor(std::int32_t run) {
   const bool same = !runs_.empty() && runs_.back().survey->summary().run == run;
   return same ? &runs_.back() : FindRun(run);
 }
@@ -140,31 +104,31 @@ inline ToolSurvey::RunState* ToolSurvey::RunFor(std::int32_t run) {
 /// From `at` on nothing is to be obeyed, and all samples are of one run and one depth scale.
 bool ToolSurvey::IsUniform(const AdmittedBlock& block, std::size_t at) const {
   if (!intake_.heard()) return false;
-  const SampleStamp& stamp = block.sent.back().stamp;
   const UtcTime first = block.utc[at], last = block.utc[block.size() - 1];
-  if (!due_.empty() && (due_.front().utc <= last || IsDue(due_.front(), stamp, last))) return false;
-  const std::int32_t run = book_.RunAt(first, stamp.run);
-  return run == book_.RunAt(last, stamp.run) && book_.Ended(run, first) == book_.Ended(run, last) &&
-         track_.Segment(first) == track_.Segment(last);
+  return !operations_.Any(block.sent.back().stamp, last) && !string_.book.Changes(first, last) &&
+         string_.track.Segment(first) == string_.track.Segment(last);
 }
 
 /// Samples [at, end) of a block: one, or such as are uniform.
 void ToolSurvey::Use(const AdmittedBlock& block, std::size_t at, std::size_t end) {
   const SampleStamp& stamp = block.sent[at].stamp;
   const UtcTime utc = block.utc[at];
-  if (!due_.empty() && !ObeyDue(stamp, utc)) return;
-  if (!intake_.heard()) book_.HeardAt(utc);
-  RunState* found = RunFor(book_.RunAt(utc, stamp.run));
+  while (const std::optional<Operation> due = operations_.Next(stamp, utc)) {
+    Obey(*due);
+    if (finish_asked_) return;
+  }
+  if (!intake_.heard()) string_.book.HeardAt(utc);
+  ToolRun* found = RunFor(string_.book.RunAt(utc, stamp.run));
   if (found == nullptr) return;
-  RunState& run = *found;
+  ToolRun& run = *found;
   RunSummary& summary = run.survey->summary();
   intake_.Count(block, at, end, summary);
   newest_used_ = block.utc[end - 1];
-  if (book_.Ended(summary.run, utc)) {
+  if (string_.book.Ended(summary.run, utc)) {
     summary.samples_after_end += static_cast<std::int64_t>(end - at);
     return;
   }
-  const std::int32_t segment = track_.Segment(utc);
+  const std::int32_t segment = string_.track.Segment(utc);
   if (segment != depth_segment_) {
     run.survey->RestartDepth();
     run.motion->Restart();
@@ -184,12 +148,12 @@ void ToolSurvey::Feel(const AdmittedBlock& block, std::size_t at, std::size_t en
   const std::size_t count = end - at;
   for (std::size_t i = 0; i < count; ++i) felt[i] = FeltAlong(block.samples.axes[at + i].tail<3>());
   motion.Feel(std::span(block.utc).subspan(at, count), Duration{block.sent[at].stamp.period_ns},
-              std::span(felt).first(count), track_);
+              std::span(felt).first(count), string_.track);
 }
 
 /// nullptr, and a Fault: one run too many.
-ToolSurvey::RunState* ToolSurvey::FindRun(std::int32_t run) {
-  for (RunState& state : runs_) {
+ToolRun* ToolSurvey::FindRun(std::int32_t run) {
+  for (ToolRun& state : runs_) {
     if (state.survey->summary().run != run) continue;
     // Another run may have begun since and ended; its samples are not mixed with these.
     return &state;
@@ -203,7 +167,7 @@ ToolSurvey::RunState* ToolSurvey::FindRun(std::int32_t run) {
     runs_.back().survey->Flush();
     Tell(runs_.back());
   }
-  RunState state;
+  ToolRun state;
   state.survey = std::make_unique<RunSurvey>(job_, run, tool_);
   state.provisional = std::make_unique<ProvisionalPath>(job_);
   state.watch = std::make_unique<SampleWatch>(job_);
@@ -212,7 +176,7 @@ ToolSurvey::RunState* ToolSurvey::FindRun(std::int32_t run) {
   return &runs_.back();
 }
 
-void ToolSurvey::Tell(RunState& run) {
+void ToolSurvey::Tell(ToolRun& run) {
   RunSurvey& survey = *run.survey;
   std::vector<std::size_t> news = survey.News();
   if (news.empty()) return;
@@ -221,26 +185,14 @@ void ToolSurvey::Tell(RunState& run) {
     Draft& draft = survey.drafts()[i];
     const StationState* state = draft.state ? &survey.state(*draft.state) : nullptr;
     if (std::optional<Station> station = run.provisional->Place(draft, state)) {
-      station->status = StatusOf(draft, false);
-      TellStation(*station);
+      station->status = crew_.StatusOf(draft.station, false);
+      told_.Tell(*station);
     }
   }
 }
 
-StationStatus ToolSurvey::StatusOf(const Draft& draft, bool adjusted) const {
-  StationStatus status = adjusted ? StationStatus::kField : StationStatus::kProvisional;
-  const Station& s = draft.station;
-  for (const Event& event : verdicts_) {
-    if (event.run != 0 && event.run != s.run) continue;
-    if (event.has_value && std::abs(event.value_m - s.md) > kTypedDepth) continue;
-    status =
-        event.kind == Event::Kind::kAccept ? StationStatus::kDefinitive : StationStatus::kRejected;
-  }
-  return status;
-}
-
 void ToolSurvey::Adjust() {
-  for (RunState& run : runs_) {
+  for (ToolRun& run : runs_) {
     run.survey->ListLastDepth();
     const RunHistory history = run.survey->History();
     if (!history.knots.empty()) {
@@ -253,50 +205,34 @@ void ToolSurvey::Adjust() {
     run.adjusted_drafts = run.survey->drafts().size() - run.survey->ahead();
     for (Draft& draft : run.survey->drafts()) ++draft.station.revision;
   }
-  SendRevisions();
-}
-
-void ToolSurvey::SendRevisions() {
-  const Survey survey = Current();
-  for (const Station& station : survey.passes) TellStation(station);
-}
-
-void ToolSurvey::TellStation(const Station& station) {
-  told_.insert_or_assign(KeyOf(station), station);
-  sink_.OnStation(station);
+  for (const Station& station : Current().passes) told_.Tell(station);
 }
 
 void ToolSurvey::Flush(std::optional<UtcTime> until) {
   intake_.Flush();
   Work(until);
   intake_.TellMended();
-  for (RunState& run : runs_) {
+  for (ToolRun& run : runs_) {
     run.survey->Flush();
     Tell(run);
   }
   // What people have said holds, though no sample reaches its time any more.
-  const auto commands = std::stable_partition(due_.begin(), due_.end(), [](const Due& due) {
-    return !std::holds_alternative<Command>(due.operation);
-  });
-  std::for_each(due_.begin(), commands, [this](const Due& due) { Obey(due.operation); });
-  due_.erase(due_.begin(), commands);
+  for (const Operation& operation : operations_.TakeUncommanded()) Obey(operation);
 }
 
 void ToolSurvey::Finish(std::optional<UtcTime> until) {
   if (finished_) return;
   Flush(until);
-  for (const Due& due : std::exchange(due_, {})) {
-    const Command& command = std::get<Command>(due.operation);
+  for (const Operation& operation : operations_.TakeCommands()) {
+    const Command& command = std::get<Command>(operation);
     // One that no sample reached any more is obeyed by ending.
-    if (command.kind == Command::Kind::kFinish &&
-        (command.command_id == 0 ||
-         commands_.insert({command.session, command.command_id}).second)) {
+    if (command.kind == Command::Kind::kFinish && operations_.IsNew(command)) {
       sink_.OnAcknowledged(command.command_id);
     }
   }
   Adjust();
   finished_ = true;
-  for (const RunState& run : runs_) {
+  for (const ToolRun& run : runs_) {
     const NorthFix* fix = Contradiction(job_, run.survey->summary());
     if (fix == nullptr) continue;
     sink_.OnFault(
@@ -307,6 +243,11 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
                   run.survey->summary().run, std::sqrt(*fix->chi_square), fix->md.value_or(0))});
   }
   for (const Check& check : Current().checks) sink_.OnCheck(check);
+}
+
+Survey ToolSurvey::Current() const {
+  const SurveyParts parts{runs_, crew_, told_, intake_.counts(), newest_used_, finished_};
+  return SurveyMaker(job_, string_, parts).Make();
 }
 
 RunNow ToolSurvey::Now() const { return runs_.empty() ? RunNow() : runs_.back().survey->Now(); }
