@@ -257,9 +257,8 @@ bool IncrementBuilder::Push(const ImuSample& sample, bool rests) {
     s.CloseBlock();
     s.Advance(false);
   }
-  SixAxes axes;
-  axes << sample.w_IT_T, sample.f_T;
-  Append({{&sample, 1}, {&axes, 1}}, rests);
+  s.last_begin_ns = s.open_begin_ns + s.open.samples() * std::int64_t{sample.stamp.period_ns};
+  s.open.Add(sample, rests);
   s.started = true;
   return true;
 }

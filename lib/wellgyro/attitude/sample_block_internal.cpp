@@ -23,9 +23,23 @@ Turned Turn(const Moments& m, double rate, double bend) {
 
 }  // namespace
 
+void BlockSum::Add(const ImuSample& sample, bool rests) {
+  if (samples_ == 0) seq_begin_ = sample.stamp.seq;
+  const double k = samples_++, k2 = k * k;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double w = sample.w_IT_T[i], f = sample.f_T[i];
+    sum_[0][kWx + i] += w;
+    sum_[0][kFx + i] += f;
+    sum_[1][kWx + i] += k * w;
+    sum_[1][kFx + i] += k * f;
+    sum_[2][kWx + i] += k2 * w;
+    sum_[2][kFx + i] += k2 * f;
+  }
+  Note(sample, sample.stamp, rests);
+}
+
 void BlockSum::Add(const SampleBlock& samples, bool rest) {
-  const SampleStamp& stamp = samples.first();
-  if (samples_ == 0) seq_begin_ = stamp.seq;
+  if (samples_ == 0) seq_begin_ = samples.first().seq;
   auto [zeroth, first, second] = sum_;
   for (const SixAxes& axes : samples.axes) {
     const double k = samples_++;
@@ -34,14 +48,19 @@ void BlockSum::Add(const SampleBlock& samples, bool rest) {
     second += k * k * axes;
   }
   sum_ = {zeroth, first, second};
+  Note(samples.samples.front(), samples.last(), rest);
+}
+
+void BlockSum::Note(const ImuSample& like, const SampleStamp& last, bool rest) {
+  const SampleStamp& stamp = like.stamp;
   accel_full_scale_ |= stamp.accel_saturated;
   gyro_full_scale_ |= stamp.gyro_saturated;
-  has_gz_ &= samples.samples.front().has_gz;
+  has_gz_ &= like.has_gz;
   rests_ &= rest;
   if (stamp.gyro_saturated | stamp.accel_saturated) quality_ |= Quality::kSaturated;
   if (stamp.utc_unsynced) quality_ |= Quality::kClock;
   if (stamp.temperature_outside) quality_ |= Quality::kTemperature;
-  last_ = samples.last();
+  last_ = last;
 }
 
 void BlockSum::Close(Block& block) {

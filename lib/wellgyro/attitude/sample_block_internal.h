@@ -69,11 +69,14 @@ class BlockSum {
  public:
   int samples() const { return samples_; }
   const SampleStamp& last() const { return last_; }
+  void Add(const ImuSample& sample, bool rests);
   void Add(const SampleBlock& samples, bool rest);
   /// The block so far, which a new one then follows; where it begins is the caller's.
   void Close(Block& block);
 
  private:
+  void Note(const ImuSample& like, const SampleStamp& last, bool rest);
+
   // Powers of a sample's number in the block; shifted to the middle at Close().
   std::array<SixAxes, 3> sum_{SixAxes::Zero(), SixAxes::Zero(), SixAxes::Zero()};
   int samples_ = 0;

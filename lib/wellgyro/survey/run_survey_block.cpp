@@ -85,9 +85,7 @@ void RunSurvey::TakePlain(const LocatedBlock& block, std::size_t at, std::size_t
     summary_.samples_aliased += TurnsFar(from, to);
     from = to;
   }
-  SixAxes axes;
-  axes << c.sample.w_IT_T, c.sample.f_T;
-  builder_.Append({{&c.sample, 1}, {&axes, 1}}, c.rests);
+  builder_.Push(c.sample, c.rests);
   TakeIncrements();
   StepReady(false);
   const auto rests = [&block](std::size_t i) {
