@@ -1,8 +1,9 @@
 #include "wellgyro/calibration/spike_filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -31,24 +32,74 @@ ImuSample Rolling(std::int64_t seq, double rpm, Random* random) {
   return sample;
 }
 
-std::vector<SpikeFilter::Out> Filtered(const std::vector<ImuSample>& samples) {
-  NoiseCoefficients gyro;
-  gyro.angle_random_walk = kWalk;
+struct Out {
+  ImuSample sample;
+  bool gyro = false, accel = false;
+};
+
+ErrorPriors Errors() {
   ErrorPriors errors;
   errors.accel_noise = kForceNoise;
-  SpikeFilter filter(gyro, errors);
-  std::vector<SpikeFilter::Out> out;
-  const auto drain = [&] {
-    while (const SpikeFilter::Out* one = filter.Flush()) out.push_back(*one);
-  };
-  for (const ImuSample& sample : samples) {
-    if (!filter.Continues(sample.stamp)) drain();
-    if (const SpikeFilter::Out* one = filter.Push(sample, sample.stamp.seq == 5)) {
-      out.push_back(*one);
+  return errors;
+}
+
+NoiseCoefficients Noise() {
+  NoiseCoefficients gyro;
+  gyro.angle_random_walk = kWalk;
+  return gyro;
+}
+
+/// In blocks of `block` samples.
+std::vector<Out> Filtered(const std::vector<ImuSample>& samples, std::size_t block = 1) {
+  SpikeFilter filter(Noise(), Errors());
+  std::vector<Out> out;
+  const auto keep = [&out](const SpikeFilter::Done& done) {
+    for (std::size_t i = 0; i < done.samples.size(); ++i) {
+      out.push_back({done.samples[i], done.mended[i].gyro, done.mended[i].accel});
+      EXPECT_EQ(done.axes[i].head<3>().matrix(), done.samples[i].w_IT_T);
+      EXPECT_EQ(done.axes[i].tail<3>().matrix(), done.samples[i].f_T);
     }
+  };
+  for (std::span<const ImuSample> rest(samples); !rest.empty();) {
+    if (!filter.Continues(rest.front().stamp)) keep(filter.Flush());
+    const SpikeFilter::Done done = filter.Push(rest.first(std::min(block, rest.size())));
+    keep(done);
+    EXPECT_GE(done.taken, 1u);
+    rest = rest.subspan(std::max<std::size_t>(done.taken, 1));
   }
-  drain();
+  keep(filter.Flush());
   return out;
+}
+
+double& AxisOf(ImuSample& sample, int axis) {
+  return axis < 3 ? sample.w_IT_T[axis] : sample.f_T[axis - 3];
+}
+
+/// One axis of one stretch, sample by sample, as the class says it in words.
+void MendAxis(std::vector<Out>& out, int axis) {
+  const double least = axis < 3 ? 1e-5 : 1e-3, noise = axis < 3 ? kWalk : kForceNoise;
+  const double floor = 8.4 * noise * (1 / std::sqrt(1e-9 * kPeriod)) + least;
+  const auto x = [&](std::size_t i) -> double& { return AxisOf(out[i].sample, axis); };
+  const auto beyond = [&](std::size_t i) {
+    return x(i) - (4 * (x(i - 1) + x(i + 1)) - x(i - 2) - x(i + 2)) / 6;
+  };
+  for (std::size_t i = 3; i + 3 < out.size(); ++i) {
+    const double off = beyond(i);
+    if (std::abs(off) <= floor) continue;
+    const double lively = std::max(std::abs(beyond(i - 1) + off * (2.0 / 3)),
+                                   std::abs(beyond(i + 1) + off * (2.0 / 3)));
+    std::vector<double> near = {x(i - 3), x(i - 2), x(i - 1), x(i + 1), x(i + 2), x(i + 3)};
+    std::ranges::sort(near);
+    const double median = (near[2] + near[3]) / 2;
+    if (std::abs(off) > 10 * lively + floor) {
+      x(i) -= off;
+    } else if (std::abs(x(i) - median) > 3 * (near[4] - near[1]) + floor) {
+      x(i) = median;
+    } else {
+      continue;
+    }
+    (axis < 3 ? out[i].gyro : out[i].accel) = true;
+  }
 }
 
 std::vector<ImuSample> Samples(int n, double rpm, Random* random) {
@@ -57,7 +108,7 @@ std::vector<ImuSample> Samples(int n, double rpm, Random* random) {
   return samples;
 }
 
-TEST(SpikeFilter, GivesEverySampleInOrderWithItsMark) {
+TEST(SpikeFilter, GivesEverySampleInOrder) {
   std::vector<ImuSample> samples = Samples(40, 1, nullptr);
   samples.erase(samples.begin() + 20, samples.begin() + 23);
   const auto out = Filtered(samples);
@@ -65,7 +116,35 @@ TEST(SpikeFilter, GivesEverySampleInOrderWithItsMark) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     EXPECT_EQ(out[i].sample.stamp.seq, samples[i].stamp.seq);
     EXPECT_EQ(out[i].sample.f_T, samples[i].f_T);
-    EXPECT_EQ(out[i].mark, samples[i].stamp.seq == 5);
+  }
+}
+
+TEST(SpikeFilter, DoesToTheBitWhatItSaysInBlocksOfAnySize) {
+  Random random(11);
+  std::vector<ImuSample> samples = Samples(3000, 3, &random);
+  for (int k = 0; k < 200; ++k) {
+    const auto at = static_cast<std::size_t>(2900 * random.Uniform());
+    const auto axis = static_cast<int>(6 * random.Uniform());
+    if (axis == 2) continue;
+    // From what the floor hides to what is plain, and some beside each other.
+    AxisOf(samples[at], axis) += (axis < 3 ? 1e-4 : 1e-2) * std::exp(random.Normal());
+    if (k % 5 == 0) AxisOf(samples[at + 1], axis) -= axis < 3 ? 1e-2 : 1;
+  }
+  std::vector<Out> expected;
+  for (const ImuSample& sample : samples) expected.push_back({sample});
+  for (const int axis : {0, 1, 3, 4, 5}) MendAxis(expected, axis);
+  int mended = 0;
+  for (const Out& one : expected) mended += one.gyro || one.accel;
+  EXPECT_GT(mended, 50);
+  for (const std::size_t block : {1u, 2u, 5u, 63u, 64u, 500u}) {
+    const std::vector<Out> out = Filtered(samples, block);
+    ASSERT_EQ(out.size(), expected.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      EXPECT_EQ(out[i].sample.w_IT_T, expected[i].sample.w_IT_T) << block << " " << i;
+      EXPECT_EQ(out[i].sample.f_T, expected[i].sample.f_T) << block << " " << i;
+      EXPECT_EQ(out[i].gyro, expected[i].gyro) << block << " " << i;
+      EXPECT_EQ(out[i].accel, expected[i].accel) << block << " " << i;
+    }
   }
 }
 
@@ -73,7 +152,7 @@ TEST(SpikeFilter, LeavesNoiseAndRollAlone) {
   for (const double rpm : {0.0, 1.0, 10.0, 60.0}) {
     Random random(3);
     int touched = 0;
-    for (const SpikeFilter::Out& out : Filtered(Samples(50'000, rpm, &random))) {
+    for (const Out& out : Filtered(Samples(50'000, rpm, &random))) {
       touched += out.gyro || out.accel;
     }
     EXPECT_EQ(touched, 0) << rpm;
@@ -110,7 +189,7 @@ TEST(SpikeFilter, FindsTwoBesideEachOtherAndGoesBlindInAVibration) {
   std::vector<ImuSample> shaken = Samples(100, 1, &random);
   for (ImuSample& sample : shaken) sample.f_T.x() += random.Normal();
   int touched = 0;
-  for (const SpikeFilter::Out& one : Filtered(shaken)) touched += one.accel;
+  for (const Out& one : Filtered(shaken)) touched += one.accel;
   EXPECT_LE(touched, 3);
 }
 
@@ -118,7 +197,7 @@ TEST(SpikeFilter, AtABreakNothingIsReplaced) {
   std::vector<ImuSample> samples = Samples(40, 1, nullptr);
   samples[1].w_IT_T.x() = samples[21].w_IT_T.x() = samples[38].w_IT_T.x() = 1;
   for (std::size_t k = 20; k < 40; ++k) samples[k].stamp.session = 2;
-  for (const SpikeFilter::Out& out : Filtered(samples)) EXPECT_FALSE(out.gyro);
+  for (const Out& out : Filtered(samples)) EXPECT_FALSE(out.gyro);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -231,6 +232,48 @@ TEST(ClockTie, NonsenseTimesDoNotOverflow) {
   }
   EXPECT_TRUE(tie.known());
   EXPECT_THROW(ClockTie({.sigma_pair = 0}), std::invalid_argument);
+}
+
+TEST(ClockTie, FollowingTakesWhatPushWouldToTheBit) {
+  constexpr std::int64_t kPeriod = 3'000'000;
+  ClockTie one, many;
+  Random random(4);
+  std::size_t followed = 0;
+  std::int64_t utc = kUtc0;
+  SampleStamp stamp;
+  stamp.session = 1;
+  for (std::int64_t k = 0; k < 20'000;) {
+    const auto n = static_cast<std::size_t>(1 + 80 * random.Uniform());
+    // Now and then the surface says nothing new.
+    if (random.Uniform() < 0.7) utc += std::llround(1e5 * random.Normal());
+    for (std::size_t i = 0; i < n;) {
+      const auto stand = [&](std::size_t j) {
+        stamp.tool_time = {kTool0 + (k + static_cast<std::int64_t>(j)) * kPeriod};
+        stamp.utc = {utc + (k + static_cast<std::int64_t>(j)) * kPeriod};
+      };
+      stand(i);
+      one.Push(stamp);
+      many.Push(stamp);
+      const std::size_t more = many.Follow(stamp.tool_time, Duration{kPeriod}, n - i - 1);
+      for (std::size_t j = i + 1; j <= i + more; ++j) {
+        stand(j);
+        one.Push(stamp);
+        ASSERT_EQ(one.ToUtc(stamp.tool_time).ns, many.ToUtc(stamp.tool_time).ns);
+      }
+      followed += more;
+      i += 1 + more;
+    }
+    k += static_cast<std::int64_t>(n);
+    ASSERT_EQ(one.drift(), many.drift());
+    ASSERT_EQ(one.Sigma(stamp.tool_time), many.Sigma(stamp.tool_time));
+    std::vector<UtcTime> times(5);
+    many.ToUtc(stamp.tool_time, Duration{kPeriod}, times);
+    for (std::int64_t i = 0; i < 5; ++i) {
+      const ToolTime time = stamp.tool_time + Duration{i * kPeriod};
+      EXPECT_EQ(times[static_cast<std::size_t>(i)].ns, one.ToUtc(time).ns);
+    }
+  }
+  EXPECT_GT(followed, 15'000u);
 }
 
 }  // namespace

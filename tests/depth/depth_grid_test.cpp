@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -86,6 +87,29 @@ TEST(DepthGrid, OrderAndDensityOfTheQuestionsDoNotMatter) {
     ASSERT_EQ(a.md, b.md);
     ASSERT_EQ(a.speed, b.speed);
     ASSERT_EQ(a.acceleration, b.acceleration);
+  }
+}
+
+TEST(DepthGrid, OfABlockIsThatOfItsInstants) {
+  DepthTrack track;
+  for (int i = 0; i <= 200; ++i) Push(track, i * 0.1, Swinging(i * 0.1), i);
+  // From where depth is unknown into it, across its cells and out of it again.
+  for (const double begin : {-0.05, 1.01, 7.0, 19.95}) {
+    DepthGrid one(track), many(track);
+    std::vector<UtcTime> utc;
+    for (int i = 0; i < 60; ++i) utc.push_back(Utc(begin + 0.0043 * i));
+    AlongHoleBlock block;
+    many.At(utc, block);
+    for (std::size_t i = 0; i < utc.size(); ++i) {
+      const AlongHole a = one.At(utc[i]), b = block.At(i);
+      EXPECT_EQ(a.known, b.known) << begin << " " << i;
+      EXPECT_EQ(a.md, b.md) << begin << " " << i;
+      EXPECT_EQ(a.speed, b.speed) << begin << " " << i;
+      EXPECT_EQ(a.acceleration, b.acceleration) << begin << " " << i;
+      EXPECT_EQ(a.sigma_md, b.sigma_md) << begin << " " << i;
+      EXPECT_EQ(a.sigma_speed, b.sigma_speed) << begin << " " << i;
+      EXPECT_EQ(a.sigma_acceleration, b.sigma_acceleration) << begin << " " << i;
+    }
   }
 }
 

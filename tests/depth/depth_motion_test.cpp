@@ -55,8 +55,9 @@ DepthMotion::Found FoundOf(const Depths& depths, double seconds) {
     const double h = 0.02, middle = t + kStep / 2;
     const double felt = (Depth(middle + h) - 2 * Depth(middle) + Depth(middle - h)) / (h * h);
     const double late = depths.jitter * clock.Normal();
-    motion.Feel(begin + Duration::Seconds(t + late), kStep, felt - 6.5 + 1e-3 * force.Normal(),
-                track);
+    const UtcTime utc = begin + Duration::Seconds(t + late);
+    const double f_z = felt - 6.5 + 1e-3 * force.Normal();
+    motion.Feel({&utc, 1}, Duration::Seconds(kStep), {&f_z, 1}, track);
   }
   return motion.found();
 }
@@ -128,7 +129,8 @@ TEST(DepthMotion, AReZeroIsNoStep) {
     const UtcTime utc = begin + Duration::Seconds(2.0 * k);
     if (k == 100) motion.Restart();
     PushMark(utc, k + (k < 100 ? 0 : 7), track);
-    motion.Feel(utc, 2, -9.8, track);
+    const double f_z = -9.8;
+    motion.Feel({&utc, 1}, Duration::Seconds(2), {&f_z, 1}, track);
   }
   EXPECT_LT(std::abs(motion.found().step), 1e-6);
   EXPECT_GT(motion.found().compared, 180);

@@ -1,6 +1,8 @@
 #include "wellgyro/depth/passes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -100,6 +102,41 @@ TEST(Passes, ANewDepthScaleBeginsAPassOfTheSameKind) {
 TEST(Passes, RefusesASetUpThatCannotBe) {
   EXPECT_THROW(PassTracker({.reversal = 0.05, .first_move = 0.1}), std::invalid_argument);
   EXPECT_THROW(PassTracker({.reversal = 2, .first_move = 0}), std::invalid_argument);
+}
+
+TEST(PassTracker, OfABlockIsThatOfItsDepthsWherePlain) {
+  PassTracker one, many;
+  std::vector<UtcTime> utc;
+  std::vector<double> md;
+  for (int i = 0; i < 6000; ++i) {
+    // Stands, goes in by fits and starts, out, over again, and with the depth's own noise.
+    const double t = 0.01 * i, way = t < 5 ? 0 : t < 25 ? t - 5 : t < 35 ? 45 - t : t - 25;
+    utc.push_back(At(t));
+    md.push_back(100 + way + 0.02 * std::sin(9 * t));
+  }
+  int plain = 0, single = 0;
+  for (std::size_t at = 0; at < md.size();) {
+    const std::size_t n = std::min<std::size_t>(md.size() - at, 1 + at % 13);
+    const std::span<const double> depths(md.data() + at, n);
+    for (std::size_t i = 0; i < n; ++i) one.Push(utc[at + i], md[at + i]);
+    if (many.FurthestWithin(depths)) {
+      many.Push(std::span<const UtcTime>(utc.data() + at, n), depths);
+      ++plain;
+    } else {
+      for (std::size_t i = 0; i < n; ++i) many.Push(utc[at + i], md[at + i]);
+      ++single;
+    }
+    at += n;
+    const PassState &a = one.state(), &b = many.state();
+    ASSERT_EQ(a.pass, b.pass) << at;
+    EXPECT_EQ(a.number, b.number) << at;
+    EXPECT_EQ(a.md, b.md) << at;
+    EXPECT_EQ(a.utc_turn.ns, b.utc_turn.ns) << at;
+    EXPECT_EQ(a.md_turn, b.md_turn) << at;
+  }
+  // It stands, goes in, out, repeats, and goes on in.
+  EXPECT_EQ(one.state().number, 5);
+  EXPECT_GT(plain, 2 * single);
 }
 
 }  // namespace

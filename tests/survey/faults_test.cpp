@@ -110,7 +110,9 @@ Check StuckGyroOf(double step, double frozen) {
     if (0.1 * k < frozen) value = step * sigma * std::round(read / (step * sigma));
     sample.w_IT_T = {value, sigma * random.Normal(), 0};
     sample.f_T = {1 + 6e-4 * random.Normal(), 6e-4 * random.Normal(), -9.7};
-    watch.Push(sample, {.md = 0.05 * k, .speed = 0.5, .known = true});
+    AlongHoleBlock along;
+    along.Set(0, {.md = 0.05 * k, .speed = 0.5, .known = true});
+    watch.Push({&sample, 1}, along, 0);
   }
   for (const Check& check : watch.Checks(1, {})) {
     if (check.code.starts_with("gyro_stuck") || check.code.starts_with("gyro_dead")) return check;

@@ -22,11 +22,19 @@ ImuSample SampleAt(std::int64_t seq, std::int32_t session = 1) {
   return sample;
 }
 
+/// How many at the begin follow each other by number, and so may be popped at once.
+std::size_t Together(std::span<const ImuSample> samples) {
+  std::size_t n = 1;
+  while (n < samples.size() && samples[n].stamp.seq == samples[n - 1].stamp.seq + 1) ++n;
+  return n;
+}
+
 std::vector<std::int64_t> Drain(SampleQueue& queue) {
   std::vector<std::int64_t> seqs;
-  while (const ImuSample* front = queue.Front()) {
-    seqs.push_back(front->stamp.seq);
-    queue.Pop();
+  for (auto ready = queue.Ready(); !ready.empty(); ready = queue.Ready()) {
+    ready = ready.first(Together(ready));
+    for (const ImuSample& sample : ready) seqs.push_back(sample.stamp.seq);
+    queue.Pop(ready.size());
   }
   return seqs;
 }
@@ -34,7 +42,7 @@ std::vector<std::int64_t> Drain(SampleQueue& queue) {
 TEST(SampleQueue, HoldsASampleUntilOneSoMuchYoungerHasCome) {
   SampleQueue queue(Duration::Seconds(0.05));
   for (int k = 0; k < 5; ++k) queue.Push(SampleAt(k));
-  EXPECT_EQ(queue.Front(), nullptr);
+  EXPECT_TRUE(queue.Ready().empty());
   queue.Push(SampleAt(5));
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0}));
   queue.Flush();
@@ -115,7 +123,7 @@ TEST(SampleQueue, ANewSessionFlushesTheOldOneOnceItIsBelieved) {
   queue.Push(SampleAt(8, 1));
   for (std::int64_t k = 0; k < 999; ++k)
     EXPECT_EQ(queue.Push(SampleAt(k, 2)), QueueVerdict::kAside);
-  EXPECT_EQ(queue.Front(), nullptr);
+  EXPECT_TRUE(queue.Ready().empty());
   EXPECT_EQ(queue.Push(SampleAt(999, 2)), QueueVerdict::kTaken);
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{7, 8}));
   EXPECT_EQ(queue.waiting(), 1'000u);
@@ -177,12 +185,12 @@ TEST(SampleQueue, BehindAClockThatJumpsNothingIsLost) {
     std::vector<std::int64_t> utcs;
     int jumps = 0;
     const auto drain = [&] {
-      for (const ImuSample* front = queue.Front(); front != nullptr; front = queue.Front()) {
+      for (auto ready = queue.Ready(); !ready.empty(); ready = queue.Ready()) {
         if (queue.Jumps()) {
           ++jumps;
           EXPECT_EQ(utcs.size(), static_cast<std::size_t>(kBefore)) << seq << " " << tool;
         }
-        utcs.push_back(front->stamp.utc.ns);
+        utcs.push_back(ready.front().stamp.utc.ns);
         queue.Pop();
       }
     };
@@ -211,7 +219,7 @@ TEST(SampleQueue, AMessageOfWildTimesIsAStrayAndMakesNoOtherLate) {
     for (int k = 0; k < 6000; ++k) {
       const bool wild = k >= 3000 && k < 3100;
       queue.Push(wild ? Wild(k, seq, tool) : Wild(k, 0, 0));
-      for (; queue.Front() != nullptr; queue.Pop()) out += queue.Jumps() ? 1000 : 1;
+      for (; !queue.Ready().empty(); queue.Pop()) out += queue.Jumps() ? 1000 : 1;
     }
     EXPECT_EQ(queue.counts().strays, 100) << seq << " " << tool;
     EXPECT_EQ(queue.counts().accepted, 5900) << seq << " " << tool;

@@ -158,6 +158,52 @@ inline void StillDetector::Add(const ImuSample& sample, const AlongHole& along) 
   block.sum_sigma_speed += along.sigma_speed;
 }
 
+std::size_t StillDetector::Room(const SampleStamp& next) const {
+  if (block_.samples == 0 || !Continues(next) || !InBlock(next.tool_time)) return 0;
+  const std::int64_t left = (block_.index + 1) * kBlockNs - next.tool_time.ns;
+  return static_cast<std::size_t>((left - 1) / next.period_ns + 1);
+}
+
+void StillDetector::Append(const SampleBlock& samples, const AlongHoleBlock& along,
+                           std::size_t at) {
+  using Sums = Eigen::Array<double, 6, 1>;
+  const auto n = static_cast<Eigen::Index>(samples.size()), from = static_cast<Eigen::Index>(at);
+  Block& block = block_;
+  Sums first, sum, square;
+  first << block.w0, block.f0;
+  sum << block.sum_w, block.sum_f;
+  square << block.square_w, block.square_f;
+  for (const SixAxes& axes : samples.axes) {
+    const Sums from_first = axes - first;
+    sum += from_first;
+    square += from_first.square();
+  }
+  block.sum_w = sum.head<3>();
+  block.sum_f = sum.tail<3>();
+  block.square_w = square.head<3>();
+  block.square_f = square.tail<3>();
+  const SampleStamp& stamp = samples.first();
+  const ImuSample& like = samples.samples.front();
+  if (like.has_mag) {
+    for (const ImuSample& sample : samples.samples) block.sum_b += sample.b_T;
+  }
+  const auto temperature = static_cast<double>(stamp.temperature);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    block.sum_temperature += temperature;
+    block.sum_md += along.md[from + i];
+    block.sum_speed += std::abs(along.speed[from + i]);
+    block.sum_sigma_speed += along.sigma_speed[from + i];
+  }
+  block.samples += n;
+  block.depths += n;
+  block.gz &= like.has_gz;
+  block.mag &= like.has_mag;
+  block.saturated |= stamp.gyro_saturated | stamp.accel_saturated;
+  previous_ = samples.last();
+  const Eigen::Index last = from + n - 1;
+  sliding_ = std::abs(along.speed[last]) > SpeedLimit(along.sigma_speed[last]);
+}
+
 /// Judges the finished block; returns the window that its motion ends.
 std::optional<StillWindow> StillDetector::CloseBlock() {
   const Block& block = block_;

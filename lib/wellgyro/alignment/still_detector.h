@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -8,8 +9,10 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/along_hole_block.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/sample.h"
+#include "wellgyro/record/sample_block.h"
 #include "wellgyro/record/still_window.h"
 
 namespace wellgyro {
@@ -46,6 +49,12 @@ class WELLGYRO_EXPORT StillDetector {
   /// Takes the next sample and the motion along the hole at its time; duplicates of seq are
   /// ignored. Returns the window that this sample ended, if one was long enough.
   [[nodiscard]] std::optional<StillWindow> Push(const ImuSample& sample, const AlongHole& along);
+  /// How many samples from this one on are of the block at hand, each a period behind the one
+  /// before.
+  std::size_t Room(const SampleStamp& next) const;
+  /// Takes samples, no more than there is Room() for, with the motion along the hole at each of
+  /// them from `at` on, known for all. As Push of each would, at less cost.
+  void Append(const SampleBlock& samples, const AlongHoleBlock& along, std::size_t at);
   /// The mode or the index position changes before the next sample: no window spans it. Windows
   /// from now on carry `index_position`.
   [[nodiscard]] std::optional<StillWindow> Cut(std::optional<std::int32_t> index_position);

@@ -263,6 +263,24 @@ bool IncrementBuilder::Push(const ImuSample& sample, bool rests) {
   return true;
 }
 
+std::size_t IncrementBuilder::Room(const SampleStamp& next) const {
+  const State& s = *state_;
+  if (!s.started || s.open.samples() == 0 || s.open.samples() >= s.block_samples) return 0;
+  const Following f = Follows(s.open.last(), next);
+  if (f.late || f.breaks) return 0;
+  const std::int64_t left = kKnotNs - 1 - (s.last_begin_ns - s.last_cut_ns);
+  if (left < 0 || s.blocks.end() - s.last_cut_block >= kKnotBlocks) return 0;
+  return static_cast<std::size_t>(
+      std::min<std::int64_t>(s.block_samples - s.open.samples(), left / next.period_ns + 1));
+}
+
+void IncrementBuilder::Append(const SampleBlock& samples, bool rest) {
+  State& s = *state_;
+  s.open.Add(samples, rest);
+  s.last_begin_ns =
+      s.open_begin_ns + (s.open.samples() - 1) * std::int64_t{samples.last().period_ns};
+}
+
 void IncrementBuilder::Cut(double fraction) {
   State& s = *state_;
   if (!(fraction > 0 && fraction <= 1) || !s.started) {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/increment.h"
 #include "wellgyro/record/sample.h"
+#include "wellgyro/record/sample_block.h"
 
 namespace wellgyro {
 
@@ -62,6 +64,13 @@ class WELLGYRO_EXPORT IncrementBuilder {
   /// no period or is not finite. A jump in time, number or session is a gap.
   /// Throws std::logic_error where more increments wait to be fetched than there is room for.
   bool Push(const ImuSample& sample, bool rests);
+
+  /// How many samples from this one on the sums at hand still hold, each a period behind the one
+  /// before: no increment can come of them.
+  std::size_t Room(const SampleStamp& next) const;
+  /// Takes samples, no more than there is Room() for; `rest`: at all of them the tool makes no way.
+  /// As Push of each would, at less cost.
+  void Append(const SampleBlock& samples, bool rest);
 
   /// Ends the knot at `fraction` in (0, 1] of the last pushed sample. Throws std::invalid_argument
   /// before the first sample, for a fraction outside (0, 1] or not behind the last cut.

@@ -24,25 +24,43 @@ Turned Turn(const Moments& m, double rate, double bend) {
 }  // namespace
 
 void BlockSum::Add(const ImuSample& sample, bool rests) {
-  const SampleStamp& stamp = sample.stamp;
-  if (samples_ == 0) seq_begin_ = stamp.seq;
-  const double k = samples_, k2 = k * k;
-  const std::array<double, kChannels> v{sample.w_IT_T.x(), sample.w_IT_T.y(), sample.f_T.x(),
-                                        sample.f_T.y(),    sample.f_T.z(),    sample.w_IT_T.z()};
-  for (int i = 0; i < kChannels; ++i) {
-    sum_[0][i] += v[i];
-    sum_[1][i] += k * v[i];
-    sum_[2][i] += k2 * v[i];
+  if (samples_ == 0) seq_begin_ = sample.stamp.seq;
+  const double k = samples_++, k2 = k * k;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double w = sample.w_IT_T[i], f = sample.f_T[i];
+    sum_[0][kWx + i] += w;
+    sum_[0][kFx + i] += f;
+    sum_[1][kWx + i] += k * w;
+    sum_[1][kFx + i] += k * f;
+    sum_[2][kWx + i] += k2 * w;
+    sum_[2][kFx + i] += k2 * f;
   }
-  ++samples_;
+  Note(sample, sample.stamp, rests);
+}
+
+void BlockSum::Add(const SampleBlock& samples, bool rest) {
+  if (samples_ == 0) seq_begin_ = samples.first().seq;
+  auto [zeroth, first, second] = sum_;
+  for (const SixAxes& axes : samples.axes) {
+    const double k = samples_++;
+    zeroth += axes;
+    first += k * axes;
+    second += k * k * axes;
+  }
+  sum_ = {zeroth, first, second};
+  Note(samples.samples.front(), samples.last(), rest);
+}
+
+void BlockSum::Note(const ImuSample& like, const SampleStamp& last, bool rest) {
+  const SampleStamp& stamp = like.stamp;
   accel_full_scale_ |= stamp.accel_saturated;
   gyro_full_scale_ |= stamp.gyro_saturated;
-  has_gz_ &= sample.has_gz;
-  rests_ &= rests;
+  has_gz_ &= like.has_gz;
+  rests_ &= rest;
   if (stamp.gyro_saturated | stamp.accel_saturated) quality_ |= Quality::kSaturated;
   if (stamp.utc_unsynced) quality_ |= Quality::kClock;
   if (stamp.temperature_outside) quality_ |= Quality::kTemperature;
-  last_ = stamp;
+  last_ = last;
 }
 
 void BlockSum::Close(Block& block) {
@@ -63,7 +81,7 @@ void BlockSum::Close(Block& block) {
     const double second = sum_[2][i] - middle * (2 * first + middle * zeroth);
     block.sum[i] = {zeroth * dt, first * dt * dt, second * dt * dt * dt};
   }
-  sum_ = {};
+  sum_.fill(SixAxes::Zero());
   samples_ = 0;
   accel_full_scale_ = gyro_full_scale_ = false;
   has_gz_ = rests_ = true;

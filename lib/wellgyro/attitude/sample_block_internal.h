@@ -5,14 +5,14 @@
 #include <cstdint>
 
 #include "wellgyro/record/quality.h"
-#include "wellgyro/record/sample.h"
+#include "wellgyro/record/sample_block.h"
 
 namespace wellgyro::increment {
 
 using Complex = std::complex<double>;
 
-/// Channels whose moments a block keeps.
-enum Channel { kWx, kWy, kFx, kFy, kFz, kWz, kChannels };
+/// Channels whose moments a block keeps, in the order of SixAxes.
+enum Channel { kWx, kWy, kWz, kFx, kFy, kFz, kChannels };
 
 /// One channel's integral over a block, and those of it times time and time squared from the
 /// block's middle, each sample standing at its own middle.
@@ -70,12 +70,15 @@ class BlockSum {
   int samples() const { return samples_; }
   const SampleStamp& last() const { return last_; }
   void Add(const ImuSample& sample, bool rests);
+  void Add(const SampleBlock& samples, bool rest);
   /// The block so far, which a new one then follows; where it begins is the caller's.
   void Close(Block& block);
 
  private:
+  void Note(const ImuSample& like, const SampleStamp& last, bool rest);
+
   // Powers of a sample's number in the block; shifted to the middle at Close().
-  std::array<std::array<double, kChannels>, 3> sum_{};
+  std::array<SixAxes, 3> sum_{SixAxes::Zero(), SixAxes::Zero(), SixAxes::Zero()};
   int samples_ = 0;
   SampleStamp last_;
   std::int64_t seq_begin_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace wellgyro {
 namespace {
@@ -14,38 +15,52 @@ constexpr double kSigmas = 8.4;  // of the stated noise: six of that of a sample
 constexpr double kLeastRate = 1e-5;   // [rad/s]
 constexpr double kLeastForce = 1e-3;  // [m/s^2]
 
+bool Follows(const SampleStamp& a, const SampleStamp& b) {
+  return b.session == a.session && b.seq == a.seq + 1 && b.period_ns == a.period_ns;
+}
+
 }  // namespace
 
 bool SpikeFilter::Continues(const SampleStamp& stamp) const {
-  if (waiting_ == 0) return false;
-  const SampleStamp& last = At(size_ - 1).sample.stamp;
-  return stamp.session == last.session && stamp.seq == last.seq + 1 &&
-         stamp.period_ns == last.period_ns;
+  return done_ < size_ && Follows(samples_[size_ - 1].stamp, stamp);
 }
 
-const SpikeFilter::Out* SpikeFilter::Push(const ImuSample& sample, bool mark) {
-  if (size_ == kWindow) {
-    first_ = (first_ + 1) % kRing;
-    --size_;
+SpikeFilter::Done SpikeFilter::Push(std::span<const ImuSample> samples) {
+  Drop();
+  const std::size_t before = size_;
+  SetFloor(samples.front().stamp.period_ns);
+  for (const ImuSample& sample : samples.first(std::min(samples.size(), kMost))) {
+    if (size_ > before && !Follows(samples_[size_ - 1].stamp, sample.stamp)) break;
+    samples_[size_] = sample;
+    axes_[size_] << sample.w_IT_T, sample.f_T;
+    mended_[size_] = {};
+    ++size_;
   }
-  Out& out = At(size_);
-  values_[Slot(size_)] << sample.w_IT_T, sample.f_T;
-  ++size_;
-  ++waiting_;
-  out.sample = sample;
-  out.mark = mark;
-  out.gyro = out.accel = false;
-  if (waiting_ <= kMiddle) return nullptr;
-  if (size_ == kWindow) MendMiddle();
-  return &At(size_ - waiting_--);
+  const std::size_t end = std::max(size_, kMiddle) - kMiddle;
+  for (std::size_t i = std::max(done_, kMiddle); i < end; ++i) {
+    if (Departs(i)) Mend(i);
+  }
+  Done done = DoneUpTo(std::max(done_, end));
+  done.taken = size_ - before;
+  return done;
 }
 
-const SpikeFilter::Out* SpikeFilter::Flush() {
-  if (waiting_ == 0) {
-    size_ = 0;
-    return nullptr;
-  }
-  return &At(size_ - waiting_--);
+SpikeFilter::Done SpikeFilter::Flush() { return DoneUpTo(size_); }
+
+SpikeFilter::Done SpikeFilter::DoneUpTo(std::size_t end) {
+  const std::size_t begin = std::exchange(done_, end), count = end - begin;
+  return {std::span(samples_).subspan(begin, count), std::span(axes_).subspan(begin, count),
+          std::span(mended_).subspan(begin, count), 0};
+}
+
+/// What no window needs any more: all, where nothing waits.
+void SpikeFilter::Drop() {
+  const std::size_t first = done_ == size_ ? size_ : std::max(done_, kMiddle) - kMiddle;
+  std::copy(samples_.begin() + first, samples_.begin() + size_, samples_.begin());
+  std::copy(axes_.begin() + first, axes_.begin() + size_, axes_.begin());
+  std::copy(mended_.begin() + first, mended_.begin() + size_, mended_.begin());
+  size_ -= first;
+  done_ -= first;
 }
 
 void SpikeFilter::SetFloor(std::int32_t period_ns) {
@@ -57,25 +72,34 @@ void SpikeFilter::SetFloor(std::int32_t period_ns) {
 }
 
 /// What a sample has that the cubic through the four about it has not.
-SpikeFilter::Values SpikeFilter::Beyond(std::size_t i) const {
-  const Values near = 4 * (ValuesAt(i - 1) + ValuesAt(i + 1)) - ValuesAt(i - 2) - ValuesAt(i + 2);
-  return ValuesAt(i) - near / 6;
+SixAxes SpikeFilter::Beyond(std::size_t i) const {
+  const SixAxes near = 4 * (axes_[i - 1] + axes_[i + 1]) - axes_[i - 2] - axes_[i + 2];
+  return axes_[i] - near / 6;
 }
 
-/// One axis of the sample in the middle, which has `off` that its cubic has not.
-bool SpikeFilter::MendAxis(Eigen::Index axis, double off) {
+/// False: Beyond() is within the floor on every axis. Nearly all samples are done with this.
+bool SpikeFilter::Departs(std::size_t i) const {
+  constexpr double kSurely = 5.99;  // of six, for what is rounded
+  const SixAxes near = 4 * (axes_[i - 1] + axes_[i + 1]) - axes_[i - 2] - axes_[i + 2];
+  return ((6 * axes_[i] - near).abs() - kSurely * floor_).maxCoeff() > 0;
+}
+
+/// One axis of a sample, which has `off` that its cubic has not.
+bool SpikeFilter::MendAxis(std::size_t i, Eigen::Index axis, double off) {
   const double floor = floor_[axis];
-  double& x = values_[Slot(kMiddle)][axis];
+  double& x = axes_[i][axis];
   // A single bad sample leaves -2/3 of itself with either neighbour; what else these have is how
   // much the signal itself departs from cubics here.
-  const double lively = std::max(std::abs(Beyond(kMiddle - 1)[axis] + off * kShared),
-                                 std::abs(Beyond(kMiddle + 1)[axis] + off * kShared));
+  const double lively = std::max(std::abs(Beyond(i - 1)[axis] + off * kShared),
+                                 std::abs(Beyond(i + 1)[axis] + off * kShared));
   if (std::abs(off) > kTimes * lively + floor) {
     x -= off;
     return true;
   }
-  std::array<double, 6> near;
-  for (std::size_t i = 0; i < near.size(); ++i) near[i] = ValuesAt(i < kMiddle ? i : i + 1)[axis];
+  std::array<double, 2 * kMiddle> near;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    near[k] = axes_[i - kMiddle + (k < kMiddle ? k : k + 1)][axis];
+  }
   std::sort(near.begin(), near.end());
   const double median = (near[2] + near[3]) / 2;
   if (!(std::abs(x - median) > kSpreads * (near[4] - near[1]) + floor)) return false;
@@ -83,20 +107,16 @@ bool SpikeFilter::MendAxis(Eigen::Index axis, double off) {
   return true;
 }
 
-void SpikeFilter::MendMiddle() {
-  Out& out = At(kMiddle);
-  SetFloor(out.sample.stamp.period_ns);
-  const Values off = Beyond(kMiddle);
-  // Nearly all samples are done with this.
-  if ((off.abs() <= floor_).all()) return;
+void SpikeFilter::Mend(std::size_t i) {
+  ImuSample& sample = samples_[i];
+  const SixAxes off = Beyond(i);
   for (Eigen::Index axis = 0; axis < off.size(); ++axis) {
-    const bool there = axis != 2 || out.sample.has_gz;
-    if (!there || std::abs(off[axis]) <= floor_[axis] || !MendAxis(axis, off[axis])) continue;
-    (axis < 3 ? out.gyro : out.accel) = true;
+    const bool there = axis != 2 || sample.has_gz;
+    if (!there || std::abs(off[axis]) <= floor_[axis] || !MendAxis(i, axis, off[axis])) continue;
+    (axis < 3 ? mended_[i].gyro : mended_[i].accel) = true;
   }
-  const Values& mended = ValuesAt(kMiddle);
-  out.sample.w_IT_T = mended.head<3>();
-  out.sample.f_T = mended.tail<3>();
+  sample.w_IT_T = axes_[i].head<3>();
+  sample.f_T = axes_[i].tail<3>();
 }
 
 }  // namespace wellgyro

@@ -3,12 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/noise.h"
-#include "wellgyro/record/sample.h"
+#include "wellgyro/record/sample_block.h"
 
 namespace wellgyro {
 
@@ -25,14 +26,21 @@ namespace wellgyro {
 ///
 /// Samples come out three later than they go in, in order and all of them. What does not continue
 /// the samples before is no neighbour: Flush first. The three on either side of such a place are
-/// left as they are. Nothing is allocated.
+/// left as they are. How samples come in blocks does not matter. Nothing is allocated.
 class WELLGYRO_EXPORT SpikeFilter {
  public:
-  /// A sample that is done.
-  struct Out {
-    ImuSample sample;
-    bool mark = false;                 ///< as it came with the sample
+  static constexpr std::size_t kMost = SampleBlock::kMost;
+
+  struct Mended {
     bool gyro = false, accel = false;  ///< an axis was replaced
+    bool any() const { return gyro || accel; }
+  };
+  /// Samples that are done, in order. Valid until the next call.
+  struct Done {
+    std::span<ImuSample> samples;
+    std::span<const SixAxes> axes;
+    std::span<const Mended> mended;
+    std::size_t taken = 0;  ///< of those that were pushed
   };
 
   SpikeFilter(const NoiseCoefficients& gyro, const ErrorPriors& errors)
@@ -40,34 +48,31 @@ class WELLGYRO_EXPORT SpikeFilter {
 
   /// The sample is the next of the last that was pushed, and nothing has been flushed since.
   bool Continues(const SampleStamp& stamp) const;
-  /// Takes a sample that continues, or the first; the one that is then done, or nullptr. `mark`
-  /// goes with the sample. Valid until the next call.
-  const Out* Push(const ImuSample& sample, bool mark);
-  /// One that still waits, or nullptr where none is left.
-  const Out* Flush();
+  /// Takes the sample at the begin of `samples`, which continues or is the first, with those that
+  /// continue it, kMost at most; those that are then done.
+  Done Push(std::span<const ImuSample> samples);
+  /// Those that still wait.
+  Done Flush();
 
  private:
-  static constexpr std::size_t kWindow = 7, kMiddle = 3;
-  static constexpr std::size_t kRing = 8;  // the least power of two that holds the window
-  /// Rates x, y, z and forces x, y, z of a sample.
-  using Values = Eigen::Array<double, 6, 1>;
+  static constexpr std::size_t kMiddle = 3;  // of the window of seven
 
-  std::size_t Slot(std::size_t i) const { return (first_ + i) % kRing; }
-  Out& At(std::size_t i) { return ring_[Slot(i)]; }
-  const Out& At(std::size_t i) const { return ring_[Slot(i)]; }
-  const Values& ValuesAt(std::size_t i) const { return values_[Slot(i)]; }
+  SixAxes Beyond(std::size_t i) const;
   void SetFloor(std::int32_t period_ns);
-  Values Beyond(std::size_t i) const;
-  void MendMiddle();
-  bool MendAxis(Eigen::Index axis, double off);
+  void Drop();
+  bool Departs(std::size_t i) const;
+  void Mend(std::size_t i);
+  bool MendAxis(std::size_t i, Eigen::Index axis, double off);
+  Done DoneUpTo(std::size_t end);
 
   double gyro_noise_, accel_noise_;  // of a mean over 1 s [rad/s], [m/s^2]
-  Values floor_ = Values::Zero();    // below which a departure is noise, at this period
+  SixAxes floor_ = SixAxes::Zero();  // below which a departure is noise, at this period
   std::int32_t floor_period_ns_ = 0;
-  std::array<Out, kRing> ring_;
-  std::array<Values, kRing> values_;
-  std::size_t first_ = 0, size_ = 0;
-  std::size_t waiting_ = 0;  // at the end of the window, not yet done
+  // The three that were done last, those that wait, and those that are new.
+  std::array<ImuSample, 2 * kMiddle + kMost> samples_;
+  std::array<SixAxes, 2 * kMiddle + kMost> axes_;
+  std::array<Mended, 2 * kMiddle + kMost> mended_;
+  std::size_t size_ = 0, done_ = 0;
 };
 
 }  // namespace wellgyro

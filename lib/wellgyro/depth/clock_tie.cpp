@@ -91,6 +91,18 @@ void ClockTie::Push(const SampleStamp& stamp) {
   AddPair(tool_ns, difference, !stamp.utc_unsynced);
 }
 
+std::size_t ClockTie::Follow(ToolTime last, Duration period, std::size_t count) {
+  if (!known_ || period.ns <= 0 || Since(last, tool0_) != last_ns_) return 0;
+  const std::int64_t into = Since(last, ToolTime{cell_.index * kCellNs});
+  if (into < 0 || into >= kCellNs) return 0;
+  const std::int64_t left =
+      std::min(kCellNs - into, kRepeatNs - Since(ToolTime{last_ns_}, ToolTime{fresh_ns_}));
+  const std::int64_t most = left > 0 ? (left - 1) / period.ns : 0;
+  const std::int64_t taken = std::min(most, static_cast<std::int64_t>(count));
+  last_ns_ += taken * period.ns;
+  return static_cast<std::size_t>(taken);
+}
+
 void ClockTie::AddPair(std::int64_t tool_ns, std::int64_t difference, bool synced) {
   if (synced && cell_.synced == 0) cell_.pairs = 0;  // these alone count
   if (!synced && cell_.synced > 0) return;
@@ -205,6 +217,16 @@ UtcTime ClockTie::ToUtc(ToolTime time) const {
   const double since_mid = Seconds(tool_ns - mid_ns_);
   const std::int64_t offset_ns = Nanoseconds(offset_ + drift_ * since_mid);
   return {Sum(Sum(utc0_.ns, tool_ns), offset_ns)};
+}
+
+void ClockTie::ToUtc(ToolTime first, Duration period, std::span<UtcTime> utc) const {
+  assert(known_);
+  std::int64_t tool_ns = Since(first, tool0_);
+  for (UtcTime& time : utc) {
+    const std::int64_t offset_ns = Nanoseconds(offset_ + drift_ * Seconds(tool_ns - mid_ns_));
+    time = {Sum(Sum(utc0_.ns, tool_ns), offset_ns)};
+    tool_ns = Sum(tool_ns, period.ns);
+  }
 }
 
 ToolTime ClockTie::ToTool(UtcTime utc) const {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -34,10 +36,17 @@ class WELLGYRO_EXPORT ClockTie {
   /// Takes a pair; times that do not advance within a session are ignored.
   void Push(const SampleStamp& stamp);
 
+  /// Takes the pairs of `count` samples that follow the one pushed last, of `last`, each a period
+  /// behind the one before on both clocks, as long as they bring nothing new; says how many. As
+  /// Push of each would, at less cost.
+  std::size_t Follow(ToolTime last, Duration period, std::size_t count);
+
   /// True from the first pair on; the conversions need it.
   bool known() const { return known_; }
   /// Both straight lines, one the other's inverse within 1 ns, in a session's own times.
   UtcTime ToUtc(ToolTime time) const;
+  /// Of times a period after each other, from `first` on.
+  void ToUtc(ToolTime first, Duration period, std::span<UtcTime> utc) const;
   ToolTime ToTool(UtcTime utc) const;
   double Sigma(ToolTime time) const;       ///< of ToUtc(time) [s]
   double drift() const { return drift_; }  ///< UTC seconds per tool second, less one

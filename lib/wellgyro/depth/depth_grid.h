@@ -4,10 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/depth/depth_track.h"
+#include "wellgyro/record/along_hole_block.h"
 
 namespace wellgyro {
 
@@ -39,6 +41,8 @@ class WELLGYRO_EXPORT DepthGrid {
     if (since >= static_cast<std::uint64_t>(kStep.ns)) Enter(utc);
     return smooth_ ? Smooth(static_cast<double>(utc.ns - begin_ns_) * 1e-9) : Asked(utc);
   }
+  /// At() each of `utc`, SampleBlock::kMost at most.
+  void At(std::span<const UtcTime> utc, AlongHoleBlock& along);
 
  private:
   struct Node {
@@ -57,6 +61,7 @@ class WELLGYRO_EXPORT DepthGrid {
   bool CellIsFinal(UtcTime utc, UtcTime until);
   void Enter(UtcTime utc);
   AlongHole Asked(UtcTime utc) const;
+  void Smooth(std::span<const UtcTime> utc, std::size_t begin, AlongHoleBlock& along) const;
   const AlongHole& NodeAt(std::int64_t index);
   static Blend BlendOf(const AlongHole& a, const AlongHole& b);
   AlongHole Smooth(double t) const {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Duration kMarksApart{1'900'000'000};  // marks at least
 constexpr double kFar = 10;                     // and at most [s]
-constexpr double kGap = 0.5;                    // between samples, from which nothing is felt [s]
+constexpr Duration kGap{500'000'000};           // between samples, from which nothing is felt
 constexpr double kLeast = 1e-3;                 // sigma of a step: no depth is read to less [m]
 constexpr double kLag = 1;           // that a step at a start may be in place of itself [s]
 constexpr double kLagMost = 3;       // that is told in full [s]
@@ -24,29 +24,35 @@ double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
 
 void DepthMotion::Restart() { passed_count_ = 0; }
 
-void DepthMotion::Feel(UtcTime utc, double seconds, double f_z, const DepthTrack& track) {
-  if (felt_until_ && std::abs((utc - *felt_until_).seconds()) > kGap) {
-    passed_count_ = 0;
-    speed_ = way_ = 0;
-  }
-  // A gap up to kGap is bridged with the force of the sample behind it.
-  if (felt_until_ && *felt_until_ < utc) {
-    seconds += (utc - *felt_until_).seconds();
-    utc = *felt_until_;
-  }
-  felt_until_ = utc + Duration::Seconds(seconds);
-  const UtcTime wanted = last_mark_ ? std::max(utc, *last_mark_ + kMarksApart) : utc;
-  if (wanted < *felt_until_) {
-    const std::optional<MarkRead> mark = track.FirstMark(wanted);
-    if (mark && mark->utc < *felt_until_) {
-      const double t = (mark->utc - utc).seconds();
-      last_mark_ = mark->utc;
-      Pass({mark->utc, mark->md, speed_ + f_z * t, way_ + (speed_ + f_z * t / 2) * t});
-      FallFromOldest(utc);
+void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period, std::span<const double> f_z,
+                       const DepthTrack& track) {
+  for (std::size_t i = 0; i < utc.size(); ++i) {
+    const Duration gap = felt_until_ ? utc[i] - *felt_until_ : Duration{};
+    if (gap > kGap || Duration{-gap.ns} > kGap) {
+      passed_count_ = 0;
+      speed_ = way_ = 0;
     }
+    // A gap up to kGap is bridged with the force of the sample behind it.
+    const bool bridged = gap.ns > 0;
+    const UtcTime begin = bridged ? *felt_until_ : utc[i];
+    const double seconds = bridged ? period.seconds() + gap.seconds() : period.seconds();
+    felt_until_ = utc[i] + period;
+    if (!last_mark_ || *last_mark_ + kMarksApart < *felt_until_) PassMark(begin, f_z[i], track);
+    way_ += (speed_ + f_z[i] * seconds / 2) * seconds;
+    speed_ += f_z[i] * seconds;
   }
-  way_ += (speed_ + f_z * seconds / 2) * seconds;
-  speed_ += f_z * seconds;
+}
+
+/// The mark, if there is one to be compared, in a sample that begins at `begin`.
+void DepthMotion::PassMark(UtcTime begin, double f_z, const DepthTrack& track) {
+  const UtcTime wanted = last_mark_ ? std::max(begin, *last_mark_ + kMarksApart) : begin;
+  if (wanted >= *felt_until_) return;
+  const std::optional<MarkRead> mark = track.FirstMark(wanted);
+  if (!mark || mark->utc >= *felt_until_) return;
+  const double t = (mark->utc - begin).seconds();
+  last_mark_ = mark->utc;
+  Pass({mark->utc, mark->md, speed_ + f_z * t, way_ + (speed_ + f_z * t / 2) * t});
+  FallFromOldest(begin);
 }
 
 void DepthMotion::Pass(const Passed& passed) {

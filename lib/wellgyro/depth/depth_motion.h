@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -32,9 +33,11 @@ class WELLGYRO_EXPORT DepthMotion {
     double sigma_lag = 0;           ///< 0: no start or stop tells it [s]
   };
 
-  /// The next sample's mean specific force along the tool, over [utc, utc + seconds], but for a
-  /// constant: gravity's share of it is to stay. Marks of `track` are final over this time.
-  void Feel(UtcTime utc, double seconds, double f_z, const DepthTrack& track);
+  /// The next samples' mean specific force along the tool, each over `period` from its `utc` on,
+  /// but for a constant: gravity's share of it is to stay. Marks of `track` are final over this
+  /// time.
+  void Feel(std::span<const UtcTime> utc, Duration period, std::span<const double> f_z,
+            const DepthTrack& track);
   /// The depth scale changes here: marks on either side are not compared.
   void Restart();
   Found found() const;
@@ -48,6 +51,7 @@ class WELLGYRO_EXPORT DepthMotion {
     UtcTime utc;
     double md = 0, speed = 0, way = 0;
   };
+  void PassMark(UtcTime begin, double f_z, const DepthTrack& track);
   void Pass(const Passed& passed);
   void FallFromOldest(UtcTime now);
   void Compare();

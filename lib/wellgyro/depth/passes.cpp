@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <Eigen/Core>
+
 namespace wellgyro {
 
 PassTracker::PassTracker(const PassSetup& setup) : setup_(setup) {
@@ -83,6 +85,52 @@ const PassState& PassTracker::Push(UtcTime utc, double md) {
       break;
   }
   if (state_.pass == Pass::kIn) deepest_in_ = std::max(deepest_in_.value_or(md), state_.md);
+  return state_;
+}
+
+std::optional<double> PassTracker::FurthestWithin(std::span<const double> md) const {
+  if (!started_ || restart_ || md.empty()) return std::nullopt;
+  const Eigen::Map<const Eigen::ArrayXd> depths(md.data(), static_cast<Eigen::Index>(md.size()));
+  const double low = depths.minCoeff(), high = depths.maxCoeff();
+  switch (state_.pass) {
+    case Pass::kStationary: {
+      const double way = std::max(md_high_, high) - std::min(md_low_, low);
+      if (!(way < setup_.first_move)) return std::nullopt;
+      return state_.md;
+    }
+    case Pass::kIn:
+    case Pass::kRepeat: {
+      const double furthest = std::max(state_.md, high);
+      const bool stays = low > furthest - setup_.reversal;
+      const bool repeats = state_.pass == Pass::kRepeat && deepest_in_ && furthest < *deepest_in_;
+      if (!stays || (state_.pass == Pass::kRepeat && !repeats)) return std::nullopt;
+      return furthest;
+    }
+    case Pass::kOut: {
+      const double furthest = std::min(state_.md, low);
+      if (!(high < furthest + setup_.reversal)) return std::nullopt;
+      return furthest;
+    }
+  }
+  return std::nullopt;
+}
+
+const PassState& PassTracker::Push(std::span<const UtcTime> utc, std::span<const double> md) {
+  const double furthest = *FurthestWithin(md);
+  state_.begins = false;
+  if (state_.pass == Pass::kStationary) {
+    const auto [low, high] = std::ranges::minmax(md);
+    md_low_ = std::min(md_low_, low);
+    md_high_ = std::max(md_high_, high);
+    utc_furthest_ = utc.back();
+  } else if (furthest != state_.md) {
+    const auto first = std::ranges::find(md, furthest) - md.begin();
+    utc_furthest_ = utc[static_cast<std::size_t>(first)];
+    state_.md = furthest;
+  }
+  if (state_.pass == Pass::kIn) {
+    deepest_in_ = std::max(deepest_in_.value_or(furthest), furthest);
+  }
   return state_;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -41,6 +42,11 @@ class WELLGYRO_EXPORT PassTracker {
 
   /// Takes the depth at an instant later than the one before.
   const PassState& Push(UtcTime utc, double md);
+  /// The furthest depth after these as well, where it is plain that no pass begins among them; as
+  /// Push of each would find, but for this.
+  std::optional<double> FurthestWithin(std::span<const double> md) const;
+  /// Takes depths for which FurthestWithin() has a value.
+  const PassState& Push(std::span<const UtcTime> utc, std::span<const double> md);
   /// The depth scale changes before the next depth (see DepthTrack::Segment): a pass of the same
   /// kind begins there, and what was covered before counts no more.
   void Restart();

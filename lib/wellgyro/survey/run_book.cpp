@@ -58,6 +58,14 @@ bool RunBook::EndedBySpec(std::int32_t run, UtcTime utc) const {
   });
 }
 
+bool RunBook::Changes(UtcTime first, UtcTime last) const {
+  const auto between = [&](UtcTime utc) { return first < utc && utc <= last; };
+  return std::any_of(begins_.begin(), begins_.end(),
+                     [&](const Begin& begin) { return between(begin.utc); }) ||
+         std::any_of(specs_.begin(), specs_.end(),
+                     [&](const RunSpec& spec) { return spec.end && between(*spec.end); });
+}
+
 bool RunBook::misrun(std::int32_t run) const {
   const bool by_job = std::any_of(specs_.begin(), specs_.end(), [run](const RunSpec& spec) {
     return spec.number == run && spec.misrun;

@@ -38,6 +38,9 @@ class WELLGYRO_EXPORT RunBook {
     return !specs_.empty() && EndedBySpec(run, utc);
   }
 
+  /// Some run begins or, by the job, ends behind `first` and not behind `last`.
+  bool Changes(UtcTime first, UtcTime last) const;
+
   bool misrun(std::int32_t run) const;
   std::string remark(std::int32_t run) const;
 

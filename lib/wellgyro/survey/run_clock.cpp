@@ -81,16 +81,32 @@ UtcTime RunClock::Expected(const SampleStamp& stamp) const {
       static_cast<std::uint64_t>(stamp.tool_time.ns) + static_cast<std::uint64_t>(ahead_.ns))});
 }
 
+SampleStamp RunClock::Continued(SampleStamp stamp) const {
+  if (broken_) {
+    stamp.session = session_;
+    stamp.tool_time.ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(stamp.tool_time.ns) +
+                                                   static_cast<std::uint64_t>(ahead_.ns));
+  }
+  stamp.utc_unsynced |= doubt_ > 0;
+  return stamp;
+}
+
+std::size_t RunClock::Follow(std::span<const ImuSample> samples) {
+  if (!in_ || samples.empty() || (restless_ && out_.tool_time < *restless_)) return 0;
+  const std::size_t n = tie_.Follow(out_.tool_time, Duration{in_->period_ns}, samples.size());
+  if (n == 0) return 0;
+  in_ = samples[n - 1].stamp;
+  out_ = Continued(*in_);
+  step_.reset();
+  return n;
+}
+
 const SampleStamp& RunClock::Take(const SampleStamp& stamp, bool jumps) {
   const bool breaks = in_ && (jumps || stamp.session != in_->session);
   const UtcTime utc = breaks ? Break(stamp, jumps) : stamp.utc;
   in_ = stamp;
-  out_ = stamp;
-  if (broken_) {
-    out_.session = session_;
-    out_.tool_time.ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(stamp.tool_time.ns) +
-                                                  static_cast<std::uint64_t>(ahead_.ns));
-  }
+  out_ = Continued(stamp);
+  out_.utc_unsynced = stamp.utc_unsynced;  // to the tie; what it says of this one may raise doubts
   tie_.Push(out_);
   NoteSteps();
   out_.utc = utc;

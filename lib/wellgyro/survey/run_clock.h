@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
@@ -22,6 +24,12 @@ class WELLGYRO_EXPORT RunClock {
   /// session. Marked utc_unsynced where the UTC is in doubt.
   const SampleStamp& Take(const SampleStamp& stamp, bool jumps);
 
+  /// Takes the stamps of samples that follow the one of Take() in a SampleBlock, as long as its tie
+  /// has nothing to learn of them and says the same of all; says how many. They are handed on as
+  /// Continued(), at ToUtc() of their times.
+  std::size_t Follow(std::span<const ImuSample> samples);
+  SampleStamp Continued(SampleStamp stamp) const;
+
   /// The UTC that Take() will find for it, to what the stamp itself will teach.
   UtcTime Expected(const SampleStamp& stamp) const;
 
@@ -29,6 +37,10 @@ class WELLGYRO_EXPORT RunClock {
   bool own() const { return !broken_ && doubt_ == 0; }
   /// Of the last sample, by the tie.
   UtcTime utc() const { return tie_.ToUtc(out_.tool_time); }
+  /// Of times a period after each other, as they are handed on, from `first` on.
+  void ToUtc(ToolTime first, Duration period, std::span<UtcTime> utc) const {
+    tie_.ToUtc(first, period, utc);
+  }
   /// By which UTC may be wrong since it jumped against the tool's clock [s]; 0: it has not.
   double doubt() const { return doubt_; }
   /// By which the last sample's UTC was found to have stepped against the tool's clock [s].

@@ -10,13 +10,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kKnotNs = 1'000'000'000;
 constexpr double kLeastFraction = 1e-9;  // of a sample, at which it can be cut
 // [m] in one sample, or in each second of a gap: no hole is logged so fast, the depth is wrong.
 constexpr double kJump = 50;
 constexpr double kWithoutGap = 1.5;  // periods from a sample to its successor, at most
-// Gravity across the tool that plainly shows its roll: no noise turns it by a right angle [m/s^2].
-constexpr double kSeenAcross = 1;
 
 StillSetup StillSetupOf(const Job& job) {
   StillSetup setup;
@@ -64,7 +61,7 @@ RunSurvey::RunSurvey(const Job& job, std::int32_t run, std::int32_t tool)
 void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& along,
                      const AlongHole& middle) {
   if (summary_.samples == 0) summary_.begin = utc;
-  Count(sample.stamp);
+  Count(sample.stamp, 1);
   CountDepth(sample.stamp, along.known);
   const PassState& pass = along.known ? passes_.Push(utc, along.md) : passes_.state();
   if (sample.stamp.temperature_outside) temperature_outside_ = true;
@@ -108,22 +105,20 @@ void RunSurvey::Push(const ImuSample& sample, UtcTime utc, const AlongHole& alon
 
 /// A tool that rolls by more than a right angle from one sample to the next, by gravity.
 void RunSurvey::CountTurn(const ImuSample& sample) {
-  const Eigen::Vector2d from = current_->sample.f_T.head<2>(), to = sample.f_T.head<2>();
-  const bool seen = std::min(from.squaredNorm(), to.squaredNorm()) > kSeenAcross * kSeenAcross;
-  summary_.samples_aliased += seen && from.dot(to) < 0;
+  summary_.samples_aliased += TurnsFar(current_->sample.f_T.head<2>(), sample.f_T.head<2>());
 }
 
-void RunSurvey::Count(const SampleStamp& stamp) {
+void RunSurvey::Count(const SampleStamp& stamp, std::int64_t samples) {
   RunSummary& s = summary_;
   s.temperature_min =
       s.samples == 0 ? stamp.temperature : std::min(s.temperature_min, stamp.temperature);
   s.temperature_max =
       s.samples == 0 ? stamp.temperature : std::max(s.temperature_max, stamp.temperature);
-  ++s.samples;
-  s.samples_gyro_saturated += stamp.gyro_saturated;
-  s.samples_accel_saturated += stamp.accel_saturated;
-  s.samples_unsynced += stamp.utc_unsynced;
-  s.samples_temperature_outside += stamp.temperature_outside;
+  s.samples += samples;
+  s.samples_gyro_saturated += samples * stamp.gyro_saturated;
+  s.samples_accel_saturated += samples * stamp.accel_saturated;
+  s.samples_unsynced += samples * stamp.utc_unsynced;
+  s.samples_temperature_outside += samples * stamp.temperature_outside;
 }
 
 void RunSurvey::CountDepth(const SampleStamp& stamp, bool known) {

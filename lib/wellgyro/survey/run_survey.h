@@ -17,6 +17,7 @@
 #include "wellgyro/survey/draft_book.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/kept_knots.h"
+#include "wellgyro/survey/located_block.h"
 #include "wellgyro/survey/outside_azimuth.h"
 #include "wellgyro/survey/path_site.h"
 #include "wellgyro/survey/run_history.h"
@@ -41,6 +42,9 @@ class RunSurvey {
   /// The next sample, in order; `along` is the sensor point's at the sample's begin, `middle` at
   /// its middle.
   void Push(const ImuSample& sample, UtcTime utc, const AlongHole& along, const AlongHole& middle);
+  /// Samples [at, end) of a block, up to the first that brings news: the number behind it. As Push
+  /// of each would, at less cost.
+  std::size_t Push(const LocatedBlock& block, std::size_t at, std::size_t end);
   /// Averages at rest, from a tool that sends no samples. `along` at their middle.
   void Push(const StillWindow& window, const AlongHole& along);
   /// Mode or index position changes before the next sample.
@@ -113,7 +117,10 @@ class RunSurvey {
     bool external = false;
   };
 
-  void Count(const SampleStamp& stamp);
+  std::size_t Plain(const LocatedBlock& block, std::size_t at, std::size_t end);
+  std::size_t PlainByPlace(const LocatedBlock& block, std::size_t at, std::size_t end) const;
+  void TakePlain(const LocatedBlock& block, std::size_t at, std::size_t count);
+  void Count(const SampleStamp& stamp, std::int64_t samples);
   void CountDepth(const SampleStamp& stamp, bool known);
   void CountTurn(const ImuSample& sample);
   /// `reach`: from its begin to where `next` and `pass_next` hold, in periods.

@@ -84,6 +84,46 @@ SampleQueue::Verdict SampleQueue::Push(const ImuSample& sample) {
   return verdict;
 }
 
+std::span<const ImuSample> SampleQueue::Ready() const {
+  std::size_t n = std::min({size_, ring_.size() - head_, SampleBlock::kMost});
+  if (n == 0) return {};
+  if (old_session_ > 0) {
+    n = std::min(n, old_session_);
+  } else if (!flushing_ && size_ > kWaitingMax) {
+    n = std::min(n, size_ - kWaitingMax);
+  } else if (!flushing_) {
+    const SampleStamp& first = At(0).stamp;
+    if (Age(first) < hold_) return {};
+    // As many as there are where none is missing; where one is, the first is sure.
+    const std::int64_t even = (Age(first) - hold_).ns / first.period_ns + 1;
+    n = static_cast<std::size_t>(std::min(even, static_cast<std::int64_t>(n)));
+    if (Age(At(n - 1).stamp) < hold_) n = 1;
+  }
+  if (!jumps_.empty()) {
+    const std::int64_t before = jumps_.front() - (counts_.accepted - Waiting());
+    n = std::min(n, static_cast<std::size_t>(std::max<std::int64_t>(before, 1)));
+  }
+  return {ring_.data() + head_, n};
+}
+
+void SampleQueue::Pop(std::size_t count) {
+  const SampleStamp& first = At(0).stamp;
+  const SampleStamp& last = At(count - 1).stamp;
+  const bool jumps = Jumps();
+  const bool next = last_ && first.seq == last_->seq + 1 && first.session == last_->session;
+  if (!next || jumps) NoteGap(first, jumps);
+  last_ = {last.seq, last.session};
+  for (std::size_t i = 0; i < count; i += kKeptEvery) {
+    const std::int64_t past = (At(i).stamp.seq % kKeptEvery + kKeptEvery) % kKeptEvery;
+    const std::size_t kept = i + static_cast<std::size_t>(past == 0 ? 0 : kKeptEvery - past);
+    if (kept < count) Keep(At(kept));
+  }
+  head_ = (head_ + count) & mask_;
+  size_ -= count;
+  last_is_old_ = old_session_ > 0;
+  old_session_ -= std::min(old_session_, count);
+}
+
 std::size_t SampleQueue::Append(std::span<const ImuSample> batch) {
   if (!back_ || !stories_.empty()) return 0;
   const SampleStamp* before = &*back_;

@@ -9,7 +9,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
-#include "wellgyro/record/sample.h"
+#include "wellgyro/record/sample_block.h"
 
 namespace wellgyro {
 
@@ -57,29 +57,17 @@ class WELLGYRO_EXPORT SampleQueue {
   /// as Push of each would, at less cost.
   std::size_t Append(std::span<const ImuSample> batch);
 
-  /// The next sample in order, or nullptr while it has to wait. Valid until the next Push.
-  const ImuSample* Front() const {
-    if (size_ == 0) return nullptr;
-    return hurries() || age() >= hold_ ? &At(0) : nullptr;
-  }
+  /// The next samples in order, those that wait no longer; not all where they lie in two pieces or
+  /// the clock jumps among them. Valid until the next Push.
+  std::span<const ImuSample> Ready() const;
   /// Whatever is at the front does not wait.
   bool hurries() const { return flushing_ || old_session_ > 0 || size_ > kWaitingMax; }
-  /// By how much the newest sample is younger than the one at the front, where that waits.
-  Duration age() const { return back_->tool_time - At(0).stamp.tool_time; }
+  /// By how much the newest sample is younger than one that waits.
+  Duration Age(const SampleStamp& stamp) const { return back_->tool_time - stamp.tool_time; }
   /// Within its session the clock jumps before the sample at the front.
   bool Jumps() const { return !jumps_.empty() && jumps_.front() == counts_.accepted - Waiting(); }
-  void Pop() {
-    const SampleStamp& stamp = At(0).stamp;
-    const bool jumps = Jumps();
-    const bool next = last_ && stamp.seq == last_->seq + 1 && stamp.session == last_->session;
-    if (!next || jumps) NoteGap(stamp, jumps);
-    last_ = {stamp.seq, stamp.session};
-    if (stamp.seq % kKeptEvery == 0) Keep(At(0));
-    head_ = (head_ + 1) & mask_;
-    --size_;
-    last_is_old_ = old_session_ > 0;
-    if (old_session_ > 0) --old_session_;
-  }
+  /// Takes the first of Ready() away, or so many that follow each other by number.
+  void Pop(std::size_t count = 1);
 
   /// From now on nothing waits: the end of the stream.
   void Flush() {

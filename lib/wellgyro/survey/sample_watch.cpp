@@ -73,11 +73,22 @@ Check Failed(std::string code, std::int32_t run, double value, std::string unit,
 
 SampleWatch::SampleWatch(const Job& job) : job_(job) {}
 
+void SampleWatch::Push(std::span<const ImuSample> samples, const AlongHoleBlock& along,
+                       std::size_t at) {
+  const auto n = static_cast<std::int64_t>(samples.size());
+  std::int64_t i = std::max<std::int64_t>(wait_ - 1, 0);
+  for (; i < n; i += stride_) {
+    const auto k = static_cast<std::size_t>(i);
+    Watch(samples[k], along.At(at + k));
+  }
+  wait_ = i - n + 1;
+}
+
 void SampleWatch::Watch(const ImuSample& sample, const AlongHole& along) {
   const SampleStamp& stamp = sample.stamp;
   const bool continues =
       last_ && last_->session == stamp.session && last_->seq + stride_ == stamp.seq;
-  stride_ = wait_ = std::max<std::int64_t>(1, kEveryNs / std::max(stamp.period_ns, 1));
+  stride_ = std::max<std::int64_t>(1, kEveryNs / std::max(stamp.period_ns, 1));
   period_ = 1e-9 * static_cast<double>(stride_ * stamp.period_ns);
   const bool rests = along.known && std::abs(along.speed) < kRestSpeed;
   if (!continues) stretch_ = {.begin_f_z = sample.f_T.z(), .steady = IsSteady(along)};

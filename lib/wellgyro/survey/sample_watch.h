@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/along_hole_block.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/sample.h"
@@ -35,10 +37,9 @@ class WELLGYRO_EXPORT SampleWatch {
  public:
   explicit SampleWatch(const Job& job);
 
-  /// The next sample, in order, and where it is. Of fast streams one sample in 20 ms is looked at.
-  void Push(const ImuSample& sample, const AlongHole& along) {
-    if (--wait_ <= 0) Watch(sample, along);
-  }
+  /// The next samples, in order, and where they are: the first of them at `at` of `along`. Of fast
+  /// streams one sample in 20 ms is looked at.
+  void Push(std::span<const ImuSample> samples, const AlongHoleBlock& along, std::size_t at);
   std::vector<Check> Checks(std::int32_t run, const std::vector<NorthFix>& fixes) const;
 
  private:

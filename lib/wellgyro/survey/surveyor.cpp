@@ -97,9 +97,10 @@ struct Surveyor::Rooms {
     const auto found = tools.find(number);
     if (found != tools.end()) return &found->second;
     if (tools.size() >= kToolsMax && !GiveWay(number)) return nullptr;
-    ToolSurvey& tool =
-        tools.try_emplace(number, job, number, track, refused, marks, book, sink, adjuster)
-            .first->second;
+    ToolSurvey& tool = tools
+                           .try_emplace(number, job, number,
+                                        StringRecords{track, refused, marks, book}, sink, adjuster)
+                           .first->second;
     const auto info = infos.find(number);
     if (info != infos.end()) tool.Push(info->second);
     for (const Operation& operation : operations) tool.Push(operation);

@@ -2,57 +2,43 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <optional>
-#include <set>
 #include <span>
-#include <string>
-#include <utility>
-#include <variant>
 #include <vector>
 
-#include "wellgyro/calibration/spike_filter.h"
-#include "wellgyro/depth/cable.h"
-#include "wellgyro/depth/depth_grid.h"
-#include "wellgyro/depth/depth_motion.h"
-#include "wellgyro/depth/depth_track.h"
 #include "wellgyro/record/operations.h"
-#include "wellgyro/survey/assemble.h"
-#include "wellgyro/survey/checks.h"
-#include "wellgyro/survey/provisional.h"
+#include "wellgyro/survey/crew_events.h"
+#include "wellgyro/survey/operations_due.h"
 #include "wellgyro/survey/run_adjuster.h"
-#include "wellgyro/survey/run_book.h"
-#include "wellgyro/survey/run_clock.h"
-#include "wellgyro/survey/run_survey.h"
-#include "wellgyro/survey/sample_queue.h"
-#include "wellgyro/survey/sample_watch.h"
-#include "wellgyro/survey/station_key.h"
+#include "wellgyro/survey/sample_intake.h"
+#include "wellgyro/survey/string_records.h"
+#include "wellgyro/survey/survey_maker.h"
 #include "wellgyro/survey/surveyor.h"
+#include "wellgyro/survey/told_stations.h"
+#include "wellgyro/survey/tool_run.h"
 
 namespace wellgyro {
 
-/// What holds from an instant on, for the tool's stream to obey when it gets there.
-using Operation = std::variant<ToolMode, Event, Command>;
-
-/// The survey of one tool of the string: orders its samples, joins them with depth, splits them
-/// into runs and tells the sink of every station.
+/// The survey of one tool of the string: splits the samples let in into runs, has what is due
+/// obeyed between them, and tells the sink of every station.
 class ToolSurvey {
  public:
-  /// All references must outlive this object. `track`, `refused` and `book` are the string's;
-  /// `adjuster` may be null.
-  ToolSurvey(const Job& job, std::int32_t tool, const DepthTrack& track,
-             const MarksRefused& refused, CableMarks& marks, RunBook& book, Sink& sink,
+  /// All references must outlive this object; `adjuster` may be null.
+  ToolSurvey(const Job& job, std::int32_t tool, const StringRecords& string, Sink& sink,
              const RunAdjuster* adjuster);
 
   /// Takes the samples at the begin of `batch` that come right behind each other, or one that has
   /// to be sorted in; what is left. Work() is to follow, with the marks up to tally().newest.
-  [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch);
+  [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch) {
+    return intake_.Take(batch);
+  }
   /// Works off the samples whose depth is known.
   void Work() { Work(std::nullopt); }
   void Push(const StillWindow& window);
-  void Push(const ToolInfo& info) { sensor_below_reference_ = info.sensor_below_reference; }
-  void Push(const Operation& operation);
+  void Push(const ToolInfo& info) {
+    intake_.depth().SetSensorBelowReference(info.sensor_below_reference);
+  }
+  void Push(const Operation& operation) { operations_.Push(operation); }
 
   void Adjust();
   /// Works off what still waits. `until`: samples that begin later are not used.
@@ -64,102 +50,42 @@ class ToolSurvey {
   std::optional<UtcTime> finish_asked_at() const { return finish_asked_; }
 
   Survey Current() const;
-  SampleTally tally() const;
+  SampleTally tally() const { return intake_.tally(); }
   /// Of the run that samples came for last.
   RunNow Now() const;
   /// Depth before this instant is no longer needed.
   UtcTime Needs() const { return newest_used_; }
 
  private:
-  struct RunState {
-    std::unique_ptr<RunSurvey> survey;
-    std::unique_ptr<ProvisionalPath> provisional;
-    std::unique_ptr<SampleWatch> watch;
-    std::unique_ptr<DepthMotion> motion;
-    std::vector<StationState> adjusted;  ///< as of the last Adjust
-    std::size_t adjusted_drafts = 0;
-    std::vector<AttitudeSample> attitude;  ///< smoothed, of every knot, as of the last Adjust
-  };
-  struct Due {
-    UtcTime utc;
-    Operation operation;
-  };
-
   void Work(std::optional<UtcTime> until);
-  bool DepthIsFinal(const SampleStamp& stamp);
-  void UseRest();
-  void Use(const SpikeFilter::Out& out);
-  void TellMended(const SpikeFilter::Out& out, RunSummary& summary);
-  void TellMendedRange();
-  bool ObeyDue(const SampleStamp& stamp, UtcTime utc);
-  void CountLost(const SampleStamp& stamp, RunSummary& summary);
-  void TellRefused(SampleQueue::Verdict verdict, const SampleStamp& stamp);
-  void TellClock(const SampleStamp& stamp, bool jumps, RunSummary& summary);
-  void TellStrays();
+  bool IsUniform(const AdmittedBlock& block, std::size_t at) const;
+  void Use(const AdmittedBlock& block, std::size_t at, std::size_t end);
+  void Feel(const AdmittedBlock& block, std::size_t at, std::size_t end, DepthMotion& motion) const;
   void TellWithoutDepth(const StillWindow& window);
-  bool MakeRoom(const Due& due);
   void Obey(const Operation& operation);
   void Obey(const ToolMode& mode);
   void Obey(const Event& event);
   void Obey(const Command& command);
-  bool IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) const;
   AlongHole DepthHeldAt(UtcTime utc) const;
-  void ShiftToSensor(UtcTime utc, AlongHole& along) const;
-  RunState* RunFor(std::int32_t run);
-  RunState* FindRun(std::int32_t run);
-  void Tell(RunState& run);
-  StationStatus StatusOf(const Draft& draft, bool adjusted) const;
-  double DepthTooLate() const;
-  std::vector<RunSummary> Summaries() const;
-  std::vector<Waypoint> WayOf(const RunState& run) const;
-  std::vector<DraftedRun> Drafted() const;
-  std::vector<Foresight> Foresights() const;
-  std::vector<Check> Checks(const std::vector<Station>& passes) const;
-  void SendRevisions();
-  void TellStation(const Station& station);
-  void KeepToWhatWasTold(std::vector<Station>& stations) const;
-  std::string WithoutDepth() const;
-  std::string WithoutNorth(const std::vector<DraftedRun>& drafted, const Survey& survey) const;
+  ToolRun* RunFor(std::int32_t run);
+  ToolRun* FindRun(std::int32_t run);
+  void Tell(ToolRun& run);
 
   const Job& job_;
   std::int32_t tool_;
-  const DepthTrack& track_;
-  const MarksRefused& refused_;
-  DepthGrid grid_;
-  CableMarks& marks_;
-  RunBook& book_;
+  StringRecords string_;
   Sink& sink_;
   const RunAdjuster* adjuster_;
-  bool corrects_depth_;  ///< by the job's table or its cable's marks
-  double sensor_below_reference_;
-  SampleQueue queue_;
-  SpikeFilter filter_;
-  /// Samples that the filter has mended and of which nobody has been told.
-  struct Mended {
-    std::int32_t session = 0;
-    std::int64_t first = 0, last = 0, count = 0;
-  };
-  Mended mended_;
-  RunClock clock_;
-  std::int64_t strays_told_ = 0;      ///< of the queue's
-  std::optional<SampleStamp> other_;  ///< the last that came again with another content
-  ImuSample changed_;                 ///< scratch
-  std::vector<Due> due_;              ///< not yet obeyed, by time
-  /// Obeyed: session and id. Another console may count the same numbers.
-  std::set<std::pair<std::int32_t, std::int32_t>> commands_, events_;
-  std::vector<RunState> runs_;
-  std::optional<SampleStamp> last_;
-  std::int64_t lost_ = 0, gaps_ = 0;  ///< samples, and places
+  SampleIntake intake_;
+  OperationsDue operations_;
+  CrewEvents crew_;
+  ToldStations told_;
+  std::vector<ToolRun> runs_;
   std::int32_t depth_segment_ = 0;
   std::optional<ToolMode> mode_;
   UtcTime newest_used_;
   std::optional<UtcTime> finish_asked_;
   bool finished_ = false;
-  /// As last told: of one revision a station has one position and covariance, wherever it is read.
-  std::map<StationKey, Station> told_;
-  std::vector<Event> verdicts_;  ///< accepts and rejects, in the order in which they came
-  std::vector<Event> foresights_;
-  std::vector<ReturnToZero> returns_;
 };
 
 }  // namespace wellgyro

@@ -1,4 +1,5 @@
-// The survey of one tool as it stands: stations placed, checks made.
+#include "wellgyro/survey/survey_maker.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -6,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/survey/assemble.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/joined_states.h"
@@ -13,7 +15,6 @@
 #include "wellgyro/survey/model_covariance.h"
 #include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/run_survey_internal.h"
-#include "wellgyro/survey/tool_survey.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 #include "wellgyro/survey/verdict.h"
 
@@ -102,7 +103,7 @@ const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
 }
 
 /// Where the hole points at every knot that has a depth and a direction.
-std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
+std::vector<Waypoint> SurveyMaker::WayOf(const ToolRun& run) const {
   std::vector<Waypoint> way;
   way.reserve(run.survey->knots().size());
   KeptKnots::Reader reader(run.survey->knots());
@@ -118,46 +119,50 @@ std::vector<Waypoint> ToolSurvey::WayOf(const RunState& run) const {
   return way;
 }
 
-std::vector<DraftedRun> ToolSurvey::Drafted() const {
-  std::vector<DraftedRun> drafted;
-  for (const RunState& run : runs_) {
-    DraftedRun d;
-    d.run = run.survey->summary().run;
-    d.misrun = book_.misrun(d.run);
-    d.states = JoinStates(run.adjusted, run.survey->states());
-    d.way = WayOf(run);
-    const std::optional<RunFit>& fit = run.survey->summary().fit;
-    if (fit && fit->diagnosis) d.depth_scale_found = DepthScaleFound(job_, *fit->diagnosis);
-    const bool contradicted = Contradiction(job_, run.survey->summary()) != nullptr;
-    for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
-      Draft draft = run.survey->drafts()[i];
-      if (contradicted) draft.station.quality |= Quality::kEarthRate;
-      if (draft.state && !HasDirection(d.states[*draft.state].attitude)) {
-        // The next one's covariance with this one would be taken for that with the one before.
-        if (*draft.state + 1 < d.states.size()) d.states[*draft.state + 1].cov_with_previous = {};
-        const bool waits = !finished_ && &run == &runs_.back() && run.survey->IsUnheard(i);
-        if (draft.listed) ++(waits ? d.waiting_for_azimuth : d.without_azimuth);
-        continue;
-      }
-      draft.station.status = StatusOf(draft, i < run.adjusted_drafts);
-      // The run as a whole knows one azimuth: no stop of it has two any more.
-      const bool whole = draft.state && *draft.state < run.adjusted.size() &&
-                         run.survey->summary().fit &&
-                         run.adjusted[*draft.state].attitude.azimuth_known;
-      if (whole) draft.station.quality = Without(draft.station.quality, Quality::kMirror);
-      d.drafts.push_back(std::move(draft));
-    }
-    ResolveMirrors(job_, d.drafts);
-    drafted.push_back(std::move(d));
+DraftedRun SurveyMaker::DraftedOf(const ToolRun& run) const {
+  const RunSummary& summary = run.survey->summary();
+  DraftedRun d;
+  d.run = summary.run;
+  d.misrun = string_.book.misrun(d.run);
+  d.states = JoinStates(run.adjusted, run.survey->states());
+  d.way = WayOf(run);
+  if (summary.fit && summary.fit->diagnosis) {
+    d.depth_scale_found = DepthScaleFound(job_, *summary.fit->diagnosis);
   }
+  const bool contradicted = Contradiction(job_, summary) != nullptr;
+  for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
+    Draft draft = run.survey->drafts()[i];
+    if (contradicted) draft.station.quality |= Quality::kEarthRate;
+    if (draft.state && !HasDirection(d.states[*draft.state].attitude)) {
+      // The next one's covariance with this one would be taken for that with the one before.
+      if (*draft.state + 1 < d.states.size()) d.states[*draft.state + 1].cov_with_previous = {};
+      const bool waits =
+          !parts_.finished && &run == &parts_.runs.back() && run.survey->IsUnheard(i);
+      if (draft.listed) ++(waits ? d.waiting_for_azimuth : d.without_azimuth);
+      continue;
+    }
+    draft.station.status = parts_.crew.StatusOf(draft.station, i < run.adjusted_drafts);
+    // The run as a whole knows one azimuth: no stop of it has two any more.
+    const bool whole = draft.state && *draft.state < run.adjusted.size() && summary.fit &&
+                       run.adjusted[*draft.state].attitude.azimuth_known;
+    if (whole) draft.station.quality = Without(draft.station.quality, Quality::kMirror);
+    d.drafts.push_back(std::move(draft));
+  }
+  ResolveMirrors(job_, d.drafts);
+  return d;
+}
+
+std::vector<DraftedRun> SurveyMaker::Drafted() const {
+  std::vector<DraftedRun> drafted;
+  for (const ToolRun& run : parts_.runs) drafted.push_back(DraftedOf(run));
   return drafted;
 }
 
-std::vector<Foresight> ToolSurvey::Foresights() const {
+std::vector<Foresight> SurveyMaker::Foresights() const {
   std::vector<Foresight> result;
-  for (const Event& event : foresights_) {
+  for (const Event& event : parts_.crew.foresights()) {
     Foresight foresight{event.run, event.value_rad, event.sigma_rad, std::nullopt, 0};
-    for (const RunState& run : runs_) {
+    for (const ToolRun& run : parts_.runs) {
       if (run.survey->summary().run != event.run || run.survey->knots().empty()) continue;
       const KnotOfTime at = KnotAt(event.utc, run.survey->knots());
       if (at.number >= run.attitude.size()) continue;
@@ -176,31 +181,32 @@ std::vector<Foresight> ToolSurvey::Foresights() const {
   return result;
 }
 
-std::vector<Check> ToolSurvey::Checks(const std::vector<Station>& passes) const {
+std::vector<Check> SurveyMaker::Checks(const std::vector<Station>& passes) const {
   const std::vector<RunSummary> summaries = Summaries();
   const std::vector<Foresight> foresights = Foresights();
-  return MakeChecks(job_, {summaries, passes, foresights, returns_, &marks_, refused_});
+  return MakeChecks(job_, {summaries, passes, foresights, parts_.crew.returns(), &string_.marks,
+                           string_.refused});
 }
 
 /// Samples behind the last depth, for which marks came after all, but too late [s].
-double ToolSurvey::DepthTooLate() const {
-  const double unknown = runs_.back().survey->seconds_without_depth();
-  if (track_.empty() || !(unknown > 0)) return 0;
-  const double until_newest = (newest_used_ - track_.newest()).seconds();
+double SurveyMaker::DepthTooLate() const {
+  const double unknown = parts_.runs.back().survey->seconds_without_depth();
+  if (string_.track.empty() || !(unknown > 0)) return 0;
+  const double until_newest = (parts_.newest_used - string_.track.newest()).seconds();
   const double late = unknown - std::max(until_newest, 0.0);
   // Between the last mark and the first sample that would have needed another.
   return late > job_.depth.max_gap ? late : 0;
 }
 
-std::vector<RunSummary> ToolSurvey::Summaries() const {
+std::vector<RunSummary> SurveyMaker::Summaries() const {
   std::vector<RunSummary> summaries;
-  for (const RunState& run : runs_) {
+  for (const ToolRun& run : parts_.runs) {
     RunSummary& summary = summaries.emplace_back(run.survey->summary());
-    summary.misrun = book_.misrun(summary.run);
+    summary.misrun = string_.book.misrun(summary.run);
     summary.sample_checks = run.watch->Checks(summary.run, summary.fixes);
     AddDepthChecks(run.motion->found(), summary);
-    summary.remark = book_.remark(summary.run);
-    const SampleQueue::Counts& counts = queue_.counts();
+    summary.remark = string_.book.remark(summary.run);
+    const SampleQueue::Counts& counts = parts_.counts;
     summary.duplicates = counts.duplicates;
     summary.samples_other = counts.others;
     summary.samples_refused = counts.refused + counts.strays + counts.late + counts.others;
@@ -210,9 +216,9 @@ std::vector<RunSummary> ToolSurvey::Summaries() const {
 }
 
 /// The sentence for a survey whose samples or averages no depth came with; empty where some did.
-std::string ToolSurvey::WithoutDepth() const {
+std::string SurveyMaker::WithoutDepth() const {
   bool sampled = false;
-  for (const RunState& run : runs_) {
+  for (const ToolRun& run : parts_.runs) {
     const RunSummary& summary = run.survey->summary();
     const bool placed =
         std::any_of(summary.fixes.begin(), summary.fixes.end(),
@@ -235,8 +241,8 @@ std::string ToolSurvey::WithoutDepth() const {
 }
 
 /// The sentence for a survey that lacks nothing but a north; empty where there is one.
-std::string ToolSurvey::WithoutNorth(const std::vector<DraftedRun>& drafted,
-                                     const Survey& survey) const {
+std::string SurveyMaker::WithoutNorth(const std::vector<DraftedRun>& drafted,
+                                      const Survey& survey) const {
   const bool north = std::any_of(drafted.begin(), drafted.end(), [](const DraftedRun& run) {
     return std::any_of(run.drafts.begin(), run.drafts.end(), [&run](const Draft& draft) {
       return !draft.state || run.states[*draft.state].attitude.azimuth_known;
@@ -254,34 +260,14 @@ std::string ToolSurvey::WithoutNorth(const std::vector<DraftedRun>& drafted,
       job_.alignment.min_still);
 }
 
-/// The numbers of the revision that was told; a later one brings others.
-void ToolSurvey::KeepToWhatWasTold(std::vector<Station>& stations) const {
-  for (Station& station : stations) {
-    const auto told = told_.find(KeyOf(station));
-    if (told == told_.end() || told->second.revision != station.revision) continue;
-    const Station& as = told->second;
-    station.md = as.md;
-    station.inclination = as.inclination;
-    station.azimuth = as.azimuth;
-    station.toolface = as.toolface;
-    station.cov_md_inc_azi = as.cov_md_inc_azi;
-    station.cov_tangent_W = as.cov_tangent_W;
-    station.p_WT_W = as.p_WT_W;
-    station.cov_p_WT_W = as.cov_p_WT_W;
-    station.dogleg_severity = as.dogleg_severity;
-    // Without the flag, the covariance of an unfit station would be a strange one.
-    if (Has(as.quality, Quality::kUnfit)) station.quality |= Quality::kUnfit;
-  }
-}
-
-Survey ToolSurvey::Current() const {
+Survey SurveyMaker::Make() const {
   Survey survey;
-  if (runs_.empty()) {
+  if (parts_.runs.empty()) {
     survey.unusable = "no samples came, and no averages at rest";
     return survey;
   }
   survey.runs = Summaries();
-  survey.marks_refused = refused_.all();
+  survey.marks_refused = string_.refused.all();
   const std::vector<DraftedRun> drafted = Drafted();
   Placed placed = Assemble(job_, drafted);
   survey.checks = Checks(placed.passes);
@@ -290,8 +276,8 @@ Survey ToolSurvey::Current() const {
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);
   survey.unusable = std::move(placed.unusable);
-  KeepToWhatWasTold(survey.passes);
-  KeepToWhatWasTold(survey.chosen);
+  parts_.told.KeepTo(survey.passes);
+  parts_.told.KeepTo(survey.chosen);
   if (survey.unusable.empty()) survey.unusable = TakeModelCovariance(job_, survey.chosen);
   survey.accepted = std::any_of(survey.passes.begin(), survey.passes.end(), [](const Station& s) {
     return s.status == StationStatus::kDefinitive;
