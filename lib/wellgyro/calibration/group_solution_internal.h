@@ -20,6 +20,7 @@ class GroupSolution {
 
   /// The heating rate takes `ns` at the present temperature; see SensorGroup::heating_lag.
   void Heat(std::int64_t ns) {
+    if (!heats()) return;
     // Samples follow each other evenly.
     if (ns != step_ns_) {
       step_ns_ = ns;
