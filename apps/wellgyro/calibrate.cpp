@@ -110,6 +110,7 @@ void AddCalibrate(CLI::App& app, int& exit_code) {
   AddCalibrateVerify(*command, exit_code);
   AddCalibratePlan(*command, exit_code);
   AddCalibrateHistory(*command, exit_code);
+  AddCalibrateLearn(*command, exit_code);
 }
 
 }  // namespace wellgyro::apps

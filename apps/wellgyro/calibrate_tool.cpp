@@ -16,6 +16,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/error_sources.h"
+#include "wellgyro/calibration/prior.h"
 #include "wellgyro/fit/tool_fit.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/result/certificate.h"
@@ -35,7 +36,7 @@ namespace {
 struct ToolFitOptions {
   BenchOptions bench;
   std::vector<std::string> data, traceability;
-  std::string certificate, pdf, number, laboratory;
+  std::string certificate, pdf, number, laboratory, prior;
   ToolFitSetup fit;
 };
 
@@ -52,6 +53,26 @@ Result<std::vector<BenchTable>> ReadInputs(const ToolFitOptions& o, CalibrationF
   return tables;
 }
 
+// Joined with what was known before, which it must not contradict more than once in a thousand.
+Result<ToolCalibration> WithPrior(const ToolFitOptions& o, ToolCalibration tool) {
+  if (o.prior.empty()) return tool;
+  const auto prior = ReadToolFile(o.prior);
+  if (!prior) return prior.fault();
+  JoinedTool joined = JoinPrior(std::move(tool), *prior);
+  constexpr double kChance = 1e-3;
+  if (joined.probability < kChance) {
+    return Fault{.code = FaultCode::kConflict,
+                 .text = fmt::format("the bench contradicts it: chi-square {:.1f} of {}, as large "
+                                     "by chance {:.1g}; the tool has changed, calibrate it "
+                                     "without --prior, see calibrate history",
+                                     joined.chi_square, joined.dof, joined.probability),
+                 .source = o.prior};
+  }
+  fmt::print("prior: chi-square {:.1f} of {}, as large by chance {:.2g}\n", joined.chi_square,
+             joined.dof, joined.probability);
+  return std::move(joined.tool);
+}
+
 Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit) {
   ToolCalibration tool;
   if (!o.bench.tool.empty() && std::filesystem::exists(o.bench.tool)) {
@@ -59,7 +80,7 @@ Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit) {
     if (!known) return known.fault();
     tool = *std::move(known);
   }
-  return Updated(std::move(tool), fit, o.bench.update);
+  return WithPrior(o, Updated(std::move(tool), fit, o.bench.update));
 }
 
 // Errors left in samples, in the units that people use.
@@ -235,6 +256,9 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
   command->add_option("--laboratory", o->laboratory, "that issues it")->needs(certificate);
   command->add_option("--traceability", o->traceability,
                       "a reference instrument and its certificate, repeat it for more");
+  command->add_option("--prior", o->prior,
+                      "what was known of the tool before, from other readings: a tool file of "
+                      "calibrate tool or learn, joined into --tool");
   AddGravity(*command, o->bench);
   AddLatitude(*command, o->bench);
   AddAxes(*command, o->bench);

@@ -14,6 +14,7 @@ namespace wellgyro::apps {
 void AddCalibrateTool(CLI::App& calibrate, int& exit_code);
 void AddCalibrateVerify(CLI::App& calibrate, int& exit_code);
 void AddCalibratePlan(CLI::App& calibrate, int& exit_code);
+void AddCalibrateLearn(CLI::App& calibrate, int& exit_code);
 void AddCalibrateHistory(CLI::App& calibrate, int& exit_code);
 
 // Writes a whole file and prints its name.

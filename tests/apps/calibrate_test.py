@@ -5,6 +5,7 @@ import hashlib
 import math
 import os
 import random
+import re
 import unittest
 
 from harness import DEMO, TOP, FreshProgramTest, Job, Move, Run, Simulation, Stop
@@ -178,6 +179,52 @@ class Calibrate(FreshProgramTest):
                           self.Path("raw.lcm"), "far", code=4)
         turned = float(far[-1]["AZI_TRUE[deg]"]) - float(perfect[-1]["AZI_TRUE[deg]"])
         self.assertGreater(abs((turned + 180) % 360 - 180), 10 * worst)
+
+    def test_what_a_run_taught_is_the_next_prior(self):
+        source = random.Random(12)
+        rest = self.Write("rest.csv", WholeTool(AtRest(source), source))
+        table = self.Write("table.csv", OnTable(source))
+        bench = ["calibrate", "tool", "--data", rest, "--data", table, "--latitude-deg",
+                 str(LATITUDE), "--out", self.Path("c.toml")]
+        tool = self.Path("tool.toml")
+        self.Done(*bench, "--tool", tool, "--channels", "0,1,2,3,4,5,6", "--unit-per-count",
+                  "1e-6")
+        simulation = self.Write("simulation.toml", SIMULATION)
+        # The tool as the bench has it, but for a bias of two of its sigmas.
+        text = self.Read(tool)
+        line = re.search(r"\[gyro\].*?\nbias = \[(.*?)\]", text, re.S)
+        biases = [float(x) for x in line.group(1).split(",")]
+        biases[0] += 0.02
+        true = text[:line.start(1)] + ", ".join(map(repr, biases)) + text[line.end(1):]
+        self.Done("simulate", "--job", simulation, "--out", self.Path("raw.lcm"), "--tool",
+                  self.Write("true.toml", true))
+        job = self.Write("job.toml", JOB + '[tool]\nfile = "tool.toml"\n')
+        self.Survey(job, self.Path("raw.lcm"), "first")
+        self.assertIn("[run.fit.lesson]", self.Read(self.Path("first/run.toml")))
+        taught = self.Path("taught.toml")
+        ran = self.Done("calibrate", "learn", "--run", self.Path("first"), "--out", taught)
+        self.assertIn("runs that taught: 1", ran.stdout)
+        self.Done("check", taught)
+        self.assertIn("what runs found (1)", self.Read(taught))
+        self.Survey(self.Write("second.toml", JOB + '[tool]\nfile = "taught.toml"\n'),
+                    self.Path("raw.lcm"), "second")
+        # Of other tool files, of none, of what is no result.
+        ran = Run("calibrate", "learn", "--run", self.Path("first"), "--run",
+                  self.Path("second/run.toml"), "--out", self.Path("no.toml"))
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("another than the first run's", ran.stderr)
+        self.assertEqual(Run("calibrate", "learn", "--run", tool, "--out",
+                             self.Path("no.toml")).returncode, 2)
+        # The next bench, with other noise, is joined with it; one of a tool that changed is not.
+        again = self.Write("again.csv", WholeTool(AtRest(source), source))
+        later = ["calibrate", "tool", "--data", again, "--data", table, "--latitude-deg",
+                 str(LATITUDE), "--out", self.Path("c2.toml"), "--channels", "0,1,2,3,4,5,6",
+                 "--unit-per-count", "1e-6", "--tool", self.Path("next.toml")]
+        self.assertIn("prior: chi-square", self.Done(*later, "--prior", taught).stdout)
+        later[3] = self.Write("moved.csv", WholeTool(AtRest(source), source, 0.5))
+        ran = Run(*later, "--prior", taught)
+        self.assertEqual(ran.returncode, 2, ran.stdout)
+        self.assertIn("the tool has changed", ran.stderr)
 
     def test_the_file_says_which_readings_were_joined(self):
         source = random.Random(10)

@@ -90,7 +90,7 @@ inline Eigen::Vector3d Tilted(const Eigen::Vector3d& u, const Eigen::Vector3d& a
 }
 
 inline void Append(std::vector<double>& row, const Eigen::VectorXd& more) {
-  row.insert(row.end(), more.begin(), more.end());
+  for (const double value : more) row.push_back(value);
 }
 
 /// Three accelerometers in volts at 24 positions.

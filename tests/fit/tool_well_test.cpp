@@ -1,10 +1,10 @@
 // From the bench to the well: the joint calibration of tools that know their temperature, raw
 // counts at the hole's temperatures, and what the survey says of itself at every depth.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,6 +13,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/tool_fit.h"
 #include "wellgyro/io/toml/tool_file.h"
+#include "wellgyro/math/statistics.h"
 #include "wellgyro/simulate/raw_counts.h"
 
 #include "fit/tool_bench.h"
@@ -100,57 +101,79 @@ Survey SurveyOfCounts(const Simulation& simulation, const Job& job, RawCounter& 
 
 /// Squares of errors over what the calibration says of them, against the survey of a perfect tool.
 struct Score {
-  std::array<double, kParts> inclination{}, azimuth{}, place{}, number{};
+  double tools = 0;
+  std::array<double, kParts> inclination{}, azimuth{}, place{};
 
+  /// The mean of the stations of each part of the depth: within a tool they go together.
   void Take(const Survey& survey, const Survey& perfect) {
     const std::size_t n = std::min(survey.chosen.size(), perfect.chosen.size());
+    tools += 1;
     for (std::size_t i = 1; i < n; ++i) {
       const Station &a = survey.chosen[i], &b = perfect.chosen[i];
       const std::size_t at = i * kParts / n;
+      const double share =
+          1 / static_cast<double>((at + 1) * n / kParts - std::max<std::size_t>(at * n / kParts, 1));
       const Eigen::Matrix3d angles = a.cov_md_inc_azi - b.cov_md_inc_azi;
       const Eigen::Matrix2d places = (a.cov_p_WT_W - b.cov_p_WT_W).topLeftCorner<2, 2>();
       const Eigen::Vector2d off = (a.p_WT_W - b.p_WT_W).head<2>();
-      inclination[at] += std::pow(a.inclination - b.inclination, 2) / angles(1, 1);
-      azimuth[at] += std::pow(std::remainder(a.azimuth - b.azimuth, kTwoPi), 2) / angles(2, 2);
-      place[at] += off.dot(places.inverse() * off) / 2;
-      number[at] += 1;
+      inclination[at] += share * std::pow(a.inclination - b.inclination, 2) / angles(1, 1);
+      azimuth[at] +=
+          share * std::pow(std::remainder(a.azimuth - b.azimuth, kTwoPi), 2) / angles(2, 2);
+      place[at] += share * off.dot(places.inverse() * off) / 2;
     }
+  }
+  void Print(const char* name) const {
+    std::printf("%s bench, %.0f tools, by depth: inclination, azimuth, place\n", name, tools);
+    for (std::size_t k = 0; k < kParts; ++k) {
+      std::printf("  %.2f %.2f %.2f\n", std::sqrt(inclination[k] / tools),
+                  std::sqrt(azimuth[k] / tools), std::sqrt(place[k] / tools));
+    }
+    std::fflush(stdout);
   }
 };
 
-TEST(ToolWell, WhatTheBenchLeavesIsWhatTheSurveySays) {
-  const int tools = WELLGYRO_LONG ? 25 : 1;
-  for (const BenchQuality& quality : kQualities) {
-    Score score;
-    for (int i = 0; i < tools; ++i) {
-      Random random(500 + static_cast<std::uint64_t>(i));
-      ThermalTool truth = ThermalTool::Any(random);
-      // The tool model follows heating by a minute's lag: what that misses is no bench's error.
-      truth.heating.setZero();
-      const auto tool = CalibratedOn(quality, truth, random);
-      ASSERT_TRUE(tool.has_value()) << tool.fault().text;
-      const Simulation simulation = HoleRun(1 + static_cast<std::uint64_t>(i));
-      Job job = JobOf(simulation);
-      Sink sink;
-      const Survey perfect = wellgyro::testing::SurveyOf(simulation, job, sink);
-      job.errors = *tool->errors;
-      job.errors.accel_noise = 1e-5;
-      job.tool = *tool;
-      RawCounter counter(ModelOf(truth));
-      const Survey survey = SurveyOfCounts(simulation, job, counter);
-      ASSERT_GT(survey.chosen.size(), 40u) << survey.unusable;
-      score.Take(survey, perfect);
-    }
-    std::printf("%s bench, %d tools, by depth: inclination, azimuth, place\n", quality.name, tools);
-    for (std::size_t k = 0; k < kParts; ++k) {
-      const double rms[] = {std::sqrt(score.inclination[k] / score.number[k]),
-                            std::sqrt(score.azimuth[k] / score.number[k]),
-                            std::sqrt(score.place[k] / score.number[k])};
-      std::printf("  %.2f %.2f %.2f\n", rms[0], rms[1], rms[2]);
-      for (const double value : rms) EXPECT_LT(value, WELLGYRO_LONG ? 1.3 : 3.5);
+/// Calibrates tools of one quality of bench and surveys with them.
+void SurveyWith(const BenchQuality& quality, int tools, Score& score) {
+  for (int i = 0; i < tools; ++i) {
+    Random random(500 + static_cast<std::uint64_t>(i));
+    ThermalTool truth = ThermalTool::Any(random);
+    // The tool model follows heating by a minute's lag: what that misses is no bench's error.
+    truth.heating.setZero();
+    const auto tool = CalibratedOn(quality, truth, random);
+    ASSERT_TRUE(tool.has_value()) << tool.fault().text;
+    const Simulation simulation = HoleRun(1 + static_cast<std::uint64_t>(i));
+    Job job = JobOf(simulation);
+    Sink sink;
+    const Survey perfect = wellgyro::testing::SurveyOf(simulation, job, sink);
+    job.errors = *tool->errors;
+    job.errors.accel_noise = 1e-5;
+    job.tool = *tool;
+    RawCounter counter(ModelOf(truth));
+    const Survey survey = SurveyOfCounts(simulation, job, counter);
+    ASSERT_GT(survey.chosen.size(), 40u) << survey.unusable;
+    score.Take(survey, perfect);
+  }
+}
+
+class ToolWell : public testing::TestWithParam<BenchQuality> {};
+
+TEST_P(ToolWell, WhatTheBenchLeavesIsWhatTheSurveySays) {
+  Score score;
+  SurveyWith(GetParam(), WELLGYRO_LONG ? 25 : 1, score);
+  score.Print(GetParam().name);
+  // One in a thousand of the chi-square of that many tools, were the stations of a part all one.
+  const double low = ChiSquareQuantile(0.0005, score.tools) / score.tools;
+  const double high = ChiSquareQuantile(0.9995, score.tools) / score.tools;
+  for (const auto& squares : {score.inclination, score.azimuth, score.place}) {
+    for (const double square : squares) {
+      EXPECT_LT(square / score.tools, high);
+      EXPECT_GT(square / score.tools, low);
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Benches, ToolWell, testing::ValuesIn(kQualities),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
 }  // namespace wellgyro::test

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -23,7 +23,7 @@ constexpr int kSide = 4;
 constexpr std::size_t kRun = 32;
 
 struct HeatingRates {
-  std::array<double, kRun> gyro{}, accel{}, mag{};
+  std::array<float, kRun> gyro{}, accel{}, mag{};
 };
 
 struct Kernels {
@@ -32,10 +32,11 @@ struct Kernels {
 
 template <int kN>
 [[gnu::always_inline]] inline void Solve(const GroupKernel& group, const RawSample* raw,
-                                         const double* rates, const Side<kN>& f, Side<kN>& u) {
-  Linear<kN>(group, raw, rates, u);
-  if (group.feels_force) TakeForce<kN>(group, f, u);
-  if (group.squares.count > 0) Refine<kN>(group, u);
+                                         const float* rates, const Side<kN, float>& f,
+                                         Side<kN>& u) {
+  Linear<kN>(group, raw, u);
+  if (group.feels_force || group.heats) TakeSmall<kN>(group, f, rates, u);
+  if (group.second_order) Refine<kN>(group, u);
 }
 
 // kN samples from the `first` of a run at one temperature.
@@ -43,10 +44,12 @@ template <int kN>
 void CalibrateSide(const Kernels& groups, const RawSample* raw, const HeatingRates& rates,
                    std::size_t first, ImuSample* out) {
   // The force first: the gyros feel it.
-  Side<kN> f, u;
-  Linear<kN>(groups.accel, raw + first, rates.accel.data() + first, f);
-  if (groups.accel.squares.count > 0) Refine<kN>(groups.accel, f);
-  Put<kN>(f, out + first, &ImuSample::f_T);
+  Side<kN> u;
+  Side<kN, float> f;
+  for (Lanes<kN, float>& component : f) component.setZero();
+  Solve<kN>(groups.accel, raw + first, rates.accel.data() + first, f, u);
+  Put<kN>(u, out + first, &ImuSample::f_T);
+  for (std::size_t i = 0; i < 3; ++i) f[i] = u[i].template cast<float>();
   Solve<kN>(groups.gyro, raw + first, rates.gyro.data() + first, f, u);
   Put<kN>(u, out + first, &ImuSample::w_IT_T);
   if (groups.mag.n_channels > 0) {
@@ -65,12 +68,27 @@ struct SampleCalibrator::State {
   bool Fits(const RawSample& raw) const {
     return raw.n_channels >= channels_needed && raw.n_temperatures >= thermometers_needed;
   }
-  bool Changed(const RawSample& raw) const;
+  /// By bits: a reading that is no number is the same as itself.
+  bool Changed(const RawSample& raw) const {
+    bool same = prepared && raw.stamp.period_ns == period_ns;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(thermometers_needed); ++i) {
+      same = same && std::bit_cast<std::uint32_t>(raw.temperature_raw[i]) ==
+                         std::bit_cast<std::uint32_t>(raw_temperature[i]);
+    }
+    return !same;
+  }
   void Prepare(const RawSample& raw);
   void PrepareGroup(const SensorGroup& group, double seconds, GroupSolution& solution);
-  void Meet(const RawSample& raw);
-  void Heat(const RawSample& raw);
-  void Note(std::size_t k, HeatingRates& rates) const;
+  void Meet(const RawSample& raw, HeatingRates& rates);
+  std::int64_t Since(const RawSample& raw);
+  void Heat(std::int64_t ns) {
+    for (GroupSolution* group : {&gyro, &accel, &mag}) group->Heat(ns);
+  }
+  void Note(std::size_t k, HeatingRates& rates) const {
+    rates.gyro[k] = static_cast<float>(gyro.heating_rate());
+    rates.accel[k] = static_cast<float>(accel.heating_rate());
+    rates.mag[k] = static_cast<float>(mag.heating_rate());
+  }
   void Calibrate(std::span<const RawSample> raw, const HeatingRates& rates,
                  std::span<ImuSample> out) const;
   void Stamp(std::span<const RawSample> raw, std::span<ImuSample> out) const;
@@ -87,7 +105,7 @@ struct SampleCalibrator::State {
   bool outside = false;
   float shown_temperature = 0;  ///< of the gyros' thermometer, or the first [degC]
 
-  bool heats = false, heating = false;
+  bool heats = false;
   std::int32_t session = 0;
   ToolTime heated_to;
 };
@@ -105,12 +123,6 @@ SampleCalibrator::State::State(const ToolCalibration& model)
   for (const ThermometerCalibration& thermometer : tool.thermometers) {
     thermometers_needed = std::max(thermometers_needed, thermometer.channel + 1);
   }
-}
-
-bool SampleCalibrator::State::Changed(const RawSample& raw) const {
-  // By bits: a reading that is no number is the same as itself.
-  return raw.stamp.period_ns != period_ns || !prepared ||
-         std::memcmp(&raw.temperature_raw, &raw_temperature, sizeof(raw_temperature)) != 0;
 }
 
 void SampleCalibrator::State::PrepareGroup(const SensorGroup& group, double seconds,
@@ -147,30 +159,24 @@ void SampleCalibrator::State::Prepare(const RawSample& raw) {
       temperature.empty() ? 0 : static_cast<float>(temperature[static_cast<std::size_t>(shown)]);
 }
 
-void SampleCalibrator::State::Heat(const RawSample& raw) {
-  const ToolTime now = raw.stamp.tool_time;
-  const bool follows = heating && raw.stamp.session == session && now > heated_to;
-  const double seconds = follows ? (now - heated_to).seconds() : 0;
-  for (GroupSolution* group : {&gyro, &accel, &mag}) {
-    if (!group->heats()) continue;
-    if (follows) {
-      group->Heat(seconds);
-    } else if (!heating || raw.stamp.session != session) {
-      group->Settle();
-    }
-  }
-  if (follows || !heating || raw.stamp.session != session) heated_to = now;
-  session = raw.stamp.session;
-  heating = true;
+// The time for which the last sample's temperature held, until this one.
+std::int64_t SampleCalibrator::State::Since(const RawSample& raw) {
+  const std::int64_t ns = std::max<std::int64_t>(raw.stamp.tool_time.ns - heated_to.ns, 0);
+  heated_to.ns += ns;
+  return ns;
 }
 
 // Makes ready for a sample at its temperature and time.
-void SampleCalibrator::State::Meet(const RawSample& raw) {
-  const bool changed = Changed(raw);
-  // A temperature holds from the sample that brings it: the time before it was the old one's.
-  if (heats && prepared) Heat(raw);
-  if (changed) Prepare(raw);
-  if (heats && !heating) Heat(raw);
+void SampleCalibrator::State::Meet(const RawSample& raw, HeatingRates& rates) {
+  const bool anew = !prepared || raw.stamp.session != session;
+  if (heats && !anew) Heat(Since(raw));
+  if (Changed(raw)) Prepare(raw);
+  if (anew) {
+    session = raw.stamp.session;
+    heated_to = raw.stamp.tool_time;
+    for (GroupSolution* group : {&gyro, &accel, &mag}) group->Settle();
+  }
+  Note(0, rates);
 }
 
 void SampleCalibrator::State::Stamp(std::span<const RawSample> raw,
@@ -198,12 +204,6 @@ void SampleCalibrator::State::Calibrate(std::span<const RawSample> raw, const He
   for (; i < raw.size(); ++i) CalibrateSide<1>(groups, raw.data(), rates, i, out.data());
 }
 
-void SampleCalibrator::State::Note(std::size_t k, HeatingRates& rates) const {
-  rates.gyro[k] = gyro.heating_rate();
-  rates.accel[k] = accel.heating_rate();
-  rates.mag[k] = mag.heating_rate();
-}
-
 SampleCalibrator::SampleCalibrator(const ToolCalibration& tool) {
   if (const auto complaint = FindComplaint(tool)) throw std::invalid_argument(*complaint);
   state_ = std::make_unique<State>(tool);
@@ -222,14 +222,14 @@ std::size_t SampleCalibrator::Apply(std::span<const RawSample> raw, std::span<Im
   std::size_t done = 0;
   HeatingRates rates;
   while (done < raw.size() && state.Fits(raw[done])) {
-    state.Meet(raw[done]);
-    state.Note(0, rates);
+    state.Meet(raw[done], rates);
     std::size_t n = 1;
     for (; n < kRun && done + n < raw.size(); ++n) {
       const RawSample& next = raw[done + n];
       if (!state.Fits(next) || state.Changed(next)) break;
       if (!state.heats) continue;
-      state.Heat(next);
+      if (next.stamp.session != state.session) break;
+      state.Heat(state.Since(next));
       state.Note(n, rates);
     }
     state.Calibrate(raw.subspan(done, n), rates, out.subspan(done, n));

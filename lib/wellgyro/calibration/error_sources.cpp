@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/calibration/group_at_internal.h"
 #include "wellgyro/calibration/members.h"
 
 namespace wellgyro {
@@ -43,33 +44,6 @@ std::vector<std::string> SourceNames() {
   vector("accel_bias");
   matrix("accel_scale", "accel_misalignment");
   return names;
-}
-
-// A group at one temperature: from what the channels read to u in T.
-struct GroupAt {
-  double tau = 0;
-  Eigen::Matrix<double, 3, 4> from_units = Eigen::Matrix<double, 3, 4>::Zero();
-  Eigen::Matrix3d R_ST = Eigen::Matrix3d::Identity();
-};
-
-GroupAt At(const SensorGroup& group, double temperature) {
-  GroupAt at;
-  const double held = std::clamp(temperature, group.min, group.max);
-  at.tau = group.thermometer < 0 ? 0 : (held - group.reference) / group.half_range;
-  at.R_ST = group.R_TS.transpose();
-  SensorGroup::Rows S = group.sensitivity.back();
-  for (std::size_t n = group.sensitivity.size() - 1; n-- > 0;) {
-    S = S * at.tau + group.sensitivity[n];
-  }
-  const SensorGroup::Rows S_T = S * at.R_ST;
-  if (group.n_channels == 2) {
-    at.from_units.topLeftCorner<2, 2>() = Eigen::Matrix2d(S_T.topLeftCorner<2, 2>()).inverse();
-  } else if (group.n_channels == 3) {
-    at.from_units.leftCols<3>() = Eigen::Matrix3d(S_T.topRows<3>()).inverse();
-  } else if (group.n_channels == 4) {
-    at.from_units = S_T.colPivHouseholderQr().solve(Eigen::Matrix4d::Identity());
-  }
-  return at;
 }
 
 void Put(Eigen::VectorXd& column, int first, const Eigen::Matrix3d& by) {
@@ -106,12 +80,6 @@ Eigen::VectorXd EffectOf(const CalibrationMember& member, const GroupAt& at) {
   column[kUnbalance] = (column[kGyroForce] + column[kGyroForce + 4]) / 2;
   column[kQuadrature] = (column[kGyroForce + 1] - column[kGyroForce + 3]) / 2;
   return column;
-}
-
-bool HasMembers(const SensorGroup& group) {
-  return group.covariance && !group.covariance->names.empty() &&
-         (group.covariance->names.front().rfind("gyro.", 0) == 0 ||
-          group.covariance->names.front().rfind("accel.", 0) == 0);
 }
 
 double Sigma(const CalibrationSources& sources, int at) {
@@ -159,6 +127,32 @@ void TakeAccelErrors(const CalibrationSources& sources, ErrorPriors& errors) {
 }
 
 }  // namespace
+
+GroupAt At(const SensorGroup& group, double temperature) {
+  GroupAt at;
+  const double held = std::clamp(temperature, group.min, group.max);
+  at.tau = group.thermometer < 0 ? 0 : (held - group.reference) / group.half_range;
+  at.R_ST = group.R_TS.transpose();
+  SensorGroup::Rows S = group.sensitivity.back();
+  for (std::size_t n = group.sensitivity.size() - 1; n-- > 0;) {
+    S = S * at.tau + group.sensitivity[n];
+  }
+  const SensorGroup::Rows S_T = S * at.R_ST;
+  if (group.n_channels == 2) {
+    at.from_units.topLeftCorner<2, 2>() = Eigen::Matrix2d(S_T.topLeftCorner<2, 2>()).inverse();
+  } else if (group.n_channels == 3) {
+    at.from_units.leftCols<3>() = Eigen::Matrix3d(S_T.topRows<3>()).inverse();
+  } else if (group.n_channels == 4) {
+    at.from_units = S_T.colPivHouseholderQr().solve(Eigen::Matrix4d::Identity());
+  }
+  return at;
+}
+
+bool HasMembers(const SensorGroup& group) {
+  return group.covariance && !group.covariance->names.empty() &&
+         (group.covariance->names.front().rfind("gyro.", 0) == 0 ||
+          group.covariance->names.front().rfind("accel.", 0) == 0);
+}
 
 Eigen::Index CalibrationSources::At(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);

@@ -10,35 +10,34 @@
 namespace wellgyro {
 
 /// SensorGroup's formula solved for u in T at one temperature, as plain numbers:
-///   u = A counts + b + heat dT/dt - force f - sum force_squares - sum squares
-/// where a sum is over products of two components, of f and of u itself.
+///   u = A counts + b - (force f + force_squares q(f) - heat dT/dt) - squares q(u)
+/// with q as SensorGroup has it. What stands in brackets is small beside u and known to 1e-5 of
+/// itself at best: it is summed in single precision, to 2^-21 of its largest part.
 struct GroupKernel {
-  /// One of the components of q, and what it moves u by.
-  struct Product {
-    std::size_t first = 0, second = 0;
-    double out[3] = {};
-  };
-  /// Products that move anything.
+  /// What the products of q move u by: xx, yy, zz, then xy, yz, zx.
+  template <class Real>
   struct Products {
-    std::size_t count = 0;
-    std::array<Product, 6> each;
+    bool squares = false, crosses = false;  ///< some of these three move anything
+    Real out[6][3] = {};
   };
   static constexpr std::size_t kTurns = 64;
 
   int n_channels = 0;
   std::array<std::size_t, 4> channel{};
-  double A[3][4] = {}, b[3] = {}, heat[3] = {}, force[3][3] = {};
-  bool heats = false, feels_force = false;
-  Products squares, force_squares;
+  double A[3][4] = {}, b[3] = {};
+  float force[3][3] = {}, heat[3] = {};
+  bool heats = false, feels_force = false, second_order = false;
+  Products<float> force_products;
+  Products<double> products;
   std::array<double, kTurns> reach{};  ///< largest |component of u| for which so many turns do
 };
 
 /// A component of kN samples side by side: what the processor does with one number it does with
 /// several at once. The arithmetic of a sample does not depend on kN nor on its neighbours.
-template <int kN>
-using Lanes = Eigen::Array<double, kN, 1>;
-template <int kN>
-using Side = std::array<Lanes<kN>, 3>;
+template <int kN, class Real = double>
+using Lanes = Eigen::Array<Real, kN, 1>;
+template <int kN, class Real = double>
+using Side = std::array<Lanes<kN, Real>, 3>;
 
 template <int kN>
 [[gnu::always_inline]] inline Lanes<kN> Counts(const RawSample* raw, std::size_t channel) {
@@ -48,8 +47,7 @@ template <int kN>
 }
 
 template <int kN>
-[[gnu::always_inline]] inline void Linear(const GroupKernel& g, const RawSample* raw,
-                                          const double* heating_rate, Side<kN>& u) {
+[[gnu::always_inline]] inline void Linear(const GroupKernel& g, const RawSample* raw, Side<kN>& u) {
   const Lanes<kN> x = Counts<kN>(raw, g.channel[0]), y = Counts<kN>(raw, g.channel[1]),
                   z = Counts<kN>(raw, g.channel[2]);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -59,33 +57,40 @@ template <int kN>
     const Lanes<kN> fourth = Counts<kN>(raw, g.channel[3]);
     for (std::size_t i = 0; i < 3; ++i) u[i] += g.A[i][3] * fourth;
   }
-  if (g.heats) {
-    const Lanes<kN> rate = Lanes<kN>::Map(heating_rate);
-    for (std::size_t i = 0; i < 3; ++i) u[i] += g.heat[i] * rate;
+}
+
+/// Adds what q(of) moves u by.
+template <int kN, class Real>
+[[gnu::always_inline]] inline void AddProducts(const GroupKernel::Products<Real>& products,
+                                               const Side<kN, Real>& of, Side<kN, Real>& sum) {
+  const auto add = [&](const Real(&out)[3], const Lanes<kN, Real>& q) {
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += out[i] * q;
+  };
+  if (products.squares) {
+    for (std::size_t i = 0; i < 3; ++i) add(products.out[i], of[i] * of[i]);
+  }
+  if (products.crosses) {
+    for (std::size_t i = 0; i < 3; ++i) add(products.out[3 + i], of[i] * of[(i + 1) % 3]);
   }
 }
 
+/// Takes off what the force and the heating do.
 template <int kN>
-[[gnu::always_inline]] inline void AddProducts(const GroupKernel::Products& products,
-                                               const Side<kN>& of, Side<kN>& sum) {
-  for (std::size_t p = 0; p < products.count; ++p) {
-    const GroupKernel::Product& product = products.each[p];
-    const Lanes<kN> q = of[product.first] * of[product.second];
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += product.out[i] * q;
-  }
-}
-
-template <int kN>
-[[gnu::always_inline]] inline void TakeForce(const GroupKernel& g, const Side<kN>& f, Side<kN>& u) {
-  Side<kN> sum;
+[[gnu::always_inline]] inline void TakeSmall(const GroupKernel& g, const Side<kN, float>& f,
+                                             const float* heating_rate, Side<kN>& u) {
+  Side<kN, float> sum;
   for (std::size_t i = 0; i < 3; ++i) {
     sum[i] = g.force[i][0] * f[0] + g.force[i][1] * f[1] + g.force[i][2] * f[2];
   }
-  AddProducts<kN>(g.force_squares, f, sum);
-  for (std::size_t i = 0; i < 3; ++i) u[i] -= sum[i];
+  AddProducts<kN, float>(g.force_products, f, sum);
+  if (g.heats) {
+    const Lanes<kN, float> rate = Lanes<kN, float>::Map(heating_rate);
+    for (std::size_t i = 0; i < 3; ++i) sum[i] -= g.heat[i] * rate;
+  }
+  for (std::size_t i = 0; i < 3; ++i) u[i] -= sum[i].template cast<double>();
 }
 
-/// u <- u_0 - squares(u), as often as a sample needs it.
+/// u <- u_0 - what q(u) moves it by, as often as a sample needs it.
 template <int kN>
 [[gnu::always_inline]] inline void Refine(const GroupKernel& g, Side<kN>& u) {
   const Side<kN> linear = u;
@@ -94,7 +99,7 @@ template <int kN>
   for (std::size_t turn = 0; turn < GroupKernel::kTurns && largest > g.reach[turn]; ++turn) {
     Side<kN> sum;
     for (std::size_t i = 0; i < 3; ++i) sum[i].setZero();
-    AddProducts<kN>(g.squares, u, sum);
+    AddProducts<kN, double>(g.products, u, sum);
     const bool all = smallest > g.reach[turn];
     for (std::size_t i = 0; i < 3; ++i) {
       const Lanes<kN> next = linear[i] - sum[i];

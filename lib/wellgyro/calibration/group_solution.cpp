@@ -55,23 +55,20 @@ Eigen::Vector4d Parity(const SensorGroup::Rows& S) {
   return Q.col(3);
 }
 
-template <int kColumns>
-void Put(const Eigen::Matrix<double, 3, kColumns>& from, double (&to)[3][kColumns]) {
+template <int kColumns, class Real>
+void Put(const Eigen::Matrix<double, 3, kColumns>& from, Real (&to)[3][kColumns]) {
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < kColumns; ++j) to[i][j] = from(i, j);
+    for (int j = 0; j < kColumns; ++j) to[i][j] = static_cast<Real>(from(i, j));
   }
 }
 
-// Of q's components those that move anything.
-GroupKernel::Products ProductsOf(const Eigen::Matrix<double, 3, 6>& out) {
-  constexpr std::size_t kFirst[] = {0, 1, 2, 0, 1, 2}, kSecond[] = {0, 1, 2, 1, 2, 0};
-  GroupKernel::Products products;
+template <class Real>
+GroupKernel::Products<Real> ProductsOf(const Eigen::Matrix<double, 3, 6>& out) {
+  GroupKernel::Products<Real> products;
+  products.squares = !out.leftCols<3>().isZero(0);
+  products.crosses = !out.rightCols<3>().isZero(0);
   for (int p = 0; p < 6; ++p) {
-    if (out.col(p).isZero(0)) continue;
-    GroupKernel::Product& product = products.each[products.count++];
-    product.first = kFirst[p];
-    product.second = kSecond[p];
-    Eigen::Vector3d::Map(product.out) = out.col(p);
+    for (int i = 0; i < 3; ++i) products.out[p][i] = static_cast<Real>(out(i, p));
   }
   return products;
 }
@@ -105,6 +102,7 @@ void SetReach(const Eigen::Matrix<double, 3, 6>& squares, GroupKernel& kernel) {
 }  // namespace
 
 bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double seconds) {
+  ahead_ += temperature - temperature_;
   temperature_ = temperature;
   const double held = std::clamp(temperature, group.min, group.max);
   const double tau = group.thermometer < 0 ? 0 : (held - group.reference) / group.half_range;
@@ -133,20 +131,15 @@ bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double
   const Eigen::Matrix3d force = from_units * g_dependence_;
   Put(force, kernel_.force);
   Eigen::Vector3d::Map(kernel_.b) = offset;
-  Eigen::Vector3d::Map(kernel_.heat) = heat;
+  Eigen::Vector3f::Map(kernel_.heat) = heat.cast<float>();
   kernel_.heats = !heat.isZero(0);
-  kernel_.squares = ProductsOf(from_units * squares_);
-  kernel_.force_squares = ProductsOf(from_units * g_squares_);
-  kernel_.feels_force = !force.isZero(0) || kernel_.force_squares.count > 0;
+  kernel_.products = ProductsOf<double>(from_units * squares_);
+  kernel_.second_order = kernel_.products.squares || kernel_.products.crosses;
+  kernel_.force_products = ProductsOf<float>(from_units * g_squares_);
+  kernel_.feels_force = !force.isZero(0) || kernel_.force_products.squares ||
+                        kernel_.force_products.crosses;
   SetReach(from_units * squares_, kernel_);
-  if (!settled_) Settle();
   return group.thermometer < 0 || held == temperature;
-}
-
-void GroupSolution::Settle() {
-  settled_ = true;
-  lagged_ = temperature_;
-  heating_rate_ = 0;
 }
 
 double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
@@ -155,7 +148,7 @@ double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
   for (int c = 0; c < 4; ++c) {
     units[c] = static_cast<double>(raw.counts[kernel_.channel[static_cast<std::size_t>(c)]]);
   }
-  units = units.cwiseProduct(unit_per_count_) - bias_ - heating_ * heating_rate_;
+  units = units.cwiseProduct(unit_per_count_) - bias_ - heating_ * heating_rate();
   units -= g_dependence_ * f_T + g_squares_ * SquaresOf(f_T) + squares_ * SquaresOf(u_T);
   return parity_.dot(units);
 }

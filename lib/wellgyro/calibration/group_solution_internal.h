@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include <Eigen/Core>
 
@@ -17,20 +18,20 @@ class GroupSolution {
   /// Gives whether the temperature is inside the calibrated range.
   bool Prepare(const SensorGroup& group, double temperature, double seconds);
 
-  /// The heating rate takes `seconds` at the present temperature; see SensorGroup::heating_lag.
-  void Heat(double seconds) {
+  /// The heating rate takes `ns` at the present temperature; see SensorGroup::heating_lag.
+  void Heat(std::int64_t ns) {
+    if (!heats()) return;
     // Samples follow each other evenly.
-    if (seconds != step_seconds_) {
-      step_seconds_ = seconds;
-      step_ = -std::expm1(-seconds * per_lag_);
+    if (ns != step_ns_) {
+      step_ns_ = ns;
+      kept_ = std::exp(-1e-9 * static_cast<double>(ns) * per_lag_);
     }
-    lagged_ += (temperature_ - lagged_) * step_;
-    heating_rate_ = (temperature_ - lagged_) * per_lag_;
+    ahead_ *= kept_;
   }
   /// Forgets the heating so far.
-  void Settle();
+  void Settle() { ahead_ = 0; }
   bool heats() const { return kernel_.heats; }
-  double heating_rate() const { return heating_rate_; }  ///< [degC/s]
+  double heating_rate() const { return ahead_ * per_lag_; }  ///< [degC/s]
 
   int n_channels() const { return kernel_.n_channels; }
   const GroupKernel& kernel() const { return kernel_; }
@@ -43,10 +44,9 @@ class GroupSolution {
   Eigen::Vector4d unit_per_count_, bias_, heating_, parity_;
   SensorGroup::Rows g_dependence_;
   SensorGroup::Squares squares_, g_squares_;
-  double temperature_ = 0, lagged_ = 0, heating_rate_ = 0;
-  double per_lag_ = 0, step_ = 0,
-         step_seconds_ = 0;  ///< of the lagged temperature towards the present
-  bool settled_ = false;
+  double temperature_ = 0, ahead_ = 0;  ///< the present; less the lagged [degC]
+  double per_lag_ = 0, kept_ = 1;       ///< of `ahead_` after a step
+  std::int64_t step_ns_ = 0;
 };
 
 }  // namespace wellgyro

@@ -229,12 +229,12 @@ class Diagnoser {
     for (std::size_t s = 0; s < specs_.size(); ++s) {
       const int i = ColumnOfSpec(s);
       if (specs_[s].kind != Kind::kConstant || i == kAbsent) continue;
-      const double sigma = run_.layout().sigma[i];
-      const double freedom = 1 - border_covariance_(i, i) / (sigma * sigma);
-      if (!(freedom > kAbsorbed)) continue;
-      Vector3d shift = -influence_->OfBorder(i) / (sigma * sigma);
+      const auto prior = run_.layout().information.col(i);
+      const double information = prior[i] - prior.dot(border_covariance_ * prior);
+      if (!(information > kAbsorbed * prior[i])) continue;
+      Vector3d shift = -influence_->OfPrior(i);
       if (specs_[s].unknown == kDepthScaleError) shift += end_by_depth_scale_;
-      looks_[s].Add(0, {run_.PriorResidual(i) / sigma, freedom / (sigma * sigma), shift});
+      looks_[s].Add(0, {run_.PriorScore(i), information, shift});
     }
   }
 
@@ -281,9 +281,9 @@ class Diagnoser {
     }
   }
 
-  double PriorWeight(std::size_t i) const {
-    const double sigma = run_.layout().sigma[ColumnOfSpec(i)];
-    return 1 / (sigma * sigma);
+  /// What a unit of its unknown does to the prior, over the border.
+  auto PriorOfSpec(std::size_t i) const {
+    return run_.layout().information.col(ColumnOfSpec(i));
   }
   MatrixXd CompareOnsets(const Diagnosis& d, std::span<const std::size_t> onsets,
                          MatrixXd& gram) const;
@@ -314,7 +314,7 @@ MatrixXd Diagnoser::CompareOnsets(const Diagnosis& d, std::span<const std::size_
   MatrixXd x = MatrixXd::Zero(n + m, At(onsets.size()));
   MatrixXd known = MatrixXd::Zero(x.cols(), x.cols());
   for (std::size_t q = 0; q < onsets.size(); ++q) {
-    x(2 * n + ColumnOfSpec(onsets[q]), At(q)) = PriorWeight(onsets[q]);
+    x.col(At(q)).tail(layout.border) = PriorOfSpec(onsets[q]);
   }
   NormalBlock rows;
   std::size_t last = 0;
@@ -360,7 +360,7 @@ void Diagnoser::CompareSignatures(Diagnosis& d) const {
     for (const std::size_t i : *some) {
       for (const auto* others : {&constants, &onsets}) {
         for (const std::size_t j : *others) {
-          if (ColumnOfSpec(i) == ColumnOfSpec(j)) gram(At(i), At(j)) += PriorWeight(i);
+          gram(At(i), At(j)) += PriorOfSpec(i)[ColumnOfSpec(j)];
         }
       }
     }
@@ -368,11 +368,10 @@ void Diagnoser::CompareSignatures(Diagnosis& d) const {
   const MatrixXd border = CompareOnsets(d, onsets, gram);
   for (const std::size_t i : constants) {
     for (const std::size_t j : constants) {
-      gram(At(i), At(j)) -=
-          PriorWeight(i) * PriorWeight(j) * border_covariance_(ColumnOfSpec(i), ColumnOfSpec(j));
+      gram(At(i), At(j)) -= PriorOfSpec(i).dot(border_covariance_ * PriorOfSpec(j));
     }
     for (std::size_t q = 0; q < onsets.size(); ++q) {
-      gram(At(i), At(onsets[q])) -= PriorWeight(i) * border(ColumnOfSpec(i), At(q));
+      gram(At(i), At(onsets[q])) -= PriorOfSpec(i).dot(border.col(At(q)));
       gram(At(onsets[q]), At(i)) = gram(At(i), At(onsets[q]));
     }
   }

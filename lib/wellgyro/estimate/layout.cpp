@@ -1,12 +1,16 @@
 #include "wellgyro/estimate/layout.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include <Eigen/Cholesky>
 
 #include "wellgyro/estimate/swing.h"
 
 namespace wellgyro {
 namespace {
 
+/// Of what the job states beside a calibration's covariance.
 ErrorVector SourceSigmas(const EstimateSetup& setup) {
   const ErrorPriors& e = setup.errors;
   // Without a correlation time the instability is a constant beside the bias.
@@ -35,6 +39,42 @@ ErrorVector SourceSigmas(const EstimateSetup& setup) {
   return sigma;
 }
 
+ErrorMatrix SourceCovariance(const EstimateSetup& setup) {
+  ErrorMatrix cov = setup.cov_errors.value_or(ErrorMatrix::Zero());
+  if (!setup.third_axis) {
+    for (const int absent : {kGyroBiasZ, kGyroScaleZ}) {
+      cov.row(absent).setZero();
+      cov.col(absent).setZero();
+    }
+  }
+  cov.diagonal() += SourceSigmas(setup).cwiseAbs2();
+  return cov;
+}
+
+/// Information of the border before any knot. What a calibration knows only of sums of errors it
+/// knows to a thousandth of their sigmas at best: its covariance need not have full rank.
+BorderMatrix InformationOf(const Layout& layout, const ErrorMatrix& sources) {
+  constexpr double kApart = 1e-6;
+  BorderMatrix correlation = BorderMatrix::Identity(layout.border, layout.border);
+  bool linked = false;
+  for (std::size_t i = 0; i < layout.source.size(); ++i) {
+    for (std::size_t j = 0; j < layout.source.size(); ++j) {
+      const int row = layout.source[i], column = layout.source[j];
+      const double cov = sources(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      if (i == j || row == kAbsent || column == kAbsent || cov == 0) continue;
+      correlation(row, column) = cov / (layout.sigma[row] * layout.sigma[column]);
+      linked = true;
+    }
+  }
+  if (linked) {
+    correlation.diagonal().array() += kApart;
+    const BorderMatrix identity = BorderMatrix::Identity(layout.border, layout.border);
+    correlation = correlation.ldlt().solve(identity).eval();
+  }
+  const auto per_sigma = layout.sigma.cwiseInverse().asDiagonal();
+  return per_sigma * correlation * per_sigma;
+}
+
 }  // namespace
 
 Layout LayoutOf(const EstimateSetup& setup) {
@@ -56,9 +96,9 @@ Layout LayoutOf(const EstimateSetup& setup) {
     layout.sigma[layout.border] = sigma;
     return layout.border++;
   };
-  const ErrorVector sources = SourceSigmas(setup);
+  const ErrorMatrix sources = SourceCovariance(setup);
   for (int i = 0; i < kErrorSources; ++i) {
-    layout.source[static_cast<std::size_t>(i)] = border(sources[i]);
+    layout.source[static_cast<std::size_t>(i)] = border(std::sqrt(std::max(0.0, sources(i, i))));
   }
   layout.ramp = border(setup.gyro.rate_ramp);
   border(setup.gyro.rate_ramp);
@@ -68,6 +108,7 @@ Layout LayoutOf(const EstimateSetup& setup) {
   if (setup.swing) layout.frequency = border(kSwingSigma);
   layout.depth_scale = border(setup.sigma_depth_scale);
   layout.sigma.conservativeResize(layout.border);
+  layout.information = InformationOf(layout, sources);
   return layout;
 }
 

@@ -17,6 +17,8 @@ inline constexpr int kAbsent = -1;
 using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax, 1>;
 using BorderVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kBorderMax, 1>;
 using NodeMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kNodeMax, kNodeMax>;
+using BorderMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kBorderMax, kBorderMax>;
 /// Of a node, what follows it: the next node, then the border.
 using BehindMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kNodeMax, kNodeMax + kBorderMax>;
@@ -39,7 +41,8 @@ struct Layout {
   int latitude = kAbsent, gravity = kAbsent, gravity_gradient = kAbsent, depth_scale = kAbsent;
   int frequency = kAbsent;  ///< of the swing, beside that of the setup [rad/s]
   int border = 0;
-  BorderVector sigma;  ///< priors of the border
+  BorderVector sigma;        ///< priors of the border
+  BorderMatrix information;  ///< inverse of their covariance
 };
 
 Layout LayoutOf(const EstimateSetup& setup);

@@ -61,9 +61,8 @@ NormalBlock::Vector LinearRun::StepOf(std::size_t k) const {
   return step;
 }
 
-double LinearRun::PriorResidual(int i) const {
-  const double sigma = layout().sigma[i];
-  return first_gradient_[layout().node + i] * sigma + border_step_[i] / sigma;
+double LinearRun::PriorScore(int i) const {
+  return first_gradient_[layout().node + i] + layout().information.col(i).dot(border_step_);
 }
 
 void LinearRun::SolveFor(Columns& columns) const {

@@ -55,8 +55,8 @@ class LinearRun {
   void BlockOf(std::size_t k, NormalBlock& block) const;
   /// N^-1 J'r with its sign turned, of [node k | node k + 1 | border]: P r = r + J step.
   NormalBlock::Vector StepOf(std::size_t k) const;
-  /// P r of the prior of the border's unknown `i`, r = value / sigma.
-  double PriorResidual(int i) const;
+  /// c'P r of the border's prior, of a unit of its unknown `i`.
+  double PriorScore(int i) const;
   /// N^-1 times `columns`, in place.
   void SolveFor(Columns& columns) const;
 

@@ -53,10 +53,10 @@ OnsetScan::OnsetScan(const LinearRun& run, std::vector<int> unknowns)
   const Layout& layout = run.layout();
   edge_.setZero(layout.node + layout.border, static_cast<Index>(unknowns_.size()));
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const double sigma = layout.sigma[unknowns_[i]];
-    edge_(layout.node + unknowns_[i], static_cast<Index>(i)) = 1 / (sigma * sigma);
-    now_[i].score = run.PriorResidual(unknowns_[i]) / sigma;
-    now_[i].information = 1 / (sigma * sigma);
+    const int at = unknowns_[i];
+    edge_.col(static_cast<Index>(i)).tail(layout.border) = layout.information.col(at);
+    now_[i].score = run.PriorScore(at);
+    now_[i].information = layout.information(at, at);
   }
 }
 
@@ -71,8 +71,7 @@ void OnsetScan::Forward(std::size_t knot, const NormalBlock& rows, const EndInfl
   if (unknowns_.empty()) return;
   if (knot == 0) {
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      const double sigma = run_.layout().sigma[unknowns_[i]];
-      now_[i].shift = -influence.OfBorder(unknowns_[i]) / (sigma * sigma);
+      now_[i].shift = -influence.OfPrior(unknowns_[i]);
     }
     Record();
   }

@@ -29,7 +29,10 @@ class EndInfluence {
   Eigen::Matrix3d Of(std::size_t knot, const Factor& f) const;
   /// The same of J'c, `x` over [node | next node | border].
   Eigen::Vector3d Of(std::size_t knot, const NormalBlock::Vector& x) const;
-  Eigen::Vector3d OfBorder(int i) const { return solved_.border.row(i).transpose(); }
+  /// The same of a unit of the border's unknown `i` in its prior.
+  Eigen::Vector3d OfPrior(int i) const {
+    return solved_.border.transpose() * layout_.information.col(i);
+  }
 
  private:
   const Layout& layout_;

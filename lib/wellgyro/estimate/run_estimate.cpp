@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -26,6 +28,19 @@ constexpr double kTooLarge = 4;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
+
+/// Of the border's covariance the part of the constant errors; zero of those that are none.
+ErrorMatrix OfSources(const Layout& layout, const BorderMatrix& border) {
+  ErrorMatrix cov = ErrorMatrix::Zero();
+  for (int i = 0; i < kErrorSources; ++i) {
+    for (int j = 0; j < kErrorSources; ++j) {
+      const int row = layout.source[static_cast<std::size_t>(i)];
+      const int column = layout.source[static_cast<std::size_t>(j)];
+      if (row != kAbsent && column != kAbsent) cov(i, j) = border(row, column);
+    }
+  }
+  return cov;
+}
 
 /// Backwards through the nodes: covariances of all, links of the marked, and what the unknowns
 /// absorb of every kind of residual. Of a part of a run the first of the marked is linked to the
@@ -88,6 +103,10 @@ class Sweep {
       result_.errors[i] = solver_.border()[at];
       result_.sigma_errors[i] = std::sqrt(cov(layout.node + at, layout.node + at));
     }
+    const BorderMatrix posterior = cov.bottomRightCorner(layout.border, layout.border);
+    result_.cov_errors = OfSources(layout, posterior);
+    const BorderMatrix identity = BorderMatrix::Identity(layout.border, layout.border);
+    result_.cov_prior = OfSources(layout, layout.information.ldlt().solve(identity));
   }
 
   RunSolver& solver_;

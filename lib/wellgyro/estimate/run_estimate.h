@@ -40,6 +40,8 @@ struct RunEstimate {
   std::vector<LinkedErrors> marked;          ///< in the order of time
   ErrorVector errors = ErrorVector::Zero();  ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior
+  ErrorMatrix cov_errors = ErrorMatrix::Zero();    ///< of `errors`
+  ErrorMatrix cov_prior = ErrorMatrix::Zero();     ///< before the run
   RunState end;
   Diagnosis diagnosis;  ///< where the setup asks for it
 };

@@ -119,10 +119,10 @@ void RunSolver::FirstRows(EdgeMatrix& information, EdgeVector& gradient) const {
   }
   information.setZero(n + b, n + b);
   information.diagonal().head(n) = sigma.cwiseAbs2().cwiseInverse();
-  information.diagonal().tail(b) = layout_.sigma.cwiseAbs2().cwiseInverse();
+  information.bottomRightCorner(b, b) = layout_.information;
   gradient.resize(n + b);
   gradient.head(n) = value.cwiseQuotient(sigma.cwiseAbs2());
-  gradient.tail(b) = border_.cwiseQuotient(layout_.sigma.cwiseAbs2());
+  gradient.tail(b) = layout_.information * border_;
 }
 
 /// Azimuths from outside that hold at this node, whose columns begin at `at`.
@@ -317,7 +317,7 @@ void RunSolver::Finish(double least, SolveReport& report) {
 
 double RunSolver::Evidence() const {
   double evidence =
-      elimination_.log_determinant() + border_.cwiseQuotient(layout_.sigma).squaredNorm();
+      elimination_.log_determinant() + border_.dot(layout_.information * border_);
   for (const RowSum& sum : block_.sums()) evidence += sum.cost;
   const bool swings = layout_.swing != kAbsent;
   if (swings) evidence += 4 * std::log(kAnyRoll);  // of its prior

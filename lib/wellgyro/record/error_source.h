@@ -33,6 +33,7 @@ enum ErrorSource {
   kErrorSources
 };
 using ErrorVector = Eigen::Matrix<double, kErrorSources, 1>;
+using ErrorMatrix = Eigen::Matrix<double, kErrorSources, kErrorSources>;
 
 /// The first kTurnSources change what the gyros say of a turn, the next kForceSources the force.
 inline constexpr int kTurnSources = kAccelBiasX, kForceSources = kGyroBiasZ - kAccelBiasX;

@@ -6,6 +6,7 @@
 
 #include "wellgyro/record/diagnosis.h"
 #include "wellgyro/record/error_source.h"
+#include "wellgyro/record/run_lesson.h"
 #include "wellgyro/record/run_stretch.h"
 
 namespace wellgyro {
@@ -36,6 +37,7 @@ struct RunFit {
   std::array<Squares, kParts> parts;
   ErrorVector errors = ErrorVector::Zero();        ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< of these; 0: has no prior
+  std::optional<RunLesson> lesson;                 ///< where its calibration has a covariance
   std::vector<RunStretch> stretches;               ///< of the run, in time
   std::optional<RunDiagnosis> diagnosis;           ///< where what adjusted the run made one
 };

@@ -10,6 +10,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/survey/calibration_prior.h"
 #include "wellgyro/survey/node_attitude.h"
 #include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/run_stretches.h"
@@ -139,6 +140,7 @@ EstimateSetup SetupOf(const Job& job, const RunHistory& history) {
   setup.third_axis = std::any_of(history.knots.begin(), history.knots.end(),
                                  [](const RunKnot& k) { return k.increment.has_axial; });
   setup.ties = history.ties;
+  TakeCalibration(job, history, setup);
   return setup;
 }
 
@@ -203,6 +205,9 @@ SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
   }
   SmoothedRun run = SmoothedOf(estimate, history);
   run.fit = FitOf(estimate);
+  if (setup.cov_errors) {
+    run.fit->lesson = {estimate.errors, estimate.cov_prior, estimate.cov_errors, UsesOf(history)};
+  }
   run.fit->stretches = StretchesOf(estimate.diagnosis, history.knots);
   run.fit->diagnosis = DiagnosisOf(estimate.diagnosis, history.knots);
   return run;

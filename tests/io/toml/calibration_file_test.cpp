@@ -63,6 +63,22 @@ TEST(CalibrationFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->check->affine.M_nT, 19);
 }
 
+// 2026-11-22: a million readings made a file of 85 MB.
+TEST(CalibrationFile, OfManyResidualsTheLargestAndSomeOfTheRest) {
+  CalibrationFile file = Example();
+  std::vector<FitResidual>& residuals = file.report.residuals;
+  residuals.clear();
+  for (int i = 0; i < 200'000; ++i) residuals.push_back({i + 2, "x", 1e-6, 0.7, 0.2});
+  residuals[150'001] = {150'003, "y", -5e-6, -3.4, 0.97};
+  const std::string text = CalibrationToml(file);
+  EXPECT_LT(text.size(), 400'000u);
+  const auto back = ParseCalibration(text, "c.toml");
+  ASSERT_TRUE(back.has_value()) << back.fault().text;
+  ASSERT_EQ(back->report.residuals.size(), 4000u);
+  EXPECT_THAT(back->report.residuals, testing::Contains(testing::Field(&FitResidual::line, 150'003)));
+  EXPECT_GT(back->report.residuals.back().line, 190'000);
+}
+
 TEST(CalibrationFile, RefusesWhatIsCut) {
   const std::string text = CalibrationToml(Example());
   for (const char* key :

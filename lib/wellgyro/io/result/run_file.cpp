@@ -20,6 +20,7 @@
 #include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/text_internal.h"
+#include "wellgyro/io/toml/run_lesson_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
 #include "wellgyro/io/words.h"
 #include "wellgyro/survey/verdict.h"
@@ -198,6 +199,7 @@ void WriteRuns(TomlWriter& toml, const std::vector<RunSummary>& runs) {
     if (run.clock_jumps > 0) toml.Whole("clock_jumps", run.clock_jumps);
     if (run.samples > 0) WriteSamples(toml, run);
     if (run.fit) WriteFit(toml, *run.fit);
+    if (run.fit && run.fit->lesson) WriteRunLesson(toml, *run.fit->lesson);
     for (const NorthFix& fix : run.fixes) WriteFix(toml, fix);
   }
 }

@@ -1,0 +1,119 @@
+#include "wellgyro/calibration/prior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "wellgyro/calibration/error_sources.h"
+#include "wellgyro/calibration/group_at_internal.h"
+#include "wellgyro/calibration/members.h"
+#include "wellgyro/math/statistics.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Members {
+  std::vector<std::string> names;
+  VectorXd values;
+  MatrixXd cov;
+};
+
+Members MembersOf(const ToolCalibration& tool) {
+  const SensorGroup& group = HasMembers(tool.gyro) ? tool.gyro : tool.accel;
+  if (!HasMembers(group)) {
+    throw std::invalid_argument(
+        "a prior joins tool files with the covariance that calibrate tool writes");
+  }
+  Members members{group.covariance->names, VectorXd(group.covariance->cov.rows()),
+                  group.covariance->cov};
+  for (Index k = 0; k < members.values.size(); ++k) {
+    members.values[k] = ValueOf(tool, MemberOf(members.names[static_cast<std::size_t>(k)]));
+  }
+  return members;
+}
+
+double Binomial(int n, int k) {
+  double value = 1;
+  for (int i = 1; i <= k; ++i) value *= static_cast<double>(n - k + i) / i;
+  return value;
+}
+
+// Of the members of a prior those of `tool`'s, linearly: a polynomial in the prior's temperature
+// scale is one in the tool's, whose coefficients each take from its own and the higher ones.
+MatrixXd InScaleOf(const ToolCalibration& tool, const ToolCalibration& prior,
+                   const std::vector<std::string>& wanted, const std::vector<std::string>& known) {
+  MatrixXd T = MatrixXd::Zero(static_cast<Index>(wanted.size()), static_cast<Index>(known.size()));
+  for (Index i = 0; i < T.rows(); ++i) {
+    const CalibrationMember to = MemberOf(wanted[static_cast<std::size_t>(i)]);
+    const SensorGroup& group = to.is_gyro ? tool.gyro : tool.accel;
+    const SensorGroup& before = to.is_gyro ? prior.gyro : prior.accel;
+    const double stretch = group.half_range / before.half_range;
+    const double shift = (group.reference - before.reference) / before.half_range;
+    for (Index j = 0; j < T.cols(); ++j) {
+      const CalibrationMember from = MemberOf(known[static_cast<std::size_t>(j)]);
+      if (from.is_gyro != to.is_gyro || from.kind != to.kind || from.channel != to.channel ||
+          from.column != to.column || from.power < to.power) {
+        continue;
+      }
+      T(i, j) = Binomial(from.power, to.power) * std::pow(stretch, to.power) *
+                std::pow(shift, from.power - to.power);
+    }
+  }
+  return T;
+}
+
+void RequireAlike(const ToolCalibration& tool, const ToolCalibration& prior) {
+  for (auto member : {&ToolCalibration::gyro, &ToolCalibration::accel}) {
+    const SensorGroup &a = tool.*member, &b = prior.*member;
+    if (a.n_channels == b.n_channels && a.R_TS.isApprox(b.R_TS, 1e-9) && a.unit == b.unit) continue;
+    throw std::invalid_argument(
+        "the prior's tool has other channels, axes or units: it is no prior of this one");
+  }
+}
+
+}  // namespace
+
+JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
+  RequireAlike(tool, prior);
+  Members own = MembersOf(tool);
+  const Members before = MembersOf(prior);
+  std::vector<Index> common;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < own.names.size(); ++i) {
+    if (std::find(before.names.begin(), before.names.end(), own.names[i]) == before.names.end()) {
+      continue;
+    }
+    common.push_back(static_cast<Index>(i));
+    names.push_back(own.names[i]);
+  }
+  const MatrixXd T = InScaleOf(tool, prior, names, before.names);
+  // In sigmas of the bench: members differ by many orders of magnitude.
+  const VectorXd per_sigma = own.cov.diagonal()(common).cwiseSqrt().cwiseInverse();
+  const VectorXd d = per_sigma.cwiseProduct(T * before.values - own.values(common));
+  const MatrixXd of_own = own.cov(Eigen::all, common) * per_sigma.asDiagonal();
+  const MatrixXd both = own.cov(common, common) + T * before.cov * T.transpose();
+  const Eigen::LDLT<MatrixXd> S(MatrixXd(per_sigma.asDiagonal() * both * per_sigma.asDiagonal()));
+  const MatrixXd gain = S.solve(of_own.transpose()).transpose();
+  JoinedTool joined{std::move(tool), d.dot(S.solve(d)), static_cast<int>(common.size())};
+  joined.probability = 1 - ChiSquareCdf(joined.chi_square, joined.dof);
+  own.values += gain * d;
+  own.cov -= gain * of_own.transpose();
+  for (Index k = 0; k < own.values.size(); ++k) {
+    ValueOf(joined.tool, MemberOf(own.names[static_cast<std::size_t>(k)])) = own.values[k];
+  }
+  SensorGroup& group = HasMembers(joined.tool.gyro) ? joined.tool.gyro : joined.tool.accel;
+  group.covariance->cov = (own.cov + own.cov.transpose()) / 2;
+  joined.tool.errors = ErrorsLeft(joined.tool, joined.tool.errors.value_or(ErrorPriors{}));
+  return joined;
+}
+
+}  // namespace wellgyro
