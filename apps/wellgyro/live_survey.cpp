@@ -56,7 +56,8 @@ class SurveyConsole : public Console {
     if (says_ != Says::kNothing) Console::OnGlance(glance);
   }
   void OnAdvice(const Advice& advice) override {
-    // The page shows sentences one under the other: those that say something else to do.
+    if (page_ != nullptr) page_->Put(advice);
+    // Sentences stand one under the other: those that say something else to do.
     if (page_ != nullptr && advice.action != advised_) page_->Say("advice: " + advice.text);
     advised_ = advice.action;
     Console::OnAdvice(advice);

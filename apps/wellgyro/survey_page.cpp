@@ -175,6 +175,9 @@ void SurveyPage::Put(const Glance& glance) {
 void SurveyPage::Put(const Status& status) {
   PutIn([&status](Inbox& inbox) { inbox.status = status; });
 }
+void SurveyPage::Put(const Advice& advice) {
+  PutIn([&advice](Inbox& inbox) { inbox.advice = advice; });
+}
 
 void SurveyPage::Say(std::string_view sentence) {
   PutIn([sentence](Inbox& inbox) {
@@ -188,6 +191,7 @@ void SurveyPage::Post(Inbox inbox) {
   for (const auto& [utc_us, sentence] : inbox.notices) feed_.Say(sentence, utc_us);
   if (inbox.status) feed_.Put(*inbox.status);
   if (inbox.glance) feed_.Put(*inbox.glance);
+  if (inbox.advice) feed_.Put(*inbox.advice);
   feed_.Publish();
 }
 
@@ -200,7 +204,8 @@ bool SurveyPage::Sleep(std::int64_t us) {
 
 void SurveyPage::Publish() {
   const auto has = [this] {
-    return inbox_.glance || inbox_.status || !inbox_.stations.empty() || !inbox_.notices.empty();
+    return inbox_.glance || inbox_.status || inbox_.advice || !inbox_.stations.empty() ||
+           !inbox_.notices.empty();
   };
   bool more = true;
   while (more) {

@@ -52,6 +52,7 @@ class SurveyPage {
   void Put(const Station& station);
   void Put(const Glance& glance);
   void Put(const Status& status);
+  void Put(const Advice& advice);
   void Say(std::string_view sentence);
   /// The last words; the files are whole then.
   void End(std::string_view how, std::string_view verdict);
@@ -61,6 +62,7 @@ class SurveyPage {
     std::vector<Station> stations;
     std::optional<Glance> glance;
     std::optional<Status> status;
+    std::optional<Advice> advice;
     std::deque<std::pair<std::int64_t, std::string>> notices;  ///< by UTC [us]
   };
 

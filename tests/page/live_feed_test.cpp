@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/page/live_page.h"
 
 namespace wellgyro {
@@ -65,6 +66,23 @@ TEST(LiveFeed, SaysHowLongAStopMustLastForTheSigmaAsked) {
   EXPECT_THAT(Rest(feed, place), HasSubstr("\"rest_asked_s\":null"));
   feed.Put(Glance{.inclination = 0.0, .azimuth = 1.0});
   EXPECT_THAT(Rest(feed, place), HasSubstr("\"rest_asked_s\":100.0"));
+}
+
+TEST(LiveFeed, SaysTheNewestAdvice) {
+  LiveFeed feed(7);
+  LiveFeed::Place place;
+  Advice advice{.run = 1, .action = Advice::Action::kStay, .seconds = 41};
+  feed.Put(advice);
+  advice.action = Advice::Action::kMoveOn;
+  advice.next = Advice::Next{.out = true, .md = 1650.5, .seconds = 90, .toolface = kPi};
+  advice.text = "move on";
+  feed.Put(advice);
+  const std::string all = Rest(feed, place);
+  EXPECT_EQ(Count(all, "event: advice"), 1);
+  EXPECT_THAT(all, HasSubstr("\"action\":\"move_on\""));
+  EXPECT_THAT(all, HasSubstr("\"next\":{\"out\":true,\"md_m\":1650.5,\"stop_s\":90.0,"
+                             "\"toolface_deg\":180.0}"));
+  EXPECT_THAT(all, HasSubstr("\"hidden_m\":null"));
 }
 
 TEST(LiveFeed, AStationThatIsNowOfAnotherKindIsTheSame) {

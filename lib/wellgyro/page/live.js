@@ -76,6 +76,7 @@
     hear('station', takeStation);
     hear('glance', takeGlance);
     hear('status', takeStatus);
+    hear('advice', takeAdvice);
     hear('survey', takeSurvey);
     hear('notice', takeNotice);
     hear('end', function (end) { ended = end; });
@@ -101,6 +102,7 @@
     stations = new Map();
     parts = new Map();
     ended = status = glance = samples = null;
+    byId('advice').hidden = true;
     ['stations', 'notices', 'checks', 'undone', 'operations'].forEach(function (id) { byId(id).textContent = ''; });
     chartsStale = true;
   }
@@ -127,6 +129,16 @@
     say('now-rest', heard.rests_s === null ? 'moving' : fixed(heard.rests_s, 0) + ' s');
     say('now-more', heard.rests_s === null ? '' :
       (more > 0 ? fixed(more, 0) + ' s more for a north' : 'long enough for a north') + asked(heard));
+  }
+
+  // Where none is asked for its tile stays away.
+  function takeAdvice(heard) {
+    const what = { none: 'none', stop: 'Stop here', stay: 'Stay', move_on: 'Move on' }[heard.action];
+    const stops = heard.action === 'stop' || heard.action === 'stay';
+    byId('advice').hidden = false;
+    byId('advice').className = heard.action === 'none' || heard.reachable ? '' : 'fail';
+    say('now-advice', what + (stops ? ', ' + fixed(heard.more_s, 0) + ' s' : ''));
+    say('now-advised', heard.text);
   }
 
   // What the gyros' noise alone takes: the least.

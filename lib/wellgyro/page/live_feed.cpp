@@ -78,6 +78,45 @@ Json JsonOf(const Status& status) {
           {"text", status.text}};
 }
 
+const char* WordOf(Advice::Action action) {
+  switch (action) {
+    case Advice::Action::kNone:
+      return "none";
+    case Advice::Action::kStop:
+      return "stop";
+    case Advice::Action::kStay:
+      return "stay";
+    case Advice::Action::kMoveOn:
+      break;
+  }
+  return "move_on";
+}
+
+Json JsonOf(const Advice& advice) {
+  constexpr double kFine = 1e-3;
+  Json json{{"utime_us", MicrosecondsOf(advice.utc)},
+            {"run", advice.run},
+            {"action", WordOf(advice.action)},
+            {"more_s", Rounded(advice.seconds, 1)},
+            {"toolface_deg", Rounded(Degrees(advice.toolface), 0.1)},
+            {"next", nullptr},
+            {"stops_left", advice.stops_left},
+            {"rest_left_s", Rounded(advice.rest_left, 1)},
+            {"reachable", advice.reachable},
+            {"ellipse_m", Rounded(advice.ellipse, kFine)},
+            {"ellipse_now_m", Rounded(advice.ellipse_now, kFine)},
+            {"ellipse_limit_m", Rounded(advice.ellipse_limit, kFine)},
+            {"hidden_m", Rounded(advice.hidden, kFine)},
+            {"hidden_limit_m", Rounded(advice.hidden_limit, kFine)},
+            {"text", advice.text}};
+  if (!advice.next) return json;
+  json["next"] = {{"out", advice.next->out},
+                  {"md_m", Rounded(advice.next->md, kFine)},
+                  {"stop_s", Rounded(advice.next->seconds, 1)},
+                  {"toolface_deg", Rounded(Degrees(advice.next->toolface), 0.1)}};
+  return json;
+}
+
 /// As passes.csv has it.
 Json TableOf(std::span<const Station> stations) {
   return *JsonTable(PassesCsv(stations, nullptr), "passes.csv");
@@ -146,6 +185,8 @@ void LiveFeed::Put(const Glance& glance) {
 }
 
 void LiveFeed::Put(const Status& status) { PutIn("status", "status", Line(JsonOf(status))); }
+
+void LiveFeed::Put(const Advice& advice) { PutIn("advice", "advice", Line(JsonOf(advice))); }
 
 void LiveFeed::Say(std::string_view sentence, std::int64_t utc_us) {
   const std::string slot =

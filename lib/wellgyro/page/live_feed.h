@@ -13,6 +13,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/base/time.h"
+#include "wellgyro/record/advice.h"
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/station.h"
@@ -49,6 +50,7 @@ class WELLGYRO_EXPORT LiveFeed {
   void Put(const Station& station);
   void Put(const Glance& glance);
   void Put(const Status& status);
+  void Put(const Advice& advice);
   /// A sentence for the person on the rig, said at `utc_us`.
   void Say(std::string_view sentence, std::int64_t utc_us);
   /// Of a survey.json what changes while a survey runs: checks, diagnosis, differences of passes,

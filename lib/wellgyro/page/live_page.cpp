@@ -46,6 +46,9 @@ std::string Now() {
          Tile("Azimuth true, last station [\u00b0]", "azi", "sigma") +
          Tile("At rest", "rest", "more") + Tile("Stations", "stations", "stop") +
          Tile("Samples lost", "lost", "") + Tile("Checks", "checks", "turned", "big words") +
+         "<div id=\"advice\" hidden><dt>Advice, for the plan's limits</dt>"
+         "<dd class=\"big words\" id=\"now-advice\"></dd>"
+         "<dd class=\"small\" id=\"now-advised\"></dd></div>\n"
          "</dl>\n<p id=\"causes\"></p></section>\n";
 }
 
