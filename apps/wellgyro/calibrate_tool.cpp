@@ -196,6 +196,17 @@ std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   return std::nullopt;
 }
 
+int CalibrateTool(ToolFitOptions& options) {
+  try {
+    const auto fault = RunToolFit(options);
+    if (fault) Complain(*fault);
+    return fault ? kUnusable : kDone;
+  } catch (const std::invalid_argument& error) {
+    Complain(fmt::format("{}; see wellgyro calibrate tool --help", error.what()));
+    return kUsage;
+  }
+}
+
 void AddBenchSigmas(CLI::App& command, ToolFitSetup& fit) {
   AddPositive(command, "--level-deg", fit.sigma_level, units::kDeg,
               "1 sigma of a bench's tilt, default 0.5");
@@ -224,17 +235,6 @@ std::optional<Fault> WriteAndName(const std::filesystem::path& path, const std::
   if (auto fault = WriteFiles(folder, {&file, 1})) return fault;
   fmt::print("{}\n", path.string());
   return std::nullopt;
-}
-
-int CalibrateTool(const ToolFitOptions& options) {
-  try {
-    const auto fault = RunToolFit(options);
-    if (fault) Complain(*fault);
-    return fault ? kUnusable : kDone;
-  } catch (const std::invalid_argument& error) {
-    Complain(fmt::format("{}; see wellgyro calibrate tool --help", error.what()));
-    return kUsage;
-  }
 }
 
 void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
