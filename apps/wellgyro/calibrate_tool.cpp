@@ -196,6 +196,7 @@ std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   return std::nullopt;
 }
 
+/// The exit code: 0, 1 for options that make no sense, 2 for data that cannot be used.
 int CalibrateTool(ToolFitOptions& options) {
   try {
     const auto fault = RunToolFit(options);

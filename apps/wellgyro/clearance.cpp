@@ -39,6 +39,7 @@ int RunClearance(ClearanceOptions& o) {
   return answer->refusals.empty() ? kDone : kDoneWithLosses;
 }
 
+/// A request that makes no sense is the caller's mistake: told, with exit code 1.
 int ClearanceOrUsage(ClearanceOptions& o) {
   try {
     return RunClearance(o);

@@ -132,6 +132,7 @@ Result<std::shared_ptr<const AdviceCase>> AdviceOf(const SurveyOptions& options,
   }
 }
 
+/// A survey is resumed from its own log, and filled from others only then.
 bool MayResume(const SurveyOptions& options) {
   const bool fills = options.resume || !options.fill.empty();
   return !fills || (options.resume && !options.record.empty());
@@ -143,6 +144,7 @@ Result<std::unique_ptr<SurveyPage>> PageOf(const SurveyOptions& options, const J
   return SurveyPage::Open(options.page, job, UrlOr(options.from), options.out);
 }
 
+/// The exit code of a session that has ended, and its last lines.
 int Conclusion(const SurveyOptions& options, const JobFile& job, const LiveOutcome& outcome) {
   if (outcome.ended != LiveOutcome::Ended::kFinished) return Stopped(options, outcome);
   if (outcome.fault) {

@@ -61,6 +61,7 @@ int RunMerge(MergeOptions& o) {
   return answer->verdict.verdict == Verdict::kFail ? kUnfit : kDone;
 }
 
+/// A request that makes no sense is the caller's mistake: told, with exit code 1.
 int MergeOrUsage(MergeOptions& o) {
   try {
     return RunMerge(o);

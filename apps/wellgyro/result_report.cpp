@@ -112,6 +112,7 @@ struct PageOptions {
   ReportOptions page;
 };
 
+/// Units and paper, which change how the page looks and nothing in it.
 void AddLook(CLI::App& command, ReportOptions& page) {
   using Units = ReportOptions::Units;
   command.add_option("--units", page.units, "Units of length")

@@ -203,6 +203,7 @@ std::optional<Fault> Simulate(const SimulateOptions& options) {
   return std::nullopt;
 }
 
+/// Behind the options: an example, and every fault that a file may have with its keys.
 std::string Help() {
   return std::string(
              "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
@@ -215,6 +216,7 @@ std::string Help() {
          FaultHelp();
 }
 
+/// The tool through whose calibration samples become counts.
 void AddTool(CLI::App& command, SimulateOptions& o) {
   command
       .add_option("--tool", o.tool,

@@ -65,6 +65,7 @@ std::int64_t UsedUs() {
   return used.tv_sec * 1'000'000 + used.tv_nsec / 1000;
 }
 
+/// What those who look must bring: of the file, which is made where it is not there, or a new one.
 Result<std::string> TokenBy(const SurveyPageOptions& options) {
   std::string token = options.token_file.empty() ? NewToken() : TokenIn(options.token_file);
   if (!token.empty()) return token;

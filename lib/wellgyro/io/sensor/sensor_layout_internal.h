@@ -14,37 +14,37 @@ namespace wellgyro::sensors {
 
 /// Columns by their names in a header, see sensor_csv.h; the three of an axis follow each other.
 enum SensorColumn : std::uint8_t {
-  kUtc,
-  kEndUtc,
-  kTool,
-  kGx,
-  kGy,
-  kGz,
-  kAx,
-  kAy,
-  kAz,
-  kMx,
-  kMy,
-  kMz,
-  kSigGx,
-  kSigGy,
-  kSigGz,
-  kSigAx,
-  kSigAy,
-  kSigAz,
-  kTemp,
-  kDuration,
-  kMd,
-  kLengthOf,
-  kSigMd,
-  kTensionOf,
-  kStopped,
-  kMark,
-  kCorrected,
-  kIndex,
-  kRun,
-  kToolNumber,
-  kColumns
+  kUtc,         ///< UTC: when it begins, or the depth was read
+  kEndUtc,      ///< END_UTC: of a rest
+  kTool,        ///< TOOL: on the tool's own clock
+  kGx,          ///< GX: angular rate about x
+  kGy,          ///< GY
+  kGz,          ///< GZ, where there is a third gyro
+  kAx,          ///< AX: specific force along x
+  kAy,          ///< AY
+  kAz,          ///< AZ
+  kMx,          ///< MX: flux density along x
+  kMy,          ///< MY
+  kMz,          ///< MZ
+  kSigGx,       ///< SIG_GX: 1 sigma of the average
+  kSigGy,       ///< SIG_GY
+  kSigGz,       ///< SIG_GZ
+  kSigAx,       ///< SIG_AX: likewise
+  kSigAy,       ///< SIG_AY
+  kSigAz,       ///< SIG_AZ
+  kTemp,        ///< TEMP: of the tool
+  kDuration,    ///< DURATION: of an average
+  kMd,          ///< MD: of the depth reference
+  kLengthOf,    ///< LENGTH: of the pipe run since the row before
+  kSigMd,       ///< SIG_MD: 1 sigma
+  kTensionOf,   ///< TENSION: of cable or hook
+  kStopped,     ///< STOPPED: 1 at rest
+  kMark,        ///< MARK: 1 at a magnetic mark
+  kCorrected,   ///< CORRECTED: 1 where the depth is corrected already
+  kIndex,       ///< INDEX: position of an index drive
+  kRun,         ///< RUN
+  kToolNumber,  ///< TOOL_NUMBER: in the string
+  kColumns      ///< how many there are
 };
 /// Where each column stands, and its unit.
 struct Layout {
