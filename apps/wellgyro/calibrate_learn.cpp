@@ -41,8 +41,9 @@ std::optional<Fault> Learn(const LearnOptions& o) {
     if (!one) return one.fault();
     if (all && one->tool_sha256 != all->tool_sha256) {
       return Fault{.code = FaultCode::kConflict,
-                   .text = "its tool file is another than the first run's: learn from each tool "
-                           "file's runs by themselves",
+                   .text =
+                       "its tool file is another than the first run's: learn from each tool "
+                       "file's runs by themselves",
                    .source = name};
     }
     if (!all) {

@@ -187,8 +187,8 @@ class Calibrate(FreshProgramTest):
         bench = ["calibrate", "tool", "--data", rest, "--data", table, "--latitude-deg",
                  str(LATITUDE), "--out", self.Path("c.toml")]
         tool = self.Path("tool.toml")
-        self.Done(*bench, "--tool", tool, "--channels", "0,1,2,3,4,5,6", "--unit-per-count",
-                  "1e-6")
+        counts = ["--channels", "0,1,2,3,4,5,6", "--unit-per-count", "1e-7,1e-7,1e-7" + 4 * ",1e-4"]
+        self.Done(*bench, "--tool", tool, *counts)
         simulation = self.Write("simulation.toml", SIMULATION)
         # The tool as the bench has it, but for a bias of two of its sigmas.
         text = self.Read(tool)
@@ -218,8 +218,8 @@ class Calibrate(FreshProgramTest):
         # The next bench, with other noise, is joined with it; one of a tool that changed is not.
         again = self.Write("again.csv", WholeTool(AtRest(source), source))
         later = ["calibrate", "tool", "--data", again, "--data", table, "--latitude-deg",
-                 str(LATITUDE), "--out", self.Path("c2.toml"), "--channels", "0,1,2,3,4,5,6",
-                 "--unit-per-count", "1e-6", "--tool", self.Path("next.toml")]
+                 str(LATITUDE), "--out", self.Path("c2.toml"), "--tool", self.Path("next.toml"),
+                 *counts]
         self.assertIn("prior: chi-square", self.Done(*later, "--prior", taught).stdout)
         later[3] = self.Write("moved.csv", WholeTool(AtRest(source), source, 0.5))
         ran = Run(*later, "--prior", taught)

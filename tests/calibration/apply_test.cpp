@@ -189,6 +189,59 @@ TEST(Apply, SecondOrderIsSolvedToAFiftiethOfACount) {
   }
 }
 
+// Terms in the force, in its products and in heating are summed in single precision: to 2^-20 of
+// the largest of them at most, against the formula in double.
+TEST(Apply, SmallTermsAreRightToAMillionthOfThemselves) {
+  ToolCalibration tool = RandomTool(21, {.g_terms = true});
+  ToolCalibration without = tool;
+  without.gyro.g_dependence[0].setZero();
+  without.gyro.g_squared.setZero();
+  SampleCalibrator whole(tool), bare(without);
+  const Eigen::Matrix3d inverse = tool.gyro.sensitivity[0].topRows<3>().inverse();
+  RawCounter counter(tool);
+  Random random(22);
+  double worst = 0;
+  for (int i = 0; i < 500; ++i) {
+    const RawSample raw = counter.Count(RandomSample(random, true), 20);
+    ImuSample found, plain;
+    ASSERT_EQ(whole.Apply({&raw, 1}, {&found, 1}), 1u);
+    ASSERT_EQ(bare.Apply({&raw, 1}, {&plain, 1}), 1u);
+    const Eigen::Vector3d& f = found.f_T;
+    Eigen::Matrix<double, 6, 1> q;
+    q << f.x() * f.x(), f.y() * f.y(), f.z() * f.z(), f.x() * f.y(), f.y() * f.z(), f.z() * f.x();
+    const Eigen::Matrix3d G = inverse * tool.gyro.g_dependence[0].topRows<3>();
+    const Eigen::Matrix<double, 3, 6> N = inverse * tool.gyro.g_squared.topRows<3>();
+    const double largest = std::max((G.cwiseAbs() * f.cwiseAbs()).maxCoeff(),
+                                    (N.cwiseAbs() * q.cwiseAbs()).maxCoeff());
+    const Eigen::Vector3d expected = plain.w_IT_T - (G * f + N * q);
+    worst = std::max(worst, (found.w_IT_T - expected).cwiseAbs().maxCoeff() / largest);
+  }
+  EXPECT_LT(worst, std::pow(2.0, -20));
+  EXPECT_GT(worst, 0);
+}
+
+TEST(Apply, ANewSessionBeginsWithoutHeating) {
+  ToolCalibration tool = RandomTool(23, {.temperature = true});
+  tool.gyro.heating.setConstant(0.5);
+  SampleCalibrator calibrator(tool), fresh(tool);
+  RawSample raw;
+  raw.n_channels = 10;
+  raw.n_temperatures = 2;
+  raw.stamp.period_ns = 50'000'000;
+  ImuSample out, first;
+  for (int i = 0; i < 50; ++i) {
+    raw.stamp.tool_time.ns += 50'000'000;
+    raw.temperature_raw[1] = static_cast<float>(1.1 + 0.001 * i);
+    ASSERT_EQ(calibrator.Apply({&raw, 1}, {&out, 1}), 1u);
+  }
+  raw.stamp.session = 1;
+  raw.temperature_raw[1] = 1.3F;
+  ASSERT_EQ(fresh.Apply({&raw, 1}, {&first, 1}), 1u);
+  EXPECT_NE(out.w_IT_T, first.w_IT_T);
+  ASSERT_EQ(calibrator.Apply({&raw, 1}, {&out, 1}), 1u);
+  EXPECT_EQ(out.w_IT_T, first.w_IT_T);
+}
+
 TEST(Apply, TakesTheHeatingRateFromALaggedTemperature) {
   ToolCalibration tool = RandomTool(9, {.temperature = true});
   tool.thermometers[0] = {.channel = 0};

@@ -136,8 +136,8 @@ bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double
   kernel_.products = ProductsOf<double>(from_units * squares_);
   kernel_.second_order = kernel_.products.squares || kernel_.products.crosses;
   kernel_.force_products = ProductsOf<float>(from_units * g_squares_);
-  kernel_.feels_force = !force.isZero(0) || kernel_.force_products.squares ||
-                        kernel_.force_products.crosses;
+  kernel_.feels_force =
+      !force.isZero(0) || kernel_.force_products.squares || kernel_.force_products.crosses;
   SetReach(from_units * squares_, kernel_);
   return group.thermometer < 0 || held == temperature;
 }

@@ -34,8 +34,8 @@ Observed ObservedBy(const RunLesson& lesson, const std::vector<Eigen::Index>& kn
   const VectorXd per_sigma = sigma.cwiseInverse();
   const MatrixXd root =
       MatrixXd(per_sigma.asDiagonal() * before * per_sigma.asDiagonal()).llt().matrixL();
-  const MatrixXd to_unit = root.triangularView<Eigen::Lower>().solve(
-      MatrixXd(per_sigma.asDiagonal()));
+  const MatrixXd to_unit =
+      root.triangularView<Eigen::Lower>().solve(MatrixXd(per_sigma.asDiagonal()));
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(to_unit * after * to_unit.transpose());
   const MatrixXd A = solver.eigenvectors().transpose() * to_unit;
   const VectorXd found = A * lesson.errors(known);
@@ -76,8 +76,7 @@ void Learn(const ToolCalibration& tool, const ParameterCovariance& first, const 
   const MatrixXd E = ErrorEffects(tool, first.names, lesson.uses)(known, Eigen::all);
   const Observed observed = ObservedBy(lesson, known);
   const MatrixXd H = observed.A * E;
-  const MatrixXd beyond =
-      Beyond(lesson.cov_before(known, known), E * first.cov * E.transpose());
+  const MatrixXd beyond = Beyond(lesson.cov_before(known, known), E * first.cov * E.transpose());
   MatrixXd S = H * errors.cov * H.transpose() + observed.A * beyond * observed.A.transpose();
   S.diagonal() += observed.variance;
   const MatrixXd gain = S.ldlt().solve(H * errors.cov).transpose();

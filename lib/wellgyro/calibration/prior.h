@@ -13,9 +13,9 @@ struct JoinedTool {
 };
 
 /// `tool`, as a bench found it, joined with what was known of its members before, from an earlier
-/// calibration or from runs (Taught): of members that both have, in the temperature scale of `tool`.
-/// The two must not rest on the same readings, and the tool must not have changed between them,
-/// which chi_square tests. Throws std::invalid_argument where either has no covariance of its
+/// calibration or from runs (Taught): of members that both have, in the temperature scale of
+/// `tool`. The two must not rest on the same readings, and the tool must not have changed between
+/// them, which chi_square tests. Throws std::invalid_argument where either has no covariance of its
 /// members, or where their groups of sensors differ in channels or axes.
 WELLGYRO_EXPORT JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior);
 

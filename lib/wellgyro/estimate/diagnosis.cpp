@@ -282,9 +282,7 @@ class Diagnoser {
   }
 
   /// What a unit of its unknown does to the prior, over the border.
-  auto PriorOfSpec(std::size_t i) const {
-    return run_.layout().information.col(ColumnOfSpec(i));
-  }
+  auto PriorOfSpec(std::size_t i) const { return run_.layout().information.col(ColumnOfSpec(i)); }
   MatrixXd CompareOnsets(const Diagnosis& d, std::span<const std::size_t> onsets,
                          MatrixXd& gram) const;
   void CompareSignatures(Diagnosis& d) const;

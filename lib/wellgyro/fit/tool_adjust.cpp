@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -100,6 +101,20 @@ int KindOf(const ToolReadings& readings, const ToolRow& row, int channel) {
   return row.mount >= 0 ? 2 : 1;
 }
 
+// Of a direction in which the readings say nothing.
+Fault Undetermined(const std::vector<std::string>& names, const Eigen::VectorXd& direction) {
+  std::string text;
+  for (Eigen::Index i = 0; i < direction.size(); ++i) {
+    constexpr double kMuch = 0.25;
+    if (std::abs(direction[i]) < kMuch) continue;
+    text += (text.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
+  }
+  return {.code = FaultCode::kRange,
+          .text = "the readings do not tell apart " + text +
+                  ": measure inclinations every 45 deg, four azimuths and toolfaces every 60 "
+                  "deg, or join a rate table's readings"};
+}
+
 class Adjuster {
  public:
   Adjuster(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model)
@@ -133,21 +148,6 @@ class Adjuster {
             .text =
                 "the adjustment does not settle, the readings do not fit the model: look for wrong "
                 "signs, exchanged columns, mixed units or a wrong reference"};
-  }
-
-  // Of a direction in which the readings say nothing.
-  Fault Undetermined(const Eigen::VectorXd& direction) const {
-    std::string text;
-    const std::vector<std::string> names = model_.names();
-    for (Eigen::Index i = 0; i < direction.size(); ++i) {
-      constexpr double kMuch = 0.25;
-      if (std::abs(direction[i]) < kMuch) continue;
-      text += (text.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
-    }
-    return {.code = FaultCode::kRange,
-            .text = "the readings do not tell apart " + text +
-                    ": measure inclinations every 45 deg, four azimuths and toolfaces every 60 "
-                    "deg, or join a rate table's readings"};
   }
 
   std::array<double*, 4> Components() {
@@ -386,7 +386,7 @@ class Adjuster {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N);
     const Eigen::VectorXd values = eigen.eigenvalues();
     if (!(values[0] > 1e-13 * values[values.size() - 1])) {
-      return Undetermined(eigen.eigenvectors().col(0));
+      return Undetermined(model_.names(), eigen.eigenvectors().col(0));
     }
     const Eigen::MatrixXd inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
                                     eigen.eigenvectors().transpose();
@@ -467,6 +467,25 @@ std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& s
     kept = std::move(with);
   }
   return seen;
+}
+
+std::optional<Fault> UnseenNeeded(const ToolReadings& readings, const ToolFitSetup& setup,
+                                  const std::vector<TermBundle>& bundles) {
+  std::vector<ToolTerm> terms;
+  std::vector<std::string> names;
+  for (const TermBundle& bundle : bundles) {
+    if (!bundle.needed) continue;
+    for (const ToolTerm& term : bundle.terms) {
+      if (term.prior_sigma > 0) continue;
+      terms.push_back(term);
+      names.push_back(term.name);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      CorrelationsOf(readings, setup, terms));
+  // What stated attitudes see no better than the bench is level is seen by its tilt alone.
+  if (eigen.eigenvalues()[0] > setup.sigma_level * setup.sigma_level) return std::nullopt;
+  return Undetermined(names, eigen.eigenvectors().col(0));
 }
 
 Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,

@@ -211,8 +211,9 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
     throw std::invalid_argument("gyros need the latitude");
   }
   const std::vector<TermBundle> bundles = CandidateTerms(*readings, setup);
-  const std::vector<int> seen = SeenBundles(*readings, setup, bundles);
   const auto refused = [&](const Fault& fault) { return BenchFault(tables.front(), fault.text); };
+  if (const auto fault = UnseenNeeded(*readings, setup, bundles)) return refused(*fault);
+  const std::vector<int> seen = SeenBundles(*readings, setup, bundles);
   const auto full = AdjustTool(*readings, setup, TermsOf(bundles, seen));
   if (!full) return refused(full.fault());
   const TermChoice choice(bundles, seen, *full);

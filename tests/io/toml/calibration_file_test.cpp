@@ -75,7 +75,8 @@ TEST(CalibrationFile, OfManyResidualsTheLargestAndSomeOfTheRest) {
   const auto back = ParseCalibration(text, "c.toml");
   ASSERT_TRUE(back.has_value()) << back.fault().text;
   ASSERT_EQ(back->report.residuals.size(), 4000u);
-  EXPECT_THAT(back->report.residuals, testing::Contains(testing::Field(&FitResidual::line, 150'003)));
+  EXPECT_THAT(back->report.residuals,
+              testing::Contains(testing::Field(&FitResidual::line, 150'003)));
   EXPECT_GT(back->report.residuals.back().line, 190'000);
 }
 

@@ -17,18 +17,14 @@ namespace {
 
 /// In the order of ErrorSource.
 constexpr std::array<std::string_view, kErrorSources> kNames{
-    "gyro_bias_x",          "gyro_bias_y",
-    "mass_unbalance",       "quadrature",
-    "gyro_scale_x",         "gyro_scale_y",
-    "gyro_misalignment_x",  "gyro_misalignment_y",
-    "toolface_offset",      "time_skew",
-    "accel_bias_x",         "accel_bias_y",
-    "accel_bias_z",         "accel_scale_x",
-    "accel_scale_y",        "accel_scale_z",
-    "accel_misalignment_x", "accel_misalignment_y",
-    "accel_shear",          "accel_misalignment_zx",
-    "accel_misalignment_zy", "gyro_bias_z",
-    "gyro_scale_z"};
+    "gyro_bias_x",         "gyro_bias_y",           "mass_unbalance",
+    "quadrature",          "gyro_scale_x",          "gyro_scale_y",
+    "gyro_misalignment_x", "gyro_misalignment_y",   "toolface_offset",
+    "time_skew",           "accel_bias_x",          "accel_bias_y",
+    "accel_bias_z",        "accel_scale_x",         "accel_scale_y",
+    "accel_scale_z",       "accel_misalignment_x",  "accel_misalignment_y",
+    "accel_shear",         "accel_misalignment_zx", "accel_misalignment_zy",
+    "gyro_bias_z",         "gyro_scale_z"};
 
 std::vector<Eigen::Index> PlacesOf(TomlTable& table) {
   const auto names = table.Need("errors", table.FindStrings("errors"));
