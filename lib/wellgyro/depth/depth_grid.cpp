@@ -73,7 +73,7 @@ void DepthGrid::At(std::span<const UtcTime> utc, AlongHoleBlock& along) {
     if (!smooth_) continue;
     const UtcTime end{begin_ns_ + kStep.ns};
     while (i < utc.size() && utc[begin] <= utc[i] && utc[i] < end) ++i;
-    Smooth(utc.subspan(begin, i - begin), begin, along);
+    if (i > begin + 1) Smooth(utc.subspan(begin, i - begin), begin, along);
   }
 }
 
