@@ -23,9 +23,9 @@ class Plan(unittest.TestCase):
             file.write("MD[m],INC[deg],AZI_TRUE[deg]\n")
             file.writelines(f"{md},{inc},{azi}\n" for md, inc, azi in SLANT)
 
-    def Plan(self, *arguments):
+    def Plan(self, *arguments, rpm="1"):
         return Run("plan", "--well", "well.csv", "--tool", JOB, "--latitude-deg", "60",
-                   "--roll-rpm", "1", "--out", "out", *arguments)
+                   "--roll-rpm", rpm, "--out", "out", *arguments)
 
     def Toml(self, name="out/plan.toml"):
         with open(name, "rb") as file:
@@ -51,12 +51,12 @@ class Plan(unittest.TestCase):
             self.assertIn("Time at rest", file.read())
 
     def test_what_turning_the_tool_would_save_is_said_of_one_that_slides(self):
-        sliding = self.Plan("--roll-rpm", "0", "--ellipse-m", "3.4")
+        sliding = self.Plan("--ellipse-m", "5", rpm="0")
         self.assertEqual(sliding.returncode, 0, sliding.stdout + sliding.stderr)
         said = re.search(r"\(--toolfaces\): (\d+) stops, (\d+) s at rest", sliding.stdout)
         self.assertTrue(said, sliding.stdout)
         self.assertNotIn("toolface_deg", self.Toml()["stop"][0])
-        turned = self.Plan("--roll-rpm", "0", "--ellipse-m", "3.4", "--toolfaces")
+        turned = self.Plan("--ellipse-m", "5", "--toolfaces", rpm="0")
         self.assertNotIn("--toolfaces", turned.stdout)
         plan = self.Toml()
         self.assertEqual(len(plan["stop"]), int(said[1]))
