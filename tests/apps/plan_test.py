@@ -2,6 +2,7 @@
 """The command plan, from the command line, with what it makes of mistakes."""
 import csv
 import os
+import re
 import shutil
 import tempfile
 import tomllib
@@ -22,9 +23,9 @@ class Plan(unittest.TestCase):
             file.write("MD[m],INC[deg],AZI_TRUE[deg]\n")
             file.writelines(f"{md},{inc},{azi}\n" for md, inc, azi in SLANT)
 
-    def Plan(self, *arguments):
+    def Plan(self, *arguments, rpm="1"):
         return Run("plan", "--well", "well.csv", "--tool", JOB, "--latitude-deg", "60",
-                   "--roll-rpm", "1", "--out", "out", *arguments)
+                   "--roll-rpm", rpm, "--out", "out", *arguments)
 
     def Toml(self, name="out/plan.toml"):
         with open(name, "rb") as file:
@@ -48,6 +49,22 @@ class Plan(unittest.TestCase):
             self.assertTrue(file.read().startswith(done.stdout.split("plan.toml\n")[1]))
         with open("out/plan.svg", encoding="utf-8") as file:
             self.assertIn("Time at rest", file.read())
+
+    def test_what_turning_the_tool_would_save_is_said_of_one_that_slides(self):
+        sliding = self.Plan("--ellipse-m", "5", rpm="0")
+        self.assertEqual(sliding.returncode, 0, sliding.stdout + sliding.stderr)
+        said = re.search(r"\(--toolfaces\): (\d+) stops, (\d+) s at rest", sliding.stdout)
+        self.assertTrue(said, sliding.stdout)
+        self.assertNotIn("toolface_deg", self.Toml()["stop"][0])
+        turned = self.Plan("--ellipse-m", "5", "--toolfaces", rpm="0")
+        self.assertNotIn("--toolfaces", turned.stdout)
+        plan = self.Toml()
+        self.assertEqual(len(plan["stop"]), int(said[1]))
+        self.assertEqual(plan["time"]["at_rest_s"], int(said[2]))
+        for stop in plan["stop"]:
+            self.assertIn("toolface_deg", stop)
+        rolling = self.Plan("--ellipse-m", "2.7")
+        self.assertNotIn("--toolfaces", rolling.stdout)
 
     def test_the_same_inputs_give_the_same_bytes(self):
         texts = []

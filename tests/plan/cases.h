@@ -78,4 +78,18 @@ inline PlanCase Horizontal() {
                 60, 0.5);
 }
 
+/// The hole as it was drilled: turned and leaning by this much [deg] against its plan.
+inline PlanCase Drilled(const PlanCase& c, double inclination, double azimuth) {
+  std::vector<double> md, inc, azi;
+  for (std::size_t i = 0; i < c.well.size(); ++i) {
+    const TrajectoryPoint p = c.well.station(i);
+    md.push_back(p.md);
+    inc.push_back(p.inclination + inclination * units::kDeg);
+    azi.push_back(p.azimuth + azimuth * units::kDeg);
+  }
+  PlanCase truth = c;
+  truth.well = Trajectory(md, inc, azi, {0, 0, md.front()});
+  return truth;
+}
+
 }  // namespace wellgyro::test

@@ -16,20 +16,6 @@
 namespace wellgyro {
 namespace {
 
-/// The hole as it was drilled: turned and leaning by this much [deg] against its plan.
-PlanCase Drilled(const PlanCase& c, double inclination, double azimuth) {
-  std::vector<double> md, inc, azi;
-  for (std::size_t i = 0; i < c.well.size(); ++i) {
-    const TrajectoryPoint p = c.well.station(i);
-    md.push_back(p.md);
-    inc.push_back(p.inclination + inclination * units::kDeg);
-    azi.push_back(p.azimuth + azimuth * units::kDeg);
-  }
-  PlanCase truth = c;
-  truth.well = Trajectory(md, inc, azi, {0, 0, md.front()});
-  return truth;
-}
-
 struct Well {
   const char* name;
   PlanCase (*c)();
@@ -44,7 +30,7 @@ class Followed : public testing::TestWithParam<Well> {};
 TEST_P(Followed, MeetsItsLimitInTheTimeOfAPlanThatKnowsTheTruth) {
   const Well& well = GetParam();
   const PlanLimits limits{.ellipse = well.ellipse};
-  const PlanCase c = well.c(), truth = Drilled(c, 1, -3);
+  const PlanCase c = well.c(), truth = test::Drilled(c, 1, -3);
   const StopPlan plan = PlanStops(truth, limits);
   ASSERT_TRUE(plan.feasible);
   double cost = 0, worst_ms = 0;

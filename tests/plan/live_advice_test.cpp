@@ -66,6 +66,57 @@ TEST(LiveAdvice, WhatIsKnownHalfWayAndWhatIsLeftMakeTheWholeRun) {
   }
 }
 
+/// What the end of a run at `md` on its way down will be without another stop, as it is foreseen.
+double ForeseenAt(const PlanCase& c, const RunState& state, double md) {
+  const RunSoFar so_far{&state, false};
+  const StopInformation left(c, std::vector<StopPlace>{{false, md}}, &so_far, false);
+  return StopStand(left, 5, HUGE_VAL).Value().ellipse;
+}
+
+// 2026-11-25: a sliding tool was taken to swing about the toolface it happened to have, from there
+// on: what was foreseen went up and down with the swing by a fifth, and at each look another stop
+// seemed needed.
+TEST(LiveAdvice, WhatIsForeseenOfASlidingToolDoesNotGoByWhereItHasSwungTo) {
+  PlanCase c = test::SShape();
+  c.way.speed_in = c.way.speed_out = 2;
+  c.way.swing_period = 360;
+  const std::vector<PlannedStop> early{{false, 300, 120, {}}};
+  const double whole = ExpectEnd(c, early, false).semi_major;
+  for (const double md : {500., 700., 860., 1040., 1220., 1500., 1900.}) {
+    EXPECT_NEAR(ForeseenAt(c, StateAfter(DownTo(c, md), early), md) / whole, 1, 0.02) << md;
+  }
+}
+
+// 2026-11-25: the way ahead was that of the plan from the next knot on.
+TEST(LiveAdvice, AHoleThatDepartsFromItsPlanIsForeseenToGoOnDoingSo) {
+  for (PlanCase c : {test::Slant(), test::SShape()}) {
+    c.way.speed_in = c.way.speed_out = 2;
+    const PlanCase truth = test::Drilled(c, 3, 0);
+    const std::vector<PlannedStop> early{{false, 300, 120, {}}};
+    const double whole = ExpectEnd(truth, early, false).semi_major;
+    ASSERT_LT(ExpectEnd(c, early, false).semi_major, 0.95 * whole);
+    for (const double md : {500., 900., 1300.}) {
+      EXPECT_NEAR(ForeseenAt(c, StateAfter(DownTo(truth, md), early), md) / whole, 1, 0.02) << md;
+    }
+  }
+}
+
+// 2026-11-25: where ten seconds more would have done, a stop of a minute was advised further down:
+// it bought more in a second, and more than was needed.
+TEST(LiveAdvice, LittleThatLacksIsHadByRestingALittle) {
+  const PlanCase c = test::Horizontal();
+  const double md = 435;
+  const RunState state = StateAfter(
+      DownTo(c, md), {{false, 300, 117, {}}, {false, 367.5, 77, {}}, {false, md, 160, {}}});
+  AskingRun run{.md = md, .deepest = md, .rested = 161, .rest_known = 160, .state = &state};
+  for (const double lacks : {1e-9, 1e-6, 1e-4, 1e-3}) {
+    const double now = Advise(c, {.ellipse = 100}, run).ellipse_now;
+    const Advice advice = Advise(c, {.ellipse = now * (1 - lacks)}, run);
+    EXPECT_EQ(advice.action, Advice::Action::kStay) << lacks << " " << advice.text;
+    EXPECT_LE(advice.rest_left, 15) << lacks;
+  }
+}
+
 TEST(LiveAdvice, FollowedItMeetsTheLimitInThePlansTime) {
   PlanCase c = test::Slant();
   c.way.speed_in = c.way.speed_out = 3;

@@ -55,7 +55,8 @@ class Search {
  private:
   struct Choice {
     Rest rest;
-    double gain = 0;  // of ln soft, per second
+    double gain = 0;            // of ln soft, per second
+    double enough = -HUGE_VAL;  // ln soft below which nothing is gained
   };
 
   bool IsHere(std::size_t place) const { return limits_.here && place == 0; }
@@ -95,8 +96,9 @@ class Search {
 
   void Try(const StopStand& stand, const Rest& rest, double cost, double before,
            Choice& best) const {
-    const double gain = (before - std::log(stand.ValueWith(rest).soft)) / cost;
-    if (gain > best.gain) best = {rest, gain};
+    const double after = std::max(best.enough, std::log(stand.ValueWith(rest).soft));
+    const double gain = (before - after) / cost;
+    if (gain > best.gain) best = {rest, gain, best.enough};
   }
 
   /// Every way to rest longer at one place.
@@ -121,18 +123,20 @@ class Search {
     }
   }
 
-  Choice BestRest(const StopStand& stand) const {
-    Choice best;
+  Choice BestRest(const StopStand& stand, double enough = -HUGE_VAL) const {
+    Choice best{.enough = enough};
     const double before = std::log(stand.Value().soft);
     for (const std::size_t place : stand.places()) TryPlace(stand, place, before, best);
     return best;
   }
 
-  /// Adds rest until both limits are met. False: that takes too long.
-  bool Fill(StopStand& stand, double cost_most = HUGE_VAL) const {
+  /// Adds rest until both limits are met. False: that takes too long. `just`: what is gained below
+  /// the limits counts for nothing, so that little that lacks is had by resting a little.
+  bool Fill(StopStand& stand, double cost_most = HUGE_VAL, bool just = false) const {
     while (!stand.Meets()) {
-      const Choice best = BestRest(stand);
-      if (!(best.gain > kLeastGain)) return false;
+      const Choice best = BestRest(stand, just ? 0 : -HUGE_VAL);
+      const bool ends = just && best.gain > 0 && stand.MeetsWith(best.rest);
+      if (!ends && !(best.gain > kLeastGain)) return false;
       stand.Add(best.rest);
       if (stand.at_rest() > limits_.most_at_rest || Cost(stand) > cost_most) return false;
     }
@@ -195,15 +199,17 @@ class Search {
     }
   }
 
-  bool TakeIfBelow(double cost, StopStand tried) {
-    if (!Fill(tried, cost)) return false;
+  bool TakeIfBelow(double cost, StopStand tried, bool just = false) {
+    if (!Fill(tried, cost, just)) return false;
     if (CountOf(tried) < limits_.fewest) return false;
     Trim(tried);
     if (!(Cost(tried) < cost)) return false;
     stand_ = std::move(tried);
     return true;
   }
-  void TakeIfBetter(StopStand tried) { TakeIfBelow(Cost(stand_), std::move(tried)); }
+  void TakeIfBetter(StopStand tried, bool just = false) {
+    TakeIfBelow(Cost(stand_), std::move(tried), just);
+  }
 
   StopStand StandOf(const std::vector<Rest>& rests) const {
     StopStand stand(info_, limits_.ellipse, HiddenLimit(limits_));
@@ -227,13 +233,15 @@ class Search {
   }
 
   void Replace(std::size_t i) {
-    if (i >= stand_.stops().size()) return;
-    const Rest stop = stand_.stops()[i];
-    const double seconds = stop.seconds - Floor(stop.place);
-    if (!(seconds > 0)) return;
-    StopStand tried = stand_;
-    tried.Add({stop.place, stop.turn, -seconds});
-    TakeIfBetter(std::move(tried));
+    for (const bool just : {false, true}) {
+      if (i >= stand_.stops().size()) return;
+      const Rest stop = stand_.stops()[i];
+      const double seconds = stop.seconds - Floor(stop.place);
+      if (!(seconds > 0)) return;
+      StopStand tried = stand_;
+      tried.Add({stop.place, stop.turn, -seconds});
+      TakeIfBetter(std::move(tried), just);
+    }
   }
 
   void Shift(std::size_t i) {

@@ -39,6 +39,13 @@ Vector2d Pair(Complex z) { return {z.real(), z.imag()}; }
 
 double Sinc(double x) { return std::abs(x) < 1e-8 ? 1 : std::sin(x) / x; }
 
+/// Time on the move from the begin of the way to this place of it [s].
+double MovingTo(const PlannedWay& way, double md, bool out) {
+  if (!out) return std::max(0.0, md - way.begin_md) / way.speed_in;
+  const double down = (way.end_md - way.begin_md) / way.speed_in;
+  return down + (way.speed_out > 0 ? std::max(0.0, way.end_md - md) / way.speed_out : 0);
+}
+
 /// The least rotation that takes one direction to another less than half a turn away.
 Matrix3d Least(const Vector3d& from, const Vector3d& to) {
   const Vector3d axis = from.cross(to);
@@ -84,6 +91,9 @@ void FillErrors(Increment& inc, double roll, const Vector3d& force_M) {
   inc.ForceBy(kAccelScaleZ) = force_M.z() * Vector3d::UnitZ();
   inc.ForceBy(kAccelMisalignmentX) = Vector3d(force_M.z() * edge, 0, 0);
   inc.ForceBy(kAccelMisalignmentY) = Vector3d(0, force_M.z() * edge, 0);
+  inc.ForceBy(kAccelShear).head<2>() = Pair(kI * std::conj(force.v) * Sinc(roll));
+  inc.ForceBy(kAccelMisalignmentZX) = force.v.real() * edge * Vector3d::UnitZ();
+  inc.ForceBy(kAccelMisalignmentZY) = force.v.imag() * edge * Vector3d::UnitZ();
 }
 
 /// What perfect sensors say of a knot between these attitudes, `roll` being near their inertial
@@ -159,7 +169,12 @@ SyntheticRun::SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops
       rows_(setup_, layout_) {
   CheckPlanCase(c, stops);
   setup_.ties.clear();
-  nodes_.push_back(before_->node());
+  const Node& here = before_->node();
+  nodes_.push_back(here);
+  // Below, the hole goes on to lean as it does here against its plan; above, it came to that little
+  // by little. A tool that slides goes on to swing as planned, from where it is.
+  departs_ = Log(Least(HoleTangent(here.md), here.tangent_L()));
+  moving_ = MovingTo(c.way, here.md, so_far.out);
   AddWay(stops, so_far.out);
 }
 
@@ -201,17 +216,25 @@ void SyntheticRun::AddKnot(double seconds, double to_md, double roll, bool still
   knot.still = still;
   knot.along = {.md = to_md, .speed = 0, .sigma_md = kSigmaMd, .known = true};
   const Node& from = nodes_.back();
-  const double md = std::clamp(to_md, case_.well.md_begin(), case_.well.md_end());
   Node to = from;
   to.md = to_md;
   to.speed = still ? 0 : (to_md - from.md) / seconds;
   knot.along.speed = to.speed;
   if (!still) {
-    to.R_LT = Least(from.tangent_L(), case_.well.AtMd(md).tangent) * from.R_LT * RotationZ(roll);
+    to.R_LT = Least(from.tangent_L(), HoleTangent(to_md)) * from.R_LT * RotationZ(roll);
   }
   knots_.push_back(knot);
   nodes_.push_back(to);
   rolls_.push_back(roll);
+}
+
+/// As planned, and as it departs from that.
+Vector3d SyntheticRun::HoleTangent(double md) const {
+  const Vector3d planned =
+      case_.well.AtMd(std::clamp(md, case_.well.md_begin(), case_.well.md_end())).tangent;
+  if (before_ == nullptr) return planned;
+  const double begin = case_.way.begin_md, known = std::max(before_->node().md - begin, 1.0);
+  return Exp(std::clamp((md - begin) / known, 0.0, 1.0) * departs_) * planned;
 }
 
 void SyntheticRun::AddMove(double to_md, double speed) {

@@ -27,6 +27,7 @@ class SyntheticRun : public RunRows {
   /// and ties. Throws as CheckPlanCase().
   SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, EstimateSetup setup);
   /// What is left of a run of which so much is known, by its setup; that must outlive this object.
+  /// The hole goes on to depart from its plan as it does there, a sliding tool to swing as planned.
   SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, const RunSoFar& so_far);
   SyntheticRun(const SyntheticRun&) = delete;
   SyntheticRun& operator=(const SyntheticRun&) = delete;
@@ -53,12 +54,15 @@ class SyntheticRun : public RunRows {
   void AddRest(double seconds);
   void AddTurn(double toolface);
   double ToolfaceNow() const;
+  Eigen::Vector3d HoleTangent(double md) const;
   void AddKnot(double seconds, double to_md, double roll, bool still);
   void AddTies(std::size_t node, NormalBlock& block, int at) const;
   void MakeIncrements();
 
   const PlanCase& case_;
   const RunState* before_ = nullptr;
+  /// Turns the hole's direction as planned to what it is where `before_` stands [rad].
+  Eigen::Vector3d departs_ = Eigen::Vector3d::Zero();
   EstimateSetup setup_;
   Layout layout_;
   std::vector<RunKnot> knots_;

@@ -185,6 +185,20 @@ std::string PracticeLine(const PlanReport& report) {
   return text + "\n";
 }
 
+/// A tool that slides shows its gyros much the same face at every stop: what it would save to turn
+/// it, which the plan does only if told that it can be.
+std::string TurnedLine(const PlanReport& report) {
+  if (report.limits.turns || report.c.way.roll_rate != 0) return {};
+  PlanLimits limits = report.limits;
+  limits.turns = true;
+  const StopPlan turned = PlanStops(report.c, limits);
+  if (!turned.feasible || (report.plan.feasible && turned.cost >= report.plan.cost)) return {};
+  return fmt::format(
+      "if the tool can be turned before a stop (--toolfaces): {} stops, {:.0f} s at rest, {:.0f} s "
+      "with {:.0f} s to each\n",
+      turned.stops.size(), turned.at_rest, turned.cost, limits.overhead);
+}
+
 std::string Summary(const PlanReport& report) {
   const StopPlan& plan = report.plan;
   std::string text;
@@ -194,6 +208,7 @@ std::string Summary(const PlanReport& report) {
   } else {
     text += "not feasible: " + plan.why_not + "\n";
   }
+  text += TurnedLine(report);
   text += "without stops: " + EndLine(plan.without) + "\n";
   if (plan.least_at_rest) {
     text += fmt::format("bound: no plan meets the ellipse with less than {:.0f} s at rest",
