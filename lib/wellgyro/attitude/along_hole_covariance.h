@@ -14,8 +14,9 @@ namespace wellgyro {
 /// Whether the tool met the stations in the order of depth (in-run) or against it (out-run).
 enum class TimeAlongHole { kWithDepth, kAgainstDepth };
 
-/// The X with E[x1 x2'] = cov X, so that E[r x2'] = E[r x1'] X for every r that depends on x2 by x1
-/// alone; `cross`: E[x1 x2']. Where cov is singular any solution will do; the smallest is taken.
+/// Regression of x2 on x1, X = cov(x1)^-1 E[x1 x2'], `cross` being the cross-covariance E[x1 x2'].
+/// By the Markov property E[r x2'] = E[r x1'] X for every r that is independent of x2 given x1. A
+/// singular cov leaves X undetermined without effect on that product; the smallest X is returned.
 StationMatrix SolveCovariance(const StationMatrix& cov, const StationMatrix& cross);
 
 /// Position covariance, summed from station to station down the hole.

@@ -20,10 +20,11 @@ struct Across {
   double unkept = 0;  // of the turn, for want of samples within a period of whirl and roll [rad]
 };
 
-// Five points where there are, else three or two. Whirl and roll that swing together leave a turn
-// behind of which a share is missed that grows with the fourth power of the phase a sample makes of
-// them, for each of the two: so do their fourth differences. The coefficient makes that what was
-// missed at 3 Hz of 10 Hz (measured), where it is half of all.
+// Slope of the turn's rate from the integrals of neighbouring blocks: five points, exact for a
+// quartic, or three or two at an end. Truncation error of the turn, D4 the fourth difference and T
+// the block's length: unkept = kUnkept T |D4 turn| |D4 rate|. Whirl and roll that oscillate as one
+// have a mean turn, of which samples miss a share ~ (w dt)^4 for each of the two, and fourth
+// differences grow alike. kUnkept is measured: 3 Hz sampled at 10 Hz, where half is missed.
 Across LookAcross(std::uint64_t k, const Blocks& blocks) {
   constexpr double kUnkept = 1e-3;
   const Block& block = blocks[k];

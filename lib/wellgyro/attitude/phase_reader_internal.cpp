@@ -8,8 +8,8 @@
 namespace wellgyro::increment {
 namespace {
 
-// Below it what the axis' own turning sweeps, which is divided by it, is no correction any more: a
-// tool that whirls by a tenth of a degree turns the phase by a fifth of a radian [sin I].
+// Least sin I (0.5 deg) at which gravity measures the roll. The azimuth's own turning is divided by
+// sin I: here a whirl of 0.1 deg turns the phase by 0.2 rad, and a correction linear in it fails.
 constexpr double kSineMin = 0.0087;
 // Of noise, where none is told: what a double leaves of it in the smoother [m/s^2 sqrt(s)].
 constexpr double kNoiseMin = 5e-7;

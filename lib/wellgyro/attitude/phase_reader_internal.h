@@ -10,8 +10,9 @@ struct PhaseOptions {
   double gravity = 0;      ///< [m/s^2]
 };
 
-/// What gravity, or a third gyro, says of the inertial roll of a block: the phase of the mean force
-/// across the axis is its toolface T, and psi' = T' + A' cos I, A' sin I = -Re(W e^{iT}).
+/// Measures the inertial roll of a block, psi' = T' + A' cos I with A' sin I = -Re(W e^{iT}),
+/// W = wx + i wy. The toolface T is the phase of the mean force across the axis; the second term,
+/// the azimuth's own turning, comes from the gyros. A third gyro axis gives psi' by itself.
 class PhaseReader {
  public:
   explicit PhaseReader(const PhaseOptions& options) : options_(options) {}

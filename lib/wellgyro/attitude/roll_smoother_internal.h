@@ -11,11 +11,11 @@ namespace wellgyro::increment {
 
 using Blocks = Ring<Block>;
 
-/// Relative roll psi of blocks, from what gravity said of it in each: the smoothing spline whose
-/// rate walks, which is the smoothed state (psi, psi') of that model. For each stretch of blocks
-/// the walk is the likeliest of some decades, by how well each foretells the stretch and the one
-/// behind it, with the level of the noise free within bounds: prediction errors count against each
-/// other (Schweppe, IEEE Trans. Inf. Theory 11, 1965).
+/// Relative roll psi of blocks: Rauch-Tung-Striebel smoother of the state (psi, psi') whose rate is
+/// a random walk, d psi' = q dw, from measured phases psi + v, v white; its mean is the cubic
+/// smoothing spline. How a tool turns changes, so q is found for each stretch of blocks: among
+/// kWalks the one of greatest likelihood, by the innovations in the stretch and in the one after
+/// it, with the noise level free within bounds (Schweppe, IEEE Trans. Inf. Theory 11, 1965).
 class RollSmoother {
  public:
   explicit RollSmoother(std::size_t capacity) : seen_(capacity), states_(capacity) {}

@@ -7,7 +7,9 @@
 
 namespace wellgyro {
 
-/// How much a hole may bend where no sensor sees it, and for how long it goes on so.
+/// Prior of the hole's bend over an interval without valid samples: an angle of
+/// N(0, (dogleg |dMD|)^2) where the depth is known, N(0, (rate dt)^2) where it is not. `seconds`:
+/// how long a bend goes on from one such interval to the next, see UnseenTurn.
 struct UnseenHole {
   double dogleg = 1.7e-3;  ///< 1-sigma, where the depth is known [rad/m]
   double rate = 1.7e-3;    ///< 1-sigma, across the hole, where it is not [rad/s]
@@ -25,8 +27,10 @@ struct UnseenHole {
   }
 };
 
-/// A turn that nothing told goes on as it does: parts that were missed shortly one after the other
-/// add in amplitude.
+/// Variance of an unobserved turn in several parts. With x the angle missed before, fading as
+/// x' = -x / seconds while samples are valid, a part of angle a adds (x + a)^2 - x^2 = a (2 x + a).
+/// A bend that runs through several short gaps is one bend: its parts add in amplitude. Added as
+/// squares they would count as independent, and the sigma would be too small.
 class UnseenTurn {
  public:
   double VarOf(double angle) const { return angle * (2 * going_on_ + angle); }  ///< [rad^2]

@@ -21,9 +21,9 @@ struct CauseTest {
   double sigma = 0;      ///< of that
   /// What such a fault does to the end of the run: as found less as it is [m].
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-  /// Of all onsets the one at which what passes unnoticed moves the end the most: the smallest size
-  /// that is noticed four times in five, and that shift. `noticeable` false: not even five times
-  /// the spec's size is, and the shift is that of five times.
+  /// External reliability (Baarda): the smallest size that the test detects with power 80 %, and
+  /// how far it shifts the end, at the onset where the shift is largest. `noticeable` false: even
+  /// five times the spec's size has less power, and the shift is that of five times.
   bool noticeable = false;
   double smallest = 0;
   std::size_t smallest_node = 0;
@@ -56,8 +56,9 @@ struct Diagnosis {
 /// Tests every cause from one factorisation of the run's rows, by the algebra of linear models:
 /// score s = c'P r, information M = c'P c, size s / M, Bayes factor
 /// ln B = s^2 / (2 (M + 1/S^2)) - ln(1 + S^2 M) / 2 with size ~ N(0, S^2); over onsets the mean.
-/// c may be replaced by c + J v, so that a constant beyond its prior is its prior's row, and a step
-/// at node t is that row and the columns of the knots before t: one pass forward for all onsets.
+/// P J = 0, so that c and c + J v have the same score and information for every v: the column of a
+/// constant beyond its prior reduces to its prior's row, that of a step at node t to that row and
+/// the columns of the knots before t. One forward pass then serves all onsets.
 /// Baarda (1968); de Jong and Penzer, "Diagnosing shocks in time series", JASA 93 (1998).
 /// `end_by_phi`: derivative of the end by every node's phi [m]; `end_by_depth_scale`: what an error
 /// of the depth's scale moves it by beside that. `false_alarm_rate`: of `ln_odds` above which a

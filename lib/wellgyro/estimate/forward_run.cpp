@@ -23,10 +23,11 @@ constexpr int kKnotIterations = 4;
 
 double RollOf(const Increment& inc) { return inc.roll_before + inc.roll_after; }
 
-/// The node at the end of `knot`: a clamped tool stays where it is, so that what its gyros read
-/// beside the Earth's rate is seen for noise, but for the roll, whose tie to its rate is far
-/// tighter than it is known: off it, the loss would take the gyros' reading for an outlier; else as
-/// the gyros alone carry it there from `begin`.
+/// Linearisation point at the end of `knot`. Moving: dead reckoning by the gyros from `begin`.
+/// Still: the attitude of `begin`, so that what the gyros read beside the Earth's rate is a
+/// residual and not a turn; the roll alone follows its rate. The pseudo-measurement that ties the
+/// two is far tighter than the roll is known, and off it the robust loss would take the gyros for
+/// outliers.
 Node Ahead(const RunKnot& knot, const Vector3d& w_IL_L, const Node& begin) {
   const Increment& inc = knot.increment;
   Node end = begin;
@@ -55,10 +56,11 @@ double WalkBehind(std::span<const RunKnot> knots) {
   return std::hypot(RollWalkBy(recent) * std::sqrt(inc.seconds), SpeedStarts(recent).back());
 }
 
-/// A matrix of phi and others, about an attitude that has gone on by `turn`. What is known of a
-/// turn in L stays so, and with it that a turn about the vertical is not known: in T the step would
-/// tell some of it, a little in every knot (Barrau and Bonnabel, IEEE Trans. Autom. Control 62,
-/// 2017).
+/// Change of coordinates phi -> turn' phi of an information or covariance over [phi; others], after
+/// the attitude has gone on by `turn`: phi stays the same vector in L. The unobserved direction, a
+/// turn about the vertical, then stays the same too; with phi kept in T every relinearisation would
+/// observe a little of it (inconsistency of the extended Kalman filter; Barrau and Bonnabel, IEEE
+/// Trans. Autom. Control 62, 2017).
 EdgeMatrix Turned(EdgeMatrix matrix, const Matrix3d& turn) {
   matrix.topRows<3>() = (turn.transpose() * matrix.topRows<3>()).eval();
   matrix.leftCols<3>() = (matrix.leftCols<3>() * turn).eval();
@@ -72,9 +74,10 @@ ForwardRun::ForwardRun(const RunState& solved, std::span<const RunKnot> knots)
   FreeRoll(WalkBehind(knots));
 }
 
-/// Where the tool starts or stops to roll the solver saw by what came behind; of the last knot it
-/// could not, and holds the rate for as steady as the rest. Process noise in form of information,
-/// I - I e s^2 e' I / (1 + s^2 e' I e), of which e' I / (1 + s^2 e' I e) is the roll's own part.
+/// Process noise of variance s^2 on the roll rate, in information form (matrix inversion lemma):
+///   I <- I - I e s^2 e' I / (1 + s^2 e' I e),  e the unit vector of the roll rate,
+/// of which e' I / (1 + s^2 e' I e) is the roll's own row. The solver found starts and stops of the
+/// roll by the knots after them; the last knot has none, and was held as steady as the rest.
 void ForwardRun::FreeRoll(double sigma) {
   const int roll = layout_.roll;
   const double var = sigma * sigma;

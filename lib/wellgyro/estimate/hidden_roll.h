@@ -11,11 +11,11 @@ namespace wellgyro {
 /// begins or ends: it then turns in L.
 std::vector<bool> SteadyAcross(std::span<const RunKnot> knots, double angle_random_walk);
 
-/// Where gravity does not show the roll, near vertical, the rate across the tool does: the Earth's,
-/// `horizontal` [rad/s], and that of a bend of the hole stand still in L for some time, so that
-/// their phase in the tool turns back by the roll. The median over the knots about it that read it
-/// and are steady, less the rate of psi [rad/s]; 0 where the roll is seen or too little is read.
-/// For the start only.
+/// Roll rate near vertical, where gravity does not show it, less the rate of psi [rad/s]. The rate
+/// across the axis, the Earth's (`horizontal` [rad/s]) and that of a bend, keeps its direction in L
+/// for some time, so that its phase in the tool turns at minus the roll rate. The median over the
+/// steady knots nearby that read it; 0 where gravity shows the roll or too few knots read the rate.
+/// For the start only, never a measurement.
 std::vector<double> HiddenRoll(std::span<const RunKnot> knots, double horizontal,
                                const std::vector<bool>& steady);
 

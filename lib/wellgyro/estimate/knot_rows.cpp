@@ -38,9 +38,11 @@ constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 
 double Square(double x) { return x * x; }
 
-/// How r = Log(R) changes where R becomes Exp(-a) R Exp(b): by right b - left a, to the second
-/// order of r. A turn of both nodes together then changes nothing; with unit matrices it would seem
-/// to by r, a sigma a radian, and thousands of knots would tell a heading that nothing measures.
+/// Derivative of r = Log(R) on SO(3): for R -> Exp(-a) R Exp(b), dr = right b - left a with the
+/// inverse Jacobians I +- [r]x / 2 + [r]x^2 / 12, to the second order of r. A heading change common
+/// to both nodes then leaves r as it is. With unit matrices it would change r by |r|, one sigma a
+/// radian, and over thousands of knots that linearisation error would observe a heading which no
+/// sensor measures.
 struct LogSlopes {
   explicit LogSlopes(const Vector3d& r) {
     const Matrix3d rx = Skew(r);
@@ -68,11 +70,11 @@ Vector3d ForceBy(const Increment& inc, int source) {
   return source < kTurnSources ? Vector3d(Vector3d::Zero()) : Vector3d(inc.ForceBy(source));
 }
 
-/// A scale error multiplies what the tool turned by, not the noise beside it. With readings for
-/// regressors, noise times itself draws every scale upwards, by one over its information a knot
-/// (errors in variables; Fuller, Measurement Error Models, 1987, section 1.2): in 16 h by three
-/// sigmas of a prior of 1e-4. `left`: of the turn, attitudes less gyros, in M; each axis has its
-/// share of it.
+/// Errors in variables (Fuller, Measurement Error Models, 1987, section 1.2): a scale error
+/// multiplies the true turn, and the reading is the true turn plus noise. With readings for
+/// regressors the square of the noise biases every scale upwards, by one over its information a
+/// knot: by three sigmas of a prior of 1e-4 in 16 h. So the residual of the turn, `left` (attitudes
+/// less gyros, in M), is added to the regressors, to each axis its share.
 TurnByError WithoutNoise(const Increment& inc, TurnByError by_error, const Vector2d& left) {
   const Vector2d of_x = MeanSquareOfX(inc) * left;
   by_error.col(kGyroScaleX) += of_x;
@@ -124,8 +126,8 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
     const double error = SourceAt(border, i);
     if (error != 0) t.turn -= error * t.turn_by_error.col(i);
   }
-  // Gyros that read the toolface wrong by `twist` turn by cos(twist) of it about the axis they seem
-  // to: to the second order, which of 0.05 s at 10 rpm is 1.4e-3 of every turn.
+  // A toolface error `twist` rotates the measured turn by e^{i twist}. turn_by_error has the first
+  // order; the cosine is the second, twist^2 / 2: of 0.05 s at 10 rpm 1.4e-3 of every turn.
   const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
   const double twist = SourceAt(border, kToolfaceOffset) + psi_rate * SourceAt(border, kTimeSkew);
   t.turn -= 0.5 * twist * twist * inc.turn_M;
@@ -136,8 +138,9 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   if (layout_.markov != kAbsent) drift += 0.5 * (begin.markov + end.markov);
   if (layout_.ramp != kAbsent) drift += place.since_start * border.segment<2>(layout_.ramp);
   t.turn -= inc.turn_by_error.middleCols<2>(kGyroBiasX) * drift;
-  // e^{i delta (tau - 1/2)} under the integral, to the third order where the turn is steady: of a
-  // tool whose roll was hidden, and which turned by delta more than psi, the square counts.
+  // Roll error delta that grows evenly over the knot: integral of e^{i delta (tau - 1/2)} over tau
+  // in (0, 1), to the third order for a steady turn. The square counts where the roll was
+  // unobserved and the tool turned by delta more than psi.
   t.turn += t.delta * (inc.turn_per_roll - t.delta / 24 * inc.turn_M);
   t.turn_per_roll = inc.turn_per_roll - t.delta / 12 * inc.turn_M;
   t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta);
@@ -295,9 +298,10 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   block.Add(f);
 }
 
-/// The roll rate in the hole walks from knot to knot; a swing turns by its own frequency and walks
-/// too. The Earth's part of the rate is that of the path as it stands, and no slope is taken by it:
-/// the steadiness of the roll then tells no azimuth, which no tool across the axis measures so.
+/// Random walk of the roll rate in the hole, r = (rate_k+1 - rate_k - axial_change) / sigma, and of
+/// a swing, which turns by its own frequency. axial_change is the change of the Earth's rate along
+/// the axis, taken of the path as it stands and not differentiated: its derivative would make a
+/// steady roll a pseudo-measurement of azimuth, which gyros across the axis do not give.
 void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block) {
   const double whiten = 1 / roll.sigma;
   Factor& f = factor_;

@@ -20,9 +20,9 @@ struct KnotPlace {
   Site site;
   Eigen::Vector3d w_IL_L = Eigen::Vector3d::Zero();  ///< Earth's rate and transport [rad/s]
   Eigen::Vector3d dw_by_latitude = Eigen::Vector3d::Zero();
-  /// Of the path, but for that along it, with Coriolis' [m/s^2]. It turns about the vertical with
-  /// the node: a path read on the map under another azimuth bends the same way seen from the tool,
-  /// and tells nothing of it.
+  /// Acceleration of the path across itself, with Coriolis' [m/s^2]. Its derivative by a turn of
+  /// the node about the vertical is that of a vector fixed in the tool: the path is drawn from the
+  /// node's own azimuth, and so has no information on it.
   Eigen::Vector3d acceleration_L = Eigen::Vector3d::Zero();
   /// What the Earth's rate about the axis changes by, from this knot to the next [rad/s]: so does
   /// the inertial roll rate of a tool that does not turn in its hole.

@@ -25,9 +25,9 @@ class RunRows {
   virtual void BlockOf(std::size_t k, NormalBlock& block);
 };
 
-/// A run's rows solved once as they stand, by least squares without any loss (only changes of the
-/// roll rate keep their weights, which are part of its model): what is tested for a fault must not
-/// have been told before that it counts less.
+/// Linear least squares of a run's rows at its solution, without robust loss (only changes of the
+/// roll rate keep their weights, which are part of its model). A fault test needs residuals of full
+/// weight: Huber's would have discounted the very rows that carry the fault.
 ///
 /// Rows r + J x are whitened, N = J'J; after Solve() the rows are P r, P = 1 - J N^-1 J'.
 class LinearRun {

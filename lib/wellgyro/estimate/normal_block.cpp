@@ -41,8 +41,9 @@ bool HasHuber(RowKind kind) {
          kind == RowKind::kDepth;
 }
 
-/// Huber's weights never exceed 1: most of a gyro factor has no redundancy, and a weight above it
-/// would be believed.
+/// Huber's loss; Student's t for changes of the roll rate. Huber's weight never exceeds 1: a gyro
+/// factor has next to no redundancy, so that nothing would contradict a weight above 1 and the
+/// covariance would come out too small.
 Loss LossOf(const Factor& f) {
   const double square = f.r.head(f.rows).squaredNorm();
   if (f.kind == RowKind::kRoll) {
@@ -55,8 +56,9 @@ Loss LossOf(const Factor& f) {
   return {kHuber / norm, kHuber * (2 * norm - kHuber)};
 }
 
-/// What the weighted square is to be, of residuals that keep the share 1 - absorbed/n of their
-/// variance: Huber's loss then begins at more of their sigmas.
+/// Expectation of the weighted sum of squares, where the unknowns absorb `absorbed` of n rows:
+/// residuals keep the variance 1 - absorbed/n, so that Huber's loss begins at
+/// kHuber / sqrt(1 - absorbed/n) of their own sigmas.
 double FreedomOf(const Factor& f, double absorbed) {
   const double left = std::max(0.0, f.measured - absorbed);
   if (!HasHuber(f.kind) || left == 0) return left;

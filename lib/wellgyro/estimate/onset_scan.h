@@ -38,8 +38,9 @@ class EndInfluence {
 
 /// Steps of unknowns of the border at every node, by one pass forward and one backward.
 ///
-/// The column of a step of unknown u from node t on is minus its columns of the knots after t,
-/// or, which differs by J v, its prior's row and its columns of the knots before t.
+/// A step of unknown u from node t on has for column c minus u's columns of the knots after t. P
+/// does not see J v (P J = 0): c may as well be u's prior row and its columns of the knots before
+/// t, which a forward pass has summed when it comes to t.
 class OnsetScan {
  public:
   /// `unknowns`: columns of the border.

@@ -73,11 +73,11 @@ std::vector<double> Bends(std::span<const RunKnot> knots, std::span<const Node> 
   return bends;
 }
 
-/// A tool that keeps its toolface rolls, in inertial space, by A' cos I = |t'| cot I at most, which
-/// changes by as much within a stand: a random walk of that variance over its way. What keeps it is
-/// gravity, whose pull across the axis and whose lever go as sin I: of |t'| cot I it follows sin^2
-/// I. As if such a tool rolled as evenly as its string, the roll would tell how the azimuth turns,
-/// and wrongly.
+/// Random walk of the inertial roll rate of a tool that keeps its toolface, T' = 0:
+///   psi' = A' cos I,  A' sin I <= |t'|,  so that |psi'| <= |t'| cot I,  |t'| = bend speed.
+/// It changes by as much within a stand: that variance over a stand's way. Gravity keeps the
+/// toolface, by a moment that goes as sin^2 I; hence sin^2 I cot I = sin I cos I. Without this
+/// term a roll assumed steady would be a pseudo-measurement of A', and a wrong one.
 double RollWalkOf(const Vector3d& tangent, double bend, double speed) {
   const double follows = std::abs(tangent.z()) * std::hypot(tangent.x(), tangent.y());
   return std::abs(speed) * bend * std::sqrt(std::abs(speed) / kStand) * follows;

@@ -8,11 +8,11 @@
 
 namespace wellgyro {
 
-/// Of each knot, by how much the roll rate changes behind it beyond its walk [rad/s]: where gravity
-/// plainly shows a start or a stop, over 1, 4 or 12 knots beyond 3.5 of what is usual in the run
-/// and of its own sigma, by what it shows; else 0. A tool that once spins up is then not taken for
-/// one that always jerks. `swung`: of each knot, what a swing turns the tool by in it, which is no
-/// start; empty: nothing swings [rad].
+/// Outlier test of the roll rate: of each knot, the change after it where gravity shows a start or
+/// stop, else 0 [rad/s]. A change over 1, 4 or 12 knots is one where it exceeds 3.5 times what is
+/// usual in the run and 3.5 times its own sigma. Kept apart from the random walk, one spin-up does
+/// not make that large for the whole run. `swung`: the turn by a swing in each knot, which is no
+/// start [rad]; empty: nothing swings.
 std::vector<double> RollStarts(std::span<const RunKnot> knots, std::span<const double> swung = {});
 
 /// Of each knot, by how much the roll rate may at most change behind it with the speed along the

@@ -125,9 +125,9 @@ void FitNoise(RunSolver& solver, std::span<const std::size_t> marked, RunEstimat
   result.report.sums = stated;
 }
 
-/// Errors that the run takes as none a fault may make all the same: they become unknowns whose
-/// prior is a thousandth of that. So does the scale of depth, with the job's prior: what the
-/// accelerometers feel tells it.
+/// A fault may be of a constant that the run holds at zero (prior sigma 0). For the test it becomes
+/// an unknown whose prior is a thousandth of the fault's size, too tight to move the solution. The
+/// scale of depth becomes one by the job's prior: the accelerometers along the hole observe it.
 Diagnosis DiagnosisOf(const RunSolver& solved) {
   EstimateSetup setup = solved.setup();
   setup.sigma_depth_scale = setup.errors.depth_scale_sigma;
@@ -207,8 +207,9 @@ EdgeVector Towards(const Solution& rival, const RunSolver& best, std::size_t k) 
   return d;
 }
 
-/// The second moment about `best` of it and its rival together: an azimuth near east-west is so as
-/// unsure as its mirror is likely. False where they are too far apart for one covariance.
+/// Second moment of the mixture of two solutions about `best`: cov += w d d', d the rival's
+/// difference and w = odds / (1 + odds) its weight by evidence. Near east-west the rival is the
+/// mirror azimuth, and sigma covers both. False beyond kVagueAngle, where no one covariance does.
 bool CountIn(const Solution& rival, double evidence, const RunSolver& best, RunEstimate& result) {
   const std::vector<int> columns = LinkedColumns(best.layout());
   const double odds = std::exp(0.5 * (evidence - rival.evidence)), weight = odds / (1 + odds);

@@ -47,8 +47,9 @@ constexpr int kTry = 2;          // steps with each scale: by the third the evid
 constexpr double kCreeps = 0.5;  // Gauss-Newton takes far more off a decrement than its half
 constexpr double kHalfDecade = 3.1622776601683795;
 
-/// How far the end is after a step of this decrement, where decrements go on to fall as they did
-/// from the `last` one: the steps, their roots, sum up.
+/// Decrement of the whole way still to go, by linear convergence: with q = decrement / last the
+/// steps to come, roots of decrements, are a geometric series of ratio sqrt(q), and their sum has
+/// the square decrement q / (1 - sqrt(q))^2.
 double Left(double decrement, double last) {
   const double falls = std::max(decrement / last, kLeastFall);
   if (!(falls < 1)) return HUGE_VAL;
@@ -220,10 +221,9 @@ void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMat
   block_.Measure(nullptr);
 }
 
-/// 1-sigma of what a turn of the axis that no sensor saw adds to the rate about it, in this knot or
-/// the next [rad/s]. A tool that keeps its rate of toolface turns with the hole's azimuth, by the
-/// angle over sin I and that by cos I; nearer to vertical than 45 deg, where the high side is no
-/// hold, by no more than the angle.
+/// 1-sigma of the change of roll rate by an unobserved turn of the axis, in this knot or the next
+/// [rad/s]: psi' = T' + A' cos I, with T' kept and A' = angle / sin I at most, hence angle cot I.
+/// Nearer to vertical than 45 deg the high side holds no toolface, and the angle is the bound.
 double RunSolver::WalkOfUnseen(std::size_t knot) const {
   double rate = 0;
   for (std::size_t k = knot; k < std::min(knot + 2, knots_.size()); ++k) {
@@ -282,9 +282,10 @@ bool RunSolver::Advance(SolveReport& report) {
   return true;
 }
 
-/// Gauss-Newton until all unknowns together move by less than sqrt(`stays`) sigmas, or, near, by
-/// more than `creeps` of what they moved by before: robust weights that are made anew are never
-/// done, and another scale makes others.
+/// Gauss-Newton until Newton's decrement squared is below `stays`: all unknowns together then move
+/// by less than sqrt(stays) sigmas. Below kFar it also ends, false, where the decrement keeps more
+/// than the share `creeps` of the last one: only the robust weights still settle then, and the next
+/// scale of the roll changes them anyway.
 bool RunSolver::Iterate(int most, double stays, SolveReport& report, double creeps) {
   last_steps_.clear();
   double last = HUGE_VAL;
@@ -328,8 +329,9 @@ double RunSolver::Evidence() const {
   return evidence;
 }
 
-/// The evidence with `tried` in place of the scales; HUGE_VAL where it leads nowhere. One so far
-/// below `least` that no further step takes it back is taken for what its next step promises.
+/// Evidence with `tried` for the scales, after at most kTry steps; HUGE_VAL where they do not
+/// converge. An evidence below `least` by more than kGain decrements stays below it: the steps end
+/// there, and what the linear model predicts of the next one is returned.
 double RunSolver::EvidenceOf(double tried, double least, Scales scales, SolveReport& report) {
   for (double* scale : scales) *scale = tried;
   last_steps_.clear();
@@ -341,12 +343,13 @@ double RunSolver::EvidenceOf(double tried, double least, Scales scales, SolveRep
   return elimination_.decrement() < kFar ? Evidence() : HUGE_VAL;
 }
 
-/// The decade of greatest evidence, downwards from what it is or else upwards; gives its evidence.
+/// Marginal likelihood of the scales, decade by decade from what they are, downwards or else
+/// upwards; returns the best evidence and leaves the scales and the solution there.
 ///
-/// Freedom of the roll that no tool makes use of does more than widen the result: near vertical the
-/// more the hole leans, the more of the accelerometers' noise a free roll explains, so that the
-/// solution leans too far (nuisances as many as the knots: Neyman and Scott, 1948). The evidence
-/// counts what they explain against their number.
+/// Not the best fit of the residuals: roll rates are incidental parameters, as many as the knots
+/// (Neyman and Scott, 1948), and too large a walk does more than widen the covariance. Near
+/// vertical a free roll explains the more of the accelerometers' noise the more the hole leans,
+/// which biases the inclination upwards. The evidence counts that freedom against what it explains.
 double RunSolver::FindDecade(double least, double most, Scales scales, SolveReport& report) {
   const double begin = **scales.begin();
   double best = EvidenceOf(begin, -HUGE_VAL, scales, report), best_scale = begin;

@@ -11,13 +11,13 @@
 
 namespace wellgyro {
 
-/// Whether rows of one kind scatter more than they should, by a random disturbance of variance
-/// tau^2 of each whitened row.
+/// Bayes factor of excess noise in rows of one kind: variance 1 + tau^2 of each whitened row.
 ///
-/// P of a factor's rows has eigenvalues l and vectors e; u = e'P r / sqrt(l) is then of variance
-/// 1 + tau^2 l, and ln B the sum of u^2 tau^2 l / (2 (1 + tau^2 l)) - ln(1 + tau^2 l) / 2, averaged
-/// over a grid of tau. What the unknowns link between knots is left out, and with it the parts of
-/// rows that they mostly absorb (l below 0.3), of which it would make too much.
+/// With l, e the eigenvalues and eigenvectors of P of a factor's rows, u = e'P r / sqrt(l) has the
+/// variance 1 + tau^2 l, and
+///   ln B = sum of u^2 tau^2 l / (2 (1 + tau^2 l)) - ln(1 + tau^2 l) / 2,
+/// averaged over a grid of tau. Correlations of residuals between knots are neglected. Where the
+/// unknowns absorb most of a row (l below 0.3) that would overstate ln B: such parts are left out.
 class Scatter {
  public:
   /// `stretch`: knots that are looked at together.

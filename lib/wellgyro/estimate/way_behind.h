@@ -8,9 +8,10 @@
 
 namespace wellgyro {
 
-/// The error of a run's deepest place so far as seen from its first node, attitudes alone, by what
-/// is known at its newest node: p = by [node; border] + e, cov(e) = cov, e independent of all that
-/// comes later. Whatever a run learns later of its newest node it learns by this of the way behind.
+/// Regression of a position error on the newest node: p = by [node; border] + e, cov(e) = cov, e
+/// independent of every later measurement. p is the error of the run's deepest place so far as seen
+/// from its first node, by attitude errors alone. An update of the newest node thereby updates the
+/// whole way behind it without another pass.
 struct WayBehind {
   double deepest = 0;                                                        ///< [m]
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kNodeMax + kBorderMax> by;  ///< empty: none yet
