@@ -10,6 +10,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/hidden_roll.h"
 
 namespace wellgyro {
 namespace {

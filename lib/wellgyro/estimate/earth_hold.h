@@ -8,9 +8,6 @@
 
 namespace wellgyro {
 
-/// Where psi does not follow the roll: neither read in gravity's phase nor at rest.
-inline bool RollIsHidden(const RunKnot& knot) { return !knot.increment.roll_seen && !knot.still; }
-
 /// Rates found from knot to knot drift: what turns the lean adds the Earth's own rate, 0.03 rad/s
 /// at 0.1 deg. So that the roll stays right for hours near vertical, `hidden` [rad/s], what each
 /// hidden knot rolls by beyond psi, is changed until the Earth's rate across, found in windows of

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/hidden_roll.h"
 
 namespace wellgyro {
 namespace {
@@ -29,9 +31,10 @@ double RateOf(int i) { return (i - kMiddle) * kStep; }
 struct Phase {
   double angle = 0, var = 0, var_by_rate2 = 0;
 
+  double Var(double rate) const { return var + var_by_rate2 * rate * rate; }
   /// -ln of its density about `expected`, von Mises', less that of no knowledge.
   double Cost(double expected, double rate) const {
-    const double kappa = 1 / (var + var_by_rate2 * rate * rate);
+    const double kappa = 1 / Var(rate);
     // I0(kappa) e^-kappa within a fifth.
     const double density =
         std::sqrt(1 + kTwoPi * kappa) * std::exp(kappa * (std::cos(angle - expected) - 1));
@@ -93,6 +96,26 @@ class Reader {
   double gravity_, earth_, accel_noise_, accel_bias_, gyro_noise_, gyro_bias_, gyro_misalignment_;
 };
 
+double SecondsBetween(const RunKnot& a, const RunKnot& b) {
+  return 0.5 * (a.increment.seconds + b.increment.seconds);
+}
+
+/// The rate between the middles of two neighbours, of which `rate` is near enough to tell turns:
+/// the weighted mean of what the phases say.
+double ByPhases(const Reader& reader, const RunKnot& a, const RunKnot& b, double rate) {
+  const double seconds = SecondsBetween(a, b), expected = rate * seconds;
+  double sum = 0, weights = 0;
+  for (const auto& phase :
+       {reader.ByGravity(a.increment, b.increment), reader.ByRate(a.increment, b.increment)}) {
+    if (!phase) continue;
+    const double off = WrapPi(phase->angle - expected), var = phase->Var(rate);
+    if (off * off > kReadable * kReadable * var) continue;
+    sum += off / var;
+    weights += 1 / var;
+  }
+  return weights > 0 ? rate + sum / weights / seconds : rate;
+}
+
 /// What two neighbours say of every rate between their middles.
 Costs CostsOf(const Reader& reader, const RunKnot& a, const RunKnot& b) {
   Costs costs{};
@@ -101,7 +124,7 @@ Costs CostsOf(const Reader& reader, const RunKnot& a, const RunKnot& b) {
     costs[kMiddle] = 0;
     return costs;
   }
-  const double seconds = 0.5 * (a.increment.seconds + b.increment.seconds);
+  const double seconds = SecondsBetween(a, b);
   for (const auto& phase :
        {reader.ByGravity(a.increment, b.increment), reader.ByRate(a.increment, b.increment)}) {
     if (!phase) continue;
@@ -136,7 +159,8 @@ void Change(Costs& costs, std::array<std::int16_t, kRates>& from) {
 
 }  // namespace
 
-std::vector<double> LikeliestRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+std::vector<double> LikeliestRoll(std::span<const RunKnot> knots, const EstimateSetup& setup,
+                                  bool by_phases) {
   std::vector<double> hidden(knots.size(), 0);
   if (!AnyRollIsHidden(knots) || knots.size() < 2) return hidden;
   const Reader reader(setup);
@@ -150,7 +174,9 @@ std::vector<double> LikeliestRoll(std::span<const RunKnot> knots, const Estimate
   auto at = static_cast<std::size_t>(std::min_element(least.begin(), least.end()) - least.begin());
   for (std::size_t k = knots.size() - 1; k-- > 0;) {
     // Between the middles of k and k + 1: half of it is in either.
-    const double half = 0.5 * RateOf(static_cast<int>(at));
+    double rate = RateOf(static_cast<int>(at));
+    if (by_phases) rate = ByPhases(reader, knots[k], knots[k + 1], rate);
+    const double half = 0.5 * rate;
     if (RollIsHidden(knots[k])) hidden[k] += half;
     if (RollIsHidden(knots[k + 1])) hidden[k + 1] += half;
     at = static_cast<std::size_t>(from[k][at]);

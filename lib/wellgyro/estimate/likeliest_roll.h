@@ -16,6 +16,9 @@ namespace wellgyro {
 /// rate across, the Earth's and the hole's bend, which stand still in L for some time. The
 /// likeliest sequence of rates under both, whose changes from knot to knot are small or few, is
 /// found by dynamic programming (Viterbi, 1967) on a grid of rates.
-std::vector<double> LikeliestRoll(std::span<const RunKnot> knots, const EstimateSetup& setup);
+/// `by_phases`: the rates are then what the phases say, by the turns that the grid tells; of a
+/// swing no step of the grid remains, of a phase that drifts all does.
+std::vector<double> LikeliestRoll(std::span<const RunKnot> knots, const EstimateSetup& setup,
+                                  bool by_phases = false);
 
 }  // namespace wellgyro
