@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/estimate/earth_hold.h"
 #include "wellgyro/estimate/hidden_roll.h"
+#include "wellgyro/estimate/likeliest_roll.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
@@ -29,14 +31,31 @@ double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
                      inc.turn_M.dot(earth));
 }
 
+/// Whether gravity and the Earth turn the tool about its axis where the roll is hidden.
+bool TurnsHidden(RollSearch search) {
+  return search != RollSearch::kLikeliestOnly && search != RollSearch::kPhasesHeld;
+}
+
+std::vector<double> SlipBy(RollSearch search, const EstimateSetup& setup,
+                           std::span<const RunKnot> knots, const std::vector<bool>& steady) {
+  if (search == RollSearch::kNeighbours) {
+    return HiddenRoll(knots, kEarthRate * std::cos(setup.site.latitude), steady);
+  }
+  std::vector<double> slip = LikeliestRoll(knots, setup, search == RollSearch::kPhasesHeld);
+  if (search == RollSearch::kLikeliestHeld || search == RollSearch::kPhasesHeld)
+    HoldToEarth(knots, setup, slip);
+  return slip;
+}
+
 }  // namespace
 
-GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots)
+GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots, RollSearch search)
     : latitude_(setup.site.latitude),
       knots_(knots),
+      search_(search),
       extra_roll_(knots.size(), 0),
       steady_(SteadyAcross(knots, setup.gyro.angle_random_walk)),
-      slip_(HiddenRoll(knots, kEarthRate * std::cos(latitude_), steady_)),
+      slip_(SlipBy(search, setup, knots, steady_)),
       nodes_(knots.size() + 1) {}
 
 void GuessPass::Run(std::size_t begin, std::size_t end) {
@@ -48,7 +67,8 @@ void GuessPass::Run(std::size_t begin, std::size_t end) {
     const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
     Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT *
                  RotationZ(inc.roll_before + 0.5 * extra) * half;
-    if (!inc.roll_seen && steady_[k]) {
+    const bool turned = inc.roll_seen || TurnsHidden(search_);
+    if (turned && !inc.roll_seen && steady_[k]) {
       M = M * RotationZ(kEarthShare * AngleToEarth(inc, M.transpose() * earth));
     }
     if (inc.level) {
@@ -57,7 +77,8 @@ void GuessPass::Run(std::size_t begin, std::size_t end) {
       const double sine2 = std::hypot(f.x(), f.y()) * std::hypot(p.x(), p.y());
       // The angle about the axis from where the force should be to where it is.
       const double angle = std::atan2(f.y() * p.x() - f.x() * p.y(), f.x() * p.x() + f.y() * p.y());
-      M = M * RotationZ(-kTurnShare * angle * sine2 / (sine2 + kTurnSine2));
+      const double share = turned ? kTurnShare * sine2 / (sine2 + kTurnSine2) : 0;
+      M = M * RotationZ(-share * angle);
       const Vector3d down = -M.row(2).transpose();
       M = M * Exp(kTiltShare * f.cross(down));
     }

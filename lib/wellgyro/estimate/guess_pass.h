@@ -13,12 +13,27 @@
 
 namespace wellgyro {
 
+/// How the roll is sought in the knots where it is hidden. None leads to the solution always: where
+/// the first does not, the others are tried.
+enum class RollSearch {
+  kNeighbours,     ///< by the median over the knots about each, see HiddenRoll()
+  kLikeliest,      ///< by the likeliest sequence of rates, see LikeliestRoll()
+  kLikeliestHeld,  ///< that, held to the Earth's direction, see HoldToEarth()
+  kLikeliestOnly,  ///< the likeliest sequence, and neither gravity nor the Earth turns the tool
+                   ///< then
+  kPhasesHeld,     ///< the same by the phases, held to the Earth's direction
+};
+inline constexpr RollSearch kOtherSearches[] = {RollSearch::kLikeliest, RollSearch::kLikeliestHeld,
+                                                RollSearch::kLikeliestOnly,
+                                                RollSearch::kPhasesHeld};
+
 /// Places the nodes of a run one after the other: the gyros carry the axis, gravity turns the tool
 /// about it. A first guess, from which a RunSolver begins.
 class GuessPass {
  public:
   /// `knots` must outlive this object; at least one.
-  GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots);
+  GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots,
+            RollSearch search = RollSearch::kNeighbours);
 
   /// The attitude of node 0.
   void Begin(const Eigen::Matrix3d& R_LT) { nodes_[0].R_LT = R_LT; }
@@ -32,6 +47,7 @@ class GuessPass {
  private:
   double latitude_;
   std::span<const RunKnot> knots_;
+  RollSearch search_;
   std::vector<double> extra_roll_;
   std::vector<bool> steady_;
   std::vector<double> slip_;

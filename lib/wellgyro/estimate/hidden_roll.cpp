@@ -20,7 +20,7 @@ constexpr double kSteady = 0.1, kChance = 3;
 bool Reads(const RunKnot& knot, double horizontal) {
   const Increment& i = knot.increment;
   const double ratio = i.turn_M.norm() / (horizontal * i.seconds);
-  return !i.roll_seen && !knot.still && ratio > kLeastRatio;
+  return RollIsHidden(knot) && ratio > kLeastRatio;
 }
 
 /// The roll rate against the Earth from one knot's middle to the next one's [rad/s].
@@ -32,6 +32,12 @@ double RollBetween(const Increment& a, const Increment& b) {
 }
 
 }  // namespace
+
+bool RollIsHidden(const RunKnot& knot) { return !knot.increment.roll_seen && !knot.still; }
+
+bool AnyRollIsHidden(std::span<const RunKnot> knots) {
+  return std::any_of(knots.begin(), knots.end(), RollIsHidden);
+}
 
 std::vector<bool> SteadyAcross(std::span<const RunKnot> knots, double angle_random_walk) {
   std::vector<double> turns{0}, times{0};
@@ -57,7 +63,7 @@ std::vector<double> HiddenRoll(std::span<const RunKnot> knots, double horizontal
   const auto reads = [&](std::size_t k) { return steady[k] && Reads(knots[k], horizontal); };
   std::vector<double> hidden(knots.size(), 0), near;
   for (std::size_t k = 0; k < knots.size(); ++k) {
-    if (knots[k].increment.roll_seen || knots[k].still) continue;
+    if (!RollIsHidden(knots[k])) continue;
     near.clear();
     // What it did before a stop is not what it does after it.
     std::size_t begin = k, end = k;

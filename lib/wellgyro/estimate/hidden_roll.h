@@ -7,6 +7,10 @@
 
 namespace wellgyro {
 
+/// Where psi follows neither gravity nor a third axis, and the tool does not rest.
+bool RollIsHidden(const RunKnot& knot);
+bool AnyRollIsHidden(std::span<const RunKnot> knots);
+
 /// Of each knot, whether the rate across the tool keeps its size about it. It does not where a bend
 /// begins or ends: it then turns in L.
 std::vector<bool> SteadyAcross(std::span<const RunKnot> knots, double angle_random_walk);

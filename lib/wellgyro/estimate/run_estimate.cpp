@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 
 #include "wellgyro/estimate/end_of_run.h"
+#include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -161,10 +162,10 @@ Diagnosis DiagnosisOf(const RunSolver& solved) {
 }
 
 std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                 std::span<const Start> starts) {
+                                 std::span<const Start> starts, RollSearch search) {
   if (starts.empty()) return GuessesOfHeadings(setup, knots);
   std::vector<NodeGuess> guesses;
-  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start));
+  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start, search));
   return guesses;
 }
 
@@ -308,8 +309,23 @@ RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
 
 /// Gyros that are off by more than chance: their noise is stated too small, or this is a minimum
 /// but not the one.
-bool Misfits(const SolveReport& report) {
-  return Excess(report.sums, {RowKind::kTurn, RowKind::kStill}) > 1;
+bool GyrosMisfit(const RunEstimate& run) {
+  return !run.solved || Excess(run.report.sums, {RowKind::kTurn, RowKind::kStill}) > 1;
+}
+
+/// A lost turn of roll may show in the forces alone.
+bool Misfits(const RunEstimate& run) {
+  return GyrosMisfit(run) || Excess(run.report.sums, {RowKind::kForce}) > 1;
+}
+
+/// Takes what other guesses lead to where it is better than what is known. False: it is not.
+bool TakeIfBetter(Choice other, std::span<const std::size_t> marked, Choice& choice,
+                  RunEstimate& result) {
+  if (!other.solver) return false;
+  if (choice.solver && !(other.report.evidence < choice.report.evidence)) return false;
+  choice = std::move(other);
+  Take(choice, marked, result);
+  return true;
 }
 
 }  // namespace
@@ -319,15 +335,22 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
                         const RunState* before) {
   RunEstimate result;
   if (knots.empty()) return result;
-  Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts.anchored), before);
+  const auto chosen = [&](RollSearch search) {
+    return Choose(setup, knots, GuessesOf(setup, knots, starts.anchored, search), before);
+  };
+  Choice choice = chosen(RollSearch::kNeighbours);
   Take(choice, marked, result);
-  if (starts.otherwise && (!result.solved || Misfits(result.report))) {
+  if (starts.otherwise && !starts.anchored.empty() && AnyRollIsHidden(knots)) {
+    for (const RollSearch search : kOtherSearches) {
+      if (Misfits(result)) TakeIfBetter(chosen(search), marked, choice, result);
+    }
+  }
+  if (starts.otherwise && GyrosMisfit(result)) {
     const std::array otherwise{starts.otherwise()};
     Choice other = Choose(setup, knots, otherwise, before);
-    if (other.solver && (!choice.solver || other.report.evidence < choice.report.evidence)) {
-      choice = std::move(other);
-      Take(choice, marked, result);
-    } else if (other.least_evidence < result.report.evidence - kDecides) {
+    const double least = other.least_evidence;
+    if (!TakeIfBetter(std::move(other), marked, choice, result) &&
+        least < result.report.evidence - kDecides) {
       return {};  // something fits better that is no solution: nothing is known
     }
   }

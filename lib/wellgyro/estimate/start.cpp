@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/estimate/guess_pass.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/math/rotation.h"
 
@@ -54,8 +53,9 @@ void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std
 
 }  // namespace
 
-NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start) {
-  GuessPass pass(setup, knots);
+NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start,
+                  RollSearch search) {
+  GuessPass pass(setup, knots, search);
   Matrix3d first = LevelAttitude(knots);
   pass.Begin(first);
   std::size_t from = 0;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/estimate/guess_pass.h"
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
@@ -35,7 +36,8 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
                   std::span<const Eigen::Matrix3d> R_LT);
 
 /// The nodes by a forward pass from where `start` has them. At least one knot and one anchor.
-NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start);
+NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start,
+                  RollSearch search = RollSearch::kNeighbours);
 
 /// The heading that a tie gives, where the nodes would stand without any.
 Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const AzimuthTie& tie);
