@@ -22,7 +22,7 @@ using Eigen::Vector3cd;
 // Knots that together tell the Earth's direction to 0.1 rad by gyros of 0.05 deg/sqrt(h).
 constexpr std::size_t kWindow = 30;
 // Within a window a drift of two radians leaves a third of the Earth's rate.
-constexpr double kShare = 3;
+constexpr double kOfEarthLeft = 3;
 // A drift that is taken out lets windows see the next one: by the third it is below 0.1 rad.
 constexpr int kRounds = 3;
 // Where a tool states no noise: a hundredth of a navigation gyro's, of a microgal's.
@@ -90,8 +90,8 @@ std::vector<double> RollsOf(std::span<const RunKnot> knots, const std::vector<do
 }
 
 /// Spreads `angle` over the hidden knots from one to another.
-void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
-            std::vector<double>& hidden) {
+void SpreadOver(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
+                std::vector<double>& hidden) {
   double seconds = 0;
   for (std::size_t k = begin; k < end; ++k) {
     if (RollIsHidden(knots[k])) seconds += knots[k].increment.seconds;
@@ -114,7 +114,7 @@ std::optional<double> DirectionIn(std::size_t begin, std::span<const RunKnot> kn
                                  setup.site.gravity, SteadyErrorsOf(setup, most_rate));
   if (!earth) return std::nullopt;
   const double ratio = std::abs(*earth) / (kEarthRate * std::cos(setup.site.latitude));
-  if (!(std::max(ratio, 1 / ratio) < kShare)) return std::nullopt;
+  if (!(std::max(ratio, 1 / ratio) < kOfEarthLeft)) return std::nullopt;
   return std::arg(*earth);
 }
 
@@ -139,7 +139,7 @@ void HoldToEarth(std::span<const RunKnot> knots, const EstimateSetup& setup,
       if (!now) continue;
       const std::size_t middle = begin + kWindow / 2;
       // A roll that is behind by an angle shows the Earth ahead by it.
-      if (last) Spread(WrapPi(*last - *now), knots, since, middle, hidden);
+      if (last) SpreadOver(WrapPi(*last - *now), knots, since, middle, hidden);
       last = now;
       since = middle;
     }

@@ -8,6 +8,7 @@
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/sinc.h"
+#include "wellgyro/math/square.h"
 
 namespace wellgyro {
 namespace {
@@ -35,8 +36,6 @@ constexpr double kSpeedWalk = 0.3;    // winch and pipe: a third of a m/s in a s
 constexpr double kLeastDepth = 1e-3;  // [m], of a mark
 constexpr double kLeastWay = 1e-4;    // [m], of a knot's way
 constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
-
-double Square(double x) { return x * x; }
 
 /// Derivative of r = Log(R) on SO(3): for R -> Exp(-a) R Exp(b), dr = right b - left a with the
 /// inverse Jacobians I +- [r]x / 2 + [r]x^2 / 12, to the second order of r. A heading change common

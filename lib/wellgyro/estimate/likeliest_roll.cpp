@@ -10,6 +10,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/estimate/hidden_roll.h"
+#include "wellgyro/math/square.h"
 
 namespace wellgyro {
 namespace {
@@ -41,8 +42,6 @@ struct Phase {
     return -std::log((1 - kStray) * density + kStray);
   }
 };
-
-double Square(double x) { return x * x; }
 
 /// What a run's hidden knots say of the roll.
 class Reader {
@@ -137,7 +136,7 @@ Costs CostsOf(const Reader& reader, const RunKnot& a, const RunKnot& b) {
 
 /// The least of `costs` and a change from there, of every rate (the distance transform of
 /// Felzenszwalb and Huttenlocher, 2012), and where it is.
-void Change(Costs& costs, std::array<std::int16_t, kRates>& from) {
+void LeastChange(Costs& costs, std::array<std::int16_t, kRates>& from) {
   for (int i = 0; i < kRates; ++i) from[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(i);
   const auto best = std::min_element(costs.begin(), costs.end());
   const double jump = *best + kJump;
@@ -167,7 +166,7 @@ std::vector<double> LikeliestRoll(std::span<const RunKnot> knots, const Estimate
   std::vector<std::array<std::int16_t, kRates>> from(knots.size() - 1);
   Costs least{};
   for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
-    Change(least, from[k]);
+    LeastChange(least, from[k]);
     const Costs costs = CostsOf(reader, knots[k], knots[k + 1]);
     for (std::size_t i = 0; i < kRates; ++i) least[i] += costs[i];
   }

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "wellgyro/math/square.h"
+
 namespace wellgyro {
 namespace {
-
-double Square(double x) { return x * x; }
 
 // 2x - 3 + 4 e^-x - e^-2x, which is 2/3 x^3 for small x and cancels there.
 double MarkovIntegralVariance(double x) {

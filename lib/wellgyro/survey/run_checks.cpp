@@ -10,6 +10,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/drift.h"
+#include "wellgyro/math/square.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/record/error_source.h"
 #include "wellgyro/survey/check_internal.h"
@@ -19,8 +20,6 @@ namespace wellgyro {
 namespace {
 
 constexpr double kLeastRoll = 1e-3 * units::kDegPerHour;
-
-double Square(double x) { return x * x; }
 
 /// What a gyro's bias changes by in `seconds`, by the coefficients [rad/s].
 double SigmaOfChange(const NoiseCoefficients& gyro, double seconds) {

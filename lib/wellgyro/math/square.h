@@ -1,0 +1,7 @@
+#pragma once
+
+namespace wellgyro {
+
+inline double Square(double x) { return x * x; }
+
+}  // namespace wellgyro
