@@ -162,9 +162,8 @@ TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
     }
   }
   // One in 10 000 of all numbers. Of these runs more fail than the 1 % of chance: a roll that
-  // starts or stops below half a degree, where the phase of gravity is not read, may be lost. Where
-  // it is read from .15 deg on, 19 of 300 fail instead of 30, and 56 numbers of runs that pass are
-  // too far off where now none is.
+  // starts, stops or swings below half a degree, where the phase of gravity is not read, may be
+  // lost, and with it a turn.
   const int count = inclination.count + azimuth.count + tangent.count + place.count;
   const int beyond = inclination.beyond + azimuth.beyond + tangent.beyond + place.beyond;
   std::printf(
@@ -174,7 +173,7 @@ TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
       azimuth.count, inclination.worst, azimuth.worst, tangent.worst, place.worst);
   EXPECT_GT(count, 100 * kWells);
   EXPECT_LE(beyond, 1e-4 * count);
-  EXPECT_LE(failed, 1 + kWells / 8);
+  EXPECT_LE(failed, 1 + kWells / 10);
 }
 
 }  // namespace

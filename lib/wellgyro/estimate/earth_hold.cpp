@@ -127,20 +127,22 @@ void HoldToEarth(std::span<const RunKnot> knots, const EstimateSetup& setup,
                  std::vector<double>& hidden) {
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<double> rolls = RollsOf(knots, hidden);
-    std::optional<double> last;
+    bool told = false;
+    double last = 0;
     std::size_t since = 0;  // middle of the window that told it
     for (std::size_t begin = 0; begin + kWindow <= knots.size(); begin += kWindow) {
       const auto window = knots.subspan(begin, kWindow);
       if (std::any_of(window.begin(), window.end(), FollowsGravity)) {
-        last.reset();
+        told = false;
         continue;
       }
       const auto now = DirectionIn(begin, knots, setup, rolls, hidden);
       if (!now) continue;
       const std::size_t middle = begin + kWindow / 2;
       // A roll that is behind by an angle shows the Earth ahead by it.
-      if (last) SpreadOver(WrapPi(*last - *now), knots, since, middle, hidden);
-      last = now;
+      if (told) SpreadOver(WrapPi(last - *now), knots, since, middle, hidden);
+      told = true;
+      last = *now;
       since = middle;
     }
   }
