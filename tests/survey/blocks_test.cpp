@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kHz = 500;
 
-testing::SmallHole Hole() {
+testing::SmallHole HoleOfBlocks() {
   return {.to_md = 40,
           .rpm = 2,
           .imu_hz = kHz,
@@ -132,16 +132,16 @@ std::string Surveyed(const Simulation& simulation, const Job& job,
 }
 
 TEST(Blocks, SayWhatTheirSamplesSayOneByOne) {
-  const Simulation simulation = SimulationOf(Hole());
+  const Simulation simulation = SimulationOf(HoleOfBlocks());
   const std::vector<SimulatedStep> steps = Sent(simulation);
   // One by one no block has more than one sample, and each goes the long way.
-  const std::string one = Surveyed(simulation, JobOf(Hole()), steps, 1);
+  const std::string one = Surveyed(simulation, JobOf(HoleOfBlocks()), steps, 1);
   EXPECT_NE(one.find("impossible beside their neighbours"), std::string::npos);
   EXPECT_NE(one.find("the clock jumps before"), std::string::npos);
   EXPECT_NE(one.find("are missing"), std::string::npos);
   EXPECT_NE(one.find("depth_jump"), std::string::npos);
   for (const std::size_t batch : {7u, 64u, 500u, 3000u}) {
-    EXPECT_EQ(Surveyed(simulation, JobOf(Hole()), steps, batch), one) << batch;
+    EXPECT_EQ(Surveyed(simulation, JobOf(HoleOfBlocks()), steps, batch), one) << batch;
   }
 }
 
