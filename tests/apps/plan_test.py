@@ -66,6 +66,20 @@ class Plan(unittest.TestCase):
         rolling = self.Plan("--ellipse-m", "2.7")
         self.assertNotIn("--toolfaces", rolling.stdout)
 
+    def test_what_is_expected_along_the_way_ends_as_the_plan_says(self):
+        self.assertEqual(self.Plan("--ellipse-m", "2.7").returncode, 0)
+        with open("out/expected.csv", encoding="utf-8") as file:
+            rows = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(file)]
+        self.assertGreater(len(rows), 30)
+        self.assertAlmostEqual(rows[-1]["MD[m]"], 2000, 3)
+        with open("out/plan.txt", encoding="utf-8") as file:
+            said = re.search(r"ellipse ([\d.]+) x ([\d.]+) m", file.read())
+        self.assertAlmostEqual(rows[-1]["SEMI_MAJOR[m]"], float(said[1]), 2)
+        self.assertAlmostEqual(rows[-1]["SEMI_MINOR[m]"], float(said[2]), 2)
+        for before, after in zip(rows, rows[1:]):
+            self.assertGreater(after["MD[m]"], before["MD[m]"])
+            self.assertGreater(after["SEMI_MAJOR[m]"], 0.9 * before["SEMI_MAJOR[m]"])
+
     def test_the_same_inputs_give_the_same_bytes(self):
         texts = []
         for _ in range(2):

@@ -36,6 +36,7 @@ class ToyRun : public RunRows {
     layout_.latitude = 3;
     layout_.sigma.resize(4);
     layout_.sigma << 1, 2, 0.5, 3;
+    layout_.information = layout_.sigma.cwiseAbs2().cwiseInverse().asDiagonal();
     information_.setZero(12, 12);
     information_.diagonal() << VectorXd::Constant(6, 0.01), 1e6, 1e6, 1, 0.25, 4, 1. / 9;
     for (int i = 0; i < 12; ++i) Row(i < 8 ? i : (kDenseKnots + 1) * 8 + i - 8, i);

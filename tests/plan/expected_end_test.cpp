@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -86,6 +87,25 @@ TEST(ExpectedEnd, AToldAzimuthTurnsTheWellAboutItsBegin) {
   const ExpectedEnd end = ExpectEnd(c, {}, false);
   EXPECT_NEAR(end.semi_major, 2.4477 * 20 * *c.sigma_start_azimuth, 0.02 * end.semi_major);
   EXPECT_NEAR(std::remainder(end.azimuth_major - 120 * units::kDeg, kPi), 0, 0.02);
+}
+
+// A told azimuth turns each place about the begin: across the hole it is off by its way times the
+// sine of the inclination times that.
+TEST(ExpectedEnd, AlongTheWayATurnGrowsWithTheWay) {
+  PlanCase c = NoiseAlone(40, 70, 55);
+  c.sigma_start_azimuth = 0.01 * units::kDeg;
+  const std::vector<ExpectedPlace> places = ExpectAlong(c, {}, 5);
+  ASSERT_EQ(places.size(), 4u);
+  const Eigen::Vector3d across(-std::sin(70 * units::kDeg), std::cos(70 * units::kDeg), 0);
+  for (const ExpectedPlace& place : places) {
+    const double sigma = place.md * std::sin(40 * units::kDeg) * *c.sigma_start_azimuth;
+    const double said = std::sqrt(across.dot(place.cov_p_WT_W * across));
+    EXPECT_NEAR(said / sigma, 1, 0.02) << place.md;
+  }
+  EXPECT_NEAR(places.back().md, 20, 1e-9);
+  const ExpectedEnd end = ExpectEnd(c, {}, false);
+  EXPECT_LT((places.back().cov_p_WT_W - end.cov_p_WT_W).norm(), 1e-9 * end.cov_p_WT_W.norm());
+  EXPECT_THROW(ExpectAlong(c, {}, 0), std::invalid_argument);
 }
 
 TEST(ExpectedEnd, DepthStandsAlongTheHoleAndThePath) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 
 #include <Eigen/Geometry>
 
@@ -18,16 +19,22 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-LinearRun::Columns EndColumns(const LinearRun& run, std::span<const Matrix3d> end) {
+/// What attitudes alone make of a place's covariance, of how it moves with every node's phi.
+Matrix3d CovarianceOf(const LinearRun& run, std::span<const Matrix3d> by_phi) {
   LinearRun::Columns columns;
   const Layout& layout = run.layout();
-  for (const Matrix3d& by_phi : end) {
+  for (const Matrix3d& of_node : by_phi) {
     Eigen::MatrixXd node = Eigen::MatrixXd::Zero(layout.node, 3);
-    node.middleRows<3>(layout.phi) = by_phi.transpose();
+    node.middleRows<3>(layout.phi) = of_node.transpose();
     columns.nodes.push_back(std::move(node));
   }
   columns.border = Eigen::MatrixXd::Zero(layout.border, 3);
-  return columns;
+  run.SolveFor(columns);
+  Matrix3d cov = Matrix3d::Zero();
+  for (std::size_t k = 0; k < by_phi.size(); ++k) {
+    cov += by_phi[k] * columns.nodes[k].middleRows<3>(layout.phi);
+  }
+  return 0.5 * (cov + cov.transpose());
 }
 
 std::size_t DeepestOf(std::span<const Node> nodes) {
@@ -88,13 +95,7 @@ ExpectedEnd ExpectEnd(const PlanCase& c, std::span<const PlannedStop> stops, boo
   if (!run.Solve()) return expected;
   expected.solved = true;
   const std::vector<Matrix3d> end = EndByPhi(rows.nodes());
-  LinearRun::Columns columns = EndColumns(run, end);
-  run.SolveFor(columns);
-  Matrix3d cov = DepthCovariance(c);
-  for (std::size_t k = 0; k < end.size(); ++k) {
-    cov += end[k] * columns.nodes[k].middleRows<3>(run.layout().phi);
-  }
-  expected.cov_p_WT_W = 0.5 * (cov + cov.transpose());
+  expected.cov_p_WT_W = DepthCovariance(c) + CovarianceOf(run, end);
   const ErrorEllipse ellipse = HorizontalEllipse(expected.cov_p_WT_W, 0.95);
   expected.semi_major = ellipse.semi_major;
   expected.semi_minor = ellipse.semi_minor;
@@ -102,6 +103,28 @@ ExpectedEnd ExpectEnd(const PlanCase& c, std::span<const PlannedStop> stops, boo
   expected.sigma_azimuth = SigmaAzimuth(run, rows);
   if (with_faults) TakeFaults(c, rows, end, expected);
   return expected;
+}
+
+std::vector<ExpectedPlace> ExpectAlong(const PlanCase& c, std::span<const PlannedStop> stops,
+                                       double spacing) {
+  if (!(spacing > 0)) throw std::invalid_argument("ExpectAlong: a spacing must be positive");
+  SyntheticRun rows(c, stops, SetupOfPlan(c));
+  LinearRun run(rows);
+  std::vector<ExpectedPlace> places;
+  if (!run.Solve()) return places;
+  const std::size_t nodes = rows.nodes().size(), deepest = DeepestOf(rows.nodes());
+  PlanCase part = c;
+  double next = c.way.begin_md + spacing;
+  for (std::size_t k = 1; k <= deepest; ++k) {
+    const double md = rows.nodes()[k].md;
+    if (md < next && k < deepest) continue;
+    std::vector<Matrix3d> by_phi = EndByPhi(rows.nodes().first(k + 1));
+    by_phi.resize(nodes, Matrix3d::Zero());
+    part.way.end_md = md;
+    places.push_back({md, DepthCovariance(part) + CovarianceOf(run, by_phi)});
+    while (next <= md) next += spacing;
+  }
+  return places;
 }
 
 }  // namespace wellgyro

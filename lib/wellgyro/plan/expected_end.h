@@ -34,6 +34,19 @@ struct ExpectedEnd {
 WELLGYRO_EXPORT ExpectedEnd ExpectEnd(const PlanCase& c, std::span<const PlannedStop> stops,
                                       bool with_faults);
 
+/// A place of the way in, as seen from the first.
+struct ExpectedPlace {
+  double md = 0;                                         ///< [m]
+  Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< as ExpectedEnd's [m^2]
+};
+
+/// The same all along the way in, every `spacing` [m] and at its end, by what the whole run will
+/// tell. Empty where nothing tells the azimuth. Throws as CheckPlanCase(), and
+/// std::invalid_argument for a spacing that is not positive.
+WELLGYRO_EXPORT std::vector<ExpectedPlace> ExpectAlong(const PlanCase& c,
+                                                       std::span<const PlannedStop> stops,
+                                                       double spacing);
+
 /// What the errors of depth add at the way's end [m^2].
 Eigen::Matrix3d DepthCovariance(const PlanCase& c);
 

@@ -15,6 +15,7 @@
 #include "wellgyro/io/toml/plan_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/tool_file.h"
+#include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
 namespace {
@@ -227,6 +228,24 @@ std::string Summary(const PlanReport& report) {
   return text;
 }
 
+/// What the surveys of the plan are to say along the way in: some fifty places, at whole tens of
+/// metres apart.
+std::string AlongCsv(const PlanReport& report) {
+  const PlannedWay& way = report.c.way;
+  const double spacing = 10 * std::max(1.0, std::ceil((way.end_md - way.begin_md) / 500));
+  std::string text =
+      "MD[m],VAR_NN[m2],COV_NE[m2],COV_NV[m2],VAR_EE[m2],COV_EV[m2],VAR_VV[m2],SEMI_MAJOR[m],"
+      "SEMI_MINOR[m],AZI_MAJOR[deg]\n";
+  for (const ExpectedPlace& place : ExpectAlong(report.c, report.plan.stops, spacing)) {
+    const Eigen::Matrix3d& cov = place.cov_p_WT_W;
+    const ErrorEllipse ellipse = HorizontalEllipse(cov, 0.95);
+    text += fmt::format("{:.4f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.4f},{:.4f},{:.3f}\n",
+                        place.md, cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2),
+                        ellipse.semi_major, ellipse.semi_minor, ToDegrees(ellipse.azimuth_major));
+  }
+  return text;
+}
+
 }  // namespace
 
 Result<PlanAnswer> AnswerPlan(const PlanRequest& request) {
@@ -243,6 +262,7 @@ Result<PlanAnswer> AnswerPlan(const PlanRequest& request) {
     std::string text = answer.summary;
     for (const std::string& note : answer.notes) text += "note: " + note + "\n";
     answer.files.push_back({"plan.txt", text});
+    answer.files.push_back({"expected.csv", AlongCsv(report)});
     answer.files.push_back({"plan.toml", PlanToml(report)});
     return answer;
   } catch (const TomlError& error) {
