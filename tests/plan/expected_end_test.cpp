@@ -94,6 +94,7 @@ TEST(ExpectedEnd, AToldAzimuthTurnsTheWellAboutItsBegin) {
 TEST(ExpectedEnd, AlongTheWayATurnGrowsWithTheWay) {
   PlanCase c = NoiseAlone(40, 70, 55);
   c.sigma_start_azimuth = 0.01 * units::kDeg;
+  c.way.speed_in = 1;  // knots of 4 m
   const std::vector<ExpectedPlace> places = ExpectAlong(c, {}, 5);
   ASSERT_EQ(places.size(), 4u);
   const Eigen::Vector3d across(-std::sin(70 * units::kDeg), std::cos(70 * units::kDeg), 0);

@@ -40,9 +40,9 @@ struct ExpectedPlace {
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< as ExpectedEnd's [m^2]
 };
 
-/// The same all along the way in, every `spacing` [m] and at its end, by what the whole run will
-/// tell. Empty where nothing tells the azimuth. Throws as CheckPlanCase(), and
-/// std::invalid_argument for a spacing that is not positive.
+/// The same all along the way in, at the first node past every `spacing` [m] and at its end, by
+/// what the whole run will tell. Empty where nothing tells the azimuth. Throws as CheckPlanCase(),
+/// and std::invalid_argument for a spacing that is not positive.
 WELLGYRO_EXPORT std::vector<ExpectedPlace> ExpectAlong(const PlanCase& c,
                                                        std::span<const PlannedStop> stops,
                                                        double spacing);

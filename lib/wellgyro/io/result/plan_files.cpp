@@ -228,8 +228,7 @@ std::string Summary(const PlanReport& report) {
   return text;
 }
 
-/// What the surveys of the plan are to say along the way in: some fifty places, at whole tens of
-/// metres apart.
+/// What the surveys of the plan are to say along the way in, at some fifty places.
 std::string AlongCsv(const PlanReport& report) {
   const PlannedWay& way = report.c.way;
   const double spacing = 10 * std::max(1.0, std::ceil((way.end_md - way.begin_md) / 500));
