@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
+#include <span>
 
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/calibration/errors_in_use.h"
@@ -15,20 +15,22 @@ namespace {
 /// One number of a job's [errors], and the errors of the estimator that it speaks of.
 struct ErrorKind {
   double ErrorPriors::*sigma;
-  std::initializer_list<ErrorSource> sources;
+  std::size_t count;
+  std::array<ErrorSource, 6> sources;  ///< the first `count` of them
 };
 
-const std::array kKinds{
-    ErrorKind{&ErrorPriors::gyro_bias_sigma, {kGyroBiasX, kGyroBiasY, kGyroBiasZ}},
-    ErrorKind{&ErrorPriors::mass_unbalance_sigma, {kMassUnbalance}},
-    ErrorKind{&ErrorPriors::quadrature_sigma, {kQuadrature}},
-    ErrorKind{&ErrorPriors::gyro_scale_sigma, {kGyroScaleX, kGyroScaleY, kGyroScaleZ}},
-    ErrorKind{&ErrorPriors::gyro_misalignment_sigma, {kMisalignmentX, kMisalignmentY}},
-    ErrorKind{&ErrorPriors::accel_bias_sigma, {kAccelBiasX, kAccelBiasY, kAccelBiasZ}},
-    ErrorKind{&ErrorPriors::accel_scale_sigma, {kAccelScaleX, kAccelScaleY, kAccelScaleZ}},
+constexpr std::array kKinds{
+    ErrorKind{&ErrorPriors::gyro_bias_sigma, 3, {{kGyroBiasX, kGyroBiasY, kGyroBiasZ}}},
+    ErrorKind{&ErrorPriors::mass_unbalance_sigma, 1, {{kMassUnbalance}}},
+    ErrorKind{&ErrorPriors::quadrature_sigma, 1, {{kQuadrature}}},
+    ErrorKind{&ErrorPriors::gyro_scale_sigma, 3, {{kGyroScaleX, kGyroScaleY, kGyroScaleZ}}},
+    ErrorKind{&ErrorPriors::gyro_misalignment_sigma, 2, {{kMisalignmentX, kMisalignmentY}}},
+    ErrorKind{&ErrorPriors::accel_bias_sigma, 3, {{kAccelBiasX, kAccelBiasY, kAccelBiasZ}}},
+    ErrorKind{&ErrorPriors::accel_scale_sigma, 3, {{kAccelScaleX, kAccelScaleY, kAccelScaleZ}}},
     ErrorKind{&ErrorPriors::accel_misalignment_sigma,
-              {kToolfaceOffset, kAccelMisalignmentX, kAccelMisalignmentY, kAccelShear,
-               kAccelMisalignmentZX, kAccelMisalignmentZY}}};
+              6,
+              {{kToolfaceOffset, kAccelMisalignmentX, kAccelMisalignmentY, kAccelShear,
+                kAccelMisalignmentZX, kAccelMisalignmentZY}}}};
 
 /// Splits what the job states of a kind: `left` of it is the calibration's.
 void Split(const ErrorKind& kind, double left, ErrorMatrix& cov, double& stated) {
@@ -36,7 +38,7 @@ void Split(const ErrorKind& kind, double left, ErrorMatrix& cov, double& stated)
   constexpr double kSame = 1e-6;
   if (!(left > 0)) return;
   if (stated < left * (1 - kSame)) {
-    for (const ErrorSource source : kind.sources) {
+    for (const ErrorSource source : std::span(kind.sources).first(kind.count)) {
       cov.row(source) *= stated / left;
       cov.col(source) *= stated / left;
     }
