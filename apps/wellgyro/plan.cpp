@@ -63,7 +63,8 @@ void AddPlanFiles(CLI::App& command, PlanOptions& o) {
       ->type_name("FILE");
   command.add_option("--noise", r.noise, "noise file of the gyros, in place of the job's")
       ->type_name("FILE");
-  command.add_option("--out", o.out, "folder for plan.toml, plan.svg, plan.txt and expected.csv")->required();
+  command.add_option("--out", o.out, "folder for plan.toml, plan.svg, plan.txt and expected.csv")
+      ->required();
 }
 
 void AddLimits(CLI::App& command, PlanOptions& o) {
