@@ -178,9 +178,10 @@ struct JumpCase {
 // Each once ended a survey at the jump, without a word: 2026-11-21.
 TEST(SampleQueue, BehindAClockThatJumpsNothingIsLost) {
   constexpr int kBefore = 3000, kAll = 6000;
-  for (const auto& [seq, tool] :
+  for (const JumpCase& jump :
        {JumpCase{0, 1'000'000'000}, JumpCase{0, -10'000'000'000}, JumpCase{-2500, 0},
         JumpCase{7000, 0}, JumpCase{-kBefore, -30'000'000'000}}) {
+    const std::int64_t seq = jump.seq_ahead, tool = jump.tool_ahead_ns;
     SampleQueue queue(Duration::Seconds(6));
     std::vector<std::int64_t> utcs;
     int jumps = 0;
@@ -211,7 +212,7 @@ TEST(SampleQueue, BehindAClockThatJumpsNothingIsLost) {
 }
 
 TEST(SampleQueue, AMessageOfWildTimesIsAStrayAndMakesNoOtherLate) {
-  for (const auto& [seq, tool] :
+  for (const JumpCase& jump :
        {JumpCase{0, 1'000'000'000'000}, JumpCase{1'000'000, 0},
         JumpCase{1'000'000, 10'000'000'000'000}, JumpCase{0, -3'000'000'000}}) {
     SampleQueue queue(Duration::Seconds(6));
