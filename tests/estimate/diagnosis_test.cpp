@@ -36,12 +36,24 @@ class ToyRun : public RunRows {
     layout_.latitude = 3;
     layout_.sigma.resize(4);
     layout_.sigma << 1, 2, 0.5, 3;
-    layout_.information = layout_.sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+    // A prior whose errors go together, as a calibration's do: information U'U.
+    Eigen::Matrix4d correlation = Eigen::Matrix4d::Identity();
+    correlation(0, 1) = correlation(1, 0) = 0.6;
+    correlation(1, 3) = correlation(3, 1) = -0.4;
+    const auto per_sigma = layout_.sigma.cwiseInverse().asDiagonal();
+    layout_.information = per_sigma * correlation.inverse() * per_sigma;
+    prior_ = Eigen::Matrix4d(layout_.information).llt().matrixU();
     information_.setZero(12, 12);
-    information_.diagonal() << VectorXd::Constant(6, 0.01), 1e6, 1e6, 1, 0.25, 4, 1. / 9;
-    for (int i = 0; i < 12; ++i) Row(i < 8 ? i : (kDenseKnots + 1) * 8 + i - 8, i);
+    information_.diagonal() << VectorXd::Constant(6, 0.01), 1e6, 1e6, Eigen::Vector4d::Zero();
+    information_.bottomRightCorner(4, 4) = layout_.information;
+    for (int i = 0; i < 8; ++i) Row(VectorXd::Unit(kUnknowns, i) * std::sqrt(information_(i, i)));
+    for (int i = 0; i < 4; ++i) {
+      VectorXd row = VectorXd::Zero(kUnknowns);
+      row.tail(4) = prior_.row(i);
+      Row(row);
+    }
     for (int k = 0; k < kDenseKnots; ++k) AddKnot(k);
-    for (int i = 0; i < 4; ++i) border_[i] = layout_.sigma[i] * noise_[8 + i];
+    border_ = prior_.inverse() * PriorNoise();
   }
 
   const Layout& layout() const override { return layout_; }
@@ -49,7 +61,8 @@ class ToyRun : public RunRows {
   void FirstRows(EdgeMatrix& information, EdgeVector& gradient) const override {
     information = information_;
     gradient.resize(12);
-    for (int i = 0; i < 12; ++i) gradient[i] = std::sqrt(information_(i, i)) * noise_[i];
+    for (int i = 0; i < 8; ++i) gradient[i] = std::sqrt(information_(i, i)) * noise_[i];
+    gradient.tail(4) = prior_.transpose() * PriorNoise();
   }
   void RowsOf(std::size_t k, std::vector<Factor>& rows) override {
     rows.insert(rows.end(), factors_[k].begin(), factors_[k].end());
@@ -86,6 +99,12 @@ class ToyRun : public RunRows {
     }
     return column;
   }
+  /// Column of what an unknown of the border is beyond its prior.
+  VectorXd BeyondPrior(int unknown) const {
+    VectorXd column = VectorXd::Zero(rows());
+    column.segment<4>(8) = prior_.col(unknown);
+    return column;
+  }
   /// First row of the first factor of this kind.
   Eigen::Index RowOf(std::size_t knot, RowKind kind) const {
     for (const Factor& f : factors_[knot]) {
@@ -98,10 +117,10 @@ class ToyRun : public RunRows {
   // The row's place is kept where the test can find it again.
   static std::size_t RowAt(const Factor& f) { return static_cast<std::size_t>(f.held); }
 
-  void Row(int column, int i) {
-    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero((kDenseKnots + 1) * 8 + 4);
-    row[column] = std::sqrt(information_(i, i));
-    dense_.push_back(row);
+  Eigen::Vector4d PriorNoise() const { return Eigen::Map<const Eigen::Vector4d>(&noise_[8]); }
+
+  void Row(const VectorXd& row) {
+    dense_.push_back(row.transpose());
     noise_.push_back(random_.Normal());
   }
 
@@ -149,7 +168,9 @@ class ToyRun : public RunRows {
 
   Random random_;
   Layout layout_;
+  static constexpr int kUnknowns = (kDenseKnots + 1) * 8 + 4;
   EdgeMatrix information_;
+  Eigen::Matrix4d prior_;  ///< U
   BorderVector border_ = BorderVector::Zero(4);
   std::vector<std::vector<Factor>> factors_;
   std::vector<Eigen::RowVectorXd> dense_;
@@ -237,8 +258,8 @@ TEST(Diagnosis, IsThatOfTheDenseAlgebra) {
       motions.push_back(Unit(dense, run.RowOf(k, RowKind::kRest) + i, by));
     }
   }
-  same(0, {Unit(dense, 8, 1)});
-  same(1, {Unit(dense, 11, 1. / 3)});
+  same(0, {run.BeyondPrior(0)});
+  same(1, {run.BeyondPrior(3)});
   same(2, bias_steps);
   same(3, toolface_steps);
   same(4, spikes);
@@ -264,7 +285,7 @@ TEST(Diagnosis, SignaturesCorrelateAsTheyDo) {
   ToyRun run(5);
   const Dense dense(run);
   const Diagnosis d = Diagnose(run, kSpecs, Slopes(), 0.01);
-  const std::vector<VectorXd> columns{Unit(dense, 8, 1), Unit(dense, 11, 1. / 3),
+  const std::vector<VectorXd> columns{run.BeyondPrior(0), run.BeyondPrior(3),
                                       run.Step(0, static_cast<int>(d.tests[2].node)),
                                       run.Step(2, static_cast<int>(d.tests[3].node))};
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -319,8 +340,8 @@ TEST(Diagnosis, TheSmallestIsNoticedAsOftenAsItSays) {
       ToyRun run(5000 + static_cast<std::uint64_t>(seed));
       const CauseTest before = Diagnose(run, specs, slopes, 0.01).tests[spec];
       ASSERT_TRUE(before.noticeable);
-      const VectorXd column = spec == 1 ? VectorXd(VectorXd::Unit(run.rows(), 11) / 3)
-                                        : run.Step(2, static_cast<int>(before.smallest_node));
+      const VectorXd column =
+          spec == 1 ? run.BeyondPrior(3) : run.Step(2, static_cast<int>(before.smallest_node));
       if (seed == 0) {
         const Dense dense(run);
         EXPECT_NEAR(before.hidden.norm(), before.smallest * dense.Shift(column, slopes).norm(),

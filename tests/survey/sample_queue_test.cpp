@@ -215,6 +215,7 @@ TEST(SampleQueue, AMessageOfWildTimesIsAStrayAndMakesNoOtherLate) {
   for (const JumpCase& jump :
        {JumpCase{0, 1'000'000'000'000}, JumpCase{1'000'000, 0},
         JumpCase{1'000'000, 10'000'000'000'000}, JumpCase{0, -3'000'000'000}}) {
+    const std::int64_t seq = jump.seq_ahead, tool = jump.tool_ahead_ns;
     SampleQueue queue(Duration::Seconds(6));
     std::int64_t out = 0;
     for (int k = 0; k < 6000; ++k) {
