@@ -4,9 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "wellgyro/estimate/earth_hold.h"
 #include "wellgyro/estimate/hidden_roll.h"
-#include "wellgyro/estimate/likeliest_roll.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
@@ -31,20 +29,10 @@ double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
                      inc.turn_M.dot(earth));
 }
 
-/// Whether gravity and the Earth turn the tool about its axis where the roll is hidden.
-bool TurnsHidden(RollSearch search) {
-  return search != RollSearch::kLikeliestOnly && search != RollSearch::kPhasesHeld;
-}
-
-std::vector<double> SlipBy(RollSearch search, const EstimateSetup& setup,
-                           std::span<const RunKnot> knots, const std::vector<bool>& steady) {
-  if (search == RollSearch::kNeighbours) {
-    return HiddenRoll(knots, kEarthRate * std::cos(setup.site.latitude), steady);
-  }
-  std::vector<double> slip = LikeliestRoll(knots, setup, search == RollSearch::kPhasesHeld);
-  if (search == RollSearch::kLikeliestHeld || search == RollSearch::kPhasesHeld)
-    HoldToEarth(knots, setup, slip);
-  return slip;
+RollTrack TrackBy(RollSearch search, const EstimateSetup& setup, std::span<const RunKnot> knots,
+                  const std::vector<bool>& steady) {
+  if (search != RollSearch::kNeighbours) return TrackRoll(knots, setup);
+  return {HiddenRoll(knots, kEarthRate * std::cos(setup.site.latitude), steady), {}};
 }
 
 }  // namespace
@@ -55,7 +43,7 @@ GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots,
       search_(search),
       extra_roll_(knots.size(), 0),
       steady_(SteadyAcross(knots, setup.gyro.angle_random_walk)),
-      slip_(SlipBy(search, setup, knots, steady_)),
+      track_(TrackBy(search, setup, knots, steady_)),
       nodes_(knots.size() + 1) {}
 
 void GuessPass::Run(std::size_t begin, std::size_t end) {
@@ -63,11 +51,11 @@ void GuessPass::Run(std::size_t begin, std::size_t end) {
   const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
   for (std::size_t k = begin; k < end; ++k) {
     const Increment& inc = knots_[k].increment;
-    const double extra = extra_roll_[k] + slip_[k] * inc.seconds;
+    const double extra = extra_roll_[k] + track_.beyond_psi[k] * inc.seconds;
     const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
     Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT *
                  RotationZ(inc.roll_before + 0.5 * extra) * half;
-    const bool turned = inc.roll_seen || TurnsHidden(search_);
+    const bool turned = inc.roll_seen || search_ != RollSearch::kTrackAlone;
     if (turned && !inc.roll_seen && steady_[k]) {
       M = M * RotationZ(kEarthShare * AngleToEarth(inc, M.transpose() * earth));
     }

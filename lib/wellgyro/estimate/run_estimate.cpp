@@ -183,30 +183,39 @@ struct Choice {
   double least_evidence = HUGE_VAL;  ///< of all guesses, those that lead to no solution too
 };
 
-/// Each guess with the roll as a swing where it is one, and as a walk.
+/// Solves from one guess; keeps the solution where it betters those before. Returns where it ended.
+NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
+                    std::span<const RunKnot> knots, const RunState* before, Solution& solution,
+                    Choice& choice) {
+  auto solver = std::make_unique<RunSolver>(setup, knots, before);
+  solver->nodes() = guess;
+  const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
+  const SolveReport report = solver->Solve(kSolveIterations, best + kDecides);
+  NodeGuess nodes = solver->nodes();
+  choice.least_evidence = std::min(choice.least_evidence, report.evidence);
+  if (!report.converged || !(report.evidence < solution.evidence)) return nodes;
+  solution = {report.evidence, nodes, solver->border()};
+  if (choice.solver && !(report.evidence < choice.report.evidence)) return nodes;
+  choice.report = report;
+  choice.solver = std::move(solver);
+  return nodes;
+}
+
+/// Each guess with the roll as a walk, and as a swing where it is one: by what gravity shows of it,
+/// else where it is hidden by what the walk's solution has found.
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
               std::span<const NodeGuess> guesses, const RunState* before) {
-  std::vector<EstimateSetup> setups{setup};
-  const std::optional<double> swing = setup.may_swing ? SwingOf(knots) : std::nullopt;
-  if (swing) {
-    setups.insert(setups.begin(), setup);
-    setups.front().swing = swing;
-  }
+  EstimateSetup swings = setup;
+  if (setup.may_swing) swings.swing = SwingOf(knots);
+  const bool seen = swings.swing.has_value();
   std::vector<Solution> solutions(guesses.size());
   Choice choice;
   for (std::size_t i = 0; i < guesses.size(); ++i) {
-    for (const EstimateSetup& tried : setups) {
-      auto solver = std::make_unique<RunSolver>(tried, knots, before);
-      solver->nodes() = guesses[i];
-      const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
-      const SolveReport report = solver->Solve(kSolveIterations, best + kDecides);
-      choice.least_evidence = std::min(choice.least_evidence, report.evidence);
-      if (!report.converged || !(report.evidence < solutions[i].evidence)) continue;
-      solutions[i] = {report.evidence, solver->nodes(), solver->border()};
-      if (choice.solver && !(report.evidence < choice.report.evidence)) continue;
-      choice.report = report;
-      choice.solver = std::move(solver);
-    }
+    if (seen) SolveFrom(guesses[i], swings, knots, before, solutions[i], choice);
+    const NodeGuess walk = SolveFrom(guesses[i], setup, knots, before, solutions[i], choice);
+    if (seen || !setup.may_swing || !AnyRollIsHidden(knots)) continue;
+    swings.swing = SwingOf(knots, walk);
+    if (swings.swing) SolveFrom(walk, swings, knots, before, solutions[i], choice);
   }
   for (Solution& s : solutions) {
     if (!(s.evidence - choice.report.evidence < kDecides)) continue;

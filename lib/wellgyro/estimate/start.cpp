@@ -51,11 +51,20 @@ void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std
   for (std::size_t k = begin; k < end; ++k) extra[k] += angle * weight(k) / sum;
 }
 
+/// The anchors with those that the Earth shows, in the order of time.
+Start WithHeadings(Start anchors, std::span<const NodeHeading> headings) {
+  for (const NodeHeading& h : headings) anchors.push_back({h.node, RotationZ(h.heading)});
+  std::stable_sort(anchors.begin(), anchors.end(),
+                   [](const Anchor& a, const Anchor& b) { return a.node < b.node; });
+  return anchors;
+}
+
 }  // namespace
 
-NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start,
+NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& known,
                   RollSearch search) {
   GuessPass pass(setup, knots, search);
+  const Start start = WithHeadings(known, pass.headings());
   Matrix3d first = LevelAttitude(knots);
   pass.Begin(first);
   std::size_t from = 0;

@@ -26,18 +26,20 @@ struct Point {
   double time, rate;
 };
 
-/// Stretches of the run with the roll in sight, the mean rate of each taken out.
-std::vector<std::vector<Point>> Segments(std::span<const RunKnot> knots) {
+/// Stretches of the run between stops, the mean rate of each taken out. What the tool swings by
+/// before a stop has not the phase of what it swings by behind it. `rate_of`: of a knot, where
+/// known.
+template <typename RateOf>
+std::vector<std::vector<Point>> Segments(std::span<const RunKnot> knots, const RateOf& rate_of) {
   std::vector<std::vector<Point>> segments(1);
   double time = 0;
-  for (const RunKnot& knot : knots) {
-    const Increment& i = knot.increment;
-    time += i.seconds;
-    const bool whole = !segments.back().empty() && time - segments.back().front().time > kSegment;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    time += knots[k].increment.seconds;
+    const bool whole = !segments.back().empty() &&
+                       (knots[k].still || time - segments.back().front().time > kSegment);
     if (whole) segments.emplace_back();
-    if (i.roll_seen && !knot.still) {
-      segments.back().push_back({time, (i.roll_before + i.roll_after) / i.seconds});
-    }
+    if (knots[k].still) continue;
+    if (const std::optional<double> rate = rate_of(k)) segments.back().push_back({time, *rate});
   }
   std::erase_if(segments, [](const auto& s) { return s.size() < kLeastSeen; });
   if (segments.size() > kSegmentsMost) segments.resize(kSegmentsMost);
@@ -86,10 +88,8 @@ class Lines {
   std::vector<Complex> lines_, steps_;
 };
 
-}  // namespace
-
-std::optional<double> SwingOf(std::span<const RunKnot> knots) {
-  const std::vector<std::vector<Point>> segments = Segments(knots);
+std::optional<double> SwingIn(std::span<const RunKnot> knots,
+                              const std::vector<std::vector<Point>>& segments) {
   double squares = 0, count = 0;
   for (const auto& segment : segments) {
     for (const Point& p : segment) squares += p.rate * p.rate;
@@ -113,6 +113,22 @@ std::optional<double> SwingOf(std::span<const RunKnot> knots) {
   const double omega = first + step * static_cast<double>(top - explained.begin());
   const double before = *(top - 1), after = *(top + 1), bend = before - 2 * *top + after;
   return bend < 0 ? omega + 0.5 * step * (before - after) / bend : omega;
+}
+
+}  // namespace
+
+std::optional<double> SwingOf(std::span<const RunKnot> knots) {
+  const auto seen = [&](std::size_t k) -> std::optional<double> {
+    const Increment& i = knots[k].increment;
+    if (!i.roll_seen) return std::nullopt;
+    return (i.roll_before + i.roll_after) / i.seconds;
+  };
+  return SwingIn(knots, Segments(knots, seen));
+}
+
+std::optional<double> SwingOf(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+  const auto solved = [&](std::size_t k) { return std::optional(nodes[k].roll_rate); };
+  return SwingIn(knots, Segments(knots, solved));
 }
 
 }  // namespace wellgyro

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "wellgyro/estimate/node.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
@@ -11,6 +12,9 @@ namespace wellgyro {
 /// shows it is one line between a period of a minute and two knots [rad/s]:
 /// within kSwingSigma, a quarter of the width of a line of 600 s.
 std::optional<double> SwingOf(std::span<const RunKnot> knots);
+/// The same of a solution whose rate walks, wherever the tool moves: a roll that gravity hardly
+/// shows is known there by all that the run says.
+std::optional<double> SwingOf(std::span<const RunKnot> knots, std::span<const Node> nodes);
 
 inline constexpr double kSwingSigma = 2.6e-3;
 

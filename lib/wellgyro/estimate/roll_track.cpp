@@ -1,0 +1,209 @@
+#include "wellgyro/estimate/roll_track.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/hidden_roll.h"
+#include "wellgyro/math/square.h"
+
+namespace wellgyro {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Vector2cd;
+using Eigen::Vector3cd;
+
+// Grid of the roll rate: to 21 rpm, by a tenth of the width 2 pi / 40 s of a window's line.
+constexpr int kRates = 221, kMiddle = kRates / 2;
+constexpr double kStep = 0.02;  // [rad/s]
+constexpr int kFiner = 16;      // parts of a step, in which the likeliest rate is sought again
+// A line of the Earth's rate stands out of gyros of 0.05 deg/sqrt(h) by twenty sigmas.
+constexpr std::size_t kWindow = 40, kStride = 10;  // [knots]
+constexpr std::size_t kLeastWindow = 10;           // five unknowns of twice as many numbers each
+// From window to window a rate changes as Laplace has it, by 0.1 rad/s, or it starts or stops,
+// which has one chance in 3000.
+constexpr double kChange = 0.1, kJump = 8;
+constexpr double kOfEarthLeast = 0.7, kOfEarthMost = 1.4;  // of the line, where it is the Earth's
+// Where a tool states no noise: a hundredth of a navigation gyro's, of a microgal's.
+constexpr double kLeastGyroNoise = 1e-9, kLeastAccelNoise = 1e-6;
+using Costs = std::array<double, kRates>;
+
+double RateOf(std::size_t i) { return (static_cast<int>(i) - kMiddle) * kStep; }
+
+/// A window's likelihood, and the Earth's rate in it, in the frame of the tool at its middle node.
+struct Line {
+  double cost = 0;  ///< -ln, but for constants
+  Complex earth;
+};
+
+/// Some knots in which the tool turns evenly. With lean l0 + l1 t in P, which follows the axis and
+/// does not turn about it, and z = exp(-i rate t),
+///   force / g:  z (l0 + l1 t) + d,      rate across:  z (E + i l1) + c,
+/// where c and d are what the sensors read wrongly and steadily: bias, and skewness of axes.
+class Window {
+ public:
+  Window(std::span<const RunKnot> knots, const EstimateSetup& setup) : setup_(setup) {
+    const double gravity = setup.site.gravity;
+    double t = 0;
+    for (std::size_t k = 0; k < knots.size() / 2; ++k) t -= knots[k].increment.seconds;
+    for (const RunKnot& knot : knots) {
+      const Increment& i = knot.increment;
+      times_.push_back(t + 0.5 * i.seconds);
+      forces_.emplace_back(i.force_M.x() / gravity, i.force_M.y() / gravity);
+      rates_.emplace_back(i.turn_M.x() / i.seconds, i.turn_M.y() / i.seconds);
+      t += i.seconds;
+      seconds_ += i.seconds;
+    }
+    size_ = static_cast<double>(knots.size());
+    const double root = std::sqrt(seconds_ / size_);
+    gyro_noise_ = std::max(setup.gyro.angle_random_walk, kLeastGyroNoise) / root;
+    accel_noise_ = std::max(setup.errors.accel_noise, kLeastAccelNoise) / gravity / root;
+  }
+
+  /// Least squares of the lean, then of the Earth's rate with the bend that the lean has, each with
+  /// its noise unknown but not below what is stated: -ln L = n ln(squares / n).
+  Line At(double rate) const {
+    Eigen::Matrix3cd of_force = Eigen::Matrix3cd::Zero();
+    Eigen::Matrix2cd of_rate = Eigen::Matrix2cd::Zero();
+    Vector3cd force = Vector3cd::Zero();
+    Vector2cd turn = Vector2cd::Zero();
+    double force_squares = 0, turn_squares = 0;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const Complex z = std::polar(1.0, -rate * times_[k]);
+      const Vector3cd row(z, z * times_[k], 1);
+      of_force += row.conjugate() * row.transpose();
+      force += row.conjugate() * forces_[k];
+      force_squares += std::norm(forces_[k]);
+      turn += Vector2cd(std::conj(z), 1) * rates_[k];
+      turn_squares += std::norm(rates_[k]);
+    }
+    of_rate << of_force(0, 0), of_force(0, 2), of_force(2, 0), of_force(2, 2);
+    of_force(2, 2) += Square(accel_noise_ * setup_.site.gravity / setup_.errors.accel_bias_sigma);
+    const Vector3cd lean = of_force.ldlt().solve(force);
+    const double force_left = std::max(force_squares - lean.dot(force).real(), 0.0);
+    // The gyros without the bend.
+    const Complex bend = Complex(0, 1) * lean[1];
+    turn_squares += size_ * std::norm(bend) - 2 * (std::conj(bend) * turn[0]).real();
+    turn -= bend * of_rate.col(0);
+    const double steady =
+        std::hypot(setup_.errors.gyro_bias_sigma, rate * setup_.errors.gyro_misalignment_sigma);
+    of_rate(1, 1) += Square(gyro_noise_ / steady);
+    const Vector2cd found = of_rate.ldlt().solve(turn);
+    const double turn_left = std::max(turn_squares - found.dot(turn).real(), 0.0);
+    return {size_ * (std::log(force_left / size_ + 2 * Square(accel_noise_)) +
+                     std::log(turn_left / size_ + 2 * Square(gyro_noise_))),
+            found[0]};
+  }
+
+  /// The likeliest rate within half a step of one.
+  double Finer(double rate) const {
+    double best = rate, least = HUGE_VAL;
+    for (int i = -kFiner / 2; i <= kFiner / 2; ++i) {
+      const double tried = rate + kStep * i / kFiner, cost = At(tried).cost;
+      if (!(cost < least)) continue;
+      least = cost;
+      best = tried;
+    }
+    return best;
+  }
+
+ private:
+  const EstimateSetup& setup_;
+  std::vector<double> times_;  ///< of the middles of knots, from the middle node on [s]
+  std::vector<Complex> forces_, rates_;
+  double size_ = 0, seconds_ = 0, gyro_noise_ = 0, accel_noise_ = 0;
+};
+
+/// The least of `costs` and a change from there, of every rate (the distance transform of
+/// Felzenszwalb and Huttenlocher, 2012), and where it is.
+void LeastChange(Costs& costs, std::array<std::int16_t, kRates>& from) {
+  for (int i = 0; i < kRates; ++i) from[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(i);
+  const auto best = std::min_element(costs.begin(), costs.end());
+  const double jump = *best + kJump;
+  const auto jumped = static_cast<std::int16_t>(best - costs.begin());
+  const auto pass = [&](std::size_t to, std::size_t next) {
+    const double moved = costs[next] + kStep / kChange;
+    if (!(moved < costs[to])) return;
+    costs[to] = moved;
+    from[to] = from[next];
+  };
+  for (std::size_t i = 1; i < kRates; ++i) pass(i, i - 1);
+  for (std::size_t i = kRates - 1; i-- > 0;) pass(i, i + 1);
+  for (std::size_t i = 0; i < kRates; ++i) {
+    if (!(jump < costs[i])) continue;
+    costs[i] = jump;
+    from[i] = jumped;
+  }
+}
+
+/// The rate of every window by the least cost of their whole sequence (Viterbi). Windows overlap:
+/// each counts with the share that is new.
+std::vector<double> RatesOf(std::span<const Window> windows, double share) {
+  std::vector<std::array<std::int16_t, kRates>> from(windows.size());
+  Costs least{};
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    LeastChange(least, from[w]);
+    for (std::size_t i = 0; i < kRates; ++i) least[i] += share * windows[w].At(RateOf(i)).cost;
+  }
+  auto at = static_cast<std::size_t>(std::min_element(least.begin(), least.end()) - least.begin());
+  std::vector<double> rates(windows.size());
+  for (std::size_t w = windows.size(); w-- > 0;) {
+    rates[w] = windows[w].Finer(RateOf(at));
+    at = static_cast<std::size_t>(from[w][at]);
+  }
+  return rates;
+}
+
+/// One stretch of hidden knots, from `first` of the run on.
+void TrackStretch(std::span<const RunKnot> knots, const EstimateSetup& setup, std::size_t first,
+                  RollTrack& track) {
+  const std::size_t width = std::min(kWindow, knots.size());
+  std::vector<std::size_t> begins;
+  for (std::size_t b = 0; b + width < knots.size(); b += kStride) begins.push_back(b);
+  begins.push_back(knots.size() - width);
+  std::vector<Window> windows;
+  for (const std::size_t b : begins) windows.emplace_back(knots.subspan(b, width), setup);
+  const double share = static_cast<double>(kStride) / kWindow;
+  const std::vector<double> rates = RatesOf(windows, share);
+  const double earth = kEarthRate * std::cos(setup.site.latitude);
+  std::size_t k = 0;
+  for (std::size_t w = 0; w < begins.size(); ++w) {
+    const Complex found = windows[w].At(rates[w]).earth;
+    const double ratio = std::abs(found) / earth;
+    // A tool that has turned to the right sees north turned to the left.
+    if (ratio > kOfEarthLeast && ratio < kOfEarthMost) {
+      track.headings.push_back({first + begins[w] + width / 2, -std::arg(found)});
+    }
+    // Up to half way to the next window's middle.
+    const bool last = w + 1 == begins.size();
+    const std::size_t end = last ? knots.size() : (begins[w] + begins[w + 1] + width) / 2;
+    for (; k < end; ++k) {
+      const Increment& i = knots[k].increment;
+      track.beyond_psi[first + k] = rates[w] - (i.roll_before + i.roll_after) / i.seconds;
+    }
+  }
+}
+
+}  // namespace
+
+RollTrack TrackRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+  RollTrack track{std::vector<double>(knots.size(), 0), {}};
+  const auto hidden = [&](std::size_t k) {
+    return RollIsHidden(knots[k]) && knots[k].increment.level && knots[k].increment.seconds > 0;
+  };
+  for (std::size_t begin = 0, end = 0; begin < knots.size(); begin = std::max(end, begin + 1)) {
+    for (end = begin; end < knots.size() && hidden(end);) ++end;
+    if (end - begin < kLeastWindow) continue;
+    TrackStretch(knots.subspan(begin, end - begin), setup, begin, track);
+  }
+  return track;
+}
+
+}  // namespace wellgyro
