@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -251,6 +252,31 @@ TEST(EstimatedRun, IsSentOutByASurveyor) {
   const double variance = estimated.chosen[middle].cov_md_inc_azi(2, 2);
   EXPECT_GT(variance, 0);
   EXPECT_LT(variance, 0.8 * known.chosen[middle].cov_md_inc_azi(2, 2));
+}
+
+// Gyros skewed against the axis seem to turn in a circle, whose middle is not half of its chord:
+// taken for it, the knot's forces lean, and accelerometers that might lean take over a third of the
+// skew.
+TEST(EstimatedRun, SkewedGyrosDoNotLeanTheAccelerometers) {
+  testing::Hour hour;
+  hour.inclination_deg = 35;
+  hour.minutes = 20;
+  hour.stops = 2;
+  hour.noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
+  hour.errors.accel_noise = 1e-5;
+  hour.errors.gyro_misalignment_sigma = 2.5e-4;
+  hour.errors.accel_misalignment_sigma = 7e-5;
+  Simulation simulation = testing::SimulationOf(hour, 0);
+  simulation.tool.errors.gyro_misalignment << 2.1e-4, 0.9e-4;
+  const testing::Flown flown = testing::Fly(simulation, testing::JobOf(hour));
+  const SmoothedRun run = testing::EstimateOf(flown);
+  ASSERT_TRUE(run.fit->converged);
+  // Of two leans of which the run tells the difference alone, the one that is known better takes
+  // its share of the variance: the accelerometers', of two angles, (7e-5)^2 / 2.
+  const double before = 7e-5 * 7e-5 / 2, share = before / (before + 2.5e-4 * 2.5e-4);
+  for (const auto& [source, skew] : {std::pair{kMisalignmentX, 2.1e-4}, {kMisalignmentY, 0.9e-4}}) {
+    EXPECT_NEAR(run.fit->errors[source], skew * (1 - share), 5e-6);
+  }
 }
 
 }  // namespace

@@ -69,6 +69,16 @@ Vector3d ForceBy(const Increment& inc, int source) {
   return source < kTurnSources ? Vector3d(Vector3d::Zero()) : Vector3d(inc.ForceBy(source));
 }
 
+/// By which what skewed gyros (kMisalignmentX, Y, columns) seem to turn leads, in the mean of the
+/// knot's forces, half of what it is over the knot. It is a circle, (e^{i psi} - 1) / i from the
+/// middle on, psi the roll from there: its mean less that of its ends.
+Eigen::Matrix2d SkewBeforeHalf(const Increment& inc) {
+  const Vector2d ends =
+      0.5 * (RotationZ(inc.roll_after) + RotationZ(-inc.roll_before)).topLeftCorner<2, 1>();
+  const Vector2d d = inc.ForceBy(kAccelBiasX).head<2>() - ends;
+  return (Eigen::Matrix2d() << d.y(), d.x(), -d.x(), d.y()).finished();
+}
+
 /// Errors in variables (Fuller, Measurement Error Models, 1987, section 1.2): a scale error
 /// multiplies the true turn, and the reading is the true turn plus noise. With readings for
 /// regressors the square of the noise biases every scale upwards, by one over its information a
@@ -257,7 +267,9 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Vector3d p = path - t.place.site.gravity * down_M;
   // Forces read later than they are stamped are those of a tool that has turned on: dF/dt = F x w.
   const Vector3d by_skew = inc.force_M.cross(Flat(t.turn)) / t.dt;
-  Vector3d force = ForceOf(t, by_skew);
+  const Eigen::Matrix2d beyond = SkewBeforeHalf(inc);
+  const Vector2d skew(SourceAt(t.border, kMisalignmentX), SourceAt(t.border, kMisalignmentY));
+  Vector3d force = ForceOf(t, by_skew) + p.cross(Flat(beyond * skew));
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
   const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
@@ -283,7 +295,9 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
     const int at = layout_.source[static_cast<std::size_t>(i)];
     if (at == kAbsent) continue;
     const Vector3d by_error = i == kTimeSkew ? by_skew : ForceBy(inc, i);
-    f.Column(block.border() + at) = whiten * (0.5 * px * Flat(t.turn_by_error.col(i)) - by_error);
+    Vector2d half = 0.5 * t.turn_by_error.col(i);
+    if (i == kMisalignmentX || i == kMisalignmentY) half += beyond.col(i - kMisalignmentX);
+    f.Column(block.border() + at) = whiten * (px * Flat(half) - by_error);
   }
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
   if (layout_.gravity_gradient != kAbsent) {
