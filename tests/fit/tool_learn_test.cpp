@@ -164,6 +164,7 @@ TEST(ToolLearn, ARunThatSawNothingLeavesTheToolAsItWas) {
   lesson.uses = {{1, 80, 0, -5}};
   lesson.cov = lesson.cov_before = *ErrorsInUse(tool, lesson.uses);
   const ToolCalibration taught = Taught(tool, std::vector{lesson});
+  EXPECT_TRUE(taught.rests_on_prior);
   EXPECT_EQ(ErrorOf(taught, tool).norm(), 0);
   EXPECT_TRUE(taught.gyro.covariance->cov.isApprox(tool.gyro.covariance->cov, 1e-12));
   EXPECT_THROW(Taught(truth, std::vector{lesson}), std::invalid_argument);
@@ -203,6 +204,7 @@ TEST(ToolLearn, ABenchIsJoinedWithWhatWasKnownBefore) {
     const ToolCalibration bench = Found(truth, AnyKnown(random), random);
     const ToolCalibration earlier = Found(other, AnyKnown(random), random);
     const JoinedTool joined = JoinPrior(bench, earlier);
+    EXPECT_TRUE(joined.tool.rests_on_prior);
     square += Square(ErrorOf(joined.tool, truth), joined.tool.gyro.covariance->cov);
     number += static_cast<double>(bench.gyro.covariance->names.size());
     chi_square += joined.chi_square;

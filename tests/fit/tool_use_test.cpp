@@ -248,6 +248,8 @@ TEST(ToolUse, HistoriesTellWalksAndToolsOutOfFamily) {
     }
   }
   const auto histories = HistoriesOf(all, {.temperature = 87.5, .days_ahead = 60});
+  all.back().rests_on_prior = true;
+  EXPECT_THROW(HistoriesOf(all, {}), std::invalid_argument);
   ASSERT_EQ(histories.size(), 12u);
   double walk = 0;
   for (const ToolHistory& history : histories) {

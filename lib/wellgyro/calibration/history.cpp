@@ -22,6 +22,15 @@ const ParameterCovariance& KnownOf(const ToolCalibration& tool) {
                     "calibrate tool writes",
                     tool.asset_serial));
   }
+  // Its change from the calibration that it rests on is less than the tool's, and the covariances
+  // of both count the same readings.
+  if (tool.rests_on_prior) {
+    throw std::invalid_argument(
+        fmt::format("tool {}: a calibration that rests on a prior does not show by itself how the "
+                    "tool changed: give the bench's own, made without --prior and not by calibrate "
+                    "learn",
+                    tool.asset_serial));
+  }
   return *group.covariance;
 }
 

@@ -38,7 +38,8 @@ struct HistorySetup {
 /// walks are by moments. Out of family: the mean square of a tool's changes a day is beyond five
 /// robust sigmas of the others' (five tools and more) and beyond chance, chi-square of its changes
 /// at `false_alarm` a tool. Throws std::invalid_argument for a calibration without a date, or
-/// without the covariance of its members.
+/// without the covariance of its members, or one that rests on a prior: its readings are another's
+/// too.
 WELLGYRO_EXPORT std::vector<ToolHistory> HistoriesOf(std::span<const ToolCalibration> calibrations,
                                                      const HistorySetup& setup);
 

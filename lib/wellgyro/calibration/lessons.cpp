@@ -102,6 +102,7 @@ ToolCalibration Taught(ToolCalibration tool, std::span<const RunLesson> lessons)
     ValueOf(tool, MemberOf(first.names[static_cast<std::size_t>(k)])) -= errors.mean[k];
   }
   group.covariance->cov = errors.cov;
+  tool.rests_on_prior = true;
   tool.errors = ErrorsLeft(tool, tool.errors.value_or(ErrorPriors{}));
   return tool;
 }

@@ -112,6 +112,7 @@ JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
   }
   SensorGroup& group = HasMembers(joined.tool.gyro) ? joined.tool.gyro : joined.tool.accel;
   group.covariance->cov = (own.cov + own.cov.transpose()) / 2;
+  joined.tool.rests_on_prior = true;
   joined.tool.errors = ErrorsLeft(joined.tool, joined.tool.errors.value_or(ErrorPriors{}));
   return joined;
 }

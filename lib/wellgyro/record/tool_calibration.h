@@ -84,6 +84,7 @@ struct ToolCalibration {
   std::string note;                   ///< how it was made
   std::optional<UtcTime> calibrated;  ///< when
   std::optional<UtcTime> expires;     ///< from then on no longer to be relied on
+  bool rests_on_prior = false;        ///< holds what another calibration or runs found as well
   std::vector<ThermometerCalibration> thermometers;
   SensorGroup gyro;                      ///< SI unit rad/s; two channels: across the tool only
   SensorGroup accel;                     ///< SI unit m/s^2

@@ -66,6 +66,7 @@ ToolCalibration TakeToolFile(TomlTable& root) {
   root.Read("note", tool.note);
   tool.calibrated = ReadDate(root, "calibrated");
   tool.expires = ReadDate(root, "expires");
+  root.Read("rests_on_prior", tool.rests_on_prior);
   for (TomlTable& table : root.FindTables("thermometer")) {
     tool.thermometers.push_back(ReadThermometer(table));
   }
@@ -204,6 +205,7 @@ std::string ToolToml(const ToolCalibration& tool) {
   if (!tool.note.empty()) out.Text("note", tool.note);
   if (tool.calibrated) out.Text("calibrated", DateText(*tool.calibrated));
   if (tool.expires) out.Text("expires", DateText(*tool.expires));
+  if (tool.rests_on_prior) out.Flag("rests_on_prior", true);
   for (const ThermometerCalibration& t : tool.thermometers) WriteThermometer(out, t);
   WriteGroup(out, tool.gyro, kGyroWords);
   WriteGroup(out, tool.accel, kAccelWords);
