@@ -183,6 +183,20 @@ struct Choice {
   double least_evidence = HUGE_VAL;  ///< of all guesses, those that lead to no solution too
 };
 
+/// Keeps another solution, once, where it comes near the chosen one.
+void AddRival(Solution other, Choice& choice) {
+  if (!(other.evidence - choice.report.evidence < kDecides)) return;
+  const auto same = [&](std::span<const Node> nodes) { return SameSolution(other.nodes, nodes); };
+  if (same(choice.solver->nodes())) return;
+  const auto known = std::find_if(choice.rivals.begin(), choice.rivals.end(),
+                                  [&](const Solution& rival) { return same(rival.nodes); });
+  if (known == choice.rivals.end()) {
+    choice.rivals.push_back(std::move(other));
+  } else if (other.evidence < known->evidence) {
+    *known = std::move(other);
+  }
+}
+
 /// Solves from one guess; keeps the solution where it betters those before. Returns where it ended.
 NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
                     std::span<const RunKnot> knots, const RunState* before, Solution& solution,
@@ -217,10 +231,7 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
     swings.swing = SwingOf(knots, walk);
     if (swings.swing) SolveFrom(walk, swings, knots, before, solutions[i], choice);
   }
-  for (Solution& s : solutions) {
-    if (!(s.evidence - choice.report.evidence < kDecides)) continue;
-    if (!SameSolution(s.nodes, choice.solver->nodes())) choice.rivals.push_back(std::move(s));
-  }
+  for (Solution& s : solutions) AddRival(std::move(s), choice);
   return choice;
 }
 
@@ -327,14 +338,19 @@ bool Misfits(const RunEstimate& run) {
   return GyrosMisfit(run) || Excess(run.report.sums, {RowKind::kForce}) > 1;
 }
 
-/// Takes what other guesses lead to where it is better than what is known. False: it is not.
+/// Takes what other guesses lead to where it is better than what is known; the worse of the two may
+/// remain a rival. False: it is not better.
 bool TakeIfBetter(Choice other, std::span<const std::size_t> marked, Choice& choice,
                   RunEstimate& result) {
   if (!other.solver) return false;
-  if (choice.solver && !(other.report.evidence < choice.report.evidence)) return false;
-  choice = std::move(other);
-  Take(choice, marked, result);
-  return true;
+  const bool better = !choice.solver || other.report.evidence < choice.report.evidence;
+  if (better) std::swap(choice, other);
+  for (Solution& rival : other.rivals) AddRival(std::move(rival), choice);
+  if (other.solver) {
+    AddRival({other.report.evidence, other.solver->nodes(), other.solver->border()}, choice);
+  }
+  if (better) Take(choice, marked, result);
+  return better;
 }
 
 }  // namespace
