@@ -9,6 +9,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/result/plan_files.h"
+#include "wellgyro/io/toml/tool_file.h"
 
 #include "answer.h"
 #include "commands.h"
@@ -22,7 +23,7 @@ constexpr double kRpm = kTwoPi / 60;
 
 struct PlanOptions {
   PlanRequest request;
-  std::string practice, out;
+  std::string practice, date, out;
 };
 
 /// "every_m=300,stop_s=180", in any order, both or one of them.
@@ -110,9 +111,17 @@ void AddWay(CLI::App& command, PlanOptions& o) {
   AddNumber(command, "--gradient-degc-per-km", r.heat.gradient, 1e-3,
             "of the formation, to be held against the tool's calibration")
       ->check(CLI::Range(0.0, 200.0));
+  command.add_option("--date", o.date, "of the run, to be held against the tool's calibration")
+      ->type_name("2026-01-31");
 }
 
 int RunPlan(PlanOptions& o) {
+  if (!o.date.empty()) {
+    o.request.date = DateOf(o.date);
+    if (!o.request.date) {
+      throw std::invalid_argument(fmt::format("--date: \"{}\" is no date, as 2026-01-31", o.date));
+    }
+  }
   if (!o.practice.empty()) o.request.practice = PracticeOf(o.practice);
   const Result<PlanAnswer> answer = AnswerPlan(o.request);
   if (const auto code = WriteAnswer(answer, o.out)) return *code;

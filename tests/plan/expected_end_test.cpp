@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "wellgyro/math/rotation.h"
@@ -213,6 +214,18 @@ TEST(Preflight, SaysWhatMakesAWellHard) {
     EXPECT_NE(all.find(word), std::string::npos) << word << "\n" << all;
   }
   const PlanCase easy = test::Slant();
+  const UtcTime day{86'400'000'000'000}, later{40 * day.ns};
+  const auto dated = [&](const PreflightDates& dates) {
+    const auto texts = Preflight(easy, end, {}, dates);
+    return texts.empty() ? std::string() : texts.back();
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(dated({.expires = day}), HasSubstr("has an end: --date"));
+  EXPECT_THAT(dated({.expires = day, .run = later}), HasSubstr("runs out 39 days before"));
+  EXPECT_THAT(dated({.calibrated = later, .run = day}), HasSubstr("39 days after the run"));
+  EXPECT_THAT(dated({.calibrated = day, .run = later}), HasSubstr("39 days old and states no end"));
+  EXPECT_THAT(dated({.calibrated = day, .expires = later, .run = day}),
+              Not(HasSubstr("calibration")));
   for (const std::string& s : Preflight(easy, ExpectEnd(easy, {}, false), {})) {
     EXPECT_NE(s.find("no error of"), std::string::npos) << s;  // depth has none in this case
   }

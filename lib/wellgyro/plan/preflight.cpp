@@ -85,10 +85,31 @@ void AddDrift(const PlanCase& c, double seconds, std::vector<std::string>& said)
   if (!none.empty()) said.push_back("the tool is taken to have no error of " + none);
 }
 
+void AddDates(const PreflightDates& dates, std::vector<std::string>& said) {
+  constexpr double kDay = 24 * units::kHour;
+  if (!dates.run) {
+    if (dates.expires) {
+      said.push_back("the tool's calibration has an end: --date of the run tells whether it holds");
+    }
+    return;
+  }
+  if (dates.expires && *dates.run > *dates.expires) {
+    said.push_back(fmt::format("the tool's calibration runs out {:.0f} days before the run",
+                               (*dates.run - *dates.expires).seconds() / kDay));
+  }
+  if (!dates.calibrated) return;
+  const double age = (*dates.run - *dates.calibrated).seconds() / kDay;
+  if (age < 0) {
+    said.push_back(fmt::format("the tool is calibrated {:.0f} days after the run", -age));
+  } else if (!dates.expires) {
+    said.push_back(fmt::format("the tool's calibration is {:.0f} days old and states no end", age));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> Preflight(const PlanCase& c, const ExpectedEnd& expected,
-                                   const PreflightHeat& heat) {
+                                   const PreflightHeat& heat, const PreflightDates& dates) {
   std::vector<std::string> said;
   AddNorth(c, said);
   AddDrift(c, expected.seconds, said);
@@ -110,6 +131,7 @@ std::vector<std::string> Preflight(const PlanCase& c, const ExpectedEnd& expecte
                       heat.calibrated_to));
     }
   }
+  AddDates(dates, said);
   return said;
 }
 

@@ -28,11 +28,13 @@ struct ToolSide {
   double elevation = 0;
   bool third_axis = false;
   double calibrated_to = 1e3;
+  PreflightDates dates;
 };
 
 void TakeTool(const ToolCalibration& tool, ToolSide& side) {
   side.third_axis = tool.gyro.n_channels > 2;
   side.calibrated_to = std::min(tool.gyro.max, tool.accel.max);
+  side.dates = {.calibrated = tool.calibrated, .expires = tool.expires};
   if (tool.errors) side.errors = *tool.errors;
 }
 
@@ -137,8 +139,10 @@ PlanReport MakeReport(const PlanRequest& request, NamedFiles& files,
   }
   PreflightHeat heat = request.heat;
   heat.calibrated_to = tool.calibrated_to;
-  report.warnings = Preflight(
-      report.c, report.plan.stops.empty() ? report.plan.without : report.plan.expected, heat);
+  PreflightDates dates = tool.dates;
+  dates.run = request.date;
+  const ExpectedEnd& end = report.plan.stops.empty() ? report.plan.without : report.plan.expected;
+  report.warnings = Preflight(report.c, end, heat, dates);
   report.inputs = files.all();
   return report;
 }

@@ -33,6 +33,7 @@ struct PlanRequest {
   std::optional<double> sigma_start_azimuth;  ///< else as the job's alignment says [rad]
   bool third_axis = false;                    ///< the tool has one, where `tool` does not say
   PreflightHeat heat;
+  std::optional<UtcTime> date;  ///< of the run, to be held against the tool's calibration
 };
 
 struct PlanAnswer {
