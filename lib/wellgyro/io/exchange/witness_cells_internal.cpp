@@ -25,6 +25,7 @@ using Computed = double (*)(const Eigen::Vector3d& moved, const PlaneFit& fit);
 struct Track {
   Column column;
   Column other;  ///< the plane's other axis; the same for depths
+  Column variance;
   Computed computed;
 };
 double Northwards(const Eigen::Vector3d& m, const PlaneFit& fit) {
@@ -35,13 +36,13 @@ double Eastwards(const Eigen::Vector3d& m, const PlaneFit& fit) {
 }
 double Downwards(const Eigen::Vector3d& m, const PlaneFit&) { return m.z(); }
 constexpr std::array kTracks{
-    Track{Column::kTvd, Column::kTvd, Downwards},
-    Track{Column::kDown, Column::kDown, Downwards},
-    Track{Column::kTvdSubSea, Column::kTvdSubSea, Downwards},
-    Track{Column::kNorth, Column::kEast, Northwards},
-    Track{Column::kEast, Column::kNorth, Eastwards},
-    Track{Column::kNorthing, Column::kEasting, Northwards},
-    Track{Column::kEasting, Column::kNorthing, Eastwards},
+    Track{Column::kTvd, Column::kTvd, Column::kVarVV, Downwards},
+    Track{Column::kDown, Column::kDown, Column::kVarVV, Downwards},
+    Track{Column::kTvdSubSea, Column::kTvdSubSea, Column::kVarVV, Downwards},
+    Track{Column::kNorth, Column::kEast, Column::kVarNN, Northwards},
+    Track{Column::kEast, Column::kNorth, Column::kVarEE, Eastwards},
+    Track{Column::kNorthing, Column::kEasting, Column::kVarNN, Northwards},
+    Track{Column::kEasting, Column::kNorthing, Column::kVarEE, Eastwards},
 };
 
 // Among positions the same with a plus sign too.
@@ -123,7 +124,14 @@ class CellCheck {
     return {to, t.md(to) - t.md(from), given - track_.computed(moved, fit_)};
   }
 
-  double Limit(const Leg& leg) const { return 10 * median_ + 0.05 + 1e-4 * leg.length; }
+  /// Positions of two passes through one hole differ by what their own errors allow: by a sigma,
+  /// where the file states it.
+  double Limit(const Leg& leg) const {
+    const SurveyTable& t = c_.table;
+    double variance = 0;
+    if (t.Has(track_.variance)) variance = t.Get(track_.variance, leg.row).value_or(0);
+    return 10 * median_ + 0.05 + 1e-4 * leg.length + std::sqrt(std::max(variance, 0.0));
+  }
 
   void Compare(const Leg& before, const Leg& leg) const {
     if (std::abs(before.left) <= Limit(before)) return;
