@@ -201,5 +201,23 @@ TEST(TypedTables, RowsOfALogWithoutASurveyAreCounted) {
   EXPECT_THAT(t.head.notes, Contains(HasSubstr("1 rows without inclination are left out")));
 }
 
+// A survey of ours takes a depth from the way in and the next from the way out: their places differ
+// by what the run knows of them, which it states, and no number is wrong.
+TEST(TypedTables, PlacesMayDifferByTheirOwnSigma) {
+  const auto text = [](double sigma) {
+    std::string rows =
+        "MD[m],INC[deg],AZI_GRID[deg],TVD[m],N[m],E[m],VAR_NN[m2],COV_NE[m2],COV_NV[m2],"
+        "VAR_EE[m2],COV_EV[m2],VAR_VV[m2]\n";
+    for (const Truth& t : TypedHole()) {
+      const double beside = t.md == 1200 ? 0.13 : 0;
+      rows += fmt::format("{},{},40,{:.4f},{:.4f},{:.4f},{v},0,0,{v},0,{v}\n", t.md, t.inclination,
+                          t.tvd, t.north, t.east + beside, fmt::arg("v", sigma * sigma));
+    }
+    return rows;
+  };
+  EXPECT_EQ(Parsed(text(0.5)).rows(), TypedHole().size());
+  EXPECT_THAT(ParseFault(text(0.01)).text, HasSubstr("0.13 m away from what its neighbours"));
+}
+
 }  // namespace
 }  // namespace wellgyro
