@@ -50,37 +50,38 @@ std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const 
   return curvature;
 }
 
-/// How much the hole bends about each knot: root mean square of its curvature over a stand on
-/// either side [rad/m].
-std::vector<double> Bends(std::span<const RunKnot> knots, std::span<const Node> nodes,
+/// How much the hole turns about each knot: root mean square over a stand on either side of
+///   t' . (down x t) = A' sin^2 I  [rad/m],
+/// regular at vertical.
+std::vector<double> Turns(std::span<const RunKnot> knots, std::span<const Node> nodes,
                           std::span<const Vector3d> curvature) {
   std::vector<double> ways(knots.size() + 1, 0), squares(knots.size() + 1, 0);
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const double way =
         0.5 * knots[k].increment.seconds * std::abs(nodes[k].speed + nodes[k + 1].speed);
+    const double turn = curvature[k].dot(Vector3d::UnitZ().cross(nodes[k].tangent_L()));
     ways[k + 1] = ways[k] + way;
-    squares[k + 1] = squares[k] + way * curvature[k].squaredNorm();
+    squares[k + 1] = squares[k] + way * turn * turn;
   }
-  std::vector<double> bends(knots.size(), 0);
+  std::vector<double> turns(knots.size(), 0);
   std::size_t begin = 0, end = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     while (ways[begin + 1] < ways[k] - kStand) ++begin;
     end = std::max(end, k + 1);
     while (end < knots.size() && ways[end] < ways[k] + kStand) ++end;
     const double way = ways[end] - ways[begin];
-    if (way > kTellingWay) bends[k] = std::sqrt((squares[end] - squares[begin]) / way);
+    if (way > kTellingWay) turns[k] = std::sqrt((squares[end] - squares[begin]) / way);
   }
-  return bends;
+  return turns;
 }
 
 /// Random walk of the inertial roll rate of a tool that keeps its toolface, T' = 0:
-///   psi' = A' cos I,  A' sin I <= |t'|,  so that |psi'| <= |t'| cot I,  |t'| = bend speed.
+///   psi' = A' cos I.
 /// It changes by as much within a stand: that variance over a stand's way. Gravity keeps the
-/// toolface, by a moment that goes as sin^2 I; hence sin^2 I cot I = sin I cos I. Without this
-/// term a roll assumed steady would be a pseudo-measurement of A', and a wrong one.
-double RollWalkOf(const Vector3d& tangent, double bend, double speed) {
-  const double follows = std::abs(tangent.z()) * std::hypot(tangent.x(), tangent.y());
-  return std::abs(speed) * bend * std::sqrt(std::abs(speed) / kStand) * follows;
+/// toolface, by a moment that goes as sin^2 I, and `turn` is A' sin^2 I. Without this term a roll
+/// assumed steady would be a pseudo-measurement of A', and a wrong one.
+double RollWalkOf(const Vector3d& tangent, double turn, double speed) {
+  return std::abs(speed) * turn * std::sqrt(std::abs(speed) / kStand) * std::abs(tangent.z());
 }
 
 }  // namespace
@@ -97,7 +98,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
                 std::span<const Node> nodes, std::vector<KnotPlace>& places) {
   places.resize(knots.size());
   const std::vector<Vector3d> curvature = Curvature(knots, nodes);
-  const std::vector<double> bends = Bends(knots, nodes, curvature);
+  const std::vector<double> hole_turns = Turns(knots, nodes, curvature);
   Vector3d p = before != nullptr ? before->p : Vector3d::Zero();
   Site site = SiteBy(first, p);
   double md = nodes[0].md;
@@ -125,7 +126,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     if (k > 0) places[k - 1].axial_change = earth.dot(tangent) - axial;
     axial = earth.dot(tangent);
     place.acceleration_L = speed * speed * curvature[k] + (2 * earth + transport).cross(v);
-    place.roll_walk = RollWalkOf(tangent, bends[k], speed);
+    place.roll_walk = RollWalkOf(tangent, hole_turns[k], speed);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
     place.depth = p.z();
