@@ -117,7 +117,7 @@ void AddWay(CLI::App& command, PlanOptions& o) {
 
 int RunPlan(PlanOptions& o) {
   if (!o.date.empty()) {
-    o.request.date = DateOf(o.date);
+    o.request.date = wellgyro::DateOf(o.date);
     if (!o.request.date) {
       throw std::invalid_argument(fmt::format("--date: \"{}\" is no date, as 2026-01-31", o.date));
     }
