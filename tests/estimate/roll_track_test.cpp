@@ -121,6 +121,24 @@ TEST(RollTrack, KnotsThatShowTheirRollAreLeftAlone) {
   EXPECT_TRUE(TrackRoll({}, setup).headings.empty());
 }
 
+// A job may say that a tool has no such error.
+TEST(RollTrack, StatedErrorsMayBeNone) {
+  EstimateSetup setup = SetupOf();
+  Random random(9);
+  std::vector<RunKnot> knots;
+  for (int k = 0; k < 200; ++k) {
+    knots.push_back(KnotAt({.rate = 0.4}, k, setup, random));
+    knots.back().increment.turn_M -= Eigen::Vector2d(kEarthRate, -0.5 * kEarthRate);
+    knots.back().increment.force_M -= Vector3d(5e-4, -1e-3, 0);
+  }
+  setup.errors.gyro_bias_sigma = setup.errors.gyro_misalignment_sigma = 0;
+  setup.errors.accel_bias_sigma = setup.errors.accel_noise = 0;
+  setup.gyro.angle_random_walk = 0;
+  const RollTrack track = TrackRoll(knots, setup);
+  EXPECT_GE(track.headings.size(), 10u);
+  for (const double rate : track.beyond_psi) EXPECT_NEAR(rate, 0.4, 0.02);
+}
+
 // Two legs whose swings begin with phases of their own: a line through both would lie between the
 // lines of either, 2 pi / 700 s apart.
 TEST(Swing, IsLookedForBetweenStops) {

@@ -37,6 +37,9 @@ using Costs = std::array<double, kRates>;
 
 double RateOf(std::size_t i) { return (static_cast<int>(i) - kMiddle) * kStep; }
 
+/// Information of a steady error's prior, by that of one knot; of none where a job states 0.
+double Held(double noise, double sigma) { return Square(noise / std::max(sigma, 1e-6 * noise)); }
+
 /// A window's likelihood, and the Earth's rate in it, in the frame of the tool at its middle node.
 struct Line {
   double cost = 0;  ///< -ln, but for constants
@@ -85,7 +88,7 @@ class Window {
       turn_squares += std::norm(rates_[k]);
     }
     of_rate << of_force(0, 0), of_force(0, 2), of_force(2, 0), of_force(2, 2);
-    of_force(2, 2) += Square(accel_noise_ * setup_.site.gravity / setup_.errors.accel_bias_sigma);
+    of_force(2, 2) += Held(accel_noise_, setup_.errors.accel_bias_sigma / setup_.site.gravity);
     const Vector3cd lean = of_force.ldlt().solve(force);
     const double force_left = std::max(force_squares - lean.dot(force).real(), 0.0);
     // The gyros without the bend.
@@ -94,7 +97,7 @@ class Window {
     turn -= bend * of_rate.col(0);
     const double steady =
         std::hypot(setup_.errors.gyro_bias_sigma, rate * setup_.errors.gyro_misalignment_sigma);
-    of_rate(1, 1) += Square(gyro_noise_ / steady);
+    of_rate(1, 1) += Held(gyro_noise_, steady);
     const Vector2cd found = of_rate.ldlt().solve(turn);
     const double turn_left = std::max(turn_squares - found.dot(turn).real(), 0.0);
     return {size_ * (std::log(force_left / size_ + 2 * Square(accel_noise_)) +
