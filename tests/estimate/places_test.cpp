@@ -90,5 +90,36 @@ TEST(Places, ASlidingToolIsTurnedByTheEarthAsTheHoleBends) {
   EXPECT_EQ(places.back().axial_change, 0);
 }
 
+/// The roll walk in the middle of 200 m through a hole that builds and turns by these rates
+/// [rad/m].
+double RollWalkOf(double inclination, double build, double turn) {
+  std::vector<RunKnot> knots(250);
+  std::vector<Node> nodes(knots.size() + 1);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    nodes[k].md = kSpeed * static_cast<double>(k);
+    nodes[k].speed = kSpeed;
+    const double tilt = inclination + build * (nodes[k].md - 100);
+    const double azimuth = 0.3 + turn * nodes[k].md;
+    nodes[k].R_LT.col(2) = Eigen::Vector3d(std::sin(tilt) * std::cos(azimuth),
+                                           std::sin(tilt) * std::sin(azimuth), std::cos(tilt));
+    if (k < knots.size()) knots[k].increment.seconds = 1;
+  }
+  std::vector<KnotPlace> places;
+  PlaceKnots(SiteAt(0.8, 0), nullptr, knots, nodes, places);
+  return places[knots.size() / 2].roll_walk;
+}
+
+// A tool that keeps its toolface rolls by A' cos I: not in a hole that only builds, to vertical and
+// past it, and as much as the hole turns otherwise, by a stand's way.
+TEST(Places, TheRollWalksAsTheHoleTurns) {
+  EXPECT_LT(RollWalkOf(0.6, kCurvature, 0), 1e-9);
+  EXPECT_LT(RollWalkOf(0, kCurvature, 0), 1e-9);
+  for (const double inclination : {0.02, 0.6, 1.4}) {
+    const double turn = 0.004, rate = turn * kSpeed * std::pow(std::sin(inclination), 2);
+    const double want = rate * std::cos(inclination) * std::sqrt(kSpeed / 30);
+    EXPECT_NEAR(RollWalkOf(inclination, 0, turn), want, 0.01 * want) << inclination;
+  }
+}
+
 }  // namespace
 }  // namespace wellgyro

@@ -255,8 +255,8 @@ TEST(EstimatedRun, IsSentOutByASurveyor) {
 }
 
 // Gyros skewed against the axis seem to turn in a circle, whose middle is not half of its chord:
-// taken for it, the knot's forces lean, and accelerometers that might lean take over a third of the
-// skew.
+// taken for it, the knot's forces lean, and accelerometers that might lean take over a quarter of
+// the skew, and more.
 TEST(EstimatedRun, SkewedGyrosDoNotLeanTheAccelerometers) {
   testing::Hour hour;
   hour.inclination_deg = 35;

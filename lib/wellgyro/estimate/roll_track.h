@@ -17,9 +17,8 @@ struct NodeHeading {
 
 /// How a run turns where gravity hardly shows it.
 struct RollTrack {
-  std::vector<double> beyond_psi;  ///< of each hidden knot, roll rate less that of psi [rad/s]
-  std::vector<NodeHeading>
-      headings;  ///< in the order of time; a heading is that of the Earth's rate
+  std::vector<double> beyond_psi;     ///< of each hidden knot, roll rate less that of psi [rad/s]
+  std::vector<NodeHeading> headings;  ///< by the Earth's rate, in the order of time
 };
 
 /// By windows of 40 knots, in each of which the tool turns at one rate while its axis leans and

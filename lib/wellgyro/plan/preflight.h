@@ -27,9 +27,8 @@ struct PreflightDates {
 /// nothing does: where the Earth's rate shows north badly (near a pole; near horizontal east-west,
 /// below a fifth of its horizontal part), where the high side is no hold (below 1 deg), a drift
 /// over the run above the bias' own sigma, errors stated as none, depth that alone makes half of
-/// the ellipse, heat beyond the calibration, and a
-/// calibration that runs out before the run, is younger than it, or states no end. `expected`: with
-/// the stops that are planned.
+/// the ellipse, heat beyond the calibration, and a calibration that runs out before the run, is
+/// younger than it, or states no end. `expected`: with the stops that are planned.
 WELLGYRO_EXPORT std::vector<std::string> Preflight(const PlanCase& c, const ExpectedEnd& expected,
                                                    const PreflightHeat& heat,
                                                    const PreflightDates& dates = {});
