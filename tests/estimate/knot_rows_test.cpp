@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/math/rotation.h"
 
@@ -179,6 +180,90 @@ TEST(KnotRows, WithoutTheEarthsRateNoKnotTellsAHeading) {
       EXPECT_GT(
           block.sums()[static_cast<std::size_t>(still ? RowKind::kStill : RowKind::kTurn)].squares,
           1);
+    }
+  }
+}
+
+/// Of a second in which the roll of a tool swings by 30 deg in 15 s, here where it turns back, and
+/// gravity does not show it: the samples are summed as they come, psi = 0.
+Case SwingingUnseen() {
+  Case c;
+  c.setup.gyro.angle_random_walk = 3e-6;
+  c.setup.errors.accel_noise = 2.5e-4;
+  c.setup.swing = kTwoPi / 15;
+  c.layout = LayoutOf(c.setup);
+  c.border.setZero(c.layout.border);
+  c.place.site = SiteAt(1, 0);
+  c.place.w_IL_L.setZero();
+  c.place.acceleration_L.setZero();
+  const double gravity = c.place.site.gravity, w = *c.setup.swing, amplitude = FromDegrees(30);
+  const Vector3d bend(7e-4, -3e-4, 0);
+  c.begin.R_LT = AttitudeMatrix(1, FromDegrees(0.5), 0.7);
+  // A quarter of a period on from the greatest rate it turns back.
+  const double begin = 0.25 * kTwoPi - 0.5 * w;
+  const auto roll = [&](double t) {
+    return amplitude * (std::sin(begin + w * t) - std::sin(begin));
+  };
+  const auto swing = [&](double t) -> Eigen::Vector2d {
+    return amplitude * w * Eigen::Vector2d(std::cos(begin + w * t), -std::sin(begin + w * t));
+  };
+  const auto attitude = [&](double t) -> Eigen::Matrix3d {
+    return c.begin.R_LT * Exp(t * bend) * RotationZ(roll(t));
+  };
+  Increment& inc = c.knot.increment;
+  inc.seconds = 1;
+  inc.level = true;
+  constexpr int kParts = 2000;
+  const auto part = [&](int i) { return (i + 0.5) / kParts; };
+  const auto turn = [&](int i) -> Eigen::Vector2d {
+    return (RotationZ(-roll(part(i))) * bend).head<2>() / kParts;
+  };
+  for (int i = 0; i < kParts / 2; ++i) inc.turn_before_M += turn(i);
+  for (int i = 0; i < kParts; ++i) {
+    const double late = part(i) - 0.5;
+    const Vector3d f = -gravity / kParts * attitude(part(i)).row(2).transpose();
+    const Eigen::Vector2d behind = inc.turn_M - inc.turn_before_M;  // the middle
+    inc.force_M += Exp(Vector3d(behind.x(), behind.y(), 0)) * f;
+    inc.force_per_roll += late * Eigen::Vector2d(-f.y(), f.x());
+    inc.turn_per_roll += late * Eigen::Vector2d(-turn(i).y(), turn(i).x());
+    inc.turn_M += turn(i);
+  }
+  c.begin.swing = swing(0);
+  c.end = c.begin;
+  c.end.swing = swing(1);
+  c.end.R_LT = attitude(1);
+  return c;
+}
+
+// An even turn of the tool by what it turned by in all would leave 2.6 sigmas of force in each such
+// knot, and with biases that decide where gravity is seen, a fifth of a bias.
+TEST(KnotRows, ASwingBowsTheRollOfAKnot) {
+  const Case c = SwingingUnseen();
+  KnotRows rows(c.setup, c.layout);
+  NormalBlock block;
+  block.Clear(c.layout);
+  rows.Add(c.knot, c.place, {.sigma = 0.01}, c.border, c.begin, c.end, block);
+  for (const RowKind kind : {RowKind::kTurn, RowKind::kForce}) {
+    EXPECT_LT(block.sums()[static_cast<std::size_t>(kind)].squares, 0.01) << static_cast<int>(kind);
+  }
+}
+
+TEST(RollChange, ASwingLeadsItsChordAsItsIntegralDoes) {
+  for (const double frequency : {0.05, 0.42, 2.}) {
+    for (const double seconds : {0.1, 1., 3.}) {
+      for (const Eigen::Vector2d& a : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0.3, -0.8)}) {
+        constexpr int kParts = 100'000;
+        double turned = 0, mean = 0;
+        for (int i = 0; i < kParts; ++i) {
+          const double step = seconds / kParts, angle = frequency * step * (i + 0.5);
+          const double rate = a.x() * std::cos(angle) + a.y() * std::sin(angle);
+          mean += (turned + 0.5 * rate * step) / kParts;
+          turned += rate * step;
+        }
+        EXPECT_NEAR(SwingBeforeChord(frequency, seconds).dot(a), mean - 0.5 * turned,
+                    1e-8 * seconds)
+            << frequency << " " << seconds;
+      }
     }
   }
 }

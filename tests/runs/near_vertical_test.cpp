@@ -89,6 +89,20 @@ testing::Arrives Losing(double lost, std::uint64_t seed) {
   };
 }
 
+/// What the hole changes by in a metre at `md`: a station tells of the hole at the depth that it
+/// states, and where the hole bends that depth's error is one of its direction too.
+struct Bend {
+  Bend(const Truth& truth, double md) {
+    const auto above = truth.well().PointAt(md - 0.5), below = truth.well().PointAt(md + 0.5);
+    inclination = below.inclination - above.inclination;
+    tangent =
+        (Tangent(below.inclination, below.azimuth) - Tangent(above.inclination, above.azimuth))
+            .head<2>();
+  }
+  double inclination = 0;
+  Eigen::Vector2d tangent;
+};
+
 class NearVertical : public ::testing::TestWithParam<Well> {};
 
 void ExpectAsSureAsItSays(const Well& well, int seeds) {
@@ -119,13 +133,19 @@ void ExpectAsSureAsItSays(const Well& well, int seeds) {
       for (std::size_t i = 0; i < depths.size(); ++i) {
         if (std::abs(s.md - depths[i]) > 1) continue;
         const auto point = truth.well().PointAt(s.md);
-        inclination[i].Add(s.inclination - point.inclination, s.cov_md_inc_azi(1, 1));
+        const Bend bend(truth, s.md);
+        const Eigen::Vector2d of_inclination(-bend.inclination, 1);
+        inclination[i].Add(
+            s.inclination - point.inclination,
+            of_inclination.dot(s.cov_md_inc_azi.topLeftCorner<2, 2>() * of_inclination));
         const Eigen::Vector3d off = s.p_WT_W - (truth.well().PlaceAt(s.md).p_WT_W - start);
         const Eigen::Matrix3d cov = s.cov_p_WT_W + 1e-4 * Eigen::Matrix3d::Identity();
         const Eigen::Vector2d lean =
             (Tangent(s.inclination, s.azimuth) - Tangent(point.inclination, point.azimuth))
                 .head<2>();
-        const Eigen::Matrix2d cov_lean = s.cov_tangent_W.topLeftCorner<2, 2>();
+        const Eigen::Matrix2d cov_lean =
+            s.cov_tangent_W.topLeftCorner<2, 2>() +
+            s.cov_md_inc_azi(0, 0) * bend.tangent * bend.tangent.transpose();
         tangent[i].dof = 2;
         tangent[i].Add(lean.dot(cov_lean.inverse() * lean), lean.squaredNorm(), cov_lean.trace());
         place[i].dof = 3;

@@ -24,26 +24,20 @@ constexpr double kEarthShare = 0.1;
 double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
   const Eigen::Vector2d earth = w_IE_M.head<2>() * inc.seconds;
   const double ratio = inc.turn_M.norm() / earth.norm();
-  if (!(ratio > 0.7 && ratio < 1.4)) return 0;
+  if (!MayBeEarths(ratio)) return 0;
   return -std::atan2(inc.turn_M.y() * earth.x() - inc.turn_M.x() * earth.y(),
                      inc.turn_M.dot(earth));
 }
 
-RollTrack TrackBy(RollSearch search, const EstimateSetup& setup, std::span<const RunKnot> knots,
-                  const std::vector<bool>& steady) {
-  if (search != RollSearch::kNeighbours) return TrackRoll(knots, setup);
-  return {HiddenRoll(knots, kEarthRate * std::cos(setup.site.latitude), steady), {}};
-}
-
 }  // namespace
 
-GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots, RollSearch search)
+GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                     const RollTrack& track)
     : latitude_(setup.site.latitude),
       knots_(knots),
-      search_(search),
+      track_(track),
       extra_roll_(knots.size(), 0),
       steady_(SteadyAcross(knots, setup.gyro.angle_random_walk)),
-      track_(TrackBy(search, setup, knots, steady_)),
       nodes_(knots.size() + 1) {}
 
 void GuessPass::Run(std::size_t begin, std::size_t end) {
@@ -55,7 +49,7 @@ void GuessPass::Run(std::size_t begin, std::size_t end) {
     const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
     Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT *
                  RotationZ(inc.roll_before + 0.5 * extra) * half;
-    const bool turned = inc.roll_seen || search_ != RollSearch::kTrackAlone;
+    const bool turned = inc.roll_seen || !track_.alone;
     if (turned && !inc.roll_seen && steady_[k]) {
       M = M * RotationZ(kEarthShare * AngleToEarth(inc, M.transpose() * earth));
     }

@@ -11,6 +11,10 @@ namespace wellgyro {
 bool RollIsHidden(const RunKnot& knot);
 bool AnyRollIsHidden(std::span<const RunKnot> knots);
 
+/// Whether a rate across the tool can be the Earth's, by its ratio to what that is there: a bend of
+/// as much as the Earth turns changes it more.
+constexpr bool MayBeEarths(double ratio) { return ratio > 0.7 && ratio < 1.4; }
+
 /// Of each knot, whether the rate across the tool keeps its size about it. It does not where a bend
 /// begins or ends: it then turns in L.
 std::vector<bool> SteadyAcross(std::span<const RunKnot> knots, double angle_random_walk);

@@ -67,7 +67,8 @@ class KnotRows {
   struct Terms;
   Terms TermsOf(const RunKnot& knot, const KnotPlace& place, const BorderVector& border,
                 const Node& begin, const Node& end) const;
-  void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, NormalBlock& block);
+  void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, const Eigen::Vector3d& by_bow,
+               NormalBlock& block);
   void AddTurn(const Terms& t, NormalBlock& block);
   void AddGyroDrift(const Terms& t, const Eigen::Matrix<double, 3, kErrorSources>& by_error,
                     NormalBlock& block);

@@ -30,7 +30,6 @@ constexpr std::size_t kLeastWindow = 10;           // twenty readings for five u
 // From window to window a rate changes as Laplace has it, by 0.1 rad/s, or it starts or stops,
 // which has one chance in 3000.
 constexpr double kChange = 0.1, kJump = 8;
-constexpr double kOfEarthLeast = 0.7, kOfEarthMost = 1.4;  // of the line, where it is the Earth's
 // Where a tool states no noise: a hundredth of a navigation gyro's, of a microgal's.
 constexpr double kLeastGyroNoise = 1e-9, kLeastAccelNoise = 1e-6;
 using Costs = std::array<double, kRates>;
@@ -179,9 +178,8 @@ void TrackStretch(std::span<const RunKnot> knots, const EstimateSetup& setup, st
   std::size_t k = 0;
   for (std::size_t w = 0; w < begins.size(); ++w) {
     const Complex found = windows[w].At(rates[w]).earth;
-    const double ratio = std::abs(found) / earth;
     // A tool that has turned to the right sees north turned to the left.
-    if (ratio > kOfEarthLeast && ratio < kOfEarthMost) {
+    if (MayBeEarths(std::abs(found) / earth)) {
       track.headings.push_back({first + begins[w] + width / 2, -std::arg(found)});
     }
     // Up to half way to the next window's middle.
@@ -195,6 +193,11 @@ void TrackStretch(std::span<const RunKnot> knots, const EstimateSetup& setup, st
 }
 
 }  // namespace
+
+RollTrack RollOfNeighbours(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+  const double earth = kEarthRate * std::cos(setup.site.latitude);
+  return {HiddenRoll(knots, earth, SteadyAcross(knots, setup.gyro.angle_random_walk)), {}};
+}
 
 RollTrack TrackRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
   RollTrack track{std::vector<double>(knots.size(), 0), {}};

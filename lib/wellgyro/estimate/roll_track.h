@@ -19,7 +19,11 @@ struct NodeHeading {
 struct RollTrack {
   std::vector<double> beyond_psi;     ///< of each hidden knot, roll rate less that of psi [rad/s]
   std::vector<NodeHeading> headings;  ///< by the Earth's rate, in the order of time
+  bool alone = false;  ///< neither gravity nor the Earth turns the tool from knot to knot as well
 };
+
+/// By the median over the knots about each, see HiddenRoll(): without headings.
+RollTrack RollOfNeighbours(std::span<const RunKnot> knots, const EstimateSetup& setup);
 
 /// By windows of 40 knots, in each of which the tool turns at one rate while its axis leans and
 /// bends: what gyros and accelerometers read then is a line at that rate beside what they read

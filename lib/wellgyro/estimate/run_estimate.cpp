@@ -12,6 +12,8 @@
 
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/hidden_roll.h"
+#include "wellgyro/estimate/rivals.h"
+#include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -22,8 +24,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kSolveIterations = 40;
-// 2 ln of odds of 90: by less one azimuth does not beat another.
-constexpr double kDecides = 9;
 // A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
 constexpr double kTooLarge = 4;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
@@ -162,19 +162,12 @@ Diagnosis DiagnosisOf(const RunSolver& solved) {
 }
 
 std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                 std::span<const Start> starts, RollSearch search) {
+                                 std::span<const Start> starts, const RollTrack& track) {
   if (starts.empty()) return GuessesOfHeadings(setup, knots);
   std::vector<NodeGuess> guesses;
-  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start, search));
+  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start, track));
   return guesses;
 }
-
-/// Where a run may be solved.
-struct Solution {
-  double evidence = HUGE_VAL;
-  NodeGuess nodes;
-  BorderVector border;
-};
 
 struct Choice {
   std::unique_ptr<RunSolver> solver;  ///< of the solution of greatest evidence; null: none
@@ -185,16 +178,8 @@ struct Choice {
 
 /// Keeps another solution, once, where it comes near the chosen one.
 void AddRival(Solution other, Choice& choice) {
-  if (!(other.evidence - choice.report.evidence < kDecides)) return;
-  const auto same = [&](std::span<const Node> nodes) { return SameSolution(other.nodes, nodes); };
-  if (same(choice.solver->nodes())) return;
-  const auto known = std::find_if(choice.rivals.begin(), choice.rivals.end(),
-                                  [&](const Solution& rival) { return same(rival.nodes); });
-  if (known == choice.rivals.end()) {
-    choice.rivals.push_back(std::move(other));
-  } else if (other.evidence < known->evidence) {
-    *known = std::move(other);
-  }
+  if (!choice.solver) return;
+  AddRival(std::move(other), choice.report.evidence, choice.solver->nodes(), choice.rivals);
 }
 
 /// Solves from one guess; keeps the solution where it betters those before. Returns where it ended.
@@ -360,15 +345,18 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
                         const RunState* before) {
   RunEstimate result;
   if (knots.empty()) return result;
-  const auto chosen = [&](RollSearch search) {
-    return Choose(setup, knots, GuessesOf(setup, knots, starts.anchored, search), before);
+  const auto chosen = [&](const RollTrack& track) {
+    return Choose(setup, knots, GuessesOf(setup, knots, starts.anchored, track), before);
   };
-  Choice choice = chosen(RollSearch::kNeighbours);
+  Choice choice = chosen(RollOfNeighbours(knots, setup));
   Take(choice, marked, result);
-  if (starts.otherwise && !starts.anchored.empty() && AnyRollIsHidden(knots)) {
-    for (const RollSearch search : kOtherSearches) {
-      if (Misfits(result)) TakeIfBetter(chosen(search), marked, choice, result);
-    }
+  const bool hidden = !starts.anchored.empty() && AnyRollIsHidden(knots);
+  if (starts.otherwise && hidden && Misfits(result)) {
+    // None of the searches leads to the solution always.
+    RollTrack track = TrackRoll(knots, setup);
+    TakeIfBetter(chosen(track), marked, choice, result);
+    track.alone = true;
+    if (Misfits(result)) TakeIfBetter(chosen(track), marked, choice, result);
   }
   if (starts.otherwise && GyrosMisfit(result)) {
     const std::array otherwise{starts.otherwise()};

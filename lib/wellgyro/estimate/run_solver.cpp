@@ -83,7 +83,8 @@ RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots,
 
 void RunSolver::Begin(const Matrix3d& R_LT) {
   border_.setZero();
-  GuessPass pass(setup_, knots_);
+  const RollTrack track = RollOfNeighbours(knots_, setup_);
+  GuessPass pass(setup_, knots_, track);
   pass.Begin(R_LT);
   pass.Run(0, knots_.size());
   nodes_ = std::move(pass).nodes();

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/guess_pass.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/math/rotation.h"
 
@@ -62,9 +63,9 @@ Start WithHeadings(Start anchors, std::span<const NodeHeading> headings) {
 }  // namespace
 
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& known,
-                  RollSearch search) {
-  GuessPass pass(setup, knots, search);
-  const Start start = WithHeadings(known, pass.headings());
+                  const RollTrack& track) {
+  GuessPass pass(setup, knots, track);
+  const Start start = WithHeadings(known, track.headings);
   Matrix3d first = LevelAttitude(knots);
   pass.Begin(first);
   std::size_t from = 0;
@@ -92,7 +93,8 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, co
 
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
                   std::span<const Matrix3d> R_LT) {
-  GuessPass pass(setup, knots);
+  const RollTrack track = RollOfNeighbours(knots, setup);
+  GuessPass pass(setup, knots, track);
   pass.Begin(R_LT.front());
   pass.Run(0, knots.size());
   NodeGuess nodes = std::move(pass).nodes();
@@ -101,7 +103,8 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
 }
 
 Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const AzimuthTie& tie) {
-  GuessPass pass(setup, knots);
+  const RollTrack track = RollOfNeighbours(knots, setup);
+  GuessPass pass(setup, knots, track);
   pass.Begin(LevelAttitude(knots));
   pass.Run(0, tie.node);
   const Matrix3d R_LT = pass.nodes()[tie.node].R_LT;

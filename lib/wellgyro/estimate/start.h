@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "wellgyro/estimate/guess_pass.h"
 #include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
 
@@ -37,7 +37,7 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
 
 /// The nodes by a forward pass from where `start` has them. At least one knot and one anchor.
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start,
-                  RollSearch search = RollSearch::kNeighbours);
+                  const RollTrack& track);
 
 /// The heading that a tie gives, where the nodes would stand without any.
 Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const AzimuthTie& tie);

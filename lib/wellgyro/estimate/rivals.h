@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "wellgyro/estimate/layout.h"
+#include "wellgyro/estimate/start.h"
+
+namespace wellgyro {
+
+/// 2 ln of odds of 90: by less one solution does not beat another.
+inline constexpr double kDecides = 9;
+
+/// Where a run may be solved. The evidence is that of a SolveReport, the smaller the better.
+struct Solution {
+  double evidence = HUGE_VAL;
+  NodeGuess nodes;
+  BorderVector border;
+};
+
+/// Keeps another solution than the chosen one, of `evidence` and `nodes`, if it comes near it. One
+/// that is found again is kept once, as the better of the two.
+void AddRival(Solution other, double evidence, std::span<const Node> nodes,
+              std::vector<Solution>& rivals);
+
+}  // namespace wellgyro
