@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -248,6 +249,34 @@ TEST_F(Operations, EveryStationGoesOutProvisionalFirstAndRevisedAfter) {
   EXPECT_GE(revised, before) << "each again";
   surveyor.Push(DepthMark{});
   EXPECT_FALSE(sink.faults.empty()) << "a message after the end is told";
+}
+
+// 2026-11-25: a run that ended on its way down after that had its last station at the same depth.
+TEST(Commands, ADepthGivenToOneStationIsNoOthers) {
+  Simulation simulation = OperatedRun();
+  simulation.run.steps = {Stop(90), Move(300)};
+  const UtcTime begin = simulation.streams.begin_utc, end = Later(begin, 150);
+  CollectingSink sink;
+  Surveyor surveyor(OperatedJob(), sink);
+  Command command;
+  command.kind = Command::Kind::kTakeStation;
+  command.utc = Later(begin, 120);
+  command.md = 41.3;
+  surveyor.Push(command);
+  testing::Play(simulation, surveyor, [end](SimulatedStep& step) {
+    const auto* sample = std::get_if<ImuSample>(&step);
+    return sample == nullptr || sample->stamp.utc < end;
+  });
+  surveyor.Finish();
+  const std::vector<Station> stations = surveyor.Current(0).passes;
+  const auto at = [&stations](double md) {
+    return std::count_if(stations.begin(), stations.end(),
+                         [md](const Station& s) { return s.md == md; });
+  };
+  EXPECT_EQ(at(41.3), 1);
+  const TruthState last = Truth(simulation).At(150);
+  ASSERT_GT(last.md, 80);
+  EXPECT_NEAR(stations.back().md, last.md, 0.1);
 }
 
 }  // namespace

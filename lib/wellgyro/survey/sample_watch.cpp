@@ -8,7 +8,7 @@
 
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/survey/check_internal.h"
-#include "wellgyro/survey/run_survey_internal.h"
+#include "wellgyro/survey/station_marks.h"
 
 namespace wellgyro {
 namespace {

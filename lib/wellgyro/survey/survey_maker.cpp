@@ -14,7 +14,7 @@
 #include "wellgyro/survey/mirrors.h"
 #include "wellgyro/survey/model_covariance.h"
 #include "wellgyro/survey/run_diagnosis.h"
-#include "wellgyro/survey/run_survey_internal.h"
+#include "wellgyro/survey/station_marks.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 #include "wellgyro/survey/verdict.h"
 
@@ -190,7 +190,7 @@ std::vector<Check> SurveyMaker::Checks(const std::vector<Station>& passes) const
 
 /// Samples behind the last depth, for which marks came after all, but too late [s].
 double SurveyMaker::DepthTooLate() const {
-  const double unknown = parts_.runs.back().survey->seconds_without_depth();
+  const double unknown = parts_.runs.back().survey->depth().seconds_without();
   if (string_.track.empty() || !(unknown > 0)) return 0;
   const double until_newest = (parts_.newest_used - string_.track.newest()).seconds();
   const double late = unknown - std::max(until_newest, 0.0);
@@ -224,7 +224,7 @@ std::string SurveyMaker::WithoutDepth() const {
         std::any_of(summary.fixes.begin(), summary.fixes.end(),
                     [](const NorthFix& fix) { return !fix.from_samples && fix.md; });
     const bool empty = summary.samples == 0 && summary.fixes.empty();
-    if (run.survey->depth_seen() || placed || empty) return {};
+    if (run.survey->depth().seen() || placed || empty) return {};
     sampled = sampled || summary.samples > 0;
   }
   if (!sampled) {

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "wellgyro/base/time.h"
+#include "wellgyro/depth/passes.h"
+#include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/increment.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/survey/draft.h"
+#include "wellgyro/survey/increment_feed.h"
+#include "wellgyro/survey/job.h"
+#include "wellgyro/survey/located_block.h"
+#include "wellgyro/survey/station_marks.h"
+#include "wellgyro/survey/survey.h"
+#include "wellgyro/survey/waiting_knot.h"
+
+namespace wellgyro {
+
+/// Cuts a run's samples into knots: every second of the tool clock, at every station, where the
+/// tool comes to rest, and where the job's azimuth holds.
+///
+/// A sample is the mean over a period, and the depth is known at instants: where in it a depth is
+/// passed is known when the next sample has come. Until then it is the *current* one. What follows
+/// it says where it ends (EndBefore); it is summed (Sum), its knots are placed (Place) and cut
+/// (Cut), and the next sample takes its place (Begin).
+class KnotCutter {
+ public:
+  /// Where the current sample and the gap after it, if any, end.
+  struct End {
+    AlongHole along;  ///< there
+    PassState pass;   ///< there
+    double reach;     ///< from the sample's begin to there, in periods
+  };
+
+  /// All must outlive this object.
+  KnotCutter(const Job& job, WaitingKnots& waiting, RunSummary& summary);
+
+  StationMarks& marks() { return marks_; }
+  const StationMarks& marks() const { return marks_; }
+
+  /// What the next sample, taken or not, says of the tool and its clock.
+  void Heed(const SampleStamp& stamp);
+  /// The sample comes behind all that have been taken.
+  bool Follows(const ImuSample& sample) const;
+  /// The current sample's end, by a sample that follows; none: there is no current one.
+  std::optional<End> EndBefore(const ImuSample& next, UtcTime utc, const AlongHole& along,
+                               const PassState& pass);
+  /// The same where none follows, a station there included that ends a way down.
+  std::optional<End> LastEnd(const PassState& pass);
+  /// The current sample into the sums; increments of knots that end before it are given out.
+  void Sum();
+  /// Finds where knots are wanted up to the end. True: the station made last is among those asked
+  /// for, and is to be listed.
+  bool Place(const End& end);
+  /// Makes those knots; false: none.
+  bool Cut(const End& end);
+  /// The sample becomes the current one; `along` at its begin, `middle` at its middle.
+  void Begin(const ImuSample& sample, UtcTime utc, const AlongHole& along, const AlongHole& middle,
+             const PassState& pass);
+  /// No sample follows for now: there is no current one, and all increments are given out.
+  void Flush();
+
+  /// How many samples from `at` on at most follow the current one without ending a knot or a sum.
+  std::size_t Room(const LocatedBlock& block, std::size_t at) const;
+  /// No station, and no place of the job's azimuth, lies within such samples, which end at `utc`
+  /// and reach `furthest` [m].
+  bool IsPlain(UtcTime utc, double furthest);
+  /// Such samples, [at, at + count): the last of them, on this pass, becomes the current one; those
+  /// before it are summed.
+  void Append(const LocatedBlock& block, std::size_t at, std::size_t count, const PassState& pass);
+
+  std::vector<Increment> IncrementsAhead() { return feed_.Ahead(waiting_); }
+
+ private:
+  struct Current {
+    ToolTime begin;
+    std::int32_t period_ns, session;
+    bool rests;  ///< by the depth at the middle of it
+    ImuSample sample;
+    UtcTime utc, utc_end;
+    AlongHole along;
+    PassState pass;
+  };
+  /// Where a knot is wanted within the current sample, or (beyond 1) in the gap after it.
+  struct KnotAt {
+    double fraction = 1;
+    std::optional<Draft> draft;
+    bool external = false;
+  };
+
+  void Give();
+  bool PlaceTargets(double md_next, double reach);
+  void PlaceByTime();
+  void CutAt(const KnotAt& cut, const End& end);
+  void MakeKnot(ToolTime time, double fraction, const End& end);
+  Draft NewDraft(double md) const;
+
+  const Job& job_;
+  WaitingKnots& waiting_;
+  RunSummary& summary_;
+  StationMarks marks_;
+  IncrementFeed feed_;
+  std::vector<KnotAt> cuts_;  ///< scratch
+  std::optional<Current> current_;
+  std::optional<SampleStamp> last_taken_;
+  std::optional<ToolTime> last_knot_;
+  bool temperature_outside_ = false;  ///< since the last knot
+  bool end_unsynced_ = false;         ///< the sample behind the one being summed doubts its UTC
+};
+
+}  // namespace wellgyro

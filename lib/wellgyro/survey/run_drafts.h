@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "wellgyro/attitude/station_state.h"
+#include "wellgyro/record/increment.h"
+#include "wellgyro/record/north_fix.h"
+#include "wellgyro/record/quality.h"
+#include "wellgyro/record/run_knot.h"
+#include "wellgyro/record/still_window.h"
+#include "wellgyro/survey/draft_book.h"
+#include "wellgyro/survey/forward_estimate.h"
+#include "wellgyro/survey/job.h"
+#include "wellgyro/survey/waiting_knot.h"
+
+namespace wellgyro {
+
+/// The stations of a run as drafts. One is told at once, *ahead*, while its knot still waits, by
+/// the increments that the samples there are give; its state follows when the knot is known.
+class RunDrafts {
+ public:
+  DraftBook& book() { return book_; }
+  const DraftBook& book() const { return book_; }
+  /// How many, the youngest, are told ahead.
+  std::size_t ahead() const { return states_ahead_.size(); }
+  /// States of stations, in their order: those of the run's history, `known`, then those told
+  /// ahead.
+  std::vector<StationState> States(std::span<const StationState> known) const;
+  const StationState& State(std::size_t number, std::span<const StationState> known) const;
+
+  /// The knot just stepped; a draft that waited for it becomes a station of `estimate`.
+  void Take(const WaitingKnot& waiting, ForwardEstimate& estimate);
+  /// Those of knots that wait, as far as there are increments for them.
+  void TellAhead(std::span<const Increment> increments, ForwardEstimate& estimate,
+                 WaitingKnots& waiting);
+  /// Where some of the knots that wait have a draft that is not told.
+  static bool AnyUntold(const WaitingKnots& waiting);
+  /// Averages at rest that the tool made itself, of which this is the north.
+  void Add(const StillWindow& window, const NorthFix& fix);
+
+  /// The station made last is asked for after all.
+  void ListLast(WaitingKnots& waiting);
+  /// The station of a stop gets what its north fix says of the place; `list`: it is asked for.
+  void TakeStop(const NorthFix& fix, bool list);
+  /// Lists the deepest station of the in-runs, which closes the survey.
+  void ListDeepest();
+
+ private:
+  void Add(const Draft& waiting, std::size_t state, const RunKnot& knot, Quality unseen,
+           bool heard);
+
+  DraftBook book_;
+  std::deque<StationState> states_ahead_;  ///< of the youngest drafts, whose knots still wait
+  Quality unseen_ = Quality::kGood;        ///< since the last station that is listed
+};
+
+}  // namespace wellgyro

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "wellgyro/record/sample.h"
+#include "wellgyro/survey/survey.h"
+
+namespace wellgyro {
+
+/// Adds `samples` samples, all stamped alike but for time and number, to a run's counts.
+void CountSamples(const SampleStamp& stamp, std::int64_t samples, RunSummary& summary);
+
+/// Gravity across the tool turns by more than a right angle from one sample to the next, and is
+/// such that no noise makes it: the roll between them is not known.
+inline bool TurnsFar(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  constexpr double kSeenAcross = 1;  // [m/s^2]
+  const double least = std::min(from.squaredNorm(), to.squaredNorm());
+  return from.dot(to) < 0 && least > kSeenAcross * kSeenAcross;
+}
+
+}  // namespace wellgyro

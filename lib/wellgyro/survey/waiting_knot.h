@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "wellgyro/base/time.h"
+#include "wellgyro/record/along_hole.h"
+#include "wellgyro/record/increment.h"
+#include "wellgyro/survey/draft.h"
+
+namespace wellgyro {
+
+inline constexpr std::int64_t kSameNs = 2;  ///< one place, cut twice and rounded
+
+/// A knot that has been cut and waits for its increment.
+struct WaitingKnot {
+  ToolTime begin, end;
+  UtcTime utc;  ///< of its end, and there:
+  AlongHole along;
+  std::optional<Draft> draft;
+  std::optional<Increment> increment;
+  bool external = false;            ///< the job's azimuth holds here
+  std::optional<bool> still;        ///< once it is decided
+  std::optional<std::size_t> told;  ///< the draft's number, where it is already among the drafts
+  bool temperature_outside = false;
+  float temperature = 0;  ///< [degC]
+};
+
+/// In the order of time: the door between what cuts samples into knots and what is estimated from
+/// them.
+using WaitingKnots = std::deque<WaitingKnot>;
+
+}  // namespace wellgyro
