@@ -158,6 +158,22 @@ TEST(IncrementBuilder, OrdersFallWithThePeriodAsTheyShould) {
   EXPECT_LT(third[1], 0.02 * second[1]);
 }
 
+// 0.6 s of 20 Hz: in doubles the middle is neither in the sample that ends there nor in the next.
+TEST(IncrementBuilder, AMiddleBetweenTwoSamplesIsFound) {
+  for (const double rate : {10., 20., 50., 100.}) {
+    for (const double every : {0.2, 0.4, 0.6, 1.2, 1.4, 2.2}) {
+      const auto increments =
+          motion::Increments(motion::Samples(InHole(50, Turning(3)), {}, rate, 30), every, {});
+      for (std::size_t k = 1; k + 1 < increments.size(); ++k) {
+        const Increment& i = increments[k];
+        EXPECT_NEAR(i.roll_before, i.roll_after, 0.01 * every) << rate << " Hz, " << every << " s";
+        const Eigen::Vector2d rest = i.turn_M - 2 * i.turn_before_M;
+        EXPECT_LT(rest.norm(), 0.1 * i.turn_M.norm()) << rate << " Hz, " << every << " s";
+      }
+    }
+  }
+}
+
 TEST(IncrementBuilder, ThirdGyroGivesTheRollNearVerticalToo) {
   const Attitude attitude = InHole(0.6, Swinging(8, 0.7, 3), Whirl(0.05, 1));
   const Bounds worst = Fly(attitude, 20, Options(), 1, true);

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 
 namespace wellgyro {
@@ -118,6 +119,43 @@ TEST(Places, TheRollWalksAsTheHoleTurns) {
     const double turn = 0.004, rate = turn * kSpeed * std::pow(std::sin(inclination), 2);
     const double want = rate * std::cos(inclination) * std::sqrt(kSpeed / 30);
     EXPECT_NEAR(RollWalkOf(inclination, 0, turn), want, 0.01 * want) << inclination;
+  }
+}
+
+// Of a swing of 15 s, in knots of a second, against its integral; and of psi, which follows a part
+// of it.
+TEST(Places, AHiddenRollBowsAsItSwings) {
+  constexpr double kFrequency = kTwoPi / 15, kAmplitude = 0.5;
+  const auto roll = [](double t) { return kAmplitude * std::sin(kFrequency * t); };
+  std::vector<RunKnot> knots(30);
+  std::vector<double> rates;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const double begin = static_cast<double>(k);
+    Increment& inc = knots[k].increment;
+    inc.seconds = 1;
+    inc.roll_seen = k % 7 == 3;
+    knots[k].still = k % 7 == 5;
+    rates.push_back(roll(begin + 1) - roll(begin));
+    const double part = (k % 2 == 0 ? 0.0 : 0.3);
+    inc.roll_before = part * (roll(begin + 0.5) - roll(begin));
+    inc.roll_after = part * (roll(begin + 1) - roll(begin + 0.5));
+  }
+  std::vector<KnotPlace> places(knots.size());
+  BowKnots(knots, rates, places);
+  for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
+    if (knots[k].increment.roll_seen || knots[k].still) {
+      EXPECT_EQ(places[k].roll_bow, 0) << k;
+      continue;
+    }
+    constexpr int kParts = 1000;
+    double bow = 0;
+    for (int i = 0; i < kParts; ++i) {
+      const double part = (i + 0.5) / kParts, begin = static_cast<double>(k);
+      bow += (roll(begin + part) - roll(begin) - part * rates[k]) / kParts;
+    }
+    bow *= 1 - (k % 2 == 0 ? 0.0 : 0.3);
+    // A tenth of the greatest there is.
+    EXPECT_NEAR(places[k].roll_bow, bow, 0.1 * kAmplitude * kFrequency * kFrequency / 12) << k;
   }
 }
 

@@ -238,6 +238,7 @@ struct Middle {
 Sums SumBlocks(const KnotSpan& span, bool third, const Blocks& blocks, Middle& middle,
                Increment& out) {
   const double half = 0.5 * out.seconds;
+  bool halved = false;
   Sums s;
   for (std::uint64_t k = span.begin_block; k <= span.end_block; ++k) {
     const Ready r = MakeReady(k, third, blocks);
@@ -246,11 +247,13 @@ Sums SumBlocks(const KnotSpan& span, bool third, const Blocks& blocks, Middle& m
     const double to = std::min(begin + r.b.seconds, out.seconds);
     if (to <= from) continue;
     FillFlags(r.b, to - from, out);
-    if (from < half && half <= to) {
-      s.Add(r, from - at, half - at, at);
+    // In the first block that reaches it: where it stands between two, both may just miss it.
+    if (!halved && half <= to) {
+      if (from < half) s.Add(r, from - at, half - at, at);
       middle = {s.turn, s.coning,
                 RollAt(span.begin_ns + (span.end_ns - span.begin_ns) / 2, k, blocks)};
-      from = half;
+      from = std::max(from, half);
+      halved = true;
     }
     if (to > from) s.Add(r, from - at, to - at, at);
   }

@@ -59,9 +59,6 @@ Matrix2d MeanSquareOfX(const Increment& inc) {
   return 0.5 * (Matrix2d() << 1 + c, s, s, 1 - c).finished();
 }
 
-/// Turned by a right angle from x to y: what a unit of roll makes of it.
-Vector2d Across(const Vector2d& v) { return {-v.y(), v.x()}; }
-
 TurnByError TurnBy(const Increment& inc) {
   TurnByError by_error = TurnByError::Zero();
   by_error.leftCols<kTurnSources>() = inc.turn_by_error;
@@ -103,45 +100,37 @@ struct KnotRows::Terms {
   const Node& begin;
   const Node& end;
   double dt;
-  double delta = 0;             // psi's error at the end, from that at the begin
-  double frequency = 0;         // of the swing
-  Vector2d of_swing{0, 0};      // in the mean rate of roll
-  Vector2d bow_by_swing{0, 0};  // in `bow`
-  double bow = 0;               // by which the roll leads psi and an even delta, in the mean
-  TurnByError turn_by_error{};  // at the roll rate of now
-  Vector2d turn{};              // of what is known of the errors corrected
-  Vector2d turn_per_roll{};     // at delta
-  Matrix3d Ha{}, Hb{}, Xh{};
-  Matrix3d R_LM{};
-  Vector3d w_IL_L{};  // at the latitude as it is now known
-  BorderVector border{};
+  double delta;               // psi's error at the end, from that at the begin
+  double frequency;           // of the swing
+  Vector2d of_swing;          // in the mean rate of roll
+  TurnByError turn_by_error;  // at the roll rate of now
+  Vector2d turn;              // of what is known of the errors corrected
+  Vector2d turn_per_roll;     // at delta
+  Matrix3d Ha, Hb, Xh;
+  Matrix3d R_LM;
+  Vector3d w_IL_L;  // at the latitude as it is now known
+  BorderVector border;
 };
 
 KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
   const Increment& inc = knot.increment;
-  Terms t{.knot = knot, .place = place, .begin = begin, .end = end, .dt = inc.seconds};
-  t.turn_by_error = TurnBy(inc);
-  t.turn = inc.turn_M;
-  t.w_IL_L = place.w_IL_L;
-  t.border = border;
+  Terms t{knot,        place,      begin, end, inc.seconds, 0,  0,  Vector2d::Zero(),
+          TurnBy(inc), inc.turn_M, {},    {},  {},          {}, {}, place.w_IL_L,
+          border};
   if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
   double rate = begin.roll_rate;
   if (layout_.swing != kAbsent) {
     t.frequency = *FrequencyOf(setup_, layout_, border);
     t.of_swing = MeanOfSwing(t.frequency, t.dt);
     rate += t.of_swing.dot(begin.swing);
-    if (!inc.roll_seen) {
-      t.bow_by_swing = SwingBeforeChord(t.frequency, t.dt);
-      t.bow = t.bow_by_swing.dot(begin.swing) - (inc.roll_before - inc.roll_after) / 3;
-    }
   }
   t.delta = rate * t.dt - (inc.roll_before + inc.roll_after);
   // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
   t.turn_by_error.middleCols<2>(kMisalignmentX) +=
       t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
-  t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Across(inc.turn_M);
+  t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
   for (int i = 0; i < kErrorSources; ++i) {
     const double error = SourceAt(border, i);
     if (error != 0) t.turn -= error * t.turn_by_error.col(i);
@@ -161,10 +150,10 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   // Roll error delta that grows evenly over the knot: integral of e^{i delta (tau - 1/2)} over tau
   // in (0, 1), to the third order for a steady turn. The square counts where the roll was
   // unobserved and the tool turned by delta more than psi.
-  t.turn += t.delta * (inc.turn_per_roll - t.delta / 24 * inc.turn_M) + t.bow * Across(inc.turn_M);
+  t.turn += t.delta * (inc.turn_per_roll - t.delta / 24 * inc.turn_M);
   t.turn_per_roll = inc.turn_per_roll - t.delta / 12 * inc.turn_M;
-  t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta);
-  t.Hb = RotationZ(inc.roll_after + 0.5 * t.delta);
+  t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta + place.roll_bow);
+  t.Hb = RotationZ(inc.roll_after + 0.5 * t.delta - place.roll_bow);
   t.Xh = Exp(Flat(inc.turn_before_M + 0.5 * (t.turn - inc.turn_M)));
   t.R_LM = Exp(-0.5 * t.dt * t.w_IL_L) * begin.R_LT * t.Ha * t.Xh;
   return t;
@@ -183,16 +172,12 @@ void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RollChange
   if (knot.still) AddRest(t, block);
 }
 
-/// What a unit of the mean rate of roll adds to the factor's residuals, for all that it is made of,
-/// and what a unit of the bow does.
-void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, const Vector3d& by_bow,
-                       NormalBlock& block) {
+/// What a unit of the mean rate of roll adds to the factor's residuals, for all that it is made of.
+void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, NormalBlock& block) {
   const auto rows = by_rate.head(factor_.rows);
   factor_.Column(layout_.roll) = rows;
   if (layout_.swing == kAbsent) return;
-  for (int i = 0; i < 2; ++i)
-    factor_.Column(layout_.swing + i) =
-        t.of_swing[i] * rows + t.bow_by_swing[i] * by_bow.head(factor_.rows);
+  for (int i = 0; i < 2; ++i) factor_.Column(layout_.swing + i) = t.of_swing[i] * rows;
   factor_.Column(block.border() + layout_.frequency) =
       MeanByFrequency(t.frequency, t.dt).dot(t.begin.swing) * rows;
 }
@@ -224,7 +209,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Vector3d by_delta =
       -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * t.turn_per_roll;
   const Vector3d by_rate = by * (t.dt * by_delta);
-  AddRate(t, by_rate, by * (turned * -Across(inc.turn_M)), block);
+  AddRate(t, by_rate, block);
   const Eigen::Matrix<double, 3, kErrorSources> by_error =
       by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
   AddGyroDrift(t, by_error, block);
@@ -286,7 +271,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Vector2d skew(SourceAt(t.border, kMisalignmentX), SourceAt(t.border, kMisalignmentY));
   Vector3d force = ForceOf(t, by_skew) + p.cross(Flat(beyond * skew));
   const Vector2d across = force.head<2>();
-  force += Flat(t.delta * (inc.force_per_roll - t.delta / 24 * across) + t.bow * Across(across));
+  force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
   const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
   // M stands where half of the seen turn leads; half of the unseen is missing.
   const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
@@ -303,7 +288,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
       -(px + down_M.cross(path) * down_M.transpose()) * (t.Ha * t.Xh).transpose();
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);
   const Vector3d by_rate = whiten * t.dt * (-0.5 * px * t.Xh.row(2).transpose() + force_per_roll);
-  AddRate(t, by_rate, whiten * Flat(Across(across)), block);
+  AddRate(t, by_rate, block);
   f.Column(layout_.speed) = whiten / t.dt * Vector3d::UnitZ();
   f.Column(block.next() + layout_.speed) = -whiten / t.dt * Vector3d::UnitZ();
   for (int i = 0; i <= kAccelMisalignmentZY; ++i) {
@@ -364,7 +349,7 @@ void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   f.Begin(RowKind::kAxial, 1);
   f.r[0] = whiten * (t.delta + t.dt * SourceAt(t.border, kGyroBiasZ) +
                      axial * SourceAt(t.border, kGyroScaleZ));
-  AddRate(t, {whiten * t.dt, 0, 0}, Vector3d::Zero(), block);
+  AddRate(t, {whiten * t.dt, 0, 0}, block);
   const int bias = layout_.source[kGyroBiasZ], scale = layout_.source[kGyroScaleZ];
   if (bias != kAbsent) f.Column(block.border() + bias)[0] = whiten * t.dt;
   if (scale != kAbsent) f.Column(block.border() + scale)[0] = whiten * (axial + t.delta);

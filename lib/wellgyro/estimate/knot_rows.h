@@ -30,6 +30,9 @@ struct KnotPlace {
   /// Of the inertial roll rate of a tool that keeps its toolface in a hole that bends: that rate is
   /// A' cos I [rad/s/sqrt(s)].
   double roll_walk = 0;
+  /// By which the roll leads psi and an even turn beside it, in the mean of the knot, where gravity
+  /// does not show it [rad].
+  double roll_bow = 0;
   double since_start = 0;  ///< middle of the knot [s]
   double depth = 0;        ///< vertical, below node 0 [m]
 };
@@ -67,8 +70,7 @@ class KnotRows {
   struct Terms;
   Terms TermsOf(const RunKnot& knot, const KnotPlace& place, const BorderVector& border,
                 const Node& begin, const Node& end) const;
-  void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, const Eigen::Vector3d& by_bow,
-               NormalBlock& block);
+  void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, NormalBlock& block);
   void AddTurn(const Terms& t, NormalBlock& block);
   void AddGyroDrift(const Terms& t, const Eigen::Matrix<double, 3, kErrorSources>& by_error,
                     NormalBlock& block);

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/hidden_roll.h"
 
 namespace wellgyro {
 namespace {
@@ -132,6 +133,20 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     place.depth = p.z();
     time += dt;
     p += (b.md - a.md) * tangent;
+  }
+}
+
+void BowKnots(std::span<const RunKnot> knots, std::span<const double> roll_rates,
+              std::vector<KnotPlace>& places) {
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Increment& inc = knots[k].increment;
+    places[k].roll_bow = 0;
+    if (k == 0 || k + 1 == knots.size() || !RollIsHidden(knots[k])) continue;
+    const double dt = inc.seconds;
+    const double apart = 0.5 * (knots[k - 1].increment.seconds + knots[k + 1].increment.seconds);
+    const double change = (roll_rates[k + 1] - roll_rates[k - 1]) / (apart + dt);
+    const double of_psi = (inc.roll_before - inc.roll_after) / 3;
+    places[k].roll_bow = -change * dt * dt / 12 - of_psi;
   }
 }
 

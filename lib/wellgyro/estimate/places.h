@@ -24,4 +24,11 @@ Site SiteBy(const Site& first, const Eigen::Vector3d& p);
 void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKnot> knots,
                 std::span<const Node> nodes, std::vector<KnotPlace>& places);
 
+/// How the roll bows within each knot where it is hidden, by its rates over the knots [rad/s]: what
+/// changes by a [rad/s^2] is -a t^2 / 12 before its chord in the mean. By the knots on both sides:
+/// a swing that takes 15 knots is bowed to 5 %, one that takes 6 to a quarter. psi's own bow, of
+/// three points, is taken off.
+void BowKnots(std::span<const RunKnot> knots, std::span<const double> roll_rates,
+              std::vector<KnotPlace>& places);
+
 }  // namespace wellgyro

@@ -27,13 +27,6 @@ Vector2d MeanOfSwing(double frequency, double seconds) {
   return {std::sin(angle) / angle, 2 * half * half / angle};
 }
 
-Vector2d SwingBeforeChord(double frequency, double seconds) {
-  const double angle = frequency * seconds;
-  const Vector2d chord = 0.5 * MeanOfSwing(frequency, seconds);
-  const Vector2d mean(2 * chord.y() / angle, (1 - 2 * chord.x()) / angle);
-  return seconds * (mean - chord);
-}
-
 Vector2d MeanByFrequency(double frequency, double seconds) {
   const double angle = frequency * seconds;
   return (Vector2d(std::cos(angle), std::sin(angle)) - MeanOfSwing(frequency, seconds)) / frequency;

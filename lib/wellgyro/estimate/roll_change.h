@@ -36,10 +36,6 @@ Eigen::Vector2d SwingByFrequency(double frequency, double seconds, const Eigen::
 /// What a swing adds to the mean rate of roll over the `seconds` behind it, of its parts in phase
 /// and in quadrature: sin wt / wt and (1 - cos wt) / wt.
 Eigen::Vector2d MeanOfSwing(double frequency, double seconds);
-/// By which the swing's turn of the tool leads its chord over the `seconds` behind it, in the mean
-/// [s], of the same parts: (1 - cos wt) / w^2 t - sin wt / 2w and (wt - sin wt) / w^2 t - (1 - cos
-/// wt) / 2w.
-Eigen::Vector2d SwingBeforeChord(double frequency, double seconds);
 /// d MeanOfSwing / d frequency [s].
 Eigen::Vector2d MeanByFrequency(double frequency, double seconds);
 

@@ -275,6 +275,7 @@ void RunSolver::HoldRollWeights() {
 /// half of it then.
 bool RunSolver::Advance(SolveReport& report) {
   PlaceKnots(setup_.site, before_, knots_, nodes_, places_);
+  BowKnots(knots_, RollRates(), places_);
   BorderVector border_step;
   if (!Linearise() || !elimination_.Solve(steps_, border_step)) return false;
   Step(steps_, border_step, TakesBack(steps_, last_steps_) ? 0.5 : 1);
@@ -398,15 +399,26 @@ bool RunSolver::HidesAStart() const {
   return false;
 }
 
-/// What the swing turns the tool by in each knot [rad].
+/// What the swing turns the tool by in each knot [rad]; zeros where there is none.
 std::vector<double> RunSolver::Swung() const {
+  const std::optional<double> swings = FrequencyOf(setup_, layout_, border_);
+  if (!swings) return std::vector<double>(knots_.size(), 0);
+  const double frequency = *swings;
   std::vector<double> swung;
-  const double frequency = *FrequencyOf(setup_, layout_, border_);
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const double seconds = knots_[k].increment.seconds;
     swung.push_back(seconds * MeanOfSwing(frequency, seconds).dot(nodes_[k].swing));
   }
   return swung;
+}
+
+/// Over each knot, with its swing [rad/s].
+std::vector<double> RunSolver::RollRates() const {
+  std::vector<double> rates = Swung();
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    rates[k] = nodes_[k].roll_rate + rates[k] / knots_[k].increment.seconds;
+  }
+  return rates;
 }
 
 /// What the roll rate and its swing walk by: first both by the same, so that neither takes the

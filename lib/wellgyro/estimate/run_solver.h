@@ -104,6 +104,7 @@ class RunSolver : public RunRows {
   double FindDecade(double least, double most, Scales scales, SolveReport& report);
   void FindBetween(double evidence, double& scale, SolveReport& report);
   std::vector<double> Swung() const;
+  std::vector<double> RollRates() const;
   void FindWalks(SolveReport& report);
 
   EstimateSetup setup_;
