@@ -18,6 +18,7 @@
 #include "wellgyro/io/sensor/series_file.h"
 
 #include "commands.h"
+#include "on_call.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -128,10 +129,7 @@ int Tell(const AllanOptions& o, const AllanAnswer& answer) {
 
 int RunAllan(AllanOptions& o) {
   Result<SampleSeries> series = ReadSeries(o);
-  if (!series) {
-    Complain(series.fault());
-    return kUnusable;
-  }
+  if (!series) return Unusable(series.fault());
   SetPeriod(o, *series);
   CheckUnit(o, *series);
   AllanRequest& request = o.request;
@@ -144,10 +142,7 @@ int RunAllan(AllanOptions& o) {
     request.progress = Shower(progress);
     answer = AnswerAllan(std::move(*series), request);
   }
-  if (!*answer) {
-    Complain(answer->fault());
-    return kUnusable;
-  }
+  if (!*answer) return Unusable(answer->fault());
   return Tell(o, **answer);
 }
 
@@ -293,14 +288,9 @@ void AddAllan(CLI::App& app, int& exit_code) {
       "Example:\n  wellgyro allan --data static.csv --channel gx_deg_per_h --unit deg_per_h \\\n"
       "      --rate-hz 100 --out noise.toml --table allan.csv --plot allan.svg\n"
       "The coefficients are fitted to overlapped octaves whatever the table shows.");
-  command->callback([options, &exit_code] {
-    try {
-      TakeWords(*options);
-      exit_code = RunAllan(*options);
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro allan --help", error.what()));
-      exit_code = kUsage;
-    }
+  OnCall(command, exit_code, [options] {
+    TakeWords(*options);
+    return RunAllan(*options);
   });
 }
 

@@ -17,14 +17,8 @@ namespace wellgyro::apps {
 /// exit code where there is no answer or it cannot be written.
 template <class Answer>
 std::optional<int> WriteAnswer(const Result<Answer>& answer, const std::string& folder) {
-  if (!answer) {
-    Complain(answer.fault());
-    return kUnusable;
-  }
-  if (const auto fault = WriteFiles(folder, answer->files)) {
-    Complain(*fault);
-    return kUnusable;
-  }
+  if (!answer) return Unusable(answer.fault());
+  if (const auto fault = WriteFiles(folder, answer->files)) return Unusable(*fault);
   for (const std::string& note : answer->notes) fmt::print(stderr, "note: {}\n", note);
   for (const OutputFile& file : answer->files) fmt::print("{}/{}\n", folder, file.name);
   return std::nullopt;

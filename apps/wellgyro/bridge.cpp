@@ -125,25 +125,18 @@ int Bridge::Run() {
 
 int RunBridge(const BridgeOptions& options) {
   if (!options.from.starts_with(kWits)) {
-    Complain("--from is wits0:tcp://HOST:PORT or wits0:/dev/ttyS0");
-    return kUsage;
+    return Misused("--from is wits0:tcp://HOST:PORT or wits0:/dev/ttyS0");
   }
   WitsItems items;
   if (!options.items.empty()) {
     const Result<WitsItems> read = ReadWitsItems(options.items);
-    if (!read) {
-      Complain(read.fault());
-      return kUnusable;
-    }
+    if (!read) return Unusable(read.fault());
     items = *read;
   }
   const std::optional<Channels> channels = ChannelsOf(options.job);
   if (!channels) return kUnusable;
   Result<LiveBus> bus = LiveBus::Open(UrlOr(options.to));
-  if (!bus) {
-    Complain(bus.fault());
-    return kUnusable;
-  }
+  if (!bus) return Unusable(bus.fault());
   const StopOnSignals stop(*bus);
   return Bridge(options, items, channels->depth, *bus).Run();
 }

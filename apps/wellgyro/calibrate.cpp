@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +19,7 @@
 #include "bench_options.h"
 #include "calibrate_tool.h"
 #include "commands.h"
+#include "on_call.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -83,16 +83,7 @@ void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchO
   command->footer(
       fmt::format("Example:\n  wellgyro calibrate {0} --data bench.csv --out {0}.toml{1}",
                   method.name, method.needs));
-  command->callback([o, &exit_code, &method] {
-    try {
-      const auto fault = RunMethod(*o, method);
-      if (fault) Complain(*fault);
-      exit_code = fault ? kUnusable : kDone;
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro calibrate {} --help", error.what(), method.name));
-      exit_code = kUsage;
-    }
-  });
+  OnCall(command, exit_code, [o, &method] { return Concluded(RunMethod(*o, method)); });
 }
 
 }  // namespace

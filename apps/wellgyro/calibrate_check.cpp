@@ -23,29 +23,11 @@
 #include "bench_options.h"
 #include "calibrate_tool.h"
 #include "commands.h"
+#include "on_call.h"
 #include "report.h"
 
 namespace wellgyro::apps {
 namespace {
-
-// A command's callback: its faults and mistakes to the exit code.
-template <class Run>
-void OnCall(CLI::App* command, int& exit_code, Run run) {
-  command->callback([command, &exit_code, run] {
-    try {
-      exit_code = run();
-    } catch (const std::invalid_argument& error) {
-      Complain(
-          fmt::format("{}; see wellgyro calibrate {} --help", error.what(), command->get_name()));
-      exit_code = kUsage;
-    }
-  });
-}
-
-int Unusable(const Fault& fault) {
-  Complain(fault);
-  return kUnusable;
-}
 
 struct VerifyOptions {
   BenchOptions bench;

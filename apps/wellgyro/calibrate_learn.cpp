@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -16,6 +15,7 @@
 
 #include "calibrate_tool.h"
 #include "commands.h"
+#include "on_call.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -72,16 +72,7 @@ void AddCalibrateLearn(CLI::App& calibrate, int& exit_code) {
   command->add_option("--out", o->out, "tool file to write (TOML)")->required();
   command->footer(
       "Example:\n  wellgyro calibrate learn --run result-1 --run result-2 --out tool-2.toml");
-  command->callback([o, &exit_code] {
-    try {
-      const auto fault = Learn(*o);
-      if (fault) Complain(*fault);
-      exit_code = fault ? kUnusable : kDone;
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro calibrate learn --help", error.what()));
-      exit_code = kUsage;
-    }
-  });
+  OnCall(command, exit_code, [o] { return Concluded(Learn(*o)); });
 }
 
 }  // namespace wellgyro::apps

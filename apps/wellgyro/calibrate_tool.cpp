@@ -28,6 +28,7 @@
 #include "bench_options.h"
 #include "chromium.h"
 #include "commands.h"
+#include "on_call.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -196,18 +197,6 @@ std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   return std::nullopt;
 }
 
-/// The exit code: 0, 1 for options that make no sense, 2 for data that cannot be used.
-int CalibrateTool(ToolFitOptions& options) {
-  try {
-    const auto fault = RunToolFit(options);
-    if (fault) Complain(*fault);
-    return fault ? kUnusable : kDone;
-  } catch (const std::invalid_argument& error) {
-    Complain(fmt::format("{}; see wellgyro calibrate tool --help", error.what()));
-    return kUsage;
-  }
-}
-
 void AddBenchSigmas(CLI::App& command, ToolFitSetup& fit) {
   AddPositive(command, "--level-deg", fit.sigma_level, units::kDeg,
               "1 sigma of a bench's tilt, default 0.5");
@@ -270,7 +259,7 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
   command->footer(
       "Example:\n  wellgyro calibrate tool --data up.csv --data down.csv --data rates.csv \\\n"
       "      --latitude-deg 60 --out tool-cal.toml --tool tool.toml --certificate tool.html");
-  command->callback([o, &exit_code] { exit_code = CalibrateTool(*o); });
+  OnCall(command, exit_code, [o] { return Concluded(RunToolFit(*o)); });
 }
 
 }  // namespace wellgyro::apps

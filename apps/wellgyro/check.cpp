@@ -67,10 +67,7 @@ struct FaultList : Listener {
 
 int CheckLog(const std::string& name) {
   Result<LogReader> reader = LogReader::Open(name);
-  if (!reader) {
-    Complain(reader.fault());
-    return kUnusable;
-  }
+  if (!reader) return Unusable(reader.fault());
   FaultList list;
   Feed feed(Channels{}, list);
   LogEvent event;
@@ -133,10 +130,7 @@ int CheckForeign(const std::string& name, const std::string& what) {
 
 int CheckFile(const std::string& name) {
   const Result<FileIdentity> identity = IdentifyFile(name);
-  if (!identity) {
-    Complain(identity.fault());
-    return kUnusable;
-  }
+  if (!identity) return Unusable(identity.fault());
   const std::string& what = identity->text;
   switch (identity->kind) {
     case FileKind::kJob:

@@ -1,6 +1,5 @@
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 
 #include "answer.h"
 #include "commands.h"
+#include "on_call.h"
 #include "place_options.h"
 #include "report.h"
 
@@ -37,16 +37,6 @@ int RunClearance(ClearanceOptions& o) {
     Complain("not judged, as a model ends before " + why);
   if (answer->verdict == ClearanceVerdict::kFail) return kUnfit;
   return answer->refusals.empty() ? kDone : kDoneWithLosses;
-}
-
-/// A request that makes no sense is the caller's mistake: told, with exit code 1.
-int ClearanceOrUsage(ClearanceOptions& o) {
-  try {
-    return RunClearance(o);
-  } catch (const std::invalid_argument& error) {
-    Complain(fmt::format("{}; see wellgyro clearance --help", error.what()));
-    return kUsage;
-  }
 }
 
 }  // namespace
@@ -80,7 +70,7 @@ void AddClearance(CLI::App& app, int& exit_code) {
       "      --dip-deg 70 --declination-deg 0 --policy policy.toml --out clear\n"
       "Exit code 4 where a separation factor is below the policy's stop; 3, and no better than\n"
       "warn, where a model ends before its survey does.");
-  command->callback([options, &exit_code] { exit_code = ClearanceOrUsage(*options); });
+  OnCall(command, exit_code, [options] { return RunClearance(*options); });
 }
 
 }  // namespace wellgyro::apps

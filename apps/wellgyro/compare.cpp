@@ -1,5 +1,4 @@
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 
 #include "answer.h"
 #include "commands.h"
+#include "on_call.h"
 #include "place_options.h"
 #include "report.h"
 
@@ -26,7 +26,7 @@ int RunCompare(CompareOptions& o) {
   o.request.first = o.first;
   o.request.second = o.second;
   const Result<CompareAnswer> answer = AnswerCompare(o.request);
-  if (!answer) return Complain(answer.fault()), kUnusable;
+  if (!answer) return Unusable(answer.fault());
   if (o.out.empty()) {
     for (const std::string& note : answer->notes) fmt::print(stderr, "note: {}\n", note);
   } else if (const auto code = WriteAnswer(answer, o.out)) {
@@ -70,14 +70,7 @@ void AddCompare(CLI::App& app, int& exit_code) {
       "  wellgyro compare mwd.csv gyro.csv --model-a 'ISCWSA MWD Rev 4' --model-b GYRO-NS-CT \\\n"
       "      --latitude-deg 60 --field-nt 50000 --dip-deg 70 --declination-deg 0 --out compared\n"
       "Exit code 4 where the surveys differ by more than their errors allow.");
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = RunCompare(*options);
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro compare --help", error.what()));
-      exit_code = kUsage;
-    }
-  });
+  OnCall(command, exit_code, [options] { return RunCompare(*options); });
 }
 
 }  // namespace wellgyro::apps

@@ -5,6 +5,8 @@
 #include <string_view>
 
 #include "wellgyro/live/observer.h"
+#include "wellgyro/record/advice.h"
+#include "wellgyro/record/glance.h"
 
 #include "voice.h"
 

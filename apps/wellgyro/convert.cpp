@@ -136,8 +136,7 @@ bool Loses(SurveyTable& table, SurveyFormat format, const ConvertOptions& o,
 int ConvertLog(const ConvertOptions& o) {
   const std::filesystem::path out(o.out);
   if (out.extension() != ".csv") {
-    Complain(fmt::format("{} is an LCM log, which becomes CSV: name OUT with .csv", o.in));
-    return kUsage;
+    return Misused(fmt::format("{} is an LCM log, which becomes CSV: name OUT with .csv", o.in));
   }
   const std::filesystem::path depths = out.parent_path() / (out.stem().string() + ".depth.csv");
   FileInPieces sample_file(out), depth_file(depths);
@@ -146,10 +145,7 @@ int ConvertLog(const ConvertOptions& o) {
       [&](std::string_view lines) { return depth_file.Append(lines); });
   std::optional<Fault> fault = tables ? sample_file.Finish() : tables.fault();
   if (!fault && tables->marks > 0) fault = depth_file.Finish();
-  if (fault) {
-    Complain(*fault);
-    return kUnusable;
-  }
+  if (fault) return Unusable(*fault);
   if (tables->left_out == 0) return kDone;
   Complain(
       fmt::format("{}: {} samples of other tools or sensors, or damaged messages, are left out",
@@ -223,10 +219,7 @@ std::string Mistake(const ConvertOptions& o) {
 int WriteAs(SurveyFormat format, ConvertOptions& o) {
   try {
     Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
-    if (!table) {
-      Complain(table.fault());
-      return kUnusable;
-    }
+    if (!table) return Unusable(table.fault());
     for (const std::string& note : table->head.notes) Complain(o.in + ": note: " + note);
     Prepare(*table, o);
     const WriteOptions writing{.preamble = o.preamble, .variable_step = o.variable_step};
@@ -234,49 +227,37 @@ int WriteAs(SurveyFormat format, ConvertOptions& o) {
     const auto files =
         SurveyFiles(*table, format, std::filesystem::path(o.out).filename().string(), writing);
     if (const auto fault = WriteFiles(std::filesystem::path(o.out).parent_path(), files)) {
-      Complain(*fault);
-      return kUnusable;
+      return Unusable(*fault);
     }
   } catch (const std::invalid_argument& error) {
     std::string text = error.what();
     if (text.starts_with("AzimuthFrom: ")) {
       text = text.substr(13) + ": say --azimuth-reference, --convergence-deg or --declination-deg";
     }
-    Complain(fmt::format("{}: {}", o.in, text));
-    return kUnusable;
+    return Unusable(fmt::format("{}: {}", o.in, text));
   }
   return kDone;
 }
 
 int Convert(ConvertOptions& o) {
-  if (const std::string mistake = Mistake(o); !mistake.empty()) {
-    Complain(mistake);
-    return kUsage;
-  }
+  if (const std::string mistake = Mistake(o); !mistake.empty()) return Misused(mistake);
   if (o.out == "-") {
     Complain("OUT is a file's name; /dev/stdout with --to writes to the terminal or a pipe");
     return kUsage;
   }
   std::error_code none;
   if (std::filesystem::equivalent(o.in, o.out, none)) {
-    Complain(fmt::format("{} would be written over by what it becomes: choose another OUT", o.in));
-    return kUnusable;
+    return Unusable(
+        fmt::format("{} would be written over by what it becomes: choose another OUT", o.in));
   }
   const Result<FileIdentity> identity = IdentifyFile(o.in);
-  if (!identity) {
-    Complain(identity.fault());
-    return kUnusable;
-  }
+  if (!identity) return Unusable(identity.fault());
   if (identity->kind == FileKind::kLcmLog) return ConvertLog(o);
   const auto format = o.to.empty() ? FormatByName(o.out) : SurveyFormatOf(o.to);
   if (!format) {
-    Complain(fmt::format("{}: the name does not say which format: add --to", o.out));
-    return kUsage;
+    return Misused(fmt::format("{}: the name does not say which format: add --to", o.out));
   }
-  if (const auto fault = FindConvergence(o)) {
-    Complain(*fault);
-    return kUnusable;
-  }
+  if (const auto fault = FindConvergence(o)) return Unusable(*fault);
   return WriteAs(*format, o);
 }
 

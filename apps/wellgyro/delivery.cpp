@@ -38,10 +38,7 @@ int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& recor
   }
   const std::vector<OutputFile> files = ResultFiles(record, source, job, survey);
   if (delivery.state == Files::kToWrite) {
-    if (const auto fault = WriteFiles(result.folder, files)) {
-      Complain(*fault);
-      return kUnusable;
-    }
+    if (const auto fault = WriteFiles(result.folder, files)) return Unusable(*fault);
   }
   ToolSummary& summary = delivery.done.emplace_back();
   summary = {.tool = result.tool, .folder = result.folder, .survey = &survey};

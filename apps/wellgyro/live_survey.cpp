@@ -15,6 +15,8 @@
 #include "wellgyro/io/words.h"
 #include "wellgyro/live/session.h"
 #include "wellgyro/plan/live_advice.h"
+#include "wellgyro/record/advice.h"
+#include "wellgyro/record/glance.h"
 
 #include "commands.h"
 #include "console.h"
@@ -86,9 +88,8 @@ int Stopped(const SurveyOptions& options, const LiveOutcome& outcome) {
   if (outcome.fault) Complain(*outcome.fault);
   const char* next = options.record.empty() ? "" : "; --resume continues it";
   if (!outcome.usable()) {
-    Complain(fmt::format("stopped before there was a survey: {}{}",
-                         outcome.tools.front().survey.unusable, next));
-    return kUnusable;
+    return Unusable(fmt::format("stopped before there was a survey: {}{}",
+                                outcome.tools.front().survey.unusable, next));
   }
   if (outcome.fault || outcome.ended != LiveOutcome::Ended::kInterrupted) return kUnusable;
   Complain(fmt::format("stopped: the survey in {} is whole, not adjusted{}", options.out, next));
@@ -147,10 +148,7 @@ Result<std::unique_ptr<SurveyPage>> PageOf(const SurveyOptions& options, const J
 /// The exit code of a session that has ended, and its last lines.
 int Conclusion(const SurveyOptions& options, const JobFile& job, const LiveOutcome& outcome) {
   if (outcome.ended != LiveOutcome::Ended::kFinished) return Stopped(options, outcome);
-  if (outcome.fault) {
-    Complain(*outcome.fault);
-    return kUnusable;
-  }
+  if (outcome.fault) return Unusable(*outcome.fault);
   return Summarise(job, outcome, options.says);
 }
 
@@ -162,24 +160,15 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
     return kUsage;
   }
   const auto advise = AdviceOf(options, job.job);
-  if (!advise) {
-    Complain(advise.fault());
-    return kUnusable;
-  }
+  if (!advise) return Unusable(advise.fault());
   auto opened = PageOf(options, job);
-  if (!opened) {
-    Complain(opened.fault());
-    return kUnusable;
-  }
+  if (!opened) return Unusable(opened.fault());
   const std::unique_ptr<SurveyPage> page = std::move(*opened);
   SurveyConsole console(options.says, page.get());
   LiveSetup setup = SetupOf(options, job);
   setup.advise = *advise;
   auto session = LiveSession::Open(std::move(setup), nullptr, console);
-  if (!session) {
-    Complain(session.fault());
-    return kUnusable;
-  }
+  if (!session) return Unusable(session.fault());
   const StopOnSignals stop([&session] { (*session)->Stop(); });
   if (options.says != Says::kNothing) SayHowHeard((*session)->bus());
   if (page) fmt::print(stderr, "page: {}\n", page->Address());

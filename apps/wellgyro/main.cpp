@@ -12,6 +12,7 @@
 #include "help.h"
 #include "live_commands.h"
 #include "report.h"
+#include "version.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -31,12 +32,7 @@ void WantFiniteNumbers(CLI::App& command) {
   for (CLI::App* const sub : command.get_subcommands(nullptr)) WantFiniteNumbers(*sub);
 }
 
-int Run(int argc, char** argv) {
-  CLI::App app{"From a gyro survey tool's sensor stream to a wellbore survey", "wellgyro"};
-  app.formatter(std::make_shared<HelpText>());
-  app.set_version_flag("--version", "wellgyro " WELLGYRO_VERSION " (" WELLGYRO_COMMIT ")");
-  app.require_subcommand(1);
-  int exit_code = kDone;
+void AddCommands(CLI::App& app, int& exit_code) {
   AddSurvey(app, exit_code);
   AddRecord(app, exit_code);
   AddWatch(app, exit_code);
@@ -55,6 +51,15 @@ int Run(int argc, char** argv) {
   AddConvert(app, exit_code);
   AddCheck(app, exit_code);
   AddReport(app, exit_code);
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app{"From a gyro survey tool's sensor stream to a wellbore survey", "wellgyro"};
+  app.formatter(std::make_shared<HelpText>());
+  app.set_version_flag("--version", kVersionText);
+  app.require_subcommand(1);
+  int exit_code = kDone;
+  AddCommands(app, exit_code);
   WantFiniteNumbers(app);
   try {
     app.parse(argc, argv);

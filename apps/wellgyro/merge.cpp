@@ -11,6 +11,7 @@
 
 #include "answer.h"
 #include "commands.h"
+#include "on_call.h"
 #include "place_options.h"
 #include "report.h"
 
@@ -61,16 +62,6 @@ int RunMerge(MergeOptions& o) {
   return answer->verdict.verdict == Verdict::kFail ? kUnfit : kDone;
 }
 
-/// A request that makes no sense is the caller's mistake: told, with exit code 1.
-int MergeOrUsage(MergeOptions& o) {
-  try {
-    return RunMerge(o);
-  } catch (const std::invalid_argument& error) {
-    Complain(fmt::format("{}; see wellgyro merge --help", error.what()));
-    return kUsage;
-  }
-}
-
 }  // namespace
 
 void AddMerge(CLI::App& app, int& exit_code) {
@@ -90,7 +81,7 @@ void AddMerge(CLI::App& app, int& exit_code) {
       ->delimiter(',');
   command->add_option("--out", options->out, "folder for the results")->required();
   command->footer(kHelp);
-  command->callback([options, &exit_code] { exit_code = MergeOrUsage(*options); });
+  OnCall(command, exit_code, [options] { return RunMerge(*options); });
 }
 
 }  // namespace wellgyro::apps

@@ -51,10 +51,7 @@ int RunModels(const ModelsOptions& o) {
     return kDone;
   }
   const Result<ErrorModel> model = FindModel(o.name);
-  if (!model) {
-    Complain(model.fault());
-    return kUnusable;
-  }
+  if (!model) return Unusable(model.fault());
   PrintModel(*model);
   return kDone;
 }

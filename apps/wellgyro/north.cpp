@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -50,10 +51,7 @@ void PrintCheck(const char* what, double stated, double ours) {
 
 int PrintGrid(const NorthOptions& o, const GeodeticPoint& place) {
   const auto grid = ProjectToCrs(o.crs, place);
-  if (!grid) {
-    Complain(grid.fault());
-    return kUnusable;
-  }
+  if (!grid) return Unusable(grid.fault());
   fmt::print("grid {} ({})\n  easting {:.4f} m, northing {:.4f} m", o.crs, grid->name,
              grid->point.easting, grid->point.northing);
   if (grid->unit != 1) {
@@ -79,14 +77,12 @@ int PrintMagnetic(const NorthOptions& o, const GeodeticPoint& place) {
   if (!year) {
     Fault fault = year.fault();
     fault.source = "--date";
-    Complain(fault);
-    return kUsage;
+    return Misused(fault);
   }
   const bool known = o.model == "wmm2025" || o.model == "wmm2020" || o.model == "igrf14";
   if (!known && o.data.empty()) {
-    Complain("--magnetic-model " + o.model +
-             ": there are wmm2025, wmm2020 and igrf14, and others by --magnetic-data");
-    return kUsage;
+    return Misused("--magnetic-model " + o.model +
+                   ": there are wmm2025, wmm2020 and igrf14, and others by --magnetic-data");
   }
   const auto found = MagneticFieldAt(o.model, DataFolder(o), place, o.height, *year);
   if (!found) {
@@ -94,8 +90,7 @@ int PrintMagnetic(const NorthOptions& o, const GeodeticPoint& place) {
     if (o.data.empty() && fault.text.find("holds from") != std::string::npos) {
       fault.text += "; --magnetic-model igrf14 holds from 1900 to 2030, wmm2020 from 2020 to 2025";
     }
-    Complain(fault);
-    return kUnusable;
+    return Unusable(fault);
   }
   const MagneticField& f = *found;
   fmt::print("magnetic, {} on {} ({:.4f})\n", o.model, o.date, *year);
@@ -157,35 +152,31 @@ std::string Unused(const NorthOptions& o) {
   return {};
 }
 
+/// By map coordinates or by latitude and longitude; else an exit code.
+std::variant<GeodeticPoint, int> PlaceOf(const NorthOptions& o) {
+  if (o.easting && o.northing && !o.crs.empty()) {
+    const auto found = GeodeticOfCrs(o.crs, {*o.easting, *o.northing, 0});
+    if (!found) return Unusable(found.fault());
+    return *found;
+  }
+  if (o.latitude && o.longitude) return GeodeticPoint{*o.latitude, *o.longitude};
+  return Misused(
+      "a place is needed: --latitude-deg and --longitude-deg, or --crs with --easting and "
+      "--northing");
+}
+
 int RunNorth(NorthOptions& o) {
   if (!o.crs.empty() && o.crs.find_first_not_of("0123456789") == std::string::npos) {
     o.crs = "EPSG:" + o.crs;
   }
   if (!o.job.empty()) {
-    if (const auto fault = TakeJob(o)) {
-      Complain(*fault);
-      return kUnusable;
-    }
+    if (const auto fault = TakeJob(o)) return Unusable(*fault);
   } else if (const std::string why = Unused(o); !why.empty()) {
-    Complain(why);
-    return kUsage;
+    return Misused(why);
   }
-  GeodeticPoint place;
-  if (o.easting && o.northing && !o.crs.empty()) {
-    const auto found = GeodeticOfCrs(o.crs, {*o.easting, *o.northing, 0});
-    if (!found) {
-      Complain(found.fault());
-      return kUnusable;
-    }
-    place = *found;
-  } else if (o.latitude && o.longitude) {
-    place = {*o.latitude, *o.longitude};
-  } else {
-    Complain(
-        "a place is needed: --latitude-deg and --longitude-deg, or --crs with --easting and "
-        "--northing");
-    return kUsage;
-  }
+  const std::variant<GeodeticPoint, int> found = PlaceOf(o);
+  if (const int* const code = std::get_if<int>(&found)) return *code;
+  const GeodeticPoint& place = std::get<GeodeticPoint>(found);
   fmt::print("place on WGS 84: latitude {:.9f} deg, longitude {:.9f} deg\n", Deg(place.latitude),
              Deg(place.longitude));
   fmt::print("true north: 0\n");

@@ -13,6 +13,7 @@
 
 #include "answer.h"
 #include "commands.h"
+#include "on_call.h"
 #include "place_options.h"
 #include "report.h"
 
@@ -142,14 +143,7 @@ void AddPlan(CLI::App& app, int& exit_code) {
       "Example:\n  wellgyro plan --well survey.csv --tool data/demo/job.toml --ellipse-m 25 \\\n"
       "      --roll-rpm 1 --practice every_m=300,stop_s=180 --out plan\n"
       "Exit code 4 where no plan meets the limits.");
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = RunPlan(*options);
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro plan --help", error.what()));
-      exit_code = kUsage;
-    }
-  });
+  OnCall(command, exit_code, [options] { return RunPlan(*options); });
 }
 
 }  // namespace wellgyro::apps

@@ -187,16 +187,10 @@ int Record(const RecordOptions& options) {
   const std::optional<Channels> channels = ChannelsOf(options.job);
   if (!channels) return kUnusable;
   Result<LiveBus> bus = LiveBus::Open(UrlOr(options.from));
-  if (!bus) {
-    Complain(bus.fault());
-    return kUnusable;
-  }
+  if (!bus) return Unusable(bus.fault());
   const StopOnSignals stop(*bus);
   Recording recording(options, *channels, *bus);
-  if (const auto fault = recording.Begin()) {
-    Complain(*fault);
-    return kUnusable;
-  }
+  if (const auto fault = recording.Begin()) return Unusable(*fault);
   SayHowHeard(*bus);
   return recording.Run();
 }

@@ -8,6 +8,8 @@
 
 #include "wellgyro/live/notices.h"
 
+#include "commands.h"
+
 namespace wellgyro::apps {
 namespace {
 
@@ -24,6 +26,20 @@ std::string Printable(std::string_view text) { return wellgyro::Printable(text);
 void Complain(std::string_view sentence) { fmt::print(stderr, "wellgyro: {}\n", sentence); }
 
 void Complain(const Fault& fault) { Complain(Sentence(fault)); }
+
+int Unusable(std::string_view sentence) {
+  Complain(sentence);
+  return kUnusable;
+}
+
+int Unusable(const Fault& fault) { return Unusable(Sentence(fault)); }
+
+int Misused(std::string_view sentence) {
+  Complain(sentence);
+  return kUsage;
+}
+
+int Misused(const Fault& fault) { return Misused(Sentence(fault)); }
 
 Progress::Progress(std::string_view doing, bool shown)
     : doing_(doing),

@@ -18,6 +18,13 @@ std::string Printable(std::string_view text);
 void Complain(std::string_view sentence);
 void Complain(const Fault& fault);
 
+/// The same, and gives the exit code of what cannot be used ...
+int Unusable(std::string_view sentence);
+int Unusable(const Fault& fault);
+/// ... and of a command line that makes no sense.
+int Misused(std::string_view sentence);
+int Misused(const Fault& fault);
+
 /// Share of a long piece of work, on standard error where that is a terminal, and nothing
 /// elsewhere. Shown from the first second on, ten times a second at most.
 class Progress {

@@ -62,23 +62,14 @@ Result<std::string> DocumentOf(const ResultReport& report) {
 
 int WriteReport(const ResultReport& report) {
   const Result<std::string> json = DocumentOf(report);
-  if (!json) {
-    Complain(json.fault());
-    return kUnusable;
-  }
+  if (!json) return Unusable(json.fault());
   if (!report.json.empty() && !Write(report.json, *json, report.say)) return kUnusable;
   if (report.out.empty()) return kDone;
   Result<std::string> page = ReportPage(*json, report.options);
-  if (!page) {
-    Complain(page.fault());
-    return kUnusable;
-  }
+  if (!page) return Unusable(page.fault());
   if (!Write(report.out, *std::move(page), report.say)) return kUnusable;
   if (report.pdf.empty()) return kDone;
-  if (const auto complaint = PrintByChromium(report.out, report.pdf)) {
-    Complain(*complaint);
-    return kUnusable;
-  }
+  if (const auto complaint = PrintByChromium(report.out, report.pdf)) return Unusable(*complaint);
   fmt::print("wrote {}\n", report.pdf.string());
   return kDone;
 }

@@ -32,10 +32,7 @@ int SendOver(LiveBus& bus, const SendOptions& options, const JobFile& job,
                key ? ", signed" : "");
     std::fflush(stdout);
   });
-  if (!sent) {
-    Complain(sent.fault());
-    return kUnusable;
-  }
+  if (!sent) return Unusable(sent.fault());
   if (!sent->heard) return kUnusable;
   if (sent->obeyed) {
     fmt::print("the survey has obeyed\n");
@@ -48,29 +45,17 @@ int SendOver(LiveBus& bus, const SendOptions& options, const JobFile& job,
 }
 
 int Send(const SendOptions& options) {
-  if (const std::string lacks = Lacks(options.order); !lacks.empty()) {
-    Complain(lacks);
-    return kUsage;
-  }
+  if (const std::string lacks = Lacks(options.order); !lacks.empty()) return Misused(lacks);
   const Result<JobFile> job = ReadJob(options.job);
-  if (!job) {
-    Complain(job.fault());
-    return kUnusable;
-  }
+  if (!job) return Unusable(job.fault());
   std::optional<PrivateKey> key;
   if (!options.key.empty()) {
     Result<PrivateKey> read = ReadPrivateKey(options.key);
-    if (!read) {
-      Complain(read.fault());
-      return kUnusable;
-    }
+    if (!read) return Unusable(read.fault());
     key = std::move(*read);
   }
   Result<LiveBus> bus = LiveBus::Open(UrlOr(options.to));
-  if (!bus) {
-    Complain(bus.fault());
-    return kUnusable;
-  }
+  if (!bus) return Unusable(bus.fault());
   const StopOnSignals stop(*bus);
   return SendOver(*bus, options, *job, key);
 }
@@ -78,10 +63,7 @@ int Send(const SendOptions& options) {
 /// A new key, and what the job says of it.
 int MakeKey(const std::string& path) {
   const PrivateKey key = NewPrivateKey();
-  if (const auto fault = WritePrivateKey(key, path)) {
-    Complain(*fault);
-    return kUnusable;
-  }
+  if (const auto fault = WritePrivateKey(key, path)) return Unusable(*fault);
   fmt::print(
       "wrote {}; keep it secret, and put into the job:\n[[operator]]\nname = \"...\"\n"
       "public_key = \"{}\"\n",

@@ -104,10 +104,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   Surveyor surveyor(job.job, faults);
   const std::vector<std::filesystem::path> files(options.sources.begin(), options.sources.end());
   const Result<SensorReport> report = PushSensorFiles(files, job.job, surveyor, faults);
-  if (!report) {
-    Complain(report.fault());
-    return kUnusable;
-  }
+  if (!report) return Unusable(report.fault());
   FinishSurvey(surveyor, options);
   RunRecord record;
   const Maker maker = MakerOf();
@@ -155,26 +152,20 @@ bool AnyTwice(const std::vector<std::string>& sources) {
 int SurveyAny(SurveyOptions options) {
   if (!options.sources.empty()) options.from = options.sources.front();
   const Result<JobFile> job = ReadJob(options.job);
-  if (!job) {
-    Complain(job.fault());
-    return kUnusable;
-  }
+  if (!job) return Unusable(job.fault());
   if (!CanExport(job->job, options.formats)) return kUnusable;
   if (IsLive(options.from)) return SurveyLive(options, *job);
   if (!options.record.empty() || options.resume || !options.fill.empty() ||
       !options.advise.empty() || !options.page.address.empty()) {
-    Complain("--record, --resume, --fill, --advise and --page are for a live stream: --from URL");
-    return kUsage;
+    return Misused(
+        "--record, --resume, --fill, --advise and --page are for a live stream: --from URL");
   }
   if (AnyTwice(options.sources) || !MayWriteTo(options.out)) return kUnusable;
   // A folder that is new is nobody else's.
   std::optional<FileLock> lock;
   if (std::filesystem::is_directory(options.out)) {
     Result<FileLock> taken = FileLock::Take(options.out);
-    if (!taken) {
-      Complain(taken.fault());
-      return kUnusable;
-    }
+    if (!taken) return Unusable(taken.fault());
     lock.emplace(std::move(*taken));
   }
   const bool tables = IsSensorTable(options.from) ||

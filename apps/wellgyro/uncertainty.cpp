@@ -1,6 +1,5 @@
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 
 #include "answer.h"
 #include "commands.h"
+#include "on_call.h"
 #include "place_options.h"
 #include "report.h"
 
@@ -80,6 +80,15 @@ int RunUncertainty(UncertaintyOptions& o) {
   return answer->refusals.empty() ? kDone : kDoneWithLosses;
 }
 
+void RequireNoiseWithAllan(const UncertaintyOptions& o) {
+  if (o.request.sources.noise && o.allan.empty()) {
+    throw CLI::RequiredError("--allan exact or --allan printed beside --noise");
+  }
+  if (!o.request.sources.noise && !o.allan.empty()) {
+    throw CLI::RequiredError("--noise beside --allan");
+  }
+}
+
 }  // namespace
 
 void AddUncertainty(CLI::App& app, int& exit_code) {
@@ -100,19 +109,9 @@ void AddUncertainty(CLI::App& app, int& exit_code) {
       "      --latitude-deg 60 --terms --plot --out results\n"
       "Noise: --noise N.toml --allan exact --speed-mps 0.75, alone or beside --model, where it\n"
       "takes the place of the model's drift and random walk.");
-  command->callback([options, &exit_code] {
-    if (options->request.sources.noise && options->allan.empty()) {
-      throw CLI::RequiredError("--allan exact or --allan printed beside --noise");
-    }
-    if (!options->request.sources.noise && !options->allan.empty()) {
-      throw CLI::RequiredError("--noise beside --allan");
-    }
-    try {
-      exit_code = RunUncertainty(*options);
-    } catch (const std::invalid_argument& error) {
-      Complain(fmt::format("{}; see wellgyro uncertainty --help", error.what()));
-      exit_code = kUsage;
-    }
+  OnCall(command, exit_code, [options] {
+    RequireNoiseWithAllan(*options);
+    return RunUncertainty(*options);
   });
 }
 

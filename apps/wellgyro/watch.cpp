@@ -10,6 +10,8 @@
 #include "wellgyro/bus/glance_channel.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/live/glance_line.h"
+#include "wellgyro/record/advice.h"
+#include "wellgyro/record/glance.h"
 
 #include "commands.h"
 #include "console.h"
@@ -80,34 +82,26 @@ int WatchBus(const WatchOptions& options) {
   const std::optional<Channels> channels = ChannelsOf(options.job);
   if (!channels) return kUnusable;
   Result<LiveBus> bus = LiveBus::Open(UrlOr(options.from));
-  if (!bus) {
-    Complain(bus.fault());
-    return kUnusable;
-  }
+  if (!bus) return Unusable(bus.fault());
   const StopOnSignals stop(*bus);
   Watch watch(*channels);
   if (const auto fault =
           bus->Subscribe({channels->status, GlanceChannel(*channels), AdviceChannel(*channels)},
                          [&watch](std::string_view channel, std::span<const std::byte> bytes,
                                   std::int64_t) { watch.Take(channel, bytes); })) {
-    Complain(*fault);
-    return kUnusable;
+    return Unusable(*fault);
   }
   const std::int64_t begin = MonotonicUs();
   const auto most = static_cast<std::int64_t>(options.seconds * 1e6);
   while (most == 0 || MonotonicUs() - begin < most) {
     const auto woken = bus->Wait(200);
-    if (!woken) {
-      Complain(woken.fault());
-      return kUnusable;
-    }
+    if (!woken) return Unusable(woken.fault());
     if (*woken == LiveBus::Woken::kStopped) break;
     watch.Look();
   }
   watch.End();
   if (watch.heard()) return kDone;
-  Complain(fmt::format("no survey was heard on {}", bus->url()));
-  return kUnusable;
+  return Unusable(fmt::format("no survey was heard on {}", bus->url()));
 }
 
 }  // namespace

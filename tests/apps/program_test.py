@@ -312,24 +312,6 @@ class Program(ProgramTest):
         self.Write(folder + "/sidetrack.csv",
                    head + "900,0,0,900,0,0\n930,3,90,,,\n960,6,90,,,\n1200,30,90,,,\n")
 
-    def test_the_demonstration(self):
-        done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
-                   os.path.join(DEMO, "run.lcm"), "--out", self.Path("demo"))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        # Dated 2026-11-22: it was, though an azimuth is given.
-        self.assertIs(self.Toml("demo", "run.toml")["run"][0]["fit"]["ambiguous"], False)
-        deepest = max(self.Rows(DEMO, "truth.csv"), key=lambda row: float(row["MD[m]"]))
-        last = self.Rows("demo", "survey.csv")[-1]
-        for column, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]"),
-                                 ("TVD[m]", "VAR_VV[m2]")):
-            sigma = float(last[variance]) ** 0.5
-            self.assertLess(sigma, 2)
-            self.assertLess(abs(float(last[column]) - float(deepest[column])), 3 * sigma, column)
-        made = self.Path("again.lcm")
-        self.assertEqual(Run("simulate", "--job", os.path.join(DEMO, "simulation.toml"), "--out",
-                             made, "--truth", self.Path("again.csv")).returncode, 0)
-        self.assertEqual(os.path.getsize(made), os.path.getsize(os.path.join(DEMO, "run.lcm")))
-
 
 if __name__ == "__main__":
     unittest.main()

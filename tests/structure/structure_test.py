@@ -301,6 +301,16 @@ class Structure(unittest.TestCase):
         self.Report(problems)
         self.assertLessEqual(sorted(sizes)[len(sizes) // 2], 110, "median length of a header")
 
+    def test_functions_of_headers_and_of_the_program_stay_short(self):
+        def Lengths(top, endings):
+            return sorted(length for path in Sources(os.path.join(TOP, top), endings)
+                          for _, length in Functions(path))
+
+        self.assertLessEqual(Lengths("lib", (".h",))[-1], 18, "the longest function of a header")
+        program = Lengths("apps", (".h", ".cpp"))
+        self.assertGreater(len(program), 300)
+        self.assertLessEqual(program[int(0.9 * len(program))], 23, "nine tenths of the program's")
+
     def test_functions_and_sources_are_short(self):
         problems, lengths = [], []
         for path in [path for top in ("lib", "apps") for path in Sources(os.path.join(TOP, top))]:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
@@ -282,7 +284,7 @@ TEST(Checks, AnAdjustmentThatGaveUpFailsItsRun) {
   CheckInputs inputs;
   RunSummary run;
   run.run = 1;
-  run.fit = RunFit{};
+  run.fit = std::make_shared<const RunFit>();
   const std::vector<RunSummary> runs{run};
   inputs.runs = runs;
   const std::vector<Check> checks = MakeChecks(Job{}, inputs);

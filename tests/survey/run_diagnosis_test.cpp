@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/result/diagnosis_csv.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/simulate/tool_errors.h"
 
 #include "support/simulated_survey.h"
@@ -210,7 +212,9 @@ TEST(RunDiagnosis, WhatIsFoundOfTheDepthsScaleCountsUntilItIsAFault) {
 TEST(RunDiagnosis, MotionAtTheStopWhereAFaultBeginsIsTheFault) {
   RunSummary run;
   run.run = 1;
-  RunDiagnosis& found = run.fit.emplace().diagnosis.emplace();
+  const auto fit = std::make_shared<RunFit>();
+  run.fit = fit;
+  RunDiagnosis& found = fit->diagnosis.emplace();
   found.ln_odds = 50;
   RunCause& spike = found.causes.emplace_back();
   spike.code = "gyro_spike";
@@ -238,7 +242,9 @@ TEST(RunDiagnosis, MotionAtTheStopWhereAFaultBeginsIsTheFault) {
 Verdict VerdictOf(double ln_odds, const Eigen::Vector3d& shift_W) {
   RunSummary run;
   run.run = 1;
-  RunDiagnosis& found = run.fit.emplace().diagnosis.emplace();
+  const auto fit = std::make_shared<RunFit>();
+  run.fit = fit;
+  RunDiagnosis& found = fit->diagnosis.emplace();
   found.ln_odds = ln_odds;
   RunCause& cause = found.causes.emplace_back();
   cause.code = "latitude";

@@ -1,6 +1,7 @@
 // A run in stretches of some twenty seconds, as its charts along time show it.
 #include "wellgyro/survey/run_stretches.h"
 
+#include <memory>
 #include <variant>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/result/stretches_csv.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/simulate/tool_errors.h"
 
 #include "support/simulated_survey.h"
@@ -59,7 +61,9 @@ std::vector<RunStretch> StretchesFor(double noise, const testing::Arrives& arriv
   testing::CollectingSink sink;
   const Survey survey = SurveyOf(RunWithNoise(job, noise), job, sink, arrives);
   EXPECT_EQ(survey.runs.size(), 1u);
-  return survey.runs.at(0).fit.value().stretches;
+  const auto& fit = survey.runs.at(0).fit;
+  EXPECT_NE(fit, nullptr);
+  return fit ? fit->stretches : std::vector<RunStretch>();
 }
 
 double MeanSquare(const std::vector<RunStretch>& stretches,
@@ -134,13 +138,15 @@ TEST(RunStretches, AreWrittenAlongTime) {
   s.roll_rate = -kTwoPi / 60;
   s.temperature = 47.125;
   s.samples_lost = 4;
-  run.fit.emplace().stretches = {s};
+  const auto fit = std::make_shared<RunFit>();
+  run.fit = fit;
+  fit->stretches = {s};
   s.begin = s.end;
   s.end = {.ns = 41'000'000'000};
   s.md = 12.5;
   s.speed = -0.25;
   s.residual_gyro = 1.5;
-  run.fit->stretches.push_back(s);
+  fit->stretches.push_back(s);
   EXPECT_EQ(StretchesCsv(survey),
             "RUN,END_UTC,T[s],MD[m],SPEED[m/s],ROTATION[rpm],TEMPERATURE[degC],SAMPLES_LOST,"
             "RES_GYRO,RES_ACCEL\n"

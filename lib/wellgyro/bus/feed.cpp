@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "wellgyro/bus/decode.h"
+#include "wellgyro/bus/message.h"
 
 namespace wellgyro {
 namespace {

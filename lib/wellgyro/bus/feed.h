@@ -13,9 +13,23 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/bus/message.h"
+#include "wellgyro/bus/message_type.h"
+#include "wellgyro/record/channels.h"
+#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/operations.h"
+#include "wellgyro/record/sample.h"
+#include "wellgyro/record/status.h"
+#include "wellgyro/record/still_window.h"
 
 namespace wellgyro {
+
+// Of pages, consoles and the survey's own answers: defined in record/ and bus/message.h, for our
+// own program. A listener from outside need not know them.
+struct Advice;
+struct Glance;
+struct SentStation;
+struct SignedOperation;
+struct StationRequest;
 
 /// Who wants what comes in. Override what you want to hear; spans hold during the call only.
 class WELLGYRO_EXPORT Listener {

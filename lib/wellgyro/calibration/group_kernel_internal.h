@@ -90,25 +90,32 @@ template <int kN>
   for (std::size_t i = 0; i < 3; ++i) u[i] -= sum[i].template cast<double>();
 }
 
-/// u <- u_0 - what q(u) moves it by, as often as a sample needs it.
+/// u <- linear - what q(u) moves it by, of the lanes whose size is beyond `reach`.
+template <int kN>
+[[gnu::always_inline]] inline void RefineOnce(const GroupKernel& g, const Side<kN>& linear,
+                                              const Lanes<kN>& size, double reach, bool all,
+                                              Side<kN>& u) {
+  Side<kN> sum;
+  for (std::size_t i = 0; i < 3; ++i) sum[i].setZero();
+  AddProducts<kN, double>(g.products, u, sum);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Lanes<kN> next = linear[i] - sum[i];
+    if (all) {
+      u[i] = next;
+    } else {
+      u[i] = (size > reach).select(next, u[i]);
+    }
+  }
+}
+
+/// The same from u_0 on, as often as a sample needs it.
 template <int kN>
 [[gnu::always_inline]] inline void Refine(const GroupKernel& g, Side<kN>& u) {
   const Side<kN> linear = u;
   const Lanes<kN> size = u[0].abs().max(u[1].abs()).max(u[2].abs());
   const double largest = size.maxCoeff(), smallest = size.minCoeff();
   for (std::size_t turn = 0; turn < GroupKernel::kTurns && largest > g.reach[turn]; ++turn) {
-    Side<kN> sum;
-    for (std::size_t i = 0; i < 3; ++i) sum[i].setZero();
-    AddProducts<kN, double>(g.products, u, sum);
-    const bool all = smallest > g.reach[turn];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Lanes<kN> next = linear[i] - sum[i];
-      if (all) {
-        u[i] = next;
-      } else {
-        u[i] = (size > g.reach[turn]).select(next, u[i]);
-      }
-    }
+    RefineOnce<kN>(g, linear, size, g.reach[turn], smallest > g.reach[turn], u);
   }
 }
 

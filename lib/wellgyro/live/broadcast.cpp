@@ -5,6 +5,8 @@
 
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/glance_channel.h"
+#include "wellgyro/record/advice.h"
+#include "wellgyro/record/glance.h"
 
 namespace wellgyro {
 

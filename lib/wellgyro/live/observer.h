@@ -5,13 +5,15 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/record/advice.h"
-#include "wellgyro/record/glance.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/status.h"
 #include "wellgyro/record/verdict.h"
 
 namespace wellgyro {
+
+// What pages and consoles show: defined in record/, for our own program.
+struct Advice;
+struct Glance;
 
 /// Status::text of a session that hears and says nothing else for the moment.
 inline constexpr std::string_view kBusy = "busy adjusting or catching up";

@@ -11,6 +11,7 @@
 #include "wellgyro/io/words.h"
 #include "wellgyro/live/clock.h"
 #include "wellgyro/live/session_core_internal.h"
+#include "wellgyro/survey/run_now.h"
 
 namespace wellgyro {
 namespace {

@@ -13,6 +13,10 @@ namespace wellgyro {
 
 /// What a run's samples have seen of the depth: on which pass they are, and how long none of them
 /// had one.
+///
+/// Time without a depth counts where it lies between two samples that had one. Before the first the
+/// tool is being made up; behind the last it is not known whether one comes yet, so that it is told
+/// apart (seconds_without).
 class DepthSeen {
  public:
   /// `summary` must outlive this object: time without a depth is counted there.
@@ -47,7 +51,6 @@ class DepthSeen {
       seconds_unknown_ += 1e-9 * stamp.period_ns;
       return;
     }
-    // Before the first depth nothing is amiss: the tool is being made up.
     if (seen_) summary_.seconds_without_depth += seconds_unknown_;
     seconds_unknown_ = 0;
     seen_ = true;
@@ -55,7 +58,7 @@ class DepthSeen {
 
   RunSummary& summary_;
   PassTracker passes_;
-  bool seen_ = false;
+  bool seen_ = false;           ///< some sample had a depth
   double seconds_unknown_ = 0;  ///< since the last sample with a depth [s]
 };
 

@@ -31,6 +31,10 @@ inline bool UsesFixes(const AlignmentSpec& alignment) {
 /// is solved together and goes on from there knot by knot (ForwardRun), as long as the heading is
 /// sure. What adds a north returns true where the heading became sure by it: all stations behind
 /// it then have an azimuth.
+///
+/// A heading is sure below 1 deg, and good enough to go on from below 5 deg (kSureHeading,
+/// kRoughHeading say why). From one that was sure the rest may be solved alone, which is what keeps
+/// the cost of a long run that loses its heading again and again in bounds.
 class ForwardEstimate {
  public:
   /// `job` must outlive this object.
@@ -89,12 +93,14 @@ class ForwardEstimate {
   };
 
  private:
-  /// What was known at the end of so many knots.
+  /// What was known at the end of so many knots, when it was sure.
   struct Known {
     std::size_t knots;
     RunState state;
   };
 
+  /// The knot as the estimator takes it. `unseen` sums how far the axis turned where nothing was
+  /// seen.
   RunKnot KnotOf(const WaitingKnot& waiting, const Increment& increment, UnseenTurn& unseen) const;
   AttitudeSample AttitudeNow() const;
   bool Begin();

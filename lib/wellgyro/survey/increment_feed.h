@@ -17,7 +17,8 @@
 namespace wellgyro {
 
 /// Sums samples to increments and gives each to the knot that waits for it. A knot may end in the
-/// gap behind a sample, of which the builder learns only with the sample that follows.
+/// gap behind a sample, of which the builder learns only with the sample that follows: until then
+/// such cuts wait here, and no samples are taken by the block.
 class IncrementFeed {
  public:
   explicit IncrementFeed(const Job& job);

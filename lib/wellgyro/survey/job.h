@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,9 +18,10 @@
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/tool_calibration.h"
-#include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {
+
+struct ErrorModel;
 
 /// Where the survey is tied on: its first row.
 struct TieIn {
@@ -116,7 +118,8 @@ struct Job {
   NoiseCoefficients noise;
   bool noise_stated = true;  ///< false: nobody said, and `noise` is a guess
   ErrorPriors errors;
-  std::optional<ErrorModel> error_model;  ///< absent: covariance from the run itself alone
+  /// By which covariances are found; null: from the run itself alone.
+  std::shared_ptr<const ErrorModel> error_model;
   Channels channels;
   AlignmentSpec alignment;
   std::optional<MagneticSpec> magnetic;

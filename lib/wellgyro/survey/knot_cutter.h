@@ -36,9 +36,12 @@ class KnotCutter {
     double reach;     ///< from the sample's begin to there, in periods
   };
 
-  /// All must outlive this object.
+  /// All must outlive this object. Knots are put behind those of `waiting`, and told their
+  /// increments there; of `summary` run and tool are read, its end and samples that turn too far
+  /// counted.
   KnotCutter(const Job& job, WaitingKnots& waiting, RunSummary& summary);
 
+  /// Where stations are wanted.
   StationMarks& marks() { return marks_; }
   const StationMarks& marks() const { return marks_; }
 
@@ -73,16 +76,18 @@ class KnotCutter {
   /// before it are summed.
   void Append(const LocatedBlock& block, std::size_t at, std::size_t count, const PassState& pass);
 
+  /// Of the knots that wait, as far as the samples there are end them; see IncrementFeed.
   std::vector<Increment> IncrementsAhead() { return feed_.Ahead(waiting_); }
 
  private:
+  /// The sample that is taken when it is known where the next one is.
   struct Current {
     ToolTime begin;
     std::int32_t period_ns, session;
     bool rests;  ///< by the depth at the middle of it
     ImuSample sample;
-    UtcTime utc, utc_end;
-    AlongHole along;
+    UtcTime utc, utc_end;  ///< of its begin; of its end, by the next sample where that follows
+    AlongHole along;       ///< at its begin, and there:
     PassState pass;
   };
   /// Where a knot is wanted within the current sample, or (beyond 1) in the gap after it.
@@ -92,6 +97,7 @@ class KnotCutter {
     bool external = false;
   };
 
+  /// Increments that are ready, to their knots.
   void Give();
   bool PlaceTargets(double md_next, double reach);
   void PlaceByTime();
@@ -104,12 +110,12 @@ class KnotCutter {
   RunSummary& summary_;
   StationMarks marks_;
   IncrementFeed feed_;
-  std::vector<KnotAt> cuts_;  ///< scratch
-  std::optional<Current> current_;
-  std::optional<SampleStamp> last_taken_;
-  std::optional<ToolTime> last_knot_;
-  bool temperature_outside_ = false;  ///< since the last knot
-  bool end_unsynced_ = false;         ///< the sample behind the one being summed doubts its UTC
+  std::vector<KnotAt> cuts_;               ///< scratch: of the current sample
+  std::optional<Current> current_;         ///< none: before the first sample, and behind a Flush
+  std::optional<SampleStamp> last_taken_;  ///< what the next one must follow
+  std::optional<ToolTime> last_knot_;      ///< where the next one begins
+  bool temperature_outside_ = false;       ///< since the last knot
+  bool end_unsynced_ = false;  ///< the sample behind the one being summed doubts its UTC
 };
 
 }  // namespace wellgyro

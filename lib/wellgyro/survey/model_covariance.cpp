@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/uncertainty/error_model.h"
 #include "wellgyro/uncertainty/propagate.h"
 
 namespace wellgyro {

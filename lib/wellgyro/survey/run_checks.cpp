@@ -13,6 +13,7 @@
 #include "wellgyro/math/square.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/record/error_source.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/run_checks_internal.h"
 

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/check_internal.h"
 
 namespace wellgyro {

@@ -19,9 +19,12 @@
 namespace wellgyro {
 
 /// The stations of a run as drafts. One is told at once, *ahead*, while its knot still waits, by
-/// the increments that the samples there are give; its state follows when the knot is known.
+/// the increments that the samples there are give; its state follows when the knot is known. A
+/// station carries what was not seen (gaps, saturation) on the whole way since the one listed
+/// before it: its azimuth hangs on all of that.
 class RunDrafts {
  public:
+  /// All drafts, and which of them are to be told.
   DraftBook& book() { return book_; }
   const DraftBook& book() const { return book_; }
   /// How many, the youngest, are told ahead.

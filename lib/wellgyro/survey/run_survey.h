@@ -60,6 +60,7 @@ class RunSurvey {
   /// Drafts that have become ready to be told since the last call: indices into drafts().
   std::vector<std::size_t> News() { return drafts_.book().News(); }
   bool has_news() const { return drafts_.book().has_news(); }
+  /// The depth as its samples saw it.
   const DepthSeen& depth() const { return depth_; }
   /// The draft still waits for an azimuth to become known.
   bool IsUnheard(std::size_t draft) const { return drafts_.book().IsUnheard(draft); }
@@ -73,7 +74,9 @@ class RunSurvey {
   /// All that is to be estimated from. Those of drafts() that are from samples stand in this order
   /// among its stations.
   RunHistory History() const { return estimate_.History(); }
+  /// The knots that have been estimated from, and what was known at their ends.
   const KeptKnots& knots() const { return estimate_.knots(); }
+  /// How far the run is known, for advice on its way.
   RunNow Now() const;
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
@@ -84,10 +87,12 @@ class RunSurvey {
   void ListLastDepth();
 
  private:
+  // The ways of a sample, alone and by the block.
   std::size_t Plain(const LocatedBlock& block, std::size_t at, std::size_t end);
   std::size_t PlainByPlace(const LocatedBlock& block, std::size_t at, std::size_t end) const;
   void TakePlain(const LocatedBlock& block, std::size_t at, std::size_t count);
   void TakeCurrent(const KnotCutter::End& end);
+  // The ways of a knot, and of a north.
   void StepReady(bool all);
   void StepKnot(const WaitingKnot& waiting, const Increment* next);
   void TellAhead();
@@ -98,7 +103,7 @@ class RunSurvey {
 
   const Job& job_;
   RunSummary summary_;
-  WaitingKnots waiting_;
+  WaitingKnots waiting_;  ///< from the cutter to the estimate
   DepthSeen depth_;
   KnotCutter cutter_;
   ForwardEstimate estimate_;

@@ -10,7 +10,9 @@
 
 namespace wellgyro {
 
-/// Adds `samples` samples, all stamped alike but for time and number, to a run's counts.
+/// Adds `samples` samples, all stamped alike but for time and number, to a run's counts: how many
+/// there are, how many were beyond the tool's range or its calibrated temperatures, and of how many
+/// the surface doubts the UTC.
 void CountSamples(const SampleStamp& stamp, std::int64_t samples, RunSummary& summary);
 
 /// Gravity across the tool turns by more than a right angle from one sample to the next, and is

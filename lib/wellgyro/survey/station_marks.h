@@ -20,6 +20,9 @@ inline constexpr double kRestSpeed = StillSetup{}.speed_limit;
 
 /// Where along the hole a run wants its stations: at the depths of the job's plan, where a person
 /// asks for one, and where the tool comes to rest away from the last.
+///
+/// Two stations nearer than kSameDepth are one: a tool that creeps at a stop, or whose depth counts
+/// back and forth there, makes none anew.
 class StationMarks {
  public:
   explicit StationMarks(const Job& job) : plan_(job) {}
@@ -29,6 +32,7 @@ class StationMarks {
     asked_ = true;
     asked_md_ = md;
   }
+  /// And that is not answered yet.
   bool asked() const { return asked_; }
   /// What was asked for is answered: the depth of its station, `here` if none was given; none where
   /// neither is known, or nothing was asked.
@@ -54,6 +58,7 @@ class StationMarks {
   bool ComesToRest(const AlongHole& here) const {
     return !Moves(here.speed, here.sigma_speed) && !IsMarked(here.md);
   }
+  /// The depth says so: beyond what its own error makes of a tool that hangs still.
   static bool Moves(double speed, double sigma_speed) {
     return std::abs(speed) > std::max(kRestSpeed, 2 * sigma_speed);
   }

@@ -39,6 +39,11 @@ struct Stop {
 };
 
 /// Finds the stops of a run and the north at each of them.
+///
+/// A stop is left when a sample comes from another place (or, where no depth is known, two minutes
+/// behind its last window): windows at several index positions give one north, in which the axes'
+/// biases drop out. What lies within a stop is then decided at once, so that its fix and the knots
+/// at rest never say different things.
 class StopWatch {
  public:
   /// All must outlive this object. `site`: where the tool is; knots of `waiting` are told whether
@@ -77,6 +82,7 @@ class StopWatch {
   bool TakeRollHidden();
 
  private:
+  /// The tool is at a stop that has a window.
   bool held() const { return !stops_.empty() && stops_.back().phase == Stop::Phase::kHeld; }
   static bool IsAt(const Stop& stop, ToolTime time, std::optional<double> md);
   void Take(const StillWindow& window);
@@ -89,9 +95,9 @@ class StopWatch {
   WaitingKnots& waiting_;
   RunSummary& summary_;
   StillDetector still_;
-  std::deque<Stop> stops_;  ///< those left, and the one held, if any
-  double rested_ = 0;       // [s]
-  bool roll_hidden_ = false;
+  std::deque<Stop> stops_;    ///< those left, and the one held, if any
+  double rested_ = 0;         ///< up to the end of the last knot [s]
+  bool roll_hidden_ = false;  ///< somewhere since it was last asked for
 };
 
 }  // namespace wellgyro

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,11 +10,12 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/north_fix.h"
-#include "wellgyro/record/run_fit.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/verdict.h"
 
 namespace wellgyro {
+
+struct RunFit;
 
 /// What one run came to.
 struct RunSummary {
@@ -39,7 +41,8 @@ struct RunSummary {
   std::int64_t samples_aliased = 0;  ///< that turned too far in one period
   std::int64_t samples_temperature_outside = 0;
   float temperature_min = 0, temperature_max = 0;  ///< [degC]
-  std::optional<RunFit> fit;                       ///< where an adjuster said so
+  /// How the run as a whole fits together (record/run_fit.h), where an adjuster said so.
+  std::shared_ptr<const RunFit> fit;
   std::vector<NorthFix> fixes;
   std::vector<Check> stop_checks;    ///< of three gyro axes at rest, beyond what a fix says
   std::vector<Check> sample_checks;  ///< of samples and depth marks as they come

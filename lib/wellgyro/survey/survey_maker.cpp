@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/assemble.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/hole_attitude.h"

@@ -18,6 +18,7 @@
 #include "wellgyro/survey/mark_gate.h"
 #include "wellgyro/survey/plausible.h"
 #include "wellgyro/survey/run_book.h"
+#include "wellgyro/survey/run_now.h"
 #include "wellgyro/survey/tool_survey.h"
 
 namespace wellgyro {

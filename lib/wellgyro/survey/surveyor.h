@@ -17,12 +17,12 @@
 #include "wellgyro/record/station.h"
 #include "wellgyro/record/still_window.h"
 #include "wellgyro/survey/job.h"
-#include "wellgyro/survey/run_now.h"
 #include "wellgyro/survey/survey.h"
 
 namespace wellgyro {
 
 class RunAdjuster;
+struct RunNow;
 
 /// Where results go while they are made. Override what you want to hear.
 class WELLGYRO_EXPORT Sink {
@@ -100,7 +100,7 @@ class WELLGYRO_EXPORT Surveyor {
 
   /// Tools of the string that have been heard of.
   std::vector<std::int32_t> tools() const;
-  /// How far the run of one tool that goes on is known.
+  /// How far the run of one tool that goes on is known: for who gives advice (run_now.h).
   RunNow Now(std::int32_t tool) const;
   /// All stations, checks and runs of one tool as they are now.
   Survey Current(std::int32_t tool) const;

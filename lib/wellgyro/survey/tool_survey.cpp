@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/estimated_run.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 
@@ -197,7 +199,8 @@ void ToolSurvey::Adjust() {
     const RunHistory history = run.survey->History();
     if (!history.knots.empty()) {
       SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history) : EstimatedRun(job_, history);
-      run.survey->summary().fit = smoothed.fit;
+      run.survey->summary().fit =
+          smoothed.fit ? std::make_shared<const RunFit>(*smoothed.fit) : nullptr;
       if (smoothed.fit && smoothed.fit->converged) run.survey->CloseOnWhole(smoothed.attitude);
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);

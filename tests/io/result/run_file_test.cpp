@@ -1,5 +1,6 @@
 #include "wellgyro/io/result/run_file.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/sha256.h"
+#include "wellgyro/record/run_fit.h"
 
 namespace wellgyro {
 namespace {
@@ -106,12 +108,13 @@ TEST(RunToml, SaysHowTheRunFits) {
   RunSummary& summary = survey.runs[0];
   summary.samples_accel_saturated = 4;
   summary.temperature_max = 61.5F;
-  summary.fit.emplace();
-  summary.fit->chi_square = 812.5;
-  summary.fit->degrees_of_freedom = 800;
-  summary.fit->parts[RunFit::kInclination] = {300.25, 310.5};
-  summary.fit->errors[kToolfaceOffset] = 0.25 * units::kDeg;
-  summary.fit->sigma_errors[kToolfaceOffset] = 0.03 * units::kDeg;
+  const auto fit = std::make_shared<RunFit>();
+  summary.fit = fit;
+  fit->chi_square = 812.5;
+  fit->degrees_of_freedom = 800;
+  fit->parts[RunFit::kInclination] = {300.25, 310.5};
+  fit->errors[kToolfaceOffset] = 0.25 * units::kDeg;
+  fit->sigma_errors[kToolfaceOffset] = 0.03 * units::kDeg;
   summary.fixes[0].roll_rate = 0.5 * units::kDegPerHour;
   const toml::table run = toml::parse(RunToml(Record(), SmallJob(), survey, {}));
   const auto first = run["run"][0];
@@ -145,7 +148,7 @@ TEST(RunToml, NamesWhatAdjustedTheRunsThatWere) {
   };
   Survey survey = SmallSurvey();
   EXPECT_EQ(adjuster(survey), "none");
-  survey.runs[0].fit.emplace();
+  survey.runs[0].fit = std::make_shared<const RunFit>();
   EXPECT_EQ(adjuster(survey), "least squares");
 }
 

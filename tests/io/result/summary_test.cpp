@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/record/run_fit.h"
 
 namespace wellgyro {
 namespace {
@@ -69,9 +70,11 @@ TEST(SummaryJson, SaysOfAnUnfitEndNoEllipseAndOfUnseenFaultsTheBoundItself) {
   survey.chosen = {Station{}, end};
   RunSummary run;
   run.run = 1;
-  run.fit.emplace().diagnosis.emplace();
-  run.fit->diagnosis->hidden.diagonal() << 4, 25;
-  run.fit->diagnosis->hidden_cause = "gyro_bias_step_x";
+  const auto fit = std::make_shared<RunFit>();
+  fit->diagnosis.emplace();
+  fit->diagnosis->hidden.diagonal() << 4, 25;
+  fit->diagnosis->hidden_cause = "gyro_bias_step_x";
+  run.fit = fit;
   survey.runs = {run};
   const ToolSummary tool{.tool = 3, .folder = "re\"sult", .files = {"a.csv"}, .survey = &survey};
   const std::string text = SummaryJson({&tool, 1}, {Verdict::kFail, {"gyro is dead"}}, 4);

@@ -8,6 +8,7 @@
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/text_internal.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/run_diagnosis.h"
 
 namespace wellgyro {

@@ -23,6 +23,7 @@
 #include "wellgyro/io/toml/run_lesson_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
@@ -290,7 +291,7 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   toml.Text("format", "wellgyro.run/1");
   toml.Text("program", record.program);
   const bool adjusted =
-      std::ranges::any_of(survey.runs, [](const RunSummary& run) { return run.fit.has_value(); });
+      std::ranges::any_of(survey.runs, [](const RunSummary& run) { return run.fit != nullptr; });
   toml.Text("adjuster", adjusted ? record.adjuster : "none");
   toml.Flag("accepted", survey.accepted);
   toml.Whole("stations", std::ssize(survey.chosen));

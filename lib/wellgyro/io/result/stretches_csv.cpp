@@ -7,6 +7,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/number_text_internal.h"
+#include "wellgyro/record/run_fit.h"
 
 namespace wellgyro {
 namespace {

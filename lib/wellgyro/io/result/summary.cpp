@@ -9,6 +9,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/record/run_fit.h"
 
 namespace wellgyro {
 namespace {

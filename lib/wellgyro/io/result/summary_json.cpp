@@ -9,6 +9,7 @@
 #include "wellgyro/io/result/json_columns_internal.h"
 #include "wellgyro/io/result/summary.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/record/run_fit.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {

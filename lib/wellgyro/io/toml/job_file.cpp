@@ -1,5 +1,6 @@
 #include "wellgyro/io/toml/job_file.h"
 
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -15,6 +16,7 @@
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/tool_file.h"
+#include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {
 namespace {
@@ -125,7 +127,7 @@ class JobReader {
     const std::string text = files_.Take("error_model", name, true);
     Result<ErrorModel> model = ReadErrorModel(text, files_.PathOf(name).string());
     if (!model) throw TomlError{model.fault()};
-    file_.job.error_model = *std::move(model);
+    file_.job.error_model = std::make_shared<const ErrorModel>(*std::move(model));
   }
 
   void TakeRuns(TomlTable& root) {
