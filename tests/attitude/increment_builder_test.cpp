@@ -237,20 +237,6 @@ TEST(IncrementBuilder, ForceToTheThirdOrderOfASlowSample) {
   EXPECT_GT(third[0] / third[1], 6);
 }
 
-// An increment in the tool's frame at its begin, the roll put right as an estimator does.
-struct Resolved {
-  Eigen::Vector2d turn;
-  Eigen::Vector3d force;
-};
-Resolved AtBegin(const Increment& i, const Attitude& attitude, double begin) {
-  double delta = 0;
-  motion::Miss(i, attitude, begin, delta);
-  const Eigen::Rotation2Dd to_begin(i.roll_before + 0.5 * delta);
-  Resolved r{to_begin * (i.turn_M + delta * i.turn_per_roll), i.force_M};
-  r.force.head<2>() = to_begin * (i.force_M.head<2>() + delta * i.force_per_roll);
-  return r;
-}
-
 struct Injected {
   ErrorSource source;
   double size;
@@ -284,7 +270,8 @@ TEST_P(Errors, DoWhatTheIncrementSays) {
     return motion::Increments(motion::Samples(attitude, sensing, 10, 12), 2, Options())[3];
   };
   const Increment increment = fly(size);
-  const Resolved plus = AtBegin(increment, attitude, 6), minus = AtBegin(fly(-size), attitude, 6);
+  const motion::Resolved plus = motion::AtBegin(increment, attitude, 6),
+                         minus = motion::AtBegin(fly(-size), attitude, 6);
   const Eigen::Rotation2Dd to_begin(increment.roll_before);
   Eigen::Vector2d turn_by = Eigen::Vector2d::Zero();
   if (source < kTurnSources) turn_by = to_begin * increment.turn_by_error.col(source);

@@ -74,6 +74,11 @@ void SenseAt(const Attitude& attitude, const Sensing& sensing, double t, Vector3
                      e(kAccelMisalignmentY) * seen.z(),
                  e(kAccelScaleZ) * seen.z() + e(kAccelMisalignmentZX) * seen.x() +
                      e(kAccelMisalignmentZY) * seen.y());
+  const double products[] = {seen.x() * seen.x(), seen.y() * seen.y(), seen.z() * seen.z(),
+                             seen.x() * seen.y(), seen.y() * seen.z(), seen.z() * seen.x()};
+  for (int i = 0; i < kSecondOrderSources; ++i) {
+    f_T[i / 6] += e(kAccelSecondOrder + i) * products[i % 6];
+  }
 }
 
 std::vector<ImuSample> Samples(const Attitude& attitude, const Sensing& sensing, double rate_hz,
@@ -137,6 +142,15 @@ Eigen::Vector2d Miss(const Increment& i, const Attitude& attitude, double t, dou
   delta = 0;
   for (int pass = 0; pass < 4; ++pass) delta += Log(Turned(i, delta).transpose() * truth).z();
   return Log(Turned(i, delta).transpose() * truth).head<2>();
+}
+
+Resolved AtBegin(const Increment& i, const Attitude& attitude, double begin) {
+  double delta = 0;
+  Miss(i, attitude, begin, delta);
+  const Eigen::Rotation2Dd to_begin(i.roll_before + 0.5 * delta);
+  Resolved r{to_begin * (i.turn_M + delta * i.turn_per_roll), i.force_M};
+  r.force.head<2>() = to_begin * (i.force_M.head<2>() + delta * i.force_per_roll);
+  return r;
 }
 
 }  // namespace wellgyro::motion

@@ -47,4 +47,11 @@ Eigen::Matrix3d Turned(const Increment& increment, double delta);
 /// `delta` as an estimator does, which then is how much it was.
 Eigen::Vector2d Miss(const Increment& increment, const Attitude& attitude, double t, double& delta);
 
+/// An increment in the tool's frame at its begin, the roll put right as an estimator does.
+struct Resolved {
+  Eigen::Vector2d turn;
+  Eigen::Vector3d force;
+};
+Resolved AtBegin(const Increment& increment, const Attitude& attitude, double begin);
+
 }  // namespace wellgyro::motion

@@ -56,6 +56,14 @@ Case MakeCase(double inclination, bool still, bool axial) {
                     .roll_offset_sigma = 1e-3,
                     .time_skew_sigma = 1e-3,
                     .latitude_sigma = 1e-3};
+  // A second order as large as the biases, and a tool that has warmed by half of its span.
+  c.setup.cov_errors = ErrorCovariance{.reference = 50, .span = 10};
+  c.setup.cov_errors->constant.diagonal().tail<kSecondOrderSources>().setConstant(1e-10);
+  c.setup.cov_errors->change.diagonal().head<kAccelSecondOrder>().setConstant(1e-6);
+  c.setup.cov_errors->change.diagonal().head<4>().setConstant(1e-12);
+  c.setup.cov_errors->constant.diagonal().segment<3>(kGyroMisalignmentZX).setConstant(1e-6);
+  c.setup.cov_errors->constant.diagonal().segment<2>(kUnbalanceDifference).setConstant(1e-14);
+  c.knot.temperature = 55;
   c.setup.swing = 0.3;
   c.setup.third_axis = axial;
   c.layout = LayoutOf(c.setup);
@@ -115,7 +123,9 @@ Case MakeCase(double inclination, bool still, bool axial) {
 /// EstimatedRun.NoiseDrawsNoScale.
 bool IsGyroScale(const Layout& layout, int border_column) {
   for (const std::size_t source : {kGyroScaleX, kGyroScaleY, kGyroScaleZ}) {
-    if (border_column >= 0 && layout.source[source] == border_column) return true;
+    if (border_column < 0) continue;
+    if (layout.source[source] == border_column || layout.change[source] == border_column)
+      return true;
   }
   return false;
 }

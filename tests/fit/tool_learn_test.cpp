@@ -9,11 +9,13 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "wellgyro/calibration/apply.h"
 #include "wellgyro/calibration/errors_in_use.h"
 #include "wellgyro/calibration/lessons.h"
 #include "wellgyro/calibration/members.h"
 #include "wellgyro/calibration/prior.h"
 #include "wellgyro/math/statistics.h"
+#include "wellgyro/simulate/raw_counts.h"
 
 #include "fit/tool_bench.h"
 #include "fit/tool_model_truth.h"
@@ -91,7 +93,7 @@ RunLesson LessonOf(const ToolCalibration& tool, const ToolCalibration& truth, co
                    Random& random) {
   RunLesson lesson;
   lesson.uses = {use};
-  lesson.cov_before = *ErrorsInUse(tool, lesson.uses);
+  lesson.cov_before = ErrorsInUse(tool, lesson.uses)->constant;
   const MatrixXd E = ErrorEffects(tool, tool.gyro.covariance->names, lesson.uses);
   const MatrixXd cov = tool.gyro.covariance->cov;
   // What varies with the toolface is drawn too: the run takes it for bias.
@@ -145,14 +147,101 @@ TEST(ToolLearn, WhatRunsTeachIsRightToItsCovariance) {
     after += Square(ErrorOf(taught, truth), taught.gyro.covariance->cov);
     number += static_cast<double>(tool.gyro.covariance->names.size());
     const std::vector<ToolUse> use = {{1, 90, 0, -6}};
-    narrower += (*ErrorsInUse(taught, use))(kGyroBiasX, kGyroBiasX) /
-                (*ErrorsInUse(tool, use))(kGyroBiasX, kGyroBiasX) / kTools;
+    narrower += ErrorsInUse(taught, use)->constant(kGyroBiasX, kGyroBiasX) /
+                ErrorsInUse(tool, use)->constant(kGyroBiasX, kGyroBiasX) / kTools;
     EXPECT_EQ(taught.gyro.covariance->names, tool.gyro.covariance->names);
     EXPECT_LT(taught.errors->accel_bias_sigma, 1);
   }
   ExpectInBand(before, number, "by the bench");
   ExpectInBand(after, number, "with three runs");
   EXPECT_LT(narrower, 0.8);
+}
+
+// Calibrated samples of `raw` less the truth.
+ImuSample ErrorOfSample(const ToolCalibration& tool, RawCounter& counter, ImuSample truth) {
+  truth.stamp.period_ns = 10'000'000;
+  const RawSample raw = counter.Count(truth, 95);
+  ImuSample out;
+  SampleCalibrator calibrator(tool);
+  EXPECT_EQ(calibrator.Apply({&raw, 1}, {&out, 1}), 1u);
+  out.w_IT_T -= truth.w_IT_T;
+  out.f_T -= truth.f_T;
+  return out;
+}
+
+// What the errors `e` do to a sample, as the estimator has it (record/error_source.h).
+ImuSample ErrorBy(const ErrorVector& e, bool gyros, const ImuSample& at) {
+  const Eigen::Vector3d &w = at.w_IT_T, &f = at.f_T;
+  ImuSample error;
+  Eigen::Matrix3d A;
+  const double turned = e[kToolfaceOffset];
+  if (gyros) {
+    A << e[kGyroScaleX], e[kGyroShear] - turned, e[kMisalignmentX], e[kGyroShear] + turned,
+        e[kGyroScaleY], e[kMisalignmentY], e[kGyroMisalignmentZX], e[kGyroMisalignmentZY],
+        e[kGyroScaleZ];
+    const double s = e[kUnbalanceDifference], t = e[kQuadratureSum];
+    error.w_IT_T = e.segment<3>(kGyroBiasX) + A * w;
+    error.w_IT_T.z() = (A * w).z();
+    error.w_IT_T.x() += (e[kMassUnbalance] + s) * f.x() + (e[kQuadrature] + t) * f.y();
+    error.w_IT_T.y() += (e[kMassUnbalance] - s) * f.y() + (t - e[kQuadrature]) * f.x();
+    return error;
+  }
+  A << e[kAccelScaleX], e[kAccelShear] + turned, e[kAccelMisalignmentX], e[kAccelShear] - turned,
+      e[kAccelScaleY], e[kAccelMisalignmentY], e[kAccelMisalignmentZX], e[kAccelMisalignmentZY],
+      e[kAccelScaleZ];
+  const double q[] = {f.x() * f.x(), f.y() * f.y(), f.z() * f.z(),
+                      f.x() * f.y(), f.y() * f.z(), f.z() * f.x()};
+  error.f_T = e.segment<3>(kAccelBiasX) + A * f;
+  for (int i = 0; i < kSecondOrderSources; ++i) {
+    error.f_T[i / 6] += e[kAccelSecondOrder + i] * q[i % 6];
+  }
+  return error;
+}
+
+// Gyros or accelerometers wrong, whatever their members: the samples are wrong by what the errors
+// in use say, at every toolface. Of a third axis, what it feels of the force is no error of these.
+TEST(ToolLearn, ErrorsInUseAreThoseOfCalibratedSamples) {
+  for (const bool gyros : {true, false}) {
+    Random random(65);
+    ToolCalibration truth = ModelOf(ThermalTool::Any(random));
+    truth.gyro.heating.setZero();
+    truth.gyro.unit_per_count.setConstant(1e-4);
+    truth.accel.unit_per_count.setConstant(1e-9);
+    ParameterCovariance known;
+    for (const auto& name : AnyKnown(random).names) {
+      if (MemberOf(name).is_gyro == gyros) known.names.push_back(name);
+    }
+    for (int c = 0; c < 3 && !gyros; ++c) {
+      for (int j = 0; j < 6; ++j)
+        known.names.push_back(NameOf({false, Kind::kSecondOrder, 0, c, j}));
+    }
+    const auto n = static_cast<Index>(known.names.size());
+    known.cov = MatrixXd::Identity(n, n);
+    ToolCalibration tool = truth;
+    for (const auto& name : known.names) {
+      const CalibrationMember member = MemberOf(name);
+      ValueOf(tool, member) += (gyros ? 0.05 : 2e-5 / kG) / kG * random.Normal();
+    }
+    tool.gyro.covariance = known;
+    const double z = -kG * std::cos(0.9);
+    const std::vector<ToolUse> use = {{1, 95, 0, z}};
+    const ErrorVector e = ErrorEffects(tool, known.names, use) * ErrorOf(tool, truth);
+    RawCounter counter(truth);
+    for (int k = 0; k < 12; ++k) {
+      const double toolface = 0.5 * k, across = kG * std::sin(0.9);
+      ImuSample still, at;
+      still.f_T = at.f_T = {across * std::cos(toolface), -across * std::sin(toolface), z};
+      at.w_IT_T = {2e-3, -1e-3, 0.3};
+      const ImuSample expected = ErrorBy(e, gyros, at), found = ErrorOfSample(tool, counter, at);
+      if (gyros) {
+        const Eigen::Vector3d w = found.w_IT_T - Eigen::Vector3d(0, 0, 1).cwiseProduct(
+                                                     ErrorOfSample(tool, counter, still).w_IT_T);
+        EXPECT_LT((w - expected.w_IT_T).norm(), 0.01 * expected.w_IT_T.norm()) << k;
+      } else {
+        EXPECT_LT((found.f_T - expected.f_T).norm(), 0.01 * expected.f_T.norm()) << k;
+      }
+    }
+  }
 }
 
 // A run that learnt nothing teaches nothing.
@@ -162,7 +251,7 @@ TEST(ToolLearn, ARunThatSawNothingLeavesTheToolAsItWas) {
   const ToolCalibration tool = Found(truth, AnyKnown(random), random);
   RunLesson lesson;
   lesson.uses = {{1, 80, 0, -5}};
-  lesson.cov = lesson.cov_before = *ErrorsInUse(tool, lesson.uses);
+  lesson.cov = lesson.cov_before = ErrorsInUse(tool, lesson.uses)->constant;
   const ToolCalibration taught = Taught(tool, std::vector{lesson});
   EXPECT_TRUE(taught.rests_on_prior);
   EXPECT_EQ(ErrorOf(taught, tool).norm(), 0);

@@ -28,13 +28,14 @@ struct HeatingRates {
 
 struct Kernels {
   const GroupKernel &gyro, &accel, &mag;
+  std::size_t channels;  // that they need, from the first on
 };
 
 template <int kN>
-[[gnu::always_inline]] inline void Solve(const GroupKernel& group, const RawSample* raw,
+[[gnu::always_inline]] inline void Solve(const GroupKernel& group, const CountsOf<kN>& counts,
                                          const float* rates, const Side<kN, float>& f,
                                          Side<kN>& u) {
-  Linear<kN>(group, raw, u);
+  Linear<kN>(group, counts, u);
   if (group.feels_force || group.heats) TakeSmall<kN>(group, f, rates, u);
   if (group.second_order) Refine<kN>(group, u);
 }
@@ -44,16 +45,17 @@ template <int kN>
 void CalibrateSide(const Kernels& groups, const RawSample* raw, const HeatingRates& rates,
                    std::size_t first, ImuSample* out) {
   // The force first: the gyros feel it.
+  const CountsOf<kN> counts(raw + first, groups.channels);
   Side<kN> u;
   Side<kN, float> f;
   for (Lanes<kN, float>& component : f) component.setZero();
-  Solve<kN>(groups.accel, raw + first, rates.accel.data() + first, f, u);
+  Solve<kN>(groups.accel, counts, rates.accel.data() + first, f, u);
   Put<kN>(u, out + first, &ImuSample::f_T);
   for (std::size_t i = 0; i < 3; ++i) f[i] = u[i].template cast<float>();
-  Solve<kN>(groups.gyro, raw + first, rates.gyro.data() + first, f, u);
+  Solve<kN>(groups.gyro, counts, rates.gyro.data() + first, f, u);
   Put<kN>(u, out + first, &ImuSample::w_IT_T);
   if (groups.mag.n_channels > 0) {
-    Solve<kN>(groups.mag, raw + first, rates.mag.data() + first, f, u);
+    Solve<kN>(groups.mag, counts, rates.mag.data() + first, f, u);
   } else {
     for (Lanes<kN>& component : u) component.setZero();
   }
@@ -196,7 +198,8 @@ void SampleCalibrator::State::Stamp(std::span<const RawSample> raw,
 void SampleCalibrator::State::Calibrate(std::span<const RawSample> raw, const HeatingRates& rates,
                                         std::span<ImuSample> out) const {
   Stamp(raw, out);
-  const Kernels groups{gyro.kernel(), accel.kernel(), mag.kernel()};
+  const Kernels groups{gyro.kernel(), accel.kernel(), mag.kernel(),
+                       static_cast<std::size_t>(channels_needed)};
   std::size_t i = 0;
   for (; i + kSide <= raw.size(); i += kSide) {
     CalibrateSide<kSide>(groups, raw.data(), rates, i, out.data());

@@ -19,7 +19,8 @@ namespace {
 using Kind = CalibrationMember::Kind;
 
 // Where the sources stand.
-constexpr int kGyroBias = 0, kGyroRate = 3, kGyroForce = 12, kUnbalance = 21, kQuadrature = 22;
+constexpr int kGyroBias = 0, kGyroRate = 3, kGyroForce = 12, kUnbalanceMean = 21,
+              kQuadratureMean = 22;
 constexpr int kAccelBias = 23, kAccelForce = 26, kSources = 35;
 
 std::vector<std::string> SourceNames() {
@@ -77,8 +78,8 @@ Eigen::VectorXd EffectOf(const CalibrationMember& member, const GroupAt& at) {
       break;
   }
   // x: G_xx f_x + G_xy f_y, y: G_yx f_x + G_yy f_y.
-  column[kUnbalance] = (column[kGyroForce] + column[kGyroForce + 4]) / 2;
-  column[kQuadrature] = (column[kGyroForce + 1] - column[kGyroForce + 3]) / 2;
+  column[kUnbalanceMean] = (column[kGyroForce] + column[kGyroForce + 4]) / 2;
+  column[kQuadratureMean] = (column[kGyroForce + 1] - column[kGyroForce + 3]) / 2;
   return column;
 }
 
@@ -116,8 +117,8 @@ void TakeGyroErrors(const CalibrationSources& sources, int across, ErrorPriors& 
   for (int i = 0; i < 3; ++i) Raise(errors.gyro_bias_sigma, Sigma(sources, kGyroBias + i));
   Raise(errors.gyro_scale_sigma, LargestOf(sources, kGyroRate, true, across));
   Raise(errors.gyro_misalignment_sigma, LargestOf(sources, kGyroRate, false, across));
-  Raise(errors.mass_unbalance_sigma, Sigma(sources, kUnbalance));
-  Raise(errors.quadrature_sigma, Sigma(sources, kQuadrature));
+  Raise(errors.mass_unbalance_sigma, Sigma(sources, kUnbalanceMean));
+  Raise(errors.quadrature_sigma, Sigma(sources, kQuadratureMean));
 }
 
 void TakeAccelErrors(const CalibrationSources& sources, ErrorPriors& errors) {

@@ -16,11 +16,12 @@ using Kind = CalibrationMember::Kind;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Errors of one group of sensors: b + A u + G f, and the part of the squares of the force that goes
-// by cosine and sine of twice the toolface.
+// Errors of one group of sensors: b + A u + K q(u) + G f, and the part of the squares of the force
+// that goes by cosine and sine of twice the toolface.
 struct GroupError {
   Vector3d b = Vector3d::Zero();
   Matrix3d A = Matrix3d::Zero(), G = Matrix3d::Zero();
+  Eigen::Matrix<double, 3, 6> K = Eigen::Matrix<double, 3, 6>::Zero();
   Eigen::Matrix<double, 3, 2> twice = Eigen::Matrix<double, 3, 2>::Zero();
 };
 
@@ -30,17 +31,19 @@ double Across(const ToolUse& use) {
   return std::max(0.0, kG * kG - use.axial_force * use.axial_force);
 }
 
-// A sensor that reads e q more, q a product of two components of the force in its own axes.
-void AddSquare(const Vector3d& e, const Matrix3d& R_ST, int product, const ToolUse& use,
-               bool into_G, GroupError& error) {
+// u' Q u is a product of two components of u in the sensors' axes, u in T.
+Matrix3d ProductInT(const Matrix3d& R_ST, int product) {
   constexpr std::array kFirst{0, 1, 2, 0, 1, 2}, kSecond{0, 1, 2, 1, 2, 0};
   const auto place = static_cast<std::size_t>(product);
   const Matrix3d pair = R_ST.row(kFirst[place]).transpose() * R_ST.row(kSecond[place]);
-  const Matrix3d Q = (pair + pair.transpose()) / 2;
+  return (pair + pair.transpose()) / 2;
+}
+
+// A gyro that reads e f' Q f more.
+void AddForceSquare(const Vector3d& e, const Matrix3d& Q, const ToolUse& use, GroupError& error) {
   const double z = use.axial_force, square = Across(use);
   error.b += e * (Q(2, 2) * z * z + (Q(0, 0) + Q(1, 1)) * square / 2);
-  Matrix3d& linear = into_G ? error.G : error.A;
-  linear.leftCols<2>() += 2 * z * e * Q.row(2).head<2>();
+  error.G.leftCols<2>() += 2 * z * e * Q.row(2).head<2>();
   error.twice += square * e * Eigen::RowVector2d((Q(0, 0) - Q(1, 1)) / 2, Q(0, 1));
 }
 
@@ -59,10 +62,14 @@ GroupError ErrorOf(const CalibrationMember& member, const GroupAt& at, const Too
       error.G = power * e * at.R_ST.row(member.column);
       break;
     case Kind::kSecondOrder:
-      if (!member.is_gyro) AddSquare(e, at.R_ST, member.column, use, false, error);
+      if (!member.is_gyro) {
+        const Matrix3d Q = ProductInT(at.R_ST, member.column);
+        error.K.leftCols<3>() = e * Q.diagonal().transpose();
+        error.K.rightCols<3>() = e * Eigen::RowVector3d(2 * Q(0, 1), 2 * Q(1, 2), 2 * Q(2, 0));
+      }
       break;
     case Kind::kForceSquare:
-      AddSquare(e, at.R_ST, member.column, use, true, error);
+      AddForceSquare(e, ProductInT(at.R_ST, member.column), use, error);
       break;
     case Kind::kHeating:
       error.b = use.heating * e;
@@ -85,6 +92,11 @@ ErrorVector OfGyros(const GroupError& g, const ToolUse& use) {
   error[kMisalignmentX] = g.A(0, 2);
   error[kMisalignmentY] = g.A(1, 2);
   error[kToolfaceOffset] = (g.A(1, 0) - g.A(0, 1)) / 2;
+  error[kGyroMisalignmentZX] = g.A(2, 0);
+  error[kGyroMisalignmentZY] = g.A(2, 1);
+  error[kGyroShear] = (g.A(0, 1) + g.A(1, 0)) / 2;
+  error[kUnbalanceDifference] = (g.G(0, 0) - g.G(1, 1)) / 2;
+  error[kQuadratureSum] = (g.G(0, 1) + g.G(1, 0)) / 2;
   return error;
 }
 
@@ -98,22 +110,20 @@ ErrorVector OfAccelerometers(const GroupError& g) {
   error[kAccelMisalignmentZX] = g.A(2, 0);
   error[kAccelMisalignmentZY] = g.A(2, 1);
   error[kToolfaceOffset] = (g.A(0, 1) - g.A(1, 0)) / 2;
+  error.tail<kSecondOrderSources>() = g.K.transpose().reshaped();
   return error;
 }
 
-// What no constant stands for, by its amplitudes: of the squares of the force of gyros and of
-// accelerometers, which go by twice the toolface, x, y, z of its cosine and then of its sine; of
-// the gyros' force terms but mass unbalance and quadrature, which go by the toolface, the same.
-constexpr int kVarying = 18;
+// What no constant stands for, by its amplitudes, all of the gyros: of the squares of the force,
+// which go by twice the toolface, x, y, z of its cosine and then of its sine; of what a third axis
+// feels of the force across, which goes by the toolface, the same.
+constexpr int kVarying = 12;
 using VaryingVector = Eigen::Matrix<double, kVarying, 1>;
 
-VaryingVector VaryingOf(const GroupError& g, bool is_gyro, const ToolUse& use) {
-  VaryingVector varying = VaryingVector::Zero();
-  varying.segment<6>(is_gyro ? 0 : 6) = g.twice.reshaped();
-  if (!is_gyro) return varying;
-  const double s = (g.G(0, 0) - g.G(1, 1)) / 2, t = (g.G(0, 1) + g.G(1, 0)) / 2;
-  varying.segment<6>(12) << s, t, g.G(2, 0), -t, s, -g.G(2, 1);
-  varying.segment<6>(12) *= std::sqrt(Across(use));
+VaryingVector VaryingOf(const GroupError& g, const ToolUse& use) {
+  VaryingVector varying;
+  varying << g.twice.reshaped(), 0, 0, g.G(2, 0), 0, 0, -g.G(2, 1);
+  varying.tail<6>() *= std::sqrt(Across(use));
   return varying;
 }
 
@@ -131,7 +141,7 @@ Effects EffectsOf(const ToolCalibration& tool, const std::vector<std::string>& m
     const CalibrationMember member = MemberOf(members[static_cast<std::size_t>(k)]);
     const GroupError error = ErrorOf(member, member.is_gyro ? gyro : accel, use);
     effects.errors.col(k) = member.is_gyro ? OfGyros(error, use) : OfAccelerometers(error);
-    effects.varying.col(k) = VaryingOf(error, member.is_gyro, use);
+    effects.varying.col(k) = VaryingOf(error, use);
   }
   return effects;
 }
@@ -139,13 +149,56 @@ Effects EffectsOf(const ToolCalibration& tool, const std::vector<std::string>& m
 // Their mean squares, with the biases.
 void AddVarying(const Eigen::MatrixXd& varying, const Eigen::MatrixXd& cov, double share,
                 ErrorMatrix& sum) {
-  constexpr std::array kBiases{kGyroBiasX,  kGyroBiasY,  kGyroBiasZ,
-                               kAccelBiasX, kAccelBiasY, kAccelBiasZ};
+  constexpr std::array kBiases{kGyroBiasX, kGyroBiasY, kGyroBiasZ};
   const VaryingVector variance = (varying * cov).cwiseProduct(varying).rowwise().sum();
   for (int k = 0; k < kVarying; ++k) {
-    const auto bias = static_cast<std::size_t>(k % 3 + (k / 6 == 1 ? 3 : 0));
-    sum(kBiases[bias], kBiases[bias]) += share * variance[k] / 2;
+    const auto bias = kBiases[static_cast<std::size_t>(k % 3)];
+    sum(bias, bias) += share * variance[k] / 2;
   }
+}
+
+// Temperatures of `uses` about their mean, the largest difference being one.
+struct Warmth {
+  double reference = 0, span = 1;
+  double square = 0;  // mean; 0: all are alike
+  double Of(const ToolUse& use) const { return (use.temperature - reference) / span; }
+};
+
+Warmth WarmthOf(std::span<const ToolUse> uses) {
+  Warmth warmth;
+  double largest = 0;
+  for (const ToolUse& use : uses) warmth.reference += use.share * use.temperature;
+  for (const ToolUse& use : uses) {
+    largest = std::max(largest, std::abs(use.temperature - warmth.reference));
+  }
+  // Below that lies what thermometers' numbers round.
+  constexpr double kLeast = 1e-3;  // [degC]
+  if (!(largest > kLeast)) return warmth;
+  warmth.span = largest;
+  for (const ToolUse& use : uses) warmth.square += use.share * std::pow(warmth.Of(use), 2);
+  return warmth;
+}
+
+// Of each use the straight line through the effects of all; what is beside it is constant.
+void AddMembers(const ToolCalibration& tool, const ParameterCovariance& known,
+                std::span<const ToolUse> uses, const Warmth& warmth, ErrorCovariance& sum) {
+  std::vector<Effects> effects;
+  const auto n = static_cast<Eigen::Index>(known.names.size());
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(kErrorSources, n), slope = mean;
+  for (const ToolUse& use : uses) {
+    effects.push_back(EffectsOf(tool, known.names, use));
+    mean += use.share * effects.back().errors;
+    if (warmth.square > 0) {
+      slope += use.share * warmth.Of(use) / warmth.square * effects.back().errors;
+    }
+  }
+  for (std::size_t k = 0; k < uses.size(); ++k) {
+    const Eigen::MatrixXd constant = effects[k].errors - warmth.Of(uses[k]) * slope;
+    sum.constant += uses[k].share * constant * known.cov * constant.transpose();
+    AddVarying(effects[k].varying, known.cov, uses[k].share, sum.constant);
+  }
+  sum.change += slope * known.cov * slope.transpose();
+  sum.constant_with_change += mean * known.cov * slope.transpose();
 }
 
 }  // namespace
@@ -158,17 +211,15 @@ Eigen::MatrixXd ErrorEffects(const ToolCalibration& tool, const std::vector<std:
   return mean;
 }
 
-std::optional<ErrorMatrix> ErrorsInUse(const ToolCalibration& tool, std::span<const ToolUse> uses) {
+std::optional<ErrorCovariance> ErrorsInUse(const ToolCalibration& tool,
+                                           std::span<const ToolUse> uses) {
   if (uses.empty() || !(HasMembers(tool.gyro) || HasMembers(tool.accel))) return std::nullopt;
-  ErrorMatrix sum = ErrorMatrix::Zero();
+  const Warmth warmth = WarmthOf(uses);
+  ErrorCovariance sum;
+  sum.reference = warmth.reference;
+  sum.span = warmth.span;
   for (const SensorGroup* group : {&tool.gyro, &tool.accel}) {
-    if (!HasMembers(*group)) continue;
-    const ParameterCovariance& known = *group->covariance;
-    for (const ToolUse& use : uses) {
-      const Effects effects = EffectsOf(tool, known.names, use);
-      sum += use.share * effects.errors * known.cov * effects.errors.transpose();
-      AddVarying(effects.varying, known.cov, use.share, sum);
-    }
+    if (HasMembers(*group)) AddMembers(tool, *group->covariance, uses, warmth, sum);
   }
   return sum;
 }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/estimate/second_order.h"
+#include "wellgyro/estimate/turn_columns.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/sinc.h"
@@ -17,8 +19,6 @@ using Eigen::Matrix2d;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-using TurnByError = Eigen::Matrix<double, 2, kErrorSources>;
 
 // What is left of the residuals of perfect sensors: an increment's own accuracy (see
 // IncrementBuilder), and an acceleration of the path whose curvature changes within the window
@@ -59,16 +59,6 @@ Matrix2d MeanSquareOfX(const Increment& inc) {
   return 0.5 * (Matrix2d() << 1 + c, s, s, 1 - c).finished();
 }
 
-TurnByError TurnBy(const Increment& inc) {
-  TurnByError by_error = TurnByError::Zero();
-  by_error.leftCols<kTurnSources>() = inc.turn_by_error;
-  return by_error;
-}
-
-Vector3d ForceBy(const Increment& inc, int source) {
-  return source < kTurnSources ? Vector3d(Vector3d::Zero()) : Vector3d(inc.ForceBy(source));
-}
-
 /// By which what skewed gyros (kMisalignmentX, Y, columns) seem to turn leads, in the mean of the
 /// knot's forces, half of what it is over the knot. It is a circle, (e^{i psi} - 1) / i from the
 /// middle on, psi the roll from there: its mean less that of its ends.
@@ -77,6 +67,13 @@ Eigen::Matrix2d SkewBeforeHalf(const Increment& inc) {
       0.5 * (RotationZ(inc.roll_after) + RotationZ(-inc.roll_before)).topLeftCorner<2, 1>();
   const Vector2d d = inc.ForceBy(kAccelBiasX).head<2>() - ends;
   return (Eigen::Matrix2d() << d.y(), d.x(), -d.x(), d.y()).finished();
+}
+
+/// The temperature's share in the errors' changes.
+double WarmthOf(const EstimateSetup& setup, const RunKnot& knot) {
+  if (!setup.cov_errors) return 0;
+  return (static_cast<double>(knot.temperature) - setup.cov_errors->reference) /
+         setup.cov_errors->span;
 }
 
 /// Errors in variables (Fuller, Measurement Error Models, 1987, section 1.2): a scale error
@@ -100,25 +97,49 @@ struct KnotRows::Terms {
   const Node& begin;
   const Node& end;
   double dt;
-  double delta;               // psi's error at the end, from that at the begin
-  double frequency;           // of the swing
-  Vector2d of_swing;          // in the mean rate of roll
-  TurnByError turn_by_error;  // at the roll rate of now
-  Vector2d turn;              // of what is known of the errors corrected
-  Vector2d turn_per_roll;     // at delta
-  Matrix3d Ha, Hb, Xh;
-  Matrix3d R_LM;
+  double delta = 0;                      // psi's error at the end, from that at the begin
+  double frequency = 0;                  // of the swing
+  Vector2d of_swing = Vector2d::Zero();  // in the mean rate of roll
+  TurnByError turn_by_error;             // at the roll rate of now
+  Vector2d turn;                         // of what is known of the errors corrected
+  Vector2d turn_per_roll{};              // at delta
+  Matrix3d Ha{}, Hb{}, Xh{};
+  Matrix3d R_LM{};
   Vector3d w_IL_L;  // at the latitude as it is now known
   BorderVector border;
+  double warmth = 0;    // what the errors' changes count by
+  ErrorVector error{};  // at this temperature
+  Eigen::Matrix<double, 3, kSecondOrderSources> by_second_order{};  // of the force, where there is
 };
+
+/// Errors as they stand: the border has what they are beside what is known of them.
+ErrorVector KnotRows::ErrorsAt(const BorderVector& border, double warmth) const {
+  ErrorVector error = known_;
+  for (int i = 0; i < kErrorSources; ++i) {
+    const int at = layout_.source[static_cast<std::size_t>(i)];
+    const int change = layout_.change[static_cast<std::size_t>(i)];
+    if (at != kAbsent) error[i] += border[at];
+    if (change != kAbsent) error[i] += warmth * border[change];
+  }
+  return error;
+}
 
 KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
   const Increment& inc = knot.increment;
-  Terms t{knot,        place,      begin, end, inc.seconds, 0,  0,  Vector2d::Zero(),
-          TurnBy(inc), inc.turn_M, {},    {},  {},          {}, {}, place.w_IL_L,
-          border};
+  Terms t{.knot = knot,
+          .place = place,
+          .begin = begin,
+          .end = end,
+          .dt = inc.seconds,
+          .turn_by_error = TurnBy(inc),
+          .turn = inc.turn_M,
+          .w_IL_L = place.w_IL_L,
+          .border = border,
+          .warmth = WarmthOf(setup_, knot)};
+  t.error = ErrorsAt(border, t.warmth);
+  if (layout_.second_order) t.by_second_order = ForceBySecondOrder(inc);
   if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
   double rate = begin.roll_rate;
   if (layout_.swing != kAbsent) {
@@ -131,14 +152,14 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   t.turn_by_error.middleCols<2>(kMisalignmentX) +=
       t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
   t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
-  for (int i = 0; i < kErrorSources; ++i) {
-    const double error = SourceAt(border, i);
-    if (error != 0) t.turn -= error * t.turn_by_error.col(i);
+  for (std::size_t k = 0; k < kTurns.size(); ++k) {
+    const double error = t.error[kTurns[k]];
+    if (error != 0) t.turn -= error * t.turn_by_error.col(static_cast<Eigen::Index>(k));
   }
   // A toolface error `twist` rotates the measured turn by e^{i twist}. turn_by_error has the first
   // order; the cosine is the second, twist^2 / 2: of 0.05 s at 10 rpm 1.4e-3 of every turn.
   const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
-  const double twist = SourceAt(border, kToolfaceOffset) + psi_rate * SourceAt(border, kTimeSkew);
+  const double twist = t.error[kToolfaceOffset] + psi_rate * t.error[kTimeSkew];
   t.turn -= 0.5 * twist * twist * inc.turn_M;
   t.turn_by_error.col(kToolfaceOffset) += twist * inc.turn_M;
   t.turn_by_error.col(kTimeSkew) += psi_rate * twist * inc.turn_M;
@@ -182,6 +203,17 @@ void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, NormalBlock& blo
       MeanByFrequency(t.frequency, t.dt).dot(t.begin.swing) * rows;
 }
 
+/// What a unit of an error adds to the factor's residuals, for itself and for its change with the
+/// temperature.
+void KnotRows::AddError(const Terms& t, int source, const Vector3d& by_error,
+                        const NormalBlock& block) {
+  const int at = layout_.source[static_cast<std::size_t>(source)];
+  const int change = layout_.change[static_cast<std::size_t>(source)];
+  const auto rows = by_error.head(factor_.rows);
+  if (at != kAbsent) factor_.Column(block.border() + at) = rows;
+  if (change != kAbsent) factor_.Column(block.border() + change) = t.warmth * rows;
+}
+
 /// Log[(E R_k Ha Exp(turn) Hb)' R_k+1], E = Exp(-w_IL dt): across the axis the gyros' noise, about
 /// it the tie of roll rate and attitude.
 void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
@@ -210,12 +242,11 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
       -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * t.turn_per_roll;
   const Vector3d by_rate = by * (t.dt * by_delta);
   AddRate(t, by_rate, block);
-  const Eigen::Matrix<double, 3, kErrorSources> by_error =
+  const TurnErrors by_error =
       by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
   AddGyroDrift(t, by_error, block);
-  for (int i = 0; i <= kTimeSkew; ++i) {
-    const int at = layout_.source[static_cast<std::size_t>(i)];
-    if (at != kAbsent) f.Column(block.border() + at) = by_error.col(i);
+  for (std::size_t k = 0; k < kTurns.size(); ++k) {
+    AddError(t, kTurns[k], by_error.col(static_cast<Eigen::Index>(k)), block);
   }
   if (layout_.latitude != kAbsent) {
     f.Column(block.border() + layout_.latitude) =
@@ -225,8 +256,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
 }
 
 /// A bias that walks, that is correlated in time or that grows: of the knot, its mean.
-void KnotRows::AddGyroDrift(const Terms& t, const Eigen::Matrix<double, 3, kErrorSources>& by_error,
-                            NormalBlock& block) {
+void KnotRows::AddGyroDrift(const Terms& t, const TurnErrors& by_error, NormalBlock& block) {
   for (int i = 0; i < 2; ++i) {
     const Vector3d by_bias = by_error.col(kGyroBiasX + i);
     for (const int drift : {layout_.walk, layout_.markov}) {
@@ -244,10 +274,12 @@ Vector3d KnotRows::ForceOf(const Terms& t, const Vector3d& by_skew) const {
   const Increment& inc = t.knot.increment;
   Vector3d force = inc.force_M;
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
-    const double error = SourceAt(t.border, i);
-    if (error != 0) force -= error * inc.ForceBy(i);
+    if (t.error[i] != 0) force -= t.error[i] * inc.ForceBy(i);
   }
-  return force - SourceAt(t.border, kTimeSkew) * by_skew;
+  for (int i = 0; layout_.second_order && i < kSecondOrderSources; ++i) {
+    force -= t.error[kAccelSecondOrder + i] * t.by_second_order.col(i);
+  }
+  return force - t.error[kTimeSkew] * by_skew;
 }
 
 /// Gravity beyond the model's, where it is unknown [m/s^2].
@@ -259,6 +291,26 @@ double KnotRows::GravityOffset(const Terms& t) const {
   return gravity;
 }
 
+/// Columns of the tool's errors in the force's factor. What gyros seem to turn leans the forces of
+/// gravity, p, by half of it, and of skewed ones by `beyond` more.
+void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
+                              const Vector3d& by_skew, const Matrix2d& beyond, NormalBlock& block) {
+  const auto add = [&](int source, const Vector3d& by_error) {
+    AddError(t, source, whiten * by_error, block);
+  };
+  for (std::size_t k = 0; k < kTurns.size(); ++k) {
+    const int i = kTurns[k];
+    Vector2d half = 0.5 * t.turn_by_error.col(static_cast<Eigen::Index>(k));
+    if (i == kMisalignmentX || i == kMisalignmentY) half += beyond.col(i - kMisalignmentX);
+    const Vector3d leaning = p.cross(Flat(half));
+    add(i, i == kTimeSkew ? Vector3d(leaning - by_skew) : leaning);
+  }
+  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) add(i, -t.knot.increment.ForceBy(i));
+  for (int i = 0; layout_.second_order && i < kSecondOrderSources; ++i) {
+    add(kAccelSecondOrder + i, -t.by_second_order.col(i));
+  }
+}
+
 /// Mean force in M less R_LM' (a - g) less the change of speed along the axis.
 void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Increment& inc = t.knot.increment;
@@ -268,7 +320,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   // Forces read later than they are stamped are those of a tool that has turned on: dF/dt = F x w.
   const Vector3d by_skew = inc.force_M.cross(Flat(t.turn)) / t.dt;
   const Eigen::Matrix2d beyond = SkewBeforeHalf(inc);
-  const Vector2d skew(SourceAt(t.border, kMisalignmentX), SourceAt(t.border, kMisalignmentY));
+  const Vector2d skew(t.error[kMisalignmentX], t.error[kMisalignmentY]);
   Vector3d force = ForceOf(t, by_skew) + p.cross(Flat(beyond * skew));
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
@@ -291,14 +343,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   AddRate(t, by_rate, block);
   f.Column(layout_.speed) = whiten / t.dt * Vector3d::UnitZ();
   f.Column(block.next() + layout_.speed) = -whiten / t.dt * Vector3d::UnitZ();
-  for (int i = 0; i <= kAccelMisalignmentZY; ++i) {
-    const int at = layout_.source[static_cast<std::size_t>(i)];
-    if (at == kAbsent) continue;
-    const Vector3d by_error = i == kTimeSkew ? by_skew : ForceBy(inc, i);
-    Vector2d half = 0.5 * t.turn_by_error.col(i);
-    if (i == kMisalignmentX || i == kMisalignmentY) half += beyond.col(i - kMisalignmentX);
-    f.Column(block.border() + at) = whiten * (px * Flat(half) - by_error);
-  }
+  AddForceErrors(t, whiten, p, by_skew, beyond, block);
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
   if (layout_.gravity_gradient != kAbsent) {
     f.Column(block.border() + layout_.gravity_gradient) = whiten * t.place.depth * down_M;
@@ -341,18 +386,23 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
 }
 
 /// psi is then the integral of the third axis: delta is what its errors and its noise made, and the
-/// scale multiplies the roll without its noise.
+/// scale multiplies the roll without its noise. Of the rates across it sees what a turn that goes
+/// evenly is in T, in the mean of e^{-i psi}.
 void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   const double whiten = 1 / std::max(setup_.gyro.angle_random_walk * std::sqrt(t.dt), kLeastTurn);
   const double axial = t.knot.increment.axial;
+  const Vector2d unit = t.knot.increment.ForceBy(kAccelBiasX).head<2>();
+  const Vector2d across(unit.dot(t.turn), unit.x() * t.turn.y() - unit.y() * t.turn.x());
   Factor& f = factor_;
   f.Begin(RowKind::kAxial, 1);
-  f.r[0] = whiten * (t.delta + t.dt * SourceAt(t.border, kGyroBiasZ) +
-                     axial * SourceAt(t.border, kGyroScaleZ));
+  f.r[0] = whiten * (t.delta + t.dt * t.error[kGyroBiasZ] + axial * t.error[kGyroScaleZ] +
+                     across.dot(t.error.segment<2>(kGyroMisalignmentZX)));
   AddRate(t, {whiten * t.dt, 0, 0}, block);
-  const int bias = layout_.source[kGyroBiasZ], scale = layout_.source[kGyroScaleZ];
-  if (bias != kAbsent) f.Column(block.border() + bias)[0] = whiten * t.dt;
-  if (scale != kAbsent) f.Column(block.border() + scale)[0] = whiten * (axial + t.delta);
+  AddError(t, kGyroBiasZ, {whiten * t.dt, 0, 0}, block);
+  AddError(t, kGyroScaleZ, {whiten * (axial + t.delta), 0, 0}, block);
+  for (int i = 0; i < 2; ++i) {
+    AddError(t, kGyroMisalignmentZX + i, {whiten * across[i], 0, 0}, block);
+  }
   block.Add(f);
 }
 

@@ -68,25 +68,27 @@ class KnotRows {
 
  private:
   struct Terms;
+  /// Those of kTurnSources, gyro shear, unequal mass unbalance and quadrature.
+  using TurnErrors = Eigen::Matrix<double, 3, kTurnSources + 3>;
   Terms TermsOf(const RunKnot& knot, const KnotPlace& place, const BorderVector& border,
                 const Node& begin, const Node& end) const;
   void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, NormalBlock& block);
+  void AddError(const Terms& t, int source, const Eigen::Vector3d& by_error,
+                const NormalBlock& block);
+  ErrorVector ErrorsAt(const BorderVector& border, double warmth) const;
   void AddTurn(const Terms& t, NormalBlock& block);
-  void AddGyroDrift(const Terms& t, const Eigen::Matrix<double, 3, kErrorSources>& by_error,
-                    NormalBlock& block);
+  void AddGyroDrift(const Terms& t, const TurnErrors& by_error, NormalBlock& block);
   Eigen::Vector3d ForceOf(const Terms& t, const Eigen::Vector3d& by_skew) const;
   double GravityOffset(const Terms& t) const;
+  void AddForceErrors(const Terms& t, double whiten, const Eigen::Vector3d& p,
+                      const Eigen::Vector3d& by_skew, const Eigen::Matrix2d& beyond,
+                      NormalBlock& block);
   void AddForce(const Terms& t, NormalBlock& block);
   void AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block);
   void AddAxial(const Terms& t, NormalBlock& block);
   void AddDepth(const Terms& t, NormalBlock& block);
   void AddDrift(const Terms& t, NormalBlock& block);
   void AddRest(const Terms& t, NormalBlock& block);
-  /// An error as it stands: the border has what it is beside what is known of it.
-  double SourceAt(const BorderVector& border, int source) const {
-    const int at = layout_.source[static_cast<std::size_t>(source)];
-    return known_[source] + (at == kAbsent ? 0 : border[at]);
-  }
 
   const EstimateSetup& setup_;
   const Layout& layout_;

@@ -39,31 +39,41 @@ ErrorVector SourceSigmas(const EstimateSetup& setup) {
   return sigma;
 }
 
-ErrorMatrix SourceCovariance(const EstimateSetup& setup) {
-  ErrorMatrix cov = setup.cov_errors.value_or(ErrorMatrix::Zero());
+ErrorCovariance SourceCovariance(const EstimateSetup& setup) {
+  ErrorCovariance cov = setup.cov_errors.value_or(ErrorCovariance{});
   if (!setup.third_axis) {
-    for (const int absent : {kGyroBiasZ, kGyroScaleZ}) {
-      cov.row(absent).setZero();
-      cov.col(absent).setZero();
+    for (const int absent : {kGyroBiasZ, kGyroScaleZ, kGyroMisalignmentZX, kGyroMisalignmentZY}) {
+      for (ErrorMatrix* matrix : {&cov.constant, &cov.change, &cov.constant_with_change}) {
+        matrix->row(absent).setZero();
+        matrix->col(absent).setZero();
+      }
     }
   }
-  cov.diagonal() += SourceSigmas(setup).cwiseAbs2();
+  cov.constant.diagonal() += SourceSigmas(setup).cwiseAbs2();
   return cov;
 }
 
-/// Information of the border before any knot. What a calibration knows only of sums of errors it
-/// knows to a thousandth of their sigmas at best: its covariance need not have full rank.
-BorderMatrix InformationOf(const Layout& layout, const ErrorMatrix& sources) {
-  constexpr double kApart = 1e-6;
+/// What a calibration knows only of sums of errors it knows to a thousandth of their sigmas at
+/// best: its covariance need not have full rank.
+constexpr double kApart = 1e-6;
+
+/// Information of the border before any knot.
+BorderMatrix InformationOf(const Layout& layout, const ErrorCovariance& sources) {
   BorderMatrix correlation = BorderMatrix::Identity(layout.border, layout.border);
   bool linked = false;
-  for (std::size_t i = 0; i < layout.source.size(); ++i) {
-    for (std::size_t j = 0; j < layout.source.size(); ++j) {
-      const int row = layout.source[i], column = layout.source[j];
-      const double cov = sources(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      if (i == j || row == kAbsent || column == kAbsent || cov == 0) continue;
-      correlation(row, column) = cov / (layout.sigma[row] * layout.sigma[column]);
-      linked = true;
+  const auto put = [&](int row, int column, double cov) {
+    if (row == column || row == kAbsent || column == kAbsent || cov == 0) return;
+    correlation(row, column) = correlation(column, row) =
+        cov / (layout.sigma[row] * layout.sigma[column]);
+    linked = true;
+  };
+  for (Eigen::Index i = 0; i < kErrorSources; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    for (Eigen::Index j = 0; j < kErrorSources; ++j) {
+      const auto column = static_cast<std::size_t>(j);
+      put(layout.source[row], layout.source[column], sources.constant(i, j));
+      put(layout.change[row], layout.change[column], sources.change(i, j));
+      put(layout.source[row], layout.change[column], sources.constant_with_change(i, j));
     }
   }
   if (linked) {
@@ -96,9 +106,13 @@ Layout LayoutOf(const EstimateSetup& setup) {
     layout.sigma[layout.border] = sigma;
     return layout.border++;
   };
-  const ErrorMatrix sources = SourceCovariance(setup);
+  const ErrorCovariance sources = SourceCovariance(setup);
   for (int i = 0; i < kErrorSources; ++i) {
-    layout.source[static_cast<std::size_t>(i)] = border(std::sqrt(std::max(0.0, sources(i, i))));
+    const double constant = std::max(0.0, sources.constant(i, i)), change = sources.change(i, i);
+    const auto at = static_cast<std::size_t>(i);
+    layout.source[at] = border(std::sqrt(constant));
+    layout.change[at] = border(change > kApart * constant ? std::sqrt(change) : 0);
+    layout.second_order |= i >= kAccelSecondOrder && constant > 0;
   }
   layout.ramp = border(setup.gyro.rate_ramp);
   border(setup.gyro.rate_ramp);

@@ -11,7 +11,7 @@
 namespace wellgyro {
 
 inline constexpr int kNodeMax = 12;    ///< errors of one node
-inline constexpr int kBorderMax = 30;  ///< errors of the whole run
+inline constexpr int kBorderMax = 84;  ///< errors of the whole run
 inline constexpr int kAbsent = -1;
 
 using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax, 1>;
@@ -37,7 +37,9 @@ struct Layout {
   int swing = kAbsent;   ///< two, rate of roll in phase and in quadrature [rad/s]
   int node = 6;
   std::array<int, kErrorSources> source{};
-  int ramp = kAbsent;  ///< two [rad/s^2]
+  std::array<int, kErrorSources> change{};  ///< of these with the temperature
+  bool second_order = false;                ///< some of these are the accelerometers' second order
+  int ramp = kAbsent;                       ///< two [rad/s^2]
   int latitude = kAbsent, gravity = kAbsent, gravity_gradient = kAbsent, depth_scale = kAbsent;
   int frequency = kAbsent;  ///< of the swing, beside that of the setup [rad/s]
   int border = 0;

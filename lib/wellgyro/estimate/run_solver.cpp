@@ -181,7 +181,10 @@ void RunSolver::TakeOver(const RunSolver& other) {
     if (to != kAbsent && from != kAbsent) border_[to] = other.border_[from];
   };
   const Layout& theirs = other.layout_;
-  for (std::size_t i = 0; i < kErrorSources; ++i) take(layout_.source[i], theirs.source[i]);
+  for (std::size_t i = 0; i < kErrorSources; ++i) {
+    take(layout_.source[i], theirs.source[i]);
+    take(layout_.change[i], theirs.change[i]);
+  }
   if (layout_.ramp != kAbsent && theirs.ramp != kAbsent) {
     for (int i = 0; i < 2; ++i) take(layout_.ramp + i, theirs.ramp + i);
   }

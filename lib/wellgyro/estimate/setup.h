@@ -6,7 +6,7 @@
 
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/estimate/cause.h"
-#include "wellgyro/record/error_source.h"
+#include "wellgyro/record/error_covariance.h"
 #include "wellgyro/record/noise.h"
 
 namespace wellgyro {
@@ -23,8 +23,8 @@ struct AzimuthTie {
 struct EstimateSetup {
   NoiseCoefficients gyro;  ///< of every axis
   ErrorPriors errors;
-  /// Covariance of the constant errors that a calibration left; `errors` are beside it.
-  std::optional<ErrorMatrix> cov_errors;
+  /// Of the errors that a calibration left; `errors` are constants beside it.
+  std::optional<ErrorCovariance> cov_errors;
   Site site;                    ///< of node 0; latitude and gravity are carried along the path
   double sigma_gravity = 5e-4;  ///< of the Earth model, see SiteAt [m/s^2]
   /// Of its growth with depth: a Bouguer plate counted twice, whose density is 2670 kg/m^3 within 9

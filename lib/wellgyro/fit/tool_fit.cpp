@@ -46,23 +46,45 @@ void TellLeftOut(const std::vector<TermBundle>& bundles, const std::vector<int>&
   }
 }
 
-// What the readings say of the bench against what was said before: of a prior of sigma s that the
-// readings narrow to v, the estimate scatters by sqrt(s^2 - v), however little they narrow it.
-void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
+// What the readings by themselves say of an unknown that was known before, where that is far off.
+struct Asked {
+  double value = 0, sigmas = 0;
+};
+
+// Of a prior of sigma s that the readings narrow to v, the estimate scatters by sqrt(s^2 - v),
+// however little they narrow it.
+std::optional<Asked> FarOff(const ToolAdjustment& a, Eigen::Index at, double prior_sigma) {
   constexpr double kFar = 3.5, kLeastNarrowed = 1e-7;
+  const double prior = prior_sigma * prior_sigma, narrowed = prior - a.cov(at, at);
+  if (!(narrowed > kLeastNarrowed * prior)) return std::nullopt;
+  const Asked asked{a.x[at] * prior / narrowed, std::abs(a.x[at]) / std::sqrt(narrowed)};
+  return asked.sigmas > kFar ? std::optional(asked) : std::nullopt;
+}
+
+void TellDrifts(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
+  for (int k = 0; k < model.n_terms(); ++k) {
+    const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
+    const auto asked = FarOff(a, k, term.prior_sigma);
+    if (!asked) continue;
+    fit.calibration.report.remarks.push_back(fmt::format(
+        "{}: the readings ask for {:.3g} deg/h where a drift has a sigma of {:.2g}, {:.1f} sigmas "
+        "off: the gyro is not what it is taken for, or the table's order or temperatures are not",
+        term.name, asked->value, term.prior_sigma, asked->sigmas));
+  }
+}
+
+// What the readings say of the bench against what was said before.
+void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
   for (std::size_t i = 0; i < model.nuisances().size(); ++i) {
     BenchNuisance nuisance = model.nuisances()[i];
     const auto at = static_cast<Eigen::Index>(i) + model.n_terms();
     nuisance.value = a.x[at];
     nuisance.sigma = std::sqrt(std::max(0.0, a.cov(at, at)));
-    const double prior = std::pow(nuisance.prior_sigma, 2), narrowed = prior - a.cov(at, at);
-    const double sigmas =
-        narrowed > kLeastNarrowed * prior ? std::abs(nuisance.value) / std::sqrt(narrowed) : 0;
-    if (sigmas > kFar) {
+    if (const auto asked = FarOff(a, at, nuisance.prior_sigma)) {
       fit.calibration.report.remarks.push_back(fmt::format(
           "{}: the readings ask for {:.3g} deg beside what was given, {:.1f} sigmas off: the "
           "reference is wrong, or a unit or sign of the table",
-          nuisance.name, ToDegrees(nuisance.value * prior / narrowed), sigmas));
+          nuisance.name, ToDegrees(asked->value), asked->sigmas));
     }
     fit.nuisances.push_back(std::move(nuisance));
   }
@@ -191,6 +213,7 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
   }
   NameLines(tables, readings, a, report);
   TellReferences(tables, readings, setup, report);
+  TellDrifts(model, a, fit);
   TellNuisances(model, a, fit);
   TakeToolResult(readings, setup, model, a, fit);
   return fit;

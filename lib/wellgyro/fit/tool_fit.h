@@ -24,10 +24,12 @@ struct ToolFitSetup {
   double sigma_north = 1.75e-2;         ///< of its north [rad]
   double sigma_latitude = 1e-5;         ///< [rad]
   double sigma_axis = 3e-4;             ///< of the tool on the rate table, each direction [rad]
-  double sigma_drift = 0.1;             ///< of a gyro from the middle to the end of a table [deg/h]
-  std::optional<double> sigma_wobble;   ///< of each reading's attitude, about each axis [rad]
-  std::optional<double> sigma_accel;    ///< of a reading [its unit]
-  std::optional<double> sigma_gyro;     ///< of a reading at rest [its unit]
+  /// Of a gyro from the middle to the end of a table [deg/h]; it may bend by as much as a walk
+  /// does.
+  double sigma_drift = 0.1;
+  std::optional<double> sigma_wobble;      ///< of each reading's attitude, about each axis [rad]
+  std::optional<double> sigma_accel;       ///< of a reading [its unit]
+  std::optional<double> sigma_gyro;        ///< of a reading at rest [its unit]
   std::optional<double> sigma_gyro_table;  ///< of a reading on the rate table [its unit]
   int max_degree = 3;                      ///< of biases in temperature
 };

@@ -152,14 +152,23 @@ class Candidates {
     if (gyro) Forces();
     if (!gyro) AddOwnSquares();
     if (readings_.has_temperature) Temperatures(gyro);
-    for (int table = 0; table < readings_.n_tables; ++table) {
-      const std::string name = fmt::format("{}drift_{}", p, table + 1);
-      // What it may be is known before: on a ramp it cannot be told from the temperature's slope.
-      AddVector(gyro, name, TermKind::kDrift, 1, table, gyro, "");
+    for (int table = 0; table < readings_.n_tables; ++table) Drifts(gyro, table);
+  }
+
+  // What a gyro's may be is known before: on a ramp its line cannot be told from the temperature's
+  // slope, nor its bend from the square of the temperature, and what readings do not tell apart no
+  // choice of terms may decide. A bias that walks has a line and a bend t^2 - 1/3 beside it: by
+  // Legendre's polynomials of a Wiener process, variances as (2 / (2n + 3) + 2 / (2n - 1)) / 4, the
+  // bend's coefficient is .945 of the line's.
+  void Drifts(bool gyro, int table) {
+    constexpr double kBend = 0.945;
+    const std::string name = fmt::format("{}drift_{}", Prefix(gyro), table + 1);
+    for (const int power : {1, 2}) {
+      AddVector(gyro, power == 1 ? name : name + "_bend", TermKind::kDrift, power, table, gyro,
+                power == 1 ? "" : name);
       for (ToolTerm& term : bundles_.back().terms) {
-        term.prior_sigma = gyro ? setup_.sigma_drift : 0;
+        term.prior_sigma = gyro ? (power == 1 ? 1 : kBend) * setup_.sigma_drift : 0;
       }
-      AddVector(gyro, name + "_bend", TermKind::kDrift, 2, table, false, name);
     }
   }
 

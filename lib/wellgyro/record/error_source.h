@@ -30,12 +30,22 @@ enum ErrorSource {
   kAccelMisalignmentZY,  ///< force along y seen by z [rad]
   kGyroBiasZ,            ///< of a third gyro axis [rad/s]
   kGyroScaleZ,           ///< of a third gyro axis [1]
-  kErrorSources
+  kGyroMisalignmentZX,   ///< rate about x seen by a third gyro axis [rad]
+  kGyroMisalignmentZY,   ///< rate about y seen by a third gyro axis [rad]
+  kGyroShear,            ///< rate about y seen by x, and as much of x by y [rad]
+  kUnbalanceDifference,  ///< rate of x reads s f_x more, of y -s f_y [rad/s per m/s^2]
+  kQuadratureSum,        ///< rate of x reads t f_y more, of y t f_x [rad/s per m/s^2]
+  /// Second order of the accelerometers: kAccelSecondOrder + 6 i + p is what accelerometer i (x, y,
+  /// z) reads per unit of product p of forces (xx, yy, zz, xy, yz, zx) [1/(m/s^2)].
+  kAccelSecondOrder,
+  kErrorSources = kAccelSecondOrder + 18
 };
 using ErrorVector = Eigen::Matrix<double, kErrorSources, 1>;
 using ErrorMatrix = Eigen::Matrix<double, kErrorSources, kErrorSources>;
 
 /// The first kTurnSources change what the gyros say of a turn, the next kForceSources the force.
 inline constexpr int kTurnSources = kAccelBiasX, kForceSources = kGyroBiasZ - kAccelBiasX;
+/// Those of the accelerometers' second order.
+inline constexpr int kSecondOrderSources = kErrorSources - kAccelSecondOrder;
 
 }  // namespace wellgyro

@@ -12,20 +12,29 @@
 namespace wellgyro {
 namespace {
 
-/// One number of a job's [errors], and the errors of the estimator that it speaks of.
+/// One number of a job's [errors], and the errors of the estimator that it speaks of: `count` of
+/// `sources`, and those behind them from `from` on.
 struct ErrorKind {
   double ErrorPriors::*sigma;
   std::size_t count;
-  std::array<ErrorSource, 6> sources;  ///< the first `count` of them
+  std::array<ErrorSource, 6> sources;
+  int from = kErrorSources;
 };
 
 constexpr std::array kKinds{
     ErrorKind{&ErrorPriors::gyro_bias_sigma, 3, {{kGyroBiasX, kGyroBiasY, kGyroBiasZ}}},
-    ErrorKind{&ErrorPriors::mass_unbalance_sigma, 1, {{kMassUnbalance}}},
-    ErrorKind{&ErrorPriors::quadrature_sigma, 1, {{kQuadrature}}},
+    ErrorKind{&ErrorPriors::mass_unbalance_sigma, 2, {{kMassUnbalance, kUnbalanceDifference}}},
+    ErrorKind{&ErrorPriors::quadrature_sigma, 2, {{kQuadrature, kQuadratureSum}}},
     ErrorKind{&ErrorPriors::gyro_scale_sigma, 3, {{kGyroScaleX, kGyroScaleY, kGyroScaleZ}}},
-    ErrorKind{&ErrorPriors::gyro_misalignment_sigma, 2, {{kMisalignmentX, kMisalignmentY}}},
-    ErrorKind{&ErrorPriors::accel_bias_sigma, 3, {{kAccelBiasX, kAccelBiasY, kAccelBiasZ}}},
+    ErrorKind{
+        &ErrorPriors::gyro_misalignment_sigma,
+        5,
+        {{kMisalignmentX, kMisalignmentY, kGyroMisalignmentZX, kGyroMisalignmentZY, kGyroShear}}},
+    // ErrorsLeft counts the second order with the biases.
+    ErrorKind{&ErrorPriors::accel_bias_sigma,
+              3,
+              {{kAccelBiasX, kAccelBiasY, kAccelBiasZ}},
+              kAccelSecondOrder},
     ErrorKind{&ErrorPriors::accel_scale_sigma, 3, {{kAccelScaleX, kAccelScaleY, kAccelScaleZ}}},
     ErrorKind{&ErrorPriors::accel_misalignment_sigma,
               6,
@@ -33,15 +42,19 @@ constexpr std::array kKinds{
                 kAccelMisalignmentZX, kAccelMisalignmentZY}}}};
 
 /// Splits what the job states of a kind: `left` of it is the calibration's.
-void Split(const ErrorKind& kind, double left, ErrorMatrix& cov, double& stated) {
+void Split(const ErrorKind& kind, double left, ErrorCovariance& cov, double& stated) {
   // As files round it.
   constexpr double kSame = 1e-6;
   if (!(left > 0)) return;
   if (stated < left * (1 - kSame)) {
-    for (const ErrorSource source : std::span(kind.sources).first(kind.count)) {
-      cov.row(source) *= stated / left;
-      cov.col(source) *= stated / left;
-    }
+    const auto shrink = [&](int source) {
+      for (ErrorMatrix* matrix : {&cov.constant, &cov.change, &cov.constant_with_change}) {
+        matrix->row(source) *= stated / left;
+        matrix->col(source) *= stated / left;
+      }
+    };
+    for (const ErrorSource source : std::span(kind.sources).first(kind.count)) shrink(source);
+    for (int source = kind.from; source < kErrorSources; ++source) shrink(source);
   }
   const double beyond = stated * stated - left * left;
   stated = beyond > kSame * left * left * 2 ? std::sqrt(beyond) : 0;

@@ -18,6 +18,9 @@
 namespace wellgyro {
 namespace {
 
+// Attitude, two kinds of drift, the border.
+static_assert(3 + 4 + kBorderMax <= kStationErrorsMax);
+
 Anchor AnchorOf(const FixAtNode& at, double azimuth) {
   return {at.node, AttitudeMatrix(azimuth, at.fix.inclination, at.fix.toolface)};
 }
