@@ -13,7 +13,7 @@
 namespace wellgyro {
 namespace {
 
-struct Case {
+struct EvenRoll {
   const char* name;
   double inclination_deg, rpm;
   bool has_gz;
@@ -22,15 +22,15 @@ struct Case {
 
 // By gravity alone the error winds psi itself within a knot, by some part of the square of its
 // turn: a slow one. By a third gyro psi is what it is, whatever the turn: here 60 deg a knot.
-constexpr Case kCases[] = {{"at_rest", 40, 0, false, 2},
-                           {"turning_slowly", 70, 0.5, false, 2},
-                           {"turning", 40, 5, true, 2},
-                           {"turning_back", 110, -8, true, 1}};
+constexpr EvenRoll kRolls[] = {{"at_rest", 40, 0, false, 2},
+                               {"turning_slowly", 70, 0.5, false, 2},
+                               {"turning", 40, 5, true, 2},
+                               {"turning_back", 110, -8, true, 1}};
 
-class SecondOrder : public testing::TestWithParam<Case> {};
+class SecondOrder : public testing::TestWithParam<EvenRoll> {};
 
 TEST_P(SecondOrder, DoesWhatTheColumnsSay) {
-  const Case& c = GetParam();
+  const EvenRoll& c = GetParam();
   const motion::Attitude attitude = motion::InHole(c.inclination_deg, motion::Turning(c.rpm));
   const double begin = 3 * c.seconds;
   const auto fly = [&](int source, double error) {
@@ -56,7 +56,7 @@ TEST_P(SecondOrder, DoesWhatTheColumnsSay) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Motions, SecondOrder, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Motions, SecondOrder, testing::ValuesIn(kRolls),
                          [](const auto& at) { return std::string(at.param.name); });
 
 }  // namespace
