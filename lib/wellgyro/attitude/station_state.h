@@ -11,7 +11,7 @@ namespace wellgyro {
 
 /// Errors that stay linked from station to station: attitude, the gyros' drift, and the constants
 /// of tool and place, at most.
-inline constexpr int kStationErrorsMax = 92;
+inline constexpr int kStationErrorsMax = 106;
 
 /// For reckoning with them: nothing is allocated.
 using StationMatrix =

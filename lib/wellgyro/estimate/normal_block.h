@@ -28,7 +28,7 @@ inline constexpr std::size_t kRowKinds = static_cast<std::size_t>(RowKind::kKind
 
 /// Up to three rows of whitened residuals r with their derivatives, d r = J d(columns).
 struct Factor {
-  static constexpr int kColumnsMax = 84;
+  static constexpr int kColumnsMax = 2 * kNodeMax + kBorderMax;
   RowKind kind = RowKind::kPrior;
   int rows = 1;
   int measured = 1;  ///< the first of them, whose residuals are noise; the others tie unknowns
