@@ -18,7 +18,6 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_files.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/file_in_pieces.h"
 #include "wellgyro/io/sensor/file_kind.h"
 

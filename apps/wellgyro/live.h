@@ -8,7 +8,7 @@
 
 #include "wellgyro/base/result.h"
 #include "wellgyro/bus/lcm_live.h"
-#include "wellgyro/live/clock.h"
+#include "wellgyro/live/observer.h"
 #include "wellgyro/record/channels.h"
 
 /// What the commands that speak with a live bus share.

@@ -2,7 +2,6 @@
 #include <cstdio>
 
 #include "wellgyro/io/exchange/exchange.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return std::fputs("usage: convert_survey IN\n", stderr), 1;

@@ -4,7 +4,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/bus/log_reader.h"
-#include "wellgyro/bus/surveyor_listener.h"
+#include "wellgyro/bus/survey_log.h"
 #include "wellgyro/io/toml/job_file.h"
 
 struct Printer : wellgyro::Sink {

@@ -13,7 +13,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/bus/log_reader.h"
-#include "wellgyro/bus/surveyor_listener.h"
+#include "wellgyro/bus/survey_log.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/math/random.h"
 

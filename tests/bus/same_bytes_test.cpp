@@ -16,7 +16,7 @@
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/log_writer.h"
-#include "wellgyro/bus/surveyor_listener.h"
+#include "wellgyro/bus/survey_log.h"
 #include "wellgyro/io/result/run_file.h"
 
 #include "bus/broker.h"

@@ -12,7 +12,7 @@
 #include "wellgyro/bus/decode.h"
 #include "wellgyro/bus/log_reader.h"
 #include "wellgyro/bus/log_writer.h"
-#include "wellgyro/bus/surveyor_listener.h"
+#include "wellgyro/bus/survey_log.h"
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/simulate/simulator.h"
 

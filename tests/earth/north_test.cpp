@@ -1,11 +1,10 @@
-#include "wellgyro/earth/north.h"
-
 #include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/earth/grid.h"
 
 namespace wellgyro {
 namespace {

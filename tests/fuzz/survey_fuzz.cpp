@@ -8,7 +8,7 @@
 
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/feed.h"
-#include "wellgyro/bus/surveyor_listener.h"
+#include "wellgyro/bus/survey_log.h"
 #include "wellgyro/io/result/run_file.h"
 
 #include "fuzz/fuzz.h"

@@ -14,7 +14,6 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_files.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/result/allan_answer.h"
 
 #include "binding.h"

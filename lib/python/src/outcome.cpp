@@ -14,7 +14,6 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_csv.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/result/diagnosis_csv.h"
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/result/stretches_csv.h"

@@ -6,7 +6,7 @@
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/north_fix.h"
-#include "wellgyro/record/still_window.h"
+#include "wellgyro/record/sample.h"
 
 namespace wellgyro {
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/record/still_window.h"
+#include "wellgyro/record/sample.h"
 
 namespace wellgyro {
 

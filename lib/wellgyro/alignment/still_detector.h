@@ -13,7 +13,6 @@
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/record/sample_block.h"
-#include "wellgyro/record/still_window.h"
 
 namespace wellgyro {
 

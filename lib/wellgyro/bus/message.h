@@ -4,16 +4,13 @@
 #include <variant>
 #include <vector>
 
-#include "wellgyro/bus/message_type.h"
+#include "wellgyro/bus/feed.h"
 #include "wellgyro/record/advice.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/sample.h"
-#include "wellgyro/record/signed_operation.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/record/status.h"
-#include "wellgyro/record/still_window.h"
 
 namespace wellgyro {
 

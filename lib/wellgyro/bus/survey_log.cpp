@@ -6,7 +6,6 @@
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_reader.h"
-#include "wellgyro/bus/surveyor_listener.h"
 
 namespace wellgyro {
 namespace {

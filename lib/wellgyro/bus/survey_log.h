@@ -2,15 +2,39 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
+#include "wellgyro/bus/feed.h"
 #include "wellgyro/survey/survey.h"
 #include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {
+
+/// Hands what a Feed hears to a Surveyor: the whole way from bytes to survey. What the feed itself
+/// refuses goes to `faults`, which may be the surveyor's own sink.
+class WELLGYRO_EXPORT SurveyorListener : public Listener {
+ public:
+  /// Both must outlive this object.
+  SurveyorListener(Surveyor& surveyor, Sink& faults) : surveyor_(surveyor), faults_(faults) {}
+
+  void OnImu(std::span<const ImuSample> batch) override { surveyor_.Push(batch); }
+  void OnRaw(std::span<const RawSample> batch) override { surveyor_.Push(batch); }
+  void OnStill(const StillWindow& window) override { surveyor_.Push(window); }
+  void OnDepth(const DepthMark& mark) override { surveyor_.Push(mark); }
+  void OnMode(const ToolMode& mode) override { surveyor_.Push(mode); }
+  void OnTool(const ToolInfo& info) override { surveyor_.Push(info); }
+  void OnEvent(const Event& event) override { surveyor_.Push(event); }
+  void OnCommand(const Command& command) override { surveyor_.Push(command); }
+  void OnFault(const Fault& fault) override { faults_.OnFault(fault); }
+
+ private:
+  Surveyor& surveyor_;
+  Sink& faults_;
+};
 
 /// What a log came to.
 struct LogSurvey {

@@ -6,7 +6,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/noise.h"
-#include "wellgyro/record/still_window.h"
+#include "wellgyro/record/sample.h"
 #include "wellgyro/record/tool_calibration.h"
 
 namespace wellgyro {

@@ -8,8 +8,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/depth/depth_track.h"
-#include "wellgyro/record/cable.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 
 namespace wellgyro {
 

@@ -11,7 +11,7 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/math/interpolation.h"
 #include "wellgyro/record/along_hole.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/operations.h"
 
 namespace wellgyro {

@@ -1,8 +1,7 @@
-#include "wellgyro/earth/north.h"
-
 #include <stdexcept>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/earth/grid.h"
 
 namespace wellgyro {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-#include "wellgyro/base/depth.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/record/check.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/quality.h"
 #include "wellgyro/record/station.h"

@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "wellgyro/bus/lcm_live.h"
-#include "wellgyro/live/clock.h"
 #include "wellgyro/live/intake.h"
 #include "wellgyro/live/notices.h"
+#include "wellgyro/live/observer.h"
 #include "wellgyro/record/advice.h"
 #include "wellgyro/record/channels.h"
 #include "wellgyro/record/glance.h"
+#include "wellgyro/record/operations.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/record/status.h"
 #include "wellgyro/survey/station_key.h"
 
 namespace wellgyro {

@@ -17,8 +17,8 @@
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/message.h"
 #include "wellgyro/bus/splice.h"
-#include "wellgyro/live/clock.h"
 #include "wellgyro/live/notices.h"
+#include "wellgyro/live/observer.h"
 #include "wellgyro/record/channels.h"
 
 namespace wellgyro {

@@ -11,7 +11,7 @@
 
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/loss_watch.h"
-#include "wellgyro/bus/surveyor_listener.h"
+#include "wellgyro/bus/survey_log.h"
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/live/digester.h"
 #include "wellgyro/live/operation_gate.h"

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/live/clock.h"
+#include "wellgyro/live/observer.h"
 
 namespace wellgyro {
 namespace {}  // namespace

@@ -15,8 +15,8 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/bus/file_lock.h"
 #include "wellgyro/bus/log_writer.h"
-#include "wellgyro/live/clock.h"
 #include "wellgyro/live/notices.h"
+#include "wellgyro/live/observer.h"
 
 namespace wellgyro {
 

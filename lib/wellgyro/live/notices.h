@@ -8,7 +8,6 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/live/clock.h"
 #include "wellgyro/live/observer.h"
 
 namespace wellgyro {

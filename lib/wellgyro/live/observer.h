@@ -1,15 +1,27 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
+#include "wellgyro/record/check.h"
+#include "wellgyro/record/operations.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/record/status.h"
-#include "wellgyro/record/verdict.h"
 
+/// What a live session wants of the program that runs it.
 namespace wellgyro {
+
+inline constexpr std::int64_t kSecondUs = 1'000'000;
+
+/// The clocks of the program that runs a live session: the library itself reads none, so that a
+/// test may give it any time. Both are called from several threads.
+struct LiveClock {
+  std::function<std::int64_t()> utc_us;        ///< since 1970 [us]
+  std::function<std::int64_t()> monotonic_us;  ///< for lengths of time [us]
+};
 
 // What pages and consoles show: defined in record/, for our own program.
 struct Advice;

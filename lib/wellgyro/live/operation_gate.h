@@ -14,7 +14,6 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/record/operations.h"
-#include "wellgyro/record/signed_operation.h"
 #include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {

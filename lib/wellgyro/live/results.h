@@ -12,8 +12,8 @@
 #include "wellgyro/io/result/run_file.h"
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/live/intake.h"
-#include "wellgyro/live/tool_result.h"
-#include "wellgyro/record/verdict.h"
+#include "wellgyro/live/session.h"
+#include "wellgyro/record/check.h"
 #include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {

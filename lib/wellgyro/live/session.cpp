@@ -10,8 +10,8 @@
 #include "wellgyro/bus/decode.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/log_reader.h"
-#include "wellgyro/live/clock.h"
 #include "wellgyro/live/journal.h"
+#include "wellgyro/live/observer.h"
 #include "wellgyro/live/session_core_internal.h"
 
 namespace wellgyro {

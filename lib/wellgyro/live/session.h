@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,11 +11,25 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/toml/job_file.h"
-#include "wellgyro/live/clock.h"
 #include "wellgyro/live/observer.h"
-#include "wellgyro/live/tool_result.h"
+#include "wellgyro/survey/survey.h"
 
 namespace wellgyro {
+
+/// One tool's survey, and the folder that its files go to: the one given where a single tool has a
+/// survey, tool-N in it for several. A tool without a survey, which may be no more than a damaged
+/// number in a message, takes no folder of its own.
+struct ToolResult {
+  std::int32_t tool = 0;
+  std::filesystem::path folder;
+  Survey survey;
+};
+
+/// What wrote the result: in run.toml.
+struct Maker {
+  std::string program;   ///< name and version
+  std::string adjuster;  ///< of the runs
+};
 
 class LiveBus;
 class RunAdjuster;

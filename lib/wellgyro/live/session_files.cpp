@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/words.h"
-#include "wellgyro/live/clock.h"
+#include "wellgyro/live/observer.h"
 #include "wellgyro/live/session_core_internal.h"
 #include "wellgyro/survey/run_now.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "wellgyro/live/clock.h"
+#include "wellgyro/live/observer.h"
 
 namespace wellgyro {
 namespace {

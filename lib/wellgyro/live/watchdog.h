@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/live/clock.h"
+#include "wellgyro/live/observer.h"
 
 namespace wellgyro {
 

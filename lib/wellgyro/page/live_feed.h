@@ -16,8 +16,8 @@
 #include "wellgyro/record/advice.h"
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/noise.h"
+#include "wellgyro/record/operations.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/record/status.h"
 
 namespace wellgyro {
 

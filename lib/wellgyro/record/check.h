@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "wellgyro/record/station.h"
 
@@ -26,6 +27,13 @@ struct Check {
   double looks = 0;
   double freedom = 0;  ///< of chi-square over it, where `value` is that; 0: value / sigma is normal
   Verdict verdict = Verdict::kNotDone;
+};
+
+/// What a run, or a whole survey, is worth to those who are handed it: pass, warn or fail, never
+/// not_done, and why. A survey that fails is whole, but not to be handed over as it is.
+struct RunVerdict {
+  Verdict verdict = Verdict::kPass;
+  std::vector<std::string> causes = {};  ///< in words, each failing one before any other
 };
 
 }  // namespace wellgyro

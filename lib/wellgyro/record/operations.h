@@ -1,13 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "wellgyro/base/time.h"
 
-/// What people and tools say about a run. People are data: whatever someone does that can change a
-/// result comes in here, from the wire or from the job.
+/// What people, tools and programs say about a run. People are data: whatever someone does that can
+/// change a result comes in here, from the wire or from the job.
 namespace wellgyro {
 
 /// What the tool is doing.
@@ -93,6 +95,69 @@ struct Event {
   double sigma_rad = 0;  ///< [rad]
   std::string what;      ///< shoe, tag, mark, hold-up ...
   std::string who;
+  std::string text;
+};
+
+/// An order with the signature of whoever gave it; see proto/operation_t.lcm.
+struct SignedOperation {
+  UtcTime utc;  ///< when it was signed, by the survey's samples
+  std::int32_t session = 0;
+  std::int32_t id = 0;
+  std::vector<std::byte> key;      ///< public
+  std::vector<std::byte> content;  ///< a message with its fingerprint
+  std::vector<std::byte> signature;
+};
+
+/// Somebody whose orders are obeyed.
+struct OperatorKey {
+  std::string name;
+  std::vector<std::byte> key;  ///< public, Ed25519
+};
+
+/// Who may order what of a survey while it runs, or in its log.
+struct OperationSpec {
+  /// None: unsigned orders are obeyed, live those from this machine only.
+  std::vector<OperatorKey> keys;
+  /// With keys: what the tool says of itself and its modes is obeyed unsigned all the same.
+  bool unsigned_tool = false;
+};
+
+/// What became of an order, signed or not.
+struct OperationRecord {
+  std::string key;  ///< its name in the job; "unsigned"; or the first bytes of one that is unknown
+  std::int32_t session = 0;
+  std::int32_t id = 0;
+  UtcTime utc;       ///< when it holds
+  std::string kind;  ///< as accept
+  std::string who;
+  bool obeyed = false;
+  std::string effect;  ///< one sentence; of one that was refused, why
+};
+
+/// Asks for what was said before.
+struct StationRequest {
+  UtcTime utc;
+  std::int64_t seq = 0;
+  std::int32_t session = 0;
+  std::int32_t from_revision = 0;
+};
+
+/// Health of one program, sent once a second. Values are those of status_t.
+struct Status {
+  enum class State : std::int32_t { kOk = 0, kDegraded = 1, kFault = 2 };
+  UtcTime utc;
+  std::int64_t seq = 0;
+  std::int32_t session = 0;
+  State state = State::kOk;
+  std::int32_t last_command_id = 0;  ///< acknowledges that command; 0 if none
+  std::int64_t samples_received = 0;
+  std::int64_t samples_lost = 0;  ///< by sequence number
+  std::int64_t gaps = 0;
+  std::int64_t duplicates = 0;
+  std::int64_t malformed = 0;                ///< messages of wrong fingerprint, size or range
+  std::optional<std::int64_t> kernel_drops;  ///< datagrams that the system threw away
+  double latency_p99 = 0;                    ///< [s]
+  double data_age = 0;                       ///< [s]
   std::string text;
 };
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "wellgyro/base/depth.h"
-#include "wellgyro/earth/north.h"
+#include "wellgyro/earth/grid.h"
+#include "wellgyro/record/depth.h"
 
 /// What surveys say about themselves in the files that people exchange. Text that a file does not
 /// give is empty.

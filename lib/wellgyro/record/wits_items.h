@@ -1,6 +1,6 @@
 #pragma once
 
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 
 namespace wellgyro {
 

@@ -7,7 +7,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/math/random.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/simulate/fault_player.h"

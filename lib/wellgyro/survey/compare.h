@@ -9,7 +9,6 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/check.h"
-#include "wellgyro/record/verdict.h"
 #include "wellgyro/survey/well_uncertainty.h"
 #include "wellgyro/uncertainty/station_errors.h"
 

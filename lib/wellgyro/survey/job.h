@@ -9,12 +9,11 @@
 
 #include <Eigen/Core>
 
-#include "wellgyro/base/depth.h"
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/earth/grid.h"
-#include "wellgyro/record/cable.h"
 #include "wellgyro/record/channels.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/tool_calibration.h"

@@ -10,7 +10,7 @@
 
 #include "wellgyro/base/result.h"
 #include "wellgyro/base/time.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 
 namespace wellgyro {
 

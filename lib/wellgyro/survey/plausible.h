@@ -3,7 +3,7 @@
 #include <string>
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/operations.h"
 
 namespace wellgyro {

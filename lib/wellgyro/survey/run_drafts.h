@@ -10,7 +10,7 @@
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/quality.h"
 #include "wellgyro/record/run_knot.h"
-#include "wellgyro/record/still_window.h"
+#include "wellgyro/record/sample.h"
 #include "wellgyro/survey/draft_book.h"
 #include "wellgyro/survey/forward_estimate.h"
 #include "wellgyro/survey/job.h"

@@ -15,7 +15,6 @@
 #include "wellgyro/record/run_knot.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/record/sample_block.h"
-#include "wellgyro/record/still_window.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/path_site.h"
 #include "wellgyro/survey/survey.h"

@@ -11,7 +11,6 @@
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/record/verdict.h"
 
 namespace wellgyro {
 

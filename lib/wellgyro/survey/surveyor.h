@@ -10,12 +10,11 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/record/check.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/record/still_window.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/survey.h"
 

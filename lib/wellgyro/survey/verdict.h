@@ -8,7 +8,6 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/record/verdict.h"
 #include "wellgyro/survey/survey.h"
 
 namespace wellgyro {

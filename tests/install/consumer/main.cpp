@@ -3,13 +3,14 @@
 #include <cstdio>
 
 #include <wellgyro/base/angle.h>
-#include <wellgyro/bus/surveyor_listener.h>
-#include <wellgyro/earth/earth.h>
+#include <wellgyro/bus/survey_log.h>
+#include <wellgyro/earth/grid.h>
 #include <wellgyro/survey/surveyor.h>
 
 int main() {
   wellgyro::Job job;
   job.well.latitude = wellgyro::FromDegrees(60);
+  job.well.longitude = wellgyro::FromDegrees(3);
   wellgyro::Sink sink;
   wellgyro::Surveyor surveyor(job, sink);
   wellgyro::ImuSample sample;
@@ -21,7 +22,8 @@ int main() {
   feed.Take("WELLGYRO_IMU", {});
   surveyor.Finish();
   const wellgyro::Survey survey = surveyor.Current(0);
-  std::printf("%.6f m/s2; %s\n", wellgyro::SiteAt(job.well.latitude, 0).gravity,
-              survey.unusable.c_str());
+  const wellgyro::GridPoint head =
+      wellgyro::ProjectToGrid(wellgyro::UtmGrid("31N"), job.well.latitude, job.well.longitude);
+  std::printf("%.3f m north; %s\n", head.northing, survey.unusable.c_str());
   return survey.unusable.empty() || feed.malformed() != 1 ? 1 : 0;
 }

@@ -7,7 +7,6 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/exchange/survey_files.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 
 #include "io/exchange/parsed.h"
 #include "support/scratch.h"

@@ -10,7 +10,6 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
 #include "wellgyro/io/exchange/survey_files.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 
 #include "io/exchange/parsed.h"
 #include "support/scratch.h"

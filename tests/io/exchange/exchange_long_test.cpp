@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/io/exchange/exchange.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 
 #include "support/scratch.h"
 

@@ -11,7 +11,6 @@
 #include <gmock/gmock.h>
 
 #include "wellgyro/io/exchange/survey_files.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 
 #include "support/scratch.h"
 #include "support/survey_samples.h"

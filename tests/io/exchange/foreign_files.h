@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "wellgyro/earth/north.h"
+#include "wellgyro/earth/grid.h"
 
 namespace wellgyro::foreign {
 

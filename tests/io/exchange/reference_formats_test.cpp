@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 
 #include "wellgyro/io/exchange/exchange.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 
 #include "support/survey_samples.h"
 

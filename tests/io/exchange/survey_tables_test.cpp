@@ -1,5 +1,3 @@
-#include "wellgyro/io/exchange/survey_tables.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>

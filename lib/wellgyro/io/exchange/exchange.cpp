@@ -16,7 +16,6 @@
 #include "wellgyro/io/exchange/headings_internal.h"
 #include "wellgyro/io/exchange/line_reader_internal.h"
 #include "wellgyro/io/exchange/sheet_internal.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/exchange/wbp_internal.h"

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/io/exchange/survey_tables.h"
+#include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 
 namespace wellgyro {

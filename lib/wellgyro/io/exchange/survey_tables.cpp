@@ -1,5 +1,3 @@
-#include "wellgyro/io/exchange/survey_tables.h"
-
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -10,6 +8,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/table_build_internal.h"
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/text_internal.h"

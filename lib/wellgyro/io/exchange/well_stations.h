@@ -9,7 +9,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/earth/north.h"
+#include "wellgyro/earth/grid.h"
 #include "wellgyro/uncertainty/survey_point.h"
 
 namespace wellgyro {

@@ -10,8 +10,8 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_files.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/result/covariance_csv.h"
 #include "wellgyro/io/text_internal.h"

@@ -9,8 +9,8 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/record/check.h"
 #include "wellgyro/record/survey_table.h"
-#include "wellgyro/record/verdict.h"
 #include "wellgyro/survey/merge.h"
 
 namespace wellgyro {

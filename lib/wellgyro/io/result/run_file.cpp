@@ -12,9 +12,9 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/exchange/survey_files.h"
-#include "wellgyro/io/exchange/survey_tables.h"
 #include "wellgyro/io/result/diagnosis_csv.h"
 #include "wellgyro/io/result/stretches_csv.h"
 #include "wellgyro/io/result/summary.h"

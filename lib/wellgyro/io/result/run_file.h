@@ -14,7 +14,6 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/record/operations.h"
-#include "wellgyro/record/signed_operation.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/survey.h"
 

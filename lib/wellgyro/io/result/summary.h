@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/record/verdict.h"
+#include "wellgyro/record/check.h"
 #include "wellgyro/survey/survey.h"
 
 namespace wellgyro {

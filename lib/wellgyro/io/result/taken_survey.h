@@ -10,7 +10,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/earth/north.h"
+#include "wellgyro/earth/grid.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/survey/compare.h"
 #include "wellgyro/survey/well_uncertainty.h"

@@ -5,7 +5,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/record/still_window.h"
+#include "wellgyro/record/sample.h"
 #include "wellgyro/record/survey_table.h"
 #include "wellgyro/survey/job.h"
 

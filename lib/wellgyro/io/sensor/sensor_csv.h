@@ -9,9 +9,8 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/record/depth_mark.h"
+#include "wellgyro/record/depth.h"
 #include "wellgyro/record/sample.h"
-#include "wellgyro/record/still_window.h"
 
 namespace wellgyro {
 

@@ -7,7 +7,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/text_file.h"
-#include "wellgyro/record/signed_operation.h"
+#include "wellgyro/record/operations.h"
 #include "wellgyro/survey/job.h"
 
 namespace wellgyro {

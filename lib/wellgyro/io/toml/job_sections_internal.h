@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "wellgyro/io/toml/toml_internal.h"
-#include "wellgyro/record/signed_operation.h"
+#include "wellgyro/record/operations.h"
 #include "wellgyro/survey/job.h"
 
 /// The sections of a job file, one function each; every one reads all keys of its table. Numbers

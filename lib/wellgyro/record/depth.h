@@ -1,8 +1,39 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
+#include "wellgyro/base/time.h"
+
+/// What the depth system says, and what it is.
 namespace wellgyro {
+
+/// What measured a depth. A measured depth without its kind is half a number: wireline and
+/// driller's depths of one bed differ by metres.
+enum class DepthKind : std::int32_t {
+  kIndicated = 0,
+  kWireline = 1,
+  kDrillPipe = 2,
+  kTubing = 3,
+  kOther = 4,
+};
+
+/// One reading of the depth system: along-hole depth of the tool string's reference point.
+struct DepthMark {
+  UtcTime utc;
+  std::int64_t seq = 0;
+  std::int32_t session = 0;
+  std::int32_t run = 0;
+  DepthKind kind = DepthKind::kIndicated;
+  double md = 0;                  ///< [m], positive down
+  std::optional<double> speed;    ///< [m/s], positive down
+  std::optional<double> tension;  ///< [N]
+  std::optional<double> sigma;    ///< [m]
+  bool stopped = false;
+  bool corrected = false;      ///< corrections are already in `md`
+  bool manual = false;         ///< typed by a person
+  bool magnetic_mark = false;  ///< a magnetic mark passed the counter
+};
 
 /// A logging cable, as far as its length depends on pull and warmth, and its magnetic marks.
 struct Cable {
