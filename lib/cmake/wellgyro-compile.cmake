@@ -17,6 +17,7 @@ function(wellgyro_compile target)
       -Wno-missing-field-initializers -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual>
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-maybe-uninitialized -Wno-restrict>
     $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<BOOL:${WELLGYRO_WERROR}>>:-Werror>
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${WELLGYRO_UNITY}>>:SHELL:--param ggc-min-heapsize=1000000>
     $<$<NOT:$<BOOL:${WELLGYRO_LINES}>>:-g0>)
   # Static and shared libraries are made of the same objects.
   set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
@@ -37,6 +38,16 @@ function(wellgyro_precompile target)
     return()
   elseif(PCH_LIKE)
     target_precompile_headers(${target} REUSE_FROM ${PCH_LIKE})
+    # The macros with which it was made, of the libraries that the other target links.
+    get_target_property(linked ${PCH_LIKE} LINK_LIBRARIES)
+    foreach(library IN LISTS linked)
+      if(TARGET ${library})
+        target_compile_options(${target} PRIVATE
+          $<FILTER:$<TARGET_PROPERTY:${library},INTERFACE_COMPILE_OPTIONS>,INCLUDE,^-D>)
+        target_compile_definitions(${target} PRIVATE
+          $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_DEFINITIONS>)
+      endif()
+    endforeach()
   else()
     target_precompile_headers(${target} PRIVATE ${PCH_UNPARSED_ARGUMENTS})
   endif()

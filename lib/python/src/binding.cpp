@@ -1,7 +1,5 @@
 #include "binding.h"
 
-#include <limits>
-
 #include <fmt/core.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -37,7 +35,6 @@ nb::object Vectors(const std::vector<Eigen::Vector3d>& vectors) {
 }
 
 nb::dict ColumnsOf(const std::vector<Check>& checks) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   nb::list code, pass, unit, source, verdict;
   std::vector<std::int64_t> run;
   std::vector<double> md, value, sigma, limit;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,9 @@ using Input = nb::ndarray<const T, nb::ndim<kDimensions>, nb::c_contig, nb::devi
 struct FileError {
   std::string text;
 };
+
+/// What stands in columns of numbers where there is none.
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string Sentence(const Fault& fault);
 

@@ -1,7 +1,6 @@
 #include "outcome.h"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -38,8 +37,6 @@ std::optional<WellGrid> Outcome::Grid() const {
 }
 
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Columns of stations, in the units of their names; what an unfit station does not have is NaN.
 class StationColumns {

@@ -1,5 +1,4 @@
 #include <array>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,8 +27,6 @@
 
 namespace wellgyro::python {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct Numbers {
   std::vector<double> values;
