@@ -72,9 +72,9 @@ std::string SummaryText(const Survey& survey) {
   text += EndText(survey.chosen.back()) + UnseenText(survey);
   const auto good = std::count_if(survey.chosen.begin(), survey.chosen.end(),
                                   [](const Station& s) { return s.quality == Quality::kGood; });
-  text += fmt::format("stations       {}, of which {} good; {} in all passes of {} run{}\n",
-                      survey.chosen.size(), good, survey.passes.size(), survey.runs.size(),
-                      survey.runs.size() == 1 ? "" : "s");
+  text += fmt::format("stations       {}, of which {} good; {} in all passes of {}\n",
+                      survey.chosen.size(), good, survey.passes.size(),
+                      Counted(survey.runs.size(), "run"));
   for (const Check& check : survey.checks) {
     if (check.verdict != Verdict::kPass) text += CheckText(check);
   }
