@@ -21,6 +21,7 @@
 #include "wellgyro/io/toml/noise_file.h"
 #include "wellgyro/io/toml/program_file.h"
 #include "wellgyro/io/toml/simulation_file.h"
+#include "wellgyro/io/words.h"
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/job_keys.h"
 
@@ -121,9 +122,9 @@ int CheckForeign(const std::string& name, const std::string& what) {
   const bool ends = std::none_of(
       table->head.notes.begin(), table->head.notes.end(),
       [](const std::string& note) { return note.find("where the table ends") != note.npos; });
-  fmt::print("{}: {}, a survey of {} station{} from MD {:.2f} to {:.2f} m{}\n", name, what, rows,
-             rows == 1 ? "" : "s", rows > 0 ? table->md(0) : 0, rows > 0 ? table->md(rows - 1) : 0,
-             ends ? ", whole" : "");
+  fmt::print("{}: {}, a survey of {} from MD {:.2f} to {:.2f} m{}\n", name, what,
+             Counted(rows, "station"), rows > 0 ? table->md(0) : 0,
+             rows > 0 ? table->md(rows - 1) : 0, ends ? ", whole" : "");
   for (const std::string& note : table->head.notes) fmt::print("  {}\n", note);
   return kDone;
 }

@@ -16,7 +16,7 @@ the smallest size that reliability.csv of a clean run has, four in five of which
 `--pairs`: so many runs a cause and two of each draw, with the fault at once its size, whose cause is
 taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each time;
 `--first`: the first of clean runs, so that a long row can be run in parts. "Beyond both": beyond the
-95 % ellipse and beyond that of the largest fault which could stay unseen, as aviation counts it.
+95 % ellipse and beyond that in which the end is if one fault stays unseen, as aviation counts it.
 """
 import argparse
 import concurrent.futures
@@ -384,7 +384,7 @@ def Print(results, said):
               f"{sum(map(MisleadsBoth, of))}")
     if said:
         for r in results:
-            if r["causes"]:
+            if r["causes"] or Misleads(r):
                 print(r["well"], r["seed"], r["fault"], r["size"], r["code"], r["causes"])
 
 

@@ -44,5 +44,11 @@ TEST(Quality, TextNamesTheSetFlags) {
   }
 }
 
+TEST(Words, ACountIsInTheNumberOfItsNoun) {
+  EXPECT_EQ(Counted(0, "stop"), "0 stops");
+  EXPECT_EQ(Counted(1, "stop"), "1 stop");
+  EXPECT_EQ(Counted(12, "stop"), "12 stops");
+}
+
 }  // namespace
 }  // namespace wellgyro

@@ -186,6 +186,30 @@ TEST(KeptKnots, AnyBitsAreKeptAndAttitudesRevised) {
   }
   kept.Revise(100, others);
   ExpectSame(kept, knots);
+  // What is added behind a revision is told from the last knot, too.
+  knots.push_back(AnyBits(random));
+  kept.Add(knots.back().knot, knots.back().attitude);
+  ExpectSame(kept, knots);
+}
+
+TEST(KeptKnots, AreReadFromAnyNumberOn) {
+  Random random(4);
+  std::vector<KeptKnot> knots;
+  KeptKnots kept;
+  for (int i = 0; i < 130; ++i) {
+    knots.push_back(AnyBits(random));
+    kept.Add(knots.back().knot, knots.back().attitude);
+  }
+  for (const std::size_t from : {0, 1, 63, 64, 65, 128, 129, 130}) {
+    KeptKnots::Reader reader(kept, from);
+    for (std::size_t i = from; i < knots.size(); ++i) {
+      const KeptKnot* read = reader.Next();
+      ASSERT_NE(read, nullptr) << from;
+      ExpectSame(read->knot, knots[i].knot);
+      ExpectSame(read->attitude, knots[i].attitude);
+    }
+    EXPECT_EQ(reader.Next(), nullptr) << from;
+  }
 }
 
 TEST(KeptKnots, WhatIsKnownAtATimeIsThatOfTheKnotBefore) {

@@ -43,6 +43,23 @@ TEST(Ellipse, GivesBackAxesAndAzimuthInAllQuadrants) {
   EXPECT_EQ(line.semi_minor, 0);
 }
 
+// The half width of e' E^-1 e <= 1 along n is sqrt(n' E n).
+TEST(Ellipse, AboutASumHoldsEveryPairOfPointsAndTouchesWhereBothAreAlike) {
+  Eigen::Matrix2d a, b;
+  a << 9, 2, 2, 1;
+  b << 0.5, -0.3, -0.3, 4;
+  const Eigen::Matrix2d about = EllipseAboutSum(a, b), alike = EllipseAboutSum(a, 4 * a);
+  for (double turn = 0; turn < kPi; turn += 0.05) {
+    const Eigen::Vector2d n(std::cos(turn), std::sin(turn));
+    const double of_a = std::sqrt(n.dot(a * n)), of_b = std::sqrt(n.dot(b * n));
+    EXPECT_GE(std::sqrt(n.dot(about * n)), of_a + of_b);
+    EXPECT_NEAR(std::sqrt(n.dot(alike * n)), 3 * of_a, 1e-12);
+  }
+  EXPECT_NEAR(std::sqrt(about.trace()), std::sqrt(10.0) + std::sqrt(4.5), 1e-12);
+  EXPECT_EQ(EllipseAboutSum(a, Eigen::Matrix2d::Zero()), a);
+  EXPECT_EQ(EllipseAboutSum(Eigen::Matrix2d::Zero(), b), b);
+}
+
 TEST(Ellipse, EllipsoidAndItsShadow) {
   const Matrix3d r = RotationZ(0.7) * RotationY(0.4) * RotationX(1.1);
   const Matrix3d cov = Turned(r);

@@ -74,6 +74,10 @@ std::string QualityText(Quality quality) {
   return text.empty() ? "good" : text;
 }
 
+std::string Counted(std::size_t count, std::string_view noun) {
+  return std::to_string(count) + ' ' + std::string(noun) + (count == 1 ? "" : "s");
+}
+
 std::optional<Quality> QualityOf(std::string_view text) {
   if (text == "good") return Quality::kGood;
   Quality quality = Quality::kGood;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,9 @@ WELLGYRO_EXPORT std::string_view WordOf(FaultCode code);        ///< io, foreign
 /// `good`, or the names of the set flags joined by `+`: moved mirror vertical saturated gap depth
 /// temperature aliased gravity earth_rate clock unfit.
 WELLGYRO_EXPORT std::string QualityText(Quality quality);
+
+/// "1 stop", "0 stops", "3 stops".
+WELLGYRO_EXPORT std::string Counted(std::size_t count, std::string_view noun);
 
 /// Back from the word; nothing for any other word.
 WELLGYRO_EXPORT std::optional<StationKind> StationKindOf(std::string_view word);

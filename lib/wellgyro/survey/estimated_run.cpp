@@ -70,12 +70,10 @@ std::vector<Start> StartsOf(const EstimateSetup& setup, const RunHistory& histor
 }
 
 /// From what is known at the begin of a part, past the fixes in it that have no mirror.
-Start StartOf(std::size_t begin, const RunState& known, const RunHistory& history) {
+Start StartOf(const RunState& known, const RunHistory& part) {
   Start start{{0, known.node().R_LT}};
-  for (const FixAtNode& at : history.fixes) {
-    if (at.node <= begin || at.fix.mirror_azimuth) continue;
-    start.push_back(AnchorOf(at, at.fix.azimuth));
-    start.back().node -= begin;
+  for (const FixAtNode& at : part.fixes) {
+    if (!at.fix.mirror_azimuth) start.push_back(AnchorOf(at, at.fix.azimuth));
   }
   return start;
 }
@@ -119,19 +117,10 @@ RunFit FitOf(const RunEstimate& estimate) {
   return fit;
 }
 
-/// Of the stations from knot `begin` on, the first of them by its number.
-std::size_t FirstStation(const RunHistory& history, std::size_t begin) {
-  const auto& stations = history.stations;
-  const auto first = std::lower_bound(stations.begin(), stations.end(), begin);
-  return static_cast<std::size_t>(first - stations.begin());
-}
-
-/// The same as nodes of the part that begins there.
-std::vector<std::size_t> NodesOf(const RunHistory& history, std::size_t begin) {
+/// The stations as nodes.
+std::vector<std::size_t> NodesOf(const RunHistory& history) {
   std::vector<std::size_t> nodes;
-  for (std::size_t j = FirstStation(history, begin); j < history.stations.size(); ++j) {
-    nodes.push_back(history.stations[j] + 1 - begin);
-  }
+  for (const std::size_t knot : history.stations) nodes.push_back(knot + 1);
   return nodes;
 }
 
@@ -150,24 +139,22 @@ EstimateSetup SetupOf(const Job& job, const RunHistory& history) {
 RunEstimate EstimateFrom(const EstimateSetup& setup, const RunHistory& history,
                          const Starts& starts) {
   if (history.knots.empty()) return {};
-  return EstimateRun(setup, history.knots, starts, NodesOf(history, 0));
+  return EstimateRun(setup, history.knots, starts, NodesOf(history));
 }
 
 }  // namespace
 
-SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history, std::size_t begin) {
+SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history) {
   SmoothedRun run;
-  for (std::size_t k = begin; k < history.knots.size(); ++k) {
-    const std::size_t node = k + 1 - begin;
+  for (std::size_t k = 0; k < history.knots.size(); ++k) {
     run.attitude.push_back(
-        AttitudeOf(history.knots[k], estimate.nodes[node], estimate.cov_phi[node]));
+        AttitudeOf(history.knots[k], estimate.nodes[k + 1], estimate.cov_phi[k + 1]));
     if (estimate.ambiguous) ForgetAzimuth(run.attitude.back());
   }
-  const std::size_t first = FirstStation(history, begin);
-  for (std::size_t j = first; j < history.stations.size(); ++j) {
+  for (std::size_t j = 0; j < history.stations.size(); ++j) {
     const std::size_t k = history.stations[j];
-    run.stations.push_back(StateOf(k, history.knots[k], run.attitude[k - begin],
-                                   estimate.nodes[k + 1 - begin].R_LT, estimate.marked[j - first]));
+    run.stations.push_back(StateOf(k, history.knots[k], run.attitude[k], estimate.nodes[k + 1].R_LT,
+                                   estimate.marked[j]));
   }
   return run;
 }
@@ -180,17 +167,10 @@ RunEstimate EstimateSoFar(const Job& job, const RunHistory& history) {
   return EstimateFrom(setup, history, {starts, nullptr});
 }
 
-RunEstimate EstimateSince(std::size_t begin, const RunState& known, const RunHistory& history) {
+RunEstimate EstimateSince(const RunState& known, const RunHistory& part) {
   EstimateSetup setup = known.setup;
-  setup.ties.clear();
-  for (AzimuthTie tie : history.ties) {
-    if (tie.node <= begin) continue;
-    tie.node -= begin;
-    setup.ties.push_back(tie);
-  }
-  const auto part = std::span(history.knots).subspan(begin);
-  return EstimateRun(setup, part, {{StartOf(begin, known, history)}, nullptr},
-                     NodesOf(history, begin), &known);
+  setup.ties = part.ties;
+  return EstimateRun(setup, part.knots, {{StartOf(known, part)}, nullptr}, NodesOf(part), &known);
 }
 
 SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {

@@ -16,11 +16,10 @@ SmoothedRun EstimatedRun(const Job& job, const RunHistory& history);
 /// where no tie and no fix give a north.
 RunEstimate EstimateSoFar(const Job& job, const RunHistory& history);
 
-/// The same from the end of knot `begin`, counted from one, on, where this much was known.
-RunEstimate EstimateSince(std::size_t begin, const RunState& known, const RunHistory& history);
+/// The same of a part of a run, at whose begin this much was known.
+RunEstimate EstimateSince(const RunState& known, const RunHistory& part);
 
-/// Attitudes and stations of what has been solved, from that knot on.
-SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history,
-                       std::size_t begin = 0);
+/// Attitudes and stations of what has been solved.
+SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history);
 
 }  // namespace wellgyro

@@ -94,24 +94,24 @@ std::size_t ForwardEstimate::AddStation() {
 bool ForwardEstimate::Begin() {
   const std::size_t knots = knots_.size(), begin = sure_ ? sure_->knots : 0;
   if (knots < next_try_ || knots == begin) return false;
-  const RunHistory history = History();
-  const RunEstimate solved =
-      sure_ ? EstimateSince(begin, sure_->state, history) : EstimateSoFar(job_, history);
+  const RunHistory part = PartSinceSure();
+  const RunEstimate solved = sure_ ? EstimateSince(sure_->state, part) : EstimateSoFar(job_, part);
   next_try_ = knots + (knots - begin) / 2 + 1;
   forward_.reset();
   if (!solved.solved) sure_.reset();
   if (!solved.solved || solved.ambiguous || !solved.alone) return false;
-  SmoothedRun part = SmoothedOf(solved, history, begin);
-  std::move_backward(part.stations.begin(), part.stations.end(), history_.states.end());
+  SmoothedRun smoothed = SmoothedOf(solved, part);
+  for (StationState& state : smoothed.stations) state.knot += begin;
+  std::move_backward(smoothed.stations.begin(), smoothed.stations.end(), history_.states.end());
   forward_.emplace(solved.end, recent_);
   begun_roughly_ = !(forward_->SigmaOfHeading() < kSureHeading);
   const bool sure = KeepIfSure(knots);
   if (!sure) {
     forward_.reset();
-    ForgetAzimuth(part.attitude.back());
+    ForgetAzimuth(smoothed.attitude.back());
   }
-  knots_.Revise(begin, part.attitude);
-  known_ = part.attitude.back();
+  knots_.Revise(begin, smoothed.attitude);
+  known_ = smoothed.attitude.back();
   return sure;
 }
 
@@ -155,6 +155,29 @@ bool ForwardEstimate::Use(NorthFix& fix, bool roll_hidden) {
 bool ForwardEstimate::TryAgain() {
   const bool north = !history_.ties.empty() || !history_.fixes.empty();
   return north && (!forward_ || begun_roughly_) && Begin();
+}
+
+RunHistory ForwardEstimate::PartSinceSure() const {
+  const std::size_t begin = sure_ ? sure_->knots : 0;
+  // What was told at the begin of a part is in what is known there.
+  const std::size_t told = sure_ ? begin + 1 : 0;
+  RunHistory part;
+  part.site = history_.site;
+  KeptKnots::Reader reader(knots_, begin);
+  while (const KeptKnot* kept = reader.Next()) part.knots.push_back(kept->knot);
+  const auto take = [&](const auto& all, auto& to) {
+    for (const auto& at : all) {
+      if (at.node < told) continue;
+      to.push_back(at);
+      to.back().node -= begin;
+    }
+  };
+  take(history_.ties, part.ties);
+  take(history_.fixes, part.fixes);
+  for (const std::size_t knot : history_.stations) {
+    if (knot >= begin) part.stations.push_back(knot - begin);
+  }
+  return part;
 }
 
 RunHistory ForwardEstimate::History() const {

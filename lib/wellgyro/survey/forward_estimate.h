@@ -103,6 +103,9 @@ class ForwardEstimate {
   /// seen.
   RunKnot KnotOf(const WaitingKnot& waiting, const Increment& increment, UnseenTurn& unseen) const;
   AttitudeSample AttitudeNow() const;
+  /// What came since the heading was last sure, all of it where it never was, counted from there:
+  /// what is solved from; without what was known on the way.
+  RunHistory PartSinceSure() const;
   bool Begin();
   bool KeepIfSure(std::size_t knots);
 

@@ -235,6 +235,11 @@ void KeptKnots::Add(const RunKnot& knot, const AttitudeSample& attitude) {
   open_.clear();
 }
 
+KeptKnots::Reader::Reader(const KeptKnots& kept, std::size_t from)
+    : kept_(kept), block_(from / kBlock) {
+  for (std::size_t i = 0; i < from % kBlock; ++i) Next();
+}
+
 const KeptKnot* KeptKnots::Reader::Next() {
   if (at_ == kept_.BytesOf(block_).size()) {
     if (block_ == kept_.blocks_.size()) return nullptr;
@@ -250,13 +255,17 @@ const KeptKnot* KeptKnots::Reader::Next() {
 }
 
 void KeptKnots::Revise(std::size_t from, std::span<const AttitudeSample> attitude) {
+  const std::size_t block = from / kBlock;  // of those before it nothing changes
   KeptKnots revised;
-  Reader reader(*this);
+  Reader reader(*this, block * kBlock);
   while (const KeptKnot* kept = reader.Next()) {
-    const std::size_t i = revised.size();
+    const std::size_t i = block * kBlock + revised.size();
     revised.Add(kept->knot, i < from ? kept->attitude : attitude[i - from]);
   }
-  *this = std::move(revised);
+  blocks_.resize(block);
+  std::ranges::move(revised.blocks_, std::back_inserter(blocks_));
+  open_ = std::move(revised.open_);
+  last_ = revised.last_;
 }
 
 std::optional<AttitudeSample> KeptKnots::KnownAt(ToolTime time) const {
@@ -264,7 +273,7 @@ std::optional<AttitudeSample> KeptKnots::KnownAt(ToolTime time) const {
       std::ranges::partition_point(blocks_, [time](const Block& b) { return b.end <= time; });
   std::optional<AttitudeSample> known;
   const auto begin = static_cast<std::size_t>(block - blocks_.begin());
-  Reader reader(*this, begin > 0 ? begin - 1 : 0);
+  Reader reader(*this, begin > 0 ? (begin - 1) * kBlock : 0);
   for (const KeptKnot* kept = reader.Next(); kept != nullptr && kept->attitude.time <= time;
        kept = reader.Next()) {
     known = kept->attitude;

@@ -32,14 +32,16 @@ class KeptKnots {
   std::size_t bytes() const;  ///< of memory
 
   /// In place of what was known at the ends of the knots from number `from` on, of all of them.
+  /// Takes the time of these knots.
   void Revise(std::size_t from, std::span<const AttitudeSample> attitude);
   /// At the end of the last knot that ends by then.
   std::optional<AttitudeSample> KnownAt(ToolTime time) const;
 
-  /// Goes through knots one by one. What it reads holds until anything is added.
+  /// Goes through knots one by one, from number `from` on. What it reads holds until anything is
+  /// added.
   class Reader {
    public:
-    explicit Reader(const KeptKnots& kept, std::size_t block = 0) : kept_(kept), block_(block) {}
+    explicit Reader(const KeptKnots& kept, std::size_t from = 0);
     /// The next one; nullptr: there is none.
     const KeptKnot* Next();
 

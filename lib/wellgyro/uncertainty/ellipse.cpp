@@ -39,6 +39,13 @@ ErrorEllipse HorizontalEllipse(const Matrix3d& cov, double confidence) {
   return ellipse;
 }
 
+Eigen::Matrix2d EllipseAboutSum(const Eigen::Matrix2d& a, const Eigen::Matrix2d& b) {
+  const double of_a = std::sqrt(a.trace()), of_b = std::sqrt(b.trace());
+  if (!(of_a > 0)) return b;
+  if (!(of_b > 0)) return a;
+  return (1 + of_b / of_a) * a + (1 + of_a / of_b) * b;
+}
+
 SeenEllipse EllipseSeenAlong(const Matrix3d& cov, const Vector3d& sight, double sigmas) {
   const Vector3d u = sight.unitOrthogonal();
   const Vector3d v = sight.cross(u);

@@ -6,6 +6,9 @@
 
 namespace wellgyro {
 
+/// Of every ellipse and interval that summaries, documents and pages show.
+inline constexpr double kConfidence = 0.95;
+
 /// How many sigmas hold a normally distributed vector of `dimensions` with probability
 /// `confidence`: the root of the chi-square quantile (0.95: 1.960, 2.448, 2.795). Throws
 /// std::domain_error for a confidence outside (0, 1) or dimensions below 1.
@@ -19,6 +22,12 @@ struct ErrorEllipse {
 
 /// Of the horizontal part of `cov` [m^2], holding the position with probability `confidence`.
 WELLGYRO_EXPORT ErrorEllipse HorizontalEllipse(const Eigen::Matrix3d& cov, double confidence);
+
+/// The least ellipse e' E^-1 e <= 1, by its trace, of the family that holds every sum of a point
+/// within that of `a` and one within that of `b` [m^2]: E = (1 + 1/p) a + (1 + p) b with
+/// p^2 = tr a / tr b (Kurzhanski and Valyi 1997, 2.2). Its half axis along n is at least the two
+/// half widths together; where `a` and `b` are alike but for a factor, it is just that.
+WELLGYRO_EXPORT Eigen::Matrix2d EllipseAboutSum(const Eigen::Matrix2d& a, const Eigen::Matrix2d& b);
 
 /// The ellipse that `cov`, seen along the unit vector `sight`, draws on the plane across it:
 /// semi-axes as vectors in that plane, the longer first, at `sigmas` [m].

@@ -62,20 +62,29 @@ TEST(VerdictText, IsOneLineWithItsCauses) {
             "verdict fail: a gyro is dead; depth is missing");
 }
 
-TEST(SummaryJson, SaysOfAnUnfitEndNoEllipseAndOfUnseenFaultsTheBoundItself) {
+Survey EndWithUnseenFaults(Quality quality) {
   Survey survey;
   Station end;
   end.run = 1;
-  end.quality = Quality::kUnfit;
+  end.quality = quality;
+  end.cov_p_WT_W.diagonal() << 1, 4, 1;
   survey.chosen = {Station{}, end};
   RunSummary run;
   run.run = 1;
   const auto fit = std::make_shared<RunFit>();
   fit->diagnosis.emplace();
-  fit->diagnosis->hidden.diagonal() << 4, 25;
+  fit->diagnosis->reliability.resize(2);
+  fit->diagnosis->reliability[0].shift_W << 2, 0, 9;
+  fit->diagnosis->reliability[1].shift_W << 0, -4, 0;
+  fit->diagnosis->hidden.diagonal() << 4, 16;
   fit->diagnosis->hidden_cause = "gyro_bias_step_x";
   run.fit = fit;
   survey.runs = {run};
+  return survey;
+}
+
+TEST(SummaryJson, SaysOfAnUnfitEndNoEllipse) {
+  const Survey survey = EndWithUnseenFaults(Quality::kUnfit);
   const ToolSummary tool{.tool = 3, .folder = "re\"sult", .files = {"a.csv"}, .survey = &survey};
   const std::string text = SummaryJson({&tool, 1}, {Verdict::kFail, {"gyro is dead"}}, 4);
   EXPECT_THAT(text, HasSubstr("\"verdict\": \"fail\""));
@@ -83,10 +92,24 @@ TEST(SummaryJson, SaysOfAnUnfitEndNoEllipseAndOfUnseenFaultsTheBoundItself) {
   EXPECT_THAT(text, HasSubstr("\"folder\": \"re\\\"sult\""));
   EXPECT_THAT(text, HasSubstr("\"ellipse_95\": null"));
   EXPECT_THAT(text, HasSubstr("\"tvd_95_m\": null"));
-  EXPECT_THAT(text, HasSubstr("\"semi_major_m\": 5.0"));
-  EXPECT_THAT(text, HasSubstr("\"semi_minor_m\": 2.0"));
+  EXPECT_THAT(text, HasSubstr("\"unseen_faults\": null"));
+  EXPECT_THAT(SummaryText(survey), testing::Not(HasSubstr("unseen faults")));
+}
+
+// Faults of 2 and 4 m, and the 95 % of sigmas of 1 and 2 m: alike but for a factor, so that their
+// half axes add up.
+TEST(Summary, WithAnUnseenFaultTheEndIsWithinItsShiftAndChanceTogether) {
+  const Survey survey = EndWithUnseenFaults(Quality::kGood);
+  EXPECT_THAT(SummaryText(survey),
+              HasSubstr("unseen faults  with one the end is within 8.90 m by 4.45 m (half axes), "
+                        "the long one towards 90 deg; most by gyro_bias_step_x, 4.00 m\n"));
+  const ToolSummary tool{.tool = 3, .folder = "a", .files = {}, .survey = &survey};
+  const std::string text = SummaryJson({&tool, 1}, {}, 0);
+  EXPECT_THAT(text, HasSubstr("\"semi_major_m\": 8.895"));
+  EXPECT_THAT(text, HasSubstr("\"semi_minor_m\": 4.447"));
   EXPECT_THAT(text, HasSubstr("\"azimuth_major_deg\": 90.0"));
   EXPECT_THAT(text, HasSubstr("\"cause\": \"gyro_bias_step_x\""));
+  EXPECT_THAT(text, HasSubstr("\"cause_shift_m\": 4.0"));
 }
 
 TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }

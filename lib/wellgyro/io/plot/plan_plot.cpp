@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/plot/chart.h"
+#include "wellgyro/io/words.h"
 
 namespace wellgyro {
 namespace {
@@ -120,9 +121,9 @@ std::string PlanSvg(const std::string& title, const PlanCase& c, const PlanLimit
                     const std::optional<ExpectedEnd>& practice) {
   std::vector<std::string> facts;
   if (plan.feasible) {
-    facts.push_back(fmt::format("{} stops, {:.0f} s at rest; ellipse {:.2f} m of {:.2f} m",
-                                plan.stops.size(), plan.at_rest, plan.expected.semi_major,
-                                limits.ellipse));
+    facts.push_back(fmt::format("{}, {:.0f} s at rest; ellipse {:.2f} m of {:.2f} m",
+                                Counted(plan.stops.size(), "stop"), plan.at_rest,
+                                plan.expected.semi_major, limits.ellipse));
   } else {
     facts.push_back(plan.why_not);
   }

@@ -12,9 +12,6 @@
 
 namespace wellgyro {
 
-/// Of every ellipse and interval that the document and its page show.
-inline constexpr double kConfidence = 0.95;
-
 /// Cells of a JsonTable by the name of their column. What is no such table has no rows. Refers to
 /// it.
 class Columns {

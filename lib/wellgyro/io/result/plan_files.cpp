@@ -15,6 +15,7 @@
 #include "wellgyro/io/toml/plan_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/tool_file.h"
+#include "wellgyro/io/words.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -158,9 +159,9 @@ std::string EndLine(const ExpectedEnd& end) {
 std::string StopLines(const PlanReport& report) {
   const StopPlan& plan = report.plan;
   std::string text =
-      fmt::format("{} stops, {:.0f} s at rest, {:.0f} s with {:.0f} s to each; the run {:.1f} h\n",
-                  plan.stops.size(), plan.at_rest, plan.cost, report.limits.overhead,
-                  plan.expected.seconds / units::kHour);
+      fmt::format("{}, {:.0f} s at rest, {:.0f} s with {:.0f} s to each; the run {:.1f} h\n",
+                  Counted(plan.stops.size(), "stop"), plan.at_rest, plan.cost,
+                  report.limits.overhead, plan.expected.seconds / units::kHour);
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
     const PlannedStop& stop = plan.stops[i];
     text +=
@@ -180,8 +181,9 @@ std::string PracticeLine(const PlanReport& report) {
   for (const PlannedStop& stop : report.practice_stops) at_rest += stop.seconds;
   const double cost =
       at_rest + report.limits.overhead * static_cast<double>(report.practice_stops.size());
-  std::string text = fmt::format("practice, {} stops, {:.0f} s: {}", report.practice_stops.size(),
-                                 cost, EndLine(*report.practice));
+  std::string text =
+      fmt::format("practice, {}, {:.0f} s: {}", Counted(report.practice_stops.size(), "stop"), cost,
+                  EndLine(*report.practice));
   if (report.plan.feasible && cost > 0) {
     const double saved = 100 * (1 - report.plan.cost / cost);
     text += saved >= 0 ? fmt::format("; the plan takes {:.0f} % less", saved)
@@ -199,9 +201,9 @@ std::string TurnedLine(const PlanReport& report) {
   const StopPlan turned = PlanStops(report.c, limits);
   if (!turned.feasible || (report.plan.feasible && turned.cost >= report.plan.cost)) return {};
   return fmt::format(
-      "if the tool can be turned before a stop (--toolfaces): {} stops, {:.0f} s at rest, {:.0f} s "
+      "if the tool can be turned before a stop (--toolfaces): {}, {:.0f} s at rest, {:.0f} s "
       "with {:.0f} s to each\n",
-      turned.stops.size(), turned.at_rest, turned.cost, limits.overhead);
+      Counted(turned.stops.size(), "stop"), turned.at_rest, turned.cost, limits.overhead);
 }
 
 std::string Summary(const PlanReport& report) {

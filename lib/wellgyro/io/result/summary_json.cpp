@@ -8,8 +8,8 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/result/json_columns_internal.h"
 #include "wellgyro/io/result/summary.h"
+#include "wellgyro/io/result/unseen_faults_internal.h"
 #include "wellgyro/io/words.h"
-#include "wellgyro/record/run_fit.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -44,23 +44,13 @@ Json EndJson(const Station& end) {
   return json;
 }
 
-/// The bound is itself an ellipse, e' hidden^-1 e <= 1: no confidence scales it.
 Json UnseenJson(const Survey& survey) {
-  for (const RunSummary& run : survey.runs) {
-    if (run.run != survey.chosen.back().run || !run.fit || !run.fit->diagnosis) continue;
-    const RunDiagnosis& found = *run.fit->diagnosis;
-    if (found.hidden_cause.empty()) continue;
-    Eigen::Matrix3d bound = Eigen::Matrix3d::Zero();
-    bound.topLeftCorner<2, 2>() = found.hidden;
-    ErrorEllipse ellipse = HorizontalEllipse(bound, kConfidence);
-    const double sigmas = ConfidenceFactor(kConfidence, 2);
-    ellipse.semi_major /= sigmas;
-    ellipse.semi_minor /= sigmas;
-    Json json = EllipseJson(ellipse);
-    json["cause"] = found.hidden_cause;
-    return json;
-  }
-  return nullptr;
+  const std::optional<UnseenFaults> unseen = UnseenFaultsOf(survey);
+  if (!unseen) return nullptr;
+  Json json = EllipseJson(unseen->bound);
+  json["cause"] = unseen->cause;
+  json["cause_shift_m"] = unseen->shift;
+  return json;
 }
 
 Json CheckJson(const Check& check) {

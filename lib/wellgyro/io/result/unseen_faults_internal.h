@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "wellgyro/survey/survey.h"
+#include "wellgyro/uncertainty/ellipse.h"
+
+namespace wellgyro {
+
+/// How far the end of a survey may be off where one fault stayed unnoticed, what chance does
+/// besides with it: the protection level of aviation's integrity, in two dimensions.
+struct UnseenFaults {
+  ErrorEllipse
+      bound;          ///< about the 95 % ellipse and what the faults of reliability.csv do together
+  std::string cause;  ///< the fault that does most
+  double shift = 0;   ///< what it does alone, horizontally [m]
+};
+
+/// Of the deepest chosen station; none where it is unfit or its run has no diagnosis.
+std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey);
+
+}  // namespace wellgyro
