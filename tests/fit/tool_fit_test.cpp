@@ -150,33 +150,6 @@ TEST(ToolFit, TermsThatDoTheSameWorkAreTold) {
   }
 }
 
-// Ten times what a drift's prior says, of one gyro on the first table, in its line or in its bend:
-// said by the name of what drifts, and of nothing where drifts are as stated.
-TEST(ToolFit, ADriftBeyondItsPriorIsTold) {
-  const auto told = [](double line, double bend) {
-    Random random(33);
-    Bench b{ThermalTool::Any(random), ThermalBench::Any(random), {}};
-    if (line != 0) b.bench.drift[0][0] = line;
-    b.bench.bend[0][0] = bend;
-    b.tables.push_back(ThermalPositions(b.tool, b.bench, 0, 120, 25, 150, random));
-    b.tables.push_back(ThermalPositions(b.tool, b.bench, 1, 60, 150, 25, random));
-    b.tables.push_back(ThermalRates(b.tool, b.bench, 87.5, random));
-    const auto fit = FitTool(b.tables, Stated());
-    EXPECT_TRUE(fit.has_value()) << fit.fault().text;
-    std::vector<std::string> drifts;
-    for (const std::string& remark : fit->calibration.report.remarks) {
-      if (remark.find("where a drift has a sigma of") != std::string::npos) {
-        drifts.push_back(remark);
-      }
-    }
-    return drifts;
-  };
-  EXPECT_THAT(told(0, 0), testing::IsEmpty());
-  EXPECT_THAT(told(1, 0), Contains(testing::StartsWith("gyro_drift_1[0]: the readings ask for")));
-  EXPECT_THAT(told(0, 1),
-              Contains(testing::StartsWith("gyro_drift_1_bend[0]: the readings ask for")));
-}
-
 // Ways in which bench data are not what they should be.
 using Corruption = void (*)(Bench& bench, ToolFitSetup& setup, Random& random);
 
