@@ -91,24 +91,49 @@ ToolCalibration FullTool() {
   return tool;
 }
 
-void Calibrate(benchmark::State& state, const ToolCalibration& tool, bool heats) {
-  std::vector<RawSample> raw = Counts(tool);
-  std::vector<ImuSample> out(raw.size());
+// Samples at 100 Hz of a tool that warms by 1 degC a minute, whose thermometer reads anew, with a
+// noise of 2 mdegC, with every `each` samples; 0: never.
+void Calibrate(benchmark::State& state, const ToolCalibration& tool, int each) {
+  constexpr int kSamples = 100 * kBatch;
+  const std::vector<RawSample> counts = Counts(tool);
+  Random random(4);
+  std::vector<RawSample> raw;
+  double temperature = 80;
+  for (int i = 0; i < kSamples; ++i) {
+    if (each > 0 && i % each == 0) temperature = 80 + 0.01 / 60 * i + 0.002 * random.Normal();
+    RawSample sample = counts[static_cast<std::size_t>(i) % counts.size()];
+    sample.temperature_raw[1] =
+        static_cast<float>(RawTemperature(tool.thermometers[0], temperature));
+    raw.push_back(sample);
+  }
+  std::vector<ImuSample> out(kBatch);
   SampleCalibrator calibrator(tool);
   std::int64_t now = 0;
+  std::size_t at = 0;
   for (auto _ : state) {
-    for (RawSample& sample : raw) {
-      sample.stamp.tool_time.ns = now;
-      if (heats) now += 10'000'000;
-    }
-    calibrator.Apply(raw, out);
+    const std::span<RawSample> batch = std::span(raw).subspan(at, kBatch);
+    for (RawSample& sample : batch) sample.stamp.tool_time.ns = (now += 10'000'000);
+    calibrator.Apply(batch, out);
+    at = (at + kBatch) % kSamples;
     benchmark::DoNotOptimize(out.data());
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * kBatch);
 }
-void FullThermal(benchmark::State& state) { Calibrate(state, FullTool(), true); }
-BENCHMARK(FullThermal);
+void FullThermal(benchmark::State& state) {
+  Calibrate(state, FullTool(), static_cast<int>(state.range(0)));
+}
+BENCHMARK(FullThermal)->Arg(0)->Arg(100)->Arg(10)->Arg(1);
+
+// Sensitivities by a straight line in temperature, as calibrate tool takes them.
+void Straight(benchmark::State& state) {
+  ToolCalibration tool = FullTool();
+  for (SensorGroup* group : {&tool.gyro, &tool.accel, &tool.mag}) {
+    for (std::size_t n = 2; n < SensorGroup::kPowers; ++n) group->sensitivity[n].setZero();
+  }
+  Calibrate(state, tool, static_cast<int>(state.range(0)));
+}
+BENCHMARK(Straight)->Arg(100)->Arg(1);
 
 }  // namespace
 }  // namespace wellgyro

@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/calibration/error_sources.h"
+#include "wellgyro/calibration/thermometer.h"
 #include "wellgyro/simulate/raw_counts.h"
 
 #include "calibration/random_tool.h"
+#include "calibration/simple_calibration.h"
 #include "simulate/allocation_count.h"
 
 namespace wellgyro {
@@ -20,6 +22,8 @@ namespace {
 
 using test::RandomSample;
 using test::RandomTool;
+using test::SimpleSolution;
+using test::SolveSimply;
 using test::ToolShape;
 
 ImuSample Calibrate(const ToolCalibration& tool, const RawSample& raw) {
@@ -218,6 +222,41 @@ TEST(Apply, SmallTermsAreRightToAMillionthOfThemselves) {
   }
   EXPECT_LT(worst, std::pow(2.0, -20));
   EXPECT_GT(worst, 0);
+}
+
+// A thermometer that reads anew with every sample, over the whole range, where what goes with
+// temperature goes as far as its cube: against the formula solved at each sample's own.
+TEST(Apply, TemperaturesBetweenThoseSolvedInFullAreRightToABillionth) {
+  double worst = 0;
+  for (const int channels : {3, 4}) {
+    ToolCalibration tool = RandomTool(
+        24, {.gyro_channels = channels, .temperature = true, .g_terms = true, .rotated = true});
+    Random random(25);
+    for (std::size_t n = 1; n < SensorGroup::kPowers; ++n) {
+      tool.gyro.g_dependence[n] = 0.2 * tool.gyro.g_dependence[0];
+    }
+    tool.accel.second_order.setConstant(2e-6);
+    RawCounter counter(tool);
+    SampleCalibrator calibrator(tool);
+    for (int i = 0; i < 500; ++i) {
+      const RawSample raw = counter.Count(RandomSample(random, true), 20 + 140 * random.Uniform());
+      ImuSample found;
+      ASSERT_EQ(calibrator.Apply({&raw, 1}, {&found, 1}), 1u);
+      const double temperature =
+          TrueTemperature(tool.thermometers[0], static_cast<double>(raw.temperature_raw[1])).value;
+      const auto check = [&](const SensorGroup& group, const Eigen::Vector3d& u, double unit) {
+        const SimpleSolution simple = SolveSimply(group, raw, temperature, found.f_T);
+        const double allowed =
+            1e-9 * std::max(simple.u.norm(), unit) + (1e-5 + std::pow(2.0, -20)) * simple.small;
+        worst = std::max(worst, (u - simple.u).cwiseAbs().maxCoeff() / allowed);
+      };
+      check(tool.gyro, found.w_IT_T, units::kDeg);
+      check(tool.accel, found.f_T, units::kStandardGravity);
+      check(tool.mag, found.b_T, 5e-5);
+    }
+  }
+  EXPECT_LT(worst, 1);
+  EXPECT_GT(worst, 0.01);
 }
 
 TEST(Apply, ANewSessionBeginsWithoutHeating) {

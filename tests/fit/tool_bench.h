@@ -67,6 +67,9 @@ struct ThermalBench {
   Eigen::Vector3d level[2];   ///< turn of each positions' table: about north, east, down [rad]
   Eigen::Vector2d seat[3];    ///< of the tool on the rate table, by axis [rad]
   Eigen::Vector4d drift[3];   ///< from the middle to the end of a table [deg/h]
+  /// Of t^2 - 1/3 beside it, t from -1 to 1 over the table [deg/h].
+  Eigen::Vector4d bend[3] = {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero(),
+                             Eigen::Vector4d::Zero()};
   double wobble = 20 * kRad / 3600;
   double sigma_accel = 2e-5, sigma_gyro = 0.02, sigma_table = 0.5;
 
@@ -84,6 +87,15 @@ struct ThermalBench {
       seat = 1.5e-4 * Eigen::Vector2d(random.Normal(), random.Normal());
     }
     return bench;
+  }
+  /// A drift that walks has a bend beside its line, .945 of it.
+  void Bend(Random& random) {
+    for (Eigen::Vector4d& b : bend) {
+      for (double& d : b) d = 0.0945 * random.Normal();
+    }
+  }
+  Eigen::Vector4d DriftAt(int table, double t) const {
+    return t * drift[table] + (t * t - 1.0 / 3) * bend[table];
   }
 };
 
@@ -118,7 +130,7 @@ inline BenchTable ThermalPositions(const ThermalTool& tool, const ThermalBench& 
     const Eigen::Vector3d G = wobble * Seen(g_ned, a.inc, a.az, a.tf);
     std::vector<double> row = {120.0 * i, T, a.inc, a.az, a.tf};
     Append(row, tool.Accel(G, tau) + Noise(random, bench.sigma_accel));
-    Eigen::Vector4d m = tool.Gyro(w, -G, tau, dTdt) + t * bench.drift[which];
+    Eigen::Vector4d m = tool.Gyro(w, -G, tau, dTdt) + bench.DriftAt(which, t);
     for (double& channel : m) channel += bench.sigma_gyro * random.Normal();
     Append(row, m);
     table.Add(row);
@@ -139,7 +151,7 @@ inline BenchTable ThermalRates(const ThermalTool& tool, const ThermalBench& benc
       n[(axis + 2) % 3] = bench.seat[axis][1];
       n = TurnBy(-Noise(random, bench.wobble)) * n.normalized();
       Eigen::Vector4d m = tool.Gyro((3600 * rate + up) * n, n, (T - 87.5) / 62.5, 0);
-      m += (-1 + 2.0 * count / 17) * bench.drift[2];
+      m += bench.DriftAt(2, -1 + 2.0 * count / 17);
       for (double& channel : m) channel += bench.sigma_table * random.Normal();
       std::vector<double> row = {60.0 * count++, T, double(axis), rate};
       Append(row, m);

@@ -135,6 +135,55 @@ TEST(Checks, AStopThatRollsFails) {
   EXPECT_EQ(Find(checks, "roll_at_rest").md.value_or(0), 750);
 }
 
+// 2026-11-25: runs of coarsely calibrated tools that warmed at their stops failed by it.
+TEST(Checks, AToolThatWarmsSeemsToRollByWhatItsCalibrationLeaves) {
+  constexpr double kSigmaPerTau = 2e-3, kHalfRange = 50, kWarmer = 3, kSeconds = 100;
+  Job job;
+  job.tool.emplace();
+  SensorGroup& accel = job.tool->accel;
+  accel.n_channels = 3;
+  accel.sensitivity[0].topRows<3>() = 2 * Eigen::Matrix3d::Identity();
+  accel.thermometer = 0;
+  accel.reference = 80;
+  accel.half_range = kHalfRange;
+  accel.min = 20;
+  accel.max = 140;
+  job.tool->thermometers.emplace_back();
+  accel.covariance = {{"accel.bias.p1[0]"},
+                      Eigen::MatrixXd::Constant(1, 1, kSigmaPerTau * kSigmaPerTau)};
+  RunSummary run;
+  run.run = 1;
+  auto fit = std::make_shared<RunFit>();
+  for (int k = 0; k < 30; ++k) {
+    RunStretch& stretch = fit->stretches.emplace_back();
+    stretch.begin = UtcTime{} + Duration::Seconds(20 * k);
+    stretch.end = stretch.begin + Duration::Seconds(20);
+    stretch.temperature = 60 + kWarmer / kSeconds * (20 * k + 10);
+  }
+  run.fit = fit;
+  NorthFix fix;
+  fix.utc_begin = UtcTime{} + Duration::Seconds(200);
+  fix.utc_end = fix.utc_begin + Duration::Seconds(kSeconds);
+  fix.gravity_ref = 9.8;
+  fix.inclination = FromDegrees(30);
+  fix.toolface = FromDegrees(-90);
+  fix.roll_rate = 0.05 * units::kDegPerHour;
+  fix.sigma_roll_rate = 0.01 * units::kDegPerHour;
+  run.fixes = {fix};
+  // The force across the hole, 4.9, lies along y: what x reads more turns it by that over 4.9.
+  const double by_warming = kSigmaPerTau / 2 * (kWarmer / kHalfRange) / 4.9 / kSeconds;
+  const double sigma = std::hypot(by_warming, fix.sigma_roll_rate, 1e-3 * units::kDegPerHour);
+  const auto checked = [&] {
+    const std::vector<RunSummary> runs = {run};
+    return Find(MakeChecks(job, {runs, {}, {}, {}}), "roll_at_rest");
+  };
+  EXPECT_NEAR(checked().sigma.value_or(0), sigma / units::kDegPerHour, 1e-6);
+  EXPECT_GT(by_warming, 2 * fix.sigma_roll_rate);
+  EXPECT_NE(checked().verdict, Verdict::kFail);
+  accel.covariance.reset();
+  EXPECT_EQ(checked().verdict, Verdict::kFail);
+}
+
 TEST(Checks, BiasesOfLaterStopsAreHeldToTheFirstByWhatTheToolMayDrift) {
   NorthFix first, last;
   first.gyro_bias = Eigen::Vector2d(0.1, 0.2) * units::kDegPerHour;

@@ -111,6 +111,19 @@ bool KnowsMembers(const ToolCalibration& tool, std::string_view prefix) {
   return false;
 }
 
+// Of what `effects_of` says the members do.
+template <class Effects>
+CalibrationSources SumOver(const ToolCalibration& tool, const Effects& effects_of) {
+  CalibrationSources sources{SourceNames(), Eigen::MatrixXd::Zero(kSources, kSources)};
+  for (const SensorGroup* group : {&tool.gyro, &tool.accel}) {
+    if (!HasMembers(*group)) continue;
+    const ParameterCovariance& known = *group->covariance;
+    const Eigen::MatrixXd J = effects_of(known.names);
+    sources.cov += J * known.cov * J.transpose();
+  }
+  return sources;
+}
+
 void Raise(double& sigma, double to) { sigma = std::max(sigma, to); }
 
 void TakeGyroErrors(const CalibrationSources& sources, int across, ErrorPriors& errors) {
@@ -175,14 +188,15 @@ Eigen::MatrixXd SourceEffects(const ToolCalibration& tool, const std::vector<std
 }
 
 CalibrationSources SourcesOf(const ToolCalibration& tool, double temperature) {
-  CalibrationSources sources{SourceNames(), Eigen::MatrixXd::Zero(kSources, kSources)};
-  for (const SensorGroup* group : {&tool.gyro, &tool.accel}) {
-    if (!HasMembers(*group)) continue;
-    const ParameterCovariance& known = *group->covariance;
-    const Eigen::MatrixXd J = SourceEffects(tool, known.names, temperature);
-    sources.cov += J * known.cov * J.transpose();
-  }
-  return sources;
+  return SumOver(tool, [&](const std::vector<std::string>& members) {
+    return SourceEffects(tool, members, temperature);
+  });
+}
+
+CalibrationSources ChangeOfSources(const ToolCalibration& tool, double from, double to) {
+  return SumOver(tool, [&](const std::vector<std::string>& members) -> Eigen::MatrixXd {
+    return SourceEffects(tool, members, to) - SourceEffects(tool, members, from);
+  });
 }
 
 Eigen::Vector2d AxialCoupling(const SensorGroup& gyro) {

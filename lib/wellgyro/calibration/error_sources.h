@@ -30,6 +30,10 @@ struct CalibrationSources {
 /// none. Outside the calibrated range as at its end. Zero where the tool has no such covariance.
 WELLGYRO_EXPORT CalibrationSources SourcesOf(const ToolCalibration& tool, double temperature);
 
+/// Of what these errors change by from one temperature to another.
+WELLGYRO_EXPORT CalibrationSources ChangeOfSources(const ToolCalibration& tool, double from,
+                                                   double to);
+
 /// What one more of each member (calibration/members.h) does to the sources, a column each.
 WELLGYRO_EXPORT Eigen::MatrixXd SourceEffects(const ToolCalibration& tool,
                                               const std::vector<std::string>& members,

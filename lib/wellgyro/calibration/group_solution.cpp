@@ -1,156 +1,182 @@
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
-#include <Eigen/Dense>
-
+#include "wellgyro/base/units.h"
 #include "wellgyro/calibration/group_solution_internal.h"
 
 namespace wellgyro {
 namespace {
 
-template <class T>
-T Polynomial(const std::array<T, SensorGroup::kPowers>& powers, double tau) {
-  T value = powers.back();
-  for (std::size_t n = powers.size() - 1; n-- > 0;) value = value * tau + powers[n];
-  return value;
-}
+constexpr double kRight = 1e-9, kSmallRight = 1e-5;  // of u; of small terms
+constexpr double kLeft = 5e-11;                      // of u, by turns of the second order
 
-Eigen::Matrix<double, 6, 1> SquaresOf(const Eigen::Vector3d& a) {
-  Eigen::Matrix<double, 6, 1> q;
-  q << a.x() * a.x(), a.y() * a.y(), a.z() * a.z(), a.x() * a.y(), a.y() * a.z(), a.z() * a.x();
-  return q;
-}
-
-// q(R a) = OfSquares(R) q(a).
-Eigen::Matrix<double, 6, 6> OfSquares(const Eigen::Matrix3d& R) {
-  constexpr int kFirst[] = {0, 1, 2, 0, 1, 2}, kSecond[] = {0, 1, 2, 1, 2, 0};
-  Eigen::Matrix<double, 6, 6> M;
-  for (int row = 0; row < 6; ++row) {
-    const int i = kFirst[row], j = kSecond[row];
-    for (int column = 0; column < 6; ++column) {
-      const int k = kFirst[column], l = kSecond[column];
-      M(row, column) = R(i, k) * R(j, l) + (k == l ? 0 : R(i, l) * R(j, k));
-    }
-  }
-  return M;
-}
-
-// u in T from what the channels read; S in T.
-Eigen::Matrix<double, 3, 4> Inverse(const SensorGroup::Rows& S, int n_channels) {
-  Eigen::Matrix<double, 3, 4> inverse = Eigen::Matrix<double, 3, 4>::Zero();
-  if (n_channels == 2) {
-    inverse.topLeftCorner<2, 2>() = Eigen::Matrix2d(S.topLeftCorner<2, 2>()).inverse();
-  } else if (n_channels == 3) {
-    inverse.leftCols<3>() = Eigen::Matrix3d(S.topRows<3>()).inverse();
-  } else {
-    inverse = S.colPivHouseholderQr().solve(Eigen::Matrix4d::Identity());
-  }
-  return inverse;
-}
-
-// The unit vector at right angles to the three columns of S.
-Eigen::Vector4d Parity(const SensorGroup::Rows& S) {
-  const Eigen::Matrix4d Q = S.householderQr().householderQ();
-  return Q.col(3);
-}
-
-template <int kColumns, class Real>
-void Put(const Eigen::Matrix<double, 3, kColumns>& from, Real (&to)[3][kColumns]) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < kColumns; ++j) to[i][j] = static_cast<Real>(from(i, j));
-  }
-}
-
-template <class Real>
-GroupKernel::Products<Real> ProductsOf(const Eigen::Matrix<double, 3, 6>& out) {
-  GroupKernel::Products<Real> products;
-  products.squares = !out.leftCols<3>().isZero(0);
-  products.crosses = !out.rightCols<3>().isZero(0);
-  for (int p = 0; p < 6; ++p) {
-    for (int i = 0; i < 3; ++i) products.out[p][i] = static_cast<Real>(out(i, p));
-  }
-  return products;
-}
-
-// Sizes e = K |u_0|, K the largest sum of a row of squares, for which n turns u <- u_0 - squares(u)
-// leave less than a fiftieth of the finest count, 2^-31 of full scale. All u_n are below |u_0| s, s
-// = 1 / (1 - 2 e); the first is off by e s^2 |u_0|, and each turn leaves 2 e s of it.
-std::array<double, GroupKernel::kTurns> Sizes() {
-  constexpr double kLeft = 1e-11;
-  std::array<double, GroupKernel::kTurns> sizes{};
-  for (std::size_t turns = 0; turns < sizes.size(); ++turns) {
+// Largest e for which n turns of RefineInDouble are enough. All u_n are below |u_0| s, s = 1 / (1 -
+// 2 e); the first is off by e s^2 |u_0|, and each turn leaves 2 e s of it.
+constexpr std::size_t kTurns = 64;
+std::array<double, kTurns> Reach() {
+  std::array<double, kTurns> reach{};
+  for (std::size_t turns = 0; turns < reach.size(); ++turns) {
     double low = 0, high = 0.25;
     for (int halving = 0; halving < 60; ++halving) {
       const double e = (low + high) / 2, s = 1 / (1 - 2 * e);
       const double left = std::pow(2 * e * s, static_cast<double>(turns)) * e * s * s;
       (left < kLeft ? low : high) = e;
     }
-    sizes[turns] = low;
+    reach[turns] = low;
   }
-  return sizes;
+  return reach;
 }
 
-void SetReach(const Eigen::Matrix<double, 3, 6>& squares, GroupKernel& kernel) {
-  static const std::array<double, GroupKernel::kTurns> kSizes = Sizes();
-  const double K = squares.cwiseAbs().rowwise().sum().maxCoeff();
-  for (std::size_t turn = 0; turn < kSizes.size(); ++turn) {
-    kernel.reach[turn] = K > 0 ? kSizes[turn] / K : std::numeric_limits<double>::infinity();
+// Largest differences of a group's solution over the calibrated range, per degC to their power:
+// second ones of what moves u in proportion, [1/degC^2]; third ones of b over `unit`; first ones
+// in proportion.
+struct Bends {
+  double curve = 0, third = 0, slope = 0;
+};
+
+Bends BendsOf(const GroupModel& model, const SensorGroup& group, double unit) {
+  constexpr std::size_t kSteps = 64;
+  const double H = (group.max - group.min) / kSteps;
+  std::vector<GroupNode> nodes;
+  for (std::size_t i = 0; i <= kSteps; ++i) {
+    nodes.push_back(model.At(model.Tau(group.min + H * static_cast<double>(i)), 1));
   }
+  Bends bends;
+  const auto raise = [](double& to, const auto& value) {
+    to = std::max(to, value.cwiseAbs().rowwise().sum().maxCoeff());
+  };
+  for (std::size_t i = 1; i < kSteps; ++i) {
+    const GroupNode &before = nodes[i - 1], &at = nodes[i], &after = nodes[i + 1];
+    const double tau = model.Tau(group.min + H * static_cast<double>(i));
+    const SensorGroup::Column per_unit = model.UnitPerCount(1).cwiseInverse();
+    const SensorGroup::Rows counts = per_unit.asDiagonal() * model.Sensitivity(tau);
+    const SensorGroup::Column bias = per_unit.cwiseProduct(model.Bias(tau));
+    const Eigen::Matrix<double, 3, 4> second = (after.A - 2 * at.A + before.A) / (H * H);
+    raise(bends.curve, Eigen::Matrix3d(second * counts));
+    raise(bends.curve, Eigen::Vector3d(second * bias / unit));
+    raise(bends.curve, Eigen::Matrix3d((after.force - 2 * at.force + before.force) *
+                                       (units::kStandardGravity / (unit * H * H))));
+    raise(bends.slope, Eigen::Matrix3d((after.A - before.A) * counts / (2 * H)));
+    if (i + 1 == kSteps) continue;
+    const Eigen::Vector3d third = nodes[i + 2].b - 3 * after.b + 3 * at.b - before.b;
+    raise(bends.third, Eigen::Vector3d(third / (unit * H * H * H)));
+  }
+  return bends;
+}
+
+// A straight line over a cell of width h is off by h^2 / 8 of the second derivative, a parabola by
+// h^3 / (72 sqrt 3) of the third, a constant by h / 2 of the first. Half of what is allowed is left
+// to derivatives between the places where they were taken.
+double WidthOf(const Bends& bends, double range) {
+  constexpr double kShare = 0.5;
+  double width = range;
+  const auto limit = [&](double allowed, double power, double factor, double derivative) {
+    if (!(derivative > 0)) return;
+    width = std::min(width, std::pow(kShare * allowed / (factor * derivative), 1 / power));
+  };
+  limit(kRight, 2, 1.0 / 8, bends.curve);
+  limit(kRight, 3, 1 / (72 * std::sqrt(3.0)), bends.third);
+  limit(kSmallRight, 1, 1.0 / 2, bends.slope);
+  return width;
+}
+
+template <class Number, int kColumns>
+void Put(const Eigen::Matrix<double, 3, kColumns>& from, Number (&to)[3][kColumns]) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < kColumns; ++j) to[i][j] = from(i, j);
+  }
+}
+
+template <class Number>
+void Put(const Eigen::Vector3d& from, Number (&to)[3]) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+template <class Number>
+GroupKernel::Products<Number> ProductsOf(const Eigen::Matrix<double, 3, 6>& out) {
+  GroupKernel::Products<Number> products;
+  products.squares = !out.leftCols<3>().isZero(0);
+  products.crosses = !out.rightCols<3>().isZero(0);
+  for (int p = 0; p < 6; ++p) {
+    for (int i = 0; i < 3; ++i) products.out[p][i] = out(i, p);
+  }
+  return products;
 }
 
 }  // namespace
 
-bool GroupSolution::Prepare(const SensorGroup& group, double temperature, double seconds) {
-  ahead_ += temperature - temperature_;
-  temperature_ = temperature;
-  const double held = std::clamp(temperature, group.min, group.max);
-  const double tau = group.thermometer < 0 ? 0 : (held - group.reference) / group.half_range;
-  const Eigen::Matrix3d R_ST = group.R_TS.transpose();
-  const Eigen::Matrix<double, 6, 6> squares_ST = OfSquares(R_ST);
-  const SensorGroup::Rows S_T = Polynomial(group.sensitivity, tau) * R_ST;
-  unit_per_count_ = group.unit_per_count;
-  if (group.per_second) unit_per_count_ /= seconds;
-  bias_ = Polynomial(group.bias, tau);
-  heating_ = group.heating;
-  per_lag_ = 1 / group.heating_lag;
-  g_dependence_ = Polynomial(group.g_dependence, tau) * R_ST;
-  squares_ = group.second_order * squares_ST;
-  g_squares_ = group.g_squared * squares_ST;
-  parity_ = group.n_channels == 4 ? wellgyro::Parity(S_T) : Eigen::Vector4d::Zero();
-
-  const Eigen::Matrix<double, 3, 4> from_units = Inverse(S_T, group.n_channels);
-  kernel_.n_channels = group.n_channels;
-  for (std::size_t c = 0; c < kernel_.channel.size(); ++c) {
-    const std::size_t of = static_cast<int>(c) < group.n_channels ? c : 0;
-    kernel_.channel[c] = static_cast<std::size_t>(group.channel[of]);
+Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, const Eigen::Vector3d& linear) {
+  static const std::array<double, kTurns> kReach = Reach();
+  const double e = kernel.slope * linear.cwiseAbs().maxCoeff();
+  Eigen::Vector3d u = linear;
+  for (std::size_t turn = 0; turn < kTurns && e > kReach[turn]; ++turn) {
+    const Eigen::Vector3d of = u;
+    u = linear;
+    for (int p = 0; p < 6; ++p) {
+      const double q = p < 3 ? of[p] * of[p] : of[p - 3] * of[(p - 2) % 3];
+      u -= q * Eigen::Vector3d::Map(kernel.products.out[p]);
+    }
   }
-  const Eigen::Matrix<double, 3, 4> from_counts = from_units * unit_per_count_.asDiagonal();
-  Put(from_counts, kernel_.A);
-  const Eigen::Vector3d offset = -(from_units * bias_), heat = -(from_units * heating_);
-  const Eigen::Matrix3d force = from_units * g_dependence_;
-  Put(force, kernel_.force);
-  Eigen::Vector3d::Map(kernel_.b) = offset;
-  Eigen::Vector3f::Map(kernel_.heat) = heat.cast<float>();
-  kernel_.heats = !heat.isZero(0);
-  kernel_.products = ProductsOf<double>(from_units * squares_);
-  kernel_.second_order = kernel_.products.squares || kernel_.products.crosses;
-  kernel_.force_products = ProductsOf<float>(from_units * g_squares_);
-  kernel_.feels_force =
-      !force.isZero(0) || kernel_.force_products.squares || kernel_.force_products.crosses;
-  SetReach(from_units * squares_, kernel_);
-  return group.thermometer < 0 || held == temperature;
+  return u;
+}
+
+GroupSolution::GroupSolution(const SensorGroup& group, double unit)
+    : model_(group), heats_(!group.heating.isZero(0)), per_lag_(1 / group.heating_lag) {
+  constant_.n_channels = group.n_channels;
+  for (std::size_t c = 0; c < constant_.channel.size(); ++c) {
+    const std::size_t of = static_cast<int>(c) < group.n_channels ? c : 0;
+    constant_.channel[c] = static_cast<std::size_t>(group.channel[of]);
+  }
+  if (group.thermometer < 0 || !(group.max > group.min)) return;
+  constant_.varies = true;
+  min_ = group.min;
+  max_ = group.max;
+  width_ = WidthOf(BendsOf(*model_, group, unit), max_ - min_);
+  per_width_ = 1 / width_;
+}
+
+void GroupSolution::Enter(double temperature, double seconds) {
+  if (Holds(temperature, seconds)) return;
+  at_ = 1 - at_;
+  if (Holds(temperature, seconds)) return;
+  Cell& cell = cells_[at_];
+  cell.index = std::floor(Place(temperature));
+  cell.seconds = seconds;
+  if (model_) Solve(cell);
+}
+
+void GroupSolution::Solve(Cell& cell) const {
+  GroupKernel& kernel = cell.kernel = constant_;
+  const double begin = min_ + cell.index * width_;
+  const GroupNode low = At(begin, cell.seconds), middle = At(begin + width_ / 2, cell.seconds);
+  Put(low.A, kernel.A);
+  Put(low.b, kernel.b);
+  Put(low.force, kernel.force);
+  Put(middle.heat, kernel.heat);
+  kernel.products = ProductsOf<double>(middle.products);
+  kernel.products_single = ProductsOf<SameSingle>(middle.products);
+  kernel.slope = middle.products.cwiseAbs().rowwise().sum().maxCoeff();
+  kernel.second_order = kernel.slope > 0;
+  const double reach = kernel.second_order ? kReachSingle / kernel.slope : 0;
+  // Its square is a number in single precision.
+  kernel.reach_square = std::min(reach * reach, 1e30);
+  kernel.force_products = ProductsOf<SameSingle>(middle.force_products);
+  const GroupNode high = constant_.varies ? At(begin + width_, cell.seconds) : low;
+  const Eigen::Vector3d parabola = 2 * (high.b - 2 * middle.b + low.b);
+  Put(Eigen::Matrix<double, 3, 4>(high.A - low.A), kernel.A1);
+  Put(Eigen::Vector3d(high.b - low.b - parabola), kernel.b1);
+  Put(parabola, kernel.b2);
+  Put(Eigen::Matrix3d(high.force - low.force), kernel.force1);
+  kernel.moved =
+      heats_ || !low.force.isZero(0) || !high.force.isZero(0) || !middle.force_products.isZero(0);
 }
 
 double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
                              const Eigen::Vector3d& f_T) const {
-  Eigen::Vector4d units;
-  for (int c = 0; c < 4; ++c) {
-    units[c] = static_cast<double>(raw.counts[kernel_.channel[static_cast<std::size_t>(c)]]);
-  }
-  units = units.cwiseProduct(unit_per_count_) - bias_ - heating_ * heating_rate();
-  units -= g_dependence_ * f_T + g_squares_ * SquaresOf(f_T) + squares_ * SquaresOf(u_T);
-  return parity_.dot(units);
+  return model_->Parity(raw, model_->Tau(temperature_), cells_[at_].seconds, heating_rate(), u_T,
+                        f_T);
 }
 
 }  // namespace wellgyro

@@ -15,6 +15,7 @@
 #include "wellgyro/record/error_source.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/roll_by_warming_internal.h"
 #include "wellgyro/survey/run_checks_internal.h"
 
 namespace wellgyro {
@@ -200,7 +201,8 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
     if (!fix.roll_rate || vertical) continue;
     rolls = true;
     // A tool that the job calls perfect is not known to less than numbers round.
-    const double sigma = std::hypot(fix.sigma_roll_rate, kLeastRoll);
+    const double sigma =
+        std::hypot(fix.sigma_roll_rate, kLeastRoll, SigmaOfRollByWarming(job, run, fix));
     checks.push_back(Compare("roll_at_rest", run.run, {*fix.roll_rate, sigma}, std::nullopt,
                              units::kDegPerHour, "deg/h"));
     checks.back().md = fix.md;
