@@ -1,3 +1,5 @@
+#include "wellgyro/survey/roll_by_warming_internal.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,7 +10,6 @@
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/record/run_stretch.h"
-#include "wellgyro/survey/roll_by_warming_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -17,7 +18,7 @@ UtcTime MiddleOf(const RunStretch& stretch) {
   return stretch.begin + Duration::Seconds((stretch.end - stretch.begin).seconds() / 2);
 }
 
-// Of the tool, between the means of stretches, of which there are two at least [degC].
+/// Of the tool, between the means of stretches, of which there are two at least [degC].
 double TemperatureOfRun(std::span<const RunStretch> stretches, UtcTime at) {
   std::size_t k = 1;
   while (k + 1 < stretches.size() && MiddleOf(stretches[k]) < at) ++k;
@@ -27,7 +28,7 @@ double TemperatureOfRun(std::span<const RunStretch> stretches, UtcTime at) {
   return before.temperature + std::clamp(part, 0.0, 1.0) * (after.temperature - before.temperature);
 }
 
-// By how much each error turns the force f about the tool's axis [rad].
+/// By how much each error turns the force f about the tool's axis [rad].
 Eigen::VectorXd TurnOf(const CalibrationSources& sources, const Eigen::Vector3d& f) {
   Eigen::VectorXd turn = Eigen::VectorXd::Zero(sources.cov.rows());
   const Eigen::Index bias = sources.At("accel_bias_x"), scale = sources.At("accel_scale_x");
