@@ -92,6 +92,14 @@ void Sum(const Score& one, Score& all) {
   all.missed += one.missed;
 }
 
+std::vector<std::string> DriftsTold(const ToolFit& fit) {
+  std::vector<std::string> told;
+  for (const std::string& remark : fit.calibration.report.remarks) {
+    if (remark.find("where a drift has a sigma of") != remark.npos) told.push_back(remark);
+  }
+  return told;
+}
+
 TEST(ToolFit, ParametersAndNuisancesWithinTheirSigmas) {
   Random random(31);
   Score all;
@@ -101,6 +109,7 @@ TEST(ToolFit, ParametersAndNuisancesWithinTheirSigmas) {
     const auto fit = FitTool(b.tables, Stated());
     ASSERT_TRUE(fit.has_value()) << fit.fault().text;
     EXPECT_TRUE(fit->calibration.report.outlier_lines.empty());
+    if (!WELLGYRO_LONG) EXPECT_THAT(DriftsTold(*fit), testing::IsEmpty());
     Sum(ScoreOf(*fit, TruthOf(b.tool, b.bench)), all);
   }
   std::printf(
@@ -148,6 +157,21 @@ TEST(ToolFit, TermsThatDoTheSameWorkAreTold) {
     const std::vector<std::string>& remarks = fit->calibration.report.remarks;
     EXPECT_EQ(std::any_of(remarks.begin(), remarks.end(), IsRival), part < 1);
   }
+}
+
+// Ten times what the prior says, of one gyro on the first table. A bend would not show: on a ramp
+// up and one down it is a loop of hysteresis and a square of the temperature.
+TEST(ToolFit, ADriftBeyondItsPriorIsTold) {
+  Random random(33);
+  Bench b{ThermalTool::Any(random), ThermalBench::Any(random), {}};
+  b.bench.drift[0][0] = 1;
+  b.tables.push_back(ThermalPositions(b.tool, b.bench, 0, 120, 25, 150, random));
+  b.tables.push_back(ThermalPositions(b.tool, b.bench, 1, 60, 150, 25, random));
+  b.tables.push_back(ThermalRates(b.tool, b.bench, 87.5, random));
+  const auto fit = FitTool(b.tables, Stated());
+  ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+  EXPECT_THAT(DriftsTold(*fit),
+              Contains(testing::StartsWith("gyro_drift_1[0]: the readings ask for")));
 }
 
 // Ways in which bench data are not what they should be.

@@ -76,6 +76,7 @@ class StopInformation::Sweep {
     const Layout& layout = rows_.layout();
     known_ = MatrixXd::Zero(layout.node + layout.border, size);
     seen_.assign(static_cast<std::size_t>(size), false);
+    met_ = size;
     FindEnd(c);
     Run();
   }
@@ -184,15 +185,28 @@ class StopInformation::Sweep {
   }
   void Bring() {
     if (!moved_) return;
-    known_.topRows(rows_.layout().node) = (gain_ * known_).eval();
+    ForMet([this](Index column, Index count) {
+      known_.block(0, column, gain_.rows(), count) =
+          (gain_ * known_.middleCols(column, count)).eval();
+    });
     ResetGain();
+  }
+  /// Of what has been met: the columns of steps, and those of the places from the last one back.
+  template <class F>
+  void ForMet(const F& f) const {
+    const Index first = info_.place_row(0);
+    if (!step_knots_.empty()) f(info_.fault_row(0), first - info_.fault_row(0));
+    f(met_, known_.cols() - met_);
   }
 
   /// Covariance of `row`s A x with the end and all columns met, then the rows themselves.
   void Join(const MatrixXd& A, std::size_t node, const EdgeMatrix& cov, Index column) {
     MatrixXd& Z = info_.covariance_;
     const Index count = A.rows(), n = rows_.layout().node, b = rows_.layout().border;
-    const MatrixXd with = A * known_;
+    MatrixXd with(count, known_.cols());
+    ForMet([&](Index at, Index width) {
+      with.middleCols(at, width) = A * known_.middleCols(at, width);
+    });
     const MatrixXd with_end =
         A.leftCols(n) * end_.nodes[node].leftCols<2>() + A.rightCols(b) * end_.border.leftCols<2>();
     Z.block(column, 0, count, 2) = with_end;
@@ -213,6 +227,7 @@ class StopInformation::Sweep {
       if (rows_.stop_nodes()[i] != node) continue;
       Bring();
       Join(RestRows(rows_, node), node, cov, info_.place_row(i));
+      met_ = std::min(met_, info_.place_row(i));
     }
   }
 
@@ -266,6 +281,7 @@ class StopInformation::Sweep {
   LinearRun::Columns end_;                                       ///< N^-1 of the end's columns
   MatrixXd known_;  ///< [node; border] with every column of the covariance
   std::vector<bool> seen_;
+  Index met_ = 0;  ///< the first column of a place that has been met
   MatrixXd gain_;
   bool moved_ = false;
 };
