@@ -125,7 +125,7 @@ void FullThermal(benchmark::State& state) {
 }
 BENCHMARK(FullThermal)->Arg(0)->Arg(100)->Arg(10)->Arg(1);
 
-// Sensitivities by a straight line in temperature, as calibrate tool takes them.
+// Sensitivities by a straight line in temperature, of a tool that bends no further.
 void Straight(benchmark::State& state) {
   ToolCalibration tool = FullTool();
   for (SensorGroup* group : {&tool.gyro, &tool.accel, &tool.mag}) {

@@ -171,13 +171,17 @@ KeptKnot AnyBits(Random& random) {
   return kept;
 }
 
+void AddAny(Random& random, KeptKnots& kept, std::vector<KeptKnot>& knots) {
+  knots.push_back(AnyBits(random));
+  kept.Add(knots.back().knot, knots.back().attitude);
+}
+
 TEST(KeptKnots, AnyBitsAreKeptAndAttitudesRevised) {
   Random random(3);
   std::vector<KeptKnot> knots;
   KeptKnots kept;
   for (int i = 0; i < 200; ++i) {
-    knots.push_back(AnyBits(random));
-    kept.Add(knots.back().knot, knots.back().attitude);
+    AddAny(random, kept, knots);
     if (i == 0 || i == 63 || i == 64 || i == 199) ExpectSame(kept, knots);
   }
   std::vector<AttitudeSample> others;
@@ -187,8 +191,7 @@ TEST(KeptKnots, AnyBitsAreKeptAndAttitudesRevised) {
   kept.Revise(100, others);
   ExpectSame(kept, knots);
   // What is added behind a revision is told from the last knot, too.
-  knots.push_back(AnyBits(random));
-  kept.Add(knots.back().knot, knots.back().attitude);
+  AddAny(random, kept, knots);
   ExpectSame(kept, knots);
 }
 
@@ -196,10 +199,7 @@ TEST(KeptKnots, AreReadFromAnyNumberOn) {
   Random random(4);
   std::vector<KeptKnot> knots;
   KeptKnots kept;
-  for (int i = 0; i < 130; ++i) {
-    knots.push_back(AnyBits(random));
-    kept.Add(knots.back().knot, knots.back().attitude);
-  }
+  for (int i = 0; i < 130; ++i) AddAny(random, kept, knots);
   for (const std::size_t from : {0, 1, 63, 64, 65, 128, 129, 130}) {
     KeptKnots::Reader reader(kept, from);
     for (std::size_t i = from; i < knots.size(); ++i) {
