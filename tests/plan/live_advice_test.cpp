@@ -55,7 +55,7 @@ TEST(LiveAdvice, WhatIsKnownHalfWayAndWhatIsLeftMakeTheWholeRun) {
     const RunState state = StateAfter(DownTo(c, 1500), early);
     const RunSoFar so_far{&state, false};
     const std::vector<StopPlace> places{{false, 1500}, {false, 2400}};
-    const StopInformation left(c, places, &so_far);
+    const StopInformation left(c, places, {.so_far = &so_far, .knots = kAdviceKnots});
     ASSERT_TRUE(left.solved());
     StopStand stand(left, 5, HUGE_VAL);
     EXPECT_NEAR(stand.Value().ellipse / ExpectEnd(c, early, false).semi_major, 1, 0.02);
@@ -66,10 +66,26 @@ TEST(LiveAdvice, WhatIsKnownHalfWayAndWhatIsLeftMakeTheWholeRun) {
   }
 }
 
+// Before the first north an advice is a plan with longer knots; what it says is what the plan says.
+TEST(LiveAdvice, LongerKnotsSayOfStopsWhatThePlanDoes) {
+  for (const PlanCase& c : {test::Slant(), test::SShape(), test::Horizontal()}) {
+    const auto places = PlacesEvery(c.way, 150);
+    const StopInformation info(c, places, {.with_faults = false, .knots = kAdviceKnots});
+    StopStand stand(info, 5, HUGE_VAL);
+    std::vector<PlannedStop> stops;
+    for (const std::size_t i : {std::size_t{0}, std::size_t{5}, places.size() / 2 + 4}) {
+      stops.push_back({info.place(i).out, info.place(i).md, 200, {}});
+      stand.Add({i, 0, 200});
+      EXPECT_NEAR(stand.Value().ellipse / ExpectEnd(c, stops, false).semi_major, 1, 0.02);
+    }
+  }
+}
+
 /// What the end of a run at `md` on its way down will be without another stop, as it is foreseen.
 double ForeseenAt(const PlanCase& c, const RunState& state, double md) {
   const RunSoFar so_far{&state, false};
-  const StopInformation left(c, std::vector<StopPlace>{{false, md}}, &so_far, false);
+  const StopInformation left(c, std::vector<StopPlace>{{false, md}},
+                             {.so_far = &so_far, .with_faults = false, .knots = kAdviceKnots});
   return StopStand(left, 5, HUGE_VAL).Value().ellipse;
 }
 

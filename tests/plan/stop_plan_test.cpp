@@ -133,7 +133,7 @@ TEST(StopPairs, TheBestOfTwoIsTheBestThatTryingFinds) {
   for (const bool turns : {false, true}) {
     const PlanCase c = Fast(turns ? test::SShape() : test::Slant());
     const PlanLimits limits{.ellipse = turns ? 5 : 7.6, .longest_stop = 400, .turns = turns};
-    const StopInformation info(c, PlacesEvery(c.way, turns ? 650 : 90), nullptr, false);
+    const StopInformation info(c, PlacesEvery(c.way, turns ? 650 : 90), {.with_faults = false});
     const double least = LeastByTrying(info, limits);
     ASSERT_LT(least, 1e4);
     const auto best = BestOfTwo(info, limits, HUGE_VAL);

@@ -137,7 +137,9 @@ Advice Advise(const PlanCase& c, const PlanLimits& limits, const AskingRun& run)
   const double md = rests ? run.state->node().md : *run.md;
   const StopInformation info(ahead.c,
                              PlacesAhead(way, std::clamp(md, way.begin_md, way.end_md), ahead.out),
-                             run.state != nullptr ? &so_far : nullptr, limits.hidden.has_value());
+                             {.so_far = run.state != nullptr ? &so_far : nullptr,
+                              .with_faults = limits.hidden.has_value(),
+                              .knots = kAdviceKnots});
   if (!info.solved()) return None(limits, "the run so far cannot be gone on from");
   Advice advice = None(limits, {});
   StopStand stand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));

@@ -49,15 +49,17 @@ MatrixXd RestRows(SyntheticRun& rows, std::size_t node) {
 
 }  // namespace
 
-/// Backwards through the run, with E[x y'] of the node at hand and all rows y met so far.
+/// Backwards through the run, with E[x y'] of the node at hand and all rows y met so far. These,
+/// and the node's covariance, are worked out where they are read: what lies between is one
+/// conditional, x = gain [x of the last one; border] + e.
 class StopInformation::Sweep {
  public:
   Sweep(StopInformation& info, const PlanCase& c, std::span<const PlannedStop> marks,
-        const RunSoFar* so_far, bool with_faults)
+        const InformationOptions& options)
       : info_(info),
-        so_far_(so_far),
-        rows_(so_far != nullptr ? SyntheticRun(c, marks, *so_far)
-                                : SyntheticRun(c, marks, SetupOfPlan(c))),
+        so_far_(options.so_far),
+        rows_(so_far_ != nullptr ? SyntheticRun(c, marks, *so_far_, options.knots)
+                                 : SyntheticRun(c, marks, SetupOfPlan(c), options.knots)),
         run_(rows_) {
     const EstimateSetup setup = SetupOfPlan(c);
     info_.ln_limit_ = std::log(static_cast<double>(setup.causes.size()) / setup.false_alarm_rate);
@@ -67,7 +69,7 @@ class StopInformation::Sweep {
     }
     info_.solved_ = run_.Solve();
     if (!info_.solved_) return;
-    if (with_faults) {
+    if (options.with_faults) {
       FindConstants(setup);
       FindSteps(setup);
     }
@@ -150,45 +152,54 @@ class StopInformation::Sweep {
   }
 
   void Run() {
-    const Elimination& e = run_.elimination();
-    EdgeMatrix next = e.LastCovariance();
+    cov_ = run_.elimination().LastCovariance();
     ResetGain();
-    AtNode(rows_.size(), next);
+    AtNode(rows_.size());
     for (std::size_t k = rows_.size(); k-- > 0;) {
-      const BehindMatrix gain = e.Gain(k);
-      BehindMatrix with_next;
-      const EdgeMatrix here = e.CovarianceBefore(k, gain, next, with_next);
       const auto step = std::find_if(step_knots_.begin(), step_knots_.end(),
                                      [k](const auto& s) { return s.first == k; });
-      if (step != step_knots_.end()) Bring();
-      const MatrixXd later = step != step_knots_.end() ? known_ : MatrixXd();
-      Extend(gain);
-      if (step != step_knots_.end()) AtStep(k, step->second, later, here, next, with_next);
-      AtNode(k, here);
-      next = here;
+      if (step != step_knots_.end()) {
+        AtStep(k, step->second);
+      } else {
+        Extend(k);
+      }
+      AtNode(k);
     }
-    JoinConstants(next);
+    Bring();
+    JoinConstants();
   }
 
   void ResetGain() {
     const Layout& layout = rows_.layout();
-    gain_ = MatrixXd::Identity(layout.node, layout.node + layout.border);
+    gain_.setIdentity(layout.node, layout.node + layout.border);
+    noise_.setZero(layout.node, layout.node);
     moved_ = false;
   }
-  /// x of the node at hand by [node where known_ stands; border].
-  void Extend(const BehindMatrix& gain) {
+  /// One node back: x_k by [node where known_ stands; border], as x_k is by the next one.
+  void Extend(std::size_t k) {
     const Index n = rows_.layout().node, b = rows_.layout().border;
-    MatrixXd longer = gain.leftCols(n) * gain_;
+    const BehindMatrix gain = run_.elimination().Gain(k);
+    const NodeMatrix by_next = gain.leftCols(n);
+    BehindMatrix longer = by_next.lazyProduct(gain_);
     longer.rightCols(b) += gain.rightCols(b);
-    gain_.swap(longer);
+    gain_ = longer;
+    const NodeMatrix through = by_next.lazyProduct(noise_);
+    noise_ = run_.elimination().Remainder(k);
+    noise_ += through.lazyProduct(by_next.transpose());
     moved_ = true;
   }
+  /// What is known, at the node at hand.
   void Bring() {
     if (!moved_) return;
+    const Index n = rows_.layout().node, b = rows_.layout().border;
     ForMet([this](Index column, Index count) {
       known_.block(0, column, gain_.rows(), count) =
           (gain_ * known_.middleCols(column, count)).eval();
     });
+    const BehindMatrix with = gain_ * cov_;
+    cov_.topLeftCorner(n, n) = noise_ + with * gain_.transpose();
+    cov_.topRightCorner(n, b) = with.rightCols(b);
+    cov_.bottomLeftCorner(b, n) = with.rightCols(b).transpose();
     ResetGain();
   }
   /// Of what has been met: the columns of steps, and those of the places from the last one back.
@@ -200,7 +211,7 @@ class StopInformation::Sweep {
   }
 
   /// Covariance of `row`s A x with the end and all columns met, then the rows themselves.
-  void Join(const MatrixXd& A, std::size_t node, const EdgeMatrix& cov, Index column) {
+  void Join(const MatrixXd& A, std::size_t node, Index column) {
     MatrixXd& Z = info_.covariance_;
     const Index count = A.rows(), n = rows_.layout().node, b = rows_.layout().border;
     MatrixXd with(count, known_.cols());
@@ -216,26 +227,31 @@ class StopInformation::Sweep {
       Z.block(column, j, count, 1) = with.col(j);
       Z.block(j, column, 1, count) = with.col(j).transpose();
     }
-    const MatrixXd cov_A = cov * A.transpose();
+    const MatrixXd cov_A = cov_ * A.transpose();
     Z.block(column, column, count, count) = A * cov_A;
     known_.middleCols(column, count) = cov_A;
     for (Index i = 0; i < count; ++i) seen_[static_cast<std::size_t>(column + i)] = true;
   }
 
-  void AtNode(std::size_t node, const EdgeMatrix& cov) {
+  void AtNode(std::size_t node) {
     for (std::size_t i = 0; i < info_.places(); ++i) {
       if (rows_.stop_nodes()[i] != node) continue;
       Bring();
-      Join(RestRows(rows_, node), node, cov, info_.place_row(i));
+      Join(RestRows(rows_, node), node, info_.place_row(i));
       met_ = std::min(met_, info_.place_row(i));
     }
   }
 
-  /// y = (walk at the knot's end - that at its begin) / unit, of both axes; `later`: known_ at its
-  /// end, `with_next`: E[x (x_next; border)'].
-  void AtStep(std::size_t knot, std::size_t fault, const MatrixXd& later, const EdgeMatrix& here,
-              const EdgeMatrix& next, const BehindMatrix& with_next) {
+  /// One node back over a knot in which a gyro may step: y = (walk at the knot's end - that at its
+  /// begin) / unit, of both axes.
+  void AtStep(std::size_t knot, std::size_t fault) {
     Bring();
+    const MatrixXd later = known_;
+    const EdgeMatrix next = cov_;
+    Extend(knot);
+    const BehindMatrix with_next = gain_ * next;
+    Bring();
+    const EdgeMatrix& here = cov_;
     const Index n = rows_.layout().node, b = rows_.layout().border;
     MatrixXd& Z = info_.covariance_;
     for (int axis = 0; axis < 2; ++axis) {
@@ -255,9 +271,8 @@ class StopInformation::Sweep {
     }
   }
 
-  void JoinConstants(const EdgeMatrix& cov) {
+  void JoinConstants() {
     const Index n = rows_.layout().node;
-    Bring();
     MatrixXd& Z = info_.covariance_;
     for (std::size_t i = 0; i < constants_.size(); ++i) {
       const Index column = info_.fault_row(i), at = n + constants_[i];
@@ -268,7 +283,7 @@ class StopInformation::Sweep {
         if (j >= 2 && j < info_.place_row(0)) continue;
         Z(column, j) = Z(j, column) = with[j];
       }
-      Z(column, column) = cov(at, at) / (unit * unit);
+      Z(column, column) = cov_(at, at) / (unit * unit);
     }
   }
 
@@ -281,17 +296,19 @@ class StopInformation::Sweep {
   LinearRun::Columns end_;                                       ///< N^-1 of the end's columns
   MatrixXd known_;  ///< [node; border] with every column of the covariance
   std::vector<bool> seen_;
-  Index met_ = 0;  ///< the first column of a place that has been met
-  MatrixXd gain_;
+  Index met_ = 0;   ///< the first column of a place that has been met
+  EdgeMatrix cov_;  ///< of [node; border], where known_ stands
+  BehindMatrix gain_;
+  NodeMatrix noise_;
   bool moved_ = false;
 };
 
 StopInformation::StopInformation(const PlanCase& c, std::span<const StopPlace> places,
-                                 const RunSoFar* so_far, bool with_faults)
+                                 const InformationOptions& options)
     : places_(places.begin(), places.end()) {
   std::vector<PlannedStop> marks;
   for (const StopPlace& place : places_) marks.push_back({place.out, place.md, 0, {}});
-  const Sweep sweep(*this, c, marks, so_far, with_faults);
+  const Sweep sweep(*this, c, marks, options);
 }
 
 Eigen::Matrix<double, 2, StopInformation::kBasis> StopInformation::Mix(double turn) {

@@ -18,6 +18,15 @@ struct StopPlace {
   double toolface = 0;  ///< as the tool comes there [rad]
 };
 
+/// Of what run StopInformation is made, and how.
+struct InformationOptions {
+  /// What is left of a run of which so much is known; null: a whole one. Its end is that of the way
+  /// so far and of the way left together.
+  const RunSoFar* so_far = nullptr;
+  bool with_faults = true;  ///< else faults() is empty
+  KnotLength knots = {};
+};
+
 /// A fault's signature in one unknown: y, of unit variance before the run.
 struct HiddenFault {
   double unit = 1;    ///< of the cause, that y = 1 is
@@ -36,11 +45,9 @@ class StopInformation {
  public:
   static constexpr int kBasis = 4;  ///< rows a place: rate at the tool, two; the gyros' own, two
 
-  /// `so_far`: of what is left of a run of which so much is known; nullptr: of a whole one, whose
-  /// end is then that of the way so far and of the way left together. `with_faults`: else faults()
-  /// is empty. solved() is false where the run cannot be linearised. Throws as CheckPlanCase().
+  /// solved() is false where the run cannot be linearised. Throws as CheckPlanCase().
   StopInformation(const PlanCase& c, std::span<const StopPlace> places,
-                  const RunSoFar* so_far = nullptr, bool with_faults = true);
+                  const InformationOptions& options = {});
 
   bool solved() const { return solved_; }
   std::size_t places() const { return places_.size(); }

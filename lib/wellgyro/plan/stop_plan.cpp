@@ -130,7 +130,7 @@ StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits) {
   CheckPlanCase(c, {});
   const double length = c.way.end_md - c.way.begin_md;
   const StopInformation info(c, PlacesEvery(c.way, std::max(kSpacing, length / kPlacesMost)),
-                             nullptr, limits.hidden.has_value());
+                             {.with_faults = limits.hidden.has_value()});
   StopPlan plan;
   plan.without = ExpectEnd(c, {}, true);
   plan.best_possible = BestPossible(info, limits);

@@ -23,10 +23,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr Complex kI{0, 1};
-// Of a plan and of what is left of a run that goes on.
-constexpr double kMoveKnot = 4, kMoveKnotLeft = 12;     // [s]
-constexpr double kRollMost = 0.6, kRollMostLeft = 1.6;  // [rad] in a knot
-constexpr double kTurnKnot = 10;                        // [s] to turn to another toolface
+constexpr double kTurnKnot = 10;   // [s] to turn to another toolface
+constexpr double kTurnMost = 0.6;  // [rad] of it in a knot
 constexpr double kSigmaMd = 0.05;  // [m] of a depth mark against its neighbours
 // What a rolling tool's rate does from knot to knot beyond its plan, and what it may do where the
 // speed changes; where gravity shows the roll neither counts.
@@ -139,8 +137,9 @@ EstimateSetup SetupOfPlan(const PlanCase& c) {
 }
 
 SyntheticRun::SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops,
-                           EstimateSetup setup)
+                           EstimateSetup setup, const KnotLength& knots)
     : case_(c),
+      longest_(knots),
       setup_(std::move(setup)),
       layout_(LayoutOf(setup_)),
       stop_nodes_(stops.size(), 0),
@@ -160,8 +159,9 @@ SyntheticRun::SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops
 }
 
 SyntheticRun::SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops,
-                           const RunSoFar& so_far)
+                           const RunSoFar& so_far, const KnotLength& knots)
     : case_(c),
+      longest_(knots),
       before_(so_far.state),
       setup_(so_far.state->setup),
       layout_(LayoutOf(setup_)),
@@ -245,9 +245,7 @@ void SyntheticRun::AddMove(double to_md, double speed) {
   const bool rolls = way.roll_rate != 0;
   const double fastest =
       rolls ? std::abs(way.roll_rate) : kTwoPi * std::abs(way.swing) / way.swing_period;
-  const double most = before_ != nullptr ? kRollMostLeft : kRollMost;
-  const double knot =
-      std::min(before_ != nullptr ? kMoveKnotLeft : kMoveKnot, most / std::max(fastest, 1e-6));
+  const double knot = std::min(longest_.seconds, longest_.roll / std::max(fastest, 1e-6));
   const auto count = static_cast<int>(std::ceil(seconds / knot - 1e-9));
   for (int i = 1; i <= count; ++i) {
     // By the time on the move: a stop does not change how the tool comes to the next one.
@@ -273,7 +271,7 @@ double SyntheticRun::ToolfaceNow() const {
 
 void SyntheticRun::AddTurn(double toolface) {
   const double roll = WrapPi(toolface - ToolfaceNow());
-  const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(roll) / kRollMost)));
+  const auto count = std::max(1, static_cast<int>(std::ceil(std::abs(roll) / kTurnMost)));
   for (int i = 0; i < count; ++i) {
     AddKnot(kTurnKnot / count, nodes_.back().md, roll / count, false);
   }

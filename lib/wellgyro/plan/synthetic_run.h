@@ -19,16 +19,17 @@ namespace wellgyro {
 /// path of the plan, for increments of perfect sensors. No sample is made; what they say of the
 /// unknowns depends on where the tool is and how it turns, not on what it happens to read.
 ///
-/// Knots are of 4 s, less where the tool rolls fast, and of 10 s at rest: on smooth wells the end's
-/// covariance is that of 1 s knots within 1 %.
+/// Knots are of 10 s at rest.
 class SyntheticRun : public RunRows {
  public:
   /// `stops` in any order, those of no length marking a node only. `setup` is taken but for site
   /// and ties. Throws as CheckPlanCase().
-  SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, EstimateSetup setup);
+  SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, EstimateSetup setup,
+               const KnotLength& knots = {});
   /// What is left of a run of which so much is known, by its setup; that must outlive this object.
   /// The hole goes on to depart from its plan as it does there, a sliding tool to swing as planned.
-  SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, const RunSoFar& so_far);
+  SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops, const RunSoFar& so_far,
+               const KnotLength& knots = {});
   SyntheticRun(const SyntheticRun&) = delete;
   SyntheticRun& operator=(const SyntheticRun&) = delete;
 
@@ -60,6 +61,7 @@ class SyntheticRun : public RunRows {
   void MakeIncrements();
 
   const PlanCase& case_;
+  const KnotLength longest_;
   const RunState* before_ = nullptr;
   /// Turns the hole's direction as planned to what it is where `before_` stands [rad].
   Eigen::Vector3d departs_ = Eigen::Vector3d::Zero();
