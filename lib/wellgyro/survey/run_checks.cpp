@@ -38,6 +38,7 @@ double SigmaOfChange(const NoiseCoefficients& gyro, double seconds) {
 void CheckBiases(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
   const NorthFix *first = nullptr, *where = nullptr;
   Measured worst;
+  double looks = 0;
   for (const NorthFix& fix : run.fixes) {
     if (!fix.gyro_bias) continue;
     if (first == nullptr) {
@@ -45,7 +46,7 @@ void CheckBiases(const Job& job, const RunSummary& run, std::vector<Check>& chec
       continue;
     }
     const double change = SigmaOfChange(job.noise, (fix.utc_end - first->utc_end).seconds());
-    for (int axis = 0; axis < 2; ++axis) {
+    for (int axis = 0; axis < 2; ++axis, ++looks) {
       const Measured off{
           (*fix.gyro_bias)[axis] - (*first->gyro_bias)[axis],
           std::hypot(fix.sigma_gyro_bias[axis], first->sigma_gyro_bias[axis], change)};
@@ -62,6 +63,7 @@ void CheckBiases(const Job& job, const RunSummary& run, std::vector<Check>& chec
   checks.push_back(
       Compare("bias_repeatability", run.run, worst, std::nullopt, units::kDegPerHour, "deg/h"));
   checks.back().md = where->md;
+  checks.back().looks = looks;
 }
 
 /// The gyros' azimuth at each stop against the magnetic one.
