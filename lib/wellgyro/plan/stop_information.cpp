@@ -90,7 +90,7 @@ class StopInformation::Sweep {
       const int at = BorderColumn(rows_.layout(), cause.unknown);
       if (at == kAbsent) continue;
       constants_.push_back(at);
-      info_.faults_.push_back({rows_.layout().sigma[at], cause.size, 1});
+      info_.faults_.push_back({rows_.layout().sigma[at], cause.size, 0});
     }
   }
 
@@ -108,7 +108,8 @@ class StopInformation::Sweep {
       step_knots_.emplace_back(knot, info_.faults_.size());
       const double unit =
           setup.gyro.rate_random_walk * std::sqrt(rows_.knots()[knot].increment.seconds);
-      for (int axis = 0; axis < 2; ++axis) info_.faults_.push_back({unit, step->size, kOnsets});
+      for (int axis = 0; axis < 2; ++axis)
+        info_.faults_.push_back({unit, step->size, std::log(kOnsets)});
     }
   }
 

@@ -29,9 +29,9 @@ struct InformationOptions {
 
 /// A fault's signature in one unknown: y, of unit variance before the run.
 struct HiddenFault {
-  double unit = 1;    ///< of the cause, that y = 1 is
-  double size = 1;    ///< of CauseSpec
-  double onsets = 1;  ///< that are looked at together and are not alike
+  double unit = 1;       ///< of the cause, that y = 1 is
+  double size = 1;       ///< of CauseSpec
+  double ln_onsets = 0;  ///< ln of those that are looked at together and are not alike
 };
 
 /// What a run without stops knows of its end, of its faults and of what each stop would measure,

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "wellgyro/math/square.h"
 #include "wellgyro/plan/synthetic_run.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
@@ -21,8 +22,12 @@ using Eigen::Vector2d;
 // its spec's, beyond which it need not be looked for.
 constexpr double kPower = 0.8416212335729143;
 constexpr double kLargest = 5;
-constexpr double kSoft = 16;           // order of the mean that stands for the largest
+// Of the mean of order 16 that stands for the largest, what a fault must have to count.
+constexpr double kCounts = 1e-12;
 constexpr double kLeastSeconds = 0.5;  // a stop that has less is none
+
+double Power16(double x) { return Square(Square(Square(Square(x)))); }
+double Root16(double x) { return std::sqrt(std::sqrt(std::sqrt(std::sqrt(x)))); }
 
 double Axis(const Matrix2d& cov) {
   static const double factor = ConfidenceFactor(0.95, 2);
@@ -61,10 +66,13 @@ Matrix2d StopStand::Weight(const Rest& rest) const {
   return S.inverse();
 }
 
-double StopStand::Hidden(std::size_t fault, double variance, const Vector2d& with_end) const {
-  const HiddenFault& f = info_->faults()[fault];
+double StopStand::Largest(const HiddenFault& f, const Vector2d& with_end) {
+  return kLargest * f.size * with_end.norm() / f.unit;
+}
+
+double StopStand::Hidden(const HiddenFault& f, double variance, const Vector2d& with_end) const {
   const double m = std::max(1e-12, 1 - variance) / (f.unit * f.unit), vm = f.size * f.size * m;
-  const double w2 = (1 + 1 / vm) * (2 * (info_->ln_limit() + std::log(f.onsets)) + std::log1p(vm));
+  const double w2 = (1 + 1 / vm) * (2 * (info_->ln_limit() + f.ln_onsets) + std::log1p(vm));
   const double smallest = (std::sqrt(w2) + kPower) / std::sqrt(m);
   return std::min(smallest, kLargest * f.size) * with_end.norm() / f.unit;
 }
@@ -73,7 +81,7 @@ PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns,
                              const Matrix2d& weight) const {
   PlanValue value;
   value.ellipse = Axis(end);
-  double sum = std::pow(value.ellipse / ellipse_limit_, kSoft);
+  double sum = Power16(value.ellipse / ellipse_limit_);
   for (std::size_t i = 0; std::isfinite(hidden_limit_) && i < info_->faults().size(); ++i) {
     const Index row = info_->fault_row(i);
     double variance = covariance_(row, row);
@@ -83,11 +91,14 @@ PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns,
       variance -= columns->row(row).dot(u);
       with_end -= columns->topRows<2>() * u;
     }
-    const double hidden = Hidden(i, variance, with_end);
+    const HiddenFault& fault = info_->faults()[i];
+    const double largest = Largest(fault, with_end);
+    if (largest < value.hidden && Power16(largest / hidden_limit_) < kCounts * sum) continue;
+    const double hidden = Hidden(fault, variance, with_end);
     value.hidden = std::max(value.hidden, hidden);
-    sum += std::pow(hidden / hidden_limit_, kSoft);
+    sum += Power16(hidden / hidden_limit_);
   }
-  value.soft = std::pow(sum, 1 / kSoft);
+  value.soft = Root16(sum);
   return value;
 }
 

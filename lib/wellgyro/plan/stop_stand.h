@@ -55,7 +55,9 @@ class StopStand {
   Eigen::Matrix2d Weight(const Rest& rest) const;
   PlanValue ValueOf(const Eigen::Matrix2d& end, const Pair* columns,
                     const Eigen::Matrix2d& weight) const;
-  double Hidden(std::size_t fault, double variance, const Eigen::Vector2d& with_end) const;
+  /// What a fault may do unseen; never more than the largest that is looked for.
+  double Hidden(const HiddenFault& fault, double variance, const Eigen::Vector2d& with_end) const;
+  static double Largest(const HiddenFault& fault, const Eigen::Vector2d& with_end);
 
   const StopInformation* info_;
   double ellipse_limit_, hidden_limit_;
