@@ -91,7 +91,7 @@ class Plan(unittest.TestCase):
     def test_what_no_plan_meets_is_said(self):
         done = self.Plan("--ellipse-m", "0.2")
         self.assertEqual(done.returncode, 4, done.stderr)
-        self.assertIn("not feasible: no plan has an ellipse of 0.20 m", done.stdout)
+        self.assertIn("not feasible: no plan has an ellipse of 0.2 m", done.stdout)
         plan = self.Toml()
         self.assertFalse(plan["feasible"])
         self.assertNotIn("stop", plan)

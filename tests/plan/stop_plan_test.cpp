@@ -181,7 +181,7 @@ TEST(StopPlan, SaysPlainlyWhereNoPlanMeetsALimit) {
   EXPECT_FALSE(ellipse.feasible);
   EXPECT_TRUE(ellipse.stops.empty());
   EXPECT_FALSE(ellipse.least_at_rest);
-  EXPECT_NE(ellipse.why_not.find("no plan has an ellipse of 0.30 m"), std::string::npos);
+  EXPECT_NE(ellipse.why_not.find("no plan has an ellipse of 0.3 m"), std::string::npos);
   const StopPlan hidden = PlanStops(c, {.ellipse = 7, .hidden = 0.2});
   EXPECT_FALSE(hidden.feasible);
   EXPECT_NE(hidden.why_not.find("unseen"), std::string::npos);

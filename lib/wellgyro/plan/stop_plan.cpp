@@ -66,20 +66,19 @@ std::vector<StopWorth> WorthOf(const PlanCase& c, const StopPlan& plan, const St
 std::string WhyNot(const PlanLimits& limits, const PlanValue& best, const ExpectedEnd& expected) {
   if (best.ellipse > limits.ellipse) {
     return fmt::format(
-        "no plan has an ellipse of {:.2f} m: an hour at rest at every fortieth of the way leaves "
+        "no plan has an ellipse of {:g} m: an hour at rest at every fortieth of the way leaves "
         "{:.2f} m",
         limits.ellipse, best.ellipse);
   }
   if (limits.hidden && best.hidden > *limits.hidden) {
     return fmt::format(
-        "no plan shows every fault that moves the end by {:.2f} m: after an hour at rest at every "
+        "no plan shows every fault that moves the end by {:g} m: after an hour at rest at every "
         "fortieth of the way one of {:.2f} m stays unseen",
         *limits.hidden, best.hidden);
   }
   if (limits.hidden && expected.hidden > *limits.hidden * kMet) {
     return fmt::format(
-        "{} may still move the end by {:.2f} m and stay unseen, above {:.2f} m: the search found "
-        "no "
+        "{} may still move the end by {:.2f} m and stay unseen, above {:g} m: the search found no "
         "stops that show it",
         expected.hidden_cause, expected.hidden, *limits.hidden);
   }
