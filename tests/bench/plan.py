@@ -2,19 +2,21 @@
 """What a plan says of the well's end against runs that follow it: simulated, surveyed, compared.
 
   python3 tests/bench/plan.py PROGRAM [--runs 4] [--long] [--wells slant,s,...] [--tools fine,...]
-                              [--jobs 2] [--toolfaces]
+                              [--jobs 2] [--toolfaces] [--cost]
 
 For each well and tool the stops are planned for the ellipse that three minutes every 300 m come to.
 `--long`: 200 runs each. Their tools' errors are drawn from the job's own priors. `stated`: root of
 the mean horizontal variance that the surveys state of the end, over that of the plan; `true`: rms of
 their horizontal errors over it, with its own sigma. A survey that fails states nothing; it counts
-under `failed`. Seeds are fixed: the same figures each time."""
+under `failed`, and its first cause is told. `--cost`: instead, processor seconds of plans of a well
+of 5 km. Seeds are fixed: the same figures each time."""
 import argparse
 import concurrent.futures
 import csv
 import itertools
 import math
 import os
+import resource
 import subprocess
 import tempfile
 import tomllib
@@ -64,16 +66,8 @@ def Write(folder, name, text):
 
 def Prepare(program, folder, well, tool, more):
     """Writes well, job and plan; what the plan says of the end."""
-    stations, latitude, rpm = WELLS[well]
-    noise, errors = Scaled(NOISE, TOOLS[tool]), Scaled(ERRORS, TOOLS[tool])
-    path = Write(folder, "well.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n" +
-                 "".join(f"{md},{inc},{azi}\n" for md, inc, azi in stations))
-    first = stations[0][0]
-    job = Write(folder, "job.toml",
-                f'format = "wellgyro.job/1"\n[well]\nname = "{well}"\nlatitude_deg = {latitude}\n'
-                f"[tie_in]\nmd_m = {first}.0\ntvd_m = {first}.0\n"
-                f"[noise]\n{Lines(noise)}[errors]\n{Lines(errors | NONE)}[stations]\nevery_m = 30\n")
-    Write(folder, "tool.toml", Lines(noise | errors))
+    _, _, rpm = WELLS[well]
+    path, job = WriteCase(folder, well, *WELLS[well][:2], tool)
 
     def Plan(ellipse, *more):
         subprocess.run([program, "plan", "--well", path, "--tool", job, "--ellipse-m",
@@ -86,8 +80,40 @@ def Prepare(program, folder, well, tool, more):
     return Plan(practice["ellipse_major_m"], *more)
 
 
+def WriteCase(folder, well, stations, latitude, tool):
+    """Files of the well, the job and the tool; the first two."""
+    noise, errors = Scaled(NOISE, TOOLS[tool]), Scaled(ERRORS, TOOLS[tool])
+    path = Write(folder, "well.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n" +
+                 "".join(f"{md},{inc},{azi}\n" for md, inc, azi in stations))
+    first = stations[0][0]
+    job = Write(folder, "job.toml",
+                f'format = "wellgyro.job/1"\n[well]\nname = "{well}"\nlatitude_deg = {latitude}\n'
+                f"[tie_in]\nmd_m = {first}.0\ntvd_m = {first}.0\n"
+                f"[noise]\n{Lines(noise)}[errors]\n{Lines(errors | NONE)}[stations]\nevery_m = 30\n")
+    Write(folder, "tool.toml", Lines(noise | errors))
+    return path, job
+
+
+def Cost(program):
+    """Of plans of a well that builds to 60 deg in 5 km, the practice beside them."""
+    stations = [(md, min(60, 5 + 0.025 * (md - 100)), 40 + 0.002 * (md - 100))
+                for md in range(100, 5101, 100)]
+    for more in ([], ["--hidden-m", "16"], ["--toolfaces"]):
+        with tempfile.TemporaryDirectory() as folder:
+            path, job = WriteCase(folder, "long", stations, 60.0, "fibre")
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            done = subprocess.run([program, "plan", "--well", path, "--tool", job, "--ellipse-m",
+                                   "8.56", "--roll-rpm", "1", "--practice",
+                                   "every_m=300,stop_s=180", "--out", os.path.join(folder, "plan"),
+                                   *more], check=True, capture_output=True, text=True)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        told = next(line for line in done.stdout.splitlines() if line.startswith("plan:"))
+        print(f"{seconds:.2f} s of a processor {' '.join(more)}: {told}", flush=True)
+
+
 def Follow(program, folder, well, seed):
-    """One run as planned: exit code, horizontal variance stated, error, normalised square."""
+    """One run as planned: horizontal variance stated, error, normalised square; or why none."""
     stations, latitude, _ = WELLS[well]
     rows = ", ".join(f"[{md:.1f}, {inc:.2f}, {azi:.2f}]" for md, inc, azi in stations)
     with open(os.path.join(folder, "tool.toml"), encoding="utf-8") as file:
@@ -108,7 +134,9 @@ def Follow(program, folder, well, seed):
         truth = max(csv.DictReader(file), key=lambda row: float(row["MD[m]"]))
     os.remove(log)
     if done.returncode == 4 or not last["VAR_NN[m2]"]:
-        return None
+        with open(os.path.join(out, "run.toml"), "rb") as file:
+            causes = tomllib.load(file)["verdict"]["causes"]
+        return f"seed {seed}: {(causes or ['no position'])[0]}"
     n, e = (float(last[key]) - float(truth[key]) for key in ("N[m]", "E[m]"))
     a, b, d = (float(last[key]) for key in ("VAR_NN[m2]", "COV_NE[m2]", "VAR_EE[m2]"))
     return a + d, n * n + e * e, (d * n * n - 2 * b * n * e + a * e * e) / (a * d - b * b)
@@ -117,7 +145,7 @@ def Follow(program, folder, well, seed):
 def Show(well, tool, plan, runs):
     expected, factor = plan["expected"], 2 * math.log(20)
     planned = (expected["ellipse_major_m"]**2 + expected["ellipse_minor_m"]**2) / factor
-    told = [run for run in runs if run]
+    told = [run for run in runs if not isinstance(run, str)]
     stated = math.sqrt(sum(run[0] for run in told) / len(told) / planned)
     true = math.sqrt(sum(run[1] for run in told) / len(told) / planned)
     # A sum of squares along the ellipse's two axes, of which the larger has most.
@@ -127,6 +155,9 @@ def Show(well, tool, plan, runs):
     print(f"| {well}, {tool} | {expected['ellipse_major_m']:.2f} m, {len(plan['stop'])} stops, "
           f"{plan['time']['at_rest_s']:.0f} s | {len(told)} | {len(runs) - len(told)} | "
           f"{stated:.3f} | {true:.3f} +- {spread:.3f} | {square:.2f} |", flush=True)
+    for run in runs:
+        if isinstance(run, str):
+            print(f"  {run}", flush=True)
     return stated
 
 
@@ -139,8 +170,11 @@ def main():
     parser.add_argument("--tools", default=",".join(TOOLS))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--toolfaces", action="store_true", help="plans choose toolfaces too")
+    parser.add_argument("--cost", action="store_true", help="processor seconds of long plans")
     options = parser.parse_args()
     program = os.path.abspath(options.program)
+    if options.cost:
+        return Cost(program)
     seeds = range(1, (200 if options.long else options.runs) + 1)
     print("| well, tool | planned | runs | failed | stated | true | normalised square of 2 |\n"
           "|---|---|---|---|---|---|---|", flush=True)
@@ -151,7 +185,7 @@ def main():
             plan = Prepare(program, folder, well, tool,
                            ["--toolfaces"] if options.toolfaces else [])
             runs = list(pool.map(lambda seed: Follow(program, folder, well, seed), seeds))
-            if any(runs):
+            if not all(isinstance(run, str) for run in runs):
                 ratios.append(Show(well, tool, plan, runs))
     print(f"stated over planned: {min(ratios):.3f} to {max(ratios):.3f}")
 

@@ -71,6 +71,7 @@ TEST(LiveAdvice, LongerKnotsSayOfStopsWhatThePlanDoes) {
   for (const PlanCase& c : {test::Slant(), test::SShape(), test::Horizontal()}) {
     const auto places = PlacesEvery(c.way, 150);
     const StopInformation info(c, places, {.with_faults = false, .knots = kAdviceKnots});
+    ASSERT_TRUE(info.solved());
     StopStand stand(info, 5, HUGE_VAL);
     std::vector<PlannedStop> stops;
     for (const std::size_t i : {std::size_t{0}, std::size_t{5}, places.size() / 2 + 4}) {

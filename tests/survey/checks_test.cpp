@@ -202,8 +202,8 @@ TEST(Checks, BiasesOfLaterStopsAreHeldToTheFirstByWhatTheToolMayDrift) {
   job.noise.rate_random_walk = 0.1 * units::kDegPerHourSqrtHour;
   EXPECT_EQ(Find(Checks(job, {}, {first, last}), "bias_repeatability").verdict, Verdict::kPass);
   EXPECT_EQ(Find(Checks(job, {}, {last}), "bias_repeatability").verdict, Verdict::kNotDone);
-  // The worst of two axes at each stop behind the first: 3 of 200 clean runs of six stops failed
-  // while it counted as one comparison.
+  // The worst of two axes at each stop behind the first: 3 of 200 clean runs with six comparisons
+  // failed while it counted as one.
   EXPECT_EQ(check.looks, 2);
   EXPECT_EQ(Find(Checks(job, {}, {first, first, last}), "bias_repeatability").looks, 4);
 }

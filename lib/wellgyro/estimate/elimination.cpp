@@ -238,14 +238,14 @@ NodeMatrix Elimination::Remainder(std::size_t k) const {
   return inverse.transpose() * inverse;
 }
 
-EdgeMatrix Elimination::CovarianceBefore(std::size_t k, const BehindMatrix& gain,
-                                         const EdgeMatrix& next, BehindMatrix& with_next) const {
-  const int n = layout_->node, b = layout_->border;
+EdgeMatrix Elimination::CovarianceThrough(const BehindMatrix& gain, const NodeMatrix& remainder,
+                                          const EdgeMatrix& next, BehindMatrix& with_next) {
+  const Index n = gain.rows(), b = gain.cols() - n;
   Multiply(gain, next, with_next);
   NodeMatrix by_next;
   Multiply(with_next, gain, by_next);
   EdgeMatrix before(n + b, n + b);
-  before.topLeftCorner(n, n) = Remainder(k) + by_next;
+  before.topLeftCorner(n, n) = remainder + by_next;
   before.topRightCorner(n, b) = with_next.rightCols(b);
   before.bottomLeftCorner(b, n) = with_next.rightCols(b).transpose();
   before.bottomRightCorner(b, b) = next.bottomRightCorner(b, b);

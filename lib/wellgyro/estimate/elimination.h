@@ -43,7 +43,13 @@ class Elimination {
   /// From the covariance of [node k + 1; border] to that of [node k; border], with Gain(k);
   /// `with_next` becomes E[x_k (x_k+1; border)'].
   EdgeMatrix CovarianceBefore(std::size_t k, const BehindMatrix& gain, const EdgeMatrix& next,
-                              BehindMatrix& with_next) const;
+                              BehindMatrix& with_next) const {
+    return CovarianceThrough(gain, Remainder(k), next, with_next);
+  }
+  /// The same over any number of nodes, whose conditionals together are
+  ///   x = gain [x_next; border] + e,   cov(e) = `remainder`.
+  static EdgeMatrix CovarianceThrough(const BehindMatrix& gain, const NodeMatrix& remainder,
+                                      const EdgeMatrix& next, BehindMatrix& with_next);
   /// Solves for other right-hand sides, one a column of `x` over [node k | next node | border],
   /// from node to node: Eliminate() divides node k by L and takes from what follows what it told;
   /// Substitute(), where what follows is solved, ends node k.

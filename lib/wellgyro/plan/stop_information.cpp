@@ -108,8 +108,8 @@ class StopInformation::Sweep {
       step_knots_.emplace_back(knot, info_.faults_.size());
       const double unit =
           setup.gyro.rate_random_walk * std::sqrt(rows_.knots()[knot].increment.seconds);
-      for (int axis = 0; axis < 2; ++axis)
-        info_.faults_.push_back({unit, step->size, std::log(kOnsets)});
+      const HiddenFault fault{unit, step->size, std::log(kOnsets)};
+      info_.faults_.insert(info_.faults_.end(), 2, fault);  // of either axis
     }
   }
 
@@ -192,15 +192,11 @@ class StopInformation::Sweep {
   /// What is known, at the node at hand.
   void Bring() {
     if (!moved_) return;
-    const Index n = rows_.layout().node, b = rows_.layout().border;
     ForMet([this](Index column, Index count) {
       known_.block(0, column, gain_.rows(), count) =
           (gain_ * known_.middleCols(column, count)).eval();
     });
-    const BehindMatrix with = gain_ * cov_;
-    cov_.topLeftCorner(n, n) = noise_ + with * gain_.transpose();
-    cov_.topRightCorner(n, b) = with.rightCols(b);
-    cov_.bottomLeftCorner(b, n) = with.rightCols(b).transpose();
+    cov_ = Elimination::CovarianceThrough(gain_, noise_, cov_, with_last_);
     ResetGain();
   }
   /// Of what has been met: the columns of steps, and those of the places from the last one back.
@@ -250,9 +246,9 @@ class StopInformation::Sweep {
     const MatrixXd later = known_;
     const EdgeMatrix next = cov_;
     Extend(knot);
-    const BehindMatrix with_next = gain_ * next;
     Bring();
     const EdgeMatrix& here = cov_;
+    const BehindMatrix& with_next = with_last_;
     const Index n = rows_.layout().node, b = rows_.layout().border;
     MatrixXd& Z = info_.covariance_;
     for (int axis = 0; axis < 2; ++axis) {
@@ -297,8 +293,9 @@ class StopInformation::Sweep {
   LinearRun::Columns end_;                                       ///< N^-1 of the end's columns
   MatrixXd known_;  ///< [node; border] with every column of the covariance
   std::vector<bool> seen_;
-  Index met_ = 0;   ///< the first column of a place that has been met
-  EdgeMatrix cov_;  ///< of [node; border], where known_ stands
+  Index met_ = 0;           ///< the first column of a place that has been met
+  EdgeMatrix cov_;          ///< of [node; border], where known_ stands
+  BehindMatrix with_last_;  ///< E[x (x; border)'] of that node with where it stood before
   BehindMatrix gain_;
   NodeMatrix noise_;
   bool moved_ = false;

@@ -96,7 +96,9 @@ class Search {
 
   void Try(const StopStand& stand, const Rest& rest, double cost, double before,
            Choice& best) const {
-    const double after = std::max(best.enough, std::log(stand.ValueWith(rest).soft));
+    // What gains less than the best is not looked at to the end.
+    const double most = std::exp(before - best.gain * cost);
+    const double after = std::max(best.enough, std::log(stand.ValueWith(rest, most).soft));
     const double gain = (before - after) / cost;
     if (gain > best.gain) best = {rest, gain, best.enough};
   }

@@ -77,10 +77,11 @@ double StopStand::Hidden(const HiddenFault& f, double variance, const Vector2d& 
   return std::min(smallest, kLargest * f.size) * with_end.norm() / f.unit;
 }
 
-PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns,
-                             const Matrix2d& weight) const {
-  PlanValue value;
+PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns, const Matrix2d& weight,
+                             double soft_most) const {
+  PlanValue value{.soft = HUGE_VAL};
   value.ellipse = Axis(end);
+  const double most = Power16(soft_most);
   double sum = Power16(value.ellipse / ellipse_limit_);
   for (std::size_t i = 0; std::isfinite(hidden_limit_) && i < info_->faults().size(); ++i) {
     const Index row = info_->fault_row(i);
@@ -97,21 +98,23 @@ PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns,
     const double hidden = Hidden(fault, variance, with_end);
     value.hidden = std::max(value.hidden, hidden);
     sum += Power16(hidden / hidden_limit_);
+    if (sum > most) return value;
   }
   value.soft = Root16(sum);
   return value;
 }
 
 PlanValue StopStand::Value() const {
-  return ValueOf(covariance_.topLeftCorner<2, 2>(), nullptr, Matrix2d::Zero());
+  return ValueOf(covariance_.topLeftCorner<2, 2>(), nullptr, Matrix2d::Zero(), HUGE_VAL);
 }
 
-PlanValue StopStand::ValueWith(const Rest& rest) const {
+PlanValue StopStand::ValueWith(const Rest& rest, double soft_most) const {
+  const Matrix2d weight = Weight(rest), of_end = Columns(rest, 2);
+  const Matrix2d end = covariance_.topLeftCorner<2, 2>() - of_end * weight * of_end.transpose();
+  // The ellipse alone may say it all.
+  if (Axis(end) > soft_most * ellipse_limit_) return {.ellipse = Axis(end), .soft = HUGE_VAL};
   const Pair columns = Columns(rest, std::isfinite(hidden_limit_) ? info_->place_row(0) : 2);
-  const Matrix2d weight = Weight(rest);
-  const Matrix2d end = covariance_.topLeftCorner<2, 2>() -
-                       columns.topRows<2>() * weight * columns.topRows<2>().transpose();
-  return ValueOf(end, &columns, weight);
+  return ValueOf(end, &columns, weight, soft_most);
 }
 
 void StopStand::Add(const Rest& rest) {

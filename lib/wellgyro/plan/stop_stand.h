@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -34,9 +35,10 @@ class StopStand {
   /// `hidden_limit` HUGE_VAL: faults do not count. `info` must outlive this object.
   StopStand(const StopInformation& info, double ellipse_limit, double hidden_limit);
 
-  /// The value as it stands, and with `rest` too; negative seconds take away.
+  /// The value as it stands, and with `rest` too; negative seconds take away. Where `soft` is above
+  /// `soft_most` it may be infinite, and `hidden` not the largest: that is found out sooner.
   PlanValue Value() const;
-  PlanValue ValueWith(const Rest& rest) const;
+  PlanValue ValueWith(const Rest& rest, double soft_most = HUGE_VAL) const;
   void Add(const Rest& rest);
   /// Forgets all places but these, and those with stops.
   void Keep(std::span<const std::size_t> places);
@@ -53,8 +55,8 @@ class StopStand {
   using Pair = Eigen::Matrix<double, Eigen::Dynamic, 2>;
   Pair Columns(const Rest& rest, Eigen::Index rows) const;
   Eigen::Matrix2d Weight(const Rest& rest) const;
-  PlanValue ValueOf(const Eigen::Matrix2d& end, const Pair* columns,
-                    const Eigen::Matrix2d& weight) const;
+  PlanValue ValueOf(const Eigen::Matrix2d& end, const Pair* columns, const Eigen::Matrix2d& weight,
+                    double soft_most) const;
   /// What a fault may do unseen; never more than the largest that is looked for.
   double Hidden(const HiddenFault& fault, double variance, const Eigen::Vector2d& with_end) const;
   static double Largest(const HiddenFault& fault, const Eigen::Vector2d& with_end);
