@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "wellgyro/plan/stop_pairs.h"
@@ -145,6 +147,64 @@ TEST(StopPairs, TheBestOfTwoIsTheBestThatTryingFinds) {
     EXPECT_EQ(cost, least);
     EXPECT_FALSE(BestOfTwo(info, limits, least));
     std::printf("%zu stops, %.0f s\n", best->size(), cost);
+  }
+}
+
+/// Covariance of end and faults after stops, all their rows at once: A - C (S + V)^-1 C'.
+Eigen::MatrixXd CovarianceAfter(const StopInformation& info,
+                                const std::vector<StopStand::Rest>& stops) {
+  const Eigen::Index size = info.covariance().rows(), rows = 2 * std::ssize(stops);
+  Eigen::MatrixXd mix = Eigen::MatrixXd::Zero(rows, size);
+  Eigen::VectorXd noise(rows);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const auto at = 2 * static_cast<Eigen::Index>(i);
+    mix.block(at, info.place_row(stops[i].place), 2, StopInformation::kBasis) =
+        StopInformation::Mix(stops[i].turn);
+    noise.segment<2>(at).setConstant(10 / stops[i].seconds);  // of unit variance in ten seconds
+  }
+  const Eigen::MatrixXd S = mix * info.covariance() * mix.transpose(),
+                        C = info.covariance() * mix.transpose();
+  const Eigen::MatrixXd V = noise.asDiagonal();
+  return info.covariance() - C * (S + V).llt().solve(C.transpose());
+}
+
+// Rank-two updates of a triangle, a stop at a time, and what stays unseen of the worst fault.
+TEST(StopStand, ComesToTheCovarianceOfAllStopsAtOnce) {
+  const PlanCase c = Fast(test::SShape());
+  const StopInformation info(c, PlacesEvery(c.way, 300));
+  const std::vector<StopStand::Rest> stops{{9, 0, 120}, {3, 2.1, 90}, {9, 0, 60}, {5, 0.4, 300}};
+  StopStand stand(info, 5, 20);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const PlanValue looked_at = stand.ValueWith(stops[i]), before = stand.Value();
+    // Looked at with a bound it is the same, or told to be above it.
+    EXPECT_EQ(stand.ValueWith(stops[i], 1.01 * looked_at.soft).soft, looked_at.soft);
+    EXPECT_EQ(stand.ValueWith(stops[i], 0.99 * looked_at.soft).soft, HUGE_VAL);
+    stand.Add(stops[i]);
+    const PlanValue value = stand.Value();
+    EXPECT_LT(value.soft, before.soft);
+    EXPECT_NEAR(looked_at.ellipse, value.ellipse, 1e-9 * value.ellipse);
+    EXPECT_NEAR(looked_at.hidden, value.hidden, 1e-9 * value.hidden);
+    EXPECT_NEAR(looked_at.soft, value.soft, 1e-9 * value.soft);
+
+    const Eigen::MatrixXd after =
+        CovarianceAfter(info, {stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(i) + 1});
+    const Eigen::Matrix2d end = after.topLeftCorner<2, 2>();
+    const double axis = std::sqrt(
+        2 * std::log(20) * Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(end).eigenvalues()[1]);
+    EXPECT_NEAR(value.ellipse, axis, 1e-9 * axis);
+    double hidden = 0;
+    for (std::size_t f = 0; f < info.faults().size(); ++f) {
+      const HiddenFault& fault = info.faults()[f];
+      const Eigen::Index row = info.fault_row(f);
+      // Noticed at a Bayes factor of this limit, in four runs of five.
+      const double m = (1 - after(row, row)) / (fault.unit * fault.unit);
+      const double vm = fault.size * fault.size * m;
+      const double w =
+          std::sqrt((1 + vm) / vm * (2 * (info.ln_limit() + fault.ln_onsets) + std::log(1 + vm)));
+      const double smallest = std::min((w + 0.8416212335729143) / std::sqrt(m), 5 * fault.size);
+      hidden = std::max(hidden, smallest / fault.unit * after.col(row).head<2>().norm());
+    }
+    EXPECT_NEAR(value.hidden, hidden, 1e-6 * hidden);
   }
 }
 

@@ -116,11 +116,18 @@ Matrix3d Freedom(const Factor& f, const BlockMatrix& cov) {
   return 0.5 * (p + p.transpose());
 }
 
+Diagnosis Untested(std::size_t specs) {
+  Diagnosis d;
+  d.tests.resize(specs);
+  d.alike.setZero(At(specs), At(specs));
+  return d;
+}
+
 class Diagnoser {
  public:
-  Diagnoser(RunRows& rows, std::span<const CauseSpec> specs, double false_alarm_rate,
+  Diagnoser(const LinearRun& solved, std::span<const CauseSpec> specs, double false_alarm_rate,
             const Vector3d& end_by_depth_scale)
-      : run_(rows), specs_(specs), end_by_depth_scale_(end_by_depth_scale) {
+      : run_(solved), specs_(specs), end_by_depth_scale_(end_by_depth_scale) {
     // The odds of one cause alone must reach this for those of all to pass the alarm.
     const double limit =
         std::log(static_cast<double>(std::max<std::size_t>(specs.size(), 1)) / false_alarm_rate);
@@ -128,11 +135,7 @@ class Diagnoser {
   }
 
   Diagnosis Run(std::span<const Matrix3d> end_by_phi) {
-    Diagnosis d;
-    d.tests.resize(specs_.size());
-    const auto count = static_cast<Index>(specs_.size());
-    d.alike.setZero(count, count);
-    if (!run_.Solve()) return d;
+    Diagnosis d = Untested(specs_.size());
     influence_.emplace(run_, end_by_phi);
     Forward();
     Backward();
@@ -288,7 +291,7 @@ class Diagnoser {
   void CompareSignatures(Diagnosis& d) const;
   void AddOdds(Diagnosis& d) const;
 
-  LinearRun run_;
+  const LinearRun& run_;
   std::span<const CauseSpec> specs_;
   Vector3d end_by_depth_scale_;
   std::vector<Looks> looks_;
@@ -410,7 +413,15 @@ void Diagnoser::AddOdds(Diagnosis& d) const {
 Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
                    std::span<const Matrix3d> end_by_phi, double false_alarm_rate,
                    const Vector3d& end_by_depth_scale) {
-  return Diagnoser(rows, specs, false_alarm_rate, end_by_depth_scale).Run(end_by_phi);
+  LinearRun run(rows);
+  if (!run.Solve()) return Untested(specs.size());
+  return Diagnose(run, specs, end_by_phi, false_alarm_rate, end_by_depth_scale);
+}
+
+Diagnosis Diagnose(const LinearRun& solved, std::span<const CauseSpec> specs,
+                   std::span<const Matrix3d> end_by_phi, double false_alarm_rate,
+                   const Vector3d& end_by_depth_scale) {
+  return Diagnoser(solved, specs, false_alarm_rate, end_by_depth_scale).Run(end_by_phi);
 }
 
 }  // namespace wellgyro

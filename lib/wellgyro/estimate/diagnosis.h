@@ -66,5 +66,9 @@ struct Diagnosis {
 WELLGYRO_EXPORT Diagnosis Diagnose(
     RunRows& rows, std::span<const CauseSpec> specs, std::span<const Eigen::Matrix3d> end_by_phi,
     double false_alarm_rate, const Eigen::Vector3d& end_by_depth_scale = Eigen::Vector3d::Zero());
+/// The same of a run that has been solved.
+Diagnosis Diagnose(const LinearRun& solved, std::span<const CauseSpec> specs,
+                   std::span<const Eigen::Matrix3d> end_by_phi, double false_alarm_rate,
+                   const Eigen::Vector3d& end_by_depth_scale = Eigen::Vector3d::Zero());
 
 }  // namespace wellgyro

@@ -19,22 +19,59 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// What attitudes alone make of a place's covariance, of how it moves with every node's phi.
+/// Regression of `kRows` sums of B_k phi_k on the unknowns that are left: y = by' [node; border] +
+/// e, cov(e) = cov, carried on as the nodes before are eliminated.
+template <int kRows>
+class EliminatedSum {
+ public:
+  using Covariances = Eigen::Matrix<double, kRows, kRows>;
+
+  /// Empty, and before node `first`.
+  explicit EliminatedSum(const LinearRun& run, std::size_t first = 0)
+      : run_(run),
+        node_(first),
+        by_(By::Zero(2 * run.layout().node + run.layout().border, kRows)) {}
+
+  /// B of the node at hand.
+  void Add(const Eigen::Matrix<double, kRows, 3>& B) {
+    by_.template middleRows<3>(run_.layout().phi) += B.transpose();
+  }
+  /// To the next one.
+  void Advance() {
+    const int n = run_.layout().node;
+    run_.elimination().Eliminate(node_++, by_);
+    cov_ += by_.topRows(n).transpose() * by_.topRows(n);
+    by_.topRows(n) = by_.middleRows(n, n).eval();
+    by_.middleRows(n, n).setZero();
+  }
+  void AdvanceTo(std::size_t node) {
+    while (node_ < node) Advance();
+  }
+  /// By the covariance of [node at hand; border].
+  Covariances Covariance(const EdgeMatrix& of_edge) const {
+    const Layout& layout = run_.layout();
+    By by(layout.node + layout.border, kRows);
+    by << by_.topRows(layout.node), by_.bottomRows(layout.border);
+    const Covariances cov = cov_ + by.transpose() * of_edge * by;
+    return 0.5 * (cov + cov.transpose());
+  }
+
+ private:
+  using By = Eigen::Matrix<double, Eigen::Dynamic, kRows>;
+  const LinearRun& run_;
+  std::size_t node_;
+  By by_;  ///< of [node at hand | next node | border]
+  Covariances cov_ = Covariances::Zero();
+};
+
+/// What attitudes alone make of the end's covariance, of how it moves with every node's phi.
 Matrix3d CovarianceOf(const LinearRun& run, std::span<const Matrix3d> by_phi) {
-  LinearRun::Columns columns;
-  const Layout& layout = run.layout();
-  for (const Matrix3d& of_node : by_phi) {
-    Eigen::MatrixXd node = Eigen::MatrixXd::Zero(layout.node, 3);
-    node.middleRows<3>(layout.phi) = of_node.transpose();
-    columns.nodes.push_back(std::move(node));
-  }
-  columns.border = Eigen::MatrixXd::Zero(layout.border, 3);
-  run.SolveFor(columns);
-  Matrix3d cov = Matrix3d::Zero();
+  EliminatedSum<3> sum(run);
   for (std::size_t k = 0; k < by_phi.size(); ++k) {
-    cov += by_phi[k] * columns.nodes[k].middleRows<3>(layout.phi);
+    sum.AdvanceTo(k);
+    sum.Add(by_phi[k]);
   }
-  return 0.5 * (cov + cov.transpose());
+  return sum.Covariance(run.elimination().LastCovariance());
 }
 
 std::size_t DeepestOf(std::span<const Node> nodes) {
@@ -44,26 +81,47 @@ std::size_t DeepestOf(std::span<const Node> nodes) {
 }
 
 double SigmaAzimuth(const LinearRun& run, const SyntheticRun& rows) {
-  const std::size_t at = DeepestOf(rows.nodes());
-  LinearRun::Columns columns;
-  const Layout& layout = run.layout();
-  columns.nodes.assign(rows.nodes().size(), Eigen::MatrixXd::Zero(layout.node, 1));
-  columns.border = Eigen::MatrixXd::Zero(layout.border, 1);
+  const std::size_t deepest = DeepestOf(rows.nodes());
   // d azimuth = e . (phi x e3 in L), e across the hole over the sine of its inclination.
-  const Matrix3d& R = rows.nodes()[at].R_LT;
+  const Matrix3d& R = rows.nodes()[deepest].R_LT;
   const Vector3d t = R.col(2);
   const double horizontal = std::max(std::hypot(t.x(), t.y()), 1e-6);
   const Vector3d across = Vector3d(-t.y(), t.x(), 0) / (horizontal * horizontal);
-  const Vector3d by_phi = (R.transpose() * across).cross(Vector3d::UnitZ()) * -1;
-  columns.nodes[at].middleRows<3>(layout.phi) = by_phi;
-  run.SolveFor(columns);
-  return std::sqrt(std::max(0.0, columns.nodes[at].col(0).segment<3>(layout.phi).dot(by_phi)));
+  EliminatedSum<1> sum(run, deepest);
+  sum.Add((Vector3d::UnitZ().cross(R.transpose() * across)).transpose());
+  sum.AdvanceTo(run.knots());
+  return std::sqrt(std::max(0.0, sum.Covariance(run.elimination().LastCovariance()).value()));
 }
 
-void TakeFaults(const PlanCase& c, SyntheticRun& rows, std::span<const Matrix3d> end,
-                ExpectedEnd& expected) {
+/// The way to a place, regressed on what follows it.
+struct WayTo {
+  std::size_t node = 0;
+  EliminatedSum<3> way;
+};
+
+/// At the first node past every `spacing` and at the deepest.
+std::vector<WayTo> WaysAlong(const LinearRun& run, std::span<const Node> nodes, double spacing) {
+  std::vector<WayTo> ways;
+  EliminatedSum<3> way(run);
+  const std::size_t deepest = DeepestOf(nodes);
+  double next = nodes.front().md + spacing;
+  for (std::size_t k = 1; k <= deepest; ++k) {
+    // Between two nodes the mean of their tangents.
+    const double half = 0.5 * (nodes[k].md - nodes[k - 1].md);
+    way.Add(half * TangentByPhi(nodes[k - 1].R_LT));
+    way.Advance();
+    way.Add(half * TangentByPhi(nodes[k].R_LT));
+    if (nodes[k].md < next && k < deepest) continue;
+    ways.push_back({k, way});
+    while (next <= nodes[k].md) next += spacing;
+  }
+  return ways;
+}
+
+void TakeFaults(const PlanCase& c, const LinearRun& run, const SyntheticRun& rows,
+                std::span<const Matrix3d> end, ExpectedEnd& expected) {
   const EstimateSetup setup = SetupOfPlan(c);
-  const Diagnosis tests = Diagnose(rows, setup.causes, end, setup.false_alarm_rate);
+  const Diagnosis tests = Diagnose(run, setup.causes, end, setup.false_alarm_rate);
   const RunDiagnosis diagnosis = DiagnosisOf(tests, rows.knots());
   expected.reliability = diagnosis.reliability;
   for (const RunReliability& fault : diagnosis.reliability) {
@@ -101,7 +159,7 @@ ExpectedEnd ExpectEnd(const PlanCase& c, std::span<const PlannedStop> stops, boo
   expected.semi_minor = ellipse.semi_minor;
   expected.azimuth_major = ellipse.azimuth_major;
   expected.sigma_azimuth = SigmaAzimuth(run, rows);
-  if (with_faults) TakeFaults(c, rows, end, expected);
+  if (with_faults) TakeFaults(c, run, rows, end, expected);
   return expected;
 }
 
@@ -112,18 +170,21 @@ std::vector<ExpectedPlace> ExpectAlong(const PlanCase& c, std::span<const Planne
   LinearRun run(rows);
   std::vector<ExpectedPlace> places;
   if (!run.Solve()) return places;
-  const std::size_t nodes = rows.nodes().size(), deepest = DeepestOf(rows.nodes());
+  const Elimination& elimination = run.elimination();
+  std::vector<WayTo> ways = WaysAlong(run, rows.nodes(), spacing);
+  EdgeMatrix cov = elimination.LastCovariance();
   PlanCase part = c;
-  double next = c.way.begin_md + spacing;
-  for (std::size_t k = 1; k <= deepest; ++k) {
-    const double md = rows.nodes()[k].md;
-    if (md < next && k < deepest) continue;
-    std::vector<Matrix3d> by_phi = EndByPhi(rows.nodes().first(k + 1));
-    by_phi.resize(nodes, Matrix3d::Zero());
-    part.way.end_md = md;
-    places.push_back({md, DepthCovariance(part) + CovarianceOf(run, by_phi)});
-    while (next <= md) next += spacing;
+  for (std::size_t k = run.knots(); !ways.empty(); --k) {
+    if (k == ways.back().node) {
+      part.way.end_md = rows.nodes()[k].md;
+      places.push_back({part.way.end_md, DepthCovariance(part) + ways.back().way.Covariance(cov)});
+      ways.pop_back();
+    }
+    if (ways.empty()) break;
+    BehindMatrix with_next;
+    cov = elimination.CovarianceBefore(k - 1, elimination.Gain(k - 1), cov, with_next);
   }
+  std::reverse(places.begin(), places.end());
   return places;
 }
 

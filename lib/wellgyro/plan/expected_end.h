@@ -29,7 +29,7 @@ struct ExpectedEnd {
 
 /// By the estimator itself: its rows for the synthetic run, its elimination, its diagnosis
 /// (estimate/). Depth adds ErrorPriors' offset along the hole and scale along the path; how the
-/// tool lies in the hole adds nothing here. `with_faults`: reliability too, some five times the
+/// tool lies in the hole adds nothing here. `with_faults`: reliability too, some four times the
 /// time. Throws as CheckPlanCase().
 WELLGYRO_EXPORT ExpectedEnd ExpectEnd(const PlanCase& c, std::span<const PlannedStop> stops,
                                       bool with_faults);

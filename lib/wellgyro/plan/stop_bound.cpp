@@ -44,6 +44,7 @@ class Relaxation {
 
   Bound Step(double limit) {
     Evaluate();
+    FindSteepest();
     Bound bound;
     const double excess = lambda_ - limit, most = steepest_.slope;
     const VectorXd g = ActiveSlopes();
@@ -123,8 +124,8 @@ class Relaxation {
     const Matrix2d P = P0_ - C * W;
     const Eigen::SelfAdjointEigenSolver<Matrix2d> solver(0.5 * (P + P.transpose()));
     lambda_ = solver.eigenvalues()[1];
-    along_ = (C0_ - W.transpose() * S_).transpose() * solver.eigenvectors().col(1);
-    FindSteepest();
+    const Vector2d v = solver.eigenvectors().col(1);
+    along_ = C0_.transpose() * v - S_.transpose() * (W * v);
   }
 
   double Slope(const Place& p) const {

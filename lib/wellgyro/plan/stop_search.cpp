@@ -158,7 +158,7 @@ class Search {
           if (!(less > 0)) continue;
           const Rest back{stop.place, stop.turn, -less};
           const PlanValue value = stand.ValueWith(back);
-          if (!stand.MeetsWith(back)) continue;
+          if (!value.Meets(limits_.ellipse, HiddenLimit(limits_))) continue;
           const double saved = less + (less == all ? Overhead(stop.place) : 0);
           const double gain = (before - std::log(value.soft)) / saved;
           if (gain > best.gain) best = {back, gain};

@@ -47,23 +47,55 @@ StopStand::StopStand(const StopInformation& info, double ellipse_limit, double h
       covariance_(info.covariance()) {
   std::iota(places_.begin(), places_.end(), std::size_t{0});
   for (std::size_t i = 0; i < row_.size(); ++i) row_[i] = info.place_row(i);
+  if (std::isfinite(hidden_limit)) faults_.resize(info.faults().size());
+  std::iota(faults_.begin(), faults_.end(), std::size_t{0});
+  Order();
 }
 
-/// The first `rows` of the covariance with the two rows of a rest.
-StopStand::Pair StopStand::Columns(const Rest& rest, Index rows) const {
-  constexpr int n = StopInformation::kBasis;
-  return covariance_.block(0, row_[rest.place], rows, n) *
-         StopInformation::Mix(rest.turn).transpose();
+/// Where what counts the most comes first, a value above a given one is soon known to be.
+void StopStand::Order() {
+  std::vector<double> hidden(info_->faults().size());
+  for (const std::size_t i : faults_) {
+    const Index row = info_->fault_row(i);
+    hidden[i] = Hidden(info_->faults()[i], covariance_(row, row), covariance_.col(row).head<2>());
+  }
+  std::sort(faults_.begin(), faults_.end(), [&hidden](std::size_t a, std::size_t b) {
+    return hidden[a] > hidden[b] || (hidden[a] == hidden[b] && a < b);
+  });
 }
 
-/// (S + V)^-1 of the two rows of a rest.
-Matrix2d StopStand::Weight(const Rest& rest) const {
-  constexpr int n = StopInformation::kBasis;
-  const auto mix = StopInformation::Mix(rest.turn);
-  const Index row = row_[rest.place];
-  const Matrix2d S = mix * covariance_.block<n, n>(row, row) * mix.transpose() +
+StopStand::Rows StopStand::RowsOf(const Rest& rest) const {
+  Rows rows{StopInformation::Mix(rest.turn), row_[rest.place], {}, {}};
+  const Matrix2d S = rows.mix * Own(rows.place) * rows.mix.transpose() +
                      SyntheticRun::kRestKnot / rest.seconds * Matrix2d::Identity();
-  return S.inverse();
+  rows.weight = S.inverse();
+  rows.with_end << With(rows, 0).transpose(), With(rows, 1).transpose();
+  return rows;
+}
+
+StopStand::Basis StopStand::Own(Index place) const {
+  constexpr int n = StopInformation::kBasis;
+  return covariance_.block<n, n>(place, place).selfadjointView<Eigen::Upper>();
+}
+
+Vector2d StopStand::With(const Rows& rest, Index i) const {
+  return rest.mix * covariance_.block<1, StopInformation::kBasis>(i, rest.place).transpose();
+}
+
+StopStand::Pair StopStand::WithAll(const Rows& rest) const {
+  constexpr int n = StopInformation::kBasis;
+  const Index above = rest.place, below = covariance_.rows() - above - n;
+  const Eigen::Matrix<double, n, 2> mix = rest.mix.transpose();
+  Pair columns(covariance_.rows(), 2);
+  columns.topRows(above) = covariance_.block(0, above, above, n).lazyProduct(mix);
+  columns.middleRows<n>(above) = Own(above) * mix;
+  columns.bottomRows(below) =
+      covariance_.block(above, above + n, n, below).transpose().lazyProduct(mix);
+  return columns;
+}
+
+Matrix2d StopStand::End() const {
+  return covariance_.topLeftCorner<2, 2>().selfadjointView<Eigen::Upper>();
 }
 
 double StopStand::Largest(const HiddenFault& f, const Vector2d& with_end) {
@@ -77,20 +109,19 @@ double StopStand::Hidden(const HiddenFault& f, double variance, const Vector2d& 
   return std::min(smallest, kLargest * f.size) * with_end.norm() / f.unit;
 }
 
-PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns, const Matrix2d& weight,
-                             double soft_most) const {
+PlanValue StopStand::ValueOf(const Matrix2d& end, const Rows* rest, double soft_most) const {
   PlanValue value{.soft = HUGE_VAL};
   value.ellipse = Axis(end);
   const double most = Power16(soft_most);
   double sum = Power16(value.ellipse / ellipse_limit_);
-  for (std::size_t i = 0; std::isfinite(hidden_limit_) && i < info_->faults().size(); ++i) {
+  for (const std::size_t i : faults_) {
     const Index row = info_->fault_row(i);
     double variance = covariance_(row, row);
     Vector2d with_end = covariance_.col(row).head<2>();
-    if (columns != nullptr) {
-      const Vector2d u = weight * columns->row(row).transpose();
-      variance -= columns->row(row).dot(u);
-      with_end -= columns->topRows<2>() * u;
+    if (rest != nullptr) {
+      const Vector2d with = With(*rest, row), u = rest->weight * with;
+      variance -= with.dot(u);
+      with_end -= rest->with_end * u;
     }
     const HiddenFault& fault = info_->faults()[i];
     const double largest = Largest(fault, with_end);
@@ -104,23 +135,24 @@ PlanValue StopStand::ValueOf(const Matrix2d& end, const Pair* columns, const Mat
   return value;
 }
 
-PlanValue StopStand::Value() const {
-  return ValueOf(covariance_.topLeftCorner<2, 2>(), nullptr, Matrix2d::Zero(), HUGE_VAL);
-}
+PlanValue StopStand::Value() const { return ValueOf(End(), nullptr, HUGE_VAL); }
 
 PlanValue StopStand::ValueWith(const Rest& rest, double soft_most) const {
-  const Matrix2d weight = Weight(rest), of_end = Columns(rest, 2);
-  const Matrix2d end = covariance_.topLeftCorner<2, 2>() - of_end * weight * of_end.transpose();
+  const Rows rows = RowsOf(rest);
+  const Matrix2d end = End() - rows.with_end * rows.weight * rows.with_end.transpose();
   // The ellipse alone may say it all.
   if (Axis(end) > soft_most * ellipse_limit_) return {.ellipse = Axis(end), .soft = HUGE_VAL};
-  const Pair columns = Columns(rest, std::isfinite(hidden_limit_) ? info_->place_row(0) : 2);
-  return ValueOf(end, &columns, weight, soft_most);
+  return ValueOf(end, &rows, soft_most);
 }
 
 void StopStand::Add(const Rest& rest) {
-  const Pair columns = Columns(rest, covariance_.rows());
-  const Matrix2d weight = Weight(rest);
-  covariance_.noalias() -= (columns * weight) * columns.transpose();
+  const Rows rows = RowsOf(rest);
+  const Pair with = WithAll(rows), weighted = with * rows.weight;
+  for (Index j = 0; j < covariance_.cols(); ++j) {
+    covariance_.col(j).head(j + 1) -=
+        with(j, 0) * weighted.col(0).head(j + 1) + with(j, 1) * weighted.col(1).head(j + 1);
+  }
+  Order();
   const auto same = std::find_if(stops_.begin(), stops_.end(), [&](const Rest& r) {
     return r.place == rest.place && r.turn == rest.turn;
   });

@@ -53,10 +53,21 @@ class StopStand {
 
  private:
   using Pair = Eigen::Matrix<double, Eigen::Dynamic, 2>;
-  Pair Columns(const Rest& rest, Eigen::Index rows) const;
-  Eigen::Matrix2d Weight(const Rest& rest) const;
-  PlanValue ValueOf(const Eigen::Matrix2d& end, const Pair* columns, const Eigen::Matrix2d& weight,
-                    double soft_most) const;
+  using Basis = Eigen::Matrix<double, StopInformation::kBasis, StopInformation::kBasis>;
+  /// The two rows of a rest, mix times those of its place.
+  struct Rows {
+    Eigen::Matrix<double, 2, StopInformation::kBasis> mix;
+    Eigen::Index place = 0;            ///< first row of its place
+    Eigen::Matrix2d with_end, weight;  ///< C, (S + V)^-1
+  };
+  Rows RowsOf(const Rest& rest) const;
+  Basis Own(Eigen::Index place) const;
+  /// Covariance of row `i`, which stands before those of all places, with the rows of a rest.
+  Eigen::Vector2d With(const Rows& rest, Eigen::Index i) const;
+  Pair WithAll(const Rows& rest) const;
+  Eigen::Matrix2d End() const;
+  PlanValue ValueOf(const Eigen::Matrix2d& end, const Rows* rest, double soft_most) const;
+  void Order();
   /// What a fault may do unseen; never more than the largest that is looked for.
   double Hidden(const HiddenFault& fault, double variance, const Eigen::Vector2d& with_end) const;
   static double Largest(const HiddenFault& fault, const Eigen::Vector2d& with_end);
@@ -64,8 +75,9 @@ class StopStand {
   const StopInformation* info_;
   double ellipse_limit_, hidden_limit_;
   std::vector<std::size_t> places_;
-  std::vector<Eigen::Index> row_;  ///< of each place of the information; -1: forgotten
-  Eigen::MatrixXd covariance_;
+  std::vector<Eigen::Index> row_;    ///< of each place of the information; -1: forgotten
+  Eigen::MatrixXd covariance_;       ///< its upper triangle
+  std::vector<std::size_t> faults_;  ///< that which hides the most first
   std::vector<Rest> stops_;
 };
 
