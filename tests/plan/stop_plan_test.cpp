@@ -208,6 +208,38 @@ TEST(StopStand, ComesToTheCovarianceOfAllStopsAtOnce) {
   }
 }
 
+double CostOf(const std::vector<StopStand::Rest>& stops, const PlanLimits& limits) {
+  double cost = 0;
+  for (const StopStand::Rest& stop : stops) cost += stop.seconds + limits.overhead;
+  return cost;
+}
+
+// Limits that are missed by little are had for little more, as by a search from nothing.
+TEST(StopSearch, MendsStopsThatAreNearlyEnough) {
+  for (PlanCase c : {test::Slant(), test::SShape()}) {
+    c = Fast(c);
+    const StopInformation info(c, PlacesEvery(c.way, 60));
+    PlanLimits limits{.ellipse = 7};
+    const auto before = FindStops(info, limits);
+    ASSERT_TRUE(before);
+    StopStand stand(info, limits.ellipse, HUGE_VAL);
+    for (const StopStand::Rest& rest : *before) stand.Add(rest);
+    limits.ellipse = 0.97 * stand.Value().ellipse;
+    const auto mended = MendStops(info, limits, *before), anew = FindStops(info, limits);
+    ASSERT_TRUE(mended && anew);
+    StopStand after(info, limits.ellipse, HUGE_VAL);
+    for (const StopStand::Rest& rest : *mended) after.Add(rest);
+    EXPECT_TRUE(after.Meets());
+    EXPECT_GT(CostOf(*mended, limits), CostOf(*before, limits));
+    EXPECT_LE(CostOf(*mended, limits), 1.1 * CostOf(*anew, limits));
+    std::printf("%.0f s, mended %.0f s, anew %.0f s\n", CostOf(*before, limits),
+                CostOf(*mended, limits), CostOf(*anew, limits));
+    // What no stops can do they cannot be mended to.
+    limits.ellipse = 0.01;
+    EXPECT_FALSE(MendStops(info, limits, *before));
+  }
+}
+
 TEST(StopPlan, AStopLeftOutCostsWhatThePlanSays) {
   const PlanCase c = Fast(test::SShape());
   const StopPlan plan = PlanStops(c, {.ellipse = 6});

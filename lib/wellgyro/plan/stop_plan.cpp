@@ -139,8 +139,10 @@ StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits) {
   std::vector<Rest> start;
   if (possible) start = AddBounds(info, aim, plan);
   StopStand stand(info, limits.ellipse, limits.hidden.value_or(HUGE_VAL));
+  std::optional<std::vector<Rest>> rests;
   for (int i = 0; possible && !plan.feasible && i < kVerifications; ++i) {
-    const auto rests = FindStops(info, aim, start);
+    if (rests) rests = MendStops(info, aim, *rests);
+    if (!rests) rests = FindStops(info, aim, start);
     if (!rests) break;
     plan.stops = StopsOf(info, *rests, limits.turns);
     plan.expected = ExpectEnd(c, plan.stops, limits.hidden.has_value());

@@ -46,10 +46,13 @@ class Search {
       take(BestOfTwo(info_, limits_, cost).value_or(std::vector<Rest>()));
     }
     if (!met) return std::nullopt;
-    std::vector<Rest> stops(stand_.stops().begin(), stand_.stops().end());
-    std::sort(stops.begin(), stops.end(),
-              [](const Rest& a, const Rest& b) { return a.place < b.place; });
-    return stops;
+    return Stops();
+  }
+
+  std::optional<std::vector<Rest>> Mend(const std::vector<Rest>& stops) {
+    if (!TakeIfBelow(HUGE_VAL, StandOf(stops))) return std::nullopt;
+    Improve();
+    return Stops();
   }
 
  private:
@@ -58,6 +61,14 @@ class Search {
     double gain = 0;            // of ln soft, per second
     double enough = -HUGE_VAL;  // ln soft below which nothing is gained
   };
+
+  /// In the order of time.
+  std::vector<Rest> Stops() const {
+    std::vector<Rest> stops(stand_.stops().begin(), stand_.stops().end());
+    std::sort(stops.begin(), stops.end(),
+              [](const Rest& a, const Rest& b) { return a.place < b.place; });
+    return stops;
+  }
 
   bool IsHere(std::size_t place) const { return limits_.here && place == 0; }
   double Overhead(std::size_t place) const { return IsHere(place) ? 0 : limits_.overhead; }
@@ -284,6 +295,11 @@ class Search {
 std::optional<std::vector<Rest>> FindStops(const StopInformation& info, const PlanLimits& limits,
                                            std::span<const Rest> start) {
   return Search(info, limits).Run(start);
+}
+
+std::optional<std::vector<Rest>> MendStops(const StopInformation& info, const PlanLimits& limits,
+                                           const std::vector<Rest>& stops) {
+  return Search(info, limits).Mend(stops);
 }
 
 PlanValue BestPossible(const StopInformation& info, const PlanLimits& limits) {

@@ -45,6 +45,11 @@ std::optional<std::vector<StopStand::Rest>> FindStops(const StopInformation& inf
                                                       const PlanLimits& limits,
                                                       std::span<const StopStand::Rest> start = {});
 
+/// The same from stops that nearly meet both, alone: a local optimum near to them.
+std::optional<std::vector<StopStand::Rest>> MendStops(const StopInformation& info,
+                                                      const PlanLimits& limits,
+                                                      const std::vector<StopStand::Rest>& stops);
+
 /// Times at rest that meet the ellipse's limit were any length allowed and no overhead.
 struct RelaxedPlan {
   double least = 0;                         ///< no set of stops meets it with less in all [s]
