@@ -181,9 +181,11 @@ inline std::map<std::string, double> TruthOf(const ThermalTool& tool, const Ther
     put("gyro_heating", c, tool.heating[c]);
     put2("gyro_N", c, place[c], tool.N[c]);
     for (int j = 0; j < 3; ++j) put2("gyro_S", c, j, tool.U(c, j));
-    put("gyro_drift_1", c, bench.drift[0][c]);
-    put("gyro_drift_2", c, bench.drift[1][c]);
-    put("gyro_drift_3", c, bench.drift[2][c]);
+    for (int table = 0; table < 3; ++table) {
+      const std::string name = "gyro_drift_" + std::to_string(table + 1);
+      put(name, c, bench.drift[table][c]);
+      if (bench.bend[table][c] != 0) put(name + "_bend", c, bench.bend[table][c]);
+    }
   }
   for (int c = 0; c < 3; ++c) {
     put2("accel_K2", c, c, tool.K2[c]);
