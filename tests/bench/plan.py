@@ -98,7 +98,8 @@ def Cost(program):
     """Of plans of a well that builds to 60 deg in 5 km, the practice beside them; five times each."""
     stations = [(md, min(60, 5 + 0.025 * (md - 100)), 40 + 0.002 * (md - 100))
                 for md in range(100, 5101, 100)]
-    for more in ([], ["--hidden-m", "16"], ["--toolfaces"]):
+    for more in ([], ["--hidden-m", "16"], ["--toolfaces"], ["--hidden-m", "12"],
+                 ["--hidden-m", "10"]):
         with tempfile.TemporaryDirectory() as folder:
             path, job = WriteCase(folder, "long", stations, 60.0, "fibre")
             command = [program, "plan", "--well", path, "--tool", job, "--ellipse-m", "8.56",
