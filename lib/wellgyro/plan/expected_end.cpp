@@ -9,6 +9,7 @@
 
 #include "wellgyro/estimate/diagnosis.h"
 #include "wellgyro/estimate/end_of_run.h"
+#include "wellgyro/estimate/way_behind.h"
 #include "wellgyro/plan/synthetic_run.h"
 #include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/uncertainty/ellipse.h"
@@ -27,7 +28,7 @@ class EliminatedSum {
   using Covariances = Eigen::Matrix<double, kRows, kRows>;
 
   /// Empty, and before node `first`.
-  explicit EliminatedSum(const LinearRun& run, std::size_t first = 0)
+  EliminatedSum(const LinearRun& run, std::size_t first)
       : run_(run),
         node_(first),
         by_(By::Zero(2 * run.layout().node + run.layout().border, kRows)) {}
@@ -66,7 +67,7 @@ class EliminatedSum {
 
 /// What attitudes alone make of the end's covariance, of how it moves with every node's phi.
 Matrix3d CovarianceOf(const LinearRun& run, std::span<const Matrix3d> by_phi) {
-  EliminatedSum<3> sum(run);
+  EliminatedSum<3> sum(run, 0);
   for (std::size_t k = 0; k < by_phi.size(); ++k) {
     sum.AdvanceTo(k);
     sum.Add(by_phi[k]);
@@ -93,24 +94,21 @@ double SigmaAzimuth(const LinearRun& run, const SyntheticRun& rows) {
   return std::sqrt(std::max(0.0, sum.Covariance(run.elimination().LastCovariance()).value()));
 }
 
-/// The way to a place, regressed on what follows it.
+/// The way to a node, regressed on it.
 struct WayTo {
   std::size_t node = 0;
-  EliminatedSum<3> way;
+  WayBehind way;
 };
 
 /// At the first node past every `spacing` and at the deepest.
 std::vector<WayTo> WaysAlong(const LinearRun& run, std::span<const Node> nodes, double spacing) {
+  const Elimination& e = run.elimination();
+  WayBehind way = WayFrom(run.layout(), nodes.front());
   std::vector<WayTo> ways;
-  EliminatedSum<3> way(run);
   const std::size_t deepest = DeepestOf(nodes);
   double next = nodes.front().md + spacing;
   for (std::size_t k = 1; k <= deepest; ++k) {
-    // Between two nodes the mean of their tangents.
-    const double half = 0.5 * (nodes[k].md - nodes[k - 1].md);
-    way.Add(half * TangentByPhi(nodes[k - 1].R_LT));
-    way.Advance();
-    way.Add(half * TangentByPhi(nodes[k].R_LT));
+    CarryWay(run.layout(), nodes[k - 1], nodes[k], e.Gain(k - 1), e.Remainder(k - 1), way);
     if (nodes[k].md < next && k < deepest) continue;
     ways.push_back({k, way});
     while (next <= nodes[k].md) next += spacing;
@@ -176,8 +174,10 @@ std::vector<ExpectedPlace> ExpectAlong(const PlanCase& c, std::span<const Planne
   PlanCase part = c;
   for (std::size_t k = run.knots(); !ways.empty(); --k) {
     if (k == ways.back().node) {
+      const WayBehind& way = ways.back().way;
       part.way.end_md = rows.nodes()[k].md;
-      places.push_back({part.way.end_md, DepthCovariance(part) + ways.back().way.Covariance(cov)});
+      places.push_back(
+          {part.way.end_md, DepthCovariance(part) + way.cov + way.by * cov * way.by.transpose()});
       ways.pop_back();
     }
     if (ways.empty()) break;
