@@ -255,7 +255,8 @@ class Errors : public testing::TestWithParam<Injected> {};
 // Law: turn_by_error and force_by_error are what an error does to the increment. T is the
 // accelerometers' frame: where those are turned against the gyros, it is the truth that changes.
 TEST_P(Errors, DoWhatTheIncrementSays) {
-  const auto& [source, size] = GetParam();
+  const ErrorSource source = GetParam().source;
+  const double size = GetParam().size;
   const double rate = kTwoPi / 60 * 5;
   const bool turned = source == kToolfaceOffset || source == kTimeSkew;
   // Accelerometers' errors go round with the tool and wind the roll within a knot by half the

@@ -23,20 +23,19 @@ namespace {
 
 // A covariance of biases, sensitivities and force terms at two powers, all of them correlated.
 ParameterCovariance AnyCovariance(Random& random) {
-  using Kind = CalibrationMember::Kind;
   ParameterCovariance known;
   std::vector<double> sigma;
   const double per_h = kRad / 3600;
   for (const bool gyro : {true, false}) {
     for (int power = 0; power < 2; ++power) {
       for (int c = 0; c < (gyro ? 4 : 3); ++c) {
-        known.names.push_back(NameOf({gyro, Kind::kBias, power, c, 0}));
+        known.names.push_back(NameOf({gyro, CalibrationMember::Kind::kBias, power, c, 0}));
         sigma.push_back(gyro ? 0.02 : 2e-5);
         for (int j = 0; j < 3; ++j) {
-          known.names.push_back(NameOf({gyro, Kind::kSensitivity, power, c, j}));
+          known.names.push_back(NameOf({gyro, CalibrationMember::Kind::kSensitivity, power, c, j}));
           sigma.push_back(gyro ? 1e-4 / per_h : 2e-5 / kG);
           if (!gyro) continue;
-          known.names.push_back(NameOf({gyro, Kind::kForce, power, c, j}));
+          known.names.push_back(NameOf({gyro, CalibrationMember::Kind::kForce, power, c, j}));
           sigma.push_back(0.01 / kG);
         }
       }

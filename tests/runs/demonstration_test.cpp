@@ -38,7 +38,7 @@ Result<SimulationFile> WithSeed(std::uint64_t seed) {
       text.substr(0, at) + std::to_string(seed) + text.substr(text.find('\n', at)), path, kDemo);
 }
 
-constexpr int kRuns = 6;
+constexpr int kRuns = WELLGYRO_LONG ? 20 : 2;
 
 TEST(Demonstration, IsAsGoodAsItSaysFromVerticalToTheEnd) {
   const auto job = ReadJob(kDemo / "job.toml");

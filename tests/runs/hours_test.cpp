@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(Inclinations, TacticalHours,
 // counts of those below a degree, and one of the others.
 TEST(Hours, LeanAsSureAsTheySayNearVertical) {
   Claims nearest, above;
-  for (std::uint64_t seed = 1; seed <= Seeds(8, 200); ++seed) {
+  for (std::uint64_t seed = 1; seed <= Seeds(3, 200); ++seed) {
     Hour hour = testing::Tactical();
     hour.inclination_deg = 2;
     hour.errors.accel_noise = 0.02 * units::kMilliG;
@@ -196,7 +196,7 @@ class UntoldHours : public ::testing::TestWithParam<UntoldCase> {};
 TEST_P(UntoldHours, FindNorth) {
   const UntoldCase& c = GetParam();
   Claims end, inclination;
-  for (std::uint64_t seed = 1; seed <= Seeds(6, 200); ++seed) {
+  for (std::uint64_t seed = 1; seed <= Seeds(2, 200); ++seed) {
     Hour hour = testing::StrongDrift();
     hour.swing_deg = c.swing_deg;
     hour.rpm = c.rpm;
@@ -271,7 +271,7 @@ Flown Closed(Flown flown) {
 TEST(Hours, ClosedBetweenTwoNorthsAreFarBetterThanWithTheDriftSpreadEvenly) {
   double spread = 0, closed = 0;
   Claims claims;
-  const std::uint64_t seeds = Seeds(6, 100);
+  const std::uint64_t seeds = Seeds(2, 100);
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const Hour hour = Build(3);
     Job job = ExternalJob(hour, seed, 1e-3);

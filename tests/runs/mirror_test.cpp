@@ -73,7 +73,7 @@ Count Fly(const Case& c, int seeds, const RunAdjuster* adjuster) {
 class Mirror : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Mirror, IsNeverTakenSilently) {
-  constexpr int kSeeds = 8;
+  constexpr int kSeeds = WELLGYRO_LONG ? 8 : 2;
   const testing::KeepingAdjuster keeper;
   const Count reckoned = Fly(GetParam(), kSeeds, &keeper);
   EXPECT_EQ(reckoned.silent, 0);
@@ -144,7 +144,7 @@ End EndOf(const SmoothedRun& run, std::size_t last) {
 }
 
 TEST(MirrorNearEastWest, IsNotGivenAsSure) {
-  const std::uint64_t seeds = WELLGYRO_LONG ? 40 : 6;
+  const std::uint64_t seeds = WELLGYRO_LONG ? 40 : 2;
   const std::span<const Straight> cases =
       WELLGYRO_LONG ? std::span<const Straight>(kMany) : std::span<const Straight>(kFew);
   constexpr std::array<const char*, 2> kBy = {"on the way", "estimated"};

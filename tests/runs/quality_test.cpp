@@ -54,7 +54,8 @@ struct Flight {
 // One in 370 of some two hundred verdicts may fail by chance.
 TEST(FlaggedRuns, TrueRunsPass) {
   int judged = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  constexpr int kSeeds = WELLGYRO_LONG ? 8 : 2;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     for (const Check& check : Flight(seed).Checks()) {
       if (check.verdict == Verdict::kNotDone) continue;
       ++judged;
@@ -63,13 +64,13 @@ TEST(FlaggedRuns, TrueRunsPass) {
           << ", seed " << seed;
     }
   }
-  EXPECT_GT(judged, 4 * 35);
+  EXPECT_GT(judged, kSeeds * 35);
 }
 
 // Depths that scatter by what the job says of them, at rest as well.
 TEST(FlaggedRuns, DepthsThatScatterArePassed) {
   for (const double hz : {1.0, 4.0}) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= (WELLGYRO_LONG ? 6 : 1); ++seed) {
       Flight flight(seed);
       flight.errors().depth_noise = 0.01;
       flight.simulation.streams.depth_hz = hz;
@@ -85,7 +86,7 @@ TEST(FlaggedRuns, DepthsThatScatterArePassed) {
 
 // Twenty sigmas of the prior, but known: nothing is wrong.
 TEST(FlaggedRuns, WhatIsKnownOfTheAxialRatePasses) {
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+  for (std::uint64_t seed = 1; seed <= (WELLGYRO_LONG ? 4 : 1); ++seed) {
     Flight flight(seed);
     flight.errors().gyro_misalignment = {2e-3, -2e-3};
     flight.job.errors.gyro_misalignment_x = 2e-3;

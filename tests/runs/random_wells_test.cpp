@@ -109,10 +109,10 @@ testing::Hour ToolOf(std::uint64_t seed) {
 }
 
 TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
-  constexpr int kWells = WELLGYRO_LONG ? 300 : 5;
+  constexpr int kDrawnWells = WELLGYRO_LONG ? 300 : 5;
   Beyond inclination, azimuth, tangent{.dof = 2}, place{.dof = 3};
   int failed = 0;
-  for (std::uint64_t seed = 1; seed <= kWells; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kDrawnWells; ++seed) {
     const testing::Hour tool = ToolOf(seed);
     const Simulation simulation = RandomRun(tool, seed);
     testing::CollectingSink sink;
@@ -169,11 +169,11 @@ TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
   std::printf(
       "%d wells, %d failed; beyond as rarely as %.1f sigma: %d %d %d %d of %d stations, "
       "worst %.1f %.1f %.1f %.1f\n",
-      kWells, failed, kTooFar, inclination.beyond, azimuth.beyond, tangent.beyond, place.beyond,
-      azimuth.count, inclination.worst, azimuth.worst, tangent.worst, place.worst);
-  EXPECT_GT(count, 100 * kWells);
+      kDrawnWells, failed, kTooFar, inclination.beyond, azimuth.beyond, tangent.beyond,
+      place.beyond, azimuth.count, inclination.worst, azimuth.worst, tangent.worst, place.worst);
+  EXPECT_GT(count, 100 * kDrawnWells);
   EXPECT_LE(beyond, 1e-4 * count);
-  EXPECT_LE(failed, 1 + kWells / 40);
+  EXPECT_LE(failed, 1 + kDrawnWells / 40);
 }
 
 }  // namespace

@@ -142,20 +142,21 @@ FleetTruth DrawnTruth(Random& random) {
   return truth;
 }
 
-// 300 runs in 60 holes: every magnitude within 15 % of the truth.
-TEST(EmpiricalModel, ThreeHundredRunsTellTheirMagnitudes) {
+/// Fleets of five runs in each of `holes`: every magnitude within `share` of the truth.
+void ExpectMagnitudes(int holes, double share) {
   Random random(22);
   const FleetTruth truth;
-  const std::vector<RepeatedHole> fleet = Fleet(60, 5, truth, random);
+  const std::vector<RepeatedHole> fleet = Fleet(holes, 5, truth, random);
   const EmpiricalModel made = EstimateModel(fleet, Assumed());
-  EXPECT_EQ(made.holes.size(), 60u);
+  EXPECT_EQ(made.holes.size(), static_cast<std::size_t>(holes));
   const std::vector<TermEstimate> estimates = Estimates(made);
   ASSERT_EQ(estimates.size(), 8u);
   for (const TermEstimate& e : estimates) {
     const double is = Magnitudes(truth).at(e.term);
-    EXPECT_NEAR(e.magnitude, is, 0.15 * is) << e.term;
-    RecordProperty(e.term, std::to_string(e.magnitude / is) + " " + std::to_string(e.lower / is) +
-                               " " + std::to_string(e.upper.value_or(-1) / is));
+    EXPECT_NEAR(e.magnitude, is, share * is) << e.term;
+    ::testing::Test::RecordProperty(e.term, std::to_string(e.magnitude / is) + " " +
+                                                std::to_string(e.lower / is) + " " +
+                                                std::to_string(e.upper.value_or(-1) / is));
   }
   // What all surveys of a hole share stays as it was assumed.
   EXPECT_EQ(made.terms.back().term, "AZG");
@@ -168,6 +169,10 @@ TEST(EmpiricalModel, ThreeHundredRunsTellTheirMagnitudes) {
   }
   EXPECT_NEAR(chi_square / freedom, 1, 0.01);
 }
+
+// An rms of n draws is uncertain by 1/sqrt(2 n), 9 % of 60 of them: four of that.
+TEST(EmpiricalModel, SixtyRunsTellTheirMagnitudes) { ExpectMagnitudes(12, 0.36); }
+TEST(EmpiricalModelFleets, ThreeHundredRunsTellTheirMagnitudes) { ExpectMagnitudes(60, 0.15); }
 
 // Fleets of 300 runs with other truths each: of all 95 % intervals 93 to 97 % hold the truth.
 TEST(EmpiricalModelFleets, IntervalsHoldAsOftenAsTheySay) {
@@ -234,7 +239,7 @@ TEST(EmpiricalModel, PassesOfOneRunTellOnlyWhatChangesBetweenStations) {
 // come down to the truth from wherever they begin.
 TEST(EmpiricalModel, WhatIsAssumedMovesNoEstimate) {
   Random random(3);
-  const std::vector<RepeatedHole> fleet = Fleet(40, 5, FleetTruth(), random);
+  const std::vector<RepeatedHole> fleet = Fleet(12, 5, FleetTruth(), random);
   const EmpiricalModel made = EstimateModel(fleet, Assumed());
   ErrorModel greater = Assumed();
   for (ErrorTerm& term : greater.terms) {

@@ -11,21 +11,21 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kLength = 1000, kAzimuth = 0.7, kInclination = 0.5;
+constexpr double kHoleLength = 1000, kHoleAzimuth = 0.7, kHoleInclination = 0.5;
 
 // Variance along its way of the end of a straight hole [m^2].
 double VarianceAlong(double sigma_azimuth) {
   PassItems pass;
-  for (double md = 100; md <= kLength; md += 100) {
+  for (double md = 100; md <= kHoleLength; md += 100) {
     PassItem& item = pass.emplace_back();
     item.station.md = md;
-    item.station.inclination = kInclination;
-    item.station.azimuth = kAzimuth;
+    item.station.inclination = kHoleInclination;
+    item.station.azimuth = kHoleAzimuth;
     item.station.cov_md_inc_azi(2, 2) = sigma_azimuth * sigma_azimuth;
   }
   PathStart start;
   start.point.station.md = 0;
-  const Eigen::Vector3d along(std::cos(kAzimuth), std::sin(kAzimuth), 0);
+  const Eigen::Vector3d along(std::cos(kHoleAzimuth), std::sin(kHoleAzimuth), 0);
   return along.dot(PassCovariancesOf({}, pass, start).of_sensors.back() * along);
 }
 
@@ -39,7 +39,7 @@ TEST(PassCovariance, AnAzimuthFarOffFallsShortOfItsWay) {
     for (int i = 0; i < kDraws; ++i) {
       square += std::pow(1 - std::cos(sigma * random.Normal()), 2) / kDraws;
     }
-    const double expected = square * std::pow(kLength * std::sin(kInclination), 2);
+    const double expected = square * std::pow(kHoleLength * std::sin(kHoleInclination), 2);
     EXPECT_NEAR(VarianceAlong(sigma) - VarianceAlong(0), expected, 0.03 * expected)
         << sigma_deg << " deg";
   }

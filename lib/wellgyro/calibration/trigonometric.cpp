@@ -47,14 +47,14 @@ CorrectedReading Correct(const AffineModel& model, const Eigen::Vector3d& G_raw,
 
 CorrectedReading Correct(const TrigonometricModel& model, const Eigen::Vector3d& G_raw,
                          const Eigen::Vector3d& M_raw, const AffineModel& affine) {
-  constexpr int kTurns = 200;
+  constexpr int kTurnsMost = 200;
   constexpr double kStill = 1e-12;
   const double largest = std::max(std::abs(model.x[0][0]), std::abs(model.x[1][0]));
   CorrectedReading reading;
   reading.G = G_raw;
   reading.M = M_raw;
   TakeAngles(reading);
-  for (reading.turns = 1; reading.turns <= kTurns; ++reading.turns) {
+  for (reading.turns = 1; reading.turns <= kTurnsMost; ++reading.turns) {
     const double inclination = reading.inclination, toolface = reading.toolface;
     const Eigen::Matrix<double, 6, 1> errors = TrigonometricErrors(model, inclination, toolface);
     reading.G = G_raw - errors.head<3>();
@@ -67,7 +67,7 @@ CorrectedReading Correct(const TrigonometricModel& model, const Eigen::Vector3d&
     if (std::sin(reading.inclination) < 5 * largest) break;
     return reading;
   }
-  const int turns = std::min(reading.turns, kTurns);
+  const int turns = std::min(reading.turns, kTurnsMost);
   reading = Correct(affine, G_raw, M_raw);
   reading.turns = turns;
   reading.fell_back = true;

@@ -11,27 +11,29 @@ namespace wellgyro {
 namespace {
 
 // Modes, and commands and events, that wait for their time; more come from a broken sender alone.
-constexpr std::ptrdiff_t kDueMax = 1000;
+constexpr std::size_t kDueMax = 1000;
 
 UtcTime TimeOf(const Operation& operation) {
   return std::visit([](const auto& record) { return record.utc; }, operation);
 }
 
+bool IsMode(const Operation& operation) { return std::holds_alternative<ToolMode>(operation); }
+
 }  // namespace
 
 /// False: there is none for `due` itself.
 bool OperationsDue::MakeRoom(const Due& due) {
-  const bool mode = std::holds_alternative<ToolMode>(due.operation);
-  const auto alike = [mode](const Due& d) {
-    return std::holds_alternative<ToolMode>(d.operation) == mode;
-  };
-  if (std::count_if(due_.begin(), due_.end(), alike) < kDueMax) return true;
+  const bool mode = IsMode(due.operation);
+  if ((mode ? modes_ : due_.size() - modes_) < kDueMax) return true;
   sink_.OnFault(Fault{FaultCode::kRange,
                       fmt::format("more than {} {} wait for samples of tool {}: one is left out",
                                   kDueMax, mode ? "modes" : "commands and events", tool_)});
-  const auto last = std::find_if(due_.rbegin(), due_.rend(), alike);
-  if (!mode || last->utc <= due.utc) return false;
+  if (!mode) return false;
+  const auto last =
+      std::find_if(due_.rbegin(), due_.rend(), [](const Due& d) { return IsMode(d.operation); });
+  if (last->utc <= due.utc) return false;
   due_.erase(std::next(last).base());
+  --modes_;
   return true;
 }
 
@@ -41,6 +43,7 @@ void OperationsDue::Push(const Operation& operation) {
   const auto after = std::upper_bound(due_.begin(), due_.end(), due.utc,
                                       [](UtcTime utc, const Due& d) { return utc < d.utc; });
   due_.insert(after, due);
+  modes_ += IsMode(operation) ? 1 : 0;
 }
 
 bool OperationsDue::IsDue(const Due& due, const SampleStamp& stamp, UtcTime utc) {
@@ -62,6 +65,7 @@ std::optional<Operation> OperationsDue::Next(const SampleStamp& stamp, UtcTime u
     if (IsDue(*due, stamp, utc)) {
       const Operation operation = due->operation;
       due_.erase(due);
+      modes_ -= IsMode(operation) ? 1 : 0;
       return operation;
     }
     // A mode may wait for its sample longer than its time says; nothing else does.
@@ -77,10 +81,12 @@ std::vector<Operation> OperationsDue::TakeUncommanded() {
   std::vector<Operation> taken;
   for (auto due = due_.begin(); due != commands; ++due) taken.push_back(due->operation);
   due_.erase(due_.begin(), commands);
+  modes_ = 0;
   return taken;
 }
 
 std::vector<Operation> OperationsDue::TakeCommands() {
+  modes_ = 0;
   std::vector<Operation> taken;
   for (const Due& due : std::exchange(due_, {})) taken.push_back(due.operation);
   return taken;

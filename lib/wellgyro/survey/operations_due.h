@@ -51,7 +51,8 @@ class OperationsDue {
 
   std::int32_t tool_;
   Sink& sink_;
-  std::vector<Due> due_;  ///< by time
+  std::vector<Due> due_;   ///< by time
+  std::size_t modes_ = 0;  ///< of these; counted anew, a flood of tools would cost its square
   Numbers commands_, events_;
 };
 
