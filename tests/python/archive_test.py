@@ -23,8 +23,9 @@ from small_runs import JOB, SIMULATION, Cluster, Files
 
 PROGRAM = os.path.abspath(os.environ["WELLGYRO_PROGRAM"])
 
-RUNS, LOGS, KILLS = 40, 8, 5
-DAMAGED, WRONG = (3, 17), (5, 23)
+LONG = "WELLGYRO_LONG" in os.environ
+RUNS, LOGS, KILLS = (40, 8, 5) if LONG else (16, 4, 3)
+DAMAGED, WRONG = (3, 11), (5, 13)
 
 
 class Archive(unittest.TestCase):

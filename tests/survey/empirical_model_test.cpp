@@ -239,7 +239,7 @@ TEST(EmpiricalModel, PassesOfOneRunTellOnlyWhatChangesBetweenStations) {
 // come down to the truth from wherever they begin.
 TEST(EmpiricalModel, WhatIsAssumedMovesNoEstimate) {
   Random random(3);
-  const std::vector<RepeatedHole> fleet = Fleet(12, 5, FleetTruth(), random);
+  const std::vector<RepeatedHole> fleet = Fleet(8, 4, FleetTruth(), random);
   const EmpiricalModel made = EstimateModel(fleet, Assumed());
   ErrorModel greater = Assumed();
   for (ErrorTerm& term : greater.terms) {
