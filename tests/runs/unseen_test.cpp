@@ -23,7 +23,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kUnseenSeeds = WELLGYRO_LONG ? 48 : 12;
+constexpr int kUnseenSeeds = WELLGYRO_LONG ? 24 : 12;
 // Of the 34 sums here, one in a hundred runs of all leaves its band.
 constexpr double kTail = 0.01 / (2 * 34);
 constexpr double kStop = 120;  // [s]
