@@ -1,5 +1,6 @@
 // Each check of a run passes on true ones and fails on one that is wrong in that one way.
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <variant>
@@ -51,19 +52,21 @@ struct Flight {
   Job job;
 };
 
-// One in 370 of some two hundred verdicts may fail by chance.
+// By chance one true run in a hundred fails; of eight, two do once in 400.
 TEST(FlaggedRuns, TrueRunsPass) {
-  int judged = 0;
-  constexpr int kSeeds = WELLGYRO_LONG ? 4 : 2;
+  int judged = 0, failed = 0;
+  constexpr int kSeeds = WELLGYRO_LONG ? 8 : 2;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     for (const Check& check : Flight(seed).Checks()) {
       if (check.verdict == Verdict::kNotDone) continue;
       ++judged;
-      EXPECT_NE(check.verdict, Verdict::kFail)
-          << check.code << " " << check.value.value_or(0) << " of " << check.limit.value_or(0)
-          << ", seed " << seed;
+      if (check.verdict != Verdict::kFail) continue;
+      ++failed;
+      std::printf("%s %g of %g, seed %d\n", check.code.c_str(), check.value.value_or(0),
+                  check.limit.value_or(0), static_cast<int>(seed));
     }
   }
+  EXPECT_LE(failed, kSeeds / 8);
   EXPECT_GT(judged, kSeeds * 35);
 }
 
