@@ -4,18 +4,20 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 
   python3 tests/bench/verdict.py PROGRAM [--clean 100] [--faulty 5] [--sizes 0.5,1,3]
                                  [--wells slant,s,horizontal] [--causes gyro_step_x,...] [--jobs 2]
-                                 [--power 40] [--pairs 4] [--first 1]
+                                 [--power 40] [--pairs 4] [--first 1] [--keep FILE]
 
-Simulates tools whose errors are drawn from the job's own priors, with and without one [[fault]],
-surveys the log and compares the deepest station with the truth. `found`: no survey is made, or its
-verdict is not "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how
+Simulates tools whose errors are drawn from the job's own priors, and gravity from those of the
+Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
+the truth. Well `demo`: data/demo with other seeds, without faults. `found`: no survey is made, or
+its verdict is not "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how
 many the right cause is the first of diagnosis.csv; `in set`: or among those that together have
 95 %, or alike the first. Of clean runs every check of chance is tabled by its share of chance, p,
 which is uniform where the check's sigma is true. `--power`: so many runs of each cause in POWER with
 the smallest size that reliability.csv of a clean run has, four in five of which are to be noticed.
 `--pairs`: so many runs a cause and two of each draw, with the fault at once its size, whose cause is
 taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each time;
-`--first`: the first of clean runs, so that a long row can be run in parts. "Beyond both": beyond the
+`--first`: the first of clean runs. `--keep`: runs, but of power and pairs, are added to a file and
+taken from it, so that a long row can be run in parts. "Beyond both": beyond the
 95 % ellipse and beyond that in which the end is if one fault stays unseen, as aviation counts it.
 """
 import argparse
@@ -26,9 +28,11 @@ import json
 import math
 import os
 import random
+import re
 import subprocess
 import sys
 import tempfile
+import threading
 import tomllib
 
 TOOL = """angle_random_walk_deg_per_sqrt_h = 0.005
@@ -44,11 +48,14 @@ accel_bias_sigma_mps2 = 5e-4
 accel_noise_mps2_per_sqrt_hz = 2e-4
 roll_offset_sigma_deg = 0.02
 time_skew_sigma_s = 1e-3
+accel_scale_sigma = 5e-5
+accel_misalignment_sigma_rad = 1e-4
 depth_sigma_m = 0.3
+depth_scale_sigma = 5.6e-4
 """
 NOISE_KEYS = 4  # of them, the first
-# What a job has that states nothing: drawn for every tool too.
-DEPTH_SCALE_SIGMA = 5.6e-4
+# What the estimator leaves to the Earth model at the well, and to its growth with depth: 1-sigma.
+GRAVITY_MPS2, GRAVITY_GRADIENT_PER_S2 = 5e-4, 2e-7
 
 # Inclination and azimuth laws, latitude, end [m], turns a minute.
 WELLS = {
@@ -173,21 +180,37 @@ def Fault(well, fault, size):
     return text + (f"{key} = {float(value)!r}\n" if key else "")
 
 
+DEMO = os.path.join(os.path.dirname(__file__), "..", "..", "data", "demo")
+
+
+def Demonstration(seed, earth):
+    """Its simulation with another seed and gravity, and its job."""
+    with open(os.path.join(DEMO, "simulation.toml"), encoding="utf-8") as file:
+        simulation = re.sub(r"(?m)^seed = .*$", f"seed = {seed}", file.read())
+    with open(os.path.join(DEMO, "job.toml"), encoding="utf-8") as file:
+        job = file.read().replace('"noise.toml"', json.dumps(os.path.abspath(DEMO) + "/noise.toml"))
+    return simulation.replace("[earth]\n", "[earth]\n" + earth), job
+
+
 def Files(well, seed, fault):
     """Simulation and job; `fault`: its text, empty of a clean run."""
+    place = random.Random(seed)
+    earth = (f"gravity_anomaly_mps2 = {place.gauss(0, GRAVITY_MPS2)!r}\n"
+             f"gravity_gradient_anomaly_per_s2 = {place.gauss(0, GRAVITY_GRADIENT_PER_S2)!r}\n")
+    if well == "demo":
+        return Demonstration(seed, earth)
     inclination, azimuth, latitude, end, _ = WELLS[well]
     steps, _ = Steps(well)
-    scale = random.Random(seed).gauss(0, DEPTH_SCALE_SIGMA)
     simulation = (f'format = "wellgyro.simulation/1"\nseed = {seed}\n[well]\nname = "laws"\n'
                   f"end_md_m = {end + 5}\n[well.inclination]\n{inclination}[well.azimuth]\n"
-                  f"{azimuth}[earth]\nlatitude_deg = {latitude}\n[run]\n{steps}[tool]\n{TOOL}"
-                  f"depth_scale = {scale!r}\ndepth_resolution_m = 0.01\n[streams]\nimu_hz = 10.0\n"
+                  f"{azimuth}[earth]\nlatitude_deg = {latitude}\n{earth}"
+                  f"[run]\n{steps}[tool]\n{TOOL}"
+                  f"depth_resolution_m = 0.01\n[streams]\nimu_hz = 10.0\n"
                   f"depth_hz = 2.0\n{fault}")
     lines = TOOL.splitlines()
     job = (f'format = "wellgyro.job/1"\n[well]\nname = "{well}"\nlatitude_deg = {latitude}\n'
            "[noise]\n" + "\n".join(lines[:NOISE_KEYS]) + "\n[errors]\n"
-           + "\n".join(lines[NOISE_KEYS:]) + "\naccel_scale_sigma = 0\n"
-           "accel_misalignment_sigma_rad = 0\n[stations]\nevery_m = 30\n")
+           + "\n".join(lines[NOISE_KEYS:]) + "\n[stations]\nevery_m = 30\n")
     return simulation, job
 
 
@@ -473,6 +496,30 @@ def Pairs(program, pool, wells, causes, count):
           f"{sum(squares) / 2 / max(len(squares), 1):7.2f}")
 
 
+class Kept:
+    """Results of runs by what they are of, in a file of one JSON text a line; None: nowhere."""
+
+    def __init__(self, path):
+        self.path, self.lock, self.results = path, threading.Lock(), {}
+        if path and os.path.exists(path):
+            with open(path, encoding="utf-8") as file:
+                for result in map(json.loads, file):
+                    self.results[self.Key(result)] = result
+
+    @staticmethod
+    def Key(result):
+        return result["well"], result["seed"], result["fault"], result["size"]
+
+    def One(self, program, *run):
+        if run in self.results:
+            return self.results[run]
+        result = One(program, *run)
+        if self.path:
+            with self.lock, open(self.path, "a", encoding="utf-8") as file:
+                file.write(json.dumps(result) + "\n")
+        return result
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -486,6 +533,7 @@ def main():
     parser.add_argument("--power", type=int, default=0, help="runs a cause and well at its smallest")
     parser.add_argument("--pairs", type=int, default=0, help="runs a cause and well, and clean")
     parser.add_argument("--first", type=int, default=1, help="seed of the first clean run")
+    parser.add_argument("--keep", help="file of results, made where it is not")
     parser.add_argument("--say", action="store_true", help="the causes of every run")
     given = parser.parse_args()
     runs = [(well, seed, None, 0.0) for well in given.wells.split(",")
@@ -496,8 +544,9 @@ def main():
         if fault and (CAUSES[fault][1] or first_size):
             runs += [(well, 10_000 + seed, fault, size) for seed in range(given.faulty)]
     program, wells = os.path.abspath(given.program), given.wells.split(",")
+    kept = Kept(given.keep)
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        results = list(pool.map(lambda run: One(program, *run), runs))
+        results = list(pool.map(lambda run: kept.One(program, *run), runs))
         Print(results, given.say)
         causes = given.causes.split(",")
         if given.power:

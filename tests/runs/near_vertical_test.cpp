@@ -72,7 +72,7 @@ Simulation SimulationOf(const Well& well, const testing::Hour& tool, std::uint64
                  RunStop{.seconds = 180}};
   s.streams.imu_hz = tool.imu_hz;
   s.seed = seed;
-  s.tool.errors = DrawToolErrors(tool.errors, tool.noise, seed);
+  testing::DrawErrors(tool.errors, tool.noise, seed, s);
   return s;
 }
 
@@ -212,7 +212,7 @@ Simulation HardlyLeaning(const testing::Hour& tool, double rpm, double swing_deg
                  RunStop{.seconds = 240}};
   s.streams.imu_hz = tool.imu_hz;
   s.seed = seed;
-  s.tool.errors = DrawToolErrors(tool.errors, tool.noise, seed);
+  testing::DrawErrors(tool.errors, tool.noise, seed, s);
   return s;
 }
 

@@ -68,7 +68,7 @@ Simulation SimulationOf(const Pass& run, std::uint64_t seed) {
   s.tool.has_gz = run.has_gz;
   s.seed = seed;
   const testing::Hour tool = ToolOf(run);
-  if (seed != 0) s.tool.errors = DrawToolErrors(tool.errors, tool.noise, seed);
+  if (seed != 0) testing::DrawErrors(tool.errors, tool.noise, seed, s);
   return s;
 }
 

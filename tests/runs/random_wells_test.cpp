@@ -93,7 +93,7 @@ Simulation RandomRun(const testing::Hour& tool, std::uint64_t seed) {
   }
   s.streams.imu_hz = tool.imu_hz;
   s.seed = seed;
-  s.tool.errors = DrawToolErrors(tool.errors, tool.noise, seed);
+  testing::DrawErrors(tool.errors, tool.noise, seed, s);
   s.tool.errors.depth_resolution = tool.depth_resolution;
   return s;
 }

@@ -62,7 +62,7 @@ Simulation SlowWell(double rpm, std::uint64_t seed) {
                  RunStop{.seconds = 180}};
   s.streams.imu_hz = 10;
   s.seed = seed;
-  s.tool.errors = DrawToolErrors(Priors(), Noise(), seed);
+  testing::DrawErrors(Priors(), Noise(), seed, s);
   return s;
 }
 

@@ -53,6 +53,10 @@ TEST(SensorErrors, EachDoesWhatItIsNamedAfter) {
   expect(rate({.quadrature = 1e-7}), {1e-7 * f.y(), -1e-7 * f.x(), 0});
   expect(force({.accel_bias = three}), three);
   expect(force({.accel_scale = three}), three.cwiseProduct(f));
+  Eigen::Matrix3d leaning;
+  leaning << 0, 1e-6, 2e-6, 3e-6, 0, 4e-6, 5e-6, 6e-6, 0;
+  expect(force({.accel_misalignment = leaning}),
+         {1e-6 * f.y() + 2e-6 * f.z(), 3e-6 * f.x() + 4e-6 * f.z(), 5e-6 * f.x() + 6e-6 * f.y()});
   EXPECT_GT(std::abs(w.z()), 0.1);
 }
 
@@ -111,16 +115,19 @@ TEST(DrawToolErrors, FillsThePriorsOverManyTools) {
                            .gyro_scale_sigma = 4,
                            .gyro_misalignment_sigma = 5,
                            .accel_bias_sigma = 6,
+                           .accel_scale_sigma = 11,
+                           .accel_misalignment_sigma = 12,
                            .accel_noise = 7,
                            .roll_offset_sigma = 8,
                            .time_skew_sigma = 9,
-                           .depth_sigma = 10};
+                           .depth_sigma = 10,
+                           .depth_scale_sigma = 13};
   const int tools = 2000;
-  double chi2[16] = {};
+  double chi2[26] = {};
   for (int tool = 0; tool < tools; ++tool) {
     const ToolErrors e =
         DrawToolErrors(priors, {.angle_random_walk = 11}, static_cast<std::uint64_t>(tool));
-    const double drawn[16] = {e.gyro_bias.x(),
+    const double drawn[26] = {e.gyro_bias.x(),
                               e.gyro_bias.y(),
                               e.gyro_bias.z(),
                               e.mass_unbalance / 2,
@@ -135,8 +142,18 @@ TEST(DrawToolErrors, FillsThePriorsOverManyTools) {
                               e.accel_bias.z() / 6,
                               e.roll_offset / 8,
                               e.time_skew / 9,
-                              e.depth_offset / 10};
-    for (int i = 0; i < 16; ++i) chi2[i] += drawn[i] * drawn[i];
+                              e.depth_offset / 10,
+                              e.depth_scale / 13,
+                              e.accel_scale.x() / 11,
+                              e.accel_scale.y() / 11,
+                              e.accel_scale.z() / 11,
+                              e.accel_misalignment(0, 1) / 12,
+                              e.accel_misalignment(0, 2) / 12,
+                              e.accel_misalignment(1, 0) / 12,
+                              e.accel_misalignment(1, 2) / 12,
+                              e.accel_misalignment(2, 0) / 12,
+                              e.accel_misalignment(2, 1) / 12};
+    for (int i = 0; i < 26; ++i) chi2[i] += drawn[i] * drawn[i];
     EXPECT_EQ(e.accel_noise, 7);
     EXPECT_EQ(e.gyro_noise.angle_random_walk, 11);
   }

@@ -163,6 +163,18 @@ TEST(Truth, SpecificForceIsNewtons) {
   EXPECT_GT(coriolis, 1e-4) << "the smallest term that must be seen";
 }
 
+TEST(Truth, AnAnomalyIsAddedToGravityAndGrowsWithDepth) {
+  Simulation s = AtRest(0.7, 2.1, 4.0, 60);
+  s.well.begin_p_WT_W.z() = 500;
+  const Truth normal(s);
+  s.earth.gravity_anomaly = -3e-4;
+  s.earth.gravity_gradient_anomaly = 2e-7;
+  const Truth truth(s);
+  const double more = -3e-4 + 2e-7 * truth.At(30).p_WT_W.z();
+  EXPECT_GT(truth.At(30).p_WT_W.z(), 400);
+  EXPECT_NEAR(truth.SensorsAt(30).f_T.norm() - normal.SensorsAt(30).f_T.norm(), more, 1e-14);
+}
+
 TEST(Truth, AtRestItFeelsGravityAndTheEarth) {
   const double inclination = 0.7, azimuth = 2.1, toolface = 4.0;
   const Truth truth(AtRest(inclination, azimuth, toolface, 60));

@@ -11,10 +11,10 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
-#include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/survey/estimated_run.h"
 #include "wellgyro/survey/run_adjuster.h"
 
+#include "support/drawn_errors.h"
 #include "support/simulated_survey.h"
 
 /// One-hour runs through a hole that undulates by 1.8 deg while its azimuth swings, from simulated
@@ -117,7 +117,7 @@ inline Simulation SimulationOf(const Hour& hour, std::uint64_t seed) {
   s.streams.imu_hz = hour.imu_hz;
   s.seed = seed;
   if (seed != 0) {
-    s.tool.errors = DrawToolErrors(hour.errors, hour.noise, seed);
+    DrawErrors(hour.errors, hour.noise, seed, s);
     s.tool.errors.depth_resolution = hour.depth_resolution;
   }
   return s;

@@ -105,6 +105,8 @@ struct SimulatedEarth {
   double longitude = 0;                               ///< [rad]
   double height = 0;                                  ///< above mean sea level [m]
   double rate = 7.292115e-5;                          ///< [rad/s]
+  double gravity_anomaly = 0;                         ///< at TVD 0, beyond EllipsoidAt() [m/s^2]
+  double gravity_gradient_anomaly = 0;                ///< growth of that with TVD [1/s^2]
   Eigen::Vector3d field_L = Eigen::Vector3d::Zero();  ///< magnetic, north, east, down [T]
 };
 
@@ -123,6 +125,8 @@ struct ToolErrors {
   double gyro_full_scale = 0;  ///< [rad/s]; 0: none
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();   ///< [m/s^2]
   Eigen::Vector3d accel_scale = Eigen::Vector3d::Zero();  ///< [1]
+  /// Off the diagonal: how much the axis of the row sees of that of the column [rad].
+  Eigen::Matrix3d accel_misalignment = Eigen::Matrix3d::Zero();
   double accel_noise = 0;         ///< mean over t has sigma accel_noise/sqrt(t) [m/s^2/sqrt(Hz)]
   double accel_quantization = 0;  ///< step of the accumulated velocity [m/s]
   double accel_full_scale = 0;    ///< [m/s^2]; 0: none

@@ -33,6 +33,13 @@ ToolErrors DrawToolErrors(const ErrorPriors& priors, const NoiseCoefficients& no
   errors.roll_offset = draw(priors.roll_offset_sigma);
   errors.time_skew = draw(priors.time_skew_sigma);
   errors.depth_offset = draw(priors.depth_sigma);
+  errors.depth_scale = draw(priors.depth_scale_sigma);
+  for (double& scale : errors.accel_scale) scale = draw(priors.accel_scale_sigma);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int other : {(axis + 1) % 3, (axis + 2) % 3}) {
+      errors.accel_misalignment(axis, other) = draw(priors.accel_misalignment_sigma);
+    }
+  }
   errors.gyro_noise = noise;
   errors.accel_noise = priors.accel_noise;
   return errors;
@@ -88,7 +95,8 @@ Eigen::Vector3d SensorErrors::Force(const Eigen::Vector3d& f_T, double seconds, 
     const double c = std::cos(e.roll_offset), s = std::sin(e.roll_offset);
     f = {c * f_T.x() + s * f_T.y(), c * f_T.y() - s * f_T.x(), f_T.z()};
   }
-  f += e.accel_scale.cwiseProduct(f) + e.accel_bias;
+  const Eigen::Vector3d leaning = e.accel_misalignment * f;
+  f += e.accel_scale.cwiseProduct(f) + leaning + e.accel_bias;
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<std::size_t>(i);
     if (e.accel_noise != 0) {

@@ -110,6 +110,8 @@ SensorTruth Truth::SensorsAt(double time) const {
   const HolePlace place = well_.PlaceAt(pose.motion.md);
   const double s = std::sin(place.latitude), c = std::cos(place.latitude);
   const EllipsoidPlace earth = EllipsoidAt(s, place.height());
+  const double anomaly =
+      earth_.gravity_anomaly + earth_.gravity_gradient_anomaly * place.p_WT_W.z();
   const double v = pose.motion.speed;
   const Eigen::Vector3d v_L = v * pose.hole.tangent;
   const Eigen::Vector3d w_IE_L(earth_.rate * c, 0, -earth_.rate * s);
@@ -117,7 +119,7 @@ SensorTruth Truth::SensorsAt(double time) const {
                                -v_L.y() * s / (c * earth.radius_east));
   const Eigen::Vector3d f_L = pose.motion.acceleration * pose.hole.tangent +
                               v * v * pose.hole.curvature + (2 * w_IE_L + w_EL_L).cross(v_L) -
-                              Eigen::Vector3d(0, 0, earth.gravity);
+                              Eigen::Vector3d(0, 0, earth.gravity + anomaly);
   const Eigen::Matrix3d R_TL = pose.R_LT.transpose();
   return {.w_IT_T = R_TL * (w_IE_L + w_EL_L) + pose.w_LT_T,
           .f_T = R_TL * f_L,

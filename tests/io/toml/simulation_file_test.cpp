@@ -51,6 +51,8 @@ latitude_deg = 60
 longitude_deg = 5
 height_m = 30
 rate_rad_per_s = 7.3e-5
+gravity_anomaly_mps2 = -3e-4
+gravity_gradient_anomaly_per_s2 = 1e-7
 field_nt = [14000, 500, 49000]
 [tool]
 has_gz = true
@@ -70,6 +72,7 @@ roll_offset_deg = 0.1
 time_skew_s = 1e-3
 accel_bias_mps2 = [1e-3, 2e-3, 3e-3]
 accel_scale = [1e-5, 2e-5, 3e-5]
+accel_misalignment_rad = [1e-6, 2e-6, 3e-6, 4e-6, 5e-6, 6e-6]
 accel_noise_mps2_per_sqrt_hz = 2e-4
 accel_quantization_mps = 1e-4
 accel_full_scale_mps2 = 20
@@ -134,6 +137,8 @@ TEST(ReadSimulation, TakesWellRunAndEarth) {
   EXPECT_DOUBLE_EQ(s.earth.longitude, 5 * kDeg);
   EXPECT_EQ(s.earth.height, 30);
   EXPECT_EQ(s.earth.rate, 7.3e-5);
+  EXPECT_EQ(s.earth.gravity_anomaly, -3e-4);
+  EXPECT_EQ(s.earth.gravity_gradient_anomaly, 1e-7);
   EXPECT_DOUBLE_EQ(s.earth.field_L.z(), 49e-6);
 }
 
@@ -156,6 +161,8 @@ TEST(ReadSimulation, TakesToolAndStreams) {
   EXPECT_EQ(e.time_skew, 1e-3);
   EXPECT_EQ(e.accel_bias, Eigen::Vector3d(1e-3, 2e-3, 3e-3));
   EXPECT_EQ(e.accel_scale, Eigen::Vector3d(1e-5, 2e-5, 3e-5));
+  const Eigen::Matrix3d leaning{{0, 1e-6, 2e-6}, {3e-6, 0, 4e-6}, {5e-6, 6e-6, 0}};
+  EXPECT_EQ(e.accel_misalignment, leaning);
   EXPECT_EQ(e.accel_noise, 2e-4);
   EXPECT_EQ(e.accel_quantization, 1e-4);
   EXPECT_EQ(e.accel_full_scale, 20);

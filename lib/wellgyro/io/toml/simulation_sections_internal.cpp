@@ -134,9 +134,19 @@ void ReadActualGyroErrors(TomlTable& table, ToolErrors& e) {
   table.Read("time_skew_s", e.time_skew);
 }
 
+/// x by y and by z, y by x and by z, z by x and by y.
+void ReadMisalignment(TomlTable& table, Eigen::Matrix3d& misalignment) {
+  Eigen::Vector<double, 6> given;
+  given << misalignment(0, 1), misalignment(0, 2), misalignment(1, 0), misalignment(1, 2),
+      misalignment(2, 0), misalignment(2, 1);
+  ReadVector(table, "accel_misalignment_rad", given, 1);
+  misalignment << 0, given[0], given[1], given[2], 0, given[3], given[4], given[5], 0;
+}
+
 void ReadActualOtherErrors(TomlTable& table, ToolErrors& e) {
   ReadVector(table, "accel_bias_mps2", e.accel_bias, 1);
   ReadVector(table, "accel_scale", e.accel_scale, 1);
+  ReadMisalignment(table, e.accel_misalignment);
   table.Read("accel_quantization_mps", e.accel_quantization, 1, kNotNegative);
   table.Read("accel_full_scale_mps2", e.accel_full_scale, 1, kPositive);
   ReadVector(table, "accel_lever_arm_m", e.accel_lever_arm, 1);
@@ -205,6 +215,9 @@ SimulatedEarth ReadSimulatedEarth(TomlTable table) {
   table.Read("longitude_deg", earth.longitude, kDeg, kLongitudeDeg);
   table.Read("height_m", earth.height, 1, {.min = -12'000, .max = 10'000});
   table.Read("rate_rad_per_s", earth.rate, 1, kNotNegative);
+  table.Read("gravity_anomaly_mps2", earth.gravity_anomaly, 1, {.min = -0.01, .max = 0.01});
+  table.Read("gravity_gradient_anomaly_per_s2", earth.gravity_gradient_anomaly, 1,
+             {.min = -1e-5, .max = 1e-5});
   ReadVector(table, "field_nt", earth.field_L, units::kNanotesla);
   return earth;
 }
