@@ -21,7 +21,7 @@ constexpr std::uint64_t kTruthSeeds = WELLGYRO_LONG ? 200 : 2;
 // Seventy-two tests, of which all are to hold with 99 %.
 constexpr double kRisk = 0.01 / 72;
 
-// Every error that a job can state.
+// Every error that a job can state, but for the scale of depth and the latitude.
 Hour WornTool(double inclination_deg, double rpm) {
   Hour hour = testing::StrongDrift();
   hour.inclination_deg = inclination_deg;
@@ -30,6 +30,8 @@ Hour WornTool(double inclination_deg, double rpm) {
   hour.errors.gyro_misalignment_sigma = 1e-4;
   hour.errors.roll_offset_sigma = FromDegrees(0.02);
   hour.errors.time_skew_sigma = 1e-3;
+  hour.errors.accel_scale_sigma = 5e-5;
+  hour.errors.accel_misalignment_sigma = 1e-4;
   return hour;
 }
 
