@@ -2,10 +2,12 @@
 """What a survey costs, and whether it is adjusted and true, as runs grow long or slow.
 
   python3 tests/bench/estimator.py PROGRAM [--passes 1,4,16] [--hours 1,4,16] [--slow 20]
+                                   [--whirl 0,1,2,5]
 
 --passes: the demonstration's way in and out, so many times in one run. --hours: a slant of 30 deg
 at a metre a second, in and out between stops of three minutes a kilometre apart, 10 Hz. --slow: so
-many seeds of the demonstration at half and at a quarter of its speed, 3.5 and 7 h. Each line:
+many seeds of the demonstration at half and at a quarter of its speed, 3.5 and 7 h. --whirl: an hour
+at 60 deg, 100 Hz, whose tool whirls by 0.1 deg at so many Hz, 0: does not. Each line:
 processor seconds of the survey (log to files), verdict, whether it was adjusted, and the worst
 azimuth of the stations in survey.csv where the hole leans by more than 3 deg, in degrees and in its
 sigmas."""
@@ -67,6 +69,16 @@ def Hours(hours):
     job = DemonstrationJob().replace("latitude_deg = 28.0", "latitude_deg = 60.0")
     job += '[tie_in]\nmd_m = 100.0\ntvd_m = 86.6\n'
     return simulation, re.sub(r'\[grid\]\nutm_zone = "15N"\n', "", job)
+
+
+def Whirling(hz):
+    simulation, job = Hours(1)
+    simulation = simulation.replace("imu_hz = 10.0", "imu_hz = 100.0")
+    simulation = simulation.replace("start_deg = 30.0", "start_deg = 60.0")
+    job = job.replace("tvd_m = 86.6", "tvd_m = 50.0")
+    if hz > 0:
+        simulation += f'[[fault]]\ncause = "whirl"\nsize_deg = 0.1\nevery_s = {1 / hz!r}\n'
+    return simulation, job
 
 
 def Truth(path):
@@ -146,6 +158,7 @@ def main():
     parser.add_argument("program", type=os.path.abspath)
     parser.add_argument("--passes", type=Numbers, default=[1, 4, 16])
     parser.add_argument("--hours", type=Numbers, default=[1, 4, 16])
+    parser.add_argument("--whirl", type=Numbers, default=[0, 1, 2, 5])
     parser.add_argument("--slow", type=int, default=20, help="seeds")
     given = parser.parse_args()
     seconds = [Run(given.program, f"demonstration x {n}", Demonstration(n), DemonstrationJob())[0]
@@ -154,6 +167,8 @@ def main():
         print("over the first:", ", ".join(f"{s / seconds[0]:.1f}" for s in seconds))
     for hours in given.hours:
         Run(given.program, f"{hours} h", *Hours(hours))
+    for hz in given.whirl:
+        Run(given.program, f"whirl at {hz} Hz" if hz > 0 else "no whirl", *Whirling(hz))
     slow = {slower: [Run(given.program, f"speed / {slower}, seed {seed}",
                          Demonstration(1, slower, seed), DemonstrationJob())
                      for seed in range(1, given.slow + 1)] for slower in (2, 4)}

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "wellgyro/simulate/simulator.h"
@@ -105,6 +106,28 @@ TEST(FaultPlayer, ATurnOfTheToolIsFeltByGyrosAndAccelerometersAlike) {
     angle += 0.1 * (crept.samples[k].w_IT_T.y() - clean.samples[k].w_IT_T.y());
   }
   EXPECT_NEAR(angle, 0, 1e-6) << "and back again";
+}
+
+// A tool that whirls while it rolls by 1 rad/s: over half a period its tilt phi goes from one side
+// to the other, and the turn between is that of the tool without, seen from there.
+TEST(FaultPlayer, AWhirlIsATurnOfTheToolWhileItRolls) {
+  Simulation simulation = Slant();
+  simulation.run.steps = {RunMove{.to_md = 150, .speed = 1, .roll = {.rate = 1}}};
+  simulation.tool.has_gz = true;
+  simulation.streams.imu_hz = 100;
+  const auto turn = [](const Played& played) {
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    for (std::size_t k = 6000; k < 6040; ++k) {
+      const Eigen::Vector3d by = 0.01 * played.samples[k].w_IT_T;
+      R = R * Eigen::AngleAxisd(by.norm(), by.normalized());
+    }
+    return R;
+  };
+  const Eigen::Matrix3d clean = turn(Play(simulation));
+  const double size = 2e-3;
+  simulation.faults = {{.cause = Cause::kWhirl, .size = size, .period = 0.8}};
+  const Eigen::Matrix3d tilt(Eigen::AngleAxisd(size, Eigen::Vector3d::UnitX()));  // after 75 periods
+  EXPECT_LT((turn(Play(simulation)) - tilt.transpose() * clean * tilt.transpose()).norm(), 3e-6);
 }
 
 TEST(FaultPlayer, SpoilsMarks) {

@@ -193,7 +193,10 @@ void FaultPlayer::Turn(const SimulatedFault& f, double begin, double end, ImuSam
         f.size * Vector3d(std::cos(b) - std::cos(a), std::sin(b) - std::sin(a), 0);
     const Vector3d mean =
         f.size / (b - a) * Vector3d(std::sin(b) - std::sin(a), std::cos(a) - std::cos(b), 0);
-    s.w_IT_T += turned / seconds;
+    // R_LT Exp(phi) turns by w - phi x w + phi' - phi x phi' / 2 in its own axes, to the second
+    // order in phi'; phi x phi' is along z.
+    const Vector3d coning(0, 0, f.size * f.size * w);
+    s.w_IT_T += turned / seconds - mean.cross(s.w_IT_T) - coning / 2;
     s.f_T -= mean.cross(s.f_T);
     return;
   }
