@@ -109,7 +109,8 @@ TEST(FaultPlayer, ATurnOfTheToolIsFeltByGyrosAndAccelerometersAlike) {
 }
 
 // A tool that whirls while it rolls by 1 rad/s: over half a period its tilt phi goes from one side
-// to the other, and the turn between is that of the tool without, seen from there.
+// to the other, and the turn between is that of the tool without, seen from there. The stretch
+// begins after 75 periods.
 TEST(FaultPlayer, AWhirlIsATurnOfTheToolWhileItRolls) {
   Simulation simulation = Slant();
   simulation.run.steps = {RunMove{.to_md = 150, .speed = 1, .roll = {.rate = 1}}};
@@ -126,7 +127,7 @@ TEST(FaultPlayer, AWhirlIsATurnOfTheToolWhileItRolls) {
   const Eigen::Matrix3d clean = turn(Play(simulation));
   const double size = 2e-3;
   simulation.faults = {{.cause = Cause::kWhirl, .size = size, .period = 0.8}};
-  const Eigen::Matrix3d tilt(Eigen::AngleAxisd(size, Eigen::Vector3d::UnitX()));  // after 75 periods
+  const Eigen::Matrix3d tilt(Eigen::AngleAxisd(size, Eigen::Vector3d::UnitX()));
   EXPECT_LT((turn(Play(simulation)) - tilt.transpose() * clean * tilt.transpose()).norm(), 3e-6);
 }
 
