@@ -429,6 +429,38 @@ TEST(Gyrocompass, GravityAndEarthRateAreCheckedAgainstTheirOwnSigma) {
   EXPECT_FALSE(Has(quality(biased), Quality::kGravity));
 }
 
+// Biases, scales and misalignments of the accelerometers and gravity itself, at one toolface and at
+// three, where part of them cancels.
+TEST(Gyrocompass, GravityIsOffAsItsSigmaSays) {
+  Random random(21);
+  const ErrorPriors errors{
+      .accel_bias_sigma = 5e-4, .accel_scale_sigma = 7e-5, .accel_misalignment_sigma = 1.5e-4};
+  const auto three = [&random](double sigma) {
+    return Eigen::Vector3d(sigma * random.Normal(), sigma * random.Normal(),
+                           sigma * random.Normal());
+  };
+  constexpr int kTools = 400;
+  for (const std::vector<double>& toolfaces : {std::vector{0.7}, {0.7, 2.0, 4.5}}) {
+    double squares = 0;
+    for (int tool = 0; tool < kTools; ++tool) {
+      const Truth truth{
+          .inclination = kPi * random.Uniform(), .gyro_noise = 1e-7, .accel_noise = 3e-4};
+      std::vector<StillWindow> windows = truth.Windows(toolfaces, random);
+      Eigen::Matrix3d A;
+      A << three(1.5e-4), three(1.5e-4), three(1.5e-4);
+      A.diagonal() = three(7e-5);
+      const Eigen::Vector3d bias = three(5e-4);
+      for (StillWindow& window : windows) window.f_T += (A * window.f_T).eval() + bias;
+      Site place = truth.Place();
+      place.gravity += 5e-4 * random.Normal();
+      const NorthFix fix = Gyrocompass(windows, place, {.errors = errors});
+      squares += std::pow((fix.gravity - fix.gravity_ref) / fix.sigma_gravity, 2);
+    }
+    EXPECT_GT(squares, ChiSquareQuantile(5e-4, kTools)) << toolfaces.size();
+    EXPECT_LT(squares, ChiSquareQuantile(1 - 5e-4, kTools)) << toolfaces.size();
+  }
+}
+
 TEST(Gyrocompass, TheFixCarriesItsWindows) {
   Random random(13);
   const Truth truth{.gyro_noise = 0.02 * kDegPerHour, .accel_noise = 1e-4};

@@ -128,19 +128,30 @@ Matrix3d EulerCovariance(const Solution& solution, std::size_t windows, bool& ve
   return capped;
 }
 
+/// The mean over the windows of |f_T| against gravity. Its error is to first order u' (b + A g u),
+/// u the direction of f_T, b the biases, A scales and misalignments: of A_ij g times the mean of
+/// u_i u_j.
 void CheckGravity(std::span<const StillWindow> windows, const Site& site,
                   const GyrocompassSetup& setup, NorthFix& fix) {
   const double n = static_cast<double>(windows.size());
+  const ErrorPriors& e = setup.errors;
   double noise = 0;
+  Vector3d mean = Vector3d::Zero();
+  Matrix3d pairs = Matrix3d::Zero();
   for (const StillWindow& window : windows) {
+    const Vector3d u = window.f_T.normalized();
     fix.gravity += window.f_T.norm() / n;
-    const double along = window.f_T.normalized().cwiseProduct(window.sigma_f_T).norm();
-    noise += along * along / n / n;
+    noise += u.cwiseProduct(window.sigma_f_T).squaredNorm() / (n * n);
+    mean += u / n;
+    pairs += u * u.transpose() / n;
   }
   fix.gravity_ref = site.gravity;
-  const double scale = setup.errors.accel_scale_sigma * site.gravity;
-  fix.sigma_gravity = std::hypot(std::hypot(std::sqrt(noise), scale), setup.errors.accel_bias_sigma,
-                                 setup.sigma_gravity_ref);
+  const double scale = e.accel_scale_sigma * pairs.diagonal().norm();
+  pairs.diagonal().setZero();
+  const double constants =
+      site.gravity * std::hypot(scale, e.accel_misalignment_sigma * pairs.norm());
+  fix.sigma_gravity = std::hypot(std::hypot(std::sqrt(noise), e.accel_bias_sigma * mean.norm()),
+                                 constants, setup.sigma_gravity_ref);
   if (std::abs(fix.gravity - fix.gravity_ref) > 3 * fix.sigma_gravity) {
     fix.quality |= Quality::kGravity;
   }

@@ -6,6 +6,7 @@
 
 #include "wellgyro/alignment/gyrocompass.h"
 #include "wellgyro/calibration/field_checks.h"
+#include "wellgyro/estimate/setup.h"
 
 namespace wellgyro {
 namespace {
@@ -90,6 +91,9 @@ NorthFix StopWatch::FixOf(std::span<const StillWindow> windows) const {
   GyrocompassSetup setup;
   setup.gyro = job_.noise;
   setup.errors = job_.errors;
+  const double depth = job_.well.datum_elevation - site_.site().height;
+  setup.sigma_gravity_ref =
+      std::hypot(setup.sigma_gravity_ref, EstimateSetup().sigma_gravity_gradient * depth);
   NorthFix fix = Gyrocompass(windows, site_.site(), setup);
   fix.md = windows.back().md;
   fix.run = summary_.run;
