@@ -254,6 +254,44 @@ TEST(EstimatedRun, IsSentOutByASurveyor) {
   EXPECT_LT(variance, 0.8 * known.chosen[middle].cov_md_inc_azi(2, 2));
 }
 
+/// Of a slant of 60 deg whose tool whirls by 0.1 deg, without any other error: inclinations of
+/// stations, and azimuths from each other, off by at most [deg].
+double WorstOfAWhirl(double hz) {
+  Hour hour = HalfHour();
+  hour.minutes = 12;
+  hour.undulation_deg = 0;
+  hour.imu_hz = 100;
+  Simulation simulation = SimulationOf(hour, 0);
+  simulation.faults = {
+      {.cause = SimulatedFault::Cause::kWhirl, .size = FromDegrees(0.1), .period = 1 / hz}};
+  const Flown flown = Fly(simulation, ExternalJob(hour, 0, 0.001));
+  const SmoothedRun run = EstimateOf(flown);
+  EXPECT_TRUE(run.fit->converged) << hz;
+  EXPECT_GT(run.stations.size(), 20u);
+  // Told is the hole's azimuth, where the tool stood beside it by all of its whirl: so does the
+  // first station, before which there is nothing.
+  double least = HUGE_VAL, most = -HUGE_VAL, worst = 0;
+  for (const StationState& state : run.stations) {
+    if (state.knot == 0) continue;
+    const double off = state.attitude.inclination - flown.truth[state.knot].inclination;
+    const double azimuth = AzimuthError(flown, run, state.knot);
+    worst = std::max(worst, std::abs(off));
+    least = std::min(least, azimuth);
+    most = std::max(most, azimuth);
+  }
+  worst = std::max(worst, (most - least) / 2);
+  return ToDegrees(worst);
+}
+
+// At each instant it points beside the hole by all of its whirl, at stations too.
+TEST(EstimatedRun, StationsOfAToolThatWhirlsAreTheHoles) {
+  for (const double hz : {1., 1.7, 2., 3., 5.}) {
+    const double worst = WorstOfAWhirl(hz);
+    std::printf("whirl of 0.1 deg at %.1f Hz: off by at most %.4f deg\n", hz, worst);
+    EXPECT_LT(worst, 0.02) << hz;
+  }
+}
+
 // Gyros skewed against the axis seem to turn in a circle, whose middle is not half of its chord:
 // taken for it, the knot's forces lean, and accelerometers that might lean take over a quarter of
 // the skew, and more.

@@ -11,6 +11,7 @@
 #include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/calibration_prior.h"
+#include "wellgyro/survey/hole_axis.h"
 #include "wellgyro/survey/node_attitude.h"
 #include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/run_stretches.h"
@@ -146,15 +147,15 @@ RunEstimate EstimateFrom(const EstimateSetup& setup, const RunHistory& history,
 
 SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history) {
   SmoothedRun run;
+  const std::vector<Eigen::Matrix3d> R_LT = AlongHole(history.knots, estimate.nodes);
   for (std::size_t k = 0; k < history.knots.size(); ++k) {
-    run.attitude.push_back(
-        AttitudeOf(history.knots[k], estimate.nodes[k + 1], estimate.cov_phi[k + 1]));
+    run.attitude.push_back(AttitudeOf(history.knots[k], R_LT[k], estimate.cov_phi[k + 1]));
     if (estimate.ambiguous) ForgetAzimuth(run.attitude.back());
   }
   for (std::size_t j = 0; j < history.stations.size(); ++j) {
     const std::size_t k = history.stations[j];
-    run.stations.push_back(StateOf(k, history.knots[k], run.attitude[k], estimate.nodes[k + 1].R_LT,
-                                   estimate.marked[j]));
+    run.stations.push_back(
+        StateOf(k, history.knots[k], run.attitude[k], R_LT[k], estimate.marked[j]));
   }
   return run;
 }

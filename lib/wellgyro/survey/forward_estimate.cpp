@@ -50,7 +50,7 @@ RunKnot ForwardEstimate::KnotOf(const WaitingKnot& waiting, const Increment& inc
 /// At the end of the last knot.
 AttitudeSample ForwardEstimate::AttitudeNow() const {
   const RunKnot& knot = recent_.back();
-  if (forward_) return AttitudeOf(knot, forward_->node(), forward_->CovPhi());
+  if (forward_) return AttitudeOf(knot, forward_->node().R_LT, forward_->CovPhi());
   if (knot.increment.level || knots_.empty()) {
     return LevelOf(knot, job_.errors.accel_bias_sigma, site_.site().gravity);
   }
@@ -209,8 +209,9 @@ bool ForwardEstimate::Ahead::Step(const WaitingKnot& waiting, const Increment& i
 StationState ForwardEstimate::Ahead::AddStation() {
   const std::size_t knots = now_.knots_.size() + steps_;
   const LinkedErrors errors = forward_.Mark(knots);
-  const AttitudeSample attitude = AttitudeOf(last(), forward_.node(), forward_.CovPhi());
-  return StateOf(knots - 1, last(), attitude, forward_.node().R_LT, errors);
+  const Eigen::Matrix3d& R_LT = forward_.node().R_LT;
+  const AttitudeSample attitude = AttitudeOf(last(), R_LT, forward_.CovPhi());
+  return StateOf(knots - 1, last(), attitude, R_LT, errors);
 }
 
 }  // namespace wellgyro

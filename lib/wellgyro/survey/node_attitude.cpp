@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/node.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/so3.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -35,9 +36,8 @@ void ForgetAngle(int i, AttitudeSample& a) {
 
 }  // namespace
 
-AttitudeSample AttitudeOf(const RunKnot& knot, const Node& node, const Matrix3d& cov_phi) {
+AttitudeSample AttitudeOf(const RunKnot& knot, const Matrix3d& R, const Matrix3d& cov_phi) {
   AttitudeSample a;
-  const Matrix3d& R = node.R_LT;
   a.time = knot.increment.time;
   a.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
   a.azimuth = WrapTwoPi(std::atan2(R(1, 2), R(0, 2)));

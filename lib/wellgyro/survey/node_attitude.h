@@ -3,17 +3,17 @@
 #include <Eigen/Core>
 
 #include "wellgyro/attitude/station_state.h"
-#include "wellgyro/estimate/node.h"
 #include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/record/attitude_sample.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
 
-/// Inclination, azimuth and toolface of the node at the end of `knot`, whose attitude R_LT Exp(phi)
-/// has this covariance [rad^2]. An azimuth vaguer than kVagueAngle says that the hole is vertical
-/// as far as is known; one vaguer than the circle knows nothing.
-AttitudeSample AttitudeOf(const RunKnot& knot, const Node& node, const Eigen::Matrix3d& cov_phi);
+/// Inclination, azimuth and toolface at the end of `knot`, where the attitude R_LT Exp(phi) has
+/// this covariance [rad^2]. An azimuth vaguer than kVagueAngle says that the hole is vertical as
+/// far as is known; one vaguer than the circle knows nothing.
+AttitudeSample AttitudeOf(const RunKnot& knot, const Eigen::Matrix3d& R_LT,
+                          const Eigen::Matrix3d& cov_phi);
 
 /// Of a run without north: inclination and toolface by what gravity says of the knot's middle.
 /// `accel_bias`: 1-sigma [m/s^2].

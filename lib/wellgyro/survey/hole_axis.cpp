@@ -1,0 +1,91 @@
+#include "wellgyro/survey/hole_axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+
+#include <Eigen/QR>
+
+#include "wellgyro/math/so3.h"
+
+namespace wellgyro {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Complex Plane(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
+
+/// The tool's axis at `node` turned by a rotation vector across it, in T.
+Vector3d Turned(const Node& node, Complex across) {
+  return node.R_LT * Exp(Vector3d(across.real(), across.imag(), 0)).col(2);
+}
+
+/// Mean over the knot. With theta(t) the turn across since its begin, as M sees it,
+///   mean theta = turn - (integral of t d theta) / T = turn / 2 + i turn_per_roll,
+/// to which both ends of the knot are witnesses: what the gyros' errors turn by cancels.
+Vector3d MeanAxis(const Increment& inc, const Node& begin, const Node& end) {
+  const Complex turn = Plane(inc.turn_M);
+  const Complex mean = 0.5 * turn + Complex(0, 1) * Plane(inc.turn_per_roll);
+  return (Turned(begin, std::polar(1., inc.roll_before) * mean) +
+          Turned(end, std::polar(1., -inc.roll_after) * (mean - turn))) /
+         2;
+}
+
+bool Seen(const RunKnot& knot) {
+  return knot.along.known && knot.increment.gap_seconds == 0 && knot.unseen == 0;
+}
+
+/// Means over a knot of 1, s and s^2, s the depth from `md` on: by Simpson's rule and a cubic
+/// through the depths and speeds of its ends.
+Vector3d Moments(double md, const Node& begin, const Node& end, double seconds) {
+  const double a = begin.md - md, b = end.md - md;
+  const double middle = (a + b) / 2 + seconds * (begin.speed - end.speed) / 8;
+  return {1, (a + 4 * middle + b) / 6, (a * a + 4 * middle * middle + b * b) / 6};
+}
+
+/// Weights of means over four knots: of all by which a parabola's value at s = 0 comes out, those
+/// that weigh each instant least, so that a short knot counts for little. At rest the parabola is a
+/// constant, and they go by the lengths.
+Eigen::Vector4d Weights(Eigen::Matrix<double, 3, 4> moments, const Eigen::Vector4d& seconds) {
+  const Vector3d most = moments.cwiseAbs().rowwise().maxCoeff();
+  for (int i = 1; i < 3; ++i) {
+    if (most[i] > 0) moments.row(i) /= most[i];
+  }
+  const Eigen::Vector4d root = seconds.cwiseSqrt();
+  const Eigen::Matrix<double, 3, 4> weighed = moments * root.asDiagonal();
+  return root.cwiseProduct(weighed.completeOrthogonalDecomposition().solve(Vector3d::UnitX()));
+}
+
+}  // namespace
+
+std::vector<Matrix3d> AlongHole(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+  std::vector<Vector3d> means;
+  std::vector<Matrix3d> along;
+  means.reserve(knots.size());
+  along.reserve(knots.size());
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    means.push_back(MeanAxis(knots[k].increment, nodes[k], nodes[k + 1]));
+    along.push_back(nodes[k + 1].R_LT);
+  }
+  for (std::size_t k = 1; k + 2 < knots.size(); ++k) {
+    const std::span<const RunKnot> four = knots.subspan(k - 1, 4);
+    if (!std::all_of(four.begin(), four.end(), Seen)) continue;
+    Eigen::Matrix<double, 3, 4> moments;
+    Eigen::Matrix<double, 3, 4> axes;
+    Eigen::Vector4d seconds;
+    for (int i = 0; i < 4; ++i) {
+      const std::size_t j = k - 1 + static_cast<std::size_t>(i);
+      seconds[i] = knots[j].increment.seconds;
+      moments.col(i) = Moments(nodes[k + 1].md, nodes[j], nodes[j + 1], seconds[i]);
+      axes.col(i) = means[j];
+    }
+    const Vector3d axis_T = along[k].transpose() * (axes * Weights(moments, seconds));
+    along[k] = along[k] * Exp(Vector3d(-axis_T.y(), axis_T.x(), 0) / axis_T.z());
+  }
+  return along;
+}
+
+}  // namespace wellgyro
