@@ -147,7 +147,7 @@ RunEstimate EstimateFrom(const EstimateSetup& setup, const RunHistory& history,
 
 SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history) {
   SmoothedRun run;
-  const std::vector<Eigen::Matrix3d> R_LT = AlongHole(history.knots, estimate.nodes);
+  const std::vector<Eigen::Matrix3d> R_LT = OnHoleAxis(history.knots, estimate.nodes);
   for (std::size_t k = 0; k < history.knots.size(); ++k) {
     run.attitude.push_back(AttitudeOf(history.knots[k], R_LT[k], estimate.cov_phi[k + 1]));
     if (estimate.ambiguous) ForgetAzimuth(run.attitude.back());

@@ -16,6 +16,10 @@ using Complex = std::complex<double>;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+// A way below which depth tells of no motion: marks leave as much unknown, and a hole that turns by
+// 10 deg/30 m turns by 3e-4 deg on it.
+constexpr double kRests = 1e-3;  // [m]
+
 Complex Plane(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
 
 /// The tool's axis at `node` turned by a rotation vector across it, in T.
@@ -47,21 +51,23 @@ Vector3d Moments(double md, const Node& begin, const Node& end, double seconds) 
 }
 
 /// Weights of means over four knots: of all by which a parabola's value at s = 0 comes out, those
-/// that weigh each instant least, so that a short knot counts for little. At rest the parabola is a
-/// constant, and they go by the lengths.
-Eigen::Vector4d Weights(Eigen::Matrix<double, 3, 4> moments, const Eigen::Vector4d& seconds) {
-  const Vector3d most = moments.cwiseAbs().rowwise().maxCoeff();
-  for (int i = 1; i < 3; ++i) {
-    if (most[i] > 0) moments.row(i) /= most[i];
-  }
+/// that weigh each instant least, so that a short knot counts for little. Where less than kRests is
+/// travelled the parabola is a constant, and they go by the lengths.
+Eigen::Vector4d WeightsOfMeans(Eigen::Matrix<double, 3, 4> moments,
+                               const Eigen::Vector4d& seconds) {
+  const double scale = std::max(1.0, moments.row(1).cwiseAbs().maxCoeff());
+  moments.row(1) /= scale;
+  moments.row(2) /= scale * scale;
   const Eigen::Vector4d root = seconds.cwiseSqrt();
   const Eigen::Matrix<double, 3, 4> weighed = moments * root.asDiagonal();
-  return root.cwiseProduct(weighed.completeOrthogonalDecomposition().solve(Vector3d::UnitX()));
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 3, 4>> solver;
+  solver.setThreshold(kRests);
+  return root.cwiseProduct(solver.compute(weighed).solve(Vector3d::UnitX()));
 }
 
 }  // namespace
 
-std::vector<Matrix3d> AlongHole(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+std::vector<Matrix3d> OnHoleAxis(std::span<const RunKnot> knots, std::span<const Node> nodes) {
   std::vector<Vector3d> means;
   std::vector<Matrix3d> along;
   means.reserve(knots.size());
@@ -82,7 +88,7 @@ std::vector<Matrix3d> AlongHole(std::span<const RunKnot> knots, std::span<const 
       moments.col(i) = Moments(nodes[k + 1].md, nodes[j], nodes[j + 1], seconds[i]);
       axes.col(i) = means[j];
     }
-    const Vector3d axis_T = along[k].transpose() * (axes * Weights(moments, seconds));
+    const Vector3d axis_T = along[k].transpose() * (axes * WeightsOfMeans(moments, seconds));
     along[k] = along[k] * Exp(Vector3d(-axis_T.y(), axis_T.x(), 0) / axis_T.z());
   }
   return along;

@@ -18,6 +18,7 @@ namespace wellgyro {
 /// the hole whose means over the two knots before and the two behind it are the tool's. Of a whirl
 /// of 1 to 5 Hz and knots of a second a sixth is left. The tool's own where a gap, a stretch of
 /// unknown depth or an end of the run is nearer than two knots.
-std::vector<Eigen::Matrix3d> AlongHole(std::span<const RunKnot> knots, std::span<const Node> nodes);
+std::vector<Eigen::Matrix3d> OnHoleAxis(std::span<const RunKnot> knots,
+                                        std::span<const Node> nodes);
 
 }  // namespace wellgyro
