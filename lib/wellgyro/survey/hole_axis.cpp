@@ -1,6 +1,7 @@
 #include "wellgyro/survey/hole_axis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -19,6 +20,11 @@ using Eigen::Vector3d;
 // A way below which depth tells of no motion: marks leave as much unknown, and a hole that turns by
 // 10 deg/30 m turns by 3e-4 deg on it.
 constexpr double kRests = 1e-3;  // [m]
+// A whirl goes on; a hole that kinks within the four knots, .04 deg/m within a metre, is off by
+// some .002 deg at two or three ends alone. So none is moved by more than twice the median of as
+// many knots about it: a tool that rocks to and fro is off by up to 1.4 of its own.
+constexpr std::size_t kAbout = 10;
+constexpr double kOfMedian = 2;
 
 Complex Plane(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
 
@@ -65,16 +71,12 @@ Eigen::Vector4d WeightsOfMeans(Eigen::Matrix<double, 3, 4> moments,
   return root.cwiseProduct(solver.compute(weighed).solve(Vector3d::UnitX()));
 }
 
-}  // namespace
-
-std::vector<Matrix3d> OnHoleAxis(std::span<const RunKnot> knots, std::span<const Node> nodes) {
-  std::vector<Vector3d> means;
-  std::vector<Matrix3d> along;
-  means.reserve(knots.size());
-  along.reserve(knots.size());
+/// From the tool's axis at the end of each knot to the parabola's: phi of R_LT Exp(phi) [rad]; zero
+/// where there is none.
+std::vector<Vector3d> Beside(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+  std::vector<Vector3d> means, beside(knots.size(), Vector3d::Zero());
   for (std::size_t k = 0; k < knots.size(); ++k) {
     means.push_back(MeanAxis(knots[k].increment, nodes[k], nodes[k + 1]));
-    along.push_back(nodes[k + 1].R_LT);
   }
   for (std::size_t k = 1; k + 2 < knots.size(); ++k) {
     const std::span<const RunKnot> four = knots.subspan(k - 1, 4);
@@ -88,8 +90,35 @@ std::vector<Matrix3d> OnHoleAxis(std::span<const RunKnot> knots, std::span<const
       moments.col(i) = Moments(nodes[k + 1].md, nodes[j], nodes[j + 1], seconds[i]);
       axes.col(i) = means[j];
     }
-    const Vector3d axis_T = along[k].transpose() * (axes * WeightsOfMeans(moments, seconds));
-    along[k] = along[k] * Exp(Vector3d(-axis_T.y(), axis_T.x(), 0) / axis_T.z());
+    const Vector3d axis_T =
+        nodes[k + 1].R_LT.transpose() * (axes * WeightsOfMeans(moments, seconds));
+    beside[k] = Vector3d(-axis_T.y(), axis_T.x(), 0) / axis_T.z();
+  }
+  return beside;
+}
+
+/// Of the sizes from kAbout before this one to kAbout behind it.
+double MedianAbout(std::span<const double> sizes, std::size_t k) {
+  const std::size_t begin = k - std::min(k, kAbout), end = std::min(k + kAbout + 1, sizes.size());
+  std::array<double, 2 * kAbout + 1> about;
+  const auto last = std::copy(sizes.begin() + static_cast<std::ptrdiff_t>(begin),
+                              sizes.begin() + static_cast<std::ptrdiff_t>(end), about.begin());
+  const auto middle = about.begin() + (last - about.begin()) / 2;
+  std::nth_element(about.begin(), middle, last);
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<Matrix3d> OnHoleAxis(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+  const std::vector<Vector3d> beside = Beside(knots, nodes);
+  std::vector<double> sizes;
+  for (const Vector3d& phi : beside) sizes.push_back(phi.norm());
+  std::vector<Matrix3d> along;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const double most = kOfMedian * MedianAbout(sizes, k);
+    const double share = sizes[k] > most ? most / sizes[k] : 1;
+    along.push_back(nodes[k + 1].R_LT * Exp(share * beside[k]));
   }
   return along;
 }
