@@ -84,6 +84,10 @@ TEST(Elimination, CovariancesAreThoseOfTheDenseInverse) {
   const MatrixXd P = chain.H.inverse();
   const int n = chain.layout.node, b = chain.layout.border;
   EdgeMatrix next = chain.elimination.LastCovariance();
+  EXPECT_LT((next.topLeftCorner(n, n) - P.block(kKnots * n, kKnots * n, n, n)).norm(), 1e-10);
+  const Eigen::Matrix3d phi = P.block(kKnots * n, kKnots * n, 3, 3);
+  EXPECT_GT(phi.norm(), 1e-3);
+  EXPECT_LT((chain.elimination.LastCovarianceOfPhi() - phi).norm(), 1e-10);
   for (int k = kKnots; k-- > 0;) {
     BehindMatrix with_next;
     const auto at = static_cast<std::size_t>(k);

@@ -28,7 +28,6 @@ RunState StateAfter(const PlanCase& c, const std::vector<PlannedStop>& stops) {
   state.setup.site = c.site;
   state.border = BorderVector::Zero(rows.layout().border);
   state.information = e.edge_information().selfadjointView<Eigen::Lower>();
-  state.cov = e.LastCovariance();
   state.seconds = rows.seconds();
   state.way = WayFrom(rows.layout(), nodes.front());
   for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {

@@ -218,6 +218,14 @@ EdgeMatrix Elimination::LastCovariance() const {
   return inverse.transpose() * inverse;
 }
 
+Eigen::Matrix3d Elimination::LastCovarianceOfPhi() const {
+  const auto m = last_.rows();
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kNodeMax + kBorderMax, 3> x(m, 3);
+  x.setIdentity();
+  last_.triangularView<Eigen::Lower>().solveInPlace(x);
+  return x.transpose() * x;
+}
+
 BehindMatrix Elimination::Gain(std::size_t k) const {
   const Index n = layout_->node, m = rows_ - n;
   const Columns panel = PanelOf(k);

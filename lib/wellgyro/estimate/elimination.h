@@ -34,6 +34,8 @@ class Elimination {
   bool Solve(std::vector<NodeVector>& nodes, BorderVector& border);
   /// Covariance of [last node; border], after Solve().
   EdgeMatrix LastCovariance() const;
+  /// Of its first three unknowns, at a tenth of the cost.
+  Eigen::Matrix3d LastCovarianceOfPhi() const;
 
   std::size_t eliminated() const { return eliminated_; }
   /// x_k = gain [x_k+1; border] + ...

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
+
+#include <Eigen/Cholesky>
 
 #include "wellgyro/estimate/normal_block.h"
 #include "wellgyro/estimate/places.h"
@@ -56,8 +59,17 @@ double WalkBehind(std::span<const RunKnot> knots) {
   return std::hypot(RollWalkBy(recent) * std::sqrt(inc.seconds), SpeedStarts(recent).back());
 }
 
-/// Change of coordinates phi -> turn' phi of an information or covariance over [phi; others], after
-/// the attitude has gone on by `turn`: phi stays the same vector in L. The unobserved direction, a
+/// Of a positive symmetric matrix; not finite where it is none.
+EdgeMatrix InverseOf(const EdgeMatrix& information) {
+  const Eigen::LLT<EdgeMatrix> llt(information);
+  EdgeMatrix inverse = EdgeMatrix::Identity(information.rows(), information.cols());
+  if (llt.info() != Eigen::Success) return inverse * std::numeric_limits<double>::quiet_NaN();
+  llt.matrixL().solveInPlace(inverse);
+  return inverse.transpose() * inverse;
+}
+
+/// Change of coordinates phi -> turn' phi of an information over [phi; others], after the attitude
+/// has gone on by `turn`: phi stays the same vector in L. The unobserved direction, a
 /// turn about the vertical, then stays the same too; with phi kept in T every relinearisation would
 /// observe a little of it (inconsistency of the extended Kalman filter; Barrau and Bonnabel, IEEE
 /// Trans. Autom. Control 62, 2017).
@@ -72,6 +84,7 @@ EdgeMatrix Turned(EdgeMatrix matrix, const Matrix3d& turn) {
 ForwardRun::ForwardRun(const RunState& solved, std::span<const RunKnot> knots)
     : state_(solved), layout_(LayoutOf(solved.setup)) {
   FreeRoll(WalkBehind(knots));
+  cov_phi_ = InverseOf(state_.information).topLeftCorner<3, 3>();
 }
 
 /// Process noise of variance s^2 on the roll rate, in information form (matrix inversion lemma):
@@ -86,7 +99,6 @@ void ForwardRun::FreeRoll(double sigma) {
   state_.information -= var * told * left.transpose();
   state_.information.col(roll) = left;
   state_.information.row(roll) = left.transpose();
-  state_.cov(roll, roll) += var;
   const Vector3d by_roll = state_.way.by.col(roll);
   state_.way.cov += var / (1 + var * told[roll]) * by_roll * by_roll.transpose();
   state_.way.by -= var * by_roll * left.transpose();
@@ -155,12 +167,13 @@ void ForwardRun::Arrive(const Elimination& elimination, const Node& begin, const
                         const NodeVector& last_step) {
   const Matrix3d turn = Exp(last_step.head<3>());
   state_.information = Turned(elimination.edge_information().selfadjointView<Eigen::Lower>(), turn);
-  state_.cov = Turned(elimination.LastCovariance(), turn);
+  cov_phi_ = turn.transpose() * elimination.LastCovarianceOfPhi() * turn;
+  const BehindMatrix gain = elimination.Gain(0);
   if (state_.link.size() > 0) {
-    CarryLink(layout_, elimination.Gain(0), state_.link);
+    CarryLink(layout_, gain, state_.link);
     state_.link.leftCols<3>() = (state_.link.leftCols<3>() * turn).eval();
   }
-  CarryWay(layout_, begin, end, elimination.Gain(0), elimination.Remainder(0), state_.way);
+  CarryWay(layout_, begin, end, gain, elimination.Remainder(0), state_.way);
   state_.way.by.leftCols<3>() = (state_.way.by.leftCols<3>() * turn).eval();
   const Node& before = state_.nodes.back();
   state_.p += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
@@ -177,9 +190,9 @@ LinkedErrors ForwardRun::Mark(std::size_t node) {
   const std::vector<int> columns = LinkedColumns(layout_);
   LinkedErrors mark;
   mark.node = node;
-  mark.cov = state_.cov(columns, columns);
-  if (state_.link.size() > 0)
-    mark.cov_with_previous = (state_.link * state_.cov)(Eigen::all, columns);
+  const EdgeMatrix cov = InverseOf(state_.information);
+  mark.cov = cov(columns, columns);
+  if (state_.link.size() > 0) mark.cov_with_previous = (state_.link * cov)(Eigen::all, columns);
   state_.link = LinkedRows(layout_);
   return mark;
 }

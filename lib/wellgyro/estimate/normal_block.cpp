@@ -118,7 +118,8 @@ double RollWeight(double square, int n) { return (kDegrees + n) / (kDegrees + sq
 void NormalBlock::Clear(const Layout& layout) {
   node_ = layout.node;
   const int size = 2 * layout.node + layout.border;
-  information_.setZero(size, size);
+  information_.resize(size, size);
+  for (int j = 0; j < size; ++j) information_.col(j).tail(size - j).setZero();
   gradient_.setZero(size);
 }
 

@@ -284,7 +284,6 @@ RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
   end.setup.causes.clear();
   end.border = solved.border();
   end.information = e.edge_information().selfadjointView<Eigen::Lower>();
-  end.cov = e.LastCovariance();
   for (std::size_t i = 0; i < RunState::kTail; ++i) {
     const std::size_t back = std::min(i, knots.size());
     end.nodes[RunState::kTail - 1 - i] = nodes[knots.size() - back];

@@ -19,8 +19,8 @@ struct RunState {
   EstimateSetup setup;            ///< with the noise as found
   std::array<Node, kTail> nodes;  ///< the newest last
   BorderVector border;
-  EdgeMatrix information, cov;  ///< of [newest node; border]
-  /// E[x (node; border)'] = link cov, x of the last marked node; empty: none was.
+  EdgeMatrix information;  ///< of [newest node; border]
+  /// E[x (node; border)'] = link information^-1, x of the last marked node; empty: none was.
   Eigen::MatrixXd link;
   WayBehind way;                                ///< back to node 0 of the run
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< from node 0 of the run [m]
