@@ -16,13 +16,14 @@ which is uniform where the check's sigma is true. `--power`: so many runs of eac
 the smallest size that reliability.csv of a clean run has, four in five of which are to be noticed.
 `--pairs`: so many runs a cause and two of each draw, with the fault at once its size, whose cause is
 taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each time;
-`--first`: the first of clean runs. `--keep`: runs, but of power and pairs, are added to a file and
+`--first`: the first of clean runs. `--keep`: runs, but of power, are added to a file and
 taken from it, so that a long row can be run in parts. "Beyond both": beyond the
 95 % ellipse and beyond that in which the end is if one fault stays unseen, as aviation counts it.
 """
 import argparse
 import concurrent.futures
 import csv
+import functools
 import itertools
 import json
 import math
@@ -465,15 +466,15 @@ def Rms(errors):
     return math.sqrt(sum(e[0]**2 + e[1]**2 for e in errors) / max(len(errors), 1))
 
 
-def Pairs(program, pool, wells, causes, count):
+def Pairs(one, pool, wells, causes, count):
     print("\ncause taken out, rms of the end's horizontal error [m]: clean; with the fault; taken "
           "out; over clean; normalised square, clean, taken out")
     every, squares, cleans, before = [], [], [], []
     for fault in causes:
         errors, outs, ends, wrong, held = [], [], [], [], []
         runs = [(well, 30_000 + seed) for well in wells for seed in range(count)]
-        clean = pool.map(lambda run: One(program, *run, None, 0), runs)
-        faulty = pool.map(lambda run: One(program, *run, fault, 1), runs)
+        clean = pool.map(lambda run: one(*run, None, 0.0), runs)
+        faulty = pool.map(lambda run: one(*run, fault, 1.0), runs)
         for without, with_it in zip(clean, faulty):
             row = [r for r in with_it["diagnosis"] if r["CODE"] == TAKEN_OUT[fault]]
             if not without["cov"] or not row or not row[0]["DN[m]"]:
@@ -514,9 +515,11 @@ class Kept:
         if run in self.results:
             return self.results[run]
         result = One(program, *run)
-        if self.path:
-            with self.lock, open(self.path, "a", encoding="utf-8") as file:
-                file.write(json.dumps(result) + "\n")
+        with self.lock:
+            self.results[run] = result
+            if self.path:
+                with open(self.path, "a", encoding="utf-8") as file:
+                    file.write(json.dumps(result) + "\n")
         return result
 
 
@@ -552,8 +555,8 @@ def main():
         if given.power:
             Power(program, pool, wells, [cause for cause in POWER if cause in causes], given.power)
         if given.pairs:
-            Pairs(program, pool, wells, [cause for cause in TAKEN_OUT if cause in causes],
-                  given.pairs)
+            Pairs(functools.partial(kept.One, program), pool, wells,
+                  [cause for cause in TAKEN_OUT if cause in causes], given.pairs)
     return 0
 
 
