@@ -101,6 +101,7 @@ struct KnotRows::Terms {
   const Node& end;
   double dt;
   double delta = 0;                      // psi's error at the end, from that at the begin
+  double axial_rate = 0;                 // of roll, by a third axis
   double frequency = 0;                  // of the swing
   Vector2d of_swing = Vector2d::Zero();  // in the mean rate of roll
   TurnByError turn_by_error;             // at the roll rate of now
@@ -154,18 +155,26 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
   // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
   t.turn_by_error.middleCols<2>(kMisalignmentX) +=
       t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
-  t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
+  // Of psi by the high side the gyros' turn is late against the forces; by a third axis it is with
+  // the gyros, and the forces are late: see AddForce().
+  const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
+  const double late = inc.has_axial ? 0 : psi_rate;
+  if (inc.has_axial) {
+    t.turn_by_error.col(kTimeSkew).setZero();
+    t.axial_rate = psi_rate;
+  } else {
+    t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
+  }
   for (std::size_t k = 0; k < kTurns.size(); ++k) {
     const double error = t.error[kTurns[k]];
     if (error != 0) t.turn -= error * t.turn_by_error.col(static_cast<Eigen::Index>(k));
   }
   // A toolface error `twist` rotates the measured turn by e^{i twist}. turn_by_error has the first
   // order; the cosine is the second, twist^2 / 2: of 0.05 s at 10 rpm 1.4e-3 of every turn.
-  const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
-  const double twist = t.error[kToolfaceOffset] + psi_rate * t.error[kTimeSkew];
+  const double twist = t.error[kToolfaceOffset] + late * t.error[kTimeSkew];
   t.turn -= 0.5 * twist * twist * inc.turn_M;
   t.turn_by_error.col(kToolfaceOffset) += twist * inc.turn_M;
-  t.turn_by_error.col(kTimeSkew) += psi_rate * twist * inc.turn_M;
+  t.turn_by_error.col(kTimeSkew) += late * twist * inc.turn_M;
   Vector2d drift = Vector2d::Zero();
   if (layout_.walk != kAbsent) drift += 0.5 * (begin.walk + end.walk);
   if (layout_.markov != kAbsent) drift += 0.5 * (begin.markov + end.markov);
@@ -320,8 +329,10 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Vector3d down_M = t.R_LM.row(2).transpose();
   const Vector3d path = t.R_LM.transpose() * t.place.acceleration_L;
   const Vector3d p = path - t.place.site.gravity * down_M;
-  // Forces read later than they are stamped are those of a tool that has turned on: dF/dt = F x w.
-  const Vector3d by_skew = inc.force_M.cross(Flat(t.turn)) / t.dt;
+  // Forces read later than they are stamped are those of a tool that has turned on: dF/dt = F x w,
+  // of a roll to the second order.
+  Vector3d by_skew = inc.force_M.cross(Flat(t.turn) / t.dt + t.axial_rate * Vector3d::UnitZ());
+  by_skew += 0.5 * Square(t.axial_rate) * t.error[kTimeSkew] * Flat(inc.force_M.head<2>());
   const Eigen::Matrix2d beyond = SkewBeforeHalf(inc);
   const Vector2d skew(t.error[kMisalignmentX], t.error[kMisalignmentY]);
   Vector3d force = ForceOf(t, by_skew) + p.cross(Flat(beyond * skew));
