@@ -208,8 +208,9 @@ TEST(Clock, RareDepthMarksSayWhichKeyWouldDo) {
   EXPECT_NE(unknown->limit_source.find("[depth] max_gap_s = 5"), std::string::npos);
 }
 
-// Samples so far ahead of the depth find none: the survey ends there, but not without a word.
-TEST(Clock, DepthsThatComeTooLateAreWarnedOf) {
+// Samples so far ahead of the depth find none: the survey ends there, and hole that was passed has
+// no station.
+TEST(Clock, HoleWhoseDepthsComeTooLateHasNoStations) {
   for (const double tool : {0.0, 30.0}) {
     CollectingSink sink;
     const Survey survey = WithStamps(sink, [&](SampleStamp& stamp) { Move(stamp, tool, 30); });
@@ -219,10 +220,16 @@ TEST(Clock, DepthsThatComeTooLateAreWarnedOf) {
     const Check* unknown = Find(survey, "depth_unknown");
     EXPECT_EQ(unknown->verdict, Verdict::kWarn);
     EXPECT_GT(*unknown->value, 200);
+    const Check* passed = Find(survey, "depth_without_station");
+    ASSERT_NE(passed, nullptr);
+    EXPECT_EQ(passed->verdict, Verdict::kFail);
+    EXPECT_GT(*passed->value, 60);
+    EXPECT_EQ(survey.verdict.verdict, Verdict::kFail);
   }
   CollectingSink sink;
   const Survey quiet = WithStamps(sink, [](SampleStamp&) {});
   EXPECT_EQ(Find(quiet, "depth_unknown")->verdict, Verdict::kPass);
+  EXPECT_EQ(Find(quiet, "depth_without_station"), nullptr);
 }
 
 TEST(Clock, AToolThatStartsAnewGoesOnBehindAGap) {

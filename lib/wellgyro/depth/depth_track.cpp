@@ -183,6 +183,15 @@ std::optional<MarkRead> DepthTrack::FirstMark(UtcTime utc) const {
   return MarkRead{it->utc, it->md};
 }
 
+std::optional<double> DepthTrack::Deepest() const {
+  if (marks_.empty() || !shifts_.empty()) return std::nullopt;
+  double deepest = deepest_forgotten_;
+  for (const Mark& mark : marks_) {
+    if (!mark.doubted) deepest = std::max(deepest, mark.md);
+  }
+  return deepest;
+}
+
 /// Of the marks up to `last`, the youngest counts whatever comes after `until`.
 bool DepthTrack::Stands(UtcTime last, UtcTime until) const {
   const std::size_t after = After(last);
@@ -381,6 +390,9 @@ void DepthTrack::Forget(UtcTime utc) {
   const UtcTime first = marks_[after - 2].utc;
   forgotten_ = std::max(forgotten_.value_or(first), first);
   const std::size_t drop = after - std::min(after, kMemory);
+  for (std::size_t i = 0; i < drop; ++i) {
+    deepest_forgotten_ = std::max(deepest_forgotten_, marks_[i].md);
+  }
   marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(drop));
 }
 

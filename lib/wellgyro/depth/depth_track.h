@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -82,6 +83,9 @@ class WELLGYRO_EXPORT DepthTrack {
   /// The first mark at or after `utc` of those that are in, as the depth system sent it.
   std::optional<MarkRead> FirstMark(UtcTime utc) const;
   UtcTime newest() const { return newest_; }
+  /// Of the marks so far, as the depth system sent them [m]; nothing without marks, or where an
+  /// event has shifted them.
+  std::optional<double> Deepest() const;
   /// Depth events that hold at `utc`, so far pushed: where it changes, depth may jump.
   std::int32_t Segment(UtcTime utc) const { return shifts_.empty() ? 0 : SegmentAt(utc); }
   /// Drops what is needed only before `utc`. Without it memory grows with the marks.
@@ -157,9 +161,10 @@ class WELLGYRO_EXPORT DepthTrack {
   std::vector<Mark> marks_;    ///< by time
   std::vector<Shift> shifts_;  ///< by time
   UtcTime newest_;
-  std::optional<UtcTime> forgotten_;  ///< marks before it are gone
-  std::int32_t session_ = 0;          ///< of the newest mark
-  std::int64_t seq_ = 0;              ///< highest of that session
+  std::optional<UtcTime> forgotten_;      ///< marks before it are gone
+  double deepest_forgotten_ = -HUGE_VAL;  ///< of these [m]
+  std::int32_t session_ = 0;              ///< of the newest mark
+  std::int64_t seq_ = 0;                  ///< highest of that session
 };
 
 }  // namespace wellgyro

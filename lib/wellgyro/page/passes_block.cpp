@@ -227,7 +227,8 @@ void WriteDepth(PageText& page) {
       {"Check", ">Run", page.Named(">MD"), ">Value", ">Limit", "Unit", "Limit from", "Verdict"});
   constexpr std::array kCodes = {"depth_closure", "depth_slippage",   "magnetic_marks",
                                  "depth_scale",   "depth_scale_felt", "depth_jump",
-                                 "depth_lag",     "depth_unknown",    "depth_refused"};
+                                 "depth_lag",     "depth_unknown",    "depth_without_station",
+                                 "depth_refused"};
   for (const char* code : kCodes) {
     bool found = false;
     for (std::size_t i = 0; i < checks.rows(); ++i) {

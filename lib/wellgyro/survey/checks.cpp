@@ -21,6 +21,7 @@
 namespace wellgyro {
 namespace {
 
+constexpr double kStand = 30;    // of pipe [m]
 constexpr int kPairsApart = 36;  // of a run's pairs of stations, those that are independent
 
 void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
@@ -292,6 +293,34 @@ void CheckNoise(const Job& job, std::vector<Check>& checks) {
   checks.back().verdict = Verdict::kWarn;
 }
 
+/// Time without depth; and hole that marks of the same time reached, of which there is no station,
+/// as of a tool whose UTC has jumped ahead of them.
+void CheckDepthKnown(const Job& job, const RunSummary& run, const CheckInputs& inputs,
+                     std::vector<Check>& checks) {
+  if (run.samples == 0 && !(run.seconds_without_depth > 0)) return;
+  Check unknown = Compare("depth_unknown", run.run, {run.seconds_without_depth, 0}, 0.0, 1, "s");
+  unknown.limit_source = "marks no further apart than [depth] max_gap_s";
+  const bool lacks = unknown.verdict == Verdict::kFail;
+  if (lacks) {
+    unknown.verdict = Verdict::kWarn;
+    unknown.limit_source +=
+        fmt::format(" = {}, and no later than latency_s = {}: raise what is too little for them",
+                    job.depth.max_gap, job.depth.latency);
+  }
+  checks.push_back(unknown);
+  // Stations that are asked for one by one have a check of their own.
+  const bool evenly = job.stations.every > 0 && job.stations.at.empty();
+  if (!lacks || !inputs.deepest_mark || !evenly) return;
+  double deepest = job.tie_in.md;
+  for (const Station& station : inputs.passes) deepest = std::max(deepest, station.md);
+  const double limit = std::max(kStand, 2 * job.stations.every);
+  checks.push_back(Compare("depth_without_station", run.run, {*inputs.deepest_mark - deepest, 0},
+                           limit, 1, "m"));
+  checks.back().limit_source =
+      fmt::format("marks reach {:.2f} m, stations {:.2f} m: look at the UTC of samples and marks",
+                  *inputs.deepest_mark, deepest);
+}
+
 }  // namespace
 
 Check CheckAsked(const Job& job, std::span<const Station> chosen) {
@@ -328,15 +357,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     CheckPractice(inputs.passes, run.run, checks);
     CheckPasses(job, inputs.passes, run.run, Pass::kRepeat, "repeat", checks);
     checks.push_back(CountOf("samples_lost", run.run, run.samples_lost, "none may be lost"));
-    Check unknown = Compare("depth_unknown", run.run, {run.seconds_without_depth, 0}, 0.0, 1, "s");
-    unknown.limit_source = "marks no further apart than [depth] max_gap_s";
-    if (unknown.verdict == Verdict::kFail) {
-      unknown.verdict = Verdict::kWarn;
-      unknown.limit_source +=
-          fmt::format(" = {}, and no later than latency_s = {}: raise what is too little for them",
-                      job.depth.max_gap, job.depth.latency);
-    }
-    if (run.samples > 0 || run.seconds_without_depth > 0) checks.push_back(unknown);
+    CheckDepthKnown(job, run, inputs, checks);
     CheckSamples(job, run, checks);
     CheckFit(job, run, checks);
   }

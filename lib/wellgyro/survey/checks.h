@@ -47,6 +47,7 @@ struct CheckInputs {
   std::span<const ReturnToZero> returns;
   const CableMarks* marks = nullptr;
   MarksRefused marks_refused = {};
+  std::optional<double> deepest_mark = {};  ///< [m]; absent: not known
 };
 
 /// `value` against `limit`: passes up to two thirds of it, warns up to it, fails beyond.

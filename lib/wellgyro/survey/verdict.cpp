@@ -108,6 +108,7 @@ constexpr CodeWords kCodeWords[] = {
     {"depth_scale_felt", "depth and the way that the accelerometers feel differ in scale"},
     {"depth_slippage", "depth slips on the way"},
     {"depth_unknown", "depth is missing"},
+    {"depth_without_station", "hole that was passed has no station"},
     {"diagnosis", "the run shows a fault"},
     {"drift_closure", "the run does not close on the north of its last stop"},
     {"earth_rate", "the gyros at rest do not read the Earth's rate"},
