@@ -52,6 +52,13 @@ int Verify(VerifyOptions& o) {
   }
   fmt::print("residuals: chi-square {:.1f} of {}, as large by chance {:.2g}\n", found->chi_square,
              found->dof, found->probability);
+  fmt::print("beside the shifts: chi-square {:.1f} of {}\n", found->left, found->left_dof);
+  if (!found->fits) {
+    fmt::print(
+        "what is beside the shifts fits neither the calibration nor the bench: scale, alignment, "
+        "an outlier, the latitude, or a sigma stated too small (--sigma-deg-per-h, --sigma-accel, "
+        "--wobble-arcsec)\n");
+  }
   fmt::print("{}: chance reaches {:.2f} sigmas\n", found->pass ? "pass" : "fail", found->reach);
   return found->pass ? kDone : kFailed;
 }

@@ -163,6 +163,74 @@ TEST(ToolFit, TermsThatDoTheSameWorkAreTold) {
 
 // Ten times what the prior says, of one gyro on the first table. A bend would not show: on a ramp
 // up and one down it is a loop of hysteresis and a square of the temperature.
+TEST(ToolFit, ATableTwiceAndAMisnamedColumnAreRefused) {
+  Random random(77);
+  const ThermalTool tool = ThermalTool::Any(random);
+  const ThermalBench bench = ThermalBench::Any(random);
+  BenchTable positions = ThermalPositions(tool, bench, 0, 48, 25, 40, random);
+  positions.source = "a.csv";
+  ToolFitSetup setup;
+  setup.reference.latitude = 60 * kRad;
+  std::vector<BenchTable> tables = {positions, positions};
+  tables[1].source = "b.csv";
+  const auto twice = FitTool(tables, setup);
+  ASSERT_FALSE(twice.has_value());
+  EXPECT_EQ(twice.fault().source, "b.csv");
+  EXPECT_NE(twice.fault().text.find("the same readings as a.csv"), std::string::npos);
+  const auto z = static_cast<std::size_t>(*positions.Find("Gz"));
+  tables = {positions};
+  tables[0].columns[z] = "Gq";
+  const auto misnamed = FitTool(tables, setup);
+  ASSERT_FALSE(misnamed.has_value());
+  EXPECT_NE(misnamed.fault().text.find("column Gz is missing beside Gx, Gy"), std::string::npos);
+}
+
+bool Remarks(const ToolFit& fit, const std::string& words) {
+  const auto& remarks = fit.calibration.report.remarks;
+  return std::any_of(remarks.begin(), remarks.end(), [&](const std::string& remark) {
+    return remark.find(words) != std::string::npos;
+  });
+}
+
+// What no residual shows: noise found from next to nothing, a latitude that mass unbalance takes.
+TEST(ToolFit, FewReadingsAndAnUncheckedLatitudeAreTold) {
+  Random random(78);
+  ThermalTool tool = ThermalTool::Any(random);
+  tool.heating.setZero();
+  const ThermalBench bench = ThermalBench::Any(random);
+  ToolFitSetup setup;
+  setup.reference.latitude = 60 * kRad;
+  const std::vector<BenchTable> few = {ThermalPositions(tool, bench, 0, 13, 30, 30.1, random)};
+  const auto small = FitTool(few, setup);
+  ASSERT_TRUE(small.has_value()) << small.fault().text;
+  EXPECT_TRUE(Remarks(*small, "accelerometers give "));
+  EXPECT_TRUE(Remarks(*small, "no rate table"));
+  const std::vector<BenchTable> many = {ThermalPositions(tool, bench, 0, 96, 30, 30.1, random),
+                                        ThermalRates(tool, bench, 30, random)};
+  const auto large = FitTool(many, setup);
+  ASSERT_TRUE(large.has_value()) << large.fault().text;
+  EXPECT_FALSE(Remarks(*large, " readings more than there are unknowns"));
+  EXPECT_FALSE(Remarks(*large, "no rate table"));
+  EXPECT_FALSE(Remarks(*large, "attitudes repeat to"));
+}
+
+// An index of the inclination that stands .1 deg off is no noise of the accelerometers.
+TEST(ToolFit, ScatterThatNoBenchHasIsTold) {
+  Random random(79);
+  ThermalTool tool = ThermalTool::Any(random);
+  tool.heating.setZero();
+  const ThermalBench bench = ThermalBench::Any(random);
+  BenchTable data = ThermalPositions(tool, bench, 0, 96, 30, 30.1, random);
+  const int inclination = *data.Find("inc");
+  for (int i = 0; i < data.rows(); ++i) data.values(i, inclination) += i % 2 == 0 ? 0.3 : -0.3;
+  ToolFitSetup setup;
+  setup.reference.latitude = 60 * kRad;
+  const std::vector<BenchTable> tables = {data};
+  const auto fit = FitTool(tables, setup);
+  ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+  EXPECT_TRUE(Remarks(*fit, "attitudes repeat to"));
+}
+
 TEST(ToolFit, ADriftBeyondItsPriorIsTold) {
   Random random(33);
   Bench b{ThermalTool::Any(random), ThermalBench::Any(random), {}};

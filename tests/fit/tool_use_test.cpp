@@ -230,6 +230,38 @@ TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
   EXPECT_LE(alarms, 0.01 * tools + 3 * std::sqrt(0.01 * tools));
 }
 
+// Neither a bias nor a force term: the shifts may stay within their limits, but nothing fits.
+TEST(ToolUse, WhatNoShiftExplainsFails) {
+  Random random(45);
+  const ThermalTool tool = ThermalTool::Any(random);
+  ToolCalibration model = ModelOf(tool);
+  model.gyro.heating.setZero();
+  VerifySetup setup;
+  setup.bench.reference.latitude = 60 * kRad;
+  setup.bench.sigma_accel = 2e-5;
+  setup.bench.sigma_gyro = 0.02;
+  setup.bench.sigma_wobble = 20 * kRad / 3600;
+  setup.bench.sigma_level = 0.3 * kRad;
+  setup.bench.sigma_north = 0.5 * kRad;
+  setup.budget_accel_bias = 1e-2;
+  setup.budget_gyro_bias = 1;
+  setup.budget_gyro_force = 1;
+  ThermalTool found = tool;
+  found.heating.setZero();
+  const auto sound = VerifyTool(AsFound(found, Eigen::Vector4d::Zero(), random), model, setup);
+  ASSERT_TRUE(sound.has_value()) << sound.fault().text;
+  EXPECT_TRUE(sound->fits);
+  EXPECT_TRUE(sound->pass);
+  EXPECT_GT(sound->left_dof, 100);
+  found.Sa[0] *= 1.005;
+  const auto scaled = VerifyTool(AsFound(found, Eigen::Vector4d::Zero(), random), model, setup);
+  ASSERT_TRUE(scaled.has_value()) << scaled.fault().text;
+  EXPECT_TRUE(std::all_of(scaled->shifts.begin(), scaled->shifts.end(),
+                          [](const ToolShift& shift) { return shift.within; }));
+  EXPECT_FALSE(scaled->fits);
+  EXPECT_FALSE(scaled->pass);
+}
+
 TEST(ToolUse, HistoriesTellWalksAndToolsOutOfFamily) {
   Random random(44);
   std::vector<ToolCalibration> all;

@@ -55,6 +55,11 @@ Complaint CovarianceComplaint(const ToolCalibration& tool, const SensorGroup& gr
   if (known.cov.rows() != n || known.cov.cols() != n || !known.cov.allFinite()) {
     return fmt::format("{}: the covariance is not that of its {} parameters", name, n);
   }
+  Eigen::Index at = 0;
+  if (n > 0 && known.cov.diagonal().minCoeff(&at) < 0) {
+    return fmt::format("{}: the variance of {} is negative", name,
+                       known.names[static_cast<std::size_t>(at)]);
+  }
   for (const std::string& parameter : known.names) {
     if (parameter.rfind("gyro.", 0) != 0 && parameter.rfind("accel.", 0) != 0) continue;
     try {

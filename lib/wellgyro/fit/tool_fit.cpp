@@ -199,6 +199,69 @@ void TellReferences(std::span<const BenchTable> tables, const ToolReadings& read
       setup.reference.gravity_mps2, normal, off));
 }
 
+// Readings of gyros or of accelerometers beyond the terms that they tell.
+Eigen::Index Redundancy(const ToolReadings& readings, const ToolModel& model,
+                        const ToolAdjustment& a, bool of_gyros) {
+  const auto is_of = [&](int channel) {
+    return readings.channels[static_cast<std::size_t>(channel)].is_gyro == of_gyros;
+  };
+  Eigen::Index more = 0;
+  for (std::size_t i = 0; i < readings.rows.size(); ++i) {
+    const std::vector<int>& channels = readings.rows[i].channels;
+    if (a.out[i] == 0) more += std::count_if(channels.begin(), channels.end(), is_of);
+  }
+  for (const ToolTerm& term : model.terms()) more -= is_of(term.uses.front().channel) ? 1 : 0;
+  return more;
+}
+
+// Sigmas that are found from a few readings, and scatter that no bench has.
+void TellNoise(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
+               const ToolAdjustment& a, FitReport& report) {
+  // A sigma of n readings more than unknowns is known to 1 / sqrt(2 n): of 30 to 13 %.
+  constexpr Eigen::Index kFew = 30;
+  for (const bool gyros : {false, true}) {
+    const bool stated = (gyros ? setup.sigma_gyro : setup.sigma_accel) && setup.sigma_wobble;
+    if ((gyros ? readings.n_gyro : readings.n_accel) == 0 || stated) continue;
+    const Eigen::Index more = Redundancy(readings, model, a, gyros);
+    if (more >= kFew) continue;
+    report.remarks.push_back(fmt::format(
+        "{} give {} readings more than there are unknowns: too few to find their noise and to "
+        "choose terms by, and every sigma may be several times too small; read more positions, or "
+        "state {} and --wobble-arcsec",
+        gyros ? "gyros" : "accelerometers", more, gyros ? "--sigma-deg-per-h" : "--sigma-accel"));
+  }
+  // Three times what a coarse bench repeats an attitude to.
+  constexpr double kWobble = FromDegrees(0.1);
+  std::size_t at = 0;
+  double accel = 0;
+  for (const ChannelSignal& signal : Signals(readings, model, a.x, setup)) {
+    const bool force = !readings.channels[at++].is_gyro;
+    if (force && !setup.sigma_accel) accel = std::max(accel, a.noise.accel / signal.signal);
+  }
+  if (std::max(a.noise.wobble, accel) > kWobble) {
+    report.remarks.push_back(fmt::format(
+        "attitudes repeat to {:.2g} deg and accelerometers to {:.2g} of gravity: no bench is that "
+        "coarse; a column of the table is off, or readings stepped on the way, and what they did "
+        "to the result is beyond its sigmas",
+        ToDegrees(a.noise.wobble), accel));
+  }
+}
+
+// Positions tell a wrong latitude as a rate along gravity, which mass unbalance is too.
+void TellLatitude(std::span<const BenchTable> tables, const ToolReadings& readings,
+                  const ToolFitSetup& setup, FitReport& report) {
+  const bool rates = std::any_of(tables.begin(), tables.end(), [](const BenchTable& data) {
+    return data.Find("rate_deg_s").has_value();
+  });
+  if (readings.n_gyro == 0 || rates) return;
+  const double L = *setup.reference.latitude, turn = FromDegrees(0.1);
+  report.remarks.push_back(fmt::format(
+      "no rate table: nothing here checks the latitude; 0.1 deg more would move mass unbalance by "
+      "{:.2g} deg/h/g and the gyros' sensitivity by {:.2g}",
+      std::abs(kBenchEarthDegPerHour * std::sin(turn) / std::cos(L)),
+      std::abs(std::tan(L) * turn)));
+}
+
 Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& readings,
                       const ToolFitSetup& setup, const ToolModel& model, const ToolAdjustment& a) {
   ToolFit fit;
@@ -213,6 +276,8 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
   }
   NameLines(tables, readings, a, report);
   TellReferences(tables, readings, setup, report);
+  TellLatitude(tables, readings, setup, report);
+  TellNoise(readings, setup, model, a, report);
   TellDrifts(model, a, fit);
   TellNuisances(model, a, fit);
   TakeToolResult(readings, setup, model, a, fit);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
@@ -16,7 +17,25 @@ namespace {
 
 bool IsRateTable(const BenchTable& data) { return data.Find("rate_deg_s").has_value(); }
 
+// Of three columns one that is missing or misnamed would leave all three out in silence.
+std::optional<Fault> PartOfAccelerometers(const BenchTable& data) {
+  for (const char kind : {'G', 'f', 'v'}) {
+    std::vector<std::string> there, lacking;
+    for (const char axis : {'x', 'y', 'z'}) {
+      const std::string name{kind, axis};
+      (data.Find(name) ? there : lacking).push_back(name);
+    }
+    if (there.empty() || lacking.empty()) continue;
+    return BenchFault(data,
+                      fmt::format("column {} is missing beside {}: accelerometers come by three",
+                                  fmt::join(lacking, ", "), fmt::join(there, ", ")),
+                      1, FaultCode::kForeign);
+  }
+  return std::nullopt;
+}
+
 std::optional<Fault> TakeAccelerometers(const BenchTable& data, ToolReadings& readings) {
+  if (auto fault = PartOfAccelerometers(data)) return fault;
   const auto table = ReadAttitudeTable(data, {.attitude = true});
   if (!table) return table.fault();
   if (table->accel.rows() == 0) return std::nullopt;
@@ -171,6 +190,22 @@ std::optional<Fault> AddTable(const BenchTable& data, const ToolFitSetup& setup,
   return std::nullopt;
 }
 
+// Readings that stand twice would count twice.
+std::optional<Fault> SameTable(std::span<const BenchTable> tables) {
+  for (std::size_t b = 1; b < tables.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const bool same = tables[a].columns == tables[b].columns &&
+                        tables[a].rows() == tables[b].rows() &&
+                        tables[a].values == tables[b].values;
+      if (!same) continue;
+      return BenchFault(
+          tables[b], fmt::format("the same readings as {}: give each table once", tables[a].source),
+          1, FaultCode::kConflict);
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<Fault> SpanTemperatures(std::span<const BenchTable> tables, ToolReadings& readings) {
   std::size_t with = 0;
   for (const BenchTable& data : tables) with += data.Find("T_C") ? 1 : 0;
@@ -200,6 +235,7 @@ std::optional<Fault> SpanTemperatures(std::span<const BenchTable> tables, ToolRe
 
 Result<ToolReadings> ReadTool(std::span<const BenchTable> tables, const ToolFitSetup& setup) {
   ToolReadings readings;
+  if (auto fault = SameTable(tables)) return *fault;
   for (const BenchTable& data : tables) {
     if (!IsRateTable(data)) {
       if (auto fault = TakeAccelerometers(data, readings)) return *fault;

@@ -18,6 +18,10 @@ namespace wellgyro {
 namespace {
 
 using Kind = CalibrationMember::Kind;
+// Chance that residuals beside the shifts are so large: of a thousand sound tools one, beside those
+// that the false alarm rate of the shifts calls shifted.
+constexpr double kMisfit = 1e-3;
+
 using Squares = Eigen::Matrix<double, 6, 1>;
 
 Squares SquaresOf(const Eigen::Vector3d& a) {
@@ -242,6 +246,7 @@ struct Shifts {
   Eigen::VectorXd x;
   Eigen::MatrixXd cov;
   double chi_square = 0;  // without shifts
+  double left = 0;        // with them
   int dof = 0;
 };
 
@@ -258,7 +263,9 @@ Shifts ShiftsOf(const Comparison& comparison, Eigen::Vector3d& turn) {
   found.x = found.cov * (B.transpose() * e);
   found.chi_square = e.squaredNorm();
   found.dof = static_cast<int>(e.size());
-  const Eigen::VectorXd left = root.matrixU().solve(Eigen::VectorXd(e - B * found.x));
+  const Eigen::VectorXd beside = e - B * found.x;
+  found.left = beside.squaredNorm();
+  const Eigen::VectorXd left = root.matrixU().solve(beside);
   turn = comparison.TurnVariance().asDiagonal() * (r.level.transpose() * left);
   return found;
 }
@@ -284,6 +291,10 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
   out.chi_square = found.chi_square;
   out.dof = found.dof;
   out.probability = 1 - ChiSquareCdf(out.chi_square, out.dof);
+  out.left_dof = found.dof - static_cast<int>(found.seen.size());
+  out.left = found.left;
+  out.fits = out.left_dof <= 0 || 1 - ChiSquareCdf(out.left, out.left_dof) > kMisfit;
+  out.pass = out.fits;
   out.reach = -NormalQuantile(setup.false_alarm / 2 / static_cast<double>(found.seen.size()));
   for (std::size_t i = 0; i < found.seen.size(); ++i) {
     ToolShift shift = comparison.shifts()[static_cast<std::size_t>(found.seen[i])];

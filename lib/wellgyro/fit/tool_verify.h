@@ -36,7 +36,12 @@ struct Verification {
   double chi_square = 0;
   int dof = 0;             ///< of the residuals without any shift
   double probability = 1;  ///< that a sound tool's are as large
-  bool pass = true;        ///< everything within its budget; without budgets, nothing shifted
+  double left = 0;         ///< chi-square beside the shifts
+  int left_dof = 0;
+  /// False: what is beside the shifts is larger than chance has it in one of 1000 tools. Something
+  /// else than a bias or a force term is wrong, of the tool, the bench or what was stated of them.
+  bool fits = true;
+  bool pass = true;  ///< fits, and everything within its budget; without budgets, nothing shifted
 };
 
 /// A tool against its calibration, as found or as left: a table of positions (columns as FitTool's)

@@ -233,7 +233,10 @@ std::string CauseOf(const Check& check) {
   if (check.md) place += fmt::format(", MD {:.2f} m", *check.md);
   const std::string unit = check.unit == "1" || check.unit.empty() ? "" : " " + check.unit;
   if (check.value && check.limit) {
-    place += fmt::format(": {:.3g}{}, limit {:.3g}", *check.value, unit, *check.limit);
+    // A warning of chance is told below the limit at which it fails.
+    const bool below = check.verdict == Verdict::kWarn && std::abs(*check.value) < *check.limit;
+    place += fmt::format(": {:.3g}{}, {} {:.3g}", *check.value, unit,
+                         below ? "fails beyond" : "limit", *check.limit);
   } else if (!check.limit_source.empty()) {
     place += ": " + check.limit_source;
   }

@@ -26,6 +26,25 @@ class SeriesFile : public testing::Test {
 
 using Values = std::vector<double>;
 
+TEST_F(SeriesFile, UnitsAreThoseOfTheHeading) {
+  const auto unit = [&](const std::string& heading) {
+    const auto series = Csv(heading + "\n1\n2\n");
+    return series ? series->unit : "refused";
+  };
+  for (const char* heading : {"GX[deg/h]", "GX(deg/h)", "gx_deg_per_h", "gx_dph"}) {
+    EXPECT_EQ(unit(heading), "deg_per_h") << heading;
+  }
+  EXPECT_EQ(unit("gx_dps"), "deg_per_s");
+  EXPECT_EQ(unit("gx_deg_per_s"), "deg_per_s");
+  EXPECT_EQ(unit("ax_milli_g"), "milli_g");
+  EXPECT_EQ(unit("GX[furlong]"), "refused");
+  // Names that say nothing of a unit.
+  for (const char* heading : {"gx", "gyro(raw)", "axes_s", "gx_ms"}) EXPECT_EQ(unit(heading), "");
+  const auto timed = Csv("t_ms,gx\n0,1\n10,2\n20,3\n", {.value = "gx", .time = "t_ms"});
+  ASSERT_TRUE(timed) << timed.fault().text;
+  EXPECT_NEAR(timed->period, 0.01, 1e-12);
+}
+
 TEST_F(SeriesFile, ReadsLittleEndianNumbers) {
   const auto i16 =
       ReadBinarySeries(Put("a.i16", {"\x01\x00\xff\xff\x00\x80", 6}), SeriesType::kI16);

@@ -24,6 +24,31 @@ std::optional<double> NumberOrGap(std::string_view field) {
   return field.empty() ? std::numeric_limits<double>::quiet_NaN() : AnyNumberOf(field);
 }
 
+struct NamedUnit {
+  std::string_view ending, unit;
+};
+constexpr NamedUnit kEndings[] = {
+    {"_deg_per_h", "deg/h"}, {"_dph", "deg/h"}, {"_deg_per_s", "deg/s"}, {"_dps", "deg/s"},
+    {"_rad_per_s", "rad/s"}, {"_mps2", "m/s2"}, {"_milli_g", "mg"},      {"_mg", "mg"},
+    {"_ms", "ms"},           {"_us", "us"},     {"_ns", "ns"},           {"_s", "s"}};
+
+/// "gx_deg_per_h" and "GX (deg/h)" as "gx[deg/h]" and "GX[deg/h]"; others as they are.
+std::string Bracketed(std::string_view heading) {
+  const std::size_t open = heading.find('(');
+  if (open != std::string_view::npos && heading.ends_with(')')) {
+    return fmt::format("{}[{}]", heading.substr(0, open),
+                       heading.substr(open + 1, heading.size() - open - 2));
+  }
+  // The longest that fits: "_deg_per_s" before "_s".
+  const NamedUnit* best = nullptr;
+  for (const NamedUnit& named : kEndings) {
+    const bool longer = best == nullptr || named.ending.size() > best->ending.size();
+    if (heading.ends_with(named.ending) && longer) best = &named;
+  }
+  if (best == nullptr) return std::string(heading);
+  return fmt::format("{}[{}]", heading.substr(0, heading.size() - best->ending.size()), best->unit);
+}
+
 class CsvReader {
  public:
   CsvReader(const std::filesystem::path& path, const SeriesColumns& columns)
@@ -127,16 +152,18 @@ class CsvReader {
 
   void TakeUnits() {
     if (time_) {
-      const auto headed = sensors::HeadedUnitOf(fields_[*time_]);
+      const std::string heading = Bracketed(fields_[*time_]);
+      const auto headed = sensors::HeadedUnitOf(heading);
       constexpr double kPerSecond = 1e-9;
       if (headed && headed->clock && !headed->unit.empty()) {
         seconds_ = headed->factor * kPerSecond;
       }
     }
-    const auto headed = sensors::HeadedUnitOf(fields_[*value_]);
-    const bool in_brackets = fields_[*value_].find('[') != std::string_view::npos;
-    if (!in_brackets) return;
-    if (!headed || !(headed->rate || headed->force)) {
+    const std::string heading = Bracketed(fields_[*value_]);
+    const auto headed = sensors::HeadedUnitOf(heading);
+    const bool known = headed && (headed->rate || headed->force);
+    if (!known) {
+      if (fields_[*value_].find('[') == std::string_view::npos) return;
       Refuse(fmt::format("column {} has no unit that is known: deg/h, deg/s, rad/s, m/s2, g, mg",
                          fields_[*value_]),
              FaultCode::kForeign, *value_);

@@ -28,7 +28,8 @@ struct SeriesColumns {
   std::string sequence;     ///< numbers of the samples: those left out are missing
   std::string temperature;  ///< [degC]
   /// Time of each sample, which gives the period and what is missing: heading with [s], [ms], [us]
-  /// or [ns], else seconds. Empty: column TOOL or UTC, where the header has one with a unit.
+  /// or [ns], or so ending (t_ms), else seconds. Empty: column TOOL or UTC, where the header has
+  /// one with a unit.
   std::string time;
 };
 
@@ -41,7 +42,8 @@ WELLGYRO_EXPORT Result<SampleSeries> ReadBinarySeries(
 /// Reads a column of numbers. Separated by comma, semicolon, tab or blanks; one header line or
 /// none; lines with # and empty lines are left out. An empty field, "nan" or "inf" is a sample that
 /// is missing. Any other text is a Fault with line and column; so is a sequence that goes back. A
-/// unit in the heading, as tables of sensor data have it (GX[deg/h]), is the series'.
+/// unit in the heading, as tables of sensor data have it (GX[deg/h], GX(deg/h), gx_deg_per_h), is
+/// the series'.
 WELLGYRO_EXPORT Result<SampleSeries> ReadCsvSeries(
     const std::filesystem::path& path, const SeriesColumns& columns,
     const std::function<void(double)>& progress = {});
