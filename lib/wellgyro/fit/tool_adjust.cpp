@@ -141,6 +141,8 @@ class Adjuster {
   }
 
  private:
+  // Of noise: three kinds of readings, the wobble of attitudes and of the rate table.
+  static constexpr std::size_t kComponents = 5;
   static constexpr int kRobustTurns = 6, kTurns = 6, kRoughSweeps = 3, kSweeps = 12;
 
   static Fault Unsettled() {
@@ -150,17 +152,19 @@ class Adjuster {
                 "signs, exchanged columns, mixed units or a wrong reference"};
   }
 
-  std::array<double*, 4> Components() {
-    return {&noise_.accel, &noise_.gyro, &noise_.gyro_table, &noise_.wobble};
+  std::array<double*, kComponents> Components() {
+    return {&noise_.accel, &noise_.gyro, &noise_.gyro_table, &noise_.wobble, &noise_.wobble_table};
   }
-  std::array<bool, 4> Held() const {
+  std::array<bool, kComponents> Held() const {
     return {setup_.sigma_accel.has_value(), setup_.sigma_gyro.has_value(),
-            setup_.sigma_gyro_table.has_value(), setup_.sigma_wobble.has_value()};
+            setup_.sigma_gyro_table.has_value(), setup_.sigma_wobble.has_value(),
+            setup_.sigma_wobble.has_value()};
   }
   bool Alike(ToolNoise before) const {
     const auto same = [](double a, double b) { return std::abs(a - b) <= 0.01 * std::abs(b); };
     return same(before.accel, noise_.accel) && same(before.gyro, noise_.gyro) &&
-           same(before.gyro_table, noise_.gyro_table) && same(before.wobble, noise_.wobble);
+           same(before.gyro_table, noise_.gyro_table) && same(before.wobble, noise_.wobble) &&
+           same(before.wobble_table, noise_.wobble_table);
   }
 
   // The coefficients by plain least squares, channel kinds weighed alike; then their scatter.
@@ -194,7 +198,7 @@ class Adjuster {
     for (std::size_t kind = 0; kind < 3; ++kind) {
       floor_[kind] = std::max(kWrittenRounding * RobustSigma(readings[kind]), 1e-300);
     }
-    noise_.wobble = setup_.sigma_wobble.value_or(5e-5);
+    noise_.wobble = noise_.wobble_table = setup_.sigma_wobble.value_or(5e-5);
     noise_.accel = setup_.sigma_accel.value_or(std::max(RobustSigma(sizes[0]), floor_[0]));
     noise_.gyro = setup_.sigma_gyro.value_or(std::max(RobustSigma(sizes[1]), floor_[1]));
     noise_.gyro_table =
@@ -275,10 +279,10 @@ class Adjuster {
     const std::vector<Left> rows = RowsLeft();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       const ToolNoise before = noise_;
-      const std::array<double, 4> ratios = SquaresOverExpected(rows).ratios;
-      const std::array<bool, 4> held = Held();
-      const std::array<double*, 4> sigmas = Components();
-      for (std::size_t k = 0; k < 4; ++k) {
+      const std::array<double, kComponents> ratios = SquaresOverExpected(rows).ratios;
+      const std::array<bool, kComponents> held = Held();
+      const std::array<double*, kComponents> sigmas = Components();
+      for (std::size_t k = 0; k < kComponents; ++k) {
         if (held[k] || !(ratios[k] > 0)) continue;
         const double factor = std::clamp(std::sqrt(ratios[k]), 0.2, 5.0);
         *sigmas[k] = std::max(*sigmas[k] * factor, floor_[k]);
@@ -289,10 +293,10 @@ class Adjuster {
 
   // Of each component with covariance V: y'P V P y over tr(P V), where P takes the parameters out
   // (Patterson and Thompson 1971). At the likeliest sigmas all are one; 0 where there is nothing.
-  // The information on the wobble's variance is tr(V P V P) / 2, row by row.
+  // The information on a wobble's variance is tr(V P V P) / 2, row by row.
   struct NoiseFound {
-    std::array<double, 4> ratios{};
-    double wobble_information = 0;
+    std::array<double, kComponents> ratios{};
+    std::array<double, 2> wobble_information{};
   };
   NoiseFound SquaresOverExpected(const std::vector<Left>& rows) const {
     const Eigen::Index n = model_.size();
@@ -317,7 +321,7 @@ class Adjuster {
                                 scale.asDiagonal();
     const Eigen::VectorXd step = cov * b;
     NoiseFound found;
-    std::array<double, 4> squares{}, expected{};
+    std::array<double, kComponents> squares{}, expected{};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const Left& left = rows[i];
       const Eigen::VectorXd r = weights[i] * (left.e - left.J * step);
@@ -329,12 +333,13 @@ class Adjuster {
         squares[kind] += r[c] * r[c];
         expected[kind] += P(c, c);
       }
-      squares[3] += (left.wobble.transpose() * r).squaredNorm();
+      const std::size_t turning = left.row->mount >= 0 ? 1 : 0;
+      squares[3 + turning] += (left.wobble.transpose() * r).squaredNorm();
       const Eigen::Matrix3d of_wobble = left.wobble.transpose() * P * left.wobble;
-      expected[3] += of_wobble.trace();
-      found.wobble_information += of_wobble.squaredNorm() / 2;
+      expected[3 + turning] += of_wobble.trace();
+      found.wobble_information[turning] += of_wobble.squaredNorm() / 2;
     }
-    for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t k = 0; k < kComponents; ++k) {
       if (expected[k] > 0) found.ratios[k] = squares[k] / expected[k];
     }
     return found;
@@ -377,8 +382,10 @@ class Adjuster {
   // By normal equations of scaled columns: the terms that are there are told apart well.
   Result<ToolAdjustment> Finish() const {
     ToolAdjustment a{x_, {}, noise_, out_, Linearise(), {}};
-    const double information = SquaresOverExpected(RowsLeft()).wobble_information;
-    if (information > 0 && !setup_.sigma_wobble) a.sigma_wobble_square = 1 / std::sqrt(information);
+    const std::array<double, 2> information = SquaresOverExpected(RowsLeft()).wobble_information;
+    for (std::size_t k = 0; k < 2 && !setup_.sigma_wobble; ++k) {
+      if (information[k] > 0) a.sigma_wobble_square[k] = 1 / std::sqrt(information[k]);
+    }
     const Eigen::MatrixXd& A = a.linear.A;
     const Eigen::VectorXd scale = A.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
     const Eigen::MatrixXd scaled = A * scale.asDiagonal();
@@ -409,7 +416,7 @@ class Adjuster {
   const ToolModel& model_;
   Eigen::VectorXd x_;
   ToolNoise noise_;
-  std::array<double, 4> floor_{1e-300, 1e-300, 1e-300, 1e-8};
+  std::array<double, kComponents> floor_{1e-300, 1e-300, 1e-300, 1e-8, 1e-8};
   std::vector<char> out_;
 };
 

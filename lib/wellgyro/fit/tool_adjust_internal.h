@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -17,7 +18,9 @@ struct ToolAdjustment {
   std::vector<char> out;  ///< by row: left out
   LinearProblem linear;   ///< about x, whitened; rows' lines are places in readings.rows plus one
   LinearSolution solution;
-  double sigma_wobble_square = 0;  ///< of the wobble's variance; 0 where it was given [rad^2]
+  /// Of the wobble's variance, and of that on the rate table; 0 where it was given or there is
+  /// none [rad^2].
+  std::array<double, 2> sigma_wobble_square{};
 };
 
 /// Places of the bundles whose coefficients these readings tell apart from the others'.

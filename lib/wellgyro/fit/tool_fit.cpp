@@ -1,6 +1,7 @@
 #include "wellgyro/fit/tool_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -88,11 +89,16 @@ void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit
     }
     fit.nuisances.push_back(std::move(nuisance));
   }
-  if (a.noise.wobble > 0) {
+  const std::array wobbles{a.noise.wobble, a.noise.wobble_table};
+  for (std::size_t k = 0; k < 2; ++k) {
+    // Without a sigma: given, or no such readings.
+    const bool given = k == 0 && a.sigma_wobble_square[0] == 0 && a.sigma_wobble_square[1] == 0;
+    if (!(wobbles[k] > 0 && (a.sigma_wobble_square[k] > 0 || given))) continue;
     // Of a variance v known to s, its root's sigma; where v is nothing beside s, what it may be.
-    const double v = a.noise.wobble * a.noise.wobble, s = a.sigma_wobble_square;
-    const double sigma = v > 2 * s ? s / (2 * a.noise.wobble) : std::sqrt(v + s);
-    fit.nuisances.push_back({"wobble", a.noise.wobble, s > 0 ? sigma : 0, 0, "rad"});
+    const double v = wobbles[k] * wobbles[k], s = a.sigma_wobble_square[k];
+    const double sigma = v > 2 * s ? s / (2 * wobbles[k]) : std::sqrt(v + s);
+    fit.nuisances.push_back(
+        {k == 0 ? "wobble" : "wobble of the rate table", wobbles[k], s > 0 ? sigma : 0, 0, "rad"});
   }
 }
 

@@ -167,7 +167,8 @@ ToolModel::Prediction ToolModel::At(const ToolRow& row, const Eigen::VectorXd& x
 Eigen::MatrixXd ToolModel::Whitener(const ToolRow& row, const Eigen::MatrixXd& wobble,
                                     const ToolNoise& noise) const {
   const auto n = static_cast<Eigen::Index>(row.channels.size());
-  Eigen::MatrixXd cov = noise.wobble * noise.wobble * wobble * wobble.transpose();
+  const double turn = noise.WobbleOf(row);
+  Eigen::MatrixXd cov = turn * turn * wobble * wobble.transpose();
   for (Eigen::Index i = 0; i < n; ++i) {
     const int c = row.channels[static_cast<std::size_t>(i)];
     const bool is_gyro = readings_.channels[static_cast<std::size_t>(c)].is_gyro;

@@ -14,6 +14,8 @@ namespace wellgyro {
 struct ToolNoise {
   double accel = 1, gyro = 1, gyro_table = 1;  ///< of a reading [its unit]
   double wobble = 0;                           ///< of its attitude, about each axis [rad]
+  double wobble_table = 0;  ///< on the rate table, which has an axis of its own [rad]
+  double WobbleOf(const ToolRow& row) const { return row.mount >= 0 ? wobble_table : wobble; }
 };
 
 /// Readings of the tool as functions of the terms' coefficients, and behind them of what the bench
