@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -299,6 +300,49 @@ TEST(ToolUse, HistoriesTellWalksAndToolsOutOfFamily) {
     }
   }
   EXPECT_NEAR(std::sqrt(walk) / (kRad / 3600), 0.01, 0.004);
+}
+
+// A walk of which one change is known, or two, is hardly known at all.
+TEST(ToolUse, PriorsForTheNextJobHoldWhatToolsComeTo) {
+  Random random(46);
+  const ParameterCovariance known = AnyCovariance(random);
+  constexpr int kTools = 400;
+  for (const int calibrations : {2, 3, 5}) {
+    std::vector<ToolCalibration> all;
+    std::map<std::string, double> off;
+    for (int t = 0; t < kTools; ++t) {
+      ToolCalibration model = ModelOf(ThermalTool::Any(random));
+      model.asset_serial = "T" + std::to_string(1000 + t);
+      const auto walk = [&](double days) {
+        model.gyro.bias[0][1] += 0.05 * std::sqrt(days) * random.Normal();
+      };
+      for (int k = 0; k < calibrations; ++k) {
+        if (k > 0) walk(180);
+        ToolCalibration seen = Drawn(model, known, random);
+        seen.gyro.covariance = known;
+        seen.calibrated = UtcTime{86'400'000'000'000LL * (20'000 + 180 * k)};
+        all.push_back(seen);
+      }
+      const double last = all.back().gyro.bias[0][1];
+      walk(30);
+      off[model.asset_serial] = (model.gyro.bias[0][1] - last) * kRad / 3600;
+    }
+    int beyond = 0, far = 0;
+    for (const ToolHistory& history : HistoriesOf(all, {.temperature = 87.5, .days_ahead = 30})) {
+      for (const SourceHistory& source : history.sources) {
+        if (source.name != "gyro_bias_x") continue;
+        const double sigmas = std::abs(off.at(history.asset_serial)) / source.prior_sigma;
+        beyond += sigmas > 2 ? 1 : 0;
+        far += sigmas > 4 ? 1 : 0;
+      }
+    }
+    std::printf("%d calibrations: %.1f %% beyond two sigmas, %.1f %% beyond four\n", calibrations,
+                100.0 * beyond / kTools, 100.0 * far / kTools);
+    // Of Student's distribution with one degree of freedom 6 and 3 %.
+    EXPECT_LT(beyond, 0.1 * kTools);
+    EXPECT_GT(beyond, 0);
+    EXPECT_LT(far, 0.05 * kTools);
+  }
 }
 
 }  // namespace

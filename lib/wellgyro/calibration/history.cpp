@@ -56,6 +56,20 @@ double Reach(double false_alarm, std::size_t n) {
   return -NormalQuantile(false_alarm / 2 / static_cast<double>(std::max<std::size_t>(n, 1)));
 }
 
+// Variance of a walk per day that `changes` over `days` do not exceed in five of six tools: the one
+// sigma limit of theirs, with n degrees of freedom for n changes, less what both calibrations'
+// sigmas make of it. From one or two changes the estimate itself says next to nothing.
+double WalkAtMost(const SourceHistory& source, double days) {
+  double squares = 0, known = 0;
+  for (std::size_t k = 0; k < source.changes.size(); ++k) {
+    squares += std::pow(source.changes[k], 2);
+    known += std::pow(source.sigmas[k], 2);
+  }
+  const auto n = static_cast<double>(source.changes.size());
+  if (!(days > 0)) return 0;
+  return std::max(0.0, squares * n / ChiSquareQuantile(NormalCdf(-1), n) - known) / days;
+}
+
 ToolHistory HistoryOf(std::vector<const ToolCalibration*> tools, const HistorySetup& setup) {
   std::sort(tools.begin(), tools.end(), [](const ToolCalibration* a, const ToolCalibration* b) {
     return *a->calibrated < *b->calibrated;
@@ -88,8 +102,7 @@ ToolHistory HistoryOf(std::vector<const ToolCalibration*> tools, const HistorySe
     }
     source.walk_per_sqrt_day = days > 0 ? std::sqrt(std::max(0.0, excess) / days) : 0;
     const Eigen::Index at = last.At(source.name);
-    source.prior_sigma = std::hypot(std::sqrt(last.cov(at, at)),
-                                    source.walk_per_sqrt_day * std::sqrt(setup.days_ahead));
+    source.prior_sigma = std::sqrt(last.cov(at, at) + WalkAtMost(source, days) * setup.days_ahead);
     source.shifted = !source.changes.empty() &&
                      std::abs(source.changes.back()) > history.reach * source.sigmas.back();
   }

@@ -15,7 +15,8 @@ struct SourceHistory {
   std::vector<double> changes;   ///< from each calibration to the next [SI]
   std::vector<double> sigmas;    ///< of the changes, by both calibrations' covariance [SI]
   double walk_per_sqrt_day = 0;  ///< what they ask for beyond that, as a random walk [SI]
-  double prior_sigma = 0;        ///< for a job so many days ahead [SI]
+  double prior_sigma = 0;        ///< for a job so many days ahead, by a walk that the few changes
+                                 ///< do not exceed in five of six tools [SI]
   bool shifted = false;          ///< the last change is beyond what chance reaches
   bool out_of_family = false;    ///< it walks unlike the other tools
 };
