@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/estimate/log_slopes.h"
 #include "wellgyro/estimate/second_order.h"
 #include "wellgyro/estimate/turn_columns.h"
 #include "wellgyro/math/drift.h"
@@ -39,21 +40,6 @@ constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 // Of a dt^2, a being what the depth's fit shows of a change of acceleration within a knot: the
 // bound of 1/8 of the change where it shows a quarter of it.
 constexpr double kTrapezoid = 0.5;
-
-/// Derivative of r = Log(R) on SO(3): for R -> Exp(-a) R Exp(b), dr = right b - left a with the
-/// inverse Jacobians I +- [r]x / 2 + [r]x^2 / 12, to the second order of r. A heading change common
-/// to both nodes then leaves r as it is. With unit matrices it would change r by |r|, one sigma a
-/// radian, and over thousands of knots that linearisation error would observe a heading which no
-/// sensor measures.
-struct LogSlopes {
-  explicit LogSlopes(const Vector3d& r) {
-    const Matrix3d rx = Skew(r);
-    const Matrix3d even = Matrix3d::Identity() + rx * rx / 12;
-    left = even - 0.5 * rx;
-    right = even + 0.5 * rx;
-  }
-  Matrix3d left, right;
-};
 
 /// Mean over a knot that rolls steadily of e e', e the direction of the tool's x axis in M.
 Matrix2d MeanSquareOfX(const Increment& inc) {
@@ -128,6 +114,34 @@ ErrorVector KnotRows::ErrorsAt(const BorderVector& border, double warmth) const 
   return error;
 }
 
+/// The turn without what is known of the errors, and what each of them makes of it.
+void KnotRows::CorrectTurn(Terms& t) {
+  const Increment& inc = t.knot.increment;
+  // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
+  t.turn_by_error.middleCols<2>(kMisalignmentX) +=
+      t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
+  // Of psi by the high side the gyros' turn is late against the forces; by a third axis it is with
+  // the gyros, and the forces are late: see AddForce().
+  const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
+  const double late = inc.has_axial ? 0 : psi_rate;
+  if (inc.has_axial) {
+    t.turn_by_error.col(kTimeSkew).setZero();
+    t.axial_rate = psi_rate;
+  } else {
+    t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
+  }
+  for (std::size_t k = 0; k < kTurns.size(); ++k) {
+    const double error = t.error[kTurns[k]];
+    if (error != 0) t.turn -= error * t.turn_by_error.col(static_cast<Eigen::Index>(k));
+  }
+  // A toolface error `twist` rotates the measured turn by e^{i twist}. turn_by_error has the first
+  // order; the cosine is the second, twist^2 / 2: of 0.05 s at 10 rpm 1.4e-3 of every turn.
+  const double twist = t.error[kToolfaceOffset] + late * t.error[kTimeSkew];
+  t.turn -= 0.5 * twist * twist * inc.turn_M;
+  t.turn_by_error.col(kToolfaceOffset) += twist * inc.turn_M;
+  t.turn_by_error.col(kTimeSkew) += late * twist * inc.turn_M;
+}
+
 KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
@@ -152,29 +166,7 @@ KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
     rate += t.of_swing.dot(begin.swing);
   }
   t.delta = rate * t.dt - (inc.roll_before + inc.roll_after);
-  // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
-  t.turn_by_error.middleCols<2>(kMisalignmentX) +=
-      t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
-  // Of psi by the high side the gyros' turn is late against the forces; by a third axis it is with
-  // the gyros, and the forces are late: see AddForce().
-  const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
-  const double late = inc.has_axial ? 0 : psi_rate;
-  if (inc.has_axial) {
-    t.turn_by_error.col(kTimeSkew).setZero();
-    t.axial_rate = psi_rate;
-  } else {
-    t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
-  }
-  for (std::size_t k = 0; k < kTurns.size(); ++k) {
-    const double error = t.error[kTurns[k]];
-    if (error != 0) t.turn -= error * t.turn_by_error.col(static_cast<Eigen::Index>(k));
-  }
-  // A toolface error `twist` rotates the measured turn by e^{i twist}. turn_by_error has the first
-  // order; the cosine is the second, twist^2 / 2: of 0.05 s at 10 rpm 1.4e-3 of every turn.
-  const double twist = t.error[kToolfaceOffset] + late * t.error[kTimeSkew];
-  t.turn -= 0.5 * twist * twist * inc.turn_M;
-  t.turn_by_error.col(kToolfaceOffset) += twist * inc.turn_M;
-  t.turn_by_error.col(kTimeSkew) += late * twist * inc.turn_M;
+  CorrectTurn(t);
   Vector2d drift = Vector2d::Zero();
   if (layout_.walk != kAbsent) drift += 0.5 * (begin.walk + end.walk);
   if (layout_.markov != kAbsent) drift += 0.5 * (begin.markov + end.markov);

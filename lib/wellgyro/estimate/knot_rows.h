@@ -70,6 +70,7 @@ class KnotRows {
   struct Terms;
   /// Those of kTurnSources, gyro shear, unequal mass unbalance and quadrature.
   using TurnErrors = Eigen::Matrix<double, 3, kTurnSources + 3>;
+  static void CorrectTurn(Terms& t);
   Terms TermsOf(const RunKnot& knot, const KnotPlace& place, const BorderVector& border,
                 const Node& begin, const Node& end) const;
   void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, NormalBlock& block);

@@ -135,7 +135,7 @@ class Adjuster {
       if (!Minimise(false)) return Unsettled();
       const ToolNoise before = noise_;
       FindNoise(kSweeps);
-      if (Alike(before)) break;
+      if (Alike(before, noise_)) break;
     }
     return Finish();
   }
@@ -159,12 +159,6 @@ class Adjuster {
     return {setup_.sigma_accel.has_value(), setup_.sigma_gyro.has_value(),
             setup_.sigma_gyro_table.has_value(), setup_.sigma_wobble.has_value(),
             setup_.sigma_wobble.has_value()};
-  }
-  bool Alike(ToolNoise before) const {
-    const auto same = [](double a, double b) { return std::abs(a - b) <= 0.01 * std::abs(b); };
-    return same(before.accel, noise_.accel) && same(before.gyro, noise_.gyro) &&
-           same(before.gyro_table, noise_.gyro_table) && same(before.wobble, noise_.wobble) &&
-           same(before.wobble_table, noise_.wobble_table);
   }
 
   // The coefficients by plain least squares, channel kinds weighed alike; then their scatter.
@@ -287,7 +281,7 @@ class Adjuster {
         const double factor = std::clamp(std::sqrt(ratios[k]), 0.2, 5.0);
         *sigmas[k] = std::max(*sigmas[k] * factor, floor_[k]);
       }
-      if (Alike(before)) break;
+      if (Alike(before, noise_)) break;
     }
   }
 

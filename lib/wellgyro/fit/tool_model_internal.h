@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ struct ToolNoise {
   double wobble_table = 0;  ///< on the rate table, which has an axis of its own [rad]
   double WobbleOf(const ToolRow& row) const { return row.mount >= 0 ? wobble_table : wobble; }
 };
+
+/// To a hundredth of each sigma.
+inline bool Alike(const ToolNoise& a, const ToolNoise& b) {
+  const auto same = [](double x, double y) { return std::abs(x - y) <= 0.01 * std::abs(y); };
+  return same(a.accel, b.accel) && same(a.gyro, b.gyro) && same(a.gyro_table, b.gyro_table) &&
+         same(a.wobble, b.wobble) && same(a.wobble_table, b.wobble_table);
+}
 
 /// Readings of the tool as functions of the terms' coefficients, and behind them of what the bench
 /// has: level (about north and east) and north of each table, seats on the rate table, latitude.
