@@ -8,17 +8,18 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 
 Simulates tools whose errors are drawn from the job's own priors, and gravity from those of the
 Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
-the truth. Well `demo`: data/demo with other seeds, without faults. `found`: no survey is made, or
-its verdict is not "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how
-many the right cause is the first of diagnosis.csv; `in set`: or among those that together have
-95 %, or alike the first. Of clean runs every check of chance is tabled by its share of chance, p,
-which is uniform where the check's sigma is true. `--power`: so many runs of each cause in POWER with
-the smallest size that reliability.csv of a clean run has, four in five of which are to be noticed.
-`--pairs`: so many runs a cause and two of each draw, with the fault at once its size, whose cause is
-taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each time;
-`--first`: the first of clean runs. `--keep`: runs, but of power, are added to a file and
-taken from it, so that a long row can be run in parts. "Beyond both": beyond the
-95 % ellipse and beyond that in which the end is if one fault stays unseen, as aviation counts it.
+the truth. Well `demo`: data/demo with other seeds, without faults; `slant+z`: by a tool with a
+third gyro axis. `found`: no survey is made, or its verdict is not "pass"; `fail`: of these, those
+with exit code 2 or 4. `named`: of those found, in how many the right cause is the first of
+diagnosis.csv; `in set`: or among those that together have 95 %, or alike the first. Of clean runs
+every check of chance is tabled by its share of chance, p, which is uniform where the check's sigma
+is true. `--power`: so many runs of each cause in POWER with the smallest size that reliability.csv
+of a clean run has, four in five of which are to be noticed. `--pairs`: so many runs a cause and two
+of each draw, with the fault at once its size, whose cause is taken out by what diagnosis.csv has of
+it, and without. Seeds are fixed: the same figures each time; `--first`: the first of clean runs.
+`--keep`: runs, but of power, are added to a file and taken from it, so that a long row can be run
+in parts. "Beyond both": beyond the 95 % ellipse and beyond that in which the end is if one fault
+stays unseen, as aviation counts it.
 """
 import argparse
 import concurrent.futures
@@ -150,9 +151,14 @@ def Named(fault, causes):
     return right[0], inside
 
 
+def Hole(well):
+    """Of a well by a tool with a third gyro axis, `slant+z`, without the tool."""
+    return well.removesuffix("+z")
+
+
 def Steps(well):
     """In and out with stops of two minutes every 300 m on the way in; text, and its times."""
-    *_, end_m, rpm = WELLS[well]
+    *_, end_m, rpm = WELLS[Hole(well)]
     speed, time, stops = 1.0, 0.0, []
     text = "start_md_m = 0.0\n"
     depth = 0.0
@@ -200,12 +206,13 @@ def Files(well, seed, fault):
              f"gravity_gradient_anomaly_per_s2 = {place.gauss(0, GRAVITY_GRADIENT_PER_S2)!r}\n")
     if well == "demo":
         return Demonstration(seed, earth)
-    inclination, azimuth, latitude, end, _ = WELLS[well]
+    inclination, azimuth, latitude, end, _ = WELLS[Hole(well)]
     steps, _ = Steps(well)
+    third = "has_gz = true\n" if well != Hole(well) else ""
     simulation = (f'format = "wellgyro.simulation/1"\nseed = {seed}\n[well]\nname = "laws"\n'
                   f"end_md_m = {end + 5}\n[well.inclination]\n{inclination}[well.azimuth]\n"
                   f"{azimuth}[earth]\nlatitude_deg = {latitude}\n{earth}"
-                  f"[run]\n{steps}[tool]\n{TOOL}"
+                  f"[run]\n{steps}[tool]\n{third}{TOOL}"
                   f"depth_resolution_m = 0.01\n[streams]\nimu_hz = 10.0\n"
                   f"depth_hz = 2.0\n{fault}")
     lines = TOOL.splitlines()

@@ -2,6 +2,7 @@
 // sigmas hold what they leave open.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -166,6 +167,33 @@ TEST(BenchFaults, ShortRunsOnATransientHaveItInTheirSigmas) {
   }
   EXPECT_LT(square, 1.5);
   EXPECT_GT(square, 0.1);
+}
+
+// 16 bits of 5 V, and a tenth of that noise.
+TEST(BenchFaults, RoundingThatNoNoiseSpreadsIsInTheSigmas) {
+  Random random(23);
+  constexpr double kStep = 76e-6;
+  constexpr int kBenches = 60;
+  double square = 0;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    const VoltTool tool = VoltTool::Any(random);
+    BenchTable data = TwentyFour(tool, {.sigma = 1e-5, .readings = 5}, random);
+    const int volt = *data.Find("volt");
+    for (double& value : data.values.col(volt)) value = kStep * std::round(value / kStep);
+    const auto fitted = FitTwentyFourPositions(data, {.settle_tolerance = 2e-4});
+    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+    EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr("in steps of 7.6e-05 V")));
+    const FitQuantity& Vb = Quantity(fitted->report, "Vb_V");
+    square += (Vb.value - tool.Vb).cwiseQuotient(Vb.sigma).squaredNorm() / 3 / kBenches;
+  }
+  std::printf("rounded: squares over their number %.2f\n", square);
+  // Where rotations differ by more than a step their rounding averages: less than the bound.
+  EXPECT_LT(square, 1.6);
+  EXPECT_GT(square, 0.2);
+  const BenchTable fine = TwentyFour(VoltTool::Any(random), {.sigma = 1e-5, .readings = 5}, random);
+  const auto fitted = FitTwentyFourPositions(fine, {.settle_tolerance = 2e-4});
+  ASSERT_TRUE(fitted.has_value());
+  EXPECT_THAT(fitted->report.remarks, Not(Contains(HasSubstr("in steps of"))));
 }
 
 TEST(BenchFaults, GravityBesideForcesMustAgreeWithThem) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -180,6 +181,29 @@ Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double to
   return run;
 }
 
+// The converter's step: the least difference of two readings, where all differ by multiples of it
+// and so few values stand for so many readings that it is no noise.
+double StepOf(const BenchTable& data, int volt) {
+  std::vector<double> values(data.values.col(volt).begin(), data.values.col(volt).end());
+  std::sort(values.begin(), values.end());
+  const double first = values.front(), rounding = 1e-12 * std::abs(values.back() - first);
+  double step = HUGE_VAL;
+  std::size_t distinct = 1;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double apart = values[i] - values[i - 1];
+    if (!(apart > rounding)) continue;
+    step = std::min(step, apart);
+    ++distinct;
+  }
+  if (!std::isfinite(step) || 2 * distinct > values.size()) return 0;
+  constexpr double kWhole = 0.01;
+  const bool multiples = std::all_of(values.begin(), values.end(), [&](double value) {
+    const double steps = (value - first) / step;
+    return std::abs(steps - std::round(steps)) < kWhole;
+  });
+  return multiples ? step : 0;
+}
+
 }  // namespace
 
 double PositionRun::P(int axis, int down, int channel) const {
@@ -208,11 +232,13 @@ Result<std::vector<PositionRun>> ReadPositionRuns(const BenchTable& data, double
   }
   std::vector<RawRun> raw;
   if (auto fault = Gather(data, columns, &raw)) return *fault;
+  const double step = StepOf(data, columns.volt);
   std::vector<PositionRun> runs;
   for (const RawRun& run : raw) {
     auto settled = Settled(data, run, tolerance, raw.size() == 1);
     if (!settled) return settled.fault();
     settled->has_temperature = columns.temperature.has_value();
+    settled->step = step;
     runs.push_back(*std::move(settled));
   }
   return runs;

@@ -23,6 +23,7 @@ struct PositionRun {
   /// Change through the readings of a position that noise does not explain, rms of all positions;
   /// of runs of less than eight readings, from which no transient can be taken [V].
   double drift = 0;
+  double step = 0;  ///< of the converter, of which all readings are multiples; 0: none is seen [V]
   /// By axis, direction (up, down), rotation and channel.
   std::array<PositionReading, 72> readings;
 

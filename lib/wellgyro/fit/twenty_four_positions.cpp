@@ -147,6 +147,20 @@ void AddDrift(const std::vector<PositionRun>& runs, double gravity, FitReport& r
       drift));
 }
 
+// Readings that are all alike round to the same step whatever the rotation, so that neither their
+// scatter nor their mean tells the rounding: of every mean it is an error of variance step^2 / 12.
+// Noise of a step and more makes it random, and it is in the scatter.
+void AddRounding(const std::vector<PositionRun>& runs, const LinearProblem& problem,
+                 FitReport& report) {
+  const double step = runs.front().step;
+  if (!(step > report.scatter) || report.cov.size() == 0) return;
+  report.cov += step * step / 12 * (problem.A.transpose() * problem.A).inverse();
+  report.remarks.push_back(
+      fmt::format("readings come in steps of {:.3g} V, larger than their noise: the uncertainties "
+                  "hold what rounding may be; read with a finer converter",
+                  step));
+}
+
 Eigen::Matrix3d SensitivityOf(const Eigen::VectorXd& values, int power) {
   const Eigen::VectorXd nine = values.segment(12 * power + 3, 9);
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nine.data());
@@ -216,6 +230,7 @@ Result<FittedPositions> Fit(const BenchTable& data, const std::vector<PositionRu
   fitted.tilt = Tilt(runs, S, setup.gravity, sigma_M);
   FreeOfTilt(fitted.report, degree, fitted.tilt);
   AddDrift(runs, setup.gravity, fitted.report);
+  AddRounding(runs, problem, fitted.report);
   return fitted;
 }
 
