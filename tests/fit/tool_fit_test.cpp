@@ -214,7 +214,7 @@ TEST(ToolFit, FewReadingsAndAnUncheckedLatitudeAreTold) {
   EXPECT_FALSE(Remarks(*large, "attitudes repeat to"));
 }
 
-// An index of the inclination that stands .1 deg off is no noise of the accelerometers.
+// Inclinations that are off by .3 deg, up and down by turns, are no noise of the accelerometers.
 TEST(ToolFit, ScatterThatNoBenchHasIsTold) {
   Random random(79);
   ThermalTool tool = ThermalTool::Any(random);
