@@ -304,5 +304,21 @@ TEST(RunDiagnosis, TheEllipseIsTheLeastThatHoldsAllPoints) {
   EXPECT_TRUE(EllipseAbout({}).isZero());
 }
 
+TEST(RunDiagnosis, ARunWhoseAdjustmentGaveUpHasAFaultWithoutAName) {
+  RunSummary run;
+  run.run = 1;
+  EXPECT_TRUE(CausesOf(run, {}).empty());
+  auto fit = std::make_shared<RunFit>();
+  fit->converged = false;
+  run.fit = fit;
+  const std::vector<RunCause> causes = CausesOf(run, {});
+  ASSERT_EQ(causes.size(), 1u);
+  EXPECT_EQ(causes[0].code, "other");
+  EXPECT_EQ(causes[0].posterior, 1);
+  EXPECT_FALSE(causes[0].remedy.empty());
+  fit->converged = true;
+  EXPECT_TRUE(CausesOf(run, {}).empty());
+}
+
 }  // namespace
 }  // namespace wellgyro

@@ -358,6 +358,13 @@ std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> che
   }
   const bool by_samples = !causes.empty();
   for (RunCause& cause : causes) cause.posterior = 1 / static_cast<double>(causes.size());
+  // No fault can be tested of a run whose adjustment gave up: something is wrong without a name.
+  if (!by_samples && run.fit && !run.fit->converged && !run.fit->diagnosis) {
+    RunCause& cause = causes.emplace_back();
+    cause.code = "other";
+    cause.posterior = 1;
+    cause.remedy = "survey the well again";
+  }
   if (!run.fit || !run.fit->diagnosis) return causes;
   for (const RunCause& cause : run.fit->diagnosis->causes) {
     causes.push_back(cause);
