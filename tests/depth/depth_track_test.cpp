@@ -224,6 +224,22 @@ TEST(DepthTrack, LateMarksAreRefusedAndRepeatedOnesSkipped) {
   EXPECT_NEAR(track.At(Utc(8.33)).md, before.md, 0.01);
 }
 
+// Depths that the log has of before and after the tool are none that it passed.
+TEST(DepthTrack, TheDeepestMarkIsOfTheTimeInWhichDepthsAreNeeded) {
+  DepthTrack track;
+  EXPECT_FALSE(track.Deepest(Utc(0)).has_value());
+  // Up from 900 m, down to 700 m, and then to 800 m.
+  const auto md = [](int k) { return k < 200 ? 900 - 2.0 * k : 500 + (k - 200); };
+  for (int k = 0; k < 200; ++k) EXPECT_FALSE(track.Push(Mark(0.5 * k, md(k), k)).has_value());
+  EXPECT_DOUBLE_EQ(track.Deepest(Utc(100)).value_or(0), 900);
+  track.Forget(Utc(100));
+  for (int k = 200; k <= 500; ++k) EXPECT_FALSE(track.Push(Mark(0.5 * k, md(k), k)).has_value());
+  EXPECT_DOUBLE_EQ(track.Deepest(Utc(200)).value_or(0), 700);
+  EXPECT_DOUBLE_EQ(track.Deepest(Utc(250)).value_or(0), 800);
+  track.Forget(Utc(249));
+  EXPECT_DOUBLE_EQ(track.Deepest(Utc(250)).value_or(0), 800);
+}
+
 TEST(DepthTrack, ATimeAtRestIsNoGapBetweenMarksThatAgree) {
   const auto at = [](std::initializer_list<DepthMark> marks, double begin, double end) {
     DepthTrack track;

@@ -181,13 +181,8 @@ BenchTable AsFound(const ThermalTool& tool, const Eigen::Vector4d& shift, Random
   return ThermalPositions(shifted, bench, 0, 24, 87.4, 87.5, random);
 }
 
-TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
-  Random random(43);
-  const ThermalTool tool = ThermalTool::Any(random);
-  ToolCalibration model = ModelOf(tool);
-  model.gyro.heating.setZero();
-  ThermalTool still = tool;
-  still.heating.setZero();
+// What AsFound()'s bench is known by.
+VerifySetup AsTheBenchIs() {
   VerifySetup setup;
   setup.bench.reference.latitude = 60 * kRad;
   setup.bench.sigma_accel = 2e-5;
@@ -195,6 +190,17 @@ TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
   setup.bench.sigma_wobble = 20 * kRad / 3600;
   setup.bench.sigma_level = 0.3 * kRad;
   setup.bench.sigma_north = 0.5 * kRad;
+  return setup;
+}
+
+TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
+  Random random(43);
+  const ThermalTool tool = ThermalTool::Any(random);
+  ToolCalibration model = ModelOf(tool);
+  model.gyro.heating.setZero();
+  ThermalTool still = tool;
+  still.heating.setZero();
+  VerifySetup setup = AsTheBenchIs();
   // The calibration's own errors, of an ordinary bench.
   ParameterCovariance known;
   for (int c = 0; c < 4; ++c) {
@@ -237,13 +243,7 @@ TEST(ToolUse, WhatNoShiftExplainsFails) {
   const ThermalTool tool = ThermalTool::Any(random);
   ToolCalibration model = ModelOf(tool);
   model.gyro.heating.setZero();
-  VerifySetup setup;
-  setup.bench.reference.latitude = 60 * kRad;
-  setup.bench.sigma_accel = 2e-5;
-  setup.bench.sigma_gyro = 0.02;
-  setup.bench.sigma_wobble = 20 * kRad / 3600;
-  setup.bench.sigma_level = 0.3 * kRad;
-  setup.bench.sigma_north = 0.5 * kRad;
+  VerifySetup setup = AsTheBenchIs();
   setup.budget_accel_bias = 1e-2;
   setup.budget_gyro_bias = 1;
   setup.budget_gyro_force = 1;

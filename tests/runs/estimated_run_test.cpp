@@ -161,9 +161,9 @@ TEST(EstimatedRun, NoiseDrawsNoScale) {
   known.ExpectTrue("azimuth on the way");
 }
 
-// Of a tool that turns at 10 rpm, 0.05 s are 3 deg of toolface: to the first order alone the hole
-// seems to turn by 1.4e-3 less than it does, which left 0.0064 and 0.074 deg here.
-/// With accelerometers .05 s late at a roll that swings about 10 rpm.
+/// Accelerometers 0.05 s late at a roll that swings about 10 rpm, 3 deg of toolface: to the first
+/// order alone the hole seems to turn by 1.4e-3 less than it does, which left 0.0064 and 0.074 deg
+/// of two axes. A third one's azimuth was off by 0.0071 when its bound was set.
 void ExpectNoHarmBySkew(bool third_axis) {
   Hour hour = HalfHour();
   hour.inclination_deg = 20;

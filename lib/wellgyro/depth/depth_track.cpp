@@ -183,13 +183,14 @@ std::optional<MarkRead> DepthTrack::FirstMark(UtcTime utc) const {
   return MarkRead{it->utc, it->md};
 }
 
-std::optional<double> DepthTrack::Deepest() const {
+std::optional<double> DepthTrack::Deepest(UtcTime until) const {
   if (marks_.empty() || !shifts_.empty()) return std::nullopt;
   double deepest = deepest_forgotten_;
   for (const Mark& mark : marks_) {
-    if (!mark.doubted) deepest = std::max(deepest, mark.md);
+    const bool before = needed_ && mark.utc < *needed_;
+    if (!before && !mark.doubted && mark.utc <= until) deepest = std::max(deepest, mark.md);
   }
-  return deepest;
+  return std::isfinite(deepest) ? std::optional(deepest) : std::nullopt;
 }
 
 /// Of the marks up to `last`, the youngest counts whatever comes after `until`.
@@ -380,6 +381,7 @@ AlongHole DepthTrack::AtRest(UtcTime begin, UtcTime end) const {
 }
 
 void DepthTrack::Forget(UtcTime utc) {
+  if (!needed_) needed_ = utc;
   UtcTime keep = utc - setup_.half_window;
   for (const Shift& shift : shifts_) {
     if (!shift.offset) keep = std::min(keep, shift.utc);
@@ -391,7 +393,7 @@ void DepthTrack::Forget(UtcTime utc) {
   forgotten_ = std::max(forgotten_.value_or(first), first);
   const std::size_t drop = after - std::min(after, kMemory);
   for (std::size_t i = 0; i < drop; ++i) {
-    deepest_forgotten_ = std::max(deepest_forgotten_, marks_[i].md);
+    if (marks_[i].utc >= *needed_) deepest_forgotten_ = std::max(deepest_forgotten_, marks_[i].md);
   }
   marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(drop));
 }

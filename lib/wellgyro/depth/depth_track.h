@@ -83,9 +83,10 @@ class WELLGYRO_EXPORT DepthTrack {
   /// The first mark at or after `utc` of those that are in, as the depth system sent it.
   std::optional<MarkRead> FirstMark(UtcTime utc) const;
   UtcTime newest() const { return newest_; }
-  /// Of the marks so far, as the depth system sent them [m]; nothing without marks, or where an
+  /// Of the marks up to `until`, from the instant on that was first given to Forget(): before it
+  /// nobody needed a depth. As the depth system sent them [m]; nothing without marks, or where an
   /// event has shifted them.
-  std::optional<double> Deepest() const;
+  std::optional<double> Deepest(UtcTime until) const;
   /// Depth events that hold at `utc`, so far pushed: where it changes, depth may jump.
   std::int32_t Segment(UtcTime utc) const { return shifts_.empty() ? 0 : SegmentAt(utc); }
   /// Drops what is needed only before `utc`. Without it memory grows with the marks.
@@ -162,7 +163,8 @@ class WELLGYRO_EXPORT DepthTrack {
   std::vector<Shift> shifts_;  ///< by time
   UtcTime newest_;
   std::optional<UtcTime> forgotten_;      ///< marks before it are gone
-  double deepest_forgotten_ = -HUGE_VAL;  ///< of these [m]
+  std::optional<UtcTime> needed_;         ///< depths are, from here on
+  double deepest_forgotten_ = -HUGE_VAL;  ///< from there on [m]
   std::int32_t session_ = 0;              ///< of the newest mark
   std::int64_t seq_ = 0;                  ///< highest of that session
 };

@@ -186,7 +186,7 @@ std::vector<Check> SurveyMaker::Checks(const std::vector<Station>& passes) const
   const std::vector<RunSummary> summaries = Summaries();
   const std::vector<Foresight> foresights = Foresights();
   return MakeChecks(job_, {summaries, passes, foresights, parts_.crew.returns(), &string_.marks,
-                           string_.refused, string_.track.Deepest()});
+                           string_.refused, string_.track.Deepest(parts_.newest_used)});
 }
 
 /// Samples behind the last depth, for which marks came after all, but too late [s].
