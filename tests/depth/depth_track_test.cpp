@@ -232,7 +232,8 @@ TEST(DepthTrack, TheDeepestMarkIsOfTheTimeInWhichDepthsAreNeeded) {
   const auto md = [](int k) { return k < 200 ? 900 - 2.0 * k : 500 + (k - 200); };
   for (int k = 0; k < 200; ++k) EXPECT_FALSE(track.Push(Mark(0.5 * k, md(k), k)).has_value());
   EXPECT_DOUBLE_EQ(track.Deepest(Utc(100)).value_or(0), 900);
-  track.Forget(Utc(100));
+  track.NeedFrom(Utc(100));
+  track.Forget(Utc(90));
   for (int k = 200; k <= 500; ++k) EXPECT_FALSE(track.Push(Mark(0.5 * k, md(k), k)).has_value());
   EXPECT_DOUBLE_EQ(track.Deepest(Utc(200)).value_or(0), 700);
   EXPECT_DOUBLE_EQ(track.Deepest(Utc(250)).value_or(0), 800);

@@ -381,7 +381,6 @@ AlongHole DepthTrack::AtRest(UtcTime begin, UtcTime end) const {
 }
 
 void DepthTrack::Forget(UtcTime utc) {
-  if (!needed_) needed_ = utc;
   UtcTime keep = utc - setup_.half_window;
   for (const Shift& shift : shifts_) {
     if (!shift.offset) keep = std::min(keep, shift.utc);
@@ -393,7 +392,8 @@ void DepthTrack::Forget(UtcTime utc) {
   forgotten_ = std::max(forgotten_.value_or(first), first);
   const std::size_t drop = after - std::min(after, kMemory);
   for (std::size_t i = 0; i < drop; ++i) {
-    if (marks_[i].utc >= *needed_) deepest_forgotten_ = std::max(deepest_forgotten_, marks_[i].md);
+    if (!needed_ || marks_[i].utc >= *needed_)
+      deepest_forgotten_ = std::max(deepest_forgotten_, marks_[i].md);
   }
   marks_.erase(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(drop));
 }

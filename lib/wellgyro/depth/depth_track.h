@@ -83,9 +83,10 @@ class WELLGYRO_EXPORT DepthTrack {
   /// The first mark at or after `utc` of those that are in, as the depth system sent it.
   std::optional<MarkRead> FirstMark(UtcTime utc) const;
   UtcTime newest() const { return newest_; }
-  /// Of the marks up to `until`, from the instant on that was first given to Forget(): before it
-  /// nobody needed a depth. As the depth system sent them [m]; nothing without marks, or where an
-  /// event has shifted them.
+  /// Depths are needed from here on; the earliest counts. To be said before Forget().
+  void NeedFrom(UtcTime utc) { needed_ = needed_ ? std::min(*needed_, utc) : utc; }
+  /// Of the marks from where depths are needed up to `until`, as the depth system sent them [m];
+  /// nothing without marks, or where an event has shifted them.
   std::optional<double> Deepest(UtcTime until) const;
   /// Depth events that hold at `utc`, so far pushed: where it changes, depth may jump.
   std::int32_t Segment(UtcTime utc) const { return shifts_.empty() ? 0 : SegmentAt(utc); }

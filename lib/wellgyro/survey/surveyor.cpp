@@ -206,6 +206,7 @@ struct Surveyor::Rooms {
     const std::int64_t period = tool.Needs().ns / kForgetEvery.ns;
     if (period == forgotten_at) return;
     forgotten_at = period;
+    if (const auto begin = tool.begin()) track.NeedFrom(*begin);
     UtcTime needed = tool.Needs();
     for (const auto& [number, other] : tools) needed = std::min(needed, other.Needs());
     track.Forget(needed - track.reach() - track.latency() - DepthGrid::kStep);

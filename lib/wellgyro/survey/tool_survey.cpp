@@ -253,6 +253,12 @@ Survey ToolSurvey::Current() const {
   return SurveyMaker(job_, string_, parts).Make();
 }
 
+std::optional<UtcTime> ToolSurvey::begin() const {
+  if (runs_.empty()) return std::nullopt;
+  const RunSummary& first = runs_.front().survey->summary();
+  return first.samples > 0 ? std::optional(first.begin) : std::nullopt;
+}
+
 RunNow ToolSurvey::Now() const { return runs_.empty() ? RunNow() : runs_.back().survey->Now(); }
 
 }  // namespace wellgyro

@@ -53,6 +53,8 @@ class ToolSurvey {
   SampleTally tally() const { return intake_.tally(); }
   /// Of the run that samples came for last.
   RunNow Now() const;
+  /// Of the first sample of the first run; nothing before there is one.
+  std::optional<UtcTime> begin() const;
   /// Depth before this instant is no longer needed.
   UtcTime Needs() const { return newest_used_; }
 
