@@ -19,6 +19,7 @@
 #include "wellgyro/io/sensor/bench_data.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/tool_file.h"
+#include "wellgyro/io/words.h"
 
 #include "bench_options.h"
 #include "calibrate_tool.h"
@@ -149,7 +150,8 @@ int History(const HistoryOptions& o) {
     calibrations.push_back(*std::move(tool));
   }
   fmt::print("tool,source,calibrations,last_change,sigma,walk_per_sqrt_day,prior_sigma,remark\n");
-  for (const ToolHistory& history : HistoriesOf(calibrations, o.setup)) {
+  const std::vector<ToolHistory> histories = HistoriesOf(calibrations, o.setup);
+  for (const ToolHistory& history : histories) {
     for (const SourceHistory& source : history.sources) {
       const double change = source.changes.empty() ? 0 : source.changes.back();
       const double sigma = source.sigmas.empty() ? 0 : source.sigmas.back();
@@ -158,6 +160,13 @@ int History(const HistoryOptions& o) {
                  source.prior_sigma, source.shifted ? "shifted" : "",
                  source.out_of_family ? " out of family" : "");
     }
+  }
+  const auto changed = static_cast<std::size_t>(std::ranges::count_if(
+      histories, [](const ToolHistory& history) { return !history.days.empty(); }));
+  if (changed < kToolsOfFamily) {
+    Complain(fmt::format("{} with two calibrations and more: that one is out of family is said of "
+                         "{} and more",
+                         Counted(changed, "tool"), kToolsOfFamily));
   }
   return kDone;
 }

@@ -277,6 +277,7 @@ class Calibrate(FreshProgramTest):
                   "--tool", later, "--asset-serial", "A&7", "--date", "2026-07-31")
         ran = self.Done("calibrate", "history", "--tool", tool, "--tool", later)
         self.assertIn("shifted", "".join(x for x in ran.stdout.splitlines() if "gyro_bias_y" in x))
+        self.assertIn("1 tool with two calibrations", ran.stderr)
         self.Done("calibrate", "plan", "--bench-latitude-deg", "52", "--latitude-deg", "60",
                   "--azimuth-sigma-deg", "0.05", "--out", self.Path("plan.csv"))
         self.assertTrue(self.Read(self.Path("plan.csv")).startswith("inc,az,tf,tau\n"))

@@ -9,7 +9,7 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 Simulates tools whose errors are drawn from the job's own priors, and gravity from those of the
 Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
 the truth. Well `demo`: data/demo with other seeds, without faults; `slant+z`: by a tool with a
-third gyro axis. `found`: no survey is made, or its verdict is not "pass"; `fail`: of these, those
+third gyro axis; `slant@20`: rolling at 20 rpm. `found`: no survey is made, or its verdict is not "pass"; `fail`: of these, those
 with exit code 2 or 4. `named`: of those found, in how many the right cause is the first of
 diagnosis.csv; `in set`: or among those that together have 95 %, or alike the first. Of clean runs
 every check of chance is tabled by its share of chance, p, which is uniform where the check's sigma
@@ -152,13 +152,20 @@ def Named(fault, causes):
 
 
 def Hole(well):
-    """Of a well by a tool with a third gyro axis, `slant+z`, without the tool."""
-    return well.removesuffix("+z")
+    """Of a well by a tool with a third gyro axis or another roll, `slant@20+z`, the hole."""
+    return well.removesuffix("+z").split("@")[0]
+
+
+def Rpm(well):
+    """Of the tool on its way in."""
+    _, _, of_another = well.removesuffix("+z").partition("@")
+    return float(of_another or WELLS[Hole(well)][-1])
 
 
 def Steps(well):
     """In and out with stops of two minutes every 300 m on the way in; text, and its times."""
-    *_, end_m, rpm = WELLS[Hole(well)]
+    *_, end_m, _ = WELLS[Hole(well)]
+    rpm = Rpm(well)
     speed, time, stops = 1.0, 0.0, []
     text = "start_md_m = 0.0\n"
     depth = 0.0
@@ -208,7 +215,7 @@ def Files(well, seed, fault):
         return Demonstration(seed, earth)
     inclination, azimuth, latitude, end, _ = WELLS[Hole(well)]
     steps, _ = Steps(well)
-    third = "has_gz = true\n" if well != Hole(well) else ""
+    third = "has_gz = true\n" if well.endswith("+z") else ""
     simulation = (f'format = "wellgyro.simulation/1"\nseed = {seed}\n[well]\nname = "laws"\n'
                   f"end_md_m = {end + 5}\n[well.inclination]\n{inclination}[well.azimuth]\n"
                   f"{azimuth}[earth]\nlatitude_deg = {latitude}\n{earth}"

@@ -38,6 +38,8 @@ void ExpectSame(const Increment& a, const Increment& b) {
   ExpectSame(a.force_M, b.force_M);
   ExpectSame(a.turn_per_roll, b.turn_per_roll);
   ExpectSame(a.force_per_roll, b.force_per_roll);
+  ExpectSame(a.wobble_followed, b.wobble_followed);
+  ExpectSame(a.turn_by_harmonic, b.turn_by_harmonic);
   ExpectSame(a.turn_by_error, b.turn_by_error);
   ExpectSame(a.force_by_error, b.force_by_error);
   for (const auto flag : {&Increment::has_axial, &Increment::roll_seen, &Increment::level}) {

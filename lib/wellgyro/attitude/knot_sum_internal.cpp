@@ -1,6 +1,7 @@
 #include "wellgyro/attitude/knot_sum_internal.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "wellgyro/attitude/roll_following_internal.h"
@@ -97,6 +98,15 @@ struct Part {
   }
 };
 
+// A smoother of a phase whose rate walks passes, of what oscillates by nu, the share 1 / (1 + R nu^4
+// / q^2), R the density of the phase's noise and q the walk: Wiener's filter of q^2 / nu^4 in R.
+Eigen::Vector2d WobbleFollowed(const Block& b) {
+  if (!(b.walk > 0)) return Eigen::Vector2d::Zero();
+  const double square = b.rate * b.rate;
+  const double missed = b.seconds / b.weight * square * square / (b.walk * b.walk);
+  return {1 / (1 + missed), 1 / (1 + 16 * missed)};
+}
+
 struct Sums {
   Complex turn = 0;
   double unkept = 0, coning = 0;
@@ -104,6 +114,8 @@ struct Sums {
   Complex back = 0, turn_moment = 0, force_moment = 0;
   double x = 0, y = 0, z = 0, back_z = 0, forced = 0, axial = 0;
   double followed = 0, blocks = 0;  // integral of the root of the roll's walk; phases
+  Eigen::Vector2d wobble = Eigen::Vector2d::Zero();
+  std::array<Complex, 4> harmonics{};  // as Increment::turn_by_harmonic
   Complex force() const { return fx + kI * fy; }
 
   void Add(const Ready& r, double from, double to, double at);
@@ -129,7 +141,12 @@ void Sums::Add(const Ready& r, double from, double to, double at) {
   unit += turning(b.unit);
   skew += b.rate * w + b.bend * w1;
   axial += part.share * b.sum[kWz].zeroth + part.share_first * b.sum[kWz].first;
+  const Complex ahead = b.unit / b.seconds, back_turned = std::conj(ahead) * w;
+  const std::array turned{back_turned, ahead * w, std::conj(ahead) * back_turned,
+                          ahead * ahead * w};
+  for (std::size_t i = 0; i < turned.size(); ++i) harmonics[i] += turned[i];
   if (b.accel_full_scale) return;
+  wobble += length * WobbleFollowed(b);
   followed += length * std::sqrt(b.walk);
   blocks += part.share;
   const Complex f = part.Of(r.force, r.force_first), f1 = part.FirstOf(r.force, r.force_first);
@@ -183,6 +200,15 @@ void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
   force(kAccelShear, s.fy + kI * s.fx);
   out.ForceBy(kAccelMisalignmentZX).z() = s.x / s.forced;
   out.ForceBy(kAccelMisalignmentZY).z() = s.y / s.forced;
+}
+
+// Harmonics are of psi, not from the middle on.
+void FillWobble(const Sums& s, Complex to_M, Increment& out) {
+  out.wobble_followed = s.wobble / out.seconds;
+  const std::array by{Complex(1), to_M * to_M, std::conj(to_M), to_M * to_M * to_M};
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    out.turn_by_harmonic.col(static_cast<Eigen::Index>(i)) = Vector(by[i] * s.harmonics[i]);
+  }
 }
 
 void FillFlags(const Block& b, double seconds, Increment& out) {
@@ -298,6 +324,7 @@ Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Bl
   if (out.has_axial) out.axial = s.axial + s.coning;
   FillForce(s, middle, accel_noise, to_M, out);
   FillErrors(s, to_M, std::polar(1., after) - std::polar(1., -before), out);
+  FillWobble(s, to_M, out);
   FillSamples(span, blocks, out);
   return out;
 }

@@ -134,8 +134,7 @@ void CompareTools(const std::string& name, double false_alarm,
       of.push_back(&source);
     }
   }
-  constexpr std::size_t kFamily = 5;
-  if (of.size() < kFamily) return;
+  if (of.size() < kToolsOfFamily) return;
   const double middle = Median(logs);
   std::vector<double> away;
   away.reserve(logs.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,10 +35,13 @@ struct HistorySetup {
   double false_alarm = 0.01;  ///< of a sound tool
 };
 
+/// So many tools that have changed are a family.
+inline constexpr std::size_t kToolsOfFamily = 5;
+
 /// Histories of tools, one for every asset serial, from calibrations in any order. A change is that
 /// of what calibrated samples say (biases, scales, misalignments, force terms at the temperature);
 /// walks are by moments. Out of family: the mean square of a tool's changes a day is beyond five
-/// robust sigmas of the others' (five tools and more) and beyond chance, chi-square of its changes
+/// robust sigmas of the others' (kToolsOfFamily and more) and beyond chance, chi-square of its changes
 /// at `false_alarm` a tool. Throws std::invalid_argument for a calibration without a date, or
 /// without the covariance of its members, or one that rests on a prior: its readings are another's
 /// too.

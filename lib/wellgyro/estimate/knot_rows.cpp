@@ -8,9 +8,9 @@
 #include "wellgyro/estimate/log_slopes.h"
 #include "wellgyro/estimate/second_order.h"
 #include "wellgyro/estimate/turn_columns.h"
+#include "wellgyro/estimate/wobble.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/rotation.h"
-#include "wellgyro/math/sinc.h"
 #include "wellgyro/math/square.h"
 
 namespace wellgyro {
@@ -41,23 +41,6 @@ constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 // bound of 1/8 of the change where it shows a quarter of it.
 constexpr double kTrapezoid = 0.5;
 
-/// Mean over a knot that rolls steadily of e e', e the direction of the tool's x axis in M.
-Matrix2d MeanSquareOfX(const Increment& inc) {
-  const double roll = inc.roll_before + inc.roll_after, ahead = inc.roll_after - inc.roll_before;
-  const double c = Sinc(roll) * std::cos(ahead), s = Sinc(roll) * std::sin(ahead);
-  return 0.5 * (Matrix2d() << 1 + c, s, s, 1 - c).finished();
-}
-
-/// By which what skewed gyros (kMisalignmentX, Y, columns) seem to turn leads, in the mean of the
-/// knot's forces, half of what it is over the knot. It is a circle, (e^{i psi} - 1) / i from the
-/// middle on, psi the roll from there: its mean less that of its ends.
-Eigen::Matrix2d SkewBeforeHalf(const Increment& inc) {
-  const Vector2d ends =
-      0.5 * (RotationZ(inc.roll_after) + RotationZ(-inc.roll_before)).topLeftCorner<2, 1>();
-  const Vector2d d = inc.ForceBy(kAccelBiasX).head<2>() - ends;
-  return (Eigen::Matrix2d() << d.y(), d.x(), -d.x(), d.y()).finished();
-}
-
 /// The temperature's share in the errors' changes.
 double WarmthOf(const EstimateSetup& setup, const RunKnot& knot) {
   if (!setup.cov_errors) return 0;
@@ -65,23 +48,12 @@ double WarmthOf(const EstimateSetup& setup, const RunKnot& knot) {
          setup.cov_errors->span;
 }
 
-/// Errors in variables (Fuller, Measurement Error Models, 1987, section 1.2): a scale error
-/// multiplies the true turn, and the reading is the true turn plus noise. With readings for
-/// regressors the square of the noise biases every scale upwards, by one over its information a
-/// knot: by three sigmas of a prior of 1e-4 in 16 h. So the residual of the turn, `left` (attitudes
-/// less gyros, in M), is added to the regressors, to each axis its share.
-TurnByError WithoutNoise(const Increment& inc, TurnByError by_error, const Vector2d& left) {
-  const Vector2d of_x = MeanSquareOfX(inc) * left;
-  by_error.col(kGyroScaleX) += of_x;
-  by_error.col(kGyroScaleY) += left - of_x;
-  return by_error;
-}
-
 }  // namespace
 
 /// What several factors of a knot share.
 struct KnotRows::Terms {
   const RunKnot& knot;
+  Increment inc;  // of a psi without what is known of the accelerometers' errors
   const KnotPlace& place;
   const Node& begin;
   const Node& end;
@@ -90,8 +62,8 @@ struct KnotRows::Terms {
   double axial_rate = 0;                 // of roll, by a third axis
   double frequency = 0;                  // of the swing
   Vector2d of_swing = Vector2d::Zero();  // in the mean rate of roll
-  TurnByError turn_by_error;             // at the roll rate of now
-  Vector2d turn;                         // of what is known of the errors corrected
+  TurnByError turn_by_error{};           // at the roll rate of now
+  Vector2d turn{};                       // of what is known of the errors corrected
   Vector2d turn_per_roll{};              // at delta
   Matrix3d Ha{}, Hb{}, Xh{};
   Matrix3d R_LM{};
@@ -99,6 +71,7 @@ struct KnotRows::Terms {
   BorderVector border;
   double warmth = 0;    // what the errors' changes count by
   ErrorVector error{};  // at this temperature
+  WobbleBy wobble;
   Eigen::Matrix<double, 3, kSecondOrderSources> by_second_order{};  // of the force, where there is
 };
 
@@ -114,9 +87,19 @@ ErrorVector KnotRows::ErrorsAt(const BorderVector& border, double warmth) const 
   return error;
 }
 
+/// The increment without what is known of the accelerometers' errors in psi.
+void KnotRows::TakeWobble(Terms& t) {
+  t.wobble = WobbleOf(t.knot.increment);
+  PhaseErrors errors = PhaseErrors::Zero();
+  for (const int source : kPhaseSources) {
+    errors += t.error[source] * PhaseErrorsOf(source, t.inc.force_M.z());
+  }
+  if (!errors.isZero(0)) t.inc = WithoutWobble(t.knot.increment, t.wobble, errors);
+}
+
 /// The turn without what is known of the errors, and what each of them makes of it.
 void KnotRows::CorrectTurn(Terms& t) {
-  const Increment& inc = t.knot.increment;
+  const Increment& inc = t.inc;
   // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
   t.turn_by_error.middleCols<2>(kMisalignmentX) +=
       t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
@@ -145,18 +128,20 @@ void KnotRows::CorrectTurn(Terms& t) {
 KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
                                   const BorderVector& border, const Node& begin,
                                   const Node& end) const {
-  const Increment& inc = knot.increment;
   Terms t{.knot = knot,
+          .inc = knot.increment,
           .place = place,
           .begin = begin,
           .end = end,
-          .dt = inc.seconds,
-          .turn_by_error = TurnBy(inc),
-          .turn = inc.turn_M,
+          .dt = knot.increment.seconds,
           .w_IL_L = place.w_IL_L,
           .border = border,
           .warmth = WarmthOf(setup_, knot)};
   t.error = ErrorsAt(border, t.warmth);
+  TakeWobble(t);
+  const Increment& inc = t.inc;
+  t.turn_by_error = TurnBy(inc);
+  t.turn = inc.turn_M;
   if (layout_.second_order) t.by_second_order = ForceBySecondOrder(inc);
   if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
   double rate = begin.roll_rate;
@@ -221,7 +206,7 @@ void KnotRows::AddError(const Terms& t, int source, const Vector3d& by_error,
 /// Log[(E R_k Ha Exp(turn) Hb)' R_k+1], E = Exp(-w_IL dt): across the axis the gyros' noise, about
 /// it the tie of roll rate and attitude.
 void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
-  const Increment& inc = t.knot.increment;
+  const Increment& inc = t.inc;
   const Matrix3d X = Exp(Flat(t.turn));
   const Matrix3d B = t.Ha * X * t.Hb;
   const Matrix3d R_end = Exp(-t.dt * t.w_IL_L) * t.begin.R_LT * B;
@@ -252,6 +237,14 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   for (std::size_t k = 0; k < kTurns.size(); ++k) {
     AddError(t, kTurns[k], by_error.col(static_cast<Eigen::Index>(k)), block);
   }
+  // Of PhaseErrors: where in the knot psi turns, and what the rates are turned by.
+  const Vector3d by_bow = Vector3d::UnitZ() - (X * t.Hb).row(2).transpose();
+  const PhaseColumns by_phase =
+      by * (by_bow * t.wobble.bow() +
+            turned * (t.wobble.turn_M - t.turn_per_roll * t.wobble.roll()));
+  for (const int source : kPhaseSources) {
+    AddError(t, source, by_phase * PhaseErrorsOf(source, inc.force_M.z()), block);
+  }
   if (layout_.latitude != kAbsent) {
     f.Column(block.border() + layout_.latitude) =
         by * (t.end.R_LT.transpose() * (t.dt * t.place.dw_by_latitude));
@@ -275,7 +268,7 @@ void KnotRows::AddGyroDrift(const Terms& t, const TurnErrors& by_error, NormalBl
 
 /// The mean force in M without the tool's errors.
 Vector3d KnotRows::ForceOf(const Terms& t, const Vector3d& by_skew) const {
-  const Increment& inc = t.knot.increment;
+  const Increment& inc = t.inc;
   Vector3d force = inc.force_M;
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
     if (t.error[i] != 0) force -= t.error[i] * inc.ForceBy(i);
@@ -298,7 +291,8 @@ double KnotRows::GravityOffset(const Terms& t) const {
 /// Columns of the tool's errors in the force's factor. What gyros seem to turn leans the forces of
 /// gravity, p, by half of it, and of skewed ones by `beyond` more.
 void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
-                              const Vector3d& by_skew, const Matrix2d& beyond, NormalBlock& block) {
+                              const Vector3d& by_skew, const Matrix2d& beyond,
+                              const PhaseColumns& by_phase, NormalBlock& block) {
   const auto add = [&](int source, const Vector3d& by_error) {
     AddError(t, source, whiten * by_error, block);
   };
@@ -309,7 +303,9 @@ void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
     const Vector3d leaning = p.cross(Flat(half));
     add(i, i == kTimeSkew ? Vector3d(leaning - by_skew) : leaning);
   }
-  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) add(i, -t.knot.increment.ForceBy(i));
+  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
+    add(i, by_phase * PhaseErrorsOf(i, t.inc.force_M.z()) - t.inc.ForceBy(i));
+  }
   for (int i = 0; layout_.second_order && i < kSecondOrderSources; ++i) {
     add(kAccelSecondOrder + i, -t.by_second_order.col(i));
   }
@@ -317,7 +313,7 @@ void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
 
 /// Mean force in M less R_LM' (a - g) less the change of speed along the axis.
 void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
-  const Increment& inc = t.knot.increment;
+  const Increment& inc = t.inc;
   const Vector3d down_M = t.R_LM.row(2).transpose();
   const Vector3d path = t.R_LM.transpose() * t.place.acceleration_L;
   const Vector3d p = path - t.place.site.gravity * down_M;
@@ -349,7 +345,10 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   AddRate(t, by_rate, block);
   f.Column(layout_.speed) = whiten / t.dt * Vector3d::UnitZ();
   f.Column(block.next() + layout_.speed) = -whiten / t.dt * Vector3d::UnitZ();
-  AddForceErrors(t, whiten, p, by_skew, beyond, block);
+  PhaseColumns by_phase =
+      force_per_roll * t.wobble.roll() - px * t.Xh.row(2).transpose() * t.wobble.bow();
+  by_phase.topRows<2>() -= t.wobble.force_M;
+  AddForceErrors(t, whiten, p, by_skew, beyond, by_phase, block);
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
   if (layout_.gravity_gradient != kAbsent) {
     f.Column(block.border() + layout_.gravity_gradient) = whiten * t.place.depth * down_M;
@@ -396,8 +395,8 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
 /// evenly is in T, in the mean of e^{-i psi}.
 void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   const double whiten = 1 / std::max(setup_.gyro.angle_random_walk * std::sqrt(t.dt), kLeastTurn);
-  const double axial = t.knot.increment.axial;
-  const Vector2d unit = t.knot.increment.ForceBy(kAccelBiasX).head<2>();
+  const double axial = t.inc.axial;
+  const Vector2d unit = t.inc.ForceBy(kAccelBiasX).head<2>();
   const Vector2d across(unit.dot(t.turn), unit.x() * t.turn.y() - unit.y() * t.turn.x());
   Factor& f = factor_;
   f.Begin(RowKind::kAxial, 1);

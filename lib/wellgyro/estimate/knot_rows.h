@@ -70,6 +70,8 @@ class KnotRows {
   struct Terms;
   /// Those of kTurnSources, gyro shear, unequal mass unbalance and quadrature.
   using TurnErrors = Eigen::Matrix<double, 3, kTurnSources + 3>;
+  using PhaseColumns = Eigen::Matrix<double, 3, 4>;
+  static void TakeWobble(Terms& t);
   static void CorrectTurn(Terms& t);
   Terms TermsOf(const RunKnot& knot, const KnotPlace& place, const BorderVector& border,
                 const Node& begin, const Node& end) const;
@@ -83,7 +85,7 @@ class KnotRows {
   double GravityOffset(const Terms& t) const;
   void AddForceErrors(const Terms& t, double whiten, const Eigen::Vector3d& p,
                       const Eigen::Vector3d& by_skew, const Eigen::Matrix2d& beyond,
-                      NormalBlock& block);
+                      const PhaseColumns& by_phase, NormalBlock& block);
   void AddForce(const Terms& t, NormalBlock& block);
   void AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block);
   void AddAxial(const Terms& t, NormalBlock& block);

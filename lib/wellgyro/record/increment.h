@@ -43,6 +43,12 @@ struct Increment {
       Eigen::Matrix<double, 2, kTurnSources>::Zero();
   Eigen::Matrix<double, 3, kForceSources> force_by_error =
       Eigen::Matrix<double, 3, kForceSources>::Zero();
+  /// psi follows gravity as the accelerometers show it, whose errors go round with the tool: of a
+  /// wobble of the phase once a turn, and twice, the shares that psi has. 0: a third axis.
+  Eigen::Vector2d wobble_followed = Eigen::Vector2d::Zero();
+  /// Integrals of the transverse rates, not turned, and turned by 2, -1 and 3 times psi from the
+  /// middle on: what wobbles turn [rad].
+  Eigen::Matrix<double, 2, 4> turn_by_harmonic = Eigen::Matrix<double, 2, 4>::Zero();
   /// Of an accelerometer's source.
   auto ForceBy(int source) { return force_by_error.col(source - kTurnSources); }
   auto ForceBy(int source) const { return force_by_error.col(source - kTurnSources); }

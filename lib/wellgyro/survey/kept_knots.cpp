@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 
 // Numbers of a knot and its attitude, each a word of 64 bits.
-constexpr std::size_t kWords = 100;
+constexpr std::size_t kWords = 110;
 using KnotWords = std::array<std::uint64_t, kWords>;
 
 std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
@@ -116,6 +116,11 @@ void GoThrough(Code& code, Increment& inc, const Increment& before) {
   Each(code, inc.turn_per_roll, before.turn_per_roll);
   Each(code, inc.force_per_roll, before.force_per_roll);
   GoThroughErrors(code, inc, before);
+  Each(code, inc.wobble_followed, before.wobble_followed);
+  for (int i = 0; i < inc.turn_by_harmonic.cols(); ++i) {
+    auto column = inc.turn_by_harmonic.col(i);
+    Each(code, column, before.turn_by_harmonic.col(i));
+  }
   code(inc.axial, before.axial);
   code(inc.var_turn, before.var_turn);
   code(inc.sigma_roll, before.sigma_roll);

@@ -102,7 +102,8 @@ TEST(Summary, WithAnUnseenFaultTheEndIsWithinItsShiftAndChanceTogether) {
   const Survey survey = EndWithUnseenFaults(Quality::kGood);
   EXPECT_THAT(SummaryText(survey),
               HasSubstr("unseen faults  with one the end is within 8.90 m by 4.45 m (half axes), "
-                        "the long one towards 90 deg; most by gyro_bias_step_x, 4.00 m\n"));
+                        "the long one towards 90 deg; TVD +- 10.96 m; most by gyro_bias_step_x, "
+                        "4.00 m\n"));
   const ToolSummary tool{.tool = 3, .folder = "a", .files = {}, .survey = &survey};
   const std::string text = SummaryJson({&tool, 1}, {}, 0);
   EXPECT_THAT(text, HasSubstr("\"semi_major_m\": 8.895"));
@@ -110,6 +111,23 @@ TEST(Summary, WithAnUnseenFaultTheEndIsWithinItsShiftAndChanceTogether) {
   EXPECT_THAT(text, HasSubstr("\"azimuth_major_deg\": 90.0"));
   EXPECT_THAT(text, HasSubstr("\"cause\": \"gyro_bias_step_x\""));
   EXPECT_THAT(text, HasSubstr("\"cause_shift_m\": 4.0"));
+  EXPECT_THAT(text, HasSubstr("\"tvd_m\": 10.95"));
+  EXPECT_THAT(text, HasSubstr("\"not_shown\": []"));
+}
+
+// Of 9 and 1 m where chance has 4.9: only what the run does not show at any size, and what counts.
+TEST(Summary, WhatOnlyTheBenchAnswersForIsNamed) {
+  Survey survey = EndWithUnseenFaults(Quality::kGood);
+  const auto fit = std::make_shared<RunFit>(*survey.runs[0].fit);
+  auto& faults = fit->diagnosis->reliability;
+  faults.resize(4);
+  faults[0] = {.code = "accel_bias_x", .shift_W = {0, 9, 0}};
+  faults[1] = {.code = "accel_bias_y", .shift_W = {9, 0, 0}};
+  faults[2] = {.code = "accel_scale_x", .shift_W = {0, 1, 0}};
+  faults[3] = {.code = "latitude", .smallest = 0.01, .shift_W = {0, 9, 0}};
+  survey.runs[0].fit = fit;
+  EXPECT_THAT(SummaryText(survey), HasSubstr("\non trust       accel_bias_x, accel_bias_y: this run "
+                                             "does not show them, the bench must\n"));
 }
 
 TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }

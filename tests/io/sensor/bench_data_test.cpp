@@ -46,6 +46,17 @@ TEST(BenchData, NamesLineAndColumnOfWhatIsWrong) {
   EXPECT_EQ(fault("a,b\n1,1e999\n").code, FaultCode::kSyntax);
   EXPECT_EQ(fault("a,b\n1\n").text, "1 cells where the header names 2 columns");
   EXPECT_EQ(fault("a,a\n1,2\n").code, FaultCode::kConflict);
+  EXPECT_EQ(fault("a,b\n1,2e15\n").text, "\"2e15\" in column b is larger than any reading");
+}
+
+TEST(BenchData, TemperaturesInKelvinAreRefused) {
+  EXPECT_TRUE(ParseBenchTable("a,T_C\n1,-40\n2,200\n", "b").has_value());
+  const auto table = ParseBenchTable("a,T_C\n1,298.15\n", "b");
+  ASSERT_FALSE(table.has_value());
+  EXPECT_EQ(table.fault().text,
+            "\"298.15\" in column T_C is no temperature of a bench, -150 to 260 degC: is it in "
+            "kelvin or degF?");
+  EXPECT_EQ(table.fault().column, 3);
 }
 
 }  // namespace

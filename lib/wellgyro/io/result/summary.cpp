@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/number_text_internal.h"
@@ -36,11 +37,15 @@ std::string EndText(const Station& end) {
 std::string UnseenText(const Survey& survey) {
   const std::optional<UnseenFaults> unseen = UnseenFaultsOf(survey);
   if (!unseen) return "";
-  return fmt::format(
+  std::string text = fmt::format(
       "unseen faults  with one the end is within {} m by {} m (half axes), the long one towards {} "
-      "deg; most by {}, {} m\n",
+      "deg; TVD +- {} m; most by {}, {} m\n",
       Fixed(unseen->bound.semi_major, 2), Fixed(unseen->bound.semi_minor, 2),
-      Fixed(ToDegrees(unseen->bound.azimuth_major), 0), unseen->cause, Fixed(unseen->shift, 2));
+      Fixed(ToDegrees(unseen->bound.azimuth_major), 0), Fixed(unseen->tvd, 2), unseen->cause,
+      Fixed(unseen->shift, 2));
+  if (unseen->unshown.empty()) return text;
+  return text + fmt::format("on trust       {}: this run does not show them, the bench must\n",
+                            fmt::join(unseen->unshown, ", "));
 }
 
 std::string CheckText(const Check& check) {

@@ -50,6 +50,8 @@ Json UnseenJson(const Survey& survey) {
   Json json = EllipseJson(unseen->bound);
   json["cause"] = unseen->cause;
   json["cause_shift_m"] = unseen->shift;
+  json["tvd_m"] = unseen->tvd;
+  json["not_shown"] = unseen->unshown;
   return json;
 }
 

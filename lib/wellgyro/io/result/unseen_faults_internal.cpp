@@ -1,6 +1,7 @@
 #include "wellgyro/io/result/unseen_faults_internal.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "wellgyro/record/run_fit.h"
 
@@ -32,9 +33,15 @@ std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey) {
   UnseenFaults unseen;
   unseen.bound = HorizontalEllipse(about / (sigmas * sigmas), kConfidence);
   unseen.cause = found->hidden_cause;
+  const double chance = HorizontalEllipse(end.cov_p_WT_W, kConfidence).semi_major;
+  double deep = 0;
   for (const RunReliability& fault : found->reliability) {
-    unseen.shift = std::max(unseen.shift, fault.shift_W.head<2>().norm());
+    const double shift = fault.shift_W.head<2>().norm();
+    unseen.shift = std::max(unseen.shift, shift);
+    deep = std::max(deep, std::abs(fault.shift_W.z()));
+    if (!fault.smallest && shift > chance) unseen.unshown.push_back(fault.code);
   }
+  unseen.tvd = ConfidenceFactor(kConfidence, 1) * std::sqrt(end.cov_p_WT_W(2, 2)) + deep;
   return unseen;
 }
 

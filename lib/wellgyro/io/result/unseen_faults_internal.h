@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "wellgyro/survey/survey.h"
 #include "wellgyro/uncertainty/ellipse.h"
@@ -15,6 +16,10 @@ struct UnseenFaults {
       bound;          ///< about the 95 % ellipse and what the faults of reliability.csv do together
   std::string cause;  ///< the fault that does most
   double shift = 0;   ///< what it does alone, horizontally [m]
+  double tvd = 0;     ///< 95 % and what the fault that does most to it does [m]
+  /// Faults that this run does not show at any size looked for, and that move its end by more than
+  /// chance does: the bench alone answers for them.
+  std::vector<std::string> unshown;
 };
 
 /// Of the deepest chosen station; none where it is unfit or its run has no diagnosis.

@@ -80,6 +80,17 @@ class Reader {
     return std::nullopt;
   }
 
+  /// Why no reading of the column is `value`; empty where one can be.
+  std::string WrongWith(double value, std::size_t column) const {
+    constexpr double kLargest = 1e15;
+    if (std::abs(value) > kLargest) return "is larger than any reading";
+    // No chamber reaches either end; kelvin lie beyond it from -13 degC on.
+    constexpr double kColdest = -150, kHottest = 260;
+    if (table_.columns[column] != "T_C" || (value > kColdest && value < kHottest)) return "";
+    return fmt::format("is no temperature of a bench, {} to {} degC: is it in kelvin or degF?",
+                       kColdest, kHottest);
+  }
+
   std::optional<Fault> Row(std::string_view line, int number) {
     const std::vector<std::string_view> cells = Cells(line, separator_);
     if (cells.size() != table_.columns.size()) {
@@ -90,17 +101,11 @@ class Reader {
     }
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto value = ReadingOf(cells[i]);
-      if (!value) {
-        return At(FaultCode::kSyntax,
-                  fmt::format("\"{}\" in column {} is no number", cells[i], table_.columns[i]),
-                  number, static_cast<int>(cells[i].data() - line.data()) + 1);
-      }
-      constexpr double kLargest = 1e15;
-      if (std::abs(*value) > kLargest) {
-        return At(FaultCode::kRange,
-                  fmt::format("\"{}\" in column {}: no reading is that large", cells[i],
-                              table_.columns[i]),
-                  number, static_cast<int>(cells[i].data() - line.data()) + 1);
+      const std::string wrong = value ? WrongWith(*value, i) : "is no number";
+      if (!wrong.empty()) {
+        return At(value ? FaultCode::kRange : FaultCode::kSyntax,
+                  fmt::format("\"{}\" in column {} {}", cells[i], table_.columns[i], wrong), number,
+                  static_cast<int>(cells[i].data() - line.data()) + 1);
       }
       values_.push_back(*value);
     }
