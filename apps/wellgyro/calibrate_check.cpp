@@ -142,6 +142,17 @@ struct HistoryOptions {
   HistorySetup setup;
 };
 
+void TellHistory(const ToolHistory& history) {
+  for (const SourceHistory& source : history.sources) {
+    const double change = source.changes.empty() ? 0 : source.changes.back();
+    const double sigma = source.sigmas.empty() ? 0 : source.sigmas.back();
+    fmt::print("{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{}{}\n", Printable(history.asset_serial),
+               source.name, history.days.size() + 1, change, sigma, source.walk_per_sqrt_day,
+               source.prior_sigma, source.shifted ? "shifted" : "",
+               source.out_of_family ? " out of family" : "");
+  }
+}
+
 int History(const HistoryOptions& o) {
   std::vector<ToolCalibration> calibrations;
   for (const std::string& name : o.tools) {
@@ -151,22 +162,14 @@ int History(const HistoryOptions& o) {
   }
   fmt::print("tool,source,calibrations,last_change,sigma,walk_per_sqrt_day,prior_sigma,remark\n");
   const std::vector<ToolHistory> histories = HistoriesOf(calibrations, o.setup);
-  for (const ToolHistory& history : histories) {
-    for (const SourceHistory& source : history.sources) {
-      const double change = source.changes.empty() ? 0 : source.changes.back();
-      const double sigma = source.sigmas.empty() ? 0 : source.sigmas.back();
-      fmt::print("{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{}{}\n", Printable(history.asset_serial),
-                 source.name, history.days.size() + 1, change, sigma, source.walk_per_sqrt_day,
-                 source.prior_sigma, source.shifted ? "shifted" : "",
-                 source.out_of_family ? " out of family" : "");
-    }
-  }
+  for (const ToolHistory& history : histories) TellHistory(history);
   const auto changed = static_cast<std::size_t>(std::ranges::count_if(
       histories, [](const ToolHistory& history) { return !history.days.empty(); }));
   if (changed < kToolsOfFamily) {
-    Complain(fmt::format("{} with two calibrations and more: that one is out of family is said of "
-                         "{} and more",
-                         Counted(changed, "tool"), kToolsOfFamily));
+    Complain(
+        fmt::format("{} with two calibrations and more: that one is out of family is said of "
+                    "{} and more",
+                    Counted(changed, "tool"), kToolsOfFamily));
   }
   return kDone;
 }

@@ -98,8 +98,9 @@ struct Part {
   }
 };
 
-// A smoother of a phase whose rate walks passes, of what oscillates by nu, the share 1 / (1 + R nu^4
-// / q^2), R the density of the phase's noise and q the walk: Wiener's filter of q^2 / nu^4 in R.
+// A smoother of a phase whose rate walks passes, of what oscillates by nu, the share 1 / (1 + R
+// nu^4 / q^2), R the density of the phase's noise and q the walk: Wiener's filter of q^2 / nu^4 in
+// R.
 Eigen::Vector2d WobbleFollowed(const Block& b) {
   if (!(b.walk > 0)) return Eigen::Vector2d::Zero();
   const double square = b.rate * b.rate;

@@ -41,10 +41,10 @@ inline constexpr std::size_t kToolsOfFamily = 5;
 /// Histories of tools, one for every asset serial, from calibrations in any order. A change is that
 /// of what calibrated samples say (biases, scales, misalignments, force terms at the temperature);
 /// walks are by moments. Out of family: the mean square of a tool's changes a day is beyond five
-/// robust sigmas of the others' (kToolsOfFamily and more) and beyond chance, chi-square of its changes
-/// at `false_alarm` a tool. Throws std::invalid_argument for a calibration without a date, or
-/// without the covariance of its members, or one that rests on a prior: its readings are another's
-/// too.
+/// robust sigmas of the others' (kToolsOfFamily and more) and beyond chance, chi-square of its
+/// changes at `false_alarm` a tool. Throws std::invalid_argument for a calibration without a date,
+/// or without the covariance of its members, or one that rests on a prior: its readings are
+/// another's too.
 WELLGYRO_EXPORT std::vector<ToolHistory> HistoriesOf(std::span<const ToolCalibration> calibrations,
                                                      const HistorySetup& setup);
 

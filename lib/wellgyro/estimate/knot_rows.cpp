@@ -240,8 +240,8 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   // Of PhaseErrors: where in the knot psi turns, and what the rates are turned by.
   const Vector3d by_bow = Vector3d::UnitZ() - (X * t.Hb).row(2).transpose();
   const PhaseColumns by_phase =
-      by * (by_bow * t.wobble.bow() +
-            turned * (t.wobble.turn_M - t.turn_per_roll * t.wobble.roll()));
+      by *
+      (by_bow * t.wobble.bow() + turned * (t.wobble.turn_M - t.turn_per_roll * t.wobble.roll()));
   for (const int source : kPhaseSources) {
     AddError(t, source, by_phase * PhaseErrorsOf(source, inc.force_M.z()), block);
   }

@@ -7,7 +7,7 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Vector2d;
-constexpr Complex kI(0, 1);
+constexpr Complex kQuarterTurn(0, 1);
 
 Complex Plane(const Eigen::Ref<const Vector2d>& v) { return {v.x(), v.y()}; }
 Vector2d Vector(Complex z) { return {z.real(), z.imag()}; }
@@ -25,12 +25,12 @@ struct Harmonic {
     const Complex begin = std::polar(1., -n * inc.roll_before),
                   end = std::polar(1., n * inc.roll_after);
     for (int k = 0; k < 2; ++k) {
-      const Complex uz = (k == 0 ? Complex(1) : kI) * z;
+      const Complex uz = (k == 0 ? Complex(1) : kQuarterTurn) * z;
       const double middle = -uz.imag();
       const Eigen::Index column = 2 * (n - 1) + k;
       by.turn_M.col(column) = Vector(-0.5 * (uz * turn_with - std::conj(uz) * turn_back) -
-                                     kI * middle * turn);
-      by.force_M.col(column) = Vector(kI * force * (-(uz * mean).imag() - middle));
+                                     kQuarterTurn * middle * turn);
+      by.force_M.col(column) = Vector(kQuarterTurn * force * (-(uz * mean).imag() - middle));
       by.roll_before[column] = middle + (uz * begin).imag();
       by.roll_after[column] = -(uz * end).imag() - middle;
     }
@@ -41,15 +41,23 @@ struct Harmonic {
 
 PhaseErrors PhaseErrorsOf(int source, double along) {
   switch (source) {
-    case kAccelBiasX: return {1, 0, 0, 0};
-    case kAccelBiasY: return {0, 1, 0, 0};
-    case kAccelMisalignmentX: return {along, 0, 0, 0};
-    case kAccelMisalignmentY: return {0, along, 0, 0};
+    case kAccelBiasX:
+      return {1, 0, 0, 0};
+    case kAccelBiasY:
+      return {0, 1, 0, 0};
+    case kAccelMisalignmentX:
+      return {along, 0, 0, 0};
+    case kAccelMisalignmentY:
+      return {0, along, 0, 0};
     // f_x = (f + conj f) / 2, and i f_y = (f - conj f) / 2; the shear adds f_y + i f_x = i conj f.
-    case kAccelScaleX: return {0, 0, 0.5, 0};
-    case kAccelScaleY: return {0, 0, -0.5, 0};
-    case kAccelShear: return {0, 0, 0, 1};
-    default: return PhaseErrors::Zero();
+    case kAccelScaleX:
+      return {0, 0, 0.5, 0};
+    case kAccelScaleY:
+      return {0, 0, -0.5, 0};
+    case kAccelShear:
+      return {0, 0, 0, 1};
+    default:
+      return PhaseErrors::Zero();
   }
 }
 
@@ -58,7 +66,8 @@ WobbleBy WobbleOf(const Increment& inc) {
   const Complex force = Plane(inc.force_M.head<2>());
   if (!(inc.wobble_followed[0] > 0) || !(std::norm(force) > 0)) return by;
   // Turned, f_x = (G + conj(G) e^{2 i psi}) / 2.
-  const Complex twice = (2. * Plane(inc.ForceBy(kAccelScaleX).head<2>()) - force) / std::conj(force);
+  const Complex twice =
+      (2. * Plane(inc.ForceBy(kAccelScaleX).head<2>()) - force) / std::conj(force);
   const auto turned = [&](int i) { return Plane(inc.turn_by_harmonic.col(i)); };
   Harmonic{1, inc.wobble_followed[0] / force, Plane(inc.ForceBy(kAccelBiasX).head<2>()), turned(1),
            turned(0)}
@@ -76,8 +85,8 @@ Increment WithoutWobble(const Increment& increment, const WobbleBy& by, const Ph
   out.turn_M -= by.turn_M * errors;
   out.force_M.head<2>() -= by.force_M * errors;
   // Skewed gyros see what their own psi turns: from end to end, (e^{i after} - e^{-i before}) / i.
-  const Vector2d edge = Vector(-kI * (after * std::polar(1., increment.roll_after) +
-                                      before * std::polar(1., -increment.roll_before)));
+  const Vector2d edge = Vector(-kQuarterTurn * (after * std::polar(1., increment.roll_after) +
+                                                before * std::polar(1., -increment.roll_before)));
   out.turn_by_error.col(kMisalignmentY) += edge;
   out.turn_by_error.col(kMisalignmentX) += Vector2d(edge.y(), -edge.x());
   return out;

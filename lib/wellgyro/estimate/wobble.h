@@ -15,9 +15,9 @@ namespace wellgyro {
 using PhaseErrors = Eigen::Vector4d;
 
 /// The sources that do; the accelerometers' second order is left out.
-inline constexpr int kPhaseSources[] = {
-    kAccelBiasX,         kAccelBiasY,         kAccelScaleX, kAccelScaleY,
-    kAccelMisalignmentX, kAccelMisalignmentY, kAccelShear};
+inline constexpr int kPhaseSources[] = {kAccelBiasX,  kAccelBiasY,         kAccelScaleX,
+                                        kAccelScaleY, kAccelMisalignmentX, kAccelMisalignmentY,
+                                        kAccelShear};
 /// What a unit of one of them is, `along` being the force along the axis [m/s^2].
 PhaseErrors PhaseErrorsOf(int source, double along);
 

@@ -126,8 +126,9 @@ TEST(Summary, WhatOnlyTheBenchAnswersForIsNamed) {
   faults[2] = {.code = "accel_scale_x", .shift_W = {0, 1, 0}};
   faults[3] = {.code = "latitude", .smallest = 0.01, .shift_W = {0, 9, 0}};
   survey.runs[0].fit = fit;
-  EXPECT_THAT(SummaryText(survey), HasSubstr("\non trust       accel_bias_x, accel_bias_y: this run "
-                                             "does not show them, the bench must\n"));
+  EXPECT_THAT(SummaryText(survey),
+              HasSubstr("\non trust       accel_bias_x, accel_bias_y: this run "
+                        "does not show them, the bench must\n"));
 }
 
 TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }
