@@ -65,8 +65,7 @@ struct KnotRows::Terms {
   TurnByError turn_by_error{};           // at the roll rate of now
   Vector2d turn{};                       // of what is known of the errors corrected
   Vector2d turn_per_roll{};              // at delta
-  Matrix3d Ha{}, Hb{}, Xh{};
-  Matrix3d R_LM{};
+  Matrix3d Ha{}, Hb{}, Xh{}, R_LM{};
   Vector3d w_IL_L;  // at the latitude as it is now known
   BorderVector border;
   double warmth = 0;    // what the errors' changes count by
@@ -231,19 +230,20 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
       -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * t.turn_per_roll;
   const Vector3d by_rate = by * (t.dt * by_delta);
   AddRate(t, by_rate, block);
-  const TurnErrors by_error =
-      by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
+  TurnErrors by_error = by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
   AddGyroDrift(t, by_error, block);
-  for (std::size_t k = 0; k < kTurns.size(); ++k) {
-    AddError(t, kTurns[k], by_error.col(static_cast<Eigen::Index>(k)), block);
-  }
   // Of PhaseErrors: where in the knot psi turns, and what the rates are turned by.
   const Vector3d by_bow = Vector3d::UnitZ() - (X * t.Hb).row(2).transpose();
   const PhaseColumns by_phase =
       by *
       (by_bow * t.wobble.bow() + turned * (t.wobble.turn_M - t.turn_per_roll * t.wobble.roll()));
   for (const int source : kPhaseSources) {
-    AddError(t, source, by_phase * PhaseErrorsOf(source, inc.force_M.z()), block);
+    const Vector3d by_psi = by_phase * PhaseErrorsOf(source, inc.force_M.z());
+    if (source < kTurnSources) by_error.col(source) += by_psi;
+    if (source >= kTurnSources) AddError(t, source, by_psi, block);
+  }
+  for (std::size_t k = 0; k < kTurns.size(); ++k) {
+    AddError(t, kTurns[k], by_error.col(static_cast<Eigen::Index>(k)), block);
   }
   if (layout_.latitude != kAbsent) {
     f.Column(block.border() + layout_.latitude) =
@@ -300,8 +300,10 @@ void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
     const int i = kTurns[k];
     Vector2d half = 0.5 * t.turn_by_error.col(static_cast<Eigen::Index>(k));
     if (i == kMisalignmentX || i == kMisalignmentY) half += beyond.col(i - kMisalignmentX);
-    const Vector3d leaning = p.cross(Flat(half));
-    add(i, i == kTimeSkew ? Vector3d(leaning - by_skew) : leaning);
+    Vector3d by_error = p.cross(Flat(half));
+    if (i == kTimeSkew) by_error -= by_skew;
+    if (i < kTurnSources) by_error += by_phase * PhaseErrorsOf(i, t.inc.force_M.z());
+    add(i, by_error);
   }
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
     add(i, by_phase * PhaseErrorsOf(i, t.inc.force_M.z()) - t.inc.ForceBy(i));
@@ -381,8 +383,6 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
   f.r.head<2>() = of_swing * (t.end.swing - SwingAfter(t.frequency, t.dt, t.begin.swing));
   for (int i = 0; i < 2; ++i) {
     f.Column(layout_.swing + i) = -of_swing * SwingAfter(t.frequency, t.dt, Vector2d::Unit(i));
-  }
-  for (int i = 0; i < 2; ++i) {
     f.Column(block.next() + layout_.swing + i) = of_swing * Vector2d::Unit(i);
   }
   f.Column(block.border() + layout_.frequency).head<2>() =

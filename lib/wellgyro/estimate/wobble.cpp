@@ -45,6 +45,10 @@ PhaseErrors PhaseErrorsOf(int source, double along) {
       return {1, 0, 0, 0};
     case kAccelBiasY:
       return {0, 1, 0, 0};
+    case kMisalignmentX:
+      return {-along, 0, 0, 0};
+    case kMisalignmentY:
+      return {0, -along, 0, 0};
     case kAccelMisalignmentX:
       return {along, 0, 0, 0};
     case kAccelMisalignmentY:

@@ -7,17 +7,19 @@
 
 namespace wellgyro {
 
-/// What of the accelerometers' errors turns the phase of gravity: e, a force fixed in T (x, y)
-/// [m/s^2], and q, by which conj(f) adds to f (real, imaginary). Of f = G e^{-i psi}, psi errs by
+/// What of the sensors' errors turns the phase of gravity: e, a force fixed in T (x, y) [m/s^2],
+/// and q, by which conj(f) adds to f (real, imaginary). Of f = G e^{-i psi}, psi errs by
 ///   delta = -Im[(h1 e e^{i psi} + h2 q conj(G) e^{2 i psi}) / G],
-/// h the shares that psi follows (Increment::wobble_followed). Linear in delta: its square, of an
-/// error a tenth of gravity across .005, is left out.
+/// h the shares that psi follows (Increment::wobble_followed). Skewed gyros (m) make a steady roll
+/// look as a circle of the axis, of which the phase is freed: e is f_z times the accelerometers'
+/// misalignment less the gyros'. Linear in delta: its square, of an error a tenth of gravity across
+/// .005, is left out.
 using PhaseErrors = Eigen::Vector4d;
 
 /// The sources that do; the accelerometers' second order is left out.
-inline constexpr int kPhaseSources[] = {kAccelBiasX,  kAccelBiasY,         kAccelScaleX,
-                                        kAccelScaleY, kAccelMisalignmentX, kAccelMisalignmentY,
-                                        kAccelShear};
+inline constexpr int kPhaseSources[] = {kMisalignmentX,      kMisalignmentY,      kAccelBiasX,
+                                        kAccelBiasY,         kAccelScaleX,        kAccelScaleY,
+                                        kAccelMisalignmentX, kAccelMisalignmentY, kAccelShear};
 /// What a unit of one of them is, `along` being the force along the axis [m/s^2].
 PhaseErrors PhaseErrorsOf(int source, double along);
 
