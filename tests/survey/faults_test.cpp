@@ -128,6 +128,20 @@ TEST(Faults, ACoarseConverterIsNotStuck) {
   EXPECT_NEAR(stuck.value.value_or(0), 20, 1);
 }
 
+// Within ten seconds it turns by up to six times what the Earth does, and by as much back.
+TEST(Faults, AToolThatWhirlsAtRestHasNoWrongUnit) {
+  Flight flight;
+  flight.simulation.faults.push_back(
+      {.cause = Cause::kWhirl, .size = FromDegrees(0.3), .period = 0.6});
+  const Survey survey = flight.Surveyed();
+  const Check* unit = Find(survey, "gyro_unit");
+  ASSERT_NE(unit, nullptr);
+  EXPECT_NE(unit->verdict, Verdict::kFail) << unit->limit_source;
+  const Check* motion = Find(survey, "rest_motion");
+  ASSERT_NE(motion, nullptr);
+  EXPECT_NE(motion->verdict, Verdict::kPass);
+}
+
 struct Wrong {
   std::string code;
   std::function<void(Flight&)> make;

@@ -179,8 +179,7 @@ void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, boo
                             double seconds) {
   const SampleStamp& stamp = sample.stamp;
   if (!rests) {
-    rest_seconds_ = 0;
-    rest_w_.setZero();
+    rest_ = {};
     resting_ = false;
     return;
   }
@@ -189,13 +188,18 @@ void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, boo
     resting_ = true;
   }
   if (resting_) stops_.back().end = stamp.tool_time + Duration{stamp.period_ns};
-  rest_w_ += seconds * sample.w_IT_T.head<2>();
-  rest_seconds_ += seconds;
-  if (rest_seconds_ < kRestBlock) return;
-  const double rate = rest_w_.norm() / rest_seconds_;
+  const Eigen::Vector2d w = sample.w_IT_T.head<2>();
+  rest_.turn += seconds * w;
+  rest_.squares += seconds * w.squaredNorm();
+  rest_.seconds += seconds;
+  ++rest_.samples;
+  if (rest_.seconds < kRestBlock) return;
+  // A tool that swings turns by something within any stretch: its rates scatter by far more.
+  const double mean = rest_.turn.norm() / rest_.seconds;
+  const double scatter = std::sqrt(std::max(rest_.squares / rest_.seconds - mean * mean, 0.0));
+  const double rate = std::max(mean - 5 * scatter / std::sqrt(rest_.samples), 0.0);
   least_at_rest_ = std::min(least_at_rest_.value_or(rate), rate);
-  rest_seconds_ = 0;
-  rest_w_.setZero();
+  rest_ = {};
 }
 
 void SampleWatch::AddStuck(std::int32_t run, std::vector<Check>& checks) const {

@@ -88,9 +88,14 @@ class WELLGYRO_EXPORT SampleWatch {
   std::array<double, kPairings> squares_{};  ///< what each pairing leaves
   double stretches_ = 0;
   double predicted2_ = 0, predicted_found_ = 0;
-  Eigen::Vector2d rest_w_ = Eigen::Vector2d::Zero();
-  double rest_seconds_ = 0;
-  std::optional<double> least_at_rest_;  ///< rate across the tool [rad/s]
+  struct Rest {
+    Eigen::Vector2d turn = Eigen::Vector2d::Zero();
+    double squares = 0, seconds = 0;  ///< of the rates, times time
+    int samples = 0;
+  };
+  Rest rest_;
+  /// Rate across the tool in the stillest stretch, beyond what scatter makes of it [rad/s].
+  std::optional<double> least_at_rest_;
   std::vector<Stop> stops_;
   bool resting_ = false;
 };
