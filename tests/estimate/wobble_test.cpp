@@ -14,12 +14,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-struct Case {
+struct WobbleCase {
   int source;
   double rpm, rate_hz;
 };
 
-class Wobbles : public testing::TestWithParam<Case> {};
+class Wobbles : public testing::TestWithParam<WobbleCase> {};
 
 constexpr double kInclination = 40;
 // Of what is foretold: at 10 Hz and 20 rpm a sample turns by 12 deg, and its mean falls short of a
@@ -27,7 +27,7 @@ constexpr double kInclination = 40;
 constexpr double kShare = 0.025;
 
 /// The seconds from 8 to 10, of a tool whose gyros are skewed: the roll is the most that they see.
-Increment Flown(const Case& c, double error) {
+Increment WobblingFor(const WobbleCase& c, double error) {
   motion::Sensing sensing;
   if (c.source >= kTurnSources) {
     sensing.error[kMisalignmentX] = 2e-3;
@@ -41,9 +41,10 @@ Increment Flown(const Case& c, double error) {
 }
 
 TEST_P(Wobbles, DoWhatTheIncrementSays) {
-  const Case& c = GetParam();
+  const WobbleCase& c = GetParam();
   const double size = c.source == kAccelBiasX || c.source == kAccelBiasY ? 2e-3 : 2e-4;
-  const Increment plus = Flown(c, size), minus = Flown(c, -size), none = Flown(c, 0);
+  const Increment plus = WobblingFor(c, size), minus = WobblingFor(c, -size),
+                  none = WobblingFor(c, 0);
   const WobbleBy by = WobbleOf(plus);  // followed as closely as the smoother then takes it to be
   const PhaseErrors unit = PhaseErrorsOf(c.source, none.force_M.z());
   const double whole = 2 * size, roll = by.roll().norm() * unit.norm();
@@ -66,9 +67,9 @@ TEST_P(Wobbles, DoWhatTheIncrementSays) {
 
 // The columns of skewed gyros go along: what is taken out at once is what is there without.
 TEST_P(Wobbles, AreTakenOut) {
-  const Case& c = GetParam();
+  const WobbleCase& c = GetParam();
   const double size = c.source == kAccelBiasX || c.source == kAccelBiasY ? 2e-3 : 2e-4;
-  const Increment none = Flown(c, 0), wobbling = Flown(c, size);
+  const Increment none = WobblingFor(c, 0), wobbling = WobblingFor(c, size);
   const PhaseErrors errors = size * PhaseErrorsOf(c.source, none.force_M.z());
   const WobbleBy by = WobbleOf(wobbling);
   Increment out = WithoutWobble(wobbling, by, errors);
@@ -89,8 +90,8 @@ TEST(Wobble, OfAThirdAxisIsNone) {
   EXPECT_TRUE(WobbleOf(increments[4]).force_M.isZero(0));
 }
 
-std::vector<Case> AllCases() {
-  std::vector<Case> cases;
+std::vector<WobbleCase> AllWobbles() {
+  std::vector<WobbleCase> cases;
   for (const int source : kPhaseSources) {
     for (const double rpm : {1., 5., 20.}) cases.push_back({source, rpm, 10});
     cases.push_back({source, 20, 100});
@@ -98,7 +99,7 @@ std::vector<Case> AllCases() {
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Wobbles, testing::ValuesIn(AllCases()), [](const auto& param) {
+INSTANTIATE_TEST_SUITE_P(All, Wobbles, testing::ValuesIn(AllWobbles()), [](const auto& param) {
   return "source_" + std::to_string(param.param.source) + "_" +
          std::to_string(static_cast<int>(param.param.rpm)) + "_rpm_" +
          std::to_string(static_cast<int>(param.param.rate_hz)) + "_Hz";
