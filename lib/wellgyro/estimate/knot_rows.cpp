@@ -27,11 +27,11 @@ using Eigen::Vector3d;
 constexpr double kLeastTurn = 1e-7;   // [rad]
 constexpr double kLeastForce = 5e-5;  // [m/s^2 sqrt(s)], so that of a moment it tells nothing
 // The turn about the axis is the unknown roll rate's; this ties it to the attitude. A tenth of the
-// finest toolface that accelerometers tell in a knot, 1e-5 g.
+// finest toolface that accelerometers tell in a knot, 1e-5 g, and of what a third axis says.
 constexpr double kAxialTie = 1e-6;  // [rad]
-// At rest the tool turns by less than a tenth of what the gyros' noise says, which then costs the
-// azimuth 0.5 %.
-constexpr double kRestShare = 0.1;
+// What is held to be nothing is a tenth of the gyros' noise, which costs 0.5 % of a sigma: the tie
+// beside a third axis, and what a tool at rest turns by.
+constexpr double kNothing = 0.1;
 constexpr double kRestSpeed = 1e-5;   // [m/s]
 constexpr double kSpeedWalk = 0.3;    // winch and pipe: a third of a m/s in a second
 constexpr double kLeastDepth = 1e-3;  // [m], of a mark
@@ -89,10 +89,7 @@ ErrorVector KnotRows::ErrorsAt(const BorderVector& border, double warmth) const 
 /// The increment without what is known of the accelerometers' errors in psi.
 void KnotRows::TakeWobble(Terms& t) {
   t.wobble = WobbleOf(t.knot.increment);
-  PhaseErrors errors = PhaseErrors::Zero();
-  for (const int source : kPhaseSources) {
-    errors += t.error[source] * PhaseErrorsOf(source, t.inc.force_M.z());
-  }
+  const PhaseErrors errors = PhaseErrorsIn(t.error, t.inc.force_M.z());
   if (!errors.isZero(0)) t.inc = WithoutWobble(t.knot.increment, t.wobble, errors);
 }
 
@@ -181,6 +178,11 @@ void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RollChange
   if (knot.still) AddRest(t, block);
 }
 
+/// White noise of a gyro's turn over `dt`, 1 sigma [rad].
+double KnotRows::TurnNoise(double dt) const {
+  return std::max(setup_.gyro.angle_random_walk * std::sqrt(dt), kLeastTurn);
+}
+
 /// What a unit of the mean rate of roll adds to the factor's residuals, for all that it is made of.
 void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, NormalBlock& block) {
   const auto rows = by_rate.head(factor_.rows);
@@ -212,7 +214,8 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const double var = Square(setup_.gyro.angle_random_walk) * t.dt +
                      2 * Square(setup_.gyro.quantization) + inc.var_turn + t.knot.var_unseen;
   const double across = 1 / std::max(std::sqrt(var), kLeastTurn);
-  const Vector3d whiten(across, across, 1 / kAxialTie);
+  const double tie = inc.has_axial ? std::min(kAxialTie, kNothing * TurnNoise(t.dt)) : kAxialTie;
+  const Vector3d whiten(across, across, 1 / tie);
   const auto by = whiten.asDiagonal();
   const Eigen::Matrix<double, 3, 2> turned = t.Hb.topRows<2>().transpose();  // Hb' of a turn in M
 
@@ -394,7 +397,7 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
 /// scale multiplies the roll without its noise. Of the rates across it sees what a turn that goes
 /// evenly is in T, in the mean of e^{-i psi}.
 void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
-  const double whiten = 1 / std::max(setup_.gyro.angle_random_walk * std::sqrt(t.dt), kLeastTurn);
+  const double whiten = 1 / TurnNoise(t.dt);
   const double axial = t.inc.axial;
   const Vector2d unit = t.inc.ForceBy(kAccelBiasX).head<2>();
   const Vector2d across(unit.dot(t.turn), unit.x() * t.turn.y() - unit.y() * t.turn.x());
@@ -474,8 +477,7 @@ void KnotRows::AddDrift(const Terms& t, NormalBlock& block) {
 
 /// A clamped tool does not move in L.
 void KnotRows::AddRest(const Terms& t, NormalBlock& block) {
-  const double noise = setup_.gyro.angle_random_walk * std::sqrt(t.dt);
-  const double whiten = 1 / std::max(kRestShare * noise, kLeastTurn);
+  const double whiten = 1 / (kNothing * TurnNoise(t.dt));
   const Vector3d r = Log(t.begin.R_LT.transpose() * t.end.R_LT);
   const LogSlopes slopes(r);
   Factor& f = factor_;

@@ -88,6 +88,7 @@ class KnotRows {
                       const PhaseColumns& by_phase, NormalBlock& block);
   void AddForce(const Terms& t, NormalBlock& block);
   void AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block);
+  double TurnNoise(double dt) const;
   void AddAxial(const Terms& t, NormalBlock& block);
   void AddDepth(const Terms& t, NormalBlock& block);
   void AddDrift(const Terms& t, NormalBlock& block);

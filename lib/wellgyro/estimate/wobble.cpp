@@ -65,6 +65,12 @@ PhaseErrors PhaseErrorsOf(int source, double along) {
   }
 }
 
+PhaseErrors PhaseErrorsIn(const ErrorVector& errors, double along) {
+  PhaseErrors sum = PhaseErrors::Zero();
+  for (const int source : kPhaseSources) sum += errors[source] * PhaseErrorsOf(source, along);
+  return sum;
+}
+
 WobbleBy WobbleOf(const Increment& inc) {
   WobbleBy by;
   const Complex force = Plane(inc.force_M.head<2>());

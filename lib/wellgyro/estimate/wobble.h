@@ -22,6 +22,8 @@ inline constexpr int kPhaseSources[] = {kMisalignmentX,      kMisalignmentY,    
                                         kAccelMisalignmentX, kAccelMisalignmentY, kAccelShear};
 /// What a unit of one of them is, `along` being the force along the axis [m/s^2].
 PhaseErrors PhaseErrorsOf(int source, double along);
+/// Of all of them.
+PhaseErrors PhaseErrorsIn(const ErrorVector& errors, double along);
 
 /// d increment / d PhaseErrors.
 struct WobbleBy {
