@@ -2,6 +2,7 @@
 // increments of samples with and without them.
 #include "wellgyro/estimate/wobble.h"
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct WobbleCase {
   int source;
   double rpm, rate_hz;
 };
+void PrintTo(const WobbleCase& c, std::ostream* out) {
+  *out << "source " << c.source << ", " << c.rpm << " rpm, " << c.rate_hz << " Hz";
+}
 
 class Wobbles : public testing::TestWithParam<WobbleCase> {};
 
