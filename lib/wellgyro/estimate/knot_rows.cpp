@@ -16,7 +16,6 @@
 namespace wellgyro {
 namespace {
 
-using Eigen::Matrix2d;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -294,7 +293,7 @@ double KnotRows::GravityOffset(const Terms& t) const {
 /// Columns of the tool's errors in the force's factor. What gyros seem to turn leans the forces of
 /// gravity, p, by half of it, and of skewed ones by `beyond` more.
 void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
-                              const Vector3d& by_skew, const Matrix2d& beyond,
+                              const Vector3d& by_skew, const Eigen::Matrix2d& beyond,
                               const PhaseColumns& by_phase, NormalBlock& block) {
   const auto add = [&](int source, const Vector3d& by_error) {
     AddError(t, source, whiten * by_error, block);
