@@ -52,7 +52,7 @@ double WarmthOf(const EstimateSetup& setup, const RunKnot& knot) {
 /// What several factors of a knot share.
 struct KnotRows::Terms {
   const RunKnot& knot;
-  Increment inc;  // of a psi without what is known of the accelerometers' errors
+  Increment inc;  // of a psi without what is known of the sensors' errors
   const KnotPlace& place;
   const Node& begin;
   const Node& end;
@@ -85,7 +85,7 @@ ErrorVector KnotRows::ErrorsAt(const BorderVector& border, double warmth) const 
   return error;
 }
 
-/// The increment without what is known of the accelerometers' errors in psi.
+/// The increment without what is known of the sensors' errors in psi.
 void KnotRows::TakeWobble(Terms& t) {
   t.wobble = WobbleOf(t.knot.increment);
   const PhaseErrors errors = PhaseErrorsIn(t.error, t.inc.force_M.z());

@@ -128,7 +128,7 @@ TEST(Summary, WhatOnlyTheBenchAnswersForIsNamed) {
   survey.runs[0].fit = fit;
   EXPECT_THAT(SummaryText(survey),
               HasSubstr("\non trust       accel_bias_x, accel_bias_y: this run "
-                        "does not show them, the bench must\n"));
+                        "would not show them at any size\n"));
 }
 
 TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }

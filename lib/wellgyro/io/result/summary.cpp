@@ -44,7 +44,7 @@ std::string UnseenText(const Survey& survey) {
       Fixed(ToDegrees(unseen->bound.azimuth_major), 0), Fixed(unseen->tvd, 2), unseen->cause,
       Fixed(unseen->shift, 2));
   if (unseen->unshown.empty()) return text;
-  return text + fmt::format("on trust       {}: this run does not show them, the bench must\n",
+  return text + fmt::format("on trust       {}: this run would not show them at any size\n",
                             fmt::join(unseen->unshown, ", "));
 }
 

@@ -17,8 +17,8 @@ struct UnseenFaults {
   std::string cause;  ///< the fault that does most
   double shift = 0;   ///< what it does alone, horizontally [m]
   double tvd = 0;     ///< 95 % and what the fault that does most to it does [m]
-  /// Faults that this run does not show at any size looked for, and that move its end by more than
-  /// chance does: the bench alone answers for them.
+  /// Faults that this run would not show at any size looked for, and that move its end by more than
+  /// chance does.
   std::vector<std::string> unshown;
 };
 
