@@ -49,7 +49,7 @@ TEST(FitVariances, FindsWhatATableWithoutScatterIsMadeOf) {
     TermVector truth(5);
     truth << 1e-6, 0.36, 0.0064, 3.6e-5, 1e-10;
     truth *= scale;
-    const VarianceFit fit = FitVariances(problem, problem.columns * truth, 31);
+    const WeightFit fit = FitVariances(problem, problem.columns * truth, 31);
     for (Eigen::Index i = 0; i < 5; ++i) EXPECT_NEAR(fit.weight(i) / truth(i), 1, 1e-6) << i;
     EXPECT_LT(fit.deviance, 1e-12);
   }
@@ -79,7 +79,7 @@ TEST(FitVariances, HoldsAnOffset) {
   VarianceProblem problem = OfPowers();
   problem.offset = 0.04 * problem.columns.col(2);
   const Eigen::VectorXd s = problem.offset + 0.25 * problem.columns.col(1);
-  const VarianceFit fit = FitVariances(problem, s, 31 & ~4u);
+  const WeightFit fit = FitVariances(problem, s, 31 & ~4u);
   EXPECT_NEAR(fit.weight(1), 0.25, 1e-7);
   EXPECT_EQ(fit.weight(2), 0);
 }

@@ -348,6 +348,28 @@ class Structure(unittest.TestCase):
         self.Report(problems)
         self.assertGreater(count, 2000)
 
+    def test_a_type_is_defined_once(self):
+        """Two types of one name in one namespace break the one-definition rule across sources that
+        never see each other: the linker takes the members of either for both, and no one says so."""
+        problems, types = [], {}
+        for path in (p for top in (LIB, os.path.join(TOP, "apps")) for p in Sources(top)):
+            scopes = []
+            for number, line in enumerate(Lines(path), 1):
+                opened = re.match(r"(?:inline )?namespace ?([\w:]*) \{", line)
+                named = re.match(r"(?:struct|class|union|enum class|enum) (?:WELLGYRO_EXPORT )?(\w+)"
+                                 r"(?: final)?(?: : [^;]*)? \{", line)
+                if opened:
+                    scopes.append(opened.group(1) or path)
+                elif line.startswith("}  // namespace"):
+                    scopes.pop()
+                elif named:
+                    known = types.setdefault(("::".join(scopes), named.group(1)), path)
+                    if known != path:
+                        problems.append(f"{Place(path, number)}: {named.group(1)} is also defined in "
+                                        f"{known[len(TOP) + 1:]}; say in the name what it is of")
+        self.Report(problems)
+        self.assertGreater(len(types), 900)
+
     def test_chains_of_frames_telescope(self):
         problems, products = [], 0
         for path in Sources(LIB):

@@ -81,7 +81,7 @@ class Fitter {
   }
 
   // Fits the weights and, for Gauss-Markov, the correlation time; leaves the shape in place.
-  VarianceFit FitShape(const Eigen::VectorXd& s) {
+  WeightFit FitShape(const Eigen::VectorXd& s) {
     if (!options_.gauss_markov) return FitAt(s);
     const double low = std::log(grid_.tau(0));
     const double high = std::log(LastTau());
@@ -107,7 +107,7 @@ class Fitter {
     return FitAt(s);
   }
 
-  VarianceFit FitAt(const Eigen::VectorXd& s) {
+  WeightFit FitAt(const Eigen::VectorXd& s) {
     problem_.columns = grid_.Columns(shape_);
     return FitVariances(problem_, s, used_);
   }
@@ -115,7 +115,7 @@ class Fitter {
   // Whether the term gains more than it would in logs of the model without it.
   void TestTerm(NoiseTerm term, TermFit& result) {
     const unsigned others = used_ & ~Bit(term);
-    const VarianceFit without = FitVariances(problem_, s_, others);
+    const WeightFit without = FitVariances(problem_, s_, others);
     result.gain = without.deviance - best_.deviance;
     result.gain_limit = kOneSidedDeviance;
     if (result.gain > kOneSidedDeviance / 2 && std::isfinite(without.deviance)) {
@@ -183,7 +183,7 @@ class Fitter {
   double UpperBound(NoiseTerm term) {
     const Eigen::VectorXd column = problem_.columns.col(At(term));
     const unsigned others = used_ & ~Bit(term);
-    const VarianceFit free = FitVariances(problem_, s_, used_ | Bit(term));
+    const WeightFit free = FitVariances(problem_, s_, used_ | Bit(term));
     VarianceProblem held = problem_;
     const auto hold = [&](double coefficient, const Eigen::VectorXd& s) {
       held.offset = coefficient * coefficient * column;
@@ -217,7 +217,7 @@ class Fitter {
     std::vector<double> excesses;
     for (int i = 0; i < kTestReplicates; ++i) {
       const Eigen::VectorXd s = sampler.Draw(random);
-      const VarianceFit free = FitVariances(problem_, s, used_ | Bit(term));
+      const WeightFit free = FitVariances(problem_, s, used_ | Bit(term));
       const bool less = free.weight(At(term)) < coefficient * coefficient;
       excesses.push_back(less ? hold(coefficient, s).deviance - free.deviance : 0);
     }
@@ -230,7 +230,7 @@ class Fitter {
   NoiseShape shape_;
   unsigned used_ = 0;
   VarianceProblem problem_;
-  VarianceFit best_;
+  WeightFit best_;
 };
 
 void CheckOctaves(const AllanResult& octaves) {

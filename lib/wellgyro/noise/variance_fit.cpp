@@ -130,7 +130,7 @@ Eigen::VectorXd Levelled(const Eigen::VectorXd& s, const Eigen::VectorXd& edf) {
 
 }  // namespace
 
-VarianceFit FitVariances(const VarianceProblem& problem, const Eigen::VectorXd& s, unsigned used) {
+WeightFit FitVariances(const VarianceProblem& problem, const Eigen::VectorXd& s, unsigned used) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const auto model = [&](const TermVector& weight) -> Eigen::VectorXd {
     return problem.offset + problem.columns * weight;
@@ -138,7 +138,7 @@ VarianceFit FitVariances(const VarianceProblem& problem, const Eigen::VectorXd& 
   const auto deviance_of = [&](const Eigen::VectorXd& mu) {
     return mu.minCoeff() > 0 ? Deviance(mu, s, problem.edf) : kNever;
   };
-  VarianceFit fit;
+  WeightFit fit;
   Eigen::VectorXd mu = Levelled(s, problem.edf);
   fit.weight = Reweighted(problem, s, mu, used);
   fit.deviance = deviance_of(model(fit.weight));

@@ -17,7 +17,7 @@ using TermMatrix =
 TermVector NonnegativeLeastSquares(const TermMatrix& gram, const TermVector& rhs);
 
 /// Sample variances fitted by a sum of terms with weights that are not negative.
-struct VarianceFit {
+struct WeightFit {
   TermVector weight;    // of each column
   double deviance = 0;  // sum of edf (s/mu - 1 - ln(s/mu))
 };
@@ -33,6 +33,6 @@ struct VarianceProblem {
 /// weight, by reweighted least squares: the weights go by the model's variances, since weights that
 /// go by the measured ones favour the low. Columns whose bit in `used` is not set stay 0. At least
 /// one used column, or the offset, must be positive everywhere.
-VarianceFit FitVariances(const VarianceProblem& problem, const Eigen::VectorXd& s, unsigned used);
+WeightFit FitVariances(const VarianceProblem& problem, const Eigen::VectorXd& s, unsigned used);
 
 }  // namespace wellgyro

@@ -30,11 +30,11 @@ std::string CertificateText(std::size_t stations, std::string_view below) {
                      Sha256Hex(below));
 }
 
-std::optional<Certificate> CertificateIn(std::string_view line) {
+std::optional<FileCertificate> CertificateIn(std::string_view line) {
   const std::size_t at = line.find(kName);
   if (at == std::string_view::npos) return std::nullopt;
   line.remove_prefix(at + kName.size());
-  Certificate found;
+  FileCertificate found;
   if (!Take(line, found.stations, " stations | ") ||
       !Take(line, found.bytes, " bytes below | SHA-256 ") || line.size() < 64) {
     return std::nullopt;

@@ -10,7 +10,7 @@ namespace wellgyro {
 
 /// What a file of ours says of its own bytes, on one line of its head: how many stations it holds,
 /// and the size and SHA-256 of all that follows that line.
-struct Certificate {
+struct FileCertificate {
   std::size_t stations = 0;
   std::int64_t bytes = 0;
   std::string sha256;
@@ -19,6 +19,6 @@ struct Certificate {
 /// "wellgyro certificate: 7 stations, 1234 bytes below, SHA-256 0123..." of the text `below` it.
 std::string CertificateText(std::size_t stations, std::string_view below);
 /// From a line that holds such a text, with whatever its format has before it.
-std::optional<Certificate> CertificateIn(std::string_view line);
+std::optional<FileCertificate> CertificateIn(std::string_view line);
 
 }  // namespace wellgyro

@@ -57,7 +57,7 @@ class LineReader {
   std::string odd_;  ///< begin of a character in UTF-16
   std::size_t at_ = 0;
   enum class Encoding { kUnseen, kBytes, kLittleEndian, kBigEndian } encoding_ = Encoding::kUnseen;
-  std::optional<Certificate> certificate_;
+  std::optional<FileCertificate> certificate_;
   Sha256 below_;
   std::int64_t bytes_below_ = 0;
   int number_ = 0;
