@@ -9,17 +9,17 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 Simulates tools whose errors are drawn from the job's own priors, and gravity from those of the
 Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
 the truth. Well `demo`: data/demo with other seeds, without faults; `slant+z`: by a tool with a
-third gyro axis; `slant@20`: rolling at 20 rpm. `found`: no survey is made, or its verdict is not "pass"; `fail`: of these, those
-with exit code 2 or 4. `named`: of those found, in how many the right cause is the first of
-diagnosis.csv; `in set`: or among those that together have 95 %, or alike the first. Of clean runs
-every check of chance is tabled by its share of chance, p, which is uniform where the check's sigma
-is true. `--power`: so many runs of each cause in POWER with the smallest size that reliability.csv
-of a clean run has, four in five of which are to be noticed. `--pairs`: so many runs a cause and two
-of each draw, with the fault at once its size, whose cause is taken out by what diagnosis.csv has of
-it, and without. Seeds are fixed: the same figures each time; `--first`: the first of clean runs.
-`--keep`: runs, but of power, are added to a file and taken from it, so that a long row can be run
-in parts. "Beyond both": beyond the 95 % ellipse and beyond that in which the end is if one fault
-stays unseen, as aviation counts it.
+third gyro axis; `slant@20`: rolling at 20 rpm. `found`: no survey is made, or its verdict is not
+"pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how many the
+right cause is the first of diagnosis.csv; `in set`: or among those that together have 95 %, or
+alike the first. Of clean runs every check of chance is tabled by its share of chance, p, which is
+uniform where the check's sigma is true. `--power`: so many runs of each cause in POWER with the
+smallest size that reliability.csv of a clean run has, four in five of which are to be noticed.
+`--pairs`: so many runs a cause and two of each draw, with the fault at once its size, whose cause
+is taken out by what diagnosis.csv has of it, and without. Seeds are fixed: the same figures each
+time; `--first`: the first of clean runs. `--keep`: runs, but of power, are added to a file and
+taken from it, so that a long row can be run in parts. "Beyond both": beyond the 95 % ellipse and
+beyond that in which the end is if one fault stays unseen, as aviation counts it.
 """
 import argparse
 import concurrent.futures

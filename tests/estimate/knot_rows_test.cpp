@@ -84,6 +84,10 @@ Case MakeCase(double inclination, bool still, bool axial) {
   inc.force_per_roll = pair(1e-2);
   inc.axial = 0.3;
   inc.has_axial = axial;
+  if (!axial) {
+    inc.wobble_followed = {10, 8};  // more than all of it, so that it counts beside the rest
+    for (int i = 0; i < 4; ++i) inc.turn_by_harmonic.col(i) = pair(0.01);
+  }
   for (int i = 0; i <= kTimeSkew; ++i) inc.turn_by_error.col(i) = pair(i < kGyroScaleX ? 1 : 0.01);
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
     inc.ForceBy(i) << pair(0.5), 0.3 * random.Normal();
@@ -165,6 +169,11 @@ TEST(KnotRows, GradientIsThatOfTheCost) {
     ExpectGradient(MakeCase(inclination, false, false), "moving");
     ExpectGradient(MakeCase(inclination, true, false), "at rest");
     ExpectGradient(MakeCase(inclination, false, true), "third axis");
+    // Without forces the accelerometers' errors count by the phase that turns the rates alone.
+    Case turned = MakeCase(inclination, false, false);
+    turned.knot.increment.level = false;
+    turned.knot.increment.turn_by_harmonic *= 0.01;
+    ExpectGradient(turned, "phase");
   }
 }
 

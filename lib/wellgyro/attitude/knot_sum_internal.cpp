@@ -6,6 +6,7 @@
 
 #include "wellgyro/attitude/roll_following_internal.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/plane.h"
 
 namespace wellgyro::increment {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 constexpr Complex kI(0, 1);
 
 double Axial(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
-Eigen::Vector2d Vector(Complex z) { return {z.real(), z.imag()}; }
 
 // What the block's neighbours say of it.
 struct Across {
@@ -174,7 +174,7 @@ double Seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
   const auto turn = [&](ErrorSource source, Complex z) {
-    out.turn_by_error.col(source) = Vector(to_M * z);
+    out.turn_by_error.col(source) = VectorOf(to_M * z);
   };
   turn(kGyroBiasX, s.unit);
   turn(kGyroBiasY, kI * s.unit);
@@ -182,13 +182,13 @@ void FillErrors(const Sums& s, Complex to_M, Complex edge, Increment& out) {
   turn(kQuadrature, -kI * s.force());
   turn(kGyroScaleX, s.wx);
   turn(kGyroScaleY, kI * s.wy);
-  out.turn_by_error.col(kMisalignmentX) = Vector(-kI * edge);
-  out.turn_by_error.col(kMisalignmentY) = Vector(edge);
+  out.turn_by_error.col(kMisalignmentX) = VectorOf(-kI * edge);
+  out.turn_by_error.col(kMisalignmentY) = VectorOf(edge);
   turn(kToolfaceOffset, kI * s.turn);
   turn(kTimeSkew, kI * s.skew);
   if (!(s.forced > 0)) return;
   const auto force = [&](ErrorSource source, Complex z) {
-    out.ForceBy(source).head<2>() = Vector(to_M * z / s.forced);
+    out.ForceBy(source).head<2>() = VectorOf(to_M * z / s.forced);
   };
   force(kAccelBiasX, s.unit);
   force(kAccelBiasY, kI * s.unit);
@@ -208,7 +208,7 @@ void FillWobble(const Sums& s, Complex to_M, Increment& out) {
   out.wobble_followed = s.wobble / out.seconds;
   const std::array by{Complex(1), to_M * to_M, std::conj(to_M), to_M * to_M * to_M};
   for (std::size_t i = 0; i < by.size(); ++i) {
-    out.turn_by_harmonic.col(static_cast<Eigen::Index>(i)) = Vector(by[i] * s.harmonics[i]);
+    out.turn_by_harmonic.col(static_cast<Eigen::Index>(i)) = VectorOf(by[i] * s.harmonics[i]);
   }
 }
 
@@ -295,9 +295,9 @@ void FillForce(const Sums& s, const Middle& middle, double accel_noise, Complex 
   if (!(s.forced > 0)) return;
   const Complex f = (s.back + kI * middle.turn * s.z) / s.forced;
   const double fz = (s.back_z - Axial(middle.turn, s.force())) / s.forced;
-  out.force_M << Vector(to_M * f), fz;
+  out.force_M << VectorOf(to_M * f), fz;
   out.force_per_roll =
-      Vector(to_M * kI * (s.force_moment / out.seconds - 0.5 * s.force()) / s.forced);
+      VectorOf(to_M * kI * (s.force_moment / out.seconds - 0.5 * s.force()) / s.forced);
   // Of the slope of a line through phases of white noise.
   if (!(std::abs(f) * kTwoPi > std::sqrt(12 / s.forced) * accel_noise)) return;
   const double density = accel_noise / std::abs(f);  // of the phase, root of R
@@ -318,9 +318,9 @@ Increment SumKnot(const KnotSpan& span, bool third, double accel_noise, const Bl
   const double after = RollAt(span.end_ns, span.end_block, blocks) - middle.roll;
   out.roll_before = before + middle.coning;
   out.roll_after = after + s.coning - middle.coning;
-  out.turn_M = Vector(to_M * s.turn);
-  out.turn_before_M = Vector(to_M * middle.turn);
-  out.turn_per_roll = Vector(to_M * kI * (s.turn_moment / out.seconds - 0.5 * s.turn));
+  out.turn_M = VectorOf(to_M * s.turn);
+  out.turn_before_M = VectorOf(to_M * middle.turn);
+  out.turn_per_roll = VectorOf(to_M * kI * (s.turn_moment / out.seconds - 0.5 * s.turn));
   out.var_turn = s.unkept * s.unkept;
   if (out.has_axial) out.axial = s.axial + s.coning;
   FillForce(s, middle, accel_noise, to_M, out);

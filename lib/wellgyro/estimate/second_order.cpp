@@ -2,6 +2,7 @@
 
 #include <complex>
 
+#include "wellgyro/math/plane.h"
 #include "wellgyro/math/sinc.h"
 
 namespace wellgyro {
@@ -10,8 +11,6 @@ namespace {
 using Complex = std::complex<double>;
 constexpr Complex kI(0, 1);
 
-Complex Across(const Eigen::Ref<const Eigen::Vector3d>& v) { return {v.x(), v.y()}; }
-
 /// Products of f_x, f_y, f_z in the order xx, yy, zz, xy, yz, zx.
 struct Products {
   Complex turned[6];  ///< mean of e^{i psi} times each
@@ -19,9 +18,10 @@ struct Products {
 };
 
 Products ProductsOf(const Increment& inc) {
-  const Complex F = Across(inc.force_M), unit = Across(inc.ForceBy(kAccelBiasX)),
-                fx = Across(inc.ForceBy(kAccelScaleX)),
-                fy = -kI * Across(inc.ForceBy(kAccelScaleY));
+  const Complex F = ComplexOf(inc.force_M.head<2>()),
+                unit = ComplexOf(inc.ForceBy(kAccelBiasX).head<2>()),
+                fx = ComplexOf(inc.ForceBy(kAccelScaleX).head<2>()),
+                fy = -kI * ComplexOf(inc.ForceBy(kAccelScaleY).head<2>());
   const double z = inc.force_M.z(), square = std::norm(F);
   const double roll = inc.roll_before + inc.roll_after, ahead = inc.roll_after - inc.roll_before;
   const Complex thrice = Sinc(1.5 * roll) * std::polar(1., 1.5 * ahead);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "wellgyro/math/plane.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/sinc.h"
 
@@ -9,8 +10,6 @@ namespace wellgyro {
 namespace {
 
 using Eigen::Vector2d;
-
-Vector2d QuarterTurned(const Vector2d& v) { return {-v.y(), v.x()}; }
 
 /// Mean over a knot that rolls steadily of e e', e the direction of the tool's x axis in M.
 Eigen::Matrix2d MeanSquareOfX(const Increment& inc) {

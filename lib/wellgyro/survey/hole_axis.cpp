@@ -8,6 +8,7 @@
 
 #include <Eigen/QR>
 
+#include "wellgyro/math/plane.h"
 #include "wellgyro/math/so3.h"
 
 namespace wellgyro {
@@ -26,8 +27,6 @@ constexpr double kRests = 1e-3;  // [m]
 constexpr std::size_t kAbout = 10;
 constexpr double kOfMedian = 2;
 
-Complex Plane(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
-
 /// The tool's axis at `node` turned by a rotation vector across it, in T.
 Vector3d Turned(const Node& node, Complex across) {
   return node.R_LT * Exp(Vector3d(across.real(), across.imag(), 0)).col(2);
@@ -37,8 +36,8 @@ Vector3d Turned(const Node& node, Complex across) {
 ///   mean theta = turn - (integral of t d theta) / T = turn / 2 + i turn_per_roll,
 /// to which both ends of the knot are witnesses: what the gyros' errors turn by cancels.
 Vector3d MeanAxis(const Increment& inc, const Node& begin, const Node& end) {
-  const Complex turn = Plane(inc.turn_M);
-  const Complex mean = 0.5 * turn + Complex(0, 1) * Plane(inc.turn_per_roll);
+  const Complex turn = ComplexOf(inc.turn_M);
+  const Complex mean = 0.5 * turn + Complex(0, 1) * ComplexOf(inc.turn_per_roll);
   return (Turned(begin, std::polar(1., inc.roll_before) * mean) +
           Turned(end, std::polar(1., -inc.roll_after) * (mean - turn))) /
          2;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "wellgyro/math/plane.h"
+
 namespace wellgyro {
 namespace {
 
@@ -53,8 +55,6 @@ struct Restore {
   }
 };
 
-Vector2d Quarter(const Vector2d& v) { return {-v.y(), v.x()}; }
-
 template <class Code, class Vector, class Expected>
 void Each(Code& code, Vector&& vector, const Expected& expected) {
   for (Eigen::Index i = 0; i < expected.size(); ++i) code(vector(i), double{expected(i)});
@@ -70,15 +70,15 @@ void GoThroughErrors(Code& code, Increment& inc, const Increment& before) {
     Each(code, turn.col(source), expected);
   };
   expect(kGyroBiasX, turn_before.col(kGyroBiasX));
-  expect(kGyroBiasY, Quarter(turn.col(kGyroBiasX)));
+  expect(kGyroBiasY, QuarterTurned(turn.col(kGyroBiasX)));
   expect(kMassUnbalance, inc.seconds * inc.force_M.head<2>());
-  expect(kQuadrature, -Quarter(turn.col(kMassUnbalance)));
+  expect(kQuadrature, -QuarterTurned(turn.col(kMassUnbalance)));
   expect(kGyroScaleX, turn_before.col(kGyroScaleX));
   expect(kGyroScaleY, inc.turn_M - turn.col(kGyroScaleX));
   expect(kMisalignmentY, {std::cos(inc.roll_after) - std::cos(inc.roll_before),
                           std::sin(inc.roll_after) + std::sin(inc.roll_before)});
-  expect(kMisalignmentX, -Quarter(turn.col(kMisalignmentY)));
-  expect(kToolfaceOffset, Quarter(inc.turn_M));
+  expect(kMisalignmentX, -QuarterTurned(turn.col(kMisalignmentY)));
+  expect(kToolfaceOffset, QuarterTurned(inc.turn_M));
   expect(kTimeSkew, turn_before.col(kTimeSkew));
   const auto across = [&](ErrorSource source, const Vector2d& expected) {
     auto column = inc.ForceBy(source);
@@ -92,14 +92,14 @@ void GoThroughErrors(Code& code, Increment& inc, const Increment& before) {
     return inc.ForceBy(source).template head<2>();
   };
   across(kAccelBiasX, turn.col(kGyroBiasX) / inc.seconds);
-  across(kAccelBiasY, Quarter(of(kAccelBiasX)));
+  across(kAccelBiasY, QuarterTurned(of(kAccelBiasX)));
   along(kAccelBiasZ, before.ForceBy(kAccelBiasZ).z());
   across(kAccelScaleX, before.ForceBy(kAccelScaleX).head<2>());
   across(kAccelScaleY, turn.col(kMassUnbalance) / inc.seconds - of(kAccelScaleX));
   along(kAccelScaleZ, inc.force_M.z());
   across(kAccelMisalignmentX, inc.ForceBy(kAccelScaleZ).z() * of(kAccelBiasX));
-  across(kAccelMisalignmentY, Quarter(of(kAccelMisalignmentX)));
-  across(kAccelShear, Quarter(of(kAccelScaleX) - of(kAccelScaleY)));
+  across(kAccelMisalignmentY, QuarterTurned(of(kAccelMisalignmentX)));
+  across(kAccelShear, QuarterTurned(of(kAccelScaleX) - of(kAccelScaleY)));
   along(kAccelMisalignmentZX, before.ForceBy(kAccelMisalignmentZX).z());
   along(kAccelMisalignmentZY, before.ForceBy(kAccelMisalignmentZY).z());
 }

@@ -116,7 +116,7 @@ TEST(Summary, WithAnUnseenFaultTheEndIsWithinItsShiftAndChanceTogether) {
 }
 
 // Of 9 and 1 m where chance has 4.9: only what the run does not show at any size, and what counts.
-TEST(Summary, WhatOnlyTheBenchAnswersForIsNamed) {
+TEST(Summary, WhatTheRunWouldNotShowIsNamed) {
   Survey survey = EndWithUnseenFaults(Quality::kGood);
   const auto fit = std::make_shared<RunFit>(*survey.runs[0].fit);
   auto& faults = fit->diagnosis->reliability;
