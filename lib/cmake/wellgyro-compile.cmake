@@ -10,7 +10,13 @@
 # Where WELLGYRO_LINES is off nothing is kept for debuggers, and reports of the sanitizers name
 # functions without their lines: clang then takes 7 % less. tests/run asks for it without ccache.
 option(WELLGYRO_LINES "Keep line numbers where the build has them" ON)
+
+# Half of a compilation is the optimiser's. A tree that is built to be tested optimises what its tests
+# wait for, the numeric rooms and their own loops, and nothing else: wellgyro_compile(target NUMERIC)
+# adds these options to those of the tree.
+set(WELLGYRO_NUMERIC_OPTIONS "" CACHE STRING "Options of numeric rooms and tests beside the tree's")
 function(wellgyro_compile target)
+  cmake_parse_arguments(COMPILE "NUMERIC" "" "" ${ARGN})
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
     $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
@@ -18,7 +24,8 @@ function(wellgyro_compile target)
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-maybe-uninitialized -Wno-restrict>
     $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<BOOL:${WELLGYRO_WERROR}>>:-Werror>
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${WELLGYRO_UNITY}>>:SHELL:--param ggc-min-heapsize=1000000>
-    $<$<NOT:$<BOOL:${WELLGYRO_LINES}>>:-g0>)
+    $<$<NOT:$<BOOL:${WELLGYRO_LINES}>>:-g0>
+    $<$<BOOL:${COMPILE_NUMERIC}>:${WELLGYRO_NUMERIC_OPTIONS}>)
   # Static and shared libraries are made of the same objects.
   set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
 endfunction()
@@ -100,6 +107,9 @@ function(wellgyro_room target room)
   cmake_parse_arguments(ROOM "" "" "SOURCES;HEADERS" ${ARGN})
   if(ROOM_HEADERS)
     message(FATAL_ERROR "${room}: public headers stand in lib/public-headers.txt")
+  endif()
+  if(room IN_LIST numeric_rooms)  # see lib/CMakeLists.txt
+    set(target ${numeric})
   endif()
   list(TRANSFORM ROOM_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/lib/wellgyro/${room}/)
   target_sources(${target} PRIVATE ${ROOM_SOURCES})

@@ -17,7 +17,7 @@ using testing::Claims;
 using testing::Hour;
 
 // Two hundred seeds where WELLGYRO_LONG.
-constexpr std::uint64_t kTruthSeeds = WELLGYRO_LONG ? 200 : 2;
+constexpr std::uint64_t kTruthSeeds = WELLGYRO_LONG ? 200 : 1;
 // Eighty-one tests, of which all are to hold with 99 %.
 constexpr double kRisk = 0.01 / 81;
 
@@ -82,7 +82,7 @@ struct TruthCase {
 class CovarianceTruth : public ::testing::TestWithParam<TruthCase> {
  protected:
   static void SetUpTestSuite() { all_ = {}; }
-  // Two runs of a case say little, those of all cases together more.
+  // One run of a case says little, those of all cases together more.
   static void TearDownTestSuite() {
     if (WELLGYRO_LONG) return;
     all_.reckoned.ExpectTrue("all cases, reckoned");

@@ -38,7 +38,7 @@ Result<SimulationFile> WithSeed(std::uint64_t seed) {
       text.substr(0, at) + std::to_string(seed) + text.substr(text.find('\n', at)), path, kDemo);
 }
 
-constexpr int kRuns = WELLGYRO_LONG ? 20 : 2;
+constexpr int kRuns = WELLGYRO_LONG ? 20 : 1;
 
 TEST(Demonstration, IsAsGoodAsItSaysFromVerticalToTheEnd) {
   const auto job = ReadJob(kDemo / "job.toml");

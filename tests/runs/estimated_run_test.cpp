@@ -27,7 +27,7 @@ using testing::Hour;
 using testing::JobOf;
 using testing::SimulationOf;
 
-constexpr std::uint64_t kRunSeeds = WELLGYRO_LONG ? 8 : 2;
+constexpr std::uint64_t kRunSeeds = WELLGYRO_LONG ? 8 : 1;
 
 // Shorter than an hour, the same in kind.
 Hour HalfHour() {

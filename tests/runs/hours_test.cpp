@@ -84,8 +84,7 @@ constexpr double kInclinations[] = {3., 10., 30., 60., 90., 110.};
 TEST(Hours, OfAPerfectToolAreTheTruth) {
   for (const double hz : {100., 10.}) {
     for (const double inclination : kInclinations) {
-      const bool ends = inclination < 10 || inclination > 90;
-      if (hz > 10 && !ends && !WELLGYRO_LONG) continue;
+      if (hz > 10 && inclination > 10 && !WELLGYRO_LONG) continue;
       const double worst = WorstOfPerfect(PerfectAndFine(), inclination, hz);
       EXPECT_LT(worst, inclination < 10 ? 2.7e-4 : 1.2e-4) << hz << " Hz, I " << inclination;
       EXPECT_GT(worst, 0);
@@ -198,7 +197,7 @@ class UntoldHours : public ::testing::TestWithParam<UntoldCase> {};
 TEST_P(UntoldHours, FindNorth) {
   const UntoldCase& c = GetParam();
   Claims end, inclination;
-  for (std::uint64_t seed = 1; seed <= Seeds(2, 200); ++seed) {
+  for (std::uint64_t seed = 1; seed <= Seeds(1, 200); ++seed) {
     Hour hour = testing::StrongDrift();
     hour.swing_deg = c.swing_deg;
     hour.rpm = c.rpm;

@@ -144,7 +144,7 @@ End EndOf(const SmoothedRun& run, std::size_t last) {
 }
 
 TEST(MirrorNearEastWest, IsNotGivenAsSure) {
-  const std::uint64_t seeds = WELLGYRO_LONG ? 40 : 2;
+  const std::uint64_t seeds = WELLGYRO_LONG ? 40 : 1;
   const std::span<const Straight> cases =
       WELLGYRO_LONG ? std::span<const Straight>(kMany) : std::span<const Straight>(kFew);
   constexpr std::array<const char*, 2> kBy = {"on the way", "estimated"};

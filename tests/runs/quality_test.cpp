@@ -27,7 +27,7 @@ Hour Everything() {
   hour.errors.time_skew_sigma = 2e-3;
   hour.inclination_deg = 20;
   hour.build_deg = 50;
-  hour.minutes = 40;
+  hour.minutes = 20;
   hour.and_back = true;
   return hour;
 }
@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                 // A mark lost on the way out.
                 Event event;
                 event.kind = Event::Kind::kDepthRezero;
-                event.utc = f.simulation.streams.begin_utc + Duration::Seconds(1700);
+                event.utc = f.simulation.streams.begin_utc + Duration::Seconds(850);
                 event.has_value = true;
                 event.value_m = 300;
                 f.job.events.push_back(event);
