@@ -67,7 +67,7 @@ def Hours(hours):
     steps += "[[run.step]]\nstop_s = 200.0\n"
     simulation = f'format = "wellgyro.simulation/1"\nseed = 5\n{SLANT}[run]\n{steps}{tool}{streams}'
     job = DemonstrationJob().replace("latitude_deg = 28.0", "latitude_deg = 60.0")
-    job += '[tie_in]\nmd_m = 100.0\ntvd_m = 86.6\n'
+    job += '[tie_in]\nmd_m = 100.0\ntvd_m = 86.6\nnorth_m = 0.0\neast_m = 0.0\n'
     return simulation, re.sub(r'\[grid\]\nutm_zone = "15N"\n', "", job)
 
 

@@ -179,5 +179,29 @@ TEST(CheckTieIn, ATieInThatIsNotTheRunsFails) {
   EXPECT_EQ(CheckTieIn(job, stations).verdict, Verdict::kPass) << "the azimuth of a vertical hole";
 }
 
+TEST(CheckTieIn, ItsPlaceIsOneThatTheHoleReaches) {
+  TieIn tie_in{.md = 1000, .north = 300, .east = -400, .tvd = 800};
+  const Check reached = CheckTieInPlace(tie_in);
+  EXPECT_EQ(reached.verdict, Verdict::kPass);
+  EXPECT_NEAR(reached.value.value_or(0), std::sqrt(890000.), 1e-9);
+  tie_in.tvd /= 0.3048;  // in feet
+  EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kFail);
+  tie_in.cov_p_WT_W.diagonal().fill(1e6);
+  EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kPass) << "known as badly";
+  EXPECT_EQ(CheckTieInPlace({.md = 0, .north = 5e5}).verdict, Verdict::kNotDone);
+}
+
+TEST(CheckTieIn, APlaceThatNobodyStatedWarnsWhereItIsNotTheHeads) {
+  TieIn tie_in{.md = 1000, .tvd = 800};
+  tie_in.place_stated = false;
+  const Check aside = CheckTieInPlace(tie_in);
+  EXPECT_EQ(aside.verdict, Verdict::kWarn);
+  EXPECT_NEAR(aside.value.value_or(0), 600, 1e-9);
+  tie_in.tvd = 1000 - 4e-4;  // not a metre aside: the hole is straight down
+  EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kPass);
+  tie_in.tvd = 4000;  // deeper than long
+  EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kFail);
+}
+
 }  // namespace
 }  // namespace wellgyro

@@ -27,6 +27,7 @@ struct TieIn {
   double md = 0, north = 0, east = 0, tvd = 0;           ///< [m]
   std::optional<double> inclination, azimuth;            ///< true [rad]; both or none
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< of the position [m^2]
+  bool place_stated = true;  ///< false: nobody said, and north and east are taken as 0
 };
 
 struct AlignmentSpec {

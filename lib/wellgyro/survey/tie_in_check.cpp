@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kReach = 30;                      // [m]
 constexpr double kSurveys = FromDegrees(0.5);      // of two surveys of one hole
+constexpr double kSlot = 30;                       // of a platform, from its reference [m]
+constexpr double kDepths = 2e-3;                   // by which depths of two surveys may differ
+constexpr double kPlaces = 1;                      // that nobody asks for [m]
 constexpr double kBendMost = FromDegrees(5) / 30;  // of a hole, at most [rad/m]
 
 Eigen::Vector3d Along(double inclination, double azimuth) {
@@ -27,7 +30,30 @@ double SigmaOfDirection(const Station& s) {
   return std::sqrt(s.cov_md_inc_azi(1, 1) + std::min(across, 1.0));
 }
 
+/// Of what lies along `p`.
+double SigmaAlong(const Eigen::Matrix3d& cov, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d u = p.stableNormalized();
+  return std::sqrt(std::max(0.0, u.dot(cov * u)));
+}
+
 }  // namespace
+
+Check CheckTieInPlace(const TieIn& tie_in) {
+  if (!(tie_in.md > 0)) return NotDone("tie_in_place", 0, "the tie-in is at the datum of depth");
+  const Eigen::Vector3d p(tie_in.north, tie_in.east, tie_in.tvd);
+  const double sigma = SigmaAlong(tie_in.cov_p_WT_W, p);
+  Check check = CompareWith("tie_in_place", 0, {p.norm(), sigma},
+                            (1 + kDepths) * tie_in.md + kSlot + 3 * sigma, 1, "m",
+                            "md_m, .2 % of it, 30 m and 3 sigma: straight is the shortest");
+  if (tie_in.place_stated || check.verdict == Verdict::kFail) return check;
+  const double md = tie_in.md, tvd = tie_in.tvd;
+  const double aside = std::sqrt(std::max(0.0, (md - tvd) * (md + tvd)));
+  const double sigma_aside = std::sqrt(tie_in.cov_p_WT_W.topLeftCorner<2, 2>().trace());
+  check = CompareWith("tie_in_place", 0, {aside, sigma_aside}, kPlaces + 3 * sigma_aside, 1, "m",
+                      "give [tie_in] north_m and east_m, taken as 0: so far may they be off");
+  if (check.verdict == Verdict::kFail) check.verdict = Verdict::kWarn;
+  return check;
+}
 
 Check CheckTieIn(const Job& job, std::span<const Station> stations) {
   const Station* nearest = nullptr;

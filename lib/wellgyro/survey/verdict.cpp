@@ -145,6 +145,7 @@ constexpr CodeWords kCodeWords[] = {
     {"stations_without_azimuth", "stations have no azimuth"},
     {"temperature_outside", "temperature outside the calibrated range"},
     {"tie_in", "the tie-in and the run disagree where they meet"},
+    {"tie_in_place", "the place of the tie-in is not stated, or none that the hole reaches"},
     {"time_skew", "the clocks of gyros and accelerometers differ beyond the prior"},
     {"toolface_offset", "gyros and accelerometers are turned against each other beyond the prior"},
 };

@@ -102,6 +102,10 @@ TEST(JobDefaults, ATieInBelowTheDatumSaysHowDeepItIs) {
   EXPECT_THAT(DefaultsFault("[tie_in]\nmd_m = 100\n"), HasSubstr("tvd_m: is missing beside md_m"));
   EXPECT_EQ(DefaultsFault("[tie_in]\nmd_m = 100\ntvd_m = 99\n"), "");
   EXPECT_EQ(DefaultsFault("[tie_in]\nmd_m = 0\n"), "");
+  EXPECT_FALSE(JobOf("[tie_in]\nmd_m = 100\ntvd_m = 99\neast_m = 1\n").tie_in.place_stated);
+  EXPECT_TRUE(
+      JobOf("[tie_in]\nmd_m = 9\ntvd_m = 9\neast_m = 1\nnorth_m = 0\n").tie_in.place_stated);
+  EXPECT_TRUE(JobOf("").tie_in.place_stated);
 }
 
 }  // namespace

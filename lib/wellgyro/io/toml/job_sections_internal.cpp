@@ -136,6 +136,7 @@ void ReadTieIn(TomlTable table, Job& job) {
   if (tie_in.md != 0 && !table.Has("tvd_m")) {
     table.RefuseAbsent("tvd_m", "is missing beside md_m: how deep the tie-in is, is not guessed");
   }
+  tie_in.place_stated = table.Has("north_m") && table.Has("east_m");
   if (tie_in.azimuth) tie_in.azimuth = WrapTwoPi(*tie_in.azimuth);
   if (tie_in.inclination && !tie_in.azimuth) {
     table.RefuseAbsent("azimuth_true_deg", "is missing beside inclination_deg");
