@@ -183,9 +183,12 @@ TEST(CheckTieIn, ItsPlaceIsOneThatTheHoleReaches) {
   TieIn tie_in{.md = 1000, .north = 300, .east = -400, .tvd = 800};
   const Check reached = CheckTieInPlace(tie_in);
   EXPECT_EQ(reached.verdict, Verdict::kPass);
-  EXPECT_NEAR(reached.value.value_or(0), std::sqrt(890000.), 1e-9);
+  EXPECT_EQ(reached.value, 0);
+  EXPECT_EQ(CheckTieInPlace({.md = 1000, .tvd = 1000}).verdict, Verdict::kPass) << "straight down";
   tie_in.tvd /= 0.3048;  // in feet
-  EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kFail);
+  const Check feet = CheckTieInPlace(tie_in);
+  EXPECT_EQ(feet.verdict, Verdict::kFail);
+  EXPECT_NEAR(feet.value.value_or(0), std::hypot(500, 800 / 0.3048) - 1000, 1e-9);
   tie_in.cov_p_WT_W.diagonal().fill(1e6);
   EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kPass) << "known as badly";
   EXPECT_EQ(CheckTieInPlace({.md = 0, .north = 5e5}).verdict, Verdict::kNotDone);
@@ -197,7 +200,7 @@ TEST(CheckTieIn, APlaceThatNobodyStatedWarnsWhereItIsNotTheHeads) {
   const Check aside = CheckTieInPlace(tie_in);
   EXPECT_EQ(aside.verdict, Verdict::kWarn);
   EXPECT_NEAR(aside.value.value_or(0), 600, 1e-9);
-  tie_in.tvd = 1000 - 4e-4;  // not a metre aside: the hole is straight down
+  tie_in.tvd = 1000 - 1e-4;  // not half a metre aside: the hole is straight down
   EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kPass);
   tie_in.tvd = 4000;  // deeper than long
   EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kFail);

@@ -42,9 +42,9 @@ Check CheckTieInPlace(const TieIn& tie_in) {
   if (!(tie_in.md > 0)) return NotDone("tie_in_place", 0, "the tie-in is at the datum of depth");
   const Eigen::Vector3d p(tie_in.north, tie_in.east, tie_in.tvd);
   const double sigma = SigmaAlong(tie_in.cov_p_WT_W, p);
-  Check check = CompareWith("tie_in_place", 0, {p.norm(), sigma},
-                            (1 + kDepths) * tie_in.md + kSlot + 3 * sigma, 1, "m",
-                            "md_m, .2 % of it, 30 m and 3 sigma: straight is the shortest");
+  Check check = CompareWith("tie_in_place", 0, {std::max(0.0, p.norm() - tie_in.md), sigma},
+                            kDepths * tie_in.md + kSlot + 3 * sigma, 1, "m",
+                            ".2 % of md_m, 30 m and 3 sigma beyond it: straight is the shortest");
   if (tie_in.place_stated || check.verdict == Verdict::kFail) return check;
   const double md = tie_in.md, tvd = tie_in.tvd;
   const double aside = std::sqrt(std::max(0.0, (md - tvd) * (md + tvd)));
