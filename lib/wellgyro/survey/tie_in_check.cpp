@@ -39,7 +39,6 @@ double SigmaAlong(const Eigen::Matrix3d& cov, const Eigen::Vector3d& p) {
 }  // namespace
 
 Check CheckTieInPlace(const TieIn& tie_in) {
-  if (!(tie_in.md > 0)) return NotDone("tie_in_place", 0, "the tie-in is at the datum of depth");
   const Eigen::Vector3d p(tie_in.north, tie_in.east, tie_in.tvd);
   const double sigma = SigmaAlong(tie_in.cov_p_WT_W, p);
   Check check = CompareWith("tie_in_place", 0, {std::max(0.0, p.norm() - tie_in.md), sigma},

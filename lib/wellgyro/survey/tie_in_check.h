@@ -15,10 +15,10 @@ namespace wellgyro {
 /// tie-in no direction.
 WELLGYRO_EXPORT Check CheckTieIn(const Job& job, std::span<const Station> stations);
 
-/// `tie_in_place` [m] of a tie-in below the datum: how much further it is from the well head than
-/// its depth along the hole reaches. Fails beyond 30 m, for a slot aside of where the job counts
-/// from, .2 % of depth and 3 sigma. Where the job does not say north and east: how far they can be
-/// from the 0 that is taken, by the two depths; warns beyond 1 m and 3 sigma.
+/// `tie_in_place` [m] of a tie-in below the datum, md > 0: how much further it is from the well
+/// head than its depth along the hole reaches. Fails beyond 30 m, for a slot aside of where the job
+/// counts from, .2 % of depth and 3 sigma. Where the job does not say north and east: how far they
+/// can be from the 0 that is taken, by the two depths; warns beyond 1 m and 3 sigma.
 WELLGYRO_EXPORT Check CheckTieInPlace(const TieIn& tie_in);
 
 }  // namespace wellgyro
