@@ -33,6 +33,8 @@ struct Truth {
   double gyro_noise = 0, accel_noise = 0;  ///< of a window's mean
   double bias_x = 0, bias_y = 0, bias_z = 0, m = 0, q = 0;
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d accel_linear = Eigen::Matrix3d::Zero();  ///< scales, and axes that lean
+  double gyro_roll = 0;  ///< of the gyros against the accelerometers
   bool gz = false;
 
   Site Place() const { return SiteAt(latitude, 0); }
@@ -42,8 +44,8 @@ struct Truth {
     const double sI = std::sin(inclination), cI = std::cos(inclination);
     const double sA = std::sin(azimuth), cA = std::cos(azimuth);
     const double g = Place().gravity;
-    const auto W =
-        kOmega * std::complex(cL * cA * cI + sL * sI, -cL * sA) * std::polar(1.0, -toolface);
+    const auto W = kOmega * std::complex(cL * cA * cI + sL * sI, -cL * sA) *
+                   std::polar(1.0, -toolface - gyro_roll);
     const Eigen::Vector3d f(g * sI * std::cos(toolface), -g * sI * std::sin(toolface), -g * cI);
     StillWindow window;
     window.begin = {Duration::Seconds(begin).ns};
@@ -53,7 +55,7 @@ struct Truth {
     window.w_IT_T = {W.real() + bias_x + m * f.x() + q * f.y(),
                      W.imag() + bias_y + m * f.y() - q * f.x(),
                      gz ? kOmega * (cL * cA * sI - sL * cI) + bias_z : 0};
-    window.f_T = f + accel_bias;
+    window.f_T = f + accel_bias + accel_linear * f;
     for (int i = 0; i < (gz ? 3 : 2); ++i) window.w_IT_T[i] += gyro_noise * random.Normal();
     for (int i = 0; i < 3; ++i) window.f_T[i] += accel_noise * random.Normal();
     window.sigma_w_IT_T = Eigen::Vector3d::Constant(gyro_noise);
@@ -160,6 +162,16 @@ NorthFix Draw(Truth truth, const ErrorPriors& errors, const std::vector<double>&
   truth.m = errors.mass_unbalance_sigma * random.Normal();
   truth.q = errors.quadrature_sigma * random.Normal();
   for (int i = 0; i < 3; ++i) truth.accel_bias[i] = errors.accel_bias_sigma * random.Normal();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double sigma = i == j ? errors.accel_scale_sigma : errors.accel_misalignment_sigma;
+      truth.accel_linear(i, j) = sigma * random.Normal();
+    }
+  }
+  // The frame is the accelerometers', which x and y lean out of alike.
+  auto &xy = truth.accel_linear(0, 1), &yx = truth.accel_linear(1, 0);
+  truth.gyro_roll = 0.5 * (xy - yx);
+  xy = yx = 0.5 * (xy + yx);
   return Gyrocompass(truth.Windows(toolfaces, random), believed, {.errors = errors});
 }
 
@@ -170,7 +182,9 @@ TEST(Gyrocompass, CovarianceHoldsWhatThePriorsAndTheNoiseDo) {
   const ErrorPriors errors{.gyro_bias_sigma = 0.1 * kDegPerHour,
                            .mass_unbalance_sigma = 0.1 * kDegPerHourPerG,
                            .quadrature_sigma = 0.1 * kDegPerHourPerG,
-                           .accel_bias_sigma = 1e-3,
+                           .accel_bias_sigma = 5e-4,
+                           .accel_scale_sigma = 2e-4,
+                           .accel_misalignment_sigma = 3e-4,
                            .latitude_sigma = 0.05 * kDeg};
   Random random(3);
   for (const bool gz : {false, true}) {
@@ -296,6 +310,31 @@ TEST(Gyrocompass, NearVerticalTheAccelerometersOutweighTheGyros) {
   // 0.1 mg at 1 degree: 1e-4 / sin(1 deg) = 0.328 deg, the gyros 0.076 deg.
   EXPECT_NEAR(ToDegrees(Sigma(fix)), 0.33, 0.02);
   EXPECT_FALSE(Has(fix.quality, Quality::kVertical));
+}
+
+// Near vertical an accelerometer that leans reads as much across as one with a bias; one that leans
+// against the other turns the toolface too.
+TEST(Gyrocompass, AccelerometersThatLeanCountNearVertical) {
+  const ErrorPriors errors{
+      .accel_bias_sigma = 5e-4, .accel_scale_sigma = 5e-5, .accel_misalignment_sigma = 1e-4};
+  Random random(31);
+  for (const double inclination : {0.1, 2.0}) {
+    double sum = 0, tilt = 0;
+    constexpr int kDraws = 400;
+    for (int i = 0; i < kDraws; ++i) {
+      const Truth truth{.inclination = inclination * kDeg,
+                        .azimuth = kTwoPi * random.Uniform(),
+                        .gyro_noise = 0.02 * kDegPerHour,
+                        .accel_noise = 1e-5};
+      const NorthFix fix = Draw(truth, errors, {0.7}, random);
+      tilt += std::pow(fix.inclination - truth.inclination, 2) / fix.cov_attitude(0, 0);
+      sum += Normalised(fix, truth, 0.7);
+      // 5e-4 of 9.82 m/s^2 and 1e-4 rad.
+      EXPECT_NEAR(std::sqrt(fix.cov_attitude(0, 0)), 1.122e-4, 4e-6);
+    }
+    ExpectInBand(tilt, kDraws, 1, "inclination");
+    ExpectInBand(sum, kDraws, 3, "all angles");
+  }
 }
 
 // At the vertical azimuth and toolface are not defined, their sum is.

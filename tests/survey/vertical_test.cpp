@@ -10,9 +10,13 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/random.h"
+#include "wellgyro/math/square.h"
 #include "wellgyro/math/statistics.h"
+#include "wellgyro/record/force_errors.h"
 #include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/simulate/truth.h"
+#include "wellgyro/survey/node_attitude.h"
 
 #include "support/simulated_survey.h"
 
@@ -125,6 +129,44 @@ INSTANTIATE_TEST_SUITE_P(
                       VerticalCase{"Slant", 1, 0, 0}, VerticalCase{"SlantRolling", 1, 0, 3},
                       VerticalCase{"Build", 0, 100, 0}, VerticalCase{"BuildRolling", 0, 100, 3}),
     [](const auto& of) { return of.param.name; });
+
+// Without north an inclination is as sure as what stands between the axes and gravity lets it be:
+// forces of draws of every constant, against the sigmas. Exactly vertical there is no high side.
+TEST(Level, IsAsSureAsItsAccelerometersAre) {
+  constexpr double kGravity = 9.81;
+  const ErrorPriors errors{
+      .accel_bias_sigma = 5e-4, .accel_scale_sigma = 3e-4, .accel_misalignment_sigma = 2e-4};
+  Random random(5);
+  for (const double inclination : {0.5, 30.0, 85.0, 140.0}) {
+    const double sine = std::sin(FromDegrees(inclination)), turn = 2.1;
+    RunKnot knot;
+    knot.increment.force_M =
+        -kGravity * Eigen::Vector3d(-sine * std::cos(turn), sine * std::sin(turn),
+                                    std::cos(FromDegrees(inclination)));
+    const AttitudeSample level = LevelOf(knot, errors, kGravity);
+    double tilt = 0, toolface = 0;
+    constexpr int kDraws = 2000;
+    for (int i = 0; i < kDraws; ++i) {
+      RunKnot read = knot;
+      for (int c = 0; c < kForceErrors; ++c) {
+        read.increment.force_M +=
+            random.Normal() * ForceErrors(errors, knot.increment.force_M).col(c);
+      }
+      const AttitudeSample off = LevelOf(read, errors, kGravity);
+      tilt += Square(off.inclination - level.inclination) / level.cov_attitude(0, 0);
+      toolface += Square(WrapPi(off.toolface - level.toolface)) / level.cov_attitude(2, 2);
+    }
+    for (const double sum : {tilt, toolface}) {
+      EXPECT_GT(sum, ChiSquareQuantile(5e-4, kDraws)) << inclination;
+      EXPECT_LT(sum, ChiSquareQuantile(1 - 5e-4, kDraws)) << inclination;
+    }
+  }
+  RunKnot down;
+  down.increment.force_M = {0, 0, -kGravity};
+  const AttitudeSample vertical = LevelOf(down, errors, kGravity);
+  EXPECT_NEAR(std::sqrt(vertical.cov_attitude(0, 0)), std::hypot(5e-4 / kGravity, 2e-4), 1e-9);
+  EXPECT_TRUE(Has(vertical.quality, Quality::kVertical));
+}
 
 }  // namespace
 }  // namespace wellgyro

@@ -12,6 +12,7 @@
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/alignment/magnetic.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
@@ -128,30 +129,21 @@ Matrix3d EulerCovariance(const Solution& solution, std::size_t windows, bool& ve
   return capped;
 }
 
-/// The mean over the windows of |f_T| against gravity. Its error is to first order u' (b + A g u),
-/// u the direction of f_T, b the biases, A scales and misalignments: of A_ij g times the mean of
-/// u_i u_j.
+/// The mean over the windows of |f_T| against gravity. Its error is to first order the mean of
+/// u' e(f), u the direction of f_T and e what the accelerometers' constants add to it.
 void CheckGravity(std::span<const StillWindow> windows, const Site& site,
                   const GyrocompassSetup& setup, NorthFix& fix) {
   const double n = static_cast<double>(windows.size());
-  const ErrorPriors& e = setup.errors;
   double noise = 0;
-  Vector3d mean = Vector3d::Zero();
-  Matrix3d pairs = Matrix3d::Zero();
+  Eigen::RowVector<double, kForceErrors> constants = Eigen::RowVector<double, kForceErrors>::Zero();
   for (const StillWindow& window : windows) {
     const Vector3d u = window.f_T.normalized();
     fix.gravity += window.f_T.norm() / n;
     noise += u.cwiseProduct(window.sigma_f_T).squaredNorm() / (n * n);
-    mean += u / n;
-    pairs += u * u.transpose() / n;
+    constants += u.transpose() * ForceErrors(setup.errors, window.f_T) / n;
   }
   fix.gravity_ref = site.gravity;
-  const double scale = e.accel_scale_sigma * pairs.diagonal().norm();
-  pairs.diagonal().setZero();
-  const double constants =
-      site.gravity * std::hypot(scale, e.accel_misalignment_sigma * pairs.norm());
-  fix.sigma_gravity = std::hypot(std::hypot(std::sqrt(noise), e.accel_bias_sigma * mean.norm()),
-                                 constants, setup.sigma_gravity_ref);
+  fix.sigma_gravity = std::hypot(std::sqrt(noise), constants.norm(), setup.sigma_gravity_ref);
   if (std::abs(fix.gravity - fix.gravity_ref) > 3 * fix.sigma_gravity) {
     fix.quality |= Quality::kGravity;
   }

@@ -16,16 +16,13 @@
 /// The least-squares problem behind Gyrocompass().
 namespace wellgyro::gyrocompass {
 
-/// Errors of the sensors and the place that are estimated by their priors.
+/// Errors of the gyros and the place that are estimated by their priors.
 enum Error {
   kBiasX,
   kBiasY,
   kBiasZ,
   kMass,
   kQuadrature,
-  kAccelX,
-  kAccelY,
-  kAccelZ,
   kGravity,
   kLatitude,
   kRoll,
@@ -84,6 +81,9 @@ class Problem {
   /// Of the mean rates of all windows about one axis [(rad/s)^2]: white noise in each, bias
   /// instability and walk from window to window.
   Eigen::MatrixXd RateCovariance(int axis, const NoiseCoefficients& gyro) const;
+  /// Of the mean forces, window by window [(m/s^2)^2]: white noise in each, and constant errors of
+  /// the accelerometers in all.
+  Eigen::MatrixXd ForceCovariance(const ErrorPriors& errors) const;
   void ChooseErrors(const GyrocompassSetup& setup);
   bool Separated() const;
   State Moved(const State& state, const Eigen::VectorXd& step) const;
@@ -92,7 +92,7 @@ class Problem {
   double latitude_, gravity_;
   int axes_;
   std::array<Eigen::LLT<Eigen::MatrixXd>, 3> whiten_rate_;
-  std::vector<Eigen::Vector3d> sigma_f_;
+  Eigen::LLT<Eigen::MatrixXd> whiten_force_;
   std::array<double, kErrors> sigma_{};
   std::array<double, kErrors> known_{};  ///< what of them is no error: the samples have it
   std::vector<Error> free_;

@@ -5,6 +5,7 @@
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/drift.h"
+#include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro::gyrocompass {
@@ -72,14 +73,8 @@ Problem::Problem(std::span<const StillWindow> windows, const Site& site,
       errors_at_(count_ + 2) {
   for (const StillWindow& window : windows) {
     gravity_ += window.f_T.norm() / static_cast<double>(count_);
-    const double model = setup.errors.accel_noise / std::sqrt(std::max(window.seconds(), 1e-3));
-    Vector3d sigma;
-    for (int i = 0; i < 3; ++i) {
-      const double given = window.sigma_f_T[i];
-      sigma[i] = std::max(given > 0 ? given : model, kSigmaLeastForce);
-    }
-    sigma_f_.push_back(sigma);
   }
+  whiten_force_ = ForceCovariance(setup.errors).llt();
   for (int i = 0; i < axes_; ++i) {
     whiten_rate_[static_cast<std::size_t>(i)] = RateCovariance(i, setup.gyro).llt();
   }
@@ -119,6 +114,25 @@ MatrixXd Problem::RateCovariance(int axis, const NoiseCoefficients& gyro) const 
   return cov;
 }
 
+/// What the accelerometers read wrongly all the time goes round with the tool, and is common to the
+/// windows: integrated out, its share in each by the force that was read there.
+MatrixXd Problem::ForceCovariance(const ErrorPriors& errors) const {
+  MatrixXd by(3 * count_, kForceErrors);
+  VectorXd noise(3 * count_);
+  for (Index k = 0; k < count_; ++k) {
+    const StillWindow& window = windows_[static_cast<std::size_t>(k)];
+    const double model = errors.accel_noise / std::sqrt(std::max(window.seconds(), 1e-3));
+    for (int i = 0; i < 3; ++i) {
+      const double given = window.sigma_f_T[i];
+      noise[3 * k + i] = std::max(given > 0 ? given : model, kSigmaLeastForce);
+    }
+    by.middleRows<3>(3 * k) = ForceErrors(errors, window.f_T);
+  }
+  MatrixXd cov = by * by.transpose();
+  cov.diagonal() += noise.cwiseAbs2();
+  return cov;
+}
+
 /// Whether the windows' toolfaces differ enough to tell a gyro's bias from the Earth's rate.
 bool Problem::Separated() const {
   std::complex<double> mean = 0;
@@ -134,10 +148,9 @@ void Problem::ChooseErrors(const GyrocompassSetup& setup) {
   sigma_[kBiasZ] = axes_ == 3 ? e.gyro_bias_sigma : 0;
   sigma_[kMass] = e.mass_unbalance_sigma;
   sigma_[kQuadrature] = e.quadrature_sigma;
-  sigma_[kAccelX] = sigma_[kAccelY] = sigma_[kAccelZ] = e.accel_bias_sigma;
   sigma_[kGravity] = kSigmaFreeGravity;
   sigma_[kLatitude] = e.latitude_sigma;
-  sigma_[kRoll] = e.roll_offset_sigma;
+  sigma_[kRoll] = ToolfaceOffsetSigma(e);
   sigma_[kScaleX] = sigma_[kScaleY] = e.gyro_scale_sigma;
   sigma_[kMisX] = sigma_[kMisY] = e.gyro_misalignment_sigma;
   if (axes_ == 2) {
@@ -172,25 +185,23 @@ State Problem::Moved(const State& state, const VectorXd& step) const {
 }
 
 void Problem::Forces(const State& state, System& system) const {
+  MatrixXd raw = MatrixXd::Zero(3 * count_, unknowns());  // by window, then axis
+  VectorXd r(3 * count_);
   for (Index k = 0; k < count_; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const Matrix3d to_tool = state.R(at).transpose();
     const double g = gravity_ + state.error[kGravity];
     const Vector3d up(0, 0, -g);
     const Vector3d f = to_tool * up;
-    const Index row = axes_ * count_ + 3 * k;
-    const Vector3d weight = sigma_f_[at].cwiseInverse();
-    const Vector3d bias(state.error[kAccelX], state.error[kAccelY], state.error[kAccelZ]);
-    system.r.segment<3>(row) = weight.cwiseProduct(windows_[at].f_T - f - bias);
-    auto J = system.J.middleRows<3>(row);
+    r.segment<3>(3 * k) = windows_[at].f_T - f;
+    auto J = raw.middleRows<3>(3 * k);
     J.leftCols<3>() = to_tool * Skew(up);
     if (k > 0) J.col(k + 2) = Vector3d(f.y(), -f.x(), 0);
     J.col(column_[kGravity]) = f / g * sigma_[kGravity];
-    for (const Error e : {kAccelX, kAccelY, kAccelZ}) {
-      if (column_[e] >= 0) J(e - kAccelX, column_[e]) = sigma_[e];
-    }
-    J = weight.asDiagonal() * J;
   }
+  const Index row = axes_ * count_;
+  system.r.segment(row, 3 * count_) = whiten_force_.matrixL().solve(r);
+  system.J.middleRows(row, 3 * count_) = whiten_force_.matrixL().solve(raw);
 }
 
 void Problem::Rates(const State& state, System& system) const {

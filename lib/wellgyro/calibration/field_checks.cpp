@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/record/force_errors.h"
 
 namespace wellgyro {
 namespace {
@@ -72,8 +73,8 @@ Eigen::Matrix3d ForceCovariance(const StillWindow& window, const FieldCheckSetup
   if (window.sigma_f_T.isZero(0) && seconds > 0) {
     variance.setConstant(setup.errors.accel_noise * setup.errors.accel_noise / seconds);
   }
-  variance.array() += setup.errors.accel_bias_sigma * setup.errors.accel_bias_sigma;
-  return variance.asDiagonal();
+  const auto by = ForceErrors(setup.errors, window.f_T);
+  return Eigen::Matrix3d(variance.asDiagonal()) + by * by.transpose();
 }
 
 double Root(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& cov, double more) {

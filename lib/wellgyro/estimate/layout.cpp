@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "wellgyro/estimate/swing.h"
+#include "wellgyro/record/force_errors.h"
 
 namespace wellgyro {
 namespace {
@@ -26,15 +27,12 @@ ErrorVector SourceSigmas(const EstimateSetup& setup) {
     sigma[kGyroScaleZ] = e.gyro_scale_sigma;
   }
   sigma[kMisalignmentX] = sigma[kMisalignmentY] = e.gyro_misalignment_sigma;
-  // Axes that lean towards each other by two angles: half of their sum shears, half of their
-  // difference turns the accelerometers against the gyros.
-  const double half = e.accel_misalignment_sigma / std::sqrt(2.0);
-  sigma[kToolfaceOffset] = std::hypot(e.roll_offset_sigma, half);
+  sigma[kToolfaceOffset] = ToolfaceOffsetSigma(e);
   sigma[kTimeSkew] = e.time_skew_sigma;
   sigma.segment<3>(kAccelBiasX).setConstant(e.accel_bias_sigma);
   sigma.segment<3>(kAccelScaleX).setConstant(e.accel_scale_sigma);
   sigma.segment<2>(kAccelMisalignmentX).setConstant(e.accel_misalignment_sigma);
-  sigma[kAccelShear] = half;
+  sigma[kAccelShear] = ShearSigma(e);
   sigma.segment<2>(kAccelMisalignmentZX).setConstant(e.accel_misalignment_sigma);
   return sigma;
 }

@@ -52,7 +52,7 @@ AttitudeSample ForwardEstimate::AttitudeNow() const {
   const RunKnot& knot = recent_.back();
   if (forward_) return AttitudeOf(knot, forward_->node().R_LT, forward_->CovPhi());
   if (knot.increment.level || knots_.empty()) {
-    return LevelOf(knot, job_.errors.accel_bias_sigma, site_.site().gravity);
+    return LevelOf(knot, job_.errors, site_.site().gravity);
   }
   AttitudeSample attitude = known_;
   attitude.time = knot.increment.time;

@@ -7,6 +7,8 @@
 #include "wellgyro/estimate/node.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/so3.h"
+#include "wellgyro/math/square.h"
+#include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
@@ -53,7 +55,7 @@ AttitudeSample AttitudeOf(const RunKnot& knot, const Matrix3d& R, const Matrix3d
   return a;
 }
 
-AttitudeSample LevelOf(const RunKnot& knot, double accel_bias, double gravity) {
+AttitudeSample LevelOf(const RunKnot& knot, const ErrorPriors& errors, double gravity) {
   AttitudeSample a;
   const Eigen::Vector3d& f = knot.increment.force_M;
   const double across = std::hypot(f.x(), f.y());
@@ -61,11 +63,16 @@ AttitudeSample LevelOf(const RunKnot& knot, double accel_bias, double gravity) {
   a.inclination = std::atan2(across, -f.z());
   a.toolface = WrapPi(std::atan2(-f.y(), f.x()) + knot.increment.roll_after);
   a.quality = Without(knot.increment.quality, Quality::kVertical);
-  const double sigma = accel_bias / gravity, sine = std::max(across / gravity, kLeastSine);
-  if (sigma >= kVagueAngle * sine) a.quality |= Quality::kVertical;
-  a.cov_attitude(0, 0) = sigma * sigma;
+  const auto by = ForceErrors(errors, f);
+  const double sine = std::max(across / gravity, kLeastSine), high = std::atan2(f.y(), f.x());
+  const Eigen::RowVector3d up(std::cos(high), std::sin(high), 0);
+  const Eigen::RowVector3d tilt =
+      (across * Eigen::RowVector3d::UnitZ() - f.z() * up) / f.squaredNorm();
+  const Eigen::RowVector3d turn = Eigen::RowVector3d(up.y(), -up.x(), 0) / (sine * gravity);
+  a.cov_attitude(0, 0) = (tilt * by).squaredNorm();
   a.cov_attitude(1, 1) = kUnknownAngleVariance;
-  a.cov_attitude(2, 2) = std::min(sigma * sigma / (sine * sine), kUnknownAngleVariance);
+  a.cov_attitude(2, 2) = std::min((turn * by).squaredNorm(), kUnknownAngleVariance);
+  if (a.cov_attitude(0, 0) >= Square(kVagueAngle * sine)) a.quality |= Quality::kVertical;
   return a;
 }
 

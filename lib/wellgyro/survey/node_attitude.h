@@ -5,6 +5,7 @@
 #include "wellgyro/attitude/station_state.h"
 #include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/record/attitude_sample.h"
+#include "wellgyro/record/noise.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
@@ -16,8 +17,7 @@ AttitudeSample AttitudeOf(const RunKnot& knot, const Eigen::Matrix3d& R_LT,
                           const Eigen::Matrix3d& cov_phi);
 
 /// Of a run without north: inclination and toolface by what gravity says of the knot's middle.
-/// `accel_bias`: 1-sigma [m/s^2].
-AttitudeSample LevelOf(const RunKnot& knot, double accel_bias, double gravity);
+AttitudeSample LevelOf(const RunKnot& knot, const ErrorPriors& errors, double gravity);
 
 /// Of a run whose heading is not known: its axis has a direction only where the hole hardly leans.
 void ForgetAzimuth(AttitudeSample& attitude);
