@@ -29,6 +29,8 @@ struct Depths {
   double noise = 0.01, period = 0.5;
   double ahead = 5;   ///< marks of the samples [s]
   double jitter = 0;  ///< 1-sigma of the samples' UTC [s]
+  double build = 0;   ///< [rad/m], from 49 deg on
+  double roll = 0;    ///< [rad/s]
   std::uint64_t seed = 1;
 };
 
@@ -56,8 +58,14 @@ DepthMotion::Found FoundOf(const Depths& depths, double seconds) {
     const double felt = (Depth(middle + h) - 2 * Depth(middle) + Depth(middle - h)) / (h * h);
     const double late = depths.jitter * clock.Normal();
     const UtcTime utc = begin + Duration::Seconds(t + late);
-    const double f_z = felt - 6.5 + 1e-3 * force.Normal();
-    motion.Feel({&utc, 1}, Duration::Seconds(kStep), {&f_z, 1}, track);
+    // Gravity's share in a tool that rolls while its inclination grows.
+    const double inclination = 0.85 + depths.build * Depth(middle), roll = depths.roll * middle;
+    const double across = 9.8 * std::sin(inclination);
+    const double turn = depths.build * (Depth(middle + h) - Depth(middle - h)) / (2 * h);
+    SixAxes sample;
+    sample << turn * std::sin(roll), turn * std::cos(roll), 0, across * std::cos(roll),
+        -across * std::sin(roll), felt - 9.8 * std::cos(inclination) + 1e-3 * force.Normal();
+    motion.Feel({&utc, 1}, Duration::Seconds(kStep), {&sample, 1}, track);
   }
   return motion.found();
 }
@@ -111,6 +119,22 @@ TEST(DepthMotion, AJumpOfTheCounterStandsOut) {
   EXPECT_NEAR(found.step_md.value_or(0), Depth(701), 4);
 }
 
+// Through horizontal at 10 deg/30 m, marks four seconds apart: gravity's share along the tool
+// changes by .057 m/s^2 a second, which alone would bow the way by 1.8 m.
+TEST(DepthMotion, AHoleThatBuildsThroughHorizontalIsNoStep) {
+  for (const double roll : {0.0, 0.6}) {
+    Depths depths;
+    depths.build = 5.8e-3;
+    depths.roll = roll;
+    depths.noise = 0.005;
+    depths.period = 4;
+    const DepthMotion::Found found = FoundOf(depths, 500);
+    EXPECT_GT(found.compared, 100);
+    EXPECT_NEAR(found.sigma_step, 2.236 * 0.005, 0.006);
+    EXPECT_LT(std::abs(found.step), 0.06);
+  }
+}
+
 TEST(DepthMotion, TellsLateMarksFromPromptOnes) {
   for (const double lag : {0.5, -0.3}) {
     Depths depths;
@@ -129,8 +153,9 @@ TEST(DepthMotion, AReZeroIsNoStep) {
     const UtcTime utc = begin + Duration::Seconds(2.0 * k);
     if (k == 100) motion.Restart();
     PushMark(utc, k + (k < 100 ? 0 : 7), track);
-    const double f_z = -9.8;
-    motion.Feel({&utc, 1}, Duration::Seconds(2), {&f_z, 1}, track);
+    SixAxes sample = SixAxes::Zero();
+    sample[5] = -9.8;
+    motion.Feel({&utc, 1}, Duration::Seconds(2), {&sample, 1}, track);
   }
   EXPECT_LT(std::abs(motion.found().step), 1e-6);
   EXPECT_GT(motion.found().compared, 180);

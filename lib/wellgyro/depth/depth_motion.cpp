@@ -24,9 +24,13 @@ double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
 
 void DepthMotion::Restart() { passed_count_ = 0; }
 
-void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period, std::span<const double> f_z,
-                       const DepthTrack& track) {
+void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period,
+                       std::span<const SixAxes> samples, const DepthTrack& track) {
   for (std::size_t i = 0; i < utc.size(); ++i) {
+    const SixAxes& s = samples[i];
+    const double change = (s[1] * s[3] - s[0] * s[4]) * period.seconds();
+    const double f_z = s[5] - gravity_ - change / 2;
+    gravity_ += change;
     const Duration gap = felt_until_ ? utc[i] - *felt_until_ : Duration{};
     if (gap > kGap || Duration{-gap.ns} > kGap) {
       passed_count_ = 0;
@@ -37,9 +41,9 @@ void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period, std::span<
     const UtcTime begin = bridged ? *felt_until_ : utc[i];
     const double seconds = bridged ? period.seconds() + gap.seconds() : period.seconds();
     felt_until_ = utc[i] + period;
-    if (!last_mark_ || *last_mark_ + kMarksApart < *felt_until_) PassMark(begin, f_z[i], track);
-    way_ += (speed_ + f_z[i] * seconds / 2) * seconds;
-    speed_ += f_z[i] * seconds;
+    if (!last_mark_ || *last_mark_ + kMarksApart < *felt_until_) PassMark(begin, f_z, track);
+    way_ += (speed_ + f_z * seconds / 2) * seconds;
+    speed_ += f_z * seconds;
   }
 }
 
@@ -92,7 +96,7 @@ void DepthMotion::Compare() {
   std::array<double, kMarks> t, way, rate;
   const Passed& first = passed_.front();
   const double whole = (passed_.back().utc - first.utc).seconds();
-  const double mean = (passed_.back().speed - first.speed) / whole;  // gravity's share, mostly
+  const double mean = (passed_.back().speed - first.speed) / whole;  // gravity's share
   for (std::size_t i = 0; i < kMarks; ++i) {
     const Passed& p = passed_[i];
     t[i] = (p.utc - first.utc).seconds();

@@ -9,6 +9,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/depth/depth_track.h"
+#include "wellgyro/record/sample_block.h"
 
 namespace wellgyro {
 
@@ -17,11 +18,17 @@ namespace wellgyro {
 ///
 /// Third difference of four marks two seconds apart: the way between the middle two less the mean
 /// of the ways beside it, zero for any constant acceleration. Less the same third difference of the
-/// felt motion (double integral of f_z less its mean) it is a depth step between the middle two
-/// plus -lag times the third difference of the felt speed. Steps are judged against their own
-/// scatter, the lag is a least-squares fit over all starts and stops. Memory is bounded. Marks are
-/// looked up when the samples of their time come, so that how the two streams interleave does not
-/// matter.
+/// felt motion (double integral of f_z less gravity's share of it) it is a depth step between the
+/// middle two plus -lag times the third difference of the felt speed. Steps are judged against
+/// their own scatter, the lag is a least-squares fit over all starts and stops. Memory is bounded.
+/// Marks are looked up when the samples of their time come, so that how the two streams interleave
+/// does not matter.
+///
+/// Gravity's share changes as the hole builds, near horizontal by g times the turn, and of a third
+/// difference a steady change leaves g sin I v kappa T^3 / 2 (.02 m at 1 m/s, 1 deg/30 m, T = 2 s).
+/// The gyros tell it: a force that is steady in the Earth's frame changes in T by
+///   f_z' = -(w x f)_z = w_y f_x - w_x f_y,
+/// whatever the tool's roll is and without a third axis.
 class WELLGYRO_EXPORT DepthMotion {
  public:
   struct Found {
@@ -33,10 +40,9 @@ class WELLGYRO_EXPORT DepthMotion {
     double sigma_lag = 0;           ///< 0: no start or stop tells it [s]
   };
 
-  /// The next samples' mean specific force along the tool, each over `period` from its `utc` on,
-  /// but for a constant: gravity's share of it is to stay. Marks of `track` are final over this
+  /// The next samples, each over `period` from its `utc` on. Marks of `track` are final over this
   /// time.
-  void Feel(std::span<const UtcTime> utc, Duration period, std::span<const double> f_z,
+  void Feel(std::span<const UtcTime> utc, Duration period, std::span<const SixAxes> samples,
             const DepthTrack& track);
   /// The depth scale changes here: marks on either side are not compared.
   void Restart();
@@ -61,6 +67,7 @@ class WELLGYRO_EXPORT DepthMotion {
   std::size_t passed_count_ = 0;
   std::optional<UtcTime> last_mark_, felt_until_;
   double speed_ = 0, way_ = 0;
+  double gravity_ = 0;  ///< change of its share along the tool, as the gyros tell it [m/s^2]
   Found found_;
   double sum_size_ = 0;  ///< of steps, each at most four times their mean so far
   double rate2_ = 0, rate_step_ = 0;

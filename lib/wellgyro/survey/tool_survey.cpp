@@ -1,7 +1,6 @@
 #include "wellgyro/survey/tool_survey.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -33,15 +32,6 @@ bool CanBe(const StillWindow& window) {
   const bool depth = !window.md || std::abs(*window.md) < kDepthMost;
   return f > kLeastForce && f < kMostForce && window.w_IT_T.norm() < kRate && sigmas && depth &&
          seconds > 0 && seconds < kSeconds;
-}
-
-/// What the accelerometers feel along the tool, less what the inclination changes of gravity's
-/// share of it, which the force across tells; within 12 deg of horizontal it does not.
-double FeltAlong(const Eigen::Vector3d& f_T) {
-  constexpr double kFlat = 0.2, kG = units::kStandardGravity;
-  const double across = f_T.head<2>().squaredNorm() / (kG * kG);
-  const double cosine = std::sqrt(std::max(1 - across, 0.0));
-  return f_T.z() - std::copysign(kG * std::max(cosine - kFlat, 0.0), f_T.z());
 }
 
 }  // namespace
@@ -146,11 +136,9 @@ void ToolSurvey::Use(const AdmittedBlock& block, std::size_t at, std::size_t end
 
 void ToolSurvey::Feel(const AdmittedBlock& block, std::size_t at, std::size_t end,
                       DepthMotion& motion) const {
-  std::array<double, SampleBlock::kMost> felt;
   const std::size_t count = end - at;
-  for (std::size_t i = 0; i < count; ++i) felt[i] = FeltAlong(block.samples.axes[at + i].tail<3>());
   motion.Feel(std::span(block.utc).subspan(at, count), Duration{block.sent[at].stamp.period_ns},
-              std::span(felt).first(count), string_.track);
+              block.samples.axes.subspan(at, count), string_.track);
 }
 
 /// nullptr, and a Fault: one run too many.
