@@ -106,6 +106,13 @@ std::vector<double> SpeedStarts(std::span<const RunKnot> knots) {
   return starts;
 }
 
+bool HidesAStart(std::span<const RunKnot> knots, std::span<const double> speed_starts) {
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    if (speed_starts[k] > 0 && !knots[k].increment.roll_seen) return true;
+  }
+  return false;
+}
+
 double RollWalkBy(std::span<const RunKnot> knots) {
   const double usual = UsualRollChange(knots).value_or(kWalkUnseen);
   return std::pow(10, std::ceil(std::log10(std::clamp(usual, kRollWalkLeast, kRollWalkMost))));

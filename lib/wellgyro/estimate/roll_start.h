@@ -27,6 +27,9 @@ std::optional<double> UsualRollChange(std::span<const RunKnot> knots);
 /// usually changes by, which its own noise is part of [rad/s/sqrt(s)].
 double RollWalkBy(std::span<const RunKnot> knots);
 
+/// Somewhere the tool starts or stops, by `speed_starts`, and gravity does not show how it rolls.
+bool HidesAStart(std::span<const RunKnot> knots, std::span<const double> speed_starts);
+
 /// The roll walks that there are, from that of a tool that jerks to one that turns it by a quarter
 /// of a degree in half an hour, which is as good as none [rad/s/sqrt(s)].
 inline constexpr double kRollWalkMost = 0.1, kRollWalkLeast = 1e-7;

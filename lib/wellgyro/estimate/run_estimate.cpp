@@ -13,6 +13,7 @@
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/rivals.h"
+#include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -185,11 +186,11 @@ void AddRival(Solution other, Choice& choice) {
 /// Solves from one guess; keeps the solution where it betters those before. Returns where it ended.
 NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
                     std::span<const RunKnot> knots, const RunState* before, Solution& solution,
-                    Choice& choice) {
+                    Choice& choice, double share = kShareUsual) {
   auto solver = std::make_unique<RunSolver>(setup, knots, before);
   solver->nodes() = guess;
   const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
-  const SolveReport report = solver->Solve(kSolveIterations, best + kDecides);
+  const SolveReport report = solver->Solve(kSolveIterations, best + kDecides, share);
   NodeGuess nodes = solver->nodes();
   choice.least_evidence = std::min(choice.least_evidence, report.evidence);
   if (!report.converged || !(report.evidence < solution.evidence)) return nodes;
@@ -201,17 +202,25 @@ NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
 }
 
 /// Each guess with the roll as a walk, and as a swing where it is one: by what gravity shows of it,
-/// else where it is hidden by what the walk's solution has found.
+/// else where it is hidden by what the walk's solution has found. A roll that starts unseen is
+/// sought from a tool that hardly turns then, too: of much freedom there may be two likely sizes.
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
               std::span<const NodeGuess> guesses, const RunState* before) {
   EstimateSetup swings = setup;
   if (setup.may_swing) swings.swing = SwingOf(knots);
   const bool seen = swings.swing.has_value();
+  const bool hides = HidesAStart(knots, SpeedStarts(knots));
   std::vector<Solution> solutions(guesses.size());
   Choice choice;
   for (std::size_t i = 0; i < guesses.size(); ++i) {
     if (seen) SolveFrom(guesses[i], swings, knots, before, solutions[i], choice);
-    const NodeGuess walk = SolveFrom(guesses[i], setup, knots, before, solutions[i], choice);
+    NodeGuess walk = SolveFrom(guesses[i], setup, knots, before, solutions[i], choice);
+    if (hides) {
+      const double evidence = solutions[i].evidence;
+      NodeGuess held =
+          SolveFrom(guesses[i], setup, knots, before, solutions[i], choice, kShareLeast);
+      if (solutions[i].evidence < evidence) walk = std::move(held);
+    }
     if (seen || !setup.may_swing || !AnyRollIsHidden(knots)) continue;
     swings.swing = SwingOf(knots, walk);
     if (swings.swing) SolveFrom(walk, swings, knots, before, solutions[i], choice);

@@ -37,12 +37,10 @@ constexpr int kSlow = 10;
 constexpr double kLeastFall = 0.05;  // of decrements; one step alone may fall by more than the next
 // Steps at which another roll walk can be told from the last, and from which it is not worth while.
 constexpr double kNear = 1, kFar = 1e4;
-// Of what the roll may start and stop by with the speed along the hole, the least share that is
-// tried: 1e-4 rad/s over 10 s are less than the gyros' noise shows.
-constexpr double kShareLeast = 1e-4;
-// The first that is tried: with all of it the weights of the demonstration's starts creep for fifty
-// steps, and its walk is found a hundred times too large.
-constexpr double kShareFirst = 1e-2;
+// From which the walk of a roll that is nowhere seen is sought. With a free one gyros that are
+// skewed times rates that follow their noise explain that noise, and a lean the accelerometers':
+// biases of five sigmas, about which no smaller walk is as likely.
+constexpr double kWalkHidden = 1e-4;
 constexpr int kTry = 2;          // steps with each scale: by the third the evidence hardly moves
 constexpr double kCreeps = 0.5;  // Gauss-Newton takes far more off a decrement than its half
 constexpr double kHalfDecade = 3.1622776601683795;
@@ -394,14 +392,6 @@ void RunSolver::FindBetween(double evidence, double& scale, SolveReport& report)
   scale *= std::pow(kHalfDecade, std::clamp(0.5 * (beside[0] - beside[1]) / bend, -1.0, 1.0));
 }
 
-/// Somewhere the tool starts or stops and gravity does not show how it rolls.
-bool RunSolver::HidesAStart() const {
-  for (std::size_t k = 0; k < knots_.size(); ++k) {
-    if (scales_.speed_start[k] > 0 && !knots_[k].increment.roll_seen) return true;
-  }
-  return false;
-}
-
 /// What the swing turns the tool by in each knot [rad]; zeros where there is none.
 std::vector<double> RunSolver::Swung() const {
   const std::optional<double> swings = FrequencyOf(setup_, layout_, border_);
@@ -448,29 +438,31 @@ bool RunSolver::SolveWithNoise(double gyro, double accel) {
   return elimination_.decrement() < kNear;
 }
 
-void RunSolver::BeginScales() {
+void RunSolver::BeginScales(double share) {
   scales_ = {};
   scales_.roll_start = RollStarts(knots_);
   scales_.speed_start = SpeedStarts(knots_);
-  scales_.roll_walk = scales_.swing_walk = RollWalkBy(knots_);
-  scales_.speed_share = kShareFirst;
+  const bool seen = UsualRollChange(knots_).has_value();
+  scales_.roll_walk = scales_.swing_walk = seen ? RollWalkBy(knots_) : kWalkHidden;
+  scales_.speed_share = share;
 }
 
 bool RunSolver::Approach(int iterations) {
-  BeginScales();
+  BeginScales(kShareUsual);
   SolveReport report;
   return Iterate(iterations, kNear, report) || elimination_.decrement() < kFar;
 }
 
-SolveReport RunSolver::Solve(int iterations, double least) {
+SolveReport RunSolver::Solve(int iterations, double least, double share) {
   SolveReport report;
-  BeginScales();
+  BeginScales(share);
   Iterate(iterations, kNear, report, kCreeps);
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });
   if (!measured) {
     FindWalks(report);
-    if (HidesAStart()) FindDecade(kShareLeast, 1, {&scales_.speed_share}, report);
+    if (HidesAStart(knots_, scales_.speed_start))
+      FindDecade(kShareLeast, 1, {&scales_.speed_share}, report);
   }
   // Not before: that the hole changes the rate slowly and one way, evidence takes for a smaller
   // walk.

@@ -31,6 +31,12 @@ struct SolveReport {
   double roll_walk = 0;  ///< found [rad/s/sqrt(s)]
 };
 
+/// Of what the roll may start and stop by with the speed along the hole, where it is hidden: the
+/// share from which the likeliest is sought, and the least, 1e-4 rad/s over 10 s, less than the
+/// gyros' noise shows. With all of it the weights of the demonstration's starts creep for fifty
+/// steps.
+inline constexpr double kShareUsual = 1e-2, kShareLeast = 1e-4;
+
 /// All unknowns of one run: attitudes on SO(3) at the ends of its knots, drift, motion along the
 /// hole, and the tool's constant errors, by Gauss-Newton over whitened factors.
 ///
@@ -51,8 +57,9 @@ class RunSolver : public RunRows {
   /// within `iterations` steps.
   bool Approach(int iterations);
   /// Relinearises until the attitudes stay, at most `iterations` times before the roll's scales are
-  /// sought. Not to the end where the evidence stays above `least`.
-  SolveReport Solve(int iterations, double least = HUGE_VAL);
+  /// sought. Not to the end where the evidence stays above `least`. `share`: of SpeedStarts, what
+  /// the roll is first taken to start by where it is hidden.
+  SolveReport Solve(int iterations, double least = HUGE_VAL, double share = kShareUsual);
   /// Takes the gyros' and the accelerometers' white noise so many times as large as before and goes
   /// on from where it stands. False: it does not converge.
   bool SolveWithNoise(double gyro, double accel);
@@ -90,7 +97,7 @@ class RunSolver : public RunRows {
   bool Linearise();
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
-  void BeginScales();
+  void BeginScales(double share);
   double WalkOfUnseen(std::size_t knot) const;
   double Walk(std::size_t knot, double walk) const;
   RollChange Change(std::size_t knot) const;
@@ -99,7 +106,6 @@ class RunSolver : public RunRows {
   void Finish(double least, SolveReport& report);
   bool Iterate(int most, double stays, SolveReport& report, double creeps = HUGE_VAL);
   double Evidence() const;
-  bool HidesAStart() const;
   double EvidenceOf(double tried, double least, Scales scales, SolveReport& report);
   double FindDecade(double least, double most, Scales scales, SolveReport& report);
   void FindBetween(double evidence, double& scale, SolveReport& report);
