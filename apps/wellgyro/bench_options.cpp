@@ -1,7 +1,6 @@
 #include "bench_options.h"
 
 #include <filesystem>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -40,26 +39,21 @@ std::optional<UtcTime> Date(const std::string& text, const char* option) {
   return date;
 }
 
-// Nothing is written over what it came from, nor two files in one place.
-void RequireDistinct(const BenchOptions& o) {
-  const std::pair<const char*, const std::string*> all[] = {{"--data", &o.data},
-                                                            {"the readings to join", &o.joined},
-                                                            {"--out", &o.out},
-                                                            {"--tool", &o.tool}};
-  for (std::size_t i = 0; i < std::size(all); ++i) {
+}  // namespace
+
+void RequireDistinct(std::span<const NamedFile> files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       std::error_code ignored;
-      if (all[i].second->empty() || all[j].second->empty()) continue;
-      if (*all[i].second == *all[j].second ||
-          std::filesystem::equivalent(*all[i].second, *all[j].second, ignored)) {
-        throw std::invalid_argument(
-            fmt::format("{} and {} must be different files", all[j].first, all[i].first));
+      const auto& [name, path] = files[i];
+      const auto& [other, other_path] = files[j];
+      if (path.empty() || other_path.empty()) continue;
+      if (path == other_path || std::filesystem::equivalent(path, other_path, ignored)) {
+        throw std::invalid_argument(fmt::format("{} and {} must be different files", other, name));
       }
     }
   }
 }
-
-}  // namespace
 
 CLI::Validator Within(double low, double high) {
   return {[low, high](std::string& word) -> std::string {
@@ -146,7 +140,9 @@ void AddTool(CLI::App& command, BenchOptions& o) {
 }
 
 void Complete(BenchOptions& o) {
-  RequireDistinct(o);
+  const NamedFile files[] = {
+      {"--data", o.data}, {"the readings to join", o.joined}, {"--out", o.out}, {"--tool", o.tool}};
+  RequireDistinct(files);
   o.update.axes = o.reference.axes;
   o.update.calibrated = Date(o.date, "--date");
   o.update.expires = Date(o.expires, "--expires");

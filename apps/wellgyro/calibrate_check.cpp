@@ -35,6 +35,34 @@ struct VerifyOptions {
   VerifySetup setup;
 };
 
+void TellShifts(const Verification& found) {
+  for (const ToolShift& shift : found.shifts) {
+    const std::string limit =
+        shift.limit > 0 ? fmt::format(", limit {:.4g}", shift.limit) : std::string();
+    fmt::print("{:<12} {:+.4g} +- {:.2g} {}{}{}{}\n", shift.name, shift.value, shift.sigma,
+               shift.unit, limit, shift.shifted ? "  shifted" : "",
+               shift.within ? "" : "  out of budget");
+  }
+}
+
+void TellResiduals(const Verification& found) {
+  fmt::print("residuals: chi-square {:.1f} of {}, as large by chance {:.2g}\n", found.chi_square,
+             found.dof, found.probability);
+  fmt::print("beside the shifts: chi-square {:.1f} of {}\n", found.left, found.left_dof);
+  if (found.beyond) {
+    fmt::print(
+        "read from {:.4g} to {:.4g} degC, beyond the temperatures that the tool was calibrated "
+        "at: what it is off there, the calibration does not know\n",
+        found.beyond->first, found.beyond->second);
+  }
+  if (!found.fits) {
+    fmt::print(
+        "what is beside the shifts fits neither the calibration nor the bench: scale, alignment, "
+        "an outlier, the latitude, or a sigma stated too small (--sigma-deg-per-h, --sigma-accel, "
+        "--wobble-arcsec)\n");
+  }
+}
+
 int Verify(VerifyOptions& o) {
   constexpr int kFailed = 4;
   o.setup.bench.reference = o.bench.reference;
@@ -44,22 +72,8 @@ int Verify(VerifyOptions& o) {
   if (!tool) return Unusable(tool.fault());
   const auto found = VerifyTool(*data, *tool, o.setup);
   if (!found) return Unusable(found.fault());
-  for (const ToolShift& shift : found->shifts) {
-    const std::string limit =
-        shift.limit > 0 ? fmt::format(", limit {:.4g}", shift.limit) : std::string();
-    fmt::print("{:<12} {:+.4g} +- {:.2g} {}{}{}{}\n", shift.name, shift.value, shift.sigma,
-               shift.unit, limit, shift.shifted ? "  shifted" : "",
-               shift.within ? "" : "  out of budget");
-  }
-  fmt::print("residuals: chi-square {:.1f} of {}, as large by chance {:.2g}\n", found->chi_square,
-             found->dof, found->probability);
-  fmt::print("beside the shifts: chi-square {:.1f} of {}\n", found->left, found->left_dof);
-  if (!found->fits) {
-    fmt::print(
-        "what is beside the shifts fits neither the calibration nor the bench: scale, alignment, "
-        "an outlier, the latitude, or a sigma stated too small (--sigma-deg-per-h, --sigma-accel, "
-        "--wobble-arcsec)\n");
-  }
+  TellShifts(*found);
+  TellResiduals(*found);
   fmt::print("{}: chance reaches {:.2f} sigmas\n", found->pass ? "pass" : "fail", found->reach);
   return found->pass ? kDone : kFailed;
 }

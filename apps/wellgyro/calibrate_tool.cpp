@@ -5,9 +5,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -67,6 +65,14 @@ Result<ToolCalibration> WithPrior(const ToolFitOptions& o, ToolCalibration tool)
                                      "by chance {:.1g}; the tool has changed, calibrate it "
                                      "without --prior, see calibrate history",
                                      joined.chi_square, joined.dof, joined.probability),
+                 .source = o.prior};
+  }
+  if (joined.probability > 1 - kChance) {
+    return Fault{.code = FaultCode::kConflict,
+                 .text = fmt::format("it agrees with the bench better than other readings can: "
+                                     "chi-square {:.1g} of {}; both rest on the same readings, "
+                                     "which would count twice: leave --prior out",
+                                     joined.chi_square, joined.dof),
                  .source = o.prior};
   }
   fmt::print("prior: chi-square {:.1f} of {}, as large by chance {:.2g}\n", joined.chi_square,
@@ -148,21 +154,19 @@ std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file
   return CertificateHtml(certificate);
 }
 
-// Nothing is written over what it came from.
-void RequireOther(const ToolFitOptions& o) {
-  for (const std::string& name : o.data) {
-    for (const std::string* out : {&o.bench.out, &o.bench.tool, &o.certificate, &o.pdf}) {
-      std::error_code ignored;
-      if (!out->empty() && (*out == name || std::filesystem::equivalent(*out, name, ignored))) {
-        throw std::invalid_argument("--data and what is written must be different files");
-      }
-    }
-  }
+void RequireOthers(const ToolFitOptions& o) {
+  std::vector<NamedFile> files = {{"--out", o.bench.out},
+                                  {"--tool", o.bench.tool},
+                                  {"--certificate", o.certificate},
+                                  {"--pdf", o.pdf},
+                                  {"--prior", o.prior}};
+  for (const std::string& name : o.data) files.push_back({"--data", name});
+  RequireDistinct(files);
 }
 
 std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   Complete(o.bench);
-  RequireOther(o);
+  RequireOthers(o);
   o.fit.reference = o.bench.reference;
   CalibrationFile file;
   file.program = "wellgyro " WELLGYRO_VERSION;

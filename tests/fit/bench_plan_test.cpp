@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/fit/gyro_fit.h"
+#include "wellgyro/fit/tool_fit.h"
 
 #include "fit/attitude_simulation.h"
 #include "fit/bench_simulation.h"
@@ -188,6 +190,36 @@ TEST(BenchPlans, BenchesAreAsGoodAsThePlanSays) {
   mean.criterion = Criterion::kMean;
   EXPECT_NEAR(std::sqrt(by_plan.mean()) / AzimuthSigmaOf(plan.settings, mean), 1, chance);
   EXPECT_NEAR(std::sqrt(by_plain.mean()) / AzimuthSigmaOf(plain, mean), 1, chance);
+}
+
+// However little is wanted, the fit of a tool takes what was read by it, and finds its noise.
+TEST(BenchPlans, APlanForLittleCanBeFitted) {
+  for (const Criterion criterion :
+       {Criterion::kLargest, Criterion::kMean, Criterion::kDeterminant}) {
+    BenchPlanSetup setup = Asked(criterion);
+    setup.sigma_azimuth = 5 * kRad;
+    const BenchPlan plan = PlanBench(setup);
+    EXPECT_TRUE(plan.reached);
+    EXPECT_LE(plan.settings.size(), 25u);
+    Random random(72);
+    const BenchTable table = ReadAt(plan.settings, GyroTool::Any(random), setup.sigma_gyro, random);
+    const auto fit =
+        FitTool(std::span(&table, 1), {.reference = {.latitude = setup.bench_latitude}});
+    ASSERT_TRUE(fit) << fit.fault().text;
+    for (const std::string& remark : fit->calibration.report.remarks) {
+      EXPECT_EQ(remark.find("too few"), std::string::npos) << remark;
+    }
+  }
+}
+
+// A vertical hole asks for what a fit needs too.
+TEST(BenchPlans, AVerticalHoleIsPlannedFor) {
+  BenchPlanSetup setup = Asked();
+  setup.inclination_from = setup.inclination_to = 0;
+  const BenchPlan plan = PlanBench(setup);
+  EXPECT_TRUE(plan.reached);
+  EXPECT_TRUE(std::isfinite(plan.sigma_azimuth));
+  EXPECT_LT(plan.settings.size(), PlainSettings(1).size());
 }
 
 }  // namespace

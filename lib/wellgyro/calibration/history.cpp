@@ -74,6 +74,15 @@ ToolHistory HistoryOf(std::vector<const ToolCalibration*> tools, const HistorySe
   std::sort(tools.begin(), tools.end(), [](const ToolCalibration* a, const ToolCalibration* b) {
     return *a->calibrated < *b->calibrated;
   });
+  const auto twice = std::adjacent_find(tools.begin(), tools.end(),
+                                        [](const ToolCalibration* a, const ToolCalibration* b) {
+                                          return !(*a->calibrated < *b->calibrated);
+                                        });
+  if (twice != tools.end()) {
+    throw std::invalid_argument(fmt::format(
+        "tool {}: two calibrations of one date: give each once, with the date that it was made",
+        (*twice)->asset_serial));
+  }
   ToolHistory history;
   history.asset_serial = tools.front()->asset_serial;
   const CalibrationSources last = SourcesOf(*tools.back(), setup.temperature);

@@ -74,14 +74,17 @@ std::vector<BenchPlanSetup::Direction> DirectionsOf(const BenchPlanSetup& setup)
   return all;
 }
 
-// Attitudes of the tool in the hole, at the temperatures that matter.
+// Attitudes of the tool in the hole, at the temperatures that matter. Of a hole that is vertical
+// all along some parameters move no azimuth, but no fit of the bench goes without them: half a
+// degree.
 std::vector<BenchSetting> AttitudesOf(const BenchPlanSetup& setup) {
+  constexpr double kLeast = 0.5 * units::kDeg;
   std::vector<BenchSetting> all;
   for (const BenchPlanSetup::Direction& at : DirectionsOf(setup)) {
     for (const double tf : Between(0, kTwoPi, 8, true)) {
       for (const double tau : Between(-1, 1, 3)) {
         if (setup.temperatures == 1 && tau != 0) continue;
-        all.push_back({at.inclination, at.azimuth, tf, tau});
+        all.push_back({std::max(at.inclination, kLeast), at.azimuth, tf, tau});
       }
     }
   }

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/bench_design_internal.h"
 
 namespace wellgyro {
@@ -51,7 +52,8 @@ class Exchange {
   Exchange(const BenchDesign& design, PlanCriterion criterion, double variance)
       : design_(design), criterion_(criterion), variance_(variance) {}
 
-  /// Settings that reach the variance, from `optimum` upwards; at most `most` of them.
+  /// Settings that reach the variance and leave the readings' noise to be found, from `optimum`
+  /// upwards; at most `most` of them.
   std::vector<Eigen::Index> Find(const DesignWeights& optimum, std::size_t most) {
     // What makes the first settings' information whole: a little of the optimum's.
     constexpr double kLittle = 0.01;
@@ -59,8 +61,9 @@ class Exchange {
     const Eigen::MatrixXd start =
         kLittle * design_.rows.transpose() * twice.asDiagonal() * design_.rows;
     information_ = design_.before + start;
-    const auto least = std::max(static_cast<std::size_t>(std::ceil(optimum.fewest)),
-                                static_cast<std::size_t>(design_.rows.cols() / 2));
+    const auto least =
+        std::max(static_cast<std::size_t>(std::ceil(optimum.fewest)),
+                 static_cast<std::size_t>((design_.rows.cols() + kToFindNoise + 1) / 2));
     while (chosen_.size() < std::min(least, most)) Add(Best(Covariance(), Covariance()));
     // Of it stays what is below any digit that counts.
     information_ -= (1 - 1e-7) * start;

@@ -61,7 +61,8 @@ WELLGYRO_EXPORT std::vector<BenchSetting> PlainSettings(int temperatures);
 
 /// The fewest settings that reach `sigma_azimuth`, each read once, by exchange (Fedorov 1972) among
 /// inclinations every 15 deg, azimuths every 45 and toolfaces every 30; a local optimum, the same
-/// every time, with the bound that no optimum passes (BenchPlan::fewest). Throws
+/// every time, with the bound that no optimum passes (BenchPlan::fewest). However little is wanted,
+/// they have 30 readings more than unknowns, from which the bench finds its noise. Throws
 /// std::invalid_argument for a setup that makes no sense.
 WELLGYRO_EXPORT BenchPlan PlanBench(const BenchPlanSetup& setup);
 

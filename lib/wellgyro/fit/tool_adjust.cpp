@@ -112,7 +112,8 @@ Fault Undetermined(const std::vector<std::string>& names, const Eigen::VectorXd&
   return {.code = FaultCode::kRange,
           .text = "the readings do not tell apart " + text +
                   ": measure inclinations every 45 deg, four azimuths and toolfaces every 60 "
-                  "deg, or join a rate table's readings"};
+                  "deg, or join a rate table's readings; with few readings state their sigmas "
+                  "(--sigma-deg-per-h, --sigma-accel, --wobble-arcsec)"};
 }
 
 class Adjuster {

@@ -193,6 +193,14 @@ void TellReferences(std::span<const BenchTable> tables, const ToolReadings& read
     report.remarks.emplace_back(
         "no temperatures (column T_C): what they do to the sensors is in the result");
   }
+  const bool timed = std::all_of(tables.begin(), tables.end(), [](const BenchTable& data) {
+    return data.Find("t_s").has_value();
+  });
+  if (!timed) {
+    report.remarks.emplace_back(
+        "no times (column t_s): drift is taken to go from row to row, so the rows of a table must "
+        "stand in the order in which they were read");
+  }
   if (readings.n_accel == 0 || !setup.reference.latitude) return;
   // Benches stand up to two kilometres high.
   constexpr double kAbove = 8e-4, kAnomaly = 2e-4;
@@ -223,13 +231,11 @@ Eigen::Index Redundancy(const ToolReadings& readings, const ToolModel& model,
 // Sigmas that are found from a few readings, and scatter that no bench has.
 void TellNoise(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
                const ToolAdjustment& a, FitReport& report) {
-  // A sigma of n readings more than unknowns is known to 1 / sqrt(2 n): of 30 to 13 %.
-  constexpr Eigen::Index kFew = 30;
   for (const bool gyros : {false, true}) {
     const bool stated = (gyros ? setup.sigma_gyro : setup.sigma_accel) && setup.sigma_wobble;
     if ((gyros ? readings.n_gyro : readings.n_accel) == 0 || stated) continue;
     const Eigen::Index more = Redundancy(readings, model, a, gyros);
-    if (more >= kFew) continue;
+    if (more >= kToFindNoise) continue;
     report.remarks.push_back(fmt::format(
         "{} give {} readings more than there are unknowns: too few to find their noise and to "
         "choose terms by, and every sigma may be several times too small; read more positions, or "
@@ -253,6 +259,26 @@ void TellNoise(const ToolReadings& readings, const ToolFitSetup& setup, const To
   }
 }
 
+// Of a latitude on the wrong side of the equator the Earth's rate along gravity comes out twice as
+// a force term along each axis, to all digits, and everything else is right.
+void TellHemisphere(const ToolModel& model, const ToolAdjustment& a, const ToolFitSetup& setup,
+                    FitReport& report) {
+  if (!setup.reference.latitude) return;
+  const double twice = 2 * kBenchEarthDegPerHour * std::sin(*setup.reference.latitude);
+  constexpr double kAlike = 0.02;
+  for (int k = 0; k < model.n_terms(); ++k) {
+    const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
+    if (term.kind != TermKind::kForce || term.power != 0) continue;
+    const double off = std::abs(std::abs(a.x[k]) - std::abs(twice));
+    if (!(std::abs(twice) > 1 && off < kAlike * std::abs(twice))) continue;
+    report.remarks.push_back(
+        fmt::format("{} is {:.5g} deg/h/g, twice the Earth's rate along gravity ({:.5g}): is the "
+                    "latitude's sign right? South is negative",
+                    term.name, a.x[k], std::abs(twice)));
+    return;
+  }
+}
+
 // Positions tell a wrong latitude as a rate along gravity, which mass unbalance is too.
 void TellLatitude(std::span<const BenchTable> tables, const ToolReadings& readings,
                   const ToolFitSetup& setup, FitReport& report) {
@@ -269,7 +295,8 @@ void TellLatitude(std::span<const BenchTable> tables, const ToolReadings& readin
 }
 
 Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& readings,
-                      const ToolFitSetup& setup, const ToolModel& model, const ToolAdjustment& a) {
+                      const ToolFitSetup& setup, const ToolModel& model, const ToolAdjustment& a,
+                      const LeftOutErrors& left_out) {
   ToolFit fit;
   FitReport& report = fit.calibration.report;
   auto whole = WholeReport(Joint(tables, readings), a.linear, a.solution, "measure more");
@@ -283,10 +310,11 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
   NameLines(tables, readings, a, report);
   TellReferences(tables, readings, setup, report);
   TellLatitude(tables, readings, setup, report);
+  TellHemisphere(model, a, setup, report);
   TellNoise(readings, setup, model, a, report);
   TellDrifts(model, a, fit);
   TellNuisances(model, a, fit);
-  TakeToolResult(readings, setup, model, a, fit);
+  TakeToolResult(readings, setup, model, a, left_out, fit);
   return fit;
 }
 
@@ -315,7 +343,8 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
   const std::vector<ToolTerm> terms = TermsOf(bundles, chosen);
   const auto last = AdjustTool(*readings, setup, terms);
   if (!last) return refused(last.fault());
-  auto fit = Whole(tables, *readings, setup, ToolModel(*readings, setup, terms), *last);
+  auto fit = Whole(tables, *readings, setup, ToolModel(*readings, setup, terms), *last,
+                   LeftOutErrorsOf(bundles, seen, chosen, *full));
   if (!fit) return fit.fault();
   TellLeftOut(bundles, seen, chosen, *full, *fit);
   for (const LeftOutTerm& term : fit->left_out) {

@@ -71,7 +71,8 @@ struct ToolFit {
 /// time, the tool's seat on the rate table, the latitude, each with its prior; the wobble of every
 /// reading, which moves all channels together, is marginalised, its size found. Terms are chosen by
 /// marginal likelihood, each bundle's prior variance found from it, at 1 % against noise alone;
-/// other terms that explain nearly as much are told. Outliers are found with Cauchy's loss (Ceres)
+/// other terms that explain nearly as much are told, and what was left out counts in the covariance
+/// by what noise hides of it. Outliers are found with Cauchy's loss (Ceres)
 /// and left out.
 WELLGYRO_EXPORT Result<ToolFit> FitTool(std::span<const BenchTable> tables,
                                         const ToolFitSetup& setup);

@@ -149,33 +149,41 @@ void AddHysteresis(const ToolModel& model, const ToolReadings& readings, const T
 }  // namespace
 
 void TakeToolResult(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
-                    const ToolAdjustment& a, ToolFit& fit) {
-  AddQuantities(fit.calibration.report);
+                    const ToolAdjustment& a, const LeftOutErrors& left_out, ToolFit& fit) {
+  FitReport& report = fit.calibration.report;
+  report.cov += left_out.cov.topLeftCorner(report.cov.rows(), report.cov.cols());
+  AddQuantities(report);
   ToolCalibration tool;
   tool.gyro = EmptyGroup(readings, setup, true);
   tool.accel = EmptyGroup(readings, setup, false);
-  std::vector<std::vector<Share>> shares;
-  Eigen::Index n = 0;
-  for (const ToolTerm& term : model.terms()) {
-    shares.push_back(SharesOf(term, readings, setup.reference));
-    n += static_cast<Eigen::Index>(shares.back().size());
-  }
-  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n, model.size());
-  fit.member_values.resize(n);
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < shares.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    for (const Share& share : shares[k]) {
-      D(at, column) = share.factor;
-      fit.member_values[at] = share.factor * a.x[column];
-      ValueOf(tool, share.member) = fit.member_values[at];
-      fit.members.names.push_back(NameOf(share.member));
-      ++at;
+  // Of the model's parameters, then of what was left out, which is zero.
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(left_out.cov.rows());
+  x.head(model.size()) = a.x;
+  Eigen::MatrixXd cov = left_out.cov;
+  cov.topLeftCorner(model.size(), model.size()) += a.cov;
+  std::vector<std::pair<Eigen::Index, Share>> shares;
+  const auto take = [&](const std::vector<ToolTerm>& terms, Eigen::Index column) {
+    for (const ToolTerm& term : terms) {
+      for (const Share& share : SharesOf(term, readings, setup.reference)) {
+        shares.emplace_back(column, share);
+      }
+      ++column;
     }
+  };
+  take(model.terms(), 0);
+  take(left_out.terms, model.size());
+  const auto n = static_cast<Eigen::Index>(shares.size());
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n, x.size());
+  for (Eigen::Index at = 0; at < n; ++at) {
+    const auto& [column, share] = shares[static_cast<std::size_t>(at)];
+    D(at, column) = share.factor;
+    ValueOf(tool, share.member) = share.factor * x[column];
+    fit.members.names.push_back(NameOf(share.member));
   }
+  fit.member_values = D * x;
   // Scatter beyond the sigmas that were given is taken for what the readings have.
-  const double scatter = std::max(1.0, fit.calibration.report.scatter);
-  fit.members.cov = scatter * scatter * D * a.cov * D.transpose();
+  const double scatter = std::max(1.0, report.scatter);
+  fit.members.cov = scatter * scatter * D * cov * D.transpose();
   AddHysteresis(model, readings, a, fit);
   fit.calibration.gyro = tool.gyro;
   fit.calibration.accel = tool.accel;

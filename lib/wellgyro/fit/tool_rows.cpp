@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -16,6 +19,33 @@ namespace wellgyro {
 namespace {
 
 bool IsRateTable(const BenchTable& data) { return data.Find("rate_deg_s").has_value(); }
+
+std::string Lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// A column whose name is known but for capitals or a unit behind it would be passed over in
+// silence.
+std::optional<Fault> Misnamed(const BenchTable& data) {
+  static constexpr const char* kKnown[] = {"inc",        "az", "tf", "T_C", "t_s", "axis",
+                                           "rate_deg_s", "Gx", "Gy", "Gz",  "fx",  "fy",
+                                           "fz",         "vx", "vy", "vz"};
+  for (const std::string& column : data.columns) {
+    const std::string bare = Lower(column.substr(0, column.find('[')));
+    const bool gyro = bare.rfind("m_", 0) == 0 && column != bare;
+    const auto meant = std::find_if(std::begin(kKnown), std::end(kKnown), [&](const char* name) {
+      return Lower(name) == bare && column != name;
+    });
+    if (!gyro && (meant == std::end(kKnown) || data.Find(*meant))) continue;
+    return BenchFault(data,
+                      fmt::format("column \"{}\" would not be read: its name is {}, without a unit",
+                                  column, gyro ? bare : *meant),
+                      1, FaultCode::kForeign);
+  }
+  return std::nullopt;
+}
 
 // Of three columns one that is missing or misnamed would leave all three out in silence.
 std::optional<Fault> PartOfAccelerometers(const BenchTable& data) {
@@ -237,6 +267,7 @@ Result<ToolReadings> ReadTool(std::span<const BenchTable> tables, const ToolFitS
   ToolReadings readings;
   if (auto fault = SameTable(tables)) return *fault;
   for (const BenchTable& data : tables) {
+    if (auto fault = Misnamed(data)) return *fault;
     if (!IsRateTable(data)) {
       if (auto fault = TakeAccelerometers(data, readings)) return *fault;
     }

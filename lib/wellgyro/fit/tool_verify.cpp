@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
@@ -223,6 +225,36 @@ std::optional<Fault> Unlike(const BenchTable& data, const ToolReadings& readings
       1, FaultCode::kConflict);
 }
 
+bool GoesWithTemperature(const SensorGroup& group) {
+  return group.n_channels > 0 && group.thermometer >= 0 && group.max > group.min;
+}
+
+// A calibration that goes with temperature says nothing of readings at one that nobody wrote down.
+std::optional<Fault> WithoutTemperature(const BenchTable& data, const ToolCalibration& tool) {
+  if (data.Find("T_C") || !(GoesWithTemperature(tool.gyro) || GoesWithTemperature(tool.accel))) {
+    return std::nullopt;
+  }
+  return BenchFault(data,
+                    "no column T_C: the tool's calibration goes with temperature; say at what "
+                    "temperature each row was read [degC]",
+                    1, FaultCode::kForeign);
+}
+
+std::optional<std::pair<double, double>> Beyond(const ToolReadings& readings,
+                                                const ToolCalibration& tool) {
+  constexpr double kSlack = 1;  // degC, about what thermometers agree to
+  const auto [low, high] = std::minmax_element(
+      readings.rows.begin(), readings.rows.end(),
+      [](const ToolRow& a, const ToolRow& b) { return a.temperature < b.temperature; });
+  for (const SensorGroup* group : {&tool.gyro, &tool.accel}) {
+    if (!GoesWithTemperature(*group)) continue;
+    if (low->temperature < group->min - kSlack || high->temperature > group->max + kSlack) {
+      return std::pair(low->temperature, high->temperature);
+    }
+  }
+  return std::nullopt;
+}
+
 // Places of the shifts that the table tells apart, in order.
 std::vector<Eigen::Index> Seen(const Eigen::MatrixXd& B) {
   const Eigen::VectorXd scale = B.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
@@ -281,6 +313,7 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
     throw std::invalid_argument("verify needs the sigmas of the readings, and gyros the latitude");
   }
   if (auto fault = Unlike(data, *readings, tool)) return *fault;
+  if (auto fault = WithoutTemperature(data, tool)) return *fault;
   Comparison comparison(*readings, tool, setup);
   Shifts found;
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
@@ -288,6 +321,7 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
   constexpr int kTurns = 3;
   for (int k = 0; k < kTurns; ++k) found = ShiftsOf(comparison, turn);
   Verification out;
+  out.beyond = Beyond(*readings, tool);
   out.chi_square = found.chi_square;
   out.dof = found.dof;
   out.probability = 1 - ChiSquareCdf(out.chi_square, out.dof);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "wellgyro/base/export.h"
@@ -42,6 +44,9 @@ struct Verification {
   /// else than a bias or a force term is wrong, of the tool, the bench or what was stated of them.
   bool fits = true;
   bool pass = true;  ///< fits, and everything within its budget; without budgets, nothing shifted
+  /// Lowest and highest temperature of the readings where the calibration was made for neither,
+  /// which it then takes for its nearest [degC].
+  std::optional<std::pair<double, double>> beyond;
 };
 
 /// A tool against its calibration, as found or as left: a table of positions (columns as FitTool's)

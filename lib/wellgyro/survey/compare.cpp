@@ -297,6 +297,21 @@ void TestPosition(Comparison& comparison) {
   comparison.checks.push_back(check);
 }
 
+/// A pass of the few places that were asked for says nothing of the hole.
+void TellExtent(const std::vector<double>& depths, const Common& common, Comparison& comparison) {
+  constexpr double kEnough = 0.5;
+  const double seen = (depths.back() - depths.front()) / (common.end - common.begin);
+  if (seen >= kEnough) return;
+  Check check = CheckOf("compare_extent", "1");
+  check.looks = 0;
+  check.md = depths.back();
+  check.value = seen;
+  check.limit = kEnough;
+  check.limit_source = "of the depths that both surveys have";
+  check.verdict = Verdict::kWarn;
+  comparison.checks.push_back(check);
+}
+
 /// What the checks would have found, now that their limits are known.
 void SaySmallest(Comparison& comparison) {
   const auto say = [&](const char* code, double in_unit, std::optional<ShiftEstimate>& shift) {
@@ -348,6 +363,7 @@ Comparison Compare(const ComparedSurvey& first, const ComparedSurvey& second,
     TestJoint(covariance, comparison);
   }
   TestPosition(comparison);
+  TellExtent(depths, common, comparison);
   ShareFalseAlarms(comparison.checks);
   SaySmallest(comparison);
   comparison.verdict = VerdictOfRun(comparison.checks, 0);

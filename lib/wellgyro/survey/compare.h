@@ -94,8 +94,9 @@ struct Comparison {
 /// it, whose variance is estimated from how far stations lie off the arcs between their neighbours.
 /// Tested are chi-square of all inclinations, of all lateral directions, of the deepest place, and
 /// the three shifts; all checks of a pair together fail 1 % of pairs without a difference and warn
-/// of 10 % (survey/verdict.h). Where a survey has sigmas of its own only, the worst depth takes the
-/// place of the first two, and shifts are not done.
+/// of 10 % (survey/verdict.h); depths that span less than half of what is common warn. Where a
+/// survey has sigmas of its own only, the worst depth takes the place of the first two, and shifts
+/// are not done.
 ///
 /// Joint statistics take at most 300 places, evenly chosen; O(places^2 x random terms). Throws
 /// std::invalid_argument for surveys without common depth, sizes that differ, depths outside what

@@ -98,6 +98,7 @@ constexpr CodeWords kCodeWords[] = {
     {"compare_azimuth_offset", "the azimuths of one survey are turned against the other's"},
     {"compare_depth_offset", "the depths of one survey are shifted against the other's"},
     {"compare_depth_stretch", "the depths of one survey are stretched against the other's"},
+    {"compare_extent", "most of what both surveys have was not compared"},
     {"compare_inclination", "inclinations differ by more than the errors of both surveys"},
     {"compare_position", "places differ by more than the errors of both surveys"},
     {"depth_closure", "depth does not return to zero"},

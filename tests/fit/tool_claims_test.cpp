@@ -1,0 +1,213 @@
+// What a bench does not show must be in the covariance, in words, or refused.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "wellgyro/calibration/history.h"
+#include "wellgyro/calibration/members.h"
+#include "wellgyro/fit/position_fit.h"
+#include "wellgyro/fit/thermometer_fit.h"
+#include "wellgyro/fit/tool_fit.h"
+#include "wellgyro/fit/tool_verify.h"
+
+#include "fit/tool_bench.h"
+#include "fit/tool_model_truth.h"
+
+namespace wellgyro::test {
+namespace {
+
+using testing::HasSubstr;
+
+ToolFitSetup AtLatitude(double degrees) {
+  ToolFitSetup setup;
+  setup.reference.latitude = degrees * kRad;
+  return setup;
+}
+
+bool Says(const FitReport& report, const std::string& words) {
+  return std::any_of(report.remarks.begin(), report.remarks.end(), [&](const std::string& remark) {
+    return remark.find(words) != std::string::npos;
+  });
+}
+
+// A member's error over its sigma at one power of the temperature; what the fit has not is zero.
+double Normalised(const ToolFit& fit, const std::string& member, double truth) {
+  const auto& names = fit.members.names;
+  const auto at = std::find(names.begin(), names.end(), member) - names.begin();
+  if (at == static_cast<std::ptrdiff_t>(names.size())) {
+    ADD_FAILURE() << "no member " << member;
+    return 0;
+  }
+  return (fit.member_values[at] - truth) / std::sqrt(fit.members.cov(at, at));
+}
+
+// Sensitivities that change with temperature, seen by the Earth's rate alone where the rate table
+// was read at one: too little to be kept as a term, and wrong at the other temperatures.
+TEST(ToolClaims, ASensitivityThatNoTableReadWhenHotIsUnsure) {
+  Random random(91);
+  double worst = 0;
+  for (int bench = 0; bench < 4; ++bench) {
+    ThermalTool tool = ThermalTool::Any(random);
+    ThermalTool at_hot = tool;
+    const double change = 5e-4;
+    at_hot.U.row(0) *= 1 + change;
+    const ThermalBench b = ThermalBench::Any(random);
+    // Straight in temperature: between the two tools, as far as the ramp has come.
+    std::vector<BenchTable> tables;
+    for (const int which : {0, 1}) {
+      Random same(100 + static_cast<std::uint64_t>(10 * bench + which)), again = same;
+      const double from = which == 0 ? 25 : 150, to = which == 0 ? 150 : 25;
+      BenchTable table = ThermalPositions(tool, b, which, 120, from, to, same);
+      const BenchTable hot = ThermalPositions(at_hot, b, which, 120, from, to, again);
+      const int gyro = *table.Find("m_x1"), T = *table.Find("T_C");
+      for (int i = 0; i < table.rows(); ++i) {
+        const double tau = (table.values(i, T) - 87.5) / 62.5;
+        table.values(i, gyro) += tau * (hot.values(i, gyro) - table.values(i, gyro));
+      }
+      tables.push_back(table);
+    }
+    tables.push_back(ThermalRates(tool, b, 87.5, random));
+    const auto fit = FitTool(tables, AtLatitude(60));
+    ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+    const std::string name = NameOf({true, CalibrationMember::Kind::kSensitivity, 1, 0, 0});
+    const double off = Normalised(*fit, name, change * tool.U(0, 0) / (kRad / 3600));
+    worst = std::max(worst, std::abs(off));
+  }
+  std::printf("a sensitivity that changes by 5e-4: off by %.2f sigmas at most\n", worst);
+  EXPECT_LT(worst, 4);
+  EXPECT_GT(worst, 0);
+}
+
+// On a ramp up and down the bend of a drift is a square of the temperature, too small to be kept.
+TEST(ToolClaims, ASquareOfTheTemperatureThatADriftTakesIsUnsure) {
+  Random random(92);
+  double square = 0;
+  constexpr int kBenches = 6;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    ThermalTool tool = ThermalTool::Any(random);
+    tool.bg[2].setConstant(0.1);
+    tool.bg[3].setZero();
+    const ThermalBench b = ThermalBench::Any(random);
+    const std::vector<BenchTable> tables = {ThermalPositions(tool, b, 0, 120, 25, 150, random),
+                                            ThermalPositions(tool, b, 1, 120, 150, 25, random),
+                                            ThermalRates(tool, b, 87.5, random)};
+    const auto fit = FitTool(tables, AtLatitude(60));
+    ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+    const auto bias = [&](int power, double truth) {
+      const std::string name = NameOf({true, CalibrationMember::Kind::kBias, power, 1, 0});
+      square += std::pow(Normalised(*fit, name, truth), 2) / (2 * kBenches);
+    };
+    bias(0, tool.bg[0][1]);
+    bias(2, tool.bg[2][1]);
+  }
+  std::printf("a square of .1 deg/h beside a drift: squares %.2f\n", square);
+  EXPECT_LT(square, 4);
+}
+
+TEST(ToolClaims, TheOtherHemisphereIsTold) {
+  Random random(93);
+  const ThermalTool tool = ThermalTool::Any(random);
+  ThermalBench south = ThermalBench::Any(random);
+  south.latitude = -35;
+  const std::vector<BenchTable> tables = {ThermalPositions(tool, south, 0, 120, 25, 150, random),
+                                          ThermalPositions(tool, south, 1, 60, 150, 25, random),
+                                          ThermalRates(tool, south, 87.5, random)};
+  const auto right = FitTool(tables, AtLatitude(-35));
+  ASSERT_TRUE(right.has_value()) << right.fault().text;
+  EXPECT_FALSE(Says(right->calibration.report, "is the latitude's sign right?"));
+  // The tool's own force terms are some deg/h/g beside twice the Earth's rate: a sound one's are
+  // not.
+  ThermalTool sound = tool;
+  sound.MQ[0] *= 0.01;
+  const std::vector<BenchTable> of_sound = {ThermalPositions(sound, south, 0, 120, 25, 150, random),
+                                            ThermalPositions(sound, south, 1, 60, 150, 25, random),
+                                            ThermalRates(sound, south, 87.5, random)};
+  const auto wrong = FitTool(of_sound, AtLatitude(35));
+  ASSERT_TRUE(wrong.has_value()) << wrong.fault().text;
+  EXPECT_TRUE(Says(wrong->calibration.report, "is the latitude's sign right?"));
+}
+
+TEST(ToolClaims, ColumnsMisnamedByACapitalOrAUnitAreRefused) {
+  Random random(94);
+  const BenchTable sound =
+      ThermalPositions(ThermalTool::Any(random), ThermalBench::Any(random), 0, 48, 25, 40, random);
+  for (const auto& [from, to] :
+       {std::pair("Gx", "gx"), {"Gx", "Gx[g]"}, {"m_x1", "M_X1"}, {"T_C", "t_c"}}) {
+    BenchTable data = sound;
+    data.columns[static_cast<std::size_t>(*data.Find(from))] = to;
+    const auto fit = FitTool({&data, 1}, AtLatitude(60));
+    ASSERT_FALSE(fit.has_value()) << to;
+    EXPECT_THAT(fit.fault().text, HasSubstr("would not be read: its name is " + std::string(from)));
+  }
+}
+
+TEST(ToolClaims, VerificationAsksForTheTemperature) {
+  Random random(95);
+  ThermalTool tool = ThermalTool::Any(random);
+  tool.heating.setZero();
+  ToolCalibration model = ModelOf(tool);
+  ThermalBench bench = ThermalBench::Any(random);
+  BenchTable data = ThermalPositions(tool, bench, 0, 48, 20, 20.1, random);
+  VerifySetup setup;
+  setup.bench = AtLatitude(60);
+  setup.bench.sigma_accel = 2e-5;
+  setup.bench.sigma_gyro = 0.02;
+  const auto cold = VerifyTool(data, model, setup);
+  ASSERT_TRUE(cold.has_value()) << cold.fault().text;
+  ASSERT_TRUE(cold->beyond.has_value());
+  EXPECT_NEAR(cold->beyond->first, 20, 1e-9);
+  const auto T = static_cast<std::size_t>(*data.Find("T_C"));
+  data.columns[T] = "remark";
+  const auto without = VerifyTool(data, model, setup);
+  ASSERT_FALSE(without.has_value());
+  EXPECT_THAT(without.fault().text, HasSubstr("no column T_C"));
+}
+
+// Readings in counts, one of noise: that two are alike is chance. Temperatures that rise from row
+// to row are what the thermometers' errors follow, and their order says nothing beside them.
+TEST(BenchClaims, SoundReadingsAreNotFaulted) {
+  Random random(96);
+  int told = 0;
+  constexpr int kBenches = 20;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    TableMaker table({"t_m", "ref1", "ref2"});
+    for (int i = 0; i < 30; ++i) {
+      const double t = 20 + 125.0 * i / 29, truth = t + 0.4 - 0.003 * t;
+      table.Add({t + 0.05 * random.Normal(), truth + 0.05 * random.Normal(),
+                 truth + 0.05 * random.Normal()});
+    }
+    const auto fit = FitThermometer(table.Finish(), {});
+    ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+    told += Says(fit->report, "the order of the readings") ? 1 : 0;
+  }
+  EXPECT_LE(told, 2);
+}
+
+TEST(BenchClaims, OneCalibrationIsGivenOnce) {
+  Random random(97);
+  std::vector<ToolCalibration> all;
+  for (const int day : {0, 60, 60}) {
+    ToolCalibration model = ModelOf(ThermalTool::Any(random));
+    model.asset_serial = "T1";
+    ParameterCovariance known;
+    known.names = {"gyro.bias.p0[0]"};
+    known.cov = Eigen::MatrixXd::Constant(1, 1, 1e-4);
+    model.gyro.covariance = known;
+    model.calibrated = UtcTime{86'400'000'000'000LL * (20'000 + day)};
+    all.push_back(model);
+  }
+  EXPECT_THROW(HistoriesOf(all, {.temperature = 87.5}), std::invalid_argument);
+  all.pop_back();
+  EXPECT_EQ(HistoriesOf(all, {.temperature = 87.5}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace wellgyro::test
