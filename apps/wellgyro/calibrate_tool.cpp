@@ -67,7 +67,8 @@ Result<ToolCalibration> WithPrior(const ToolFitOptions& o, ToolCalibration tool)
                                      joined.chi_square, joined.dof, joined.probability),
                  .source = o.prior};
   }
-  if (joined.probability > 1 - kChance) {
+  constexpr double kSame = 1e-3;  // of what independent readings differ by
+  if (joined.chi_square < kSame * joined.dof) {
     return Fault{.code = FaultCode::kConflict,
                  .text = fmt::format("it agrees with the bench better than other readings can: "
                                      "chi-square {:.1g} of {}; both rest on the same readings, "

@@ -13,7 +13,6 @@
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/rivals.h"
-#include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -186,11 +185,11 @@ void AddRival(Solution other, Choice& choice) {
 /// Solves from one guess; keeps the solution where it betters those before. Returns where it ended.
 NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
                     std::span<const RunKnot> knots, const RunState* before, Solution& solution,
-                    Choice& choice, double share = kShareUsual) {
+                    Choice& choice, const RollBegin& begin = {}) {
   auto solver = std::make_unique<RunSolver>(setup, knots, before);
   solver->nodes() = guess;
   const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
-  const SolveReport report = solver->Solve(kSolveIterations, best + kDecides, share);
+  const SolveReport report = solver->Solve(kSolveIterations, best + kDecides, begin);
   NodeGuess nodes = solver->nodes();
   choice.least_evidence = std::min(choice.least_evidence, report.evidence);
   if (!report.converged || !(report.evidence < solution.evidence)) return nodes;
@@ -202,24 +201,22 @@ NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
 }
 
 /// Each guess with the roll as a walk, and as a swing where it is one: by what gravity shows of it,
-/// else where it is hidden by what the walk's solution has found. A roll that starts unseen is
-/// sought from a tool that hardly turns then, too: of much freedom there may be two likely sizes.
+/// else where it is hidden by what the walk's solution has found.
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
               std::span<const NodeGuess> guesses, const RunState* before) {
   EstimateSetup swings = setup;
   if (setup.may_swing) swings.swing = SwingOf(knots);
   const bool seen = swings.swing.has_value();
-  const bool hides = HidesAStart(knots, SpeedStarts(knots));
+  const std::vector<RollBegin> begins = RollBeginsOf(knots);
   std::vector<Solution> solutions(guesses.size());
   Choice choice;
   for (std::size_t i = 0; i < guesses.size(); ++i) {
     if (seen) SolveFrom(guesses[i], swings, knots, before, solutions[i], choice);
-    NodeGuess walk = SolveFrom(guesses[i], setup, knots, before, solutions[i], choice);
-    if (hides) {
+    NodeGuess walk;
+    for (const RollBegin& begin : begins) {
       const double evidence = solutions[i].evidence;
-      NodeGuess held =
-          SolveFrom(guesses[i], setup, knots, before, solutions[i], choice, kShareLeast);
-      if (solutions[i].evidence < evidence) walk = std::move(held);
+      NodeGuess nodes = SolveFrom(guesses[i], setup, knots, before, solutions[i], choice, begin);
+      if (walk.empty() || solutions[i].evidence < evidence) walk = std::move(nodes);
     }
     if (seen || !setup.may_swing || !AnyRollIsHidden(knots)) continue;
     swings.swing = SwingOf(knots, walk);

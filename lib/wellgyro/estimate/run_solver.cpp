@@ -37,12 +37,9 @@ constexpr int kSlow = 10;
 constexpr double kLeastFall = 0.05;  // of decrements; one step alone may fall by more than the next
 // Steps at which another roll walk can be told from the last, and from which it is not worth while.
 constexpr double kNear = 1, kFar = 1e4;
-// From which the walk of a roll that is nowhere seen is sought. With a free one gyros that are
-// skewed times rates that follow their noise explain that noise, and a lean the accelerometers':
-// biases of five sigmas, about which no smaller walk is as likely.
-constexpr double kWalkHidden = 1e-4;
-constexpr int kTry = 2;          // steps with each scale: by the third the evidence hardly moves
-constexpr double kCreeps = 0.5;  // Gauss-Newton takes far more off a decrement than its half
+constexpr double kWalkHeld = 1e-4;  // of a tool that hardly turns
+constexpr int kTry = 2;             // steps with each scale: by the third the evidence hardly moves
+constexpr double kCreeps = 0.5;     // Gauss-Newton takes far more off a decrement than its half
 constexpr double kHalfDecade = 3.1622776601683795;
 
 /// Decrement of the whole way still to go, by linear convergence: with q = decrement / last the
@@ -66,6 +63,16 @@ bool TakesBack(const std::vector<NodeVector>& steps, const std::vector<NodeVecto
 }
 
 }  // namespace
+
+std::vector<RollBegin> RollBeginsOf(std::span<const RunKnot> knots) {
+  std::vector<RollBegin> begins = {{}};
+  const bool seen = UsualRollChange(knots).has_value();
+  if (!seen) begins.push_back({.walk = kWalkHeld});
+  if (HidesAStart(knots, SpeedStarts(knots))) {
+    begins.push_back({seen ? HUGE_VAL : kWalkHeld, kShareLeast});
+  }
+  return begins;
+}
 
 RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots,
                      const RunState* before)
@@ -438,24 +445,23 @@ bool RunSolver::SolveWithNoise(double gyro, double accel) {
   return elimination_.decrement() < kNear;
 }
 
-void RunSolver::BeginScales(double share) {
+void RunSolver::BeginScales(const RollBegin& begin) {
   scales_ = {};
   scales_.roll_start = RollStarts(knots_);
   scales_.speed_start = SpeedStarts(knots_);
-  const bool seen = UsualRollChange(knots_).has_value();
-  scales_.roll_walk = scales_.swing_walk = seen ? RollWalkBy(knots_) : kWalkHidden;
-  scales_.speed_share = share;
+  scales_.roll_walk = scales_.swing_walk = std::min(RollWalkBy(knots_), begin.walk);
+  scales_.speed_share = begin.share;
 }
 
 bool RunSolver::Approach(int iterations) {
-  BeginScales(kShareUsual);
+  BeginScales({});
   SolveReport report;
   return Iterate(iterations, kNear, report) || elimination_.decrement() < kFar;
 }
 
-SolveReport RunSolver::Solve(int iterations, double least, double share) {
+SolveReport RunSolver::Solve(int iterations, double least, const RollBegin& begin) {
   SolveReport report;
-  BeginScales(share);
+  BeginScales(begin);
   Iterate(iterations, kNear, report, kCreeps);
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });

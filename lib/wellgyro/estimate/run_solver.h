@@ -31,11 +31,21 @@ struct SolveReport {
   double roll_walk = 0;  ///< found [rad/s/sqrt(s)]
 };
 
-/// Of what the roll may start and stop by with the speed along the hole, where it is hidden: the
-/// share from which the likeliest is sought, and the least, 1e-4 rad/s over 10 s, less than the
-/// gyros' noise shows. With all of it the weights of the demonstration's starts creep for fifty
-/// steps.
-inline constexpr double kShareUsual = 1e-2, kShareLeast = 1e-4;
+/// From which the roll's scales are sought.
+struct RollBegin {
+  double walk = HUGE_VAL;  ///< at most [rad/s/sqrt(s)]; by what gravity shows where that is less
+  /// Of SpeedStarts, where they are hidden. With all of it the weights of the demonstration's
+  /// starts creep for fifty steps.
+  double share = 1e-2;
+};
+/// The least share, 1e-4 rad/s over 10 s, is less than the gyros' noise shows.
+inline constexpr double kShareLeast = 1e-4;
+
+/// From which each of these knots is solved; the likeliest counts. With a free roll skewed gyros
+/// times rates that follow their noise explain that noise, and a lean the accelerometers': biases
+/// of five sigmas, about which no smaller scale is as likely. From a small one a swing is not
+/// found.
+std::vector<RollBegin> RollBeginsOf(std::span<const RunKnot> knots);
 
 /// All unknowns of one run: attitudes on SO(3) at the ends of its knots, drift, motion along the
 /// hole, and the tool's constant errors, by Gauss-Newton over whitened factors.
@@ -57,9 +67,8 @@ class RunSolver : public RunRows {
   /// within `iterations` steps.
   bool Approach(int iterations);
   /// Relinearises until the attitudes stay, at most `iterations` times before the roll's scales are
-  /// sought. Not to the end where the evidence stays above `least`. `share`: of SpeedStarts, what
-  /// the roll is first taken to start by where it is hidden.
-  SolveReport Solve(int iterations, double least = HUGE_VAL, double share = kShareUsual);
+  /// sought. Not to the end where the evidence stays above `least`.
+  SolveReport Solve(int iterations, double least = HUGE_VAL, const RollBegin& begin = {});
   /// Takes the gyros' and the accelerometers' white noise so many times as large as before and goes
   /// on from where it stands. False: it does not converge.
   bool SolveWithNoise(double gyro, double accel);
@@ -97,7 +106,7 @@ class RunSolver : public RunRows {
   bool Linearise();
   void AddTies(std::size_t node, NormalBlock& block, int at_next);
   void Step(const std::vector<NodeVector>& steps, const BorderVector& border_step, double share);
-  void BeginScales(double share);
+  void BeginScales(const RollBegin& begin);
   double WalkOfUnseen(std::size_t knot) const;
   double Walk(std::size_t knot, double walk) const;
   RollChange Change(std::size_t knot) const;

@@ -57,13 +57,14 @@ class Exchange {
   std::vector<Eigen::Index> Find(const DesignWeights& optimum, std::size_t most) {
     // What makes the first settings' information whole: a little of the optimum's.
     constexpr double kLittle = 0.01;
+    constexpr int kDrifts = 4;  // of two gyros a line and a bend, which a fit of the bench has too
     const Eigen::VectorXd twice = optimum.weights.transpose().replicate(2, 1).reshaped();
     const Eigen::MatrixXd start =
         kLittle * design_.rows.transpose() * twice.asDiagonal() * design_.rows;
     information_ = design_.before + start;
     const auto least =
         std::max(static_cast<std::size_t>(std::ceil(optimum.fewest)),
-                 static_cast<std::size_t>((design_.rows.cols() + kToFindNoise + 1) / 2));
+                 static_cast<std::size_t>((design_.rows.cols() + kDrifts + kToFindNoise + 1) / 2));
     while (chosen_.size() < std::min(least, most)) Add(Best(Covariance(), Covariance()));
     // Of it stays what is below any digit that counts.
     information_ -= (1 - 1e-7) * start;

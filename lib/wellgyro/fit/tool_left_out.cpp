@@ -30,12 +30,14 @@ LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std:
   const Eigen::MatrixXd N = scaled.transpose() * scaled;
   const Eigen::MatrixXd K = Eigen::MatrixXd(N(k, k)).ldlt().solve(Eigen::MatrixXd(N(k, l)));
   const Eigen::VectorXd s = full.cov.diagonal()(l).cwiseSqrt().cwiseQuotient(unit(l));
-  Eigen::MatrixXd W = N(l, l) - N(l, k) * K;
-  W.diagonal() += s.cwiseAbs2().cwiseInverse();
-  const Eigen::MatrixXd P = W.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd W = N(l, l) - N(l, k) * K;
+  Eigen::MatrixXd whole = W;
+  whole.diagonal() += s.cwiseAbs2().cwiseInverse();
+  const Eigen::MatrixXd P = whole.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::VectorXd m = P * (W * full.x(l).cwiseQuotient(unit(l)));
   Eigen::MatrixXd errors(m + n, n);
   errors << unit(k).asDiagonal() * K, -Eigen::MatrixXd(unit(l).asDiagonal());
-  left.cov = errors * P * errors.transpose();
+  left.cov = errors * (P + m * m.transpose()) * errors.transpose();
   return left;
 }
 

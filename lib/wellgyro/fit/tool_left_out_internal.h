@@ -20,9 +20,10 @@ struct LeftOutErrors {
 /// the full adjustment's information N, and is itself wrong by as much as it is. Noise hides what
 /// is no larger than the full adjustment's sigma s, so theta ~ N(0, s^2), of which the readings
 /// leave
-///   P = (W + diag(1 / s^2))^-1,   W = N_ll - N_lk K.
-/// Where readings say little of a term, such as of a sensitivity's change with a temperature at
-/// which no rate table was read, s is large; where they rule it out, it is nothing.
+///   P = (W + diag(1 / s^2))^-1 about m = P W theta_full,   W = N_ll - N_lk K,
+/// and its square about the zero for which it is taken is P + m m'. Where readings say little of a
+/// term, as of a sensitivity's change with a temperature at which no rate table was read, s is
+/// large; where they rule it out, it is nothing.
 LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
                               const std::vector<int>& kept, const ToolAdjustment& full);
 

@@ -37,6 +37,8 @@ struct RunFit {
   std::array<Squares, kParts> parts;
   ErrorVector errors = ErrorVector::Zero();        ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< of these; 0: has no prior
+  /// Turn of the tool within a knot, beyond what its samples show, that twenty knots exceed [rad].
+  double hidden_turn = 0;
   std::optional<RunLesson> lesson;                 ///< where its calibration has a covariance
   std::vector<RunStretch> stretches;               ///< of the run, in time
   std::optional<RunDiagnosis> diagnosis;           ///< where what adjusted the run made one

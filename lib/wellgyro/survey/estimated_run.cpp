@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <initializer_list>
 #include <span>
 #include <vector>
@@ -118,6 +119,21 @@ RunFit FitOf(const RunEstimate& estimate) {
   return fit;
 }
 
+/// Where neither gravity nor a third axis shows the roll a knot is summed as if the tool did not
+/// turn in it, and what it turns is made up for to the second order.
+double HiddenTurn(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+  constexpr std::size_t kKnots = 20;
+  std::vector<double> turns;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const Increment& i = knots[k].increment;
+    if (i.roll_seen || knots[k].still) continue;
+    turns.push_back(std::abs(nodes[k].roll_rate * i.seconds - i.roll_before - i.roll_after));
+  }
+  if (turns.size() <= kKnots) return 0;
+  std::ranges::nth_element(turns, turns.begin() + kKnots, std::greater());
+  return turns[kKnots];
+}
+
 /// The stations as nodes.
 std::vector<std::size_t> NodesOf(const RunHistory& history) {
   std::vector<std::size_t> nodes;
@@ -189,6 +205,7 @@ SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
   }
   SmoothedRun run = SmoothedOf(estimate, history);
   run.fit = FitOf(estimate);
+  run.fit->hidden_turn = HiddenTurn(history.knots, estimate.nodes);
   if (setup.cov_errors) {
     run.fit->lesson = {estimate.errors, estimate.cov_prior, estimate.cov_errors, UsesOf(history)};
   }

@@ -254,11 +254,17 @@ std::string SurveyMaker::WithoutNorth(const std::vector<DraftedRun>& drafted,
     return "no north was found: the depth or time at which the job's external azimuth holds was "
            "never reached";
   }
+  const auto motion = std::ranges::find(survey.checks, "rest_motion", &Check::code);
+  const bool moved = motion != survey.checks.end() && motion->value && *motion->value > 0;
   return fmt::format(
-      "no north was found: no stop of {:.0f} s at which the gyros tell one azimuth from its "
+      "no north was found: no stop of {:.0f} s at which the {}gyros tell one azimuth from its "
       "mirror, "
-      "and the job gives no azimuth; log a stop, or use [alignment] method = \"external\"",
-      job_.alignment.min_still);
+      "and the job gives no azimuth; {}, or use [alignment] method = \"external\"",
+      job_.alignment.min_still, moved ? "tool is still and the " : "",
+      moved ? fmt::format("it moved while its depth rested, for up to {:.0f} s: hold it still at a "
+                          "stop (slips, brake, centralisers)",
+                          *motion->value)
+            : "log a stop");
 }
 
 Survey SurveyMaker::Make() const {

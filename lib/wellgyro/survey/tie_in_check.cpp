@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -16,6 +17,7 @@ constexpr double kReach = 30;                      // [m]
 constexpr double kSurveys = FromDegrees(0.5);      // of two surveys of one hole
 constexpr double kSlot = 30;                       // of a platform, from its reference [m]
 constexpr double kDepths = 2e-3;                   // by which depths of two surveys may differ
+constexpr double kTurned = 0.05;                   // of a way, by a north 3 deg aside
 constexpr double kPlaces = 1;                      // that nobody asks for [m]
 constexpr double kBendMost = FromDegrees(5) / 30;  // of a hole, at most [rad/m]
 
@@ -52,6 +54,28 @@ Check CheckTieInPlace(const TieIn& tie_in) {
                       "give [tie_in] north_m and east_m, taken as 0: so far may they be off");
   if (check.verdict == Verdict::kFail) check.verdict = Verdict::kWarn;
   return check;
+}
+
+Check CheckTieInWay(const TieIn& tie_in, std::span<const Station> stations) {
+  std::vector<const Station*> above;
+  for (const Station& s : stations) {
+    const bool counts = s.status != StationStatus::kRejected &&
+                        s.status != StationStatus::kSuperseded && s.md <= tie_in.md;
+    if (counts) above.push_back(&s);
+  }
+  std::ranges::sort(above, {}, &Station::md);
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  for (std::size_t i = 1; i < above.size(); ++i) {
+    const Station &a = *above[i - 1], &b = *above[i];
+    way += (b.md - a.md) / 2 * (Along(a.inclination, a.azimuth) + Along(b.inclination, b.azimuth));
+  }
+  const double seen = above.empty() ? 0 : above.back()->md - above.front()->md;
+  if (seen < tie_in.md / 2) return NotDone("tie_in_way", 0, "the run begins below most of its way");
+  const Eigen::Vector3d off = Eigen::Vector3d(tie_in.north, tie_in.east, tie_in.tvd) - way;
+  const double sigma = SigmaAlong(tie_in.cov_p_WT_W, off), unseen = tie_in.md - seen;
+  return CompareWith("tie_in_way", 0, {std::max(0.0, off.norm() - unseen), sigma},
+                     kTurned * seen + kSlot + 3 * sigma, 1, "m",
+                     "5 % of the way that the run measured, 30 m and 3 sigma");
 }
 
 Check CheckTieIn(const Job& job, std::span<const Station> stations) {

@@ -15,6 +15,12 @@ namespace wellgyro {
 /// tie-in no direction.
 WELLGYRO_EXPORT Check CheckTieIn(const Job& job, std::span<const Station> stations);
 
+/// `tie_in_way` [m]: how far the tie-in's place is from where the run's own directions lead from
+/// the well head. The hole above the first station and between the last and the tie-in may go
+/// anywhere; fails beyond that, 5 % of the way, which is another north's too, 30 m and 3 sigma. Not
+/// done where the run has not been over half of that way.
+WELLGYRO_EXPORT Check CheckTieInWay(const TieIn& tie_in, std::span<const Station> stations);
+
 /// `tie_in_place` [m] of a tie-in below the datum, md > 0: how much further it is from the well
 /// head than its depth along the hole reaches. Fails beyond 30 m, for a slot aside of where the job
 /// counts from, .2 % of depth and 3 sigma. Where the job does not say north and east: how far they

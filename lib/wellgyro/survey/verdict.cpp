@@ -129,6 +129,9 @@ constexpr CodeWords kCodeWords[] = {
     {"gyro_spikes", "single gyro samples are impossible beside their neighbours"},
     {"gyro_stuck", "a gyro axis repeats one value"},
     {"gyro_unit", "the gyros' unit or scale is wrong"},
+    {"hidden_roll",
+     "the tool rolls too fast where gravity does not show it: slow down, or use a "
+     "third gyro axis"},
     {"inclination_in_out", "inclinations on the way in and out differ"},
     {"inclination_repeat", "inclinations of the repeat section differ"},
     {"latitude", "the gyros at rest tell another latitude than the job"},
@@ -147,6 +150,7 @@ constexpr CodeWords kCodeWords[] = {
     {"temperature_outside", "temperature outside the calibrated range"},
     {"tie_in", "the tie-in and the run disagree where they meet"},
     {"tie_in_place", "the place of the tie-in is not stated, or none that the hole reaches"},
+    {"tie_in_way", "the tie-in is not where the run's own way from the well head leads"},
     {"time_skew", "the clocks of gyros and accelerometers differ beyond the prior"},
     {"toolface_offset", "gyros and accelerometers are turned against each other beyond the prior"},
 };
