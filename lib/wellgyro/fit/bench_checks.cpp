@@ -42,6 +42,18 @@ std::string LinesText(const std::vector<int>& lines) {
   return text;
 }
 
+std::optional<std::string> OtherHemisphere(const std::string& term, double force_term,
+                                           double latitude) {
+  const double twice = std::abs(2 * kBenchEarthDegPerHour * std::sin(latitude));
+  constexpr double kAlike = 0.02, kLeast = 1;  // deg/h/g
+  if (twice < kLeast || std::abs(std::abs(force_term) - twice) > kAlike * twice)
+    return std::nullopt;
+  return fmt::format(
+      "{} is {:.5g} deg/h/g, twice the Earth's rate along gravity ({:.5g}): is the latitude's sign "
+      "right? South is negative",
+      term, force_term, twice);
+}
+
 std::optional<Fault> TooFew(const BenchTable& data, int least, std::string_view what,
                             std::string_view advice) {
   if (data.rows() >= least) return std::nullopt;

@@ -29,8 +29,13 @@ Result<std::vector<int>> FindColumns(const BenchTable& data, const std::vector<s
 /// "lines 3, 7 and 12 more".
 std::string LinesText(const std::vector<int>& lines);
 
-// Each gives the Fault, if any.
+// Each gives the Fault, or the remark, if any.
 
+/// Of a latitude on the wrong side of the equator the Earth's rate along gravity comes out twice as
+/// a force term along each axis [deg/h/g], to all digits, and everything else is right: a remark
+/// where this one is within 2 % of that.
+std::optional<std::string> OtherHemisphere(const std::string& term, double force_term,
+                                           double latitude);
 /// Fewer rows than `least`.
 std::optional<Fault> TooFew(const BenchTable& data, int least, std::string_view what,
                             std::string_view advice);

@@ -366,6 +366,18 @@ void RemarkReference(const GyroReadings& readings, const BenchReference& referen
                  : std::string()));
 }
 
+void TellHemisphere(const BenchReference& reference, FitReport& report) {
+  for (const FitQuantity& q : report.result) {
+    if (!reference.latitude || q.name != "G_degh_per_g") continue;
+    for (const double term : q.value.reshaped()) {
+      if (auto remark = OtherHemisphere(q.name, term, *reference.latitude)) {
+        report.remarks.push_back(*std::move(remark));
+        return;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table,
@@ -407,6 +419,7 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
         "deg/h/g in G; a rate table's readings break that");
   }
   TakeResult(*readings, layout, report);
+  TellHemisphere(setup.reference, report);
   out.gyro = Group(*readings, layout, setup.reference, report.values);
   AddParity(out.gyro, report);
   return out;

@@ -259,23 +259,16 @@ void TellNoise(const ToolReadings& readings, const ToolFitSetup& setup, const To
   }
 }
 
-// Of a latitude on the wrong side of the equator the Earth's rate along gravity comes out twice as
-// a force term along each axis, to all digits, and everything else is right.
 void TellHemisphere(const ToolModel& model, const ToolAdjustment& a, const ToolFitSetup& setup,
                     FitReport& report) {
   if (!setup.reference.latitude) return;
-  const double twice = 2 * kBenchEarthDegPerHour * std::sin(*setup.reference.latitude);
-  constexpr double kAlike = 0.02;
   for (int k = 0; k < model.n_terms(); ++k) {
     const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
     if (term.kind != TermKind::kForce || term.power != 0) continue;
-    const double off = std::abs(std::abs(a.x[k]) - std::abs(twice));
-    if (!(std::abs(twice) > 1 && off < kAlike * std::abs(twice))) continue;
-    report.remarks.push_back(
-        fmt::format("{} is {:.5g} deg/h/g, twice the Earth's rate along gravity ({:.5g}): is the "
-                    "latitude's sign right? South is negative",
-                    term.name, a.x[k], std::abs(twice)));
-    return;
+    if (auto remark = OtherHemisphere(term.name, a.x[k], *setup.reference.latitude)) {
+      report.remarks.push_back(*std::move(remark));
+      return;
+    }
   }
 }
 

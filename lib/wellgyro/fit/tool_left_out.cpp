@@ -34,10 +34,10 @@ LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std:
   Eigen::MatrixXd whole = W;
   whole.diagonal() += s.cwiseAbs2().cwiseInverse();
   const Eigen::MatrixXd P = whole.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-  const Eigen::VectorXd m = P * (W * full.x(l).cwiseQuotient(unit(l)));
+  const Eigen::VectorXd mean = P * (W * full.x(l).cwiseQuotient(unit(l)));
   Eigen::MatrixXd errors(m + n, n);
   errors << unit(k).asDiagonal() * K, -Eigen::MatrixXd(unit(l).asDiagonal());
-  left.cov = errors * (P + m * m.transpose()) * errors.transpose();
+  left.cov = errors * (P + mean * mean.transpose()) * errors.transpose();
   return left;
 }
 
