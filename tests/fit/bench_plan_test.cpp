@@ -220,6 +220,9 @@ TEST(BenchPlans, AVerticalHoleIsPlannedFor) {
   EXPECT_TRUE(plan.reached);
   EXPECT_TRUE(std::isfinite(plan.sigma_azimuth));
   EXPECT_LT(plan.settings.size(), PlainSettings(1).size());
+  setup = Asked();
+  setup.hole = {{0, 0}, {0, 0}};
+  EXPECT_TRUE(PlanBench(setup).reached);
 }
 
 }  // namespace

@@ -52,6 +52,10 @@ std::vector<double> Between(double from, double to, int n, bool circle = false) 
   return values;
 }
 
+// Of a hole that is vertical all along some parameters move no azimuth, but no fit of the bench
+// goes without them.
+constexpr double kLeastInclination = 0.5 * units::kDeg;
+
 // Of a named hole, stations a degree apart; else the ranges'.
 std::vector<BenchPlanSetup::Direction> DirectionsOf(const BenchPlanSetup& setup) {
   const auto along = [](const BenchPlanSetup::Direction& at) {
@@ -62,7 +66,9 @@ std::vector<BenchPlanSetup::Direction> DirectionsOf(const BenchPlanSetup& setup)
   std::vector<BenchPlanSetup::Direction> all;
   for (const BenchPlanSetup::Direction& at : setup.hole) {
     if (!all.empty() && (along(at) - along(all.back())).norm() < units::kDeg) continue;
-    all.push_back(at);
+    // Vertical, the way that it leans may be any.
+    const int ways = at.inclination < kLeastInclination ? 8 : 1;
+    for (int k = 0; k < ways; ++k) all.push_back({at.inclination, at.azimuth + k * kTwoPi / ways});
   }
   if (!all.empty()) return all;
   const bool circle = setup.azimuth_to - setup.azimuth_from > kTwoPi - 1e-3;
@@ -74,17 +80,14 @@ std::vector<BenchPlanSetup::Direction> DirectionsOf(const BenchPlanSetup& setup)
   return all;
 }
 
-// Attitudes of the tool in the hole, at the temperatures that matter. Of a hole that is vertical
-// all along some parameters move no azimuth, but no fit of the bench goes without them: half a
-// degree.
+// Attitudes of the tool in the hole, at the temperatures that matter.
 std::vector<BenchSetting> AttitudesOf(const BenchPlanSetup& setup) {
-  constexpr double kLeast = 0.5 * units::kDeg;
   std::vector<BenchSetting> all;
   for (const BenchPlanSetup::Direction& at : DirectionsOf(setup)) {
     for (const double tf : Between(0, kTwoPi, 8, true)) {
       for (const double tau : Between(-1, 1, 3)) {
         if (setup.temperatures == 1 && tau != 0) continue;
-        all.push_back({std::max(at.inclination, kLeast), at.azimuth, tf, tau});
+        all.push_back({std::max(at.inclination, kLeastInclination), at.azimuth, tf, tau});
       }
     }
   }

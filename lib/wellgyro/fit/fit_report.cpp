@@ -108,17 +108,7 @@ Result<FitReport> WholeReport(const BenchTable& data, const LinearProblem& probl
                               const LinearSolution& solution, std::string_view advice) {
   if (solution.unseen.empty()) {
     FitReport report = ReportOf(problem, solution);
-    const std::size_t told = report.remarks.size();
     TestTrends(data, problem, solution, report);
-    if (report.remarks.size() > told || solution.outlier_lines.empty()) return report;
-    // A drift may stand in the very rows that were left out for it.
-    LinearProblem whole = problem;
-    whole.robust = whole.sigma_given = false;
-    FitReport of_all;
-    TestTrends(data, whole, Solve(whole), of_all);
-    for (const std::string& remark : of_all.remarks) {
-      report.remarks.push_back("with the lines that were left out, " + remark);
-    }
     return report;
   }
   std::string text = "the readings do not determine";

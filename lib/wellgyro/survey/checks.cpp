@@ -368,10 +368,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
   CheckForesights(job, inputs, checks);
   CheckGrid(job, checks);
   checks.push_back(CheckTieIn(job, inputs.passes));
-  if (job.tie_in.md > 0) {
-    checks.push_back(CheckTieInPlace(job.tie_in));
-    checks.push_back(CheckTieInWay(job.tie_in, inputs.passes));
-  }
+  if (job.tie_in.md > 0) checks.push_back(CheckTieInPlace(job.tie_in));
   CheckNoise(job, checks);
   return checks;
 }

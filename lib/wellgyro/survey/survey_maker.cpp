@@ -16,11 +16,22 @@
 #include "wellgyro/survey/model_covariance.h"
 #include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/station_marks.h"
+#include "wellgyro/survey/tie_in_check.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 #include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
 namespace {
+
+/// Where the hole pointed on all runs, but for those that nobody counts.
+std::vector<PathStation> SeenOf(const std::vector<DraftedRun>& drafted) {
+  std::vector<PathStation> seen;
+  for (const DraftedRun& run : drafted) {
+    if (run.misrun) continue;
+    for (const Waypoint& at : run.way) seen.push_back(at.station);
+  }
+  return seen;
+}
 
 // A foresight holds at a knot no further away than this.
 constexpr double kForesightSeconds = 2;
@@ -279,6 +290,7 @@ Survey SurveyMaker::Make() const {
   Placed placed = Assemble(job_, drafted);
   survey.checks = Checks(placed.passes);
   survey.checks.push_back(CheckAzimuths(drafted));
+  if (job_.tie_in.md > 0) survey.checks.push_back(CheckTieInWay(job_.tie_in, SeenOf(drafted)));
   if (!job_.stations.at.empty()) survey.checks.push_back(CheckAsked(job_, placed.chosen));
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);

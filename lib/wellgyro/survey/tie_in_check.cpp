@@ -56,26 +56,21 @@ Check CheckTieInPlace(const TieIn& tie_in) {
   return check;
 }
 
-Check CheckTieInWay(const TieIn& tie_in, std::span<const Station> stations) {
-  std::vector<const Station*> above;
-  for (const Station& s : stations) {
-    const bool counts = s.status != StationStatus::kRejected &&
-                        s.status != StationStatus::kSuperseded && s.md <= tie_in.md;
-    if (counts) above.push_back(&s);
-  }
-  std::ranges::sort(above, {}, &Station::md);
+Check CheckTieInWay(const TieIn& tie_in, std::vector<PathStation> seen) {
+  std::erase_if(seen, [&](const PathStation& s) { return !(s.md <= tie_in.md); });
+  std::ranges::sort(seen, {}, &PathStation::md);
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
-  for (std::size_t i = 1; i < above.size(); ++i) {
-    const Station &a = *above[i - 1], &b = *above[i];
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    const PathStation &a = seen[i - 1], &b = seen[i];
     way += (b.md - a.md) / 2 * (Along(a.inclination, a.azimuth) + Along(b.inclination, b.azimuth));
   }
-  const double seen = above.empty() ? 0 : above.back()->md - above.front()->md;
-  if (seen < tie_in.md / 2) return NotDone("tie_in_way", 0, "the run begins below most of its way");
+  const double length = seen.empty() ? 0 : seen.back().md - seen.front().md;
+  if (length < tie_in.md / 2) return NotDone("tie_in_way", 0, "no run over half of the way to it");
   const Eigen::Vector3d off = Eigen::Vector3d(tie_in.north, tie_in.east, tie_in.tvd) - way;
-  const double sigma = SigmaAlong(tie_in.cov_p_WT_W, off), unseen = tie_in.md - seen;
+  const double sigma = SigmaAlong(tie_in.cov_p_WT_W, off), unseen = tie_in.md - length;
   return CompareWith("tie_in_way", 0, {std::max(0.0, off.norm() - unseen), sigma},
-                     kTurned * seen + kSlot + 3 * sigma, 1, "m",
-                     "5 % of the way that the run measured, 30 m and 3 sigma");
+                     kTurned * length + kSlot + 3 * sigma, 1, "m",
+                     "5 % of the way that runs measured, 30 m and 3 sigma");
 }
 
 Check CheckTieIn(const Job& job, std::span<const Station> stations) {

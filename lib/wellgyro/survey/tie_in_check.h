@@ -1,11 +1,13 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/trajectory/path.h"
 
 namespace wellgyro {
 
@@ -15,11 +17,11 @@ namespace wellgyro {
 /// tie-in no direction.
 WELLGYRO_EXPORT Check CheckTieIn(const Job& job, std::span<const Station> stations);
 
-/// `tie_in_way` [m]: how far the tie-in's place is from where the run's own directions lead from
+/// `tie_in_way` [m]: how far the tie-in's place is from where the runs' own directions lead from
 /// the well head. The hole above the first station and between the last and the tie-in may go
 /// anywhere; fails beyond that, 5 % of the way, which is another north's too, 30 m and 3 sigma. Not
-/// done where the run has not been over half of that way.
-WELLGYRO_EXPORT Check CheckTieInWay(const TieIn& tie_in, std::span<const Station> stations);
+/// done where no run has been over half of that way. `seen`: where the hole pointed, in any order.
+WELLGYRO_EXPORT Check CheckTieInWay(const TieIn& tie_in, std::vector<PathStation> seen);
 
 /// `tie_in_place` [m] of a tie-in below the datum, md > 0: how much further it is from the well
 /// head than its depth along the hole reaches. Fails beyond 30 m, for a slot aside of where the job
