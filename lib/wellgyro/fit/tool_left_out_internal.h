@@ -21,9 +21,9 @@ struct LeftOutErrors {
 /// is no larger than the full adjustment's sigma s, so theta ~ N(0, s^2), of which the readings
 /// leave
 ///   P = (W + diag(1 / s^2))^-1 about m = P W theta_full,   W = N_ll - N_lk K,
-/// and its square about the zero for which it is taken is P + m m'. Where readings say little of a
-/// term, as of a sensitivity's change with a temperature at which no rate table was read, s is
-/// large; where they rule it out, it is nothing.
+/// and its square about the zero for which it is taken is P + m m', times the probability that its
+/// bundle is there at all. Where readings say little of a term, as of a sensitivity's change with a
+/// temperature at which no rate table was read, s is large; where they rule it out, it is nothing.
 LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
                               const std::vector<int>& kept, const ToolAdjustment& full);
 
