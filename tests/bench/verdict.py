@@ -9,7 +9,8 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 Simulates tools whose errors are drawn from the job's own priors, and gravity from those of the
 Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
 the truth. Well `demo`: data/demo with other seeds, without faults; `slant+z`: by a tool with a
-third gyro axis; `slant@20`: rolling at 20 rpm. `found`: no survey is made, or its verdict is not
+third gyro axis; `slant@20`: rolling at 20 rpm; `vertical` and `top`: a hole that is, to its end or
+to 400 m. `found`: no survey is made, or its verdict is not
 "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how many the
 right cause is the first of diagnosis.csv; `in set`: or among those that together have 95 %, or
 alike the first. Of clean runs every check of chance is tabled by its share of chance, p, which is
@@ -70,7 +71,12 @@ WELLS = {
     "horizontal": ("start_deg = 5.0\n[[well.inclination.term]]\nbegin_md_m = 300.0\n"
                    "end_md_m = 1200.0\nramp_m = 50.0\nrate_deg_per_30m = 3.0\n",
                    "start_deg = 66.0\n", 60.0, 1800.0, 0.5),
+    # Where gravity hardly shows how a tool rolls, or not.
+    "vertical": ("start_deg = 0.0\n", "start_deg = 40.0\n", 60.0, 1200.0, 0.0),
+    "top": ("start_deg = 0.1\n[[well.inclination.term]]\nbegin_md_m = 400.0\nend_md_m = 900.0\n"
+            "ramp_m = 50.0\nrate_deg_per_30m = 3.0\n", "start_deg = 40.0\n", 60.0, 1200.0, 1.0),
 }
+OF_ALL = "slant,s,horizontal"
 
 HALF = "begin_s = {half:.0f}\n"
 MINUTE = HALF + "end_s = {half_and_minute:.0f}\n"
@@ -544,7 +550,7 @@ def main():
     parser.add_argument("--clean", type=int, default=100, help="clean runs a well")
     parser.add_argument("--faulty", type=int, default=5, help="runs a cause, size and well")
     parser.add_argument("--sizes", default="0.5,1,3")
-    parser.add_argument("--wells", default=",".join(WELLS))
+    parser.add_argument("--wells", default=OF_ALL)
     parser.add_argument("--causes", default=",".join(CAUSES))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--power", type=int, default=0, help="runs a cause and well at its smallest")

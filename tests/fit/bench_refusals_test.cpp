@@ -124,6 +124,12 @@ TEST(BenchRefusals, RepeatedRows) {
   BenchTable six = Six();
   six.values.row(3) = six.values.row(2);
   EXPECT_THAT(FaultOf(FitSixPositions(six, {})).text, HasSubstr("line 5 repeats line 4"));
+  // Of counts with a count of noise two readings are alike by chance.
+  six = Six();
+  six.values = six.values.array().round();
+  six.values.row(3) = six.values.row(2);
+  const auto counts = FitSixPositions(six, {});
+  EXPECT_TRUE(counts.has_value() || counts.fault().text.find("repeats") == std::string::npos);
 }
 
 TEST(BenchRefusals, FrozenChannels) {

@@ -38,15 +38,17 @@ bool Says(const FitReport& report, const std::string& words) {
   });
 }
 
-// A member's error over its sigma at one power of the temperature; what the fit has not is zero.
-double Normalised(const ToolFit& fit, const std::string& member, double truth) {
+// A member's error over its sigma, which is not to be more than `most`.
+double Normalised(const ToolFit& fit, const std::string& member, double truth, double most) {
   const auto& names = fit.members.names;
   const auto at = std::find(names.begin(), names.end(), member) - names.begin();
   if (at == static_cast<std::ptrdiff_t>(names.size())) {
     ADD_FAILURE() << "no member " << member;
     return 0;
   }
-  return (fit.member_values[at] - truth) / std::sqrt(fit.members.cov(at, at));
+  const double sigma = std::sqrt(fit.members.cov(at, at));
+  EXPECT_LT(sigma, most) << member;
+  return (fit.member_values[at] - truth) / sigma;
 }
 
 // Sensitivities that change with temperature, seen by the Earth's rate alone where the rate table
@@ -57,7 +59,7 @@ TEST(ToolClaims, ASensitivityThatNoTableReadWhenHotIsUnsure) {
   for (int bench = 0; bench < (WELLGYRO_LONG ? 6 : 1); ++bench) {
     ThermalTool tool = ThermalTool::Any(random);
     ThermalTool at_hot = tool;
-    const double change = 5e-4;
+    constexpr double change = 5e-4, kPerHour = kRad / 3600;
     at_hot.U.row(0) *= 1 + change;
     const ThermalBench b = ThermalBench::Any(random);
     // Straight in temperature: between the two tools, as far as the ramp has come.
@@ -78,12 +80,11 @@ TEST(ToolClaims, ASensitivityThatNoTableReadWhenHotIsUnsure) {
     const auto fit = FitTool(tables, AtLatitude(60));
     ASSERT_TRUE(fit.has_value()) << fit.fault().text;
     const std::string name = NameOf({true, CalibrationMember::Kind::kSensitivity, 1, 0, 0});
-    const double off = Normalised(*fit, name, change * tool.U(0, 0) / (kRad / 3600));
+    const double off = Normalised(*fit, name, change * tool.U(0, 0) / kPerHour, 1e-3 / kPerHour);
     worst = std::max(worst, std::abs(off));
   }
   std::printf("a sensitivity that changes by 5e-4: off by %.2f sigmas at most\n", worst);
   EXPECT_LT(worst, 4);
-  EXPECT_GT(worst, 0);
 }
 
 // On a ramp up and down the bend of a drift is a square of the temperature, too small to be kept.
@@ -103,7 +104,7 @@ TEST(ToolClaims, ASquareOfTheTemperatureThatADriftTakesIsUnsure) {
     ASSERT_TRUE(fit.has_value()) << fit.fault().text;
     const auto bias = [&](int power, double truth) {
       const std::string name = NameOf({true, CalibrationMember::Kind::kBias, power, 1, 0});
-      square += std::pow(Normalised(*fit, name, truth), 2) / (2 * kBenches);
+      square += std::pow(Normalised(*fit, name, truth, 0.15), 2) / (2 * kBenches);
     };
     bias(0, tool.bg[0][1]);
     bias(2, tool.bg[2][1]);
@@ -171,9 +172,9 @@ TEST(ToolClaims, VerificationAsksForTheTemperature) {
   EXPECT_THAT(without.fault().text, HasSubstr("no column T_C"));
 }
 
-// Readings in counts, one of noise: that two are alike is chance. Temperatures that rise from row
-// to row are what the thermometers' errors follow, and their order says nothing beside them.
-TEST(BenchClaims, SoundReadingsAreNotFaulted) {
+// Temperatures that rise from row to row are what the thermometers' errors follow, and their order
+// says nothing beside them.
+TEST(BenchClaims, TemperaturesThatRiseAreNoDrift) {
   Random random(96);
   int told = 0;
   constexpr int kBenches = 20;

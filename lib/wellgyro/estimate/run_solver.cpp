@@ -467,8 +467,9 @@ SolveReport RunSolver::Solve(int iterations, double least, const RollBegin& begi
                                     [](const RunKnot& k) { return k.increment.has_axial; });
   if (!measured) {
     FindWalks(report);
-    if (HidesAStart(knots_, scales_.speed_start))
+    if (HidesAStart(knots_, scales_.speed_start)) {
       FindDecade(kShareLeast, 1, {&scales_.speed_share}, report);
+    }
   }
   // Not before: that the hole changes the rate slowly and one way, evidence takes for a smaller
   // walk.

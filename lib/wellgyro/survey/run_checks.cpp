@@ -221,7 +221,7 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
   CheckMagnets(job, run, checks);
 }
 
-// Of a knot, a second. What a tool that leans in its hole makes of its roll is summed as if it did
+// Of a knot. What a tool that leans in its hole makes of its roll is summed as if it did
 // not turn, and made up for to the second order. Of clean runs in a well that kicks off from
 // vertical, two axes, tilts were up to 2.3 sigmas off at 18 deg a knot, 18 in one of four runs at
 // 24, 67 at 36.
@@ -251,7 +251,7 @@ void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks)
   if (fit.hidden_turn > 0) {
     checks.push_back(CompareWith("hidden_roll", run.run, {fit.hidden_turn, 0}, kHiddenTurnMost,
                                  units::kDeg, "deg",
-                                 "of a tool in a second, where gravity does not show it"));
+                                 "of a knot, where gravity does not show the roll"));
   }
   const ErrorVector priors = SigmasOf(job, run);
   for (const ToolError& error : kToolErrors) {
