@@ -109,6 +109,76 @@ TEST(BenchFaults, DriftOverTheSequenceIsTold) {
   EXPECT_LE(false_alarms, 2);  // one in a hundred tables
 }
 
+bool SaysThat(const FitReport& report, const std::string& words) {
+  return std::any_of(report.remarks.begin(), report.remarks.end(),
+                     [&](const std::string& r) { return r.find(words) != std::string::npos; });
+}
+
+// Of the six means of a channel five parameters take all but one number, and the readings that do
+// not fit it looked like outliers.
+TEST(BenchFaults, DriftFromPositionToPositionIsTold) {
+  Random random(151);
+  int told = 0, false_alarms = 0;
+  constexpr int kBenches = 20;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    const VoltTool tool = VoltTool::Any(random);
+    const VoltBench made{.sigma = 5e-6, .readings = 5};
+    const BenchTable holds = TwentyFour(tool, made, random);
+    BenchTable drifts = holds;
+    for (int i = 0; i < drifts.rows(); ++i) drifts.values(i, 5) += 5e-6 * (i / 15);
+    const auto held = FitTwentyFourPositions(holds, {}), moved = FitTwentyFourPositions(drifts, {});
+    ASSERT_TRUE(held.has_value() && moved.has_value());
+    false_alarms += SaysThat(held->report, "the order of") ? 1 : 0;
+    told += SaysThat(moved->report, "the order of") ? 1 : 0;
+  }
+  EXPECT_EQ(told, kBenches);
+  EXPECT_LE(false_alarms, 1);
+}
+
+TEST(BenchFaults, AStepIsToldWithTheLineWhereItBegins) {
+  Random random(152);
+  int told = 0, false_alarms = 0;
+  constexpr int kBenches = 20;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    BenchTable data = AtAttitudes(VectorTool::Any(random), 48, {}, {2e-5, 20}, random);
+    const auto sound = FitAffine(data, {});
+    ASSERT_TRUE(sound.has_value());
+    false_alarms += SaysThat(sound->report, "beside those before") ? 1 : 0;
+    data.values.col(4).tail(20).array() += 1e-4;
+    const auto stepped = FitAffine(data, {});
+    ASSERT_TRUE(stepped.has_value());
+    told += SaysThat(stepped->report, "channel Gy: from line 30 on the residuals are 0.0001") ||
+                    SaysThat(stepped->report, "channel Gy: from line 30 on the residuals are 9.")
+                ? 1
+                : 0;
+  }
+  // Where the noise of the reading beside it is half a step, that line is as likely.
+  EXPECT_GE(told, 16);
+  EXPECT_LE(false_alarms, 1);
+}
+
+// U times the level rate: a rate table shows U by itself.
+TEST(BenchFaults, AWrongLatitudeIsToldByTheRateTable) {
+  Random random(153);
+  int told = 0, false_alarms = 0;
+  constexpr int kBenches = 20;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    const GyroTool tool = GyroTool::Any(random);
+    const BenchTable rest = GyrosAtRest(tool, 60.3, 0.02, random);
+    const BenchTable table = GyrosOnTable(tool, 60.3, 0.5, random);
+    const auto wrong = FitGyro(rest, table, {.reference = {.latitude = 60 * kRad}});
+    const auto right = FitGyro(rest, table, {.reference = {.latitude = 60.3 * kRad}});
+    ASSERT_TRUE(wrong.has_value() && right.has_value());
+    told += SaysThat(wrong->report, "at rest suit a latitude of 60.3") ||
+                    SaysThat(wrong->report, "at rest suit a latitude of 60.2")
+                ? 1
+                : 0;
+    false_alarms += SaysThat(right->report, "at rest suit a latitude") ? 1 : 0;
+  }
+  EXPECT_EQ(told, kBenches);
+  EXPECT_LE(false_alarms, 2);
+}
+
 TEST(BenchFaults, TemperaturesThatPlayNoPartAreTold) {
   Random random(16);
   BenchTable data = AtAttitudes(VectorTool::Any(random), 48, {}, {2e-5, 20}, random);

@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -134,6 +135,40 @@ TEST(ToolClaims, TheOtherHemisphereIsTold) {
   const auto wrong = FitTool(of_sound, AtLatitude(35));
   ASSERT_TRUE(wrong.has_value()) << wrong.fault().text;
   EXPECT_TRUE(Says(wrong->calibration.report, "is the latitude's sign right?"));
+}
+
+// What stepped on the way is told by where it did, or by the stretch that does not belong to the
+// rest.
+TEST(ToolClaims, AStepOfASensorIsTold) {
+  Random random(95);
+  const ThermalTool tool = ThermalTool::Any(random);
+  const ThermalBench bench = ThermalBench::Any(random);
+  const std::vector<BenchTable> sound = {ThermalPositions(tool, bench, 0, 120, 25, 150, random),
+                                         ThermalPositions(tool, bench, 1, 60, 150, 25, random),
+                                         ThermalRates(tool, bench, 87.5, random)};
+  const auto said = [](const std::vector<BenchTable>& tables) {
+    const auto fit = FitTool(tables, AtLatitude(60));
+    EXPECT_TRUE(fit.has_value()) << fit.fault().text;
+    const FitReport& report = fit->calibration.report;
+    return Says(report, "beside those before") || Says(report, "readings in a row") ||
+           Says(report, "accelerometers do not drift so");
+  };
+  int false_alarms = said(sound) ? 1 : 0;
+  for (int more = 1; more < (WELLGYRO_LONG ? 60 : 1); ++more) {
+    const ThermalBench other = ThermalBench::Any(random);
+    false_alarms += said({ThermalPositions(tool, other, 0, 120, 25, 150, random),
+                          ThermalPositions(tool, other, 1, 60, 150, 25, random),
+                          ThermalRates(tool, other, 87.5, random)})
+                        ? 1
+                        : 0;
+  }
+  std::printf("sound benches told of a step: %d\n", false_alarms);
+  EXPECT_LE(false_alarms, WELLGYRO_LONG ? 3 : 0);  // one in a hundred
+  for (const auto& [channel, step] : {std::pair("m_x1", 0.3), std::pair("Gx", 3e-4)}) {
+    std::vector<BenchTable> stepped = sound;
+    stepped[0].values.col(*stepped[0].Find(channel)).tail(60).array() += step;
+    EXPECT_TRUE(said(stepped)) << channel;
+  }
 }
 
 TEST(ToolClaims, ColumnsMisnamedByACapitalOrAUnitAreRefused) {

@@ -46,6 +46,11 @@ void Whiten(const Eigen::MatrixXd& tilt, int row, LinearProblem& problem) {
   const Eigen::MatrixXd cov = Eigen::MatrixXd::Identity(width, width) + tilt * tilt.transpose();
   const Eigen::MatrixXd L = cov.llt().matrixL();
   const Eigen::VectorXd weight = problem.sigma.segment(row, width).cwiseInverse();
+  const Eigen::MatrixXd whitener =
+      L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(weight.asDiagonal()));
+  for (Eigen::Index k = 0; k < width; ++k) {
+    problem.rows[static_cast<std::size_t>(row + k)].spread = whitener.col(k);
+  }
   const Eigen::MatrixXd A = weight.asDiagonal() * problem.A.middleRows(row, width);
   const Eigen::VectorXd y = weight.cwiseProduct(problem.y.segment(row, width));
   problem.A.middleRows(row, width) = L.triangularView<Eigen::Lower>().solve(A);
@@ -78,9 +83,10 @@ LinearProblem AffineProblem(const std::vector<AffineReadings>& groups,
       tilt.middleRows<3>(row - i * width) = tilt_sigma / sigma * rough[g] * Skew(u);
       for (int c = 0; c < 3; ++c) {
         const int at = row + c;
-        problem.rows[static_cast<std::size_t>(at)] = {
-            lines[static_cast<std::size_t>(i)], groups[g].channels[static_cast<std::size_t>(c)],
-            sigma};
+        FitRow& label = problem.rows[static_cast<std::size_t>(at)];
+        label.line = lines[static_cast<std::size_t>(i)];
+        label.channel = groups[g].channels[static_cast<std::size_t>(c)];
+        label.unit = sigma;
       }
     }
     if (tilt_sigma > 0) Whiten(tilt, i * width, problem);

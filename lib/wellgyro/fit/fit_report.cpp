@@ -104,11 +104,14 @@ FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution)
   return report;
 }
 
+std::string LineName(int line) { return fmt::format("line {}", line); }
+
 Result<FitReport> WholeReport(const BenchTable& data, const LinearProblem& problem,
-                              const LinearSolution& solution, std::string_view advice) {
+                              const LinearSolution& solution, std::string_view advice,
+                              const LineNames& name) {
   if (solution.unseen.empty()) {
     FitReport report = ReportOf(problem, solution);
-    TestTrends(data, problem, solution, report);
+    TestTrends(data, problem, solution, name, report);
     return report;
   }
   std::string text = "the readings do not determine";

@@ -10,6 +10,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/added_terms_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/gyro_readings_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
@@ -366,6 +367,27 @@ void RemarkReference(const GyroReadings& readings, const BenchReference& referen
                  : std::string()));
 }
 
+// Readings at rest show the horizontal rate by U, which the table's rates show too.
+void TellLatitude(const GyroReadings& readings, const FittedGyros& fitted,
+                  const BenchReference& reference, FitReport& report) {
+  constexpr double kFalseAlarm = 0.01;
+  Eigen::MatrixXd z(fitted.problem.y.size(), 1);
+  for (Eigen::Index row = 0; row < z.rows(); ++row) {
+    const auto n = static_cast<Eigen::Index>(readings.channels.size());
+    const Eigen::Vector3d U = fitted.solution.x.segment<3>(4 * (row % n) + 1);
+    z(row, 0) = readings.w_by_latitude.row(row / n).dot(U);
+  }
+  const AddedTerm off =
+      AddedTerms(fitted.problem, fitted.solution).Test(z, kFalseAlarm / 2).front();
+  if (!(off.sigmas > off.limit)) return;
+  report.remarks.push_back(fmt::format(
+      "with the rate table's sensitivities the readings at rest suit a latitude of {:.4g} deg, "
+      "{:+.2g} deg beside the one given ({:.1f} sigmas, chance reaches {:.1f}): the latitude is "
+      "wrong, or the scale of the table's rates",
+      ToDegrees(*reference.latitude + off.coefficient), ToDegrees(off.coefficient), off.sigmas,
+      off.limit));
+}
+
 void TellHemisphere(const BenchReference& reference, FitReport& report) {
   for (const FitQuantity& q : report.result) {
     if (!reference.latitude || q.name != "G_degh_per_g") continue;
@@ -413,6 +435,7 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
   report.remarks.insert(report.remarks.end(), remarks.begin(), remarks.end());
   RemarkTemperature(data, report);
   RemarkReference(*readings, setup.reference, report.cov, report.values, report);
+  if (readings->joined) TellLatitude(*readings, fitted, setup.reference, report);
   if (rest.rows() > 0 && table.rows() == 0) {
     report.remarks.push_back(
         "a wrong latitude would not show in these residuals: 0.1 deg of it is 3e-3 in U and 0.05 "

@@ -72,6 +72,7 @@ std::optional<Fault> ReadRest(const BenchTable& data, const BenchReference& refe
     readings.w_level.row(i) = (R * Eigen::Vector3d(level, 0, 0)).transpose();
     // Turning the fixture clockwise by a small angle: north lies by it to the left.
     readings.w_north.row(i) = (R * Eigen::Vector3d(0, -level, 0)).transpose();
+    readings.w_by_latitude.row(i) = (R * Eigen::Vector3d(down, 0, -level)).transpose();
     readings.f.row(i) = -R.col(2).transpose();
     readings.m.row(i) = data.values(i, places);
   }
@@ -86,6 +87,7 @@ std::optional<Fault> ReadTable(const BenchTable& data, const BenchReference& ref
   if (auto fault = FindChannels(data, readings.channels, &places)) return fault;
   // Over whole turns the level part of the Earth's rate is nothing; the axis points up.
   const double up = kBenchEarthDegPerHour * std::sin(*reference.latitude);
+  const double up_by_latitude = kBenchEarthDegPerHour * std::cos(*reference.latitude);
   for (int i = 0; i < data.rows(); ++i) {
     const double axis = data.values(i, (*found)[0]);
     if (axis != 0 && axis != 1 && axis != 2) {
@@ -94,6 +96,7 @@ std::optional<Fault> ReadTable(const BenchTable& data, const BenchReference& ref
     }
     const Eigen::Vector3d n = Eigen::Vector3d::Unit(static_cast<int>(axis));
     readings.w.row(first + i) = (data.values(i, (*found)[1]) * units::kHour + up) * n.transpose();
+    readings.w_by_latitude.row(first + i) = up_by_latitude * n.transpose();
     readings.f.row(first + i) = n.transpose();
     readings.m.row(first + i) = data.values(i, places);
   }
@@ -156,7 +159,7 @@ Result<GyroReadings> ReadGyros(const BenchTable& rest, const BenchTable& table,
   readings.lines.insert(readings.lines.end(), table.lines.begin(), table.lines.end());
   readings.on_table.assign(readings.lines.size(), 0);
   std::fill(readings.on_table.begin() + rest.rows(), readings.on_table.end(), char{1});
-  readings.w = readings.w_level = readings.w_north = readings.f =
+  readings.w = readings.w_level = readings.w_north = readings.w_by_latitude = readings.f =
       Eigen::MatrixX3d::Zero(readings.rows(), 3);
   readings.m.resize(readings.rows(), static_cast<Eigen::Index>(channels->size()));
   if (rest.rows() > 0) {

@@ -31,13 +31,14 @@ struct GyroReadings {
   std::vector<Rotor> rotors;
   std::vector<int> lines;  ///< those of the table behind those at rest
   std::vector<char> on_table;
-  bool joined = false;       ///< some at rest, some on the table
-  Eigen::MatrixX3d w;        ///< true rate [deg/h], bench axes
-  Eigen::MatrixX3d w_level;  ///< its level part, which turns with the fixture's north offset
-  Eigen::MatrixX3d w_north;  ///< its change with that offset [deg/h per rad]
-  Eigen::MatrixX3d f;        ///< specific force [g]
-  double f_off = 0;          ///< by how much the table's own lies beside its inc and tf, rms [g]
-  Eigen::MatrixXd m;         ///< readings [deg/h], a column a channel
+  bool joined = false;             ///< some at rest, some on the table
+  Eigen::MatrixX3d w;              ///< true rate [deg/h], bench axes
+  Eigen::MatrixX3d w_level;        ///< its level part, which turns with the fixture's north offset
+  Eigen::MatrixX3d w_north;        ///< its change with that offset [deg/h per rad]
+  Eigen::MatrixX3d w_by_latitude;  ///< change of w with the latitude [deg/h per rad]
+  Eigen::MatrixX3d f;              ///< specific force [g]
+  double f_off = 0;   ///< by how much the table's own lies beside its inc and tf, rms [g]
+  Eigen::MatrixXd m;  ///< readings [deg/h], a column a channel
   int rows() const { return static_cast<int>(lines.size()); }
 };
 

@@ -22,7 +22,11 @@ inline constexpr double kOutlierSigmas = 6;
 struct FitRow {
   int line = 0;
   std::string channel;
-  double unit = 1;  ///< the data's unit in one of the whitened residual, for reports
+  double unit = 1;      ///< the data's unit in one of the whitened residual, for reports
+  bool in_time = true;  ///< false: a difference of readings, which drift does not move
+  /// Where rows are whitened together: what one of the data's unit in this reading adds to the
+  /// rows of its line. Empty: 1 / unit to this row alone.
+  Eigen::VectorXd spread = {};
 };
 
 /// y = A x + noise of `sigma`, row by row.
@@ -62,10 +66,16 @@ LinearSolution Solve(const LinearProblem& problem);
 /// What people read of a solution.
 FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution);
 
+/// A reading as people know it, by FitRow::line without its sign.
+using LineNames = std::function<std::string(int)>;
+/// "line 7".
+std::string LineName(int line);
+
 /// The report of a solution that must determine everything: the Fault, of `data`, names what the
 /// readings do not, and says `advice`.
 Result<FitReport> WholeReport(const BenchTable& data, const LinearProblem& problem,
-                              const LinearSolution& solution, std::string_view advice);
+                              const LinearSolution& solution, std::string_view advice,
+                              const LineNames& name = LineName);
 
 /// Takes the report from its parameters to functions of them; the covariance by differences.
 void Reparametrise(FitReport& report, std::vector<std::string> names,

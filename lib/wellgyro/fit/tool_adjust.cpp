@@ -365,7 +365,7 @@ class Adjuster {
             static_cast<int>(i) + 1,
             (row.mount >= 0 ? "table " : "") +
                 readings_.channels[static_cast<std::size_t>(channel)].name,
-            1 / W(k, k)};
+            1 / W(k, k), true, W.col(k)};
       }
       at += size;
     }

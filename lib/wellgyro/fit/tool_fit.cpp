@@ -63,8 +63,19 @@ std::optional<Asked> FarOff(const ToolAdjustment& a, Eigen::Index at, double pri
 }
 
 void TellDrifts(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
+  constexpr double kSure = 5;
   for (int k = 0; k < model.n_terms(); ++k) {
     const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
+    const double sigma = std::sqrt(std::max(0.0, a.cov(k, k)));
+    if (term.kind == TermKind::kDrift && term.prior_sigma == 0 &&
+        std::abs(a.x[k]) > kSure * sigma) {
+      fit.calibration.report.remarks.push_back(fmt::format(
+          "{} is {:.3g} +- {:.2g}: accelerometers do not drift so in hours; one that stepped on "
+          "the "
+          "way looks like this too, and then the result is beyond its sigmas: repeat what was "
+          "measured first",
+          term.name, a.x[k], sigma));
+    }
     const auto asked = FarOff(a, k, term.prior_sigma);
     if (!asked) continue;
     fit.calibration.report.remarks.push_back(fmt::format(
@@ -117,23 +128,51 @@ BenchTable Joint(std::span<const BenchTable> tables, const ToolReadings& reading
   return joint;
 }
 
+// Of a line of Joint().
+std::size_t RowAt(int line) { return static_cast<std::size_t>(line) - 1; }
+
+std::string ReadingName(std::span<const BenchTable> tables, const ToolRow& row) {
+  const std::string line = LineName(row.line);
+  if (tables.size() == 1) return line;
+  return fmt::format("{}, {}", tables[static_cast<std::size_t>(row.table)].source, line);
+}
+
 // Lines and tables as people know them.
 void NameLines(std::span<const BenchTable> tables, const ToolReadings& readings,
                const ToolAdjustment& a, FitReport& report) {
   for (FitResidual& residual : report.residuals) {
-    const ToolRow& row = readings.rows[static_cast<std::size_t>(residual.line - 1)];
+    const ToolRow& row = readings.rows[RowAt(residual.line)];
     residual.line = row.line;
     if (tables.size() > 1) residual.channel += fmt::format(" of table {}", row.table + 1);
   }
   for (std::size_t i = 0; i < a.out.size(); ++i) {
-    if (a.out[i] == 0) continue;
-    const ToolRow& row = readings.rows[i];
-    report.outlier_lines.push_back(row.line);
-    if (tables.size() > 1) {
-      report.remarks.push_back(
-          fmt::format("{}, line {} is left out: it does not belong to the others",
-                      tables[static_cast<std::size_t>(row.table)].source, row.line));
+    if (a.out[i] != 0) report.outlier_lines.push_back(readings.rows[i].line);
+  }
+}
+
+// Bad readings come alone: where many are left out in a row, what is there is another state of the
+// tool or of the bench.
+void TellLeftOutLines(std::span<const BenchTable> tables, const ToolReadings& readings,
+                      const ToolAdjustment& a, FitReport& report) {
+  constexpr std::size_t kStretch = 4;
+  for (std::size_t i = 0; i < a.out.size();) {
+    std::size_t end = i;
+    while (end < a.out.size() && a.out[end] != 0 &&
+           readings.rows[end].table == readings.rows[i].table) {
+      ++end;
     }
+    const std::size_t n = end - i;
+    if (n >= kStretch) {
+      report.remarks.push_back(fmt::format(
+          "{} to {} are left out, {} readings in a row: something changed there, the tool or the "
+          "bench, and the result holds for neither side of it; measure that table again",
+          ReadingName(tables, readings.rows[i]), readings.rows[end - 1].line, n));
+    }
+    for (; i < end && n < kStretch && tables.size() > 1; ++i) {
+      report.remarks.push_back(fmt::format("{} is left out: it does not belong to the others",
+                                           ReadingName(tables, readings.rows[i])));
+    }
+    i = std::max(end, i + 1);
   }
 }
 
@@ -292,7 +331,8 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
                       const LeftOutErrors& left_out) {
   ToolFit fit;
   FitReport& report = fit.calibration.report;
-  auto whole = WholeReport(Joint(tables, readings), a.linear, a.solution, "measure more");
+  const auto name = [&](int line) { return ReadingName(tables, readings.rows[RowAt(line)]); };
+  auto whole = WholeReport(Joint(tables, readings), a.linear, a.solution, "measure more", name);
   if (!whole) return whole.fault();
   report = *std::move(whole);
   report.method = "tool";
@@ -301,6 +341,7 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
     return *fault;
   }
   NameLines(tables, readings, a, report);
+  TellLeftOutLines(tables, readings, a, report);
   TellReferences(tables, readings, setup, report);
   TellLatitude(tables, readings, setup, report);
   TellHemisphere(model, a, setup, report);

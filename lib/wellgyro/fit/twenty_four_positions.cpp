@@ -68,6 +68,7 @@ LinearProblem Problem(const std::vector<PositionRun>& runs, const TwentyFourPosi
                          problem.sigma[row]};
       const auto first = static_cast<std::size_t>(row);
       problem.rows[first] = problem.rows[first + 1] = label;
+      problem.rows[first + 1].in_time = false;
     }
   }
   return problem;

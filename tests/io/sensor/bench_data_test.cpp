@@ -45,6 +45,8 @@ TEST(BenchData, NamesLineAndColumnOfWhatIsWrong) {
   EXPECT_EQ(fault("a,b\n1,nan\n").code, FaultCode::kSyntax);
   EXPECT_EQ(fault("a,b\n1,1e999\n").code, FaultCode::kSyntax);
   EXPECT_EQ(fault("a,b\n1\n").text, "1 cells where the header names 2 columns");
+  EXPECT_EQ(fault("axis,a\nx,up\n").text, "\"up\" in column a is no number");
+  EXPECT_EQ(fault("axis,dir\nx,x\n").code, FaultCode::kSyntax);
   EXPECT_EQ(fault("a,a\n1,2\n").code, FaultCode::kConflict);
   EXPECT_EQ(fault("a,b\n1,2e15\n").text, "\"2e15\" in column b is larger than any reading");
 }

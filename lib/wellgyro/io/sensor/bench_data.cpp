@@ -14,8 +14,15 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::pair<std::string_view, double> kWords[] = {
-    {"x", 0}, {"y", 1}, {"z", 2}, {"up", 1}, {"down", -1},
+struct Word {
+  std::string_view column, text;
+  double value = 0;
+};
+
+constexpr Word kWords[] = {
+    {"axis", "x", 0},    {"axis", "y", 1},     {"axis", "z", 2}, {"channel", "x", 0},
+    {"channel", "y", 1}, {"channel", "z", 2},  {"dir", "up", 1}, {"dir", "down", -1},
+    {"sign", "up", 1},   {"sign", "down", -1},
 };
 
 std::vector<std::string_view> Cells(std::string_view line, char separator) {
@@ -24,9 +31,9 @@ std::vector<std::string_view> Cells(std::string_view line, char separator) {
   return cells;
 }
 
-std::optional<double> ReadingOf(std::string_view cell) {
-  for (const auto& [word, value] : kWords) {
-    if (cell == word) return value;
+std::optional<double> ReadingOf(std::string_view column, std::string_view cell) {
+  for (const Word& word : kWords) {
+    if (column == word.column && cell == word.text) return word.value;
   }
   return NumberOf(cell);
 }
@@ -100,7 +107,7 @@ class Reader {
                 number, 1);
     }
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto value = ReadingOf(cells[i]);
+      const auto value = ReadingOf(table_.columns[i], cells[i]);
       const std::string wrong = value ? WrongWith(*value, i) : "is no number";
       if (!wrong.empty()) {
         return At(value ? FaultCode::kRange : FaultCode::kSyntax,
