@@ -38,8 +38,8 @@ bool Same(const Increment& a, const Increment& b) {
          a.turn_before_M == b.turn_before_M && a.force_M == b.force_M &&
          a.turn_per_roll == b.turn_per_roll && a.force_per_roll == b.force_per_roll &&
          a.turn_by_error == b.turn_by_error && a.force_by_error == b.force_by_error &&
-         a.axial == b.axial && a.var_turn == b.var_turn && a.sigma_roll == b.sigma_roll &&
-         a.seq_begin == b.seq_begin && a.seq_end == b.seq_end && a.quality == b.quality;
+         a.var_turn == b.var_turn && a.sigma_roll == b.sigma_roll && a.seq_begin == b.seq_begin &&
+         a.seq_end == b.seq_end && a.quality == b.quality;
 }
 
 TEST(IncrementKnots, DoNotDependOnOtherKnotsOrOnWhenTheyAreFetched) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -11,6 +12,7 @@
 
 #include "wellgyro/fit/affine_fit.h"
 #include "wellgyro/fit/gyro_fit.h"
+#include "wellgyro/fit/multi_station_fit.h"
 #include "wellgyro/fit/position_fit.h"
 #include "wellgyro/fit/roll_test.h"
 #include "wellgyro/fit/scalar_fit.h"
@@ -176,6 +178,34 @@ TEST(BenchFaults, AWrongLatitudeIsToldByTheRateTable) {
     false_alarms += SaysThat(right->report, "at rest suit a latitude") ? 1 : 0;
   }
   EXPECT_EQ(told, kBenches);
+  EXPECT_LE(false_alarms, 2);
+}
+
+// Of stations that turn through all directions the biases take little of a dip or a latitude.
+TEST(BenchFaults, AWrongDipOrLatitudeIsToldByTheStations) {
+  Random random(154);
+  int told = 0, false_alarms = 0;
+  constexpr int kBenches = 20;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    const BenchTable magnetic =
+        Stations(Noise(random, 200), Noise(random, 2e-3), {.dip = 61}, 20, 1e-3, random);
+    const BenchTable rates = GyroStations(Noise(random, 0.1), 60.5, 0.02, random);
+    const auto of = [&](double dip, double latitude) {
+      MultiStationSetup setup;
+      setup.reference.field = 50'000;
+      setup.reference.dip = dip * kRad;
+      setup.reference.latitude = latitude * kRad;
+      const auto fields = FitMultiStation(magnetic, setup), gyros = FitMultiStation(rates, setup);
+      EXPECT_TRUE(fields.has_value() && gyros.has_value());
+      return std::pair(*fields, *gyros);
+    };
+    const auto wrong = of(60, 60), right = of(61, 60.5);
+    told += SaysThat(wrong.first.report, "the stations suit a dip of 6") ? 1 : 0;
+    told += SaysThat(wrong.second.report, "the stations suit a latitude of 60.") ? 1 : 0;
+    false_alarms += SaysThat(right.first.report, "the stations suit") ? 1 : 0;
+    false_alarms += SaysThat(right.second.report, "the stations suit") ? 1 : 0;
+  }
+  EXPECT_EQ(told, 2 * kBenches);
   EXPECT_LE(false_alarms, 2);
 }
 

@@ -28,9 +28,9 @@ void ExpectSame(const Matrix& a, const Matrix& b) {
 
 void ExpectSame(const Increment& a, const Increment& b) {
   EXPECT_EQ(a.time, b.time);
-  for (const auto number : {&Increment::seconds, &Increment::roll_before, &Increment::roll_after,
-                            &Increment::axial, &Increment::var_turn, &Increment::sigma_roll,
-                            &Increment::lateral, &Increment::gap_seconds}) {
+  for (const auto number :
+       {&Increment::seconds, &Increment::roll_before, &Increment::roll_after, &Increment::var_turn,
+        &Increment::sigma_roll, &Increment::lateral, &Increment::gap_seconds}) {
     EXPECT_EQ(Bits(a.*number), Bits(b.*number));
   }
   ExpectSame(a.turn_M, b.turn_M);
@@ -138,7 +138,7 @@ KeptKnot AnyBits(Random& random) {
   KeptKnot kept;
   Increment& inc = kept.knot.increment;
   inc.time.ns = static_cast<std::int64_t>(1e18 * random.Normal());
-  for (double* value : {&inc.seconds, &inc.roll_before, &inc.roll_after, &inc.axial, &inc.var_turn,
+  for (double* value : {&inc.seconds, &inc.roll_before, &inc.roll_after, &inc.var_turn,
                         &inc.sigma_roll, &inc.lateral, &inc.gap_seconds}) {
     any(*value);
   }

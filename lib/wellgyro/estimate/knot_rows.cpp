@@ -10,6 +10,7 @@
 #include "wellgyro/estimate/turn_columns.h"
 #include "wellgyro/estimate/wobble.h"
 #include "wellgyro/math/drift.h"
+#include "wellgyro/math/plane.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/square.h"
 
@@ -40,134 +41,12 @@ constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 // bound of 1/8 of the change where it shows a quarter of it.
 constexpr double kTrapezoid = 0.5;
 
-/// The temperature's share in the errors' changes.
-double WarmthOf(const EstimateSetup& setup, const RunKnot& knot) {
-  if (!setup.cov_errors) return 0;
-  return (static_cast<double>(knot.temperature) - setup.cov_errors->reference) /
-         setup.cov_errors->span;
-}
-
 }  // namespace
-
-/// What several factors of a knot share.
-struct KnotRows::Terms {
-  const RunKnot& knot;
-  Increment inc;  // of a psi without what is known of the sensors' errors
-  const KnotPlace& place;
-  const Node& begin;
-  const Node& end;
-  double dt;
-  double delta = 0;                      // psi's error at the end, from that at the begin
-  double axial_rate = 0;                 // of roll, by a third axis
-  double frequency = 0;                  // of the swing
-  Vector2d of_swing = Vector2d::Zero();  // in the mean rate of roll
-  TurnByError turn_by_error{};           // at the roll rate of now
-  Vector2d turn{};                       // of what is known of the errors corrected
-  Vector2d turn_per_roll{};              // at delta
-  Matrix3d Ha{}, Hb{}, Xh{}, R_LM{};
-  Vector3d w_IL_L;  // at the latitude as it is now known
-  BorderVector border;
-  double warmth = 0;    // what the errors' changes count by
-  ErrorVector error{};  // at this temperature
-  WobbleBy wobble;
-  Eigen::Matrix<double, 3, kSecondOrderSources> by_second_order{};  // of the force, where there is
-};
-
-/// Errors as they stand: the border has what they are beside what is known of them.
-ErrorVector KnotRows::ErrorsAt(const BorderVector& border, double warmth) const {
-  ErrorVector error = known_;
-  for (int i = 0; i < kErrorSources; ++i) {
-    const int at = layout_.source[static_cast<std::size_t>(i)];
-    const int change = layout_.change[static_cast<std::size_t>(i)];
-    if (at != kAbsent) error[i] += border[at];
-    if (change != kAbsent) error[i] += warmth * border[change];
-  }
-  return error;
-}
-
-/// The increment without what is known of the sensors' errors in psi.
-void KnotRows::TakeWobble(Terms& t) {
-  t.wobble = WobbleOf(t.knot.increment);
-  const PhaseErrors errors = PhaseErrorsIn(t.error, t.inc.force_M.z());
-  if (!errors.isZero(0)) t.inc = WithoutWobble(t.knot.increment, t.wobble, errors);
-}
-
-/// The turn without what is known of the errors, and what each of them makes of it.
-void KnotRows::CorrectTurn(Terms& t) {
-  const Increment& inc = t.inc;
-  // Axes that are skewed, and a stamp that is late, see the roll rate as it is, not as psi has it.
-  t.turn_by_error.middleCols<2>(kMisalignmentX) +=
-      t.delta / t.dt * inc.turn_by_error.middleCols<2>(kGyroBiasX);
-  // Of psi by the high side the gyros' turn is late against the forces; by a third axis it is with
-  // the gyros, and the forces are late: see AddForce().
-  const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
-  const double late = inc.has_axial ? 0 : psi_rate;
-  if (inc.has_axial) {
-    t.turn_by_error.col(kTimeSkew).setZero();
-    t.axial_rate = psi_rate;
-  } else {
-    t.turn_by_error.col(kTimeSkew) += t.delta / t.dt * Vector2d(-inc.turn_M.y(), inc.turn_M.x());
-  }
-  for (std::size_t k = 0; k < kTurns.size(); ++k) {
-    const double error = t.error[kTurns[k]];
-    if (error != 0) t.turn -= error * t.turn_by_error.col(static_cast<Eigen::Index>(k));
-  }
-  // A toolface error `twist` rotates the measured turn by e^{i twist}. turn_by_error has the first
-  // order; the cosine is the second, twist^2 / 2: of 0.05 s at 10 rpm 1.4e-3 of every turn.
-  const double twist = t.error[kToolfaceOffset] + late * t.error[kTimeSkew];
-  t.turn -= 0.5 * twist * twist * inc.turn_M;
-  t.turn_by_error.col(kToolfaceOffset) += twist * inc.turn_M;
-  t.turn_by_error.col(kTimeSkew) += late * twist * inc.turn_M;
-}
-
-KnotRows::Terms KnotRows::TermsOf(const RunKnot& knot, const KnotPlace& place,
-                                  const BorderVector& border, const Node& begin,
-                                  const Node& end) const {
-  Terms t{.knot = knot,
-          .inc = knot.increment,
-          .place = place,
-          .begin = begin,
-          .end = end,
-          .dt = knot.increment.seconds,
-          .w_IL_L = place.w_IL_L,
-          .border = border,
-          .warmth = WarmthOf(setup_, knot)};
-  t.error = ErrorsAt(border, t.warmth);
-  TakeWobble(t);
-  const Increment& inc = t.inc;
-  t.turn_by_error = TurnBy(inc);
-  t.turn = inc.turn_M;
-  if (layout_.second_order) t.by_second_order = ForceBySecondOrder(inc);
-  if (layout_.latitude != kAbsent) t.w_IL_L += border[layout_.latitude] * place.dw_by_latitude;
-  double rate = begin.roll_rate;
-  if (layout_.swing != kAbsent) {
-    t.frequency = *FrequencyOf(setup_, layout_, border);
-    t.of_swing = MeanOfSwing(t.frequency, t.dt);
-    rate += t.of_swing.dot(begin.swing);
-  }
-  t.delta = rate * t.dt - (inc.roll_before + inc.roll_after);
-  CorrectTurn(t);
-  Vector2d drift = Vector2d::Zero();
-  if (layout_.walk != kAbsent) drift += 0.5 * (begin.walk + end.walk);
-  if (layout_.markov != kAbsent) drift += 0.5 * (begin.markov + end.markov);
-  if (layout_.ramp != kAbsent) drift += place.since_start * border.segment<2>(layout_.ramp);
-  t.turn -= inc.turn_by_error.middleCols<2>(kGyroBiasX) * drift;
-  // Roll error delta that grows evenly over the knot: integral of e^{i delta (tau - 1/2)} over tau
-  // in (0, 1), to the third order for a steady turn. The square counts where the roll was
-  // unobserved and the tool turned by delta more than psi.
-  t.turn += t.delta * (inc.turn_per_roll - t.delta / 24 * inc.turn_M);
-  t.turn_per_roll = inc.turn_per_roll - t.delta / 12 * inc.turn_M;
-  t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta + place.roll_bow);
-  t.Hb = RotationZ(inc.roll_after + 0.5 * t.delta - place.roll_bow);
-  t.Xh = Exp(Flat(inc.turn_before_M + 0.5 * (t.turn - inc.turn_M)));
-  t.R_LM = Exp(-0.5 * t.dt * t.w_IL_L) * begin.R_LT * t.Ha * t.Xh;
-  return t;
-}
 
 void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RollChange& roll,
                    const BorderVector& border, const Node& begin, const Node& end,
                    NormalBlock& block) {
-  const Terms t = TermsOf(knot, place, border, begin, end);
+  const Terms t = TermsOf({setup_, layout_, known_}, knot, place, border, begin, end);
   AddTurn(t, block);
   if (knot.increment.level) AddForce(t, block);
   if (knot.increment.has_axial) AddAxial(t, block);
@@ -228,8 +107,8 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Matrix3d by_begin = by * slopes.left * -B.transpose(), by_end = by * slopes.right;
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = by_begin.col(i);
   for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = by_end.col(i);
-  const Vector3d by_delta =
-      -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() - turned * t.turn_per_roll;
+  const Vector3d by_delta = -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() -
+                            turned * (t.turn_per_roll + t.skew_per_roll);
   const Vector3d by_rate = by * (t.dt * by_delta);
   AddRate(t, by_rate, block);
   TurnErrors by_error = by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
@@ -268,19 +147,6 @@ void KnotRows::AddGyroDrift(const Terms& t, const TurnErrors& by_error, NormalBl
   }
 }
 
-/// The mean force in M without the tool's errors.
-Vector3d KnotRows::ForceOf(const Terms& t, const Vector3d& by_skew) const {
-  const Increment& inc = t.inc;
-  Vector3d force = inc.force_M;
-  for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
-    if (t.error[i] != 0) force -= t.error[i] * inc.ForceBy(i);
-  }
-  for (int i = 0; layout_.second_order && i < kSecondOrderSources; ++i) {
-    force -= t.error[kAccelSecondOrder + i] * t.by_second_order.col(i);
-  }
-  return force - t.error[kTimeSkew] * by_skew;
-}
-
 /// Gravity beyond the model's, where it is unknown [m/s^2].
 double KnotRows::GravityOffset(const Terms& t) const {
   double gravity = layout_.gravity == kAbsent ? 0 : t.border[layout_.gravity];
@@ -300,15 +166,16 @@ void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
   };
   for (std::size_t k = 0; k < kTurns.size(); ++k) {
     const int i = kTurns[k];
-    Vector2d half = 0.5 * t.turn_by_error.col(static_cast<Eigen::Index>(k));
+    const Vector2d turn = t.turn_by_error.col(static_cast<Eigen::Index>(k));
+    Vector2d half = 0.5 * turn - t.delta / 8 * QuarterTurned(turn);
     if (i == kMisalignmentX || i == kMisalignmentY) half += beyond.col(i - kMisalignmentX);
-    Vector3d by_error = p.cross(Flat(half));
+    Vector3d by_error = p.cross(Flat(half)) - t.delta / 24 * t.inc.force_M.z() * Flat(turn);
     if (i == kTimeSkew) by_error -= by_skew;
     if (i < kTurnSources) by_error += by_phase * PhaseErrorsOf(i, t.inc.force_M.z());
     add(i, by_error);
   }
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
-    add(i, by_phase * PhaseErrorsOf(i, t.inc.force_M.z()) - t.inc.ForceBy(i));
+    add(i, by_phase * PhaseErrorsOf(i, t.inc.force_M.z()) - ForceBy(t, i));
   }
   for (int i = 0; layout_.second_order && i < kSecondOrderSources; ++i) {
     add(kAccelSecondOrder + i, -t.by_second_order.col(i));
@@ -327,9 +194,11 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   by_skew += 0.5 * Square(t.axial_rate) * t.error[kTimeSkew] * Flat(inc.force_M.head<2>());
   const Eigen::Matrix2d beyond = SkewBeforeHalf(inc);
   const Vector2d skew(t.error[kMisalignmentX], t.error[kMisalignmentY]);
-  Vector3d force = ForceOf(t, by_skew) + p.cross(Flat(beyond * skew));
+  Vector3d force = ForceOf(t, layout_, by_skew) + p.cross(Flat(beyond * skew));
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
+  // Turned back to the middle by a turn that goes round with delta as psi has not seen it.
+  force += t.delta / 24 * inc.force_M.z() * Flat(t.turn);
   const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
   // M stands where half of the seen turn leads; half of the unseen is missing.
   const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
@@ -397,7 +266,7 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
 /// evenly is in T, in the mean of e^{-i psi}.
 void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   const double whiten = 1 / TurnNoise(t.dt);
-  const double axial = t.inc.axial;
+  const double axial = t.inc.roll_before + t.inc.roll_after;
   const Vector2d unit = t.inc.ForceBy(kAccelBiasX).head<2>();
   const Vector2d across(unit.dot(t.turn), unit.x() * t.turn.y() - unit.y() * t.turn.x());
   Factor& f = factor_;

@@ -36,8 +36,9 @@ struct GyroFitSetup {
 /// c (in the order x, y, z) and spin s: m_a = ... + M f_a + Q f_c + N f_a f_s, m_c = ... + M f_c -
 /// Q f_a + N' f_c f_s. Attitudes at every 45 deg of inclination, 90 deg of azimuth and 60 deg of
 /// toolface see everything; toolfaces at multiples of 90 deg do not see N, and it is left out. A
-/// wrong latitude does not show in the residuals at rest. Result: `b_degh`, `U`, `G_degh_per_g`,
-/// `aniso_degh_per_g2`, `MQ` (M, Q of each rotor); with four channels `parity_rms_degh`.
+/// wrong latitude shows beside a rate table alone, and is told. Result: `b_degh`, `U`,
+/// `G_degh_per_g`, `aniso_degh_per_g2`, `MQ` (M, Q of each rotor); with four channels
+/// `parity_rms_degh`.
 WELLGYRO_EXPORT Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table,
                                                  const GyroFitSetup& setup);
 

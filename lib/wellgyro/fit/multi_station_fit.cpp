@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/added_terms_internal.h"
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/nonlinear_internal.h"
@@ -291,6 +294,41 @@ Result<NonlinearProblem::Solution> SolveStations(const BenchTable& data,
   return Gyros(data, rates, table, setup).Solve();
 }
 
+struct GivenOfPlace {
+  const char* name;
+  double stated, unit;
+  const char* in;
+};
+
+// What was given of the place is a term too, of which the stations may say something else: of a dip
+// that is 1 deg off the biases take a part, and the rest looked like noise.
+void TellPlace(LinearProblem linear, const BenchReference& reference, FitReport& report) {
+  constexpr double kFalseAlarm = 0.01;
+  linear.robust = false;
+  const double latitude = reference.latitude.value_or(0);
+  Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(linear.y.size(), 3);
+  for (Eigen::Index row = 0; row < Z.rows(); ++row) {
+    const std::string& channel = linear.rows[static_cast<std::size_t>(row)].channel;
+    if (channel == "field") Z(row, 0) = 1;
+    if (channel == "dip") Z(row, 1) = 1;
+    if (channel == "level") Z(row, 2) = -kBenchEarthDegPerHour * std::sin(latitude);
+    if (channel == "vertical") Z(row, 2) = kBenchEarthDegPerHour * std::cos(latitude);
+  }
+  const std::vector<AddedTerm> terms = AddedTerms(linear, Solve(linear)).Test(Z, kFalseAlarm / 4);
+  const GivenOfPlace references[] = {{"field", reference.field.value_or(0), 1, "nT"},
+                                     {"dip", reference.dip.value_or(0), units::kDeg, "deg"},
+                                     {"latitude", latitude, units::kDeg, "deg"}};
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const GivenOfPlace& of = references[i];
+    if (!(terms[i].sigmas > terms[i].limit)) continue;
+    report.remarks.push_back(fmt::format(
+        "the stations suit a {} of {:.5g} {}, {:+.2g} beside the one given ({:.1f} sigmas, chance "
+        "reaches {:.1f}): it is wrong there, and the result with it, or the readings are disturbed",
+        of.name, (of.stated - terms[i].coefficient) / of.unit, of.in,
+        -terms[i].coefficient / of.unit, terms[i].sigmas, terms[i].limit));
+  }
+}
+
 void TakeResult(std::size_t gyros, FitReport& report) {
   // The stations' azimuths served their turn.
   if (gyros == 2) {
@@ -332,6 +370,7 @@ Result<BenchCalibration> FitMultiStation(const BenchTable& data, const MultiStat
                               report)) {
     return *fault;
   }
+  if (rates->size() != 2) TellPlace(solution->linear, setup.reference, report);
   TakeResult(rates->size(), report);
   RemarkPriors(setup, report);
   return out;

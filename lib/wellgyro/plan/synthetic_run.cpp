@@ -110,7 +110,6 @@ void FillIncrement(const Matrix3d& begin, const Matrix3d& end, const KnotPlace& 
   const Matrix3d R_LM = Exp(-0.5 * dt * place.w_IL_L) * begin * RotationZ(0.5 * angle) *
                         Exp({0.5 * turn.x(), 0.5 * turn.y(), 0});
   inc.force_M = R_LM.transpose() * (place.acceleration_L - place.site.gravity * Vector3d::UnitZ());
-  inc.axial = angle;
   inc.roll_seen = true;
   FillErrors(inc, angle, inc.force_M);
 }

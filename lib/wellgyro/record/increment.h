@@ -52,9 +52,7 @@ struct Increment {
   /// Of an accelerometer's source.
   auto ForceBy(int source) { return force_by_error.col(source - kTurnSources); }
   auto ForceBy(int source) const { return force_by_error.col(source - kTurnSources); }
-  /// Integral of a third gyro axis, where there is one: psi is then its integral [rad].
-  double axial = 0;
-  bool has_axial = false;
+  bool has_axial = false;  ///< psi is the integral of a third gyro axis
   /// Variance of turn_M beyond the gyros' white noise: what the last order kept leaves out, per
   /// component [rad^2]. Whirl and roll of half the sampling rate pass unseen.
   double var_turn = 0;
@@ -62,7 +60,7 @@ struct Increment {
   /// from this knot's samples alone [rad]; 2 pi where there are none.
   double sigma_roll = 0;
   /// Variance of force_M across gravity, about the axis, over that of the accelerometers' mean: psi
-  /// follows their noise.
+  /// follows their noise, or what a third axis did between its samples is not known.
   double lateral = 1;
   bool roll_seen = false;  ///< psi follows gravity (or a third axis) all through the knot
   bool level = true;       ///< force_M counts: of half the knot, off full scale and outside gaps

@@ -120,7 +120,8 @@ RunFit FitOf(const RunEstimate& estimate) {
 }
 
 /// Where neither gravity nor a third axis shows the roll a knot is summed as if the tool did not
-/// turn in it, and what it turns is made up for to the second order.
+/// turn in it, and what it turns is made up for as far as a series goes. Of single knots, as where
+/// the roll starts, twenty are left out.
 double HiddenTurn(std::span<const RunKnot> knots, std::span<const Node> nodes) {
   constexpr std::size_t kKnots = 20;
   std::vector<double> turns;

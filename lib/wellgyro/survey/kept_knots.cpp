@@ -121,7 +121,6 @@ void GoThrough(Code& code, Increment& inc, const Increment& before) {
     auto column = inc.turn_by_harmonic.col(i);
     Each(code, column, before.turn_by_harmonic.col(i));
   }
-  code(inc.axial, before.axial);
   code(inc.var_turn, before.var_turn);
   code(inc.sigma_roll, before.sigma_roll);
   code(inc.lateral, before.lateral);

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "wellgyro/estimate/knot_place.h"
+#include "wellgyro/estimate/layout.h"
+#include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/setup.h"
+#include "wellgyro/estimate/turn_columns.h"
+#include "wellgyro/estimate/wobble.h"
+#include "wellgyro/record/run_knot.h"
+
+namespace wellgyro {
+
+/// What several factors of a knot share.
+struct KnotTerms {
+  const RunKnot& knot;
+  Increment inc;  ///< of a psi without what is known of the sensors' errors
+  const KnotPlace& place;
+  const Node& begin;
+  const Node& end;
+  double dt;
+  double delta = 0;       ///< psi's error at the end, from that at the begin [rad]
+  double axial_rate = 0;  ///< of roll, by a third axis [rad/s]
+  double frequency = 0;   ///< of the swing [rad/s]
+  Eigen::Vector2d of_swing = Eigen::Vector2d::Zero();  ///< in the mean rate of roll
+  TurnByError turn_by_error{};                         ///< at the roll rate of now
+  Eigen::Vector2d turn{};                              ///< what is known of the errors corrected
+  Eigen::Vector2d turn_per_roll{};                     ///< at delta, of what the gyros read [1]
+  Eigen::Vector2d skew_per_roll{};                     ///< of what skewed ones read wrongly [1]
+  double fixed_beyond = 0;                   ///< of what is fixed in T, its mean in M beyond psi's
+  Eigen::Matrix3d Ha{}, Hb{}, Xh{}, R_LM{};  ///< rolls to the middle and from it, half the turn
+  Eigen::Vector3d w_IL_L;                    ///< at the latitude as it is now known
+  BorderVector border;
+  double warmth = 0;    ///< what the errors' changes count by
+  ErrorVector error{};  ///< at this temperature
+  WobbleBy wobble;
+  Eigen::Matrix<double, 3, kSecondOrderSources> by_second_order{};  ///< of the force, where it is
+};
+
+/// Of a run.
+struct KnotModel {
+  const EstimateSetup& setup;
+  const Layout& layout;
+  const ErrorVector& known;  ///< errors before the border's
+};
+
+/// An increment's turn and force about the present nodes and errors. All must outlive the terms.
+KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& place,
+                  const BorderVector& border, const Node& begin, const Node& end);
+
+/// What a unit of an accelerometer's error is in the mean force in M, when that has been turned by
+/// what the tool turned beyond psi. Scales and shear, of what does not go round, are left as psi
+/// has them.
+Eigen::Vector3d ForceBy(const KnotTerms& terms, int source);
+
+/// The mean force in M without the tool's errors; `by_skew`: what a second of time skew adds.
+Eigen::Vector3d ForceOf(const KnotTerms& terms, const Layout& layout,
+                        const Eigen::Vector3d& by_skew);
+
+}  // namespace wellgyro
