@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Numbers of a knot and its attitude, each a word of 64 bits.
-constexpr std::size_t kWords = 110;
+// Numbers of a knot and its attitude, each a word of 64 bits, in pairs.
+constexpr std::size_t kNumbers = 109, kWords = kNumbers + kNumbers % 2;
 using KnotWords = std::array<std::uint64_t, kWords>;
 
 std::uint64_t Bits(double value) { return std::bit_cast<std::uint64_t>(value); }
@@ -230,7 +230,7 @@ void KeptKnots::Add(const RunKnot& knot, const AttitudeSample& attitude) {
   KeptKnot kept{knot, attitude};
   Measure measure;
   GoThrough(measure, kept, open_.empty() ? KeptKnot{} : last_);
-  assert(measure.n == kWords);
+  assert(measure.n == kNumbers);
   Write(measure.words, open_);
   last_ = kept;
   ++size_;
