@@ -28,7 +28,7 @@ function(wellgyro_compile target)
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-maybe-uninitialized -Wno-restrict>
     $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<BOOL:${WELLGYRO_WERROR}>>:-Werror>
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${WELLGYRO_UNITY}>>:SHELL:--param ggc-min-heapsize=1000000
-      -Wno-shadow -Wno-subobject-linkage -Wno-array-bounds -Wno-stringop-overflow>
+      -Wno-shadow -Wno-subobject-linkage -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>
     $<$<NOT:$<BOOL:${WELLGYRO_LINES}>>:-g0>
     $<$<BOOL:${COMPILE_NUMERIC}>:${WELLGYRO_NUMERIC_OPTIONS}>)
   # Static and shared libraries are made of the same objects.
