@@ -217,8 +217,8 @@ Simulation HardlyLeaning(const testing::Hour& tool, double rpm, double swing_deg
 }
 
 // A tool that begins to roll where psi goes on without it: its turns must be found again, else the
-// run fits nothing. Axes that are skewed by 1e-4 read twice as much of 9 rpm as the Earth turns, and
-// what they read goes round by 54 deg in a knot.
+// run fits nothing. Axes that are skewed by 1e-4 read twice as much of 9 rpm as the Earth turns,
+// and what they read goes round by 54 deg in a knot.
 TEST(ThroughVertical, ARollThatGravityHardlyShowsIsFound) {
   testing::Hour tool = testing::Tactical();
   tool.latitude_deg = 57;

@@ -223,8 +223,8 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
 
 // Of a knot. Where gravity does not show the roll a knot is summed as if the tool did not turn, and
 // what it turned is made up for to the fourth order. Of clean runs in a well that kicks off from
-// vertical, two axes, tilts were within 4.4 sigmas in 22 runs at 36 and 60 deg a knot, within 3.5 in
-// four at 84, and beyond 8 in all of eight at 96, where starts of the roll are not followed.
+// vertical, two axes, tilts were within 4.4 sigmas in 22 runs at 36 and 60 deg a knot, within 3.5
+// in four at 84, and beyond 8 in all of eight at 96, where starts of the roll are not followed.
 constexpr double kHiddenTurnMost = 90 * units::kDeg;
 
 void CheckFit(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
