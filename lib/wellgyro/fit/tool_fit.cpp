@@ -164,7 +164,8 @@ void TellLeftOutLines(std::span<const BenchTable> tables, const ToolReadings& re
     const std::size_t n = end - i;
     if (n >= kStretch) {
       report.remarks.push_back(fmt::format(
-          "{} to {} are left out, {} readings in a row: something changed there, the tool or the "
+          "{} to line {} are left out, {} readings in a row: something changed there, the tool or "
+          "the "
           "bench, and the result holds for neither side of it; measure that table again",
           ReadingName(tables, readings.rows[i]), readings.rows[end - 1].line, n));
     }
