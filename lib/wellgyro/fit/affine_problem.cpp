@@ -51,10 +51,8 @@ void Whiten(const Eigen::MatrixXd& tilt, int row, LinearProblem& problem) {
   for (Eigen::Index k = 0; k < width; ++k) {
     problem.rows[static_cast<std::size_t>(row + k)].spread = whitener.col(k);
   }
-  const Eigen::MatrixXd A = weight.asDiagonal() * problem.A.middleRows(row, width);
-  const Eigen::VectorXd y = weight.cwiseProduct(problem.y.segment(row, width));
-  problem.A.middleRows(row, width) = L.triangularView<Eigen::Lower>().solve(A);
-  problem.y.segment(row, width) = L.triangularView<Eigen::Lower>().solve(y);
+  problem.A.middleRows(row, width) = (whitener * problem.A.middleRows(row, width)).eval();
+  problem.y.segment(row, width) = (whitener * problem.y.segment(row, width)).eval();
   problem.sigma.segment(row, width).setOnes();
 }
 

@@ -165,8 +165,7 @@ void TellLeftOutLines(std::span<const BenchTable> tables, const ToolReadings& re
     if (n >= kStretch) {
       report.remarks.push_back(fmt::format(
           "{} to line {} are left out, {} readings in a row: something changed there, the tool or "
-          "the "
-          "bench, and the result holds for neither side of it; measure that table again",
+          "the bench, and the result holds for neither side of it; measure that table again",
           ReadingName(tables, readings.rows[i]), readings.rows[end - 1].line, n));
     }
     for (; i < end && n < kStretch && tables.size() > 1; ++i) {
