@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/alignment/gyrocompass.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/rotation.h"
 
 /// The least-squares problem behind Gyrocompass().
@@ -91,8 +92,8 @@ class Problem {
   std::span<const StillWindow> windows_;
   double latitude_, gravity_;
   int axes_;
-  std::array<Eigen::LLT<Eigen::MatrixXd>, 3> whiten_rate_;
-  Eigen::LLT<Eigen::MatrixXd> whiten_force_;
+  std::array<Cholesky, 3> whiten_rate_;
+  Cholesky whiten_force_;
   std::array<double, kErrors> sigma_{};
   std::array<double, kErrors> known_{};  ///< what of them is no error: the samples have it
   std::vector<Error> free_;

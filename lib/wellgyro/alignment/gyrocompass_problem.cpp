@@ -5,6 +5,7 @@
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/drift.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -74,9 +75,9 @@ Problem::Problem(std::span<const StillWindow> windows, const Site& site,
   for (const StillWindow& window : windows) {
     gravity_ += window.f_T.norm() / static_cast<double>(count_);
   }
-  whiten_force_ = ForceCovariance(setup.errors).llt();
+  whiten_force_ = Cholesky(ForceCovariance(setup.errors));
   for (int i = 0; i < axes_; ++i) {
-    whiten_rate_[static_cast<std::size_t>(i)] = RateCovariance(i, setup.gyro).llt();
+    whiten_rate_[static_cast<std::size_t>(i)] = Cholesky(RateCovariance(i, setup.gyro));
   }
   ChooseErrors(setup);
 }
@@ -200,8 +201,8 @@ void Problem::Forces(const State& state, System& system) const {
     J.col(column_[kGravity]) = f / g * sigma_[kGravity];
   }
   const Index row = axes_ * count_;
-  system.r.segment(row, 3 * count_) = whiten_force_.matrixL().solve(r);
-  system.J.middleRows(row, 3 * count_) = whiten_force_.matrixL().solve(raw);
+  system.r.segment(row, 3 * count_) = whiten_force_.Whitened(r);
+  system.J.middleRows(row, 3 * count_) = whiten_force_.Whitened(raw);
 }
 
 void Problem::Rates(const State& state, System& system) const {
@@ -231,10 +232,9 @@ void Problem::Rates(const State& state, System& system) const {
     }
   }
   for (int i = 0; i < axes_; ++i) {
-    const auto& llt = whiten_rate_[static_cast<std::size_t>(i)];
-    system.r.segment(i * count_, count_) = llt.matrixL().solve(r.segment(i * count_, count_));
-    system.J.middleRows(i * count_, count_) =
-        llt.matrixL().solve(raw.middleRows(i * count_, count_));
+    const Cholesky& root = whiten_rate_[static_cast<std::size_t>(i)];
+    system.r.segment(i * count_, count_) = root.Whitened(r.segment(i * count_, count_));
+    system.J.middleRows(i * count_, count_) = root.Whitened(raw.middleRows(i * count_, count_));
   }
 }
 
@@ -264,7 +264,7 @@ double Problem::Profile(double azimuth) const {
   System system = Linear(Start(azimuth));
   system.J.col(2).setZero();  // the heading
   const VectorXd right = system.J.transpose() * system.r;
-  const VectorXd step = Normal(system.J).ldlt().solve(right);
+  const VectorXd step = SolveSymmetric(Normal(system.J), right);
   return (system.r - system.J * step).squaredNorm();
 }
 
@@ -274,7 +274,7 @@ Solution Problem::Descend(State state) const {
   for (int iteration = 0; iteration < 50; ++iteration) {
     const System system = Linear(state);
     normal = Normal(system.J);
-    VectorXd step = normal.ldlt().solve(system.J.transpose() * system.r);
+    VectorXd step = SolveSymmetric(normal, system.J.transpose() * system.r);
     const double turn = step.head<3>().norm();
     if (turn > 0.2) step *= 0.2 / turn;
     double next_cost = 0;
@@ -291,8 +291,7 @@ Solution Problem::Descend(State state) const {
     if (done) break;
   }
   normal = Normal(Linear(state).J);
-  const Index n = unknowns();
-  return {state, cost, normal.ldlt().solve(MatrixXd::Identity(n, n))};
+  return {state, cost, InverseOfSymmetric(normal)};
 }
 
 std::optional<std::pair<double, double>> Problem::Alone(const Solution& solution,
@@ -318,15 +317,12 @@ std::pair<double, double> Problem::RateRatio(const State& state) const {
     for (Index k = 0; k < count_; ++k) {
       rate[k] = (state.R(static_cast<std::size_t>(k)).transpose() * earth)[i];
     }
-    J.col(n).segment(i * count_, count_) =
-        whiten_rate_[static_cast<std::size_t>(i)].matrixL().solve(rate);
+    J.col(n).segment(i * count_, count_) = whiten_rate_[static_cast<std::size_t>(i)].Whitened(rate);
   }
   MatrixXd normal = Normal(J);
   normal(n, n) += 1e-4;
-  const auto ldlt = normal.ldlt();
-  const VectorXd step = ldlt.solve(J.transpose() * system.r);
-  const VectorXd last = VectorXd::Unit(n + 1, n);
-  return {1 + step[n], std::sqrt(ldlt.solve(last)[n])};
+  const MatrixXd cov = InverseOfSymmetric(normal);
+  return {1 + cov.row(n).dot(J.transpose() * system.r), std::sqrt(cov(n, n))};
 }
 
 double HeadingFrom(const State& b, const State& a) {

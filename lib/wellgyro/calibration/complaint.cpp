@@ -7,6 +7,7 @@
 
 #include "wellgyro/calibration/apply.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -105,7 +106,7 @@ double Condition(const SensorGroup& group, double tau) {
   S = S * group.R_TS.transpose();
   const Eigen::MatrixXd used = group.n_channels == 2 ? Eigen::MatrixXd(S.topLeftCorner<2, 2>())
                                                      : Eigen::MatrixXd(S.topRows(group.n_channels));
-  const Eigen::VectorXd values = used.jacobiSvd().singularValues();
+  const Eigen::VectorXd values = SingularValuesOf(used).values;
   return values[0] > 0 ? values[values.size() - 1] / values[0] : 0;
 }
 

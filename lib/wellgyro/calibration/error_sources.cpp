@@ -12,6 +12,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/group_at_internal.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -157,7 +158,7 @@ GroupAt At(const SensorGroup& group, double temperature) {
   } else if (group.n_channels == 3) {
     at.from_units.leftCols<3>() = Eigen::Matrix3d(S_T.topRows<3>()).inverse();
   } else if (group.n_channels == 4) {
-    at.from_units = S_T.colPivHouseholderQr().solve(Eigen::Matrix4d::Identity());
+    at.from_units = LeftInverse(S_T);
   }
   return at;
 }

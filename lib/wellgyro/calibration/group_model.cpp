@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "wellgyro/calibration/group_model_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -43,7 +44,7 @@ Eigen::Matrix<double, 3, 4> InverseOf(const SensorGroup::Rows& S, int n_channels
   } else if (n_channels == 3) {
     inverse.leftCols<3>() = Eigen::Matrix3d(S.topRows<3>()).inverse();
   } else {
-    inverse = S.colPivHouseholderQr().solve(Eigen::Matrix4d::Identity());
+    inverse = LeftInverse(S);
   }
   return inverse;
 }
@@ -98,8 +99,7 @@ double GroupModel::Parity(const RawSample& raw, double tau, double seconds, doub
   units -= ValueAt(group_.g_dependence, tau) * f_T + group_.g_squared * SquaresOf(f_T) +
            group_.second_order * SquaresOf(u_T);
   // The unit vector at right angles to the three columns of S.
-  const Eigen::Matrix4d Q = Sensitivity(tau).householderQr().householderQ();
-  return Q.col(3).dot(units);
+  return UnitBeside(Sensitivity(tau)).dot(units);
 }
 
 }  // namespace wellgyro

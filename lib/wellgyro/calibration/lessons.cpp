@@ -13,6 +13,7 @@
 #include "wellgyro/calibration/errors_in_use.h"
 #include "wellgyro/calibration/group_at_internal.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -32,20 +33,18 @@ Observed ObservedBy(const RunLesson& lesson, const std::vector<Eigen::Index>& kn
   const MatrixXd before = lesson.cov_before(known, known), after = lesson.cov(known, known);
   const VectorXd sigma = before.diagonal().cwiseSqrt();
   const VectorXd per_sigma = sigma.cwiseInverse();
-  const MatrixXd root =
-      MatrixXd(per_sigma.asDiagonal() * before * per_sigma.asDiagonal()).llt().matrixL();
-  const MatrixXd to_unit =
-      root.triangularView<Eigen::Lower>().solve(MatrixXd(per_sigma.asDiagonal()));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(to_unit * after * to_unit.transpose());
-  const MatrixXd A = solver.eigenvectors().transpose() * to_unit;
+  const Cholesky root(per_sigma.asDiagonal() * before * per_sigma.asDiagonal());
+  const MatrixXd to_unit = root.Whitened(MatrixXd(per_sigma.asDiagonal()));
+  const SymmetricEigen eigen = EigenOfSymmetric(to_unit * after * to_unit.transpose());
+  const MatrixXd A = eigen.vectors.transpose() * to_unit;
   const VectorXd found = A * lesson.errors(known);
   // Directions of which the run says less than this differ from the prior by rounding.
   constexpr double kLeast = 1e-3;
   std::vector<Eigen::Index> told;
   for (Eigen::Index k = 0; k < found.size(); ++k) {
-    if (1 - solver.eigenvalues()[k] > kLeast) told.push_back(k);
+    if (1 - eigen.values[k] > kLeast) told.push_back(k);
   }
-  const VectorXd w = solver.eigenvalues()(told).cwiseMax(0);
+  const VectorXd w = eigen.values(told).cwiseMax(0);
   const VectorXd taken = (1 - w.array()).matrix();
   return {A(told, Eigen::all), found(told).cwiseQuotient(taken), w.cwiseQuotient(taken)};
 }
@@ -53,10 +52,10 @@ Observed ObservedBy(const RunLesson& lesson, const std::vector<Eigen::Index>& kn
 // The part of the run's prior that the members do not make, none of it negative.
 MatrixXd Beyond(const MatrixXd& before, const MatrixXd& of_members) {
   const VectorXd sigma = before.diagonal().cwiseSqrt(), per_sigma = sigma.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(
-      MatrixXd(per_sigma.asDiagonal() * (before - of_members) * per_sigma.asDiagonal()));
-  const VectorXd values = solver.eigenvalues().cwiseMax(0);
-  const MatrixXd V = sigma.asDiagonal() * solver.eigenvectors();
+  const SymmetricEigen eigen =
+      EigenOfSymmetric(per_sigma.asDiagonal() * (before - of_members) * per_sigma.asDiagonal());
+  const VectorXd values = eigen.values.cwiseMax(0);
+  const MatrixXd V = sigma.asDiagonal() * eigen.vectors;
   return V * values.asDiagonal() * V.transpose();
 }
 
@@ -79,7 +78,7 @@ void Learn(const ToolCalibration& tool, const ParameterCovariance& first, const 
   const MatrixXd beyond = Beyond(lesson.cov_before(known, known), E * first.cov * E.transpose());
   MatrixXd S = H * errors.cov * H.transpose() + observed.A * beyond * observed.A.transpose();
   S.diagonal() += observed.variance;
-  const MatrixXd gain = S.ldlt().solve(H * errors.cov).transpose();
+  const MatrixXd gain = SolveSymmetric(S, H * errors.cov).transpose();
   errors.mean += gain * (observed.y - H * errors.mean);
   errors.cov -= gain * S * gain.transpose();
   errors.cov = ((errors.cov + errors.cov.transpose()) / 2).eval();

@@ -12,6 +12,7 @@
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/calibration/group_at_internal.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -101,9 +102,10 @@ JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
   const VectorXd d = per_sigma.cwiseProduct(T * before.values - own.values(common));
   const MatrixXd of_own = own.cov(Eigen::all, common) * per_sigma.asDiagonal();
   const MatrixXd both = own.cov(common, common) + T * before.cov * T.transpose();
-  const Eigen::LDLT<MatrixXd> S(MatrixXd(per_sigma.asDiagonal() * both * per_sigma.asDiagonal()));
-  const MatrixXd gain = S.solve(of_own.transpose()).transpose();
-  JoinedTool joined{std::move(tool), d.dot(S.solve(d)), static_cast<int>(common.size())};
+  const MatrixXd S = per_sigma.asDiagonal() * both * per_sigma.asDiagonal();
+  const MatrixXd gain = SolveSymmetric(S, of_own.transpose()).transpose();
+  JoinedTool joined{std::move(tool), d.dot(SolveSymmetric(S, d).col(0)),
+                    static_cast<int>(common.size())};
   joined.probability = 1 - ChiSquareCdf(joined.chi_square, joined.dof);
   own.values += gain * d;
   own.cov -= gain * of_own.transpose();

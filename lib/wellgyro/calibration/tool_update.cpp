@@ -10,6 +10,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/error_sources.h"
+#include "wellgyro/math/so3.h"
 #include "wellgyro/record/sample.h"
 
 namespace wellgyro {
@@ -86,6 +87,13 @@ void TakeThermometer(const BenchCalibration& bench, const ToolUpdate& update,
   t.gain = before.gain;
 }
 
+// Half a turn about x for what points against z.
+Eigen::Matrix3d LeastTurnToZ(const Eigen::Vector3d& unit) {
+  const Eigen::Vector3d across = unit.cross(Eigen::Vector3d::UnitZ());
+  const double sine = across.norm(), angle = std::atan2(sine, unit.z());
+  return Exp(angle * (sine > 0 ? Eigen::Vector3d(across / sine) : Eigen::Vector3d::UnitX()));
+}
+
 // The housing's axis becomes z of the tool, by the least turn.
 void TakeAxis(const Eigen::Vector3d& axis, BenchAxes axes, ToolCalibration& tool) {
   if (tool.accel.n_channels == 0) {
@@ -94,8 +102,7 @@ void TakeAxis(const Eigen::Vector3d& axis, BenchAxes axes, ToolCalibration& tool
         "file");
   }
   const Eigen::Vector3d in_tool = ToolFromBench(axes) * axis.normalized();
-  const Eigen::Matrix3d R =
-      Eigen::Quaterniond::FromTwoVectors(in_tool, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d R = LeastTurnToZ(in_tool);
   tool.accel.R_TS = R * tool.accel.R_TS;
   if (tool.mag.n_channels > 0) tool.mag.R_TS = R * tool.mag.R_TS;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "wellgyro/estimate/swing.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/record/force_errors.h"
 
 namespace wellgyro {
@@ -76,8 +77,7 @@ BorderMatrix InformationOf(const Layout& layout, const ErrorCovariance& sources)
   }
   if (linked) {
     correlation.diagonal().array() += kApart;
-    const BorderMatrix identity = BorderMatrix::Identity(layout.border, layout.border);
-    correlation = correlation.ldlt().solve(identity).eval();
+    correlation = InverseOfSymmetric(correlation);
   }
   const auto per_sigma = layout.sigma.cwiseInverse().asDiagonal();
   return per_sigma * correlation * per_sigma;

@@ -15,6 +15,7 @@
 #include "wellgyro/estimate/rivals.h"
 #include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/swing.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {
@@ -106,8 +107,7 @@ class Sweep {
     }
     const BorderMatrix posterior = cov.bottomRightCorner(layout.border, layout.border);
     result_.cov_errors = OfSources(layout, posterior);
-    const BorderMatrix identity = BorderMatrix::Identity(layout.border, layout.border);
-    result_.cov_prior = OfSources(layout, layout.information.ldlt().solve(identity));
+    result_.cov_prior = OfSources(layout, InverseOfSymmetric(layout.information));
   }
 
   RunSolver& solver_;

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "wellgyro/fit/added_terms_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -82,8 +83,7 @@ std::vector<AddedTerm> AddedTerms::Test(const Eigen::MatrixXd& Z, double probabi
   const double dof = solution_.dof - static_cast<double>(seen.size());
   if (seen.empty() || dof < 1) return terms;
   const Eigen::VectorXd zr = (z.transpose() * solution_.residual)(seen);
-  const Eigen::MatrixXd cov =
-      left(seen, seen).ldlt().solve(Eigen::MatrixXd::Identity(zr.size(), zr.size()));
+  const Eigen::MatrixXd cov = InverseOfSymmetric(left(seen, seen));
   const Eigen::VectorXd beta = cov * zr;
   const double freed = std::max(solution_.chi_square - zr.dot(beta), 0.0);
   const double found = std::sqrt(freed / dof),

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "wellgyro/fit/affine_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/so3.h"
 
 namespace wellgyro {
@@ -25,7 +26,7 @@ void Fill(const Eigen::Vector3d& u, SecondOrder order, int first, int row, Eigen
 Eigen::Matrix3d Rough(const AffineReadings& readings) {
   Eigen::MatrixXd A(readings.u.rows(), 4);
   A << Eigen::VectorXd::Ones(readings.u.rows()), readings.u;
-  const Eigen::MatrixXd x = A.colPivHouseholderQr().solve(Eigen::MatrixXd(readings.v));
+  const Eigen::MatrixXd x = SolveLeastSquares(A, readings.v);
   return x.bottomRows<3>().transpose();
 }
 
@@ -44,10 +45,8 @@ std::vector<std::string> Names(const std::vector<AffineReadings>& groups) {
 void Whiten(const Eigen::MatrixXd& tilt, int row, LinearProblem& problem) {
   const Eigen::Index width = tilt.rows();
   const Eigen::MatrixXd cov = Eigen::MatrixXd::Identity(width, width) + tilt * tilt.transpose();
-  const Eigen::MatrixXd L = cov.llt().matrixL();
   const Eigen::VectorXd weight = problem.sigma.segment(row, width).cwiseInverse();
-  const Eigen::MatrixXd whitener =
-      L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(weight.asDiagonal()));
+  const Eigen::MatrixXd whitener = Cholesky(cov).Whitened(Eigen::MatrixXd(weight.asDiagonal()));
   for (Eigen::Index k = 0; k < width; ++k) {
     problem.rows[static_cast<std::size_t>(row + k)].spread = whitener.col(k);
   }

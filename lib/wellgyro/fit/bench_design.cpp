@@ -8,6 +8,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/bench_design_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -155,7 +156,7 @@ DesignWeights OptimalWeights(const BenchDesign& design, double variance, bool la
     const Eigen::VectorXd twice = w.transpose().replicate(2, 1).reshaped();
     const Eigen::MatrixXd M =
         design.before + design.rows.transpose() * twice.asDiagonal() * design.rows;
-    const Eigen::MatrixXd C = M.ldlt().solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+    const Eigen::MatrixXd C = InverseOfSymmetric(M);
     const Eigen::VectorXd s = AzimuthVariances(design.hole, C);
     const Eigen::MatrixXd W = design.hole.transpose() * mu.asDiagonal() * design.hole;
     const Eigen::MatrixXd Q = C * W * C;

@@ -13,6 +13,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/bench_design_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -76,10 +77,7 @@ class Exchange {
   }
 
  private:
-  Eigen::MatrixXd Covariance() const {
-    return information_.ldlt().solve(
-        Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
-  }
+  Eigen::MatrixXd Covariance() const { return InverseOfSymmetric(information_); }
   Eigen::MatrixXd RowsAt(Eigen::Index place) const { return design_.rows.middleRows<2>(2 * place); }
   void Add(Eigen::Index place) {
     chosen_.push_back(place);
@@ -96,7 +94,7 @@ class Exchange {
   double Power() const { return criterion_ == PlanCriterion::kMean ? 1 : 16; }
   double Value() const {
     if (criterion_ == PlanCriterion::kDeterminant) {
-      return -information_.ldlt().vectorD().array().abs().log().sum();
+      return -Cholesky(information_).LogDeterminant();
     }
     const Eigen::VectorXd s = AzimuthVariances(design_.hole, Covariance());
     const double most = s.maxCoeff();
@@ -201,10 +199,8 @@ double AzimuthSigmaOf(const std::vector<BenchSetting>& settings, const BenchPlan
   const Eigen::MatrixXd information = design.before + design.rows.transpose() * design.rows;
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  if (!(eigen.eigenvalues()[0] > 1e-10)) return std::numeric_limits<double>::infinity();
-  const Eigen::MatrixXd cov =
-      scale.asDiagonal() * Eigen::MatrixXd(scaled.inverse()) * scale.asDiagonal();
+  if (!(EigenOfSymmetric(scaled).values[0] > 1e-10)) return std::numeric_limits<double>::infinity();
+  const Eigen::MatrixXd cov = scale.asDiagonal() * InverseOfSymmetric(scaled) * scale.asDiagonal();
   return std::sqrt(LargestOrMean(AzimuthVariances(design.hole, cov), setup.criterion));
 }
 

@@ -15,6 +15,7 @@
 #include "wellgyro/fit/gyro_readings_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -320,8 +321,7 @@ SensorGroup Group(const GyroReadings& readings, const Layout& layout,
 // What four channels contradict each other by, of the residuals of every attitude.
 void AddParity(const SensorGroup& group, FitReport& report) {
   if (group.n_channels != 4) return;
-  const Eigen::Matrix4d Q = group.sensitivity[0].householderQr().householderQ();
-  const Eigen::Vector4d direction = Q.col(3);
+  const Eigen::Vector4d direction = UnitBeside(group.sensitivity[0]);
   double square = 0;
   int rows = 0;
   for (std::size_t i = 0; i + 3 < report.residuals.size(); i += 4) {

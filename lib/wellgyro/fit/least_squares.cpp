@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/median.h"
 #include "wellgyro/math/statistics.h"
 
@@ -29,7 +30,7 @@ Whitened Whiten(const LinearProblem& problem) {
 
 struct Decomposition {
   Eigen::VectorXd scale;  ///< lengths of the columns
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd;
+  SingularValues svd;
   int rank = 0;
 };
 
@@ -44,18 +45,18 @@ Decomposition Decompose(const Eigen::MatrixXd& A) {
     scaled.conservativeResize(scaled.cols(), Eigen::NoChange);
     scaled.bottomRows(scaled.rows() - rows).setZero();
   }
-  d.svd.compute(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& values = d.svd.singularValues();
+  d.svd = SingularValuesOf(scaled);
+  const Eigen::VectorXd& values = d.svd.values;
   for (const double value : values) d.rank += value > kRankTolerance * values[0] ? 1 : 0;
   return d;
 }
 
 Eigen::VectorXd Apply(const Decomposition& d, const Eigen::VectorXd& y) {
-  Eigen::VectorXd padded = Eigen::VectorXd::Zero(d.svd.matrixU().rows());
+  Eigen::VectorXd padded = Eigen::VectorXd::Zero(d.svd.U.rows());
   padded.head(y.size()) = y;
-  const Eigen::VectorXd along = (d.svd.matrixU().transpose() * padded).head(d.rank);
+  const Eigen::VectorXd along = (d.svd.U.transpose() * padded).head(d.rank);
   const Eigen::VectorXd scaled =
-      d.svd.matrixV().leftCols(d.rank) * along.cwiseQuotient(d.svd.singularValues().head(d.rank));
+      d.svd.V.leftCols(d.rank) * along.cwiseQuotient(d.svd.values.head(d.rank));
   return scaled.cwiseQuotient(d.scale);
 }
 
@@ -81,18 +82,17 @@ LinearSolution SolvePlain(const LinearProblem& problem) {
   solution.x += Apply(d, w.y - w.A * solution.x);
   solution.residual = w.y - w.A * solution.x;
   solution.rank = d.rank;
-  const Eigen::VectorXd& values = d.svd.singularValues();
+  const Eigen::VectorXd& values = d.svd.values;
   solution.condition = d.rank > 0 ? values[0] / values[d.rank - 1] : 1;
-  const auto U = d.svd.matrixU().leftCols(d.rank).topRows(w.y.size());
+  const auto U = d.svd.U.leftCols(d.rank).topRows(w.y.size());
   solution.leverage = U.rowwise().squaredNorm();
   solution.chi_square = solution.residual.squaredNorm();
   solution.dof = static_cast<int>(w.y.size()) - d.rank;
   solution.rows = problem.rows;
   for (int i = d.rank; i < problem.size(); ++i) {
-    solution.unseen.push_back(Words(d.svd.matrixV().col(i), problem.parameters));
+    solution.unseen.push_back(Words(d.svd.V.col(i), problem.parameters));
   }
-  const Eigen::MatrixXd root = d.scale.cwiseInverse().asDiagonal() *
-                               d.svd.matrixV().leftCols(d.rank) *
+  const Eigen::MatrixXd root = d.scale.cwiseInverse().asDiagonal() * d.svd.V.leftCols(d.rank) *
                                values.head(d.rank).cwiseInverse().asDiagonal();
   if (problem.sigma_given) {
     solution.cov = root * root.transpose();

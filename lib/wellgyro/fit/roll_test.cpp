@@ -16,6 +16,7 @@
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -44,7 +45,7 @@ Eigen::Matrix3d Directions(const Eigen::MatrixX3d& f, const std::vector<int>& se
     const int set = sets[static_cast<std::size_t>(i)];
     centred.row(i) -= mean.row(set) / count[set];
   }
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(centred, Eigen::ComputeThinV).matrixV();
+  return SingularValuesOf(centred).V;
 }
 
 std::optional<Fault> BadRolls(const BenchTable& data, const AttitudeTable& table, double gravity) {

@@ -13,6 +13,7 @@
 #include "wellgyro/fit/scalar_internal.h"
 #include "wellgyro/fit/scalar_start_internal.h"
 #include "wellgyro/fit/sensor_groups_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -136,8 +137,8 @@ std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& rea
   if (rows.size() < kUnknown) return TooFew(data, 12, "attitudes", kScalarAdvice);
   Eigen::MatrixXd A(static_cast<Eigen::Index>(rows.size()), 10);
   for (std::size_t i = 0; i < rows.size(); ++i) A.row(static_cast<Eigen::Index>(i)) = rows[i];
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues() /
-                                 std::sqrt(static_cast<double>(rows.size()));
+  const Eigen::VectorXd values =
+      SingularValuesOf(A).values / std::sqrt(static_cast<double>(rows.size()));
   // All readings lie on one quadric, to the noise. Where they come as close to a second, as the
   // readings on one cone or two do to a pair of planes, noise alone tells the two apart.
   constexpr double kApart = 6, kLeast = 2e-3;

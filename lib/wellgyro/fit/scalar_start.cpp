@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "wellgyro/fit/scalar_start_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/median.h"
 
 namespace wellgyro {
@@ -26,7 +27,7 @@ Eigen::VectorXd Sphere(const Eigen::MatrixX3d& v, double length) {
 // M' M = A with M lower triangular: Cholesky from the last corner.
 Eigen::Matrix3d LowerRoot(const Eigen::Matrix3d& A) {
   const Eigen::Matrix3d turned = A.reverse();
-  const Eigen::Matrix3d L = turned.llt().matrixL();
+  const Eigen::Matrix3d L = Cholesky(turned).L();
   return Eigen::Matrix3d(L.reverse()).transpose();
 }
 
@@ -55,12 +56,12 @@ std::vector<Eigen::VectorXd> ScalarStarts(const Eigen::MatrixX3d& v, double leng
     A.row(i) << w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), 2 * w.x() * w.y(), 2 * w.y() * w.z(),
         2 * w.z() * w.x(), 2 * w.x(), 2 * w.y(), 2 * w.z();
   }
-  const Eigen::VectorXd q = A.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(v.rows()));
+  const Eigen::VectorXd q = SolveLeastSquares(A, Eigen::VectorXd::Ones(v.rows()));
   Eigen::Matrix3d Q;
   Q << q[0], q[3], q[5], q[3], q[1], q[4], q[5], q[4], q[2];
   const Eigen::Vector3d b = -Q.inverse() * q.tail<3>();
   Q *= length * length / (1 + b.dot(Q * b));
-  if (!Q.allFinite() || Q.llt().info() != Eigen::Success) return starts;
+  if (!Q.allFinite() || !Cholesky(Q).positive()) return starts;
   const Eigen::Matrix3d M = LowerRoot(Q) / unit;
   if (M.allFinite() && b.allFinite()) starts.push_back(Packed(M, centre + unit * b));
   return starts;

@@ -11,6 +11,7 @@
 #include <ceres/ceres.h>
 
 #include "wellgyro/fit/tool_adjust_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -176,8 +177,7 @@ class Adjuster {
     }
     const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * N * scale.asDiagonal();
-    x_.head(n) =
-        scale.cwiseProduct(scaled.completeOrthogonalDecomposition().solve(scale.cwiseProduct(b)));
+    x_.head(n) = scale.cwiseProduct(Eigen::VectorXd(SolveLeastNorm(scaled, scale.cwiseProduct(b))));
     std::array<std::vector<double>, 3> sizes, readings;
     for (const ToolRow& row : readings_.rows) {
       const Eigen::VectorXd e = model_.At(row, x_).v - row.v;
@@ -294,7 +294,6 @@ class Adjuster {
     std::array<double, 2> wobble_information{};
   };
   NoiseFound SquaresOverExpected(const std::vector<Left>& rows) const {
-    const Eigen::Index n = model_.size();
     const Prior prior = PriorOf(model_);
     Eigen::MatrixXd N = prior.A.transpose() * prior.A;
     Eigen::VectorXd b = prior.A.transpose() * (prior.A * (prior.x0 - x_));
@@ -310,10 +309,8 @@ class Adjuster {
     const Eigen::MatrixXd scaled = scale.asDiagonal() *
                                    Eigen::MatrixXd(N.selfadjointView<Eigen::Lower>()) *
                                    scale.asDiagonal();
-    const Eigen::LDLT<Eigen::MatrixXd> root(scaled);
-    const Eigen::MatrixXd cov = scale.asDiagonal() *
-                                Eigen::MatrixXd(root.solve(Eigen::MatrixXd::Identity(n, n))) *
-                                scale.asDiagonal();
+    const Eigen::MatrixXd cov =
+        scale.asDiagonal() * InverseOfSymmetric(scaled) * scale.asDiagonal();
     const Eigen::VectorXd step = cov * b;
     NoiseFound found;
     std::array<double, kComponents> squares{}, expected{};
@@ -385,13 +382,13 @@ class Adjuster {
     const Eigen::VectorXd scale = A.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
     const Eigen::MatrixXd scaled = A * scale.asDiagonal();
     const Eigen::MatrixXd N = scaled.transpose() * scaled;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N);
-    const Eigen::VectorXd values = eigen.eigenvalues();
+    const SymmetricEigen eigen = EigenOfSymmetric(N);
+    const Eigen::VectorXd& values = eigen.values;
     if (!(values[0] > 1e-13 * values[values.size() - 1])) {
-      return Undetermined(model_.names(), eigen.eigenvectors().col(0));
+      return Undetermined(model_.names(), eigen.vectors.col(0));
     }
-    const Eigen::MatrixXd inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
-                                    eigen.eigenvectors().transpose();
+    const Eigen::MatrixXd inverse =
+        eigen.vectors * values.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
     a.cov = scale.asDiagonal() * inverse * scale.asDiagonal();
     LinearSolution& s = a.solution;
     s.x = x_;
@@ -459,11 +456,9 @@ std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& s
     first += size;
     const bool has_base =
         bundles[b].after < 0 || std::find(seen.begin(), seen.end(), bundles[b].after) != seen.end();
-    const Eigen::MatrixXd part = N(with, with);
-    const Eigen::LLT<Eigen::MatrixXd> root(part);
+    const Cholesky root(N(with, with));
     const bool told =
-        root.info() == Eigen::Success &&
-        Eigen::MatrixXd(root.matrixL()).diagonal().cwiseAbs2().tail(size).minCoeff() > kTold;
+        root.positive() && root.L().diagonal().cwiseAbs2().tail(size).minCoeff() > kTold;
     if (!has_base || size == 0 || (!told && !bundles[b].needed)) continue;
     seen.push_back(static_cast<int>(b));
     kept = std::move(with);
@@ -483,11 +478,10 @@ std::optional<Fault> UnseenNeeded(const ToolReadings& readings, const ToolFitSet
       names.push_back(term.name);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      CorrelationsOf(readings, setup, terms));
+  const SymmetricEigen eigen = EigenOfSymmetric(CorrelationsOf(readings, setup, terms));
   // What stated attitudes see no better than the bench is level is seen by its tilt alone.
-  if (eigen.eigenvalues()[0] > setup.sigma_level * setup.sigma_level) return std::nullopt;
-  return Undetermined(names, eigen.eigenvectors().col(0));
+  if (eigen.values[0] > setup.sigma_level * setup.sigma_level) return std::nullopt;
+  return Undetermined(names, eigen.vectors.col(0));
 }
 
 Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,

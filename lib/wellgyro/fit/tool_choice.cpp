@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/fit/tool_choice_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -53,13 +54,10 @@ TermChoice::TermChoice(const std::vector<TermBundle>& bundles, const std::vector
     }
     free.insert(free.end(), places.begin(), places.end());
   }
-  const auto n = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd cov = full.cov(free, free);
   sigma_ = cov.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const Eigen::VectorXd per = sigma_.cwiseInverse();
-  W_ = Eigen::MatrixXd(per.asDiagonal() * cov * per.asDiagonal())
-           .ldlt()
-           .solve(Eigen::MatrixXd::Identity(n, n));
+  W_ = InverseOfSymmetric(per.asDiagonal() * cov * per.asDiagonal());
   h_ = W_ * per.cwiseProduct(Eigen::VectorXd(full.x(free)));
 }
 
@@ -184,12 +182,10 @@ double TermChoice::Cost(const std::vector<int>& kept) const {
   const auto n = static_cast<Eigen::Index>(places.size());
   const Eigen::MatrixXd W = W_(places, places);
   const Eigen::VectorXd h = h_(places);
-  const Eigen::VectorXd root = PriorSigmas(kept, W.ldlt().solve(h));
-  const Eigen::LLT<Eigen::MatrixXd> M(Eigen::MatrixXd::Identity(n, n) +
-                                      root.asDiagonal() * W * root.asDiagonal());
+  const Eigen::VectorXd root = PriorSigmas(kept, SolveSymmetric(W, h));
+  const Cholesky M(Eigen::MatrixXd::Identity(n, n) + root.asDiagonal() * W * root.asDiagonal());
   const Eigen::VectorXd c = root.cwiseProduct(h);
-  const Eigen::VectorXd diagonal = Eigen::MatrixXd(M.matrixL()).diagonal();
-  return cost + 2 * diagonal.array().log().sum() - c.dot(Eigen::VectorXd(M.solve(c)));
+  return cost + M.LogDeterminant() - M.Whitened(c).squaredNorm();
 }
 
 }  // namespace wellgyro

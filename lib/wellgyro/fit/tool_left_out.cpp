@@ -7,6 +7,7 @@
 
 #include "wellgyro/fit/tool_choice_internal.h"
 #include "wellgyro/fit/tool_left_out_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -21,11 +22,10 @@ Eigen::VectorXd RootOdds(const std::vector<int>& bundle_of, const Eigen::MatrixX
     while (end < bundle_of.size() && bundle_of[end] == bundle_of[begin]) ++end;
     const auto at = static_cast<Eigen::Index>(begin), n = static_cast<Eigen::Index>(end - begin);
     const auto S = s.segment(at, n).asDiagonal();
-    const Eigen::LLT<Eigen::MatrixXd> M(Eigen::MatrixXd::Identity(n, n) +
-                                        S * Eigen::MatrixXd(W.block(at, at, n, n)) * S);
+    const Cholesky M(Eigen::MatrixXd::Identity(n, n) +
+                     S * Eigen::MatrixXd(W.block(at, at, n, n)) * S);
     const Eigen::VectorXd c = S * h.segment(at, n);
-    const Eigen::VectorXd diagonal = Eigen::MatrixXd(M.matrixL()).diagonal();
-    const double log_odds = c.dot(Eigen::VectorXd(M.solve(c))) / 2 - diagonal.array().log().sum();
+    const double log_odds = (M.Whitened(c).squaredNorm() - M.LogDeterminant()) / 2;
     root.segment(at, n).setConstant(std::sqrt(1 / (1 + std::exp(-log_odds))));
   }
   return root;
@@ -56,12 +56,12 @@ LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std:
   const Eigen::VectorXd unit = A.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const Eigen::MatrixXd scaled = A * unit.asDiagonal();
   const Eigen::MatrixXd N = scaled.transpose() * scaled;
-  const Eigen::MatrixXd K = Eigen::MatrixXd(N(k, k)).ldlt().solve(Eigen::MatrixXd(N(k, l)));
+  const Eigen::MatrixXd K = SolveSymmetric(N(k, k), N(k, l));
   const Eigen::VectorXd s = full.cov.diagonal()(l).cwiseSqrt().cwiseQuotient(unit(l));
   const Eigen::MatrixXd W = N(l, l) - N(l, k) * K;
   Eigen::MatrixXd whole = W;
   whole.diagonal() += s.cwiseAbs2().cwiseInverse();
-  const Eigen::MatrixXd P = whole.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd P = InverseOfSymmetric(whole);
   const Eigen::VectorXd h = W * full.x(l).cwiseQuotient(unit(l)), mean = P * h;
   const Eigen::VectorXd root = RootOdds(bundle_of, W, h, s);
   Eigen::MatrixXd errors(m + n, n);

@@ -7,6 +7,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/tool_model_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/so3.h"
 
 namespace wellgyro {
@@ -175,8 +176,7 @@ Eigen::MatrixXd ToolModel::Whitener(const ToolRow& row, const Eigen::MatrixXd& w
     const double sigma = !is_gyro ? noise.accel : row.mount >= 0 ? noise.gyro_table : noise.gyro;
     cov(i, i) += sigma * sigma;
   }
-  const Eigen::MatrixXd L = cov.llt().matrixL();
-  return L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(n, n));
+  return Cholesky(cov).Whitened(Eigen::MatrixXd::Identity(n, n));
 }
 
 }  // namespace wellgyro

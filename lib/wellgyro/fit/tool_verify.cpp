@@ -13,6 +13,7 @@
 #include "wellgyro/calibration/members.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/tool_rows_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/so3.h"
 #include "wellgyro/math/statistics.h"
 
@@ -264,11 +265,10 @@ std::vector<Eigen::Index> Seen(const Eigen::MatrixXd& B) {
   for (Eigen::Index k = 0; k < N.cols(); ++k) {
     std::vector<Eigen::Index> with = seen;
     with.push_back(k);
-    const Eigen::MatrixXd part = N(with, with);
-    const Eigen::LLT<Eigen::MatrixXd> root(part);
-    if (root.info() != Eigen::Success) continue;
-    const Eigen::MatrixXd L = root.matrixL();
-    if (std::pow(L(L.rows() - 1, L.cols() - 1), 2) > 1e-6) seen = std::move(with);
+    const Cholesky root(N(with, with));
+    if (root.positive() && std::pow(root.L().bottomRightCorner<1, 1>()(0), 2) > 1e-6) {
+      seen = std::move(with);
+    }
   }
   return seen;
 }
@@ -285,19 +285,19 @@ struct Shifts {
 // Generalised least squares, linear about the bench's turn, which becomes the likeliest.
 Shifts ShiftsOf(const Comparison& comparison, Eigen::Vector3d& turn) {
   const Residuals r = comparison.Compare(turn);
-  const Eigen::LLT<Eigen::MatrixXd> root(r.C);
-  const Eigen::MatrixXd W = root.matrixL().solve(r.B);
-  const Eigen::VectorXd e = root.matrixL().solve(r.e);
+  const Cholesky root(r.C);
+  const Eigen::MatrixXd W = root.Whitened(r.B);
+  const Eigen::VectorXd e = root.Whitened(r.e);
   Shifts found;
   found.seen = Seen(W);
   const Eigen::MatrixXd B = W(Eigen::all, found.seen);
-  found.cov = (B.transpose() * B).inverse();
+  found.cov = InverseOfSymmetric(B.transpose() * B);
   found.x = found.cov * (B.transpose() * e);
   found.chi_square = e.squaredNorm();
   found.dof = static_cast<int>(e.size());
   const Eigen::VectorXd beside = e - B * found.x;
   found.left = beside.squaredNorm();
-  const Eigen::VectorXd left = root.matrixU().solve(beside);
+  const Eigen::VectorXd left = root.Solve(r.e - r.B(Eigen::all, found.seen) * found.x);
   turn = comparison.TurnVariance().asDiagonal() * (r.level.transpose() * left);
   return found;
 }

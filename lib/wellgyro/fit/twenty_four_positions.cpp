@@ -13,6 +13,7 @@
 #include "wellgyro/fit/least_squares_internal.h"
 #include "wellgyro/fit/position_fit.h"
 #include "wellgyro/fit/position_readings_internal.h"
+#include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
@@ -155,7 +156,7 @@ void AddRounding(const std::vector<PositionRun>& runs, const LinearProblem& prob
                  FitReport& report) {
   const double step = runs.front().step;
   if (!(step > report.scatter) || report.cov.size() == 0) return;
-  report.cov += step * step / 12 * (problem.A.transpose() * problem.A).inverse();
+  report.cov += step * step / 12 * InverseOfSymmetric(problem.A.transpose() * problem.A);
   report.remarks.push_back(
       fmt::format("readings come in steps of {:.3g} V, larger than their noise: the uncertainties "
                   "hold what rounding may be; read with a finer converter",

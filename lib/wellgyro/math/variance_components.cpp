@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -69,7 +70,7 @@ class Cluster {
 
 /// V = D + S T^2 S', T the roots of the long ones' variances; V^-1 = D^-1 - B B'.
 struct Cluster::Solved {
-  std::vector<Eigen::LLT<MatrixXd>> cells;
+  std::vector<Cholesky> cells;
   MatrixXd whitened;  ///< L^-1 T G, G = S' D^-1 S; also B' S
   MatrixXd gram;      ///< G
   MatrixXd b;
@@ -116,7 +117,7 @@ MatrixXd Cluster::InverseTimes(const Solved& s, const MatrixXd& x) const {
   MatrixXd result(x.rows(), x.cols());
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const Index begin = data_.cells[c], rows = CellEnd(c) - begin;
-    result.middleRows(begin, rows) = s.cells[c].solve(x.middleRows(begin, rows));
+    result.middleRows(begin, rows) = s.cells[c].Solve(x.middleRows(begin, rows));
   }
   return result;
 }
@@ -127,9 +128,8 @@ bool Cluster::Factor(const VectorXd& theta, Solved& s) const {
     MatrixXd d = MatrixXd::Zero(rows, rows);
     for (const Share& share : cells_[c]) d += Of(share.component, theta) * share.cov;
     s.cells.emplace_back(d);
-    const VectorXd diagonal = s.cells.back().matrixLLT().diagonal();
-    if (s.cells.back().info() != Eigen::Success || !(diagonal.minCoeff() > 0)) return false;
-    s.log_determinant += 2 * diagonal.array().log().sum();
+    if (!s.cells.back().positive()) return false;
+    s.log_determinant += s.cells.back().LogDeterminant();
   }
   const auto n = static_cast<Index>(long_.size());
   VectorXd root(n);
@@ -139,10 +139,10 @@ bool Cluster::Factor(const VectorXd& theta, Solved& s) const {
   const MatrixXd inverse = InverseTimes(s, effects_);
   s.gram = effects_.transpose() * inverse;
   const MatrixXd scaled = root.asDiagonal() * s.gram;
-  const Eigen::LLT<MatrixXd> middle(MatrixXd::Identity(n, n) + scaled * root.asDiagonal());
-  s.log_determinant += 2 * middle.matrixLLT().diagonal().array().log().sum();
-  s.whitened = middle.matrixL().solve(scaled);
-  s.b = middle.matrixL().solve(root.asDiagonal() * inverse.transpose()).transpose();
+  const Cholesky middle(MatrixXd::Identity(n, n) + scaled * root.asDiagonal());
+  s.log_determinant += middle.LogDeterminant();
+  s.whitened = middle.Whitened(scaled);
+  s.b = middle.Whitened(root.asDiagonal() * inverse.transpose()).transpose();
   s.alpha = InverseTimes(s, data_.y) - s.b * (s.b.transpose() * data_.y);
   return true;
 }
@@ -154,7 +154,7 @@ void Cluster::AddSlopes(const Solved& s, Slope& slope) const {
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const Index begin = data_.cells[c], rows = CellEnd(c) - begin;
     const auto b = s.b.middleRows(begin, rows);
-    const MatrixXd inverse = s.cells[c].solve(MatrixXd::Identity(rows, rows)) - b * b.transpose();
+    const MatrixXd inverse = s.cells[c].Solve(MatrixXd::Identity(rows, rows)) - b * b.transpose();
     for (const Share& share : cells_[c]) {
       if (!share.component) continue;
       const auto j = static_cast<Index>(*share.component);
@@ -234,7 +234,7 @@ VectorXd StepOf(const Slope& slope, const VectorXd& theta, std::vector<Index> fr
     MatrixXd information = slope.information(free, free);
     information.diagonal() *= 1 + kHold;
     const VectorXd gradient = slope.gradient(free) - slope.information(free, Eigen::all) * step;
-    const VectorXd part = information.ldlt().solve(gradient);
+    const VectorXd part = SolveSymmetric(information, gradient);
     std::vector<Index> still;
     for (std::size_t i = 0; i < free.size(); ++i) {
       const bool stopped = theta(free[i]) + part(static_cast<Index>(i)) < 0;
@@ -360,7 +360,7 @@ std::vector<double> SigmasOf(const Slope& slope, const VarianceStart& start) {
   if (free.empty()) return sigmas;
   MatrixXd information = slope.information(free, free);
   information.diagonal() *= 1 + kHold;
-  const VectorXd cov = information.inverse().diagonal();
+  const VectorXd cov = InverseOfSymmetric(information).diagonal();
   for (std::size_t i = 0; i < free.size(); ++i) {
     const double variance = cov(static_cast<Index>(i));
     sigmas[static_cast<std::size_t>(free[i])] = variance > 0 ? std::sqrt(variance) : 0;

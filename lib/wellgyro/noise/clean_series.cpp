@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <fmt/core.h>
 
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/median.h"
 
 namespace wellgyro {
@@ -184,10 +185,10 @@ std::optional<TemperatureTrend> DetrendTemperature(SampleSeries& series) {
   const Eigen::VectorXd x = (T.array() - trend.mean) / spread;
   Eigen::MatrixXd A(n, 3);
   A << Eigen::VectorXd::Ones(n), x, x.cwiseAbs2();
-  const Eigen::Vector3d c = A.colPivHouseholderQr().solve(y);
+  const Eigen::Vector3d c = SolveLeastSquares(A, y);
   const Eigen::VectorXd left = y - A * c;
   const double variance = left.squaredNorm() / static_cast<double>(n - 3);
-  const Eigen::Matrix3d cov = variance * (A.transpose() * A).inverse();
+  const Eigen::Matrix3d cov = variance * InverseOfSymmetric(A.transpose() * A);
   trend.per_degree = c[1] / spread;
   trend.per_degree2 = c[2] / (spread * spread);
   trend.per_degree_sigma = std::sqrt(std::max(0.0, cov(1, 1))) / spread;

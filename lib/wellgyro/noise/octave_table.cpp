@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/noise/allan_confidence.h"
 #include "wellgyro/noise/octave_table_internal.h"
@@ -61,13 +62,13 @@ TableSampler::TableSampler(const OctaveGrid& grid, const NoiseModel& model)
   }
   // Correlations left out far from the diagonal may cost it a hair of definiteness.
   double jitter = 1e-9;
-  Eigen::LLT<Eigen::MatrixXd> root;
+  Cholesky root;
   do {
     correlation.diagonal().array() += jitter;
-    root.compute(correlation);
+    root = Cholesky(correlation);
     jitter *= 10;
-  } while (root.info() != Eigen::Success);
-  root_ = root.matrixL();
+  } while (!root.positive());
+  root_ = root.L();
 }
 
 Eigen::VectorXd TableSampler::Draw(Random& random) const {

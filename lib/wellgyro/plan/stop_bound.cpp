@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/plan/stop_search.h"
 #include "wellgyro/plan/synthetic_run.h"
 #include "wellgyro/uncertainty/ellipse.h"
@@ -119,12 +120,11 @@ class Relaxation {
     }
     const MatrixXd inner = root.asDiagonal() * S * root.asDiagonal();
     const MatrixXd A = MatrixXd::Identity(S.rows(), S.rows()) + inner;
-    const MatrixXd W =
-        root.asDiagonal() * A.llt().solve(MatrixXd(root.asDiagonal() * C.transpose()));
+    const MatrixXd W = root.asDiagonal() * Cholesky(A).Solve(root.asDiagonal() * C.transpose());
     const Matrix2d P = P0_ - C * W;
-    const Eigen::SelfAdjointEigenSolver<Matrix2d> solver(0.5 * (P + P.transpose()));
-    lambda_ = solver.eigenvalues()[1];
-    const Vector2d v = solver.eigenvectors().col(1);
+    const SymmetricEigen eigen = EigenOfSymmetric(0.5 * (P + P.transpose()));
+    lambda_ = eigen.values[1];
+    const Vector2d v = eigen.vectors.col(1);
     along_ = C0_.transpose() * v - S_.transpose() * (W * v);
   }
 

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/survey/difference_covariance_internal.h"
 #include "wellgyro/survey/same_depth_internal.h"
@@ -127,13 +128,11 @@ void Weigh(ComparedPlace& place, const DifferenceCovariance& covariance, std::si
   if (place.azimuth_difference) place.sigma_azimuth = covariance.sigma[row].y() / across;
   place.between_stations = place.position_difference - covariance.summed_alike[row];
   place.cov_position = covariance.cov_p[row];
-  const Eigen::LLT<Matrix3d> solver(place.cov_position);
-  const bool regular =
-      solver.info() == Eigen::Success &&
-      place.cov_position.determinant() > 1e-12 * std::pow(place.cov_position.trace(), 3);
+  const Cholesky root(place.cov_position);
+  const bool regular = root.positive() && place.cov_position.determinant() >
+                                              1e-12 * std::pow(place.cov_position.trace(), 3);
   if (regular) {
-    const Vector3d& d = covariance.summed_alike[row];
-    place.position_sigmas = std::sqrt(d.dot(solver.solve(d)));
+    place.position_sigmas = root.Whitened(covariance.summed_alike[row]).norm();
   }
 }
 
@@ -156,11 +155,11 @@ Check NotCompared(const char* code, const char* unit, const char* why) {
 
 /// d' C^-1 d over its degrees of freedom.
 Check ChiSquare(const char* code, const VectorXd& d, const MatrixXd& cov) {
-  const Eigen::LLT<MatrixXd> solver(cov);
-  if (solver.info() != Eigen::Success) return NotCompared(code, "1", "its covariance is singular");
+  const Cholesky root(cov);
+  if (!root.positive()) return NotCompared(code, "1", "its covariance is singular");
   Check check = CheckOf(code, "1");
   check.freedom = static_cast<double>(d.size());
-  check.value = d.dot(solver.solve(d)) / check.freedom;
+  check.value = root.Whitened(d).squaredNorm() / check.freedom;
   return check;
 }
 
@@ -199,10 +198,10 @@ MatrixXd ShapesOf(const DifferenceCovariance& covariance, std::span<const Compar
 /// absent.
 void EstimateShifts(const VectorXd& d, const MatrixXd& cov, const MatrixXd& shapes, double length,
                     Comparison& comparison) {
-  const Eigen::LLT<MatrixXd> solver(cov);
-  if (solver.info() != Eigen::Success) return;
-  const MatrixXd white = solver.matrixL().solve(shapes);
-  const VectorXd white_d = solver.matrixL().solve(d);
+  const Cholesky root(cov);
+  if (!root.positive()) return;
+  const MatrixXd white = root.Whitened(shapes);
+  const VectorXd white_d = root.Whitened(d);
   // Beyond these the linear picture ends, and nobody would ask.
   const double greatest[] = {length, 1.0, kPi};
   std::vector<Eigen::Index> used;
@@ -212,7 +211,7 @@ void EstimateShifts(const VectorXd& d, const MatrixXd& cov, const MatrixXd& shap
   MatrixXd normal;
   while (!used.empty()) {
     const MatrixXd part = white(Eigen::all, used);
-    normal = (part.transpose() * part).inverse();
+    normal = InverseOfSymmetric(part.transpose() * part);
     std::size_t worst = 0;
     double most = 0;
     for (std::size_t j = 0; j < used.size(); ++j) {

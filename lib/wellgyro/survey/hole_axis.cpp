@@ -8,6 +8,7 @@
 
 #include <Eigen/QR>
 
+#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/plane.h"
 #include "wellgyro/math/so3.h"
 
@@ -65,9 +66,7 @@ Eigen::Vector4d WeightsOfMeans(Eigen::Matrix<double, 3, 4> moments,
   moments.row(2) /= scale * scale;
   const Eigen::Vector4d root = seconds.cwiseSqrt();
   const Eigen::Matrix<double, 3, 4> weighed = moments * root.asDiagonal();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 3, 4>> solver;
-  solver.setThreshold(kRests);
-  return root.cwiseProduct(solver.compute(weighed).solve(Vector3d::UnitX()));
+  return root.cwiseProduct(Eigen::Vector4d(SolveLeastNorm(weighed, Vector3d::UnitX(), kRests)));
 }
 
 /// From the tool's axis at the end of each knot to the parabola's: phi of R_LT Exp(phi) [rad]; zero
