@@ -49,6 +49,9 @@ TEST(LinearAlgebra, CholeskyIsTheRootOfWhatIsPositive) {
   EXPECT_NEAR(root.LogDeterminant(), EigenOfSymmetric(A).values.array().log().sum(), 1e-11);
   A(4, 4) = -1;
   EXPECT_FALSE(Cholesky(A).positive());
+  A(4, 4) = std::nan("");
+  EXPECT_FALSE(Cholesky(A).positive());
+  EXPECT_FALSE(Cholesky(MatrixXd::Zero(2, 2)).positive());
 }
 
 TEST(LinearAlgebra, LeastSquaresLeaveWhatIsAtRightAnglesToTheColumns) {

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "wellgyro/alignment/gyrocompass.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include "wellgyro/fit/added_terms_internal.h"
 #include "wellgyro/math/linear_algebra.h"

@@ -94,7 +94,8 @@ class Exchange {
   double Power() const { return criterion_ == PlanCriterion::kMean ? 1 : 16; }
   double Value() const {
     if (criterion_ == PlanCriterion::kDeterminant) {
-      return -Cholesky(information_).LogDeterminant();
+      const Cholesky root(information_);
+      return root.positive() ? -root.LogDeterminant() : std::numeric_limits<double>::infinity();
     }
     const Eigen::VectorXd s = AzimuthVariances(design_.hole, Covariance());
     const double most = s.maxCoeff();

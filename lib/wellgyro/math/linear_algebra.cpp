@@ -20,8 +20,9 @@ MatrixXd InverseOfSymmetric(const MatrixRef& A) {
 
 Cholesky::Cholesky(const MatrixRef& A) {
   const Eigen::LLT<MatrixXd> root(A);
-  positive_ = root.info() == Eigen::Success;
   L_ = root.matrixL();
+  // Eigen looks for pivots that are not above 0, which what is no number is not.
+  positive_ = root.info() == Eigen::Success && (L_.diagonal().array() > 0).all();
 }
 
 MatrixXd Cholesky::Whitened(const MatrixRef& B) const {

@@ -12,7 +12,7 @@ namespace wellgyro {
 using MatrixRef = Eigen::Ref<const Eigen::MatrixXd>;
 
 /// A^-1 B of a symmetric A, definite or not, by LDL^T with pivoting: off by some cond(A) 2^-53 of
-/// itself. Where A is singular, one of many.
+/// itself. A pivot of 0 counts for nothing: where A may be singular, ask before.
 WELLGYRO_EXPORT Eigen::MatrixXd SolveSymmetric(const MatrixRef& A, const MatrixRef& B);
 WELLGYRO_EXPORT Eigen::MatrixXd InverseOfSymmetric(const MatrixRef& A);
 
@@ -22,7 +22,7 @@ class WELLGYRO_EXPORT Cholesky {
   Cholesky() = default;
   explicit Cholesky(const MatrixRef& A);
 
-  /// Whether A is positive definite, to rounding; what follows holds only then.
+  /// Whether A is positive definite, to rounding, and all numbers; what follows holds only then.
   bool positive() const { return positive_; }
   const Eigen::MatrixXd& L() const { return L_; }      ///< with zeros above the diagonal
   Eigen::MatrixXd Solve(const MatrixRef& B) const;     ///< A^-1 B

@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"

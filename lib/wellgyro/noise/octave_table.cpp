@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"

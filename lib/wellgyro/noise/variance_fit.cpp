@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/noise/variance_fit_internal.h"
 
 namespace wellgyro {
@@ -27,7 +26,7 @@ TermVector SolveFree(const TermMatrix& gram, const TermVector& rhs, unsigned fre
       part(i, j) = gram(row, index[static_cast<std::size_t>(j)]);
     }
   }
-  const TermVector solved = SolveSymmetric(part, right);
+  const TermVector solved = part.ldlt().solve(right);
   TermVector x = TermVector::Zero(rhs.size());
   for (Eigen::Index i = 0; i < count; ++i) x(index[static_cast<std::size_t>(i)]) = solved(i);
   return x;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/linear_algebra.h"

@@ -211,7 +211,7 @@ void EstimateShifts(const VectorXd& d, const MatrixXd& cov, const MatrixXd& shap
   MatrixXd normal;
   while (!used.empty()) {
     const MatrixXd part = white(Eigen::all, used);
-    normal = InverseOfSymmetric(part.transpose() * part);
+    normal = (part.transpose() * part).inverse();
     std::size_t worst = 0;
     double most = 0;
     for (std::size_t j = 0; j < used.size(); ++j) {

@@ -6,7 +6,7 @@
 #include <complex>
 #include <cstddef>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/plane.h"

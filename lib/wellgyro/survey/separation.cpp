@@ -8,7 +8,6 @@
 #include <Eigen/Cholesky>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -129,10 +128,10 @@ void PairOfLines::Weigh(Separation& s) const {
   s.factor = clear / radius;
   if (rule_.surface == ErrorSurface::kPedal || meet) return;
   const Matrix3d all = s.cov + rule_.sigma_ahead * rule_.sigma_ahead * Matrix3d::Identity();
-  const Cholesky root(all);
-  if (!root.positive()) return;
+  const Eigen::LLT<Matrix3d> solver(all);
+  if (solver.info() != Eigen::Success) return;
   const Vector3d way = s.vector * (clear / s.distance);
-  s.factor = std::copysign(Vector3d(root.Whitened(way)).norm() / rule_.k, clear);
+  s.factor = std::copysign(std::sqrt(way.dot(solver.solve(way))) / rule_.k, clear);
 }
 
 void PairOfLines::Look(Separation& s, const Place& place) const {
