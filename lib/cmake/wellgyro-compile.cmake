@@ -17,10 +17,12 @@ option(WELLGYRO_LINES "Keep line numbers where the build has them" ON)
 
 # Half of a compilation is the optimiser's. A tree that is built to be tested optimises what its tests
 # wait for, the numeric rooms and their own loops, and nothing else: wellgyro_compile(target NUMERIC)
-# adds these options to those of the tree.
+# adds these options to those of the tree, wellgyro_compile(target LIGHT) those for what loops little
+# itself.
 set(WELLGYRO_NUMERIC_OPTIONS "" CACHE STRING "Options of numeric rooms and tests beside the tree's")
+set(WELLGYRO_LIGHT_OPTIONS "" CACHE STRING "Options of tests that loop little, beside the tree's")
 function(wellgyro_compile target)
-  cmake_parse_arguments(COMPILE "NUMERIC" "" "" ${ARGN})
+  cmake_parse_arguments(COMPILE "NUMERIC;LIGHT" "" "" ${ARGN})
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
     $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
@@ -30,9 +32,25 @@ function(wellgyro_compile target)
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${WELLGYRO_UNITY}>>:SHELL:--param ggc-min-heapsize=1000000
       -Wno-shadow -Wno-subobject-linkage -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>
     $<$<NOT:$<BOOL:${WELLGYRO_LINES}>>:-g0>
-    $<$<BOOL:${COMPILE_NUMERIC}>:${WELLGYRO_NUMERIC_OPTIONS}>)
+    $<$<BOOL:${COMPILE_NUMERIC}>:${WELLGYRO_NUMERIC_OPTIONS}>
+    $<$<BOOL:${COMPILE_LIGHT}>:${WELLGYRO_LIGHT_OPTIONS}>)
   # Static and shared libraries are made of the same objects.
   set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
+endfunction()
+
+# Of an inline function that several objects hold the linker takes the first that it meets. For a program
+# whose own copies are not optimised, the libraries are put before it, whole, where the tree optimises
+# them apart.
+function(wellgyro_link_before target)
+  if(BUILD_SHARED_LIBS OR NOT (WELLGYRO_NUMERIC_OPTIONS OR WELLGYRO_LIGHT_OPTIONS))
+    return()
+  endif()
+  foreach(library IN LISTS ARGN)
+    if(library MATCHES "^wellgyro::")
+      target_link_options(${target} PRIVATE
+        "LINKER:--whole-archive,$<TARGET_FILE:${library}>,--no-whole-archive")
+    endif()
+  endforeach()
 endfunction()
 
 # Precompiled headers, where asked for: wellgyro_precompile(target <header> ...) makes one for the

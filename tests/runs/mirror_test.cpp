@@ -73,7 +73,7 @@ Count Fly(const Case& c, int seeds, const RunAdjuster* adjuster) {
 class Mirror : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Mirror, IsNeverTakenSilently) {
-  constexpr int kSeeds = WELLGYRO_LONG ? 8 : 2;
+  constexpr int kSeeds = WELLGYRO_LONG ? 8 : 1;
   const testing::KeepingAdjuster keeper;
   const Count reckoned = Fly(GetParam(), kSeeds, &keeper);
   EXPECT_EQ(reckoned.silent, 0);
