@@ -32,6 +32,8 @@ struct Run {
   std::array<OfRun<std::int32_t>, RawSample::kChannelsMax> counts{};
   std::array<OfRun<double>, kPlaces> temperature{};  ///< true, of each thermometer in use [degC]
   OfRun<std::int64_t> inside{};                      ///< all bits where within what was calibrated
+  OfRun<std::int64_t> inside_shown{};                ///< likewise, of a thermometer only shown
+  OfRun<std::int64_t> since{};                       ///< the sample before [ns]
   OfRun<double> per_second{};                        ///< one over the period [1/s]
   std::array<Group, kGroups> groups{};
 };
@@ -97,6 +99,7 @@ struct SampleCalibrator::State {
     return raw.n_channels >= channels_needed && raw.n_temperatures >= thermometers_needed;
   }
   std::size_t PlaceOf(int thermometer);
+  void ShareCells();
   std::size_t Take(std::span<const RawSample> raw);
   void Read(std::span<const RawSample> raw);
   void Heat(std::span<const RawSample> raw, bool anew);
@@ -111,6 +114,7 @@ struct SampleCalibrator::State {
   std::size_t of_groups = 0;                 ///< of them so many
   std::array<std::size_t, kGroups> place{};  ///< of each group's temperature
   std::size_t shown = kNoThermometer;        ///< place of that in the stamp
+  std::array<std::size_t, kGroups> like{};   ///< the first group whose cells are as this one's
   Lanes lanes = MostLanes();
   bool heats = false, pulses = false;
 
@@ -138,12 +142,25 @@ SampleCalibrator::State::State(const ToolCalibration& model) : tool(model) {
     heats = heats || groups[i].heats();
     pulses = pulses || group.per_second;
   }
+  ShareCells();
   of_groups = in_use.size();
   // The gyros' thermometer, or the first.
   if (!tool.thermometers.empty()) shown = PlaceOf(std::max(tool.gyro.thermometer, 0));
   for (const ThermometerCalibration& thermometer : tool.thermometers) {
     thermometers_needed = std::max(thermometers_needed, thermometer.channel + 1);
   }
+}
+
+// Groups of one thermometer and range have the same cells.
+void SampleCalibrator::State::ShareCells() {
+  for (std::size_t i = 0; i < kGroups; ++i) {
+    like[i] = i;
+    for (std::size_t j = i; j-- > 0;) {
+      if (place[j] == place[i] && groups[j].Shares(groups[i])) like[i] = j;
+    }
+    groups[like[i]].Narrow(groups[i]);
+  }
+  for (std::size_t i = 0; i < kGroups; ++i) groups[i].Narrow(groups[like[i]]);
 }
 
 // Where a thermometer's temperatures stand.
@@ -176,7 +193,6 @@ std::size_t SampleCalibrator::State::Take(std::span<const RawSample> raw) {
 // Thermometers and periods.
 void SampleCalibrator::State::Read(std::span<const RawSample> raw) {
   run.inside.fill(-1);
-  OfRun<std::int64_t> unused{};
   for (std::size_t t = 0; t < in_use.size(); ++t) {
     const ThermometerCalibration& thermometer =
         tool.thermometers[static_cast<std::size_t>(in_use[t])];
@@ -189,7 +205,7 @@ void SampleCalibrator::State::Read(std::span<const RawSample> raw) {
     std::fill_n(temperature.begin() + static_cast<std::ptrdiff_t>(raw.size()), 8,
                 static_cast<double>(raw.back().temperature_raw[channel]));
     TakeTemperatures(lanes, thermometer, {0, raw.size() + 7}, temperature,
-                     t < of_groups ? run.inside : unused);
+                     t < of_groups ? run.inside : run.inside_shown);
   }
   if (!pulses) return;
   for (std::size_t k = 0; k < raw.size(); ++k) run.per_second[k] = PerSecond(raw[k]);
@@ -198,19 +214,21 @@ void SampleCalibrator::State::Read(std::span<const RawSample> raw) {
 // The first sample of all, or of a session, is not heated.
 void SampleCalibrator::State::Heat(std::span<const RawSample> raw, bool anew) {
   if (anew) heated_to = raw[0].stamp.tool_time;
+  std::int64_t last_ns = heated_to.ns;
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    // The time for which the last sample's temperature held, until this one.
+    const std::int64_t ns = std::max(raw[k].stamp.tool_time.ns, last_ns);
+    run.since[k] = ns - last_ns;
+    last_ns = ns;
+  }
+  heated_to.ns = last_ns;
   for (std::size_t i = 0; i < kGroups; ++i) {
     if (!groups[i].heats()) continue;
     const OfRun<double>& temperature = run.temperature[place[i]];
     if (anew) groups[i].Settle(temperature[0]);
-    ToolTime from = heated_to;
-    for (std::size_t k = 0; k < raw.size(); ++k) {
-      // The time for which the last sample's temperature held, until this one.
-      const std::int64_t ns = std::max<std::int64_t>(raw[k].stamp.tool_time.ns - from.ns, 0);
-      from.ns += ns;
-      run.groups[i].heating_rate[k] = static_cast<float>(groups[i].Heat(ns, temperature[k]));
-    }
+    groups[i].Heat(std::span(run.since).first(raw.size()), temperature.data(),
+                   run.groups[i].heating_rate.data());
   }
-  for (const RawSample& sample : raw) heated_to = std::max(heated_to, sample.stamp.tool_time);
 }
 
 // Enters the cells of a part's first sample. Gives where the samples end that lie in the same.
@@ -219,6 +237,7 @@ std::size_t SampleCalibrator::State::EndOfCells(Part part) {
     if (place[i] == kNoThermometer) continue;
     const OfRun<double>& temperature = run.temperature[place[i]];
     groups[i].Enter(temperature[part.begin]);
+    if (like[i] != i) continue;
     if (Place(lanes, groups[i].place(), temperature, part, run.groups[i].x, run.inside)) continue;
     std::size_t end = part.begin + 1;
     while (end < part.end && groups[i].Holds(temperature[end])) ++end;
@@ -233,8 +252,9 @@ void SampleCalibrator::State::Calibrate(Part part, Run& to) const {
   for (const std::size_t i : {kAccel, kGyro, kMag}) {
     if (groups[i].kernel().n_channels == 0) continue;
     Run::Group& group = to.groups[i];
+    const OfRun<float>& x = to.groups[like[i]].x;
     Solve(lanes, groups[i].kernel(),
-          {to.counts.data(), group.x, group.heating_rate, to.groups[kAccel].u, to.per_second}, part,
+          {to.counts.data(), x, group.heating_rate, to.groups[kAccel].u, to.per_second}, part,
           group.u);
   }
 }

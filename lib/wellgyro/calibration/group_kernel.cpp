@@ -146,8 +146,23 @@ template <class L>
   }
 }
 
+template <class L, unsigned kWhat>
+[[gnu::always_inline]] inline void SolveSides(const GroupKernel& group, const Readings& readings,
+                                              const Part& part, Vectors& u) {
+  constexpr bool kFour = (kWhat & 1) != 0, kVaries = (kWhat & 2) != 0, kMoved = (kWhat & 4) != 0;
+  for (std::size_t at = part.begin; at < part.end; at += L::kCount) {
+    Side<L> s{group, readings, at};
+    if (kVaries) L::Load(readings.x.data() + at, s.x);
+    Linear<L>(s, kFour, kVaries);
+    if (kMoved) TakeForce<L>(s, kVaries);
+    if (kVaries || kMoved) Sum<L>(s, kVaries, kMoved);
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 3; ++i) L::Store(s.u[i], u[i].data() + at);
+  }
+}
+
 /// What products of u do to it where that is too much for single precision, of samples side by side
-/// from `at` on.
+/// from `at` on: of[i] is u[i] before.
 template <std::size_t kCount>
 [[gnu::noinline]] void RefineLarge(const GroupKernel& g, const OfRun<float>& x,
                                    const double (&linear)[3][kCount], std::size_t at, Vectors& u) {
@@ -160,7 +175,7 @@ template <std::size_t kCount>
   }
 }
 
-/// Takes off what products of u do to it, in two turns: the first need not be right to the cell's
+/// Takes off u what its products do to it, in two turns: the first need not be right to the cell's
 /// own change. Gives whether some u is too large for that.
 template <class L>
 [[gnu::always_inline]] inline bool Refine(Side<L>& s, bool varies) {
@@ -182,23 +197,20 @@ template <class L>
   return large;
 }
 
-template <class L, unsigned kWhat>
-[[gnu::always_inline]] inline void SolveSides(const GroupKernel& group, const Readings& readings,
-                                              const Part& part, Vectors& u) {
-  constexpr bool kFour = (kWhat & 1) != 0, kVaries = (kWhat & 2) != 0, kMoved = (kWhat & 4) != 0;
+/// A pass of its own: what waits for nothing goes on meanwhile.
+template <class L, bool kVaries>
+[[gnu::always_inline]] inline void RefineSides(const GroupKernel& group, const Readings& readings,
+                                               const Part& part, Vectors& u) {
   for (std::size_t at = part.begin; at < part.end; at += L::kCount) {
     Side<L> s{group, readings, at};
     if (kVaries) L::Load(readings.x.data() + at, s.x);
-    Linear<L>(s, kFour, kVaries);
-    if (kMoved) TakeForce<L>(s, kVaries);
-    if (kVaries || kMoved) Sum<L>(s, kVaries, kMoved);
     double linear[3][L::kCount];
-    bool large = false;
-    if constexpr ((kWhat & 8) != 0) {
 #pragma GCC unroll 4
-      for (std::size_t i = 0; i < 3; ++i) L::Store(s.u[i], linear[i]);
-      large = Refine<L>(s, kVaries);
+    for (std::size_t i = 0; i < 3; ++i) {
+      L::Load(u[i].data() + at, s.u[i]);
+      L::Store(s.u[i], linear[i]);
     }
+    const bool large = Refine<L>(s, kVaries);
 #pragma GCC unroll 4
     for (std::size_t i = 0; i < 3; ++i) L::Store(s.u[i], u[i].data() + at);
     if (large) RefineLarge(group, readings.x, linear, at, u);
@@ -251,12 +263,23 @@ template <unsigned kWhat>
 void SolveByFour(const GroupKernel& group, const Readings& readings, const Part& part, Vectors& u) {
   SolveSides<Lanes4, kWhat>(group, readings, part, u);
 }
+template <bool kVaries>
+void RefineByFour(const GroupKernel& group, const Readings& readings, const Part& part,
+                  Vectors& u) {
+  RefineSides<Lanes4, kVaries>(group, readings, part, u);
+}
 
 #if defined(__x86_64__)
 template <unsigned kWhat>
 [[gnu::target("avx2")]] void SolveByEight(const GroupKernel& group, const Readings& readings,
                                           const Part& part, Vectors& u) {
   SolveSides<Lanes8, kWhat>(group, readings, part, u);
+}
+
+template <bool kVaries>
+[[gnu::target("avx2")]] void RefineByEight(const GroupKernel& group, const Readings& readings,
+                                           const Part& part, Vectors& u) {
+  RefineSides<Lanes8, kVaries>(group, readings, part, u);
 }
 
 [[gnu::target("avx2")]] void TakeByEight(const ThermometerCalibration& thermometer,
@@ -284,6 +307,14 @@ Solver SolverOf(Lanes lanes, unsigned what, std::integer_sequence<unsigned, kWha
   return kByFour[what];
 }
 
+Solver RefinerOf(Lanes lanes, bool varies) {
+#if defined(__x86_64__)
+  if (lanes == Lanes::kEight) return varies ? RefineByEight<true> : RefineByEight<false>;
+#endif
+  static_cast<void>(lanes);
+  return varies ? RefineByFour<true> : RefineByFour<false>;
+}
+
 }  // namespace
 
 Lanes MostLanes() {
@@ -294,9 +325,9 @@ Lanes MostLanes() {
 }
 
 void Solve(Lanes lanes, const GroupKernel& g, const Readings& readings, Part part, Vectors& u) {
-  const unsigned what = (g.n_channels == 4 ? 1U : 0U) + (g.varies ? 2U : 0U) + (g.moved ? 4U : 0U) +
-                        (g.second_order ? 8U : 0U);
-  SolverOf(lanes, what, std::make_integer_sequence<unsigned, 16>())(g, readings, part, u);
+  const unsigned what = (g.n_channels == 4 ? 1U : 0U) + (g.varies ? 2U : 0U) + (g.moved ? 4U : 0U);
+  SolverOf(lanes, what, std::make_integer_sequence<unsigned, 8>())(g, readings, part, u);
+  if (g.second_order) RefinerOf(lanes, g.varies)(g, readings, part, u);
 }
 
 void TakeTemperatures(Lanes lanes, const ThermometerCalibration& thermometer, Part part,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -104,18 +105,17 @@ void Put(const Eigen::Vector3d& from, Number (&to)[3]) {
 
 // From one end of a cell to the other.
 template <class Number>
-GroupKernel::Products<Number> ProductsOf(const Eigen::Matrix<double, 3, 6>& low,
-                                         const Eigen::Matrix<double, 3, 6>& high) {
-  GroupKernel::Products<Number> products;
-  products.squares = !low.leftCols<3>().isZero(0) || !high.leftCols<3>().isZero(0);
-  products.crosses = !low.rightCols<3>().isZero(0) || !high.rightCols<3>().isZero(0);
+void Put(const Eigen::Matrix<double, 3, 6>& low, const Eigen::Matrix<double, 3, 6>& high,
+         GroupKernel::Products<Number>& to) {
+  to.squares = !low.leftCols<3>().isZero(0) || !high.leftCols<3>().isZero(0);
+  to.crosses = !low.rightCols<3>().isZero(0) || !high.rightCols<3>().isZero(0);
   for (int p = 0; p < 6; ++p) {
+    if (!(p < 3 ? to.squares : to.crosses)) continue;
     for (int i = 0; i < 3; ++i) {
-      products.out[p][i] = low(i, p);
-      products.out1[p][i] = high(i, p) - low(i, p);
+      to.out[p][i] = low(i, p);
+      to.out1[p][i] = high(i, p) - low(i, p);
     }
   }
-  return products;
 }
 
 }  // namespace
@@ -138,17 +138,18 @@ Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, double x, const Eigen:
 
 GroupSolution::GroupSolution(const SensorGroup& group, double unit)
     : model_(group), per_lag_(1 / group.heating_lag) {
-  constant_.n_channels = group.n_channels;
-  for (std::size_t c = 0; c < constant_.channel.size(); ++c) {
+  GroupKernel& kernel = cells_[0].kernel;
+  kernel.n_channels = group.n_channels;
+  for (std::size_t c = 0; c < kernel.channel.size(); ++c) {
     const std::size_t of = static_cast<int>(c) < group.n_channels ? c : 0;
-    constant_.channel[c] = static_cast<std::size_t>(group.channel[of]);
+    kernel.channel[c] = static_cast<std::size_t>(group.channel[of]);
   }
-  constant_.pulses = group.per_second;
-  constant_.heats = !group.heating.isZero(0);
-  if (group.thermometer < 0) return;
-  first_ = {.min = group.min, .max = group.max};
-  if (!(group.max > group.min)) return;
-  constant_.varies = true;
+  kernel.pulses = group.per_second;
+  kernel.heats = !group.heating.isZero(0);
+  kernel.varies = group.thermometer >= 0 && group.max > group.min;
+  cells_[1].kernel = kernel;
+  if (group.thermometer >= 0) first_ = {.min = group.min, .max = group.max};
+  if (!kernel.varies) return;
   const double range = group.max - group.min;
   // Cells end where the range does: beyond it the formula bends.
   first_.per_width = std::ceil(range / WidthOf(BendsOf(*model_, group, unit), range)) / range;
@@ -167,12 +168,31 @@ void GroupSolution::Enter(double temperature) {
   cell.solved = true;
 }
 
+void GroupSolution::Heat(std::span<const std::int64_t> since, const double* temperature,
+                         float* rate) {
+  // What one sample leaves to the next stays in registers.
+  double ahead = ahead_, last = temperature_, kept = kept_;
+  for (std::size_t k = 0; k < since.size(); ++k) {
+    // Samples follow each other evenly.
+    if (since[k] != step_ns_) {
+      step_ns_ = since[k];
+      kept = std::exp(-1e-9 * static_cast<double>(step_ns_) * per_lag_);
+    }
+    ahead = ahead * kept + (temperature[k] - last);
+    last = temperature[k];
+    rate[k] = static_cast<float>(ahead * per_lag_);
+  }
+  ahead_ = ahead;
+  temperature_ = last;
+  kept_ = kept;
+}
+
 void GroupSolution::Solve(Cell& cell) const {
-  GroupKernel& kernel = cell.kernel = constant_;
+  GroupKernel& kernel = cell.kernel;
   const double width = 1 / first_.per_width, begin = first_.min + cell.place.index * width;
   const GroupNode low = At(begin);
-  const GroupNode middle = constant_.varies ? At(begin + width / 2) : low;
-  const GroupNode high = constant_.varies ? At(begin + width) : low;
+  const GroupNode middle = kernel.varies ? At(begin + width / 2) : low;
+  const GroupNode high = kernel.varies ? At(begin + width) : low;
   Put(low.A, kernel.A);
   Put(low.b, kernel.b);
   const Eigen::Matrix<double, 3, 4> bend_A = 2 * (high.A - 2 * middle.A + low.A);
@@ -187,12 +207,12 @@ void GroupSolution::Solve(Cell& cell) const {
   }
   Put(low.heat, kernel.heat);
   Put(Eigen::Vector3d(high.heat - low.heat), kernel.heat1);
-  kernel.force_products = ProductsOf<SameSingle>(low.force_products, high.force_products);
+  Put(low.force_products, high.force_products, kernel.force_products);
   kernel.feels_force = !low.force.isZero(0) || !high.force.isZero(0) ||
                        kernel.force_products.squares || kernel.force_products.crosses;
   kernel.moved = kernel.feels_force || kernel.heats;
-  kernel.products = ProductsOf<double>(low.products, high.products);
-  kernel.products_single = ProductsOf<SameSingle>(low.products, high.products);
+  Put(low.products, high.products, kernel.products);
+  Put(low.products, high.products, kernel.products_single);
   kernel.slope = std::max(RowSum(low.products), RowSum(high.products));
   kernel.second_order = kernel.slope > 0;
   const double reach = kernel.second_order ? kReachSingle / kernel.slope : 0;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -28,6 +28,15 @@ class GroupSolution {
   /// Of a group that the tool has; `unit`: a size of u that it measures well [SI].
   GroupSolution(const SensorGroup& group, double unit);
 
+  /// Whether the other's calibrated range is the same.
+  bool Shares(const GroupSolution& other) const {
+    return first_.min == other.first_.min && first_.max == other.first_.max;
+  }
+  /// Makes its cells no wider than those of the other, which shares the range.
+  void Narrow(const GroupSolution& other) {
+    first_.per_width = std::max(first_.per_width, other.first_.per_width);
+  }
+
   /// Whether the cell at hand holds this true temperature [degC].
   bool Holds(double temperature) const {
     double x = 0;
@@ -44,19 +53,10 @@ class GroupSolution {
     temperature_ = temperature;
     ahead_ = 0;
   }
-  /// The last temperature held for `ns`, now it is this one. Gives the heating rate [degC/s]; see
-  /// SensorGroup::heating_lag.
-  double Heat(std::int64_t ns, double temperature) {
-    // Samples follow each other evenly.
-    if (ns != step_ns_) {
-      step_ns_ = ns;
-      kept_ = std::exp(-1e-9 * static_cast<double>(ns) * per_lag_);
-    }
-    ahead_ = ahead_ * kept_ + (temperature - temperature_);
-    temperature_ = temperature;
-    return ahead_ * per_lag_;
-  }
-  bool heats() const { return constant_.heats; }
+  /// Heating rates [degC/s] at temperatures of which each holds for the time [ns] that stands at
+  /// the next, the last before these for the first of them; see SensorGroup::heating_lag.
+  void Heat(std::span<const std::int64_t> since, const double* temperature, float* rate);
+  bool heats() const { return kernel().heats; }
 
   /// Component of the readings along what no u explains, for four channels, at a true temperature.
   double Parity(const RawSample& raw, double temperature, double heating_rate,
@@ -74,7 +74,6 @@ class GroupSolution {
   GroupNode At(double temperature) const { return model_->At(model_->Tau(temperature)); }
 
   std::optional<GroupModel> model_;
-  GroupKernel constant_;       ///< what does not change with temperature
   CellPlace first_;            ///< where the calibrated range begins
   std::array<Cell, 2> cells_;  ///< a reading at a border may come and go
   std::size_t at_ = 0;
