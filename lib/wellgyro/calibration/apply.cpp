@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/group_kernel_internal.h"
 #include "wellgyro/calibration/group_solution_internal.h"
+#include "wellgyro/calibration/sample_lanes_internal.h"
 
 namespace wellgyro {
 
@@ -29,7 +29,7 @@ struct Run {
     OfRun<float> x{}, heating_rate{};
     Vectors u{};  ///< in T
   };
-  std::array<OfRun<std::int32_t>, RawSample::kChannelsMax> counts{};
+  Counts counts{};
   std::array<OfRun<double>, kPlaces> temperature{};  ///< true, of each thermometer in use [degC]
   OfRun<std::int64_t> inside{};                      ///< all bits where within what was calibrated
   OfRun<std::int64_t> inside_shown{};                ///< likewise, of a thermometer only shown
@@ -38,56 +38,8 @@ struct Run {
   std::array<Group, kGroups> groups{};
 };
 
-/// Four channels, from `c` on, of four samples.
-void TransposeFour(const RawSample* raw, std::size_t c, std::size_t at, Run& run) {
-  using Wholes4 [[gnu::vector_size(16)]] = std::int32_t;
-  static_assert(RawSample::kChannelsMax % 4 == 0);
-  std::array<Wholes4, 4> rows;
-  for (std::size_t k = 0; k < 4; ++k) std::memcpy(&rows[k], &raw[k].counts[c], sizeof(Wholes4));
-  const Wholes4 a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-  const Wholes4 b = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-  const Wholes4 d = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-  const Wholes4 e = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-  const std::array<Wholes4, 4> columns{
-      __builtin_shufflevector(a, b, 0, 1, 4, 5), __builtin_shufflevector(a, b, 2, 3, 6, 7),
-      __builtin_shufflevector(d, e, 0, 1, 4, 5), __builtin_shufflevector(d, e, 2, 3, 6, 7)};
-  for (std::size_t k = 0; k < 4; ++k) {
-    std::memcpy(&run.counts[c + k][at], &columns[k], sizeof(Wholes4));
-  }
-}
-
-/// Counts, channel by channel.
-void Transpose(std::span<const RawSample> raw, std::size_t channels, Run& run) {
-  std::size_t k = 0;
-  for (; k + 4 <= raw.size(); k += 4) {
-    for (std::size_t c = 0; c < channels; c += 4) TransposeFour(raw.data() + k, c, k, run);
-  }
-  for (; k < raw.size(); ++k) {
-    for (std::size_t c = 0; c < channels; ++c) run.counts[c][k] = raw[k].counts[c];
-  }
-}
-
 double PerSecond(const RawSample& raw) {
   return 1 / (static_cast<double>(std::max(raw.stamp.period_ns, 1)) * 1e-9);
-}
-
-/// Component by component to where each sample has its three.
-void PutVectors(const Vectors& u, std::span<ImuSample> out, Eigen::Vector3d ImuSample::*member) {
-  using Doubles2 [[gnu::vector_size(16)]] = double;
-  std::size_t k = 0;
-  for (; k + 2 <= out.size(); k += 2) {
-    Doubles2 x, y;
-    std::memcpy(&x, &u[0][k], sizeof x);
-    std::memcpy(&y, &u[1][k], sizeof y);
-    const Doubles2 one = __builtin_shufflevector(x, y, 0, 2);
-    const Doubles2 next = __builtin_shufflevector(x, y, 1, 3);
-    Eigen::Vector3d &to = out[k].*member, &to_next = out[k + 1].*member;
-    std::memcpy(to.data(), &one, sizeof one);
-    std::memcpy(to_next.data(), &next, sizeof next);
-    to[2] = u[2][k];
-    to_next[2] = u[2][k + 1];
-  }
-  if (k < out.size()) out[k].*member = {u[0][k], u[1][k], u[2][k]};
 }
 
 }  // namespace
@@ -102,10 +54,10 @@ struct SampleCalibrator::State {
   void ShareCells();
   std::size_t Take(std::span<const RawSample> raw);
   void Read(std::span<const RawSample> raw);
-  void Heat(std::span<const RawSample> raw, bool anew);
+  void Heat(Part part);
   std::size_t EndOfCells(Part part);
   void Calibrate(Part part, Run& to) const;
-  void Write(std::span<const RawSample> raw, std::span<ImuSample> out) const;
+  Columns Calibrated() const;
 
   ToolCalibration tool;
   std::int32_t channels_needed = 0, thermometers_needed = 0;
@@ -173,20 +125,32 @@ std::size_t SampleCalibrator::State::PlaceOf(int thermometer) {
 
 // Gives how many samples, kRun at most, are of one session; none that does not fit.
 std::size_t SampleCalibrator::State::Take(std::span<const RawSample> raw) {
+  const std::size_t most = std::min(kRun, raw.size());
+  const std::int32_t of_session = most > 0 ? raw[0].stamp.session : 0;
+  const bool anew = most > 0 && (!prepared || of_session != session);
+  std::int64_t last_ns = anew ? raw[0].stamp.tool_time.ns : heated_to.ns;
   std::size_t n = 0;
-  while (n < std::min(kRun, raw.size()) && Fits(raw[n]) &&
-         raw[n].stamp.session == raw[0].stamp.session) {
-    ++n;
+  for (; n < most && Fits(raw[n]) && raw[n].stamp.session == of_session; ++n) {
+    // The time for which the last sample's temperature held, until this one.
+    const std::int64_t ns = std::max(raw[n].stamp.tool_time.ns, last_ns);
+    run.since[n] = ns - last_ns;
+    last_ns = ns;
   }
   if (n == 0) return 0;
-  raw = raw.first(n);
-  last = n - 1;
-  Transpose(raw, static_cast<std::size_t>(channels_needed), run);
-  Read(raw);
-  const bool anew = !prepared || raw[0].stamp.session != session;
-  if (heats) Heat(raw, anew);
+  heated_to.ns = last_ns;
   prepared = true;
-  session = raw[0].stamp.session;
+  session = of_session;
+  last = n - 1;
+  Read(raw.first(n));
+  for (std::size_t i = 0; anew && i < kGroups; ++i) groups[i].Settle(run.temperature[place[i]][0]);
+  // What each sample leaves to the next is a chain beside which counts are transposed.
+  constexpr std::size_t kPiece = 8;
+  for (std::size_t k = 0; k < n; k += kPiece) {
+    const std::size_t size = std::min(kPiece, n - k);
+    if (heats) Heat({k, k + size});
+    Transpose(lanes, raw.subspan(k, size), static_cast<std::size_t>(channels_needed), k,
+              run.counts);
+  }
   return n;
 }
 
@@ -211,23 +175,11 @@ void SampleCalibrator::State::Read(std::span<const RawSample> raw) {
   for (std::size_t k = 0; k < raw.size(); ++k) run.per_second[k] = PerSecond(raw[k]);
 }
 
-// The first sample of all, or of a session, is not heated.
-void SampleCalibrator::State::Heat(std::span<const RawSample> raw, bool anew) {
-  if (anew) heated_to = raw[0].stamp.tool_time;
-  std::int64_t last_ns = heated_to.ns;
-  for (std::size_t k = 0; k < raw.size(); ++k) {
-    // The time for which the last sample's temperature held, until this one.
-    const std::int64_t ns = std::max(raw[k].stamp.tool_time.ns, last_ns);
-    run.since[k] = ns - last_ns;
-    last_ns = ns;
-  }
-  heated_to.ns = last_ns;
+void SampleCalibrator::State::Heat(Part part) {
   for (std::size_t i = 0; i < kGroups; ++i) {
     if (!groups[i].heats()) continue;
-    const OfRun<double>& temperature = run.temperature[place[i]];
-    if (anew) groups[i].Settle(temperature[0]);
-    groups[i].Heat(std::span(run.since).first(raw.size()), temperature.data(),
-                   run.groups[i].heating_rate.data());
+    groups[i].Heat(std::span(run.since).subspan(part.begin, part.end - part.begin),
+                   &run.temperature[place[i]][part.begin], &run.groups[i].heating_rate[part.begin]);
   }
 }
 
@@ -259,21 +211,14 @@ void SampleCalibrator::State::Calibrate(Part part, Run& to) const {
   }
 }
 
-// A run that was calibrated.
-void SampleCalibrator::State::Write(std::span<const RawSample> raw,
-                                    std::span<ImuSample> out) const {
-  const bool has_gz = tool.gyro.n_channels > 2, has_mag = tool.mag.n_channels > 0;
-  const OfRun<double>& temperature = run.temperature[shown];
-  for (std::size_t k = 0; k < raw.size(); ++k) {
-    SampleStamp& stamp = out[k].stamp = raw[k].stamp;
-    stamp.temperature_outside = raw[k].stamp.temperature_outside || run.inside[k] == 0;
-    stamp.temperature = static_cast<float>(temperature[k]);
-    out[k].has_gz = has_gz;
-    out[k].has_mag = has_mag;
-  }
-  PutVectors(run.groups[kGyro].u, out, &ImuSample::w_IT_T);
-  PutVectors(run.groups[kAccel].u, out, &ImuSample::f_T);
-  PutVectors(run.groups[kMag].u, out, &ImuSample::b_T);
+Columns SampleCalibrator::State::Calibrated() const {
+  return {.w_IT_T = run.groups[kGyro].u,
+          .f_T = run.groups[kAccel].u,
+          .b_T = run.groups[kMag].u,
+          .has_gz = tool.gyro.n_channels > 2,
+          .has_mag = tool.mag.n_channels > 0,
+          .temperature = run.temperature[shown],
+          .inside = run.inside};
 }
 
 SampleCalibrator::SampleCalibrator(const ToolCalibration& tool) {
@@ -299,7 +244,7 @@ std::size_t SampleCalibrator::Apply(std::span<const RawSample> raw, std::span<Im
       part.end = state.EndOfCells(part);
       state.Calibrate(part, state.run);
     }
-    state.Write(raw.subspan(done, n), out.subspan(done, n));
+    Write(state.lanes, raw.subspan(done, n), state.Calibrated(), &out[done]);
     done += n;
   }
   return done;
@@ -309,7 +254,7 @@ std::optional<double> SampleCalibrator::Parity(const RawSample& raw) const {
   const State& state = *state_;
   if (state.tool.gyro.n_channels != 4 || !state.prepared || !state.Fits(raw)) return std::nullopt;
   Run one;
-  Transpose({&raw, 1}, static_cast<std::size_t>(state.channels_needed), one);
+  Transpose(state.lanes, {&raw, 1}, static_cast<std::size_t>(state.channels_needed), 0, one.counts);
   one.per_second[0] = PerSecond(raw);
   for (std::size_t i = 0; i < kGroups; ++i) {
     one.groups[i].x[0] = state.run.groups[i].x[state.last];

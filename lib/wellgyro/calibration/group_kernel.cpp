@@ -28,7 +28,8 @@ struct Side {
 template <class L>
 [[gnu::always_inline]] inline void AddChannel(Side<L>& s, std::size_t c, bool varies) {
   typename L::Double n;
-  L::ToDouble(s.readings.counts[s.g.channel[c]].data() + s.at, n);
+  const std::int32_t* counts = s.readings.counts[s.g.channel[c]].data() + s.at;
+  L::ToDouble(counts, n);
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < 3; ++i) {
 #pragma GCC unroll 2
@@ -39,7 +40,7 @@ template <class L>
   }
   if (!varies) return;
   typename L::Single single;
-  L::ToSingle(n, single);
+  L::ToSingle(counts, single);
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < 3; ++i) {
     const auto moved = (L::Of(s.g.A1[i][c]) + s.x * L::Of(s.g.A2[i][c])) * single;

@@ -87,6 +87,14 @@ struct Lanes4 {
                 static_cast<float>(n[1][0]), static_cast<float>(n[1][1])};
 #endif
   }
+  [[gnu::always_inline]] static void ToSingle(const std::int32_t* n, Single& to) {
+#if defined(__x86_64__)
+    to = _mm_cvtepi32_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(n)));
+#else
+    to = Single{static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]),
+                static_cast<float>(n[3])};
+#endif
+  }
   [[gnu::always_inline]] static bool AnyAbove(const Single& n, float limit) {
     const auto above = n > limit;
     return (above[0] | above[1] | above[2] | above[3]) != 0;
@@ -137,6 +145,9 @@ struct Lanes8 {
   [[gnu::target("avx2")]] static inline void ToSingle(const Double& n, Single& to) {
     to = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(n[0])), _mm256_cvtpd_ps(n[1]),
                               1);
+  }
+  [[gnu::target("avx2")]] static inline void ToSingle(const std::int32_t* n, Single& to) {
+    to = _mm256_cvtepi32_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(n)));
   }
   [[gnu::target("avx2")]] static inline bool AnyAbove(const Single& n, float limit) {
     return _mm256_movemask_ps(_mm256_cmp_ps(n, _mm256_set1_ps(limit), _CMP_GT_OQ)) != 0;
