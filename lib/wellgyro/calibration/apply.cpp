@@ -52,12 +52,12 @@ struct SampleCalibrator::State {
   }
   std::size_t PlaceOf(int thermometer);
   void ShareCells();
-  std::size_t Take(std::span<const RawSample> raw);
+  std::size_t Take(std::span<const RawSample> raw, ImuSample* out);
   void Read(std::span<const RawSample> raw);
   void Heat(Part part);
   std::size_t EndOfCells(Part part);
   void Calibrate(Part part, Run& to) const;
-  Columns Calibrated() const;
+  void Write(std::span<ImuSample> out) const;
 
   ToolCalibration tool;
   std::int32_t channels_needed = 0, thermometers_needed = 0;
@@ -124,7 +124,7 @@ std::size_t SampleCalibrator::State::PlaceOf(int thermometer) {
 }
 
 // Gives how many samples, kRun at most, are of one session; none that does not fit.
-std::size_t SampleCalibrator::State::Take(std::span<const RawSample> raw) {
+std::size_t SampleCalibrator::State::Take(std::span<const RawSample> raw, ImuSample* out) {
   const std::size_t most = std::min(kRun, raw.size());
   const std::int32_t of_session = most > 0 ? raw[0].stamp.session : 0;
   const bool anew = most > 0 && (!prepared || of_session != session);
@@ -143,13 +143,14 @@ std::size_t SampleCalibrator::State::Take(std::span<const RawSample> raw) {
   last = n - 1;
   Read(raw.first(n));
   for (std::size_t i = 0; anew && i < kGroups; ++i) groups[i].Settle(run.temperature[place[i]][0]);
-  // What each sample leaves to the next is a chain beside which counts are transposed.
+  // What each sample's heating leaves to the next is a chain, beside which there is time for more.
   constexpr std::size_t kPiece = 8;
   for (std::size_t k = 0; k < n; k += kPiece) {
-    const std::size_t size = std::min(kPiece, n - k);
-    if (heats) Heat({k, k + size});
-    Transpose(lanes, raw.subspan(k, size), static_cast<std::size_t>(channels_needed), k,
-              run.counts);
+    const std::span<const RawSample> piece = raw.subspan(k, std::min(kPiece, n - k));
+    if (heats) Heat({k, k + piece.size()});
+    Transpose(lanes, piece, static_cast<std::size_t>(channels_needed), k, run.counts);
+    Stamp(piece, &run.temperature[shown][k], tool.gyro.n_channels > 2, tool.mag.n_channels > 0,
+          out + k);
   }
   return n;
 }
@@ -211,14 +212,14 @@ void SampleCalibrator::State::Calibrate(Part part, Run& to) const {
   }
 }
 
-Columns SampleCalibrator::State::Calibrated() const {
-  return {.w_IT_T = run.groups[kGyro].u,
-          .f_T = run.groups[kAccel].u,
-          .b_T = run.groups[kMag].u,
-          .has_gz = tool.gyro.n_channels > 2,
-          .has_mag = tool.mag.n_channels > 0,
-          .temperature = run.temperature[shown],
-          .inside = run.inside};
+// Of a run that was calibrated.
+void SampleCalibrator::State::Write(std::span<ImuSample> out) const {
+  Put(lanes, run.groups[kGyro].u, run.groups[kAccel].u, run.groups[kMag].u, out);
+  std::int64_t all_inside = -1;
+  for (std::size_t k = 0; k < out.size(); ++k) all_inside &= run.inside[k];
+  for (std::size_t k = 0; all_inside == 0 && k < out.size(); ++k) {
+    if (run.inside[k] == 0) out[k].stamp.temperature_outside = true;
+  }
 }
 
 SampleCalibrator::SampleCalibrator(const ToolCalibration& tool) {
@@ -238,13 +239,13 @@ std::size_t SampleCalibrator::Apply(std::span<const RawSample> raw, std::span<Im
   State& state = *state_;
   std::size_t done = 0;
   while (done < raw.size()) {
-    const std::size_t n = state.Take(raw.subspan(done));
+    const std::size_t n = state.Take(raw.subspan(done), &out[done]);
     if (n == 0) break;
     for (Part part{0, n}; part.begin < n; part = {part.end, n}) {
       part.end = state.EndOfCells(part);
       state.Calibrate(part, state.run);
     }
-    Write(state.lanes, raw.subspan(done, n), state.Calibrated(), &out[done]);
+    state.Write(out.subspan(done, n));
     done += n;
   }
   return done;

@@ -24,44 +24,32 @@ void TransposeFour(const RawSample* raw, std::size_t c, std::size_t at, Counts& 
   for (std::size_t k = 0; k < 4; ++k) std::memcpy(&counts[c + k][at], &columns[k], sizeof(Wholes4));
 }
 
-[[gnu::always_inline]] inline void WriteStamp(const RawSample& raw, const Columns& from,
-                                              std::size_t k, ImuSample& out) {
-  out.stamp = raw.stamp;
-  out.stamp.temperature_outside = raw.stamp.temperature_outside || from.inside[k] == 0;
-  out.stamp.temperature = static_cast<float>(from.temperature[k]);
-  out.has_gz = from.has_gz;
-  out.has_mag = from.has_mag;
+// A sample's three vectors are nine numbers in a row.
+constexpr std::size_t kRow = 9;
+static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) &&
+              offsetof(ImuSample, f_T) == offsetof(ImuSample, w_IT_T) + 3 * sizeof(double) &&
+              offsetof(ImuSample, b_T) == offsetof(ImuSample, w_IT_T) + 6 * sizeof(double));
+double* RowOf(ImuSample& sample) {
+  return reinterpret_cast<double*>(reinterpret_cast<std::byte*>(&sample) +
+                                   offsetof(ImuSample, w_IT_T));
 }
+
+using Rows = std::array<const double*, kRow>;
 
 // Two samples from k on.
-void PutTwo(const Vectors& u, std::size_t k, Eigen::Vector3d& to, Eigen::Vector3d& to_next) {
-  Doubles2 x, y;
-  std::memcpy(&x, &u[0][k], sizeof x);
-  std::memcpy(&y, &u[1][k], sizeof y);
-  const Doubles2 one = __builtin_shufflevector(x, y, 0, 2);
-  const Doubles2 next = __builtin_shufflevector(x, y, 1, 3);
-  std::memcpy(to.data(), &one, sizeof one);
-  std::memcpy(to_next.data(), &next, sizeof next);
-  to[2] = u[2][k];
-  to_next[2] = u[2][k + 1];
-}
-
-// From the first-th on.
-void WriteByTwo(std::span<const RawSample> raw, const Columns& from, std::size_t first,
-                ImuSample* out) {
-  std::size_t k = first;
-  for (; k + 2 <= raw.size(); k += 2) {
-    for (std::size_t i = k; i < k + 2; ++i) WriteStamp(raw[i], from, i, out[i]);
-    PutTwo(from.w_IT_T, k, out[k].w_IT_T, out[k + 1].w_IT_T);
-    PutTwo(from.f_T, k, out[k].f_T, out[k + 1].f_T);
-    PutTwo(from.b_T, k, out[k].b_T, out[k + 1].b_T);
+void PutTwo(const Rows& rows, std::size_t k, double* to, double* to_next) {
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i + 2 <= kRow; i += 2) {
+    Doubles2 x, y;
+    std::memcpy(&x, rows[i] + k, sizeof x);
+    std::memcpy(&y, rows[i + 1] + k, sizeof y);
+    const Doubles2 one = __builtin_shufflevector(x, y, 0, 2);
+    const Doubles2 next = __builtin_shufflevector(x, y, 1, 3);
+    std::memcpy(to + i, &one, sizeof one);
+    std::memcpy(to_next + i, &next, sizeof next);
   }
-  if (k == raw.size()) return;
-  const auto put = [&](const Vectors& u, Eigen::Vector3d& to) { to = {u[0][k], u[1][k], u[2][k]}; };
-  WriteStamp(raw[k], from, k, out[k]);
-  put(from.w_IT_T, out[k].w_IT_T);
-  put(from.f_T, out[k].f_T);
-  put(from.b_T, out[k].b_T);
+  to[kRow - 1] = rows[kRow - 1][k];
+  to_next[kRow - 1] = rows[kRow - 1][k + 1];
 }
 
 #if defined(__x86_64__)
@@ -98,28 +86,29 @@ void WriteByTwo(std::span<const RawSample> raw, const Columns& from, std::size_t
   return k;
 }
 
-// Four samples from k on.
-[[gnu::target("avx2")]] inline void PutFour(const Vectors& u, std::size_t k, ImuSample* out,
-                                            Eigen::Vector3d ImuSample::*member) {
-  const __m256d x = _mm256_loadu_pd(&u[0][k]), y = _mm256_loadu_pd(&u[1][k]);
-  const __m256d even = _mm256_unpacklo_pd(x, y), odd = _mm256_unpackhi_pd(x, y);
-  _mm_storeu_pd((out[0].*member).data(), _mm256_castpd256_pd128(even));
-  _mm_storeu_pd((out[1].*member).data(), _mm256_castpd256_pd128(odd));
-  _mm_storeu_pd((out[2].*member).data(), _mm256_extractf128_pd(even, 1));
-  _mm_storeu_pd((out[3].*member).data(), _mm256_extractf128_pd(odd, 1));
-#pragma GCC unroll 4
-  for (std::size_t i = 0; i < 4; ++i) (out[i].*member).data()[2] = u[2][k + i];
+// Four numbers from i on of four samples from k on.
+[[gnu::target("avx2")]] inline void PutSquare(const Rows& rows, std::size_t i, std::size_t k,
+                                              const std::array<double*, 4>& to) {
+  const __m256d a = _mm256_loadu_pd(rows[i] + k), b = _mm256_loadu_pd(rows[i + 1] + k);
+  const __m256d c = _mm256_loadu_pd(rows[i + 2] + k), d = _mm256_loadu_pd(rows[i + 3] + k);
+  const __m256d ab_even = _mm256_unpacklo_pd(a, b), ab_odd = _mm256_unpackhi_pd(a, b);
+  const __m256d cd_even = _mm256_unpacklo_pd(c, d), cd_odd = _mm256_unpackhi_pd(c, d);
+  _mm256_storeu_pd(to[0] + i, _mm256_insertf128_pd(ab_even, _mm256_castpd256_pd128(cd_even), 1));
+  _mm256_storeu_pd(to[1] + i, _mm256_insertf128_pd(ab_odd, _mm256_castpd256_pd128(cd_odd), 1));
+  _mm256_storeu_pd(to[2] + i, _mm256_permute2f128_pd(ab_even, cd_even, 0x31));
+  _mm256_storeu_pd(to[3] + i, _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31));
 }
 
 // Gives how many samples.
-[[gnu::target("avx2")]] std::size_t WriteByFour(std::span<const RawSample> raw, const Columns& from,
-                                                ImuSample* out) {
+[[gnu::target("avx2")]] std::size_t PutByFour(const Rows& rows, std::span<ImuSample> out) {
   std::size_t k = 0;
-  for (; k + 4 <= raw.size(); k += 4) {
-    for (std::size_t i = k; i < k + 4; ++i) WriteStamp(raw[i], from, i, out[i]);
-    PutFour(from.w_IT_T, k, out + k, &ImuSample::w_IT_T);
-    PutFour(from.f_T, k, out + k, &ImuSample::f_T);
-    PutFour(from.b_T, k, out + k, &ImuSample::b_T);
+  for (; k + 4 <= out.size(); k += 4) {
+    const std::array<double*, 4> to{RowOf(out[k]), RowOf(out[k + 1]), RowOf(out[k + 2]),
+                                    RowOf(out[k + 3])};
+    PutSquare(rows, 0, k, to);
+    PutSquare(rows, 4, k, to);
+#pragma GCC unroll 4
+    for (std::size_t j = 0; j < 4; ++j) to[j][8] = rows[8][k + j];
   }
   return k;
 }
@@ -142,13 +131,29 @@ void Transpose(Lanes lanes, std::span<const RawSample> raw, std::size_t channels
   }
 }
 
-void Write(Lanes lanes, std::span<const RawSample> raw, const Columns& from, ImuSample* out) {
+void Stamp(std::span<const RawSample> raw, const double* temperature, bool has_gz, bool has_mag,
+           ImuSample* out) {
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    out[k].stamp = raw[k].stamp;
+    out[k].stamp.temperature = static_cast<float>(temperature[k]);
+    out[k].has_gz = has_gz;
+    out[k].has_mag = has_mag;
+  }
+}
+
+void Put(Lanes lanes, const Vectors& w_IT_T, const Vectors& f_T, const Vectors& b_T,
+         std::span<ImuSample> out) {
+  const Rows rows{w_IT_T[0].data(), w_IT_T[1].data(), w_IT_T[2].data(),
+                  f_T[0].data(),    f_T[1].data(),    f_T[2].data(),
+                  b_T[0].data(),    b_T[1].data(),    b_T[2].data()};
   std::size_t k = 0;
 #if defined(__x86_64__)
-  if (lanes == Lanes::kEight) k = WriteByFour(raw, from, out);
+  if (lanes == Lanes::kEight) k = PutByFour(rows, out);
 #endif
   static_cast<void>(lanes);
-  WriteByTwo(raw, from, k, out);
+  for (; k + 2 <= out.size(); k += 2) PutTwo(rows, k, RowOf(out[k]), RowOf(out[k + 1]));
+  if (k == out.size()) return;
+  for (std::size_t i = 0; i < kRow; ++i) RowOf(out[k])[i] = rows[i][k];
 }
 
 }  // namespace wellgyro

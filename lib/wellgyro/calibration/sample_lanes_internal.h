@@ -16,13 +16,12 @@ using Counts = std::array<OfRun<std::int32_t>, RawSample::kChannelsMax>;
 void Transpose(Lanes lanes, std::span<const RawSample> raw, std::size_t channels, std::size_t at,
                Counts& counts);
 
-/// What samples are made of besides what the tool said: numbers beside each other.
-struct Columns {
-  const Vectors &w_IT_T, &f_T, &b_T;
-  bool has_gz = false, has_mag = false;
-  const OfRun<double>& temperature;
-  const OfRun<std::int64_t>& inside;  ///< 0: beyond the calibrated temperatures
-};
-void Write(Lanes lanes, std::span<const RawSample> raw, const Columns& from, ImuSample* out);
+/// out[k] of raw[k]: all but its vectors.
+void Stamp(std::span<const RawSample> raw, const double* temperature, bool has_gz, bool has_mag,
+           ImuSample* out);
+
+/// Vectors that stand beside each other to where samples have theirs.
+void Put(Lanes lanes, const Vectors& w_IT_T, const Vectors& f_T, const Vectors& b_T,
+         std::span<ImuSample> out);
 
 }  // namespace wellgyro
