@@ -163,7 +163,7 @@ template <class L, unsigned kWhat>
 }
 
 /// What products of u do to it where that is too much for single precision, of samples side by side
-/// from `at` on: of[i] is u[i] before.
+/// from `at` on.
 template <std::size_t kCount>
 [[gnu::noinline]] void RefineLarge(const GroupKernel& g, const OfRun<float>& x,
                                    const double (&linear)[3][kCount], std::size_t at, Vectors& u) {

@@ -13,7 +13,7 @@ namespace wellgyro {
 
 /// Samples that are looked at together, and numbers beside each other of so many: room for eight
 /// lanes from each of them on.
-inline constexpr std::size_t kRun = 32;
+inline constexpr std::size_t kRun = 64;
 template <class Number>
 using OfRun = std::array<Number, kRun + 8>;
 using Vectors = std::array<OfRun<double>, 3>;
