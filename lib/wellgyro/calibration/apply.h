@@ -23,8 +23,8 @@ WELLGYRO_EXPORT std::optional<std::string> FindComplaint(const ToolCalibration& 
 ///
 /// Between temperatures at which the formula is solved in full its numbers are interpolated: to
 /// 1e-9 of the larger of u and 1 deg/s, 1 g, 50 uT, terms of second order, in the force and in
-/// heating to 1e-5 of themselves. That costs the same whether the temperature changes with every
-/// sample or not. Beyond the calibrated range temperatures stay at its end and
+/// heating to 1e-5 of themselves. That costs the same, to a tenth, whether the temperature changes
+/// with every sample or not. Beyond the calibrated range temperatures stay at its end and
 /// `temperature_outside` is set. The result does not depend on how samples are cut into batches.
 /// Nothing is allocated.
 class WELLGYRO_EXPORT SampleCalibrator {
