@@ -1,3 +1,4 @@
+#include <span>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -21,17 +22,14 @@ std::vector<RawSample> Counts(const ToolCalibration& tool) {
   return raw;
 }
 
-// The measure: three bare 3x3 multiply-adds a sample over the same arrays.
-void BareMultiplyAdd(benchmark::State& state) {
-  const std::vector<RawSample> raw = Counts(test::RandomTool(1, {}));
-  std::vector<ImuSample> out(raw.size());
-  Eigen::Matrix3d A[3];
-  Eigen::Vector3d b[3];
-  for (int g = 0; g < 3; ++g) {
-    A[g] = Eigen::Matrix3d::Random();
-    b[g] = Eigen::Vector3d::Random();
+struct Bare {
+  Bare() {
+    for (int g = 0; g < 3; ++g) {
+      A[g] = Eigen::Matrix3d::Random();
+      b[g] = Eigen::Vector3d::Random();
+    }
   }
-  for (auto _ : state) {
+  void Apply(std::span<const RawSample> raw, std::vector<ImuSample>& out) const {
     for (std::size_t i = 0; i < raw.size(); ++i) {
       const auto& n = raw[i].counts;
       const auto at = [&](std::size_t g) {
@@ -42,6 +40,18 @@ void BareMultiplyAdd(benchmark::State& state) {
       out[i].f_T = A[1] * at(1) + b[1];
       out[i].b_T = A[2] * at(2) + b[2];
     }
+  }
+  Eigen::Matrix3d A[3];
+  Eigen::Vector3d b[3];
+};
+
+// The measure: three bare 3x3 multiply-adds a sample over the same arrays.
+void BareMultiplyAdd(benchmark::State& state) {
+  const std::vector<RawSample> raw = Counts(test::RandomTool(1, {}));
+  std::vector<ImuSample> out(raw.size());
+  const Bare bare;
+  for (auto _ : state) {
+    bare.Apply(raw, out);
     benchmark::DoNotOptimize(out.data());
     benchmark::ClobberMemory();
   }
@@ -93,7 +103,7 @@ ToolCalibration FullTool() {
 
 // Samples at 100 Hz of a tool that warms by 1 degC a minute, whose thermometer reads anew, with a
 // noise of 2 mdegC, with every `each` samples; 0: never.
-void Calibrate(benchmark::State& state, const ToolCalibration& tool, int each) {
+std::vector<RawSample> Warming(const ToolCalibration& tool, int each) {
   constexpr int kSamples = 100 * kBatch;
   const std::vector<RawSample> counts = Counts(tool);
   Random random(4);
@@ -106,19 +116,31 @@ void Calibrate(benchmark::State& state, const ToolCalibration& tool, int each) {
         static_cast<float>(RawTemperature(tool.thermometers[0], temperature));
     raw.push_back(sample);
   }
+  return raw;
+}
+
+template <class Calibrator>
+void Calibrate(benchmark::State& state, std::vector<RawSample> raw, Calibrator&& calibrator) {
   std::vector<ImuSample> out(kBatch);
-  SampleCalibrator calibrator(tool);
   std::int64_t now = 0;
   std::size_t at = 0;
   for (auto _ : state) {
     const std::span<RawSample> batch = std::span(raw).subspan(at, kBatch);
     for (RawSample& sample : batch) sample.stamp.tool_time.ns = (now += 10'000'000);
     calibrator.Apply(batch, out);
-    at = (at + kBatch) % kSamples;
+    at = (at + kBatch) % raw.size();
     benchmark::DoNotOptimize(out.data());
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * kBatch);
+}
+
+// The measure over as many samples, which the processor's nearest memory does not hold.
+void BareOfMany(benchmark::State& state) { Calibrate(state, Warming(FullTool(), 0), Bare()); }
+BENCHMARK(BareOfMany);
+
+void Calibrate(benchmark::State& state, const ToolCalibration& tool, int each) {
+  Calibrate(state, Warming(tool, each), SampleCalibrator(tool));
 }
 void FullThermal(benchmark::State& state) {
   Calibrate(state, FullTool(), static_cast<int>(state.range(0)));

@@ -1,5 +1,6 @@
 #include "wellgyro/calibration/apply.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -126,30 +127,59 @@ TEST(Apply, CountsOfPulsesArePerSecond) {
   EXPECT_GT(sum.norm(), 1);
 }
 
+// Temperatures that stand still for a while, or that leave their cells again and again.
 TEST(Apply, DoesNotDependOnTheCutsOfBatches) {
   ToolCalibration tool =
       RandomTool(7, {.temperature = true, .second_order = true, .g_terms = true, .rotated = true});
   tool.gyro.heating.setConstant(0.3);
   tool.accel.heating.setConstant(-0.2);
-  Random random(8);
-  RawCounter counter(tool);
+  for (const double noise : {0.0, 0.3}) {
+    Random random(8);
+    RawCounter counter(tool);
+    std::vector<RawSample> raw;
+    for (int i = 0; i < 300; ++i) {
+      ImuSample truth = RandomSample(random, true);
+      truth.stamp.tool_time.ns = i * std::int64_t{10'000'000};
+      raw.push_back(counter.Count(truth, 50.0 + i / 40 + noise * random.Normal()));
+    }
+    std::vector<ImuSample> whole(raw.size()), cut(raw.size());
+    SampleCalibrator one(tool), other(tool);
+    ASSERT_EQ(one.Apply(raw, whole), raw.size());
+    for (std::size_t begin = 0, n = 1; begin < raw.size(); begin += n, n = n % 7 + 1) {
+      n = std::min(n, raw.size() - begin);
+      ASSERT_EQ(other.Apply(std::span(raw).subspan(begin, n), std::span(cut).subspan(begin, n)), n);
+    }
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      EXPECT_EQ(whole[i].w_IT_T, cut[i].w_IT_T);
+      EXPECT_EQ(whole[i].f_T, cut[i].f_T);
+      EXPECT_EQ(whole[i].b_T, cut[i].b_T);
+      EXPECT_EQ(whole[i].stamp.temperature, cut[i].stamp.temperature);
+    }
+  }
+}
+
+// Channels that count pulses over periods that are never the same: as channels that do not, of
+// units that have each sample's period in them.
+TEST(Apply, PulsesArePerSecondOfTheirOwnSample) {
+  const ToolCalibration plain = RandomTool(19, {.temperature = true});
+  ToolCalibration pulses = plain;
+  pulses.accel.per_second = true;
+  Random random(20);
+  RawCounter counter(plain);
+  SampleCalibrator calibrator(pulses);
   std::vector<RawSample> raw;
-  for (int i = 0; i < 300; ++i) {
-    ImuSample truth = RandomSample(random, true);
-    truth.stamp.tool_time.ns = i * std::int64_t{10'000'000};
-    raw.push_back(counter.Count(truth, 50.0 + i / 40));
+  for (int i = 0; i < 100; ++i) {
+    raw.push_back(counter.Count(RandomSample(random, true), 60 + 0.05 * i));
+    raw.back().stamp.period_ns = 900'000'000 + static_cast<std::int32_t>(2e8 * random.Uniform());
   }
-  std::vector<ImuSample> whole(raw.size()), cut(raw.size());
-  SampleCalibrator one(tool), other(tool);
-  ASSERT_EQ(one.Apply(raw, whole), raw.size());
-  for (std::size_t begin = 0, n = 1; begin < raw.size(); begin += n, n = n % 7 + 1) {
-    n = std::min(n, raw.size() - begin);
-    ASSERT_EQ(other.Apply(std::span(raw).subspan(begin, n), std::span(cut).subspan(begin, n)), n);
-  }
+  std::vector<ImuSample> out(raw.size());
+  ASSERT_EQ(calibrator.Apply(raw, out), raw.size());
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    EXPECT_EQ(whole[i].w_IT_T, cut[i].w_IT_T);
-    EXPECT_EQ(whole[i].f_T, cut[i].f_T);
-    EXPECT_EQ(whole[i].b_T, cut[i].b_T);
+    ToolCalibration of_period = plain;
+    of_period.accel.unit_per_count /= 1e-9 * raw[i].stamp.period_ns;
+    const ImuSample expected = Calibrate(of_period, raw[i]);
+    EXPECT_LT((out[i].f_T - expected.f_T).norm(), 1e-9 * units::kStandardGravity);
+    EXPECT_EQ(out[i].w_IT_T, expected.w_IT_T);
   }
 }
 
@@ -257,6 +287,30 @@ TEST(Apply, TemperaturesBetweenThoseSolvedInFullAreRightToABillionth) {
   }
   EXPECT_LT(worst, 1);
   EXPECT_GT(worst, 0.01);
+}
+
+// Beyond the range what is calibrated stays, so that it bends where the range ends.
+TEST(Apply, TemperaturesAtTheEndsOfTheRangeAreRightToABillionth) {
+  const ToolCalibration tool = RandomTool(26, {.temperature = true});
+  Random random(27);
+  RawCounter counter(tool);
+  SampleCalibrator calibrator(tool);
+  double worst = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double beyond = 0.2 * (random.Uniform() - 0.5);
+    const RawSample raw =
+        counter.Count(RandomSample(random, true), (i % 2 == 0 ? 20 : 160) + beyond);
+    ImuSample found;
+    ASSERT_EQ(calibrator.Apply({&raw, 1}, {&found, 1}), 1u);
+    const double temperature =
+        TrueTemperature(tool.thermometers[0], static_cast<double>(raw.temperature_raw[1])).value;
+    EXPECT_EQ(found.stamp.temperature_outside, temperature < 20 || temperature > 160);
+    const Eigen::Vector3d u = SolveSimply(tool.accel, raw, temperature, found.f_T).u;
+    worst = std::max(
+        worst, (found.f_T - u).cwiseAbs().maxCoeff() / std::max(u.norm(), units::kStandardGravity));
+  }
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_GT(worst, 0);
 }
 
 TEST(Apply, ANewSessionBeginsWithoutHeating) {

@@ -93,7 +93,8 @@ void BlockSum::Close(Block& block) {
 void TurnBlock(bool third, Block& block) {
   const double p = block.rate, q = block.bend, dt = block.period, length = block.seconds;
   const double whole = InverseSinc(p * dt), late = q * dt * dt / 24;
-  const Complex to_middle = std::polar(1., block.roll), to_U = std::polar(whole, block.roll + late);
+  const Complex to_middle = std::polar(1., block.roll),
+                to_U = whole * std::polar(1., block.roll + late);
   const Turned wx = Turn(block.sum[kWx], p, q), wy = Turn(block.sum[kWy], p, q);
   const Turned fx = Turn(block.sum[kFx], p, q), fy = Turn(block.sum[kFy], p, q);
   const Complex i(0, 1);

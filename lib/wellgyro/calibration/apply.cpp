@@ -2,96 +2,44 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cassert>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/calibration/group_kernel_internal.h"
 #include "wellgyro/calibration/group_solution_internal.h"
-#include "wellgyro/calibration/thermometer.h"
+#include "wellgyro/calibration/sample_lanes_internal.h"
 
 namespace wellgyro {
 
 namespace {
 
-/// Samples that are looked at together.
-constexpr std::size_t kRun = 32;
+/// Where SampleCalibrator's groups stand side by side.
+constexpr std::size_t kGyro = 0, kAccel = 1, kMag = 2, kGroups = 3;
+/// Where temperatures stand: of one thermometer a group, of the one that the stamp shows, and 0.
+constexpr std::size_t kPlaces = kGroups + 2, kNoThermometer = kPlaces - 1;
 
-/// What stands beside the counts of a run of samples: a number a sample.
+/// What stands beside a run of samples, and what becomes of them.
 struct Run {
   struct Group {
-    std::array<float, kRun> x{}, heating_rate{};
+    OfRun<float> x{}, heating_rate{};
+    Vectors u{};  ///< in T
   };
-  Group gyro, accel, mag;
-  std::array<float, kRun> temperature{};
-  std::array<bool, kRun> outside{};
+  Counts counts{};
+  std::array<OfRun<double>, kPlaces> temperature{};  ///< true, of each thermometer in use [degC]
+  OfRun<std::int64_t> inside{};                      ///< all bits where within what was calibrated
+  OfRun<std::int64_t> inside_shown{};                ///< likewise, of a thermometer only shown
+  OfRun<std::int64_t> since{};                       ///< the sample before [ns]
+  OfRun<double> per_second{};                        ///< one over the period [1/s]
+  std::array<Group, kGroups> groups{};
 };
 
-struct Kernels {
-  const GroupKernel &gyro, &accel, &mag;
-  std::size_t channels;  // that they need, from the first on
-};
-
-template <int kN>
-using SolveOf = void (*)(const GroupKernel&, const CountsOf<kN>&, const Beside<kN>&, Side<kN>&);
-
-template <int kN, unsigned kWhat>
-void Solve(const GroupKernel& group, const CountsOf<kN>& counts, const Beside<kN>& beside,
-           Side<kN>& into) {
-  constexpr bool kFour = (kWhat & 1) != 0, kVaries = (kWhat & 2) != 0, kMoved = (kWhat & 4) != 0;
-  Side<kN> u;
-  SingleSide<kN> slope;
-  Linear<kN, kFour, kVaries>(group, counts, u, slope);
-  if constexpr (kVaries || kMoved) TakeSmall<kN, kVaries, kMoved>(group, beside, slope, u);
-  if constexpr ((kWhat & 8) != 0) Refine<kN>(group, u);
-  into = u;
-}
-
-template <int kN, unsigned... kWhat>
-constexpr std::array<SolveOf<kN>, sizeof...(kWhat)> SolversOf(
-    std::integer_sequence<unsigned, kWhat...>) {
-  return {Solve<kN, kWhat>...};
-}
-
-/// The one for what a group has.
-template <int kN>
-SolveOf<kN> SolverOf(const GroupKernel& g) {
-  static constexpr auto kSolvers = SolversOf<kN>(std::make_integer_sequence<unsigned, 16>());
-  return kSolvers[(g.n_channels == 4 ? 1U : 0U) + (g.varies ? 2U : 0U) + (g.moved ? 4U : 0U) +
-                  (g.second_order ? 8U : 0U)];
-}
-
-// Samples of a run, kN at a time, from the `first` on while there are so many. Gives where it ends.
-template <int kN>
-std::size_t CalibrateSides(const Kernels& groups, std::span<const RawSample> raw, const Run& run,
-                           std::size_t first, ImuSample* out) {
-  const auto gyro = SolverOf<kN>(groups.gyro), accel = SolverOf<kN>(groups.accel),
-             mag = SolverOf<kN>(groups.mag);
-  const bool has_mag = groups.mag.n_channels > 0;
-  std::size_t i = first;
-  for (; i + kN <= raw.size(); i += kN) {
-    const CountsOf<kN> counts(raw.data() + i, groups.channels);
-    const auto beside = [&](const Run::Group& group, const SingleSide<kN>& f) {
-      return Beside<kN>{Load<kN>(group.x.data() + i), Load<kN>(group.heating_rate.data() + i), f};
-    };
-    // The force first: the gyros feel it.
-    Side<kN> u;
-    accel(groups.accel, counts, beside(run.accel, {}), u);
-    Put<kN>(u, out + i, &ImuSample::f_T);
-    gyro(groups.gyro, counts, beside(run.gyro, {ToSingle(u[0]), ToSingle(u[1]), ToSingle(u[2])}),
-         u);
-    Put<kN>(u, out + i, &ImuSample::w_IT_T);
-    u = {};
-    if (has_mag) mag(groups.mag, counts, beside(run.mag, {}), u);
-    Put<kN>(u, out + i, &ImuSample::b_T);
-  }
-  return i;
+double PerSecond(const RawSample& raw) {
+  return 1 / (static_cast<double>(std::max(raw.stamp.period_ns, 1)) * 1e-9);
 }
 
 }  // namespace
@@ -102,181 +50,176 @@ struct SampleCalibrator::State {
   bool Fits(const RawSample& raw) const {
     return raw.n_channels >= channels_needed && raw.n_temperatures >= thermometers_needed;
   }
-  /// By bits: a reading that is no number is the same as itself.
-  bool Changed(const RawSample& raw) const {
-    bool same = prepared && raw.stamp.period_ns == period_ns;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(thermometers_needed); ++i) {
-      same = same && std::bit_cast<std::uint32_t>(raw.temperature_raw[i]) ==
-                         std::bit_cast<std::uint32_t>(raw_temperature[i]);
-    }
-    return !same;
-  }
-  /// Groups and their solutions.
-  template <class Do>
-  void ForEach(Do&& visit) {
-    visit(tool.gyro, gyro);
-    visit(tool.accel, accel);
-    visit(tool.mag, mag);
-  }
-  double TemperatureOf(const SensorGroup& group) const {
-    return group.thermometer < 0 ? 0
-                                 : temperature[static_cast<std::size_t>(group.thermometer)].value;
-  }
-  bool Read(const RawSample& raw);
-  void Enter();
-  void Take(const RawSample& raw);
-  void Begin(const RawSample& raw);
-  std::size_t Gather(std::span<const RawSample> raw, Run& run);
-  std::int64_t Since(const RawSample& raw);
-  void Heat(std::int64_t ns);
-  void Note(std::size_t k, Run& run) const;
-  void Calibrate(std::span<const RawSample> raw, const Run& run, std::span<ImuSample> out) const;
-  void Stamp(std::span<const RawSample> raw, const Run& run, std::span<ImuSample> out) const;
+  std::size_t PlaceOf(int thermometer);
+  void ShareCells();
+  std::size_t Take(std::span<const RawSample> raw, ImuSample* out);
+  void Read(std::span<const RawSample> raw);
+  void Heat(Part part);
+  std::size_t EndOfCells(Part part);
+  void Calibrate(Part part, Run& to) const;
+  void Write(std::span<ImuSample> out) const;
 
   ToolCalibration tool;
   std::int32_t channels_needed = 0, thermometers_needed = 0;
-  GroupSolution gyro, accel, mag;
+  std::array<GroupSolution, kGroups> groups;
+  std::vector<int> in_use;                   ///< thermometers, those of groups first
+  std::size_t of_groups = 0;                 ///< of them so many
+  std::array<std::size_t, kGroups> place{};  ///< of each group's temperature
+  std::size_t shown = kNoThermometer;        ///< place of that in the stamp
+  std::array<std::size_t, kGroups> like{};   ///< the first group whose cells are as this one's
+  Lanes lanes = MostLanes();
+  bool heats = false, pulses = false;
 
+  Run run;
+  std::size_t last = 0;  ///< sample of the run that Apply saw last
   bool prepared = false;
-  std::array<float, RawSample::kTemperaturesMax> raw_temperature{};
-  std::int32_t period_ns = 0;
-  double seconds = 0;                    ///< of the sample that was read last
-  std::vector<Temperature> temperature;  ///< true, of each thermometer, of that sample
-  bool outside = false;
-  float shown_temperature = 0;  ///< of the gyros' thermometer, or the first [degC]
-
-  bool heats = false;
   std::int32_t session = 0;
   ToolTime heated_to;
 };
 
-SampleCalibrator::State::State(const ToolCalibration& model)
-    : tool(model), temperature(model.thermometers.size()) {
+SampleCalibrator::State::State(const ToolCalibration& model) : tool(model) {
   // Sizes that each measures well.
-  constexpr double kRate = units::kDeg, kForce = units::kStandardGravity, kField = 5e-5;
-  if (tool.gyro.n_channels > 0) gyro = GroupSolution(tool.gyro, kRate);
-  if (tool.accel.n_channels > 0) accel = GroupSolution(tool.accel, kForce);
-  if (tool.mag.n_channels > 0) mag = GroupSolution(tool.mag, kField);
-  ForEach([&](const SensorGroup& group, const GroupSolution& solution) {
+  constexpr std::array kUnits{units::kDeg, units::kStandardGravity, 5e-5};
+  const std::array models{&tool.gyro, &tool.accel, &tool.mag};
+  for (std::size_t i = 0; i < kGroups; ++i) {
+    const SensorGroup& group = *models[i];
+    place[i] = kNoThermometer;
+    if (group.n_channels == 0) continue;
+    groups[i] = GroupSolution(group, kUnits[i]);
+    place[i] = PlaceOf(group.thermometer);
+    if (place[i] == kNoThermometer) groups[i].Enter(0);
     for (int c = 0; c < group.n_channels; ++c) {
       channels_needed = std::max(channels_needed, group.channel[static_cast<std::size_t>(c)] + 1);
     }
-    heats = heats || solution.heats();
-  });
+    heats = heats || groups[i].heats();
+    pulses = pulses || group.per_second;
+  }
+  ShareCells();
+  of_groups = in_use.size();
+  // The gyros' thermometer, or the first.
+  if (!tool.thermometers.empty()) shown = PlaceOf(std::max(tool.gyro.thermometer, 0));
   for (const ThermometerCalibration& thermometer : tool.thermometers) {
     thermometers_needed = std::max(thermometers_needed, thermometer.channel + 1);
   }
 }
 
-// Reads the thermometers. Gives whether the cells at hand hold the sample.
-bool SampleCalibrator::State::Read(const RawSample& raw) {
-  for (std::size_t i = 0; i < temperature.size(); ++i) {
-    const ThermometerCalibration& thermometer = tool.thermometers[i];
-    const auto channel = static_cast<std::size_t>(thermometer.channel);
-    temperature[i] =
-        TrueTemperature(thermometer, static_cast<double>(raw.temperature_raw[channel]));
-  }
-  seconds = static_cast<double>(std::max(raw.stamp.period_ns, 1)) * 1e-9;
-  bool holds = true;
-  ForEach([&](const SensorGroup& group, const GroupSolution& solution) {
-    holds = holds && solution.Holds(TemperatureOf(group), seconds);
-  });
-  return holds;
-}
-
-void SampleCalibrator::State::Enter() {
-  ForEach([&](const SensorGroup& group, GroupSolution& solution) {
-    solution.Enter(TemperatureOf(group), seconds);
-  });
-}
-
-// What was read holds from this sample on.
-void SampleCalibrator::State::Take(const RawSample& raw) {
-  raw_temperature = raw.temperature_raw;
-  period_ns = raw.stamp.period_ns;
-  outside = false;
-  ForEach([&](const SensorGroup& group, GroupSolution& solution) {
-    const double value = TemperatureOf(group);
-    solution.Take(value);
-    if (group.n_channels == 0 || group.thermometer < 0) return;
-    const bool known = temperature[static_cast<std::size_t>(group.thermometer)].inside;
-    outside = outside || !known || value < group.min || value > group.max;
-  });
-  const auto shown = static_cast<std::size_t>(std::max(tool.gyro.thermometer, 0));
-  shown_temperature = temperature.empty() ? 0 : static_cast<float>(temperature[shown].value);
-}
-
-// The first sample of all, or of a session.
-void SampleCalibrator::State::Begin(const RawSample& raw) {
-  prepared = true;
-  session = raw.stamp.session;
-  heated_to = raw.stamp.tool_time;
-  for (GroupSolution* group : {&gyro, &accel, &mag}) group->Settle();
-}
-
-// The time for which the last sample's temperature held, until this one.
-std::int64_t SampleCalibrator::State::Since(const RawSample& raw) {
-  const std::int64_t ns = std::max<std::int64_t>(raw.stamp.tool_time.ns - heated_to.ns, 0);
-  heated_to.ns += ns;
-  return ns;
-}
-
-void SampleCalibrator::State::Heat(std::int64_t ns) {
-  if (gyro.heats()) gyro.Heat(ns);
-  if (accel.heats()) accel.Heat(ns);
-  if (mag.heats()) mag.Heat(ns);
-}
-
-void SampleCalibrator::State::Note(std::size_t k, Run& run) const {
-  run.gyro.x[k] = gyro.x();
-  run.accel.x[k] = accel.x();
-  run.mag.x[k] = mag.x();
-  run.temperature[k] = shown_temperature;
-  run.outside[k] = outside;
-  if (gyro.heats()) run.gyro.heating_rate[k] = static_cast<float>(gyro.heating_rate());
-  if (accel.heats()) run.accel.heating_rate[k] = static_cast<float>(accel.heating_rate());
-  if (mag.heats()) run.mag.heating_rate[k] = static_cast<float>(mag.heating_rate());
-}
-
-// Gives how many samples, kRun at most, lie in the same cells as the first; none that does not fit.
-std::size_t SampleCalibrator::State::Gather(std::span<const RawSample> raw, Run& run) {
-  std::size_t n = 0;
-  for (; n < std::min(kRun, raw.size()) && Fits(raw[n]); ++n) {
-    const RawSample& sample = raw[n];
-    const bool changed = Changed(sample);
-    if (changed && !Read(sample)) {
-      if (n > 0) break;
-      Enter();
+// Groups of one thermometer and range have the same cells.
+void SampleCalibrator::State::ShareCells() {
+  for (std::size_t i = 0; i < kGroups; ++i) {
+    like[i] = i;
+    for (std::size_t j = i; j-- > 0;) {
+      if (place[j] == place[i] && groups[j].Shares(groups[i])) like[i] = j;
     }
-    const bool anew = !prepared || sample.stamp.session != session;
-    if (heats && !anew) Heat(Since(sample));
-    if (changed) Take(sample);
-    if (anew) Begin(sample);
-    Note(n, run);
+    groups[like[i]].Narrow(groups[i]);
+  }
+  for (std::size_t i = 0; i < kGroups; ++i) groups[i].Narrow(groups[like[i]]);
+}
+
+// Where a thermometer's temperatures stand.
+std::size_t SampleCalibrator::State::PlaceOf(int thermometer) {
+  if (thermometer < 0) return kNoThermometer;
+  const auto at = std::find(in_use.begin(), in_use.end(), thermometer);
+  if (at == in_use.end()) return in_use.push_back(thermometer), in_use.size() - 1;
+  return static_cast<std::size_t>(at - in_use.begin());
+}
+
+// Gives how many samples, kRun at most, are of one session; none that does not fit.
+std::size_t SampleCalibrator::State::Take(std::span<const RawSample> raw, ImuSample* out) {
+  const std::size_t most = std::min(kRun, raw.size());
+  const std::int32_t of_session = most > 0 ? raw[0].stamp.session : 0;
+  const bool anew = most > 0 && (!prepared || of_session != session);
+  std::int64_t last_ns = anew ? raw[0].stamp.tool_time.ns : heated_to.ns;
+  std::size_t n = 0;
+  for (; n < most && Fits(raw[n]) && raw[n].stamp.session == of_session; ++n) {
+    // The time for which the last sample's temperature held, until this one.
+    const std::int64_t ns = std::max(raw[n].stamp.tool_time.ns, last_ns);
+    run.since[n] = ns - last_ns;
+    last_ns = ns;
+  }
+  if (n == 0) return 0;
+  heated_to.ns = last_ns;
+  prepared = true;
+  session = of_session;
+  last = n - 1;
+  Read(raw.first(n));
+  for (std::size_t i = 0; anew && i < kGroups; ++i) groups[i].Settle(run.temperature[place[i]][0]);
+  // What each sample's heating leaves to the next is a chain, beside which there is time for more.
+  constexpr std::size_t kPiece = 8;
+  for (std::size_t k = 0; k < n; k += kPiece) {
+    const std::span<const RawSample> piece = raw.subspan(k, std::min(kPiece, n - k));
+    if (heats) Heat({k, k + piece.size()});
+    Transpose(lanes, piece, static_cast<std::size_t>(channels_needed), k, run.counts);
+    Stamp(piece, &run.temperature[shown][k], tool.gyro.n_channels > 2, tool.mag.n_channels > 0,
+          out + k);
   }
   return n;
 }
 
-void SampleCalibrator::State::Stamp(std::span<const RawSample> raw, const Run& run,
-                                    std::span<ImuSample> out) const {
-  const bool has_gz = gyro.kernel().n_channels > 2, has_mag = mag.kernel().n_channels > 0;
-  for (std::size_t i = 0; i < raw.size(); ++i) {
-    SampleStamp& stamp = out[i].stamp = raw[i].stamp;
-    stamp.temperature_outside = raw[i].stamp.temperature_outside || run.outside[i];
-    stamp.temperature = run.temperature[i];
-    out[i].has_gz = has_gz;
-    out[i].has_mag = has_mag;
+// Thermometers and periods.
+void SampleCalibrator::State::Read(std::span<const RawSample> raw) {
+  run.inside.fill(-1);
+  for (std::size_t t = 0; t < in_use.size(); ++t) {
+    const ThermometerCalibration& thermometer =
+        tool.thermometers[static_cast<std::size_t>(in_use[t])];
+    const auto channel = static_cast<std::size_t>(thermometer.channel);
+    OfRun<double>& temperature = run.temperature[t];
+    for (std::size_t k = 0; k < raw.size(); ++k) {
+      temperature[k] = static_cast<double>(raw[k].temperature_raw[channel]);
+    }
+    // The last stands beside it where lanes go on.
+    std::fill_n(temperature.begin() + static_cast<std::ptrdiff_t>(raw.size()), 8,
+                static_cast<double>(raw.back().temperature_raw[channel]));
+    TakeTemperatures(lanes, thermometer, {0, raw.size() + 7}, temperature,
+                     t < of_groups ? run.inside : run.inside_shown);
+  }
+  if (!pulses) return;
+  for (std::size_t k = 0; k < raw.size(); ++k) run.per_second[k] = PerSecond(raw[k]);
+}
+
+void SampleCalibrator::State::Heat(Part part) {
+  for (std::size_t i = 0; i < kGroups; ++i) {
+    if (!groups[i].heats()) continue;
+    groups[i].Heat(std::span(run.since).subspan(part.begin, part.end - part.begin),
+                   &run.temperature[place[i]][part.begin], &run.groups[i].heating_rate[part.begin]);
   }
 }
 
-// Of a run that was gathered.
-void SampleCalibrator::State::Calibrate(std::span<const RawSample> raw, const Run& run,
-                                        std::span<ImuSample> out) const {
-  Stamp(raw, run, out);
-  const Kernels groups{gyro.kernel(), accel.kernel(), mag.kernel(),
-                       static_cast<std::size_t>(channels_needed)};
-  const std::size_t sides = CalibrateSides<kSide>(groups, raw, run, 0, out.data());
-  CalibrateSides<1>(groups, raw, run, sides, out.data());
+// Enters the cells of a part's first sample. Gives where the samples end that lie in the same.
+std::size_t SampleCalibrator::State::EndOfCells(Part part) {
+  for (std::size_t i = 0; i < kGroups; ++i) {
+    if (place[i] == kNoThermometer) continue;
+    const OfRun<double>& temperature = run.temperature[place[i]];
+    groups[i].Enter(temperature[part.begin]);
+    if (like[i] != i) continue;
+    if (Place(lanes, groups[i].place(), temperature, part, run.groups[i].x, run.inside)) continue;
+    std::size_t end = part.begin + 1;
+    while (end < part.end && groups[i].Holds(temperature[end])) ++end;
+    part.end = end;
+  }
+  return part.end;
+}
+
+// A part of a run whose samples lie in the cells at hand.
+void SampleCalibrator::State::Calibrate(Part part, Run& to) const {
+  // The force first: the gyros feel it.
+  for (const std::size_t i : {kAccel, kGyro, kMag}) {
+    if (groups[i].kernel().n_channels == 0) continue;
+    Run::Group& group = to.groups[i];
+    const OfRun<float>& x = to.groups[like[i]].x;
+    Solve(lanes, groups[i].kernel(),
+          {to.counts.data(), x, group.heating_rate, to.groups[kAccel].u, to.per_second}, part,
+          group.u);
+  }
+}
+
+// Of a run that was calibrated.
+void SampleCalibrator::State::Write(std::span<ImuSample> out) const {
+  Put(lanes, run.groups[kGyro].u, run.groups[kAccel].u, run.groups[kMag].u, out);
+  std::int64_t all_inside = -1;
+  for (std::size_t k = 0; k < out.size(); ++k) all_inside &= run.inside[k];
+  for (std::size_t k = 0; all_inside == 0 && k < out.size(); ++k) {
+    if (run.inside[k] == 0) out[k].stamp.temperature_outside = true;
+  }
 }
 
 SampleCalibrator::SampleCalibrator(const ToolCalibration& tool) {
@@ -294,12 +237,15 @@ std::size_t SampleCalibrator::Apply(std::span<const RawSample> raw, std::span<Im
         fmt::format("out holds {} samples where {} are to be calibrated", out.size(), raw.size()));
   }
   State& state = *state_;
-  Run run;
   std::size_t done = 0;
   while (done < raw.size()) {
-    const std::size_t n = state.Gather(raw.subspan(done), run);
+    const std::size_t n = state.Take(raw.subspan(done), &out[done]);
     if (n == 0) break;
-    state.Calibrate(raw.subspan(done, n), run, out.subspan(done, n));
+    for (Part part{0, n}; part.begin < n; part = {part.end, n}) {
+      part.end = state.EndOfCells(part);
+      state.Calibrate(part, state.run);
+    }
+    state.Write(out.subspan(done, n));
     done += n;
   }
   return done;
@@ -308,11 +254,21 @@ std::size_t SampleCalibrator::Apply(std::span<const RawSample> raw, std::span<Im
 std::optional<double> SampleCalibrator::Parity(const RawSample& raw) const {
   const State& state = *state_;
   if (state.tool.gyro.n_channels != 4 || !state.prepared || !state.Fits(raw)) return std::nullopt;
-  ImuSample sample;
-  Run run;
-  state.Note(0, run);
-  state.Calibrate({&raw, 1}, run, {&sample, 1});
-  return state.gyro.Parity(raw, sample.w_IT_T, sample.f_T);
+  Run one;
+  Transpose(state.lanes, {&raw, 1}, static_cast<std::size_t>(state.channels_needed), 0, one.counts);
+  one.per_second[0] = PerSecond(raw);
+  for (std::size_t i = 0; i < kGroups; ++i) {
+    one.groups[i].x[0] = state.run.groups[i].x[state.last];
+    one.groups[i].heating_rate[0] = state.run.groups[i].heating_rate[state.last];
+  }
+  state.Calibrate({0, 1}, one);
+  const auto at = [&](std::size_t i) {
+    const Vectors& u = one.groups[i].u;
+    return Eigen::Vector3d(u[0][0], u[1][0], u[2][0]);
+  };
+  return state.groups[kGyro].Parity(raw, state.run.temperature[state.place[kGyro]][state.last],
+                                    static_cast<double>(one.groups[kGyro].heating_rate[0]),
+                                    at(kGyro), at(kAccel));
 }
 
 std::string SampleCalibrator::WhyNot(const RawSample& raw) const {

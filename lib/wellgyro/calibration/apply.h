@@ -21,12 +21,12 @@ WELLGYRO_EXPORT std::optional<std::string> FindComplaint(const ToolCalibration& 
 /// false and what the channels see of w_z stays in the rates: AxialCoupling). Right to 5e-11 of u
 /// where no term goes with temperature and |K u| stays below 0.2 |S|.
 ///
-/// Between temperatures a few tenths of a degC apart at most, where the formula is solved in full,
-/// its numbers are interpolated: to 1e-9 of the larger of u and 1 deg/s, 1 g, 50 uT, terms of
-/// second order, in the force and in heating to 1e-5 of themselves. That costs the same whether the
-/// temperature changes with every sample or not. Beyond the calibrated range temperatures stay at
-/// its end and `temperature_outside` is set. The result does not depend on how samples are cut into
-/// batches. Nothing is allocated.
+/// Between temperatures at which the formula is solved in full its numbers are interpolated: to
+/// 1e-9 of the larger of u and 1 deg/s, 1 g, 50 uT, terms of second order, in the force and in
+/// heating to 1e-5 of themselves. That costs the same, to a tenth, whether the temperature changes
+/// with every sample or not. Beyond the calibrated range temperatures stay at its end and
+/// `temperature_outside` is set. The result does not depend on how samples are cut into batches.
+/// Nothing is allocated.
 class WELLGYRO_EXPORT SampleCalibrator {
  public:
   /// Throws std::invalid_argument with FindComplaint's sentence.

@@ -2,166 +2,105 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include <Eigen/Core>
 
 #include "wellgyro/calibration/lanes_internal.h"
-#include "wellgyro/record/sample.h"
+#include "wellgyro/record/tool_calibration.h"
 
 namespace wellgyro {
 
-/// Samples that are calibrated side by side.
-inline constexpr int kSide = 4;
+/// Samples that are looked at together, and numbers beside each other of so many: room for eight
+/// lanes from each of them on.
+inline constexpr std::size_t kRun = 64;
+template <class Number>
+using OfRun = std::array<Number, kRun + 8>;
+using Vectors = std::array<OfRun<double>, 3>;
 
-/// SensorGroup's formula solved for u in T within a cell of temperatures, as plain numbers:
-///   u = A counts + b + x (A1 counts + b1 + x b2 - force1 f)
-///       - (force f + force_products q(f) - heat dT/dt) - products q(u)
-/// with q as SensorGroup has it and x from 0 to 1 through the cell. All but A counts + b is small
-/// beside u: it is summed in single precision, to 2^-20 of its largest part, products of u where
-/// that is enough for them (kReachSingle).
+/// SensorGroup's formula solved for u in T within a cell of temperatures, as plain numbers, with x
+/// from 0 to 1 through the cell and q as SensorGroup has it:
+///   u = A counts + b + x ((A1 + x A2) counts + b1 + x b2)
+///       - (force + x force1) f - (force_products + x ...) q(f) + (heat + x heat1) dT/dt
+///       - (products + x ...) q(u)
+/// Where channels count pulses, their counts are per second. All but A counts + b is small beside
+/// u: it is summed in single precision, to 2^-20 of its largest part, products of u where that is
+/// enough for them (kReachSingle).
 struct GroupKernel {
-  /// What the products of q move u by: xx, yy, zz, then xy, yz, zx.
+  /// What the products of q move u by where the cell begins, and how much that changes through it:
+  /// xx, yy, zz, then xy, yz, zx.
   template <class Number>
   struct Products {
     bool squares = false, crosses = false;  ///< some of these three move anything
-    Number out[6][3] = {};
+    Number out[6][3] = {}, out1[6][3] = {};
   };
 
   int n_channels = 0;
   std::array<std::size_t, 4> channel{};
   /// What of the formula a group has: what it lacks costs nothing.
   bool varies = false, moved = false, second_order = false;  ///< moved: by the force or heating
+  bool pulses = false, feels_force = false, heats = false;
   SameDouble A[3][4], b[3];
-  SameSingle A1[3][4], b1[3], b2[3], force[3][3], force1[3][3], heat[3];
+  SameSingle A1[3][4], A2[3][4], b1[3], b2[3], force[3][3], force1[3][3], heat[3], heat1[3];
   Products<SameSingle> force_products, products_single;
   Products<double> products;
   /// Largest sum of a row of products: e = slope |u| is how far the second order moves u, over u.
   double slope = 0;
-  SameSingle reach_square;  ///< largest |u|^2 for which products in single precision are enough
+  float reach_square = 0;  ///< largest |u|^2 for which products in single precision are enough
 };
 
 /// u <- linear - products q(u), from `linear` on, as often as it needs to leave less than a tenth
-/// of the finest count, 2^-31 of full scale.
-Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, const Eigen::Vector3d& linear);
+/// of the finest count, 2^-31 of full scale; x: place in the cell.
+Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, double x, const Eigen::Vector3d& linear);
 /// Largest e for which two turns in single precision leave as little: sums of six products of what
 /// was rounded before are off by twelve roundings at most, 12 * 2^-24 e.
 inline constexpr double kReachSingle = 6.5e-5;
 
-template <int kN>
-using Side = std::array<typename LanesOf<kN>::Double, 3>;
-template <int kN>
-using SingleSide = std::array<typename LanesOf<kN>::Single, 3>;
+/// How many samples the processor takes at once. The result does not depend on it, bit for bit.
+enum class Lanes { kFour, kEight };
+/// The most that this processor can.
+Lanes MostLanes();
 
-/// What moves the samples of a side beside their counts.
-template <int kN>
-struct Beside {
-  typename LanesOf<kN>::Single x, heating_rate;
-  SingleSide<kN> f;
+/// Samples of a run: from `begin` on, before `end`.
+struct Part {
+  std::size_t begin = 0, end = 0;
 };
 
-template <int kN, bool kVaries>
-[[gnu::always_inline]] inline void AddChannel(const GroupKernel& g, const CountsOf<kN>& counts,
-                                              std::size_t c, Side<kN>& u, SingleSide<kN>& slope) {
-  const auto whole = counts[g.channel[c]];
-  const auto n = ToDouble(whole);
-  for (std::size_t i = 0; i < 3; ++i) u[i] = u[i] + Of<kN>(g.A[i][c]) * n;
-  if constexpr (!kVaries) return;
-  const auto single = ToSingle(whole);
-  for (std::size_t i = 0; i < 3; ++i) slope[i] = slope[i] + Of<kN>(g.A1[i][c]) * single;
-}
+/// What a group's samples are made of: counts of each channel, place in the cell, dT/dt, f in T and
+/// one over the period [1/s].
+struct Readings {
+  const OfRun<std::int32_t>* counts = nullptr;
+  const OfRun<float>& x;
+  const OfRun<float>& heating_rate;
+  const Vectors& f;
+  const OfRun<double>& per_second;
+};
 
-/// u where the cell begins, and how much it changes through the cell.
-template <int kN, bool kFour, bool kVaries>
-[[gnu::always_inline]] inline void Linear(const GroupKernel& g, const CountsOf<kN>& counts,
-                                          Side<kN>& u, SingleSide<kN>& slope) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    u[i] = Of<kN>(g.b[i]);
-    slope[i] = Of<kN>(g.b1[i]);
+/// u of a part of a run. What lies within eight samples beyond its end is read and written too.
+void Solve(Lanes lanes, const GroupKernel& kernel, const Readings& readings, Part part, Vectors& u);
+
+/// temperature: what the thermometer's channel gives, then what is true; see TrueTemperature. Where
+/// the reading lies beyond the calibrated range, `inside` loses its bits.
+void TakeTemperatures(Lanes lanes, const ThermometerCalibration& thermometer, Part part,
+                      OfRun<double>& temperature, OfRun<std::int64_t>& inside);
+
+/// A cell of temperatures [degC] within a group's calibrated range.
+struct CellPlace {
+  double min = 0, max = 0, per_width = 1;
+  double index = 0;  ///< of the cell, a whole number, counted from the range's beginning
+
+  /// Place in the cell, where from 0 to below 1.
+  template <class Number>
+  [[gnu::always_inline]] void Find(const Number& temperature, Number& x) const {
+    const Number low = min - Number{}, high = max - Number{};
+    x = temperature < low ? low : temperature;
+    x = ((high < x ? high : x) - min) * per_width - index;
   }
-  for (std::size_t c = 0; c < 3; ++c) AddChannel<kN, kVaries>(g, counts, c, u, slope);
-  if constexpr (kFour) AddChannel<kN, kVaries>(g, counts, 3, u, slope);
-}
+};
 
-template <int kN>
-[[gnu::always_inline]] inline void AddRow(const SameSingle (&row)[3], const SingleSide<kN>& f,
-                                          typename LanesOf<kN>::Single& sum) {
-  for (std::size_t j = 0; j < 3; ++j) sum = sum + Of<kN>(row[j]) * f[j];
-}
-
-/// Adds what q(of) moves u by.
-template <int kN>
-[[gnu::always_inline]] inline void AddProducts(const GroupKernel::Products<SameSingle>& products,
-                                               const SingleSide<kN>& of, SingleSide<kN>& sum) {
-  const auto add = [&](std::size_t p, typename LanesOf<kN>::Single q)
-      __attribute__((always_inline)) {
-    for (std::size_t i = 0; i < 3; ++i) sum[i] = sum[i] + Of<kN>(products.out[p][i]) * q;
-  };
-  if (products.squares) {
-    for (std::size_t i = 0; i < 3; ++i) add(i, of[i] * of[i]);
-  }
-  if (products.crosses) {
-    for (std::size_t i = 0; i < 3; ++i) add(3 + i, of[i] * of[(i + 1) % 3]);
-  }
-}
-
-/// What the force and the heating move u by.
-template <int kN>
-[[gnu::always_inline]] inline void AddForce(const GroupKernel& g, const Beside<kN>& beside,
-                                            SingleSide<kN>& sum) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    AddRow<kN>(g.force[i], beside.f, sum[i]);
-    sum[i] = sum[i] - Of<kN>(g.heat[i]) * beside.heating_rate;
-  }
-  AddProducts<kN>(g.force_products, beside.f, sum);
-}
-
-/// Takes that off, and adds what the place in the cell does.
-template <int kN, bool kVaries, bool kMoved>
-[[gnu::always_inline]] inline void TakeSmall(const GroupKernel& g, const Beside<kN>& beside,
-                                             SingleSide<kN>& slope, Side<kN>& u) {
-  SingleSide<kN> sum{};
-  if constexpr (kMoved) AddForce<kN>(g, beside, sum);
-  for (std::size_t i = 0; i < 3; ++i) {
-    if constexpr (kVaries) {
-      typename LanesOf<kN>::Single force{};
-      if constexpr (kMoved) AddRow<kN>(g.force1[i], beside.f, force);
-      sum[i] = sum[i] - beside.x * (slope[i] - force + Of<kN>(g.b2[i]) * beside.x);
-    }
-    u[i] = u[i] - ToDouble(sum[i]);
-  }
-}
-
-template <int kN>
-[[gnu::noinline]] void RefineLarge(const GroupKernel& g, const Side<kN>& linear,
-                                   const typename LanesOf<kN>::Single& square, Side<kN>& u) {
-  for (std::size_t k = 0; k < static_cast<std::size_t>(kN); ++k) {
-    if (!(At(square, k) > g.reach_square.fourfold[0])) continue;
-    const Eigen::Vector3d refined =
-        RefineInDouble(g, {At(linear[0], k), At(linear[1], k), At(linear[2], k)});
-    for (int i = 0; i < 3; ++i) SetAt(u[static_cast<std::size_t>(i)], k, refined[i]);
-  }
-}
-
-/// Takes off what products of u do to it.
-template <int kN>
-[[gnu::always_inline]] inline void Refine(const GroupKernel& g, Side<kN>& u) {
-  SingleSide<kN> at, first{}, second{};
-  for (std::size_t i = 0; i < 3; ++i) at[i] = ToSingle(u[i]);
-  const auto square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
-  AddProducts<kN>(g.products_single, at, first);
-  for (std::size_t i = 0; i < 3; ++i) at[i] = at[i] - first[i];
-  AddProducts<kN>(g.products_single, at, second);
-  const Side<kN> linear = u;
-  for (std::size_t i = 0; i < 3; ++i) u[i] = linear[i] - ToDouble(second[i]);
-  if (AnyAbove(square, Of<kN>(g.reach_square))) RefineLarge<kN>(g, linear, square, u);
-}
-
-template <int kN>
-[[gnu::always_inline]] inline void Put(const Side<kN>& u, ImuSample* out,
-                                       Eigen::Vector3d ImuSample::*member) {
-  std::array<double*, kN> to;
-  for (std::size_t k = 0; k < to.size(); ++k) to[k] = (out[k].*member).data();
-  Scatter(u, to);
-}
+/// x of each temperature of a part; where it lies beyond the range `inside` loses its bits. Gives
+/// whether all lie in the cell.
+bool Place(Lanes lanes, const CellPlace& cell, const OfRun<double>& temperature, Part part,
+           OfRun<float>& x, OfRun<std::int64_t>& inside);
 
 }  // namespace wellgyro

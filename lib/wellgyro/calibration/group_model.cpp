@@ -71,17 +71,12 @@ SensorGroup::Rows GroupModel::Sensitivity(double tau) const {
 
 SensorGroup::Column GroupModel::Bias(double tau) const { return ValueAt(group_.bias, tau); }
 
-SensorGroup::Column GroupModel::UnitPerCount(double seconds) const {
-  return group_.per_second ? SensorGroup::Column(group_.unit_per_count / seconds)
-                           : group_.unit_per_count;
-}
-
-GroupNode GroupModel::At(double tau, double seconds) const {
+GroupNode GroupModel::At(double tau) const {
   GroupNode node;
   const Eigen::Matrix<double, 3, 4> from_units = InverseOf(Sensitivity(tau), group_.n_channels);
-  node.A = from_units * UnitPerCount(seconds).asDiagonal();
+  node.A = from_units * group_.unit_per_count.asDiagonal();
   node.b = -(from_units * Bias(tau));
-  node.heat = -(from_units * group_.heating);
+  node.heat = from_units * group_.heating;
   node.force = from_units * ValueAt(group_.g_dependence, tau);
   node.products = from_units * group_.second_order;
   node.force_products = from_units * group_.g_squared;
@@ -95,7 +90,9 @@ double GroupModel::Parity(const RawSample& raw, double tau, double seconds, doub
     const auto place = static_cast<std::size_t>(group_.channel[static_cast<std::size_t>(c)]);
     units[c] = static_cast<double>(raw.counts[place]);
   }
-  units = units.cwiseProduct(UnitPerCount(seconds)) - Bias(tau) - group_.heating * heating_rate;
+  units = units.cwiseProduct(group_.unit_per_count);
+  if (group_.per_second) units /= seconds;
+  units -= Bias(tau) + group_.heating * heating_rate;
   units -= ValueAt(group_.g_dependence, tau) * f_T + group_.g_squared * SquaresOf(f_T) +
            group_.second_order * SquaresOf(u_T);
   // The unit vector at right angles to the three columns of S.

@@ -10,7 +10,8 @@
 namespace wellgyro {
 
 /// SensorGroup's formula solved for u in T at one temperature, and what it was solved from:
-///   u = A counts + b - force f - force_products q(f) + heat dT/dt - products q(u)
+///   u = A counts + b - force f - force_products q(f) - heat dT/dt - products q(u)
+/// Where channels count pulses, their counts are per second.
 struct GroupNode {
   Eigen::Matrix<double, 3, 4> A = Eigen::Matrix<double, 3, 4>::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero(), heat = b;
@@ -28,10 +29,10 @@ class GroupModel {
   double Tau(double temperature) const;
   SensorGroup::Rows Sensitivity(double tau) const;
   SensorGroup::Column Bias(double tau) const;
-  /// Sample period in seconds, where channels count pulses.
-  SensorGroup::Column UnitPerCount(double seconds) const;
-  GroupNode At(double tau, double seconds) const;
-  /// Component of the readings along what no u explains, of four channels.
+  SensorGroup::Column unit_per_count() const { return group_.unit_per_count; }
+  GroupNode At(double tau) const;
+  /// Component of the readings along what no u explains, of four channels; sample period in
+  /// seconds.
   double Parity(const RawSample& raw, double tau, double seconds, double heating_rate,
                 const Eigen::Vector3d& u_T, const Eigen::Vector3d& f_T) const;
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -9,7 +10,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kRight = 1e-9, kSmallRight = 1e-5;  // of u; of small terms
+constexpr double kRight = 1e-9, kSmallRight = 1e-5;  // of u; of small terms, by interpolation
 constexpr double kLeft = 5e-11;                      // of u, by turns of the second order
 
 // Largest e for which n turns of RefineInDouble are enough. All u_n are below |u_0| s, s = 1 / (1 -
@@ -29,56 +30,64 @@ std::array<double, kTurns> Reach() {
   return reach;
 }
 
-// Largest differences of a group's solution over the calibrated range, per degC to their power:
-// second ones of what moves u in proportion, [1/degC^2]; third ones of b over `unit`; first ones
-// in proportion.
+// How far a group's solution goes over the calibrated range, per degC to the derivative's power.
 struct Bends {
-  double curve = 0, third = 0, slope = 0;
+  double slope = 0, third = 0;  // of what moves u in proportion, and of b over `unit`
+  double curve = 0;             // of what moves u in proportion: of small terms over themselves
+  double force = 0;             // second derivative over what may be left of it
 };
+
+template <class Value>
+double RowSum(const Value& value) {
+  return value.cwiseAbs().rowwise().sum().maxCoeff();
+}
 
 Bends BendsOf(const GroupModel& model, const SensorGroup& group, double unit) {
   constexpr std::size_t kSteps = 64;
   const double H = (group.max - group.min) / kSteps;
   std::vector<GroupNode> nodes;
   for (std::size_t i = 0; i <= kSteps; ++i) {
-    nodes.push_back(model.At(model.Tau(group.min + H * static_cast<double>(i)), 1));
+    nodes.push_back(model.At(model.Tau(group.min + H * static_cast<double>(i))));
   }
+  const SensorGroup::Column per_unit = model.unit_per_count().cwiseInverse();
   Bends bends;
-  const auto raise = [](double& to, const auto& value) {
-    to = std::max(to, value.cwiseAbs().rowwise().sum().maxCoeff());
-  };
   for (std::size_t i = 1; i < kSteps; ++i) {
     const GroupNode &before = nodes[i - 1], &at = nodes[i], &after = nodes[i + 1];
     const double tau = model.Tau(group.min + H * static_cast<double>(i));
-    const SensorGroup::Column per_unit = model.UnitPerCount(1).cwiseInverse();
     const SensorGroup::Rows counts = per_unit.asDiagonal() * model.Sensitivity(tau);
-    const SensorGroup::Column bias = per_unit.cwiseProduct(model.Bias(tau));
-    const Eigen::Matrix<double, 3, 4> second = (after.A - 2 * at.A + before.A) / (H * H);
-    raise(bends.curve, Eigen::Matrix3d(second * counts));
-    raise(bends.curve, Eigen::Vector3d(second * bias / unit));
-    raise(bends.curve, Eigen::Matrix3d((after.force - 2 * at.force + before.force) *
-                                       (units::kStandardGravity / (unit * H * H))));
-    raise(bends.slope, Eigen::Matrix3d((after.A - before.A) * counts / (2 * H)));
+    const SensorGroup::Column bias = per_unit.cwiseProduct(model.Bias(tau)) / unit;
+    const auto raise = [](double& to, double value) { to = std::max(to, value); };
+    // Roundings are of each product by itself.
+    const Eigen::Matrix<double, 3, 4> first = ((after.A - before.A) / (2 * H)).cwiseAbs();
+    raise(bends.slope, RowSum(first * counts.cwiseAbs()) + RowSum(first * bias.cwiseAbs()) +
+                           RowSum((after.b - before.b) / (2 * H * unit)));
+    raise(bends.curve, RowSum((after.A - 2 * at.A + before.A) * counts / (H * H)));
+    const double left = kSmallRight * RowSum(at.force) + kRight * unit / units::kStandardGravity;
+    raise(bends.force, RowSum((after.force - 2 * at.force + before.force) / (H * H)) / left);
     if (i + 1 == kSteps) continue;
-    const Eigen::Vector3d third = nodes[i + 2].b - 3 * after.b + 3 * at.b - before.b;
-    raise(bends.third, Eigen::Vector3d(third / (unit * H * H * H)));
+    const GroupNode& next = nodes[i + 2];
+    const Eigen::Matrix<double, 3, 4> third = next.A - 3 * after.A + 3 * at.A - before.A;
+    const Eigen::Vector3d third_b = (next.b - 3 * after.b + 3 * at.b - before.b) / unit;
+    raise(bends.third, (RowSum(third * counts) + RowSum(third * bias + third_b)) / (H * H * H));
   }
   return bends;
 }
 
 // A straight line over a cell of width h is off by h^2 / 8 of the second derivative, a parabola by
-// h^3 / (72 sqrt 3) of the third, a constant by h / 2 of the first. Half of what is allowed is left
-// to derivatives between the places where they were taken.
+// h^3 / (72 sqrt 3) of the third; what goes through the cell is rounded three times in single
+// precision. Half of what is allowed is left to each of these, and to derivatives between the
+// places where they were taken.
 double WidthOf(const Bends& bends, double range) {
-  constexpr double kShare = 0.5;
+  constexpr double kShare = 0.5, kRounded = 3 * 0x1p-24;
   double width = range;
   const auto limit = [&](double allowed, double power, double factor, double derivative) {
     if (!(derivative > 0)) return;
     width = std::min(width, std::pow(kShare * allowed / (factor * derivative), 1 / power));
   };
-  limit(kRight, 2, 1.0 / 8, bends.curve);
   limit(kRight, 3, 1 / (72 * std::sqrt(3.0)), bends.third);
-  limit(kSmallRight, 1, 1.0 / 2, bends.slope);
+  limit(kRight, 1, kRounded, bends.slope);
+  limit(kSmallRight, 2, 1.0 / 8, bends.curve);
+  limit(1, 2, 1.0 / 8, bends.force);
   return width;
 }
 
@@ -94,89 +103,127 @@ void Put(const Eigen::Vector3d& from, Number (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 
+// From one end of a cell to the other.
 template <class Number>
-GroupKernel::Products<Number> ProductsOf(const Eigen::Matrix<double, 3, 6>& out) {
-  GroupKernel::Products<Number> products;
-  products.squares = !out.leftCols<3>().isZero(0);
-  products.crosses = !out.rightCols<3>().isZero(0);
+void Put(const Eigen::Matrix<double, 3, 6>& low, const Eigen::Matrix<double, 3, 6>& high,
+         GroupKernel::Products<Number>& to) {
+  to.squares = !low.leftCols<3>().isZero(0) || !high.leftCols<3>().isZero(0);
+  to.crosses = !low.rightCols<3>().isZero(0) || !high.rightCols<3>().isZero(0);
   for (int p = 0; p < 6; ++p) {
-    for (int i = 0; i < 3; ++i) products.out[p][i] = out(i, p);
+    if (!(p < 3 ? to.squares : to.crosses)) continue;
+    for (int i = 0; i < 3; ++i) {
+      to.out[p][i] = low(i, p);
+      to.out1[p][i] = high(i, p) - low(i, p);
+    }
   }
-  return products;
 }
 
 }  // namespace
 
-Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, const Eigen::Vector3d& linear) {
+Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, double x, const Eigen::Vector3d& linear) {
   static const std::array<double, kTurns> kReach = Reach();
   const double e = kernel.slope * linear.cwiseAbs().maxCoeff();
+  using Column = Eigen::Map<const Eigen::Vector3d>;
   Eigen::Vector3d u = linear;
   for (std::size_t turn = 0; turn < kTurns && e > kReach[turn]; ++turn) {
     const Eigen::Vector3d of = u;
     u = linear;
     for (int p = 0; p < 6; ++p) {
       const double q = p < 3 ? of[p] * of[p] : of[p - 3] * of[(p - 2) % 3];
-      u -= q * Eigen::Vector3d::Map(kernel.products.out[p]);
+      u -= q * (Column(kernel.products.out[p]) + x * Column(kernel.products.out1[p]));
     }
   }
   return u;
 }
 
 GroupSolution::GroupSolution(const SensorGroup& group, double unit)
-    : model_(group), heats_(!group.heating.isZero(0)), per_lag_(1 / group.heating_lag) {
-  constant_.n_channels = group.n_channels;
-  for (std::size_t c = 0; c < constant_.channel.size(); ++c) {
+    : model_(group), per_lag_(1 / group.heating_lag) {
+  GroupKernel& kernel = cells_[0].kernel;
+  kernel.n_channels = group.n_channels;
+  for (std::size_t c = 0; c < kernel.channel.size(); ++c) {
     const std::size_t of = static_cast<int>(c) < group.n_channels ? c : 0;
-    constant_.channel[c] = static_cast<std::size_t>(group.channel[of]);
+    kernel.channel[c] = static_cast<std::size_t>(group.channel[of]);
   }
-  if (group.thermometer < 0 || !(group.max > group.min)) return;
-  constant_.varies = true;
-  min_ = group.min;
-  max_ = group.max;
-  width_ = WidthOf(BendsOf(*model_, group, unit), max_ - min_);
-  per_width_ = 1 / width_;
+  kernel.pulses = group.per_second;
+  kernel.heats = !group.heating.isZero(0);
+  kernel.varies = group.thermometer >= 0 && group.max > group.min;
+  cells_[1].kernel = kernel;
+  if (group.thermometer >= 0) first_ = {.min = group.min, .max = group.max};
+  if (!kernel.varies) return;
+  const double range = group.max - group.min;
+  // Cells end where the range does: beyond it the formula bends.
+  first_.per_width = std::ceil(range / WidthOf(BendsOf(*model_, group, unit), range)) / range;
 }
 
-void GroupSolution::Enter(double temperature, double seconds) {
-  if (Holds(temperature, seconds)) return;
+void GroupSolution::Enter(double temperature) {
+  if (Holds(temperature)) return;
   at_ = 1 - at_;
-  if (Holds(temperature, seconds)) return;
+  if (Holds(temperature)) return;
   Cell& cell = cells_[at_];
-  cell.index = std::floor(Place(temperature));
-  cell.seconds = seconds;
+  double place = 0;
+  first_.Find(temperature, place);
+  cell.place = first_;
+  cell.place.index = std::floor(place);
   if (model_) Solve(cell);
+  cell.solved = true;
+}
+
+void GroupSolution::Heat(std::span<const std::int64_t> since, const double* temperature,
+                         float* rate) {
+  // What one sample leaves to the next stays in registers.
+  double ahead = ahead_, last = temperature_, kept = kept_;
+  for (std::size_t k = 0; k < since.size(); ++k) {
+    // Samples follow each other evenly.
+    if (since[k] != step_ns_) {
+      step_ns_ = since[k];
+      kept = std::exp(-1e-9 * static_cast<double>(step_ns_) * per_lag_);
+    }
+    ahead = ahead * kept + (temperature[k] - last);
+    last = temperature[k];
+    rate[k] = static_cast<float>(ahead * per_lag_);
+  }
+  ahead_ = ahead;
+  temperature_ = last;
+  kept_ = kept;
 }
 
 void GroupSolution::Solve(Cell& cell) const {
-  GroupKernel& kernel = cell.kernel = constant_;
-  const double begin = min_ + cell.index * width_;
-  const GroupNode low = At(begin, cell.seconds), middle = At(begin + width_ / 2, cell.seconds);
+  GroupKernel& kernel = cell.kernel;
+  const double width = 1 / first_.per_width, begin = first_.min + cell.place.index * width;
+  const GroupNode low = At(begin);
+  const GroupNode middle = kernel.varies ? At(begin + width / 2) : low;
+  const GroupNode high = kernel.varies ? At(begin + width) : low;
   Put(low.A, kernel.A);
   Put(low.b, kernel.b);
-  Put(low.force, kernel.force);
-  Put(middle.heat, kernel.heat);
-  kernel.products = ProductsOf<double>(middle.products);
-  kernel.products_single = ProductsOf<SameSingle>(middle.products);
-  kernel.slope = middle.products.cwiseAbs().rowwise().sum().maxCoeff();
+  const Eigen::Matrix<double, 3, 4> bend_A = 2 * (high.A - 2 * middle.A + low.A);
+  const Eigen::Vector3d bend_b = 2 * (high.b - 2 * middle.b + low.b);
+  Put(Eigen::Matrix<double, 3, 4>(high.A - low.A - bend_A), kernel.A1);
+  Put(bend_A, kernel.A2);
+  Put(Eigen::Vector3d(high.b - low.b - bend_b), kernel.b1);
+  Put(bend_b, kernel.b2);
+  for (int i = 0; i < 3; ++i) {
+    Put(Eigen::Vector3d(low.force.col(i)), kernel.force[i]);
+    Put(Eigen::Vector3d(high.force.col(i) - low.force.col(i)), kernel.force1[i]);
+  }
+  Put(low.heat, kernel.heat);
+  Put(Eigen::Vector3d(high.heat - low.heat), kernel.heat1);
+  Put(low.force_products, high.force_products, kernel.force_products);
+  kernel.feels_force = !low.force.isZero(0) || !high.force.isZero(0) ||
+                       kernel.force_products.squares || kernel.force_products.crosses;
+  kernel.moved = kernel.feels_force || kernel.heats;
+  Put(low.products, high.products, kernel.products);
+  Put(low.products, high.products, kernel.products_single);
+  kernel.slope = std::max(RowSum(low.products), RowSum(high.products));
   kernel.second_order = kernel.slope > 0;
   const double reach = kernel.second_order ? kReachSingle / kernel.slope : 0;
   // Its square is a number in single precision.
-  kernel.reach_square = std::min(reach * reach, 1e30);
-  kernel.force_products = ProductsOf<SameSingle>(middle.force_products);
-  const GroupNode high = constant_.varies ? At(begin + width_, cell.seconds) : low;
-  const Eigen::Vector3d parabola = 2 * (high.b - 2 * middle.b + low.b);
-  Put(Eigen::Matrix<double, 3, 4>(high.A - low.A), kernel.A1);
-  Put(Eigen::Vector3d(high.b - low.b - parabola), kernel.b1);
-  Put(parabola, kernel.b2);
-  Put(Eigen::Matrix3d(high.force - low.force), kernel.force1);
-  kernel.moved =
-      heats_ || !low.force.isZero(0) || !high.force.isZero(0) || !middle.force_products.isZero(0);
+  kernel.reach_square = static_cast<float>(std::min(reach * reach, 1e30));
 }
 
-double GroupSolution::Parity(const RawSample& raw, const Eigen::Vector3d& u_T,
-                             const Eigen::Vector3d& f_T) const {
-  return model_->Parity(raw, model_->Tau(temperature_), cells_[at_].seconds, heating_rate(), u_T,
-                        f_T);
+double GroupSolution::Parity(const RawSample& raw, double temperature, double heating_rate,
+                             const Eigen::Vector3d& u_T, const Eigen::Vector3d& f_T) const {
+  const double seconds = static_cast<double>(std::max(raw.stamp.period_ns, 1)) * 1e-9;
+  return model_->Parity(raw, model_->Tau(temperature), seconds, heating_rate, u_T, f_T);
 }
 
 }  // namespace wellgyro

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -16,11 +16,11 @@
 namespace wellgyro {
 
 /// SensorGroup's formula solved for u in T, at every temperature: solved in full at the ends and in
-/// the middle of cells of temperature, between which A and force go by a straight line, b by a
-/// parabola, and what else is small beside u stays. Cells are so narrow that u is right to 1e-9 of
-/// the larger of itself and `unit`, terms of second order, squares of the force and heating to 1e-5
-/// of themselves; a thermometer's reading in single precision is worth as much. What a sample
-/// becomes by this depends on its own temperature alone.
+/// the middle of cells of temperature, between which A and b go by a parabola, and what else is
+/// small beside u by a straight line. Cells are so narrow that u is right to 1e-9 of the larger of
+/// itself and `unit`, terms of second order, in the force and in heating to 1e-5 of themselves; a
+/// thermometer's reading in single precision is worth as much. What a sample becomes by this
+/// depends on its own temperature alone.
 class GroupSolution {
  public:
   /// No sensors.
@@ -28,65 +28,55 @@ class GroupSolution {
   /// Of a group that the tool has; `unit`: a size of u that it measures well [SI].
   GroupSolution(const SensorGroup& group, double unit);
 
-  /// Whether the cell at hand holds this true temperature [degC] and sample period [s].
-  bool Holds(double temperature, double seconds) const {
-    const double place = Place(temperature);
-    const Cell& cell = cells_[at_];
-    return place >= cell.index && place < cell.index + 1 && seconds == cell.seconds;
+  /// Whether the other's calibrated range is the same.
+  bool Shares(const GroupSolution& other) const {
+    return first_.min == other.first_.min && first_.max == other.first_.max;
+  }
+  /// Makes its cells no wider than those of the other, which shares the range.
+  void Narrow(const GroupSolution& other) {
+    first_.per_width = std::max(first_.per_width, other.first_.per_width);
+  }
+
+  /// Whether the cell at hand holds this true temperature [degC].
+  bool Holds(double temperature) const {
+    double x = 0;
+    cells_[at_].place.Find(temperature, x);
+    return x >= 0 && x < 1 && cells_[at_].solved;
   }
   /// Makes its cell the one at hand.
-  void Enter(double temperature, double seconds);
-  /// The temperature is now this one, of the cell at hand.
-  void Take(double temperature) {
-    ahead_ += temperature - temperature_;
-    temperature_ = temperature;
-    x_ = static_cast<float>(Place(temperature) - cells_[at_].index);
-  }
-  float x() const { return x_; }  ///< place in the cell, 0 to 1
-
-  /// The heating rate takes `ns` at the present temperature; see SensorGroup::heating_lag.
-  void Heat(std::int64_t ns) {
-    // Samples follow each other evenly.
-    if (ns != step_ns_) {
-      step_ns_ = ns;
-      kept_ = std::exp(-1e-9 * static_cast<double>(ns) * per_lag_);
-    }
-    ahead_ *= kept_;
-  }
-  /// Forgets the heating so far.
-  void Settle() { ahead_ = 0; }
-  bool heats() const { return heats_; }
-  double heating_rate() const { return ahead_ * per_lag_; }  ///< [degC/s]
-
+  void Enter(double temperature);
+  const CellPlace& place() const { return cells_[at_].place; }      ///< of the cell at hand
   const GroupKernel& kernel() const { return cells_[at_].kernel; }  ///< of the cell at hand
 
-  /// Component of the readings along what no u explains, for four channels, at the temperature
-  /// taken last.
-  double Parity(const RawSample& raw, const Eigen::Vector3d& u_T, const Eigen::Vector3d& f_T) const;
-  /// The solution itself at a true temperature, which the cells stand for.
-  GroupNode At(double temperature, double seconds) const {
-    return model_->At(model_->Tau(temperature), seconds);
+  /// From this temperature on, as if it had always been so.
+  void Settle(double temperature) {
+    temperature_ = temperature;
+    ahead_ = 0;
   }
+  /// Heating rates [degC/s] at temperatures of which each holds for the time [ns] that stands at
+  /// the next, the last before these for the first of them; see SensorGroup::heating_lag.
+  void Heat(std::span<const std::int64_t> since, const double* temperature, float* rate);
+  bool heats() const { return kernel().heats; }
+
+  /// Component of the readings along what no u explains, for four channels, at a true temperature.
+  double Parity(const RawSample& raw, double temperature, double heating_rate,
+                const Eigen::Vector3d& u_T, const Eigen::Vector3d& f_T) const;
 
  private:
   struct Cell {
-    double index = 0;  ///< a whole number
-    double seconds = -1;
+    bool solved = false;
+    CellPlace place;
     GroupKernel kernel;
   };
 
   void Solve(Cell& cell) const;
-  double Place(double temperature) const {
-    return (std::min(std::max(temperature, min_), max_) - min_) * per_width_;
-  }
+  /// The solution itself at a true temperature, which the cells stand for.
+  GroupNode At(double temperature) const { return model_->At(model_->Tau(temperature)); }
 
   std::optional<GroupModel> model_;
-  GroupKernel constant_;                                  ///< what does not change with temperature
-  double min_ = 0, max_ = 0, width_ = 1, per_width_ = 1;  ///< [degC], [1/degC]
-  std::array<Cell, 2> cells_;                             ///< a reading at a border may come and go
+  CellPlace first_;            ///< where the calibrated range begins
+  std::array<Cell, 2> cells_;  ///< a reading at a border may come and go
   std::size_t at_ = 0;
-  float x_ = 0;
-  bool heats_ = false;
   double temperature_ = 0, ahead_ = 0;  ///< the present; less the lagged [degC]
   double per_lag_ = 0, kept_ = 1;       ///< of `ahead_` after a step
   std::int64_t step_ns_ = 0;

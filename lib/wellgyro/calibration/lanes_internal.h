@@ -1,180 +1,166 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-
-#include "wellgyro/record/sample.h"
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 /// Numbers of several samples side by side: what the processor does with one number it does with
-/// several at once. Types with one number and with four have the same operations, rounded alike.
+/// several at once. Whether they are four or eight, each is treated alike and rounded alike.
+///
+/// Vectors are handed on by reference alone: by value, how they travel would depend on what the
+/// function is compiled for.
 namespace wellgyro {
 
 using Doubles2 [[gnu::vector_size(16)]] = double;
+using Doubles4 [[gnu::vector_size(32)]] = double;
 using Singles4 [[gnu::vector_size(16)]] = float;
-using Wholes4 [[gnu::vector_size(16)]] = std::int32_t;
+using Singles8 [[gnu::vector_size(32)]] = float;
 using Longs2 [[gnu::vector_size(16)]] = std::int64_t;
-using Pairs [[gnu::vector_size(32)]] = double;
-
-struct Doubles4 {
-  Doubles2 low, high;
-};
-[[gnu::always_inline]] inline Doubles4 HalvesOf(const Pairs& n) {
-  return {__builtin_shufflevector(n, n, 0, 1), __builtin_shufflevector(n, n, 2, 3)};
-}
-[[gnu::always_inline]] inline Doubles4 operator+(Doubles4 a, Doubles4 b) {
-  return {a.low + b.low, a.high + b.high};
-}
-[[gnu::always_inline]] inline Doubles4 operator-(Doubles4 a, Doubles4 b) {
-  return {a.low - b.low, a.high - b.high};
-}
-[[gnu::always_inline]] inline Doubles4 operator*(Doubles4 a, Doubles4 b) {
-  return {a.low * b.low, a.high * b.high};
-}
-
-template <int kN>
-struct LanesOf;
-template <>
-struct LanesOf<1> {
-  using Double = double;
-  using Single = float;
-  using Whole = std::int32_t;
-};
-template <>
-struct LanesOf<4> {
-  using Double = Doubles4;
-  using Single = Singles4;
-  using Whole = Wholes4;
-};
-
-[[gnu::always_inline]] inline double ToDouble(std::int32_t n) { return n; }
-[[gnu::always_inline]] inline double ToDouble(float n) { return static_cast<double>(n); }
-[[gnu::always_inline]] inline float ToSingle(std::int32_t n) { return static_cast<float>(n); }
-[[gnu::always_inline]] inline float ToSingle(double n) { return static_cast<float>(n); }
-[[gnu::always_inline]] inline Doubles4 ToDouble(Wholes4 n) {
-  return HalvesOf(__builtin_convertvector(n, Pairs));
-}
-[[gnu::always_inline]] inline Doubles4 ToDouble(Singles4 n) {
-  return HalvesOf(__builtin_convertvector(n, Pairs));
-}
-[[gnu::always_inline]] inline Singles4 ToSingle(Wholes4 n) {
-  return __builtin_convertvector(n, Singles4);
-}
-[[gnu::always_inline]] inline Singles4 ToSingle(Doubles4 n) {
-  return __builtin_convertvector(__builtin_shufflevector(n.low, n.high, 0, 1, 2, 3), Singles4);
-}
-
-/// From the first of consecutive numbers.
-template <int kN>
-[[gnu::always_inline]] inline typename LanesOf<kN>::Single Load(const float* from) {
-  typename LanesOf<kN>::Single numbers;
-  std::memcpy(&numbers, from, sizeof(numbers));
-  return numbers;
-}
-
-[[gnu::always_inline]] inline double At(double n, std::size_t) { return n; }
-[[gnu::always_inline]] inline float At(float n, std::size_t) { return n; }
-[[gnu::always_inline]] inline float At(Singles4 n, std::size_t k) { return n[k]; }
-[[gnu::always_inline]] inline double At(Doubles4 n, std::size_t k) {
-  return k < 2 ? n.low[k] : n.high[k - 2];
-}
-
-[[gnu::always_inline]] inline void SetAt(double& n, std::size_t, double to) { n = to; }
-[[gnu::always_inline]] inline void SetAt(Doubles4& n, std::size_t k, double to) {
-  (k < 2 ? n.low : n.high)[k % 2] = to;
-}
-
-[[gnu::always_inline]] inline bool AnyAbove(float n, float limit) { return n > limit; }
-[[gnu::always_inline]] inline bool AnyAbove(Singles4 n, Singles4 limit) {
-  const auto above = std::bit_cast<Longs2>(n > limit);
-  return (above[0] | above[1]) != 0;
-}
-
-/// Component by component of kN samples to where each has its three.
-[[gnu::always_inline]] inline void Scatter(const std::array<double, 3>& u,
-                                           const std::array<double*, 1>& to) {
-  for (std::size_t i = 0; i < 3; ++i) to[0][i] = u[i];
-}
-[[gnu::always_inline]] inline void Scatter(Doubles2 x, Doubles2 y, Doubles2 z, double* first,
-                                           double* second) {
-  const Doubles2 a = __builtin_shufflevector(x, y, 0, 2), b = __builtin_shufflevector(x, y, 1, 3);
-  std::memcpy(first, &a, sizeof(a));
-  std::memcpy(second, &b, sizeof(b));
-  first[2] = z[0];
-  second[2] = z[1];
-}
-[[gnu::always_inline]] inline void Scatter(const std::array<Doubles4, 3>& u,
-                                           const std::array<double*, 4>& to) {
-  Scatter(u[0].low, u[1].low, u[2].low, to[0], to[1]);
-  Scatter(u[0].high, u[1].high, u[2].high, to[2], to[3]);
-}
+using Longs4 [[gnu::vector_size(32)]] = std::int64_t;
 
 /// A number that is the same for every sample.
-struct SameDouble {
-  Doubles2 twice{};
-  void operator=(double n) { twice = Doubles2{n, n}; }
+union SameDouble {
+  Doubles4 four{};
+  Doubles2 two;
+  void operator=(double n) { four = Doubles4{n, n, n, n}; }
 };
-struct SameSingle {
-  Singles4 fourfold{};
+union SameSingle {
+  Singles8 eight{};
+  Singles4 four;
   void operator=(double number) {
     const auto n = static_cast<float>(number);
-    fourfold = Singles4{n, n, n, n};
+    eight = Singles8{n, n, n, n, n, n, n, n};
   }
 };
-template <int kN>
-[[gnu::always_inline]] inline typename LanesOf<kN>::Double Of(const SameDouble& n) {
-  if constexpr (kN == 1) {
-    return n.twice[0];
-  } else {
-    return {n.twice, n.twice};
-  }
-}
-template <int kN>
-[[gnu::always_inline]] inline typename LanesOf<kN>::Single Of(const SameSingle& n) {
-  if constexpr (kN == 1) {
-    return n.fourfold[0];
-  } else {
-    return n.fourfold;
-  }
-}
 
-/// Counts of kN samples, channel by channel.
-template <int kN>
-class CountsOf {
- public:
-  [[gnu::always_inline]] CountsOf(const RawSample* raw, std::size_t channels) {
-    for (std::size_t c = 0; c < channels; c += 4) {
-      if constexpr (kN == 1) {
-        for (std::size_t i = c; i < c + 4; ++i) counts_[i] = raw->counts[i];
-      } else {
-        TakeFour(raw, c);
-      }
-    }
-  }
-  [[gnu::always_inline]] typename LanesOf<kN>::Whole operator[](std::size_t channel) const {
-    return counts_[channel];
-  }
+/// Four samples, by what every processor has.
+struct Lanes4 {
+  static constexpr std::size_t kCount = 4;
+  using Single = Singles4;
+  using Half = Doubles2;   ///< half of the samples
+  using Double = Half[2];  ///< all of them
+  using Mask = Longs2;     ///< of half: all bits of a sample for which something holds, else none
+  [[gnu::always_inline]] static const Single& Of(const SameSingle& n) { return n.four; }
+  [[gnu::always_inline]] static const Half& Of(const SameDouble& n) { return n.two; }
 
- private:
-  static_assert(RawSample::kChannelsMax % 4 == 0);
-
-  /// Four channels of four samples.
-  [[gnu::always_inline]] void TakeFour(const RawSample* raw, std::size_t c) {
-    std::array<Wholes4, 4> rows;
-    for (std::size_t k = 0; k < 4; ++k) std::memcpy(&rows[k], &raw[k].counts[c], sizeof(Wholes4));
-    const Wholes4 a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-    const Wholes4 b = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-    counts_[c] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
-    counts_[c + 1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
-    const Wholes4 d = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-    const Wholes4 e = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-    counts_[c + 2] = __builtin_shufflevector(d, e, 0, 1, 4, 5);
-    counts_[c + 3] = __builtin_shufflevector(d, e, 2, 3, 6, 7);
+  [[gnu::always_inline]] static void Load(const float* from, Single& to) {
+    std::memcpy(&to, from, sizeof to);
   }
-
-  std::array<typename LanesOf<kN>::Whole, RawSample::kChannelsMax> counts_;
+  [[gnu::always_inline]] static void Load(const double* from, Double& to) {
+    std::memcpy(&to[0], from, sizeof(Half));
+    std::memcpy(&to[1], from + 2, sizeof(Half));
+  }
+  [[gnu::always_inline]] static void Store(const Single& from, float* to) {
+    std::memcpy(to, &from, sizeof from);
+  }
+  [[gnu::always_inline]] static void Store(const Double& from, double* to) {
+    std::memcpy(to, &from[0], sizeof(Half));
+    std::memcpy(to + 2, &from[1], sizeof(Half));
+  }
+  [[gnu::always_inline]] static void ToDouble(const std::int32_t* n, Double& to) {
+#if defined(__x86_64__)
+    to[0] = _mm_cvtepi32_pd(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(n)));
+    to[1] = _mm_cvtepi32_pd(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(n + 2)));
+#else
+    to[0] = Half{static_cast<double>(n[0]), static_cast<double>(n[1])};
+    to[1] = Half{static_cast<double>(n[2]), static_cast<double>(n[3])};
+#endif
+  }
+  [[gnu::always_inline]] static void ToDouble(const Single& n, Double& to) {
+#if defined(__x86_64__)
+    to[0] = _mm_cvtps_pd(n);
+    to[1] = _mm_cvtps_pd(_mm_movehl_ps(n, n));
+#else
+    to[0] = Half{static_cast<double>(n[0]), static_cast<double>(n[1])};
+    to[1] = Half{static_cast<double>(n[2]), static_cast<double>(n[3])};
+#endif
+  }
+  [[gnu::always_inline]] static void ToSingle(const Double& n, Single& to) {
+#if defined(__x86_64__)
+    to = _mm_movelh_ps(_mm_cvtpd_ps(n[0]), _mm_cvtpd_ps(n[1]));
+#else
+    to = Single{static_cast<float>(n[0][0]), static_cast<float>(n[0][1]),
+                static_cast<float>(n[1][0]), static_cast<float>(n[1][1])};
+#endif
+  }
+  [[gnu::always_inline]] static void ToSingle(const std::int32_t* n, Single& to) {
+#if defined(__x86_64__)
+    to = _mm_cvtepi32_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(n)));
+#else
+    to = Single{static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]),
+                static_cast<float>(n[3])};
+#endif
+  }
+  [[gnu::always_inline]] static bool AnyAbove(const Single& n, float limit) {
+    const auto above = n > limit;
+    return (above[0] | above[1] | above[2] | above[3]) != 0;
+  }
+  [[gnu::always_inline]] static bool All(const Mask& mask) { return (mask[0] & mask[1]) != 0; }
+  /// Takes from `to` what the mask has not.
+  [[gnu::always_inline]] static void And(const Mask& mask, std::int64_t* to) {
+    Mask both;
+    std::memcpy(&both, to, sizeof both);
+    both &= mask;
+    std::memcpy(to, &both, sizeof both);
+  }
 };
+
+#if defined(__x86_64__)
+/// Eight, by AVX2: only for functions compiled for it.
+struct Lanes8 {
+  static constexpr std::size_t kCount = 8;
+  using Single = Singles8;
+  using Half = Doubles4;
+  using Double = Half[2];
+  using Mask = Longs4;
+  [[gnu::always_inline]] static const Single& Of(const SameSingle& n) { return n.eight; }
+  [[gnu::always_inline]] static const Half& Of(const SameDouble& n) { return n.four; }
+
+  [[gnu::target("avx2")]] static inline void Load(const float* from, Single& to) {
+    to = _mm256_loadu_ps(from);
+  }
+  [[gnu::target("avx2")]] static inline void Load(const double* from, Double& to) {
+    to[0] = _mm256_loadu_pd(from);
+    to[1] = _mm256_loadu_pd(from + 4);
+  }
+  [[gnu::target("avx2")]] static inline void Store(const Single& from, float* to) {
+    _mm256_storeu_ps(to, from);
+  }
+  [[gnu::target("avx2")]] static inline void Store(const Double& from, double* to) {
+    _mm256_storeu_pd(to, from[0]);
+    _mm256_storeu_pd(to + 4, from[1]);
+  }
+  [[gnu::target("avx2")]] static inline void ToDouble(const std::int32_t* n, Double& to) {
+    to[0] = _mm256_cvtepi32_pd(_mm_loadu_si128(reinterpret_cast<const __m128i*>(n)));
+    to[1] = _mm256_cvtepi32_pd(_mm_loadu_si128(reinterpret_cast<const __m128i*>(n + 4)));
+  }
+  [[gnu::target("avx2")]] static inline void ToDouble(const Single& n, Double& to) {
+    to[0] = _mm256_cvtps_pd(_mm256_castps256_ps128(n));
+    to[1] = _mm256_cvtps_pd(_mm256_extractf128_ps(n, 1));
+  }
+  [[gnu::target("avx2")]] static inline void ToSingle(const Double& n, Single& to) {
+    to = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(n[0])), _mm256_cvtpd_ps(n[1]),
+                              1);
+  }
+  [[gnu::target("avx2")]] static inline void ToSingle(const std::int32_t* n, Single& to) {
+    to = _mm256_cvtepi32_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(n)));
+  }
+  [[gnu::target("avx2")]] static inline bool AnyAbove(const Single& n, float limit) {
+    return _mm256_movemask_ps(_mm256_cmp_ps(n, _mm256_set1_ps(limit), _CMP_GT_OQ)) != 0;
+  }
+  [[gnu::target("avx2")]] static inline bool All(const Mask& mask) {
+    return _mm256_movemask_epi8(reinterpret_cast<__m256i>(mask)) == -1;
+  }
+  [[gnu::target("avx2")]] static inline void And(const Mask& mask, std::int64_t* to) {
+    __m256i* at = reinterpret_cast<__m256i*>(to);
+    _mm256_storeu_si256(at,
+                        _mm256_and_si256(_mm256_loadu_si256(at), reinterpret_cast<__m256i>(mask)));
+  }
+};
+#endif
 
 }  // namespace wellgyro

@@ -59,7 +59,7 @@ class Lines {
     for (const auto& segment : segments) {
       sizes_.push_back(segment.size());
       for (const Point& p : segment) {
-        lines_.push_back(std::polar(p.rate, first * p.time));
+        lines_.push_back(p.rate * std::polar(1.0, first * p.time));
         steps_.push_back(std::polar(1.0, step * p.time));
       }
     }
