@@ -17,7 +17,7 @@ namespace {
 using testing::Claims;
 using testing::Hour;
 
-// Two hundred seeds of each case, or one of each and the cases judged together.
+// Two hundred seeds of each case, or one of each of a few and these judged together.
 constexpr std::uint64_t kTruthSeeds = WELLGYRO_LONG ? 200 : 1;
 // Of nine numbers of each of these sets all are to hold with 99 %.
 constexpr double kRisk = 0.01 / (9 * (WELLGYRO_LONG ? 9 : 1));
