@@ -1,18 +1,28 @@
 #!/usr/bin/env python3
 """Surveys the bundled log and holds the end of the hole against the truth. Apart from the program's
 other tests because it is not run under the sanitizers, where it took a minute: what it does there,
-their shorter logs do. demonstration_test.py PROGRAM"""
+their shorter logs do. demonstration_test.py PROGRAM [--keep FOLDER]    --keep for other tests"""
 import os
+import shutil
+import sys
 import unittest
 
 from harness import DEMO, ProgramTest, Run
 
 
+KEEP = sys.argv[sys.argv.index("--keep") + 1] if "--keep" in sys.argv else None
+if KEEP:
+    del sys.argv[-2:]
+
+
 class Demonstration(ProgramTest):
     def test_its_end_is_where_it_says(self):
         done = Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
-                   os.path.join(DEMO, "run.lcm"), "--out", self.Path("demo"))
+                   os.path.join(DEMO, "run.lcm"), "--out", self.Path("demo"), "--report")
         self.assertEqual(done.returncode, 0, done.stderr)
+        if KEEP:
+            shutil.rmtree(KEEP, ignore_errors=True)
+            shutil.copytree(self.Path("demo"), KEEP)
         # Dated 2026-11-22: it was, though an azimuth is given.
         self.assertIs(self.Toml("demo", "run.toml")["run"][0]["fit"]["ambiguous"], False)
         deepest = max(self.Rows(DEMO, "truth.csv"), key=lambda row: float(row["MD[m]"]))

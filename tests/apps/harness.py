@@ -5,6 +5,7 @@ import difflib
 import filecmp
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -70,6 +71,22 @@ angle_random_walk_deg_per_sqrt_h = {walk}
 {PERFECT}[stations]
 every_m = {every_m}
 """
+
+
+def Ends(log):
+    """Where the messages of an LCM log end, from its begin."""
+    ends = [0]
+    while ends[-1] < len(log):  # a head: sync word, number, time, lengths of channel, data
+        _, _, _, channel, size = struct.unpack_from(">IqqII", log, ends[-1])
+        ends.append(ends[-1] + 28 + channel + size)
+    return ends
+
+
+def DemoBegin():
+    """The first sixth of the demonstration's log."""
+    with open(os.path.join(DEMO, "run.lcm"), "rb") as file:
+        data = file.read()
+    return data[:next(end for end in Ends(data) if end >= len(data) // 6)]
 
 
 def Run(*arguments, timeout=120, **options):

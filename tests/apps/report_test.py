@@ -1,6 +1,8 @@
 """The report of a survey, in a browser and on paper: it asks nothing of a network, says what the
 files say, shows any name as text, and can be read.
-report_test.py PROGRAM [--redraw]     --redraw keeps the picture of the plan as the one to compare with"""
+report_test.py PROGRAM [--redraw] [--demo FOLDER]
+--redraw keeps the picture of the plan as the one to compare with; --demo: the demonstration's survey
+with its report, made where it is not given"""
 import gzip
 import json
 import math
@@ -17,6 +19,9 @@ from harness import DEMO, Job, Move, ProgramTest, Run, Simulation, Stop
 REDRAW = "--redraw" in sys.argv
 if REDRAW:
     sys.argv.remove("--redraw")
+MADE = sys.argv[sys.argv.index("--demo") + 1] if "--demo" in sys.argv else None
+if MADE:
+    del sys.argv[-2:]
 KEPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "report_plan.pgm.gz")
 STREAMS = "imu_hz = 10.0\ndepth_hz = 2.0\n"
 TOOL = "accel_noise_mps2_per_sqrt_hz = 2e-4\n"
@@ -33,8 +38,11 @@ class Report(ProgramTest):
         super().setUpClass()
         cls.browser = browser.Browser()
         cls.addClassCleanup(cls.browser.Close)
-        cls.Make("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
-                 os.path.join(DEMO, "run.lcm"), "--out", cls.Path("demo"), "--report")
+        if MADE:
+            shutil.copytree(MADE, cls.Path("demo"))
+        else:
+            cls.Make("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                     os.path.join(DEMO, "run.lcm"), "--out", cls.Path("demo"), "--report")
 
     def Survey(self, name, steps, *, faults="", job=JOB):
         simulation = self.Write(name + ".toml",

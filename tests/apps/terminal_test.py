@@ -3,11 +3,11 @@
 import json
 import math
 import os
-import struct
 import subprocess
 import unittest
 
-from harness import DEMO, PROGRAM, FreshProgramTest, Run
+from harness import (DEMO, PROGRAM, DemoBegin, Ends, FreshProgramTest, Job, Move, Run, Simulation,
+                     Stop)
 
 
 class Terminal(FreshProgramTest):
@@ -51,15 +51,16 @@ class Terminal(FreshProgramTest):
         self.assertTrue(self.Read("in.csv").startswith("MD[m],INC"))
 
     def test_a_log_becomes_tables(self):
-        done = Run("convert", os.path.join(DEMO, "run.lcm"), self.Path("run.csv"))
+        log = self.Write("begin.lcm", DemoBegin())
+        done = Run("convert", log, self.Path("run.csv"))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertTrue(self.Read("run.csv").startswith("TOOL[ns],UTC[us],GX[rad/s]"))
         self.assertTrue(self.Read("run.depth.csv").startswith("UTC[us],MD[m]"))
         done = Run("check", self.Path("run.csv"), self.Path("run.depth.csv"))
         self.assertEqual(done.returncode, 0, done.stdout)
-        done = Run("convert", os.path.join(DEMO, "run.lcm"), self.Path("run.las"))
+        done = Run("convert", log, self.Path("run.las"))
         self.assertEqual(done.returncode, 1)
-        done = Run("convert", os.path.join(DEMO, "run.lcm"), self.Path("absent/run.csv"))
+        done = Run("convert", log, self.Path("absent/run.csv"))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.Read("absent/run.csv"), self.Read("run.csv"))
 
@@ -72,18 +73,8 @@ class Terminal(FreshProgramTest):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(said, done.stderr)
 
-    def DemoBegin(self):
-        """The first sixth of the demonstration, and where its messages end."""
-        with open(os.path.join(DEMO, "run.lcm"), "rb") as file:
-            data = file.read()
-        ends = [0]
-        while ends[-1] < len(data) // 6:  # a head: sync word, number, time, lengths of channel, data
-            _, _, _, channel, size = struct.unpack_from(">IqqII", data, ends[-1])
-            ends.append(ends[-1] + 28 + channel + size)
-        return data[:ends[-1]], ends
-
     def Demo(self, *more):
-        self.Write("begin.lcm", self.DemoBegin()[0])
+        self.Write("begin.lcm", DemoBegin())
         return Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
                    self.Path("begin.lcm"), "--out", self.Path("result"), *more)
 
@@ -123,15 +114,18 @@ class Terminal(FreshProgramTest):
         self.assertEqual([check["code"] for check in tool["checks_not_passed"]], bad)
 
     def test_a_rotated_log_is_one_survey(self):
-        data, ends = self.DemoBegin()
-        whole = self.Write("whole.lcm", data)
+        simulation = self.Write("simulation.toml", Simulation(
+            Stop(120) + Move(200) + Stop(60), "imu_hz = 20.0\ndepth_hz = 4.0\nbatch = 20\n"))
+        whole, job = self.Path("whole.lcm"), self.Write("job.toml", Job(25.0))
+        self.Make("simulate", "--job", simulation, "--out", whole)
+        data = self.Bytes("whole.lcm")
+        ends = Ends(data)
         cuts = [0, ends[len(ends) // 3], ends[2 * len(ends) // 3], len(data)]
         names = ["rig.lcm", "rig.001.lcm", "rig.002.lcm"]
         logger = ["rig.lcm.07", "rig.lcm.08", "rig.lcm.09"]  # lcm-logger --increment --split-mb
         for name, begin, end in zip(names + logger, 2 * cuts[:-1], 2 * cuts[1:]):
             with open(self.Path(name), "wb") as part:
                 part.write(data[begin:end])
-        job = os.path.join(DEMO, "job.toml")
         self.assertEqual(Run("survey", "--job", job, "--from", whole, "--out",
                              self.Path("whole")).returncode, 0)
         for name, out in (("rig.lcm", "first"), ("rig.lcm.07", "logger")):

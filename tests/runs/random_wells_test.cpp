@@ -109,7 +109,7 @@ testing::Hour ToolOf(std::uint64_t seed) {
 }
 
 TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
-  constexpr int kDrawnWells = WELLGYRO_LONG ? 300 : 5;
+  constexpr int kDrawnWells = WELLGYRO_LONG ? 300 : 3;
   Beyond inclination, azimuth, tangent{.dof = 2}, place{.dof = 3};
   int failed = 0;
   for (std::uint64_t seed = 1; seed <= kDrawnWells; ++seed) {

@@ -73,7 +73,7 @@ testing::Flown FlyOf(const Simulation& simulation) {
 class SlowNearVertical : public ::testing::TestWithParam<double> {};
 
 TEST_P(SlowNearVertical, KeepsItsAzimuthByTheMotion) {
-  constexpr int kSeeds = WELLGYRO_LONG ? 6 : 3;
+  constexpr int kSeeds = WELLGYRO_LONG ? 6 : 2;
   const std::vector<double> depths = {100, 200, 300, 400, 500, 600};
   testing::Claims inclination[2], azimuth[2];
   double worst = 0;

@@ -273,8 +273,10 @@ std::string AnglesAlone(const std::string& survey) {
 
 // Damaged models, surveys, programs and noise files: an answer without a NaN, or an error; no
 // crash.
-TEST_F(UncertaintyFiles, MutatedFilesNeverGiveNan) {
-  Random random(90408);
+class MutatedFiles : public UncertaintyFiles, public testing::WithParamInterface<std::uint64_t> {};
+
+TEST_P(MutatedFiles, NeverGiveNan) {
+  Random random(GetParam());
   const std::string survey = AnglesAlone(Read(kCases / "iscwsa-well-3.csv"));
   const std::string noise =
       "format = \"wellgyro.noise/1\"\n[coefficients]\nangle_random_walk_deg_per_sqrt_h = 0.1\n"
@@ -284,7 +286,7 @@ TEST_F(UncertaintyFiles, MutatedFilesNeverGiveNan) {
       Read(kModels / "GYRO-NS-CT.toml"), Read(kModels / "spe90408-4.toml"),
       Read(kModels / "CB_Film_GSS.toml"), Read(kModels / "ISCWSA-MWD-Rev5.1.toml")};
   int answered = 0, refused = 0;
-  for (int round = 0; round < 2400; ++round) {
+  for (int round = 0; round < 400; ++round) {
     UncertaintyRequest request = WellOne();
     request.surroundings.field = 50e-6;
     request.surroundings.dip = 1.2;
@@ -320,9 +322,11 @@ TEST_F(UncertaintyFiles, MutatedFilesNeverGiveNan) {
       EXPECT_NE(std::string(error.what()), "");
     }
   }
-  EXPECT_GT(answered, 100);  // rows with more or fewer fields than the header are refused
-  EXPECT_GT(refused, 200);
+  EXPECT_GT(answered, 15);  // rows with more or fewer fields than the header are refused
+  EXPECT_GT(refused, 30);
 }
+
+INSTANTIATE_TEST_SUITE_P(Seeds, MutatedFiles, testing::Range<std::uint64_t>(90408, 90414));
 
 }  // namespace
 }  // namespace wellgyro
