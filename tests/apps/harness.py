@@ -5,7 +5,6 @@ import difflib
 import filecmp
 import os
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
@@ -14,7 +13,8 @@ import unittest
 
 PROGRAM = os.path.abspath(sys.argv.pop(1))
 TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
-DEMO = os.path.join(TOP, "data", "demo")
+sys.path.insert(0, os.path.join(TOP, "tests", "support"))
+from demonstration import DEMO
 RESULT = ("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv", "reliability.csv",
           "stretches.csv", "run.toml")
 
@@ -71,22 +71,6 @@ angle_random_walk_deg_per_sqrt_h = {walk}
 {PERFECT}[stations]
 every_m = {every_m}
 """
-
-
-def Ends(log):
-    """Where the messages of an LCM log end, from its begin."""
-    ends = [0]
-    while ends[-1] < len(log):  # a head: sync word, number, time, lengths of channel, data
-        _, _, _, channel, size = struct.unpack_from(">IqqII", log, ends[-1])
-        ends.append(ends[-1] + 28 + channel + size)
-    return ends
-
-
-def DemoBegin():
-    """The first sixth of the demonstration's log."""
-    with open(os.path.join(DEMO, "run.lcm"), "rb") as file:
-        data = file.read()
-    return data[:next(end for end in Ends(data) if end >= len(data) // 6)]
 
 
 def Run(*arguments, timeout=120, **options):

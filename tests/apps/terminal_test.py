@@ -6,8 +6,8 @@ import os
 import subprocess
 import unittest
 
-from harness import (DEMO, PROGRAM, DemoBegin, Ends, FreshProgramTest, Job, Move, Run, Simulation,
-                     Stop)
+from harness import PROGRAM, FreshProgramTest, Job, Move, Run, Simulation, Stop
+from demonstration import DEMO, Begin, Ends
 
 
 class Terminal(FreshProgramTest):
@@ -51,7 +51,7 @@ class Terminal(FreshProgramTest):
         self.assertTrue(self.Read("in.csv").startswith("MD[m],INC"))
 
     def test_a_log_becomes_tables(self):
-        log = self.Write("begin.lcm", DemoBegin())
+        log = self.Write("begin.lcm", Begin())
         done = Run("convert", log, self.Path("run.csv"))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertTrue(self.Read("run.csv").startswith("TOOL[ns],UTC[us],GX[rad/s]"))
@@ -74,7 +74,7 @@ class Terminal(FreshProgramTest):
             self.assertIn(said, done.stderr)
 
     def Demo(self, *more):
-        self.Write("begin.lcm", DemoBegin())
+        self.Write("begin.lcm", Begin())
         return Run("survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
                    self.Path("begin.lcm"), "--out", self.Path("result"), *more)
 

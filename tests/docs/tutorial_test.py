@@ -4,14 +4,14 @@ sh line by line, a block of toml being the job.toml that the page has saved by t
 demonstration's log is its first sixth. tutorial_test.py PROGRAM"""
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "apps"))
-from harness import DEMO, PROGRAM, TOP, DemoBegin
+from harness import PROGRAM, TOP
+from demonstration import Begun
 
 DOCS = os.path.join(TOP, "lib", "docs")
 
@@ -24,10 +24,7 @@ def Blocks(name):
 class Tutorial(unittest.TestCase):
     def Run(self, page):
         commands = 0
-        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as demo:
-            shutil.copytree(DEMO, demo, dirs_exist_ok=True)
-            with open(os.path.join(demo, "run.lcm"), "wb") as log:
-                log.write(DemoBegin())
+        with tempfile.TemporaryDirectory() as folder, Begun() as demo:
             for kind, text in Blocks(page):
                 if kind == "toml":
                     with open(os.path.join(folder, "job.toml"), "w", encoding="utf-8") as job:

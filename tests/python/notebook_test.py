@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""The package's notebooks, each run from its first cell to its last as a reader would, and what it
-has shown by then. The program is WELLGYRO_PROGRAM."""
+"""The package's notebooks, each run from its first cell to its last as a reader would, of the failing
+run the first half, and what it has shown by then. The program is WELLGYRO_PROGRAM."""
 import ast
 import json
 import os
+import sys
 import unittest
 
 import matplotlib
@@ -11,6 +12,9 @@ import matplotlib
 matplotlib.use("Agg")
 
 TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
+sys.path.insert(0, os.path.join(TOP, "tests", "support"))
+from demonstration import Begun
+
 FOLDER = os.path.join(TOP, "lib", "python", "notebooks")
 
 
@@ -36,9 +40,6 @@ def RunNotebook(name):
 
 
 class Notebooks(unittest.TestCase):
-    def setUp(self):
-        os.environ["WELLGYRO_DEMO"] = os.path.join(TOP, "data", "demo")
-
     def test_there_are_three(self):
         self.assertEqual(sorted(os.listdir(FOLDER)),
                          ["bench-to-survey.ipynb", "failing-run.ipynb", "first-survey.ipynb"])
@@ -53,7 +54,9 @@ class Notebooks(unittest.TestCase):
         self.assertEqual(seen["last"].md_m, 200)
 
     def test_a_failing_run(self):
-        seen = RunNotebook("failing-run.ipynb")
+        with Begun(2) as demo:
+            os.environ["WELLGYRO_DEMO"] = demo
+            seen = RunNotebook("failing-run.ipynb")
         self.assertEqual(seen["wrong"].verdict, "fail")
         self.assertEqual(seen["right"].verdict, "pass", seen["right"].causes)
         self.assertEqual(seen["wrong"].diagnosis.iloc[0]["CODE"], "latitude")

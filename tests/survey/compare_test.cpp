@@ -1,10 +1,12 @@
 #include "wellgyro/survey/compare.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -235,29 +237,35 @@ class NoDifference {
   int pairs_ = 0, failed_ = 0, warned_ = 0;
 };
 
-class Closure : public testing::TestWithParam<const char*> {};
+class Closure : public testing::TestWithParam<std::tuple<const char*, int>> {};
 
-// Nothing but the models' own errors, drawn: every statistic lies in its band of four sigmas, 500
-// pairs each, and of the pairs no more fail and warn than were promised.
+// Nothing but the models' own errors, drawn: every statistic lies in its band of four sigmas, 150
+// pairs each, 500 with --long, and of the pairs no more fail and warn than were promised.
 TEST_P(Closure, UnderNoDifferenceEveryStatisticIsInItsBand) {
-  const bool good = std::string(GetParam()) == "good";
-  const ErrorModel a = good ? GoodTool() : *OwnModel(GetParam());
+  const auto& [model, pairs] = GetParam();
+  const bool good = std::string(model) == "good";
+  const ErrorModel a = good ? GoodTool() : *OwnModel(model);
   const ErrorModel b = good ? GoodTool() : *OwnModel("ISCWSA MWD Rev 4");
   Random random(20261122);
   NoDifference none;
   CompareOptions options;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < pairs; ++i) {
     const Pair pair = Drawn(a, b, options.local_sigma, random);
     none.Add(Compare(pair.first, pair.second, options));
   }
   none.Judge();
 }
-INSTANTIATE_TEST_SUITE_P(Models, Closure, testing::Values("good", "GYRO-NS-CT"));
+constexpr std::array kModels{"good", "GYRO-NS-CT"};
+INSTANTIATE_TEST_SUITE_P(Models, Closure,
+                         testing::Combine(testing::ValuesIn(kModels), testing::Values(150)));
+INSTANTIATE_TEST_SUITE_P(MorePairs, Closure,
+                         testing::Combine(testing::ValuesIn(kModels), testing::Values(500)));
 
 struct Sampling {
   const char* hole;
   double first, second, offset;  // spacings, and where the second begins [m]
   double timid = 1;              // the least that a statistic may be
+  int pairs = 500;
 };
 class Sampled : public testing::TestWithParam<Sampling> {};
 
@@ -270,7 +278,7 @@ TEST_P(Sampled, UnderNoDifferenceEveryStatisticIsInItsBand) {
   Random random(20261124);
   NoDifference none;
   CompareOptions options;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < is.pairs; ++i) {
     const Trajectory hole = *is.hole == 's'   ? Slid(random)
                             : *is.hole == 'w' ? Wandering(random)
                                               : Smooth();
@@ -284,10 +292,13 @@ TEST_P(Sampled, UnderNoDifferenceEveryStatisticIsInItsBand) {
   none.Judge(is.timid);
 }
 INSTANTIATE_TEST_SUITE_P(Holes, Sampled,
-                         testing::Values(Sampling{"bends", 60, 20, 0}, Sampling{"walks", 60, 20, 0},
-                                         Sampling{"walks", 30, 20, 7, 0.85}));
+                         testing::Values(Sampling{"bends", 60, 20, 0, 1, 150},
+                                         Sampling{"walks", 60, 20, 0, 1, 150},
+                                         Sampling{"walks", 30, 20, 7, 0.85, 150}));
 INSTANTIATE_TEST_SUITE_P(MoreHoles, Sampled,
-                         testing::Values(Sampling{"bends", 30, 10, 0}, Sampling{"bends", 20, 20, 0},
+                         testing::Values(Sampling{"bends", 60, 20, 0}, Sampling{"walks", 60, 20, 0},
+                                         Sampling{"walks", 30, 20, 7, 0.85},
+                                         Sampling{"bends", 30, 10, 0}, Sampling{"bends", 20, 20, 0},
                                          Sampling{"bends", 20, 20, 7, 0.95},
                                          Sampling{"walks", 30, 10, 0}, Sampling{"walks", 20, 20, 0},
                                          Sampling{"slides", 60, 20, 0, 0.85},
