@@ -6,18 +6,16 @@
 
 #include <Eigen/Cholesky>
 
+#include "wellgyro/estimate/normal_kernels_internal.h"
+
 namespace wellgyro {
 namespace {
 
 using Eigen::Index;
-using Eigen::Matrix4d;
-using Eigen::Vector4d;
 
 // Products of some ten by twenty numbers: squares of four by four whose sums stay in registers are
 // four times as fast as what is made for large matrices. Every sum runs in one order, so that it
 // has one result on every processor.
-
-constexpr Index kRowsMost = 2 * kNodeMax + kBorderMax + 3;
 
 /// A B' of R and C rows of matrices whose columns stand this far apart.
 template <int R, int C>
@@ -52,122 +50,60 @@ void Multiply(const Left& A, const Right& B, Out& out) {
   for (; j < columns; ++j) column.template operator()<1>(j);
 }
 
-/// Columns of a lower triangle that are read by fours: past the end of each stand up to six numbers
-/// that count for nothing.
-struct Panel {
-  Index stride;
-  std::array<double, kRowsMost * kNodeMax> values;
-
-  Panel(Index rows, Index columns) : stride((rows + 3) / 4 * 4 + 3) {
-    for (Index j = 0; j < columns; ++j) {
-      std::fill_n(column(j), j, 0.0);
-      std::fill(column(j) + rows, column(j) + stride, 0.0);
-    }
-  }
-  double* column(Index j) { return values.data() + j * stride; }
-  /// Rows i to i + 3 times the transpose of rows j to j + 3, over the first columns.
-  Matrix4d Square(Index i, Index j, Index columns) const {
-    return Product<4, 4>(values.data() + i, stride, values.data() + j, stride, columns);
-  }
-};
-
-/// Replaces `n` columns of a matrix by those of its Cholesky factor, in its lower triangle. False
-/// where it is not positive.
-bool Factorise(Panel& panel, Index n, Index rows) {
-  for (Index begin = 0; begin < n; begin += 4) {
-    const Index end = std::min(begin + 4, n);
-    for (Index i = begin; i < rows && begin > 0; i += 4) {
-      const Matrix4d known = panel.Square(i, begin, begin);
-      for (Index j = begin; j < end; ++j) {
-        Eigen::Map<Vector4d>(panel.column(j) + i) -= known.col(j - begin);
-      }
-    }
-    for (Index j = begin; j < end; ++j) {
-      double* x = panel.column(j);
-      if (!(x[j] > 0)) return false;
-      x[j] = std::sqrt(x[j]);
-      const double by = 1 / x[j];
-      for (Index i = j + 1; i < rows; ++i) x[i] *= by;
-      for (Index k = j + 1; k < end; ++k) {
-        double* y = panel.column(k);
-        for (Index i = k; i < rows; ++i) y[i] -= x[k] * x[i];
-      }
-    }
-  }
-  return true;
-}
-
-/// A -= B B' in the lower triangle of A, B being the rows of the panel from `first` on.
-void Downdate(const Panel& panel, Index first, Index columns, EdgeMatrix& A) {
-  const Index m = A.rows();
-  for (Index j = 0; j < m; j += 4) {
-    for (Index i = j; i < m; i += 4) {
-      const Matrix4d known = panel.Square(first + i, first + j, columns);
-      for (Index c = 0; c < std::min<Index>(4, m - j); ++c) {
-        for (Index r = i == j ? c : 0; r < std::min<Index>(4, m - i); ++r) {
-          A(i + r, j + c) -= known(r, c);
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
 
 void Elimination::Start(std::size_t nodes, const EdgeMatrix& information,
                         const EdgeVector& gradient) {
-  rows_ = 2 * layout_->node + layout_->border;
+  const Index n = layout_->node, b = layout_->border, m = n + b;
+  rows_ = n + m;
+  stride_ = BlockStride(n, b);
+  edge_stride_ = ByFours(m);
   conditionals_.resize(nodes * ConditionalSize());
   eliminated_ = 0;
-  information_ = information;
+  std::fill_n(information_.begin(), edge_stride_ * m, 0.0);
+  Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
+      information_.data(), m, m, Eigen::OuterStride<>(edge_stride_)) = information;
   gradient_ = gradient;
   log_determinant_ = decrement_ = 0;
   solved_ = false;
 }
 
 bool Elimination::Step(const NormalBlock& block) {
-  const int n = layout_->node, b = layout_->border, m = n + b;
-  const NormalBlock::Matrix& A = block.information();
-  Panel panel(rows_, n);
-  for (Index j = 0; j < n; ++j) {
-    Eigen::Map<Eigen::VectorXd> x(panel.column(j), rows_);
-    x.tail(rows_ - j) = A.col(j).tail(rows_ - j);
-    x.segment(j, n - j) += information_.col(j).segment(j, n - j);
-    x.tail(b) += information_.col(j).tail(b);
-  }
-  if (!Factorise(panel, n, rows_)) return false;
-  NormalBlock::Vector g = block.gradient();
+  const Index n = layout_->node, b = layout_->border, m = n + b;
+  const Registers registers = WidestRegisters();
+  const NodePanel panel{conditionals_.data() + eliminated_ * ConditionalSize(), stride_, n, b};
+  const EdgeColumns edge{information_.data(), edge_stride_};
+  const double* A = block.information().data();
+  std::copy_n(A, n * stride_, panel.values);
+  AddKnown(registers, panel, edge);
+  if (!Factorise(registers, panel)) return false;
+  alignas(32) std::array<double, kBlockStrideMost> numbers;
+  std::fill(numbers.begin() + rows_, numbers.begin() + stride_, 0.0);
+  Eigen::Map<Eigen::VectorXd> g(numbers.data(), rows_);
+  g = block.gradient();
   g.head(n) += gradient_.head(n);
   g.tail(b) += gradient_.tail(b);
+  Forward(registers, panel, numbers.data());
   double scale = 1;
-  for (Index j = 0; j < n; ++j) {
-    const double* x = panel.column(j);
-    scale *= x[j];
-    g[j] /= x[j];
-    for (Index i = j + 1; i < rows_; ++i) g[i] -= g[j] * x[i];
-  }
-  Keep(panel.column(0), panel.stride, g);
-  information_.leftCols(n) = A.block(n, n, m, n);
-  for (Index j = n; j < m; ++j) information_.col(j).tail(m - j) += A.col(n + j).tail(m - j);
-  Downdate(panel, n, n, information_);
+  for (Index j = 0; j < n; ++j) scale *= panel.column(j)[j];
+  Succeed(registers, panel, A, edge);
   gradient_ = g.tail(m);
   log_determinant_ += 2 * std::log(scale);
   decrement_ += g.head(n).squaredNorm();
+  Keep(numbers.data());
   return std::isfinite(log_determinant_);
 }
 
-void Elimination::Keep(const double* panel, Eigen::Index stride, const NormalBlock::Vector& g) {
-  double* to = conditionals_.data() + eliminated_ * ConditionalSize();
-  for (int j = 0; j < layout_->node; ++j, to += rows_) {
-    std::copy_n(panel + j * stride, rows_, to);
-  }
-  std::copy_n(g.data(), layout_->node, to);
+/// Ends the node with its gradient.
+void Elimination::Keep(const double* gradient) {
+  double* panel = conditionals_.data() + eliminated_ * ConditionalSize();
+  std::copy_n(gradient, layout_->node, panel + layout_->node * stride_);
   ++eliminated_;
 }
 
 bool Elimination::Solve(std::vector<NodeVector>& nodes, BorderVector& border) {
   const int n = layout_->node, b = layout_->border;
-  const Eigen::LLT<EdgeMatrix> llt(information_);
+  const Eigen::LLT<EdgeMatrix> llt(edge_information());
   if (llt.info() != Eigen::Success) return false;
   last_ = llt.matrixL();
   const EdgeVector last = llt.solve(-gradient_);
@@ -183,7 +119,7 @@ bool Elimination::Solve(std::vector<NodeVector>& nodes, BorderVector& border) {
   for (std::size_t k = eliminated_; k-- > 0;) {
     const Columns panel = PanelOf(k);
     x.segment(n, n) = nodes[k + 1];
-    x.head(n) = -Eigen::Map<const Eigen::VectorXd>(panel.data() + panel.size(), n);
+    x.head(n) = -Eigen::Map<const Eigen::VectorXd>(panel.data() + n * stride_, n);
     Substitute(k, x);
     nodes[k] = x.head(n);
   }

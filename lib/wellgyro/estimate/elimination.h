@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -19,6 +20,8 @@ namespace wellgyro {
 /// stiff neighbours rounds off, 1e-16 of it a node, stays below 1e-2 rad^-2 of azimuth in 16 h.
 class Elimination {
  public:
+  using Columns = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
   explicit Elimination(const Layout& layout) : layout_(&layout) {}
 
   /// Begins at a first node whose information is `information` of [node, border] (lower triangle)
@@ -28,7 +31,10 @@ class Elimination {
   /// something is unobserved, or not finite.
   bool Step(const NormalBlock& block);
   /// Of the newest node and the border (lower triangle).
-  const EdgeMatrix& edge_information() const { return information_; }
+  Columns edge_information() const {
+    return {information_.data(), gradient_.size(), gradient_.size(),
+            Eigen::OuterStride<>(edge_stride_)};
+  }
 
   /// Solves for the steps of all unknowns. False as Step().
   bool Solve(std::vector<NodeVector>& nodes, BorderVector& border);
@@ -64,22 +70,27 @@ class Elimination {
   double decrement() const { return solved_ ? decrement_ : HUGE_VAL; }
 
  private:
-  using Columns = Eigen::Map<const Eigen::MatrixXd>;
   /// Of node k, in its n columns: L (lower) over (L^-1 times the information with [next node;
   /// border])'. Behind them L^-1 times the gradient.
   Columns PanelOf(std::size_t k) const {
-    return {conditionals_.data() + k * ConditionalSize(), rows_, layout_->node};
+    return {conditionals_.data() + k * ConditionalSize(), rows_, layout_->node,
+            Eigen::OuterStride<>(stride_)};
   }
   std::size_t ConditionalSize() const {
-    return static_cast<std::size_t>(layout_->node * (rows_ + 1));
+    return static_cast<std::size_t>(layout_->node * stride_ + ByFours(layout_->node));
   }
-  void Keep(const double* panel, Eigen::Index stride, const NormalBlock::Vector& gradient);
+  void Keep(const double* gradient);
+
+  static constexpr Eigen::Index kEdgeMost = kNodeMax + kBorderMax;
 
   const Layout* layout_;
   std::vector<double> conditionals_;  ///< of each node the panel and the gradient
   std::size_t eliminated_ = 0;
-  Eigen::Index rows_ = 0;   ///< of [node | next node | border]
-  EdgeMatrix information_;  ///< of [newest node; border], lower
+  Eigen::Index rows_ = 0;                      ///< of [node | next node | border]
+  Eigen::Index stride_ = 0, edge_stride_ = 0;  ///< of columns over these and over [node; border]
+  /// Of [newest node; border], lower.
+  alignas(
+      32) std::array<double, static_cast<std::size_t>(ByFours(kEdgeMost) * kEdgeMost)> information_;
   EdgeVector gradient_;
   EdgeMatrix last_;  ///< its Cholesky factor
   double log_determinant_ = 0, decrement_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/normal_kernels_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -108,8 +109,9 @@ Eigen::Matrix3d CovarianceOf(const Factor& f, const BlockMatrix& cov) {
 }
 
 NormalBlock::Vector NormalBlock::Column(int at) const {
-  Vector column = information_.col(at);
-  column.head(at) = information_.row(at).head(at).transpose();
+  const auto all = information();
+  Vector column = all.col(at);
+  column.head(at) = all.row(at).head(at).transpose();
   return column;
 }
 
@@ -117,10 +119,9 @@ double RollWeight(double square, int n) { return (kDegrees + n) / (kDegrees + sq
 
 void NormalBlock::Clear(const Layout& layout) {
   node_ = layout.node;
-  const int size = 2 * layout.node + layout.border;
-  information_.resize(size, size);
-  for (int j = 0; j < size; ++j) information_.col(j).tail(size - j).setZero();
-  gradient_.setZero(size);
+  stride_ = BlockStride(layout.node, layout.border);
+  gradient_.setZero(2 * layout.node + layout.border);
+  std::fill_n(information_.begin(), size() * stride_, 0.0);
 }
 
 void NormalBlock::Add(const Factor& f) {
@@ -149,6 +150,7 @@ void NormalBlock::Add(const Factor& f) {
 
 /// Rows that reach few columns.
 void NormalBlock::AddSparse(const Factor& f, double weight) {
+  auto sum = information();
   for (int j = 0; j < f.columns; ++j) {
     const int cj = f.column[static_cast<std::size_t>(j)];
     const Eigen::Vector3d wj = weight * f.J.col(j);
@@ -157,27 +159,25 @@ void NormalBlock::AddSparse(const Factor& f, double weight) {
       const int ck = f.column[static_cast<std::size_t>(k)];
       double h = 0;
       for (int i = 0; i < f.rows; ++i) h += wj[i] * f.J(i, k);
-      information_(std::max(cj, ck), std::min(cj, ck)) += h;
+      sum(std::max(cj, ck), std::min(cj, ck)) += h;
     }
   }
 }
 
 /// Rows that reach most columns: spread out over all of them, so that sums run along columns.
 void NormalBlock::AddDense(const Factor& f, double weight) {
-  const Eigen::Index size = information_.rows();
-  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 2 * kNodeMax + kBorderMax, 3> J(size, 3);
-  J.setZero();
+  alignas(32) std::array<double, 3 * kBlockStrideMost> rows;
+  std::fill_n(rows.begin(), 3 * stride_, 0.0);
   for (int j = 0; j < f.columns; ++j) {
-    J.row(f.column[static_cast<std::size_t>(j)]) = f.J.col(j).transpose();
+    double* to = rows.data() + f.column[static_cast<std::size_t>(j)];
+    for (int i = 0; i < 3; ++i) to[i * stride_] = f.J(i, j);
   }
   for (int j = 0; j < f.columns; ++j) {
-    const int at = f.column[static_cast<std::size_t>(j)];
     const Eigen::Vector3d w = weight * f.J.col(j);
-    gradient_[at] += w.dot(f.r);
-    information_.col(at).tail(size - at) += w[0] * J.col(0).tail(size - at) +
-                                            w[1] * J.col(1).tail(size - at) +
-                                            w[2] * J.col(2).tail(size - at);
+    gradient_[f.column[static_cast<std::size_t>(j)]] += w.dot(f.r);
   }
+  const ThreeRows J{f.J.data(), f.column.data(), f.columns, rows.data()};
+  AddSquare(WidestRegisters(), J, weight, stride_, information_.data());
 }
 
 }  // namespace wellgyro

@@ -88,6 +88,15 @@ struct RowSum {
   double freedom = 0;
 };
 
+/// Columns that the processor works along by fours.
+constexpr Eigen::Index ByFours(Eigen::Index n) { return (n + 3) / 4 * 4; }
+/// How far apart columns over [node | next node | border] stand, so that each begins at a multiple
+/// of four and fours counted from the next node on end within it.
+constexpr Eigen::Index BlockStride(Eigen::Index node, Eigen::Index border) {
+  return ByFours(node + ByFours(node + border));
+}
+inline constexpr Eigen::Index kBlockStrideMost = BlockStride(kNodeMax, kBorderMax);
+
 using BlockMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
                                   2 * kNodeMax + kBorderMax, 2 * kNodeMax + kBorderMax>;
 
@@ -98,6 +107,8 @@ Eigen::Matrix3d CovarianceOf(const Factor& factor, const BlockMatrix& cov);
 class NormalBlock {
  public:
   using Matrix = BlockMatrix;
+  template <class Numbers>
+  using Columns = Eigen::Map<Numbers, Eigen::Aligned16, Eigen::OuterStride<>>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 * kNodeMax + kBorderMax, 1>;
 
   void Clear(const Layout& layout);
@@ -114,9 +125,13 @@ class NormalBlock {
 
   int next() const { return node_; }        ///< first column of the next node
   int border() const { return 2 * node_; }  ///< first of the border
-  /// Lower triangle.
-  Matrix& information() { return information_; }
-  const Matrix& information() const { return information_; }
+  /// Lower triangle; numbers past the last row are zero.
+  Columns<Eigen::MatrixXd> information() {
+    return {information_.data(), size(), size(), Eigen::OuterStride<>(stride_)};
+  }
+  Columns<const Eigen::MatrixXd> information() const {
+    return {information_.data(), size(), size(), Eigen::OuterStride<>(stride_)};
+  }
   Vector& gradient() { return gradient_; }
   const Vector& gradient() const { return gradient_; }
   /// Of the information, its upper part too.
@@ -125,12 +140,17 @@ class NormalBlock {
   void ClearSums() { sums_ = {}; }
 
  private:
+  static constexpr std::size_t kNumbersMost =
+      static_cast<std::size_t>(kBlockStrideMost * Factor::kColumnsMax);
+
+  Eigen::Index size() const { return gradient_.size(); }
   void AddSparse(const Factor& f, double weight);
   void AddDense(const Factor& f, double weight);
 
   int node_ = 0;
   bool without_loss_ = false;
-  Matrix information_;
+  Eigen::Index stride_ = 0;
+  alignas(32) std::array<double, kNumbersMost> information_;
   Vector gradient_;
   const Matrix* covariance_ = nullptr;
   std::vector<Factor>* collected_ = nullptr;

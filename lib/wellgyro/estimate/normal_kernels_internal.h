@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace wellgyro {
+
+/// How wide the processor works. The result does not depend on it, bit for bit: each sum runs in
+/// the same order and nothing is contracted.
+enum class Registers { kPlain, kAvx2 };
+
+/// The widest that this processor has.
+Registers WidestRegisters();
+
+/// Columns of a node that is eliminated, over its own rows and those behind them: of the next node
+/// and of the border. They stand BlockStride() apart; numbers past the rows count for nothing.
+struct NodePanel {
+  double* values;
+  Eigen::Index stride;
+  Eigen::Index node, border;
+
+  double* column(Eigen::Index j) const { return values + j * stride; }
+  Eigen::Index behind() const { return node + border; }
+  Eigen::Index rows() const { return 2 * node + border; }
+};
+
+/// A lower triangle over [node | border], whose columns stand EdgeStride() apart.
+struct EdgeColumns {
+  double* values;
+  Eigen::Index stride;
+
+  double* column(Eigen::Index j) const { return values + j * stride; }
+};
+
+/// Adds to the panel what is known of [node | border].
+void AddKnown(Registers registers, const NodePanel& panel, const EdgeColumns& edge);
+
+/// Replaces the panel by those columns of the Cholesky factor, in its lower triangle. False where
+/// it is not positive.
+bool Factorise(Registers registers, const NodePanel& panel);
+
+/// Of a gradient over the panel's rows, as many numbers as the stride: divides the node's by the
+/// factor and takes from those behind what they told.
+void Forward(Registers registers, const NodePanel& panel, double* gradient);
+
+/// Of [next node | border]: what the block says of them, whose columns stand as far apart as the
+/// panel's, and what was known of the border, less what the panel took of it.
+void Succeed(Registers registers, const NodePanel& panel, const double* block,
+             const EdgeColumns& edge);
+
+/// Three rows J over a block's columns, of which `count` are filled in.
+struct ThreeRows {
+  const double* by_column;  ///< three numbers of each
+  const int* at;            ///< where they stand in the block
+  int count;
+  const double* spread;  ///< row by row over all columns of the block, zeros elsewhere
+};
+/// Adds weight J'J to a block's lower triangle, whose columns stand as far apart as the rows J.
+void AddSquare(Registers registers, const ThreeRows& J, double weight, Eigen::Index stride,
+               double* block);
+
+}  // namespace wellgyro
