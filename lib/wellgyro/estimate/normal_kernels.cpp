@@ -257,25 +257,41 @@ template <class V>
   }
 }
 
-/// What stands above the diagonal, in the register where a column begins, counts for nothing.
+/// C columns from `k` on, together from the register where the first of them in the block begins.
+/// What stands above the diagonal counts for nothing.
+template <class V, int C>
+[[gnu::always_inline]] inline void AddColumns(const ThreeRows& J, int k, double weight,
+                                              Index stride, double* block) {
+  double w[C][3];
+  double* column[C];
+  Index begin = stride;
+#pragma GCC unroll 4
+  for (int c = 0; c < C; ++c) {
+#pragma GCC unroll 4
+    for (int i = 0; i < 3; ++i) w[c][i] = weight * J.by_column[3 * (k + c) + i];
+    column[c] = block + J.at[k + c] * stride;
+    begin = std::min<Index>(begin, J.at[k + c]);
+  }
+  for (Index i = begin / kWidth<V> * kWidth<V>; i < stride; i += kWidth<V>) {
+    V x, y, z;
+    Get(J.spread + i, x);
+    Get(J.spread + stride + i, y);
+    Get(J.spread + 2 * stride + i, z);
+#pragma GCC unroll 4
+    for (int c = 0; c < C; ++c) {
+      V sum;
+      Get(column[c] + i, sum);
+      Put(sum + (w[c][0] * x + w[c][1] * y + w[c][2] * z), column[c] + i);
+    }
+  }
+}
+
 template <class V>
 [[gnu::always_inline]] inline void AddSquareBy(const ThreeRows& J, double weight, Index stride,
                                                double* block) {
-  const double *x = J.spread, *y = x + stride, *z = y + stride;
-  for (int k = 0; k < J.count; ++k) {
-    const double* by = J.by_column + 3 * k;
-    const double a = weight * by[0], b = weight * by[1], c = weight * by[2];
-    const Index at = J.at[k];
-    double* column = block + at * stride;
-    for (Index i = at / kWidth<V> * kWidth<V>; i < stride; i += kWidth<V>) {
-      V p, q, r, to;
-      Get(x + i, p);
-      Get(y + i, q);
-      Get(z + i, r);
-      Get(column + i, to);
-      Put(to + (a * p + b * q + c * r), column + i);
-    }
-  }
+  int k = 0;
+  for (; k + 2 <= J.count; k += 2) AddColumns<V, 2>(J, k, weight, stride, block);
+  if (k < J.count) AddColumns<V, 1>(J, k, weight, stride, block);
 }
 
 #if defined(__x86_64__)
