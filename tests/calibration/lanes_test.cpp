@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -82,18 +83,25 @@ TEST(LanesOfSamples, TakeTheSameTemperatures) {
   const ToolCalibration tool = RandomTool(2, {.temperature = true});
   const ThermometerCalibration& thermometer = tool.thermometers[0];
   Random random(3);
-  OfRun<double> raw{};
-  for (double& n : raw) n = 3 * random.Uniform();
-  raw[3] = std::nan("");
-  raw[12] = -HUGE_VAL;
-  OfRun<double> four = raw, eight = raw;
+  std::vector<RawSample> raw(kRun);
+  for (RawSample& sample : raw) {
+    sample.temperature_raw[2] = static_cast<float>(3 * random.Uniform());
+  }
+  raw[3].temperature_raw[2] = std::nanf("");
+  raw[12].temperature_raw[2] = -HUGE_VALF;
+  OfRun<double> four{}, eight{};
   OfRun<std::int64_t> in_four, in_eight;
   in_four.fill(-1);
   in_eight.fill(-1);
-  TakeTemperatures(Lanes::kFour, thermometer, {0, kRun}, four, in_four);
-  TakeTemperatures(MostLanes(), thermometer, {0, kRun}, eight, in_eight);
+  for (std::size_t k = 0; k < kRun; k += kPiece) {
+    const Apart readings{reinterpret_cast<const std::byte*>(&raw[k].temperature_raw[2]),
+                         sizeof(RawSample)};
+    TakeTemperatures(Lanes::kFour, thermometer, readings, k, four, in_four);
+    TakeTemperatures(MostLanes(), thermometer, readings, k, eight, in_eight);
+  }
   for (std::size_t k = 0; k < kRun; ++k) {
-    const Temperature expected = TrueTemperature(thermometer, raw[k]);
+    const Temperature expected =
+        TrueTemperature(thermometer, static_cast<double>(raw[k].temperature_raw[2]));
     EXPECT_EQ(four[k], expected.value);
     EXPECT_EQ(eight[k], expected.value);
     EXPECT_EQ(in_four[k], expected.inside ? -1 : 0);
@@ -117,7 +125,14 @@ TEST(LanesOfSamples, HaveEachNumberInItsPlace) {
   constexpr std::size_t kSamples = 13;
   std::vector<RawSample> raw(kSamples);
   Vectors w{}, f{}, b{};
+  std::array<double, kSamples> temperature{};
   for (std::size_t k = 0; k < kSamples; ++k) {
+    temperature[k] = 0.1 + static_cast<double>(k);
+    raw[k].stamp = {.tool_time = {static_cast<std::int64_t>(k)},
+                    .seq = static_cast<std::int64_t>(10 + k),
+                    .period_ns = static_cast<std::int32_t>(20 + k),
+                    .gyro_saturated = k % 2 != 0,
+                    .simulated = k % 3 != 0};
     for (std::size_t c = 0; c < 10; ++c) raw[k].counts[c] = static_cast<std::int32_t>(100 * k + c);
     for (std::size_t i = 0; i < 3; ++i) {
       w[i][k] = static_cast<double>(100 * k + i);
@@ -137,6 +152,19 @@ TEST(LanesOfSamples, HaveEachNumberInItsPlace) {
       EXPECT_EQ(out[k].f_T, Eigen::Vector3d(n + 10, n + 11, n + 12));
       EXPECT_EQ(out[k].b_T, Eigen::Vector3d(n + 20, n + 21, n + 22));
       EXPECT_FALSE(out[k].has_gz || out[k].has_mag);
+    }
+    Stamp(lanes, raw, temperature.data(), true, false, out.data());
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      EXPECT_EQ(out[k].stamp.tool_time.ns, raw[k].stamp.tool_time.ns);
+      EXPECT_EQ(out[k].stamp.seq, raw[k].stamp.seq);
+      EXPECT_EQ(out[k].stamp.period_ns, raw[k].stamp.period_ns);
+      EXPECT_EQ(out[k].stamp.gyro_saturated, raw[k].stamp.gyro_saturated);
+      EXPECT_EQ(out[k].stamp.simulated, raw[k].stamp.simulated);
+      EXPECT_FALSE(out[k].stamp.temperature_outside);
+      EXPECT_EQ(out[k].stamp.temperature, static_cast<float>(temperature[k]));
+      EXPECT_EQ(out[k].w_IT_T[0], static_cast<double>(100 * k));
+      EXPECT_TRUE(out[k].has_gz);
+      EXPECT_FALSE(out[k].has_mag);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -33,13 +34,48 @@ struct Run {
   std::array<OfRun<double>, kPlaces> temperature{};  ///< true, of each thermometer in use [degC]
   OfRun<std::int64_t> inside{};                      ///< all bits where within what was calibrated
   OfRun<std::int64_t> inside_shown{};                ///< likewise, of a thermometer only shown
-  OfRun<std::int64_t> since{};                       ///< the sample before [ns]
   OfRun<double> per_second{};                        ///< one over the period [1/s]
   std::array<Group, kGroups> groups{};
 };
 
+/// Brings the next piece into the nearest memory while this one is taken.
+void FetchNext(std::span<const RawSample> raw) {
+  constexpr std::size_t kLine = 64;  // bytes
+  if (raw.size() < 2 * kPiece) return;
+  const auto* begin = reinterpret_cast<const std::byte*>(&raw[kPiece]);
+#pragma GCC unroll 64
+  for (std::size_t at = 0; at < kPiece * sizeof(RawSample); at += kLine) {
+    __builtin_prefetch(begin + at);
+  }
+}
+
+constexpr std::size_t kSession = offsetof(RawSample, stamp) + offsetof(SampleStamp, session);
+static_assert(offsetof(RawSample, n_temperatures) ==
+              offsetof(RawSample, n_channels) + sizeof(std::int32_t));
+
+/// Two numbers that stand beside each other: channels and thermometers, or session and run.
+template <std::size_t kAt>
+std::uint64_t PairAt(const RawSample& raw) {
+  std::uint64_t pair;
+  std::memcpy(&pair, reinterpret_cast<const std::byte*>(&raw) + kAt, sizeof pair);
+  return pair;
+}
+
+/// Of less than a whole piece: the last reading stands in for what lacks.
+[[gnu::noinline]] Apart Pad(std::span<const RawSample> piece, std::size_t channel,
+                            std::array<float, kPiece>& readings) {
+  for (std::size_t k = 0; k < kPiece; ++k) {
+    readings[k] = piece[std::min(k, piece.size() - 1)].temperature_raw[channel];
+  }
+  return {reinterpret_cast<const std::byte*>(readings.data()), sizeof(float)};
+}
+
 double PerSecond(const RawSample& raw) {
   return 1 / (static_cast<double>(std::max(raw.stamp.period_ns, 1)) * 1e-9);
+}
+
+[[gnu::noinline]] void ReadPeriods(std::span<const RawSample> piece, double* per_second) {
+  for (const RawSample& raw : piece) *per_second++ = PerSecond(raw);
 }
 
 }  // namespace
@@ -53,8 +89,11 @@ struct SampleCalibrator::State {
   std::size_t PlaceOf(int thermometer);
   void ShareCells();
   std::size_t Take(std::span<const RawSample> raw, ImuSample* out);
-  void Read(std::span<const RawSample> raw);
-  void Heat(Part part);
+  void Begin(const RawSample& raw);
+  bool FollowsEvenly(std::span<const RawSample> piece, HeatSteps& steps);
+  std::size_t Follow(std::span<const RawSample> piece, HeatSteps& steps);
+  std::size_t TakePiece(std::span<const RawSample> piece, std::size_t at, ImuSample* out);
+  void Read(std::span<const RawSample> piece, std::size_t at);
   std::size_t EndOfCells(Part part);
   void Calibrate(Part part, Run& to) const;
   void Write(std::span<ImuSample> out) const;
@@ -126,71 +165,118 @@ std::size_t SampleCalibrator::State::PlaceOf(int thermometer) {
 // Gives how many samples, kRun at most, are of one session; none that does not fit.
 std::size_t SampleCalibrator::State::Take(std::span<const RawSample> raw, ImuSample* out) {
   const std::size_t most = std::min(kRun, raw.size());
-  const std::int32_t of_session = most > 0 ? raw[0].stamp.session : 0;
-  const bool anew = most > 0 && (!prepared || of_session != session);
-  std::int64_t last_ns = anew ? raw[0].stamp.tool_time.ns : heated_to.ns;
+  if (most == 0 || !Fits(raw[0])) return 0;
+  if (!prepared || raw[0].stamp.session != session) Begin(raw[0]);
   std::size_t n = 0;
-  for (; n < most && Fits(raw[n]) && raw[n].stamp.session == of_session; ++n) {
-    // The time for which the last sample's temperature held, until this one.
-    const std::int64_t ns = std::max(raw[n].stamp.tool_time.ns, last_ns);
-    run.since[n] = ns - last_ns;
-    last_ns = ns;
+  while (n < most) {
+    FetchNext(raw.subspan(n));
+    const std::span<const RawSample> piece = raw.subspan(n, std::min(kPiece, most - n));
+    const std::size_t taken = TakePiece(piece, n, out + n);
+    n += taken;
+    if (taken < piece.size()) break;
   }
-  if (n == 0) return 0;
-  heated_to.ns = last_ns;
-  prepared = true;
-  session = of_session;
   last = n - 1;
-  Read(raw.first(n));
-  for (std::size_t i = 0; anew && i < kGroups; ++i) groups[i].Settle(run.temperature[place[i]][0]);
-  // What each sample's heating leaves to the next is a chain, beside which there is time for more.
-  constexpr std::size_t kPiece = 8;
-  for (std::size_t k = 0; k < n; k += kPiece) {
-    const std::span<const RawSample> piece = raw.subspan(k, std::min(kPiece, n - k));
-    if (heats) Heat({k, k + piece.size()});
-    Transpose(lanes, piece, static_cast<std::size_t>(channels_needed), k, run.counts);
-    Stamp(piece, &run.temperature[shown][k], tool.gyro.n_channels > 2, tool.mag.n_channels > 0,
-          out + k);
+  // The last stands beside it where lanes go on.
+  for (std::size_t t = 0; t < in_use.size(); ++t) {
+    std::fill_n(&run.temperature[t][n], kBeyond, run.temperature[t][last]);
   }
   return n;
 }
 
-// Thermometers and periods.
-void SampleCalibrator::State::Read(std::span<const RawSample> raw) {
-  run.inside.fill(-1);
+// A session.
+void SampleCalibrator::State::Begin(const RawSample& raw) {
+  session = raw.stamp.session;
+  heated_to = raw.stamp.tool_time;
+  prepared = true;
+  Read({&raw, 1}, 0);
+  for (std::size_t i = 0; i < kGroups; ++i) groups[i].Settle(run.temperature[place[i]][0]);
+}
+
+// Gives how many samples of a piece belong to the session, until one that does not fit. What each
+// sample's heating leaves to the next is a chain, beside which there is time for more.
+std::size_t SampleCalibrator::State::TakePiece(std::span<const RawSample> piece, std::size_t at,
+                                               ImuSample* out) {
+  HeatSteps steps;
+  const std::size_t n = FollowsEvenly(piece, steps) ? piece.size() : Follow(piece, steps);
+  if (n == 0) return 0;
+  piece = piece.first(n);
+  Read(piece, at);
+  for (std::size_t i = 0; heats && i < kGroups; ++i) {
+    if (!groups[i].heats()) continue;
+    groups[i].Heat(steps, n, &run.temperature[place[i]][at], &run.groups[i].heating_rate[at]);
+  }
+  Transpose(lanes, piece, static_cast<std::size_t>(channels_needed), at, run.counts);
+  Stamp(lanes, piece, &run.temperature[shown][at], tool.gyro.n_channels > 2,
+        tool.mag.n_channels > 0, out);
+  return n;
+}
+
+// Whether a whole piece belongs to the session and its samples are alike and follow each other
+// evenly, which is found without a branch for each.
+bool SampleCalibrator::State::FollowsEvenly(std::span<const RawSample> piece, HeatSteps& steps) {
+  const RawSample& first = piece[0];
+  if (piece.size() != kPiece || !Fits(first) || first.stamp.session != session) return false;
+  auto before = static_cast<std::uint64_t>(heated_to.ns);
+  const std::uint64_t step = static_cast<std::uint64_t>(first.stamp.tool_time.ns) - before;
+  const std::uint64_t channels = PairAt<offsetof(RawSample, n_channels)>(first);
+  const std::uint64_t session_and_run = PairAt<kSession>(first);
+  std::uint64_t odd = step >> 63;
+#pragma GCC unroll 16
+  for (const RawSample& raw : piece.first<kPiece>()) {
+    const auto now = static_cast<std::uint64_t>(raw.stamp.tool_time.ns);
+    odd |= (now - before) ^ step;
+    odd |= PairAt<offsetof(RawSample, n_channels)>(raw) ^ channels;
+    odd |= PairAt<kSession>(raw) ^ session_and_run;
+    before = now;
+  }
+  if (odd != 0) return false;
+  heated_to = piece[kPiece - 1].stamp.tool_time;
+  steps.even = true;
+  steps.since[0] = static_cast<std::int64_t>(step);
+  return true;
+}
+
+std::size_t SampleCalibrator::State::Follow(std::span<const RawSample> piece, HeatSteps& steps) {
+  std::size_t n = 0;
+  for (; n < piece.size() && Fits(piece[n]) && piece[n].stamp.session == session; ++n) {
+    const std::int64_t ns = std::max(piece[n].stamp.tool_time.ns, heated_to.ns);
+    steps.since[n] = ns - heated_to.ns;
+    heated_to.ns = ns;
+  }
+  return n;
+}
+
+// Thermometers and periods of a piece.
+void SampleCalibrator::State::Read(std::span<const RawSample> piece, std::size_t at) {
+  std::fill_n(&run.inside[at], kPiece, -1);
   for (std::size_t t = 0; t < in_use.size(); ++t) {
     const ThermometerCalibration& thermometer =
         tool.thermometers[static_cast<std::size_t>(in_use[t])];
     const auto channel = static_cast<std::size_t>(thermometer.channel);
-    OfRun<double>& temperature = run.temperature[t];
-    for (std::size_t k = 0; k < raw.size(); ++k) {
-      temperature[k] = static_cast<double>(raw[k].temperature_raw[channel]);
-    }
-    // The last stands beside it where lanes go on.
-    std::fill_n(temperature.begin() + static_cast<std::ptrdiff_t>(raw.size()), 8,
-                static_cast<double>(raw.back().temperature_raw[channel]));
-    TakeTemperatures(lanes, thermometer, {0, raw.size() + 7}, temperature,
+    std::array<float, kPiece> padded;
+    const Apart readings =
+        piece.size() == kPiece
+            ? Apart{reinterpret_cast<const std::byte*>(&piece[0].temperature_raw[channel]),
+                    sizeof(RawSample)}
+            : Pad(piece, channel, padded);
+    TakeTemperatures(lanes, thermometer, readings, at, run.temperature[t],
                      t < of_groups ? run.inside : run.inside_shown);
   }
-  if (!pulses) return;
-  for (std::size_t k = 0; k < raw.size(); ++k) run.per_second[k] = PerSecond(raw[k]);
-}
-
-void SampleCalibrator::State::Heat(Part part) {
-  for (std::size_t i = 0; i < kGroups; ++i) {
-    if (!groups[i].heats()) continue;
-    groups[i].Heat(std::span(run.since).subspan(part.begin, part.end - part.begin),
-                   &run.temperature[place[i]][part.begin], &run.groups[i].heating_rate[part.begin]);
-  }
+  if (pulses) ReadPeriods(piece, &run.per_second[at]);
 }
 
 // Enters the cells of a part's first sample. Gives where the samples end that lie in the same.
 std::size_t SampleCalibrator::State::EndOfCells(Part part) {
+  std::array<bool, kGroups> entered{};
   for (std::size_t i = 0; i < kGroups; ++i) {
     if (place[i] == kNoThermometer) continue;
     const OfRun<double>& temperature = run.temperature[place[i]];
-    groups[i].Enter(temperature[part.begin]);
-    if (like[i] != i) continue;
+    // Groups of the same cells go through them together.
+    if (like[i] != i) {
+      if (entered[like[i]]) groups[i].Enter(temperature[part.begin]);
+      continue;
+    }
+    entered[i] = groups[i].Enter(temperature[part.begin]);
     if (Place(lanes, groups[i].place(), temperature, part, run.groups[i].x, run.inside)) continue;
     std::size_t end = part.begin + 1;
     while (end < part.end && groups[i].Holds(temperature[end])) ++end;
@@ -216,7 +302,8 @@ void SampleCalibrator::State::Calibrate(Part part, Run& to) const {
 void SampleCalibrator::State::Write(std::span<ImuSample> out) const {
   Put(lanes, run.groups[kGyro].u, run.groups[kAccel].u, run.groups[kMag].u, out);
   std::int64_t all_inside = -1;
-  for (std::size_t k = 0; k < out.size(); ++k) all_inside &= run.inside[k];
+#pragma GCC unroll 8
+  for (std::size_t k = 0; k < kRun; ++k) all_inside &= run.inside[k];
   for (std::size_t k = 0; all_inside == 0 && k < out.size(); ++k) {
     if (run.inside[k] == 0) out[k].stamp.temperature_outside = true;
   }

@@ -10,6 +10,21 @@
 namespace wellgyro {
 namespace {
 
+/// Where a group's readings stand. A copy at hand: as far as the compiler can tell, what is written
+/// may change what stands elsewhere.
+struct Sources {
+  Sources(const GroupKernel& g, const Readings& readings)
+      : x(readings.x.data()),
+        heating_rate(readings.heating_rate.data()),
+        per_second(readings.per_second.data()),
+        f{readings.f[0].data(), readings.f[1].data(), readings.f[2].data()} {
+    for (std::size_t c = 0; c < 4; ++c) counts[c] = readings.counts[g.channel[c]].data();
+  }
+  const std::int32_t* counts[4];
+  const float *x, *heating_rate;
+  const double *per_second, *f[3];
+};
+
 /// Samples side by side, from `at` on.
 template <class L>
 struct Side {
@@ -17,7 +32,7 @@ struct Side {
   using Double = typename L::Double;
 
   const GroupKernel& g;
-  const Readings& readings;
+  const Sources& sources;
   std::size_t at;
   Single x;
   Double u[3];
@@ -25,55 +40,57 @@ struct Side {
   Single low[3];    ///< taken off u
 };
 
-template <class L>
-[[gnu::always_inline]] inline void AddChannel(Side<L>& s, std::size_t c, bool varies) {
+/// How much A counts + b change over the cell.
+template <class L, std::size_t kChannels>
+[[gnu::always_inline]] inline void Slope(Side<L>& s) {
+  typename L::Single n;
+#pragma GCC unroll 4
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    L::ToSingle(s.sources.counts[c] + s.at, n);
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto moved = (L::Of(s.g.A1[i][c]) + s.x * L::Of(s.g.A2[i][c])) * n;
+      s.slope[i] = c == 0 ? moved : s.slope[i] + moved;
+    }
+  }
+  if (s.g.pulses) {
+    typename L::Double rate;
+    L::Load(s.sources.per_second + s.at, rate);
+    L::ToSingle(rate, n);
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 3; ++i) s.slope[i] *= n;
+  }
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i < 3; ++i) {
+    s.slope[i] += L::Of(s.g.b1[i]) + s.x * L::Of(s.g.b2[i]);
+  }
+}
+
+/// A counts + b where the cell begins.
+template <class L, std::size_t kChannels>
+[[gnu::always_inline]] inline void Linear(Side<L>& s) {
   typename L::Double n;
-  const std::int32_t* counts = s.readings.counts[s.g.channel[c]].data() + s.at;
-  L::ToDouble(counts, n);
+#pragma GCC unroll 4
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    L::ToDouble(s.sources.counts[c] + s.at, n);
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 3; ++i) {
+#pragma GCC unroll 2
+      for (std::size_t h = 0; h < 2; ++h) {
+        const auto moved = L::Of(s.g.A[i][c]) * n[h];
+        s.u[i][h] = c == 0 ? moved : s.u[i][h] + moved;
+      }
+    }
+  }
+  // Counts of pulses are to be per second.
+  if (s.g.pulses) L::Load(s.sources.per_second + s.at, n);
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < 3; ++i) {
 #pragma GCC unroll 2
     for (std::size_t h = 0; h < 2; ++h) {
-      const auto moved = L::Of(s.g.A[i][c]) * n[h];
-      s.u[i][h] = c == 0 ? moved : s.u[i][h] + moved;
+      if (s.g.pulses) s.u[i][h] *= n[h];
+      s.u[i][h] += L::Of(s.g.b[i]);
     }
-  }
-  if (!varies) return;
-  typename L::Single single;
-  L::ToSingle(counts, single);
-#pragma GCC unroll 4
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto moved = (L::Of(s.g.A1[i][c]) + s.x * L::Of(s.g.A2[i][c])) * single;
-    s.slope[i] = c == 0 ? moved : s.slope[i] + moved;
-  }
-}
-
-/// Counts of pulses are to be per second.
-template <class L>
-[[gnu::always_inline]] inline void PerSecond(Side<L>& s, bool varies) {
-  typename L::Double rate;
-  L::Load(s.readings.per_second.data() + s.at, rate);
-  typename L::Single single;
-  L::ToSingle(rate, single);
-#pragma GCC unroll 4
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t h = 0; h < 2; ++h) s.u[i][h] *= rate[h];
-    if (varies) s.slope[i] *= single;
-  }
-}
-
-/// A counts + b, and how much they change over the cell.
-template <class L>
-[[gnu::always_inline]] inline void Linear(Side<L>& s, bool four, bool varies) {
-#pragma GCC unroll 4
-  for (std::size_t c = 0; c < 3; ++c) AddChannel(s, c, varies);
-  if (four) AddChannel(s, 3, varies);
-  if (s.g.pulses) PerSecond(s, varies);
-#pragma GCC unroll 4
-  for (std::size_t i = 0; i < 3; ++i) {
-#pragma GCC unroll 2
-    for (std::size_t h = 0; h < 2; ++h) s.u[i][h] += L::Of(s.g.b[i]);
-    if (varies) s.slope[i] += L::Of(s.g.b1[i]) + s.x * L::Of(s.g.b2[i]);
   }
 }
 
@@ -119,7 +136,7 @@ template <class L>
 #pragma GCC unroll 4
     for (std::size_t j = 0; j < 3; ++j) {
       typename L::Double f_j;
-      L::Load(s.readings.f[j].data() + s.at, f_j);
+      L::Load(s.sources.f[j] + s.at, f_j);
       L::ToSingle(f_j, f[j]);
       TakeOff<L>(s, s.g.force[j], s.g.force1[j], f[j], varies);
     }
@@ -127,52 +144,70 @@ template <class L>
   }
   if (s.g.heats) {
     typename L::Single rate;
-    L::Load(s.readings.heating_rate.data() + s.at, rate);
+    L::Load(s.sources.heating_rate + s.at, rate);
     TakeOff<L>(s, s.g.heat, s.g.heat1, rate, varies);
   }
 }
 
-/// u, without its products.
+/// What is small beside u.
 template <class L>
-[[gnu::always_inline]] inline void Sum(Side<L>& s, bool varies, bool moved) {
+[[gnu::always_inline]] inline void SumSmall(Side<L>& s, bool varies, bool moved) {
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < 3; ++i) {
-    typename L::Single small;
-    if (varies) small = s.x * s.slope[i];
-    if (moved) small = varies ? small - s.low[i] : -s.low[i];
+    if (!varies) {
+      s.low[i] = -s.low[i];
+    } else {
+      s.low[i] = moved ? s.x * s.slope[i] - s.low[i] : s.x * s.slope[i];
+    }
+  }
+}
+
+template <class L>
+[[gnu::always_inline]] inline void AddSmall(Side<L>& s) {
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i < 3; ++i) {
     typename L::Double more;
-    L::ToDouble(small, more);
+    L::ToDouble(s.low[i], more);
 #pragma GCC unroll 2
     for (std::size_t h = 0; h < 2; ++h) s.u[i][h] += more[h];
   }
 }
 
+/// Small terms first: they and u need as many registers as there are.
 template <class L, unsigned kWhat>
 [[gnu::always_inline]] inline void SolveSides(const GroupKernel& group, const Readings& readings,
                                               const Part& part, Vectors& u) {
-  constexpr bool kFour = (kWhat & 1) != 0, kVaries = (kWhat & 2) != 0, kMoved = (kWhat & 4) != 0;
+  constexpr std::size_t kChannels = (kWhat & 1) != 0 ? 4 : 3;
+  constexpr bool kVaries = (kWhat & 2) != 0, kMoved = (kWhat & 4) != 0;
+  const Sources sources(group, readings);
   for (std::size_t at = part.begin; at < part.end; at += L::kCount) {
-    Side<L> s{group, readings, at};
-    if (kVaries) L::Load(readings.x.data() + at, s.x);
-    Linear<L>(s, kFour, kVaries);
+    Side<L> s{group, sources, at};
+    if (kVaries) {
+      L::Load(sources.x + at, s.x);
+      Slope<L, kChannels>(s);
+    }
     if (kMoved) TakeForce<L>(s, kVaries);
-    if (kVaries || kMoved) Sum<L>(s, kVaries, kMoved);
+    if (kVaries || kMoved) SumSmall<L>(s, kVaries, kMoved);
+    Linear<L, kChannels>(s);
+    if (kVaries || kMoved) AddSmall<L>(s);
 #pragma GCC unroll 4
     for (std::size_t i = 0; i < 3; ++i) L::Store(s.u[i], u[i].data() + at);
   }
 }
 
 /// What products of u do to it where that is too much for single precision, of samples side by side
-/// from `at` on.
+/// from `at` on; what of u was found so far is in `refined`.
 template <std::size_t kCount>
 [[gnu::noinline]] void RefineLarge(const GroupKernel& g, const OfRun<float>& x,
-                                   const double (&linear)[3][kCount], std::size_t at, Vectors& u) {
-  for (std::size_t k = 0; k < kCount; ++k) {
-    const Eigen::Vector3d whole(linear[0][k], linear[1][k], linear[2][k]);
-    const Eigen::Vector3f of = whole.cast<float>();
-    if (!(of[0] * of[0] + of[1] * of[1] + of[2] * of[2] > g.reach_square)) continue;
-    const Eigen::Vector3d refined = RefineInDouble(g, static_cast<double>(x[at + k]), whole);
-    for (std::size_t i = 0; i < 3; ++i) u[i][at + k] = refined[static_cast<Eigen::Index>(i)];
+                                   const double (&refined)[3][kCount], std::size_t at, Vectors& u) {
+  for (std::size_t k = at; k < at + kCount; ++k) {
+    const Eigen::Vector3d linear(u[0][k], u[1][k], u[2][k]);
+    const Eigen::Vector3f of = linear.cast<float>();
+    Eigen::Vector3d right(refined[0][k - at], refined[1][k - at], refined[2][k - at]);
+    if (of[0] * of[0] + of[1] * of[1] + of[2] * of[2] > g.reach_square) {
+      right = RefineInDouble(g, static_cast<double>(x[k]), linear);
+    }
+    for (std::size_t i = 0; i < 3; ++i) u[i][k] = right[static_cast<Eigen::Index>(i)];
   }
 }
 
@@ -194,7 +229,8 @@ template <class L>
     s.low[i] = s.slope[i] = typename L::Single{};
   }
   TakeProducts<L>(s, s.g.products_single, of, varies);
-  Sum<L>(s, varies, true);
+  SumSmall<L>(s, varies, true);
+  AddSmall<L>(s);
   return large;
 }
 
@@ -202,44 +238,50 @@ template <class L>
 template <class L, bool kVaries>
 [[gnu::always_inline]] inline void RefineSides(const GroupKernel& group, const Readings& readings,
                                                const Part& part, Vectors& u) {
+  const Sources sources(group, readings);
   for (std::size_t at = part.begin; at < part.end; at += L::kCount) {
-    Side<L> s{group, readings, at};
-    if (kVaries) L::Load(readings.x.data() + at, s.x);
-    double linear[3][L::kCount];
+    Side<L> s{group, sources, at};
+    if (kVaries) L::Load(sources.x + at, s.x);
 #pragma GCC unroll 4
-    for (std::size_t i = 0; i < 3; ++i) {
-      L::Load(u[i].data() + at, s.u[i]);
-      L::Store(s.u[i], linear[i]);
+    for (std::size_t i = 0; i < 3; ++i) L::Load(u[i].data() + at, s.u[i]);
+    if (Refine<L>(s, kVaries)) {
+      double refined[3][L::kCount];
+      for (std::size_t i = 0; i < 3; ++i) L::Store(s.u[i], refined[i]);
+      RefineLarge(group, readings.x, refined, at, u);
+      continue;
     }
-    const bool large = Refine<L>(s, kVaries);
 #pragma GCC unroll 4
     for (std::size_t i = 0; i < 3; ++i) L::Store(s.u[i], u[i].data() + at);
-    if (large) RefineLarge(group, readings.x, linear, at, u);
   }
 }
 
 template <class L>
 [[gnu::always_inline]] inline void TakeEach(const ThermometerCalibration& thermometer,
-                                            const Part& part, OfRun<double>& temperature,
+                                            const Apart& readings, std::size_t at,
+                                            OfRun<double>& temperature,
                                             OfRun<std::int64_t>& inside) {
-  for (std::size_t at = part.begin; at < part.end; at += L::kCount) {
+  const ThermometerCalibration model = thermometer;  // stays in registers
+  for (std::size_t k = 0; k < kPiece; k += L::kCount) {
+    typename L::Single read;
+    L::Gather(readings.first + k * readings.step, readings.step, read);
     typename L::Double value;
-    L::Load(temperature.data() + at, value);
+    L::ToDouble(read, value);
 #pragma GCC unroll 2
     for (std::size_t h = 0; h < 2; ++h) {
       const typename L::Half raw = value[h];
       typename L::Mask within;
-      FindTrueTemperature(thermometer, raw, value[h], within);
-      L::And(within, inside.data() + at + h * L::kCount / 2);
+      FindTrueTemperature(model, raw, value[h], within);
+      L::And(within, inside.data() + at + k + h * L::kCount / 2);
     }
-    L::Store(value, temperature.data() + at);
+    L::Store(value, temperature.data() + at + k);
   }
 }
 
 template <class L>
-[[gnu::always_inline]] inline bool PlaceEach(const CellPlace& cell,
+[[gnu::always_inline]] inline bool PlaceEach(const CellPlace& at_hand,
                                              const OfRun<double>& temperature, const Part& part,
                                              OfRun<float>& x, OfRun<std::int64_t>& inside) {
+  const CellPlace cell = at_hand;  // stays in registers
   typename L::Mask all = typename L::Half{} == typename L::Half{};
   for (std::size_t at = part.begin; at < part.end; at += L::kCount) {
     typename L::Double value, place;
@@ -284,9 +326,9 @@ template <bool kVaries>
 }
 
 [[gnu::target("avx2")]] void TakeByEight(const ThermometerCalibration& thermometer,
-                                         const Part& part, OfRun<double>& temperature,
-                                         OfRun<std::int64_t>& inside) {
-  TakeEach<Lanes8>(thermometer, part, temperature, inside);
+                                         const Apart& readings, std::size_t at,
+                                         OfRun<double>& temperature, OfRun<std::int64_t>& inside) {
+  TakeEach<Lanes8>(thermometer, readings, at, temperature, inside);
 }
 
 [[gnu::target("avx2")]] bool PlaceByEight(const CellPlace& cell, const OfRun<double>& temperature,
@@ -331,13 +373,13 @@ void Solve(Lanes lanes, const GroupKernel& g, const Readings& readings, Part par
   if (g.second_order) RefinerOf(lanes, g.varies)(g, readings, part, u);
 }
 
-void TakeTemperatures(Lanes lanes, const ThermometerCalibration& thermometer, Part part,
-                      OfRun<double>& temperature, OfRun<std::int64_t>& inside) {
+void TakeTemperatures(Lanes lanes, const ThermometerCalibration& thermometer, const Apart& readings,
+                      std::size_t at, OfRun<double>& temperature, OfRun<std::int64_t>& inside) {
 #if defined(__x86_64__)
-  if (lanes == Lanes::kEight) return TakeByEight(thermometer, part, temperature, inside);
+  if (lanes == Lanes::kEight) return TakeByEight(thermometer, readings, at, temperature, inside);
 #endif
   static_cast<void>(lanes);
-  TakeEach<Lanes4>(thermometer, part, temperature, inside);
+  TakeEach<Lanes4>(thermometer, readings, at, temperature, inside);
 }
 
 bool Place(Lanes lanes, const CellPlace& cell, const OfRun<double>& temperature, Part part,

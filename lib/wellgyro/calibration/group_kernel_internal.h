@@ -13,9 +13,12 @@ namespace wellgyro {
 
 /// Samples that are looked at together, and numbers beside each other of so many: room for eight
 /// lanes from each of them on.
-inline constexpr std::size_t kRun = 64;
+inline constexpr std::size_t kRun = 64, kBeyond = 8;
+/// Those of them that are taken together; a run is whole ones.
+inline constexpr std::size_t kPiece = 16;
+static_assert(kRun % kPiece == 0);
 template <class Number>
-using OfRun = std::array<Number, kRun + 8>;
+using OfRun = std::array<Number, kRun + kBeyond>;
 using Vectors = std::array<OfRun<double>, 3>;
 
 /// SensorGroup's formula solved for u in T within a cell of temperatures, as plain numbers, with x
@@ -79,10 +82,16 @@ struct Readings {
 /// u of a part of a run. What lies within eight samples beyond its end is read and written too.
 void Solve(Lanes lanes, const GroupKernel& kernel, const Readings& readings, Part part, Vectors& u);
 
-/// temperature: what the thermometer's channel gives, then what is true; see TrueTemperature. Where
-/// the reading lies beyond the calibrated range, `inside` loses its bits.
-void TakeTemperatures(Lanes lanes, const ThermometerCalibration& thermometer, Part part,
-                      OfRun<double>& temperature, OfRun<std::int64_t>& inside);
+/// Numbers in single precision that stand apart: where the first is, and bytes to the next.
+struct Apart {
+  const std::byte* first = nullptr;
+  std::size_t step = 0;
+};
+
+/// True temperatures of a piece from `at` on of what the thermometer's channel gives; see
+/// TrueTemperature. Where the reading lies beyond the calibrated range, `inside` loses its bits.
+void TakeTemperatures(Lanes lanes, const ThermometerCalibration& thermometer, const Apart& readings,
+                      std::size_t at, OfRun<double>& temperature, OfRun<std::int64_t>& inside);
 
 /// A cell of temperatures [degC] within a group's calibrated range.
 struct CellPlace {

@@ -155,44 +155,60 @@ GroupSolution::GroupSolution(const SensorGroup& group, double unit)
   first_.per_width = std::ceil(range / WidthOf(BendsOf(*model_, group, unit), range)) / range;
 }
 
-void GroupSolution::Enter(double temperature) {
-  if (Holds(temperature)) return;
+bool GroupSolution::Enter(double temperature) {
+  if (Holds(temperature)) return false;
   at_ = 1 - at_;
-  if (Holds(temperature)) return;
+  if (Holds(temperature)) return true;
   Cell& cell = cells_[at_];
   double place = 0;
   first_.Find(temperature, place);
   cell.place = first_;
   cell.place.index = std::floor(place);
-  if (model_) Solve(cell);
+  if (model_) Solve(cell, cells_[1 - at_]);
   cell.solved = true;
+  return true;
 }
 
-void GroupSolution::Heat(std::span<const std::int64_t> since, const double* temperature,
+// What is kept of `ahead_` over this time. Samples follow each other evenly.
+void GroupSolution::Step(std::int64_t since) {
+  if (since == step_ns_) return;
+  step_ns_ = since;
+  kept_ = std::exp(-1e-9 * static_cast<double>(since) * per_lag_);
+}
+
+void GroupSolution::Heat(const HeatSteps& steps, std::size_t n, const double* temperature,
                          float* rate) {
-  // What one sample leaves to the next stays in registers.
-  double ahead = ahead_, last = temperature_, kept = kept_;
-  for (std::size_t k = 0; k < since.size(); ++k) {
-    // Samples follow each other evenly.
-    if (since[k] != step_ns_) {
-      step_ns_ = since[k];
-      kept = std::exp(-1e-9 * static_cast<double>(step_ns_) * per_lag_);
+  std::array<double, kPiece> ahead;
+  if (steps.even) {
+    Step(steps.since[0]);
+    const double kept = kept_;
+    ahead[0] = ahead_ * kept + (temperature[0] - temperature_);
+    for (std::size_t k = 1; k < kPiece; ++k) {
+      ahead[k] = ahead[k - 1] * kept + (temperature[k] - temperature[k - 1]);
     }
-    ahead = ahead * kept + (temperature[k] - last);
-    last = temperature[k];
-    rate[k] = static_cast<float>(ahead * per_lag_);
+  } else {
+    for (std::size_t k = 0; k < n; ++k) {
+      Step(steps.since[k]);
+      ahead_ = ahead[k] = ahead_ * kept_ + (temperature[k] - temperature_);
+      temperature_ = temperature[k];
+    }
+    std::fill(ahead.begin() + static_cast<std::ptrdiff_t>(n), ahead.end(), 0.0);
   }
-  ahead_ = ahead;
-  temperature_ = last;
-  kept_ = kept;
+  ahead_ = ahead[n - 1];
+  temperature_ = temperature[n - 1];
+  for (std::size_t k = 0; k < kPiece; ++k) rate[k] = static_cast<float>(ahead[k] * per_lag_);
 }
 
-void GroupSolution::Solve(Cell& cell) const {
+// A neighbour has one of its ends.
+void GroupSolution::Solve(Cell& cell, const Cell& other) const {
   GroupKernel& kernel = cell.kernel;
-  const double width = 1 / first_.per_width, begin = first_.min + cell.place.index * width;
-  const GroupNode low = At(begin);
-  const GroupNode middle = kernel.varies ? At(begin + width / 2) : low;
-  const GroupNode high = kernel.varies ? At(begin + width) : low;
+  const double index = cell.place.index, width = 1 / first_.per_width;
+  const auto end = [&](double n) { return At(first_.min + n * width); };
+  const bool above = other.solved && other.place.index + 1 == index;
+  const bool below = other.solved && other.place.index == index + 1;
+  const GroupNode& low = cell.low = above ? other.high : end(index);
+  const GroupNode middle = kernel.varies ? end(index + 0.5) : low;
+  const GroupNode& high = cell.high = !kernel.varies ? low : below ? other.low : end(index + 1);
   Put(low.A, kernel.A);
   Put(low.b, kernel.b);
   const Eigen::Matrix<double, 3, 4> bend_A = 2 * (high.A - 2 * middle.A + low.A);

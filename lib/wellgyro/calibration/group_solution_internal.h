@@ -15,6 +15,13 @@
 
 namespace wellgyro {
 
+/// Times [ns] for which temperatures of a piece hold: each stands at the next, the last before the
+/// piece at its first. Even: a whole piece, all as the first.
+struct HeatSteps {
+  std::array<std::int64_t, kPiece> since;
+  bool even = false;
+};
+
 /// SensorGroup's formula solved for u in T, at every temperature: solved in full at the ends and in
 /// the middle of cells of temperature, between which A and b go by a parabola, and what else is
 /// small beside u by a straight line. Cells are so narrow that u is right to 1e-9 of the larger of
@@ -43,8 +50,8 @@ class GroupSolution {
     cells_[at_].place.Find(temperature, x);
     return x >= 0 && x < 1 && cells_[at_].solved;
   }
-  /// Makes its cell the one at hand.
-  void Enter(double temperature);
+  /// Makes its cell the one at hand; gives whether it was another.
+  bool Enter(double temperature);
   const CellPlace& place() const { return cells_[at_].place; }      ///< of the cell at hand
   const GroupKernel& kernel() const { return cells_[at_].kernel; }  ///< of the cell at hand
 
@@ -53,9 +60,8 @@ class GroupSolution {
     temperature_ = temperature;
     ahead_ = 0;
   }
-  /// Heating rates [degC/s] at temperatures of which each holds for the time [ns] that stands at
-  /// the next, the last before these for the first of them; see SensorGroup::heating_lag.
-  void Heat(std::span<const std::int64_t> since, const double* temperature, float* rate);
+  /// Heating rates [degC/s] at temperatures of n samples; see SensorGroup::heating_lag.
+  void Heat(const HeatSteps& steps, std::size_t n, const double* temperature, float* rate);
   bool heats() const { return kernel().heats; }
 
   /// Component of the readings along what no u explains, for four channels, at a true temperature.
@@ -67,9 +73,11 @@ class GroupSolution {
     bool solved = false;
     CellPlace place;
     GroupKernel kernel;
+    GroupNode low, high;  ///< where the cell begins and ends
   };
 
-  void Solve(Cell& cell) const;
+  void Step(std::int64_t since);
+  void Solve(Cell& cell, const Cell& other) const;
   /// The solution itself at a true temperature, which the cells stand for.
   GroupNode At(double temperature) const { return model_->At(model_->Tau(temperature)); }
 

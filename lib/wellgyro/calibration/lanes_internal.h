@@ -37,6 +37,12 @@ union SameSingle {
   }
 };
 
+inline float SingleAt(const std::byte* from) {
+  float n;
+  std::memcpy(&n, from, sizeof n);
+  return n;
+}
+
 /// Four samples, by what every processor has.
 struct Lanes4 {
   static constexpr std::size_t kCount = 4;
@@ -53,6 +59,11 @@ struct Lanes4 {
   [[gnu::always_inline]] static void Load(const double* from, Double& to) {
     std::memcpy(&to[0], from, sizeof(Half));
     std::memcpy(&to[1], from + 2, sizeof(Half));
+  }
+  /// Of numbers that stand `step` bytes apart.
+  [[gnu::always_inline]] static void Gather(const std::byte* from, std::size_t step, Single& to) {
+    to = Single{SingleAt(from), SingleAt(from + step), SingleAt(from + 2 * step),
+                SingleAt(from + 3 * step)};
   }
   [[gnu::always_inline]] static void Store(const Single& from, float* to) {
     std::memcpy(to, &from, sizeof from);
@@ -126,6 +137,13 @@ struct Lanes8 {
   [[gnu::target("avx2")]] static inline void Load(const double* from, Double& to) {
     to[0] = _mm256_loadu_pd(from);
     to[1] = _mm256_loadu_pd(from + 4);
+  }
+  [[gnu::target("avx2")]] static inline void Gather(const std::byte* from, std::size_t step,
+                                                    Single& to) {
+    Singles4 low, high;
+    Lanes4::Gather(from, step, low);
+    Lanes4::Gather(from + 4 * step, step, high);
+    to = _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
   }
   [[gnu::target("avx2")]] static inline void Store(const Single& from, float* to) {
     _mm256_storeu_ps(to, from);

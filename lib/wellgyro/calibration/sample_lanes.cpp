@@ -1,4 +1,5 @@
 #include <cstring>
+#include <type_traits>
 
 #include <Eigen/Core>
 
@@ -23,6 +24,10 @@ void TransposeFour(const RawSample* raw, std::size_t c, std::size_t at, Counts& 
       __builtin_shufflevector(d, e, 0, 1, 4, 5), __builtin_shufflevector(d, e, 2, 3, 6, 7)};
   for (std::size_t k = 0; k < 4; ++k) std::memcpy(&counts[c + k][at], &columns[k], sizeof(Wholes4));
 }
+
+static_assert(std::is_trivially_copyable_v<SampleStamp> && sizeof(SampleStamp) >= 32 &&
+              sizeof(SampleStamp) <= 64 &&
+              offsetof(ImuSample, has_mag) == offsetof(ImuSample, has_gz) + 1);
 
 // A sample's three vectors are nine numbers in a row.
 constexpr std::size_t kRow = 9;
@@ -86,6 +91,23 @@ void PutTwo(const Rows& rows, std::size_t k, double* to, double* to_next) {
   return k;
 }
 
+// A stamp is two overlapping halves.
+[[gnu::target("avx2")]] void StampByHalves(std::span<const RawSample> raw,
+                                           const double* temperature,
+                                           const std::array<bool, 2>& has, ImuSample* out) {
+  constexpr std::size_t kHalf = sizeof(__m256i), kSecond = sizeof(SampleStamp) - kHalf;
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    const auto* from = reinterpret_cast<const std::byte*>(&raw[k].stamp);
+    auto* to = reinterpret_cast<std::byte*>(&out[k].stamp);
+    const __m256i first = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    const __m256i second = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + kSecond));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), first);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + kSecond), second);
+    out[k].stamp.temperature = static_cast<float>(temperature[k]);
+    std::memcpy(&out[k].has_gz, has.data(), sizeof has);
+  }
+}
+
 // Four numbers from i on of four samples from k on.
 [[gnu::target("avx2")]] inline void PutSquare(const Rows& rows, std::size_t i, std::size_t k,
                                               const std::array<double*, 4>& to) {
@@ -131,8 +153,12 @@ void Transpose(Lanes lanes, std::span<const RawSample> raw, std::size_t channels
   }
 }
 
-void Stamp(std::span<const RawSample> raw, const double* temperature, bool has_gz, bool has_mag,
-           ImuSample* out) {
+void Stamp(Lanes lanes, std::span<const RawSample> raw, const double* temperature, bool has_gz,
+           bool has_mag, ImuSample* out) {
+#if defined(__x86_64__)
+  if (lanes == Lanes::kEight) return StampByHalves(raw, temperature, {has_gz, has_mag}, out);
+#endif
+  static_cast<void>(lanes);
   for (std::size_t k = 0; k < raw.size(); ++k) {
     out[k].stamp = raw[k].stamp;
     out[k].stamp.temperature = static_cast<float>(temperature[k]);

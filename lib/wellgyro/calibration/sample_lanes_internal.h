@@ -17,8 +17,8 @@ void Transpose(Lanes lanes, std::span<const RawSample> raw, std::size_t channels
                Counts& counts);
 
 /// out[k] of raw[k]: all but its vectors.
-void Stamp(std::span<const RawSample> raw, const double* temperature, bool has_gz, bool has_mag,
-           ImuSample* out);
+void Stamp(Lanes lanes, std::span<const RawSample> raw, const double* temperature, bool has_gz,
+           bool has_mag, ImuSample* out);
 
 /// Vectors that stand beside each other to where samples have theirs.
 void Put(Lanes lanes, const Vectors& w_IT_T, const Vectors& f_T, const Vectors& b_T,
