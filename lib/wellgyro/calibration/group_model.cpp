@@ -58,6 +58,11 @@ GroupModel::GroupModel(const SensorGroup& group) : group_(group) {
   for (SensorGroup::Rows& G : group_.g_dependence) G *= R_ST;
   group_.second_order *= squares_ST;
   group_.g_squared *= squares_ST;
+  heats_ = !group_.heating.isZero(0);
+  feels_force_ = std::any_of(group_.g_dependence.begin(), group_.g_dependence.end(),
+                             [](const SensorGroup::Rows& G) { return !G.isZero(0); });
+  second_order_ = !group_.second_order.isZero(0);
+  g_squared_ = !group_.g_squared.isZero(0);
 }
 
 double GroupModel::Tau(double temperature) const {
@@ -76,10 +81,11 @@ GroupNode GroupModel::At(double tau) const {
   const Eigen::Matrix<double, 3, 4> from_units = InverseOf(Sensitivity(tau), group_.n_channels);
   node.A = from_units * group_.unit_per_count.asDiagonal();
   node.b = -(from_units * Bias(tau));
-  node.heat = from_units * group_.heating;
-  node.force = from_units * ValueAt(group_.g_dependence, tau);
-  node.products = from_units * group_.second_order;
-  node.force_products = from_units * group_.g_squared;
+  // What a group lacks costs nothing.
+  if (heats_) node.heat = from_units * group_.heating;
+  if (feels_force_) node.force = from_units * ValueAt(group_.g_dependence, tau);
+  if (second_order_) node.products = from_units * group_.second_order;
+  if (g_squared_) node.force_products = from_units * group_.g_squared;
   return node;
 }
 

@@ -38,6 +38,7 @@ class GroupModel {
 
  private:
   SensorGroup group_;  ///< with S, G and the products in T
+  bool heats_ = false, feels_force_ = false, second_order_ = false, g_squared_ = false;
 };
 
 }  // namespace wellgyro

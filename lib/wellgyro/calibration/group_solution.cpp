@@ -217,16 +217,18 @@ void GroupSolution::Solve(Cell& cell, const Cell& other) const {
   Put(bend_A, kernel.A2);
   Put(Eigen::Vector3d(high.b - low.b - bend_b), kernel.b1);
   Put(bend_b, kernel.b2);
-  for (int i = 0; i < 3; ++i) {
-    Put(Eigen::Vector3d(low.force.col(i)), kernel.force[i]);
-    Put(Eigen::Vector3d(high.force.col(i) - low.force.col(i)), kernel.force1[i]);
+  if (kernel.heats) {
+    Put(low.heat, kernel.heat);
+    Put(Eigen::Vector3d(high.heat - low.heat), kernel.heat1);
   }
-  Put(low.heat, kernel.heat);
-  Put(Eigen::Vector3d(high.heat - low.heat), kernel.heat1);
   Put(low.force_products, high.force_products, kernel.force_products);
   kernel.feels_force = !low.force.isZero(0) || !high.force.isZero(0) ||
                        kernel.force_products.squares || kernel.force_products.crosses;
   kernel.moved = kernel.feels_force || kernel.heats;
+  for (int i = 0; kernel.feels_force && i < 3; ++i) {
+    Put(Eigen::Vector3d(low.force.col(i)), kernel.force[i]);
+    Put(Eigen::Vector3d(high.force.col(i) - low.force.col(i)), kernel.force1[i]);
+  }
   Put(low.products, high.products, kernel.products);
   Put(low.products, high.products, kernel.products_single);
   kernel.slope = std::max(RowSum(low.products), RowSum(high.products));
