@@ -23,7 +23,7 @@ struct NodePanel {
   Eigen::Index rows() const { return 2 * node + border; }
 };
 
-/// A lower triangle over [node | border], whose columns stand EdgeStride() apart.
+/// A lower triangle over [node | border], whose columns stand ByFours(node + border) apart.
 struct EdgeColumns {
   double* values;
   Eigen::Index stride;

@@ -298,7 +298,9 @@ std::string WhyNothing(const Job& job, const std::vector<PassItems>& passes, con
 
 }  // namespace
 
-double TieInReach(const Job& job) { return std::max(0.5, 3 * job.errors.depth_sigma); }
+// Beyond four sigmas begins one run in thirty thousand; beyond three it was one in 740, and no
+// survey was made of it.
+double TieInReach(const Job& job) { return std::max(0.5, 4 * job.errors.depth_sigma); }
 
 Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
   const Site head = SiteAt(job.well.latitude, job.well.datum_elevation);
