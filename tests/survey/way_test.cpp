@@ -83,8 +83,6 @@ TEST(Way, PositionsDoNotDependOnTheSpacingOfStations) {
   }
 }
 
-// 2026-11-21: the stop at the bottom was a pass of its own, with a leg from the tie-in that nobody
-// saw: 44 m of sigma in depth, below a station with 0.1.
 // 2026-11-27: two of a thousand clean runs, whose depth was .92 m too large at a sigma of .3, made
 // no survey: "the survey begins below the tie-in".
 TEST(Way, ADepthThatIsOffByChanceBeginsAtTheTieIn) {
@@ -94,6 +92,8 @@ TEST(Way, ADepthThatIsOffByChanceBeginsAtTheTieIn) {
   EXPECT_LT(TieInReach(job), 5 * job.errors.depth_sigma);
 }
 
+// 2026-11-21: the stop at the bottom was a pass of its own, with a leg from the tie-in that nobody
+// saw: 44 m of sigma in depth, below a station with 0.1.
 TEST(Way, OfALogOnTheWayOutAloneBeginsAtItsDeepestStop) {
   Simulation simulation = Building(false);
   simulation.run.start_md = 700;
