@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -86,10 +87,18 @@ TEST(Way, PositionsDoNotDependOnTheSpacingOfStations) {
 // 2026-11-27: two of a thousand clean runs, whose depth was .92 m too large at a sigma of .3, made
 // no survey: "the survey begins below the tie-in".
 TEST(Way, ADepthThatIsOffByChanceBeginsAtTheTieIn) {
-  Job job;
-  job.errors.depth_sigma = 0.3;
-  EXPECT_LT(NormalCdf(-TieInReach(job) / job.errors.depth_sigma), 1e-4);
-  EXPECT_LT(TieInReach(job), 5 * job.errors.depth_sigma);
+  for (const double offset : {0.95, 1.5}) {
+    Simulation simulation = Building(false);
+    simulation.tool.errors.depth_offset = offset;
+    Job job = ExternalJob(simulation, 30);
+    job.errors.depth_sigma = 0.3;
+    EXPECT_LT(NormalCdf(-TieInReach(job) / job.errors.depth_sigma), 1e-4);
+    testing::CollectingSink sink;
+    const Survey survey = testing::SurveyOf(simulation, job, sink);
+    const bool refused = survey.unusable.find("below the tie-in") != std::string::npos;
+    EXPECT_EQ(refused, offset > 1.2) << survey.unusable;
+    if (!refused) EXPECT_GT(survey.chosen.size(), 20u);
+  }
 }
 
 // 2026-11-21: the stop at the bottom was a pass of its own, with a leg from the tie-in that nobody
