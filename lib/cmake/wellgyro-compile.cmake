@@ -18,9 +18,9 @@ option(WELLGYRO_LINES "Keep line numbers where the build has them" ON)
 # Half of a compilation is the optimiser's. A tree that is built to be tested optimises what its tests
 # wait for, the numeric rooms and their own loops, and nothing else: wellgyro_compile(target NUMERIC)
 # adds these options to those of the tree, wellgyro_compile(target LIGHT) those for what loops little
-# itself.
+# itself: tests, and in the sanitised tree some rooms.
 set(WELLGYRO_NUMERIC_OPTIONS "" CACHE STRING "Options of numeric rooms and tests beside the tree's")
-set(WELLGYRO_LIGHT_OPTIONS "" CACHE STRING "Options of tests that loop little, beside the tree's")
+set(WELLGYRO_LIGHT_OPTIONS "" CACHE STRING "Options of what loops little, beside the tree's")
 function(wellgyro_compile target)
   cmake_parse_arguments(COMPILE "NUMERIC;LIGHT" "" "" ${ARGN})
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -133,6 +133,8 @@ function(wellgyro_room target room)
   endif()
   if(room IN_LIST numeric_rooms)  # see lib/CMakeLists.txt
     set(target ${numeric})
+  elseif(room IN_LIST light_rooms)
+    set(target ${light})
   endif()
   list(TRANSFORM ROOM_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/lib/wellgyro/${room}/)
   target_sources(${target} PRIVATE ${ROOM_SOURCES})

@@ -110,7 +110,8 @@ TEST(LiveFeed, GoesOnBehindTheEventThatIsNamed) {
 }
 
 TEST(LiveFeed, MemoryGrowsWithTheStationsAloneAndThoseAreBounded) {
-  LiveFeed feed(7);
+  constexpr int kMost = 2000;
+  LiveFeed feed(7, kMost);
   for (int i = 0; i < 1000; ++i) {
     feed.Say(fmt::format("sentence {}", i), i);
     feed.Put(Glance{.run = i});
@@ -121,10 +122,9 @@ TEST(LiveFeed, MemoryGrowsWithTheStationsAloneAndThoseAreBounded) {
   EXPECT_EQ(Count(all, "event: notice"), LiveFeed::kNoticesKept);
   EXPECT_EQ(Count(all, "event: "), LiveFeed::kNoticesKept + 2);
   EXPECT_THAT(all, HasSubstr("sentence 999"));
-  const auto most = static_cast<int>(LiveFeed::kStationsKept);
-  for (int i = 0; i < most + 10; ++i) feed.Put(StationAt(i + 1));
+  for (int i = 0; i < kMost + 10; ++i) feed.Put(StationAt(i + 1));
   const std::string stations = Rest(feed, place);
-  EXPECT_EQ(Count(stations, "event: station"), most);
+  EXPECT_EQ(Count(stations, "event: station"), kMost);
   EXPECT_THAT(stations, Not(HasSubstr("\"key\":\"0/1/10000000000\"")));
   EXPECT_THAT(stations, HasSubstr("\"key\":\"0/1/11000000000\""));
 }

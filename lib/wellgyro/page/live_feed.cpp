@@ -152,7 +152,7 @@ void LiveFeed::PutIn(const std::string& slot, std::string_view event, const std:
   events_.emplace(number, std::move(text));
   if (!is_new || event != "station") return;
   stations_.emplace(number, slot);
-  if (stations_.size() <= kStationsKept) return;
+  if (stations_.size() <= stations_kept_) return;
   const auto oldest = slots_.find(stations_.begin()->second);
   events_.erase(oldest->second);
   slots_.erase(oldest);

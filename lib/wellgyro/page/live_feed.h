@@ -39,11 +39,13 @@ struct SigmaAsked {
 class WELLGYRO_EXPORT LiveFeed {
  public:
   static constexpr std::size_t kNoticesKept = 200;
-  static constexpr std::size_t kStationsKept = 50'000;  ///< the oldest go first
-  static constexpr std::size_t kAtOnce = 1 << 16;       ///< bytes a reader is given, about
+  static constexpr std::size_t kStationsKept = 50'000;
+  static constexpr std::size_t kAtOnce = 1 << 16;  ///< bytes a reader is given, about
 
-  /// `epoch` names this run of the program: numbers of another one mean nothing here.
-  explicit LiveFeed(std::int64_t epoch) : epoch_(epoch) {}
+  /// `epoch` names this run of the program: numbers of another one mean nothing here. Of more than
+  /// `stations_kept` stations the oldest go.
+  explicit LiveFeed(std::int64_t epoch, std::size_t stations_kept = kStationsKept)
+      : epoch_(epoch), stations_kept_(stations_kept) {}
   /// Glances say from now on how long a stop must last for that (RestForSigma).
   void Ask(const SigmaAsked& asked) { asked_ = asked; }
 
@@ -81,6 +83,7 @@ class WELLGYRO_EXPORT LiveFeed {
   void PutIn(const std::string& slot, std::string_view event, const std::string& json);
   using Text = std::shared_ptr<const std::string>;
   const std::int64_t epoch_;
+  const std::size_t stations_kept_;
   std::optional<SigmaAsked> asked_;
   mutable std::mutex mutex_;
   mutable std::condition_variable woken_;
