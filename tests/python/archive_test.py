@@ -51,6 +51,8 @@ class Archive(unittest.TestCase):
         program = archive._program()
         rows = [archive.survey_run(run, cls.serial, program) for run in cls.runs]
         archive._gather(cls.serial, rows)
+        # Of two workers, which are replaced where a test kills them.
+        cls.cluster = cls.enterClassContext(Cluster(2))
 
     @classmethod
     def Path(cls, name):
@@ -62,8 +64,8 @@ class Archive(unittest.TestCase):
             file.write(text)
         return cls.Path(name)
 
-    def Process(self, out, workers=2):
-        with Cluster(workers) as cluster, Client(cluster) as client:
+    def Process(self, out):
+        with Client(self.cluster) as client:
             return archive.process(self.runs, out, client)
 
     def test_bad_inputs_are_rows_with_their_reasons(self):
@@ -84,7 +86,7 @@ class Archive(unittest.TestCase):
         out = self.Path("killed")
         rng, over = random.Random(22), threading.Event()
         killed = []
-        with Cluster(2) as cluster, Client(cluster) as client:
+        with Client(self.cluster) as client:
             def Kill():
                 while not over.is_set() and len(killed) < KILLS:
                     time.sleep(rng.uniform(0.2, 0.8))
@@ -105,13 +107,13 @@ class Archive(unittest.TestCase):
         self.assertEqual(whole, Files(self.serial))
 
     def test_workers_that_die_while_they_start_are_replaced(self):
-        with Cluster(2) as cluster, Client(cluster) as client:
+        with Client(self.cluster) as client:
             # Killed, and again as soon as there is another process: Dask gives such workers up.
             for pid in client.run(os.getpid).values():
                 os.kill(pid, signal.SIGKILL)
             deadline, struck = time.monotonic() + 60, 0
             while struck < 2 and time.monotonic() < deadline:
-                for nanny in list(cluster.workers.values()):
+                for nanny in list(self.cluster.workers.values()):
                     if pid := nanny.pid:
                         with contextlib.suppress(ProcessLookupError):
                             os.kill(pid, signal.SIGKILL)
