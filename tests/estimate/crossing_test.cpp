@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -103,6 +104,10 @@ void ExpectInBand(double sum, double freedom, const std::string& what) {
 struct Cell {
   double rpm, closest_deg, swing_deg;
 };
+
+void PrintTo(const Cell& c, std::ostream* out) {
+  *out << c.rpm << " rpm past " << c.closest_deg << " deg";
+}
 
 class PastVertical : public testing::TestWithParam<Cell> {};
 

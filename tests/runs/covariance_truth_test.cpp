@@ -2,6 +2,7 @@
 // dead reckoned, as told on the way, and adjusted.
 #include <cmath>
 #include <cstdint>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,10 @@ struct WaysOfSurvey {
 struct TruthCase {
   double inclination_deg, rpm;
 };
+
+void PrintTo(const TruthCase& c, std::ostream* out) {
+  *out << c.rpm << " rpm at " << c.inclination_deg << " deg";
+}
 
 // Few seeds are each case's own, so that all cases together are as many independent runs.
 void AddRuns(const TruthCase& c, WaysOfSurvey& one) {

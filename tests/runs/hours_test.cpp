@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,6 +111,10 @@ struct TacticalCase {
   double worst_deg;  // what a prototype of the same equations reached, rms of the worst error
 };
 
+void PrintTo(const TacticalCase& c, std::ostream* out) {
+  *out << c.rpm << " rpm at " << c.inclination_deg << " deg";
+}
+
 class TacticalHours : public ::testing::TestWithParam<TacticalCase> {};
 
 TEST_P(TacticalHours, EndAsSureAsTheySay) {
@@ -192,6 +197,10 @@ struct UntoldCase {
   double swing_deg, rpm;
   double limit_deg;  // of the predicted sigma
 };
+
+void PrintTo(const UntoldCase& c, std::ostream* out) {
+  *out << c.rpm << " rpm swinging " << c.swing_deg << " deg";
+}
 
 class UntoldHours : public ::testing::TestWithParam<UntoldCase> {};
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -237,13 +238,13 @@ class NoDifference {
   int pairs_ = 0, failed_ = 0, warned_ = 0;
 };
 
-class Closure : public testing::TestWithParam<std::tuple<const char*, int>> {};
+class Closure : public testing::TestWithParam<std::tuple<std::string, int>> {};
 
 // Nothing but the models' own errors, drawn: every statistic lies in its band of four sigmas, 150
 // pairs each, 500 with --long, and of the pairs no more fail and warn than were promised.
 TEST_P(Closure, UnderNoDifferenceEveryStatisticIsInItsBand) {
   const auto& [model, pairs] = GetParam();
-  const bool good = std::string(model) == "good";
+  const bool good = model == "good";
   const ErrorModel a = good ? GoodTool() : *OwnModel(model);
   const ErrorModel b = good ? GoodTool() : *OwnModel("ISCWSA MWD Rev 4");
   Random random(20261122);
@@ -255,7 +256,7 @@ TEST_P(Closure, UnderNoDifferenceEveryStatisticIsInItsBand) {
   }
   none.Judge();
 }
-constexpr std::array kModels{"good", "GYRO-NS-CT"};
+const std::array<std::string, 2> kModels{"good", "GYRO-NS-CT"};
 INSTANTIATE_TEST_SUITE_P(Models, Closure,
                          testing::Combine(testing::ValuesIn(kModels), testing::Values(150)));
 INSTANTIATE_TEST_SUITE_P(MorePairs, Closure,
@@ -267,6 +268,9 @@ struct Sampling {
   double timid = 1;              // the least that a statistic may be
   int pairs = 500;
 };
+void PrintTo(const Sampling& s, std::ostream* out) {
+  *out << s.hole << " every " << s.first << " and " << s.second << " m from " << s.offset;
+}
 class Sampled : public testing::TestWithParam<Sampling> {};
 
 // The same where what is between stations is no arc, and the surveys see other parts of it. Where a
@@ -316,6 +320,7 @@ struct Shifted {
   const char* code;
   double size;
 };
+void PrintTo(const Shifted& s, std::ostream* out) { *out << s.code << " of " << s.size; }
 class Power : public testing::TestWithParam<Shifted> {};
 
 // Shifts are found as often as their sigmas say, within four sigmas of that number, by tools with
