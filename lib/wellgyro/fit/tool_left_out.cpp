@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include <Eigen/Dense>
 
@@ -12,23 +11,24 @@
 namespace wellgyro {
 namespace {
 
-/// Root of the probability that a bundle is there, by its Bayes factor against none: with priors s
-/// of its coefficients, information W and W theta = h of the readings,
+/// What the readings leave of a bundle's coefficients.
+struct BundleLeft {
+  double there = 0;      ///< probability
+  Eigen::VectorXd mean;  ///< if it is there
+  Eigen::MatrixXd cov;
+};
+
+/// By its Bayes factor against none: with priors s of its coefficients, information W and
+/// W theta = h of the readings,
 ///   ln B = (h' P h - ln det(1 + S W S)) / 2,   P = (W + S^-2)^-1,  S = diag s.
-Eigen::VectorXd RootOdds(const std::vector<int>& bundle_of, const Eigen::MatrixXd& W,
-                         const Eigen::VectorXd& h, const Eigen::VectorXd& s) {
-  Eigen::VectorXd root(h.size());
-  for (std::size_t begin = 0, end = 0; begin < bundle_of.size(); begin = end) {
-    while (end < bundle_of.size() && bundle_of[end] == bundle_of[begin]) ++end;
-    const auto at = static_cast<Eigen::Index>(begin), n = static_cast<Eigen::Index>(end - begin);
-    const auto S = s.segment(at, n).asDiagonal();
-    const Cholesky M(Eigen::MatrixXd::Identity(n, n) +
-                     S * Eigen::MatrixXd(W.block(at, at, n, n)) * S);
-    const Eigen::VectorXd c = S * h.segment(at, n);
-    const double log_odds = (M.Whitened(c).squaredNorm() - M.LogDeterminant()) / 2;
-    root.segment(at, n).setConstant(std::sqrt(1 / (1 + std::exp(-log_odds))));
-  }
-  return root;
+BundleLeft LeftOf(const Eigen::MatrixXd& W, const Eigen::VectorXd& h) {
+  const Eigen::VectorXd s = InverseOfSymmetric(W).diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(h.size(), h.size());
+  const Cholesky M(one + s.asDiagonal() * W * s.asDiagonal());
+  const Eigen::VectorXd c = s.cwiseProduct(h);
+  const double log_odds = (M.Whitened(c).squaredNorm() - M.LogDeterminant()) / 2;
+  const Eigen::MatrixXd cov = s.asDiagonal() * M.Solve(one) * s.asDiagonal();
+  return {1 / (1 + std::exp(-log_odds)), cov * h, cov};
 }
 
 }  // namespace
@@ -36,8 +36,7 @@ Eigen::VectorXd RootOdds(const std::vector<int>& bundle_of, const Eigen::MatrixX
 LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
                               const std::vector<int>& kept, const ToolAdjustment& full) {
   LeftOutErrors left;
-  std::vector<Eigen::Index> k, l;
-  std::vector<int> bundle_of;
+  std::vector<Eigen::Index> k, l, sizes;
   Eigen::Index terms = 0;
   for (const int place : seen) {
     const TermBundle& bundle = bundles[static_cast<std::size_t>(place)];
@@ -45,11 +44,12 @@ LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std:
     for (std::size_t i = 0; i < bundle.terms.size(); ++i) (is_kept ? k : l).push_back(terms++);
     if (is_kept) continue;
     left.terms.insert(left.terms.end(), bundle.terms.begin(), bundle.terms.end());
-    bundle_of.insert(bundle_of.end(), bundle.terms.size(), place);
+    sizes.push_back(static_cast<Eigen::Index>(bundle.terms.size()));
   }
   // Of the bench all is kept.
   for (Eigen::Index i = terms; i < full.x.size(); ++i) k.push_back(i);
   const auto m = static_cast<Eigen::Index>(k.size()), n = static_cast<Eigen::Index>(l.size());
+  left.shift = Eigen::VectorXd::Zero(m + n);
   left.cov = Eigen::MatrixXd::Zero(m + n, m + n);
   if (n == 0) return left;
   const Eigen::MatrixXd& A = full.linear.A;
@@ -57,17 +57,24 @@ LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std:
   const Eigen::MatrixXd scaled = A * unit.asDiagonal();
   const Eigen::MatrixXd N = scaled.transpose() * scaled;
   const Eigen::MatrixXd K = SolveSymmetric(N(k, k), N(k, l));
-  const Eigen::VectorXd s = full.cov.diagonal()(l).cwiseSqrt().cwiseQuotient(unit(l));
   const Eigen::MatrixXd W = N(l, l) - N(l, k) * K;
-  Eigen::MatrixXd whole = W;
-  whole.diagonal() += s.cwiseAbs2().cwiseInverse();
-  const Eigen::MatrixXd P = InverseOfSymmetric(whole);
-  const Eigen::VectorXd h = W * full.x(l).cwiseQuotient(unit(l)), mean = P * h;
-  const Eigen::VectorXd root = RootOdds(bundle_of, W, h, s);
+  const Eigen::VectorXd h = W * full.x(l).cwiseQuotient(unit(l));
+  Eigen::VectorXd mean(n);
+  Eigen::MatrixXd in_kept = Eigen::MatrixXd::Zero(n, n), beyond = in_kept;
+  Eigen::Index at = 0;
+  for (const Eigen::Index size : sizes) {
+    const BundleLeft b = LeftOf(W.block(at, at, size, size), h.segment(at, size));
+    mean.segment(at, size) = b.there * b.mean;
+    in_kept.block(at, at, size, size) =
+        b.there * (b.cov + (1 - b.there) * b.mean * b.mean.transpose());
+    beyond.block(at, at, size, size) = (1 - b.there) * b.cov;
+    at += size;
+  }
   Eigen::MatrixXd errors(m + n, n);
   errors << unit(k).asDiagonal() * K, -Eigen::MatrixXd(unit(l).asDiagonal());
-  errors = (errors * root.asDiagonal()).eval();
-  left.cov = errors * (P + mean * mean.transpose()) * errors.transpose();
+  left.shift = -errors * mean;
+  left.cov = errors * in_kept * errors.transpose();
+  left.cov.bottomRightCorner(n, n) += unit(l).asDiagonal() * beyond * unit(l).asDiagonal();
   return left;
 }
 

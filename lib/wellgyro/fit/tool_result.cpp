@@ -151,14 +151,15 @@ void AddHysteresis(const ToolModel& model, const ToolReadings& readings, const T
 void TakeToolResult(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
                     const ToolAdjustment& a, const LeftOutErrors& left_out, ToolFit& fit) {
   FitReport& report = fit.calibration.report;
+  report.values += left_out.shift.head(report.values.size());
   report.cov += left_out.cov.topLeftCorner(report.cov.rows(), report.cov.cols());
   AddQuantities(report);
   ToolCalibration tool;
   tool.gyro = EmptyGroup(readings, setup, true);
   tool.accel = EmptyGroup(readings, setup, false);
-  // Of the model's parameters, then of what was left out, which is zero.
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(left_out.cov.rows());
-  x.head(model.size()) = a.x;
+  // Of the model's parameters, then of what was left out.
+  Eigen::VectorXd x = left_out.shift;
+  x.head(model.size()) += a.x;
   Eigen::MatrixXd cov = left_out.cov;
   cov.topLeftCorner(model.size(), model.size()) += a.cov;
   std::vector<std::pair<Eigen::Index, Share>> shares;
