@@ -85,13 +85,14 @@ void TellDrifts(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
   }
 }
 
-// What the readings say of the bench against what was said before.
+// What the readings say of the bench against what was said before; values and sigmas as reported,
+// with what was left out.
 void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
   for (std::size_t i = 0; i < model.nuisances().size(); ++i) {
     BenchNuisance nuisance = model.nuisances()[i];
     const auto at = static_cast<Eigen::Index>(i) + model.n_terms();
-    nuisance.value = a.x[at];
-    nuisance.sigma = std::sqrt(std::max(0.0, a.cov(at, at)));
+    nuisance.value = fit.calibration.report.values[at];
+    nuisance.sigma = std::sqrt(std::max(0.0, fit.calibration.report.cov(at, at)));
     if (const auto asked = FarOff(a, at, nuisance.prior_sigma)) {
       fit.calibration.report.remarks.push_back(fmt::format(
           "{}: the readings ask for {:.3g} deg beside what was given, {:.1f} sigmas off: the "
@@ -347,8 +348,8 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
   TellHemisphere(model, a, setup, report);
   TellNoise(readings, setup, model, a, report);
   TellDrifts(model, a, fit);
-  TellNuisances(model, a, fit);
   TakeToolResult(readings, setup, model, a, left_out, fit);
+  TellNuisances(model, a, fit);
   return fit;
 }
 

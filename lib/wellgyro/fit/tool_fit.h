@@ -71,9 +71,10 @@ struct ToolFit {
 /// time, the tool's seat on the rate table, the latitude, each with its prior; the wobble of every
 /// reading, which moves all channels together, is marginalised, its size found. Terms are chosen by
 /// marginal likelihood, each bundle's prior variance found from it, at 1 % against noise alone;
-/// other terms that explain nearly as much are told, and what was left out counts in the covariance
-/// by what noise hides of it. Outliers are found with Cauchy's loss (Ceres)
-/// and left out.
+/// other terms that explain nearly as much are told. What was left out may be there, of even odds
+/// before the readings, and no larger than noise hides: everything is taken at its mean over both,
+/// so that a term that is left out has a small value, and its doubt is in the covariance. Outliers
+/// are found with Cauchy's loss (Ceres) and left out.
 WELLGYRO_EXPORT Result<ToolFit> FitTool(std::span<const BenchTable> tables,
                                         const ToolFitSetup& setup);
 
