@@ -106,7 +106,7 @@ struct Cell {
 };
 
 void PrintTo(const Cell& c, std::ostream* out) {
-  *out << c.rpm << " rpm past " << c.closest_deg << " deg";
+  *out << c.rpm << " rpm past " << c.closest_deg << " deg, swinging " << c.swing_deg << " deg";
 }
 
 class PastVertical : public testing::TestWithParam<Cell> {};
