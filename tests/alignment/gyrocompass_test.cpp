@@ -475,8 +475,8 @@ TEST(Gyrocompass, GravityIsOffAsItsSigmaSays) {
   const ErrorPriors errors{
       .accel_bias_sigma = 5e-4, .accel_scale_sigma = 7e-5, .accel_misalignment_sigma = 1.5e-4};
   const auto three = [&random](double sigma) {
-    return Eigen::Vector3d(sigma * random.Normal(), sigma * random.Normal(),
-                           sigma * random.Normal());
+    return Eigen::Vector3d{sigma * random.Normal(), sigma * random.Normal(),
+                           sigma * random.Normal()};
   };
   constexpr int kTools = 400;
   for (const std::vector<double>& toolfaces : {std::vector{0.7}, {0.7, 2.0, 4.5}}) {

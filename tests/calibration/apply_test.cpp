@@ -269,7 +269,8 @@ TEST(Apply, TemperaturesBetweenThoseSolvedInFullAreRightToABillionth) {
     RawCounter counter(tool);
     SampleCalibrator calibrator(tool);
     for (int i = 0; i < 500; ++i) {
-      const RawSample raw = counter.Count(RandomSample(random, true), 20 + 140 * random.Uniform());
+      const ImuSample sample = RandomSample(random, true);
+      const RawSample raw = counter.Count(sample, 20 + 140 * random.Uniform());
       ImuSample found;
       ASSERT_EQ(calibrator.Apply({&raw, 1}, {&found, 1}), 1u);
       const double temperature =

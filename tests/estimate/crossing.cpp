@@ -68,7 +68,7 @@ Crossing::Samples Crossing::Sample(double hz) const {
 void AddErrors(const ToolDraw& draw, std::uint64_t seed, Crossing::Samples& samples) {
   Random random(seed);
   const auto normal3 = [&random] {
-    return Vector3d(random.Normal(), random.Normal(), random.Normal());
+    return Vector3d{random.Normal(), random.Normal(), random.Normal()};
   };
   const Vector3d bias = draw.bias * normal3(), accel_bias = draw.accel_bias * normal3();
   const double root = std::sqrt(samples.hz);

@@ -360,7 +360,7 @@ TEST(Diagnosis, NoiseIsToldFromABurst) {
   Factor f;
   f.Begin(RowKind::kTurn, 3);
   for (std::size_t k = 0; k < 400; ++k) {
-    const Vector3d r(random.Normal(), random.Normal(), random.Normal());
+    const Vector3d r{random.Normal(), random.Normal(), random.Normal()};
     f.r = r;
     clean.Add(k, f, Matrix3d::Identity());
     f.r = k / 20 == 7 ? 4 * r : r;

@@ -70,7 +70,7 @@ Case MakeCase(double inclination, bool still, bool axial) {
   c.layout = LayoutOf(c.setup);
   Random random(static_cast<std::uint64_t>(100 * inclination) + still + 2 * axial);
   const auto pair = [&random](double s) {
-    return Eigen::Vector2d(s * random.Normal(), s * random.Normal());
+    return Eigen::Vector2d{s * random.Normal(), s * random.Normal()};
   };
   Increment& inc = c.knot.increment;
   inc.seconds = 1;

@@ -68,7 +68,7 @@ RunKnot KnotAt(const Motion& motion, double t, const EstimateSetup& setup, Rando
   knot.increment.seconds = 1;
   const double noise = setup.gyro.angle_random_walk;
   knot.increment.turn_M = rate.head<2>() + Eigen::Vector2d(kEarthRate, -0.5 * kEarthRate) +
-                          noise * Eigen::Vector2d(random.Normal(), random.Normal());
+                          noise * Eigen::Vector2d{random.Normal(), random.Normal()};
   knot.increment.force_M = R.transpose() * Vector3d(0, 0, -kGravity) + Vector3d(5e-4, -1e-3, 0);
   return knot;
 }

@@ -179,7 +179,8 @@ TEST(Scalar, FindsFourGrossRowsAmongFortyEight) {
     for (int i = 0; i < 4; ++i) {
       const int row = 3 + 11 * i;
       // 20 mg and more along gravity's length.
-      const double size = (random.Uniform() < 0.5 ? -1 : 1) * (0.02 + 0.08 * random.Uniform());
+      const double sign = random.Uniform() < 0.5 ? -1 : 1;
+      const double size = sign * (0.02 + 0.08 * random.Uniform());
       data.values.block<1, 3>(row, 3) *= 1 + size;
       spoilt.push_back(data.lines[static_cast<std::size_t>(row)]);
     }

@@ -181,8 +181,8 @@ TEST(BenchFaults, AWrongDipOrLatitudeIsToldByTheStations) {
   Random random(154);
   Tally tally;
   for (int bench = 0; bench < kEach; ++bench) {
-    const BenchTable magnetic =
-        Stations(Noise(random, 200), Noise(random, 2e-3), {.dip = 61}, 20, 1e-3, random);
+    const Eigen::Vector3d bias_nT = Noise(random, 200), bias_g = Noise(random, 2e-3);
+    const BenchTable magnetic = Stations(bias_nT, bias_g, {.dip = 61}, 20, 1e-3, random);
     const BenchTable rates = GyroStations(Noise(random, 0.1), 60.5, 0.02, random);
     MultiStationSetup setup;
     setup.reference.field = 50'000;

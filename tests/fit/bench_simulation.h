@@ -59,7 +59,7 @@ class TableMaker {
 };
 
 inline Eigen::Vector3d Noise(Random& random, double sigma) {
-  return sigma * Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
+  return sigma * Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()};
 }
 
 inline Eigen::Matrix3d NoiseMatrix(Random& random, double sigma) {

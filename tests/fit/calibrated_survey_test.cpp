@@ -65,8 +65,9 @@ Result<ToolCalibration> Calibrated(const GyroTool& gyros, const VoltTool& accels
       TwentyFour(accels, {0.2 * random.Normal(), 0.2 * random.Normal(), 1e-4}, random),
       {.settle_tolerance = 1e-2, .sigma = 1e-4 / std::sqrt(3.0)});
   if (!volts) return volts.fault();
+  const BenchTable at_rest = GyrosAtRest(gyros, 60, 0.1, random);
   const auto rates =
-      FitGyro(GyrosAtRest(gyros, 60, 0.1, random), GyrosOnTable(gyros, 60, 2, random),
+      FitGyro(at_rest, GyrosOnTable(gyros, 60, 2, random),
               {.reference = {.latitude = 60 * kRad}, .sigma = 0.1, .sigma_table = 2.0});
   if (!rates) return rates.fault();
   ToolCalibration tool = Updated({}, *rates, {.unit_per_count = std::vector<double>{kGyroCount}});

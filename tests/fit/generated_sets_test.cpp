@@ -138,7 +138,7 @@ TEST(GeneratedSets, ScalarDip) {
 TEST(GeneratedSets, RollTest) {
   ExpectFamily("roll-test", 8000, [](Random& random) {
     const Eigen::Vector3d axis =
-        Eigen::Vector3d(3e-3 * random.Normal(), 3e-3 * random.Normal(), 1).normalized();
+        Eigen::Vector3d{3e-3 * random.Normal(), 3e-3 * random.Normal(), 1}.normalized();
     // Any two directions across it.
     const Eigen::Vector3d e1 = (Eigen::Vector3d::UnitX() - axis.x() * axis).normalized();
     const Eigen::Vector3d e2(axis.y() * e1.z() - axis.z() * e1.y(),

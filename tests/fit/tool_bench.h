@@ -25,8 +25,8 @@ struct ThermalTool {
   static ThermalTool Any(Random& random) {
     ThermalTool tool;
     const auto four = [&](double sigma) {
-      return Eigen::Vector4d(sigma * Eigen::Vector4d(random.Normal(), random.Normal(),
-                                                     random.Normal(), random.Normal()));
+      return Eigen::Vector4d(sigma * Eigen::Vector4d{random.Normal(), random.Normal(),
+                                                     random.Normal(), random.Normal()});
     };
     const double of_accel[] = {5e-3, 4e-3, 2e-3, 1e-3}, of_gyro[] = {2, 1.5, 0.8, 0.5};
     for (int n = 0; n < 4; ++n) {
@@ -77,14 +77,14 @@ struct ThermalBench {
     ThermalBench bench;
     bench.latitude_error = 1e-5 * random.Normal();
     for (int table = 0; table < 2; ++table) {
-      bench.level[table] = kRad * Eigen::Vector3d(0.3 * random.Normal(), 0.3 * random.Normal(),
-                                                  0.5 * random.Normal());
+      bench.level[table] = kRad * Eigen::Vector3d{0.3 * random.Normal(), 0.3 * random.Normal(),
+                                                  0.5 * random.Normal()};
     }
     for (Eigen::Vector4d& drift : bench.drift) {
       for (double& d : drift) d = 0.1 * random.Normal();
     }
     for (Eigen::Vector2d& seat : bench.seat) {
-      seat = 1.5e-4 * Eigen::Vector2d(random.Normal(), random.Normal());
+      seat = 1.5e-4 * Eigen::Vector2d{random.Normal(), random.Normal()};
     }
     return bench;
   }

@@ -173,8 +173,9 @@ TEST(ToolClaims, AStepOfASensorIsTold) {
 
 TEST(ToolClaims, ColumnsMisnamedByACapitalOrAUnitAreRefused) {
   Random random(94);
-  const BenchTable sound =
-      ThermalPositions(ThermalTool::Any(random), ThermalBench::Any(random), 0, 48, 25, 40, random);
+  const auto tool = ThermalTool::Any(random);
+  const auto bench = ThermalBench::Any(random);
+  const BenchTable sound = ThermalPositions(tool, bench, 0, 48, 25, 40, random);
   for (const auto& [from, to] :
        {std::pair("Gx", "gx"), {"Gx", "Gx[g]"}, {"m_x1", "M_X1"}, {"T_C", "t_c"}}) {
     BenchTable data = sound;

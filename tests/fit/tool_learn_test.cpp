@@ -314,7 +314,8 @@ TEST(ToolLearn, AToolThatChangedIsNoPrior) {
   ToolCalibration changed = truth;
   changed.gyro.bias[0][2] += 1;
   const ParameterCovariance known = AnyKnown(random);
-  const JoinedTool joined = JoinPrior(Found(changed, known, random), Found(truth, known, random));
+  const ToolCalibration bench = Found(changed, known, random);
+  const JoinedTool joined = JoinPrior(bench, Found(truth, known, random));
   EXPECT_LT(joined.probability, 1e-6);
   ToolCalibration turned = Found(truth, known, random);
   turned.accel.R_TS.setIdentity();

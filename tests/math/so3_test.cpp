@@ -26,7 +26,7 @@ Matrix3d SeriesExp(const Vector3d& v) {
 }
 
 Vector3d RandomVector(Random& random, double length) {
-  const Vector3d v(random.Normal(), random.Normal(), random.Normal());
+  const Vector3d v{random.Normal(), random.Normal(), random.Normal()};
   return length * v.normalized();
 }
 

@@ -370,6 +370,34 @@ class Structure(unittest.TestCase):
         self.Report(problems)
         self.assertGreater(len(types), 900)
 
+    def test_arguments_draw_no_two_random_numbers(self):
+        """C++ leaves open which argument is worked out first, so that one seed would give each
+        compiler other numbers: a braced list or a variable each has an order."""
+        draw = re.compile(r"\b\w*(random|rng)_?(\.[A-Z]\w*\(|[,)])")
+        problems, draws = [], 0
+        for path in (p for top in (LIB, os.path.join(TOP, "tests")) for p in Sources(top)):
+            text = "\n".join(line for _, line in Code(path))
+            if "random" not in text:
+                continue
+            opened, number = [], 1
+            for c in text:
+                number += c == "\n"
+                for level in opened:
+                    level[-1] += c
+                if c in "([{":
+                    opened.append([c, number, ""])
+                elif c == "," and opened:
+                    opened[-1].append("")
+                elif c in ")]}" and opened:
+                    bracket, first, *arguments = opened.pop()
+                    drawing = [a for a in arguments if draw.search(a) and "&" not in a]
+                    drawing = [a for a in drawing if not re.fullmatch(r"\s*\w+[)]?\s*", a)]
+                    draws += len(drawing)
+                    if bracket == "(" and len(drawing) > 1:
+                        problems.append(f"{Place(path, first)}: draws in two arguments")
+        self.Report(problems)
+        self.assertGreater(draws, 500)
+
     def test_chains_of_frames_telescope(self):
         problems, products = [], 0
         for path in Sources(LIB):

@@ -161,7 +161,7 @@ ComparedSurvey Surveyed(std::vector<SurveyPoint> stations, const ErrorModel& mod
     stations[e.station].md += u * e.md;
   }
   for (std::size_t k = 1; k < stations.size(); ++k) {
-    const Vector3d local(random.Normal(), random.Normal(), random.Normal());
+    const Vector3d local{random.Normal(), random.Normal(), random.Normal()};
     const Vector3d t = (direction[k] + local_sigma * local).normalized();
     stations[k].inclination = std::acos(t.z());
     stations[k].azimuth = WrapTwoPi(std::atan2(t.y(), t.x()));

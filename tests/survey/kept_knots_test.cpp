@@ -128,9 +128,9 @@ TEST(KeptKnots, ARunIsKeptToTheBitInLessThanHalf) {
 KeptKnot AnyBits(Random& random) {
   const auto any = [&random](double& value) {
     const double odd[] = {0.0, -0.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -1e308};
-    const double kind = random.Uniform();
+    const double kind = random.Uniform(), power = 600 * random.Normal();
     value = kind < 0.3 ? odd[static_cast<std::size_t>(kind / 0.06)]
-                       : std::ldexp(random.Normal(), static_cast<int>(600 * random.Normal()));
+                       : std::ldexp(random.Normal(), static_cast<int>(power));
   };
   const auto all = [&any](auto& matrix) {
     for (Eigen::Index i = 0; i < matrix.size(); ++i) any(*(matrix.data() + i));

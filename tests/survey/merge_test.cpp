@@ -72,9 +72,11 @@ TEST_F(MergeLegs, IsNeverLessSureThanItsBestLeg) {
   Random random(7);
   for (int i = 0; i < 30; ++i) {
     const double end = 1500 + 1000 * random.Uniform();
-    std::vector<MergeLeg> legs = {
-        Leg("mwd", mwd_, 1, 0, end, 30), Leg("gyro", gyro_, 2, 0, 600 + 900 * random.Uniform(), 25),
-        Leg("second", random.Uniform() < 0.5 ? mwd_ : gyro_, 3, 500 * random.Uniform(), end, 30)};
+    const double shoe = 600 + 900 * random.Uniform(), tie_in = 500 * random.Uniform();
+    const ErrorModel& second = random.Uniform() < 0.5 ? mwd_ : gyro_;
+    std::vector<MergeLeg> legs = {Leg("mwd", mwd_, 1, 0, end, 30),
+                                  Leg("gyro", gyro_, 2, 0, shoe, 25),
+                                  Leg("second", second, 3, tie_in, end, 30)};
     if (i % 3 == 0) legs.push_back(Leg("whole", gyro_, 4, 0, end, 30));
     const MergedSurvey merged = Merged(legs);
     for (const MergeLeg& leg : legs) {

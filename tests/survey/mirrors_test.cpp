@@ -40,7 +40,7 @@ std::vector<Draft> Shoot(const std::vector<Shot>& hole, std::uint64_t seed) {
   const Site site = SiteAt(kLatitude, 0);
   const Eigen::Vector3d earth =
       kEarthRate * Eigen::Vector3d(std::cos(kLatitude), 0, -std::sin(kLatitude));
-  const Eigen::Vector3d bias(kBias * random.Normal(), kBias * random.Normal(), 0);
+  const Eigen::Vector3d bias{kBias * random.Normal(), kBias * random.Normal(), 0};
   GyrocompassSetup setup;
   setup.errors.gyro_bias_sigma = kBias;
   std::vector<Draft> drafts;
