@@ -370,6 +370,19 @@ class Structure(unittest.TestCase):
         self.Report(problems)
         self.assertGreater(len(types), 900)
 
+    def test_what_math_has_is_defined_there_alone(self):
+        named = re.compile(r"^(?:inline |constexpr |static )*[\w:<>]+&? "
+                           r"(Skew|Exp|Log|Sinc|Square|LeftJacobian)\(")
+        problems, known = [], 0
+        for path in Sources(LIB):
+            for number, line in Code(path):
+                found = named.match(line)
+                known += bool(found)
+                if found and Room(path) != "math":
+                    problems.append(f"{Place(path, number)}: {found.group(1)} stands in math/")
+        self.Report(problems)
+        self.assertGreater(known, 5)
+
     def test_arguments_draw_no_two_random_numbers(self):
         """C++ leaves open which argument is worked out first, so that one seed would give each
         compiler other numbers: a braced list or a variable each has an order."""

@@ -6,6 +6,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/so3.h"
 #include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -25,20 +26,6 @@ constexpr double kSigmaFreeGravity = 1;                        // |f| says nothi
 
 Vector3d EarthRate(double latitude) {
   return kEarthRate * Vector3d(std::cos(latitude), 0, -std::sin(latitude));
-}
-
-Matrix3d Skew(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-Matrix3d Exp(const Vector3d& v) {
-  const double angle = v.norm();
-  if (angle < 1e-150) return Matrix3d::Identity();
-  const Matrix3d k = Skew(v / angle);
-  const double s = std::sin(angle / 2);
-  return Matrix3d::Identity() + std::sin(angle) * k + 2 * s * s * k * k;
 }
 
 double Toolface(const Vector3d& f) { return std::atan2(-f.y(), f.x()); }

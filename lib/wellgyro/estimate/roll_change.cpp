@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "wellgyro/math/sinc.h"
+
 namespace wellgyro {
 
 using Eigen::Vector2d;
@@ -24,7 +26,7 @@ Vector2d SwingByFrequency(double frequency, double seconds, const Vector2d& a) {
 
 Vector2d MeanOfSwing(double frequency, double seconds) {
   const double angle = frequency * seconds, half = std::sin(0.5 * angle);
-  return {std::sin(angle) / angle, 2 * half * half / angle};
+  return {Sinc(angle), 2 * half * half / angle};
 }
 
 Vector2d MeanByFrequency(double frequency, double seconds) {

@@ -16,15 +16,8 @@ namespace {
 // Exp(e) v and its change with e.
 std::pair<Eigen::Vector3d, Eigen::Matrix3d> Turned(const Eigen::Vector3d& e,
                                                    const Eigen::Vector3d& v) {
-  const double angle = e.norm();
-  const Eigen::Matrix3d C = Skew(e);
-  const double a = angle < 1e-8 ? 1 : std::sin(angle) / angle;
-  const double b = angle < 1e-8 ? 0.5 : (1 - std::cos(angle)) / (angle * angle);
-  const double c = angle < 1e-8 ? 1.0 / 6 : (angle - std::sin(angle)) / (angle * angle * angle);
-  const Eigen::Matrix3d R = Eigen::Matrix3d::Identity() + a * C + b * C * C;
-  const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() + b * C + c * C * C;
-  const Eigen::Vector3d turned = R * v;
-  return {turned, -Skew(turned) * left};
+  const Eigen::Vector3d turned = Exp(e) * v;
+  return {turned, -Skew(turned) * LeftJacobian(e)};
 }
 
 }  // namespace

@@ -5,6 +5,28 @@
 #include <Eigen/Geometry>
 
 namespace wellgyro {
+namespace {
+
+struct Ratios {
+  double sinc = 1;         ///< sin(angle) / angle
+  double half = 0.5;       ///< (1 - cos(angle)) / angle^2
+  double third = 1.0 / 6;  ///< (angle - sin(angle)) / angle^3
+};
+
+Ratios RatiosAt(double square) {
+  if (square < 0.01) {  // the next terms of the series are below 1e-17
+    const double s = square;
+    return {1 - s * (1. / 6 - s * (1. / 120 - s * (1. / 5040 - s * (1. / 362880)))),
+            0.5 - s * (1. / 24 - s * (1. / 720 - s * (1. / 40320 - s * (1. / 3628800)))),
+            1. / 6 - s * (1. / 120 - s * (1. / 5040 - s * (1. / 362880 - s * (1. / 39916800))))};
+  }
+  const double angle = std::sqrt(square);
+  const double s = std::sin(0.5 * angle);
+  const double sinc = std::sin(angle) / angle;
+  return {sinc, 2 * s * s / square, (1 - sinc) / square};  // the second without cancellation
+}
+
+}  // namespace
 
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
   return (Eigen::Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
@@ -12,20 +34,18 @@ Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
 
 Eigen::Matrix3d Exp(const Eigen::Vector3d& v) {
   const double square = v.squaredNorm();
-  double sinc, half;    // sin(angle)/angle, (1 - cos)/angle^2
-  if (square < 0.01) {  // the next terms of the series are below 1e-17
-    const double s = square;
-    sinc = 1 - s * (1. / 6 - s * (1. / 120 - s * (1. / 5040 - s * (1. / 362880))));
-    half = 0.5 - s * (1. / 24 - s * (1. / 720 - s * (1. / 40320 - s * (1. / 3628800))));
-  } else {
-    const double angle = std::sqrt(square);
-    const double s = std::sin(0.5 * angle);
-    sinc = std::sin(angle) / angle;
-    half = 2 * s * s / square;  // without cancellation
-  }
+  const auto [sinc, half, third] = RatiosAt(square);
   Eigen::Matrix3d R = half * v * v.transpose() + sinc * Skew(v);
   R.diagonal().array() += 1 - half * square;
   return R;
+}
+
+Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& v) {
+  const double square = v.squaredNorm();
+  const auto [sinc, half, third] = RatiosAt(square);
+  Eigen::Matrix3d J = third * v * v.transpose() + half * Skew(v);
+  J.diagonal().array() += 1 - third * square;
+  return J;
 }
 
 Eigen::Vector3d Log(const Eigen::Matrix3d& R) {

@@ -11,6 +11,7 @@
 #include "wellgyro/estimate/places.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/math/sinc.h"
 #include "wellgyro/math/so3.h"
 #include "wellgyro/survey/run_diagnosis.h"
 
@@ -34,8 +35,6 @@ constexpr double kUnknownShare = 1e-3;   // of a fault's size, as the estimator 
 constexpr double kSpeedChanges = 0.001;  // [m/s]
 
 Vector2d Pair(Complex z) { return {z.real(), z.imag()}; }
-
-double Sinc(double x) { return std::abs(x) < 1e-8 ? 1 : std::sin(x) / x; }
 
 /// Time on the move from the begin of the way to this place of it [s].
 double MovingTo(const PlannedWay& way, double md, bool out) {

@@ -17,7 +17,7 @@ double FromEastWest(const P& p) {
   const double s = p.sin_inc * p.sin_mag;
   return std::sqrt(std::max(0.0, 1 - s * s));
 }
-double Square(const P& p) {
+double SquareAt(const P& p) {
   const double f = FromEastWest(p);
   return f * f;
 }
@@ -28,7 +28,7 @@ Vector3d Across(const P& p) { return {-p.sin_hole, p.cos_hole, 0}; }
 
 Weights Scale(const P& p, double share) {
   const double azimuth =
-      -share * p.sin_inc * p.cos_inc * p.cos_inc * p.sin_mag * Mixed(p) / Square(p);
+      -share * p.sin_inc * p.cos_inc * p.cos_inc * p.sin_mag * Mixed(p) / SquareAt(p);
   return {0, share * p.sin_inc * p.cos_inc, azimuth};
 }
 
@@ -39,7 +39,7 @@ constexpr WeightFunction kMore[] = {
      {},
      [](const P& p) {
        const double c = p.cos_inc;
-       return Weights{0, -c / p.gravity, c * c * p.sin_mag * Mixed(p) / (p.gravity * Square(p))};
+       return Weights{0, -c / p.gravity, c * c * p.sin_mag * Mixed(p) / (p.gravity * SquareAt(p))};
      },
      nullptr,
      FromEastWest},
@@ -49,7 +49,7 @@ constexpr WeightFunction kMore[] = {
      {},
      [](const P& p) {
        const double cot = p.cos_inc / p.sin_inc;
-       return Azi(-(p.tan_dip * p.cos_mag - cot) / (p.gravity * Square(p)));
+       return Azi(-(p.tan_dip * p.cos_mag - cot) / (p.gravity * SquareAt(p)));
      },
      [](const P& p) -> Vector3d { return Across(p) / p.gravity; },
      FromEastWest},
@@ -58,7 +58,7 @@ constexpr WeightFunction kMore[] = {
      R::kMagnetic,
      {},
      [](const P& p) {
-       const double azimuth = p.sin_inc * p.cos_inc * p.sin_mag * Mixed(p) / Square(p);
+       const double azimuth = p.sin_inc * p.cos_inc * p.sin_mag * Mixed(p) / SquareAt(p);
        return Weights{0, -p.sin_inc / p.gravity, azimuth / p.gravity};
      },
      nullptr,
@@ -82,7 +82,7 @@ constexpr WeightFunction kMore[] = {
      R::kMagnetic,
      {},
      [](const P& p) {
-       return Azi((p.tan_dip * p.sin_inc * p.cos_mag - p.cos_inc) / (2 * Square(p)));
+       return Azi((p.tan_dip * p.sin_inc * p.cos_mag - p.cos_inc) / (2 * SquareAt(p)));
      },
      nullptr,
      FromEastWest},
@@ -97,21 +97,21 @@ constexpr WeightFunction kMore[] = {
      D::kField,
      R::kMagnetic,
      {},
-     [](const P& p) { return Azi(-p.cos_inc * p.sin_mag / (p.horizontal_field * Square(p))); },
+     [](const P& p) { return Azi(-p.cos_inc * p.sin_mag / (p.horizontal_field * SquareAt(p))); },
      nullptr,
      FromEastWest},
     {"MBIXY-TI2",
      D::kField,
      R::kMagnetic,
      {},
-     [](const P& p) { return Azi(p.cos_mag / (p.horizontal_field * Square(p))); },
+     [](const P& p) { return Azi(p.cos_mag / (p.horizontal_field * SquareAt(p))); },
      nullptr,
      FromEastWest},
     {"MSIXY-TI1",
      D::kRatio,
      R::kMagnetic,
      {},
-     [](const P& p) { return Azi(p.sin_inc * p.sin_mag * Mixed(p) * kHalfSqrt2 / Square(p)); },
+     [](const P& p) { return Azi(p.sin_inc * p.sin_mag * Mixed(p) * kHalfSqrt2 / SquareAt(p)); },
      nullptr,
      FromEastWest},
     {"MSIXY-TI2",
@@ -121,7 +121,7 @@ constexpr WeightFunction kMore[] = {
      [](const P& p) {
        const double w =
            p.tan_dip * p.sin_inc * p.cos_inc - p.cos_inc * p.cos_inc * p.cos_mag - p.cos_mag;
-       return Azi(p.sin_mag * w / (2 * Square(p)));
+       return Azi(p.sin_mag * w / (2 * SquareAt(p)));
      },
      nullptr,
      FromEastWest},
@@ -132,7 +132,7 @@ constexpr WeightFunction kMore[] = {
      [](const P& p) {
        const double w = p.cos_inc * (p.cos_mag * p.cos_mag - p.sin_mag * p.sin_mag) -
                         p.tan_dip * p.sin_inc * p.cos_mag;
-       return Azi(w / (2 * Square(p)));
+       return Azi(w / (2 * SquareAt(p)));
      },
      nullptr,
      FromEastWest},
@@ -140,7 +140,7 @@ constexpr WeightFunction kMore[] = {
      D::kField,
      R::kMagnetic,
      {},
-     [](const P& p) { return Azi(-p.sin_inc * p.sin_mag * Mixed(p) / (Square(p) * Field(p))); },
+     [](const P& p) { return Azi(-p.sin_inc * p.sin_mag * Mixed(p) / (SquareAt(p) * Field(p))); },
      nullptr,
      FromEastWest},
     {"MDI",
@@ -149,7 +149,7 @@ constexpr WeightFunction kMore[] = {
      {},
      [](const P& p) {
        const double w = p.cos_inc - p.tan_dip * p.sin_inc * p.cos_mag;
-       return Azi(-p.sin_inc * p.sin_mag * w / Square(p));
+       return Azi(-p.sin_inc * p.sin_mag * w / SquareAt(p));
      },
      nullptr,
      FromEastWest},
