@@ -1,6 +1,5 @@
 #include "wellgyro/survey/job.h"
 
-#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string_view>
@@ -17,14 +16,11 @@ namespace {
   throw std::invalid_argument(fmt::format("job: {} = {} {}", field, value, why));
 }
 
-void RequireWithin(std::string_view field, double value, double low, double high) {
-  if (!(value >= low && value <= high)) {
-    Refuse(field, value, fmt::format("is outside [{}, {}]", low, high));
+// One number of a list.
+void CheckListed(std::string_view table, std::string_view key, double value) {
+  if (const auto complaint = ComplaintOf(value, JobKeyOf(table, key).range)) {
+    throw std::invalid_argument(fmt::format("job: {}.{}: {}", table, key, *complaint));
   }
-}
-
-void RequireFinite(std::string_view field, double value) {
-  if (!std::isfinite(value)) Refuse(field, value, "is not a number");
 }
 
 void CheckTieIn(const TieIn& tie) {
@@ -48,7 +44,7 @@ void CheckAlignment(const AlignmentSpec& alignment) {
 
 void CheckDepth(const DepthSpec& depth) {
   for (std::size_t i = 0; i < depth.corrections.size(); ++i) {
-    RequireWithin("depth.corrections", depth.corrections[i].second, -1e4, 1e4);
+    CheckListed("depth", "corrections", depth.corrections[i].second);
     if (i > 0 && !(depth.corrections[i].first > depth.corrections[i - 1].first)) {
       Refuse("depth.corrections", depth.corrections[i].first, "m does not increase");
     }
@@ -82,7 +78,7 @@ void CheckJob(const Job& job) {
     }
   }
   CheckRuns(job.runs);
-  for (double md : job.stations.at) RequireFinite("stations.at_m", md);
+  for (double md : job.stations.at) CheckListed("stations", "at_m", md);
   if (job.stations.every == 0 && job.stations.at.empty() && !job.stations.at_stops) {
     throw std::invalid_argument(
         "job: [stations] asks for nothing; give every_m, at_m or at_stops = true");

@@ -67,7 +67,7 @@ constexpr JobKey External(std::string_view key, NumberRange range, std::string_v
   return found;
 }
 
-// A number of one of a list of tables, or of a table's own file.
+// A number of one of a list of tables, of a table's own file, or of a list.
 constexpr JobKey Listed(std::string_view table, std::string_view key, std::string_view type,
                         NumberRange range, std::string_view absent, std::string_view meaning) {
   return {table, key, type, absent, meaning, range};
@@ -263,7 +263,7 @@ constexpr std::array kStations{
     Number<&Job::stations, &StationSpec::every>("stations", "every_m", 1,
                                                 {.min = 0.2, .max = 1e5, .or_zero = true},
                                                 "spacing; 0: none", "10; 0 beside at_m"),
-    Word("stations", "at_m", "list of numbers that increase", "none", "depths asked for"),
+    Listed("stations", "at_m", "list of numbers that increase", kDepth, "none", "depths asked for"),
     Word("stations", "at_stops", "true or false", "false", "the gyrocompass stations too"),
     Word("depth", "kind", "indicated, wireline, drill_pipe, tubing or other", "indicated",
          "what the depth marks measure"),
@@ -272,8 +272,9 @@ constexpr std::array kStations{
     Number<&Job::depth, &DepthSpec::max_gap>(
         "depth", "max_gap_s", 1, {.min = 0.1, .max = 600},
         "between marks of a moving tool, above which depth is unknown"),
-    Word("depth", "corrections", "rows of two numbers, depths increasing", "none",
-         "measured depth and what to add to it [m], linear between"),
+    Listed("depth", "corrections", "rows of two numbers, depths increasing, the second",
+           {.min = -1e4, .max = 1e4}, "none",
+           "measured depth and what to add to it [m], linear between"),
 };
 
 constexpr std::array kCable{
@@ -438,8 +439,7 @@ std::string JobReference() {
       text += fmt::format("\n## {}{}{}\n\n| key | is | without it | meaning |\n|---|---|---|---|\n",
                           list ? "[[" : "[", table, list ? "]]" : "]");
     }
-    const bool number = key.type == "number" || key.type == "whole number";
-    const std::string range = number ? TextOf(key.range) : "any";
+    const std::string range = TextOf(key.range);
     text += fmt::format("| `{}` | {}{} | {} | {} |\n", key.key, key.type,
                         range == "any" ? "" : ", " + range, AbsentText(key), key.meaning);
   }

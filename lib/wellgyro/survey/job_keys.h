@@ -20,7 +20,7 @@ struct JobKey {
   std::string_view type;  ///< "number", "whole number", "text", "true or false", "gyrocompass, ..."
   std::string_view absent;   ///< what holds without it; empty: the number of a Job{}
   std::string_view meaning;  ///< one sentence or less
-  NumberRange range = {};    ///< of a number, in the key's unit
+  NumberRange range = {};    ///< of a number, or of each in a list, in the key's unit
   double unit = 1;           ///< one of the key's unit in SI
   /// Where the number stands in a Job; null where it is absent. Null for what is no single number.
   const double* (*find)(const Job&) = nullptr;

@@ -18,6 +18,7 @@
 #include "wellgyro/io/signature.h"
 #include "wellgyro/io/toml/job_numbers_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/survey/job_keys.h"
 
 namespace wellgyro {
 namespace {
@@ -200,7 +201,7 @@ AttitudeSpec ReadAttitude(TomlTable table) {
 
 void ReadStations(TomlTable table, Job& job) {
   StationSpec& spec = job.stations;
-  if (auto at = table.FindNumbers("at_m", kAnyNumber)) {
+  if (auto at = table.FindNumbers("at_m", JobKeyOf("stations", "at_m").range)) {
     spec.at = *std::move(at);
     spec.every = 0;
   }
@@ -230,12 +231,14 @@ void ReadDepth(TomlTable table, Job& job) {
   }
   ReadNumbers(table, "depth", job);
   if (auto cable = table.FindTable("cable")) ReadNumbers(*cable, "depth.cable", job);
+  const NumberRange& range = JobKeyOf("depth", "corrections").range;
   for (const auto& row :
        table.FindRows("corrections", 2).value_or(std::vector<std::vector<double>>())) {
     if (!spec.corrections.empty() && !(row[0] > spec.corrections.back().first)) {
       table.Refuse("corrections", fmt::format("depth {} after {}: depths must increase", row[0],
                                               spec.corrections.back().first));
     }
+    if (const auto complaint = ComplaintOf(row[1], range)) table.Refuse("corrections", *complaint);
     spec.corrections.emplace_back(row[0], row[1]);
   }
 }
