@@ -1,4 +1,5 @@
-// Surveys a stream that feed wrote, by the C interface, and prints survey.csv: Session JOB STREAM
+// Surveys a stream that feed wrote, by the C interface, and prints its stations, all at the end, and
+// survey.csv: Session JOB STREAM
 using System;
 using System.IO;
 using System.Runtime.InteropServices;
@@ -6,11 +7,15 @@ using System.Text;
 
 static class Session {
   const string Library = "libwellgyro_c.so.1";
-  const int ImuBytes = 120, DepthBytes = 48;
+  const int ImuBytes = 120, DepthBytes = 48, StationBytes = 248;
 
   [DllImport(Library)] static extern int wellgyro_open(string path, out IntPtr session);
   [DllImport(Library)] static extern int wellgyro_push_imu(IntPtr s, byte[] samples, UIntPtr count);
   [DllImport(Library)] static extern int wellgyro_push_depth(IntPtr s, byte[] marks, UIntPtr count);
+  [DllImport(Library)] static extern int wellgyro_poll(IntPtr s, byte[] stations, UIntPtr capacity,
+                                                       out UIntPtr count);
+  [DllImport(Library)] static extern long wellgyro_refused(IntPtr s);
+  [DllImport(Library)] static extern int wellgyro_adjust(IntPtr s);
   [DllImport(Library)] static extern int wellgyro_finish(IntPtr s);
   [DllImport(Library)] static extern int wellgyro_survey_csv(IntPtr s, int tool, byte[] text,
                                                              UIntPtr capacity, out UIntPtr size);
@@ -25,16 +30,36 @@ static class Session {
           : wellgyro_push_depth(session, stream.ReadBytes(DepthBytes), one);
       if (answer != 0) return answer;
     }
-    return wellgyro_finish(session);
+    if (wellgyro_refused(session) != 0) return 2;
+    int adjusted = wellgyro_adjust(session);
+    return adjusted != 0 ? adjusted : wellgyro_finish(session);
+  }
+
+  static int Poll(IntPtr session, StreamWriter lines) {
+    var stations = new byte[1000 * StationBytes];
+    for (;;) {
+      UIntPtr count;
+      int answer = wellgyro_poll(session, stations, new UIntPtr(1000), out count);
+      if (answer != 0 || (int)count == 0) return answer;
+      for (int at = 0; at < (int)count * StationBytes; at += 8) {
+        lines.Write("{0:X16} ", BitConverter.ToInt64(stations, at));
+        if (at % StationBytes == StationBytes - 8) lines.Write("\n");
+      }
+    }
   }
 
   static int Print(IntPtr session) {
+    var output = Console.OpenStandardOutput();
+    using (var lines = new StreamWriter(output, new UTF8Encoding(false), 4096, true)) {
+      int polled = Poll(session, lines);
+      if (polled != 0) return polled;
+    }
     UIntPtr size;
     int answer = wellgyro_survey_csv(session, 0, null, UIntPtr.Zero, out size);
     if (answer != 1) return answer;
     var text = new byte[(int)size];
     answer = wellgyro_survey_csv(session, 0, text, size, out size);
-    if (answer == 0) Console.OpenStandardOutput().Write(text, 0, text.Length - 1);
+    if (answer == 0) output.Write(text, 0, text.Length - 1);
     return answer;
   }
 

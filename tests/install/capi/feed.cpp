@@ -1,5 +1,9 @@
 // Writes the samples and depths of a log as structs of wellgyro.h, surveys them by C++ and prints
-// survey.csv: feed JOB.toml RUN.lcm STREAM
+// every station that came as the words of a wellgyro_station, then survey.csv:
+// feed JOB.toml RUN.lcm STREAM
+#include <array>
+#include <bit>
+#include <cinttypes>
 #include <cstdio>
 #include <fstream>
 #include <vector>
@@ -13,6 +17,37 @@
 #include <wellgyro/survey/surveyor.h>
 
 namespace {
+
+class Printer : public wellgyro::Sink {
+ public:
+  void OnStation(const wellgyro::Station& from) override {
+    wellgyro_station to{.utime_us = from.utc.ns / 1000,
+                        .tool = from.tool,
+                        .run = from.run,
+                        .pass = static_cast<std::int32_t>(from.pass),
+                        .pass_number = from.pass_number,
+                        .number = from.number,
+                        .revision = from.revision,
+                        .status = static_cast<std::int32_t>(from.status),
+                        .kind = static_cast<std::int32_t>(from.kind),
+                        .quality = static_cast<std::uint32_t>(from.quality),
+                        .md_m = from.md,
+                        .inclination_rad = from.inclination,
+                        .azimuth_true_rad = from.azimuth,
+                        .toolface_rad = from.toolface,
+                        .north_m = from.p_WT_W.x(),
+                        .east_m = from.p_WT_W.y(),
+                        .tvd_m = from.p_WT_W.z()};
+    for (int i = 0; i < 9; ++i) {
+      to.cov_md_inc_azi[i] = from.cov_md_inc_azi(i / 3, i % 3);
+      to.cov_position_m2[i] = from.cov_p_WT_W(i / 3, i % 3);
+    }
+    for (const std::uint64_t word : std::bit_cast<std::array<std::uint64_t, 31>>(to)) {
+      std::printf("%016" PRIX64 " ", word);
+    }
+    std::printf("\n");
+  }
+};
 
 class Copier : public wellgyro::Listener {
  public:
@@ -89,12 +124,13 @@ int main(int argc, char** argv) {
   auto reader = wellgyro::LogReader::Open(argv[2]);
   if (!file || !reader) return 2;
   const wellgyro::Job& job = file->job;
-  wellgyro::Sink sink;
-  wellgyro::Surveyor surveyor(job, sink);
+  Printer printer;
+  wellgyro::Surveyor surveyor(job, printer);
   Copier copier(surveyor, argv[3]);
   wellgyro::Feed feed(job.channels, copier);
   wellgyro::LogEvent event;
   while (reader->Next(event)) feed.Take(event.channel, event.data);
+  surveyor.Adjust();
   surveyor.Finish();
   const wellgyro::WellGrid grid(*job.grid,
                                 {.latitude = job.well.latitude, .longitude = job.well.longitude});

@@ -1,8 +1,37 @@
-/* Surveys a stream that feed wrote, by the C interface, and prints survey.csv: session JOB STREAM
+/* Surveys a stream that feed wrote, by the C interface, and prints its stations as they come and
+ * survey.csv: session JOB STREAM
  */
+#include <inttypes.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <wellgyro.h>
+
+/* Sizes and places as released in 0.1.0; an array of -1 elements does not compile. */
+typedef char imu_size[sizeof(wellgyro_imu) == 120 ? 1 : -1];
+typedef char imu_rate[offsetof(wellgyro_imu, rate_rad_per_s) == 48 ? 1 : -1];
+typedef char depth_size[sizeof(wellgyro_depth) == 48 ? 1 : -1];
+typedef char depth_md[offsetof(wellgyro_depth, md_m) == 24 ? 1 : -1];
+typedef char station_size[sizeof(wellgyro_station) == 248 ? 1 : -1];
+typedef char station_md[offsetof(wellgyro_station, md_m) == 48 ? 1 : -1];
+typedef char station_cov[offsetof(wellgyro_station, cov_position_m2) == 176 ? 1 : -1];
+
+static int poll(wellgyro_session* session) {
+  wellgyro_station stations[7];
+  uint64_t words[sizeof *stations / sizeof(uint64_t)];
+  size_t count, i, k;
+  int answer;
+  do {
+    answer = wellgyro_poll(session, stations, 7, &count);
+    for (i = 0; i < count; ++i) {
+      memcpy(words, &stations[i], sizeof words);
+      for (k = 0; k < sizeof words / sizeof *words; ++k) printf("%016" PRIX64 " ", words[k]);
+      printf("\n");
+    }
+  } while (answer == WELLGYRO_OK && count > 0);
+  return answer;
+}
 
 static int push(wellgyro_session* session, FILE* stream) {
   int32_t kind;
@@ -16,10 +45,14 @@ static int push(wellgyro_session* session, FILE* stream) {
       wellgyro_depth mark;
       if (fread(&mark, sizeof mark, 1, stream) != 1) return WELLGYRO_UNUSABLE;
       answer = wellgyro_push_depth(session, &mark, 1);
+      if (answer == WELLGYRO_OK) answer = poll(session);
     }
     if (answer != WELLGYRO_OK) return answer;
   }
-  return wellgyro_finish(session);
+  if (wellgyro_refused(session) != 0) return WELLGYRO_UNUSABLE;
+  if (wellgyro_adjust(session) != WELLGYRO_OK) return WELLGYRO_INTERNAL;
+  if (wellgyro_finish(session) != WELLGYRO_OK) return WELLGYRO_INTERNAL;
+  return poll(session);
 }
 
 static int print(wellgyro_session* session) {
