@@ -81,8 +81,8 @@ void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchO
   command->add_option("--out", o->out, "calibration file to write (TOML)")->required();
   method.add_options(*command, *o);
   command->footer(
-      fmt::format("Example:\n  wellgyro calibrate {0} --data bench.csv --out {0}.toml{1}",
-                  method.name, method.needs));
+      fmt::format("Example:\n  wellgyro calibrate {0} --data bench.csv --out {0}.toml{1}{2}",
+                  method.name, *method.needs ? " \\\n     " : "", method.needs));
   OnCall(command, exit_code, [o, &method] { return Concluded(RunMethod(*o, method)); });
 }
 

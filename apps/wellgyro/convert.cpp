@@ -328,11 +328,13 @@ void AddConvert(CLI::App& app, int& exit_code) {
       "Formats: csv, las, p717, witsml (1.4.1.1), witsml21, petrel, compass, osdu, geojson, kml,\n"
       "gpkg; by the ending of OUT .csv .las .p717 .xml .dev .txt .json .geojson .kml .gpkg. "
       "WITSML\n"
-      "2.0 is read too; osdu, geojson, kml and gpkg are only written.\n"
-      "Example: wellgyro convert survey.csv survey.las\n"
-      "         wellgyro convert raw.txt well.xml --columns MD[ft]=1,INC=2,AZI=3 \\\n"
-      "             --azimuth-reference grid --well A-1\n"
-      "         wellgyro convert run.lcm run.csv, which writes run.depth.csv too");
+      "2.0 is read too; osdu, geojson, kml and gpkg are only written.\n\n"
+      "Example:\n"
+      "  wellgyro convert survey.csv survey.las\n"
+      "  wellgyro convert raw.txt well.xml --columns MD[ft]=1,INC=2,AZI=3 \\\n"
+      "      --azimuth-reference grid --well A-1\n"
+      "  wellgyro convert run.lcm run.csv\n"
+      "The last writes run.depth.csv too.");
   command->callback([options, &exit_code] { exit_code = Convert(*options); });
 }
 

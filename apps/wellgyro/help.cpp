@@ -30,21 +30,61 @@ std::size_t TerminalWidth() {
   return std::clamp<std::size_t>(columns, 60, 100);
 }
 
-/// The command that was named, or the program.
-const CLI::App& Named(const CLI::App& app) {
-  const auto commands = app.get_subcommands();
-  return commands.empty() ? app : Named(*commands.front());
-}
+bool AnyCommand(const CLI::App* /*command*/) { return true; }
 
 std::vector<std::string> KnownTo(const CLI::App& app) {
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* command : app.get_subcommands(AnyCommand)) {
     known.push_back(command->get_name());
   }
   return known;
+}
+
+/// `line` with the words of `text` behind it, broken before they pass `width`; each further line
+/// begins `indent` columns in.
+std::string Filled(std::string line, const std::string& text, std::size_t indent,
+                   std::size_t width) {
+  std::istringstream words(text);
+  std::string out, word;
+  bool first = true;
+  while (words >> word) {
+    if (!first && line.size() + 1 + word.size() > width) {
+      out += line + '\n';
+      line = std::string(indent, ' ');
+      first = true;
+    }
+    line += (first ? "" : " ") + word;
+    first = false;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return out + line + '\n';
+}
+
+/// What is wrong with the words that `command` did not take, nor left to one of its own commands;
+/// empty where there is none.
+std::string ComplaintOf(const CLI::App& command) {
+  const bool chooses = !command.get_subcommands(AnyCommand).empty();
+  std::string stray;
+  for (const std::string& word : command.remaining()) {
+    const std::string name = word.substr(0, word.find('='));
+    const bool option = name.starts_with("--");
+    if (!option && !chooses) {
+      stray = word;
+      continue;
+    }
+    std::string kind = "command";
+    if (option) kind = "option of " + command.get_name();
+    if (!option && command.get_parent()) kind = "method of " + command.get_name();
+    return fmt::format("'{}' is no {}{}", name, kind, Guess(name, KnownTo(command)));
+  }
+  if (stray.empty()) return {};
+  return fmt::format(
+      "'{}' belongs to no option of {}; one that may be given several times stands before each "
+      "value",
+      stray, command.get_name());
 }
 
 }  // namespace
@@ -60,20 +100,31 @@ std::string HelpText::Entry(const std::string& name, const std::string& text) co
     line = std::string(kColumn, ' ');
     out += '\n';
   }
-  std::istringstream words(text);
-  std::string word;
-  bool first = true;
-  while (words >> word) {
-    if (!first && line.size() + 1 + word.size() > width_) {
-      out += line + '\n';
-      line = std::string(kColumn, ' ');
-      first = true;
+  return out + Filled(line, text, kColumn, width_);
+}
+
+std::string HelpText::make_description(const CLI::App* command) const {
+  return Filled("", command->get_description(), 0, width_);
+}
+
+std::string HelpText::make_footer(const CLI::App* command) const {
+  std::istringstream lines(command->get_footer());
+  std::string out, paragraph, line;
+  const auto end_paragraph = [&] {
+    if (!paragraph.empty()) out += Filled("", paragraph, 0, width_);
+    paragraph.clear();
+  };
+  while (std::getline(lines, line)) {
+    // What is indented, a command or part of a file, is to be copied as it stands.
+    if (!line.empty() && line.front() != ' ') {
+      paragraph += line + ' ';
+      continue;
     }
-    line += (first ? "" : " ") + word;
-    first = false;
+    end_paragraph();
+    out += line + '\n';
   }
-  line.erase(line.find_last_not_of(' ') + 1);
-  return out + line + '\n';
+  end_paragraph();
+  return out;
 }
 
 std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
@@ -85,26 +136,21 @@ std::string HelpText::make_subcommand(const CLI::App* command) const {
   return Entry(command->get_name(), command->get_description());
 }
 
+std::string Guess(const std::string& word, const std::vector<std::string>& known) {
+  const std::string meant = Nearest(word, known);
+  return meant.empty() ? "" : fmt::format("; is '{}' meant?", meant);
+}
+
+const CLI::App& NamedCommand(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : NamedCommand(*commands.front());
+}
+
 std::string Complaint(const CLI::App& app, const CLI::ParseError& error) {
-  const CLI::App& named = Named(app);
-  std::string stray;
-  for (const std::string& word : app.remaining(true)) {
-    const std::string name = word.substr(0, word.find('='));
-    const bool option = name.starts_with("--");
-    if (!option && &named != &app) {
-      stray = word;
-      continue;
-    }
-    const std::string meant = Nearest(name, KnownTo(named));
-    return fmt::format("'{}' is no {}{}", name,
-                       option ? "option of " + named.get_name() : std::string("command"),
-                       meant.empty() ? "" : fmt::format("; is '{}' meant?", meant));
-  }
-  if (stray.empty()) return error.what();
-  return fmt::format(
-      "'{}' belongs to no option of {}; one that may be given several times stands before each "
-      "value",
-      stray, named.get_name());
+  std::string said = ComplaintOf(app);
+  if (!said.empty()) return said;
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? error.what() : Complaint(*commands.front(), error);
 }
 
 }  // namespace wellgyro::apps

@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "help.h"
 #include "live_commands.h"
+#include "on_call.h"
 #include "report.h"
 #include "version.h"
 
@@ -66,9 +67,7 @@ int Run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error), kDone;  // --help, --version
     Complain(Complaint(app, error));
-    const auto commands = app.get_subcommands();
-    fmt::print(stderr, "wellgyro{} --help says what there is\n",
-               commands.empty() ? "" : " " + commands.front()->get_name());
+    fmt::print(stderr, "{} --help says what there is\n", CallOf(NamedCommand(app)));
     return kUsage;
   }
   return exit_code;

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 import unittest
 
@@ -10,27 +11,52 @@ from harness import PROGRAM, FreshProgramTest, Job, Move, Run, Simulation, Stop
 from demonstration import DEMO, Begin, Ends
 
 
+def Help(*words, columns):
+    return subprocess.run([PROGRAM, *words, "--help"], capture_output=True, text=True,
+                          env=os.environ | {"COLUMNS": str(columns)}, check=True).stdout
+
+
+def Commands(*words):
+    """What may stand behind `words`."""
+    listed = Help(*words, columns=100).split("Subcommands:\n")[1].split("\n\n")[0]
+    return re.findall(r"(?m)^  (\S+)", listed)
+
+
 class Terminal(FreshProgramTest):
     def test_help_is_at_most_100_columns_and_names_no_path(self):
-        commands = [line.split()[0] for line in Run("--help").stdout.split("Subcommands:")[1]
-                    .splitlines() if line.startswith("  ") and not line.startswith("   ")]
-        self.assertIn("survey", commands)
-        for words in [[]] + [[command] for command in commands]:
-            text = Run(*words, "--help").stdout
-            for line in text.splitlines():
-                self.assertLessEqual(len(line), 100, line)
+        calls = [[]] + [[command] for command in Commands()]
+        calls += [["calibrate", method] for method in Commands("calibrate")]
+        self.assertIn(["survey"], calls)
+        self.assertIn(["calibrate", "learn"], calls)
+        for words in calls:
+            text = Help(*words, columns=100)
+            self.assertEqual([line for line in text.splitlines() if len(line) > 100], [])
             self.assertIn("Usage: wellgyro", text)
-            narrow = subprocess.run([PROGRAM, *words, "--help"], capture_output=True, text=True,
-                                    env=os.environ | {"COLUMNS": "80"}, check=True).stdout
-            entries = [line for line in narrow.split("Example:\n")[0].splitlines() if line[:2] == "  "]
-            self.assertEqual([line for line in entries if len(line) > 80], [])
-            self.assertEqual(narrow.split(), text.split())
+            for columns in (60, 80):
+                narrow = Help(*words, columns=columns)
+                self.assertEqual(narrow.split(), text.split())
+                # A word alone is not broken; behind the options, what is indented is to be copied
+                # as it stands.
+                parts = re.split(r"(?m)^(?=.*Examples?:$)", narrow, maxsplit=1)
+                long = [line for line in parts[0].splitlines()
+                        if len(line) > columns and len(line.split()) > 1]
+                long += [line for line in "".join(parts[1:]).splitlines()
+                         if len(line) > columns and line[0] != " "]
+                self.assertEqual(long, [], words)
 
     def test_a_slip_is_named_with_what_seems_to_be_meant(self):
+        method = "'six-postion' is no method of calibrate; is 'six-position' meant?\n"
         for words, said in ((("survy", "--job", "x"), "'survy' is no command; is 'survey' meant?"),
                             (("survey", "--jop", "x"), "'--jop' is no option of survey; is '--job'"),
                             (("check", "--job-key"), "'--job-key' is no option of check"),
                             (("zzz",), "'zzz' is no command\n"),
+                            (("zzz", "survey"), "'zzz' is no command\n"),
+                            (("calibrate", "six-postion"), method),
+                            (("calibrate", "six-postion", "--data", "x"), method),
+                            (("calibrate", "guess"), "'guess' is no method of calibrate\n"),
+                            (("calibrate", "--dip", "affine"), "'--dip' is no option of calibrate"),
+                            (("calibrate", "affine", "--dta", "x"), "'--dta' is no option of affine; "
+                             "is '--data' meant?\nwellgyro calibrate affine --help says"),
                             (("survey", "--from", "a.csv", "b.csv"),
                              "'b.csv' belongs to no option of survey; one that may be given several "
                              "times stands before each value\n")):
