@@ -17,6 +17,7 @@
 #include "wellgyro/io/result/allan_answer.h"
 #include "wellgyro/io/sensor/series_file.h"
 
+#include "choice.h"
 #include "commands.h"
 #include "on_call.h"
 #include "report.h"
@@ -211,9 +212,8 @@ CLI::Validator Finite() {
 void AddInput(CLI::App& command, AllanOptions& o) {
   const CLI::Validator finite = Finite();
   command.add_option("--data", o.data, "the log: binary numbers, CSV, or LCM")->required();
-  command
-      .add_option("--type", o.type, "f64, i16, i32 (little-endian), csv or lcm; default: by ending")
-      ->check(CLI::IsMember({"f64", "i16", "i32", "csv", "lcm"}));
+  TakeWord(command.add_option("--type", o.type, "numbers are little-endian; default: by ending"),
+           {"f64", "i16", "i32", "csv", "lcm"});
   command.add_option("--rate-hz", o.rate_hz, "samples a second; an LCM log says it itself")
       ->check(finite)
       ->check(CLI::Range(1e-9, 1e12));
@@ -228,13 +228,12 @@ void AddInput(CLI::App& command, AllanOptions& o) {
   command.add_option("--time", o.time,
                      "CSV: column of each sample's time, s or as its heading says (TOOL[s] and "
                      "UTC[us] are found by themselves); gives the rate and what is missing");
-  command
-      .add_option("--unit", o.request.unit,
-                  "deg_per_h, deg_per_s, rad_per_s (default, or as the heading says) or counts; "
-                  "accelerometers mps2, milli_g")
-      ->check([](const std::string& word) {
-        return IsAllanUnit(word) ? std::string() : "unknown unit " + word;
-      });
+  TakeWord(command.add_option(
+               "--unit", o.request.unit,
+               "deg_per_h, deg_per_s, rad_per_s (default, or as the heading says) or counts; "
+               "accelerometers mps2, milli_g"),
+           {"deg_per_h", "deg_per_s", "rad_per_s", "counts", "mps2", "milli_g"})
+      ->type_name("UNIT");
   command
       .add_option("--scale", o.request.scale, "readings times this are in --unit; counts: in rad/s")
       ->check(finite)
@@ -251,17 +250,16 @@ void AddCleaning(CLI::App& command, AllanOptions& o) {
       ->delimiter(',');
   command.add_flag("--robust", o.request.robust,
                    "leave out single readings beyond eight robust sigmas of those about them");
-  command
-      .add_option("--detrend", o.detrend,
-                  "temperature: take off what follows it, slope and bend by least squares")
-      ->check(CLI::IsMember({"temperature"}));
+  TakeWord(command.add_option("--detrend", o.detrend,
+                              "take off what follows it, slope and bend by least squares"),
+           {"temperature"});
 }
 
 void AddAnalysis(CLI::App& command, AllanOptions& o) {
-  command
-      .add_option("--deviation", o.deviation,
-                  "of the table: adev (side by side), oadev (overlapped, default) or mdev")
-      ->check(CLI::IsMember({"adev", "oadev", "mdev"}));
+  TakeWord(
+      command.add_option("--deviation", o.deviation,
+                         "of the table: adev (side by side), oadev (overlapped, default) or mdev"),
+      {"adev", "oadev", "mdev"});
   command.add_option("--taus", o.taus, "octave (default), decade, or seconds: 0.1,1,10");
   command.add_flag("--gauss-markov", o.request.fit.gauss_markov,
                    "fit bias instability as a Gauss-Markov process and find its time");

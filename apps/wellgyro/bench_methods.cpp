@@ -1,10 +1,11 @@
 #include "bench_methods.h"
 
-#include <map>
 #include <string>
 #include <utility>
 
 #include "wellgyro/base/units.h"
+
+#include "choice.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -100,13 +101,10 @@ void AttitudeOptions(CLI::App& command, BenchOptions& o) {
 
 void AffineOptions(CLI::App& command, BenchOptions& o) {
   using Order = AffineSetup::Order;
-  const std::map<std::string, Order> orders{
-      {"none", Order::kNone}, {"own", Order::kOwn}, {"full", Order::kFull}};
-  command
-      .add_option("--second-order", o.affine.order,
-                  "of the accelerometers: none (default), own axis, or full with products")
-      ->transform(CLI::CheckedTransformer(orders).description(""))
-      ->type_name("none|own|full");
+  TakeOneOf<Order>(
+      command.add_option("--second-order", o.affine.order,
+                         "of the accelerometers: none (default), own axis, or full with products"),
+      {{"none", Order::kNone}, {"own", Order::kOwn}, {"full", Order::kFull}});
   AddPositive(command, "--sigma-accel", o.affine.sigma_accel, 1, "of a reading, its unit");
   AddPositive(command, "--sigma-mag", o.affine.sigma_mag, 1, "of a reading, its unit");
   AddPositive(command, "--tilt-deg", o.affine.tilt_sigma, units::kDeg,
@@ -140,17 +138,15 @@ void ScalarDipOptions(CLI::App& command, BenchOptions& o) {
 }
 
 void GyroOptions(CLI::App& command, BenchOptions& o) {
-  const std::map<std::string, GyroForceModel> models{{"dual-axis", GyroForceModel::kDualAxis},
-                                                     {"full", GyroForceModel::kFull},
-                                                     {"none", GyroForceModel::kNone}};
   AddLatitude(command, o);
   AddAxes(command, o);
-  command
-      .add_option_function<std::string>(
-          "--force", [&o, models](const std::string& word) { o.gyro.force = models.at(word); },
-          "what they feel of it: dual-axis (tuned rotors), full (vibrating), none (optical); by "
-          "the channels' names if not given")
-      ->check(CLI::IsMember({"dual-axis", "full", "none"}));
+  CLI::Option* const force = command.add_option(
+      "--force", o.gyro.force,
+      "what they feel of it: dual-axis (tuned rotors), full (vibrating), none (optical); by "
+      "the channels' names if not given");
+  TakeOneOf<GyroForceModel>(force, {{"dual-axis", GyroForceModel::kDualAxis},
+                                    {"full", GyroForceModel::kFull},
+                                    {"none", GyroForceModel::kNone}});
   AddPositive(command, "--sigma-deg-per-h", o.gyro.sigma, 1, "of a reading at rest");
   AddPositive(command, "--sigma-table-deg-per-h", o.gyro.sigma_table, 1,
               "of a reading on the table");

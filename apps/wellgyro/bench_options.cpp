@@ -1,7 +1,6 @@
 #include "bench_options.h"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -12,6 +11,8 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/record/sample.h"
+
+#include "choice.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -98,14 +99,11 @@ void AddLatitude(CLI::App& command, BenchOptions& o) {
 }
 
 void AddAxes(CLI::App& command, BenchOptions& o) {
-  const std::map<std::string, BenchAxes> words{{"trade", BenchAxes::kTrade},
-                                               {"tool", BenchAxes::kTool}};
-  command
-      .add_option("--bench-axes", o.reference.axes,
-                  "x and y of the bench: trade, toolface measured to y (default), or tool, "
-                  "toolface measured to x as in jobs")
-      ->transform(CLI::CheckedTransformer(words).description(""))
-      ->type_name("trade|tool");
+  CLI::Option* const axes =
+      command.add_option("--bench-axes", o.reference.axes,
+                         "x and y of the bench: trade, toolface measured to y (default), or tool, "
+                         "toolface measured to x as in jobs");
+  TakeOneOf<BenchAxes>(axes, {{"trade", BenchAxes::kTrade}, {"tool", BenchAxes::kTool}});
 }
 
 void AddTool(CLI::App& command, BenchOptions& o) {

@@ -1,4 +1,3 @@
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "wellgyro/io/result/clearance_files.h"
 
 #include "answer.h"
+#include "choice.h"
 #include "commands.h"
 #include "on_call.h"
 #include "place_options.h"
@@ -53,15 +53,12 @@ void AddClearance(CLI::App& app, int& exit_code) {
   command->add_option(
       "--model", r.model,
       "error model of surveys that name none: a name of 'wellgyro models' or a file");
-  command
-      ->add_option("--correlation", r.correlation,
-                   "errors that two wells share and so drop out: none, global or full; wins over "
-                   "the policy's")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Correlation>{{"none", Correlation::kNone},
-                                             {"global", Correlation::kGlobal},
-                                             {"full", Correlation::kFull}}))
-      ->option_text("none|global|full");
+  CLI::Option* const option =
+      command->add_option("--correlation", r.correlation,
+                          "errors that two wells share and so drop out; wins over the policy's");
+  TakeOneOf<Correlation>(option, {{"none", Correlation::kNone},
+                                  {"global", Correlation::kGlobal},
+                                  {"full", Correlation::kFull}});
   AddPlace(*command, r.surroundings, r.convergence);
   command->add_option("--out", options->out, "folder for the results")->required();
   command->footer(

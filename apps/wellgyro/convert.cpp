@@ -21,6 +21,7 @@
 #include "wellgyro/io/file_in_pieces.h"
 #include "wellgyro/io/sensor/file_kind.h"
 
+#include "choice.h"
 #include "commands.h"
 #include "report.h"
 
@@ -261,17 +262,19 @@ int Convert(ConvertOptions& o) {
 }
 
 void AddReading(CLI::App& command, ConvertOptions& o) {
-  command.add_option("--from", o.from, "Format of IN, where its first lines do not tell")
-      ->check(CLI::IsMember(
-          {"csv", "las", "p717", "witsml", "witsml20", "witsml21", "petrel", "compass"}));
+  TakeWord(command.add_option("--from", o.from,
+                              "Format of IN, where its first lines do not tell: csv, las, p717, "
+                              "witsml, witsml20, witsml21, petrel or compass"),
+           {"csv", "las", "p717", "witsml", "witsml20", "witsml21", "petrel", "compass"})
+      ->type_name("FORMAT");
   command.add_option("--columns", o.columns, "Columns of a table: MD=1 or INC=Neigung ...")
       ->delimiter(',');
-  command.add_option("--depth-unit", o.depth_unit, "Unit of IN's depths; wins over what it says")
-      ->check(CLI::IsMember({"m", "ft", "ftUS"}));
-  command
-      .add_option("--azimuth-reference", o.azimuth_reference,
-                  "North of IN's azimuths; wins over what it says")
-      ->check(CLI::IsMember({"true", "grid", "magnetic"}));
+  TakeWord(command.add_option("--depth-unit", o.depth_unit,
+                              "Unit of IN's depths; wins over what it says"),
+           {"m", "ft", "ftUS"});
+  TakeWord(command.add_option("--azimuth-reference", o.azimuth_reference,
+                              "North of IN's azimuths; wins over what it says"),
+           {"true", "grid", "magnetic"});
   command.add_option("--convergence-deg", o.convergence_deg, "True less grid azimuth")
       ->check(CLI::Range(-180.0, 180.0));
   command.add_option("--latitude-deg", o.latitude_deg, "Of the well head, on WGS 84")
@@ -291,18 +294,22 @@ void AddReading(CLI::App& command, ConvertOptions& o) {
       ->check(CLI::Range(-12000.0, 12000.0));
   command.add_option("--well", o.well, "Name of the well; which, where IN has several");
   command.add_option("--trajectory", o.trajectory, "Name or uid, where IN has several");
-  command.add_option("--decimal", o.decimal, "What a comma inside IN's numbers is, where unclear")
-      ->check(CLI::IsMember({"comma", "point"}));
+  TakeWord(command.add_option("--decimal", o.decimal,
+                              "What a comma inside IN's numbers is, where unclear"),
+           {"comma", "point"});
 }
 
 void AddWriting(CLI::App& command, ConvertOptions& o) {
-  command.add_option("--to", o.to, "Format of OUT, where its name does not tell")
-      ->check(CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass",
-                             "osdu", "geojson", "kml", "gpkg"}));
-  command.add_option("--units", o.units, "Units of OUT; those of IN unless given")
-      ->check(CLI::IsMember({"metric", "field"}));
-  command.add_option("--north", o.north, "Turn azimuths, offsets and covariances to this north")
-      ->check(CLI::IsMember({"true", "grid", "magnetic"}));
+  TakeWord(
+      command.add_option("--to", o.to, "Format of OUT, where its name does not tell; see below"),
+      {"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu", "geojson", "kml",
+       "gpkg"})
+      ->type_name("FORMAT");
+  TakeWord(command.add_option("--units", o.units, "Units of OUT; those of IN unless given"),
+           {"metric", "field"});
+  TakeWord(command.add_option("--north", o.north,
+                              "Turn azimuths, offsets and covariances to this north"),
+           {"true", "grid", "magnetic"});
   command.add_option("--section-azimuth-deg", o.section_azimuth_deg, "Plane of vertical section")
       ->check(CLI::Range(-360.0, 360.0));
   command.add_flag("--derived", o.derived, "Add closure, TVD sub-sea and vertical section");

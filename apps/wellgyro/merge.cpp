@@ -1,5 +1,4 @@
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "wellgyro/io/words.h"
 
 #include "answer.h"
+#include "choice.h"
 #include "commands.h"
 #include "on_call.h"
 #include "place_options.h"
@@ -50,9 +50,7 @@ int RunMerge(MergeOptions& o) {
   o.request.plan = o.plan;
   o.request.formats.clear();
   for (const std::string& word : o.formats) {
-    const auto format = SurveyFormatOf(word);
-    if (!format) throw std::invalid_argument("--to " + word + ": no such format");
-    o.request.formats.push_back(*format);
+    o.request.formats.push_back(*SurveyFormatOf(word));
   }
   const Result<MergeAnswer> answer = AnswerMerge(o.request);
   if (const auto code = WriteAnswer(answer, o.out)) return *code;
@@ -75,10 +73,14 @@ void AddMerge(CLI::App& app, int& exit_code) {
       ->delimiter(',');
   command->add_option("--every", r.every, "the same at whole multiples of so many metres")
       ->check(CLI::Range(1e-3, 1e6));
-  command
-      ->add_option("--to", options->formats,
-                   "formats of the definitive survey besides CSV, as of 'convert', with commas")
-      ->delimiter(',');
+  CLI::Option* const formats =
+      command
+          ->add_option("--to", options->formats,
+                       "formats of the definitive survey besides CSV, as of 'convert', with commas")
+          ->delimiter(',');
+  TakeWord(formats, {"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu",
+                     "geojson", "kml", "gpkg"})
+      ->type_name("LIST");
   command->add_option("--out", options->out, "folder for the results")->required();
   command->footer(kHelp);
   OnCall(command, exit_code, [options] { return RunMerge(*options); });

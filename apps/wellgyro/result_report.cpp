@@ -1,7 +1,6 @@
 #include "result_report.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "wellgyro/io/result/survey_json.h"
 #include "wellgyro/io/text_file.h"
 
+#include "choice.h"
 #include "chromium.h"
 #include "commands.h"
 #include "report.h"
@@ -106,15 +106,11 @@ struct PageOptions {
 /// Units and paper, which change how the page looks and nothing in it.
 void AddLook(CLI::App& command, ReportOptions& page) {
   using Units = ReportOptions::Units;
-  command.add_option("--units", page.units, "Units of length")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Units>{{"metric", Units::kMetric}, {"field", Units::kField}}))
-      ->type_name("metric|field");
+  TakeOneOf<Units>(command.add_option("--units", page.units, "Units of length"),
+                   {{"metric", Units::kMetric}, {"field", Units::kField}});
   using Paper = ReportOptions::Paper;
-  command.add_option("--paper", page.paper, "Paper of the print")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Paper>{{"a4", Paper::kA4}, {"letter", Paper::kLetter}}))
-      ->type_name("a4|letter");
+  TakeOneOf<Paper>(command.add_option("--paper", page.paper, "Paper of the print"),
+                   {{"a4", Paper::kA4}, {"letter", Paper::kLetter}});
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "wellgyro/io/signature.h"
 #include "wellgyro/io/toml/job_file.h"
 
+#include "choice.h"
 #include "commands.h"
 #include "live.h"
 #include "live_commands.h"
@@ -102,8 +103,8 @@ void AddSend(CLI::App& app, int& exit_code) {
   auto* what = command
                    ->add_option("what", options->order.what,
                                 fmt::format("What is ordered: {}", fmt::join(OrderWords(), ", ")))
-                   ->check(CLI::IsMember(OrderWords()))
                    ->option_text("WHAT");
+  TakeWord(what, OrderWords());
   AddOrderOptions(*command, *options);
   auto* make = command->add_option("--new-key", *new_key, "Makes a key instead, into this file")
                    ->type_name("PEM");

@@ -23,6 +23,7 @@
 #include "wellgyro/live/results.h"
 #include "wellgyro/survey/surveyor.h"
 
+#include "choice.h"
 #include "commands.h"
 #include "delivery.h"
 #include "live.h"
@@ -235,19 +236,19 @@ void AddSays(CLI::App& command, Says& says) {
 }
 
 void AddFormats(CLI::App& command, SurveyOptions& options) {
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--formats",
-          [&options](const std::vector<std::string>& words) {
-            for (const std::string& word : words) {
-              options.formats.push_back(*SurveyFormatOf(word));
-            }
-          },
-          "Files for others, beside survey.csv: las, p717, witsml (1.4.1.1), witsml21, petrel, "
-          "compass, osdu")
-      ->delimiter(',')
-      ->check(
-          CLI::IsMember({"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu"}))
+  CLI::Option* const formats =
+      command
+          .add_option_function<std::vector<std::string>>(
+              "--formats",
+              [&options](const std::vector<std::string>& words) {
+                for (const std::string& word : words) {
+                  options.formats.push_back(*SurveyFormatOf(word));
+                }
+              },
+              "Files for others, beside survey.csv: las, p717, witsml (1.4.1.1), witsml21, petrel, "
+              "compass, osdu")
+          ->delimiter(',');
+  TakeWord(formats, {"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu"})
       ->type_name("LIST");
 }
 

@@ -1,4 +1,3 @@
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "wellgyro/io/result/uncertainty_files.h"
 
 #include "answer.h"
+#include "choice.h"
 #include "commands.h"
 #include "on_call.h"
 #include "place_options.h"
@@ -37,14 +37,12 @@ void AddSurveyFiles(CLI::App& command, UncertaintyOptions& o) {
   command.add_option("--other-model", o.request.other_model, "its error model, if not the same");
   command.add_flag("--same-hole", o.same_hole,
                    "the other survey is of the same hole: compare at equal MD");
-  command
-      .add_option("--correlation", o.request.correlation,
-                  "errors that both surveys share and so drop out: none, global (default) or full")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Correlation>{{"none", Correlation::kNone},
-                                             {"global", Correlation::kGlobal},
-                                             {"full", Correlation::kFull}}))
-      ->option_text("none|global|full");
+  CLI::Option* const option =
+      command.add_option("--correlation", o.request.correlation,
+                         "errors that both surveys share and so drop out; default global");
+  TakeOneOf<Correlation>(option, {{"none", Correlation::kNone},
+                                  {"global", Correlation::kGlobal},
+                                  {"full", Correlation::kFull}});
   command.add_option("--out", o.out, "folder for the results")->required();
 }
 
@@ -97,10 +95,10 @@ void AddUncertainty(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<UncertaintyOptions>();
   AddSurveyFiles(*command, *options);
   AddNumbers(*command, *options);
-  command
-      ->add_option("--allan", options->allan,
-                   "how the noise file enters: the exact covariance, or the printed recursion")
-      ->check(CLI::IsMember({"exact", "printed"}));
+  TakeWord(command->add_option(
+               "--allan", options->allan,
+               "how the noise file enters: the exact covariance, or the printed recursion"),
+           {"exact", "printed"});
   command->add_flag("--terms", options->request.terms, "write every term's part, terms.csv");
   command->add_flag("--plot", options->request.plot, "plan and vertical section, uncertainty.svg");
   command->footer(

@@ -32,6 +32,7 @@ class Terminal(FreshProgramTest):
             text = Help(*words, columns=100)
             self.assertEqual([line for line in text.splitlines() if len(line) > 100], [])
             self.assertIn("Usage: wellgyro", text)
+            self.assertNotIn("{", text)  # lists as CLI11 shows them
             for columns in (60, 80):
                 narrow = Help(*words, columns=columns)
                 self.assertEqual(narrow.split(), text.split())
@@ -62,6 +63,29 @@ class Terminal(FreshProgramTest):
                              "times stands before each value\n")):
             done = Run(*words)
             self.assertEqual(done.returncode, 1)
+            self.assertIn(said, done.stderr)
+
+    def test_a_word_that_is_refused_comes_with_those_that_are_taken(self):
+        for words, said in (
+                ("send finsh", "adjust, finish, take-station; is 'finish' meant?"),
+                ("report r --out p --units fild",
+                 "--units: 'fild' is none of metric, field; is 'field' meant?"),
+                ("report r --out p --units 1", "--units: '1' is none of metric, field\n"),
+                ("report r --out p --paper a9", "'a9' is none of a4, letter; is 'a4' meant?"),
+                ("allan --data d --unit foo", "--unit: 'foo' is none of deg_per_h, deg_per_s, "
+                 "rad_per_s, counts, mps2, milli_g\n"),
+                ("allan --data d --deviation adv", "oadev, mdev; is 'adev' meant?"),
+                ("survey --formats las,compas", "osdu; is 'compass' meant?"),
+                ("convert a b --north tru", "true, grid, magnetic; is 'true' meant?"),
+                ("merge p --to las,wits --out o", "gpkg; is 'witsml' meant?"),
+                ("clearance --correlation globl", "none, global, full; is 'global' meant?"),
+                ("uncertainty --correlation globl", "none, global, full; is 'global' meant?"),
+                ("uncertainty --allan exat", "exact, printed; is 'exact' meant?"),
+                ("calibrate affine --second-order ful", "none, own, full; is 'full' meant?"),
+                ("calibrate gyro-rate-table --force ful", "full, none; is 'full' meant?"),
+                ("calibrate affine --bench-axes tol", "trade, tool; is 'tool' meant?")):
+            done = Run(*words.split())
+            self.assertEqual(done.returncode, 1, words)
             self.assertIn(said, done.stderr)
 
     def test_version_names_the_commit(self):
