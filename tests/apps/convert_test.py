@@ -73,7 +73,7 @@ class Convert(FreshProgramTest):
 
     def test_no_option_is_passed_over(self):
         for options, code, word in (
-                (("--from", "foo"), 1, "not in {csv"),
+                (("--from", "foo"), 1, "none of csv"),
                 (("--declination-date", "31.12.2020"), 1, "YYYY-MM-DD"),
                 (("--latitude-deg", "60"), 1, "go together"),
                 (("--columns", "INC=9"), 2, "no column is called so"),
@@ -126,7 +126,7 @@ class Convert(FreshProgramTest):
         self.assertEqual(self.Convert("in.csv", "out.csv", "--to", "docx").returncode, 1)
         help_text = Run("convert", "--help")
         self.assertEqual(help_text.returncode, 0)
-        self.assertIn("Example: wellgyro convert", help_text.stdout)
+        self.assertIn("Example:\n  wellgyro convert", help_text.stdout)
 
 
 if __name__ == "__main__":
