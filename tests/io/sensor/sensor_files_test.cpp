@@ -366,7 +366,16 @@ TEST(SensorCsv, NamesTheLineAndColumnOfWhatItCannotUse) {
            {"UTC[us],TEMP[degC]\n1,2\n", "depths lacks MD or LENGTH"},
            {"a,b,c\n1,2,3\n", "text of an unknown kind, no table"},
            {"MD[m],WHAT\n1,2\n", "WHAT"},
-           {"UTC,MD\n1,2\n", "UTC has no unit"},
+           {"UTC,MD\n1,2\n", "UTC has no unit that is known: []; known are ns, us,"},
+           {"TOOL[s],RUN[m]\n1,2\n", "RUN takes no unit, not [m]"},
+           {"UTC[us],MD[fathom]\n1,2\n", "MD has no unit that is known: [fathom]; known are m, ft"},
+           {"TOOL[s],AX[m/s]\n1,2\n", "[m/s]; known are m/s2, g, mg"},
+           {"TOOL[s],AX[mgs]\n1,2\n", "[mgs]; known are mg, m/s2, g"},
+           {"TOOL[s],TEMP[K]\n1,2\n", "TEMP takes degC or no unit, not [K]"},
+           {"TOOL[s],GYY[deg/h]\n1,2\n",
+            "is not known; is GY meant? Known are UTC, END_UTC, TOOL,"},
+           {"TOOL[s],gz[deg/h]\n1,2\n", "is not known; is GZ meant?"},
+           {"TOOL[s],WHAT\n1,2\n", "column \"WHAT\" is not known; known are UTC, END_UTC, TOOL,"},
            {"\xED\xA1\xDA\x01\x01\x02,\xFF", "an LCM log, no table"}}) {
     scratch.Write("a.csv", text);
     const Result<SensorCsv> table = SensorCsv::Open(scratch.path() / "a.csv");

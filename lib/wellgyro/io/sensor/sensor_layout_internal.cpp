@@ -1,11 +1,12 @@
 #include "wellgyro/io/sensor/sensor_layout_internal.h"
 
 #include <algorithm>
-#include <utility>
+#include <string>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include "wellgyro/base/alike.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/text_internal.h"
 
@@ -57,6 +58,47 @@ constexpr std::array<Name, kColumns> kNames{{
     {"RUN", kPlain},     {"TOOL_NUMBER", kPlain},
 }};
 
+std::string Upper(std::string_view text) {
+  std::string upper(text);
+  std::ranges::transform(upper, upper.begin(), [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  });
+  return upper;
+}
+
+constexpr std::size_t kMostShown = 40;  // characters of a heading
+
+/// What is said of a heading whose name is none of a sensor's.
+std::string UnknownColumn(std::string_view heading, std::string_view name) {
+  std::string shown(heading.substr(0, kMostShown));
+  std::ranges::replace_if(
+      shown, [](char c) { return c < 0x20 || c > 0x7e; }, '?');
+  std::vector<std::string> known;
+  for (const Name& one : kNames) known.emplace_back(one.name);
+  const std::string meant = Nearest(Upper(name.substr(0, kMostShown)), known);
+  return fmt::format("column \"{}\" is not known; {} are {}", shown,
+                     meant.empty() ? "known" : fmt::format("is {} meant? Known", meant),
+                     fmt::join(known, ", "));
+}
+
+/// What is said of a column in a unit that does not measure it.
+std::string UnknownUnit(const Name& column, std::string_view unit) {
+  if (column.quantity == kPlain) {
+    return fmt::format("column {} takes {}no unit, not [{}]", column.name,
+                       column.name == "TEMP" ? "degC or " : "", unit);
+  }
+  std::vector<std::string> known;
+  for (const Unit& one : kUnits) {
+    if (one.quantity == column.quantity) known.emplace_back(one.name);
+  }
+  // Of one letter each is like no unit at all.
+  const std::string meant = unit.empty() ? "" : Nearest(unit.substr(0, kMostShown), known);
+  const auto near = std::ranges::find(known, meant);
+  if (near != known.end()) std::rotate(known.begin(), near, near + 1);
+  return fmt::format("column {} has no unit that is known: [{}]; known are {}", column.name, unit,
+                     fmt::join(known, ", "));
+}
+
 }  // namespace
 
 std::optional<HeadedUnit> HeadedUnitOf(std::string_view heading) {
@@ -88,27 +130,24 @@ void Layout::Take(std::string_view heading, int field) {
   if (bracket != std::string_view::npos && heading.ends_with(']')) {
     unit = heading.substr(bracket + 1, heading.size() - bracket - 2);
   }
-  const auto complain = [&](std::string text) {
+  const auto complain = [&](const auto& text) {
     if (!complaint.empty()) return;
-    complaint = std::move(text);
+    complaint = text();
     complaint_field = field;
   };
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (kNames[i].name != name) continue;
     meant = true;
-    if (places[i].field >= 0) return complain(fmt::format("column {} stands twice", name));
+    if (places[i].field >= 0) {
+      return complain([&] { return fmt::format("column {} stands twice", name); });
+    }
     const auto known = std::ranges::find_if(
         kUnits, [&](const Unit& u) { return u.quantity == kNames[i].quantity && u.name == unit; });
-    if (known == kUnits.end()) {
-      return complain(fmt::format("column {} has no unit that is known: [{}]", name, unit));
-    }
+    if (known == kUnits.end()) return complain([&] { return UnknownUnit(kNames[i], unit); });
     places[i] = {field, known->factor};
     return;
   }
-  std::string shown(heading.substr(0, 40));
-  std::ranges::replace_if(
-      shown, [](char c) { return c < 0x20 || c > 0x7e; }, '?');
-  complain(fmt::format("column \"{}\" is not known", shown));
+  complain([&] { return UnknownColumn(heading, name); });
 }
 
 std::optional<SensorTable> Layout::Kind() const {
