@@ -26,6 +26,13 @@ Ratios RatiosAt(double square) {
   return {sinc, 2 * s * s / square, (1 - sinc) / square};  // the second without cancellation
 }
 
+// 1 + a [v] + b [v]^2 with the cross product's matrix [v], [v]^2 = v v' - |v|^2.
+Eigen::Matrix3d Sum(const Eigen::Vector3d& v, double a, double b) {
+  Eigen::Matrix3d sum = b * v * v.transpose() + a * Skew(v);
+  sum.diagonal().array() += 1 - b * v.squaredNorm();
+  return sum;
+}
+
 }  // namespace
 
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
@@ -33,19 +40,13 @@ Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
 }
 
 Eigen::Matrix3d Exp(const Eigen::Vector3d& v) {
-  const double square = v.squaredNorm();
-  const auto [sinc, half, third] = RatiosAt(square);
-  Eigen::Matrix3d R = half * v * v.transpose() + sinc * Skew(v);
-  R.diagonal().array() += 1 - half * square;
-  return R;
+  const Ratios at = RatiosAt(v.squaredNorm());
+  return Sum(v, at.sinc, at.half);
 }
 
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& v) {
-  const double square = v.squaredNorm();
-  const auto [sinc, half, third] = RatiosAt(square);
-  Eigen::Matrix3d J = third * v * v.transpose() + half * Skew(v);
-  J.diagonal().array() += 1 - third * square;
-  return J;
+  const Ratios at = RatiosAt(v.squaredNorm());
+  return Sum(v, at.half, at.third);
 }
 
 Eigen::Vector3d Log(const Eigen::Matrix3d& R) {
