@@ -232,7 +232,7 @@ void AddInput(CLI::App& command, AllanOptions& o) {
                "--unit", o.request.unit,
                "deg_per_h, deg_per_s, rad_per_s (default, or as the heading says) or counts; "
                "accelerometers mps2, milli_g"),
-           {"deg_per_h", "deg_per_s", "rad_per_s", "counts", "mps2", "milli_g"})
+           AllanUnits())
       ->type_name("UNIT");
   command
       .add_option("--scale", o.request.scale, "readings times this are in --unit; counts: in rad/s")

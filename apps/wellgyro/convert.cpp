@@ -302,8 +302,7 @@ void AddReading(CLI::App& command, ConvertOptions& o) {
 void AddWriting(CLI::App& command, ConvertOptions& o) {
   TakeWord(
       command.add_option("--to", o.to, "Format of OUT, where its name does not tell; see below"),
-      {"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu", "geojson", "kml",
-       "gpkg"})
+      WrittenFormats())
       ->type_name("FORMAT");
   TakeWord(command.add_option("--units", o.units, "Units of OUT; those of IN unless given"),
            {"metric", "field"});

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/result/merge_files.h"
 #include "wellgyro/io/words.h"
 
@@ -78,9 +79,7 @@ void AddMerge(CLI::App& app, int& exit_code) {
           ->add_option("--to", options->formats,
                        "formats of the definitive survey besides CSV, as of 'convert', with commas")
           ->delimiter(',');
-  TakeWord(formats, {"csv", "las", "p717", "witsml", "witsml21", "petrel", "compass", "osdu",
-                     "geojson", "kml", "gpkg"})
-      ->type_name("LIST");
+  TakeWord(formats, WrittenFormats())->type_name("LIST");
   command->add_option("--out", options->out, "folder for the results")->required();
   command->footer(kHelp);
   OnCall(command, exit_code, [options] { return RunMerge(*options); });

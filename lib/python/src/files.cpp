@@ -1,10 +1,11 @@
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -107,10 +108,10 @@ nb::dict AllanOf(const Input<double, 1>& values, double rate_hz, const std::stri
     } else if (deviation != "oadev") {
       throw std::invalid_argument("deviation: adev, oadev or mdev is expected, not " + deviation);
     }
-    if (!unit.empty() && !IsAllanUnit(unit)) {
+    const std::vector<std::string> units = AllanUnits();
+    if (!unit.empty() && std::find(units.begin(), units.end(), unit) == units.end()) {
       throw std::invalid_argument(
-          "unit: deg_per_h, deg_per_s, rad_per_s, counts, mps2 or milli_g is expected, not " +
-          unit);
+          fmt::format("unit: one of {} is expected, not {}", fmt::join(units, ", "), unit));
     }
     request.unit = unit;
     request.scale = scale;

@@ -241,6 +241,14 @@ std::string_view WordOf(SurveyFormat format) {
   return kFormats[static_cast<std::size_t>(format)].word;
 }
 
+std::vector<std::string> WrittenFormats() {
+  std::vector<std::string> words;
+  for (const FormatName& f : kFormats) {
+    if (f.format != SurveyFormat::kWitsml20) words.emplace_back(f.word);
+  }
+  return words;
+}
+
 std::string FileNameOf(SurveyFormat format, const std::string& stem) {
   return stem + std::string(kFormats[static_cast<std::size_t>(format)].ending);
 }

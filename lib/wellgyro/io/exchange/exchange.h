@@ -37,6 +37,8 @@ enum class SurveyFormat {
 /// csv, las, p717, witsml (1.4.1.1), witsml20, witsml21, petrel, compass, osdu, geojson, kml, gpkg.
 WELLGYRO_EXPORT std::optional<SurveyFormat> SurveyFormatOf(std::string_view word);
 WELLGYRO_EXPORT std::string_view WordOf(SurveyFormat format);
+/// The words of all that are not read only.
+WELLGYRO_EXPORT std::vector<std::string> WrittenFormats();
 /// File name for `stem`, as "survey.las" or "survey-1411.xml".
 WELLGYRO_EXPORT std::string FileNameOf(SurveyFormat format, const std::string& stem);
 

@@ -22,7 +22,7 @@ struct AllanRequest {
   Deviation deviation = Deviation::kOverlapped;
   Taus taus = Taus::kOctave;
   std::vector<double> tau_list;  ///< [s], with kList
-  std::string unit;              ///< see IsAllanUnit; empty: the series' own, else rad_per_s
+  std::string unit;              ///< see AllanUnits; empty: the series' own, else rad_per_s
   double scale = 1;              ///< the values times this are in `unit`; counts: in rad/s
   bool unitless = false;         ///< plain numbers: the table only
   bool phases = false;           ///< the values are phases, not rates
@@ -37,7 +37,7 @@ struct AllanRequest {
 };
 
 /// deg_per_h, deg_per_s, rad_per_s, counts; for accelerometers mps2, milli_g.
-WELLGYRO_EXPORT bool IsAllanUnit(std::string_view word);
+WELLGYRO_EXPORT std::vector<std::string> AllanUnits();
 
 struct AllanAnswer {
   std::string table;                 ///< CSV: tau, deviation, terms, degrees of freedom, bounds

@@ -32,7 +32,11 @@ const Word* Find(std::string_view word) {
 
 }  // namespace
 
-bool IsAllanUnit(std::string_view word) { return Find(word) != nullptr; }
+std::vector<std::string> AllanUnits() {
+  std::vector<std::string> words;
+  for (const Word& known : kUnitWords) words.emplace_back(known.word);
+  return words;
+}
 
 AllanUnit UnitOf(std::string_view word, bool unitless) {
   if (unitless) return {.word = "", .plain = true};
