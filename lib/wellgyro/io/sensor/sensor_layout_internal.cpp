@@ -58,45 +58,43 @@ constexpr std::array<Name, kColumns> kNames{{
     {"RUN", kPlain},     {"TOOL_NUMBER", kPlain},
 }};
 
-std::string Upper(std::string_view text) {
-  std::string upper(text);
-  std::ranges::transform(upper, upper.begin(), [](char c) {
-    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
-  });
-  return upper;
+/// As much of what a file says as a complaint may show.
+std::string Shown(std::string_view text) {
+  std::string shown(text.substr(0, 40));
+  std::ranges::replace_if(
+      shown, [](char c) { return c < 0x20 || c > 0x7e; }, '?');
+  return shown;
 }
-
-constexpr std::size_t kMostShown = 40;  // characters of a heading
 
 /// What is said of a heading whose name is none of a sensor's.
 std::string UnknownColumn(std::string_view heading, std::string_view name) {
-  std::string shown(heading.substr(0, kMostShown));
-  std::ranges::replace_if(
-      shown, [](char c) { return c < 0x20 || c > 0x7e; }, '?');
-  std::vector<std::string> known;
-  for (const Name& one : kNames) known.emplace_back(one.name);
-  const std::string meant = Nearest(Upper(name.substr(0, kMostShown)), known);
-  return fmt::format("column \"{}\" is not known; {} are {}", shown,
-                     meant.empty() ? "known" : fmt::format("is {} meant? Known", meant),
-                     fmt::join(known, ", "));
+  std::vector<std::string> known, lower;
+  for (const Name& one : kNames) lower.push_back(Lower(known.emplace_back(one.name)));
+  const std::string like = Nearest(Lower(Shown(name)), lower);
+  const auto meant = std::ranges::find(lower, like) - lower.begin();
+  return fmt::format(
+      "column \"{}\" is not known; {} are {}", Shown(heading),
+      like.empty() ? "known"
+                   : fmt::format("is {} meant? Known", known[static_cast<std::size_t>(meant)]),
+      fmt::join(known, ", "));
 }
 
 /// What is said of a column in a unit that does not measure it.
 std::string UnknownUnit(const Name& column, std::string_view unit) {
   if (column.quantity == kPlain) {
     return fmt::format("column {} takes {}no unit, not [{}]", column.name,
-                       column.name == "TEMP" ? "degC or " : "", unit);
+                       column.name == "TEMP" ? "degC or " : "", Shown(unit));
   }
   std::vector<std::string> known;
   for (const Unit& one : kUnits) {
     if (one.quantity == column.quantity) known.emplace_back(one.name);
   }
   // Of one letter each is like no unit at all.
-  const std::string meant = unit.empty() ? "" : Nearest(unit.substr(0, kMostShown), known);
+  const std::string meant = unit.empty() ? "" : Nearest(Shown(unit), known);
   const auto near = std::ranges::find(known, meant);
   if (near != known.end()) std::rotate(known.begin(), near, near + 1);
-  return fmt::format("column {} has no unit that is known: [{}]; known are {}", column.name, unit,
-                     fmt::join(known, ", "));
+  return fmt::format("column {} has no unit that is known: [{}]; known are {}", column.name,
+                     Shown(unit), fmt::join(known, ", "));
 }
 
 }  // namespace
