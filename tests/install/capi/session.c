@@ -33,6 +33,12 @@ static int poll(wellgyro_session* session) {
   return answer;
 }
 
+static int finish(wellgyro_session* session) {
+  int answer = wellgyro_adjust(session);
+  if (answer == WELLGYRO_OK) answer = wellgyro_finish(session);
+  return answer == WELLGYRO_OK ? poll(session) : answer;
+}
+
 static int push(wellgyro_session* session, FILE* stream) {
   int32_t kind;
   while (fread(&kind, sizeof kind, 1, stream) == 1) {
@@ -50,9 +56,7 @@ static int push(wellgyro_session* session, FILE* stream) {
     if (answer != WELLGYRO_OK) return answer;
   }
   if (wellgyro_refused(session) != 0) return WELLGYRO_UNUSABLE;
-  if (wellgyro_adjust(session) != WELLGYRO_OK) return WELLGYRO_INTERNAL;
-  if (wellgyro_finish(session) != WELLGYRO_OK) return WELLGYRO_INTERNAL;
-  return poll(session);
+  return finish(session);
 }
 
 static int print(wellgyro_session* session) {
