@@ -7,7 +7,7 @@ import re
 import subprocess
 import unittest
 
-from harness import PROGRAM, FreshProgramTest, Job, Move, Run, Simulation, Stop
+from harness import PROGRAM, TOP, FreshProgramTest, Job, Move, Run, Simulation, Stop
 from demonstration import DEMO, Begin, Ends
 
 
@@ -44,6 +44,24 @@ class Terminal(FreshProgramTest):
                 long += [line for line in "".join(parts[1:]).splitlines()
                          if len(line) > columns and line[0] != " "]
                 self.assertEqual(long, [], words)
+
+    def test_bash_completes_commands_methods_orders_and_options(self):
+        os.symlink(PROGRAM, self.Path("wellgyro"))
+        completion = os.path.join(TOP, "apps", "wellgyro.bash")
+        for typed, offered in ((["sur"], {"survey"}), (["calibrate", ""], set(Commands("calibrate"))),
+                               (["calibrate", "tool", "--certificate-"], {"--certificate-number"}),
+                               (["calibrate", "--he"], {"--help"}),
+                               (["calibrate", "tool", "be"], set()),
+                               (["send", "re"], {"reject", "remark", "return-to-zero", "rezero"}),
+                               (["survey", "--ver"], set()), (["survey", "ru"], set())):
+            words = " ".join(f"'{word}'" for word in ["wellgyro", *typed])
+            done = subprocess.run(
+                ["bash", "-c", f"source '{completion}'; COMP_WORDS=({words}); "
+                 f"COMP_CWORD={len(typed)}; _wellgyro; echo \"${{COMPREPLY[@]}}\""],
+                capture_output=True, text=True, check=True,
+                env=os.environ | {"PATH": self.folder + ":" + os.environ["PATH"]})
+            self.assertEqual(set(done.stdout.split()), offered, typed)
+            self.assertEqual(done.stderr, "")
 
     def test_a_slip_is_named_with_what_seems_to_be_meant(self):
         method = "'six-postion' is no method of calibrate; is 'six-position' meant?\n"
