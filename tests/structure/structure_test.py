@@ -428,6 +428,20 @@ class Structure(unittest.TestCase):
         self.Report(problems)
         self.assertGreater(products, 5)
 
+    def test_comments_that_are_held_up_as_examples_stand_in_the_sources(self):
+        problems, known, source = [], 0, ""
+        for line in Lines(os.path.join(TOP, ".github", "comments.md")):
+            named, after = re.match(r"\d+\. `(.*)`", line), re.match(r"   - after: (.*)", line)
+            if named:
+                text = "\n".join(Lines(os.path.join(LIB, named.group(1))))
+                source = " ".join(re.sub(r"^\s*//[/<]*", "", text, flags=re.M).split())
+            if after:
+                known += 1
+                if " ".join(after.group(1).split()) not in source.replace("///< ", ""):
+                    problems.append(f"comments.md: no longer there: {after.group(1)[:80]}")
+        self.Report(problems)
+        self.assertGreaterEqual(known, 20)
+
     def test_every_source_is_built(self):
         problems = []
         for path in Sources(LIB, (".cpp",)):
