@@ -167,7 +167,7 @@ int SurveyLive(const SurveyOptions& options, const JobFile& job) {
   SurveyConsole console(options.says, page.get());
   LiveSetup setup = SetupOf(options, job);
   setup.advise = *advise;
-  auto session = LiveSession::Open(std::move(setup), nullptr, console);
+  auto session = LiveSession::Open(std::move(setup), console);
   if (!session) return Unusable(session.fault());
   const StopOnSignals stop([&session] { (*session)->Stop(); });
   if (options.says != Says::kNothing) SayHowHeard((*session)->bus());

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "wellgyro/bus/decode.h"
@@ -252,6 +254,10 @@ TEST(Wire, Station) {
   EXPECT_EQ(r.md, m.md_m);
   EXPECT_EQ(r.inclination, m.inclination_rad);
   EXPECT_EQ(r.azimuth, m.azimuth_true_rad);
+  const Eigen::Vector3d tangent_L(std::sin(r.inclination) * std::cos(r.azimuth),
+                                  std::sin(r.inclination) * std::sin(r.azimuth),
+                                  std::cos(r.inclination));
+  EXPECT_LT((r.tangent_L - tangent_L).norm(), 4e-16);
   EXPECT_EQ(r.toolface, m.toolface_rad);
   ExpectTriangle(r.cov_md_inc_azi, m.cov_md_inc_azi);
   EXPECT_EQ(r.p_WT_W, Eigen::Vector3d(m.north_m, m.east_m, m.tvd_m));

@@ -103,7 +103,7 @@ TEST_F(Session, SurveysRecordsAndResumesInTheSameFolder) {
   auto speaking = LiveBus::Open(setup_.url);
   ASSERT_TRUE(speaking);
   {
-    auto session = LiveSession::Open(setup_, nullptr, observer_);
+    auto session = LiveSession::Open(setup_, observer_);
     ASSERT_TRUE(session) << session.fault().text;
     std::thread sender([&] {
       Send(*speaking, false);
@@ -116,7 +116,7 @@ TEST_F(Session, SurveysRecordsAndResumesInTheSameFolder) {
     EXPECT_TRUE(outcome.usable());
   }
   setup_.resume = true;
-  auto session = LiveSession::Open(setup_, nullptr, observer_);
+  auto session = LiveSession::Open(setup_, observer_);
   ASSERT_TRUE(session) << session.fault().text;
   std::thread sender([&] {
     std::this_thread::sleep_for(milliseconds(300));
@@ -136,7 +136,7 @@ TEST_F(Session, SurveysRecordsAndResumesInTheSameFolder) {
 TEST_F(Session, AnOrderJustBeforeAStopIsObeyed) {
   auto speaking = LiveBus::Open(setup_.url);
   ASSERT_TRUE(speaking);
-  auto session = LiveSession::Open(setup_, nullptr, observer_);
+  auto session = LiveSession::Open(setup_, observer_);
   ASSERT_TRUE(session) << session.fault().text;
   std::thread sender([&] {
     Send(*speaking, true);
@@ -150,18 +150,19 @@ TEST_F(Session, AnOrderJustBeforeAStopIsObeyed) {
 }
 
 TEST_F(Session, AFolderHasOneSession) {
-  auto session = LiveSession::Open(setup_, nullptr, observer_);
+  auto session = LiveSession::Open(setup_, observer_);
   ASSERT_TRUE(session) << session.fault().text;
   Observer other;
-  const auto second = LiveSession::Open(setup_, nullptr, other);
+  const auto second = LiveSession::Open(setup_, other);
   ASSERT_FALSE(second);
   EXPECT_NE(second.fault().text.find("another wellgyro"), std::string::npos);
 }
 
 TEST_F(Session, WhileItAdjustsItsStatusGoesOnAndAStopIsHeeded) {
   SlowAdjuster adjuster;
-  auto session = LiveSession::Open(setup_, &adjuster, observer_);
+  auto session = LiveSession::Open(setup_, observer_);
   ASSERT_TRUE(session) << session.fault().text;
+  AdjustBy(adjuster, **session);
   auto speaking = LiveBus::Open(setup_.url);
   std::thread runner([&] { (*session)->Run(); });
   Send(*speaking, true);

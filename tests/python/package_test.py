@@ -134,6 +134,13 @@ class Surveys(Package):
         np.testing.assert_allclose(result.cov, result.cov.transpose(0, 2, 1), rtol=1e-12,
                                    atol=1e-15)
         self.assertTrue((np.linalg.eigvalsh(result.cov[1:]) > 0).all())
+        inclination, azimuth = np.radians(stations.inclination_deg), np.radians(stations.azimuth_true_deg)
+        np.testing.assert_allclose(
+            result.tangent, np.column_stack([np.sin(inclination) * np.cos(azimuth),
+                                             np.sin(inclination) * np.sin(azimuth),
+                                             np.cos(inclination)]), atol=1e-14)
+        across = np.einsum("nij,nj->ni", result.cov_tangent, result.tangent)
+        self.assertLess(np.abs(across).max(), 1e-12)
         self.assertEqual(str(stations.utc.dtype), "datetime64[ns, UTC]")
         self.assertIn(result.verdict, ("pass", "warn"))
         self.assertIn("gravity", set(result.checks.code))

@@ -144,7 +144,7 @@ void ExpectAsSureAsItSays(const Well& well, int seeds) {
             (Tangent(s.inclination, s.azimuth) - Tangent(point.inclination, point.azimuth))
                 .head<2>();
         const Eigen::Matrix2d cov_lean =
-            s.cov_tangent_W.topLeftCorner<2, 2>() +
+            s.cov_tangent_L.topLeftCorner<2, 2>() +
             s.cov_md_inc_azi(0, 0) * bend.tangent * bend.tangent.transpose();
         tangent[i].dof = 2;
         tangent[i].Add(lean.dot(cov_lean.inverse() * lean), lean.squaredNorm(), cov_lean.trace());
@@ -240,7 +240,7 @@ TEST(ThroughVertical, ARollThatGravityHardlyShowsIsFound) {
         const Eigen::Vector2d lean =
             (Tangent(s.inclination, s.azimuth) - Tangent(point.inclination, point.azimuth))
                 .head<2>();
-        const Eigen::Matrix2d cov = s.cov_tangent_W.topLeftCorner<2, 2>();
+        const Eigen::Matrix2d cov = s.cov_tangent_L.topLeftCorner<2, 2>();
         EXPECT_LT(lean.dot(cov.inverse() * lean), 4.5 * 4.5 + 4) << s.md;
         EXPECT_LT(std::sqrt(cov.trace()), 1e-3) << s.md;
       }

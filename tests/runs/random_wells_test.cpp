@@ -143,7 +143,7 @@ TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
       const double azi = WrapPi(s.azimuth - point.azimuth);
       const Eigen::Vector2d lean =
           (Tangent(s.inclination, s.azimuth) - Tangent(point.inclination, point.azimuth)).head<2>();
-      const Eigen::Matrix2d cov = s.cov_tangent_W.topLeftCorner<2, 2>();
+      const Eigen::Matrix2d cov = s.cov_tangent_L.topLeftCorner<2, 2>();
       const Eigen::Vector3d off = s.p_WT_W - (truth.well().PlaceAt(s.md).p_WT_W - start);
       const Eigen::Matrix3d cov_p = s.cov_p_WT_W + 1e-6 * Eigen::Matrix3d::Identity();
       const double squares[] = {inc * inc / s.cov_md_inc_azi(1, 1),

@@ -161,7 +161,8 @@ inline double AzimuthError(const Flown& flown, const SmoothedRun& run, std::size
 inline Flown Fly(const Simulation& simulation, const Job& job) {
   Sink sink;
   const KeepingAdjuster keeper;
-  Surveyor surveyor(job, sink, &keeper);
+  Surveyor surveyor(job, sink);
+  AdjustBy(keeper, surveyor);
   Play(simulation, surveyor);
   surveyor.Finish();
   Flown flown;

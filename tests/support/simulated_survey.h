@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wellgyro/simulate/simulator.h"
+#include "wellgyro/survey/run_adjuster.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "support/testing.h"
@@ -42,7 +43,8 @@ inline void Play(const Simulation& simulation, Surveyor& surveyor, const Arrives
 /// The survey of a simulated run.
 inline Survey SurveyOf(const Simulation& simulation, const Job& job, Sink& sink,
                        const Arrives& arrives = {}, const RunAdjuster* adjuster = nullptr) {
-  Surveyor surveyor(job, sink, adjuster);
+  Surveyor surveyor(job, sink);
+  if (adjuster != nullptr) AdjustBy(*adjuster, surveyor);
   Play(simulation, surveyor, arrives);
   surveyor.Finish();
   return surveyor.Current(simulation.streams.tool);

@@ -45,6 +45,24 @@ TEST(HoleAttitude, ALeanTowardsTheMarkFollowsTheToolface) {
   EXPECT_NEAR(right.azimuth, FromDegrees(20 - 0.1 / std::sin(FromDegrees(60))), 1e-7);
 }
 
+TEST(HoleAttitude, TheTangentIsThatOfTheAnglesAndSeesALeanAtVertical) {
+  StringSpec string;
+  string.misalignment_x = FromDegrees(0.1);
+  string.misalignment_y = FromDegrees(-0.05);
+  string.sag = FromDegrees(0.2);
+  for (double inclination : {0.0, 1e-6, 0.1, 3.0, 90.0, 120.0, 180.0}) {
+    const HoleAttitude hole = AttitudeOfHole(Tool(inclination, 200, 70), string);
+    const Eigen::Vector3d by_angles(std::sin(hole.inclination) * std::cos(hole.azimuth),
+                                    std::sin(hole.inclination) * std::sin(hole.azimuth),
+                                    std::cos(hole.inclination));
+    EXPECT_LT((hole.tangent_L - by_angles).norm(), 4e-16) << inclination;
+  }
+  // Straight down with the mark to the north, the hole leans by what the tool does, the other way.
+  const HoleAttitude hole = AttitudeOfHole(Tool(0, 0, 0), string);
+  const Eigen::Vector3d axis(-FromDegrees(0.1), FromDegrees(0.05), 1);
+  EXPECT_LT((hole.tangent_L - axis / axis.norm()).norm(), 4e-16);
+}
+
 TEST(HoleAttitude, SigmasGrowWithTheStringAndStopAtNoKnowledge) {
   StringSpec string;
   string.sigma_misalignment = 1e-3;

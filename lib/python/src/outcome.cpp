@@ -107,14 +107,17 @@ class StationColumns {
     columns_["easting_m"] = Array(std::move(easting));
   }
   void AddCovariances() {
-    std::vector<Eigen::Matrix3d> cov, tangent;
+    std::vector<Eigen::Matrix3d> cov, cov_tangent;
+    std::vector<Eigen::Vector3d> tangent;
     for (const Station& s : stations_) {
       const bool unfit = Has(s.quality, Quality::kUnfit);
+      tangent.push_back(s.tangent_L);
       cov.push_back(unfit ? Eigen::Matrix3d::Constant(kNone) : s.cov_p_WT_W);
-      tangent.push_back(unfit ? Eigen::Matrix3d::Constant(kNone) : s.cov_tangent_W);
+      cov_tangent.push_back(unfit ? Eigen::Matrix3d::Constant(kNone) : s.cov_tangent_L);
     }
     columns_["cov"] = Matrices(cov);
-    columns_["cov_tangent"] = Matrices(tangent);
+    columns_["tangent"] = Vectors(tangent);
+    columns_["cov_tangent"] = Matrices(cov_tangent);
   }
 
   const std::vector<Station>& stations_;

@@ -85,7 +85,7 @@ def _write(path, text):
 
 def _frame(columns):
     frame = pd.DataFrame({("pass" if k == "pass_" else k): v for k, v in columns.items()
-                          if k not in ("cov", "cov_tangent")})
+                          if k not in ("cov", "tangent", "cov_tangent")})
     if "utc_ns" in frame:
         frame.insert(frame.columns.get_loc("utc_ns"), "utc",
                      pd.to_datetime(frame.pop("utc_ns"), unit="ns", utc=True))
@@ -127,9 +127,13 @@ class Result:
         return self._outcome.stations(self.tool)["cov"]
 
     @property
+    def tangent(self) -> np.ndarray:
+        """(n, 3): the hole's unit tangent, north, east and down; regular at vertical."""
+        return self._outcome.stations(self.tool)["tangent"]
+
+    @property
     def cov_tangent(self) -> np.ndarray:
-        """(n, 3, 3): of the hole's unit tangent, north, east and down [rad2]; regular at vertical,
-        NaN where a station is unfit."""
+        """(n, 3, 3): of the tangent, across it alone [rad2]; NaN where a station is unfit."""
         return self._outcome.stations(self.tool)["cov_tangent"]
 
     @property

@@ -50,7 +50,8 @@ Result<Message> SurveyStation(std::span<const std::byte> bytes) {
   MirrorUpper(sent.station.cov_p_WT_W);
   Station& s = sent.station;
   const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(s.inclination, s.azimuth);
-  s.cov_tangent_W = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
+  s.tangent_L = Tangent(s.inclination, s.azimuth);
+  s.cov_tangent_L = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
   return Message(std::move(sent));
 }
 

@@ -21,9 +21,9 @@ class FaultList : public Sink {
 
 }  // namespace
 
-Result<LogSurvey> SurveyLog(const Job& job, const std::string& path, const RunAdjuster* adjuster) {
+Result<LogSurvey> SurveyLog(const Job& job, const std::string& path) {
   FaultList sink;
-  Surveyor surveyor(job, sink, adjuster);
+  Surveyor surveyor(job, sink);
   SurveyorListener listener(surveyor, sink);
   Feed feed(job.channels, listener);
   LogSurvey survey;

@@ -13,6 +13,7 @@
 #include "wellgyro/live/journal.h"
 #include "wellgyro/live/observer.h"
 #include "wellgyro/live/session_core_internal.h"
+#include "wellgyro/survey/run_adjuster.h"
 
 namespace wellgyro {
 namespace {
@@ -57,15 +58,18 @@ bool LiveOutcome::losses() const {
          });
 }
 
+void AdjustBy(const RunAdjuster& adjuster, LiveSession& session) {
+  AdjustBy(adjuster, session.core_->surveyor);
+}
+
 LiveSession::LiveSession(std::unique_ptr<Core> core) : core_(std::move(core)) {}
 LiveSession::~LiveSession() = default;
 
-Result<std::unique_ptr<LiveSession>> LiveSession::Open(LiveSetup setup, const RunAdjuster* adjuster,
-                                                       LiveObserver& observer) {
+Result<std::unique_ptr<LiveSession>> LiveSession::Open(LiveSetup setup, LiveObserver& observer) {
   if (auto fault = Complaint(setup)) return *std::move(fault);
   Result<LiveBus> bus = LiveBus::Open(setup.url.empty() ? kDefaultLcmUrl : setup.url);
   if (!bus) return bus.fault();
-  auto core = std::make_unique<Core>(std::move(setup), adjuster, observer, std::move(*bus));
+  auto core = std::make_unique<Core>(std::move(setup), observer, std::move(*bus));
   if (auto fault = core->Begin()) return *std::move(fault);
   return std::unique_ptr<LiveSession>(new LiveSession(std::move(core)));
 }
@@ -77,13 +81,12 @@ LiveOutcome LiveSession::Run() {
   return core_->End(ended);
 }
 
-LiveSession::Core::Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveObserver& observer,
-                        LiveBus the_bus)
+LiveSession::Core::Core(LiveSetup the_setup, LiveObserver& observer, LiveBus the_bus)
     : setup(std::move(the_setup)),
       notices(observer, setup.clock),
       bus(std::move(the_bus)),
       broadcast(bus, setup.job.job.channels, setup.clock, notices),
-      surveyor(setup.job.job, broadcast, adjuster),
+      surveyor(setup.job.job, broadcast),
       intake(setup.job, surveyor),
       watch([this](const Fault& fault) { notices.Tell(fault); }),
       guard(

@@ -75,11 +75,9 @@ struct LiveOutcome {
 /// write files and watch that the status goes on while the survey is adjusted.
 class WELLGYRO_EXPORT LiveSession {
  public:
-  /// Listens from here on. `observer` and `adjuster`, which may be null, must outlive the session.
-  /// A Fault says what to do: nothing has been written then. Throws std::invalid_argument when the
+  /// Listens from here on. `observer` must outlive the session. A Fault says what to do: nothing has been written then. Throws std::invalid_argument when the
   /// job makes no sense.
-  static Result<std::unique_ptr<LiveSession>> Open(LiveSetup setup, const RunAdjuster* adjuster,
-                                                   LiveObserver& observer);
+  static Result<std::unique_ptr<LiveSession>> Open(LiveSetup setup, LiveObserver& observer);
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -92,6 +90,8 @@ class WELLGYRO_EXPORT LiveSession {
   void Stop() noexcept;
 
  private:
+  /// As of a Surveyor, before Run.
+  friend WELLGYRO_EXPORT void AdjustBy(const RunAdjuster& adjuster, LiveSession& session);
   struct Core;
   explicit LiveSession(std::unique_ptr<Core> core);
   std::unique_ptr<Core> core_;

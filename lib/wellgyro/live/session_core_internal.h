@@ -32,7 +32,7 @@ namespace wellgyro {
 struct LiveSession::Core {
   using Ended = LiveOutcome::Ended;
 
-  Core(LiveSetup the_setup, const RunAdjuster* adjuster, LiveObserver& observer, LiveBus the_bus);
+  Core(LiveSetup the_setup, LiveObserver& observer, LiveBus the_bus);
 
   /// Takes the folder, subscribes, and opens or resumes the log. A Fault: nothing has been written.
   std::optional<Fault> Begin();

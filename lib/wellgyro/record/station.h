@@ -35,16 +35,17 @@ struct Station {
   Quality quality = Quality::kGood;
   UtcTime utc;  ///< when the tool was there
   ToolTime tool_time;
-  double md = 0;           ///< measured depth [m]
-  double inclination = 0;  ///< [rad]
-  double azimuth = 0;      ///< true [rad], [0, 2 pi)
+  double md = 0;  ///< measured depth [m]
+  /// The hole's unit tangent (sin I cos A, sin I sin A, cos I).
+  Eigen::Vector3d tangent_L = Eigen::Vector3d::UnitZ();
+  /// Of it, across it alone, so that the rank is two; regular at every inclination [rad^2].
+  Eigen::Matrix3d cov_tangent_L = Eigen::Matrix3d::Zero();
+  double inclination = 0;  ///< I of the tangent [rad]
+  double azimuth = 0;      ///< A, true [rad], [0, 2 pi); that of the tool where I is 0
   double toolface = 0;     ///< of the tool, high side to reference mark [rad]
   /// Of (md, inclination, azimuth) [m, rad]: as written, at the edge. Near vertical an azimuth has
-  /// no sigma that means much; what is told of the direction there is in `cov_tangent_W`.
+  /// no sigma that means much; what is known of the direction there is in `cov_tangent_L`.
   Eigen::Matrix3d cov_md_inc_azi = Eigen::Matrix3d::Zero();
-  /// Of the unit tangent (sin I cos A, sin I sin A, cos I), regular at every inclination; across it
-  /// alone, so that its rank is two [rad^2].
-  Eigen::Matrix3d cov_tangent_W = Eigen::Matrix3d::Zero();
   Eigen::Vector3d p_WT_W = Eigen::Vector3d::Zero();      ///< north, east, TVD in the well frame [m]
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< [m^2]
   double dogleg_severity = 0;                            ///< over the leg that ends here [rad/m]

@@ -145,6 +145,7 @@ std::optional<Station> OpeningStation(const Job& job, const std::vector<PassItem
   if (tie.inclination) {
     opening.inclination = *tie.inclination;
     opening.azimuth = WrapTwoPi(*tie.azimuth);
+    opening.tangent_L = Tangent(opening.inclination, opening.azimuth);
   } else {
     const Station* best = nullptr;
     for (const PassItems& pass : passes) {

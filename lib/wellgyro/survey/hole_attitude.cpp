@@ -18,7 +18,7 @@ HoleAttitude AttitudeOfHole(const AttitudeSample& tool, const StringSpec& string
       R_LT * Eigen::Vector3d(-string.misalignment_x, -string.misalignment_y, 1) +
       string.sag * sin_tool * high_side_L;
 
-  HoleAttitude hole;
+  HoleAttitude hole{.tangent_L = axis_L.normalized()};
   const double horizontal = std::hypot(axis_L.x(), axis_L.y());
   hole.inclination = std::atan2(horizontal, axis_L.z());
   hole.azimuth = WrapTwoPi(horizontal > 0 ? std::atan2(axis_L.y(), axis_L.x()) : tool.azimuth);
@@ -40,11 +40,11 @@ HoleAttitude AttitudeOfHole(const AttitudeSample& tool, const StringSpec& string
 
 Eigen::Matrix3d CovarianceOfTangent(const HoleAttitude& hole, const Eigen::Matrix3d& cov_axis_L,
                                     const StringSpec& string) {
-  const Eigen::Vector3d t = Tangent(hole.inclination, hole.azimuth);
   const double sag = string.sigma_sag * std::sin(hole.inclination);
   const double lean = string.sigma_misalignment;
   const Eigen::Vector3d hangs = sag * TangentByAngles(hole.inclination, hole.azimuth).col(0);
-  return cov_axis_L + lean * lean * (Eigen::Matrix3d::Identity() - t * t.transpose()) +
+  return cov_axis_L +
+         lean * lean * (Eigen::Matrix3d::Identity() - hole.tangent_L * hole.tangent_L.transpose()) +
          hangs * hangs.transpose();
 }
 

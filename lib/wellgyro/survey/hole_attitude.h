@@ -10,6 +10,7 @@ namespace wellgyro {
 
 /// Where the hole points, with the covariance of (inclination, azimuth) [rad^2].
 struct HoleAttitude {
+  Eigen::Vector3d tangent_L = Eigen::Vector3d::UnitZ();
   double inclination = 0;  ///< [rad]
   double azimuth = 0;      ///< true [rad], [0, 2 pi)
   Eigen::Matrix2d cov = Eigen::Matrix2d::Zero();

@@ -5,8 +5,10 @@
 
 namespace wellgyro {
 
-/// What makes the final stations of a run from everything that was measured in it, for whoever
-/// would put another estimator in place of EstimatedRun().
+class Surveyor;
+
+/// What makes the final stations of a run from everything that was measured in it. A surveyor takes
+/// EstimatedRun(), unless another is put in its place.
 class WELLGYRO_EXPORT RunAdjuster {
  public:
   virtual ~RunAdjuster();
@@ -16,5 +18,8 @@ class WELLGYRO_EXPORT RunAdjuster {
   /// run leaves behind.
   virtual SmoothedRun Adjust(const RunHistory& history) const = 0;
 };
+
+/// Final stations are those of `adjuster`, which must outlive the surveyor: before the first push.
+WELLGYRO_EXPORT void AdjustBy(const RunAdjuster& adjuster, Surveyor& surveyor);
 
 }  // namespace wellgyro

@@ -57,10 +57,9 @@ Sink::~Sink() = default;
 RunAdjuster::~RunAdjuster() = default;
 
 struct Surveyor::Rooms {
-  Rooms(const Job& the_job, Sink& the_sink, const RunAdjuster* the_adjuster)
+  Rooms(const Job& the_job, Sink& the_sink)
       : job(Checked(the_job)),
         sink(the_sink),
-        adjuster(the_adjuster),
         track(TrackSetup(job)),
         marks(job.depth.cable, track),
         gate(
@@ -76,7 +75,7 @@ struct Surveyor::Rooms {
 
   Job job;
   Sink& sink;
-  const RunAdjuster* adjuster;
+  const RunAdjuster* adjuster = nullptr;
   DepthTrack track;
   MarksRefused refused;
   CableMarks marks;
@@ -225,8 +224,11 @@ struct Surveyor::Rooms {
   }
 };
 
-Surveyor::Surveyor(const Job& job, Sink& sink, const RunAdjuster* adjuster)
-    : rooms_(std::make_unique<Rooms>(job, sink, adjuster)) {}
+void AdjustBy(const RunAdjuster& adjuster, Surveyor& surveyor) {
+  surveyor.rooms_->adjuster = &adjuster;
+}
+
+Surveyor::Surveyor(const Job& job, Sink& sink) : rooms_(std::make_unique<Rooms>(job, sink)) {}
 Surveyor::~Surveyor() = default;
 Surveyor::Surveyor(Surveyor&&) noexcept = default;
 Surveyor& Surveyor::operator=(Surveyor&&) noexcept = default;

@@ -66,9 +66,9 @@ class WELLGYRO_EXPORT Surveyor {
   static constexpr std::size_t kOperationsMax = 100'000;  ///< commands and events
   static constexpr std::size_t kModesKept = 1000;
 
-  /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` and
-  /// `adjuster` must outlive this object; nullptr: final stations are those of EstimatedRun().
-  Surveyor(const Job& job, Sink& sink, const RunAdjuster* adjuster = nullptr);
+  /// Throws std::invalid_argument, naming the field, when `job` makes no sense. `sink` must
+  /// outlive this object.
+  Surveyor(const Job& job, Sink& sink);
   ~Surveyor();
   Surveyor(Surveyor&&) noexcept;
   Surveyor& operator=(Surveyor&&) noexcept;
@@ -105,6 +105,7 @@ class WELLGYRO_EXPORT Surveyor {
   Survey Current(std::int32_t tool) const;
 
  private:
+  friend void AdjustBy(const RunAdjuster& adjuster, Surveyor& surveyor);
   struct Rooms;
   std::unique_ptr<Rooms> rooms_;
 };

@@ -13,11 +13,12 @@ void ToldStations::KeepTo(std::vector<Station>& stations) const {
     if (told == told_.end() || told->second.revision != station.revision) continue;
     const Station& as = told->second;
     station.md = as.md;
+    station.tangent_L = as.tangent_L;
     station.inclination = as.inclination;
     station.azimuth = as.azimuth;
     station.toolface = as.toolface;
     station.cov_md_inc_azi = as.cov_md_inc_azi;
-    station.cov_tangent_W = as.cov_tangent_W;
+    station.cov_tangent_L = as.cov_tangent_L;
     station.p_WT_W = as.p_WT_W;
     station.cov_p_WT_W = as.cov_p_WT_W;
     station.dogleg_severity = as.dogleg_severity;

@@ -208,7 +208,7 @@ void MakeUnfit(const Station& tie_in, Station& station) {
   station.cov_p_WT_W = tie_in.cov_p_WT_W + way * way * Eigen::Matrix3d::Identity();
   station.cov_md_inc_azi =
       Eigen::Vector3d(way * way, kUnknownAngleVariance, kUnknownAngleVariance).asDiagonal();
-  station.cov_tangent_W = kUnknownAngleVariance * Eigen::Matrix3d::Identity();
+  station.cov_tangent_L = kUnknownAngleVariance * Eigen::Matrix3d::Identity();
 }
 
 void GiveVerdict(Survey& survey) {

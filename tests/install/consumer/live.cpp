@@ -17,7 +17,7 @@ int main(int, char** argv) {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::microseconds(1);
   };
   wellgyro::LiveObserver observer;
-  auto session = wellgyro::LiveSession::Open(setup, nullptr, observer);
+  auto session = wellgyro::LiveSession::Open(setup, observer);
   if (!session) return std::puts(session.fault().text.c_str());
   return (*session)->Run().usable() ? 0 : 1;
 }

@@ -122,6 +122,12 @@ TEST(ParseSurveyCsv, RoundTripGivesTheSameBytes) {
   EXPECT_EQ(s.md, 110.25);
   EXPECT_NEAR(s.inclination, FromDegrees(12.345679), 1e-15);
   EXPECT_NEAR(s.azimuth, FromDegrees(271.5), 1e-15);
+  const double across = std::sin(FromDegrees(12.345679));
+  EXPECT_LT((s.tangent_L - Eigen::Vector3d(across * std::cos(FromDegrees(271.5)),
+                                           across * std::sin(FromDegrees(271.5)),
+                                           std::cos(FromDegrees(12.345679))))
+                .norm(),
+            4e-16);
   EXPECT_EQ(s.p_WT_W, Eigen::Vector3d(0.0321, -12345.6789, 109.7));
   EXPECT_EQ(s.cov_p_WT_W(2, 1), 0.25);
   EXPECT_EQ(s.cov_p_WT_W(1, 0), -2e-7);

@@ -143,7 +143,8 @@ class Reader {
     s.cov_md_inc_azi(1, 1) = std::pow(FromDegrees(v[14]), 2);
     s.cov_md_inc_azi(2, 2) = std::pow(FromDegrees(v[15]), 2);
     const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(s.inclination, s.azimuth);
-    s.cov_tangent_W = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
+    s.tangent_L = Tangent(s.inclination, s.azimuth);
+    s.cov_tangent_L = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
     return s;
   }
 

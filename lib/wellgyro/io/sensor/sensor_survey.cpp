@@ -18,10 +18,9 @@ class FaultList : public Sink {
 
 }  // namespace
 
-Result<TableSurvey> SurveyTables(const Job& job, std::span<const std::filesystem::path> files,
-                                 const RunAdjuster* adjuster) {
+Result<TableSurvey> SurveyTables(const Job& job, std::span<const std::filesystem::path> files) {
   FaultList sink;
-  Surveyor surveyor(job, sink, adjuster);
+  Surveyor surveyor(job, sink);
   const Result<SensorReport> report = PushSensorFiles(files, job, surveyor, sink);
   if (!report) return report.fault();
   surveyor.Finish();
