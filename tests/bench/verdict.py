@@ -472,14 +472,15 @@ TAKEN_OUT = {**{fault: name for fault, name in POWER.items() if fault != "gyro_s
 
 
 def TakeOut(row, faulty, clean):
-    """Error of the tool's place once the cause of this row is taken out, and its normalised square:
-    by the covariance of the run without fault and that of the cause's size."""
+    """Error of the tool's place once the cause of this row is taken out, its normalised square by
+    the covariance of the run without fault and that of the cause's size, and how much larger that
+    makes the variances: no estimate of an unknown size is better (Cramer and Rao)."""
     shift = [float(row[key]) for key in ("DN[m]", "DE[m]", "DV[m]")]
     error = [a - b for a, b in zip(faulty["error_of_tool"], shift)]
     spread = (float(row["SIGMA"]) / float(row["SIZE"])) ** 2
     cov = [a + spread * shift[i] * shift[j]
            for a, (i, j) in zip(clean["cov"], ((0, 0), (0, 1), (1, 1)))]
-    return error, Square(error, cov)
+    return error, Square(error, cov), cov[0] + cov[2], clean["cov"][0] + clean["cov"][2]
 
 
 def Rms(errors):
@@ -488,10 +489,10 @@ def Rms(errors):
 
 def Pairs(one, pool, wells, causes, count):
     print("\ncause taken out, rms of the end's horizontal error [m]: clean; with the fault; taken "
-          "out; over clean; normalised square, clean, taken out")
+          "out; over clean, and at least by the sigma of the size; normalised square, clean, taken out")
     every, squares, cleans, before = [], [], [], []
     for fault in causes:
-        errors, outs, ends, wrong, held = [], [], [], [], []
+        errors, outs, ends, wrong, held, larger, as_clean = [], [], [], [], [], 0.0, 0.0
         runs = [(well, 30_000 + seed) for well in wells for seed in range(count)]
         clean = pool.map(lambda run: one(*run, None, 0.0), runs)
         faulty = pool.map(lambda run: one(*run, fault, 1.0), runs)
@@ -499,7 +500,9 @@ def Pairs(one, pool, wells, causes, count):
             row = [r for r in with_it["diagnosis"] if r["CODE"] == TAKEN_OUT[fault]]
             if not without["cov"] or not row or not row[0]["DN[m]"]:
                 continue
-            error, square = TakeOut(row[0], with_it, without)
+            error, square, variance, of_clean = TakeOut(row[0], with_it, without)
+            larger += variance
+            as_clean += of_clean
             outs.append(error)
             held.append(square)
             ends.append(without["error_of_tool"])
@@ -508,12 +511,13 @@ def Pairs(one, pool, wells, causes, count):
         if not outs:
             continue
         print(f"{fault:18s} {len(outs):3d} {Rms(ends):7.2f} {Rms(wrong):7.2f} {Rms(outs):7.2f} "
-              f"{Rms(outs) / Rms(ends):7.2f} {sum(errors) / 2 / len(errors):7.2f} "
+              f"{Rms(outs) / Rms(ends):7.2f} {math.sqrt(larger / as_clean):7.2f} "
+              f"{sum(errors) / 2 / len(errors):7.2f} "
               f"{sum(held) / 2 / len(held):7.2f}", flush=True)
         every, squares = every + outs, squares + held
         cleans, before = cleans + ends, before + wrong
     print(f"{'all':18s} {len(every):3d} {Rms(cleans):7.2f} {Rms(before):7.2f} {Rms(every):7.2f} "
-          f"{Rms(every) / max(Rms(cleans), 1e-9):7.2f} {'':7s} "
+          f"{Rms(every) / max(Rms(cleans), 1e-9):7.2f} {'':7s} {'':7s} "
           f"{sum(squares) / 2 / max(len(squares), 1):7.2f}")
 
 
