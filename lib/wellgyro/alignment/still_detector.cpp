@@ -109,8 +109,8 @@ std::optional<StillWindow> StillDetector::PushAnew(const ImuSample& sample,
   block_ = Block{};
   block_.index = BlockOf(stamp.tool_time);
   block_.first = stamp;
-  block_.w0 = sample.w_IT_T;
-  block_.f0 = sample.f_T;
+  block_.w0_T = sample.w_IT_T;
+  block_.f0_T = sample.f_T;
   Add(sample, along);
   return window;
 }
@@ -138,11 +138,11 @@ inline double StillDetector::SpeedLimit(double sigma_speed) const {
 inline void StillDetector::Add(const ImuSample& sample, const AlongHole& along) {
   Block& block = block_;
   ++block.samples;
-  const Vector3d w = sample.w_IT_T - block.w0;
-  const Vector3d f = sample.f_T - block.f0;
-  block.sum_w += w;
-  block.sum_f += f;
-  if (sample.has_mag) block.sum_b += sample.b_T;
+  const Vector3d w = sample.w_IT_T - block.w0_T;
+  const Vector3d f = sample.f_T - block.f0_T;
+  block.sum_w_T += w;
+  block.sum_f_T += f;
+  if (sample.has_mag) block.sum_b_T += sample.b_T;
   block.square_w += w.cwiseAbs2();
   block.square_f += f.cwiseAbs2();
   block.sum_temperature += static_cast<double>(sample.stamp.temperature);
@@ -170,22 +170,22 @@ void StillDetector::Append(const SampleBlock& samples, const AlongHoleBlock& alo
   const auto n = static_cast<Eigen::Index>(samples.size()), from = static_cast<Eigen::Index>(at);
   Block& block = block_;
   Sums first, sum, square;
-  first << block.w0, block.f0;
-  sum << block.sum_w, block.sum_f;
+  first << block.w0_T, block.f0_T;
+  sum << block.sum_w_T, block.sum_f_T;
   square << block.square_w, block.square_f;
   for (const SixAxes& axes : samples.axes) {
     const Sums from_first = axes - first;
     sum += from_first;
     square += from_first.square();
   }
-  block.sum_w = sum.head<3>();
-  block.sum_f = sum.tail<3>();
+  block.sum_w_T = sum.head<3>();
+  block.sum_f_T = sum.tail<3>();
   block.square_w = square.head<3>();
   block.square_f = square.tail<3>();
   const SampleStamp& stamp = samples.first();
   const ImuSample& like = samples.samples.front();
   if (like.has_mag) {
-    for (const ImuSample& sample : samples.samples) block.sum_b += sample.b_T;
+    for (const ImuSample& sample : samples.samples) block.sum_b_T += sample.b_T;
   }
   const auto temperature = static_cast<double>(stamp.temperature);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -214,11 +214,11 @@ std::optional<StillWindow> StillDetector::CloseBlock() {
   const Means means{.first = block.first,
                     .last = *previous_,
                     .samples = block.samples,
-                    .w = block.w0 + block.sum_w / n,
-                    .f = block.f0 + block.sum_f / n,
-                    .b = block.sum_b / n,
-                    .var_w = (block.square_w - block.sum_w.cwiseAbs2() / n) / free,
-                    .var_f = (block.square_f - block.sum_f.cwiseAbs2() / n) / free,
+                    .w_T = block.w0_T + block.sum_w_T / n,
+                    .f_T = block.f0_T + block.sum_f_T / n,
+                    .b_T = block.sum_b_T / n,
+                    .var_w = (block.square_w - block.sum_w_T.cwiseAbs2() / n) / free,
+                    .var_f = (block.square_f - block.sum_f_T.cwiseAbs2() / n) / free,
                     .temperature = block.sum_temperature / n,
                     .md = block.sum_md / depths,
                     .speed = block.sum_speed / depths,
@@ -254,19 +254,19 @@ bool StillDetector::StillAlone(const Means& block) const {
   }
   const ErrorPriors& errors = setup_.errors;
   const double bias = std::hypot(errors.gyro_bias_sigma, setup_.gyro.bias_instability) +
-                      (errors.mass_unbalance_sigma + errors.quadrature_sigma) * block.f.norm();
+                      (errors.mass_unbalance_sigma + errors.quadrature_sigma) * block.f_T.norm();
   const double noise =
       BlockVariance(rate_model / n, block.var_w.head(axes).maxCoeff(), n, kScatterRate);
   const double limit = kEarthRate + kMeanRate + kGate * (bias + std::sqrt(noise));
-  return block.w.head(axes).norm() <= limit;
+  return block.w_T.head(axes).norm() <= limit;
 }
 
 /// Against the means of the stretch, or of its first block while that is all there is.
 bool StillDetector::StillTogether(const Means& block) const {
   const bool young = stretch_.blocks == 0;
   const double n = young ? 1 : static_cast<double>(stretch_.blocks);
-  const Vector3d& w = young ? pending_.w : stretch_.mean_w;
-  const Vector3d& f = young ? pending_.f : stretch_.mean_f;
+  const Vector3d& w = young ? pending_.w_T : stretch_.mean_w_T;
+  const Vector3d& f = young ? pending_.f_T : stretch_.mean_f_T;
   const Vector3d var_w = ((young ? pending_.var_w : stretch_.sum_var_w) + block.var_w) / (n + 1);
   const Vector3d var_f = ((young ? pending_.var_f : stretch_.sum_var_f) + block.var_f) / (n + 1);
   const double seconds = block.seconds();
@@ -277,12 +277,12 @@ bool StillDetector::StillTogether(const Means& block) const {
     return std::abs(a - b) <= kGate * std::sqrt(variance * (1 + 1 / n)) + change;
   };
   for (int i = 0; i < 3; ++i) {
-    if (!agree(block.f[i], f[i], ForceVariance(setup_.errors, seconds), var_f[i], kScatterForce,
+    if (!agree(block.f_T[i], f[i], ForceVariance(setup_.errors, seconds), var_f[i], kScatterForce,
                kChangeForce)) {
       return false;
     }
     if (i == 2 && !block.gz) break;
-    if (!agree(block.w[i], w[i], RateVariance(setup_.gyro, seconds), var_w[i], kScatterRate,
+    if (!agree(block.w_T[i], w[i], RateVariance(setup_.gyro, seconds), var_w[i], kScatterRate,
                kChangeRate)) {
       return false;
     }
@@ -296,7 +296,7 @@ bool StillDetector::StillTogether(const Means& block) const {
 bool StillDetector::Creeps() const {
   if (static_cast<double>(stretch_.blocks) < kCreepBlocks) return false;
   for (int i = 0; i < 3; ++i) {
-    const double limit = kGate * std::sqrt(VarianceOfSlope(i)) + kCreep * stretch_.mean_f.norm();
+    const double limit = kGate * std::sqrt(VarianceOfSlope(i)) + kCreep * stretch_.mean_f_T.norm();
     if (std::abs(SlopeOfForce(i)) > limit) return true;
   }
   return false;
@@ -306,7 +306,7 @@ bool StillDetector::Creeps() const {
 double StillDetector::SlopeOfForce(int axis) const {
   const Stretch& s = stretch_;
   const double n = static_cast<double>(s.blocks);
-  return (s.sum_tf[axis] - s.sum_t * s.mean_f[axis]) / (s.sum_tt - s.sum_t * s.sum_t / n);
+  return (s.sum_tf_T[axis] - s.sum_t * s.mean_f_T[axis]) / (s.sum_tt - s.sum_t * s.sum_t / n);
 }
 
 double StillDetector::VarianceOfSlope(int axis) const {
@@ -321,9 +321,9 @@ double StillDetector::VarianceOfSlope(int axis) const {
 
 /// How fast gravity turns about the tool's axis. fx + i fy = g sin I e^{-iT}.
 void StillDetector::TakeRoll(StillWindow& window) const {
-  const double across = stretch_.mean_f.head<2>().squaredNorm();
+  const double across = stretch_.mean_f_T.head<2>().squaredNorm();
   if (static_cast<double>(stretch_.blocks) < kCreepBlocks || !(across > 0)) return;
-  const double fx = stretch_.mean_f.x(), fy = stretch_.mean_f.y();
+  const double fx = stretch_.mean_f_T.x(), fy = stretch_.mean_f_T.y();
   window.roll_rate = (fy * SlopeOfForce(0) - fx * SlopeOfForce(1)) / across;
   window.sigma_roll_rate =
       std::sqrt(fy * fy * VarianceOfSlope(0) + fx * fx * VarianceOfSlope(1)) / across;
@@ -340,22 +340,22 @@ void StillDetector::Average(const Means& block) {
   s.samples += block.samples;
   const double n = static_cast<double>(s.blocks);
   const double samples = static_cast<double>(block.samples);
-  s.sum_w += samples * block.w;
-  s.sum_f += samples * block.f;
-  s.sum_b += samples * block.b;
+  s.sum_w_T += samples * block.w_T;
+  s.sum_f_T += samples * block.f_T;
+  s.sum_b_T += samples * block.b_T;
   s.sum_temperature += samples * block.temperature;
   s.sum_md += samples * block.md;
-  const Vector3d dw = block.w - s.mean_w, df = block.f - s.mean_f;
-  s.mean_w += dw / n;
-  s.mean_f += df / n;
-  s.square_w += dw.cwiseProduct(block.w - s.mean_w);
-  s.square_f += df.cwiseProduct(block.f - s.mean_f);
+  const Vector3d dw = block.w_T - s.mean_w_T, df = block.f_T - s.mean_f_T;
+  s.mean_w_T += dw / n;
+  s.mean_f_T += df / n;
+  s.square_w += dw.cwiseProduct(block.w_T - s.mean_w_T);
+  s.square_f += df.cwiseProduct(block.f_T - s.mean_f_T);
   s.sum_var_w += block.var_w;
   s.sum_var_f += block.var_f;
   const double t = (block.first.tool_time - s.first.tool_time).seconds();
   s.sum_t += t;
   s.sum_tt += t * t;
-  s.sum_tf += t * block.f;
+  s.sum_tf_T += t * block.f_T;
   s.md_known = s.md_known && block.md_known;
   s.gz = s.gz && block.gz;
   s.mag = s.mag && block.mag;
@@ -390,9 +390,9 @@ StillWindow StillDetector::Window(Quality quality) const {
   window.run = s.first.run;
   window.tool = s.first.tool;
   window.samples = s.samples;
-  window.w_IT_T = s.sum_w / n;
-  window.f_T = s.sum_f / n;
-  if (s.mag) window.b_T = s.sum_b / n;
+  window.w_IT_T = s.sum_w_T / n;
+  window.f_T = s.sum_f_T / n;
+  if (s.mag) window.b_T = s.sum_b_T / n;
   window.has_gz = s.gz;
   window.has_mag = s.mag;
   window.index_position = index_position_;

@@ -74,8 +74,9 @@ class WELLGYRO_EXPORT StillDetector {
     std::int64_t index = 0;  ///< of the second on the tool clock
     SampleStamp first;
     std::int64_t samples = 0, depths = 0;
-    Eigen::Vector3d w0 = Eigen::Vector3d::Zero(), f0 = w0;  ///< the first sample
-    Eigen::Vector3d sum_w = w0, sum_f = w0, sum_b = w0, square_w = w0, square_f = w0;
+    Eigen::Vector3d w0_T = Eigen::Vector3d::Zero(), f0_T = w0_T;  ///< the first sample
+    Eigen::Vector3d sum_w_T = w0_T, sum_f_T = w0_T, sum_b_T = w0_T, square_w = w0_T,
+                    square_f = w0_T;
     double sum_temperature = 0, sum_md = 0, sum_speed = 0, sum_sigma_speed = 0;
     bool gz = true, mag = true, saturated = false;
   };
@@ -83,8 +84,8 @@ class WELLGYRO_EXPORT StillDetector {
   struct Means {
     SampleStamp first, last;
     std::int64_t samples = 0;
-    Eigen::Vector3d w = Eigen::Vector3d::Zero(), f = w, b = w;  ///< means
-    Eigen::Vector3d var_w = w, var_f = w;                       ///< of one sample
+    Eigen::Vector3d w_T = Eigen::Vector3d::Zero(), f_T = w_T, b_T = w_T;  ///< means
+    Eigen::Vector3d var_w = w_T, var_f = w_T;                             ///< of one sample
     double temperature = 0, md = 0, speed = 0, sigma_speed = 0;
     bool md_known = false, gz = false, mag = false, saturated = false;
 
@@ -94,13 +95,13 @@ class WELLGYRO_EXPORT StillDetector {
   struct Stretch {
     SampleStamp first, last;
     std::int64_t blocks = 0, samples = 0;
-    Eigen::Vector3d sum_w = Eigen::Vector3d::Zero(), sum_f = sum_w, sum_b = sum_w;
-    Eigen::Vector3d mean_w = sum_w, mean_f = sum_w;      ///< of block means
-    Eigen::Vector3d square_w = sum_w, square_f = sum_w;  ///< of their differences from the mean
-    Eigen::Vector3d sum_var_w = sum_w, sum_var_f = sum_w;
+    Eigen::Vector3d sum_w_T = Eigen::Vector3d::Zero(), sum_f_T = sum_w_T, sum_b_T = sum_w_T;
+    Eigen::Vector3d mean_w_T = sum_w_T, mean_f_T = sum_w_T;  ///< of block means
+    Eigen::Vector3d square_w = sum_w_T, square_f = sum_w_T;  ///< of their differences from the mean
+    Eigen::Vector3d sum_var_w = sum_w_T, sum_var_f = sum_w_T;
     double sum_temperature = 0, sum_md = 0;
     double sum_t = 0, sum_tt = 0;  ///< for the slope of f [s] since the first block
-    Eigen::Vector3d sum_tf = sum_w;
+    Eigen::Vector3d sum_tf_T = sum_w_T;
     double md_begin = 0;
     bool md_known = true, gz = true, mag = true, saturated = false;
   };
