@@ -40,8 +40,8 @@ TEST(Trigonometric, FindsTheAnglesThatItsErrorsDependOn) {
       ASSERT_FALSE(found.fell_back) << inc << " " << k;
       // The frequencies are not whole: across toolface zero the model has a step of its own.
       if (k == 0) continue;
-      EXPECT_LT((found.G - G).norm(), 1e-10) << inc << " " << k;
-      EXPECT_LT((found.M - M).norm(), 1e-6);
+      EXPECT_LT((found.G_B - G).norm(), 1e-10) << inc << " " << k;
+      EXPECT_LT((found.M_B - M).norm(), 1e-6);
       EXPECT_NEAR(found.inclination, i, 1e-10);
       turns += found.turns;
       ++cases;
@@ -58,7 +58,7 @@ TEST(Trigonometric, FallsBackToTheAffineModelNearVertical) {
   const CorrectedReading found =
       Correct(Model(), affine.S_G * G + affine.b_G, Eigen::Vector3d(2e4, 0, 4e4), affine);
   EXPECT_TRUE(found.fell_back);
-  EXPECT_LT((found.G - G).norm(), 1e-14);
+  EXPECT_LT((found.G_B - G).norm(), 1e-14);
 }
 
 TEST(Trigonometric, AgreesWithAffineErrorsOnItsOwnGreatCirclesOnly) {

@@ -25,9 +25,9 @@ Eigen::Matrix3d BenchFromLevel(BenchAxes axes, double inclination, double azimut
   return (R.array().abs() < kRounding).select(0, R);
 }
 
-MagneticAngles AnglesOf(BenchAxes axes, const Eigen::Vector3d& G, const Eigen::Vector3d& M) {
+MagneticAngles AnglesOf(BenchAxes axes, const Eigen::Vector3d& G_B, const Eigen::Vector3d& M_B) {
   const Eigen::Matrix3d R_TB = ToolFromBench(axes);
-  const Eigen::Vector3d g = R_TB * G, m = R_TB * M;
+  const Eigen::Vector3d g = R_TB * G_B, m = R_TB * M_B;
   MagneticAngles angles;
   const double across = std::hypot(g.x(), g.y());
   angles.inclination = std::atan2(across, g.z());

@@ -19,13 +19,13 @@ WELLGYRO_EXPORT Eigen::Matrix3d ToolFromBench(BenchAxes axes);
 WELLGYRO_EXPORT Eigen::Matrix3d BenchFromLevel(BenchAxes axes, double inclination, double azimuth,
                                                double toolface);
 
-/// Angles of a tool from gravity `G` (pointing down) and field `M` in the bench's axes.
+/// Angles of a tool from gravity `G_B` (pointing down) and field `M_B` in the bench's axes.
 struct MagneticAngles {
   double inclination = 0;  ///< [rad]
   double toolface = 0;     ///< [rad]; 0 where the tool is vertical
   double azimuth = 0;      ///< from the field's horizontal part [rad], [0, 2 pi)
 };
-WELLGYRO_EXPORT MagneticAngles AnglesOf(BenchAxes axes, const Eigen::Vector3d& G,
-                                        const Eigen::Vector3d& M);
+WELLGYRO_EXPORT MagneticAngles AnglesOf(BenchAxes axes, const Eigen::Vector3d& G_B,
+                                        const Eigen::Vector3d& M_B);
 
 }  // namespace wellgyro

@@ -57,7 +57,7 @@ struct BenchCalibration {
   FitReport report;
   SensorGroup gyro, accel, mag;  ///< without channels where the method says nothing of them
   std::optional<ThermometerCalibration> thermometer;
-  std::optional<Eigen::Vector3d> axis;  ///< of the housing, in the accelerometers' calibrated frame
+  std::optional<Eigen::Vector3d> axis_B;  ///< of the housing, by the calibrated accelerometers
 };
 
 }  // namespace wellgyro

@@ -52,9 +52,10 @@ struct GroupKernel {
   float reach_square = 0;  ///< largest |u|^2 for which products in single precision are enough
 };
 
-/// u <- linear - products q(u), from `linear` on, as often as it needs to leave less than a tenth
+/// u <- linear - products q(u), from `linear_T` on, as often as it needs to leave less than a tenth
 /// of the finest count, 2^-31 of full scale; x: place in the cell.
-Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, double x, const Eigen::Vector3d& linear);
+Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, double x,
+                               const Eigen::Vector3d& linear_T);
 /// Largest e for which two turns in single precision leave as little: sums of six products of what
 /// was rounded before are off by twelve roundings at most, 12 * 2^-24 e.
 inline constexpr double kReachSingle = 6.5e-5;

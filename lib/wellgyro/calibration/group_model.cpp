@@ -80,9 +80,9 @@ GroupNode GroupModel::At(double tau) const {
   GroupNode node;
   const Eigen::Matrix<double, 3, 4> from_units = InverseOf(Sensitivity(tau), group_.n_channels);
   node.A = from_units * group_.unit_per_count.asDiagonal();
-  node.b = -(from_units * Bias(tau));
+  node.b_T = -(from_units * Bias(tau));
   // What a group lacks costs nothing.
-  if (heats_) node.heat = from_units * group_.heating;
+  if (heats_) node.heat_T = from_units * group_.heating;
   if (feels_force_) node.force = from_units * ValueAt(group_.g_dependence, tau);
   if (second_order_) node.products = from_units * group_.second_order;
   if (g_squared_) node.force_products = from_units * group_.g_squared;

@@ -14,7 +14,7 @@ namespace wellgyro {
 /// Where channels count pulses, their counts are per second.
 struct GroupNode {
   Eigen::Matrix<double, 3, 4> A = Eigen::Matrix<double, 3, 4>::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero(), heat = b;
+  Eigen::Vector3d b_T = Eigen::Vector3d::Zero(), heat_T = b_T;
   Eigen::Matrix3d force = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, 6> products = Eigen::Matrix<double, 3, 6>::Zero(),
                               force_products = products;

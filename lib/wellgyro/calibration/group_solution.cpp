@@ -60,14 +60,14 @@ Bends BendsOf(const GroupModel& model, const SensorGroup& group, double unit) {
     // Roundings are of each product by itself.
     const Eigen::Matrix<double, 3, 4> first = ((after.A - before.A) / (2 * H)).cwiseAbs();
     raise(bends.slope, RowSum(first * counts.cwiseAbs()) + RowSum(first * bias.cwiseAbs()) +
-                           RowSum((after.b - before.b) / (2 * H * unit)));
+                           RowSum((after.b_T - before.b_T) / (2 * H * unit)));
     raise(bends.curve, RowSum((after.A - 2 * at.A + before.A) * counts / (H * H)));
     const double left = kSmallRight * RowSum(at.force) + kRight * unit / units::kStandardGravity;
     raise(bends.force, RowSum((after.force - 2 * at.force + before.force) / (H * H)) / left);
     if (i + 1 == kSteps) continue;
     const GroupNode& next = nodes[i + 2];
     const Eigen::Matrix<double, 3, 4> third = next.A - 3 * after.A + 3 * at.A - before.A;
-    const Eigen::Vector3d third_b = (next.b - 3 * after.b + 3 * at.b - before.b) / unit;
+    const Eigen::Vector3d third_b = (next.b_T - 3 * after.b_T + 3 * at.b_T - before.b_T) / unit;
     raise(bends.third, (RowSum(third * counts) + RowSum(third * bias + third_b)) / (H * H * H));
   }
   return bends;
@@ -120,14 +120,15 @@ void Put(const Eigen::Matrix<double, 3, 6>& low, const Eigen::Matrix<double, 3, 
 
 }  // namespace
 
-Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, double x, const Eigen::Vector3d& linear) {
+Eigen::Vector3d RefineInDouble(const GroupKernel& kernel, double x,
+                               const Eigen::Vector3d& linear_T) {
   static const std::array<double, kTurns> kReach = Reach();
-  const double e = kernel.slope * linear.cwiseAbs().maxCoeff();
+  const double e = kernel.slope * linear_T.cwiseAbs().maxCoeff();
   using Column = Eigen::Map<const Eigen::Vector3d>;
-  Eigen::Vector3d u = linear;
+  Eigen::Vector3d u = linear_T;
   for (std::size_t turn = 0; turn < kTurns && e > kReach[turn]; ++turn) {
     const Eigen::Vector3d of = u;
-    u = linear;
+    u = linear_T;
     for (int p = 0; p < 6; ++p) {
       const double q = p < 3 ? of[p] * of[p] : of[p - 3] * of[(p - 2) % 3];
       u -= q * (Column(kernel.products.out[p]) + x * Column(kernel.products.out1[p]));
@@ -210,16 +211,16 @@ void GroupSolution::Solve(Cell& cell, const Cell& other) const {
   const GroupNode middle = kernel.varies ? end(index + 0.5) : low;
   const GroupNode& high = cell.high = !kernel.varies ? low : below ? other.low : end(index + 1);
   Put(low.A, kernel.A);
-  Put(low.b, kernel.b);
+  Put(low.b_T, kernel.b);
   const Eigen::Matrix<double, 3, 4> bend_A = 2 * (high.A - 2 * middle.A + low.A);
-  const Eigen::Vector3d bend_b = 2 * (high.b - 2 * middle.b + low.b);
+  const Eigen::Vector3d bend_b = 2 * (high.b_T - 2 * middle.b_T + low.b_T);
   Put(Eigen::Matrix<double, 3, 4>(high.A - low.A - bend_A), kernel.A1);
   Put(bend_A, kernel.A2);
-  Put(Eigen::Vector3d(high.b - low.b - bend_b), kernel.b1);
+  Put(Eigen::Vector3d(high.b_T - low.b_T - bend_b), kernel.b1);
   Put(bend_b, kernel.b2);
   if (kernel.heats) {
-    Put(low.heat, kernel.heat);
-    Put(Eigen::Vector3d(high.heat - low.heat), kernel.heat1);
+    Put(low.heat_T, kernel.heat);
+    Put(Eigen::Vector3d(high.heat_T - low.heat_T), kernel.heat1);
   }
   Put(low.force_products, high.force_products, kernel.force_products);
   kernel.feels_force = !low.force.isZero(0) || !high.force.isZero(0) ||

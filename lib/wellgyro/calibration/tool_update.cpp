@@ -194,7 +194,7 @@ ToolCalibration Updated(ToolCalibration tool, const BenchCalibration& bench,
     of_mag.R_TS.reset();
   }
   TakeGroup(tool, bench.mag, bench.report, of_mag, tool.mag);
-  if (bench.axis) TakeAxis(*bench.axis, update.axes, tool);
+  if (bench.axis_B) TakeAxis(*bench.axis_B, update.axes, tool);
   TakeErrors(bench, tool);
   if (update.asset_serial) tool.asset_serial = *update.asset_serial;
   if (update.sensor_serials) tool.sensor_serials = *update.sensor_serials;

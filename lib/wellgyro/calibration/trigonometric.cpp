@@ -16,7 +16,7 @@ double Wave(const std::array<double, 4>& x, double angle) {
 }
 
 void TakeAngles(CorrectedReading& reading) {
-  const MagneticAngles angles = AnglesOf(BenchAxes::kTrade, reading.G, reading.M);
+  const MagneticAngles angles = AnglesOf(BenchAxes::kTrade, reading.G_B, reading.M_B);
   reading.inclination = angles.inclination;
   reading.toolface = WrapTwoPi(angles.toolface);
 }
@@ -39,8 +39,8 @@ Eigen::Matrix<double, 6, 1> TrigonometricErrors(const TrigonometricModel& model,
 CorrectedReading Correct(const AffineModel& model, const Eigen::Vector3d& G_raw,
                          const Eigen::Vector3d& M_raw) {
   CorrectedReading reading;
-  reading.G = model.S_G.inverse() * (G_raw - model.b_G);
-  reading.M = model.S_M.inverse() * (M_raw - model.b_M);
+  reading.G_B = model.S_G.inverse() * (G_raw - model.b_G);
+  reading.M_B = model.S_M.inverse() * (M_raw - model.b_M);
   TakeAngles(reading);
   return reading;
 }
@@ -51,14 +51,14 @@ CorrectedReading Correct(const TrigonometricModel& model, const Eigen::Vector3d&
   constexpr double kStill = 1e-12;
   const double largest = std::max(std::abs(model.x[0][0]), std::abs(model.x[1][0]));
   CorrectedReading reading;
-  reading.G = G_raw;
-  reading.M = M_raw;
+  reading.G_B = G_raw;
+  reading.M_B = M_raw;
   TakeAngles(reading);
   for (reading.turns = 1; reading.turns <= kTurnsMost; ++reading.turns) {
     const double inclination = reading.inclination, toolface = reading.toolface;
     const Eigen::Matrix<double, 6, 1> errors = TrigonometricErrors(model, inclination, toolface);
-    reading.G = G_raw - errors.head<3>();
-    reading.M = M_raw - errors.tail<3>();
+    reading.G_B = G_raw - errors.head<3>();
+    reading.M_B = M_raw - errors.tail<3>();
     TakeAngles(reading);
     if (std::abs(reading.inclination - inclination) > kStill ||
         std::abs(WrapPi(reading.toolface - toolface)) > kStill) {

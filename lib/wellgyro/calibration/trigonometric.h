@@ -29,7 +29,7 @@ struct AffineModel {
 };
 
 struct CorrectedReading {
-  Eigen::Vector3d G, M;
+  Eigen::Vector3d G_B, M_B;
   double inclination = 0, toolface = 0;  ///< [rad]; toolface in [0, 2 pi)
   int turns = 0;                         ///< of the iteration
   bool fell_back = false;                ///< the affine model was used

@@ -121,9 +121,9 @@ OrthogonalityCheck Verify(const AttitudeTable& table, const BenchReference& refe
     const Eigen::Vector3d M_true = table.IdealMag(i, reference);
     raw.Add(G, M, G_true, M_true);
     const CorrectedReading a = Correct(fit.affine, G, M);
-    affine.Add(a.G, a.M, G_true, M_true);
+    affine.Add(a.G_B, a.M_B, G_true, M_true);
     const CorrectedReading t = Correct(fit.trigonometric, G, M, fit.affine);
-    trigonometric.Add(t.G, t.M, G_true, M_true);
+    trigonometric.Add(t.G_B, t.M_B, G_true, M_true);
     check.fell_back += t.fell_back ? 1 : 0;
   }
   check.raw = raw.Result();

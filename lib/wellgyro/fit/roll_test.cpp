@@ -133,7 +133,7 @@ Result<BenchCalibration> FitRollTest(const BenchTable& data, const RollTestSetup
   Reparametrise(report, VectorNames("axis_in_sensor", 3),
                 [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(about->With(x)); });
   AddVector(report, "axis_in_sensor", 0, 3);
-  out.axis = report.values;
+  out.axis_B = report.values;
   AddFixed(report, "misalignment_deg", FitQuantity::Shape::kNumber,
            Eigen::MatrixXd::Constant(1, 1, ToDegrees(AngleFromZ(report.values))));
   return out;

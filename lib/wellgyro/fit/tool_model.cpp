@@ -94,8 +94,8 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
     const Eigen::Vector3d leaning = n + z[place] * e[0] + z[place + 1] * e[1];
     const Eigen::Vector3d up = leaning.normalized();
     const double rate = row.rate + kBenchEarthDegPerHour * std::sin(latitude);
-    state.row.w = rate * up;
-    state.row.f = up;
+    state.row.w_B = rate * up;
+    state.row.f_B = up;
     for (int k = 0; k < 2; ++k) {
       const Eigen::Vector3d by = (e[k] - up * up.dot(e[k])) / leaning.norm();
       state.slopes.push_back({place + k, rate * by, by});
@@ -109,8 +109,8 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
         kBenchEarthDegPerHour * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
     const auto [w, dw] = Turned(e, w_L);
     const auto [f, df] = Turned(e, -Eigen::Vector3d::UnitZ());
-    state.row.w = row.R_BL * w;
-    state.row.f = row.R_BL * f;
+    state.row.w_B = row.R_BL * w;
+    state.row.f_B = row.R_BL * f;
     for (int k = 0; k < (north ? 3 : 2); ++k) {
       state.slopes.push_back({place + k, row.R_BL * dw.col(k), row.R_BL * df.col(k)});
     }
@@ -122,7 +122,7 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
   }
   const double unit =
       readings_.gravity_signed ? -setup_.reference.gravity : setup_.reference.gravity;
-  state.row.u_accel = unit * state.row.f;
+  state.row.u_accel_B = unit * state.row.f_B;
   return state;
 }
 
@@ -144,16 +144,17 @@ ToolModel::Prediction ToolModel::At(const ToolRow& row, const Eigen::VectorXd& x
         const Basis basis = BasisOf(terms_[static_cast<std::size_t>(k)], use, is_gyro, state.row);
         p.v[i] += x[k] * basis.value;
         p.J(i, k) += basis.value;
-        if (is_gyro) by_w += x[k] * basis.by_own;
-        if (!is_gyro) by_f += x[k] * unit * basis.by_own;
-        by_f += x[k] * basis.by_force;
+        if (is_gyro) by_w += x[k] * basis.by_own_B;
+        if (!is_gyro) by_f += x[k] * unit * basis.by_own_B;
+        by_f += x[k] * basis.by_force_B;
       }
     }
     for (const State::Slope& slope : state.slopes) {
       p.J(i, n_terms() + slope.place) += by_w.dot(slope.w) + by_f.dot(slope.f);
     }
     // A tool turned by e sees v as v - e x v.
-    p.wobble.row(i) = by_w.transpose() * Skew(state.row.w) + by_f.transpose() * Skew(state.row.f);
+    p.wobble.row(i) =
+        by_w.transpose() * Skew(state.row.w_B) + by_f.transpose() * Skew(state.row.f_B);
   }
   return p;
 }

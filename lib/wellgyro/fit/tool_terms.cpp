@@ -185,7 +185,7 @@ std::vector<TermBundle> CandidateTerms(const ToolReadings& readings, const ToolF
 }
 
 Basis BasisOf(const ToolTerm& term, const TermUse& use, bool is_gyro, const RowState& state) {
-  const Eigen::Vector3d& own = is_gyro ? state.w : state.u_accel;
+  const Eigen::Vector3d& own = is_gyro ? state.w_B : state.u_accel_B;
   const double tau = std::pow(state.tau, term.power);
   Basis basis;
   const auto product = [&](const Eigen::Vector3d& a, Eigen::Vector3d* by) {
@@ -200,17 +200,17 @@ Basis BasisOf(const ToolTerm& term, const TermUse& use, bool is_gyro, const RowS
       break;
     case TermKind::kSensitivity:
       basis.value = tau * own[use.j];
-      basis.by_own[use.j] = tau;
+      basis.by_own_B[use.j] = tau;
       break;
     case TermKind::kSquare:
-      product(own, &basis.by_own);
+      product(own, &basis.by_own_B);
       break;
     case TermKind::kForce:
-      basis.value = use.sign * tau * state.f[use.j];
-      basis.by_force[use.j] = use.sign * tau;
+      basis.value = use.sign * tau * state.f_B[use.j];
+      basis.by_force_B[use.j] = use.sign * tau;
       break;
     case TermKind::kForceSquare:
-      product(state.f, &basis.by_force);
+      product(state.f_B, &basis.by_force_B);
       break;
     case TermKind::kHeating:
       basis.value = state.row->heating;

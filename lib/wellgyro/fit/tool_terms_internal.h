@@ -49,9 +49,9 @@ std::vector<TermBundle> CandidateTerms(const ToolReadings& readings, const ToolF
 
 /// What acts on the sensors in one row.
 struct RowState {
-  Eigen::Vector3d u_accel = Eigen::Vector3d::Zero();  ///< force, the table's sign [gravity's unit]
-  Eigen::Vector3d w = Eigen::Vector3d::Zero();        ///< rate [deg/h]
-  Eigen::Vector3d f = Eigen::Vector3d::Zero();        ///< specific force over local gravity
+  Eigen::Vector3d u_accel_B = Eigen::Vector3d::Zero();  ///< force, table's sign [gravity's unit]
+  Eigen::Vector3d w_B = Eigen::Vector3d::Zero();        ///< rate [deg/h]
+  Eigen::Vector3d f_B = Eigen::Vector3d::Zero();        ///< specific force over local gravity
   double tau = 0;
   const ToolRow* row = nullptr;
 };
@@ -60,7 +60,7 @@ struct RowState {
 /// vector and with f.
 struct Basis {
   double value = 0;
-  Eigen::Vector3d by_own = Eigen::Vector3d::Zero(), by_force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d by_own_B = Eigen::Vector3d::Zero(), by_force_B = Eigen::Vector3d::Zero();
 };
 Basis BasisOf(const ToolTerm& term, const TermUse& use, bool is_gyro, const RowState& state);
 

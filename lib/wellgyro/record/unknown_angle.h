@@ -15,6 +15,6 @@ inline constexpr double kVagueAngle = 20 * kPi / 180;
 
 /// Azimuth and toolface in a covariance of (inclination, azimuth, toolface) [rad^2] become no
 /// vaguer than that; correlations stay.
-WELLGYRO_EXPORT void CapAtUnknown(Eigen::Matrix3d* cov);
+WELLGYRO_EXPORT void CapAtUnknown(Eigen::Matrix3d* cov_attitude);
 
 }  // namespace wellgyro
