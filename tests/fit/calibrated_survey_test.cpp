@@ -145,8 +145,8 @@ TEST(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
     // What both have from noise and from the depth is not in their difference.
     const Eigen::Matrix3d cov = a.cov_md_inc_azi - b.cov_md_inc_azi;
     direction += Normalised(turned, cov.bottomRightCorner<2, 2>());
-    const Eigen::Matrix3d cov_p = a.cov_p_WT_W - b.cov_p_WT_W;
-    place += Normalised((a.p_WT_W - b.p_WT_W).head<2>(), cov_p.topLeftCorner<2, 2>());
+    const Eigen::Matrix3d cov_p_W = a.cov_p_WT_W - b.cov_p_WT_W;
+    place += Normalised((a.p_WT_W - b.p_WT_W).head<2>(), cov_p_W.topLeftCorner<2, 2>());
     worst_azimuth = std::max(worst_azimuth, std::abs(turned[1]));
     // Unknown, the same errors would cost so much: one degree an hour against the level rate.
     uncalibrated += std::abs(gyros.b[0]) / (kEarth * std::cos(60 * kRad)) / kTools;

@@ -145,10 +145,10 @@ TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
           (Tangent(s.inclination, s.azimuth) - Tangent(point.inclination, point.azimuth)).head<2>();
       const Eigen::Matrix2d cov = s.cov_tangent_L.topLeftCorner<2, 2>();
       const Eigen::Vector3d off = s.p_WT_W - (truth.well().PlaceAt(s.md).p_WT_W - start);
-      const Eigen::Matrix3d cov_p = s.cov_p_WT_W + 1e-6 * Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d cov_p_W = s.cov_p_WT_W + 1e-6 * Eigen::Matrix3d::Identity();
       const double squares[] = {inc * inc / s.cov_md_inc_azi(1, 1),
                                 azi * azi / s.cov_md_inc_azi(2, 2), lean.dot(cov.inverse() * lean),
-                                off.dot(cov_p.inverse() * off)};
+                                off.dot(cov_p_W.inverse() * off)};
       bool far = inclination.Add(squares[0]);
       far |= azimuth.Add(squares[1]);
       far |= tangent.Add(squares[2]);

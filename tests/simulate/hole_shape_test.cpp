@@ -15,8 +15,8 @@ namespace wellgyro {
 namespace {
 
 Eigen::Vector3d SlopeByDifference(const HoleShape& shape, double md, double h) {
-  return (8 * (shape.At(md + h).tangent - shape.At(md - h).tangent) -
-          (shape.At(md + 2 * h).tangent - shape.At(md - 2 * h).tangent)) /
+  return (8 * (shape.At(md + h).tangent_L - shape.At(md - h).tangent_L) -
+          (shape.At(md + 2 * h).tangent_L - shape.At(md - 2 * h).tangent_L)) /
          (12 * h);
 }
 
@@ -25,8 +25,8 @@ TEST(HoleShape, CurvatureIsTheSlopeOfAUnitTangent) {
     const HoleShape shape(well);
     for (double md = shape.begin_md() + 3.3; md < shape.end_md() - 3; md += 7.7) {
       const HoleDirection at = shape.At(md);
-      EXPECT_NEAR(at.tangent.norm(), 1, 1e-14);
-      EXPECT_LT((at.curvature - SlopeByDifference(shape, md, 0.1)).norm(), 2e-9) << md;
+      EXPECT_NEAR(at.tangent_L.norm(), 1, 1e-14);
+      EXPECT_LT((at.curvature_L - SlopeByDifference(shape, md, 0.1)).norm(), 2e-9) << md;
     }
   }
 }
@@ -39,9 +39,9 @@ TEST(HoleShape, LawsAreWhatTheySay) {
       FromDegrees(3) + built + FromDegrees(0.4) * std::sin(kTwoPi * (md - 100) / 170 + 0.3);
   const double azimuth = FromDegrees(35) + FromDegrees(20) / 1000 * (md - 100) +
                          FromDegrees(15) * std::sin(kTwoPi * (md - 500) / 700);
-  EXPECT_LT((shape.At(md).tangent - Tangent(inclination, azimuth)).norm(), 1e-14);
+  EXPECT_LT((shape.At(md).tangent_L - Tangent(inclination, azimuth)).norm(), 1e-14);
   // The build is over: 60 deg were built.
-  EXPECT_NEAR(std::acos(shape.At(2600).tangent.z()),
+  EXPECT_NEAR(std::acos(shape.At(2600).tangent_L.z()),
               FromDegrees(63 + 0.4 * std::sin(kTwoPi * 2500 / 170 + 0.3)), 1e-13);
 }
 
@@ -61,7 +61,7 @@ TEST(HoleShape, StationsArePassedAtASixthOfTheKink) {
       return AngleBetween(tangent(k), tangent(k - 1)) /
              (well.stations[k].md - well.stations[k - 1].md);
     };
-    const double distance = AngleBetween(shape.At(well.stations[i].md).tangent, tangent(i));
+    const double distance = AngleBetween(shape.At(well.stations[i].md).tangent_L, tangent(i));
     // The change of curvature is at most the sum of both.
     EXPECT_LE(distance, (bend(i) + bend(i + 1)) * 10 / 6 * 1.001) << i;
     worst = std::max(worst, distance);
@@ -74,9 +74,9 @@ TEST(HoleShape, CurvatureHasASlopeThatDoesNotJump) {
   const HoleShape shape(StationWell());
   const double step = 1e-3;
   for (double md = 10; md < 1400; md += 10) {  // every knot, every station
-    const Eigen::Vector3d at = shape.At(md).curvature;
-    const Eigen::Vector3d after = (shape.At(md + step).curvature - at) / step;
-    const Eigen::Vector3d before = (at - shape.At(md - step).curvature) / step;
+    const Eigen::Vector3d at = shape.At(md).curvature_L;
+    const Eigen::Vector3d after = (shape.At(md + step).curvature_L - at) / step;
+    const Eigen::Vector3d before = (at - shape.At(md - step).curvature_L) / step;
     EXPECT_LT((after - before).norm(), 1e-7) << md;
     EXPECT_LT(after.norm(), 3e-4) << "no kink is hidden in a sharp bend";
   }
@@ -85,8 +85,8 @@ TEST(HoleShape, CurvatureHasASlopeThatDoesNotJump) {
 TEST(HoleShape, AVerticalTopIsVertical) {
   const HoleShape shape(StationWell());
   for (double md = 0; md < 380; md += 5) {
-    EXPECT_EQ(shape.At(md).tangent, Eigen::Vector3d::UnitZ());
-    EXPECT_EQ(shape.At(md).curvature, Eigen::Vector3d::Zero());
+    EXPECT_EQ(shape.At(md).tangent_L, Eigen::Vector3d::UnitZ());
+    EXPECT_EQ(shape.At(md).curvature_L, Eigen::Vector3d::Zero());
   }
 }
 
@@ -95,8 +95,8 @@ TEST(HoleShape, AnArcStaysAnArc) {
   well.stations = {{0, 0.1, 1}, {100, 0.3, 1}, {217, 0.534, 1}, {500, 1.1, 1}};
   const HoleShape shape(well);
   for (double md = 0; md <= 500; md += 3.3) {
-    EXPECT_LT((shape.At(md).tangent - Tangent(0.1 + 0.002 * md, 1)).norm(), 1e-9) << md;
-    EXPECT_NEAR(shape.At(md).curvature.norm(), 0.002, 1e-9) << md;
+    EXPECT_LT((shape.At(md).tangent_L - Tangent(0.1 + 0.002 * md, 1)).norm(), 1e-9) << md;
+    EXPECT_NEAR(shape.At(md).curvature_L.norm(), 0.002, 1e-9) << md;
   }
 }
 
@@ -109,7 +109,7 @@ TEST(HoleShape, FollowsTheHoleTheStationsCameFrom) {
   const HoleShape shape(well);
   const double bound = FromDegrees(30) / (400 * 400) * 100 / 8;
   for (double md = 0; md <= 1500; md += 3.1) {
-    EXPECT_LT((shape.At(md).tangent - Tangent(inclination(md), 1.0)).norm(), bound) << md;
+    EXPECT_LT((shape.At(md).tangent_L - Tangent(inclination(md), 1.0)).norm(), bound) << md;
   }
 }
 

@@ -40,7 +40,7 @@ TEST(TruthWell, PlacesFollowTheTangentOnTheEllipsoid) {
       const auto at = [&](double d) { return EarthCentred(well.PlaceAt(md + d)); };
       const Vector3L slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
       const Eigen::Vector3d expected =
-          NorthEastDown(well.PlaceAt(md)) * well.DirectionAt(md).tangent;
+          NorthEastDown(well.PlaceAt(md)) * well.DirectionAt(md).tangent_L;
       // The difference sees third derivatives jump at the joints; elsewhere it is good to 1e-8.
       EXPECT_LT((slope.cast<double>() - expected).norm(), 1e-7) << md;
     }
@@ -57,7 +57,7 @@ TEST(TruthWell, SumsTheTangentTurnedByTheMeridiansConvergence) {
   double longitude = kEarth.longitude;
   for (int i = 0; i < steps; ++i) {
     const double md = static_cast<double>(100 + (i + 0.5L) * h);
-    const Eigen::Vector3d t = well.DirectionAt(md).tangent;
+    const Eigen::Vector3d t = well.DirectionAt(md).tangent_L;
     const HolePlace end = well.PlaceAt(md + static_cast<double>(h) / 2);
     const long double half = std::sin(well.PlaceAt(md).latitude) * (end.longitude - longitude) / 2;
     convergence += half;

@@ -50,22 +50,22 @@ HoleShape::HoleShape(const SimulatedWell& well) {
   const double count = std::ceil((end_md_ - begin_md_) / step);
   for (double k = 0; k <= count; ++k) {
     const double md = std::min(begin_md_ + k * step, end_md_);
-    Require(At(md).tangent.z() > -std::cos(kStraightUp),
+    Require(At(md).tangent_L.z() > -std::cos(kStraightUp),
             fmt::format("well: the hole points straight up at {} m", md));
   }
 }
 
 HoleDirection HoleShape::At(double md) const {
   const double inside = std::clamp(md, begin_md_, end_md_);
-  if (!controls_.empty()) return OnSpline(inside);
+  if (!controls_L_.empty()) return OnSpline(inside);
   const Angle inclination = Evaluate(inclination_, inside);
   const Angle azimuth = Evaluate(azimuth_, inside);
   const double si = std::sin(inclination.value), ci = std::cos(inclination.value);
   const double sa = std::sin(azimuth.value), ca = std::cos(azimuth.value);
-  return {.tangent = {si * ca, si * sa, ci},
-          .curvature = {inclination.slope * ci * ca - azimuth.slope * si * sa,
-                        inclination.slope * ci * sa + azimuth.slope * si * ca,
-                        -inclination.slope * si}};
+  return {.tangent_L = {si * ca, si * sa, ci},
+          .curvature_L = {inclination.slope * ci * ca - azimuth.slope * si * sa,
+                          inclination.slope * ci * sa + azimuth.slope * si * ca,
+                          -inclination.slope * si}};
 }
 
 HoleShape::Law HoleShape::MakeLaw(const AngleLaw& law, const char* name) {
@@ -143,16 +143,16 @@ void HoleShape::MakeSpline(const SimulatedWell& well) {
     const double md = begin_md_ + k * spacing_;
     while (leg + 1 < n && md > stations[leg].md) ++leg;
     const double u = (md - stations[leg - 1].md) / (stations[leg].md - stations[leg - 1].md);
-    controls_.push_back(OnArc(tangents[leg - 1], tangents[leg], u));
+    controls_L_.push_back(OnArc(tangents[leg - 1], tangents[leg], u));
   }
 }
 
 HoleDirection HoleShape::OnSpline(double md) const {
   const double x = (md - begin_md_) / spacing_;
-  const std::size_t i = std::min(static_cast<std::size_t>(x), controls_.size() - 4);
+  const std::size_t i = std::min(static_cast<std::size_t>(x), controls_L_.size() - 4);
   const double u = x - static_cast<double>(i), v = 1 - u;
-  const Eigen::Vector3d &a = controls_[i], &b = controls_[i + 1], &c = controls_[i + 2],
-                        &d = controls_[i + 3];
+  const Eigen::Vector3d &a = controls_L_[i], &b = controls_L_[i + 1], &c = controls_L_[i + 2],
+                        &d = controls_L_[i + 3];
   // Uniform cubic B-spline.
   const Eigen::Vector3d value = (v * v * v * a + (4 - 3 * u * u * (1 + v)) * b +
                                  (4 - 3 * v * v * (1 + u)) * c + u * u * u * d) /
@@ -161,7 +161,7 @@ HoleDirection HoleShape::OnSpline(double md) const {
       (v * v * (b - a) + (1 + 2 * u * v) * (c - b) + u * u * (d - c)) / (2 * spacing_);
   const double length = value.norm();
   const Eigen::Vector3d tangent = value / length;
-  return {.tangent = tangent, .curvature = (slope - tangent * tangent.dot(slope)) / length};
+  return {.tangent_L = tangent, .curvature_L = (slope - tangent * tangent.dot(slope)) / length};
 }
 
 }  // namespace wellgyro

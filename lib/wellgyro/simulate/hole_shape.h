@@ -11,8 +11,8 @@ namespace wellgyro {
 
 /// Direction of the hole at one depth, in L at that place.
 struct HoleDirection {
-  Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();   ///< unit, down-hole
-  Eigen::Vector3d curvature = Eigen::Vector3d::Zero();  ///< d tangent / d md, in L [1/m]
+  Eigen::Vector3d tangent_L = Eigen::Vector3d::UnitZ();   ///< unit, down-hole
+  Eigen::Vector3d curvature_L = Eigen::Vector3d::Zero();  ///< d tangent / d md, in L [1/m]
 };
 
 /// Direction along the hole, twice differentiable and regular at vertical: by laws of inclination
@@ -57,7 +57,7 @@ class WELLGYRO_EXPORT HoleShape {
   Law inclination_;
   Law azimuth_;
   double spacing_ = 0;
-  std::vector<Eigen::Vector3d> controls_;
+  std::vector<Eigen::Vector3d> controls_L_;
 };
 
 }  // namespace wellgyro

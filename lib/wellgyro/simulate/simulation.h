@@ -132,8 +132,8 @@ struct ToolErrors {
   double accel_full_scale = 0;    ///< [m/s^2]; 0: none
   double roll_offset = 0;         ///< toolface read from the accelerometers too large by it [rad]
   double time_skew = 0;           ///< accelerometers read this long after their stamp [s]
-  Eigen::Vector3d accel_lever_arm = Eigen::Vector3d::Zero();  ///< from the sensor point, in T [m]
-  double mag_noise = 0;                                       ///< per sample and axis [T]
+  Eigen::Vector3d accel_lever_arm_T = Eigen::Vector3d::Zero();  ///< from the sensor point, in T [m]
+  double mag_noise = 0;                                         ///< per sample and axis [T]
   double clock_offset = 0;      ///< tool time at the begin of the run [s]
   double clock_drift = 0;       ///< tool seconds per second, less one [1]
   double utc_jitter = 0;        ///< 1-sigma of the samples' UTC [s]

@@ -112,9 +112,9 @@ void SensorErrors::Measure(const Truth& truth, double begin, double end, ImuSamp
   const ToolErrors& e = tool_.errors;
   const double seconds = end - begin;
   const SensorTruth mean = truth.MeanOver(begin, end);
-  const bool apart = e.time_skew != 0 || e.accel_lever_arm != Eigen::Vector3d::Zero();
+  const bool apart = e.time_skew != 0 || e.accel_lever_arm_T != Eigen::Vector3d::Zero();
   const Eigen::Vector3d f_T =
-      apart ? truth.MeanOver(begin + e.time_skew, end + e.time_skew, e.accel_lever_arm).f_T
+      apart ? truth.MeanOver(begin + e.time_skew, end + e.time_skew, e.accel_lever_arm_T).f_T
             : mean.f_T;
   sample.stamp.gyro_saturated = false;
   sample.stamp.accel_saturated = false;

@@ -65,9 +65,9 @@ Truth::Pose Truth::PoseAt(double time) const {
   Pose pose;
   pose.motion = plan_.At(time);
   pose.hole = well_.DirectionAt(pose.motion.md);
-  const Eigen::Vector3d& t = pose.hole.tangent;
-  const Eigen::Vector3d turn = pose.motion.speed * pose.hole.curvature;  // of the tangent, per s
-  const double swing = t.x() * turn.y() - t.y() * turn.x();              // A' sin^2 I
+  const Eigen::Vector3d& t = pose.hole.tangent_L;
+  const Eigen::Vector3d turn = pose.motion.speed * pose.hole.curvature_L;  // of the tangent, per s
+  const double swing = t.x() * turn.y() - t.y() * turn.x();                // A' sin^2 I
   double roll = pose.motion.roll, roll_rate = pose.motion.roll_rate;
   if (roll_reference_ == RollReference::kHighSide) {
     roll += std::atan2(t.y(), t.x());
@@ -113,12 +113,12 @@ SensorTruth Truth::SensorsAt(double time) const {
   const double anomaly =
       earth_.gravity_anomaly + earth_.gravity_gradient_anomaly * place.p_WT_W.z();
   const double v = pose.motion.speed;
-  const Eigen::Vector3d v_L = v * pose.hole.tangent;
+  const Eigen::Vector3d v_L = v * pose.hole.tangent_L;
   const Eigen::Vector3d w_IE_L(earth_.rate * c, 0, -earth_.rate * s);
   const Eigen::Vector3d w_EL_L(v_L.y() / earth.radius_east, -v_L.x() / earth.radius_north,
                                -v_L.y() * s / (c * earth.radius_east));
-  const Eigen::Vector3d f_L = pose.motion.acceleration * pose.hole.tangent +
-                              v * v * pose.hole.curvature + (2 * w_IE_L + w_EL_L).cross(v_L) -
+  const Eigen::Vector3d f_L = pose.motion.acceleration * pose.hole.tangent_L +
+                              v * v * pose.hole.curvature_L + (2 * w_IE_L + w_EL_L).cross(v_L) -
                               Eigen::Vector3d(0, 0, earth.gravity + anomaly);
   const Eigen::Matrix3d R_TL = pose.R_LT.transpose();
   return {.w_IT_T = R_TL * (w_IE_L + w_EL_L) + pose.w_LT_T,
@@ -126,7 +126,7 @@ SensorTruth Truth::SensorsAt(double time) const {
           .b_T = R_TL * earth_.field_L};
 }
 
-void Truth::AddStretch(double begin, double end, const Eigen::Vector3d& lever_arm,
+void Truth::AddStretch(double begin, double end, const Eigen::Vector3d& lever_arm_T,
                        SensorTruth& sum) const {
   // Gauss-Legendre of 4 points: exact to degree 7.
   constexpr double kNode[4] = {-0.861136311594052575, -0.339981043584856265, 0.339981043584856265,
@@ -134,31 +134,31 @@ void Truth::AddStretch(double begin, double end, const Eigen::Vector3d& lever_ar
   constexpr double kWeight[4] = {0.347854845137453857, 0.652145154862546143, 0.652145154862546143,
                                  0.347854845137453857};
   const double half = 0.5 * (end - begin), middle = begin + half;
-  const bool has_arm = lever_arm != Eigen::Vector3d::Zero();
+  const bool has_arm = lever_arm_T != Eigen::Vector3d::Zero();
   for (int i = 0; i < 4; ++i) {
     const SensorTruth at = SensorsAt(middle + half * kNode[i]);
     const double weight = half * kWeight[i];
     sum.w_IT_T += weight * at.w_IT_T;
     sum.f_T += weight * at.f_T;
     sum.b_T += weight * at.b_T;
-    if (has_arm) sum.f_T += weight * at.w_IT_T.cross(at.w_IT_T.cross(lever_arm));
+    if (has_arm) sum.f_T += weight * at.w_IT_T.cross(at.w_IT_T.cross(lever_arm_T));
   }
 }
 
-SensorTruth Truth::MeanOver(double begin, double end, const Eigen::Vector3d& lever_arm) const {
+SensorTruth Truth::MeanOver(double begin, double end, const Eigen::Vector3d& lever_arm_T) const {
   SensorTruth sum;
   for (double at = begin; at < end;) {
     const double stop = std::min(plan_.NextBreak(at), end);
     const double pieces = std::ceil((stop - at) / plan_.short_time() * (1 - 1e-9));
     const double length = (stop - at) / pieces;
     for (double k = 0; k < pieces; ++k) {
-      AddStretch(at + k * length, k + 1 < pieces ? at + (k + 1) * length : stop, lever_arm, sum);
+      AddStretch(at + k * length, k + 1 < pieces ? at + (k + 1) * length : stop, lever_arm_T, sum);
     }
     at = stop;
   }
   // The mean of w' x lever arm needs no derivative: it is the change of w over the stretch.
-  if (lever_arm != Eigen::Vector3d::Zero()) {
-    sum.f_T += (SensorsAt(end).w_IT_T - SensorsAt(begin).w_IT_T).cross(lever_arm);
+  if (lever_arm_T != Eigen::Vector3d::Zero()) {
+    sum.f_T += (SensorsAt(end).w_IT_T - SensorsAt(begin).w_IT_T).cross(lever_arm_T);
   }
   const double seconds = end - begin;
   return {.w_IT_T = sum.w_IT_T / seconds, .f_T = sum.f_T / seconds, .b_T = sum.b_T / seconds};

@@ -49,16 +49,16 @@ class WELLGYRO_EXPORT Truth {
 
   TruthState At(double time) const;
   SensorTruth SensorsAt(double time) const;
-  /// Means over [begin, end], taken in the turning tool's axes, the accelerometers at `lever_arm`
+  /// Means over [begin, end], taken in the turning tool's axes, the accelerometers at `lever_arm_T`
   /// [m] from the sensor point. By Gauss-Legendre quadrature over stretches short against every
   /// motion of the run: the angles summed over an hour are right to 1e-10 rad.
   SensorTruth MeanOver(double begin, double end,
-                       const Eigen::Vector3d& lever_arm = Eigen::Vector3d::Zero()) const;
+                       const Eigen::Vector3d& lever_arm_T = Eigen::Vector3d::Zero()) const;
 
  private:
   struct Pose;
   Pose PoseAt(double time) const;
-  void AddStretch(double begin, double end, const Eigen::Vector3d& lever_arm,
+  void AddStretch(double begin, double end, const Eigen::Vector3d& lever_arm_T,
                   SensorTruth& sum) const;
 
   SimulatedEarth earth_;

@@ -40,7 +40,7 @@ TruthWell::TruthWell(const SimulatedWell& well, const SimulatedEarth& earth)
 }
 
 TruthWell::State TruthWell::SlopeAt(double md, const State& state) const {
-  const Eigen::Vector3d t = shape_.At(md).tangent;
+  const Eigen::Vector3d t = shape_.At(md).tangent_L;
   const double s = std::sin(state[kLatitude]), c = std::cos(state[kLatitude]);
   const EllipsoidPlace place = EllipsoidAt(s, earth_.height - state[kTvd]);
   const double sg = std::sin(state[kConvergence]), cg = std::cos(state[kConvergence]);
@@ -89,7 +89,7 @@ HolePlace TruthWell::PlaceAt(double md) const {
 }
 
 WellPoint TruthWell::PointAt(double md) const {
-  const Eigen::Vector3d t = DirectionAt(md).tangent;
+  const Eigen::Vector3d t = DirectionAt(md).tangent_L;
   return {.md = md,
           .inclination = std::atan2(std::hypot(t.x(), t.y()), t.z()),
           .azimuth = WrapTwoPi(std::atan2(t.y(), t.x()))};

@@ -166,7 +166,7 @@ TEST(ReadSimulation, TakesToolAndStreams) {
   EXPECT_EQ(e.accel_noise, 2e-4);
   EXPECT_EQ(e.accel_quantization, 1e-4);
   EXPECT_EQ(e.accel_full_scale, 20);
-  EXPECT_EQ(e.accel_lever_arm, Eigen::Vector3d(0, 0.01, 0.2));
+  EXPECT_EQ(e.accel_lever_arm_T, Eigen::Vector3d(0, 0.01, 0.2));
   EXPECT_DOUBLE_EQ(e.mag_noise, 50e-9);
   EXPECT_EQ(e.clock_offset, 10);
   EXPECT_EQ(e.clock_drift, 1e-5);

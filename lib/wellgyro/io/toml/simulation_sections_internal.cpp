@@ -149,7 +149,7 @@ void ReadActualOtherErrors(TomlTable& table, ToolErrors& e) {
   ReadMisalignment(table, e.accel_misalignment);
   table.Read("accel_quantization_mps", e.accel_quantization, 1, kNotNegative);
   table.Read("accel_full_scale_mps2", e.accel_full_scale, 1, kPositive);
-  ReadVector(table, "accel_lever_arm_m", e.accel_lever_arm, 1);
+  ReadVector(table, "accel_lever_arm_m", e.accel_lever_arm_T, 1);
   table.Read("mag_noise_nt", e.mag_noise, units::kNanotesla, kNotNegative);
   table.Read("clock_offset_s", e.clock_offset);
   table.Read("clock_drift", e.clock_drift, 1, {.min = -0.5, .max = 0.5});
