@@ -88,11 +88,11 @@ Score ScoreOf(const Crossing& crossing, std::uint64_t seed) {
       -Eigen::RowVector3d(-R(1, 2), R(0, 2), 0) * R * Skew(Eigen::Vector3d::UnitZ()) / horizontal2;
   const double azimuth = by_phi * error(n, crossing.seconds);
   score.square = azimuth * azimuth;
-  score.azimuth = score.square / (by_phi * run.cov_phi[n] * by_phi.transpose());
+  score.azimuth = score.square / (by_phi * run.cov_phi_T[n] * by_phi.transpose());
   const Eigen::Vector3d middle = error(n / 2, crossing.seconds / 2);
-  const Eigen::Matrix2d across = run.cov_phi[n / 2].topLeftCorner<2, 2>();
+  const Eigen::Matrix2d across = run.cov_phi_T[n / 2].topLeftCorner<2, 2>();
   score.tangent = middle.head<2>().dot(across.inverse() * middle.head<2>());
-  score.toolface = middle.z() * middle.z() / run.cov_phi[n / 2](2, 2);
+  score.toolface = middle.z() * middle.z() / run.cov_phi_T[n / 2](2, 2);
   return score;
 }
 

@@ -242,7 +242,7 @@ TEST(Diagnosis, IsThatOfTheDenseAlgebra) {
     EXPECT_NEAR(test.ln_bayes, std::log(mean), 1e-8) << spec;
     EXPECT_NEAR(test.size, dense.Size(likeliest), 1e-8) << spec;
     EXPECT_NEAR(test.sigma * test.sigma * dense.Information(likeliest), 1, 1e-8) << spec;
-    EXPECT_LT((test.shift - test.size * dense.Shift(likeliest, slopes)).norm(), 1e-7) << spec;
+    EXPECT_LT((test.shift_W - test.size * dense.Shift(likeliest, slopes)).norm(), 1e-7) << spec;
   };
   std::vector<VectorXd> bias_steps, toolface_steps, spikes, motions;
   for (int t = 1; t < kDenseKnots; ++t) {
@@ -344,7 +344,7 @@ TEST(Diagnosis, TheSmallestIsNoticedAsOftenAsItSays) {
           spec == 1 ? run.BeyondPrior(3) : run.Step(2, static_cast<int>(before.smallest_node));
       if (seed == 0) {
         const Dense dense(run);
-        EXPECT_NEAR(before.hidden.norm(), before.smallest * dense.Shift(column, slopes).norm(),
+        EXPECT_NEAR(before.hidden_W.norm(), before.smallest * dense.Shift(column, slopes).norm(),
                     1e-6);
       }
       run.Disturb(column, before.smallest);

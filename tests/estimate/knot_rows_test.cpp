@@ -94,7 +94,7 @@ Case MakeCase(double inclination, bool still, bool axial) {
   }
   c.place.site = SiteAt(1, 0);
   c.place.w_IL_L = w_IL_L;
-  c.place.dw_by_latitude = {-6e-5, 0, -4e-5};
+  c.place.dw_by_latitude_L = {-6e-5, 0, -4e-5};
   c.place.acceleration_L = {0.01, 0.02, 0.001};
   c.place.since_start = 30;
   c.place.depth = 100;
@@ -251,7 +251,7 @@ TEST(KnotRows, WithoutTheEarthsRateNoKnotTellsAHeading) {
     for (const bool still : {false, true}) {
       Case c = MakeCase(inclination, still, false);
       c.place.w_IL_L.setZero();
-      c.place.dw_by_latitude.setZero();
+      c.place.dw_by_latitude_L.setZero();
       KnotRows rows(c.setup, c.layout);
       NormalBlock block;
       block.Clear(c.layout);

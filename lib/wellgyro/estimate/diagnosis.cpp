@@ -73,7 +73,7 @@ class Looks {
       test.node = look.node;
       test.size = look.score.size();
       test.sigma = 1 / std::sqrt(look.score.information);
-      test.shift = test.size * look.score.shift;
+      test.shift_W = test.size * look.score.shift_W;
     }
     test.tested = true;
     test.ln_bayes = mean.value();
@@ -96,12 +96,12 @@ class Looks {
     const double w2 = (1 + 1 / vm) * (2 * (ln_limit_ + onsets) + std::log1p(vm));
     const double smallest = (std::sqrt(std::max(w2, 0.0)) + kPower) / std::sqrt(m);
     const bool noticeable = smallest < kLargest * spec_.size;
-    const Vector3d hidden = std::min(smallest, kLargest * spec_.size) * look.score.shift;
-    if (test.smallest > 0 && !(hidden.norm() > test.hidden.norm())) return;
+    const Vector3d hidden = std::min(smallest, kLargest * spec_.size) * look.score.shift_W;
+    if (test.smallest > 0 && !(hidden.norm() > test.hidden_W.norm())) return;
     test.noticeable = noticeable;
     test.smallest = smallest;
     test.smallest_node = look.node;
-    test.hidden = hidden;
+    test.hidden_W = hidden;
   }
 
   CauseSpec spec_;
@@ -126,8 +126,8 @@ Diagnosis Untested(std::size_t specs) {
 class Diagnoser {
  public:
   Diagnoser(const LinearRun& solved, std::span<const CauseSpec> specs, double false_alarm_rate,
-            const Vector3d& end_by_depth_scale)
-      : run_(solved), specs_(specs), end_by_depth_scale_(end_by_depth_scale) {
+            const Vector3d& end_by_depth_scale_W)
+      : run_(solved), specs_(specs), end_by_depth_scale_(end_by_depth_scale_W) {
     // The odds of one cause alone must reach this for those of all to pass the alarm.
     const double limit =
         std::log(static_cast<double>(std::max<std::size_t>(specs.size(), 1)) / false_alarm_rate);
@@ -412,16 +412,16 @@ void Diagnoser::AddOdds(Diagnosis& d) const {
 
 Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
                    std::span<const Matrix3d> end_by_phi, double false_alarm_rate,
-                   const Vector3d& end_by_depth_scale) {
+                   const Vector3d& end_by_depth_scale_W) {
   LinearRun run(rows);
   if (!run.Solve()) return Untested(specs.size());
-  return Diagnose(run, specs, end_by_phi, false_alarm_rate, end_by_depth_scale);
+  return Diagnose(run, specs, end_by_phi, false_alarm_rate, end_by_depth_scale_W);
 }
 
 Diagnosis Diagnose(const LinearRun& solved, std::span<const CauseSpec> specs,
                    std::span<const Matrix3d> end_by_phi, double false_alarm_rate,
-                   const Vector3d& end_by_depth_scale) {
-  return Diagnoser(solved, specs, false_alarm_rate, end_by_depth_scale).Run(end_by_phi);
+                   const Vector3d& end_by_depth_scale_W) {
+  return Diagnoser(solved, specs, false_alarm_rate, end_by_depth_scale_W).Run(end_by_phi);
 }
 
 }  // namespace wellgyro

@@ -20,14 +20,14 @@ struct CauseTest {
   double size = 0;       ///< found there
   double sigma = 0;      ///< of that
   /// What such a fault does to the end of the run: as found less as it is [m].
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  Eigen::Vector3d shift_W = Eigen::Vector3d::Zero();
   /// External reliability (Baarda): the smallest size that the test detects with power 80 %, and
   /// how far it shifts the end, at the onset where the shift is largest. `noticeable` false: even
   /// five times the spec's size has less power, and the shift is that of five times.
   bool noticeable = false;
   double smallest = 0;
   std::size_t smallest_node = 0;
-  Eigen::Vector3d hidden = Eigen::Vector3d::Zero();
+  Eigen::Vector3d hidden_W = Eigen::Vector3d::Zero();
 };
 
 /// Knots that are looked at as one: a disturbance of some twenty seconds shows in few of them.
@@ -60,15 +60,15 @@ struct Diagnosis {
 /// constant beyond its prior reduces to its prior's row, that of a step at node t to that row and
 /// the columns of the knots before t. One forward pass then serves all onsets.
 /// Baarda (1968); de Jong and Penzer, "Diagnosing shocks in time series", JASA 93 (1998).
-/// `end_by_phi`: derivative of the end by every node's phi [m]; `end_by_depth_scale`: what an error
-/// of the depth's scale moves it by beside that. `false_alarm_rate`: of `ln_odds` above which a
-/// fault is taken as noticed. Time and memory are proportional to the knots.
+/// `end_by_phi`: derivative of the end by every node's phi [m]; `end_by_depth_scale_W`: what an
+/// error of the depth's scale moves it by beside that. `false_alarm_rate`: of `ln_odds` above which
+/// a fault is taken as noticed. Time and memory are proportional to the knots.
 WELLGYRO_EXPORT Diagnosis Diagnose(
     RunRows& rows, std::span<const CauseSpec> specs, std::span<const Eigen::Matrix3d> end_by_phi,
-    double false_alarm_rate, const Eigen::Vector3d& end_by_depth_scale = Eigen::Vector3d::Zero());
+    double false_alarm_rate, const Eigen::Vector3d& end_by_depth_scale_W = Eigen::Vector3d::Zero());
 /// The same of a run that has been solved.
 Diagnosis Diagnose(const LinearRun& solved, std::span<const CauseSpec> specs,
                    std::span<const Eigen::Matrix3d> end_by_phi, double false_alarm_rate,
-                   const Eigen::Vector3d& end_by_depth_scale = Eigen::Vector3d::Zero());
+                   const Eigen::Vector3d& end_by_depth_scale_W = Eigen::Vector3d::Zero());
 
 }  // namespace wellgyro

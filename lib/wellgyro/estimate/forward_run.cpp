@@ -84,7 +84,7 @@ EdgeMatrix Turned(EdgeMatrix matrix, const Matrix3d& turn) {
 ForwardRun::ForwardRun(const RunState& solved, std::span<const RunKnot> knots)
     : state_(solved), layout_(LayoutOf(solved.setup)) {
   FreeRoll(WalkBehind(knots));
-  cov_phi_ = InverseOf(state_.information).topLeftCorner<3, 3>();
+  cov_phi_T_ = InverseOf(state_.information).topLeftCorner<3, 3>();
 }
 
 /// Process noise of variance s^2 on the roll rate, in information form (matrix inversion lemma):
@@ -100,7 +100,7 @@ void ForwardRun::FreeRoll(double sigma) {
   state_.information.col(roll) = left;
   state_.information.row(roll) = left.transpose();
   const Vector3d by_roll = state_.way.by.col(roll);
-  state_.way.cov += var / (1 + var * told[roll]) * by_roll * by_roll.transpose();
+  state_.way.cov_W += var / (1 + var * told[roll]) * by_roll * by_roll.transpose();
   state_.way.by -= var * by_roll * left.transpose();
   // What errors of the station before have in common with the node's stays as it was.
   if (state_.link.size() > 0) state_.link -= var * state_.link.col(roll).eval() * left.transpose();
@@ -115,7 +115,7 @@ KnotPlace ForwardRun::PlaceOf(std::span<const RunKnot> tail, const Node& end) co
   PlaceKnots(state_.setup.site, &state_, tail, nodes, places);
   KnotPlace place = places.back();
   place.since_start = state_.seconds + 0.5 * tail.back().increment.seconds;
-  place.depth = state_.p.z();
+  place.depth = state_.p_W.z();
   return place;
 }
 
@@ -167,7 +167,7 @@ void ForwardRun::Arrive(const Elimination& elimination, const Node& begin, const
                         const NodeVector& last_step) {
   const Matrix3d turn = Exp(last_step.head<3>());
   state_.information = Turned(elimination.edge_information().selfadjointView<Eigen::Lower>(), turn);
-  cov_phi_ = turn.transpose() * elimination.LastCovarianceOfPhi() * turn;
+  cov_phi_T_ = turn.transpose() * elimination.LastCovarianceOfPhi() * turn;
   const BehindMatrix gain = elimination.Gain(0);
   if (state_.link.size() > 0) {
     CarryLink(layout_, gain, state_.link);
@@ -176,7 +176,7 @@ void ForwardRun::Arrive(const Elimination& elimination, const Node& begin, const
   CarryWay(layout_, begin, end, gain, elimination.Remainder(0), state_.way);
   state_.way.by.leftCols<3>() = (state_.way.by.leftCols<3>() * turn).eval();
   const Node& before = state_.nodes.back();
-  state_.p += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
+  state_.p_W += 0.5 * (end.md - before.md) * (before.tangent_L() + end.tangent_L());
   std::rotate(state_.nodes.begin(), state_.nodes.begin() + 1, state_.nodes.end());
   state_.nodes.back() = end;
 }

@@ -35,7 +35,7 @@ class ForwardRun {
   /// At the end of the last knot taken.
   const RunState& state() const { return state_; }
   const Node& node() const { return state_.node(); }
-  const Eigen::Matrix3d& CovPhi() const { return cov_phi_; }
+  const Eigen::Matrix3d& CovPhi() const { return cov_phi_T_; }
   /// 1-sigma of the turn about the vertical [rad].
   double SigmaOfHeading() const;
   /// Makes the present node, of this number, a station, linked to the one before.
@@ -49,7 +49,7 @@ class ForwardRun {
 
   RunState state_;
   Layout layout_;
-  Eigen::Matrix3d cov_phi_;
+  Eigen::Matrix3d cov_phi_T_;
 };
 
 }  // namespace wellgyro

@@ -10,7 +10,7 @@ namespace wellgyro {
 struct KnotPlace {
   Site site;
   Eigen::Vector3d w_IL_L = Eigen::Vector3d::Zero();  ///< Earth's rate and transport [rad/s]
-  Eigen::Vector3d dw_by_latitude = Eigen::Vector3d::Zero();
+  Eigen::Vector3d dw_by_latitude_L = Eigen::Vector3d::Zero();
   /// Acceleration of the path across itself, with Coriolis' [m/s^2]. Its derivative by a turn of
   /// the node about the vertical is that of a vector fixed in the tool: the path is drawn from the
   /// node's own azimuth, and so has no information on it.

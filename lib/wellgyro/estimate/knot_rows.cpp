@@ -128,7 +128,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   }
   if (layout_.latitude != kAbsent) {
     f.Column(block.border() + layout_.latitude) =
-        by * (t.end.R_LT.transpose() * (t.dt * t.place.dw_by_latitude));
+        by * (t.end.R_LT.transpose() * (t.dt * t.place.dw_by_latitude_L));
   }
   block.Add(f);
 }
@@ -157,9 +157,9 @@ double KnotRows::GravityOffset(const Terms& t) const {
 }
 
 /// Columns of the tool's errors in the force's factor. What gyros seem to turn leans the forces of
-/// gravity, p, by half of it, and of skewed ones by `beyond` more.
-void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
-                              const Vector3d& by_skew, const Eigen::Matrix2d& beyond,
+/// gravity, `p_M`, by half of it, and of skewed ones by `beyond` more.
+void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p_M,
+                              const Vector3d& by_skew_M, const Eigen::Matrix2d& beyond,
                               const PhaseColumns& by_phase, NormalBlock& block) {
   const auto add = [&](int source, const Vector3d& by_error) {
     AddError(t, source, whiten * by_error, block);
@@ -169,8 +169,8 @@ void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p,
     const Vector2d turn = t.turn_by_error.col(static_cast<Eigen::Index>(k));
     Vector2d half = 0.5 * turn - t.delta / 8 * QuarterTurned(turn);
     if (i == kMisalignmentX || i == kMisalignmentY) half += beyond.col(i - kMisalignmentX);
-    Vector3d by_error = p.cross(Flat(half)) - t.delta / 24 * t.inc.force_M.z() * Flat(turn);
-    if (i == kTimeSkew) by_error -= by_skew;
+    Vector3d by_error = p_M.cross(Flat(half)) - t.delta / 24 * t.inc.force_M.z() * Flat(turn);
+    if (i == kTimeSkew) by_error -= by_skew_M;
     if (i < kTurnSources) by_error += by_phase * PhaseErrorsOf(i, t.inc.force_M.z());
     add(i, by_error);
   }
@@ -187,14 +187,14 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const Increment& inc = t.inc;
   const Vector3d down_M = t.R_LM.row(2).transpose();
   const Vector3d path = t.R_LM.transpose() * t.place.acceleration_L;
-  const Vector3d p = path - t.place.site.gravity * down_M;
+  const Vector3d p_M = path - t.place.site.gravity * down_M;
   // Forces read later than they are stamped are those of a tool that has turned on: dF/dt = F x w,
   // of a roll to the second order.
-  Vector3d by_skew = inc.force_M.cross(Flat(t.turn) / t.dt + t.axial_rate * Vector3d::UnitZ());
-  by_skew += 0.5 * Square(t.axial_rate) * t.error[kTimeSkew] * Flat(inc.force_M.head<2>());
+  Vector3d by_skew_M = inc.force_M.cross(Flat(t.turn) / t.dt + t.axial_rate * Vector3d::UnitZ());
+  by_skew_M += 0.5 * Square(t.axial_rate) * t.error[kTimeSkew] * Flat(inc.force_M.head<2>());
   const Eigen::Matrix2d beyond = SkewBeforeHalf(inc);
   const Vector2d skew(t.error[kMisalignmentX], t.error[kMisalignmentY]);
-  Vector3d force = ForceOf(t, layout_, by_skew) + p.cross(Flat(beyond * skew));
+  Vector3d force = ForceOf(t, layout_, by_skew_M) + p_M.cross(Flat(beyond * skew));
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
   // Turned back to the middle by a turn that goes round with delta as psi has not seen it.
@@ -204,12 +204,12 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
   const double seen = Square(noise), missed = Square(0.5 * t.knot.unseen * t.place.site.gravity);
   const double whiten = 1 / std::sqrt(seen + missed);
-  const Matrix3d px = Skew(p);
+  const Matrix3d px = Skew(p_M);
 
   Factor& f = factor_;
   f.Begin(RowKind::kForce, 3);
   f.per_unit = whiten;
-  f.r = whiten * (force - p + GravityOffset(t) * down_M -
+  f.r = whiten * (force - p_M + GravityOffset(t) * down_M -
                   (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
   const Matrix3d by_phi =
       -(px + down_M.cross(path) * down_M.transpose()) * (t.Ha * t.Xh).transpose();
@@ -221,7 +221,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   PhaseColumns by_phase =
       force_per_roll * t.wobble.roll() - px * t.Xh.row(2).transpose() * t.wobble.bow();
   by_phase.topRows<2>() -= t.wobble.force_M;
-  AddForceErrors(t, whiten, p, by_skew, beyond, by_phase, block);
+  AddForceErrors(t, whiten, p_M, by_skew_M, beyond, by_phase, block);
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;
   if (layout_.gravity_gradient != kAbsent) {
     f.Column(block.border() + layout_.gravity_gradient) = whiten * t.place.depth * down_M;

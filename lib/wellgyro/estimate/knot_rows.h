@@ -51,14 +51,17 @@ class KnotRows {
   /// Those of kTurnSources, gyro shear, unequal mass unbalance and quadrature.
   using TurnErrors = Eigen::Matrix<double, 3, kTurnSources + 3>;
   using PhaseColumns = Eigen::Matrix<double, 3, 4>;
+
+  // What a unit of the rate or of an error adds to the factor's rows: of no frame.
   void AddRate(const Terms& t, const Eigen::Vector3d& by_rate, NormalBlock& block);
   void AddError(const Terms& t, int source, const Eigen::Vector3d& by_error,
                 const NormalBlock& block);
+
   void AddTurn(const Terms& t, NormalBlock& block);
   void AddGyroDrift(const Terms& t, const TurnErrors& by_error, NormalBlock& block);
   double GravityOffset(const Terms& t) const;
-  void AddForceErrors(const Terms& t, double whiten, const Eigen::Vector3d& p,
-                      const Eigen::Vector3d& by_skew, const Eigen::Matrix2d& beyond,
+  void AddForceErrors(const Terms& t, double whiten, const Eigen::Vector3d& p_M,
+                      const Eigen::Vector3d& by_skew_M, const Eigen::Matrix2d& beyond,
                       const PhaseColumns& by_phase, NormalBlock& block);
   void AddForce(const Terms& t, NormalBlock& block);
   void AddRoll(const Terms& t, const RollChange& roll, NormalBlock& block);

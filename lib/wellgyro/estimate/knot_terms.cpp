@@ -104,7 +104,7 @@ KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& 
   t.turn_by_error = TurnBy(inc);
   t.turn = inc.turn_M;
   if (layout.second_order) t.by_second_order = ForceBySecondOrder(inc);
-  if (layout.latitude != kAbsent) t.w_IL_L += border[layout.latitude] * place.dw_by_latitude;
+  if (layout.latitude != kAbsent) t.w_IL_L += border[layout.latitude] * place.dw_by_latitude_L;
   double rate = begin.roll_rate;
   if (layout.swing != kAbsent) {
     t.frequency = *FrequencyOf(model.setup, layout, border);
@@ -149,7 +149,7 @@ Vector3d ForceBy(const KnotTerms& t, int source) {
   }
 }
 
-Vector3d ForceOf(const KnotTerms& t, const Layout& layout, const Vector3d& by_skew) {
+Vector3d ForceOf(const KnotTerms& t, const Layout& layout, const Vector3d& by_skew_M) {
   const Increment& inc = t.inc;
   Vector3d force = inc.force_M;
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
@@ -158,7 +158,7 @@ Vector3d ForceOf(const KnotTerms& t, const Layout& layout, const Vector3d& by_sk
   for (int i = 0; layout.second_order && i < kSecondOrderSources; ++i) {
     force -= t.error[kAccelSecondOrder + i] * t.by_second_order.col(i);
   }
-  return force - t.error[kTimeSkew] * by_skew;
+  return force - t.error[kTimeSkew] * by_skew_M;
 }
 
 }  // namespace wellgyro

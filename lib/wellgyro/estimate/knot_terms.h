@@ -54,8 +54,8 @@ KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& 
 /// has them.
 Eigen::Vector3d ForceBy(const KnotTerms& terms, int source);
 
-/// The mean force in M without the tool's errors; `by_skew`: what a second of time skew adds.
+/// The mean force in M without the tool's errors; `by_skew_M`: what a second of time skew adds.
 Eigen::Vector3d ForceOf(const KnotTerms& terms, const Layout& layout,
-                        const Eigen::Vector3d& by_skew);
+                        const Eigen::Vector3d& by_skew_M);
 
 }  // namespace wellgyro

@@ -10,7 +10,7 @@ namespace wellgyro {
 /// inverse Jacobians I +- [r]x / 2 + [r]x^2 / 12, to the second order of r. A heading change common
 /// to both nodes then leaves r as it is. With unit matrices it would change r by |r|, one sigma a
 /// radian, and over thousands of knots that linearisation error would observe a heading which no
-/// sensor measures.
+/// sensor measures. Holds in any frame.
 struct LogSlopes {
   explicit LogSlopes(const Eigen::Vector3d& r) {
     const Eigen::Matrix3d rx = Skew(r);

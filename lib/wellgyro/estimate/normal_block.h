@@ -26,7 +26,7 @@ enum class RowKind {
 };
 inline constexpr std::size_t kRowKinds = static_cast<std::size_t>(RowKind::kKinds);
 
-/// Up to three rows of whitened residuals r with their derivatives, d r = J d(columns).
+/// Up to three rows of whitened residuals r with their derivatives, d r = J d(columns); no frame.
 struct Factor {
   static constexpr int kColumnsMax = 2 * kNodeMax + kBorderMax;
   RowKind kind = RowKind::kPrior;
@@ -55,7 +55,7 @@ struct Factor {
     return J.col(columns++).head(rows);
   }
   /// Rows that are filled in, whitened by one sigma, for one that is `sigma` times it along
-  /// `along`.
+  /// `along`; of no frame, as r.
   void Shrink(const Eigen::Vector3d& along, double sigma) {
     u = along;
     shrink = 1 - 1 / sigma;

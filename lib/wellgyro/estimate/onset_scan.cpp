@@ -71,7 +71,7 @@ void OnsetScan::Forward(std::size_t knot, const NormalBlock& rows, const EndInfl
   if (unknowns_.empty()) return;
   if (knot == 0) {
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      now_[i].shift = -influence.OfPrior(unknowns_[i]);
+      now_[i].shift_W = -influence.OfPrior(unknowns_[i]);
     }
     Record();
   }
@@ -84,7 +84,7 @@ void OnsetScan::Forward(std::size_t knot, const NormalBlock& rows, const EndInfl
     const NormalBlock::Vector column = rows.Column(at);
     now_[i].score += rows.gradient()[at] + column.dot(step);
     now_[i].information += column[at];
-    now_[i].shift -= influence.Of(knot, column);
+    now_[i].shift_W -= influence.Of(knot, column);
     work_.col(static_cast<Index>(i)) += column;
   }
   run_.elimination().Eliminate(knot, work_);

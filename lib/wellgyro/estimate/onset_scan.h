@@ -12,9 +12,9 @@ namespace wellgyro {
 
 /// Of a cause with one column c.
 struct Score {
-  double score = 0;                                 ///< s = c'P r
-  double information = 0;                           ///< M = c'P c
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< of the end, of a unit of the cause [m]
+  double score = 0;                                   ///< s = c'P r
+  double information = 0;                             ///< M = c'P c
+  Eigen::Vector3d shift_W = Eigen::Vector3d::Zero();  ///< of the end, of a unit of the cause [m]
 
   double size() const { return information > 0 ? score / information : 0; }
 };

@@ -87,9 +87,9 @@ double RollWalkOf(const Vector3d& tangent, double turn, double speed) {
 
 }  // namespace
 
-Site SiteBy(const Site& first, const Vector3d& p) {
-  const double north = std::clamp(p.x(), -kPathReach, kPathReach);
-  const double down = std::clamp(p.z(), -kPathReach, kPathReach);
+Site SiteBy(const Site& first, const Vector3d& p_W) {
+  const double north = std::clamp(p_W.x(), -kPathReach, kPathReach);
+  const double down = std::clamp(p_W.z(), -kPathReach, kPathReach);
   const double most = kPi / 2 - kPoleMargin;
   return SiteAt(std::clamp(first.latitude + north / first.radius_north, -most, most),
                 first.height - down);
@@ -100,8 +100,8 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
   places.resize(knots.size());
   const std::vector<Vector3d> curvature = Curvature(knots, nodes);
   const std::vector<double> hole_turns = Turns(knots, nodes, curvature);
-  Vector3d p = before != nullptr ? before->p : Vector3d::Zero();
-  Site site = SiteBy(first, p);
+  Vector3d p_W = before != nullptr ? before->p_W : Vector3d::Zero();
+  Site site = SiteBy(first, p_W);
   double md = nodes[0].md;
   double time = before != nullptr ? before->seconds : 0, axial = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
@@ -111,7 +111,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     const double speed = 0.5 * (a.speed + b.speed);
     const AlongHole& along = knots[k].along;
     if (k == 0 || (along.known && std::abs(along.md - md) > kSiteEvery)) {
-      site = SiteBy(first, p);
+      site = SiteBy(first, p_W);
       if (along.known) md = along.md;
     }
     KnotPlace& place = places[k];
@@ -122,7 +122,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     const Vector3d transport(v.y() / site.radius_east, -v.x() / site.radius_north,
                              -v.y() * s / (c * site.radius_east));
     place.w_IL_L = earth + transport;
-    place.dw_by_latitude = kEarthRate * Vector3d(-s, 0, -c);
+    place.dw_by_latitude_L = kEarthRate * Vector3d(-s, 0, -c);
     place.axial_change = 0;
     if (k > 0) places[k - 1].axial_change = earth.dot(tangent) - axial;
     axial = earth.dot(tangent);
@@ -130,9 +130,9 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     place.roll_walk = RollWalkOf(tangent, hole_turns[k], speed);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;
-    place.depth = p.z();
+    place.depth = p_W.z();
     time += dt;
-    p += (b.md - a.md) * tangent;
+    p_W += (b.md - a.md) * tangent;
   }
 }
 

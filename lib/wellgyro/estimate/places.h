@@ -13,8 +13,8 @@
 
 namespace wellgyro {
 
-/// The site at p [m] from `first`, north, east, down; within what a well can reach.
-Site SiteBy(const Site& first, const Eigen::Vector3d& p);
+/// The site at `p_W` [m] from `first`, north, east, down; within what a well can reach.
+Site SiteBy(const Site& first, const Eigen::Vector3d& p_W);
 
 /// Where every knot of a run stands by the nodes as they are now: site, rotation of L, and the
 /// acceleration of the path across itself: speed squared by the hole's curvature, which is the

@@ -61,7 +61,7 @@ class Sweep {
     const Layout& layout = solver_.layout();
     EdgeMatrix next = e.LastCovariance();
     const std::size_t n = solver_.knots().size();
-    result_.cov_phi.resize(n + 1);
+    result_.cov_phi_T.resize(n + 1);
     result_.marked.resize(marked_.size());
     TakeErrors(next);
     At(n, next);
@@ -84,7 +84,7 @@ class Sweep {
 
  private:
   void At(std::size_t node, const EdgeMatrix& cov) {
-    result_.cov_phi[node] = cov.topLeftCorner<3, 3>();
+    result_.cov_phi_T[node] = cov.topLeftCorner<3, 3>();
     while (left_ > 0 && marked_[left_ - 1] == node) {
       --left_;
       LinkedErrors& mark = result_.marked[left_];
@@ -245,10 +245,10 @@ bool CountIn(const Solution& rival, double evidence, const RunSolver& best, RunE
   const std::vector<int> columns = LinkedColumns(best.layout());
   const double odds = std::exp(0.5 * (evidence - rival.evidence)), weight = odds / (1 + odds);
   if (rival.border.size() != best.border().size()) return false;
-  for (std::size_t k = 0; k < result.cov_phi.size(); ++k) {
+  for (std::size_t k = 0; k < result.cov_phi_T.size(); ++k) {
     const Vector3d d = Towards(rival, best, k).head<3>();
     if (d.norm() > kVagueAngle) return false;
-    result.cov_phi[k] += weight * d * d.transpose();
+    result.cov_phi_T[k] += weight * d * d.transpose();
   }
   Eigen::VectorXd before;
   for (LinkedErrors& mark : result.marked) {
@@ -263,11 +263,11 @@ bool CountIn(const Solution& rival, double evidence, const RunSolver& best, RunE
 }
 
 /// 1-sigma of the turn about the vertical, of the node where it is known best.
-double SigmaOfHeading(std::span<const Node> nodes, std::span<const Matrix3d> cov_phi) {
+double SigmaOfHeading(std::span<const Node> nodes, std::span<const Matrix3d> cov_phi_T) {
   double least = HUGE_VAL;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const Vector3d down_T = nodes[k].R_LT.row(2).transpose();
-    least = std::min(least, down_T.dot(cov_phi[k] * down_T));
+    least = std::min(least, down_T.dot(cov_phi_T[k] * down_T));
   }
   return std::sqrt(least);
 }
@@ -295,14 +295,14 @@ RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
     end.nodes[RunState::kTail - 1 - i] = nodes[knots.size() - back];
   }
   if (before != nullptr) {
-    end.p = before->p;
+    end.p_W = before->p_W;
     end.seconds = before->seconds;
   }
   end.way = before != nullptr ? before->way : WayFrom(layout, nodes.front());
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Node &a = nodes[k], &b = nodes[k + 1];
     CarryWay(layout, a, b, e.Gain(k), e.Remainder(k), end.way);
-    end.p += 0.5 * (b.md - a.md) * (a.tangent_L() + b.tangent_L());
+    end.p_W += 0.5 * (b.md - a.md) * (a.tangent_L() + b.tangent_L());
     end.seconds += knots[k].increment.seconds;
   }
   if (!marked.empty()) {
@@ -381,7 +381,7 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
   for (const Solution& rival : choice.rivals) {
     result.ambiguous |= !CountIn(rival, choice.report.evidence, best, result);
   }
-  result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi) > kVagueAngle;
+  result.ambiguous |= SigmaOfHeading(best.nodes(), result.cov_phi_T) > kVagueAngle;
   result.nodes = best.nodes();
   result.end = EndOf(best, marked);
   return result;

@@ -36,7 +36,7 @@ struct RunEstimate {
   bool ambiguous = false;
   bool alone = true;                         ///< no other solution comes so near in evidence at all
   std::vector<Node> nodes;                   ///< one more than knots
-  std::vector<Eigen::Matrix3d> cov_phi;      ///< of each node's attitude, R_LT Exp(phi) [rad^2]
+  std::vector<Eigen::Matrix3d> cov_phi_T;    ///< of each node's attitude, R_LT Exp(phi) [rad^2]
   std::vector<LinkedErrors> marked;          ///< in the order of time
   ErrorVector errors = ErrorVector::Zero();  ///< of the tool, as found
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< 0: has no prior

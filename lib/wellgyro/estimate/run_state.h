@@ -22,9 +22,9 @@ struct RunState {
   EdgeMatrix information;  ///< of [newest node; border]
   /// E[x (node; border)'] = link information^-1, x of the last marked node; empty: none was.
   Eigen::MatrixXd link;
-  WayBehind way;                                ///< back to node 0 of the run
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< from node 0 of the run [m]
-  double seconds = 0;                           ///< since then
+  WayBehind way;                                  ///< back to node 0 of the run
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< from node 0 of the run, L taken for W [m]
+  double seconds = 0;                             ///< since then
 
   const Node& node() const { return nodes.back(); }
 };

@@ -22,7 +22,7 @@ void CarryWay(const Layout& layout, const Node& from, const Node& to, const Behi
   // x_from = gain [x_to; border] + e.
   const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kNodeMax> node =
       way.by.leftCols(layout.node);
-  way.cov += node * remainder * node.transpose();
+  way.cov_W += node * remainder * node.transpose();
   way.by.leftCols(layout.node).setZero();
   way.by += node * gain;
   way.by.middleCols<3>(layout.phi) += half * TangentByPhi(to.R_LT);

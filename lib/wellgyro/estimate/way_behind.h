@@ -8,14 +8,14 @@
 
 namespace wellgyro {
 
-/// Regression of a position error on the newest node: p = by [node; border] + e, cov(e) = cov, e
+/// Regression of a position error on the newest node: p = by [node; border] + e, cov(e) = cov_W, e
 /// independent of every later measurement. p is the error of the run's deepest place so far as seen
 /// from its first node, by attitude errors alone. An update of the newest node thereby updates the
 /// whole way behind it without another pass.
 struct WayBehind {
   double deepest = 0;                                                        ///< [m]
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kNodeMax + kBorderMax> by;  ///< empty: none yet
-  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();                             ///< [m^2]
+  Eigen::Matrix3d cov_W = Eigen::Matrix3d::Zero();                           ///< [m^2]
 };
 
 /// A way that begins at this node.

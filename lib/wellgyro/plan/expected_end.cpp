@@ -177,7 +177,7 @@ std::vector<ExpectedPlace> ExpectAlong(const PlanCase& c, std::span<const Planne
       const WayBehind& way = ways.back().way;
       part.way.end_md = rows.nodes()[k].md;
       places.push_back(
-          {part.way.end_md, DepthCovariance(part) + way.cov + way.by * cov * way.by.transpose()});
+          {part.way.end_md, DepthCovariance(part) + way.cov_W + way.by * cov * way.by.transpose()});
       ways.pop_back();
     }
     if (ways.empty()) break;

@@ -141,7 +141,7 @@ class StopInformation::Sweep {
       const WayBehind& way = so_far_->state->way;
       end_.nodes.front() += way.by.leftCols(layout.node).transpose();
       end_.border = way.by.rightCols(layout.border).transpose();
-      cov += way.cov;
+      cov += way.cov_W;
     }
     const LinearRun::Columns by = end_;
     run_.SolveFor(end_);

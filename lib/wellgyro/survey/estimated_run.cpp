@@ -166,7 +166,7 @@ SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history) {
   SmoothedRun run;
   const std::vector<Eigen::Matrix3d> R_LT = OnHoleAxis(history.knots, estimate.nodes);
   for (std::size_t k = 0; k < history.knots.size(); ++k) {
-    run.attitude.push_back(AttitudeOf(history.knots[k], R_LT[k], estimate.cov_phi[k + 1]));
+    run.attitude.push_back(AttitudeOf(history.knots[k], R_LT[k], estimate.cov_phi_T[k + 1]));
     if (estimate.ambiguous) ForgetAzimuth(run.attitude.back());
   }
   for (std::size_t j = 0; j < history.stations.size(); ++j) {

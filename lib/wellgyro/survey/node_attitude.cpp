@@ -38,7 +38,7 @@ void ForgetAngle(int i, AttitudeSample& a) {
 
 }  // namespace
 
-AttitudeSample AttitudeOf(const RunKnot& knot, const Matrix3d& R, const Matrix3d& cov_phi) {
+AttitudeSample AttitudeOf(const RunKnot& knot, const Matrix3d& R, const Matrix3d& cov_phi_T) {
   AttitudeSample a;
   a.time = knot.increment.time;
   a.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
@@ -47,7 +47,7 @@ AttitudeSample AttitudeOf(const RunKnot& knot, const Matrix3d& R, const Matrix3d
   a.azimuth_known = true;
   a.quality = Without(knot.increment.quality, Quality::kVertical);
   const Matrix3d slope = AnglesByPhi(a.inclination, a.toolface);
-  a.cov_attitude = slope * cov_phi * slope.transpose();
+  a.cov_attitude = slope * cov_phi_T * slope.transpose();
   if (a.cov_attitude(1, 1) > kVagueAngle * kVagueAngle) a.quality |= Quality::kVertical;
   for (const int i : {1, 2}) {
     if (!(a.cov_attitude(i, i) < kUnknownAngleVariance)) ForgetAngle(i, a);

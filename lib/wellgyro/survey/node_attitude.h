@@ -14,7 +14,7 @@ namespace wellgyro {
 /// this covariance [rad^2]. An azimuth vaguer than kVagueAngle says that the hole is vertical as
 /// far as is known; one vaguer than the circle knows nothing.
 AttitudeSample AttitudeOf(const RunKnot& knot, const Eigen::Matrix3d& R_LT,
-                          const Eigen::Matrix3d& cov_phi);
+                          const Eigen::Matrix3d& cov_phi_T);
 
 /// Of a run without north: inclination and toolface by what gravity says of the knot's middle.
 AttitudeSample LevelOf(const RunKnot& knot, const ErrorPriors& errors, double gravity);

@@ -139,7 +139,7 @@ RunCause CauseOfTest(const Entry& entry, const CauseTest& test, std::span<const 
   cause.size = test.size / entry.unit;
   cause.sigma = test.sigma / entry.unit;
   if (entry.kind == Kind::kGyroNoise || entry.kind == Kind::kAccelNoise) return cause;
-  cause.shift_W = test.shift;
+  cause.shift_W = test.shift_W;
   if (entry.kind == Kind::kConstant || test.node >= knots.size()) return cause;
   cause.begin = knots[test.node].utc;
   if (knots[test.node].along.known) cause.begin_md = knots[test.node].along.md;
@@ -152,7 +152,7 @@ RunReliability ReliabilityOf(const Entry& entry, const CauseTest& test,
   hidden.code = entry.code;
   hidden.unit = entry.unit_name;
   if (test.noticeable) hidden.smallest = test.smallest / entry.unit;
-  hidden.shift_W = test.hidden;
+  hidden.shift_W = test.hidden_W;
   if (entry.kind != Kind::kConstant && test.smallest_node < knots.size() &&
       knots[test.smallest_node].along.known) {
     hidden.md = knots[test.smallest_node].along.md;
