@@ -10,7 +10,7 @@
 
 namespace wellgyro {
 
-/// One thing in a view of space; points are (east, north, TVD).
+/// One thing in a view of space; points are (east, north, TVD), which is no frame: left-handed.
 struct SpaceSeries {
   std::string name = {};
   ChartSeries::Mark mark = ChartSeries::Mark::kLine;

@@ -68,7 +68,7 @@ struct SurveyRun {
   AzimuthReference azimuth;
 };
 
-/// One record of raw gyro data, IOGP P7/17 G7. Axes and signs are the file's.
+/// One record of raw gyro data, IOGP P7/17 G7. Axes and signs are the file's: any frame.
 struct GyroRawRecord {
   int survey = 1, number = 0, tool = 0;
   std::string time;  ///< as the file has it
