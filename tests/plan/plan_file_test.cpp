@@ -53,7 +53,7 @@ TEST(PlanFile, HoldsWhatARunIsAdvisedBy) {
   job.errors = r.c.errors;
   const PlanCase c = CaseOf(*file, job);
   const TrajectoryPoint there = c.well.AtMd(2500), planned = r.c.well.AtMd(2500);
-  EXPECT_LT((there.position - planned.position).norm(), 0.01);
+  EXPECT_LT((there.position_W - planned.position_W).norm(), 0.01);
   EXPECT_NEAR(ExpectEnd(c, file->stops, false).semi_major, r.plan.expected.semi_major, 0.02);
   EXPECT_FALSE(c.sigma_start_azimuth);
   job.alignment.method = AlignmentSpec::Method::kExternal;

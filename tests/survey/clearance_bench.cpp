@@ -31,7 +31,7 @@ Known Draw(std::mt19937_64& engine) {
   Known known{SurveyWell(stations, {north, east, 0}), {}};
   for (const SurveyPoint& p : known.well.survey) {
     const double sigma = 0.2 + 0.006 * p.md;
-    known.errors.cov_p.push_back(sigma * sigma * Eigen::Matrix3d::Identity());
+    known.errors.cov_p_W.push_back(sigma * sigma * Eigen::Matrix3d::Identity());
   }
   return known;
 }

@@ -32,7 +32,7 @@ SurveyedWell PublishedWell(const json& well) {
     const auto at = [&](const char* column) { return well[column][i].get<double>(); };
     made.survey.push_back(
         {at("MD"), at("IncDeg") * units::kDeg, at("AziDeg") * units::kDeg, at("TVD")});
-    made.position.push_back(Vector3d(at("N"), at("E"), at("TVD")));
+    made.position_W.push_back(Vector3d(at("N"), at("E"), at("TVD")));
   }
   return made;
 }
@@ -61,14 +61,14 @@ Known PublishedSurvey(const json& well, const ErrorModel& model, const Propagate
 /// leaves the depth reference of the slot out [m].
 double SigmaDifference(const Known& known, const json& well) {
   double worst = 0;
-  for (std::size_t i = 1; i < known.errors.cov_p.size(); ++i) {
+  for (std::size_t i = 1; i < known.errors.cov_p_W.size(); ++i) {
     const SurveyPoint& p = known.well.survey[i];
     const double si = std::sin(p.inclination), ci = std::cos(p.inclination);
     const double sa = std::sin(p.azimuth), ca = std::cos(p.azimuth);
     const Vector3d axes[] = {{ci * ca, ci * sa, -si}, {-sa, ca, 0}, {si * ca, si * sa, ci}};
     const char* names[] = {"sigmaH", "sigmaL", "sigmaA"};
     for (int k = 0; k < 3; ++k) {
-      const double sigma = std::sqrt(axes[k].dot(known.errors.cov_p[i] * axes[k]));
+      const double sigma = std::sqrt(axes[k].dot(known.errors.cov_p_W[i] * axes[k]));
       worst = std::max(worst, std::abs(sigma - well[names[k]][i].get<double>()));
     }
   }

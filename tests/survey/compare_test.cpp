@@ -157,7 +157,7 @@ ComparedSurvey Surveyed(std::vector<SurveyPoint> stations, const ErrorModel& mod
       if (is_new) at->second = random.Normal();
       u = at->second;
     }
-    direction[e.station] += u * e.direction;
+    direction[e.station] += u * e.direction_W;
     stations[e.station].md += u * e.md;
   }
   for (std::size_t k = 1; k < stations.size(); ++k) {
@@ -383,8 +383,9 @@ TEST(Compare, TheOtherWayRoundEverythingChangesItsSign) {
   const Comparison ab = Compare(pair.first, pair.second), ba = Compare(pair.second, pair.first);
   ASSERT_EQ(ab.places.size(), ba.places.size());
   for (std::size_t i = 0; i < ab.places.size(); ++i) {
-    EXPECT_LT((ab.places[i].position_difference + ba.places[i].position_difference).norm(), 1e-12);
-    EXPECT_LT((ab.places[i].cov_position - ba.places[i].cov_position).norm(), 1e-12);
+    EXPECT_LT((ab.places[i].position_difference_W + ba.places[i].position_difference_W).norm(),
+              1e-12);
+    EXPECT_LT((ab.places[i].cov_position_W - ba.places[i].cov_position_W).norm(), 1e-12);
     EXPECT_NEAR(*ab.places[i].azimuth_difference, -*ba.places[i].azimuth_difference, 1e-15);
   }
   EXPECT_NEAR(ab.depth_offset->value, -ba.depth_offset->value, 1e-3 * ab.depth_offset->sigma);

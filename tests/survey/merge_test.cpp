@@ -84,7 +84,7 @@ TEST_F(MergeLegs, IsNeverLessSureThanItsBestLeg) {
       const MergedSurvey alone = Merged({leg});
       EXPECT_LE(merged.measure, alone.measure * 1.05 + 1e-12) << leg.name;
     }
-    EXPECT_NEAR(merged.measure, SemiMajor(merged.errors.cov_p.back()), 1e-12);
+    EXPECT_NEAR(merged.measure, SemiMajor(merged.errors.cov_p_W.back()), 1e-12);
     EXPECT_EQ(merged.choices.size(), merged.legs.size());
   }
 }
@@ -114,10 +114,10 @@ TEST_F(MergeLegs, ItsErrorsAreAsLargeAsItsCovarianceSays) {
         const auto [u, is_new] = drawn.try_emplace({e.source, e.group}, 0);
         if (is_new) u->second = random.Normal();
         direction.try_emplace(from_top[e.station].md, Vector3d::Zero());
-        direction[from_top[e.station].md] += u->second * e.direction;
+        direction[from_top[e.station].md] += u->second * e.direction_W;
         const double md = from_top[e.station].md;
         const bool taken = leg.name == "gyro" ? md <= 1200 : md > 1200;
-        if (taken) of_courses += u->second * e.displacement;
+        if (taken) of_courses += u->second * e.displacement_W;
         depth[from_top[e.station].md] += u->second * e.md;
       }
       for (SurveyPoint& p : leg.stations) {
@@ -137,8 +137,8 @@ TEST_F(MergeLegs, ItsErrorsAreAsLargeAsItsCovarianceSays) {
     const MergedSurvey merged = Merged(legs, policy);
     ASSERT_EQ(merged.legs.size(), 2u);
     const SurveyedWell true_well = SurveyWell(truth, Vector3d::Zero());
-    const Vector3d error = merged.well.position.back() + of_courses - true_well.position.back();
-    sum += error.dot(merged.errors.cov_p.back().llt().solve(error));
+    const Vector3d error = merged.well.position_W.back() + of_courses - true_well.position_W.back();
+    sum += error.dot(merged.errors.cov_p_W.back().llt().solve(error));
   }
   EXPECT_NEAR(sum / kWells, 3, 4 * std::sqrt(6.0 / kWells));
   RecordProperty("mean", std::to_string(sum / kWells));
@@ -178,8 +178,8 @@ TEST_F(MergeLegs, LegsOfOneRunShareTheirErrorsThroughTheTie) {
   const MergedSurvey cut =
       Merged({Leg("upper", mwd_, 1, 0, 900, 30), Leg("lower", mwd_, 1, 930, 1800, 30)});
   ASSERT_EQ(cut.legs.size(), 2u);
-  EXPECT_LT((cut.errors.cov_p.back() - whole.errors.cov_p.back()).norm(),
-            1e-12 * whole.errors.cov_p.back().norm());
+  EXPECT_LT((cut.errors.cov_p_W.back() - whole.errors.cov_p_W.back()).norm(),
+            1e-12 * whole.errors.cov_p_W.back().norm());
   const MergedSurvey runs =
       Merged({Leg("upper", mwd_, 1, 0, 900, 30), Leg("lower", mwd_, 2, 930, 1800, 30)});
   EXPECT_LT(runs.measure, 0.95 * whole.measure);

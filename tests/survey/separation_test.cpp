@@ -59,7 +59,7 @@ TEST(Separations, SharedErrorsCancelBetweenParallelWells) {
   const KnownLine own_a(a, Propagation::kSystematic), own_b(b, Propagation::kSystematic);
   const Separation own = Shared(own_a, own_b, Pairing::kTwoWells).back();
   EXPECT_NEAR(own.distance, 50, 1e-9);
-  EXPECT_NEAR(own.vector.y(), 50, 1e-9);
+  EXPECT_NEAR(own.vector_W.y(), 50, 1e-9);
   EXPECT_NEAR(own.other_md, 2000, 1e-6);
   EXPECT_NEAR(own.sigma, std::sqrt(2) * 0.01 * x, 1e-9 * x);
   EXPECT_NEAR(*own.sigmas, 50 / own.sigma, 1e-12);
@@ -133,7 +133,7 @@ TEST(Separations, HorizontalAndTravellingCylinder) {
   SeparationRule rule;
   rule.scan = Scan::kTravellingCylinder;
   const auto across = Separations(level.line(), steep.line(), Pairing::kTwoWells, rule);
-  for (const Separation& s : across) EXPECT_NEAR(s.vector.x(), 0, 1e-9);
+  for (const Separation& s : across) EXPECT_NEAR(s.vector_W.x(), 0, 1e-9);
   // North 500 to 1914 only is within the steep one's reach.
   ASSERT_EQ(across.size(), 15U);
   EXPECT_NEAR(across[0].distance, std::hypot(30, 1000), 1e-9);

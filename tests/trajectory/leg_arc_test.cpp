@@ -44,19 +44,19 @@ struct Draw {
 /// summed at Gauss' three points, exact to (turn)^6 / 2e6 of the length.
 struct Turned {
   explicit Turned(const LegArc& arc) : arc_(arc) {
-    axis_ = arc.tangent.cross(arc.normal).normalized();
+    axis_ = arc.tangent_W.cross(arc.normal_W).normalized();
   }
   Vector3d operator()(double s) const {
     const auto tangent = [&](double at) -> Vector3d {
-      return Eigen::AngleAxisd(arc_.curvature * at, axis_) * arc_.tangent;
+      return Eigen::AngleAxisd(arc_.curvature * at, axis_) * arc_.tangent_W;
     };
     if (arc_.curvature * arc_.length < 0.01) {
       const double off = std::sqrt(0.15) * s;
-      return arc_.begin +
+      return arc_.begin_W +
              s / 18 * (5 * tangent(s / 2 - off) + 8 * tangent(s / 2) + 5 * tangent(s / 2 + off));
     }
-    const Vector3d centre = arc_.begin + arc_.normal / arc_.curvature;
-    return centre + Eigen::AngleAxisd(arc_.curvature * s, axis_) * (arc_.begin - centre);
+    const Vector3d centre = arc_.begin_W + arc_.normal_W / arc_.curvature;
+    return centre + Eigen::AngleAxisd(arc_.curvature * s, axis_) * (arc_.begin_W - centre);
   }
 
  private:
@@ -193,10 +193,11 @@ TEST(LegTree, FindsWhatEveryLegSearchedFinds) {
     const LegArc other = draw.Arc();
     double nearest = 1e300, pair = 1e300;
     for (const LegArc& leg : legs) {
-      nearest = std::min(nearest, (PointOn(leg, NearestOn(leg, other.begin)) - other.begin).norm());
+      nearest =
+          std::min(nearest, (PointOn(leg, NearestOn(leg, other.begin_W)) - other.begin_W).norm());
       pair = std::min(pair, NearestBetween(other, leg).distance);
     }
-    EXPECT_NEAR(tree.Nearest(other.begin).distance, nearest, 1e-9);
+    EXPECT_NEAR(tree.Nearest(other.begin_W).distance, nearest, 1e-9);
     const LegTree::Pair found = tree.Nearest(other);
     EXPECT_NEAR(found.place.distance, pair, 2e-7);
   }

@@ -73,7 +73,7 @@ TEST(ReferenceWells, IscwsaStandardPaths) {
     const Trajectory path(s.md, s.inclination, s.azimuth, {0, 0, rows[0][3]});
     double worst = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      worst = std::max(worst, std::abs(path.station(i).position.z() - rows[i][3]));
+      worst = std::max(worst, std::abs(path.station(i).position_W.z() - rows[i][3]));
     }
     EXPECT_LT(worst, well == 1 ? 0.0051 : 0.037) << "well " << well;
     RecordProperty("iscwsa_" + std::to_string(well), std::to_string(worst));
@@ -90,7 +90,7 @@ TEST(ReferenceWells, ACompassReport) {
   const Trajectory path(s.md, s.inclination, s.azimuth, {0, 0, 0});
   double horizontal = 0, vertical = 0, section = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Eigen::Vector3d p = path.station(i).position;
+    const Eigen::Vector3d p = path.station(i).position_W;
     vertical = std::max(vertical, std::abs(p.z() - rows[i][3]));
     horizontal = std::max(horizontal, std::hypot(p.x() - rows[i][4], p.y() - rows[i][5]));
     // The plane of section is printed in its footnote.
@@ -102,8 +102,8 @@ TEST(ReferenceWells, ACompassReport) {
   EXPECT_LT(vertical, 0.04);
   EXPECT_LT(horizontal, 0.06);
   EXPECT_LT(section, 3.0);  // the report's own section is off its own north and east by metres
-  const Closure closure = ClosureOf(path.station(rows.size() - 3).position.x(),
-                                    path.station(rows.size() - 3).position.y());
+  const Closure closure = ClosureOf(path.station(rows.size() - 3).position_W.x(),
+                                    path.station(rows.size() - 3).position_W.y());
   EXPECT_GT(closure.distance, 800);
 }
 
@@ -145,7 +145,7 @@ TEST(ReferenceWells, IscwsaClearanceWells) {
     double worst = 0;
     for (std::size_t i = 0; i < md.size(); ++i) {
       const Eigen::Vector3d truth(north[i], east[i], tvd[i]);
-      worst = std::max(worst, (well.station(i).position - truth).cwiseAbs().maxCoeff());
+      worst = std::max(worst, (well.station(i).position_W - truth).cwiseAbs().maxCoeff());
     }
     EXPECT_LT(worst, 0.0101) << "well " << wells;
     ++wells;

@@ -47,7 +47,7 @@ BENCHMARK(ByMd)->Arg(1'000)->Arg(100'000);
 void ByTvd(benchmark::State& state) {
   const Survey s(static_cast<std::size_t>(state.range(0)));
   const Trajectory well(s.md, s.inclination, s.azimuth, {0, 0, 0});
-  const double deep = well.station(well.size() - 1).position.z();
+  const double deep = well.station(well.size() - 1).position_W.z();
   double u = 0;
   for (auto _ : state) {
     u = std::fmod(u + 0.6180339887, 1.0);

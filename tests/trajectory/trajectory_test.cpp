@@ -34,7 +34,7 @@ Trajectory Porpoise(int stations) {
 // The arc between two stations, integrated in long double with the tangent turned evenly.
 Eigen::Vector3d Integrated(const TrajectoryPoint& a, const TrajectoryPoint& b, double fraction) {
   using V = Eigen::Matrix<long double, 3, 1>;
-  const V t1 = a.tangent.cast<long double>(), t2 = b.tangent.cast<long double>();
+  const V t1 = a.tangent_W.cast<long double>(), t2 = b.tangent_W.cast<long double>();
   const V axis = t1.cross(t2);
   const long double dogleg = std::atan2(axis.norm(), t1.dot(t2));
   const V normal = dogleg > 0 ? V((axis / axis.norm()).cross(t1)) : V::Zero();
@@ -46,7 +46,7 @@ Eigen::Vector3d Integrated(const TrajectoryPoint& a, const TrajectoryPoint& b, d
     sum += std::cos(angle) * t1 + std::sin(angle) * normal;
   }
   const long double length = (b.md - a.md) * fraction;
-  return a.position + (sum * length / n).cast<double>();
+  return a.position_W + (sum * length / n).cast<double>();
 }
 
 TEST(Trajectory, ByMeasuredDepthIsOnTheArcs) {
@@ -54,11 +54,11 @@ TEST(Trajectory, ByMeasuredDepthIsOnTheArcs) {
   for (std::size_t i = 0; i + 1 < well.size(); ++i) {
     for (const double u : {0.13, 0.5, 0.99}) {
       const TrajectoryPoint p = well.AtMd(well.station(i).md + 10 * u);
-      EXPECT_LT((p.position - Integrated(well.station(i), well.station(i + 1), u)).norm(), 1e-7);
-      EXPECT_LT((p.tangent - Tangent(p.inclination, p.azimuth)).norm(), 1e-14);
+      EXPECT_LT((p.position_W - Integrated(well.station(i), well.station(i + 1), u)).norm(), 1e-7);
+      EXPECT_LT((p.tangent_W - Tangent(p.inclination, p.azimuth)).norm(), 1e-14);
       EXPECT_EQ(p.dogleg_severity, well.station(i + 1).dogleg_severity);
     }
-    EXPECT_EQ(well.AtMd(well.station(i).md).position, well.station(i).position);
+    EXPECT_EQ(well.AtMd(well.station(i).md).position_W, well.station(i).position_W);
     EXPECT_EQ(well.AtMd(well.station(i).md).azimuth, well.station(i).azimuth);
   }
   EXPECT_THROW(well.AtMd(-1e-9), std::domain_error);
@@ -69,9 +69,9 @@ TEST(Trajectory, ByMeasuredDepthIsOnTheArcs) {
 // Sign changes of TVD over a fine scan: what a search without any index would find.
 std::vector<double> Scanned(const Trajectory& well, double tvd, double step) {
   std::vector<double> found;
-  double before = well.station(0).position.z() - tvd;
+  double before = well.station(0).position_W.z() - tvd;
   for (double md = well.md_begin() + step; md <= well.md_end(); md += step) {
-    const double now = well.AtMd(md).position.z() - tvd;
+    const double now = well.AtMd(md).position_W.z() - tvd;
     if ((before < 0) != (now < 0)) found.push_back(md - step * now / (now - before));
     before = now;
   }
@@ -87,7 +87,7 @@ TEST(Trajectory, ByTvdFindsEveryCrossing) {
     ASSERT_EQ(found.size(), truth.size()) << tvd;
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_NEAR(found[i], truth[i], 0.01) << tvd;
-      EXPECT_NEAR(well.AtMd(found[i]).position.z(), tvd, 1e-9);
+      EXPECT_NEAR(well.AtMd(found[i]).position_W.z(), tvd, 1e-9);
     }
     most = std::max(most, found.size());
   }
@@ -98,7 +98,7 @@ TEST(Trajectory, AStationsOwnTvdIsFoundOnce) {
   const Trajectory well = Porpoise(100);
   for (std::size_t i = 0; i < well.size(); ++i) {
     int here = 0;
-    for (const double md : well.MdAtTvd(well.station(i).position.z())) {
+    for (const double md : well.MdAtTvd(well.station(i).position_W.z())) {
       here += std::abs(md - well.station(i).md) < 1e-4 ? 1 : 0;
     }
     EXPECT_EQ(here, 1) << i;
@@ -112,7 +112,7 @@ TEST(Trajectory, TouchingLevelAndVerticalLegs) {
   const double top = 100 / 0.6 * (1 - std::cos(0.3));
   EXPECT_EQ(arc.MdAtTvd(top - 1e-6).size(), 2u);
   EXPECT_TRUE(arc.MdAtTvd(top + 1e-8).empty());
-  const auto touched = arc.MdAtTvd(arc.AtMd(50).position.z());
+  const auto touched = arc.MdAtTvd(arc.AtMd(50).position_W.z());
   ASSERT_FALSE(touched.empty());
   for (const double depth : touched) EXPECT_NEAR(depth, 50, 1e-4);
 
@@ -120,7 +120,7 @@ TEST(Trajectory, TouchingLevelAndVerticalLegs) {
   const std::vector<double> flat{0, kPi / 2, kPi / 2, kPi / 2, kPi / 4};
   const std::vector<double> north(5, 0.0);
   const Trajectory level(flat_md, flat, north, {0, 0, 0});
-  const double z = level.station(1).position.z();
+  const double z = level.station(1).position_W.z();
   const std::vector<double> in_level = level.MdAtTvd(z);
   EXPECT_THAT(in_level,
               testing::ElementsAre(testing::DoubleNear(50, 1e-4), testing::DoubleNear(150, 1e-4)));
@@ -136,7 +136,7 @@ TEST(Trajectory, TouchingLevelAndVerticalLegs) {
 TEST(Trajectory, OneStationIsAPoint) {
   const std::vector<double> md{10}, inclination{0.1}, azimuth{0.2};
   const Trajectory point(md, inclination, azimuth, {1, 2, 3});
-  EXPECT_EQ(point.AtMd(10).position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(point.AtMd(10).position_W, Eigen::Vector3d(1, 2, 3));
   EXPECT_THAT(point.MdAtTvd(3), testing::ElementsAre(10.0));
   EXPECT_TRUE(point.MdAtTvd(4).empty());
   EXPECT_EQ(point.Resampled(4).size(), 1u);
@@ -172,19 +172,19 @@ TEST(Trajectory, ResampledAtWholeMultiples) {
     m.push_back(p.md), i.push_back(p.inclination), a.push_back(p.azimuth);
   }
   const Trajectory again(m, i, a, {0, 0, 12});
-  EXPECT_LT((again.AtMd(60).position - well.AtMd(60).position).norm(), 1e-12);
+  EXPECT_LT((again.AtMd(60).position_W - well.AtMd(60).position_W).norm(), 1e-12);
 }
 
 TEST(Trajectory, AheadGoesOnStraightOrCurved) {
   const std::vector<double> md{0, 100}, inclination{0, 0}, azimuth{0.3, 0.3};
   const Trajectory down(md, inclination, azimuth, {0, 0, 0});
-  EXPECT_LT((down.Ahead(25).position - Eigen::Vector3d(0, 0, 125)).norm(), 1e-12);
+  EXPECT_LT((down.Ahead(25).position_W - Eigen::Vector3d(0, 0, 125)).norm(), 1e-12);
   // A quarter circle towards azimuth 0.3 + 1.1 from the vertical.
   const double radius = 200;
   const TrajectoryPoint quarter = down.Ahead(radius * kPi / 2, 1 / radius, 1.1);
   EXPECT_NEAR(quarter.inclination, kPi / 2, 1e-12);
   EXPECT_NEAR(quarter.azimuth, 1.4, 1e-12);
-  EXPECT_LT((quarter.position -
+  EXPECT_LT((quarter.position_W -
              Eigen::Vector3d(radius * std::cos(1.4), radius * std::sin(1.4), 100 + radius))
                 .norm(),
             1e-9);
@@ -197,7 +197,7 @@ TEST(Trajectory, SideTracksLeaveTheParent) {
   const std::vector<PathStation> below{{140, 1.2, 0.1}, {170, 1.1, 0.2}};
   const Trajectory side = Trajectory::TiedOnto(parent, 123, below);
   EXPECT_EQ(side.size(), 3u);
-  EXPECT_EQ(side.station(0).position, parent.AtMd(123).position);
+  EXPECT_EQ(side.station(0).position_W, parent.AtMd(123).position_W);
   EXPECT_THROW(Trajectory::TiedOnto(parent, 500, below), std::domain_error);
   EXPECT_THROW(Trajectory::TiedOnto(parent, 150, below), std::invalid_argument);
 }
@@ -208,7 +208,7 @@ TEST(Trajectory, OfAPathRefersToTheHeadsMeridian) {
   std::vector<PathPoint> points{path.last()};
   for (int i = 1; i <= 100; ++i) points.push_back(*path.Add({50.0 * i, kPi / 2, kPi / 2}));
   const Trajectory well = Trajectory::OfPath(points);
-  EXPECT_EQ(well.AtMd(5000).position, points.back().p_WT_W);
+  EXPECT_EQ(well.AtMd(5000).position_W, points.back().p_WT_W);
   // Due east by its own meridian, 5 km east at 60 deg north: the design's 0.08 deg.
   EXPECT_NEAR(ToDegrees(well.AtMd(5000).azimuth), 90 - 0.08, 0.005);
 }
@@ -243,7 +243,7 @@ TEST(LegGeometry, ToolfaceLeadsToTheNextStation) {
       const std::vector<double> md{0, 10}, inclination{0.7, 0.7}, azimuth{2, 2};
       const TrajectoryPoint end = Trajectory(md, inclination, azimuth, {0, 0, 0})
                                       .Ahead(50, leg.dogleg_severity, leg.toolface);
-      EXPECT_LT((end.tangent - Tangent(i2, a2)).norm(), 1e-13);
+      EXPECT_LT((end.tangent_W - Tangent(i2, a2)).norm(), 1e-13);
     }
   }
 }

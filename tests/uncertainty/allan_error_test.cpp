@@ -59,8 +59,8 @@ TEST(AllanErrors, StraightHoleHasTheTextbookIntegrals) {
   const auto check = [&](const char* name, double var_azimuth, double var_north) {
     const AllanTerm& term = Term(result, name);
     EXPECT_NEAR(term.var_azimuth[1] / var_azimuth, 1, 1e-9) << name;
-    EXPECT_NEAR(term.cov_p[1](0, 0) / var_north, 1, 1e-9) << name;
-    EXPECT_NEAR(term.cov_p[1](1, 1), 0, 1e-9 * var_north) << name;
+    EXPECT_NEAR(term.cov_p_W[1](0, 0) / var_north, 1, 1e-9) << name;
+    EXPECT_NEAR(term.cov_p_W[1](1, 1), 0, 1e-9 * var_north) << name;
   };
   const NoiseCoefficients& n = run.noise;
   const auto squared = [](double x) { return x * x; };
@@ -92,8 +92,8 @@ TEST(AllanErrors, SplittingEveryLegThirtyTimesChangesNothing) {
           worst = std::max(worst, std::abs(std::sqrt(c / f) - 1));
         };
         compare(coarse.terms[i].var_azimuth[k], fine.terms[i].var_azimuth[30 * k]);
-        const Eigen::Matrix3d& c = coarse.terms[i].cov_p[k];
-        const Eigen::Matrix3d& f = fine.terms[i].cov_p[30 * k];
+        const Eigen::Matrix3d& c = coarse.terms[i].cov_p_W[k];
+        const Eigen::Matrix3d& f = fine.terms[i].cov_p_W[30 * k];
         compare(c.trace(), f.trace());
       }
     }
@@ -114,9 +114,9 @@ TEST(AllanErrors, AFixMakesTheAzimuthNewAndKeepsThePosition) {
   ASSERT_FALSE(result.refusal);
   const std::size_t rest = 50, first = 25, second = 75;  // vertical at MD 1500
   EXPECT_EQ(result.var_azimuth[rest], 0);
-  EXPECT_GT(result.cov_p[rest].trace(), 0);
+  EXPECT_GT(result.cov_p_W[rest].trace(), 0);
   for (std::size_t k = rest - 5; k < rest + 5; ++k)
-    EXPECT_EQ(result.cov_p[k], result.cov_p[rest]);  // at rest nothing moves
+    EXPECT_EQ(result.cov_p_W[k], result.cov_p_W[rest]);  // at rest nothing moves
   for (const char* name : {"ALLAN-N", "ALLAN-K", "ALLAN-R", "ALLAN-B", "FIX"}) {
     const AllanTerm& term = Term(result, name);
     EXPECT_NEAR(term.var_azimuth[second] / term.var_azimuth[first], 1, 1e-6) << name;
@@ -124,7 +124,7 @@ TEST(AllanErrors, AFixMakesTheAzimuthNewAndKeepsThePosition) {
   // One fix is independent of the other, one constant slope is not of itself.
   const auto gain = [&](const char* name) {
     const AllanTerm& term = Term(result, name);
-    return term.cov_p[100].trace() / term.cov_p[rest].trace();
+    return term.cov_p_W[100].trace() / term.cov_p_W[rest].trace();
   };
   EXPECT_NEAR(gain("FIX"), 2, 1e-6);
   EXPECT_NEAR(gain("ALLAN-N"), 2, 1e-6);
@@ -145,7 +145,7 @@ TEST(AllanErrors, RefusesWhereTheGyroFeelsNoTurn) {
   run.axes = GyroAxes::kZ;  // one axis, up to the horizontal
   result = AllanErrors(survey, run);
   ASSERT_TRUE(result.refusal);
-  EXPECT_EQ(result.cov_p.size(), result.refusal->station);
+  EXPECT_EQ(result.cov_p_W.size(), result.refusal->station);
   EXPECT_GE(result.refusal->station, 29u);
   run.axes = GyroAxes::kXyz;
   EXPECT_FALSE(AllanErrors(survey, run).refusal);
@@ -197,7 +197,7 @@ TEST(PrintedAllan, FourRecursionsByHand) {
     EXPECT_NEAR(h[i], expected[i], 1e-9 * expected[i]) << codes[i];
     // And as they reach the position: the last station's own error moves it over half a leg.
     const auto errors = PropagateErrors(survey, {}, model);
-    EXPECT_GT(errors.cov_p.back().trace(), 0) << codes[i];
+    EXPECT_GT(errors.cov_p_W.back().trace(), 0) << codes[i];
   }
 }
 
@@ -212,7 +212,7 @@ TEST(PrintedAllan, OverstatesTheWalkOnAStraightHole) {
   const auto exact = AllanErrors(survey, run);
   Surroundings place;
   const auto printed = PropagateErrors(survey, place, PrintedAllanModel(run).model);
-  const double ratio = std::sqrt(printed.cov_p.back()(1, 1) / exact.cov_p.back()(1, 1));
+  const double ratio = std::sqrt(printed.cov_p_W.back()(1, 1) / exact.cov_p_W.back()(1, 1));
   EXPECT_NEAR(ratio, std::sqrt(4.0 / 3), 2e-3);
 }
 

@@ -129,7 +129,7 @@ TEST_P(AllanMonteCarlo, SigmasOfAzimuthAndPositionAgree) {
     const auto term = std::ranges::find(exact.terms, kNoiseNames[p], &AllanTerm::term);
     ASSERT_NE(term, exact.terms.end()) << kNoiseNames[p];
     const double azimuth = std::sqrt(term->var_azimuth.back() / (sums[p][0] / kRuns)) - 1;
-    const double position = std::sqrt(term->cov_p.back().trace() / (sums[p][1] / kRuns)) - 1;
+    const double position = std::sqrt(term->cov_p_W.back().trace() / (sums[p][1] / kRuns)) - 1;
     EXPECT_NEAR(azimuth, 0, tolerance) << profile.name << " " << p;
     EXPECT_NEAR(position, 0, tolerance) << profile.name << " " << p;
     worst = std::max({worst, std::abs(azimuth), std::abs(position)});

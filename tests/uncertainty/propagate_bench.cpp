@@ -39,8 +39,8 @@ void Run(benchmark::State& state, const std::string& name, bool terms) {
   options.terms = terms;
   for (auto _ : state) {
     const PositionUncertainty result = PropagateErrors(survey, place, *model, options);
-    if (result.cov_p.size() != survey.size()) return state.SkipWithError("refused");
-    benchmark::DoNotOptimize(result.cov_p.back());
+    if (result.cov_p_W.size() != survey.size()) return state.SkipWithError("refused");
+    benchmark::DoNotOptimize(result.cov_p_W.back());
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));
   state.SetComplexityN(state.range(0));
@@ -59,7 +59,7 @@ void RunAllan(benchmark::State& state) {
   for (auto _ : state) {
     const AllanUncertainty result = AllanErrors(survey, run);
     if (result.refusal) return state.SkipWithError("refused");
-    benchmark::DoNotOptimize(result.cov_p.back());
+    benchmark::DoNotOptimize(result.cov_p_W.back());
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));
   state.SetComplexityN(state.range(0));

@@ -120,7 +120,7 @@ TEST(PropagateErrors, IsWhatMovedStationsDo) {
           PropagateErrors(survey, Somewhere(), OneTerm(law.code, law.magnitude, mode));
       const auto moved = ByMoving(survey, unit, law.magnitude, random);
       for (std::size_t k = 1; k < survey.size(); ++k)
-        EXPECT_LT((result.cov_p[k] - moved[k]).norm(), 1e-8 * moved[k].norm()) << law.code << k;
+        EXPECT_LT((result.cov_p_W[k] - moved[k]).norm(), 1e-8 * moved[k].norm()) << law.code << k;
     }
   }
 }
@@ -129,12 +129,12 @@ TEST(PropagateErrors, IsWhatMovedStationsDo) {
 TEST(PropagateErrors, DoubledTieOnDoublesTheFirstLeg) {
   const auto survey = Crooked();
   ErrorModel model = OneTerm("AZ", 1e-3, Propagation::kSystematic);
-  const double single = std::sqrt(PropagateErrors(survey, Somewhere(), model).cov_p[1].trace());
+  const double single = std::sqrt(PropagateErrors(survey, Somewhere(), model).cov_p_W[1].trace());
   model.doubled_tie_on = true;
   const auto doubled = PropagateErrors(survey, Somewhere(), model);
-  EXPECT_NEAR(std::sqrt(doubled.cov_p[1].trace()), 2 * single, 1e-12 * single);
+  EXPECT_NEAR(std::sqrt(doubled.cov_p_W[1].trace()), 2 * single, 1e-12 * single);
   const double leg = survey[1].md * std::sin(survey[1].inclination) * 1e-3;
-  EXPECT_NEAR(std::sqrt(doubled.cov_p[1].trace()), leg, 1e-12 * leg);
+  EXPECT_NEAR(std::sqrt(doubled.cov_p_W[1].trace()), leg, 1e-12 * leg);
 }
 
 // Grid azimuths with a convergence: the same well, told in the grid's frame.
@@ -158,9 +158,9 @@ TEST(PropagateErrors, ConvergenceOnlyTurnsTheFrame) {
     });
     const auto a = PropagateErrors(grid, turned, model);
     const auto b = PropagateErrors(true_north, place, model);
-    ASSERT_EQ(a.cov_p.size(), grid.size());
-    const Matrix3d turned_back = r * a.cov_p.back() * r.transpose();
-    EXPECT_LT((turned_back - b.cov_p.back()).norm(), 1e-9 * b.cov_p.back().norm()) << name;
+    ASSERT_EQ(a.cov_p_W.size(), grid.size());
+    const Matrix3d turned_back = r * a.cov_p_W.back() * r.transpose();
+    EXPECT_LT((turned_back - b.cov_p_W.back()).norm(), 1e-9 * b.cov_p_W.back().norm()) << name;
   }
 }
 
@@ -171,10 +171,10 @@ TEST(PropagateErrors, LegsCorrelateByPropagation) {
   const auto end = [&](Propagation propagation, int second_run) {
     const ErrorModel model = OneTerm("AZ", 1e-3, propagation);
     const ToolLeg legs[] = {{&model, 0, half, 1}, {&model, half, survey.size(), second_run}};
-    return PropagateErrors(survey, Somewhere(), legs).cov_p.back();
+    return PropagateErrors(survey, Somewhere(), legs).cov_p_W.back();
   };
   const auto whole = [&](Propagation propagation) {
-    return PropagateErrors(survey, Somewhere(), OneTerm("AZ", 1e-3, propagation)).cov_p.back();
+    return PropagateErrors(survey, Somewhere(), OneTerm("AZ", 1e-3, propagation)).cov_p_W.back();
   };
   const Matrix3d joined = whole(Propagation::kSystematic);
   EXPECT_LT((end(Propagation::kSystematic, 1) - joined).norm(), 1e-12 * joined.norm());
@@ -202,7 +202,7 @@ TEST(PropagateErrors, LegsOfDifferentModelsAddUp) {
   const ToolLeg legs[] = {{&a, 0, half, 1}, {&b, half, survey.size(), 2}};
   PropagateOptions options;
   options.terms = true;
-  options.cov_tie_in = Vector3d(4, 1, 9).asDiagonal();
+  options.cov_tie_in_W = Vector3d(4, 1, 9).asDiagonal();
   const auto result = PropagateErrors(survey, Somewhere(), legs, options);
   std::vector<Vector3L> first(survey.size(), Vector3L::Zero()), second = first;
   for (std::size_t k = 0; k < survey.size(); ++k) (k < half ? first[k].z() : second[k].y()) = 1;
@@ -210,10 +210,12 @@ TEST(PropagateErrors, LegsOfDifferentModelsAddUp) {
   const auto part_b = ByMoving(survey, second, 2e-3, false);
   ASSERT_EQ(result.terms.size(), 2u);
   for (std::size_t k = 1; k < survey.size(); ++k) {
-    EXPECT_LT((result.terms[0].cov_p[k] - part_a[k]).norm(), 1e-8 * part_a[k].norm()) << k;
-    EXPECT_LT((result.terms[1].cov_p[k] - part_b[k]).norm(), 1e-8 * part_b[k].norm() + 1e-20) << k;
-    const Matrix3d sum = options.cov_tie_in + result.terms[0].cov_p[k] + result.terms[1].cov_p[k];
-    EXPECT_LT((result.cov_p[k] - sum).norm(), 1e-12 * sum.norm());
+    EXPECT_LT((result.terms[0].cov_p_W[k] - part_a[k]).norm(), 1e-8 * part_a[k].norm()) << k;
+    EXPECT_LT((result.terms[1].cov_p_W[k] - part_b[k]).norm(), 1e-8 * part_b[k].norm() + 1e-20)
+        << k;
+    const Matrix3d sum =
+        options.cov_tie_in_W + result.terms[0].cov_p_W[k] + result.terms[1].cov_p_W[k];
+    EXPECT_LT((result.cov_p_W[k] - sum).norm(), 1e-12 * sum.norm());
   }
 }
 
@@ -226,13 +228,13 @@ TEST(PropagateErrors, TermsSumToTheTotal) {
     const ErrorModel model = test::Model(name);
     const auto result = PropagateErrors(well.survey, well.place, model, options);
     EXPECT_EQ(result.terms.size(), model.terms.size());
-    for (std::size_t k = 0; k < result.cov_p.size(); ++k) {
+    for (std::size_t k = 0; k < result.cov_p_W.size(); ++k) {
       Matrix3d sum = Matrix3d::Zero();
-      for (const auto& term : result.terms) sum += term.cov_p[k];
-      EXPECT_LT((sum - result.cov_p[k]).norm(), 1e-12 * sum.norm()) << name << k;
+      for (const auto& term : result.terms) sum += term.cov_p_W[k];
+      EXPECT_LT((sum - result.cov_p_W[k]).norm(), 1e-12 * sum.norm()) << name << k;
     }
     for (const auto& term : result.terms)
-      EXPECT_GT(term.cov_p.back().norm(), 0) << name << " " << term.term;  // none silently zero
+      EXPECT_GT(term.cov_p_W.back().norm(), 0) << name << " " << term.term;  // none silently zero
   }
 }
 
@@ -244,7 +246,7 @@ TEST(PropagateErrors, RefusesATwoAxisGyrocompassAboveItsEnd) {
   const auto ns = PropagateErrors(survey, Somewhere(), test::Model("GYRO-NS"));
   ASSERT_TRUE(ns.refusal);
   EXPECT_NEAR(survey[ns.refusal->station].inclination, 90 * kDeg, 1e-9);
-  EXPECT_EQ(ns.cov_p.size(), ns.refusal->station);
+  EXPECT_EQ(ns.cov_p_W.size(), ns.refusal->station);
   EXPECT_THAT(ns.refusal->text, HasSubstr("89 deg"));
   EXPECT_FALSE(PropagateErrors(survey, Somewhere(), test::Model("GYRO-NS-CT")).refusal);
 
@@ -266,7 +268,7 @@ TEST(PropagateErrors, NothingAbsurdBeforeARefusal) {
       const auto result = PropagateErrors(survey, Somewhere(), test::Model(name));
       ASSERT_TRUE(result.refusal) << name;
       EXPECT_LE(survey[result.refusal->station - 1].inclination, 89.5 * kDeg);
-      EXPECT_LT(result.cov_p.back().trace(), 4e5) << name;
+      EXPECT_LT(result.cov_p_W.back().trace(), 4e5) << name;
     }
   }
 }

@@ -42,10 +42,10 @@ TEST_P(AppendixE, EveryPublishedNumber) {
     if (std::stoi(words.at(0)) != number || std::stoi(words.at(1)) != example) continue;
     const double md = std::stod(words.at(2));
     const std::size_t k = well.StationAt(md);
-    ASSERT_LT(k, result.cov_p.size()) << result.refusal->text;
+    ASSERT_LT(k, result.cov_p_W.size()) << result.refusal->text;
     for (int i = 0; i < 6; ++i, ++seen) {
       const double published = std::stod(words.at(static_cast<std::size_t>(3 + i)));
-      const double ours = Element(result.cov_p[k], i) / (well.unit * well.unit);
+      const double ours = Element(result.cov_p_W[k], i) / (well.unit * well.unit);
       const double tolerance = std::abs(published) < 200 ? 2 : 0.01 * std::abs(published);
       if (IsException(number, example, md, i)) {
         EXPECT_NEAR(ours, 123.0, 0.1);  // published 118: an exception once met is none
@@ -73,7 +73,7 @@ TEST(AppendixERefusals, TwoAxisToolsEndBeforeHorizontal) {
                                           test::Model("spe90408-" + std::to_string(example)));
       ASSERT_TRUE(result.refusal) << number << " " << example;
       EXPECT_EQ(result.refusal->station, well.StationAt(md));
-      EXPECT_EQ(result.cov_p.size(), result.refusal->station);
+      EXPECT_EQ(result.cov_p_W.size(), result.refusal->station);
     }
   }
 }
@@ -82,8 +82,8 @@ using Sources = std::map<std::string, Eigen::Matrix3d>;
 
 Sources AtStation(const PositionUncertainty& result, std::size_t k) {
   Sources sources;
-  for (const auto& term : result.terms) sources[term.term] = term.cov_p[k];
-  sources["TOTAL"] = result.cov_p[k];
+  for (const auto& term : result.terms) sources[term.term] = term.cov_p_W[k];
+  sources["TOTAL"] = result.cov_p_W[k];
   return sources;
 }
 

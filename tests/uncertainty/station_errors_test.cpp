@@ -55,8 +55,8 @@ std::vector<Matrix3d> Summed(const std::vector<SurveyPoint>& survey, const Surve
     std::vector<Vector3d> direction(survey.size(), Vector3d::Zero()), moved = direction;
     std::vector<double> md(survey.size(), 0);
     for (const StationError& e : of_factor) {
-      direction[e.station] += e.direction;
-      moved[e.station] += e.displacement;
+      direction[e.station] += e.direction_W;
+      moved[e.station] += e.displacement_W;
       md[e.station] += e.md;
     }
     Vector3d sum = Vector3d::Zero();
@@ -81,15 +81,15 @@ TEST(ErrorsAtStations, AddUpToTheCovarianceOfPropagateErrors) {
     const PositionUncertainty expected = PropagateErrors(survey, MagneticPlace(), model);
     const ToolLeg leg{&model, 0, survey.size(), 1};
     const SurveyErrors errors = ErrorsAtStations(survey, MagneticPlace(), {&leg, 1});
-    EXPECT_EQ(errors.stations, expected.cov_p.size()) << model.name;
+    EXPECT_EQ(errors.stations, expected.cov_p_W.size()) << model.name;
     if (expected.refusal) continue;
     ++models;
     const std::vector<Matrix3d> cov = Summed(survey, errors);
     for (std::size_t k = 0; k < survey.size(); ++k) {
-      EXPECT_LE((cov[k] - expected.cov_p[k]).norm(), 1e-9 * expected.cov_p[k].norm() + 1e-15)
+      EXPECT_LE((cov[k] - expected.cov_p_W[k]).norm(), 1e-9 * expected.cov_p_W[k].norm() + 1e-15)
           << model.name << " station " << k;
     }
-    EXPECT_GT(expected.cov_p.back().trace(), 1);
+    EXPECT_GT(expected.cov_p_W.back().trace(), 1);
   }
   EXPECT_GE(models, 6);
 }
@@ -102,7 +102,7 @@ TEST(ErrorsAtStations, LegsOfOneRunShareWhatIsSystematic) {
     const PositionUncertainty expected = PropagateErrors(survey, MagneticPlace(), legs);
     const SurveyErrors errors = ErrorsAtStations(survey, MagneticPlace(), legs);
     const Matrix3d cov = Summed(survey, errors).back();
-    EXPECT_LE((cov - expected.cov_p.back()).norm(), 1e-9 * cov.norm());
+    EXPECT_LE((cov - expected.cov_p_W.back()).norm(), 1e-9 * cov.norm());
   }
 }
 
@@ -116,8 +116,8 @@ TEST(ErrorsAtStations, AFirstStationBelowTheDatumIsMeasured) {
   EXPECT_TRUE(errors.first_is_measured);
   double of_first = 0, of_second = 0;
   for (const StationError& e : errors.errors) {
-    if (e.station == 0) of_first += e.direction.squaredNorm();
-    if (e.station == 1) of_second += e.direction.squaredNorm();
+    if (e.station == 0) of_first += e.direction_W.squaredNorm();
+    if (e.station == 1) of_second += e.direction_W.squaredNorm();
   }
   EXPECT_GT(of_first, 0.8 * of_second);
   EXPECT_LT(of_first, 1.2 * of_second);

@@ -60,7 +60,7 @@ TakenSurvey OfArrays(const Input<double, 1>& md, const Input<double, 1>& inclina
     for (std::size_t i = 0; i < md.size(); ++i) {
       const double* const s = sigmas->data() + 8 * i;
       StationSigmas own{FromDegrees(s[0]), FromDegrees(s[1]), Eigen::Matrix3d::Zero()};
-      own.cov_p << s[2], s[3], s[4], s[3], s[5], s[6], s[4], s[6], s[7];
+      own.cov_p_W << s[2], s[3], s[4], s[3], s[5], s[6], s[4], s[6], s[7];
       taken.own.push_back(own);
     }
   }
@@ -70,7 +70,7 @@ TakenSurvey OfArrays(const Input<double, 1>& md, const Input<double, 1>& inclina
 ComparedSurvey Compared(const TakenSurvey& taken, const Surroundings& place, const char* which) {
   ComparedSurvey survey;
   survey.well = taken.well;
-  survey.cov_tie_in = taken.cov_tie_in;
+  survey.cov_tie_in_W = taken.cov_tie_in_W;
   if (!taken.legs.empty()) {
     survey.errors = ErrorsAtStations(taken.well.survey, place, taken.legs);
   } else if (!taken.own.empty()) {
@@ -113,17 +113,17 @@ nb::dict PlacesOf(const std::vector<ComparedPlace>& places) {
                                                             {p.azimuth[1], kDeg},
                                                             {p.azimuth_difference, kDeg},
                                                             {p.sigma_azimuth, kDeg},
-                                                            {p.position_difference.x(), 1},
-                                                            {p.position_difference.y(), 1},
-                                                            {p.position_difference.z(), 1},
-                                                            {p.between_stations.x(), 1},
-                                                            {p.between_stations.y(), 1},
-                                                            {p.between_stations.z(), 1},
+                                                            {p.position_difference_W.x(), 1},
+                                                            {p.position_difference_W.y(), 1},
+                                                            {p.position_difference_W.z(), 1},
+                                                            {p.between_stations_W.x(), 1},
+                                                            {p.between_stations_W.y(), 1},
+                                                            {p.between_stations_W.z(), 1},
                                                             {p.position_sigmas, 1}};
     for (std::size_t i = 0; i < std::size(kPlaceNames); ++i) {
       columns[i].Add(row[i].first, row[i].second);
     }
-    cov.push_back(p.cov_position);
+    cov.push_back(p.cov_position_W);
   }
   nb::dict all;
   for (std::size_t i = 0; i < std::size(kPlaceNames); ++i) {
@@ -174,13 +174,13 @@ nb::dict UncertaintyOf(const TakenSurvey& taken, const PlaceArguments& place, do
   {
     const nb::gil_scoped_release released;
     PropagateOptions options;
-    options.cov_tie_in = taken.cov_tie_in;
+    options.cov_tie_in_W = taken.cov_tie_in_W;
     options.terms = terms;
     errors = PropagateErrors(taken.well.survey, SurroundingsOf(place), taken.legs, options);
   }
   Numbers md, major, minor, azimuth;
-  for (std::size_t k = 0; k < errors.cov_p.size(); ++k) {
-    const ErrorEllipse e = HorizontalEllipse(errors.cov_p[k], confidence);
+  for (std::size_t k = 0; k < errors.cov_p_W.size(); ++k) {
+    const ErrorEllipse e = HorizontalEllipse(errors.cov_p_W[k], confidence);
     md.Add(taken.well.survey[k].md);
     major.Add(e.semi_major);
     minor.Add(e.semi_minor);
@@ -191,9 +191,9 @@ nb::dict UncertaintyOf(const TakenSurvey& taken, const PlaceArguments& place, do
   all["semi_major_m"] = Array(std::move(major.values));
   all["semi_minor_m"] = Array(std::move(minor.values));
   all["azimuth_major_deg"] = Array(std::move(azimuth.values));
-  all["cov"] = Matrices(errors.cov_p);
+  all["cov"] = Matrices(errors.cov_p_W);
   for (const TermUncertainty& term : errors.terms) {
-    by_term[term.term.c_str()] = Matrices(term.cov_p);
+    by_term[term.term.c_str()] = Matrices(term.cov_p_W);
   }
   all["terms"] = by_term;
   all["notes"] = errors.notes;
@@ -228,8 +228,8 @@ nb::dict MergeThem(const std::string& text, const std::string& folder, const Pla
   all["inclination_deg"] = Array(std::move(inclination.values));
   all["azimuth_deg"] = Array(std::move(azimuth.values));
   all["dogleg_deg_per_30m"] = Array(std::move(severity.values));
-  all["position"] = Vectors(merged.well.position);
-  all["cov"] = Matrices(merged.errors.cov_p);
+  all["position"] = Vectors(merged.well.position_W);
+  all["cov"] = Matrices(merged.errors.cov_p_W);
   for (const OutputFile& file : answer.files) files[file.name.c_str()] = file.bytes;
   all["files"] = files;
   all["notes"] = answer.notes;
@@ -244,7 +244,7 @@ nb::dict MergeThem(const std::string& text, const std::string& folder, const Pla
 void AddPlanning(nb::module_& m) {
   nb::class_<TakenSurvey>(m, "KnownSurvey")
       .def_ro("notes", &TakenSurvey::notes)
-      .def_prop_ro("position", [](const TakenSurvey& t) { return Vectors(t.well.position); });
+      .def_prop_ro("position", [](const TakenSurvey& t) { return Vectors(t.well.position_W); });
   m.def("survey_of_file", &OfFile, nb::call_guard<nb::gil_scoped_release>());
   m.def("survey_of_arrays", &OfArrays, nb::arg("md").noconvert(),
         nb::arg("inclination").noconvert(), nb::arg("azimuth").noconvert(), nb::arg("start"),

@@ -33,9 +33,9 @@ StationMatrix SolveCovariance(const StationMatrix& cov, const StationMatrix& cro
   return scale.asDiagonal() * v * inverse.asDiagonal() * v.transpose() * scale.asDiagonal() * cross;
 }
 
-AlongHoleCovariance::AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in, double depth_sigma,
+AlongHoleCovariance::AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in_W, double depth_sigma,
                                          TimeAlongHole order)
-    : order_(order), depth_sigma_(depth_sigma), cov_(cov_tie_in) {}
+    : order_(order), depth_sigma_(depth_sigma), cov_W_(cov_tie_in_W) {}
 
 // Carries the two covariances with the state from the station last seen to this one.
 void AlongHoleCovariance::Advance(const StationState& station) {
@@ -68,7 +68,7 @@ Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
   Rows by_x = Rows::Zero(3, station.cov.rows());
   by_x.leftCols<3>() = station.tangent;
   const Rows rows_cov = by_x * station.cov;
-  const Eigen::Matrix3d cov_slope = rows_cov * by_x.transpose();
+  const Eigen::Matrix3d cov_slope_W = rows_cov * by_x.transpose();
   const bool first = !any_;
   if (!first && !(station.along.md > md_)) {
     throw std::invalid_argument("AlongHoleCovariance: depth " + std::to_string(station.along.md) +
@@ -77,32 +77,32 @@ Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
   Skip(station);
   if (first) {
     any_ = true;
-    cov_with_slope_.setZero();
+    cov_with_slope_W_.setZero();
     cov_with_state_ = Rows::Zero(3, station.cov.rows());
   } else {
     // r' = (r + half s) + half s'
     const double half = (station.along.md - md_) / 2;
     const Rows upper = cov_with_state_ + half * slope_with_state_;
     const Eigen::Matrix3d upper_slope = upper * by_x.transpose();
-    cov_ += half * PlusTransposed(cov_with_slope_ + upper_slope) +
-            half * half * (cov_slope_ + cov_slope);
-    cov_with_slope_ = upper_slope + half * cov_slope;
+    cov_W_ += half * PlusTransposed(cov_with_slope_W_ + upper_slope) +
+              half * half * (cov_slope_W_ + cov_slope_W);
+    cov_with_slope_W_ = upper_slope + half * cov_slope_W;
     cov_with_state_ = upper + half * rows_cov;
   }
   md_ = station.along.md;
-  cov_slope_ = cov_slope;
+  cov_slope_W_ = cov_slope_W;
   slope_with_state_ = rows_cov;
 
   const double sigma = std::max(depth_sigma_, station.along.sigma_md);
   const Eigen::Vector3d tangent = Tangent(station.attitude.inclination, station.attitude.azimuth);
-  return cov_ + sigma * sigma * tangent * tangent.transpose();
+  return cov_W_ + sigma * sigma * tangent * tangent.transpose();
 }
 
 std::vector<Eigen::Matrix3d> CovarianceAlongHole(std::span<const StationState> in_depth_order,
                                                  TimeAlongHole order,
-                                                 const Eigen::Matrix3d& cov_tie_in,
+                                                 const Eigen::Matrix3d& cov_tie_in_W,
                                                  double depth_sigma) {
-  AlongHoleCovariance along(cov_tie_in, depth_sigma, order);
+  AlongHoleCovariance along(cov_tie_in_W, depth_sigma, order);
   std::vector<Eigen::Matrix3d> covariances;
   covariances.reserve(in_depth_order.size());
   for (const StationState& station : in_depth_order) covariances.push_back(along.Add(station));

@@ -27,9 +27,9 @@ StationMatrix SolveCovariance(const StationMatrix& cov, const StationMatrix& cro
 /// its depth error along the tangent.
 class WELLGYRO_EXPORT AlongHoleCovariance {
  public:
-  /// `cov_tie_in`: of the position of the first station [m^2]; `depth_sigma`: ErrorPriors [m], of
+  /// `cov_tie_in_W`: of the position of the first station [m^2]; `depth_sigma`: ErrorPriors [m], of
   /// which and AlongHole::sigma_md the larger counts.
-  AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in, double depth_sigma, TimeAlongHole order);
+  AlongHoleCovariance(const Eigen::Matrix3d& cov_tie_in_W, double depth_sigma, TimeAlongHole order);
 
   /// The next station of the survey in the order of depth. Returns cov_p_WT_W [m^2].
   /// The stations of one run must come one after the other, each the neighbour in time of the one
@@ -43,7 +43,7 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   void Skip(const StationState& station);
 
   /// Of the station last added, less its own depth error [m^2].
-  const Eigen::Matrix3d& without_depth() const { return cov_; }
+  const Eigen::Matrix3d& without_depth() const { return cov_W_; }
 
  private:
   using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kStationErrorsMax>;
@@ -52,19 +52,19 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   TimeAlongHole order_;
   double depth_sigma_;
   bool any_ = false;
-  double md_ = 0;                   // of the last station added, and there:
-  Eigen::Matrix3d cov_;             // of r, the position less the station's own depth error
-  Eigen::Matrix3d cov_slope_;       // of s, the error of the tangent
-  Eigen::Matrix3d cov_with_slope_;  // E[r s']
-  Rows cov_with_state_;             // E[r x'], x of the station last seen, added or skipped
-  Rows slope_with_state_;           // E[s x']
-  std::size_t knot_ = 0;            // of that station
+  double md_ = 0;                     // of the last station added, and there:
+  Eigen::Matrix3d cov_W_;             // of r, the position less the station's own depth error
+  Eigen::Matrix3d cov_slope_W_;       // of s, the error of the tangent, L taken for W
+  Eigen::Matrix3d cov_with_slope_W_;  // E[r s']
+  Rows cov_with_state_;               // E[r x'], x of the station last seen, added or skipped
+  Rows slope_with_state_;             // E[s x']
+  std::size_t knot_ = 0;              // of that station
   StationMatrix state_cov_, state_cov_with_previous_;
 };
 
 /// The same for all stations at once, in the order of depth.
 WELLGYRO_EXPORT std::vector<Eigen::Matrix3d> CovarianceAlongHole(
     std::span<const StationState> in_depth_order, TimeAlongHole order,
-    const Eigen::Matrix3d& cov_tie_in, double depth_sigma);
+    const Eigen::Matrix3d& cov_tie_in_W, double depth_sigma);
 
 }  // namespace wellgyro

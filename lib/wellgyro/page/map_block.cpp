@@ -37,9 +37,9 @@ MapPath PathOf(const PageText& page, const Json& table, std::string name) {
     if (!md || !north || !east || !tvd) continue;
     const double unit = page.units.length;
     if (const auto cov = rows.Covariance(i)) {
-      path.covs.emplace_back(path.points.size(), unit * unit * *cov);
+      path.covs_W.emplace_back(path.points_W.size(), unit * unit * *cov);
     }
-    path.points.push_back(unit * Vector3d(*north, *east, *tvd));
+    path.points_W.push_back(unit * Vector3d(*north, *east, *tvd));
     path.md.push_back(unit * *md);
   }
   return path;
@@ -51,23 +51,23 @@ std::vector<SpaceSeries> InSpace(const MapPath& path, const std::vector<MapPath>
   std::vector<SpaceSeries> series;
   const double sigmas = ConfidenceFactor(kConfidence, 2);
   for (const std::size_t i : EllipsesShown(path)) {
-    const auto& [at, cov] = path.covs[i];
+    const auto& [at, cov] = path.covs_W[i];
     const SeenEllipse seen = EllipseSeenAlong(cov, Vector3d::UnitZ(), sigmas);
     SpaceSeries ring{.mark = Mark::kArea, .colour = kEllipseColour};
     for (const Vector2d& u :
          EllipseOutline(Vector2d::Zero(), Vector2d::UnitX(), Vector2d::UnitY())) {
       ring.points.push_back(
-          place(path.points[at] + magnify * (u.x() * seen.major + u.y() * seen.minor)));
+          place(path.points_W[at] + magnify * (u.x() * seen.major + u.y() * seen.minor)));
     }
     series.push_back(std::move(ring));
   }
   SpaceSeries line{.name = path.name, .colour = kSurveyColour, .md = path.md};
-  for (const Vector3d& p : path.points) line.points.push_back(place(p));
+  for (const Vector3d& p : path.points_W) line.points.push_back(place(p));
   series.push_back(std::move(line));
   int colour = 2;
   for (const MapPath& other : others) {
     SpaceSeries beside{.name = other.name, .colour = colour++};
-    for (const Vector3d& p : other.points) beside.points.push_back(place(p));
+    for (const Vector3d& p : other.points_W) beside.points.push_back(place(p));
     series.push_back(std::move(beside));
   }
   return series;
@@ -81,7 +81,7 @@ void AddGrowth(PageText& page, const MapPath& path) {
   ChartSeries major{.name = "long half axis", .colour = 1},
       minor{.name = "short half axis", .colour = 0},
       vertical{.name = "TVD \u00b1", .mark = Mark::kDash, .colour = 2};
-  for (const auto& [at, cov] : path.covs) {
+  for (const auto& [at, cov] : path.covs_W) {
     const ErrorEllipse ellipse = HorizontalEllipse(cov, kConfidence);
     const double md = path.md[at];
     major.points.emplace_back(md, ellipse.semi_major);
@@ -138,14 +138,14 @@ void WriteMaps(PageText& page) {
   if (listed.is_array()) {
     for (const Json& other : listed) {
       MapPath shown = PathOf(page, other, Clipped(TextAt(other, {"name"}), kNameShown));
-      if (!shown.points.empty()) others.push_back(std::move(shown));
+      if (!shown.points_W.empty()) others.push_back(std::move(shown));
     }
   }
-  if (path.points.size() < 2) {
+  if (path.points_W.size() < 2) {
     SayNotMeasured(page, "Path");
   } else {
     AddMaps(page, path, others);
-    if (path.covs.empty()) {
+    if (path.covs_W.empty()) {
       SayNotMeasured(page, "Error ellipses");
     } else {
       AddGrowth(page, path);

@@ -135,10 +135,10 @@ Matrix3d DepthCovariance(const PlanCase& c) {
   const TrajectoryPoint begin = c.well.AtMd(std::max(c.way.begin_md, c.well.md_begin()));
   const TrajectoryPoint end = c.well.AtMd(std::min(c.way.end_md, c.well.md_end()));
   const double scale = c.errors.depth_scale_sigma;
-  const Vector3d path = scale * (end.position - begin.position);
-  const Vector3d there = path - scale * (end.md - begin.md) * end.tangent;
-  const Vector3d offset = c.errors.depth_sigma * begin.tangent;
-  const Vector3d offset_there = offset - c.errors.depth_sigma * end.tangent;
+  const Vector3d path = scale * (end.position_W - begin.position_W);
+  const Vector3d there = path - scale * (end.md - begin.md) * end.tangent_W;
+  const Vector3d offset = c.errors.depth_sigma * begin.tangent_W;
+  const Vector3d offset_there = offset - c.errors.depth_sigma * end.tangent_W;
   return path * path.transpose() + there * there.transpose() + offset * offset.transpose() +
          offset_there * offset_there.transpose();
 }

@@ -121,7 +121,7 @@ std::vector<std::string> Preflight(const PlanCase& c, const ExpectedEnd& expecte
   if (heat.gradient != 0) {
     double tvd = 0;
     LengthWhere(c, [&tvd](const TrajectoryPoint& p) {
-      tvd = std::max(tvd, p.position.z());
+      tvd = std::max(tvd, p.position_W.z());
       return false;
     });
     const double at = heat.at_surface + heat.gradient * tvd;

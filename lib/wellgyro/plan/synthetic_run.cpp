@@ -171,7 +171,7 @@ SyntheticRun::SyntheticRun(const PlanCase& c, std::span<const PlannedStop> stops
   nodes_.push_back(here);
   // Below, the hole goes on to lean as it does here against its plan; above, it came to that little
   // by little. A tool that slides goes on to swing as planned, from where it is.
-  departs_ = Log(Least(HoleTangent(here.md), here.tangent_L()));
+  departs_L_ = Log(Least(HoleTangent(here.md), here.tangent_L()));
   moving_ = MovingTo(c.way, here.md, so_far.out);
   AddWay(stops, so_far.out);
 }
@@ -229,10 +229,10 @@ void SyntheticRun::AddKnot(double seconds, double to_md, double roll, bool still
 /// As planned, and as it departs from that.
 Vector3d SyntheticRun::HoleTangent(double md) const {
   const Vector3d planned =
-      case_.well.AtMd(std::clamp(md, case_.well.md_begin(), case_.well.md_end())).tangent;
+      case_.well.AtMd(std::clamp(md, case_.well.md_begin(), case_.well.md_end())).tangent_W;
   if (before_ == nullptr) return planned;
   const double begin = case_.way.begin_md, known = std::max(before_->node().md - begin, 1.0);
-  return Exp(std::clamp((md - begin) / known, 0.0, 1.0) * departs_) * planned;
+  return Exp(std::clamp((md - begin) / known, 0.0, 1.0) * departs_L_) * planned;
 }
 
 void SyntheticRun::AddMove(double to_md, double speed) {

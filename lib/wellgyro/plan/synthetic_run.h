@@ -64,7 +64,7 @@ class SyntheticRun : public RunRows {
   const KnotLength longest_;
   const RunState* before_ = nullptr;
   /// Turns the hole's direction as planned to what it is where `before_` stands [rad].
-  Eigen::Vector3d departs_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d departs_L_ = Eigen::Vector3d::Zero();
   EstimateSetup setup_;
   Layout layout_;
   std::vector<RunKnot> knots_;

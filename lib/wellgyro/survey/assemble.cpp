@@ -92,7 +92,8 @@ std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, dou
                                      const Eigen::Vector3d& top) {
   const auto i = line.Below(md);
   if (!i) return std::nullopt;
-  return PathStart{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs[*i], top};
+  return PathStart{Interpolate(head, line.points[*i - 1], line.points[*i], md), line.covs_W[*i],
+                   top};
 }
 
 /// Of the leg from one direction to another [rad/m].
@@ -123,7 +124,7 @@ PassLine PlaceStations(const Site& head, const Job& job, const PathStart& start,
       const auto point = path.Add(station);
       if (!point) return false;  // opposite directions: it stays where the one before is
       line.points.push_back(*point);
-      line.covs.push_back(cov);
+      line.covs_W.push_back(cov);
       return true;
     };
     for (const PathStation& station : pass[i].way) {

@@ -45,15 +45,15 @@ CommonCourses::CommonCourses(const SurveyedWell& well, std::span<const double> c
       stations.push_back(well.survey[first ? 0 : own[k].below]);
       continue;
     }
-    const Vector3d& t = own[k].smooth;
+    const Vector3d& t = own[k].smooth_W;
     stations.push_back({common[k], std::atan2(std::hypot(t.x(), t.y()), t.z()),
                         WrapTwoPi(std::atan2(t.y(), t.x())), 0});
   }
-  well_ = SurveyWell(std::move(stations), well.position.front());
-  for (const SurveyPoint& p : well_.survey) tangent_.push_back(Tangent(p.inclination, p.azimuth));
+  well_ = SurveyWell(std::move(stations), well.position_W.front());
+  for (const SurveyPoint& p : well_.survey) tangent_W_.push_back(Tangent(p.inclination, p.azimuth));
   places_ = PlacesIn(well_, depths);
   const Trajectory line = LineOf(well_);
-  for (const double md : depths) position_.push_back(line.AtMd(md).position);
+  for (const double md : depths) position_W_.push_back(line.AtMd(md).position_W);
 }
 
 std::vector<double> CommonCourses::stations() const {
@@ -70,22 +70,22 @@ std::vector<Vector3d> CommonCourses::Displaced(const ListedErrors& errors) const
   std::size_t row = static_cast<std::size_t>(
       std::lower_bound(places_.begin(), places_.end(), begin, is_below) - places_.begin());
   Vector3d sum = Vector3d::Zero();
-  for (std::size_t k = begin; k < std::min(errors.last + 1, tangent_.size()); ++k) {
+  for (std::size_t k = begin; k < std::min(errors.last + 1, tangent_W_.size()); ++k) {
     const double course = well_.survey[k].md - well_.survey[k - 1].md;
-    const Vector3d &above = errors.measured[k - 1], &here = errors.measured[k];
+    const Vector3d &above = errors.measured_W[k - 1], &here = errors.measured_W[k];
     // Depths count from the datum, not from the first station.
     const double md_above = k == 1 ? 0 : errors.md[k - 1];
-    const Vector3d displacement = errors.displacements[k] - errors.displacements[k - 1];
+    const Vector3d displacement = errors.displacements_W[k] - errors.displacements_W[k - 1];
     for (; row < rows && places_[row].below == k; ++row) {
       const ListedPlace& p = places_[row];
       const double f = p.fraction;
       const double md = (1 - f) * errors.md[k - 1] + f * errors.md[k];
       position[row] = sum + f * course / 2 * ((2 - f) * above + f * here) +
-                      (md - md_above) / 2 * (tangent_[k - 1] + p.tangent) + f * displacement -
-                      p.tangent * md;
+                      (md - md_above) / 2 * (tangent_W_[k - 1] + p.tangent_W) + f * displacement -
+                      p.tangent_W * md;
     }
     sum += course / 2 * (above + here) +
-           (errors.md[k] - md_above) / 2 * (tangent_[k - 1] + tangent_[k]) + displacement;
+           (errors.md[k] - md_above) / 2 * (tangent_W_[k - 1] + tangent_W_[k]) + displacement;
   }
   for (; row < rows; ++row) position[row] = sum;
   return position;

@@ -31,7 +31,7 @@ class CommonCourses {
   std::size_t first_common() const { return first_common_; }
   /// Of `depths`, in well().
   const std::vector<ListedPlace>& places() const { return places_; }
-  Eigen::Vector3d Position(std::size_t row) const { return position_[row]; }
+  Eigen::Vector3d Position(std::size_t row) const { return position_W_[row]; }
 
   /// What `errors`, of one source at all stations(), do to the positions at `depths` [m].
   std::vector<Eigen::Vector3d> Displaced(const ListedErrors& errors) const;
@@ -39,7 +39,7 @@ class CommonCourses {
  private:
   SurveyedWell well_;
   std::size_t first_common_ = 0;
-  std::vector<Eigen::Vector3d> tangent_, position_;
+  std::vector<Eigen::Vector3d> tangent_W_, position_W_;
   std::vector<ListedPlace> places_;
 };
 

@@ -116,7 +116,7 @@ std::vector<ComparedPlace> Listed(const ComparedSurvey& first, const ComparedSur
         std::max(p.inclination, q.inclination) < kPi - kVertical) {
       place.azimuth_difference = WrapPi(q.azimuth - p.azimuth);
     }
-    place.position_difference = q.position - p.position;
+    place.position_difference_W = q.position_W - p.position_W;
     places.push_back(place);
   }
   return places;
@@ -126,13 +126,13 @@ void Weigh(ComparedPlace& place, const DifferenceCovariance& covariance, std::si
   place.sigma_inclination = covariance.sigma[row].x();
   const double across = std::sin((place.inclination[0] + place.inclination[1]) / 2);
   if (place.azimuth_difference) place.sigma_azimuth = covariance.sigma[row].y() / across;
-  place.between_stations = place.position_difference - covariance.summed_alike[row];
-  place.cov_position = covariance.cov_p[row];
-  const Cholesky root(place.cov_position);
-  const bool regular = root.positive() && place.cov_position.determinant() >
-                                              1e-12 * std::pow(place.cov_position.trace(), 3);
+  place.between_stations_W = place.position_difference_W - covariance.summed_alike_W[row];
+  place.cov_position_W = covariance.cov_p_W[row];
+  const Cholesky root(place.cov_position_W);
+  const bool regular = root.positive() && place.cov_position_W.determinant() >
+                                              1e-12 * std::pow(place.cov_position_W.trace(), 3);
   if (regular) {
-    place.position_sigmas = root.Whitened(covariance.summed_alike[row]).norm();
+    place.position_sigmas = root.Whitened(covariance.summed_alike_W[row]).norm();
   }
 }
 
@@ -325,7 +325,7 @@ void SaySmallest(Comparison& comparison) {
 
 void CheckCompared(const ComparedSurvey& s, const CompareOptions& options) {
   const std::size_t n = s.well.survey.size();
-  if (n < 2 || s.well.position.size() != n || (!s.errors && s.own.size() != n)) {
+  if (n < 2 || s.well.position_W.size() != n || (!s.errors && s.own.size() != n)) {
     throw std::invalid_argument(
         "a survey to compare needs two stations, each with what is known of it");
   }

@@ -17,17 +17,17 @@ namespace wellgyro {
 /// What a survey says of one of its stations where no error model speaks for it; how such errors
 /// go together along the hole is not known.
 struct StationSigmas {
-  double inclination = 0;                           ///< [rad]
-  double azimuth = 0;                               ///< [rad]
-  Eigen::Matrix3d cov_p = Eigen::Matrix3d::Zero();  ///< north, east, down [m^2]
+  double inclination = 0;                             ///< [rad]
+  double azimuth = 0;                                 ///< [rad]
+  Eigen::Matrix3d cov_p_W = Eigen::Matrix3d::Zero();  ///< north, east, down [m^2]
 };
 
 /// One of two surveys of the same hole, azimuths of both from one north, places in one frame.
 struct ComparedSurvey {
   SurveyedWell well;
-  std::optional<SurveyErrors> errors;                    ///< by models
-  std::vector<StationSigmas> own;                        ///< else one for each station
-  Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();  ///< of the first station [m^2]
+  std::optional<SurveyErrors> errors;                      ///< by models
+  std::vector<StationSigmas> own;                          ///< else one for each station
+  Eigen::Matrix3d cov_tie_in_W = Eigen::Matrix3d::Zero();  ///< of the first station [m^2]
 };
 
 struct CompareOptions {
@@ -48,11 +48,11 @@ struct ComparedPlace {
   double inclination_difference = 0, sigma_inclination = 0;  ///< [rad]
   /// Absent where the hole is within 0.1 deg of vertical [rad].
   std::optional<double> azimuth_difference, sigma_azimuth;
-  Eigen::Vector3d position_difference = Eigen::Vector3d::Zero();  ///< north, east, down [m]
+  Eigen::Vector3d position_difference_W = Eigen::Vector3d::Zero();  ///< north, east, down [m]
   /// Of that what the surveys lose differently between their stations: it is not there where both
   /// are summed over stations in common [m].
-  Eigen::Vector3d between_stations = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d cov_position = Eigen::Matrix3d::Zero();  ///< of the rest, d [m^2]
+  Eigen::Vector3d between_stations_W = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d cov_position_W = Eigen::Matrix3d::Zero();  ///< of the rest, d [m^2]
   /// sqrt(d' C^-1 d); absent where C is singular.
   std::optional<double> position_sigmas;
 };

@@ -78,7 +78,7 @@ std::vector<double> NoiseOf(const ComparedSurvey& survey, const CompareOptions& 
   if (!survey.errors) return noise;
   for (const StationError& e : survey.errors->errors) {
     if (survey.errors->sources[e.source].propagation != Propagation::kRandom) continue;
-    noise[e.station] += e.direction.squaredNorm() / 2;
+    noise[e.station] += e.direction_W.squaredNorm() / 2;
   }
   return noise;
 }
@@ -127,18 +127,18 @@ Accumulator::Accumulator(const ComparedSurvey& first, const ComparedSurvey& seco
   result_.roughness = RoughnessOf(listings, begin, end);
   const std::size_t rows = depths.size();
   for (std::size_t row = 0; row < rows; ++row) {
-    const Vector3d &a = places_[0][row].smooth, &b = places_[1][row].smooth;
+    const Vector3d &a = places_[0][row].smooth_W, &b = places_[1][row].smooth_W;
     const Across across = AcrossOf((a + b).normalized());
     across_.push_back(across);
     result_.difference.push_back(across.Of(b - a));
-    result_.bend.push_back(across.Of(places_[0][row].bend + places_[1][row].bend) / 2);
-    result_.summed_alike.push_back(courses_[1].Position(row) - courses_[0].Position(row));
+    result_.bend.push_back(across.Of(places_[0][row].bend_W + places_[1][row].bend_W) / 2);
+    result_.summed_alike_W.push_back(courses_[1].Position(row) - courses_[0].Position(row));
   }
   const double local = options.local_sigma * options.local_sigma;
   variance_.assign(rows, Vector2d::Constant(local));
   direction_.assign(rows, Vector2d::Zero());
   position_.assign(rows, Vector3d::Zero());
-  result_.cov_p.assign(rows, first.cov_tie_in + second.cov_tie_in);
+  result_.cov_p_W.assign(rows, first.cov_tie_in_W + second.cov_tie_in_W);
   joint_row_.assign(rows, -1);
   if (!first.errors || !second.errors) return;
   const std::size_t joint = std::min(rows, kJointMax);
@@ -155,7 +155,7 @@ void Accumulator::Add(const ListedErrors& listed, std::span<const Vector3d> posi
   begin_ = std::min(begin_, listed.first);
   end_ = std::max(end_, listed.last);
   for (std::size_t row = listed.first; row < listed.last; ++row) {
-    direction_[row] += sign * across_[row].Of(listed.direction[row]);
+    direction_[row] += sign * across_[row].Of(listed.direction_W[row]);
   }
   for (std::size_t row = 0; row < position.size(); ++row) position_[row] += sign * position[row];
 }
@@ -178,7 +178,7 @@ void Accumulator::Close() {
     }
   }
   for (std::size_t row = 0; row < depths_.size(); ++row) {
-    result_.cov_p[row] += position_[row] * position_[row].transpose();
+    result_.cov_p_W[row] += position_[row] * position_[row].transpose();
     direction_[row].setZero();
     position_[row].setZero();
   }
@@ -250,8 +250,8 @@ void Accumulator::AddLocal() {
       sum += across(opens, (course(opens) + course(opens + 1)) / 2);
     }
     const double f = p.fraction, length = course(below);
-    result_.cov_p[row] += sum + across(opens, course(opens) / 2 + length * f * (1 - f / 2)) +
-                          across(below, length * f * f / 2);
+    result_.cov_p_W[row] += sum + across(opens, course(opens) / 2 + length * f * (1 - f / 2)) +
+                            across(below, length * f * f / 2);
   }
 }
 
@@ -292,11 +292,11 @@ void Accumulator::Own(const ComparedSurvey& survey, std::span<const ListedPlace>
     const ListedPlace& p = places[row];
     const StationSigmas &a = survey.own[p.below - 1], &b = survey.own[p.below];
     const double f = p.fraction;
-    const double level = std::hypot(p.tangent.x(), p.tangent.y());
+    const double level = std::hypot(p.tangent_W.x(), p.tangent_W.y());
     const double inclination = (1 - f) * a.inclination + f * b.inclination;
     const double azimuth = (1 - f) * a.azimuth + f * b.azimuth;
     variance_[row] += Vector2d(inclination, level * azimuth).cwiseAbs2();
-    result_.cov_p[row] += (1 - f) * a.cov_p + f * b.cov_p;
+    result_.cov_p_W[row] += (1 - f) * a.cov_p_W + f * b.cov_p_W;
   }
 }
 

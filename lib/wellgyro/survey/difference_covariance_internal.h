@@ -18,8 +18,8 @@ struct DifferenceCovariance {
   std::vector<Eigen::Vector2d> bend;   ///< of the hole [rad/m]
   std::vector<Eigen::Vector2d> sigma;  ///< of `difference`
   /// Of the places, each survey summed over the stations of CommonStations [m].
-  std::vector<Eigen::Vector3d> summed_alike;
-  std::vector<Eigen::Matrix3d> cov_p;  ///< of `summed_alike` [m^2]
+  std::vector<Eigen::Vector3d> summed_alike_W;
+  std::vector<Eigen::Matrix3d> cov_p_W;  ///< of `summed_alike_W` [m^2]
   HoleRoughness roughness;
   std::vector<std::size_t> joint;  ///< rows of cov_direction; empty where it is not known
   Eigen::MatrixXd cov_direction;   ///< high side of all joint rows, then right of all

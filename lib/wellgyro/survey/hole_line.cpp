@@ -42,7 +42,7 @@ void CheckSections(std::span<const HoleSection> sections) {
 
 LegTree HoleLine::TreeOf(const UncertainWell& well, std::span<const HoleSection> sections) {
   CheckSections(sections);
-  const std::size_t n = well.errors->cov_p.size();
+  const std::size_t n = well.errors->cov_p_W.size();
   if (n < 2) {
     throw std::invalid_argument(
         "a separation needs two stations with covariances on either survey");
@@ -53,12 +53,12 @@ LegTree HoleLine::TreeOf(const UncertainWell& well, std::span<const HoleSection>
   reach.reserve(n - 1);
   const auto& survey = well.well->survey;
   Vector3d from = Tangent(survey[0].inclination, survey[0].azimuth);
-  double variance = well.errors->cov_p[0].norm();
+  double variance = well.errors->cov_p_W[0].norm();
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const Vector3d to = Tangent(survey[i + 1].inclination, survey[i + 1].azimuth);
-    legs.push_back(MakeLegArc(well.well->position[i], survey[i + 1].md - survey[i].md, from, to));
+    legs.push_back(MakeLegArc(well.well->position_W[i], survey[i + 1].md - survey[i].md, from, to));
     // Frobenius norm >= largest eigenvalue >= variance in any direction.
-    const double next = well.errors->cov_p[i + 1].norm();
+    const double next = well.errors->cov_p_W[i + 1].norm();
     reach.push_back({std::max(variance, next), WidestOn(sections, survey[i].md, survey[i + 1].md)});
     from = to;
     variance = next;
@@ -85,7 +85,7 @@ double HoleLine::Md(const Place& place) const {
 }
 
 Vector3d HoleLine::Position(const Place& place) const {
-  if (Fraction(place) == 1) return well_.well->position[place.leg + 1];
+  if (Fraction(place) == 1) return well_.well->position_W[place.leg + 1];
   return PointOn(tree_.legs()[place.leg], place.s);
 }
 
@@ -94,13 +94,13 @@ Vector3d HoleLine::Direction(const Place& place) const {
 }
 
 Eigen::Matrix3d HoleLine::Cov(const Place& place) const {
-  const auto& cov = well_.errors->cov_p;
+  const auto& cov = well_.errors->cov_p_W;
   const double f = Fraction(place);
   return (1 - f) * cov[place.leg] + f * cov[place.leg + 1];
 }
 
 Vector3d HoleLine::Shared(std::size_t i, const Place& place) const {
-  const auto& error = well_.errors->shared[i].error_p;
+  const auto& error = well_.errors->shared[i].error_p_W;
   const double f = Fraction(place);
   return (1 - f) * error[place.leg] + f * error[place.leg + 1];
 }

@@ -43,11 +43,11 @@ std::size_t StationAt(std::vector<SurveyPoint>& stations, std::vector<ToolLeg>& 
 KnownWell FromStation(const KnownWell& known, std::size_t first) {
   KnownWell rest = known;
   DropFirst(rest.well.survey, first);
-  DropFirst(rest.well.position, first);
-  DropFirst(rest.errors.cov_p, first);
-  for (SharedError& shared : rest.errors.shared) DropFirst(shared.error_p, first);
-  for (TermUncertainty& term : rest.errors.terms) DropFirst(term.cov_p, first);
-  if (rest.errors.cov_p.size() < 2) {
+  DropFirst(rest.well.position_W, first);
+  DropFirst(rest.errors.cov_p_W, first);
+  for (SharedError& shared : rest.errors.shared) DropFirst(shared.error_p_W, first);
+  for (TermUncertainty& term : rest.errors.terms) DropFirst(term.cov_p_W, first);
+  if (rest.errors.cov_p_W.size() < 2) {
     throw std::domain_error("no two stations with covariances are left below the kick-off");
   }
   return rest;

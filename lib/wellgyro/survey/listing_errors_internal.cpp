@@ -45,13 +45,13 @@ std::vector<ListedPlace> Places(const SurveyedWell& well, const std::vector<Vect
     place.fraction = std::clamp((md - a.md) / (b.md - a.md), 0.0, 1.0);
     const LegArc arc =
         MakeLegArc(Vector3d::Zero(), b.md - a.md, t[place.below - 1], t[place.below]);
-    place.tangent = place.fraction == 1 ? t[place.below] : DirectionOn(arc, md - a.md);
+    place.tangent_W = place.fraction == 1 ? t[place.below] : DirectionOn(arc, md - a.md);
     const double f = place.fraction;
     const Vector3d &bend_a = bend[place.below - 1], &bend_b = bend[place.below];
-    place.bend = (1 - f) * bend_a + f * bend_b;
+    place.bend_W = (1 - f) * bend_a + f * bend_b;
     // Hermite's cubic: the chord and how far the slopes at its ends are from it.
     const Vector3d chord = t[place.below] - t[place.below - 1];
-    place.smooth =
+    place.smooth_W =
         (t[place.below - 1] + f * chord +
          f * (1 - f) *
              ((1 - f) * (arc.length * bend_a - chord) - f * (arc.length * bend_b - chord)))
@@ -72,25 +72,25 @@ ListingErrors::ListingErrors(const SurveyedWell& well, const SurveyErrors& error
                              std::span<const double> depths)
     : errors_(errors) {
   const std::vector<Vector3d> tangents = TangentsOf(well);
-  bend_ = BendsOf(well, tangents);
-  places_ = Places(well, tangents, bend_, depths);
+  bend_W_ = BendsOf(well, tangents);
+  places_ = Places(well, tangents, bend_W_, depths);
 }
 
 void ListingErrors::Carry(std::span<const StationError> factor, ListedErrors& listed) const {
   const std::size_t rows = places_.size();
-  listed.direction.assign(rows, Vector3d::Zero());
-  listed.measured.assign(rows, Vector3d::Zero());
+  listed.direction_W.assign(rows, Vector3d::Zero());
+  listed.measured_W.assign(rows, Vector3d::Zero());
   listed.md.assign(rows, 0);
-  listed.displacements.assign(rows, Vector3d::Zero());
+  listed.displacements_W.assign(rows, Vector3d::Zero());
   const std::size_t begin = factor.front().station == 0 ? 1 : factor.front().station;
   const std::size_t end = factor.back().station + 1;  // the leg below the last is wrong too
   auto next = factor.begin();
   const auto take = [&](std::size_t station) {
     Here here;
     for (; next != factor.end() && next->station == station; ++next) {
-      here.direction += next->direction;
+      here.direction += next->direction_W;
       here.md += next->md;
-      here.displacement += next->displacement;
+      here.displacement += next->displacement_W;
     }
     return here;
   };
@@ -101,22 +101,22 @@ void ListingErrors::Carry(std::span<const StationError> factor, ListedErrors& li
   Vector3d displaced = Vector3d::Zero();
   Here above;
   if (factor.front().station == 0) above = take(0);
-  for (std::size_t k = begin; k <= std::min(end, bend_.size() - 1); ++k) {
+  for (std::size_t k = begin; k <= std::min(end, bend_W_.size() - 1); ++k) {
     const Here here = take(k);
     if (k == 1 && errors_.doubled_tie_on) above.direction = here.direction;
     for (; row < rows && places_[row].below == k; ++row) {
       const double f = places_[row].fraction;
-      listed.measured[row] = (1 - f) * above.direction + f * here.direction;
+      listed.measured_W[row] = (1 - f) * above.direction + f * here.direction;
       listed.md[row] = (1 - f) * above.md + f * here.md;
-      listed.direction[row] =
-          listed.measured[row] - (1 - f) * above.md * bend_[k - 1] - f * here.md * bend_[k];
-      listed.displacements[row] = displaced + f * here.displacement;
+      listed.direction_W[row] =
+          listed.measured_W[row] - (1 - f) * above.md * bend_W_[k - 1] - f * here.md * bend_W_[k];
+      listed.displacements_W[row] = displaced + f * here.displacement;
     }
     displaced += here.displacement;
     above = here;
   }
   listed.last = row;
-  for (; row < rows; ++row) listed.displacements[row] = displaced;
+  for (; row < rows; ++row) listed.displacements_W[row] = displaced;
 }
 
 }  // namespace wellgyro

@@ -16,19 +16,19 @@ namespace wellgyro {
 struct ListedPlace {
   std::size_t below = 1;
   double fraction = 1;  ///< of the leg, in (0, 1]; 0 only at the first station
-  Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();  ///< as listed, by the leg's arc
-  Eigen::Vector3d smooth = Eigen::Vector3d::UnitZ();   ///< by the spline through all stations
-  Eigen::Vector3d bend = Eigen::Vector3d::Zero();      ///< d tangent / d MD of the hole [rad/m]
+  Eigen::Vector3d tangent_W = Eigen::Vector3d::UnitZ();  ///< as listed, by the leg's arc
+  Eigen::Vector3d smooth_W = Eigen::Vector3d::UnitZ();   ///< by the spline through all stations
+  Eigen::Vector3d bend_W = Eigen::Vector3d::Zero();      ///< d tangent / d MD of the hole [rad/m]
 };
 
 /// What one source does to a listing at given depths, from row `first` on.
 struct ListedErrors {
   std::size_t first = 0;
-  std::size_t last = 0;                        ///< below this row no direction is wrong
-  std::vector<Eigen::Vector3d> direction;      ///< as listed for that depth [rad]
-  std::vector<Eigen::Vector3d> measured;       ///< of it what is not the depth's [rad]
-  std::vector<double> md;                      ///< listed less true [m]
-  std::vector<Eigen::Vector3d> displacements;  ///< of all courses above, summed [m]
+  std::size_t last = 0;                          ///< below this row no direction is wrong
+  std::vector<Eigen::Vector3d> direction_W;      ///< as listed for that depth [rad]
+  std::vector<Eigen::Vector3d> measured_W;       ///< of it what is not the depth's [rad]
+  std::vector<double> md;                        ///< listed less true [m]
+  std::vector<Eigen::Vector3d> displacements_W;  ///< of all courses above, summed [m]
 };
 
 /// Carries the station errors of a survey to its listing at given depths.
@@ -44,7 +44,7 @@ class ListingErrors {
 
  private:
   const SurveyErrors& errors_;
-  std::vector<Eigen::Vector3d> bend_;  ///< of the hole at stations [rad/m]
+  std::vector<Eigen::Vector3d> bend_W_;  ///< of the hole at stations [rad/m]
   std::vector<ListedPlace> places_;
 };
 

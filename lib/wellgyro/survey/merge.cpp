@@ -34,12 +34,12 @@ struct Assembled {
 
 class Merger {
  public:
-  Merger(std::span<const MergeLeg> legs, const Eigen::Vector3d& start,
-         const Eigen::Matrix3d& cov_tie_in, const Surroundings& surroundings,
+  Merger(std::span<const MergeLeg> legs, const Eigen::Vector3d& start_W,
+         const Eigen::Matrix3d& cov_tie_in_W, const Surroundings& surroundings,
          const MergePolicy& policy)
       : legs_(legs),
-        start_(start),
-        cov_tie_in_(cov_tie_in),
+        start_W_(start_W),
+        cov_tie_in_W_(cov_tie_in_W),
         surroundings_(surroundings),
         policy_(policy) {}
 
@@ -58,8 +58,8 @@ class Merger {
   void AddChoices(const Order& order, MergedSurvey& merged) const;
 
   std::span<const MergeLeg> legs_;
-  Eigen::Vector3d start_;
-  Eigen::Matrix3d cov_tie_in_;
+  Eigen::Vector3d start_W_;
+  Eigen::Matrix3d cov_tie_in_W_;
   const Surroundings& surroundings_;
   const MergePolicy& policy_;
   std::vector<Stretch> stretches_;
@@ -129,7 +129,7 @@ Assembled Merger::Assemble(const Order& order) const {
 
 PositionUncertainty Merger::Errors(const SurveyedWell& well, const Assembled& assembled) const {
   PropagateOptions options;
-  options.cov_tie_in = cov_tie_in_;
+  options.cov_tie_in_W = cov_tie_in_W_;
   return PropagateErrors(well.survey, surroundings_, assembled.legs, options);
 }
 
@@ -138,7 +138,7 @@ PositionUncertainty Merger::Errors(const SurveyedWell& well, const Assembled& as
 double Merger::MeasureOf(const Order& order) const {
   const Assembled assembled = Assemble(order);
   if (assembled.stations.size() < 2) return 0;
-  const SurveyedWell well = SurveyWell(assembled.stations, start_);
+  const SurveyedWell well = SurveyWell(assembled.stations, start_W_);
   const PositionUncertainty errors = Errors(well, assembled);
   if (errors.refusal) return std::numeric_limits<double>::infinity();
   std::size_t at = well.survey.size() - 1;
@@ -147,7 +147,7 @@ double Merger::MeasureOf(const Order& order) const {
         std::ranges::lower_bound(well.survey, *policy_.at_md - kRoundedDepth, {}, &SurveyPoint::md);
     at = static_cast<std::size_t>(place - well.survey.begin());
   }
-  const Eigen::Matrix3d& cov = errors.cov_p[at];
+  const Eigen::Matrix3d& cov = errors.cov_p_W[at];
   switch (policy_.measure) {
     case MergeMeasure::kVertical:
       return std::sqrt(std::max(0.0, cov(2, 2)));
@@ -307,7 +307,7 @@ MergedSurvey Merger::Run() {
   const Order order = policy_.in_order ? FirstOfList() : WithoutSmallGains(Best());
   MergedSurvey merged;
   Assembled assembled = Assemble(order);
-  merged.well = SurveyWell(assembled.stations, start_);
+  merged.well = SurveyWell(assembled.stations, start_W_);
   merged.errors = Errors(merged.well, assembled);
   merged.measure = MeasureOf(order);
   AddChoices(order, merged);
@@ -317,10 +317,10 @@ MergedSurvey Merger::Run() {
 
 }  // namespace
 
-MergedSurvey Merge(std::span<const MergeLeg> legs, const Eigen::Vector3d& start,
-                   const Eigen::Matrix3d& cov_tie_in, const Surroundings& surroundings,
+MergedSurvey Merge(std::span<const MergeLeg> legs, const Eigen::Vector3d& start_W,
+                   const Eigen::Matrix3d& cov_tie_in_W, const Surroundings& surroundings,
                    const MergePolicy& policy) {
-  return Merger(legs, start, cov_tie_in, surroundings, policy).Run();
+  return Merger(legs, start_W, cov_tie_in_W, surroundings, policy).Run();
 }
 
 }  // namespace wellgyro

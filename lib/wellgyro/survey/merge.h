@@ -61,8 +61,8 @@ struct MergedSurvey {
 /// than that share. Throws std::invalid_argument for legs that leave a gap, none that is not ruled
 /// out, stations that do not go down, models that do not reach the end, or what PropagateErrors
 /// refuses.
-WELLGYRO_EXPORT MergedSurvey Merge(std::span<const MergeLeg> legs, const Eigen::Vector3d& start,
-                                   const Eigen::Matrix3d& cov_tie_in,
+WELLGYRO_EXPORT MergedSurvey Merge(std::span<const MergeLeg> legs, const Eigen::Vector3d& start_W,
+                                   const Eigen::Matrix3d& cov_tie_in_W,
                                    const Surroundings& surroundings, const MergePolicy& policy);
 
 }  // namespace wellgyro

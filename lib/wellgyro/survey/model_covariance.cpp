@@ -18,12 +18,12 @@ std::string TakeModelCovariance(const Job& job, std::vector<Station>& chosen) {
   surroundings.latitude = job.well.latitude;
   surroundings.gravity = SiteAt(job.well.latitude, job.well.datum_elevation).gravity;
   PropagateOptions options;
-  options.cov_tie_in = job.tie_in.cov_p_WT_W;
+  options.cov_tie_in_W = job.tie_in.cov_p_WT_W;
   try {
     const PositionUncertainty model =
         PropagateErrors(points, surroundings, *job.error_model, options);
     if (model.refusal) return "the error model does not serve this well: " + model.refusal->text;
-    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i].cov_p_WT_W = model.cov_p[i];
+    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i].cov_p_WT_W = model.cov_p_W[i];
   } catch (const std::invalid_argument& error) {
     return std::string("the error model does not serve this well: ") + error.what();
   }

@@ -48,8 +48,8 @@ Eigen::Matrix3d UnknownCourse(const Station& above, const Station& below) {
 /// to leg.
 class SystematicCovariance {
  public:
-  SystematicCovariance(const Eigen::Matrix3d& cov_tie_in, bool legs_unseen)
-      : cov_tie_in_(cov_tie_in), legs_unseen_(legs_unseen) {}
+  SystematicCovariance(const Eigen::Matrix3d& cov_tie_in_W, bool legs_unseen)
+      : cov_tie_in_W_(cov_tie_in_W), legs_unseen_(legs_unseen) {}
 
   Eigen::Matrix3d Add(const Station& station) {
     const Eigen::Vector2d sigma = station.cov_md_inc_azi.diagonal().tail<2>().cwiseSqrt();
@@ -61,11 +61,11 @@ class SystematicCovariance {
     }
     last_ = station;
     last_turn_ = turn;
-    return cov_tie_in_ + sum_ * sum_.transpose() + course_;
+    return cov_tie_in_W_ + sum_ * sum_.transpose() + course_;
   }
 
  private:
-  Eigen::Matrix3d cov_tie_in_;
+  Eigen::Matrix3d cov_tie_in_W_;
   bool legs_unseen_;
   Eigen::Matrix3d course_ = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, 2> sum_ = Eigen::Matrix<double, 3, 2>::Zero();
@@ -154,9 +154,9 @@ Eigen::Matrix3d OfDepth(const Job& job, const Eigen::Vector3d& top, const Statio
 
 }  // namespace
 
-Eigen::Matrix3d ByCommonDepth(const Eigen::Vector3d& top, const Eigen::Vector3d& tangent) {
-  const Eigen::Vector3d turned = top - tangent;
-  return top * top.transpose() + turned * turned.transpose();
+Eigen::Matrix3d ByCommonDepth(const Eigen::Vector3d& top_W, const Eigen::Vector3d& tangent_W) {
+  const Eigen::Vector3d turned = top_W - tangent_W;
+  return top_W * top_W.transpose() + turned * turned.transpose();
 }
 
 PassCovariances PassCovariancesOf(const Job& job, const PassItems& pass, const PathStart& start) {

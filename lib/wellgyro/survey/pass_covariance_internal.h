@@ -38,10 +38,10 @@ struct PassCovariances {
 PassCovariances PassCovariancesOf(const Job& job, const PassItems& pass, const PathStart& start);
 
 /// Covariance of a place by a depth error e of variance one that all stations share, the unit
-/// tangents being `top` at the begin and `tangent` there. The path to where the tool was begins
-/// e deeper and moves by e top; the hole at that measured depth is e further up and moves by e
-/// (top - tangent) ("survey station" and "assigned depth" of the ISCWSA model, SPE 67616). Both
-/// are asked for: this is the least ellipsoid that holds both.
-Eigen::Matrix3d ByCommonDepth(const Eigen::Vector3d& top, const Eigen::Vector3d& tangent);
+/// tangents being `top_W` at the begin and `tangent_W` there. The path to where the tool was
+/// begins e deeper and moves by e top; the hole at that measured depth is e further up and
+/// moves by e (top - tangent) ("survey station" and "assigned depth" of the ISCWSA model, SPE
+/// 67616). Both are asked for: this is the least ellipsoid that holds both.
+Eigen::Matrix3d ByCommonDepth(const Eigen::Vector3d& top_W, const Eigen::Vector3d& tangent_W);
 
 }  // namespace wellgyro

@@ -21,14 +21,14 @@ bool ProvisionalPath::Start(const Station& first) {
   path_.emplace(SiteAt(job_.well.latitude, job_.well.datum_elevation), opening,
                 Eigen::Vector3d(tie.north, tie.east, tie.tvd));
   points_ = {path_->last()};
-  covs_ = {tie.cov_p_WT_W};
+  covs_W_ = {tie.cov_p_WT_W};
   return true;
 }
 
 void ProvisionalPath::Extend(Station& station, const StationState* state) {
   if (state) {
     if (!covariance_) {
-      covariance_.emplace(covs_.back(), job_.errors.depth_sigma, TimeAlongHole::kWithDepth);
+      covariance_.emplace(covs_W_.back(), job_.errors.depth_sigma, TimeAlongHole::kWithDepth);
     }
     station.cov_p_WT_W = covariance_->Add(*state);
   }
@@ -40,7 +40,7 @@ void ProvisionalPath::Extend(Station& station, const StationState* state) {
   station.p_WT_W = point->p_WT_W;
   station.dogleg_severity = point->dogleg_severity;
   points_.push_back(*point);
-  covs_.push_back(station.cov_p_WT_W);
+  covs_W_.push_back(station.cov_p_WT_W);
 }
 
 void ProvisionalPath::LayOn(Station& station) const {
@@ -51,12 +51,12 @@ void ProvisionalPath::LayOn(Station& station) const {
   if (below == points_.begin() || below == points_.end()) {
     const std::size_t end = below == points_.begin() ? 0 : points_.size() - 1;
     station.p_WT_W = points_[end].p_WT_W;
-    station.cov_p_WT_W = covs_[end];
+    station.cov_p_WT_W = covs_W_[end];
     return;
   }
   const Site head = SiteAt(job_.well.latitude, job_.well.datum_elevation);
   station.p_WT_W = Interpolate(head, points_[i - 1], points_[i], station.md).p_WT_W;
-  station.cov_p_WT_W = covs_[i];
+  station.cov_p_WT_W = covs_W_[i];
 }
 
 std::optional<Station> ProvisionalPath::Place(const Draft& draft, const StationState* state) {

@@ -34,7 +34,7 @@ class ProvisionalPath {
   std::optional<Path> path_;
   std::optional<AlongHoleCovariance> covariance_;
   std::vector<PathPoint> points_;
-  std::vector<Eigen::Matrix3d> covs_;
+  std::vector<Eigen::Matrix3d> covs_W_;
 };
 
 }  // namespace wellgyro

@@ -58,7 +58,7 @@ SurveyedWell MeanHole(const SurveyedWell& well, std::span<const RepeatedSurvey> 
     const std::vector<ListedPlace> places = PlacesIn(other.well, depths);
     for (std::size_t i = 0; i < at.size(); ++i) {
       sum[at[i]] += places[i].fraction > 0
-                        ? places[i].smooth
+                        ? places[i].smooth_W
                         : Tangent(stations.front().inclination, stations.front().azimuth);
     }
   }
@@ -219,7 +219,7 @@ void Contrasts::AddDirections() {
   std::vector<Vector3d> mean(places_.size(), Vector3d::Zero());
   for (Listing& l : listings_) {
     if (!l.depths.empty()) l.listed = PlacesIn(l.survey->well, l.depths);
-    for (std::size_t i = 0; i < l.place.size(); ++i) mean[l.place[i]] += l.listed[i].tangent;
+    for (std::size_t i = 0; i < l.place.size(); ++i) mean[l.place[i]] += l.listed[i].tangent_W;
   }
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Vector3d t = mean[i].normalized();
@@ -233,7 +233,7 @@ void Contrasts::AddDirections() {
   for (std::size_t l = 0; l < listings_.size(); ++l) {
     for (std::size_t i = 0; i < listings_[l].place.size(); ++i) {
       const CommonDepth& place = places_[listings_[l].place[i]];
-      AddTo(result_.cluster.y, 0, place, l, place.Of(listings_[l].listed[i].tangent));
+      AddTo(result_.cluster.y, 0, place, l, place.Of(listings_[l].listed[i].tangent_W));
     }
   }
 }
@@ -264,7 +264,7 @@ void Contrasts::Gather(std::size_t l, std::map<Shared, Effect>& effects) const {
     effect.Reach(first, last);
     for (std::size_t i = listed.first; i < listed.last; ++i) {
       const CommonDepth& place = places_[listing.place[i]];
-      AddTo(effect.rows, effect.first, place, l, place.Of(listed.direction[i]));
+      AddTo(effect.rows, effect.first, place, l, place.Of(listed.direction_W[i]));
     }
   }
 }

@@ -60,7 +60,7 @@ std::optional<Place> InPlane(const HoleLine& line, const Vector3d& point, const 
   for (std::size_t i = 0; i < legs.size(); ++i) {
     const double nearest = NearestOn(legs[i], point);
     const Vector3d there = PointOn(legs[i], nearest);
-    const bool lies_in = std::abs((legs[i].begin - point).dot(across)) < kMeet &&
+    const bool lies_in = std::abs((legs[i].begin_W - point).dot(across)) < kMeet &&
                          std::abs((there - point).dot(across)) < kMeet &&
                          std::abs(DirectionOn(legs[i], nearest).dot(across)) < 1e-12;
     if (lies_in) take(i, nearest);
@@ -115,10 +115,11 @@ std::optional<Place> PairOfLines::Opposite(const Place& place) const {
 }
 
 void PairOfLines::Weigh(Separation& s) const {
-  s.distance = s.vector.norm();
+  s.distance = s.vector_W.norm();
   const bool meet = s.distance < kMeet;
-  const double variance = meet ? 0 : s.vector.dot(s.cov * s.vector) / s.vector.squaredNorm();
-  s.sigma = meet ? Ellipsoid(s.cov, 0.5).semi_axes(0) / ConfidenceFactor(0.5, 3)
+  const double variance =
+      meet ? 0 : s.vector_W.dot(s.cov_W * s.vector_W) / s.vector_W.squaredNorm();
+  s.sigma = meet ? Ellipsoid(s.cov_W, 0.5).semi_axes(0) / ConfidenceFactor(0.5, 3)
                  : std::sqrt(std::max(0.0, variance));
   if (s.sigma > 0) s.sigmas = s.distance / s.sigma;
   const double radius = rule_.k * std::hypot(s.sigma, rule_.sigma_ahead);
@@ -127,10 +128,10 @@ void PairOfLines::Weigh(Separation& s) const {
   if (!(radius > 0)) return;
   s.factor = clear / radius;
   if (rule_.surface == ErrorSurface::kPedal || meet) return;
-  const Matrix3d all = s.cov + rule_.sigma_ahead * rule_.sigma_ahead * Matrix3d::Identity();
+  const Matrix3d all = s.cov_W + rule_.sigma_ahead * rule_.sigma_ahead * Matrix3d::Identity();
   const Eigen::LLT<Matrix3d> solver(all);
   if (solver.info() != Eigen::Success) return;
-  const Vector3d way = s.vector * (clear / s.distance);
+  const Vector3d way = s.vector_W * (clear / s.distance);
   s.factor = std::copysign(std::sqrt(way.dot(solver.solve(way))) / rule_.k, clear);
 }
 
@@ -141,7 +142,7 @@ void PairOfLines::Look(Separation& s, const Place& place) const {
   const double azimuth = across > 0 ? std::atan2(t.y(), t.x()) : survey[place.leg].azimuth;
   const Vector3d high(t.z() * std::cos(azimuth), t.z() * std::sin(azimuth), -across);
   const Vector3d right(-std::sin(azimuth), std::cos(azimuth), 0);
-  s.toolface = WrapTwoPi(std::atan2(s.vector.dot(right), s.vector.dot(high)));
+  s.toolface = WrapTwoPi(std::atan2(s.vector_W.dot(right), s.vector_W.dot(high)));
   s.high_side = WrapTwoPi(azimuth);
 }
 
@@ -152,12 +153,12 @@ std::optional<Separation> PairOfLines::At(const Place& place, Separation::Kind k
   s.kind = kind;
   s.md = first_.Md(place);
   s.other_md = second_.Md(*other);
-  s.position = first_.Position(place);
-  s.vector = second_.Position(*other) - s.position;
-  s.cov = first_.Cov(place) + second_.Cov(*other);
+  s.position_W = first_.Position(place);
+  s.vector_W = second_.Position(*other) - s.position_W;
+  s.cov_W = first_.Cov(place) + second_.Cov(*other);
   for (const auto& [i, j] : shared_) {
     const Vector3d a = first_.Shared(i, place), b = second_.Shared(j, *other);
-    s.cov -= a * b.transpose() + b * a.transpose();
+    s.cov_W -= a * b.transpose() + b * a.transpose();
   }
   s.holes = first_.Radius(s.md) + second_.Radius(s.other_md);
   Weigh(s);

@@ -48,12 +48,12 @@ struct Separation {
     kLowest,   ///< between two, with a lower separation factor than either
   };
   Kind kind = Kind::kStation;
-  double md = 0;                                       ///< on the first [m]
-  double other_md = 0;                                 ///< on the second [m]
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< on the first [m]
-  Eigen::Vector3d vector = Eigen::Vector3d::Zero();    ///< from the first to the second [m]
-  double distance = 0;                                 ///< [m]
-  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();       ///< of the vector, shared errors out [m^2]
+  double md = 0;                                         ///< on the first [m]
+  double other_md = 0;                                   ///< on the second [m]
+  Eigen::Vector3d position_W = Eigen::Vector3d::Zero();  ///< on the first [m]
+  Eigen::Vector3d vector_W = Eigen::Vector3d::Zero();    ///< from the first to the second [m]
+  double distance = 0;                                   ///< [m]
+  Eigen::Matrix3d cov_W = Eigen::Matrix3d::Zero();       ///< of the vector, shared errors out [m^2]
   /// Of the distance, along the vector; of the worst direction where both meet [m].
   double sigma = 0;
   std::optional<double> sigmas;  ///< distance / sigma; absent where sigma is zero

@@ -40,7 +40,7 @@ struct PassLine {
   std::int32_t pass_number = 0;
   std::vector<PathPoint> points;
   /// Position covariance at each, without the point's own depth error [m^2].
-  std::vector<Eigen::Matrix3d> covs;
+  std::vector<Eigen::Matrix3d> covs_W;
 
   /// Index of the first point at or below `md`; absent unless one lies above it too.
   std::optional<std::size_t> Below(double md) const;

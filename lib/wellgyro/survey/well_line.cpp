@@ -11,7 +11,7 @@ Trajectory LineOf(const SurveyedWell& well) {
     inclination.push_back(p.inclination);
     azimuth.push_back(p.azimuth);
   }
-  return Trajectory(md, inclination, azimuth, well.position.front());
+  return Trajectory(md, inclination, azimuth, well.position_W.front());
 }
 
 }  // namespace wellgyro

@@ -60,12 +60,12 @@ ErrorModel WithoutDrift(const ErrorModel& model) {
 
 /// The shorter of both, term lists joined.
 void Join(PositionUncertainty& total, PositionUncertainty&& part) {
-  const std::size_t n = std::min(total.cov_p.size(), part.cov_p.size());
+  const std::size_t n = std::min(total.cov_p_W.size(), part.cov_p_W.size());
   if (part.refusal && (!total.refusal || part.refusal->station < total.refusal->station)) {
     total.refusal = std::move(part.refusal);
   }
-  total.cov_p.resize(n);
-  for (std::size_t k = 0; k < n; ++k) total.cov_p[k] += part.cov_p[k];
+  total.cov_p_W.resize(n);
+  for (std::size_t k = 0; k < n; ++k) total.cov_p_W[k] += part.cov_p_W[k];
   std::ranges::move(part.terms, std::back_inserter(total.terms));
   std::ranges::move(part.shared, std::back_inserter(total.shared));
   for (std::string& note : part.notes) {
@@ -73,20 +73,20 @@ void Join(PositionUncertainty& total, PositionUncertainty&& part) {
       total.notes.push_back(std::move(note));
     }
   }
-  for (auto& term : total.terms) term.cov_p.resize(n);
-  for (auto& shared : total.shared) shared.error_p.resize(n);
+  for (auto& term : total.terms) term.cov_p_W.resize(n);
+  for (auto& shared : total.shared) shared.error_p_W.resize(n);
 }
 
 PositionUncertainty ExactPart(const SurveyedWell& well, const AllanRun& run,
                               const PropagateOptions& options) {
   AllanUncertainty allan = AllanErrors(well.survey, run);
   PositionUncertainty part;
-  part.cov_p = std::move(allan.cov_p);
+  part.cov_p_W = std::move(allan.cov_p_W);
   part.refusal = std::move(allan.refusal);
   part.notes.push_back("Allan terms: exact");
   if (!options.terms) return part;
   for (AllanTerm& term : allan.terms) {
-    part.terms.push_back({std::move(term.term), std::move(term.cov_p)});
+    part.terms.push_back({std::move(term.term), std::move(term.cov_p_W)});
   }
   return part;
 }
@@ -95,7 +95,7 @@ PositionUncertainty PrintedPart(const SurveyedWell& well, const Surroundings& su
                                 const AllanRun& run, const PropagateOptions& options) {
   PrintedAllan printed = PrintedAllanModel(run);
   PropagateOptions of_part = options;
-  of_part.cov_tie_in.setZero();
+  of_part.cov_tie_in_W.setZero();
   PositionUncertainty part = PropagateErrors(well.survey, surroundings, printed.model, of_part);
   part.notes.push_back("Allan terms: printed");
   if (run.noise.rate_random_walk > 0 || run.noise.rate_ramp > 0) {
@@ -112,7 +112,7 @@ PositionUncertainty PrintedPart(const SurveyedWell& well, const Surroundings& su
 
 }  // namespace
 
-SurveyedWell SurveyWell(std::vector<SurveyPoint> stations, const Eigen::Vector3d& start) {
+SurveyedWell SurveyWell(std::vector<SurveyPoint> stations, const Eigen::Vector3d& start_W) {
   std::vector<double> md, inclination, azimuth;
   for (const SurveyPoint& p : stations) {
     md.push_back(p.md);
@@ -120,9 +120,9 @@ SurveyedWell SurveyWell(std::vector<SurveyPoint> stations, const Eigen::Vector3d
     azimuth.push_back(p.azimuth);
   }
   SurveyedWell well;
-  well.position.resize(stations.size());
-  MinimumCurvature(md, inclination, azimuth, start, well.position);
-  for (std::size_t k = 0; k < stations.size(); ++k) stations[k].tvd = well.position[k].z();
+  well.position_W.resize(stations.size());
+  MinimumCurvature(md, inclination, azimuth, start_W, well.position_W);
+  for (std::size_t k = 0; k < stations.size(); ++k) stations[k].tvd = well.position_W[k].z();
   well.survey = std::move(stations);
   return well;
 }
@@ -131,7 +131,7 @@ SurveyedWell SurveyWell(std::span<const Station> stations) {
   SurveyedWell well;
   for (const Station& s : stations) {
     well.survey.push_back({s.md, s.inclination, s.azimuth, s.p_WT_W.z()});
-    well.position.push_back(s.p_WT_W);
+    well.position_W.push_back(s.p_WT_W);
   }
   return well;
 }
@@ -147,7 +147,7 @@ PositionUncertainty WellUncertainty(const SurveyedWell& well, const Surroundings
     const ErrorModel rest = WithoutDrift(*model);
     total = PropagateErrors(well.survey, surroundings, rest, options);
   } else {
-    total.cov_p.assign(well.survey.size(), options.cov_tie_in);
+    total.cov_p_W.assign(well.survey.size(), options.cov_tie_in_W);
   }
   Join(total, basis.form == AllanForm::kExact ? ExactPart(well, run, options)
                                               : PrintedPart(well, surroundings, run, options));

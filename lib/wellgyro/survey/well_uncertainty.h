@@ -17,13 +17,13 @@ namespace wellgyro {
 /// A survey with its positions by minimum curvature, in the frame of its azimuths.
 struct SurveyedWell {
   std::vector<SurveyPoint> survey;
-  std::vector<Eigen::Vector3d> position;  ///< north, east, TVD [m]
+  std::vector<Eigen::Vector3d> position_W;  ///< north, east, TVD [m]
 };
 
-/// `stations` have no TVD yet; the first is at `start` (north, east, TVD) [m]. Throws
+/// `stations` have no TVD yet; the first is at `start_W` (north, east, TVD) [m]. Throws
 /// std::invalid_argument as MinimumCurvature does.
 WELLGYRO_EXPORT SurveyedWell SurveyWell(std::vector<SurveyPoint> stations,
-                                        const Eigen::Vector3d& start);
+                                        const Eigen::Vector3d& start_W);
 
 /// The chosen stations of a survey, with the positions they already have; true azimuths.
 WELLGYRO_EXPORT SurveyedWell SurveyWell(std::span<const Station> stations);

@@ -20,9 +20,10 @@ double LengthOf(const Arc& arc, double v) {
 
 }  // namespace
 
-Arc MakeArc(double length, double begin_z, const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
-  const Eigen::Vector3d sum = t1 + t2;
-  const Eigen::Vector3d difference = t2 - t1;
+Arc MakeArc(double length, double begin_z, const Eigen::Vector3d& t1_W,
+            const Eigen::Vector3d& t2_W) {
+  const Eigen::Vector3d sum = t1_W + t2_W;
+  const Eigen::Vector3d difference = t2_W - t1_W;
   const double half = std::atan2(difference.norm(), sum.norm());
   Arc arc;
   arc.length = length;
@@ -30,7 +31,7 @@ Arc MakeArc(double length, double begin_z, const Eigen::Vector3d& t1, const Eige
   const Eigen::Vector3d middle = sum / sum.norm();
   arc.along_z = middle.z();
   if (half > 0) arc.across_z = difference.z() / difference.norm();
-  const auto to_middle = MinimumCurvatureLeg(0.5 * length, t1, middle);
+  const auto to_middle = MinimumCurvatureLeg(0.5 * length, t1_W, middle);
   arc.middle_z = begin_z + (to_middle ? to_middle->displacement.z() : 0);
   return arc;
 }

@@ -16,7 +16,8 @@ struct Arc {
   double across_z = 0;   ///< of the unit normal there, towards the centre
 };
 
-Arc MakeArc(double length, double begin_z, const Eigen::Vector3d& t1, const Eigen::Vector3d& t2);
+Arc MakeArc(double length, double begin_z, const Eigen::Vector3d& t1_W,
+            const Eigen::Vector3d& t2_W);
 
 /// Least and greatest TVD on it; `begin_z` and `end_z` are its ends' [m].
 Eigen::Vector2d RangeOf(const Arc& arc, double begin_z, double end_z, double t1_z, double t2_z);

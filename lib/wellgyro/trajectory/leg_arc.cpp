@@ -18,23 +18,24 @@ constexpr double kStraight = 1e-12;  // [rad]
 
 }  // namespace
 
-LegArc MakeLegArc(const Vector3d& begin, double length, const Vector3d& t1, const Vector3d& t2) {
+LegArc MakeLegArc(const Vector3d& begin_W, double length, const Vector3d& t1_W,
+                  const Vector3d& t2_W) {
   LegArc arc;
-  arc.begin = begin;
-  arc.tangent = t1;
+  arc.begin_W = begin_W;
+  arc.tangent_W = t1_W;
   arc.length = length;
-  const Vector3d difference = t2 - t1;
-  const double dogleg = 2 * std::atan2(difference.norm(), (t1 + t2).norm());
+  const Vector3d difference = t2_W - t1_W;
+  const double dogleg = 2 * std::atan2(difference.norm(), (t1_W + t2_W).norm());
   if (dogleg > kStraight) {
     arc.curvature = dogleg / length;
-    // From the difference, not from t2: near a straight leg nothing is lost.
-    arc.normal = (difference - difference.dot(t1) * t1).normalized();
+    // From the difference, not from t2_W: near a straight leg nothing is lost.
+    arc.normal_W = (difference - difference.dot(t1_W) * t1_W).normalized();
   } else {
     Vector3d axis = Vector3d::Zero();
     Eigen::Index least = 0;
-    t1.cwiseAbs().minCoeff(&least);
+    t1_W.cwiseAbs().minCoeff(&least);
     axis(least) = 1;
-    arc.normal = (axis - axis.dot(t1) * t1).normalized();
+    arc.normal_W = (axis - axis.dot(t1_W) * t1_W).normalized();
   }
   return arc;
 }
@@ -42,31 +43,32 @@ LegArc MakeLegArc(const Vector3d& begin, double length, const Vector3d& t1, cons
 Vector3d PointOn(const LegArc& arc, double s) {
   const double half = arc.curvature * s / 2;
   const double chord = s * Sinc(half);
-  return arc.begin + chord * (std::cos(half) * arc.tangent + std::sin(half) * arc.normal);
+  return arc.begin_W + chord * (std::cos(half) * arc.tangent_W + std::sin(half) * arc.normal_W);
 }
 
 Vector3d DirectionOn(const LegArc& arc, double s) {
   const double turn = arc.curvature * s;
-  return std::cos(turn) * arc.tangent + std::sin(turn) * arc.normal;
+  return std::cos(turn) * arc.tangent_W + std::sin(turn) * arc.normal_W;
 }
 
-double NearestOn(const LegArc& arc, const Vector3d& point) {
-  const Vector3d d = point - arc.begin;
-  const double along = d.dot(arc.tangent), across = d.dot(arc.normal);
+double NearestOn(const LegArc& arc, const Vector3d& point_W) {
+  const Vector3d d = point_W - arc.begin_W;
+  const double along = d.dot(arc.tangent_W), across = d.dot(arc.normal_W);
   if (arc.curvature == 0) return std::clamp(along, 0.0, arc.length);
   const double s = std::atan2(arc.curvature * along, 1 - arc.curvature * across) / arc.curvature;
   if (s >= 0 && s <= arc.length) return s;
   const double to_begin = d.squaredNorm();
-  const double to_end = (point - PointOn(arc, arc.length)).squaredNorm();
+  const double to_end = (point_W - PointOn(arc, arc.length)).squaredNorm();
   return to_begin <= to_end ? 0 : arc.length;
 }
 
-PlaneCrossings CrossingsOfPlane(const LegArc& arc, const Vector3d& point, const Vector3d& across) {
+PlaneCrossings CrossingsOfPlane(const LegArc& arc, const Vector3d& point_W,
+                                const Vector3d& across_W) {
   // With x = 2 tan(curvature s / 2) / curvature the arc is rational and the plane a quadratic.
   const double k = arc.curvature;
-  const double c = (arc.begin - point).dot(across);
-  const double b = arc.tangent.dot(across);
-  const double a = k * arc.normal.dot(across) / 2 + c * k * k / 4;
+  const double c = (arc.begin_W - point_W).dot(across_W);
+  const double b = arc.tangent_W.dot(across_W);
+  const double a = k * arc.normal_W.dot(across_W) / 2 + c * k * k / 4;
   double roots[2] = {0, 0};
   int count = 0;
   if (std::abs(a) <= 1e-15 * std::abs(b)) {
@@ -90,20 +92,20 @@ namespace {
 constexpr double kGoodTo = 1e-7;  // [m]
 
 NearestPair BetweenStraights(const LegArc& a, const LegArc& b) {
-  NearestPair best{0, NearestOn(b, a.begin), 0};
-  best.distance = (PointOn(b, best.s_second) - a.begin).norm();
+  NearestPair best{0, NearestOn(b, a.begin_W), 0};
+  best.distance = (PointOn(b, best.s_second) - a.begin_W).norm();
   const auto take = [&](double s, double u) {
     const double distance = (PointOn(b, u) - PointOn(a, s)).norm();
     if (distance < best.distance) best = {s, u, distance};
   };
   take(a.length, NearestOn(b, PointOn(a, a.length)));
-  take(NearestOn(a, b.begin), 0);
+  take(NearestOn(a, b.begin_W), 0);
   take(NearestOn(a, PointOn(b, b.length)), b.length);
-  const double cosine = a.tangent.dot(b.tangent);
-  const double sine2 = a.tangent.cross(b.tangent).squaredNorm();
+  const double cosine = a.tangent_W.dot(b.tangent_W);
+  const double sine2 = a.tangent_W.cross(b.tangent_W).squaredNorm();
   if (sine2 > 1e-24) {
-    const Vector3d d = b.begin - a.begin;
-    const double s = (d.dot(a.tangent) - cosine * d.dot(b.tangent)) / sine2;
+    const Vector3d d = b.begin_W - a.begin_W;
+    const double s = (d.dot(a.tangent_W) - cosine * d.dot(b.tangent_W)) / sine2;
     if (s > 0 && s < a.length) take(s, NearestOn(b, PointOn(a, s)));
   }
   return best;
@@ -171,7 +173,7 @@ bool PairSearch::MayHoldNearer(const Interval& in) const {
 
 NearestPair PairSearch::Run() {
   constexpr int kFirst = 4;
-  best_.square = (PointOn(along_, 0) - other_.begin).squaredNorm();
+  best_.square = (PointOn(along_, 0) - other_.begin_W).squaredNorm();
   std::vector<Interval> open;
   Sample from = At(0);
   best_ = from;

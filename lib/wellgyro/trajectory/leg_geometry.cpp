@@ -84,29 +84,29 @@ double TvdSubSea(double tvd, double datum_elevation) { return tvd - datum_elevat
 
 void PositionsBy(SurveyMethod method, std::span<const double> md,
                  std::span<const double> inclination, std::span<const double> azimuth,
-                 const Eigen::Vector3d& start, std::span<Eigen::Vector3d> position) {
+                 const Eigen::Vector3d& start_W, std::span<Eigen::Vector3d> position_W) {
   if (method == SurveyMethod::kMinimumCurvature) {
-    MinimumCurvature(md, inclination, azimuth, start, position);
+    MinimumCurvature(md, inclination, azimuth, start_W, position_W);
     return;
   }
   const std::size_t n = md.size();
-  if (inclination.size() != n || azimuth.size() != n || position.size() != n) {
+  if (inclination.size() != n || azimuth.size() != n || position_W.size() != n) {
     throw std::invalid_argument(
         fmt::format("PositionsBy: {} depths but {} inclinations, {} azimuths, {} positions", n,
-                    inclination.size(), azimuth.size(), position.size()));
+                    inclination.size(), azimuth.size(), position_W.size()));
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(md[i]) || !std::isfinite(inclination[i]) || !std::isfinite(azimuth[i])) {
       RefusePosition(i, "a value is not finite");
     }
     if (i == 0) {
-      position[i] = start;
+      position_W[i] = start_W;
       continue;
     }
     const double length = md[i] - md[i - 1];
     if (!(length > 0)) RefusePosition(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
-    position[i] = position[i - 1] + Step(method, length, {inclination[i - 1], azimuth[i - 1]},
-                                         {inclination[i], azimuth[i]});
+    position_W[i] = position_W[i - 1] + Step(method, length, {inclination[i - 1], azimuth[i - 1]},
+                                             {inclination[i], azimuth[i]});
   }
 }
 

@@ -48,14 +48,14 @@ enum class SurveyMethod {
   kRadiusOfCurvature,   ///< arcs in the vertical and in the horizontal section
 };
 
-/// MinimumCurvature of arrays, by any method: (north, east, TVD) [m] from `start`. Azimuth is
+/// MinimumCurvature of arrays, by any method: (north, east, TVD) [m] from `start_W`. Azimuth is
 /// averaged the short way round. Radius of curvature is taken in a form that holds for equal
 /// angles too. Source of the classic methods: API Bulletin D20.
 /// Throws std::invalid_argument as MinimumCurvature does, naming the station; opposite directions
 /// are refused by minimum curvature only.
 WELLGYRO_EXPORT void PositionsBy(SurveyMethod method, std::span<const double> md,
                                  std::span<const double> inclination,
-                                 std::span<const double> azimuth, const Eigen::Vector3d& start,
-                                 std::span<Eigen::Vector3d> position);
+                                 std::span<const double> azimuth, const Eigen::Vector3d& start_W,
+                                 std::span<Eigen::Vector3d> position_W);
 
 }  // namespace wellgyro

@@ -20,8 +20,8 @@ double Sagitta(const LegArc& arc) {
   return (1 - std::cos(half)) / arc.curvature;
 }
 
-double GapToPoint(const Vector3d& low, const Vector3d& high, const Vector3d& point) {
-  const Vector3d beyond = (low - point).cwiseMax(point - high).cwiseMax(0.0);
+double GapToPoint(const Vector3d& low_W, const Vector3d& high_W, const Vector3d& point_W) {
+  const Vector3d beyond = (low_W - point_W).cwiseMax(point_W - high_W).cwiseMax(0.0);
   return beyond.norm();
 }
 
@@ -40,24 +40,24 @@ LegTree::LegTree(std::vector<LegArc> legs, const std::vector<LegReach>& reach)
     const Vector3d end = PointOn(legs_[i], legs_[i].length);
     const double sagitta = Sagitta(legs_[i]);
     Node& node = nodes_[leaves_ + i];
-    node.low = legs_[i].begin.cwiseMin(end).array() - sagitta;
-    node.high = legs_[i].begin.cwiseMax(end).array() + sagitta;
+    node.low_W = legs_[i].begin_W.cwiseMin(end).array() - sagitta;
+    node.high_W = legs_[i].begin_W.cwiseMax(end).array() + sagitta;
     if (!reach.empty()) node.reach = reach[i];
   }
   for (std::size_t k = leaves_ - 1; k > 0; --k) {
     const Node &left = nodes_[2 * k], &right = nodes_[2 * k + 1];
-    nodes_[k] = {left.low.cwiseMin(right.low), left.high.cwiseMax(right.high),
+    nodes_[k] = {left.low_W.cwiseMin(right.low_W), left.high_W.cwiseMax(right.high_W),
                  LegReach{std::max(left.reach.variance, right.reach.variance),
                           std::max(left.reach.radius, right.reach.radius)}};
   }
 }
 
 double LegTree::Gap(const Node& a, const Node& b) {
-  const Vector3d beyond = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0);
+  const Vector3d beyond = (a.low_W - b.high_W).cwiseMax(b.low_W - a.high_W).cwiseMax(0.0);
   return beyond.norm();
 }
 
-LegTree::Place LegTree::Nearest(const Vector3d& point) const {
+LegTree::Place LegTree::Nearest(const Vector3d& point_W) const {
   Place best{0, 0, kInfinity};
   std::vector<std::pair<double, std::size_t>> open{{0.0, 1}};
   while (!open.empty()) {
@@ -66,15 +66,15 @@ LegTree::Place LegTree::Nearest(const Vector3d& point) const {
     if (!(gap < best.distance)) continue;
     if (IsLeaf(k)) {
       const LegArc& leg = legs_[k - leaves_];
-      const double s = NearestOn(leg, point);
-      const double distance = (PointOn(leg, s) - point).norm();
+      const double s = NearestOn(leg, point_W);
+      const double distance = (PointOn(leg, s) - point_W).norm();
       if (distance < best.distance) best = {k - leaves_, s, distance};
       continue;
     }
-    std::pair<double, std::size_t> near{GapToPoint(nodes_[2 * k].low, nodes_[2 * k].high, point),
-                                        2 * k};
+    std::pair<double, std::size_t> near{
+        GapToPoint(nodes_[2 * k].low_W, nodes_[2 * k].high_W, point_W), 2 * k};
     std::pair<double, std::size_t> far{
-        GapToPoint(nodes_[2 * k + 1].low, nodes_[2 * k + 1].high, point), 2 * k + 1};
+        GapToPoint(nodes_[2 * k + 1].low_W, nodes_[2 * k + 1].high_W, point_W), 2 * k + 1};
     if (far.first < near.first) std::swap(near, far);
     open.push_back(far);
     open.push_back(near);
@@ -118,8 +118,8 @@ bool LegTree::AnyNear(const LegTree& a, const LegTree& b, const NearTest& near) 
     if (gap == kInfinity || !near(gap, left.reach, right.reach)) continue;
     if (a.IsLeaf(i) && b.IsLeaf(j)) return true;
     // The larger box is opened.
-    const double size_a = a.IsLeaf(i) ? -1 : (left.high - left.low).squaredNorm();
-    const double size_b = b.IsLeaf(j) ? -1 : (right.high - right.low).squaredNorm();
+    const double size_a = a.IsLeaf(i) ? -1 : (left.high_W - left.low_W).squaredNorm();
+    const double size_b = b.IsLeaf(j) ? -1 : (right.high_W - right.low_W).squaredNorm();
     if (size_a >= size_b) {
       open.emplace_back(2 * i, j);
       open.emplace_back(2 * i + 1, j);

@@ -31,8 +31,8 @@ class WELLGYRO_EXPORT LegTree {
     double s = 0;         ///< along it [m]
     double distance = 0;  ///< [m]
   };
-  /// The nearest place to `point`; the first of several that are equally near.
-  Place Nearest(const Eigen::Vector3d& point) const;
+  /// The nearest place to `point_W`; the first of several that are equally near.
+  Place Nearest(const Eigen::Vector3d& point_W) const;
 
   struct Pair {
     Place place;
@@ -49,7 +49,7 @@ class WELLGYRO_EXPORT LegTree {
 
  private:
   struct Node {
-    Eigen::Vector3d low, high;  ///< [m]
+    Eigen::Vector3d low_W, high_W;  ///< [m]
     LegReach reach;
   };
 

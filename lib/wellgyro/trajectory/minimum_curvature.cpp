@@ -28,16 +28,16 @@ double RatioFactor(double q2) {
 }
 
 void CheckSizes(std::size_t n, std::span<const double> inclination, std::span<const double> azimuth,
-                std::span<Eigen::Vector3d> position, std::span<double> severity,
-                std::span<Eigen::Vector3d> tangent) {
-  if (inclination.size() == n && azimuth.size() == n && position.size() == n &&
-      (severity.empty() || severity.size() == n) && (tangent.empty() || tangent.size() == n)) {
+                std::span<Eigen::Vector3d> position_W, std::span<double> severity,
+                std::span<Eigen::Vector3d> tangent_W) {
+  if (inclination.size() == n && azimuth.size() == n && position_W.size() == n &&
+      (severity.empty() || severity.size() == n) && (tangent_W.empty() || tangent_W.size() == n)) {
     return;
   }
   throw std::invalid_argument(fmt::format(
       "MinimumCurvature: {} depths but {} inclinations, {} azimuths, {} positions, {} "
       "severities, {} tangents",
-      n, inclination.size(), azimuth.size(), position.size(), severity.size(), tangent.size()));
+      n, inclination.size(), azimuth.size(), position_W.size(), severity.size(), tangent_W.size()));
 }
 
 }  // namespace
@@ -67,12 +67,12 @@ Eigen::Vector3d TangentOnArc(const Eigen::Vector3d& t1, const Eigen::Vector3d& t
 }
 
 void MinimumCurvature(std::span<const double> md, std::span<const double> inclination,
-                      std::span<const double> azimuth, const Eigen::Vector3d& start,
-                      std::span<Eigen::Vector3d> position, std::span<double> severity,
-                      std::span<Eigen::Vector3d> tangent) {
-  CheckSizes(md.size(), inclination, azimuth, position, severity, tangent);
+                      std::span<const double> azimuth, const Eigen::Vector3d& start_W,
+                      std::span<Eigen::Vector3d> position_W, std::span<double> severity,
+                      std::span<Eigen::Vector3d> tangent_W) {
+  CheckSizes(md.size(), inclination, azimuth, position_W, severity, tangent_W);
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
-  Eigen::Vector3d at = start;
+  Eigen::Vector3d at = start_W;
   for (std::size_t i = 0; i < md.size(); ++i) {
     const Eigen::Vector3d next = Tangent(inclination[i], azimuth[i]);
     if (!std::isfinite(md[i]) || !next.allFinite()) RefuseStation(i, "a value is not finite");
@@ -91,8 +91,8 @@ void MinimumCurvature(std::span<const double> md, std::span<const double> inclin
       dls = leg->dogleg / length;
     }
     before = next;
-    position[i] = at;
-    if (!tangent.empty()) tangent[i] = next;
+    position_W[i] = at;
+    if (!tangent_W.empty()) tangent_W[i] = next;
     if (!severity.empty()) severity[i] = dls;
   }
 }

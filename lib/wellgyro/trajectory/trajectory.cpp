@@ -22,13 +22,13 @@ constexpr double kSamePlace = 1e-4;  // [m]
 // A level counts as reached when it is missed by no more.
 constexpr double kReached = 1e-9;  // [m]
 
-TrajectoryPoint PointAlong(double md, const Eigen::Vector3d& position,
-                           const Eigen::Vector3d& tangent, double azimuth_if_vertical) {
-  TrajectoryPoint point{.md = md, .position = position, .tangent = tangent};
-  const double across = std::hypot(tangent.x(), tangent.y());
-  point.inclination = std::atan2(across, tangent.z());
+TrajectoryPoint PointAlong(double md, const Eigen::Vector3d& position_W,
+                           const Eigen::Vector3d& tangent_W, double azimuth_if_vertical) {
+  TrajectoryPoint point{.md = md, .position_W = position_W, .tangent_W = tangent_W};
+  const double across = std::hypot(tangent_W.x(), tangent_W.y());
+  point.inclination = std::atan2(across, tangent_W.z());
   point.azimuth =
-      across > 0 ? WrapTwoPi(std::atan2(tangent.y(), tangent.x())) : azimuth_if_vertical;
+      across > 0 ? WrapTwoPi(std::atan2(tangent_W.y(), tangent_W.x())) : azimuth_if_vertical;
   return point;
 }
 
@@ -59,15 +59,15 @@ class Stretches {
 }  // namespace
 
 Trajectory::Trajectory(std::span<const double> md, std::span<const double> inclination,
-                       std::span<const double> azimuth, const Eigen::Vector3d& start)
+                       std::span<const double> azimuth, const Eigen::Vector3d& start_W)
     : md_(md.begin(), md.end()),
       inclination_(inclination.begin(), inclination.end()),
       severity_(md.size()),
-      position_(md.size()),
-      tangent_(md.size()) {
+      position_W_(md.size()),
+      tangent_W_(md.size()) {
   if (md.empty()) throw std::invalid_argument("Trajectory: no station");
-  if (!start.allFinite()) throw std::invalid_argument("Trajectory: the start is not finite");
-  MinimumCurvature(md, inclination, azimuth, start, position_, severity_, tangent_);
+  if (!start_W.allFinite()) throw std::invalid_argument("Trajectory: the start is not finite");
+  MinimumCurvature(md, inclination, azimuth, start_W, position_W_, severity_, tangent_W_);
   azimuth_.reserve(md.size());
   for (const double a : azimuth) azimuth_.push_back(WrapTwoPi(a));
   Index();
@@ -87,8 +87,8 @@ Trajectory Trajectory::OfPath(std::span<const PathPoint> points) {
     made.inclination_.push_back(point.inclination);
     made.azimuth_.push_back(point.azimuth);
     made.severity_.push_back(p.dogleg_severity);
-    made.position_.push_back(p.p_WT_W);
-    made.tangent_.push_back(p.tangent_W);
+    made.position_W_.push_back(p.p_WT_W);
+    made.tangent_W_.push_back(p.tangent_W);
   }
   made.severity_.front() = 0;
   made.Index();
@@ -104,7 +104,7 @@ Trajectory Trajectory::TiedOnto(const Trajectory& parent, double md,
     inclinations.push_back(s.inclination);
     azimuths.push_back(s.azimuth);
   }
-  return Trajectory(depths, inclinations, azimuths, tie.position);
+  return Trajectory(depths, inclinations, azimuths, tie.position_W);
 }
 
 void Trajectory::Index() {
@@ -114,12 +114,12 @@ void Trajectory::Index() {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   range_.assign(2 * leaves_, Eigen::Vector2d(kNone, -kNone));
   for (std::size_t i = 0; i < legs; ++i) {
-    const double z1 = position_[i].z(), z2 = position_[i + 1].z();
-    const double t1 = tangent_[i].z(), t2 = tangent_[i + 1].z();
+    const double z1 = position_W_[i].z(), z2 = position_W_[i + 1].z();
+    const double t1 = tangent_W_[i].z(), t2 = tangent_W_[i + 1].z();
     Eigen::Vector2d& range = range_[leaves_ + i];
     range = {std::min(z1, z2), std::max(z1, z2)};
     if (t1 * t2 < 0) {
-      const Arc arc = MakeArc(md_[i + 1] - md_[i], z1, tangent_[i], tangent_[i + 1]);
+      const Arc arc = MakeArc(md_[i + 1] - md_[i], z1, tangent_W_[i], tangent_W_[i + 1]);
       range = RangeOf(arc, z1, z2, t1, t2);
     }
   }
@@ -133,8 +133,8 @@ TrajectoryPoint Trajectory::station(std::size_t i) const {
   return {.md = md_[i],
           .inclination = inclination_[i],
           .azimuth = azimuth_[i],
-          .position = position_[i],
-          .tangent = tangent_[i],
+          .position_W = position_W_[i],
+          .tangent_W = tangent_W_[i],
           .dogleg_severity = severity_[i]};
 }
 
@@ -148,11 +148,11 @@ TrajectoryPoint Trajectory::AtMd(double md) const {
   if (*below == md) return station(i);
   const double length = md - md_[i - 1];
   const double fraction = length / (md_[i] - md_[i - 1]);
-  const Eigen::Vector3d tangent = TangentOnArc(tangent_[i - 1], tangent_[i], fraction);
-  const auto leg = MinimumCurvatureLeg(length, tangent_[i - 1], tangent);
+  const Eigen::Vector3d tangent_W = TangentOnArc(tangent_W_[i - 1], tangent_W_[i], fraction);
+  const auto leg = MinimumCurvatureLeg(length, tangent_W_[i - 1], tangent_W);
   TrajectoryPoint point =
-      PointAlong(md, position_[i - 1] + (leg ? leg->displacement : Eigen::Vector3d::Zero()),
-                 tangent, azimuth_[i - 1]);
+      PointAlong(md, position_W_[i - 1] + (leg ? leg->displacement : Eigen::Vector3d::Zero()),
+                 tangent_W, azimuth_[i - 1]);
   point.dogleg_severity = severity_[i];
   return point;
 }
@@ -160,7 +160,7 @@ TrajectoryPoint Trajectory::AtMd(double md) const {
 std::vector<double> Trajectory::MdAtTvd(double tvd) const {
   Stretches found;
   if (leaves_ == 0) {
-    if (std::abs(position_.front().z() - tvd) <= kReached) found.Add(md_begin(), md_begin());
+    if (std::abs(position_W_.front().z() - tvd) <= kReached) found.Add(md_begin(), md_begin());
     return found.Depths();
   }
   // Down the heap from the left, into every node whose range holds the level: as TVD is continuous
@@ -176,7 +176,8 @@ std::vector<double> Trajectory::MdAtTvd(double tvd) const {
       continue;
     }
     const std::size_t i = k - leaves_;
-    const Arc arc = MakeArc(md_[i + 1] - md_[i], position_[i].z(), tangent_[i], tangent_[i + 1]);
+    const Arc arc =
+        MakeArc(md_[i + 1] - md_[i], position_W_[i].z(), tangent_W_[i], tangent_W_[i + 1]);
     const Crossings at = CrossingsAt(arc, tvd);
     if (at.level) {
       found.Add(md_[i], md_[i + 1]);
@@ -222,11 +223,11 @@ TrajectoryPoint Trajectory::Ahead(double length, double dogleg_severity, double 
   const Eigen::Vector3d high = Tangent(last.inclination + kPi / 2, last.azimuth);
   const Eigen::Vector3d right(-std::sin(last.azimuth), std::cos(last.azimuth), 0);
   const Eigen::Vector3d to = std::cos(toolface) * high + std::sin(toolface) * right;
-  const Eigen::Vector3d tangent = std::cos(dogleg) * last.tangent + std::sin(dogleg) * to;
-  const auto leg = MinimumCurvatureLeg(length, last.tangent, tangent);
+  const Eigen::Vector3d tangent_W = std::cos(dogleg) * last.tangent_W + std::sin(dogleg) * to;
+  const auto leg = MinimumCurvatureLeg(length, last.tangent_W, tangent_W);
   TrajectoryPoint point = PointAlong(
-      last.md + length, last.position + (leg ? leg->displacement : Eigen::Vector3d::Zero()),
-      tangent, last.azimuth);
+      last.md + length, last.position_W + (leg ? leg->displacement : Eigen::Vector3d::Zero()),
+      tangent_W, last.azimuth);
   point.dogleg_severity = dogleg_severity;
   return point;
 }

@@ -16,8 +16,8 @@ struct TrajectoryPoint {
   double md = 0;           ///< [m]
   double inclination = 0;  ///< [rad]
   double azimuth = 0;      ///< of the trajectory's own north [rad], [0, 2 pi)
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< north, east, TVD [m]
-  Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d position_W = Eigen::Vector3d::Zero();  ///< north, east, TVD [m]
+  Eigen::Vector3d tangent_W = Eigen::Vector3d::UnitZ();
   double dogleg_severity = 0;  ///< of the leg it lies in; at a station, the one that ends [rad/m]
 };
 
@@ -28,12 +28,12 @@ struct TrajectoryPoint {
 /// its azimuth is the one carried from the station above.
 class WELLGYRO_EXPORT Trajectory {
  public:
-  /// Ties the stations onto `start` (north, east, TVD) [m], the position of the first. `md` [m],
+  /// Ties the stations onto `start_W` (north, east, TVD) [m], the position of the first. `md` [m],
   /// angles [rad]. Throws std::invalid_argument naming the station, counted from 0, when sizes
   /// differ, there is none, a value is not finite, depth does not increase or two directions are
   /// opposite.
   Trajectory(std::span<const double> md, std::span<const double> inclination,
-             std::span<const double> azimuth, const Eigen::Vector3d& start);
+             std::span<const double> azimuth, const Eigen::Vector3d& start_W);
 
   /// The points of a Path, in W: azimuths refer to the meridian of the well head from here on.
   /// Throws std::invalid_argument when there is none or depth does not increase.
@@ -73,7 +73,7 @@ class WELLGYRO_EXPORT Trajectory {
   void Index();
 
   std::vector<double> md_, inclination_, azimuth_, severity_;
-  std::vector<Eigen::Vector3d> position_, tangent_;
+  std::vector<Eigen::Vector3d> position_W_, tangent_W_;
   /// A heap of ranges of TVD over the legs: node k over 2k and 2k + 1, leaves from leaves_.
   std::vector<Eigen::Vector2d> range_;
   std::size_t leaves_ = 0;

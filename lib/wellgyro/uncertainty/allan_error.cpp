@@ -264,12 +264,12 @@ class AllanPropagator {
       cov.topLeftCorner<2, 2>() = p.cov_r;
       const double step = open_ ? p.gain * p.quantization : 0;
       const double var = p.cov_x(kDriftIntegral, kDriftIntegral) + step * step;
-      result_.terms[i].cov_p.push_back(cov);
+      result_.terms[i].cov_p_W.push_back(cov);
       result_.terms[i].var_azimuth.push_back(var);
       total += cov;
       azimuth += var;
     }
-    result_.cov_p.push_back(total);
+    result_.cov_p_W.push_back(total);
     result_.var_azimuth.push_back(azimuth);
   }
 

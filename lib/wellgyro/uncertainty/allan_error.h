@@ -28,14 +28,14 @@ struct AllanRun {
 
 /// What one coefficient makes of azimuth and position, per station.
 struct AllanTerm {
-  std::string term;                    ///< "ALLAN-N" and so on
-  std::vector<double> var_azimuth;     ///< [rad^2]; 0 outside sections
-  std::vector<Eigen::Matrix3d> cov_p;  ///< (north, east, down) [m^2]
+  std::string term;                      ///< "ALLAN-N" and so on
+  std::vector<double> var_azimuth;       ///< [rad^2]; 0 outside sections
+  std::vector<Eigen::Matrix3d> cov_p_W;  ///< (north, east, down) [m^2]
 };
 
 struct AllanUncertainty {
   std::vector<double> var_azimuth;
-  std::vector<Eigen::Matrix3d> cov_p;
+  std::vector<Eigen::Matrix3d> cov_p_W;
   std::vector<AllanTerm> terms;  ///< those whose coefficient is not zero
   std::optional<Refusal> refusal;
 };

@@ -23,16 +23,16 @@ double ConfidenceFactor(double confidence, int dimensions) {
   return std::sqrt(ChiSquareQuantile(confidence, dimensions));
 }
 
-ErrorEllipse HorizontalEllipse(const Matrix3d& cov, double confidence) {
+ErrorEllipse HorizontalEllipse(const Matrix3d& cov_W, double confidence) {
   const double k = ConfidenceFactor(confidence, 2);
-  const double mean = (cov(0, 0) + cov(1, 1)) / 2;
-  const double half = (cov(0, 0) - cov(1, 1)) / 2;
-  const double radius = std::hypot(half, cov(0, 1));
+  const double mean = (cov_W(0, 0) + cov_W(1, 1)) / 2;
+  const double half = (cov_W(0, 0) - cov_W(1, 1)) / 2;
+  const double radius = std::hypot(half, cov_W(0, 1));
   ErrorEllipse ellipse;
   ellipse.semi_major = k * std::sqrt(std::max(0.0, mean + radius));
   ellipse.semi_minor = k * std::sqrt(std::max(0.0, mean - radius));
   if (radius > 0) {
-    const double azimuth = std::atan2(cov(0, 1), half) / 2;
+    const double azimuth = std::atan2(cov_W(0, 1), half) / 2;
     ellipse.azimuth_major = azimuth < 0 ? azimuth + kPi : azimuth;
     if (ellipse.azimuth_major >= kPi) ellipse.azimuth_major = 0;
   }
@@ -70,12 +70,12 @@ ErrorEllipsoid Ellipsoid(const Matrix3d& cov, double confidence) {
   return ellipsoid;
 }
 
-Matrix3d ToHighSide(const Matrix3d& cov, double inclination, double azimuth) {
+Matrix3d ToHighSide(const Matrix3d& cov_W, double inclination, double azimuth) {
   const double si = std::sin(inclination), ci = std::cos(inclination);
   const double sa = std::sin(azimuth), ca = std::cos(azimuth);
   Matrix3d turn;
   turn << ci * ca, ci * sa, -si, -sa, ca, 0, si * ca, si * sa, ci;
-  return turn * cov * turn.transpose();
+  return turn * cov_W * turn.transpose();
 }
 
 }  // namespace wellgyro

@@ -20,8 +20,8 @@ struct ErrorEllipse {
   double azimuth_major = 0;               ///< of the major axis, [0, pi) [rad]; 0 for a circle
 };
 
-/// Of the horizontal part of `cov` [m^2], holding the position with probability `confidence`.
-WELLGYRO_EXPORT ErrorEllipse HorizontalEllipse(const Eigen::Matrix3d& cov, double confidence);
+/// Of the horizontal part of `cov_W` [m^2], holding the position with probability `confidence`.
+WELLGYRO_EXPORT ErrorEllipse HorizontalEllipse(const Eigen::Matrix3d& cov_W, double confidence);
 
 /// The least ellipse e' E^-1 e <= 1, by its trace, of the family that holds every sum of a point
 /// within that of `a` and one within that of `b` [m^2]: E = (1 + 1/p) a + (1 + p) b with
@@ -29,24 +29,24 @@ WELLGYRO_EXPORT ErrorEllipse HorizontalEllipse(const Eigen::Matrix3d& cov, doubl
 /// half widths together; where `a` and `b` are alike but for a factor, it is just that.
 WELLGYRO_EXPORT Eigen::Matrix2d EllipseAboutSum(const Eigen::Matrix2d& a, const Eigen::Matrix2d& b);
 
-/// The ellipse that `cov`, seen along the unit vector `sight`, draws on the plane across it:
-/// semi-axes as vectors in that plane, the longer first, at `sigmas` [m].
+/// The ellipse that `cov` of any frame, seen along the unit vector `sight`, draws on the plane
+/// across it: semi-axes as vectors in that plane, the longer first, at `sigmas` [m].
 struct SeenEllipse {
   Eigen::Vector3d major, minor;
 };
 WELLGYRO_EXPORT SeenEllipse EllipseSeenAlong(const Eigen::Matrix3d& cov,
                                              const Eigen::Vector3d& sight, double sigmas);
 
-/// The error ellipsoid: columns of `axes` are unit vectors, right-handed, longest first.
+/// The error ellipsoid, any frame: columns of `axes` are unit vectors, right-handed, longest first.
 struct ErrorEllipsoid {
   Eigen::Vector3d semi_axes = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 };
 WELLGYRO_EXPORT ErrorEllipsoid Ellipsoid(const Eigen::Matrix3d& cov, double confidence);
 
-/// `cov` of (north, east, down) as that of (high side, lateral to the right, along) of a hole with
-/// this inclination and azimuth [rad]; in a vertical hole high side points along the azimuth.
-WELLGYRO_EXPORT Eigen::Matrix3d ToHighSide(const Eigen::Matrix3d& cov, double inclination,
+/// `cov_W` of (north, east, down) as that of (high side, lateral to the right, along) of a hole
+/// with this inclination and azimuth [rad]; in a vertical hole high side points along the azimuth.
+WELLGYRO_EXPORT Eigen::Matrix3d ToHighSide(const Eigen::Matrix3d& cov_W, double inclination,
                                            double azimuth);
 
 }  // namespace wellgyro

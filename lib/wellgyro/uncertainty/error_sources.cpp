@@ -27,20 +27,20 @@ std::size_t ErrorSources::SourceOf(const ErrorTerm& term, const ToolLeg& leg,
 }
 
 void ErrorSources::Open(std::size_t stations, PositionUncertainty& result) {
-  result.cov_p.reserve(stations);
+  result.cov_p_W.reserve(stations);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];
     if (source.propagation == Propagation::kWell || source.propagation == Propagation::kGlobal) {
       shared_.push_back(i);
       result.shared.push_back({source.name, source.propagation, {}});
-      result.shared.back().error_p.reserve(stations);
+      result.shared.back().error_p_W.reserve(stations);
     }
     if (!options_.terms) continue;
     const auto same = [&](const Source& s) { return s.name == source.name; };
     const bool alone = std::ranges::count_if(sources_, same) == 1;
     result.terms.push_back(
         {alone ? source.name : source.name + "/" + std::to_string(source.leg + 1), {}});
-    result.terms.back().cov_p.reserve(stations);
+    result.terms.back().cov_p_W.reserve(stations);
   }
 }
 
@@ -57,19 +57,19 @@ void ErrorSources::StartLeg(const std::vector<std::size_t>& sources) {
     if (is_active[i]) continue;
     resting_.push_back(i);
     Source& source = sources_[i];
-    source.error = source.sum;
-    idle_ += source.sum * source.sum.transpose();
+    source.error_W = source.sum_W;
+    idle_ += source.sum_W * source.sum_W.transpose();
   }
 }
 
 void ErrorSources::Close(Source& source, std::int64_t group) {
-  const Matrix3d cov = source.sum * source.sum.transpose();
+  const Matrix3d cov = source.sum_W * source.sum_W.transpose();
   ended_ += cov;
   if (options_.terms) {
     source.closed += cov;
     source.has_closed = true;
   }
-  source.sum.setZero();
+  source.sum_W.setZero();
   source.group = group;
 }
 
@@ -78,8 +78,8 @@ void ErrorSources::Forget() {
   ended_.setZero();
   idle_.setZero();
   for (Source& source : sources_) {
-    source.sum.setZero();
-    source.error.setZero();
+    source.sum_W.setZero();
+    source.error_W.setZero();
     source.closed.setZero();
     source.has_closed = false;
   }
@@ -89,24 +89,24 @@ void ErrorSources::Give(PositionUncertainty& result) const {
   Matrix3d total = ended_ + idle_;
   for (const std::size_t i : active_) {
     const Source& s = sources_[i];
-    const Matrix3d own = s.error * s.error.transpose();
+    const Matrix3d own = s.error_W * s.error_W.transpose();
     total += own;
     if (!options_.terms) continue;
-    std::vector<Matrix3d>& term = result.terms[i].cov_p;
+    std::vector<Matrix3d>& term = result.terms[i].cov_p_W;
     if (s.has_closed) {
       term.push_back(s.closed + own);
     } else {
       term.push_back(own);
     }
   }
-  result.cov_p.push_back(total);
+  result.cov_p_W.push_back(total);
   for (std::size_t i = 0; i < shared_.size(); ++i) {
-    result.shared[i].error_p.push_back(sources_[shared_[i]].error);
+    result.shared[i].error_p_W.push_back(sources_[shared_[i]].error_W);
   }
   if (!options_.terms) return;
   for (const std::size_t i : resting_) {
     const Source& s = sources_[i];
-    result.terms[i].cov_p.push_back(s.closed + s.error * s.error.transpose());
+    result.terms[i].cov_p_W.push_back(s.closed + s.error_W * s.error_W.transpose());
   }
 }
 

@@ -19,7 +19,7 @@ namespace wellgyro {
 class ErrorSources {
  public:
   explicit ErrorSources(const PropagateOptions& options)
-      : options_(options), tie_in_(options.cov_tie_in) {}
+      : options_(options), tie_in_(options.cov_tie_in_W) {}
 
   /// The source of `term` in `leg`, which may be that of an earlier leg.
   std::size_t SourceOf(const ErrorTerm& term, const ToolLeg& leg, std::size_t leg_number);
@@ -28,13 +28,13 @@ class ErrorSources {
 
   /// Only `sources` change from here on.
   void StartLeg(const std::vector<std::size_t>& sources);
-  /// The error of this station: `at` moves its own position, `through` that of all deeper ones.
-  void Add(std::size_t source, std::int64_t group, const Eigen::Vector3d& at,
-           const Eigen::Vector3d& through) {
+  /// The error of this station: `at_W` moves its own position, `through_W` that of all deeper ones.
+  void Add(std::size_t source, std::int64_t group, const Eigen::Vector3d& at_W,
+           const Eigen::Vector3d& through_W) {
     Source& s = sources_[source];
     if (group != s.group) Close(s, group);
-    s.error = s.sum + at;
-    s.sum += through;
+    s.error_W = s.sum_W + at_W;
+    s.sum_W += through_W;
   }
   /// What has been gathered so far, the tie-in's covariance included, is left out from here on.
   void Forget();
@@ -49,8 +49,8 @@ class ErrorSources {
     int run = 0;                        ///< of those within a leg
     const ErrorModel* model = nullptr;  ///< likewise
     std::int64_t group = 0;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< at this station
+    Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
+    Eigen::Vector3d error_W = Eigen::Vector3d::Zero();  ///< at this station
     Eigen::Matrix3d closed =
         Eigen::Matrix3d::Zero();  ///< of ended groups, where terms are asked for
     bool has_closed = false;

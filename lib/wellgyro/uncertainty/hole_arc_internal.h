@@ -23,8 +23,8 @@ class HoleArc {
 
  private:
   double length_ = 0;
-  double curvature_ = 0;         ///< [rad/m]
-  Eigen::Vector3d from_, side_;  ///< tangent at the begin, and across it towards the end
+  double curvature_ = 0;             ///< [rad/m]
+  Eigen::Vector3d from_W_, side_W_;  ///< tangent at the begin, and across it towards the end
 };
 
 }  // namespace wellgyro

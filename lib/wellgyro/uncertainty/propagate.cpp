@@ -342,9 +342,9 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
     }
     const Vector3d v = model_term.magnitude * *unit;
     if (course) {
-      Tell(term, k, {.displacement = v});
+      Tell(term, k, {.displacement_W = v});
     } else {
-      Tell(term, k, {.direction = v});
+      Tell(term, k, {.direction_W = v});
     }
     sources_.Add(source, group, (course ? 1 : s.along_at) * v, (course ? 1 : s.along_through) * v);
     return true;
@@ -353,7 +353,7 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
   const std::optional<Weights> w = leg.Weigh(term, place_, why);
   if (!w) return Refuse(k, model_term.name, why), false;
   const Vector3d e = model_term.magnitude * Vector3d(w->md, w->inclination, w->azimuth);
-  Tell(term, k, {.md = e.x(), .direction = e.y() * here_.t_inc + e.z() * here_.t_azi});
+  Tell(term, k, {.md = e.x(), .direction_W = e.y() * here_.t_inc + e.z() * here_.t_azi});
   if (e.x() == 0 && e.y() == 0) {  // most terms move the azimuth alone
     sources_.Add(source, group, e.z() * s.at.col(2), e.z() * s.through.col(2));
   } else {
@@ -466,7 +466,7 @@ SurveyErrors ErrorsAtStations(std::span<const SurveyPoint> survey, const Surroun
   const PropagateOptions options;
   SurveyErrors errors;
   PositionUncertainty sums = Propagator(points, surroundings, legs, options, &errors).Run();
-  errors.stations = sums.cov_p.size();
+  errors.stations = sums.cov_p_W.size();
   if (sums.refusal && sums.refusal->station == 0) errors.stations = 0;
   errors.refusal = std::move(sums.refusal);
   const auto order = [](const StationError& e) { return std::tuple(e.source, e.group, e.station); };

@@ -42,19 +42,19 @@ struct Refusal {
 /// One error source along the well; covariances as those of PositionUncertainty.
 struct TermUncertainty {
   std::string term;  ///< its name; with "/" and its first leg's number where several have that name
-  std::vector<Eigen::Matrix3d> cov_p;  ///< [m^2]
+  std::vector<Eigen::Matrix3d> cov_p_W;  ///< [m^2]
 };
 
 /// A source that other legs (kWell) or other wells (kGlobal) share: its 1-sigma position error.
 struct SharedError {
   std::string term;
   Propagation propagation = Propagation::kGlobal;
-  std::vector<Eigen::Vector3d> error_p;  ///< [m]
+  std::vector<Eigen::Vector3d> error_p_W;  ///< [m]
 };
 
 /// Covariance of (north, east, down) per station, in the frame of the survey's azimuths.
 struct PositionUncertainty {
-  std::vector<Eigen::Matrix3d> cov_p;  ///< [m^2]; as long as the survey, or up to the refusal
+  std::vector<Eigen::Matrix3d> cov_p_W;  ///< [m^2]; as long as the survey, or up to the refusal
   std::vector<SharedError> shared;
   std::vector<TermUncertainty> terms;  ///< when asked for
   std::vector<std::string> notes;      ///< assumptions that had to be made
@@ -74,7 +74,7 @@ enum class TieOn {
 };
 
 struct PropagateOptions {
-  Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();  ///< of the first station's position [m^2]
+  Eigen::Matrix3d cov_tie_in_W = Eigen::Matrix3d::Zero();  ///< of the first station [m^2]
   bool terms = false;
   TieOn tie_on = TieOn::kModel;
   /// A station, not the first, from which on errors count: where a side-track leaves this hole.

@@ -28,9 +28,9 @@ struct StationError {
   std::size_t source = 0;
   std::int64_t group = 0;
   std::size_t station = 0;
-  double md = 0;                                           ///< listed less true [m]
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();     ///< of the unit tangent [rad]
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< of the course that ends here [m]
+  double md = 0;                                             ///< listed less true [m]
+  Eigen::Vector3d direction_W = Eigen::Vector3d::Zero();     ///< of the unit tangent [rad]
+  Eigen::Vector3d displacement_W = Eigen::Vector3d::Zero();  ///< of the course that ends here [m]
 };
 
 /// What a survey's error models say of each station: from it every covariance between any two

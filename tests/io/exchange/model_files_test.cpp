@@ -38,16 +38,16 @@ Surroundings Place() {
 /// Largest difference of covariances over the largest trace.
 double Gap(const ErrorModel& a, const ErrorModel& b) {
   const auto one = PropagateErrors(Hole(), Place(), a), two = PropagateErrors(Hole(), Place(), b);
-  EXPECT_EQ(one.cov_p.size(), two.cov_p.size());
+  EXPECT_EQ(one.cov_p_W.size(), two.cov_p_W.size());
   double gap = 0;
-  for (std::size_t k = 0; k < std::min(one.cov_p.size(), two.cov_p.size()); ++k) {
-    gap = std::max(gap, (one.cov_p[k] - two.cov_p[k]).norm() / (1e-9 + two.cov_p[k].trace()));
+  for (std::size_t k = 0; k < std::min(one.cov_p_W.size(), two.cov_p_W.size()); ++k) {
+    gap = std::max(gap, (one.cov_p_W[k] - two.cov_p_W[k]).norm() / (1e-9 + two.cov_p_W[k].trace()));
   }
   // Nothing is compared that is nothing: each term alone moves the end by more than a centimetre.
   for (const ErrorTerm& term : b.terms) {
     ErrorModel alone = b;
     alone.terms = {term};
-    EXPECT_GT(PropagateErrors(Hole(), Place(), alone).cov_p.back().trace(), 1e-4) << term.name;
+    EXPECT_GT(PropagateErrors(Hole(), Place(), alone).cov_p_W.back().trace(), 1e-4) << term.name;
   }
   return gap;
 }
@@ -201,8 +201,8 @@ TEST(ModelFiles, Ipm) {
   for (SurveyPoint& p : survey) p.inclination += 0.01;
   const auto one = PropagateErrors(survey, Place(), *read);
   const auto two = PropagateErrors(survey, Place(), ours);
-  ASSERT_EQ(one.cov_p.size(), survey.size());
-  EXPECT_LT((one.cov_p.back() - two.cov_p.back()).norm(), 1e-9 * two.cov_p.back().trace());
+  ASSERT_EQ(one.cov_p_W.size(), survey.size());
+  EXPECT_LT((one.cov_p_W.back() - two.cov_p_W.back()).norm(), 1e-9 * two.cov_p_W.back().trace());
 
   for (const char* bad :
        {"", "a b c", "abz\ti\ts\t-\tx\t1\n", "abz\tq\ts\t-\t1\t1\n", "abz\ti\tq\t-\t1\t1\n",
@@ -220,8 +220,8 @@ TEST(ModelFiles, Ipm) {
   whole.replace(whole.rfind("20"), 2, "0");
   const auto all = ParseModelIpm(whole, "whole.ipm");
   ASSERT_TRUE(all) << all.fault().text;
-  EXPECT_LT(PropagateErrors(survey, Place(), *upper).cov_p.back().trace(),
-            PropagateErrors(survey, Place(), *all).cov_p.back().trace());
+  EXPECT_LT(PropagateErrors(survey, Place(), *upper).cov_p_W.back().trace(),
+            PropagateErrors(survey, Place(), *all).cov_p_W.back().trace());
   const auto unnamed = ParseModelIpm(ranged.substr(ranged.find('\n') + 1), "unnamed.ipm");
   ASSERT_FALSE(unnamed);
   EXPECT_THAT(unnamed.fault().text, HasSubstr("cells follow the formula"));

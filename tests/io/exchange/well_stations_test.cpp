@@ -58,7 +58,7 @@ TEST(WellStations, TakesTheStartFromThePositionsOfTheFirstRow) {
   const WellStations table = Good(
       "MD[ft],INC[deg],AZI[deg],TVD[ft],N[m],E[ft]\n100,0,0,99,5,10\n200,1,1,199,5.266,10.015\n");
   ASSERT_TRUE(table.start_stated);
-  EXPECT_LT((table.start - Eigen::Vector3d(5, 3.048, 99 * 0.3048)).norm(), 1e-12);
+  EXPECT_LT((table.start_W - Eigen::Vector3d(5, 3.048, 99 * 0.3048)).norm(), 1e-12);
   EXPECT_FALSE(Good("MD[m],INC,AZI,TVD[m]\n0,0,0,0\n9,0,0,9\n").start_stated);
 }
 

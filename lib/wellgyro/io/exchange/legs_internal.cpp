@@ -127,8 +127,9 @@ std::vector<Stretch> StretchesOf(const SurveyTable& table, Method method, std::s
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (table.status(row) == RowStatus::kUnused) continue;
     if (last) {
-      open.moved += Displacement(method, table.md(row) - table.md(*last), table.inclination(*last),
-                                 table.azimuth(*last), table.inclination(row), table.azimuth(row));
+      open.moved_W +=
+          Displacement(method, table.md(row) - table.md(*last), table.inclination(*last),
+                       table.azimuth(*last), table.inclination(row), table.azimuth(row));
       open.end = row;
       if (++in_it == each) {
         stretches.push_back(open);
@@ -151,8 +152,8 @@ LineFit FitVertical(const SurveyTable& table, const std::vector<Stretch>& stretc
   for (const Stretch& s : stretches) {
     const auto a = table.Get(column, s.begin), b = table.Get(column, s.end);
     if (!a || !b) continue;
-    pairs.emplace_back(s.moved.z(), *b - *a);
-    reach += std::abs(s.moved.z());
+    pairs.emplace_back(s.moved_W.z(), *b - *a);
+    reach += std::abs(s.moved_W.z());
   }
   return Line(pairs, reach);
 }
@@ -165,8 +166,8 @@ PlaneFit FitPlane(const SurveyTable& table, const std::vector<Stretch>& stretche
     const auto n1 = table.Get(north, s.begin), n2 = table.Get(north, s.end);
     const auto e1 = table.Get(east, s.begin), e2 = table.Get(east, s.end);
     if (!n1 || !n2 || !e1 || !e2) continue;
-    pairs.emplace_back(Complex(s.moved.x(), s.moved.y()), Complex(*n2 - *n1, *e2 - *e1));
-    fit.reach += std::hypot(s.moved.x(), s.moved.y());
+    pairs.emplace_back(Complex(s.moved_W.x(), s.moved_W.y()), Complex(*n2 - *n1, *e2 - *e1));
+    fit.reach += std::hypot(s.moved_W.x(), s.moved_W.y());
   }
   const CommonFactor common = FactorOf(pairs);
   fit.pairs = pairs.size();

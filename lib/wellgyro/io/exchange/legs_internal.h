@@ -35,7 +35,7 @@ Eigen::Vector3d Displacement(Method method, double length, double inclination1, 
 /// A stretch of path from one row to a later one, and what is computed for it.
 struct Stretch {
   std::size_t begin = 0, end = 0;  ///< rows
-  Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moved_W = Eigen::Vector3d::Zero();
 };
 /// The path cut into at most `most` stretches of equally many legs; rows that do not belong to it
 /// are passed over.

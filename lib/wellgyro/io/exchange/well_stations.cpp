@@ -41,7 +41,7 @@ void TakeStart(WellStations& well, const SurveyTable& table, std::size_t row) {
   const auto north = table.Get(Column::kNorth, row), east = table.Get(Column::kEast, row);
   const auto tvd = table.Get(Column::kTvd, row);
   well.start_stated = north && east && tvd;
-  if (well.start_stated) well.start = {*north, *east, *tvd};
+  if (well.start_stated) well.start_W = {*north, *east, *tvd};
   if (north && east) well.offsets = Eigen::Vector2d(*north, *east);
   const auto northing = table.Get(Column::kNorthing, row),
              easting = table.Get(Column::kEasting, row);
@@ -106,7 +106,7 @@ Result<WellStations> ParseWellStations(std::string_view text, const std::string&
 std::optional<std::string> PlacesContradict(const WellStations& a, const WellStations& b) {
   if (!a.map || !b.map) return std::nullopt;
   const double by_map = (*a.map - *b.map).norm();
-  const double by_offsets = (a.start - b.start).head<2>().norm();
+  const double by_offsets = (a.start_W - b.start_W).head<2>().norm();
   if (std::abs(by_map - by_offsets) <= 1 + 0.002 * by_map) return std::nullopt;
   return fmt::format("{:.1f} m apart by their map coordinates, {:.1f} m by north and east", by_map,
                      by_offsets);

@@ -16,10 +16,10 @@ namespace wellgyro {
 
 /// The path of a well as a survey file gives it.
 struct WellStations {
-  std::vector<SurveyPoint> stations;                ///< TVD not filled
-  North north = North::kUnknown;                    ///< from which their azimuths count
-  Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< north, east, TVD of the first [m]
-  bool start_stated = false;                        ///< by columns that give all three
+  std::vector<SurveyPoint> stations;                  ///< TVD not filled
+  North north = North::kUnknown;                      ///< from which their azimuths count
+  Eigen::Vector3d start_W = Eigen::Vector3d::Zero();  ///< north, east, TVD of the first [m]
+  bool start_stated = false;                          ///< by columns that give all three
   std::optional<Eigen::Vector2d> offsets;  ///< north, east of the first, with or without TVD
   bool depth_unit_stated = true;           ///< where not, depths were taken for metres
   std::optional<Eigen::Vector2d> map;      ///< northing, easting of the first [m]

@@ -54,7 +54,7 @@ void CheckWhole(Case& c) {
     Follow(
         c, InfoOf(column).text,
         [&](std::size_t row) { return std::optional<Complex>(t.Get(column, row)); },
-        [](const Stretch& s) { return Complex(s.moved.z()); }, worst);
+        [](const Stretch& s) { return Complex(s.moved_W.z()); }, worst);
   }
   struct Plane {
     Column north, east;
@@ -73,7 +73,7 @@ void CheckWhole(Case& c) {
       return Complex(*n, *e);
     };
     const auto computed = [&](const Stretch& s) {
-      return turn * Complex(s.moved.x(), s.moved.y());
+      return turn * Complex(s.moved_W.x(), s.moved_W.y());
     };
     Follow(c, p.text, given, computed, worst);
   }

@@ -27,9 +27,9 @@ void DrawTicks(Chart& chart, const MapPath& path, const MapView& view, const std
   const double apart = 0.04 * (frame.high - frame.low).maxCoeff();  // of two texts, to be read
   for (std::size_t i = 0; i < path.md.size(); ++i) {
     if (path.md[i] < next) continue;
-    ticks.points.push_back(view(path.points[i]));
+    ticks.points.push_back(view(path.points_W[i]));
     ticks.md.push_back(path.md[i]);
-    const Vector2d at = view(path.points[i]);
+    const Vector2d at = view(path.points_W[i]);
     if (chart.notes.empty() || (at - chart.notes.back().at).norm() > apart) {
       chart.notes.push_back({at, fmt::format("{:.0f}", path.md[i])});
     }
@@ -41,7 +41,7 @@ void DrawTicks(Chart& chart, const MapPath& path, const MapView& view, const std
 }  // namespace
 
 MapSection SectionThrough(const MapPath& path) {
-  const Vector3d reach = path.points.back() - path.points.front();
+  const Vector3d reach = path.points_W.back() - path.points_W.front();
   const double azimuth = std::atan2(reach.y(), reach.x());
   return {WrapTwoPi(azimuth),
           {Vector3d(std::cos(azimuth), std::sin(azimuth), 0), Vector3d::UnitZ()}};
@@ -51,11 +51,11 @@ double MagnificationOf(const MapPath& path, double confidence) {
   constexpr double kShare = 0.03;  // of the path's extent, for the largest half axis
   constexpr double kMost = 1000;
   double largest = 0;
-  for (const auto& [at, cov] : path.covs) {
+  for (const auto& [at, cov] : path.covs_W) {
     largest = std::max(largest, HorizontalEllipse(cov, confidence).semi_major);
   }
-  Vector3d low = path.points.front(), high = low;
-  for (const Vector3d& p : path.points) {
+  Vector3d low = path.points_W.front(), high = low;
+  for (const Vector3d& p : path.points_W) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
@@ -67,8 +67,8 @@ double MagnificationOf(const MapPath& path, double confidence) {
 std::vector<std::size_t> EllipsesShown(const MapPath& path) {
   constexpr std::size_t kSome = 10;
   std::vector<std::size_t> shown;
-  const std::size_t step = std::max<std::size_t>(1, path.covs.size() / kSome);
-  for (std::size_t back = path.covs.size(); back > 0; back -= std::min(back, step)) {
+  const std::size_t step = std::max<std::size_t>(1, path.covs_W.size() / kSome);
+  for (std::size_t back = path.covs_W.size(); back > 0; back -= std::min(back, step)) {
     shown.push_back(back - 1);
   }
   return shown;
@@ -80,24 +80,24 @@ void DrawOnMap(Chart& chart, const MapPath& path, const MapView& view, double co
   std::string name = fmt::format("{:g} % ellipse", 100 * confidence);
   if (magnify > 1) name += fmt::format(", {:g} times as large", magnify);
   for (const std::size_t i : EllipsesShown(path)) {
-    const auto& [at, cov] = path.covs[i];
-    const SeenEllipse seen = EllipseSeenAlong(cov, view.right.cross(view.other), sigmas);
+    const auto& [at, cov] = path.covs_W[i];
+    const SeenEllipse seen = EllipseSeenAlong(cov, view.right_W.cross(view.other_W), sigmas);
     chart.series.push_back(
         {.name = name,
          .mark = Mark::kArea,
          .colour = kEllipseColour,
-         .points = EllipseOutline(view(path.points[at]), magnify * view(seen.major),
+         .points = EllipseOutline(view(path.points_W[at]), magnify * view(seen.major),
                                   magnify * view(seen.minor))});
   }
   ChartSeries line{.name = path.name, .colour = kPathColour, .md = path.md};
-  for (const Vector3d& p : path.points) line.points.push_back(view(p));
+  for (const Vector3d& p : path.points_W) line.points.push_back(view(p));
   chart.series.push_back(std::move(line));
   DrawTicks(chart, path, view, unit);
 }
 
 void DrawBeside(Chart& chart, const MapPath& path, const MapView& view, int number) {
   ChartSeries line{.name = path.name, .colour = kFirstOther + number};
-  for (const Vector3d& p : path.points) line.points.push_back(view(p));
+  for (const Vector3d& p : path.points_W) line.points.push_back(view(p));
   chart.series.push_back(std::move(line));
 }
 

@@ -16,19 +16,19 @@ namespace wellgyro {
 /// The path of a well as it is drawn, in any one unit of length.
 struct MapPath {
   std::string name = {};
-  std::vector<Eigen::Vector3d> points = {};  ///< north, east, TVD
-  std::vector<double> md = {};               ///< one a point
+  std::vector<Eigen::Vector3d> points_W = {};  ///< north, east, TVD
+  std::vector<double> md = {};                 ///< one a point
   /// Covariances of those points that have one, by their index, in the unit's square.
-  std::vector<std::pair<std::size_t, Eigen::Matrix3d>> covs = {};
+  std::vector<std::pair<std::size_t, Eigen::Matrix3d>> covs_W = {};
 };
 
 /// Directions of the paper, unit vectors at right angles to each other.
 struct MapView {
-  Eigen::Vector3d right = Eigen::Vector3d::UnitY();
-  Eigen::Vector3d other = Eigen::Vector3d::UnitX();  ///< up, or down where the chart grows so
+  Eigen::Vector3d right_W = Eigen::Vector3d::UnitY();
+  Eigen::Vector3d other_W = Eigen::Vector3d::UnitX();  ///< up, or down where the chart grows so
 
-  Eigen::Vector2d operator()(const Eigen::Vector3d& p) const {
-    return {right.dot(p), other.dot(p)};
+  Eigen::Vector2d operator()(const Eigen::Vector3d& p_W) const {
+    return {right_W.dot(p_W), other_W.dot(p_W)};
   }
 };
 
@@ -43,7 +43,7 @@ WELLGYRO_EXPORT MapSection SectionThrough(const MapPath& path);
 /// largest can be seen beside the path.
 WELLGYRO_EXPORT double MagnificationOf(const MapPath& path, double confidence);
 
-/// The ellipses that are drawn: indices into `path.covs` of some ten, the deepest among them.
+/// The ellipses that are drawn: indices into `path.covs_W` of some ten, the deepest among them.
 WELLGYRO_EXPORT std::vector<std::size_t> EllipsesShown(const MapPath& path);
 
 /// The path with its ellipses as they are seen across `view`, then a mark with its depth at round

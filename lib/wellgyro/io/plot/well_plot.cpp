@@ -14,7 +14,7 @@ namespace {
 constexpr double kPanel = 560;  // pixels
 
 MapPath PathOf(const SurveyedWell& well, std::string name) {
-  MapPath path{.name = std::move(name), .points = well.position};
+  MapPath path{.name = std::move(name), .points_W = well.position_W};
   for (const SurveyPoint& station : well.survey) path.md.push_back(station.md);
   return path;
 }
@@ -25,7 +25,7 @@ void DrawNearest(Chart& chart, const Separation& nearest, const MapView& view) {
       {.name = fmt::format("closest, {:.1f} m at MD {:.0f} m", nearest.distance, nearest.md),
        .mark = ChartSeries::Mark::kDash,
        .colour = 3,
-       .points = {view(nearest.position), view(nearest.position + nearest.vector)}});
+       .points = {view(nearest.position_W), view(nearest.position_W + nearest.vector_W)}});
 }
 
 }  // namespace
@@ -34,7 +34,8 @@ std::string WellPlotSvg(const SurveyedWell& well, const PositionUncertainty& err
                         double confidence, const WellPlotLabels& labels) {
   ConfidenceFactor(confidence, 2);  // throws before anything is drawn
   MapPath path = PathOf(well, "well");
-  for (std::size_t k = 0; k < errors.cov_p.size(); ++k) path.covs.emplace_back(k, errors.cov_p[k]);
+  for (std::size_t k = 0; k < errors.cov_p_W.size(); ++k)
+    path.covs_W.emplace_back(k, errors.cov_p_W[k]);
   const double magnify = MagnificationOf(path, confidence);
   const MapView plan;
   const MapSection section = SectionThrough(path);

@@ -28,7 +28,7 @@ struct ReadWell {
   WellStations table;
   std::vector<std::shared_ptr<const ErrorModel>> models;
   std::vector<ToolLeg> legs;
-  Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d cov_tie_in_W = Eigen::Matrix3d::Zero();
 };
 
 class ClearanceRun {
@@ -124,7 +124,7 @@ ReadWell ClearanceRun::ReadLegs(const std::filesystem::path& path) {
   read.table = std::move(program->survey);
   for (auto& model : program->models) read.models.push_back(std::move(model));
   read.legs = std::move(program->legs);
-  read.cov_tie_in = program->cov_tie_in;
+  read.cov_tie_in_W = program->cov_tie_in_W;
   return read;
 }
 
@@ -179,19 +179,19 @@ void ClearanceRun::CheckUnit(const ReadWell& read, const ClearanceWell& entry) {
 void ClearanceRun::Place(ReadWell& read, const ClearanceWell& entry) {
   WellStations& table = read.table;
   const double md = table.stations.front().md;
-  if (entry.start) {
-    table.start = *entry.start;
+  if (entry.start_W) {
+    table.start_W = *entry.start_W;
   } else if (table.start_stated) {
     return;
   } else if (table.offsets) {
-    table.start = {table.offsets->x(), table.offsets->y(), md};
+    table.start_W = {table.offsets->x(), table.offsets->y(), md};
     if (md != 0) Note(entry.name, "no TVD for the first station: taken to be its MD");
   } else if (md == 0) {
-    table.start.setZero();
+    table.start_W.setZero();
     Note(entry.name,
          "no place in its file: its first station is put where north, east and TVD are 0");
   } else if (entry.kick_off && reference_) {
-    table.start = ReferenceAt(md);
+    table.start_W = ReferenceAt(md);
     Note(entry.name, fmt::format("no place in its file: its first station is put where the "
                                  "reference is at MD {:.2f} m",
                                  md));
@@ -208,12 +208,12 @@ Eigen::Vector3d ClearanceRun::ReferenceAt(double md) const {
   std::vector<SurveyPoint> stations = reference_read_.table.stations;
   std::vector<ToolLeg> legs = reference_read_.legs;
   const std::size_t at = StationAt(stations, legs, md);
-  return SurveyWell(std::move(stations), reference_read_.table.start).position[at];
+  return SurveyWell(std::move(stations), reference_read_.table.start_W).position_W[at];
 }
 
 /// An offset where its file and the reference's say, unless the policy does.
 void ClearanceRun::PlaceBeside(ReadWell& read, const ClearanceWell& entry) {
-  if (entry.start || reference_entry_.start) return;
+  if (entry.start_W || reference_entry_.start_W) return;
   const WellStations& reference = reference_read_.table;
   if (const auto apart = PlacesContradict(reference, read.table)) {
     throw std::invalid_argument(
@@ -222,7 +222,7 @@ void ClearanceRun::PlaceBeside(ReadWell& read, const ClearanceWell& entry) {
   }
   const auto &datum = reference.datum_elevation, &own = read.table.datum_elevation;
   if (!datum || !own || std::abs(*datum - *own) < 0.005) return;
-  read.table.start.z() += *datum - *own;
+  read.table.start_W.z() += *datum - *own;
   Note(entry.name,
        fmt::format("its depths count from {:.2f} m, those of the reference from {:.2f} "
                    "m: it is put {:.2f} m {}",
@@ -238,12 +238,12 @@ void ClearanceRun::Note(const std::string& well, const std::string& text) {
 KnownWell ClearanceRun::Known(ReadWell read, const ClearanceWell& entry,
                               std::optional<double> kick_off) {
   PropagateOptions options;
-  options.cov_tie_in = read.cov_tie_in;
+  options.cov_tie_in_W = read.cov_tie_in_W;
   options.tie_on = policy_.tie_on;
   std::size_t from = 0;
   if (kick_off) {
     from = StationAt(read.table.stations, read.legs, *kick_off);
-    options.cov_tie_in.setZero();
+    options.cov_tie_in_W.setZero();
     if (from == 0) {
       options.tie_on = TieOn::kIndependent;
     } else {
@@ -251,7 +251,7 @@ KnownWell ClearanceRun::Known(ReadWell read, const ClearanceWell& entry,
     }
   }
   KnownWell known;
-  known.well = SurveyWell(std::move(read.table.stations), read.table.start);
+  known.well = SurveyWell(std::move(read.table.stations), read.table.start_W);
   Surroundings place = request_.surroundings;
   place.convergence = request_.convergence.value_or(0);
   UncertaintyBasis basis;

@@ -95,8 +95,8 @@ std::string ClearanceCsv(const std::vector<OffsetResult>& offsets) {
     const std::string name = Cell(offset.name);
     for (const Separation& s : offset.rows) {
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", name, Metres(s.md),
-                          Metres(s.other_md), Metres(s.distance), Metres(s.vector.x()),
-                          Metres(s.vector.y()), Metres(s.vector.z()), AngleDeg(s.toolface),
+                          Metres(s.other_md), Metres(s.distance), Metres(s.vector_W.x()),
+                          Metres(s.vector_W.y()), Metres(s.vector_W.z()), AngleDeg(s.toolface),
                           Metres(s.sigma), Metres(s.holes), Metres(s.allowed), Text(s.factor),
                           KindWord(s.kind));
     }

@@ -24,7 +24,7 @@ ComparedSurvey Known(const TakenSurvey& taken, const std::filesystem::path& path
   for (const std::string& note : taken.notes) answer.notes.push_back(note);
   ComparedSurvey survey;
   survey.well = taken.well;
-  survey.cov_tie_in = taken.cov_tie_in;
+  survey.cov_tie_in_W = taken.cov_tie_in_W;
   if (taken.legs.empty()) {
     if (taken.own.empty()) {
       throw std::invalid_argument(
@@ -65,10 +65,10 @@ std::string Summary(const Comparison& c) {
     }
   }
   const ComparedPlace& end = c.places.back();
-  const Eigen::Vector3d& d = end.position_difference;
+  const Eigen::Vector3d& d = end.position_difference_W;
   text += fmt::format("at MD {:.2f} m: {:.2f} m north, {:.2f} m east, {:.2f} m down", end.md, d.x(),
                       d.y(), d.z());
-  const Eigen::Vector3d& between = end.between_stations;
+  const Eigen::Vector3d& between = end.between_stations_W;
   text += fmt::format("; of that by different stations {:.2f}, {:.2f}, {:.2f} m", between.x(),
                       between.y(), between.z());
   if (end.position_sigmas) text += fmt::format("; the rest {:.2f} sigmas", *end.position_sigmas);
@@ -155,15 +155,15 @@ std::string CompareCsv(const std::vector<ComparedPlace>& places) {
         "{},{},{},{},{},{},{},{},{},{},{},{}", Metres(p.md), AngleDeg(p.inclination[0]),
         AngleDeg(p.inclination[1]), AngleDeg(p.inclination_difference),
         AngleDeg(p.sigma_inclination), AzimuthDeg(p.azimuth[0]), AzimuthDeg(p.azimuth[1]),
-        angle(p.azimuth_difference), angle(p.sigma_azimuth), Metres(p.position_difference.x()),
-        Metres(p.position_difference.y()), Metres(p.position_difference.z()));
+        angle(p.azimuth_difference), angle(p.sigma_azimuth), Metres(p.position_difference_W.x()),
+        Metres(p.position_difference_W.y()), Metres(p.position_difference_W.z()));
     for (int row = 0; row < 3; ++row) {
       for (int column = row; column < 3; ++column) {
-        text.append(",").append(Significant(p.cov_position(row, column)));
+        text.append(",").append(Significant(p.cov_position_W(row, column)));
       }
     }
     text.append(",").append(p.position_sigmas ? Significant(*p.position_sigmas) : "");
-    for (const double d : p.between_stations) text.append(",").append(Metres(d));
+    for (const double d : p.between_stations_W) text.append(",").append(Metres(d));
     text.append("\n");
   }
   return text;

@@ -45,9 +45,9 @@ std::string CovarianceCsv(const SurveyedWell& well, const PositionUncertainty& e
   std::string text = "MD[m],";
   text.append(kNev).append(",").append(kHla).append(
       ",SEMI_MAJOR[m],SEMI_MINOR[m],AZI_MAJOR[deg]\n");
-  for (std::size_t k = 0; k < errors.cov_p.size(); ++k) {
+  for (std::size_t k = 0; k < errors.cov_p_W.size(); ++k) {
     const SurveyPoint& p = well.survey[k];
-    const Matrix3d cov = WithoutDust(errors.cov_p[k]);
+    const Matrix3d cov = WithoutDust(errors.cov_p_W[k]);
     const ErrorEllipse ellipse = HorizontalEllipse(cov, confidence);
     text += Metres(p.md);
     AddUpper(text, cov);
@@ -61,11 +61,11 @@ std::string CovarianceCsv(const SurveyedWell& well, const PositionUncertainty& e
 std::string TermsCsv(const SurveyedWell& well, const PositionUncertainty& errors) {
   std::string text = "MD[m],TERM,";
   text.append(kNev).append("\n");
-  for (std::size_t k = 0; k < errors.cov_p.size(); ++k) {
+  for (std::size_t k = 0; k < errors.cov_p_W.size(); ++k) {
     const std::string md = Metres(well.survey[k].md);
     for (const TermUncertainty& term : errors.terms) {
       text.append(md).append(",").append(term.term);
-      AddUpper(text, WithoutDust(term.cov_p[k]));
+      AddUpper(text, WithoutDust(term.cov_p_W[k]));
       text += "\n";
     }
   }
@@ -88,8 +88,8 @@ std::string SeparationCsv(std::span<const Separation> separations) {
   std::string text = "MD[m],OTHER_MD[m],DISTANCE[m],N[m],E[m],V[m],SIGMA[m],SIGMAS,KIND\n";
   for (const Separation& s : separations) {
     text += fmt::format("{},{},{},{},{},{},{},{},{}\n", Metres(s.md), Metres(s.other_md),
-                        Metres(s.distance), Metres(s.vector.x()), Metres(s.vector.y()),
-                        Metres(s.vector.z()), Metres(s.sigma),
+                        Metres(s.distance), Metres(s.vector_W.x()), Metres(s.vector_W.y()),
+                        Metres(s.vector_W.z()), Metres(s.sigma),
                         s.sigmas ? Significant(*s.sigmas) : std::string(), KindWord(s.kind));
   }
   return text;

@@ -121,12 +121,12 @@ std::string ProgramToml(const MergePlan& plan, const MergedSurvey& merged) {
   TomlWriter toml;
   toml.Text("format", "wellgyro.program/1");
   toml.Table("tie_in");
-  const Eigen::Vector3d& start = merged.well.position.front();
+  const Eigen::Vector3d& start = merged.well.position_W.front();
   toml.Number("north_m", start.x());
   toml.Number("east_m", start.y());
   toml.Number("tvd_m", start.z());
   const char* keys[] = {"sigma_north_m", "sigma_east_m", "sigma_tvd_m"};
-  for (int i = 0; i < 3; ++i) toml.Number(keys[i], std::sqrt(plan.cov_tie_in(i, i)));
+  for (int i = 0; i < 3; ++i) toml.Number(keys[i], std::sqrt(plan.cov_tie_in_W(i, i)));
   for (std::size_t i = 0; i < merged.legs.size(); ++i) {
     toml.Element("leg");
     toml.Text("survey", "definitive.csv");
@@ -224,7 +224,7 @@ std::string Summary(const MergePlan& plan, const MergedSurvey& merged) {
                         plan.legs[c.leg].name, plan.legs[c.leg].model->name, c.reason);
   }
   for (const std::string& why : merged.unused) text += "not taken: " + why + "\n";
-  const Eigen::Matrix3d& cov = merged.errors.cov_p.back();
+  const Eigen::Matrix3d& cov = merged.errors.cov_p_W.back();
   const ErrorEllipse e = HorizontalEllipse(cov, 0.95);
   return text + fmt::format(
                     "MD {:.2f} m: 95 % ellipse {:.2f} x {:.2f} m (semi-axes), azimuth {:.1f} "
@@ -262,7 +262,7 @@ MergeAnswer Answer(const MergeRequest& request) {
   const Surroundings place = PlaceOf(request);
   MergeAnswer answer;
   answer.notes = plan.notes;
-  answer.merged = Merge(plan.legs, plan.start, plan.cov_tie_in, place, plan.policy);
+  answer.merged = Merge(plan.legs, plan.start_W, plan.cov_tie_in_W, place, plan.policy);
   const MergedSurvey& merged = answer.merged;
   for (const std::string& note : merged.errors.notes) answer.notes.push_back(note);
   std::vector<double> own;
@@ -306,7 +306,7 @@ SurveyTable Resampled(const SurveyedWell& well, const PositionUncertainty& error
     const double azimuth = listed ? next->azimuth : p.azimuth;
     const std::size_t row = table.Add(md, listed ? next->inclination : p.inclination, azimuth,
                                       listed ? RowStatus::kSurveyed : RowStatus::kInterpolated);
-    SetPlace(p.position, line.Cov(place), p.dogleg_severity, row, table);
+    SetPlace(p.position_W, line.Cov(place), p.dogleg_severity, row, table);
   }
   return table;
 }

@@ -99,7 +99,7 @@ Trajectory ReadPlannedWell(const PlanRequest& request, const std::optional<doubl
     azimuth.push_back(p.azimuth + turn);
   }
   const Eigen::Vector3d start =
-      read->start_stated ? read->start : Eigen::Vector3d(0, 0, read->stations.front().md);
+      read->start_stated ? read->start_W : Eigen::Vector3d(0, 0, read->stations.front().md);
   return Trajectory(md, inclination, azimuth, start);
 }
 

@@ -23,7 +23,7 @@ std::optional<StationSigmas> SigmasOf(const SurveyTable& table, std::size_t row)
     for (int j = 0; j < 3; ++j) {
       const auto value = table.Get(kNevColumns[i][j], row);
       if (!value) return std::nullopt;
-      own.cov_p(i, j) = *value;
+      own.cov_p_W(i, j) = *value;
     }
   }
   const auto inclination = table.Get(Column::kSigmaInclination, row);
@@ -54,7 +54,7 @@ void CheckNorth(const WellStations& table, const SurveyWish& wish, TakenSurvey& 
 }
 
 void Place(WellStations table, const SurveyWish& wish, TakenSurvey& taken) {
-  Eigen::Vector3d start = table.start_stated ? table.start : Eigen::Vector3d::Zero();
+  Eigen::Vector3d start = table.start_stated ? table.start_W : Eigen::Vector3d::Zero();
   if (!table.start_stated && table.stations.front().md != 0) {
     start.z() = table.stations.front().md;
     taken.notes.push_back(wish.path.string() +
@@ -75,7 +75,7 @@ void TakeProgram(const SurveyWish& wish, TakenSurvey& taken) {
   CheckNorth(program->survey, wish, taken);
   for (auto& model : program->models) taken.models.push_back(std::move(model));
   taken.legs = std::move(program->legs);
-  taken.cov_tie_in = program->cov_tie_in;
+  taken.cov_tie_in_W = program->cov_tie_in_W;
   taken.inputs = std::move(program->inputs);
   Place(std::move(program->survey), wish, taken);
 }

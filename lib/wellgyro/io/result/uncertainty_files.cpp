@@ -30,7 +30,7 @@ struct Case {
   std::vector<std::unique_ptr<const ErrorModel>> models;
   WellStations place;  ///< without its stations
   UncertaintyBasis basis;
-  Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d cov_tie_in_W = Eigen::Matrix3d::Zero();
   std::vector<InputFile> inputs;
   std::vector<std::string> notes;
   PositionUncertainty errors;
@@ -55,7 +55,7 @@ void Place(Case& c, WellStations table) {
   Eigen::Vector3d start(0, 0, 0);
   const double md = table.stations.front().md;
   if (table.start_stated) {
-    start = table.start;
+    start = table.start_W;
   } else {
     if (table.offsets) start.head<2>() = *table.offsets;
     start.z() = md;
@@ -76,7 +76,7 @@ void ReadProgram(Case& c, const std::filesystem::path& path, const UncertaintyRe
   CheckNorth(program.survey, request.convergence, c.notes);
   c.models = std::move(program.models);
   c.basis.legs = std::move(program.legs);
-  c.cov_tie_in = program.cov_tie_in;
+  c.cov_tie_in_W = program.cov_tie_in_W;
   c.inputs = std::move(program.inputs);
   Place(c, std::move(program.survey));
 }
@@ -139,7 +139,7 @@ Case ReadCase(const UncertaintySources& sources, const UncertaintyRequest& reque
       throw std::invalid_argument("an error model, the noise of a gyro or a program is needed");
     }
     ReadSingle(c, sources, request);
-    c.cov_tie_in = request.sigma_tie_in.cwiseAbs2().asDiagonal();
+    c.cov_tie_in_W = request.sigma_tie_in.cwiseAbs2().asDiagonal();
   }
   c.basis.form = request.form;
   c.basis.speed = request.speed;
@@ -147,15 +147,15 @@ Case ReadCase(const UncertaintySources& sources, const UncertaintyRequest& reque
   c.basis.sigma_azimuth = request.sigma_azimuth;
   Surroundings surroundings = request.surroundings;
   surroundings.convergence = request.convergence.value_or(0);
-  c.errors = WellUncertainty(c.well, surroundings, c.basis, {c.cov_tie_in, request.terms});
+  c.errors = WellUncertainty(c.well, surroundings, c.basis, {c.cov_tie_in_W, request.terms});
   for (const std::string& note : c.errors.notes) c.notes.push_back(note);
   return c;
 }
 
 std::string AboutEnd(const Case& c, double confidence) {
-  if (c.errors.cov_p.empty()) return "no station has a covariance";
-  const std::size_t k = c.errors.cov_p.size() - 1;
-  const Eigen::Matrix3d& cov = c.errors.cov_p[k];
+  if (c.errors.cov_p_W.empty()) return "no station has a covariance";
+  const std::size_t k = c.errors.cov_p_W.size() - 1;
+  const Eigen::Matrix3d& cov = c.errors.cov_p_W[k];
   const ErrorEllipse e = HorizontalEllipse(cov, confidence);
   return fmt::format(
       "MD {:.2f} m: {:g} % ellipse {:.2f} x {:.2f} m, azimuth {:.1f} deg; vertical 1 sigma {:.2f} "

@@ -84,7 +84,7 @@ ClearanceWell ReadWell(TomlTable& table, bool reference) {
   const auto tvd = table.FindNumber("tvd_m", kAnyNumber);
   if (north || east || tvd) {
     if (!north || !east || !tvd) table.Refuse("", "a place needs north_m, east_m and tvd_m");
-    well.start = Eigen::Vector3d(*north, *east, *tvd);
+    well.start_W = Eigen::Vector3d(*north, *east, *tvd);
   }
   if (!reference) {
     well.kick_off = table.FindNumber("kick_off_md_m", kNotNegative);

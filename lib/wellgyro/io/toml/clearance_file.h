@@ -16,10 +16,10 @@ namespace wellgyro {
 /// A well as a clearance file names it; files are relative to that file.
 struct ClearanceWell {
   std::string name;
-  std::string survey;                    ///< empty: `program`
-  std::string model;                     ///< of the survey; empty: the one of the command line
-  std::string program;                   ///< `wellgyro.program/1`
-  std::optional<Eigen::Vector3d> start;  ///< north, east, TVD of its first station [m]
+  std::string survey;                      ///< empty: `program`
+  std::string model;                       ///< of the survey; empty: the one of the command line
+  std::string program;                     ///< `wellgyro.program/1`
+  std::optional<Eigen::Vector3d> start_W;  ///< north, east, TVD of its first station [m]
   /// Where the reference and this one part, the one a side-track of the other [m MD].
   std::optional<double> kick_off;
   /// Above it rows are listed but not judged: below a kick-off both begin as one hole [m MD].

@@ -86,7 +86,7 @@ class PlanReader {
     const char* keys[] = {"sigma_north_m", "sigma_east_m", "sigma_tvd_m"};
     for (int i = 0; i < 3; ++i) {
       const double sigma = table.FindNumber(keys[i], kNotNegative).value_or(0);
-      plan_.cov_tie_in(i, i) = sigma * sigma;
+      plan_.cov_tie_in_W(i, i) = sigma * sigma;
     }
   }
 
@@ -121,7 +121,7 @@ class PlanReader {
     }
     for (auto& model : program->models) plan_.models.push_back(std::move(model));
     for (InputFile& input : program->inputs) plan_.inputs.push_back(std::move(input));
-    if (program->survey.start_stated && !start_) start_ = program->survey.start;
+    if (program->survey.start_stated && !start_) start_ = program->survey.start_W;
     kick_off_ = kick_off;
   }
 
@@ -158,7 +158,7 @@ class PlanReader {
     }
     if (leg.stations.empty()) table.Refuse("", "the leg has no station in its range");
     const bool whole = leg.stations.front().md == survey->stations.front().md;
-    if (whole && survey->start_stated) starts_[leg.stations.front().md] = survey->start;
+    if (whole && survey->start_stated) starts_[leg.stations.front().md] = survey->start_W;
     if (survey->north == North::kUnknown) {
       plan_.notes.push_back(leg.name + (wanted_ == North::kGrid ? ": azimuths taken as grid"
                                                                 : ": azimuths taken as true"));
@@ -176,11 +176,11 @@ class PlanReader {
     }
     const auto stated = starts_.find(first);
     if (start_) {
-      plan_.start = *start_;
+      plan_.start_W = *start_;
     } else if (stated != starts_.end()) {
-      plan_.start = stated->second;
+      plan_.start_W = stated->second;
     } else if (first != 0) {
-      plan_.start.z() = first;
+      plan_.start_W.z() = first;
       plan_.notes.emplace_back(
           "no place of the first station: taken to be below the well head by "
           "its MD");

@@ -27,8 +27,8 @@ struct MergePlan {
   std::vector<std::shared_ptr<const ErrorModel>> models;  ///< that the legs point to
   MergePolicy policy;
   OnDisagreement disagreement = OnDisagreement::kFail;
-  Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< of the first station: north, east, TVD [m]
-  Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d start_W = Eigen::Vector3d::Zero();  ///< north, east, TVD of the first [m]
+  Eigen::Matrix3d cov_tie_in_W = Eigen::Matrix3d::Zero();
   std::string name;  ///< of the hole
   std::vector<InputFile> inputs;
   std::vector<std::string> notes;

@@ -49,7 +49,7 @@ class ProgramReader {
     start.y() = table.FindNumber("east_m", kAnyNumber).value_or(0);
     const auto tvd = table.FindNumber("tvd_m", kAnyNumber);
     start.z() = tvd.value_or(0);
-    if (tvd) program_.survey.start = start;
+    if (tvd) program_.survey.start_W = start;
     program_.survey.start_stated = tvd.has_value();
     if (!tvd && (table.Has("north_m") || table.Has("east_m"))) {
       table.Refuse("", "a place needs tvd_m too");
@@ -57,7 +57,7 @@ class ProgramReader {
     const char* keys[] = {"sigma_north_m", "sigma_east_m", "sigma_tvd_m"};
     for (int i = 0; i < 3; ++i) {
       const double sigma = table.FindNumber(keys[i], kNotNegative).value_or(0);
-      program_.cov_tie_in(i, i) = sigma * sigma;
+      program_.cov_tie_in_W(i, i) = sigma * sigma;
     }
   }
 
@@ -78,7 +78,7 @@ class ProgramReader {
       all.map = survey->map;
       all.datum_elevation = survey->datum_elevation;
       if (!all.start_stated) {
-        all.start = survey->start;
+        all.start_W = survey->start_W;
         all.start_stated = survey->start_stated;
       }
     } else if (all.north != survey->north) {

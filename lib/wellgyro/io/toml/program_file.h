@@ -20,8 +20,8 @@ struct SurveyProgram {
   WellStations survey;                                    ///< of all legs
   std::vector<std::unique_ptr<const ErrorModel>> models;  ///< that the legs point to
   std::vector<ToolLeg> legs;
-  Eigen::Matrix3d cov_tie_in = Eigen::Matrix3d::Zero();  ///< of the first station [m^2]
-  std::vector<InputFile> inputs;                         ///< the files it names
+  Eigen::Matrix3d cov_tie_in_W = Eigen::Matrix3d::Zero();  ///< of the first station [m^2]
+  std::vector<InputFile> inputs;                           ///< the files it names
 };
 
 /// A survey program, `wellgyro.program/1`: `[[leg]]` in order of depth, each with `survey`,
