@@ -173,8 +173,51 @@ def PublicHeaders():
 # Frames of the conventions in README.md, and of single blocks of sensors.
 FRAMES = "IEWLTHGASMB"
 ROTATION = r"R_([A-Z])([A-Z])(\.transpose\(\)|\.inverse\(\))?"
-VECTOR = r"(?:[a-z]+_)?[pwfbv]_(?:[A-Z]{1,2}_)?([A-Z])"
+VECTOR = rf"[a-z]\w*_([{FRAMES}])_?"
 PRODUCT = re.compile(rf"\b{ROTATION} \* (?:\w+(?:\.|->))*(?:{ROTATION}|{VECTOR})(?!\w)")
+
+# Words in names of three numbers that are no vector in space, and of covariances of none.
+NO_VECTOR = {
+    "bias": "one of each sensor",
+    "scale": "one of each sensor",
+    "raw": "one reading of each sensor",
+    "sigma": "one along each axis",
+    "var": "one along each axis",
+    "square": "one along each axis",
+    "attitude": "inclination, azimuth and toolface",
+    "inc": "depth, inclination and azimuth",
+}
+
+
+def Triples(path):
+    """Line and name of what is declared to be a Vector3d, or several of them, or a Matrix3d that is
+    a covariance by its name. Paragraphs whose comment says "any frame" (of what holds in each) or
+    "no frame" (of rows, and of what is not right-handed) are left out."""
+    free, begin = set(), 0
+    for end, line in enumerate(Lines(path) + [""]):
+        if not line.strip():
+            said = " ".join(line.strip(" /") for line in Lines(path)[begin:end])
+            if re.search(r"\b(any|no) frame\b", said):
+                free.update(range(begin + 1, end + 1))
+            begin = end + 1
+    text = "\n".join(line for _, line in Code(path))
+    for kind in re.finditer(r"\b(Vector|Matrix)3d\b(?:, \d+)?[>&*\s]*\s(?=[A-Za-z])", text):
+        depth, pieces, begin = 0, [], kind.end()
+        for mark in re.finditer(r"[][(){},;]", text[kind.end():]):
+            at = kind.end() + mark.start()
+            depth += (mark.group() in "([{") - (mark.group() in ")]}")
+            if depth < 0 or (depth == 0 and mark.group() in ",;"):
+                pieces.append((begin, text[begin:at]))
+                begin = at + 1
+            if depth < 0 or (depth == 0 and mark.group() == ";"):
+                break
+        for begin, piece in pieces[:1] if depth < 0 else pieces:  # what follows has its own type
+            declared = re.match(r"\s*(\w+)\s*(?:[={].*)?$", piece, re.S)
+            if not declared:
+                break  # a function, or the next parameter
+            name, number = declared.group(1), text.count("\n", 0, begin + declared.start(1)) + 1
+            if number not in free and (kind.group(1) == "Vector" or re.match("covs?(_|$)", name)):
+                yield number, name
 
 
 def Room(path):
@@ -426,7 +469,22 @@ class Structure(unittest.TestCase):
                     if right != left:
                         problems.append(f"{Place(path, number)}: {right} meets {left}")
         self.Report(problems)
-        self.assertGreater(products, 5)
+        self.assertGreater(products, 12)
+
+    def test_vectors_of_headers_name_their_frame(self):
+        problems, excused, count = [], set(), 0
+        for path in (p for p in Sources(LIB, (".h",)) if Room(p) != "math"):
+            for number, name in Triples(path):
+                count += 1
+                if re.search(rf"_[{FRAMES}]_?$", name):
+                    continue
+                words = NO_VECTOR.keys() & set(name.split("_"))
+                excused |= words
+                if not words:
+                    problems.append(f"{Place(path, number)}: {name} does not end in its frame")
+        self.Report(problems)
+        self.assertGreater(count, 150)
+        self.assertEqual(NO_VECTOR.keys() - excused, set(), "words that excuse nothing")
 
     def test_comments_that_are_held_up_as_examples_stand_in_the_sources(self):
         problems, known, source = [], 0, ""
