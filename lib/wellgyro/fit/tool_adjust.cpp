@@ -1,93 +1,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <Eigen/Dense>
-#include <ceres/ceres.h>
-
 #include "wellgyro/fit/tool_adjust_internal.h"
+#include "wellgyro/fit/tool_minimise_internal.h"
+#include "wellgyro/fit/tool_observability_internal.h"
 #include "wellgyro/math/linear_algebra.h"
 
 namespace wellgyro {
 namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// A row's readings against the model, whitened.
-class RowCost : public ceres::CostFunction {
- public:
-  RowCost(const ToolModel& model, const ToolRow& row, Eigen::MatrixXd whitener)
-      : model_(model), row_(row), whitener_(std::move(whitener)) {
-    set_num_residuals(static_cast<int>(row.channels.size()));
-    mutable_parameter_block_sizes()->push_back(model.size());
-  }
-  bool Evaluate(const double* const* p, double* r, double** jacobians) const override {
-    const auto n = static_cast<Eigen::Index>(row_.channels.size());
-    const auto x = Eigen::Map<const Eigen::VectorXd>(p[0], model_.size());
-    const ToolModel::Prediction at = model_.At(row_, x);
-    Eigen::Map<Eigen::VectorXd>(r, n) = whitener_ * (at.v - row_.v);
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], n, model_.size()) = whitener_ * at.J;
-    }
-    return true;
-  }
-
- private:
-  const ToolModel& model_;
-  const ToolRow& row_;
-  Eigen::MatrixXd whitener_;
-};
-
-// What was known before: A (x - x0), rows of unit variance.
-class PriorCost : public ceres::CostFunction {
- public:
-  PriorCost(RowMajor A, Eigen::VectorXd x0) : A_(std::move(A)), x0_(std::move(x0)) {
-    set_num_residuals(static_cast<int>(A_.rows()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(A_.cols()));
-  }
-  bool Evaluate(const double* const* p, double* r, double** jacobians) const override {
-    const auto x = Eigen::Map<const Eigen::VectorXd>(p[0], A_.cols());
-    Eigen::Map<Eigen::VectorXd>(r, A_.rows()) = A_ * (x - x0_);
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], A_.rows(), A_.cols()) = A_;
-    }
-    return true;
-  }
-
- private:
-  RowMajor A_;
-  Eigen::VectorXd x0_;
-};
-
-struct Prior {
-  RowMajor A;
-  Eigen::VectorXd x0;
-};
-
-// Of the nuisances, and of terms that have one.
-Prior PriorOf(const ToolModel& model) {
-  std::vector<std::pair<int, double>> known;
-  for (int k = 0; k < model.n_terms(); ++k) {
-    const double sigma = model.terms()[static_cast<std::size_t>(k)].prior_sigma;
-    if (sigma > 0) known.emplace_back(k, sigma);
-  }
-  int at = model.n_terms();
-  for (const BenchNuisance& nuisance : model.nuisances()) {
-    known.emplace_back(at++, nuisance.prior_sigma);
-  }
-  const auto n = static_cast<Eigen::Index>(known.size());
-  Prior prior{RowMajor::Zero(n, model.size()), Eigen::VectorXd::Zero(model.size())};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& [parameter, sigma] = known[static_cast<std::size_t>(i)];
-    prior.A(i, parameter) = 1 / sigma;
-  }
-  return prior;
-}
 
 double RobustSigma(std::vector<double> sizes) {
   if (sizes.empty()) return 0;
@@ -100,21 +23,6 @@ double RobustSigma(std::vector<double> sizes) {
 int KindOf(const ToolReadings& readings, const ToolRow& row, int channel) {
   if (!readings.channels[static_cast<std::size_t>(channel)].is_gyro) return 0;
   return row.mount >= 0 ? 2 : 1;
-}
-
-// Of a direction in which the readings say nothing.
-Fault Undetermined(const std::vector<std::string>& names, const Eigen::VectorXd& direction) {
-  std::string text;
-  for (Eigen::Index i = 0; i < direction.size(); ++i) {
-    constexpr double kMuch = 0.25;
-    if (std::abs(direction[i]) < kMuch) continue;
-    text += (text.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
-  }
-  return {.code = FaultCode::kRange,
-          .text = "the readings do not tell apart " + text +
-                  ": measure inclinations every 45 deg, four azimuths and toolfaces every 60 "
-                  "deg, or join a rate table's readings; with few readings state their sigmas "
-                  "(--sigma-deg-per-h, --sigma-accel, --wobble-arcsec)"};
 }
 
 class Adjuster {
@@ -205,30 +113,12 @@ class Adjuster {
   }
 
   bool Minimise(bool robust) {
-    ceres::Problem problem;
-    problem.AddParameterBlock(x_.data(), model_.size());
+    std::vector<WhitenedRow> rows;
     for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
       if (!robust && out_[i] != 0) continue;
-      const ToolRow& row = readings_.rows[i];
-      auto cost = std::make_unique<RowCost>(model_, row, WhitenerOf(row));
-      const double size = std::sqrt(static_cast<double>(row.channels.size()));
-      problem.AddResidualBlock(cost.release(), robust ? new ceres::CauchyLoss(2 * size) : nullptr,
-                               x_.data());
+      rows.push_back({&readings_.rows[i], WhitenerOf(readings_.rows[i])});
     }
-    const Prior prior = PriorOf(model_);
-    problem.AddResidualBlock(new PriorCost(prior.A, prior.x0), nullptr, x_.data());
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = 200;
-    options.function_tolerance = 1e-12;
-    options.gradient_tolerance = 1e-14;
-    options.parameter_tolerance = 1e-12;
-    options.num_threads = 1;
-    options.logging_type = ceres::SILENT;
-    options.minimizer_progress_to_stdout = false;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    return summary.IsSolutionUsable() && x_.allFinite();
+    return MinimiseTool(model_, rows, robust, x_);
   }
 
   // Rows with a reading beyond the limit, in units of what the others scatter by.
@@ -294,7 +184,7 @@ class Adjuster {
     std::array<double, 2> wobble_information{};
   };
   NoiseFound SquaresOverExpected(const std::vector<Left>& rows) const {
-    const Prior prior = PriorOf(model_);
+    const ToolPrior prior = PriorOfTool(model_);
     Eigen::MatrixXd N = prior.A.transpose() * prior.A;
     Eigen::VectorXd b = prior.A.transpose() * (prior.A * (prior.x0 - x_));
     std::vector<Eigen::MatrixXd> weights;
@@ -343,7 +233,7 @@ class Adjuster {
     for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
       if (out_[i] == 0) n += static_cast<Eigen::Index>(readings_.rows[i].channels.size());
     }
-    const Prior prior = PriorOf(model_);
+    const ToolPrior prior = PriorOfTool(model_);
     LinearProblem linear(model_.names(), static_cast<int>(n + prior.A.rows()));
     linear.sigma_given = true;
     linear.robust = false;
@@ -412,77 +302,7 @@ class Adjuster {
   std::vector<char> out_;
 };
 
-/// Information of the readings about `terms` at none of them, its diagonal brought to one.
-Eigen::MatrixXd CorrelationsOf(const ToolReadings& readings, const ToolFitSetup& setup,
-                               const std::vector<ToolTerm>& terms) {
-  const ToolModel model(readings, setup, terms);
-  const Eigen::Index n = model.n_terms();
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.size());
-  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n, n);
-  for (const ToolRow& row : readings.rows) {
-    // A rate table's large rates are read with more noise than the Earth's.
-    constexpr double kTable = 0.04;
-    const Eigen::MatrixXd A = (row.mount >= 0 ? kTable : 1) * model.At(row, zero).J.leftCols(n);
-    N += A.transpose() * A;
-  }
-  // Against the noise of a reading, as far as that is guessed.
-  constexpr double kNoise = 0.02;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double sigma = terms[static_cast<std::size_t>(k)].prior_sigma;
-    if (sigma > 0) N(k, k) += kNoise * kNoise / (sigma * sigma);
-  }
-  const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * N * scale.asDiagonal();
-}
-
 }  // namespace
-
-std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& setup,
-                             const std::vector<TermBundle>& bundles) {
-  std::vector<ToolTerm> terms;
-  for (const TermBundle& bundle : bundles) {
-    terms.insert(terms.end(), bundle.terms.begin(), bundle.terms.end());
-  }
-  const Eigen::MatrixXd N = CorrelationsOf(readings, setup, terms);
-  // Row by row of a Cholesky decomposition: what is left of a column beside those before it.
-  constexpr double kTold = 1e-9;
-  std::vector<int> seen;
-  std::vector<Eigen::Index> kept;
-  Eigen::Index first = 0;
-  for (std::size_t b = 0; b < bundles.size(); ++b) {
-    const auto size = static_cast<Eigen::Index>(bundles[b].terms.size());
-    std::vector<Eigen::Index> with = kept;
-    for (Eigen::Index k = 0; k < size; ++k) with.push_back(first + k);
-    first += size;
-    const bool has_base =
-        bundles[b].after < 0 || std::find(seen.begin(), seen.end(), bundles[b].after) != seen.end();
-    const Cholesky root(N(with, with));
-    const bool told =
-        root.positive() && root.L().diagonal().cwiseAbs2().tail(size).minCoeff() > kTold;
-    if (!has_base || size == 0 || (!told && !bundles[b].needed)) continue;
-    seen.push_back(static_cast<int>(b));
-    kept = std::move(with);
-  }
-  return seen;
-}
-
-std::optional<Fault> UnseenNeeded(const ToolReadings& readings, const ToolFitSetup& setup,
-                                  const std::vector<TermBundle>& bundles) {
-  std::vector<ToolTerm> terms;
-  std::vector<std::string> names;
-  for (const TermBundle& bundle : bundles) {
-    if (!bundle.needed) continue;
-    for (const ToolTerm& term : bundle.terms) {
-      if (term.prior_sigma > 0) continue;
-      terms.push_back(term);
-      names.push_back(term.name);
-    }
-  }
-  const SymmetricEigen eigen = EigenOfSymmetric(CorrelationsOf(readings, setup, terms));
-  // What stated attitudes see no better than the bench is level is seen by its tilt alone.
-  if (eigen.values[0] > setup.sigma_level * setup.sigma_level) return std::nullopt;
-  return Undetermined(names, eigen.vectors.col(0));
-}
 
 Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,
                                   const std::vector<ToolTerm>& terms) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "wellgyro/base/result.h"
@@ -22,15 +21,6 @@ struct ToolAdjustment {
   /// none [rad^2].
   std::array<double, 2> sigma_wobble_square{};
 };
-
-/// Places of the bundles whose coefficients these readings tell apart from the others'.
-std::vector<int> SeenBundles(const ToolReadings& readings, const ToolFitSetup& setup,
-                             const std::vector<TermBundle>& bundles);
-
-/// What the needed bundles have that the readings at their stated attitudes do not tell apart, but
-/// for what the bench's tilt shows: one cone of attitudes gives no bias along its axis.
-std::optional<Fault> UnseenNeeded(const ToolReadings& readings, const ToolFitSetup& setup,
-                                  const std::vector<TermBundle>& bundles);
 
 /// Adjusts `terms`; outliers join `out`. The Fault when it does not settle.
 Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,

@@ -16,6 +16,7 @@
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/tool_adjust_internal.h"
 #include "wellgyro/fit/tool_choice_internal.h"
+#include "wellgyro/fit/tool_observability_internal.h"
 #include "wellgyro/fit/tool_result_internal.h"
 
 namespace wellgyro {
