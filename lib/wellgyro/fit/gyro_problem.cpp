@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "wellgyro/fit/gyro_problem_internal.h"
+
+namespace wellgyro {
+namespace {
+
+std::vector<std::string> Names(const GyroLayout& layout) {
+  std::vector<std::string> names;
+  for (int c = 0; c < layout.channels; ++c) {
+    names.push_back(fmt::format("b_degh[{}]", c));
+    for (int j = 0; j < 3; ++j) names.push_back(fmt::format("U[{},{}]", c, j));
+  }
+  if (layout.force == GyroForceModel::kFull) {
+    Append(names, MatrixNames("G_degh_per_g", layout.channels, 3));
+  }
+  if (layout.force == GyroForceModel::kDualAxis) {
+    Append(names, VectorNames("MQ", 2 * layout.rotors));
+  }
+  if (layout.aniso) Append(names, VectorNames("aniso_degh_per_g2", layout.channels));
+  if (layout.north) names.emplace_back("north_rad");
+  return names;
+}
+
+// Coefficients of the force's parameters in one row.
+void FillForce(const GyroReadings& readings, const GyroLayout& layout, int i, int c,
+               Eigen::MatrixXd::RowXpr row) {
+  const Eigen::Vector3d f = readings.f.row(i).transpose();
+  if (layout.force == GyroForceModel::kFull) {
+    row.segment<3>(layout.force_first() + 3 * c) = f.transpose();
+  }
+  for (std::size_t k = 0; k < readings.rotors.size(); ++k) {
+    const Rotor& rotor = readings.rotors[k];
+    if (c != rotor.a && c != rotor.c) continue;
+    const double f_a = f[readings.channels[static_cast<std::size_t>(rotor.a)].axis];
+    const double f_c = f[readings.channels[static_cast<std::size_t>(rotor.c)].axis];
+    const int at = layout.force_first() + 2 * static_cast<int>(k);
+    if (layout.force == GyroForceModel::kDualAxis) {
+      row[at] = c == rotor.a ? f_a : f_c;
+      row[at + 1] = c == rotor.a ? f_c : -f_a;
+    }
+    if (layout.aniso) row[layout.aniso_first() + c] = (c == rotor.a ? f_a : f_c) * f[rotor.spin];
+  }
+}
+
+// Negative on a joined rate table: its lines are those of another file.
+int LineOf(const GyroReadings& readings, int i) {
+  const auto at = static_cast<std::size_t>(i);
+  return readings.joined && readings.on_table[at] != 0 ? -readings.lines[at] : readings.lines[at];
+}
+
+// About a fixture turned by `north` [rad], with the sensitivities U of the last turn.
+LinearProblem Problem(const GyroReadings& readings, const GyroFitSetup& setup,
+                      const GyroLayout& layout, double north, const Eigen::MatrixX3d& U,
+                      double on_table) {
+  LinearProblem problem(Names(layout), readings.rows() * layout.channels);
+  problem.sigma_given = setup.sigma.has_value();
+  const double at_rest = setup.sigma.value_or(1);
+  const double cosine = std::cos(north), sine = std::sin(north);
+  for (int i = 0; i < readings.rows(); ++i) {
+    const Eigen::Vector3d level = readings.w_level.row(i).transpose();
+    const Eigen::Vector3d across = readings.w_north.row(i).transpose();
+    const Eigen::Vector3d w = readings.w.row(i).transpose() + (cosine - 1) * level + sine * across;
+    const Eigen::Vector3d slope = cosine * across - sine * level;
+    for (int c = 0; c < layout.channels; ++c) {
+      const int row = i * layout.channels + c;
+      const Eigen::Index first = Eigen::Index{4} * c;
+      problem.A(row, first) = 1;
+      problem.A.block<1, 3>(row, first + 1) = w.transpose();
+      FillForce(readings, layout, i, c, problem.A.row(row));
+      problem.y[row] = readings.m(i, c);
+      if (layout.north) {
+        problem.A(row, layout.north_first()) = U.row(c).dot(slope);
+        problem.y[row] += U.row(c).dot(slope) * north;
+      }
+      problem.sigma[row] = readings.on_table[static_cast<std::size_t>(i)] != 0 ? on_table : at_rest;
+      problem.rows[static_cast<std::size_t>(row)] = {
+          LineOf(readings, i), readings.channels[static_cast<std::size_t>(c)].name,
+          problem.sigma[row]};
+    }
+  }
+  return problem;
+}
+
+FittedGyros FitWith(const GyroReadings& readings, const GyroFitSetup& setup,
+                    const GyroLayout& layout, double on_table, bool robust) {
+  Eigen::MatrixX3d U = Eigen::MatrixX3d::Zero(layout.channels, 3);
+  for (int c = 0; c < layout.channels; ++c) {
+    U(c, readings.channels[static_cast<std::size_t>(c)].axis) = 1;
+  }
+  double north = 0;
+  FittedGyros fitted{Problem(readings, setup, layout, north, U, on_table), {}};
+  fitted.problem.robust = robust;
+  fitted.solution = Solve(fitted.problem);
+  // Bilinear in U and the north offset: Gauss and Newton.
+  for (int turn = 0; layout.north && turn < 50; ++turn) {
+    const double next = fitted.solution.x[layout.north_first()];
+    for (int c = 0; c < layout.channels; ++c) {
+      U.row(c) = fitted.solution.x.segment<3>(4 * c + 1).transpose();
+    }
+    const bool still = std::abs(next - north) < 1e-14;
+    north = next;
+    fitted.problem = Problem(readings, setup, layout, north, U, on_table);
+    fitted.problem.robust = robust;
+    fitted.solution = Solve(fitted.problem);
+    if (still) break;
+  }
+  return fitted;
+}
+
+// By how much the table's readings scatter more than those at rest, over their sigmas: by median or
+// by squares, each residual freed of what the fit took of it.
+double TableRatio(const LinearSolution& s, bool sigma_given, bool by_median) {
+  std::vector<double> sizes[2];
+  double square[2] = {}, redundancy[2] = {};
+  for (std::size_t i = 0; i < s.rows.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const int table = s.rows[i].line < 0 ? 1 : 0;
+    const double rest = std::max(1e-9, 1 - s.leverage[at]);
+    square[table] += s.residual[at] * s.residual[at];
+    redundancy[table] += rest;
+    sizes[table].push_back(std::abs(s.residual[at]) / std::sqrt(rest));
+  }
+  constexpr double kEnough = 6;
+  if (redundancy[0] < kEnough || redundancy[1] < kEnough) return 1;
+  double scatter[2];
+  for (int table = 0; table < 2; ++table) {
+    std::vector<double>& all = sizes[table];
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    scatter[table] = by_median ? 1.4826 * *middle : std::sqrt(square[table] / redundancy[table]);
+  }
+  if (sigma_given) scatter[0] = 1;
+  return scatter[0] > 0 && scatter[1] > 0 ? scatter[1] / scatter[0] : 1;
+}
+
+}  // namespace
+
+GyroLayout LayoutOf(const GyroReadings& readings, const GyroFitSetup& setup) {
+  GyroLayout layout;
+  layout.channels = static_cast<int>(readings.channels.size());
+  layout.rotors = static_cast<int>(readings.rotors.size());
+  const bool paired = 2 * layout.rotors == layout.channels;
+  layout.force = setup.force.value_or(paired ? GyroForceModel::kDualAxis : GyroForceModel::kFull);
+  layout.aniso = layout.force == GyroForceModel::kDualAxis;
+  layout.north = setup.fit_north;
+  return layout;
+}
+
+FittedGyros FitLayout(const GyroReadings& readings, const GyroFitSetup& setup,
+                      const GyroLayout& layout) {
+  double on_table = setup.sigma_table.value_or(setup.sigma.value_or(1));
+  const bool robust = setup.sigma_table || !readings.joined;
+  FittedGyros fitted = FitWith(readings, setup, layout, on_table, robust);
+  if (robust) return fitted;
+  // All readings first, their medians; then without the outliers, their squares.
+  for (const bool last : {false, true}) {
+    for (int turn = 0; turn < 30; ++turn) {
+      const double ratio = TableRatio(fitted.solution, setup.sigma.has_value(), !last);
+      on_table *= ratio;
+      fitted = FitWith(readings, setup, layout, on_table, last);
+      if (std::abs(ratio - 1) < 1e-3) break;
+    }
+  }
+  return fitted;
+}
+
+}  // namespace wellgyro
