@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/earth/earth.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/uncertainty/error_sources_internal.h"
 #include "wellgyro/uncertainty/formula_weight.h"
 #include "wellgyro/uncertainty/leg_weights_internal.h"
+#include "wellgyro/uncertainty/position_sensitivity_internal.h"
 #include "wellgyro/uncertainty/station_errors.h"
+#include "wellgyro/uncertainty/station_places_internal.h"
 #include "wellgyro/uncertainty/survey_check_internal.h"
 
 namespace wellgyro {
@@ -22,78 +23,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// How errors of (MD, inclination, azimuth) at one station move its own position (`at`) and that of
-/// all deeper ones (`through`); beside them, an error along a fixed direction in place of the
-/// angles.
-struct Sensitivity {
-  Matrix3d at, through;
-  double along_at = 0, along_through = 0;  ///< [m]
-};
-
-struct Trigonometry {
-  double sin_inc, cos_inc, sin_azi, cos_azi;
-};
-
-Trigonometry TrigonometryOf(const SurveyPoint& p) {
-  return {std::sin(p.inclination), std::cos(p.inclination), std::sin(p.azimuth),
-          std::cos(p.azimuth)};
-}
-
-/// The hole's direction at a station, with its derivatives.
-struct Direction {
-  Vector3d t, t_inc, t_azi;
-};
-
-Direction DirectionAt(const WeightPlace& p) {
-  return {{p.sin_inc * p.cos_hole, p.sin_inc * p.sin_hole, p.cos_inc},
-          {p.cos_inc * p.cos_hole, p.cos_inc * p.sin_hole, -p.sin_inc},
-          {-p.sin_inc * p.sin_hole, p.sin_inc * p.cos_hole, 0}};
-}
-
-/// Balanced tangential: half of the course on either side goes along the station's direction.
-/// `behind` and `ahead` are the courses' lengths, `own` what of the first is this station's.
-Sensitivity SensitivityAt(const Vector3d& above, const Direction& here, const Vector3d& below,
-                          double own, double ahead) {
-  Sensitivity s;
-  s.at.col(0) = (above + here.t) / 2;
-  s.at.col(1) = own * here.t_inc;
-  s.at.col(2) = own * here.t_azi;
-  s.along_at = own;
-  s.along_through = own + ahead / 2;
-  s.through.col(0) = s.at.col(0) - (here.t + below) / 2;
-  s.through.col(1) = s.along_through * here.t_inc;
-  s.through.col(2) = s.along_through * here.t_azi;
-  return s;
-}
-
-/// The same where the position is taken as known: at a tie-on, a kick-off. Of the depth, counted
-/// from the datum, remains what the bend of the leg makes.
-Sensitivity FromHere(const Direction& here, const Vector3d& below, double ahead) {
-  Sensitivity s;
-  s.at.setZero();
-  s.along_through = ahead / 2;
-  s.through.col(0) = (here.t - below) / 2;
-  s.through.col(1) = s.along_through * here.t_inc;
-  s.through.col(2) = s.along_through * here.t_azi;
-  return s;
-}
-
-WeightPlace PlaceIn(const Surroundings& surroundings, const SurveyPoint& first) {
-  WeightPlace p;
-  p.sin_convergence = std::sin(surroundings.convergence);
-  p.cos_convergence = std::cos(surroundings.convergence);
-  p.cos_latitude = std::cos(surroundings.latitude.value_or(0));
-  p.tan_latitude = std::tan(surroundings.latitude.value_or(0));
-  p.horizontal_earth_rate = kEarthRate * p.cos_latitude;
-  p.gravity = surroundings.gravity;
-  if (surroundings.field && surroundings.dip) {
-    p.horizontal_field = *surroundings.field * std::cos(*surroundings.dip);
-    p.tan_dip = std::tan(*surroundings.dip);
-  }
-  p.tie_sin_inc = std::sin(first.inclination);
-  return p;
-}
 
 std::string At(const SurveyPoint& point) {
   return "MD " + std::to_string(point.md) + " m, inclination " +
@@ -109,32 +38,25 @@ class Propagator {
 
  private:
   void StartLeg(std::size_t leg);
-  void PlaceAt(std::size_t k);
-  void NamePlace();
-  void NameValues(std::size_t k);
   void First();
   void AddTie();
   bool Station(std::size_t k);
-  bool AddTerm(std::size_t term, std::size_t k, const Sensitivity& s);
+  bool AddTerm(std::size_t term, std::size_t k, const PositionSensitivity& s);
   void TellFirst();
   void Tell(std::size_t term, std::size_t k, StationError error);
   void Refuse(std::size_t k, const std::string& term, const std::string& why);
   void Note();
 
   std::span<const SurveyPoint> survey_;
-  const Surroundings& surroundings_;
-  FormulaValues named_{};
   std::span<const ToolLeg> tool_legs_;
   std::vector<LegWeights> legs_;
   std::vector<std::vector<std::size_t>> leg_sources_;
   ErrorSources sources_;
-  WeightPlace place_;
-  double magnetic_sin_ = 0, magnetic_cos_ = 1;  ///< of magnetic less survey azimuth
+  StationPlaces places_;
   TieOn tie_on_;
   std::optional<std::size_t> zero_at_;
   std::size_t leg_ = 0;
-  Direction here_;
-  Trigonometry ahead_;  ///< of the station below the one at hand
+  StationDirection here_;
   PositionUncertainty result_;
   SurveyErrors* told_;  ///< hears each station's errors; null: nobody asked
 };
@@ -143,17 +65,12 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
                        std::span<const ToolLeg> legs, const PropagateOptions& options,
                        SurveyErrors* told)
     : survey_(survey),
-      surroundings_(surroundings),
       tool_legs_(legs),
       sources_(options),
-      place_(PlaceIn(surroundings, survey.front())),
+      places_(survey, surroundings),
       tie_on_(options.tie_on),
       zero_at_(options.zero_at),
-      ahead_(TrigonometryOf(survey.front())),
       told_(told) {
-  const double to_magnetic = surroundings.convergence - surroundings.declination.value_or(0);
-  magnetic_sin_ = std::sin(to_magnetic);
-  magnetic_cos_ = std::cos(to_magnetic);
   for (const ToolLeg& leg : legs) {
     legs_.emplace_back(*leg.model, surroundings);
     std::vector<std::size_t>& of_leg = leg_sources_.emplace_back();
@@ -169,94 +86,27 @@ Propagator::Propagator(std::span<const SurveyPoint> survey, const Surroundings& 
     return std::ranges::any_of(leg.model().terms,
                                [](const auto& t) { return t.formula != nullptr; });
   };
-  if (!std::ranges::any_of(legs_, has_formula)) return;
-  place_.named = named_;
-  NamePlace();
-}
-
-/// What formulas speak of, in the whole well.
-void Propagator::NamePlace() {
-  using N = FormulaName;
-  const auto put = [&](N name, double value) { named_[static_cast<std::size_t>(name)] = value; };
-  const double latitude = surroundings_.latitude.value_or(0);
-  for (const N name : {N::kGfield, N::kGtot}) put(name, surroundings_.gravity);
-  for (const N name : {N::kBField, N::kMtot}) put(name, surroundings_.field.value_or(0));
-  for (const N name : {N::kLatitude, N::kLat}) put(name, latitude);
-  put(N::kDip, surroundings_.dip.value_or(0));
-  put(N::kRotation, kEarthRate);
-  put(N::kErot, kEarthRate * 3600 * std::cos(latitude));
-  put(N::kRad, kPi / 180);
-  put(N::kMtf, 1);
+  if (std::ranges::any_of(legs_, has_formula)) places_.NameValues();
 }
 
 void Propagator::StartLeg(std::size_t leg) {
   leg_ = leg;
-  const ErrorModel& model = legs_[leg].model();
-  place_.cant = model.cant.value_or(0);
-  place_.min_course_length = model.min_course_length.value_or(0);
-  place_.tortuosity = model.tortuosity.value_or(0);
+  places_.StartLeg(legs_[leg].model());
   sources_.StartLeg(leg_sources_[leg]);
-}
-
-void Propagator::PlaceAt(std::size_t k) {
-  const SurveyPoint& point = survey_[k];
-  const SurveyPoint& previous = survey_[k > 0 ? k - 1 : 0];
-  const bool from_vertical = previous.inclination < legs_[leg_].model().vertical_limit;
-  WeightPlace& p = place_;
-  p.md = point.md;
-  p.tvd = point.tvd;
-  p.course = point.md - previous.md;
-  p.inclination = point.inclination;
-  p.previous_inclination = previous.inclination;
-  p.azimuth_change = from_vertical ? 0 : point.azimuth - previous.azimuth;
-  p.sin_inc = ahead_.sin_inc;
-  p.cos_inc = ahead_.cos_inc;
-  p.sin_hole = ahead_.sin_azi;
-  p.cos_hole = ahead_.cos_azi;
-  ahead_ = TrigonometryOf(survey_[std::min(k + 1, survey_.size() - 1)]);
-  p.sin_azi = p.sin_hole * p.cos_convergence + p.cos_hole * p.sin_convergence;
-  p.cos_azi = p.cos_hole * p.cos_convergence - p.sin_hole * p.sin_convergence;
-  p.sin_mag = p.sin_hole * magnetic_cos_ + p.cos_hole * magnetic_sin_;
-  p.cos_mag = p.cos_hole * magnetic_cos_ - p.sin_hole * magnetic_sin_;
-  if (!p.named.empty()) NameValues(k);
-}
-
-/// What formulas speak of, at this station.
-void Propagator::NameValues(std::size_t k) {
-  using N = FormulaName;
-  const SurveyPoint &here = survey_[k], &before = survey_[k > 0 ? k - 1 : 0];
-  const auto put = [&](N name, double value) { named_[static_cast<std::size_t>(name)] = value; };
-  const auto azimuths = [&](const SurveyPoint& p, N own, N to_true, N magnetic) {
-    put(own, p.azimuth);
-    put(to_true, p.azimuth + surroundings_.convergence);
-    put(magnetic, p.azimuth + surroundings_.convergence - surroundings_.declination.value_or(0));
-  };
-  azimuths(here, N::kAz, N::kAzT, N::kAzM);
-  azimuths(before, N::kAzPrev, N::kAzTPrev, N::kAzMPrev);
-  put(N::kAzi, here.azimuth);
-  put(N::kInc, here.inclination);
-  put(N::kIncPrev, before.inclination);
-  for (const N name : {N::kMd, N::kTmd}) put(name, here.md);
-  put(N::kMdPrev, before.md);
-  put(N::kDmd, here.md - before.md);
-  put(N::kTvd, here.tvd);
-  put(N::kSide, here.inclination > kPi / 2 ? -1 : 1);
-  const ErrorModel& model = legs_[leg_].model();
-  put(N::kTortuosity, model.tortuosity.value_or(0));
-  put(N::kNoiseReduction, model.stationary ? model.stationary->noise_reduction.value_or(1) : 1.0);
 }
 
 /// The root: at the surface the depth reference is uncertain, and that is this station's alone.
 void Propagator::First() {
   StartLeg(0);
-  PlaceAt(0);
-  here_ = DirectionAt(place_);
+  places_.MoveTo(0);
+  here_ = DirectionAt(places_.place());
   for (LegWeights& leg : legs_) leg.Begin(survey_[0]);
   const ErrorModel& model = legs_[0].model();
   for (std::size_t i = 0; i < model.terms.size(); ++i) {
     const ErrorTerm& term = model.terms[i];
     if (survey_[0].md != 0 || term.weight->role != WeightRole::kPlain) continue;
-    const double md = term.formula ? term.formula->At(place_.named).md : term.weight->at(place_).md;
+    const double md = term.formula ? term.formula->At(places_.place().named).md
+                                   : term.weight->at(places_.place()).md;
     const Vector3d e = term.magnitude * (std::isfinite(md) ? md : 0) * here_.t;
     sources_.Add(leg_sources_[0][i], 0, e, Vector3d::Zero());
   }
@@ -279,14 +129,14 @@ void Propagator::TellFirst() {
   told_->first_is_measured = !root;
   told_->doubled_tie_on = root && legs_[0].model().doubled_tie_on;
   // Where the sums stay away from: nothing of it reaches a position.
-  const Sensitivity none{Matrix3d::Zero(), Matrix3d::Zero()};
+  const PositionSensitivity none{Matrix3d::Zero(), Matrix3d::Zero()};
   for (std::size_t i = 0; i < legs_[0].model().terms.size(); ++i) {
     const ErrorTerm& term = legs_[0].model().terms[i];
     if (!root) {
       if (!AddTerm(i, 0, none)) return;
     } else if (term.weight->role == WeightRole::kPlain) {
-      const double md =
-          term.formula ? term.formula->At(place_.named).md : term.weight->at(place_).md;
+      const double md = term.formula ? term.formula->At(places_.place().named).md
+                                     : term.weight->at(places_.place()).md;
       if (std::isfinite(md) && md != 0) Tell(i, 0, {.md = term.magnitude * md});
     }
   }
@@ -300,9 +150,9 @@ void Propagator::AddTie() {
   constexpr std::int64_t kOfThisRun = std::numeric_limits<std::int64_t>::min();
   LegWeights& leg = legs_[0];
   const double half = (survey_[1].md - survey_[0].md) / 2;
-  const bool vertical = place_.inclination < leg.model().vertical_limit;
+  const bool vertical = places_.place().inclination < leg.model().vertical_limit;
   const Matrix3d through =
-      FromHere(here_, Tangent(survey_[1].inclination, survey_[1].azimuth), 2 * half).through;
+      SensitivityFrom(here_, Tangent(survey_[1].inclination, survey_[1].azimuth), 2 * half).through;
   for (std::size_t i = 0; i < leg.model().terms.size(); ++i) {
     const ErrorTerm& term = leg.model().terms[i];
     if (term.weight->role == WeightRole::kCourse) continue;
@@ -310,9 +160,9 @@ void Propagator::AddTie() {
                          term.propagation == Propagation::kGlobal;
     Vector3d e = Vector3d::Zero();
     std::string why;
-    if (const auto v = leg.Displacement(i, place_, vertical)) {
+    if (const auto v = leg.Displacement(i, places_.place(), vertical)) {
       e = half * *v;
-    } else if (const auto w = leg.Weigh(i, place_, why)) {
+    } else if (const auto w = leg.Weigh(i, places_.place(), why)) {
       e = through * Vector3d(w->md, w->inclination, w->azimuth);
     }
     sources_.Add(leg_sources_[0][i], reaches ? leg.Group(i, 0) : kOfThisRun, Vector3d::Zero(),
@@ -324,15 +174,15 @@ void Propagator::Refuse(std::size_t k, const std::string& term, const std::strin
   result_.refusal = Refusal{k, term, At(survey_[k]) + why};
 }
 
-bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) {
+bool Propagator::AddTerm(std::size_t term, std::size_t k, const PositionSensitivity& s) {
   LegWeights& leg = legs_[leg_];
   const ErrorTerm& model_term = leg.model().terms[term];
   const WeightFunction& weight = *model_term.weight;
   const std::size_t source = leg_sources_[leg_][term];
   const std::int64_t group = leg.Group(term, k);
-  const bool vertical = place_.inclination < leg.model().vertical_limit;
+  const bool vertical = places_.place().inclination < leg.model().vertical_limit;
   const bool displaces = model_term.formula || weight.vector;  // spares a call a station and term
-  const auto unit = displaces ? leg.Displacement(term, place_, vertical) : std::nullopt;
+  const auto unit = displaces ? leg.Displacement(term, places_.place(), vertical) : std::nullopt;
   if (unit) {
     const bool course = weight.role == WeightRole::kCourse;  // a displacement, not a direction
     if (course && zero_at_ == k) return true;
@@ -350,7 +200,7 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
     return true;
   }
   std::string why;
-  const std::optional<Weights> w = leg.Weigh(term, place_, why);
+  const std::optional<Weights> w = leg.Weigh(term, places_.place(), why);
   if (!w) return Refuse(k, model_term.name, why), false;
   const Vector3d e = model_term.magnitude * Vector3d(w->md, w->inclination, w->azimuth);
   Tell(term, k, {.md = e.x(), .direction_W = e.y() * here_.t_inc + e.z() * here_.t_azi});
@@ -364,9 +214,9 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const Sensitivity& s) 
 
 bool Propagator::Station(std::size_t k) {
   if (k == tool_legs_[leg_].end) StartLeg(leg_ + 1);
-  const Direction above = here_;
-  PlaceAt(k);
-  here_ = DirectionAt(place_);
+  const StationDirection above = here_;
+  places_.MoveTo(k);
+  here_ = DirectionAt(places_.place());
   for (LegWeights& leg : legs_) leg.Advance(survey_[k - 1], survey_[k]);
   LegWeights& leg = legs_[leg_];
   if (std::string why = leg.WhyNot(survey_[k]); !why.empty()) return Refuse(k, {}, why), false;
@@ -374,14 +224,13 @@ bool Propagator::Station(std::size_t k) {
   const bool doubled =
       tie_on_ == TieOn::kModel ? leg.model().doubled_tie_on : tie_on_ == TieOn::kWhole;
   const bool whole = k == 1 && doubled;
-  const Vector3d below(ahead_.sin_inc * ahead_.cos_azi, ahead_.sin_inc * ahead_.sin_azi,
-                       ahead_.cos_inc);
+  const Vector3d below = places_.TangentBelow();
   const double ahead = next.md - survey_[k].md;
-  Sensitivity s =
-      SensitivityAt(above.t, here_, below, whole ? place_.course : place_.course / 2, ahead);
+  PositionSensitivity s = SensitivityAt(
+      above.t, here_, below, whole ? places_.place().course : places_.place().course / 2, ahead);
   if (zero_at_ == k) {
     sources_.Forget();
-    s = FromHere(here_, below, ahead);
+    s = SensitivityFrom(here_, below, ahead);
   }
   for (std::size_t i = 0; i < leg.model().terms.size(); ++i) {
     if (!AddTerm(i, k, s)) return false;
@@ -418,21 +267,6 @@ PositionUncertainty Propagator::Run() {
   }
   Note();
   return std::move(result_);
-}
-
-/// The survey with the azimuth of vertical stations set to 0, as the published listings have it;
-/// `changed` counts those that had another.
-std::vector<SurveyPoint> WithoutVerticalAzimuths(std::span<const SurveyPoint> survey,
-                                                 std::span<const ToolLeg> legs, int& changed) {
-  std::vector<SurveyPoint> points(survey.begin(), survey.end());
-  for (const ToolLeg& leg : legs) {
-    for (std::size_t k = leg.begin; k < leg.end; ++k) {
-      if (points[k].inclination >= leg.model->vertical_limit) continue;
-      if (points[k].azimuth != 0) ++changed;
-      points[k].azimuth = 0;
-    }
-  }
-  return points;
 }
 
 }  // namespace

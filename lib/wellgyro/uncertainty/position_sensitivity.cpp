@@ -1,0 +1,38 @@
+#include "wellgyro/uncertainty/position_sensitivity_internal.h"
+
+namespace wellgyro {
+
+using Eigen::Vector3d;
+
+StationDirection DirectionAt(const WeightPlace& p) {
+  return {{p.sin_inc * p.cos_hole, p.sin_inc * p.sin_hole, p.cos_inc},
+          {p.cos_inc * p.cos_hole, p.cos_inc * p.sin_hole, -p.sin_inc},
+          {-p.sin_inc * p.sin_hole, p.sin_inc * p.cos_hole, 0}};
+}
+
+PositionSensitivity SensitivityAt(const Vector3d& above, const StationDirection& here,
+                                  const Vector3d& below, double own, double ahead) {
+  PositionSensitivity s;
+  s.at.col(0) = (above + here.t) / 2;
+  s.at.col(1) = own * here.t_inc;
+  s.at.col(2) = own * here.t_azi;
+  s.along_at = own;
+  s.along_through = own + ahead / 2;
+  s.through.col(0) = s.at.col(0) - (here.t + below) / 2;
+  s.through.col(1) = s.along_through * here.t_inc;
+  s.through.col(2) = s.along_through * here.t_azi;
+  return s;
+}
+
+PositionSensitivity SensitivityFrom(const StationDirection& here, const Vector3d& below,
+                                    double ahead) {
+  PositionSensitivity s;
+  s.at.setZero();
+  s.along_through = ahead / 2;
+  s.through.col(0) = (here.t - below) / 2;
+  s.through.col(1) = s.along_through * here.t_inc;
+  s.through.col(2) = s.along_through * here.t_azi;
+  return s;
+}
+
+}  // namespace wellgyro
