@@ -5,18 +5,17 @@
 #include <limits>
 
 #include "wellgyro/math/median.h"
+#include "wellgyro/noise/value_runs_internal.h"
 
 namespace wellgyro {
 namespace {
 
 using Kind = LogFinding::Kind;
 
-constexpr std::size_t kFindingsMax = 100;
 constexpr double kUnusual = 8;           // times the robust sigma
 constexpr std::size_t kAway = 100;       // stretches it may stand away and come back
 constexpr double kExplained = 0.9;       // share of the slow variance
 constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // equal to no reading
 
 double RobustSigma(const std::vector<double>& values) {
   const double median = Median(values);
@@ -45,7 +44,7 @@ class Inspector {
         length_(std::max<std::int64_t>(16, samples_ / 2000)) {}
 
   std::vector<LogFinding> Inspect() {
-    FindRuns();
+    findings_ = FindValueRuns(rate_, gaps_, options_, length_);
     if (!findings_.empty() && findings_.front().kind == Kind::kConstant) return findings_;
     FillStretches();
     FindMovements();
@@ -54,141 +53,6 @@ class Inspector {
   }
 
  private:
-  struct Extreme {
-    double value;
-    std::int64_t count = 0;
-    double next_value;
-    std::int64_t next_count = 0;
-
-    // `sign` +1 for the largest, -1 for the smallest.
-    void Take(double y, double sign) {
-      if (count > 0 && y == value) {
-        ++count;
-      } else if (count == 0 || sign * y > sign * value) {
-        next_value = value;
-        next_count = count;
-        value = y;
-        count = 1;
-      } else if (next_count > 0 && y == next_value) {
-        ++next_count;
-      } else if (next_count == 0 || sign * y > sign * next_value) {
-        next_value = y;
-        next_count = 1;
-      }
-    }
-    bool IsPile() const { return count >= 3 && count > 2 * next_count; }
-  };
-
-  // Calls `see` with every present sample, in order.
-  template <class See>
-  void ForEachPresent(See see) const {
-    std::size_t gap = 0;
-    for (std::int64_t i = 0; i < samples_; ++i) {
-      while (gap < gaps_.size() && gaps_[gap].end <= i) ++gap;
-      if (gap < gaps_.size() && gaps_[gap].begin <= i) {
-        i = gaps_[gap].end - 1;
-      } else {
-        see(i, rate_[static_cast<std::size_t>(i)]);
-      }
-    }
-  }
-
-  void Add(const LogFinding& finding) {
-    const auto same = std::count_if(findings_.begin(), findings_.end(),
-                                    [&](const LogFinding& f) { return f.kind == finding.kind; });
-    if (static_cast<std::size_t>(same) < kFindingsMax) findings_.push_back(finding);
-  }
-
-  // What one pass over the samples tells of their values.
-  struct Values {
-    Extreme high{kNone, 0, kNone, 0};
-    Extreme low{kNone, 0, kNone, 0};
-    std::int64_t present = 0;
-    std::int64_t repeats = 0;  // of the sample before
-
-    // What most readings are is no end of the range, but a signal finer than its steps.
-    bool IsPile(const Extreme& end) const { return end.IsPile() && end.count < present / 2; }
-  };
-
-  Values CountValues() const {
-    Values values;
-    double last = kNone;
-    ForEachPresent([&](std::int64_t, double y) {
-      values.high.Take(y, 1);
-      values.low.Take(y, -1);
-      values.repeats += y == last;
-      last = y;
-      ++values.present;
-    });
-    return values;
-  }
-
-  // Length of a run that coarse readings make by chance once in a million logs.
-  double LongestByChance(const Values& values) const {
-    const auto present = static_cast<double>(values.present);
-    const double repeat = static_cast<double>(values.repeats) / std::max(1., present);
-    const double chance = std::log(1e-6 / (present + 1));
-    return repeat < 1 ? std::max(32., chance / std::log(std::max(repeat, 1e-3)))
-                      : static_cast<double>(samples_);
-  }
-
-  bool IsAtEnd(double y) const {
-    return (options_.highest && y >= *options_.highest) ||
-           (options_.lowest && y <= *options_.lowest);
-  }
-
-  // Stretches of one value: constant logs, piles at an extreme, readings that stood still.
-  void FindRuns() {
-    const Values values = CountValues();
-    if (values.present > 1 && values.high.value == values.low.value) {
-      Add({.kind = Kind::kConstant,
-           .where = {0, samples_},
-           .size = values.high.value,
-           .samples = values.present});
-      return;
-    }
-    const bool high_pile = values.IsPile(values.high);
-    const bool low_pile = values.IsPile(values.low);
-    const double stuck = LongestByChance(values);
-    SampleGap run;
-    double value = kNone;
-    const auto close = [&] {
-      const std::int64_t length = run.end - run.begin;
-      const bool piled =
-          (high_pile && value == values.high.value) || (low_pile && value == values.low.value);
-      if (length > 0 && (IsAtEnd(value) || (piled && length >= 3))) {
-        AddSaturated(run, value);
-      } else if (static_cast<double>(length) > stuck) {
-        Add({.kind = Kind::kStuck, .where = run, .size = value, .samples = length});
-      }
-    };
-    ForEachPresent([&](std::int64_t i, double y) {
-      if (y != value || i != run.end) {
-        close();
-        run.begin = i;
-        value = y;
-      }
-      run.end = i + 1;
-    });
-    close();
-  }
-
-  // Runs that follow each other closely are told as one.
-  void AddSaturated(SampleGap where, double value) {
-    for (auto& finding : findings_) {
-      if (finding.kind == Kind::kSaturated && finding.size == value &&
-          where.begin - finding.where.end < length_) {
-        finding.samples += where.end - where.begin;
-        finding.where.end = where.end;
-        return;
-      }
-    }
-    Add({.kind = Kind::kSaturated,
-         .where = where,
-         .size = value,
-         .samples = where.end - where.begin});
-  }
-
   void FillStretches() {
     std::size_t gap = 0;
     for (std::int64_t begin = 0; begin + length_ <= samples_; begin += length_) {
@@ -267,11 +131,12 @@ class Inspector {
       const std::int64_t begin = stretches_[i > 0 ? i - 1 : 0].begin;
       const std::int64_t end = stretches_[last].begin + length_;
       const bool stayed = usual_change > 0 && StaysAway(last, i, kUnusual * usual_change);
-      Add({.kind = stayed ? Kind::kStep : Kind::kMoved,
-           .where = {begin, end},
-           .size = stayed ? std::abs(LevelAfter(last) - LevelBefore(i)) : largest,
-           .typical = usual,
-           .samples = end - begin});
+      AddFinding({.kind = stayed ? Kind::kStep : Kind::kMoved,
+                  .where = {begin, end},
+                  .size = stayed ? std::abs(LevelAfter(last) - LevelBefore(i)) : largest,
+                  .typical = usual,
+                  .samples = end - begin},
+                 findings_);
       i = last;
     }
   }
@@ -353,7 +218,7 @@ class Inspector {
       const auto temperature = [](const Stretch& s) { return s.temperature; };
       const Line line = FitLine(temperature);
       if (line.explained > kExplained) {
-        Add(DriftAlong(Kind::kTemperature, line.slope, temperature));
+        AddFinding(DriftAlong(Kind::kTemperature, line.slope, temperature), findings_);
         findings_.back().per_degree = line.slope;
         return;
       }
@@ -361,7 +226,9 @@ class Inspector {
     const auto time = [](const Stretch& s) { return static_cast<double>(s.begin); };
     const Line line = FitLine(time);
     if (FindWarmUp(line.explained)) return;
-    if (line.explained > kExplained) Add(DriftAlong(Kind::kDrift, line.slope, time));
+    if (line.explained > kExplained) {
+      AddFinding(DriftAlong(Kind::kDrift, line.slope, time), findings_);
+    }
   }
 
   // Time constants from a fortieth to a third of the log.
@@ -381,11 +248,12 @@ class Inspector {
     if (best.explained < kExplained || 1 - best.explained > (1 - explained_by_time) / 2) {
       return false;
     }
-    Add({.kind = Kind::kWarmUp,
-         .where = {0, static_cast<std::int64_t>(5 * constant)},
-         .size = std::abs(best.slope),
-         .samples = samples_,
-         .time_constant = constant});
+    AddFinding({.kind = Kind::kWarmUp,
+                .where = {0, static_cast<std::int64_t>(5 * constant)},
+                .size = std::abs(best.slope),
+                .samples = samples_,
+                .time_constant = constant},
+               findings_);
     return true;
   }
 
