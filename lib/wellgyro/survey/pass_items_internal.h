@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "wellgyro/survey/draft.h"
+#include "wellgyro/survey/job.h"
+#include "wellgyro/survey/pass_covariance_internal.h"
+
+namespace wellgyro {
+
+/// The passes of a run, each in the order of depth, with hole attitudes and the run's way between
+/// stations but without positions. A stop from which the tool goes out of the hole belongs to the
+/// pass that follows.
+std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run);
+
+}  // namespace wellgyro
