@@ -1,0 +1,102 @@
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "wellgyro/base/units.h"
+#include "wellgyro/fit/tool_verify.h"
+#include "wellgyro/io/sensor/bench_data.h"
+#include "wellgyro/io/toml/tool_file.h"
+
+#include "bench_options.h"
+#include "calibrate_tool.h"
+#include "commands.h"
+#include "on_call.h"
+#include "report.h"
+
+namespace wellgyro::apps {
+namespace {
+
+struct VerifyOptions {
+  BenchOptions bench;
+  VerifySetup setup;
+};
+
+void TellShifts(const Verification& found) {
+  for (const ToolShift& shift : found.shifts) {
+    const std::string limit =
+        shift.limit > 0 ? fmt::format(", limit {:.4g}", shift.limit) : std::string();
+    fmt::print("{:<12} {:+.4g} +- {:.2g} {}{}{}{}\n", shift.name, shift.value, shift.sigma,
+               shift.unit, limit, shift.shifted ? "  shifted" : "",
+               shift.within ? "" : "  out of budget");
+  }
+}
+
+void TellResiduals(const Verification& found) {
+  fmt::print("residuals: chi-square {:.1f} of {}, as large by chance {:.2g}\n", found.chi_square,
+             found.dof, found.probability);
+  fmt::print("beside the shifts: chi-square {:.1f} of {}\n", found.left, found.left_dof);
+  if (found.beyond) {
+    fmt::print(
+        "read from {:.4g} to {:.4g} degC, beyond the temperatures that the tool was calibrated "
+        "at: what it is off there, the calibration does not know\n",
+        found.beyond->first, found.beyond->second);
+  }
+  if (!found.fits) {
+    fmt::print(
+        "what is beside the shifts fits neither the calibration nor the bench: scale, alignment, "
+        "an outlier, the latitude, or a sigma stated too small (--sigma-deg-per-h, --sigma-accel, "
+        "--wobble-arcsec)\n");
+  }
+}
+
+int Verify(VerifyOptions& o) {
+  constexpr int kFailed = 4;
+  o.setup.bench.reference = o.bench.reference;
+  const auto data = ReadBenchTable(o.bench.data);
+  if (!data) return Unusable(data.fault());
+  const auto tool = ReadToolFile(o.bench.tool);
+  if (!tool) return Unusable(tool.fault());
+  const auto found = VerifyTool(*data, *tool, o.setup);
+  if (!found) return Unusable(found.fault());
+  TellShifts(*found);
+  TellResiduals(*found);
+  fmt::print("{}: chance reaches {:.2f} sigmas\n", found->pass ? "pass" : "fail", found->reach);
+  return found->pass ? kDone : kFailed;
+}
+
+}  // namespace
+
+void AddCalibrateVerify(CLI::App& calibrate, int& exit_code) {
+  const auto o = std::make_shared<VerifyOptions>();
+  CLI::App* const command = calibrate.add_subcommand(
+      "verify", "a tool against its calibration, as found or as left: shifts, pass or fail");
+  command->add_option("--data", o->bench.data, "readings at rest (CSV), columns as tool's")
+      ->required();
+  command->add_option("--tool", o->bench.tool, "tool file (TOML)")->required();
+  AddGravity(*command, o->bench);
+  AddLatitude(*command, o->bench);
+  AddAxes(*command, o->bench);
+  AddPositive(*command, "--sigma-accel", o->setup.bench.sigma_accel, 1, "of a reading, its unit");
+  AddPositive(*command, "--sigma-deg-per-h", o->setup.bench.sigma_gyro, 1, "of a gyro's reading");
+  AddPositive(*command, "--wobble-arcsec", o->setup.bench.sigma_wobble, units::kArcsec,
+              "1 sigma of each reading's attitude");
+  AddPositive(*command, "--level-deg", o->setup.bench.sigma_level, units::kDeg,
+              "1 sigma of the bench's tilt, default 0.5");
+  AddPositive(*command, "--north-sigma-deg", o->setup.bench.sigma_north, units::kDeg,
+              "1 sigma of its north, default 1");
+  AddPositive(*command, "--budget-bias-deg-per-h", o->setup.budget_gyro_bias, 1,
+              "1 sigma of gyro biases that the tool may have");
+  AddPositive(*command, "--budget-force-deg-per-h-per-g", o->setup.budget_gyro_force, 1,
+              "of their force terms");
+  AddPositive(*command, "--budget-accel-mg", o->setup.budget_accel_bias, 1e-3,
+              "of accelerometer biases");
+  command->footer(
+      "Example:\n  wellgyro calibrate verify --data found.csv --tool tool.toml --latitude-deg 60 "
+      "\\\n"
+      "      --sigma-deg-per-h 0.02 --sigma-accel 2e-5 --budget-bias-deg-per-h 0.05\n"
+      "Exit code 4: fail.");
+  OnCall(command, exit_code, [o] { return Verify(*o); });
+}
+
+}  // namespace wellgyro::apps
