@@ -75,8 +75,8 @@ struct LiveOutcome {
 /// write files and watch that the status goes on while the survey is adjusted.
 class WELLGYRO_EXPORT LiveSession {
  public:
-  /// Listens from here on. `observer` must outlive the session. A Fault says what to do: nothing has been written then. Throws std::invalid_argument when the
-  /// job makes no sense.
+  /// Listens from here on. `observer` must outlive the session. A Fault says what to do: nothing
+  /// has been written then. Throws std::invalid_argument when the job makes no sense.
   static Result<std::unique_ptr<LiveSession>> Open(LiveSetup setup, LiveObserver& observer);
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;

@@ -107,7 +107,7 @@ void Propagator::First() {
     if (survey_[0].md != 0 || term.weight->role != WeightRole::kPlain) continue;
     const double md = term.formula ? term.formula->At(places_.place().named).md
                                    : term.weight->at(places_.place()).md;
-    const Vector3d e = term.magnitude * (std::isfinite(md) ? md : 0) * here_.t;
+    const Vector3d e = term.magnitude * (std::isfinite(md) ? md : 0) * here_.tangent_W;
     sources_.Add(leg_sources_[0][i], 0, e, Vector3d::Zero());
   }
   if (tie_on_ == TieOn::kIndependent) AddTie();
@@ -203,7 +203,7 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const PositionSensitiv
   const std::optional<Weights> w = leg.Weigh(term, places_.place(), why);
   if (!w) return Refuse(k, model_term.name, why), false;
   const Vector3d e = model_term.magnitude * Vector3d(w->md, w->inclination, w->azimuth);
-  Tell(term, k, {.md = e.x(), .direction_W = e.y() * here_.t_inc + e.z() * here_.t_azi});
+  Tell(term, k, {.md = e.x(), .direction_W = e.y() * here_.high_side_W + e.z() * here_.right_W});
   if (e.x() == 0 && e.y() == 0) {  // most terms move the azimuth alone
     sources_.Add(source, group, e.z() * s.at.col(2), e.z() * s.through.col(2));
   } else {
@@ -226,8 +226,9 @@ bool Propagator::Station(std::size_t k) {
   const bool whole = k == 1 && doubled;
   const Vector3d below = places_.TangentBelow();
   const double ahead = next.md - survey_[k].md;
-  PositionSensitivity s = SensitivityAt(
-      above.t, here_, below, whole ? places_.place().course : places_.place().course / 2, ahead);
+  PositionSensitivity s =
+      SensitivityAt(above.tangent_W, here_, below,
+                    whole ? places_.place().course : places_.place().course / 2, ahead);
   if (zero_at_ == k) {
     sources_.Forget();
     s = SensitivityFrom(here_, below, ahead);

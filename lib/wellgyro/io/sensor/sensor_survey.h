@@ -21,8 +21,8 @@ struct TableSurvey {
 };
 
 /// Surveys tables of samples, of averages at rest and of depth, in any order: what the program's
-/// `survey` does of them, without its files. A Fault where a file or a
-/// row cannot be used at all. Throws std::invalid_argument as Surveyor does.
+/// `survey` does of them, without its files. A Fault where a file or a row cannot be used at all.
+/// Throws std::invalid_argument as Surveyor does.
 WELLGYRO_EXPORT Result<TableSurvey> SurveyTables(const Job& job,
                                                  std::span<const std::filesystem::path> files);
 
