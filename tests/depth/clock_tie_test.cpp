@@ -234,6 +234,16 @@ TEST(ClockTie, NonsenseTimesDoNotOverflow) {
   EXPECT_THROW(ClockTie({.sigma_pair = 0}), std::invalid_argument);
 }
 
+/// Five times from `time` on, by `many` at once.
+void ExpectTimesOf(const ClockTie& one, const ClockTie& many, ToolTime time, Duration period) {
+  std::vector<UtcTime> times(5);
+  many.ToUtc(time, period, times);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_EQ(times[i].ns, one.ToUtc(time).ns);
+    time = time + period;
+  }
+}
+
 TEST(ClockTie, FollowingTakesWhatPushWouldToTheBit) {
   constexpr std::int64_t kPeriod = 3'000'000;
   ClockTie one, many;
@@ -266,12 +276,7 @@ TEST(ClockTie, FollowingTakesWhatPushWouldToTheBit) {
     k += static_cast<std::int64_t>(n);
     ASSERT_EQ(one.drift(), many.drift());
     ASSERT_EQ(one.Sigma(stamp.tool_time), many.Sigma(stamp.tool_time));
-    std::vector<UtcTime> times(5);
-    many.ToUtc(stamp.tool_time, Duration{kPeriod}, times);
-    for (std::int64_t i = 0; i < 5; ++i) {
-      const ToolTime time = stamp.tool_time + Duration{i * kPeriod};
-      EXPECT_EQ(times[static_cast<std::size_t>(i)].ns, one.ToUtc(time).ns);
-    }
+    ExpectTimesOf(one, many, stamp.tool_time, Duration{kPeriod});
   }
   EXPECT_GT(followed, 15'000u);
 }

@@ -38,60 +38,94 @@ struct Case {
   }
 };
 
-/// A knot of a good tool whose residuals are some sigmas each, so that the losses are on.
-Case MakeCase(double inclination, bool still, bool axial) {
-  Case c;
-  c.setup.gyro = {.angle_random_walk = 3e-6, .rate_random_walk = 1e-6};
-  c.setup.gyro.bias_instability = 1e-6;
-  c.setup.gyro.bias_instability_correlation_time = 100;
-  c.setup.gyro.rate_ramp = 1e-8;
-  c.setup.errors = {.gyro_bias_sigma = 1e-6,
-                    .mass_unbalance_sigma = 1e-7,
-                    .quadrature_sigma = 1e-7,
-                    .gyro_scale_sigma = 1e-3,
-                    .gyro_misalignment_sigma = 1e-3,
-                    .accel_bias_sigma = 1e-3,
-                    .accel_scale_sigma = 1e-3,
-                    .accel_misalignment_sigma = 1e-3,
-                    .accel_noise = 1e-3,
-                    .roll_offset_sigma = 1e-3,
-                    .time_skew_sigma = 1e-3,
-                    .latitude_sigma = 1e-3};
-  // A second order as large as the biases, and a tool that has warmed by half of its span.
-  c.setup.cov_errors = ErrorCovariance{.reference = 50, .span = 10};
-  c.setup.cov_errors->constant.diagonal().tail<kSecondOrderSources>().setConstant(1e-10);
-  c.setup.cov_errors->change.diagonal().head<kAccelSecondOrder>().setConstant(1e-6);
-  c.setup.cov_errors->change.diagonal().head<4>().setConstant(1e-12);
-  c.setup.cov_errors->constant.diagonal().segment<3>(kGyroMisalignmentZX).setConstant(1e-6);
-  c.setup.cov_errors->constant.diagonal().segment<2>(kUnbalanceDifference).setConstant(1e-14);
-  c.knot.temperature = 55;
-  c.setup.swing = 0.3;
-  c.setup.third_axis = axial;
-  c.layout = LayoutOf(c.setup);
-  Random random(static_cast<std::uint64_t>(100 * inclination) + still + 2 * axial);
-  const auto pair = [&random](double s) {
-    return Eigen::Vector2d{s * random.Normal(), s * random.Normal()};
-  };
-  Increment& inc = c.knot.increment;
+/// A good tool with every error that there is.
+EstimateSetup EveryError(bool axial) {
+  EstimateSetup setup;
+  setup.gyro = {.angle_random_walk = 3e-6, .rate_random_walk = 1e-6};
+  setup.gyro.bias_instability = 1e-6;
+  setup.gyro.bias_instability_correlation_time = 100;
+  setup.gyro.rate_ramp = 1e-8;
+  setup.errors = {.gyro_bias_sigma = 1e-6,
+                  .mass_unbalance_sigma = 1e-7,
+                  .quadrature_sigma = 1e-7,
+                  .gyro_scale_sigma = 1e-3,
+                  .gyro_misalignment_sigma = 1e-3,
+                  .accel_bias_sigma = 1e-3,
+                  .accel_scale_sigma = 1e-3,
+                  .accel_misalignment_sigma = 1e-3,
+                  .accel_noise = 1e-3,
+                  .roll_offset_sigma = 1e-3,
+                  .time_skew_sigma = 1e-3,
+                  .latitude_sigma = 1e-3};
+  // A second order as large as the biases.
+  setup.cov_errors = ErrorCovariance{.reference = 50, .span = 10};
+  setup.cov_errors->constant.diagonal().tail<kSecondOrderSources>().setConstant(1e-10);
+  setup.cov_errors->change.diagonal().head<kAccelSecondOrder>().setConstant(1e-6);
+  setup.cov_errors->change.diagonal().head<4>().setConstant(1e-12);
+  setup.cov_errors->constant.diagonal().segment<3>(kGyroMisalignmentZX).setConstant(1e-6);
+  setup.cov_errors->constant.diagonal().segment<2>(kUnbalanceDifference).setConstant(1e-14);
+  setup.swing = 0.3;
+  setup.third_axis = axial;
+  return setup;
+}
+
+Eigen::Vector2d Pair(double sigma, Random& random) {
+  return Eigen::Vector2d{sigma * random.Normal(), sigma * random.Normal()};
+}
+
+/// A second of a tool that rolls, or turns with the hole by `still_M` in it.
+Increment AnyIncrement(double roll, const Eigen::Vector2d* still_M, bool axial, Random& random) {
+  Increment inc;
   inc.seconds = 1;
-  const Eigen::Matrix3d R_LT = AttitudeMatrix(1, inclination, 0.7);
-  const Vector3d w_IL_L(4e-5, 0, -6e-5), w_T = R_LT.transpose() * w_IL_L;
-  const double roll = still ? w_T.z() : 0.29;
   inc.roll_before = 0.5 * roll;
   inc.roll_after = 0.5 * roll;
-  inc.turn_M = still ? Eigen::Vector2d(w_T.head<2>()) : pair(1e-3);
+  inc.turn_M = still_M != nullptr ? *still_M : Pair(1e-3, random);
   inc.turn_before_M = 0.5 * inc.turn_M;
-  if (!still) inc.turn_per_roll = pair(1e-4);
-  inc.force_per_roll = pair(1e-2);
+  if (still_M == nullptr) inc.turn_per_roll = Pair(1e-4, random);
+  inc.force_per_roll = Pair(1e-2, random);
   inc.has_axial = axial;
   if (!axial) {
     inc.wobble_followed = {10, 8};  // more than all of it, so that it counts beside the rest
-    for (int i = 0; i < 4; ++i) inc.turn_by_harmonic.col(i) = pair(0.01);
+    for (int i = 0; i < 4; ++i) inc.turn_by_harmonic.col(i) = Pair(0.01, random);
   }
-  for (int i = 0; i <= kTimeSkew; ++i) inc.turn_by_error.col(i) = pair(i < kGyroScaleX ? 1 : 0.01);
+  for (int i = 0; i <= kTimeSkew; ++i) {
+    inc.turn_by_error.col(i) = Pair(i < kGyroScaleX ? 1 : 0.01, random);
+  }
   for (int i = kAccelBiasX; i <= kAccelMisalignmentZY; ++i) {
-    inc.ForceBy(i) << pair(0.5), 0.3 * random.Normal();
+    const Eigen::Vector2d across = Pair(0.5, random);
+    inc.ForceBy(i) << across, 0.3 * random.Normal();
   }
+  return inc;
+}
+
+/// The knot's end, near what it predicts: the tie about the axis is a millionth of a radian.
+void AddEnd(bool still, Random& random, Case& c) {
+  const Increment& inc = c.knot.increment;
+  c.end = c.begin;
+  const double swing =
+      std::sin(0.3) / 0.3 * c.begin.swing.x() + (1 - std::cos(0.3)) / 0.3 * c.begin.swing.y();
+  const Eigen::Vector2d turn = inc.turn_M + swing * inc.turn_per_roll;
+  c.end.R_LT = Exp(-c.place.w_IL_L) * c.begin.R_LT * RotationZ(inc.roll_before + 0.5 * swing) *
+               Exp(Vector3d(turn.x(), turn.y(), 0)) * RotationZ(inc.roll_after + 0.5 * swing) *
+               Exp((still ? 3e-7 : 3e-6) * Vector3d(1, -0.7, 0) + 1e-6 * Vector3d::UnitZ());
+  c.end.roll_rate = c.begin.roll_rate + 0.01;
+  c.end.md = c.begin.md + c.begin.speed;
+  c.end.walk = Pair(1e-6, random);
+}
+
+/// A knot of a good tool whose residuals are some sigmas each, so that the losses are on, and that
+/// has warmed by half of its span.
+Case MakeCase(double inclination, bool still, bool axial) {
+  Case c;
+  c.setup = EveryError(axial);
+  c.layout = LayoutOf(c.setup);
+  Random random(static_cast<std::uint64_t>(100 * inclination) + still + 2 * axial);
+  const Eigen::Matrix3d R_LT = AttitudeMatrix(1, inclination, 0.7);
+  const Vector3d w_IL_L(4e-5, 0, -6e-5), w_T = R_LT.transpose() * w_IL_L;
+  const double roll = still ? w_T.z() : 0.29;
+  const Eigen::Vector2d still_M = w_T.head<2>();
+  c.knot.temperature = 55;
+  c.knot.increment = AnyIncrement(roll, still ? &still_M : nullptr, axial, random);
   c.place.site = SiteAt(1, 0);
   c.place.w_IL_L = w_IL_L;
   c.place.dw_by_latitude_L = {-6e-5, 0, -4e-5};
@@ -103,20 +137,11 @@ Case MakeCase(double inclination, bool still, bool axial) {
   c.begin.roll_rate = roll;
   c.begin.md = 10;
   c.begin.speed = still ? 0 : 0.5;
-  if (!still) c.begin.swing = pair(2e-3);
-  c.end = c.begin;
-  // Near what the knot predicts: the tie about the axis is a millionth of a radian.
-  const double swing =
-      std::sin(0.3) / 0.3 * c.begin.swing.x() + (1 - std::cos(0.3)) / 0.3 * c.begin.swing.y();
-  const Eigen::Vector2d turn = inc.turn_M + swing * inc.turn_per_roll;
-  c.end.R_LT = Exp(-c.place.w_IL_L) * c.begin.R_LT * RotationZ(inc.roll_before + 0.5 * swing) *
-               Exp(Vector3d(turn.x(), turn.y(), 0)) * RotationZ(inc.roll_after + 0.5 * swing) *
-               Exp((still ? 3e-7 : 3e-6) * Vector3d(1, -0.7, 0) + 1e-6 * Vector3d::UnitZ());
-  c.end.roll_rate = roll + 0.01;
-  c.end.md = c.begin.md + c.begin.speed;
-  c.end.walk = pair(1e-6);
+  if (!still) c.begin.swing = Pair(2e-3, random);
+  AddEnd(still, random, c);
   const Vector3d f = c.begin.R_LT.transpose() *
                      (c.place.acceleration_L - c.place.site.gravity * Vector3d::UnitZ());
+  Increment& inc = c.knot.increment;
   inc.force_M = RotationZ(inc.roll_before).transpose() * f + Vector3d(1e-3, -0.6e-3, 0.8e-3);
   c.knot.still = still;
   c.knot.along = {.md = c.end.md + 0.001, .speed = c.begin.speed, .sigma_md = 0.01, .known = true};

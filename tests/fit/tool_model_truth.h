@@ -11,25 +11,28 @@ namespace wellgyro::test {
 inline constexpr double kG = 9.80665;
 
 /// The tool model that the bench's tool is, in the trade's axes; counts of a millionth.
+/// Channels, temperatures and axes of the bench's gyros, or its accelerometers.
+inline void PlaceGroup(bool gyro, SensorGroup& group) {
+  group.n_channels = gyro ? 4 : 3;
+  for (int c = 0; c < group.n_channels; ++c) {
+    group.channel[static_cast<std::size_t>(c)] = (gyro ? 3 : 0) + c;
+  }
+  group.thermometer = 0;
+  group.reference = 87.5;
+  group.half_range = 62.5;
+  group.min = 25;
+  group.max = 150;
+  // Bench x is -y of the tool, bench y its x.
+  group.R_TS << 0, 1, 0, -1, 0, 0, 0, 0, 1;
+  if (!gyro) group.R_TS = -group.R_TS;
+  group.unit_per_count.setConstant(1e-6);
+}
+
 inline ToolCalibration ModelOf(const ThermalTool& tool) {
   ToolCalibration model;
   model.thermometers.resize(1);
-  for (const bool gyro : {true, false}) {
-    SensorGroup& group = gyro ? model.gyro : model.accel;
-    group.n_channels = gyro ? 4 : 3;
-    for (int c = 0; c < group.n_channels; ++c) {
-      group.channel[static_cast<std::size_t>(c)] = (gyro ? 3 : 0) + c;
-    }
-    group.thermometer = 0;
-    group.reference = 87.5;
-    group.half_range = 62.5;
-    group.min = 25;
-    group.max = 150;
-    // Bench x is -y of the tool, bench y its x.
-    group.R_TS << 0, 1, 0, -1, 0, 0, 0, 0, 1;
-    if (!gyro) group.R_TS = -group.R_TS;
-    group.unit_per_count.setConstant(1e-6);
-  }
+  PlaceGroup(true, model.gyro);
+  PlaceGroup(false, model.accel);
   for (std::size_t n = 0; n < 4; ++n) {
     model.gyro.bias[n] = tool.bg[n];
     model.accel.bias[n].head<3>() = tool.ba[n];

@@ -303,6 +303,19 @@ TEST(ToolUse, HistoriesTellWalksAndToolsOutOfFamily) {
 }
 
 // A walk of which one change is known, or two, is hardly known at all.
+/// How many tools' biases of gyro x come to be off by more than so many sigmas of their priors.
+int Beyond(double sigmas, const std::vector<ToolHistory>& histories,
+           const std::map<std::string, double>& off) {
+  int beyond = 0;
+  for (const ToolHistory& history : histories) {
+    for (const SourceHistory& source : history.sources) {
+      if (source.name != "gyro_bias_x") continue;
+      beyond += std::abs(off.at(history.asset_serial)) > sigmas * source.prior_sigma ? 1 : 0;
+    }
+  }
+  return beyond;
+}
+
 TEST(ToolUse, PriorsForTheNextJobHoldWhatToolsComeTo) {
   Random random(46);
   const ParameterCovariance known = AnyCovariance(random);
@@ -327,15 +340,8 @@ TEST(ToolUse, PriorsForTheNextJobHoldWhatToolsComeTo) {
       walk(30);
       off[model.asset_serial] = (model.gyro.bias[0][1] - last) * kRad / 3600;
     }
-    int beyond = 0, far = 0;
-    for (const ToolHistory& history : HistoriesOf(all, {.temperature = 87.5, .days_ahead = 30})) {
-      for (const SourceHistory& source : history.sources) {
-        if (source.name != "gyro_bias_x") continue;
-        const double sigmas = std::abs(off.at(history.asset_serial)) / source.prior_sigma;
-        beyond += sigmas > 2 ? 1 : 0;
-        far += sigmas > 4 ? 1 : 0;
-      }
-    }
+    const auto histories = HistoriesOf(all, {.temperature = 87.5, .days_ahead = 30});
+    const int beyond = Beyond(2, histories, off), far = Beyond(4, histories, off);
     std::printf("%d calibrations: %.1f %% beyond two sigmas, %.1f %% beyond four\n", calibrations,
                 100.0 * beyond / kTools, 100.0 * far / kTools);
     // Of Student's distribution with one degree of freedom 6 and 3 %.

@@ -131,6 +131,21 @@ TEST(DepthCases, NoisyDepthDoesNotHideTheStops) {
   }
 }
 
+/// A cable whose depth is read as so much of what it is.
+constexpr double kSlipAndStretch = 0.997 / 1.002;  // 0.3 % of slip and 0.2 % of stretch
+
+/// The magnetic mark at `at`, which passed a little before this reading.
+DepthMark MagneticMark(const DepthMark& reading, double at, const Truth& truth, UtcTime begin) {
+  double t = (reading.utc - begin).seconds();
+  while (truth.At(t).md > at) t -= 0.001;
+  DepthMark magnetic = reading;
+  magnetic.magnetic_mark = true;
+  magnetic.seq += 1'000'000;
+  magnetic.utc = begin + Duration::Seconds(t);
+  magnetic.md = truth.At(t).md * kSlipAndStretch;
+  return magnetic;
+}
+
 TEST(DepthCases, MagneticMarksAndStretchHoldTheStationsToTheHole) {
   const Simulation simulation = Building(4);
   Job job = BuildingJob();
@@ -145,18 +160,11 @@ TEST(DepthCases, MagneticMarksAndStretchHoldTheStationsToTheHole) {
   testing::Play(simulation, surveyor, [&](SimulatedStep& step) {
     if (auto* mark = std::get_if<DepthMark>(&step)) {
       const double md = mark->md;
-      mark->md *= 0.997 / 1.002;  // 0.3 % of slip and 0.2 % of stretch
+      mark->md *= kSlipAndStretch;
       mark->tension = 2000;
       if (std::floor(md / 25) > std::floor(last / 25)) {
-        // The mark passed a little before this reading.
-        double t = (mark->utc - simulation.streams.begin_utc).seconds();
-        while (truth.At(t).md > std::floor(md / 25) * 25) t -= 0.001;
-        DepthMark magnetic = *mark;
-        magnetic.magnetic_mark = true;
-        magnetic.seq += 1'000'000;
-        magnetic.utc = simulation.streams.begin_utc + Duration::Seconds(t);
-        magnetic.md = truth.At(t).md * 0.997 / 1.002;
-        surveyor.Push(magnetic);
+        surveyor.Push(
+            MagneticMark(*mark, std::floor(md / 25) * 25, truth, simulation.streams.begin_utc));
       }
       last = md;
     }

@@ -33,11 +33,9 @@ struct Block {
   bool breaks = false;    ///< what came before is not its neighbour
   bool anew = false;      ///< what came before was given away as the last
   bool accel_full_scale = false, gyro_full_scale = false;
-  bool rests = false;
-  bool has_gz = false;
+  bool rests = false, has_gz = false;
   Quality quality = Quality::kGood;
   std::array<Moments, kChannels> sum{};
-
   double phase = 0;    ///< inertial roll by gravity, mean over the block, unwrapped [rad]
   double weight = 0;   ///< of it [1/rad^2]; zero: gravity says nothing
   double swept = 0;    ///< what the axis' own turning adds to it over the block [rad]

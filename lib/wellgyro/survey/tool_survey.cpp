@@ -47,6 +47,14 @@ ToolSurvey::ToolSurvey(const Job& job, std::int32_t tool, const StringRecords& s
       operations_(tool, sink),
       told_(sink) {}
 
+std::span<const ImuSample> ToolSurvey::Take(std::span<const ImuSample> batch) {
+  return intake_.Take(batch);
+}
+
+void ToolSurvey::Push(const ToolInfo& info) {
+  intake_.depth().SetSensorBelowReference(info.sensor_below_reference);
+}
+
 void ToolSurvey::Push(const StillWindow& window) {
   if (!CanBe(window)) {
     sink_.OnFault(

@@ -29,15 +29,11 @@ class ToolSurvey {
 
   /// Takes the samples at the begin of `batch` that come right behind each other, or one that has
   /// to be sorted in; what is left. Work() is to follow, with the marks up to tally().newest.
-  [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch) {
-    return intake_.Take(batch);
-  }
+  [[nodiscard]] std::span<const ImuSample> Take(std::span<const ImuSample> batch);
   /// Works off the samples whose depth is known.
   void Work() { Work(std::nullopt); }
   void Push(const StillWindow& window);
-  void Push(const ToolInfo& info) {
-    intake_.depth().SetSensorBelowReference(info.sensor_below_reference);
-  }
+  void Push(const ToolInfo& info);
   void Push(const Operation& operation) { operations_.Push(operation); }
 
   void Adjust();

@@ -47,6 +47,26 @@ inline Job StandsJob() { return JobOf(kStands); }
 struct StandsTables {
   std::string samples, depth, tally;
 };
+/// What people note of the stands: whole seconds, and how much hole each adds.
+inline std::string TallyOf(const Truth& truth, UtcTime begin_utc) {
+  std::string tally = "UTC[s],END_UTC[s],LENGTH[m]\n";
+  const double zero = static_cast<double>(begin_utc.ns) * 1e-9;
+  double begin = 0, md = 0;
+  bool still = true;
+  for (double at = 0.5; at <= truth.seconds() + 0.5; at += 0.5) {
+    const TruthState now = truth.At(at);
+    const bool rests = now.still && at <= truth.seconds();
+    if (rests && !still) begin = at;
+    if (!rests && still) {
+      const double there = truth.At(begin).md;
+      tally += fmt::format("{:.0f},{:.0f},{:.3f}\n", zero + begin, zero + at, there - md);
+      md = there;
+    }
+    still = rests;
+  }
+  return tally;
+}
+
 inline StandsTables TablesOf(const Simulation& simulation, bool with_utc, double utc_off = 0) {
   StandsTables t;
   t.samples = with_utc
@@ -69,23 +89,7 @@ inline StandsTables TablesOf(const Simulation& simulation, bool with_utc, double
       t.depth += fmt::format("{},{}\n", mark->utc.ns / 1000, mark->md);
     }
   }
-  t.tally = "UTC[s],END_UTC[s],LENGTH[m]\n";
-  const Truth& truth = simulator.truth();
-  const double zero = static_cast<double>(simulation.streams.begin_utc.ns) * 1e-9;
-  double begin = 0, md = 0;
-  bool still = true;
-  for (double at = 0.5; at <= truth.seconds() + 0.5; at += 0.5) {
-    const TruthState now = truth.At(at);
-    const bool rests = now.still && at <= truth.seconds();
-    if (rests && !still) begin = at;
-    if (!rests && still) {
-      const double there = truth.At(begin).md;
-      // People note whole seconds.
-      t.tally += fmt::format("{:.0f},{:.0f},{:.3f}\n", zero + begin, zero + at, there - md);
-      md = there;
-    }
-    still = rests;
-  }
+  t.tally = TallyOf(simulator.truth(), simulation.streams.begin_utc);
   return t;
 }
 
