@@ -51,6 +51,11 @@ void AlongHoleCovariance::Advance(const StationState& station) {
     throw std::invalid_argument("AlongHoleCovariance: knot " + std::to_string(station.knot) +
                                 " comes after knot " + std::to_string(knot_));
   }
+  const auto here = station.cov.rows(), last = state_cov_.rows();
+  if (link.rows() != (with_depth ? last : here) || link.cols() != (with_depth ? here : last)) {
+    throw std::invalid_argument("AlongHoleCovariance: knot " + std::to_string(station.knot) +
+                                " is not linked to knot " + std::to_string(knot_));
+  }
   const StationMatrix cross = with_depth ? link : StationMatrix(link.transpose());
   const StationMatrix carry = SolveCovariance(state_cov_, cross);
   cov_with_state_ = (cov_with_state_ * carry).eval();

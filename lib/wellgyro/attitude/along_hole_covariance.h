@@ -34,8 +34,8 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   /// The next station of the survey in the order of depth. Returns cov_p_WT_W [m^2].
   /// The stations of one run must come one after the other, each the neighbour in time of the one
   /// before; one without `cov_with_previous`, the first of a run, is taken as independent of its
-  /// neighbour. Throws std::invalid_argument when depths do not increase or
-  /// time runs the wrong way.
+  /// neighbour. Throws std::invalid_argument when depths do not increase, time runs the wrong way,
+  /// or `cov_with_previous` is of another number of errors than its neighbour has.
   Eigen::Matrix3d Add(const StationState& station);
 
   /// The same for a station that the survey leaves out: it only carries the correlations on. Its

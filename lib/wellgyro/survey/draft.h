@@ -21,7 +21,10 @@ struct Draft {
   /// See NorthFix; of `attitude`.
   std::optional<double> mirror_azimuth;
   double mirror_cost = 0;
-  bool listed = true;  ///< false: only ties others together, or not asked for after all
+  bool listed = true;   ///< false: only ties others together, or not asked for after all
+  bool closes = false;  ///< the survey as last adjusted; the next may be closed by a deeper one
+
+  bool in_survey() const { return listed || closes; }
 };
 
 /// One run of one tool, ready to be placed.

@@ -54,9 +54,11 @@ AttitudeSample ForwardEstimate::AttitudeNow() const {
   if (knot.increment.level || knots_.empty()) {
     return LevelOf(knot, job_.errors, site_.site().gravity);
   }
+  // Nothing was seen of this knot, and the heading is too vague to go on from.
   AttitudeSample attitude = known_;
   attitude.time = knot.increment.time;
   attitude.quality |= knot.increment.quality;
+  ForgetAzimuth(attitude);
   return attitude;
 }
 
@@ -103,6 +105,7 @@ bool ForwardEstimate::Begin() {
   SmoothedRun smoothed = SmoothedOf(solved, part);
   for (StationState& state : smoothed.stations) state.knot += begin;
   std::move_backward(smoothed.stations.begin(), smoothed.stations.end(), history_.states.end());
+  ++solutions_;
   forward_.emplace(solved.end, recent_);
   begun_roughly_ = !(forward_->SigmaOfHeading() < kSureHeading);
   const bool sure = KeepIfSure(knots);

@@ -58,6 +58,8 @@ class ForwardEstimate {
 
   bool empty() const { return knots_.empty(); }
   bool azimuth_known() const { return !empty() && known_.azimuth_known; }
+  /// How often the run was solved anew so far, and with it the states of all stations.
+  std::size_t solutions() const { return solutions_; }
   /// The run goes on knot by knot from a north.
   bool goes_on() const { return forward_.has_value(); }
   const RunState* state() const { return forward_ ? &forward_->state() : nullptr; }
@@ -119,7 +121,8 @@ class ForwardEstimate {
   std::optional<ForwardRun> forward_;  ///< from the first north on
   std::optional<Known> sure_;          ///< when its heading was last sure
   bool begun_roughly_ = false;         ///< about a heading that was not yet sure
-  std::size_t next_try_ = 0;           ///< knots, from which a start is tried again
+  std::size_t solutions_ = 0;
+  std::size_t next_try_ = 0;  ///< knots, from which a start is tried again
 };
 
 }  // namespace wellgyro

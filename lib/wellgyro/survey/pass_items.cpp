@@ -56,7 +56,7 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
   for (const Draft& draft : run.drafts) {
     const StationState* state = draft.state ? &run.states[*draft.state] : nullptr;
     passes[draft.station.pass_number].push_back(
-        {StationOf(job, draft, state), state, draft.listed, true});
+        {StationOf(job, draft, state), state, draft.in_survey(), true});
   }
   JoinStopsBelow(passes);
   std::vector<PassItems> result;

@@ -130,13 +130,14 @@ void RunDrafts::TakeStop(const NorthFix& fix, bool list) {
   }
 }
 
-void RunDrafts::ListDeepest() {
+void RunDrafts::CloseAtDeepest() {
   Draft* deepest = nullptr;
   for (Draft& draft : book_.drafts()) {
+    draft.closes = false;
     if (draft.station.pass == Pass::kOut) continue;
     if (!deepest || draft.station.md > deepest->station.md) deepest = &draft;
   }
-  if (deepest) deepest->listed = true;
+  if (deepest) deepest->closes = true;
 }
 
 }  // namespace wellgyro

@@ -48,8 +48,8 @@ class RunDrafts {
   void ListLast(WaitingKnots& waiting);
   /// The station of a stop gets what its north fix says of the place; `list`: it is asked for.
   void TakeStop(const NorthFix& fix, bool list);
-  /// Lists the deepest station of the in-runs, which closes the survey.
-  void ListDeepest();
+  /// The deepest station of the in-runs so far closes the survey, and none before it any more.
+  void CloseAtDeepest();
 
  private:
   void Add(const Draft& waiting, std::size_t state, const RunKnot& knot, Quality unseen,

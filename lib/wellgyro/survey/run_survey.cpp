@@ -128,8 +128,8 @@ void RunSurvey::CloseOnWhole(std::span<const AttitudeSample> whole) {
   wellgyro::CloseOnWhole(estimate_.history().fixes, whole, summary_.fixes);
 }
 
-void RunSurvey::ListLastDepth() {
-  if (job_.stations.every > 0) drafts_.ListDeepest();
+void RunSurvey::CloseAtDeepest() {
+  if (job_.stations.every > 0) drafts_.CloseAtDeepest();
 }
 
 const StationState& RunSurvey::state(std::size_t number) const {

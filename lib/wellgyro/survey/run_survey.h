@@ -69,6 +69,8 @@ class RunSurvey {
   /// Of drafts() that are from samples, in this order, as known on the way.
   std::vector<StationState> states() const { return drafts_.States(estimate_.history().states); }
   const StationState& state(std::size_t number) const;
+  /// How often all states have become others.
+  std::size_t solutions() const { return estimate_.solutions(); }
   /// How many of drafts(), the youngest, are told ahead: their knots still wait.
   std::size_t ahead() const { return drafts_.ahead(); }
   /// All that is to be estimated from. Those of drafts() that are from samples stand in this order
@@ -83,8 +85,8 @@ class RunSurvey {
   /// How stops that were reached on a roll nobody saw agree with the run as a whole, by its
   /// attitudes at the end of every knot.
   void CloseOnWhole(std::span<const AttitudeSample> whole);
-  /// Lists the deepest station of the in-runs, which closes the survey.
-  void ListLastDepth();
+  /// The deepest station of the in-runs so far closes the survey, where stations go by depth.
+  void CloseAtDeepest();
 
  private:
   // The ways of a sample, alone and by the block.

@@ -150,7 +150,7 @@ DraftedRun SurveyMaker::DraftedOf(const ToolRun& run) const {
       if (*draft.state + 1 < d.states.size()) d.states[*draft.state + 1].cov_with_previous = {};
       const bool waits =
           !parts_.finished && &run == &parts_.runs.back() && run.survey->IsUnheard(i);
-      if (draft.listed) ++(waits ? d.waiting_for_azimuth : d.without_azimuth);
+      if (draft.in_survey()) ++(waits ? d.waiting_for_azimuth : d.without_azimuth);
       continue;
     }
     draft.station.status = parts_.crew.StatusOf(draft.station, i < run.adjusted_drafts);

@@ -17,6 +17,7 @@ namespace wellgyro {
 struct ToolRun {
   std::unique_ptr<RunSurvey> survey;
   std::unique_ptr<ProvisionalPath> provisional;
+  std::size_t solutions = 0;  ///< of the run, when that path began
   std::unique_ptr<SampleWatch> watch;
   std::unique_ptr<DepthMotion> motion;
   // As of the last Adjust:

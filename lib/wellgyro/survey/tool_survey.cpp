@@ -179,19 +179,28 @@ void ToolSurvey::Tell(ToolRun& run) {
   std::vector<std::size_t> news = survey.News();
   if (news.empty()) return;
   std::sort(news.begin(), news.end());
-  for (std::size_t i : news) {
-    Draft& draft = survey.drafts()[i];
+  // Once the run was solved anew the states of stations told before are others, to which those that
+  // come are linked: the path begins again.
+  const bool anew = run.solutions != survey.solutions();
+  if (anew) run.provisional = std::make_unique<ProvisionalPath>(job_);
+  run.solutions = survey.solutions();
+  auto next = news.begin();
+  for (std::size_t i = anew ? 0 : news.front(); i < survey.drafts().size(); ++i) {
+    next = std::find_if(next, news.end(), [i](std::size_t n) { return n >= i; });
+    const bool is_news = next != news.end() && *next == i;
+    if (!(is_news || (anew && !survey.IsUnheard(i)))) continue;
+    const Draft& draft = survey.drafts()[i];
     const StationState* state = draft.state ? &survey.state(*draft.state) : nullptr;
-    if (std::optional<Station> station = run.provisional->Place(draft, state)) {
-      station->status = crew_.StatusOf(draft.station, false);
-      told_.Tell(*station);
-    }
+    std::optional<Station> station = run.provisional->Place(draft, state);
+    if (!station || !is_news) continue;
+    station->status = crew_.StatusOf(draft.station, false);
+    told_.Tell(*station);
   }
 }
 
 void ToolSurvey::Adjust() {
   for (ToolRun& run : runs_) {
-    run.survey->ListLastDepth();
+    run.survey->CloseAtDeepest();
     const RunHistory history = run.survey->History();
     if (!history.knots.empty()) {
       SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history) : EstimatedRun(job_, history);
