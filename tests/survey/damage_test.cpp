@@ -134,6 +134,24 @@ Simulation WithoutStops() {
 }
 
 // Gyros without bias that are carried through a hole see the Earth's rate as well as held ones.
+// Accelerometers that are not yet powered: the first stop has none, the second gives the north.
+TEST(Damage, WhatFeelsNoForceAtAllIsNoStop) {
+  const Simulation simulation = testing::Slant();
+  CollectingSink sink;
+  const Survey survey =
+      testing::SurveyOf(simulation, testing::SlantJob(), sink, [&](SimulatedStep& step) {
+        auto* sample = std::get_if<ImuSample>(&step);
+        const double t = sample == nullptr ? 0 : (sample->stamp.tool_time - ToolTime{}).seconds();
+        if (sample != nullptr && t - simulation.tool.errors.clock_offset < 80) {
+          sample->f_T.setZero();
+        }
+        return true;
+      });
+  ASSERT_EQ(survey.runs.size(), 1u);
+  EXPECT_EQ(survey.runs[0].fixes.size(), 1u);
+  EXPECT_NE(survey.runs[0].verdict.verdict, Verdict::kPass);
+}
+
 TEST(Damage, WithoutAStopTheMotionShowsNorth) {
   const Simulation quick = WithoutStops();
   const Truth truth(quick);

@@ -53,6 +53,8 @@ bool StopWatch::IsAt(const Stop& stop, ToolTime time, std::optional<double> md) 
 }
 
 void StopWatch::Take(const StillWindow& window) {
+  // What feels no force at all is not at rest on the Earth: its accelerometers are dead.
+  if (window.f_T.isZero(0)) return;
   if (held() && !IsAt(stops_.back(), window.begin, window.md)) Leave();
   if (!held()) stops_.emplace_back();
   stops_.back().windows.push_back(window);
