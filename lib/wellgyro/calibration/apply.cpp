@@ -84,7 +84,9 @@ struct SampleCalibrator::State {
   explicit State(const ToolCalibration& model);
 
   bool Fits(const RawSample& raw) const {
-    return raw.n_channels >= channels_needed && raw.n_temperatures >= thermometers_needed;
+    return raw.n_channels >= channels_needed && raw.n_channels <= RawSample::kChannelsMax &&
+           raw.n_temperatures >= thermometers_needed &&
+           raw.n_temperatures <= RawSample::kTemperaturesMax;
   }
   std::size_t PlaceOf(int thermometer);
   void ShareCells();
@@ -363,6 +365,12 @@ std::string SampleCalibrator::WhyNot(const RawSample& raw) const {
   if (raw.n_channels < state.channels_needed) {
     return fmt::format("sample {} has {} channels where the tool model needs {}", raw.stamp.seq,
                        raw.n_channels, state.channels_needed);
+  }
+  if (raw.n_channels > RawSample::kChannelsMax ||
+      raw.n_temperatures > RawSample::kTemperaturesMax) {
+    return fmt::format("sample {} has {} channels and {} thermometers, of which {} and {} fit",
+                       raw.stamp.seq, raw.n_channels, raw.n_temperatures, RawSample::kChannelsMax,
+                       RawSample::kTemperaturesMax);
   }
   return fmt::format("sample {} has {} thermometers where the tool model needs {}", raw.stamp.seq,
                      raw.n_temperatures, state.thermometers_needed);

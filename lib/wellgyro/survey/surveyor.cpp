@@ -92,6 +92,14 @@ struct Surveyor::Rooms {
   bool finished = false, flushed = false;
   std::int64_t most_heard = 0;  ///< samples of the tool that has most: its clock is the string's
 
+  /// Those of numbers that no tool has, as of damaged messages, are forgotten again.
+  SampleCalibrator& Calibrator(std::int32_t tool_number) {
+    if (calibrators.size() > 2 * kToolsMax) {
+      std::erase_if(calibrators, [this](const auto& of) { return !tools.contains(of.first); });
+    }
+    return calibrators.try_emplace(tool_number, *job.tool).first->second;
+  }
+
   /// nullptr: one tool too many.
   ToolSurvey* Tool(std::int32_t number) {
     const auto found = tools.find(number);
@@ -254,16 +262,25 @@ void Surveyor::Push(std::span<const RawSample> batch) {
                                "file"});
     return;
   }
-  const std::int32_t tool = batch.front().stamp.tool;
-  SampleCalibrator& calibrator =
-      rooms_->calibrators.try_emplace(tool, *rooms_->job.tool).first->second;
   std::vector<ImuSample>& samples = rooms_->calibrated;
   if (samples.size() < batch.size()) samples.resize(batch.size());
-  const std::size_t done = calibrator.Apply(batch, samples);
-  if (done < batch.size()) {
-    rooms_->sink.OnFault(Fault{FaultCode::kConflict, calibrator.WhyNot(batch[done])});
+  const RawSample* misfit = nullptr;
+  for (std::span<const RawSample> rest = batch; !rest.empty();) {
+    const std::int32_t tool = rest.front().stamp.tool;
+    const auto other = std::find_if(rest.begin(), rest.end(), [tool](const RawSample& sample) {
+      return sample.stamp.tool != tool;
+    });
+    const auto of_tool = rest.first(static_cast<std::size_t>(other - rest.begin()));
+    SampleCalibrator& calibrator = rooms_->Calibrator(tool);
+    const std::size_t done = calibrator.Apply(of_tool, samples);
+    Push(std::span<const ImuSample>(samples.data(), done));
+    const bool fit = done == of_tool.size();
+    if (!fit && misfit == nullptr) {
+      misfit = &of_tool[done];
+      rooms_->sink.OnFault(Fault{FaultCode::kConflict, calibrator.WhyNot(*misfit)});
+    }
+    rest = rest.subspan(fit ? done : done + 1);
   }
-  Push(std::span<const ImuSample>(samples.data(), done));
 }
 
 void Surveyor::Push(const ImuSample& sample) { Push({&sample, 1}); }

@@ -56,7 +56,8 @@ struct SampleTally {
 /// to it is known, or until samples a latency later have come.
 ///
 /// Data never make Push throw: what cannot be used reaches the sink as a Fault, hard physics as
-/// Quality. Memory grows with stations and knots only (one knot a second, about .35 kB).
+/// Quality. The sink must not throw either: what it interrupts is not done again. Memory grows with
+/// stations and knots only (one knot a second, about .35 kB).
 class WELLGYRO_EXPORT Surveyor {
  public:
   /// What comes beyond these is left out with a Fault; of more tools those with the most samples
@@ -74,7 +75,8 @@ class WELLGYRO_EXPORT Surveyor {
   Surveyor& operator=(Surveyor&&) noexcept;
 
   void Push(std::span<const ImuSample> batch);
-  /// Counts, made SI by job.tool; a Fault where the job has none.
+  /// Counts, made SI by job.tool; a Fault where the job has none. Samples with fewer channels or
+  /// thermometers than it names are left out, with a Fault for the first of a batch.
   void Push(std::span<const RawSample> batch);
   void Push(const ImuSample& sample);
   void Push(const StillWindow& window);
