@@ -31,6 +31,23 @@ std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, dou
                    top};
 }
 
+/// Where a pass begins that saw nothing of the hole from the tie-in down to it: on the line of
+/// another run, of the first `count`, that reaches there and is known best; absent where none does.
+std::optional<PathStart> StartOnOther(const Site& head, const std::vector<PassLine>& lines,
+                                      std::size_t count, const PathStart& tie,
+                                      const PassItems& pass) {
+  const double from = SeenFrom(pass);
+  std::optional<PathStart> best;
+  if (from - tie.point.station.md <= kUnseenLeg) return best;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double end = lines[i].points.back().station.md;
+    if (end < from - kUnseenLeg) continue;
+    const auto start = StartOnLine(head, lines[i], std::min(from, end), tie.top_tangent_W);
+    if (start && (!best || start->cov_p_WT_W.trace() < best->cov_p_WT_W.trace())) best = start;
+  }
+  return best;
+}
+
 /// Of the leg from one direction to another [rad/m].
 double SeverityOf(double length, const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
   const auto leg = MinimumCurvatureLeg(length, t1, t2);
@@ -110,8 +127,20 @@ double ShallowestDepth(const std::vector<PassItems>& passes) {
   return md;
 }
 
+/// Runs that have stations; one that begins deeper may begin on the line of another.
+std::vector<std::size_t> ShallowestFirst(const std::vector<std::vector<PassItems>>& by_run) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < by_run.size(); ++i) {
+    if (!by_run[i].empty()) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return ShallowestDepth(by_run[i]); });
+  return order;
+}
+
+/// Of one run, into `lines`; `good` are those of the runs that count, which may be the same.
 void PlaceAll(const Site& head, const Job& job, const Station& opening,
-              std::vector<PassItems>& passes, std::vector<PassLine>& lines) {
+              const std::vector<PassLine>& good, std::vector<PassItems>& passes,
+              std::vector<PassLine>& lines) {
   PathStart tie;
   tie.point.station = PathOf(opening);
   tie.point.p_WT_W = opening.p_WT_W;
@@ -128,6 +157,7 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
     if (a_top != b_top) return a_top;
     return passes[a].back().station.md > passes[b].back().station.md;
   });
+  const std::size_t others = good.size();
   std::size_t main_line = lines.size();  // the deepest so far, of this run
   const auto depth = [&](std::size_t i) { return lines[i].points.back().station.md; };
   for (std::size_t i : order) {
@@ -136,7 +166,8 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
     if (main_line < lines.size()) {
       start = StartOnLine(head, lines[main_line], first, tie.top_tangent_W);
     }
-    lines.push_back(PlaceStations(head, job, start && first > top ? *start : tie, passes[i]));
+    if (!start || first <= top) start = StartOnOther(head, good, others, tie, passes[i]);
+    lines.push_back(PlaceStations(head, job, start.value_or(tie), passes[i]));
     if (depth(lines.size() - 1) > depth(main_line)) main_line = lines.size() - 1;
   }
 }
@@ -265,9 +296,10 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
     return placed;
   }
   std::vector<PassLine> lines, misruns;
+  for (const std::size_t i : ShallowestFirst(by_run)) {
+    PlaceAll(head, job, *opening, lines, by_run[i], runs[i].misrun ? misruns : lines);
+  }
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (by_run[i].empty()) continue;
-    PlaceAll(head, job, *opening, by_run[i], runs[i].misrun ? misruns : lines);
     List(by_run[i], job.tie_in.md, runs[i].misrun, placed);
   }
   Choose(head, *opening, lines, placed);

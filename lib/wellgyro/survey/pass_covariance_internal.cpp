@@ -12,9 +12,6 @@
 namespace wellgyro {
 namespace {
 
-// A leg so long without a depth in it was not seen: marks at stands of pipe.
-constexpr double kUnseenLeg = 5;  // [m]
-
 /// What the hole may do in a leg that nobody saw: course-length terms XCLA and XCLH of the ISCWSA
 /// error model, SPE 187249.
 Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
@@ -116,7 +113,8 @@ std::vector<Eigen::Matrix3d> OfSamples(const PassItems& pass, const PathStart& s
   std::vector<Eigen::Matrix3d> covs;
   const bool out = pass.front().station.pass == Pass::kOut;
   const auto order = out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth;
-  SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty());
+  const bool unseen_above = SeenFrom(pass) - start.point.station.md > kUnseenLeg;
+  SystematicCovariance first(start.cov_p_WT_W, pass.front().way.empty() || unseen_above);
   first.Add(origin);
   ShortOfWay shortfall(origin);
   AlongHoleCovariance sum(first.Add(pass.front().station), 0, order);

@@ -21,6 +21,15 @@ struct PassItem {
 };
 using PassItems = std::vector<PassItem>;  ///< in the order of depth
 
+/// A leg so long without a depth in it was not seen: marks at stands of pipe.
+inline constexpr double kUnseenLeg = 5;  // [m]
+
+/// The depth from which on the pass saw the hole.
+inline double SeenFrom(const PassItems& pass) {
+  const PassItem& first = pass.front();
+  return first.way.empty() ? first.station.md : first.way.front().md;
+}
+
 /// Where a sum of legs starts.
 struct PathStart {
   PathPoint point;
