@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/assemble.h"
@@ -55,6 +57,26 @@ Check CheckAzimuths(const std::vector<DraftedRun>& drafted) {
                                waiting));
   }
   return CountOf("stations_without_azimuth", 0, never, "every station passed has an azimuth");
+}
+
+/// What the job states of runs that are not there and of a place that none of them reached, where
+/// it states any.
+std::optional<Check> CheckStated(const Job& job, const std::vector<RunSummary>& runs) {
+  std::vector<std::string> unmet;
+  for (const RunSpec& spec : job.runs) {
+    if (std::ranges::find(runs, spec.number, &RunSummary::run) != runs.end()) continue;
+    unmet.push_back(fmt::format("[[run]] number = {}", spec.number));
+  }
+  const AlignmentSpec& spec = job.alignment;
+  const bool placed =
+      spec.method == AlignmentSpec::Method::kExternal && (spec.at_md || spec.at_utc);
+  const auto is_tie = [](const NorthFix& fix) { return fix.external && !fix.magnetic_azimuth; };
+  const bool tied = std::ranges::any_of(
+      runs, [&](const RunSummary& run) { return std::ranges::any_of(run.fixes, is_tie); });
+  if (placed && !tied) unmet.emplace_back("the place of the azimuth in [alignment]");
+  if (job.runs.empty() && !placed) return std::nullopt;
+  return CountOf("stated_unmet", 0, static_cast<std::int64_t>(unmet.size()),
+                 unmet.empty() ? "all of it was met" : fmt::format("{}", fmt::join(unmet, "; ")));
 }
 
 /// A step that no cable makes, and a lag that any speed makes a depth error.
@@ -291,6 +313,9 @@ Survey SurveyMaker::Make() const {
   survey.checks = Checks(placed.passes);
   survey.checks.push_back(CheckAzimuths(drafted));
   if (job_.tie_in.md > 0) survey.checks.push_back(CheckTieInWay(job_.tie_in, SeenOf(drafted)));
+  if (parts_.finished) {
+    if (auto check = CheckStated(job_, survey.runs)) survey.checks.push_back(*std::move(check));
+  }
   if (!job_.stations.at.empty()) survey.checks.push_back(CheckAsked(job_, placed.chosen));
   survey.passes = std::move(placed.passes);
   survey.chosen = std::move(placed.chosen);

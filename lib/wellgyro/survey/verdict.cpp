@@ -145,6 +145,7 @@ constexpr CodeWords kCodeWords[] = {
     {"samples_aliased", "rotation too fast for the sampling"},
     {"samples_lost", "samples are missing"},
     {"samples_refused", "samples were left out"},
+    {"stated_unmet", "the samples do not meet what the job states"},
     {"stations_asked", "stations asked for are missing"},
     {"stations_without_azimuth", "stations have no azimuth"},
     {"temperature_outside", "temperature outside the calibrated range"},
