@@ -91,11 +91,13 @@ int ConvertLog(const ConvertOptions& o) {
   std::optional<Fault> fault = tables ? sample_file.Finish() : tables.fault();
   if (!fault && tables->marks > 0) fault = depth_file.Finish();
   if (fault) return Unusable(*fault);
-  if (tables->left_out == 0) return kDone;
-  Complain(
-      fmt::format("{}: {} samples of other tools or sensors, or damaged messages, are left out",
-                  o.in, tables->left_out));
-  return kDoneWithLosses;
+  for (const Fault& damage : tables->damage) Complain(damage);
+  if (tables->left_out > 0) {
+    Complain(
+        fmt::format("{}: {} samples of other tools or sensors, or damaged messages, are left out",
+                    o.in, tables->left_out));
+  }
+  return tables->left_out > 0 || !tables->damage.empty() ? kDoneWithLosses : kDone;
 }
 
 /// From map coordinates in metres, which the system may count in feet.

@@ -5,7 +5,7 @@ import re
 import sys
 import unittest
 
-from harness import FreshProgramTest, Run
+from harness import FreshProgramTest, Run, Simulation, Stop
 
 SURVEY = "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,1.5,350\n60,3,355.25\n"
 
@@ -120,6 +120,20 @@ class Convert(FreshProgramTest):
         done = Run("check", self.Path("two.csv"))
         self.assertEqual(done.returncode, 2)
         self.assertIn("options are those of wellgyro convert", done.stdout)
+
+    def test_damage_of_a_log_is_told(self):
+        simulation = self.Write("run.toml", Simulation(
+            Stop(20), "imu_hz = 20.0\ndepth_hz = 4.0\nbatch = 20\n"))
+        self.Make("simulate", "--job", simulation, "--out", self.Path("run.lcm"))
+        self.Make("convert", self.Path("run.lcm"), self.Path("run.csv"))
+        whole = self.Bytes("run.lcm")
+        middle = len(whole) // 2
+        for name, log, says in (("cut", whole[:-7], "ends inside an event"),
+                                ("torn", whole[:middle] + whole[middle + 9:], "damaged bytes")):
+            self.Write(name + ".lcm", log)
+            done = self.Convert(name + ".lcm", name + ".csv")
+            self.assertEqual(done.returncode, 3, name + done.stderr)
+            self.assertIn(says, done.stderr)
 
     def test_command_line(self):
         self.assertEqual(self.Convert("in.csv", "out.unknown").returncode, 1)

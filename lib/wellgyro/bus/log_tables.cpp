@@ -126,6 +126,7 @@ Result<LogTables> WriteLogTables(const std::string& log, const Channels& channel
                  .source = log};
   }
   if (auto fault = writer.End()) return *std::move(fault);
+  writer.tables.damage = reader->Faults();
   return writer.tables;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
@@ -16,6 +17,7 @@ namespace wellgyro {
 struct LogTables {
   std::int64_t samples = 0, marks = 0;
   std::int64_t left_out = 0;  ///< samples of tools or sensors unlike the first, messages refused
+  std::vector<Fault> damage;  ///< of the log: one Fault for each gap, one for an end that is cut
 };
 
 /// Takes whole lines of a table, in their order; gives a Fault where it cannot.
