@@ -97,6 +97,15 @@ std::vector<Fault> FaultsOfSensorTable(const std::string& name) {
   return table->fault() ? std::vector<Fault>{*table->fault()} : std::vector<Fault>();
 }
 
+/// A survey.csv. Its rows are all that it has, so that one which is cut behind a row looks whole.
+int CheckSurvey(const std::string& name, const std::string& what) {
+  const std::vector<Fault> faults = FaultOf(ReadSurveyCsv(name));
+  if (!faults.empty()) return Tell(name, what, faults, kUnusable);
+  fmt::print("{}: {}\n  nothing in it says where the table ends: a cut could not be seen\n", name,
+             what);
+  return kDone;
+}
+
 /// A survey in another's format, or nothing that wellgyro reads.
 int CheckForeign(const std::string& name, const std::string& what) {
   if (const auto delivery = DeliveryKind(name)) {
@@ -147,7 +156,7 @@ int CheckFile(const std::string& name) {
     case FileKind::kClearancePolicy:
       return Tell(name, what, FaultOf(ReadClearancePolicy(name)), kUnusable);
     case FileKind::kSurveyCsv:
-      return Tell(name, what, FaultOf(ReadSurveyCsv(name)), kUnusable);
+      return CheckSurvey(name, what);
     case FileKind::kSensorCsv:
       return Tell(name, what, FaultsOfSensorTable(name), kUnusable);
     case FileKind::kLcmLog:

@@ -135,6 +135,15 @@ class Convert(FreshProgramTest):
             self.assertEqual(done.returncode, 3, name + done.stderr)
             self.assertIn(says, done.stderr)
 
+    def test_a_row_that_is_cut_is_refused(self):
+        head = "MD[m],INC[deg],AZI_TRUE[deg],TVD[m]\n0,0,0,0\n30,1.5,350,\n"
+        self.Write("cut.csv", head + "60,3,35")
+        self.assertIn("cut.csv:4: 3 fields where the header has 4",
+                      self.Refused("cut.csv", "out.las"))
+        self.assertEqual(Run("check", self.Path("cut.csv")).returncode, 2)
+        self.Write("empty_cell.csv", head + "60,3,355,\n")
+        self.Done("empty_cell.csv", "out.csv")
+
     def test_command_line(self):
         self.assertEqual(self.Convert("in.csv", "out.unknown").returncode, 1)
         self.assertEqual(self.Convert("in.csv", "out.csv", "--to", "docx").returncode, 1)

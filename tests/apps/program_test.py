@@ -235,6 +235,21 @@ class Program(ProgramTest):
             self.assertEqual(said.count(arguments[1 if len(arguments) == 2 else 4]), 1, said)
             self.assertFalse("an LCM log" in said and "no LCM log" in said, said)
 
+    def test_check_says_what_it_cannot_know(self):
+        self.assertEqual(self.Survey(self.log, "checked").returncode, 0)
+        lines = self.Read("checked", "survey.csv").splitlines(keepends=True)
+        done = Run("check", self.Write("shorter.csv", "".join(lines[:6])))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertIn("a cut could not be seen", done.stdout)
+        self.assertNotIn("whole", done.stdout)
+        done = Run("check", self.Write("closed.csv", "".join(lines) + "\n\n"))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        for text, says in ((JOB.replace("job/1", "job/2"), "this version does not know"),
+                           (JOB.split("\n", 1)[1], 'format = "wellgyro.job/1"')):
+            done = Run("check", self.Write("unknown.toml", text))
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(says, done.stdout)
+
     def test_what_is_no_sensor_table_is_named(self):
         lacking = self.Write("lacking.csv", "UTC[s],GX[deg/h]\n1,2\n")
         other = self.Write("other.csv", "a,b,c\n1,2,3\n")

@@ -313,7 +313,9 @@ class CsvReader {
     if (!unused.empty()) lines_.Complain(FaultCode::kConflict, unused);
     columns_ = CsvColumnsOf(headings, options_, head(), claims_, lines_);
     for (std::size_t i = 0; i < columns_.all.size(); ++i) {
-      if (columns_.all[i].well && !well_column_) well_column_ = i;
+      const CsvColumn& c = columns_.all[i];
+      if (c.well && !well_column_) well_column_ = i;
+      if (c.column || c.text || c.status || c.well) least_fields_ = i + 1;
     }
     if (options_.decimal_comma) {
       commas_ = *options_.decimal_comma ? CommaUse::kDecimal : CommaUse::kThousands;
@@ -407,12 +409,17 @@ class CsvReader {
     return status;
   }
 
+  // Fields beyond the header's must be empty. Fewer are a row that is cut, whose last number may
+  // lack digits; between blanks an empty cell leaves nothing that could be counted.
   void CheckWidth(const std::vector<std::string>& fields) {
-    if (fields.size() <= columns_.all.size()) return;
-    if (std::any_of(fields.begin() + static_cast<std::ptrdiff_t>(columns_.all.size()), fields.end(),
-                    [](const auto& f) { return !f.empty(); })) {
-      lines_.Complain(FaultCode::kSyntax, fmt::format("{} fields where the header has {}",
-                                                      fields.size(), columns_.all.size()));
+    const std::size_t wanted = columns_.all.size();
+    const bool more = fields.size() > wanted &&
+                      std::any_of(fields.begin() + static_cast<std::ptrdiff_t>(wanted),
+                                  fields.end(), [](const auto& f) { return !f.empty(); });
+    const bool fewer = delimiter_ != ' ' && fields.size() < least_fields_;
+    if (more || fewer) {
+      lines_.Complain(FaultCode::kSyntax,
+                      fmt::format("{} fields where the header has {}", fields.size(), wanted));
     }
   }
 
@@ -453,6 +460,7 @@ class CsvReader {
   PetraHead petra_;
   std::string first_line_;
   std::optional<std::size_t> well_column_;
+  std::size_t least_fields_ = 0;  // up to the last column of a known meaning
   char delimiter_ = ',';
   CommaUse commas_ = CommaUse::kNone;
   bool ended_ = false, other_well_ = false, keywords_again_ = false;

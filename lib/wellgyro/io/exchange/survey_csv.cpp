@@ -208,6 +208,7 @@ bool IsSurveyCsvHeader(std::string_view line) {
 
 Result<std::vector<Station>> ParseSurveyCsv(std::string_view text, const std::string& source) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = text.substr(0, text.find_last_not_of("\r\n") + 1);  // lines that close it may be empty
   std::optional<Reader> reader;
   int line_number = 0;
   while (!text.empty()) {
