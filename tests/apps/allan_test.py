@@ -151,6 +151,13 @@ class AllanOfFiles(FreshProgramTest):
         self.assertEqual(helped.returncode, 0)
         self.assertIn("Example:", helped.stdout)
 
+    def test_a_ramp_without_noise_is_told(self):
+        data = self.Write("ramp.csv", "".join(f"{i}\n" for i in range(1000)))
+        ran = Allan("--data", data, "--rate-hz", "100", "--out", self.Path("n.toml"))
+        self.assertEqual(ran.returncode, 2, ran.stderr)
+        self.assertIn("no noise shows", ran.stderr)
+        self.assertFalse(os.path.exists(self.Path("n.toml")))
+
     def test_a_device_is_written_to_not_replaced(self):
         os.mkfifo(self.Path("pipe"))
         data = self.PutDoubles("log.f64", White(100, 4))

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "wellgyro/noise/octave_table_internal.h"
 
@@ -40,13 +42,14 @@ class Fitter {
     problem_.offset = Eigen::VectorXd::Zero(grid_.size());
   }
 
-  NoiseFit Fit() {
+  /// Nothing where the model that fits best has no noise, only a ramp or a sinusoid.
+  std::optional<NoiseFit> Fit() {
     NoiseFit fit;
-    FitWithOwnDof();
+    if (!FitWithOwnDof()) return std::nullopt;
     TestTerm(NoiseTerm::kRateRamp, fit.term[NoiseTerm::kRateRamp]);
     if (!fit.term[NoiseTerm::kRateRamp].observable) {
       used_ &= ~Bit(NoiseTerm::kRateRamp);
-      FitWithOwnDof();
+      if (!FitWithOwnDof()) return std::nullopt;
     }
     Report(0.2);
     for (const auto term : kAllNoiseTerms) {
@@ -69,15 +72,18 @@ class Fitter {
     if (options_.progress) options_.progress(part);
   }
 
-  // The degrees of freedom depend on the model and the model on them; both settle at once.
-  void FitWithOwnDof() {
+  // The degrees of freedom depend on the model and the model on them; both settle at once. False
+  // where there are none: a model without noise has no sample variances that vary.
+  bool FitWithOwnDof() {
     NoiseModel model =
         ModelOf(TermVector::Unit(kNoiseTerms, At(NoiseTerm::kAngleRandomWalk)), shape_);
     for (int round = 0; round < 3; ++round) {
       problem_.edf = grid_.Dof(model);
+      if (!(problem_.edf.minCoeff() > 0)) return false;
       best_ = FitShape(s_);
       model = ModelOf(best_.weight, shape_);
     }
+    return grid_.Dof(model).minCoeff() > 0;
   }
 
   // Fits the weights and, for Gauss-Markov, the correlation time; leaves the shape in place.
@@ -118,8 +124,10 @@ class Fitter {
     const WeightFit without = FitVariances(problem_, s_, others);
     result.gain = without.deviance - best_.deviance;
     result.gain_limit = kOneSidedDeviance;
-    if (result.gain > kOneSidedDeviance / 2 && std::isfinite(without.deviance)) {
-      const TableSampler sampler(grid_, ModelOf(without.weight, shape_));
+    const NoiseModel rest = ModelOf(without.weight, shape_);
+    const bool varies = std::isfinite(without.deviance) && grid_.Dof(rest).minCoeff() > 0;
+    if (result.gain > kOneSidedDeviance / 2 && varies) {
+      const TableSampler sampler(grid_, rest);
       VarianceProblem problem = problem_;
       problem.edf = sampler.dof();
       Random random(options_.seed);
@@ -267,7 +275,9 @@ Result<NoiseFit> FitNoise(const AllanResult& octaves, const NoiseFitOptions& opt
   }
   const Eigen::VectorXd s = Eigen::Map<const Eigen::VectorXd>(
       variances.data(), static_cast<Eigen::Index>(variances.size()));
-  return Fitter(std::move(grid), s, options).Fit();
+  std::optional<NoiseFit> fit = Fitter(std::move(grid), s, options).Fit();
+  if (fit) return *std::move(fit);
+  return Fault{.code = FaultCode::kRange, .text = "no noise shows beside the log's straight drift"};
 }
 
 NoiseCoefficients CoefficientsOf(const NoiseFit& fit) {

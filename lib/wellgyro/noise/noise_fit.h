@@ -60,8 +60,8 @@ struct NoiseFit {
 /// (tests/noise/allan_long_test.cpp).
 ///
 /// Averaging times are used up to two fifths of the log. A Fault of code kRange when fewer than
-/// three averaging times have a variance above zero. Throws std::invalid_argument for another kind
-/// of deviation or factors that are not octaves.
+/// three averaging times have a variance above zero, or a ramp explains them all. Throws
+/// std::invalid_argument for another kind of deviation or factors that are not octaves.
 WELLGYRO_EXPORT Result<NoiseFit> FitNoise(const AllanResult& octaves,
                                           const NoiseFitOptions& options = {});
 
