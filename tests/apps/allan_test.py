@@ -158,6 +158,14 @@ class AllanOfFiles(FreshProgramTest):
         self.assertIn("no noise shows", ran.stderr)
         self.assertFalse(os.path.exists(self.Path("n.toml")))
 
+    def test_an_empty_line_among_samples_is_one_that_is_missing(self):
+        rows = [repr(v) for v in White(2000, 5)]
+        rows[777] = ""
+        ran = Allan("--data", self.Write("log.csv", "GX[deg/h]\n\n" + "\n".join(rows) + "\n\n"),
+                    "--rate-hz", "50")
+        self.assertEqual(ran.returncode, 3, ran.stderr)
+        self.assertIn("1 sample not finite, left out: sample 777", ran.stderr)
+
     def test_a_device_is_written_to_not_replaced(self):
         os.mkfifo(self.Path("pipe"))
         data = self.PutDoubles("log.f64", White(100, 4))

@@ -70,8 +70,13 @@ class CsvReader {
       seen += static_cast<double>(line.size() + 1);
       if (!line.empty() && line.back() == '\r') line.pop_back();
       const std::size_t begin = line.find_first_not_of(" \t");
-      if (begin == std::string::npos || line[begin] == '#') continue;
-      TakeLine(line);
+      if (begin == std::string::npos) {
+        ++blank_;
+      } else if (line[begin] == '#') {
+        blank_ = 0;  // what stands before a remark parts it from the samples
+      } else {
+        TakeLine(line);
+      }
       if (progress && line_number_ % 65536 == 0) progress(seen / size);
     }
     if (fault_) return *fault_;
@@ -106,9 +111,22 @@ class CsvReader {
                                       [](std::string_view f) { return !NumberOrGap(f); });
       FindColumns(header);
       columns_known_ = true;
-      if (header || fault_) return;
+      if (header || fault_) {
+        blank_ = 0;
+        return;
+      }
     }
+    LeaveBlanks();
     TakeSample();
+  }
+
+  // Where the value is the only column, an empty line between two samples is an empty field.
+  void LeaveBlanks() {
+    const bool fields = fields_.size() == 1 && !series_.values.empty();
+    if (fields) {
+      series_.values.insert(series_.values.end(), blank_, std::numeric_limits<double>::quiet_NaN());
+    }
+    blank_ = 0;
   }
 
   std::optional<std::size_t> Find(const std::string& name, bool header) {
@@ -266,6 +284,7 @@ class CsvReader {
   std::optional<std::int64_t> last_sequence_;
   const char* line_begin_ = nullptr;
   int line_number_ = 0;
+  std::size_t blank_ = 0;  ///< empty lines since the last that was taken
   std::optional<Fault> fault_;
 };
 

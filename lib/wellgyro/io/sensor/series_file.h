@@ -41,9 +41,9 @@ WELLGYRO_EXPORT Result<SampleSeries> ReadBinarySeries(
 
 /// Reads a column of numbers. Separated by comma, semicolon, tab or blanks; one header line or
 /// none; lines with # and empty lines are left out. An empty field, "nan" or "inf" is a sample that
-/// is missing. Any other text is a Fault with line and column; so is a sequence that goes back. A
-/// unit in the heading, as tables of sensor data have it (GX[deg/h], GX(deg/h), gx_deg_per_h), is
-/// the series'.
+/// is missing; so is an empty line between samples that are the only column. Any other text is a
+/// Fault with line and column; so is a sequence that goes back. A unit in the heading, as tables of
+/// sensor data have it (GX[deg/h], GX(deg/h), gx_deg_per_h), is the series'.
 WELLGYRO_EXPORT Result<SampleSeries> ReadCsvSeries(
     const std::filesystem::path& path, const SeriesColumns& columns,
     const std::function<void(double)>& progress = {});
