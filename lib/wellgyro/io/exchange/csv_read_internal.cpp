@@ -18,6 +18,7 @@ namespace wellgyro {
 namespace {
 
 constexpr int kMostHeaderLines = 200;
+constexpr int kMostLinesBelow = 20;  // between names and the first numbers
 constexpr std::size_t kMostRemarks = 1000;
 
 bool IsBlank(const std::vector<std::string>& fields) {
@@ -215,10 +216,11 @@ class CsvReader {
     return false;
   }
 
-  // Fields of the first row of numbers below the line last read, if there is one.
+  // Fields of the first row of numbers below the line last read, if there is one near it.
   std::optional<std::size_t> WidthBelow() {
     const std::string ahead = lines_.Ahead();
-    for (std::size_t at = 0; at < ahead.size();) {
+    std::size_t at = 0;
+    for (int below = 0; below < kMostLinesBelow && at < ahead.size(); ++below) {
       const std::size_t end = std::min(ahead.find('\n', at), ahead.size());
       const std::string line(Trim(std::string_view(ahead).substr(at, end - at)));
       at = end + 1;
