@@ -8,6 +8,8 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/result/result_folder.h"
+
 #include "commands.h"
 #include "report.h"
 
@@ -38,6 +40,7 @@ int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& recor
   }
   const std::vector<OutputFile> files = ResultFiles(record, source, job, survey);
   if (delivery.state == Files::kToWrite) {
+    RemoveOlder(result.folder, files);
     if (const auto fault = WriteFiles(result.folder, files)) return Unusable(*fault);
   }
   ToolSummary& summary = delivery.done.emplace_back();

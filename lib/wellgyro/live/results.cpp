@@ -87,10 +87,8 @@ void RemoveFormer(const std::filesystem::path& folder, const std::vector<ToolRes
     return;
   }
   std::error_code ignored;
-  for (const char* name : {"survey.csv", "passes.csv", "checks.csv", "diagnosis.csv",
-                           "reliability.csv", "stretches.csv", "source.toml", "run.toml"}) {
-    std::filesystem::remove(folder / name, ignored);
-  }
+  RemoveOlder(folder, {});
+  for (const char* name : kResultFiles) std::filesystem::remove(folder / name, ignored);
 }
 
 }  // namespace wellgyro

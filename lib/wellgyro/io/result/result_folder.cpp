@@ -1,14 +1,58 @@
 #include "wellgyro/io/result/result_folder.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <system_error>
 
 #include <toml++/toml.h>
 
+#include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/text_file.h"
 
 namespace wellgyro {
+namespace {
+
+constexpr const char* kPages[] = {"survey.json", "report.html"};
+
+std::vector<std::string> Exports() {
+  std::vector<std::string> names;
+  for (const std::string& word : WrittenFormats()) {
+    const SurveyFormat format = *SurveyFormatOf(word);
+    if (format != SurveyFormat::kCsv) names.push_back(FileNameOf(format, "survey"));
+  }
+  names.emplace_back("survey.osdu.csv");
+  return names;
+}
+
+// An export may have the name of somebody's own file: those that a result wrote its run.toml lists.
+bool Lists(const std::string& run, const std::string& name) {
+  return run.find("name = \"" + name + "\"\n") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<std::string> FilesBesideResult() {
+  std::vector<std::string> names = Exports();
+  names.insert(names.end(), std::begin(kPages), std::end(kPages));
+  return names;
+}
+
+void RemoveOlder(const std::filesystem::path& folder, std::span<const OutputFile> files) {
+  const Result<std::string> run = ReadTextFile(folder / "run.toml");
+  if (!run) return;
+  std::vector<std::string> older(std::begin(kPages), std::end(kPages));
+  for (const std::string& name : Exports()) {
+    if (Lists(*run, name)) older.push_back(name);
+  }
+  std::error_code absent;
+  for (const std::string& name : older) {
+    const bool anew =
+        std::ranges::any_of(files, [&name](const OutputFile& file) { return file.name == name; });
+    if (!anew) std::filesystem::remove(folder / name, absent);
+  }
+}
 
 Result<bool> HoldsAcceptedResult(const std::filesystem::path& folder) {
   std::error_code ignored;
