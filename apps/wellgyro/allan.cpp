@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -19,6 +20,7 @@
 
 #include "choice.h"
 #include "commands.h"
+#include "distinct.h"
 #include "on_call.h"
 #include "report.h"
 
@@ -129,6 +131,8 @@ int Tell(const AllanOptions& o, const AllanAnswer& answer) {
 }
 
 int RunAllan(AllanOptions& o) {
+  RequireDistinct(std::array{NamedFile{"--data", o.data}, NamedFile{"--out", o.out},
+                             NamedFile{"--table", o.table}, NamedFile{"--plot", o.plot}});
   Result<SampleSeries> series = ReadSeries(o);
   if (!series) return Unusable(series.fault());
   SetPeriod(o, *series);

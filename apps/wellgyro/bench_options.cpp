@@ -1,9 +1,7 @@
 #include "bench_options.h"
 
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -13,6 +11,7 @@
 #include "wellgyro/record/sample.h"
 
 #include "choice.h"
+#include "distinct.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -41,20 +40,6 @@ std::optional<UtcTime> Date(const std::string& text, const char* option) {
 }
 
 }  // namespace
-
-void RequireDistinct(std::span<const NamedFile> files) {
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code ignored;
-      const auto& [name, path] = files[i];
-      const auto& [other, other_path] = files[j];
-      if (path.empty() || other_path.empty()) continue;
-      if (path == other_path || std::filesystem::equivalent(path, other_path, ignored)) {
-        throw std::invalid_argument(fmt::format("{} and {} must be different files", other, name));
-      }
-    }
-  }
-}
 
 CLI::Validator Within(double low, double high) {
   return {[low, high](std::string& word) -> std::string {

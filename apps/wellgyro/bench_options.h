@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -17,13 +16,6 @@
 #include "wellgyro/fit/thermometer_fit.h"
 
 namespace wellgyro::apps {
-
-struct NamedFile {
-  std::string option, path;  ///< path empty: not given
-};
-/// Nothing is written over what it came from, nor two files in one place: throws
-/// std::invalid_argument where two are one.
-void RequireDistinct(std::span<const NamedFile> files);
 
 /// Everything that the options of the bench methods can say; each method asks for its own.
 struct BenchOptions {

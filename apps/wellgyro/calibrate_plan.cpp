@@ -1,3 +1,4 @@
+#include <array>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "bench_options.h"
 #include "calibrate_tool.h"
 #include "commands.h"
+#include "distinct.h"
 #include "on_call.h"
 #include "report.h"
 
@@ -69,6 +71,7 @@ void TellPlan(const BenchPlanSetup& setup, const BenchPlan& plan) {
 }
 
 int Plan(BenchPlanOptions& o) {
+  RequireDistinct(std::array{NamedFile{"--well", o.well}, NamedFile{"--out", o.out}});
   if (!o.well.empty()) {
     if (const auto fault = TakeWell(o, o.setup)) return Unusable(*fault);
   }

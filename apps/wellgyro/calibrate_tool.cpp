@@ -26,6 +26,7 @@
 #include "bench_options.h"
 #include "chromium.h"
 #include "commands.h"
+#include "distinct.h"
 #include "on_call.h"
 #include "report.h"
 

@@ -1,12 +1,13 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include <fmt/core.h>
@@ -23,6 +24,8 @@
 
 #include "commands.h"
 #include "convert_options.h"
+#include "distinct.h"
+#include "on_call.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -84,6 +87,7 @@ int ConvertLog(const ConvertOptions& o) {
     return Misused(fmt::format("{} is an LCM log, which becomes CSV: name OUT with .csv", o.in));
   }
   const std::filesystem::path depths = out.parent_path() / (out.stem().string() + ".depth.csv");
+  RequireDistinct(std::array{NamedFile{"IN", o.in}, NamedFile{"OUT", depths.string()}});
   FileInPieces sample_file(out), depth_file(depths);
   const Result<LogTables> tables = WriteLogTables(
       o.in, Channels{}, [&](std::string_view lines) { return sample_file.Append(lines); },
@@ -163,7 +167,17 @@ std::string Mistake(const ConvertOptions& o) {
   return date ? std::string() : "--declination-date: " + date.fault().text;
 }
 
+/// Names what is written beside OUT, which the command line does not.
+void SayBeside(std::span<const OutputFile> files, const std::filesystem::path& out) {
+  for (const OutputFile& file : files) {
+    if (file.name == out.filename()) continue;
+    fmt::print("wrote {} too\n", (out.parent_path() / file.name).string());
+  }
+}
+
 int WriteAs(SurveyFormat format, ConvertOptions& o) {
+  const std::filesystem::path out(o.out);
+  std::vector<OutputFile> files;
   try {
     Result<SurveyTable> table = ReadSurvey(o.in, ReadingOf(o));
     if (!table) return Unusable(table.fault());
@@ -171,11 +185,7 @@ int WriteAs(SurveyFormat format, ConvertOptions& o) {
     Prepare(*table, o);
     const WriteOptions writing{.preamble = o.preamble, .variable_step = o.variable_step};
     if (Loses(*table, format, o, writing)) return kUnusable;
-    const auto files =
-        SurveyFiles(*table, format, std::filesystem::path(o.out).filename().string(), writing);
-    if (const auto fault = WriteFiles(std::filesystem::path(o.out).parent_path(), files)) {
-      return Unusable(*fault);
-    }
+    files = SurveyFiles(*table, format, out.filename().string(), writing);
   } catch (const std::invalid_argument& error) {
     std::string text = error.what();
     if (text.starts_with("AzimuthFrom: ")) {
@@ -183,6 +193,9 @@ int WriteAs(SurveyFormat format, ConvertOptions& o) {
     }
     return Unusable(fmt::format("{}: {}", o.in, text));
   }
+  RequireUnread(std::array{std::filesystem::path(o.in)}, out.parent_path(), files);
+  if (const auto fault = WriteFiles(out.parent_path(), files)) return Unusable(*fault);
+  SayBeside(files, out);
   return kDone;
 }
 
@@ -192,11 +205,7 @@ int Convert(ConvertOptions& o) {
     Complain("OUT is a file's name; /dev/stdout with --to writes to the terminal or a pipe");
     return kUsage;
   }
-  std::error_code none;
-  if (std::filesystem::equivalent(o.in, o.out, none)) {
-    return Unusable(
-        fmt::format("{} would be written over by what it becomes: choose another OUT", o.in));
-  }
+  RequireDistinct(std::array{NamedFile{"IN", o.in}, NamedFile{"OUT", o.out}});
   const Result<FileIdentity> identity = IdentifyFile(o.in);
   if (!identity) return Unusable(identity.fault());
   if (identity->kind == FileKind::kLcmLog) return ConvertLog(o);
@@ -229,7 +238,7 @@ void AddConvert(CLI::App& app, int& exit_code) {
       "      --azimuth-reference grid --well A-1\n"
       "  wellgyro convert run.lcm run.csv\n"
       "The last writes run.depth.csv too.");
-  command->callback([options, &exit_code] { exit_code = Convert(*options); });
+  OnCall(command, exit_code, [options] { return Convert(*options); });
 }
 
 }  // namespace wellgyro::apps

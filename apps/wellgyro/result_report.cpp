@@ -1,6 +1,7 @@
 #include "result_report.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -8,12 +9,15 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/atomic_file.h"
+#include "wellgyro/io/result/result_folder.h"
 #include "wellgyro/io/result/survey_json.h"
 #include "wellgyro/io/text_file.h"
 
 #include "choice.h"
 #include "chromium.h"
 #include "commands.h"
+#include "distinct.h"
+#include "on_call.h"
 #include "report.h"
 
 namespace wellgyro::apps {
@@ -56,6 +60,18 @@ Result<std::string> DocumentOf(const ResultReport& report) {
     fault.source = (report.result / fault.source).string();
   }
   return fault;
+}
+
+/// Throws std::invalid_argument where a file that is written is another of them, or read.
+void RequireOthers(const ResultReport& report) {
+  RequireDistinct(std::array{NamedFile{"--out", report.out}, NamedFile{"--pdf", report.pdf},
+                             NamedFile{"--json", report.json}});
+  std::vector<fs::path> inputs(report.others.begin(), report.others.end());
+  inputs.push_back(report.plan);
+  for (const char* const name : kResultFiles) inputs.push_back(report.result / name);
+  for (const fs::path& target : {report.out, report.pdf, report.json}) {
+    if (!target.empty()) RequireUnread(inputs, target);
+  }
 }
 
 }  // namespace
@@ -140,14 +156,16 @@ void AddReport(CLI::App& app, int& exit_code) {
   AddLook(*command, options->page);
   command->footer(
       "Example:\n  wellgyro report result --out report.html --pdf report.pdf --other plan.csv");
-  command->callback([options, &exit_code] {
-    exit_code = WriteReport({.result = options->result,
-                             .out = options->out,
-                             .pdf = options->pdf,
-                             .json = options->json,
-                             .others = options->others,
-                             .plan = options->plan,
-                             .options = options->page});
+  OnCall(command, exit_code, [options] {
+    const ResultReport report{.result = options->result,
+                              .out = options->out,
+                              .pdf = options->pdf,
+                              .json = options->json,
+                              .others = options->others,
+                              .plan = options->plan,
+                              .options = options->page};
+    RequireOthers(report);
+    return WriteReport(report);
   });
 }
 

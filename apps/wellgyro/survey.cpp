@@ -13,12 +13,14 @@
 
 #include "wellgyro/bus/file_lock.h"
 #include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/result/result_folder.h"
 #include "wellgyro/io/sensor/sensor_files.h"
 #include "wellgyro/io/toml/job_file.h"
 
 #include "choice.h"
 #include "commands.h"
 #include "delivery.h"
+#include "distinct.h"
 #include "live.h"
 #include "live_survey.h"
 #include "recorded_survey.h"
@@ -51,10 +53,35 @@ bool AnyTwice(const std::vector<std::string>& sources) {
   return false;
 }
 
+/// Throws std::invalid_argument where the result would take the place of what it is made of.
+void RequireKept(const SurveyOptions& options, const JobFile& job) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> inputs = PathsOf(job.files);
+  inputs.insert(inputs.end(), options.sources.begin(), options.sources.end());
+  inputs.insert(inputs.end(), options.fill.begin(), options.fill.end());
+  inputs.emplace_back(options.record);
+  inputs.emplace_back(options.advise);
+  std::vector<fs::path> folders = {options.out};
+  std::error_code absent;
+  for (fs::directory_iterator entry(options.out, absent), end; !absent && entry != end;
+       entry.increment(absent)) {
+    if (entry->path().filename().string().starts_with("tool-")) folders.push_back(entry->path());
+  }
+  for (const fs::path& folder : folders) {
+    for (const char* const name : kResultFiles) RequireUnread(inputs, folder / name);
+    for (const std::string& name : FilesBesideResult()) RequireUnread(inputs, folder / name);
+  }
+}
+
 int SurveyAny(SurveyOptions options) {
   if (!options.sources.empty()) options.from = options.sources.front();
   const Result<JobFile> job = ReadJob(options.job);
   if (!job) return Unusable(job.fault());
+  try {
+    RequireKept(options, *job);
+  } catch (const std::invalid_argument& error) {
+    return Misused(error.what());
+  }
   if (!CanExport(job->job, options.formats)) return kUnusable;
   if (IsLive(options.from)) return SurveyLive(options, *job);
   if (!options.record.empty() || options.resume || !options.fill.empty() ||

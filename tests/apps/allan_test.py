@@ -151,6 +151,14 @@ class AllanOfFiles(FreshProgramTest):
         self.assertEqual(helped.returncode, 0)
         self.assertIn("Example:", helped.stdout)
 
+    def test_nothing_is_written_over_what_it_came_from(self):
+        data = self.Write("log.csv", "\n".join(map(repr, White(100, 3))))
+        before = self.Read("log.csv")
+        for option in ("--out", "--table", "--plot"):
+            ran = Allan("--data", data, "--rate-hz", "1", option, data)
+            self.assertEqual(ran.returncode, 1, option + ran.stderr)
+            self.assertEqual(self.Read("log.csv"), before)
+
     def test_a_ramp_without_noise_is_told(self):
         data = self.Write("ramp.csv", "".join(f"{i}\n" for i in range(1000)))
         ran = Allan("--data", data, "--rate-hz", "100", "--out", self.Path("n.toml"))

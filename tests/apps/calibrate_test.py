@@ -384,6 +384,10 @@ class Calibrate(FreshProgramTest):
             self.assertEqual(result.returncode, 1, options)
             self.assertIn("must be different files", result.stderr)
         self.assertTrue(self.Read(data).startswith("axis,"))
+        well = self.Write("well.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n100,30,40\n")
+        result = Run("calibrate", "plan", "--bench-latitude-deg", "52", "--latitude-deg", "60",
+                     "--well", well, "--out", well)
+        self.assertEqual(result.returncode, 1, result.stderr)
 
 
 if __name__ == "__main__":

@@ -135,6 +135,16 @@ class Convert(FreshProgramTest):
             self.assertEqual(done.returncode, 3, name + done.stderr)
             self.assertIn(says, done.stderr)
 
+    def test_nothing_is_written_over_what_it_came_from(self):
+        datum = ("--datum", "RT", "--datum-elevation-m", "25", "--convergence-deg", "1")
+        for out in ("in.csv", "./in.csv", "in.json"):
+            done = Run("convert", "in.csv", out, *datum, cwd=self.folder)
+            self.assertEqual(done.returncode, 1, out + done.stderr)
+            self.assertEqual(self.Read("in.csv"), SURVEY)
+        self.assertEqual(os.listdir(self.folder), ["in.csv"])
+        done = Run("convert", "in.csv", "out.json", *datum, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (0, "wrote out.csv too\n"))
+
     def test_a_row_that_is_cut_is_refused(self):
         head = "MD[m],INC[deg],AZI_TRUE[deg],TVD[m]\n0,0,0,0\n30,1.5,350,\n"
         self.Write("cut.csv", head + "60,3,35")

@@ -31,6 +31,13 @@ class Plan(unittest.TestCase):
         with open(name, "rb") as file:
             return tomllib.load(file)
 
+    def test_nothing_is_written_over_what_it_came_from(self):
+        os.rename("well.csv", "expected.csv")
+        done = Run("plan", "--well", "expected.csv", "--tool", JOB, "--ellipse-m", "25", "--out", ".")
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("expected.csv would be written over", done.stderr)
+        self.assertEqual(os.listdir("."), ["expected.csv"])
+
     def test_a_plan_meets_its_limits_in_less_time_than_practice(self):
         done = self.Plan("--ellipse-m", "2.7", "--practice", "every_m=300,stop_s=180")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)

@@ -250,6 +250,31 @@ class Program(ProgramTest):
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn(says, done.stdout)
 
+    def test_a_survey_is_not_written_over_what_it_came_from(self):
+        os.makedirs(self.Path("kept"))
+        for name in ("job.toml", "run.lcm"):
+            shutil.copy(self.Path(name), self.Path("kept"))
+        os.rename(self.Path("kept", "job.toml"), self.Path("kept", "run.toml"))
+        done = self.Survey(self.log, "kept", self.Path("kept", "run.toml"))
+        self.assertEqual(done.returncode, 1, done.stderr)
+        os.rename(self.Path("kept", "run.lcm"), self.Path("kept", "survey.csv"))
+        done = self.Survey(self.Path("kept", "survey.csv"), "kept")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(self.Bytes("kept", "survey.csv"), self.bytes)
+        self.assertEqual(sorted(os.listdir(self.Path("kept"))), ["run.toml", "survey.csv"])
+
+    def test_a_report_is_not_written_over_what_it_tells(self):
+        self.assertEqual(self.Survey(self.log, "told").returncode, 0)
+        before, page = self.Read("told", "survey.csv"), self.Path("page.html")
+        for options in (["--out", self.Path("told", "survey.csv")],
+                        ["--out", page, "--json", self.Path("told", "run.toml")],
+                        ["--out", page, "--json", page],
+                        ["--out", page, "--other", page]):
+            done = Run("report", self.Path("told"), *options)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertFalse(os.path.exists(page))
+        self.assertEqual(self.Read("told", "survey.csv"), before)
+
     def test_what_is_no_sensor_table_is_named(self):
         lacking = self.Write("lacking.csv", "UTC[s],GX[deg/h]\n1,2\n")
         other = self.Write("other.csv", "a,b,c\n1,2,3\n")

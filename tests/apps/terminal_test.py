@@ -114,8 +114,8 @@ class Terminal(FreshProgramTest):
         os.symlink(self.Path("in.csv"), self.Path("link.csv"))
         for target in ("in.csv", "link.csv"):
             done = Run("convert", self.Path("in.csv"), self.Path(target))
-            self.assertEqual(done.returncode, 2)
-            self.assertIn("choose another OUT", done.stderr)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("must be different files", done.stderr)
         self.assertTrue(self.Read("in.csv").startswith("MD[m],INC"))
 
     def test_a_log_becomes_tables(self):

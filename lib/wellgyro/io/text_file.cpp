@@ -39,6 +39,12 @@ Result<std::string> ReadSome(const std::filesystem::path& path, std::int64_t lim
 
 }  // namespace
 
+std::vector<std::filesystem::path> PathsOf(const std::vector<InputFile>& files) {
+  std::vector<std::filesystem::path> paths;
+  for (const InputFile& file : files) paths.push_back(file.path);
+  return paths;
+}
+
 Result<std::string> ReadTextFile(const std::filesystem::path& path, std::int64_t limit) {
   Result<std::string> bytes = ReadSome(path, limit);
   if (bytes && std::ssize(*bytes) > limit) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
@@ -17,6 +18,9 @@ struct InputFile {
   std::string sha256;          ///< of the very bytes that were used
   std::string text = {};       ///< those bytes, where they go into run.toml whole
 };
+
+/// Where they were found.
+WELLGYRO_EXPORT std::vector<std::filesystem::path> PathsOf(const std::vector<InputFile>& files);
 
 /// The bytes of the file at `path`. Fault kIo when it cannot be opened or read or is a directory,
 /// kForeign when it is larger than `limit` bytes.

@@ -90,6 +90,7 @@ ClearanceRun::ClearanceRun(const ClearanceRequest& request) : request_(request) 
     Result<ClearancePolicy> read = ReadClearancePolicy(*request.policy);
     if (!read) throw TomlError{read.fault()};
     policy_ = *std::move(read);
+    answer_.inputs.push_back(*request.policy);
     folder_ = request.policy->parent_path();
   }
   if (request.correlation) policy_.rule.correlation = *request.correlation;
@@ -110,8 +111,10 @@ std::shared_ptr<const ErrorModel> ClearanceRun::Model(const std::filesystem::pat
   for (const auto& [known, model] : models_) {
     if (known == path) return model;
   }
-  Result<ErrorModel> read = FindModel(path.string());
+  InputFile input;
+  Result<ErrorModel> read = FindModel(path.string(), &input);
   if (!read) throw TomlError{read.fault()};
+  answer_.inputs.push_back(input.path);
   models_.emplace_back(path, std::make_shared<const ErrorModel>(*std::move(read)));
   return models_.back().second;
 }
@@ -122,6 +125,8 @@ ReadWell ClearanceRun::ReadLegs(const std::filesystem::path& path) {
   if (!program) throw TomlError{program.fault()};
   ReadWell read;
   read.table = std::move(program->survey);
+  answer_.inputs.push_back(path);
+  for (const auto& input : PathsOf(program->inputs)) answer_.inputs.push_back(input);
   for (auto& model : program->models) read.models.push_back(std::move(model));
   read.legs = std::move(program->legs);
   read.cov_tie_in_W = program->cov_tie_in_W;
@@ -134,6 +139,7 @@ ReadWell ClearanceRun::Read(const ClearanceWell& entry) {
     read = ReadLegs(folder_ / entry.program);
   } else {
     const std::filesystem::path path = folder_ / entry.survey;
+    answer_.inputs.push_back(path);
     const Result<std::string> text = ReadTextFile(path);
     if (!text) throw TomlError{text.fault()};
     Result<WellStations> table =

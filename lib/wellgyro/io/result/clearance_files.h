@@ -33,6 +33,7 @@ struct ClearanceAnswer {
   /// clearance.csv, wells.csv, ladder.svg, travelling_cylinder.svg and clearance.html with all of
   /// it.
   std::vector<OutputFile> files;
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
   std::vector<std::string> notes;
   std::vector<std::string> refusals;  ///< where a model ends before its survey does
   ClearanceVerdict verdict = ClearanceVerdict::kPass;

@@ -134,6 +134,10 @@ CompareAnswer Answer(const CompareRequest& request) {
         "covariance only");
   }
   answer.summary = Summary(answer.comparison);
+  answer.inputs = {request.first, request.second};
+  for (const TakenSurvey* survey : {&first, &second}) {
+    for (const auto& path : PathsOf(survey->inputs)) answer.inputs.push_back(path);
+  }
   answer.files = {{"compare.csv", CompareCsv(answer.comparison.places)},
                   {"checks.csv", ChecksCsv(answer.comparison.checks)},
                   {"compare.toml", CompareToml(request, answer, first, second)}};

@@ -25,7 +25,8 @@ struct CompareRequest {
 
 struct CompareAnswer {
   Comparison comparison;
-  std::vector<OutputFile> files;  ///< compare.csv, checks.csv, compare.toml
+  std::vector<OutputFile> files;              ///< compare.csv, checks.csv, compare.toml
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
   std::vector<std::string> notes;
   std::vector<std::string> refusals;  ///< where a model ends before its survey does
   std::string summary;                ///< lines on shifts and the deepest place

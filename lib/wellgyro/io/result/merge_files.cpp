@@ -261,6 +261,8 @@ MergeAnswer Answer(const MergeRequest& request) {
   const MergePlan plan = *std::move(read);
   const Surroundings place = PlaceOf(request);
   MergeAnswer answer;
+  answer.inputs = PathsOf(plan.inputs);
+  answer.inputs.push_back(request.plan);
   answer.notes = plan.notes;
   answer.merged = Merge(plan.legs, plan.start_W, plan.cov_tie_in_W, place, plan.policy);
   const MergedSurvey& merged = answer.merged;

@@ -32,6 +32,7 @@ struct MergeAnswer {
   /// resampled.csv where asked for, program.toml (wellgyro.program/1: the same legs, for
   /// `uncertainty` and `clearance`), merge.toml.
   std::vector<OutputFile> files;
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
   std::vector<std::string> notes;
   RunVerdict verdict;   ///< of the comparisons, by the policy
   std::string summary;  ///< a line for each choice, then one on the deepest station

@@ -259,6 +259,7 @@ Result<PlanAnswer> AnswerPlan(const PlanRequest& request) {
     NamedFiles files{std::filesystem::path()};
     const PlanReport report = MakeReport(request, files, answer.notes);
     answer.feasible = report.plan.feasible;
+    answer.inputs = PathsOf(report.inputs);
     for (const std::string& warning : report.warnings) answer.notes.push_back(warning);
     answer.summary = Summary(report);
     answer.files.push_back(

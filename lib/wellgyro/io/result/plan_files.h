@@ -37,9 +37,10 @@ struct PlanRequest {
 };
 
 struct PlanAnswer {
-  std::vector<OutputFile> files;   ///< plan.toml, plan.svg, plan.txt, expected.csv
-  std::vector<std::string> notes;  ///< assumptions and the warnings of Preflight()
-  std::string summary;             ///< some lines, as in plan.txt
+  std::vector<OutputFile> files;              ///< plan.toml, plan.svg, plan.txt, expected.csv
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
+  std::vector<std::string> notes;             ///< assumptions and the warnings of Preflight()
+  std::string summary;                        ///< some lines, as in plan.txt
   bool feasible = false;
 };
 

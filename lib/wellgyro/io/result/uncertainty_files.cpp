@@ -280,6 +280,10 @@ UncertaintyAnswer Answer(const UncertaintyRequest& request) {
   WellPlotLabels labels = LabelsOf(request, c);
   std::optional<SurveyedWell> beside;
   if (request.other) AddSeparation(request, c, answer, inputs, beside, labels);
+  answer.inputs = PathsOf(inputs);
+  for (const auto& path : {request.sources.program, request.other}) {
+    if (path) answer.inputs.push_back(*path);
+  }
   if (request.plot) {
     answer.files.push_back(
         {"uncertainty.svg", WellPlotSvg(c.well, c.errors, request.confidence, labels)});

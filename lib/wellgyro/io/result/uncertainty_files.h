@@ -42,11 +42,12 @@ struct UncertaintyRequest {
 
 /// Its answer.
 struct UncertaintyAnswer {
-  std::vector<OutputFile> files;      ///< covariance.csv and what was asked for beside, then
-                                      ///< uncertainty.toml: inputs, mode and notes
-  std::vector<std::string> notes;     ///< assumptions that were made
-  std::vector<std::string> refusals;  ///< where a model ends before its survey does
-  std::string summary;                ///< a line on the deepest station
+  std::vector<OutputFile> files;  ///< covariance.csv and what was asked for beside, then
+                                  ///< uncertainty.toml: inputs, mode and notes
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
+  std::vector<std::string> notes;             ///< assumptions that were made
+  std::vector<std::string> refusals;          ///< where a model ends before its survey does
+  std::string summary;                        ///< a line on the deepest station
 };
 
 /// Reads the files of `request` and answers it. Faults name file and line; the caller's mistakes
