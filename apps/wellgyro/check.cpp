@@ -161,6 +161,9 @@ int CheckFile(const std::string& name) {
       return Tell(name, what, FaultsOfSensorTable(name), kUnusable);
     case FileKind::kLcmLog:
       return CheckLog(name);
+    case FileKind::kUnknownFormat:
+      fmt::print("{}: {}\n", name, what);
+      return kUnusable;
     case FileKind::kEmpty:
       fmt::print("{}: {}, not one of wellgyro's\n", name, what);
       return kUnusable;

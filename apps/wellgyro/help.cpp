@@ -146,6 +146,12 @@ const CLI::App& NamedCommand(const CLI::App& app) {
   return commands.empty() ? app : NamedCommand(*commands.front());
 }
 
+std::string StrayCommand(const CLI::App& app) {
+  const CLI::App& named = NamedCommand(app);
+  const bool chooses = !named.get_subcommands(AnyCommand).empty();
+  return chooses ? ComplaintOf(named) : std::string();
+}
+
 std::string Complaint(const CLI::App& app, const CLI::ParseError& error) {
   std::string said = ComplaintOf(app);
   if (!said.empty()) return said;

@@ -28,6 +28,9 @@ std::string Guess(const std::string& word, const std::vector<std::string>& known
 /// The command that was named last, or the program.
 const CLI::App& NamedCommand(const CLI::App& app);
 
+/// A sentence on a word that is no command where one is wanted, though help is asked for; or empty.
+std::string StrayCommand(const CLI::App& app);
+
 /// What is wrong with the command line: its first word that is no command or option, with the one
 /// that seems to be meant; else what `error` says. One sentence.
 std::string Complaint(const CLI::App& app, const CLI::ParseError& error);

@@ -65,8 +65,10 @@ int Run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error), kDone;  // --help, --version
-    Complain(Complaint(app, error));
+    const bool asked = error.get_exit_code() == 0;  // --help, --version
+    const std::string stray = asked ? StrayCommand(app) : Complaint(app, error);
+    if (asked && stray.empty()) return app.exit(error), kDone;
+    Complain(stray);
     fmt::print(stderr, "{} --help says what there is\n", CallOf(NamedCommand(app)));
     return kUsage;
   }

@@ -169,8 +169,39 @@ model = "ISCWSA MWD Rev 4"
         self.Plan(self.LEGS.replace('"GYRO-NS-CT"\n', '"GYRO-NS-CT"\nto_md_m = 300\n').replace(
             'Rev 4"\n', 'Rev 4"\nfrom_md_m = 900\n'))
         done = self.Merge()
-        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("gap", done.stderr)
+        out = '[[leg]]\nsurvey = "gyro.csv"\nmodel = "GYRO-NS-CT"\nleft_out = "damaged"\n'
+        for text, says in ((out, "every leg is ruled out"),
+                           (self.LEGS.replace("GYRO-NS-CT", "GYRO-NS-XX"), "there are CB_")):
+            self.Plan(text)
+            done = self.Merge()
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("plan.toml" if text is out else "GYRO-NS-XX", done.stderr)
+            self.assertIn(says, done.stderr)
+
+    def test_nothing_is_written_over_what_it_came_from(self):
+        os.rename("gyro.csv", "choices.csv")
+        self.Plan(self.LEGS.replace("gyro.csv", "choices.csv"))
+        os.rename("plan.toml", "merge.toml")
+        gyro = ["--model", "GYRO-NS-CT", *PLACE]
+        kept = {name: self.Bytes(name) for name in os.listdir(".")}
+        self.Write("covariance.csv", kept["choices.csv"])
+        self.Write("compare.csv", kept["choices.csv"])
+        self.Write("clearance.csv", kept["choices.csv"])
+        for arguments in (["merge", "merge.toml", *PLACE, *MWD],
+                          ["uncertainty", "--survey", "covariance.csv", *gyro],
+                          ["clearance", "--reference", "mwd.csv", "--offset", "clearance.csv",
+                           *gyro],
+                          ["compare", "compare.csv", "mwd.csv", "--model-a", "GYRO-NS-CT",
+                           "--model-b", "GYRO-NS-CT", *PLACE]):
+            before = sorted(os.listdir("."))
+            done = Run(*arguments, "--out", ".")
+            self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+            self.assertIn("would be written over", done.stderr)
+            self.assertEqual(sorted(os.listdir(".")), before)
+        for name, content in kept.items():
+            self.assertEqual(self.Bytes(name), content)
 
 
 if __name__ == "__main__":

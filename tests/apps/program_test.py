@@ -304,6 +304,10 @@ class Program(ProgramTest):
                                             "north", "plan", "record", "report", "send",
                                             "simulate", "survey",
                                             "uncertainty", "watch"])
+        for words in (["surveyy"], ["calibrate", "toool"]):
+            done = Run(*words, "--help")
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertIn("meant?", done.stderr)
         for command in commands:
             done = Run(command, "--help")
             self.assertEqual(done.returncode, 0)

@@ -26,7 +26,7 @@ TEST(IdentifyBytes, KnowsOurOwnByTheirFormatLine) {
   EXPECT_EQ(IdentifyBytes("format = \"wellgyro.run/1\"").kind, FileKind::kRun);
   EXPECT_EQ(IdentifyBytes("format = \"wellgyro.source/1\"").kind, FileKind::kSource);
   const FileIdentity newer = IdentifyBytes("format = \"wellgyro.job/2\"");
-  EXPECT_EQ(newer.kind, FileKind::kForeign);
+  EXPECT_EQ(newer.kind, FileKind::kUnknownFormat);
   EXPECT_NE(newer.text.find("wellgyro.job/2"), std::string::npos);
 }
 

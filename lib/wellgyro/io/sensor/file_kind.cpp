@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 
 #include <fmt/core.h>
 
@@ -103,12 +104,25 @@ std::string_view FormatLine(std::string_view text) {
   return {};
 }
 
+// Whether it begins with the heading of a TOML table that our files have.
+bool IsOurToml(std::string_view text) {
+  constexpr std::string_view kTables[] = {"[well]",  "[noise]",       "[errors]", "[earth]",
+                                          "[run]",   "[policy]",      "[[leg]]",  "[tie_in]",
+                                          "[depth]", "[coefficients]"};
+  while (!text.empty()) {
+    const std::string_view line = Trim(NextLine(text));
+    if (line.empty() || line.front() == '#') continue;
+    return std::ranges::find(kTables, line) != std::end(kTables);
+  }
+  return false;
+}
+
 FileIdentity ByFormat(std::string_view name) {
   for (const Format& format : kFormats) {
     if (format.name == name) return {format.kind, std::string(format.text)};
   }
   return {
-      FileKind::kForeign,
+      FileKind::kUnknownFormat,
       fmt::format("a file of format \"{}\", which this version does not know", name.substr(0, 60))};
 }
 
@@ -166,6 +180,11 @@ FileIdentity IdentifyBytes(std::string_view head) {
   if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
   if (const std::string_view format = FormatLine(head); format.starts_with("wellgyro.")) {
     return ByFormat(format);
+  }
+  if (IsOurToml(head)) {
+    return {FileKind::kUnknownFormat,
+            "TOML without its first line, which says of what kind it is, as format = "
+            "\"wellgyro.job/1\""};
   }
   std::string_view rest = head;
   std::string_view line = NextLine(rest);

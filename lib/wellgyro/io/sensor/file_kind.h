@@ -29,6 +29,7 @@ enum class FileKind {
   kTruthCsv,
   kSensorCsv,  ///< sensor_csv.h
   kForeign,
+  kUnknownFormat,  ///< TOML of a format that this version does not know, or that names none
 };
 
 /// What a file is, by its first bytes.

@@ -51,6 +51,7 @@ class PlanReader {
     std::vector<TomlTable> legs = root.FindTables("leg");
     if (legs.empty()) root.Refuse("", "a merge needs at least one [[leg]]");
     for (std::size_t i = 0; i < legs.size(); ++i) ReadLeg(legs[i], static_cast<int>(i) + 1);
+    CheckCover(root);
     FindStart();
     for (const InputFile& file : files_.all()) plan_.inputs.push_back(file);
     return std::move(plan_);
@@ -63,10 +64,7 @@ class PlanReader {
     const auto known = models_.find(name);
     if (known != models_.end()) return plan_.model_names.push_back(NameOf(name)), known->second;
     std::optional<ErrorModel> own = OwnModel(name);
-    Result<ErrorModel> model =
-        own ? Result<ErrorModel>(*std::move(own))
-            : ParseModel(files_.Take("model", name.substr(0, name.find('#'))),
-                         files_.PathOf(name).string());
+    Result<ErrorModel> model = own ? Result<ErrorModel>(*std::move(own)) : ModelOfFile(name);
     if (!model) throw TomlError{model.fault()};
     plan_.models.push_back(std::make_shared<const ErrorModel>(*std::move(model)));
     plan_.model_names.push_back(NameOf(name));
@@ -137,6 +135,14 @@ class PlanReader {
     return fmt::format("{} of {}", leg.model->name, name);
   }
 
+  /// A name that is neither a model's nor a file's is refused with those that there are.
+  Result<ErrorModel> ModelOfFile(const std::string& name) {
+    const std::string file = name.substr(0, name.find('#'));
+    const bool is_file = std::filesystem::exists(files_.PathOf(file));
+    if (!is_file && !std::filesystem::exists(file)) return FindModel(name);
+    return ParseModel(files_.Take("model", file), files_.PathOf(name).string());
+  }
+
   void ReadLeg(TomlTable& table, int number) {
     const std::string name = table.Need("survey", table.FindString("survey"));
     const Result<WellStations> survey =
@@ -167,6 +173,26 @@ class PlanReader {
       table.Refuse("survey", "its azimuths are grid: the convergence is needed");
     }
     plan_.legs.push_back(std::move(leg));
+  }
+
+  /// The legs that are not ruled out must reach from one to the next.
+  void CheckCover(TomlTable& root) const {
+    std::vector<std::pair<double, double>> reaches;
+    for (const MergeLeg& leg : plan_.legs) {
+      if (!leg.left_out.empty()) continue;
+      reaches.emplace_back(leg.stations.front().md, leg.stations.back().md);
+    }
+    if (reaches.empty()) root.Refuse("", "every leg is ruled out");
+    std::ranges::sort(reaches);
+    double reached = reaches.front().second;
+    for (const auto& [begin, end] : reaches) {
+      if (begin - reached > plan_.policy.max_gap) {
+        root.Refuse("", fmt::format("no leg has stations from MD {:.2f} to {:.2f} m: a gap of more "
+                                    "than {:g} m",
+                                    reached, begin, plan_.policy.max_gap));
+      }
+      reached = std::max(reached, end);
+    }
   }
 
   void FindStart() {
