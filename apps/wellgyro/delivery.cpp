@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "report.h"
+#include "result_report.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -22,7 +23,9 @@ enum class Files { kToWrite, kWritten };
 struct Delivery {
   Files state;
   Says says;
+  bool page;  ///< report.html too
   std::vector<ToolSummary> done = {};
+  int report = kDone;  ///< exit code of what is written beside the results
 };
 
 /// Writes one tool's result where it is not written yet, and says what it is; its exit code.
@@ -46,6 +49,8 @@ int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& recor
   ToolSummary& summary = delivery.done.emplace_back();
   summary = {.tool = result.tool, .folder = result.folder, .survey = &survey};
   for (const OutputFile& file : files) summary.files.push_back(file.name);
+  delivery.report =
+      std::max(delivery.report, ReportInto(result.folder, delivery.page, summary.files));
   if (delivery.says != Says::kSummary) return kDone;
   fmt::print("{}", SummaryText(survey));
   for (const std::string& name : summary.files) {
@@ -98,22 +103,24 @@ bool MayWriteTo(const std::filesystem::path& folder) {
 }
 
 int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Surveyor& surveyor,
-               const RunRecord& record, const SourceRecord& source, Says says) {
+               const RunRecord& record, const SourceRecord& source, Says says, bool page) {
   const std::vector<ToolResult> results = ResultsOf(surveyor, folder);
-  Delivery delivery{Files::kToWrite, says};
+  Delivery delivery{Files::kToWrite, says, page};
   const int code = DeliverTools(delivery, results, job, record, source);
   RemoveFormer(folder, results);
   if (code == kUnusable) return code;
-  return Conclude(WorstVerdict(results), code == kDoneWithLosses, says, delivery.done);
+  const int all = Conclude(WorstVerdict(results), code == kDoneWithLosses, says, delivery.done);
+  return all == kDone ? delivery.report : all;
 }
 
-int Summarise(const JobFile& job, const LiveOutcome& outcome, Says says) {
-  Delivery delivery{Files::kWritten, says};
+int Summarise(const JobFile& job, const LiveOutcome& outcome, Says says, bool page) {
+  Delivery delivery{Files::kWritten, says, page};
   const int code = DeliverTools(delivery, outcome.tools, job, *outcome.record, *outcome.source);
   if (code == kUnusable) return code;
   if (!outcome.recording_is_whole) Complain("done, but the recording lacks messages");
-  return Conclude(WorstVerdict(outcome.tools),
-                  code == kDoneWithLosses || !outcome.recording_is_whole, says, delivery.done);
+  const bool losses = code == kDoneWithLosses || !outcome.recording_is_whole;
+  const int all = Conclude(WorstVerdict(outcome.tools), losses, says, delivery.done);
+  return all == kDone ? delivery.report : all;
 }
 
 int Conclude(const RunVerdict& verdict, bool losses, Says says,

@@ -22,12 +22,13 @@ Maker MakerOf();
 /// Says so and gives false when `folder` holds a survey that someone accepted.
 bool MayWriteTo(const std::filesystem::path& folder);
 
-/// Writes every tool's result, prints its summary, and gives the exit code.
+/// Writes every tool's result and survey.json, with `page` report.html too, prints its summary, and
+/// gives the exit code.
 int DeliverAll(const std::filesystem::path& folder, const JobFile& job, const Surveyor& surveyor,
-               const RunRecord& record, const SourceRecord& source, Says says);
+               const RunRecord& record, const SourceRecord& source, Says says, bool page);
 
-/// Of a live survey whose files are written: prints their summary and gives the exit code.
-int Summarise(const JobFile& job, const LiveOutcome& outcome, Says says);
+/// The same of a live survey whose results are written.
+int Summarise(const JobFile& job, const LiveOutcome& outcome, Says says, bool page);
 
 /// Prints the verdict as the last line, or with what is known of `tools` as a document; the exit
 /// code.

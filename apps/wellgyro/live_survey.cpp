@@ -1,5 +1,6 @@
 #include "live_survey.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -23,6 +24,7 @@
 #include "delivery.h"
 #include "live.h"
 #include "report.h"
+#include "result_report.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -94,10 +96,16 @@ int Stopped(const SurveyOptions& options, const LiveOutcome& outcome) {
   if (outcome.fault || outcome.ended != LiveOutcome::Ended::kInterrupted) return kUnusable;
   Complain(fmt::format("stopped: the survey in {} is whole, not adjusted{}", options.out, next));
   std::vector<ToolSummary> tools;
+  int report = kDone;
   for (const ToolResult& result : outcome.tools) {
     tools.push_back({.tool = result.tool, .folder = result.folder, .survey = &result.survey});
+    if (!result.survey.unusable.empty()) continue;
+    std::vector<std::string> untold;  // as the result's own files are
+    report = std::max(report, ReportInto(result.folder, options.report, untold));
   }
-  return Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole, options.says, tools);
+  const int code =
+      Conclude(WorstVerdict(outcome.tools), !outcome.recording_is_whole, options.says, tools);
+  return code == kDone ? report : code;
 }
 
 LiveSetup SetupOf(const SurveyOptions& options, const JobFile& job) {
@@ -149,7 +157,7 @@ Result<std::unique_ptr<SurveyPage>> PageOf(const SurveyOptions& options, const J
 int Conclusion(const SurveyOptions& options, const JobFile& job, const LiveOutcome& outcome) {
   if (outcome.ended != LiveOutcome::Ended::kFinished) return Stopped(options, outcome);
   if (outcome.fault) return Unusable(*outcome.fault);
-  return Summarise(job, outcome, options.says);
+  return Summarise(job, outcome, options.says, options.report);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ struct SurveyOptions {
   SurveyPageOptions page;         ///< none where it has no address
   std::vector<SurveyFormat> formats;
   Says says = Says::kSummary;
+  bool report = false;  ///< report.html too
 };
 
 /// Surveys a live stream until FINISH, a signal or the loss of the bus; the exit code.

@@ -84,8 +84,8 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   for (const std::string& hint : HintsAtChannels(intake.feed())) Complain(hint);
   Describe(intake, source);
   return DeliverAll(options.out, job, surveyor,
-                    RecordOf(MakerOf(), job, options.formats, intake, faults), source,
-                    options.says);
+                    RecordOf(MakerOf(), job, options.formats, intake, faults), source, options.says,
+                    options.report);
 }
 
 int SurveyTables(const SurveyOptions& options, const JobFile& job) {
@@ -112,7 +112,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   source.counts["samples"] = report->samples;
   source.counts["still_windows"] = report->windows;
   source.counts["depth_marks"] = report->marks;
-  return DeliverAll(options.out, job, surveyor, record, source, options.says);
+  return DeliverAll(options.out, job, surveyor, record, source, options.says, options.report);
 }
 
 }  // namespace wellgyro::apps

@@ -90,25 +90,14 @@ int WriteReport(const ResultReport& report) {
   return kDone;
 }
 
-int ReportOnSurvey(const fs::path& out, bool page) {
-  std::vector<fs::path> folders;
-  std::error_code absent;
-  if (fs::exists(out / "run.toml", absent)) folders.push_back(out);
-  for (fs::directory_iterator entry(out, absent), end; !absent && entry != end;
-       entry.increment(absent)) {
-    const bool tool = entry->path().filename().string().starts_with("tool-");
-    if (tool && fs::exists(entry->path() / "run.toml")) folders.push_back(entry->path());
-  }
-  std::sort(folders.begin(), folders.end());
-  // Of a former survey of one tool, where several now have folders of their own.
-  if (!fs::exists(out / "run.toml", absent)) fs::remove(out / "survey.json", absent);
-  int code = kDone;
-  for (const fs::path& folder : folders) {
-    ResultReport report{.result = folder, .json = folder / "survey.json", .say = false};
-    if (page) report.out = folder / "report.html";
-    code = std::max(code, WriteReport(report));
-  }
-  return code;
+int ReportInto(const fs::path& folder, bool page, std::vector<std::string>& written) {
+  ResultReport report{.result = folder, .json = folder / "survey.json", .say = false};
+  if (page) report.out = folder / "report.html";
+  const int code = WriteReport(report);
+  if (code != kDone) return code;
+  written.emplace_back("survey.json");
+  if (page) written.emplace_back("report.html");
+  return kDone;
 }
 
 namespace {

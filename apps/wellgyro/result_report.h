@@ -22,8 +22,8 @@ struct ResultReport {
 /// Writes what is asked for; the exit code.
 int WriteReport(const ResultReport& report);
 
-/// After a survey: survey.json, and with `page` report.html, into each folder of results in `out`.
-/// Silently, as the last line of a survey is its verdict. The exit code.
-int ReportOnSurvey(const std::filesystem::path& out, bool page);
+/// After a survey: survey.json, and with `page` report.html, into the folder of one tool's result;
+/// adds the names of what it wrote. The exit code.
+int ReportInto(const std::filesystem::path& folder, bool page, std::vector<std::string>& written);
 
 }  // namespace wellgyro::apps

@@ -25,7 +25,6 @@
 #include "live_survey.h"
 #include "recorded_survey.h"
 #include "report.h"
-#include "result_report.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -180,15 +179,6 @@ void AddFormats(CLI::App& command, SurveyOptions& options) {
       ->type_name("LIST");
 }
 
-/// What stands beside the survey's files once they are whole; its trouble shows where the survey
-/// had none.
-int SurveyAndReport(const SurveyOptions& options, bool page) {
-  const int code = SurveyAny(options);
-  if (code != kDone && code != kDoneWithLosses && code != kUnfit) return code;
-  const int report = ReportOnSurvey(options.out, page);
-  return code == kDone ? report : code;
-}
-
 }  // namespace
 
 void AddSurvey(CLI::App& app, int& exit_code) {
@@ -216,15 +206,15 @@ void AddSurvey(CLI::App& app, int& exit_code) {
   AddPageOptions(*command, options->page);
   AddFormats(*command, *options);
   AddSays(*command, options->says);
-  auto page = std::make_shared<bool>(false);
-  command->add_flag("--report", *page, "The report too, as report.html among the survey files");
+  command->add_flag("--report", options->report,
+                    "The report too, as report.html among the survey files");
   command->footer(
       "Example:\n  wellgyro survey --job data/demo/job.toml --from data/demo/run.lcm "
       "--out result\n"
       "  wellgyro survey --job job.toml --from tool.csv --from tally.csv --out result\n"
       "  wellgyro survey --job job.toml --from udpm://239.255.76.67:7667 --page 127.0.0.1:8080 "
       "--out live");
-  command->callback([options, page, &exit_code] { exit_code = SurveyAndReport(*options, *page); });
+  command->callback([options, &exit_code] { exit_code = SurveyAny(*options); });
 }
 
 }  // namespace wellgyro::apps

@@ -275,6 +275,21 @@ class Program(ProgramTest):
             self.assertFalse(os.path.exists(page))
         self.assertEqual(self.Read("told", "survey.csv"), before)
 
+    def test_an_older_result_leaves_nothing_that_says_what_was(self):
+        out = ["--from", self.log, "--out", self.Path("anew")]
+        done = Run("survey", "--job", self.job, *out, "--formats", "las,petrel", "--report")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        older = set(os.listdir(self.Path("anew")))
+        self.assertEqual({os.path.basename(line[6:]) for line in done.stdout.splitlines()
+                          if line.startswith("wrote ")}, older)
+        own = {"notes.txt", "survey.txt", "mine.las"}
+        for name in own:
+            self.Write(os.path.join("anew", name), "mine")
+        self.assertEqual(Run("survey", "--job", self.job, *out).returncode, 0)
+        gone = {"survey.las", "survey.dev", "report.html"}
+        self.assertLess(gone, older)
+        self.assertEqual(set(os.listdir(self.Path("anew"))), (older - gone) | own)
+
     def test_what_is_no_sensor_table_is_named(self):
         lacking = self.Write("lacking.csv", "UTC[s],GX[deg/h]\n1,2\n")
         other = self.Write("other.csv", "a,b,c\n1,2,3\n")

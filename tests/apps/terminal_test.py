@@ -164,6 +164,7 @@ class Terminal(FreshProgramTest):
         self.assertEqual((said["format"], said["exit_code"]), ("wellgyro.summary/1", 0))
         self.assertEqual(said["verdict"], self.Toml("result", "run.toml")["verdict"]["verdict"])
         tool, = said["tools"]
+        self.assertIn("survey.json", tool["files"])
         for name in tool["files"]:
             self.assertTrue(os.path.isfile(self.Path("result", name)), name)
         rows = self.Rows("result", "survey.csv")
