@@ -1,5 +1,8 @@
 #include "wellgyro/base/angle.h"
 
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace wellgyro {
@@ -13,6 +16,14 @@ TEST(Angle, WrapsIntoItsHalfOpenRange) {
   EXPECT_EQ(WrapPi(-kPi), kPi);
   EXPECT_EQ(WrapPi(kPi), kPi);
   EXPECT_NEAR(WrapPi(7 * kTwoPi + 1), 1, 1e-14);
+}
+
+TEST(Angle, WhatIsNotFiniteIsNoDirectionAndNotNorth) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (const double odd : {std::numeric_limits<double>::quiet_NaN(), kInf, -kInf}) {
+    EXPECT_TRUE(std::isnan(WrapTwoPi(odd))) << odd;
+    EXPECT_TRUE(std::isnan(WrapPi(odd))) << odd;
+  }
 }
 
 TEST(Angle, DegreesAndBackKeepTheTurnsQuarters) {

@@ -1,3 +1,5 @@
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -23,6 +25,16 @@ TEST(AzimuthFrom, TrueIsGridPlusConvergenceIsMagneticPlusDeclination) {
   EXPECT_NEAR(Turned(12, North::kGrid, North::kMagnetic), 10, 1e-12);
   EXPECT_NEAR(Turned(0.5, North::kTrue, North::kGrid), 359.5, 1e-12);
   EXPECT_NEAR(Turned(-90, North::kTrue, North::kTrue), 270, 1e-12);
+}
+
+TEST(AzimuthFrom, WhatIsNotFiniteIsRefusedOrStays) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  AzimuthReference reference;
+  reference.convergence = kNan;
+  reference.declination = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(AzimuthFrom(reference, 1, North::kTrue, North::kGrid), std::invalid_argument);
+  EXPECT_THROW(AzimuthFrom(reference, 1, North::kMagnetic, North::kTrue), std::invalid_argument);
+  EXPECT_TRUE(std::isnan(AzimuthFrom(reference, kNan, North::kTrue, North::kTrue)));
 }
 
 TEST(AzimuthFrom, SaysWhatIsMissing) {

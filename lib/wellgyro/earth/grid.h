@@ -20,8 +20,9 @@ struct AzimuthReference {
   std::string declination_date;       ///< day it holds for, YYYY-MM-DD
 };
 
-/// `azimuth` [rad], given from `from`, as it counts from `to`, in [0, 2 pi). Throws
-/// std::invalid_argument saying what is missing: convergence, declination, or which north it is.
+/// `azimuth` [rad], given from `from`, as it counts from `to`, in [0, 2 pi); NaN of an
+/// azimuth that is not finite. Throws std::invalid_argument saying what is missing or not finite:
+/// convergence, declination, or which north it is.
 WELLGYRO_EXPORT double AzimuthFrom(const AzimuthReference& reference, double azimuth, North from,
                                    North to);
 
