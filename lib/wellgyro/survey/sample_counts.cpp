@@ -1,15 +1,16 @@
 #include "wellgyro/survey/sample_counts.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace wellgyro {
 
 void CountSamples(const SampleStamp& stamp, std::int64_t samples, RunSummary& summary) {
   RunSummary& s = summary;
-  s.temperature_min =
-      s.samples == 0 ? stamp.temperature : std::min(s.temperature_min, stamp.temperature);
-  s.temperature_max =
-      s.samples == 0 ? stamp.temperature : std::max(s.temperature_max, stamp.temperature);
+  // Readings that are no number leave the range as it is.
+  const float T = stamp.temperature;
+  const bool none = std::isnan(s.temperature_min) || s.samples == 0;
+  if (none || T < s.temperature_min) s.temperature_min = T;
+  if (none || T > s.temperature_max) s.temperature_max = T;
   s.samples += samples;
   s.samples_gyro_saturated += samples * stamp.gyro_saturated;
   s.samples_accel_saturated += samples * stamp.accel_saturated;
