@@ -1,13 +1,17 @@
 #include "wellgyro/survey/job.h"
 
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include <fmt/core.h>
 
 #include "wellgyro/calibration/apply.h"
+#include "wellgyro/record/limits.h"
 #include "wellgyro/survey/job_keys.h"
+#include "wellgyro/survey/plausible.h"
 
 namespace wellgyro {
 namespace {
@@ -28,10 +32,25 @@ void CheckTieIn(const TieIn& tie) {
     throw std::invalid_argument(
         "job: tie_in has one of inclination_deg and azimuth_true_deg; give both or none");
   }
-  for (int i = 0; i < 3; ++i) {
-    if (!(tie.cov_p_WT_W(i, i) >= 0)) {
-      Refuse("tie_in.covariance", tie.cov_p_WT_W(i, i), "is not a variance (>= 0)");
-    }
+  if (const auto complaint = FindCovarianceComplaint(tie.cov_p_WT_W)) {
+    throw std::invalid_argument("job: tie_in.cov_p_WT_W: " + *complaint);
+  }
+}
+
+// It has no key: a tool's calibration says it. Beyond that size a gyro lies along the tool.
+void CheckCoupling(std::string_view field, double value) {
+  if (const auto complaint = ComplaintOf(value, {.min = -10, .max = 10})) {
+    throw std::invalid_argument(fmt::format("job: {}: {}", field, *complaint));
+  }
+}
+
+void CheckTool(const ToolCalibration& tool) {
+  if (const auto complaint = FindComplaint(tool)) {
+    throw std::invalid_argument("job: tool: " + *complaint);
+  }
+  if (tool.accel.n_channels == 0) {
+    throw std::invalid_argument(
+        "job: tool.accel.n_channels = 0: without accelerometers there is no survey");
   }
 }
 
@@ -44,6 +63,9 @@ void CheckAlignment(const AlignmentSpec& alignment) {
 
 void CheckDepth(const DepthSpec& depth) {
   for (std::size_t i = 0; i < depth.corrections.size(); ++i) {
+    if (!(std::abs(depth.corrections[i].first) <= limits::kMd)) {
+      Refuse("depth.corrections", depth.corrections[i].first, "m is no measured depth");
+    }
     CheckListed("depth", "corrections", depth.corrections[i].second);
     if (i > 0 && !(depth.corrections[i].first > depth.corrections[i - 1].first)) {
       Refuse("depth.corrections", depth.corrections[i].first, "m does not increase");
@@ -63,6 +85,14 @@ void CheckRuns(const std::vector<RunSpec>& runs) {
   }
 }
 
+void CheckEvents(const std::vector<Event>& events) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (const std::string odd = FindImplausible(events[i]); !odd.empty()) {
+      throw std::invalid_argument(fmt::format("job: events[{}] has {}", i, odd));
+    }
+  }
+}
+
 }  // namespace
 
 void CheckJob(const Job& job) {
@@ -70,13 +100,12 @@ void CheckJob(const Job& job) {
     throw std::invalid_argument("job: " + *complaint);
   }
   CheckTieIn(job.tie_in);
+  CheckCoupling("errors.gyro_misalignment_x", job.errors.gyro_misalignment_x);
+  CheckCoupling("errors.gyro_misalignment_y", job.errors.gyro_misalignment_y);
   CheckAlignment(job.alignment);
   CheckDepth(job.depth);
-  if (job.tool) {
-    if (const auto complaint = FindComplaint(*job.tool)) {
-      throw std::invalid_argument("job: tool: " + *complaint);
-    }
-  }
+  if (job.tool) CheckTool(*job.tool);
+  CheckEvents(job.events);
   CheckRuns(job.runs);
   for (double md : job.stations.at) CheckListed("stations", "at_m", md);
   if (job.stations.every == 0 && job.stations.at.empty() && !job.stations.at_stops) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
@@ -79,13 +80,15 @@ constexpr JobKey Word(std::string_view table, std::string_view key, std::string_
 }
 
 constexpr NumberRange kAny{};
-constexpr NumberRange kSize{.min = 0};
+// Of a gyro, in the units of data sheets: 1e6 deg/h are most of a turn in a second.
+constexpr NumberRange kError{.min = 0, .max = 1e6};
 constexpr NumberRange kAboveZero{.min = 0, .above_min = true};
 constexpr NumberRange kTilt{.min = -5, .max = 5};
 constexpr NumberRange kFraction{.min = 0, .max = 1};
 constexpr NumberRange kWhole{.min = 0, .max = std::numeric_limits<std::int32_t>::max()};
 constexpr NumberRange kPlace{.min = -1e6, .max = 1e6};
 constexpr NumberRange kDepth{.min = -limits::kMd, .max = limits::kMd};
+constexpr NumberRange kSigma{.min = 0, .max = limits::kSigma};
 
 constexpr std::array kWell{
     Word("well", "name", "text", "none", "of the well, for the files"),
@@ -160,17 +163,17 @@ constexpr std::array kTieIn{
 constexpr std::array kNoise{
     Word("noise", "file", "text", "none", "noise file, instead of all other keys"),
     Number<&Job::noise, &NoiseCoefficients::quantization>("noise", "quantization_arcsec",
-                                                          units::kArcsec, kSize, "Q of IEEE 952"),
+                                                          units::kArcsec, kError, "Q of IEEE 952"),
     Number<&Job::noise, &NoiseCoefficients::angle_random_walk>(
-        "noise", "angle_random_walk_deg_per_sqrt_h", units::kDegPerSqrtHour, kSize, "N",
+        "noise", "angle_random_walk_deg_per_sqrt_h", units::kDegPerSqrtHour, kError, "N",
         "0; without any [noise] 0.0224"),
     Number<&Job::noise, &NoiseCoefficients::bias_instability>("noise", "bias_instability_deg_per_h",
-                                                              units::kDegPerHour, kSize, "B",
+                                                              units::kDegPerHour, kError, "B",
                                                               "0; without any [noise] 0.1"),
     Number<&Job::noise, &NoiseCoefficients::rate_random_walk>(
-        "noise", "rate_random_walk_deg_per_h_sqrt_h", units::kDegPerHourSqrtHour, kSize, "K"),
+        "noise", "rate_random_walk_deg_per_h_sqrt_h", units::kDegPerHourSqrtHour, kError, "K"),
     Number<&Job::noise, &NoiseCoefficients::rate_ramp>("noise", "rate_ramp_deg_per_h2",
-                                                       units::kDegPerHour2, kSize, "R"),
+                                                       units::kDegPerHour2, kError, "R"),
     Number<&Job::noise, &NoiseCoefficients::bias_instability_correlation_time>(
         "noise", "bias_instability_correlation_time_h", units::kHour, kAboveZero,
         "of B as a Gauss-Markov process", "B is a constant"),
@@ -180,13 +183,13 @@ constexpr std::array kNoise{
 // has from published tools.
 constexpr std::array kErrors{
     Number<&Job::errors, &ErrorPriors::gyro_bias_sigma>("errors", "gyro_bias_sigma_deg_per_h",
-                                                        units::kDegPerHour, kSize, "per axis",
+                                                        units::kDegPerHour, kError, "per axis",
                                                         "the tool's, else 0.1"),
     Number<&Job::errors, &ErrorPriors::mass_unbalance_sigma>(
-        "errors", "mass_unbalance_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize,
+        "errors", "mass_unbalance_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kError,
         "drift with the force along the gyro's own axis", "the tool's, else 0.5"),
     Number<&Job::errors, &ErrorPriors::quadrature_sigma>(
-        "errors", "quadrature_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kSize,
+        "errors", "quadrature_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kError,
         "drift with the force along the other axis", "the tool's, else mass unbalance, else 0.5"),
     Number<&Job::errors, &ErrorPriors::gyro_scale_sigma>("errors", "gyro_scale_sigma", 1, kFraction,
                                                          "per axis, of the rate",
@@ -370,10 +373,11 @@ constexpr std::array kRunsAndEvents{
     Listed("event", "session", "whole number", kWhole, "0", "of the message"),
     Listed("event", "run", "whole number", kWhole, "0", "of the tool"),
     Listed("event", "event_id", "whole number", kWhole, "0", "of who sends"),
-    Listed("event", "value_m", "number", kAny, "none", "a depth"),
-    Listed("event", "sigma_m", "number", kSize, "0", "its sigma"),
-    Listed("event", "value_rad", "number", kAny, "none", "an angle"),
-    Listed("event", "sigma_rad", "number", kSize, "0", "its sigma"),
+    Listed("event", "value_m", "number", kDepth, "none", "a depth"),
+    Listed("event", "sigma_m", "number", kSigma, "0", "its sigma"),
+    Listed("event", "value_rad", "number", {.min = -limits::kAngle, .max = limits::kAngle}, "none",
+           "an angle"),
+    Listed("event", "sigma_rad", "number", kSigma, "0", "its sigma"),
     Word("event", "what", "text", "none", "shoe, mark ..."),
     Word("event", "who", "text", "none", "who did it"),
     Word("event", "text", "text", "none", "a remark's words"),
@@ -400,6 +404,15 @@ double InUnit(double si, double unit) {
   return std::abs(rounded - value) <= 1e-14 * std::abs(value) ? rounded : value;
 }
 
+std::optional<std::string> ComplaintOfSi(double si, const JobKey& key) {
+  const double value = InUnit(si, key.unit);
+  // A number that is too large for a double in the key's unit is said as it was given.
+  if (std::isfinite(si) && !std::isfinite(value)) {
+    return fmt::format("{} in SI units is not within {}", si, TextOf(key.range));
+  }
+  return ComplaintOf(value, key.range);
+}
+
 std::string AbsentText(const JobKey& key) {
   if (!key.absent.empty()) return std::string(key.absent);
   const Job job;
@@ -422,9 +435,32 @@ std::optional<std::string> FindNumberComplaint(const Job& job) {
   for (const JobKey& key : kKeys) {
     const double* const value = key.find ? key.find(job) : nullptr;
     if (!value) continue;
-    if (const auto complaint = ComplaintOf(InUnit(*value, key.unit), key.range)) {
+    if (const auto complaint = ComplaintOfSi(*value, key)) {
       return fmt::format("{}.{}: {}", key.table, key.key, *complaint);
     }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> FindCovarianceComplaint(const Eigen::Matrix3d& cov_p_WT_W) {
+  // Rounding to nine digits, as survey.csv has them, moves eigenvalues by less of the trace.
+  constexpr double kByDigits = 1e-8;
+  constexpr double kLargest = kPlace.max * kPlace.max;  // [m^2]
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (std::abs(cov_p_WT_W(i, j)) <= kLargest) continue;
+      return fmt::format("{} in row {}, column {} is no covariance of a position [m^2]",
+                         cov_p_WT_W(i, j), i + 1, j + 1);
+    }
+  }
+  const double rounding = kByDigits * std::abs(cov_p_WT_W.trace());
+  const Eigen::Matrix3d skew = cov_p_WT_W - cov_p_WT_W.transpose();
+  if (skew.cwiseAbs().maxCoeff() > rounding) return "must be symmetric";
+  const auto eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(cov_p_WT_W, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  if (eigenvalues.minCoeff() < -rounding) {
+    return fmt::format("has a direction of negative variance, {:.3g} m^2", eigenvalues.minCoeff());
   }
   return std::nullopt;
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include <Eigen/Core>
+
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/number_range.h"
 #include "wellgyro/survey/job.h"
@@ -36,6 +38,11 @@ WELLGYRO_EXPORT const JobKey& JobKeyOf(std::string_view table, std::string_view 
 /// What is wrong with the first number of `job` that is out of its range: "depth.latency_s: 900
 /// must be at most 600".
 WELLGYRO_EXPORT std::optional<std::string> FindNumberComplaint(const Job& job);
+
+/// What is wrong with `cov_p_WT_W` as the covariance of a position [m^2]: a number that is none, no
+/// symmetry, or a direction of negative variance.
+WELLGYRO_EXPORT std::optional<std::string> FindCovarianceComplaint(
+    const Eigen::Matrix3d& cov_p_WT_W);
 
 /// The keys as Markdown, a table of each section.
 WELLGYRO_EXPORT std::string JobReference();

@@ -15,60 +15,59 @@ namespace {
 /// Collects the first thing that is wrong.
 class Complaint {
  public:
-  explicit Complaint(std::string_view what) : what_(what) {}
-
   void Within(std::string_view field, double value, double low, double high) {
     // False also for what is no number.
     if (text_.empty() && !(value >= low && value <= high)) {
-      text_ = fmt::format("{} has {} = {}, which is outside [{}, {}], and was left out", what_,
-                          field, value, low, high);
+      text_ = fmt::format("{} = {}, which is outside [{}, {}]", field, value, low, high);
     }
   }
   void Short(std::string_view field, const std::string& value) {
     if (text_.empty() && value.size() > limits::kText) {
-      text_ = fmt::format("{} has {} bytes of {}, {} are allowed, and was left out", what_,
-                          value.size(), field, limits::kText);
+      text_ = fmt::format("{} bytes of {}, {} are allowed", value.size(), field, limits::kText);
     }
   }
   std::string text() && { return std::move(text_); }
 
  private:
-  std::string_view what_;
   std::string text_;
 };
+
+std::string LeftOut(std::string_view what, const std::string& odd) {
+  return odd.empty() ? odd : fmt::format("{} has {}, and was left out", what, odd);
+}
 
 }  // namespace
 
 std::string WhyImplausible(const DepthMark& mark) {
-  Complaint complaint("a depth mark");
+  Complaint complaint;
   const double seconds = static_cast<double>(mark.utc.ns) * 1e-9;
   complaint.Within("utime_us", 1e6 * seconds, -1e6 * limits::kSeconds, 1e6 * limits::kSeconds);
   complaint.Within("md_m", mark.md, -limits::kMd, limits::kMd);
   complaint.Within("speed_mps", mark.speed.value_or(0), -limits::kSpeed, limits::kSpeed);
   complaint.Within("sigma_m", mark.sigma.value_or(0), 0, limits::kSigma);
-  return std::move(complaint).text();
+  return LeftOut("a depth mark", std::move(complaint).text());
 }
 
 std::string WhyImplausible(const ToolInfo& info) {
-  Complaint complaint("a description of a tool");
+  Complaint complaint;
   complaint.Within("sensor_below_reference_m", info.sensor_below_reference,
                    -limits::kSensorBelowReference, limits::kSensorBelowReference);
   complaint.Short("asset_serial", info.asset_serial);
   complaint.Short("sensor_serials", info.sensor_serials);
   complaint.Short("firmware", info.firmware);
   complaint.Short("calibration_sha256", info.calibration_sha256);
-  return std::move(complaint).text();
+  return LeftOut("a description of a tool", std::move(complaint).text());
 }
 
 std::string WhyImplausible(const Command& command) {
-  Complaint complaint("a command");
+  Complaint complaint;
   complaint.Within("duration_s", command.duration.value_or(0), 0, limits::kDuration);
   complaint.Within("md_m", command.md.value_or(0), -limits::kMd, limits::kMd);
-  return std::move(complaint).text();
+  return LeftOut("a command", std::move(complaint).text());
 }
 
-std::string WhyImplausible(const Event& event) {
-  Complaint complaint("an event");
+std::string FindImplausible(const Event& event) {
+  Complaint complaint;
   complaint.Within("value_m", event.value_m, -limits::kMd, limits::kMd);
   complaint.Within("sigma_m", event.sigma_m, -limits::kSigma, limits::kSigma);
   complaint.Within("value_rad", event.value_rad, -limits::kAngle, limits::kAngle);
@@ -77,6 +76,10 @@ std::string WhyImplausible(const Event& event) {
   complaint.Short("who", event.who);
   complaint.Short("text", event.text);
   return std::move(complaint).text();
+}
+
+std::string WhyImplausible(const Event& event) {
+  return LeftOut("an event", FindImplausible(event));
 }
 
 }  // namespace wellgyro

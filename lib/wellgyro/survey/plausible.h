@@ -15,4 +15,8 @@ WELLGYRO_EXPORT std::string WhyImplausible(const ToolInfo& info);
 WELLGYRO_EXPORT std::string WhyImplausible(const Command& command);
 WELLGYRO_EXPORT std::string WhyImplausible(const Event& event);
 
+/// The field of `event` that holds what it cannot, as "sigma_m = nan, which is outside ..."; empty
+/// where none does.
+std::string FindImplausible(const Event& event);
+
 }  // namespace wellgyro

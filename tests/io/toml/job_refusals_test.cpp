@@ -87,7 +87,7 @@ TEST(ReadJob, OutOfRangeIsAnErrorWithItsLineAndValue) {
       {"covariance_m2",
        {"[[1,0,0],[0,1,0]]", "[[1,0],[0,1]]", "[[1,2,0],[2,1,0],[0,0,1]]",
         "[[1,0.5,0],[0,1,0],[0,0,1]]", "[1,2,3]"}},
-      {"quantization_arcsec", {"-1"}},
+      {"quantization_arcsec", {"-1", "1e300"}},
       {"bias_instability_correlation_time_h", {"0", "-1"}},
       {"gyro_bias_sigma_deg_per_h", {"-1"}},
       {"latitude_sigma_deg", {"-1"}},
@@ -111,7 +111,8 @@ TEST(ReadJob, OutOfRangeIsAnErrorWithItsLineAndValue) {
       {"verdict", {"'bad'", "'OK'"}},
       {"event", {"'zero'", "'Remark'"}},
       {"run", {"-1"}},
-      {"sigma_m", {"-1"}}};
+      {"value_m", {"1e300"}},
+      {"sigma_m", {"-1", "1e300"}}};
   for (const auto& [key, values] : odd) {
     const auto lines = KeyLines();
     const auto line = std::find_if(lines.begin(), lines.end(), [&, k = key](const auto& l) {

@@ -47,12 +47,7 @@ std::optional<Eigen::Matrix3d> FindCovariance(TomlTable& table, std::string_view
       cov(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
     }
   }
-  if (cov != cov.transpose()) table.Refuse(key, "must be symmetric");
-  const auto eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(cov, Eigen::EigenvaluesOnly).eigenvalues();
-  if (eigenvalues.minCoeff() < -1e-9 * cov.trace() || cov.trace() < 0) {
-    table.Refuse(key, "has a direction of negative variance");
-  }
+  if (const auto complaint = FindCovarianceComplaint(cov)) table.Refuse(key, *complaint);
   return cov;
 }
 
