@@ -134,6 +134,15 @@ TEST(ProjectToGrid, RefusesWhatIsOutside) {
   EXPECT_THROW((void)ProjectToGrid(odd, 1.0, FromDegrees(3)), std::invalid_argument);
 }
 
+TEST(ProjectToGrid, OriginsThatAreNotFiniteAreNoGrid) {
+  for (double GridSpec::*member : {&GridSpec::false_easting, &GridSpec::false_northing,
+                                   &GridSpec::latitude_origin, &GridSpec::longitude_origin}) {
+    GridSpec grid = UtmGrid("31N");
+    grid.*member = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(ProjectToGrid(grid, 1, 0.05), std::invalid_argument);
+  }
+}
+
 TEST(UtmGrid, KnowsItsZones) {
   EXPECT_EQ(UtmGrid("31N").name, "UTM 31N");
   EXPECT_DOUBLE_EQ(UtmGrid("31N").longitude_origin, FromDegrees(3));

@@ -163,6 +163,25 @@ TEST(MinimumCurvature, RefusesWithTheStationNamed) {
 
 // A commercial package's full-precision export: 1e-12-level TVD and dogleg severity, metres on the
 // grid with its scale factor.
+TEST(MinimumCurvature, RefusesAStartOrALengthThatIsNotFinite) {
+  const std::array<double, 2> straight{0, 0};
+  std::array<Eigen::Vector3d, 2> position;
+  const auto why = [&](const std::array<double, 2>& md, double start) {
+    try {
+      MinimumCurvature(md, straight, straight, {start, 0, 0}, position);
+    } catch (const std::invalid_argument& refused) {
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(why({0, 1}, 0), "");
+  for (const double odd :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THAT(why({0, 1}, odd), testing::HasSubstr("station 0"));
+  }
+  EXPECT_THAT(why({-1e308, 1e308}, 0), testing::HasSubstr("depth 1e+308 m after -1e+308 m"));
+}
+
 TEST(MinimumCurvature, AgreesWithACommercialExport) {
   std::ifstream file(WELLGYRO_REFERENCE_DIR "/wells/wellpathpy/well10.csv");
   if (!file) GTEST_SKIP() << "the reference data are not here";

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <GeographicLib/Constants.hpp>
 #include <GeographicLib/Geodesic.hpp>
@@ -69,6 +70,17 @@ GridPoint PolarPlane(const GridSpec& grid, double latitude, double longitude) {
   return point;
 }
 
+void CheckOrigin(const GridSpec& grid) {
+  for (const auto& [name, value] : {std::pair{"false_easting", grid.false_easting},
+                                    {"false_northing", grid.false_northing},
+                                    {"latitude_origin", grid.latitude_origin},
+                                    {"longitude_origin", grid.longitude_origin}}) {
+    if (std::isfinite(value)) continue;
+    throw std::invalid_argument(
+        fmt::format("ProjectToGrid: grid '{}': {} = {} is not finite", grid.name, name, value));
+  }
+}
+
 GridPoint Project(const GridSpec& grid, double latitude, double longitude) {
   switch (grid.projection) {
     case GridSpec::Projection::kTransverseMercator:
@@ -106,6 +118,7 @@ GridPoint ProjectToGrid(const GridSpec& grid, double latitude, double longitude)
     throw std::domain_error(fmt::format("ProjectToGrid: {} deg, {} deg is no place on the Earth",
                                         ToDegrees(latitude), ToDegrees(longitude)));
   }
+  CheckOrigin(grid);
   GridPoint point;
   try {
     point = Project(grid, latitude, longitude);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -71,6 +72,7 @@ void MinimumCurvature(std::span<const double> md, std::span<const double> inclin
                       std::span<Eigen::Vector3d> position_W, std::span<double> severity,
                       std::span<Eigen::Vector3d> tangent_W) {
   CheckSizes(md.size(), inclination, azimuth, position_W, severity, tangent_W);
+  if (!start_W.allFinite()) RefuseStation(0, "its position is not finite");
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   Eigen::Vector3d at = start_W;
   for (std::size_t i = 0; i < md.size(); ++i) {
@@ -79,7 +81,9 @@ void MinimumCurvature(std::span<const double> md, std::span<const double> inclin
     double dls = 0;
     if (i > 0) {
       const double length = md[i] - md[i - 1];
-      if (!(length > 0)) RefuseStation(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
+      if (!(length > 0 && length <= std::numeric_limits<double>::max())) {
+        RefuseStation(i, fmt::format("depth {} m after {} m", md[i], md[i - 1]));
+      }
       const std::optional<ArcLeg> leg = MinimumCurvatureLeg(length, before, next);
       if (!leg) {
         RefuseStation(

@@ -41,8 +41,8 @@ WELLGYRO_EXPORT Eigen::Vector3d TangentOnArc(const Eigen::Vector3d& t1, const Ei
 /// TVD) [m], the first being `start_W`; `severity`, unless empty, the dogleg severity [rad/m] of
 /// the leg that ends at each station, the first zero; `tangent_W`, unless empty, the unit tangents.
 /// Nothing is allocated. Throws std::invalid_argument, naming the station counted from 0, when
-/// sizes differ, a value is not finite, depth does not increase, or a dogleg reaches kDoglegLimit;
-/// stations before it are written.
+/// sizes differ, a value is not finite, depth does not increase or by more than a double holds, or
+/// a dogleg reaches kDoglegLimit; stations before it are written.
 WELLGYRO_EXPORT void MinimumCurvature(std::span<const double> md,
                                       std::span<const double> inclination,
                                       std::span<const double> azimuth,
