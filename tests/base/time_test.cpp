@@ -1,5 +1,7 @@
 #include "wellgyro/base/time.h"
 
+#include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include <gtest/gtest.h>
@@ -16,6 +18,16 @@ TEST(Time, TheTwoClocksDoNotMix) {
   static_assert(Subtractable<ToolTime, ToolTime>);
   static_assert(!Subtractable<ToolTime, UtcTime>);
   static_assert(!std::is_convertible_v<ToolTime, UtcTime>);
+}
+
+TEST(Time, SecondsBeyondWhatNanosecondsHoldAreTheLongest) {
+  constexpr Duration kLongest{std::numeric_limits<std::int64_t>::max()};
+  constexpr Duration kLeast{std::numeric_limits<std::int64_t>::min()};
+  EXPECT_EQ(Duration::Seconds(1e300), kLongest);
+  EXPECT_EQ(Duration::Seconds(9.3e9), kLongest);
+  EXPECT_EQ(Duration::Seconds(-std::numeric_limits<double>::infinity()), kLeast);
+  EXPECT_EQ(Duration::Seconds(std::numeric_limits<double>::quiet_NaN()), kLeast);
+  EXPECT_EQ(Duration::Seconds(-1.5).ns, -1'500'000'000);
 }
 
 TEST(Time, DifferencesAreExactOverYears) {

@@ -2,6 +2,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <limits>
 
 namespace wellgyro {
 
@@ -9,8 +10,12 @@ namespace wellgyro {
 struct Duration {
   std::int64_t ns = 0;
 
+  /// To the nearest nanosecond. Beyond 292 years the longest there is; of NaN the least.
   static constexpr Duration Seconds(double s) {
-    return {static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))};
+    const double ns = s * 1e9 + (s < 0 ? -0.5 : 0.5);
+    if (ns >= 0x1p63) return {std::numeric_limits<std::int64_t>::max()};
+    if (!(ns >= -0x1p63)) return {std::numeric_limits<std::int64_t>::min()};
+    return {static_cast<std::int64_t>(ns)};
   }
   constexpr double seconds() const { return static_cast<double>(ns) * 1e-9; }
 
