@@ -44,10 +44,10 @@ struct NorthFix {
   Eigen::Vector2d sigma_gyro_bias = Eigen::Vector2d::Zero();
   /// Of the toolface at rest, in the window where it is most for its sigma [rad/s].
   std::optional<double> roll_rate;
-  double sigma_roll_rate = 0;
-  double gravity = 0;        ///< measured |f| [m/s^2]
-  double gravity_ref = 0;    ///< of the Earth model at the place [m/s^2]
-  double sigma_gravity = 0;  ///< [m/s^2]
+  double sigma_roll_rate = 0;  ///< [rad/s]
+  double gravity = 0;          ///< measured |f| [m/s^2]
+  double gravity_ref = 0;      ///< of the Earth model at the place [m/s^2]
+  double sigma_gravity = 0;    ///< [m/s^2]
   /// Rate at rest against the Earth's, in the direction the axes can still see.
   std::optional<double> earth_rate;
   double earth_rate_ref = 0;    ///< [rad/s]

@@ -38,7 +38,9 @@ struct Station {
   double md = 0;  ///< measured depth [m]
   /// The hole's unit tangent (sin I cos A, sin I sin A, cos I).
   Eigen::Vector3d tangent_L = Eigen::Vector3d::UnitZ();
-  /// Of it, across it alone, so that the rank is two; regular at every inclination [rad^2].
+  /// Covariance of the tangent [rad^2]: no variance along it, so that its rank is two, and regular
+  /// at every inclination. Of an unfit station, whose direction is not known, that of an unknown
+  /// angle in all directions: rank three.
   Eigen::Matrix3d cov_tangent_L = Eigen::Matrix3d::Zero();
   double inclination = 0;  ///< I of the tangent [rad]
   double azimuth = 0;      ///< A, true [rad], [0, 2 pi); that of the tool where I is 0
@@ -52,10 +54,10 @@ struct Station {
   double gravity = 0;                                    ///< measured [m/s^2]; 0 where not
   double gravity_ref = 0;                                ///< [m/s^2]
   std::optional<double> earth_rate;                      ///< see NorthFix [rad/s]
-  double earth_rate_ref = 0;
-  std::int64_t imu_seq_begin = 0;  ///< the samples it rests on
-  std::int64_t imu_seq_end = 0;    ///< exclusive
-  std::int64_t samples_lost = 0;   ///< in that range
+  double earth_rate_ref = 0;                             ///< [rad/s]
+  std::int64_t imu_seq_begin = 0;                        ///< the samples it rests on
+  std::int64_t imu_seq_end = 0;                          ///< exclusive
+  std::int64_t samples_lost = 0;                         ///< in that range
 };
 
 }  // namespace wellgyro

@@ -80,6 +80,7 @@ struct GyroRawRecord {
   Eigen::Vector3d w = Eigen::Vector3d::Zero();            ///< [rad/s]
   std::optional<double> gravity, latitude, earth_rate;    ///< measured [m/s^2, rad, rad/s]
   std::optional<double> gyro_toolface, gravity_toolface;  ///< [rad]
+  /// Of the Earth model at the place [m/s^2, rad, rad/s].
   std::optional<double> gravity_ref, latitude_ref, earth_rate_ref;
   std::optional<double> convergence;  ///< [rad]
 };

@@ -76,11 +76,11 @@ struct DepthSpec {
 /// R_TH: how the tool lies in the hole, and where its sensors are.
 struct StringSpec {
   double sensor_below_reference = 0;  ///< along hole [m]
-  double sag = 0;  ///< of the tool axis below the hole axis, in a horizontal hole [rad]
-  double sigma_sag = 0;
+  double sag = 0;             ///< of the tool axis below the hole axis, in a horizontal hole [rad]
+  double sigma_sag = 0;       ///< [rad]
   double misalignment_x = 0;  ///< tool axis against hole axis, towards Tx [rad]
-  double misalignment_y = 0;
-  double sigma_misalignment = 0;
+  double misalignment_y = 0;  ///< likewise, towards Ty [rad]
+  double sigma_misalignment = 0;  ///< of each [rad]
 };
 
 /// Limits of checks, where they do not follow from the error model. Absent: 3 sigma.

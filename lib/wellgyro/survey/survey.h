@@ -40,7 +40,8 @@ struct RunSummary {
   std::int64_t samples_aliased = 0;  ///< that turned too far in one period
   std::int64_t samples_temperature_outside = 0;
   float temperature_min = 0, temperature_max = 0;  ///< [degC]
-  /// How the run as a whole fits together (record/run_fit.h), where an adjuster said so.
+  /// How the run as a whole fits together (record/run_fit.h); null before Adjust and Finish,
+  /// and of a run that could not be adjusted.
   std::shared_ptr<const RunFit> fit;
   std::vector<NorthFix> fixes;
   std::vector<Check> stop_checks;    ///< of three gyro axes at rest, beyond what a fix says
