@@ -14,6 +14,7 @@
 #include "wellgyro/plan/stop_search.h"
 #include "wellgyro/simulate/simulator.h"
 #include "wellgyro/simulate/tool_errors.h"
+#include "wellgyro/survey/run_now.h"
 #include "wellgyro/survey/surveyor.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
@@ -179,7 +180,7 @@ class FollowedRun {
 
   Advice Ask() {
     const std::clock_t begin = std::clock();
-    const AskingRun run = AskingOf(surveyor_.Now(0), surveyor_.tally().newest, deepest_);
+    const AskingRun run = AskingOf(NowOf(surveyor_, 0), surveyor_.tally().newest, deepest_);
     const Advice advice = Advise(case_, limits_, run);
     const double took = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     deepest_ = std::max(deepest_, run.deepest);

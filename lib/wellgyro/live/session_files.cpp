@@ -107,7 +107,7 @@ void LiveSession::Core::Advise(std::int64_t now) {
   const std::vector<std::int32_t> tools = surveyor.tools();
   const std::optional<UtcTime> newest = surveyor.tally().newest;
   if (tools.empty() || !newest || newest->ns <= 0) return;
-  if (adviser->Ask(surveyor.Now(tools.front()), *newest)) next_advice = now + kAdviceUs;
+  if (adviser->Ask(NowOf(surveyor, tools.front()), *newest)) next_advice = now + kAdviceUs;
 }
 
 /// Which check has another verdict than in the files before.

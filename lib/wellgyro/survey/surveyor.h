@@ -23,12 +23,13 @@ namespace wellgyro {
 class RunAdjuster;
 struct RunNow;
 
-/// Where results go while they are made. Override what you want to hear.
+/// Where results go while they are made. Override what you want to hear. What is called must not
+/// call the surveyor that calls it.
 class WELLGYRO_EXPORT Sink {
  public:
   virtual ~Sink();
-  virtual void OnStation(const Station&) {
-  }  ///< and again, with a higher revision, when better known
+  /// And again, with a higher revision, when better known.
+  virtual void OnStation(const Station&) {}
   virtual void OnNorthFix(const NorthFix&) {}
   virtual void OnCheck(const Check&) {}
   virtual void OnFault(const Fault&) {}  ///< what was dropped, where, and why
@@ -57,7 +58,8 @@ struct SampleTally {
 ///
 /// Data never make Push throw: what cannot be used reaches the sink as a Fault, hard physics as
 /// Quality. The sink must not throw either: what it interrupts is not done again. Memory grows with
-/// stations and knots only (one knot a second, about .35 kB).
+/// stations and knots only (one knot a second, about .35 kB). One that was moved from may only be
+/// assigned to or destroyed.
 class WELLGYRO_EXPORT Surveyor {
  public:
   /// What comes beyond these is left out with a Fault; of more tools those with the most samples
@@ -101,13 +103,13 @@ class WELLGYRO_EXPORT Surveyor {
 
   /// Tools of the string that have been heard of.
   std::vector<std::int32_t> tools() const;
-  /// How far the run of one tool that goes on is known: for who gives advice (run_now.h).
-  RunNow Now(std::int32_t tool) const;
   /// All stations, checks and runs of one tool as they are now.
   Survey Current(std::int32_t tool) const;
 
  private:
   friend void AdjustBy(const RunAdjuster& adjuster, Surveyor& surveyor);
+  friend RunNow NowOf(const Surveyor& surveyor, std::int32_t tool);
+  RunNow Now(std::int32_t tool) const;
   struct Rooms;
   std::unique_ptr<Rooms> rooms_;
 };
