@@ -242,6 +242,31 @@ TEST(Exchange, ExportsRoundedForPeople) {
   EXPECT_THAT(files[0].bytes, testing::Not(HasSubstr("29.91234")));
 }
 
+TEST(Exchange, NumbersThatNoReaderTakesAreWrittenInNoFormat) {
+  const SurveyTable good = support::FullSurvey();
+  const double last = good.md(good.rows() - 1);
+  std::vector<SurveyTable> odd(5, good);
+  odd[0].Add(last + 1, std::nan(""), 1);
+  odd[1].Add(last + 1, 1, std::nan(""));
+  odd[2].Set(Column::kTvd, 1, HUGE_VAL);
+  odd[3].Set(Column::kVarNN, 1, std::nan(""));
+  odd[4].Add(good.md(1), 1, 1);
+  for (const std::string& word : WrittenFormats()) {
+    const SurveyFormat format = *SurveyFormatOf(word);
+    for (std::size_t i = 0; i < odd.size(); ++i) {
+      EXPECT_THROW(WriteSurvey(odd[i], format), std::invalid_argument) << word << " " << i;
+      EXPECT_THROW(SurveyFiles(odd[i], format, "x"), std::invalid_argument) << word << " " << i;
+    }
+  }
+}
+
+TEST(Exchange, WhatIsNoFormatIsRefused) {
+  const auto none = static_cast<SurveyFormat>(99);
+  EXPECT_THROW(WordOf(none), std::invalid_argument);
+  EXPECT_THROW(FileNameOf(none, "x"), std::invalid_argument);
+  EXPECT_THROW(WriteSurvey(support::FullSurvey(), none), std::invalid_argument);
+}
+
 TEST(Exchange, FormatsHaveNames) {
   for (const SurveyFormat format : kReadable) EXPECT_EQ(SurveyFormatOf(WordOf(format)), format);
   EXPECT_FALSE(SurveyFormatOf("docx"));

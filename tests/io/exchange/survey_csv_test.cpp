@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -192,6 +195,34 @@ TEST(ParseSurveyCsv, ForeignFilesAreSaidToBe) {
 TEST(ReadSurveyCsv, AbsentFilesAndDirectoriesAreFaults) {
   EXPECT_EQ(ReadSurveyCsv("no/such/survey.csv").fault().code, FaultCode::kIo);
   EXPECT_EQ(ReadSurveyCsv(".").fault().code, FaultCode::kIo);
+}
+
+TEST(SurveyCsv, RefusesWhatCannotBeReadAgain) {
+  const auto refused = [](auto change) {
+    std::vector<Station> stations = SmallSurvey();
+    change(stations[1]);
+    EXPECT_THROW(PassesCsv(stations, nullptr), std::invalid_argument);
+    try {
+      SurveyCsv(stations, nullptr);
+    } catch (const std::invalid_argument& why) {
+      return std::string(why.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refused([](Station& s) { s.azimuth = std::nan(""); }),
+              HasSubstr("station 1 of the survey: azimuth = nan"));
+  EXPECT_THAT(refused([](Station& s) { s.md = HUGE_VAL; }), HasSubstr("md = inf"));
+  EXPECT_THAT(refused([](Station& s) { s.cov_p_WT_W(1, 1) = -1; }), HasSubstr("cov_p_WT_W = -1"));
+  EXPECT_THAT(refused([](Station& s) { s.cov_p_WT_W(0, 2) = HUGE_VAL; }), HasSubstr("cov_p_WT_W"));
+  EXPECT_THAT(refused([](Station& s) { s.cov_md_inc_azi(2, 2) = -1; }),
+              HasSubstr("cov_md_inc_azi = -1"));
+}
+
+TEST(ChecksCsv, RefusesWhatIsNotFinite) {
+  Check check;
+  check.code = "gravity";
+  check.sigma = std::nan("");
+  EXPECT_THROW(ChecksCsv({&check, 1}), std::invalid_argument);
 }
 
 }  // namespace

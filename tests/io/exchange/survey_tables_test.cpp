@@ -79,6 +79,24 @@ TEST(SurveyTables, ComputedNumbersHaveSixDecimalsInTheFilesOwnUnit) {
   }
 }
 
+TEST(SurveyTables, AnglesAloneTurnWithoutAWordOnOffsets) {
+  SurveyTable t;
+  t.head.azimuth = {.north = North::kTrue, .convergence = 0.25};
+  t.Add(100, 0.1, 1);
+  SurveyTable odd = t;
+  TurnTo(t, North::kGrid);
+  EXPECT_NEAR(t.azimuth(0), 0.75, 1e-15);
+  EXPECT_EQ(t.head.offsets, North::kGrid);
+  odd.head.azimuth.convergence = std::nan("");
+  EXPECT_THROW(TurnTo(odd, North::kGrid), std::invalid_argument);
+  EXPECT_EQ(odd.azimuth(0), 1) << "refused before anything is turned";
+}
+
+TEST(SurveyTables, NoUnitIsRefused) {
+  SurveyTable t;
+  EXPECT_THROW(SetUnits(t, static_cast<LengthUnit>(99)), std::invalid_argument);
+}
+
 TEST(SurveyTables, DerivedColumns) {
   SurveyTable t = support::FullSurvey();
   FillDerived(t);

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "wellgyro/io/exchange/geo_path_internal.h"
 #include "wellgyro/io/exchange/line_reader_internal.h"
 #include "wellgyro/io/exchange/sheet_internal.h"
@@ -39,6 +41,14 @@ constexpr std::array kFormats{
     FormatName{SurveyFormat::kKml, "kml", ".kml"},
     FormatName{SurveyFormat::kGeoPackage, "gpkg", ".gpkg"},
 };
+
+const FormatName& NameOf(SurveyFormat format) {
+  for (const FormatName& f : kFormats) {
+    if (f.format == format) return f;
+  }
+  throw std::invalid_argument(
+      fmt::format("SurveyFormat {} is no format of surveys", static_cast<int>(format)));
+}
 
 constexpr std::int64_t kMostXml = std::int64_t{1} << 28;
 
@@ -123,9 +133,7 @@ std::optional<SurveyFormat> SurveyFormatOf(std::string_view word) {
   return std::nullopt;
 }
 
-std::string_view WordOf(SurveyFormat format) {
-  return kFormats[static_cast<std::size_t>(format)].word;
-}
+std::string_view WordOf(SurveyFormat format) { return NameOf(format).word; }
 
 std::vector<std::string> WrittenFormats() {
   std::vector<std::string> words;
@@ -136,7 +144,7 @@ std::vector<std::string> WrittenFormats() {
 }
 
 std::string FileNameOf(SurveyFormat format, const std::string& stem) {
-  return stem + std::string(kFormats[static_cast<std::size_t>(format)].ending);
+  return stem + std::string(NameOf(format).ending);
 }
 
 Result<SurveyTable> ParseSurvey(std::string_view text, const std::string& source,
@@ -192,6 +200,7 @@ Result<SurveyTable> ReadSurvey(const std::filesystem::path& path, const ReadOpti
 
 std::string WriteSurvey(const SurveyTable& table, SurveyFormat format,
                         const WriteOptions& options) {
+  CheckRows(table, WordOf(format));
   switch (format) {
     case SurveyFormat::kCsv:
       return WriteCsv(table, options);

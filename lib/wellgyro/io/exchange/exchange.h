@@ -36,6 +36,7 @@ enum class SurveyFormat {
 
 /// csv, las, p717, witsml (1.4.1.1), witsml20, witsml21, petrel, compass, osdu, geojson, kml, gpkg.
 WELLGYRO_EXPORT std::optional<SurveyFormat> SurveyFormatOf(std::string_view word);
+/// Throws std::invalid_argument, as all that take a format, when there is no such one.
 WELLGYRO_EXPORT std::string_view WordOf(SurveyFormat format);
 /// The words of all that are not read only.
 WELLGYRO_EXPORT std::vector<std::string> WrittenFormats();
@@ -84,7 +85,8 @@ struct WriteOptions {
 };
 
 /// The text of a file. Numbers have as many digits as give them back. Throws std::invalid_argument
-/// saying what the format needs and the table lacks; north is never guessed.
+/// saying what the format needs and the table lacks, or which number of which row is not finite or
+/// by which depth the rows of the path go back; north is never guessed.
 WELLGYRO_EXPORT std::string WriteSurvey(const SurveyTable& table, SurveyFormat format,
                                         const WriteOptions& options = {});
 
@@ -94,6 +96,7 @@ WELLGYRO_EXPORT SurveyTable TableOfSurvey(const Job& job, std::span<const Statio
                                           const WellGrid* grid);
 
 /// Metric or field units for MD, TVD, offsets and curvature; grid coordinates keep their own.
+/// Throws std::invalid_argument when there is no such unit.
 WELLGYRO_EXPORT void SetUnits(SurveyTable& table, LengthUnit unit);
 
 /// Turns every direction of the survey to count from `north`: azimuths, offsets, covariances,

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -57,6 +59,48 @@ void AppendStation(std::string& text, const Station& s) {
   text += ',';
   text += WordOf(s.kind);
   text += ',' + QualityText(s.quality);
+}
+
+[[noreturn]] void RefuseStation(std::size_t i, std::string_view field, double value,
+                                std::string_view why) {
+  throw std::invalid_argument(
+      fmt::format("station {} of the survey: {} = {} {}", i, field, value, why));
+}
+
+void NeedFinite(std::size_t i, std::string_view field, double value) {
+  if (!std::isfinite(value)) RefuseStation(i, field, value, "is not finite");
+}
+
+// Numbers that are written are to be read again.
+void CheckStation(std::size_t i, const Station& s, bool with_depth) {
+  NeedFinite(i, "md", s.md);
+  NeedFinite(i, "inclination", s.inclination);
+  NeedFinite(i, "azimuth", s.azimuth);
+  NeedFinite(i, "toolface", s.toolface);
+  for (const double p : s.p_WT_W) NeedFinite(i, "p_WT_W", p);
+  NeedFinite(i, "dogleg_severity", s.dogleg_severity);
+  if (Has(s.quality, Quality::kUnfit)) return;
+  for (const double c : s.cov_p_WT_W.reshaped()) NeedFinite(i, "cov_p_WT_W", c);
+  for (int k = 0; k < 3; ++k) {
+    const double var = s.cov_p_WT_W(k, k), own = s.cov_md_inc_azi(k, k);
+    if (var < 0) RefuseStation(i, "cov_p_WT_W", var, "is no variance");
+    if (k == 0 && !with_depth) continue;
+    NeedFinite(i, "cov_md_inc_azi", own);
+    if (own < 0) RefuseStation(i, "cov_md_inc_azi", own, "is no variance");
+  }
+}
+
+void CheckStations(std::span<const Station> stations, bool with_depth) {
+  for (std::size_t i = 0; i < stations.size(); ++i) CheckStation(i, stations[i], with_depth);
+}
+
+void CheckCheck(const Check& c) {
+  for (const auto& [field, value] : {std::pair{"md", c.md}, std::pair{"value", c.value},
+                                     std::pair{"sigma", c.sigma}, std::pair{"limit", c.limit}}) {
+    if (!value || std::isfinite(*value)) continue;
+    throw std::invalid_argument(
+        fmt::format("check {} of run {}: {} = {} is not finite", c.code, c.run, field, *value));
+  }
 }
 
 // One line cut at its commas, with the column at which each field begins.
@@ -166,6 +210,7 @@ class Reader {
 }  // namespace
 
 std::string SurveyCsv(std::span<const Station> stations, const WellGrid* grid) {
+  CheckStations(stations, false);
   std::string text = fmt::format("{}{}\n", kSurveyColumns, grid ? kGridColumns : "");
   for (const Station& s : stations) {
     AppendStation(text, s);
@@ -176,6 +221,7 @@ std::string SurveyCsv(std::span<const Station> stations, const WellGrid* grid) {
 }
 
 std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid) {
+  CheckStations(stations, true);
   std::string text = fmt::format("{}{}{}{}\n", kPassColumns, kSurveyColumns, kDepthColumn,
                                  grid ? kGridColumns : "");
   for (const Station& s : stations) {
@@ -193,6 +239,7 @@ std::string ChecksCsv(std::span<const Check> checks) {
   const auto number = [](const std::optional<double>& v) { return v ? Significant(*v) : ""; };
   std::string text = "CODE,RUN,PASS,MD[m],VALUE,SIGMA,LIMIT,UNIT,LIMIT_SOURCE,VERDICT\n";
   for (const Check& c : checks) {
+    CheckCheck(c);
     text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvQuoted(c.code), c.run,
                         c.pass ? WordOf(*c.pass) : "", c.md ? Metres(*c.md) : "", number(c.value),
                         number(c.sigma), number(c.limit), CsvQuoted(c.unit),

@@ -18,15 +18,17 @@ namespace wellgyro {
 
 /// survey.csv: the rows of `stations`, in their order. Where `grid` is not null grid azimuth,
 /// northing and easting stand in the last columns. Throws std::domain_error when a station lies
-/// outside the projection.
+/// outside the projection, std::invalid_argument, naming station (from 0) and field, where a number
+/// is not finite or a variance negative.
 WELLGYRO_EXPORT std::string SurveyCsv(std::span<const Station> stations, const WellGrid* grid);
 
 /// passes.csv: the same columns after RUN,PASS,STATUS,REVISION, and SIG_MD[m] behind QUALITY: what
-/// the depth's error adds at an MD.
+/// the depth's error adds at an MD. Throws as SurveyCsv.
 WELLGYRO_EXPORT std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid);
 
 /// checks.csv: CODE,RUN,PASS,MD[m],VALUE,SIGMA,LIMIT,UNIT,LIMIT_SOURCE,VERDICT. What a check does
-/// not have stays empty.
+/// not have stays empty. Throws std::invalid_argument, naming check and field, where a number is
+/// not finite.
 WELLGYRO_EXPORT std::string ChecksCsv(std::span<const Check> checks);
 
 /// Stations from the text of a survey.csv; `source` names it in Faults, which carry line and

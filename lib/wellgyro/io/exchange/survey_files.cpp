@@ -14,6 +14,7 @@ namespace wellgyro {
 std::vector<OutputFile> SurveyFiles(const SurveyTable& table, SurveyFormat format,
                                     const std::string& name, const WriteOptions& options) {
   if (format != SurveyFormat::kOsdu) return {{name, WriteSurvey(table, format, options)}};
+  CheckRows(table, WordOf(format));
   const std::string bulk = name.substr(0, name.rfind(".json")) + ".csv";
   return {{bulk, WriteOsduBulk(table)}, {name, WriteOsdu(table, bulk)}};
 }

@@ -170,6 +170,10 @@ SurveyTable TableOfSurvey(const Job& job, std::span<const Station> stations, con
 }
 
 void SetUnits(SurveyTable& table, LengthUnit unit) {
+  if (unit != LengthUnit::kMetre && unit != LengthUnit::kFoot && unit != LengthUnit::kUsFoot) {
+    throw std::invalid_argument(
+        fmt::format("SetUnits: LengthUnit {} is no unit", static_cast<int>(unit)));
+  }
   table.head.md_unit = unit;
   table.head.curvature_unit =
       unit == LengthUnit::kMetre ? CurvatureUnit::kDegPer30m : CurvatureUnit::kDegPer100ft;
@@ -178,13 +182,18 @@ void SetUnits(SurveyTable& table, LengthUnit unit) {
 void TurnTo(SurveyTable& table, North north) {
   SurveyHead& head = table.head;
   const North azimuth_from = head.azimuth.north, offsets_from = head.offsets;
+  // What cannot be turned is refused before anything has been.
+  static_cast<void>(AzimuthFrom(head.azimuth, 0, azimuth_from, north));
+  // Where there are no offsets, it does not matter that nobody said what they count from.
+  const bool offsets = offsets_from != North::kUnknown || table.Has(Column::kNorth) ||
+                       head.section_north != 0 || head.section_east != 0;
+  const double turn = offsets ? AzimuthFrom(head.azimuth, 0, offsets_from, north) : 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (azimuth_from != north) {
       table.Set(Column::kAzimuth, row,
                 AzimuthFrom(head.azimuth, table.azimuth(row), azimuth_from, north));
     }
     if (offsets_from == north || !table.Has(Column::kNorth)) continue;
-    const double turn = AzimuthFrom(head.azimuth, 0, offsets_from, north);
     Eigen::Matrix3d r;
     r << std::cos(turn), -std::sin(turn), 0, std::sin(turn), std::cos(turn), 0, 0, 0, 1;
     TurnVector(table, row, r, Column::kNorth, Column::kEast);
@@ -199,7 +208,6 @@ void TurnTo(SurveyTable& table, North north) {
   for (GyroRawRecord& raw : head.gyro_raw) {
     raw.azimuth = AzimuthFrom(head.azimuth, raw.azimuth, azimuth_from, north);
   }
-  const double turn = AzimuthFrom(head.azimuth, 0, offsets_from, north);
   const double section_north = head.section_north;
   head.section_north = section_north * std::cos(turn) - head.section_east * std::sin(turn);
   head.section_east = section_north * std::sin(turn) + head.section_east * std::cos(turn);

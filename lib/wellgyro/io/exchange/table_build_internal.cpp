@@ -160,4 +160,26 @@ void NeedNorth(const SurveyTable& table, std::string_view format) {
   }
 }
 
+void CheckRows(const SurveyTable& table, std::string_view format) {
+  for (const ColumnInfo& info : AllColumns()) {
+    for (std::size_t row = 0; table.Has(info.column) && row < table.rows(); ++row) {
+      const std::optional<double> value = table.Get(info.column, row);
+      if (!value || std::isfinite(*value)) continue;
+      throw std::invalid_argument(
+          fmt::format("{} cannot be written: row {} has {} = {}", format, row, info.csv, *value));
+    }
+  }
+  std::optional<double> last;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (!OnPath(table.status(row))) continue;
+    const double md = table.Get(Column::kMd, row).value_or(last.value_or(0));
+    if (last && md < *last) {
+      throw std::invalid_argument(
+          fmt::format("{} cannot be written: row {} has depth {} m after {} m: depth must increase",
+                      format, row, md, *last));
+    }
+    last = md;
+  }
+}
+
 }  // namespace wellgyro

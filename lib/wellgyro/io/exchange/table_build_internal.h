@@ -32,6 +32,9 @@ void TakeReportLine(SurveyHead& head, std::string_view line, Claims& claims);
 [[noreturn]] void Lacks(std::string_view format, std::string_view what);
 /// Lacks, unless the north of the azimuths is known.
 void NeedNorth(const SurveyTable& table, std::string_view format);
+/// Throws std::invalid_argument where a number is not finite, or the depth of a row on the path is
+/// less than that of the one before on it: no reader would take them.
+void CheckRows(const SurveyTable& table, std::string_view format);
 
 // Readers throw the Fault of what they cannot use, with line or element; ReadSurvey catches it.
 // `claims` collects what the file says of itself, to be held against its numbers.
