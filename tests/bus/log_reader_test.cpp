@@ -351,6 +351,12 @@ TEST(LogReader, NoFileAndADirectory) {
   EXPECT_THAT(directory.fault().text, HasSubstr("directory"));
 }
 
+TEST(LogReader, NoByteIsBeforeTheFirst) {
+  const auto reader = LogReader::OpenAt("/dev/null", -1);
+  ASSERT_FALSE(reader);
+  EXPECT_EQ(reader.fault().code, FaultCode::kRange);
+}
+
 TEST(LogReader, ALengthBeyondEveryLimitDoesNotGrowTheBuffer) {
   Log log = LogOf(SomeEvents(4, 10));
   log.bytes[log.begins[1] + 24] = std::byte{0x0F};  // 250 MB of data, it says

@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "wellgyro/io/text_file.h"
+
 #include "support/scratch.h"
 
 namespace wellgyro {
@@ -134,6 +136,12 @@ TEST_P(Killed, WhileWritingLeavesWholeFiles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(WriteFiles, Killed, testing::Range(0, 5));
+
+TEST(ReadTextHead, OfFewerThanNoBytesIsAFault) {
+  const auto head = ReadTextHead("/dev/null", -5);
+  ASSERT_FALSE(head);
+  EXPECT_EQ(head.fault().code, FaultCode::kRange);
+}
 
 }  // namespace
 }  // namespace wellgyro

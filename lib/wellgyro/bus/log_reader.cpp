@@ -260,6 +260,9 @@ Result<LogReader> LogReader::Open(const std::string& path) {
 }
 
 Result<LogReader> LogReader::OpenAt(const std::string& path, std::int64_t from) {
+  if (from < 0) {
+    return Fault{FaultCode::kRange, fmt::format("{} has no byte {}", path, from), path};
+  }
   Result<LogSource> source = LogSource::Open(path);
   if (!source) return source.fault();
   if (static_cast<std::int64_t>(source->view().size()) < from) {

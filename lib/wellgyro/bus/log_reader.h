@@ -61,7 +61,7 @@ class WELLGYRO_EXPORT LogReader {
   /// none the Fault says what the file is instead.
   static Result<LogReader> Open(const std::string& path);
   /// The same of a regular file from byte `from` on, where an event ends: what has been added since
-  /// it was read so far. Nothing added is no Fault.
+  /// it was read so far. Nothing added is no Fault; a `from` below 0 is one.
   static Result<LogReader> OpenAt(const std::string& path, std::int64_t from);
   ~LogReader();
   LogReader(LogReader&&) noexcept;

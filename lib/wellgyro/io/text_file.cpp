@@ -55,6 +55,9 @@ Result<std::string> ReadTextFile(const std::filesystem::path& path, std::int64_t
 }
 
 Result<std::string> ReadTextHead(const std::filesystem::path& path, std::int64_t size) {
+  if (size < 0) {
+    return Unreadable(path, FaultCode::kRange, fmt::format("{} bytes cannot be read", size));
+  }
   std::error_code ignored;
   if (std::filesystem::is_fifo(path, ignored)) {
     return Unreadable(path, FaultCode::kIo,

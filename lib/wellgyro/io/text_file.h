@@ -27,7 +27,7 @@ WELLGYRO_EXPORT std::vector<std::filesystem::path> PathsOf(const std::vector<Inp
 WELLGYRO_EXPORT Result<std::string> ReadTextFile(const std::filesystem::path& path,
                                                  std::int64_t limit = 1 << 26);
 
-/// Its first `size` bytes, or all when there are fewer.
+/// Its first `size` bytes, or all when there are fewer. Fault kRange for a size below 0.
 WELLGYRO_EXPORT Result<std::string> ReadTextHead(const std::filesystem::path& path,
                                                  std::int64_t size);
 
