@@ -45,11 +45,11 @@ class Mailbox : public wellgyro::Sink {
   std::string last;
 };
 
-wellgyro::DepthKind KindOf(std::int32_t kind) {
+std::optional<wellgyro::DepthKind> KindOf(std::int32_t kind) {
   using wellgyro::DepthKind;
   constexpr DepthKind kKinds[] = {DepthKind::kIndicated, DepthKind::kWireline,
                                   DepthKind::kDrillPipe, DepthKind::kTubing, DepthKind::kOther};
-  if (kind < 0 || kind >= static_cast<std::int32_t>(std::size(kKinds))) return DepthKind::kOther;
+  if (kind < 0 || kind >= static_cast<std::int32_t>(std::size(kKinds))) return std::nullopt;
   return kKinds[kind];
 }
 
@@ -80,15 +80,16 @@ wellgyro::ImuSample SampleOf(const wellgyro_imu& from) {
   return to;
 }
 
-wellgyro::DepthMark MarkOf(const wellgyro_depth& from) {
+wellgyro::DepthMark MarkOf(const wellgyro_depth& from, wellgyro::DepthKind kind) {
   wellgyro::DepthMark to;
   to.utc = UtcOf(from.utime_us);
   to.seq = from.seq;
   to.session = from.session;
   to.run = from.run;
-  to.kind = KindOf(from.kind);
+  to.kind = kind;
   to.md = from.md_m;
-  if (from.sigma_m >= 0) to.sigma = from.sigma_m;
+  // NaN goes on, and is refused.
+  if (!(from.sigma_m < 0)) to.sigma = from.sigma_m;
   to.stopped = from.stopped != 0;
   return to;
 }
@@ -168,6 +169,10 @@ int Refuse(std::string& error, const char* why) {
   return WELLGYRO_USAGE;
 }
 
+int RefuseNull() noexcept {
+  return Guard(opening_error, [] { return Refuse(opening_error, "null session"); });
+}
+
 int Open(const wellgyro::Result<wellgyro::JobFile>& file, wellgyro_session** session) {
   if (!file) {
     opening_error = Sentence(file.fault());
@@ -181,7 +186,7 @@ int Open(const wellgyro::Result<wellgyro::JobFile>& file, wellgyro_session** ses
 template <class Push>
 int PushInto(wellgyro_session* session, const void* data, std::size_t count,
              const Push& push) noexcept {
-  if (!session) return WELLGYRO_USAGE;
+  if (!session) return RefuseNull();
   return Guard(session->error, [&] {
     if (!data && count > 0) return Refuse(session->error, "null data");
     if (session->surveyor->finished()) return Refuse(session->error, "the survey is finished");
@@ -225,7 +230,13 @@ int wellgyro_push_imu(wellgyro_session* session, const wellgyro_imu* samples, si
 int wellgyro_push_depth(wellgyro_session* session, const wellgyro_depth* marks, size_t count) {
   return PushInto(session, marks, count, [&] {
     for (const wellgyro_depth& mark : std::span(marks, count)) {
-      session->surveyor->Push(MarkOf(mark));
+      if (const auto kind = KindOf(mark.kind)) {
+        session->surveyor->Push(MarkOf(mark, *kind));
+      } else {
+        session->mailbox.OnFault(Fault{
+            wellgyro::FaultCode::kRange,
+            fmt::format("a depth mark has kind {}, which is none, and was left out", mark.kind)});
+      }
     }
   });
 }
@@ -233,7 +244,7 @@ int wellgyro_push_depth(wellgyro_session* session, const wellgyro_depth* marks, 
 int wellgyro_poll(wellgyro_session* session, wellgyro_station* stations, size_t capacity,
                   size_t* count) {
   if (count) *count = 0;
-  if (!session) return WELLGYRO_USAGE;
+  if (!session) return RefuseNull();
   return Guard(session->error, [&] {
     if (!count || (!stations && capacity > 0)) return Refuse(session->error, "null stations");
     std::deque<Station>& waiting = session->mailbox.waiting;
@@ -268,7 +279,7 @@ int wellgyro_finish(wellgyro_session* session) {
 int wellgyro_survey_csv(wellgyro_session* session, int32_t tool, char* text, size_t capacity,
                         size_t* size) {
   if (size) *size = 0;
-  if (!session) return WELLGYRO_USAGE;
+  if (!session) return RefuseNull();
   return Guard(session->error, [&] {
     if (!size || (!text && capacity > 0)) return Refuse(session->error, "null text or size");
     const wellgyro::Survey survey = session->surveyor->Current(tool);

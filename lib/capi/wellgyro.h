@@ -56,7 +56,7 @@ typedef struct wellgyro_imu {
   float temperature_degc;
   double rate_rad_per_s[3];
   double force_mps2[3]; /* specific force */
-  double field_t[3];
+  double field_t[3];    /* magnetic flux density [T]; where WELLGYRO_HAS_MAG */
 } wellgyro_imu;
 
 /* A reading of the depth system: along-hole depth of the string's reference point. */
@@ -67,11 +67,12 @@ typedef struct wellgyro_depth {
   int32_t run;
   double md_m;
   double sigma_m;   /* below 0: not known */
-  int32_t kind;     /* 0 indicated, 1 wireline, 2 drill pipe, 3 tubing, 4 other */
+  int32_t kind;     /* 0 indicated, 1 wireline, 2 drill pipe, 3 tubing, 4 other; no more */
   uint32_t stopped; /* 1 while the string is held */
 } wellgyro_depth;
 
-/* A survey station. Covariances are 1-sigma squared, in m, rad and m^2. */
+/* A survey station. Covariances are 1-sigma squared, row by row, three numbers a row. Near vertical
+ * the variance of the azimuth means little: the azimuth itself does there. */
 typedef struct wellgyro_station {
   int64_t utime_us;
   int32_t tool;
@@ -91,7 +92,7 @@ typedef struct wellgyro_station {
   double north_m;
   double east_m;
   double tvd_m;
-  double cov_md_inc_azi[9];
+  double cov_md_inc_azi[9];  /* md, inclination, azimuth [m, rad, rad] */
   double cov_position_m2[9]; /* north, east, TVD */
 } wellgyro_station;
 
@@ -115,7 +116,8 @@ WELLGYRO_C int wellgyro_push_depth(wellgyro_session* session, const wellgyro_dep
 WELLGYRO_C int wellgyro_poll(wellgyro_session* session, wellgyro_station* stations, size_t capacity,
                              size_t* count);
 
-/* How many data were left out since the beginning; the sentence of the last is wellgyro_error. */
+/* How many faults there were since the beginning. One may tell of a whole batch of data that was
+ * left out, or of something else that is wrong; the sentence of the last is wellgyro_error. */
 WELLGYRO_C int64_t wellgyro_refused(const wellgyro_session* session);
 
 /* Revises all stations from all that is known so far; changes nothing that follows. */
@@ -129,8 +131,8 @@ WELLGYRO_C int wellgyro_finish(wellgyro_session* session);
 WELLGYRO_C int wellgyro_survey_csv(wellgyro_session* session, int32_t tool, char* text,
                                    size_t capacity, size_t* size);
 
-/* What the last call of the session, or where it is null of the thread, had to say; never null.
- * Holds until the next call. */
+/* What the last call of the session, or where it is null of the thread's last call that opened one
+ * or was given none, had to say; never null. Holds until the next call. */
 WELLGYRO_C const char* wellgyro_error(const wellgyro_session* session);
 
 /* Null is allowed. */

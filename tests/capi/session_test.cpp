@@ -1,3 +1,7 @@
+#include <cmath>
+#include <cstdint>
+#include <string>
+
 #include <gmock/gmock.h>
 
 #include "wellgyro.h"
@@ -27,6 +31,34 @@ TEST(Session, WithoutSamplesThereIsNoSurveyAndASentenceSaysSo) {
   EXPECT_EQ(wellgyro_finish(session), WELLGYRO_USAGE);
   wellgyro_close(session);
   wellgyro_close(nullptr);
+}
+
+TEST(Session, OfANullOneTheThreadSaysSo) {
+  wellgyro_session* session = nullptr;
+  EXPECT_EQ(wellgyro_open_text("", ".", &session), WELLGYRO_UNUSABLE);
+  EXPECT_EQ(wellgyro_push_depth(nullptr, nullptr, 0), WELLGYRO_USAGE);
+  EXPECT_STREQ(wellgyro_error(nullptr), "null session");
+}
+
+TEST(Session, MarksOfNoKindOrNoSigmaAreRefused) {
+  wellgyro_session* session = nullptr;
+  ASSERT_EQ(wellgyro_open_text(kJob, ".", &session), WELLGYRO_OK);
+  for (const std::int32_t kind : {-5, 5, 99}) {
+    wellgyro_depth mark{};
+    mark.kind = kind;
+    EXPECT_EQ(wellgyro_push_depth(session, &mark, 1), WELLGYRO_OK);
+    EXPECT_THAT(wellgyro_error(session), testing::HasSubstr("kind " + std::to_string(kind)));
+  }
+  EXPECT_EQ(wellgyro_refused(session), 3);
+  wellgyro_depth mark{};
+  mark.sigma_m = std::nan("");
+  EXPECT_EQ(wellgyro_push_depth(session, &mark, 1), WELLGYRO_OK);
+  EXPECT_THAT(wellgyro_error(session), testing::HasSubstr("sigma_m"));
+  EXPECT_EQ(wellgyro_refused(session), 4);
+  mark.sigma_m = -1;
+  EXPECT_EQ(wellgyro_push_depth(session, &mark, 1), WELLGYRO_OK);
+  EXPECT_EQ(wellgyro_refused(session), 4);
+  wellgyro_close(session);
 }
 
 }  // namespace
