@@ -35,6 +35,17 @@ TEST(RunLimits, ATieInBelowTheRunIsNoSurvey) {
   EXPECT_TRUE(survey.chosen.empty());
 }
 
+TEST(RunLimits, ARunAboveATieInWithoutAttitudeIsSaidToBeginAboveIt) {
+  Job job = testing::SlantJob();
+  job.tie_in.md = 5000;
+  job.tie_in.tvd = 4000;
+  Sink sink;
+  const Survey survey = testing::SurveyOf(testing::Slant(), job, sink);
+  EXPECT_NE(survey.unusable.find("above the tie-in at 5000.00 m"), std::string::npos)
+      << survey.unusable;
+  EXPECT_EQ(survey.unusable.find("below"), std::string::npos) << survey.unusable;
+}
+
 TEST(RunLimits, DepthsOutsideTheRunAreNoSurvey) {
   Job job = testing::SlantJob();
   job.stations.every = 0;

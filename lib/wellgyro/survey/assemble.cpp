@@ -245,6 +245,20 @@ void AddDepthScale(const Job& job, const std::vector<DraftedRun>& runs,
 }
 
 /// Why the tie-in is all that there is.
+std::string WhyNoOpening(const Job& job, double first) {
+  const double tie = job.tie_in.md;
+  if (first < tie) {
+    return fmt::format(
+        "the survey begins at {:.2f} m, above the tie-in at {:.2f} m, and has no station there: "
+        "give [tie_in] inclination_deg and azimuth_true_deg, or md_m = {:.2f}",
+        first, tie, first);
+  }
+  return fmt::format(
+      "the survey begins at {:.2f} m, below the tie-in at {:.2f} m: give [tie_in] "
+      "inclination_deg and azimuth_true_deg for the {:.2f} m between, or md_m = {:.2f}",
+      first, tie, first - tie, first);
+}
+
 std::string WhyNothing(const Job& job, const std::vector<PassItems>& passes, const Placed& placed) {
   double deepest = -HUGE_VAL;
   for (const PassItems& pass : passes) {
@@ -288,11 +302,7 @@ Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {
   }
   const std::optional<Station> opening = OpeningStation(job, good);
   if (!opening) {
-    placed.unusable = fmt::format(
-        "the survey begins at {:.2f} m, below the tie-in at {:.2f} m: give [tie_in] "
-        "inclination_deg and azimuth_true_deg for the {:.2f} m between, or md_m = {:.2f}",
-        ShallowestDepth(good), job.tie_in.md, ShallowestDepth(good) - job.tie_in.md,
-        ShallowestDepth(good));
+    placed.unusable = WhyNoOpening(job, ShallowestDepth(good));
     return placed;
   }
   std::vector<PassLine> lines, misruns;
