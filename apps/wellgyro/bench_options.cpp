@@ -16,10 +16,10 @@
 namespace wellgyro::apps {
 namespace {
 
-void AddReference(CLI::App& command, BenchOptions& o, const std::string& name,
-                  const std::string& help, const CLI::Validator& range,
-                  const std::function<void(double)>& take) {
-  command
+CLI::Option* AddReference(CLI::App& command, BenchOptions& o, const std::string& name,
+                          const std::string& help, const CLI::Validator& range,
+                          const std::function<void(double)>& take) {
+  return command
       .add_option_function<double>(
           name,
           [&o, name, take](const double& value) {
@@ -52,17 +52,20 @@ CLI::Validator Within(double low, double high) {
 
 void AddGravity(CLI::App& command, BenchOptions& o) {
   BenchReference& r = o.reference;
-  AddReference(command, o, "--gravity-g", "local gravity; readings are in g (default 1)",
-               Within(0.97, 1.03), [&r, &o](double g) {
-                 o.gravity_stated = true;
-                 r.gravity = g;
-                 r.gravity_mps2 = g * units::kStandardGravity;
-               });
+  CLI::Option* const in_g =
+      AddReference(command, o, "--gravity-g", "local gravity; readings are in g (default 1)",
+                   Within(0.97, 1.03), [&r, &o](double g) {
+                     o.gravity_stated = true;
+                     r.gravity = g;
+                     r.gravity_mps2 = g * units::kStandardGravity;
+                   });
   AddReference(command, o, "--gravity-mps2", "local gravity; readings are in m/s2",
-               Within(9.5, 10.1), [&r, &o](double g) {
+               Within(9.5, 10.1),
+               [&r, &o](double g) {
                  o.gravity_stated = true;
                  r.gravity = r.gravity_mps2 = g;
-               });
+               })
+      ->excludes(in_g);
 }
 
 void AddField(CLI::App& command, BenchOptions& o) {

@@ -2,6 +2,7 @@
 """From a bench to a survey by the program, and benches that cannot give a calibration: files, exit
 codes, sentences. calibrate_test.py PROGRAM"""
 import hashlib
+import itertools
 import math
 import os
 import random
@@ -348,6 +349,7 @@ class Calibrate(FreshProgramTest):
                 ("--gravity-g 0", "0 is no number from 0.97"),
                 ("--gravity-g -1", "-1 is no number from 0.97"),
                 ("--gravity-g nan", "nan is no number from 0.97"),
+                ("--gravity-g 1 --gravity-mps2 9.81", "excludes"),
                 ("--gravity-mps2 98", "98 is no number from 9.5"), ("--sigma-v 0", "--sigma-v: 0"),
                 ("--sigma-v -1", "--sigma-v: -1"), ("--settle-v -1", "--settle-v: -1"),
                 ("--max-degree 9", "--max-degree: Value 9"),
@@ -375,6 +377,20 @@ class Calibrate(FreshProgramTest):
                       self.Path("c.toml"))
         self.assertEqual(missing.returncode, 2)
         self.assertIn("none.csv", missing.stderr)
+
+    def test_affine_says_what_the_readings_and_options_do_not_tell(self):
+        draw, rows = random.Random(11), []
+        for inc, az, tf in itertools.product((0, 45, 90, 135, 180), (0, 120), (0, 70, 150, 240)):
+            gravity = [g + draw.gauss(0, 1e-5) for g in Level(0, 1, inc, az, tf)]
+            rows.append([inc, az, tf, *gravity, *(draw.gauss(0, 1) for _ in range(3))])
+        table = self.Write("a.csv", Table("inc,az,tf,Gx,Gy,Gz,Mx,My,Mz", rows))
+        data = ["calibrate", "affine", "--data", table, "--out", self.Path("affine.toml")]
+        done = Run(*data, "--gravity-mps2", "9.81")
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("they are in g; give --gravity-g", done.stderr)
+        done = Run(*data, "--gravity-g", "1")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("--field-nt, --dip-deg", done.stdout + done.stderr)
 
     def test_nothing_is_written_over_what_it_came_from(self):
         data = self.Write("d.csv", Volts(random.Random(9)))

@@ -11,6 +11,7 @@
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
+#include "wellgyro/fit/scalar_internal.h"
 #include "wellgyro/fit/sensor_groups_internal.h"
 
 namespace wellgyro {
@@ -134,6 +135,10 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
       return *fault;
     }
     const Eigen::Matrix3d S = MatrixAt(out.report.values, first + 3);
+    const bool forces = group.suffix == "G";
+    if (auto fault = forces ? OtherUnit(data, group.channels, S, setup.reference) : std::nullopt) {
+      return *fault;
+    }
     for (int c = 0; c < 3; ++c) {
       signals.push_back({group.channels[static_cast<std::size_t>(c)],
                          S.row(c).norm() * group.u.rowwise().norm().mean()});
@@ -143,6 +148,10 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   }
   if (auto fault = DoesNotFit(data, signals, out.report)) return *fault;
   RemarkTemperature(data, out.report);
+  if (table->mag.rows() > 0 && out.mag.n_channels == 0) {
+    out.report.remarks.emplace_back(
+        "the magnetometers are left out: they need the field and its dip (--field-nt, --dip-deg)");
+  }
   return out;
 }
 
