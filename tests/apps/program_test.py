@@ -294,11 +294,16 @@ class Program(ProgramTest):
         lacking = self.Write("lacking.csv", "UTC[s],GX[deg/h]\n1,2\n")
         other = self.Write("other.csv", "a,b,c\n1,2,3\n")
         depth = self.Write("depth.csv", "UTC[us],MD[m]\n1,2\n")
+        head = "UTC[s],GX[deg/h],GY[deg/h],AX[m/s2],AY[m/s2],AZ[m/s2]\n"
+        semicolons = self.Write("semicolons.csv", head.replace(",", ";") + "1,5;2;3;4;5;6\n")
+        back = self.Write("back.csv", head + "2,0,0,0,0,9.8\n1,0,0,0,0,9.8\n")
         for files, says in (((self.log, self.log), "is named twice"),
                             ((self.log, depth), "an LCM log, no table"),
                             ((lacking,), "lacks GY, AX, AY, AZ"),
                             ((other,), "no LCM log, nor a table"),
                             ((other, self.log), "no LCM log, nor a table"),
+                            ((semicolons,), "';' stands between its fields"),
+                            ((back,), "time goes back from row to row"),
                             ((other, depth), "unknown kind, no table")):
             sources = [word for file in files for word in ("--from", file)]
             done = Run("survey", "--job", self.job, *sources, "--out", self.Path("no_table"))

@@ -200,6 +200,10 @@ FileIdentity IdentifyBytes(std::string_view head) {
   }
   while (line.starts_with('#')) line = NextLine(rest);
   if (const auto table = SensorTableOf(line)) return {FileKind::kSensorCsv, TextOf(*table)};
+  // As a spreadsheet with decimal commas writes it; which SensorCsv refuses, and says why.
+  std::string commas(line);
+  std::ranges::replace(commas, ';', ',');
+  if (const auto table = SensorTableOf(commas)) return {FileKind::kSensorCsv, TextOf(*table)};
   return ByContent(head);
 }
 

@@ -36,6 +36,12 @@ std::optional<Number> NumberIn(std::string_view text) {
   return std::isnan(*value) ? Number{0, true} : Number{*value, false};
 }
 
+/// A header whose fields ';' parts, as a spreadsheet with decimal commas writes them.
+std::string WithCommas(std::string header) {
+  std::ranges::replace(header, ';', ',');
+  return header;
+}
+
 constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
 constexpr std::int64_t kMarkEvery = 4'000'000'000;  // [ns], while at rest
 constexpr std::size_t kFirstSteps = 1000;
@@ -174,6 +180,10 @@ std::optional<Fault> SensorCsv::Impl::Begin() {
   file.open(path, std::ios::binary);
   if (!file) return Bad("cannot open this file for reading", FaultCode::kIo);
   if (!ReadLine()) return Bad("this is an empty file", FaultCode::kForeign);
+  if (SensorTableOf(line) == std::nullopt && SensorTableOf(WithCommas(line))) {
+    return Bad("';' stands between its fields: write them with ',' between, and decimal points",
+               FaultCode::kSyntax);
+  }
   layout = sensors::LayoutOf(line);
   const auto known = layout.Kind();
   if (!known) {
@@ -197,13 +207,16 @@ std::optional<Fault> SensorCsv::Impl::FindPeriod() {
   const int header = number;
   std::vector<std::int64_t> steps;
   std::optional<std::int64_t> before;
+  bool turned = false;
   while (steps.size() < kFirstSteps && ReadLine()) {
     const auto ns = GetTime(clock);
     if (fault) return fault;
     if (before && *ns > *before) steps.push_back(*ns - *before);
+    turned = turned || (before && *ns < *before);
     before = ns;
   }
   if (fault) return fault;
+  if (steps.empty() && turned) return Bad("time goes back from row to row", FaultCode::kOrder);
   if (steps.empty()) return Bad("fewer than two samples", FaultCode::kForeign);
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
