@@ -131,7 +131,7 @@ kick_off_md_m = 900
                   "GYRO-NS-CT", "--latitude-deg", "60", "--out", "own"]
         done = Run(*beside)
         self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertIn("begins below MD 0", done.stderr)
+        self.assertIn("does not begin at MD 0", done.stderr)
         self.assertEqual(Run(*beside, "--same-hole").returncode, 0)
         with open("policy.toml", "w", encoding="utf-8") as file:
             file.write('format = "wellgyro.clearance/1"\n[[offset]]\nsurvey = "side.csv"\n'

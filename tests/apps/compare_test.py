@@ -66,6 +66,10 @@ class CompareAndMerge(FreshProgramTest):
         self.assertEqual(depths, [0, 333, 500, 777.5, 1000, 1500])
 
     def test_mistakes_of_compare_are_told(self):
+        names = ",".join(f"{name}[m2]" for name in ("VAR_NN", "COV_NE", "COV_NV", "VAR_EE",
+                                                    "COV_EV", "VAR_VV"))
+        self.Write("variances.csv", f"MD[m],INC[deg],AZI_TRUE[deg],{names}\n" + "".join(
+            f"{d},{Hole(d)[0]},{Hole(d)[1]},1,0,0,1,0,1\n" for d in range(0, 1501, 25)))
         for arguments, code, says in (
                 (["gyro.csv", "mwd.csv"], 1, "name its error model"),
                 (["gyro.csv", "none.csv", "--model-a", "GYRO-NS-CT", "--model-b", "GYRO-NS-CT"], 2,
@@ -75,7 +79,8 @@ class CompareAndMerge(FreshProgramTest):
                  "latitude"),
                 (["gyro.csv", "mwd.csv", "--model-a", "GYRO-NS-CT", "--model-b", "GYRO-NS-CT",
                   *PLACE, "--at", "2000"], 1, "not in both"),
-                (["gyro.csv"], 1, "B")):
+                (["gyro.csv"], 1, "B"),
+                (["variances.csv", "mwd.csv"], 1, "no column SIG_INC")):
             done = Run("compare", *arguments)
             self.assertEqual(done.returncode, code, (arguments, done.stderr))
             self.assertIn(says, done.stderr)

@@ -257,7 +257,7 @@ void Propagator::Note() {
   }
   if (survey_[0].md != 0) {
     result_.notes.emplace_back(
-        "the survey begins below MD 0: its first station has the tie-in's covariance only");
+        "the survey does not begin at MD 0: its first station has the tie-in's covariance only");
   }
 }
 

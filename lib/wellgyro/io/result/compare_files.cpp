@@ -27,8 +27,9 @@ ComparedSurvey Known(const TakenSurvey& taken, const std::filesystem::path& path
   survey.cov_tie_in_W = taken.cov_tie_in_W;
   if (taken.legs.empty()) {
     if (taken.own.empty()) {
-      throw std::invalid_argument(
-          path.string() + " has no covariances and sigmas of its own: name its error model");
+      throw std::invalid_argument(path.string() + " has no covariances and sigmas of its own" +
+                                  (taken.lacks.empty() ? "" : " (no column " + taken.lacks + ")") +
+                                  ": name its error model");
     }
     survey.own = taken.own;
     return survey;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "wellgyro/io/exchange/columns_internal.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/well_stations.h"
 #include "wellgyro/io/sha256.h"
@@ -80,11 +81,23 @@ void TakeProgram(const SurveyWish& wish, TakenSurvey& taken) {
   Place(std::move(program->survey), wish, taken);
 }
 
+/// The first of the columns of OwnSigmas that is not there; empty where all are.
+std::string Lacking(const SurveyTable& table) {
+  for (const Column column :
+       {Column::kVarNN, Column::kCovNE, Column::kCovNV, Column::kVarEE, Column::kCovEV,
+        Column::kVarVV, Column::kSigmaInclination, Column::kSigmaAzimuth}) {
+    if (!table.Has(column)) return std::string(InfoOf(column).csv);
+  }
+  return {};
+}
+
 /// Variances and sigmas of the stations of a file, where it has them for every one.
-std::vector<StationSigmas> OwnSigmas(std::string_view text, const std::string& source) {
+std::vector<StationSigmas> OwnSigmas(std::string_view text, const std::string& source,
+                                     std::string& lacks) {
   std::vector<StationSigmas> own;
   const Result<SurveyTable> table = ParseSurvey(text, source);
   if (!table) return own;
+  lacks = Lacking(*table);
   for (std::size_t row = 0; row < table->rows(); ++row) {
     if (table->status(row) == RowStatus::kUnused) continue;
     const auto sigmas = SigmasOf(*table, row);
@@ -107,7 +120,7 @@ TakenSurvey Take(const SurveyWish& wish) {
   if (!table) throw TomlError{table.fault()};
   CheckNorth(*table, wish, taken);
   if (wish.model.empty()) {
-    taken.own = OwnSigmas(*text, wish.path.string());
+    taken.own = OwnSigmas(*text, wish.path.string(), taken.lacks);
     if (taken.own.size() != table->stations.size()) taken.own.clear();
   } else {
     InputFile input;

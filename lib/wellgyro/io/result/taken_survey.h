@@ -31,6 +31,7 @@ struct TakenSurvey {
   std::vector<std::shared_ptr<const ErrorModel>> models;  ///< that the legs point to
   std::vector<ToolLeg> legs;                              ///< empty: no model
   std::vector<StationSigmas> own;  ///< where there is no model: the file's columns, or empty
+  std::string lacks;               ///< the first of those columns that the file does not have
   Eigen::Matrix3d cov_tie_in_W = Eigen::Matrix3d::Zero();
   std::vector<InputFile> inputs;
   std::vector<std::string> notes;

@@ -229,9 +229,9 @@ void AddSeparation(const UncertaintyRequest& request, const Case& c, Uncertainty
   }
   if (request.pairing == Pairing::kTwoWells && (IsNowhere(c) || IsNowhere(other))) {
     throw std::invalid_argument(
-        "one of the surveys begins below MD 0 and its file has no place for that: --same-hole "
-        "where "
-        "both are of one hole; else wellgyro clearance takes the place of each from a policy");
+        "one of the surveys does not begin at MD 0 and its file has no place for that: --same-hole "
+        "where both are of one hole; else wellgyro clearance takes the place of each from a "
+        "policy");
   }
   SeparationRule rule;
   rule.correlation = request.correlation;
