@@ -50,7 +50,12 @@ std::optional<SurveyFormat> FormatByName(const std::string& name) {
 void Prepare(SurveyTable& table, const ConvertOptions& o) {
   if (!o.well.empty()) table.head.names.well = o.well;
   if (const auto azimuth = Radians(o.section_azimuth_deg)) table.head.section_azimuth = azimuth;
-  if (!o.keep) FillPositions(table);
+  if (!o.keep && !FillPositions(table) && table.rows() > 0) {
+    Complain(
+        fmt::format("{}: note: no positions are summed: the first station, at MD {:.2f} m, has no "
+                    "place; give it TVD, north and east, or begin at MD 0",
+                    o.in, table.md(0)));
+  }
   if (o.as_listed) SumAsListed(table);
   const auto north = NorthOf(o.north);
   const auto unit = LengthOf(o.units);

@@ -78,10 +78,18 @@ class Convert(FreshProgramTest):
                 (("--latitude-deg", "60"), 1, "go together"),
                 (("--columns", "INC=9"), 2, "no column is called so"),
                 (("--columns", "FOO=1"), 2, "there is no FOO"),
+                (("--columns", "MD=1,INC=1"), 2, "column 1 is named twice"),
                 (("--north", "magnetic"), 2, "--declination-deg")):
             done = Run("convert", "in.csv", "out.csv", *options, cwd=self.folder)
             self.assertEqual(done.returncode, code, options)
             self.assertIn(word, done.stderr)
+
+    def test_text_that_is_no_survey_is_refused_at_once(self):
+        rows = "".join(f"{i},5;1,25;-3,5;9,81;0,02;0,03\n" for i in range(5000))
+        self.Write("long.csv", "Zeit;a;b;c;d;e\n" + rows)
+        usage = os.times().children_user
+        self.assertIn("no line names columns", self.Refused("long.csv", "out.las"))
+        self.assertLess(os.times().children_user - usage, 5)
 
     def test_a_pipe_is_refused_and_not_waited_for(self):
         os.mkfifo(self.Path("pipe.csv"))
@@ -144,6 +152,12 @@ class Convert(FreshProgramTest):
         self.assertEqual(os.listdir(self.folder), ["in.csv"])
         done = Run("convert", "in.csv", "out.json", *datum, cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (0, "wrote out.csv too\n"))
+
+    def test_why_no_positions_are_summed_is_told(self):
+        self.Write("deep.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n100,5,40\n130,6,40\n")
+        self.assertIn("no positions are summed: the first station, at MD 100.00 m",
+                      self.Done("deep.csv", "out.csv"))
+        self.assertNotIn("positions are summed", self.Done("deep.csv", "out.csv", "--as-it-is"))
 
     def test_a_row_that_is_cut_is_refused(self):
         head = "MD[m],INC[deg],AZI_TRUE[deg],TVD[m]\n0,0,0,0\n30,1.5,350,\n"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 
 #include <fmt/core.h>
 
@@ -228,6 +229,11 @@ std::vector<Heading> CsvHeadingsOf(const std::vector<std::string>& fields,
 }
 
 std::string UnusedColumn(const std::vector<Heading>& headings, const ReadOptions& options) {
+  std::set<std::string> named;
+  for (const auto& [canonical, name] : options.columns) {
+    if (name == "0" || named.insert(name).second) continue;
+    return fmt::format("--columns {}={}: column {} is named twice", canonical, name, name);
+  }
   for (const auto& [canonical, name] : options.columns) {
     const Heading want = HeadingOf(canonical);
     const auto is = [&](const Heading& h) { return h.told && h.column == want.column; };
