@@ -94,7 +94,7 @@ TEST(WellStations, FaultsNameTheirPlace) {
       {head, 1, "single station"},
       {head + "0,0,0\n", 0, "two stations"},
       {head + "0,0,0\n30,x,0\n", 3, "'x'"},
-      {head + "0,0,0\n30,1\n", 3, "2 fields, and column 3"},
+      {head + "0,0,0\n30,1\n", 3, "2 fields where the header has 3"},
       {head + "0,0,0\n30,nan,1\n", 3, "'nan'"},
       {head + "0,0,0\n30,inf,1\n", 3, "'inf'"},
       {head + "0,0,0\n1e99,1,1\n", 3, "e+99"},
