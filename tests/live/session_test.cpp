@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -147,6 +148,7 @@ TEST_F(Session, AnOrderJustBeforeAStopIsObeyed) {
   EXPECT_EQ(outcome.ended, LiveOutcome::Ended::kFinished);
   EXPECT_EQ(outcome.record->operations.size(), 1u);
   EXPECT_TRUE(outcome.usable());
+  EXPECT_THROW((*session)->Run(), std::logic_error) << "a session runs once";
 }
 
 TEST_F(Session, AFolderHasOneSession) {
@@ -181,6 +183,20 @@ TEST_F(Session, WhileItAdjustsItsStatusGoesOnAndAStopIsHeeded) {
   EXPECT_TRUE(observer_.kept) << "files were written before the adjustment";
   adjuster.release = true;
   runner.join();
+}
+
+TEST(SessionSetup, WithoutAClockOrAFolderIsRefused) {
+  Observer observer;
+  LiveSetup setup;
+  setup.out = "never-made";
+  EXPECT_THROW(static_cast<void>(LiveSession::Open(setup, observer)), std::invalid_argument);
+  setup.clock.utc_us = [] { return std::int64_t{0}; };
+  EXPECT_THROW(static_cast<void>(LiveSession::Open(setup, observer)), std::invalid_argument);
+  setup.clock.monotonic_us = setup.clock.utc_us;
+  setup.out.clear();
+  const auto session = LiveSession::Open(setup, observer);
+  ASSERT_FALSE(session);
+  EXPECT_NE(session.fault().text.find("`out`"), std::string::npos) << session.fault().text;
 }
 
 }  // namespace

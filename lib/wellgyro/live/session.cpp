@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -35,6 +36,14 @@ constexpr MessageType kInputs[] = {MessageType::kRawBatch,    MessageType::kImuB
 
 /// What in a setup cannot be, before anything is opened.
 std::optional<Fault> Complaint(const LiveSetup& setup) {
+  if (!setup.clock.utc_us || !setup.clock.monotonic_us) {
+    throw std::invalid_argument(fmt::format("live session: the clock has no {}",
+                                            setup.clock.utc_us ? "monotonic_us" : "utc_us"));
+  }
+  if (setup.out.empty()) {
+    return Fault{FaultCode::kSyntax,
+                 "a session needs a folder for its result: set `out`, --out of the program"};
+  }
   if ((setup.resume || !setup.fill.empty()) && (setup.record.empty() || !setup.resume)) {
     return Fault{FaultCode::kSyntax,
                  "a session resumes from the log that it recorded; logs that fill it go with that"};
@@ -77,6 +86,9 @@ Result<std::unique_ptr<LiveSession>> LiveSession::Open(LiveSetup setup, LiveObse
 const LiveBus& LiveSession::bus() const { return core_->bus; }
 void LiveSession::Stop() noexcept { core_->Stop(); }
 LiveOutcome LiveSession::Run() {
+  if (std::exchange(core_->ran, true)) {
+    throw std::logic_error("LiveSession::Run: a session runs once");
+  }
   const LiveOutcome::Ended ended = core_->Work();
   return core_->End(ended);
 }

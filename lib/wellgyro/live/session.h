@@ -47,7 +47,7 @@ struct LiveSetup {
   std::vector<std::string> fill;  ///< with resume: other recorders' logs
   std::vector<SurveyFormat> formats;
   Maker maker = {"wellgyro", "none"};
-  LiveClock clock;
+  LiveClock clock;                                ///< both functions are needed
   std::shared_ptr<const AdviceCase> advise = {};  ///< null: it gives no advice
 };
 
@@ -63,7 +63,7 @@ struct LiveOutcome {
   bool recording_is_whole = true;              ///< what was used is in the log
 
   WELLGYRO_EXPORT bool usable() const;  ///< of one tool at least
-  bool losses() const;
+  WELLGYRO_EXPORT bool losses() const;
 };
 
 /// A survey of a live stream: hears, records, surveys, publishes stations and status, and keeps the
@@ -76,7 +76,8 @@ struct LiveOutcome {
 class WELLGYRO_EXPORT LiveSession {
  public:
   /// Listens from here on. `observer` must outlive the session. A Fault says what to do: nothing
-  /// has been written then. Throws std::invalid_argument when the job makes no sense.
+  /// has been written then. Throws std::invalid_argument when the job makes no sense or a
+  /// function of the clock is empty.
   static Result<std::unique_ptr<LiveSession>> Open(LiveSetup setup, LiveObserver& observer);
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
@@ -84,7 +85,7 @@ class WELLGYRO_EXPORT LiveSession {
 
   const LiveBus& bus() const;
 
-  /// Until the end; once.
+  /// Until the end; once: a second call throws std::logic_error.
   LiveOutcome Run();
   /// Ends Run within two seconds, or calls LiveObserver::OnStuck. For signal handlers too.
   void Stop() noexcept;

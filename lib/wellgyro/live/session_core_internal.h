@@ -104,6 +104,7 @@ struct LiveSession::Core {
   bool resuming = false;
   Latency message_latency, station_latency;
   std::unique_ptr<Adviser> adviser;  ///< null: nobody asked
+  bool ran = false;                  ///< Run was called
   std::int64_t next_status = 0, next_keep = 0, next_advice = 0;
   std::int64_t kept_news = 0;
   std::int64_t sample_messages = 0, last_sample_us = 0;
