@@ -218,11 +218,23 @@ TEST(SurveyCsv, RefusesWhatCannotBeReadAgain) {
               HasSubstr("cov_md_inc_azi = -1"));
 }
 
-TEST(ChecksCsv, RefusesWhatIsNotFinite) {
+TEST(SurveyCsv, WhatRoundingLeavesBelowZeroIsZero) {
+  std::vector<Station> stations = SmallSurvey();
+  stations[1].cov_p_WT_W(1, 1) = -1e-20;
+  stations[1].cov_md_inc_azi(2, 2) = -1e-20;
+  const auto read = ParseSurveyCsv(SurveyCsv(stations, nullptr), "survey.csv");
+  ASSERT_TRUE(read) << read.fault().text;
+  EXPECT_EQ((*read)[1].cov_p_WT_W(1, 1), 0);
+  EXPECT_EQ((*read)[1].cov_md_inc_azi(2, 2), 0);
+}
+
+TEST(ChecksCsv, WhatIsNoFiniteNumberStaysEmpty) {
   Check check;
   check.code = "gravity";
+  check.value = 1;
   check.sigma = std::nan("");
-  EXPECT_THROW(ChecksCsv({&check, 1}), std::invalid_argument);
+  check.md = HUGE_VAL;
+  EXPECT_THAT(ChecksCsv({&check, 1}), HasSubstr("gravity,0,,,1,,,"));
 }
 
 }  // namespace

@@ -50,11 +50,12 @@ void AppendStation(std::string& text, const Station& s) {
   if (Has(s.quality, Quality::kUnfit)) {
     text += std::string(kSigmas, ',');
   } else {
-    for (const double v : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
+    const Eigen::Vector3d own = s.cov_md_inc_azi.diagonal().cwiseMax(0.0);
+    for (const double v : {std::max(c(0, 0), 0.0), c(0, 1), c(0, 2), std::max(c(1, 1), 0.0),
+                           c(1, 2), std::max(c(2, 2), 0.0)}) {
       text += ',' + Significant(v);
     }
-    text += ',' + AngleDeg(std::sqrt(s.cov_md_inc_azi(1, 1))) + ',' +
-            AngleDeg(std::sqrt(s.cov_md_inc_azi(2, 2)));
+    text += ',' + AngleDeg(std::sqrt(own[1])) + ',' + AngleDeg(std::sqrt(own[2]));
   }
   text += ',';
   text += WordOf(s.kind);
@@ -71,6 +72,9 @@ void NeedFinite(std::size_t i, std::string_view field, double value) {
   if (!std::isfinite(value)) RefuseStation(i, field, value, "is not finite");
 }
 
+// A variance that is zero may come out below it by rounding, and is written as zero [m^2, rad^2].
+constexpr double kRounding = 1e-12;
+
 // Numbers that are written are to be read again.
 void CheckStation(std::size_t i, const Station& s, bool with_depth) {
   NeedFinite(i, "md", s.md);
@@ -83,24 +87,15 @@ void CheckStation(std::size_t i, const Station& s, bool with_depth) {
   for (const double c : s.cov_p_WT_W.reshaped()) NeedFinite(i, "cov_p_WT_W", c);
   for (int k = 0; k < 3; ++k) {
     const double var = s.cov_p_WT_W(k, k), own = s.cov_md_inc_azi(k, k);
-    if (var < 0) RefuseStation(i, "cov_p_WT_W", var, "is no variance");
+    if (var < -kRounding) RefuseStation(i, "cov_p_WT_W", var, "is no variance");
     if (k == 0 && !with_depth) continue;
     NeedFinite(i, "cov_md_inc_azi", own);
-    if (own < 0) RefuseStation(i, "cov_md_inc_azi", own, "is no variance");
+    if (own < -kRounding) RefuseStation(i, "cov_md_inc_azi", own, "is no variance");
   }
 }
 
 void CheckStations(std::span<const Station> stations, bool with_depth) {
   for (std::size_t i = 0; i < stations.size(); ++i) CheckStation(i, stations[i], with_depth);
-}
-
-void CheckCheck(const Check& c) {
-  for (const auto& [field, value] : {std::pair{"md", c.md}, std::pair{"value", c.value},
-                                     std::pair{"sigma", c.sigma}, std::pair{"limit", c.limit}}) {
-    if (!value || std::isfinite(*value)) continue;
-    throw std::invalid_argument(
-        fmt::format("check {} of run {}: {} = {} is not finite", c.code, c.run, field, *value));
-  }
 }
 
 // One line cut at its commas, with the column at which each field begins.
@@ -228,7 +223,9 @@ std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid) {
     text += fmt::format("{},{},{},{},", s.run, WordOf(s.pass), WordOf(s.status), s.revision);
     AppendStation(text, s);
     text += ',';
-    if (!Has(s.quality, Quality::kUnfit)) text += Significant(std::sqrt(s.cov_md_inc_azi(0, 0)));
+    if (!Has(s.quality, Quality::kUnfit)) {
+      text += Significant(std::sqrt(std::max(s.cov_md_inc_azi(0, 0), 0.0)));
+    }
     AppendGrid(text, s, grid);
     text += '\n';
   }
@@ -236,13 +233,13 @@ std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid) {
 }
 
 std::string ChecksCsv(std::span<const Check> checks) {
-  const auto number = [](const std::optional<double>& v) { return v ? Significant(*v) : ""; };
+  const auto has = [](const std::optional<double>& v) { return v && std::isfinite(*v); };
+  const auto number = [&](const std::optional<double>& v) { return has(v) ? Significant(*v) : ""; };
   std::string text = "CODE,RUN,PASS,MD[m],VALUE,SIGMA,LIMIT,UNIT,LIMIT_SOURCE,VERDICT\n";
   for (const Check& c : checks) {
-    CheckCheck(c);
     text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvQuoted(c.code), c.run,
-                        c.pass ? WordOf(*c.pass) : "", c.md ? Metres(*c.md) : "", number(c.value),
-                        number(c.sigma), number(c.limit), CsvQuoted(c.unit),
+                        c.pass ? WordOf(*c.pass) : "", has(c.md) ? Metres(*c.md) : "",
+                        number(c.value), number(c.sigma), number(c.limit), CsvQuoted(c.unit),
                         CsvQuoted(c.limit_source), WordOf(c.verdict));
   }
   return text;

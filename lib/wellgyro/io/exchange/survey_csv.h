@@ -27,8 +27,7 @@ WELLGYRO_EXPORT std::string SurveyCsv(std::span<const Station> stations, const W
 WELLGYRO_EXPORT std::string PassesCsv(std::span<const Station> stations, const WellGrid* grid);
 
 /// checks.csv: CODE,RUN,PASS,MD[m],VALUE,SIGMA,LIMIT,UNIT,LIMIT_SOURCE,VERDICT. What a check does
-/// not have stays empty. Throws std::invalid_argument, naming check and field, where a number is
-/// not finite.
+/// not have, or has as what is no finite number, stays empty.
 WELLGYRO_EXPORT std::string ChecksCsv(std::span<const Check> checks);
 
 /// Stations from the text of a survey.csv; `source` names it in Faults, which carry line and
