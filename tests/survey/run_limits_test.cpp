@@ -169,6 +169,15 @@ TEST(RunLimits, AveragesThatCannotBeAreLeftOutAndTold) {
   EXPECT_EQ(spoil([&](StillWindow& w) { w.w_IT_T.x() = none; }), 1u);
   EXPECT_EQ(spoil([](StillWindow& w) { w.w_IT_T.x() = 1e300; }), 1u);
   EXPECT_EQ(spoil([](StillWindow& w) { w.sigma_w_IT_T.x() = -1; }), 1u);
+  EXPECT_EQ(spoil([&](StillWindow& w) { w.roll_rate = none; }), 1u);
+  EXPECT_EQ(spoil([&](StillWindow& w) { w.sigma_roll_rate = none; }), 1u);
+  EXPECT_EQ(spoil([](StillWindow& w) { w.roll_rate = 1e-6; }), 0u);
+  EXPECT_EQ(spoil([&](StillWindow& w) { w.b_T.x() = none; }), 0u) << "not said to be there";
+  EXPECT_EQ(spoil([&](StillWindow& w) {
+              w.has_mag = true;
+              w.b_T.x() = none;
+            }),
+            1u);
   EXPECT_EQ(spoil([](StillWindow& w) { w.md = 1e300; }), 1u);
   EXPECT_EQ(spoil([](StillWindow& w) { w.utc_end = w.utc_begin; }), 1u);
 }

@@ -30,8 +30,11 @@ bool CanBe(const StillWindow& window) {
                       window.sigma_w_IT_T.minCoeff() >= 0 && window.sigma_f_T.minCoeff() >= 0 &&
                       window.sigma_w_IT_T.maxCoeff() < kRate && window.sigma_f_T.maxCoeff() < 100;
   const bool depth = !window.md || std::abs(*window.md) < kDepthMost;
+  const double turn = window.roll_rate.value_or(0), sigma_turn = window.sigma_roll_rate;
+  const bool roll = std::abs(turn) < kRate && sigma_turn >= 0 && sigma_turn < kRate;
+  const bool field = !window.has_mag || window.b_T.allFinite();
   return f > kLeastForce && f < kMostForce && window.w_IT_T.norm() < kRate && sigmas && depth &&
-         seconds > 0 && seconds < kSeconds;
+         roll && field && seconds > 0 && seconds < kSeconds;
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ void NeedFinite(std::size_t i, std::string_view field, double value) {
 }
 
 // A variance that is zero may come out below it by rounding, and is written as zero [m^2, rad^2].
-constexpr double kRounding = 1e-12;
+constexpr double kBelowZero = 1e-12;
 
 // Numbers that are written are to be read again.
 void CheckStation(std::size_t i, const Station& s, bool with_depth) {
@@ -87,10 +87,10 @@ void CheckStation(std::size_t i, const Station& s, bool with_depth) {
   for (const double c : s.cov_p_WT_W.reshaped()) NeedFinite(i, "cov_p_WT_W", c);
   for (int k = 0; k < 3; ++k) {
     const double var = s.cov_p_WT_W(k, k), own = s.cov_md_inc_azi(k, k);
-    if (var < -kRounding) RefuseStation(i, "cov_p_WT_W", var, "is no variance");
+    if (var < -kBelowZero) RefuseStation(i, "cov_p_WT_W", var, "is no variance");
     if (k == 0 && !with_depth) continue;
     NeedFinite(i, "cov_md_inc_azi", own);
-    if (own < -kRounding) RefuseStation(i, "cov_md_inc_azi", own, "is no variance");
+    if (own < -kBelowZero) RefuseStation(i, "cov_md_inc_azi", own, "is no variance");
   }
 }
 
