@@ -172,6 +172,21 @@ void SettleCurvature(Case& c) {
   }
 }
 
+/// Refuses positions that part by `worst` from those of any method over legs of `leg` [m], and
+/// notes a method that is not the usual one.
+void SayMethod(double worst, double leg, Case& c) {
+  if (worst > 0.05 * leg + 0.5) {
+    c.Refuse(fmt::format(
+        "its positions do not follow from measured depth, inclination and azimuth by any method: "
+        "they part by {:.3g} m over {:.4g} m; name the columns by --columns",
+        worst, leg));
+  }
+  if (c.method != Method::kMinimumCurvature) {
+    c.Note(fmt::format("its positions were summed by the method {}", WordOf(c.method)));
+    if (c.table.head.method.empty()) c.table.head.method = WordOf(c.method);
+  }
+}
+
 }  // namespace
 
 void SettleUnits(Case& c) {
@@ -210,16 +225,7 @@ void SettleMethod(Case& c) {
     if (first && remains < 0.02 + 1e-4 * leg) break;
   }
   c.worst = best;
-  if (best > 0.05 * leg + 0.5) {
-    c.Refuse(fmt::format(
-        "its positions do not follow from measured depth, inclination and azimuth by any method: "
-        "they part by {:.3g} m over {:.4g} m; name the columns by --columns",
-        best, leg));
-  }
-  if (c.method != Method::kMinimumCurvature) {
-    c.Note(fmt::format("its positions were summed by the method {}", WordOf(c.method)));
-    if (c.table.head.method.empty()) c.table.head.method = WordOf(c.method);
-  }
+  SayMethod(best, leg, c);
 }
 
 }  // namespace wellgyro::witness

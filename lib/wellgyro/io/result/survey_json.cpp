@@ -134,7 +134,8 @@ Json LossesIn(const Json& run, const ResultTexts& texts) {
   return losses;
 }
 
-Json Document(const ResultTexts& texts, std::span<const OtherWell> others) {
+/// run.toml of a result that has its survey too.
+Json RunIn(const ResultTexts& texts) {
   for (const char* needed : {"run.toml", "survey.csv"}) {
     if (texts.contains(needed)) continue;
     throw Refused{
@@ -146,6 +147,11 @@ Json Document(const ResultTexts& texts, std::span<const OtherWell> others) {
                    .text = "its format is not wellgyro.run/1",
                    .source = "run.toml"}};
   }
+  return run;
+}
+
+Json Document(const ResultTexts& texts, std::span<const OtherWell> others) {
+  Json run = RunIn(texts);
   Json document = Json::object();
   document["format"] = "wellgyro.survey/1";
   document["job"] = InputOf(run, "job");
