@@ -7,7 +7,6 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/io/result/result_folder.h"
 
 namespace wellgyro {
 
@@ -51,7 +50,6 @@ std::optional<Fault> ResultKeeper::Write(const Job& job, const Snapshot& snapsho
   for (const ToolResult& tool : snapshot.tools) {
     if (!tool.survey.unusable.empty()) continue;
     const auto files = ResultFiles(snapshot.record, snapshot.source, job, tool.survey);
-    RemoveOlder(tool.folder, files);
     if (auto fault = WriteFiles(tool.folder, files)) return fault;
   }
   RemoveFormer(snapshot.folder, snapshot.tools);

@@ -11,6 +11,7 @@
 #include "wellgyro/bus/decode.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/bus/log_reader.h"
+#include "wellgyro/io/result/result_folder.h"
 #include "wellgyro/live/journal.h"
 #include "wellgyro/live/observer.h"
 #include "wellgyro/live/session_core_internal.h"
@@ -140,7 +141,12 @@ std::optional<Fault> LiveSession::Core::Begin() {
       })) {
     return fault;
   }
-  return setup.record.empty() ? std::nullopt : BeginRecord();
+  if (!setup.record.empty()) {
+    if (auto fault = BeginRecord()) return fault;
+  }
+  // Now and not at each writing: a report that is made on the way stays.
+  RemoveOlder(setup.out, {});
+  return std::nullopt;
 }
 
 std::optional<Fault> LiveSession::Core::TakeFolder() {

@@ -30,8 +30,8 @@ struct SampleStamp {
 };
 
 /// One sample in SI units and tool axes T: z down-hole along the axis, x to the housing's reference
-/// mark, y right-handed. What a tool does not measure (z of `w_IT_T` without
-/// has_gz, `b_T` without has_mag) is not used: leave it 0.
+/// mark, y right-handed. What a tool does not measure (z of `w_IT_T` without has_gz, `b_T` without
+/// has_mag) is not used: leave it 0.
 struct ImuSample {
   SampleStamp stamp;
   Eigen::Vector3d w_IT_T = Eigen::Vector3d::Zero();  ///< mean angular rate [rad/s]; z where has_gz

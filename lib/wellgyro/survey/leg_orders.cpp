@@ -12,29 +12,19 @@
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
+namespace {
 
-LegOrders::LegOrders(std::span<const MergeLeg> legs, const Eigen::Vector3d& start_W,
-                     const Eigen::Matrix3d& cov_tie_in_W, const Surroundings& surroundings,
-                     const MergePolicy& policy)
-    : legs_(legs),
-      start_W_(start_W),
-      cov_tie_in_W_(cov_tie_in_W),
-      surroundings_(surroundings),
-      policy_(policy) {
-  FindStretches();
+/// A leg that is ruled out reaches nowhere.
+bool Reaches(const MergeLeg& leg, double begin, double end) {
+  if (!leg.left_out.empty()) return false;
+  return leg.stations.front().md <= begin + kRoundedDepth &&
+         leg.stations.back().md >= end - kRoundedDepth;
 }
 
-bool LegOrders::Reaches(std::size_t leg, double begin, double end) const {
-  const auto& stations = legs_[leg].stations;
-  if (!legs_[leg].left_out.empty()) return false;
-  return stations.front().md <= begin + kRoundedDepth && stations.back().md >= end - kRoundedDepth;
-}
-
-/// Breaks are where a leg begins or ends. Stretches that no leg reaches through are courses between
-/// two legs, and belong to the stretch below.
-void LegOrders::FindStretches() {
+/// Depths at which a leg begins or ends.
+std::vector<double> BreaksOf(std::span<const MergeLeg> legs) {
   std::vector<double> breaks;
-  for (const MergeLeg& leg : legs_) {
+  for (const MergeLeg& leg : legs) {
     if (!leg.left_out.empty()) continue;
     breaks.push_back(leg.stations.front().md);
     breaks.push_back(leg.stations.back().md);
@@ -43,23 +33,48 @@ void LegOrders::FindStretches() {
   std::ranges::sort(breaks);
   const auto same = [](double a, double b) { return b - a < kRoundedDepth; };
   breaks.erase(std::unique(breaks.begin(), breaks.end(), same), breaks.end());
+  return breaks;
+}
+
+/// Between breaks. Stretches that no leg reaches through are courses between two legs, and belong
+/// to the stretch below.
+std::vector<LegStretch> StretchesOf(std::span<const MergeLeg> legs, const MergePolicy& policy) {
+  const std::vector<double> breaks = BreaksOf(legs);
+  std::vector<LegStretch> stretches;
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     LegStretch stretch{breaks[i], breaks[i + 1], {}};
-    for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
-      if (Reaches(leg, stretch.begin, stretch.end)) stretch.candidates.push_back(leg);
+    for (std::size_t leg = 0; leg < legs.size(); ++leg) {
+      if (Reaches(legs[leg], stretch.begin, stretch.end)) stretch.candidates.push_back(leg);
     }
     const auto kept =
-        std::ranges::find_if(stretch.candidates, [&](std::size_t leg) { return legs_[leg].kept; });
+        std::ranges::find_if(stretch.candidates, [&](std::size_t leg) { return legs[leg].kept; });
     if (kept != stretch.candidates.end()) stretch.candidates = {*kept};
-    if (stretch.candidates.empty() && stretch.end - stretch.begin > policy_.max_gap) {
+    if (stretch.candidates.empty() && stretch.end - stretch.begin > policy.max_gap) {
       throw std::invalid_argument(
           fmt::format("no leg has stations from MD {:.2f} to {:.2f} m: a gap of more than {:g} m",
-                      stretch.begin, stretch.end, policy_.max_gap));
+                      stretch.begin, stretch.end, policy.max_gap));
     }
-    if (!stretch.candidates.empty()) stretches_.push_back(std::move(stretch));
+    if (!stretch.candidates.empty()) stretches.push_back(std::move(stretch));
   }
-  if (stretches_.empty()) throw std::invalid_argument("the legs hold fewer than two stations");
+  if (stretches.empty()) throw std::invalid_argument("the legs hold fewer than two stations");
+  return stretches;
 }
+
+}  // namespace
+
+void CheckLegs(std::span<const MergeLeg> legs, const MergePolicy& policy) {
+  static_cast<void>(StretchesOf(legs, policy));
+}
+
+LegOrders::LegOrders(std::span<const MergeLeg> legs, const Eigen::Vector3d& start_W,
+                     const Eigen::Matrix3d& cov_tie_in_W, const Surroundings& surroundings,
+                     const MergePolicy& policy)
+    : legs_(legs),
+      start_W_(start_W),
+      cov_tie_in_W_(cov_tie_in_W),
+      surroundings_(surroundings),
+      policy_(policy),
+      stretches_(StretchesOf(legs, policy)) {}
 
 AssembledLegs LegOrders::Assemble(const LegOrder& order) const {
   AssembledLegs made;

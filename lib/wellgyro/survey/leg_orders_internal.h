@@ -48,10 +48,6 @@ class LegOrders {
   double MeasureOf(const LegOrder& order) const;
 
  private:
-  /// A leg that is ruled out reaches nowhere.
-  bool Reaches(std::size_t leg, double begin, double end) const;
-  void FindStretches();
-
   std::span<const MergeLeg> legs_;
   Eigen::Vector3d start_W_;
   Eigen::Matrix3d cov_tie_in_W_;

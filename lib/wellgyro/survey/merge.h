@@ -52,15 +52,18 @@ struct MergedSurvey {
   double measure = 0;               ///< what the policy makes small: 1 sigma [m]
 };
 
+/// Throws std::invalid_argument where no leg is left, or those that are leave a gap or hold fewer
+/// than two stations.
+WELLGYRO_EXPORT void CheckLegs(std::span<const MergeLeg> legs, const MergePolicy& policy);
+
 /// One survey out of legs that may overlap, follow each other or begin below each other.
 ///
 /// Where several reach, every order of them is tried between the depths at which one begins or ends
 /// (beyond 64 orders the best so far go on), each with its whole covariance through the ties;
 /// changes of leg that gain less than `min_gain` are not made. A single leg that reaches all the
 /// way is always among those tried, so the result is never less sure than the best of them by more
-/// than that share. Throws std::invalid_argument for legs that leave a gap, none that is not ruled
-/// out, stations that do not go down, models that do not reach the end, or what PropagateErrors
-/// refuses.
+/// than that share. Throws std::invalid_argument as CheckLegs does, and for stations that do not go
+/// down, models that do not reach the end, or what PropagateErrors refuses.
 WELLGYRO_EXPORT MergedSurvey Merge(std::span<const MergeLeg> legs, const Eigen::Vector3d& start_W,
                                    const Eigen::Matrix3d& cov_tie_in_W,
                                    const Surroundings& surroundings, const MergePolicy& policy);

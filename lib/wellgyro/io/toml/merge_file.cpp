@@ -51,7 +51,11 @@ class PlanReader {
     std::vector<TomlTable> legs = root.FindTables("leg");
     if (legs.empty()) root.Refuse("", "a merge needs at least one [[leg]]");
     for (std::size_t i = 0; i < legs.size(); ++i) ReadLeg(legs[i], static_cast<int>(i) + 1);
-    CheckCover(root);
+    try {
+      CheckLegs(plan_.legs, plan_.policy);
+    } catch (const std::invalid_argument& error) {
+      root.Refuse("", error.what());
+    }
     FindStart();
     for (const InputFile& file : files_.all()) plan_.inputs.push_back(file);
     return std::move(plan_);
@@ -173,26 +177,6 @@ class PlanReader {
       table.Refuse("survey", "its azimuths are grid: the convergence is needed");
     }
     plan_.legs.push_back(std::move(leg));
-  }
-
-  /// The legs that are not ruled out must reach from one to the next.
-  void CheckCover(TomlTable& root) const {
-    std::vector<std::pair<double, double>> reaches;
-    for (const MergeLeg& leg : plan_.legs) {
-      if (!leg.left_out.empty()) continue;
-      reaches.emplace_back(leg.stations.front().md, leg.stations.back().md);
-    }
-    if (reaches.empty()) root.Refuse("", "every leg is ruled out");
-    std::ranges::sort(reaches);
-    double reached = reaches.front().second;
-    for (const auto& [begin, end] : reaches) {
-      if (begin - reached > plan_.policy.max_gap) {
-        root.Refuse("", fmt::format("no leg has stations from MD {:.2f} to {:.2f} m: a gap of more "
-                                    "than {:g} m",
-                                    reached, begin, plan_.policy.max_gap));
-      }
-      reached = std::max(reached, end);
-    }
   }
 
   void FindStart() {
