@@ -44,6 +44,7 @@ TEST(OnTheWay, PositionsGoOnBehindAGapInWhichTheHeadingIsLost) {
       const TruthState at = truth.At((s.utc - simulation.streams.begin_utc).seconds());
       const double off = (s.p_WT_W - at.p_WT_W).head<2>().norm();
       const double sigma = std::sqrt(s.cov_p_WT_W.topLeftCorner<2, 2>().trace());
+      EXPECT_LT(sigma, 0.5) << "gap " << from << " s, MD " << s.md;
       EXPECT_LT(off, 0.01 + 5 * sigma) << "gap " << from << " s, MD " << s.md;
     }
   }
