@@ -63,8 +63,7 @@ bool PushLog(const std::string& path, const SurveyOptions& options, const Survey
 
 /// The last adjustment, which may take as long as all before it.
 void FinishSurvey(Surveyor& surveyor, const SurveyOptions& options) {
-  Progress progress("adjusting", options.says != Says::kNothing);
-  progress.Show();
+  const Waiting waiting("adjusting", options.says != Says::kNothing);
   surveyor.Finish();
 }
 

@@ -1,7 +1,10 @@
 #include "report.h"
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
+#include <stop_token>
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -61,11 +64,20 @@ void Progress::Show(std::int64_t done, std::int64_t all) {
   std::fflush(stderr);
 }
 
-void Progress::Show() {
-  if (!terminal_) return;
-  shown_ = true;
-  fmt::print(stderr, "\r{} ...", doing_);
-  std::fflush(stderr);
+Waiting::Waiting(std::string_view doing, bool shown) {
+  if (!shown || isatty(STDERR_FILENO) == 0) return;
+  ticker_ = std::jthread([what = std::string(doing)](const std::stop_token& stop) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any ended;
+    for (int seconds = 0; !stop.stop_requested(); ++seconds) {
+      fmt::print(stderr, "\r{}, {} s", what, seconds);
+      std::fflush(stderr);
+      ended.wait_for(lock, stop, std::chrono::seconds(1), [] { return false; });
+    }
+    fmt::print(stderr, "\r{:{}}\r", "", what.size() + 12);
+    std::fflush(stderr);
+  });
 }
 
 }  // namespace wellgyro::apps

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "wellgyro/base/result.h"
 
@@ -35,8 +36,6 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void Show(std::int64_t done, std::int64_t all);
-  /// At once, of work whose share is not known.
-  void Show();
 
  private:
   std::string doing_;
@@ -44,6 +43,15 @@ class Progress {
   bool shown_ = false;
   std::int64_t begin_ms_;
   std::int64_t last_ms_;
+};
+
+/// Of work that ends when it has converged: for how long it has gone on, each second, as Progress.
+class Waiting {
+ public:
+  explicit Waiting(std::string_view doing, bool shown = true);
+
+ private:
+  std::jthread ticker_;  ///< joined at the end
 };
 
 }  // namespace wellgyro::apps

@@ -24,8 +24,10 @@ set(WELLGYRO_LIGHT_OPTIONS "" CACHE STRING "Options of what loops little, beside
 function(wellgyro_compile target)
   cmake_parse_arguments(COMPILE "NUMERIC;LIGHT" "" "" ${ARGN})
   target_compile_features(${target} PUBLIC cxx_std_20)
+  # Nothing is contracted, so that every processor has the same bits; no one asks errno or the flags of
+  # the floating point, whose upkeep is some 4 % of a survey's time.
   target_compile_options(${target} PRIVATE
-    $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
+    $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
       -Wno-missing-field-initializers -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual>
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-maybe-uninitialized -Wno-restrict>
     $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<BOOL:${WELLGYRO_WERROR}>>:-Werror>

@@ -157,6 +157,17 @@ class Terminal(FreshProgramTest):
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertTrue(done.stderr, "trouble is said all the same")
 
+    def test_a_terminal_is_told_how_long_the_adjustment_takes(self):
+        self.Write("begin.lcm", Begin())
+        reading, terminal = os.openpty()
+        subprocess.run([PROGRAM, "survey", "--job", os.path.join(DEMO, "job.toml"), "--from",
+                        self.Path("begin.lcm"), "--out", self.Path("result")],
+                       stdout=subprocess.DEVNULL, stderr=terminal, check=True)
+        os.close(terminal)
+        with os.fdopen(reading, "rb") as said:
+            shown = said.read1(65536).decode()
+        self.assertRegex(shown, r"\radjusting, 0 s(\radjusting, \d+ s)*\r +\r$")
+
     def test_the_summary_as_a_document_says_what_the_files_say(self):
         done = self.Demo("--json")
         self.assertEqual(done.returncode, 0, done.stderr)

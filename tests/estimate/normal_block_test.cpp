@@ -96,7 +96,7 @@ TEST(NormalBlock, SumsUpJacobiansAndResiduals) {
     for (const int at : {9, 0, 4, 11, 3}) {
       const Eigen::VectorXd column =
           Eigen::VectorXd::NullaryExpr(n, [&] { return random.Normal(); });
-      f.Column(at) = column;
+      f.Column(at).head(n) = column;
       J.col(at) = column;
     }
     for (int i = 0; i < n; ++i) f.r[i] = random.Normal();

@@ -79,12 +79,14 @@ struct OneNode {
   Result By(Registers registers) const {
     const Index m = node + border, stride = BlockStride(node, border), rows = node + m;
     const std::vector<double> A = Apart(block, rows, stride);
-    std::vector<double> x = Apart(block, node, stride), next = Apart(edge, m, ByFours(m));
+    std::vector<double> next = Apart(edge, m, ByFours(m));
+    std::vector<double> x(static_cast<std::size_t>(node * stride),
+                          std::numeric_limits<double>::quiet_NaN());
     std::vector<double> g(static_cast<std::size_t>(stride), 0.0);
     std::copy(gradient.begin(), gradient.end(), g.begin());
     const NodePanel panel{x.data(), stride, node, border};
     const EdgeColumns columns{next.data(), ByFours(m)};
-    AddKnown(registers, panel, columns);
+    Begin(registers, A.data(), columns, panel);
     EXPECT_TRUE(Factorise(registers, panel));
     Forward(registers, panel, g.data());
     Succeed(registers, panel, A.data(), columns);
@@ -161,10 +163,10 @@ TEST(NormalKernels, AddTheSquareOfThreeRowsToTheSameBitsByEveryWidth) {
       for (Index i = 0; i < 3; ++i) spread(j, i) = J(i, k) = random.Normal();
       at.push_back(static_cast<int>(j));
     }
-    const ThreeRows rows{J.data(), at.data(), static_cast<int>(at.size()), spread.data()};
+    const ThreeRows rows{J.data(), at.data(), static_cast<int>(at.size())};
     const auto by = [&](Registers registers) {
       std::vector<double> sum = Apart(block, size, stride);
-      AddSquare(registers, rows, 0.7, stride, sum.data());
+      AddSquare(registers, rows, spread.data(), 0.7, stride, sum.data());
       return Lower(sum, size, size, stride);
     };
     const MatrixXd plain = by(Registers::kPlain);
@@ -173,6 +175,35 @@ TEST(NormalKernels, AddTheSquareOfThreeRowsToTheSameBitsByEveryWidth) {
     const MatrixXd lower = full.cast<double>().triangularView<Eigen::Lower>();
     EXPECT_LT((plain - lower).cwiseAbs().maxCoeff(), 1e-10) << node << " " << border;
     EXPECT_TRUE(SameBits(plain, by(WidestRegisters()))) << node << " " << border;
+    const auto times = [&](Registers registers) {
+      MatrixXd product(ByFours(size), 3);
+      TimesThreeRows(registers, block.data(), size, rows, product.data());
+      return MatrixXd(product.topRows(size));
+    };
+    const MatrixXd product = times(Registers::kPlain);
+    const MatrixXd exact = (block.cast<long double>() * over).cast<double>();
+    EXPECT_LT((product - exact).cwiseAbs().maxCoeff(), 1e-10) << node << " " << border;
+    EXPECT_TRUE(SameBits(product, times(WidestRegisters()))) << node << " " << border;
+  }
+}
+
+TEST(NormalKernels, MultiplyToTheSameBitsByEveryWidth) {
+  Random random(4);
+  const auto normals = [&](Index rows, Index columns) {
+    return MatrixXd(MatrixXd::NullaryExpr(rows, columns, [&] { return random.Normal(); }));
+  };
+  for (const auto& [node, border] : Sizes()) {
+    const Index m = node + border;
+    const MatrixXd A = normals(node, m), B = normals(m, m);
+    const auto by = [&](Registers registers) {
+      MatrixXd product(node, m);
+      Multiply(registers, {node, m, m}, A.data(), B.data(), product.data());
+      return product;
+    };
+    const MatrixXd plain = by(Registers::kPlain);
+    const Exact exact = A.cast<long double>() * B.cast<long double>().transpose();
+    EXPECT_LT((plain - exact.cast<double>()).cwiseAbs().maxCoeff(), 1e-12) << node << " " << m;
+    EXPECT_TRUE(SameBits(plain, by(WidestRegisters()))) << node << " " << m;
   }
 }
 

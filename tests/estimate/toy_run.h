@@ -129,8 +129,8 @@ class ToyRun : public RunRows {
       f.r.setZero();
       if (kind == RowKind::kDrift) {
         for (int i = 0; i < 2; ++i) {
-          f.Column(6 + i) = -4 * Eigen::Vector2d::Unit(i);
-          f.Column(8 + 6 + i) = 4 * Eigen::Vector2d::Unit(i);
+          f.Column(6 + i).head<2>() = -4 * Eigen::Vector2d::Unit(i);
+          f.Column(8 + 6 + i).head<2>() = 4 * Eigen::Vector2d::Unit(i);
         }
       } else {
         const bool turn = kind == RowKind::kTurn;

@@ -13,41 +13,11 @@ namespace {
 
 using Eigen::Index;
 
-// Products of some ten by twenty numbers: squares of four by four whose sums stay in registers are
-// four times as fast as what is made for large matrices. Every sum runs in one order, so that it
-// has one result on every processor.
-
-/// A B' of R and C rows of matrices whose columns stand this far apart.
-template <int R, int C>
-[[gnu::always_inline]] inline Eigen::Matrix<double, R, C> Product(const double* A, Index a_stride,
-                                                                  const double* B, Index b_stride,
-                                                                  Index columns) {
-  Eigen::Matrix<double, R, C> sum = Eigen::Matrix<double, R, C>::Zero();
-  for (Index k = 0; k < columns; ++k, A += a_stride, B += b_stride) {
-    const Eigen::Map<const Eigen::Matrix<double, R, 1>> a(A);
-    const Eigen::Map<const Eigen::Matrix<double, C, 1>> b(B);
-    sum += a * b.transpose();
-  }
-  return sum;
-}
-
 /// C = A B'.
 template <class Left, class Right, class Out>
 void Multiply(const Left& A, const Right& B, Out& out) {
-  const Index rows = A.rows(), columns = B.rows(), inner = A.cols();
-  const auto put = [&]<int R, int C>(Index i, Index j) {
-    out.template block<R, C>(i, j) =
-        Product<R, C>(A.data() + i, rows, B.data() + j, columns, inner);
-  };
-  const auto column = [&]<int C>(Index j) {
-    Index i = 0;
-    for (; i + 4 <= rows; i += 4) put.template operator()<4, C>(i, j);
-    for (; i < rows; ++i) put.template operator()<1, C>(i, j);
-  };
-  out.resize(rows, columns);
-  Index j = 0;
-  for (; j + 4 <= columns; j += 4) column.template operator()<4>(j);
-  for (; j < columns; ++j) column.template operator()<1>(j);
+  out.resize(A.rows(), B.rows());
+  Multiply(WidestRegisters(), {A.rows(), B.rows(), A.cols()}, A.data(), B.data(), out.data());
 }
 
 }  // namespace
@@ -74,8 +44,7 @@ bool Elimination::Step(const NormalBlock& block) {
   const NodePanel panel{conditionals_.data() + eliminated_ * ConditionalSize(), stride_, n, b};
   const EdgeColumns edge{information_.data(), edge_stride_};
   const double* A = block.information().data();
-  std::copy_n(A, n * stride_, panel.values);
-  AddKnown(registers, panel, edge);
+  Begin(registers, A, edge, panel);
   if (!Factorise(registers, panel)) return false;
   alignas(32) std::array<double, kBlockStrideMost> numbers;
   std::fill(numbers.begin() + rows_, numbers.begin() + stride_, 0.0);

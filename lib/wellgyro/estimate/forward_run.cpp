@@ -56,7 +56,7 @@ double WalkBehind(std::span<const RunKnot> knots) {
   const Increment& inc = knots.back().increment;
   if (inc.has_axial) return std::sqrt(inc.seconds);
   const auto recent = knots.last(std::min(knots.size(), ForwardRun::kLooksBack));
-  return std::hypot(RollWalkBy(recent) * std::sqrt(inc.seconds), SpeedStarts(recent).back());
+  return std::hypot(RollWalkBy(recent) * std::sqrt(inc.seconds), LastSpeedStart(recent));
 }
 
 /// Of a positive symmetric matrix; not finite where it is none.

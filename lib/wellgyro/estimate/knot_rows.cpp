@@ -63,12 +63,11 @@ double KnotRows::TurnNoise(double dt) const {
 
 /// What a unit of the mean rate of roll adds to the factor's residuals, for all that it is made of.
 void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, NormalBlock& block) {
-  const auto rows = by_rate.head(factor_.rows);
-  factor_.Column(layout_.roll) = rows;
+  factor_.Column(layout_.roll) = by_rate;
   if (layout_.swing == kAbsent) return;
-  for (int i = 0; i < 2; ++i) factor_.Column(layout_.swing + i) = t.of_swing[i] * rows;
+  for (int i = 0; i < 2; ++i) factor_.Column(layout_.swing + i) = t.of_swing[i] * by_rate;
   factor_.Column(block.border() + layout_.frequency) =
-      MeanByFrequency(t.frequency, t.dt).dot(t.begin.swing) * rows;
+      MeanByFrequency(t.frequency, t.dt).dot(t.begin.swing) * by_rate;
 }
 
 /// What a unit of an error adds to the factor's residuals, for itself and for its change with the
@@ -77,9 +76,8 @@ void KnotRows::AddError(const Terms& t, int source, const Vector3d& by_error,
                         const NormalBlock& block) {
   const int at = layout_.source[static_cast<std::size_t>(source)];
   const int change = layout_.change[static_cast<std::size_t>(source)];
-  const auto rows = by_error.head(factor_.rows);
-  if (at != kAbsent) factor_.Column(block.border() + at) = rows;
-  if (change != kAbsent) factor_.Column(block.border() + change) = t.warmth * rows;
+  if (at != kAbsent) factor_.Column(block.border() + at) = by_error;
+  if (change != kAbsent) factor_.Column(block.border() + change) = t.warmth * by_error;
 }
 
 /// Log[(E R_k Ha Exp(turn) Hb)' R_k+1], E = Exp(-w_IL dt): across the axis the gyros' noise, about
@@ -253,8 +251,9 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
   const double of_swing = 1 / roll.swing_sigma;
   f.r.head<2>() = of_swing * (t.end.swing - SwingAfter(t.frequency, t.dt, t.begin.swing));
   for (int i = 0; i < 2; ++i) {
-    f.Column(layout_.swing + i) = -of_swing * SwingAfter(t.frequency, t.dt, Vector2d::Unit(i));
-    f.Column(block.next() + layout_.swing + i) = of_swing * Vector2d::Unit(i);
+    f.Column(layout_.swing + i).head<2>() =
+        -of_swing * SwingAfter(t.frequency, t.dt, Vector2d::Unit(i));
+    f.Column(block.next() + layout_.swing + i).head<2>() = of_swing * Vector2d::Unit(i);
   }
   f.Column(block.border() + layout_.frequency).head<2>() =
       -of_swing * SwingByFrequency(t.frequency, t.dt, t.begin.swing);
@@ -328,8 +327,10 @@ void KnotRows::AddDrift(const Terms& t, NormalBlock& block) {
     Factor& f = factor_;
     f.Begin(RowKind::kDrift, 2);
     f.r.head<2>() = (to - keep * from) / sigma;
-    for (int i = 0; i < 2; ++i) f.Column(column + i) = -keep / sigma * Vector2d::Unit(i);
-    for (int i = 0; i < 2; ++i) f.Column(block.next() + column + i) = Vector2d::Unit(i) / sigma;
+    for (int i = 0; i < 2; ++i) {
+      f.Column(column + i).head<2>() = -keep / sigma * Vector2d::Unit(i);
+      f.Column(block.next() + column + i).head<2>() = Vector2d::Unit(i) / sigma;
+    }
     block.Add(f);
   };
   if (layout_.walk != kAbsent) {

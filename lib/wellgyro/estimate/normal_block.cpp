@@ -94,17 +94,18 @@ Factor& Factor::operator=(const Factor& other) {
 }
 
 Eigen::Matrix3d CovarianceOf(const Factor& f, const BlockMatrix& cov) {
-  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 2 * kNodeMax + kBorderMax, 3> by_rows(cov.rows(), 3);
-  by_rows.setZero();
-  for (int j = 0; j < f.columns; ++j) {
-    const auto column = cov.col(f.column[static_cast<std::size_t>(j)]);
-    for (int i = 0; i < f.rows; ++i) by_rows.col(i) += f.J(i, j) * column;
-  }
+  alignas(32) std::array<double, 3 * kBlockStrideMost> by_row;
+  TimesThreeRows(WidestRegisters(), cov.data(), cov.rows(),
+                 {f.J.data(), f.column.data(), f.columns}, by_row.data());
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>, 0, Eigen::OuterStride<>> with(
+      by_row.data(), cov.rows(), 3, Eigen::OuterStride<>(ByFours(cov.rows())));
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int j = 0; j < f.columns; ++j) {
-    const int at = f.column[static_cast<std::size_t>(j)];
-    sum.topRows(f.rows) += f.J.col(j).head(f.rows) * by_rows.row(at);
+    sum += f.J.col(j) * with.row(f.column[static_cast<std::size_t>(j)]);
   }
+  // What a factor of fewer rows has of others is not filled in.
+  sum.bottomRows(3 - f.rows).setZero();
+  sum.rightCols(3 - f.rows).setZero();
   return sum;
 }
 
@@ -118,10 +119,16 @@ NormalBlock::Vector NormalBlock::Column(int at) const {
 double RollWeight(double square, int n) { return (kDegrees + n) / (kDegrees + square); }
 
 void NormalBlock::Clear(const Layout& layout) {
+  const Eigen::Index rows = 2 * layout.node + layout.border;
+  const bool begun = node_ == layout.node && size() == rows;
   node_ = layout.node;
   stride_ = BlockStride(layout.node, layout.border);
-  gradient_.setZero(2 * layout.node + layout.border);
-  std::fill_n(information_.begin(), size() * stride_, 0.0);
+  gradient_.setZero(rows);
+  // Above the diagonal stands what counts for nothing, see AddSquare(), but it is to be a number.
+  for (Eigen::Index j = 0; j < rows; ++j) {
+    double* column = information_.data() + j * stride_;
+    std::fill(column + (begun ? j : 0), column + stride_, 0.0);
+  }
 }
 
 void NormalBlock::Add(const Factor& f) {
@@ -176,8 +183,8 @@ void NormalBlock::AddDense(const Factor& f, double weight) {
     const Eigen::Vector3d w = weight * f.J.col(j);
     gradient_[f.column[static_cast<std::size_t>(j)]] += w.dot(f.r);
   }
-  const ThreeRows J{f.J.data(), f.column.data(), f.columns, rows.data()};
-  AddSquare(WidestRegisters(), J, weight, stride_, information_.data());
+  AddSquare(WidestRegisters(), {f.J.data(), f.column.data(), f.columns}, rows.data(), weight,
+            stride_, information_.data());
 }
 
 }  // namespace wellgyro

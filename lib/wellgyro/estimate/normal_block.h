@@ -49,10 +49,11 @@ struct Factor {
   Factor(const Factor& other) { *this = other; }
   Factor& operator=(const Factor& other);
 
-  /// Adds a column for what stands at `at` of the block; its derivative is to be filled in.
+  /// Adds a column for what stands at `at` of the block; its derivative is to be filled in, of as
+  /// many rows as there are.
   auto Column(int at) {
     column[static_cast<std::size_t>(columns)] = at;
-    return J.col(columns++).head(rows);
+    return J.col(columns++);
   }
   /// Rows that are filled in, whitened by one sigma, for one that is `sigma` times it along
   /// `along`; of no frame, as r.

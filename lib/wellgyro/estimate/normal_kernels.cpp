@@ -33,9 +33,9 @@ template <class V>
 
 /// Adds A B', of R registers of rows of A by C rows of B.
 template <class V, int R, int C>
-[[gnu::always_inline]] inline void AddProducts(const double* A, const double* B, Index stride,
-                                               Index columns, V (&sum)[C][R]) {
-  for (Index k = 0; k < columns; ++k, A += stride, B += stride) {
+[[gnu::always_inline]] inline void AddProducts(const double* A, Index a_stride, const double* B,
+                                               Index b_stride, Index columns, V (&sum)[C][R]) {
+  for (Index k = 0; k < columns; ++k, A += a_stride, B += b_stride) {
     V a[R];
 #pragma GCC unroll 4
     for (int r = 0; r < R; ++r) Get(A + r * kWidth<V>, a[r]);
@@ -49,25 +49,29 @@ template <class V, int R, int C>
 }
 
 template <class V>
-[[gnu::always_inline]] inline void AddAlong(const double* from, Index count, double* to) {
+[[gnu::always_inline]] inline void AddInto(const double* a, const double* b, Index count,
+                                           double* to) {
   Index i = 0;
   for (; i + kWidth<V> <= count; i += kWidth<V>) {
     V x, y;
-    Get(from + i, x);
-    Get(to + i, y);
-    Put(y + x, to + i);
+    Get(a + i, x);
+    Get(b + i, y);
+    Put(x + y, to + i);
   }
-  for (; i < count; ++i) to[i] += from[i];
+  for (; i < count; ++i) to[i] = a[i] + b[i];
 }
 
 template <class V>
-[[gnu::always_inline]] inline void AddKnownBy(const NodePanel& panel, const EdgeColumns& edge) {
+[[gnu::always_inline]] inline void BeginBy(const double* block, const EdgeColumns& edge,
+                                           const NodePanel& panel) {
   const Index n = panel.node;
-  for (Index j = 0; j < n; ++j) {
-    const double* from = edge.column(j);
+  for (Index j = 0; j < n; ++j, block += panel.stride) {
+    const double* known = edge.column(j);
     double* to = panel.column(j);
-    AddAlong<V>(from + j, n - j, to + j);
-    AddAlong<V>(from + n, panel.border, to + 2 * n);
+    AddInto<V>(block + j, known + j, n - j, to + j);
+    std::copy_n(block + n, n, to + n);
+    AddInto<V>(block + 2 * n, known + n, panel.border, to + 2 * n);
+    std::copy(block + panel.rows(), block + panel.stride, to + panel.rows());
   }
 }
 
@@ -83,7 +87,7 @@ template <class V, int R, int C>
 [[gnu::always_inline]] inline void Reduce(const NodePanel& panel, Index begin, Index row,
                                           V (&x)[C][R]) {
   V sum[C][R] = {};
-  AddProducts(panel.values + row, panel.values + begin, panel.stride, begin, sum);
+  AddProducts(panel.values + row, panel.stride, panel.values + begin, panel.stride, begin, sum);
   const double* from = panel.column(begin) + row;
 #pragma GCC unroll 4
   for (int c = 0; c < C; ++c, from += panel.stride) {
@@ -208,7 +212,7 @@ template <class V, int R, int C>
                                                 const EdgeColumns& edge, Index i, Index j) {
   V sum[C][R] = {};
   const double* behind = panel.values + panel.node;
-  AddProducts(behind + i, behind + j, panel.stride, panel.node, sum);
+  AddProducts(behind + i, panel.stride, behind + j, panel.stride, panel.node, sum);
   const double* from = block + (panel.node + j) * panel.stride + panel.node + i;
   double* to = edge.column(j) + i;
 #pragma GCC unroll 4
@@ -260,8 +264,8 @@ template <class V>
 /// C columns from `k` on, together from the register where the first of them in the block begins.
 /// What stands above the diagonal counts for nothing.
 template <class V, int C>
-[[gnu::always_inline]] inline void AddColumns(const ThreeRows& J, int k, double weight,
-                                              Index stride, double* block) {
+[[gnu::always_inline]] inline void AddColumns(const ThreeRows& J, const double* spread, int k,
+                                              double weight, Index stride, double* block) {
   double w[C][3];
   double* column[C];
   Index begin = stride;
@@ -274,9 +278,9 @@ template <class V, int C>
   }
   for (Index i = begin / kWidth<V> * kWidth<V>; i < stride; i += kWidth<V>) {
     V x, y, z;
-    Get(J.spread + i, x);
-    Get(J.spread + stride + i, y);
-    Get(J.spread + 2 * stride + i, z);
+    Get(spread + i, x);
+    Get(spread + stride + i, y);
+    Get(spread + 2 * stride + i, z);
 #pragma GCC unroll 4
     for (int c = 0; c < C; ++c) {
       V sum;
@@ -287,16 +291,82 @@ template <class V, int C>
 }
 
 template <class V>
-[[gnu::always_inline]] inline void AddSquareBy(const ThreeRows& J, double weight, Index stride,
-                                               double* block) {
+[[gnu::always_inline]] inline void AddSquareBy(const ThreeRows& J, const double* spread,
+                                               double weight, Index stride, double* block) {
   int k = 0;
-  for (; k + 2 <= J.count; k += 2) AddColumns<V, 2>(J, k, weight, stride, block);
-  if (k < J.count) AddColumns<V, 1>(J, k, weight, stride, block);
+  for (; k + 2 <= J.count; k += 2) AddColumns<V, 2>(J, spread, k, weight, stride, block);
+  if (k < J.count) AddColumns<V, 1>(J, spread, k, weight, stride, block);
+}
+
+template <class V>
+[[gnu::always_inline]] inline void TimesThreeRowsBy(const double* A, Index rows, const ThreeRows& J,
+                                                    double* by_row) {
+  const Index stride = ByFours(rows);
+  Index i = 0;
+  for (; i + 2 * kWidth<V> <= rows; i += 2 * kWidth<V>) {
+    V sum[3][2] = {};
+    for (int k = 0; k < J.count; ++k) {
+      V a[2];
+#pragma GCC unroll 2
+      for (int r = 0; r < 2; ++r) Get(A + J.at[k] * rows + i + r * kWidth<V>, a[r]);
+#pragma GCC unroll 3
+      for (int c = 0; c < 3; ++c) {
+#pragma GCC unroll 2
+        for (int r = 0; r < 2; ++r) sum[c][r] += J.by_column[3 * k + c] * a[r];
+      }
+    }
+#pragma GCC unroll 3
+    for (int c = 0; c < 3; ++c) {
+#pragma GCC unroll 2
+      for (int r = 0; r < 2; ++r) Put(sum[c][r], by_row + c * stride + i + r * kWidth<V>);
+    }
+  }
+  for (; i < rows; ++i) {
+    double sum[3] = {};
+    for (int k = 0; k < J.count; ++k) {
+      for (int c = 0; c < 3; ++c) sum[c] += J.by_column[3 * k + c] * A[J.at[k] * rows + i];
+    }
+    for (int c = 0; c < 3; ++c) by_row[c * stride + i] = sum[c];
+  }
+}
+
+/// R registers of rows from i on of C columns from j on of A B'.
+template <class V, int R, int C>
+[[gnu::always_inline]] inline void MultiplyBlock(const ProductShape& s, const double* A,
+                                                 const double* B, Index i, Index j, double* out) {
+  V sum[C][R] = {};
+  AddProducts(A + i, s.rows, B + j, s.columns, s.inner, sum);
+#pragma GCC unroll 4
+  for (int c = 0; c < C; ++c) {
+#pragma GCC unroll 4
+    for (int r = 0; r < R; ++r) Put(sum[c][r], out + (j + c) * s.rows + i + r * kWidth<V>);
+  }
+}
+
+template <class V, int C>
+[[gnu::always_inline]] inline void MultiplyColumns(const ProductShape& s, const double* A,
+                                                   const double* B, Index j, double* out) {
+  Index i = 0;
+  for (; i + 2 * kWidth<V> <= s.rows; i += 2 * kWidth<V>) {
+    MultiplyBlock<V, 2, C>(s, A, B, i, j, out);
+  }
+  for (; i + kWidth<V> <= s.rows; i += kWidth<V>) MultiplyBlock<V, 1, C>(s, A, B, i, j, out);
+  for (; i + 2 <= s.rows; i += 2) MultiplyBlock<Pair, 1, C>(s, A, B, i, j, out);
+  if (i < s.rows) MultiplyBlock<double, 1, C>(s, A, B, i, j, out);
+}
+
+template <class V>
+[[gnu::always_inline]] inline void MultiplyBy(const ProductShape& s, const double* A,
+                                              const double* B, double* out) {
+  Index j = 0;
+  for (; j + 4 <= s.columns; j += 4) MultiplyColumns<V, 4>(s, A, B, j, out);
+  for (; j < s.columns; ++j) MultiplyColumns<V, 1>(s, A, B, j, out);
 }
 
 #if defined(__x86_64__)
-[[gnu::target("avx2")]] void AddKnownByAvx2(const NodePanel& panel, const EdgeColumns& edge) {
-  AddKnownBy<Quad>(panel, edge);
+[[gnu::target("avx2")]] void BeginByAvx2(const double* block, const EdgeColumns& edge,
+                                         const NodePanel& panel) {
+  BeginBy<Quad>(block, edge, panel);
 }
 
 [[gnu::target("avx2")]] bool FactoriseByAvx2(const NodePanel& panel) {
@@ -312,9 +382,19 @@ template <class V>
   SucceedBy<Quad>(panel, block, edge);
 }
 
-[[gnu::target("avx2")]] void AddSquareByAvx2(const ThreeRows& J, double weight, Index stride,
-                                             double* block) {
-  AddSquareBy<Quad>(J, weight, stride, block);
+[[gnu::target("avx2")]] void AddSquareByAvx2(const ThreeRows& J, const double* spread,
+                                             double weight, Index stride, double* block) {
+  AddSquareBy<Quad>(J, spread, weight, stride, block);
+}
+
+[[gnu::target("avx2")]] void TimesThreeRowsByAvx2(const double* A, Index rows, const ThreeRows& J,
+                                                  double* by_row) {
+  TimesThreeRowsBy<Quad>(A, rows, J, by_row);
+}
+
+[[gnu::target("avx2")]] void MultiplyByAvx2(const ProductShape& shape, const double* A,
+                                            const double* B, double* out) {
+  MultiplyBy<Quad>(shape, A, B, out);
 }
 #endif
 
@@ -327,12 +407,13 @@ Registers WidestRegisters() {
   return Registers::kPlain;
 }
 
-void AddKnown(Registers registers, const NodePanel& panel, const EdgeColumns& edge) {
+void Begin(Registers registers, const double* block, const EdgeColumns& edge,
+           const NodePanel& panel) {
 #if defined(__x86_64__)
-  if (registers == Registers::kAvx2) return AddKnownByAvx2(panel, edge);
+  if (registers == Registers::kAvx2) return BeginByAvx2(block, edge, panel);
 #endif
   static_cast<void>(registers);
-  AddKnownBy<Pair>(panel, edge);
+  BeginBy<Pair>(block, edge, panel);
 }
 
 bool Factorise(Registers registers, const NodePanel& panel) {
@@ -360,13 +441,31 @@ void Succeed(Registers registers, const NodePanel& panel, const double* block,
   SucceedBy<Pair>(panel, block, edge);
 }
 
-void AddSquare(Registers registers, const ThreeRows& J, double weight, Index stride,
-               double* block) {
+void AddSquare(Registers registers, const ThreeRows& J, const double* spread, double weight,
+               Index stride, double* block) {
 #if defined(__x86_64__)
-  if (registers == Registers::kAvx2) return AddSquareByAvx2(J, weight, stride, block);
+  if (registers == Registers::kAvx2) return AddSquareByAvx2(J, spread, weight, stride, block);
 #endif
   static_cast<void>(registers);
-  AddSquareBy<Pair>(J, weight, stride, block);
+  AddSquareBy<Pair>(J, spread, weight, stride, block);
+}
+
+void TimesThreeRows(Registers registers, const double* A, Index rows, const ThreeRows& J,
+                    double* by_row) {
+#if defined(__x86_64__)
+  if (registers == Registers::kAvx2) return TimesThreeRowsByAvx2(A, rows, J, by_row);
+#endif
+  static_cast<void>(registers);
+  TimesThreeRowsBy<Pair>(A, rows, J, by_row);
+}
+
+void Multiply(Registers registers, const ProductShape& shape, const double* A, const double* B,
+              double* out) {
+#if defined(__x86_64__)
+  if (registers == Registers::kAvx2) return MultiplyByAvx2(shape, A, B, out);
+#endif
+  static_cast<void>(registers);
+  MultiplyBy<Pair>(shape, A, B, out);
 }
 
 }  // namespace wellgyro

@@ -31,8 +31,10 @@ struct EdgeColumns {
   double* column(Eigen::Index j) const { return values + j * stride; }
 };
 
-/// Adds to the panel what is known of [node | border].
-void AddKnown(Registers registers, const NodePanel& panel, const EdgeColumns& edge);
+/// Fills the lower triangle of the panel: what a block says, whose columns stand as far apart as
+/// the panel's, and what is known of [node | border].
+void Begin(Registers registers, const double* block, const EdgeColumns& edge,
+           const NodePanel& panel);
 
 /// Replaces the panel by those columns of the Cholesky factor, in its lower triangle. False where
 /// it is not positive.
@@ -52,10 +54,22 @@ struct ThreeRows {
   const double* by_column;  ///< three numbers of each
   const int* at;            ///< where they stand in the block
   int count;
-  const double* spread;  ///< row by row over all columns of the block, zeros elsewhere
 };
-/// Adds weight J'J to a block's lower triangle, whose columns stand as far apart as the rows J.
-void AddSquare(Registers registers, const ThreeRows& J, double weight, Eigen::Index stride,
-               double* block);
+/// Adds weight J'J to a block's lower triangle, whose columns stand `stride` apart; `spread` is J
+/// row by row over all columns of the block, which stand as far apart, zeros where it has none.
+void AddSquare(Registers registers, const ThreeRows& J, const double* spread, double weight,
+               Eigen::Index stride, double* block);
+/// A J' of a symmetric matrix A over `rows` rows, whose columns stand `rows` apart: three columns
+/// that stand ByFours(rows) apart.
+void TimesThreeRows(Registers registers, const double* A, Eigen::Index rows, const ThreeRows& J,
+                    double* by_row);
+
+/// Of a product A B' and its factors, whose columns stand close together.
+struct ProductShape {
+  Eigen::Index rows, columns;  ///< of the product
+  Eigen::Index inner;          ///< columns of A and B
+};
+void Multiply(Registers registers, const ProductShape& shape, const double* A, const double* B,
+              double* out);
 
 }  // namespace wellgyro

@@ -29,6 +29,8 @@ struct Sums {
   std::vector<std::size_t> unseen{0};
 
   explicit Sums(std::span<const RunKnot> knots, std::span<const double> swung = {}) {
+    for (std::vector<double>* sums : {&roll, &var, &seconds}) sums->reserve(knots.size() + 1);
+    unseen.reserve(knots.size() + 1);
     for (std::size_t k = 0; k < knots.size(); ++k) {
       const Increment& i = knots[k].increment;
       roll.push_back(roll.back() + i.roll_before + i.roll_after - (swung.empty() ? 0 : swung[k]));
@@ -46,6 +48,7 @@ struct Change {
 
 std::vector<Change> ChangesOver(const Sums& s, std::size_t span) {
   std::vector<Change> changes;
+  changes.reserve(s.roll.size());
   for (std::size_t k = span; k + span < s.roll.size(); ++k) {
     const std::size_t a = k - span, b = k + span;
     if (s.unseen[b] != s.unseen[a]) continue;
@@ -59,12 +62,21 @@ std::vector<Change> ChangesOver(const Sums& s, std::size_t span) {
 /// What is usual is told by the half of the places where the roll is plainest.
 double UsualOf(const std::vector<Change>& changes) {
   std::vector<double> sigmas, plain;
+  sigmas.reserve(changes.size());
+  plain.reserve(changes.size());
   for (const Change& c : changes) sigmas.push_back(c.sigma);
   const double median = MedianOf(sigmas);
   for (const Change& c : changes) {
     if (c.sigma <= median) plain.push_back(c.rate);
   }
   return kMedianToSigma * MedianOf(plain);
+}
+
+double SpeedStart(const AlongHole& before, const AlongHole& after) {
+  if (!before.known || !after.known) return 0;
+  const double change = std::abs(after.speed - before.speed);
+  const double sigma = std::hypot(before.sigma_speed, after.sigma_speed);
+  return change > std::max(kLeastChange, 4 * sigma) ? kRollPerMetre * change : 0;
 }
 
 }  // namespace
@@ -97,13 +109,16 @@ std::vector<double> SpeedStarts(std::span<const RunKnot> knots) {
   for (std::size_t k = 0; k < knots.size(); ++k) {
     while (times[begin + 1] < times[k + 1] - kSpeedReach) ++begin;
     while (end + 1 < knots.size() && times[end + 1] < times[k + 1] + kSpeedReach) ++end;
-    const AlongHole &a = knots[begin].along, &b = knots[end].along;
-    if (!a.known || !b.known) continue;
-    const double change = std::abs(b.speed - a.speed);
-    if (change <= std::max(kLeastChange, 4 * std::hypot(a.sigma_speed, b.sigma_speed))) continue;
-    starts[k] = kRollPerMetre * change;
+    starts[k] = SpeedStart(knots[begin].along, knots[end].along);
   }
   return starts;
+}
+
+double LastSpeedStart(std::span<const RunKnot> knots) {
+  std::size_t begin = knots.size() - 1;
+  double seconds = 0;  // from the end of knot `begin`
+  while (begin > 0 && (seconds += knots[begin].increment.seconds) <= kSpeedReach) --begin;
+  return SpeedStart(knots[begin].along, knots.back().along);
 }
 
 bool HidesAStart(std::span<const RunKnot> knots, std::span<const double> speed_starts) {

@@ -18,6 +18,8 @@ std::vector<double> RollStarts(std::span<const RunKnot> knots, std::span<const d
 /// Of each knot, by how much the roll rate may at most change behind it with the speed along the
 /// hole, seen or not [rad/s]: within 5 s of a change of the speed by 2 rad/m of that; else 0.
 std::vector<double> SpeedStarts(std::span<const RunKnot> knots);
+/// The same of the last knot alone.
+double LastSpeedStart(std::span<const RunKnot> knots);
 
 /// What the roll rate usually changes by from one knot to the next where it is plainest, 1-sigma
 /// [rad/s]; absent where it is nowhere seen.
