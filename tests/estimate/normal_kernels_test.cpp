@@ -196,8 +196,8 @@ TEST(NormalKernels, MultiplyToTheSameBitsByEveryWidth) {
     const Index m = node + border;
     const MatrixXd A = normals(node, m), B = normals(m, m);
     const auto by = [&](Registers registers) {
-      MatrixXd product(node, m);
-      Multiply(registers, {node, m, m}, A.data(), B.data(), product.data());
+      MatrixXd product(A.rows(), m);
+      Multiply(registers, {A.rows(), m, m}, A.data(), B.data(), product.data());
       return product;
     };
     const MatrixXd plain = by(Registers::kPlain);
