@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
@@ -173,6 +174,16 @@ Result<SimulationFile> ReadWithPlan(const SimulateOptions& options) {
   return ReadSimulation(options.job, &run);
 }
 
+/// What a simulation refuses is refused before a file is touched.
+Result<Simulator> SimulatorOf(const SimulationFile& file, const std::string& path) {
+  try {
+    const SampleBatcher batcher(file.simulation.streams, file.simulation.seed);
+    return Simulator(file.simulation);
+  } catch (const std::invalid_argument& refused) {
+    return Fault{.code = FaultCode::kRange, .text = path + ": " + refused.what()};
+  }
+}
+
 std::optional<Fault> Simulate(const SimulateOptions& options) {
   const Result<SimulationFile> file = ReadWithPlan(options);
   if (!file) return file.fault();
@@ -185,19 +196,18 @@ std::optional<Fault> Simulate(const SimulateOptions& options) {
     return Fault{.code = FaultCode::kConflict,
                  .text = "--job, --out and --truth must be three different files"};
   }
-  // What the simulation refuses is refused before a file is touched.
-  Simulator simulator(file->simulation);
-  const SampleBatcher batcher(file->simulation.streams, file->simulation.seed);
+  Result<Simulator> simulator = SimulatorOf(*file, options.job);
+  if (!simulator) return simulator.fault();
   auto outlet = live ? OpenLiveOutlet(options.out, file->channels, options.speed)
                      : OpenLogOutlet(options.out);
   if (!outlet) return outlet.fault();
   Recorder recorder(*file, **outlet);
   if (*tool) recorder.CountAs(**tool, options.temperature);
-  if (auto fault = Play(simulator, recorder, **outlet, options.finish)) return fault;
+  if (auto fault = Play(*simulator, recorder, **outlet, options.finish)) return fault;
   if (!truth.empty()) {
-    if (auto fault = WriteTruth(truth, simulator.truth())) return fault;
+    if (auto fault = WriteTruth(truth, simulator->truth())) return fault;
   }
-  fmt::print("simulated {:.0f} s: {} events, {} bytes\n{} {}\n", simulator.truth().seconds(),
+  fmt::print("simulated {:.0f} s: {} events, {} bytes\n{} {}\n", simulator->truth().seconds(),
              (*outlet)->events(), (*outlet)->bytes(), live ? "sent to" : "wrote", options.out);
   if (!truth.empty()) fmt::print("wrote {}\n", truth);
   return std::nullopt;

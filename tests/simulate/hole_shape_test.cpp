@@ -125,16 +125,17 @@ void ExpectRefused(SimulatedWell well, const std::string& names, Change change) 
 }
 
 TEST(HoleShape, NamesWhatMakesNoSense) {
-  ExpectRefused(StationWell(), "stations[3].md", [](auto& w) { w.stations[3].md = 400; });
-  ExpectRefused(StationWell(), "stations[5]", [](auto& w) { w.stations[5].inclination = 2; });
+  ExpectRefused(StationWell(), "station 4", [](auto& w) { w.stations[3].md = 400; });
+  ExpectRefused(StationWell(), "station 6", [](auto& w) { w.stations[5].inclination = 2; });
   ExpectRefused(StationWell(), "one station", [](auto& w) { w.stations.resize(1); });
   ExpectRefused(StationWell(), "smoothing", [](auto& w) { w.smoothing = 0; });
   ExpectRefused(StationWell(), "smoothing", [](auto& w) { w.smoothing = 1e-6; });
   ExpectRefused(WeavingWell(), "quarter periods", [](auto& w) { w.azimuth.terms[1].period = 0.2; });
-  ExpectRefused(WeavingWell(), "end_md", [](auto& w) { w.end_md = 100; });
-  ExpectRefused(WeavingWell(), "terms[0].ramp", [](auto& w) { w.inclination.terms[0].ramp = 0; });
+  ExpectRefused(WeavingWell(), "end_md_m", [](auto& w) { w.end_md = 100; });
+  ExpectRefused(WeavingWell(), "inclination.term]] 1: ramp_m",
+                [](auto& w) { w.inclination.terms[0].ramp = 0; });
   ExpectRefused(WeavingWell(), "too short", [](auto& w) { w.inclination.terms[0].ramp = 700; });
-  ExpectRefused(WeavingWell(), "azimuth.terms[1].period",
+  ExpectRefused(WeavingWell(), "azimuth.term]] 2: period_m",
                 [](auto& w) { w.azimuth.terms[1].period = 0; });
   ExpectRefused(WeavingWell(), "straight up", [](auto& w) { w.inclination.start = 2.2; });
 }

@@ -97,16 +97,16 @@ void ExpectRefused(const std::string& names, Change change) {
 }
 
 TEST(RunPlan, NamesWhatMakesNoSense) {
-  ExpectRefused("run.start_md 99", [](auto& r) { r.start_md = 99; });
-  ExpectRefused("run.steps[1].to_md 2601",
+  ExpectRefused("[run] start_md_m: 99", [](auto& r) { r.start_md = 99; });
+  ExpectRefused("[[run.step]] 2: to_md_m 2601",
                 [](auto& r) { std::get<RunMove>(r.steps[1]).to_md = 2601; });
-  ExpectRefused("run.steps[1].speed", [](auto& r) { std::get<RunMove>(r.steps[1]).speed = -1; });
-  ExpectRefused("run.steps take inf",
-                [](auto& r) { std::get<RunMove>(r.steps[3]).ramp = HUGE_VAL; });
-  ExpectRefused("run.steps[3].ramp", [](auto& r) { std::get<RunMove>(r.steps[3]).ramp = 0; });
-  ExpectRefused("run.steps[3].roll.period",
+  ExpectRefused("[[run.step]] 2: speed_mps",
+                [](auto& r) { std::get<RunMove>(r.steps[1]).speed = -1; });
+  ExpectRefused("[run] takes inf", [](auto& r) { std::get<RunMove>(r.steps[3]).ramp = HUGE_VAL; });
+  ExpectRefused("[[run.step]] 4: ramp_s", [](auto& r) { std::get<RunMove>(r.steps[3]).ramp = 0; });
+  ExpectRefused("[[run.step]] 4: roll_period_s",
                 [](auto& r) { std::get<RunMove>(r.steps[3]).roll.period = 0; });
-  ExpectRefused("run.steps[0].seconds",
+  ExpectRefused("[[run.step]] 1: stop_s",
                 [](auto& r) { std::get<RunStop>(r.steps[0]).seconds = -1; });
   // Each once kept the simulator busy for good, 2026-11-21.
   ExpectRefused("a speed is too low",
@@ -118,7 +118,7 @@ TEST(RunPlan, NamesWhatMakesNoSense) {
     std::get<RunMove>(r.steps[1]).ramp = 1e-300;
     std::get<RunMove>(r.steps[1]).speed = 1e300;
   });
-  ExpectRefused("run.steps[0].turn_seconds",
+  ExpectRefused("[[run.step]] 1: turn_s",
                 [](auto& r) { std::get<RunStop>(r.steps[0]).turn_seconds = 0; });
 }
 

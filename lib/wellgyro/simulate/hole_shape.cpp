@@ -35,12 +35,12 @@ HoleShape::HoleShape(const SimulatedWell& well) {
     begin_md_ = well.begin_md;
     end_md_ = well.end_md;
     Require(end_md_ > begin_md_,
-            fmt::format("well: end_md {} m is not below begin_md {} m", end_md_, begin_md_));
+            fmt::format("[well] end_md_m: {} is not below begin_md_m, {}", end_md_, begin_md_));
     detail_ = end_md_ - begin_md_;
     inclination_ = MakeLaw(well.inclination, "inclination");
     azimuth_ = MakeLaw(well.azimuth, "azimuth");
     Require(detail_ >= kLeastDetail,
-            fmt::format("well: ramps and quarter periods go down to {} m, below {} m", detail_,
+            fmt::format("[well]: ramps and quarter periods go down to {} m, below {} m", detail_,
                         kLeastDetail));
   } else {
     MakeSpline(well);
@@ -51,7 +51,7 @@ HoleShape::HoleShape(const SimulatedWell& well) {
   for (double k = 0; k <= count; ++k) {
     const double md = std::min(begin_md_ + k * step, end_md_);
     Require(At(md).tangent_L.z() > -std::cos(kStraightUp),
-            fmt::format("well: the hole points straight up at {} m", md));
+            fmt::format("[well]: the hole points straight up at {} m", md));
   }
 }
 
@@ -72,18 +72,18 @@ HoleShape::Law HoleShape::MakeLaw(const AngleLaw& law, const char* name) {
   Law made{.start = law.start, .terms = {}};
   for (std::size_t i = 0; i < law.terms.size(); ++i) {
     const AngleTerm& term = law.terms[i];
-    const auto where = fmt::format("well.{}.terms[{}]", name, i);
+    const auto where = fmt::format("[[well.{}.term]] {}", name, i + 1);
     const double begin = term.begin_md.value_or(begin_md_);
     const double length = term.end_md.value_or(end_md_) - begin;
     const double ramp_in = term.begin_md ? term.ramp : 0;
     const double ramp_out = term.end_md ? term.ramp : 0;
     Require(
         (!term.begin_md && !term.end_md) || term.ramp > 0,
-        fmt::format("{}.ramp {} m is not positive, as a begin or end needs it", where, term.ramp));
+        fmt::format("{}: ramp_m {} is not positive, as a begin or end needs it", where, term.ramp));
     Require(length >= ramp_in + ramp_out && length > 0,
             fmt::format("{}: {} m are too short for ramps of {} m", where, length, term.ramp));
     Require(term.amplitude == 0 || term.period > 0,
-            fmt::format("{}.period {} m is not positive", where, term.period));
+            fmt::format("{}: period_m {} is not positive", where, term.period));
     const bool waves = term.amplitude != 0;
     made.terms.push_back({.begin = begin,
                           .length = length,
@@ -118,18 +118,18 @@ HoleShape::Angle HoleShape::Evaluate(const Law& law, double md) {
 void HoleShape::MakeSpline(const SimulatedWell& well) {
   const std::vector<WellPoint>& stations = well.stations;
   const std::size_t n = stations.size();
-  Require(n >= 2, "well.stations: one station makes no hole");
+  Require(n >= 2, "[well]: one station makes no hole");
   Require(well.smoothing >= kLeastDetail,
-          fmt::format("well.smoothing {} m is below {} m", well.smoothing, kLeastDetail));
+          fmt::format("[well] smoothing: {} m is below {} m", well.smoothing, kLeastDetail));
   std::vector<Eigen::Vector3d> tangents;
   for (std::size_t i = 0; i < n; ++i) {
     tangents.push_back(Tangent(stations[i].inclination, stations[i].azimuth));
     if (i == 0) continue;
-    Require(
-        stations[i].md > stations[i - 1].md,
-        fmt::format("well.stations[{}].md {} m is not below the one before", i, stations[i].md));
+    Require(stations[i].md > stations[i - 1].md,
+            fmt::format("[well]: station {}, at {} m, is not below the one before", i + 1,
+                        stations[i].md));
     Require(tangents[i].dot(tangents[i - 1]) > std::cos(kLargestBend),
-            fmt::format("well.stations[{}]: more than 60 deg from the station before", i));
+            fmt::format("[well]: station {} is more than 60 deg from the one before", i + 1));
   }
   begin_md_ = stations.front().md;
   end_md_ = stations.back().md;

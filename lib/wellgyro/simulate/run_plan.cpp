@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -39,11 +40,16 @@ void AddWave(const RunRoll& wave, double since, const SmoothWindow& w, RunMotion
   motion.roll_rate += wave.amplitude * (w.slope * s + w.value * frequency * c);
 }
 
+/// As the file has it: the steps counted from 1.
+std::string Named(std::size_t number, const char* key, double value) {
+  return fmt::format("[[run.step]] {}: {} {}", number + 1, key, value);
+}
+
 }  // namespace
 
 RunPlan::RunPlan(const SimulatedRun& run, const TruthWell& well) {
   Require(run.start_md >= well.begin_md() && run.start_md <= well.end_md(),
-          fmt::format("run.start_md {} m is outside the well, {} to {} m", run.start_md,
+          fmt::format("[run] start_md_m: {} is outside the well, {} to {} m", run.start_md,
                       well.begin_md(), well.end_md()));
   end_.md = run.start_md;
   end_.roll = CommandedRoll(run.start_toolface, run.start_md, run.roll_reference, well);
@@ -55,10 +61,10 @@ RunPlan::RunPlan(const SimulatedRun& run, const TruthWell& well) {
     }
   }
   Require(seconds_ <= kLongest,
-          fmt::format("run.steps take {} s, more than {} s: a speed is too low or a stop too long",
+          fmt::format("[run] takes {} s, more than {} s: a speed is too low or a stop too long",
                       seconds_, kLongest));
   Require(short_time_ >= kShortest,
-          fmt::format("run.steps change within {} s, less than {} s: a speed or a roll rate is too "
+          fmt::format("[run] changes within {} s, less than {} s: a speed or a roll rate is too "
                       "high, or a ramp, a turn or a roll period too short",
                       short_time_, kShortest));
   std::sort(breaks_.begin(), breaks_.end());
@@ -88,9 +94,8 @@ void RunPlan::AddTurn(double angle, double turn_seconds) {
 void RunPlan::AddStop(const RunStop& stop, const SimulatedRun& run, const TruthWell& well,
                       std::size_t number) {
   Require(stop.seconds >= 0 && std::isfinite(stop.seconds),
-          fmt::format("run.steps[{}].seconds {} is no length of time", number, stop.seconds));
-  Require(stop.turn_seconds > 0,
-          fmt::format("run.steps[{}].turn_seconds {} is not positive", number, stop.turn_seconds));
+          Named(number, "stop_s", stop.seconds) + " is no length of time");
+  Require(stop.turn_seconds > 0, Named(number, "turn_s", stop.turn_seconds) + " is not positive");
   const double before = end_.roll;
   if (stop.toolface) {
     const double target = CommandedRoll(*stop.toolface, end_.md, run.roll_reference, well);
@@ -115,17 +120,14 @@ void RunPlan::AddStop(const RunStop& stop, const SimulatedRun& run, const TruthW
 }
 
 void RunPlan::AddMove(const RunMove& move, const TruthWell& well, std::size_t number) {
-  const auto field = [number](const char* name, double value) {
-    return fmt::format("run.steps[{}].{} {}", number, name, value);
-  };
   Require(move.to_md >= well.begin_md() && move.to_md <= well.end_md(),
-          field("to_md", move.to_md) +
-              fmt::format(" m is outside the well, {} to {} m", well.begin_md(), well.end_md()));
-  Require(move.speed > 0, field("speed", move.speed) + " m/s is not positive");
-  Require(move.ramp > 0, field("ramp", move.ramp) + " s is not positive");
+          Named(number, "to_md_m", move.to_md) +
+              fmt::format(" is outside the well, {} to {} m", well.begin_md(), well.end_md()));
+  Require(move.speed > 0, Named(number, "speed_mps", move.speed) + " is not positive");
+  Require(move.ramp > 0, Named(number, "ramp_s", move.ramp) + " is not positive");
   const bool waves = move.roll.amplitude != 0;
   Require(!waves || move.roll.period > 0,
-          field("roll.period", move.roll.period) + " s is not positive");
+          Named(number, "roll_period_s", move.roll.period) + " is not positive");
   const double distance = move.to_md - end_.md;
   if (distance == 0) return;
   const double whole = std::max(std::abs(distance) / move.speed, move.ramp);

@@ -18,15 +18,15 @@ constexpr std::uint64_t kLossStream = 3000;
 SampleBatcher::SampleBatcher(const SimulatedStreams& streams, std::uint64_t seed)
     : streams_(streams), loss_(RandomStream(seed, kLossStream)) {
   if (streams.batch < 1) {
-    throw std::invalid_argument(fmt::format("streams.batch {} is not positive", streams.batch));
+    throw std::invalid_argument(fmt::format("[streams] batch: {} is not positive", streams.batch));
   }
   if (streams.overlap < 0 || streams.overlap > streams.batch) {
-    throw std::invalid_argument(fmt::format("streams.overlap {} is not within 0 and batch {}",
+    throw std::invalid_argument(fmt::format("[streams] overlap: {} is not within 0 and batch {}",
                                             streams.overlap, streams.batch));
   }
   if (!(streams.loss_probability >= 0 && streams.loss_probability <= 1)) {
     throw std::invalid_argument(
-        fmt::format("streams.loss_probability {} is no probability", streams.loss_probability));
+        fmt::format("[streams] loss_probability: {} is no probability", streams.loss_probability));
   }
   held_.reserve(static_cast<std::size_t>(streams.batch) +
                 static_cast<std::size_t>(streams.overlap));

@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-9;  // of one period, so that a last sample is n
 std::int32_t PeriodNs(double imu_hz) {
   if (!(imu_hz >= 0.5 && imu_hz <= 1e5)) {
     throw std::invalid_argument(
-        fmt::format("streams.imu_hz {} is not between 0.5 and 1e5", imu_hz));
+        fmt::format("[streams] imu_hz: {} is not between 0.5 and 1e5", imu_hz));
   }
   return static_cast<std::int32_t>(std::lround(1e9 / imu_hz));
 }
@@ -41,11 +41,11 @@ Simulator::Simulator(const Simulation& simulation)
       period_ns_(PeriodNs(simulation.streams.imu_hz)) {
   const double drift = tool_.errors.clock_drift;
   if (!(std::abs(drift) < 0.5)) {
-    throw std::invalid_argument(fmt::format("tool.errors.clock_drift {} is no clock's", drift));
+    throw std::invalid_argument(fmt::format("[tool] clock_drift: {} is no clock's", drift));
   }
   if (!(streams_.depth_hz >= 0 && streams_.depth_hz <= 1e4)) {
     throw std::invalid_argument(
-        fmt::format("streams.depth_hz {} is not between 0 and 1e4", streams_.depth_hz));
+        fmt::format("[streams] depth_hz: {} is not between 0 and 1e4", streams_.depth_hz));
   }
   const double period = period_ns_ * 1e-9 / (1 + drift);
   sample_count_ = static_cast<std::int64_t>(truth_.seconds() / period + kRounding);

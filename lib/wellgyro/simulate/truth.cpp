@@ -37,7 +37,7 @@ void RequireInclined(const SimulatedRun& run, const TruthWell& well) {
     const double inclination = well.PointAt(md).inclination;
     if (inclination >= kLeastInclination) continue;
     throw std::invalid_argument(
-        fmt::format("run.roll_reference: no high side at {} m, where the inclination is {} deg; "
+        fmt::format("[run] roll_reference: no high side at {} m, where the inclination is {} deg; "
                     "count the roll from north",
                     md, ToDegrees(inclination)));
   }

@@ -24,8 +24,8 @@ enum Index { kNorthing, kEasting, kTvd, kLatitude, kLongitude, kConvergence };
 TruthWell::TruthWell(const SimulatedWell& well, const SimulatedEarth& earth)
     : shape_(well), earth_(earth) {
   if (!(std::abs(earth.latitude) <= kLargestLatitude)) {
-    throw std::invalid_argument(
-        fmt::format("earth.latitude {} rad: the meridian is lost at the poles", earth.latitude));
+    throw std::invalid_argument(fmt::format(
+        "[earth] latitude_deg: {}: the meridian is lost at the poles", ToDegrees(earth.latitude)));
   }
   // From W's origin to where the well begins: short enough for the radii of the origin.
   const double s = std::sin(earth.latitude);
