@@ -1,3 +1,4 @@
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -23,6 +24,7 @@
 #include "wellgyro/simulate/simulator.h"
 
 #include "commands.h"
+#include "distinct.h"
 #include "outlet.h"
 #include "report.h"
 
@@ -180,22 +182,22 @@ Result<Simulator> SimulatorOf(const SimulationFile& file, const std::string& pat
     const SampleBatcher batcher(file.simulation.streams, file.simulation.seed);
     return Simulator(file.simulation);
   } catch (const std::invalid_argument& refused) {
-    return Fault{.code = FaultCode::kRange, .text = path + ": " + refused.what()};
+    return Fault{.code = FaultCode::kRange, .text = refused.what(), .source = path};
   }
 }
 
 std::optional<Fault> Simulate(const SimulateOptions& options) {
+  const bool live = options.out.find("://") != std::string::npos;
+  const std::string truth =
+      options.truth.empty() && !live ? options.out + ".truth.csv" : options.truth;
+  RequireDistinct(std::array{NamedFile{"--job", options.job}, NamedFile{"--plan", options.plan},
+                             NamedFile{"--tool", options.tool},
+                             NamedFile{"--out", live ? "" : options.out},
+                             NamedFile{"--truth", truth}});
   const Result<SimulationFile> file = ReadWithPlan(options);
   if (!file) return file.fault();
   const auto tool = CountingTool(options, file->simulation.tool);
   if (!tool) return tool.fault();
-  const bool live = options.out.find("://") != std::string::npos;
-  const std::string truth =
-      options.truth.empty() && !live ? options.out + ".truth.csv" : options.truth;
-  if (options.out == options.job || truth == options.job || options.out == truth) {
-    return Fault{.code = FaultCode::kConflict,
-                 .text = "--job, --out and --truth must be three different files"};
-  }
   Result<Simulator> simulator = SimulatorOf(*file, options.job);
   if (!simulator) return simulator.fault();
   auto outlet = live ? OpenLiveOutlet(options.out, file->channels, options.speed)

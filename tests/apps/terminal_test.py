@@ -116,6 +116,12 @@ class Terminal(FreshProgramTest):
             done = Run("convert", self.Path("in.csv"), self.Path(target))
             self.assertEqual(done.returncode, 1)
             self.assertIn("must be different files", done.stderr)
+        for option in ("--job", "--plan", "--tool", "--truth"):
+            words = {"--job": self.Path("job.toml")} | {option: self.Path("in.csv")}
+            done = Run("simulate", *[w for pair in words.items() for w in pair], "--out",
+                       self.Path("link.csv"))
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("must be different files", done.stderr)
         self.assertTrue(self.Read("in.csv").startswith("MD[m],INC"))
 
     def test_a_log_becomes_tables(self):
