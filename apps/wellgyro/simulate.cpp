@@ -25,6 +25,7 @@
 
 #include "commands.h"
 #include "distinct.h"
+#include "on_call.h"
 #include "outlet.h"
 #include "report.h"
 
@@ -266,11 +267,7 @@ void AddSimulate(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   AddTool(*command, *options);
   command->footer(Help());
-  command->callback([options, &exit_code] {
-    const auto fault = Simulate(*options);
-    if (fault) Complain(*fault);
-    exit_code = fault ? kUnusable : kDone;
-  });
+  OnCall(command, exit_code, [options] { return Concluded(Simulate(*options)); });
 }
 
 }  // namespace wellgyro::apps
