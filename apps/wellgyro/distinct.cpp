@@ -1,10 +1,14 @@
 #include "distinct.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 #include <fmt/core.h>
+
+#include "wellgyro/io/result/result_folder.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -48,6 +52,19 @@ void RequireUnread(std::span<const fs::path> inputs, const fs::path& target) {
 void RequireUnread(std::span<const fs::path> inputs, const fs::path& folder,
                    std::span<const OutputFile> files) {
   for (const OutputFile& file : files) RequireUnread(inputs, folder / file.name);
+}
+
+void RequireNoSurvey(const fs::path& folder, std::span<const OutputFile> files) {
+  std::error_code ignored;
+  if (!fs::exists(folder / "run.toml", ignored)) return;
+  std::vector<std::string> theirs = FilesBesideResult();
+  theirs.insert(theirs.end(), kResultFiles.begin(), kResultFiles.end());
+  for (const OutputFile& file : files) {
+    if (std::ranges::find(theirs, file.name) == theirs.end()) continue;
+    throw std::invalid_argument(
+        fmt::format("{} holds a survey, which has a {} of its own: choose another --out",
+                    folder.string(), file.name));
+  }
 }
 
 }  // namespace wellgyro::apps

@@ -22,4 +22,8 @@ void RequireUnread(std::span<const std::filesystem::path> inputs,
 void RequireUnread(std::span<const std::filesystem::path> inputs,
                    const std::filesystem::path& folder, std::span<const OutputFile> files);
 
+/// Throws std::invalid_argument where a survey's result stands in the folder and one of the files
+/// has the name of one of its own.
+void RequireNoSurvey(const std::filesystem::path& folder, std::span<const OutputFile> files);
+
 }  // namespace wellgyro::apps

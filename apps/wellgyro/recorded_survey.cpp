@@ -74,9 +74,10 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   Surveyor surveyor(job.job, faults);
   Intake intake(job, surveyor);
   SourceRecord source;
-  const std::vector<std::string> parts =
-      options.sources.size() > 1 ? options.sources : LogParts(options.from);
-  for (const std::string& part : parts) {
+  const Result<std::vector<std::string>> parts =
+      options.sources.size() > 1 ? InOrderOfTime(options.sources) : LogParts(options.from);
+  if (!parts) return Unusable(parts.fault());
+  for (const std::string& part : *parts) {
     if (!PushLog(part, options, surveyor, intake, source)) return kUnusable;
   }
   FinishSurvey(surveyor, options);

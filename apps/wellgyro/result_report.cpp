@@ -40,6 +40,10 @@ bool Write(const fs::path& path, std::string bytes, bool say) {
 Result<std::string> DocumentOf(const ResultReport& report) {
   Result<ResultTexts> texts = ReadResultTexts(report.result);
   if (!texts) return texts.fault();
+  if (std::optional<Fault> altered = AlteredSince(*texts)) {
+    altered->source = (report.result / altered->source).string();
+    return *altered;
+  }
   if (!report.plan.empty()) {
     Result<std::string> plan = ReadTextFile(report.plan);
     if (!plan) return plan.fault();
@@ -69,7 +73,9 @@ void RequireOthers(const ResultReport& report) {
   std::vector<fs::path> inputs(report.others.begin(), report.others.end());
   inputs.push_back(report.plan);
   for (const char* const name : kResultFiles) inputs.push_back(report.result / name);
-  for (const fs::path& target : {report.out, report.pdf, report.json}) {
+  if (!report.json.empty()) RequireUnread(inputs, report.json);
+  inputs.push_back(report.result / "survey.json");
+  for (const fs::path& target : {report.out, report.pdf}) {
     if (!target.empty()) RequireUnread(inputs, target);
   }
 }

@@ -4,6 +4,7 @@ report_test.py PROGRAM [--redraw] [--demo FOLDER]
 --redraw keeps the picture of the plan as the one to compare with; --demo: the demonstration's survey
 with its report, made where it is not given"""
 import gzip
+import hashlib
 import json
 import math
 import os
@@ -52,11 +53,15 @@ class Report(ProgramTest):
                    self.Path(name + ".lcm"), "--out", self.Path(name))
 
     def Copy(self, name, **changed):
-        """The demonstration's result with the text of some files changed."""
+        """The demonstration's result with the text of some files changed, and run.toml by them."""
         shutil.copytree(self.Path("demo"), self.Path(name), dirs_exist_ok=True)
         for file, change in changed.items():
             path = file.replace("_", ".")
-            self.Write(os.path.join(name, path), change(self.Read(name, path)))
+            before = self.Read(name, path)
+            self.Write(os.path.join(name, path), change(before))
+            hashes = [hashlib.sha256(text.encode()).hexdigest()
+                      for text in (before, self.Read(name, path))]
+            self.Write(os.path.join(name, "run.toml"), self.Read(name, "run.toml").replace(*hashes))
         return self.Path(name)
 
     def Page(self, name, *options, **of_page):
@@ -287,6 +292,20 @@ at_rest_s = 1000
         page = self.Page("demo", "--other", other)
         self.assertIn("other", page.Ask("document.getElementById('plan').textContent"))
         self.Quiet(page)
+
+    def test_files_that_are_not_those_of_the_run_are_refused(self):
+        self.Copy("altered")
+        for name in ("survey.csv", "checks.csv"):
+            whole = self.Read("altered", name)
+            self.Write(os.path.join("altered", name), whole.replace("7", "8", 1))
+            done = Run("report", self.Path("altered"), "--out", self.Path("altered.html"))
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(name + " is not the file", done.stderr.replace(":", ""))
+            self.Write(os.path.join("altered", name), whole)
+        for name in ("survey.csv", "survey.json"):
+            done = Run("report", self.Path("altered"), "--out", self.Path("altered", name))
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("written over", done.stderr)
 
     def test_what_is_no_result_is_refused(self):
         os.makedirs(self.Path("empty"), exist_ok=True)

@@ -216,14 +216,24 @@ class Terminal(FreshProgramTest):
                              self.Path("whole")).returncode, 0)
         for name, out in (("rig.lcm", "first"), ("rig.lcm.07", "logger")):
             Run("survey", "--job", job, "--from", self.Path(name), "--out", self.Path(out))
-        each = [word for name in names for word in ("--from", self.Path(name))]
-        Run("survey", "--job", job, *each, "--out", self.Path("each"))
+        for out, order in (("each", names), ("listed", sorted(names)), ("back", names[::-1])):
+            each = [word for name in order for word in ("--from", self.Path(name))]
+            Run("survey", "--job", job, *each, "--out", self.Path(out))
         for name in ("survey.csv", "passes.csv", "checks.csv"):
             wanted = self.Read("whole/" + name)
-            self.assertEqual(self.Read("first/" + name), wanted)
-            self.assertEqual(self.Read("logger/" + name), wanted)
-            self.assertEqual(self.Read("each/" + name), wanted)
+            for out in ("first", "logger", "each", "listed", "back"):
+                self.assertEqual(self.Read(out + "/" + name), wanted, out)
         self.assertIn("rig.002.lcm", self.Read("first/source.toml"))
+        for name in ("whole", "rig"):
+            done = Run("convert", self.Path(name + ".lcm"), self.Path(name + ".csv"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.Read("rig.csv"), self.Read("whole.csv"))
+        os.remove(self.Path("rig.001.lcm"))
+        for words in (("survey", "--job", job, "--from", self.Path("rig.lcm"), "--out",
+                       self.Path("holed")), ("convert", self.Path("rig.lcm"), self.Path("o.csv"))):
+            done = Run(*words)
+            self.assertEqual(done.returncode, 2)
+            self.assertRegex(done.stderr, r"rig\.001\.lcm: is missing, and .*rig\.002\.lcm is there")
 
 
 if __name__ == "__main__":

@@ -63,9 +63,10 @@ TEST(SampleQueue, TellsALateSampleFromARepeatedOne) {
   for (std::int64_t k : {0, 1, 4, 5, 6, 7, 8, 20}) queue.Push(SampleAt(k));
   EXPECT_EQ(Drain(queue), (std::vector<std::int64_t>{0, 1, 4, 5, 6, 7, 8}));
   EXPECT_EQ(queue.Push(SampleAt(2)), QueueVerdict::kLate);
+  EXPECT_EQ(queue.Push(SampleAt(-7)), QueueVerdict::kLate) << "older than all, and never here";
   EXPECT_EQ(queue.Push(SampleAt(4)), QueueVerdict::kDuplicate);
   EXPECT_EQ(queue.Push(SampleAt(10)), QueueVerdict::kTaken);
-  EXPECT_EQ(queue.counts().late, 1);
+  EXPECT_EQ(queue.counts().late, 2);
 }
 
 /// Two milli-g off the first.

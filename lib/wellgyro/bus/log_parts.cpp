@@ -1,15 +1,22 @@
 #include "wellgyro/bus/log_parts.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "wellgyro/bus/log_reader.h"
+
 namespace wellgyro {
 namespace {
+
+constexpr int kPartsMost = 1000;  // of three digits, within which a missing one is looked for
 
 /// The number in a path that ends like .00: two digits or more. Of one digit are the names of
 /// lcm-logger --rotate, whose 0 is the newest.
@@ -41,15 +48,37 @@ std::string LogPart(const std::string& path, int number) {
   return part.string();
 }
 
-std::vector<std::string> LogParts(const std::string& path) {
+Result<std::vector<std::string>> LogParts(const std::string& path) {
   std::vector<std::string> parts{path};
-  std::error_code ignored;
   const std::optional<int> increment = IncrementOf(path);
-  for (int number = 1;; ++number) {
-    std::string part = PartAfter(path, increment, number);
-    if (!std::filesystem::is_regular_file(part, ignored)) return parts;
-    parts.push_back(std::move(part));
+  const auto after = [&](int number) { return PartAfter(path, increment, number); };
+  std::error_code ignored;
+  int number = 1;
+  for (; std::filesystem::is_regular_file(after(number), ignored); ++number) {
+    parts.push_back(after(number));
   }
+  for (int later = number + 1; later < kPartsMost; ++later) {
+    if (!std::filesystem::is_regular_file(after(later), ignored)) continue;
+    return Fault{.code = FaultCode::kLost,
+                 .text = fmt::format("is missing, and {} is there: find it, or name each part",
+                                     after(later)),
+                 .source = after(number)};
+  }
+  return parts;
+}
+
+std::vector<std::string> InOrderOfTime(std::vector<std::string> logs) {
+  std::vector<std::pair<std::int64_t, std::string>> begun;
+  for (std::string& log : logs) {
+    Result<LogReader> reader = LogReader::Open(log);
+    LogEvent first;
+    const bool any = reader && reader->Next(first);
+    begun.emplace_back(any ? first.received_us : std::numeric_limits<std::int64_t>::max(),
+                       std::move(log));
+  }
+  std::ranges::stable_sort(begun, {}, &std::pair<std::int64_t, std::string>::first);
+  for (std::size_t i = 0; i < logs.size(); ++i) logs[i] = std::move(begun[i].second);
+  return logs;
 }
 
 }  // namespace wellgyro

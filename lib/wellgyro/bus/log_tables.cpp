@@ -1,14 +1,18 @@
 #include "wellgyro/bus/log_tables.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "wellgyro/bus/feed.h"
+#include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_reader.h"
 
 namespace wellgyro {
@@ -114,19 +118,25 @@ class Writer : public Listener {
 
 Result<LogTables> WriteLogTables(const std::string& log, const Channels& channels,
                                  const TextSink& samples, const TextSink& depths) {
-  Result<LogReader> reader = LogReader::Open(log);
-  if (!reader) return reader.fault();
+  const Result<std::vector<std::string>> parts = LogParts(log);
+  if (!parts) return parts.fault();
   Writer writer(samples, depths);
   Feed feed(channels, writer);
-  LogEvent event;
-  while (reader->Next(event)) feed.Take(event.channel, event.data, event.data_offset);
+  std::vector<Fault> damage;
+  for (const std::string& part : *parts) {
+    Result<LogReader> reader = LogReader::Open(part);
+    if (!reader) return reader.fault();
+    LogEvent event;
+    while (reader->Next(event)) feed.Take(event.channel, event.data, event.data_offset);
+    std::ranges::move(reader->Faults(), std::back_inserter(damage));
+  }
   if (writer.tables.samples == 0) {
     return Fault{.code = FaultCode::kForeign,
                  .text = fmt::format("holds no sample in SI units on channel {}", channels.imu),
                  .source = log};
   }
   if (auto fault = writer.End()) return *std::move(fault);
-  writer.tables.damage = reader->Faults();
+  writer.tables.damage = std::move(damage);
   return writer.tables;
 }
 

@@ -27,7 +27,9 @@ Result<LogSurvey> SurveyLog(const Job& job, const std::string& path) {
   SurveyorListener listener(surveyor, sink);
   Feed feed(job.channels, listener);
   LogSurvey survey;
-  for (const std::string& part : LogParts(path)) {
+  const Result<std::vector<std::string>> parts = LogParts(path);
+  if (!parts) return parts.fault();
+  for (const std::string& part : *parts) {
     Result<LogReader> reader = LogReader::Open(part);
     if (!reader) return reader.fault();
     LogEvent event;

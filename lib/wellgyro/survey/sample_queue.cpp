@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 
 #include "wellgyro/base/time_range.h"
 
@@ -279,8 +280,11 @@ bool SampleQueue::InGap(std::int64_t seq) const {
 
 void SampleQueue::NoteGap(const SampleStamp& next, bool jumps) {
   if (jumps) jumps_.erase(jumps_.begin());
-  if (jumps || !last_ || next.session != last_->session) {
+  const bool begins = !last_ || next.session != last_->session;
+  if (jumps || begins) {
     gaps_.clear();
+    // What is older than the first of a session has never been here.
+    if (begins) gaps_.emplace_back(std::numeric_limits<std::int64_t>::min(), next.seq);
   } else if (next.seq > last_->seq + 1) {
     if (gaps_.size() == kGapsKept) gaps_.erase(gaps_.begin());
     gaps_.emplace_back(last_->seq + 1, next.seq);

@@ -17,6 +17,7 @@
 #include "wellgyro/io/result/json_columns_internal.h"
 #include "wellgyro/io/result/json_table_internal.h"
 #include "wellgyro/io/result/other_well_internal.h"
+#include "wellgyro/io/sha256.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
@@ -202,6 +203,26 @@ Result<ResultTexts> ReadResultTexts(const std::filesystem::path& folder) {
     texts[name] = *std::move(text);
   }
   return texts;
+}
+
+std::optional<Fault> AlteredSince(const ResultTexts& texts) {
+  const auto text = texts.find("run.toml");
+  if (text == texts.end()) return std::nullopt;
+  const Result<Json> run = JsonOfToml(text->second, "run.toml");
+  if (!run) return std::nullopt;
+  const Json outputs = MemberOf(*run, "output");
+  for (const Json& output : outputs.is_array() ? outputs : Json::array()) {
+    const Json name = MemberOf(output, "name"), sha256 = MemberOf(output, "sha256");
+    if (!name.is_string() || !sha256.is_string()) continue;
+    const auto file = texts.find(name.get<std::string>());
+    if (file == texts.end() || Sha256Hex(file->second) == sha256.get<std::string>()) continue;
+    return Fault{.code = FaultCode::kConflict,
+                 .text =
+                     "is not the file that run.toml has the SHA-256 of: it was changed since, or "
+                     "is of another survey",
+                 .source = file->first};
+  }
+  return std::nullopt;
 }
 
 Result<std::string> SurveyJson(const ResultTexts& texts, std::span<const OtherWell> others) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -26,6 +27,10 @@ struct OtherWell {
 /// where they are.
 /// Fault as ReadTextFile; where the folder holds one folder a tool it says so.
 WELLGYRO_EXPORT Result<ResultTexts> ReadResultTexts(const std::filesystem::path& folder);
+
+/// A file that is not as run.toml has it by its SHA-256: changed, or of another survey. Absent
+/// where all are, or where run.toml cannot be read.
+WELLGYRO_EXPORT std::optional<Fault> AlteredSince(const ResultTexts& texts);
 
 /// survey.json, `wellgyro.survey/1`: all of a result in one document, for pages and programs; its
 /// members stand in lib/docs/survey-json.md. What the files do not hold is null. Numbers are those
