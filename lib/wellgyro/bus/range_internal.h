@@ -16,10 +16,10 @@ inline constexpr std::int64_t kUtcMaxUs = std::int64_t{4'000'000'000'000'000};  
 inline constexpr std::int64_t kToolTimeMax = std::int64_t{1} << 61;             ///< [ns] 73 years
 inline constexpr std::int64_t kCountMax = std::int64_t{1} << 61;
 
-/// Whether a field of a message can be taken: its time or its number is one that reckoning with two
-/// of them cannot overflow.
+/// Whether a field of a message can be taken: its UTC or its number is one that reckoning with two
+/// of them cannot overflow. A tool time is held within +-kToolTimeMax where the two clocks of a
+/// message are read and written (batch_internal.h).
 constexpr bool IsUtc(std::int64_t us) { return us >= 0 && us <= kUtcMaxUs; }
-constexpr bool IsToolTime(std::int64_t ns) { return ns >= -kToolTimeMax && ns <= kToolTimeMax; }
 constexpr bool IsCount(std::int64_t n) { return n >= 0 && n <= kCountMax; }
 
 }  // namespace wellgyro

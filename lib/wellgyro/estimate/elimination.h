@@ -43,7 +43,6 @@ class Elimination {
   /// Of its first three unknowns, at a tenth of the cost.
   Eigen::Matrix3d LastCovarianceOfPhi() const;
 
-  std::size_t eliminated() const { return eliminated_; }
   /// x_k = gain [x_k+1; border] + ...
   BehindMatrix Gain(std::size_t k) const;
   /// cov(e) of node k.

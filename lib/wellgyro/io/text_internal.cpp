@@ -174,12 +174,6 @@ std::optional<double> NumberOf(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::optional<double> NumberWithComma(std::string_view text) {
-  std::string with_point(text);
-  std::replace(with_point.begin(), with_point.end(), ',', '.');
-  return NumberOf(with_point);
-}
-
 std::optional<int> IntegerOf(std::string_view text) {
   text = Trim(text);
   int value = 0;

@@ -40,8 +40,6 @@ std::string CsvQuoted(std::string_view text);
 std::optional<double> NumberOf(std::string_view text);
 /// The same with "nan" and "inf"; what does not fit a double is infinite.
 std::optional<double> AnyNumberOf(std::string_view text);
-/// With a comma for the decimal point.
-std::optional<double> NumberWithComma(std::string_view text);
 std::optional<int> IntegerOf(std::string_view text);
 
 }  // namespace wellgyro

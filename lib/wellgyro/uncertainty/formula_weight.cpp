@@ -39,8 +39,6 @@ constexpr WeightFunction kOwn = {"FORMULA", Dimension::kRatio, WeightRole::kPlai
 
 }  // namespace
 
-std::span<const std::string_view> FormulaNameTexts() { return kNames; }
-
 const WeightFunction& OwnFormula() { return kOwn; }
 
 Result<std::shared_ptr<const FormulaWeight>> FormulaWeight::Compile(const FormulaTexts& texts) {

@@ -58,8 +58,6 @@ enum class FormulaName : std::size_t {
 inline constexpr std::size_t kFormulaNames = static_cast<std::size_t>(FormulaName::kCount);
 using FormulaValues = std::array<double, kFormulaNames>;
 
-WELLGYRO_EXPORT std::span<const std::string_view> FormulaNameTexts();
-
 /// The formulas of one term as they are written; empty: 0.
 struct FormulaTexts {
   std::string md, inclination, azimuth;

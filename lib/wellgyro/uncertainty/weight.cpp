@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <numbers>
-#include <vector>
 
 #include "wellgyro/uncertainty/weight_more_internal.h"
 
@@ -342,15 +340,6 @@ const WeightFunction* FindWeight(std::string_view code) {
   const auto more = MoreWeights();
   const auto other = std::ranges::find(more, code, &WeightFunction::code);
   return other == more.end() ? nullptr : &*other;
-}
-
-std::span<const WeightFunction> AllWeights() {
-  static const std::vector<WeightFunction> all = [] {
-    std::vector<WeightFunction> joined(kAll.begin(), kAll.end());
-    std::ranges::copy(MoreWeights(), std::back_inserter(joined));
-    return joined;
-  }();
-  return all;
 }
 
 }  // namespace wellgyro

@@ -93,7 +93,4 @@ struct WeightFunction {
 /// (gyro), SPE 187249 (course length), OWSG Set A Rev 5.1. Null when there is none.
 WELLGYRO_EXPORT const WeightFunction* FindWeight(std::string_view code);
 
-/// All of them, in the order of the tables.
-WELLGYRO_EXPORT std::span<const WeightFunction> AllWeights();
-
 }  // namespace wellgyro

@@ -315,10 +315,4 @@ Result<CalibrationFile> ParseCalibration(std::string_view text, const std::strin
   return ReadTomlText<CalibrationFile>(text, source, kCalibrationFormat, TakeCalibration);
 }
 
-Result<CalibrationFile> ReadCalibrationFile(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadTextFile(path);
-  if (!text) return text.fault();
-  return ParseCalibration(*text, path.string());
-}
-
 }  // namespace wellgyro

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,7 +29,6 @@ WELLGYRO_EXPORT std::string CalibrationToml(const CalibrationFile& file);
 /// Reads it back. The quantities of [[result.per_T]] come as "per_T[0].name".
 WELLGYRO_EXPORT Result<CalibrationFile> ParseCalibration(std::string_view text,
                                                          const std::string& source);
-WELLGYRO_EXPORT Result<CalibrationFile> ReadCalibrationFile(const std::filesystem::path& path);
 
 /// The same for people: parameters with their sigmas, whether the residuals fit, the worst of them,
 /// outliers, correlations, remarks.
