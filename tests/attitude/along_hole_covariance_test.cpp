@@ -48,6 +48,17 @@ std::vector<StationState> DeadReckon(const Drift& d, double seconds, int every, 
   return stations;
 }
 
+// Of all stations, in the order of depth.
+std::vector<Eigen::Matrix3d> CovarianceAlongHole(const std::vector<StationState>& stations,
+                                                 TimeAlongHole order,
+                                                 const Eigen::Matrix3d& cov_tie_in_W,
+                                                 double depth_sigma) {
+  AlongHoleCovariance along(cov_tie_in_W, depth_sigma, order);
+  std::vector<Eigen::Matrix3d> covariances;
+  for (const StationState& station : stations) covariances.push_back(along.Add(station));
+  return covariances;
+}
+
 struct Process {
   const char* name;
   Drift drift;

@@ -4,18 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "wellgyro/base/angle.h"
-
 namespace wellgyro {
 namespace {
-
-TEST(Interpolation, AnglesGoTheShortWayRound) {
-  EXPECT_NEAR(LerpAngle(FromDegrees(350), FromDegrees(20), 0.5), FromDegrees(5), 1e-14);
-  EXPECT_NEAR(LerpAngle(FromDegrees(20), FromDegrees(350), 0.5), FromDegrees(5), 1e-14);
-  EXPECT_NEAR(LerpAngle(FromDegrees(20), FromDegrees(350), 1), FromDegrees(350), 1e-14);
-  EXPECT_NEAR(LerpAngle(0, kPi, 0.5), kPi / 2, 1e-14);
-  EXPECT_LT(LerpAngle(FromDegrees(350), FromDegrees(10), 0.5), kTwoPi);
-}
 
 TEST(Interpolation, AParabolaIsFoundWhateverTheWeightsAndSpacing) {
   LocalFit fit;

@@ -63,8 +63,6 @@ class WELLGYRO_EXPORT StillDetector {
   /// At rest as far as whole blocks and the speed at the last sample tell; true from the third
   /// block of a stretch on.
   bool still() const { return stretch_.blocks > 0 && !sliding_; }
-  /// First instant of the stretch's means; meaningful while still().
-  ToolTime still_since() const { return stretch_.first.tool_time; }
   /// The means so far of the open stretch, of whatever length, for a provisional fix.
   std::optional<StillWindow> OpenWindow() const;
 

@@ -103,15 +103,4 @@ Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
   return cov_W_ + sigma * sigma * tangent * tangent.transpose();
 }
 
-std::vector<Eigen::Matrix3d> CovarianceAlongHole(std::span<const StationState> in_depth_order,
-                                                 TimeAlongHole order,
-                                                 const Eigen::Matrix3d& cov_tie_in_W,
-                                                 double depth_sigma) {
-  AlongHoleCovariance along(cov_tie_in_W, depth_sigma, order);
-  std::vector<Eigen::Matrix3d> covariances;
-  covariances.reserve(in_depth_order.size());
-  for (const StationState& station : in_depth_order) covariances.push_back(along.Add(station));
-  return covariances;
-}
-
 }  // namespace wellgyro

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -61,10 +59,5 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   std::size_t knot_ = 0;              // of that station
   StationMatrix state_cov_, state_cov_with_previous_;
 };
-
-/// The same for all stations at once, in the order of depth.
-WELLGYRO_EXPORT std::vector<Eigen::Matrix3d> CovarianceAlongHole(
-    std::span<const StationState> in_depth_order, TimeAlongHole order,
-    const Eigen::Matrix3d& cov_tie_in_W, double depth_sigma);
 
 }  // namespace wellgyro

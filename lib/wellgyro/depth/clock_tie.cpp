@@ -229,14 +229,6 @@ void ClockTie::ToUtc(ToolTime first, Duration period, std::span<UtcTime> utc) co
   }
 }
 
-ToolTime ClockTie::ToTool(UtcTime utc) const {
-  assert(known_);
-  const std::int64_t utc_ns = Since(utc, utc0_);
-  const double since_mid = Seconds(utc_ns - mid_ns_);
-  const std::int64_t offset_ns = Nanoseconds((offset_ + drift_ * since_mid) / (1 + drift_));
-  return {Sum(Sum(tool0_.ns, utc_ns), -offset_ns)};
-}
-
 double ClockTie::Sigma(ToolTime time) const {
   assert(known_);
   const double dt = Seconds(Since(time, tool0_) - mid_ns_);

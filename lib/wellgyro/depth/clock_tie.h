@@ -43,11 +43,10 @@ class WELLGYRO_EXPORT ClockTie {
 
   /// True from the first pair on; the conversions need it.
   bool known() const { return known_; }
-  /// Both straight lines, one the other's inverse within 1 ns, in a session's own times.
+  /// A straight line, in a session's own times.
   UtcTime ToUtc(ToolTime time) const;
   /// Of times a period after each other, from `first` on.
   void ToUtc(ToolTime first, Duration period, std::span<UtcTime> utc) const;
-  ToolTime ToTool(UtcTime utc) const;
   double Sigma(ToolTime time) const;       ///< of ToUtc(time) [s]
   double drift() const { return drift_; }  ///< UTC seconds per tool second, less one
   double sigma_drift() const;

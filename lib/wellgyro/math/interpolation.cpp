@@ -6,8 +6,6 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "wellgyro/base/angle.h"
-
 namespace wellgyro {
 namespace {
 
@@ -54,8 +52,6 @@ LocalFit::Value Solve(const double* s, const double* w2, const double* y, double
 }
 
 }  // namespace
-
-double LerpAngle(double a, double b, double u) { return WrapTwoPi(a + u * WrapPi(b - a)); }
 
 void LocalFit::Add(double t, double y, double weight) {
   if (!(weight > 0)) return;

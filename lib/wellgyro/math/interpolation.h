@@ -4,10 +4,6 @@
 
 namespace wellgyro {
 
-/// The direction a fraction u of the way from a to b, the short way round, in [0, 2 pi). For
-/// opposite directions the way is through increasing angles.
-WELLGYRO_EXPORT double LerpAngle(double a, double b, double u);
-
 /// Weighted least-squares parabola through values scattered about t = 0, for smoothing with
 /// derivatives (Savitzky and Golay for uneven spacing). Feed the points, then ask. Sums are kept in
 /// the caller's unit of t: scale t to about [-1, 1].
