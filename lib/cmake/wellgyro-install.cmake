@@ -56,3 +56,5 @@ install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/wellgyro-config-version.cmake
   cmake/wellgyro-geographiclib.cmake cmake/FindLCM.cmake
   DESTINATION ${package_dir})
+# Where Debian has the licence of a package.
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
