@@ -9,6 +9,7 @@
 
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/math/median.h"
 #include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
@@ -118,12 +119,6 @@ ToolHistory HistoryOf(std::vector<const ToolCalibration*> tools, const HistorySe
   return history;
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Of one source, logarithms of the root mean square of changes against the other tools'. Beyond
 // five robust sigmas of these, and beyond what the few changes of a tool do by chance.
 void CompareTools(const std::string& name, double false_alarm,
@@ -148,8 +143,8 @@ void CompareTools(const std::string& name, double false_alarm,
   std::vector<double> away;
   away.reserve(logs.size());
   for (const double value : logs) away.push_back(std::abs(value - middle));
-  constexpr double kSigmaPerMad = 1.4826, kUnlike = 5;
-  const double spread = kSigmaPerMad * Median(away);
+  constexpr double kUnlike = 5;
+  const double spread = kSigmaPerMedianSize * Median(away);
   for (std::size_t i = 0; i < of.size(); ++i) {
     const auto changes = static_cast<double>(of[i]->changes.size());
     const double chance =

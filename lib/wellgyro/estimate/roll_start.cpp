@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr double kMedianToSigma = 1.4826, kBeyond = 3.5;
+constexpr double kBeyond = 3.5;               // sigmas of the usual change
 constexpr std::size_t kSpans[] = {1, 4, 12};  // knots: a jerk, a start, a slow start of a slow roll
 
 // A winch or a pipe comes to its speed within some seconds; 2 rad/m are 20 rpm at 1 m/s.
@@ -16,12 +19,6 @@ constexpr double kLeastChange = 0.05;  // [m/s]
 constexpr double kRollPerMetre = 2;    // [rad/m]
 
 constexpr double kWalkUnseen = 1e-2;  // of a tool whose roll is nowhere seen
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Running sums of the roll, its variance, time, and knots that do not show it.
 struct Sums {
@@ -65,11 +62,11 @@ double UsualOf(const std::vector<Change>& changes) {
   sigmas.reserve(changes.size());
   plain.reserve(changes.size());
   for (const Change& c : changes) sigmas.push_back(c.sigma);
-  const double median = MedianOf(sigmas);
+  const double median = Median(std::move(sigmas));
   for (const Change& c : changes) {
     if (c.sigma <= median) plain.push_back(c.rate);
   }
-  return kMedianToSigma * MedianOf(plain);
+  return kSigmaPerMedianSize * Median(std::move(plain));
 }
 
 double SpeedStart(const AlongHole& before, const AlongHole& after) {

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "wellgyro/fit/gyro_problem_internal.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
@@ -130,10 +132,8 @@ double TableRatio(const LinearSolution& s, bool sigma_given, bool by_median) {
   if (redundancy[0] < kEnough || redundancy[1] < kEnough) return 1;
   double scatter[2];
   for (int table = 0; table < 2; ++table) {
-    std::vector<double>& all = sizes[table];
-    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    scatter[table] = by_median ? 1.4826 * *middle : std::sqrt(square[table] / redundancy[table]);
+    scatter[table] = by_median ? kSigmaPerMedianSize * Median(std::move(sizes[table]))
+                               : std::sqrt(square[table] / redundancy[table]);
   }
   if (sigma_given) scatter[0] = 1;
   return scatter[0] > 0 && scatter[1] > 0 ? scatter[1] / scatter[0] : 1;

@@ -130,7 +130,7 @@ double RobustScale(const LinearProblem& problem, const Eigen::VectorXd& residual
     if (problem.rows[static_cast<std::size_t>(i)].line != 0) sizes.push_back(std::abs(residual[i]));
   }
   const double n = static_cast<double>(sizes.size());
-  return 1.4826 * Median(sizes) * std::sqrt(n / std::max(1.0, n - rank));
+  return kSigmaPerMedianSize * Median(sizes) * std::sqrt(n / std::max(1.0, n - rank));
 }
 
 LinearProblem Without(const LinearProblem& problem, const std::set<int>& lines) {

@@ -1,6 +1,5 @@
 #include "wellgyro/fit/multi_station_fit.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/nonlinear_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
@@ -246,14 +246,13 @@ std::optional<Fault> WrongDip(const BenchTable& data, const AttitudeTable& table
     const Eigen::Vector3d m = table.mag.row(i).transpose(), down = DownOf(table, i);
     dips.push_back(std::atan2(m.dot(down), (m - m.dot(down) * down).norm()));
   }
-  const auto middle = dips.begin() + static_cast<std::ptrdiff_t>(dips.size() / 2);
-  std::nth_element(dips.begin(), middle, dips.end());
-  if (std::abs(*middle + dip) > std::abs(*middle - dip) / 2) return std::nullopt;
+  const double middle = Median(std::move(dips));
+  if (std::abs(middle + dip) > std::abs(middle - dip) / 2) return std::nullopt;
   return BenchFault(data,
                     fmt::format("the readings dip by {:.1f} deg where {:.1f} deg is expected: the "
                                 "sign of the accelerometers is wrong (Gx, Gy, Gz show gravity, fx, "
                                 "fy, fz the force against it), or that of the magnetometers",
-                                *middle / units::kDeg, dip / units::kDeg),
+                                middle / units::kDeg, dip / units::kDeg),
                     data.lines[0]);
 }
 

@@ -2,11 +2,13 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include <ceres/ceres.h>
 
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/nonlinear_internal.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
@@ -106,11 +108,10 @@ double NonlinearProblem::Scale(const Eigen::VectorXd& x) const {
       ++at;
     }
   }
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
   const double n = static_cast<double>(sizes.size());
   const double freedom = std::max(1.0, n - static_cast<double>(x.size()));
-  return std::max(1.4826 * *middle * std::sqrt(n / freedom), least_scale);
+  const double sigma = kSigmaPerMedianSize * Median(std::move(sizes));
+  return std::max(sigma * std::sqrt(n / freedom), least_scale);
 }
 
 std::vector<int> NonlinearProblem::Outliers(const Eigen::VectorXd& x, double scale) const {

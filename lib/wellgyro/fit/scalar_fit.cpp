@@ -14,6 +14,7 @@
 #include "wellgyro/fit/scalar_start_internal.h"
 #include "wellgyro/fit/sensor_groups_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
@@ -97,10 +98,7 @@ std::optional<Fault> BadVectors(const BenchTable& data, const Eigen::MatrixX3d& 
                                 const std::vector<std::string>& channels, std::string_view units) {
   BenchTable about{data.source, channels, v, data.lines};
   for (int c = 0; c < 3; ++c) {
-    std::vector<double> column(v.col(c).begin(), v.col(c).end());
-    const auto middle = column.begin() + static_cast<std::ptrdiff_t>(column.size() / 2);
-    std::nth_element(column.begin(), middle, column.end());
-    about.values.col(c).array() -= *middle;
+    about.values.col(c).array() -= Median({v.col(c).begin(), v.col(c).end()});
   }
   // A quarter of the readings may lie close to the middle by chance; three times too long is never.
   std::vector<double> lengths;

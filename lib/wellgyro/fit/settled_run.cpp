@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "wellgyro/math/golden_section.h"
+
 namespace wellgyro {
 namespace {
 
@@ -61,17 +63,10 @@ Decay BestDecay(std::span<const double> v) {
   for (int i = 1; i <= kGrid; ++i) {
     if (at(low + i * step).squares < at(best).squares) best = low + i * step;
   }
-  constexpr double kGolden = 0.6180339887498949;
-  double a = best - step, b = best + step;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
-    if (at(c).squares < at(d).squares) {
-      b = d;
-    } else {
-      a = c;
-    }
-  }
-  return at((a + b) / 2);
+  const auto squares = [&](double log_readings) { return at(log_readings).squares; };
+  int turn = 0;
+  const auto goes_on = [&](double, double) { return turn++ < kTurns; };
+  return at(GoldenSection(best - step, best + step, squares, goes_on));
 }
 
 }  // namespace

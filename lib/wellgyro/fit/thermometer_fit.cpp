@@ -11,6 +11,8 @@
 
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
+#include "wellgyro/math/golden_section.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
@@ -45,14 +47,13 @@ Result<ThermometerReadings> ReadThermometers(const BenchTable& data) {
   readings.error = mean - readings.t;
   std::vector<double> sizes;
   for (const double error : readings.error) sizes.push_back(std::abs(error));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double middle = Median(std::move(sizes));
   constexpr double kLargest = 20;  // degC; a thermometer further off is not read in degC
-  if (*middle > kLargest) {
+  if (middle > kLargest) {
     return BenchFault(data,
                       fmt::format("the references differ from t_m by {:.1f} in the middle of the "
                                   "rows: give all of them in degC",
-                                  *middle),
+                                  middle),
                       data.lines[0]);
   }
   if (refs.size() > 1) {
@@ -100,26 +101,17 @@ double FindKnee(const ThermometerReadings& readings, const ThermometerFitSetup& 
     problem.robust = false;
     return Solve(problem).chi_square;
   };
-  double low = t[1], high = t[t.size() - 3];
+  const double low = t[1], high = t[t.size() - 3];
   double best = low;
   constexpr int kGrid = 60;
   const double step = (high - low) / kGrid;
   for (int i = 0; i <= kGrid; ++i) {
     if (cost(low + i * step) < cost(best)) best = low + i * step;
   }
-  // Golden section about the best of the grid.
-  low = best - step;
-  high = best + step;
-  constexpr double kGolden = 0.6180339887498949;
-  while (high - low > 1e-9 * (1 + std::abs(best))) {
-    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    if (cost(a) < cost(b)) {
-      high = b;
-    } else {
-      low = a;
-    }
-  }
-  return (low + high) / 2;
+  const auto goes_on = [&](double from, double to) {
+    return to - from > 1e-9 * (1 + std::abs(best));
+  };
+  return GoldenSection(best - step, best + step, cost, goes_on);
 }
 
 void Remark(const ThermometerReadings& readings, double knee, bool bends, FitReport& report) {

@@ -8,15 +8,13 @@
 #include "wellgyro/fit/tool_minimise_internal.h"
 #include "wellgyro/fit/tool_observability_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
 
 double RobustSigma(std::vector<double> sizes) {
-  if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
+  return kSigmaPerMedianSize * Median(std::move(sizes));
 }
 
 // Which of ToolNoise's a channel's reading has.

@@ -10,4 +10,8 @@ namespace wellgyro {
 /// <, so that a value that is no number gives an answer without meaning.
 WELLGYRO_EXPORT double Median(std::vector<double> values);
 
+/// Of a normal distribution, sigma over the median of the sizes of its deviations: half of them are
+/// less than Phi^-1(3/4) sigma, Phi^-1(3/4) = 0.6745, and this is its reciprocal.
+inline constexpr double kSigmaPerMedianSize = 1.4826;
+
 }  // namespace wellgyro

@@ -53,8 +53,8 @@ void FindSpikes(const SampleSeries& series, const std::vector<char>& missing, st
   if (values.size() < 32) return;
   const double middle = Median(values);
   for (double& value : values) value = std::abs(value - middle);
-  constexpr double kSigmas = 8, kSigmaPerMad = 1.4826;
-  const double limit = kSigmas * kSigmaPerMad * Median(std::move(values));
+  constexpr double kSigmas = 8;
+  const double limit = kSigmas * kSigmaPerMedianSize * Median(std::move(values));
   if (!(limit > 0)) return;
   for (std::size_t i = begin; i < end; ++i) {
     if (missing[i] == 0 && std::abs(series.values[i] - middle) > limit) spikes.push_back(i);

@@ -12,17 +12,16 @@ namespace {
 
 using Kind = LogFinding::Kind;
 
-constexpr double kUnusual = 8;           // times the robust sigma
-constexpr std::size_t kAway = 100;       // stretches it may stand away and come back
-constexpr double kExplained = 0.9;       // share of the slow variance
-constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
+constexpr double kUnusual = 8;      // times the robust sigma
+constexpr std::size_t kAway = 100;  // stretches it may stand away and come back
+constexpr double kExplained = 0.9;  // share of the slow variance
 
 double RobustSigma(const std::vector<double>& values) {
   const double median = Median(values);
   std::vector<double> away;
   away.reserve(values.size());
   for (const double v : values) away.push_back(std::abs(v - median));
-  return kSigmaPerMad * Median(std::move(away));
+  return kSigmaPerMedianSize * Median(std::move(away));
 }
 
 // Means over equal stretches, those with missing samples left out.
