@@ -9,7 +9,6 @@ namespace wellgyro {
 namespace {
 
 constexpr std::string_view kDash = "\u2013";
-constexpr std::string_view kUnshowable = "\uFFFD";
 
 std::string WithoutMinusZero(std::string text) {
   const bool zero = text.find_first_not_of("-0.") == std::string::npos;
@@ -17,42 +16,6 @@ std::string WithoutMinusZero(std::string text) {
 }
 
 }  // namespace
-
-std::string Escaped(std::string_view text) {
-  std::string escaped;
-  escaped.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      case '\n':
-      case '\r':
-      case '\t':
-        escaped += ' ';
-        break;
-      default:
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-          escaped += kUnshowable;
-        } else {
-          escaped += c;
-        }
-    }
-  }
-  return escaped;
-}
 
 std::string Isolated(std::string_view text) { return "<bdi>" + Escaped(text) + "</bdi>"; }
 

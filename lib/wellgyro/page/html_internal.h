@@ -5,13 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include "wellgyro/io/html_text_internal.h"
+
 namespace wellgyro {
 
-/// Text as it may stand in HTML, in content and in quoted attributes. Signs that a page cannot hold
-/// are shown as such (U+FFFD).
-std::string Escaped(std::string_view text);
-
-/// The same isolated, so that text that runs from right to left leaves what stands beside it alone.
+/// Escaped and isolated, so that text that runs from right to left leaves what stands beside it
+/// alone.
 std::string Isolated(std::string_view text);
 
 /// The first `most` characters of UTF-8 text, with an ellipsis where there are more.
