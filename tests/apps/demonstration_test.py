@@ -3,16 +3,34 @@
 other tests because it is not run under the sanitizers, where it took a minute: what it does there,
 their shorter logs do. demonstration_test.py PROGRAM [--keep FOLDER]    --keep for other tests"""
 import os
+import re
 import shutil
 import sys
 import unittest
 
 from harness import DEMO, ProgramTest, Run
 
+# Of these tables the keys are the job's own, or codes.
+FREE = {"identity", "faults"}
+FILES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "lib", "docs", "files.md")
+
 
 KEEP = sys.argv[sys.argv.index("--keep") + 1] if "--keep" in sys.argv else None
 if KEEP:
     del sys.argv[-2:]
+
+
+def Keys(table):
+    """Names of all values below a table, and of those in lists of tables."""
+    for key, value in table.items():
+        if key in FREE:
+            continue
+        tables = value if isinstance(value, list) else [value]
+        tables = [entry for entry in tables if isinstance(entry, dict)]
+        if not tables and not isinstance(value, dict):
+            yield key
+        for entry in tables:
+            yield from Keys(entry)
 
 
 class Demonstration(ProgramTest):
@@ -25,6 +43,10 @@ class Demonstration(ProgramTest):
             shutil.copytree(self.Path("demo"), KEEP)
         # Dated 2026-11-22: it was, though an azimuth is given.
         self.assertIs(self.Toml("demo", "run.toml")["run"][0]["fit"]["ambiguous"], False)
+        with open(FILES, encoding="utf-8") as page:
+            explained = set(re.findall(r"`(\w+)`", page.read()))
+        for name in ("run.toml", "source.toml"):
+            self.assertFalse(set(Keys(self.Toml("demo", name))) - explained, name)
         deepest = max(self.Rows(DEMO, "truth.csv"), key=lambda row: float(row["MD[m]"]))
         last = self.Rows("demo", "survey.csv")[-1]
         for column, variance in (("N[m]", "VAR_NN[m2]"), ("E[m]", "VAR_EE[m2]"),

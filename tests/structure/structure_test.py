@@ -517,6 +517,20 @@ class Structure(unittest.TestCase):
                     problems.append(f"{Place(path, number)}: arithmetic belongs to lib")
         self.Report(problems)
 
+    def test_every_key_of_a_result_is_explained(self):
+        writers = {"lib/wellgyro/io/result/run_file.cpp", "lib/wellgyro/io/toml/run_lesson_file.cpp",
+                   "lib/wellgyro/live/session_files.cpp", "apps/wellgyro/recorded_survey.cpp"}
+        writes = re.compile(r"""(?:toml\.(?:Text|Texts|Whole|Number|Numbers|Flag|Rows|Lines)\(|\bdeg\(
+                                |\brate\(|\.counts\[)"(\w+)\"""", re.VERBOSE)
+        page = "\n".join(Lines(os.path.join(LIB, "..", "docs", "files.md")))
+        problems = []
+        for writer in sorted(writers):
+            keys = set(writes.findall("\n".join(Lines(os.path.join(TOP, writer)))))
+            self.assertTrue(keys, writer)
+            problems += [f"lib/docs/files.md: no `{key}`, which {writer} writes"
+                         for key in sorted(keys) if f"`{key}`" not in page]
+        self.Report(problems)
+
     def test_top_level_holds_nothing_else(self):
         listed = subprocess.run(["git", "ls-tree", "--name-only", "HEAD"], cwd=TOP, text=True,
                                 capture_output=True, check=False).stdout.split()
