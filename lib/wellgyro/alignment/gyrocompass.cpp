@@ -26,6 +26,7 @@ using gyrocompass::HeadingFrom;
 using gyrocompass::Problem;
 using gyrocompass::Solution;
 
+// Costs are chi-squares of one unknown, the heading: 9 is three sigmas, 4 two.
 constexpr double kMirrorCost = 9;  // by which one minimum must beat the other
 constexpr double kBarrier = 4;     // between two minima, beyond which they are two candidates
 
@@ -67,12 +68,14 @@ struct Basin {
 Basin BasinAbout(const Problem& problem, const std::vector<Solution>& minima) {
   const Solution& solution = minima.front();
   const double parabola = solution.cov(2, 2);
+  // Within so narrow a minimum, and no other beside it, the cost is a parabola.
   constexpr double kNarrow = FromDegrees(0.5);
   // Minima farther apart than 12 of such sigmas have more than kBarrier between them.
   const bool alone = std::none_of(minima.begin() + 1, minima.end(), [&](const Solution& other) {
     return std::abs(HeadingFrom(solution.state, other.state)) < 12 * std::sqrt(parabola);
   });
   if (alone && parabola < kNarrow * kNarrow) return {.variance = parabola};
+  // Beyond it the density is below exp(-12 / 2) = 0.25 % of that at the minimum.
   constexpr double kCost = 12;
   const double centre = HeadingFrom(problem.Start(0), solution.state);
   const double step = std::clamp(std::sqrt(parabola) / 4, FromDegrees(0.25), FromDegrees(2));

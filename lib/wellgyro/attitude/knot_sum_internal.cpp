@@ -112,9 +112,9 @@ struct Part {
   }
 };
 
-// A smoother of a phase whose rate walks passes, of what oscillates by nu, the share 1 / (1 + R
-// nu^4 / q^2), R the density of the phase's noise and q the walk: Wiener's filter of q^2 / nu^4 in
-// R.
+// Share of an oscillation that the smoother of the phase passes, at once and twice the roll rate:
+// the Wiener filter 1 / (1 + R nu^4 / q^2) of a phase whose rate is a random walk q, of density
+// q^2 / nu^4, in white noise of density R.
 Eigen::Vector2d WobbleFollowed(const Block& b) {
   if (!(b.walk > 0)) return Eigen::Vector2d::Zero();
   const double square = b.rate * b.rate;

@@ -8,6 +8,9 @@
 namespace wellgyro {
 namespace {
 
+// Pairs are averaged over whole seconds of the tool's clock. A batch has one pair of its own, and
+// its other samples repeat that pair's difference: a difference that stays is taken once, and again
+// after ten seconds, since that of clocks in perfect step never changes.
 constexpr std::int64_t kCellNs = 1'000'000'000;
 constexpr std::int64_t kRepeatNs = 10'000'000'000;
 constexpr double kGate = 5;              // sigmas beyond which a cell is refused

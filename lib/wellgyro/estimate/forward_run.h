@@ -21,7 +21,8 @@ namespace wellgyro {
 /// may be copied: a copy goes on alone.
 class ForwardRun {
  public:
-  /// Of the knots behind, so many are looked at: what the roll rate usually changes by in a minute.
+  /// Number of past knots that Step() reads, about a minute, for the usual change of the roll rate
+  /// (RollWalkBy).
   static constexpr std::size_t kLooksBack = 60;
 
   /// From the end of `knots`, the last of those that have been solved.

@@ -21,8 +21,8 @@ struct KnotPlace {
   /// Of the inertial roll rate of a tool that keeps its toolface in a hole that bends: that rate is
   /// A' cos I [rad/s/sqrt(s)].
   double roll_walk = 0;
-  /// By which the roll leads psi and an even turn beside it, in the mean of the knot, where gravity
-  /// does not show it [rad].
+  /// Mean over the knot of the roll less psi less a turn at constant rate [rad], where gravity does
+  /// not show the roll; else 0. See BowKnots().
   double roll_bow = 0;
   double since_start = 0;  ///< middle of the knot [s]
   double depth = 0;        ///< vertical, below node 0 [m]

@@ -29,16 +29,17 @@ constexpr double kLeastForce = 5e-5;  // [m/s^2 sqrt(s)], so that of a moment it
 // The turn about the axis is the unknown roll rate's; this ties it to the attitude. A tenth of the
 // finest toolface that accelerometers tell in a knot, 1e-5 g, and of what a third axis says.
 constexpr double kAxialTie = 1e-6;  // [rad]
-// What is held to be nothing is a tenth of the gyros' noise, which costs 0.5 % of a sigma: the tie
-// beside a third axis, and what a tool at rest turns by.
+// Sigma of a pseudo-measurement of zero, over that of the gyros' turn: the tie beside a third axis,
+// and the turn of a tool at rest. It widens the gyros' sigma by sqrt(1 + 0.1^2) - 1 = 0.5 %.
 constexpr double kNothing = 0.1;
 constexpr double kRestSpeed = 1e-5;   // [m/s]
 constexpr double kSpeedWalk = 0.3;    // winch and pipe: a third of a m/s in a second
 constexpr double kLeastDepth = 1e-3;  // [m], of a mark
 constexpr double kLeastWay = 1e-4;    // [m], of a knot's way
 constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
-// Of a dt^2, a being what the depth's fit shows of a change of acceleration within a knot: the
-// bound of 1/8 of the change where it shows a quarter of it.
+// Truncation error of the trapezoidal rule for the way, over a dt^2, with a the acceleration by the
+// depth's fit. A change of acceleration within the knot errs by at most 1/8 of it (see AddDepth),
+// and the fit, a mean over its window, may show but a quarter of the change: 4/8.
 constexpr double kTrapezoid = 0.5;
 
 }  // namespace
@@ -154,8 +155,9 @@ double KnotRows::GravityOffset(const Terms& t) const {
   return gravity;
 }
 
-/// Columns of the tool's errors in the force's factor. What gyros seem to turn leans the forces of
-/// gravity, `p_M`, by half of it, and of skewed ones by `beyond` more.
+/// Columns of the tool's errors in the force's factor. M is where half of the turn leads, so that
+/// an error d of the turn changes the predicted force `p_M` by p_M x d / 2; of a misalignment,
+/// whose error goes round with the roll, by p_M x (d / 2 + `beyond`), see SkewBeforeHalf().
 void KnotRows::AddForceErrors(const Terms& t, double whiten, const Vector3d& p_M,
                               const Vector3d& by_skew_M, const Eigen::Matrix2d& beyond,
                               const PhaseColumns& by_phase, NormalBlock& block) {
@@ -195,10 +197,12 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   Vector3d force = ForceOf(t, layout_, by_skew_M) + p_M.cross(Flat(beyond * skew));
   const Vector2d across = force.head<2>();
   force += t.delta * Flat(inc.force_per_roll - t.delta / 24 * across);
-  // Turned back to the middle by a turn that goes round with delta as psi has not seen it.
+  // Rotation of f_z to mid-knot by the turn across the axis: that turn goes round by delta, which
+  // psi has not seen, and its mean changes by delta / 24.
   force += t.delta / 24 * inc.force_M.z() * Flat(t.turn);
   const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
-  // M stands where half of the seen turn leads; half of the unseen is missing.
+  // M is where half of the measured turn leads. Half of an unobserved turn is missing: 1-sigma
+  // unseen / 2 times gravity.
   const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
   const double seen = Square(noise), missed = Square(0.5 * t.knot.unseen * t.place.site.gravity);
   const double whiten = 1 / std::sqrt(seen + missed);

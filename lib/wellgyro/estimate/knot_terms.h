@@ -49,9 +49,9 @@ struct KnotModel {
 KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& place,
                   const BorderVector& border, const Node& begin, const Node& end);
 
-/// What a unit of an accelerometer's error is in the mean force in M, when that has been turned by
-/// what the tool turned beyond psi. Scales and shear, of what does not go round, are left as psi
-/// has them.
+/// Derivative of the mean force in M by an accelerometer's error. A bias or misalignment is a
+/// vector fixed in T, whose mean in M counts the turn delta that psi has not seen. Scales and shear
+/// act on a force that keeps its direction in M: for these the derivative by psi alone is taken.
 Eigen::Vector3d ForceBy(const KnotTerms& terms, int source);
 
 /// The mean force in M without the tool's errors; `by_skew_M`: what a second of time skew adds.

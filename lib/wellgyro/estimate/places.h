@@ -24,10 +24,11 @@ Site SiteBy(const Site& first, const Eigen::Vector3d& p_W);
 void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKnot> knots,
                 std::span<const Node> nodes, std::vector<KnotPlace>& places);
 
-/// How the roll bows within each knot where it is hidden, by its rates over the knots [rad/s]: what
-/// changes by a [rad/s^2] is -a t^2 / 12 before its chord in the mean. By the knots on both sides:
-/// a swing that takes 15 knots is bowed to 5 %, one that takes 6 to a quarter. psi's own bow, of
-/// three points, is taken off.
+/// KnotPlace::roll_bow of every knot where gravity does not show the roll [rad]. A roll of constant
+/// acceleration a [rad/s^2] differs from its chord over the knot's length t by -a t^2 / 12 in the
+/// mean. a is the central difference of `roll_rates` [rad/s] of the knots on both sides: truncation
+/// error 5 % for a swing with a period of 15 knots, a quarter for one of 6. The same bow of psi, by
+/// three points, is subtracted.
 void BowKnots(std::span<const RunKnot> knots, std::span<const double> roll_rates,
               std::vector<KnotPlace>& places);
 

@@ -25,15 +25,16 @@ double LastSpeedStart(std::span<const RunKnot> knots);
 /// [rad/s]; absent where it is nowhere seen.
 std::optional<double> UsualRollChange(std::span<const RunKnot> knots);
 
-/// From which a roll walk is looked for, or taken where none is: the decade above what the rate
-/// usually changes by, which its own noise is part of [rad/s/sqrt(s)].
+/// Start of the search for the roll's random walk, or its value where none is sought
+/// [rad/s/sqrt(s)]: UsualRollChange() rounded up to a power of ten. The noise of the measured rates
+/// is part of that change, so that the walk is rather too large.
 double RollWalkBy(std::span<const RunKnot> knots);
 
 /// Somewhere the tool starts or stops, by `speed_starts`, and gravity does not show how it rolls.
 bool HidesAStart(std::span<const RunKnot> knots, std::span<const double> speed_starts);
 
-/// The roll walks that there are, from that of a tool that jerks to one that turns it by a quarter
-/// of a degree in half an hour, which is as good as none [rad/s/sqrt(s)].
+/// Bounds of the roll's random walk [rad/s/sqrt(s)]: 0.1 of a tool that jerks; 1e-7 turns it by
+/// 1e-7 t^1.5 / sqrt(3) = a quarter of a degree in half an hour, which is as good as none.
 inline constexpr double kRollWalkMost = 0.1, kRollWalkLeast = 1e-7;
 
 }  // namespace wellgyro

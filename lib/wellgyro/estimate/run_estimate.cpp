@@ -24,7 +24,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kSolveIterations = 40;
+constexpr int kSolveIterations = 40;  // at most, before the scales of the roll are sought
 // A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
 constexpr double kTooLarge = 4;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by

@@ -185,8 +185,9 @@ SolveReport RunSolver::Solve(int iterations, double least, const RollBegin& begi
       FindDecade(kShareLeast, 1, {&scales_.speed_share}, report);
     }
   }
-  // Not before: that the hole changes the rate slowly and one way, evidence takes for a smaller
-  // walk.
+  // KnotPlace::roll_walk enters the process noise only now that the scales are found. A bend
+  // changes the roll rate slowly and in one direction, which is no random walk: with this noise
+  // beside it the evidence would choose too small a walk.
   scales_.follows_hole = true;
   HoldRollWeights();
   Finish(least, report);

@@ -31,20 +31,24 @@ struct SolveReport {
   double roll_walk = 0;  ///< found [rad/s/sqrt(s)]
 };
 
-/// From which the roll's scales are sought.
+/// Start of the search for the scales of the roll's random walk.
 struct RollBegin {
-  double walk = HUGE_VAL;  ///< at most [rad/s/sqrt(s)]; by what gravity shows where that is less
-  /// Of SpeedStarts, where they are hidden. With all of it the weights of the demonstration's
-  /// starts creep for fifty steps.
+  /// Random walk of the roll rate [rad/s/sqrt(s)]: the lesser of this and RollWalkBy().
+  double walk = HUGE_VAL;
+  /// Share of SpeedStarts() in the sigma of the roll rate's change [1]; sought where such a start
+  /// is hidden from gravity. From a share of 1 the robust weights of the demonstration's starts
+  /// take fifty steps to settle.
   double share = 1e-2;
 };
-/// The least share, 1e-4 rad/s over 10 s, is less than the gyros' noise shows.
+/// The least share [1]: it leaves the roll rate 1e-4 rad/s over 10 s, less than the gyros' noise
+/// shows.
 inline constexpr double kShareLeast = 1e-4;
 
-/// From which each of these knots is solved; the likeliest counts. With a free roll skewed gyros
-/// times rates that follow their noise explain that noise, and a lean the accelerometers': biases
-/// of five sigmas, about which no smaller scale is as likely. From a small one a swing is not
-/// found.
+/// Starts of the solver for these knots; the solution of greatest evidence counts. The evidence has
+/// local maxima. About a large walk the roll rates follow the gyros' noise: times the
+/// misalignments they explain that noise, and with a lean of the tool the accelerometers'. Biases
+/// are then five sigmas off, and no smaller walk nearby has as much evidence. From a small walk a
+/// swing is not found. So both are tried.
 std::vector<RollBegin> RollBeginsOf(std::span<const RunKnot> knots);
 
 /// All unknowns of one run: attitudes on SO(3) at the ends of its knots, drift, motion along the

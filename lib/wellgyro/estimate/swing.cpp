@@ -15,12 +15,12 @@ using Complex = std::complex<double>;
 
 constexpr double kSegment = 600;        // [s], within which a line keeps its phase
 constexpr std::size_t kLeastSeen = 60;  // knots of a segment, to tell a line from a trend
-constexpr double kLongest = 60;         // [s], period
-constexpr double kNyquist = 0.9;        // of half a turn a knot
+constexpr double kLongest = 60;         // [s], longest period
+constexpr double kNyquist = 0.9;        // of half a turn a knot, beyond which a line is aliased
 constexpr double kShare = 0.3;          // of the variance that a line must explain
 constexpr double kLeastRate = 3e-3;     // [rad/s]: what less does to the roll, a walk holds as well
-constexpr int kOversampled = 4;
-constexpr std::size_t kSegmentsMost = 24;
+constexpr int kOversampled = 4;         // lines per width 1 / kSegment, so that none falls between
+constexpr std::size_t kSegmentsMost = 24;  // four hours: the cost of the search is bounded
 
 struct Point {
   double time, rate;

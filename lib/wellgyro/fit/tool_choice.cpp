@@ -96,7 +96,7 @@ std::vector<std::string> TermChoice::Rivals(const std::vector<int>& best) const 
   return rivals;
 }
 
-// Of those in `places` that `others` have not.
+// Names of the bundles in `places` that are not in `others`, parted by commas.
 std::string TermChoice::NamesOf(const std::vector<int>& places,
                                 const std::vector<int>& others) const {
   std::string names;

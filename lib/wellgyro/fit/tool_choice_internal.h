@@ -24,13 +24,14 @@ class TermChoice {
   TermChoice(const std::vector<TermBundle>& bundles, const std::vector<int>& seen,
              const ToolAdjustment& full);
 
-  /// Backwards from all that is seen. Of terms that do the work of each other the first to go is
-  /// chance: a loop and a bend of drift stand for what heating does, and are two for one. So each
-  /// that went is put back, and those go that are no longer needed beside it.
+  /// Backward elimination from all that is seen, then exchanges as long as they lower the cost: a
+  /// bundle that went is put back, and elimination goes on beside it. Elimination alone is greedy:
+  /// of nearly collinear bundles chance decides which goes first. A loop and a bend of drift, two
+  /// bundles, can so stay in place of heating, which is one.
   std::vector<int> Best() const;
 
-  /// Sets of terms less likely than `best` by no more than a thousand that hold terms instead of
-  /// some of its, as sentences.
+  /// Alternatives to `best`, as sentences: sets that lack one of its bundles and have others
+  /// instead, with an evidence of at least a thousandth of its.
   std::vector<std::string> Rivals(const std::vector<int>& best) const;
 
  private:

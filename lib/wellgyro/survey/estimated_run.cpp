@@ -110,8 +110,8 @@ RunFit FitOf(const RunEstimate& estimate) {
   fit.parts[RunFit::kForce] = squares({RowKind::kForce});
   fit.parts[RunFit::kRest] = squares({RowKind::kStill});
   fit.parts[RunFit::kAzimuth] = squares({RowKind::kAzimuth});
-  // Depth is read off a smooth track: its errors go together over many knots, and their squares are
-  // a two-hundredth of their number.
+  // Residuals of depth do not count: marks come of a smooth track, their errors are correlated over
+  // many knots, and their squares are a two-hundredth of their number.
   squares({RowKind::kDrift});
   fit.degrees_of_freedom = static_cast<int>(std::lround(freedom));
   fit.errors = estimate.errors;
@@ -119,9 +119,10 @@ RunFit FitOf(const RunEstimate& estimate) {
   return fit;
 }
 
-/// Where neither gravity nor a third axis shows the roll a knot is summed as if the tool did not
-/// turn in it, and what it turns is made up for as far as a series goes. Of single knots, as where
-/// the roll starts, twenty are left out.
+/// RunFit::hidden_turn [rad]: |roll over a knot, as solved, less the roll it was summed with| that
+/// twenty moving knots exceed, where neither gravity nor a third axis shows the roll. Such a knot
+/// is summed as if the tool did not roll, and a truncated series corrects it. The twenty largest
+/// are left out for single knots, as where the roll starts.
 double HiddenTurn(std::span<const RunKnot> knots, std::span<const Node> nodes) {
   constexpr std::size_t kKnots = 20;
   std::vector<double> turns;

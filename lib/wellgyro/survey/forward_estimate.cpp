@@ -12,13 +12,13 @@
 namespace wellgyro {
 namespace {
 
-// About a heading that may be further off nothing is made linear: the slope of the Earth's rate
-// changes by a tenth within this sigma. Let through up to 20 deg, a run that rolls in a vertical
-// hole learned an inclination from it that was eight sigmas off.
+// Largest sigma of the heading about which factors are linearised: the derivative of the Earth's
+// rate by the heading changes by a tenth within it. With 20 deg the linearisation error made a run
+// that rolls in a vertical hole learn an inclination eight sigmas off.
 constexpr double kRoughHeading = 5 * kPi / 180;  // [rad]
-// From what is known at a heading as sure as this the rest may be sought without what came before:
-// what is made linear about it is wrong by its square. From 5 deg on, which a minute of rolling in
-// a vertical hole seems to tell, it went astray, and a run at 88 deg was ten sigmas off.
+// Largest sigma of the heading at which the knots so far are replaced by their linearised
+// information, and only later ones solved: the linearisation error grows as its square. With 5 deg,
+// which a minute of rolling in a vertical hole seems to give, a run at 88 deg was ten sigmas off.
 constexpr double kSureHeading = 1 * kPi / 180;  // [rad]
 
 /// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may

@@ -22,9 +22,11 @@ using Eigen::Vector3d;
 // A way below which depth tells of no motion: marks leave as much unknown, and a hole that turns by
 // 10 deg/30 m turns by 3e-4 deg on it.
 constexpr double kRests = 1e-3;  // [m]
-// A whirl goes on; a hole that kinks within the four knots, .04 deg/m within a metre, is off by
-// some .002 deg at two or three ends alone. So none is moved by more than twice the median of as
-// many knots about it: a tool that rocks to and fro is off by up to 1.4 of its own.
+// Bound of a correction: twice the median size of those from kAbout knots before to kAbout behind.
+// A whirl goes on, and so do its corrections. Where the hole kinks within the four knots, .04 deg/m
+// within a metre, the parabola's truncation error is some .002 deg at two or three ends alone: the
+// median leaves that out. Of a tool that rocks to and fro a correction is up to 1.4 times the
+// median.
 constexpr std::size_t kAbout = 10;
 constexpr double kOfMedian = 2;
 

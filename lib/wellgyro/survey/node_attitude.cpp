@@ -16,7 +16,8 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// An inclination at which an azimuth's sigma is that of no knowledge for any attitude's.
+// Least sin I in d azimuth / d phi = 1 / sin I. There every attitude's sigma above 2e-9 rad gives
+// an azimuth's beyond that of a uniform distribution, which is what it is then set to.
 constexpr double kLeastSine = 1e-9;
 
 /// d(inclination, azimuth, toolface) / d phi, by R_LT Exp(phi).

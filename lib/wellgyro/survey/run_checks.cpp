@@ -21,6 +21,7 @@
 namespace wellgyro {
 namespace {
 
+// Least sigma of a roll rate at rest [rad/s]: what numbers are rounded to.
 constexpr double kLeastRoll = 1e-3 * units::kDegPerHour;
 
 /// What a gyro's bias changes by in `seconds`, by the coefficients [rad/s].
@@ -136,6 +137,8 @@ ErrorVector SigmasOf(const Job& job, const RunSummary& run) {
 
 /// Reduced chi-square: `sum` over its expectation `freedom`.
 Check CheckSquares(std::string code, std::int32_t run, double sum, double freedom) {
+  // Below it the unknowns take up nearly all of the residuals, and sum / freedom divides noise by
+  // next to nothing.
   constexpr double kLeastFreedom = 0.3;
   if (!(freedom >= kLeastFreedom)) {
     return NotDone(std::move(code), run, "nothing of this kind is measured more than once");

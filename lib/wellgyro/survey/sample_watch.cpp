@@ -13,12 +13,14 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kEveryNs = 20'000'000;
+constexpr std::int64_t kEveryNs = 20'000'000;  // of faster streams one sample in 20 ms is looked at
+// An axis that repeats one value for so long is suspected: at rest later, where a good axis may
+// stay within one quantisation step.
 constexpr double kStuckMoving = 2, kStuckAtRest = 20;  // [s]
-constexpr std::int64_t kRepeats = 10;                  // at least
-constexpr double kChance = 1e-9;                       // that noise repeats so often
-constexpr double kDead = 0.9;                          // of the run
-constexpr double kStretch = 30;                        // [s]
+constexpr std::int64_t kRepeats = 10;                  // at least, where samples are seconds apart
+constexpr double kChance = 1e-9;  // P(so many repeats) of a working axis, below which it fails
+constexpr double kDead = 0.9;     // share of the run from which an axis is called dead
+constexpr double kStretch = 30;   // [s], of the integrals of w x f that are compared with f_z
 // 1-sigma of what the products do not predict of f_z's change over a stretch: the string's starts
 // and stops, the Earth's rotation [m/s^2].
 constexpr double kForce = 0.03;
