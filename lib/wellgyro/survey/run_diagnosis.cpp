@@ -23,8 +23,9 @@ using Kind = CauseSpec::Kind;
 // Of runs, those with some fault before anything is known of them. No field statistics are
 // published; by it the probabilities are stated, not what is found.
 constexpr double kFaultyShare = 0.1;
-// Signatures that correlate by more are hardly told apart: it would take 2 ln(20) / (1 - rho^2),
-// 30 sigma, to prefer one at odds of 20 (Imparato, Teunissen and Tiberius 2019).
+// Correlation rho of two signatures beyond which they are hardly told apart: the expected logarithm
+// of their odds is w^2 (1 - rho^2) / 2, w the fault's size over its sigma, and odds of 20 take
+// w = sqrt(2 ln(20) / (1 - rho^2)) = 5.6 (Imparato, Teunissen and Tiberius 2019).
 constexpr double kAlike = 0.9;
 constexpr double kNamed = 0.95;  // probability that the causes named have together
 
