@@ -33,14 +33,14 @@ class FieldReader {
   /// Of a whole message, or of its beginning; the fields stand from byte `at` on.
   FieldReader(std::span<const std::byte> message, std::size_t at) : bytes_(message), at_(at) {}
 
-  /// Microseconds since 1970 up to kUtcMaxUs; left as it was where out of range.
+  /// Microseconds since 1970 up to limits::kUtcUs; left as it was where out of range.
   void Utc(const char* name, UtcTime& time) {
     const auto us = Take<std::int64_t>();
     if (Require(IsUtc(us), name, us)) time.ns = us * 1000;
   }
   /// Any value.
   void Int(const char* /*name*/, std::int32_t& value) { value = Take<std::int32_t>(); }
-  /// From 0 to kCountMax, so that differences and sums of two stay inside 64 bits.
+  /// From 0 to limits::kCount, so that differences and sums of two stay inside 64 bits.
   template <class Integer>
   void Count(const char* name, Integer& value) {
     value = Take<Integer>();

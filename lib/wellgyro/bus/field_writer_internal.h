@@ -23,7 +23,7 @@ class FieldWriter {
  public:
   explicit FieldWriter(std::vector<std::byte>& bytes) : bytes_(bytes) {}
 
-  /// Whole microseconds since 1970, rounded down; up to kUtcMaxUs.
+  /// Whole microseconds since 1970, rounded down; up to limits::kUtcUs.
   void Utc(const char* name, UtcTime time) {
     const std::int64_t us = time.ns / 1000;
     Require(IsUtc(us) && time.ns >= 0, name, time.ns);
@@ -31,7 +31,7 @@ class FieldWriter {
   }
   /// Any value.
   void Int(const char* /*name*/, std::int32_t value) { Put(value); }
-  /// From 0 to kCountMax.
+  /// From 0 to limits::kCount.
   template <class Integer>
   void Count(const char* name, Integer value) {
     Require(IsCount(value), name, value);

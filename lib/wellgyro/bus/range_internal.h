@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "wellgyro/record/limits.h"
+
 /// What fields may hold beyond what their type says; the same on the way in and out.
 namespace wellgyro {
 
@@ -11,15 +13,13 @@ inline constexpr std::int32_t kBatchMax = 1000;  ///< N_MAX of imu_batch_t and r
 inline constexpr std::int32_t kKeyMax = 128;        ///< [bytes] of a key or signature
 inline constexpr std::int32_t kContentMax = 32768;  ///< [bytes] of a signed message
 
-// Differences and sums of two times, or of two sample numbers, stay inside 64 bits.
-inline constexpr std::int64_t kUtcMaxUs = std::int64_t{4'000'000'000'000'000};  ///< year 2096
-inline constexpr std::int64_t kToolTimeMax = std::int64_t{1} << 61;             ///< [ns] 73 years
-inline constexpr std::int64_t kCountMax = std::int64_t{1} << 61;
+// Differences and sums of two stay inside 64 bits, as those of limits::kUtcUs and limits::kCount.
+inline constexpr std::int64_t kToolTimeMax = std::int64_t{1} << 61;  ///< [ns] 73 years
 
 /// Whether a field of a message can be taken: its UTC or its number is one that reckoning with two
 /// of them cannot overflow. A tool time is held within +-kToolTimeMax where the two clocks of a
 /// message are read and written (batch_internal.h).
-constexpr bool IsUtc(std::int64_t us) { return us >= 0 && us <= kUtcMaxUs; }
-constexpr bool IsCount(std::int64_t n) { return n >= 0 && n <= kCountMax; }
+constexpr bool IsUtc(std::int64_t us) { return us >= 0 && us <= limits::kUtcUs; }
+constexpr bool IsCount(std::int64_t n) { return n >= 0 && n <= limits::kCount; }
 
 }  // namespace wellgyro

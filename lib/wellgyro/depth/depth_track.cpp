@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "wellgyro/base/time_range.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 namespace {
@@ -23,10 +24,7 @@ double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
 std::string Place(UtcTime utc) { return " at utime_us " + std::to_string(utc.ns / 1000); }
 
 // No hole is as long as 100 km; numbers beyond are damage, and would ask for as many stations.
-bool IsDepth(double md) {
-  constexpr double kMost = 1e5;
-  return std::abs(md) <= kMost;
-}
+bool IsDepth(double md) { return std::abs(md) <= limits::kMd; }
 
 }  // namespace
 

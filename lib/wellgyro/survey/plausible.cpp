@@ -40,8 +40,8 @@ std::string LeftOut(std::string_view what, const std::string& odd) {
 
 std::string WhyImplausible(const DepthMark& mark) {
   Complaint complaint;
-  const double seconds = static_cast<double>(mark.utc.ns) * 1e-9;
-  complaint.Within("utime_us", 1e6 * seconds, -1e6 * limits::kSeconds, 1e6 * limits::kSeconds);
+  constexpr auto kUtc = static_cast<double>(limits::kUtcUs);
+  complaint.Within("utime_us", static_cast<double>(mark.utc.ns) * 1e-3, -kUtc, kUtc);
   complaint.Within("md_m", mark.md, -limits::kMd, limits::kMd);
   complaint.Within("speed_mps", mark.speed.value_or(0), -limits::kSpeed, limits::kSpeed);
   complaint.Within("sigma_m", mark.sigma.value_or(0), 0, limits::kSigma);

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/record/limits.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/estimated_run.h"
 #include "wellgyro/survey/tool_survey_internal.h"
@@ -22,14 +23,13 @@ namespace {
 bool CanBe(const StillWindow& window) {
   constexpr double kRate = 0.5 * units::kDeg;  // [rad/s]
   constexpr double kLeastForce = 9.3, kMostForce = 10.3;
-  constexpr double kDepthMost = 1e5;  // [m]
   constexpr double kSeconds = 1e5;
   const double f = window.f_T.norm();
   const double seconds = window.seconds();
   const bool sigmas = window.sigma_w_IT_T.allFinite() && window.sigma_f_T.allFinite() &&
                       window.sigma_w_IT_T.minCoeff() >= 0 && window.sigma_f_T.minCoeff() >= 0 &&
                       window.sigma_w_IT_T.maxCoeff() < kRate && window.sigma_f_T.maxCoeff() < 100;
-  const bool depth = !window.md || std::abs(*window.md) < kDepthMost;
+  const bool depth = !window.md || std::abs(*window.md) <= limits::kMd;
   const double turn = window.roll_rate.value_or(0), sigma_turn = window.sigma_roll_rate;
   const bool roll = std::abs(turn) < kRate && sigma_turn >= 0 && sigma_turn < kRate;
   const bool field = !window.has_mag || window.b_T.allFinite();
