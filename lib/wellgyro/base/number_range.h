@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -19,6 +20,10 @@ struct NumberRange {
 /// "91 must be at most 90", or nothing where `value` lies in `range`. What is not finite never
 /// does.
 WELLGYRO_EXPORT std::optional<std::string> ComplaintOf(double value, const NumberRange& range);
+
+/// The same of a whole number, to its last digit.
+WELLGYRO_EXPORT std::optional<std::string> ComplaintOfWhole(std::int64_t value,
+                                                            const NumberRange& range);
 
 /// "0 to 90", "above 0", "0, or 0.2 to 100000", "any".
 WELLGYRO_EXPORT std::string TextOf(const NumberRange& range);
