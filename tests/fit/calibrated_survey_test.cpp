@@ -128,6 +128,7 @@ TEST(CalibratedSurvey, OfRawCountsIsThatOfThePerfectToolWithinItsCovariance) {
     job.noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
     job.errors.accel_noise = 1e-5;
     job.tie_in.md = 5;
+    job.tie_in.tvd = 0;
     job.stations.every = 10;
     Sink sink;
     const Survey perfect = wellgyro::testing::SurveyOf(simulation, job, sink);

@@ -91,6 +91,7 @@ Job JobOf(const Simulation& simulation) {
   job.noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
   job.errors.accel_noise = kForceNoise;
   job.tie_in.md = 5;
+  job.tie_in.tvd = 0;
   job.stations.every = 10;
   return job;
 }

@@ -129,6 +129,7 @@ inline Job JobOf(const Hour& hour) {
   job.noise = hour.noise;
   job.errors = hour.errors;
   job.tie_in.md = 5;
+  job.tie_in.tvd = 0;
   job.stations.every = 10;
   return job;
 }

@@ -48,6 +48,7 @@ Job ExternalJob(const Simulation& simulation) {
   job.alignment.azimuth = begin.azimuth;
   job.alignment.sigma_azimuth = FromDegrees(1e-4);
   job.tie_in.md = begin.md;
+  job.tie_in.tvd = 0;
   return job;
 }
 

@@ -26,6 +26,7 @@ using testing::CollectingSink;
 TEST(RunLimits, ATieInBelowTheRunIsNoSurvey) {
   Job job = testing::SlantJob();
   job.tie_in.md = 350;
+  job.tie_in.tvd = 0;
   job.tie_in.inclination = FromDegrees(30);
   job.tie_in.azimuth = FromDegrees(45);
   Sink sink;

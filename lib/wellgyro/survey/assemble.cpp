@@ -116,7 +116,7 @@ std::optional<Station> OpeningStation(const Job& job, const std::vector<PassItem
   opening.md = tie.md;
   opening.cov_md_inc_azi.row(0).setZero();
   opening.cov_md_inc_azi.col(0).setZero();
-  opening.p_WT_W = {tie.north, tie.east, tie.tvd};
+  opening.p_WT_W = {tie.north, tie.east, tie.tvd.value_or(0)};
   opening.cov_p_WT_W = tie.cov_p_WT_W;
   return opening;
 }

@@ -24,7 +24,8 @@ struct ErrorModel;
 
 /// Where the survey is tied on: its first row.
 struct TieIn {
-  double md = 0, north = 0, east = 0, tvd = 0;           ///< [m]
+  double md = 0, north = 0, east = 0;                    ///< [m]
+  std::optional<double> tvd;                             ///< [m]; needed where md is not 0, else 0
   std::optional<double> inclination, azimuth;            ///< true [rad]; both or none
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< of the position [m^2]
   bool place_stated = true;  ///< false: nobody said, and north and east are taken as 0

@@ -10,9 +10,9 @@ namespace wellgyro {
 
 PathSite::PathSite(const Job& job)
     : job_(job),
-      site_(SiteAt(job.well.latitude, job.well.datum_elevation - job.tie_in.tvd)),
+      site_(SiteAt(job.well.latitude, job.well.datum_elevation - job.tie_in.tvd.value_or(0))),
       north_(job.tie_in.north),
-      tvd_(job.tie_in.tvd) {}
+      tvd_(job.tie_in.tvd.value_or(0)) {}
 
 void PathSite::Move(const AlongHole& along, const AttitudeSample& attitude) {
   if (!along.known || !std::isfinite(along.md)) return;

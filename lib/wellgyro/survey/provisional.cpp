@@ -19,7 +19,7 @@ bool ProvisionalPath::Start(const Station& first) {
                                   ? PathStation{tie.md, *tie.inclination, *tie.azimuth}
                                   : PathStation{tie.md, first.inclination, first.azimuth};
   path_.emplace(SiteAt(job_.well.latitude, job_.well.datum_elevation), opening,
-                Eigen::Vector3d(tie.north, tie.east, tie.tvd));
+                Eigen::Vector3d(tie.north, tie.east, tie.tvd.value_or(0)));
   points_ = {path_->last()};
   covs_W_ = {tie.cov_p_WT_W};
   return true;

@@ -41,13 +41,13 @@ double SigmaAlong(const Eigen::Matrix3d& cov, const Eigen::Vector3d& p) {
 }  // namespace
 
 Check CheckTieInPlace(const TieIn& tie_in) {
-  const Eigen::Vector3d p(tie_in.north, tie_in.east, tie_in.tvd);
+  const Eigen::Vector3d p(tie_in.north, tie_in.east, tie_in.tvd.value_or(0));
   const double sigma = SigmaAlong(tie_in.cov_p_WT_W, p);
   Check check = CompareWith("tie_in_place", 0, {std::max(0.0, p.norm() - tie_in.md), sigma},
                             kDepths * tie_in.md + kSlot + 3 * sigma, 1, "m",
                             ".2 % of md_m, 30 m and 3 sigma beyond it: straight is the shortest");
   if (tie_in.place_stated || check.verdict == Verdict::kFail) return check;
-  const double md = tie_in.md, tvd = tie_in.tvd;
+  const double md = tie_in.md, tvd = tie_in.tvd.value_or(0);
   const double aside = std::sqrt(std::max(0.0, (md - tvd) * (md + tvd)));
   const double sigma_aside = std::sqrt(tie_in.cov_p_WT_W.topLeftCorner<2, 2>().trace());
   check = CompareWith("tie_in_place", 0, {aside, sigma_aside}, kPlaces + 3 * sigma_aside, 1, "m",
@@ -66,7 +66,8 @@ Check CheckTieInWay(const TieIn& tie_in, std::vector<PathStation> seen) {
   }
   const double length = seen.empty() ? 0 : seen.back().md - seen.front().md;
   if (length < tie_in.md / 2) return NotDone("tie_in_way", 0, "no run over half of the way to it");
-  const Eigen::Vector3d off = Eigen::Vector3d(tie_in.north, tie_in.east, tie_in.tvd) - way;
+  const Eigen::Vector3d off =
+      Eigen::Vector3d(tie_in.north, tie_in.east, tie_in.tvd.value_or(0)) - way;
   const double sigma = SigmaAlong(tie_in.cov_p_WT_W, off), unseen = tie_in.md - length;
   return CompareWith("tie_in_way", 0, {std::max(0.0, off.norm() - unseen), sigma},
                      kTurned * length + kSlot + 3 * sigma, 1, "m",
