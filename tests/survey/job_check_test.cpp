@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/plausible.h"
 #include "wellgyro/survey/sample_counts.h"
 
 #include "support/small_hole.h"
@@ -87,15 +88,46 @@ TEST(JobCheck, EventsAreHeldToWhatPushedOnesAre) {
   };
   EXPECT_EQ(refused(&Event::value_m, 1000), "");
   for (const double odd : {kNan, kInf, -1e300}) {
-    EXPECT_THAT(refused(&Event::value_m, odd), HasSubstr("events[1] has value_m"));
-    EXPECT_THAT(refused(&Event::sigma_m, odd), HasSubstr("events[1] has sigma_m"));
-    EXPECT_THAT(refused(&Event::value_rad, odd), HasSubstr("events[1] has value_rad"));
-    EXPECT_THAT(refused(&Event::sigma_rad, odd), HasSubstr("events[1] has sigma_rad"));
+    EXPECT_THAT(refused(&Event::value_m, odd), HasSubstr("events[1].value_m"));
+    EXPECT_THAT(refused(&Event::sigma_m, odd), HasSubstr("events[1].sigma_m"));
+    EXPECT_THAT(refused(&Event::value_rad, odd), HasSubstr("events[1].value_rad"));
+    EXPECT_THAT(refused(&Event::sigma_rad, odd), HasSubstr("events[1].sigma_rad"));
   }
   EXPECT_THAT(WhyNot([](Job& job) {
                 job.depth.corrections = {{kInf, 1}};
               }),
               HasSubstr("depth.corrections"));
+}
+
+TEST(JobCheck, APushedEventsSigmaIsNoneBelowZero) {
+  EXPECT_EQ(WhyImplausible(Event{.sigma_m = 5, .sigma_rad = 5}), "");
+  EXPECT_EQ(WhyImplausible(Event{.sigma_m = -5}),
+            "an event has sigma_m: -5 must be at least 0, and was left out");
+  EXPECT_THAT(WhyImplausible(Event{.sigma_rad = -5}), HasSubstr("sigma_rad: -5"));
+}
+
+TEST(JobCheck, AnEnumerationHoldsOneOfItsValues) {
+  const auto names = [](const char* key) { return HasSubstr(std::string(key) + ": 99 is none"); };
+  EXPECT_THAT(WhyNot([](Job& job) { job.events.emplace_back().kind = Event::Kind{99}; }),
+              names("events[0].event"));
+  EXPECT_THAT(WhyNot([](Job& job) { job.events.emplace_back().kind = Event::Kind{0}; }),
+              HasSubstr("event: 0 is none"));
+  EXPECT_THAT(WhyNot([](Job& job) { job.depth.kind = DepthKind{99}; }), names("depth.kind"));
+  EXPECT_THAT(WhyNot([](Job& job) { job.depth.kind = DepthKind{-1}; }), HasSubstr("depth.kind"));
+  EXPECT_THAT(WhyNot([](Job& job) { job.alignment.method = AlignmentSpec::Method{99}; }),
+              names("alignment.method"));
+  EXPECT_THAT(WhyNot([](Job& job) { job.alignment.of = AlignmentSpec::Of{99}; }),
+              names("alignment.of"));
+  EXPECT_THAT(WhyNot([](Job& job) { job.attitude.order = AttitudeSpec::Order{99}; }),
+              names("attitude.order"));
+  EXPECT_THAT(WhyNot([](Job& job) { job.grid.emplace().projection = GridSpec::Projection{99}; }),
+              names("grid.projection"));
+}
+
+TEST(JobCheck, TheWellHeadLiesOnItsGrid) {
+  EXPECT_EQ(WhyNot([](Job& job) { job.grid.emplace(); }), "");
+  EXPECT_THAT(WhyNot([](Job& job) { job.grid.emplace().longitude_origin = 2; }),
+              HasSubstr("grid: the well head has no place on it"));
 }
 
 TEST(JobCheck, AToolWithoutAccelerometersIsRefused) {

@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
@@ -79,16 +78,39 @@ constexpr JobKey Word(std::string_view table, std::string_view key, std::string_
   return {table, key, type, absent, meaning};
 }
 
-constexpr NumberRange kAny{};
 // Of a gyro, in the units of data sheets: 1e6 deg/h are most of a turn in a second.
 constexpr NumberRange kError{.min = 0, .max = 1e6};
-constexpr NumberRange kAboveZero{.min = 0, .above_min = true};
+// Of a size above zero, in its key's unit: in SI units a double holds it too.
+constexpr NumberRange kSizeAboveZero{.min = 1e-9, .max = 1e6};
 constexpr NumberRange kTilt{.min = -5, .max = 5};
 constexpr NumberRange kFraction{.min = 0, .max = 1};
 constexpr NumberRange kWhole{.min = 0, .max = std::numeric_limits<std::int32_t>::max()};
 constexpr NumberRange kPlace{.min = -1e6, .max = 1e6};
+constexpr NumberRange kGridPlace{.min = -1e8, .max = 1e8};  // beyond any grid on the Earth
 constexpr NumberRange kDepth{.min = -limits::kMd, .max = limits::kMd};
 constexpr NumberRange kSigma{.min = 0, .max = limits::kSigma};
+constexpr NumberRange kCorrection{.min = -limits::kCorrection, .max = limits::kCorrection};
+constexpr NumberRange kUtimeUs{.min = 0, .max = limits::kUtcUs};
+constexpr NumberRange kSeq{.min = 0, .max = limits::kCount};
+constexpr NumberRange kText{.max = limits::kText};
+
+// LCM takes 63 bytes.
+constexpr JobKey Channel(std::string_view key, std::string Channels::*name, std::string_view absent,
+                         std::string_view meaning) {
+  JobKey found{"channels", key,     "text that no other channel has",
+               absent,     meaning, {.min = 1, .max = 63}};
+  found.channel = name;
+  return found;
+}
+
+// A list of rows of two numbers.
+constexpr JobKey RowsOfTwo(std::string_view table, std::string_view key, std::string_view type,
+                           NumberRange first, NumberRange second, std::string_view absent,
+                           std::string_view meaning) {
+  JobKey found = Listed(table, key, type, first, absent, meaning);
+  found.second = second;
+  return found;
+}
 
 constexpr std::array kWell{
     Word("well", "name", "text", "none", "of the well, for the files"),
@@ -129,9 +151,9 @@ constexpr std::array kGrid{
     Number<&Job::grid, &GridSpec::scale_origin>(
         "grid", "scale_origin", 1, {.min = 0.5, .max = 2},
         "scale on the central meridian, the parallel or at the pole", "1"),
-    Number<&Job::grid, &GridSpec::false_easting>("grid", "false_easting_m", 1, kAny,
+    Number<&Job::grid, &GridSpec::false_easting>("grid", "false_easting_m", 1, kGridPlace,
                                                  "of the natural origin", "0"),
-    Number<&Job::grid, &GridSpec::false_northing>("grid", "false_northing_m", 1, kAny,
+    Number<&Job::grid, &GridSpec::false_northing>("grid", "false_northing_m", 1, kGridPlace,
                                                   "of the natural origin", "0"),
     Number<&Job::grid, &GridSpec::convergence>(
         "grid", "convergence_deg", kDeg, {.min = -180, .max = 180},
@@ -175,7 +197,7 @@ constexpr std::array kNoise{
     Number<&Job::noise, &NoiseCoefficients::rate_ramp>("noise", "rate_ramp_deg_per_h2",
                                                        units::kDegPerHour2, kError, "R"),
     Number<&Job::noise, &NoiseCoefficients::bias_instability_correlation_time>(
-        "noise", "bias_instability_correlation_time_h", units::kHour, kAboveZero,
+        "noise", "bias_instability_correlation_time_h", units::kHour, kSizeAboveZero,
         "of B as a Gauss-Markov process", "B is a constant"),
 };
 
@@ -230,16 +252,16 @@ constexpr std::array kFilesAndChannels{
     Word("tool", "file", "text", "samples come in SI units", "tool file, wellgyro.tool/1"),
     Word("error_model", "file", "text", "the run's own covariance",
          "error model, wellgyro.error-model/1"),
-    Word("channels", "raw", "text", "WELLGYRO_RAW", "counts"),
-    Word("channels", "imu", "text", "WELLGYRO_IMU", "samples in SI units"),
-    Word("channels", "still", "text", "WELLGYRO_STILL", "averages at rest"),
-    Word("channels", "depth", "text", "WELLGYRO_DEPTH", "depth marks"),
-    Word("channels", "mode", "text", "WELLGYRO_MODE", "modes of the tool"),
-    Word("channels", "tool", "text", "WELLGYRO_TOOL", "what the tool says of itself"),
-    Word("channels", "event", "text", "WELLGYRO_EVENT", "what people did"),
-    Word("channels", "command", "text", "WELLGYRO_CMD", "orders"),
-    Word("channels", "station", "text", "WELLGYRO_STATION", "stations, sent"),
-    Word("channels", "status", "text", "WELLGYRO_STATUS", "health, sent"),
+    Channel("raw", &Channels::raw, "WELLGYRO_RAW", "counts"),
+    Channel("imu", &Channels::imu, "WELLGYRO_IMU", "samples in SI units"),
+    Channel("still", &Channels::still, "WELLGYRO_STILL", "averages at rest"),
+    Channel("depth", &Channels::depth, "WELLGYRO_DEPTH", "depth marks"),
+    Channel("mode", &Channels::mode, "WELLGYRO_MODE", "modes of the tool"),
+    Channel("tool", &Channels::tool, "WELLGYRO_TOOL", "what the tool says of itself"),
+    Channel("event", &Channels::event, "WELLGYRO_EVENT", "what people did"),
+    Channel("command", &Channels::command, "WELLGYRO_CMD", "orders"),
+    Channel("station", &Channels::station, "WELLGYRO_STATION", "stations, sent"),
+    Channel("status", &Channels::status, "WELLGYRO_STATUS", "health, sent"),
 };
 
 constexpr std::array kAlignment{
@@ -249,14 +271,14 @@ constexpr std::array kAlignment{
                                                        "shortest stop that is gyrocompassed"),
     External<&AlignmentSpec::azimuth>("azimuth_true_deg", {.min = -360, .max = 360},
                                       "an external azimuth"),
-    External<&AlignmentSpec::sigma_azimuth>("sigma_azimuth_deg",
-                                            {.min = 0, .max = 180, .above_min = true}, "its sigma"),
+    External<&AlignmentSpec::sigma_azimuth>("sigma_azimuth_deg", {.min = 1e-6, .max = 180},
+                                            "its sigma"),
     Word("alignment", "of", "axis or mark", "axis", "what the external azimuth belongs to"),
     Number<&Job::alignment, &AlignmentSpec::at_md>("alignment", "at_md_m", 1, kDepth,
                                                    "depth at which it holds",
                                                    "the begin of the first sample"),
-    Word("alignment", "at_utime_us", "whole number", "the begin of the first sample",
-         "time at which it holds, UTC since 1970; instead of at_md_m"),
+    Listed("alignment", "at_utime_us", "whole number", kUtimeUs, "the begin of the first sample",
+           "time at which it holds, UTC since 1970; instead of at_md_m"),
     Word("alignment", "use_fixes", "true or false", "true",
          "whether later north fixes count beside an external azimuth"),
 };
@@ -275,9 +297,8 @@ constexpr std::array kStations{
     Number<&Job::depth, &DepthSpec::max_gap>(
         "depth", "max_gap_s", 1, {.min = 0.1, .max = 600},
         "between marks of a moving tool, above which depth is unknown"),
-    Listed("depth", "corrections", "rows of two numbers, depths increasing, the second",
-           {.min = -1e4, .max = 1e4}, "none",
-           "measured depth and what to add to it [m], linear between"),
+    RowsOfTwo("depth", "corrections", "rows of two numbers, depths increasing", kDepth, kCorrection,
+              "none", "measured depth and what to add to it [m], linear between"),
 };
 
 constexpr std::array kCable{
@@ -335,21 +356,21 @@ constexpr std::array kStringAndChecks{
         "of an azimuth made true by it, alike at all stops", "required"),
     Word("magnetic", "tie", "true or false", "false",
          "whether the first of each run ties its azimuth"),
-    Number<&Job::acceptance, &Acceptance::gravity>("acceptance", "gravity_mps2", 1, kAboveZero,
+    Number<&Job::acceptance, &Acceptance::gravity>("acceptance", "gravity_mps2", 1, kSizeAboveZero,
                                                    "largest error", "3 sigma"),
     Number<&Job::acceptance, &Acceptance::earth_rate>("acceptance", "earth_rate_deg_per_h",
-                                                      units::kDegPerHour, kAboveZero,
+                                                      units::kDegPerHour, kSizeAboveZero,
                                                       "largest error", "3 sigma"),
     Number<&Job::acceptance, &Acceptance::inclination_difference>(
-        "acceptance", "inclination_difference_deg", kDeg, kAboveZero, "in-run against out-run",
+        "acceptance", "inclination_difference_deg", kDeg, kSizeAboveZero, "in-run against out-run",
         "3 sigma"),
     Number<&Job::acceptance, &Acceptance::azimuth_difference>(
-        "acceptance", "azimuth_difference_deg", kDeg, kAboveZero, "in-run against out-run",
+        "acceptance", "azimuth_difference_deg", kDeg, kSizeAboveZero, "in-run against out-run",
         "3 sigma"),
     Number<&Job::acceptance, &Acceptance::foresight>("acceptance", "foresight_deg", kDeg,
-                                                     kAboveZero, "largest error", "3 sigma"),
+                                                     kSizeAboveZero, "largest error", "3 sigma"),
     Number<&Job::acceptance, &Acceptance::depth_closure>(
-        "acceptance", "depth_closure_m", 1, kAboveZero, "at the return to zero", "3 sigma"),
+        "acceptance", "depth_closure_m", 1, kSizeAboveZero, "at the return to zero", "3 sigma"),
 };
 
 constexpr std::array kRunsAndEvents{
@@ -360,16 +381,16 @@ constexpr std::array kRunsAndEvents{
          "64 hexadecimal digits, Ed25519: orders it has signed are obeyed, and no others"),
     Listed("run", "number", "whole number", {.min = 1, .max = kWhole.max}, "required",
            "of the run"),
-    Word("run", "begin_utime_us", "whole number", "none", "UTC since 1970"),
-    Word("run", "end_utime_us", "whole number", "none", "what comes later is left out"),
+    Listed("run", "begin_utime_us", "whole number", kUtimeUs, "none", "UTC since 1970"),
+    Listed("run", "end_utime_us", "whole number", kUtimeUs, "none", "what comes later is left out"),
     Word("run", "verdict", "ok or misrun", "ok", "a misrun gives no stations"),
     Word("run", "remark", "text", "none", "for the files"),
-    Word("event", "utime_us", "whole number", "required", "UTC since 1970"),
+    Listed("event", "utime_us", "whole number", kUtimeUs, "required", "UTC since 1970"),
     Word("event", "event",
          "depth_zero, depth_rezero, depth_tie, return_to_zero, foresight, run_begin, run_end, "
          "accept, reject or remark",
          "required", "what was done"),
-    Word("event", "seq", "whole number", "0", "of the message"),
+    Listed("event", "seq", "whole number", kSeq, "0", "of the message"),
     Listed("event", "session", "whole number", kWhole, "0", "of the message"),
     Listed("event", "run", "whole number", kWhole, "0", "of the tool"),
     Listed("event", "event_id", "whole number", kWhole, "0", "of who sends"),
@@ -378,9 +399,9 @@ constexpr std::array kRunsAndEvents{
     Listed("event", "value_rad", "number", {.min = -limits::kAngle, .max = limits::kAngle}, "none",
            "an angle"),
     Listed("event", "sigma_rad", "number", kSigma, "0", "its sigma"),
-    Word("event", "what", "text", "none", "shoe, mark ..."),
-    Word("event", "who", "text", "none", "who did it"),
-    Word("event", "text", "text", "none", "a remark's words"),
+    Listed("event", "what", "text", kText, "none", "shoe, mark ..."),
+    Listed("event", "who", "text", kText, "none", "who did it"),
+    Listed("event", "text", "text", kText, "none", "a remark's words"),
 };
 
 template <std::size_t... sizes>
@@ -413,6 +434,14 @@ std::optional<std::string> ComplaintOfSi(double si, const JobKey& key) {
   return ComplaintOf(value, key.range);
 }
 
+// What follows the type in the reference: ", 0 to 90".
+std::string LimitText(const JobKey& key) {
+  const std::string range = TextOf(key.range), second = TextOf(key.second);
+  if (range == "any") return "";
+  return ", " + range + (key.type.starts_with("text") ? " bytes" : "") +
+         (second == "any" ? "" : " and " + second);
+}
+
 std::string AbsentText(const JobKey& key) {
   if (!key.absent.empty()) return std::string(key.absent);
   const Job job;
@@ -442,29 +471,6 @@ std::optional<std::string> FindNumberComplaint(const Job& job) {
   return std::nullopt;
 }
 
-std::optional<std::string> FindCovarianceComplaint(const Eigen::Matrix3d& cov_p_WT_W) {
-  // Rounding to nine digits, as survey.csv has them, moves eigenvalues by less of the trace.
-  constexpr double kByDigits = 1e-8;
-  constexpr double kLargest = kPlace.max * kPlace.max;  // [m^2]
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (std::abs(cov_p_WT_W(i, j)) <= kLargest) continue;
-      return fmt::format("{} in row {}, column {} is no covariance of a position [m^2]",
-                         cov_p_WT_W(i, j), i + 1, j + 1);
-    }
-  }
-  const double rounding = kByDigits * std::abs(cov_p_WT_W.trace());
-  const Eigen::Matrix3d skew = cov_p_WT_W - cov_p_WT_W.transpose();
-  if (skew.cwiseAbs().maxCoeff() > rounding) return "must be symmetric";
-  const auto eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(cov_p_WT_W, Eigen::EigenvaluesOnly)
-          .eigenvalues();
-  if (eigenvalues.minCoeff() < -rounding) {
-    return fmt::format("has a direction of negative variance, {:.3g} m^2", eigenvalues.minCoeff());
-  }
-  return std::nullopt;
-}
-
 std::string JobReference() {
   std::string text;
   std::string_view table;
@@ -475,9 +481,8 @@ std::string JobReference() {
       text += fmt::format("\n## {}{}{}\n\n| key | is | without it | meaning |\n|---|---|---|---|\n",
                           list ? "[[" : "[", table, list ? "]]" : "]");
     }
-    const std::string range = TextOf(key.range);
-    text += fmt::format("| `{}` | {}{} | {} | {} |\n", key.key, key.type,
-                        range == "any" ? "" : ", " + range, AbsentText(key), key.meaning);
+    text += fmt::format("| `{}` | {}{} | {} | {} |\n", key.key, key.type, LimitText(key),
+                        AbsentText(key), key.meaning);
   }
   return text;
 }

@@ -5,8 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include <Eigen/Core>
-
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/number_range.h"
 #include "wellgyro/survey/job.h"
@@ -22,11 +20,14 @@ struct JobKey {
   std::string_view type;  ///< "number", "whole number", "text", "true or false", "gyrocompass, ..."
   std::string_view absent;   ///< what holds without it; empty: the number of a Job{}
   std::string_view meaning;  ///< one sentence or less
-  NumberRange range = {};    ///< of a number, or of each in a list, in the key's unit
-  double unit = 1;           ///< one of the key's unit in SI
+  /// Of a number, or of each in a list, in the key's unit; of a text's length [bytes].
+  NumberRange range = {};
+  double unit = 1;  ///< one of the key's unit in SI
   /// Where the number stands in a Job; null where it is absent. Null for what is no single number.
   const double* (*find)(const Job&) = nullptr;
-  double* (*make)(Job&) = nullptr;  ///< the same, made first where it is absent
+  double* (*make)(Job&) = nullptr;           ///< the same, made first where it is absent
+  NumberRange second = {};                   ///< of the second number of each row of a list of two
+  std::string Channels::*channel = nullptr;  ///< the name that it gives, of [channels]
 };
 
 /// In the order of the reference.
@@ -38,11 +39,6 @@ WELLGYRO_EXPORT const JobKey& JobKeyOf(std::string_view table, std::string_view 
 /// What is wrong with the first number of `job` that is out of its range: "depth.latency_s: 900
 /// must be at most 600".
 WELLGYRO_EXPORT std::optional<std::string> FindNumberComplaint(const Job& job);
-
-/// What is wrong with `cov_p_WT_W` as the covariance of a position [m^2]: a number that is none, no
-/// symmetry, or a direction of negative variance.
-WELLGYRO_EXPORT std::optional<std::string> FindCovarianceComplaint(
-    const Eigen::Matrix3d& cov_p_WT_W);
 
 /// The keys as Markdown, a table of each section.
 WELLGYRO_EXPORT std::string JobReference();

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/record/limits.h"
+#include "wellgyro/survey/job_rules.h"
 
 namespace wellgyro {
 namespace {
@@ -66,20 +67,9 @@ std::string WhyImplausible(const Command& command) {
   return LeftOut("a command", std::move(complaint).text());
 }
 
-std::string FindImplausible(const Event& event) {
-  Complaint complaint;
-  complaint.Within("value_m", event.value_m, -limits::kMd, limits::kMd);
-  complaint.Within("sigma_m", event.sigma_m, -limits::kSigma, limits::kSigma);
-  complaint.Within("value_rad", event.value_rad, -limits::kAngle, limits::kAngle);
-  complaint.Within("sigma_rad", event.sigma_rad, -limits::kSigma, limits::kSigma);
-  complaint.Short("what", event.what);
-  complaint.Short("who", event.who);
-  complaint.Short("text", event.text);
-  return std::move(complaint).text();
-}
-
 std::string WhyImplausible(const Event& event) {
-  return LeftOut("an event", FindImplausible(event));
+  const auto wrong = FindValueComplaint(event);
+  return wrong ? LeftOut("an event", fmt::format("{}: {}", wrong->key, wrong->why)) : "";
 }
 
 }  // namespace wellgyro

@@ -8,15 +8,11 @@
 
 namespace wellgyro {
 
-// Whether a record that came in holds what it can hold by record/limits.h: empty, or the sentence
-// that says what is wrong with it.
+// Whether a record that came in holds what it can hold by record/limits.h, an event by
+// survey/job_keys.h: empty, or the sentence that says what is wrong with it.
 WELLGYRO_EXPORT std::string WhyImplausible(const DepthMark& mark);
 WELLGYRO_EXPORT std::string WhyImplausible(const ToolInfo& info);
 WELLGYRO_EXPORT std::string WhyImplausible(const Command& command);
 WELLGYRO_EXPORT std::string WhyImplausible(const Event& event);
-
-/// The field of `event` that holds what it cannot, as "sigma_m = nan, which is outside ..."; empty
-/// where none does.
-std::string FindImplausible(const Event& event);
 
 }  // namespace wellgyro

@@ -2,11 +2,8 @@
 
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <utility>
-
-#include <fmt/core.h>
 
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/toml/coefficients_internal.h"
@@ -16,6 +13,7 @@
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/tool_file.h"
+#include "wellgyro/survey/job_rules.h"
 #include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {
@@ -80,21 +78,15 @@ class JobReader {
     if (auto table = root.FindTable("magnetic")) ReadMagnetic(*table, job);
     if (auto table = root.FindTable("acceptance")) ReadNumbers(*table, "acceptance", job);
     file_.operations = ReadOperations(root);
-    TakeRuns(root);
+    for (const TomlTable& table : root.FindTables("run")) ReadRun(table, job.runs);
     for (const TomlTable& table : root.FindTables("event")) job.events.push_back(ReadEvent(table));
     return std::move(file_);
   }
 
  private:
   void TakeGrid(TomlTable& table) {
-    const Job::Well& well = file_.job.well;
     ReadGrid(table, file_.job);
-    try {
-      const WellGrid probe(*file_.job.grid,
-                           {.latitude = well.latitude, .longitude = well.longitude});
-    } catch (const std::exception& error) {
-      table.Refuse("", fmt::format("the well head has no place on it: {}", error.what()));
-    }
+    if (const auto complaint = FindWellHeadComplaint(file_.job)) table.Refuse("", *complaint);
   }
 
   void TakeTieIn(TomlTable& table) {
@@ -128,16 +120,6 @@ class JobReader {
     Result<ErrorModel> model = ReadErrorModel(text, files_.PathOf(name).string());
     if (!model) throw TomlError{model.fault()};
     file_.job.error_model = std::make_shared<const ErrorModel>(*std::move(model));
-  }
-
-  void TakeRuns(TomlTable& root) {
-    std::set<std::int32_t> numbers;
-    for (TomlTable& table : root.FindTables("run")) {
-      file_.job.runs.push_back(ReadRun(table));
-      if (numbers.insert(file_.job.runs.back().number).second) continue;
-      table.Refuse("number", fmt::format("{} stands twice", file_.job.runs.back().number),
-                   FaultCode::kConflict);
-    }
   }
 
   NamedFiles& files_;

@@ -1,5 +1,7 @@
 #include "wellgyro/io/toml/job_numbers_internal.h"
 
+#include <limits>
+
 #include "wellgyro/survey/job_keys.h"
 
 namespace wellgyro {
@@ -25,6 +27,16 @@ void ReadNumbers(TomlTable& table, std::string_view section, Job& job) {
   for (const JobKey& key : JobKeys()) {
     if (key.table == section && key.make) Take(table, key, job);
   }
+}
+
+std::optional<std::int64_t> FindWhole(TomlTable& table, std::string_view section,
+                                      std::string_view key) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  const auto number = table.FindInteger(key, Limits::min(), Limits::max());
+  if (!number) return std::nullopt;
+  const auto complaint = ComplaintOfWhole(*number, JobKeyOf(section, key).range);
+  if (complaint) table.Refuse(key, *complaint);
+  return number;
 }
 
 std::optional<double> FindListed(TomlTable& table, std::string_view section, std::string_view key) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -17,6 +18,10 @@ void NeedNumber(TomlTable& table, std::string_view section, std::string_view key
 
 /// All numbers of `section`.
 void ReadNumbers(TomlTable& table, std::string_view section, Job& job);
+
+/// A whole number.
+std::optional<std::int64_t> FindWhole(TomlTable& table, std::string_view section,
+                                      std::string_view key);
 
 /// A number that has no one place in a job, in SI.
 std::optional<double> FindListed(TomlTable& table, std::string_view section, std::string_view key);

@@ -1,9 +1,6 @@
 #include "wellgyro/io/toml/job_sections_internal.h"
 
-#include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -11,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
@@ -19,20 +15,29 @@
 #include "wellgyro/io/toml/job_numbers_internal.h"
 #include "wellgyro/io/words.h"
 #include "wellgyro/survey/job_keys.h"
+#include "wellgyro/survey/job_rules.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kUtimeMax = std::numeric_limits<std::int64_t>::max() / 1000;  // [us]
-
-std::optional<UtcTime> FindUtime(TomlTable& table, std::string_view key) {
-  const auto us = table.FindInteger(key, 0, kUtimeMax);
+std::optional<UtcTime> FindUtime(TomlTable& table, std::string_view section, std::string_view key) {
+  const auto us = FindWhole(table, section, key);
   if (!us) return std::nullopt;
   return UtcTime{*us * 1000};
 }
 
-std::int32_t Small(TomlTable& table, std::string_view key, std::int64_t min, std::int32_t absent) {
-  return static_cast<std::int32_t>(table.FindInteger(key, min, kInt32Most).value_or(absent));
+void ReadSmall(TomlTable& table, std::string_view section, std::string_view key,
+               std::int32_t& value) {
+  if (const auto found = FindWhole(table, section, key)) value = static_cast<std::int32_t>(*found);
+}
+
+// Lines are those of the key at fault, or of the one that it goes against.
+void RefuseWrong(const TomlTable& table, const std::optional<KeyComplaint>& wrong) {
+  if (!wrong) return;
+  const bool here = table.Has(wrong->key) || !table.Has(wrong->other);
+  const std::string_view key = here ? wrong->key : wrong->other;
+  if (!table.Has(key)) table.RefuseAbsent(key, wrong->why);
+  table.Refuse(key, wrong->why, wrong->code);
 }
 
 // Three rows of (north, east, TVD) [m2].
@@ -89,11 +94,8 @@ void ReadExternalAzimuth(TomlTable& table, Job& job) {
   spec.azimuth = WrapTwoPi(spec.azimuth);
   NeedNumber(table, "alignment", "sigma_azimuth_deg", job);
   ReadNumber(table, "alignment", "at_md_m", job);
-  spec.at_utc = FindUtime(table, "at_utime_us");
-  if (spec.at_md && spec.at_utc) {
-    table.Refuse("at_md_m", "stands beside at_utime_us; only one of them can hold",
-                 FaultCode::kConflict);
-  }
+  spec.at_utc = FindUtime(table, "alignment", "at_utime_us");
+  RefuseWrong(table, FindKeyComplaint(spec));
   table.Read("use_fixes", spec.use_fixes);
 }
 
@@ -129,48 +131,19 @@ void ReadGrid(TomlTable table, Job& job) {
 void ReadTieIn(TomlTable table, Job& job) {
   TieIn& tie_in = job.tie_in;
   ReadNumbers(table, "tie_in", job);
-  if (tie_in.md != 0 && !table.Has("tvd_m")) {
-    table.RefuseAbsent("tvd_m", "is missing beside md_m: how deep the tie-in is, is not guessed");
-  }
+  RefuseWrong(table, FindKeyComplaint(tie_in));
   tie_in.place_stated = table.Has("north_m") && table.Has("east_m");
   if (tie_in.azimuth) tie_in.azimuth = WrapTwoPi(*tie_in.azimuth);
-  if (tie_in.inclination && !tie_in.azimuth) {
-    table.RefuseAbsent("azimuth_true_deg", "is missing beside inclination_deg");
-  }
-  if (tie_in.azimuth && !tie_in.inclination) {
-    table.RefuseAbsent("inclination_deg", "is missing beside azimuth_true_deg");
-  }
   const std::string_view covariance = table.Has("covariance") ? "covariance" : "covariance_m2";
   tie_in.cov_p_WT_W = FindCovariance(table, covariance).value_or(Eigen::Matrix3d::Zero());
 }
 
 Channels ReadChannels(TomlTable table) {
   Channels channels;
-  const std::array<std::pair<std::string_view, std::string*>, 10> names{
-      {{"raw", &channels.raw},
-       {"imu", &channels.imu},
-       {"still", &channels.still},
-       {"depth", &channels.depth},
-       {"mode", &channels.mode},
-       {"tool", &channels.tool},
-       {"event", &channels.event},
-       {"command", &channels.command},
-       {"station", &channels.station},
-       {"status", &channels.status}}};
-  for (const auto& [key, name] : names) {
-    table.Read(key, *name);
-    // LCM's own limit is 63 characters.
-    if (name->empty() || name->size() > 63) table.Refuse(key, "must have 1 to 63 characters");
+  for (const JobKey& key : JobKeys()) {
+    if (key.channel) table.Read(key.key, channels.*key.channel);
   }
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (*names[i].second != *names[j].second) continue;
-      table.Refuse(table.Has(names[i].first) ? names[i].first : names[j].first,
-                   fmt::format("\"{}\" is the channel of {} and of {}", *names[i].second,
-                               names[j].first, names[i].first),
-                   FaultCode::kConflict);
-    }
-  }
+  RefuseWrong(table, FindKeyComplaint(channels));
   return channels;
 }
 
@@ -202,15 +175,7 @@ void ReadStations(TomlTable table, Job& job) {
   }
   ReadNumber(table, "stations", "every_m", job);
   table.Read("at_stops", spec.at_stops);
-  for (std::size_t i = 1; i < spec.at.size(); ++i) {
-    if (spec.at[i] > spec.at[i - 1]) continue;
-    table.Refuse("at_m",
-                 fmt::format("{} after {}: depths must increase", spec.at[i], spec.at[i - 1]));
-  }
-  if (spec.every == 0 && spec.at.empty() && !spec.at_stops) {
-    table.Refuse(table.Has("every_m") ? "every_m" : "at_m",
-                 "asks for no station: give every_m, at_m or at_stops = true");
-  }
+  RefuseWrong(table, FindKeyComplaint(spec));
 }
 
 void ReadDepth(TomlTable table, Job& job) {
@@ -226,16 +191,10 @@ void ReadDepth(TomlTable table, Job& job) {
   }
   ReadNumbers(table, "depth", job);
   if (auto cable = table.FindTable("cable")) ReadNumbers(*cable, "depth.cable", job);
-  const NumberRange& range = JobKeyOf("depth", "corrections").range;
-  for (const auto& row :
-       table.FindRows("corrections", 2).value_or(std::vector<std::vector<double>>())) {
-    if (!spec.corrections.empty() && !(row[0] > spec.corrections.back().first)) {
-      table.Refuse("corrections", fmt::format("depth {} after {}: depths must increase", row[0],
-                                              spec.corrections.back().first));
-    }
-    if (const auto complaint = ComplaintOf(row[1], range)) table.Refuse("corrections", *complaint);
-    spec.corrections.emplace_back(row[0], row[1]);
+  if (const auto rows = table.FindRows("corrections", 2)) {
+    for (const auto& row : *rows) spec.corrections.emplace_back(row[0], row[1]);
   }
+  RefuseWrong(table, FindKeyComplaint(spec));
 }
 
 void ReadMagnetic(TomlTable table, Job& job) {
@@ -262,27 +221,24 @@ OperationSpec ReadOperations(TomlTable& root) {
   return spec;
 }
 
-RunSpec ReadRun(TomlTable table) {
-  RunSpec run;
-  run.number =
-      static_cast<std::int32_t>(table.Need("number", table.FindInteger("number", 1, kInt32Most)));
-  run.begin = FindUtime(table, "begin_utime_us");
-  run.end = FindUtime(table, "end_utime_us");
-  if (run.begin && run.end && !(*run.end > *run.begin)) {
-    table.Refuse("end_utime_us", "must be later than begin_utime_us");
-  }
+void ReadRun(TomlTable table, std::vector<RunSpec>& runs) {
+  RunSpec& run = runs.emplace_back();
+  if (!table.Has("number")) table.RefuseAbsent("number", "is missing");
+  ReadSmall(table, "run", "number", run.number);
+  run.begin = FindUtime(table, "run", "begin_utime_us");
+  run.end = FindUtime(table, "run", "end_utime_us");
   run.misrun = table.FindWord<bool>("verdict", {{"ok", false}, {"misrun", true}}).value_or(false);
   table.Read("remark", run.remark);
-  return run;
+  RefuseWrong(table, FindKeyComplaint(runs));
 }
 
 Event ReadEvent(TomlTable table) {
   Event event;
-  event.utc = table.Need("utime_us", FindUtime(table, "utime_us"));
-  event.seq = table.FindInteger("seq", 0, std::numeric_limits<std::int64_t>::max()).value_or(0);
-  event.session = Small(table, "session", 0, 0);
-  event.run = Small(table, "run", 0, 0);
-  event.event_id = Small(table, "event_id", 0, 0);
+  event.utc = table.Need("utime_us", FindUtime(table, "event", "utime_us"));
+  event.seq = FindWhole(table, "event", "seq").value_or(event.seq);
+  ReadSmall(table, "event", "session", event.session);
+  ReadSmall(table, "event", "run", event.run);
+  ReadSmall(table, "event", "event_id", event.event_id);
   const std::string word = table.Need("event", table.FindString("event"));
   const std::optional<Event::Kind> kind = EventKindOf(word);
   if (!kind) {
@@ -301,6 +257,7 @@ Event ReadEvent(TomlTable table) {
   table.Read("what", event.what);
   table.Read("who", event.who);
   table.Read("text", event.text);
+  RefuseWrong(table, FindKeyComplaint(event));
   return event;
 }
 

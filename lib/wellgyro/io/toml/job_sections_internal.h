@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/record/operations.h"
@@ -37,8 +38,8 @@ void ReadDepth(TomlTable table, Job& job);
 void ReadMagnetic(TomlTable table, Job& job);
 /// [operations] and each [[operator]].
 OperationSpec ReadOperations(TomlTable& root);
-/// One [[run]].
-RunSpec ReadRun(TomlTable table);
+/// One [[run]], behind those before it.
+void ReadRun(TomlTable table, std::vector<RunSpec>& runs);
 /// One [[event]], as it would have come by message.
 Event ReadEvent(TomlTable table);
 
