@@ -61,7 +61,8 @@ class FollowedRun {
     job.well.latitude = c.site.latitude;
     job.noise = c.gyro;
     job.errors = c.errors;
-    job.tie_in.md = job.tie_in.tvd = c.way.begin_md;
+    job.tie_in.md = c.way.begin_md;
+    job.tie_in.tvd = c.way.begin_md;
     job.stations.every = 30;
     job.depth.latency = 2;
     return job;

@@ -185,7 +185,7 @@ TEST(CheckTieIn, ItsPlaceIsOneThatTheHoleReaches) {
   EXPECT_EQ(reached.verdict, Verdict::kPass);
   EXPECT_EQ(reached.value, 0);
   EXPECT_EQ(CheckTieInPlace({.md = 1000, .tvd = 1000}).verdict, Verdict::kPass) << "straight down";
-  tie_in.tvd /= 0.3048;  // in feet
+  tie_in.tvd = 800 / 0.3048;  // in feet
   const Check feet = CheckTieInPlace(tie_in);
   EXPECT_EQ(feet.verdict, Verdict::kFail);
   EXPECT_NEAR(feet.value.value_or(0), std::hypot(500, 800 / 0.3048) - 1000, 1e-9);
