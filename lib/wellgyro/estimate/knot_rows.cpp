@@ -42,6 +42,15 @@ constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 // and the fit, a mean over its window, may show but a quarter of the change: 4/8.
 constexpr double kTrapezoid = 0.5;
 
+/// Lateral to the force, a roll by gravity has taken its noise off: of the variance `seen` the
+/// share inc.lateral is left.
+void ShrinkLateral(const Increment& inc, double seen, double missed, Factor& f) {
+  const double norm = inc.force_M.head<2>().norm();
+  if (inc.lateral == 1 || !(norm > 0)) return;
+  const Vector3d lateral(-inc.force_M.y() / norm, inc.force_M.x() / norm, 0);
+  f.Shrink(lateral, std::sqrt((inc.lateral * seen + missed) / (seen + missed)));
+}
+
 }  // namespace
 
 void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RollChange& roll,
@@ -228,11 +237,7 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   if (layout_.gravity_gradient != kAbsent) {
     f.Column(block.border() + layout_.gravity_gradient) = whiten * t.place.depth * down_M;
   }
-  const double norm = inc.force_M.head<2>().norm();
-  if (inc.lateral != 1 && norm > 0) {
-    const Vector3d lateral(-inc.force_M.y() / norm, inc.force_M.x() / norm, 0);
-    f.Shrink(lateral, std::sqrt((inc.lateral * seen + missed) / (seen + missed)));
-  }
+  ShrinkLateral(inc, seen, missed, f);
   block.Add(f);
 }
 
