@@ -42,8 +42,8 @@ constexpr double kUnknownSpeed = 1;   // [m/s], without depth marks
 // and the fit, a mean over its window, may show but a quarter of the change: 4/8.
 constexpr double kTrapezoid = 0.5;
 
-/// Lateral to the force, a roll by gravity has taken its noise off: of the variance `seen` the
-/// share inc.lateral is left.
+/// Whitens the direction lateral to the force by its own variance: of the noise's part `seen` it is
+/// Increment::lateral times as large.
 void ShrinkLateral(const Increment& inc, double seen, double missed, Factor& f) {
   const double norm = inc.force_M.head<2>().norm();
   if (inc.lateral == 1 || !(norm > 0)) return;
