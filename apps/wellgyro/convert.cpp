@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/bus/log_tables.h"
@@ -216,7 +216,8 @@ int Convert(ConvertOptions& o) {
   if (identity->kind == FileKind::kLcmLog) return ConvertLog(o);
   const auto format = o.to.empty() ? FormatByName(o.out) : SurveyFormatOf(o.to);
   if (!format) {
-    return Misused(fmt::format("{}: the name does not say which format: add --to", o.out));
+    return Misused(fmt::format("{}: the name does not say which format: add --to, with one of {}",
+                               o.out, fmt::join(WrittenFormats(), ", ")));
   }
   if (const auto fault = FindConvergence(o)) return Unusable(*fault);
   return WriteAs(*format, o);

@@ -124,6 +124,13 @@ class Terminal(FreshProgramTest):
             self.assertIn("must be different files", done.stderr)
         self.assertTrue(self.Read("in.csv").startswith("MD[m],INC"))
 
+    def test_an_ending_that_names_no_format_comes_with_those_that_are_taken(self):
+        self.Write("in.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n0,0,0\n30,1.5,350\n")
+        done = Run("convert", self.Path("in.csv"), self.Path("out.xyz"))
+        self.assertEqual(done.returncode, 1)
+        for word in ("--to", "las", "witsml", "p717"):
+            self.assertIn(word, done.stderr)
+
     def test_a_log_becomes_tables(self):
         log = self.Write("begin.lcm", Begin())
         done = Run("convert", log, self.Path("run.csv"))
