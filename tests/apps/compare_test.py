@@ -85,6 +85,21 @@ class CompareAndMerge(FreshProgramTest):
             self.assertEqual(done.returncode, code, (arguments, done.stderr))
             self.assertIn(says, done.stderr)
 
+    def test_a_surveys_folder_keeps_its_own_files(self):
+        os.mkdir("result")
+        for name in ("run.toml", "checks.csv"):
+            self.Write("result/" + name, "the survey's\n")
+        words = ["compare", "gyro.csv", "mwd.csv", "--model-a", "GYRO-NS-CT", "--model-b",
+                 "GYRO-NS-CT", *PLACE, "--out", "result"]
+        done = Run(*words)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("result holds a survey, which has a checks.csv of its own", done.stderr)
+        self.assertEqual(sorted(os.listdir(self.Path("result"))), ["checks.csv", "run.toml"])
+        self.assertEqual(self.Read("result/checks.csv"), "the survey's\n")
+        os.remove(self.Path("result", "run.toml"))
+        self.assertEqual(Run(*words).returncode, 0)
+        self.assertEqual(Run(*words).returncode, 0, "its own may be written again")
+
     def Plan(self, text):
         self.Write("plan.toml", 'format = "wellgyro.merge/1"\n' + text)
 
