@@ -3,13 +3,16 @@
 #include <cmath>
 #include <numbers>
 
+/// @file
+/// Degrees and radians, and angles within one turn.
 namespace wellgyro {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2 * std::numbers::pi;
 
-/// Degrees to radians and back, for the edges: inside the library every angle is in radians.
+/// Degrees to radians, for the edges: inside the library every angle is in radians.
 constexpr double FromDegrees(double degrees) { return degrees * (kPi / 180); }
+/// Radians to degrees, likewise.
 constexpr double ToDegrees(double radians) { return radians * (180 / kPi); }
 
 /// The same direction in (-pi, pi]; NaN of what is not finite. Exact for arguments already inside;

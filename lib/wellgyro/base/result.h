@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+/// @file
+/// A value, or what was wrong with foreign data that should have given it.
 namespace wellgyro {
 
 /// What kind of thing was wrong with bytes that came from outside.

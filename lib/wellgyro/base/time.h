@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <limits>
 
+/// @file
+/// Instants of the tool's clock and of the surface's, and lengths of time.
 namespace wellgyro {
 
 /// A length of time [ns]. Integer, so that sums over days stay exact.

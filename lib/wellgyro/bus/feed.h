@@ -18,6 +18,8 @@
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/sample.h"
 
+/// @file
+/// Messages, live or of a log, to records.
 namespace wellgyro {
 
 /// The types of proto/, in the order of Message's alternatives.

@@ -12,6 +12,8 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 
+/// @file
+/// An LCM log, event by event, with what is damaged in it.
 namespace wellgyro {
 
 /// One event of an LCM log. The views hold until the next call of LogReader::Next.

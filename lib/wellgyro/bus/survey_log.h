@@ -12,6 +12,8 @@
 #include "wellgyro/survey/survey.h"
 #include "wellgyro/survey/surveyor.h"
 
+/// @file
+/// An LCM log to surveys.
 namespace wellgyro {
 
 /// Hands what a Feed hears to a Surveyor: the whole way from bytes to survey. What the feed itself

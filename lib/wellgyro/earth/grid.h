@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/export.h"
 
+/// @file
 /// Which north an azimuth counts from, and maps.
 namespace wellgyro {
 

@@ -8,6 +8,8 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 
+/// @file
+/// Whole files as text, and which files a result rests on.
 namespace wellgyro {
 
 /// A file that a result rests on.

@@ -11,6 +11,7 @@
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/station.h"
 
+/// @file
 /// What a live session wants of the program that runs it.
 namespace wellgyro {
 

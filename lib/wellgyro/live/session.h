@@ -14,6 +14,8 @@
 #include "wellgyro/live/observer.h"
 #include "wellgyro/survey/survey.h"
 
+/// @file
+/// A survey of a live stream: hears, records, surveys, and keeps its files whole.
 namespace wellgyro {
 
 /// One tool's survey, and the folder that its files go to: the one given where a single tool has a

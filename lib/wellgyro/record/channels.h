@@ -2,6 +2,8 @@
 
 #include <string>
 
+/// @file
+/// Names of the message channels.
 namespace wellgyro {
 
 /// Names of the message channels. The defaults are those of proto/; a job may rename them, to run

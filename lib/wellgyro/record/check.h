@@ -7,8 +7,11 @@
 
 #include "wellgyro/record/station.h"
 
+/// @file
+/// Quality checks, and the verdict on a run.
 namespace wellgyro {
 
+/// How a check, or all checks of a run, came out.
 enum class Verdict { kPass, kWarn, kFail, kNotDone };
 
 /// One quality check. What could not be checked is listed as such: kNotDone without a value.

@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/time.h"
 
+/// @file
 /// What the depth system says, and what it is.
 namespace wellgyro {
 

@@ -2,11 +2,18 @@
 
 #include <optional>
 
+/// @file
+/// Noise coefficients of a sensor, and priors of a tool's other errors.
 namespace wellgyro {
 
-/// One sensor's noise coefficients, as IEEE 952 names them: the Allan variance at averaging time
-/// tau is
-///   3 Q^2/tau^2 + N^2/tau + (2 ln2/pi) B^2 + K^2 tau/3 + R^2 tau^2/2.
+/// One sensor's noise coefficients, as IEEE 952 names them.
+///
+/// The Allan variance at averaging time tau is
+///
+/// ```
+/// 3 Q^2/tau^2 + N^2/tau + (2 ln2/pi) B^2 + K^2 tau/3 + R^2 tau^2/2
+/// ```
+///
 /// A term that is absent is zero here; whether it was measured as unobservable stands in its file.
 struct NoiseCoefficients {
   double quantization = 0;       ///< Q [rad]

@@ -8,6 +8,8 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/quality.h"
 
+/// @file
+/// North found, or given, at one stop.
 namespace wellgyro {
 
 /// The tool's attitude at one stop, north found from the Earth's rotation or given from outside.

@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/time.h"
 
+/// @file
 /// What people, tools and programs say about a run. People are data: whatever someone does that can
 /// change a result comes in here, from the wire or from the job.
 namespace wellgyro {

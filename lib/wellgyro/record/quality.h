@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+/// @file
+/// Why a value is worth less than its sigma says.
 namespace wellgyro {
 
 // g++ takes the enumerator kEarthRate for a shadow of earth/'s constant, which it cannot be.
@@ -26,16 +28,21 @@ enum class Quality : std::uint32_t {
 };
 #pragma GCC diagnostic pop
 
+/// All bits of both.
 constexpr Quality operator|(Quality a, Quality b) {
   return static_cast<Quality>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
+/// The bits that both have.
 constexpr Quality operator&(Quality a, Quality b) {
   return static_cast<Quality>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
 }
+/// Adds the bits of `b` to `a`.
 constexpr Quality& operator|=(Quality& a, Quality b) { return a = a | b; }
+/// `set` less the bits of `bit`.
 constexpr Quality Without(Quality set, Quality bit) {
   return static_cast<Quality>(static_cast<std::uint32_t>(set) & ~static_cast<std::uint32_t>(bit));
 }
+/// Whether `set` has any bit of `bit`.
 constexpr bool Has(Quality set, Quality bit) { return (set & bit) != Quality::kGood; }
 
 }  // namespace wellgyro

@@ -9,6 +9,7 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/quality.h"
 
+/// @file
 /// What the sensors of a tool say: sample by sample, or as means at rest.
 namespace wellgyro {
 

@@ -8,10 +8,13 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/quality.h"
 
+/// @file
+/// One survey station.
 namespace wellgyro {
 
-/// Values are those of survey_station_t.
+/// What a station rests on. Values are those of survey_station_t.
 enum class StationKind : std::int32_t { kTieIn = 0, kGyrocompass = 1, kContinuous = 2, kStill = 3 };
+/// How far a station is to be relied on. Values are those of survey_station_t.
 enum class StationStatus : std::int32_t {
   kProvisional = 0,
   kField = 1,

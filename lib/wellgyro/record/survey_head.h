@@ -9,11 +9,14 @@
 #include "wellgyro/earth/grid.h"
 #include "wellgyro/record/depth.h"
 
+/// @file
 /// What surveys say about themselves in the files that people exchange. Text that a file does not
 /// give is empty.
 namespace wellgyro {
 
+/// Of lengths in a file.
 enum class LengthUnit { kMetre, kFoot, kUsFoot };
+/// Of dogleg severity, build and turn in a file.
 enum class CurvatureUnit { kDegPer30m, kDegPer100ft, kDegPerMetre, kDegPerFoot, kRadPerMetre };
 
 /// The tool, as the exchange formats class it.
@@ -78,11 +81,14 @@ struct GyroRawRecord {
   std::optional<double> north, east, down;                ///< [m]
   Eigen::Vector3d f = Eigen::Vector3d::Zero();            ///< [m/s^2]
   Eigen::Vector3d w = Eigen::Vector3d::Zero();            ///< [rad/s]
-  std::optional<double> gravity, latitude, earth_rate;    ///< measured [m/s^2, rad, rad/s]
+  std::optional<double> gravity;                          ///< measured [m/s^2]
+  std::optional<double> latitude;                         ///< measured [rad]
+  std::optional<double> earth_rate;                       ///< measured [rad/s]
   std::optional<double> gyro_toolface, gravity_toolface;  ///< [rad]
-  /// Of the Earth model at the place [m/s^2, rad, rad/s].
-  std::optional<double> gravity_ref, latitude_ref, earth_rate_ref;
-  std::optional<double> convergence;  ///< [rad]
+  std::optional<double> gravity_ref;     ///< of the Earth model at the place [m/s^2]
+  std::optional<double> latitude_ref;    ///< of the place [rad]
+  std::optional<double> earth_rate_ref;  ///< of the Earth model at the place [rad/s]
+  std::optional<double> convergence;     ///< [rad]
 };
 
 /// Everything a survey file says besides its stations.

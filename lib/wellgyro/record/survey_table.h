@@ -9,6 +9,8 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/survey_head.h"
 
+/// @file
+/// A survey by columns, as files exchange it.
 namespace wellgyro {
 
 /// The numbers a station can have, in SI and radians. Every column but the first three may be
@@ -61,6 +63,7 @@ enum class Column : std::uint8_t {
 };
 inline constexpr std::size_t kColumns = static_cast<std::size_t>(Column::kObject) + 1;
 
+/// The texts a station can have; each may be absent.
 enum class TextColumn : std::uint8_t {
   kUid,
   kPoint,  ///< what stands there: ZDP, WRP, TP, D, BHL

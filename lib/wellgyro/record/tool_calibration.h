@@ -10,6 +10,8 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/noise.h"
 
+/// @file
+/// The tool model: from its converters' counts to SI units in tool axes.
 namespace wellgyro {
 
 /// A thermometer: t = offset + gain raw is what it reads, T = t + c0 + c1 t + c2 max(0, t - knee)^2
@@ -33,10 +35,14 @@ struct ParameterCovariance {
 };
 
 /// Sensors of one kind, two to four channels that sense one vector u: the rate, the specific force
-/// or the flux density. Channel c gives, in its own unit (volt, pulses a second, deg/h ...),
+/// or the flux density.
 ///
-///   v_c = count_c unit_per_count_c           (divided by the sample's period where per_second)
-///       = b_c(tau) + S_c(tau) u + K_c q(u) + G_c(tau) f + N_c q(f) + h_c dT/dt
+/// Channel c gives, in its own unit (volt, pulses a second, deg/h ...),
+///
+/// ```
+/// v_c = count_c unit_per_count_c           (divided by the period of the sample where per_second)
+///     = b_c(tau) + S_c(tau) u + K_c q(u) + G_c(tau) f + N_c q(f) + h_c dT/dt
+/// ```
 ///
 /// with q(a) = (ax^2, ay^2, az^2, ax ay, ay az, az ax), u and f (the specific force) in the
 /// sensors' axes, and tau = (T - reference) / half_range. b, S and G are polynomials in tau, their

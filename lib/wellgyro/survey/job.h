@@ -18,6 +18,8 @@
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/tool_calibration.h"
 
+/// @file
+/// The job: everything that, with the messages, makes a survey.
 namespace wellgyro {
 
 struct ErrorModel;
@@ -31,9 +33,11 @@ struct TieIn {
   bool place_stated = true;  ///< false: nobody said, and north and east are taken as 0
 };
 
+/// Where a run's azimuth comes from: north found at its stops, or an azimuth that was told.
 struct AlignmentSpec {
   enum class Method { kGyrocompass, kExternal };
-  enum class Of { kAxis, kMark };  ///< what an external azimuth is the azimuth of
+  /// What an external azimuth is the azimuth of.
+  enum class Of { kAxis, kMark };
   Method method = Method::kGyrocompass;
   Of of = Of::kAxis;
   double azimuth = 0;             ///< true [rad]
@@ -59,12 +63,14 @@ struct MagneticSpec {
   bool tie = false;  ///< the first of each run ties the run's azimuth; else they are only compared
 };
 
+/// Where along the hole there are to be stations.
 struct StationSpec {
   double every = 10;       ///< spacing [m]; 0: none
   std::vector<double> at;  ///< depths asked for [m]
   bool at_stops = false;   ///< the gyrocompass stations too
 };
 
+/// What measured the depth, and how its marks are used.
 struct DepthSpec {
   DepthKind kind = DepthKind::kIndicated;
   double latency = 5;  ///< how late a depth mark may come, against the samples [s]
@@ -105,6 +111,7 @@ struct RunSpec {
 /// One survey job: everything that, with the messages, makes the result. One job serves live and
 /// log. Made by io/ from TOML, or by the vendor's own program.
 struct Job {
+  /// The well head: its name and its place.
   struct Well {
     std::string name;
     double latitude = 0;         ///< geodetic [rad]

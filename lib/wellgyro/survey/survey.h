@@ -12,6 +12,8 @@
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/station.h"
 
+/// @file
+/// What a survey is at one moment: stations, checks, runs, verdict.
 namespace wellgyro {
 
 struct RunFit;

@@ -18,6 +18,8 @@
 #include "wellgyro/survey/job.h"
 #include "wellgyro/survey/survey.h"
 
+/// @file
+/// From samples and depth marks to stations, as they come.
 namespace wellgyro {
 
 class RunAdjuster;
@@ -47,9 +49,11 @@ struct SampleTally {
 
 /// From sensor samples to stations: the one place that knows the order of the rooms.
 ///
-///     samples -> in order -> still? -> north fix -+
-///                         -> attitude <-----------+-> knots -> azimuth -+-> stations -> positions
-///     depth marks -> depth against time ------------------------------- +
+/// ```
+/// samples -> in order -> still? -> north fix -+
+///                     -> attitude <-----------+-> knots -> azimuth -+-> stations -> positions
+/// depth marks -> depth against time --------------------------------+
+/// ```
 ///
 /// Rig, log and vendor code differ only in who calls Push. Two laws hold, and tests keep them:
 /// (1) in one build the same messages give the same stations, bit for bit; (2) how the streams

@@ -8,6 +8,8 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/export.h"
 
+/// @file
+/// From directions along the hole to positions, by minimum curvature.
 namespace wellgyro {
 
 /// Doglegs from here on have no usable arc: between opposite directions every plane serves.

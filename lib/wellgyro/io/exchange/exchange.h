@@ -15,10 +15,12 @@
 #include "wellgyro/record/survey_table.h"
 #include "wellgyro/survey/job.h"
 
+/// @file
 /// Surveys in the files that people exchange. Every format reads into a SurveyTable and writes from
 /// one; what the format can hold comes back to the last bit.
 namespace wellgyro {
 
+/// The formats; WordOf and SurveyFormatOf have the word of each.
 enum class SurveyFormat {
   kCsv,         ///< one header line, as survey.csv; read: any table, by the names of its columns
   kLas,         ///< CWLS LAS 2.0; step fixed where the depths allow it, else 0
@@ -34,9 +36,11 @@ enum class SurveyFormat {
   kGeoPackage,  ///< an SQLite database with the layers path, stations and ellipses
 };
 
-/// csv, las, p717, witsml (1.4.1.1), witsml20, witsml21, petrel, compass, osdu, geojson, kml, gpkg.
+/// The format of a word: csv, las, p717, witsml (1.4.1.1), witsml20, witsml21, petrel, compass,
+/// osdu, geojson, kml, gpkg; nothing of another.
 WELLGYRO_EXPORT std::optional<SurveyFormat> SurveyFormatOf(std::string_view word);
-/// Throws std::invalid_argument, as all that take a format, when there is no such one.
+/// The word of a format. Throws std::invalid_argument, as all that take a format, when there is no
+/// such one.
 WELLGYRO_EXPORT std::string_view WordOf(SurveyFormat format);
 /// The words of all that are not read only.
 WELLGYRO_EXPORT std::vector<std::string> WrittenFormats();
@@ -77,6 +81,7 @@ WELLGYRO_EXPORT Result<SurveyTable> ReadSurvey(const std::filesystem::path& path
 WELLGYRO_EXPORT Result<SurveyTable> ParseSurvey(std::string_view text, const std::string& source,
                                                 const ReadOptions& options = {});
 
+/// What single formats leave to the writer.
 struct WriteOptions {
   /// CSV: a preamble of "# key: value" lines with what its header cannot say. pandas reads past it
   /// when told, wellpathpy does not.

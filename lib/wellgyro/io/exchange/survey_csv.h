@@ -12,6 +12,7 @@
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/station.h"
 
+/// @file
 /// The survey as plain CSV: exactly one header line, UTF-8, LF, a dot for decimals. Angles to 1e-6,
 /// lengths to 1e-4, variances to 9 significant digits, azimuths in [0, 360), no negative zeros.
 namespace wellgyro {

@@ -11,6 +11,8 @@
 #include "wellgyro/survey/survey.h"
 #include "wellgyro/survey/surveyor.h"
 
+/// @file
+/// Tables of sensor data to surveys.
 namespace wellgyro {
 
 /// What tables of sensor data came to.

@@ -10,6 +10,8 @@
 #include "wellgyro/record/operations.h"
 #include "wellgyro/survey/job.h"
 
+/// @file
+/// A job from its TOML file.
 namespace wellgyro {
 
 /// A job and the files it was read from.
