@@ -42,7 +42,7 @@ std::vector<StationState> DeadReckon(const Drift& d, double seconds, int every, 
     s.along.md = out ? 3000 - kSpeed * kStep * i : 1000 + kSpeed * kStep * i;
     s.cov = cov;
     if (i > 0) s.cov_with_previous = link;
-    s.tangent(1, 0) = 1;
+    s.tangent_by_phi_L(1, 0) = 1;
     link = cov;
   }
   return stations;

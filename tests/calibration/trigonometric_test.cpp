@@ -53,18 +53,18 @@ TEST(Trigonometric, FindsTheAnglesThatItsErrorsDependOn) {
 TEST(Trigonometric, FallsBackToTheAffineModelNearVertical) {
   AffineModel affine;
   affine.b_G = {0.004, -0.003, 0.006};
-  affine.S_G(0, 2) = -0.012;
+  affine.sensitivity_G(0, 2) = -0.012;
   const Eigen::Vector3d G = Gravity(FromDegrees(0.5), 1.0);
   const CorrectedReading found =
-      Correct(Model(), affine.S_G * G + affine.b_G, Eigen::Vector3d(2e4, 0, 4e4), affine);
+      Correct(Model(), affine.sensitivity_G * G + affine.b_G, Eigen::Vector3d(2e4, 0, 4e4), affine);
   EXPECT_TRUE(found.fell_back);
   EXPECT_LT((found.G_B - G).norm(), 1e-14);
 }
 
 TEST(Trigonometric, AgreesWithAffineErrorsOnItsOwnGreatCirclesOnly) {
   AffineModel affine;
-  affine.S_G << 1.006, 0.004, -0.012, -0.005, 0.992, 0.009, 0.011, -0.007, 1.005;
-  affine.S_M << 0.993, 0.006, 0.01, 0.004, 1.009, -0.008, -0.006, 0.012, 0.996;
+  affine.sensitivity_G << 1.006, 0.004, -0.012, -0.005, 0.992, 0.009, 0.011, -0.007, 1.005;
+  affine.sensitivity_M << 0.993, 0.006, 0.01, 0.004, 1.009, -0.008, -0.006, 0.012, 0.996;
   affine.b_G = {0.004, -0.003, 0.006};
   affine.b_M = {150, -220, 90};
   const double B = 5e4, D = FromDegrees(60);
@@ -74,7 +74,7 @@ TEST(Trigonometric, AgreesWithAffineErrorsOnItsOwnGreatCirclesOnly) {
     const Eigen::Vector3d G = R.col(2),
                           M = R * Eigen::Vector3d(B * std::cos(D), 0, B * std::sin(D));
     Eigen::Matrix<double, 6, 1> e;
-    e << affine.S_G * G + affine.b_G - G, affine.S_M * M + affine.b_M - M;
+    e << affine.sensitivity_G * G + affine.b_G - G, affine.sensitivity_M * M + affine.b_M - M;
     return e;
   };
   for (int k = 0; k < 12; ++k) {

@@ -26,7 +26,7 @@ double VarianceAlong(double sigma_azimuth) {
   PathStart start;
   start.point.station.md = 0;
   const Eigen::Vector3d along(std::cos(kHoleAzimuth), std::sin(kHoleAzimuth), 0);
-  return along.dot(PassCovariancesOf({}, pass, start).of_sensors.back() * along);
+  return along.dot(PassCovariancesOf({}, pass, start).covs_of_sensors_W.back() * along);
 }
 
 // Surveyed in one wrong direction, as drawn, its end falls short of its way.

@@ -104,8 +104,7 @@ Basin BasinAbout(const Problem& problem, const std::vector<Solution>& minima) {
 /// and the rolls. Near vertical azimuth and toolface alone run to the uniform distribution's
 /// variance while their sum keeps its own.
 Matrix3d EulerCovariance(const Solution& solution, std::size_t windows, bool& vertical) {
-  const Matrix3d& R = solution.state.R_LT;
-  const Vector3d t = R.col(2);
+  const Vector3d t = solution.state.R_LT.col(2);
   const double sine = std::max(std::hypot(t.x(), t.y()), 1e-9);
   const double azimuth = std::atan2(t.y(), t.x());
   const Vector3d h(t.z() * std::cos(azimuth), t.z() * std::sin(azimuth), -sine);
@@ -245,11 +244,11 @@ NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,
   best.cov.col(2) *= cross;
   best.cov(2, 2) = basin.variance;
 
-  const Matrix3d R = best.state.R(windows.size() - 1);
-  const Vector3d t = R.col(2);
+  const Matrix3d R_LT = best.state.R_LT_at(windows.size() - 1);
+  const Vector3d t = R_LT.col(2);
   fix.inclination = std::atan2(std::hypot(t.x(), t.y()), t.z());
   fix.azimuth = WrapTwoPi(std::atan2(t.y(), t.x()));
-  fix.toolface = std::atan2(R(2, 1), -R(2, 0));
+  fix.toolface = std::atan2(R_LT(2, 1), -R_LT(2, 0));
   bool vertical = false;
   fix.cov_attitude = EulerCovariance(best, windows.size(), vertical);
   if (vertical) fix.quality |= Quality::kVertical;

@@ -39,7 +39,7 @@ struct State {
   std::vector<double> roll;             ///< of every window, first 0 [rad]
   std::array<double, kErrors> error{};  ///< in SI
 
-  Eigen::Matrix3d R(std::size_t k) const { return R_LT * RotationZ(roll[k]); }
+  Eigen::Matrix3d R_LT_at(std::size_t k) const { return R_LT * RotationZ(roll[k]); }
 };
 
 struct Solution {

@@ -177,13 +177,13 @@ void Problem::Forces(const State& state, System& system) const {
   VectorXd r(3 * count_);
   for (Index k = 0; k < count_; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    const Matrix3d to_tool = state.R(at).transpose();
+    const Matrix3d R_TL = state.R_LT_at(at).transpose();
     const double g = gravity_ + state.error[kGravity];
     const Vector3d up(0, 0, -g);
-    const Vector3d f = to_tool * up;
+    const Vector3d f = R_TL * up;
     r.segment<3>(3 * k) = windows_[at].f_T - f;
     auto J = raw.middleRows<3>(3 * k);
-    J.leftCols<3>() = to_tool * Skew(up);
+    J.leftCols<3>() = R_TL * Skew(up);
     if (k > 0) J.col(k + 2) = Vector3d(f.y(), -f.x(), 0);
     J.col(column_[kGravity]) = f / g * sigma_[kGravity];
   }
@@ -201,14 +201,14 @@ void Problem::Rates(const State& state, System& system) const {
   const Vector3d d_latitude = -kEarthRate * Vector3d(std::sin(latitude), 0, std::cos(latitude));
   for (Index k = 0; k < count_; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    const Matrix3d to_tool = state.R(at).transpose();
-    const Vector3d e = to_tool * earth;
-    const Vector3d f = to_tool * Vector3d(0, 0, -gravity_ - x[kGravity]);
+    const Matrix3d R_TL = state.R_LT_at(at).transpose();
+    const Vector3d e = R_TL * earth;
+    const Vector3d f = R_TL * Vector3d(0, 0, -gravity_ - x[kGravity]);
     std::array<Vector3d, kErrors> effect = Effects(e, f);
     Vector3d model = e;
     for (std::size_t i = 0; i < kErrors; ++i) model += (known_[i] + x[i]) * effect[i];
-    effect[kLatitude] = to_tool * d_latitude;
-    const Matrix3d d_attitude = to_tool * Skew(earth);
+    effect[kLatitude] = R_TL * d_latitude;
+    const Matrix3d d_attitude = R_TL * Skew(earth);
     const Vector3d d_roll(e.y(), -e.x(), 0);
     for (int i = 0; i < axes_; ++i) {
       const Index row = i * count_ + k;
@@ -302,7 +302,7 @@ std::pair<double, double> Problem::RateRatio(const State& state) const {
   for (int i = 0; i < axes_; ++i) {
     VectorXd rate(count_);
     for (Index k = 0; k < count_; ++k) {
-      rate[k] = (state.R(static_cast<std::size_t>(k)).transpose() * earth)[i];
+      rate[k] = (state.R_LT_at(static_cast<std::size_t>(k)).transpose() * earth)[i];
     }
     J.col(n).segment(i * count_, count_) = whiten_rate_[static_cast<std::size_t>(i)].Whitened(rate);
   }

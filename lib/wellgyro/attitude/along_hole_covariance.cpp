@@ -71,7 +71,7 @@ void AlongHoleCovariance::Skip(const StationState& station) {
 
 Eigen::Matrix3d AlongHoleCovariance::Add(const StationState& station) {
   Rows by_x = Rows::Zero(3, station.cov.rows());
-  by_x.leftCols<3>() = station.tangent;
+  by_x.leftCols<3>() = station.tangent_by_phi_L;
   const Rows rows_cov = by_x * station.cov;
   const Eigen::Matrix3d cov_slope_W = rows_cov * by_x.transpose();
   const bool first = !any_;

@@ -41,7 +41,7 @@ class WELLGYRO_EXPORT AlongHoleCovariance {
   void Skip(const StationState& station);
 
   /// Of the station last added, less its own depth error [m^2].
-  const Eigen::Matrix3d& without_depth() const { return cov_W_; }
+  const Eigen::Matrix3d& cov_without_depth_W() const { return cov_W_; }
 
  private:
   using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kStationErrorsMax>;

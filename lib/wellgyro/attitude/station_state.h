@@ -29,7 +29,7 @@ struct StationState {
   Eigen::MatrixXd cov;                ///< E[x x'], x begins with phi of R_LT Exp(phi) [rad]
   Eigen::MatrixXd cov_with_previous;  ///< E[x_previous x'], previous in time; empty for the first
   /// Error of the tangent in L by phi: regular at every inclination.
-  Eigen::Matrix3d tangent = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d tangent_by_phi_L = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace wellgyro

@@ -83,7 +83,7 @@ GroupNode GroupModel::At(double tau) const {
   node.b_T = -(from_units * Bias(tau));
   // What a group lacks costs nothing.
   if (heats_) node.heat_T = from_units * group_.heating;
-  if (feels_force_) node.force = from_units * ValueAt(group_.g_dependence, tau);
+  if (feels_force_) node.u_by_force_T = from_units * ValueAt(group_.g_dependence, tau);
   if (second_order_) node.products = from_units * group_.second_order;
   if (g_squared_) node.force_products = from_units * group_.g_squared;
   return node;

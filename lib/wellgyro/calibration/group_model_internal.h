@@ -10,12 +10,12 @@
 namespace wellgyro {
 
 /// SensorGroup's formula solved for u in T at one temperature, and what it was solved from:
-///   u = A counts + b - force f - force_products q(f) - heat dT/dt - products q(u)
+///   u = A counts + b - u_by_force_T f - force_products q(f) - heat dT/dt - products q(u)
 /// Where channels count pulses, their counts are per second.
 struct GroupNode {
   Eigen::Matrix<double, 3, 4> A = Eigen::Matrix<double, 3, 4>::Zero();
   Eigen::Vector3d b_T = Eigen::Vector3d::Zero(), heat_T = b_T;
-  Eigen::Matrix3d force = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d u_by_force_T = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, 6> products = Eigen::Matrix<double, 3, 6>::Zero(),
                               force_products = products;
 };

@@ -62,8 +62,11 @@ Bends BendsOf(const GroupModel& model, const SensorGroup& group, double unit) {
     raise(bends.slope, RowSum(first * counts.cwiseAbs()) + RowSum(first * bias.cwiseAbs()) +
                            RowSum((after.b_T - before.b_T) / (2 * H * unit)));
     raise(bends.curve, RowSum((after.A - 2 * at.A + before.A) * counts / (H * H)));
-    const double left = kSmallRight * RowSum(at.force) + kRight * unit / units::kStandardGravity;
-    raise(bends.force, RowSum((after.force - 2 * at.force + before.force) / (H * H)) / left);
+    const double left =
+        kSmallRight * RowSum(at.u_by_force_T) + kRight * unit / units::kStandardGravity;
+    raise(
+        bends.force,
+        RowSum((after.u_by_force_T - 2 * at.u_by_force_T + before.u_by_force_T) / (H * H)) / left);
     if (i + 1 == kSteps) continue;
     const GroupNode& next = nodes[i + 2];
     const Eigen::Matrix<double, 3, 4> third = next.A - 3 * after.A + 3 * at.A - before.A;
@@ -223,12 +226,12 @@ void GroupSolution::Solve(Cell& cell, const Cell& other) const {
     Put(Eigen::Vector3d(high.heat_T - low.heat_T), kernel.heat1);
   }
   Put(low.force_products, high.force_products, kernel.force_products);
-  kernel.feels_force = !low.force.isZero(0) || !high.force.isZero(0) ||
+  kernel.feels_force = !low.u_by_force_T.isZero(0) || !high.u_by_force_T.isZero(0) ||
                        kernel.force_products.squares || kernel.force_products.crosses;
   kernel.moved = kernel.feels_force || kernel.heats;
   for (int i = 0; kernel.feels_force && i < 3; ++i) {
-    Put(Eigen::Vector3d(low.force.col(i)), kernel.force[i]);
-    Put(Eigen::Vector3d(high.force.col(i) - low.force.col(i)), kernel.force1[i]);
+    Put(Eigen::Vector3d(low.u_by_force_T.col(i)), kernel.force[i]);
+    Put(Eigen::Vector3d(high.u_by_force_T.col(i) - low.u_by_force_T.col(i)), kernel.force1[i]);
   }
   Put(low.products, high.products, kernel.products);
   Put(low.products, high.products, kernel.products_single);

@@ -39,8 +39,8 @@ Eigen::Matrix<double, 6, 1> TrigonometricErrors(const TrigonometricModel& model,
 CorrectedReading Correct(const AffineModel& model, const Eigen::Vector3d& G_raw,
                          const Eigen::Vector3d& M_raw) {
   CorrectedReading reading;
-  reading.G_B = model.S_G.inverse() * (G_raw - model.b_G);
-  reading.M_B = model.S_M.inverse() * (M_raw - model.b_M);
+  reading.G_B = model.sensitivity_G.inverse() * (G_raw - model.b_G);
+  reading.M_B = model.sensitivity_M.inverse() * (M_raw - model.b_M);
   TakeAngles(reading);
   return reading;
 }
@@ -75,8 +75,8 @@ CorrectedReading Correct(const TrigonometricModel& model, const Eigen::Vector3d&
 }
 
 TrigonometricModel FromAffine(const AffineModel& affine, double field, double dip) {
-  const Eigen::Matrix3d E = affine.S_G - Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d F = affine.S_M - Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d E = affine.sensitivity_G - Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d F = affine.sensitivity_M - Eigen::Matrix3d::Identity();
   const double s = field * std::sin(dip), c = field * std::cos(dip);
   // Parts in phase and at right angles: error = S sin(angle) + C cos(angle) + offset.
   const double parts[6][3] = {

@@ -22,9 +22,10 @@ struct TrigonometricModel {
   std::array<std::array<double, 4>, 6> x{};
 };
 
-/// raw = S ideal + b, of accelerometers and fluxgates.
+/// raw = sensitivity ideal + b, of accelerometers and fluxgates.
 struct AffineModel {
-  Eigen::Matrix3d S_G = Eigen::Matrix3d::Identity(), S_M = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d sensitivity_G = Eigen::Matrix3d::Identity(),
+                  sensitivity_M = Eigen::Matrix3d::Identity();
   Eigen::Vector3d b_G = Eigen::Vector3d::Zero(), b_M = Eigen::Vector3d::Zero();
 };
 
@@ -59,7 +60,7 @@ WELLGYRO_EXPORT Eigen::Matrix<double, 6, 1> TrigonometricErrors(const Trigonomet
                                                                 double inclination,
                                                                 double toolface);
 
-/// ideal = S^-1 (raw - b).
+/// ideal = sensitivity^-1 (raw - b).
 WELLGYRO_EXPORT CorrectedReading Correct(const AffineModel& model, const Eigen::Vector3d& G_raw,
                                          const Eigen::Vector3d& M_raw);
 

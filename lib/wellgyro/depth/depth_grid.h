@@ -49,7 +49,7 @@ class WELLGYRO_EXPORT DepthGrid {
     std::int64_t index = INT64_MIN;
     AlongHole along;
   };
-  /// Coefficients of the blend, of powers of the seconds since the cell began.
+  /// Coefficients of the blend, of powers of the seconds since the cell began, in no frame.
   struct Blend {
     std::array<double, 4> md{};
     std::array<double, 3> speed{};

@@ -134,9 +134,9 @@ class Diagnoser {
     for (const CauseSpec& spec : specs) looks_.emplace_back(spec, limit);
   }
 
-  Diagnosis Run(std::span<const Matrix3d> end_by_phi) {
+  Diagnosis Run(std::span<const Matrix3d> end_by_phi_W) {
     Diagnosis d = Untested(specs_.size());
-    influence_.emplace(run_, end_by_phi);
+    influence_.emplace(run_, end_by_phi_W);
     Forward();
     Backward();
     AddConstants();
@@ -411,17 +411,17 @@ void Diagnoser::AddOdds(Diagnosis& d) const {
 }  // namespace
 
 Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
-                   std::span<const Matrix3d> end_by_phi, double false_alarm_rate,
+                   std::span<const Matrix3d> end_by_phi_W, double false_alarm_rate,
                    const Vector3d& end_by_depth_scale_W) {
   LinearRun run(rows);
   if (!run.Solve()) return Untested(specs.size());
-  return Diagnose(run, specs, end_by_phi, false_alarm_rate, end_by_depth_scale_W);
+  return Diagnose(run, specs, end_by_phi_W, false_alarm_rate, end_by_depth_scale_W);
 }
 
 Diagnosis Diagnose(const LinearRun& solved, std::span<const CauseSpec> specs,
-                   std::span<const Matrix3d> end_by_phi, double false_alarm_rate,
+                   std::span<const Matrix3d> end_by_phi_W, double false_alarm_rate,
                    const Vector3d& end_by_depth_scale_W) {
-  return Diagnoser(solved, specs, false_alarm_rate, end_by_depth_scale_W).Run(end_by_phi);
+  return Diagnoser(solved, specs, false_alarm_rate, end_by_depth_scale_W).Run(end_by_phi_W);
 }
 
 }  // namespace wellgyro

@@ -60,15 +60,15 @@ struct Diagnosis {
 /// constant beyond its prior reduces to its prior's row, that of a step at node t to that row and
 /// the columns of the knots before t. One forward pass then serves all onsets.
 /// Baarda (1968); de Jong and Penzer, "Diagnosing shocks in time series", JASA 93 (1998).
-/// `end_by_phi`: derivative of the end by every node's phi [m]; `end_by_depth_scale_W`: what an
+/// `end_by_phi_W`: derivative of the end by every node's phi [m]; `end_by_depth_scale_W`: what an
 /// error of the depth's scale moves it by beside that. `false_alarm_rate`: of `ln_odds` above which
 /// a fault is taken as noticed. Time and memory are proportional to the knots.
 WELLGYRO_EXPORT Diagnosis Diagnose(
-    RunRows& rows, std::span<const CauseSpec> specs, std::span<const Eigen::Matrix3d> end_by_phi,
+    RunRows& rows, std::span<const CauseSpec> specs, std::span<const Eigen::Matrix3d> end_by_phi_W,
     double false_alarm_rate, const Eigen::Vector3d& end_by_depth_scale_W = Eigen::Vector3d::Zero());
 /// The same of a run that has been solved.
 Diagnosis Diagnose(const LinearRun& solved, std::span<const CauseSpec> specs,
-                   std::span<const Eigen::Matrix3d> end_by_phi, double false_alarm_rate,
+                   std::span<const Eigen::Matrix3d> end_by_phi_W, double false_alarm_rate,
                    const Eigen::Vector3d& end_by_depth_scale_W = Eigen::Vector3d::Zero());
 
 }  // namespace wellgyro

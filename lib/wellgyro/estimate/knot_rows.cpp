@@ -90,12 +90,12 @@ void KnotRows::AddError(const Terms& t, int source, const Vector3d& by_error,
   if (change != kAbsent) factor_.Column(block.border() + change) = t.warmth * by_error;
 }
 
-/// Log[(E R_k Ha Exp(turn) Hb)' R_k+1], E = Exp(-w_IL dt): across the axis the gyros' noise, about
-/// it the tie of roll rate and attitude.
+/// Log[(E R_k R_TM_begin Exp(turn) R_MT_end)' R_k+1], E = Exp(-w_IL dt): across the axis the gyros'
+/// noise, about it the tie of roll rate and attitude.
 void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Increment& inc = t.inc;
   const Matrix3d X = Exp(Flat(t.turn));
-  const Matrix3d B = t.Ha * X * t.Hb;
+  const Matrix3d B = t.R_TM_begin * X * t.R_MT_end;
   const Matrix3d R_end = Exp(-t.dt * t.w_IL_L) * t.begin.R_LT * B;
   const double var = Square(setup_.gyro.angle_random_walk) * t.dt +
                      2 * Square(setup_.gyro.quantization) + inc.var_turn + t.knot.var_unseen;
@@ -103,7 +103,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const double tie = inc.has_axial ? std::min(kAxialTie, kNothing * TurnNoise(t.dt)) : kAxialTie;
   const Vector3d whiten(across, across, 1 / tie);
   const auto by = whiten.asDiagonal();
-  const Eigen::Matrix<double, 3, 2> turned = t.Hb.topRows<2>().transpose();  // Hb' of a turn in M
+  const Eigen::Matrix<double, 3, 2> turned = t.R_MT_end.topRows<2>().transpose();  // of a turn in M
 
   Factor& f = factor_;
   f.Begin(t.knot.still ? RowKind::kStill : RowKind::kTurn, 3);
@@ -115,14 +115,15 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   const Matrix3d by_begin = by * slopes.left * -B.transpose(), by_end = by * slopes.right;
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = by_begin.col(i);
   for (int i = 0; i < 3; ++i) f.Column(block.next() + layout_.phi + i) = by_end.col(i);
-  const Vector3d by_delta = -0.5 * (X * t.Hb).row(2).transpose() - 0.5 * Vector3d::UnitZ() -
+  const Vector3d by_delta = -0.5 * (X * t.R_MT_end).row(2).transpose() - 0.5 * Vector3d::UnitZ() -
                             turned * (t.turn_per_roll + t.skew_per_roll);
   const Vector3d by_rate = by * (t.dt * by_delta);
   AddRate(t, by_rate, block);
-  TurnErrors by_error = by * (turned * WithoutNoise(inc, t.turn_by_error, (t.Hb * r).head<2>()));
+  TurnErrors by_error =
+      by * (turned * WithoutNoise(inc, t.turn_by_error, (t.R_MT_end * r).head<2>()));
   AddGyroDrift(t, by_error, block);
   // Of PhaseErrors: where in the knot psi turns, and what the rates are turned by.
-  const Vector3d by_bow = Vector3d::UnitZ() - (X * t.Hb).row(2).transpose();
+  const Vector3d by_bow = Vector3d::UnitZ() - (X * t.R_MT_end).row(2).transpose();
   const PhaseColumns by_phase =
       by *
       (by_bow * t.wobble.bow() + turned * (t.wobble.turn_M - t.turn_per_roll * t.wobble.roll()));
@@ -223,14 +224,15 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   f.r = whiten * (force - p_M + GravityOffset(t) * down_M -
                   (t.end.speed - t.begin.speed) / t.dt * Vector3d::UnitZ());
   const Matrix3d by_phi =
-      -(px + down_M.cross(path) * down_M.transpose()) * (t.Ha * t.Xh).transpose();
+      -(px + down_M.cross(path) * down_M.transpose()) * (t.R_TM_begin * t.R_MM_half).transpose();
   for (int i = 0; i < 3; ++i) f.Column(layout_.phi + i) = whiten * by_phi.col(i);
-  const Vector3d by_rate = whiten * t.dt * (-0.5 * px * t.Xh.row(2).transpose() + force_per_roll);
+  const Vector3d by_rate =
+      whiten * t.dt * (-0.5 * px * t.R_MM_half.row(2).transpose() + force_per_roll);
   AddRate(t, by_rate, block);
   f.Column(layout_.speed) = whiten / t.dt * Vector3d::UnitZ();
   f.Column(block.next() + layout_.speed) = -whiten / t.dt * Vector3d::UnitZ();
   PhaseColumns by_phase =
-      force_per_roll * t.wobble.roll() - px * t.Xh.row(2).transpose() * t.wobble.bow();
+      force_per_roll * t.wobble.roll() - px * t.R_MM_half.row(2).transpose() * t.wobble.bow();
   by_phase.topRows<2>() -= t.wobble.force_M;
   AddForceErrors(t, whiten, p_M, by_skew_M, beyond, by_phase, block);
   if (layout_.gravity != kAbsent) f.Column(block.border() + layout_.gravity) = whiten * down_M;

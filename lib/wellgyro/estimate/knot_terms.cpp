@@ -123,12 +123,12 @@ KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& 
   // in (0, 1), to the third order for a steady turn. The square counts where the roll was
   // unobserved and the tool turned by delta more than psi.
   t.turn += t.delta * (inc.turn_per_roll - t.delta / 24 * inc.turn_M);
-  t.Ha = RotationZ(inc.roll_before + 0.5 * t.delta + place.roll_bow);
-  t.Hb = RotationZ(inc.roll_after + 0.5 * t.delta - place.roll_bow);
+  t.R_TM_begin = RotationZ(inc.roll_before + 0.5 * t.delta + place.roll_bow);
+  t.R_MT_end = RotationZ(inc.roll_after + 0.5 * t.delta - place.roll_bow);
   // Up to the middle the line is behind it by delta / 4 in the mean.
-  t.Xh = Exp(
+  t.R_MM_half = Exp(
       Flat(inc.turn_before_M + 0.5 * (t.turn - inc.turn_M) - t.delta / 8 * QuarterTurned(t.turn)));
-  t.R_LM = Exp(-0.5 * t.dt * t.w_IL_L) * begin.R_LT * t.Ha * t.Xh;
+  t.R_LM = Exp(-0.5 * t.dt * t.w_IL_L) * begin.R_LT * t.R_TM_begin * t.R_MM_half;
   return t;
 }
 

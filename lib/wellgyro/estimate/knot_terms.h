@@ -29,7 +29,9 @@ struct KnotTerms {
   Eigen::Vector2d turn_per_roll{};                     ///< at delta, of what the gyros read [1]
   Eigen::Vector2d skew_per_roll{};                     ///< of what skewed ones read wrongly [1]
   double fixed_beyond = 0;                   ///< of what is fixed in T, its mean in M beyond psi's
-  Eigen::Matrix3d Ha{}, Hb{}, Xh{}, R_LM{};  ///< rolls to the middle and from it, half the turn
+  Eigen::Matrix3d R_TM_begin{}, R_MT_end{};  ///< rolls to the middle and from it
+  Eigen::Matrix3d R_MM_half{};               ///< from mid-knot to its begin: half the turn
+  Eigen::Matrix3d R_LM{};                    ///< at mid-knot
   Eigen::Vector3d w_IL_L;                    ///< at the latitude as it is now known
   BorderVector border;
   double warmth = 0;    ///< what the errors' changes count by

@@ -18,10 +18,10 @@ Vector3d ColumnOf(const Factor& f, const Layout& layout, int i) {
   return c;
 }
 
-EndInfluence::EndInfluence(const LinearRun& run, std::span<const Eigen::Matrix3d> end_by_phi)
+EndInfluence::EndInfluence(const LinearRun& run, std::span<const Eigen::Matrix3d> end_by_phi_W)
     : layout_(run.layout()) {
   solved_.border = Eigen::MatrixXd::Zero(layout_.border, 3);
-  for (const Eigen::Matrix3d& slope : end_by_phi) {
+  for (const Eigen::Matrix3d& slope : end_by_phi_W) {
     Eigen::MatrixXd& node = solved_.nodes.emplace_back(Eigen::MatrixXd::Zero(layout_.node, 3));
     node.middleRows<3>(layout_.phi) = slope.transpose();
   }

@@ -22,8 +22,8 @@ struct Score {
 /// Where the end of the run, a linear function of the nodes, goes with each row: J N^-1 b.
 class EndInfluence {
  public:
-  /// `end_by_phi`: of every node, derivative of the end by its phi [m].
-  EndInfluence(const LinearRun& run, std::span<const Eigen::Matrix3d> end_by_phi);
+  /// `end_by_phi_W`: of every node, derivative of the end by its phi [m].
+  EndInfluence(const LinearRun& run, std::span<const Eigen::Matrix3d> end_by_phi_W);
 
   /// Of each row of the factor, how the end moves when the row's r grows by one, sign turned.
   Eigen::Matrix3d Of(std::size_t knot, const Factor& f) const;

@@ -23,7 +23,7 @@ class Scatter {
   /// `stretch`: knots that are looked at together.
   explicit Scatter(std::size_t stretch) : stretch_(stretch) {}
 
-  /// Rows P r of knot `k`, in any order of knots, and P of them.
+  /// Rows P r of knot `k`, in any order of knots, and P of them, in no frame.
   void Add(std::size_t k, const Factor& f, const Eigen::Matrix3d& freedom);
   /// Of every stretch the squares of its rows, as far as the unknowns leave them.
   std::vector<ResidualSum> Residuals() const;

@@ -150,9 +150,10 @@ std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& rea
 }
 
 std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::string>& channels,
-                               const Eigen::Matrix3d& K, const BenchReference& reference) {
+                               const Eigen::Matrix3d& sensitivity,
+                               const BenchReference& reference) {
   if (channels.front().front() == 'v') return std::nullopt;
-  const double gain = std::cbrt(std::abs(K.determinant())) / units::kStandardGravity;
+  const double gain = std::cbrt(std::abs(sensitivity.determinant())) / units::kStandardGravity;
   const bool in_g = std::abs(reference.gravity - reference.gravity_mps2) > 1;
   constexpr double kClose = 0.03;
   if (in_g && std::abs(gain - 1) < kClose) {

@@ -33,8 +33,8 @@ std::optional<Fault> BadVectors(const BenchTable& data, const Eigen::MatrixX3d& 
 std::optional<Fault> OnlyCones(const BenchTable& data, const ScalarReadings& readings,
                                const std::vector<int>& outlier_lines);
 
-/// Readings v = K u in m/s2 where gravity is given in g, or the other way round.
+/// Readings v = sensitivity u in m/s2 where gravity is given in g, or the other way round.
 std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::string>& channels,
-                               const Eigen::Matrix3d& K, const BenchReference& reference);
+                               const Eigen::Matrix3d& sensitivity, const BenchReference& reference);
 
 }  // namespace wellgyro

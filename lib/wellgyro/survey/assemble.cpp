@@ -65,13 +65,13 @@ PassLine PlaceStations(const Site& head, const Job& job, const PathStart& start,
   PathPoint above = start.point;
   for (std::size_t i = 0; i < pass.size(); ++i) {
     Station& s = pass[i].station;
-    s.cov_p_WT_W = covs.of_sensors[i] + covs.of_depth[i];
+    s.cov_p_WT_W = covs.covs_of_sensors_W[i] + covs.covs_of_depth_W[i];
     if (!pass[i].on_line || s.md <= start.point.station.md) {
       s.p_WT_W = path.last().p_WT_W;
       continue;
     }
     // What starts from a station has a depth error of its own.
-    const Eigen::Matrix3d& cov = covs.of_sensors[i];
+    const Eigen::Matrix3d& cov = covs.covs_of_sensors_W[i];
     const auto add = [&](const PathStation& station) {
       const auto point = path.Add(station);
       if (!point) return false;  // opposite directions: it stays where the one before is

@@ -92,7 +92,7 @@ StationState StateOf(std::size_t index, const RunKnot& knot, const AttitudeSampl
   state.along = knot.along;
   state.cov = errors.cov;
   state.cov_with_previous = errors.cov_with_previous;
-  state.tangent = TangentByPhi(R_LT);
+  state.tangent_by_phi_L = TangentByPhi(R_LT);
   return state;
 }
 

@@ -132,7 +132,7 @@ std::vector<Eigen::Matrix3d> OfSamples(const PassItems& pass, const PathStart& s
       }
       above = &item;
       sum.Add(*item.state);
-      covs.push_back(sum.without_depth() + unseen + shortfall.To(item.station));
+      covs.push_back(sum.cov_without_depth_W() + unseen + shortfall.To(item.station));
     } else {
       sum.Skip(*item.state);
       covs.push_back(covs.back());
@@ -164,9 +164,10 @@ PassCovariances PassCovariancesOf(const Job& job, const PassItems& pass, const P
   const bool windows = std::any_of(pass.begin(), pass.end(),
                                    [](const PassItem& item) { return item.state == nullptr; });
   PassCovariances covs;
-  covs.of_sensors = windows ? OfWindows(pass, start, origin) : OfSamples(pass, start, origin);
+  covs.covs_of_sensors_W =
+      windows ? OfWindows(pass, start, origin) : OfSamples(pass, start, origin);
   for (const PassItem& item : pass) {
-    covs.of_depth.push_back(OfDepth(job, start.top_tangent_W, item.station));
+    covs.covs_of_depth_W.push_back(OfDepth(job, start.top_tangent_W, item.station));
   }
   return covs;
 }

@@ -40,8 +40,8 @@ struct PathStart {
 
 /// Position covariances of a pass's stations, in their order, from its start on [m^2].
 struct PassCovariances {
-  std::vector<Eigen::Matrix3d> of_sensors;  ///< and what the hole may do where nobody saw it
-  std::vector<Eigen::Matrix3d> of_depth;    ///< what its error adds
+  std::vector<Eigen::Matrix3d> covs_of_sensors_W;  ///< and what the hole may do where nobody saw it
+  std::vector<Eigen::Matrix3d> covs_of_depth_W;    ///< what its error adds
 };
 
 PassCovariances PassCovariancesOf(const Job& job, const PassItems& pass, const PathStart& start);

@@ -185,8 +185,8 @@ SampleQueue::Verdict SampleQueue::Again(const ImuSample& sample, const Content* 
   const Content again = ContentOf(sample);
   if (first != nullptr && first->seq == again.seq && first->session == again.session &&
       first->time == again.time) {
-    other_ = (first->w - again.w).cwiseAbs().maxCoeff() > kSameRate ||
-             (first->f - again.f).cwiseAbs().maxCoeff() > kSameForce;
+    other_ = (first->w_IT_T - again.w_IT_T).cwiseAbs().maxCoeff() > kSameRate ||
+             (first->f_T - again.f_T).cwiseAbs().maxCoeff() > kSameForce;
   }
   ++(other_ ? counts_.others : counts_.duplicates);
   return other_ ? Verdict::kOther : Verdict::kDuplicate;

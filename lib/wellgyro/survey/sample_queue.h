@@ -102,8 +102,8 @@ class WELLGYRO_EXPORT SampleQueue {
     std::int64_t seq = -1;  ///< kept are others
     ToolTime time;
     std::int32_t session = 0;
-    Eigen::Vector3f w = Eigen::Vector3f::Zero();  ///< [rad/s]
-    Eigen::Vector3f f = Eigen::Vector3f::Zero();  ///< [m/s^2]
+    Eigen::Vector3f w_IT_T = Eigen::Vector3f::Zero();  ///< [rad/s]
+    Eigen::Vector3f f_T = Eigen::Vector3f::Zero();     ///< [m/s^2]
   };
 
   static Content ContentOf(const ImuSample& sample);

@@ -10,7 +10,10 @@ namespace {
 
 /// Of the tool's unit axis [rad^2].
 Eigen::Matrix3d CovarianceOfAxis(const AttitudeSample& tool, const StationState* state) {
-  if (state) return state->tangent * state->cov.topLeftCorner<3, 3>() * state->tangent.transpose();
+  if (state) {
+    const auto& slope = state->tangent_by_phi_L;
+    return slope * state->cov.topLeftCorner<3, 3>() * slope.transpose();
+  }
   const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(tool.inclination, tool.azimuth);
   return slope * tool.cov_attitude.topLeftCorner<2, 2>() * slope.transpose();
 }

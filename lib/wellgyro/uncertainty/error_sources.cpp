@@ -50,7 +50,7 @@ void ErrorSources::StartLeg(const std::vector<std::size_t>& sources) {
     if (std::ranges::find(active_, i) == active_.end()) active_.push_back(i);
   }
   resting_.clear();
-  idle_ = tie_in_;
+  cov_idle_W_ = cov_tie_in_W_;
   std::vector<bool> is_active(sources_.size(), false);
   for (const std::size_t i : active_) is_active[i] = true;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -58,15 +58,15 @@ void ErrorSources::StartLeg(const std::vector<std::size_t>& sources) {
     resting_.push_back(i);
     Source& source = sources_[i];
     source.error_W = source.sum_W;
-    idle_ += source.sum_W * source.sum_W.transpose();
+    cov_idle_W_ += source.sum_W * source.sum_W.transpose();
   }
 }
 
 void ErrorSources::Close(Source& source, std::int64_t group) {
   const Matrix3d cov = source.sum_W * source.sum_W.transpose();
-  ended_ += cov;
+  cov_ended_W_ += cov;
   if (options_.terms) {
-    source.closed += cov;
+    source.cov_closed_W += cov;
     source.has_closed = true;
   }
   source.sum_W.setZero();
@@ -74,19 +74,19 @@ void ErrorSources::Close(Source& source, std::int64_t group) {
 }
 
 void ErrorSources::Forget() {
-  tie_in_.setZero();
-  ended_.setZero();
-  idle_.setZero();
+  cov_tie_in_W_.setZero();
+  cov_ended_W_.setZero();
+  cov_idle_W_.setZero();
   for (Source& source : sources_) {
     source.sum_W.setZero();
     source.error_W.setZero();
-    source.closed.setZero();
+    source.cov_closed_W.setZero();
     source.has_closed = false;
   }
 }
 
 void ErrorSources::Give(PositionUncertainty& result) const {
-  Matrix3d total = ended_ + idle_;
+  Matrix3d total = cov_ended_W_ + cov_idle_W_;
   for (const std::size_t i : active_) {
     const Source& s = sources_[i];
     const Matrix3d own = s.error_W * s.error_W.transpose();
@@ -94,7 +94,7 @@ void ErrorSources::Give(PositionUncertainty& result) const {
     if (!options_.terms) continue;
     std::vector<Matrix3d>& term = result.terms[i].cov_p_W;
     if (s.has_closed) {
-      term.push_back(s.closed + own);
+      term.push_back(s.cov_closed_W + own);
     } else {
       term.push_back(own);
     }
@@ -106,7 +106,7 @@ void ErrorSources::Give(PositionUncertainty& result) const {
   if (!options_.terms) return;
   for (const std::size_t i : resting_) {
     const Source& s = sources_[i];
-    result.terms[i].cov_p_W.push_back(s.closed + s.error_W * s.error_W.transpose());
+    result.terms[i].cov_p_W.push_back(s.cov_closed_W + s.error_W * s.error_W.transpose());
   }
 }
 

@@ -19,7 +19,7 @@ namespace wellgyro {
 class ErrorSources {
  public:
   explicit ErrorSources(const PropagateOptions& options)
-      : options_(options), tie_in_(options.cov_tie_in_W) {}
+      : options_(options), cov_tie_in_W_(options.cov_tie_in_W) {}
 
   /// The source of `term` in `leg`, which may be that of an earlier leg.
   std::size_t SourceOf(const ErrorTerm& term, const ToolLeg& leg, std::size_t leg_number);
@@ -51,20 +51,20 @@ class ErrorSources {
     std::int64_t group = 0;
     Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
     Eigen::Vector3d error_W = Eigen::Vector3d::Zero();  ///< at this station
-    Eigen::Matrix3d closed =
-        Eigen::Matrix3d::Zero();  ///< of ended groups, where terms are asked for
+    /// Of ended groups, where terms are asked for.
+    Eigen::Matrix3d cov_closed_W = Eigen::Matrix3d::Zero();
     bool has_closed = false;
   };
 
   void Close(Source& source, std::int64_t group);
 
   const PropagateOptions& options_;
-  Eigen::Matrix3d tie_in_;
+  Eigen::Matrix3d cov_tie_in_W_;
   std::vector<Source> sources_;
   std::vector<std::size_t> active_, resting_;
-  std::vector<std::size_t> shared_;                  ///< sources of result.shared
-  Eigen::Matrix3d ended_ = Eigen::Matrix3d::Zero();  ///< of all ended groups
-  Eigen::Matrix3d idle_ = Eigen::Matrix3d::Zero();   ///< of sources that this leg does not have
+  std::vector<std::size_t> shared_;  ///< sources of result.shared
+  /// Of all ended groups, and of sources that this leg does not have.
+  Eigen::Matrix3d cov_ended_W_ = Eigen::Matrix3d::Zero(), cov_idle_W_ = cov_ended_W_;
 };
 
 }  // namespace wellgyro

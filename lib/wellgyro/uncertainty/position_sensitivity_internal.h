@@ -6,13 +6,12 @@
 
 namespace wellgyro {
 
-/// How errors of (MD, inclination, azimuth) at one station move its own position (`at`) and that of
-/// all deeper ones (`through`); beside them, an error along a fixed direction in place of the
-/// angles.
+/// How errors of (MD, inclination, azimuth) at one station move its own position (at) and that of
+/// all deeper ones (through); beside them, an error along a fixed direction in place of the angles.
 struct PositionSensitivity {
-  Eigen::Matrix3d at;                      ///< columns by MD [1], inclination and azimuth [m/rad]
-  Eigen::Matrix3d through;                 ///< the same
-  double along_at = 0, along_through = 0;  ///< [m]
+  Eigen::Matrix3d at_by_md_inc_azi_W;       ///< columns by MD [1], inclination and azimuth [m/rad]
+  Eigen::Matrix3d through_by_md_inc_azi_W;  ///< likewise
+  double along_at = 0, along_through = 0;   ///< [m]
 };
 
 /// The hole's direction at a station (north, east, down), with its derivatives.

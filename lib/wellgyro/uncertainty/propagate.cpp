@@ -152,7 +152,8 @@ void Propagator::AddTie() {
   const double half = (survey_[1].md - survey_[0].md) / 2;
   const bool vertical = places_.place().inclination < leg.model().vertical_limit;
   const Matrix3d through =
-      SensitivityFrom(here_, Tangent(survey_[1].inclination, survey_[1].azimuth), 2 * half).through;
+      SensitivityFrom(here_, Tangent(survey_[1].inclination, survey_[1].azimuth), 2 * half)
+          .through_by_md_inc_azi_W;
   for (std::size_t i = 0; i < leg.model().terms.size(); ++i) {
     const ErrorTerm& term = leg.model().terms[i];
     if (term.weight->role == WeightRole::kCourse) continue;
@@ -205,9 +206,10 @@ bool Propagator::AddTerm(std::size_t term, std::size_t k, const PositionSensitiv
   const Vector3d e = model_term.magnitude * Vector3d(w->md, w->inclination, w->azimuth);
   Tell(term, k, {.md = e.x(), .direction_W = e.y() * here_.high_side_W + e.z() * here_.right_W});
   if (e.x() == 0 && e.y() == 0) {  // most terms move the azimuth alone
-    sources_.Add(source, group, e.z() * s.at.col(2), e.z() * s.through.col(2));
+    sources_.Add(source, group, e.z() * s.at_by_md_inc_azi_W.col(2),
+                 e.z() * s.through_by_md_inc_azi_W.col(2));
   } else {
-    sources_.Add(source, group, s.at * e, s.through * e);
+    sources_.Add(source, group, s.at_by_md_inc_azi_W * e, s.through_by_md_inc_azi_W * e);
   }
   return true;
 }
