@@ -172,9 +172,13 @@ def PublicHeaders():
 
 # Frames of the conventions in README.md, and of single blocks of sensors.
 FRAMES = "IEWLTHGASMB"
-ROTATION = r"R_([A-Z])([A-Z])(\.transpose\(\)|\.inverse\(\))?"
+ROTATION = r"R_([A-Z])([A-Z])(?:_[a-z]\w*)?(\.transpose\(\)|\.inverse\(\))?"
 VECTOR = rf"[a-z]\w*_([{FRAMES}])_?"
-PRODUCT = re.compile(rf"\b{ROTATION} \* (?:\w+(?:\.|->))*(?:{ROTATION}|{VECTOR})(?!\w)")
+PRODUCT = re.compile(rf"\b{ROTATION} \* (?=(?:\w+(?:\.|->))*(?:{ROTATION}|{VECTOR})(?!\w))")
+
+# Three numbers that may be a vector in space, and nine that may turn one.
+THREE = r"Vector3[df]|Matrix<(?:double|float), 3, 1\b[^<>]*>|array<(?:double|float), 3>"
+NINE = r"Matrix3[df]|Matrix<(?:double|float), 3, 3\b[^<>]*>|Quaternion[df]|AngleAxis[df]"
 
 # Words in names of three numbers that are no vector in space, and of covariances of none.
 NO_VECTOR = {
@@ -187,24 +191,32 @@ NO_VECTOR = {
     "attitude": "inclination, azimuth and toolface",
     "inc": "depth, inclination and azimuth",
 }
+# And of nine that are no rotation.
+NO_ROTATION = {
+    "sensitivity": "a row of each sensor",
+    "misalignment": "a row of each sensor",
+}
 
 
-def Triples(path):
-    """Line and name of what is declared to be a Vector3d, or several of them, or a Matrix3d that is
-    a covariance by its name. Paragraphs whose comment says "any frame" (of what holds in each) or
-    "no frame" (of rows, and of what is not right-handed) are left out."""
-    free, begin = set(), 0
-    for end, line in enumerate(Lines(path) + [""]):
-        if not line.strip():
-            said = " ".join(line.strip(" /") for line in Lines(path)[begin:end])
-            if re.search(r"\b(any|no) frame\b", said):
-                free.update(range(begin + 1, end + 1))
-            begin = end + 1
-    text = "\n".join(line for _, line in Code(path))
-    for kind in re.finditer(r"\b(Vector|Matrix)3d\b(?:, \d+)?[>&*\s]*\s(?=[A-Za-z])", text):
+def Types(code):
+    """What a type is by its name: of three numbers in group 1, of nine in 2, of one in 3. An alias
+    is what it stands for, or holds, whichever header has it."""
+    three, nine, known = [THREE], [NINE], 0
+    while known < len(three) + len(nine):
+        known = len(three) + len(nine)
+        for types in (three, nine):
+            alias = rf"\busing (\w+) = [^;(]*?\b(?:{'|'.join(types)})(?!\w)[^;(]*;"
+            types[1:] = sorted({*types[1:], *re.findall(alias, code)})
+    return rf"\b(?:({'|'.join(three)})|({'|'.join(nine)})|(double|float))(?!\w)"
+
+
+def Triples(text, types):
+    """Where, name and whether nine of what is declared to be three or nine numbers, or several such:
+    variables, members, parameters and accessors."""
+    for kind in re.finditer(types + r"(?:[>&*]|, [\w:<]+)*\s+(?=[A-Za-z])", text):
         depth, pieces, begin = 0, [], kind.end()
-        for mark in re.finditer(r"[][(){},;]", text[kind.end():]):
-            at = kind.end() + mark.start()
+        for mark in re.compile(r"[][(){},;]").finditer(text, kind.end()):
+            at = mark.start()
             depth += (mark.group() in "([{") - (mark.group() in ")]}")
             if depth < 0 or (depth == 0 and mark.group() in ",;"):
                 pieces.append((begin, text[begin:at]))
@@ -212,12 +224,39 @@ def Triples(path):
             if depth < 0 or (depth == 0 and mark.group() == ";"):
                 break
         for begin, piece in pieces[:1] if depth < 0 else pieces:  # what follows has its own type
-            declared = re.match(r"\s*(\w+)\s*(?:[={].*)?$", piece, re.S)
+            declared = re.match(r"\s*(\w+)((?:\[\w+\])*)\s*(?:[={].*)?$", piece, re.S)
             if not declared:
-                break  # a function, or the next parameter
-            name, number = declared.group(1), text.count("\n", 0, begin + declared.start(1)) + 1
-            if number not in free and (kind.group(1) == "Vector" or re.match("covs?(_|$)", name)):
-                yield number, name
+                accessor = re.match(r"(R(?:_\w+)?|[a-z]\w*)\(", piece)
+                if accessor and not kind.group(3):
+                    yield begin, accessor.group(1), bool(kind.group(2))
+                break  # of a function, or of the next parameter
+            name, sizes = declared.groups()
+            if not kind.group(3) or sizes in ("[3]", "[3][3]"):
+                yield begin + declared.start(1), name, bool(kind.group(2)) or sizes == "[3][3]"
+
+
+def Frameless(path):
+    """Lines of paragraphs whose comment says "any frame" (of what holds in each) or "no frame" (of
+    rows, and of what is not right-handed)."""
+    free, begin = set(), 0
+    for end, line in enumerate(Lines(path) + [""]):
+        if not line.strip():
+            said = " ".join(line.strip(" /") for line in Lines(path)[begin:end])
+            if re.search(r"\b(any|no) frame\b", said):
+                free.update(range(begin + 1, end + 1))
+            begin = end + 1
+    return free
+
+
+def Misnamed(name, nine):
+    """Why the name does not say the frame; what excuses it, if any."""
+    words = set(name.strip("_").split("_"))
+    ends = re.search(rf"_[{FRAMES}]_?$", name)
+    if nine and not re.match("covs?_", name):
+        if re.fullmatch(rf"R_[{FRAMES}]{{2}}(_[a-z]\w*)?_?", name) or ("by" in words and ends):
+            return None, set()
+        return "is no R_AB, cov_ or derivative x_by_y_A", words & NO_ROTATION.keys()
+    return (None if ends else "does not end in its frame"), words & NO_VECTOR.keys()
 
 
 def Room(path):
@@ -459,7 +498,7 @@ class Structure(unittest.TestCase):
         problems, products = [], 0
         for path in Sources(LIB):
             for number, line in Code(path):
-                for name in re.findall(r"\bR_([A-Z]{2})\b", line):
+                for name in re.findall(r"\bR_([A-Z]{2})(?![A-Z\d])", line):
                     if set(name) - set(FRAMES):
                         problems.append(f"{Place(path, number)}: R_{name} has no such frame")
                 for a, b, turned, c, d, turned_2, vector in PRODUCT.findall(line):
@@ -471,20 +510,41 @@ class Structure(unittest.TestCase):
         self.Report(problems)
         self.assertGreater(products, 12)
 
-    def test_vectors_of_headers_name_their_frame(self):
-        problems, excused, count = [], set(), 0
-        for path in (p for p in Sources(LIB, (".h",)) if Room(p) != "math"):
-            for number, name in Triples(path):
+    def test_vectors_and_rotations_of_headers_name_their_frames(self):
+        code = {path: "\n".join(line for _, line in Code(path))
+                for top in (LIB, os.path.join(TOP, "apps")) for path in Sources(top, (".h",))}
+        types, problems, excused, count = Types("\n".join(code.values())), [], set(), 0
+        for path in (path for path in code if Room(path) != "math"):
+            free = Frameless(path)
+            for at, name, nine in Triples(code[path], types):
+                number = code[path].count("\n", 0, at) + 1
+                why, words = Misnamed(name, nine)
                 count += 1
-                if re.search(rf"_[{FRAMES}]_?$", name):
-                    continue
-                words = NO_VECTOR.keys() & set(name.split("_"))
-                excused |= words
-                if not words:
-                    problems.append(f"{Place(path, number)}: {name} does not end in its frame")
+                excused |= words if why else set()
+                if why and not words and number not in free:
+                    problems.append(f"{Place(path, number)}: {name} {why}")
         self.Report(problems)
-        self.assertGreater(count, 150)
-        self.assertEqual(NO_VECTOR.keys() - excused, set(), "words that excuse nothing")
+        self.assertGreater(count, 250)
+        self.assertEqual({*NO_VECTOR, *NO_ROTATION} - excused, set(), "words that excuse nothing")
+
+    def test_wrong_names_of_vectors_and_rotations_are_seen(self):
+        code = """
+            using Axis = Eigen::Vector3d; using Axes = std::vector<Axis>;
+            using Turn = Eigen::Matrix3d;
+            Eigen::Vector3d b1 = Eigen::Vector3d::Zero(), ok_W, b2; Eigen::Vector3f b3, sigma_ok;
+            double ok, b4[3] = {}, b5[3][3], ok[4]; std::array<double, 3> b6; float b7[3];
+            Eigen::Matrix<double, 3, 1> b8; Axis b9; const Axes& b10_K; std::vector<Axis> ok_T;
+            std::vector<Eigen::Vector3d> b11; std::array<std::vector<Eigen::Vector3d>, 2> b12;
+            std::array<Eigen::Vector3d, kSize> b13; std::pair<Eigen::Vector3d, double> b14;
+            Eigen::Matrix3d rotation_b15, R_LT, R_LT_end, R_LX, attitude_b16, sensitivity_ok;
+            Eigen::Matrix3d cov_b17, cov_ok_W, p_by_b18, p_by_ok_W; Turn b19_W;
+            Eigen::Quaterniond b20_LT; Eigen::Matrix<double, 3, 3> b21;
+            void Ok(const Eigen::Vector3d& b22, double ok, std::span<const Axis> b23 = {});
+            const Eigen::Vector3d& b24() const; Eigen::Matrix3d R(int k), R_LX_at(int k);
+        """
+        seen = [name for _, name, nine in Triples(code, Types(code))
+                if Misnamed(name, nine)[0] and not Misnamed(name, nine)[1]]
+        self.assertEqual(seen, re.findall(r"\b\w*b\d+\w*|\bR\b|R_LX(?!_)", code))
 
     def test_comments_that_are_held_up_as_examples_stand_in_the_sources(self):
         problems, known, source = [], 0, ""
