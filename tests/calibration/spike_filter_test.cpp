@@ -53,11 +53,15 @@ NoiseCoefficients Noise() {
 std::vector<Out> Filtered(const std::vector<ImuSample>& samples, std::size_t block = 1) {
   SpikeFilter filter(Noise(), Errors());
   std::vector<Out> out;
-  const auto keep = [&out](const SpikeFilter::Done& done) {
-    for (std::size_t i = 0; i < done.samples.size(); ++i) {
-      out.push_back({done.samples[i], done.mended[i].gyro, done.mended[i].accel});
-      EXPECT_EQ(done.axes[i].head<3>().matrix(), done.samples[i].w_IT_T);
-      EXPECT_EQ(done.axes[i].tail<3>().matrix(), done.samples[i].f_T);
+  const auto keep = [&](const SpikeFilter::Done& done) {
+    ASSERT_LE(out.size() + done.axes.size(), samples.size());
+    for (std::size_t i = 0; i < done.axes.size(); ++i) {
+      Out one{samples[out.size()], done.mended[i].gyro, done.mended[i].accel};
+      EXPECT_EQ(one.gyro, done.axes[i].head<3>().matrix() != one.sample.w_IT_T);
+      EXPECT_EQ(one.accel, done.axes[i].tail<3>().matrix() != one.sample.f_T);
+      one.sample.w_IT_T = done.axes[i].head<3>();
+      one.sample.f_T = done.axes[i].tail<3>();
+      out.push_back(one);
     }
   };
   for (std::span<const ImuSample> rest(samples); !rest.empty();) {

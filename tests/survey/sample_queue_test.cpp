@@ -231,6 +231,30 @@ TEST(SampleQueue, AMessageOfWildTimesIsAStrayAndMakesNoOtherLate) {
   }
 }
 
+TEST(SampleQueue, WhatIsTakenAwayStaysUntilItIsLetGo) {
+  SampleQueue queue(Duration::Seconds(0.02));
+  std::int64_t next = 0, oldest = 0, held = 0;
+  // Three to seven stay, as in a filter, while the ring goes round, and once 3000, while it grows.
+  for (int turn = 0; turn < 2000; ++turn) {
+    for (int k = 0; k < 5; ++k) queue.Push(SampleAt(static_cast<int>(next++)));
+    for (; !queue.Ready().empty(); ++held) queue.Pop();
+    for (std::int64_t seq = oldest; seq < oldest + held;) {
+      const std::span<ImuSample> piece = queue.Held();
+      ASSERT_FALSE(piece.empty());
+      for (const ImuSample& sample : piece) ASSERT_EQ(sample.stamp.seq, seq++);
+      const bool keeps = seq == oldest + held;
+      const std::int64_t least = turn < 600 ? 3000 : 3;
+      const auto away =
+          keeps ? std::max<std::int64_t>(held - least, 0) : static_cast<std::int64_t>(piece.size());
+      queue.Release(static_cast<std::size_t>(away));
+      oldest += away;
+      held -= away;
+      if (keeps) break;
+    }
+  }
+  EXPECT_EQ(oldest + held, 9998);
+}
+
 TEST(SampleQueue, ASampleOfTheSessionBeforeDoesNotBringItBack) {
   SampleQueue queue(Duration::Seconds(1));
   queue.Push(SampleAt(7, 1));

@@ -188,12 +188,16 @@ void StillDetector::Append(const SampleBlock& samples, const AlongHoleBlock& alo
     for (const ImuSample& sample : samples.samples) block.sum_b_T += sample.b_T;
   }
   const auto temperature = static_cast<double>(stamp.temperature);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    block.sum_temperature += temperature;
-    block.sum_md += along.md[from + i];
-    block.sum_speed += std::abs(along.speed[from + i]);
-    block.sum_sigma_speed += along.sigma_speed[from + i];
+  Eigen::Array4d others(block.sum_temperature, block.sum_md, block.sum_speed,
+                        block.sum_sigma_speed);
+  for (Eigen::Index i = from; i < from + n; ++i) {
+    others +=
+        Eigen::Array4d(temperature, along.md[i], std::abs(along.speed[i]), along.sigma_speed[i]);
   }
+  block.sum_temperature = others[0];
+  block.sum_md = others[1];
+  block.sum_speed = others[2];
+  block.sum_sigma_speed = others[3];
   block.samples += n;
   block.depths += n;
   block.gz &= like.has_gz;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -97,22 +99,24 @@ bool ReadArrays(const ImuHead& head, std::span<const std::byte> bytes, ImuSample
     sample.has_gz = has_gz;
     sample.has_mag = has_mag;
   }
-  double none = 0;  // unless one is not finite: infinity less itself is no number
+  // The exponent of what is not finite is all ones: one more carries into the sign.
+  constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000, kOne = 0x0010'0000'0000'0000;
+  std::uint64_t carried = 0;
   const auto read = [&](std::size_t first, Eigen::Vector3d ImuSample::*vector) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (columns.at[first + axis] == 0) continue;
       const std::byte* array = bytes.data() + columns.at[first + axis];
       for (std::size_t k = 0; k < n; ++k) {
-        const auto value = Load<double>(array + k * sizeof(double));
-        (out[k].*vector)[static_cast<Eigen::Index>(axis)] = value;
-        none += value - value;
+        const auto bits = Load<std::uint64_t>(array + k * sizeof(double));
+        (out[k].*vector)[static_cast<Eigen::Index>(axis)] = std::bit_cast<double>(bits);
+        carried |= (bits & kExponent) + kOne;
       }
     }
   };
   read(0, &ImuSample::w_IT_T);
   read(3, &ImuSample::f_T);
   read(6, &ImuSample::b_T);
-  return none == 0;
+  return carried >> 63 == 0;
 }
 
 /// Leaves out of `samples` what is no number. Returns how many samples are left, and

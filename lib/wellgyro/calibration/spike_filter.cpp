@@ -22,23 +22,26 @@ bool Follows(const SampleStamp& a, const SampleStamp& b) {
 }  // namespace
 
 bool SpikeFilter::Continues(const SampleStamp& stamp) const {
-  return done_ < size_ && Follows(samples_[size_ - 1].stamp, stamp);
+  return done_ < size_ && Follows(last_, stamp);
 }
 
 SpikeFilter::Done SpikeFilter::Push(std::span<const ImuSample> samples) {
   Drop();
   const std::size_t before = size_;
   SetFloor(samples.front().stamp.period_ns);
+  const SampleStamp* last = nullptr;
   for (const ImuSample& sample : samples.first(std::min(samples.size(), kMost))) {
-    if (size_ > before && !Follows(samples_[size_ - 1].stamp, sample.stamp)) break;
-    samples_[size_] = sample;
+    if (last != nullptr && !Follows(*last, sample.stamp)) break;
+    last = &sample.stamp;
     axes_[size_] << sample.w_IT_T, sample.f_T;
     mended_[size_] = {};
+    has_gz_[size_] = sample.has_gz;
     ++size_;
   }
-  const std::size_t end = std::max(size_, kMiddle) - kMiddle;
-  for (std::size_t i = std::max(done_, kMiddle); i < end; ++i) {
-    if (Departs(i)) Mend(i);
+  last_ = *last;
+  const std::size_t end = std::max(size_, kMiddle) - kMiddle, begin = std::max(done_, kMiddle);
+  if (begin < end && AnyDeparts(begin, end)) {
+    for (std::size_t i = begin; i < end; ++i) Mend(i);
   }
   Done done = DoneUpTo(std::max(done_, end));
   done.taken = size_ - before;
@@ -49,16 +52,15 @@ SpikeFilter::Done SpikeFilter::Flush() { return DoneUpTo(size_); }
 
 SpikeFilter::Done SpikeFilter::DoneUpTo(std::size_t end) {
   const std::size_t begin = std::exchange(done_, end), count = end - begin;
-  return {std::span(samples_).subspan(begin, count), std::span(axes_).subspan(begin, count),
-          std::span(mended_).subspan(begin, count), 0};
+  return {std::span(axes_).subspan(begin, count), std::span(mended_).subspan(begin, count), 0};
 }
 
 /// What no window needs any more: all, where nothing waits.
 void SpikeFilter::Drop() {
   const std::size_t first = done_ == size_ ? size_ : std::max(done_, kMiddle) - kMiddle;
-  std::copy(samples_.begin() + first, samples_.begin() + size_, samples_.begin());
   std::copy(axes_.begin() + first, axes_.begin() + size_, axes_.begin());
   std::copy(mended_.begin() + first, mended_.begin() + size_, mended_.begin());
+  std::copy(has_gz_.begin() + first, has_gz_.begin() + size_, has_gz_.begin());
   size_ -= first;
   done_ -= first;
 }
@@ -67,8 +69,10 @@ void SpikeFilter::SetFloor(std::int32_t period_ns) {
   if (period_ns == floor_period_ns_) return;
   floor_period_ns_ = period_ns;
   const double rate = 1 / std::sqrt(1e-9 * static_cast<double>(period_ns));
-  floor_.head<3>() = kSigmas * gyro_noise_ * rate + kLeastRate;
-  floor_.tail<3>() = kSigmas * accel_noise_ * rate + kLeastForce;
+  SixAxes floor;
+  floor.head<3>() = kSigmas * gyro_noise_ * rate + kLeastRate;
+  floor.tail<3>() = kSigmas * accel_noise_ * rate + kLeastForce;
+  floors_.fill(floor);
 }
 
 /// What a sample has that the cubic through the four about it has not.
@@ -77,16 +81,21 @@ SixAxes SpikeFilter::Beyond(std::size_t i) const {
   return axes_[i] - near / 6;
 }
 
-/// False: Beyond() is within the floor on every axis. Nearly all samples are done with this.
-bool SpikeFilter::Departs(std::size_t i) const {
+/// False: Beyond() is within the floor on every axis of samples [begin, end). Nearly all blocks
+/// are done with this.
+bool SpikeFilter::AnyDeparts(std::size_t begin, std::size_t end) const {
   constexpr double kSurely = 5.99;  // of six, for what is rounded
-  const SixAxes near = 4 * (axes_[i - 1] + axes_[i + 1]) - axes_[i - 2] - axes_[i + 2];
-  return ((6 * axes_[i] - near).abs() - kSurely * floor_).maxCoeff() > 0;
+  using Axes = Eigen::Map<const Eigen::ArrayXd>;
+  const auto count = static_cast<Eigen::Index>(6 * (end - begin));
+  const auto from = [&](std::size_t i) { return Axes(axes_[i].data(), count); };
+  const auto near = 4 * (from(begin - 1) + from(begin + 1)) - from(begin - 2) - from(begin + 2);
+  const auto floor = Axes(floors_.front().data(), count);
+  return ((6 * from(begin) - near).abs() - kSurely * floor).maxCoeff() > 0;
 }
 
 /// One axis of a sample, which has `off` that its cubic has not.
 bool SpikeFilter::MendAxis(std::size_t i, Eigen::Index axis, double off) {
-  const double floor = floor_[axis];
+  const double floor = floors_.front()[axis];
   double& x = axes_[i][axis];
   // A single bad sample leaves -2/3 of itself with either neighbour; what else these have is how
   // much the signal itself departs from cubics here.
@@ -108,15 +117,13 @@ bool SpikeFilter::MendAxis(std::size_t i, Eigen::Index axis, double off) {
 }
 
 void SpikeFilter::Mend(std::size_t i) {
-  ImuSample& sample = samples_[i];
   const SixAxes off = Beyond(i);
   for (Eigen::Index axis = 0; axis < off.size(); ++axis) {
-    const bool there = axis != 2 || sample.has_gz;
-    if (!there || std::abs(off[axis]) <= floor_[axis] || !MendAxis(i, axis, off[axis])) continue;
+    const bool there = axis != 2 || has_gz_[i];
+    if (!there || std::abs(off[axis]) <= floors_.front()[axis] || !MendAxis(i, axis, off[axis]))
+      continue;
     (axis < 3 ? mended_[i].gyro : mended_[i].accel) = true;
   }
-  sample.w_IT_T = axes_[i].head<3>();
-  sample.f_T = axes_[i].tail<3>();
 }
 
 }  // namespace wellgyro

@@ -24,9 +24,10 @@ namespace wellgyro {
 /// beyond three times the spread of the middle four, and replaced by it. Of white noise one value
 /// in 1e8 is touched.
 ///
-/// Samples come out three later than they go in, in order and all of them. What does not continue
-/// the samples before is no neighbour: Flush first. The three on either side of such a place are
-/// left as they are. How samples come in blocks does not matter. Nothing is allocated.
+/// Axes come out three samples later than they go in, in order and all of them; the samples stay
+/// with the caller. What does not continue the samples before is no neighbour: Flush first. The
+/// three on either side of such a place are left as they are. How samples come in blocks does not
+/// matter. Nothing is allocated.
 class WELLGYRO_EXPORT SpikeFilter {
  public:
   static constexpr std::size_t kMost = SampleBlock::kMost;
@@ -35,9 +36,8 @@ class WELLGYRO_EXPORT SpikeFilter {
     bool gyro = false, accel = false;  ///< an axis was replaced
     bool any() const { return gyro || accel; }
   };
-  /// Samples that are done, in order. Valid until the next call.
+  /// Of the samples that are done, in order. Valid until the next call.
   struct Done {
-    std::span<ImuSample> samples;
     std::span<const SixAxes> axes;
     std::span<const Mended> mended;
     std::size_t taken = 0;  ///< of those that were pushed
@@ -60,19 +60,21 @@ class WELLGYRO_EXPORT SpikeFilter {
   SixAxes Beyond(std::size_t i) const;
   void SetFloor(std::int32_t period_ns);
   void Drop();
-  bool Departs(std::size_t i) const;
+  bool AnyDeparts(std::size_t begin, std::size_t end) const;
   void Mend(std::size_t i);
   bool MendAxis(std::size_t i, Eigen::Index axis, double off);
   Done DoneUpTo(std::size_t end);
 
   double gyro_noise_, accel_noise_;  // of a mean over 1 s [rad/s], [m/s^2]
-  SixAxes floor_ = SixAxes::Zero();  // below which a departure is noise, at this period
+  std::array<SixAxes, kMost>
+      floors_;  // below which a departure is noise, at this period: all alike
   std::int32_t floor_period_ns_ = 0;
   // The three that were done last, those that wait, and those that are new.
-  std::array<ImuSample, 2 * kMiddle + kMost> samples_;
   std::array<SixAxes, 2 * kMiddle + kMost> axes_;
   std::array<Mended, 2 * kMiddle + kMost> mended_;
+  std::array<bool, 2 * kMiddle + kMost> has_gz_;
   std::size_t size_ = 0, done_ = 0;
+  SampleStamp last_;  // pushed
 };
 
 }  // namespace wellgyro

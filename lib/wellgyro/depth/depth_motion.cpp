@@ -26,25 +26,32 @@ void DepthMotion::Restart() { passed_count_ = 0; }
 
 void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period,
                        std::span<const SixAxes> samples, const DepthTrack& track) {
+  const double length = period.seconds();
+  Fall fall = fall_;
   for (std::size_t i = 0; i < utc.size(); ++i) {
     const SixAxes& s = samples[i];
-    const double change = (s[1] * s[3] - s[0] * s[4]) * period.seconds();
-    const double f_z = s[5] - gravity_ - change / 2;
-    gravity_ += change;
+    const double change = (s[1] * s[3] - s[0] * s[4]) * length;
+    const double f_z = s[5] - fall.gravity - change / 2;
+    fall.gravity += change;
     const Duration gap = felt_until_ ? utc[i] - *felt_until_ : Duration{};
     if (gap > kGap || Duration{-gap.ns} > kGap) {
       passed_count_ = 0;
-      speed_ = way_ = 0;
+      fall.speed = fall.way = 0;
     }
     // A gap up to kGap is bridged with the force of the sample behind it.
     const bool bridged = gap.ns > 0;
     const UtcTime begin = bridged ? *felt_until_ : utc[i];
-    const double seconds = bridged ? period.seconds() + gap.seconds() : period.seconds();
+    const double seconds = bridged ? length + gap.seconds() : length;
     felt_until_ = utc[i] + period;
-    if (!last_mark_ || *last_mark_ + kMarksApart < *felt_until_) PassMark(begin, f_z, track);
-    way_ += (speed_ + f_z * seconds / 2) * seconds;
-    speed_ += f_z * seconds;
+    if (!last_mark_ || *last_mark_ + kMarksApart < *felt_until_) {
+      fall_ = fall;
+      PassMark(begin, f_z, track);
+      fall = fall_;
+    }
+    fall.way += (fall.speed + f_z * seconds / 2) * seconds;
+    fall.speed += f_z * seconds;
   }
+  fall_ = fall;
 }
 
 /// The mark, if there is one to be compared, in a sample that begins at `begin`.
@@ -55,7 +62,8 @@ void DepthMotion::PassMark(UtcTime begin, double f_z, const DepthTrack& track) {
   if (!mark || mark->utc >= *felt_until_) return;
   const double t = (mark->utc - begin).seconds();
   last_mark_ = mark->utc;
-  Pass({mark->utc, mark->md, speed_ + f_z * t, way_ + (speed_ + f_z * t / 2) * t});
+  const double way = fall_.way + (fall_.speed + f_z * t / 2) * t;
+  Pass({mark->utc, mark->md, fall_.speed + f_z * t, way});
   FallFromOldest(begin);
 }
 
@@ -80,7 +88,7 @@ void DepthMotion::FallFromOldest(UtcTime now) {
     way -= oldest.way + oldest.speed * (utc - oldest.utc).seconds();
     speed -= oldest.speed;
   };
-  take(now, speed_, way_);
+  take(now, fall_.speed, fall_.way);
   for (std::size_t i = 0; i < passed_count_; ++i) {
     take(passed_[i].utc, passed_[i].speed, passed_[i].way);
   }

@@ -57,6 +57,11 @@ class WELLGYRO_EXPORT DepthMotion {
     UtcTime utc;
     double md = 0, speed = 0, way = 0;
   };
+  /// What has been felt so far.
+  struct Fall {
+    double speed = 0, way = 0;
+    double gravity = 0;  ///< change of its share along the tool, as the gyros tell it [m/s^2]
+  };
   void PassMark(UtcTime begin, double f_z, const DepthTrack& track);
   void Pass(const Passed& passed);
   void FallFromOldest(UtcTime now);
@@ -66,8 +71,7 @@ class WELLGYRO_EXPORT DepthMotion {
   std::array<Passed, kMarks> passed_;
   std::size_t passed_count_ = 0;
   std::optional<UtcTime> last_mark_, felt_until_;
-  double speed_ = 0, way_ = 0;
-  double gravity_ = 0;  ///< change of its share along the tool, as the gyros tell it [m/s^2]
+  Fall fall_;
   Found found_;
   double sum_size_ = 0;  ///< of steps, each at most four times their mean so far
   double rate2_ = 0, rate_step_ = 0;

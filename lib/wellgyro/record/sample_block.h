@@ -16,7 +16,8 @@ using SixAxes = Eigen::Array<double, 6, 1>;
 /// number, and on both clocks each begins where the one before ends. But for number and times
 /// their stamps are the same, and so are has_gz and has_mag. A view; what it shows is another's.
 struct SampleBlock {
-  static constexpr std::size_t kMost = 64;
+  /// A batch of a hundred is one block; by 64, two, a log of 10 kHz takes 5 % longer.
+  static constexpr std::size_t kMost = 128;
 
   std::span<const ImuSample> samples;
   std::span<const SixAxes> axes;  ///< of each of them

@@ -1,6 +1,7 @@
 #include "wellgyro/survey/sample_intake.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -39,7 +40,8 @@ void SampleIntake::Flush() {
 }
 
 const AdmittedBlock* SampleIntake::Next(std::optional<UtcTime> until) {
-  while (done_.samples.empty()) {
+  queue_.Release(std::exchange(admitted_count_, 0));
+  while (done_.axes.empty()) {
     if (!Refill(until)) return nullptr;
   }
   Admit();
@@ -51,7 +53,7 @@ bool SampleIntake::Refill(std::optional<UtcTime> until) {
   std::span<const ImuSample> ready = queue_.Ready();
   if (ready.empty()) {
     if (flushed_) done_ = filter_.Flush();
-    return !done_.samples.empty();
+    return !done_.axes.empty();
   }
   ready = ready.first(CountFinal(ready));
   if (ready.empty()) return false;
@@ -59,7 +61,10 @@ bool SampleIntake::Refill(std::optional<UtcTime> until) {
     const auto late = std::ranges::find_if(
         ready, [&until](const ImuSample& sample) { return sample.stamp.utc >= *until; });
     if (late == ready.begin()) {
+      done_ = filter_.Flush();
+      if (!done_.axes.empty()) return true;
       queue_.Pop();
+      queue_.Release(1);
       return true;
     }
     ready = ready.first(static_cast<std::size_t>(late - ready.begin()));
@@ -68,7 +73,7 @@ bool SampleIntake::Refill(std::optional<UtcTime> until) {
   if (jumps || !filter_.Continues(ready.front().stamp)) {
     // What the filter still holds ends a stretch without gaps.
     done_ = filter_.Flush();
-    if (!done_.samples.empty()) return true;
+    if (!done_.axes.empty()) return true;
     jumps_ = jumps;
   }
   done_ = filter_.Push(ready);
@@ -96,28 +101,31 @@ std::size_t SampleIntake::CountFinal(std::span<const ImuSample> samples) {
   return count;
 }
 
-/// How many of the samples that are done make a block.
-std::size_t SampleIntake::CountEven() const {
-  const std::span<const ImuSample> samples = done_.samples;
-  const std::span<const SpikeFilter::Mended> mended = done_.mended;
-  if (mended.front().any()) return 1;
-  const std::size_t most = std::min(samples.size(), SampleBlock::kMost);
+/// The samples that are done, from the begin on, that make a block.
+std::span<ImuSample> SampleIntake::EvenSamples() {
+  const std::span<ImuSample> held = queue_.Held();
+  const std::size_t most = std::min({held.size(), done_.axes.size(), SampleBlock::kMost});
   std::size_t count = 1;
-  while (count < most && !mended[count].any() && IsEven(samples[count - 1], samples[count])) {
-    ++count;
+  if (!done_.mended.front().any()) {
+    while (count < most && !done_.mended[count].any() && IsEven(held[count - 1], held[count])) {
+      ++count;
+    }
   }
-  return count;
+  return held.first(count);
 }
 
 void SampleIntake::Admit() {
   AdmittedBlock& out = admitted_;
   out.jumps = std::exchange(jumps_, false);
   out.mended = done_.mended.front();
-  std::size_t count = CountEven();
-  const std::span<const ImuSample> samples = done_.samples;
+  std::span<ImuSample> samples = EvenSamples();
+  if (out.mended.any()) {
+    samples.front().w_IT_T = done_.axes.front().head<3>();
+    samples.front().f_T = done_.axes.front().tail<3>();
+  }
   const SampleStamp first = clock_.Take(samples.front().stamp, out.jumps);
   out.step = clock_.step();
-  count = 1 + clock_.Follow(samples.subspan(1, count - 1));
+  const std::size_t count = 1 + clock_.Follow(samples.subspan(1));
   out.sent = samples.first(count);
   out.samples = {out.sent, done_.axes.first(count)};
   if (!clock_.own()) {
@@ -135,7 +143,8 @@ void SampleIntake::Admit() {
   std::array<UtcTime, SampleBlock::kMost> middle;
   for (std::size_t i = 0; i < count; ++i) middle[i] = utc[i] + Duration{period.ns / 2};
   depth_.At(std::span(middle).first(count), clock_.doubt(), out.middle);
-  done_ = {done_.samples.subspan(count), done_.axes.subspan(count), done_.mended.subspan(count), 0};
+  done_ = {done_.axes.subspan(count), done_.mended.subspan(count), 0};
+  admitted_count_ = count;
 }
 
 void SampleIntake::Count(const AdmittedBlock& block, std::size_t at, std::size_t end,

@@ -63,7 +63,7 @@ class SampleIntake {
   bool Refill(std::optional<UtcTime> until);
   std::size_t CountFinal(std::span<const ImuSample> samples);
   void Admit();
-  std::size_t CountEven() const;
+  std::span<ImuSample> EvenSamples();
   void Tell(SampleQueue::Verdict verdict, const SampleStamp& stamp);
   void TellStrays();
   void TellClock(const AdmittedBlock& block, const SampleStamp& stamp) const;
@@ -74,11 +74,12 @@ class SampleIntake {
   SpikeFilter filter_;
   RunClock clock_;
   SensorDepth depth_;
-  SpikeFilter::Done done_;  ///< by the filter, not yet admitted
+  SpikeFilter::Done done_;  ///< of the samples that the queue holds, those not yet admitted
   bool jumps_ = false;      ///< the clock, before the first of them
   bool flushed_ = false;
   std::array<ImuSample, SampleBlock::kMost> continued_;  ///< where the clock changes their stamps
   AdmittedBlock admitted_;
+  std::size_t admitted_count_ = 0;  ///< samples that the queue holds for it
   /// Samples that the filter has mended and of which nobody has been told.
   struct MendedRange {
     std::int32_t session = 0;

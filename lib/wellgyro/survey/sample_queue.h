@@ -66,8 +66,14 @@ class WELLGYRO_EXPORT SampleQueue {
   Duration Age(const SampleStamp& stamp) const { return back_->tool_time - stamp.tool_time; }
   /// Within its session the clock jumps before the sample at the front.
   bool Jumps() const { return !jumps_.empty() && jumps_.front() == counts_.accepted - Waiting(); }
-  /// Takes the first of Ready() away, or so many that follow each other by number.
+  /// Takes the first of Ready() away, or so many that follow each other by number. They stay where
+  /// they are until they are let go.
   void Pop(std::size_t count = 1);
+  /// Those taken away and not yet let go, in order; not all where they lie in two pieces. Valid
+  /// until the next Push.
+  std::span<ImuSample> Held();
+  /// Lets the first of Held() go.
+  void Release(std::size_t count) { held_ -= count; }
 
   /// From now on nothing waits: the end of the stream.
   void Flush() {
@@ -110,6 +116,7 @@ class WELLGYRO_EXPORT SampleQueue {
   void Keep(const ImuSample& sample);
   Verdict Again(const ImuSample& sample, const Content* first);
 
+  std::size_t room() const { return ring_.size() - held_ - size_; }
   std::int64_t Waiting() const { return static_cast<std::int64_t>(size_); }
   Verdict Sort(const ImuSample& sample);
   Verdict PutAside(const ImuSample& sample);
@@ -120,6 +127,7 @@ class WELLGYRO_EXPORT SampleQueue {
   void DropOld();
   void Take(std::size_t position, const ImuSample& sample);
   void Grow();
+  void FetchAhead() const;
   void NoteGap(const SampleStamp& next, bool jumps);
   bool InGap(std::int64_t seq) const;
 
@@ -128,6 +136,7 @@ class WELLGYRO_EXPORT SampleQueue {
   std::size_t mask_ = 0;         ///< one less
   std::size_t head_ = 0;
   std::size_t size_ = 0;
+  std::size_t held_ = 0;         ///< samples before the head
   std::size_t old_session_ = 0;  ///< waiting samples, from the front, of sessions that have ended
   bool last_is_old_ = false;     ///< the sample handed out last is of such a one
   bool flushing_ = false;
