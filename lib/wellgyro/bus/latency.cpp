@@ -7,7 +7,9 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kClass = 0.0953101798;  // log(1.1)
+// ln 1.1: a percentile is the upper end of its class, at most 10 % too long; 280 classes from 1 us
+// on reach 1.1^280 us = 4.5 days.
+constexpr double kClass = 0.0953101798;
 
 }  // namespace
 

@@ -18,11 +18,10 @@
 #include "wellgyro/bus/lcm_url_internal.h"
 #include "wellgyro/bus/log_format_internal.h"
 #include "wellgyro/bus/udp_receiver_internal.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr std::size_t kLcmChannelMax = 63;
 
 constexpr int kSelfTests = 10;
 constexpr int kSelfTestMs = 100;
@@ -38,9 +37,9 @@ std::string Escaped(std::string_view channel) {
 }
 
 void RequireChannel(std::string_view channel) {
-  if (!channel.empty() && channel.size() <= kLcmChannelMax) return;
+  if (!channel.empty() && channel.size() <= limits::kChannel) return;
   throw std::invalid_argument(
-      fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, kLcmChannelMax));
+      fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, limits::kChannel));
 }
 
 /// poll(2), begun again after a signal.

@@ -25,8 +25,9 @@ using log_format::kSync;
 using log_format::kSyncSize;
 using log_format::kTimeAt;
 
-// How far to look for a first event before calling a file foreign.
-constexpr std::int64_t kSearchMax = std::int64_t{1} << 29;
+// How far to look for a first event before calling a file foreign: behind what is left of one whose
+// head is missing, kDataMax at most, a second one may be damaged.
+constexpr std::int64_t kSearchMax = 2 * static_cast<std::int64_t>(kDataMax);
 constexpr std::size_t kBeginning = 64;
 
 struct Head {

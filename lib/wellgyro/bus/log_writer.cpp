@@ -13,13 +13,9 @@
 #include "wellgyro/bus/bytes_internal.h"
 #include "wellgyro/bus/log_format_internal.h"
 #include "wellgyro/bus/log_reader.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
-namespace {
-
-constexpr std::size_t kChannelSent = 63;  // what LCM itself allows
-
-}  // namespace
 
 void LogWriter::Closer::operator()(std::FILE* file) const {
   if (file != stdout) std::fclose(file);
@@ -78,9 +74,9 @@ Result<LogWriter> LogWriter::Append(const std::string& path) {
 
 std::optional<Fault> LogWriter::Write(std::string_view channel, std::span<const std::byte> data,
                                       std::int64_t received_us) {
-  if (channel.empty() || channel.size() > kChannelSent) {
+  if (channel.empty() || channel.size() > limits::kChannel) {
     throw std::invalid_argument(
-        fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, kChannelSent));
+        fmt::format("channel \"{}\": a name has 1 to {} bytes", channel, limits::kChannel));
   }
   if (data.size() > log_format::kDataMax) {
     throw std::invalid_argument(fmt::format("channel \"{}\": {} bytes of data are more than {}",

@@ -23,7 +23,7 @@ class WELLGYRO_EXPORT LossWatch : public Listener {
  public:
   using Tell = std::function<void(const Fault&)>;
   static constexpr std::size_t kStreamsMax = 4096;  ///< of tool and session; further ones unseen
-  static constexpr std::size_t kGapsMax = 1000;     ///< open ones of a stream; then told early
+  static constexpr std::size_t kGapsMax = 1000;  ///< open ones of a stream, 16 kB; then told early
 
   explicit LossWatch(Tell tell) : tell_(std::move(tell)) {}
 

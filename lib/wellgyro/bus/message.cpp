@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "wellgyro/bus/glance_channel.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 namespace {
@@ -31,8 +32,6 @@ constexpr std::array<Place, kChannels> kPlaces = {{
     {&Channels::station, "station"},
     {&Channels::status, "status"},
 }};
-
-constexpr std::size_t kLongestName = 63;
 
 bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
@@ -67,12 +66,12 @@ std::optional<MessageType> TypeOn(const Channels& channels, std::string_view nam
 void Validate(const Channels& channels) {
   for (std::size_t i = 0; i < kPlaces.size(); ++i) {
     const std::string& name = channels.*kPlaces[i].name;
-    if (name.empty() || name.size() > kLongestName ||
+    if (name.empty() || name.size() > limits::kChannel ||
         std::any_of(name.begin(), name.end(), IsControl)) {
       throw std::invalid_argument(
           fmt::format("channels.{} = \"{}\": a channel name has 1 to {} bytes and no control "
                       "characters",
-                      kPlaces[i].field, name, kLongestName));
+                      kPlaces[i].field, name, limits::kChannel));
     }
     for (std::size_t k = 0; k < i; ++k) {
       if (channels.*kPlaces[k].name != name) continue;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 
@@ -20,7 +21,7 @@ namespace wellgyro {
 /// Layout: LCM documentation, "UDP Multicast Protocol Description".
 class WELLGYRO_EXPORT Reassembly {
  public:
-  static constexpr std::size_t kChannelMax = 63;
+  static constexpr std::size_t kChannelMax = limits::kChannel;
   static constexpr std::size_t kMessageMax = std::size_t{8} << 20;   ///< of fragments
   static constexpr std::size_t kWaitingMax = std::size_t{16} << 20;  ///< bytes of unfinished ones
   static constexpr std::ptrdiff_t kWaitingOfSender = 4;              ///< unfinished messages

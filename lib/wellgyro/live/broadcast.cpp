@@ -7,6 +7,7 @@
 #include "wellgyro/bus/glance_channel.h"
 #include "wellgyro/record/advice.h"
 #include "wellgyro/record/glance.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 
@@ -18,12 +19,6 @@ Broadcast::Broadcast(LiveBus& bus, const Channels& channels, const LiveClock& cl
       clock_(clock),
       notices_(notices),
       session_(static_cast<std::int32_t>(clock.utc_us() / 1'000'000 % INT32_MAX)) {}
-
-namespace {
-
-constexpr std::size_t kChannelMax = 63;  // what LCM takes
-
-}  // namespace
 
 void Broadcast::Publish(const std::string& channel, const std::vector<std::byte>& bytes) {
   const std::lock_guard lock(mutex_);
@@ -103,7 +98,7 @@ bool Broadcast::SendBeside(const std::string& channel, const Record& record) {
     notices_.Tell({FaultCode::kRange, error.what()});
     return false;
   }
-  if (channel.size() > kChannelMax) return false;
+  if (channel.size() > limits::kChannel) return false;
   Publish(channel, bytes);
   return true;
 }

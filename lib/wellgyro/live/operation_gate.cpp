@@ -16,7 +16,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kKnownMax = 200'000;
+// Beyond it a repeated order counts as new. The surveyor has its own bound by then.
+constexpr std::size_t kKnownMax = 2 * Surveyor::kOperationsMax;
 
 template <class Integer>
 void Append(std::vector<std::byte>& bytes, Integer value) {

@@ -21,7 +21,8 @@ constexpr std::int64_t kAdviceUs = 2 * kSecondUs;
 constexpr double kRests = 5;                   // [s] so long without moving is a rest
 constexpr std::int64_t kOutboxUs = 1'000'000;  // for stations that were not sent yet at the end
 constexpr int kOutboxMs = 10;
-// Snapshots take at most this share of the stream's thread, so that few stations wait for one.
+// After a snapshot that took t the next one comes 200 t later at the soonest: 0.5 % of the stream's
+// thread, so that few stations wait for one.
 constexpr std::int64_t kSnapshotShare = 200;
 
 }  // namespace

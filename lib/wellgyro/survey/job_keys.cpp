@@ -94,11 +94,10 @@ constexpr NumberRange kUtimeUs{.min = 0, .max = limits::kUtcUs};
 constexpr NumberRange kSeq{.min = 0, .max = limits::kCount};
 constexpr NumberRange kText{.max = limits::kText};
 
-// LCM takes 63 bytes.
 constexpr JobKey Channel(std::string_view key, std::string Channels::*name, std::string_view absent,
                          std::string_view meaning) {
   JobKey found{"channels", key,     "text that no other channel has",
-               absent,     meaning, {.min = 1, .max = 63}};
+               absent,     meaning, {.min = 1, .max = limits::kChannel}};
   found.channel = name;
   return found;
 }
