@@ -8,12 +8,13 @@
 namespace wellgyro::increment {
 namespace {
 
+// int s^2 dx / pi beyond x = pi n, which n phases do not have: 2 / (pi^2 n) = 5 % at four.
 constexpr double kFewest = 4;
 // g at a = 0, 1, ... 10, by quadrature.
 constexpr std::array kLow{1.0,   0.963, 0.825, 0.682, 0.630, 0.687,
                           0.817, 0.969, 1.121, 1.256, 1.386};
-// v / 2 of the smoothed phase's own variance v = (R / T) a / pi int_0^inf dx / (1 + x^4)^2, and
-// what is left of the rest at 10.
+// v / 2 of the smoothed phase's own variance v = (R / T) a / pi int_0^inf dx / (1 + x^4)^2, which
+// is 3 a / (16 sqrt 2), and g less that at 10.
 constexpr double kSlope = 0.13258, kRest = 0.06;
 
 }  // namespace

@@ -6,12 +6,13 @@
 
 #include "wellgyro/record/along_hole.h"
 #include "wellgyro/record/attitude_sample.h"
+#include "wellgyro/record/error_source.h"
 
 namespace wellgyro {
 
-/// Errors that stay linked from station to station: attitude, the gyros' drift, and the constants
-/// of tool and place, at most.
-inline constexpr int kStationErrorsMax = 106;
+/// Errors that stay linked from station to station: attitude, walk and Markov part of two gyros,
+/// the constants of the tool, each with its change, and seven that the run shares, at most.
+inline constexpr int kStationErrorsMax = 3 + 2 * 2 + 2 * kErrorSources + 7;
 
 /// For reckoning with them: nothing is allocated.
 using StationMatrix =

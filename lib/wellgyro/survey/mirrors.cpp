@@ -8,15 +8,15 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/rivals.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr double kBendSigma = 1.7e-3;  // of a hole, 1-sigma [rad/m]
-constexpr double kLeastLength = 1;     // [m], of a leg between stations at one place
-constexpr double kMargin = 9;          // chi-square by which one path must beat another
+constexpr double kLeastLength = 1;  // [m], of a leg between stations at one place
 
 /// A place where the hole has one of up to two directions.
 struct MirrorNode {
@@ -60,7 +60,7 @@ std::vector<MirrorNode> NodesOf(const Job& job, std::vector<Draft>& drafts) {
 }
 
 double CostOfBend(const MirrorNode& a, std::size_t i, const MirrorNode& b, std::size_t j) {
-  const double bend = kBendSigma * std::max(b.md - a.md, kLeastLength);
+  const double bend = UnseenHole().dogleg * std::max(b.md - a.md, kLeastLength);
   const double angle =
       std::atan2(a.tangent[i].cross(b.tangent[j]).norm(), a.tangent[i].dot(b.tangent[j]));
   return angle * angle / (bend * bend + a.variance + b.variance);
@@ -108,7 +108,7 @@ void ResolveMirrors(const Job& job, std::vector<Draft>& drafts) {
     const double mirror = total(1) - total(0);
     if (mirror < 0) TakeMirror(*node.draft);
     Quality& quality = node.draft->attitude.quality;
-    if (std::abs(mirror) > kMargin) quality = Without(quality, Quality::kMirror);
+    if (std::abs(mirror) > kDecides) quality = Without(quality, Quality::kMirror);
   }
 }
 

@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/rivals.h"
 
 namespace wellgyro {
 namespace {
 
-// 2 ln of odds of 90: by less one azimuth does not beat another.
-constexpr double kDecides = 9;
 constexpr double kTells = 1e-3;  // of a variance, from which a stop has said something of it
 
 }  // namespace
