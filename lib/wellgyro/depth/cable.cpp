@@ -7,8 +7,10 @@
 namespace wellgyro {
 namespace {
 
+// Of a correction by depth, carried on from the last mark: 2 m in 1 km.
 constexpr double kSlopeMost = 2e-3;
-constexpr double kFarOff = 0.25;  // of a spacing
+// Of a spacing: at half of it a mark may be either of two.
+constexpr double kFarOff = 0.25;
 
 }  // namespace
 

@@ -13,12 +13,17 @@ namespace {
 // after ten seconds, since that of clocks in perfect step never changes.
 constexpr std::int64_t kCellNs = 1'000'000'000;
 constexpr std::int64_t kRepeatNs = 10'000'000'000;
-constexpr double kGate = 5;              // sigmas beyond which a cell is refused
-constexpr int kStep = 5;                 // refused cells in a row that make a step
-constexpr double kDoubtAfter = 60;       // [s] without a synchronised cell
-constexpr double kLearn = 60;            // cells over which the jitter is learnt
-constexpr double kScaleMin = 1e-6;       // clocks that agree to microseconds are believed that far
-constexpr double kQuantum = 1e-6 / 3.5;  // rounding of UTC to microseconds [s]
+// Sigmas beyond which a cell is refused, P = 5.7e-7: a good one in 20 days. Refused cells in a row
+// that make a step: UTC that is wrong for less than 5 s moves nothing.
+constexpr double kGate = 5;
+constexpr int kStep = 5;
+constexpr double kDoubtAfter = 60;  // [s] without a synchronised cell: 6 ms at sigma_drift
+// Innovations x^2 teach the variance by a gain 1 / (kTaught + cells), from 1/kTaught to 1/65, which
+// tells it to sqrt(2 / 129) = 12 %; one x counts for three sigmas at most, E[min(x^2, 9)] = 0.995.
+constexpr double kTaught = 5, kLearn = 60, kSurpriseMost = 9;
+// Least share of the variance stated: 2 ms sqrt(1e-6) = 2 us, near the steps that UTC comes in.
+constexpr double kScaleMin = 1e-6;
+constexpr double kQuantum = 1e-6 / 3.5;  // 1 us / sqrt(12) of rounding [s]
 
 std::int64_t FloorCell(ToolTime time) {
   const std::int64_t cell = time.ns / kCellNs;
@@ -180,8 +185,8 @@ void ClockTie::Update(double innovation, double variance) {
 
 // The innovations teach the jitter; single large ones teach no more.
 void ClockTie::Learn(double surprise) {
-  const double gain = 1 / (5 + std::min(static_cast<double>(cells_), kLearn));
-  Rescale(std::max(1 + gain * (std::min(surprise, 9.0) - 1), kScaleMin / scale_));
+  const double gain = 1 / (kTaught + std::min(static_cast<double>(cells_), kLearn));
+  Rescale(std::max(1 + gain * (std::min(surprise, kSurpriseMost) - 1), kScaleMin / scale_));
 }
 
 // What was concluded under a jitter thought too small is as much too sure as the jitter was.

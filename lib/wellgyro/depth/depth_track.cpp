@@ -12,8 +12,9 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kHold = 0.02;         // [m] between marks of a tool that stands
-constexpr double kStopAndGo = 5;       // [s] between marks in which a stop may hide
+constexpr double kHold = 0.02;  // [m] between marks of a tool that stands: two counts of 1 cm
+// [s] between marks in which a stop may hide: from 1 m/s to rest and back at 0.4 m/s^2.
+constexpr double kStopAndGo = 5;
 constexpr double kUnseen = 0.03;       // [m/s^2], acceleration of a winch, rms
 constexpr double kSpikeAtLeast = 0.3;  // [m]
 constexpr double kHardest = 1;         // [m/s^2], that a string is started or stopped at

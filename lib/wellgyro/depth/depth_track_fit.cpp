@@ -6,8 +6,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kEnough = 8;       // degrees of freedom that tell a scatter, to a quarter
-constexpr double kSure = 4;         // times the variance, what noise seldom makes
+constexpr double kEnough = 8;  // degrees of freedom n that tell a scatter, to 1 / sqrt(2 n) = 1/4
+constexpr double kSure = 4;    // times the variance: chi-square of one degree at 95.4 %
 constexpr double kRounding = 0.05;  // marks that the rounding counts for where none scatter
 
 }  // namespace
@@ -60,7 +60,8 @@ DepthTrack::Scatter DepthTrack::ScatterAbout(UtcTime utc) const {
     scatter.squares += left * left / (1 + c1 * c1 + c2 * c2 + c3 * c3);
     scatter.freedom += 1;
   }
-  // Each shares three marks with the next.
+  // Third differences of white noise are correlated by -15, 6, -1 to 20 with the next ones: n of
+  // them tell its variance as n / (1 + 2 (15^2 + 6^2 + 1) / 20^2) independent ones.
   const double share = 0.43;
   scatter.squares *= share;
   scatter.freedom *= share;

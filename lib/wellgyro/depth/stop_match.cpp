@@ -16,10 +16,12 @@ namespace wellgyro {
 namespace {
 
 constexpr std::size_t kMost = 1000;            // rests of either clock
-constexpr double kSearch = 5;                  // [s], width of the first search; drift is within it
+constexpr double kSearch = 5;                  // [s], width of the first search: 1e-4 of 14 h
 constexpr double kOffsetsApart = 4 * kSearch;  // [s], between offsets that are not the same
-constexpr double kNearly = 0.8;       // of the best one's worth, from which another is as good
-constexpr double kTukey = 4.685;      // scales at which an edge counts no more
+constexpr double kNearly = 0.8;                // of the best one's worth: four stops for its five
+// Worth of two rests 3.6 s off at each edge; one alone is worth 1 at most.
+constexpr double kTwoRests = 1.2;
+constexpr double kTukey = 4.685;      // scales at which an edge counts no more: 95 % efficient
 constexpr double kScaleLeast = 0.01;  // [s]
 constexpr int kRounds = 30;
 
@@ -80,7 +82,7 @@ Result<double> FindOffset(const std::vector<Span>& tool, const std::vector<Span>
     candidates.push_back({offset, Worth(tool, rig, offset)});
   }
   const auto best = std::ranges::max_element(candidates, {}, &Candidate::worth);
-  if (best == candidates.end() || best->worth < 1.2) {
+  if (best == candidates.end() || best->worth < kTwoRests) {
     return Fault{.code = FaultCode::kLost,
                  .text =
                      "no two stops of the tool agree with stops of the rig: the clocks cannot "
