@@ -27,11 +27,13 @@ using gyrocompass::Problem;
 using gyrocompass::Solution;
 
 // Costs are chi-squares of one unknown, the heading: 9 is three sigmas, 4 two.
-constexpr double kMirrorCost = 9;  // by which one minimum must beat the other
+constexpr double kMirrorCost = 9;  // by which one minimum must beat the other: odds of 90
 constexpr double kBarrier = 4;     // between two minima, beyond which they are two candidates
 
 /// The minima of the cost over all headings, best first. Two axes leave up to two.
 std::vector<Solution> Minima(const Problem& problem) {
+  // Of two axes and a vertical that is known the cost has harmonics of the heading up to the
+  // second: 36 samples to the period of that.
   constexpr int kHeadings = 72;
   std::array<double, kHeadings> cost;
   const auto azimuth = [](int i) { return kTwoPi * i / kHeadings; };

@@ -13,7 +13,7 @@ namespace wellgyro {
 struct GyrocompassSetup {
   NoiseCoefficients gyro = {};
   ErrorPriors errors = {};
-  double sigma_gravity_ref = 5e-4;  ///< of Site::gravity against the true one [m/s^2]
+  double sigma_gravity_ref = kSigmaGravity;  ///< of Site::gravity against the true one [m/s^2]
 };
 
 /// Finds north from the Earth's rotation in windows at rest at one place, one or more of which may

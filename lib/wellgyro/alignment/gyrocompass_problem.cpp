@@ -19,10 +19,12 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kSigmaLeastRate = 1e-5 * units::kDegPerHour;  // keeps exact data regular
-constexpr double kSigmaLeastForce = 1e-6;                      // [m/s^2]
-constexpr double kSigmaFreeBias = 100 * units::kDegPerHour;    // where toolfaces separate it
-constexpr double kSigmaFreeGravity = 1;                        // |f| says nothing of direction
+// Keep exact data regular: 4e-5 deg of azimuth at the equator, 1e-7 rad of tilt.
+constexpr double kSigmaLeastRate = 1e-5 * units::kDegPerHour;
+constexpr double kSigmaLeastForce = 1e-6;  // [m/s^2]
+// Where toolfaces separate it: seven times the Earth's rate is no information beside theirs.
+constexpr double kSigmaFreeBias = 100 * units::kDegPerHour;
+constexpr double kSigmaFreeGravity = 1;  // |f| says nothing of direction
 
 Vector3d EarthRate(double latitude) {
   return kEarthRate * Vector3d(std::cos(latitude), 0, -std::sin(latitude));
@@ -121,7 +123,8 @@ MatrixXd Problem::ForceCovariance(const ErrorPriors& errors) const {
   return cov;
 }
 
-/// Whether the windows' toolfaces differ enough to tell a gyro's bias from the Earth's rate.
+/// Whether the windows' toolfaces differ enough to tell a gyro's bias from the Earth's rate: two of
+/// them by 52 deg, cos 26 deg = 0.9.
 bool Problem::Separated() const {
   std::complex<double> mean = 0;
   for (const StillWindow& window : windows_) mean += std::polar(1.0, Toolface(window.f_T));

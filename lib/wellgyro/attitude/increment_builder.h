@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/record/increment.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/record/sample_block.h"
@@ -23,7 +24,7 @@ struct IncrementOptions {
   /// gravity across is five times that [m/s^2]. Up to 0.017 the least inclination of 0.5 deg
   /// decides instead.
   double accel_bias = 0.005;
-  double gravity = 9.80665;  ///< near enough [m/s^2]
+  double gravity = units::kStandardGravity;  ///< near enough [m/s^2]
 };
 
 /// Whether the sample comes behind the one before, where there is one: not late, not sent twice,

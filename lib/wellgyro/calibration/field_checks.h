@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/sample.h"
@@ -12,13 +14,13 @@
 namespace wellgyro {
 
 struct FieldReference {
-  double gravity = 9.80665;     ///< [m/s^2]
-  double sigma_gravity = 5e-4;  ///< [m/s^2]
-  double latitude = 0;          ///< [rad]
-  std::optional<double> field;  ///< total [T]
-  double sigma_field = 60e-9;   ///< [T]
-  std::optional<double> dip;    ///< downwards [rad]
-  double sigma_dip = 1.4e-3;    ///< [rad]
+  double gravity = units::kStandardGravity;  ///< [m/s^2]
+  double sigma_gravity = kSigmaGravity;      ///< [m/s^2]
+  double latitude = 0;                       ///< [rad]
+  std::optional<double> field;               ///< total [T]
+  double sigma_field = 60e-9;                ///< [T]
+  std::optional<double> dip;                 ///< downwards [rad]
+  double sigma_dip = 1.4e-3;                 ///< [rad]
 };
 
 struct FieldCheckSetup {

@@ -21,8 +21,11 @@ struct Site {
 /// Above sea level gravity is the closed form of normal gravity (Somigliana, GeographicLib). Below,
 /// where the rock above no longer pulls the tool down, it grows with depth by 0.85e-6 m/s^2 per
 /// metre: the free-air gradient less that of a Bouguer plate of 2670 kg/m^3 counted twice. Good to
-/// 5e-4 m/s^2 against true gravity outside strong anomalies; the tie to the geoid is left out.
+/// kSigmaGravity against true gravity outside strong anomalies; the tie to the geoid is left out.
 /// Throws std::domain_error when |latitude| > pi/2 or either argument is not finite.
 WELLGYRO_EXPORT Site SiteAt(double latitude, double height);
+
+/// 1-sigma of Site::gravity against true gravity: 50 mGal [m/s^2].
+inline constexpr double kSigmaGravity = 5e-4;
 
 }  // namespace wellgyro

@@ -25,8 +25,8 @@ struct EstimateSetup {
   ErrorPriors errors;
   /// Of the errors that a calibration left; `errors` are constants beside it.
   std::optional<ErrorCovariance> cov_errors;
-  Site site;                    ///< of node 0; latitude and gravity are carried along the path
-  double sigma_gravity = 5e-4;  ///< of the Earth model, see SiteAt [m/s^2]
+  Site site;  ///< of node 0; latitude and gravity are carried along the path
+  double sigma_gravity = kSigmaGravity;  ///< of the Earth model [m/s^2]
   /// Of its growth with depth: a Bouguer plate counted twice, whose density is 2670 kg/m^3 within 9
   /// % [m/s^2 per m].
   double sigma_gravity_gradient = 2e-7;

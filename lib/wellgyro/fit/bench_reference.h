@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/calibration/bench_axes.h"
 
 namespace wellgyro {
@@ -13,8 +14,9 @@ inline constexpr double kBenchEarthRate = 7.292115146706979e-5;
 /// What stands around a bench.
 struct BenchReference {
   BenchAxes axes = BenchAxes::kTrade;
-  double gravity = 1;              ///< in the unit of the accelerometers' table, g as a rule
-  double gravity_mps2 = 9.80665;   ///< the same [m/s^2], for what the tool model says
+  double gravity = 1;  ///< in the unit of the accelerometers' table, g as a rule
+  /// The same [m/s^2], for what the tool model says.
+  double gravity_mps2 = units::kStandardGravity;
   std::optional<double> latitude;  ///< geodetic [rad]
   std::optional<double> field;     ///< total [nT]
   std::optional<double> dip;       ///< downwards [rad]

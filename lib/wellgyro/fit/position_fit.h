@@ -4,6 +4,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/calibration/bench_axes.h"
 #include "wellgyro/calibration/bench_table.h"
 #include "wellgyro/calibration/fit_report.h"
@@ -35,8 +36,8 @@ WELLGYRO_EXPORT Result<BenchCalibration> FitTwentyFourPositions(
 
 struct SixPositionSetup {
   BenchAxes axes = BenchAxes::kTrade;
-  double gravity = 9.80665;          ///< where the table has no axb, ayb, azb [m/s^2]
-  bool gravity_stated = false;       ///< and where it has them, they must agree to 1e-4
+  double gravity = units::kStandardGravity;  ///< where the table has no axb, ayb, azb [m/s^2]
+  bool gravity_stated = false;               ///< and where it has them, they must agree to 1e-4
   bool second_order = true;          ///< estimate k2; else the bias is that of each axis's own pair
   std::optional<double> sigma;       ///< of pulses counted in a position [1]
   std::optional<double> tilt_sigma;  ///< of the fixture, each position anew [rad]

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/uncertainty/error_model.h"
 #include "wellgyro/uncertainty/survey_point.h"
 
@@ -16,12 +17,12 @@ namespace wellgyro {
 
 /// Where the well is. Absent values are an error only for terms that need them.
 struct Surroundings {
-  std::optional<double> latitude;     ///< [rad]
-  double gravity = 9.80665;           ///< [m/s^2]
-  double convergence = 0;             ///< true azimuth = survey azimuth + convergence [rad]
-  std::optional<double> field;        ///< total magnetic field [T]
-  std::optional<double> dip;          ///< [rad]
-  std::optional<double> declination;  ///< magnetic azimuth = true - declination [rad]
+  std::optional<double> latitude;            ///< [rad]
+  double gravity = units::kStandardGravity;  ///< [m/s^2]
+  double convergence = 0;                    ///< true azimuth = survey azimuth + convergence [rad]
+  std::optional<double> field;               ///< total magnetic field [T]
+  std::optional<double> dip;                 ///< [rad]
+  std::optional<double> declination;         ///< magnetic azimuth = true - declination [rad]
 };
 
 /// Stations [begin, end) were surveyed with one tool. Legs follow each other without gaps; legs of

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/units.h"
 
 namespace wellgyro {
 
@@ -60,8 +61,8 @@ struct WeightPlace {
   double sin_convergence = 0, cos_convergence = 1;  ///< true = survey azimuth + convergence
   double horizontal_earth_rate = 1;                 ///< [rad/s]
   double cos_latitude = 1, tan_latitude = 0;
-  double gravity = 9.80665;     ///< [m/s^2]
-  double horizontal_field = 1;  ///< [T]
+  double gravity = units::kStandardGravity;  ///< [m/s^2]
+  double horizontal_field = 1;               ///< [T]
   double tan_dip = 0;
   double cant = 0;                ///< [rad]
   double min_course_length = 0;   ///< [m]
