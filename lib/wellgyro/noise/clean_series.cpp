@@ -53,7 +53,7 @@ void FindSpikes(const SampleSeries& series, const std::vector<char>& missing, st
   if (values.size() < 32) return;
   const double middle = Median(values);
   for (double& value : values) value = std::abs(value - middle);
-  constexpr double kSigmas = 8;
+  constexpr double kSigmas = 8;  // P(|x| > 8) = 1.2e-15
   const double limit = kSigmas * kSigmaPerMedianSize * Median(std::move(values));
   if (!(limit > 0)) return;
   for (std::size_t i = begin; i < end; ++i) {

@@ -13,10 +13,13 @@ namespace wellgyro {
 namespace {
 
 constexpr double kConfidence = 0.95;
-constexpr double kOneSidedDeviance = 2.71;  // chi-square of one degree at 0.90
+constexpr double kOneSidedDeviance = 2.71;  // 1.645^2: chi-square of one degree at 0.90
 constexpr double kNormal95 = 1.959964;      // standard normal at 0.975
 constexpr double kNormal99 = 2.575829;      // at 0.995
+// Half a 95 % range, in values, up to which it is symmetric: e^0.2 - 1 and 1 - e^-0.2, that of a
+// logarithm, differ from it by 0.02.
 constexpr double kNarrow = 0.2;
+// Their limit of 5 % is one of 5 +- 1.8 %, sqrt(.05 .95 / 150).
 constexpr int kTestReplicates = 150;
 constexpr int kBoundRounds = 3;  // a bound, and twice again with the limit that holds there
 
