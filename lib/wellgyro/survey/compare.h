@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/survey/well_uncertainty.h"
 #include "wellgyro/uncertainty/station_errors.h"
@@ -38,7 +39,7 @@ struct CompareOptions {
   bool same_run = false;
   /// What no model speaks of, as rounding of listings and a tool's seat in the hole; 1 sigma of
   /// each direction difference [rad]. In places it counts at every common station.
-  double local_sigma = 0.05 * 0.017453292519943295;
+  double local_sigma = 0.05 * units::kDeg;
 };
 
 /// Both surveys at one depth, second less first.

@@ -21,6 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+// Places whose covariance is joint: 600 angles, a matrix of 2.9 MB.
 constexpr std::size_t kJointMax = 300;
 
 /// Unit vectors across the hole.

@@ -5,6 +5,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 
@@ -26,9 +27,8 @@ void PathSite::Move(const AlongHole& along, const AttitudeSample& attitude) {
   }
   md_ = along.md;
   // Damaged depths may lead anywhere; the site stays on the Earth.
-  constexpr double kReach = 1e5;  // [m]
-  tvd_ = std::clamp(tvd_, -kReach, kReach);
-  north_ = std::clamp(north_, -kReach, kReach);
+  tvd_ = std::clamp(tvd_, -limits::kMd, limits::kMd);
+  north_ = std::clamp(north_, -limits::kMd, limits::kMd);
   const double latitude = job_.well.latitude + north_ / site_.radius_north;
   site_ = SiteAt(std::clamp(latitude, -kPi / 2, kPi / 2), job_.well.datum_elevation - tvd_);
 }

@@ -7,8 +7,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kClockStep =
-    0.1;  // [s], less is the jitter of messages and moves no depth by much
+constexpr double kClockStep = 0.1;  // [s], less is the jitter of messages: 0.1 m of depth at 1 m/s
 constexpr Duration kTies = Duration::Seconds(5);  // until a new tie knows its UTC
 
 // Times come from outside: nonsense must not overflow.

