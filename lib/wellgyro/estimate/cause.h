@@ -28,4 +28,12 @@ struct CauseSpec {
   double size = 0;  ///< its 1-sigma where the fault is there; unused of noise and kOther
 };
 
+/// Normal quantile of the power, 80 %, with which a fault counts as noticed.
+inline constexpr double kNoticedPower = 0.8416212335729143;
+/// No fault is larger than so many of its sizes: five sigmas, one of 1.7 million.
+inline constexpr double kLargestFault = 5;
+/// Prior sigma, in its sizes, of what is an unknown for the test alone: with a millionth of a
+/// fault's variance it moves no solution.
+inline constexpr double kTestedPrior = 1e-3;
+
 }  // namespace wellgyro

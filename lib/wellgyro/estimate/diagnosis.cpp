@@ -19,11 +19,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Kind = CauseSpec::Kind;
 
-// What rounding leaves of an information that the unknowns absorb.
+// What rounding leaves of an information that the unknowns absorb: n eps = 1e-11 of sums over
+// n = 5e4 knots, a hundred times that.
 constexpr double kAbsorbed = 1e-9;
-constexpr double kPower = 0.8416212335729143;  // normal quantile of 80 %
-// No fault is larger than so many of its sizes, five sigmas of its prior.
-constexpr double kLargest = 5;
 
 Index At(std::size_t i) { return static_cast<Index>(i); }
 
@@ -94,9 +92,9 @@ class Looks {
     const double count = static_cast<double>(looks_.size());
     const double onsets = std::log(std::max(count / look.alike, 1.0));
     const double w2 = (1 + 1 / vm) * (2 * (ln_limit_ + onsets) + std::log1p(vm));
-    const double smallest = (std::sqrt(std::max(w2, 0.0)) + kPower) / std::sqrt(m);
-    const bool noticeable = smallest < kLargest * spec_.size;
-    const Vector3d hidden = std::min(smallest, kLargest * spec_.size) * look.score.shift_W;
+    const double smallest = (std::sqrt(std::max(w2, 0.0)) + kNoticedPower) / std::sqrt(m);
+    const bool noticeable = smallest < kLargestFault * spec_.size;
+    const Vector3d hidden = std::min(smallest, kLargestFault * spec_.size) * look.score.shift_W;
     if (test.smallest > 0 && !(hidden.norm() > test.hidden_W.norm())) return;
     test.noticeable = noticeable;
     test.smallest = smallest;
@@ -258,7 +256,8 @@ class Diagnoser {
   }
 
   /// Onsets about node t whose Bayes factor is much the same: the signature's correlation falls in
-  /// proportion to the distance, and with it the exponent, from some 15.
+  /// proportion to the distance, and with it the exponent, from ln(38 * 80 / 1e-3) = 15 of a fault
+  /// that is just found among 38 causes and some 80 onsets.
   double AlikeAt(std::size_t i, std::size_t t) const {
     const double here = scan_->At(i, t).information, next = scan_->At(i, t + 1).information;
     if (!(here > 0) || !(next > 0)) return 1;

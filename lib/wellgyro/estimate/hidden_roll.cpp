@@ -9,18 +9,18 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kReach = 60, kLeast = 5;  // knots to each side, and of them that tell
-constexpr double kLeastRatio = 0.7;             // of what the gyros read to the Earth's across
+// Knots to each side, and of them that tell: the median of five is right with two wrong.
+constexpr std::size_t kReach = 60, kLeast = 5;
 
 // Where a bend begins or ends the rate across turns in L with it, and its size changes: by more
-// than a tenth, noise apart, from some knots before to as many after.
+// than a tenth, three sigmas of noise apart, from some knots before to as many after.
 constexpr std::size_t kAcross = 5;
 constexpr double kSteady = 0.1, kChance = 3;
 
 bool Reads(const RunKnot& knot, double horizontal) {
   const Increment& i = knot.increment;
   const double ratio = i.turn_M.norm() / (horizontal * i.seconds);
-  return RollIsHidden(knot) && ratio > kLeastRatio;
+  return RollIsHidden(knot) && ratio > kEarthsLeast;
 }
 
 /// The roll rate against the Earth from one knot's middle to the next one's [rad/s].

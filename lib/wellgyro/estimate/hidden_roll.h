@@ -11,9 +11,11 @@ namespace wellgyro {
 bool RollIsHidden(const RunKnot& knot);
 bool AnyRollIsHidden(std::span<const RunKnot> knots);
 
-/// Whether a rate across the tool can be the Earth's, by its ratio to what that is there: a bend of
-/// as much as the Earth turns changes it more.
-constexpr bool MayBeEarths(double ratio) { return ratio > 0.7 && ratio < 1.4; }
+/// Whether a rate across the tool can be the Earth's, by its ratio to what that is there: of a bend
+/// that turns as much, at an angle b to it, the sum is 2 cos b/2, within 1/sqrt(2) and sqrt(2) for
+/// b from 90 to 139 deg alone, one in four.
+inline constexpr double kEarthsLeast = 0.7, kEarthsMost = 1.4;
+constexpr bool MayBeEarths(double ratio) { return ratio > kEarthsLeast && ratio < kEarthsMost; }
 
 /// Of each knot, whether the rate across the tool keeps its size about it. It does not where a bend
 /// begins or ends: it then turns in L.

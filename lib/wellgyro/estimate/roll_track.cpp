@@ -23,12 +23,14 @@ using Eigen::Vector3cd;
 // Grid of the roll rate: to 21 rpm, by an eighth of the width 2 pi / 40 s of a window's line.
 constexpr int kRates = 221, kMiddle = kRates / 2;
 constexpr double kStep = 0.02;  // [rad/s]
-constexpr int kFiner = 16;      // parts of a step, in which the likeliest rate is sought again
+// Parts of a step, in which the likeliest rate is sought again: 1/32 of one is 0.025 rad over a
+// window.
+constexpr int kFiner = 16;
 // A line of the Earth's rate stands out of gyros of 0.05 deg/sqrt(h) by twenty sigmas.
 constexpr std::size_t kWindow = 40, kStride = 10;  // [knots]
 constexpr std::size_t kLeastWindow = 10;           // twenty readings for five unknowns
 // From window to window a rate changes as Laplace has it, by 0.1 rad/s, or it starts or stops,
-// which has one chance in 3000.
+// which has one chance in exp(8) = 3000.
 constexpr double kChange = 0.1, kJump = 8;
 // Where a tool states no noise: a hundredth of a navigation gyro's, of a microgal's.
 constexpr double kLeastGyroNoise = 1e-9, kLeastAccelNoise = 1e-6;

@@ -25,7 +25,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kSolveIterations = 40;  // at most, before the scales of the roll are sought
-// A sum of squares this many sigmas above its freedom is not chance: one run in 30 000.
+// A sum of squares this many sigmas above its freedom is not chance, P(x > 4) = 3.2e-5: one run in
+// 30 000.
 constexpr double kTooLarge = 4;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
@@ -146,14 +147,15 @@ void FitNoise(RunSolver& solver, std::span<const std::size_t> marked, RunEstimat
 }
 
 /// A fault may be of a constant that the run holds at zero (prior sigma 0). For the test it becomes
-/// an unknown whose prior is a thousandth of the fault's size, too tight to move the solution. The
-/// scale of depth becomes one by the job's prior: the accelerometers along the hole observe it.
+/// an unknown whose prior is kTestedPrior of the fault's size. The scale of depth becomes one by
+/// the job's prior: the accelerometers along the hole observe it.
 Diagnosis DiagnosisOf(const RunSolver& solved) {
   EstimateSetup setup = solved.setup();
   setup.sigma_depth_scale = setup.errors.depth_scale_sigma;
   for (const CauseSpec& cause : setup.causes) {
     if (cause.kind != CauseSpec::Kind::kConstant && cause.kind != CauseSpec::Kind::kOnset) continue;
-    if (double* sigma = PriorOf(cause.unknown, setup)) *sigma = std::max(*sigma, 1e-3 * cause.size);
+    double* sigma = PriorOf(cause.unknown, setup);
+    if (sigma != nullptr) *sigma = std::max(*sigma, kTestedPrior * cause.size);
   }
   RunSolver tested(setup, solved.knots());
   tested.TakeOver(solved);

@@ -17,9 +17,9 @@ constexpr double kStepMost = 0.5;  // [rad]
 // Newton's decrement squared at which a run stays: a thousandth of a sigma over all unknowns
 // together.
 constexpr double kStays = 1e-6;
-constexpr int kFinish =
-    30;  // steps towards it; the last ones of a run with starts and stops are slow
-constexpr int kSlow = 10;            // steps over which a trend is taken
+// Steps towards it: the last ones of a run with starts and stops are slow. Steps over which a trend
+// is taken.
+constexpr int kFinish = 30, kSlow = 10;
 constexpr double kLeastFall = 0.05;  // of decrements; one step alone may fall by more than the next
 constexpr double kCreeps = 0.5;      // Gauss-Newton takes far more off a decrement than its half
 

@@ -9,9 +9,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kWalkHeld = 1e-4;  // of a tool that hardly turns
-constexpr int kTry = 2;             // steps with each scale: by the third the evidence hardly moves
-constexpr double kHalfDecade = 3.1622776601683795;
+// Of a tool that hardly turns [rad/s/sqrt(s)]: 1e-4 t^1.5 / sqrt(3) is 1.5 deg in a minute.
+constexpr double kWalkHeld = 1e-4;
+constexpr int kTry = 2;  // steps with each scale: by the third the evidence hardly moves
+constexpr double kHalfDecade = 3.1622776601683795;  // sqrt(10)
 
 }  // namespace
 

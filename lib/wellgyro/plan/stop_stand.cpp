@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "wellgyro/estimate/cause.h"
 #include "wellgyro/math/square.h"
 #include "wellgyro/plan/synthetic_run.h"
 #include "wellgyro/uncertainty/ellipse.h"
@@ -18,10 +19,6 @@ using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-// As the estimator's diagnosis has them: normal quantile of 80 % power, and the size of a fault, of
-// its spec's, beyond which it need not be looked for.
-constexpr double kPower = 0.8416212335729143;
-constexpr double kLargest = 5;
 // Of the mean of order 16 that stands for the largest, what a fault must have to count.
 constexpr double kCounts = 1e-12;
 constexpr double kLeastSeconds = 0.5;  // a stop that has less is none
@@ -30,7 +27,7 @@ double Power16(double x) { return Square(Square(Square(Square(x)))); }
 double Root16(double x) { return std::sqrt(std::sqrt(std::sqrt(std::sqrt(x)))); }
 
 double Axis(const Matrix2d& cov) {
-  static const double factor = ConfidenceFactor(0.95, 2);
+  static const double factor = ConfidenceFactor(kConfidence, 2);
   const double mean = 0.5 * cov.trace();
   const double apart = std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1));
   return factor * std::sqrt(std::max(0.0, mean + apart));
@@ -99,14 +96,14 @@ Matrix2d StopStand::End() const {
 }
 
 double StopStand::Largest(const HiddenFault& f, const Vector2d& with_end) {
-  return kLargest * f.size * with_end.norm() / f.unit;
+  return kLargestFault * f.size * with_end.norm() / f.unit;
 }
 
 double StopStand::Hidden(const HiddenFault& f, double variance, const Vector2d& with_end) const {
   const double m = std::max(1e-12, 1 - variance) / (f.unit * f.unit), vm = f.size * f.size * m;
   const double w2 = (1 + 1 / vm) * (2 * (info_->ln_limit() + f.ln_onsets) + std::log1p(vm));
-  const double smallest = (std::sqrt(w2) + kPower) / std::sqrt(m);
-  return std::min(smallest, kLargest * f.size) * with_end.norm() / f.unit;
+  const double smallest = (std::sqrt(w2) + kNoticedPower) / std::sqrt(m);
+  return std::min(smallest, kLargestFault * f.size) * with_end.norm() / f.unit;
 }
 
 PlanValue StopStand::ValueOf(const Matrix2d& end, const Rows* rest, double soft_most) const {

@@ -31,7 +31,6 @@ constexpr double kSigmaMd = 0.05;  // [m] of a depth mark against its neighbours
 // speed changes; where gravity shows the roll neither counts.
 constexpr double kRollWalk = 1e-3;       // [rad/s/sqrt(s)]
 constexpr double kRollPerSpeed = 2;      // [rad/m]
-constexpr double kUnknownShare = 1e-3;   // of a fault's size, as the estimator has it
 constexpr double kSpeedChanges = 0.001;  // [m/s]
 
 Vector2d Pair(Complex z) { return {z.real(), z.imag()}; }
@@ -128,7 +127,7 @@ EstimateSetup SetupOfPlan(const PlanCase& c) {
     // No stop helps against it, and a planned tool starts and stops at once.
     if (cause.unknown == kDepthScaleError) continue;
     if (double* sigma = PriorOf(cause.unknown, setup)) {
-      *sigma = std::max(*sigma, kUnknownShare * cause.size);
+      *sigma = std::max(*sigma, kTestedPrior * cause.size);
     }
   }
   return setup;
