@@ -27,7 +27,7 @@ struct FieldCheckSetup {
   FieldReference reference;
   NoiseCoefficients gyro;
   ErrorPriors errors;
-  double sigma_mag = 70e-9;  ///< of a flux density, each axis [T]
+  double sigma_mag = 70e-9;  ///< of a flux density, each axis: MBX, MBY of SPE 67616 [T]
   double warn = 2;           ///< sigmas
   double fail = 3;           ///< sigmas
   struct Parity {

@@ -45,7 +45,7 @@ std::string LinesText(const std::vector<int>& lines) {
 std::optional<std::string> OtherHemisphere(const std::string& term, double force_term,
                                            double latitude) {
   const double twice = std::abs(2 * kBenchEarthDegPerHour * std::sin(latitude));
-  constexpr double kAlike = 0.02, kLeast = 1;  // deg/h/g
+  constexpr double kAlike = 0.02, kLeast = 1;  // [deg/h/g], of latitudes beyond 1.9 deg
   if (twice < kLeast || std::abs(std::abs(force_term) - twice) > kAlike * twice)
     return std::nullopt;
   return fmt::format(

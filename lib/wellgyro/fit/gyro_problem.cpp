@@ -128,7 +128,7 @@ double TableRatio(const LinearSolution& s, bool sigma_given, bool by_median) {
     redundancy[table] += rest;
     sizes[table].push_back(std::abs(s.residual[at]) / std::sqrt(rest));
   }
-  constexpr double kEnough = 6;
+  constexpr double kEnough = 6;  // a scatter to 1 / sqrt(12) = 29 %
   if (redundancy[0] < kEnough || redundancy[1] < kEnough) return 1;
   double scatter[2];
   for (int table = 0; table < 2; ++table) {

@@ -16,6 +16,8 @@
 namespace wellgyro {
 namespace {
 
+// sqrt(eps) = 1.5e-8: the square of a smaller singular value is below the rounding of the
+// largest's.
 constexpr double kRankTolerance = 1e-8;
 
 struct Whitened {
@@ -158,7 +160,7 @@ std::set<int> Beyond(const LinearProblem& problem, const Eigen::VectorXd& residu
   return lines;
 }
 
-// What no bench calls an outlier: rounding of the readings.
+// What no bench calls an outlier: rounding of readings in their ninth digit.
 double LeastScale(const Whitened& w) {
   constexpr double kRounding = 1e-9;
   return kRounding * w.y.cwiseAbs().maxCoeff() / kOutlierSigmas;

@@ -141,7 +141,7 @@ double PooledDrift(const RawRun& raw) {
   const double root = std::cbrt(mean / std::max(noise, 1e-30));
   const double a = 2 / (9 * n_series), b = 2 / (9 * freedom);
   const double z = ((1 - b) * root - (1 - a)) / std::sqrt(b * root * root + a);
-  constexpr double kOnceInAThousand = 3.09;
+  constexpr double kOnceInAThousand = 3.09;  // normal quantile at 0.999
   if (!(z > kOnceInAThousand)) return 0;
   return std::sqrt((mean - noise) * length / spread);
 }

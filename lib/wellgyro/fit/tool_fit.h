@@ -20,10 +20,11 @@ namespace wellgyro {
 struct ToolFitSetup {
   BenchReference reference;             ///< gravity; the latitude is needed for gyros
   std::optional<GyroForceModel> force;  ///< as GyroFitSetup's
-  double sigma_level = 8.7e-3;          ///< of a bench's tilt, each direction [rad]
-  double sigma_north = 1.75e-2;         ///< of its north [rad]
-  double sigma_latitude = 1e-5;         ///< [rad]
-  double sigma_axis = 3e-4;             ///< of the tool on the rate table, each direction [rad]
+  double sigma_level = 8.7e-3;          ///< of a bench's tilt, each direction [rad]: 0.5 deg
+  double sigma_north = 1.75e-2;         ///< of its north [rad]: 1 deg
+  double sigma_latitude = 1e-5;         ///< [rad]: 64 m
+  /// Of the tool on the rate table, each direction [rad]: 1 arcmin.
+  double sigma_axis = 3e-4;
   /// Of a gyro from the middle to the end of a table [deg/h]; it may bend by as much as a walk
   /// does.
   double sigma_drift = 0.1;

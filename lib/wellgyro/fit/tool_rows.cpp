@@ -152,7 +152,7 @@ void Follow(const BenchTable& data, std::span<ToolRow> rows) {
   const auto second_of = [&](int i) { return t ? data.values(i, *t) : static_cast<double>(i); };
   const double middle = (second_of(0) + second_of(n - 1)) / 2;
   const double half = std::max(std::abs(second_of(n - 1) - second_of(0)) / 2, 1e-9);
-  constexpr double kStill = 1e-4;  // degC/s
+  constexpr double kStill = 1e-4;  // degC/s, 0.36 degC/h
   double branch = 0;
   for (int i = 0; i < n; ++i) {
     ToolRow& row = rows[static_cast<std::size_t>(i)];
