@@ -33,6 +33,10 @@ double RollWalkBy(std::span<const RunKnot> knots);
 /// Somewhere the tool starts or stops, by `speed_starts`, and gravity does not show how it rolls.
 bool HidesAStart(std::span<const RunKnot> knots, std::span<const double> speed_starts);
 
+/// What the roll rate may do where the speed changes: 20 rpm at 1 m/s [rad/m]. With 1 or 4 the end
+/// of a well that kicks off moves by 0.09 or 0.03 sigma.
+inline constexpr double kRollPerSpeed = 2;
+
 /// Bounds of the roll's random walk [rad/s/sqrt(s)]: 0.1 of a tool that jerks; 1e-7 turns it by
 /// 1e-7 t^1.5 / sqrt(3) = a quarter of a degree in half an hour, which is as good as none.
 inline constexpr double kRollWalkMost = 0.1, kRollWalkLeast = 1e-7;

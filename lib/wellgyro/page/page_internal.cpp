@@ -4,15 +4,15 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/page/html_internal.h"
 
 namespace wellgyro {
 
 PageUnits UnitsOf(ReportOptions::Units units) {
-  constexpr double kFoot = 0.3048;  // international [m]
   if (units == ReportOptions::Units::kMetric) return {};
-  return {1 / kFoot, "ft", 100 * kFoot / 30, "deg/100ft"};
+  return {1 / units::kFoot, "ft", 100 * units::kFoot / 30, "deg/100ft"};
 }
 
 std::string PageText::Named(std::string_view quantity) const {

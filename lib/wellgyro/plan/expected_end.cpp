@@ -152,7 +152,7 @@ ExpectedEnd ExpectEnd(const PlanCase& c, std::span<const PlannedStop> stops, boo
   expected.solved = true;
   const std::vector<Matrix3d> end = EndByPhi(rows.nodes());
   expected.cov_p_WT_W = DepthCovariance(c) + CovarianceOf(run, end);
-  const ErrorEllipse ellipse = HorizontalEllipse(expected.cov_p_WT_W, 0.95);
+  const ErrorEllipse ellipse = HorizontalEllipse(expected.cov_p_WT_W, kConfidence);
   expected.semi_major = ellipse.semi_major;
   expected.semi_minor = ellipse.semi_minor;
   expected.azimuth_major = ellipse.azimuth_major;

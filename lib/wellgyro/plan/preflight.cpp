@@ -12,8 +12,10 @@
 namespace wellgyro {
 namespace {
 
+// cos 75 deg = 0.26: a north is four times as vague as at the equator.
 constexpr double kPoorLatitude = 75 * units::kDeg;
-constexpr double kPoorNorth = 0.2;  // of the Earth's horizontal rate that is across the tool
+// Of the Earth's horizontal rate that is across the tool: below it five times as vague.
+constexpr double kPoorNorth = 0.2;
 constexpr double kNoHold = units::kDeg;
 constexpr double kStep = 10;         // [m] by which the well is looked at
 constexpr double kDepthShare = 0.5;  // of the ellipse
@@ -113,7 +115,7 @@ std::vector<std::string> Preflight(const PlanCase& c, const ExpectedEnd& expecte
   std::vector<std::string> said;
   AddNorth(c, said);
   AddDrift(c, expected.seconds, said);
-  const double depth = HorizontalEllipse(DepthCovariance(c), 0.95).semi_major;
+  const double depth = HorizontalEllipse(DepthCovariance(c), kConfidence).semi_major;
   if (depth > kDepthShare * expected.semi_major) {
     said.push_back(fmt::format(
         "errors of depth alone make {:.2f} m of the ellipse, which no stop makes less", depth));

@@ -20,10 +20,11 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
+// Twice or half as many leave the plan of the demonstration's well the same.
 constexpr int kIterations = 400;
-constexpr double kCloseEnough = 0.998;  // bound over time
-constexpr double kTooLong = 1e8;        // [s]
 constexpr std::size_t kActive = 48;     // places with time at once
+constexpr double kCloseEnough = 0.998;  // bound over time: known to 0.2 %
+constexpr double kTooLong = 1e8;        // [s], three years
 
 /// Times at rest at a growing choice of places, and the slope of the end's largest eigenvalue with
 /// the time at any place.
@@ -175,7 +176,7 @@ class Relaxation {
 }  // namespace
 
 std::optional<RelaxedPlan> LeastAtRest(const StopInformation& info, const PlanLimits& limits) {
-  const double axis = limits.ellipse / ConfidenceFactor(0.95, 2);
+  const double axis = limits.ellipse / ConfidenceFactor(kConfidence, 2);
   Relaxation relaxation(info, limits.turns);
   RelaxedPlan plan;
   for (int i = 0; i < kIterations; ++i) {

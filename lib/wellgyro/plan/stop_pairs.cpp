@@ -40,7 +40,7 @@ class Pairs {
         limits_(limits),
         end_(info.covariance().topLeftCorner<2, 2>()),
         cost_(cost_most) {
-    const double axis = limits.ellipse / ConfidenceFactor(0.95, 2);
+    const double axis = limits.ellipse / ConfidenceFactor(kConfidence, 2);
     variance_ = axis * axis;
     const int turns = limits.turns ? kToolfaces : 1;
     for (std::size_t place = 0; place < info.places(); ++place) {

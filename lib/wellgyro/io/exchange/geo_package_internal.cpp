@@ -173,7 +173,7 @@ void AddStations(Database& database, const SurveyTable& table,
     Geometry ring(kPolygon);
     ring.Whole(1).Whole(static_cast<std::uint32_t>(s.ellipse.size()));
     for (const auto& [longitude, latitude] : s.ellipse) ring.Real(longitude).Real(latitude);
-    ellipse.Blob(ring.bytes()).Number(table.md(s.row)).Number(kEllipseConfidence).Run();
+    ellipse.Blob(ring.bytes()).Number(table.md(s.row)).Number(kConfidence).Run();
   }
 }
 

@@ -87,7 +87,7 @@ class PathMaker {
     cov(0, 0) = *nn;
     cov(0, 1) = cov(1, 0) = *ne;
     cov(1, 1) = *ee;
-    const ErrorEllipse ellipse = HorizontalEllipse(cov, kEllipseConfidence);
+    const ErrorEllipse ellipse = HorizontalEllipse(cov, kConfidence);
     const double azimuth = ellipse.azimuth_major + turn_;
     for (int k = 0; k <= kRing; ++k) {
       const double t = kTwoPi * (k % kRing) / kRing;
@@ -131,7 +131,7 @@ std::vector<std::pair<std::string, std::string>> GeoFactsOf(const SurveyTable& t
   }
   if (!remarks.empty()) facts.emplace_back("remarks", remarks);
   facts.emplace_back("stations", std::to_string(table.rows()));
-  facts.emplace_back("ellipse_confidence", fmt::format("{}", kEllipseConfidence));
+  facts.emplace_back("ellipse_confidence", fmt::format("{}", kConfidence));
   return facts;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wellgyro/record/survey_table.h"
+#include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
 
@@ -21,9 +22,8 @@ struct GeoStation {
 
 /// A survey's path on WGS 84: from the file's latitudes and longitudes, else from those of the well
 /// head (an object WRP or ZDP) and the offsets, turned to true north. Ellipses hold the position
-/// with probability `kEllipseConfidence`. Throws std::invalid_argument saying what is missing.
+/// with probability `kConfidence`. Throws std::invalid_argument saying what is missing.
 std::vector<GeoStation> GeoPathOf(const SurveyTable& table);
-inline constexpr double kEllipseConfidence = 0.95;
 
 /// What a path says of itself, in pairs of name and text.
 std::vector<std::pair<std::string, std::string>> GeoFactsOf(const SurveyTable& table);

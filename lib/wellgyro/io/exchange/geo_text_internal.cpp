@@ -67,7 +67,7 @@ std::string WriteGeoJson(const SurveyTable& table) {
     text += fmt::format(
         ",\n{{\"type\":\"Feature\",\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[{}]]}},"
         "\"properties\":{{\"kind\":\"ellipse\",\"md_m\":{:.4f},\"confidence\":{}}}}}",
-        Ring(s), table.md(s.row), kEllipseConfidence);
+        Ring(s), table.md(s.row), kConfidence);
   }
   return text + "\n]}\n";
 }

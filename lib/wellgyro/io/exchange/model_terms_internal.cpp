@@ -11,8 +11,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kMinCourse = 10;                                   // [m], Definition 5.1.2
-constexpr double kTortuosity = units::kDeg / (100 * units::kFoot);  // [rad/m], SPE 187249
+constexpr double kMinCourse = 10;                    // [m], Definition 5.1.2
+constexpr double kTortuosity = units::kDegPer100ft;  // SPE 187249
 constexpr double kVertical = 1e-4 * units::kDeg;
 
 }  // namespace

@@ -225,7 +225,7 @@ std::string Summary(const MergePlan& plan, const MergedSurvey& merged) {
   }
   for (const std::string& why : merged.unused) text += "not taken: " + why + "\n";
   const Eigen::Matrix3d& cov = merged.errors.cov_p_W.back();
-  const ErrorEllipse e = HorizontalEllipse(cov, 0.95);
+  const ErrorEllipse e = HorizontalEllipse(cov, kConfidence);
   return text + fmt::format(
                     "MD {:.2f} m: 95 % ellipse {:.2f} x {:.2f} m (semi-axes), azimuth {:.1f} "
                     "deg; vertical 1 sigma {:.2f} m",

@@ -243,7 +243,7 @@ std::string AlongCsv(const PlanReport& report) {
       "SEMI_MINOR[m],AZI_MAJOR[deg]\n";
   for (const ExpectedPlace& place : ExpectAlong(report.c, report.plan.stops, spacing)) {
     const Eigen::Matrix3d& cov = place.cov_p_WT_W;
-    const ErrorEllipse ellipse = HorizontalEllipse(cov, 0.95);
+    const ErrorEllipse ellipse = HorizontalEllipse(cov, kConfidence);
     text += fmt::format("{:.4f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.4f},{:.4f},{:.3f}\n",
                         place.md, cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2),
                         ellipse.semi_major, ellipse.semi_minor, ToDegrees(ellipse.azimuth_major));

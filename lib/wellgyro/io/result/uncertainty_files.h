@@ -12,6 +12,7 @@
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/survey/separation.h"
 #include "wellgyro/survey/well_uncertainty.h"
+#include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
 
@@ -31,7 +32,7 @@ struct UncertaintyRequest {
   std::optional<double> convergence;  ///< given: azimuths are grid [rad]
   /// 1 sigma of the first station's place: north, east, down [m]; a program names its own.
   Eigen::Vector3d sigma_tie_in = Eigen::Vector3d::Zero();
-  double confidence = 0.95;
+  double confidence = kConfidence;
   bool terms = false;
   bool plot = false;
   /// For the separation from another survey, with the model of the first where none is named.
