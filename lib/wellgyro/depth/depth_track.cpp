@@ -12,7 +12,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kHold = 0.02;  // [m] between marks of a tool that stands: two counts of 1 cm
 // [s] between marks in which a stop may hide: from 1 m/s to rest and back at 0.4 m/s^2.
 constexpr double kStopAndGo = 5;
 constexpr double kUnseen = 0.03;       // [m/s^2], acceleration of a winch, rms
@@ -270,7 +269,7 @@ bool DepthTrack::Bracketed(UtcTime utc, Span span, UtcTime rest_begin, UtcTime r
   if (b.utc - a.utc <= setup_.max_gap) return true;
   const Duration moving =
       (b.utc - a.utc) - (std::min(b.utc, rest_end) - std::max(a.utc, rest_begin));
-  return (a.stopped || moving <= setup_.max_gap) && std::abs(b.md - a.md) < kHold;
+  return (a.stopped || moving <= setup_.max_gap) && std::abs(b.md - a.md) < kRestsWithin;
 }
 
 /// What to add to the marks from `shift` on. The reading at the event is taken from marks after it
@@ -287,7 +286,7 @@ double DepthTrack::Offset(const Shift& shift) const {
   const Mark& next = marks_[span.begin];
   if (next.utc - shift.utc <= setup_.max_gap) return shift.value - next.md;
   const bool held = span.begin > 0 && marks_[span.begin - 1].stopped &&
-                    std::abs(marks_[span.begin - 1].md - next.md) < kHold;
+                    std::abs(marks_[span.begin - 1].md - next.md) < kRestsWithin;
   return held ? shift.value - next.md : 0;
 }
 

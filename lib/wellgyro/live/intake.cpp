@@ -47,9 +47,8 @@ void ToolBook::OnStill(const StillWindow& window) {
 
 void ToolBook::OnDepth(const DepthMark& mark) {
   SurveyorListener::OnDepth(mark);
-  constexpr double kMoves = 0.02;  // [m]
   const std::optional<DepthMark> before = std::exchange(depth_.mark, mark);
-  if (!before || std::abs(mark.md - depth_.rest_md) > kMoves) {
+  if (!before || std::abs(mark.md - depth_.rest_md) > kRestsWithin) {
     depth_.rest_md = mark.md;
     depth_.rest_begin = mark.utc;
   }

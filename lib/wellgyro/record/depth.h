@@ -36,6 +36,9 @@ struct DepthMark {
   bool magnetic_mark = false;  ///< a magnetic mark passed the counter
 };
 
+/// Marks of a string at rest lie within it: two counts of an encoder of 1 cm [m].
+inline constexpr double kRestsWithin = 0.02;
+
 /// A logging cable, as far as its length depends on pull and warmth, and its magnetic marks.
 struct Cable {
   double stretch = 0;            ///< elastic, of its length for each newton [1/N]

@@ -22,13 +22,12 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kRest = 20;         // [s], the shortest stop that joins clocks
-constexpr double kSameDepth = 0.02;  // [m], between marks of a string at rest
-constexpr double kRestGap = 60;      // [s] between marks of one rest
-constexpr double kAhead = 120;       // [s] that depth is pushed ahead of samples
+constexpr double kRest = 20;     // [s], the shortest stop that joins clocks
+constexpr double kRestGap = 60;  // [s] between marks of one rest
+constexpr double kAhead = 120;   // [s] that depth is pushed ahead of samples
 constexpr double kStampSigmas = 3;
-constexpr double kPairEvery =
-    10;  // [s] between pairs of clocks, over which a crystal keeps its rate
+// Between pairs of clocks, over which a crystal keeps its rate [s].
+constexpr double kPairEvery = 10;
 constexpr std::int64_t kProgressRows = 65536;
 
 struct Opened {
@@ -97,7 +96,7 @@ class ClockPairs {
 class RigRests {
  public:
   void Take(const DepthMark& mark) {
-    const bool goes_on = last_ && std::abs(mark.md - begin_->md) < kSameDepth &&
+    const bool goes_on = last_ && std::abs(mark.md - begin_->md) < kRestsWithin &&
                          (mark.utc - last_->utc).seconds() <= kRestGap;
     if (!goes_on) {
       Close();
