@@ -18,7 +18,8 @@ Eigen::Matrix3d ToolFromBench(BenchAxes axes) {
 
 Eigen::Matrix3d BenchFromLevel(BenchAxes axes, double inclination, double azimuth,
                                double toolface) {
-  // What is at right angles is so to the last digit: rounding shall not pass for a signal.
+  // What is at right angles is so to the last digit: rounding shall not pass for a signal, 45 eps
+  // of products of two rotations.
   constexpr double kRounding = 1e-14;
   const Eigen::Matrix3d R =
       (AttitudeMatrix(azimuth, inclination, toolface) * ToolFromBench(axes)).transpose();

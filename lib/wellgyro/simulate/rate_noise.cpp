@@ -13,6 +13,7 @@ namespace {
 // Of a Gauss-Markov process whose Allan deviation peaks at the floor 0.6643 B of flicker noise, to
 // 0.1 per cent (1.07600 is exact): hundreds of runs would not show the difference.
 constexpr double kSigmaOfB = 1.075;
+// Correlation times of the processes that flicker noise is made of: 0.25 s to 0.25 * 4^10 s = 73 h.
 constexpr double kFlickerRatio = 4;
 constexpr double kFlickerShortest = 0.25;  // [s]
 constexpr int kFlickerProcesses = 11;

@@ -14,7 +14,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStraight = 1e-12;  // [rad]
+// Dogleg [rad] up to which an arc is its chord: its middle is L / 8 of that aside, 1e-9 m over 10
+// km.
+constexpr double kStraight = 1e-12;
 
 }  // namespace
 
