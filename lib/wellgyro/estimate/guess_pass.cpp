@@ -14,9 +14,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // Gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
-// about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination.
+// about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination. Near vertical
+// the Earth's rate holds the heading, over some ten knots. They choose no solution: halved or
+// doubled, each leads three clean runs to the same one, to 0.001 sigma.
 constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
-// Near vertical the Earth's rate holds the heading, over some ten knots.
 constexpr double kEarthShare = 0.1;
 
 /// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,

@@ -16,13 +16,16 @@ namespace {
 using Eigen::Vector3d;
 
 // A whirl of the tool is no bend of the hole: what it adds to the ends of a window falls with the
-// window's length, while a bend that begins in its middle is seen so much too late.
+// window's length, while a bend that begins in its middle is seen so much too late. At 1.5 and at 6
+// s the ends of three clean runs move by 0.004 sigma, half or twice the way by less than 0.001.
 constexpr double kLowPass = 3;        // [s]
 constexpr double kTellingWay = 0.01;  // [m] of a window, from which it tells of the hole
 // [m] of depth marks, and not of the path: where it is renewed must not move with the solution. On
 // such a way gravity changes by 2e-6 m/s^2, the latitude by 3e-7 rad.
 constexpr double kSiteEvery = 2;
-// Curvature is another one from stand to stand, to which doglegs are quoted.
+// Curvature is another one from stand to stand, to which doglegs are quoted. At 15 m the
+// demonstration is solved without its swing (errors of azimuth 1.4 % larger), at 60 m ends move by
+// 0.003 sigma.
 constexpr double kStand = 30;  // [m]
 // [rad], 6 km from the pole: v tan L / R is up to 1.6e-4 rad/s at 1 m/s, twice the Earth's rate.
 constexpr double kPoleMargin = 1e-3;

@@ -11,7 +11,9 @@ namespace {
 
 // Of a tool that hardly turns [rad/s/sqrt(s)]: 1e-4 t^1.5 / sqrt(3) is 1.5 deg in a minute.
 constexpr double kWalkHeld = 1e-4;
-constexpr int kTry = 2;  // steps with each scale: by the third the evidence hardly moves
+// Steps with each scale. With one the demonstration's azimuth sigmas are 4 % larger and its end is
+// 0.05 sigma elsewhere; with four 0.1 % smaller and 0.002, in 26 % more time.
+constexpr int kTry = 2;
 constexpr double kHalfDecade = 3.1622776601683795;  // sqrt(10)
 
 }  // namespace

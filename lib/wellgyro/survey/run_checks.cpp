@@ -138,7 +138,7 @@ ErrorVector SigmasOf(const Job& job, const RunSummary& run) {
 /// Reduced chi-square: `sum` over its expectation `freedom`.
 Check CheckSquares(std::string code, std::int32_t run, double sum, double freedom) {
   // Below it the unknowns take up nearly all of the residuals, and sum / freedom divides noise by
-  // next to nothing.
+  // next to nothing: its limit at 3 sigma is 24 there, 10 where the freedom is 1.
   constexpr double kLeastFreedom = 0.3;
   if (!(freedom >= kLeastFreedom)) {
     return NotDone(std::move(code), run, "nothing of this kind is measured more than once");
