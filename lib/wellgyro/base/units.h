@@ -7,6 +7,7 @@
 namespace wellgyro::units {
 
 inline constexpr double kHour = 3600;                                      ///< [s]
+inline constexpr double kDay = 24 * kHour;                                 ///< [s]
 inline constexpr double kDeg = kPi / 180;                                  ///< [rad]
 inline constexpr double kArcsec = kDeg / 3600;                             ///< [rad]
 inline constexpr double kDegPerHour = kDeg / kHour;                        ///< [rad/s]

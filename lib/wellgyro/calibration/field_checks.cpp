@@ -210,14 +210,13 @@ Check CheckCalibrationDate(const ToolCalibration& tool, UtcTime data) {
   check.code = "calibration_date";
   check.unit = "d";
   check.limit_source = "tool file";
-  constexpr double kDay = 86'400;
   if (tool.expires) {
-    check.value = (*tool.expires - data).seconds() / kDay;
+    check.value = (*tool.expires - data).seconds() / units::kDay;
     check.limit = 0;
     check.verdict = *check.value > 0 ? Verdict::kPass : Verdict::kFail;
   }
   if (tool.calibrated && data < *tool.calibrated && check.verdict != Verdict::kFail) {
-    if (!check.value) check.value = (data - *tool.calibrated).seconds() / kDay;
+    if (!check.value) check.value = (data - *tool.calibrated).seconds() / units::kDay;
     check.verdict = Verdict::kWarn;
   }
   return check;

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/calibration/members.h"
 #include "wellgyro/math/median.h"
@@ -36,8 +37,7 @@ const ParameterCovariance& KnownOf(const ToolCalibration& tool) {
 }
 
 double DaysBetween(const ToolCalibration& a, const ToolCalibration& b) {
-  constexpr double kDay = 86'400;
-  return (*b.calibrated - *a.calibrated).seconds() / kDay;
+  return (*b.calibrated - *a.calibrated).seconds() / units::kDay;
 }
 
 // What samples calibrated by the older model would be off, were the newer one right.

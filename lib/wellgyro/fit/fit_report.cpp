@@ -32,7 +32,6 @@ void AddResiduals(FitReport& report, const LinearSolution& solution) {
   }
   report.readings = static_cast<int>(report.residuals.size());
   if (solution.dof < 1) return;
-  constexpr double kFalseAlarm = 0.01;
   const double each = kFalseAlarm / 2 / std::max(1, report.readings);
   report.studentised_limit =
       report.sigma_given ? -NormalQuantile(each) : StudentLimit(each, solution.dof);

@@ -188,7 +188,6 @@ void RemarkReference(const GyroReadings& readings, const BenchReference& referen
 // Readings at rest show the horizontal rate by U, which the table's rates show too.
 void TellLatitude(const GyroReadings& readings, const FittedGyros& fitted,
                   const BenchReference& reference, FitReport& report) {
-  constexpr double kFalseAlarm = 0.01;
   Eigen::MatrixXd z(fitted.problem.y.size(), 1);
   for (Eigen::Index row = 0; row < z.rows(); ++row) {
     const auto n = static_cast<Eigen::Index>(readings.channels.size());

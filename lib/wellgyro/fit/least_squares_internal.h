@@ -14,6 +14,10 @@
 
 namespace wellgyro {
 
+/// Of sound benches, the share in which chance alone makes a finding of one kind: a residual that
+/// is too large, a trend, a reference that the readings contradict.
+inline constexpr double kFalseAlarm = 0.01;
+
 /// A reading further off than this many of the residuals' robust scale is an outlier: one in 5e8 of
 /// a normal distribution.
 inline constexpr double kOutlierSigmas = 6;

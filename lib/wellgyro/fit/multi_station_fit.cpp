@@ -302,7 +302,6 @@ struct GivenOfPlace {
 // What was given of the place is a term too, of which the stations may say something else: of a dip
 // that is 1 deg off the biases take a part, and the rest looked like noise.
 void TellPlace(LinearProblem linear, const BenchReference& reference, FitReport& report) {
-  constexpr double kFalseAlarm = 0.01;
   linear.robust = false;
   const double latitude = reference.latitude.value_or(0);
   Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(linear.y.size(), 3);

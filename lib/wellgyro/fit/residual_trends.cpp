@@ -16,7 +16,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kFalseAlarm = 0.01;
 constexpr std::size_t kFewestRows = 6;  // rows of a channel, below which nothing is tested
 constexpr double kLeastSwing = 1;       // degC
 

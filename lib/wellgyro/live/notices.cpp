@@ -8,7 +8,6 @@ namespace wellgyro {
 namespace {
 
 constexpr std::int64_t kToldAtOnce = 10;
-constexpr std::int64_t kSecond = 1'000'000;
 
 }  // namespace
 
@@ -40,7 +39,7 @@ void Notices::Tell(const Fault& fault) {
   const std::lock_guard lock(mutex_);
   Count& count = counts_[fault.code];
   const std::int64_t now = clock_.monotonic_us();
-  if (count.told >= kToldAtOnce && now - count.last_us < kSecond) {
+  if (count.told >= kToldAtOnce && now - count.last_us < kSecondUs) {
     ++count.untold;
     return;
   }

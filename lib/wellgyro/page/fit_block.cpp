@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/page/html_internal.h"
 #include "wellgyro/page/page_internal.h"
 
@@ -124,7 +125,6 @@ struct AlongTime {
 /// One run's columns along time, each point with its depth. Nothing where no run has them.
 void AddAlongTime(PageText& page, double run, const char* id, const std::string& title,
                   const char* unit, std::initializer_list<AlongTime> columns) {
-  constexpr double kHour = 3600;
   const Columns stretches(At(page.survey, {"stretches"}));
   Chart chart{.title = title, .x_name = "time since the run began [h]", .y_name = unit};
   chart.height = 200;
@@ -135,7 +135,7 @@ void AddAlongTime(PageText& page, double run, const char* id, const std::string&
       const auto t = stretches.Number(i, "T[s]"), value = stretches.Number(i, column.column);
       if (!t || stretches.Number(i, "RUN") != run) continue;
       any = any || value;
-      series.points.emplace_back(*t / kHour, value.value_or(NAN));
+      series.points.emplace_back(*t / units::kHour, value.value_or(NAN));
       series.md.push_back(page.Length(stretches.Number(i, "MD[m]")).value_or(NAN));
     }
     chart.series.push_back(std::move(series));

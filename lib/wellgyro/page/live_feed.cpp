@@ -37,8 +37,9 @@ std::optional<double> Degrees(const std::optional<double>& angle) {
 
 Json MicrosecondsOf(UtcTime time) { return time.ns > 0 ? Json(time.ns / 1000) : Json(); }
 
+constexpr double kFine = 1e-3;  // to which a page shows metres and degrees
+
 Json JsonOf(const Glance& glance) {
-  constexpr double kFine = 1e-3;
   return {{"utime_us", MicrosecondsOf(glance.utc)},
           {"run", glance.run},
           {"md_m", Rounded(glance.md, kFine)},
@@ -93,7 +94,6 @@ const char* WordOf(Advice::Action action) {
 }
 
 Json JsonOf(const Advice& advice) {
-  constexpr double kFine = 1e-3;
   Json json{{"utime_us", MicrosecondsOf(advice.utc)},
             {"run", advice.run},
             {"action", WordOf(advice.action)},

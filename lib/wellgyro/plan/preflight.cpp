@@ -88,7 +88,6 @@ void AddDrift(const PlanCase& c, double seconds, std::vector<std::string>& said)
 }
 
 void AddDates(const PreflightDates& dates, std::vector<std::string>& said) {
-  constexpr double kDay = 24 * units::kHour;
   if (!dates.run) {
     if (dates.expires) {
       said.push_back("the tool's calibration has an end: --date of the run tells whether it holds");
@@ -97,10 +96,10 @@ void AddDates(const PreflightDates& dates, std::vector<std::string>& said) {
   }
   if (dates.expires && *dates.run > *dates.expires) {
     said.push_back(fmt::format("the tool's calibration runs out {:.0f} days before the run",
-                               (*dates.run - *dates.expires).seconds() / kDay));
+                               (*dates.run - *dates.expires).seconds() / units::kDay));
   }
   if (!dates.calibrated) return;
-  const double age = (*dates.run - *dates.calibrated).seconds() / kDay;
+  const double age = (*dates.run - *dates.calibrated).seconds() / units::kDay;
   if (age < 0) {
     said.push_back(fmt::format("the tool is calibrated {:.0f} days after the run", -age));
   } else if (!dates.expires) {

@@ -10,11 +10,11 @@
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/math/variance_components.h"
 #include "wellgyro/survey/repeat_contrasts_internal.h"
+#include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr double kProbability = 0.95;
 constexpr const char* kShared =
     "one error in all surveys of a hole: their differences do not show it";
 constexpr const char* kInNoSurvey = "no survey that was compared has it";
@@ -102,7 +102,7 @@ void Estimator::HoldWhatIsAbsent() {
 
 /// Of the terms that may as well be 0 as what is assumed, the one that comes nearest to both.
 bool Estimator::HoldTheVaguest() {
-  const double limit = ChiSquareQuantile(kProbability, 1);
+  const double limit = ChiSquareQuantile(kConfidence, 1);
   std::optional<std::size_t> vaguest;
   double least = limit;
   for (std::size_t j = 0; j < result_.terms.size(); ++j) {
@@ -133,7 +133,7 @@ EmpiricalModel Estimator::Run() && {
     fit_ = FitVariances(clusters_, start_);
     if (!fit_.converged) result_.notes.emplace_back("the search for the magnitudes did not settle");
   } while (HoldTheVaguest());
-  intervals_ = VarianceIntervals(clusters_, start_, fit_, kProbability);
+  intervals_ = VarianceIntervals(clusters_, start_, fit_, kConfidence);
   for (std::size_t j = 0; j < result_.terms.size(); ++j) {
     if (start_.held[j]) continue;
     ErrorTerm& term = result_.model.terms[j];

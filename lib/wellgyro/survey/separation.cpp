@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/golden_section.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -173,7 +174,6 @@ std::optional<double> PairOfLines::FactorAt(const Place& place) const {
 
 /// Golden section.
 double PairOfLines::LowestIn(std::size_t leg, double low, double high) const {
-  constexpr double kGolden = 0.6180339887498949;
   const auto factor = [&](double s) { return FactorAt({leg, s}).value_or(0); };
   double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
   double fa = factor(a), fb = factor(b);

@@ -13,6 +13,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/time_range.h"
 #include "wellgyro/io/sensor/file_kind.h"
 #include "wellgyro/io/sensor/sensor_layout_internal.h"
 #include "wellgyro/io/text_internal.h"
@@ -42,7 +43,6 @@ std::string WithCommas(std::string header) {
   return header;
 }
 
-constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
 constexpr std::int64_t kMarkEvery = 4'000'000'000;  // [ns], while at rest
 constexpr std::size_t kFirstSteps = 1000;
 
@@ -120,11 +120,11 @@ struct SensorCsv::Impl {
     std::int64_t whole = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), whole);
     if (error == std::errc() && end == text.data() + text.size()) {
-      if (std::abs(static_cast<double>(whole)) * static_cast<double>(factor) < kMostNs) {
+      if (std::abs(static_cast<double>(whole)) * static_cast<double>(factor) < kFarthest) {
         return whole * factor;
       }
     } else if (const auto value = Get(column)) {
-      if (std::abs(*value) < kMostNs) return std::llround(*value);
+      if (std::abs(*value) < kFarthest) return std::llround(*value);
     }
     Refuse(fmt::format("\"{}\" is no time", text.substr(0, 40)), FaultCode::kRange,
            layout.places[column].field);

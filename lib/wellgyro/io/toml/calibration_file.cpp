@@ -179,8 +179,9 @@ void ReadQuantities(TomlTable& table, const std::string& prefix, bool sigma, Fit
   }
 }
 
+constexpr std::int64_t kMany = 1'000'000'000;  // an int holds it
+
 void ReadStatistics(TomlTable& table, FitReport& report) {
-  constexpr std::int64_t kMany = 1'000'000'000;
   const auto whole = [&](std::string_view key) {
     return static_cast<int>(table.Need(key, table.FindInteger(key, 0, kMany)));
   };
@@ -242,7 +243,6 @@ void ReadResiduals(TomlTable& table, FitReport& report) {
 
 OrthogonalityCheck ReadCheck(TomlTable& table) {
   OrthogonalityCheck check;
-  constexpr std::int64_t kMany = 1'000'000'000;
   const auto whole = [&](std::string_view key) {
     return static_cast<int>(table.Need(key, table.FindInteger(key, 0, kMany)));
   };

@@ -9,8 +9,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kSecondsPerHour = 3600;
-
 WitsItems TakeWits(TomlTable& root) {
   WitsItems items;
   if (auto table = root.FindTable("items")) {
@@ -23,7 +21,7 @@ WitsItems TakeWits(TomlTable& root) {
   }
   items.length_unit =
       root.FindWord<double>("depth_unit", {{"m", 1.0}, {"ft", units::kFoot}}).value_or(1.0);
-  root.Read("utc_offset_h", items.utc_offset, kSecondsPerHour, {.min = -14, .max = 14});
+  root.Read("utc_offset_h", items.utc_offset, units::kHour, {.min = -14, .max = 14});
   root.Read("depth_sigma_m", items.sigma, 1, {.min = 0, .max = 100});
   items.kind = root.FindWord<DepthKind>("kind", {{"indicated", DepthKind::kIndicated},
                                                  {"wireline", DepthKind::kWireline},
