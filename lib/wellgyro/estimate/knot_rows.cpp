@@ -23,11 +23,14 @@ using Eigen::Vector3d;
 
 // What is left of the residuals of perfect sensors: an increment's own accuracy (see
 // IncrementBuilder), and an acceleration of the path whose curvature changes within the window
-// that it is read from, 1 deg/30 m at 0.3 m/s.
+// that it is read from, 1 deg/30 m at 0.3 m/s. Of an hour at 60 deg and 3 rpm, no noise and none
+// stated, azimuths are off by 8e-4 deg rms; their sigma is 3.2e-3 and goes by kLeastTurn.
 constexpr double kLeastTurn = 1e-7;   // [rad]
 constexpr double kLeastForce = 5e-5;  // [m/s^2 sqrt(s)], so that of a moment it tells nothing
 // The turn about the axis is the unknown roll rate's; this ties it to the attitude. A tenth of the
-// finest toolface that accelerometers tell in a knot, 1e-5 g, and of what a third axis says.
+// finest toolface that accelerometers tell in a knot, 1e-5 g, and of what a third axis says. At
+// half and at twice of it the ends of three clean runs move by 0.006 sigma, sigmas change by 0.9
+// and 0.4 %.
 constexpr double kAxialTie = 1e-6;  // [rad]
 // Sigma of a pseudo-measurement of zero, over that of the gyros' turn: the tie beside a third axis,
 // and the turn of a tool at rest. It widens the gyros' sigma by sqrt(1 + 0.1^2) - 1 = 0.5 %.
