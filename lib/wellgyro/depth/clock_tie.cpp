@@ -19,7 +19,8 @@ constexpr double kGate = 5;
 constexpr int kStep = 5;
 constexpr double kDoubtAfter = 60;  // [s] without a synchronised cell: 6 ms at sigma_drift
 // Innovations x^2 teach the variance by a gain 1 / (kTaught + cells), from 1/kTaught to 1/65, which
-// tells it to sqrt(2 / 129) = 12 %; one x counts for three sigmas at most, E[min(x^2, 9)] = 0.995.
+// tells it to sqrt(2 / 129) = 12 % (30 or 120 cells move no end by 0.001 sigma); one x counts for
+// three sigmas at most, E[min(x^2, 9)] = 0.995.
 constexpr double kTaught = 5, kLearn = 60, kSurpriseMost = 9;
 // Least share of the variance stated: 2 ms sqrt(1e-6) = 2 us, near the steps that UTC comes in.
 constexpr double kScaleMin = 1e-6;

@@ -14,10 +14,12 @@ namespace {
 
 // [s] between marks in which a stop may hide: from 1 m/s to rest and back at 0.4 m/s^2.
 constexpr double kStopAndGo = 5;
-constexpr double kUnseen = 0.03;       // [m/s^2], acceleration of a winch, rms
-constexpr double kSpikeAtLeast = 0.3;  // [m]
-constexpr double kHardest = 1;         // [m/s^2], that a string is started or stopped at
-constexpr double kJumpAtLeast = 1;     // [m]
+constexpr double kUnseen = 0.03;  // [m/s^2], acceleration of a winch, rms
+// [m], of one mark: it moves the fitted depth by 0.084 of it at 10 Hz, 2.5 cm, by half at 2 Hz, and
+// the speed by 0.05 m/s at 10 Hz.
+constexpr double kSpikeAtLeast = 0.3;
+constexpr double kHardest = 1;      // [m/s^2], 0.1 g, that a string is started or stopped at
+constexpr double kJumpAtLeast = 1;  // [m], beside what speed_limit allows
 
 double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
 
