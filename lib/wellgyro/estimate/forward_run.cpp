@@ -21,7 +21,8 @@ using Eigen::Vector3d;
 
 // A knot is made linear anew, as in a tool whose roll nobody sees, until what it turns the begin by
 // is small: its square, 9e-6 rad, is below the 2e-5 rad of tilt that 2e-4 m/s^2/sqrt(Hz) tell in a
-// knot of 1 s.
+// knot of 1 s. Halved or doubled, these two move the ends of three clean runs by less than 0.001
+// sigma.
 constexpr double kLinear = 3e-3;
 constexpr int kKnotIterations = 4;
 

@@ -23,8 +23,9 @@ using Eigen::Vector3d;
 
 // What is left of the residuals of perfect sensors: an increment's own accuracy (see
 // IncrementBuilder), and an acceleration of the path whose curvature changes within the window
-// that it is read from, 1 deg/30 m at 0.3 m/s. Of an hour at 60 deg and 3 rpm, no noise and none
-// stated, azimuths are off by 8e-4 deg rms; their sigma is 3.2e-3 and goes by kLeastTurn.
+// that it is read from, 1 deg/30 m at 0.3 m/s. Of an hour straight on at 60 deg and 3 rpm, no
+// noise and none stated, azimuths are off by 1e-6 deg; their sigma is 3.2e-3, in proportion to
+// kLeastTurn.
 constexpr double kLeastTurn = 1e-7;   // [rad]
 constexpr double kLeastForce = 5e-5;  // [m/s^2 sqrt(s)], so that of a moment it tells nothing
 // The turn about the axis is the unknown roll rate's; this ties it to the attitude. A tenth of the

@@ -16,6 +16,7 @@ using Complex = std::complex<double>;
 // [s], within which a line keeps its phase. Halved or doubled, this and kOversampled move the end
 // of the demonstration, whose roll swings, by 0.002 sigma.
 constexpr double kSegment = 600;
+// Half or twice the least of knots and of rates: the same swing is found in three clean runs.
 constexpr std::size_t kLeastSeen = 60;  // knots of a segment, to tell a line from a trend
 constexpr double kLongest = 60;         // [s], longest period
 constexpr double kNyquist = 0.9;        // of half a turn a knot, beyond which a line is aliased
