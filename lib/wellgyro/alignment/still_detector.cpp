@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int64_t kBlockNs = 1'000'000'000;
-// Sigmas, P(|x| > 5) = 5.7e-7: of five axes a good block in four days.
+// Sigmas, P(|x| > 5) = 5.7e-7: of five axes one good block in four days is refused.
 constexpr double kGate = 5;
 // Of the depth's speed, P(|x| > 4) = 6.3e-5: a block in a hundred stops of 160 s.
 constexpr double kSpeedSigmas = 4;

@@ -32,9 +32,8 @@ constexpr std::uint64_t kStretchBlocks = 800;
 constexpr std::int64_t kKnotNs = 20'000'000'000;
 constexpr std::uint64_t kKnotBlocks = 2000;
 constexpr std::size_t kCapacity = 8192;
-constexpr std::size_t kCutsMost = 1024;
-// 12 s of knots and stations wait, 85 a second. A clock that leaps by more is wrong, and sums of
-// leaps must not overflow: a month.
+constexpr std::size_t kCutsMost = 1024;  // 12 s of knots and stations wait: 85 a second
+// A clock that leaps by more is wrong, and sums of leaps must not overflow: a month.
 constexpr std::int64_t kGapMostNs = 30 * 86400 * std::int64_t{1'000'000'000};
 
 bool IsFinite(const ImuSample& s) {

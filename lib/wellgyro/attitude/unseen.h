@@ -8,9 +8,9 @@
 namespace wellgyro {
 
 /// Prior of the hole's bend over an interval without valid samples: an angle of
-/// N(0, (dogleg |dMD|)^2) where the depth is known, N(0, (rate dt)^2) where it is not: 2.9 deg/30
-/// m, and as much at 1 m/s. `seconds`: how long a bend goes on from one such interval to the next,
-/// see UnseenTurn: a stand of 30 m at 0.3 m/s.
+/// N(0, (dogleg |dMD|)^2) where the depth is known, 2.9 deg in 30 m, and N(0, (rate dt)^2) where it
+/// is not, as much at 1 m/s. `seconds`: how long a bend goes on from one such interval to the next,
+/// a stand of 30 m at 0.3 m/s, see UnseenTurn.
 struct UnseenHole {
   double dogleg = 1.7e-3;  ///< 1-sigma, where the depth is known [rad/m]
   double rate = 1.7e-3;    ///< 1-sigma, across the hole, where it is not [rad/s]

@@ -17,7 +17,8 @@ namespace {
 constexpr int kOrderMost = 16, kOrderBroken = 4;
 constexpr int kSilentAgain = 10;  // times kSilentUs, and what was heard before counts no more
 constexpr int kOtherAddress = 5;  // times as long a silence lets another address in
-// 4 * 5 s = kSilentAgain * kSilentUs: of a sender that may take over nothing is old news.
+// 4 * 5 s = kSilentAgain * kSilentUs: when another may take over at the latest, what it sends is
+// news whatever its time.
 constexpr int kUsualIntervals = 4;
 constexpr std::int64_t kIntervalMost = 5'000'000;  // [us]
 // Numbers of an own sender looked back at, one bit each: .5 kB a stream, 4 s at 1000 messages/s;

@@ -15,8 +15,8 @@ namespace {
 // [s] between marks in which a stop may hide: from 1 m/s to rest and back at 0.4 m/s^2.
 constexpr double kStopAndGo = 5;
 constexpr double kUnseen = 0.03;  // [m/s^2], acceleration of a winch, rms
-// [m], of one mark: it moves the fitted depth by 0.084 of it at 10 Hz, 2.5 cm, by half at 2 Hz, and
-// the speed by 0.05 m/s at 10 Hz.
+// [m], off its neighbours: at 10 Hz it moves the fitted depth by 2.5 cm at most and the speed by
+// 0.05 m/s, at 2 Hz by 15 cm and 0.4 m/s.
 constexpr double kSpikeAtLeast = 0.3;
 constexpr double kHardest = 1;      // [m/s^2], 0.1 g, that a string is started or stopped at
 constexpr double kJumpAtLeast = 1;  // [m], beside what speed_limit allows

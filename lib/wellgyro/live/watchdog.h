@@ -17,8 +17,8 @@ namespace wellgyro {
 /// somebody asked it to. Both are called from the watchdog's own thread.
 class WELLGYRO_EXPORT Watchdog {
  public:
-  static constexpr std::int64_t kLateUs =
-      1'200'000;  ///< without Alive: a status is due each 1 s, and two looks
+  /// Without Alive, until `late`: a status is due every second, and two looks at the clock.
+  static constexpr std::int64_t kLateUs = 1'200'000;
   static constexpr std::int64_t kStuckUs = 1'500'000;  ///< from Ending, until `stuck`
 
   /// `clock` must outlive this object.
