@@ -29,6 +29,7 @@ struct Depths {
   double noise = 0.01, period = 0.5;
   double ahead = 5;   ///< marks of the samples [s]
   double jitter = 0;  ///< 1-sigma of the samples' UTC [s]
+  double late = 0;    ///< by which samples are in the first rest, by a fiftieth less with each [s]
   double build = 0;   ///< [rad/m], from 49 deg on
   double roll = 0;    ///< [rad/s]
   std::uint64_t seed = 1;
@@ -56,7 +57,9 @@ DepthMotion::Found FoundOf(const Depths& depths, double seconds) {
     }
     const double h = 0.02, middle = t + kStep / 2;
     const double felt = (Depth(middle + h) - 2 * Depth(middle) + Depth(middle - h)) / (h * h);
-    const double late = depths.jitter * clock.Normal();
+    const double rest = (t - kMove - kRamp) / kStep;
+    const double late =
+        depths.jitter * clock.Normal() + (rest < 0 ? 0 : depths.late * std::pow(0.98, rest));
     const UtcTime utc = begin + Duration::Seconds(t + late);
     // Gravity's share in a tool that rolls while its inclination grows.
     const double inclination = 0.85 + depths.build * Depth(middle), roll = depths.roll * middle;
@@ -96,6 +99,17 @@ TEST(DepthMotion, TheFourthHourIsJudgedAsTheFirstMinuteIs) {
   const DepthMotion::Found found = FoundOf(depths, 4 * 3600);
   EXPECT_NEAR(found.sigma_step, 2.236 * 0.01, 0.003);
   EXPECT_LT(std::abs(found.step), 5 * found.sigma_step);
+}
+
+// A message comes late, and the clocks' tie gets over it: the fall goes by UTC as marks do.
+TEST(DepthMotion, ATieThatSettlesIsNoStepAndNoLag) {
+  Depths depths;
+  depths.late = 0.1;
+  const DepthMotion::Found found = FoundOf(depths, 3000);
+  EXPECT_LT(std::abs(found.step), 5 * found.sigma_step);
+  EXPECT_LT(std::abs(found.lag), 5 * found.sigma_lag);
+  depths.late = -0.1;
+  EXPECT_LT(std::abs(FoundOf(depths, 3000).step), 5 * found.sigma_step);
 }
 
 // How marks and samples interleave does not matter.

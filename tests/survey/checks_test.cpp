@@ -202,6 +202,11 @@ TEST(Checks, BiasesOfLaterStopsAreHeldToTheFirstByWhatTheToolMayDrift) {
   job.noise.rate_random_walk = 0.1 * units::kDegPerHourSqrtHour;
   EXPECT_EQ(Find(Checks(job, {}, {first, last}), "bias_repeatability").verdict, Verdict::kPass);
   EXPECT_EQ(Find(Checks(job, {}, {last}), "bias_repeatability").verdict, Verdict::kNotDone);
+  // Where UTC goes back between them, too.
+  const std::vector<Check> back = Checks(job, {}, {last, first});
+  EXPECT_EQ(Find(back, "bias_repeatability").verdict, Verdict::kPass);
+  EXPECT_EQ(Find(back, "bias_repeatability").sigma,
+            Find(Checks(job, {}, {first, last}), "bias_repeatability").sigma);
   // The worst of two axes at each stop behind the first: 3 of 200 clean runs with six comparisons
   // failed while it counted as one.
   EXPECT_EQ(check.looks, 2);

@@ -239,13 +239,14 @@ TEST(RunDiagnosis, MotionAtTheStopWhereAFaultBeginsIsTheFault) {
 
 /// Of a run whose odds of a fault are `ln_odds`, a latitude that moves its end by `shift_W`. The
 /// end has sigmas of 1, 2 and 2 m; a station further up and the end of another run have others.
-Verdict VerdictOf(double ln_odds, const Eigen::Vector3d& shift_W) {
+Verdict VerdictOf(double ln_odds, const Eigen::Vector3d& shift_W, double ln_odds_without = 0) {
   RunSummary run;
   run.run = 1;
   const auto fit = std::make_shared<RunFit>();
   run.fit = fit;
   RunDiagnosis& found = fit->diagnosis.emplace();
   found.ln_odds = ln_odds;
+  found.ln_odds_without_first = ln_odds_without;
   RunCause& cause = found.causes.emplace_back();
   cause.code = "latitude";
   cause.posterior = 0.99;
@@ -275,6 +276,13 @@ TEST(RunDiagnosis, WhatMovesTheEndByMoreThanItsSigmaFails) {
   EXPECT_EQ(VerdictOf(kFound, {0, 0, -2.1}), Verdict::kFail);
   EXPECT_EQ(VerdictOf(kFound, {NAN, 0, 0}), Verdict::kFail);
   EXPECT_EQ(VerdictOf(6.9, {100, 0, 0}), Verdict::kPass);
+}
+
+// A wheel that slips by 5 m within 20 m of hole passes for a spike of the accelerometers, which
+// moves nothing, and leaves most of what it did to the residuals.
+TEST(RunDiagnosis, WhatNoNamedCauseExplainsFails) {
+  EXPECT_EQ(VerdictOf(200, {1e-3, 0, 0}, 6.8), Verdict::kWarn);
+  EXPECT_EQ(VerdictOf(200, {1e-3, 0, 0}, 7), Verdict::kFail);
 }
 
 TEST(RunDiagnosis, FilesHaveTheirColumns) {

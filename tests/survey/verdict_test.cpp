@@ -188,7 +188,7 @@ TEST(CheckTieIn, ItsPlaceIsOneThatTheHoleReaches) {
   tie_in.tvd = 800 / 0.3048;  // in feet
   const Check feet = CheckTieInPlace(tie_in);
   EXPECT_EQ(feet.verdict, Verdict::kFail);
-  EXPECT_NEAR(feet.value.value_or(0), std::hypot(500, 800 / 0.3048) - 1000, 1e-9);
+  EXPECT_NEAR(feet.value.value_or(0), 800 / 0.3048 - 1000, 1e-9);
   tie_in.cov_p_WT_W.diagonal().fill(1e6);
   EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kPass) << "known as badly";
 }
@@ -196,8 +196,8 @@ TEST(CheckTieIn, ItsPlaceIsOneThatTheHoleReaches) {
 // A run from the well head, vertical to 200 m and at 45 deg from there, in and out, tied at 500 m.
 TEST(CheckTieIn, ItsPlaceIsWhereTheRunsOwnWayLeads) {
   std::vector<PathStation> seen;
-  for (int k = -32; k <= 32; ++k) {
-    const double md = 25.0 * (32 - std::abs(k));
+  for (int k = -160; k <= 160; ++k) {
+    const double md = 5.0 * (160 - std::abs(k));
     seen.push_back({md, md > 200 ? FromDegrees(45) : 0, FromDegrees(30)});
   }
   const double aside = 300 * std::sqrt(0.5);
@@ -207,7 +207,14 @@ TEST(CheckTieIn, ItsPlaceIsWhereTheRunsOwnWayLeads) {
   const TieIn straight_down{.md = 500, .tvd = 500};
   const Check off = CheckTieInWay(straight_down, seen);
   EXPECT_EQ(off.verdict, Verdict::kFail);
-  EXPECT_NEAR(off.value.value_or(0), std::hypot(aside, 300 - aside), 12);
+  EXPECT_NEAR(off.value.value_or(0), 300 - aside, 12) << "of TVD, which no north turns";
+  TieIn turned = tie_in;
+  std::swap(turned.north, turned.east);
+  EXPECT_NEAR(CheckTieInWay(turned, seen).value.value_or(0), 2 * aside * std::sin(FromDegrees(15)),
+              12);
+  TieIn shallow = tie_in;
+  shallow.tvd = *shallow.tvd - 15;
+  EXPECT_EQ(CheckTieInWay(shallow, seen).verdict, Verdict::kFail);
   // What lies above the run may go anywhere.
   std::erase_if(seen, [](const PathStation& s) { return s.md < 300; });
   EXPECT_EQ(CheckTieInWay(straight_down, seen).verdict, Verdict::kNotDone);
@@ -221,7 +228,7 @@ TEST(CheckTieIn, APlaceThatNobodyStatedWarnsWhereItIsNotTheHeads) {
   EXPECT_NEAR(aside.value.value_or(0), 600, 1e-9);
   tie_in.tvd = 1000 - 1e-4;  // not half a metre aside: the hole is straight down
   EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kPass);
-  tie_in.tvd = 4000;  // deeper than long
+  tie_in.tvd = 1010;  // deeper than long, by less than a slot is aside
   EXPECT_EQ(CheckTieInPlace(tie_in).verdict, Verdict::kFail);
 }
 

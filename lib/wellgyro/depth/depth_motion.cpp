@@ -42,8 +42,9 @@ void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period,
       passed_count_ = 0;
       fall.speed = fall.way = 0;
     }
-    // A gap up to kGap is bridged with the force of the sample behind it.
-    const bool bridged = gap.ns > 0;
+    // A gap up to kGap is bridged with the force of the sample behind it. So is what the clocks'
+    // tie moves UTC by, either way: in 10 s of fall 3 ms between its time and the marks' are 0.3 m.
+    const bool bridged = felt_until_ && gap <= kGap && Duration{-gap.ns} <= kGap;
     const UtcTime begin = bridged ? *felt_until_ : utc[i];
     const double seconds = bridged ? length + gap.seconds() : length;
     felt_until_ = utc[i] + period;

@@ -36,10 +36,13 @@ constexpr double kAxialTie = 1e-6;  // [rad]
 // Sigma of a pseudo-measurement of zero, over that of the gyros' turn: the tie beside a third axis,
 // and the turn of a tool at rest. It widens the gyros' sigma by sqrt(1 + 0.1^2) - 1 = 0.5 %.
 constexpr double kNothing = 0.1;
-// Motion along the hole: what a speed at rest, a mark and a knot's way are known to at best, and
+// Speed of a tool at rest [m/s]: as it starts gently a block of a second counts as still with a
+// force that has changed by up to 1e-3 m/s^2 and five sigmas, as much again of a tool with 2e-4
+// m/s^2/sqrt(Hz).
+constexpr double kRestSpeed = 2e-3;
+// Motion along the hole: what a mark and a knot's way are known to at best, and
 // how a speed walks, a third of a m/s in a second. Halved or doubled, each moves the ends of three
 // clean runs by less than 0.001 sigma.
-constexpr double kRestSpeed = 1e-5;   // [m/s]
 constexpr double kSpeedWalk = 0.3;    // [m/s/sqrt(s)], of winch and pipe
 constexpr double kLeastDepth = 1e-3;  // [m]
 constexpr double kLeastWay = 1e-4;    // [m]

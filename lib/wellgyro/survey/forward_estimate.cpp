@@ -63,7 +63,10 @@ AttitudeSample ForwardEstimate::AttitudeNow() const {
 }
 
 const RunKnot& ForwardEstimate::Step(const WaitingKnot& waiting, const Increment* next) {
-  if (knots_.empty()) history_.site = site_.site();
+  if (knots_.empty()) {
+    site_.Begin(waiting.along);
+    history_.site = site_.site();
+  }
   if (recent_.size() >= 2 * ForwardRun::kLooksBack) {
     recent_.erase(recent_.begin(), recent_.end() - ForwardRun::kLooksBack);
   }

@@ -18,10 +18,14 @@ class PathSite {
   explicit PathSite(const Job& job);
 
   const Site& site() const { return site_; }
+  /// To where the run begins.
+  void Begin(const AlongHole& along);
   /// On to the place `along`, where the tool has this attitude.
   void Move(const AlongHole& along, const AttitudeSample& attitude);
 
  private:
+  void Place();
+
   const Job& job_;
   Site site_;
   double north_ = 0, tvd_ = 0;  // [m]

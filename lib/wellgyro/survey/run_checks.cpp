@@ -46,7 +46,8 @@ void CheckBiases(const Job& job, const RunSummary& run, std::vector<Check>& chec
       first = &fix;
       continue;
     }
-    const double change = SigmaOfChange(job.noise, (fix.utc_end - first->utc_end).seconds());
+    const double apart = std::abs((fix.utc_end - first->utc_end).seconds());
+    const double change = SigmaOfChange(job.noise, apart);
     for (int axis = 0; axis < 2; ++axis, ++looks) {
       const Measured off{
           (*fix.gyro_bias)[axis] - (*first->gyro_bias)[axis],

@@ -222,6 +222,11 @@ bool MovedAtRest(const RunSummary& run, const Check& check) {
          std::abs(*named[0]->begin_md - *check.md) < kThatStop;
 }
 
+/// With the likeliest cause taken out a fault shows still, which may have moved the end.
+bool IsMore(const RunDiagnosis& diagnosis) {
+  return diagnosis.ln_odds_without_first > -std::log(kDiagnosisFalseAlarms);
+}
+
 std::string WordsOf(const RunCause& cause, double share) {
   std::string text = fmt::format("{} ({:.2f}", cause.code, share);
   if (cause.size) {
@@ -245,9 +250,7 @@ std::string WordsOf(const RunDiagnosis& diagnosis) {
   for (std::size_t i = 0; i < named.size(); ++i) {
     text += (i > 0 ? ", " : "") + WordsOf(*named[i], all > 0 ? named[i]->posterior / all : 0);
   }
-  if (diagnosis.ln_odds_without_first > -std::log(kDiagnosisFalseAlarms)) {
-    text += ", and something else beside it";
-  }
+  if (IsMore(diagnosis)) text += ", and something else beside it";
   return text + "; if the first: " + named[0]->remedy;
 }
 
@@ -324,9 +327,8 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
   const double limit = -std::log(kDiagnosisFalseAlarms);
   Check check{.code = "diagnosis", .run = run.run, .value = found->ln_odds, .unit = "1"};
   const bool shown = IsShown(*found);
-  check.verdict = !shown                                 ? Verdict::kPass
-                  : MovesTheEnd(*found, run.run, passes) ? Verdict::kFail
-                                                         : Verdict::kWarn;
+  const bool fails = shown && (IsMore(*found) || MovesTheEnd(*found, run.run, passes));
+  check.verdict = fails ? Verdict::kFail : shown ? Verdict::kWarn : Verdict::kPass;
   // Without a limit of its own: what is told of the check are the causes.
   if (shown) {
     check.limit_source = WordsOf(*found);

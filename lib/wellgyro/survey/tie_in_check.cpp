@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kReach = 30;                  // [m], a stand
 constexpr double kSurveys = FromDegrees(0.5);  // of two surveys of one hole
-constexpr double kSlot = 30;                   // of a platform, from its reference [m]
+constexpr double kSlot = 30;                   // of a platform, from its reference, aside [m]
 constexpr double kDepths = 2e-3;               // of two surveys: practice's 1e-3 of each
 constexpr double kTurned = 0.05;               // of a way, by a north 3 deg aside: 2 sin 1.5 deg
-constexpr double kPlaces = 1;                  // that nobody asks for [m]
+constexpr double kPlaces = 1;  // that nobody asks for; of TVD, which has no slot [m]
 constexpr double kBendMost = FromDegrees(5) / 30;  // of a hole, at most [rad/m]
 
 Eigen::Vector3d Along(double inclination, double azimuth) {
@@ -38,14 +38,23 @@ double SigmaAlong(const Eigen::Matrix3d& cov, const Eigen::Vector3d& p) {
   return std::sqrt(std::max(0.0, u.dot(cov * u)));
 }
 
+/// The check that is nearer to its limit, or further beyond it.
+Check Worse(const Check& a, const Check& b) {
+  return std::abs(*a.value) * *b.limit >= std::abs(*b.value) * *a.limit ? a : b;
+}
+
 }  // namespace
 
 Check CheckTieInPlace(const TieIn& tie_in) {
   const Eigen::Vector3d p(tie_in.north, tie_in.east, tie_in.tvd.value_or(0));
   const double sigma = SigmaAlong(tie_in.cov_p_WT_W, p);
+  const double sigma_tvd = std::sqrt(tie_in.cov_p_WT_W(2, 2));
   Check check = CompareWith("tie_in_place", 0, {std::max(0.0, p.norm() - tie_in.md), sigma},
                             kDepths * tie_in.md + kSlot + 3 * sigma, 1, "m",
                             ".2 % of md_m, 30 m and 3 sigma beyond it: straight is the shortest");
+  check = Worse(check, CompareWith("tie_in_place", 0, {std::max(0.0, p.z() - tie_in.md), sigma_tvd},
+                                   kDepths * tie_in.md + kPlaces + 3 * sigma_tvd, 1, "m",
+                                   ".2 % of md_m, 1 m and 3 sigma: no TVD is beyond it"));
   if (tie_in.place_stated || check.verdict == Verdict::kFail) return check;
   const double md = tie_in.md, tvd = tie_in.tvd.value_or(0);
   const double aside = std::sqrt(std::max(0.0, (md - tvd) * (md + tvd)));
@@ -69,9 +78,14 @@ Check CheckTieInWay(const TieIn& tie_in, std::vector<PathStation> seen) {
   const Eigen::Vector3d off =
       Eigen::Vector3d(tie_in.north, tie_in.east, tie_in.tvd.value_or(0)) - way;
   const double sigma = SigmaAlong(tie_in.cov_p_WT_W, off), unseen = tie_in.md - length;
-  return CompareWith("tie_in_way", 0, {std::max(0.0, off.norm() - unseen), sigma},
-                     kTurned * length + kSlot + 3 * sigma, 1, "m",
-                     "5 % of the way that runs measured, 30 m and 3 sigma");
+  const double sigma_tvd = std::sqrt(tie_in.cov_p_WT_W(2, 2));
+  // A north that is wrong turns the way and leaves its TVD.
+  return Worse(CompareWith("tie_in_way", 0, {std::max(0.0, off.norm() - unseen), sigma},
+                           kTurned * length + kSlot + 3 * sigma, 1, "m",
+                           "5 % of the way that runs measured, 30 m and 3 sigma"),
+               CompareWith("tie_in_way", 0, {std::max(0.0, std::abs(off.z()) - unseen), sigma_tvd},
+                           kSurveys * length + kPlaces + 3 * sigma_tvd, 1, "m",
+                           "TVD: 0.5 deg of the way that runs measured, 1 m and 3 sigma"));
 }
 
 Check CheckTieIn(const Job& job, std::span<const Station> stations) {

@@ -41,6 +41,11 @@ std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey) {
     deep = std::max(deep, std::abs(fault.shift_W.z()));
     if (!fault.smallest && shift > chance) unseen.unshown.push_back(fault.code);
   }
+  const bool axes_told =
+      std::none_of(survey.checks.begin(), survey.checks.end(), [&](const Check& c) {
+        return c.run == end.run && c.code == "axes" && c.verdict == Verdict::kNotDone;
+      });
+  if (!axes_told) unseen.unshown.emplace_back("axes");
   unseen.tvd = ConfidenceFactor(kConfidence, 1) * std::sqrt(end.cov_p_WT_W(2, 2)) + deep;
   return unseen;
 }
