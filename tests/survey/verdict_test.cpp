@@ -179,6 +179,16 @@ TEST(CheckTieIn, ATieInThatIsNotTheRunsFails) {
   EXPECT_EQ(CheckTieIn(job, stations).verdict, Verdict::kPass) << "the azimuth of a vertical hole";
 }
 
+TEST(ShortNumber, HasNoPowersOfTenWhereAReaderWantsNone) {
+  EXPECT_EQ(ShortNumber(16'412.3, 3), "16412");
+  EXPECT_EQ(ShortNumber(-204.6, 2), "-205");
+  EXPECT_EQ(ShortNumber(0.0123456, 3), "0.0123");
+  EXPECT_EQ(ShortNumber(99.4, 2), "99");
+  EXPECT_EQ(ShortNumber(2, 3), "2");
+  EXPECT_EQ(ShortNumber(3e12, 3), "3e+12");
+  EXPECT_EQ(ShortNumber(1e-7, 3), "1e-07");
+}
+
 TEST(CheckTieIn, ItsPlaceIsOneThatTheHoleReaches) {
   TieIn tie_in{.md = 1000, .north = 300, .east = -400, .tvd = 800};
   const Check reached = CheckTieInPlace(tie_in);

@@ -11,6 +11,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
 namespace {
@@ -230,11 +231,14 @@ bool IsMore(const RunDiagnosis& diagnosis) {
 std::string WordsOf(const RunCause& cause, double share) {
   std::string text = fmt::format("{} ({:.2f}", cause.code, share);
   if (cause.size) {
-    text += fmt::format(", {:.3g} +- {:.1g}{}", *cause.size, cause.sigma.value_or(0),
+    text += fmt::format(", {} +- {}{}", ShortNumber(*cause.size, 3),
+                        ShortNumber(cause.sigma.value_or(0), 1),
                         cause.unit == "1" ? "" : " " + cause.unit);
   }
   if (cause.begin_md) text += fmt::format(", from MD {:.1f} m", *cause.begin_md);
-  if (cause.shift_W) text += fmt::format(", end moved by {:.2g} m", cause.shift_W->norm());
+  if (cause.shift_W) {
+    text += fmt::format(", end moved by {} m", ShortNumber(cause.shift_W->norm(), 2));
+  }
   return text + ")";
 }
 

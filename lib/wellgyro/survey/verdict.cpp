@@ -102,7 +102,7 @@ constexpr CodeWords kCodeWords[] = {
     {"compare_inclination", "inclinations differ by more than the errors of both surveys"},
     {"compare_position", "places differ by more than the errors of both surveys"},
     {"depth_closure", "depth does not return to zero"},
-    {"depth_lag", "depth comes late against the motion that the accelerometers feel"},
+    {"depth_lag", "depth comes late or early against the motion that the accelerometers feel"},
     {"depth_jump", "depth jumps where the accelerometers feel no motion"},
     {"depth_refused", "depth marks were left out"},
     {"depth_scale", "the scale of depth is unverified"},
@@ -242,13 +242,19 @@ std::string CauseOf(const Check& check) {
   if (check.value && check.limit) {
     // A warning of chance is told below the limit at which it fails.
     const bool below = check.verdict == Verdict::kWarn && std::abs(*check.value) < *check.limit;
-    place += fmt::format(": {:.3g}{}, {} {:.3g}", *check.value, unit,
-                         below ? "fails beyond" : "limit", *check.limit);
+    place += fmt::format(": {}{}, {} {}", ShortNumber(*check.value, 3), unit,
+                         below ? "fails beyond" : "limit", ShortNumber(*check.limit, 3));
   } else if (!check.limit_source.empty()) {
     place += ": " + check.limit_source;
   }
   const std::string_view words = WordsFor(check.code);
   return words.empty() ? place : fmt::format("{} ({})", words, place);
+}
+
+std::string ShortNumber(double value, int digits) {
+  const double size = std::abs(value);
+  const bool whole = size >= std::pow(10, digits) && size < 1e9;
+  return whole ? fmt::format("{:.0f}", value) : fmt::format("{:.{}g}", value, digits);
 }
 
 }  // namespace wellgyro

@@ -40,4 +40,7 @@ WELLGYRO_EXPORT void GiveVerdict(Survey& survey);
 /// 2.1 deg/h, limit 1.4)".
 WELLGYRO_EXPORT std::string CauseOf(const Check& check);
 
+/// In words: so many digits, and all before the point where these are more, below 1e9.
+WELLGYRO_EXPORT std::string ShortNumber(double value, int digits);
+
 }  // namespace wellgyro

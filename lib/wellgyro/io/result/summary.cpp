@@ -12,6 +12,7 @@
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/result/unseen_faults_internal.h"
 #include "wellgyro/io/words.h"
+#include "wellgyro/survey/verdict.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
@@ -55,8 +56,8 @@ std::string CheckText(const Check& check) {
   if (check.md) text += fmt::format(", MD {} m", Fixed(*check.md, 2));
   if (check.value && check.limit) {
     const std::string unit = check.unit == "1" ? "" : " " + check.unit;
-    text += fmt::format(": {:.3g} against {:.3g}{} ({})", *check.value, *check.limit, unit,
-                        check.limit_source);
+    text += fmt::format(": {} against {}{} ({})", ShortNumber(*check.value, 3),
+                        ShortNumber(*check.limit, 3), unit, check.limit_source);
   }
   return text + '\n';
 }
