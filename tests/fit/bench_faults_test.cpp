@@ -176,6 +176,39 @@ TEST(BenchFaults, AWrongLatitudeIsToldByTheRateTable) {
   EXPECT_LE(tally.sound(), 2);
 }
 
+BenchTable OneRotor(const BenchTable& data) { return WithoutColumns(data, {"m_z2", "m_x2"}); }
+
+// Upright one azimuth is enough.
+BenchTable OneAzimuthUpright(const BenchTable& data) {
+  const int inc = *data.Find("inc"), az = *data.Find("az");
+  std::vector<Eigen::Index> kept;
+  BenchTable rest{data.source, data.columns, {}, {}};
+  for (int i = 0; i < data.rows(); ++i) {
+    const bool upright = data.values(i, inc) == 0 || data.values(i, inc) == 180;
+    if (upright && data.values(i, az) != 0) continue;
+    kept.push_back(i);
+    rest.lines.push_back(static_cast<int>(kept.size()) + 1);
+  }
+  rest.values = data.values(kept, Eigen::all);
+  return rest;
+}
+
+// 2026-11-28: one reading at rest spread over all by least squares and made them look as coarse as
+// the rate table, of which fifteen sound rows in eighteen went then.
+TEST(BenchFaults, AWrongReadingAtRestLeavesTheRateTable) {
+  Random random(171);
+  for (int bench = 0; bench < kEach; ++bench) {
+    const GyroTool tool = GyroTool::Any(random);
+    BenchTable rest = OneAzimuthUpright(OneRotor(GyrosAtRest(tool, 52, 0.02, random)));
+    const BenchTable table = OneRotor(GyrosOnTable(tool, 52, 0.2, random));
+    rest.values(7 + bench, *rest.Find("m_x1")) += 5;
+    const auto fitted = FitGyro(rest, table, {.reference = {.latitude = 52 * kRad}});
+    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+    EXPECT_EQ(fitted->report.outlier_lines, std::vector<int>{9 + bench});
+    EXPECT_THAT(fitted->report.remarks, Not(Contains(HasSubstr("second table is left out"))));
+  }
+}
+
 // Of stations that turn through all directions the biases take little of a dip or a latitude.
 TEST(BenchFaults, AWrongDipOrLatitudeIsToldByTheStations) {
   Random random(154);

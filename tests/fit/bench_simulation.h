@@ -58,6 +58,20 @@ class TableMaker {
   std::vector<std::vector<double>> rows_;
 };
 
+/// The table without some of its columns.
+inline BenchTable WithoutColumns(const BenchTable& data, const std::vector<std::string>& names) {
+  std::vector<Eigen::Index> kept;
+  BenchTable rest{data.source, {}, {}, data.lines};
+  for (Eigen::Index c = 0; c < data.values.cols(); ++c) {
+    const std::string& name = data.columns[static_cast<std::size_t>(c)];
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    kept.push_back(c);
+    rest.columns.push_back(name);
+  }
+  rest.values = data.values(Eigen::all, kept);
+  return rest;
+}
+
 inline Eigen::Vector3d Noise(Random& random, double sigma) {
   return sigma * Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()};
 }

@@ -90,15 +90,15 @@ LinearProblem Problem(const GyroReadings& readings, const GyroFitSetup& setup,
 }
 
 FittedGyros FitWith(const GyroReadings& readings, const GyroFitSetup& setup,
-                    const GyroLayout& layout, double on_table, bool robust) {
+                    const GyroLayout& layout, double on_table,
+                    LinearSolution (*solve)(const LinearProblem&)) {
   Eigen::MatrixX3d U = Eigen::MatrixX3d::Zero(layout.channels, 3);
   for (int c = 0; c < layout.channels; ++c) {
     U(c, readings.channels[static_cast<std::size_t>(c)].axis) = 1;
   }
   double north = 0;
   FittedGyros fitted{Problem(readings, setup, layout, north, U, on_table), {}};
-  fitted.problem.robust = robust;
-  fitted.solution = Solve(fitted.problem);
+  fitted.solution = solve(fitted.problem);
   // Bilinear in U and the north offset: Gauss and Newton.
   for (int turn = 0; layout.north && turn < 50; ++turn) {
     const double next = fitted.solution.x[layout.north_first()];
@@ -108,8 +108,7 @@ FittedGyros FitWith(const GyroReadings& readings, const GyroFitSetup& setup,
     const bool still = std::abs(next - north) < 1e-14;
     north = next;
     fitted.problem = Problem(readings, setup, layout, north, U, on_table);
-    fitted.problem.robust = robust;
-    fitted.solution = Solve(fitted.problem);
+    fitted.solution = solve(fitted.problem);
     if (still) break;
   }
   return fitted;
@@ -155,16 +154,15 @@ GyroLayout LayoutOf(const GyroReadings& readings, const GyroFitSetup& setup) {
 FittedGyros FitLayout(const GyroReadings& readings, const GyroFitSetup& setup,
                       const GyroLayout& layout) {
   double on_table = setup.sigma_table.value_or(setup.sigma.value_or(1));
-  const bool robust = setup.sigma_table || !readings.joined;
-  FittedGyros fitted = FitWith(readings, setup, layout, on_table, robust);
-  if (robust) return fitted;
+  FittedGyros fitted = FitWith(readings, setup, layout, on_table, Solve);
+  if (setup.sigma_table || !readings.joined) return fitted;
   // All readings first, their medians; then without the outliers, their squares.
   for (const bool last : {false, true}) {
     for (int turn = 0; turn < 30; ++turn) {
+      fitted = FitWith(readings, setup, layout, on_table, last ? Solve : SolveByMedians);
       const double ratio = TableRatio(fitted.solution, setup.sigma.has_value(), !last);
+      if (std::abs(ratio - 1) < 1e-6) break;
       on_table *= ratio;
-      fitted = FitWith(readings, setup, layout, on_table, last);
-      if (std::abs(ratio - 1) < 1e-3) break;
     }
   }
   return fitted;

@@ -104,9 +104,9 @@ LinearSolution SolvePlain(const LinearProblem& problem) {
   return solution;
 }
 
-// Weights of Cauchy's loss, all rows of a line together.
+// Roots of the weights of Cauchy's loss, all rows of a line together; `scale` by row, one a line.
 Eigen::VectorXd CauchyWeights(const LinearProblem& problem, const Eigen::VectorXd& residual,
-                              double scale) {
+                              const Eigen::VectorXd& scale) {
   Eigen::VectorXd weight = Eigen::VectorXd::Ones(residual.size());
   for (std::size_t begin = 0; begin < problem.rows.size();) {
     std::size_t end = begin;
@@ -114,7 +114,8 @@ Eigen::VectorXd CauchyWeights(const LinearProblem& problem, const Eigen::VectorX
     while (end < problem.rows.size() && problem.rows[end].line == problem.rows[begin].line) {
       square += std::pow(residual[static_cast<Eigen::Index>(end++)], 2);
     }
-    const double mean = square / static_cast<double>(end - begin) / (4 * scale * scale);
+    const double of = scale[static_cast<Eigen::Index>(begin)];
+    const double mean = square / static_cast<double>(end - begin) / (4 * of * of);
     if (problem.rows[begin].line != 0) {
       for (std::size_t i = begin; i < end; ++i) {
         weight[static_cast<Eigen::Index>(i)] = 1 / std::sqrt(1 + mean);
@@ -175,12 +176,33 @@ std::set<int> Outliers(const LinearProblem& problem) {
   for (int turn = 0; turn < 30; ++turn) {
     const Eigen::VectorXd residual = w.y - w.A * solution.x;
     scale = std::max(RobustScale(problem, residual, solution.rank), LeastScale(w));
-    weighted.sigma = problem.sigma.cwiseQuotient(CauchyWeights(problem, residual, scale));
+    const Eigen::VectorXd same = Eigen::VectorXd::Constant(residual.size(), scale);
+    weighted.sigma = problem.sigma.cwiseQuotient(CauchyWeights(problem, residual, same));
     const Eigen::VectorXd before = solution.x;
     solution = SolvePlain(weighted);
     if ((solution.x - before).norm() <= 1e-9 * before.norm()) break;
   }
   return Beyond(problem, w.y - w.A * solution.x, scale);
+}
+
+// By row: what the rows of its table scatter by, in units of their sigmas, each freed of what the
+// fit took of it. Of readings of a table, lines above zero, it is one where sigmas are given.
+Eigen::VectorXd ScalesOfTables(const LinearProblem& problem, const LinearSolution& solution,
+                               double least) {
+  std::vector<double> sizes[2];
+  const auto second = [&](Eigen::Index i) {
+    return problem.rows[static_cast<std::size_t>(i)].line < 0 ? 1 : 0;
+  };
+  for (Eigen::Index i = 0; i < solution.residual.size(); ++i) {
+    const double left = std::max(1e-9, 1 - solution.leverage[i]);
+    sizes[second(i)].push_back(std::abs(solution.residual[i]) / std::sqrt(left));
+  }
+  double scale[2];
+  for (int k = 0; k < 2; ++k) scale[k] = std::max(kSigmaPerMedianSize * Median(sizes[k]), least);
+  if (problem.sigma_given) scale[0] = 1;
+  Eigen::VectorXd scales(solution.residual.size());
+  for (Eigen::Index i = 0; i < scales.size(); ++i) scales[i] = scale[second(i)];
+  return scales;
 }
 
 // Of lines that were left out, those that do not belong to what the others say either.
@@ -200,6 +222,11 @@ std::set<int> Confirmed(const LinearProblem& problem, std::set<int> lines) {
   return lines;
 }
 
+// Where half of the readings serve to fix the parameters, none can be told to be wrong.
+bool Tells(const LinearProblem& problem) {
+  return problem.y.size() >= Eigen::Index{2} * problem.size();
+}
+
 std::size_t CountLines(const LinearProblem& problem) {
   std::set<int> lines;
   for (const FitRow& row : problem.rows) {
@@ -217,13 +244,25 @@ LinearProblem::LinearProblem(std::vector<std::string> names, int n_rows)
       sigma(Eigen::VectorXd::Ones(n_rows)),
       rows(static_cast<std::size_t>(n_rows)) {}
 
+LinearSolution SolveByMedians(const LinearProblem& problem) {
+  LinearSolution solution = SolvePlain(problem);
+  if (!Tells(problem)) return solution;
+  LinearProblem weighted = problem;
+  const Whitened w = Whiten(problem);
+  for (int turn = 0; turn < 100; ++turn) {
+    const Eigen::VectorXd scales = ScalesOfTables(problem, solution, LeastScale(w));
+    weighted.sigma = problem.sigma.cwiseQuotient(CauchyWeights(problem, solution.residual, scales));
+    const Eigen::VectorXd before = solution.x;
+    solution = SolvePlain(weighted);
+    solution.residual = w.y - w.A * solution.x;
+    if ((solution.x - before).norm() <= 1e-9 * before.norm()) break;
+  }
+  return solution;
+}
+
 LinearSolution Solve(const LinearProblem& problem) {
   LinearSolution plain = SolvePlain(problem);
-  // Where half of the readings serve to fix the parameters, none can be told to be wrong.
-  if (!problem.robust || problem.y.size() < Eigen::Index{2} * problem.size() ||
-      !plain.unseen.empty()) {
-    return plain;
-  }
+  if (!problem.robust || !Tells(problem) || !plain.unseen.empty()) return plain;
   const std::set<int> lines = Confirmed(problem, Outliers(problem));
   if (lines.empty() || 4 * lines.size() > CountLines(problem)) return plain;
   LinearSolution rest = SolvePlain(Without(problem, lines));

@@ -67,6 +67,11 @@ struct LinearSolution {
 /// left out, and the rest solved without it.
 LinearSolution Solve(const LinearProblem& problem);
 
+/// Least squares by Cauchy's loss of all rows, whose scales are the medians of two tables'
+/// residuals (lines above zero, and below): no few rows of one move it, nor what the other counts.
+/// Residuals are in units of the problem's sigmas.
+LinearSolution SolveByMedians(const LinearProblem& problem);
+
 /// What people read of a solution.
 FitReport ReportOf(const LinearProblem& problem, const LinearSolution& solution);
 

@@ -4,29 +4,26 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/tool_adjust_internal.h"
 #include "wellgyro/fit/tool_minimise_internal.h"
+#include "wellgyro/fit/tool_noise_internal.h"
 #include "wellgyro/fit/tool_observability_internal.h"
 #include "wellgyro/math/linear_algebra.h"
-#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {
 
-double RobustSigma(std::vector<double> sizes) {
-  return kSigmaPerMedianSize * Median(std::move(sizes));
-}
-
-// Which of ToolNoise's a channel's reading has.
-int KindOf(const ToolReadings& readings, const ToolRow& row, int channel) {
-  if (!readings.channels[static_cast<std::size_t>(channel)].is_gyro) return 0;
-  return row.mount >= 0 ? 2 : 1;
-}
-
 class Adjuster {
  public:
   Adjuster(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model)
-      : readings_(readings), setup_(setup), model_(model), out_(readings.rows.size(), 0) {}
+      : readings_(readings),
+        setup_(setup),
+        model_(model),
+        finder_(readings, setup, model),
+        out_(readings.rows.size(), 0) {}
 
   Result<ToolAdjustment> Adjust() {
     Start();
@@ -34,8 +31,7 @@ class Adjuster {
     for (int turn = 0; turn < kRobustTurns; ++turn) {
       if (!Minimise(true)) return Unsettled();
       const std::vector<char> before = out_;
-      // The start's sigmas weigh the kinds of readings badly against each other.
-      if (turn > 0) MarkOutliers();
+      MarkOutliers();
       FindNoise(kRoughSweeps);
       if (turn > 1 && before == out_) break;
     }
@@ -49,8 +45,6 @@ class Adjuster {
   }
 
  private:
-  // Of noise: three kinds of readings, the wobble of attitudes and of the rate table.
-  static constexpr std::size_t kComponents = 5;
   static constexpr int kRobustTurns = 6, kTurns = 6, kRoughSweeps = 3, kSweeps = 12;
 
   static Fault Unsettled() {
@@ -58,15 +52,6 @@ class Adjuster {
             .text =
                 "the adjustment does not settle, the readings do not fit the model: look for wrong "
                 "signs, exchanged columns, mixed units or a wrong reference"};
-  }
-
-  std::array<double*, kComponents> Components() {
-    return {&noise_.accel, &noise_.gyro, &noise_.gyro_table, &noise_.wobble, &noise_.wobble_table};
-  }
-  std::array<bool, kComponents> Held() const {
-    return {setup_.sigma_accel.has_value(), setup_.sigma_gyro.has_value(),
-            setup_.sigma_gyro_table.has_value(), setup_.sigma_wobble.has_value(),
-            setup_.sigma_wobble.has_value()};
   }
 
   // The coefficients by plain least squares, channel kinds weighed alike; then their scatter.
@@ -84,26 +69,7 @@ class Adjuster {
     const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * N * scale.asDiagonal();
     x_.head(n) = scale.cwiseProduct(Eigen::VectorXd(SolveLeastNorm(scaled, scale.cwiseProduct(b))));
-    std::array<std::vector<double>, 3> sizes, readings;
-    for (const ToolRow& row : readings_.rows) {
-      const Eigen::VectorXd e = model_.At(row, x_).v - row.v;
-      for (Eigen::Index i = 0; i < e.size(); ++i) {
-        const auto kind = static_cast<std::size_t>(
-            KindOf(readings_, row, row.channels[static_cast<std::size_t>(i)]));
-        sizes[kind].push_back(std::abs(e[i]));
-        readings[kind].push_back(std::abs(row.v[i]));
-      }
-    }
-    // Below that lies the rounding of what was written down.
-    constexpr double kWrittenRounding = 1e-8;
-    for (std::size_t kind = 0; kind < 3; ++kind) {
-      floor_[kind] = std::max(kWrittenRounding * RobustSigma(readings[kind]), 1e-300);
-    }
-    noise_.wobble = noise_.wobble_table = setup_.sigma_wobble.value_or(5e-5);
-    noise_.accel = setup_.sigma_accel.value_or(std::max(RobustSigma(sizes[0]), floor_[0]));
-    noise_.gyro = setup_.sigma_gyro.value_or(std::max(RobustSigma(sizes[1]), floor_[1]));
-    noise_.gyro_table =
-        setup_.sigma_gyro_table.value_or(std::max(RobustSigma(sizes[2]), floor_[2]));
+    noise_ = robust_noise_ = finder_.Start(x_);
   }
 
   Eigen::MatrixXd WhitenerOf(const ToolRow& row) const {
@@ -119,11 +85,15 @@ class Adjuster {
     return MinimiseTool(model_, rows, robust, x_);
   }
 
-  // Rows with a reading beyond the limit, in units of what the others scatter by.
+  // Rows with a reading beyond the limit, in units of what the others scatter by: about
+  // coefficients and by sigmas that no few rows move, whatever the start made of them.
   void MarkOutliers() {
+    const std::vector<RowAbout> rows = RowsAbout(std::vector<char>(out_.size(), 0));
+    const Eigen::VectorXd step = finder_.FindRobustly(rows, x_, robust_noise_);
     std::vector<double> largest, all;
-    for (const ToolRow& row : readings_.rows) {
-      const Eigen::VectorXd r = WhitenerOf(row) * (model_.At(row, x_).v - row.v);
+    for (const RowAbout& row : rows) {
+      const Eigen::VectorXd r =
+          model_.Whitener(*row.row, row.wobble, robust_noise_) * (row.e - row.J * step);
       largest.push_back(r.cwiseAbs().maxCoeff());
       for (const double value : r) all.push_back(std::abs(value));
     }
@@ -138,17 +108,10 @@ class Adjuster {
     if (4 * count > out_.size()) std::fill(out_.begin(), out_.end(), 0);
   }
 
-  // A row about x: its residual, and by what it changes.
-  struct Left {
-    const ToolRow* row;
-    Eigen::VectorXd e;
-    Eigen::MatrixXd J, wobble;
-  };
-
-  std::vector<Left> RowsLeft() const {
-    std::vector<Left> rows;
+  std::vector<RowAbout> RowsAbout(const std::vector<char>& without) const {
+    std::vector<RowAbout> rows;
     for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
-      if (out_[i] != 0) continue;
+      if (without[i] != 0) continue;
       const ToolRow& row = readings_.rows[i];
       ToolModel::Prediction at = model_.At(row, x_);
       rows.push_back({&row, row.v - at.v, std::move(at.J), std::move(at.wobble)});
@@ -156,74 +119,7 @@ class Adjuster {
     return rows;
   }
 
-  // The sigmas under which what is left is likeliest, what each kind of readings loses to the
-  // parameters allowed for (restricted likelihood), in a model linear about x.
-  void FindNoise(int sweeps) {
-    const std::vector<Left> rows = RowsLeft();
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-      const ToolNoise before = noise_;
-      const std::array<double, kComponents> ratios = SquaresOverExpected(rows).ratios;
-      const std::array<bool, kComponents> held = Held();
-      const std::array<double*, kComponents> sigmas = Components();
-      for (std::size_t k = 0; k < kComponents; ++k) {
-        if (held[k] || !(ratios[k] > 0)) continue;
-        const double factor = std::clamp(std::sqrt(ratios[k]), 0.2, 5.0);
-        *sigmas[k] = std::max(*sigmas[k] * factor, floor_[k]);
-      }
-      if (Alike(before, noise_)) break;
-    }
-  }
-
-  // Of each component with covariance V: y'P V P y over tr(P V), where P takes the parameters out
-  // (Patterson and Thompson 1971). At the likeliest sigmas all are one; 0 where there is nothing.
-  // The information on a wobble's variance is tr(V P V P) / 2, row by row.
-  struct NoiseFound {
-    std::array<double, kComponents> ratios{};
-    std::array<double, 2> wobble_information{};
-  };
-  NoiseFound SquaresOverExpected(const std::vector<Left>& rows) const {
-    const ToolPrior prior = PriorOfTool(model_);
-    Eigen::MatrixXd N = prior.A.transpose() * prior.A;
-    Eigen::VectorXd b = prior.A.transpose() * (prior.A * (prior.x0 - x_));
-    std::vector<Eigen::MatrixXd> weights;
-    for (const Left& left : rows) {
-      const Eigen::MatrixXd W = model_.Whitener(*left.row, left.wobble, noise_);
-      const Eigen::MatrixXd A = W * left.J;
-      N.selfadjointView<Eigen::Lower>().rankUpdate(A.transpose());
-      b += A.transpose() * (W * left.e);
-      weights.push_back(W.transpose() * W);
-    }
-    const Eigen::VectorXd scale = N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = scale.asDiagonal() *
-                                   Eigen::MatrixXd(N.selfadjointView<Eigen::Lower>()) *
-                                   scale.asDiagonal();
-    const Eigen::MatrixXd cov =
-        scale.asDiagonal() * InverseOfSymmetric(scaled) * scale.asDiagonal();
-    const Eigen::VectorXd step = cov * b;
-    NoiseFound found;
-    std::array<double, kComponents> squares{}, expected{};
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const Left& left = rows[i];
-      const Eigen::VectorXd r = weights[i] * (left.e - left.J * step);
-      const Eigen::MatrixXd WJ = weights[i] * left.J;
-      const Eigen::MatrixXd P = weights[i] - WJ * cov * WJ.transpose();
-      for (Eigen::Index c = 0; c < r.size(); ++c) {
-        const auto kind = static_cast<std::size_t>(
-            KindOf(readings_, *left.row, left.row->channels[static_cast<std::size_t>(c)]));
-        squares[kind] += r[c] * r[c];
-        expected[kind] += P(c, c);
-      }
-      const std::size_t turning = left.row->mount >= 0 ? 1 : 0;
-      squares[3 + turning] += (left.wobble.transpose() * r).squaredNorm();
-      const Eigen::Matrix3d of_wobble = left.wobble.transpose() * P * left.wobble;
-      expected[3 + turning] += of_wobble.trace();
-      found.wobble_information[turning] += of_wobble.squaredNorm() / 2;
-    }
-    for (std::size_t k = 0; k < kComponents; ++k) {
-      if (expected[k] > 0) found.ratios[k] = squares[k] / expected[k];
-    }
-    return found;
-  }
+  void FindNoise(int sweeps) { finder_.Find(RowsAbout(out_), x_, sweeps, noise_); }
 
   // Linear about x, with the priors as rows of line 0.
   LinearProblem Linearise() const {
@@ -259,10 +155,27 @@ class Adjuster {
     return linear;
   }
 
+  // What readings at rest determine is lost beside a rate table's where one fit, which follows the
+  // table, leaves them hundreds of times coarser than gyros are that find north.
+  bool Contradict() const {
+    constexpr double kCoarse = 0.02 * kBenchEarthDegPerHour;  // from which DoesNotFit speaks
+    return noise_.gyro > kCoarse && noise_.gyro > noise_.gyro_table;
+  }
+  Fault Contradiction() const {
+    return {
+        .code = FaultCode::kConflict,
+        .text = fmt::format(
+            "the gyros' readings at rest scatter by {:.2g} deg/h and the rate table's by {:.2g} "
+            "about the fit of both: they contradict each other, look for other units, wrong "
+            "signs, exchanged columns or axes of the rate table",
+            noise_.gyro, noise_.gyro_table)};
+  }
+
   // By normal equations of scaled columns: the terms that are there are told apart well.
   Result<ToolAdjustment> Finish() const {
     ToolAdjustment a{x_, {}, noise_, out_, Linearise(), {}};
-    const std::array<double, 2> information = SquaresOverExpected(RowsLeft()).wobble_information;
+    const std::array<double, 2> information =
+        finder_.WobbleInformation(RowsAbout(out_), x_, noise_);
     for (std::size_t k = 0; k < 2 && !setup_.sigma_wobble; ++k) {
       if (information[k] > 0) a.sigma_wobble_square[k] = 1 / std::sqrt(information[k]);
     }
@@ -273,7 +186,7 @@ class Adjuster {
     const SymmetricEigen eigen = EigenOfSymmetric(N);
     const Eigen::VectorXd& values = eigen.values;
     if (!(values[0] > 1e-13 * values[values.size() - 1])) {
-      return Undetermined(model_.names(), eigen.vectors.col(0));
+      return Contradict() ? Contradiction() : Undetermined(model_.names(), eigen.vectors.col(0));
     }
     const Eigen::MatrixXd inverse =
         eigen.vectors * values.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
@@ -294,9 +207,9 @@ class Adjuster {
   const ToolReadings& readings_;
   const ToolFitSetup& setup_;
   const ToolModel& model_;
+  NoiseFinder finder_;
   Eigen::VectorXd x_;
-  ToolNoise noise_;
-  std::array<double, kComponents> floor_{1e-300, 1e-300, 1e-300, 1e-8, 1e-8};
+  ToolNoise noise_, robust_noise_;
   std::vector<char> out_;
 };
 
