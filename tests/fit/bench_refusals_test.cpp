@@ -132,6 +132,24 @@ TEST(BenchRefusals, RepeatedRows) {
   EXPECT_TRUE(counts.has_value() || counts.fault().text.find("repeats") == std::string::npos);
 }
 
+TEST(BenchRefusals, RepeatedReadingsUnderOtherLabels) {
+  BenchTable data = Anywhere();
+  const auto channels = data.values.cols() - 3;
+  data.values.row(7).tail(channels) = data.values.row(2).tail(channels);
+  EXPECT_THAT(FaultOf(FitAffine(data, kAffine)).text,
+              HasSubstr("line 9 repeats the readings of line 4"));
+  Random random(8);
+  BenchTable gyros = GyrosAtRest(GyroTool::Any(random), 45, 0.01, random);
+  gyros.values.row(30).tail(4) = gyros.values.row(31).tail(4);
+  EXPECT_THAT(FaultOf(FitGyro(gyros, {}, {.reference = {.latitude = 45 * kRad}})).text,
+              HasSubstr("line 33 repeats the readings of line 32"));
+  // Rounded as coarsely as the noise, readings repeat by chance.
+  gyros = GyrosAtRest(GyroTool::Any(random), 45, 0.01, random);
+  gyros.values.rightCols(4) = (gyros.values.rightCols(4) * 10).array().round() / 10;
+  gyros.values.row(30).tail(4) = gyros.values.row(31).tail(4);
+  EXPECT_TRUE(FitGyro(gyros, {}, {.reference = {.latitude = 45 * kRad}}).has_value());
+}
+
 TEST(BenchRefusals, FrozenChannels) {
   BenchTable data = Anywhere();
   data.values.col(5).setConstant(0.25);

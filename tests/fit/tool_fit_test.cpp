@@ -177,6 +177,12 @@ TEST(ToolFit, ATableTwiceAndAMisnamedColumnAreRefused) {
   ASSERT_FALSE(twice.has_value());
   EXPECT_EQ(twice.fault().source, "b.csv");
   EXPECT_NE(twice.fault().text.find("the same readings as a.csv"), std::string::npos);
+  tables[1].values.col(*positions.Find("t_s")).array() += 20000;
+  const auto later = FitTool(tables, setup);
+  ASSERT_FALSE(later.has_value());
+  EXPECT_EQ(later.fault().source, "b.csv");
+  EXPECT_NE(later.fault().text.find("line 2 repeats the readings of a.csv, line 2"),
+            std::string::npos);
   const auto z = static_cast<std::size_t>(*positions.Find("Gz"));
   tables = {positions};
   tables[0].columns[z] = "Gq";

@@ -97,7 +97,11 @@ std::optional<Fault> BadReadings(const BenchTable& data, const AttitudeTable& ta
   if (auto fault = Repeated(data)) return fault;
   std::vector<std::string> used = table.accel_channels;
   used.insert(used.end(), table.mag_channels.begin(), table.mag_channels.end());
-  return Frozen(data, ColumnsOf(data, used));
+  if (auto fault = Frozen(data, ColumnsOf(data, used))) return fault;
+  // Sequences of whole circles end where they began: the trigonometric method's tables of readings
+  // without noise repeat there.
+  if (data.Find("seq")) return std::nullopt;
+  return Copied(data, ColumnsOf(data, used));
 }
 
 Result<AttitudeTable> ReadAttitudeTable(const BenchTable& data, const AttitudeNeeds& needs) {

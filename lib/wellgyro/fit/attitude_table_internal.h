@@ -40,7 +40,7 @@ Result<AttitudeTable> ReadAttitudeTable(const BenchTable& data, const AttitudeNe
 /// Places of channels that the table has.
 std::vector<int> ColumnsOf(const BenchTable& data, const std::vector<std::string>& channels);
 
-/// Repeated rows and frozen channels of a whole table.
+/// Repeated rows or readings, and frozen channels, of a whole table.
 std::optional<Fault> BadReadings(const BenchTable& data, const AttitudeTable& table);
 
 }  // namespace wellgyro

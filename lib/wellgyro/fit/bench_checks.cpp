@@ -80,6 +80,42 @@ std::optional<Fault> Repeated(const BenchTable& data) {
   return std::nullopt;
 }
 
+std::optional<std::pair<Eigen::Index, Eigen::Index>> CopyAmong(const Eigen::MatrixXd& readings) {
+  std::map<std::vector<double>, Eigen::Index> seen;
+  std::vector<Eigen::Index> first;
+  std::optional<std::pair<Eigen::Index, Eigen::Index>> copy;
+  for (Eigen::Index row = 0; row < readings.rows(); ++row) {
+    const Eigen::VectorXd values = readings.row(row).transpose();
+    const auto [at, is_new] = seen.emplace(std::vector<double>(values.begin(), values.end()), row);
+    if (is_new) first.push_back(row);
+    if (!is_new && !copy) copy = {at->second, row};
+  }
+  if (!copy) return std::nullopt;
+  const auto n = static_cast<double>(first.size());
+  double by_chance = n - 1;
+  for (Eigen::Index c = 0; c < readings.cols(); ++c) {
+    Eigen::VectorXd values = readings(first, c);
+    std::sort(values.begin(), values.end());
+    double alike = 0;
+    for (Eigen::Index i = 1; i < values.size(); ++i) alike += values[i] == values[i - 1] ? 1 : 0;
+    by_chance *= (alike + 1) / (n + 1);
+  }
+  constexpr double kFalseAlarm = 0.01;
+  return by_chance < kFalseAlarm ? copy : std::nullopt;
+}
+
+std::optional<Fault> Copied(const BenchTable& data, const std::vector<int>& columns) {
+  const auto copy = CopyAmong(data.values(Eigen::all, columns));
+  if (!copy) return std::nullopt;
+  const int line = data.lines[static_cast<std::size_t>(copy->second)];
+  return BenchFault(data,
+                    fmt::format("line {} repeats the readings of line {} to the last digit in "
+                                "every channel: two readings never do; delete the copy, or "
+                                "measure again",
+                                line, data.lines[static_cast<std::size_t>(copy->first)]),
+                    line, FaultCode::kConflict);
+}
+
 std::optional<Fault> Frozen(const BenchTable& data, const std::vector<int>& columns) {
   if (data.rows() < 3) return std::nullopt;
   for (const int column : columns) {

@@ -3,7 +3,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "wellgyro/base/result.h"
 #include "wellgyro/base/units.h"
@@ -41,6 +44,14 @@ std::optional<Fault> TooFew(const BenchTable& data, int least, std::string_view 
                             std::string_view advice);
 /// Two rows alike to the last digit in every column.
 std::optional<Fault> Repeated(const BenchTable& data);
+/// Two rows of readings, a column a channel, alike to the last digit in every channel, the second
+/// behind the first, where chance does not make them so. Of the other rows' n values of a channel,
+/// in their order, k neighbours are alike: the next two are so by chance in (k + 1) of (n + 1)
+/// cases (Laplace's rule of succession), and in all channels at once in the product of these. Below
+/// 0.01 such neighbours are to be expected, so that rounded readings may repeat.
+std::optional<std::pair<Eigen::Index, Eigen::Index>> CopyAmong(const Eigen::MatrixXd& readings);
+/// The same in these columns of a table, under whatever times or labels.
+std::optional<Fault> Copied(const BenchTable& data, const std::vector<int>& columns);
 /// A column that reads the same in every row.
 std::optional<Fault> Frozen(const BenchTable& data, const std::vector<int>& columns);
 /// Rows whose vector (of three columns) is longer or shorter than the others' by more than a factor

@@ -26,7 +26,8 @@ std::optional<Fault> FindChannels(const BenchTable& data, const std::vector<Gyro
   if (!found) return found.fault();
   *places = *std::move(found);
   if (auto fault = Repeated(data)) return fault;
-  return Frozen(data, *places);
+  if (auto fault = Frozen(data, *places)) return fault;
+  return Copied(data, *places);
 }
 
 // The table's fx, fy, fz against its attitudes.

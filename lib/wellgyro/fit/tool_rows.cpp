@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -236,6 +237,33 @@ std::optional<Fault> SameTable(std::span<const BenchTable> tables) {
   return std::nullopt;
 }
 
+// Under whatever times: rows that read the same channels.
+std::optional<Fault> CopiedReadings(std::span<const BenchTable> tables,
+                                    const ToolReadings& readings) {
+  std::map<std::vector<int>, std::vector<const ToolRow*>> of;
+  for (const ToolRow& row : readings.rows) of[row.channels].push_back(&row);
+  for (const auto& [channels, rows] : of) {
+    Eigen::MatrixXd values(rows.size(), channels.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      values.row(static_cast<Eigen::Index>(i)) = rows[i]->v.transpose();
+    }
+    const auto copy = CopyAmong(values);
+    if (!copy) continue;
+    const ToolRow& first = *rows[static_cast<std::size_t>(copy->first)];
+    const ToolRow& second = *rows[static_cast<std::size_t>(copy->second)];
+    const BenchTable& data = tables[static_cast<std::size_t>(second.table)];
+    const std::string& source = tables[static_cast<std::size_t>(first.table)].source;
+    return BenchFault(
+        data,
+        fmt::format("line {} repeats the readings of {}line {} to the last digit in "
+                    "every channel: two readings never do; give each once, or "
+                    "measure again",
+                    second.line, first.table == second.table ? "" : source + ", ", first.line),
+        second.line, FaultCode::kConflict);
+  }
+  return std::nullopt;
+}
+
 std::optional<Fault> SpanTemperatures(std::span<const BenchTable> tables, ToolReadings& readings) {
   std::size_t with = 0;
   for (const BenchTable& data : tables) with += data.Find("T_C") ? 1 : 0;
@@ -276,6 +304,7 @@ Result<ToolReadings> ReadTool(std::span<const BenchTable> tables, const ToolFitS
   for (const BenchTable& data : tables) {
     if (auto fault = AddTable(data, setup, readings.n_tables++, readings)) return *fault;
   }
+  if (auto fault = CopiedReadings(tables, readings)) return *fault;
   if (auto fault = SpanTemperatures(tables, readings)) return *fault;
   return readings;
 }
