@@ -209,6 +209,26 @@ TEST(BenchFaults, AWrongReadingAtRestLeavesTheRateTable) {
   }
 }
 
+// 2026-11-28: beside a gyro of no rotor the rotor's anisoelastic terms were left out in silence.
+TEST(BenchFaults, ARotorBesideAnotherGyroHasItsAnisoelasticTerms) {
+  Random random(172);
+  GyroTool tool = GyroTool::Any(random);
+  tool.MQ.tail(2).setZero();
+  tool.N << 0.2, -0.2, 0, 0;
+  BenchTable rest = WithoutColumns(GyrosAtRest(tool, 52, 0.02, random), {"m_x2"});
+  BenchTable table = WithoutColumns(GyrosOnTable(tool, 52, 0.2, random), {"m_x2"});
+  for (BenchTable* data : {&rest, &table}) {
+    data->columns[static_cast<std::size_t>(*data->Find("m_z2"))] = "m_z";
+  }
+  const auto fitted = FitGyro(rest, table, {.reference = {.latitude = 52 * kRad}});
+  ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
+  const Eigen::MatrixXd aniso = Quantity(fitted->report, "aniso_degh_per_g2").value;
+  // Six sigmas of 120 readings of 0.02 deg/h, which an f_in f_spin of rms 0.3 weighs.
+  EXPECT_LT((aniso.reshaped() - tool.N.head<3>()).cwiseAbs().maxCoeff(), 0.035);
+  EXPECT_LT(Quantity(fitted->report, "G_degh_per_g").value.row(2).cwiseAbs().maxCoeff(), 0.035);
+  EXPECT_NEAR(Quantity(fitted->report, "MQ").value.reshaped()[0], tool.MQ[0], 0.035);
+}
+
 // Of stations that turn through all directions the biases take little of a dip or a latitude.
 TEST(BenchFaults, AWrongDipOrLatitudeIsToldByTheStations) {
   Random random(154);

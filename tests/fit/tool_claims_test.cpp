@@ -227,6 +227,29 @@ TEST(ToolClaims, WrongRowsAloneAreLeftOut) {
   for (std::size_t k = first; k < kWrongRows.size(); ++k) ExpectLeftOut(chamber, kWrongRows[k]);
 }
 
+// A tool of one rotor and a gyro beside it: the rotor's channels have its terms, the other its own.
+TEST(ToolClaims, ARotorBesideAnotherGyroHasItsAnisoelasticTerms) {
+  Random random(98);
+  ThermalTool tool = ThermalTool::Any(random);
+  tool.heating.setZero();
+  tool.N << 0.2, -0.2, 0, 0;
+  tool.MQ[0].tail(2).setZero();
+  tool.MQ[1].setZero();
+  const ThermalBench bench = ThermalBench::Any(random);
+  std::vector<BenchTable> tables = {ThermalPositions(tool, bench, 0, 84, 25, 25.1, random),
+                                    ThermalRates(tool, bench, 25, random)};
+  for (BenchTable& table : tables) {
+    table = WithoutColumns(table, {"m_x2"});
+    table.columns[static_cast<std::size_t>(*table.Find("m_z2"))] = "m_z";
+  }
+  const auto fit = FitTool(tables, AtLatitude(60));
+  ASSERT_TRUE(fit.has_value()) << fit.fault().text;
+  const double to_si = 9.8192 * 9.8192;
+  EXPECT_LT(std::abs(Normalised(*fit, "gyro.g_squared[0,5]", 0.2 / to_si, 0.05 / to_si)), 4);
+  EXPECT_LT(std::abs(Normalised(*fit, "gyro.g_squared[1,4]", -0.2 / to_si, 0.05 / to_si)), 4);
+  EXPECT_LT(std::abs(Normalised(*fit, "gyro.g_dependence.p0[2,0]", 0, 0.01)), 4);
+}
+
 // They were told as unknowns that no reading determines.
 TEST(ToolClaims, ARateTableInAnotherUnitIsTold) {
   Random random(97);

@@ -54,7 +54,7 @@ struct ResultPlaces {
       : U(layout.channels),
         G(4 * layout.channels),
         MQ(7 * layout.channels),
-        aniso(MQ + (layout.force == GyroForceModel::kDualAxis ? 2 * layout.rotors : 0)),
+        aniso(MQ + (layout.dual ? 2 * layout.rotors : 0)),
         north(aniso + (layout.aniso ? layout.channels : 0)),
         size(north + (layout.north ? 1 : 0)) {}
 
@@ -69,11 +69,12 @@ Eigen::VectorXd ResultOf(const GyroReadings& readings, const GyroLayout& layout,
   for (int c = 0; c < n; ++c) {
     to[c] = x[Eigen::Index{4} * c];
     to.segment<3>(at.U + 3 * c) = x.segment<3>(4 * c + 1);
-    if (layout.force == GyroForceModel::kFull) {
-      to.segment<3>(at.G + 3 * c) = x.segment<3>(layout.force_first() + 3 * c);
-    }
   }
-  for (int k = 0; layout.force == GyroForceModel::kDualAxis && k < layout.rotors; ++k) {
+  for (std::size_t k = 0; k < layout.full.size(); ++k) {
+    to.segment<3>(at.G + 3 * layout.full[k]) =
+        x.segment<3>(layout.full_first() + 3 * static_cast<int>(k));
+  }
+  for (int k = 0; layout.dual && k < layout.rotors; ++k) {
     const Rotor& rotor = readings.rotors[static_cast<std::size_t>(k)];
     const int a = readings.channels[static_cast<std::size_t>(rotor.a)].axis;
     const int c = readings.channels[static_cast<std::size_t>(rotor.c)].axis;
@@ -84,7 +85,9 @@ Eigen::VectorXd ResultOf(const GyroReadings& readings, const GyroLayout& layout,
     to[at.G + 3 * rotor.c + a] = -Q;
     to.segment<2>(at.MQ + 2 * k) << M, Q;
   }
-  if (layout.aniso) to.segment(at.aniso, n) = x.segment(layout.aniso_first(), n);
+  for (std::size_t k = 0; layout.aniso && k < layout.paired.size(); ++k) {
+    to[at.aniso + layout.paired[k]] = x[layout.aniso_first() + static_cast<int>(k)];
+  }
   if (layout.north) to[at.north] = ToDegrees(x[layout.north_first()]);
   return to;
 }
@@ -92,7 +95,7 @@ Eigen::VectorXd ResultOf(const GyroReadings& readings, const GyroLayout& layout,
 void TakeResult(const GyroReadings& readings, const GyroLayout& layout, FitReport& report) {
   const ResultPlaces at(layout);
   const int n = layout.channels, rotors = layout.rotors;
-  const bool dual = layout.force == GyroForceModel::kDualAxis;
+  const bool dual = layout.dual;
   std::vector<std::string> names = VectorNames("b_degh", n);
   Append(names, MatrixNames("U", n, 3));
   Append(names, MatrixNames("G_degh_per_g", n, 3));
@@ -103,7 +106,7 @@ void TakeResult(const GyroReadings& readings, const GyroLayout& layout, FitRepor
                 [&](const Eigen::VectorXd& x) { return ResultOf(readings, layout, x); });
   AddVector(report, "b_degh", 0, n);
   AddMatrix(report, "U", at.U, n, 3);
-  if (layout.force != GyroForceModel::kNone) AddMatrix(report, "G_degh_per_g", at.G, n, 3);
+  if (dual || !layout.full.empty()) AddMatrix(report, "G_degh_per_g", at.G, n, 3);
   if (dual) AddVector(report, "MQ", at.MQ, 2 * rotors);
   if (layout.aniso) AddVector(report, "aniso_degh_per_g2", at.aniso, n);
   if (layout.north) AddNumber(report, "north_deg", at.north);

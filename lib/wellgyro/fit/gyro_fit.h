@@ -19,7 +19,8 @@ enum class GyroForceModel {
 
 struct GyroFitSetup {
   BenchReference reference;  ///< the latitude is needed
-  /// Absent: dual-axis where the channels' names carry rotors (m_x1, m_y1), full where not.
+  /// Absent: gyro by gyro, dual-axis of channels whose names carry a rotor (m_x1, m_y1), full of
+  /// others.
   std::optional<GyroForceModel> force;
   bool fit_north = false;       ///< the fixture's north offset too
   std::optional<double> sigma;  ///< of a reading at rest [deg/h]

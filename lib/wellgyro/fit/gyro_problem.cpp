@@ -18,35 +18,41 @@ std::vector<std::string> Names(const GyroLayout& layout) {
     names.push_back(fmt::format("b_degh[{}]", c));
     for (int j = 0; j < 3; ++j) names.push_back(fmt::format("U[{},{}]", c, j));
   }
-  if (layout.force == GyroForceModel::kFull) {
-    Append(names, MatrixNames("G_degh_per_g", layout.channels, 3));
+  if (layout.dual) Append(names, VectorNames("MQ", 2 * layout.rotors));
+  for (const int c : layout.full) {
+    for (int j = 0; j < 3; ++j) names.push_back(fmt::format("G_degh_per_g[{},{}]", c, j));
   }
-  if (layout.force == GyroForceModel::kDualAxis) {
-    Append(names, VectorNames("MQ", 2 * layout.rotors));
+  for (std::size_t k = 0; layout.aniso && k < layout.paired.size(); ++k) {
+    names.push_back(fmt::format("aniso_degh_per_g2[{}]", layout.paired[k]));
   }
-  if (layout.aniso) Append(names, VectorNames("aniso_degh_per_g2", layout.channels));
   if (layout.north) names.emplace_back("north_rad");
   return names;
+}
+
+int PlaceOf(const std::vector<int>& channels, int c) {
+  const auto at = std::find(channels.begin(), channels.end(), c);
+  return at == channels.end() ? -1 : static_cast<int>(at - channels.begin());
 }
 
 // Coefficients of the force's parameters in one row.
 void FillForce(const GyroReadings& readings, const GyroLayout& layout, int i, int c,
                Eigen::MatrixXd::RowXpr row) {
   const Eigen::Vector3d f = readings.f.row(i).transpose();
-  if (layout.force == GyroForceModel::kFull) {
-    row.segment<3>(layout.force_first() + 3 * c) = f.transpose();
-  }
+  const int full = PlaceOf(layout.full, c), paired = PlaceOf(layout.paired, c);
+  if (full >= 0) row.segment<3>(layout.full_first() + 3 * full) = f.transpose();
   for (std::size_t k = 0; k < readings.rotors.size(); ++k) {
     const Rotor& rotor = readings.rotors[k];
     if (c != rotor.a && c != rotor.c) continue;
     const double f_a = f[readings.channels[static_cast<std::size_t>(rotor.a)].axis];
     const double f_c = f[readings.channels[static_cast<std::size_t>(rotor.c)].axis];
     const int at = layout.force_first() + 2 * static_cast<int>(k);
-    if (layout.force == GyroForceModel::kDualAxis) {
+    if (layout.dual) {
       row[at] = c == rotor.a ? f_a : f_c;
       row[at + 1] = c == rotor.a ? f_c : -f_a;
     }
-    if (layout.aniso) row[layout.aniso_first() + c] = (c == rotor.a ? f_a : f_c) * f[rotor.spin];
+    if (layout.aniso) {
+      row[layout.aniso_first() + paired] = (c == rotor.a ? f_a : f_c) * f[rotor.spin];
+    }
   }
 }
 
@@ -144,9 +150,17 @@ GyroLayout LayoutOf(const GyroReadings& readings, const GyroFitSetup& setup) {
   GyroLayout layout;
   layout.channels = static_cast<int>(readings.channels.size());
   layout.rotors = static_cast<int>(readings.rotors.size());
-  const bool paired = 2 * layout.rotors == layout.channels;
-  layout.force = setup.force.value_or(paired ? GyroForceModel::kDualAxis : GyroForceModel::kFull);
-  layout.aniso = layout.force == GyroForceModel::kDualAxis;
+  const GyroForceModel of_rotors = setup.force.value_or(GyroForceModel::kDualAxis);
+  const GyroForceModel of_others = setup.force.value_or(GyroForceModel::kFull);
+  layout.dual = layout.aniso = layout.rotors > 0 && of_rotors == GyroForceModel::kDualAxis;
+  for (const Rotor& rotor : readings.rotors) {
+    layout.paired.insert(layout.paired.end(), {rotor.a, rotor.c});
+  }
+  std::sort(layout.paired.begin(), layout.paired.end());
+  for (int c = 0; c < layout.channels; ++c) {
+    const GyroForceModel of = PlaceOf(layout.paired, c) >= 0 ? of_rotors : of_others;
+    if (of == GyroForceModel::kFull) layout.full.push_back(c);
+  }
   layout.north = setup.fit_north;
   return layout;
 }

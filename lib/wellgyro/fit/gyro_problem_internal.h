@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "wellgyro/fit/gyro_fit.h"
 #include "wellgyro/fit/gyro_readings_internal.h"
 #include "wellgyro/fit/least_squares_internal.h"
@@ -7,26 +9,24 @@
 namespace wellgyro {
 
 /// Where the parameters of gyros on a bench stand: for every channel b and U (3); then the force's
-/// terms; then N; then the north offset.
+/// terms, M and Q of each rotor before G (3) of each channel that is none of a rotor's; then N;
+/// then the north offset.
 struct GyroLayout {
-  GyroForceModel force = GyroForceModel::kFull;
-  bool aniso = false;  ///< N, of input and spin axis at once: one a channel
-  bool north = false;  ///< the fixture's offset [rad]
+  bool dual = false;        ///< M and Q of rotors
+  std::vector<int> full;    ///< channels that have G
+  std::vector<int> paired;  ///< channels of rotors, in order, that have N: of input and spin axis
+  bool aniso = false;       ///< N is there
+  bool north = false;       ///< the fixture's offset [rad]
   int channels = 0, rotors = 0;
 
-  /// M and Q of each rotor, or G (3) of each channel.
   int force_first() const { return 4 * channels; }
-  int force_size() const {
-    if (force == GyroForceModel::kNone) return 0;
-    return force == GyroForceModel::kFull ? 3 * channels : 2 * rotors;
-  }
-  int aniso_first() const { return force_first() + force_size(); }
-  int north_first() const { return aniso_first() + (aniso ? channels : 0); }
+  int full_first() const { return force_first() + (dual ? 2 * rotors : 0); }
+  int aniso_first() const { return full_first() + 3 * static_cast<int>(full.size()); }
+  int north_first() const { return aniso_first() + (aniso ? static_cast<int>(paired.size()) : 0); }
   int size() const { return north_first() + (north ? 1 : 0); }
 };
 
-/// By the channels that were read and what is asked for. The dual-axis force model brings the
-/// anisoelastic terms with it.
+/// By the channels that were read and what is asked for; M and Q bring the anisoelastic terms.
 GyroLayout LayoutOf(const GyroReadings& readings, const GyroFitSetup& setup);
 
 struct FittedGyros {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -21,7 +22,7 @@ class Candidates {
   Candidates(const ToolReadings& readings, const ToolFitSetup& setup)
       : readings_(readings), setup_(setup) {}
 
-  std::vector<TermBundle> All() {
+  std::vector<TermBundle> Bundles() {
     for (const bool gyro : {false, true}) {
       if ((gyro ? readings_.n_gyro : readings_.n_accel) > 0) Group(gyro);
     }
@@ -56,16 +57,21 @@ class Candidates {
           {fmt::format("{}[{}]", name, c), kind, power, table, {{First(gyro) + c, 0, 1}}});
     }
   }
-  // `columns` coefficients a channel.
-  void AddMatrix(bool gyro, const std::string& name, TermKind kind, int power, int from,
-                 int columns, bool needed, const std::string& after) {
+  // Three coefficients a channel.
+  void AddMatrix(bool gyro, const std::string& name, TermKind kind, int power,
+                 const std::vector<int>& channels, bool needed, const std::string& after) {
     TermBundle& bundle = Add(name, needed, after);
-    for (int c = 0; c < Count(gyro); ++c) {
-      for (int j = from; j < from + columns; ++j) {
+    for (const int c : channels) {
+      for (int j = 0; j < 3; ++j) {
         bundle.terms.push_back(
             {fmt::format("{}[{},{}]", name, c, j), kind, power, -1, {{First(gyro) + c, j, 1}}});
       }
     }
+  }
+  std::vector<int> All(bool gyro) const {
+    std::vector<int> channels(static_cast<std::size_t>(Count(gyro)));
+    std::iota(channels.begin(), channels.end(), 0);
+    return channels;
   }
   // Along each accelerometer's own axis.
   void AddOwnSquares() {
@@ -114,21 +120,34 @@ class Candidates {
     }
   }
 
+  // Channels that feel any of the force's components: without a rotor, unless all are to.
+  std::vector<int> OfFullForce() const {
+    std::vector<int> channels = All(true);
+    if (setup_.force == GyroForceModel::kFull) return channels;
+    if (setup_.force) return {};
+    for (const Rotor& rotor : readings_.rotors) {
+      channels.erase(std::remove_if(channels.begin(), channels.end(),
+                                    [&](int c) { return c == rotor.a || c == rotor.c; }),
+                     channels.end());
+    }
+    return channels;
+  }
+  bool HasRotors() const {
+    return !readings_.rotors.empty() &&
+           setup_.force.value_or(GyroForceModel::kDualAxis) == GyroForceModel::kDualAxis;
+  }
+  // Gyro by gyro: M, Q and N of those that share a rotor, three components of each other's.
   void Forces() {
-    const bool paired = 2 * static_cast<int>(readings_.rotors.size()) == readings_.n_gyro;
-    const GyroForceModel model =
-        setup_.force.value_or(paired ? GyroForceModel::kDualAxis : GyroForceModel::kFull);
-    if (model == GyroForceModel::kNone) return;
+    const std::vector<int> full = OfFullForce();
     const int powers = readings_.has_temperature ? 2 : 1;
     for (int n = 0; n < powers; ++n) {
-      if (model == GyroForceModel::kDualAxis) {
-        Rotors(n, n > 0 ? "gyro_MQ" : "");
-      } else {
-        const std::string name = "gyro_G" + Suffix(n);
-        AddMatrix(true, name, TermKind::kForce, n, 0, 3, n == 0, n > 0 ? "gyro_G" : "");
+      if (HasRotors()) Rotors(n, n > 0 ? "gyro_MQ" : "");
+      const std::string name = "gyro_G" + Suffix(n);
+      if (!full.empty()) {
+        AddMatrix(true, name, TermKind::kForce, n, full, n == 0, n > 0 ? "gyro_G" : "");
       }
     }
-    if (model == GyroForceModel::kDualAxis) Anisoelastic();
+    if (HasRotors()) Anisoelastic();
   }
 
   void Temperatures(bool gyro) {
@@ -138,7 +157,7 @@ class Candidates {
                 n > 1 ? p + "b" + Suffix(n - 1) : "");
     }
     for (int n = 1; n <= std::min(2, setup_.max_degree); ++n) {
-      AddMatrix(gyro, p + "S" + Suffix(n), TermKind::kSensitivity, n, 0, 3, false,
+      AddMatrix(gyro, p + "S" + Suffix(n), TermKind::kSensitivity, n, All(gyro), false,
                 n > 1 ? p + "S" + Suffix(n - 1) : "");
     }
     AddVector(gyro, p + "heating", TermKind::kHeating, 0, -1, false, "");
@@ -148,7 +167,7 @@ class Candidates {
   void Group(bool gyro) {
     const std::string p = Prefix(gyro);
     AddVector(gyro, p + "b", TermKind::kBias, 0, -1, true, "");
-    AddMatrix(gyro, p + "S", TermKind::kSensitivity, 0, 0, 3, true, "");
+    AddMatrix(gyro, p + "S", TermKind::kSensitivity, 0, All(gyro), true, "");
     if (gyro) Forces();
     if (!gyro) AddOwnSquares();
     if (readings_.has_temperature) Temperatures(gyro);
@@ -181,7 +200,7 @@ class Candidates {
 }  // namespace
 
 std::vector<TermBundle> CandidateTerms(const ToolReadings& readings, const ToolFitSetup& setup) {
-  return Candidates(readings, setup).All();
+  return Candidates(readings, setup).Bundles();
 }
 
 Basis BasisOf(const ToolTerm& term, const TermUse& use, bool is_gyro, const RowState& state) {
