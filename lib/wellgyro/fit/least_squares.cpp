@@ -249,13 +249,13 @@ LinearSolution SolveByMedians(const LinearProblem& problem) {
   if (!Tells(problem)) return solution;
   LinearProblem weighted = problem;
   const Whitened w = Whiten(problem);
-  for (int turn = 0; turn < 100; ++turn) {
+  for (int turn = 0; turn < 30; ++turn) {
     const Eigen::VectorXd scales = ScalesOfTables(problem, solution, LeastScale(w));
     weighted.sigma = problem.sigma.cwiseQuotient(CauchyWeights(problem, solution.residual, scales));
     const Eigen::VectorXd before = solution.x;
     solution = SolvePlain(weighted);
     solution.residual = w.y - w.A * solution.x;
-    if ((solution.x - before).norm() <= 1e-9 * before.norm()) break;
+    if ((solution.x - before).norm() <= 1e-6 * before.norm()) break;
   }
   return solution;
 }
