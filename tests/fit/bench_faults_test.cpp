@@ -229,6 +229,20 @@ TEST(BenchFaults, ARotorBesideAnotherGyroHasItsAnisoelasticTerms) {
   EXPECT_NEAR(Quantity(fitted->report, "MQ").value.reshaped()[0], tool.MQ[0], 0.035);
 }
 
+// 2026-11-28: the sine of the inclination has a mean, which went into the bias of z, ten sigmas.
+TEST(BenchFaults, AStandsZeroOfInclinationIsTold) {
+  Random random(173);
+  Tally tally;
+  for (int bench = 0; bench < kEach; ++bench) {
+    BenchTable data = AtAttitudes(VectorTool::Any(random), 36, {}, {2e-5, 20}, random);
+    tally.CountSound(FitAffine(data, {}), "the zero of the stand's inclination");
+    data.values.col(0).array() += 0.05;  // inclinations
+    tally.Count(FitAffine(data, {}), "the zero of the stand's inclination");
+  }
+  EXPECT_EQ(tally.wrong(), kEach);
+  EXPECT_LE(tally.sound(), 2);
+}
+
 // Of stations that turn through all directions the biases take little of a dip or a latitude.
 TEST(BenchFaults, AWrongDipOrLatitudeIsToldByTheStations) {
   Random random(154);

@@ -6,7 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/added_terms_internal.h"
 #include "wellgyro/fit/affine_internal.h"
 #include "wellgyro/fit/attitude_table_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
@@ -107,6 +111,35 @@ std::optional<Fault> BadTable(const BenchTable& data, const AttitudeTable& table
   return BadReadings(data, table);
 }
 
+// A stand whose zero of inclination is off moves every u by du/dI, of which a bias takes the mean
+// and nothing else has the pattern.
+void TellInclination(AttitudeTable table, const AffineSetup& setup, const LinearProblem& problem,
+                     const LinearSolution& solution, FitReport& report) {
+  constexpr double kFalseAlarm = 0.01, kStep = 1e-4;  // rad: to 2e-9 of du/dI
+  table.inclination.array() += kStep;
+  const std::vector<AffineReadings> above = Groups(table, setup);
+  table.inclination.array() -= 2 * kStep;
+  const std::vector<AffineReadings> below = Groups(table, setup);
+  const auto width = 3 * static_cast<Eigen::Index>(above.size());
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(problem.y.size(), 1);
+  int first = 0;
+  for (std::size_t g = 0; g < above.size(); ++g) {
+    const Eigen::Matrix3d S = MatrixAt(solution.x, first + 3);
+    first += above[g].size();
+    const Eigen::MatrixX3d slope = (above[g].u - below[g].u) / (2 * kStep);
+    for (Eigen::Index i = 0; i < slope.rows(); ++i) {
+      z.block<3, 1>(i * width + 3 * static_cast<Eigen::Index>(g), 0) = S * slope.row(i).transpose();
+    }
+  }
+  const AddedTerm off = AddedTerms(problem, solution).Test(z, kFalseAlarm / 2).front();
+  if (!(off.sigmas > off.limit)) return;
+  report.remarks.push_back(fmt::format(
+      "the readings suit inclinations {:+.3g} deg beside the ones given ({:.1f} sigmas, chance "
+      "reaches {:.1f}): the zero of the stand's inclination is off, and {} with it by {:.1f} of "
+      "its sigmas; mend the inclinations and fit again",
+      ToDegrees(off.coefficient), off.sigmas, off.limit, off.moved, off.moved_sigmas));
+}
+
 }  // namespace
 
 Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& setup) {
@@ -121,7 +154,8 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   }
   LinearProblem problem = AffineProblem(groups, table->lines, setup.tilt_sigma);
   problem.sigma_given = given;
-  auto whole = WholeReport(data, problem, Solve(problem),
+  const LinearSolution solution = Solve(problem);
+  auto whole = WholeReport(data, problem, solution,
                            "measure attitudes that are not all in one plane or on one cone");
   if (!whole) return whole.fault();
   BenchCalibration out;
@@ -148,6 +182,7 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   }
   if (auto fault = DoesNotFit(data, signals, out.report)) return *fault;
   RemarkTemperature(data, out.report);
+  TellInclination(*table, setup, problem, solution, out.report);
   if (table->mag.rows() > 0 && out.mag.n_channels == 0) {
     out.report.remarks.emplace_back(
         "the magnetometers are left out: they need the field and its dip (--field-nt, --dip-deg)");
