@@ -208,6 +208,8 @@ void AddBenchSigmas(CLI::App& command, ToolFitSetup& fit) {
               "1 sigma of a bench's tilt, default 0.5");
   AddPositive(command, "--north-sigma-deg", fit.sigma_north, units::kDeg,
               "1 sigma of a bench's north, default 1");
+  AddPositive(command, "--inclination-sigma-deg", fit.sigma_inclination, units::kDeg,
+              "1 sigma of a stand's zero of inclination, default 0.05");
   AddPositive(command, "--latitude-sigma-deg", fit.sigma_latitude, units::kDeg,
               "1 sigma of the latitude, default 0.0006");
   AddPositive(command, "--seat-arcsec", fit.sigma_axis, units::kArcsec,

@@ -204,6 +204,7 @@ inline std::map<std::string, double> TruthOf(const ThermalTool& tool, const Ther
     put("level_" + number, 0, bench.level[table].x());
     put("level_" + number, 1, bench.level[table].y());
     truth["north_" + number] = bench.level[table].z();
+    truth["inclination_" + number] = 0;
   }
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("axis_") + "xyz"[axis] + "_of_table_3";

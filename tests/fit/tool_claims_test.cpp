@@ -227,6 +227,28 @@ TEST(ToolClaims, WrongRowsAloneAreLeftOut) {
   for (std::size_t k = first; k < kWrongRows.size(); ++k) ExpectLeftOut(chamber, kWrongRows[k]);
 }
 
+// 2026-11-28: 0.1 deg of a stand's dial passed for noise, with the bias of z ten sigmas off: its
+// sine has a mean over the attitudes. Beside that it has a pattern of its own.
+TEST(ToolClaims, AStandsZeroOfInclinationIsFound) {
+  Random random(99);
+  std::vector<BenchTable> tables = SmallBench(false, random);
+  const auto sound = FitTool(tables, AtLatitude(60));
+  ASSERT_TRUE(sound.has_value()) << sound.fault().text;
+  tables[0].values.col(*tables[0].Find("inc")).array() += 0.1;
+  const auto off = FitTool(tables, AtLatitude(60));
+  ASSERT_TRUE(off.has_value()) << off.fault().text;
+  ASSERT_EQ(off->members.names, sound->members.names);
+  const Eigen::VectorXd sigma = sound->members.cov.diagonal().cwiseSqrt();
+  // The prior of 0.05 deg draws by 1e-4 of the angle at most, which is known to 1e-5 rad.
+  EXPECT_LT((off->member_values - sound->member_values).cwiseQuotient(sigma).cwiseAbs().maxCoeff(),
+            0.1);
+  const auto zero = std::find_if(off->nuisances.begin(), off->nuisances.end(),
+                                 [](const BenchNuisance& n) { return n.name == "inclination_1"; });
+  ASSERT_NE(zero, off->nuisances.end());
+  EXPECT_LT(zero->sigma, 1e-4);
+  EXPECT_LT(std::abs(zero->value + 0.1 * kRad), 4 * zero->sigma);
+}
+
 // A tool of one rotor and a gyro beside it: the rotor's channels have its terms, the other its own.
 TEST(ToolClaims, ARotorBesideAnotherGyroHasItsAnisoelasticTerms) {
   Random random(98);

@@ -22,7 +22,10 @@ struct ToolFitSetup {
   std::optional<GyroForceModel> force;  ///< as GyroFitSetup's
   double sigma_level = 8.7e-3;          ///< of a bench's tilt, each direction [rad]: 0.5 deg
   double sigma_north = 1.75e-2;         ///< of its north [rad]: 1 deg
-  double sigma_latitude = 1e-5;         ///< [rad]: 64 m
+  /// Of a stand's zero of inclination, which moves all of a table: as a dial is set, 3 arcmin
+  /// [rad].
+  double sigma_inclination = 8.7e-4;
+  double sigma_latitude = 1e-5;  ///< [rad]: 64 m
   /// Of the tool on the rate table, each direction [rad]: 1 arcmin.
   double sigma_axis = 3e-4;
   /// Of a gyro from the middle to the end of a table [deg/h]; it may bend by as much as a walk
@@ -68,14 +71,14 @@ struct ToolFit {
 ///
 /// Channels as in SensorGroup, their polynomials in temperature, second order, force, heating and
 /// hysteresis terms (a loop that heating and cooling open, not corrected by the tool model: its
-/// size is in the biases' covariance). Of the bench: level and north of each table, its drift in
-/// time, the tool's seat on the rate table, the latitude, each with its prior; the wobble of every
-/// reading, which moves all channels together, is marginalised, its size found. Terms are chosen by
-/// marginal likelihood, each bundle's prior variance found from it, at 1 % against noise alone;
-/// other terms that explain nearly as much are told. What was left out may be there, of even odds
-/// before the readings, and no larger than noise hides: everything is taken at its mean over both,
-/// so that a term that is left out has a small value, and its doubt is in the covariance. Outliers
-/// are found with Cauchy's loss (Ceres) and left out.
+/// size is in the biases' covariance). Of the bench: level, north and zero of inclination
+/// of each table, its drift in time, the tool's seat on the rate table, the latitude, each with its
+/// prior; the wobble of every reading, which moves all channels together, is marginalised, its size
+/// found. Terms are chosen by marginal likelihood, each bundle's prior variance found from it, at 1
+/// % against noise alone; other terms that explain nearly as much are told. What was left out may
+/// be there, of even odds before the readings, and no larger than noise hides: everything is taken
+/// at its mean over both, so that a term that is left out has a small value, and its doubt is in
+/// the covariance. Outliers are found with Cauchy's loss (Ceres) and left out.
 WELLGYRO_EXPORT Result<ToolFit> FitTool(std::span<const BenchTable> tables,
                                         const ToolFitSetup& setup);
 

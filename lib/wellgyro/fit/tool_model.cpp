@@ -48,6 +48,7 @@ ToolModel::ToolModel(const ToolReadings& readings, const ToolFitSetup& setup,
 
 void ToolModel::AddNuisances() {
   level_.assign(static_cast<std::size_t>(readings_.n_tables), -1);
+  inclination_ = level_;
   mount_.assign(static_cast<std::size_t>(3 * readings_.n_tables), -1);
   const auto add = [&](const std::string& name, double sigma) {
     nuisances_.push_back({name, 0, 0, sigma, "rad"});
@@ -68,6 +69,8 @@ void ToolModel::AddNuisances() {
     level_[table] = add(fmt::format("level_{}[0]", row.table + 1), setup_.sigma_level);
     add(fmt::format("level_{}[1]", row.table + 1), setup_.sigma_level);
     if (readings_.n_gyro > 0) add(fmt::format("north_{}", row.table + 1), setup_.sigma_north);
+    inclination_[table] =
+        add(fmt::format("inclination_{}", row.table + 1), setup_.sigma_inclination);
   }
   if (readings_.n_gyro > 0) latitude_ = add("latitude", setup_.sigma_latitude);
 }
@@ -77,6 +80,32 @@ std::vector<std::string> ToolModel::names() const {
   for (const ToolTerm& term : terms_) all.push_back(term.name);
   for (const BenchNuisance& nuisance : nuisances_) all.push_back(nuisance.name);
   return all;
+}
+
+// Level and north turn the bench, the zero of inclination the tool in it.
+void ToolModel::AtRest(const ToolRow& row, const Eigen::VectorXd& z, double latitude,
+                       State& state) const {
+  const int place = level_[static_cast<std::size_t>(row.table)];
+  const int zero = inclination_[static_cast<std::size_t>(row.table)];
+  const bool north = readings_.n_gyro > 0;
+  const Eigen::Vector3d e(z[place], z[place + 1], north ? z[place + 2] : 0);
+  const Eigen::Vector3d w_L =
+      kBenchEarthDegPerHour * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
+  const auto [w, dw] = Turned(e, w_L);
+  const auto [f, df] = Turned(e, -Eigen::Vector3d::UnitZ());
+  // A tool inclined by more sees what acts on it turned by less.
+  const Eigen::Matrix3d R_BL = row.R_BL * Exp(-z[zero] * row.across_L);
+  state.row.w_B = R_BL * w;
+  state.row.f_B = R_BL * f;
+  for (int k = 0; k < (north ? 3 : 2); ++k) {
+    state.slopes.push_back({place + k, R_BL * dw.col(k), R_BL * df.col(k)});
+  }
+  state.slopes.push_back({zero, -(R_BL * row.across_L.cross(w)), -(R_BL * row.across_L.cross(f))});
+  if (latitude_ >= 0) {
+    const Eigen::Vector3d by(-std::sin(latitude), 0, -std::cos(latitude));
+    state.slopes.push_back(
+        {latitude_, R_BL * Turned(e, kBenchEarthDegPerHour * by).first, {0, 0, 0}});
+  }
 }
 
 ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x) const {
@@ -102,23 +131,7 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
     }
     state.slopes.push_back({latitude_, kBenchEarthDegPerHour * std::cos(latitude) * up, {0, 0, 0}});
   } else {
-    const int place = level_[static_cast<std::size_t>(row.table)];
-    const bool north = readings_.n_gyro > 0;
-    const Eigen::Vector3d e(z[place], z[place + 1], north ? z[place + 2] : 0);
-    const Eigen::Vector3d w_L =
-        kBenchEarthDegPerHour * Eigen::Vector3d(std::cos(latitude), 0, -std::sin(latitude));
-    const auto [w, dw] = Turned(e, w_L);
-    const auto [f, df] = Turned(e, -Eigen::Vector3d::UnitZ());
-    state.row.w_B = row.R_BL * w;
-    state.row.f_B = row.R_BL * f;
-    for (int k = 0; k < (north ? 3 : 2); ++k) {
-      state.slopes.push_back({place + k, row.R_BL * dw.col(k), row.R_BL * df.col(k)});
-    }
-    if (latitude_ >= 0) {
-      const Eigen::Vector3d by(-std::sin(latitude), 0, -std::cos(latitude));
-      state.slopes.push_back(
-          {latitude_, row.R_BL * Turned(e, kBenchEarthDegPerHour * by).first, {0, 0, 0}});
-    }
+    AtRest(row, z, latitude, state);
   }
   const double unit =
       readings_.gravity_signed ? -setup_.reference.gravity : setup_.reference.gravity;

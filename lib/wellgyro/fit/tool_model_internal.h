@@ -27,7 +27,8 @@ inline bool Alike(const ToolNoise& a, const ToolNoise& b) {
 }
 
 /// Readings of the tool as functions of the terms' coefficients, and behind them of what the bench
-/// has: level (about north and east) and north of each table, seats on the rate table, latitude.
+/// has: level (about north and east), north and zero of inclination of each table, seats on the
+/// rate table, latitude.
 class ToolModel {
  public:
   ToolModel(const ToolReadings& readings, const ToolFitSetup& setup, std::vector<ToolTerm> terms);
@@ -53,6 +54,7 @@ class ToolModel {
  private:
   struct State;
   State StateOf(const ToolRow& row, const Eigen::VectorXd& x) const;
+  void AtRest(const ToolRow& row, const Eigen::VectorXd& z, double latitude, State& state) const;
   void AddNuisances();
 
   const ToolReadings& readings_;
@@ -60,7 +62,8 @@ class ToolModel {
   std::vector<ToolTerm> terms_;
   std::vector<std::vector<int>> terms_of_;  ///< by channel
   std::vector<BenchNuisance> nuisances_;
-  std::vector<int> level_, mount_;  ///< places among the nuisances, by table; by mount
+  /// Places among the nuisances, by table; by mount.
+  std::vector<int> level_, inclination_, mount_;
   int latitude_ = -1;
 };
 

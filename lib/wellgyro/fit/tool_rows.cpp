@@ -141,8 +141,10 @@ std::optional<Fault> Attitude(const BenchTable& data, const ToolFitSetup& setup,
     row.rate = value("rate_deg_s") * units::kHour;
     return std::nullopt;
   }
-  row.R_BL = BenchFromLevel(setup.reference.axes, FromDegrees(value("inc")),
-                            FromDegrees(value("az")), FromDegrees(value("tf")));
+  const double azimuth = FromDegrees(value("az"));
+  row.across_L = {-std::sin(azimuth), std::cos(azimuth), 0};
+  row.R_BL = BenchFromLevel(setup.reference.axes, FromDegrees(value("inc")), azimuth,
+                            FromDegrees(value("tf")));
   return std::nullopt;
 }
 

@@ -25,6 +25,7 @@ struct ToolRow {
   int table = 0, line = 0;
   int mount = -1;  ///< 3 table + axis on a rate table, -1 at rest
   Eigen::Matrix3d R_BL = Eigen::Matrix3d::Identity();  ///< at rest: stated attitude, level to bench
+  Eigen::Vector3d across_L = Eigen::Vector3d::Zero();  ///< at rest: inclination grows about it
   double rate = 0;                                     ///< on a rate table [deg/h]
   double temperature = 0, heating = 0;                 ///< [degC], [degC/s]
   double branch = 0;                                   ///< +1 while heating, -1 while cooling
