@@ -7,6 +7,7 @@ import math
 import os
 import random
 import re
+import shutil
 import unittest
 
 from harness import DEMO, TOP, FreshProgramTest, Job, Move, Run, Simulation, Stop
@@ -209,6 +210,7 @@ class Calibrate(FreshProgramTest):
         self.assertIn("what runs found (1)", self.Read(taught))
         self.Survey(self.Write("second.toml", JOB + '[tool]\nfile = "taught.toml"\n'),
                     self.Path("raw.lcm"), "second")
+        self.RunsTeachOnce(tool)
         # Of other tool files, of none, of what is no result.
         ran = Run("calibrate", "learn", "--run", self.Path("first"), "--run",
                   self.Path("second/run.toml"), "--out", self.Path("no.toml"))
@@ -218,14 +220,54 @@ class Calibrate(FreshProgramTest):
                              self.Path("no.toml")).returncode, 2)
         # The next bench, with other noise, is joined with it; one of a tool that changed is not.
         again = self.Write("again.csv", WholeTool(AtRest(source), source))
-        later = ["calibrate", "tool", "--data", again, "--data", table, "--latitude-deg",
+        rates = self.Write("rates.csv", OnTable(source))
+        later = ["calibrate", "tool", "--data", again, "--data", rates, "--latitude-deg",
                  str(LATITUDE), "--out", self.Path("c2.toml"), "--tool", self.Path("next.toml"),
                  *counts]
+        self.CountedTwice(later, rest, table, taught)
         self.assertIn("prior: chi-square", self.Done(*later, "--prior", taught).stdout)
+        rests_on = self.Toml("next.toml")["rests_on"]
+        self.assertEqual(len(rests_on), len(set(rests_on)))
+        self.assertEqual(len(rests_on), 5)  # two benches of two tables, a run
         later[3] = self.Write("moved.csv", WholeTool(AtRest(source), source, 0.5))
         ran = Run(*later, "--prior", taught)
         self.assertEqual(ran.returncode, 2, ran.stdout)
         self.assertIn("the tool has changed", ran.stderr)
+
+    def RunsTeachOnce(self, tool):
+        """A run named twice, or copied, or solved with the tool file that it taught counts twice;
+        nor does what was learnt take the place of what it was learnt from."""
+        shutil.copytree(self.Path("first"), self.Path("copy"))
+        out = ["--out", self.Path("no.toml")]
+        for runs in (["first", "first"], ["first", "first/run.toml"], ["first", "copy"]):
+            named = [word for run in runs for word in ("--run", self.Path(run))]
+            ran = Run("calibrate", "learn", *named, *out)
+            self.assertEqual(ran.returncode, 2, runs)
+            self.assertIn("another run named: each counts once", ran.stderr)
+        ran = Run("calibrate", "learn", "--run", self.Path("second"), *out)
+        self.assertEqual(ran.returncode, 2, ran.stdout)
+        self.assertIn("has learnt from the same samples before", ran.stderr)
+        self.assertFalse(os.path.exists(self.Path("no.toml")))
+        for path in (self.Path("first/run.toml"), self.Path("first/survey.csv"), tool):
+            before = self.Bytes(path)
+            ran = Run("calibrate", "learn", "--run", self.Path("first"), "--out", path)
+            self.assertEqual(ran.returncode, 1, path)
+            self.assertIn("choose another", ran.stderr)
+            self.assertEqual(self.Bytes(path), before)
+
+    def CountedTwice(self, later, rest, table, taught):
+        """A bench joined with what rests on it: by its bytes, and by numbers that agree too well
+        where somebody wrote them anew."""
+        same = [*later, "--prior", taught]
+        same[3] = rest
+        ran = Run(*same)
+        self.assertEqual(ran.returncode, 2, ran.stdout)
+        self.assertIn(f"rests on the readings of {rest} too", ran.stderr)
+        same[3] = self.Write("rest_anew.csv", "# anew\n" + self.Read(rest))
+        same[5] = self.Write("table_anew.csv", "# anew\n" + self.Read(table))
+        ran = Run(*same)
+        self.assertEqual(ran.returncode, 2, ran.stdout)
+        self.assertIn("it agrees with the bench better than other readings can", ran.stderr)
 
     def test_the_file_says_which_readings_were_joined(self):
         source = random.Random(10)

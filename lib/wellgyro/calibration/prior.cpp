@@ -81,7 +81,30 @@ void RequireAlike(const ToolCalibration& tool, const ToolCalibration& prior) {
   }
 }
 
+// Lower tail of chi-square of what every calibration finds: biases, sensitivities and force terms
+// at the reference temperature. Terms that the choice leaves out are taken at nearly the same means
+// by any two benches, and their doubt makes chi-square of all members small without shared
+// readings.
+double Likeness(const std::vector<std::string>& names, const VectorXd& d, const MatrixXd& S) {
+  using Of = CalibrationMember::Kind;
+  std::vector<Index> found;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const CalibrationMember member = MemberOf(names[i]);
+    const bool plain =
+        member.kind == Of::kBias || member.kind == Of::kSensitivity || member.kind == Of::kForce;
+    if (plain && member.power == 0) found.push_back(static_cast<Index>(i));
+  }
+  if (found.empty()) return 1;
+  const VectorXd known = d(found);
+  const double chi_square = known.dot(SolveSymmetric(S(found, found), known).col(0));
+  return ChiSquareCdf(chi_square, static_cast<double>(found.size()));
+}
+
 }  // namespace
+
+bool RestsOn(const ToolCalibration& tool, const std::string& sha256) {
+  return std::find(tool.rests_on.begin(), tool.rests_on.end(), sha256) != tool.rests_on.end();
+}
 
 JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
   RequireAlike(tool, prior);
@@ -107,6 +130,7 @@ JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
   JoinedTool joined{std::move(tool), d.dot(SolveSymmetric(S, d).col(0)),
                     static_cast<int>(common.size())};
   joined.probability = 1 - ChiSquareCdf(joined.chi_square, joined.dof);
+  joined.likeness = Likeness(names, d, S);
   own.values += gain * d;
   own.cov -= gain * of_own.transpose();
   for (Index k = 0; k < own.values.size(); ++k) {
@@ -115,6 +139,9 @@ JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
   SensorGroup& group = HasMembers(joined.tool.gyro) ? joined.tool.gyro : joined.tool.accel;
   group.covariance->cov = (own.cov + own.cov.transpose()) / 2;
   joined.tool.rests_on_prior = true;
+  for (const std::string& readings : prior.rests_on) {
+    if (!RestsOn(joined.tool, readings)) joined.tool.rests_on.push_back(readings);
+  }
   joined.tool.errors = ErrorsLeft(joined.tool, joined.tool.errors.value_or(ErrorPriors{}));
   return joined;
 }

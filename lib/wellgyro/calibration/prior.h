@@ -1,15 +1,23 @@
 #pragma once
 
+#include <string>
+
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/tool_calibration.h"
 
 namespace wellgyro {
+
+/// Whether readings of this SHA-256 are among those that the tool's covariance rests on.
+WELLGYRO_EXPORT bool RestsOn(const ToolCalibration& tool, const std::string& sha256);
 
 struct JoinedTool {
   ToolCalibration tool;
   double chi_square = 0;   ///< of what both know, the difference over both covariances
   int dof = 0;             ///< of these numbers
   double probability = 1;  ///< that chance makes them differ as much
+  /// That chance makes biases, sensitivities and force terms at the reference temperature differ as
+  /// little: near 0 where both rest on the same readings.
+  double likeness = 1;
 };
 
 /// `tool`, as a bench found it, joined with what was known of its members before, from an earlier

@@ -91,6 +91,8 @@ struct ToolCalibration {
   std::optional<UtcTime> calibrated;  ///< when
   std::optional<UtcTime> expires;     ///< from then on no longer to be relied on
   bool rests_on_prior = false;        ///< holds what another calibration or runs found as well
+  /// SHA-256 of the readings that its covariance rests on: files of the bench, samples of runs.
+  std::vector<std::string> rests_on;
   std::vector<ThermometerCalibration> thermometers;
   SensorGroup gyro;                      ///< SI unit rad/s; two channels: across the tool only
   SensorGroup accel;                     ///< SI unit m/s^2

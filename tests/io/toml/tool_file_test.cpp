@@ -48,6 +48,7 @@ TEST(ToolFile, ComesBackAsItWasWritten) {
   tool.note = "by hand";
   tool.calibrated = UtcTime{1'767'225'600'000'000'000};  // 2026-01-01
   tool.rests_on_prior = true;
+  tool.rests_on = {std::string(64, 'a'), std::string(64, 'b')};
   tool.expires = UtcTime{1'782'864'000'000'000'000};  // 2026-07-01
   tool.gyro.heating[1] = 0.25;
   tool.gyro.per_second = true;
@@ -68,6 +69,7 @@ TEST(ToolFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->calibrated, tool.calibrated);
   EXPECT_EQ(back->expires, tool.expires);
   EXPECT_TRUE(back->rests_on_prior);
+  EXPECT_EQ(back->rests_on, tool.rests_on);
   EXPECT_EQ(back->accel.covariance->names, tool.accel.covariance->names);
   EXPECT_EQ(back->accel.covariance->cov, tool.accel.covariance->cov);
   EXPECT_DOUBLE_EQ(back->errors->gyro_bias_sigma, 1e-7);

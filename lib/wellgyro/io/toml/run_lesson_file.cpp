@@ -135,6 +135,11 @@ RunLessons LessonsOf(TomlTable& root, const std::string& source) {
     has_tool = true;
   }
   if (!has_tool) root.Refuse("", "the job had no tool file: nothing can be learnt of it");
+  for (TomlTable& channel : root.FindTables("channel")) {
+    const std::string type = channel.FindString("type").value_or("");
+    if (type != "raw_batch_t" && type != "imu_batch_t") continue;
+    if (auto sha256 = channel.FindString("sha256")) all.readings.push_back(*std::move(sha256));
+  }
   for (TomlTable& run : root.FindTables("run")) {
     if (auto lesson = LessonOfRun(run)) all.lessons.push_back(*std::move(lesson));
   }

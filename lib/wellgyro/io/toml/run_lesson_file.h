@@ -15,7 +15,8 @@ namespace wellgyro {
 struct RunLessons {
   std::string tool_sha256;  ///< of the tool file
   ToolCalibration tool;
-  std::vector<RunLesson> lessons;  ///< of every run that passed or warned
+  std::vector<std::string> readings;  ///< SHA-256 of each channel's accepted samples
+  std::vector<RunLesson> lessons;     ///< of every run that passed or warned
 };
 
 /// From a run.toml (`wellgyro.run/1`), which holds its tool file. A Fault where it has none, or

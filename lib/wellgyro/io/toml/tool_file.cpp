@@ -67,6 +67,7 @@ ToolCalibration TakeToolFile(TomlTable& root) {
   tool.calibrated = ReadDate(root, "calibrated");
   tool.expires = ReadDate(root, "expires");
   root.Read("rests_on_prior", tool.rests_on_prior);
+  tool.rests_on = root.FindStrings("rests_on").value_or(std::vector<std::string>{});
   for (TomlTable& table : root.FindTables("thermometer")) {
     tool.thermometers.push_back(ReadThermometer(table));
   }
@@ -206,6 +207,10 @@ std::string ToolToml(const ToolCalibration& tool) {
   if (tool.calibrated) out.Text("calibrated", DateText(*tool.calibrated));
   if (tool.expires) out.Text("expires", DateText(*tool.expires));
   if (tool.rests_on_prior) out.Flag("rests_on_prior", true);
+  if (!tool.rests_on.empty()) {
+    out.Comment("SHA-256 of the readings it rests on: none of them may count twice");
+    out.Texts("rests_on", tool.rests_on);
+  }
   for (const ThermometerCalibration& t : tool.thermometers) WriteThermometer(out, t);
   WriteGroup(out, tool.gyro, kGyroWords);
   WriteGroup(out, tool.accel, kAccelWords);
