@@ -309,6 +309,13 @@ class Calibrate(FreshProgramTest):
         verify = ["calibrate", "verify", "--tool", tool, "--latitude-deg", str(LATITUDE),
                   "--gravity-mps2", "9.8195", "--sigma-accel", "2e-4", "--sigma-deg-per-h", "0.02"]
         self.assertIn("pass", self.Done(*verify, "--data", found).stdout)
+        ran = Run(*verify, "--data", table)
+        self.assertEqual(ran.returncode, 2, ran.stdout)
+        self.assertIn("it is a rate table: verify takes positions", ran.stderr)
+        # Time goes as the number of rows: a long table takes a second.
+        rows = "".join(WholeTool(AtRest(source), source).split("\n", 1)[1] for _ in range(20))
+        many = self.Write("many.csv", self.Read(found).splitlines()[0] + "\n" + rows)
+        self.assertIn("pass", Run(*verify, "--data", many, timeout=20).stdout)
         moved = self.Write("moved.csv", WholeTool(AtRest(source), source, 0.3))
         ran = Run(*verify, "--data", moved)
         self.assertEqual(ran.returncode, 4, ran.stdout)

@@ -12,8 +12,8 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/members.h"
 #include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/shift_estimate_internal.h"
 #include "wellgyro/fit/tool_rows_internal.h"
-#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/so3.h"
 #include "wellgyro/math/statistics.h"
 
@@ -79,11 +79,12 @@ double ByMember(const CalibrationMember& member, const ChannelAt& at, const Tool
   return row.heating;
 }
 
-// Residuals of a table against the tool model: e = B shifts + noise of covariance C. In C is what
-// the bench's turn may be, by `level` and its prior.
+// Residuals of one reading against the tool model, a row a channel: by the shifts B, by the
+// calibration's own errors J, by the bench's turn `level`, by this attitude's wobble.
 struct Residuals {
   Eigen::VectorXd e;
-  Eigen::MatrixXd C, B, level;
+  Eigen::MatrixXd J, B, level, wobble;
+  Eigen::VectorXd variance;  // of the channels' noise
 };
 
 class Comparison {
@@ -105,6 +106,7 @@ class Comparison {
         members_.push_back({true, Kind::kForce, 0, c, j});
       }
     }
+    TakeKnown();
   }
 
   std::vector<ToolShift>& shifts() { return shifts_; }
@@ -119,61 +121,65 @@ class Comparison {
     return member.kind == Kind::kBias ? si * units::kDegPerHour : si * units::kDegPerHour / g;
   }
 
-  // Linear about a turn of the bench: about north, east, down.
-  Residuals Compare(const Eigen::Vector3d& turn) const {
-    Eigen::Index n = 0;
-    for (const ToolRow& row : readings_.rows) n += static_cast<Eigen::Index>(row.channels.size());
-    std::vector<CalibrationMember> known;
-    Eigen::MatrixXd cov = KnownCovariance(known);
-    const auto k = static_cast<Eigen::Index>(known.size());
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, k);
-    Residuals r{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n),
-                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(members_.size())),
-                Eigen::MatrixXd::Zero(n, 3)};
+  // Generalised least squares, linear about a turn of the bench (about north, east, down), which
+  // becomes the likeliest.
+  ToolShiftEstimate Estimate(Eigen::Vector3d& turn) const {
+    const Eigen::Index known = factor_.cols();
+    ToolShiftEstimator estimator(known + 3, static_cast<Eigen::Index>(members_.size()));
+    const Eigen::Vector3d sigma_turn = TurnSigma();
+    const double sigma = setup_.bench.sigma_wobble.value_or(0);
     const Eigen::Matrix3d turned = Exp(turn);
-    Eigen::Index first = 0;
     for (const ToolRow& row : readings_.rows) {
-      const auto size = static_cast<Eigen::Index>(row.channels.size());
-      Eigen::MatrixXd wobble(size, 3);
-      for (Eigen::Index i = 0; i < size; ++i) {
-        Row(row, row.channels[static_cast<std::size_t>(i)], row.v[i], first + i, known, turned,
-            wobble.row(i), J, r);
-      }
-      const double sigma = setup_.bench.sigma_wobble.value_or(0);
-      r.C.block(first, first, size, size) += sigma * sigma * wobble * wobble.transpose();
-      first += size;
+      const Residuals r = Compare(row, turned);
+      Eigen::MatrixXd common(r.e.size(), known + 3);
+      common << r.J * factor_, r.level * sigma_turn.asDiagonal();
+      Eigen::MatrixXd cov = sigma * sigma * r.wobble * r.wobble.transpose();
+      cov.diagonal() += r.variance;
+      estimator.Add(cov, common, r.B, r.e + r.level * turn);
     }
-    r.C += J * cov * J.transpose() + r.level * TurnVariance().asDiagonal() * r.level.transpose();
-    r.e += r.level * turn;
-    return r;
-  }
-
-  Eigen::Vector3d TurnVariance() const {
-    const ToolFitSetup& bench = setup_.bench;
-    return {std::pow(bench.sigma_level, 2), std::pow(bench.sigma_level, 2),
-            std::pow(bench.sigma_north, 2)};
+    ToolShiftEstimate found = estimator.Estimate();
+    turn = sigma_turn.cwiseProduct(found.common.tail<3>());
+    return found;
   }
 
  private:
-  Eigen::MatrixXd KnownCovariance(std::vector<CalibrationMember>& known) const {
+  Eigen::Vector3d TurnSigma() const {
+    const ToolFitSetup& bench = setup_.bench;
+    return {bench.sigma_level, bench.sigma_level, bench.sigma_north};
+  }
+
+  void TakeKnown() {
     Eigen::MatrixXd cov(0, 0);
     for (const SensorGroup* group : {&tool_.gyro, &tool_.accel}) {
       if (!group->covariance || group->covariance->names.empty()) continue;
       const auto& names = group->covariance->names;
       if (names.front().rfind("gyro.", 0) != 0 && names.front().rfind("accel.", 0) != 0) continue;
-      for (const std::string& name : names) known.push_back(MemberOf(name));
+      for (const std::string& name : names) known_.push_back(MemberOf(name));
       const Eigen::Index had = cov.rows(), more = group->covariance->cov.rows();
       Eigen::MatrixXd both = Eigen::MatrixXd::Zero(had + more, had + more);
       both.topLeftCorner(had, had) = cov;
       both.bottomRightCorner(more, more) = group->covariance->cov;
       cov = std::move(both);
     }
-    return cov;
+    factor_ = FactorOf(cov);
   }
 
-  void Row(const ToolRow& row, int channel, double read, Eigen::Index at,
-           const std::vector<CalibrationMember>& known, const Eigen::Matrix3d& turned,
-           Eigen::MatrixXd::RowXpr wobble, Eigen::MatrixXd& J, Residuals& r) const {
+  Residuals Compare(const ToolRow& row, const Eigen::Matrix3d& turned) const {
+    const auto n = static_cast<Eigen::Index>(row.channels.size());
+    Residuals r{Eigen::VectorXd(n),
+                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(known_.size())),
+                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(members_.size())),
+                Eigen::MatrixXd(n, 3),
+                Eigen::MatrixXd(n, 3),
+                Eigen::VectorXd(n)};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      CompareChannel(row, row.channels[static_cast<std::size_t>(i)], row.v[i], i, turned, r);
+    }
+    return r;
+  }
+
+  void CompareChannel(const ToolRow& row, int channel, double read, Eigen::Index at,
+                      const Eigen::Matrix3d& turned, Residuals& r) const {
     const BenchReference& reference = setup_.bench.reference;
     const bool is_gyro = readings_.channels[static_cast<std::size_t>(channel)].is_gyro;
     const int c = channel - (is_gyro ? readings_.n_accel : 0);
@@ -188,15 +194,15 @@ class Comparison {
     const ChannelAt v = ReadingOf(group, c, is_gyro ? w_T : f_T, f_T, row);
     r.e[at] = read - v.value;
     const double sigma = is_gyro ? *setup_.bench.sigma_gyro : *setup_.bench.sigma_accel;
-    r.C(at, at) += sigma * sigma;
+    r.variance[at] = sigma * sigma;
     const Eigen::RowVector3d by_u = v.by_u * group.R_TS.transpose();
     const Eigen::RowVector3d by_f = v.by_f * group.R_TS.transpose();
     const Eigen::Vector3d own = is_gyro ? w_T : f_T, own_L = is_gyro ? w_L : f_L;
-    wobble = (by_u * Skew(own) + by_f * Skew(f_T)) * R_TB;
+    r.wobble.row(at) = (by_u * Skew(own) + by_f * Skew(f_T)) * R_TB;
     r.level.row(at) = by_u * R * -Skew(own_L) + by_f * R * -Skew(f_L);
-    for (std::size_t k = 0; k < known.size(); ++k) {
-      if (known[k].is_gyro != is_gyro || known[k].channel != c) continue;
-      J(at, static_cast<Eigen::Index>(k)) = ByMember(known[k], v, row);
+    for (std::size_t k = 0; k < known_.size(); ++k) {
+      if (known_[k].is_gyro != is_gyro || known_[k].channel != c) continue;
+      r.J(at, static_cast<Eigen::Index>(k)) = ByMember(known_[k], v, row);
     }
     for (std::size_t k = 0; k < members_.size(); ++k) {
       if (members_[k].is_gyro != is_gyro || members_[k].channel != c) continue;
@@ -208,7 +214,8 @@ class Comparison {
   const ToolCalibration& tool_;
   const VerifySetup& setup_;
   std::vector<ToolShift> shifts_;
-  std::vector<CalibrationMember> members_;
+  std::vector<CalibrationMember> members_, known_;
+  Eigen::MatrixXd factor_;  // R R' the calibration's covariance, of known_
 };
 
 std::optional<Fault> Unlike(const BenchTable& data, const ToolReadings& readings,
@@ -256,56 +263,14 @@ std::optional<std::pair<double, double>> Beyond(const ToolReadings& readings,
   return std::nullopt;
 }
 
-// Places of the shifts that the table tells apart, in order.
-std::vector<Eigen::Index> Seen(const Eigen::MatrixXd& B) {
-  const Eigen::VectorXd scale = B.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::MatrixXd scaled = B * scale.asDiagonal();
-  const Eigen::MatrixXd N = scaled.transpose() * scaled;
-  std::vector<Eigen::Index> seen;
-  for (Eigen::Index k = 0; k < N.cols(); ++k) {
-    std::vector<Eigen::Index> with = seen;
-    with.push_back(k);
-    const Cholesky root(N(with, with));
-    if (root.positive() && std::pow(root.L().bottomRightCorner<1, 1>()(0), 2) > 1e-6) {
-      seen = std::move(with);
-    }
-  }
-  return seen;
-}
-
-struct Shifts {
-  std::vector<Eigen::Index> seen;
-  Eigen::VectorXd x;
-  Eigen::MatrixXd cov;
-  double chi_square = 0;  // without shifts
-  double left = 0;        // with them
-  int dof = 0;
-};
-
-// Generalised least squares, linear about the bench's turn, which becomes the likeliest.
-Shifts ShiftsOf(const Comparison& comparison, Eigen::Vector3d& turn) {
-  const Residuals r = comparison.Compare(turn);
-  const Cholesky root(r.C);
-  const Eigen::MatrixXd W = root.Whitened(r.B);
-  const Eigen::VectorXd e = root.Whitened(r.e);
-  Shifts found;
-  found.seen = Seen(W);
-  const Eigen::MatrixXd B = W(Eigen::all, found.seen);
-  found.cov = InverseOfSymmetric(B.transpose() * B);
-  found.x = found.cov * (B.transpose() * e);
-  found.chi_square = e.squaredNorm();
-  found.dof = static_cast<int>(e.size());
-  const Eigen::VectorXd beside = e - B * found.x;
-  found.left = beside.squaredNorm();
-  const Eigen::VectorXd left = root.Solve(r.e - r.B(Eigen::all, found.seen) * found.x);
-  turn = comparison.TurnVariance().asDiagonal() * (r.level.transpose() * left);
-  return found;
-}
-
 }  // namespace
 
 Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
                                 const VerifySetup& setup) {
+  if (data.Find("rate_deg_s")) {
+    return BenchFault(data, "it is a rate table: verify takes positions read at rest", 1,
+                      FaultCode::kForeign);
+  }
   const auto readings = ReadTool({&data, 1}, setup.bench);
   if (!readings) return readings.fault();
   if ((readings->n_gyro > 0 && (!setup.bench.sigma_gyro || !setup.bench.reference.latitude)) ||
@@ -315,11 +280,11 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
   if (auto fault = Unlike(data, *readings, tool)) return *fault;
   if (auto fault = WithoutTemperature(data, tool)) return *fault;
   Comparison comparison(*readings, tool, setup);
-  Shifts found;
+  ToolShiftEstimate found;
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
   // A tilt of a third of a degree acts on the force to the second order, by 1e-5 of it.
   constexpr int kTurns = 3;
-  for (int k = 0; k < kTurns; ++k) found = ShiftsOf(comparison, turn);
+  for (int k = 0; k < kTurns; ++k) found = comparison.Estimate(turn);
   Verification out;
   out.beyond = Beyond(*readings, tool);
   out.chi_square = found.chi_square;
