@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Dense>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -295,6 +296,39 @@ TEST(ToolClaims, ColumnsMisnamedByACapitalOrAUnitAreRefused) {
     ASSERT_FALSE(fit.has_value()) << to;
     EXPECT_THAT(fit.fault().text, HasSubstr("would not be read: its name is " + std::string(from)));
   }
+}
+
+// Half a table in mg: the complaint names that table, by lines of its own file.
+TEST(ToolClaims, AComplaintStandsWhereTheReadingsAre) {
+  Random random(97);
+  const auto tool = ThermalTool::Any(random);
+  const auto bench = ThermalBench::Any(random);
+  std::vector<BenchTable> tables{ThermalPositions(tool, bench, 0, 120, 25, 150, random),
+                                 ThermalPositions(tool, bench, 1, 60, 150, 25, random),
+                                 ThermalRates(tool, bench, 87.5, random)};
+  constexpr int kHead = 5;  // lines above the first reading
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    tables[i].source = fmt::format("table-{}.csv", i);
+    for (int k = 0; k < tables[i].rows(); ++k) {
+      tables[i].lines[static_cast<std::size_t>(k)] = kHead + k;
+    }
+  }
+  tables[1].values.col(*tables[1].Find("Gx")).tail(30) *= 1e3;
+  const auto fit = FitTool(tables, AtLatitude(60));
+  ASSERT_FALSE(fit.has_value());
+  EXPECT_THAT(fit.fault().text, HasSubstr("the readings do not fit"));
+  EXPECT_EQ(fit.fault().source, "table-1.csv");
+  EXPECT_GE(fit.fault().line, kHead + 30);
+  EXPECT_LT(fit.fault().line, kHead + 60);
+  EXPECT_THAT(fit.fault().text, HasSubstr(fmt::format("worst in lines {}, ", fit.fault().line)));
+  EXPECT_THAT(fit.fault().text, HasSubstr(" of table-1.csv: look there"));
+  // What is said of all names all; a channel is named where it tells most.
+  tables[1].values.col(*tables[1].Find("Gx")).tail(30) *= 1e-3;
+  for (BenchTable& data : tables) data.values.col(*data.Find("m_x1")) *= -1;
+  const auto turned = FitTool(tables, AtLatitude(60));
+  ASSERT_FALSE(turned.has_value());
+  EXPECT_THAT(turned.fault().text, HasSubstr("channel m_x1 falls"));
+  EXPECT_EQ(turned.fault().source, "table-2.csv");
 }
 
 TEST(ToolClaims, VerificationAsksForTheTemperature) {

@@ -209,8 +209,18 @@ std::optional<Fault> SwappedPositions(const BenchTable& data,
                     lines.front(), FaultCode::kConflict);
 }
 
+ReadingPlaces ReadingPlacesOf(const BenchTable& data) {
+  return {LinesText,
+          [&data](std::string text, int line) { return BenchFault(data, std::move(text), line); }};
+}
+
 std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<ChannelSignal>& signals,
                                 FitReport& report) {
+  return DoesNotFit(ReadingPlacesOf(data), signals, report);
+}
+
+std::optional<Fault> DoesNotFit(const ReadingPlaces& places,
+                                const std::vector<ChannelSignal>& signals, FitReport& report) {
   constexpr double kRefused = 0.2, kRemarked = 0.02;
   std::map<std::string, std::vector<const FitResidual*>> of;
   for (const FitResidual& residual : report.residuals) of[residual.channel].push_back(&residual);
@@ -234,9 +244,9 @@ std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<Channe
         "channel {} scatters about the fit by {:.3g}, {:.0f} % of what it should vary by, worst in "
         "{}: look there for swapped positions, wrong signs, mixed units or a wrong reference, or "
         "average longer",
-        channel, rms, 100 * rms / known->signal, LinesText(worst));
+        channel, rms, 100 * rms / known->signal, places.text(worst));
     if (rms > kRefused * known->signal) {
-      return BenchFault(data, "the readings do not fit: " + text, worst.front());
+      return places.fault("the readings do not fit: " + text, worst.front());
     }
     report.remarks.push_back(text);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -76,8 +77,16 @@ struct ChannelSignal {
   std::string channel;
   double signal = 0;
 };
+/// How people find the readings of a report that stand in its residuals by line.
+struct ReadingPlaces {
+  std::function<std::string(const std::vector<int>&)> text;  ///< "lines 3, 7"
+  std::function<Fault(std::string text, int line)> fault;    ///< at one of them
+};
+ReadingPlaces ReadingPlacesOf(const BenchTable& data);  ///< of one table; `data` must outlive it
 /// Residuals so large that the model is none of these readings (a fifth of the signal); a remark
 /// from a fiftieth on. Names the worst lines.
+std::optional<Fault> DoesNotFit(const ReadingPlaces& places,
+                                const std::vector<ChannelSignal>& signals, FitReport& report);
 std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<ChannelSignal>& signals,
                                 FitReport& report);
 /// A square sensitivity whose diagonal is not what dominates its rows: axes or signs.

@@ -8,6 +8,7 @@
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
@@ -116,9 +117,22 @@ void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit
   }
 }
 
+// The tables' files, for what is said of all readings.
+std::string SourcesOf(std::span<const BenchTable> tables) {
+  std::string sources;
+  for (const BenchTable& data : tables) {
+    sources += (sources.empty() ? "" : ", ") + data.source;
+  }
+  return sources;
+}
+
+Fault FaultOfAll(std::span<const BenchTable> tables, std::string text) {
+  return {.code = FaultCode::kRange, .text = std::move(text), .source = SourcesOf(tables)};
+}
+
 // The tables as one, its lines the readings' places plus one, for the report.
 BenchTable Joint(std::span<const BenchTable> tables, const ToolReadings& readings) {
-  BenchTable joint{tables.front().source, {}, {}, {}};
+  BenchTable joint{SourcesOf(tables), {}, {}, {}};
   const auto n = static_cast<Eigen::Index>(readings.rows.size());
   if (readings.has_temperature) joint.columns = {"T_C"};
   joint.values.resize(n, readings.has_temperature ? 1 : 0);
@@ -138,6 +152,41 @@ std::string ReadingName(std::span<const BenchTable> tables, const ToolRow& row) 
   const std::string line = LineName(row.line);
   if (tables.size() == 1) return line;
   return fmt::format("{}, {}", tables[static_cast<std::size_t>(row.table)].source, line);
+}
+
+// Of lines of Joint().
+ReadingPlaces ReadingPlacesOf(std::span<const BenchTable> tables, const ToolReadings& readings) {
+  const auto text = [tables, &readings](const std::vector<int>& lines) {
+    std::vector<std::string> parts;
+    for (std::size_t table = 0; table < tables.size(); ++table) {
+      std::vector<int> here;
+      for (const int line : lines) {
+        const ToolRow& row = readings.rows[RowAt(line)];
+        if (static_cast<std::size_t>(row.table) == table) here.push_back(row.line);
+      }
+      if (here.empty()) continue;
+      const std::string of = tables.size() == 1 ? "" : " of " + tables[table].source;
+      parts.push_back(LinesText(here) + of);
+    }
+    return fmt::format("{}", fmt::join(parts, " and "));
+  };
+  const auto fault = [tables, &readings](std::string said, int line) {
+    const ToolRow& row = readings.rows[RowAt(line)];
+    return BenchFault(tables[static_cast<std::size_t>(row.table)], std::move(said), row.line);
+  };
+  return {text, fault};
+}
+
+// Where a channel tells most of its axis: on the rate table, else where it was read first.
+const BenchTable& TableOf(std::span<const BenchTable> tables, const ToolReadings& readings,
+                          int channel) {
+  int first = -1;
+  for (const ToolRow& row : readings.rows) {
+    if (std::count(row.channels.begin(), row.channels.end(), channel) == 0) continue;
+    if (row.mount >= 0) return tables[static_cast<std::size_t>(row.table)];
+    if (first < 0) first = row.table;
+  }
+  return tables[static_cast<std::size_t>(std::max(first, 0))];
 }
 
 // Lines and tables as people know them.
@@ -179,7 +228,7 @@ void TellLeftOutLines(std::span<const BenchTable> tables, const ToolReadings& re
   }
 }
 
-std::optional<Fault> WrongChannels(const BenchTable& data, const ToolReadings& readings,
+std::optional<Fault> WrongChannels(std::span<const BenchTable> tables, const ToolReadings& readings,
                                    const ToolModel& model, const Eigen::VectorXd& x) {
   for (std::size_t c = 0; c < readings.channels.size(); ++c) {
     const ToolChannel& channel = readings.channels[c];
@@ -196,7 +245,7 @@ std::optional<Fault> WrongChannels(const BenchTable& data, const ToolReadings& r
     S.cwiseAbs().maxCoeff(&most);
     if (most == channel.axis && S[most] > 0) continue;
     return BenchFault(
-        data,
+        TableOf(tables, readings, static_cast<int>(c)),
         most != channel.axis
             ? fmt::format("channel {} follows {}{}: its axis is not {}; exchange the "
                           "columns, or mend their names",
@@ -339,10 +388,9 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
   if (!whole) return whole.fault();
   report = *std::move(whole);
   report.method = "tool";
-  if (auto fault = WrongChannels(tables.front(), readings, model, a.x)) return *fault;
-  if (auto fault = DoesNotFit(tables.front(), Signals(readings, model, a.x, setup), report)) {
-    return *fault;
-  }
+  if (auto fault = WrongChannels(tables, readings, model, a.x)) return *fault;
+  const std::vector<ChannelSignal> signals = Signals(readings, model, a.x, setup);
+  if (auto fault = DoesNotFit(ReadingPlacesOf(tables, readings), signals, report)) return *fault;
   NameLines(tables, readings, a, report);
   TellLeftOutLines(tables, readings, a, report);
   TellReferences(tables, readings, setup, report);
@@ -370,7 +418,7 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
     throw std::invalid_argument("gyros need the latitude");
   }
   const std::vector<TermBundle> bundles = CandidateTerms(*readings, setup);
-  const auto refused = [&](const Fault& fault) { return BenchFault(tables.front(), fault.text); };
+  const auto refused = [&](const Fault& fault) { return FaultOfAll(tables, fault.text); };
   if (const auto fault = UnseenNeeded(*readings, setup, bundles)) return refused(*fault);
   const std::vector<int> seen = SeenBundles(*readings, setup, bundles);
   const auto full = AdjustTool(*readings, setup, TermsOf(bundles, seen));
