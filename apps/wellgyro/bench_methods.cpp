@@ -78,7 +78,7 @@ void SixOptions(CLI::App& command, BenchOptions& o) {
       "leave the second-order term out; the bias is that of each own pair");
   AddPositive(command, "--sigma-pulses", o.six.sigma, 1, "of the pulses counted in a position");
   AddPositive(command, "--tilt-arcsec", o.six.tilt_sigma, units::kArcsec,
-              "1 sigma of the fixture's tilt, each position anew");
+              "1 sigma of the fixture's tilt, each position anew; needs --sigma-pulses");
   AddTool(command, o);
 }
 

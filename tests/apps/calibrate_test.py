@@ -418,6 +418,9 @@ class Calibrate(FreshProgramTest):
                 self.assertFalse(os.path.exists(tool))
         self.assertEqual(Run("calibrate").returncode, 1)
         self.assertEqual(Run("calibrate", "guess").returncode, 1)
+        with open(os.path.join(DEMO, "bench.csv"), encoding="utf-8") as bench:
+            self.Refused("six-position", bench.read(), "the tilt's sigma needs that of the pulses",
+                         "--gravity-mps2", "9.81234", "--tilt-arcsec", "20", code=1)
         rest = AtRest(random.Random(8))
         for latitude in ("95", "-91", "nan"):
             self.Refused("gyro-multi-position", rest, "latitude", "--latitude-deg", latitude, code=1)

@@ -38,9 +38,10 @@ struct SixPositionSetup {
   BenchAxes axes = BenchAxes::kTrade;
   double gravity = units::kStandardGravity;  ///< where the table has no axb, ayb, azb [m/s^2]
   bool gravity_stated = false;               ///< and where it has them, they must agree to 1e-4
-  bool second_order = true;          ///< estimate k2; else the bias is that of each axis's own pair
-  std::optional<double> sigma;       ///< of pulses counted in a position [1]
-  std::optional<double> tilt_sigma;  ///< of the fixture, each position anew [rad]
+  bool second_order = true;     ///< estimate k2; else the bias is that of each axis's own pair
+  std::optional<double> sigma;  ///< of pulses counted in a position [1]
+  /// Of the fixture, each position anew; needs `sigma` [rad].
+  std::optional<double> tilt_sigma;
 };
 
 /// Three accelerometers with pulse outputs, each axis up and down, once or repeated with the tool
@@ -50,7 +51,8 @@ struct SixPositionSetup {
 /// N/T = k (a0 + a + k2 a_own^2 + E a). With k2, a0 is read from the positions where the axis lies
 /// level: free of k2, but a tilt of the fixture enters at first order (1 arcsec is 4.85 ug);
 /// without it a0 is read from the axis's own pair: free of tilt to first order, but k2 g too large.
-/// Rows are weighted by tilt and counting noise, estimated from repeats where not given. Result:
+/// Rows are weighted by tilt and counting noise, estimated from repeats where not given; throws
+/// std::invalid_argument for a tilt without the noise. Result:
 /// `k_pulse_per_s_per_mps2`, `a0_mps2`, `E_rad`, `k2_g_per_g2`.
 WELLGYRO_EXPORT Result<BenchCalibration> FitSixPositions(const BenchTable& data,
                                                          const SixPositionSetup& setup);

@@ -181,21 +181,34 @@ Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double to
   return run;
 }
 
-// The converter's step: the least difference of two readings, where all differ by multiples of it
-// and so few values stand for so many readings that it is no noise.
+// The greatest number of which both are multiples, to `rounding` (Euclid).
+double CommonDivisor(double a, double b, double rounding) {
+  while (b > rounding) {
+    const double rest = std::abs(a - b * std::round(a / b));
+    a = b;
+    b = rest;
+  }
+  return a;
+}
+
+// The converter's step: the greatest of which all differences are multiples, where so few values
+// stand for so many readings that it is no noise. Not the least difference: still readings of the
+// 24 positions may all be several steps apart.
 double StepOf(const BenchTable& data, int volt) {
   std::vector<double> values(data.values.col(volt).begin(), data.values.col(volt).end());
   std::sort(values.begin(), values.end());
-  const double first = values.front(), rounding = 1e-12 * std::abs(values.back() - first);
-  double step = HUGE_VAL;
+  const double first = values.front(), range = values.back() - first;
+  double step = 0;
   std::size_t distinct = 1;
   for (std::size_t i = 1; i < values.size(); ++i) {
-    const double apart = values[i] - values[i - 1];
-    if (!(apart > rounding)) continue;
-    step = std::min(step, apart);
+    if (!(values[i] - values[i - 1] > 1e-12 * range)) continue;
+    constexpr double kFinest = 1e-8;  // of the range: 26 bits
+    const double apart = values[i] - first;
+    step = CommonDivisor(apart, step, kFinest * range);
+    step = apart / std::round(apart / step);  // or rounding grows from value to value
     ++distinct;
   }
-  if (!std::isfinite(step) || 2 * distinct > values.size()) return 0;
+  if (!(step > 0) || 2 * distinct > values.size()) return 0;
   constexpr double kWhole = 0.01;
   const bool multiples = std::all_of(values.begin(), values.end(), [&](double value) {
     const double steps = (value - first) / step;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -181,7 +182,7 @@ Classes SigmaOf(const std::vector<Position>& positions, const SixPositionSetup& 
                 const LinearProblem& problem) {
   if (!setup.sigma && !setup.tilt_sigma) return Scatter(positions, problem);
   const double seconds = Mean(positions, [](const Position& p) { return p.seconds; });
-  const double counting = setup.sigma.value_or(1 / std::sqrt(12.0)) / seconds;
+  const double counting = *setup.sigma / seconds;
   const Eigen::VectorXd x = Solve(problem).x;
   const double tilt = setup.tilt_sigma.value_or(0) * setup.gravity * (x[6] + x[10] + x[14]) / 3;
   return {counting, std::hypot(counting, tilt), true};
@@ -245,6 +246,9 @@ SensorGroup Group(const Eigen::VectorXd& x, bool second_order) {
 }  // namespace
 
 Result<BenchCalibration> FitSixPositions(const BenchTable& data, const SixPositionSetup& setup) {
+  if (setup.tilt_sigma && !setup.sigma) {
+    throw std::invalid_argument("the tilt's sigma needs that of the pulses beside it");
+  }
   const auto positions = ReadPositions(data, setup);
   if (!positions) return positions.fault();
   if (auto fault = BadPositions(data, *positions, setup)) return *fault;
