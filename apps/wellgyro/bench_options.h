@@ -43,10 +43,10 @@ CLI::Validator Within(double low, double high);
 
 /// An option whose number above zero, in the unit of its name, is held in another.
 template <class T>
-void AddPositive(CLI::App& command, const std::string& name, T& held, double unit,
-                 const std::string& help) {
+CLI::Option* AddPositive(CLI::App& command, const std::string& name, T& held, double unit,
+                         const std::string& help) {
   constexpr double kLeast = 1e-15, kMost = 1e15;
-  command
+  return command
       .add_option_function<double>(
           name, [&held, unit](const double& value) { held = value * unit; }, help)
       ->check(Within(kLeast, kMost));

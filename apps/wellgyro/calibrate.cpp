@@ -59,16 +59,14 @@ std::optional<Fault> RunMethod(BenchOptions& o, const BenchMethod& method) {
   file.report = outcome->calibration.report;
   file.check = outcome->check;
   // What cannot be written is told before anything is.
-  std::string tool;
+  std::vector<OutputFile> files = {{o.out, CalibrationToml(file)}};
   if (!o.tool.empty()) {
     Result<std::string> text = ToolText(o, outcome->calibration);
     if (!text) return text.fault();
-    tool = *std::move(text);
+    files.push_back({o.tool, *std::move(text)});
   }
   fmt::print("{}", CalibrationSummary(file));
-  if (auto fault = WriteAndName(o.out, CalibrationToml(file))) return fault;
-  if (o.tool.empty()) return std::nullopt;
-  return WriteAndName(o.tool, tool);
+  return WriteAndName(files);
 }
 
 void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchOptions>& o,

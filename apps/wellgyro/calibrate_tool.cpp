@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -33,11 +34,19 @@
 namespace wellgyro::apps {
 namespace {
 
+// An option that says how well something of the bench is known.
+struct BenchPrior {
+  const CLI::Option* option;
+  const char* kind;
+  std::function<std::optional<double>()> value;  ///< in its name's unit; none: it is found
+};
+
 struct ToolFitOptions {
   BenchOptions bench;
   std::vector<std::string> data, traceability;
   std::string certificate, pdf, number, laboratory, prior;
   ToolFitSetup fit;
+  std::vector<BenchPrior> priors;
 };
 
 Result<std::vector<BenchTable>> ReadInputs(const ToolFitOptions& o, CalibrationFile& file) {
@@ -57,7 +66,7 @@ Result<std::vector<BenchTable>> ReadInputs(const ToolFitOptions& o, CalibrationF
 std::optional<Fault> Shared(const ToolFitOptions& o, const ToolCalibration& prior,
                             const std::vector<InputFile>& inputs) {
   for (const InputFile& input : inputs) {
-    if (!RestsOn(prior, input.sha256)) continue;
+    if (input.role != "data" || !RestsOn(prior, input.sha256)) continue;
     return Fault{.code = FaultCode::kConflict,
                  .text = fmt::format("it rests on the readings of {} too, which would count "
                                      "twice: leave --prior out, or read the bench anew",
@@ -91,12 +100,15 @@ std::optional<Fault> Unlikely(const ToolFitOptions& o, const JoinedTool& joined)
                .source = o.prior};
 }
 
+// The prior joins the inputs of `file`, whose result is of the bench alone.
 Result<ToolCalibration> WithPrior(const ToolFitOptions& o, ToolCalibration tool,
-                                  const std::vector<InputFile>& inputs) {
+                                  CalibrationFile& file) {
   if (o.prior.empty()) return tool;
-  const auto prior = ReadToolFile(o.prior);
+  const Result<std::string> text = ReadTextFile(o.prior);
+  if (!text) return text.fault();
+  const auto prior = ParseTool(*text, o.prior);
   if (!prior) return prior.fault();
-  if (auto fault = Shared(o, *prior, inputs)) return *std::move(fault);
+  if (auto fault = Shared(o, *prior, file.inputs)) return *std::move(fault);
   JoinedTool joined = JoinPrior(std::move(tool), *prior);
   if (auto fault = Unlikely(o, joined)) return *std::move(fault);
   fmt::print("prior: chi-square {:.1f} of {}, as large by chance {:.2g}\n", joined.chi_square,
@@ -108,11 +120,15 @@ Result<ToolCalibration> WithPrior(const ToolFitOptions& o, ToolCalibration tool,
         "it does not rest on the same ones",
         o.prior, joined.likeness));
   }
+  file.inputs.push_back({"prior", o.prior, o.prior, Sha256Hex(*text)});
+  file.report.remarks.push_back(fmt::format(
+      "this result is of the bench's readings alone; the tool file, and the errors left in "
+      "calibrated samples, hold {} as well",
+      o.prior));
   return std::move(joined.tool);
 }
 
-Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit,
-                               const std::vector<InputFile>& inputs) {
+Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit, CalibrationFile& file) {
   ToolCalibration tool;
   if (!o.bench.tool.empty() && std::filesystem::exists(o.bench.tool)) {
     auto known = ReadToolFile(o.bench.tool);
@@ -121,8 +137,8 @@ Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit,
   }
   tool = Updated(std::move(tool), fit, o.bench.update);
   tool.rests_on.clear();
-  for (const InputFile& input : inputs) tool.rests_on.push_back(input.sha256);
-  return WithPrior(o, std::move(tool), inputs);
+  for (const InputFile& input : file.inputs) tool.rests_on.push_back(input.sha256);
+  return WithPrior(o, std::move(tool), file);
 }
 
 // Errors left in samples, in the units that people use.
@@ -171,7 +187,14 @@ void MoveLeftOut(const ToolFit& fit, Certificate& certificate) {
 std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file,
                             const ToolFit& fit, const ToolCalibration& tool,
                             std::vector<InputFile> outputs) {
-  Certificate certificate = CertificateOf(fit.calibration.report);
+  Certificate certificate = CertificateOf(file.report);
+  for (Certificate::Line& line : certificate.result) {
+    // One adjustment of the readings with what was stated of the bench.
+    line.evaluation = "A, B";
+    if (line.name.rfind("accel_S", 0) == 0) {
+      line.unit = o.bench.reference.gravity > 2 ? "reading per m/s2" : "reading per g";
+    }
+  }
   certificate.number = o.number;
   certificate.laboratory = o.laboratory;
   certificate.outputs = std::move(outputs);
@@ -199,35 +222,52 @@ void RequireOthers(const ToolFitOptions& o) {
   RequireDistinct(files);
 }
 
+// What stood around the bench and how well it was known before, stated or not, in units of the
+// options' names.
+std::vector<std::string> ReferencesOf(const ToolFitOptions& o) {
+  std::vector<std::string> references;
+  for (const std::string& said : o.bench.said) references.push_back(said + " (stated)");
+  if (!o.bench.gravity_stated) references.emplace_back("gravity-g 1 (default)");
+  for (const BenchPrior& prior : o.priors) {
+    const std::string name = prior.option->get_name(false, true).substr(2);
+    const std::optional<double> value = prior.value();
+    references.push_back(value ? fmt::format("{} {:.4g} ({}{})", name, *value, prior.kind,
+                                             prior.option->count() > 0 ? "stated" : "default")
+                               : fmt::format("{} found from the readings", name));
+  }
+  return references;
+}
+
+std::vector<OutputFile> OutputsOf(const ToolFitOptions& o, const CalibrationFile& file,
+                                  const ToolFit& fit, const ToolCalibration& tool) {
+  std::vector<OutputFile> files = {{o.bench.out, CalibrationToml(file)}};
+  if (!o.bench.tool.empty()) files.push_back({o.bench.tool, ToolToml(tool)});
+  if (o.certificate.empty()) return files;
+  std::vector<InputFile> certified;
+  for (const OutputFile& each : files) {
+    certified.push_back(
+        {certified.empty() ? "calibration" : "tool", each.name, each.name, Sha256Hex(each.bytes)});
+  }
+  files.push_back({o.certificate, CertificateText(o, file, fit, tool, std::move(certified))});
+  return files;
+}
+
 std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   Complete(o.bench);
   RequireOthers(o);
   o.fit.reference = o.bench.reference;
   CalibrationFile file;
   file.program = "wellgyro " WELLGYRO_VERSION;
-  file.references = o.bench.said;
+  file.references = ReferencesOf(o);
   const auto tables = ReadInputs(o, file);
   if (!tables) return tables.fault();
   const auto fit = FitTool(*tables, o.fit);
   if (!fit) return fit.fault();
   file.report = fit->calibration.report;
-  const auto tool = ToolOf(o, *fit, file.inputs);
+  const auto tool = ToolOf(o, *fit, file);
   if (!tool) return tool.fault();
-  const std::string tool_text = o.bench.tool.empty() ? std::string() : ToolToml(*tool);
   fmt::print("{}", CalibrationSummary(file));
-  const std::string text = CalibrationToml(file);
-  if (auto fault = WriteAndName(o.bench.out, text)) return fault;
-  if (!o.certificate.empty()) {
-    std::vector<InputFile> outputs = {{"calibration", o.bench.out, o.bench.out, Sha256Hex(text)}};
-    if (!tool_text.empty()) {
-      outputs.push_back({"tool", o.bench.tool, o.bench.tool, Sha256Hex(tool_text)});
-    }
-    const std::string html = CertificateText(o, file, *fit, *tool, std::move(outputs));
-    if (auto fault = WriteAndName(o.certificate, html)) return fault;
-  }
-  if (!tool_text.empty()) {
-    if (auto fault = WriteAndName(o.bench.tool, tool_text)) return fault;
-  }
+  if (auto fault = WriteAndName(OutputsOf(o, file, *fit, *tool))) return fault;
   if (o.pdf.empty()) return std::nullopt;
   if (const auto complaint = PrintByChromium(o.certificate, o.pdf)) {
     return Fault{.text = *complaint, .source = o.pdf};
@@ -236,36 +276,49 @@ std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   return std::nullopt;
 }
 
-void AddBenchSigmas(CLI::App& command, ToolFitSetup& fit) {
-  AddPositive(command, "--level-deg", fit.sigma_level, units::kDeg,
-              "1 sigma of a bench's tilt, default 0.5");
-  AddPositive(command, "--north-sigma-deg", fit.sigma_north, units::kDeg,
-              "1 sigma of a bench's north, default 1");
-  AddPositive(command, "--inclination-sigma-deg", fit.sigma_inclination, units::kDeg,
-              "1 sigma of a stand's zero of inclination, default 0.05");
-  AddPositive(command, "--latitude-sigma-deg", fit.sigma_latitude, units::kDeg,
-              "1 sigma of the latitude, default 0.0006");
-  AddPositive(command, "--seat-arcsec", fit.sigma_axis, units::kArcsec,
-              "1 sigma of the tool's seat on the rate table, default 62");
-  AddPositive(command, "--drift-deg-per-h", fit.sigma_drift, 1,
-              "1 sigma of a gyro's drift from the middle to the end of a table, default 0.1");
-  AddPositive(command, "--wobble-arcsec", fit.sigma_wobble, units::kArcsec,
-              "1 sigma of each reading's attitude; found if not given");
-  AddPositive(command, "--sigma-accel", fit.sigma_accel, 1, "of a reading, its unit; found");
-  AddPositive(command, "--sigma-deg-per-h", fit.sigma_gyro, 1,
-              "of a gyro's reading at rest; found");
-  AddPositive(command, "--sigma-table-deg-per-h", fit.sigma_gyro_table, 1,
-              "of one on the rate table; found");
+void AddBenchSigmas(CLI::App& command, ToolFitOptions& o) {
+  const auto add = [&](const char* name, auto& held, double unit, const char* help) {
+    const CLI::Option* const option = AddPositive(command, name, held, unit, help);
+    const std::optional<double> before = held;  // rounded as help says it
+    o.priors.push_back({option, "1 sigma, ", [=, &held]() -> std::optional<double> {
+                          const std::optional<double> value = held;
+                          if (!value || option->count() > 0) return value ? *value / unit : value;
+                          return std::stod(fmt::format("{:.2g}", *before / unit));
+                        }});
+  };
+  ToolFitSetup& fit = o.fit;
+  add("--level-deg", fit.sigma_level, units::kDeg, "1 sigma of a bench's tilt, default 0.5");
+  add("--north-sigma-deg", fit.sigma_north, units::kDeg, "1 sigma of a bench's north, default 1");
+  add("--inclination-sigma-deg", fit.sigma_inclination, units::kDeg,
+      "1 sigma of a stand's zero of inclination, default 0.05");
+  add("--latitude-sigma-deg", fit.sigma_latitude, units::kDeg,
+      "1 sigma of the latitude, default 0.0006");
+  add("--seat-arcsec", fit.sigma_axis, units::kArcsec,
+      "1 sigma of the tool's seat on the rate table, default 62");
+  add("--drift-deg-per-h", fit.sigma_drift, 1,
+      "1 sigma of a gyro's drift from the middle to the end of a table, default 0.1");
+  add("--wobble-arcsec", fit.sigma_wobble, units::kArcsec,
+      "1 sigma of each reading's attitude; found if not given");
+  add("--sigma-accel", fit.sigma_accel, 1, "of a reading, its unit; found");
+  add("--sigma-deg-per-h", fit.sigma_gyro, 1, "of a gyro's reading at rest; found");
+  add("--sigma-table-deg-per-h", fit.sigma_gyro_table, 1, "of one on the rate table; found");
+  const CLI::Option* const degree =
+      command.add_option("--max-degree", fit.max_degree, "of biases in temperature, default 3")
+          ->check(CLI::Range(0, 3));
+  o.priors.push_back({degree, "", [&fit] { return std::optional<double>(fit.max_degree); }});
 }
 
 }  // namespace
 
-std::optional<Fault> WriteAndName(const std::filesystem::path& path, const std::string& bytes) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const OutputFile file{path.filename().string(), bytes};
-  if (auto fault = WriteFiles(folder, {&file, 1})) return fault;
-  fmt::print("{}\n", path.string());
+std::optional<Fault> WriteAndName(std::span<const OutputFile> files) {
+  if (auto fault = WriteFiles(".", files)) return fault;
+  for (const OutputFile& file : files) fmt::print("{}\n", file.name);
   return std::nullopt;
+}
+
+std::optional<Fault> WriteAndName(const std::filesystem::path& path, const std::string& bytes) {
+  const OutputFile file{path.string(), bytes};
+  return WriteAndName({&file, 1});
 }
 
 void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
@@ -285,17 +338,17 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
       ->needs(certificate);
   command->add_option("--certificate-number", o->number, "of the certificate")->needs(certificate);
   command->add_option("--laboratory", o->laboratory, "that issues it")->needs(certificate);
-  command->add_option("--traceability", o->traceability,
-                      "a reference instrument and its certificate, repeat it for more");
+  command
+      ->add_option("--traceability", o->traceability,
+                   "a reference instrument and its certificate, repeat it for more")
+      ->needs(certificate);
   command->add_option("--prior", o->prior,
                       "what was known of the tool before, from other readings: a tool file of "
                       "calibrate tool or learn, joined into --tool");
   AddGravity(*command, o->bench);
   AddLatitude(*command, o->bench);
   AddAxes(*command, o->bench);
-  AddBenchSigmas(*command, o->fit);
-  command->add_option("--max-degree", o->fit.max_degree, "of biases in temperature, default 3")
-      ->check(CLI::Range(0, 3));
+  AddBenchSigmas(*command, *o);
   AddTool(*command, o->bench);
   command->footer(
       "Example:\n  wellgyro calibrate tool --data up.csv --data down.csv --data rates.csv \\\n"

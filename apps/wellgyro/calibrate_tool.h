@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 #include "wellgyro/base/result.h"
+#include "wellgyro/io/atomic_file.h"
 
 namespace wellgyro::apps {
 
@@ -19,5 +21,7 @@ void AddCalibrateHistory(CLI::App& calibrate, int& exit_code);
 
 // Writes a whole file and prints its name.
 std::optional<Fault> WriteAndName(const std::filesystem::path& path, const std::string& bytes);
+// Writes files, named by their paths, all or none where one cannot be made; prints their names.
+std::optional<Fault> WriteAndName(std::span<const OutputFile> files);
 
 }  // namespace wellgyro::apps

@@ -226,6 +226,9 @@ class Calibrate(FreshProgramTest):
                  *counts]
         self.CountedTwice(later, rest, table, taught)
         self.assertIn("prior: chi-square", self.Done(*later, "--prior", taught).stdout)
+        self.assertEqual([data["role"] for data in self.Toml("c2.toml")["data"]],
+                         ["data", "data", "prior"])
+        self.assertIn("of the bench's readings alone", self.Read("c2.toml"))
         rests_on = self.Toml("next.toml")["rests_on"]
         self.assertEqual(len(rests_on), len(set(rests_on)))
         self.assertEqual(len(rests_on), 5)  # two benches of two tables, a run
@@ -300,6 +303,15 @@ class Calibrate(FreshProgramTest):
         for word in ("A&amp;7", "rate table &lt;RT-5&gt;", "gyro_bias_x", "mass_unbalance", "<svg",
                      "level_1[0]", "k = 2", "C-17", "Bench 2", "deg/h/g</td>"):
             self.assertIn(word, html)
+        # What was known of the bench before, stated or not, on paper and in the file.
+        for word in ("gravity-mps2 9.8195 (stated)", "level-deg 0.5 (1 sigma, default)",
+                     "seat-arcsec 62 (1 sigma, default)", "sigma-accel found from the readings",
+                     "max-degree 3 (default)"):
+            self.assertIn(f"<li>{word}</li>", html)
+            self.assertIn(word, self.Toml("c.toml")["references"])
+        self.assertIn("<td>reading per m/s2</td><td>A, B</td>", html)
+        self.assertNotRegex(html, r"<td>[0-9.]+e\+[0-9]+</td>")
+        self.NothingHalfWritten(rest, table)
         # What it certifies, to the byte; each term left out once.
         for name in (tool, self.Path("c.toml")):
             with open(name, "rb") as file:
@@ -344,6 +356,21 @@ class Calibrate(FreshProgramTest):
                           ["verify", "--data", rest, "--tool", tool],
                           ["history", "--tool", self.Write("blank.toml", TrueTool())]):
             self.assertEqual(Run("calibrate", *arguments).returncode, 1, arguments)
+
+    def NothingHalfWritten(self, rest, table):
+        """Where one output cannot be made none is, whichever it is."""
+        blocked = self.Path(self.Write("file", ""), "t.toml")
+        names = [self.Path(name) for name in ("half.toml", "half-tool.toml", "half.html")]
+        for place in range(3):
+            files = [blocked if k == place else name for k, name in enumerate(names)]
+            ran = Run("calibrate", "tool", "--data", rest, "--data", table, "--latitude-deg",
+                      str(LATITUDE), "--gravity-mps2", "9.8195", "--out", files[0], "--tool",
+                      files[1], "--certificate", files[2])
+            self.assertEqual(ran.returncode, 2, ran.stdout)
+            self.assertFalse([name for name in names if os.path.exists(name)], ran.stderr)
+        ran = Run("calibrate", "tool", "--data", rest, "--out", names[0], "--traceability", "RT-5")
+        self.assertEqual(ran.returncode, 1)
+        self.assertIn("--traceability requires --certificate", ran.stderr)
 
     def test_readme_shows_what_the_demonstration_gives(self):
         out = self.Path("accel.toml")

@@ -112,6 +112,7 @@ std::optional<Fault> FileInPieces::Open() {
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
   if (error) return Refused(folder, "make this folder", error.value());
+  if (exists_ && S_ISDIR(mode_)) return Refused(target_, "write", EISDIR);
   RemoveLeftovers(target_);
   // What may not be written may not be replaced either.
   if (exists_ && ::access(target_.c_str(), W_OK) != 0) return Refused(target_, "write", errno);

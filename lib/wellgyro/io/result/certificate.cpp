@@ -50,6 +50,14 @@ std::string Rounded(double value, double uncertainty) {
   return fmt::format("{:.{}f}", value, -place);
 }
 
+// Two digits, without an exponent where people read numbers without one.
+std::string TwoDigits(double u) {
+  if (!(u >= 1e-4 && u < 1e6)) return fmt::format("{:.2g}", u);
+  const int place = static_cast<int>(std::floor(std::log10(u))) - 1;
+  const double step = std::pow(10.0, place);
+  return fmt::format("{:.{}f}", std::round(u / step) * step, std::max(0, -place));
+}
+
 void Lines(std::string& html, std::string_view title, const std::vector<Certificate::Line>& lines,
            bool with_value) {
   if (lines.empty()) return;
@@ -60,9 +68,7 @@ void Lines(std::string& html, std::string_view title, const std::vector<Certific
   for (const Certificate::Line& line : lines) {
     const std::string value =
         with_value ? fmt::format("<td>{}</td>", Rounded(line.value, line.uncertainty)) : "";
-    const auto known = [&](double u) {
-      return u > 0 ? fmt::format("{:.2g}", u) : std::string("not known");
-    };
+    const auto known = [&](double u) { return u > 0 ? TwoDigits(u) : std::string("not known"); };
     html += fmt::format("<tr><td>{}</td>{}<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                         Escaped(line.name), value, known(line.uncertainty),
                         known(2 * line.uncertainty), Escaped(line.unit), line.evaluation);
@@ -80,6 +86,7 @@ std::string UnitOf(std::string_view name) {
   if (begins("gyro_S")) return "1";
   if (begins("accel_b") || begins("accel_drift") || begins("accel_hysteresis")) return "reading";
   if (begins("accel_S")) return "reading/gravity";
+  if (begins("accel_K2")) return "reading/gravity^2";
   return "";
 }
 
@@ -212,7 +219,8 @@ std::string CertificateHtml(const Certificate& certificate) {
   html +=
       "<p>u is the standard uncertainty; U = 2 u covers some 95 % where errors are normal (JCGM "
       "100). "
-      "A: evaluated from the scatter of the readings; B: from what was stated of the bench.</p>\n";
+      "A: evaluated from the scatter of the readings; B: from what was stated of the bench; A, B: "
+      "both, in one adjustment.</p>\n";
   Lines(html, "Errors left in calibrated samples", certificate.samples, false);
   Lines(html, "Result", certificate.result, true);
   Lines(html, "Bench", certificate.bench, true);
