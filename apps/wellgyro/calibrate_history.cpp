@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/calibration/history.h"
+#include "wellgyro/io/result/certificate.h"
 #include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/io/words.h"
 
@@ -26,27 +28,55 @@ struct HistoryOptions {
 
 void TellHistory(const ToolHistory& history) {
   for (const SourceHistory& source : history.sources) {
+    const SourceUnit unit = UnitOfSource(source.name);
     const double change = source.changes.empty() ? 0 : source.changes.back();
     const double sigma = source.sigmas.empty() ? 0 : source.sigmas.back();
-    fmt::print("{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{}{}\n", Printable(history.asset_serial),
-               source.name, history.days.size() + 1, change, sigma, source.walk_per_sqrt_day,
-               source.prior_sigma, source.shifted ? "shifted" : "",
+    fmt::print("{},{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{}{}\n", Printable(history.asset_serial),
+               source.name, unit.name, history.days.size() + 1, change * unit.per_si,
+               sigma * unit.per_si, source.walk_per_sqrt_day * unit.per_si,
+               source.prior_sigma * unit.per_si, source.shifted ? "shifted" : "",
                source.out_of_family ? " out of family" : "");
   }
 }
 
-int History(const HistoryOptions& o) {
+// Outside its range a calibration is taken as at the end of it.
+void TellBeyond(const std::string& name, const ToolCalibration& tool, double temperature) {
+  for (const SensorGroup* group : {&tool.gyro, &tool.accel}) {
+    const bool varies = group->n_channels > 0 && group->thermometer >= 0;
+    if (!varies || (temperature >= group->min && temperature <= group->max)) continue;
+    Complain(fmt::format(
+        "{}: calibrated from {:.4g} to {:.4g} degC: at {:.4g} degC what it is there is not known, "
+        "and the nearer end stands for it (--temperature-degc)",
+        name, group->min, group->max, temperature));
+    return;
+  }
+}
+
+// Ranges of the options are checked before: what is refused is in the files.
+Result<std::vector<ToolHistory>> HistoriesIn(const HistoryOptions& o) {
   std::vector<ToolCalibration> calibrations;
   for (const std::string& name : o.tools) {
     auto tool = ReadToolFile(name);
-    if (!tool) return Unusable(tool.fault());
+    if (!tool) return tool.fault();
+    TellBeyond(name, *tool, o.setup.temperature);
     calibrations.push_back(*std::move(tool));
   }
-  fmt::print("tool,source,calibrations,last_change,sigma,walk_per_sqrt_day,prior_sigma,remark\n");
-  const std::vector<ToolHistory> histories = HistoriesOf(calibrations, o.setup);
-  for (const ToolHistory& history : histories) TellHistory(history);
+  try {
+    return HistoriesOf(calibrations, o.setup);
+  } catch (const std::invalid_argument& error) {
+    return Fault{.code = FaultCode::kConflict, .text = error.what()};
+  }
+}
+
+int History(const HistoryOptions& o) {
+  const auto histories = HistoriesIn(o);
+  if (!histories) return Unusable(histories.fault());
+  fmt::print(
+      "tool,source,unit,calibrations,last_change[unit],sigma[unit],walk[unit/sqrt(day)],"
+      "prior_sigma[unit],remark\n");
+  for (const ToolHistory& history : *histories) TellHistory(history);
   const auto changed = static_cast<std::size_t>(std::ranges::count_if(
-      histories, [](const ToolHistory& history) { return !history.days.empty(); }));
+      *histories, [](const ToolHistory& history) { return !history.days.empty(); }));
   if (changed < kToolsOfFamily) {
     Complain(
         fmt::format("{} with two calibrations and more: that one is out of family is said of "

@@ -84,7 +84,9 @@ int Plan(BenchPlanOptions& o) {
   }
   if (!o.azimuth_deg.empty()) {
     o.setup.azimuth_from = FromDegrees(o.azimuth_deg[0]);
-    o.setup.azimuth_to = FromDegrees(o.azimuth_deg[1]);
+    // Clockwise: 350 to 10 goes through north.
+    const double turn = o.azimuth_deg[1] < o.azimuth_deg[0] ? 360 : 0;
+    o.setup.azimuth_to = FromDegrees(o.azimuth_deg[1] + turn);
   }
   const BenchPlan plan = PlanBench(o.setup);
   TellPlan(o.setup, plan);
@@ -94,7 +96,7 @@ int Plan(BenchPlanOptions& o) {
                     plan.settings.size(), ToDegrees(plan.wanted)));
   }
   if (const auto fault = WriteAndName(o.out, PlanText(plan))) return Unusable(*fault);
-  return plan.reached ? kDone : kUnusable;
+  return plan.reached ? kDone : kUnfit;
 }
 
 // What it is for: a well, or all directions in ranges.
@@ -150,7 +152,8 @@ void AddCalibratePlan(CLI::App& calibrate, int& exit_code) {
       ->required();
   command->footer(
       "Example:\n  wellgyro calibrate plan --bench-latitude-deg 52 --latitude-deg 60 \\\n"
-      "      --well planned.csv --out settings.csv");
+      "      --well planned.csv --out settings.csv\n"
+      "Exit code 4: the sigma wanted is not reached.");
   OnCall(command, exit_code, [o] { return Plan(*o); });
 }
 

@@ -138,6 +138,33 @@ class AllanOfFiles(FreshProgramTest):
         self.assertIn("every sample reads 3", ran.stderr)
         self.assertFalse(os.path.exists(self.Path("n.toml")))
 
+    def test_times_and_temperatures_of_a_table(self):
+        y = White(2000, 5)
+        table = lambda head, row: self.Write("t.csv", head + "".join(map(row, range(2000))))
+        back = table("TOOL[s],GX[deg/h]\n",
+                     lambda i: f"{0.01 * (i if i != 700 else 650)},{y[i]}\n")
+        ran = Allan("--data", back)
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("t.csv:702: its time is -0.49 s after", ran.stderr)
+        self.assertIn("leave out the row", ran.stderr)
+        still = table("TOOL[s],GX[deg/h]\n", lambda i: f"{i // 1000},{y[i]}\n")
+        ran = Allan("--data", still)
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("t.csv:3: the times do not rise from row to row: sort the rows", ran.stderr)
+        # TEMP is found by its name, K told from degC; without one there is nothing to take off.
+        warm = lambda i: 25 + 5 * math.sin(i / 300)
+        for unit, zero in (("degC", 0), ("K", 273.15)):
+            data = table(f"GX[deg/h],TEMP[{unit}]\n",
+                         lambda i: f"{y[i] + 20 * warm(i)},{warm(i) + zero}\n")
+            ran = Allan("--data", data, "--rate-hz", "100", "--detrend", "temperature")
+            self.assertEqual(ran.returncode, 0, ran.stderr)
+            at = float(ran.stderr.split("per degC at ")[1].split()[0])
+            self.assertAlmostEqual(at, 25, delta=3)
+        data = table("GX[deg/h]\n", lambda i: f"{y[i]}\n")
+        ran = Allan("--data", data, "--rate-hz", "100", "--detrend", "temperature")
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("no temperature to detrend by: name its column", ran.stderr)
+
     def test_a_wrong_command_line_is_exit_1(self):
         data = self.PutDoubles("log.f64", White(100, 3))
         for arguments in ((), ("--data", data), ("--data", data, "--rate-hz", "0"),

@@ -340,9 +340,26 @@ class Calibrate(FreshProgramTest):
         ran = self.Done("calibrate", "history", "--tool", tool, "--tool", later)
         self.assertIn("shifted", "".join(x for x in ran.stdout.splitlines() if "gyro_bias_y" in x))
         self.assertIn("1 tool with two calibrations", ran.stderr)
+        self.assertIn("last_change[unit]", ran.stdout)
+        row = next(x for x in ran.stdout.splitlines() if "gyro_bias_y" in x).split(",")
+        self.assertEqual(row[2], "deg/h")
+        self.assertAlmostEqual(abs(float(row[4])), 0.15, delta=0.05)  # of one of two gyros
+        # A file that is unusable is not the command line's fault; no heading before the complaint.
+        undated = self.Write("undated.toml", re.sub(r'calibrated = ".*"\n', "", self.Read(tool)))
+        for files in ([undated], [self.Write("blank.toml", TrueTool())], [tool, tool]):
+            ran = Run("calibrate", "history", "--tool", *files)
+            self.assertEqual((ran.returncode, ran.stdout), (2, ""), ran.stderr)
         self.Done("calibrate", "plan", "--bench-latitude-deg", "52", "--latitude-deg", "60",
                   "--azimuth-sigma-deg", "0.05", "--out", self.Path("plan.csv"))
         self.assertTrue(self.Read(self.Path("plan.csv")).startswith("inc,az,tf,tau\n"))
+        # Clockwise through north, and a sigma that no plan reaches.
+        plan = ["calibrate", "plan", "--bench-latitude-deg", "52", "--latitude-deg", "60",
+                "--inclination-deg", "20", "60", "--out", self.Path("plan.csv")]
+        north = self.Done(*plan, "--azimuth-deg", "350", "10").stdout
+        self.assertEqual(north, self.Done(*plan, "--azimuth-deg", "-10", "10").stdout)
+        ran = Run(*plan, "--azimuth-sigma-deg", "1e-5")
+        self.assertEqual(ran.returncode, 4, ran.stderr)
+        self.assertIn("do not reach", ran.stderr)
         # For a well as good as the plain bench by half its settings, and near the bound.
         planned = self.Write("planned.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n" + "".join(
             f"{30 * i},{min(3 * i, 60)},70\n" for i in range(40)))
@@ -353,8 +370,7 @@ class Calibrate(FreshProgramTest):
         bound = float(ran.stdout.split("in less than ")[1].split()[0])
         self.assertTrue(0.85 * settings < bound <= settings, ran.stdout)
         for arguments in (["tool", "--data", rest, "--out", rest],
-                          ["verify", "--data", rest, "--tool", tool],
-                          ["history", "--tool", self.Write("blank.toml", TrueTool())]):
+                          ["verify", "--data", rest, "--tool", tool]):
             self.assertEqual(Run("calibrate", *arguments).returncode, 1, arguments)
 
     def NothingHalfWritten(self, rest, table):

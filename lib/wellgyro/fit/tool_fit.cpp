@@ -88,6 +88,18 @@ void TellDrifts(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
   }
 }
 
+// "axis_x_of_table_3[1] (the tool's seat on the rate table)".
+std::string NuisanceText(const std::string& name) {
+  return name.rfind("axis_", 0) == 0 ? name + " (the tool's seat on the rate table)" : name;
+}
+
+// The adjustment is linear in a turn: of a large one it says that it is large, not how large.
+std::string TurnText(double turn, double prior_sigma) {
+  constexpr double kLinear = FromDegrees(10);
+  if (std::abs(turn) < kLinear) return fmt::format("{:.3g} deg", ToDegrees(turn));
+  return fmt::format("far more than its sigma of {:.2g} deg", ToDegrees(prior_sigma));
+}
+
 // What the readings say of the bench against what was said before; values and sigmas as reported,
 // with what was left out.
 void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
@@ -98,9 +110,10 @@ void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit
     nuisance.sigma = std::sqrt(std::max(0.0, fit.calibration.report.cov(at, at)));
     if (const auto asked = FarOff(a, at, nuisance.prior_sigma)) {
       fit.calibration.report.remarks.push_back(fmt::format(
-          "{}: the readings ask for {:.3g} deg beside what was given, {:.1f} sigmas off: the "
-          "reference is wrong, or a unit or sign of the table",
-          nuisance.name, ToDegrees(asked->value), asked->sigmas));
+          "{}: the readings ask for {} beside what was given, {:.1f} sigmas off: the reference is "
+          "wrong, or a unit or sign of the table",
+          NuisanceText(nuisance.name), TurnText(asked->value, nuisance.prior_sigma),
+          asked->sigmas));
     }
     fit.nuisances.push_back(std::move(nuisance));
   }

@@ -100,31 +100,41 @@ void TakeOff(const Means& means, const TemperatureTrend& trend, SampleSeries& se
 
 }  // namespace
 
-std::optional<std::string> PlaceByTime(SampleSeries& series, std::span<const double> times) {
+std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const double> times) {
   if (times.size() < 3 || times.size() != series.values.size()) {
-    return "too few times to tell the period of the samples";
+    return TimesComplaint{"too few times to tell the period of the samples"};
   }
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size() && i < 100'001; ++i) {
     steps.push_back(times[i] - times[i - 1]);
   }
   const double period = Median(std::move(steps));
-  if (!(period > 0)) return "the times do not rise";
+  if (!(period > 0)) {
+    const auto at =
+        std::adjacent_find(times.begin(), times.end(), [](double a, double b) { return !(b > a); });
+    return TimesComplaint{
+        "the times do not rise from row to row: sort the rows, write times with all their digits, "
+        "or name another column (--time, or --sequence for numbers)",
+        static_cast<std::size_t>(at - times.begin()) + 1};
+  }
   std::vector<std::int64_t> place(times.size(), 0);
   constexpr double kLongest = 1e9;
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double step = (times[i] - times[i - 1]) / period;
     if (!(step > 0.5) || step > kLongest) {
-      return fmt::format(
-          "sample {} comes {:.6g} s after the one before, where the period is {:.6g}", i + 1,
-          times[i] - times[i - 1], period);
+      return TimesComplaint{
+          fmt::format("its time is {:.6g} s after that of the sample before, where the period is "
+                      "{:.6g} s: mend or leave out the row, or name another column (--time, or "
+                      "--sequence for numbers)",
+                      times[i] - times[i - 1], period),
+          i};
     }
     place[i] = place[i - 1] + static_cast<std::int64_t>(std::llround(step));
   }
   constexpr std::int64_t kRoom = 1'000'000, kPerSample = 100;
   if (place.back() > kRoom + kPerSample * std::ssize(place)) {
-    return fmt::format("the times leave {} places for {} samples", place.back() + 1,
-                       std::ssize(place));
+    return TimesComplaint{fmt::format("the times leave {} places for {} samples", place.back() + 1,
+                                      std::ssize(place))};
   }
   series.period = (times.back() - times.front()) / static_cast<double>(place.back());
   if (place.back() + 1 == std::ssize(place)) return std::nullopt;

@@ -10,10 +10,16 @@
 
 namespace wellgyro {
 
+/// What is wrong with times, and at which sample.
+struct TimesComplaint {
+  std::string text;
+  std::size_t sample = 0;
+};
+
 /// Sets the period and a place for every sample that is missing from the samples' times [s]. Gives
-/// the sentence of what is wrong with them: they go back, or lie between places.
-WELLGYRO_EXPORT std::optional<std::string> PlaceByTime(SampleSeries& series,
-                                                       std::span<const double> times);
+/// what is wrong with them: they go back, or lie between places.
+WELLGYRO_EXPORT std::optional<TimesComplaint> PlaceByTime(SampleSeries& series,
+                                                          std::span<const double> times);
 
 /// Leaves out [from, to) [s from the first sample]; the period must be set. Gives the samples left
 /// out.

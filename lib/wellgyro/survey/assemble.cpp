@@ -250,12 +250,13 @@ std::string WhyNoOpening(const Job& job, double first) {
   if (first < tie) {
     return fmt::format(
         "the survey begins at {:.2f} m, above the tie-in at {:.2f} m, and has no station there: "
-        "give [tie_in] inclination_deg and azimuth_true_deg, or md_m = {:.2f}",
+        "give [tie_in] inclination_deg and azimuth_true_deg, or md_m = {:.2f} with the tvd_m there",
         first, tie, first);
   }
   return fmt::format(
       "the survey begins at {:.2f} m, below the tie-in at {:.2f} m: give [tie_in] "
-      "inclination_deg and azimuth_true_deg for the {:.2f} m between, or md_m = {:.2f}",
+      "inclination_deg and azimuth_true_deg for the {:.2f} m between, or md_m = {:.2f} with the "
+      "tvd_m there",
       first, tie, first - tie, first);
 }
 

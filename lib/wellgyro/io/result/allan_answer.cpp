@@ -31,6 +31,11 @@ class Analyst {
   Result<AllanAnswer> Answer() {
     answer_.notes = series_.notes;
     answer_.losses = series_.damaged;
+    if (request_.detrend_temperature && series_.temperature.empty()) {
+      return Fault{.code = FaultCode::kForeign,
+                   .text = "no temperature to detrend by: name its column (--temperature)",
+                   .source = request_.source};
+    }
     if (request_.phases) RatesFromPhases(series_);
     Clean();
     const AllanResult octaves = OctavesOfAll();
@@ -81,7 +86,7 @@ class Analyst {
     if (!request_.detrend_temperature) return;
     const auto trend = DetrendTemperature(series_);
     if (!trend) {
-      Note("no temperature, or one that does not vary: nothing is taken off");
+      Note("the temperature does not vary: nothing is taken off");
       return;
     }
     Note(fmt::format("taken off: {} +- {} per degC at {:.4g} degC, {:.3g} of the slow changes",

@@ -178,17 +178,23 @@ Certificate CertificateOf(const FitReport& report) {
   return c;
 }
 
+SourceUnit UnitOfSource(const std::string& source) {
+  const auto begins = [&](const char* with) { return source.rfind(with, 0) == 0; };
+  if (begins("gyro_bias")) return {"deg/h", 1 / units::kDegPerHour};
+  if (begins("gyro_force") || source == "mass_unbalance" || source == "quadrature") {
+    return {"deg/h/g", 1 / units::kDegPerHourPerG};
+  }
+  if (begins("accel_bias")) return {"mg", 1 / units::kMilliG};
+  return {};
+}
+
 std::vector<Certificate::Line> SampleErrors(const CalibrationSources& sources) {
   std::vector<Certificate::Line> lines;
   for (std::size_t i = 0; i < sources.names.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const std::string& name = sources.names[i];
-    const bool force =
-        name.rfind("gyro_force", 0) == 0 || name == "mass_unbalance" || name == "quadrature";
-    Certificate::Line line{name, "1e-6", 0, 1e6, "A, B"};
-    if (name.rfind("gyro_bias", 0) == 0) line = {name, "deg/h", 0, 1 / units::kDegPerHour, "A, B"};
-    if (force) line = {name, "deg/h/g", 0, 1 / units::kDegPerHourPerG, "A, B"};
-    if (name.rfind("accel_bias", 0) == 0) line = {name, "mg", 0, 1 / units::kMilliG, "A, B"};
+    const SourceUnit unit = UnitOfSource(name);
+    Certificate::Line line{name, unit.name, 0, unit.per_si, "A, B"};
     line.uncertainty *= std::sqrt(std::max(0.0, sources.cov(at, at)));
     if (line.uncertainty > 0) lines.push_back(std::move(line));
   }

@@ -39,6 +39,13 @@ struct Certificate {
 /// Its result lines, residuals and statistics from a fit; the rest is the caller's.
 WELLGYRO_EXPORT Certificate CertificateOf(const FitReport& report);
 
+/// The unit in which people read an error source, and how many of it are one SI unit.
+struct SourceUnit {
+  const char* name = "1e-6";
+  double per_si = 1e6;
+};
+WELLGYRO_EXPORT SourceUnit UnitOfSource(const std::string& source);
+
 /// The sources of a calibration (calibration/error_sources.h) in the units that people use: deg/h,
 /// deg/h/g, mg, 1e-6; those that are zero are left out.
 WELLGYRO_EXPORT std::vector<Certificate::Line> SampleErrors(const CalibrationSources& sources);

@@ -84,7 +84,11 @@ class CsvReader {
     if (series_.values.empty()) return Bad("there is not one sample in it");
     if (time_) {
       if (sequence_) return Bad("times and sample numbers say the same twice: name one of them");
-      if (auto wrong = PlaceByTime(series_, times_)) return Bad(*wrong, FaultCode::kOrder);
+      if (const auto wrong = PlaceByTime(series_, times_)) {
+        Fault fault = Bad(wrong->text, FaultCode::kOrder);
+        fault.line = wrong->sample > 0 ? lines_[wrong->sample] : 0;
+        return fault;
+      }
     }
     return std::move(series_);
   }
@@ -153,6 +157,8 @@ class CsvReader {
     time_ = Find(columns_.time, header);
     if (fault_) return;
     if (header && !time_ && !sequence_) FindClock();
+    if (header && !temperature_) FindTemperature();
+    if (fault_) return;
     if (!value_) FindOnly(header);
     if (!value_ && !fault_) Refuse("no column beside times, numbers and temperatures");
     if (header && !fault_) TakeUnits();
@@ -168,7 +174,30 @@ class CsvReader {
     }
   }
 
+  // TEMP under its name in tables of sensor data.
+  void FindTemperature() {
+    for (std::size_t i = 0; i < fields_.size() && !temperature_; ++i) {
+      const bool named = fields_[i].substr(0, fields_[i].find('[')) == "TEMP";
+      if (named && i != value_) temperature_ = i;
+    }
+  }
+
+  // [K] is told from degC by what it says; any other unit is refused.
+  void TakeTemperatureUnit() {
+    const std::string_view heading = fields_[*temperature_];
+    const std::size_t bracket = heading.find('[');
+    if (bracket == std::string_view::npos || heading.substr(bracket) == "[degC]") return;
+    if (heading.substr(bracket) == "[K]") {
+      zero_degc_ = 273.15;
+      return;
+    }
+    Refuse(fmt::format("column {} is no temperature in degC or K", heading), FaultCode::kForeign,
+           *temperature_);
+  }
+
   void TakeUnits() {
+    if (temperature_) TakeTemperatureUnit();
+    if (fault_) return;
     if (time_) {
       const std::string heading = Bracketed(fields_[*time_]);
       const auto headed = sensors::HeadedUnitOf(heading);
@@ -238,9 +267,10 @@ class CsvReader {
     if (time_) {
       if (times_.empty()) first_time_ = time;
       times_.push_back((time - first_time_) * seconds_);
+      lines_.push_back(line_number_);
     }
     series_.values.push_back(scale_ * value);
-    if (temperature_) series_.temperature.push_back(static_cast<float>(temperature));
+    if (temperature_) series_.temperature.push_back(static_cast<float>(temperature - zero_degc_));
   }
 
   // Makes room for the samples that are missing before this one.
@@ -280,7 +310,8 @@ class CsvReader {
   std::optional<std::size_t> temperature_;
   std::optional<std::size_t> time_;
   std::vector<double> times_;  ///< [s] from the first
-  double first_time_ = 0, seconds_ = 1, scale_ = 1;
+  std::vector<int> lines_;     ///< of the times
+  double first_time_ = 0, seconds_ = 1, scale_ = 1, zero_degc_ = 0;
   std::optional<std::int64_t> last_sequence_;
   const char* line_begin_ = nullptr;
   int line_number_ = 0;
