@@ -84,24 +84,29 @@ std::optional<std::pair<Eigen::Index, Eigen::Index>> CopyAmong(const Eigen::Matr
   std::map<std::vector<double>, Eigen::Index> seen;
   std::vector<Eigen::Index> first;
   std::optional<std::pair<Eigen::Index, Eigen::Index>> copy;
+  double copies = 0;
   for (Eigen::Index row = 0; row < readings.rows(); ++row) {
     const Eigen::VectorXd values = readings.row(row).transpose();
     const auto [at, is_new] = seen.emplace(std::vector<double>(values.begin(), values.end()), row);
     if (is_new) first.push_back(row);
-    if (!is_new && !copy) copy = {at->second, row};
+    if (!is_new && copies++ == 0) copy = {at->second, row};
   }
   if (!copy) return std::nullopt;
   const auto n = static_cast<double>(first.size());
-  double by_chance = n - 1;
+  double expected = n - 1, repeats = 0;
   for (Eigen::Index c = 0; c < readings.cols(); ++c) {
     Eigen::VectorXd values = readings(first, c);
     std::sort(values.begin(), values.end());
     double alike = 0;
     for (Eigen::Index i = 1; i < values.size(); ++i) alike += values[i] == values[i - 1] ? 1 : 0;
-    by_chance *= (alike + 1) / (n + 1);
+    expected *= (alike + 1) / (n + 1);
+    repeats += alike;
   }
+  // Where values repeat besides, repeats hang together: of one attitude without noise all channels.
+  const double m = repeats == 0 ? copies : 1;
   constexpr double kFalseAlarm = 0.01;
-  return by_chance < kFalseAlarm ? copy : std::nullopt;
+  const double log_chance = m * std::log(expected) - std::lgamma(m + 1);
+  return log_chance < std::log(kFalseAlarm) ? copy : std::nullopt;
 }
 
 std::optional<Fault> Copied(const BenchTable& data, const std::vector<int>& columns) {

@@ -48,8 +48,10 @@ std::optional<Fault> Repeated(const BenchTable& data);
 /// Two rows of readings, a column a channel, alike to the last digit in every channel, the second
 /// behind the first, where chance does not make them so. Of the other rows' n values of a channel,
 /// in their order, k neighbours are alike: the next two are so by chance in (k + 1) of (n + 1)
-/// cases (Laplace's rule of succession), and in all channels at once in the product of these. Below
-/// 0.01 such neighbours are to be expected, so that rounded readings may repeat.
+/// cases (Laplace's rule of succession), and in all channels at once in the product of these, so
+/// that h of all neighbours are expected to be. Chance reaches m copies in less than h^m / m! of
+/// tables (Poisson), which is to be below 0.01: rounded readings may repeat. Where
+/// other values repeat, m counts as one.
 std::optional<std::pair<Eigen::Index, Eigen::Index>> CopyAmong(const Eigen::MatrixXd& readings);
 /// The same in these columns of a table, under whatever times or labels.
 std::optional<Fault> Copied(const BenchTable& data, const std::vector<int>& columns);
