@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 
@@ -64,6 +65,39 @@ TEST(StaticLog, TellsWhereItMoved) {
   EXPECT_LE(moved[1].where.begin, 150000);
   EXPECT_GE(moved[1].where.end, 150000);
   EXPECT_LT(moved[1].where.end - moved[1].where.begin, 1000);
+}
+
+// 0.3 of noise in a stretch's mean, a step as large as that half-way.
+TEST(StaticLog, TellsAStepThatNoNeighboursShow) {
+  NoiseCoefficients white;
+  white.angle_random_walk = 0.3;
+  for (const double size : {2.0, 0.3}) {
+    auto rate = test::LogPair(200000, 0.01, white, 11).first;
+    for (std::size_t i = 100000; i < rate.size(); ++i) rate[i] += size;
+    const auto steps = Of(InspectStaticLog(rate, {}), Kind::kStep);
+    ASSERT_EQ(steps.size(), 1u) << size;
+    EXPECT_NEAR(static_cast<double>(steps[0].where.begin), 1e5, size > 1 ? 500 : 10000);
+    EXPECT_NEAR(steps[0].size, size, 0.06);  // four sigmas of 0.0134
+  }
+}
+
+TEST(StaticLog, TellsNoStepOfASoundLog) {
+  int told = 0, logs = 0;
+  for (std::uint64_t seed = 0; seed < 25; ++seed) {
+    for (int kind = 0; kind < 4; ++kind) {
+      NoiseCoefficients truth;
+      truth.angle_random_walk = 0.3;
+      if (kind == 1 || kind == 3) truth.rate_random_walk = 0.01;
+      if (kind == 2 || kind == 3) truth.bias_instability = kind == 2 ? 1 : 0.1;
+      const auto pair = test::LogPair(100000, 0.02, truth, seed);
+      for (const auto* rate : {&pair.first, &pair.second}) {
+        told += Of(InspectStaticLog(*rate, {}), Kind::kStep).empty() ? 0 : 1;
+        ++logs;
+      }
+    }
+  }
+  std::printf("sound logs told of a step: %d of %d\n", told, logs);
+  EXPECT_LE(told, logs / 100);
 }
 
 TEST(StaticLog, TellsWhereItShook) {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "wellgyro/math/median.h"
+#include "wellgyro/noise/level_step_internal.h"
 #include "wellgyro/noise/value_runs_internal.h"
 
 namespace wellgyro {
@@ -17,6 +19,7 @@ constexpr std::size_t kAway = 100;  // stretches it may stand away and come back
 // Share of the variance of 40 means that a line must explain: of pure rate random walk one log in
 // twenty does (5.1 % of 4000 simulated), of white noise none (29 % of the variance at most).
 constexpr double kExplained = 0.9;
+constexpr double kSureStep = 25;    // evidence: of 200 sound logs the most was 19
 
 double RobustSigma(const std::vector<double>& values) {
   const double median = Median(values);
@@ -49,7 +52,12 @@ class Inspector {
     if (!findings_.empty() && findings_.front().kind == Kind::kConstant) return findings_;
     FillStretches();
     FindMovements();
+    const std::optional<LogFinding> step = FindStep();
     FindDrift();
+    const bool other = std::any_of(findings_.begin(), findings_.end(), [](const LogFinding& f) {
+      return f.kind != Kind::kSaturated && f.kind != Kind::kStuck;
+    });
+    if (step && !other) AddFinding(*step, findings_);
     return findings_;
   }
 
@@ -140,6 +148,20 @@ class Inspector {
                  findings_);
       i = last;
     }
+  }
+
+  // A step that no two neighbouring stretches show, by all that stand before and behind it.
+  std::optional<LogFinding> FindStep() const {
+    std::vector<double> means;
+    for (const Stretch& stretch : stretches_) means.push_back(stretch.mean);
+    const auto step = FindLevelStep(means);
+    if (!step || step->evidence < kSureStep) return std::nullopt;
+    const std::int64_t begin = stretches_[step->at - 1].begin;
+    const std::int64_t end = stretches_[step->at].begin + length_;
+    return LogFinding{.kind = Kind::kStep,
+                      .where = {begin, end},
+                      .size = std::abs(step->size),
+                      .samples = end - begin};
   }
 
   // Mean levels of up to twenty stretches beside a movement.

@@ -43,12 +43,15 @@ struct StaticLogOptions {
 /// What a log that should be static was not, in order of kind and place; at most a hundred of each
 /// kind. Works on means over 1/2000 of the log (at least 16 samples).
 ///
-/// Moved: neighbouring means differ by more than eight times what they usually do, or the scatter
-/// within exceeds the usual likewise; a movement much shorter than such a stretch and no larger
-/// than the noise goes unseen. Saturated: an end of the converter, or an extreme value that comes
-/// three times in a row and more than twice as often as the next. Temperature: a straight line in
-/// temperature explains nine tenths of the slow changes. Warm-up: an exponential from the begin
-/// does, and leaves less than half of what a straight line in time leaves. Drift: that line does.
+/// Step: besides those that show between neighbouring means, one whose evidence by all means before
+/// and behind it (likelihood of white noise about a walk, with the step and without) is beyond
+/// what sound logs have, where nothing else is told of the log. Moved: neighbouring means differ by
+/// more than eight times what they usually do, or the scatter within exceeds the usual likewise; a
+/// movement much shorter than such a stretch and no larger than the noise goes unseen. Saturated:
+/// an end of the converter, or an extreme value that comes three times in a row and more than twice
+/// as often as the next. Temperature: a straight line in temperature explains nine tenths of the
+/// slow changes. Warm-up: an exponential from the begin does, and leaves less than half of what a
+/// straight line in time leaves. Drift: that line does.
 WELLGYRO_EXPORT std::vector<LogFinding> InspectStaticLog(std::span<const double> rate,
                                                          std::span<const SampleGap> gaps,
                                                          const StaticLogOptions& options = {});
