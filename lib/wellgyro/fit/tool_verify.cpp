@@ -233,6 +233,12 @@ std::optional<Fault> Unlike(const BenchTable& data, const ToolReadings& readings
       1, FaultCode::kConflict);
 }
 
+std::optional<Fault> RateTable(const BenchTable& data) {
+  if (!data.Find("rate_deg_s")) return std::nullopt;
+  return BenchFault(data, "it is a rate table: verify takes positions read at rest", 1,
+                    FaultCode::kForeign);
+}
+
 bool GoesWithTemperature(const SensorGroup& group) {
   return group.n_channels > 0 && group.thermometer >= 0 && group.max > group.min;
 }
@@ -267,10 +273,7 @@ std::optional<std::pair<double, double>> Beyond(const ToolReadings& readings,
 
 Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
                                 const VerifySetup& setup) {
-  if (data.Find("rate_deg_s")) {
-    return BenchFault(data, "it is a rate table: verify takes positions read at rest", 1,
-                      FaultCode::kForeign);
-  }
+  if (auto fault = RateTable(data)) return *fault;
   const auto readings = ReadTool({&data, 1}, setup.bench);
   if (!readings) return readings.fault();
   if ((readings->n_gyro > 0 && (!setup.bench.sigma_gyro || !setup.bench.reference.latitude)) ||

@@ -98,6 +98,15 @@ void TakeOff(const Means& means, const TemperatureTrend& trend, SampleSeries& se
   }
 }
 
+TimesComplaint NotRising(std::span<const double> times) {
+  const auto at =
+      std::adjacent_find(times.begin(), times.end(), [](double a, double b) { return !(b > a); });
+  return {
+      "the times do not rise from row to row: sort the rows, write times with all their "
+      "digits, or name another column (--time, or --sequence for numbers)",
+      static_cast<std::size_t>(at - times.begin()) + 1};
+}
+
 }  // namespace
 
 std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const double> times) {
@@ -109,14 +118,7 @@ std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const 
     steps.push_back(times[i] - times[i - 1]);
   }
   const double period = Median(std::move(steps));
-  if (!(period > 0)) {
-    const auto at =
-        std::adjacent_find(times.begin(), times.end(), [](double a, double b) { return !(b > a); });
-    return TimesComplaint{
-        "the times do not rise from row to row: sort the rows, write times with all their digits, "
-        "or name another column (--time, or --sequence for numbers)",
-        static_cast<std::size_t>(at - times.begin()) + 1};
-  }
+  if (!(period > 0)) return NotRising(times);
   std::vector<std::int64_t> place(times.size(), 0);
   constexpr double kLongest = 1e9;
   for (std::size_t i = 1; i < times.size(); ++i) {
