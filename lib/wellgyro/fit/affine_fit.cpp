@@ -115,7 +115,7 @@ std::optional<Fault> BadTable(const BenchTable& data, const AttitudeTable& table
 // and nothing else has the pattern.
 void TellInclination(AttitudeTable table, const AffineSetup& setup, const LinearProblem& problem,
                      const LinearSolution& solution, FitReport& report) {
-  constexpr double kFalseAlarm = 0.01, kStep = 1e-4;  // rad: to 2e-9 of du/dI
+  constexpr double kStep = 1e-4;  // rad: to 2e-9 of du/dI
   table.inclination.array() += kStep;
   const std::vector<AffineReadings> above = Groups(table, setup);
   table.inclination.array() -= 2 * kStep;

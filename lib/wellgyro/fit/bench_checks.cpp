@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/fit/bench_checks_internal.h"
+#include "wellgyro/fit/least_squares_internal.h"
 #include "wellgyro/math/median.h"
 
 namespace wellgyro {
@@ -104,7 +105,6 @@ std::optional<std::pair<Eigen::Index, Eigen::Index>> CopyAmong(const Eigen::Matr
   }
   // Where values repeat besides, repeats hang together: of one attitude without noise all channels.
   const double m = repeats == 0 ? copies : 1;
-  constexpr double kFalseAlarm = 0.01;
   const double log_chance = m * std::log(expected) - std::lgamma(m + 1);
   return log_chance < std::log(kFalseAlarm) ? copy : std::nullopt;
 }

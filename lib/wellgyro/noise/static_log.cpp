@@ -19,7 +19,7 @@ constexpr std::size_t kAway = 100;  // stretches it may stand away and come back
 // Share of the variance of 40 means that a line must explain: of pure rate random walk one log in
 // twenty does (5.1 % of 4000 simulated), of white noise none (29 % of the variance at most).
 constexpr double kExplained = 0.9;
-constexpr double kSureStep = 25;    // evidence: of 200 sound logs the most was 19
+constexpr double kSureStep = 25;  // evidence: of 200 sound logs the most was 19
 
 double RobustSigma(const std::vector<double>& values) {
   const double median = Median(values);
