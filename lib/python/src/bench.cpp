@@ -52,11 +52,31 @@ std::optional<UtcTime> DateFrom(const char* name, const std::string& text) {
   return date;
 }
 
+/// 1 sigma of something of the bench, listed as the program does: defaults rounded as its help says
+/// them.
+template <class Held>
+void TakePrior(const char* name, const Number& given, double unit, Held& held,
+               std::vector<std::string>& said) {
+  const Number before = held;
+  Take(given, unit, held);
+  if (given) {
+    said.push_back(fmt::format("{} {:.4g} (1 sigma, stated)", name, *given));
+  } else if (before) {
+    const double rounded = std::stod(fmt::format("{:.2g}", *before / unit));
+    said.push_back(fmt::format("{} {:.4g} (1 sigma, default)", name, rounded));
+  } else {
+    said.push_back(fmt::format("{} found from the readings", name));
+  }
+}
+
 ToolFitSetup SetupOf(const Bench& bench, std::vector<std::string>& said) {
   ToolFitSetup setup;
   BenchReference& r = setup.reference;
   const auto say = [&said](const char* name, const Number& value) {
-    if (value) said.push_back(fmt::format("{} {}", name, *value));
+    if (value) said.push_back(fmt::format("{} {} (stated)", name, *value));
+  };
+  const auto take = [&said](const char* name, const Number& given, double unit, auto& held) {
+    TakePrior(name, given, unit, held, said);
   };
   say("gravity-g", bench.gravity_g);
   say("gravity-mps2", bench.gravity_mps2);
@@ -67,16 +87,21 @@ ToolFitSetup SetupOf(const Bench& bench, std::vector<std::string>& said) {
   Take(bench.gravity_mps2, 1, r.gravity_mps2);
   Take(bench.latitude_deg, units::kDeg, r.latitude);
   if (bench.tool_axes) r.axes = BenchAxes::kTool;
-  Take(bench.level_deg, units::kDeg, setup.sigma_level);
-  Take(bench.north_sigma_deg, units::kDeg, setup.sigma_north);
-  Take(bench.latitude_sigma_deg, units::kDeg, setup.sigma_latitude);
-  Take(bench.seat_arcsec, units::kArcsec, setup.sigma_axis);
-  Take(bench.drift_deg_per_h, 1, setup.sigma_drift);
-  Take(bench.wobble_arcsec, units::kArcsec, setup.sigma_wobble);
-  Take(bench.sigma_accel, 1, setup.sigma_accel);
-  Take(bench.sigma_deg_per_h, 1, setup.sigma_gyro);
-  Take(bench.sigma_table_deg_per_h, 1, setup.sigma_gyro_table);
+  if (!bench.gravity_g && !bench.gravity_mps2) said.emplace_back("gravity-g 1 (default)");
+  take("level-deg", bench.level_deg, units::kDeg, setup.sigma_level);
+  take("north-sigma-deg", bench.north_sigma_deg, units::kDeg, setup.sigma_north);
+  take("inclination-sigma-deg", std::nullopt, units::kDeg, setup.sigma_inclination);
+  take("latitude-sigma-deg", bench.latitude_sigma_deg, units::kDeg, setup.sigma_latitude);
+  take("seat-arcsec", bench.seat_arcsec, units::kArcsec, setup.sigma_axis);
+  take("drift-deg-per-h", bench.drift_deg_per_h, 1, setup.sigma_drift);
+  take("wobble-arcsec", bench.wobble_arcsec, units::kArcsec, setup.sigma_wobble);
+  take("sigma-accel", bench.sigma_accel, 1, setup.sigma_accel);
+  take("sigma-deg-per-h", bench.sigma_deg_per_h, 1, setup.sigma_gyro);
+  take("sigma-table-deg-per-h", bench.sigma_table_deg_per_h, 1, setup.sigma_gyro_table);
+  const bool stated = bench.max_degree != setup.max_degree;
   setup.max_degree = bench.max_degree;
+  said.push_back(
+      fmt::format("max-degree {} ({})", setup.max_degree, stated ? "stated" : "default"));
   return setup;
 }
 
@@ -93,7 +118,8 @@ std::vector<BenchTable> TablesOf(
   return tables;
 }
 
-std::optional<std::string> ToolOf(const Bench& bench, const ToolFit& fit) {
+std::optional<std::string> ToolOf(const Bench& bench, const ToolFit& fit,
+                                  const std::vector<InputFile>& inputs) {
   if (!bench.tool) return std::nullopt;
   ToolUpdate update = bench.update;
   update.axes = bench.tool_axes ? BenchAxes::kTool : BenchAxes::kTrade;
@@ -104,7 +130,10 @@ std::optional<std::string> ToolOf(const Bench& bench, const ToolFit& fit) {
   }
   ToolCalibration tool;
   if (!bench.tool->empty()) tool = Taken(ParseTool(*bench.tool, "tool"));
-  return ToolToml(Updated(std::move(tool), fit, update));
+  tool = Updated(std::move(tool), fit, update);
+  tool.rests_on.clear();
+  for (const InputFile& input : inputs) tool.rests_on.push_back(input.sha256);
+  return ToolToml(tool);
 }
 
 nb::dict Nuisances(const std::vector<BenchNuisance>& nuisances) {
@@ -138,7 +167,7 @@ nb::dict Calibrate(const std::vector<std::pair<std::string, std::optional<std::s
     const ToolFitSetup setup = SetupOf(bench, file.references);
     fit = Taken(FitTool(TablesOf(data, file), setup));
     file.report = fit.calibration.report;
-    tool = ToolOf(bench, fit);
+    tool = ToolOf(bench, fit, file.inputs);
     text = CalibrationToml(file);
     summary = CalibrationSummary(file);
   }
