@@ -193,7 +193,7 @@ BenchTable OneAzimuthUpright(const BenchTable& data) {
   return rest;
 }
 
-// 2026-11-28: one reading at rest spread over all by least squares and made them look as coarse as
+// One reading at rest spread over all by least squares and made them look as coarse as
 // the rate table, of which fifteen sound rows in eighteen went then.
 TEST(BenchFaults, AWrongReadingAtRestLeavesTheRateTable) {
   Random random(171);
@@ -209,7 +209,7 @@ TEST(BenchFaults, AWrongReadingAtRestLeavesTheRateTable) {
   }
 }
 
-// 2026-11-28: beside a gyro of no rotor the rotor's anisoelastic terms were left out in silence.
+// Beside a gyro of no rotor the rotor's anisoelastic terms were left out in silence.
 TEST(BenchFaults, ARotorBesideAnotherGyroHasItsAnisoelasticTerms) {
   Random random(172);
   GyroTool tool = GyroTool::Any(random);
@@ -229,7 +229,7 @@ TEST(BenchFaults, ARotorBesideAnotherGyroHasItsAnisoelasticTerms) {
   EXPECT_NEAR(Quantity(fitted->report, "MQ").value.reshaped()[0], tool.MQ[0], 0.035);
 }
 
-// 2026-11-28: the sine of the inclination has a mean, which went into the bias of z, ten sigmas.
+// The sine of the inclination has a mean, which went into the bias of z, ten sigmas.
 TEST(BenchFaults, AStandsZeroOfInclinationIsTold) {
   Random random(173);
   Tally tally;
@@ -326,45 +326,39 @@ TEST(BenchFaults, ShortRunsOnATransientHaveItInTheirSigmas) {
   EXPECT_GT(square, 0.1);
 }
 
-// 16 bits of 5 V, and a tenth of that noise.
-TEST(BenchFaults, RoundingThatNoNoiseSpreadsIsInTheSigmas) {
-  Random random(23);
-  constexpr double kStep = 76e-6;
+/// Of sixty benches read in so many steps a volt: squares of the biases over their number.
+double SquaresOfRounded(double steps_per_volt, const VoltBench& setup, const std::string& remark,
+                        Random& random) {
   constexpr int kBenches = 60;
   double square = 0;
   for (int bench = 0; bench < kBenches; ++bench) {
     const VoltTool tool = VoltTool::Any(random);
-    BenchTable data = TwentyFour(tool, {.sigma = 1e-5, .readings = 5}, random);
-    const int volt = *data.Find("volt");
-    for (double& value : data.values.col(volt)) value = kStep * std::round(value / kStep);
-    const auto fitted = FitTwentyFourPositions(data, {.settle_tolerance = 2e-4});
-    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
-    EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr("in steps of 7.6e-05 V")));
-    const FitQuantity& Vb = Quantity(fitted->report, "Vb_V");
-    square += (Vb.value - tool.Vb).cwiseQuotient(Vb.sigma).squaredNorm() / 3 / kBenches;
-  }
-  std::printf("rounded: squares over their number %.2f\n", square);
-  // Where rotations differ by more than a step their rounding averages: less than the bound.
-  EXPECT_LT(square, 1.6);
-  EXPECT_GT(square, 0.2);
-  // Without noise on an exact bench the few values that are read lie many steps apart.
-  constexpr double kCoarse = 1e-5;
-  square = 0;
-  for (int bench = 0; bench < kBenches; ++bench) {
-    const VoltTool tool = VoltTool::Any(random);
-    BenchTable data = TwentyFour(tool, {.sigma = 0, .readings = 6}, random);
+    BenchTable data = TwentyFour(tool, setup, random);
     for (double& value : data.values.col(*data.Find("volt"))) {
-      value = std::round(value / kCoarse) / 1e5;
+      value = std::round(value * steps_per_volt) / steps_per_volt;
     }
     const auto fitted = FitTwentyFourPositions(data, {.settle_tolerance = 2e-4});
-    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
-    EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr("in steps of 1e-05 V")));
+    if (!fitted) return NAN;
+    EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr(remark)));
     const FitQuantity& Vb = Quantity(fitted->report, "Vb_V");
     square += (Vb.value - tool.Vb).cwiseQuotient(Vb.sigma).squaredNorm() / 3 / kBenches;
   }
-  std::printf("rounded without noise: squares over their number %.2f\n", square);
-  EXPECT_LT(square, 1.6);
-  EXPECT_GT(square, 0.2);
+  return square;
+}
+
+// 16 bits of 5 V, and a tenth of that noise; and steps of 1e-5 V without noise on an exact bench,
+// where the few values that are read lie many of them apart.
+TEST(BenchFaults, RoundingThatNoNoiseSpreadsIsInTheSigmas) {
+  Random random(23);
+  // Where rotations differ by more than a step their rounding averages: less than the bound.
+  const double noisy =
+      SquaresOfRounded(1 / 76e-6, {.sigma = 1e-5, .readings = 5}, "in steps of 7.6e-05 V", random);
+  EXPECT_LT(noisy, 1.6);
+  EXPECT_GT(noisy, 0.2);
+  const double still =
+      SquaresOfRounded(1e5, {.sigma = 0, .readings = 6}, "in steps of 1e-05 V", random);
+  EXPECT_LT(still, 1.6);
+  EXPECT_GT(still, 0.2);
   const BenchTable fine = TwentyFour(VoltTool::Any(random), {.sigma = 1e-5, .readings = 5}, random);
   const auto fitted = FitTwentyFourPositions(fine, {.settle_tolerance = 2e-4});
   ASSERT_TRUE(fitted.has_value());

@@ -197,7 +197,7 @@ const std::vector<WrongRows> kWrongRows = {
      {12, 13}},
 };
 
-// 2026-11-28: least squares spread a wrong row over all the others. From 0.1 g on it hid in noise
+// Least squares spread a wrong row over all the others. From 0.1 g on it hid in noise
 // that had grown by it; or the rate table's rows went in its place.
 void ExpectLeftOut(std::vector<BenchTable> tables, const WrongRows& wrong) {
   wrong.make(tables.front());
@@ -228,7 +228,7 @@ TEST(ToolClaims, WrongRowsAloneAreLeftOut) {
   for (std::size_t k = first; k < kWrongRows.size(); ++k) ExpectLeftOut(chamber, kWrongRows[k]);
 }
 
-// 2026-11-28: 0.1 deg of a stand's dial passed for noise, with the bias of z ten sigmas off: its
+// 0.1 deg of a stand's dial passed for noise, with the bias of z ten sigmas off: its
 // sine has a mean over the attitudes. Beside that it has a pattern of its own.
 TEST(ToolClaims, AStandsZeroOfInclinationIsFound) {
   Random random(99);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -168,19 +169,21 @@ GyroLayout LayoutOf(const GyroReadings& readings, const GyroFitSetup& setup) {
 FittedGyros FitLayout(const GyroReadings& readings, const GyroFitSetup& setup,
                       const GyroLayout& layout) {
   double on_table = setup.sigma_table.value_or(setup.sigma.value_or(1));
-  FittedGyros fitted = FitWith(readings, setup, layout, on_table, Solve);
-  if (setup.sigma_table || !readings.joined) return fitted;
+  if (setup.sigma_table || !readings.joined) {
+    return FitWith(readings, setup, layout, on_table, Solve);
+  }
+  std::optional<FittedGyros> fitted;
   // All readings first, their medians, for a start; then without the outliers, their squares.
   for (const bool last : {false, true}) {
     const double still = last ? 1e-6 : 1e-2;
     for (int turn = 0; turn < 30; ++turn) {
       fitted = FitWith(readings, setup, layout, on_table, last ? Solve : SolveByMedians);
-      const double ratio = TableRatio(fitted.solution, setup.sigma.has_value(), !last);
+      const double ratio = TableRatio(fitted->solution, setup.sigma.has_value(), !last);
       if (std::abs(ratio - 1) < still) break;
       on_table *= ratio;
     }
   }
-  return fitted;
+  return *std::move(fitted);
 }
 
 }  // namespace wellgyro

@@ -71,14 +71,14 @@ struct ToolFit {
 ///
 /// Channels as in SensorGroup, their polynomials in temperature, second order, force, heating and
 /// hysteresis terms (a loop that heating and cooling open, not corrected by the tool model: its
-/// size is in the biases' covariance). Of the bench: level, north and zero of inclination
-/// of each table, its drift in time, the tool's seat on the rate table, the latitude, each with its
-/// prior; the wobble of every reading, which moves all channels together, is marginalised, its size
-/// found. Terms are chosen by marginal likelihood, each bundle's prior variance found from it, at 1
-/// % against noise alone; other terms that explain nearly as much are told. What was left out may
-/// be there, of even odds before the readings, and no larger than noise hides: everything is taken
-/// at its mean over both, so that a term that is left out has a small value, and its doubt is in
-/// the covariance. Outliers are found with Cauchy's loss (Ceres) and left out.
+/// size is in the biases' covariance). Of the bench: level, north and zero of inclination of each
+/// table, its drift in time, the tool's seat on the rate table, the latitude, each with its prior;
+/// the wobble of every reading, which moves all channels together, is marginalised, its size found.
+/// Terms are chosen by marginal likelihood, each bundle's prior variance found from it, at 1 %
+/// against noise alone; other terms that explain nearly as much are told. What was left out may be
+/// there, of even odds before the readings, and no larger than noise hides: everything is taken at
+/// its mean over both, so that a term that is left out has a small value, and its doubt is in the
+/// covariance. Outliers are found with Cauchy's loss (Ceres) and left out.
 WELLGYRO_EXPORT Result<ToolFit> FitTool(std::span<const BenchTable> tables,
                                         const ToolFitSetup& setup);
 
