@@ -34,6 +34,7 @@ Result<std::vector<int>> FindColumns(const BenchTable& data,
 }
 
 std::string LinesText(const std::vector<int>& lines) {
+  // Six numbers of three digits with their words are 45 letters: the message keeps to its point.
   constexpr std::size_t kShown = 6;
   const std::size_t shown = std::min(lines.size(), kShown);
   std::string text = lines.size() == 1 ? "line " : "lines ";
@@ -46,7 +47,10 @@ std::string LinesText(const std::vector<int>& lines) {
 std::optional<std::string> OtherHemisphere(const std::string& term, double force_term,
                                            double latitude) {
   const double twice = std::abs(2 * kBenchEarthDegPerHour * std::sin(latitude));
-  constexpr double kAlike = 0.02, kLeast = 1;  // [deg/h/g], of latitudes beyond 1.9 deg
+  // A reference with w_z for -w_z leaves 2 S w_z along gravity; 2 % is twice what the sensitivities
+  // S of calibrated gyros are off by. Nearer to the equator than asin(1 / 30.1) = 1.9 deg, below
+  // 1 deg/h/g, an ordinary mass unbalance would pass for it.
+  constexpr double kAlike = 0.02, kLeast = 1;  // [1], [deg/h/g]
   if (twice < kLeast || std::abs(std::abs(force_term) - twice) > kAlike * twice)
     return std::nullopt;
   return fmt::format(
@@ -226,6 +230,9 @@ std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<Channe
 
 std::optional<Fault> DoesNotFit(const ReadingPlaces& places,
                                 const std::vector<ChannelSignal>& signals, FitReport& report) {
+  // Readings with a wrong sign, a share p of them, leave 2 sqrt(p) of the signal: 0.2 is one in a
+  // hundred. 0.02 is 0.3 deg/h of the Earth's rate or 20 mg, coarser than any tool that finds
+  // north.
   constexpr double kRefused = 0.2, kRemarked = 0.02;
   std::map<std::string, std::vector<const FitResidual*>> of;
   for (const FitResidual& residual : report.residuals) of[residual.channel].push_back(&residual);

@@ -56,7 +56,9 @@ class Exchange {
   /// Settings that reach the variance and leave the readings' noise to be found, from `optimum`
   /// upwards; at most `most` of them.
   std::vector<Eigen::Index> Find(const DesignWeights& optimum, std::size_t most) {
-    // What makes the first settings' information whole: a little of the optimum's.
+    // What makes the first settings' information whole: a little of the optimum's. Of its 40 to 80
+    // settings 1 % is less than one, so that what is chosen soon counts for more. With half or
+    // twice of it the plans of four wells are the same or one setting longer.
     constexpr double kLittle = 0.01;
     constexpr int kDrifts = 4;  // of two gyros a line and a bend, which a fit of the bench has too
     const Eigen::VectorXd twice = optimum.weights.transpose().replicate(2, 1).reshaped();
@@ -128,6 +130,7 @@ class Exchange {
 
   // One setting after the other for a better one, until none is.
   void Improve() {
+    // Bound of the time alone: five turns were the most that the plans of four wells took.
     constexpr int kTurns = 8;
     for (int turn = 0; turn < kTurns; ++turn) {
       const double before = Value();

@@ -161,7 +161,9 @@ void AddParity(const SensorGroup& group, FitReport& report) {
 // What the readings at rest cannot show of themselves.
 void RemarkReference(const GyroReadings& readings, const BenchReference& reference,
                      const Eigen::MatrixXd& cov, const Eigen::VectorXd& x, FitReport& report) {
-  constexpr double kLevel = 1e-3;  // [g], 0.06 deg and 0.015 deg/h of the Earth's rate
+  // [g], 0.06 deg and 0.015 deg/h of the Earth's rate: what a reading of 7 min scatters by at
+  // 0.005 deg/sqrt(h).
+  constexpr double kLevel = 1e-3;
   if (readings.f_off > kLevel) {
     report.remarks.push_back(fmt::format(
         "fx, fy, fz lie {:.1f} mg (rms) beside what inc and tf say: the fixture's angles or the "
@@ -178,7 +180,9 @@ void RemarkReference(const GyroReadings& readings, const BenchReference& referen
     if (cov.size() > 0) variance += cov(at, at) / n;
   }
   const double scatter = std::sqrt(std::max(0.0, square - sum * sum));
-  constexpr double kUnusual = 0.01, kSigmas = 4;  // 1 % of cos L: 0.33 deg at 60 deg
+  // An error of all channels is the reference's: 1 % of cos L is 0.33 deg of latitude at 60 deg,
+  // and makers' scales, which differ, are within it. Chance: P(|x| > 4) = 6.3e-5.
+  constexpr double kUnusual = 0.01, kSigmas = 4;
   const double off = std::abs(sum - 1);
   if (off < kUnusual || off < kSigmas * std::sqrt(variance) || off < 3 * scatter) return;
   const double cosine = sum * std::cos(*reference.latitude);

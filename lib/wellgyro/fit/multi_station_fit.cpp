@@ -112,7 +112,8 @@ NonlinearProblem Magnetic(const AttitudeTable& table, const MultiStationSetup& s
   std::vector<std::string> names = VectorNames("bm_nT", 3);
   Append(names, VectorNames("sm", 3));
   NonlinearProblem problem(names, Eigen::VectorXd::Zero(6));
-  // Without sigmas only their ratio matters.
+  // Without sigmas only their ratio matters. Magnetometers' 50 nT turn the dip by 50 / 50 000 rad =
+  // 0.06 deg, accelerometers by as much: sqrt(2) of that is 0.08 deg.
   constexpr double kUsualField = 50, kUsualDip = 0.1 * units::kDeg;
   problem.sigma_given = setup.sigma_field && setup.sigma_dip;
   const double sigma_field = setup.sigma_field.value_or(kUsualField);
@@ -171,6 +172,8 @@ std::vector<AcrossResidual> AcrossStations(const BenchTable& data, const std::ve
 // The azimuth of every station that suits the biases in x best, of a whole circle: two minima, east
 // and west of north or north and south of east, may both be near.
 void TakeBestAzimuths(const std::vector<AcrossResidual>& stations, Eigen::VectorXd& x) {
+  // The cost has harmonics of the azimuth up to the second, 90 samples to the period of that: at
+  // most 1 deg from each minimum, where the solver goes on.
   constexpr int kDirections = 180;
   for (const AcrossResidual& station : stations) {
     double least = std::numeric_limits<double>::infinity(), best = 0;

@@ -152,7 +152,8 @@ Result<PositionRun> Settled(const BenchTable& data, const RawRun& raw, double to
   PositionRun run;
   run.temperature = raw.temperature_sum / raw.rows;
   for (const auto& [at, series] : raw.series) {
-    // Readings that differ by exactly the tolerance repeat; their decimals are not exact.
+    // Readings that differ by exactly the tolerance repeat; their decimals are not exact. A double
+    // holds one to 1e-16, and no voltmeter has twelve digits.
     constexpr double kRounding = 1e-12;
     const double largest = std::abs(series.volts.back());
     const SettledRun settled = Settle(series.volts, tolerance * (1 + 1e-9) + kRounding * largest);
@@ -202,13 +203,16 @@ double StepOf(const BenchTable& data, int volt) {
   std::size_t distinct = 1;
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (!(values[i] - values[i - 1] > 1e-12 * range)) continue;
-    constexpr double kFinest = 1e-8;  // of the range: 26 bits
+    // Of the range: finer than a converter of 26 bits, 2^-26 = 1.5e-8, coarser than the rounding of
+    // differences, 1e-12.
+    constexpr double kFinest = 1e-8;
     const double apart = values[i] - first;
     step = CommonDivisor(apart, step, kFinest * range);
     step = apart / std::round(apart / step);  // or rounding grows from value to value
     ++distinct;
   }
   if (!(step > 0) || 2 * distinct > values.size()) return 0;
+  // [steps]: of values that are no multiples of it one in fifty is so close by chance.
   constexpr double kWhole = 0.01;
   const bool multiples = std::all_of(values.begin(), values.end(), [&](double value) {
     const double steps = (value - first) / step;

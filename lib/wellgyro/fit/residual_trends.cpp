@@ -16,8 +16,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kFewestRows = 6;  // rows of a channel, below which nothing is tested
-constexpr double kLeastSwing = 1;       // degC
+// Rows of a channel, below which nothing is tested: a step has kBesideStep on either side.
+constexpr std::size_t kFewestRows = 2 * kBesideStep;
+// [degC], what thermometers agree to: where temperatures vary by less their slope is noise.
+constexpr double kLeastSwing = 1;
 
 // Rows of one channel of one table, among those that the solution used, in their order.
 struct ChannelRows {

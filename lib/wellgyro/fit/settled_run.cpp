@@ -9,7 +9,11 @@
 namespace wellgyro {
 namespace {
 
+// Two readings of a slow rise may agree by chance; of three the last two would have to.
 constexpr std::size_t kFewestReadings = 3;
+// Value, amplitude and time constant are three parameters: F of chance 1e-3 (below) is 37 with the
+// 5 degrees of freedom that 8 readings leave, 5e5 with one, by which no transient is told. Of one
+// of 2 mV the fit leaves 0.009 mV at most, the rule that three agree 0.39 mV (400 runs).
 constexpr std::size_t kForTransient = 8;
 
 double Spread(std::span<const double> readings) {
@@ -55,6 +59,8 @@ Decay FitDecay(std::span<const double> v, double readings) {
 }
 
 Decay BestDecay(std::span<const double> v) {
+  // A step of the grid is 15 % of the time constant for 100 readings; 0.618^40 = 4e-9 of two steps
+  // is left by golden section, below which rounding decides.
   constexpr int kGrid = 40, kTurns = 40;
   const double low = std::log(0.3), high = std::log(static_cast<double>(v.size()));
   const auto at = [&](double log_readings) { return FitDecay(v, std::exp(log_readings)); };

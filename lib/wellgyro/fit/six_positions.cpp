@@ -71,6 +71,7 @@ Result<std::vector<Position>> ReadPositions(const BenchTable& data, const SixPos
 std::optional<Fault> OtherGravity(const BenchTable& data, const std::vector<Position>& positions,
                                   const SixPositionSetup& setup) {
   const double length = Mean(positions, [](const Position& p) { return p.u.norm(); });
+  // 100 mGal: one degree of latitude makes up to 90, 300 m of height 93; tilts are of second order.
   constexpr double kSame = 1e-4;
   if (!setup.gravity_stated || std::abs(length / setup.gravity - 1) < kSame) return std::nullopt;
   return BenchFault(data,

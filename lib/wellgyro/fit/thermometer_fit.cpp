@@ -48,7 +48,8 @@ Result<ThermometerReadings> ReadThermometers(const BenchTable& data) {
   std::vector<double> sizes;
   for (const double error : readings.error) sizes.push_back(std::abs(error));
   const double middle = Median(std::move(sizes));
-  constexpr double kLargest = 20;  // degC; a thermometer further off is not read in degC
+  // [degC]; a thermometer further off is not read in degC: K are 273 off, degF 32 + 0.8 T.
+  constexpr double kLargest = 20;
   if (middle > kLargest) {
     return BenchFault(data,
                       fmt::format("the references differ from t_m by {:.1f} in the middle of the "
@@ -103,6 +104,8 @@ double FindKnee(const ThermometerReadings& readings, const ThermometerFitSetup& 
   };
   const double low = t[1], high = t[t.size() - 3];
   double best = low;
+  // The cost is smooth from reading to reading, with a minimum in each interval at most: more steps
+  // than a bench has temperatures.
   constexpr int kGrid = 60;
   const double step = (high - low) / kGrid;
   for (int i = 0; i <= kGrid; ++i) {

@@ -45,6 +45,8 @@ class Adjuster {
   }
 
  private:
+  // Bounds, for outliers and sigmas that go to and fro: turns and sweeps end where none changes (by
+  // 1 %). Few sweeps while outliers are sought: the next turn goes on with what these found.
   static constexpr int kRobustTurns = 6, kTurns = 6, kRoughSweeps = 3, kSweeps = 12;
 
   static Fault Unsettled() {

@@ -62,7 +62,8 @@ TermChoice::TermChoice(const std::vector<TermBundle>& bundles, const std::vector
 }
 
 std::vector<int> TermChoice::Best() const {
-  constexpr double kLess = 1e-3;  // not by rounding
+  // Of two choices whose odds are exp(5e-4) either will do; rounding of costs is far below.
+  constexpr double kLess = 1e-3;
   std::vector<int> kept = Eliminated(seen_, {});
   double cost = Cost(kept);
   for (bool better = true; better;) {

@@ -37,7 +37,7 @@ ToolNoise NoiseFinder::Start(const Eigen::VectorXd& x) {
       readings[KindOf(row, i)].push_back(std::abs(row.v[i]));
     }
   }
-  // Below that lies the rounding of what was written down.
+  // Below that lies the rounding of what was written down, to eight digits at most.
   constexpr double kWrittenRounding = 1e-8;
   for (std::size_t kind = 0; kind < 3; ++kind) {
     floor_[kind] = std::max(kWrittenRounding * RobustSigma(readings[kind]), 1e-300);
@@ -61,6 +61,7 @@ void NoiseFinder::Find(const std::vector<RowAbout>& rows, const Eigen::VectorXd&
 
 Eigen::VectorXd NoiseFinder::FindRobustly(std::vector<RowAbout> rows, const Eigen::VectorXd& x,
                                           ToolNoise& noise) const {
+  // Bound: sweeps end where no sigma changes by 1 %; each changes one by five times at most.
   constexpr int kSweeps = 60;
   Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
   for (int sweep = 0; sweep < kSweeps; ++sweep) {

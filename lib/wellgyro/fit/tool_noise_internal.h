@@ -51,7 +51,7 @@ class NoiseFinder {
                                           const Eigen::VectorXd& x, const ToolNoise& noise) const;
 
  private:
-  static constexpr std::size_t kComponents = 5;
+  static constexpr std::size_t kComponents = 5;  ///< members of ToolNoise
 
   struct Found {
     std::array<double, kComponents> ratios{};

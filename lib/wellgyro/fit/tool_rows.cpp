@@ -155,7 +155,9 @@ void Follow(const BenchTable& data, std::span<ToolRow> rows) {
   const auto second_of = [&](int i) { return t ? data.values(i, *t) : static_cast<double>(i); };
   const double middle = (second_of(0) + second_of(n - 1)) / 2;
   const double half = std::max(std::abs(second_of(n - 1) - second_of(0)) / 2, 1e-9);
-  constexpr double kStill = 1e-4;  // degC/s, 0.36 degC/h
+  // [degC/s], 0.36 degC/h: a hundredth of a degree in 100 s, a thermometer's last digit from
+  // reading to reading; ramps are ten times as fast and more.
+  constexpr double kStill = 1e-4;
   double branch = 0;
   for (int i = 0; i < n; ++i) {
     ToolRow& row = rows[static_cast<std::size_t>(i)];
@@ -284,7 +286,9 @@ std::optional<Fault> SpanTemperatures(std::span<const BenchTable> tables, ToolRe
     readings.coldest = std::min(readings.coldest, row.temperature);
     readings.hottest = std::max(readings.hottest, row.temperature);
   }
-  constexpr double kLeastSweep = 10;  // degC
+  // [degC]: thermometers agree to one, a tenth of what a slope would then be told by; less than ten
+  // is the room, and its terms would be carried on to a hole that is 100 degC warmer.
+  constexpr double kLeastSweep = 10;
   readings.has_temperature = readings.hottest - readings.coldest >= kLeastSweep;
   readings.middle = (readings.coldest + readings.hottest) / 2;
   if (readings.has_temperature) readings.half_range = (readings.hottest - readings.coldest) / 2;

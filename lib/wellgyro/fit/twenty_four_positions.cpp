@@ -87,7 +87,8 @@ int Degree(const std::vector<PositionRun>& runs, const TwentyFourPositionSetup& 
   temperatures.reserve(runs.size());
   for (const PositionRun& run : runs) temperatures.push_back(run.temperature);
   std::sort(temperatures.begin(), temperatures.end());
-  constexpr double kApart = 2;  // degC
+  // [degC]: one setting of the oven, as two thermometers that agree to one each may read it.
+  constexpr double kApart = 2;
   int distinct = 1;
   double last = temperatures.front();
   for (const double t : temperatures) {
