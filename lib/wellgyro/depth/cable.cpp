@@ -7,9 +7,11 @@
 namespace wellgyro {
 namespace {
 
-// Of a correction by depth, carried on from the last mark: 2 m in 1 km.
+// Of a correction by depth, carried on from the last mark: 2 m in 1 km. Wheels are off by 1e-3 of
+// the way, as practice allows, and twice that is still one; more is a mark misread.
 constexpr double kSlopeMost = 2e-3;
-// Of a spacing: at half of it a mark may be either of two.
+// Of a spacing: at half of it a mark may be either of two, and half of that is left for the
+// counter.
 constexpr double kFarOff = 0.25;
 
 }  // namespace

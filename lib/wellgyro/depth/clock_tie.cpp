@@ -46,7 +46,7 @@ double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 // As std::llround does it, which is a call for every sample.
 std::int64_t Nanoseconds(double seconds) {
-  constexpr double kMost = 9e18;
+  constexpr double kMost = 9e18;  // [ns], within the int64 that it becomes, 2^63 = 9.2e18
   const double ns = std::clamp(seconds * 1e9, -kMost, kMost);
   const auto whole = static_cast<std::int64_t>(ns);
   const double rest = ns - static_cast<double>(whole);

