@@ -21,7 +21,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kStand = 30;  // of pipe [m]
+constexpr double kStand = 30;  // of pipe [m]: three joints of up to 10 m
 // Of a run's pairs of stations, those that are independent, at most. At 40 kinds of checks a pair
 // fails at 4.50 sigma; were they 18 or 72, at 4.35 or 4.64.
 constexpr int kPairsApart = 36;

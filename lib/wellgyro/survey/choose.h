@@ -9,7 +9,8 @@
 
 namespace wellgyro {
 
-/// Two stations no further apart than this are at one depth [m].
+/// Two stations no further apart than this are at one depth [m]: half of the least spacing that a
+/// job may ask for, and what depths typed to the decimetre differ by.
 inline constexpr double kSameDepth = 0.1;
 
 /// Indices of the chosen station of each depth among `stations` of any runs and passes, depth

@@ -26,7 +26,8 @@ void CrewEvents::Take(const Event& event, std::int32_t run, const AlongHole& rea
 }
 
 StationStatus CrewEvents::StatusOf(const Station& station, bool adjusted) const {
-  constexpr double kTyped = 0.5;  // a depth is typed by hand, to the decimetre at best [m]
+  // [m]: a depth is typed by hand, to the decimetre at best, and more often to the metre, 0.5 off.
+  constexpr double kTyped = 0.5;
   StationStatus status = adjusted ? StationStatus::kField : StationStatus::kProvisional;
   for (const Event& event : verdicts_) {
     if (event.run != 0 && event.run != station.run) continue;

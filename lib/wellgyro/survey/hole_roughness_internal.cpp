@@ -24,6 +24,7 @@ constexpr std::size_t kAtOnce = 30;  // stations; the likelihood goes by the cub
 constexpr double kRounding = 2e-8;
 
 enum Component : std::size_t { kKink, kWander };
+// Three departures, of five stations, in two ways across: six numbers for two variances.
 constexpr std::size_t kComponents = 2, kFewest = 3;
 
 /// A station against the arc between its neighbours: t(k) - w t(k-1) - v t(k+1).

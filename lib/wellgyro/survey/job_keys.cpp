@@ -82,9 +82,12 @@ constexpr JobKey Word(std::string_view table, std::string_view key, std::string_
 constexpr NumberRange kError{.min = 0, .max = 1e6};
 // Of a size above zero, in its key's unit: in SI units a double holds it too.
 constexpr NumberRange kSizeAboveZero{.min = 1e-9, .max = 1e6};
+// [deg], of a tool against its hole: sag and misalignment are tenths, and no collar leaves room
+// for 5.
 constexpr NumberRange kTilt{.min = -5, .max = 5};
 constexpr NumberRange kFraction{.min = 0, .max = 1};
 constexpr NumberRange kWhole{.min = 0, .max = std::numeric_limits<std::int32_t>::max()};
+// [m], of a tie-in from the well head: no hole goes 1000 km aside.
 constexpr NumberRange kPlace{.min = -1e6, .max = 1e6};
 constexpr NumberRange kGridPlace{.min = -1e8, .max = 1e8};  // beyond any grid on the Earth
 constexpr NumberRange kDepth{.min = -limits::kMd, .max = limits::kMd};

@@ -21,8 +21,12 @@ namespace wellgyro {
 /// merely ahead of the samples.
 class MarkGate {
  public:
-  static constexpr int kOthers = 10;  ///< marks that contradict one which they overtake
-  static constexpr std::size_t kAsideMax = 10'000;  ///< that wait at most
+  /// Marks that contradict one which they overtake: ten seconds of them at 1 Hz. Those of a stream
+  /// that is merely ahead of the samples overtake none.
+  static constexpr int kOthers = 10;
+  /// That wait at most, 17 minutes at 10 Hz; then the furthest ahead is told and left out, or,
+  /// without samples, all are used.
+  static constexpr std::size_t kAsideMax = 10'000;
 
   using Use = std::function<void(const DepthMark&)>;
   using Tell = std::function<void(const Fault&)>;

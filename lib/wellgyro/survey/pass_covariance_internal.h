@@ -21,7 +21,8 @@ struct PassItem {
 };
 using PassItems = std::vector<PassItem>;  ///< in the order of depth
 
-/// A leg so long without a depth in it was not seen: marks at stands of pipe.
+/// A leg so long without a depth in it was not seen: marks at stands of pipe. Marks in time leave
+/// gaps of 5 s at most (DepthTrackSetup::max_gap), 5 m at 1 m/s.
 inline constexpr double kUnseenLeg = 5;  // [m]
 
 /// The depth from which on the pass saw the hole.

@@ -8,7 +8,8 @@ namespace wellgyro {
 namespace {
 
 constexpr double kClockStep = 0.1;  // [s], less is the jitter of messages: 0.1 m of depth at 1 m/s
-constexpr Duration kTies = Duration::Seconds(5);  // until a new tie knows its UTC
+// Until a new tie knows its UTC: of ClockTie's cells of a second, those in a row that make a step.
+constexpr Duration kTies = Duration::Seconds(5);
 
 // Times come from outside: nonsense must not overflow.
 template <class Time>
@@ -28,7 +29,7 @@ struct Passed {
 /// Length of a break [s]. At a jump: the median of those of the three that advance (of two, the
 /// smaller); at a new session: by UTC. Clamped to [period, kLongest].
 double TimePassed(const Passed& passed, double period, bool jumps) {
-  constexpr double kLongest = 1e6;  // [s]
+  constexpr double kLongest = 1e6;  // [s], 12 days: longer than tools stay down, finite for sums
   if (!jumps) return std::clamp(passed.by_utc, period, kLongest);
   std::array<double, 3> all{passed.by_seq, passed.by_tool, passed.by_utc};
   std::sort(all.begin(), all.end());

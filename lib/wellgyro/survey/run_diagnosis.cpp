@@ -28,7 +28,7 @@ constexpr double kFaultyShare = 0.1;
 // of their odds is w^2 (1 - rho^2) / 2, w the fault's size over its sigma, and odds of 20 take
 // w = sqrt(2 ln(20) / (1 - rho^2)) = 5.6 (Imparato, Teunissen and Tiberius 2019).
 constexpr double kAlike = 0.9;
-constexpr double kNamed = 0.95;  // probability that the causes named have together
+constexpr double kNamed = 0.95;  // probability of the causes named together, as kConfidence
 
 struct Entry {
   std::string_view code;
@@ -39,7 +39,7 @@ struct Entry {
   std::string_view unit_name, remedy;
 };
 
-constexpr double kOne = 1;
+constexpr double kOne = 1;  // of what is stated in SI
 constexpr std::string_view kDepthScale = "depth_scale";
 constexpr std::string_view kCalibrate =
     "widen its sigma in [errors], run again, calibrate the tool";
@@ -50,7 +50,8 @@ constexpr std::string_view kSpike = "look at the samples there; leave them out a
 constexpr std::string_view kRestMotion = "rest_motion";
 constexpr std::string_view kNotAtRest =
     "the tool was not at rest: leave the stop out and run again";
-constexpr double kThatStop = 0.5;  // [m], from a stop to what the diagnosis says began there
+// [m], from a stop to what the diagnosis says began there: within a knot, 1 s at 0.5 m/s.
+constexpr double kThatStop = 0.5;
 
 // Sizes by which a tool, or a job, is out of its class: a judgement, some five to ten times what
 // calibrated tools have. Bayes factors change little with them, by ln 4 where they are wrong by 4:

@@ -153,7 +153,7 @@ void SampleIntake::Count(const AdmittedBlock& block, std::size_t at, std::size_t
   if (block.mended.any()) {
     summary.samples_gyro_mended += block.mended.gyro;
     summary.samples_accel_mended += block.mended.accel;
-    // One fault for all that lie near each other.
+    // One fault for all that lie near each other: six lines a minute at most.
     constexpr std::int64_t kNear = 10'000'000'000;  // [ns]
     const bool joins = mended_.count > 0 && mended_.session == stamp.session &&
                        (stamp.seq - mended_.last) * stamp.period_ns < kNear;

@@ -17,7 +17,9 @@ constexpr double kRateLimit = 700;   // [rad/s]
 constexpr double kForceLimit = 1e4;  // [m/s^2]
 constexpr double kFieldLimit = 10;   // [T]
 
-// By no more does a sample differ that was made SI again at the temperature of another batch.
+// By no more does a sample differ that was made SI again at the temperature of another batch: 4
+// deg/h and 1 mg. As floats, in which they are kept, 100 rad/s are rounded to 4e-6 and 1000 m/s^2
+// to 3e-5.
 constexpr float kSameRate = 2e-5F;   // [rad/s]
 constexpr float kSameForce = 0.01F;  // [m/s^2]
 
@@ -130,7 +132,7 @@ void SampleQueue::Pop(std::size_t count) {
 /// At 10 kHz the ring is larger than the near caches, and each block begins on pages that no
 /// hardware looks ahead to.
 void SampleQueue::FetchAhead() const {
-  constexpr std::size_t kLine = 64;  // [bytes]
+  constexpr std::size_t kLine = 64;  // [bytes], a cache line of x86-64 and of most ARM
   const std::size_t count = std::min({size_, ring_.size() - head_, SampleBlock::kMost});
   const auto bytes = std::as_bytes(std::span(ring_).subspan(head_, count));
   for (std::size_t i = 0; i < bytes.size(); i += kLine) __builtin_prefetch(&bytes[i]);

@@ -33,9 +33,10 @@ namespace wellgyro {
 class WELLGYRO_EXPORT SampleQueue {
  public:
   static constexpr std::size_t kWaitingMax = std::size_t{1} << 21;  ///< 20 s at 100 kHz
+  /// Longer than a network holds datagrams up; so long stations wait behind a new session.
   static constexpr Duration kAgree{10'000'000'000};
-  static constexpr std::size_t kAgreeMax = std::size_t{1} << 15;  ///< samples that are enough, too
-  static constexpr std::int64_t kKeptEvery = 64;
+  static constexpr std::size_t kAgreeMax = std::size_t{1} << 15;  ///< enough too: 3.3 s at 10 kHz
+  static constexpr std::int64_t kKeptEvery = 64;  ///< of a batch of a hundred one or two
   static constexpr std::size_t kKept = std::size_t{1} << 13;  ///< 7 h at 20 Hz
 
   struct Counts {
@@ -145,8 +146,11 @@ class WELLGYRO_EXPORT SampleQueue {
   std::optional<Place> last_;        ///< of the sample handed out last
   /// Numbers that were missing when younger samples were handed out: [first, second), the latest
   /// kGapsKept of this session.
+  /// A sample of one forgotten counts as a duplicate in place of late.
   static constexpr std::size_t kGapsKept = 256;
   std::vector<std::pair<std::int64_t, std::int64_t>> gaps_;
+  /// A tool that starts again twice while a stray comes leaves one to spare; of more the oldest
+  /// goes, its samples as strays.
   static constexpr std::size_t kStoriesMax = 4;
   std::vector<Content> kept_;        ///< by number
   bool other_ = false;               ///< what was compared last, and what follows it

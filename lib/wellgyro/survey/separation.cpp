@@ -18,8 +18,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Place = HoleLine::Place;
 
-constexpr double kMeet = 1e-9;             // [m]
-constexpr double kPlaceResolution = 1e-3;  // along hole [m]
+constexpr double kMeet = 1e-9;  // [m], rounding of 500 legs in 10 km, 10 km eps = 2e-12 each
+// [m], along hole, as tables print it; at a minimum a factor changes by the square of it.
+constexpr double kPlaceResolution = 1e-3;
 
 /// Shared sources of both, by index.
 std::vector<std::pair<std::size_t, std::size_t>> Pairs(const PositionUncertainty& a,
@@ -190,6 +191,8 @@ double PairOfLines::LowestIn(std::size_t leg, double low, double high) const {
 }
 
 void PairOfLines::AddMinima(std::size_t i, std::vector<Separation>& rows) const {
+  // Of a leg, where the factor is looked at: what is sought on lies about the least, within half of
+  // a leg, which holds one minimum of a distance between two arcs of a stand.
   constexpr int kParts = 4;
   const LegArc& leg = first_.tree().legs()[i];
   const Place ends[] = {{i, 0}, {i, leg.length}};

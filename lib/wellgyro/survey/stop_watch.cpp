@@ -11,8 +11,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kSamePlaceSeconds = 120;  // between windows of one stop where there is no depth
-// The still detector knows of a block when the one after it has ended.
+// Between windows of one stop where there is no depth: to turn a tool takes less, to move it by a
+// stand and hang it again more.
+constexpr double kSamePlaceSeconds = 120;
+// The still detector knows of a block of 1 s when the one after it has ended, in the third.
 constexpr Duration kMakeUpMind = Duration::Seconds(3);
 
 StillSetup StillSetupOf(const Job& job) {

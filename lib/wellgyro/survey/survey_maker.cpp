@@ -35,7 +35,7 @@ std::vector<PathStation> SeenOf(const std::vector<DraftedRun>& drafted) {
   return seen;
 }
 
-// A foresight holds at a knot no further away than this.
+// A foresight holds at a knot no further away than this: knots are 1 s apart, one may be missing.
 constexpr double kForesightSeconds = 2;
 // From so many sigmas on two norths are not both right, P(|x| > 4) = 6.3e-5.
 constexpr double kContradiction = 4;
@@ -91,7 +91,7 @@ void AddDepthChecks(const DepthMotion::Found& found, RunSummary& run) {
                                             limit, 1, "m", "8 sigma of the marks, 0.2 m"));
     run.sample_checks.back().md = found.step_md;
   }
-  constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]
+  constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]: no more than kLag
   if (!(found.sigma_lag > 0 && found.sigma_lag < kToldLag)) {
     run.sample_checks.push_back(NotDone("depth_lag", run.run, "no starts and stops that tell it"));
     return;

@@ -26,12 +26,14 @@ namespace {
 
 // Marks are ahead of the samples by the depth's latency, or by what a message holds of these.
 constexpr Duration kAheadAtLeast = Duration::Seconds(1);
-// Of a batch, samples of no longer a time are used before the marks up to their end are.
+// Of a batch, samples of no longer a time are used before the marks up to their end are: half of
+// kAheadAtLeast, so that these are not ahead.
 constexpr Duration kBatchPart = Duration::Seconds(0.5);
-// A tool of so many samples is there and gives way to none that is new.
+// A tool of so many samples, a full message, is there and gives way to none that is new.
 constexpr std::int64_t kEstablished = 1000;
+// What tools say of themselves may come before any of their samples: room for four times as many.
 constexpr std::size_t kInfosMax = 4 * Surveyor::kToolsMax;
-// Of data time, between looks at which depth marks are still needed.
+// Of data time, between looks at which depth marks are still needed: 160 marks of 10 Hz more.
 constexpr Duration kForgetEvery = Duration::Seconds(16);
 
 const Job& Checked(const Job& job) {

@@ -68,6 +68,7 @@ class WELLGYRO_EXPORT Surveyor {
  public:
   /// What comes beyond these is left out with a Fault; of more tools those with the most samples
   /// stay, of modes for a tool that is heard of later the last.
+  /// No string has a tenth of them; bounds of the memory that an invented flood takes.
   static constexpr std::size_t kToolsMax = 256;
   static constexpr std::size_t kRunsMax = 1000;           ///< of one tool
   static constexpr std::size_t kOperationsMax = 100'000;  ///< commands and events

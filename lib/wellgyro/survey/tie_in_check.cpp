@@ -13,12 +13,13 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kReach = 30;                  // [m], a stand
-constexpr double kSurveys = FromDegrees(0.5);  // of two surveys of one hole
-constexpr double kSlot = 30;                   // of a platform, from its reference, aside [m]
-constexpr double kDepths = 2e-3;               // of two surveys: practice's 1e-3 of each
-constexpr double kTurned = 0.05;               // of a way, by a north 3 deg aside: 2 sin 1.5 deg
-constexpr double kPlaces = 1;  // that nobody asks for; of TVD, which has no slot [m]
+constexpr double kReach = 30;  // [m], a stand
+// Of two surveys of one hole, twice the 0.23 deg that practice allows two passes of one tool.
+constexpr double kSurveys = FromDegrees(0.5);
+constexpr double kSlot = 30;      // of a platform, from its reference, aside [m]
+constexpr double kDepths = 2e-3;  // of two surveys: practice's 1e-3 of each
+constexpr double kTurned = 0.05;  // of a way, by a north 3 deg aside: 2 sin 1.5 deg
+constexpr double kPlaces = 1;     // that nobody asks for; of TVD, which has no slot [m]
 constexpr double kBendMost = FromDegrees(5) / 30;  // of a hole, at most [rad/m]
 
 Eigen::Vector3d Along(double inclination, double azimuth) {

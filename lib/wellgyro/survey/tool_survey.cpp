@@ -23,7 +23,7 @@ namespace {
 bool CanBe(const StillWindow& window) {
   constexpr double kRate = 0.5 * units::kDeg;  // [rad/s], 120 times the Earth's
   constexpr double kLeastForce = 9.3, kMostForce = 10.3;
-  constexpr double kSeconds = 1e5;  // 28 h
+  constexpr double kSeconds = 1e5;  // 28 h: no stop is longer than a day
   const double f = window.f_T.norm();
   const double seconds = window.seconds();
   const bool sigmas = window.sigma_w_IT_T.allFinite() && window.sigma_f_T.allFinite() &&

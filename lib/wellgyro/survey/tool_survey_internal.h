@@ -7,7 +7,8 @@
 
 namespace wellgyro {
 
-/// So long after the last sample or mark a tool that was at rest then still hangs as it did.
+/// So long after the last sample or mark a tool that was at rest then still hangs as it did: a
+/// connection takes some minutes, and what is ordered meanwhile belongs to that place.
 inline constexpr Duration kHeld = Duration::Seconds(600);
 
 /// The north fix that contradicts the job's external azimuth most, where one does.

@@ -12,7 +12,7 @@
 
 namespace wellgyro {
 
-inline constexpr std::int64_t kSameNs = 2;  ///< one place, cut twice and rounded
+inline constexpr std::int64_t kSameNs = 2;  ///< one place, cut twice and each rounded to 1 ns
 
 /// A knot that has been cut and waits for its increment, 6 to 12 s. What the samples and the depth
 /// say of it is known at once; whether it is at rest, and its increment, come later.

@@ -8,8 +8,11 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kNearMd = 0.2;  // [m]
-constexpr double kTurn = 1;      // [m], back from the shallowest point: there another pass begins
+// [m], between points of a line: twice kSameDepth, below which directions differ by noise.
+constexpr double kNearMd = 0.2;
+// [m], back from the shallowest point: there another pass begins. More than a string creeps or
+// heaves while it rests, less than a joint.
+constexpr double kTurn = 1;
 
 std::optional<Eigen::Vector3d> BulgeOf(const Site& head, const PassLine& line, double from,
                                        double to) {

@@ -10,6 +10,7 @@
 namespace wellgyro {
 namespace {
 
+// Inclination at which a continuous leg begins, as GYRO-NS-CT has it (data/models).
 constexpr double kDefaultInitialise = 15 * units::kDeg;
 
 bool IsContinuous(const ErrorTerm& term) {
