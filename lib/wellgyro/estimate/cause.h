@@ -28,7 +28,8 @@ struct CauseSpec {
   double size = 0;  ///< its 1-sigma where the fault is there; unused of noise and kOther
 };
 
-/// Normal quantile of the power, 80 %, with which a fault counts as noticed.
+/// Normal quantile of the power, 80 %, with which a fault counts as noticed, as geodesy has it
+/// (Baarda, A testing procedure for use in geodetic networks, 1968).
 inline constexpr double kNoticedPower = 0.8416212335729143;
 /// No fault is larger than so many of its sizes: five sigmas, one of 1.7 million.
 inline constexpr double kLargestFault = 5;

@@ -20,7 +20,8 @@ constexpr std::size_t kSpans[] = {1, 4, 12};  // knots: a jerk, a start, a slow 
 constexpr double kSpeedReach = 5;      // [s]
 constexpr double kLeastChange = 0.05;  // [m/s]
 
-// Of a tool whose roll is nowhere seen, where the search by decades begins [rad/s/sqrt(s)].
+// Of a tool whose roll is nowhere seen, where the search by decades begins [rad/s/sqrt(s)]: a tenth
+// of kRollWalkMost, so that it may go up too.
 constexpr double kWalkUnseen = 1e-2;
 
 /// Running sums of the roll, its variance, time, and knots that do not show it.

@@ -32,7 +32,8 @@ constexpr std::size_t kLeastWindow = 10;           // twenty readings for five u
 // From window to window a rate changes as Laplace has it, by 0.1 rad/s, or it starts or stops,
 // which has one chance in exp(8) = 3000.
 constexpr double kChange = 0.1, kJump = 8;
-// Where a tool states no noise: a hundredth of a navigation gyro's, of a microgal's.
+// Where a tool states no noise: 3e-6 deg/sqrt(h) [rad/sqrt(s)], a thousandth of a navigation
+// gyro's, and 0.1 ug/sqrt(Hz) [m/s^2/sqrt(Hz)].
 constexpr double kLeastGyroNoise = 1e-9, kLeastAccelNoise = 1e-6;
 using Costs = std::array<double, kRates>;
 

@@ -7,7 +7,7 @@ namespace wellgyro {
 inline constexpr double kAnyRoll = 10;
 
 /// Newton's decrements squared below which another roll walk can be told from the last, and from
-/// which on it is not worth while.
+/// which on it is not worth while: one sigma, and a hundred, over all unknowns together.
 inline constexpr double kNear = 1, kFar = 1e4;
 
 /// What may be hoped for, as a multiple of what the linear model or a trend of decrements promises.

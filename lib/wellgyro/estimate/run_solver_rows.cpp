@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr double kAnyAttitude = 10;  // [rad]
 constexpr double kAnyDepth = 1e4;    // [m]
 constexpr double kAnySpeed = 10;     // [m/s]
-constexpr double kNoDrift = 1e-12;   // the walk begins at the bias [rad/s]
+constexpr double kNoDrift = 1e-12;   // the walk begins at the bias, to 2e-7 deg/h [rad/s]
 
 }  // namespace
 

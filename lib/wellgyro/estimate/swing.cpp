@@ -18,7 +18,7 @@ using Complex = std::complex<double>;
 constexpr double kSegment = 600;
 // Half or twice the least of knots and of rates: the same swing is found in three clean runs.
 constexpr std::size_t kLeastSeen = 60;  // knots of a segment, to tell a line from a trend
-constexpr double kLongest = 60;         // [s], longest period
+constexpr double kLongest = 60;         // [s], longest period: ten of them in kSegment
 constexpr double kNyquist = 0.9;        // of half a turn a knot, beyond which a line is aliased
 // Of the variance that a line must explain. At 0.6 the demonstration's swing, in a sixth of its
 // way, is missed, and its azimuth errors are 1.4 % larger; at 0.15 no other line is found in clean
