@@ -15,10 +15,13 @@ namespace {
 using Rest = StopStand::Rest;
 using Action = Advice::Action;
 
-constexpr double kAdviceSpacing = 30;  // [m] of places for a stop, or ...
-constexpr double kPlaces = 40;         // ... so many to a way
-constexpr double kHere = 10;           // [m] within which a place is this one
-constexpr double kGoesUp = 10;         // [m] above its deepest place the run is on its way up
+// [m] of places for a stop, a stand, or so many to a way: of a plan's kPlacesMost 0.4, whose
+// matrices have a sixth of the numbers, since live advice is to be quick.
+constexpr double kAdviceSpacing = 30;
+constexpr double kPlaces = 40;
+constexpr double kHere = 10;  // [m] within which a place is this one: a third of kAdviceSpacing
+// [m] above its deepest place the run is on its way up: more than a string is lifted off its slips.
+constexpr double kGoesUp = 10;
 
 /// This place, then those of the plan's way that are still ahead.
 std::vector<StopPlace> PlacesAhead(const PlannedWay& way, double md, bool out) {

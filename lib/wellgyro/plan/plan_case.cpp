@@ -11,10 +11,11 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kLeastWay = 10;                  // [m] that there is something to plan
-constexpr double kLongest = 20'000;               // [m], past the longest well drilled
-constexpr double kSlowest = 0.05, kFastest = 10;  // [m/s]
-constexpr double kSlack = 1e-6;                   // [m]
+constexpr double kLeastWay = 10;     // [m] that there is something to plan
+constexpr double kLongest = 20'000;  // [m], past the longest well drilled
+// [m/s]: slower, a kilometre takes more than 5.6 h; faster, a jump to DepthTrack (speed_limit).
+constexpr double kSlowest = 0.05, kFastest = 10;
+constexpr double kSlack = 1e-6;  // [m], rounding of files
 
 void Need(bool holds, std::string_view name, double value, std::string_view what) {
   if (holds) return;

@@ -18,7 +18,8 @@ using Kind = CauseSpec::Kind;
 // Steps of the gyros are looked for at every node; some eighty onsets of a run do not look alike
 // (50 to 100 on simulated runs of 900 spans).
 constexpr double kOnsets = 80;
-constexpr std::size_t kStepEvery = 4;  // places
+// [places], 120 m or more: what a step does to the end changes little from one to the next.
+constexpr std::size_t kStepEvery = 4;
 
 /// Whether column `at` of [node; border] is an error of the gyros' own, which turns with the tool.
 bool IsOfGyros(const Layout& layout, int at) {

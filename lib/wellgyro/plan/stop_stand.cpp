@@ -19,9 +19,10 @@ using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-// Of the mean of order 16 that stands for the largest, what a fault must have to count.
+// Of the mean of order 16 that stands for the largest, what a fault must have to count: 500 left
+// out change its 16th root by 500e-12 / 16 = 3e-11.
 constexpr double kCounts = 1e-12;
-constexpr double kLeastSeconds = 0.5;  // a stop that has less is none
+constexpr double kLeastSeconds = 0.5;  // a stop that has less is none: times are of kStopGrain
 
 double Power16(double x) { return Square(Square(Square(Square(x)))); }
 double Root16(double x) { return std::sqrt(std::sqrt(std::sqrt(std::sqrt(x)))); }

@@ -25,14 +25,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr Complex kI{0, 1};
-constexpr double kTurnKnot = 10;   // [s] to turn to another toolface
-constexpr double kTurnMost = 0.6;  // [rad] of it in a knot
+constexpr double kTurnKnot = 10;   // [s] to turn to another toolface, half a turn at 3 rpm
+constexpr double kTurnMost = 0.6;  // [rad] of it in a knot, as KnotLength::roll
 constexpr double kSigmaMd = 0.05;  // [m] of a depth mark against its neighbours
 // What a rolling tool's rate does from knot to knot beyond its plan, beside kRollPerSpeed where the
 // speed changes; where gravity shows the roll neither counts. With half or twice the walk the end's
 // ellipse in the demonstration's well is the same, its worst unseen fault 2.05 or 2.83 m for 2.34.
 constexpr double kRollWalk = 1e-3;       // [rad/s/sqrt(s)]
-constexpr double kSpeedChanges = 0.001;  // [m/s]
+constexpr double kSpeedChanges = 0.001;  // [m/s]: a planned speed is even but for rounding
 
 Vector2d Pair(Complex z) { return {z.real(), z.imag()}; }
 
