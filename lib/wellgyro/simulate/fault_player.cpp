@@ -19,8 +19,9 @@ using Cause = SimulatedFault::Cause;
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
-constexpr std::uint64_t kNoiseStream = 5000;
-constexpr double kTurnSeconds = 10;  // of a turn at rest, and of a creep's way back
+constexpr std::uint64_t kNoiseStream = 5000;  // a number that no other draw has
+// [s], of a turn at rest, and of a creep's way back: over ten knots, as a string turns.
+constexpr double kTurnSeconds = 10;
 
 bool Acts(const SimulatedFault& f, double time) { return time >= f.begin && time < f.end; }
 

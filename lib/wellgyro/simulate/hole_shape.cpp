@@ -17,8 +17,14 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kLargestBend = FromDegrees(60);  // between stations
-constexpr double kLeastDetail = 0.1;              // [m]
+// Between stations: no hole turns so in a stand, and the spline's great circles stay far from 180
+// deg, where they are undetermined.
+constexpr double kLargestBend = FromDegrees(60);
+// [m], of ramps and quarter periods: shorter than any tool, which does not follow it; the truth is
+// integrated by 1 / kStepsPerDetail of it, 5 mm.
+constexpr double kLeastDetail = 0.1;
+// The frame turns about z by tan(I / 2) times what the hole turns aside: 115 times 1 deg from
+// there.
 constexpr double kStraightUp = FromDegrees(1);
 
 // The direction `u` of the way from `a` to `b` along their great circle, also beyond either.

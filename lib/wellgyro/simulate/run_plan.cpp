@@ -16,6 +16,9 @@
 namespace wellgyro {
 namespace {
 
+// Phase x that passes in a short time, over which sensors are integrated by four points of Gauss:
+// the mean of exp(ix) is off by x^8 4!^4 / (9 8!^3) = 5.6e-10 x^8, below rounding for a turn of 0.1
+// rad, 2e-12 of the amplitude for a wave of 0.5 rad.
 constexpr double kTurnPerShortTime = 0.1;  // [rad]
 constexpr double kWavePerShortTime = 0.5;  // [rad]
 constexpr double kLongest = 1e7;           // [s], of a run: nothing would ever come of a longer one

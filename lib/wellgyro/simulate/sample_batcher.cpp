@@ -11,7 +11,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::uint64_t kLossStream = 3000;
+constexpr std::uint64_t kLossStream = 3000;  // a number that no other draw has
 
 }  // namespace
 

@@ -13,8 +13,13 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kLongestStep = 0.5;  // [m]
+// [m]; between nodes, where a cubic stands for the place, an arc of 10 deg/30 m (1 / 172 m) is off
+// by h^4 / (384 172^3 m^3) = 3e-11 m.
+constexpr double kLongestStep = 0.5;
+// A quarter period in 20 steps: Runge and Kutta's fourth order, here Simpson's rule, is off by
+// (pi / 40)^4 / 2880 = 1.3e-8 of the wave.
 constexpr int kStepsPerDetail = 20;
+// As of a job's latitude_deg: 11 km from the pole.
 constexpr double kLargestLatitude = FromDegrees(89.9);
 
 enum Index { kNorthing, kEasting, kTvd, kLatitude, kLongitude, kConvergence };
