@@ -9,8 +9,11 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kLevel = 1e-13;  // below it a direction has no vertical part
-constexpr double kEnd = 1e-9;     // rounding at the ends of a leg [m]
+// Below it a direction has no vertical part: rounding of products of sines, some hundred eps; over
+// 10 km it is 1e-9 m.
+constexpr double kLevel = 1e-13;
+// Rounding at the ends of a leg [m]: 10 km eps = 2e-12 m, many times over.
+constexpr double kEnd = 1e-9;
 
 // Arc length from the middle, by v = tan(curvature s / 2) / curvature.
 double LengthOf(const Arc& arc, double v) {

@@ -91,7 +91,9 @@ PlaneCrossings CrossingsOfPlane(const LegArc& arc, const Vector3d& point_W,
 
 namespace {
 
-constexpr double kGoodTo = 1e-7;  // [m]
+// [m], to which the distance is found: intervals are halved until none may hold less. The square of
+// one, 1e-14 m^2, is above the rounding of g at some metres, 1e-15 m^2.
+constexpr double kGoodTo = 1e-7;
 
 NearestPair BetweenStraights(const LegArc& a, const LegArc& b) {
   NearestPair best{0, NearestOn(b, a.begin_W), 0};
@@ -174,7 +176,7 @@ bool PairSearch::MayHoldNearer(const Interval& in) const {
 }
 
 NearestPair PairSearch::Run() {
-  constexpr int kFirst = 4;
+  constexpr int kFirst = 4;  // for a good first bound; what may hold a nearer pair is halved on
   best_.square = (PointOn(along_, 0) - other_.begin_W).squaredNorm();
   std::vector<Interval> open;
   Sample from = At(0);

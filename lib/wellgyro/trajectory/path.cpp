@@ -13,7 +13,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kLatitudeLimit = FromDegrees(89.5);  // [rad]
+// [rad], 56 km from the pole: a hole that goes 10 km aside turns true north by 10 deg there.
+constexpr double kLatitudeLimit = FromDegrees(89.5);
 
 bool IsFinite(const PathStation& s) {
   return std::isfinite(s.md) && std::isfinite(s.inclination) && std::isfinite(s.azimuth);
