@@ -9,6 +9,8 @@
 namespace wellgyro {
 namespace {
 
+// Of a formula in a file from outside: characters, steps and brackets, so that neither memory nor
+// the call stack can be exhausted.
 constexpr std::size_t kLongest = 2000, kMostSteps = 512;
 constexpr int kDeepest = 64;
 

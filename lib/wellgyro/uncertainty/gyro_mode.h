@@ -10,7 +10,7 @@
 
 namespace wellgyro {
 
-inline constexpr std::size_t kMaxZones = 3;
+inline constexpr std::size_t kMaxZones = 3;  ///< of a model: one each of three axes, two and one
 
 /// Of sin I or cos I, by which a drift is divided: 0.6 deg from where it vanishes no error is told.
 inline constexpr double kSmallestTurnFactor = 0.01;

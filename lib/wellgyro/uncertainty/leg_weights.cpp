@@ -10,7 +10,7 @@ namespace wellgyro {
 namespace {
 
 constexpr double kNearSingular = 0.017452406437283512 * (1 - 1e-9);  // sin 1 deg, itself allowed
-constexpr double kRounding = 1e-12;                                  // rad
+constexpr double kRounding = 1e-12;  // [rad], of degrees read from files: 180 deg eps = 7e-16
 
 bool IsStationary(WeightRole role) {
   return role == WeightRole::kStationary || role == WeightRole::kStationaryNoise;
