@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kPatienceUs = 10'000'000;  // for a recorder's log to reach the live stream
 constexpr std::int64_t kQuietUs = 2'000'000;      // neither log nor bus says anything: joined
-constexpr int kPollMs = 50;
+constexpr int kPollMs = 50;  // between looks at a growing log: 20 a second, far below kQuietUs
 // A recorder that began after the own log ended has all that came since, or it is lost.
 constexpr std::size_t kLookedBackAt = Splice::kKept;
 // A log that has just begun may lack what waits for its sender to be known (see StreamGuard).

@@ -5,7 +5,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 18;
+constexpr std::size_t kBlock = std::size_t{1} << 18;  // [bytes], handed to the thread at once
 
 }  // namespace
 

@@ -12,7 +12,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kToolInfosMax = 1000;
+constexpr std::size_t kToolInfosMax = 1000;  // of tools and runs; more come from a broken sender
 
 }  // namespace
 

@@ -22,7 +22,7 @@ namespace wellgyro {
 /// Keeps the first faults and counts them all.
 class WELLGYRO_EXPORT FaultBook : public Sink {
  public:
-  static constexpr std::size_t kKept = 1000;
+  static constexpr std::size_t kKept = 1000;  ///< some 0.3 MB; all are counted
 
   void OnFault(const Fault& fault) override {
     ++count_;

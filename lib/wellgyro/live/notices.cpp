@@ -7,6 +7,7 @@
 namespace wellgyro {
 namespace {
 
+// Faults of one kind that are told as they come; then one a second, with their count.
 constexpr std::int64_t kToldAtOnce = 10;
 
 }  // namespace

@@ -29,6 +29,8 @@ WELLGYRO_EXPORT std::vector<std::byte> SignedBytes(const SignedOperation& operat
 /// It rests on messages alone, so that a log gives what the live stream gave.
 class WELLGYRO_EXPORT OperationGate {
  public:
+  /// What clocks of a rig and the time to type an order may come to. An order overheard and sent
+  /// again within it is the same order by its id.
   static constexpr Duration kFresh{600'000'000'000};
   static constexpr std::size_t kKept = 1000;    ///< records
   static constexpr std::size_t kWaitMax = 100;  ///< signed orders before the first sample

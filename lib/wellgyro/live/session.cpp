@@ -26,7 +26,9 @@ constexpr std::int64_t kFinishPatienceUs = 5 * kSecondUs;
 constexpr std::int64_t kDrainUs = 200'000;
 // Within which the receiver's thread hands over what the system holds for it already.
 constexpr int kQuietMs = 20;
-constexpr std::int64_t kPumpMs = 10, kIdleMs = 100;  // waited at most for a message
+// Waited at most for a message: Broadcast's pause while stations wait to be sent, else a tenth of
+// the second in which a status is due.
+constexpr std::int64_t kPumpMs = 10, kIdleMs = 100;
 // Messages used between two looks at what else there is to do.
 constexpr std::int64_t kAtOnce = 200;
 

@@ -16,11 +16,12 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kKeepUs = 500'000;
-constexpr std::int64_t kAdviceUs = 2 * kSecondUs;
-constexpr double kRests = 5;                   // [s] so long without moving is a rest
-constexpr std::int64_t kOutboxUs = 1'000'000;  // for stations that were not sent yet at the end
-constexpr int kOutboxMs = 10;
+constexpr std::int64_t kKeepUs = 500'000;          // twice a second: nobody reads files more often
+constexpr std::int64_t kAdviceUs = 2 * kSecondUs;  // two statuses: nobody acts on it sooner
+constexpr double kRests = 5;  // [s] so long without moving is a rest: no reversal takes it
+// For stations that were not sent yet at the end: 2000 of them at Broadcast's pace.
+constexpr std::int64_t kOutboxUs = 1'000'000;
+constexpr int kOutboxMs = 10;  // Broadcast's pause
 // After a snapshot that took t the next one comes 200 t later at the soonest: 0.5 % of the stream's
 // thread, so that few stations wait for one.
 constexpr std::int64_t kSnapshotShare = 200;

@@ -9,7 +9,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kLookMs = 100;
+constexpr int kLookMs = 100;  // between looks: half of what kLateUs leaves beyond a second
 
 }  // namespace
 
