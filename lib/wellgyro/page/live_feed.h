@@ -38,7 +38,8 @@ struct SigmaAsked {
 /// few pointers.
 class WELLGYRO_EXPORT LiveFeed {
  public:
-  static constexpr std::size_t kNoticesKept = 200;
+  static constexpr std::size_t kNoticesKept = 200;  ///< of more the oldest are not shown
+  /// A station each metre of four passes of the longest well is less; some 0.3 kB each, 15 MB.
   static constexpr std::size_t kStationsKept = 50'000;
   static constexpr std::size_t kAtOnce = 1 << 16;  ///< bytes a reader is given, about
 

@@ -19,11 +19,12 @@ namespace {
 
 using Mark = ChartSeries::Mark;
 
-constexpr double kModelSigmas = 3;
+constexpr double kModelSigmas = 3;  // as Compare() of checks: P(|x| > 3) = 0.27 % of each depth
 // Limits of field practice for gyro surveys, in-run against out-run: inclination 0.23 deg; azimuth
 // 1 deg from 10 deg of inclination on, 5 deg below (published QA/QC practice, drillingforgas.com).
 constexpr double kInclinationDeg = 0.23, kAzimuthDeg = 1.0, kSteepAzimuthDeg = 5.0, kSteepDeg = 10;
-constexpr double kLeastDeg = 2;      // of inclination, below which an azimuth is none
+// Of inclination, below which an azimuth is none: 1 / sin 2 deg = 29 times as vague as a direction.
+constexpr double kLeastDeg = 2;
 constexpr std::size_t kListed = 60;  // depths in the table of what is beyond
 constexpr std::size_t kFewest = 10;  // stations that field practice asks to be compared
 

@@ -15,7 +15,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kSamePlace = 10;  // [m]
+constexpr double kSamePlace = 10;  // [m], as live advice takes a place for the one it is at
 
 /// A stop as it was made.
 struct Stood {

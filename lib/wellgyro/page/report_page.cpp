@@ -22,6 +22,7 @@ std::string_view PaperName(ReportOptions::Paper paper) {
 
 /// Repeated by every print on each of its pages.
 void WriteRunningHead(PageText& page) {
+  // Letters of each of three names, so that the head stays a line or two of a printed page.
   constexpr std::size_t kMost = 48;
   const Json& run = At(page.survey, {"run"});
   const auto clipped = [&](std::string_view group, std::string_view key) {

@@ -13,7 +13,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTurnDeg = -35, kTiltDeg = 25;  // of the view that is printed
+// Of the view that is printed: north to the left of the depth, all three axes apart on the paper.
+constexpr double kTurnDeg = -35, kTiltDeg = 25;
 
 /// Seen from a distance: right and up on the paper.
 Vector2d Seen(const Vector3d& p) {
