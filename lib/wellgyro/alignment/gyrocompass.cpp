@@ -70,7 +70,8 @@ struct Basin {
 Basin BasinAbout(const Problem& problem, const std::vector<Solution>& minima) {
   const Solution& solution = minima.front();
   const double parabola = solution.cov(2, 2);
-  // Within so narrow a minimum, and no other beside it, the cost is a parabola.
+  // Within so narrow a minimum, and no other beside it, the cost is a parabola: (1 - cos x) is one
+  // to x^2 / 12 = 1e-4 at four sigmas, 2 deg.
   constexpr double kNarrow = FromDegrees(0.5);
   // Minima farther apart than 12 of such sigmas have more than kBarrier between them.
   const bool alone = std::none_of(minima.begin() + 1, minima.end(), [&](const Solution& other) {

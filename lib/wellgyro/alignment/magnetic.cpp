@@ -10,7 +10,8 @@
 namespace wellgyro {
 
 std::optional<double> MagneticAzimuth(std::span<const StillWindow> windows) {
-  constexpr double kLevel = 1e-6;  // of a direction, less than which none is left in the level
+  // Of a direction, less than which none is left in the level: 0.2 arcsec, that no sensor tells.
+  constexpr double kLevel = 1e-6;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const StillWindow& window : windows) {
     if (!window.has_mag) continue;

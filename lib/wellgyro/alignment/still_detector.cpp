@@ -13,12 +13,15 @@ namespace {
 
 using Eigen::Vector3d;
 
+// A block, at 10 Hz of ten samples, whose scatter they tell to 1 / sqrt(18) = 24 %.
 constexpr std::int64_t kBlockNs = 1'000'000'000;
 // Sigmas, P(|x| > 5) = 5.7e-7: of five axes one good block in four days is refused.
 constexpr double kGate = 5;
 // Of the depth's speed, P(|x| > 4) = 6.3e-5: a block in a hundred stops of 160 s.
 constexpr double kSpeedSigmas = 4;
-constexpr double kRagged = 4;  // [s] of either end of a stop that may stay out of the means
+// [s] of either end of a stop that may stay out of the means: a block that is cut short, one that
+// is left out (guarded_, pending_), and as much again while the string settles.
+constexpr double kRagged = 4;
 // From which on a slope is told: over n blocks to sqrt(12 / n) of a block's sigma.
 constexpr double kCreepBlocks = 10;
 // Floors: what a tool hanging in a live hole, and sensors a little worse than their data sheet, do.
