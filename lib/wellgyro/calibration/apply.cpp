@@ -40,7 +40,7 @@ struct Run {
 
 /// Brings the next piece into the nearest memory while this one is taken.
 void FetchNext(std::span<const RawSample> raw) {
-  constexpr std::size_t kLine = 64;  // bytes
+  constexpr std::size_t kLine = 64;  // [bytes], a cache line of x86-64 and of most ARM
   if (raw.size() < 2 * kPiece) return;
   const auto* begin = reinterpret_cast<const std::byte*>(&raw[kPiece]);
 #pragma GCC unroll 64

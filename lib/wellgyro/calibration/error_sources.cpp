@@ -218,6 +218,8 @@ ErrorPriors ErrorsLeft(const ToolCalibration& tool, ErrorPriors errors) {
   }
   const SensorGroup& group = gyro ? tool.gyro : tool.accel;
   const bool varies = group.thermometer >= 0;
+  // Of the calibrated range, at whose temperatures the largest sigma is sought: a variance of terms
+  // up to the third power has five turning points at most, fewer than the nine places looked at.
   constexpr int kSteps = 8;
   for (int step = 0; step <= (varies ? kSteps : 0); ++step) {
     const double T = varies ? group.min + (group.max - group.min) * step / kSteps : 0;

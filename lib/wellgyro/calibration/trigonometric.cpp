@@ -47,6 +47,8 @@ CorrectedReading Correct(const AffineModel& model, const Eigen::Vector3d& G_raw,
 
 CorrectedReading Correct(const TrigonometricModel& model, const Eigen::Vector3d& G_raw,
                          const Eigen::Vector3d& M_raw, const AffineModel& affine) {
+  // Fixed point: each turn leaves the share (largest error) / sin I of the last one's error, 1/5
+  // where it is accepted, 18 turns to kStill [rad]; 200 reach it where the share is 0.87.
   constexpr int kTurnsMost = 200;
   constexpr double kStill = 1e-12;
   const double largest = std::max(std::abs(model.x[0][0]), std::abs(model.x[1][0]));

@@ -206,7 +206,8 @@ std::string OutsideOf(const Session& session, const PJ* system, const CrsPoint& 
 // where it is the northing.
 void Differentiate(const Session& session, const PJ* system, const CrsPoint& own,
                    const std::string& code, CrsGridPoint& made) {
-  constexpr double kStep = 1e-3;  // [deg]
+  // [deg], h = 1.7e-5 rad, 110 m: h^2 / 6 = 5e-11 of truncation, 1 nm of rounding over 220 m 5e-12.
+  constexpr double kStep = 1e-3;
   const Held<PJ> back = ToOwnGeographic(session, system, code);
   const auto slope = [&](double dx, double dy) {
     const CrsPoint a = Apply(back.get(), PJ_INV, {own.x - dx, own.y - dy, 0}, code);
