@@ -14,8 +14,8 @@
 /// Ed25519 (RFC 8032), by OpenSSL: who may order what of a survey.
 namespace wellgyro {
 
-inline constexpr std::size_t kPublicKeySize = 32;
-inline constexpr std::size_t kSignatureSize = 64;
+inline constexpr std::size_t kPublicKeySize = 32;  ///< [bytes], Ed25519, RFC 8032
+inline constexpr std::size_t kSignatureSize = 64;  ///< [bytes]
 
 /// A private key. Files are PKCS 8 in PEM, as `openssl genpkey -algorithm ed25519` writes them.
 struct PrivateKey {

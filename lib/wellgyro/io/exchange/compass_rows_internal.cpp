@@ -13,8 +13,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kMostRows = 2000;
-constexpr std::size_t kLongest = 4000;  // characters of a formula with its values put in
+constexpr std::size_t kMostRows = 2000;  // of a file from outside; a tool has dozens
+constexpr std::size_t kLongest = 4000;   // characters of a formula with its values put in
 
 /// Compass speaks of gyro rates in degrees where its formulas divide by a rate per hour.
 double UnitOf(const CompassRow& row, const std::string& source) {

@@ -17,9 +17,9 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kMostHeaderLines = 200;
-constexpr int kMostLinesBelow = 20;  // between names and the first numbers
-constexpr std::size_t kMostRemarks = 1000;
+constexpr int kMostHeaderLines = 200;  // before the names; a text without names is given up there
+constexpr int kMostLinesBelow = 20;    // between names and the first numbers
+constexpr std::size_t kMostRemarks = 1000;  // kept of a file; more are left out
 
 bool IsBlank(const std::vector<std::string>& fields) {
   return std::all_of(fields.begin(), fields.end(), [](const auto& f) { return f.empty(); });

@@ -50,7 +50,7 @@ const FormatName& NameOf(SurveyFormat format) {
       fmt::format("SurveyFormat {} is no format of surveys", static_cast<int>(format)));
 }
 
-constexpr std::int64_t kMostXml = std::int64_t{1} << 28;
+constexpr std::int64_t kMostXml = std::int64_t{1} << 28;  // [bytes], as kXmlBytes
 
 // By its first bytes: formats that are not told by them are tables.
 SurveyFormat Recognised(std::string_view head) {

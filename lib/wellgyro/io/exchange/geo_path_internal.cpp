@@ -14,7 +14,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kRing = 32;  // corners of an ellipse
+// Corners of an ellipse: between them it is short by 1 - cos 5.6 deg = 0.5 %.
+constexpr int kRing = 32;
 
 std::optional<GeodeticPoint> HeadPlace(const SurveyHead& head) {
   for (const PositionObject& object : head.objects) {

@@ -190,7 +190,7 @@ class LasReader {
 
   // In LAS 3.0 a value may be left out, or be text in a column that is none of a survey's.
   std::optional<double> NumberOrNothing(std::string_view field) const {
-    constexpr double kNothing = -999.25;
+    constexpr double kNothing = -999.25;  // NULL of the examples of LAS 2.0
     if (Trim(field).empty()) return null_.value_or(kNothing);
     const std::size_t column = pending_.size();
     const bool other = column < curves_.all().size() && !curves_.all()[column].column;

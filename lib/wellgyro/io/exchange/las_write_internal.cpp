@@ -151,6 +151,7 @@ class LasWriter {
 
   void Data() {
     text_ += "~A\n";
+    // Of a column: sign, seven digits, point and four, and a space.
     constexpr std::size_t kWidth = 14;
     for (const std::size_t row : rows_) {
       for (const Column column : columns_) {

@@ -10,8 +10,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 18;
-constexpr std::size_t kLongestLine = 1 << 20;
+constexpr std::size_t kBlock = 1 << 18;        // [bytes], of one read
+constexpr std::size_t kLongestLine = 1 << 20;  // [bytes]; a file without line ends is no table
 
 void AppendUtf8(std::string& text, unsigned code) {
   if (code < 0x80) {

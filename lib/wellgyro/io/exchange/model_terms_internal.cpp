@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMinCourse = 10;                    // [m], Definition 5.1.2
 constexpr double kTortuosity = units::kDegPer100ft;  // SPE 187249
-constexpr double kVertical = 1e-4 * units::kDeg;
+constexpr double kVertical = 1e-4 * units::kDeg;     // what rounding of listings leaves of 0
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 
 namespace wellgyro {
 
-inline constexpr std::size_t kMostTerms = 1000;
+inline constexpr std::size_t kMostTerms = 1000;  ///< of a model from outside; published have dozens
 
 /// Carries a Fault to the door of a model reader. Never leaves io/exchange.
 struct ModelError {

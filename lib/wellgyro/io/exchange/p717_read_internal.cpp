@@ -16,7 +16,7 @@ namespace {
 
 using p717::IsoDate;
 
-constexpr std::size_t kG7Fields = 29;
+constexpr std::size_t kG7Fields = 29;  // of a G7 record, IOGP P7/17
 
 North NorthOfType(std::string_view name) {
   const std::string lower = Lower(name);

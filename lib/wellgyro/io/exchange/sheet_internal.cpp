@@ -16,8 +16,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr zip_uint64_t kPartBytes = 1 << 26;  // of a part, unpacked
-constexpr std::size_t kMostColumns = 1024, kMostRows = 1 << 20;
+constexpr zip_uint64_t kPartBytes = 1 << 26;                     // of a part, unpacked
+constexpr std::size_t kMostColumns = 1024, kMostRows = 1 << 20;  // rows as a spreadsheet has them
 
 [[noreturn]] void Refuse(FaultCode code, std::string text, const std::string& source,
                          int line = 0) {

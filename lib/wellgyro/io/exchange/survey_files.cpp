@@ -20,7 +20,7 @@ std::vector<OutputFile> SurveyFiles(const SurveyTable& table, SurveyFormat forma
 }
 
 void SayDeparture(SurveyTable& table) {
-  constexpr double kRounding = 0.005;  // [m]
+  constexpr double kRounding = 0.005;  // [m], of positions written to the centimetre
   const auto departure = DepartureFromListed(table);
   if (!departure || *departure < kRounding) return;
   const std::string remark = fmt::format(

@@ -11,6 +11,7 @@
 namespace wellgyro {
 namespace {
 
+// Of one survey, 1 GiB of numbers and of text each: beyond any hole's, below what ends a program.
 constexpr std::size_t kMostCells = std::size_t{1} << 27;
 constexpr std::size_t kMostTextBytes = std::size_t{1} << 30;
 
@@ -128,7 +129,7 @@ void TableBuilder::SetStatus(RowStatus status) {
 }
 
 void TableBuilder::FillAzimuth(std::size_t row) {
-  constexpr double kNoAzimuth = FromDegrees(0.05);
+  constexpr double kNoAzimuth = FromDegrees(0.05);  // what files of one decimal round to vertical
   const auto above = Nearest(table, without_azimuth_, row, -1);
   const auto below = Nearest(table, without_azimuth_, row, 1);
   if (table.inclination(row) <= kNoAzimuth) {

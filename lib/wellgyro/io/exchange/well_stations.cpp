@@ -15,7 +15,8 @@ namespace wellgyro {
 namespace {
 
 bool TurnsBack(const SurveyPoint& a, const SurveyPoint& b) {
-  constexpr double kOpposite = -0.999;  // cosine; no arc joins opposite directions
+  // Cosine of 177.4 deg; no arc joins opposite directions, and no hole turns back within a leg.
+  constexpr double kOpposite = -0.999;
   return Tangent(a.inclination, a.azimuth).dot(Tangent(b.inclination, b.azimuth)) < kOpposite;
 }
 

@@ -40,6 +40,8 @@ Ratio RatioOf(double factor, double tolerance) {
 }  // namespace witness
 
 void Witness(SurveyTable& table, const Claims& claims, const std::string& source) {
+  // Of longer surveys legs are joined: so many tell a factor of lengths as well as all would, in a
+  // time that does not grow.
   constexpr std::size_t kMostStretches = 2048;
   if (claims.position_log) return;
   witness::Case c{table, claims, source, {}, {}, {}, 0};

@@ -171,7 +171,9 @@ constexpr std::array kPlanes{
 
 // Large numbers are no offsets.
 void MoveMapCoordinates(Case& c) {
-  constexpr double kFarthest = 1e5;  // [m]
+  // [m]: no hole goes 100 km aside, and grids give their origins false eastings and northings above
+  // it.
+  constexpr double kFarthest = 1e5;
   const auto row = FirstWith(c.table, Column::kNorth);
   if (!row || c.table.Has(Column::kNorthing)) return;
   const double north = *c.table.Get(Column::kNorth, *row);

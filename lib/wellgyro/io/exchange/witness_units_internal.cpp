@@ -66,6 +66,8 @@ class UnitVotes {
 void VoteByCurvature(const Case& c, UnitVotes& votes) {
   const LineFit fit = FitCurvature(c.table);
   if (!Tells(fit)) return;
+  // Nearest of the ratios looked for: (100/30) / (1/0.3048) = 1.016, of which this is less than
+  // half.
   constexpr double kNear = 0.007;
   const auto is = [&](double wanted) { return std::abs(fit.factor / wanted - 1) < kNear; };
   if (is(1) || is(1.0 / 3)) votes.Add(LengthUnit::kMetre, "dogleg severity");

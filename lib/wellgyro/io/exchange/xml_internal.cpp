@@ -11,6 +11,8 @@
 namespace wellgyro {
 namespace {
 
+// [bytes], a file of which is held whole, and elements within each other, by which reading goes
+// down the call stack; WITSML has a dozen.
 constexpr std::size_t kXmlBytes = std::size_t{1} << 28;
 constexpr int kMostDepth = 64;
 

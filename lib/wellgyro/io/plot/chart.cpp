@@ -273,7 +273,7 @@ std::string ChartSheetSvg(const std::string& title, const std::vector<std::strin
 }
 
 std::vector<Vector2d> EllipseOutline(const Vector2d& middle, const Vector2d& a, const Vector2d& b) {
-  constexpr int kPoints = 36;
+  constexpr int kPoints = 36;  // chords fall short by 1 - cos 5 deg = 0.4 % of the half axis
   std::vector<Vector2d> outline;
   for (int i = 0; i < kPoints; ++i) {
     const double angle = kTwoPi * i / kPoints;

@@ -49,7 +49,7 @@ MapSection SectionThrough(const MapPath& path) {
 
 double MagnificationOf(const MapPath& path, double confidence) {
   constexpr double kShare = 0.03;  // of the path's extent, for the largest half axis
-  constexpr double kMost = 1000;
+  constexpr double kMost = 1000;   // beyond it millimetres are drawn, which no survey has
   double largest = 0;
   for (const auto& [at, cov] : path.covs_W) {
     largest = std::max(largest, HorizontalEllipse(cov, confidence).semi_major);
@@ -65,7 +65,7 @@ double MagnificationOf(const MapPath& path, double confidence) {
 }
 
 std::vector<std::size_t> EllipsesShown(const MapPath& path) {
-  constexpr std::size_t kSome = 10;
+  constexpr std::size_t kSome = 10;  // apart by more than three of the largest half axes
   std::vector<std::size_t> shown;
   const std::size_t step = std::max<std::size_t>(1, path.covs_W.size() / kSome);
   for (std::size_t back = path.covs_W.size(); back > 0; back -= std::min(back, step)) {

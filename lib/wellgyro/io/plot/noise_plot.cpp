@@ -186,7 +186,7 @@ class Plot {
 
   template <class Variance>
   std::string Curve(Variance variance) const {
-    constexpr int kPoints = 240;
+    constexpr int kPoints = 240;  // a point every 2.2 pixels
     std::vector<Point> points;
     const double first = rows_.front().point.tau;
     const double last = rows_.back().point.tau;

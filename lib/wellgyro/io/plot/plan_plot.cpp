@@ -29,7 +29,7 @@ Chart InclinationChart(const PlanCase& c, const StopPlan& plan) {
     return Vector2d(md, ToDegrees(c.well.AtMd(inside).inclination));
   };
   ChartSeries line{.colour = kHelpColour};
-  constexpr int kPoints = 400;
+  constexpr int kPoints = 400;  // a point every 1.5 pixels of kPlanWidth
   for (int i = 0; i <= kPoints; ++i) {
     line.points.push_back(at(c.way.begin_md + (c.way.end_md - c.way.begin_md) * i / kPoints));
   }

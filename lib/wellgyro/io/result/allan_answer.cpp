@@ -258,7 +258,9 @@ class Analyst {
     if (fit) {
       fit_ = *std::move(fit);
       model_ = fit_->model;
-      constexpr double kFarOff = 4;  // one an averaging time is usual
+      // One an averaging time is usual; by chance four comes once in 60 000 logs of ten averaging
+      // times, once in 2000 of six (chi-square).
+      constexpr double kFarOff = 4;
       if (fit_->deviance > kFarOff * fit_->points) {
         Note(
             fmt::format("these terms do not explain the log (deviance {:.0f} at {} averaging "

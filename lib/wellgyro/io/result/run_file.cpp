@@ -29,7 +29,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kFaultsListed = 100;
+constexpr std::size_t kFaultsListed = 100;  // then their count, so that the file can be read
 
 /// In 15 digits, so that what a text of no more said in degrees comes back as it was: there and
 /// back again errs by less than half of the last one.

@@ -89,7 +89,7 @@ class Reader {
 
   /// Why no reading of the column is `value`; empty where one can be.
   std::string WrongWith(double value, std::size_t column) const {
-    constexpr double kLargest = 1e15;
+    constexpr double kLargest = 1e15;  // a double counts to 9e15, and no instrument further
     if (std::abs(value) > kLargest) return "is larger than any reading";
     // No chamber reaches either end; kelvin lie beyond it from -13 degC on.
     constexpr double kColdest = -150, kHottest = 260;

@@ -17,9 +17,14 @@
 namespace wellgyro {
 namespace {
 
+// The wrong sign gives 180 deg - I, so that I, if not within 1 deg of horizontal in all records, is
+// off by more; uncorrected accelerometers and sag are off by less.
 constexpr double kAgree = FromDegrees(2);
+// Least sigmas, of records that state none by jobs that state no noise: what their digits round.
 constexpr double kRateLeast = 0.01 * units::kDegPerHour;
 constexpr double kForceLeast = 1e-4;  // [m/s^2]
+// From the end of a record without a time to the next, which has none either: only the order
+// counts.
 constexpr std::int64_t kMinuteNs = 60'000'000'000;
 
 double InclinationOf(const Eigen::Vector3d& f, double sign) {

@@ -43,7 +43,9 @@ std::string WithCommas(std::string header) {
   return header;
 }
 
-constexpr std::int64_t kMarkEvery = 4'000'000'000;  // [ns], while at rest
+// [ns], between marks made for a stand at rest: below DepthTrackSetup::max_gap, 5 s.
+constexpr std::int64_t kMarkEvery = 4'000'000'000;
+// Of which the median is the period: right while fewer than half of them skip a sample.
 constexpr std::size_t kFirstSteps = 1000;
 
 }  // namespace

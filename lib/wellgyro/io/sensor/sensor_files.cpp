@@ -22,13 +22,18 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kRest = 20;     // [s], the shortest stop that joins clocks
-constexpr double kRestGap = 60;  // [s] between marks of one rest
-constexpr double kAhead = 120;   // [s] that depth is pushed ahead of samples
-constexpr double kStampSigmas = 3;
+// [s], the shortest stop that joins clocks: several times what its ends are noted to, 3 s
+// (sigma_edge of StopMatchSetup).
+constexpr double kRest = 20;
+// [s] between marks of one rest: a logger that writes when depth changes is silent in it.
+constexpr double kRestGap = 60;
+// [s] that depth is pushed ahead of samples: more than any of them waits for, a tenth of a MB of
+// marks.
+constexpr double kAhead = 120;
+constexpr double kStampSigmas = 3;  // P(|x| > 3) = 0.27 % of clocks that agree, one second at least
 // Between pairs of clocks, over which a crystal keeps its rate [s].
 constexpr double kPairEvery = 10;
-constexpr std::int64_t kProgressRows = 65536;
+constexpr std::int64_t kProgressRows = 65536;  // between reports, some a second
 
 struct Opened {
   std::filesystem::path path;

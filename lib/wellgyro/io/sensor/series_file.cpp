@@ -41,7 +41,7 @@ T FromLittleEndian(const char* bytes) {
 template <class T>
 bool ReadNumbers(std::ifstream& file, std::int64_t count, std::vector<double>& values,
                  const std::function<void(double)>& progress) {
-  constexpr std::int64_t kChunk = 1 << 17;
+  constexpr std::int64_t kChunk = 1 << 17;  // numbers of one read, 1 MB of doubles
   std::vector<char> bytes(static_cast<std::size_t>(std::min(kChunk, count)) * sizeof(T));
   values.reserve(static_cast<std::size_t>(count));
   for (std::int64_t done = 0; done < count; done += kChunk) {

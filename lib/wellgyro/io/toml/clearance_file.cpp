@@ -9,7 +9,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr TomlRange kRadius{.min = 0, .max = 10};  // [m]
+constexpr TomlRange kRadius{.min = 0, .max = 10};  // [m]: conductors have half a metre
 constexpr double kAllTheWay = std::numeric_limits<double>::max();
 
 std::vector<HoleSection> ReadHole(TomlTable& table, std::string_view key) {

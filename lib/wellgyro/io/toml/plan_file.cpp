@@ -10,8 +10,8 @@ namespace wellgyro {
 namespace {
 
 constexpr double kRpm = kTwoPi / 60;
-constexpr TomlRange kSpeed{.min = 0.05, .max = 10};
-constexpr TomlRange kDepth{.min = 0, .max = 20'000};
+constexpr TomlRange kSpeed{.min = 0.05, .max = 10};   // [m/s], as CheckPlanCase has it
+constexpr TomlRange kDepth{.min = 0, .max = 20'000};  // [m], as CheckPlanCase has it
 
 /// Without the last digits that a unit's conversion leaves.
 double Tidy(double value, double digits = 1e6) { return std::round(value * digits) / digits; }
@@ -110,7 +110,7 @@ PlannedWay ReadWay(TomlTable table) {
 }
 
 PlanLimits ReadLimits(TomlTable table) {
-  constexpr TomlRange kStop{.min = 10, .max = 7200};
+  constexpr TomlRange kStop{.min = 10, .max = 7200};  // [s], as CheckLimits has it
   PlanLimits limits{.ellipse = 0};
   table.Read("ellipse_m", limits.ellipse, 1, {.min = 1e-3, .max = 1e4});
   limits.hidden = table.FindNumber("hidden_m", {.min = 1e-3, .max = 1e5});

@@ -249,6 +249,7 @@ SimulatedStreams ReadSimulatedStreams(TomlTable table) {
     if (!(row[1] > row[0])) table.Refuse("outages_s", "an outage ends later than it begins");
     streams.outages.push_back({.begin = row[0], .end = row[1]});
   }
+  // [us]: in nanoseconds half of what an int64 holds, the other half being left for the run.
   constexpr std::int64_t kBeginMax = std::numeric_limits<std::int64_t>::max() / 2000;
   if (const auto us = table.FindInteger("begin_utime_us", 0, kBeginMax)) {
     streams.begin_utc.ns = *us * 1000;
