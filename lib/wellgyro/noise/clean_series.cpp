@@ -120,7 +120,7 @@ std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const 
   const double period = Median(std::move(steps));
   if (!(period > 0)) return NotRising(times);
   std::vector<std::int64_t> place(times.size(), 0);
-  constexpr double kLongest = 1e9;
+  constexpr double kLongest = 1e9;  // [periods], so that sums of steps stay far inside an int64
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double step = (times[i] - times[i - 1]) / period;
     if (!(step > 0.5) || step > kLongest) {
@@ -133,6 +133,7 @@ std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const 
     }
     place[i] = place[i - 1] + static_cast<std::int64_t>(std::llround(step));
   }
+  // Places of missing samples are kept, 8 bytes each: 8 MB, or 100 for each sample there is.
   constexpr std::int64_t kRoom = 1'000'000, kPerSample = 100;
   if (place.back() > kRoom + kPerSample * std::ssize(place)) {
     return TimesComplaint{fmt::format("the times leave {} places for {} samples", place.back() + 1,
@@ -167,6 +168,8 @@ std::int64_t Exclude(SampleSeries& series, double from, double to) {
 }
 
 std::int64_t ExcludeSpikes(SampleSeries& series) {
+  // Samples about whose median spikes are told: known to 1.25 sigma / sqrt(1000) = 4 %, and short
+  // against what drifts.
   constexpr std::size_t kBlock = 1000;
   const std::vector<char> missing = MissingOf(series);
   std::vector<std::size_t> spikes;
@@ -192,7 +195,7 @@ std::optional<TemperatureTrend> DetrendTemperature(SampleSeries& series) {
   TemperatureTrend trend;
   trend.mean = T.mean();
   const double spread = T.maxCoeff() - T.minCoeff();
-  constexpr double kLeast = 0.1;  // degC
+  constexpr double kLeast = 0.1;  // [degC]: below it a thermometer's noise would be the regressor
   if (!(spread > kLeast)) return std::nullopt;
   const Eigen::VectorXd x = (T.array() - trend.mean) / spread;
   Eigen::MatrixXd A(n, 3);

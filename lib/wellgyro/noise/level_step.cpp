@@ -60,6 +60,8 @@ LevelStep LikeliestStep(const LevelFilter& filter, std::size_t margin) {
 }  // namespace
 
 std::optional<LevelStep> FindLevelStep(std::span<const double> values) {
+  // Means on either side of a step, which tell their level to 1 / sqrt(20) = 22 % of a mean's
+  // sigma; and ten times as many to tell white noise from a walk by.
   constexpr std::size_t kMargin = 20, kLeast = 200;
   if (values.size() < kLeast) return std::nullopt;
   const LevelFilter without = Likeliest(values);
