@@ -12,7 +12,7 @@ namespace wellgyro {
 /// "/dev/ttyS0", eight bits, no parity, one stop bit.
 class WELLGYRO_EXPORT ByteStream {
  public:
-  static constexpr int kBaud = 9600;
+  static constexpr int kBaud = 9600;  ///< what WITS level 0 is sent with where nobody says another
 
   /// Waits for `patience_ms` at most until it is connected.
   static Result<ByteStream> Open(const std::string& where, int baud = kBaud,

@@ -39,7 +39,7 @@ enum class MessageType {
   kRequest,
   kAdvice,
 };
-inline constexpr int kMessageTypes = 14;
+inline constexpr int kMessageTypes = 14;  ///< of MessageType
 
 /// The struct's name in proto/, as "imu_batch_t".
 WELLGYRO_EXPORT std::string_view TypeName(MessageType type);
@@ -115,7 +115,7 @@ struct ForeignCount {
 /// once the buffers have grown.
 class WELLGYRO_EXPORT Feed {
  public:
-  static constexpr int kFaultsHeard = 10;
+  static constexpr int kFaultsHeard = 10;  ///< of a kind of message and of fault; the rest counted
   static constexpr std::size_t kForeignChannelsMax = 100;  ///< by name; the rest under ""
 
   /// Called for each accepted message before the listener, with the bytes as they came.

@@ -113,6 +113,7 @@ class FieldWriter {
   }
 
  private:
+  /// [bytes]: far above any text of ours, and LCM's lengths, int32, hold it.
   static constexpr std::size_t kStringMax = std::size_t{1} << 24;
 
   template <class T>

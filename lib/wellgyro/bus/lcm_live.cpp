@@ -23,6 +23,8 @@
 namespace wellgyro {
 namespace {
 
+// Messages to ourselves, and how long each is waited for: a second in all, before what LCM hears of
+// its own is said to be nothing. One alone may be lost.
 constexpr int kSelfTests = 10;
 constexpr int kSelfTestMs = 100;
 

@@ -28,7 +28,7 @@ using log_format::kTimeAt;
 // How far to look for a first event before calling a file foreign: behind what is left of one whose
 // head is missing, kDataMax at most, a second one may be damaged.
 constexpr std::int64_t kSearchMax = 2 * static_cast<std::int64_t>(kDataMax);
-constexpr std::size_t kBeginning = 64;
+constexpr std::size_t kBeginning = 64;  // [bytes], by which a file of another kind is told
 
 struct Head {
   std::int64_t number = 0;

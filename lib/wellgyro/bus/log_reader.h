@@ -33,7 +33,7 @@ struct LogGap {
 
 /// How a log was, as far as it has been read.
 struct LogHealth {
-  static constexpr std::size_t kGapsMax = 1000;
+  static constexpr std::size_t kGapsMax = 1000;  ///< told by place; more are counted only
 
   std::int64_t events = 0;
   std::int64_t bytes = 0;       ///< read so far, gaps included

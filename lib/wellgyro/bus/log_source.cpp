@@ -14,6 +14,7 @@
 namespace wellgyro {
 namespace {
 
+// [bytes], of one read: the cost of the calls is nothing then.
 constexpr std::size_t kBlock = std::size_t{1} << 20;
 
 Fault SystemFault(const std::string& path, const char* doing) {

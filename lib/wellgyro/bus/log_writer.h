@@ -24,7 +24,7 @@ enum class IfExists { kRefuse, kReplace, kAppend };
 /// at the end. A write that fails half-way (disk full) is taken back to the last whole event.
 class WELLGYRO_EXPORT LogWriter {
  public:
-  static constexpr std::size_t kBlock = std::size_t{1} << 20;
+  static constexpr std::size_t kBlock = std::size_t{1} << 20;     ///< [bytes], of one write
   static constexpr std::size_t kHeldMax = std::size_t{32} << 20;  ///< [bytes] behind a Fault
 
   /// `path`: a file, or "-" for standard output.

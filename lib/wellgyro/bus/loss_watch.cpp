@@ -7,7 +7,9 @@
 namespace wellgyro {
 namespace {
 
+// Batches behind a gap after which nothing fills it any more: a network changes the order of a few.
 constexpr std::int64_t kSettleBatches = 16;
+// Sessions of a tool that one may come back from, and then there are two senders.
 constexpr std::size_t kSessionsKept = 4;
 // A session that comes back once may be one message delayed over a restart; thrice it is a sender.
 constexpr int kReturnsOfTwoSenders = 3;

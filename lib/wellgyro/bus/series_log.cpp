@@ -17,8 +17,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kLongestGap = 1'000'000'000;
-constexpr std::size_t kFaultsTold = 3;
+constexpr std::int64_t kLongestGap = 1'000'000'000;  // [samples]; a number further on is damage
+constexpr std::size_t kFaultsTold = 3;               // then their count
 
 struct Wanted {
   bool raw = false;

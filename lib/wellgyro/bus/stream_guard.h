@@ -37,7 +37,10 @@ namespace wellgyro {
 /// kSpeakers and kHeldMax, whatever comes.
 class WELLGYRO_EXPORT StreamGuard {
  public:
+  /// A number drawn at random continues another with 2^-32, and four messages are there within four
+  /// periods. By time alone eight times as many, since numbers that never continue say less.
   static constexpr int kInOrder = 4, kRising = 32;
+  /// [us]: marks come once a second and batches oftener, so that one lost is no silence.
   static constexpr std::int64_t kSilentUs = 2'000'000;
   static constexpr std::size_t kStreams = 256, kSpeakers = 1024;  ///< the latter of each stream
   static constexpr std::size_t kHeldMax = std::size_t{8} << 20;   ///< bytes, of all that wait
