@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "wellgyro/estimate/onset_scan.h"
 #include "wellgyro/estimate/scatter.h"
 #include "wellgyro/math/random.h"
 

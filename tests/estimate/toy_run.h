@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "wellgyro/estimate/diagnosis.h"
+#include "wellgyro/estimate/onset_scan.h"
 #include "wellgyro/math/random.h"
 
 namespace wellgyro::test {
@@ -73,6 +74,11 @@ class ToyRun : public RunRows {
         for (int i = 0; i < f.rows; ++i) f.r[i] = noise_[RowAt(f) + static_cast<std::size_t>(i)];
       }
     }
+  }
+
+  /// The tool is at rest in these knots.
+  void Rest(std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) factors_[k].front().kind = RowKind::kStill;
   }
 
   Eigen::MatrixXd J() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "wellgyro/record/along_hole.h"
@@ -16,15 +15,9 @@ struct UnseenHole {
   double rate = 1.7e-3;    ///< 1-sigma, across the hole, where it is not [rad/s]
   double seconds = 100;
 
-  /// How far it may have turned over `span` [s] of the `apart` [s] between two places.
-  double Between(const AlongHole& before, const AlongHole& next, double span, double apart) const {
-    if (!before.known || !next.known) return rate * span;
-    return dogleg * std::abs(next.md - before.md) * span / apart;
-  }
-  /// Over a sample whose rate stood at full scale having turned by `angle`: it may be as much
-  /// again, and as much more as the hole may turn.
-  double Beyond(const AlongHole& along, double angle, double dt) const {
-    return std::max(along.known ? dogleg * std::abs(along.speed) * dt : rate * dt, angle);
+  /// How fast it may turn, 1-sigma [rad/s].
+  double RateAt(const AlongHole& along) const {
+    return along.known ? dogleg * std::abs(along.speed) : rate;
   }
 };
 

@@ -180,12 +180,7 @@ class Diagnoser {
     for (std::size_t k = run_.knots(); k-- > 0;) {
       BehindMatrix with_next;
       const EdgeMatrix here = e.CovarianceBefore(k, e.Gain(k), next, with_next);
-      BlockMatrix joint(n + m, n + m);
-      joint.topLeftCorner(n, n) = here.topLeftCorner(n, n);
-      joint.topRightCorner(n, m) = with_next;
-      joint.bottomLeftCorner(m, n) = with_next.transpose();
-      joint.bottomRightCorner(m, m) = next;
-      LookAt(k, joint);
+      LookAt(k, JointCovariance(here, with_next, next));
       scan_->Backward(k, here);
       next = here;
     }

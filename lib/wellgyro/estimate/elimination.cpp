@@ -165,4 +165,15 @@ EdgeMatrix Elimination::CovarianceThrough(const BehindMatrix& gain, const NodeMa
   return before;
 }
 
+BlockMatrix JointCovariance(const EdgeMatrix& begin, const BehindMatrix& begin_with_end,
+                            const EdgeMatrix& end) {
+  const Index n = begin_with_end.rows(), m = begin_with_end.cols();
+  BlockMatrix joint(n + m, n + m);
+  joint.topLeftCorner(n, n) = begin.topLeftCorner(n, n);
+  joint.topRightCorner(n, m) = begin_with_end;
+  joint.bottomLeftCorner(m, n) = begin_with_end.transpose();
+  joint.bottomRightCorner(m, m) = end;
+  return joint;
+}
+
 }  // namespace wellgyro

@@ -96,4 +96,9 @@ class Elimination {
   bool solved_ = false;
 };
 
+/// Of [node; border] before a knot, of the same behind it, and E[node (next node; border)'], that
+/// of [node | next node | border].
+BlockMatrix JointCovariance(const EdgeMatrix& begin, const BehindMatrix& begin_with_end,
+                            const EdgeMatrix& end);
+
 }  // namespace wellgyro

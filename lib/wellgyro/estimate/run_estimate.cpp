@@ -163,6 +163,12 @@ Diagnosis DiagnosisOf(const RunSolver& solved) {
                   EndByDepthScale(solved.nodes()));
 }
 
+std::vector<NorthClosure> ClosuresOf(RunSolver& solved) {
+  LinearRun run(solved);
+  if (!run.Solve()) return {};
+  return NorthClosures(run, solved.nodes(), solved.setup().norths);
+}
+
 std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
                                  std::span<const Start> starts, const RollTrack& track) {
   if (starts.empty()) return GuessesOfHeadings(setup, knots);
@@ -290,6 +296,7 @@ RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
   RunState end;
   end.setup = solved.setup();
   end.setup.causes.clear();
+  end.setup.norths.clear();
   end.border = solved.border();
   end.information = e.edge_information().selfadjointView<Eigen::Lower>();
   for (std::size_t i = 0; i < RunState::kTail; ++i) {
@@ -378,6 +385,7 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
   RunSolver& best = *choice.solver;
   // Before the noise is taken larger: a fault is what makes the residuals too large.
   if (!setup.causes.empty()) result.diagnosis = DiagnosisOf(best);
+  if (!setup.norths.empty()) result.closures = ClosuresOf(best);
   FitNoise(best, marked, result);
   result.alone = choice.rivals.empty();
   for (const Solution& rival : choice.rivals) {

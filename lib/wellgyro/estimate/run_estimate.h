@@ -10,6 +10,7 @@
 #include "wellgyro/estimate/diagnosis.h"
 #include "wellgyro/estimate/layout.h"
 #include "wellgyro/estimate/node.h"
+#include "wellgyro/estimate/north_closure.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/estimate/run_state.h"
 #include "wellgyro/estimate/setup.h"
@@ -44,6 +45,7 @@ struct RunEstimate {
   ErrorMatrix cov_prior = ErrorMatrix::Zero();     ///< before the run
   RunState end;
   Diagnosis diagnosis;  ///< where the setup asks for it
+  std::vector<NorthClosure> closures;  ///< of the setup's norths
 };
 
 /// Solves the run from each start and keeps the solution of greatest evidence; where there is no

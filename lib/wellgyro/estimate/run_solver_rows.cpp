@@ -99,12 +99,7 @@ void RunSolver::RowsOf(std::size_t knot, std::vector<Factor>& rows) {
 
 void RunSolver::Measure(std::size_t knot, const EdgeMatrix& begin, const EdgeMatrix& end,
                         const BehindMatrix& begin_with_end) {
-  const int n = layout_.node, m = n + layout_.border;
-  NormalBlock::Matrix joint(n + m, n + m);
-  joint.topLeftCorner(n, n) = begin.topLeftCorner(n, n);
-  joint.topRightCorner(n, m) = begin_with_end;
-  joint.bottomLeftCorner(m, n) = begin_with_end.transpose();
-  joint.bottomRightCorner(m, m) = end;
+  const BlockMatrix joint = JointCovariance(begin, begin_with_end, end);
   block_.Clear(layout_);
   block_.Measure(&joint);
   AddTies(knot + 1, block_, block_.next());

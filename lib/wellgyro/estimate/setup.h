@@ -19,6 +19,13 @@ struct AzimuthTie {
   bool of_mark = false;  ///< of the reference mark, for a tool near vertical; else of the axis
 };
 
+/// A north of the run: the Earth's rate at rest in knots [begin, end), or an azimuth from outside
+/// at node `end`.
+struct NorthAt {
+  std::size_t begin = 0, end = 0;
+  bool outside = false;
+};
+
 /// What the estimator must know of the tool and the place before the first knot.
 struct EstimateSetup {
   NoiseCoefficients gyro;  ///< of every axis
@@ -38,6 +45,7 @@ struct EstimateSetup {
   std::optional<double> swing;
   bool may_swing = true;  ///< a swing is tried where the roll shows one
   std::vector<AzimuthTie> ties;
+  std::vector<NorthAt> norths;     ///< whose closures are wanted
   std::vector<CauseSpec> causes;   ///< that are looked for in the solution; none: no diagnosis
   double false_alarm_rate = 1e-3;  ///< of the diagnosis
 };

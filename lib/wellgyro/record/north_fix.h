@@ -35,8 +35,8 @@ struct NorthFix {
   /// into one, `azimuth` lies between and its variance covers both.
   std::optional<double> mirror_azimuth;
   double mirror_cost = 0;  ///< cost of the mirror less cost of the solution, chi-square units
-  /// Of the azimuth against what was known before it came, or, where the tool came on a roll that
-  /// gravity did not show, against the run as a whole; absent where nothing was.
+  /// Of the azimuth against the adjusted run without it, before that against what was known when it
+  /// came; absent where that tells no azimuth.
   std::optional<double> chi_square;
   /// The same as an angle, and its sigma [rad].
   double closure = 0, sigma_closure = 0;

@@ -143,6 +143,20 @@ std::vector<std::size_t> NodesOf(const RunHistory& history) {
   return nodes;
 }
 
+/// The norths of a run, as SmoothedRun::closures.
+std::vector<NorthAt> NorthsOf(const RunHistory& history) {
+  std::vector<NorthAt> norths;
+  for (const FixAtNode& at : history.fixes) {
+    std::size_t begin = at.node;
+    while (begin > 0 && history.knots[begin - 1].increment.time > at.fix.begin) --begin;
+    norths.push_back({begin, at.node});
+  }
+  for (const AzimuthTie& tie : history.ties) {
+    norths.push_back({std::max<std::size_t>(tie.node, 1) - 1, tie.node, true});
+  }
+  return norths;
+}
+
 EstimateSetup SetupOf(const Job& job, const RunHistory& history) {
   EstimateSetup setup;
   setup.gyro = job.noise;
@@ -194,6 +208,7 @@ RunEstimate EstimateSince(const RunState& known, const RunHistory& part) {
 
 SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
   EstimateSetup setup = SetupOf(job, history);
+  setup.norths = NorthsOf(history);
   setup.causes = CausesLookedFor();
   setup.false_alarm_rate = kDiagnosisFalseAlarms;
   std::vector<Start> starts;
@@ -206,6 +221,7 @@ SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
     return before;
   }
   SmoothedRun run = SmoothedOf(estimate, history);
+  run.closures = estimate.closures;
   run.fit = FitOf(estimate);
   run.fit->hidden_turn = HiddenTurn(history.knots, estimate.nodes);
   if (setup.cov_errors) {

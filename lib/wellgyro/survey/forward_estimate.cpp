@@ -24,10 +24,9 @@ constexpr double kSureHeading = 1 * kPi / 180;  // [rad]
 /// How far the axis turned in this knot where nothing was seen of it, 1-sigma: what the hole may
 /// bend, or, of gyros at full scale, as much again as they read.
 double UnseenIn(const RunKnot& knot) {
-  const UnseenHole hole;
   const Increment& inc = knot.increment;
-  const double rate = knot.along.known ? hole.dogleg * std::abs(knot.along.speed) : hole.rate;
-  return inc.gap_seconds * std::max(rate, inc.turn_M.norm() / inc.seconds);
+  const double rate = inc.turn_M.norm() / inc.seconds;
+  return inc.gap_seconds * std::max(UnseenHole().RateAt(knot.along), rate);
 }
 
 }  // namespace
@@ -143,7 +142,7 @@ bool ForwardEstimate::Tie(NorthFix& fix, bool of_mark) {
 }
 
 bool ForwardEstimate::Use(NorthFix& fix, bool roll_hidden) {
-  history_.fixes.push_back({fix, knots_.size(), roll_hidden});
+  history_.fixes.push_back({fix, knots_.size()});
   if (!azimuth_known()) {
     const bool sure = Begin();
     const bool alone = azimuth_known() || !fix.mirror_azimuth;

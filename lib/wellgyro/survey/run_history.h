@@ -6,6 +6,7 @@
 
 #include "wellgyro/attitude/station_state.h"
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/north_closure.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/attitude_sample.h"
 #include "wellgyro/record/north_fix.h"
@@ -18,7 +19,6 @@ namespace wellgyro {
 struct FixAtNode {
   NorthFix fix;
   std::size_t node = 0;
-  bool roll_hidden = false;  ///< somewhere since the stop before gravity did not show the roll
 };
 
 /// All that a run leaves to be estimated from. Node k + 1 is the end of knot k, node 0 the begin.
@@ -39,6 +39,7 @@ struct SmoothedRun {
   std::vector<AttitudeSample> attitude;  ///< at the end of every knot
   std::vector<StationState> stations;    ///< as RunHistory::stations
   std::optional<RunFit> fit;             ///< where the run was adjusted as a whole
+  std::vector<NorthClosure> closures;    ///< of RunHistory::fixes, then of its ties
 };
 
 }  // namespace wellgyro

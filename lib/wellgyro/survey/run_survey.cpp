@@ -124,8 +124,8 @@ void RunSurvey::Push(const StillWindow& window, const AlongHole& along) {
   }
 }
 
-void RunSurvey::CloseOnWhole(std::span<const AttitudeSample> whole) {
-  wellgyro::CloseOnWhole(estimate_.history().fixes, whole, summary_.fixes);
+void RunSurvey::CloseOnWhole(const SmoothedRun& run) {
+  wellgyro::CloseOnWhole(estimate_.history(), run, summary_.fixes);
 }
 
 void RunSurvey::CloseAtDeepest() {

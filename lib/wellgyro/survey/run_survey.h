@@ -82,9 +82,8 @@ class RunSurvey {
   RunNow Now() const;
   const RunSummary& summary() const { return summary_; }
   RunSummary& summary() { return summary_; }
-  /// How stops that were reached on a roll nobody saw agree with the run as a whole, by its
-  /// attitudes at the end of every knot.
-  void CloseOnWhole(std::span<const AttitudeSample> whole);
+  /// How norths agree with the whole run that is adjusted.
+  void CloseOnWhole(const SmoothedRun& run);
   /// The deepest station of the in-runs so far closes the survey, where stations go by depth.
   void CloseAtDeepest();
 

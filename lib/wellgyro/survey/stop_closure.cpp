@@ -6,11 +6,19 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/estimate/rivals.h"
+#include "wellgyro/math/square.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr double kTells = 1e-3;  // of a variance, from which a stop has said something of it
+
+void Take(const NorthClosure& closure, NorthFix& fix) {
+  fix.chi_square.reset();
+  fix.closure = closure.angle;
+  fix.sigma_closure = closure.sigma;
+  if (closure.sigma > 0) fix.chi_square = Square(closure.angle / closure.sigma);
+}
 
 }  // namespace
 
@@ -48,21 +56,28 @@ void CloseOnOutside(const AttitudeSample& before, NorthFix& tie) {
   tie.chi_square = tie.closure * tie.closure / (tie.sigma_closure * tie.sigma_closure);
 }
 
-void CloseOnWhole(std::span<const FixAtNode> fixes, std::span<const AttitudeSample> whole,
+void CloseOnWhole(const RunHistory& history, const SmoothedRun& run,
                   std::vector<NorthFix>& listed) {
-  for (const FixAtNode& at : fixes) {
-    if (!at.roll_hidden || at.node > whole.size()) continue;
+  if (run.closures.size() != history.fixes.size() + history.ties.size()) return;
+  auto closure = run.closures.begin();
+  for (const FixAtNode& at : history.fixes) {
     const auto told = std::find_if(listed.begin(), listed.end(), [&at](const NorthFix& fix) {
       return !fix.external && fix.from_samples && fix.begin == at.fix.begin;
     });
-    if (told == listed.end()) continue;
-    const AttitudeSample& run = whole[at.node - 1];
-    const double alone = told->cov_attitude(1, 1), gained = alone - run.cov_attitude(1, 1);
-    const bool doubtful = Has(told->quality, Quality::kMirror | Quality::kVertical);
-    if (doubtful || !run.azimuth_known || !(gained > kTells * alone)) continue;
-    told->closure = WrapPi(told->azimuth - run.azimuth);
-    told->sigma_closure = std::sqrt(gained);
-    told->chi_square = told->closure * told->closure / gained;
+    if (told != listed.end()) {
+      const AttitudeSample& whole = run.attitude[at.node - 1];
+      if (whole.azimuth_known) ChooseBranch(whole, *told);
+      Take(*closure, *told);
+    }
+    ++closure;
+  }
+  auto next = listed.begin();
+  for (const AzimuthTie& tie : history.ties) {
+    const NorthClosure& of_tie = *closure++;
+    if (tie.node == 0) continue;  // it is where the run begins, and not listed
+    next = std::find_if(next, listed.end(), [](const NorthFix& fix) { return fix.external; });
+    if (next == listed.end()) return;
+    Take(of_tie, *next++);
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "wellgyro/record/attitude_sample.h"
@@ -20,11 +19,9 @@ void CloseOn(const AttitudeSample& before, const AttitudeSample& after, NorthFix
 /// The closure of an azimuth from outside, which shares no error with what was known before it.
 void CloseOnOutside(const AttitudeSample& before, NorthFix& tie);
 
-/// The closure of stops to which the tool came on a roll that gravity did not show, on which the
-/// azimuth on the way then hangs: what the run as a whole, which every stop is part of, leaves of
-/// the stop's own azimuth. The variance of that difference is the difference of the variances.
-/// `whole`: attitudes at the end of every knot; `listed`: the run's fixes as told.
-void CloseOnWhole(std::span<const FixAtNode> fixes, std::span<const AttitudeSample> whole,
-                  std::vector<NorthFix>& listed);
+/// The same of all that are listed, once the run is adjusted: each against the whole run without
+/// it, see NorthClosures(), and of two azimuths the one that the run takes. What was said on the
+/// way rests on a roll that gravity may not have shown, and may have taken a wrong branch.
+void CloseOnWhole(const RunHistory& history, const SmoothedRun& run, std::vector<NorthFix>& listed);
 
 }  // namespace wellgyro

@@ -209,7 +209,7 @@ void ToolSurvey::Adjust() {
       SmoothedRun smoothed = adjuster_ ? adjuster_->Adjust(history) : EstimatedRun(job_, history);
       run.survey->summary().fit =
           smoothed.fit ? std::make_shared<const RunFit>(*smoothed.fit) : nullptr;
-      if (smoothed.fit && smoothed.fit->converged) run.survey->CloseOnWhole(smoothed.attitude);
+      if (smoothed.fit && smoothed.fit->converged) run.survey->CloseOnWhole(smoothed);
       run.adjusted = std::move(smoothed.stations);
       run.attitude = std::move(smoothed.attitude);
     }
