@@ -10,8 +10,8 @@ namespace {
 
 // Least sin I (0.5 deg) at which gravity measures the roll. The azimuth's own turning is divided by
 // sin I: here a whirl of 0.1 deg turns the phase by 0.2 rad, and a correction linear in it fails.
-// At 0.25 deg a clean well that kicks off at 2 rpm is lost on the way (azimuth_closure 15.0, its
-// limit 3.8), at 1 deg the ends of three clean runs move by 0.04 sigma.
+// At 0.25 deg the estimate on the way of a clean well that kicks off at 2 rpm is lost, a stop is 15
+// sigmas off it; at 1 deg the ends of three clean runs move by 0.04 sigma.
 constexpr double kSineMin = 0.0087;
 // Of noise, where none is told: what a double leaves of it in the smoother [m/s^2 sqrt(s)].
 constexpr double kNoiseMin = 5e-7;

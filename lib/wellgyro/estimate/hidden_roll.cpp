@@ -14,8 +14,8 @@ constexpr std::size_t kReach = 60, kLeast = 5;
 
 // Where a bend begins or ends the rate across turns in L with it, and its size changes: by more
 // than a tenth, three sigmas of noise apart, from some knots before to as many after.
-// With 10 knots a clean well that kicks off at 2 rpm is lost on the way (azimuth_closure 18.6, its
-// limit 3.8); with 2, and with half or twice the others, its end moves by 0.001 sigma.
+// With 10 knots the estimate on the way of a clean well that kicks off at 2 rpm is lost: a stop is
+// 18.6 sigmas off it. With 2, and with half or twice the others, its end moves by 0.001 sigma.
 constexpr std::size_t kAcross = 5;
 constexpr double kSteady = 0.1, kChance = 3;
 
