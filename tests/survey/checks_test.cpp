@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/random.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/verdict.h"
 
@@ -27,6 +29,9 @@ Station PassAt(double md, Pass pass, double azimuth_deg, double sigma_deg) {
   s.azimuth = FromDegrees(azimuth_deg);
   s.cov_md_inc_azi(1, 1) = std::pow(FromDegrees(0.01), 2);
   s.cov_md_inc_azi(2, 2) = std::pow(FromDegrees(sigma_deg), 2);
+  const Eigen::Vector3d across_L(-std::sin(s.azimuth), std::cos(s.azimuth), 0);
+  const double sigma_across = FromDegrees(sigma_deg) * std::sin(s.inclination);
+  s.cov_tangent_L = sigma_across * sigma_across * across_L * across_L.transpose();
   return s;
 }
 
@@ -54,6 +59,46 @@ TEST(Checks, VerdictsFollowTheLimit) {
   EXPECT_EQ(Judge(3.1, 3), Verdict::kFail);
   EXPECT_EQ(Judge(0, 0), Verdict::kPass);
   EXPECT_EQ(Judge(std::nan(""), 3), Verdict::kFail);
+}
+
+/// A station whose tangent has this horizontal part, with the same sigma in all directions.
+Station LeaningAt(Pass pass, const Eigen::Vector2d& lean, double sigma) {
+  Station s;
+  s.run = 1;
+  s.md = 120;
+  s.pass = pass;
+  s.inclination = std::asin(lean.norm());
+  s.azimuth = std::atan2(lean.y(), lean.x());
+  s.cov_tangent_L.topLeftCorner<2, 2>() = sigma * sigma * Eigen::Matrix2d::Identity();
+  s.cov_md_inc_azi(1, 1) = sigma * sigma;
+  s.cov_md_inc_azi(2, 2) = std::pow(sigma / lean.norm(), 2);
+  return s;
+}
+
+// A hole that leans by three to six sigmas of the lean: azimuths are 10 to 20 deg unsure, and their
+// errors far from normal. Two passes differ by no more sigmas than their tangents.
+TEST(Checks, AzimuthsOfTwoPassesNearVerticalDifferAsTheirTangentsDo) {
+  constexpr double kSigma = 5e-4;
+  constexpr int kPairs = 4000;
+  Random random(31);
+  int beyond_2 = 0, beyond_4 = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    const auto noise = [&] {
+      return Eigen::Vector2d(kSigma * Eigen::Vector2d(random.Normal(), random.Normal()));
+    };
+    const Eigen::Vector2d lean(kSigma * (3 + 3.0 * i / kPairs), 0), in = lean + noise(),
+                                                                    out = lean + noise();
+    const std::vector<Check> checks =
+        Checks({}, {LeaningAt(Pass::kIn, in, kSigma), LeaningAt(Pass::kOut, out, kSigma)});
+    const Check& check = Find(checks, "azimuth_in_out");
+    const double sigmas = std::abs(*check.value / *check.sigma);
+    EXPECT_LE(sigmas, (out - in).norm() / (kSigma * std::sqrt(2)) * (1 + 1e-9));
+    beyond_2 += sigmas > 2 ? 1 : 0;
+    beyond_4 += sigmas > 4 ? 1 : 0;
+  }
+  // 4.6 % of 4000 are 182; 6e-5 of them a quarter of one. 3 sigma of either.
+  EXPECT_NEAR(beyond_2, 182, 3 * 13.2);
+  EXPECT_LE(beyond_4, 2);
 }
 
 TEST(Checks, TakesTheWorstPairOfPassesForItsSigma) {

@@ -12,6 +12,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/field_checks.h"
 #include "wellgyro/earth/grid.h"
+#include "wellgyro/math/square.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/run_checks_internal.h"
@@ -90,6 +91,23 @@ double AngleVariance(const Station& s, int angle) {
   return s.cov_md_inc_azi(angle, angle) + slope * slope * s.cov_md_inc_azi(0, 0);
 }
 
+/// A_b - A_a with the sigma that puts it in the ratio of its lateral chord
+///   v = (sin I_a + sin I_b) sin((A_b - A_a) / 2)
+/// to the tangents' sigma across the bisector of the azimuths: v is normal at every inclination, an
+/// azimuth near vertical is not. The depth's error moves a tangent by the hole's turn.
+Measured AzimuthDifference(const Station& a, const Station& b) {
+  const double half = WrapPi(b.azimuth - a.azimuth) / 2, middle = a.azimuth + half;
+  const Eigen::Vector3d across_L(-std::sin(middle), std::cos(middle), 0);
+  double variance = 0;
+  for (const Station* s : {&a, &b}) {
+    variance += across_L.dot(s->cov_tangent_L * across_L) +
+                Square(s->dogleg_severity) * s->cov_md_inc_azi(0, 0);
+  }
+  const double per_chord = (half == 0 ? 1 : half / std::sin(half)) * 2 /
+                           (std::sin(a.inclination) + std::sin(b.inclination));
+  return {2 * half, std::sqrt(variance) * per_chord};
+}
+
 /// The pair with the largest |difference| / sigma, var = var_a + var_b. Two passes of one tool
 /// share instrument errors: in a difference these cancel where they have one sign in both passes.
 void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t run, Pass other,
@@ -97,10 +115,11 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
   struct Worst {
     Measured difference;
     double md = 0;
-    void Take(double value, double variance, double at) {
-      const double sigma = std::sqrt(variance);
-      if (std::abs(value) * difference.sigma < std::abs(difference.value) * sigma) return;
-      difference = {value, sigma};
+    void Take(const Measured& other, double at) {
+      if (std::abs(other.value) * difference.sigma < std::abs(difference.value) * other.sigma) {
+        return;
+      }
+      difference = other;
       md = at;
     }
   };
@@ -108,10 +127,10 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
   int pairs = 0;
   ForPairs(stations, run, Pass::kIn, other, [&](const Station& a, const Station& b) {
     ++pairs;
-    inclination.Take(b.inclination - a.inclination, AngleVariance(a, 1) + AngleVariance(b, 1),
-                     a.md);
+    const double var_inclination = AngleVariance(a, 1) + AngleVariance(b, 1);
+    inclination.Take({b.inclination - a.inclination, std::sqrt(var_inclination)}, a.md);
     if (Has(a.quality | b.quality, Quality::kVertical)) return;
-    azimuth.Take(WrapPi(b.azimuth - a.azimuth), AngleVariance(a, 2) + AngleVariance(b, 2), a.md);
+    azimuth.Take(AzimuthDifference(a, b), a.md);
   });
   if (pairs == 0) {
     checks.push_back(NotDone("inclination_" + name, run, "no depth seen in both passes"));
