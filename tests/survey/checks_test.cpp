@@ -84,7 +84,8 @@ TEST(Checks, AzimuthsOfTwoPassesNearVerticalDifferAsTheirTangentsDo) {
   int beyond_2 = 0, beyond_4 = 0;
   for (int i = 0; i < kPairs; ++i) {
     const auto noise = [&] {
-      return Eigen::Vector2d(kSigma * Eigen::Vector2d(random.Normal(), random.Normal()));
+      const double north = random.Normal(), east = random.Normal();
+      return Eigen::Vector2d(kSigma * north, kSigma * east);
     };
     const Eigen::Vector2d lean(kSigma * (3 + 3.0 * i / kPairs), 0), in = lean + noise(),
                                                                     out = lean + noise();

@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One north's sums over its knots, from the last one back.
-struct Sums {
+/// Over the knots of one north, from the last one back.
+struct NorthSums {
   double score = 0;  ///< c'P r
   double own = 0;    ///< c'c
   double taken = 0;  ///< var z, z = c'J x
@@ -37,12 +37,12 @@ class Closures {
       next = here;
     }
     std::vector<NorthClosure> closures;
-    for (const Sums& sums : sums_) closures.push_back(ClosureOf(sums));
+    for (const NorthSums& sums : sums_) closures.push_back(ClosureOf(sums));
     return closures;
   }
 
  private:
-  static NorthClosure ClosureOf(const Sums& sums) {
+  static NorthClosure ClosureOf(const NorthSums& sums) {
     const double information = sums.own - sums.taken;
     if (!(information * kVagueAngle * kVagueAngle > 1)) return {};
     return {-sums.score / information, 1 / std::sqrt(information)};
@@ -72,7 +72,7 @@ class Closures {
   /// z grows by y'[x_k; x_k+1; border], y = J'c of this knot's rows; what z had in it of later
   /// nodes goes with x_k = gain [x_k+1; border] + e, e independent of all later.
   void Add(const NorthAt& north, std::size_t k, const BehindMatrix& gain, const BlockMatrix& joint,
-           Sums& sums) {
+           NorthSums& sums) {
     const Eigen::Index n = run_.layout().node, b = run_.layout().border;
     const NormalBlock::Vector turn = TurnOf(k, north.outside);
     NormalBlock::Vector y = NormalBlock::Vector::Zero(turn.size());
@@ -101,7 +101,7 @@ class Closures {
   const LinearRun& run_;
   std::span<const Node> nodes_;
   std::span<const NorthAt> norths_;
-  std::vector<Sums> sums_;
+  std::vector<NorthSums> sums_;
   std::vector<Factor> rows_;
 };
 

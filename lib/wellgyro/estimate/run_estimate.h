@@ -44,7 +44,7 @@ struct RunEstimate {
   ErrorMatrix cov_errors = ErrorMatrix::Zero();    ///< of `errors`
   ErrorMatrix cov_prior = ErrorMatrix::Zero();     ///< before the run
   RunState end;
-  Diagnosis diagnosis;  ///< where the setup asks for it
+  Diagnosis diagnosis;                 ///< where the setup asks for it
   std::vector<NorthClosure> closures;  ///< of the setup's norths
 };
 
