@@ -110,6 +110,7 @@ CAUSES = {
     "swing": ('"swing"', "size_deg", 0.1, STOP + "every_s = 4.0\n"),
     "depth_step": ('"depth_step"', "size_m", 1.5, HALF),
     "depth_scale": ('"depth_scale"', "size", 3e-3, ""),
+    "depth_slip": ('"depth_slip"', "size_m", 2.0, "begin_s = {slip:.0f}\nend_s = {slip_end:.0f}\n"),
     "depth_lag": ('"depth_lag"', "size_s", 0.5, ""),
     "depth_frozen": ('"depth_frozen"', None, None, MINUTE),
     "gyro_stuck": ('"gyro_stuck"\naxis = "x"', None, None, MINUTE),
@@ -130,7 +131,7 @@ CAUSES = {
 # What else diagnosis.csv may call a fault; a part of the name is enough.
 CALLED = {
     "gyro_step_x": ["gyro_step_x", "gyro_bias_x"], "gyro_step_y": ["gyro_step_y", "gyro_bias_y"],
-    "gyro_ramp": ["gyro_step_x", "gyro_bias_x"], "gyro_temperature": ["gyro_step_y", "gyro_bias_y"],
+    "gyro_ramp": ["gyro_ramp_x", "gyro_step_x", "gyro_bias_x"], "gyro_temperature": ["gyro_step_y", "gyro_bias_y"],
     "gyro_scale": ["gyro_scale_x"], "gyro_misalignment": ["gyro_misalignment_y"],
     "accel_scale": ["accel_scale_z"], "rest_creep": ["rest_motion"], "rest_turn": ["rest_motion"],
     "swing": ["rest_motion"], "depth_step": ["depth_jump"], "depth_frozen": ["depth_jump"],
@@ -188,7 +189,9 @@ def Steps(well):
     time += depth / speed + 10 + 120
     middle = stops[len(stops) // 2]
     return text, {"half": 0.45 * time, "half_and_minute": 0.45 * time + 60, "end": time,
-                  "stop": middle[0] + 10, "stop_end": middle[1] - 10}
+                  "stop": middle[0] + 10, "stop_end": middle[1] - 10,
+                  # On the way to the first stop within the bend, some 200 m of it.
+                  "slip": stops[2][0] - 250, "slip_end": stops[2][0] - 50}
 
 
 def Fault(well, fault, size):

@@ -123,6 +123,104 @@ TEST(Diagnosis, FindsWhatWasPutIn) {
   EXPECT_LT(d.ln_odds_without_first, std::log(100));
 }
 
+/// Every column of a spec, in a run of kDenseKnots; empty of one that nothing tests.
+std::vector<VectorXd> ColumnsOf(const ToyRun& run, const DenseDiagnosis& dense, std::size_t spec) {
+  std::vector<VectorXd> columns;
+  if (spec == 0) columns.push_back(run.BeyondPrior(0));
+  if (spec == 1) columns.push_back(run.BeyondPrior(3));
+  for (int t = 1; t < kDenseKnots; ++t) {
+    if (spec == 2) columns.push_back(run.Step(0, t));
+    if (spec == 3) columns.push_back(run.Step(2, t));
+  }
+  for (std::size_t k = 0; k < kDenseKnots; ++k) {
+    const double by = 2 + static_cast<double>(k % 3);
+    for (int i = 0; i < 2 && spec == 4; ++i) {
+      columns.push_back(Unit(dense, run.RowOf(k, RowKind::kTurn) + i, by));
+    }
+    for (int i = 0; i < 3 && spec == 5; ++i) {
+      columns.push_back(Unit(dense, run.RowOf(k, RowKind::kRest) + i, by));
+    }
+  }
+  return columns;
+}
+
+/// Mean Bayes factor of the specs that are listed.
+double LnOdds(const ToyRun& run, const DenseDiagnosis& dense, const std::vector<std::size_t>& of) {
+  double odds = 0;
+  for (const std::size_t spec : of) {
+    const std::vector<VectorXd> columns = ColumnsOf(run, dense, spec);
+    for (const VectorXd& c : columns) {
+      odds += std::exp(dense.LnBayes(c, kSpecs[spec].size)) /
+              static_cast<double>(columns.size() * of.size());
+    }
+  }
+  return std::log(odds);
+}
+
+struct TakenOut {
+  std::size_t first;
+  std::vector<std::size_t> others;  ///< of another unknown, or another kind
+};
+
+// P of a run in which c is an unknown is P - P c c'P / c'P c.
+TEST(Diagnosis, TheSecondLookIsThatOfTheDenseAlgebra) {
+  for (const TakenOut& taken : {TakenOut{1, {0, 2, 3, 4, 5}}, TakenOut{2, {1, 3, 4, 5}},
+                                TakenOut{4, {0, 1, 2, 3, 5}}, TakenOut{5, {0, 1, 2, 3, 4}}}) {
+    ToyRun run(11);
+    const std::vector<VectorXd> columns = ColumnsOf(run, DenseDiagnosis(run), taken.first);
+    const VectorXd& put = columns[columns.size() / 3];
+    run.Disturb(put, 30 / put.norm());
+    DenseDiagnosis dense(run);
+    const Diagnosis d = Diagnose(run, kSpecs, Slopes(), 0.01);
+    ASSERT_TRUE(d.first) << taken.first;
+    ASSERT_EQ(*d.first, taken.first);
+    const VectorXd c = dense.P * put;
+    dense.P -= (c * c.transpose() / put.dot(c)).eval();
+    // The size keeps a prior sigma of a hundred sizes.
+    EXPECT_NEAR(d.ln_odds_without_first, LnOdds(run, dense, taken.others), 2e-3) << taken.first;
+  }
+}
+
+TEST(Diagnosis, ASizeThatIsGivenIsTestedAsThat) {
+  ToyRun run(12);
+  const std::vector<CauseSpec> specs{{Kind::kConstant, kGyroBiasX, 3},
+                                     {Kind::kGiven, kGyroBiasX, 8}};
+  const VectorXd c = run.BeyondPrior(0);
+  run.Disturb(c, 8);
+  const DenseDiagnosis dense(run);
+  const Diagnosis d = Diagnose(run, specs, Slopes(), 0.01);
+  EXPECT_NEAR(d.tests[1].ln_bayes, 8 * c.dot(dense.P * run.r()) - 32 * dense.Information(c), 1e-8);
+  EXPECT_EQ(d.tests[1].size, 8);
+}
+
+// A column that the largest fault moves by less than a sigma is mostly noise of what it is made of,
+// as the scale of an accelerometer that reads nothing: size 1, of any sigma.
+TEST(Diagnosis, WhatTheRunHardlyTellsIsNoEvidence) {
+  ToyRun run(12);
+  const VectorXd c = run.BeyondPrior(0);
+  run.Disturb(c, 8);
+  const double sigma = 1 / std::sqrt(DenseDiagnosis(run).Information(c));
+  const auto tested = [&](double size) {
+    const std::vector<CauseSpec> specs{{Kind::kConstant, kGyroBiasX, size}};
+    return Diagnose(run, specs, Slopes(), 0.01).tests[0];
+  };
+  const CauseTest small = tested(0.19 * sigma), large = tested(0.21 * sigma);
+  EXPECT_TRUE(small.tested && large.tested && large.told);
+  EXPECT_FALSE(small.told);
+  EXPECT_EQ(small.ln_bayes, 0);
+  EXPECT_GT(large.ln_bayes, 0.1);
+  EXPECT_FALSE(small.noticeable);
+}
+
+// Two faults of different unknowns: neither alone explains the run.
+TEST(Diagnosis, ASecondFaultIsLeft) {
+  ToyRun run(13);
+  run.Disturb(run.Step(2, 12), 8);
+  EXPECT_LT(Diagnose(run, kSpecs, Slopes(), 0.01).ln_odds_without_first, std::log(100));
+  run.Disturb(run.BeyondPrior(3), 30);
+  EXPECT_GT(Diagnose(run, kSpecs, Slopes(), 0.01).ln_odds_without_first, std::log(100));
+}
+
 // Markov: the mean Bayes factor of runs without fault is one.
 TEST(Diagnosis, CleanRunsSeldomAlarm) {
   int alarms = 0;

@@ -135,6 +135,11 @@ TEST(FaultPlayer, SpoilsMarks) {
   const Played clean = Play(Slant());
   EXPECT_NEAR(Spoilt({.cause = Cause::kDepthStep, .begin = 60, .size = 1.5}).marks[140].md,
               clean.marks[140].md + 1.5, 1e-12);
+  // Half of it at half of the time, two marks a second, and all of it ever after.
+  const auto slips = Spoilt({.cause = Cause::kDepthSlip, .begin = 60, .end = 80, .size = 2}).marks;
+  EXPECT_EQ(slips[119].md, clean.marks[119].md);
+  EXPECT_NEAR(slips[140].md, clean.marks[140].md - 1, 1e-9);
+  EXPECT_NEAR(slips[170].md, clean.marks[170].md - 2, 1e-9);
   EXPECT_NEAR(Spoilt({.cause = Cause::kDepthScale, .size = 0.01}).marks[140].md,
               clean.marks[140].md * 1.01, 1e-9);
   EXPECT_NEAR(Spoilt({.cause = Cause::kDepthLag, .size = 0.5}).marks[140].md, clean.marks[139].md,
@@ -154,6 +159,7 @@ TEST(FaultPlayer, RefusesWhatCannotBe) {
   refused({.size = std::nan("")});
   refused({.cause = Cause::kWhirl, .size = 1});
   refused({.cause = Cause::kRestCreep, .size = 1});
+  refused({.cause = Cause::kDepthSlip, .size = 1});
 }
 
 }  // namespace

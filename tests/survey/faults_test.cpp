@@ -1,8 +1,12 @@
 // What goes wrong in samples and marks, put into a simulated run, is seen and said.
+#include <array>
 #include <cmath>
 #include <functional>
 #include <ostream>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -11,6 +15,7 @@
 #include "wellgyro/math/random.h"
 #include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/survey/sample_watch.h"
+#include "wellgyro/survey/truncation_watch.h"
 #include "wellgyro/survey/verdict.h"
 
 #include "support/simulated_survey.h"
@@ -58,7 +63,7 @@ struct Flight {
   }
   Survey Surveyed() {
     CollectingSink sink;
-    const Survey survey = SurveyOf(simulation, job, sink);
+    const Survey survey = SurveyOf(simulation, job, sink, arrives);
     faults = sink.faults;
     return survey;
   }
@@ -73,7 +78,18 @@ struct Flight {
 
   Simulation simulation;
   Job job;
+  /// Every sample and mark as the converter of a log makes it.
+  void Converted(const std::function<void(ImuSample&)>& sample,
+                 const std::function<void(DepthMark&)>& mark = {}) {
+    arrives = [sample, mark](SimulatedStep& step) {
+      if (auto* of_tool = std::get_if<ImuSample>(&step); of_tool && sample) sample(*of_tool);
+      if (auto* of_rig = std::get_if<DepthMark>(&step); of_rig && mark) mark(*of_rig);
+      return true;
+    };
+  }
+
   std::vector<Fault> faults;
+  testing::Arrives arrives;
 };
 
 TEST(Faults, ARunWithoutAnyHasNoneSaid) {
@@ -81,8 +97,9 @@ TEST(Faults, ARunWithoutAnyHasNoneSaid) {
   const Survey survey = flight.Surveyed();
   ASSERT_EQ(survey.unusable, "");
   EXPECT_TRUE(flight.faults.empty());
-  for (const char* code : {"gyro_stuck", "accel_stuck", "axes", "gyro_unit", "rest_motion",
-                           "depth_jump", "gyro_spikes", "accel_spikes"}) {
+  for (const char* code :
+       {"gyro_stuck", "accel_stuck", "axes", "gyro_unit", "rest_motion", "depth_jump", "depth_unit",
+        "accel_unit", "gyro_spikes", "accel_spikes"}) {
     const Check* check = Find(survey, code);
     ASSERT_NE(check, nullptr) << code;
     EXPECT_EQ(check->verdict, Verdict::kPass) << code << " " << check->limit_source;
@@ -182,6 +199,29 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"axes", [](Flight& f) { f.Add(Cause::kGyrosSwapped, 0); }, "gyros x and y swapped"},
         Wrong{"axes", [](Flight& f) { f.Add(Cause::kAccelsSwapped, 0); },
               "accelerometers x and y swapped"},
+        Wrong{"axes_change", [](Flight& f) { f.AddUntil(Cause::kGyroInverted, 290, 350); },
+              "gyro x inverted"},
+        Wrong{"axes_change", [](Flight& f) { f.AddUntil(Cause::kAccelInverted, 290, 350); },
+              "accelerometer x or gyro y"},
+        Wrong{
+            "accel_unit",
+            [](Flight& f) { f.Converted([](ImuSample& s) { s.f_T /= units::kStandardGravity; }); },
+            "g taken for m/s2"},
+        Wrong{"depth_unit",
+              [](Flight& f) { f.Converted({}, [](DepthMark& m) { m.md /= 0.3048; }); },
+              "depths in feet are taken for metres"},
+        Wrong{"depth_unit",
+              [](Flight& f) { f.Converted({}, [](DepthMark& m) { m.md *= 0.3048; }); },
+              "depths in metres are taken for feet"},
+        Wrong{"depth_reversed",
+              [](Flight& f) { f.Converted({}, [](DepthMark& m) { m.md = 500 - m.md; }); }},
+        Wrong{"tool_upside_down",
+              [](Flight& f) {
+                f.Converted([](ImuSample& s) {
+                  s.w_IT_T.tail<2>() *= -1;
+                  s.f_T.tail<2>() *= -1;
+                });
+              }},
         Wrong{"gyro_unit", [](Flight& f) { f.Add(Cause::kGyroUnit, 57.3); }},
         Wrong{"gyro_unit", [](Flight& f) { f.Add(Cause::kGyroUnit, 1 / 57.3); }},
         Wrong{"gyro_unit", [](Flight& f) { f.Add(Cause::kGyroUnit, 0.5); }},
@@ -203,6 +243,64 @@ INSTANTIATE_TEST_SUITE_P(
               "still", Verdict::kWarn},
         Wrong{"depth_jump", [](Flight& f) { f.Add(Cause::kDepthStep, 1, 260); }},
         Wrong{"depth_lag", [](Flight& f) { f.Add(Cause::kDepthLag, 0.5); }}));
+
+// The sentence of a survey that cannot be made says why first.
+TEST(Faults, WrongUnitsStandInFrontOfWhatLacksByThem) {
+  Flight flight;
+  flight.Converted([](ImuSample& s) { s.f_T /= units::kStandardGravity; });
+  const Survey survey = flight.Surveyed();
+  EXPECT_TRUE(survey.unusable.starts_with("the accelerometers' unit or scale is wrong"))
+      << survey.unusable;
+}
+
+// Motion is felt by gyros and accelerometers together: of inverted axes depth is not blamed.
+TEST(Faults, DepthIsNotBlamedForAxes) {
+  Flight flight;
+  flight.AddUntil(Cause::kGyroInverted, 290, 350);
+  const Survey survey = flight.Surveyed();
+  for (const char* code : {"depth_jump", "depth_unit", "depth_lag", "gyro_unit"}) {
+    const Check* check = Find(survey, code);
+    ASSERT_NE(check, nullptr) << code;
+    EXPECT_EQ(check->verdict, Verdict::kNotDone) << code;
+  }
+}
+
+enum class Converter { kRounds, kFloors, kCuts };
+
+/// Two gyros of a tool that rolls once a minute for an hour, with five rests of two minutes at
+/// zero; steps and noise in units of 1e-6 rad/s.
+TruncationWatch::Found TruncationOf(Converter converter, double step, double noise) {
+  Random random(17);
+  std::array<TruncationWatch, 2> axes;
+  for (int k = 0; k < 36000; ++k) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double roll = kTwoPi * k / 600 + static_cast<double>(i);
+      const bool rests = k % 7200 < 1200;
+      const double read = (rests ? 0 : 60 * std::sin(roll)) + noise * random.Normal();
+      const double level = read / step;
+      const double whole = converter == Converter::kRounds   ? std::round(level)
+                           : converter == Converter::kFloors ? std::floor(level)
+                                                             : std::trunc(level);
+      axes[i].Push(1e-6 * step * whole, 1e-6 * step);
+    }
+  }
+  return TruncationWatch::Of(axes[0], axes[1]);
+}
+
+TEST(Faults, OfAConverterThatCutsTheLevelZeroIsTwiceAsWide) {
+  for (const auto& [step, noise] : {std::pair{5., 4.6}, {10., 4.6}, {20., 4.6}, {10., 0.5}}) {
+    for (const Converter converter : {Converter::kRounds, Converter::kFloors}) {
+      const auto found = TruncationOf(converter, step, noise);
+      EXPECT_LT(found.ln_ratio, 5 * found.sigma) << step << " " << noise;
+    }
+    const auto found = TruncationOf(Converter::kCuts, step, noise);
+    EXPECT_GT(found.ln_ratio, 5 * found.sigma) << step << " " << noise;
+    EXPECT_GT(found.sigma, 0);
+    // Noise of a step's size smears the level: no more than ln 2, and half of it at the least.
+    EXPECT_LT(found.ln_ratio, std::log(2.0) + 4 * found.sigma) << step << " " << noise;
+    EXPECT_GT(found.ln_ratio, std::log(2.0) / 2) << step << " " << noise;
+  }
+}
 
 TEST(Faults, SpikesAreReplacedAndToldByRange) {
   Flight clean, spiked;

@@ -13,6 +13,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/io/result/diagnosis_csv.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/simulate/tool_errors.h"
@@ -186,6 +187,60 @@ TEST(RunDiagnosis, ASkewIsToldByABend) {
   EXPECT_NEAR(*skew->size, 0.03, 5 * *skew->sigma);
   EXPECT_LT(*skew->sigma, 0.003);
   EXPECT_GT(*skew->ln_bayes, 20);
+}
+
+// The vertical part of the Earth's rate acts as an unbalance of 26 deg/h/g, which no gyro has.
+TEST(RunDiagnosis, TheSignOfTheLatitudeIsNoMassUnbalance) {
+  DiagnosedFlight flight(3);
+  flight.job.well.latitude *= -1;
+  const Survey survey = flight.Surveyed();
+  ASSERT_EQ(survey.unusable, "");
+  const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
+  EXPECT_EQ(causes[0].code, "latitude_sign");
+  EXPECT_GT(causes[0].posterior, 0.9);
+}
+
+TEST(RunDiagnosis, AnAzimuthFromOutsideIsHeldAgainstTheGyrosOwn) {
+  DiagnosedFlight flight(3);
+  flight.job.alignment.method = AlignmentSpec::Method::kExternal;
+  flight.job.alignment.sigma_azimuth = FromDegrees(0.5);
+  const auto first = [&](double azimuth_deg) {
+    flight.job.alignment.azimuth = FromDegrees(azimuth_deg);
+    const Survey survey = flight.Surveyed();
+    return CausesOf(survey.runs[0], survey.checks)[0].code;
+  };
+  EXPECT_EQ(first(40), "none");
+  EXPECT_EQ(first(220), "azimuth_tie");
+}
+
+/// Of tests of which the first, a gyro bias, has the odds e^40 and explains all but odds of
+/// e^`beside`.
+RunDiagnosis Explained(double beside) {
+  Diagnosis tests;
+  tests.done = true;
+  tests.tests.resize(CausesLookedFor(SiteAt(FromDegrees(60), 0)).size());
+  const auto n = static_cast<Eigen::Index>(tests.tests.size());
+  tests.alike = Eigen::MatrixXd::Zero(n, n);
+  for (CauseTest& test : tests.tests) test.tested = test.told = true;
+  tests.tests[0].ln_bayes = tests.ln_odds = 40;
+  tests.first = 0;
+  tests.second = 1;
+  tests.ln_odds_without_first = beside;
+  return DiagnosisOf(tests, {});
+}
+
+// Of one run in ten with a fault one in ten has a second.
+TEST(RunDiagnosis, WhatTheLikeliestLeavesSpeaksForNoneOfThese) {
+  const RunDiagnosis alone = Explained(-1), both = Explained(9);
+  EXPECT_EQ(alone.causes[0].code, "gyro_bias_x");
+  EXPECT_GT(alone.causes[0].posterior, 0.9);
+  EXPECT_EQ(both.causes[0].code, "other");
+  EXPECT_GT(both.causes[0].posterior, 0.99);
+  EXPECT_NEAR(Sum(both.causes), 1, 1e-9);
+  // ln 10, and a hundredth of the likeliest's odds that its column may miss.
+  const RunDiagnosis even = Explained(std::log(10.0) + 0.4);
+  EXPECT_NEAR(even.causes[0].posterior, 0.5, 1e-6);
+  EXPECT_NEAR(even.causes[1].posterior, 0.5, 1e-6);
 }
 
 /// Odds, and what is found of the depth's scale beside a prior of 1e-3 that leaves a sigma of 6e-4.

@@ -19,6 +19,7 @@ constexpr double kLeast = 1e-3;  // sigma of a step: no depth is read to less [m
 constexpr double kLag = 1;
 // Lag [s] that is told in full: half of the 6 s that four marks span, where first order in it ends.
 constexpr double kLagMost = 3;
+constexpr double kScaleMost = 5;  // that is told in full: more than the feet of a metre
 // Steps before their scatter is known, then to sqrt((pi/2 - 1) / 20) = 17 %.
 constexpr std::int64_t kFirst = 20;
 
@@ -110,7 +111,7 @@ double DepthMotion::Sigma() const {
 }
 
 void DepthMotion::Compare() {
-  std::array<double, kMarks> t, way, rate;
+  std::array<double, kMarks> t, way, rate, md;
   const Passed& first = passed_.front();
   const double whole = (passed_.back().utc - first.utc).seconds();
   const double mean = (passed_.back().speed - first.speed) / whole;  // gravity's share
@@ -121,7 +122,8 @@ void DepthMotion::Compare() {
     rate[i] = p.speed - first.speed - mean * t[i];
   }
   std::array<double, kMarks> left;
-  for (std::size_t i = 0; i < kMarks; ++i) left[i] = passed_[i].md - first.md - way[i];
+  for (std::size_t i = 0; i < kMarks; ++i) md[i] = passed_[i].md - first.md;
+  for (std::size_t i = 0; i < kMarks; ++i) left[i] = md[i] - way[i];
   const double step = Bow(t, left), felt = Bow(t, rate);
   const double sigma = Sigma();
   const double most = sigma > 0 ? 4 * sigma : HUGE_VAL;
@@ -137,11 +139,26 @@ void DepthMotion::Compare() {
   const double held = std::clamp(step, -lags, lags);
   rate2_ += felt * felt;
   rate_step_ += felt * held;
+  AddScale(Bow(t, way), Bow(t, md));
+}
+
+/// A jump of the marks is none of what is felt there, and counts for no more than a start.
+void DepthMotion::AddScale(double way, double mark) {
+  const double most = kScaleMost * std::abs(way) + kLeast;
+  const double held = std::clamp(mark, -most, most);
+  way2_ += way * way;
+  way_mark_ += way * held;
+  mark2_ += held * held;
 }
 
 DepthMotion::Found DepthMotion::found() const {
   Found found = found_;
   found.sigma_step = Sigma();
+  if (way2_ > 0 && found.compared > kFirst) {
+    found.scale = way_mark_ / way2_;
+    const double left = std::max(mark2_ - found.scale * way_mark_, 0.0);
+    found.sigma_scale = std::sqrt(left / static_cast<double>(found.compared) / way2_);
+  }
   if (!(found.sigma_step > 0) || !(rate2_ > 0)) return found;
   found.lag = -rate_step_ / rate2_;
   found.sigma_lag = found.sigma_step / std::sqrt(rate2_);

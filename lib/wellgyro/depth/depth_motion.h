@@ -20,7 +20,9 @@ namespace wellgyro {
 /// of the ways beside it, zero for any constant acceleration. Less the same third difference of the
 /// felt motion (double integral of f_z less gravity's share of it) it is a depth step between the
 /// middle two plus -lag times the third difference of the felt speed. Steps are judged against
-/// their own scatter, the lag is a least-squares fit over all starts and stops. Memory is bounded.
+/// their own scatter, the lag is a least-squares fit over all starts and stops. So is the scale of
+/// the marks' third differences over the felt ones: 1, -1 where depth counts against the tool's
+/// axis, 3.28 of feet taken for metres. Memory is bounded.
 /// Marks are looked up when the samples of their time come, so that how the two streams interleave
 /// does not matter.
 ///
@@ -38,6 +40,8 @@ class WELLGYRO_EXPORT DepthMotion {
     std::optional<double> step_md;  ///< where [m]
     double lag = 0;                 ///< positive where depth comes late [s]
     double sigma_lag = 0;           ///< 0: no start or stop tells it [s]
+    double scale = 0;               ///< of the marks' starts and stops over those felt [1]
+    double sigma_scale = 0;         ///< 0: no start or stop tells it [1]
   };
 
   /// The next samples, each over `period` from its `utc` on. Marks of `track` are final over this
@@ -66,6 +70,7 @@ class WELLGYRO_EXPORT DepthMotion {
   void Pass(const Passed& passed);
   void FallFromOldest(UtcTime now);
   void Compare();
+  void AddScale(double way, double mark);
   double Sigma() const;
 
   std::array<Passed, kMarks> passed_;
@@ -75,6 +80,7 @@ class WELLGYRO_EXPORT DepthMotion {
   Found found_;
   double sum_size_ = 0;  ///< of steps, each at most four times their mean so far
   double rate2_ = 0, rate_step_ = 0;
+  double way2_ = 0, way_mark_ = 0, mark2_ = 0;  ///< third differences felt, marked, and of both
 };
 
 }  // namespace wellgyro

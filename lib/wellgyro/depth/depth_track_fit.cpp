@@ -34,13 +34,18 @@ AlongHole DepthTrack::Fitted(UtcTime utc, Span span) const {
   // Marks that repeat each other are rounded alike: fewer than there are tell something.
   const double noise = Noise(scatter) * static_cast<double>(span.end - span.begin) / values;
   const Bend bend = BendOf(utc, span, y, noise);
-  return {.md = std::clamp(md0 + y.value, low, high),
-          .speed = y.slope / w,
-          .acceleration = y.curvature / (w * w),
-          .sigma_md = std::sqrt(Common(scatter) + noise * y.variance_value + bend.value),
-          .known = true,
-          .sigma_speed = std::sqrt(noise * y.variance_slope + bend.slope) / w,
-          .sigma_acceleration = std::sqrt(noise * y.variance_curvature + bend.curvature) / (w * w)};
+  const double md = std::clamp(md0 + y.value, low, high);
+  // Held back from what the fit says, as behind the last mark of a string in motion, depth is a
+  // guess that may be off by as much.
+  const double held = md - md0 - y.value;
+  return {
+      .md = md,
+      .speed = y.slope / w,
+      .acceleration = y.curvature / (w * w),
+      .sigma_md = std::sqrt(Common(scatter) + noise * y.variance_value + bend.value + held * held),
+      .known = true,
+      .sigma_speed = std::sqrt(noise * y.variance_slope + bend.slope) / w,
+      .sigma_acceleration = std::sqrt(noise * y.variance_curvature + bend.curvature) / (w * w)};
 }
 
 /// From third differences, free of any acceleration, of the marks behind and of the window.

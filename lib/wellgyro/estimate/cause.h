@@ -9,11 +9,14 @@ inline constexpr int kLatitudeError = kErrorSources;     ///< [rad]
 inline constexpr int kGravityError = kErrorSources + 1;  ///< [m/s^2]
 /// Depth marks read (1 + error) of the way that the accelerometers feel [1].
 inline constexpr int kDepthScaleError = kErrorSources + 2;
+/// Of the gyros x and y, from the begin of the run on [rad/s^2].
+inline constexpr int kRampX = kErrorSources + 3, kRampY = kErrorSources + 4;
 
 /// A fault that is looked for.
 struct CauseSpec {
   enum class Kind {
     kConstant,    ///< `unknown` is beyond its prior all the while
+    kGiven,       ///< the same by `size` exactly, as a sign is wrong by twice its number
     kOnset,       ///< from some node on `unknown` is another
     kGyroSpike,   ///< one knot's turn, of one axis across [rad]
     kAccelSpike,  ///< one knot's mean force, of one axis [m/s^2]
@@ -24,7 +27,7 @@ struct CauseSpec {
     kOther,       ///< anything: a stretch of the run, or all of it, scatters more
   };
   Kind kind = Kind::kConstant;
-  int unknown = 0;  ///< of the first two: an ErrorSource, or one of the above
+  int unknown = 0;  ///< of the first three: an ErrorSource, or one of the above
   double size = 0;  ///< its 1-sigma where the fault is there; unused of noise and kOther
 };
 

@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "wellgyro/estimate/onset_scan.h"
+#include "wellgyro/estimate/rows_without.h"
 #include "wellgyro/estimate/scatter.h"
 
 namespace wellgyro {
@@ -49,27 +50,41 @@ double LnBayes(const Score& score, double size) {
   return 0.5 * s * s / (m + 1 / v) - 0.5 * std::log1p(v * m);
 }
 
+/// ln B of a size that is given: theta s - theta^2 M / 2.
+double LnBayesGiven(const Score& score, double size) {
+  return size * score.score - 0.5 * size * size * score.information;
+}
+
 /// All looks at one cause.
 class Looks {
  public:
   Looks(const CauseSpec& spec, double ln_limit) : spec_(spec), ln_limit_(ln_limit) {}
 
   /// `alike`: how many onsets beside this one look the same.
-  void Add(std::size_t node, const Score& score, double alike = 1) {
+  void Add(std::size_t node, const Score& score, double alike = 1, int row = 0) {
     if (!(score.information > 0)) return;
-    looks_.push_back({node, score, alike});
+    looks_.push_back({node, score, alike, row});
   }
   void AddTo(CauseTest& test) const {
     if (looks_.empty()) return;
     LogMean mean;
     double best = -HUGE_VAL;
     for (const Look& look : looks_) {
-      const double ln_bayes = LnBayes(look.score, spec_.size);
+      const double largest = kLargestFault * spec_.size;
+      if (largest * largest * look.score.information < 1) {
+        mean.Add(0);
+        continue;
+      }
+      const bool given = spec_.kind == Kind::kGiven;
+      const double ln_bayes =
+          given ? LnBayesGiven(look.score, spec_.size) : LnBayes(look.score, spec_.size);
       mean.Add(ln_bayes);
+      test.told = true;
       if (ln_bayes <= best) continue;
       best = ln_bayes;
       test.node = look.node;
-      test.size = look.score.size();
+      test.row = look.row;
+      test.size = given ? spec_.size : look.score.size();
       test.sigma = 1 / std::sqrt(look.score.information);
       test.shift_W = test.size * look.score.shift_W;
     }
@@ -83,6 +98,7 @@ class Looks {
     std::size_t node;
     Score score;
     double alike;
+    int row;
   };
 
   /// The Bayes factor passes its limit at w^2 = (1 + 1/(S^2 M)) (2 ln limit + ln(1 + S^2 M)),
@@ -151,7 +167,8 @@ class Diagnoser {
 
  private:
   int ColumnOfSpec(std::size_t i) const {
-    const bool of_border = specs_[i].kind == Kind::kConstant || specs_[i].kind == Kind::kOnset;
+    const Kind kind = specs_[i].kind;
+    const bool of_border = kind == Kind::kConstant || kind == Kind::kGiven || kind == Kind::kOnset;
     return of_border ? BorderColumn(run_.layout(), specs_[i].unknown) : kAbsent;
   }
 
@@ -216,7 +233,7 @@ class Diagnoser {
       for (int i = 0; i < count; ++i) {
         const Vector3d c = f.UnitOf(i);
         if (!(f.per_unit > 0) || !(freedom(i, i) > kAbsorbed)) continue;
-        looks_[s].Add(k, {c.dot(f.r), c.dot(freedom * c), -moved * c});
+        looks_[s].Add(k, {c.dot(f.r), c.dot(freedom * c), -moved * c}, 1, i);
       }
     }
   }
@@ -224,7 +241,7 @@ class Diagnoser {
   void AddConstants() {
     for (std::size_t s = 0; s < specs_.size(); ++s) {
       const int i = ColumnOfSpec(s);
-      if (specs_[s].kind != Kind::kConstant || i == kAbsent) continue;
+      if (specs_[s].kind == Kind::kOnset || i == kAbsent) continue;
       const auto prior = run_.layout().information.col(i);
       const double information = prior[i] - prior.dot(border_covariance_ * prior);
       if (!(information > kAbsorbed * prior[i])) continue;
@@ -251,8 +268,8 @@ class Diagnoser {
   }
 
   /// Onsets about node t whose Bayes factor is much the same: the signature's correlation falls in
-  /// proportion to the distance, and with it the exponent, from ln(38 * 80 / 1e-3) = 15 of a fault
-  /// that is just found among 38 causes and some 80 onsets.
+  /// proportion to the distance, and with it the exponent, from ln(41 * 80 / 1e-3) = 15 of a fault
+  /// that is just found among 41 causes and some 80 onsets.
   double AlikeAt(std::size_t i, std::size_t t) const {
     const double here = scan_->At(i, t).information, next = scan_->At(i, t + 1).information;
     if (!(here > 0) || !(next > 0)) return 1;
@@ -283,7 +300,7 @@ class Diagnoser {
   MatrixXd CompareOnsets(const Diagnosis& d, std::span<const std::size_t> onsets,
                          MatrixXd& gram) const;
   void CompareSignatures(Diagnosis& d) const;
-  void AddOdds(Diagnosis& d) const;
+  static void AddOdds(Diagnosis& d);
 
   const LinearRun& run_;
   std::span<const CauseSpec> specs_;
@@ -347,7 +364,9 @@ MatrixXd Diagnoser::CompareOnsets(const Diagnosis& d, std::span<const std::size_
 void Diagnoser::CompareSignatures(Diagnosis& d) const {
   std::vector<std::size_t> constants, onsets;
   for (std::size_t s = 0; s < specs_.size(); ++s) {
-    if (!d.tests[s].tested || ColumnOfSpec(s) == kAbsent) continue;
+    // A size that is given is told from others by the size.
+    const bool given = specs_[s].kind == Kind::kGiven;
+    if (!d.tests[s].told || given || ColumnOfSpec(s) == kAbsent) continue;
     (specs_[s].kind == Kind::kOnset ? onsets : constants).push_back(s);
   }
   MatrixXd gram = MatrixXd::Zero(At(specs_.size()), At(specs_.size()));
@@ -378,28 +397,54 @@ void Diagnoser::CompareSignatures(Diagnosis& d) const {
   }
 }
 
-/// With the likeliest cause taken out at its size, the scores of those like it are smaller and so
-/// is their information.
-void Diagnoser::AddOdds(Diagnosis& d) const {
-  LogMean all, rest;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < d.tests.size(); ++i) {
-    if (!d.tests[i].tested) continue;
-    all.Add(d.tests[i].ln_bayes);
-    if (!d.tests[first].tested || d.tests[i].ln_bayes > d.tests[first].ln_bayes) first = i;
+void Diagnoser::AddOdds(Diagnosis& d) {
+  LogMean all;
+  for (const CauseTest& test : d.tests) {
+    if (test.tested) all.Add(test.ln_bayes);
   }
-  d.ln_odds = d.ln_odds_without_first = all.value();
-  if (all.count() == 0 || ColumnOfSpec(first) == kAbsent) return;
-  const CauseTest& taken = d.tests[first];
-  for (std::size_t i = 0; i < d.tests.size(); ++i) {
-    const CauseTest& test = d.tests[i];
-    if (!test.tested || i == first || ColumnOfSpec(i) == kAbsent) continue;
-    const double rho = d.alike(static_cast<Index>(i), static_cast<Index>(first));
-    const double w = test.size / test.sigma - rho * taken.size / taken.sigma;
-    const double information = (1 - rho * rho) / (test.sigma * test.sigma);
-    rest.Add(LnBayes({w / test.sigma, information, {}}, specs_[i].size));
+  d.ln_odds = all.value();
+}
+
+/// Whether a cause is of the kind of another: that it is there twice, or since when, is no other
+/// fault.
+bool IsKin(const CauseSpec& a, const CauseSpec& b) {
+  const auto of_unknown = [](Kind kind) {
+    return kind == Kind::kConstant || kind == Kind::kGiven || kind == Kind::kOnset;
+  };
+  return of_unknown(a.kind) && of_unknown(b.kind) ? a.unknown == b.unknown : a.kind == b.kind;
+}
+
+std::size_t LikeliestOf(const Diagnosis& d) {
+  const auto first = std::ranges::max_element(d.tests, [](const CauseTest& a, const CauseTest& b) {
+    return b.tested && (!a.tested || a.ln_bayes < b.ln_bayes);
+  });
+  return static_cast<std::size_t>(first - d.tests.begin());
+}
+
+/// The second look: P of the rows without the likeliest cause is that of the run in which it is an
+/// unknown, and all tests are made of it anew.
+void LookAgain(const LinearRun& solved, std::span<const CauseSpec> specs,
+               std::span<const Matrix3d> end_by_phi_W, double false_alarm_rate, Diagnosis& d) {
+  if (!(d.ln_odds > -std::log(false_alarm_rate))) return;
+  const std::size_t first = LikeliestOf(d);
+  const CauseTest& found = d.tests[first];
+  if (!CanBeTakenOut(specs[first])) return;
+  d.first = first;
+  std::vector<CauseSpec> others;
+  std::vector<std::size_t> place;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (IsKin(specs[i], specs[first])) continue;
+    others.push_back(specs[i]);
+    place.push_back(i);
   }
-  d.ln_odds_without_first = rest.value();
+  RowsWithout rows(solved.rows(), {specs[first], found.node, found.row, found.size});
+  LinearRun without(rows);
+  // Where the run does not solve without it nothing else can be told.
+  if (others.empty() || !without.Solve()) return;
+  const Diagnosis rest =
+      Diagnoser(without, others, false_alarm_rate, Vector3d::Zero()).Run(end_by_phi_W);
+  d.ln_odds_without_first = rest.ln_odds;
+  d.second = place[LikeliestOf(rest)];
 }
 
 }  // namespace
@@ -415,7 +460,9 @@ Diagnosis Diagnose(RunRows& rows, std::span<const CauseSpec> specs,
 Diagnosis Diagnose(const LinearRun& solved, std::span<const CauseSpec> specs,
                    std::span<const Matrix3d> end_by_phi_W, double false_alarm_rate,
                    const Vector3d& end_by_depth_scale_W) {
-  return Diagnoser(solved, specs, false_alarm_rate, end_by_depth_scale_W).Run(end_by_phi_W);
+  Diagnosis d = Diagnoser(solved, specs, false_alarm_rate, end_by_depth_scale_W).Run(end_by_phi_W);
+  LookAgain(solved, specs, end_by_phi_W, false_alarm_rate, d);
+  return d;
 }
 
 }  // namespace wellgyro

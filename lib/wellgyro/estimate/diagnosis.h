@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,9 +15,13 @@ namespace wellgyro {
 
 /// What a run's rows say of one cause.
 struct CauseTest {
-  bool tested = false;   ///< false: nothing in the run can tell it
+  bool tested = false;  ///< false: nothing in the run can tell it
+  /// Somewhere the largest fault there is moves the rows by a sigma. Where it does not, its column
+  /// is mostly noise, which looks like the fault: there are no size and no evidence then.
+  bool told = false;
   double ln_bayes = 0;   ///< ln of its Bayes factor against no fault, onset and size integrated out
   std::size_t node = 0;  ///< the likeliest onset
+  int row = 0;           ///< there, of what compares one thing by several rows
   double size = 0;       ///< found there
   double sigma = 0;      ///< of that
   /// What such a fault does to the end of the run: as found less as it is [m].
@@ -44,8 +49,12 @@ struct Diagnosis {
   /// ln of the odds of some cause against none, were both as likely before: the mean of the Bayes
   /// factors. Without fault it exceeds ln(1/a) in at most a share a of runs (Markov).
   double ln_odds = 0;
-  double ln_odds_without_first = 0;  ///< the same once the likeliest cause is taken out
-  std::vector<CauseTest> tests;      ///< of each spec
+  /// The same of the causes of another kind once the likeliest is taken out, see RowsWithout: of
+  /// something else beside it. 0 where the odds pass no limit, and of a likeliest that has no size.
+  double ln_odds_without_first = 0;
+  std::optional<std::size_t> first;   ///< the spec that was taken out
+  std::optional<std::size_t> second;  ///< the likeliest beside it
+  std::vector<CauseTest> tests;       ///< of each spec
   /// Of every stretch of kStretchKnots, of the gyros' and of the accelerometers' rows.
   std::vector<ResidualSum> turns, forces;
   /// Correlation of the signatures of constants and onsets, each at its likeliest node; 0 of

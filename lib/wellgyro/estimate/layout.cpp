@@ -132,6 +132,10 @@ int BorderColumn(const Layout& layout, int unknown) {
       return layout.gravity;
     case kDepthScaleError:
       return layout.depth_scale;
+    case kRampX:
+      return layout.ramp;
+    case kRampY:
+      return layout.ramp == kAbsent ? kAbsent : layout.ramp + 1;
     default:
       return layout.source[static_cast<std::size_t>(unknown)];
   }
@@ -177,6 +181,9 @@ double* PriorOf(int unknown, EstimateSetup& setup) {
       return &setup.sigma_gravity;
     case kDepthScaleError:
       return &setup.sigma_depth_scale;
+    case kRampX:
+    case kRampY:
+      return &setup.gyro.rate_ramp;
     default:
       return nullptr;
   }

@@ -13,7 +13,9 @@ namespace wellgyro {
 inline constexpr int kNodeMax = 12;  ///< errors of one node
 /// Errors of the whole run: of the tool, each with its change, a ramp of two gyros, latitude,
 /// gravity, its gradient, the swing's frequency and the scale of depth.
-inline constexpr int kBorderMax = 2 * kErrorSources + 7;
+inline constexpr int kRunErrorsMax = 2 * kErrorSources + 7;
+/// And one that a diagnosis takes out, see RowsWithout.
+inline constexpr int kBorderMax = kRunErrorsMax + 1;
 inline constexpr int kAbsent = -1;
 
 using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax, 1>;

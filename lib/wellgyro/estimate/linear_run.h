@@ -46,6 +46,7 @@ class LinearRun {
   /// False where something is unobserved or not finite: nothing else may then be called.
   bool Solve();
 
+  RunRows& rows() const { return rows_; }
   const Layout& layout() const { return rows_.layout(); }
   std::size_t knots() const { return rows_.size(); }
   const Elimination& elimination() const { return elimination_; }

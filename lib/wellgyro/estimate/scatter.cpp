@@ -69,7 +69,7 @@ std::vector<double> Scatter::Stretches() const {
 void Scatter::TestAll(CauseTest& test) const {
   const auto [squares, count] = all_.residuals;
   if (!(count > 0)) return;
-  test.tested = true;
+  test.tested = test.told = true;
   test.ln_bayes = Mean(all_);
   test.size = std::sqrt(squares / count);
   test.sigma = test.size / std::sqrt(2 * count);

@@ -121,7 +121,7 @@ EstimateSetup SetupOfPlan(const PlanCase& c) {
   setup.errors = c.errors;
   setup.site = c.site;
   setup.third_axis = c.third_axis;
-  setup.causes = CausesLookedFor();
+  setup.causes = CausesLookedFor(setup.site);
   setup.false_alarm_rate = kDiagnosisFalseAlarms;
   for (const CauseSpec& cause : setup.causes) {
     if (cause.kind != CauseSpec::Kind::kConstant && cause.kind != CauseSpec::Kind::kOnset) continue;

@@ -38,10 +38,17 @@ struct RunReliability {
   Eigen::Vector3d shift_W = Eigen::Vector3d::Zero();
 };
 
+/// A slip of the depth's wheel, told by passes through the same hole.
+struct RunSlip {
+  RunCause cause;  ///< without `ln_bayes` where nothing tells it
+  RunReliability reliability;
+};
+
 /// Which fault explains a run, and which could hide in it.
 struct RunDiagnosis {
   double ln_odds = 0;                ///< of some fault against none, both as likely before
   double ln_odds_without_first = 0;  ///< once the likeliest is taken out
+  std::string second;                ///< the likeliest then; empty: it was not looked for
   std::vector<RunCause> causes;      ///< the likeliest first
   std::vector<RunReliability> reliability;
   /// Least ellipse about the end that holds every horizontal shift of `reliability`: those e with

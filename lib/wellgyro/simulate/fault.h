@@ -30,6 +30,7 @@ struct SimulatedFault {
     kRestTurn,       ///< the tool turns about its axis, within 10 s of begin [rad]
     kSwing,          ///< the tool swings about its y axis by size, every `period` [rad]
     kDepthStep,      ///< added to the marks [m]
+    kDepthSlip,      ///< marks lose size, evenly from begin to end, and stay behind [m]
     kDepthScale,     ///< of the marks, from their begin on [1]
     kDepthLag,       ///< marks tell where the tool was so long ago [s]
     kDepthFrozen,    ///< marks repeat the depth at begin

@@ -30,7 +30,8 @@ bool NeedsPeriod(Cause cause) {
 }
 
 bool NeedsEnd(Cause cause) {
-  return cause == Cause::kRestCreep || cause == Cause::kGyroTemperature;
+  return cause == Cause::kRestCreep || cause == Cause::kGyroTemperature ||
+         cause == Cause::kDepthSlip;
 }
 
 void Check(const SimulatedFault& f, std::size_t index) {
@@ -169,6 +170,9 @@ double FaultPlayer::MarkedAt(double time) const {
 
 double FaultPlayer::MarkMd(double time, double md) const {
   for (const SimulatedFault& f : faults_) {
+    if (f.cause == Cause::kDepthSlip) {
+      md -= f.size * std::clamp((time - f.begin) / (f.end - f.begin), 0.0, 1.0);
+    }
     if (!Acts(f, time)) continue;
     if (f.cause == Cause::kDepthStep) md += f.size;
     if (f.cause == Cause::kDepthScale) md += f.size * md;

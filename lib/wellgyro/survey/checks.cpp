@@ -15,6 +15,7 @@
 #include "wellgyro/math/square.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/choose.h"
+#include "wellgyro/survey/depth_slip.h"
 #include "wellgyro/survey/run_checks_internal.h"
 #include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/tie_in_check.h"
@@ -370,6 +371,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
       checks.push_back(CheckCalibrationDate(*job.tool, run.begin));
       checks.back().run = run.run;
     }
+    if (run.slip) checks.push_back(CheckSlip(*run.slip, run.run));
     CheckDiagnosis(run, inputs.passes, checks);
     CheckFixes(job, run, checks);
     checks.insert(checks.end(), run.stop_checks.begin(), run.stop_checks.end());

@@ -21,7 +21,7 @@ namespace wellgyro {
 namespace {
 
 // Attitude, two kinds of drift, the border.
-static_assert(3 + 4 + kBorderMax <= kStationErrorsMax);
+static_assert(3 + 4 + kRunErrorsMax <= kStationErrorsMax);
 
 Anchor AnchorOf(const FixAtNode& at, double azimuth) {
   return {at.node, AttitudeMatrix(azimuth, at.fix.inclination, at.fix.toolface)};
@@ -209,7 +209,7 @@ RunEstimate EstimateSince(const RunState& known, const RunHistory& part) {
 SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
   EstimateSetup setup = SetupOf(job, history);
   setup.norths = NorthsOf(history);
-  setup.causes = CausesLookedFor();
+  setup.causes = CausesLookedFor(setup.site);
   setup.false_alarm_rate = kDiagnosisFalseAlarms;
   std::vector<Start> starts;
   if (!history.knots.empty()) starts = StartsOf(setup, history);

@@ -30,6 +30,14 @@ AlongHole Between(const AlongHole& a, const AlongHole& b, double fraction) {
           mix(a.sigma_acceleration, b.sigma_acceleration)};
 }
 
+/// Where a sample ends that none follows: no further than where it begins, and not nearer than it
+/// goes in its period.
+AlongHole AtItsEnd(const AlongHole& begin, std::int64_t period_ns) {
+  AlongHole end = begin;
+  end.sigma_md = std::hypot(begin.sigma_md, begin.speed * 1e-9 * static_cast<double>(period_ns));
+  return end;
+}
+
 }  // namespace
 
 KnotCutter::KnotCutter(const Job& job, WaitingKnots& waiting, RunSummary& summary)
@@ -51,7 +59,9 @@ std::optional<KnotCutter::End> KnotCutter::EndBefore(const ImuSample& next, UtcT
   Current& c = *current_;
   const double reach =
       static_cast<double>((next.stamp.tool_time - c.begin).ns) / static_cast<double>(c.period_ns);
-  if (next.stamp.session != c.session) return End{c.along, c.pass, 1};
+  if (next.stamp.session != c.session) {
+    return End{AtItsEnd(c.along, c.period_ns), c.pass, 1};
+  }
   if (reach >= kWithoutGap) return End{along, pass, reach};
   summary_.samples_aliased += TurnsFar(c.sample.f_T.head<2>(), next.f_T.head<2>());
   c.utc_end = utc;
@@ -60,7 +70,7 @@ std::optional<KnotCutter::End> KnotCutter::EndBefore(const ImuSample& next, UtcT
 
 std::optional<KnotCutter::End> KnotCutter::LastEnd(const PassState& pass) {
   if (!current_) return std::nullopt;
-  const AlongHole& end = current_->along;
+  const AlongHole end = AtItsEnd(current_->along, current_->period_ns);
   const bool down = end.known && pass.pass == Pass::kIn;
   if (down && !marks_.asked() && !marks_.IsMarked(end.md)) marks_.Ask(std::nullopt);
   return End{end, pass, 1};

@@ -90,6 +90,29 @@ void CheckMagnets(const Job& job, const RunSummary& run, std::vector<Check>& che
   checks.push_back(NotDone("magnetic_azimuth", run.run, why));
 }
 
+/// An azimuth from outside against the gyros' own at the stop where it holds, which it has no part
+/// in: as one that is told of the tool's other end.
+void CheckOutside(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
+  constexpr double kThatPlace = 0.5;  // [m]
+  constexpr double kBegins = 60;      // [s], of the run, until its first stop does
+  const AlignmentSpec& spec = job.alignment;
+  const bool of_axis = spec.of == AlignmentSpec::Of::kAxis;
+  if (spec.method != AlignmentSpec::Method::kExternal || !of_axis || spec.at_utc) return;
+  for (const NorthFix& fix : run.fixes) {
+    if (fix.external || !fix.md || Has(fix.quality, Quality::kVertical | Quality::kMirror))
+      continue;
+    const bool there = spec.at_md ? std::abs(*fix.md - *spec.at_md) < kThatPlace
+                                  : (fix.utc_begin - run.begin).seconds() < kBegins;
+    if (!there) continue;
+    const double sigma = std::hypot(std::sqrt(fix.cov_attitude(1, 1)), spec.sigma_azimuth);
+    checks.push_back(Compare("azimuth_tie", run.run, {WrapPi(spec.azimuth - fix.azimuth), sigma},
+                             std::nullopt, units::kDeg, "deg"));
+    checks.back().md = fix.md;
+    return;
+  }
+  checks.push_back(NotDone("azimuth_tie", run.run, "no north by the gyros where it holds"));
+}
+
 /// An error of the tool as people know it.
 struct ToolError {
   ErrorSource source;
@@ -223,6 +246,7 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
   }
   CheckBiases(job, run, checks);
   CheckMagnets(job, run, checks);
+  CheckOutside(job, run, checks);
 }
 
 // Of a knot. Where gravity does not show the roll a knot is summed as if the tool did not turn, and

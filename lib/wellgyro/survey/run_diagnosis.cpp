@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string_view>
 
 #include <Eigen/Cholesky>
@@ -9,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/verdict.h"
@@ -28,6 +30,9 @@ constexpr double kFaultyShare = 0.1;
 // of their odds is w^2 (1 - rho^2) / 2, w the fault's size over its sigma, and odds of 20 take
 // w = sqrt(2 ln(20) / (1 - rho^2)) = 5.6 (Imparato, Teunissen and Tiberius 2019).
 constexpr double kAlike = 0.9;
+// Of what a fault does to the rows, squared, that its column misses: the run is made linear about a
+// solution that the fault has moved.
+constexpr double kNotLinear = 0.01;
 constexpr double kNamed = 0.95;  // probability of the causes named together, as kConfidence
 
 struct Entry {
@@ -41,8 +46,11 @@ struct Entry {
 
 constexpr double kOne = 1;  // of what is stated in SI
 constexpr std::string_view kDepthScale = "depth_scale";
+constexpr std::string_view kLatitudeSign = "latitude_sign";
 constexpr std::string_view kCalibrate =
     "widen its sigma in [errors], run again, calibrate the tool";
+constexpr std::string_view kRamp =
+    "state its rate_ramp in [noise], run again; let the tool warm up, calibrate it";
 constexpr std::string_view kBench =
     "the run is good to its end only with the step told: bench "
     "the tool, survey the part below again";
@@ -60,6 +68,8 @@ constexpr double kThatStop = 0.5;
 constexpr Entry kEntries[] = {
     {"gyro_bias_x", Kind::kConstant, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
     {"gyro_bias_y", Kind::kConstant, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
+    {"gyro_ramp_x", Kind::kConstant, kRampX, 0.3, units::kDegPerHour2, "deg/h2", kRamp},
+    {"gyro_ramp_y", Kind::kConstant, kRampY, 0.3, units::kDegPerHour2, "deg/h2", kRamp},
     {"mass_unbalance", Kind::kConstant, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
      kCalibrate},
     {"quadrature", Kind::kConstant, kQuadrature, 0.15, units::kDegPerHourPerG, "deg/h/g",
@@ -83,6 +93,10 @@ constexpr Entry kEntries[] = {
     {"gyro_scale_z", Kind::kConstant, kGyroScaleZ, 1e-3, kOne, "1", kCalibrate},
     {"latitude", Kind::kConstant, kLatitudeError, 0.4, units::kDeg, "deg",
      "correct the latitude of the job, run again"},
+    // The Earth's rate along the vertical acts as a mass unbalance m, m g = w sin L: with the other
+    // sign of L it is off by -2 w sin L, exactly.
+    {kLatitudeSign, Kind::kGiven, kMassUnbalance, 0, kOne, "1",
+     "correct the sign of the job's latitude, negative in the south, run again"},
     {"gravity", Kind::kConstant, kGravityError, 5e-3, kOne, "m/s2",
      "correct the well's place or elevation in the job, run again"},
     {kDepthScale, Kind::kConstant, kDepthScaleError, 3e-3, kOne, "1",
@@ -99,7 +113,8 @@ constexpr Entry kEntries[] = {
     {"samples_lost", Kind::kOnset, kTimeSkew, 0.05, kOne, "s",
      "restore the numbering of the samples, run again"},
     {"gyro_spike", Kind::kGyroSpike, 0, 0.05, units::kDeg, "deg", kSpike},
-    {"accel_spike", Kind::kAccelSpike, 0, 0.05, kOne, "m/s2", kSpike},
+    {"accel_spike", Kind::kAccelSpike, 0, 0.05, kOne, "m/s2",
+     "look at the samples and the depth marks there; leave them out and run again"},
     {kRestMotion, Kind::kRestMotion, 0, 0.01, units::kDeg, "deg", kNotAtRest},
     {"azimuth_tie", Kind::kTie, 0, 2.5, units::kDeg, "deg",
      "leave the azimuth from outside out, run again"},
@@ -114,18 +129,27 @@ constexpr std::size_t kCount = std::size(kEntries);
 struct SampleWords {
   std::string_view code, remedy;
 };
+constexpr std::string_view kRound = "round numbers in the converter, convert the log again";
 // Checks of samples and marks that by themselves name what is wrong.
 constexpr SampleWords kOfSamples[] = {
     {"accel_dead", "mend the sensor, survey the well again"},
     {"accel_stuck", "leave the stretch out; where it is long, survey the well again"},
+    {"accel_truncated", kRound},
+    {"accel_unit", "correct the unit or scale of the accelerometers in the tool file, run again"},
+    {"azimuth_tie", "correct the azimuth from outside, or leave it out, run again"},
+    {"axes_change", "look at the tool's wiring; leave the stretch out, survey it again"},
     {"axes", "correct the axes of the tool file, run again"},
     {"depth_jump", "correct the depth marks there, run again"},
     {"depth_lag", "correct the times of the depth marks, run again"},
+    {"depth_reversed", "turn the sign of depth, run again"},
+    {"depth_unit", "state the unit of depth as it is, run again"},
     {"gyro_dead", "mend the sensor, survey the well again"},
     {"gyro_stuck", "leave the stretch out; where it is long, survey the well again"},
+    {"gyro_truncated", kRound},
     {"gyro_unit", "correct the unit or scale in the tool file, run again"},
     {"latitude", "correct the latitude of the job, run again"},
     {kRestMotion, kNotAtRest},
+    {"tool_upside_down", "correct the axes or signs of the tool file, run again"},
 };
 
 /// ln(e^a + e^b).
@@ -134,18 +158,41 @@ double LogSum(double a, double b) {
   return most + std::log(std::exp(a - most) + std::exp(b - most));
 }
 
+/// ln of the odds of something else beside the likeliest, beyond what the linear columns of a fault
+/// leave of it.
+double LnOddsBeside(const Diagnosis& tests) {
+  if (!tests.first) return tests.ln_odds_without_first;
+  return tests.ln_odds_without_first - kNotLinear * tests.tests[*tests.first].ln_bayes;
+}
+
+/// The tests with what the second look says for none of the causes: the likeliest and something
+/// else at once is B(first) B(else | first), a second fault as rare beside a first as a first is.
+std::vector<CauseTest> WithSomethingElse(const Diagnosis& tests) {
+  std::vector<CauseTest> judged = tests.tests;
+  if (!tests.first) return judged;
+  static_assert(kEntries[kCount - 1].kind == Kind::kOther);
+  CauseTest& other = judged.back();
+  const double both = std::log(kFaultyShare) + judged[*tests.first].ln_bayes + LnOddsBeside(tests);
+  other.ln_bayes = other.tested ? LogSum(other.ln_bayes, both) : both;
+  other.tested = true;
+  return judged;
+}
+
 RunCause CauseOfTest(const Entry& entry, const CauseTest& test, std::span<const RunKnot> knots) {
   RunCause cause;
   cause.code = entry.code;
   cause.unit = entry.unit_name;
   cause.remedy = entry.remedy;
   cause.ln_bayes = test.ln_bayes;
-  if (entry.kind == Kind::kOther) return cause;
-  cause.size = test.size / entry.unit;
-  cause.sigma = test.sigma / entry.unit;
+  if (entry.kind == Kind::kOther || !test.told) return cause;
+  if (entry.kind != Kind::kGiven) {
+    cause.size = test.size / entry.unit;
+    cause.sigma = test.sigma / entry.unit;
+  }
   if (entry.kind == Kind::kGyroNoise || entry.kind == Kind::kAccelNoise) return cause;
   cause.shift_W = test.shift_W;
-  if (entry.kind == Kind::kConstant || test.node >= knots.size()) return cause;
+  const bool all_the_while = entry.kind == Kind::kConstant || entry.kind == Kind::kGiven;
+  if (all_the_while || test.node >= knots.size()) return cause;
   cause.begin = knots[test.node].utc;
   if (knots[test.node].along.known) cause.begin_md = knots[test.node].along.md;
   return cause;
@@ -167,7 +214,7 @@ RunReliability ReliabilityOf(const Entry& entry, const CauseTest& test,
 
 bool HasReliability(const Entry& entry, const CauseTest& test) {
   return test.tested && entry.kind != Kind::kGyroNoise && entry.kind != Kind::kAccelNoise &&
-         entry.kind != Kind::kOther;
+         entry.kind != Kind::kOther && entry.kind != Kind::kGiven;
 }
 
 void AddHidden(RunDiagnosis& diagnosis) {
@@ -200,7 +247,8 @@ bool IsShown(const RunDiagnosis& diagnosis) {
   return !(diagnosis.ln_odds <= -std::log(kDiagnosisFalseAlarms));
 }
 
-/// One of the causes named moves the end by more than a sigma in its direction.
+/// One of the causes named moves the end by more than a sigma in its direction, or by what is not
+/// known.
 bool MovesTheEnd(const RunDiagnosis& diagnosis, std::int32_t run, std::span<const Station> passes) {
   const Station* end = nullptr;
   for (const Station& s : passes) {
@@ -210,8 +258,16 @@ bool MovesTheEnd(const RunDiagnosis& diagnosis, std::int32_t run, std::span<cons
   const Eigen::LDLT<Eigen::Matrix3d> cov(end->cov_p_WT_W);
   const std::vector<const RunCause*> named = Named(diagnosis.causes);
   return std::any_of(named.begin(), named.end(), [&](const RunCause* cause) {
-    return cause->shift_W && !(cause->shift_W->dot(cov.solve(*cause->shift_W)) <= 1);
+    return !cause->shift_W || !(cause->shift_W->dot(cov.solve(*cause->shift_W)) <= 1);
   });
+}
+
+/// The likeliest that has a name; null: there is none.
+const RunCause* NearestOf(const std::vector<RunCause>& causes) {
+  for (const RunCause& cause : causes) {
+    if (cause.code != "none" && cause.code != "other") return &cause;
+  }
+  return nullptr;
 }
 
 /// The check says that the tool moved at a stop, and there the likeliest fault of the rows begins:
@@ -219,9 +275,9 @@ bool MovesTheEnd(const RunDiagnosis& diagnosis, std::int32_t run, std::span<cons
 bool MovedAtRest(const RunSummary& run, const Check& check) {
   if (check.code != kRestMotion || check.verdict == Verdict::kPass || !check.md) return false;
   if (!run.fit || !run.fit->diagnosis || !IsShown(*run.fit->diagnosis)) return false;
-  const std::vector<const RunCause*> named = Named(run.fit->diagnosis->causes);
-  return !named.empty() && named[0]->begin_md &&
-         std::abs(*named[0]->begin_md - *check.md) < kThatStop;
+  const RunCause* nearest = NearestOf(run.fit->diagnosis->causes);
+  return nearest != nullptr && nearest->begin_md &&
+         std::abs(*nearest->begin_md - *check.md) < kThatStop;
 }
 
 /// With the likeliest cause taken out a fault shows still, which may have moved the end.
@@ -243,6 +299,15 @@ std::string WordsOf(const RunCause& cause, double share) {
   return text + ")";
 }
 
+/// Where no cause alone explains the run, those that come nearest.
+std::string WordsOfNearest(const RunDiagnosis& diagnosis) {
+  const RunCause* nearest = NearestOf(diagnosis.causes);
+  if (nearest == nullptr) return "";
+  const bool then = !diagnosis.second.empty() && diagnosis.second != "other";
+  return fmt::format(" explains it alone; {} comes nearest{}", nearest->code,
+                     then ? ", then " + diagnosis.second : "");
+}
+
 std::string WordsOf(const RunDiagnosis& diagnosis) {
   const std::vector<const RunCause*> named = Named(diagnosis.causes);
   if (named.empty()) return "";
@@ -250,21 +315,24 @@ std::string WordsOf(const RunDiagnosis& diagnosis) {
   for (const RunCause& cause : diagnosis.causes) {
     all += cause.code == "none" ? 0 : cause.posterior;
   }
-  if (named.size() == 1 && named[0]->code == "other") return "none of the faults that are known";
+  if (named.size() == 1 && named[0]->code == "other") {
+    return "none of the faults that are known" + WordsOfNearest(diagnosis);
+  }
   std::string text = named.size() > 1 ? "one of " : "";
   for (std::size_t i = 0; i < named.size(); ++i) {
     text += (i > 0 ? ", " : "") + WordsOf(*named[i], all > 0 ? named[i]->posterior / all : 0);
   }
-  if (IsMore(diagnosis)) text += ", and something else beside it";
   return text + "; if the first: " + named[0]->remedy;
 }
 
 }  // namespace
 
-std::vector<CauseSpec> CausesLookedFor() {
+std::vector<CauseSpec> CausesLookedFor(const Site& site) {
   std::vector<CauseSpec> specs;
   for (const Entry& entry : kEntries) {
     specs.push_back({entry.kind, entry.unknown, entry.size * entry.unit});
+    if (entry.code != kLatitudeSign) continue;
+    specs.back().size = -2 * kEarthRate * std::sin(site.latitude) / site.gravity;
   }
   return specs;
 }
@@ -273,20 +341,30 @@ RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots)
   RunDiagnosis diagnosis;
   if (!tests.done) return diagnosis;
   diagnosis.ln_odds = tests.ln_odds;
-  diagnosis.ln_odds_without_first = tests.ln_odds_without_first;
+  diagnosis.ln_odds_without_first = LnOddsBeside(tests);
+  if (tests.second) diagnosis.second = kEntries[*tests.second].code;
+  const std::vector<CauseTest> judged = WithSomethingElse(tests);
   double tested = 0;
-  for (const CauseTest& test : tests.tests) tested += test.tested ? 1 : 0;
+  for (const CauseTest& test : judged) tested += test.tested ? 1 : 0;
   // ln of what p(none) + sum of p(cause) B(cause) comes to.
   const double none = std::log(1 - kFaultyShare), each = std::log(kFaultyShare / tested);
-  const double sum = LogSum(none, std::log(kFaultyShare) + tests.ln_odds);
+  double sum = none;
+  for (const CauseTest& test : judged) {
+    if (test.tested) sum = LogSum(sum, each + test.ln_bayes);
+  }
   for (std::size_t i = 0; i < kCount; ++i) {
-    const CauseTest& test = tests.tests[i];
+    const CauseTest& test = judged[i];
     if (!test.tested) continue;
     RunCause cause = CauseOfTest(kEntries[i], test, knots);
     cause.posterior = std::exp(each + test.ln_bayes - sum);
     for (std::size_t j = 0; j < kCount; ++j) {
       const double rho = tests.alike(static_cast<Index>(i), static_cast<Index>(j));
       if (j != i && std::abs(rho) > kAlike) cause.alike.emplace_back(kEntries[j].code);
+    }
+    // Where marks and felt motion part for a moment along the hole, either may be wrong.
+    constexpr int kAlong = 2;
+    if (kEntries[i].kind == Kind::kAccelSpike && test.row == kAlong) {
+      cause.alike.emplace_back("depth_slip");
     }
     diagnosis.causes.push_back(std::move(cause));
     if (HasReliability(kEntries[i], test)) {
@@ -350,6 +428,28 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
   }
 }
 
+namespace {
+
+/// The causes by the run's rows and that by its passes, which are other measurements: each explains
+/// its own alone. Posteriors are proportional to the prior odds times B.
+std::vector<RunCause> WithSlip(const RunSummary& run) {
+  std::vector<RunCause> causes = run.fit->diagnosis->causes;
+  if (!run.slip || !run.slip->cause.ln_bayes || causes.empty()) return causes;
+  causes.push_back(run.slip->cause);
+  const double none = std::log(1 - kFaultyShare);
+  const double each = std::log(kFaultyShare / static_cast<double>(causes.size() - 1));
+  const auto weight = [&](const RunCause& cause) {
+    return (cause.code == "none" ? none : each) + cause.ln_bayes.value_or(0);
+  };
+  double sum = -HUGE_VAL;
+  for (const RunCause& cause : causes) sum = LogSum(sum, weight(cause));
+  for (RunCause& cause : causes) cause.posterior = std::exp(weight(cause) - sum);
+  std::ranges::stable_sort(causes, std::greater<>(), &RunCause::posterior);
+  return causes;
+}
+
+}  // namespace
+
 std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> checks) {
   std::vector<RunCause> causes;
   for (const Check& check : checks) {
@@ -364,6 +464,7 @@ std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> che
       cause.sigma = check.sigma;
       cause.unit = check.unit;
       cause.remedy = words.remedy;
+      break;
     }
   }
   const bool by_samples = !causes.empty();
@@ -376,7 +477,7 @@ std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> che
     cause.remedy = "survey the well again";
   }
   if (!run.fit || !run.fit->diagnosis) return causes;
-  for (const RunCause& cause : run.fit->diagnosis->causes) {
+  for (const RunCause& cause : WithSlip(run)) {
     causes.push_back(cause);
     if (by_samples) causes.back().posterior = 0;
   }

@@ -19,7 +19,7 @@ namespace wellgyro {
 inline constexpr double kDiagnosisFalseAlarms = 1e-3;
 
 /// The faults that are looked for, in the order of their codes' table.
-std::vector<CauseSpec> CausesLookedFor();
+std::vector<CauseSpec> CausesLookedFor(const Site& site);
 
 /// What the estimator's tests of CausesLookedFor() come to, in words and where it was.
 RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots);

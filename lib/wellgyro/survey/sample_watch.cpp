@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -41,6 +42,7 @@ constexpr double kUnitTells = 0.1;
 constexpr double kUnitWrong = 0.15;
 // [s], of a mean rate at rest: gyros of 0.05 deg/sqrt(h) tell it to 0.95 deg/h, 6 % of the Earth's.
 constexpr double kRestBlock = 10;
+constexpr double kGravity = 9.80665;  // where the place is left open [m/s^2]: within .3 %
 // [s], of either end of a stop that may move: the string still swings when its depth rests.
 constexpr double kSettles = 10;
 constexpr double kMostRests = 1000;  // stops remembered, as many as MatchStops takes
@@ -77,6 +79,23 @@ double ValueOf(const ImuSample& sample, std::size_t axis) {
   return axis < 3 ? sample.w_IT_T[i] : sample.f_T[i];
 }
 
+/// Units that are taken for m/s2.
+std::string_view AccelUnitOf(double ratio) {
+  struct Unit {
+    double ratio;
+    std::string_view words;
+  };
+  constexpr Unit kUnits[] = {{1 / kGravity, ": g taken for m/s2"},
+                             {1000 / kGravity, ": thousandths of g taken for m/s2"},
+                             {1 / 0.3048, ": ft/s2 taken for m/s2"},
+                             {100, ": Gal taken for m/s2"}};
+  // Thousandths of g and Gal are 2 % apart, gravity and accelerometers together .5 %.
+  for (const Unit& unit : kUnits) {
+    if (std::abs(ratio / unit.ratio - 1) < 0.01) return unit.words;
+  }
+  return {};
+}
+
 Check Failed(std::string code, std::int32_t run, double value, std::string unit, std::string why) {
   Check check = NotDone(std::move(code), run, std::move(why));
   check.value = value;
@@ -100,6 +119,12 @@ void SampleWatch::Push(std::span<const ImuSample> samples, const AlongHoleBlock&
   wait_ = i - n + 1;
 }
 
+SampleWatch::Stretch SampleWatch::StretchFrom(const ImuSample& sample, const AlongHole& along) {
+  Stretch stretch{.begin_f_z = sample.f_T.z(), .steady = IsSteady(along)};
+  if (along.known) stretch.md = along.md;
+  return stretch;
+}
+
 void SampleWatch::Watch(const ImuSample& sample, const AlongHole& along) {
   const SampleStamp& stamp = sample.stamp;
   const bool continues =
@@ -107,7 +132,7 @@ void SampleWatch::Watch(const ImuSample& sample, const AlongHole& along) {
   stride_ = std::max<std::int64_t>(1, kEveryNs / std::max(stamp.period_ns, 1));
   period_ = 1e-9 * static_cast<double>(stride_ * stamp.period_ns);
   const bool rests = along.known && std::abs(along.speed) < kRestSpeed;
-  if (!continues) stretch_ = {.begin_f_z = sample.f_T.z(), .steady = IsSteady(along)};
+  if (!continues) stretch_ = StretchFrom(sample, along);
   WatchAxes(sample, along, rests);
   WatchBend(sample, along, period_);
   WatchRest(sample, along, rests, period_);
@@ -150,6 +175,7 @@ void SampleWatch::WatchAxes(const ImuSample& sample, const AlongHole& along, boo
     if (i == 2 && !sample.has_gz) continue;
     Axis& axis = axes_[i];
     const double value = ValueOf(sample, i);
+    axis.truncation.Push(value, axis.step);
     if (samples_ > 0 && value == axis.value) {
       if (axis.repeats == 0) {
         axis.others = Busiest(i);
@@ -176,18 +202,35 @@ void SampleWatch::WatchBend(const ImuSample& sample, const AlongHole& along, dou
   stretch_.seconds += seconds;
   if (stretch_.seconds < kStretch) return;
   const Stretch stretch = stretch_;
-  stretch_ = {.begin_f_z = sample.f_T.z(), .steady = IsSteady(along)};
+  stretch_ = StretchFrom(sample, along);
   if (!stretch.steady || !stretch_.steady) return;
   const double found = (sample.f_T.z() - stretch.begin_f_z) / kForce;
   const std::array<double, kPairings> predicted = PredictionsOf(stretch.products / kForce);
   ++stretches_;
   // Bounded, so that a single bad sample at an end does not decide.
+  std::array<double, kPairings> squares;
   for (std::size_t i = 0; i < kPairings; ++i) {
-    squares_[i] += std::min(std::pow(found - predicted[i], 2), 100.0);
+    squares[i] = std::min(std::pow(found - predicted[i], 2), 100.0);
+    squares_[i] += squares[i];
   }
+  WatchSpells(stretch.md, stretch.seconds, squares);
   if (std::abs(found) < 100 && std::abs(predicted[0]) < 1e4) {
     predicted2_ += predicted[0] * predicted[0];
     predicted_found_ += predicted[0] * found;
+  }
+}
+
+/// Page's sums of ln odds, that begin anew where they are negative.
+void SampleWatch::WatchSpells(std::optional<double> md, double seconds,
+                              const std::array<double, kPairings>& squares) {
+  for (std::size_t i = 1; i < kPairings; ++i) {
+    Spell& spell = spells_[i];
+    if (!(spell.better > 0)) spell = {.md = md};
+    spell.better += squares[0] - squares[i];
+    spell.right += squares[0];
+    spell.left += squares[i];
+    spell.seconds += seconds;
+    if (spell.better > longest_[i].better) longest_[i] = spell;
   }
 }
 
@@ -207,6 +250,7 @@ void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, boo
   const Eigen::Vector2d w = sample.w_IT_T.head<2>();
   rest_.turn += seconds * w;
   rest_.squares += seconds * w.squaredNorm();
+  rest_.force += seconds * sample.f_T;
   rest_.seconds += seconds;
   ++rest_.samples;
   if (rest_.seconds < kRestBlock) return;
@@ -215,6 +259,10 @@ void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, boo
   const double scatter = std::sqrt(std::max(rest_.squares / rest_.seconds - mean * mean, 0.0));
   const double rate = std::max(mean - 5 * scatter / std::sqrt(rest_.samples), 0.0);
   least_at_rest_ = std::min(least_at_rest_.value_or(rate), rate);
+  const double force = rest_.force.norm() / rest_.seconds;
+  rest_force_ += force;
+  ++rests_;
+  if (!lean_ && force > 0) lean_ = rest_.force.z() / rest_.seconds / force;
   rest_ = {};
 }
 
@@ -242,6 +290,27 @@ void SampleWatch::AddStuck(std::int32_t run, std::vector<Check>& checks) const {
   }
 }
 
+void SampleWatch::AddTruncation(std::int32_t run, std::vector<Check>& checks) const {
+  for (const std::size_t first : {0u, 3u}) {
+    const std::string code = first == 0 ? "gyro_truncated" : "accel_truncated";
+    const auto found = TruncationWatch::Of(axes_[first].truncation, axes_[first + 1].truncation);
+    if (!(found.sigma > 0)) {
+      checks.push_back(NotDone(code, run, "the axes do not pass zero by whole steps"));
+      continue;
+    }
+    // Nearer to ln 2 than to 0, and five sigmas from 0.
+    const double limit = std::max(std::log(2.0) / 2, 5 * found.sigma);
+    Check check = CompareWith(code, run, {std::max(found.ln_ratio, 0.0), found.sigma}, limit, 1,
+                              "1", "ln of how often they read zero over how often they should");
+    // Half a step that the noise of all samples together hides does no harm.
+    const double noise = first == 0 ? job_.noise.angle_random_walk : job_.errors.accel_noise;
+    const bool hidden = found.step / 2 < noise / std::sqrt(seconds_);
+    if (check.verdict == Verdict::kWarn) check.verdict = Verdict::kPass;
+    if (check.verdict == Verdict::kFail && hidden) check.verdict = Verdict::kWarn;
+    checks.push_back(check);
+  }
+}
+
 void SampleWatch::AddPairing(std::int32_t run, std::vector<Check>& checks) const {
   const auto best = std::min_element(squares_.begin() + 1, squares_.end());
   const double right = squares_.front();
@@ -251,6 +320,18 @@ void SampleWatch::AddPairing(std::int32_t run, std::vector<Check>& checks) const
     checks.push_back(Failed("axes", run, right, "1", kPairingNames[i]));
     return;
   }
+  const auto spell =
+      std::max_element(longest_.begin() + 1, longest_.end(),
+                       [](const Spell& a, const Spell& b) { return a.better < b.better; });
+  // P(some sum of ln odds passes h) < n e^-h of n begins (Wald), of all pairings together.
+  const double chances = 2 * std::log(std::max(stretches_, 1.0) * (kPairings - 1));
+  if (spell->better > kBetter + chances && spell->left < kLeaves * spell->right) {
+    const auto i = static_cast<std::size_t>(spell - longest_.begin());
+    checks.push_back(Failed("axes_change", run, spell->right, "1",
+                            fmt::format("{} for {:.0f} s", kPairingNames[i], spell->seconds)));
+    checks.back().md = spell->md;
+    return;
+  }
   const bool bends = right + kBetter < *best;
   if (!bends) {
     checks.push_back(NotDone("axes", run, "the hole bends too little to tell the axes apart"));
@@ -258,6 +339,24 @@ void SampleWatch::AddPairing(std::int32_t run, std::vector<Check>& checks) const
   }
   Check check = CountOf("axes", run, 0, "gyros turn as the accelerometers tilt");
   checks.push_back(check);
+}
+
+/// False where the force at rest is none that gravity makes.
+bool SampleWatch::AddForce(std::int32_t run, std::vector<Check>& checks) const {
+  if (!(rests_ > 0)) {
+    checks.push_back(NotDone("accel_unit", run, "nowhere its depth rests"));
+    return true;
+  }
+  const double ratio = rest_force_ / rests_ / kGravity;
+  if (std::abs(ratio - 1) > kUnitWrong) {
+    checks.push_back(Failed(
+        "accel_unit", run, ratio, "1",
+        fmt::format("the force at rest over gravity is {:.3g}{}", ratio, AccelUnitOf(ratio))));
+    return false;
+  }
+  checks.push_back(CompareWith("accel_unit", run, {ratio - 1, 0}, kUnitWrong, 1, "1",
+                               "the force at rest over gravity, less one"));
+  return true;
 }
 
 void SampleWatch::AddUnit(std::int32_t run, std::vector<Check>& checks) const {
@@ -318,8 +417,19 @@ std::vector<Check> SampleWatch::Checks(std::int32_t run, const std::vector<North
   std::vector<Check> checks;
   if (samples_ == 0) return checks;
   AddStuck(run, checks);
-  AddPairing(run, checks);
-  AddUnit(run, checks);
+  AddTruncation(run, checks);
+  const bool forces = AddForce(run, checks);
+  if (forces) {
+    AddPairing(run, checks);
+  } else {
+    checks.push_back(NotDone("axes", run, "first the accelerometers' unit must be right"));
+  }
+  const bool paired = checks.back().verdict != Verdict::kFail;
+  if (forces && paired) {
+    AddUnit(run, checks);
+  } else {
+    checks.push_back(NotDone("gyro_unit", run, "first axes and accelerometers must be right"));
+  }
   AddMotion(run, fixes, checks);
   return checks;
 }

@@ -16,6 +16,7 @@
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/truncation_watch.h"
 
 namespace wellgyro {
 
@@ -30,8 +31,13 @@ namespace wellgyro {
 /// - `axes`: f_z' = w_y f_x - w_x f_y whatever the roll, because gravity does not turn. Stretches
 ///   of 30 s in which the hole bends tell this from the seven other ways to pair gyros with
 ///   accelerometers; fails where another explains them and this does not, and names it.
-/// - `gyro_unit` [1]: by the same sums, the gyros' scale against the accelerometers'; at rest the
-///   rate across the tool over the Earth's.
+///   `axes_change`: in some stretches, one after the other.
+/// - `gyro_truncated`, `accel_truncated` [1]: how often the two axes across read zero, over how
+/// often
+///   they would by the levels beside it: 2 where numbers are cut towards zero.
+/// - `accel_unit` [1]: the force at rest over gravity.
+/// - `gyro_unit` [1]: by the sums of `axes`, the gyros' scale against the accelerometers'; at rest
+///   the rate across the tool over the Earth's. Of axes or accelerometers that are wrong nothing.
 /// - `rest_motion` [s]: the longest time for which depth rests and the tool does not.
 class WELLGYRO_EXPORT SampleWatch {
  public:
@@ -41,6 +47,8 @@ class WELLGYRO_EXPORT SampleWatch {
   /// streams one sample in 20 ms is looked at.
   void Push(std::span<const ImuSample> samples, const AlongHoleBlock& along, std::size_t at);
   std::vector<Check> Checks(std::int32_t run, const std::vector<NorthFix>& fixes) const;
+  /// f_z of the first rest over the force there: -1 of a tool that points down.
+  std::optional<double> lean() const { return lean_; }
 
  private:
   static constexpr std::size_t kAxes = 6;      // gx gy gz ax ay az
@@ -54,12 +62,23 @@ class WELLGYRO_EXPORT SampleWatch {
     bool rests = true;         ///< depth did all the while
     double stuck = 0;          ///< seconds, so far
     std::optional<double> md;  ///< where it first was
+    TruncationWatch truncation;
   };
   struct Stretch {
     double seconds = 0, begin_f_z = 0;
-    bool steady = false;  ///< where it begins the string keeps its speed
+    std::optional<double> md;  ///< where it begins
+    bool steady = false;       ///< where it begins the string keeps its speed
     Eigen::Matrix2d products = Eigen::Matrix2d::Zero();  ///< of w and f across the tool
   };
+  /// Stretches one after the other that another pairing explains, and how much better.
+  struct Spell {
+    double better = 0, right = 0, left = 0;  ///< chi-square
+    double seconds = 0;
+    std::optional<double> md;  ///< where it begins
+  };
+  static Stretch StretchFrom(const ImuSample& sample, const AlongHole& along);
+  void WatchSpells(std::optional<double> md, double seconds,
+                   const std::array<double, kPairings>& squares);
   struct Stop {
     ToolTime begin, end;
     std::optional<double> md;
@@ -73,7 +92,9 @@ class WELLGYRO_EXPORT SampleWatch {
   void WatchBend(const ImuSample& sample, const AlongHole& along, double seconds);
   void WatchRest(const ImuSample& sample, const AlongHole& along, bool rests, double seconds);
   void AddStuck(std::int32_t run, std::vector<Check>& checks) const;
+  void AddTruncation(std::int32_t run, std::vector<Check>& checks) const;
   void AddPairing(std::int32_t run, std::vector<Check>& checks) const;
+  bool AddForce(std::int32_t run, std::vector<Check>& checks) const;
   void AddUnit(std::int32_t run, std::vector<Check>& checks) const;
   void AddMotion(std::int32_t run, const std::vector<NorthFix>& fixes,
                  std::vector<Check>& checks) const;
@@ -85,15 +106,19 @@ class WELLGYRO_EXPORT SampleWatch {
   double seconds_ = 0, period_ = 0;
   std::optional<SampleStamp> last_;
   Stretch stretch_;
-  std::array<double, kPairings> squares_{};  ///< what each pairing leaves
+  std::array<double, kPairings> squares_{};        ///< what each pairing leaves
+  std::array<Spell, kPairings> spells_, longest_;  ///< at hand, and the most telling
   double stretches_ = 0;
   double predicted2_ = 0, predicted_found_ = 0;
   struct Rest {
     Eigen::Vector2d turn = Eigen::Vector2d::Zero();
     double squares = 0, seconds = 0;  ///< of the rates, times time
     int samples = 0;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< times time
   };
   Rest rest_;
+  double rest_force_ = 0, rests_ = 0;  ///< forces of rests [m/s^2], how many
+  std::optional<double> lean_;
   /// Rate across the tool in the stillest stretch, beyond what scatter makes of it [rad/s].
   std::optional<double> least_at_rest_;
   std::vector<Stop> stops_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/assemble.h"
 #include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/depth_checks.h"
+#include "wellgyro/survey/depth_slip.h"
 #include "wellgyro/survey/hole_attitude.h"
 #include "wellgyro/survey/joined_states.h"
 #include "wellgyro/survey/mirrors.h"
@@ -79,26 +82,15 @@ std::optional<Check> CheckStated(const Job& job, const std::vector<RunSummary>& 
                  unmet.empty() ? "all of it was met" : fmt::format("{}", fmt::join(unmet, "; ")));
 }
 
-/// A step that no cable makes, and a lag that any speed makes a depth error.
-void AddDepthChecks(const DepthMotion::Found& found, RunSummary& run) {
-  constexpr double kStep = 0.2, kLag = 0.1;  // less is no matter [m], [s]: 0.1 m at 1 m/s
-  if (run.samples == 0) return;
-  if (!(found.sigma_step > 0)) {
-    run.sample_checks.push_back(NotDone("depth_jump", run.run, "too few marks along samples"));
-  } else {
-    const double limit = std::max(kStep, 8 * found.sigma_step);
-    run.sample_checks.push_back(CompareWith("depth_jump", run.run, {found.step, found.sigma_step},
-                                            limit, 1, "m", "8 sigma of the marks, 0.2 m"));
-    run.sample_checks.back().md = found.step_md;
+/// What samples and marks say of their units and signs, in front of what could not be made of them.
+std::string WrongInput(const std::vector<Check>& checks) {
+  for (const std::string_view code :
+       {"accel_unit", "tool_upside_down", "depth_reversed", "depth_unit", "gyro_unit"}) {
+    const auto check = std::ranges::find_if(
+        checks, [code](const Check& c) { return c.code == code && c.verdict == Verdict::kFail; });
+    if (check != checks.end()) return CauseOf(*check) + "; ";
   }
-  constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]: no more than kLag
-  if (!(found.sigma_lag > 0 && found.sigma_lag < kToldLag)) {
-    run.sample_checks.push_back(NotDone("depth_lag", run.run, "no starts and stops that tell it"));
-    return;
-  }
-  run.sample_checks.push_back(CompareWith("depth_lag", run.run, {found.lag, found.sigma_lag},
-                                          kLag + 5 * found.sigma_lag, 1, "s",
-                                          "0.1 s and 5 sigma of starts and stops"));
+  return {};
 }
 
 /// Near vertical the hole's direction is known without an azimuth.
@@ -215,8 +207,8 @@ std::vector<Foresight> SurveyMaker::Foresights() const {
   return result;
 }
 
-std::vector<Check> SurveyMaker::Checks(const std::vector<Station>& passes) const {
-  const std::vector<RunSummary> summaries = Summaries();
+std::vector<Check> SurveyMaker::Checks(const std::vector<RunSummary>& summaries,
+                                       const std::vector<Station>& passes) const {
   const std::vector<Foresight> foresights = Foresights();
   return MakeChecks(job_, {summaries, passes, foresights, parts_.crew.returns(), &string_.marks,
                            string_.refused, string_.track.Deepest(parts_.newest_used)});
@@ -238,7 +230,9 @@ std::vector<RunSummary> SurveyMaker::Summaries() const {
     RunSummary& summary = summaries.emplace_back(run.survey->summary());
     summary.misrun = string_.book.misrun(summary.run);
     summary.sample_checks = run.watch->Checks(summary.run, summary.fixes);
-    AddDepthChecks(run.motion->found(), summary);
+    if (summary.samples > 0) {
+      AddDepthChecks(run.motion->found(), run.watch->lean(), summary.run, summary.sample_checks);
+    }
     summary.remark = string_.book.remark(summary.run);
     const SampleQueue::Counts& counts = parts_.counts;
     summary.duplicates = counts.duplicates;
@@ -310,7 +304,8 @@ Survey SurveyMaker::Make() const {
   survey.marks_refused = string_.refused.all();
   const std::vector<DraftedRun> drafted = Drafted();
   Placed placed = Assemble(job_, drafted);
-  survey.checks = Checks(placed.passes);
+  for (RunSummary& run : survey.runs) run.slip = FindSlip(job_, placed.passes, run.run);
+  survey.checks = Checks(survey.runs, placed.passes);
   survey.checks.push_back(CheckAzimuths(drafted));
   if (job_.tie_in.md > 0) survey.checks.push_back(CheckTieInWay(job_.tie_in, SeenOf(drafted)));
   if (parts_.finished) {
@@ -330,6 +325,9 @@ Survey SurveyMaker::Make() const {
   std::string lacking = WithoutDepth();
   if (lacking.empty()) lacking = WithoutNorth(drafted, survey);
   if (!lacking.empty()) survey.unusable = std::move(lacking);
+  if (!survey.unusable.empty()) {
+    survey.unusable = WrongInput(survey.checks) + std::move(survey.unusable);
+  }
   if (!survey.unusable.empty()) survey.chosen.clear();
   ShareFalseAlarms(survey.checks);
   GiveVerdict(survey);

@@ -43,7 +43,8 @@ class SurveyMaker {
   DraftedRun DraftedOf(const ToolRun& run) const;
   std::vector<DraftedRun> Drafted() const;
   std::vector<Foresight> Foresights() const;
-  std::vector<Check> Checks(const std::vector<Station>& passes) const;
+  std::vector<Check> Checks(const std::vector<RunSummary>& summaries,
+                            const std::vector<Station>& passes) const;
   std::string WithoutDepth() const;
   std::string WithoutNorth(const std::vector<DraftedRun>& drafted, const Survey& survey) const;
 

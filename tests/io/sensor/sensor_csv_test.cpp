@@ -27,7 +27,7 @@ TEST(SensorCsv, NamesTheLineAndColumnOfWhatItCannotUse) {
   const std::string header = "TOOL[s],GX[deg/h],GY[deg/h],AX[g],AY[g],AZ[g]\n";
   for (const Case& c : std::initializer_list<Case>{
            {"0,1,2,0,0,-1\n0.1,1,x,0,0,-1\n", "\"x\" is no number", 3, 7},
-           {"0,1,2,0,0,-1\n0.1,1,2,0,0,-1\n0.1,1,2,0,0,-1\n", "time does not go on", 4, 1},
+           {"0,1,2,0,0,-1\n0.1,1,2,0,0,-1\n0.1,1,3,0,0,-1\n", "time does not go on", 4, 1},
            {"0,1,2,0,0,-1\nzero,1,2,0,0,-1\n", "is no number", 3, 1},
            {"0,1,2,0,0,-1\n1e300,1,2,0,0,-1\n", "is no time", 3, 1},
            {"0,1,2,0,0,-1\n9,1,2,0,0,-1\n", "two seconds apart", 0, 0},
@@ -115,6 +115,22 @@ TEST(SensorCsv, GapsAndMissingValuesAreLostSamples) {
   while (table->Next(row)) seqs.push_back(std::get<ImuSample>(row).stamp.seq);
   EXPECT_FALSE(table->fault());
   EXPECT_EQ(seqs, (std::vector<std::int64_t>{0, 1, 3, 7}));
+}
+
+TEST(SensorCsv, ARowThatIsThereTwiceCountsOnce) {
+  const Scratch scratch;
+  scratch.Write("a.csv",
+                "TOOL[ms],GX[deg/h],GY[deg/h],AX[g],AY[g],AZ[g]\n0,1,2,0,0,-1\n100,1,2,0,0,-1\n"
+                "100,1,2,0,0,-1\n# a remark\n100,1,2,0,0,-1\n200,1,2,0,0,-1\n");
+  Result<SensorCsv> table = SensorCsv::Open(scratch.path() / "a.csv");
+  ASSERT_TRUE(table) << table.fault().text;
+  std::vector<std::int64_t> seqs;
+  SensorCsv::Row row;
+  while (table->Next(row)) seqs.push_back(std::get<ImuSample>(row).stamp.seq);
+  EXPECT_FALSE(table->fault());
+  EXPECT_EQ(seqs, (std::vector<std::int64_t>{0, 1, 2}));
+  EXPECT_EQ(table->repeated().count, 2);
+  EXPECT_EQ(table->repeated().first_line, 4);
 }
 
 TEST(SensorCsv, ARowAtRestIsMarksAllTheWhile) {

@@ -63,6 +63,33 @@ TEST(SensorFiles, SamplesAndDepthFromTablesGiveTheSurveyOfTheMessages) {
   EXPECT_LT(std::abs(by_tables.report->stamps_less_stops.value_or(99)), 1);
 }
 
+// One row of samples and one of depth that a logger wrote twice.
+TEST(SensorFiles, ARepeatedRowIsLeftOutAndTold) {
+  const Scratch scratch;
+  StandsTables tables = TablesOf(Stands(), true);
+  const auto twice = [](std::string& text) {
+    const std::size_t begin = text.find('\n', text.size() / 2) + 1;
+    const std::size_t end = text.find('\n', begin) + 1;
+    text.insert(end, text.substr(begin, end - begin));
+  };
+  scratch.Write("once.csv", tables.samples);
+  scratch.Write("depth.csv", tables.depth);
+  const SurveyedTables once = Do(scratch, {"depth.csv", "once.csv"}, StandsJob());
+  twice(tables.samples);
+  twice(tables.depth);
+  scratch.Write("twice.csv", tables.samples);
+  scratch.Write("marks.csv", tables.depth);
+  const SurveyedTables done = Do(scratch, {"marks.csv", "twice.csv"}, StandsJob());
+  ASSERT_TRUE(done.report) << done.report.fault().text;
+  EXPECT_EQ(SurveyCsv(done.survey.chosen, nullptr), SurveyCsv(once.survey.chosen, nullptr));
+  EXPECT_EQ(done.report->samples, once.report->samples);
+  ASSERT_EQ(done.faults.size(), 2u);
+  for (const Fault& fault : done.faults) {
+    EXPECT_EQ(fault.text, "1 row is the row before again: left out");
+    EXPECT_GT(fault.line, 2);
+  }
+}
+
 TEST(SensorFiles, AMemoryToolIsJoinedToTheTallyByItsStops) {
   const Simulation simulation = Stands();
   const Scratch scratch;

@@ -1,6 +1,7 @@
 #include "wellgyro/io/result/diagnosis_csv.h"
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 #include <fmt/core.h>
@@ -53,7 +54,9 @@ std::string ReliabilityCsv(const Survey& survey) {
   std::string text = "RUN,CODE,SMALLEST,UNIT,AT_MD[m],DN[m],DE[m],DV[m]\n";
   for (const RunSummary& run : survey.runs) {
     if (!run.fit || !run.fit->diagnosis) continue;
-    for (const RunReliability& hidden : run.fit->diagnosis->reliability) {
+    std::vector<RunReliability> faults = run.fit->diagnosis->reliability;
+    if (run.slip) faults.push_back(run.slip->reliability);
+    for (const RunReliability& hidden : faults) {
       text += fmt::format("{},{},{},{},{},{}\n", run.run, hidden.code, Number(hidden.smallest),
                           hidden.unit, Length(hidden.md), Shift(hidden.shift_W));
     }

@@ -41,6 +41,10 @@ std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey) {
     deep = std::max(deep, std::abs(fault.shift_W.z()));
     if (!fault.smallest && shift > chance) unseen.unshown.push_back(fault.code);
   }
+  for (const RunSummary& run : survey.runs) {
+    if (run.run != end.run || !run.slip || run.slip->reliability.smallest) continue;
+    if (run.slip->reliability.shift_W.norm() > chance) unseen.unshown.emplace_back("depth_slip");
+  }
   const bool axes_told =
       std::none_of(survey.checks.begin(), survey.checks.end(), [&](const Check& c) {
         return c.run == end.run && c.code == "axes" && c.verdict == Verdict::kNotDone;

@@ -58,7 +58,8 @@ struct SensorCsv::Impl {
   Layout layout;
   SensorTable kind = SensorTable::kSamples;
   std::optional<Fault> fault;
-  std::string line;
+  std::string line, line_before;
+  RepeatedRows repeated;
   std::vector<std::string_view> fields;
   int number = 0;  ///< of the line
   std::int64_t rows = 0;
@@ -80,6 +81,7 @@ struct SensorCsv::Impl {
   }
 
   bool ReadLine() {
+    line.swap(line_before);
     while (std::getline(file, line)) {
       ++number;
       if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -89,6 +91,10 @@ struct SensorCsv::Impl {
       }
       const std::size_t begin = line.find_first_not_of(" \t");
       if (begin == std::string::npos || line[begin] == '#') continue;
+      if (line == line_before) {
+        if (repeated.count++ == 0) repeated.first_line = number;
+        continue;
+      }
       SplitCells(line, ',', fields);
       return true;
     }
@@ -230,6 +236,8 @@ std::optional<Fault> SensorCsv::Impl::FindPeriod() {
   file.clear();
   file.seekg(place);
   number = header;
+  repeated = {};
+  line.clear();
   return std::nullopt;
 }
 
@@ -355,6 +363,7 @@ SensorTable SensorCsv::kind() const { return impl_->kind; }
 bool SensorCsv::has_utc() const { return impl_->layout.Has(kUtc); }
 bool SensorCsv::has_tool() const { return impl_->layout.Has(kTool); }
 const std::optional<Fault>& SensorCsv::fault() const { return impl_->fault; }
+RepeatedRows SensorCsv::repeated() const { return impl_->repeated; }
 
 bool SensorCsv::Next(Row& row) {
   if (impl_->fault) return false;

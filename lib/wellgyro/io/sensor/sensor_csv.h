@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,6 +33,12 @@ enum class SensorTable {
 /// A depth row with END_UTC is a time at rest at that depth, as in a stand or tally table.
 WELLGYRO_EXPORT std::optional<SensorTable> SensorTableOf(std::string_view header);
 
+/// Rows that say to the letter what the row before them says: copies, which are left out.
+struct RepeatedRows {
+  std::int64_t count = 0;
+  int first_line = 0;  ///< where the first of them stands
+};
+
 /// Reads such a table row by row, in constant memory.
 ///
 /// Samples must come evenly: their period is the median of the first thousand steps, a longer step
@@ -55,6 +62,7 @@ class WELLGYRO_EXPORT SensorCsv {
   /// depth row at rest gives a mark every four seconds.
   bool Next(Row& row);
   const std::optional<Fault>& fault() const;
+  RepeatedRows repeated() const;  ///< so far
 
  private:
   struct Impl;

@@ -60,12 +60,16 @@ Result<InputFile> Noted(const std::filesystem::path& path) {
 
 /// Every row of a table, or the fault of one.
 template <class Record, class Take>
+std::optional<Fault> ForEach(SensorCsv& table, Take take) {
+  SensorCsv::Row row;
+  while (table.Next(row)) take(std::get<Record>(row));
+  return table.fault();
+}
+template <class Record, class Take>
 std::optional<Fault> ForEach(const std::filesystem::path& path, Take take) {
   Result<SensorCsv> table = SensorCsv::Open(path);
   if (!table) return table.fault();
-  SensorCsv::Row row;
-  while (table->Next(row)) take(std::get<Record>(row));
-  return table->fault();
+  return ForEach<Record>(*table, take);
 }
 
 /// UTC against the tool's clock, from the pairs that samples carry: straight between two of them,
@@ -144,7 +148,7 @@ class Joiner {
       surveyor_.Push(window);
     }
     for (const auto& path : stills_) {
-      const auto fault = ForEach<StillWindow>(path, [&](const StillWindow& window) {
+      const auto fault = Push<StillWindow>(path, [&](const StillWindow& window) {
         ++report_.windows;
         surveyor_.Push(window);
       });
@@ -261,6 +265,27 @@ class Joiner {
     return std::nullopt;
   }
 
+  /// Of rows that stand there twice.
+  void TellRepeated(const std::filesystem::path& path, const SensorCsv& table) {
+    const auto [count, first_line] = table.repeated();
+    if (count == 0) return;
+    faults_.OnFault(Fault{.code = FaultCode::kOrder,
+                          .text = fmt::format("{} row{} the row before again: left out", count,
+                                              count == 1 ? " is" : "s are"),
+                          .source = path.string(),
+                          .line = first_line});
+  }
+
+  /// Every row of a table whose copies are told.
+  template <class Record, class Take>
+  std::optional<Fault> Push(const std::filesystem::path& path, Take take) {
+    Result<SensorCsv> table = SensorCsv::Open(path);
+    if (!table) return table.fault();
+    auto fault = ForEach<Record>(*table, take);
+    TellRepeated(path, *table);
+    return fault;
+  }
+
   void CompareStamps(const StopMatch& match, const SampleStamp& first, const SampleStamp& last) {
     const double a = (first.utc - match.ToUtc(first.tool_time)).seconds();
     const double b = (last.utc - match.ToUtc(last.tool_time)).seconds();
@@ -278,7 +303,7 @@ class Joiner {
 
   std::optional<Fault> PushDepth() {
     if (depth_.empty()) return std::nullopt;
-    return ForEach<DepthMark>(depth_, [&](const DepthMark& mark) {
+    return Push<DepthMark>(depth_, [&](const DepthMark& mark) {
       ++report_.marks;
       surveyor_.Push(Completed(mark));
     });
@@ -303,7 +328,7 @@ class Joiner {
     std::error_code ignored;
     std::int64_t next_progress = kProgressRows;
     const bool by_stops = !has_utc_ && !depth_by_tool_;
-    auto fault = ForEach<ImuSample>(samples_, [&](ImuSample sample) {
+    auto fault = Push<ImuSample>(samples_, [&](ImuSample sample) {
       if (by_stops) {
         sample.stamp.utc = report_.clock->ToUtc(sample.stamp.tool_time);
       } else if (!has_tool_) {
@@ -325,6 +350,7 @@ class Joiner {
       }
     });
     if (!fault && depth) fault = depth->fault();
+    if (depth) TellRepeated(depth_, *depth);
     return fault;
   }
 

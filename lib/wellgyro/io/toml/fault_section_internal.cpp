@@ -45,6 +45,7 @@ constexpr CauseKey kCauses[] = {
     {"swing", Cause::kSwing, "size_deg", units::kDeg, false},
     {"depth_step", Cause::kDepthStep, "size_m", 1, false},
     {"depth_scale", Cause::kDepthScale, "size", 1, false},
+    {"depth_slip", Cause::kDepthSlip, "size_m", 1, false},
     {"depth_lag", Cause::kDepthLag, "size_s", 1, false},
     {"depth_frozen", Cause::kDepthFrozen, "", 1, false},
     {"magnetic_turn", Cause::kMagneticTurn, "size_deg", units::kDeg, false},

@@ -1,0 +1,108 @@
+#include "wellgyro/survey/depth_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <span>
+
+#include "wellgyro/survey/check_internal.h"
+
+namespace wellgyro {
+namespace {
+
+constexpr double kFoot = 0.3048;  // [m]
+// Accelerometers, a cable and starts and stops, six sigmas of which are half of it, may be so far
+// from a unit; the next unit is further by three times.
+constexpr double kOtherUnit = 0.15;
+constexpr double kToldScale = 0.075;  // six sigmas of the ratio from which it says something
+
+bool TellsScale(const DepthMotion::Found& found) {
+  const double size = std::max(std::abs(found.scale), 0.1);
+  return found.sigma_scale > 0 && found.sigma_scale < kToldScale * size / 6;
+}
+
+bool IsNearScale(double scale, double unit) { return std::abs(scale / unit - 1) < kOtherUnit; }
+
+/// Marks in another unit or of another sign; nothing where the scale is that of none.
+std::optional<Check> WrongUnit(const DepthMotion::Found& found, std::optional<double> lean,
+                               std::int32_t run) {
+  Check check = NotDone("depth_unit", run, "depths in feet are taken for metres");
+  check.verdict = Verdict::kFail;
+  check.value = found.scale;
+  check.sigma = found.sigma_scale;
+  check.unit = "1";
+  if (IsNearScale(found.scale, 1 / kFoot)) return check;
+  check.limit_source = "depths in metres are taken for feet";
+  if (IsNearScale(found.scale, kFoot)) return check;
+  if (!IsNearScale(found.scale, -1)) return std::nullopt;
+  const bool up = lean && *lean > 0;
+  check.code = up ? "tool_upside_down" : "depth_reversed";
+  check.limit_source = up ? "f_z at rest points down, and the tool speeds up against the depth"
+                          : "the tool speeds up against the depth";
+  return check;
+}
+
+/// Axes and units by which the motion that is felt is none.
+bool FeelsWrong(std::span<const Check> checks, std::int32_t run) {
+  return std::ranges::any_of(checks, [run](const Check& c) {
+    const bool of_force = c.code == "accel_unit" || c.code.starts_with("axes");
+    return c.run == run && of_force && c.verdict == Verdict::kFail;
+  });
+}
+
+void AddJump(const DepthMotion::Found& found, std::int32_t run, std::vector<Check>& checks) {
+  constexpr double kStep = 0.2;  // less is no matter [m]
+  const double limit = std::max(kStep, 8 * found.sigma_step);
+  checks.push_back(CompareWith("depth_jump", run, {found.step, found.sigma_step}, limit, 1, "m",
+                               "8 sigma of the marks, 0.2 m"));
+  checks.back().md = found.step_md;
+}
+
+void AddLag(const DepthMotion::Found& found, std::int32_t run, std::vector<Check>& checks) {
+  constexpr double kLag = 0.1;      // less is no matter [s]: 0.1 m at 1 m/s
+  constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]: no more than kLag
+  if (!(found.sigma_lag > 0 && found.sigma_lag < kToldLag)) {
+    checks.push_back(NotDone("depth_lag", run, "no starts and stops that tell it"));
+    return;
+  }
+  checks.push_back(CompareWith("depth_lag", run, {found.lag, found.sigma_lag},
+                               kLag + 5 * found.sigma_lag, 1, "s",
+                               "0.1 s and 5 sigma of starts and stops"));
+}
+
+}  // namespace
+
+void AddDepthChecks(const DepthMotion::Found& found, std::optional<double> lean, std::int32_t run,
+                    std::vector<Check>& checks) {
+  const auto not_done = [&](std::initializer_list<const char*> codes, const char* why) {
+    for (const char* code : codes) checks.push_back(NotDone(code, run, why));
+  };
+  if (FeelsWrong(checks, run)) {
+    not_done({"depth_unit", "depth_jump", "depth_lag"},
+             "first axes and accelerometers must be right");
+    return;
+  }
+  const std::optional<Check> wrong = TellsScale(found) ? WrongUnit(found, lean, run) : std::nullopt;
+  if (wrong) {
+    checks.push_back(*wrong);
+    not_done({"depth_jump", "depth_lag"}, "first depth must be in its unit");
+    return;
+  }
+  if (TellsScale(found)) {
+    checks.push_back(NotDone("depth_unit", run, "no other unit fits starts and stops"));
+    checks.back().verdict = Verdict::kPass;
+    checks.back().value = found.scale;
+    checks.back().sigma = found.sigma_scale;
+    checks.back().unit = "1";
+  } else {
+    not_done({"depth_unit"}, "no starts and stops that tell it");
+  }
+  if (found.sigma_step > 0) {
+    AddJump(found, run, checks);
+  } else {
+    not_done({"depth_jump"}, "too few marks along samples");
+  }
+  AddLag(found, run, checks);
+}
+
+}  // namespace wellgyro

@@ -1,0 +1,70 @@
+#include "wellgyro/survey/truncation_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellgyro {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// What decimals of a table leave of a whole step.
+constexpr double kWholeStep = 1e-3;
+// Samples of one passage, at the most: ten seconds at 10 Hz, in which a signal that rolls is
+// through.
+constexpr double kMostSamples = 100;
+// Passages from which their mean counts are normal enough for a sigma.
+constexpr double kLeastPassages = 30;
+
+}  // namespace
+
+void TruncationWatch::Push(double value, double step) {
+  if (!(step > 0)) return;
+  if (step != step_) *this = TruncationWatch();
+  step_ = step;
+  const double level = std::round(value / step);
+  const bool whole = std::abs(value / step - level) < kWholeStep;
+  ++(whole ? whole_ : broken_);
+  if (std::abs(level) <= 2) {
+    levels_[static_cast<Eigen::Index>(std::abs(level))] += 1;
+    return;
+  }
+  const int side = level > 0 ? 1 : -1;
+  if (side_ == -side && levels_.sum() > 0) Pass();
+  side_ = side;
+  levels_.setZero();
+}
+
+/// Of a passage that stops on its way no more than kMostSamples count.
+void TruncationWatch::Pass() {
+  const Vector3d counts = levels_ * std::min(1.0, kMostSamples / levels_.sum());
+  ++passages_;
+  counts_ += counts;
+  products_ += counts * counts.transpose();
+}
+
+TruncationWatch::Found TruncationWatch::Of(const TruncationWatch& a, const TruncationWatch& b) {
+  Found found;
+  Vector3d mean = Vector3d::Zero();
+  Matrix3d products = Matrix3d::Zero();
+  double passages = 0;
+  for (const TruncationWatch* w : {&a, &b}) {
+    if (w->broken_ > w->whole_) continue;
+    found.step = std::max(found.step, w->step_);
+    passages += w->passages_;
+    mean += w->counts_;
+    products += w->products_;
+  }
+  if (passages < kLeastPassages || !(mean.minCoeff() > 0)) return found;
+  mean /= passages;
+  // d ln R by the mean counts: 1 / D0, -4/3 / D1, 1/3 / D2; halves of +-1 and +-2 are constants,
+  // and so is how many samples there are.
+  const Vector3d slope(1 / mean[0], -4 / (3 * mean[1]), 1 / (3 * mean[2]));
+  const Matrix3d cov = products / passages - mean * mean.transpose();
+  found.ln_ratio = std::log(mean[0]) - 4.0 / 3 * std::log(mean[1] / 2) + std::log(mean[2] / 2) / 3;
+  found.sigma = std::sqrt(slope.dot(cov * slope) / passages);
+  return found;
+}
+
+}  // namespace wellgyro
