@@ -50,6 +50,23 @@ CLI::Validator Within(double low, double high) {
           {}};
 }
 
+CLI::Validator AboveZero() {
+  constexpr double kLeast = 1e-15, kMost = 1e15;
+  return Within(kLeast, kMost);
+}
+
+CLI::Option* AddSigma(CLI::App& command, const BenchSigma& sigma, ToolFitSetup& setup,
+                      std::string_view otherwise) {
+  const std::optional<double> standard = sigma.Of(setup);
+  return command
+      .add_option_function<double>(
+          fmt::format("--{}", sigma.name),
+          [&sigma, &setup](const double& value) { sigma.Take(value, setup); },
+          standard ? fmt::format("{}, default {:.4g}", sigma.meaning, *standard)
+                   : fmt::format("{}; {}", sigma.meaning, otherwise))
+      ->check(AboveZero());
+}
+
 void AddGravity(CLI::App& command, BenchOptions& o) {
   BenchReference& r = o.reference;
   CLI::Option* const in_g =

@@ -2,12 +2,14 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "wellgyro/calibration/tool_update.h"
 #include "wellgyro/fit/affine_fit.h"
+#include "wellgyro/fit/bench_sigmas.h"
 #include "wellgyro/fit/gyro_fit.h"
 #include "wellgyro/fit/multi_station_fit.h"
 #include "wellgyro/fit/position_fit.h"
@@ -41,15 +43,17 @@ struct BenchOptions {
 /// Numbers from `low` to `high`; no other word is one.
 CLI::Validator Within(double low, double high);
 
+/// Numbers above zero, as people write them.
+CLI::Validator AboveZero();
+
 /// An option whose number above zero, in the unit of its name, is held in another.
 template <class T>
 CLI::Option* AddPositive(CLI::App& command, const std::string& name, T& held, double unit,
                          const std::string& help) {
-  constexpr double kLeast = 1e-15, kMost = 1e15;
   return command
       .add_option_function<double>(
           name, [&held, unit](const double& value) { held = value * unit; }, help)
-      ->check(Within(kLeast, kMost));
+      ->check(AboveZero());
 }
 
 // Options that several methods have. The command's callbacks write to `o`, which must outlive it.
@@ -59,6 +63,11 @@ void AddDeclination(CLI::App& command, BenchOptions& o);
 void AddLatitude(CLI::App& command, BenchOptions& o);
 void AddAxes(CLI::App& command, BenchOptions& o);
 void AddTool(CLI::App& command, BenchOptions& o);
+
+/// --NAME: a sigma of the bench, written to `setup`, which must outlive the command. The help says
+/// what it is where it is not given: its default, or `otherwise`.
+CLI::Option* AddSigma(CLI::App& command, const BenchSigma& sigma, ToolFitSetup& setup,
+                      std::string_view otherwise);
 
 /// What follows from the options together; throws std::invalid_argument where they contradict each
 /// other.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/calibration/prior.h"
+#include "wellgyro/fit/bench_sigmas.h"
 #include "wellgyro/fit/tool_fit.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/result/certificate.h"
@@ -34,19 +36,12 @@
 namespace wellgyro::apps {
 namespace {
 
-// An option that says how well something of the bench is known.
-struct BenchPrior {
-  const CLI::Option* option;
-  const char* kind;
-  std::function<std::optional<double>()> value;  ///< in its name's unit; none: it is found
-};
-
 struct ToolFitOptions {
   BenchOptions bench;
   std::vector<std::string> data, traceability;
   std::string certificate, pdf, number, laboratory, prior;
   ToolFitSetup fit;
-  std::vector<BenchPrior> priors;
+  std::set<std::string, std::less<>> stated;  ///< of fit, as BenchReferences takes them
 };
 
 Result<std::vector<BenchTable>> ReadInputs(const ToolFitOptions& o, CalibrationFile& file) {
@@ -222,22 +217,6 @@ void RequireOthers(const ToolFitOptions& o) {
   RequireDistinct(files);
 }
 
-// What stood around the bench and how well it was known before, stated or not, in units of the
-// options' names.
-std::vector<std::string> ReferencesOf(const ToolFitOptions& o) {
-  std::vector<std::string> references;
-  for (const std::string& said : o.bench.said) references.push_back(said + " (stated)");
-  if (!o.bench.gravity_stated) references.emplace_back("gravity-g 1 (default)");
-  for (const BenchPrior& prior : o.priors) {
-    const std::string name = prior.option->get_name(false, true).substr(2);
-    const std::optional<double> value = prior.value();
-    references.push_back(value ? fmt::format("{} {:.4g} ({}{})", name, *value, prior.kind,
-                                             prior.option->count() > 0 ? "stated" : "default")
-                               : fmt::format("{} found from the readings", name));
-  }
-  return references;
-}
-
 std::vector<OutputFile> OutputsOf(const ToolFitOptions& o, const CalibrationFile& file,
                                   const ToolFit& fit, const ToolCalibration& tool) {
   std::vector<OutputFile> files = {{o.bench.out, CalibrationToml(file)}};
@@ -252,13 +231,25 @@ std::vector<OutputFile> OutputsOf(const ToolFitOptions& o, const CalibrationFile
   return files;
 }
 
+// A fit may take minutes, which are lost where its result has no place.
+std::optional<Fault> WithoutPlace(const ToolFitOptions& o) {
+  for (const std::string* name : {&o.bench.out, &o.bench.tool, &o.certificate}) {
+    if (name->empty()) continue;
+    if (auto fault = CannotWrite(*name)) return fault;
+  }
+  if (o.pdf.empty()) return std::nullopt;
+  const auto complaint = CannotPrint(o.pdf);
+  return complaint ? std::optional(Fault{.text = *complaint}) : std::nullopt;
+}
+
 std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   Complete(o.bench);
   RequireOthers(o);
+  if (auto fault = WithoutPlace(o)) return fault;
   o.fit.reference = o.bench.reference;
   CalibrationFile file;
   file.program = "wellgyro " WELLGYRO_VERSION;
-  file.references = ReferencesOf(o);
+  file.references = BenchReferences(o.bench.said, o.fit, o.stated);
   const auto tables = ReadInputs(o, file);
   if (!tables) return tables.fault();
   const auto fit = FitTool(*tables, o.fit);
@@ -277,35 +268,18 @@ std::optional<Fault> RunToolFit(ToolFitOptions& o) {
 }
 
 void AddBenchSigmas(CLI::App& command, ToolFitOptions& o) {
-  const auto add = [&](const char* name, auto& held, double unit, const char* help) {
-    const CLI::Option* const option = AddPositive(command, name, held, unit, help);
-    const std::optional<double> before = held;  // rounded as help says it
-    o.priors.push_back({option, "1 sigma, ", [=, &held]() -> std::optional<double> {
-                          const std::optional<double> value = held;
-                          if (!value || option->count() > 0) return value ? *value / unit : value;
-                          return std::stod(fmt::format("{:.2g}", *before / unit));
-                        }});
+  const auto list = [&o](CLI::Option* option) {
+    option->each([&o, name = option->get_name(false, true).substr(2)](const std::string&) {
+      o.stated.insert(name);
+    });
   };
-  ToolFitSetup& fit = o.fit;
-  add("--level-deg", fit.sigma_level, units::kDeg, "1 sigma of a bench's tilt, default 0.5");
-  add("--north-sigma-deg", fit.sigma_north, units::kDeg, "1 sigma of a bench's north, default 1");
-  add("--inclination-sigma-deg", fit.sigma_inclination, units::kDeg,
-      "1 sigma of a stand's zero of inclination, default 0.05");
-  add("--latitude-sigma-deg", fit.sigma_latitude, units::kDeg,
-      "1 sigma of the latitude, default 0.0006");
-  add("--seat-arcsec", fit.sigma_axis, units::kArcsec,
-      "1 sigma of the tool's seat on the rate table, default 62");
-  add("--drift-deg-per-h", fit.sigma_drift, 1,
-      "1 sigma of a gyro's drift from the middle to the end of a table, default 0.1");
-  add("--wobble-arcsec", fit.sigma_wobble, units::kArcsec,
-      "1 sigma of each reading's attitude; found if not given");
-  add("--sigma-accel", fit.sigma_accel, 1, "of a reading, its unit; found");
-  add("--sigma-deg-per-h", fit.sigma_gyro, 1, "of a gyro's reading at rest; found");
-  add("--sigma-table-deg-per-h", fit.sigma_gyro_table, 1, "of one on the rate table; found");
-  const CLI::Option* const degree =
-      command.add_option("--max-degree", fit.max_degree, "of biases in temperature, default 3")
-          ->check(CLI::Range(0, 3));
-  o.priors.push_back({degree, "", [&fit] { return std::optional<double>(fit.max_degree); }});
+  for (const BenchSigma& sigma : BenchSigmas()) {
+    list(AddSigma(command, sigma, o.fit, "found if not given"));
+  }
+  list(command
+           .add_option("--max-degree", o.fit.max_degree,
+                       fmt::format("of biases in temperature, default {}", o.fit.max_degree))
+           ->check(CLI::Range(0, 3)));
 }
 
 }  // namespace

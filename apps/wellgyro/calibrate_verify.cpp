@@ -1,9 +1,13 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/bench_sigmas.h"
 #include "wellgyro/fit/tool_verify.h"
 #include "wellgyro/io/sensor/bench_data.h"
 #include "wellgyro/io/toml/tool_file.h"
@@ -50,6 +54,18 @@ void TellResiduals(const Verification& found) {
   }
 }
 
+// Those that matter to readings at rest; where there is no default, the user must say.
+void AddBenchSigmas(CLI::App& command, ToolFitSetup& bench) {
+  for (const BenchSigma& sigma : BenchSigmas()) {
+    const std::string_view of_others[] = {"latitude-sigma-deg", "seat-arcsec", "drift-deg-per-h",
+                                          "sigma-table-deg-per-h"};
+    if (std::find(std::begin(of_others), std::end(of_others), sigma.name) != std::end(of_others)) {
+      continue;
+    }
+    AddSigma(command, sigma, bench, sigma.name == "wobble-arcsec" ? "none if not given" : "needed");
+  }
+}
+
 int Verify(VerifyOptions& o) {
   constexpr int kFailed = 4;
   o.setup.bench.reference = o.bench.reference;
@@ -77,14 +93,7 @@ void AddCalibrateVerify(CLI::App& calibrate, int& exit_code) {
   AddGravity(*command, o->bench);
   AddLatitude(*command, o->bench);
   AddAxes(*command, o->bench);
-  AddPositive(*command, "--sigma-accel", o->setup.bench.sigma_accel, 1, "of a reading, its unit");
-  AddPositive(*command, "--sigma-deg-per-h", o->setup.bench.sigma_gyro, 1, "of a gyro's reading");
-  AddPositive(*command, "--wobble-arcsec", o->setup.bench.sigma_wobble, units::kArcsec,
-              "1 sigma of each reading's attitude");
-  AddPositive(*command, "--level-deg", o->setup.bench.sigma_level, units::kDeg,
-              "1 sigma of the bench's tilt, default 0.5");
-  AddPositive(*command, "--north-sigma-deg", o->setup.bench.sigma_north, units::kDeg,
-              "1 sigma of its north, default 1");
+  AddBenchSigmas(*command, o->setup.bench);
   AddPositive(*command, "--budget-bias-deg-per-h", o->setup.budget_gyro_bias, 1,
               "1 sigma of gyro biases that the tool may have");
   AddPositive(*command, "--budget-force-deg-per-h-per-g", o->setup.budget_gyro_force, 1,

@@ -16,6 +16,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "wellgyro/io/atomic_file.h"
+
 namespace wellgyro::apps {
 namespace {
 
@@ -103,6 +105,14 @@ bool RunQuietly(std::vector<std::string> command) {
 }
 
 }  // namespace
+
+std::optional<std::string> CannotPrint(const fs::path& pdf) {
+  if (FindChromium().empty()) {
+    return fmt::format("{}: no Chromium in PATH (Debian: chromium) to print it by", pdf.string());
+  }
+  if (const auto fault = CannotWrite(pdf)) return fmt::format("{}: {}", pdf.string(), fault->text);
+  return std::nullopt;
+}
 
 std::optional<std::string> PrintByChromium(const fs::path& html, const fs::path& pdf) {
   const std::string program = FindChromium();

@@ -305,7 +305,7 @@ class Calibrate(FreshProgramTest):
             self.assertIn(word, html)
         # What was known of the bench before, stated or not, on paper and in the file.
         for word in ("gravity-mps2 9.8195 (stated)", "level-deg 0.5 (1 sigma, default)",
-                     "seat-arcsec 62 (1 sigma, default)", "sigma-accel found from the readings",
+                     "seat-arcsec 60 (1 sigma, default)", "sigma-accel found from the readings",
                      "max-degree 3 (default)"):
             self.assertIn(f"<li>{word}</li>", html)
             self.assertIn(word, self.Toml("c.toml")["references"])
@@ -472,6 +472,25 @@ class Calibrate(FreshProgramTest):
                       self.Path("c.toml"))
         self.assertEqual(missing.returncode, 2)
         self.assertIn("none.csv", missing.stderr)
+
+    def test_a_place_that_cannot_be_written_is_told_before_the_fit(self):
+        # Readings that no fit can use: what is said of them would come first.
+        rest = self.Write("rest.csv", "inc,az,tf,fx,fy,fz\n0,0,0,0,0,1\n")
+        out, page = self.Path("c.toml"), self.Path("c.html")
+        below = os.path.join(self.Write("file", ""), "x")
+        for places in (("--out", below), ("--out", out, "--tool", below),
+                       ("--out", out, "--certificate", below),
+                       ("--out", out, "--certificate", page, "--pdf", below)):
+            with self.subTest(places=places):
+                done = Run("calibrate", "tool", "--data", rest, *places)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(os.path.dirname(below), done.stderr)
+                self.assertNotIn("rest.csv", done.stderr)
+                self.assertFalse(os.path.exists(out) or os.path.exists(page))
+        done = Run("calibrate", "tool", "--data", rest, "--out", out, "--certificate", page, "--pdf",
+                   self.Path("c.pdf"), env={"PATH": ""})
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no Chromium in PATH", done.stderr)
 
     def test_affine_says_what_the_readings_and_options_do_not_tell(self):
         draw, rows = random.Random(11), []

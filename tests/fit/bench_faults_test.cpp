@@ -176,6 +176,22 @@ TEST(BenchFaults, AWrongLatitudeIsToldByTheRateTable) {
   EXPECT_LE(tally.sound(), 2);
 }
 
+// The rate along gravity looks like force terms, beside which the tool's own hid it.
+TEST(BenchFaults, TheOtherHemisphereIsToldBesideTheToolsOwnForceTerms) {
+  Random random(174);
+  Tally tally;
+  const std::string words = "is the latitude's sign right?";
+  for (int bench = 0; bench < kEach; ++bench) {
+    const GyroTool tool = GyroTool::Any(random);
+    const BenchTable rest = GyrosAtRest(tool, -35, 0.02, random);
+    const BenchTable table = GyrosOnTable(tool, -35, 0.5, random);
+    tally.Count(FitGyro(rest, table, {.reference = {.latitude = 35 * kRad}}), words);
+    tally.CountSound(FitGyro(rest, table, {.reference = {.latitude = -35 * kRad}}), words);
+  }
+  EXPECT_EQ(tally.wrong(), kEach);
+  EXPECT_EQ(tally.sound(), 0);  // by odds of 20, where the right sign's are far more
+}
+
 BenchTable OneRotor(const BenchTable& data) { return WithoutColumns(data, {"m_z2", "m_x2"}); }
 
 // Upright one azimuth is enough.
@@ -230,17 +246,49 @@ TEST(BenchFaults, ARotorBesideAnotherGyroHasItsAnisoelasticTerms) {
 }
 
 // The sine of the inclination has a mean, which went into the bias of z, ten sigmas.
-TEST(BenchFaults, AStandsZeroOfInclinationIsTold) {
+TEST(BenchFaults, AStandsZeroOfInclinationIsFound) {
   Random random(173);
   Tally tally;
+  double square = 0;
   for (int bench = 0; bench < kEach; ++bench) {
-    BenchTable data = AtAttitudes(VectorTool::Any(random), 36, {}, {2e-5, 20}, random);
+    const VectorTool tool = VectorTool::Any(random);
+    BenchTable data = AtAttitudes(tool, 36, {}, {2e-5, 20}, random);
     tally.CountSound(FitAffine(data, {}), "the zero of the stand's inclination");
     data.values.col(0).array() += 0.05;  // inclinations
-    tally.Count(FitAffine(data, {}), "the zero of the stand's inclination");
+    const auto found = FitAffine(data, {});
+    tally.Count(found, "the zero of the stand's inclination");
+    const auto normalised = [&](const char* name, Eigen::Index at, double truth) {
+      const FitQuantity& q = Quantity(found->report, name);
+      return (q.value.reshaped()[at] - truth) / q.sigma.reshaped()[at];
+    };
+    square += std::pow(normalised("inclination_deg", 0, -0.05), 2) / kEach / 2;
+    square += std::pow(normalised("b_G", 2, tool.ba.z()), 2) / kEach / 2;
   }
   EXPECT_EQ(tally.wrong(), kEach);
   EXPECT_LE(tally.sound(), 2);
+  // Forty squares of normal errors over their number, 99.9 % of them.
+  EXPECT_LT(square, 1.84);
+}
+
+// Lengths have no channels: a step went into the biases, five sigmas.
+TEST(BenchFaults, AStepOfWhatALengthHoldsIsTold) {
+  Random random(175);
+  Tally of_length, of_dip;
+  const ScalarSetup setup{.reference = {.field = 50'000, .dip = 60 * kRad}};
+  for (int bench = 0; bench < kEach; ++bench) {
+    BenchTable data = Rolled({30, 90, 150}, 2e-5, random);
+    of_length.CountSound(FitScalar(data, {}), "beside those before");
+    data.values.col(0).tail(30).array() += 3e-4;
+    of_length.Count(FitScalar(data, {}), "channel ax: from line 44 on the residuals are 0.000");
+    BenchTable both = AtAttitudes(VectorTool::Any(random), 48, {}, {2e-5, 20}, random);
+    of_dip.CountSound(FitScalarDip(both, setup), "beside those before");
+    both.values.col(7).tail(20).array() += 200;
+    of_dip.Count(FitScalarDip(both, setup), "channel My: from line");
+  }
+  for (const Tally& tally : {of_length, of_dip}) {
+    EXPECT_GE(tally.wrong(), kEach - 4);  // where noise hides the line itself
+    EXPECT_LE(tally.sound(), 2);
+  }
 }
 
 // Of stations that turn through all directions the biases take little of a dip or a latitude.

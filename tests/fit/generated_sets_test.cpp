@@ -38,6 +38,11 @@ void ExpectFamily(const std::string& name, std::uint64_t seed, Make make) {
     auto [fit, truth] = make(random);
     ASSERT_TRUE(fit.has_value()) << fit.fault().text;
     EXPECT_TRUE(fit->report.outlier_lines.empty());
+    // Of a hundred stands that are set right chance finds one off.
+    if (fit->report.parameters.back() == "inclination_deg") {
+      truth.conservativeResize(truth.size() + 1);
+      truth[truth.size() - 1] = 0;
+    }
     family.Add(fit->report, truth);
   }
   family.Expect(name, kFamilies);

@@ -237,6 +237,25 @@ TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
   EXPECT_LE(alarms, 0.01 * tools + 3 * std::sqrt(0.01 * tools));
 }
 
+// A dial set by 0.1 deg, which the bias of z had taken for a shift of 1.5 mg.
+TEST(ToolUse, AStandsZeroOfInclinationIsNoShift) {
+  Random random(46);
+  const ThermalTool tool = ThermalTool::Any(random);
+  ToolCalibration model = ModelOf(tool);
+  model.gyro.heating.setZero();
+  ThermalTool found = tool;
+  found.heating.setZero();
+  VerifySetup setup = AsTheBenchIs();
+  BenchTable data = AsFound(found, Eigen::Vector4d::Zero(), random);
+  data.values.col(*data.Find("inc")).array() += 0.1;
+  const auto verified = VerifyTool(data, model, setup);
+  ASSERT_TRUE(verified.has_value()) << verified.fault().text;
+  EXPECT_TRUE(verified->pass);
+  // As exact as a dial that is known to a thousandth of that, it is something else.
+  setup.bench.sigma_inclination = 1e-4 * kRad;
+  EXPECT_FALSE(VerifyTool(data, model, setup)->pass);
+}
+
 // Neither a bias nor a force term: the shifts may stay within their limits, but nothing fits.
 TEST(ToolUse, WhatNoShiftExplainsFails) {
   Random random(45);

@@ -60,6 +60,20 @@ TEST(WriteFiles, ATargetThatIsAFolderIsAFault) {
   EXPECT_EQ(FilesIn(scratch.path()), 1u);
 }
 
+TEST(WriteFiles, WhatCannotBeWrittenIsToldBefore) {
+  const support::Scratch scratch;
+  scratch.Write("held.txt", "as it was");
+  EXPECT_FALSE(CannotWrite(scratch.path() / "held.txt"));
+  EXPECT_FALSE(CannotWrite(scratch.path() / "new.txt"));
+  EXPECT_FALSE(CannotWrite("/dev/null"));
+  EXPECT_EQ(scratch.Read("held.txt"), "as it was");
+  EXPECT_EQ(FilesIn(scratch.path()), 1u);
+  const auto below_a_file = CannotWrite(scratch.path() / "held.txt" / "x.csv");
+  ASSERT_TRUE(below_a_file);
+  EXPECT_EQ(below_a_file->code, FaultCode::kIo);
+  EXPECT_TRUE(CannotWrite(scratch.path()));
+}
+
 TEST(WriteFiles, LinksAreFollowedAndModesKept) {
   const support::Scratch scratch;
   scratch.Write("real/x.csv", "old");

@@ -624,11 +624,12 @@ class Bench(Package):
             table.to_csv(path, index=False, float_format="%.17g")
         done = Run("calibrate", "tool", "--data", paths[0], "--data", paths[1], "--latitude-deg",
                    "61", "--gravity-mps2", "9.8195", "--bench-axes", "tool", "--level-deg", "0.3",
+                   "--inclination-sigma-deg", "0.2", "--wobble-arcsec", "10",
                    "--out", self.Path("c.toml"), "--tool", self.Path("t.toml"), "--channels",
                    "0,1,2,3,4", "--asset-serial", "A-7", "--date", "2026-01-31")
         self.assertEqual(done.returncode, 0, done.stderr)
         known = dict(latitude_deg=61, gravity_mps2=9.8195, bench_axes="tool", level_deg=0.3,
-                     tool=True, channels=[0, 1, 2, 3, 4], asset_serial="A-7", date="2026-01-31")
+                     inclination_sigma_deg=0.2, wobble_arcsec=10, tool=True, channels=[0, 1, 2, 3, 4], asset_serial="A-7", date="2026-01-31")
         made = wg.calibrate(paths, **known)
         made.write(self.Path("c2.toml"), tool=self.Path("t2.toml"))
         for name in ("c", "t"):
@@ -648,6 +649,7 @@ class Bench(Package):
             with self.assertRaisesRegex(TypeError, wrong):
                 wg.calibrate(*arguments)
         for given in (dict(latitude_deg=91), dict(gravity_g=9.8), dict(level_deg=0.0),
+                      dict(inclination_sigma_deg=-1),
                       dict(bench_axes="mine"), dict(max_degree=9), dict(tool=True, date="soon"),
                       dict(gravity_g=1, gravity_mps2=9.81), dict(tool=True, channels=[1])):
             with self.assertRaises(ValueError, msg=given):

@@ -1,16 +1,21 @@
+#include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/fit/bench_sigmas.h"
 #include "wellgyro/fit/tool_fit.h"
 #include "wellgyro/io/sensor/bench_data.h"
 #include "wellgyro/io/sha256.h"
@@ -28,10 +33,8 @@ using Number = std::optional<double>;
 struct Bench {
   Number gravity_g, gravity_mps2, latitude_deg;
   bool tool_axes = false;
-  Number level_deg, north_sigma_deg, latitude_sigma_deg, seat_arcsec, drift_deg_per_h,
-      wobble_arcsec;
-  Number sigma_accel, sigma_deg_per_h, sigma_table_deg_per_h;
-  int max_degree = 3;
+  std::map<std::string, double> sigmas;  ///< by the names of BenchSigmas(), in their units
+  std::optional<int> max_degree;
   std::optional<std::string> tool;  ///< a tool file to bring up to date; empty: a new one
   ToolUpdate update;
   std::string date, expires;
@@ -52,31 +55,12 @@ std::optional<UtcTime> DateFrom(const char* name, const std::string& text) {
   return date;
 }
 
-/// 1 sigma of something of the bench, listed as the program does: defaults rounded as its help says
-/// them.
-template <class Held>
-void TakePrior(const char* name, const Number& given, double unit, Held& held,
-               std::vector<std::string>& said) {
-  const Number before = held;
-  Take(given, unit, held);
-  if (given) {
-    said.push_back(fmt::format("{} {:.4g} (1 sigma, stated)", name, *given));
-  } else if (before) {
-    const double rounded = std::stod(fmt::format("{:.2g}", *before / unit));
-    said.push_back(fmt::format("{} {:.4g} (1 sigma, default)", name, rounded));
-  } else {
-    said.push_back(fmt::format("{} found from the readings", name));
-  }
-}
-
-ToolFitSetup SetupOf(const Bench& bench, std::vector<std::string>& said) {
+ToolFitSetup SetupOf(const Bench& bench, std::vector<std::string>& references) {
   ToolFitSetup setup;
   BenchReference& r = setup.reference;
-  const auto say = [&said](const char* name, const Number& value) {
-    if (value) said.push_back(fmt::format("{} {} (stated)", name, *value));
-  };
-  const auto take = [&said](const char* name, const Number& given, double unit, auto& held) {
-    TakePrior(name, given, unit, held, said);
+  std::vector<std::string> site;
+  const auto say = [&site](const char* name, const Number& value) {
+    if (value) site.push_back(fmt::format("{} {}", name, *value));
   };
   say("gravity-g", bench.gravity_g);
   say("gravity-mps2", bench.gravity_mps2);
@@ -87,22 +71,23 @@ ToolFitSetup SetupOf(const Bench& bench, std::vector<std::string>& said) {
   Take(bench.gravity_mps2, 1, r.gravity_mps2);
   Take(bench.latitude_deg, units::kDeg, r.latitude);
   if (bench.tool_axes) r.axes = BenchAxes::kTool;
-  if (!bench.gravity_g && !bench.gravity_mps2) said.emplace_back("gravity-g 1 (default)");
-  take("level-deg", bench.level_deg, units::kDeg, setup.sigma_level);
-  take("north-sigma-deg", bench.north_sigma_deg, units::kDeg, setup.sigma_north);
-  take("inclination-sigma-deg", std::nullopt, units::kDeg, setup.sigma_inclination);
-  take("latitude-sigma-deg", bench.latitude_sigma_deg, units::kDeg, setup.sigma_latitude);
-  take("seat-arcsec", bench.seat_arcsec, units::kArcsec, setup.sigma_axis);
-  take("drift-deg-per-h", bench.drift_deg_per_h, 1, setup.sigma_drift);
-  take("wobble-arcsec", bench.wobble_arcsec, units::kArcsec, setup.sigma_wobble);
-  take("sigma-accel", bench.sigma_accel, 1, setup.sigma_accel);
-  take("sigma-deg-per-h", bench.sigma_deg_per_h, 1, setup.sigma_gyro);
-  take("sigma-table-deg-per-h", bench.sigma_table_deg_per_h, 1, setup.sigma_gyro_table);
-  const bool stated = bench.max_degree != setup.max_degree;
-  setup.max_degree = bench.max_degree;
-  said.push_back(
-      fmt::format("max-degree {} ({})", setup.max_degree, stated ? "stated" : "default"));
+  std::set<std::string, std::less<>> stated;
+  for (const BenchSigma& sigma : BenchSigmas()) {
+    const auto given = bench.sigmas.find(std::string(sigma.name));
+    if (given == bench.sigmas.end()) continue;
+    sigma.Take(given->second, setup);
+    stated.emplace(sigma.name);
+  }
+  if (bench.max_degree) stated.emplace("max-degree");
+  setup.max_degree = bench.max_degree.value_or(setup.max_degree);
+  references = BenchReferences(site, setup, stated);
   return setup;
+}
+
+std::vector<std::string> SigmaNames() {
+  std::vector<std::string> names;
+  for (const BenchSigma& sigma : BenchSigmas()) names.emplace_back(sigma.name);
+  return names;
 }
 
 /// The tables: of a name and text, or of a file's name alone.
@@ -203,15 +188,7 @@ void AddBench(nb::module_& m) {
       .def_rw("gravity_mps2", &Bench::gravity_mps2)
       .def_rw("latitude_deg", &Bench::latitude_deg)
       .def_rw("tool_axes", &Bench::tool_axes)
-      .def_rw("level_deg", &Bench::level_deg)
-      .def_rw("north_sigma_deg", &Bench::north_sigma_deg)
-      .def_rw("latitude_sigma_deg", &Bench::latitude_sigma_deg)
-      .def_rw("seat_arcsec", &Bench::seat_arcsec)
-      .def_rw("drift_deg_per_h", &Bench::drift_deg_per_h)
-      .def_rw("wobble_arcsec", &Bench::wobble_arcsec)
-      .def_rw("sigma_accel", &Bench::sigma_accel)
-      .def_rw("sigma_deg_per_h", &Bench::sigma_deg_per_h)
-      .def_rw("sigma_table_deg_per_h", &Bench::sigma_table_deg_per_h)
+      .def_rw("sigmas", &Bench::sigmas)
       .def_rw("max_degree", &Bench::max_degree)
       .def_rw("tool", &Bench::tool)
       .def_rw("date", &Bench::date)
@@ -229,6 +206,7 @@ void AddBench(nb::module_& m) {
           "sensor_serials", [](const Bench& b) { return b.update.sensor_serials; },
           [](Bench& b, std::string serials) { b.update.sensor_serials = std::move(serials); });
   m.def("calibrate", &Calibrate);
+  m.def("sigma_names", &SigmaNames);
 }
 
 }  // namespace wellgyro::python

@@ -11,11 +11,6 @@ import pandas as pd
 from . import _checks, _wellgyro
 from .survey import PathLike, _write
 
-#: Options that are numbers above zero, in the units of their names.
-_SIGMAS = ("level_deg", "north_sigma_deg", "latitude_sigma_deg", "seat_arcsec", "drift_deg_per_h",
-           "wobble_arcsec", "sigma_accel", "sigma_deg_per_h", "sigma_table_deg_per_h")
-
-
 @dataclasses.dataclass(frozen=True)
 class Calibration:
     """What a bench found of a tool; 1 sigma."""
@@ -63,10 +58,11 @@ def calibrate(data: PathLike | pd.DataFrame | Sequence[PathLike | pd.DataFrame],
               latitude_deg: float | None = None, gravity_g: float | None = None,
               gravity_mps2: float | None = None, bench_axes: str = "trade",
               level_deg: float | None = None, north_sigma_deg: float | None = None,
+              inclination_sigma_deg: float | None = None,
               latitude_sigma_deg: float | None = None, seat_arcsec: float | None = None,
               drift_deg_per_h: float | None = None, wobble_arcsec: float | None = None,
               sigma_accel: float | None = None, sigma_deg_per_h: float | None = None,
-              sigma_table_deg_per_h: float | None = None, max_degree: int = 3,
+              sigma_table_deg_per_h: float | None = None, max_degree: int | None = None,
               tool: bool | PathLike = False, channels: Sequence[int] | None = None,
               unit_per_count: Sequence[float] | None = None, asset_serial: str | None = None,
               sensor_serials: str | None = None, date: str = "",
@@ -90,10 +86,14 @@ def calibrate(data: PathLike | pd.DataFrame | Sequence[PathLike | pd.DataFrame],
         setattr(bench, name, _checks.optional(name, given[name], low, high))
     if gravity_g is not None and gravity_mps2 is not None:
         raise ValueError("gravity_g: either this or gravity_mps2 is expected")
-    for name in _SIGMAS:
-        setattr(bench, name, _checks.optional(name, given[name], 1e-15, 1e15))
+    # Each option of the program that states a sigma is an argument here.
+    for option in _wellgyro.sigma_names():
+        name = option.replace("-", "_")
+        if given[name] is not None:
+            bench.sigmas = {**bench.sigmas, option: _checks.number(name, given[name], 1e-15, 1e15)}
     bench.tool_axes = _checks.word("bench_axes", bench_axes, ("trade", "tool")) == "tool"
-    bench.max_degree = _checks.whole("max_degree", max_degree, 0, 3)
+    if max_degree is not None:
+        bench.max_degree = _checks.whole("max_degree", max_degree, 0, 3)
     bench.tool = _tool(tool)
     if channels is not None:
         bench.channels = [_checks.whole(f"channels[{i}]", c, 0, 255) for i, c in enumerate(channels)]

@@ -31,7 +31,7 @@ double AddedTerms::Variance() const {
   return problem_.sigma_given ? 1 : solution_.chi_square / static_cast<double>(solution_.dof);
 }
 
-AddedTerms::Whitened AddedTerms::UnitOf(std::size_t row) const {
+ReadingUnit AddedTerms::UnitOf(std::size_t row) const {
   const FitRow& label = problem_.rows[row];
   if (label.spread.size() == 0) {
     return {place_[row], Eigen::VectorXd::Constant(1, 1 / label.unit)};
@@ -42,18 +42,18 @@ AddedTerms::Whitened AddedTerms::UnitOf(std::size_t row) const {
   return {place_[first], label.spread};
 }
 
-std::size_t AddedTerms::LikeliestStep(const std::vector<Eigen::Index>& rows) const {
+std::size_t AddedTerms::LikeliestStep(const std::vector<ReadingUnit>& readings) const {
   const double variance = Variance();
   if (solution_.cov.size() == 0 || !(variance > 0)) return 0;
   Eigen::VectorXd h = Eigen::VectorXd::Zero(problem_.size());
   double zz = 0, zr = 0, most = 0;
   std::size_t first = 0;
-  for (std::size_t k = rows.size(); k-- > kBesideStep;) {
-    const Whitened unit = UnitOf(static_cast<std::size_t>(rows[k]));
+  for (std::size_t k = readings.size(); k-- > kBesideStep;) {
+    const ReadingUnit& unit = readings[k];
     h += A_.middleRows(unit.first, unit.z.size()).transpose() * unit.z;
     zz += unit.z.squaredNorm();
     zr += unit.z.dot(solution_.residual.segment(unit.first, unit.z.size()));
-    if (rows.size() - k < kBesideStep) continue;
+    if (readings.size() - k < kBesideStep) continue;
     const double left = zz - h.dot(solution_.cov * h) / variance;
     if (!(left > kHeld * zz) || !(zr * zr / left > most)) continue;
     most = zr * zr / left;
@@ -62,17 +62,26 @@ std::size_t AddedTerms::LikeliestStep(const std::vector<Eigen::Index>& rows) con
   return first;
 }
 
-std::vector<AddedTerm> AddedTerms::Test(const Eigen::MatrixXd& Z, double probability) const {
-  std::vector<AddedTerm> terms(static_cast<std::size_t>(Z.cols()));
-  if (solution_.dof < 1 || solution_.cov.size() == 0) return terms;
-  const double variance = Variance();
-  if (!(variance > 0)) return terms;
+Eigen::MatrixXd AddedTerms::WhitenedColumns(const Eigen::MatrixXd& Z) const {
   Eigen::MatrixXd z = Eigen::MatrixXd::Zero(A_.rows(), Z.cols());
   for (const Eigen::Index row : used_) {
     if (Z.row(row).isZero(0)) continue;
-    const Whitened unit = UnitOf(static_cast<std::size_t>(row));
+    const ReadingUnit unit = UnitOf(static_cast<std::size_t>(row));
     z.middleRows(unit.first, unit.z.size()) += unit.z * Z.row(row);
   }
+  return z;
+}
+
+std::vector<AddedTerm> AddedTerms::Test(const Eigen::MatrixXd& Z, double probability) const {
+  return TestWhitened(WhitenedColumns(Z), probability);
+}
+
+std::vector<AddedTerm> AddedTerms::TestWhitened(const Eigen::MatrixXd& z,
+                                                double probability) const {
+  std::vector<AddedTerm> terms(static_cast<std::size_t>(z.cols()));
+  if (solution_.dof < 1 || solution_.cov.size() == 0) return terms;
+  const double variance = Variance();
+  if (!(variance > 0)) return terms;
   // r is at right angles to the model's columns, so that z'r needs no projection; z'z does.
   const Eigen::MatrixXd moves = solution_.cov / variance * (A_.transpose() * z);
   const Eigen::MatrixXd left = z.transpose() * z - z.transpose() * A_ * moves;

@@ -21,6 +21,12 @@ struct AddedTerm {
   double moved_sigmas = 0;
 };
 
+/// What one of a channel's unit in one of its readings adds to the rows that a solution used.
+struct ReadingUnit {
+  Eigen::Index first = 0;  ///< of those rows
+  Eigen::VectorXd z;       ///< whitened
+};
+
 /// Terms beyond a linear model, tested at its solution (added variables, score test of Rao).
 ///
 /// Where sigmas are given, a scatter of the residuals beyond them counts in place of them: a bad
@@ -33,18 +39,24 @@ class AddedTerms {
   /// All columns of `Z` together: what one of the term adds to each row of the problem [the data's
   /// unit]. `probability` of a false alarm of each, of one side.
   std::vector<AddedTerm> Test(const Eigen::MatrixXd& Z, double probability) const;
-  /// Of these rows of the problem, used and in the order of time, the first one of the likeliest
-  /// step: by its place in `rows`, with kBesideStep rows and more on either side. 0: there is none.
-  std::size_t LikeliestStep(const std::vector<Eigen::Index>& rows) const;
+  /// The same of columns that are whitened already, over the rows that the solution used.
+  std::vector<AddedTerm> TestWhitened(const Eigen::MatrixXd& z, double probability) const;
+  /// Of these readings in the order of time the first one of the likeliest step: by its place among
+  /// them, with kBesideStep and more on either side. 0: there is none.
+  std::size_t LikeliestStep(const std::vector<ReadingUnit>& readings) const;
+
+  /// Of the reading that a row of the problem, which the solution used, is labelled with.
+  ReadingUnit UnitOf(std::size_t row) const;
+  /// Of a reading that adds `z` to the rows of the problem from `row` on.
+  ReadingUnit UnitAt(Eigen::Index row, const Eigen::VectorXd& z) const {
+    return {place_[static_cast<std::size_t>(row)], z};
+  }
+  Eigen::Index used() const { return A_.rows(); }  ///< rows that the solution used
 
  private:
   double Variance() const;
-  /// What one of the data's unit in the reading of this row of the problem adds to those used.
-  struct Whitened {
-    Eigen::Index first = 0;  ///< of the rows used
-    Eigen::VectorXd z;
-  };
-  Whitened UnitOf(std::size_t row) const;
+  /// What columns of the data's unit by row of the problem are in the rows used.
+  Eigen::MatrixXd WhitenedColumns(const Eigen::MatrixXd& Z) const;
 
   const LinearProblem& problem_;
   const LinearSolution& solution_;

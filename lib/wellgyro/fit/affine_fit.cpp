@@ -111,56 +111,91 @@ std::optional<Fault> BadTable(const BenchTable& data, const AttitudeTable& table
   return BadReadings(data, table);
 }
 
-// A stand whose zero of inclination is off moves every u by du/dI, of which a bias takes the mean
-// and nothing else has the pattern.
-void TellInclination(AttitudeTable table, const AffineSetup& setup, const LinearProblem& problem,
-                     const LinearSolution& solution, FitReport& report) {
+// S du/dI of each group and position, about the solution.
+std::vector<Eigen::MatrixX3d> ByZero(AttitudeTable table, const AffineSetup& setup,
+                                     const Eigen::VectorXd& x) {
   constexpr double kStep = 1e-4;  // rad: to 2e-9 of du/dI
   table.inclination.array() += kStep;
   const std::vector<AffineReadings> above = Groups(table, setup);
   table.inclination.array() -= 2 * kStep;
   const std::vector<AffineReadings> below = Groups(table, setup);
-  const auto width = 3 * static_cast<Eigen::Index>(above.size());
-  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(problem.y.size(), 1);
+  std::vector<Eigen::MatrixX3d> all;
   int first = 0;
   for (std::size_t g = 0; g < above.size(); ++g) {
-    const Eigen::Matrix3d S = MatrixAt(solution.x, first + 3);
+    const Eigen::Matrix3d S = MatrixAt(x, first + 3);
     first += above[g].size();
-    const Eigen::MatrixX3d slope = (above[g].u - below[g].u) / (2 * kStep);
-    for (Eigen::Index i = 0; i < slope.rows(); ++i) {
-      z.block<3, 1>(i * width + 3 * static_cast<Eigen::Index>(g), 0) = S * slope.row(i).transpose();
-    }
+    all.emplace_back((above[g].u - below[g].u) / ToDegrees(2 * kStep) * S.transpose());
   }
-  const AddedTerm off = AddedTerms(problem, solution).Test(z, kFalseAlarm / 2).front();
-  if (!(off.sigmas > off.limit)) return;
-  report.remarks.push_back(fmt::format(
-      "the readings suit inclinations {:+.3g} deg beside the ones given ({:.1f} sigmas, chance "
-      "reaches {:.1f}): the zero of the stand's inclination is off, and {} with it by {:.1f} of "
-      "its sigmas; mend the inclinations and fit again",
-      ToDegrees(off.coefficient), off.sigmas, off.limit, off.moved, off.moved_sigmas));
+  return all;
 }
 
-}  // namespace
+// The groups' readings, one problem, and what it comes to.
+struct FittedAffine {
+  std::vector<AffineReadings> groups;
+  LinearProblem problem;
+  LinearSolution solution;
+};
 
-Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& setup) {
-  const auto table = ReadAttitudeTable(data, {.attitude = true});
-  if (!table) return table.fault();
-  if (auto fault = BadTable(data, *table, setup)) return *fault;
-  std::vector<AffineReadings> groups = Groups(*table, setup);
-  if (groups.empty()) throw std::invalid_argument("the magnetometers need the field and its dip");
-  const bool given = Weigh(table->lines, groups);
+// A stand whose zero of inclination is off moves every u by du/dI, of which a bias takes the mean
+// and nothing else has the pattern.
+AddedTerm ZeroOf(const FittedAffine& fitted, const AttitudeTable& table, const AffineSetup& setup) {
+  const std::vector<Eigen::MatrixX3d> by_zero = ByZero(table, setup, fitted.solution.x);
+  const auto width = 3 * static_cast<Eigen::Index>(by_zero.size());
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(fitted.problem.y.size(), 1);
+  for (std::size_t g = 0; g < by_zero.size(); ++g) {
+    for (Eigen::Index i = 0; i < by_zero[g].rows(); ++i) {
+      z.block<3, 1>(i * width + 3 * static_cast<Eigen::Index>(g), 0) =
+          by_zero[g].row(i).transpose();
+    }
+  }
+  return AddedTerms(fitted.problem, fitted.solution).Test(z, kFalseAlarm / 2).front();
+}
+
+FittedAffine Fitted(const AttitudeTable& table, const AffineSetup& setup,
+                    std::vector<AffineReadings> groups) {
+  const bool given = Weigh(table.lines, groups);
   if (setup.tilt_sigma > 0 && !given) {
     throw std::invalid_argument("the tilt's sigma needs the sigmas of the readings beside it");
   }
-  LinearProblem problem = AffineProblem(groups, table->lines, setup.tilt_sigma);
+  LinearProblem problem = AffineProblem(groups, table.lines, setup.tilt_sigma);
   problem.sigma_given = given;
-  const LinearSolution solution = Solve(problem);
-  auto whole = WholeReport(data, problem, solution,
-                           "measure attitudes that are not all in one plane or on one cone");
-  if (!whole) return whole.fault();
-  BenchCalibration out;
-  out.report = *std::move(whole);
-  out.report.method = "affine";
+  LinearSolution solution = Solve(problem);
+  return {std::move(groups), std::move(problem), std::move(solution)};
+}
+
+// The same with the zero as an unknown, from which the inclinations are taken [deg]. Bilinear in it
+// and S: Gauss and Newton.
+FittedAffine WithZero(AttitudeTable& table, const AffineSetup& setup, FittedAffine fitted,
+                      double& zero) {
+  constexpr double kStill = 1e-9;  // deg, of a sigma of 1e-4 and more
+  for (int turn = 0; turn < 20; ++turn) {
+    std::vector<AffineReadings> groups = Groups(table, setup);
+    std::vector<Eigen::MatrixX3d> by_zero = ByZero(table, setup, fitted.solution.x);
+    for (std::size_t g = 0; g < groups.size(); ++g) groups[g].by_zero = std::move(by_zero[g]);
+    fitted = Fitted(table, setup, std::move(groups));
+    const double more = fitted.solution.x.tail<1>()[0];
+    if (std::abs(more) < kStill) break;
+    table.inclination.array() += FromDegrees(more);
+    zero += more;
+  }
+  return fitted;
+}
+
+// One parameter of the report more, the zero [deg].
+void TakeZero(const AddedTerm& told, double zero, FitReport& report) {
+  const int at = static_cast<int>(report.values.size()) - 1;
+  report.values[at] = zero;
+  AddNumber(report, "inclination_deg", at);
+  report.remarks.push_back(fmt::format(
+      "the readings suit inclinations {:+.3g} deg beside the ones given ({:.1f} sigmas, chance "
+      "reaches {:.1f}): the zero of the stand's inclination is off, and found beside the sensors' "
+      "own unknowns (inclination_deg); without it {} would be off by {:.1f} of its sigmas",
+      zero, told.sigmas, told.limit, told.moved, told.moved_sigmas));
+}
+
+std::optional<Fault> TakeGroups(const BenchTable& data, const AttitudeTable& table,
+                                const AffineSetup& setup, const std::vector<AffineReadings>& groups,
+                                BenchCalibration& out) {
   // What a channel varies by is its own sensitivity's, whatever its unit.
   std::vector<ChannelSignal> signals;
   int first = 0;
@@ -177,12 +212,34 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
       signals.push_back({group.channels[static_cast<std::size_t>(c)],
                          S.row(c).norm() * group.u.rowwise().norm().mean()});
     }
-    AddGroup(group, *table, setup.reference, first, out);
+    AddGroup(group, table, setup.reference, first, out);
     first += group.size();
   }
-  if (auto fault = DoesNotFit(data, signals, out.report)) return *fault;
+  return DoesNotFit(data, signals, out.report);
+}
+
+}  // namespace
+
+Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& setup) {
+  auto table = ReadAttitudeTable(data, {.attitude = true});
+  if (!table) return table.fault();
+  if (auto fault = BadTable(data, *table, setup)) return *fault;
+  std::vector<AffineReadings> groups = Groups(*table, setup);
+  if (groups.empty()) throw std::invalid_argument("the magnetometers need the field and its dip");
+  FittedAffine fitted = Fitted(*table, setup, std::move(groups));
+  const AddedTerm told = ZeroOf(fitted, *table, setup);
+  double zero = 0;
+  const bool off = told.sigmas > told.limit;
+  if (off) fitted = WithZero(*table, setup, std::move(fitted), zero);
+  auto whole = WholeReport(data, fitted.problem, fitted.solution,
+                           "measure attitudes that are not all in one plane or on one cone");
+  if (!whole) return whole.fault();
+  BenchCalibration out;
+  out.report = *std::move(whole);
+  out.report.method = "affine";
+  if (auto fault = TakeGroups(data, *table, setup, fitted.groups, out)) return *fault;
   RemarkTemperature(data, out.report);
-  TellInclination(*table, setup, problem, solution, out.report);
+  if (off) TakeZero(told, zero, out.report);
   if (table->mag.rows() > 0 && out.mag.n_channels == 0) {
     out.report.remarks.emplace_back(
         "the magnetometers are left out: they need the field and its dip (--field-nt, --dip-deg)");

@@ -38,6 +38,7 @@ std::vector<std::string> Names(const std::vector<AffineReadings>& groups) {
     if (group.order == SecondOrder::kOwn) Append(names, VectorNames("K2_" + group.suffix, 3));
     if (group.order == SecondOrder::kFull) Append(names, MatrixNames("K2_" + group.suffix, 3, 6));
   }
+  if (groups.front().by_zero.rows() > 0) names.emplace_back("inclination_deg");
   return names;
 }
 
@@ -74,6 +75,9 @@ LinearProblem AffineProblem(const std::vector<AffineReadings>& groups,
       const Eigen::Vector3d u = groups[g].u.row(i).transpose();
       Fill(u, groups[g].order, first, row, problem.A);
       first += groups[g].size();
+      if (groups[g].by_zero.rows() > 0) {
+        problem.A.col(problem.size() - 1).segment<3>(row) = groups[g].by_zero.row(i).transpose();
+      }
       problem.y.segment<3>(row) = groups[g].v.row(i).transpose();
       const double sigma = groups[g].sigma.value_or(1);
       problem.sigma.segment<3>(row).setConstant(sigma);

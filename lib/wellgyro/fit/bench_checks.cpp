@@ -44,21 +44,6 @@ std::string LinesText(const std::vector<int>& lines) {
   return text;
 }
 
-std::optional<std::string> OtherHemisphere(const std::string& term, double force_term,
-                                           double latitude) {
-  const double twice = std::abs(2 * kBenchEarthDegPerHour * std::sin(latitude));
-  // A reference with w_z for -w_z leaves 2 S w_z along gravity; 2 % is twice what the sensitivities
-  // S of calibrated gyros are off by. Nearer to the equator than asin(1 / 30.1) = 1.9 deg, below
-  // 1 deg/h/g, an ordinary mass unbalance would pass for it.
-  constexpr double kAlike = 0.02, kLeast = 1;  // [1], [deg/h/g]
-  if (twice < kLeast || std::abs(std::abs(force_term) - twice) > kAlike * twice)
-    return std::nullopt;
-  return fmt::format(
-      "{} is {:.5g} deg/h/g, twice the Earth's rate along gravity ({:.5g}): is the latitude's sign "
-      "right? South is negative",
-      term, force_term, twice);
-}
-
 std::optional<Fault> TooFew(const BenchTable& data, int least, std::string_view what,
                             std::string_view advice) {
   if (data.rows() >= least) return std::nullopt;
@@ -188,6 +173,18 @@ std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector
                                 "radians; give degrees",
                                 largest),
                     data.lines[0]);
+}
+
+std::optional<Fault> OtherRate(const BenchTable& data, const std::string& channel,
+                               double sensitivity) {
+  constexpr double kOtherUnit = 5;
+  if (sensitivity > 1 / kOtherUnit && sensitivity < kOtherUnit) return std::nullopt;
+  return BenchFault(
+      data,
+      fmt::format("channel {} reads {:.4g} for one deg/h: give its readings in deg/h, "
+                  "and the rates of a rate table in deg/s",
+                  channel, sensitivity),
+      data.lines[0], FaultCode::kConflict);
 }
 
 std::optional<Fault> SwappedPositions(const BenchTable& data,

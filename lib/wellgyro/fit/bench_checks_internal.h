@@ -35,11 +35,6 @@ std::string LinesText(const std::vector<int>& lines);
 
 // Each gives the Fault, or the remark, if any.
 
-/// Of a latitude on the wrong side of the equator the Earth's rate along gravity comes out twice as
-/// a force term along each axis [deg/h/g], to all digits, and everything else is right: a remark
-/// where this one is within 2 % of that.
-std::optional<std::string> OtherHemisphere(const std::string& term, double force_term,
-                                           double latitude);
 /// Fewer rows than `least`.
 std::optional<Fault> TooFew(const BenchTable& data, int least, std::string_view what,
                             std::string_view advice);
@@ -63,6 +58,10 @@ std::optional<Fault> MixedUnits(const BenchTable& data, const std::vector<int>& 
                                 double expected, std::string_view what, std::string_view units);
 /// Angles that look like radians.
 std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector<int>& columns);
+/// A gyro that reads another unit of rate than deg/h: between deg/s, deg/h, rad/s and rpm lies no
+/// factor below six.
+std::optional<Fault> OtherRate(const BenchTable& data, const std::string& channel,
+                               double sensitivity);
 /// A reading of the axis that stands upright.
 struct UprightReading {
   int channel = 0;

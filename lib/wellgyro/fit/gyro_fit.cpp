@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "wellgyro/fit/added_terms_internal.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/gyro_problem_internal.h"
+#include "wellgyro/fit/hemisphere_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/math/linear_algebra.h"
 
@@ -37,12 +39,7 @@ std::optional<Fault> WrongChannels(const BenchTable& data, const GyroReadings& r
                                     "is wrong, or up and down of the positions are swapped",
                                     channel.name, "xyz"[most]));
     }
-    if (U[most] < 0.2 || U[most] > 5) {
-      return BenchFault(data,
-                        fmt::format("channel {} reads {:.4g} for one deg/h: give the readings "
-                                    "in deg/h, all in one unit",
-                                    channel.name, U[most]));
-    }
+    if (auto fault = OtherRate(data, channel.name, U[most])) return fault;
   }
   return std::nullopt;
 }
@@ -212,16 +209,17 @@ void TellLatitude(const GyroReadings& readings, const FittedGyros& fitted,
       off.limit));
 }
 
-void TellHemisphere(const BenchReference& reference, FitReport& report) {
-  for (const FitQuantity& q : report.result) {
-    if (!reference.latitude || q.name != "G_degh_per_g") continue;
-    for (const double term : q.value.reshaped()) {
-      if (auto remark = OtherHemisphere(q.name, term, *reference.latitude)) {
-        report.remarks.push_back(*std::move(remark));
-        return;
-      }
-    }
-  }
+// `south`: what the readings would be of with the other sign of the latitude.
+void TellHemisphere(const GyroReadings& south, const GyroFitSetup& setup, const GyroLayout& layout,
+                    const FittedGyros& fitted, FitReport& report) {
+  std::vector<Eigen::Index> forces(
+      static_cast<std::size_t>(layout.aniso_first() - layout.force_first()));
+  std::iota(forces.begin(), forces.end(), layout.force_first());
+  auto remark = OtherHemisphere(
+      fitted.problem, fitted.solution,
+      [&](const Eigen::VectorXd& x) { return ProblemAbout(south, setup, layout, fitted, x); },
+      forces);
+  if (remark) report.remarks.push_back(*std::move(remark));
 }
 
 }  // namespace
@@ -265,8 +263,12 @@ Result<BenchCalibration> FitGyro(const BenchTable& rest, const BenchTable& table
         "a wrong latitude would not show in these residuals: 0.1 deg of it is 3e-3 in U and 0.05 "
         "deg/h/g in G; a rate table's readings break that");
   }
+  BenchReference other = setup.reference;
+  other.latitude = -*other.latitude;
+  if (const auto turned = ReadGyros(rest, table, other)) {
+    TellHemisphere(*turned, setup, layout, fitted, report);
+  }
   TakeResult(*readings, layout, report);
-  TellHemisphere(setup.reference, report);
   out.gyro = Group(*readings, layout, setup.reference, report.values);
   AddParity(out.gyro, report);
   return out;

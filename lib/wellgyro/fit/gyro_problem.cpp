@@ -186,4 +186,15 @@ FittedGyros FitLayout(const GyroReadings& readings, const GyroFitSetup& setup,
   return *std::move(fitted);
 }
 
+LinearProblem ProblemAbout(const GyroReadings& readings, const GyroFitSetup& setup,
+                           const GyroLayout& layout, const FittedGyros& fitted,
+                           const Eigen::VectorXd& x) {
+  Eigen::MatrixX3d U(layout.channels, 3);
+  for (int c = 0; c < layout.channels; ++c) U.row(c) = x.segment<3>(4 * c + 1).transpose();
+  const double north = layout.north ? x[layout.north_first()] : 0;
+  LinearProblem problem = Problem(readings, setup, layout, north, U, 1);
+  problem.sigma = fitted.problem.sigma;
+  return problem;
+}
+
 }  // namespace wellgyro

@@ -39,4 +39,10 @@ struct FittedGyros {
 FittedGyros FitLayout(const GyroReadings& readings, const GyroFitSetup& setup,
                       const GyroLayout& layout);
 
+/// The problem of other readings of that layout, about U and north offset in x, the table's sigma
+/// as in `fitted`.
+LinearProblem ProblemAbout(const GyroReadings& readings, const GyroFitSetup& setup,
+                           const GyroLayout& layout, const FittedGyros& fitted,
+                           const Eigen::VectorXd& x);
+
 }  // namespace wellgyro

@@ -33,6 +33,14 @@ struct FitRow {
   Eigen::VectorXd spread = {};
 };
 
+/// A sensor's channel that rows hold together with others, as the length of a vector holds three.
+struct SensedChannel {
+  std::string name;
+  std::vector<Eigen::Index> first;  ///< of its readings, by their order: a row of the problem
+  /// What one of the channel's unit more in the reading adds to y from that row on, over sigma.
+  std::vector<Eigen::VectorXd> spread;
+};
+
 /// y = A x + noise of `sigma`, row by row.
 struct LinearProblem {
   std::vector<std::string> parameters;
@@ -41,7 +49,8 @@ struct LinearProblem {
   Eigen::VectorXd sigma;  ///< relative to each other where not sigma_given
   bool sigma_given = false;
   std::vector<FitRow> rows;
-  bool robust = true;  ///< look for outliers, all rows of a line together
+  std::vector<SensedChannel> sensed;  ///< beside the rows' own, where those are no channels
+  bool robust = true;                 ///< look for outliers, all rows of a line together
 
   LinearProblem(std::vector<std::string> names, int n_rows);
   int size() const { return static_cast<int>(parameters.size()); }

@@ -139,6 +139,10 @@ void TakeErrors(FitReport& report) {
     Append(names, VectorNames(std::string("b_") + suffix, 3));
     Append(names, MatrixNames(std::string("E_") + suffix, 3, 3));
   }
+  // Behind these the zero of the stand's inclination, where it was found.
+  const int sensors = static_cast<int>(names.size());
+  const bool zero = report.values.size() > sensors;
+  if (zero) names.push_back(report.parameters.back());
   Reparametrise(report, names, [](const Eigen::VectorXd& x) {
     Eigen::VectorXd errors = x;
     for (const int first : {3, 15}) {
@@ -151,6 +155,7 @@ void TakeErrors(FitReport& report) {
   AddVector(report, "b_G", 0, 3);
   AddMatrix(report, "E_M", 15, 3, 3);
   AddVector(report, "b_M_nT", 12, 3);
+  if (zero) AddNumber(report, report.parameters.back(), sensors);
 }
 
 void AddCoefficients(const Waves& waves, FitReport& report) {

@@ -21,27 +21,46 @@ constexpr std::size_t kFewestRows = 2 * kBesideStep;
 // [degC], what thermometers agree to: where temperatures vary by less their slope is noise.
 constexpr double kLeastSwing = 1;
 
-// Rows of one channel of one table, among those that the solution used, in their order.
-struct ChannelRows {
+// Readings of one channel of one table, among those that the solution used, in their order.
+struct ChannelReadings {
   std::string channel;
-  std::vector<Eigen::Index> in_problem;
+  std::vector<const FitRow*> labels;
+  std::vector<ReadingUnit> units;
 };
 
-std::vector<ChannelRows> ChannelsOf(const LinearProblem& problem, const LinearSolution& solution) {
+// Channels that rows hold together.
+void AddSensed(const LinearProblem& problem, const std::set<int>& out, const AddedTerms& added,
+               std::vector<ChannelReadings>& channels) {
+  for (const SensedChannel& sensed : problem.sensed) {
+    ChannelReadings channel;
+    channel.channel = sensed.name;
+    for (std::size_t k = 0; k < sensed.first.size(); ++k) {
+      const FitRow& row = problem.rows[static_cast<std::size_t>(sensed.first[k])];
+      if (out.count(row.line) > 0) continue;
+      channel.labels.push_back(&row);
+      channel.units.push_back(added.UnitAt(sensed.first[k], sensed.spread[k]));
+    }
+    channels.push_back(std::move(channel));
+  }
+}
+
+std::vector<ChannelReadings> ChannelsOf(const LinearProblem& problem,
+                                        const LinearSolution& solution, const AddedTerms& added) {
   const std::set<int> out(solution.outlier_lines.begin(), solution.outlier_lines.end());
-  std::map<std::pair<bool, std::string>, ChannelRows> channels;
+  std::map<std::pair<bool, std::string>, ChannelReadings> by_name;
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
     const FitRow& row = problem.rows[i];
     if (row.line == 0 || !row.in_time || out.count(row.line) > 0) continue;
-    ChannelRows& channel = channels[{row.line < 0, row.channel}];
+    ChannelReadings& channel = by_name[{row.line < 0, row.channel}];
     channel.channel = row.line < 0 ? "table " + row.channel : row.channel;
-    channel.in_problem.push_back(static_cast<Eigen::Index>(i));
+    channel.labels.push_back(&row);
+    channel.units.push_back(added.UnitOf(i));
   }
-  std::vector<ChannelRows> list;
-  for (auto& [key, channel] : channels) {
-    if (channel.in_problem.size() >= kFewestRows) list.push_back(std::move(channel));
-  }
-  return list;
+  std::vector<ChannelReadings> channels;
+  for (auto& [key, channel] : by_name) channels.push_back(std::move(channel));
+  AddSensed(problem, out, added, channels);
+  std::erase_if(channels, [](const ChannelReadings& c) { return c.labels.size() < kFewestRows; });
+  return channels;
 }
 
 std::map<int, double> TemperatureOf(const BenchTable& data) {
@@ -58,10 +77,9 @@ class Trends {
  public:
   Trends(const LinearProblem& problem, const LinearSolution& solution,
          std::map<int, double> temperatures)
-      : problem_(problem),
-        added_(problem, solution),
+      : added_(problem, solution),
         temperatures_(std::move(temperatures)),
-        channels_(ChannelsOf(problem, solution)) {
+        channels_(ChannelsOf(problem, solution, added_)) {
     const double kinds = temperatures_.empty() ? 2 : 3;
     each_ = kFalseAlarm / 2 / kinds / std::max<double>(1, static_cast<double>(channels_.size()));
   }
@@ -74,9 +92,8 @@ class Trends {
       AddedTerm step;
       const std::size_t first = StepOf(channels_[c], step);
       if (step.sigmas > step.limit && step.sigmas > slopes[c].sigmas) {
-        const auto row = static_cast<std::size_t>(channels_[c].in_problem[first]);
         Tell(fmt::format("channel {}: from {} on the residuals are {:.3g} beside those before",
-                         channels_[c].channel, name(std::abs(problem_.rows[row].line)),
+                         channels_[c].channel, name(std::abs(channels_[c].labels[first]->line)),
                          step.coefficient),
              step, report);
         continue;
@@ -94,39 +111,47 @@ class Trends {
   }
 
  private:
-  // From -1/2 to 1/2 over each channel's own rows; all channels together, so that what moves them
-  // all does not pass for the others' scatter. Not of channels whose abscissae are unknown or vary
-  // by less than `swing`.
+  // From -1/2 to 1/2 over each channel's own readings; all channels together, so that what moves
+  // them all does not pass for the others' scatter. Not of channels whose abscissae are unknown or
+  // vary by less than `swing`.
   template <typename Abscissa>
   std::vector<AddedTerm> Slopes(const Abscissa& of, double swing) const {
-    Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(problem_.rows.size()),
-                                              static_cast<Eigen::Index>(channels_.size()));
+    Eigen::MatrixXd z =
+        Eigen::MatrixXd::Zero(added_.used(), static_cast<Eigen::Index>(channels_.size()));
     for (std::size_t c = 0; c < channels_.size(); ++c) {
-      const std::vector<Eigen::Index>& rows = channels_[c].in_problem;
-      Eigen::VectorXd at(static_cast<Eigen::Index>(rows.size()));
-      std::transform(rows.begin(), rows.end(), at.begin(), [&](Eigen::Index i) {
-        return of(problem_.rows[static_cast<std::size_t>(i)]);
-      });
+      const ChannelReadings& channel = channels_[c];
+      Eigen::VectorXd at(static_cast<Eigen::Index>(channel.labels.size()));
+      std::transform(channel.labels.begin(), channel.labels.end(), at.begin(),
+                     [&](const FitRow* row) { return of(*row); });
       if (!at.allFinite()) continue;
       const double least = at.minCoeff(), width = at.maxCoeff() - least;
       if (!(width > 0) || width < swing) continue;
-      Z(rows, static_cast<Eigen::Index>(c)) = (at.array() - least) / width - 0.5;
+      Add(channel, 0, (at.array() - least) / width - 0.5, z.col(static_cast<Eigen::Index>(c)));
     }
-    return added_.Test(Z, each_);
+    return added_.TestWhitened(z, each_);
   }
 
-  std::size_t StepOf(const ChannelRows& channel, AddedTerm& step) const {
-    const std::vector<Eigen::Index>& rows = channel.in_problem;
-    const std::size_t first = added_.LikeliestStep(rows);
+  std::size_t StepOf(const ChannelReadings& channel, AddedTerm& step) const {
+    const std::size_t first = added_.LikeliestStep(channel.units);
     if (first == 0) return 0;
-    Eigen::MatrixXd z = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(problem_.rows.size()), 1);
-    for (std::size_t i = first; i < rows.size(); ++i) z(rows[i], 0) = 1;
+    Eigen::MatrixXd z = Eigen::MatrixXd::Zero(added_.used(), 1);
+    const auto n = static_cast<Eigen::Index>(channel.units.size());
+    Add(channel, first, Eigen::VectorXd::Ones(n), z.col(0));
     // The likeliest of so many.
-    step = added_.Test(z, each_ / static_cast<double>(rows.size())).front();
+    step = added_.TestWhitened(z, each_ / static_cast<double>(n)).front();
     return first;
   }
 
-  static void TellSlope(const ChannelRows& channel, const AddedTerm& slope,
+  // `size` of the channel's readings from `first` on.
+  static void Add(const ChannelReadings& channel, std::size_t first, const Eigen::VectorXd& size,
+                  Eigen::MatrixXd::ColXpr z) {
+    for (std::size_t k = first; k < channel.units.size(); ++k) {
+      const ReadingUnit& unit = channel.units[k];
+      z.segment(unit.first, unit.z.size()) += size[static_cast<Eigen::Index>(k)] * unit.z;
+    }
+  }
+
+  static void TellSlope(const ChannelReadings& channel, const AddedTerm& slope,
                         std::string_view against, FitReport& report) {
     if (!(slope.sigmas > slope.limit)) return;
     Tell(fmt::format("channel {}: the residuals follow {}, by {:.3g} from end to end",
@@ -141,10 +166,9 @@ class Trends {
         what, term.sigmas, term.limit, term.moved, term.moved_sigmas));
   }
 
-  const LinearProblem& problem_;
   AddedTerms added_;
   std::map<int, double> temperatures_;
-  std::vector<ChannelRows> channels_;
+  std::vector<ChannelReadings> channels_;
   double each_ = 0;
 };
 

@@ -68,18 +68,57 @@ Eigen::Matrix3d FullOf(const Eigen::VectorXd& x) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nine.data());
 }
 
-// Sigmas of the three residuals of row i at x.
-Eigen::Vector3d RowSigmas(const AttitudeTable& table, const Eigen::VectorXd& x, const Sigmas& sigma,
-                          int i) {
+// How the three residuals of row i change at x, not whitened: a row each.
+struct RowSlopes {
+  Eigen::Matrix3d by_accel = Eigen::Matrix3d::Zero(), by_mag = by_accel;
+};
+
+RowSlopes SlopesOf(const AttitudeTable& table, const Eigen::VectorXd& x, int i) {
   const Eigen::Matrix3d A = LowerOf(x), M = FullOf(x);
   const Eigen::Vector3d f = A * (table.accel.row(i).transpose() - x.segment<3>(6));
   const Eigen::Vector3d h = M * (table.mag.row(i).transpose() - x.segment<3>(kMagBias));
   const Eigen::Vector3d f1 = f.normalized(), h1 = h.normalized();
   const double along = f1.dot(h1);
-  const double by_f = (A.transpose() * (h1 - along * f1)).norm() / f.norm() * sigma.accel;
-  const double by_h = (M.transpose() * (f1 - along * h1)).norm() / h.norm() * sigma.mag;
-  return {(A.transpose() * f1).norm() * sigma.accel, (M.transpose() * h1).norm() * sigma.mag,
-          std::hypot(by_f, by_h)};
+  RowSlopes slopes;
+  slopes.by_accel.row(0) = f1.transpose() * A;
+  slopes.by_mag.row(1) = h1.transpose() * M;
+  slopes.by_accel.row(2) = (h1 - along * f1).transpose() * A / f.norm();
+  slopes.by_mag.row(2) = (f1 - along * h1).transpose() * M / h.norm();
+  return slopes;
+}
+
+// Sigmas of the three residuals of row i at x.
+Eigen::Vector3d RowSigmas(const AttitudeTable& table, const Eigen::VectorXd& x, const Sigmas& sigma,
+                          int i) {
+  const RowSlopes slopes = SlopesOf(table, x, i);
+  const Eigen::Vector3d by_accel = slopes.by_accel.rowwise().norm() * sigma.accel;
+  const Eigen::Vector3d by_mag = slopes.by_mag.rowwise().norm() * sigma.mag;
+  return (by_accel.cwiseAbs2() + by_mag.cwiseAbs2()).cwiseSqrt();
+}
+
+// Channels as the three residuals hold them; y holds what is given less what is read.
+std::vector<SensedChannel> SensedOf(const AttitudeTable& table,
+                                    const NonlinearProblem::Solution& solution) {
+  std::vector<SensedChannel> sensed(6);
+  for (std::size_t c = 0; c < 3; ++c) {
+    sensed[c].name = table.accel_channels[c];
+    sensed[3 + c].name = table.mag_channels[c];
+  }
+  int at = 0;
+  for (std::size_t row = 0; row < solution.linear.rows.size(); row += 3) {
+    while (table.lines[static_cast<std::size_t>(at)] != solution.linear.rows[row].line) ++at;
+    const RowSlopes slopes = SlopesOf(table, solution.x, at);
+    Eigen::Vector3d unit;
+    for (std::size_t k = 0; k < 3; ++k) {
+      unit[static_cast<Eigen::Index>(k)] = solution.linear.rows[row + k].unit;
+    }
+    for (std::size_t c = 0; c < 6; ++c) {
+      const Eigen::Matrix3d& by = c < 3 ? slopes.by_accel : slopes.by_mag;
+      sensed[c].first.push_back(static_cast<Eigen::Index>(row));
+      sensed[c].spread.emplace_back(-by.col(static_cast<Eigen::Index>(c % 3)).cwiseQuotient(unit));
+    }
+  }
+  return sensed;
 }
 
 std::vector<std::string> Names(bool free_dip) {
@@ -205,6 +244,7 @@ Result<BenchCalibration> FitScalarDip(const BenchTable& data, const ScalarSetup&
   Eigen::VectorXd x = start->x;
   Result<NonlinearProblem::Solution> solution = Problem(*table, setup, start->sigma, x).Solve();
   if (solution) solution = Problem(*table, setup, start->sigma, solution->x).Solve();
+  if (solution) solution->linear.sensed = SensedOf(*table, *solution);
   auto whole = WholeReport(data, solution, kDipAdvice);
   if (!whole) return whole.fault();
   for (const ScalarReadings* readings : {&accel, &mag}) {

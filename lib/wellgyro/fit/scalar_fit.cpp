@@ -179,6 +179,29 @@ std::optional<Fault> OtherUnit(const BenchTable& data, const std::vector<std::st
 
 namespace {
 
+// Channels as the lengths hold them: of a reading v the length's slope is M' f / |f|, and y holds
+// the length given less the one read.
+std::vector<SensedChannel> SensedOf(const ScalarReadings& readings,
+                                    const std::vector<std::string>& channels,
+                                    const NonlinearProblem::Solution& solution) {
+  const Eigen::Matrix3d M = LowerOf(solution.x);
+  std::vector<SensedChannel> sensed(3);
+  for (std::size_t c = 0; c < 3; ++c) sensed[c].name = channels[c];
+  std::size_t at = 0;
+  for (std::size_t row = 0; row < solution.linear.rows.size(); ++row) {
+    const FitRow& label = solution.linear.rows[row];
+    while (readings.lines[at] != label.line) ++at;
+    const Eigen::Vector3d v = readings.v.row(static_cast<Eigen::Index>(at)).transpose();
+    const Eigen::Vector3d slope = M.transpose() * (M * (v - solution.x.tail<3>())).normalized();
+    for (std::size_t c = 0; c < 3; ++c) {
+      sensed[c].first.push_back(static_cast<Eigen::Index>(row));
+      sensed[c].spread.push_back(
+          Eigen::VectorXd::Constant(1, -slope[static_cast<Eigen::Index>(c)] / label.unit));
+    }
+  }
+  return sensed;
+}
+
 void RemarkFew(const BenchTable& data, FitReport& report) {
   if (data.rows() >= 18) return;
   report.remarks.push_back(
@@ -197,9 +220,11 @@ Result<BenchCalibration> FitScalar(const BenchTable& data, const ScalarSetup& se
   if (auto fault = BadVectors(data, table->accel, table->accel_channels, "one unit")) return *fault;
   const ScalarReadings readings{table->lines, table->accel, setup.reference.gravity,
                                 setup.sigma_accel};
-  const auto solution = SolveScalar(readings);
+  auto solution = SolveScalar(readings);
   if (!solution) {
     if (auto fault = OnlyCones(data, readings, {})) return *fault;
+  } else {
+    solution->linear.sensed = SensedOf(readings, table->accel_channels, *solution);
   }
   auto whole = WholeReport(data, solution, kScalarAdvice);
   if (!whole) return whole.fault();

@@ -123,40 +123,6 @@ class Adjuster {
 
   void FindNoise(int sweeps) { finder_.Find(RowsAbout(out_), x_, sweeps, noise_); }
 
-  // Linear about x, with the priors as rows of line 0.
-  LinearProblem Linearise() const {
-    Eigen::Index n = 0;
-    for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
-      if (out_[i] == 0) n += static_cast<Eigen::Index>(readings_.rows[i].channels.size());
-    }
-    const ToolPrior prior = PriorOfTool(model_);
-    LinearProblem linear(model_.names(), static_cast<int>(n + prior.A.rows()));
-    linear.sigma_given = true;
-    linear.robust = false;
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; i < readings_.rows.size(); ++i) {
-      if (out_[i] != 0) continue;
-      const ToolRow& row = readings_.rows[i];
-      const ToolModel::Prediction p = model_.At(row, x_);
-      const Eigen::MatrixXd W = model_.Whitener(row, p.wobble, noise_);
-      const auto size = static_cast<Eigen::Index>(row.channels.size());
-      linear.A.middleRows(at, size) = W * p.J;
-      linear.y.segment(at, size) = W * (p.J * x_ + row.v - p.v);
-      for (Eigen::Index k = 0; k < size; ++k) {
-        const int channel = row.channels[static_cast<std::size_t>(k)];
-        linear.rows[static_cast<std::size_t>(at + k)] = {
-            static_cast<int>(i) + 1,
-            (row.mount >= 0 ? "table " : "") +
-                readings_.channels[static_cast<std::size_t>(channel)].name,
-            1 / W(k, k), true, W.col(k)};
-      }
-      at += size;
-    }
-    linear.A.bottomRows(prior.A.rows()) = prior.A;
-    linear.y.tail(prior.A.rows()) = prior.A * prior.x0;
-    return linear;
-  }
-
   // What readings at rest determine is lost beside a rate table's where one fit, which follows the
   // table, leaves them hundreds of times coarser than gyros are that find north.
   bool Contradict() const {
@@ -175,7 +141,7 @@ class Adjuster {
 
   // By normal equations of scaled columns: the terms that are there are told apart well.
   Result<ToolAdjustment> Finish() const {
-    ToolAdjustment a{x_, {}, noise_, out_, Linearise(), {}};
+    ToolAdjustment a{x_, {}, noise_, out_, LineariseTool(readings_, model_, noise_, out_, x_), {}};
     const std::array<double, 2> information =
         finder_.WobbleInformation(RowsAbout(out_), x_, noise_);
     for (std::size_t k = 0; k < 2 && !setup_.sigma_wobble; ++k) {
@@ -216,6 +182,41 @@ class Adjuster {
 };
 
 }  // namespace
+
+LinearProblem LineariseTool(const ToolReadings& readings, const ToolModel& model,
+                            const ToolNoise& noise, const std::vector<char>& out,
+                            const Eigen::VectorXd& x) {
+  Eigen::Index n = 0;
+  for (std::size_t i = 0; i < readings.rows.size(); ++i) {
+    if (out[i] == 0) n += static_cast<Eigen::Index>(readings.rows[i].channels.size());
+  }
+  const ToolPrior prior = PriorOfTool(model);
+  LinearProblem linear(model.names(), static_cast<int>(n + prior.A.rows()));
+  linear.sigma_given = true;
+  linear.robust = false;
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < readings.rows.size(); ++i) {
+    if (out[i] != 0) continue;
+    const ToolRow& row = readings.rows[i];
+    const ToolModel::Prediction p = model.At(row, x);
+    const Eigen::MatrixXd W = model.Whitener(row, p.wobble, noise);
+    const auto size = static_cast<Eigen::Index>(row.channels.size());
+    linear.A.middleRows(at, size) = W * p.J;
+    linear.y.segment(at, size) = W * (p.J * x + row.v - p.v);
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const int channel = row.channels[static_cast<std::size_t>(k)];
+      linear.rows[static_cast<std::size_t>(at + k)] = {
+          static_cast<int>(i) + 1,
+          (row.mount >= 0 ? "table " : "") +
+              readings.channels[static_cast<std::size_t>(channel)].name,
+          1 / W(k, k), true, W.col(k)};
+    }
+    at += size;
+  }
+  linear.A.bottomRows(prior.A.rows()) = prior.A;
+  linear.y.tail(prior.A.rows()) = prior.A * prior.x0;
+  return linear;
+}
 
 Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,
                                   const std::vector<ToolTerm>& terms) {

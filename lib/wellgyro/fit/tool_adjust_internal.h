@@ -22,6 +22,12 @@ struct ToolAdjustment {
   std::array<double, 2> sigma_wobble_square{};
 };
 
+/// The model about x with its priors, whitened, priors as rows of line 0; without the rows in
+/// `out`.
+LinearProblem LineariseTool(const ToolReadings& readings, const ToolModel& model,
+                            const ToolNoise& noise, const std::vector<char>& out,
+                            const Eigen::VectorXd& x);
+
 /// Adjusts `terms`; outliers join `out`. The Fault when it does not settle.
 Result<ToolAdjustment> AdjustTool(const ToolReadings& readings, const ToolFitSetup& setup,
                                   const std::vector<ToolTerm>& terms);

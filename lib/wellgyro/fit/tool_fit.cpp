@@ -17,6 +17,7 @@
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/tool_adjust_internal.h"
 #include "wellgyro/fit/tool_choice_internal.h"
+#include "wellgyro/fit/tool_contradictions_internal.h"
 #include "wellgyro/fit/tool_observability_internal.h"
 #include "wellgyro/fit/tool_result_internal.h"
 
@@ -244,31 +245,46 @@ void TellLeftOutLines(std::span<const BenchTable> tables, const ToolReadings& re
   }
 }
 
+// A channel's own, at the middle temperature [its unit per unit of gravity's, or per deg/h].
+Eigen::Vector3d SensitivityOf(const ToolModel& model, const Eigen::VectorXd& x,
+                              std::size_t channel) {
+  Eigen::Vector3d S = Eigen::Vector3d::Zero();
+  for (int k = 0; k < model.n_terms(); ++k) {
+    const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
+    const TermUse& use = term.uses.front();
+    if (term.kind == TermKind::kSensitivity && term.power == 0 &&
+        use.channel == static_cast<int>(channel)) {
+      S[use.j] = x[k];
+    }
+  }
+  return S;
+}
+
+std::optional<Fault> WrongChannel(const BenchTable& data, const ToolChannel& channel,
+                                  const Eigen::Vector3d& S) {
+  Eigen::Index most = 0;
+  const double size = S.cwiseAbs().maxCoeff(&most);
+  if (most != channel.axis) {
+    return BenchFault(
+        data, fmt::format("channel {} follows {}{}: its axis is not {}; exchange the "
+                          "columns, or mend their names",
+                          channel.name, S[most] < 0 ? "-" : "", "xyz"[most], "xyz"[channel.axis]));
+  }
+  if (S[most] <= 0) {
+    return BenchFault(data, fmt::format("channel {} falls where {} rises: its sign is wrong, or up "
+                                        "and down of the positions are swapped",
+                                        channel.name, "xyz"[most]));
+  }
+  return channel.is_gyro ? OtherRate(data, channel.name, size) : std::nullopt;
+}
+
 std::optional<Fault> WrongChannels(std::span<const BenchTable> tables, const ToolReadings& readings,
                                    const ToolModel& model, const Eigen::VectorXd& x) {
   for (std::size_t c = 0; c < readings.channels.size(); ++c) {
-    const ToolChannel& channel = readings.channels[c];
-    Eigen::Vector3d S = Eigen::Vector3d::Zero();
-    for (int k = 0; k < model.n_terms(); ++k) {
-      const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
-      const TermUse& use = term.uses.front();
-      if (term.kind == TermKind::kSensitivity && term.power == 0 &&
-          use.channel == static_cast<int>(c)) {
-        S[use.j] = x[k];
-      }
+    const BenchTable& data = TableOf(tables, readings, static_cast<int>(c));
+    if (auto fault = WrongChannel(data, readings.channels[c], SensitivityOf(model, x, c))) {
+      return fault;
     }
-    Eigen::Index most = 0;
-    S.cwiseAbs().maxCoeff(&most);
-    if (most == channel.axis && S[most] > 0) continue;
-    return BenchFault(
-        TableOf(tables, readings, static_cast<int>(c)),
-        most != channel.axis
-            ? fmt::format("channel {} follows {}{}: its axis is not {}; exchange the "
-                          "columns, or mend their names",
-                          channel.name, S[most] < 0 ? "-" : "", "xyz"[most], "xyz"[channel.axis])
-            : fmt::format("channel {} falls where {} rises: its sign is wrong, or up "
-                          "and down of the positions are swapped",
-                          channel.name, "xyz"[most]));
   }
   return std::nullopt;
 }
@@ -278,17 +294,9 @@ std::vector<ChannelSignal> Signals(const ToolReadings& readings, const ToolModel
                                    const Eigen::VectorXd& x, const ToolFitSetup& setup) {
   std::vector<ChannelSignal> signals;
   for (std::size_t c = 0; c < readings.channels.size(); ++c) {
-    double square = 0;
-    for (int k = 0; k < model.n_terms(); ++k) {
-      const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
-      if (term.kind == TermKind::kSensitivity && term.power == 0 &&
-          term.uses.front().channel == static_cast<int>(c)) {
-        square += x[k] * x[k];
-      }
-    }
     const double size = readings.channels[c].is_gyro ? kBenchEarthRate / units::kDegPerHour
                                                      : setup.reference.gravity;
-    signals.push_back({readings.channels[c].name, std::sqrt(square) * size});
+    signals.push_back({readings.channels[c].name, SensitivityOf(model, x, c).norm() * size});
   }
   return signals;
 }
@@ -366,19 +374,6 @@ void TellNoise(const ToolReadings& readings, const ToolFitSetup& setup, const To
   }
 }
 
-void TellHemisphere(const ToolModel& model, const ToolAdjustment& a, const ToolFitSetup& setup,
-                    FitReport& report) {
-  if (!setup.reference.latitude) return;
-  for (int k = 0; k < model.n_terms(); ++k) {
-    const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
-    if (term.kind != TermKind::kForce || term.power != 0) continue;
-    if (auto remark = OtherHemisphere(term.name, a.x[k], *setup.reference.latitude)) {
-      report.remarks.push_back(*std::move(remark));
-      return;
-    }
-  }
-}
-
 // Positions tell a wrong latitude as a rate along gravity, which mass unbalance is too.
 void TellLatitude(std::span<const BenchTable> tables, const ToolReadings& readings,
                   const ToolFitSetup& setup, FitReport& report) {
@@ -411,7 +406,8 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
   TellLeftOutLines(tables, readings, a, report);
   TellReferences(tables, readings, setup, report);
   TellLatitude(tables, readings, setup, report);
-  TellHemisphere(model, a, setup, report);
+  TellHemisphere(readings, setup, model, a, report);
+  TellTables(tables, readings, model, a, report);
   TellNoise(readings, setup, model, a, report);
   TellDrifts(model, a, fit);
   TakeToolResult(readings, setup, model, a, left_out, fit);

@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/calibration/bench_table.h"
 #include "wellgyro/calibration/fit_report.h"
 #include "wellgyro/calibration/tool_update.h"
@@ -18,16 +19,15 @@ namespace wellgyro {
 /// What is known of the bench before its readings, 1-sigma; sigmas of readings that are absent are
 /// found from their scatter.
 struct ToolFitSetup {
-  BenchReference reference;             ///< gravity; the latitude is needed for gyros
-  std::optional<GyroForceModel> force;  ///< as GyroFitSetup's
-  double sigma_level = 8.7e-3;          ///< of a bench's tilt, each direction [rad]: 0.5 deg
-  double sigma_north = 1.75e-2;         ///< of its north [rad]: 1 deg
-  /// Of a stand's zero of inclination, which moves all of a table: as a dial is set, 3 arcmin
-  /// [rad].
-  double sigma_inclination = 8.7e-4;
-  double sigma_latitude = 1e-5;  ///< [rad]: 64 m
-  /// Of the tool on the rate table, each direction [rad]: 1 arcmin.
-  double sigma_axis = 3e-4;
+  BenchReference reference;                ///< gravity; the latitude is needed for gyros
+  std::optional<GyroForceModel> force;     ///< as GyroFitSetup's
+  double sigma_level = 0.5 * units::kDeg;  ///< of a bench's tilt, each direction [rad]
+  double sigma_north = 1 * units::kDeg;    ///< of its north [rad]
+  /// Of a stand's zero of inclination, which moves all of a table: as a dial is set [rad].
+  double sigma_inclination = 0.05 * units::kDeg;
+  double sigma_latitude = 6e-4 * units::kDeg;  ///< [rad]: 67 m
+  /// Of the tool on the rate table, each direction [rad].
+  double sigma_axis = 60 * units::kArcsec;
   /// Of a gyro from the middle to the end of a table [deg/h]; it may bend by as much as a walk
   /// does.
   double sigma_drift = 0.1;

@@ -203,10 +203,37 @@ std::optional<Fault> Check(const BenchTable& data, const std::vector<int>& place
   return RadiansForDegrees(data, *found);
 }
 
+// What a column of a rate table rises by with the rate about an axis, 0 where none was turned.
+double SlopeOnTable(const BenchTable& data, int column, int axis) {
+  const auto axes = data.values.col(*data.Find("axis")).array();
+  const Eigen::ArrayXd turned =
+      (axes == axis).select(data.values.col(*data.Find("rate_deg_s")).array() * units::kHour, 0.0);
+  const double square = turned.square().sum();
+  return square > 0 ? (turned * data.values.col(column).array()).sum() / square : 0;
+}
+
+// A factor between units leaves nothing of the readings at rest beside it to see it by. The axis
+// that a channel follows most is found, for names of axes may be exchanged.
+std::optional<Fault> OtherRates(const BenchTable& data, const ToolReadings& readings) {
+  for (const ToolChannel& channel : readings.channels) {
+    const auto column = data.Find(channel.name);
+    if (!channel.is_gyro || !column || SlopeOnTable(data, *column, channel.axis) == 0) continue;
+    double most = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      most = std::max(most, std::abs(SlopeOnTable(data, *column, axis)));
+    }
+    if (auto fault = OtherRate(data, channel.name, most)) return fault;
+  }
+  return std::nullopt;
+}
+
 std::optional<Fault> AddTable(const BenchTable& data, const ToolFitSetup& setup, int table,
                               ToolReadings& readings) {
   const std::vector<int> places = PlacesIn(data, readings);
   if (auto fault = Check(data, places)) return fault;
+  if (IsRateTable(data)) {
+    if (auto fault = OtherRates(data, readings)) return fault;
+  }
   const std::size_t first = readings.rows.size();
   for (int i = 0; i < data.rows(); ++i) {
     ToolRow row;

@@ -80,10 +80,11 @@ double ByMember(const CalibrationMember& member, const ChannelAt& at, const Tool
 }
 
 // Residuals of one reading against the tool model, a row a channel: by the shifts B, by the
-// calibration's own errors J, by the bench's turn `level`, by this attitude's wobble.
+// calibration's own errors J, by the bench's turn (about north, east, down) and the zero of its
+// inclination, by this attitude's wobble.
 struct Residuals {
   Eigen::VectorXd e;
-  Eigen::MatrixXd J, B, level, wobble;
+  Eigen::MatrixXd J, B, bench, wobble;
   Eigen::VectorXd variance;  // of the channels' noise
 };
 
@@ -121,31 +122,30 @@ class Comparison {
     return member.kind == Kind::kBias ? si * units::kDegPerHour : si * units::kDegPerHour / g;
   }
 
-  // Generalised least squares, linear about a turn of the bench (about north, east, down), which
-  // becomes the likeliest.
-  ToolShiftEstimate Estimate(Eigen::Vector3d& turn) const {
+  // Generalised least squares, linear about the bench's turn (about north, east, down) and zero of
+  // inclination, which become the likeliest.
+  ToolShiftEstimate Estimate(Eigen::Vector4d& bench) const {
     const Eigen::Index known = factor_.cols();
-    ToolShiftEstimator estimator(known + 3, static_cast<Eigen::Index>(members_.size()));
-    const Eigen::Vector3d sigma_turn = TurnSigma();
+    ToolShiftEstimator estimator(known + 4, static_cast<Eigen::Index>(members_.size()));
+    const Eigen::Vector4d sigmas = SigmasOfBench();
     const double sigma = setup_.bench.sigma_wobble.value_or(0);
-    const Eigen::Matrix3d turned = Exp(turn);
     for (const ToolRow& row : readings_.rows) {
-      const Residuals r = Compare(row, turned);
-      Eigen::MatrixXd common(r.e.size(), known + 3);
-      common << r.J * factor_, r.level * sigma_turn.asDiagonal();
+      const Residuals r = Compare(row, bench);
+      Eigen::MatrixXd common(r.e.size(), known + 4);
+      common << r.J * factor_, r.bench * sigmas.asDiagonal();
       Eigen::MatrixXd cov = sigma * sigma * r.wobble * r.wobble.transpose();
       cov.diagonal() += r.variance;
-      estimator.Add(cov, common, r.B, r.e + r.level * turn);
+      estimator.Add(cov, common, r.B, r.e + r.bench * bench);
     }
     ToolShiftEstimate found = estimator.Estimate();
-    turn = sigma_turn.cwiseProduct(found.common.tail<3>());
+    bench = sigmas.cwiseProduct(found.common.tail<4>());
     return found;
   }
 
  private:
-  Eigen::Vector3d TurnSigma() const {
+  Eigen::Vector4d SigmasOfBench() const {
     const ToolFitSetup& bench = setup_.bench;
-    return {bench.sigma_level, bench.sigma_level, bench.sigma_north};
+    return {bench.sigma_level, bench.sigma_level, bench.sigma_north, bench.sigma_inclination};
   }
 
   void TakeKnown() {
@@ -164,32 +164,33 @@ class Comparison {
     factor_ = FactorOf(cov);
   }
 
-  Residuals Compare(const ToolRow& row, const Eigen::Matrix3d& turned) const {
+  Residuals Compare(const ToolRow& row, const Eigen::Vector4d& bench) const {
     const auto n = static_cast<Eigen::Index>(row.channels.size());
     Residuals r{Eigen::VectorXd(n),
                 Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(known_.size())),
                 Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(members_.size())),
-                Eigen::MatrixXd(n, 3),
+                Eigen::MatrixXd(n, 4),
                 Eigen::MatrixXd(n, 3),
                 Eigen::VectorXd(n)};
     for (Eigen::Index i = 0; i < n; ++i) {
-      CompareChannel(row, row.channels[static_cast<std::size_t>(i)], row.v[i], i, turned, r);
+      CompareChannel(row, row.channels[static_cast<std::size_t>(i)], row.v[i], i, bench, r);
     }
     return r;
   }
 
   void CompareChannel(const ToolRow& row, int channel, double read, Eigen::Index at,
-                      const Eigen::Matrix3d& turned, Residuals& r) const {
+                      const Eigen::Vector4d& bench, Residuals& r) const {
     const BenchReference& reference = setup_.bench.reference;
     const bool is_gyro = readings_.channels[static_cast<std::size_t>(channel)].is_gyro;
     const int c = channel - (is_gyro ? readings_.n_accel : 0);
     const SensorGroup& group = is_gyro ? tool_.gyro : tool_.accel;
     const double L = reference.latitude.value_or(0);
+    const Eigen::Matrix3d turned = Exp(bench.head<3>());
     const Eigen::Vector3d w_L =
         kBenchEarthRate * (turned * Eigen::Vector3d(std::cos(L), 0, -std::sin(L)));
     const Eigen::Vector3d f_L = -reference.gravity_mps2 * turned.col(2);
     const Eigen::Matrix3d R_TB = ToolFromBench(reference.axes);
-    const Eigen::Matrix3d R = R_TB * row.R_BL;
+    const Eigen::Matrix3d R = R_TB * row.R_BL * Exp(-bench[3] * row.across_L);
     const Eigen::Vector3d w_T = R * w_L, f_T = R * f_L;
     const ChannelAt v = ReadingOf(group, c, is_gyro ? w_T : f_T, f_T, row);
     r.e[at] = read - v.value;
@@ -199,7 +200,10 @@ class Comparison {
     const Eigen::RowVector3d by_f = v.by_f * group.R_TS.transpose();
     const Eigen::Vector3d own = is_gyro ? w_T : f_T, own_L = is_gyro ? w_L : f_L;
     r.wobble.row(at) = (by_u * Skew(own) + by_f * Skew(f_T)) * R_TB;
-    r.level.row(at) = by_u * R * -Skew(own_L) + by_f * R * -Skew(f_L);
+    r.bench.row(at).head<3>() = by_u * R * -Skew(own_L) + by_f * R * -Skew(f_L);
+    // A tool inclined by more sees what acts on it turned by less.
+    r.bench(at, 3) =
+        -(by_u * R * row.across_L.cross(own_L) + by_f * R * row.across_L.cross(f_L))[0];
     for (std::size_t k = 0; k < known_.size(); ++k) {
       if (known_[k].is_gyro != is_gyro || known_[k].channel != c) continue;
       r.J(at, static_cast<Eigen::Index>(k)) = ByMember(known_[k], v, row);
@@ -284,10 +288,10 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
   if (auto fault = WithoutTemperature(data, tool)) return *fault;
   Comparison comparison(*readings, tool, setup);
   ToolShiftEstimate found;
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  Eigen::Vector4d bench = Eigen::Vector4d::Zero();
   // A tilt of a third of a degree acts on the force to the second order, by 1e-5 of it.
   constexpr int kTurns = 3;
-  for (int k = 0; k < kTurns; ++k) found = comparison.Estimate(turn);
+  for (int k = 0; k < kTurns; ++k) found = comparison.Estimate(bench);
   Verification out;
   out.beyond = Beyond(*readings, tool);
   out.chi_square = found.chi_square;

@@ -51,9 +51,10 @@ struct Verification {
 
 /// A tool against its calibration, as found or as left: a table of positions (columns as FitTool's)
 /// read at rest. Biases and force terms are estimated as shifts from the tool model, by generalised
-/// least squares: in the covariance are the readings' noise and wobble, level and north of the
-/// bench, and the calibration's own whole covariance. Shifts that these positions cannot tell from
-/// the others are not listed. Throws std::invalid_argument without the sigmas.
+/// least squares: in the covariance are the readings' noise and wobble, level, north and zero of
+/// inclination of the bench, and the calibration's own whole covariance. Shifts that these
+/// positions cannot tell from the others are not listed. Throws std::invalid_argument without the
+/// sigmas.
 WELLGYRO_EXPORT Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
                                                 const VerifySetup& setup);
 

@@ -178,6 +178,13 @@ std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
   return std::nullopt;
 }
 
+std::optional<Fault> CannotWrite(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && std::filesystem::is_other(status)) return std::nullopt;
+  return FileInPieces(path).Append({});
+}
+
 std::optional<Fault> WriteSecretFile(const std::filesystem::path& path, std::string_view bytes) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file < 0 && errno == EEXIST) {

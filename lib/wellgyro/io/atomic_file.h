@@ -25,6 +25,10 @@ struct OutputFile {
 WELLGYRO_EXPORT std::optional<Fault> WriteFiles(const std::filesystem::path& folder,
                                                 std::span<const OutputFile> files);
 
+/// The Fault that writing a file would meet now, if any, for who must work long for what goes into
+/// it. Its folder is made if need be; nothing else stays. Pipes and devices are not opened.
+WELLGYRO_EXPORT std::optional<Fault> CannotWrite(const std::filesystem::path& path);
+
 /// Writes a file that nobody but its owner can open, from its first moment on. A Fault where the
 /// name is taken, by a link too.
 WELLGYRO_EXPORT std::optional<Fault> WriteSecretFile(const std::filesystem::path& path,
