@@ -9,10 +9,9 @@
 #include <Eigen/LU>
 #include <fmt/core.h>
 
-#include "wellgyro/base/units.h"
-#include "wellgyro/earth/earth.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/known_causes_internal.h"
 #include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
@@ -35,122 +34,8 @@ constexpr double kAlike = 0.9;
 constexpr double kNotLinear = 0.01;
 constexpr double kNamed = 0.95;  // probability of the causes named together, as kConfidence
 
-struct Entry {
-  std::string_view code;
-  Kind kind;
-  int unknown;
-  double size;  // in `unit`
-  double unit;
-  std::string_view unit_name, remedy;
-};
-
-constexpr double kOne = 1;  // of what is stated in SI
-constexpr std::string_view kDepthScale = "depth_scale";
-constexpr std::string_view kLatitudeSign = "latitude_sign";
-constexpr std::string_view kCalibrate =
-    "widen its sigma in [errors], run again, calibrate the tool";
-constexpr std::string_view kRamp =
-    "state its rate_ramp in [noise], run again; let the tool warm up, calibrate it";
-constexpr std::string_view kBench =
-    "the run is good to its end only with the step told: bench "
-    "the tool, survey the part below again";
-constexpr std::string_view kSpike = "look at the samples there; leave them out and run again";
-constexpr std::string_view kRestMotion = "rest_motion";
-constexpr std::string_view kNotAtRest =
-    "the tool was not at rest: leave the stop out and run again";
 // [m], from a stop to what the diagnosis says began there: within a knot, 1 s at 0.5 m/s.
 constexpr double kThatStop = 0.5;
-
-// Sizes by which a tool, or a job, is out of its class: a judgement, some five to ten times what
-// calibrated tools have. Bayes factors change little with them, by ln 4 where they are wrong by 4:
-// of simulated faults in a slant 91.0 % are found, 97.0 % of these rightly named; with sizes a
-// quarter of theirs 86.9 and 93.5 %, four times theirs 89.7 and 98.3 %.
-constexpr Entry kEntries[] = {
-    {"gyro_bias_x", Kind::kConstant, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
-    {"gyro_bias_y", Kind::kConstant, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
-    {"gyro_ramp_x", Kind::kConstant, kRampX, 0.3, units::kDegPerHour2, "deg/h2", kRamp},
-    {"gyro_ramp_y", Kind::kConstant, kRampY, 0.3, units::kDegPerHour2, "deg/h2", kRamp},
-    {"mass_unbalance", Kind::kConstant, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
-     kCalibrate},
-    {"quadrature", Kind::kConstant, kQuadrature, 0.15, units::kDegPerHourPerG, "deg/h/g",
-     kCalibrate},
-    {"gyro_scale_x", Kind::kConstant, kGyroScaleX, 1e-3, kOne, "1", kCalibrate},
-    {"gyro_scale_y", Kind::kConstant, kGyroScaleY, 1e-3, kOne, "1", kCalibrate},
-    {"gyro_misalignment_x", Kind::kConstant, kMisalignmentX, 1e-3, kOne, "rad", kCalibrate},
-    {"gyro_misalignment_y", Kind::kConstant, kMisalignmentY, 1e-3, kOne, "rad", kCalibrate},
-    {"toolface_offset", Kind::kConstant, kToolfaceOffset, 0.2, units::kDeg, "deg", kCalibrate},
-    {"time_skew", Kind::kConstant, kTimeSkew, 0.01, kOne, "s",
-     "correct the stamps of the accelerometers, run again"},
-    {"accel_bias_x", Kind::kConstant, kAccelBiasX, 3e-3, kOne, "m/s2", kCalibrate},
-    {"accel_bias_y", Kind::kConstant, kAccelBiasY, 3e-3, kOne, "m/s2", kCalibrate},
-    {"accel_bias_z", Kind::kConstant, kAccelBiasZ, 3e-3, kOne, "m/s2", kCalibrate},
-    {"accel_scale_x", Kind::kConstant, kAccelScaleX, 1e-3, kOne, "1", kCalibrate},
-    {"accel_scale_y", Kind::kConstant, kAccelScaleY, 1e-3, kOne, "1", kCalibrate},
-    {"accel_scale_z", Kind::kConstant, kAccelScaleZ, 1e-3, kOne, "1", kCalibrate},
-    {"accel_misalignment_x", Kind::kConstant, kAccelMisalignmentX, 1e-3, kOne, "rad", kCalibrate},
-    {"accel_misalignment_y", Kind::kConstant, kAccelMisalignmentY, 1e-3, kOne, "rad", kCalibrate},
-    {"gyro_bias_z", Kind::kConstant, kGyroBiasZ, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
-    {"gyro_scale_z", Kind::kConstant, kGyroScaleZ, 1e-3, kOne, "1", kCalibrate},
-    {"latitude", Kind::kConstant, kLatitudeError, 0.4, units::kDeg, "deg",
-     "correct the latitude of the job, run again"},
-    // The Earth's rate along the vertical acts as a mass unbalance m, m g = w sin L: with the other
-    // sign of L it is off by -2 w sin L, exactly.
-    {kLatitudeSign, Kind::kGiven, kMassUnbalance, 0, kOne, "1",
-     "correct the sign of the job's latitude, negative in the south, run again"},
-    {"gravity", Kind::kConstant, kGravityError, 5e-3, kOne, "m/s2",
-     "correct the well's place or elevation in the job, run again"},
-    {kDepthScale, Kind::kConstant, kDepthScaleError, 3e-3, kOne, "1",
-     "compare depth with a tally, marks or a shoe, correct it, run again"},
-    {"gyro_step_x", Kind::kOnset, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kBench},
-    {"gyro_step_y", Kind::kOnset, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kBench},
-    {"mass_unbalance_step", Kind::kOnset, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
-     kBench},
-    {"accel_step_x", Kind::kOnset, kAccelBiasX, 3e-3, kOne, "m/s2", kBench},
-    {"accel_step_y", Kind::kOnset, kAccelBiasY, 3e-3, kOne, "m/s2", kBench},
-    {"accel_step_z", Kind::kOnset, kAccelBiasZ, 3e-3, kOne, "m/s2", kBench},
-    {"toolface_slip", Kind::kOnset, kToolfaceOffset, 0.2, units::kDeg, "deg",
-     "tighten gyros and accelerometers against each other, survey the part below again"},
-    {"samples_lost", Kind::kOnset, kTimeSkew, 0.05, kOne, "s",
-     "restore the numbering of the samples, run again"},
-    {"gyro_spike", Kind::kGyroSpike, 0, 0.05, units::kDeg, "deg", kSpike},
-    {"accel_spike", Kind::kAccelSpike, 0, 0.05, kOne, "m/s2",
-     "look at the samples and the depth marks there; leave them out and run again"},
-    {kRestMotion, Kind::kRestMotion, 0, 0.01, units::kDeg, "deg", kNotAtRest},
-    {"azimuth_tie", Kind::kTie, 0, 2.5, units::kDeg, "deg",
-     "leave the azimuth from outside out, run again"},
-    {"gyro_noise", Kind::kGyroNoise, 0, 1, kOne, "1",
-     "state the noise as it is, run again; look for vibration"},
-    {"accel_noise", Kind::kAccelNoise, 0, 1, kOne, "1",
-     "state the noise as it is, run again; look for vibration"},
-    {"other", Kind::kOther, 0, 1, kOne, "1", "survey the well again"},
-};
-constexpr std::size_t kCount = std::size(kEntries);
-
-struct SampleWords {
-  std::string_view code, remedy;
-};
-constexpr std::string_view kRound = "round numbers in the converter, convert the log again";
-// Checks of samples and marks that by themselves name what is wrong.
-constexpr SampleWords kOfSamples[] = {
-    {"accel_dead", "mend the sensor, survey the well again"},
-    {"accel_stuck", "leave the stretch out; where it is long, survey the well again"},
-    {"accel_truncated", kRound},
-    {"accel_unit", "correct the unit or scale of the accelerometers in the tool file, run again"},
-    {"azimuth_tie", "correct the azimuth from outside, or leave it out, run again"},
-    {"axes_change", "look at the tool's wiring; leave the stretch out, survey it again"},
-    {"axes", "correct the axes of the tool file, run again"},
-    {"depth_jump", "correct the depth marks there, run again"},
-    {"depth_lag", "correct the times of the depth marks, run again"},
-    {"depth_reversed", "turn the sign of depth, run again"},
-    {"depth_unit", "state the unit of depth as it is, run again"},
-    {"gyro_dead", "mend the sensor, survey the well again"},
-    {"gyro_stuck", "leave the stretch out; where it is long, survey the well again"},
-    {"gyro_truncated", kRound},
-    {"gyro_unit", "correct the unit or scale in the tool file, run again"},
-    {"latitude", "correct the latitude of the job, run again"},
-    {kRestMotion, kNotAtRest},
-    {"tool_upside_down", "correct the axes or signs of the tool file, run again"},
-};
 
 /// ln(e^a + e^b).
 double LogSum(double a, double b) {
@@ -170,15 +55,15 @@ double LnOddsBeside(const Diagnosis& tests) {
 std::vector<CauseTest> WithSomethingElse(const Diagnosis& tests) {
   std::vector<CauseTest> judged = tests.tests;
   if (!tests.first) return judged;
-  static_assert(kEntries[kCount - 1].kind == Kind::kOther);
-  CauseTest& other = judged.back();
+  CauseTest& other = judged.back();  // the last of KnownCauses()
   const double both = std::log(kFaultyShare) + judged[*tests.first].ln_bayes + LnOddsBeside(tests);
   other.ln_bayes = other.tested ? LogSum(other.ln_bayes, both) : both;
   other.tested = true;
   return judged;
 }
 
-RunCause CauseOfTest(const Entry& entry, const CauseTest& test, std::span<const RunKnot> knots) {
+RunCause CauseOfTest(const KnownCause& entry, const CauseTest& test,
+                     std::span<const RunKnot> knots) {
   RunCause cause;
   cause.code = entry.code;
   cause.unit = entry.unit_name;
@@ -198,7 +83,7 @@ RunCause CauseOfTest(const Entry& entry, const CauseTest& test, std::span<const 
   return cause;
 }
 
-RunReliability ReliabilityOf(const Entry& entry, const CauseTest& test,
+RunReliability ReliabilityOf(const KnownCause& entry, const CauseTest& test,
                              std::span<const RunKnot> knots) {
   RunReliability hidden;
   hidden.code = entry.code;
@@ -212,7 +97,7 @@ RunReliability ReliabilityOf(const Entry& entry, const CauseTest& test,
   return hidden;
 }
 
-bool HasReliability(const Entry& entry, const CauseTest& test) {
+bool HasReliability(const KnownCause& entry, const CauseTest& test) {
   return test.tested && entry.kind != Kind::kGyroNoise && entry.kind != Kind::kAccelNoise &&
          entry.kind != Kind::kOther && entry.kind != Kind::kGiven;
 }
@@ -273,7 +158,7 @@ const RunCause* NearestOf(const std::vector<RunCause>& causes) {
 /// The check says that the tool moved at a stop, and there the likeliest fault of the rows begins:
 /// a slow motion and its end look to them as one turn that the gyros have wrong.
 bool MovedAtRest(const RunSummary& run, const Check& check) {
-  if (check.code != kRestMotion || check.verdict == Verdict::kPass || !check.md) return false;
+  if (check.code != kRestMotionCause || check.verdict == Verdict::kPass || !check.md) return false;
   if (!run.fit || !run.fit->diagnosis || !IsShown(*run.fit->diagnosis)) return false;
   const RunCause* nearest = NearestOf(run.fit->diagnosis->causes);
   return nearest != nullptr && nearest->begin_md &&
@@ -327,22 +212,12 @@ std::string WordsOf(const RunDiagnosis& diagnosis) {
 
 }  // namespace
 
-std::vector<CauseSpec> CausesLookedFor(const Site& site) {
-  std::vector<CauseSpec> specs;
-  for (const Entry& entry : kEntries) {
-    specs.push_back({entry.kind, entry.unknown, entry.size * entry.unit});
-    if (entry.code != kLatitudeSign) continue;
-    specs.back().size = -2 * kEarthRate * std::sin(site.latitude) / site.gravity;
-  }
-  return specs;
-}
-
 RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots) {
   RunDiagnosis diagnosis;
   if (!tests.done) return diagnosis;
   diagnosis.ln_odds = tests.ln_odds;
   diagnosis.ln_odds_without_first = LnOddsBeside(tests);
-  if (tests.second) diagnosis.second = kEntries[*tests.second].code;
+  if (tests.second) diagnosis.second = KnownCauses()[*tests.second].code;
   const std::vector<CauseTest> judged = WithSomethingElse(tests);
   double tested = 0;
   for (const CauseTest& test : judged) tested += test.tested ? 1 : 0;
@@ -352,23 +227,23 @@ RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots)
   for (const CauseTest& test : judged) {
     if (test.tested) sum = LogSum(sum, each + test.ln_bayes);
   }
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < KnownCauses().size(); ++i) {
     const CauseTest& test = judged[i];
     if (!test.tested) continue;
-    RunCause cause = CauseOfTest(kEntries[i], test, knots);
+    RunCause cause = CauseOfTest(KnownCauses()[i], test, knots);
     cause.posterior = std::exp(each + test.ln_bayes - sum);
-    for (std::size_t j = 0; j < kCount; ++j) {
+    for (std::size_t j = 0; j < KnownCauses().size(); ++j) {
       const double rho = tests.alike(static_cast<Index>(i), static_cast<Index>(j));
-      if (j != i && std::abs(rho) > kAlike) cause.alike.emplace_back(kEntries[j].code);
+      if (j != i && std::abs(rho) > kAlike) cause.alike.emplace_back(KnownCauses()[j].code);
     }
     // Where marks and felt motion part for a moment along the hole, either may be wrong.
     constexpr int kAlong = 2;
-    if (kEntries[i].kind == Kind::kAccelSpike && test.row == kAlong) {
+    if (KnownCauses()[i].kind == Kind::kAccelSpike && test.row == kAlong) {
       cause.alike.emplace_back("depth_slip");
     }
     diagnosis.causes.push_back(std::move(cause));
-    if (HasReliability(kEntries[i], test)) {
-      diagnosis.reliability.push_back(ReliabilityOf(kEntries[i], test, knots));
+    if (HasReliability(KnownCauses()[i], test)) {
+      diagnosis.reliability.push_back(ReliabilityOf(KnownCauses()[i], test, knots));
     }
   }
   RunCause& clean = diagnosis.causes.emplace_back();
@@ -385,11 +260,11 @@ double DepthScaleFound(const Job& job, const RunDiagnosis& diagnosis) {
   const double prior = job.errors.depth_scale_sigma;
   if (IsShown(diagnosis)) {
     for (const RunCause* cause : Named(diagnosis.causes)) {
-      if (cause->code == kDepthScale) return 0;
+      if (cause->code == kDepthScaleCause) return 0;
     }
   }
   for (const RunCause& cause : diagnosis.causes) {
-    if (cause.code != kDepthScale || !cause.size || !cause.sigma) continue;
+    if (cause.code != kDepthScaleCause || !cause.size || !cause.sigma) continue;
     // The size beyond the prior has the variance prior^2 / (1 - rest), the scale as found
     // size (1 - rest) that of prior^2 rest.
     const double told = std::min(prior * prior / (*cause.sigma * *cause.sigma), 1.0);
@@ -422,9 +297,9 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
   }
   checks.push_back(check);
   for (const RunCause& cause : found->causes) {
-    if (cause.code != kDepthScale || !cause.size || !cause.sigma) continue;
+    if (cause.code != kDepthScaleCause || !cause.size || !cause.sigma) continue;
     checks.push_back(
-        Compare("depth_scale_felt", run.run, {*cause.size, *cause.sigma}, std::nullopt, kOne, "1"));
+        Compare("depth_scale_felt", run.run, {*cause.size, *cause.sigma}, std::nullopt, 1, "1"));
   }
 }
 
@@ -455,17 +330,15 @@ std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> che
   for (const Check& check : checks) {
     if (check.run != run.run) continue;
     if (check.verdict != Verdict::kFail && !MovedAtRest(run, check)) continue;
-    for (const SampleWords& words : kOfSamples) {
-      if (!check.code.starts_with(words.code)) continue;
-      RunCause& cause = causes.emplace_back();
-      cause.code = check.code;
-      cause.begin_md = check.md;
-      cause.size = check.value;
-      cause.sigma = check.sigma;
-      cause.unit = check.unit;
-      cause.remedy = words.remedy;
-      break;
-    }
+    const std::string_view remedy = RemedyOfSamples(check.code);
+    if (remedy.empty()) continue;
+    RunCause& cause = causes.emplace_back();
+    cause.code = check.code;
+    cause.begin_md = check.md;
+    cause.size = check.value;
+    cause.sigma = check.sigma;
+    cause.unit = check.unit;
+    cause.remedy = remedy;
   }
   const bool by_samples = !causes.empty();
   for (RunCause& cause : causes) cause.posterior = 1 / static_cast<double>(causes.size());

@@ -250,7 +250,7 @@ void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, boo
   const Eigen::Vector2d w = sample.w_IT_T.head<2>();
   rest_.turn += seconds * w;
   rest_.squares += seconds * w.squaredNorm();
-  rest_.force += seconds * sample.f_T;
+  rest_.force_T += seconds * sample.f_T;
   rest_.seconds += seconds;
   ++rest_.samples;
   if (rest_.seconds < kRestBlock) return;
@@ -259,10 +259,10 @@ void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, boo
   const double scatter = std::sqrt(std::max(rest_.squares / rest_.seconds - mean * mean, 0.0));
   const double rate = std::max(mean - 5 * scatter / std::sqrt(rest_.samples), 0.0);
   least_at_rest_ = std::min(least_at_rest_.value_or(rate), rate);
-  const double force = rest_.force.norm() / rest_.seconds;
+  const double force = rest_.force_T.norm() / rest_.seconds;
   rest_force_ += force;
   ++rests_;
-  if (!lean_ && force > 0) lean_ = rest_.force.z() / rest_.seconds / force;
+  if (!lean_ && force > 0) lean_ = rest_.force_T.z() / rest_.seconds / force;
   rest_ = {};
 }
 

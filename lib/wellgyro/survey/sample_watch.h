@@ -33,8 +33,7 @@ namespace wellgyro {
 ///   accelerometers; fails where another explains them and this does not, and names it.
 ///   `axes_change`: in some stretches, one after the other.
 /// - `gyro_truncated`, `accel_truncated` [1]: how often the two axes across read zero, over how
-/// often
-///   they would by the levels beside it: 2 where numbers are cut towards zero.
+///   often they would by the levels beside it: 2 where numbers are cut towards zero.
 /// - `accel_unit` [1]: the force at rest over gravity.
 /// - `gyro_unit` [1]: by the sums of `axes`, the gyros' scale against the accelerometers'; at rest
 ///   the rate across the tool over the Earth's. Of axes or accelerometers that are wrong nothing.
@@ -114,7 +113,7 @@ class WELLGYRO_EXPORT SampleWatch {
     Eigen::Vector2d turn = Eigen::Vector2d::Zero();
     double squares = 0, seconds = 0;  ///< of the rates, times time
     int samples = 0;
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< times time
+    Eigen::Vector3d force_T = Eigen::Vector3d::Zero();  ///< times time
   };
   Rest rest_;
   double rest_force_ = 0, rests_ = 0;  ///< forces of rests [m/s^2], how many

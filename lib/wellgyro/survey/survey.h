@@ -9,7 +9,6 @@
 
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/check.h"
-#include "wellgyro/record/diagnosis.h"
 #include "wellgyro/record/north_fix.h"
 #include "wellgyro/record/station.h"
 
@@ -18,6 +17,7 @@
 namespace wellgyro {
 
 struct RunFit;
+struct RunSlip;
 
 /// What one run came to.
 struct RunSummary {
@@ -46,7 +46,7 @@ struct RunSummary {
   /// How the run as a whole fits together (record/run_fit.h); null before Adjust and Finish,
   /// and of a run that could not be adjusted.
   std::shared_ptr<const RunFit> fit;
-  std::optional<RunSlip> slip;  ///< by its passes; absent before they are made
+  std::shared_ptr<const RunSlip> slip;  ///< by its passes; null before they are made
   std::vector<NorthFix> fixes;
   std::vector<Check> stop_checks;    ///< of three gyro axes at rest, beyond what a fix says
   std::vector<Check> sample_checks;  ///< of samples and depth marks as they come

@@ -304,7 +304,9 @@ Survey SurveyMaker::Make() const {
   survey.marks_refused = string_.refused.all();
   const std::vector<DraftedRun> drafted = Drafted();
   Placed placed = Assemble(job_, drafted);
-  for (RunSummary& run : survey.runs) run.slip = FindSlip(job_, placed.passes, run.run);
+  for (RunSummary& run : survey.runs) {
+    run.slip = std::make_shared<const RunSlip>(FindSlip(job_, placed.passes, run.run));
+  }
   survey.checks = Checks(survey.runs, placed.passes);
   survey.checks.push_back(CheckAzimuths(drafted));
   if (job_.tie_in.md > 0) survey.checks.push_back(CheckTieInWay(job_.tie_in, SeenOf(drafted)));

@@ -1,8 +1,7 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-
-#include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
 
@@ -34,12 +33,10 @@ class WELLGYRO_EXPORT TruncationWatch {
   void Pass();
 
   double step_ = 0;
-  int side_ = 0;                                      ///< on which side of the levels it was last
-  Eigen::Vector3d levels_ = Eigen::Vector3d::Zero();  ///< samples at 0, +-1, +-2 since
+  int side_ = 0;                          ///< on which side of the levels it was last
+  std::array<std::int64_t, 3> levels_{};  ///< samples at 0, +-1, +-2 since
   std::int64_t whole_ = 0, broken_ = 0;
-  double passages_ = 0;
-  Eigen::Vector3d counts_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d products_ = Eigen::Matrix3d::Zero();
+  std::array<double, 16> sums_{};  ///< over passages, products of 1 and the samples in each level
 };
 
 }  // namespace wellgyro
