@@ -61,8 +61,9 @@ void RunDrafts::Take(const WaitingKnot& waiting, ForwardEstimate& estimate) {
 }
 
 bool RunDrafts::AnyUntold(const WaitingKnots& waiting) {
-  return std::any_of(waiting.begin(), waiting.end(),
-                     [](const WaitingKnot& knot) { return knot.draft && !knot.told; });
+  return std::any_of(waiting.begin(), waiting.end(), [](const WaitingKnot& knot) {
+    return knot.draft && knot.draft->listed && !knot.told;
+  });
 }
 
 void RunDrafts::TellAhead(std::span<const Increment> increments, ForwardEstimate& estimate,

@@ -39,7 +39,8 @@ class RunDrafts {
   /// Those of knots that wait, as far as there are increments for them.
   void TellAhead(std::span<const Increment> increments, ForwardEstimate& estimate,
                  WaitingKnots& waiting);
-  /// Where some of the knots that wait have a draft that is not told.
+  /// Some of the knots that wait have a draft that is listed and not told. Those that are not are
+  /// told with the next one: of depths in whole metres each mark ends a rest.
   static bool AnyUntold(const WaitingKnots& waiting);
   /// Averages at rest that the tool made itself, of which this is the north.
   void Add(const StillWindow& window, const NorthFix& fix);

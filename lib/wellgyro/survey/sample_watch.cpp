@@ -26,12 +26,12 @@ constexpr std::int64_t kRepeats = 10;                  // at least, where sample
 constexpr double kChance = 1e-9;
 constexpr double kDead = 0.9;  // share of the run, from which an axis told next to nothing of it
 // [s], of the integrals of w x f that are compared with f_z: near horizontal at 0.5 m/s a bend of
-// 3 deg/30 m changes f_z by 0.26 m/s^2 in it, nine times kForce.
+// 3 deg/30 m changes f_z by 0.26 m/s^2 in it, nine times kForceLeft.
 constexpr double kStretch = 30;
 // 1-sigma of what the products do not predict of f_z's change over a stretch: the string's starts
 // and stops, the Earth's rotation [m/s^2]. Two ends within kSteady, evenly: 0.016; the Earth turns
 // gravity by up to 7.3e-5 rad/s 30 s g = 0.021; together 0.027.
-constexpr double kForce = 0.03;
+constexpr double kForceLeft = 0.03;
 // Chi-square by which another pairing must explain more, 5 sigma ...
 constexpr double kBetter = 25;
 // ... and the share of it that it may leave, half in amplitude: one that is right leaves noise.
@@ -204,8 +204,8 @@ void SampleWatch::WatchBend(const ImuSample& sample, const AlongHole& along, dou
   const Stretch stretch = stretch_;
   stretch_ = StretchFrom(sample, along);
   if (!stretch.steady || !stretch_.steady) return;
-  const double found = (sample.f_T.z() - stretch.begin_f_z) / kForce;
-  const std::array<double, kPairings> predicted = PredictionsOf(stretch.products / kForce);
+  const double found = (sample.f_T.z() - stretch.begin_f_z) / kForceLeft;
+  const std::array<double, kPairings> predicted = PredictionsOf(stretch.products / kForceLeft);
   ++stretches_;
   // Bounded, so that a single bad sample at an end does not decide.
   std::array<double, kPairings> squares;
