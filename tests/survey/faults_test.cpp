@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(
 // The sentence of a survey that cannot be made says why first.
 TEST(Faults, WrongUnitsStandInFrontOfWhatLacksByThem) {
   Flight flight;
-  flight.Converted([](ImuSample& s) { s.f_T /= units::kStandardGravity; });
+  flight.Converted([](ImuSample& s) { s.f_T *= 1000 / units::kStandardGravity; });
   const Survey survey = flight.Surveyed();
   EXPECT_TRUE(survey.unusable.starts_with("the accelerometers' unit or scale is wrong"))
       << survey.unusable;

@@ -39,6 +39,9 @@ struct RunFit {
   ErrorVector sigma_errors = ErrorVector::Zero();  ///< of these; 0: has no prior
   /// Turn of the tool within a knot, beyond what its samples show, that twenty knots exceed [rad].
   double hidden_turn = 0;
+  /// Azimuth from outside with which the run begins less that by all the rest of it; sigma 0: there
+  /// is none, or nothing tells [rad].
+  double closure_outside = 0, sigma_closure_outside = 0;
   std::optional<RunLesson> lesson;        ///< where its calibration has a covariance
   std::vector<RunStretch> stretches;      ///< of the run, in time
   std::optional<RunDiagnosis> diagnosis;  ///< where what adjusted the run made one

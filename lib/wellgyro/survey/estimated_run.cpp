@@ -157,6 +157,16 @@ std::vector<NorthAt> NorthsOf(const RunHistory& history) {
   return norths;
 }
 
+/// Of the tie with which the run begins, if any.
+void TakeClosureOutside(const RunHistory& history, std::span<const NorthClosure> closures,
+                        RunFit& fit) {
+  if (closures.size() != history.fixes.size() + history.ties.size()) return;
+  if (history.ties.empty() || history.ties.front().node != 0) return;
+  const NorthClosure& closure = closures[history.fixes.size()];
+  fit.closure_outside = closure.angle;
+  fit.sigma_closure_outside = closure.sigma;
+}
+
 EstimateSetup SetupOf(const Job& job, const RunHistory& history) {
   EstimateSetup setup;
   setup.gyro = job.noise;
@@ -223,6 +233,7 @@ SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
   SmoothedRun run = SmoothedOf(estimate, history);
   run.closures = estimate.closures;
   run.fit = FitOf(estimate);
+  TakeClosureOutside(history, run.closures, *run.fit);
   run.fit->hidden_turn = HiddenTurn(history.knots, estimate.nodes);
   if (setup.cov_errors) {
     run.fit->lesson = {estimate.errors, estimate.cov_prior, estimate.cov_errors, UsesOf(history)};

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "wellgyro/math/square.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/assemble.h"
 #include "wellgyro/survey/check_internal.h"
@@ -117,15 +118,17 @@ KnotOfTime KnotAt(UtcTime utc, const KeptKnots& knots) {
 
 }  // namespace
 
-const NorthFix* Contradiction(const Job& job, const RunSummary& run) {
-  if (job.alignment.method != AlignmentSpec::Method::kExternal) return nullptr;
-  const NorthFix* worst = nullptr;
+std::optional<Contradicted> Contradiction(const Job& job, const RunSummary& run) {
+  if (job.alignment.method != AlignmentSpec::Method::kExternal) return std::nullopt;
+  Contradicted worst;
+  if (run.fit && run.fit->sigma_closure_outside > 0) {
+    worst.sigmas = std::abs(run.fit->closure_outside) / run.fit->sigma_closure_outside;
+  }
   for (const NorthFix& fix : run.fixes) {
     if (fix.external || !fix.chi_square || Has(fix.quality, Quality::kVertical)) continue;
-    if (*fix.chi_square < kContradiction * kContradiction) continue;
-    if (worst == nullptr || *fix.chi_square > *worst->chi_square) worst = &fix;
+    if (*fix.chi_square > Square(worst.sigmas)) worst = {std::sqrt(*fix.chi_square), fix.md};
   }
-  return worst;
+  return worst.sigmas > kContradiction ? std::optional(worst) : std::nullopt;
 }
 
 /// Where the hole points at every knot that has a depth and a direction.
@@ -155,7 +158,7 @@ DraftedRun SurveyMaker::DraftedOf(const ToolRun& run) const {
   if (summary.fit && summary.fit->diagnosis) {
     d.depth_scale_found = DepthScaleFound(job_, *summary.fit->diagnosis);
   }
-  const bool contradicted = Contradiction(job_, summary) != nullptr;
+  const bool contradicted = Contradiction(job_, summary).has_value();
   for (std::size_t i = 0; i < run.survey->drafts().size(); ++i) {
     Draft draft = run.survey->drafts()[i];
     if (contradicted) draft.station.quality |= Quality::kEarthRate;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -244,14 +245,15 @@ void ToolSurvey::Finish(std::optional<UtcTime> until) {
   Adjust();
   finished_ = true;
   for (const ToolRun& run : runs_) {
-    const NorthFix* fix = Contradiction(job_, run.survey->summary());
-    if (fix == nullptr) continue;
+    const auto found = Contradiction(job_, run.survey->summary());
+    if (!found) continue;
+    const std::string by =
+        found->md ? fmt::format("the north found at MD {:.2f} m", *found->md) : "the norths found";
     sink_.OnFault(
         Fault{FaultCode::kConflict,
-              fmt::format(
-                  "run {}: the job's azimuth is {:.1f} sigmas from the north found at MD {:.2f} m: "
-                  "one of them is wrong, and every station of the run with it",
-                  run.survey->summary().run, std::sqrt(*fix->chi_square), fix->md.value_or(0))});
+              fmt::format("run {}: the job's azimuth is {:.1f} sigmas from {}: one of them is "
+                          "wrong, and every station of the run with it",
+                          run.survey->summary().run, found->sigmas, by)});
   }
   for (const Check& check : Current().checks) sink_.OnCheck(check);
 }
