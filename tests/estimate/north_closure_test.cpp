@@ -48,25 +48,50 @@ VectorXd TurnOfStop(const ToyRun& run, const MatrixXd& J, const std::vector<Node
   return column;
 }
 
-// The model with the stop's turn as one unknown more, solved as a whole by QR.
+/// The model with one unknown more, of this column, solved as a whole by QR.
+void ExpectUnknownOf(const VectorXd& column, const ToyRun& run, const NorthClosure& closure) {
+  const MatrixXd J = run.J();
+  MatrixXd larger(J.rows(), J.cols() + 1);
+  larger << J, column;
+  const VectorXd x = larger.colPivHouseholderQr().solve(-run.r());
+  const MatrixXd cov = (larger.transpose() * larger).inverse();
+  const double last = x[J.cols()];
+  EXPECT_NEAR(closure.sigma / std::sqrt(cov(J.cols(), J.cols())), 1, 1e-9);
+  EXPECT_NEAR(closure.angle, last, 1e-9 * std::abs(last));
+}
+
 TEST(NorthClosure, IsTheUnknownOfALargerSystem) {
   ToyRun run(8);
   run.Rest(kBegin, kEnd);
   const std::vector<Node> nodes = AnyNodes();
-  const MatrixXd J = run.J();
-  MatrixXd larger(J.rows(), J.cols() + 1);
-  larger << J, TurnOfStop(run, J, nodes);
-  const VectorXd x = larger.colPivHouseholderQr().solve(-run.r());
-  const MatrixXd cov = (larger.transpose() * larger).inverse();
   LinearRun solved(run);
   ASSERT_TRUE(solved.Solve());
   const std::vector<NorthAt> norths{{kBegin, kEnd}, {2, 7}};
   const std::vector<NorthClosure> closures = NorthClosures(solved, nodes, norths);
   ASSERT_EQ(closures.size(), 2u);
-  const double last = x[J.cols()];
-  EXPECT_NEAR(closures[0].sigma / std::sqrt(cov(J.cols(), J.cols())), 1, 1e-9);
-  EXPECT_NEAR(closures[0].angle, last, 1e-9 * std::abs(last));
+  ExpectUnknownOf(TurnOfStop(run, run.J(), nodes), run, closures[0]);
   EXPECT_EQ(closures[1].sigma, 0) << "nothing rests there";
+}
+
+// An azimuth from outside turns its own node alone, be it the first.
+TEST(NorthClosure, OfAnAzimuthFromOutsideIsThatOfItsNode) {
+  for (const std::size_t node : {0, 1, 14}) {
+    const std::size_t knot = node > 0 ? node - 1 : 0;
+    ToyRun run(10 + node);
+    run.Tie(knot);
+    const std::vector<Node> nodes = AnyNodes();
+    const MatrixXd J = run.J();
+    VectorXd turn = VectorXd::Zero(J.cols());
+    turn.segment<3>(static_cast<Index>(8 * node)) =
+        nodes[node].R_LT.transpose() * Eigen::Vector3d::UnitZ();
+    VectorXd column = VectorXd::Zero(J.rows());
+    const Index row = run.RowOf(knot, RowKind::kAzimuth);
+    column.segment<3>(row) = (J * turn).segment<3>(row);
+    LinearRun solved(run);
+    ASSERT_TRUE(solved.Solve());
+    const NorthAt tie{knot, node, true};
+    ExpectUnknownOf(column, run, NorthClosures(solved, nodes, {&tie, 1}).front());
+  }
 }
 
 TEST(NorthClosure, FindsANorthThatIsTurned) {

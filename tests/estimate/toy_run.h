@@ -81,6 +81,9 @@ class ToyRun : public RunRows {
     for (std::size_t k = begin; k < end; ++k) factors_[k].front().kind = RowKind::kStill;
   }
 
+  /// In this knot's rows stands an azimuth from outside, of either node.
+  void Tie(std::size_t knot) { factors_[knot][2].kind = RowKind::kAzimuth; }
+
   Eigen::MatrixXd J() const {
     Eigen::MatrixXd j =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dense_.size()), (kDenseKnots + 1) * 8 + 4);

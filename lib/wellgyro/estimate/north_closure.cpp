@@ -1,5 +1,6 @@
 #include "wellgyro/estimate/north_closure.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "wellgyro/record/unknown_angle.h"
@@ -52,7 +53,8 @@ class Closures {
     bool read = false;
     for (std::size_t i = 0; i < norths_.size(); ++i) {
       const NorthAt& north = norths_[i];
-      if (k < north.begin || k >= north.end) continue;
+      // What holds at the first node stands in the first knot's rows.
+      if (k < north.begin || k >= std::max<std::size_t>(north.end, 1)) continue;
       if (!read) run_.RowsOf(k, rows_);
       read = true;
       Add(north, k, gain, joint, sums_[i]);
@@ -60,12 +62,14 @@ class Closures {
   }
 
   /// A turn about the vertical, of [node | next node | border], as phi of each node; an azimuth
-  /// from outside is at the next one alone.
-  NormalBlock::Vector TurnOf(std::size_t k, bool outside) const {
+  /// from outside is at its own alone.
+  NormalBlock::Vector TurnOf(std::size_t k, const NorthAt& north) const {
     const Layout& layout = run_.layout();
     NormalBlock::Vector turn = NormalBlock::Vector::Zero(2 * layout.node + layout.border);
-    if (!outside) turn.segment<3>(layout.phi) = nodes_[k].R_LT.row(2).transpose();
-    turn.segment<3>(layout.node + layout.phi) = nodes_[k + 1].R_LT.row(2).transpose();
+    for (const int i : {0, 1}) {
+      if (north.outside && north.end != k + i) continue;
+      turn.segment<3>(i * layout.node + layout.phi) = nodes_[k + i].R_LT.row(2).transpose();
+    }
     return turn;
   }
 
@@ -74,7 +78,7 @@ class Closures {
   void Add(const NorthAt& north, std::size_t k, const BehindMatrix& gain, const BlockMatrix& joint,
            NorthSums& sums) {
     const Eigen::Index n = run_.layout().node, b = run_.layout().border;
-    const NormalBlock::Vector turn = TurnOf(k, north.outside);
+    const NormalBlock::Vector turn = TurnOf(k, north);
     NormalBlock::Vector y = NormalBlock::Vector::Zero(turn.size());
     for (const Factor& f : rows_) {
       if (!IsOf(north, f)) continue;
