@@ -13,20 +13,19 @@
 
 #include "wellgyro/page/html_internal.h"
 #include "wellgyro/page/page_internal.h"
+#include "wellgyro/survey/field_practice.h"
 
 namespace wellgyro {
 namespace {
 
+namespace practice = field_practice;
+
 using Mark = ChartSeries::Mark;
 
 constexpr double kModelSigmas = 3;  // as Compare() of checks: P(|x| > 3) = 0.27 % of each depth
-// Limits of field practice for gyro surveys, in-run against out-run: inclination 0.23 deg; azimuth
-// 1 deg from 10 deg of inclination on, 5 deg below (published QA/QC practice, drillingforgas.com).
-constexpr double kInclinationDeg = 0.23, kAzimuthDeg = 1.0, kSteepAzimuthDeg = 5.0, kSteepDeg = 10;
 // Of inclination, below which an azimuth is none: 1 / sin 2 deg = 29 times as vague as a direction.
 constexpr double kLeastDeg = 2;
 constexpr std::size_t kListed = 60;  // depths in the table of what is beyond
-constexpr std::size_t kFewest = 10;  // stations that field practice asks to be compared
 
 struct Compared {
   double md = 0, inclination = 0, difference = 0, practice = 0;
@@ -46,9 +45,9 @@ std::vector<Compared> Of(const PageText& page, const Columns& rows, bool azimuth
     if (!md || !inclination || !difference) continue;
     if (azimuth && *inclination < kLeastDeg) continue;
     Compared one{.md = *md, .inclination = *inclination, .difference = *difference};
-    one.practice = !azimuth                   ? kInclinationDeg
-                   : *inclination < kSteepDeg ? kSteepAzimuthDeg
-                                              : kAzimuthDeg;
+    one.practice = !azimuth                             ? practice::kInclinationDeg
+                   : *inclination < practice::kSteepDeg ? practice::kLowAzimuthDeg
+                                                        : practice::kAzimuthDeg;
     if (sigma) one.model = kModelSigmas * *sigma;
     list.push_back(one);
   }
@@ -167,13 +166,14 @@ void WritePair(PageText& page, const Json& pair) {
                         std::pair("azimuth", Of(page, rows, true))};
   page.html +=
       fmt::format("<h3>Run {}, pass {} less pass {}</h3>\n", run, Escaped(other), Escaped(first));
-  constexpr std::array kPractice = {"field practice 0.23\u00b0",
-                                    "field practice 1\u00b0, 5\u00b0 below 10\u00b0"};
+  const std::array limits{
+      fmt::format("field practice {:g}\u00b0", practice::kInclinationDeg),
+      fmt::format("field practice {:g}\u00b0, {:g}\u00b0 below {:g}\u00b0", practice::kAzimuthDeg,
+                  practice::kLowAzimuthDeg, practice::kSteepDeg)};
   for (std::size_t i = 0; i < both.size(); ++i) {
     const auto& [what, list] = both[i];
     AddDifferences(page, fmt::format("run-{}-{}-{}", run, other, what),
-                   fmt::format("Run {}: {}, {} less {}", run, what, other, first), kPractice[i],
-                   list);
+                   fmt::format("Run {}: {}, {} less {}", run, what, other, first), limits[i], list);
   }
   {
     HtmlTable table(
@@ -182,8 +182,9 @@ void WritePair(PageText& page, const Json& pair) {
          ">at " + page.Named("MD"), ">Beyond 3 sigma", ">Beyond field practice"});
     for (const auto& [what, list] : both) WriteSummary(table, what, list);
   }
-  if (both[0].second.size() < kFewest) {
-    page.html += fmt::format("<p>Field practice asks for {} depths at least.</p>\n", kFewest);
+  if (std::ssize(both[0].second) < practice::kDepths) {
+    page.html +=
+        fmt::format("<p>Field practice asks for {} depths at least.</p>\n", practice::kDepths);
   }
   WriteBeyond(page, both);
 }

@@ -16,6 +16,7 @@
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/depth_slip.h"
+#include "wellgyro/survey/field_practice.h"
 #include "wellgyro/survey/run_checks_internal.h"
 #include "wellgyro/survey/run_diagnosis.h"
 #include "wellgyro/survey/tie_in_check.h"
@@ -24,9 +25,6 @@ namespace wellgyro {
 namespace {
 
 constexpr double kStand = 30;  // of pipe [m]: three joints of up to 10 m
-// Of a run's pairs of stations, those that are independent, at most. At 40 kinds of checks a pair
-// fails at 4.50 sigma; were they 18 or 72, at 4.35 or 4.64.
-constexpr int kPairsApart = 36;
 
 void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
   bool earth_rate = false, compared = false;
@@ -143,21 +141,20 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
     Check check = Compare(code + name, run, worst.difference, accepted, units::kDeg, "deg");
     check.md = worst.md;
     // Errors are correlated along the hole: at most so many pairs count as independent trials.
-    check.looks = accepted ? 0 : std::min(pairs, kPairsApart);
+    check.looks = accepted ? 0 : std::min(pairs, kIndependentPairs);
     checks.push_back(check);
   };
   add("inclination_", inclination, job.acceptance.inclination_difference);
   add("azimuth_", azimuth, job.acceptance.azimuth_difference);
 }
 
-/// What operators ask of an in-run against its out-run, whatever the error model says; but at low
-/// inclination azimuths that may differ by more without a fault tell nothing.
-/// Source: drillingforgas.com, "Gyro surveys QA/QC".
+/// Field practice; but at low inclination azimuths that may differ by more without a fault tell
+/// nothing.
 void CheckPractice(std::span<const Station> stations, std::int32_t run,
                    std::vector<Check>& checks) {
-  constexpr int kPairs = 10;
-  constexpr double kInclination = FromDegrees(0.23);
-  constexpr double kLow = FromDegrees(10);  // inclination below which azimuth may differ more
+  namespace practice = field_practice;
+  constexpr double kInclination = FromDegrees(practice::kInclinationDeg);
+  constexpr double kLow = FromDegrees(practice::kSteepDeg);
   struct Worst {
     double value = 0, limit = 0, md = 0;
     int pairs = 0;
@@ -174,13 +171,13 @@ void CheckPractice(std::span<const Station> stations, std::int32_t run,
     inclination.Take(b.inclination - a.inclination, kInclination, a.md);
     if (Has(a.quality | b.quality, Quality::kVertical)) return;
     const bool low = a.inclination < kLow;
-    const double limit = FromDegrees(low ? 5.0 : 1.0);
+    const double limit = FromDegrees(low ? practice::kLowAzimuthDeg : practice::kAzimuthDeg);
     const double sigma = std::sqrt(AngleVariance(a, 2) + AngleVariance(b, 2));
     if (low && 3 * sigma > limit) return;
     azimuth.Take(WrapPi(b.azimuth - a.azimuth), limit, a.md);
   });
   const auto add = [&](const char* code, const Worst& worst, const char* too_few) {
-    if (worst.pairs < kPairs) {
+    if (worst.pairs < practice::kDepths) {
       checks.push_back(NotDone(code, run, too_few));
       return;
     }
@@ -192,10 +189,12 @@ void CheckPractice(std::span<const Station> stations, std::int32_t run,
   const char* const few = "fewer than 10 depths seen in both passes";
   add("inclination_in_out_practice", inclination, few);
   add("azimuth_in_out_practice", azimuth,
-      inclination.pairs < kPairs ? few : "fewer than 10 depths where the azimuth is sure enough");
+      inclination.pairs < practice::kDepths
+          ? few
+          : "fewer than 10 depths where the azimuth is sure enough");
 }
 
-/// Depth lost on the way there and back, per kilometre of way. Source as above: 1 ft in 1000 ft.
+/// Depth lost on the way there and back, per kilometre of way, against field practice.
 void CheckSlippage(const CheckInputs& inputs, const ReturnToZero& back,
                    std::vector<Check>& checks) {
   double deepest = 0;
@@ -208,8 +207,8 @@ void CheckSlippage(const CheckInputs& inputs, const ReturnToZero& back,
     return;
   }
   const double slip = (*back.read_md - back.value_md) / way;
-  checks.push_back(
-      Compare("depth_slippage", back.run, {slip, back.sigma / way}, 1e-3, 1e-3, "m/km"));
+  checks.push_back(Compare("depth_slippage", back.run, {slip, back.sigma / way},
+                           field_practice::kSlippage, 1e-3, "m/km"));
   checks.back().limit_source = "field practice";
 }
 

@@ -23,8 +23,6 @@ using Eigen::VectorXd;
 
 // Of a wheel that slips, 1 sigma [m]: some stands' worth of the 1 in 1000 that practice allows.
 constexpr double kSlipSize = 1.5;
-// As of CheckPasses(): errors go together along the hole, so that no more pairs are independent.
-constexpr double kIndependentPairs = 36;
 constexpr std::ptrdiff_t kLeastPairs = 5;  // three unknowns, and something to hold them against
 // A slope below which a slip of five sizes turns nothing by what numbers round [rad/m].
 constexpr double kStraight = 1e-9;

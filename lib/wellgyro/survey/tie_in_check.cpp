@@ -9,15 +9,16 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/field_practice.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr double kReach = 30;  // [m], a stand
-// Of two surveys of one hole, twice the 0.23 deg that practice allows two passes of one tool.
+// Of two surveys of one hole: twice the 0.23 deg that practice allows two passes of one tool, 0.46.
 constexpr double kSurveys = FromDegrees(0.5);
-constexpr double kSlot = 30;      // of a platform, from its reference, aside [m]
-constexpr double kDepths = 2e-3;  // of two surveys: practice's 1e-3 of each
+constexpr double kSlot = 30;  // of a platform, from its reference, aside [m]
+constexpr double kDepths = 2 * field_practice::kSlippage;  // of two surveys, over the depth [1]
 constexpr double kTurned = 0.05;  // of a way, by a north 3 deg aside: 2 sin 1.5 deg
 constexpr double kPlaces = 1;     // that nobody asks for; of TVD, which has no slot [m]
 constexpr double kBendMost = FromDegrees(12) / 30;  // of a hole that a motor builds [rad/m]
