@@ -11,10 +11,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kLeastWay = 10;     // [m] that there is something to plan
-constexpr double kLongest = 20'000;  // [m], past the longest well drilled
-// [m/s]: slower, a kilometre takes more than 5.6 h; faster, a jump to DepthTrack (speed_limit).
-constexpr double kSlowest = 0.05, kFastest = 10;
+namespace range = plan_range;
+
+// [m] that there is something to plan: one knot of kAdviceKnots at 0.8 m/s is 9.6 m.
+constexpr double kLeastWay = 10;
 constexpr double kSlack = 1e-6;  // [m], rounding of files
 
 void Need(bool holds, std::string_view name, double value, std::string_view what) {
@@ -30,16 +30,19 @@ void CheckWay(const PlanCase& c) {
   Need(way.end_md >= begin && way.end_md <= end + kSlack, "end_md", way.end_md, within);
   Need(way.end_md - way.begin_md >= kLeastWay, "end_md", way.end_md,
        fmt::format("must be {:g} m below begin_md, {:g} m, at least", kLeastWay, way.begin_md));
-  Need(way.end_md - way.begin_md <= kLongest, "end_md", way.end_md,
-       fmt::format("must be {:g} m below begin_md at most", kLongest));
-  Need(way.speed_in >= kSlowest && way.speed_in <= kFastest, "speed_in", way.speed_in,
-       "must be 0.05 to 10 m/s");
-  Need(way.speed_out == 0 || (way.speed_out >= kSlowest && way.speed_out <= kFastest), "speed_out",
-       way.speed_out, "must be 0.05 to 10 m/s, or 0");
-  Need(std::abs(way.roll_rate) <= kTwoPi, "roll_rate", way.roll_rate,
-       "must be 60 rpm at most [rad/s]");
-  Need(std::abs(way.swing) <= kTwoPi, "swing", way.swing, "must be one turn at most [rad]");
-  Need(way.swing_period >= 60, "swing_period", way.swing_period, "must be 60 s at least");
+  Need(way.end_md - way.begin_md <= range::kWayMost, "end_md", way.end_md,
+       fmt::format("must be {:g} m below begin_md at most", range::kWayMost));
+  const auto surveyed = [](double v) { return v >= range::kSlowest && v <= range::kFastest; };
+  const auto speeds = fmt::format("must be {:g} to {:g} m/s", range::kSlowest, range::kFastest);
+  Need(surveyed(way.speed_in), "speed_in", way.speed_in, speeds);
+  Need(way.speed_out == 0 || surveyed(way.speed_out), "speed_out", way.speed_out,
+       speeds + ", or 0");
+  Need(std::abs(way.roll_rate) <= range::kRollMostRpm * (kTwoPi / 60), "roll_rate", way.roll_rate,
+       fmt::format("must be {:g} rpm at most [rad/s]", range::kRollMostRpm));
+  Need(std::abs(way.swing) <= FromDegrees(range::kSwingMostDeg), "swing", way.swing,
+       "must be one turn at most [rad]");
+  Need(way.swing_period >= range::kSwingPeriodLeast, "swing_period", way.swing_period,
+       fmt::format("must be {:g} s at least", range::kSwingPeriodLeast));
   Need(std::isfinite(way.toolface), "toolface", way.toolface, "must be finite");
 }
 
@@ -69,7 +72,7 @@ void CheckPlanCase(const PlanCase& c, std::span<const PlannedStop> stops) {
   for (const PlannedStop& stop : stops) {
     Need(stop.md >= c.way.begin_md - kSlack && stop.md <= c.way.end_md + kSlack, "stop.md", stop.md,
          "must lie on the way");
-    Need(stop.seconds >= 0 && stop.seconds <= 86'400, "stop.seconds", stop.seconds,
+    Need(stop.seconds >= 0 && stop.seconds <= range::kStandMost, "stop.seconds", stop.seconds,
          "must be a day at most");
     Need(!stop.out || c.way.speed_out > 0, "stop.md", stop.md,
          "is on the way up, which is not surveyed");

@@ -32,9 +32,10 @@ void CheckLimits(const PlanLimits& limits) {
   };
   need(limits.ellipse > 0, "ellipse", limits.ellipse, "must be positive");
   if (limits.hidden) need(*limits.hidden > 0, "hidden", *limits.hidden, "must be positive");
-  need(limits.least_stop >= 10, "least_stop", limits.least_stop, "must be 10 s at least");
-  need(limits.longest_stop >= limits.least_stop && limits.longest_stop <= 7200, "longest_stop",
-       limits.longest_stop, "must lie between least_stop and two hours");
+  need(limits.least_stop >= plan_range::kStopLeast, "least_stop", limits.least_stop,
+       "must be 10 s at least");
+  need(limits.longest_stop >= limits.least_stop && limits.longest_stop <= plan_range::kStopMost,
+       "longest_stop", limits.longest_stop, "must lie between least_stop and two hours");
   need(limits.overhead >= 0, "overhead", limits.overhead, "must not be negative");
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
@@ -9,9 +11,11 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kRpm = kTwoPi / 60;
-constexpr TomlRange kSpeed{.min = 0.05, .max = 10};   // [m/s], as CheckPlanCase has it
-constexpr TomlRange kDepth{.min = 0, .max = 20'000};  // [m], as CheckPlanCase has it
+namespace range = plan_range;
+
+constexpr double kRpm = kTwoPi / 60;                                         // [rad/s]
+constexpr TomlRange kSpeed{.min = range::kSlowest, .max = range::kFastest};  // [m/s]
+constexpr TomlRange kDepth{.min = 0, .max = range::kWayMost};                // [m]
 
 /// Without the last digits that a unit's conversion leaves.
 double Tidy(double value, double digits = 1e6) { return std::round(value * digits) / digits; }
@@ -98,25 +102,29 @@ PlannedWay ReadWay(TomlTable table) {
   table.Read("speed_in_mps", way.speed_in, 1, kSpeed);
   if (const auto out = table.FindNumber("speed_out_mps", kNotNegative)) {
     if (*out != 0 && (*out < kSpeed.min || *out > kSpeed.max)) {
-      table.Refuse("speed_out_mps", "must be 0.05 to 10, or 0 where the way up is not surveyed");
+      table.Refuse("speed_out_mps",
+                   fmt::format("must be {:g} to {:g}, or 0 where the way up is not surveyed",
+                               kSpeed.min, kSpeed.max));
     }
     way.speed_out = *out;
   }
-  table.Read("roll_rpm", way.roll_rate, kRpm, {.min = -60, .max = 60});
-  table.Read("swing_deg", way.swing, units::kDeg, {.min = -360, .max = 360});
-  table.Read("swing_period_s", way.swing_period, 1, {.min = 60, .max = 1e6});
+  table.Read("roll_rpm", way.roll_rate, kRpm,
+             {.min = -range::kRollMostRpm, .max = range::kRollMostRpm});
+  table.Read("swing_deg", way.swing, units::kDeg,
+             {.min = -range::kSwingMostDeg, .max = range::kSwingMostDeg});
+  table.Read("swing_period_s", way.swing_period, 1, {.min = range::kSwingPeriodLeast, .max = 1e6});
   table.Read("start_toolface_deg", way.toolface, units::kDeg, kAzimuthDeg);
   return way;
 }
 
 PlanLimits ReadLimits(TomlTable table) {
-  constexpr TomlRange kStop{.min = 10, .max = 7200};  // [s], as CheckLimits has it
+  constexpr TomlRange kStop{.min = range::kStopLeast, .max = range::kStopMost};  // [s]
   PlanLimits limits{.ellipse = 0};
   table.Read("ellipse_m", limits.ellipse, 1, {.min = 1e-3, .max = 1e4});
   limits.hidden = table.FindNumber("hidden_m", {.min = 1e-3, .max = 1e5});
   table.Read("least_stop_s", limits.least_stop, 1, kStop);
   table.Read("longest_stop_s", limits.longest_stop, 1, kStop);
-  table.Read("overhead_s", limits.overhead, 1, {.min = 0, .max = 7200});
+  table.Read("overhead_s", limits.overhead, 1, {.min = 0, .max = range::kStopMost});
   table.Read("toolfaces", limits.turns);
   if (limits.longest_stop < limits.least_stop) {
     table.Refuse("longest_stop_s", "must not be below least_stop_s");
@@ -144,7 +152,8 @@ PlannedStop ReadStop(TomlTable& table, const PlannedWay& way, const PlannedStop*
   PlannedStop stop;
   stop.out = table.Need("pass", table.FindWord<bool>("pass", {{"in", false}, {"out", true}}));
   stop.md = table.Need("md_m", table.FindNumber("md_m", kDepth));
-  stop.seconds = table.Need("stop_s", table.FindNumber("stop_s", {.min = 1, .max = 86'400}));
+  stop.seconds =
+      table.Need("stop_s", table.FindNumber("stop_s", {.min = 1, .max = range::kStandMost}));
   if (const auto toolface = table.FindNumber("toolface_deg", kAzimuthDeg)) {
     stop.toolface = *toolface * units::kDeg;
   }
