@@ -18,6 +18,7 @@
 #include "wellgyro/io/exchange/told_options_internal.h"
 #include "wellgyro/io/exchange/wbp_internal.h"
 #include "wellgyro/io/exchange/witness_internal.h"
+#include "wellgyro/io/exchange/xml_internal.h"
 #include "wellgyro/io/text_file.h"
 
 namespace wellgyro {
@@ -49,8 +50,6 @@ const FormatName& NameOf(SurveyFormat format) {
   throw std::invalid_argument(
       fmt::format("SurveyFormat {} is no format of surveys", static_cast<int>(format)));
 }
-
-constexpr std::int64_t kMostXml = std::int64_t{1} << 28;  // [bytes], as kXmlBytes
 
 // By its first bytes: formats that are not told by them are tables.
 SurveyFormat Recognised(std::string_view head) {
@@ -180,7 +179,7 @@ Result<SurveyTable> ReadSurvey(const std::filesystem::path& path, const ReadOpti
   if (!head) return head.fault();
   const SurveyFormat format = options.format.value_or(Recognised(*head));
   if (IsXml(format) || IsSheet(*head, options)) {
-    const Result<std::string> text = ReadTextFile(path, kMostXml);
+    const Result<std::string> text = ReadTextFile(path, kXmlBytes);
     if (!text) return text.fault();
     ReadOptions by_format = options;
     by_format.format = format;

@@ -11,9 +11,7 @@
 namespace wellgyro {
 namespace {
 
-// [bytes], a file of which is held whole, and elements within each other, by which reading goes
-// down the call stack; WITSML has a dozen.
-constexpr std::size_t kXmlBytes = std::size_t{1} << 28;
+// Elements within each other, by which reading goes down the call stack; WITSML has a dozen.
 constexpr int kMostDepth = 64;
 
 int LineAt(std::string_view bytes, std::size_t offset) {

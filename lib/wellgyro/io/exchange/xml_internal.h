@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,9 @@
 #include "wellgyro/io/exchange/line_reader_internal.h"
 
 namespace wellgyro {
+
+/// Largest file [bytes], held whole: 256 MiB, and several times that as a document.
+inline constexpr std::size_t kXmlBytes = std::size_t{1} << 28;
 
 /// Foreign XML, whole in memory: at most 2^28 bytes and 64 levels, no document type, hence no
 /// entities but XML's own five. Throws TextError with the line.
