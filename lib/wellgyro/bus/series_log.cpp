@@ -17,8 +17,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kLongestGap = 1'000'000'000;  // [samples]; a number further on is damage
-constexpr std::size_t kFaultsTold = 3;               // then their count
+constexpr std::size_t kFaultsTold = 3;  // then their count
 
 struct Wanted {
   bool raw = false;
@@ -47,7 +46,7 @@ class Collector {
     const auto size = std::ssize(now_.values);
     const std::int64_t ahead = stamp.seq - begin_seq_ - size;
     const bool restarted = size > 0 && (stamp.session != session_ ||
-                                        stamp.period_ns != period_ns_ || ahead > kLongestGap);
+                                        stamp.period_ns != period_ns_ || ahead > kGapSamplesMost);
     if (size == 0 || restarted) {
       Restart(stamp);
     } else if (ahead < 0) {

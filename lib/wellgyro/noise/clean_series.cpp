@@ -120,10 +120,9 @@ std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const 
   const double period = Median(std::move(steps));
   if (!(period > 0)) return NotRising(times);
   std::vector<std::int64_t> place(times.size(), 0);
-  constexpr double kLongest = 1e9;  // [periods], so that sums of steps stay far inside an int64
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double step = (times[i] - times[i - 1]) / period;
-    if (!(step > 0.5) || step > kLongest) {
+    if (!(step > 0.5) || step > static_cast<double>(kGapSamplesMost)) {
       return TimesComplaint{
           fmt::format("its time is {:.6g} s after that of the sample before, where the period is "
                       "{:.6g} s: mend or leave out the row, or name another column (--time, or "

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,10 @@
 #include "wellgyro/noise/allan_variance.h"
 
 namespace wellgyro {
+
+/// Missing samples between two neighbours, at most: 11 days at 1 kHz, at a place of 8 bytes each
+/// 8 GB. A sample number further on is damage. Sums of 9e9 such gaps stay inside an int64.
+inline constexpr std::int64_t kGapSamplesMost = 1'000'000'000;
 
 /// One channel of a log, evenly sampled, a place for every sample, missing ones too.
 struct SampleSeries {

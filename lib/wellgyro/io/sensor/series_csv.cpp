@@ -17,8 +17,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kLongestGap = 1'000'000'000;
-
 // Nothing when it is no number; NaN for an empty field.
 std::optional<double> NumberOrGap(std::string_view field) {
   return field.empty() ? std::numeric_limits<double>::quiet_NaN() : AnyNumberOf(field);
@@ -281,7 +279,7 @@ class CsvReader {
     }
     const auto number = static_cast<std::int64_t>(sequence);
     const std::int64_t missing = last_sequence_ ? number - *last_sequence_ - 1 : 0;
-    if (missing < 0 || missing > kLongestGap) {
+    if (missing < 0 || missing > kGapSamplesMost) {
       Refuse(fmt::format("sequence number {} follows {}", number, *last_sequence_),
              FaultCode::kOrder, *sequence_);
       return false;
