@@ -11,12 +11,10 @@ namespace {
 // Pairs are averaged over whole seconds of the tool's clock. A batch has one pair of its own, and
 // its other samples repeat that pair's difference: a difference that stays is taken once, and again
 // after ten seconds, since that of clocks in perfect step never changes.
-constexpr std::int64_t kCellNs = 1'000'000'000;
+constexpr std::int64_t kCellNs = ClockTie::kCell.ns;
 constexpr std::int64_t kRepeatNs = 10'000'000'000;
-// Sigmas beyond which a cell is refused, P = 5.7e-7: a good one in 20 days. Refused cells in a row
-// that make a step: UTC that is wrong for less than 5 s moves nothing.
+// Sigmas beyond which a cell is refused, P = 5.7e-7: a good one in 20 days.
 constexpr double kGate = 5;
-constexpr int kStep = 5;
 constexpr double kDoubtAfter = 60;  // [s] without a synchronised cell: 6 ms at sigma_drift
 // Innovations x^2 teach the variance by a gain 1 / (kTaught + cells), from 1/kTaught to 1/65, which
 // tells it to sqrt(2 / 129) = 12 % (30 or 120 cells move no end by 0.001 sigma); one x counts for
@@ -209,7 +207,7 @@ void ClockTie::Refuse(double innovation, double variance, bool synced) {
   }
   ++refused_;
   refused_sum_ += innovation;
-  if (refused_ < kStep) return;
+  if (refused_ < kCellsOfStep) return;
   const std::int64_t step = Nanoseconds(refused_sum_ / refused_);
   utc0_.ns = Sum(utc0_.ns, step);
   p00_ = variance;

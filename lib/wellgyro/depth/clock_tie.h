@@ -32,6 +32,11 @@ struct ClockTieSetup {
 /// that batch size moves the tie by no more than the pairs' own jitter.
 class WELLGYRO_EXPORT ClockTie {
  public:
+  /// Pairs are averaged over cells; so many refused in a row make a step: UTC that is wrong for
+  /// less than 5 s moves nothing.
+  static constexpr Duration kCell{1'000'000'000};
+  static constexpr int kCellsOfStep = 5;
+
   explicit ClockTie(const ClockTieSetup& setup = {});
 
   /// Takes a pair; times that do not advance within a session are ignored.

@@ -8,8 +8,8 @@ namespace wellgyro {
 namespace {
 
 constexpr double kClockStep = 0.1;  // [s], less is the jitter of messages: 0.1 m of depth at 1 m/s
-// Until a new tie knows its UTC: of ClockTie's cells of a second, those in a row that make a step.
-constexpr Duration kTies = Duration::Seconds(5);
+// Until a new tie knows its UTC: cells in a row that make a step of it.
+constexpr Duration kTies{ClockTie::kCellsOfStep * ClockTie::kCell.ns};
 
 // Times come from outside: nonsense must not overflow.
 template <class Time>
