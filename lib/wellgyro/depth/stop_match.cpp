@@ -15,8 +15,6 @@
 namespace wellgyro {
 namespace {
 
-// Rests of either clock: one a minute and a half for a day. The search takes up to kMost^2 offsets.
-constexpr std::size_t kMost = 1000;
 constexpr double kSearch = 5;  // [s], width of the first search: 1e-4 of 14 h
 // [s], between offsets that are not the same: a rest off by it at both edges is worth exp(-16).
 constexpr double kOffsetsApart = 4 * kSearch;
@@ -201,9 +199,9 @@ Result<StopMatch> MatchStops(std::span<const ToolRest> tool, std::span<const Utc
   if (!(setup.sigma_edge > 0)) {
     throw std::invalid_argument("MatchStops: sigma_edge must be positive");
   }
-  if (tool.size() > kMost || rig.size() > kMost) {
+  if (tool.size() > kRestsMost || rig.size() > kRestsMost) {
     return Fault{.code = FaultCode::kSize,
-                 .text = "more than " + std::to_string(kMost) + " stops of one clock"};
+                 .text = "more than " + std::to_string(kRestsMost) + " stops of one clock"};
   }
   if (tool.size() < 2 || rig.size() < 2) {
     return Fault{.code = FaultCode::kLost,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 
@@ -10,6 +11,10 @@
 #include "wellgyro/base/time.h"
 
 namespace wellgyro {
+
+/// Rests of either clock, at most: one a minute and a half for a day. The search takes up to their
+/// square of offsets.
+inline constexpr std::size_t kRestsMost = 1000;
 
 /// A time at rest, as one clock tells it.
 template <class Clock>
@@ -44,8 +49,9 @@ struct StopMatch {
 ///
 /// No first guess is needed. Rests that only one of the two has, and wrong times, are left out:
 /// starts and stops count by Tukey's biweight of their own scatter. Both lists in the order of
-/// time, at most 1000 rests each. Faults: kLost with fewer than two rests that agree, kConflict
-/// where another offset explains nearly as many, as with stops of equal length and distance.
+/// time, at most kRestsMost rests each. Faults: kLost with fewer than two rests that agree,
+/// kConflict where another offset explains nearly as many, as with stops of equal length and
+/// distance.
 WELLGYRO_EXPORT Result<StopMatch> MatchStops(std::span<const ToolRest> tool,
                                              std::span<const UtcRest> rig,
                                              const StopMatchSetup& setup = {});

@@ -5,12 +5,12 @@
 #include <initializer_list>
 #include <span>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/survey/check_internal.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr double kFoot = 0.3048;  // [m]
 // Accelerometers, a cable and starts and stops, six sigmas of which are half of it, may be so far
 // from a unit; the next unit is further by three times.
 constexpr double kOtherUnit = 0.15;
@@ -31,9 +31,9 @@ std::optional<Check> WrongUnit(const DepthMotion::Found& found, std::optional<do
   check.value = found.scale;
   check.sigma = found.sigma_scale;
   check.unit = "1";
-  if (IsNearScale(found.scale, 1 / kFoot)) return check;
+  if (IsNearScale(found.scale, 1 / units::kFoot)) return check;
   check.limit_source = "depths in metres are taken for feet";
-  if (IsNearScale(found.scale, kFoot)) return check;
+  if (IsNearScale(found.scale, units::kFoot)) return check;
   if (!IsNearScale(found.scale, -1)) return std::nullopt;
   const bool up = lean && *lean > 0;
   check.code = up ? "tool_upside_down" : "depth_reversed";

@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/base/units.h"
+#include "wellgyro/depth/stop_match.h"
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/station_marks.h"
@@ -42,10 +44,10 @@ constexpr double kUnitTells = 0.1;
 constexpr double kUnitWrong = 0.15;
 // [s], of a mean rate at rest: gyros of 0.05 deg/sqrt(h) tell it to 0.95 deg/h, 6 % of the Earth's.
 constexpr double kRestBlock = 10;
-constexpr double kGravity = 9.80665;  // where the place is left open [m/s^2]: within .3 %
+// Where the place is left open [m/s^2]: 9.780 to 9.832 on the ellipsoid are within 0.28 % of it.
+constexpr double kGravity = units::kStandardGravity;
 // [s], of either end of a stop that may move: the string still swings when its depth rests.
 constexpr double kSettles = 10;
-constexpr double kMostRests = 1000;  // stops remembered, as many as MatchStops takes
 
 constexpr const char* kAxisNames[] = {"gyro x",  "gyro y",  "gyro z",
                                       "accel x", "accel y", "accel z"};
@@ -87,7 +89,7 @@ std::string_view AccelUnitOf(double ratio) {
   };
   constexpr Unit kUnits[] = {{1 / kGravity, ": g taken for m/s2"},
                              {1000 / kGravity, ": thousandths of g taken for m/s2"},
-                             {1 / 0.3048, ": ft/s2 taken for m/s2"},
+                             {1 / units::kFoot, ": ft/s2 taken for m/s2"},
                              {100, ": Gal taken for m/s2"}};
   // Thousandths of g and Gal are 2 % apart, gravity and accelerometers together .5 %.
   for (const Unit& unit : kUnits) {
@@ -242,7 +244,7 @@ void SampleWatch::WatchRest(const ImuSample& sample, const AlongHole& along, boo
     resting_ = false;
     return;
   }
-  if (!resting_ && static_cast<double>(stops_.size()) < kMostRests) {
+  if (!resting_ && stops_.size() < kRestsMost) {
     stops_.push_back({stamp.tool_time, stamp.tool_time, along.md});
     resting_ = true;
   }
