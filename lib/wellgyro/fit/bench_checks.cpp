@@ -177,6 +177,8 @@ std::optional<Fault> RadiansForDegrees(const BenchTable& data, const std::vector
 
 std::optional<Fault> OtherRate(const BenchTable& data, const std::string& channel,
                                double sensitivity) {
+  // Factor off one: a maker's scale is within some per cent of its unit, while one deg/h is 1/57 of
+  // a rad/h, 1/3600 of a deg/s and 1000 mdeg/h.
   constexpr double kOtherUnit = 5;
   if (sensitivity > 1 / kOtherUnit && sensitivity < kOtherUnit) return std::nullopt;
   return BenchFault(
@@ -228,9 +230,8 @@ std::optional<Fault> DoesNotFit(const BenchTable& data, const std::vector<Channe
 std::optional<Fault> DoesNotFit(const ReadingPlaces& places,
                                 const std::vector<ChannelSignal>& signals, FitReport& report) {
   // Readings with a wrong sign, a share p of them, leave 2 sqrt(p) of the signal: 0.2 is one in a
-  // hundred. 0.02 is 0.3 deg/h of the Earth's rate or 20 mg, coarser than any tool that finds
-  // north.
-  constexpr double kRefused = 0.2, kRemarked = 0.02;
+  // hundred.
+  constexpr double kRefused = 0.2;
   std::map<std::string, std::vector<const FitResidual*>> of;
   for (const FitResidual& residual : report.residuals) of[residual.channel].push_back(&residual);
   for (auto& entry : of) {
@@ -243,7 +244,7 @@ std::optional<Fault> DoesNotFit(const ReadingPlaces& places,
     double square = 0;
     for (const FitResidual* residual : residuals) square += residual->value * residual->value;
     const double rms = std::sqrt(square / static_cast<double>(residuals.size()));
-    if (!(rms > kRemarked * known->signal)) continue;
+    if (!(rms > kCoarseShare * known->signal)) continue;
     std::sort(residuals.begin(), residuals.end(), [](const FitResidual* a, const FitResidual* b) {
       return std::abs(a->value) > std::abs(b->value);
     });

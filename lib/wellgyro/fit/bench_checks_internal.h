@@ -21,6 +21,10 @@ namespace wellgyro {
 /// known to 1 / sqrt(2 n), of 30 to 13 %.
 inline constexpr int kToFindNoise = 30;
 
+/// Scatter about a fit, over what the channel should vary by, from which on it is said: 0.02 is
+/// 0.3 deg/h of the Earth's rate or 20 mg, coarser than any tool that finds north.
+inline constexpr double kCoarseShare = 0.02;
+
 inline constexpr double kBenchEarthDegPerHour = kBenchEarthRate / units::kDegPerHour;
 
 /// The complaint about a table of readings; `advice` says what to measure next.

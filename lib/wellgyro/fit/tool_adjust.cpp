@@ -126,7 +126,7 @@ class Adjuster {
   // What readings at rest determine is lost beside a rate table's where one fit, which follows the
   // table, leaves them hundreds of times coarser than gyros are that find north.
   bool Contradict() const {
-    constexpr double kCoarse = 0.02 * kBenchEarthDegPerHour;  // from which DoesNotFit speaks
+    constexpr double kCoarse = kCoarseShare * kBenchEarthDegPerHour;  // as DoesNotFit()
     return noise_.gyro > kCoarse && noise_.gyro > noise_.gyro_table;
   }
   Fault Contradiction() const {

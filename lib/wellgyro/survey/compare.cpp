@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/cause.h"
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/survey/difference_covariance_internal.h"
@@ -30,7 +31,6 @@ using Eigen::VectorXd;
 constexpr std::size_t kPlacesMax = 20'000;  // the longest well by the metre, rounded up
 // [rad], below it an azimuth says nothing: it is 573 times as vague as the hole's direction.
 constexpr double kVertical = 0.1 * kPi / 180;
-constexpr double kPower = 0.8;  // as kNoticedPower: noticed four times in five
 
 struct Common {
   double begin = 0, end = 0;  // [m]
@@ -299,7 +299,7 @@ void TestPosition(Comparison& comparison) {
 
 /// A pass of the few places that were asked for says nothing of the hole.
 void TellExtent(const std::vector<double>& depths, const Common& common, Comparison& comparison) {
-  constexpr double kEnough = 0.5;  // from which on what was seen is the greater part
+  constexpr double kEnough = 0.5;  // [1], from which on what was seen is the greater part
   const double seen = (depths.back() - depths.front()) / (common.end - common.begin);
   if (seen >= kEnough) return;
   Check check = CheckOf("compare_extent", "1");
@@ -317,7 +317,7 @@ void SaySmallest(Comparison& comparison) {
   const auto say = [&](const char* code, double in_unit, std::optional<ShiftEstimate>& shift) {
     const auto check = std::ranges::find(comparison.checks, code, &Check::code);
     if (!shift || !check->limit) return;
-    shift->smallest = *check->limit * in_unit + NormalQuantile(kPower) * shift->sigma;
+    shift->smallest = *check->limit * in_unit + kNoticedPower * shift->sigma;
   };
   say("compare_depth_offset", 1, comparison.depth_offset);
   say("compare_depth_stretch", 1e-3, comparison.depth_stretch);

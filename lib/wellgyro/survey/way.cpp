@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "wellgyro/survey/choose.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
 
 namespace wellgyro {
 namespace {
 
-// [m], between points of a line: twice kSameDepth, below which directions differ by noise.
-constexpr double kNearMd = 0.2;
+// [m], between points of a line: nearer than two stations' depths together may be off, directions
+// differ by noise.
+constexpr double kNearMd = 2 * kSameDepth;
 // [m], back from the shallowest point: there another pass begins. More than a string creeps or
 // heaves while it rests, less than a joint.
 constexpr double kTurn = 1;
