@@ -96,5 +96,68 @@ TEST(GyroRaw, AxesThatAreNotOursAreRefused) {
   EXPECT_EQ(WindowsOfGyroRaw(table, PointJob()).fault().code, FaultCode::kConflict);
 }
 
+/// Tools at rest, horizontal to half a degree, as the equations of a tool's frame have it.
+SurveyTable Horizontal(double latitude, double sign) {
+  SurveyTable table;
+  for (int k = 0; k < 4; ++k) {
+    const double i = FromDegrees(89.5 + 0.3 * k), a = FromDegrees(20 + 100 * k), t = k;
+    const Eigen::Vector3d up(std::sin(i) * std::cos(t), -std::sin(i) * std::sin(t), -std::cos(i));
+    const Eigen::Vector3d north(
+        std::cos(a) * std::cos(i) * std::cos(t) - std::sin(a) * std::sin(t),
+        -std::cos(a) * std::cos(i) * std::sin(t) - std::sin(a) * std::cos(t),
+        std::cos(a) * std::sin(i));
+    GyroRawRecord g;
+    g.number = k + 1;
+    g.md = 30.0 * (k + 1);
+    g.inclination = i;
+    g.azimuth = a;
+    g.f = sign * 9.81 * up;
+    g.w = units::kDegPerHour * kRate * (std::cos(latitude) * north + std::sin(latitude) * up);
+    g.w.z() = 0;  // no third axis
+    table.head.gyro_raw.push_back(g);
+  }
+  return table;
+}
+
+// Both signs agree with inclinations within 2 deg of horizontal. The wrong one exchanges the high
+// side with the low side, and so east with west: sin A is the rate across the vertical.
+TEST(GyroRaw, HorizontalRecordsHaveTheirSignFromTheEarthsRate) {
+  Job job = PointJob();
+  for (const double latitude_deg : {59.75, 10.0, -25.0}) {
+    for (const double sign : {1.0, -1.0}) {
+      job.well.latitude = FromDegrees(latitude_deg);
+      const SurveyTable table = Horizontal(job.well.latitude, sign);
+      const Result<std::vector<StillWindow>> windows = WindowsOfGyroRaw(table, job);
+      ASSERT_TRUE(windows) << windows.fault().text;
+      const Eigen::Vector3d specific = sign * table.head.gyro_raw[0].f;
+      EXPECT_LT((windows->front().f_T - specific).norm(), 1e-12) << latitude_deg << " " << sign;
+    }
+  }
+}
+
+TEST(GyroRaw, HorizontalRecordsWhoseSignNothingTellsAreRefused) {
+  Job job = PointJob();
+  job.well.latitude = FromDegrees(3);
+  const SurveyTable near_equator = Horizontal(job.well.latitude, 1);
+  const auto windows = WindowsOfGyroRaw(near_equator, job);
+  ASSERT_FALSE(windows);
+  EXPECT_EQ(windows.fault().code, FaultCode::kConflict);
+  EXPECT_NE(windows.fault().text.find("horizontal"), std::string::npos);
+  // Gyros that turn by something other than the Earth.
+  job.well.latitude = FromDegrees(60);
+  SurveyTable other = Horizontal(job.well.latitude, 1);
+  for (GyroRawRecord& g : other.head.gyro_raw) g.w *= 0.2;
+  EXPECT_FALSE(WindowsOfGyroRaw(other, job));
+  // One record elsewhere tells it.
+  SurveyTable one = near_equator;
+  GyroRawRecord steep;
+  steep.number = 5;
+  steep.inclination = FromDegrees(60);
+  steep.f = 9.81 * Eigen::Vector3d(std::sin(steep.inclination), 0, -std::cos(steep.inclination));
+  one.head.gyro_raw.push_back(steep);
+  job.well.latitude = FromDegrees(3);
+  EXPECT_TRUE(WindowsOfGyroRaw(one, job));
+}
+
 }  // namespace
 }  // namespace wellgyro

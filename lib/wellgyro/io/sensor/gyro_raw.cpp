@@ -11,16 +11,23 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/io/iso_time_internal.h"
 #include "wellgyro/io/text_file.h"
 
 namespace wellgyro {
 namespace {
 
-// The wrong sign gives 180 deg - I, so that I, if not within 1 deg of horizontal in all records, is
-// off by more; uncorrected accelerometers and sag are off by less.
+// Inclination by the accelerometers against the one stated: uncorrected accelerometers and sag are
+// off by less. The wrong sign gives 180 deg - I, which agrees too only where I is within 2 deg of
+// horizontal.
 constexpr double kAgree = FromDegrees(2);
-// Least sigmas, of records that state none by jobs that state no noise: what their digits round.
+// Earth's rate along the vertical, Omega sin L, that tells up from down there: 8 deg of latitude.
+// Half of it is more than gyros of some tenths of a deg/h are off by, and what a third axis that
+// is not there would add, 15 sin 2 deg = 0.5 deg/h.
+constexpr double kTellsUp = 2 * units::kDegPerHour;
+// Least sigmas, of records that state none by jobs that state no noise: what their digits round,
+// 0.04 deg of azimuth at the equator and 6e-4 deg of inclination.
 constexpr double kRateLeast = 0.01 * units::kDegPerHour;
 constexpr double kForceLeast = 1e-4;  // [m/s^2]
 // From the end of a record without a time to the next, which has none either: only the order
@@ -43,8 +50,30 @@ std::optional<UtcTime> TimeOf(std::string text) {
   return UtcTime{} + Duration::Seconds(*seconds);
 }
 
+/// The same of records that are horizontal, by the Earth's rate: w f / |f|, f specific force, is
+/// Omega sin L.
+Result<double> SignByEarthRate(const std::vector<GyroRawRecord>& records, double latitude) {
+  double sum = 0, count = 0;
+  for (const GyroRawRecord& g : records) {
+    if (!g.used) continue;
+    sum += g.w.dot(g.f.stableNormalized());
+    count += 1;
+  }
+  const double up = kEarthRate * std::sin(latitude), along = sum / count;
+  for (const double sign : {1.0, -1.0}) {
+    if (std::abs(up) >= kTellsUp && std::abs(sign * along - up) < std::abs(up) / 2) return sign;
+  }
+  return Fault{.code = FaultCode::kConflict,
+               .text = fmt::format(
+                   "all G7 records are horizontal, where gravity and specific force have the "
+                   "same inclination, and the rate along the accelerometers' vertical, "
+                   "{:.2f} deg/h, where the Earth's is {:.2f}, does not tell them apart: "
+                   "keep a record at another inclination in the file",
+                   along / units::kDegPerHour, up / units::kDegPerHour)};
+}
+
 /// +1: specific force, -1: gravity; by what the file says of its own inclinations.
-Result<double> SignOfForce(const std::vector<GyroRawRecord>& records) {
+Result<double> SignOfForce(const std::vector<GyroRawRecord>& records, double latitude) {
   double worst[2] = {0, 0};
   int number = 0;
   for (const GyroRawRecord& g : records) {
@@ -57,6 +86,7 @@ Result<double> SignOfForce(const std::vector<GyroRawRecord>& records) {
       }
     }
   }
+  if (std::max(worst[0], worst[1]) <= kAgree) return SignByEarthRate(records, latitude);
   if (worst[0] <= kAgree) return 1.0;
   if (worst[1] <= kAgree) return -1.0;
   return Fault{
@@ -73,7 +103,7 @@ Result<std::vector<StillWindow>> WindowsOfGyroRaw(const SurveyTable& table, cons
   if (std::ranges::none_of(records, &GyroRawRecord::used)) {
     return Fault{.code = FaultCode::kLost, .text = "it holds no G7 record that is used"};
   }
-  const Result<double> sign = SignOfForce(records);
+  const Result<double> sign = SignOfForce(records, job.well.latitude);
   if (!sign) return sign.fault();
   const bool third = std::ranges::any_of(records, [](const auto& g) { return g.w.z() != 0; });
   const double seconds = job.alignment.min_still;
