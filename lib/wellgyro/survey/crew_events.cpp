@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "wellgyro/survey/choose.h"
+
 namespace wellgyro {
 
 void CrewEvents::Take(const Event& event, std::int32_t run, const AlongHole& read) {
@@ -26,12 +28,10 @@ void CrewEvents::Take(const Event& event, std::int32_t run, const AlongHole& rea
 }
 
 StationStatus CrewEvents::StatusOf(const Station& station, bool adjusted) const {
-  // [m]: a depth is typed by hand, to the decimetre at best, and more often to the metre, 0.5 off.
-  constexpr double kTyped = 0.5;
   StationStatus status = adjusted ? StationStatus::kField : StationStatus::kProvisional;
   for (const Event& event : verdicts_) {
     if (event.run != 0 && event.run != station.run) continue;
-    if (event.has_value && std::abs(event.value_m - station.md) > kTyped) continue;
+    if (event.has_value && std::abs(event.value_m - station.md) > kTypedDepth) continue;
     status =
         event.kind == Event::Kind::kAccept ? StationStatus::kDefinitive : StationStatus::kRejected;
   }

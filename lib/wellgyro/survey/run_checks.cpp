@@ -15,6 +15,7 @@
 #include "wellgyro/record/error_source.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/check_internal.h"
+#include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/roll_by_warming_internal.h"
 #include "wellgyro/survey/run_checks_internal.h"
 
@@ -93,15 +94,16 @@ void CheckMagnets(const Job& job, const RunSummary& run, std::vector<Check>& che
 /// An azimuth from outside against the gyros' own at the stop where it holds, which it has no part
 /// in: as one that is told of the tool's other end.
 void CheckOutside(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
-  constexpr double kThatPlace = 0.5;  // [m]
-  constexpr double kBegins = 60;      // [s], of the run, until its first stop does
+  // [s] of the run, until its first stop begins: the least time of a stop, 60 s, leaves no other
+  // one before it.
+  constexpr double kBegins = 60;
   const AlignmentSpec& spec = job.alignment;
   const bool of_axis = spec.of == AlignmentSpec::Of::kAxis;
   if (spec.method != AlignmentSpec::Method::kExternal || !of_axis || spec.at_utc) return;
   for (const NorthFix& fix : run.fixes) {
     if (fix.external || !fix.md || Has(fix.quality, Quality::kVertical | Quality::kMirror))
       continue;
-    const bool there = spec.at_md ? std::abs(*fix.md - *spec.at_md) < kThatPlace
+    const bool there = spec.at_md ? std::abs(*fix.md - *spec.at_md) < kTypedDepth
                                   : (fix.utc_begin - run.begin).seconds() < kBegins;
     if (!there) continue;
     const double sigma = std::hypot(std::sqrt(fix.cov_attitude(1, 1)), spec.sigma_azimuth);
