@@ -11,10 +11,11 @@
 namespace wellgyro {
 namespace {
 
-// Accelerometers, a cable and starts and stops, six sigmas of which are half of it, may be so far
-// from a unit; the next unit is further by three times.
+// Of the ratio, off a unit's own: accelerometers and a cable are some per cent, starts and stops
+// tell it to half of this (kToldScale). The next unit is off by a factor of three.
 constexpr double kOtherUnit = 0.15;
-constexpr double kToldScale = 0.075;  // six sigmas of the ratio from which it says something
+// Six sigmas of the ratio, over it, from which it says something: half of kOtherUnit.
+constexpr double kToldScale = kOtherUnit / 2;
 
 bool TellsScale(const DepthMotion::Found& found) {
   const double size = std::max(std::abs(found.scale), 0.1);
@@ -51,7 +52,7 @@ bool FeelsWrong(std::span<const Check> checks, std::int32_t run) {
 }
 
 void AddJump(const DepthMotion::Found& found, std::int32_t run, std::vector<Check>& checks) {
-  constexpr double kStep = 0.2;  // less is no matter [m]
+  constexpr double kStep = 0.2;  // less is no matter [m]: 0.07 deg in a hole of 10 deg/30 m
   const double limit = std::max(kStep, 8 * found.sigma_step);
   checks.push_back(CompareWith("depth_jump", run, {found.step, found.sigma_step}, limit, 1, "m",
                                "8 sigma of the marks, 0.2 m"));
@@ -60,7 +61,7 @@ void AddJump(const DepthMotion::Found& found, std::int32_t run, std::vector<Chec
 
 void AddLag(const DepthMotion::Found& found, std::int32_t run, std::vector<Check>& checks) {
   constexpr double kLag = 0.1;      // less is no matter [s]: 0.1 m at 1 m/s
-  constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]: no more than kLag
+  constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]: kLag at most
   if (!(found.sigma_lag > 0 && found.sigma_lag < kToldLag)) {
     checks.push_back(NotDone("depth_lag", run, "no starts and stops that tell it"));
     return;

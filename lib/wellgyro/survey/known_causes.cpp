@@ -10,7 +10,7 @@ namespace {
 
 using Kind = CauseSpec::Kind;
 
-constexpr double kOne = 1;  // of what is stated in SI
+constexpr double kOne = 1;  // unit of what is stated in SI
 constexpr std::string_view kLatitudeSign = "latitude_sign";
 constexpr std::string_view kCalibrate =
     "widen its sigma in [errors], run again, calibrate the tool";

@@ -15,7 +15,7 @@ namespace {
 /// What the hole may do in a leg that nobody saw: course-length terms XCLA and XCLH of the ISCWSA
 /// error model, SPE 187249.
 Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
-  constexpr double kRatio = 0.167;
+  constexpr double kRatio = 0.167;  // XCLA, XCLH: of the leg's length times its turn [1]
   constexpr double kTortuosity = units::kDegPer100ft;  // the least that a hole turns
   const double length = below.md - above.md;
   const double inclination = 0.5 * (above.inclination + below.inclination);

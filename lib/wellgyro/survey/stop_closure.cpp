@@ -11,7 +11,9 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kTells = 1e-3;  // of a variance, from which a stop has said something of it
+// Of a variance, from which a stop has said something of it: there its closure has a sigma of
+// 1 / sqrt(kTells) = 32 times what was known.
+constexpr double kTells = 1e-3;
 
 void Take(const NorthClosure& closure, NorthFix& fix) {
   fix.chi_square.reset();

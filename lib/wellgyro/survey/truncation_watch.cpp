@@ -14,12 +14,14 @@ using Eigen::Matrix4d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-// What decimals of a table leave of a whole step.
+// Of a step, by which a whole number of them may be off: decimals of a table, three behind a step's
+// own.
 constexpr double kWholeStep = 1e-3;
 // Samples of one passage, at the most: ten seconds at 10 Hz, in which a signal that rolls is
 // through.
 constexpr double kMostSamples = 100;
-// Passages from which their mean counts are normal enough for a sigma.
+// Passages from which their mean counts are normal enough for a sigma, which they tell to
+// 1 / sqrt(2 * 30) = 13 %.
 constexpr double kLeastPassages = 30;
 
 }  // namespace
