@@ -50,7 +50,8 @@ std::optional<std::string> OtherHemisphere(
   const Eigen::VectorXd now = solution.x(forces), then = x(forces);
   const double log_odds =
       (solution.chi_square - chi_square) / (2 * variance) + LogOddsByForces(now, then);
-  // Of those who are asked one in twenty was right.
+  // Odds of the other sign, both as likely before: of those who are asked at the limit one in 21
+  // was right. Beyond a million no number is said.
   constexpr double kOdds = 20, kBeyondDoubt = 1e6;
   if (!(log_odds > std::log(kOdds))) return std::nullopt;
   return fmt::format(

@@ -161,7 +161,8 @@ std::set<int> Beyond(const LinearProblem& problem, const Eigen::VectorXd& residu
   return lines;
 }
 
-// What no bench calls an outlier: rounding of readings in their ninth digit.
+// What no bench calls an outlier: rounding of readings in their ninth digit, of which the largest
+// departure may be kOutlierSigmas scales.
 double LeastScale(const Whitened& w) {
   constexpr double kRounding = 1e-9;
   return kRounding * w.y.cwiseAbs().maxCoeff() / kOutlierSigmas;
