@@ -35,7 +35,9 @@ struct CauseTest {
   Eigen::Vector3d hidden_W = Eigen::Vector3d::Zero();
 };
 
-/// Knots that are looked at as one: a disturbance of some twenty seconds shows in few of them.
+/// Knots of a second that are looked at as one: two rows each tell a variance to
+/// sqrt(2 / 40) = 22 %, and a
+/// disturbance of some twenty seconds shows in few of them.
 inline constexpr std::size_t kStretchKnots = 20;
 
 /// Squares of whitened residuals, each over its own variance, and how many they are.

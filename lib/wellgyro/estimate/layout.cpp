@@ -52,8 +52,8 @@ ErrorCovariance SourceCovariance(const EstimateSetup& setup) {
   return cov;
 }
 
-/// What a calibration knows only of sums of errors it knows to a thousandth of their sigmas at
-/// best: its covariance need not have full rank.
+/// Variance, over their own: what a calibration knows only of sums of errors it knows to a
+/// thousandth of their sigmas at best, so that its covariance need not have full rank.
 constexpr double kApart = 1e-6;
 
 /// Information of the border before any knot.

@@ -10,7 +10,8 @@ namespace {
 using Eigen::Vector3d;
 using Kind = CauseSpec::Kind;
 
-// The sigma that is left to a size, in sizes: its prior then costs 1/2 (1/100)^2 of ln B.
+// The sigma that is left to a size, in sizes: the prior of one size then costs 1/2 (1/100)^2 = 5e-5
+// of ln B.
 constexpr double kFlat = 100;
 
 bool IsConstant(Kind kind) { return kind == Kind::kConstant || kind == Kind::kGiven; }

@@ -10,7 +10,8 @@ inline constexpr double kAnyRoll = 10;
 /// which on it is not worth while: one sigma, and a hundred, over all unknowns together.
 inline constexpr double kNear = 1, kFar = 1e4;
 
-/// What may be hoped for, as a multiple of what the linear model or a trend of decrements promises.
+/// What may be hoped for, as a multiple of what the linear model or a trend of decrements promises:
+/// a margin, so that steps are not given up for the error of either.
 inline constexpr double kGain = 10;
 
 }  // namespace wellgyro
