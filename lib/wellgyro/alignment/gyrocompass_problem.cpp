@@ -24,7 +24,8 @@ constexpr double kSigmaLeastRate = 1e-5 * units::kDegPerHour;
 constexpr double kSigmaLeastForce = 1e-6;  // [m/s^2]
 // Where toolfaces separate it: seven times the Earth's rate is no information beside theirs.
 constexpr double kSigmaFreeBias = 100 * units::kDegPerHour;
-constexpr double kSigmaFreeGravity = 1;  // |f| says nothing of direction
+// [m/s^2], a tenth of gravity: |f| says nothing of direction.
+constexpr double kSigmaFreeGravity = 1;
 
 Vector3d EarthRate(double latitude) {
   return kEarthRate * Vector3d(std::cos(latitude), 0, -std::sin(latitude));

@@ -24,12 +24,16 @@ constexpr double kSpeedSigmas = 4;
 constexpr double kRagged = 4;
 // From which on a slope is told: over n blocks to sqrt(12 / n) of a block's sigma.
 constexpr double kCreepBlocks = 10;
-// Floors: what a tool hanging in a live hole, and sensors a little worse than their data sheet, do.
-constexpr double kScatterRate = 0.1 * units::kDeg;     // of one sample [rad/s]
-constexpr double kScatterForce = 0.05;                 // of one sample [m/s^2]
-constexpr double kMeanRate = 20 * units::kDegPerHour;  // beyond the Earth's
-constexpr double kChangeRate = units::kDegPerHour;     // block against stretch
-constexpr double kChangeForce = 1e-3;                  // likewise [m/s^2], 0.006 deg of tilt
+// Floors: what a tool hanging in a live hole does, and sensors worse than they are stated.
+// Scatter of one sample: gyros of 0.05 deg/sqrt(h) and accelerometers of 2e-4 m/s^2/sqrt(Hz) have
+// 0.008 deg/s and 0.002 m/s^2 at 100 Hz. A swing by 0.03 deg at 0.5 Hz has 0.1 deg/s at its peak.
+constexpr double kScatterRate = 0.1 * units::kDeg;
+constexpr double kScatterForce = 0.05;  // [m/s^2]
+// Mean rate beyond the Earth's, beside what is stated of biases: a thousandth of a roll at 1 rpm.
+constexpr double kMeanRate = 20 * units::kDegPerHour;
+// Block against stretch: a third of what 0.05 deg/sqrt(h) scatter from second to second.
+constexpr double kChangeRate = units::kDegPerHour;
+constexpr double kChangeForce = 1e-3;  // likewise [m/s^2], 0.006 deg of tilt
 // Rotation of gravity in the tool: as a rate error 0.38 deg of azimuth at the equator, 0.76 at 60.
 constexpr double kCreep = 0.1 * units::kDegPerHour;
 

@@ -119,7 +119,8 @@ struct SampleCalibrator::State {
 };
 
 SampleCalibrator::State::State(const ToolCalibration& model) : tool(model) {
-  // Sizes that each measures well.
+  // [rad/s, m/s^2, T], sizes that each measures well, to which roundings are held: 240 times the
+  // Earth's rate, gravity, the Earth's field.
   constexpr std::array kUnits{units::kDeg, units::kStandardGravity, 5e-5};
   const std::array models{&tool.gyro, &tool.accel, &tool.mag};
   for (std::size_t i = 0; i < kGroups; ++i) {

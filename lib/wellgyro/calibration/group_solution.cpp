@@ -10,8 +10,10 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kRight = 1e-9, kSmallRight = 1e-5;  // of u; of small terms, by interpolation
-constexpr double kLeft = 5e-11;                      // of u, by turns of the second order
+// Of u, by interpolation: 10 deg/s are right to 4e-5 deg/h, gravity to 1e-9 g. Small terms,
+// some thousandths of u, to 1e-5: 1e-8 of u for each thousandth.
+constexpr double kRight = 1e-9, kSmallRight = 1e-5;
+constexpr double kLeft = 5e-11;  // of u, by turns of the second order: a twentieth of kRight
 
 // Largest e for which n turns of RefineInDouble are enough. All u_n are below |u_0| s, s = 1 / (1 -
 // 2 e); the first is off by e s^2 |u_0|, and each turn leaves 2 e s of it.

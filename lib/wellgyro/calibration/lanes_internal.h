@@ -43,7 +43,7 @@ inline float SingleAt(const std::byte* from) {
   return n;
 }
 
-/// Four samples, by what every processor has.
+/// Four samples, 128 bits of singles, by what every processor has.
 struct Lanes4 {
   static constexpr std::size_t kCount = 4;
   using Single = Singles4;
@@ -121,7 +121,7 @@ struct Lanes4 {
 };
 
 #if defined(__x86_64__)
-/// Eight, by AVX2: only for functions compiled for it.
+/// Eight, 256 bits, by AVX2: only for functions compiled for it.
 struct Lanes8 {
   static constexpr std::size_t kCount = 8;
   using Single = Singles8;

@@ -38,7 +38,7 @@ Observed ObservedBy(const RunLesson& lesson, const std::vector<Eigen::Index>& kn
   const SymmetricEigen eigen = EigenOfSymmetric(to_unit * after * to_unit.transpose());
   const MatrixXd A = eigen.vectors.transpose() * to_unit;
   const VectorXd found = A * lesson.errors(known);
-  // Directions of which the run says less than this differ from the prior by rounding.
+  // 1 - w, of which the run says nothing: its observation's variance would be 1000 of the prior's.
   constexpr double kLeast = 1e-3;
   std::vector<Eigen::Index> told;
   for (Eigen::Index k = 0; k < found.size(); ++k) {

@@ -7,9 +7,14 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kShared = 2.0 / 3;
-constexpr double kTimes = 10;   // what the neighbours have that is no spike's
-constexpr double kSpreads = 3;  // of the neighbours
+constexpr double kShared = 2.0 / 3;  // weight 4/6 of a neighbour in the cubic through four
+// Over what the neighbours depart from their cubics without the spike. Of a tone w, in radians a
+// sample, that is |cos w + 2/3| of the departure at a crest: 2/3 and more below a quarter of the
+// sampling rate, but less than a tenth from 0.346 to 0.389 of it, where crests pass for spikes.
+constexpr double kTimes = 10;
+// Of the middle four of six neighbours, 1.28 sigma of white noise on average (order statistics):
+// 3.9 sigma.
+constexpr double kSpreads = 3;
 // Of the stated noise: 6 sqrt(1 + (4^2 + 4^2 + 1 + 1) / 6^2), six sigmas of a sample less its
 // cubic, P = 2e-9: of six axes at 100 Hz one sample in ten days.
 constexpr double kSigmas = 8.4;
@@ -86,7 +91,7 @@ SixAxes SpikeFilter::Beyond(std::size_t i) const {
 /// False: Beyond() is within the floor on every axis of samples [begin, end). Nearly all blocks
 /// are done with this.
 bool SpikeFilter::AnyDeparts(std::size_t begin, std::size_t end) const {
-  constexpr double kSurely = 5.99;  // of six, for what is rounded
+  constexpr double kSurely = 5.99;  // of the six by which the terms are multiplied, for rounding
   using Axes = Eigen::Map<const Eigen::ArrayXd>;
   const auto count = static_cast<Eigen::Index>(6 * (end - begin));
   const auto from = [&](std::size_t i) { return Axes(axes_[i].data(), count); };
