@@ -15,8 +15,8 @@ std::uint64_t SplitMix64(std::uint64_t& state) {
 
 // Natural logarithm for x > 0, good to 1e-15, by arithmetic that IEEE 754 rounds in one way only.
 double PortableLog(double x) {
-  constexpr double kLn2 = 0.69314718055994530942;
-  constexpr double kSqrtHalf = 0.70710678118654752440;
+  constexpr double kLn2 = 0.69314718055994530942;       // ln 2, exact to 1e-20
+  constexpr double kSqrtHalf = 0.70710678118654752440;  // 1 / sqrt(2), likewise
   int exponent = 0;
   double mantissa = std::frexp(x, &exponent);
   if (mantissa < kSqrtHalf) {

@@ -21,7 +21,7 @@ namespace wellgyro {
 /// it keeps 16/m. The result does not depend on how the stream is cut into batches, bit for bit.
 class WELLGYRO_EXPORT AllanStream {
  public:
-  static constexpr std::int64_t kOverlap = 16;
+  static constexpr std::int64_t kOverlap = 16;  ///< differences begun in a cluster's time
 
   /// Throws std::invalid_argument when the period between samples [s] is not positive.
   explicit AllanStream(double period);
@@ -41,9 +41,10 @@ class WELLGYRO_EXPORT AllanStream {
   AllanResult Result() const;
 
  private:
+  /// Samples that an octave takes at once, 8 KiB: 62 octaves of them are the half MiB.
   static constexpr std::int64_t kBlock = 1024;
-  static constexpr std::int64_t kHistory = 2 * kOverlap;
-  static constexpr int kOctavesBelow = 5;  // 1 to 16
+  static constexpr std::int64_t kHistory = 2 * kOverlap;  // what a difference spans, 2 m
+  static constexpr int kOctavesBelow = 5;                 // 1 to 16
 
   // One octave of sampling; its samples are sums of two of the one below.
   struct Level {

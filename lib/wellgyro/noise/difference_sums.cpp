@@ -9,7 +9,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr int kLanes = 8;
+constexpr int kLanes = 8;  // doubles in the widest register, 512 bits
 
 // Half a second difference, (x - near) - (x - far)/2: two subtractions and an exact halving.
 template <class Vector, int kOctaves>

@@ -12,7 +12,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kConfidence = 0.95;
+constexpr double kConfidence = 0.95;        // [1] of ranges, both sides together
 constexpr double kOneSidedDeviance = 2.71;  // 1.645^2: chi-square of one degree at 0.90
 constexpr double kNormal95 = 1.959964;      // standard normal at 0.975
 constexpr double kNormal99 = 2.575829;      // at 0.995
@@ -105,7 +105,7 @@ class Fitter {
       }
       return value;
     };
-    constexpr double kStep = 0.7;  // an octave: the peak is two decades wide
+    constexpr double kStep = 0.7;  // [ln s], an octave: the peak is two decades wide
     for (double at = low; at <= high; at += kStep) deviance(at);
     for (double step = kStep / 2; step > 1e-3; step /= 2) {
       const double centre = best_at;

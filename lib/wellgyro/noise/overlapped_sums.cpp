@@ -105,7 +105,7 @@ class OverlappedSummer {
 }  // namespace
 
 bool SumOverlapped(const BridgedRates& rates, std::span<TermSum> sums) {
-  constexpr std::int64_t kReportEvery = 1024;
+  constexpr std::int64_t kReportEvery = 1024;  // blocks: 8.4e6 phases
   PhaseBlocks blocks(rates.rate, rates.shift, rates.bridges);
   OverlappedSummer summer(blocks, sums);
   for (std::int64_t block = 1; blocks.Next(); ++block) {

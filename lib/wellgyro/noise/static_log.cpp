@@ -15,7 +15,7 @@ namespace {
 using Kind = LogFinding::Kind;
 
 constexpr double kUnusual = 8;      // times the robust sigma: P(|x| > 8) = 1.2e-15
-constexpr std::size_t kAway = 100;  // stretches it may stand away and come back
+constexpr std::size_t kAway = 100;  // stretches it may stand away and come back: 5 % of a log's
 // Share of the variance of 40 means that a line must explain: of pure rate random walk one log in
 // twenty does (5.1 % of 4000 simulated), of white noise none (29 % of the variance at most).
 constexpr double kExplained = 0.9;
@@ -190,7 +190,7 @@ class Inspector {
   }
   // A movement in a few stretches after which the mean is another, for as long as can be seen.
   bool StaysAway(std::size_t last, std::size_t first, double limit) const {
-    constexpr std::size_t kShort = 5;
+    constexpr std::size_t kShort = 5;  // stretches, 1/2000 of the log each: a step, not a drift
     const bool seen = first > kBeside / 2 && last + kBeside / 2 < stretches_.size();
     return seen && last - first < kShort && std::abs(LevelAfter(last) - LevelBefore(first)) > limit;
   }
@@ -222,7 +222,8 @@ class Inspector {
     return {xy / xx, xy * xy / (xx * yy)};
   }
 
-  // Slow changes show in means over a fortieth of the log, where noise has averaged out.
+  // Slow changes show in means over a fortieth of the log, where noise has averaged out. kExplained
+  // holds for so many.
   void FindDrift() {
     constexpr std::size_t kParts = 40;
     if (stretches_.size() < 4 * kParts) return;

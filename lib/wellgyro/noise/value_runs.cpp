@@ -11,7 +11,7 @@ namespace {
 
 using Kind = LogFinding::Kind;
 
-constexpr std::size_t kFindingsMax = 100;
+constexpr std::size_t kFindingsMax = 100;  // of a kind, the first: a log with more is useless
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // equal to no reading
 
 class ValueRuns {

@@ -15,7 +15,7 @@ using Rest = StopStand::Rest;
 constexpr double kLeastGain = 1e-7;  // of the logarithm, per second: 0.1 % in 10 000 s
 constexpr std::size_t kKept = 24;    // places looked at again, beside those near the stops
 constexpr std::size_t kNear = 2;     // places to either side
-constexpr int kRounds = 3;
+constexpr int kRounds = 3;           // of replacing, shifting and turning, while they save
 
 double HiddenLimit(const PlanLimits& limits) { return limits.hidden.value_or(HUGE_VAL); }
 

@@ -27,7 +27,7 @@ using Eigen::Vector3d;
 constexpr Complex kI{0, 1};
 constexpr double kTurnKnot = 10;   // [s] to turn to another toolface, half a turn at 3 rpm
 constexpr double kTurnMost = 0.6;  // [rad] of it in a knot, as KnotLength::roll
-constexpr double kSigmaMd = 0.05;  // [m] of a depth mark against its neighbours
+constexpr double kSigmaMd = 0.05;  // [m] of a mark against its neighbours: 5 counts of 1 cm
 // What a rolling tool's rate does from knot to knot beyond its plan, beside kRollPerSpeed where the
 // speed changes; where gravity shows the roll neither counts. With half or twice the walk the end's
 // ellipse in the demonstration's well is the same, its worst unseen fault 2.05 or 2.83 m for 2.34.
