@@ -14,6 +14,7 @@
 #include "wellgyro/calibration/group_kernel_internal.h"
 #include "wellgyro/calibration/group_solution_internal.h"
 #include "wellgyro/calibration/sample_lanes_internal.h"
+#include "wellgyro/record/sample_block.h"
 
 namespace wellgyro {
 
@@ -40,11 +41,10 @@ struct Run {
 
 /// Brings the next piece into the nearest memory while this one is taken.
 void FetchNext(std::span<const RawSample> raw) {
-  constexpr std::size_t kLine = 64;  // [bytes], a cache line of x86-64 and of most ARM
   if (raw.size() < 2 * kPiece) return;
   const auto* begin = reinterpret_cast<const std::byte*>(&raw[kPiece]);
 #pragma GCC unroll 64
-  for (std::size_t at = 0; at < kPiece * sizeof(RawSample); at += kLine) {
+  for (std::size_t at = 0; at < kPiece * sizeof(RawSample); at += kCacheLine) {
     __builtin_prefetch(begin + at);
   }
 }

@@ -9,6 +9,9 @@
 
 namespace wellgyro {
 
+/// A cache line of x86-64 and of most ARM [bytes], by which samples are fetched ahead.
+inline constexpr std::size_t kCacheLine = 64;
+
 /// Rates x, y, z [rad/s] and specific forces x, y, z [m/s^2] of a sample, in T.
 using SixAxes = Eigen::Array<double, 6, 1>;
 

@@ -13,6 +13,7 @@
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/known_causes_internal.h"
 #include "wellgyro/survey/verdict.h"
+#include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {
 namespace {
@@ -32,7 +33,7 @@ constexpr double kAlike = 0.9;
 // Of what a fault does to the rows, squared, that its column misses: the run is made linear about a
 // solution that the fault has moved.
 constexpr double kNotLinear = 0.01;
-constexpr double kNamed = 0.95;  // probability of the causes named together, as kConfidence
+constexpr double kNamed = kConfidence;  // probability of the causes named together
 
 // [m], from a stop to what the diagnosis says began there: within a knot, 1 s at 0.5 m/s.
 constexpr double kThatStop = 0.5;

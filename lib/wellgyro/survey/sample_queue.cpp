@@ -132,10 +132,9 @@ void SampleQueue::Pop(std::size_t count) {
 /// At 10 kHz the ring is larger than the near caches, and each block begins on pages that no
 /// hardware looks ahead to.
 void SampleQueue::FetchAhead() const {
-  constexpr std::size_t kLine = 64;  // [bytes], a cache line of x86-64 and of most ARM
   const std::size_t count = std::min({size_, ring_.size() - head_, SampleBlock::kMost});
   const auto bytes = std::as_bytes(std::span(ring_).subspan(head_, count));
-  for (std::size_t i = 0; i < bytes.size(); i += kLine) __builtin_prefetch(&bytes[i]);
+  for (std::size_t i = 0; i < bytes.size(); i += kCacheLine) __builtin_prefetch(&bytes[i]);
 }
 
 std::span<ImuSample> SampleQueue::Held() {
