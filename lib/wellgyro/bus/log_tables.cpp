@@ -37,7 +37,7 @@ class Table {
   }
 
  private:
-  static constexpr std::size_t kPiece = 1 << 20;
+  static constexpr std::size_t kPiece = 1 << 20;  // [bytes] that are handed over at once
 
   void HandOver() {
     if (!fault_) fault_ = sink_(lines_);

@@ -17,7 +17,7 @@ struct Place {
   const char* field;
 };
 
-constexpr std::size_t kChannels = 10;
+constexpr std::size_t kChannels = 10;  // all members of Channels
 
 // In the order of MessageType. Later types share the channel of an older one.
 constexpr std::array<Place, kChannels> kPlaces = {{

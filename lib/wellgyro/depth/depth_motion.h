@@ -53,7 +53,7 @@ class WELLGYRO_EXPORT DepthMotion {
   Found found() const;
 
  private:
-  static constexpr std::size_t kMarks = 4;
+  static constexpr std::size_t kMarks = 4;  // of a third difference
 
   /// A mark, and the felt speed and way there, as seen from a body that falls freely from the
   /// oldest mark at hand on.

@@ -10,7 +10,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::int64_t kMost = std::int64_t{1} << 31;
+constexpr std::int64_t kMost = std::int64_t{1} << 31;  // [bytes] of a file, held whole: 2 GiB
 
 std::uint32_t BigEndian(std::string_view bytes, std::size_t at, int count) {
   std::uint32_t number = 0;

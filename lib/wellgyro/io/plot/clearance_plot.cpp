@@ -92,7 +92,7 @@ void DrawLimit(std::string& svg, const Ladder& panel, double value, const char* 
 }
 
 void DrawNames(std::string& svg, std::span<const ClearanceSeries> series, double x) {
-  constexpr std::size_t kMost = 30;
+  constexpr std::size_t kMost = 30;  // lines of 16 pixels: 480
   for (std::size_t i = 0; i < std::min(series.size(), kMost); ++i) {
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n", x,
                        kLadderTop + 14 + 16 * static_cast<double>(i), Colour(i),
@@ -160,7 +160,7 @@ std::string LadderSvg(const std::string& reference, std::span<const ClearanceSer
 
 std::string TravellingCylinderSvg(const std::string& reference,
                                   std::span<const ClearanceSeries> series) {
-  constexpr double kRadius = 280, kMiddle = kLadderLeft + kRadius;
+  constexpr double kRadius = 280, kMiddle = kLadderLeft + kRadius;  // pixels
   const Vector2d centre(kMiddle, kLadderTop + kRadius + 10);
   const double most = MostDistance(series);
   std::string svg = Open(kMiddle + kRadius + 220, kLadderTop + 2 * kRadius + 50,

@@ -14,6 +14,7 @@
 namespace wellgyro {
 namespace {
 
+// Pixels, of the picture and around the plot.
 constexpr double kNoiseWidth = 900;
 constexpr double kNoiseHeight = 620;
 constexpr double kNoiseLeft = 90;
@@ -274,7 +275,7 @@ class Plot {
   }
 
   void DrawWarnings() {
-    constexpr std::size_t kMost = 6;
+    constexpr std::size_t kMost = 6;      // lines
     constexpr std::size_t kLetters = 86;  // of a line that stays on the paper
     double y = kNoiseHeight - kNoiseBottom - 12;
     for (std::size_t i = std::min(labels_.warnings.size(), kMost); i-- > 0;) {

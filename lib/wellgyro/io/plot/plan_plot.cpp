@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 using Mark = ChartSeries::Mark;
 
 constexpr int kPlanColour = 0, kPracticeColour = 1, kNoneColour = 2;
-constexpr double kPlanWidth = 620;
+constexpr double kPlanWidth = 620;  // pixels
 
 Chart InclinationChart(const PlanCase& c, const StopPlan& plan) {
   Chart chart{.title = "Inclination, and where the tool stops",

@@ -16,7 +16,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kPlacesTold = 5;
+constexpr std::size_t kPlacesTold = 5;  // of a kind, then their count
 
 class Analyst {
  public:

@@ -93,7 +93,7 @@ std::string UnitOf(std::string_view name) {
 // Residuals over their sigmas in the order of the readings, with the limit of chance.
 void Picture(std::string& html, const std::string& channel,
              const std::vector<const FitResidual*>& residuals, double limit) {
-  constexpr double kWidth = 640, kHeight = 110, kLeft = 30;
+  constexpr double kWidth = 640, kHeight = 110, kLeft = 30;  // pixels
   double most = std::max(3.0, limit);
   for (const FitResidual* residual : residuals) {
     most = std::max(most, std::abs(residual->studentised));

@@ -29,7 +29,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr std::size_t kRowsMax = 100'000;
+constexpr std::size_t kRowsMax = 100'000;  // a decimetre of 10 km each
 
 /// Two legs where they overlap.
 struct Held {

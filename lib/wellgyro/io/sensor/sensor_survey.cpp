@@ -10,7 +10,7 @@ namespace {
 class FaultList : public Sink {
  public:
   void OnFault(const Fault& fault) override {
-    constexpr std::size_t kKept = 1000;
+    constexpr std::size_t kKept = 1000;  // the first, some 0.3 MB
     if (faults.size() < kKept) faults.push_back(fault);
   }
   std::vector<Fault> faults;

@@ -116,7 +116,7 @@ std::string CalibrationSummary(const CalibrationFile& file) {
     text += Errors("raw", file.check->raw) + Errors("trigonometric", file.check->trigonometric) +
             Errors("affine", file.check->affine);
   }
-  constexpr std::size_t kShown = 6;
+  constexpr std::size_t kShown = 6;  // lines, the first
   for (std::size_t i = 0; i < std::min(report.correlations.size(), kShown); ++i) {
     text += fmt::format("correlated: {}\n", report.correlations[i]);
   }
