@@ -97,8 +97,8 @@ TEST(Checks, AzimuthsOfTwoPassesNearVerticalDifferAsTheirTangentsDo) {
     beyond_2 += sigmas > 2 ? 1 : 0;
     beyond_4 += sigmas > 4 ? 1 : 0;
   }
-  // Their bisector goes along with the lengths of both, so that normal errors have 4.55 % beyond two
-  // sigmas and these 5.21 %, and 9.7e-5 beyond four: of 4e6 draws of two vectors in a plane.
+  // Their bisector goes along with the lengths of both, so that normal errors have 4.55 % beyond
+  // two sigmas and these 5.21 %, and 9.7e-5 beyond four: of 4e6 draws of two vectors in a plane.
   // Binomial, 3 sigma.
   EXPECT_NEAR(beyond_2, 208, 3 * 14.1);
   EXPECT_LE(beyond_4, 2);
