@@ -83,6 +83,15 @@ class ToyRun : public RunRows {
 
   /// In this knot's rows stands an azimuth from outside, of either node.
   void Tie(std::size_t knot) { factors_[knot][2].kind = RowKind::kAzimuth; }
+  /// What was measured is so many times as sure.
+  void Sharpen(double times) {
+    for (std::vector<Factor>& knot : factors_) {
+      for (Factor& f : knot) {
+        f.J.leftCols(f.columns) *= times;
+        for (int i = 0; i < f.rows; ++i) dense_[RowAt(f) + static_cast<std::size_t>(i)] *= times;
+      }
+    }
+  }
 
   Eigen::MatrixXd J() const {
     Eigen::MatrixXd j =
