@@ -17,6 +17,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/error_sources.h"
 #include "wellgyro/calibration/prior.h"
+#include "wellgyro/calibration/uncertainty_budget.h"
 #include "wellgyro/fit/bench_sigmas.h"
 #include "wellgyro/fit/tool_fit.h"
 #include "wellgyro/io/atomic_file.h"
@@ -95,16 +96,30 @@ std::optional<Fault> Unlikely(const ToolFitOptions& o, const JoinedTool& joined)
                .source = o.prior};
 }
 
+// A tool, and the covariance of the members that the bench found by its sources.
+struct Calibrated {
+  ToolCalibration tool;
+  std::vector<std::string> members;
+  CovarianceParts by_source;
+};
+
+Calibrated Joined(Calibrated before, JoinedTool joined) {
+  before.tool = std::move(joined.tool);
+  if (joined.members != before.members) return before;
+  before.by_source = Propagated(before.by_source, joined.by_bench);
+  before.by_source.Add("prior", std::move(joined.cov_by_prior));
+  return before;
+}
+
 // The prior joins the inputs of `file`, whose result is of the bench alone.
-Result<ToolCalibration> WithPrior(const ToolFitOptions& o, ToolCalibration tool,
-                                  CalibrationFile& file) {
+Result<Calibrated> WithPrior(const ToolFitOptions& o, Calibrated tool, CalibrationFile& file) {
   if (o.prior.empty()) return tool;
   const Result<std::string> text = ReadTextFile(o.prior);
   if (!text) return text.fault();
   const auto prior = ParseTool(*text, o.prior);
   if (!prior) return prior.fault();
   if (auto fault = Shared(o, *prior, file.inputs)) return *std::move(fault);
-  JoinedTool joined = JoinPrior(std::move(tool), *prior);
+  JoinedTool joined = JoinPrior(tool.tool, *prior);
   if (auto fault = Unlikely(o, joined)) return *std::move(fault);
   fmt::print("prior: chi-square {:.1f} of {}, as large by chance {:.2g}\n", joined.chi_square,
              joined.dof, joined.probability);
@@ -120,10 +135,10 @@ Result<ToolCalibration> WithPrior(const ToolFitOptions& o, ToolCalibration tool,
       "this result is of the bench's readings alone; the tool file, and the errors left in "
       "calibrated samples, hold {} as well",
       o.prior));
-  return std::move(joined.tool);
+  return Joined(std::move(tool), std::move(joined));
 }
 
-Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit, CalibrationFile& file) {
+Result<Calibrated> ToolOf(const ToolFitOptions& o, const ToolFit& fit, CalibrationFile& file) {
   ToolCalibration tool;
   if (!o.bench.tool.empty() && std::filesystem::exists(o.bench.tool)) {
     auto known = ReadToolFile(o.bench.tool);
@@ -133,11 +148,11 @@ Result<ToolCalibration> ToolOf(const ToolFitOptions& o, const ToolFit& fit, Cali
   tool = Updated(std::move(tool), fit, o.bench.update);
   tool.rests_on.clear();
   for (const InputFile& input : file.inputs) tool.rests_on.push_back(input.sha256);
-  return WithPrior(o, std::move(tool), file);
+  return WithPrior(o, {std::move(tool), fit.members.names, fit.members_by_source}, file);
 }
 
 // Errors left in samples, in the units that people use.
-void AddSamples(const ToolCalibration& tool, const ToolFit& fit, Certificate& certificate) {
+void AddSamples(const Calibrated& found, const ToolFit& fit, Certificate& certificate) {
   const SensorGroup& group =
       fit.calibration.gyro.n_channels > 0 ? fit.calibration.gyro : fit.calibration.accel;
   const bool varies = group.thermometer >= 0;
@@ -146,7 +161,9 @@ void AddSamples(const ToolCalibration& tool, const ToolFit& fit, Certificate& ce
   std::vector<double> temperatures = {group.reference};
   if (varies) temperatures = {group.min, group.reference, group.max};
   for (const double T : temperatures) {
-    for (Certificate::Line& line : SampleErrors(SourcesOf(tool, T))) {
+    const UncertaintyBudget budget =
+        BudgetOf(SourcesByParts(found.tool, found.members, found.by_source, T));
+    for (Certificate::Line& line : SampleErrors(SourcesOf(found.tool, T), budget)) {
       if (varies) line.name += fmt::format(" at {:.4g} degC", T);
       certificate.samples.push_back(std::move(line));
     }
@@ -155,15 +172,21 @@ void AddSamples(const ToolCalibration& tool, const ToolFit& fit, Certificate& ce
 
 // What the readings say of the bench, and of drift through a table, apart from the tool's result.
 void MoveBench(const ToolFit& fit, Certificate& certificate) {
+  std::vector<Certificate::Line>& result = certificate.result;
   for (const BenchNuisance& nuisance : fit.nuisances) {
-    certificate.bench.push_back({nuisance.name, "deg", ToDegrees(nuisance.value),
-                                 ToDegrees(nuisance.sigma),
-                                 nuisance.prior_sigma > 0 ? "A, B" : "A"});
+    const auto found =
+        std::find_if(result.begin(), result.end(),
+                     [&](const Certificate::Line& line) { return line.name == nuisance.name; });
+    Certificate::Line line{nuisance.name, "", nuisance.value, nuisance.sigma,
+                           nuisance.sigma > 0 ? "A" : "B"};
+    if (found != result.end()) {
+      line = std::move(*found);
+      result.erase(found);
+    }
+    line.unit = "deg";
+    line.Scale(ToDegrees(1));
+    certificate.bench.push_back(std::move(line));
   }
-  std::erase_if(certificate.result, [&](const Certificate::Line& line) {
-    return std::any_of(certificate.bench.begin(), certificate.bench.end(),
-                       [&](const Certificate::Line& b) { return b.name == line.name; });
-  });
   const auto is_drift = [](const Certificate::Line& line) {
     return line.name.find("_drift_") != std::string::npos;
   };
@@ -180,12 +203,10 @@ void MoveLeftOut(const ToolFit& fit, Certificate& certificate) {
 }
 
 std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file,
-                            const ToolFit& fit, const ToolCalibration& tool,
+                            const ToolFit& fit, const Calibrated& found,
                             std::vector<InputFile> outputs) {
   Certificate certificate = CertificateOf(file.report);
   for (Certificate::Line& line : certificate.result) {
-    // One adjustment of the readings with what was stated of the bench.
-    line.evaluation = "A, B";
     if (line.name.rfind("accel_S", 0) == 0) {
       line.unit = o.bench.reference.gravity > 2 ? "reading per m/s2" : "reading per g";
     }
@@ -193,8 +214,8 @@ std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file
   certificate.number = o.number;
   certificate.laboratory = o.laboratory;
   certificate.outputs = std::move(outputs);
-  certificate.asset_serial = tool.asset_serial;
-  certificate.sensor_serials = tool.sensor_serials;
+  certificate.asset_serial = found.tool.asset_serial;
+  certificate.sensor_serials = found.tool.sensor_serials;
   certificate.program = file.program;
   certificate.calibrated = o.bench.date;
   certificate.expires = o.bench.expires;
@@ -203,7 +224,7 @@ std::string CertificateText(const ToolFitOptions& o, const CalibrationFile& file
   certificate.inputs = file.inputs;
   MoveBench(fit, certificate);
   MoveLeftOut(fit, certificate);
-  AddSamples(tool, fit, certificate);
+  AddSamples(found, fit, certificate);
   return CertificateHtml(certificate);
 }
 
@@ -218,16 +239,16 @@ void RequireOthers(const ToolFitOptions& o) {
 }
 
 std::vector<OutputFile> OutputsOf(const ToolFitOptions& o, const CalibrationFile& file,
-                                  const ToolFit& fit, const ToolCalibration& tool) {
+                                  const ToolFit& fit, const Calibrated& found) {
   std::vector<OutputFile> files = {{o.bench.out, CalibrationToml(file)}};
-  if (!o.bench.tool.empty()) files.push_back({o.bench.tool, ToolToml(tool)});
+  if (!o.bench.tool.empty()) files.push_back({o.bench.tool, ToolToml(found.tool)});
   if (o.certificate.empty()) return files;
   std::vector<InputFile> certified;
   for (const OutputFile& each : files) {
     certified.push_back(
         {certified.empty() ? "calibration" : "tool", each.name, each.name, Sha256Hex(each.bytes)});
   }
-  files.push_back({o.certificate, CertificateText(o, file, fit, tool, std::move(certified))});
+  files.push_back({o.certificate, CertificateText(o, file, fit, found, std::move(certified))});
   return files;
 }
 

@@ -285,6 +285,29 @@ class Calibrate(FreshProgramTest):
                 self.assertIn(f'role = "{option[2:].replace("-", "_")}"\nfile = "{joined}"',
                               file.read())
 
+    def BudgetAddsUp(self, html):
+        """u^2 is the sum of the sources' squares, to the digits that the page has."""
+        self.assertNotIn("A, B", html)
+        self.assertNotIn("level-deg (B)", html)
+        tables = re.findall(r'<table class="b">(.*?)</table>', html, re.S)
+        self.assertEqual(len(tables), 3)
+        for table in tables:
+            head, *rows = re.findall(r"<tr>(.*?)</tr>", table, re.S)
+            names = re.findall(r"<th>(.*?)</th>", head)
+            self.assertEqual(names[2], "readings (A)")
+            for name in ("level (B)", "north (B)", "seat (B)", "latitude (B)"):
+                self.assertIn(name, names)
+            for row in rows:
+                cells = re.findall(r"<td>(.*?)</td>", row)
+                self.assertEqual(len(cells), len(names), row)
+                parts = [float(x) for x in cells[2:-4]]
+                self.assertAlmostEqual(sum(x * x for x in parts) ** 0.5 / float(cells[-4]), 1,
+                                       delta=0.06, msg=row)
+                self.assertAlmostEqual(float(cells[-2]), 2, delta=0.3, msg=row)
+        self.assertIn("gyro_bias_x", tables[0])
+        self.assertIn("gyro_M[0]", tables[1])
+        self.assertIn("level_1[0]", tables[2])
+
     def test_a_whole_tool_is_adjusted_certified_and_verified(self):
         source = random.Random(11)
         rest = self.Write("rest.csv", WholeTool(AtRest(source), source))
@@ -309,7 +332,8 @@ class Calibrate(FreshProgramTest):
                      "max-degree 3 (default)"):
             self.assertIn(f"<li>{word}</li>", html)
             self.assertIn(word, self.Toml("c.toml")["references"])
-        self.assertIn("<td>reading per m/s2</td><td>A, B</td>", html)
+        self.assertIn("<td>reading per m/s2</td><td>budget</td>", html)
+        self.BudgetAddsUp(html)
         self.assertNotRegex(html, r"<td>[0-9.]+e\+[0-9]+</td>")
         self.NothingHalfWritten(rest, table)
         # What it certifies, to the byte; each term left out once.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +66,16 @@ TEST(Statistics, ChiSquareQuantileFromAFractionOfADegreeToAHundredMillion) {
     EXPECT_NEAR(ChiSquareQuantile(c.p, c.dof) / c.x, 1, 1e-10) << c.p << " " << c.dof;
     EXPECT_NEAR(ChiSquareCdf(c.x, c.dof) / c.p, 1, 1e-8) << c.p << " " << c.dof;
   }
+}
+
+// Student's t of JCGM 100:2008, table G.2: half of 100 - 95.45 %.
+TEST(Statistics, StudentLimitsAreThoseOfTheGuide) {
+  const double p = NormalCdf(-2);
+  for (const auto& [dof, t] : {std::pair(2.0, 4.53), std::pair(3.0, 3.31), std::pair(5.0, 2.65),
+                               std::pair(10.0, 2.28), std::pair(100.0, 2.025)}) {
+    EXPECT_NEAR(StudentLimit(p, dof) / t, 1, 0.01) << dof;
+  }
+  EXPECT_NEAR(StudentLimit(p, 1e12), 2, 1e-9);
 }
 
 TEST(Statistics, NormalQuantileIntoTheFarTail) {

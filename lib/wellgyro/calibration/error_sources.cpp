@@ -194,6 +194,18 @@ CalibrationSources SourcesOf(const ToolCalibration& tool, double temperature) {
   });
 }
 
+CovarianceParts SourcesByParts(const ToolCalibration& tool, const std::vector<std::string>& members,
+                               const CovarianceParts& parts, double temperature) {
+  CovarianceParts of_sources = Propagated(parts, SourceEffects(tool, members, temperature));
+  for (const SensorGroup* group : {&tool.gyro, &tool.accel}) {
+    if (!HasMembers(*group) || group->covariance->names == members) continue;
+    const ParameterCovariance& known = *group->covariance;
+    const Eigen::MatrixXd J = SourceEffects(tool, known.names, temperature);
+    of_sources.Add("earlier calibration", J * known.cov * J.transpose());
+  }
+  return of_sources;
+}
+
 CalibrationSources ChangeOfSources(const ToolCalibration& tool, double from, double to) {
   return SumOver(tool, [&](const std::vector<std::string>& members) -> Eigen::MatrixXd {
     return SourceEffects(tool, members, to) - SourceEffects(tool, members, from);

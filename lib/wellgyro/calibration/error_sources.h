@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/calibration/uncertainty_budget.h"
 #include "wellgyro/record/noise.h"
 #include "wellgyro/record/tool_calibration.h"
 
@@ -29,6 +30,12 @@ struct CalibrationSources {
 /// order counts by its mean over all attitudes, heating not at all: at rest in a hole there is
 /// none. Outside the calibrated range as at its end. Zero where the tool has no such covariance.
 WELLGYRO_EXPORT CalibrationSources SourcesOf(const ToolCalibration& tool, double temperature);
+
+/// Their covariance by its sources, where that of `members` is the sum of `parts`; what the tool
+/// has of other members is of an "earlier calibration".
+WELLGYRO_EXPORT CovarianceParts SourcesByParts(const ToolCalibration& tool,
+                                               const std::vector<std::string>& members,
+                                               const CovarianceParts& parts, double temperature);
 
 /// Of what these errors change by from one temperature to another.
 WELLGYRO_EXPORT CalibrationSources ChangeOfSources(const ToolCalibration& tool, double from,

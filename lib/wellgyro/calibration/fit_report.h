@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/calibration/uncertainty_budget.h"
 #include "wellgyro/record/tool_calibration.h"
 
 namespace wellgyro {
@@ -35,7 +36,8 @@ struct FitReport {
 
   std::vector<std::string> parameters;  ///< as bias[0] or sensitivity[2,1], named as in `result`
   Eigen::VectorXd values;
-  Eigen::MatrixXd cov;  ///< of `values`; empty where there is no redundancy and no given sigma
+  Eigen::MatrixXd cov;       ///< of `values`; empty where there is no redundancy and no given sigma
+  UncertaintyBudget budget;  ///< of `cov`; without sources where the readings are the only one
 
   int readings = 0;                  ///< used, outliers left out
   int dof = 0;                       ///< readings and priors less estimated parameters

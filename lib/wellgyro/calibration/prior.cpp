@@ -133,6 +133,11 @@ JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
   joined.likeness = Likeness(names, d, S);
   own.values += gain * d;
   own.cov -= gain * of_own.transpose();
+  joined.members = own.names;
+  const MatrixXd by_prior = gain * per_sigma.asDiagonal() * T;
+  joined.cov_by_prior = by_prior * before.cov * by_prior.transpose();
+  joined.by_bench = MatrixXd::Identity(own.cov.rows(), own.cov.cols());
+  joined.by_bench(Eigen::all, common) -= gain * per_sigma.asDiagonal();
   for (Index k = 0; k < own.values.size(); ++k) {
     ValueOf(joined.tool, MemberOf(own.names[static_cast<std::size_t>(k)])) = own.values[k];
   }

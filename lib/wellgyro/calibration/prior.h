@@ -1,6 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/record/tool_calibration.h"
@@ -18,6 +21,9 @@ struct JoinedTool {
   /// That chance makes biases, sensitivities and force terms at the reference temperature differ as
   /// little: near 0 where both rest on the same readings.
   double likeness = 1;
+  std::vector<std::string> members;
+  Eigen::MatrixXd by_bench;      ///< members by what the bench found of them
+  Eigen::MatrixXd cov_by_prior;  ///< of the members, what the prior contributes
 };
 
 /// `tool`, as a bench found it, joined with what was known of its members before, from an earlier

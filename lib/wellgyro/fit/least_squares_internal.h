@@ -106,10 +106,6 @@ void AddMatrix(FitReport& report, std::string name, int first, int rows, int col
 /// A quantity that is no parameter.
 void AddFixed(FitReport& report, std::string name, FitQuantity::Shape shape, Eigen::MatrixXd value);
 
-/// The t that Student's distribution passes with `probability` below 1/2, dof > 0; to 1 % for
-/// dof > 3.
-double StudentLimit(double probability, double dof);
-
 /// "bias[0]", "sensitivity[1,2]".
 std::vector<std::string> VectorNames(std::string_view name, int size);
 std::vector<std::string> MatrixNames(std::string_view name, int rows, int columns);

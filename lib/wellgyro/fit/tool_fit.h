@@ -60,6 +60,7 @@ struct ToolFit {
   /// Values and covariance of everything that the tool model takes over, under the names and in the
   /// units of CalibrationMember (calibration/members.h).
   ParameterCovariance members;
+  CovarianceParts members_by_source;  ///< members.cov
   Eigen::VectorXd member_values;
   std::vector<BenchNuisance> nuisances;
   std::vector<LeftOutTerm> left_out;

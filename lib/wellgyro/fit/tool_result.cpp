@@ -9,6 +9,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/fit/tool_budget_internal.h"
 #include "wellgyro/fit/tool_result_internal.h"
 
 namespace wellgyro {
@@ -137,13 +138,26 @@ void AddHysteresis(const ToolModel& model, const ToolReadings& readings, const T
         NameOf({is_gyro, Kind::kBias, 0, c - (is_gyro ? readings.n_accel : 0), 0});
     const auto& names = fit.members.names;
     const auto at = std::find(names.begin(), names.end(), bias) - names.begin();
-    fit.members.cov(at, at) += a.x[k] * a.x[k] + a.cov(k, k);
+    const double square = a.x[k] * a.x[k] + a.cov(k, k);
+    fit.members.cov(at, at) += square;
+    Eigen::MatrixXd loop = Eigen::MatrixXd::Zero(fit.members.cov.rows(), fit.members.cov.cols());
+    loop(at, at) = square;
+    fit.members_by_source.Add("hysteresis", std::move(loop));
     fit.calibration.report.remarks.push_back(
         fmt::format("channel {}: a loop of {:.3g} between heating and cooling, which the tool "
                     "model cannot take "
                     "off: it is in the bias's covariance",
                     readings.channels[static_cast<std::size_t>(c)].name, 2 * std::abs(a.x[k])));
   }
+}
+
+// Of D x, where x are the model's parameters and behind them the coefficients that were left out.
+CovarianceParts PartsOf(const Eigen::MatrixXd& D, const CovarianceParts& of_model,
+                        const LeftOutErrors& left_out) {
+  const auto n_left = static_cast<Eigen::Index>(left_out.terms.size());
+  CovarianceParts parts = Propagated(of_model, D.leftCols(D.cols() - n_left));
+  if (n_left > 0) parts.Add("terms left out", D * left_out.cov * D.transpose());
+  return parts;
 }
 
 }  // namespace
@@ -153,6 +167,9 @@ void TakeToolResult(const ToolReadings& readings, const ToolFitSetup& setup, con
   FitReport& report = fit.calibration.report;
   report.values += left_out.shift.head(report.values.size());
   report.cov += left_out.cov.topLeftCorner(report.cov.rows(), report.cov.cols());
+  const CovarianceParts of_model = PartsOf(readings, setup, model, a);
+  report.budget = BudgetOf(
+      PartsOf(Eigen::MatrixXd::Identity(model.size(), left_out.shift.size()), of_model, left_out));
   AddQuantities(report);
   ToolCalibration tool;
   tool.gyro = EmptyGroup(readings, setup, true);
@@ -185,6 +202,7 @@ void TakeToolResult(const ToolReadings& readings, const ToolFitSetup& setup, con
   // Scatter beyond the sigmas that were given is taken for what the readings have.
   const double scatter = std::max(1.0, report.scatter);
   fit.members.cov = scatter * scatter * D * cov * D.transpose();
+  fit.members_by_source = PartsOf(scatter * D, of_model, left_out);
   AddHysteresis(model, readings, a, fit);
   fit.calibration.gyro = tool.gyro;
   fit.calibration.accel = tool.accel;

@@ -3,6 +3,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/fit/nonlinear_internal.h"
 #include "wellgyro/fit/trigonometric_fit_internal.h"
+#include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
 namespace {

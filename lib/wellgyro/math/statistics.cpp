@@ -147,4 +147,14 @@ double ChiSquareQuantile(double p, double dof) {
   return 2 * x;
 }
 
+double StudentLimit(double probability, double dof) {
+  // Cornish and Fisher's expansion, Abramowitz and Stegun 26.7.5.
+  const double z = -NormalQuantile(probability), z2 = z * z;
+  const double g1 = z * (z2 + 1) / 4;
+  const double g2 = z * ((5 * z2 + 16) * z2 + 3) / 96;
+  const double g3 = z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / 384;
+  const double g4 = z * ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / 92160;
+  return z + (g1 + (g2 + (g3 + g4 / dof) / dof) / dof) / dof;
+}
+
 }  // namespace wellgyro

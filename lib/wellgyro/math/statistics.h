@@ -49,4 +49,8 @@ WELLGYRO_EXPORT double NormalCdf(double x);
 /// Its inverse, to 1e-14 relative; throws std::domain_error outside (0, 1).
 WELLGYRO_EXPORT double NormalQuantile(double probability);
 
+/// The t that Student's distribution passes with `probability` below 1/2, dof > 0; to 1 % for
+/// dof > 3, and where the probability is above 0.02 for dof >= 2.
+WELLGYRO_EXPORT double StudentLimit(double probability, double dof);
+
 }  // namespace wellgyro

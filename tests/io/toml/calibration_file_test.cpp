@@ -26,6 +26,11 @@ CalibrationFile Example() {
   r.parameters = {"S_V_per_g[0,0]", "Vb_V[0]"};
   r.values = Eigen::Vector2d(1, 0.1);
   r.cov = Eigen::Matrix2d::Identity() * 1e-12;
+  r.budget.sources = {"readings", "level", "north"};
+  r.budget.n_type_a = 1;
+  r.budget.contributions.resize(2, 3);
+  r.budget.contributions << 6e-7, 8e-7, 0, 1e-6, 0, 0;
+  r.budget.dof = Eigen::Vector2d(77, UncertaintyBudget::kManyDof);
   r.readings = 9;
   r.dof = 7;
   r.sigma_given = true;
@@ -60,6 +65,8 @@ TEST(CalibrationFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->report.result[1].shape, Shape::kVector);
   EXPECT_EQ(back->report.result[4].name, "per_T[1].T_C");
   EXPECT_EQ(back->report.cov, file.report.cov);
+  EXPECT_EQ(back->report.budget.contributions, file.report.budget.contributions);
+  EXPECT_EQ(back->report.budget.dof, file.report.budget.dof);
   EXPECT_EQ(back->check->affine.M_nT, 19);
 }
 
@@ -82,8 +89,8 @@ TEST(CalibrationFile, OfManyResidualsTheLargestAndSomeOfTheRest) {
 
 TEST(CalibrationFile, RefusesWhatIsCut) {
   const std::string text = CalibrationToml(Example());
-  for (const char* key :
-       {"method = ", "[statistics]", "[covariance]", "[residuals]", "values = "}) {
+  for (const char* key : {"method = ", "[statistics]", "[covariance]", "[residuals]",
+                          "values = ", "sources = ", "type_a = ", "dof = [7"}) {
     const std::size_t at = text.find(key);
     ASSERT_NE(at, std::string::npos) << key;
     std::string cut = text;

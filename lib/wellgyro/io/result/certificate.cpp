@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +22,8 @@ h1{font-size:17pt;margin:0 0 4mm}h2{font-size:12pt;margin:7mm 0 2mm;border-botto
 table{border-collapse:collapse;width:100%;font-size:9pt}
 td,th{padding:.6mm 2mm;text-align:right;border-bottom:1px solid #ddd}
 td:first-child,th:first-child{text-align:left}td.t{text-align:left;word-break:break-all}
+table.b{font-size:6.5pt;margin-bottom:4mm}.b td,.b th{padding:.3mm .8mm}
+.b th{vertical-align:bottom}.b td{white-space:nowrap}
 ul{margin:1mm 0;padding-left:5mm}figure{margin:3mm 0;page-break-inside:avoid}
 figcaption{font-size:8.5pt}@page{size:A4;margin:14mm}@media print{body{margin:0}}
 </style></head><body>
@@ -58,22 +61,94 @@ std::string TwoDigits(double u) {
   return fmt::format("{:.{}f}", std::round(u / step) * step, std::max(0, -place));
 }
 
+// Of an uncertainty as two digits; the contributions to one as far as its third.
+std::string Known(double u) { return u > 0 ? TwoDigits(u) : std::string("not known"); }
+std::string Share(double part, double u) {
+  if (!(u > 0) || part <= 0) return "0";
+  const int place = static_cast<int>(std::floor(std::log10(u))) - 2;
+  return fmt::format("{:.{}f}", part, std::max(0, -place));
+}
+
+// k and U = k u; a line without degrees of freedom has k = 2.
+std::string Expanded(const Certificate::Line& line) {
+  const std::optional<double> k = line.dof > 0 ? CoverageFactor(line.dof) : 2;
+  if (!k) return "<td>-</td><td>not known</td>";
+  return fmt::format("<td>{:.2f}</td><td>{}</td>", *k, Known(*k * line.uncertainty));
+}
+
 void Lines(std::string& html, std::string_view title, const std::vector<Certificate::Line>& lines,
            bool with_value) {
   if (lines.empty()) return;
   html += fmt::format(
-      "<h2>{}</h2>\n<table>\n<tr><th>quantity</th>{}<th>standard uncertainty u</th><th>expanded U "
-      "(k = 2)</th><th>unit</th><th>evaluation</th></tr>\n",
+      "<h2>{}</h2>\n<table>\n<tr><th>quantity</th>{}<th>standard uncertainty "
+      "u</th><th>k</th><th>expanded U = k u</th><th>unit</th><th>evaluation</th></tr>\n",
       title, with_value ? "<th>value</th>" : "");
   for (const Certificate::Line& line : lines) {
     const std::string value =
         with_value ? fmt::format("<td>{}</td>", Rounded(line.value, line.uncertainty)) : "";
-    const auto known = [&](double u) { return u > 0 ? TwoDigits(u) : std::string("not known"); };
-    html += fmt::format("<tr><td>{}</td>{}<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                        Escaped(line.name), value, known(line.uncertainty),
-                        known(2 * line.uncertainty), Escaped(line.unit), line.evaluation);
+    html += fmt::format("<tr><td>{}</td>{}<td>{}</td>{}<td>{}</td><td>{}</td></tr>\n",
+                        Escaped(line.name), value, Known(line.uncertainty), Expanded(line),
+                        Escaped(line.unit), line.evaluation);
   }
   html += "</table>\n";
+}
+
+// Sources that contribute to any of the lines, in their order: those of type A first.
+std::vector<Certificate::Contribution> SourcesOfLines(const std::vector<Certificate::Line>& lines) {
+  std::vector<Certificate::Contribution> sources;
+  for (const Certificate::Line& line : lines) {
+    for (const Certificate::Contribution& part : line.budget) {
+      const bool known = std::any_of(sources.begin(), sources.end(), [&](const auto& source) {
+        return source.source == part.source;
+      });
+      if (!known && part.uncertainty > 0) sources.push_back(part);
+    }
+  }
+  std::stable_partition(sources.begin(), sources.end(),
+                        [](const Certificate::Contribution& source) { return source.type_a; });
+  return sources;
+}
+
+void BudgetOf(std::string& html, std::string_view title,
+              const std::vector<Certificate::Line>& lines) {
+  const std::vector<Certificate::Contribution> sources = SourcesOfLines(lines);
+  if (sources.empty()) return;
+  html += fmt::format("<table class=\"b\">\n<tr><th>{}</th><th>unit</th>", title);
+  for (const auto& source : sources) {
+    html += fmt::format("<th>{} ({})</th>", Escaped(source.source), source.type_a ? "A" : "B");
+  }
+  html += "<th>u</th><th>dof</th><th>k</th><th>U</th></tr>\n";
+  for (const Certificate::Line& line : lines) {
+    if (line.budget.empty()) continue;
+    html += fmt::format("<tr><td>{}</td><td>{}</td>", Escaped(line.name), Escaped(line.unit));
+    for (const auto& source : sources) {
+      const auto part = std::find_if(line.budget.begin(), line.budget.end(),
+                                     [&](const auto& p) { return p.source == source.source; });
+      html += fmt::format("<td>{}</td>", Share(part == line.budget.end() ? 0 : part->uncertainty,
+                                               line.uncertainty));
+    }
+    constexpr double kMany = 1e4;  // k = 2.0002
+    html += fmt::format("<td>{}</td><td>{}</td>{}</tr>\n", Known(line.uncertainty),
+                        line.dof < kMany ? fmt::format("{:.0f}", std::floor(line.dof)) : "&infin;",
+                        Expanded(line));
+  }
+  html += "</table>\n";
+}
+
+// What each source contributes, u^2 = sum of their squares.
+void Budget(std::string& html, const Certificate& certificate) {
+  std::string tables;
+  BudgetOf(tables, "errors left in calibrated samples", certificate.samples);
+  BudgetOf(tables, "result", certificate.result);
+  BudgetOf(tables, "bench", certificate.bench);
+  if (tables.empty()) return;
+  html +=
+      "<h2>Uncertainty budget</h2>\n<p>What each source contributes to u, in the unit of the "
+      "quantity; u&sup2; is the sum of their squares. A: from the scatter of the readings; B: from "
+      "what was stated of the bench, as References has it, carried through the adjustment. dof: "
+      "effective degrees of freedom (JCGM 100, G.4), &infin; from 10000 on. Gravity enters as it "
+      "was stated, without an uncertainty.</p>\n" +
+      tables;
 }
 
 // Units of the joint fit's parameters; of accelerometers as they were read.
@@ -151,7 +226,25 @@ void Files(std::string& html, std::string_view title, const std::vector<InputFil
   html += "</table>\n";
 }
 
+// A row of a budget, if it has any.
+void TakeBudget(const UncertaintyBudget& budget, Eigen::Index row, Certificate::Line& line) {
+  if (budget.sources.empty()) return;
+  line.evaluation = "budget";
+  line.dof = budget.dof[row];
+  for (std::size_t k = 0; k < budget.sources.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    line.budget.push_back(
+        {budget.sources[k], column < budget.n_type_a, budget.contributions(row, column)});
+  }
+}
+
 }  // namespace
+
+void Certificate::Line::Scale(double per_unit) {
+  value *= per_unit;
+  uncertainty *= per_unit;
+  for (Contribution& part : budget) part.uncertainty *= per_unit;
+}
 
 Certificate CertificateOf(const FitReport& report) {
   Certificate c;
@@ -164,6 +257,9 @@ Certificate CertificateOf(const FitReport& report) {
         if (quantity.shape == FitQuantity::Shape::kVector) name += fmt::format("[{}]", i);
         if (quantity.shape == FitQuantity::Shape::kMatrix) name += fmt::format("[{},{}]", i, j);
         c.result.push_back({name, UnitOf(name), quantity.value(i, j), quantity.sigma(i, j), "A"});
+        const auto at = std::find(report.parameters.begin(), report.parameters.end(), name);
+        if (at == report.parameters.end()) continue;
+        TakeBudget(report.budget, at - report.parameters.begin(), c.result.back());
       }
     }
   }
@@ -188,14 +284,16 @@ SourceUnit UnitOfSource(const std::string& source) {
   return {};
 }
 
-std::vector<Certificate::Line> SampleErrors(const CalibrationSources& sources) {
+std::vector<Certificate::Line> SampleErrors(const CalibrationSources& sources,
+                                            const UncertaintyBudget& budget) {
   std::vector<Certificate::Line> lines;
   for (std::size_t i = 0; i < sources.names.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    const std::string& name = sources.names[i];
-    const SourceUnit unit = UnitOfSource(name);
-    Certificate::Line line{name, unit.name, 0, unit.per_si, "A, B"};
-    line.uncertainty *= std::sqrt(std::max(0.0, sources.cov(at, at)));
+    const SourceUnit unit = UnitOfSource(sources.names[i]);
+    Certificate::Line line{sources.names[i], unit.name, 0,
+                           std::sqrt(std::max(0.0, sources.cov(at, at))), "A"};
+    TakeBudget(budget, at, line);
+    line.Scale(unit.per_si);
     if (line.uncertainty > 0) lines.push_back(std::move(line));
   }
   return lines;
@@ -223,13 +321,14 @@ std::string CertificateHtml(const Certificate& certificate) {
            ? std::vector<std::string>{"none was stated: no reference instrument is named"}
            : certificate.traceability);
   html +=
-      "<p>u is the standard uncertainty; U = 2 u covers some 95 % where errors are normal (JCGM "
-      "100). "
-      "A: evaluated from the scatter of the readings; B: from what was stated of the bench; A, B: "
-      "both, in one adjustment.</p>\n";
+      "<p>u is the standard uncertainty; U = k u covers 95 %, k = 2 where errors are normal and "
+      "more where few readings gave their scatter (Student's t, JCGM 100). A: evaluated from the "
+      "scatter of the readings; B: from what was stated; budget: from both in one adjustment, "
+      "source by source in the uncertainty budget.</p>\n";
   Lines(html, "Errors left in calibrated samples", certificate.samples, false);
   Lines(html, "Result", certificate.result, true);
   Lines(html, "Bench", certificate.bench, true);
+  Budget(html, certificate);
   List(html, "Terms left out", certificate.left_out);
   List(html, "Remarks", certificate.remarks);
   Pictures(html, certificate);

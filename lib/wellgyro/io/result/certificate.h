@@ -20,11 +20,22 @@ struct Certificate {
   std::vector<InputFile> inputs;
   std::vector<InputFile> outputs;  ///< the files that it certifies
 
+  /// What a source contributes to a standard uncertainty.
+  struct Contribution {
+    std::string source;
+    bool type_a = false;
+    double uncertainty = 0;
+  };
   /// A quantity with its standard uncertainty.
   struct Line {
     std::string name, unit;
     double value = 0, uncertainty = 0;
-    std::string evaluation;  ///< "A" from the readings, "B" by other means
+    std::string evaluation;  ///< "A" from the readings, "B" by other means, else "budget"
+    std::vector<Contribution> budget = {};
+    double dof = 0;  ///< effective, of the uncertainty; 0: not known, k is 2
+
+    /// In a unit of which there are `per_unit` in one of this one.
+    WELLGYRO_EXPORT void Scale(double per_unit);
   };
   std::vector<Line> bench;    ///< level, north, latitude: what entered, and what was found
   std::vector<Line> result;   ///< of the sensors
@@ -47,13 +58,14 @@ struct SourceUnit {
 WELLGYRO_EXPORT SourceUnit UnitOfSource(const std::string& source);
 
 /// The sources of a calibration (calibration/error_sources.h) in the units that people use: deg/h,
-/// deg/h/g, mg, 1e-6; those that are zero are left out.
-WELLGYRO_EXPORT std::vector<Certificate::Line> SampleErrors(const CalibrationSources& sources);
+/// deg/h/g, mg, 1e-6; those that are zero are left out. `budget`: of the sources, in SI.
+WELLGYRO_EXPORT std::vector<Certificate::Line> SampleErrors(const CalibrationSources& sources,
+                                                            const UncertaintyBudget& budget);
 
 /// One self-contained page of HTML, set for paper: uncertainties as the Guide to the Expression of
-/// Uncertainty in Measurement (JCGM 100) has them, standard and expanded by two; residuals over
-/// their sigmas in the order of the readings, a picture a channel (SVG). Text from outside is
-/// escaped.
+/// Uncertainty in Measurement (JCGM 100) has them, standard and expanded to 95 %, and where lines
+/// have a budget what each source contributes; residuals over their sigmas in the order of the
+/// readings, a picture a channel (SVG). Text from outside is escaped.
 WELLGYRO_EXPORT std::string CertificateHtml(const Certificate& certificate);
 
 }  // namespace wellgyro

@@ -120,6 +120,18 @@ void WriteResiduals(TomlWriter& out, const FitReport& report) {
   out.Numbers("leverage", leverage);
 }
 
+void WriteBudget(TomlWriter& out, const UncertaintyBudget& budget) {
+  out.Table("budget");
+  out.Comment(
+      "what each source contributes to the 1-sigma of each of the covariance's parameters; the "
+      "first\nsources are of type A, by the readings' scatter (JCGM 100)");
+  out.Texts("sources", budget.sources);
+  out.Whole("type_a", budget.n_type_a);
+  out.Rows("rows", budget.contributions);
+  const std::vector<double> dof(budget.dof.begin(), budget.dof.end());
+  out.Numbers("dof", dof);
+}
+
 void WriteErrors(TomlWriter& out, std::string_view name, const OrthogonalityCheck::Errors& errors) {
   const double numbers[] = {errors.G_mg, errors.M_nT, errors.inclination_deg, errors.azimuth_deg};
   out.Numbers(name, numbers);
@@ -206,20 +218,36 @@ void ReadStatistics(TomlTable& table, FitReport& report) {
   report.remarks = table.Need("remarks", table.FindStrings("remarks"));
 }
 
+Eigen::MatrixXd ReadRows(TomlTable& table, std::size_t n, std::size_t width) {
+  const auto rows = table.Need("rows", table.FindRows("rows", width));
+  if (rows.size() != n) table.Refuse("rows", fmt::format("must be {} rows", n));
+  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(width));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    matrix.row(i) = Eigen::Map<const Eigen::RowVectorXd>(rows[static_cast<std::size_t>(i)].data(),
+                                                         matrix.cols());
+  }
+  return matrix;
+}
+
 void ReadCovariance(TomlTable& table, FitReport& report) {
   report.parameters = table.Need("parameters", table.FindStrings("parameters"));
   const std::size_t n = report.parameters.size();
   const auto values = table.Need("values", table.FindNumbers("values", kAnyNumber));
   if (values.size() != n) table.Refuse("values", fmt::format("must be {} numbers", n));
   report.values = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(n));
-  const auto rows = table.FindRows("rows", n);
-  if (!rows) return;
-  if (rows->size() != n) table.Refuse("rows", fmt::format("must be {} rows", n));
-  report.cov.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
-  for (Eigen::Index i = 0; i < report.cov.rows(); ++i) {
-    report.cov.row(i) = Eigen::Map<const Eigen::RowVectorXd>(
-        (*rows)[static_cast<std::size_t>(i)].data(), report.cov.cols());
-  }
+  if (table.FindRows("rows", n)) report.cov = ReadRows(table, n, n);
+}
+
+UncertaintyBudget ReadBudget(TomlTable& table, std::size_t n) {
+  UncertaintyBudget budget;
+  budget.sources = table.Need("sources", table.FindStrings("sources"));
+  const auto n_sources = static_cast<std::int64_t>(budget.sources.size());
+  budget.n_type_a = table.Need("type_a", table.FindInteger("type_a", 0, n_sources));
+  budget.contributions = ReadRows(table, n, budget.sources.size());
+  const auto dof = table.Need("dof", table.FindNumbers("dof", kPositive));
+  if (dof.size() != n) table.Refuse("dof", fmt::format("must be {} numbers", n));
+  budget.dof = Eigen::Map<const Eigen::VectorXd>(dof.data(), static_cast<Eigen::Index>(n));
+  return budget;
 }
 
 void ReadResiduals(TomlTable& table, FitReport& report) {
@@ -278,6 +306,9 @@ CalibrationFile TakeCalibration(TomlTable& root) {
   if (auto table = root.FindTable("verification")) file.check = ReadCheck(*table);
   auto covariance = root.Need("covariance", root.FindTable("covariance"));
   ReadCovariance(covariance, report);
+  if (auto table = root.FindTable("budget")) {
+    report.budget = ReadBudget(*table, report.parameters.size());
+  }
   auto residuals = root.Need("residuals", root.FindTable("residuals"));
   ReadResiduals(residuals, report);
   return file;
@@ -307,6 +338,7 @@ std::string CalibrationToml(const CalibrationFile& file) {
   const std::vector<double> values(report.values.begin(), report.values.end());
   out.Numbers("values", values);
   if (report.cov.size() > 0) out.Rows("rows", report.cov);
+  if (!report.budget.sources.empty()) WriteBudget(out, report.budget);
   WriteResiduals(out, report);
   return out.text();
 }
