@@ -225,7 +225,10 @@ class Calibrate(FreshProgramTest):
                  str(LATITUDE), "--out", self.Path("c2.toml"), "--tool", self.Path("next.toml"),
                  *counts]
         self.CountedTwice(later, rest, table, taught)
-        self.assertIn("prior: chi-square", self.Done(*later, "--prior", taught).stdout)
+        joined = self.Done(*later, "--prior", taught, "--certificate", self.Path("next.html"))
+        self.assertIn("prior: chi-square", joined.stdout)
+        of_samples = self.Read(self.Path("next.html")).split('<table class="b">')[1]
+        self.assertIn("<th>prior (B)</th>", of_samples)
         self.assertEqual([data["role"] for data in self.Toml("c2.toml")["data"]],
                          ["data", "data", "prior"])
         self.assertIn("of the bench's readings alone", self.Read("c2.toml"))

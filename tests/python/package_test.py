@@ -641,6 +641,9 @@ class Bench(Package):
         bias = made.parameters.set_index("name").loc["gyro_b[0]"]
         self.assertLess(abs(bias.value - 0.5), 4 * bias.sigma)
         self.assertEqual(made.cov.shape, 2 * (len(made.parameters),))
+        self.assertIn("wobble", made.budget.columns)  # it was stated
+        squares = (made.budget.drop(columns="dof") ** 2).sum(axis=1)
+        np.testing.assert_allclose(squares, np.diag(made.cov), rtol=1e-9)
         self.assertIn("north_1", set(made.bench.name))
 
     def test_what_is_no_bench_has_its_name(self):

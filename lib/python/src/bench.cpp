@@ -140,6 +140,17 @@ nb::dict Nuisances(const std::vector<BenchNuisance>& nuisances) {
   return columns;
 }
 
+// A column a source, and the degrees of freedom.
+nb::dict Budget(const UncertaintyBudget& budget) {
+  nb::dict columns;
+  for (std::size_t k = 0; k < budget.sources.size(); ++k) {
+    const auto column = budget.contributions.col(static_cast<Eigen::Index>(k));
+    columns[budget.sources[k].c_str()] = Array(std::vector<double>(column.begin(), column.end()));
+  }
+  columns["dof"] = Array(std::vector<double>(budget.dof.begin(), budget.dof.end()));
+  return columns;
+}
+
 nb::dict Calibrate(const std::vector<std::pair<std::string, std::optional<std::string>>>& data,
                    const Bench& bench) {
   CalibrationFile file;
@@ -170,6 +181,7 @@ nb::dict Calibrate(const std::vector<std::pair<std::string, std::optional<std::s
   all["values"] = Array(std::vector<double>(report.values.begin(), report.values.end()));
   all["cov"] = Array(std::move(cov), {m, m});
   all["bench"] = Nuisances(fit.nuisances);
+  all["budget"] = Budget(report.budget);
   all["left_out"] = left_out;
   all["remarks"] = report.remarks;
   all["outlier_lines"] = report.outlier_lines;

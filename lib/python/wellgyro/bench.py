@@ -17,6 +17,9 @@ class Calibration:
     parameters: pd.DataFrame  #: name, value, sigma, in the units of the calibration file
     cov: np.ndarray  #: (n, n), of the parameters; (0, 0) where none can be stated
     bench: pd.DataFrame  #: level, north, drift ... of the bench itself, against what was known before
+    #: What each source contributes to a parameter's sigma, the sum of the squares being its variance:
+    #: `readings` by their scatter, the others by what was stated; dof, effective degrees of freedom.
+    budget: pd.DataFrame
     left_out: list[str]  #: terms that the readings do not ask for, and below what they lie
     remarks: list[str]
     outlier_lines: list[int]  #: readings that were left out, by their lines in the data
@@ -108,6 +111,7 @@ def calibrate(data: PathLike | pd.DataFrame | Sequence[PathLike | pd.DataFrame],
     values, cov = made["values"], made["cov"]
     sigma = np.sqrt(np.diag(cov)) if cov.size else np.full(len(values), np.nan)
     parameters = pd.DataFrame({"name": made["parameters"], "value": values, "sigma": sigma})
-    return Calibration(parameters, cov, pd.DataFrame(made["bench"]), made["left_out"],
+    budget = pd.DataFrame(made["budget"], index=made["parameters"])
+    return Calibration(parameters, cov, pd.DataFrame(made["bench"]), budget, made["left_out"],
                        made["remarks"], made["outlier_lines"], made["text"], made["tool"],
                        made["summary"])

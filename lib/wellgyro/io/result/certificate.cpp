@@ -61,12 +61,14 @@ std::string TwoDigits(double u) {
   return fmt::format("{:.{}f}", std::round(u / step) * step, std::max(0, -place));
 }
 
-// Of an uncertainty as two digits; the contributions to one as far as its third.
 std::string Known(double u) { return u > 0 ? TwoDigits(u) : std::string("not known"); }
+
+// What contributes to u, to the third digit of u; 0 below.
 std::string Share(double part, double u) {
-  if (!(u > 0) || part <= 0) return "0";
+  if (!(u > 0)) return "0";
   const int place = static_cast<int>(std::floor(std::log10(u))) - 2;
-  return fmt::format("{:.{}f}", part, std::max(0, -place));
+  if (!(part >= std::pow(10.0, place) / 2)) return "0";
+  return u >= 1e-4 ? fmt::format("{:.{}f}", part, std::max(0, -place)) : TwoDigits(part);
 }
 
 // k and U = k u; a line without degrees of freedom has k = 2.
@@ -145,9 +147,9 @@ void Budget(std::string& html, const Certificate& certificate) {
   html +=
       "<h2>Uncertainty budget</h2>\n<p>What each source contributes to u, in the unit of the "
       "quantity; u&sup2; is the sum of their squares. A: from the scatter of the readings; B: from "
-      "what was stated of the bench, as References has it, carried through the adjustment. dof: "
-      "effective degrees of freedom (JCGM 100, G.4), &infin; from 10000 on. Gravity enters as it "
-      "was stated, without an uncertainty.</p>\n" +
+      "what was stated of the bench, as References has it, carried through the adjustment; terms "
+      "left out: they may be there after all. dof: effective degrees of freedom (JCGM 100, G.4), "
+      "&infin; from 10000 on. Gravity enters as it was stated, without an uncertainty.</p>\n" +
       tables;
 }
 
