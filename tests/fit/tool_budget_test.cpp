@@ -148,6 +148,12 @@ std::vector<Push> PushesOf(StillBench& b, const ToolFitSetup& setup) {
           seat};
 }
 
+Eigen::Index PlaceOf(const std::string& name, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(found, names.end()) << name;
+  return found - names.begin();
+}
+
 // A bench that is off by a prior's sigma, y = A x exactly: the estimate is off by C e_j / sigma_j,
 // which is what the prior contributes to its uncertainty.
 TEST(ToolBudget, ABenchThatIsOffByASigmaMovesTheEstimateByItsContribution) {
@@ -170,13 +176,10 @@ TEST(ToolBudget, ABenchThatIsOffByASigmaMovesTheEstimateByItsContribution) {
       ASSERT_TRUE(moved.has_value()) << moved.fault().text;
       ASSERT_EQ(moved->calibration.report.parameters, report.parameters);
       Eigen::VectorXd error = moved->calibration.report.values - report.values;
-      const auto own = std::find(report.parameters.begin(), report.parameters.end(), name);
-      ASSERT_NE(own, report.parameters.end()) << name;
-      error[own - report.parameters.begin()] -= push.sigma;
+      error[PlaceOf(name, report.parameters)] -= push.sigma;
       squares += error.cwiseAbs2();
     }
-    const auto column = std::find(budget.sources.begin(), budget.sources.end(), push.source) -
-                        budget.sources.begin();
+    const Eigen::Index column = PlaceOf(push.source, budget.sources);
     // Smaller contributions than a twentieth of u are lost in the second order of the turns, and in
     // terms left out, whose means follow the readings.
     constexpr double kLeast = 0.05;

@@ -100,6 +100,14 @@ double Likeness(const std::vector<std::string>& names, const VectorXd& d, const 
   return ChiSquareCdf(chi_square, static_cast<double>(found.size()));
 }
 
+// Of x = own + K (known before - own of these), K's columns being the common members'.
+void TellContributions(const MatrixXd& K, const std::vector<Index>& common, const MatrixXd& before,
+                       JoinedTool& joined) {
+  joined.cov_by_prior = K * before * K.transpose();
+  joined.by_bench = MatrixXd::Identity(K.rows(), K.rows());
+  joined.by_bench(Eigen::all, common) -= K;
+}
+
 }  // namespace
 
 bool RestsOn(const ToolCalibration& tool, const std::string& sha256) {
@@ -134,10 +142,7 @@ JoinedTool JoinPrior(ToolCalibration tool, const ToolCalibration& prior) {
   own.values += gain * d;
   own.cov -= gain * of_own.transpose();
   joined.members = own.names;
-  const MatrixXd by_prior = gain * per_sigma.asDiagonal() * T;
-  joined.cov_by_prior = by_prior * before.cov * by_prior.transpose();
-  joined.by_bench = MatrixXd::Identity(own.cov.rows(), own.cov.cols());
-  joined.by_bench(Eigen::all, common) -= gain * per_sigma.asDiagonal();
+  TellContributions(gain * per_sigma.asDiagonal(), common, T * before.cov * T.transpose(), joined);
   for (Index k = 0; k < own.values.size(); ++k) {
     ValueOf(joined.tool, MemberOf(own.names[static_cast<std::size_t>(k)])) = own.values[k];
   }

@@ -48,13 +48,16 @@ class ReadingParts {
     }
   }
 
+  bool Has(std::size_t k) const { return without_(Index(k)) > 0; }
   const MatrixXd& cov(std::size_t k) const { return cov_[k]; }
 
-  /// With P = R^-1 - R^-1 X C X' R^-1 and V_k at its size, the information of the readings about
-  /// ln v_k and ln v_l is tr(P V_k P V_l) / 2 (restricted likelihood).
-  bool Tells(std::size_t k) const { return information_(Index(k), Index(k)) > 0; }
+  /// Covariance of ln v_k of the components in `found`: inverse of the readings' information about
+  /// them, tr(P V_k P V_l) / 2 (restricted likelihood), P = R^-1 - R^-1 X C X' R^-1. Where the
+  /// parameters take all that the readings say, what is left is rounding.
   MatrixXd VarianceCov(const std::vector<Index>& found) const {
-    const MatrixXd M = information_(found, found);
+    constexpr double kRounding = 1e-9;  // of two products with C, off by its condition
+    MatrixXd M = information_(found, found);
+    M.diagonal() = M.diagonal().cwiseMax(kRounding * without_(found));
     const Eigen::VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
     return 2 * scale.asDiagonal() *
            InverseOfSymmetric(scale.asDiagonal() * M * scale.asDiagonal()) * scale.asDiagonal();
@@ -88,8 +91,9 @@ class ReadingParts {
     for (std::size_t i = 0; i < root.component.size(); ++i) {
       for (std::size_t j = 0; j < root.component.size(); ++j) {
         const auto a = static_cast<Index>(i), b = static_cast<Index>(j);
-        information_(Index(root.component[i]), Index(root.component[j])) +=
-            root.D(a, b) * (root.D(a, b) - 2 * E(a, b));
+        const auto k = Index(root.component[i]), l = Index(root.component[j]);
+        information_(k, l) += root.D(a, b) * (root.D(a, b) - 2 * E(a, b));
+        if (k == l) without_[k] += root.D(a, b) * root.D(a, b);
       }
     }
     for (std::size_t k = 0; k < kComponents; ++k) {
@@ -107,8 +111,9 @@ class ReadingParts {
   const ToolModel& model_;
   const ToolAdjustment& a_;
   std::array<MatrixXd, kComponents> B_, cov_;  ///< sums of q q', and of C q q' C
-  Eigen::Matrix<double, kComponents, kComponents> information_ =
-      Eigen::Matrix<double, kComponents, kComponents>::Zero();
+  /// tr(P V_k P V_l); of each, if there were no parameters.
+  MatrixXd information_ = MatrixXd::Zero(kComponents, kComponents);
+  Eigen::VectorXd without_ = Eigen::VectorXd::Zero(kComponents);
 };
 
 // "level_1[0]": what was stated of it is called level; "axis_x_of_table_3[0]": seat.
@@ -155,14 +160,14 @@ CovarianceParts PartsOf(const ToolReadings& readings, const ToolFitSetup& setup,
   CovarianceParts parts;
   std::vector<Index> found;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    if (stated[k] || !of_readings.Tells(k)) continue;
+    if (stated[k] || !of_readings.Has(k)) continue;
     found.push_back(static_cast<Index>(k));
     parts.Add("readings", of_readings.cov(k));
   }
   parts.variance_cov = of_readings.VarianceCov(found);
   AddPriors(model, adjustment.cov, parts);
   for (std::size_t k = 0; k < kComponents; ++k) {
-    if (stated[k] && of_readings.Tells(k)) parts.Add(names[k], of_readings.cov(k));
+    if (stated[k] && of_readings.Has(k)) parts.Add(names[k], of_readings.cov(k));
   }
   return parts;
 }

@@ -110,6 +110,25 @@ std::vector<Share> SharesOf(const ToolTerm& term, const ToolReadings& readings,
   return shares;
 }
 
+// With their places among the model's parameters and, behind these, the coefficients left out.
+std::vector<std::pair<Eigen::Index, Share>> SharesOf(const ToolModel& model,
+                                                     const LeftOutErrors& left_out,
+                                                     const ToolReadings& readings,
+                                                     const BenchReference& reference) {
+  std::vector<std::pair<Eigen::Index, Share>> shares;
+  const auto take = [&](const std::vector<ToolTerm>& terms, Eigen::Index column) {
+    for (const ToolTerm& term : terms) {
+      for (const Share& share : SharesOf(term, readings, reference)) {
+        shares.emplace_back(column, share);
+      }
+      ++column;
+    }
+  };
+  take(model.terms(), 0);
+  take(left_out.terms, model.size());
+  return shares;
+}
+
 SensorGroup EmptyGroup(const ToolReadings& readings, const ToolFitSetup& setup, bool gyro) {
   SensorGroup group;
   group.n_channels = gyro ? readings.n_gyro : readings.n_accel;
@@ -179,17 +198,8 @@ void TakeToolResult(const ToolReadings& readings, const ToolFitSetup& setup, con
   x.head(model.size()) += a.x;
   Eigen::MatrixXd cov = left_out.cov;
   cov.topLeftCorner(model.size(), model.size()) += a.cov;
-  std::vector<std::pair<Eigen::Index, Share>> shares;
-  const auto take = [&](const std::vector<ToolTerm>& terms, Eigen::Index column) {
-    for (const ToolTerm& term : terms) {
-      for (const Share& share : SharesOf(term, readings, setup.reference)) {
-        shares.emplace_back(column, share);
-      }
-      ++column;
-    }
-  };
-  take(model.terms(), 0);
-  take(left_out.terms, model.size());
+  const std::vector<std::pair<Eigen::Index, Share>> shares =
+      SharesOf(model, left_out, readings, setup.reference);
   const auto n = static_cast<Eigen::Index>(shares.size());
   Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n, x.size());
   for (Eigen::Index at = 0; at < n; ++at) {

@@ -111,8 +111,8 @@ std::vector<Certificate::Contribution> SourcesOfLines(const std::vector<Certific
   return sources;
 }
 
-void BudgetOf(std::string& html, std::string_view title,
-              const std::vector<Certificate::Line>& lines) {
+void BudgetTable(std::string& html, std::string_view title,
+                 const std::vector<Certificate::Line>& lines) {
   const std::vector<Certificate::Contribution> sources = SourcesOfLines(lines);
   if (sources.empty()) return;
   html += fmt::format("<table class=\"b\">\n<tr><th>{}</th><th>unit</th>", title);
@@ -140,9 +140,9 @@ void BudgetOf(std::string& html, std::string_view title,
 // What each source contributes, u^2 = sum of their squares.
 void Budget(std::string& html, const Certificate& certificate) {
   std::string tables;
-  BudgetOf(tables, "errors left in calibrated samples", certificate.samples);
-  BudgetOf(tables, "result", certificate.result);
-  BudgetOf(tables, "bench", certificate.bench);
+  BudgetTable(tables, "errors left in calibrated samples", certificate.samples);
+  BudgetTable(tables, "result", certificate.result);
+  BudgetTable(tables, "bench", certificate.bench);
   if (tables.empty()) return;
   html +=
       "<h2>Uncertainty budget</h2>\n<p>What each source contributes to u, in the unit of the "
