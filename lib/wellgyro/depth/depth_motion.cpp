@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace wellgyro {
 namespace {
@@ -20,6 +21,8 @@ constexpr double kLag = 1;
 // Lag [s] that is told in full: half of the 6 s that four marks span, where first order in it ends.
 constexpr double kLagMost = 3;
 constexpr double kScaleMost = 5;  // that is told in full: more than the feet of a metre
+// Resolution of depth that does not matter [m]; what digits round off a multiple is less.
+constexpr double kNoStep = 1e-3;
 // Steps before their scatter is known, then to sqrt((pi/2 - 1) / 20) = 17 %.
 constexpr std::int64_t kFirst = 20;
 
@@ -27,6 +30,12 @@ constexpr std::int64_t kFirst = 20;
 double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
   const auto slope = [&](std::size_t i) { return (x[i + 1] - x[i]) / (t[i + 1] - t[i]); };
   return (slope(1) - (slope(0) + slope(2)) / 2) * (t[2] - t[1]);
+}
+
+/// Greatest length of which both are whole multiples, to kNoStep; Euclid's.
+double CommonStep(double a, double b) {
+  while (b > kNoStep) a = std::exchange(b, std::abs(std::remainder(a, b)));
+  return a;
 }
 
 }  // namespace
@@ -72,6 +81,8 @@ void DepthMotion::PassMark(UtcTime begin, double f_z, const DepthTrack& track) {
   if (!mark || mark->utc >= *felt_until_) return;
   const double t = (mark->utc - begin).seconds();
   last_mark_ = mark->utc;
+  if (!first_md_) first_md_ = mark->md;
+  Resolve(mark->md - *first_md_);
   const double way = fall_.way + (fall_.speed + f_z * t / 2) * t;
   Pass({mark->utc, mark->md, fall_.speed + f_z * t, way});
   FallFromOldest(begin);
@@ -88,6 +99,10 @@ void DepthMotion::Pass(const Passed& passed) {
   passed_[passed_count_++] = passed;
   if (passed_count_ < kMarks) return;
   Compare();
+}
+
+void DepthMotion::Resolve(double way) {
+  if (std::abs(way) > kNoStep) found_.resolution = CommonStep(std::abs(way), found_.resolution);
 }
 
 /// A third difference does not see a constant speed, but a clock does: gravity summed up over hours

@@ -38,10 +38,12 @@ class WELLGYRO_EXPORT DepthMotion {
     double step = 0;                ///< the largest, less what a lag of 1 s makes there [m]
     double sigma_step = 0;          ///< of one, as they scatter [m]
     std::optional<double> step_md;  ///< where [m]
-    double lag = 0;                 ///< positive where depth comes late [s]
-    double sigma_lag = 0;           ///< 0: no start or stop tells it [s]
-    double scale = 0;               ///< of the marks' starts and stops over those felt [1]
-    double sigma_scale = 0;         ///< 0: no start or stop tells it [1]
+    /// Length of which all ways from the first mark are whole multiples, to 1 mm; 0: not known [m].
+    double resolution = 0;
+    double lag = 0;          ///< positive where depth comes late [s]
+    double sigma_lag = 0;    ///< 0: no start or stop tells it [s]
+    double scale = 0;        ///< of the marks' starts and stops over those felt [1]
+    double sigma_scale = 0;  ///< 0: no start or stop tells it [1]
   };
 
   /// The next samples, each over `period` from its `utc` on. Marks of `track` are final over this
@@ -70,6 +72,7 @@ class WELLGYRO_EXPORT DepthMotion {
   void Pass(const Passed& passed);
   void FallFromOldest(UtcTime now);
   void Compare();
+  void Resolve(double way);
   void AddScale(double way, double mark);
   double Sigma() const;
 
@@ -77,6 +80,7 @@ class WELLGYRO_EXPORT DepthMotion {
   std::size_t passed_count_ = 0;
   std::optional<UtcTime> last_mark_, felt_until_;
   Fall fall_;
+  std::optional<double> first_md_;  ///< of all marks [m]
   Found found_;
   double sum_size_ = 0;  ///< of steps, each at most four times their mean so far
   double rate2_ = 0, rate_step_ = 0;

@@ -53,9 +53,10 @@ bool FeelsWrong(std::span<const Check> checks, std::int32_t run) {
 
 void AddJump(const DepthMotion::Found& found, std::int32_t run, std::vector<Check>& checks) {
   constexpr double kStep = 0.2;  // less is no matter [m]: 0.07 deg in a hole of 10 deg/30 m
-  const double limit = std::max(kStep, 8 * found.sigma_step);
+  // Marks off by half a resolution each make 1/2 (1 + 3 + 3 + 1) / 2 of it of the third difference.
+  const double limit = std::max({kStep, 8 * found.sigma_step, 2 * found.resolution});
   checks.push_back(CompareWith("depth_jump", run, {found.step, found.sigma_step}, limit, 1, "m",
-                               "8 sigma of the marks, 0.2 m"));
+                               "8 sigma of the marks, two of their steps, 0.2 m"));
   checks.back().md = found.step_md;
 }
 

@@ -117,7 +117,7 @@ bool KnotCutter::Place(const End& end) {
   if (const auto md = marks_.TakeAsked(known ? std::optional(here.md) : std::nullopt)) {
     cuts_.push_back({1.0, NewDraft(*md), false});
   }
-  if (known && marks_.ComesToRest(here)) {
+  if (known && marks_.ComesToRest(here, c.begin + Duration{c.period_ns})) {
     cuts_.push_back({1.0, NewDraft(here.md), false});
     cuts_.back().draft->listed = false;
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "wellgyro/alignment/still_detector.h"
+#include "wellgyro/base/time.h"
 #include "wellgyro/record/along_hole.h"
 #include "wellgyro/survey/choose.h"
 #include "wellgyro/survey/job.h"
@@ -17,6 +18,9 @@ namespace wellgyro {
 
 /// Slower than this a tool is at rest [m/s].
 inline constexpr double kRestSpeed = StillSetup{}.speed_limit;
+
+/// Of an hour of depths that never rest 360 stations are kept, 0.2 GB; a sixth of a shortest stop.
+inline constexpr Duration kRestsApart = Duration::Seconds(10);
 
 /// Where along the hole a run wants its stations: at the depths of the job's plan, where a person
 /// asks for one, and where the tool comes to rest away from the last.
@@ -54,9 +58,14 @@ class StationMarks {
   /// It is at the depth of the last station.
   bool IsMarked(double md) const { return last_md_ && std::abs(md - *last_md_) <= kSameDepth; }
   /// At rest, as far as its sigma lets the speed tell, and not where the last station is. That
-  /// makes one, listed only if the job asks for stops or if it turns out to be the deepest.
-  bool ComesToRest(const AlongHole& here) const {
-    return !Moves(here.speed, here.sigma_speed) && !IsMarked(here.md);
+  /// makes one, listed only if the job asks for stops or if it turns out to be the deepest. Depths
+  /// that count in whole metres come to rest at each: two rests within kRestsApart are one.
+  bool ComesToRest(const AlongHole& here, ToolTime now) {
+    if (Moves(here.speed, here.sigma_speed) || IsMarked(here.md)) return false;
+    const Duration since = last_rest_ ? now - *last_rest_ : kRestsApart;
+    if (since < kRestsApart && since.ns > -kRestsApart.ns) return false;
+    last_rest_ = now;
+    return true;
   }
   /// The depth says so: beyond what its own error makes of a tool that hangs still.
   static bool Moves(double speed, double sigma_speed) {
@@ -67,6 +76,7 @@ class StationMarks {
   StationPlan plan_;
   std::vector<StationPlan::Target> targets_;  ///< scratch
   std::optional<double> last_md_;             ///< of the last station [m]
+  std::optional<ToolTime> last_rest_;
   bool asked_ = false;
   std::optional<double> asked_md_;  ///< [m]
 };
