@@ -365,7 +365,7 @@ void SampleWatch::AddUnit(std::int32_t run, std::vector<Check>& checks) const {
   const double allowed =
       5 * std::hypot(job_.errors.gyro_bias_sigma, job_.noise.bias_instability,
                      job_.noise.angle_random_walk / std::sqrt(kRestBlock)) +
-      5 * std::hypot(job_.errors.mass_unbalance_sigma, job_.errors.quadrature_sigma) * 9.8;
+      5 * std::hypot(job_.errors.mass_unbalance_sigma, job_.errors.quadrature_sigma) * kGravity;
   if (least_at_rest_ && *least_at_rest_ > 2 * kEarthRate + allowed) {
     checks.push_back(Failed("gyro_unit", run, *least_at_rest_ / kEarthRate, "1",
                             "the rate at rest over the Earth's: at most 1"));
