@@ -243,6 +243,22 @@ TEST(RunDiagnosis, WhatTheLikeliestLeavesSpeaksForNoneOfThese) {
   EXPECT_NEAR(even.causes[1].posterior, 0.5, 1e-6);
 }
 
+// Of odds of e^9000 all others' posteriors are zero as doubles are.
+TEST(RunDiagnosis, CausesBehindOneThatIsCertainKeepTheirOrder) {
+  Diagnosis tests;
+  tests.done = true;
+  tests.tests.resize(CausesLookedFor(SiteAt(FromDegrees(60), 0)).size());
+  const auto n = static_cast<Eigen::Index>(tests.tests.size());
+  tests.alike = Eigen::MatrixXd::Zero(n, n);
+  for (CauseTest& test : tests.tests) test.tested = test.told = true;
+  tests.tests[4].ln_bayes = 800;
+  tests.tests.back().ln_bayes = 9000;
+  const std::vector<RunCause> causes = DiagnosisOf(tests, {}).causes;
+  EXPECT_EQ(causes[0].code, "other");
+  EXPECT_EQ(causes[1].code, "mass_unbalance");
+  EXPECT_EQ(causes[1].posterior, 0);
+}
+
 /// Odds, and what is found of the depth's scale beside a prior of 1e-3 that leaves a sigma of 6e-4.
 double FoundOfDepthScale(double ln_odds, double found) {
   Job job;

@@ -405,13 +405,20 @@ void Diagnoser::AddOdds(Diagnosis& d) {
   d.ln_odds = all.value();
 }
 
-/// Whether a cause is of the kind of another: that it is there twice, or since when, is no other
-/// fault.
+/// The error that changes where the unknown is how it changes.
+int ErrorOf(int unknown) {
+  if (unknown == kRampX) return kGyroBiasX;
+  return unknown == kRampY ? kGyroBiasY : unknown;
+}
+
+/// Whether a cause is of the kind of another: that it is there twice, since when, or that it comes
+/// in a step as well as evenly is no other fault.
 bool IsKin(const CauseSpec& a, const CauseSpec& b) {
   const auto of_unknown = [](Kind kind) {
     return kind == Kind::kConstant || kind == Kind::kGiven || kind == Kind::kOnset;
   };
-  return of_unknown(a.kind) && of_unknown(b.kind) ? a.unknown == b.unknown : a.kind == b.kind;
+  if (!of_unknown(a.kind) || !of_unknown(b.kind)) return a.kind == b.kind;
+  return ErrorOf(a.unknown) == ErrorOf(b.unknown);
 }
 
 std::size_t LikeliestOf(const Diagnosis& d) {

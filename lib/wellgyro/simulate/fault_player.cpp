@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/sinc.h"
 #include "wellgyro/simulate/random_stream.h"
 
 namespace wellgyro {
@@ -208,9 +209,13 @@ void FaultPlayer::Turn(const SimulatedFault& f, double begin, double end, ImuSam
   const double before = AngleAt(f, begin), after = AngleAt(f, end);
   if (before == 0 && after == 0) return;
   const Vector3d axis = f.cause == Cause::kRestTurn ? Vector3d::UnitZ() : Vector3d::UnitY();
-  const Eigen::Matrix3d back = AngleAxisd(-(before + after) / 2, axis).toRotationMatrix();
-  s.f_T = back * s.f_T;
-  s.w_IT_T = back * s.w_IT_T + (after - before) / seconds * axis;
+  // Mean of R(-angle) over a sample in which the angle grows evenly: along the axis 1, across it
+  // the middle's, sinc of half the turn shorter.
+  const Eigen::Matrix3d along = axis * axis.transpose();
+  const Eigen::Matrix3d middle = AngleAxisd(-(before + after) / 2, axis).toRotationMatrix();
+  const Eigen::Matrix3d mean = along + Sinc((after - before) / 2) * (middle - along);
+  s.f_T = mean * s.f_T;
+  s.w_IT_T = mean * s.w_IT_T + (after - before) / seconds * axis;
 }
 
 /// White noise that makes the gyros' own `size` times as large.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string_view>
 
 #include <Eigen/Cholesky>
@@ -42,6 +41,12 @@ constexpr double kThatStop = 0.5;
 double LogSum(double a, double b) {
   const double most = std::max(a, b);
   return most + std::log(std::exp(a - most) + std::exp(b - most));
+}
+
+/// By posteriors; where these are too small to be held, by the Bayes factors that they are of.
+bool IsLikelier(const RunCause& a, const RunCause& b) {
+  if (a.posterior != b.posterior) return a.posterior > b.posterior;
+  return a.ln_bayes.value_or(-HUGE_VAL) > b.ln_bayes.value_or(-HUGE_VAL);
 }
 
 /// ln of the odds of something else beside the likeliest, beyond what the linear columns of a fault
@@ -251,8 +256,7 @@ RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots)
   clean.code = "none";
   clean.ln_bayes = 0;
   clean.posterior = std::exp(none - sum);
-  std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),
-                   [](const RunCause& a, const RunCause& b) { return a.posterior > b.posterior; });
+  std::ranges::stable_sort(diagnosis.causes, IsLikelier);
   AddHidden(diagnosis);
   return diagnosis;
 }
@@ -320,7 +324,7 @@ std::vector<RunCause> WithSlip(const RunSummary& run) {
   double sum = -HUGE_VAL;
   for (const RunCause& cause : causes) sum = LogSum(sum, weight(cause));
   for (RunCause& cause : causes) cause.posterior = std::exp(weight(cause) - sum);
-  std::ranges::stable_sort(causes, std::greater<>(), &RunCause::posterior);
+  std::ranges::stable_sort(causes, IsLikelier);
   return causes;
 }
 
