@@ -87,16 +87,20 @@ TEST(FaultPlayer, AddsWhatItSays) {
   EXPECT_EQ(sample({.cause = Cause::kGyroDead}).w_IT_T.x(), 0);
   EXPECT_EQ(sample({.cause = Cause::kAccelStuck, .begin = 20}).f_T.x(), clean.samples[200].f_T.x());
   // Sensors average over a sample, in which a whole turn in 10 s goes on by 7 deg.
-  const ImuSample turned = sample({.cause = Cause::kRestTurn, .begin = 25, .size = kTwoPi});
-  const double turn = turned.w_IT_T.z() * 1e-9 * turned.stamp.period_ns;
+  const Played turning = Spoilt({.cause = Cause::kRestTurn, .begin = 25, .size = kTwoPi});
+  const auto across = [&](std::size_t k) -> Eigen::Vector2d {
+    return turning.samples[k].f_T.head<2>();
+  };
+  const Eigen::Vector2d a = across(299), b = across(301);
+  const double turn = std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b))) / 2;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (int i = 0; i < 1000; ++i) {
     const double angle = turn * ((i + 0.5) / 1000 - 0.5);
     mean += Eigen::Rotation2Dd(angle) * was.f_T.head<2>() / 1000;
   }
   EXPECT_GT(turn, FromDegrees(3));
-  EXPECT_NEAR(turned.f_T.head<2>().norm(), mean.norm(), 1e-7);
-  EXPECT_EQ(turned.f_T.z(), was.f_T.z());
+  EXPECT_NEAR(across(300).norm(), mean.norm(), 1e-5);
+  EXPECT_EQ(turning.samples[300].f_T.z(), was.f_T.z());
   const ImuSample slipped = sample({.cause = Cause::kToolfaceSlip, .size = 0.1});
   EXPECT_NEAR(slipped.f_T.norm(), was.f_T.norm(), 1e-9) << "a turn";
   EXPECT_NEAR(std::atan2(-slipped.f_T.y(), slipped.f_T.x()),
