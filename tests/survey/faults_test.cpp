@@ -253,6 +253,18 @@ TEST(Faults, WrongUnitsStandInFrontOfWhatLacksByThem) {
       << survey.unusable;
 }
 
+// Of a dead axis the gyros' unit is no measure.
+TEST(Faults, ADeadAxisStandsInFrontOfAUnit) {
+  Flight flight;
+  flight.Converted([](ImuSample& s) {
+    s.f_T.y() = 0;
+    s.w_IT_T *= 57.3;
+  });
+  const Survey survey = flight.Surveyed();
+  EXPECT_TRUE(survey.unusable.starts_with("an accelerometer axis does not answer"))
+      << survey.unusable;
+}
+
 // Motion is felt by gyros and accelerometers together: of inverted axes depth is not blamed.
 TEST(Faults, DepthIsNotBlamedForAxes) {
   Flight flight;

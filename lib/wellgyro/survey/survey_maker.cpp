@@ -83,10 +83,12 @@ std::optional<Check> CheckStated(const Job& job, const std::vector<RunSummary>& 
                  unmet.empty() ? "all of it was met" : fmt::format("{}", fmt::join(unmet, "; ")));
 }
 
-/// What samples and marks say of their units and signs, in front of what could not be made of them.
+/// What samples and marks say of their axes, units and signs, in front of what could not be made of
+/// them; what only follows comes last.
 std::string WrongInput(const std::vector<Check>& checks) {
   for (const std::string_view code :
-       {"accel_unit", "tool_upside_down", "depth_reversed", "depth_unit", "gyro_unit"}) {
+       {"accel_dead", "gyro_dead", "accel_unit", "axes", "tool_upside_down", "depth_reversed",
+        "depth_unit", "gyro_unit"}) {
     const auto check = std::ranges::find_if(
         checks, [code](const Check& c) { return c.code == code && c.verdict == Verdict::kFail; });
     if (check != checks.end()) return CauseOf(*check) + "; ";
