@@ -64,7 +64,7 @@ EstimateSetup EveryError(bool axial) {
   setup.cov_errors->change.diagonal().head<4>().setConstant(1e-12);
   setup.cov_errors->constant.diagonal().segment<3>(kGyroMisalignmentZX).setConstant(1e-6);
   setup.cov_errors->constant.diagonal().segment<2>(kUnbalanceDifference).setConstant(1e-14);
-  setup.swing = 0.3;
+  if (!axial) setup.swing = 0.3;
   setup.third_axis = axial;
   return setup;
 }
@@ -110,7 +110,8 @@ void AddEnd(bool still, Random& random, Case& c) {
                Exp((still ? 3e-7 : 3e-6) * Vector3d(1, -0.7, 0) + 1e-6 * Vector3d::UnitZ());
   c.end.roll_rate = c.begin.roll_rate + 0.01;
   c.end.md = c.begin.md + c.begin.speed;
-  c.end.walk = Pair(1e-6, random);
+  c.end.walk_T.head<2>() = Pair(1e-6, random);
+  if (inc.has_axial) c.end.walk_T.z() = 1e-6 * random.Normal();
 }
 
 /// A knot of a good tool whose residuals are some sigmas each, so that the losses are on, and that
@@ -137,7 +138,7 @@ Case MakeCase(double inclination, bool still, bool axial) {
   c.begin.roll_rate = roll;
   c.begin.md = 10;
   c.begin.speed = still ? 0 : 0.5;
-  if (!still) c.begin.swing = Pair(2e-3, random);
+  if (!still && !axial) c.begin.swing = Pair(2e-3, random);
   AddEnd(still, random, c);
   const Vector3d f = c.begin.R_LT.transpose() *
                      (c.place.acceleration_L - c.place.site.gravity * Vector3d::UnitZ());

@@ -199,6 +199,26 @@ TEST(EstimatedRun, ATimeSkewMakesNoShorterTurns) { ExpectNoHarmBySkew(false); }
 // Psi is then the gyros', and it is the forces that are late.
 TEST(EstimatedRun, ATimeSkewTurnsTheForcesOfAThirdAxis) { ExpectNoHarmBySkew(true); }
 
+// A third axis whose white noise averages to 0.04 deg/h at a stop, and whose bias drifts by 0.3.
+// Were that constant, it would pull the azimuth to .83 deg rms and .18 be claimed: squares of 22.
+TEST(EstimatedRun, AThirdAxisDriftsAsTheOthers) {
+  Hour hour = HalfHour();
+  hour.minutes = 40;
+  hour.stop_seconds = 240;
+  hour.noise.bias_instability = 0.3 * units::kDegPerHour;
+  hour.noise.bias_instability_correlation_time = 600;
+  Claims azimuth;
+  for (std::uint64_t seed = 1; seed <= 8 * kRunSeeds; ++seed) {
+    Simulation simulation = SimulationOf(hour, seed);
+    simulation.tool.has_gz = true;
+    const Flown flown = Fly(simulation, JobOf(hour));
+    const SmoothedRun run = EstimateOf(flown);
+    const std::size_t last = flown.truth.size() - 1;
+    azimuth.Add(AzimuthError(flown, run, last), run.attitude[last].cov_attitude(1, 1));
+  }
+  azimuth.ExpectTrue("azimuth by a third axis that drifts");
+}
+
 TEST(EstimatedRun, OfNothingIsNothing) {
   RunHistory history;
   history.site = SiteAt(1, 0);

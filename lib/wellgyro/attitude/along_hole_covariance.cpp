@@ -13,7 +13,7 @@ namespace wellgyro {
 namespace {
 
 // Eigenvalues of a correlation matrix below this are rounding of zero, of states that determine
-// each other or are known: n eps |C| <= n^2 eps = 2.5e-12 at n = kStationErrorsMax, four times
+// each other or are known: n eps |C| <= n^2 eps = 2.6e-12 at n = kStationErrorsMax, four times
 // that.
 constexpr double kSingular = 1e-11;
 

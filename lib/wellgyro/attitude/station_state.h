@@ -10,9 +10,9 @@
 
 namespace wellgyro {
 
-/// Errors that stay linked from station to station: attitude, walk and Markov part of two gyros,
-/// the constants of the tool, each with its change, and seven that the run shares, at most.
-inline constexpr int kStationErrorsMax = 3 + 2 * 2 + 2 * kErrorSources + 7;
+/// Errors that stay linked from station to station: attitude, walk and Markov part of three
+/// gyros, the constants of the tool, each with its change, and eight that the run shares, at most.
+inline constexpr int kStationErrorsMax = 3 + 2 * 3 + 2 * kErrorSources + 8;
 
 /// For reckoning with them: nothing is allocated.
 using StationMatrix =

@@ -132,7 +132,7 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   AddRate(t, by_rate, block);
   TurnErrors by_error =
       by * (turned * WithoutNoise(inc, t.turn_by_error, (t.R_MT_end * r).head<2>()));
-  AddGyroDrift(t, by_error, block);
+  for (int i = 0; i < 2; ++i) AddGyroDrift(t, i, by_error.col(kGyroBiasX + i), block);
   // Of PhaseErrors: where in the knot psi turns, and what the rates are turned by.
   const Vector3d by_bow = Vector3d::UnitZ() - (X * t.R_MT_end).row(2).transpose();
   const PhaseColumns by_phase =
@@ -154,17 +154,14 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
 }
 
 /// A bias that walks, that is correlated in time or that grows: of the knot, its mean.
-void KnotRows::AddGyroDrift(const Terms& t, const TurnErrors& by_error, NormalBlock& block) {
-  for (int i = 0; i < 2; ++i) {
-    const Vector3d by_bias = by_error.col(kGyroBiasX + i);
-    for (const int drift : {layout_.walk, layout_.markov}) {
-      if (drift == kAbsent) continue;
-      factor_.Column(drift + i) = 0.5 * by_bias;
-      factor_.Column(block.next() + drift + i) = 0.5 * by_bias;
-    }
-    if (layout_.ramp == kAbsent) continue;
-    factor_.Column(block.border() + layout_.ramp + i) = t.place.since_start * by_bias;
+void KnotRows::AddGyroDrift(const Terms& t, int gyro, const Vector3d& by_bias, NormalBlock& block) {
+  for (const int drift : {layout_.walk, layout_.markov}) {
+    if (drift == kAbsent) continue;
+    factor_.Column(drift + gyro) = 0.5 * by_bias;
+    factor_.Column(block.next() + drift + gyro) = 0.5 * by_bias;
   }
+  if (layout_.ramp == kAbsent) return;
+  factor_.Column(block.border() + layout_.ramp + gyro) = t.place.since_start * by_bias;
 }
 
 /// Gravity beyond the model's, where it is unknown [m/s^2].
@@ -292,10 +289,12 @@ void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   const Vector2d across(unit.dot(t.turn), unit.x() * t.turn.y() - unit.y() * t.turn.x());
   Factor& f = factor_;
   f.Begin(RowKind::kAxial, 1);
-  f.r[0] = whiten * (t.delta + t.dt * t.error[kGyroBiasZ] + axial * t.error[kGyroScaleZ] +
-                     across.dot(t.error.segment<2>(kGyroMisalignmentZX)));
+  f.r[0] =
+      whiten * (t.delta + t.dt * (t.error[kGyroBiasZ] + t.drift_T.z()) +
+                axial * t.error[kGyroScaleZ] + across.dot(t.error.segment<2>(kGyroMisalignmentZX)));
   AddRate(t, {whiten * t.dt, 0, 0}, block);
   AddError(t, kGyroBiasZ, {whiten * t.dt, 0, 0}, block);
+  AddGyroDrift(t, 2, {whiten * t.dt, 0, 0}, block);
   AddError(t, kGyroScaleZ, {whiten * (axial + t.delta), 0, 0}, block);
   for (int i = 0; i < 2; ++i) {
     AddError(t, kGyroMisalignmentZX + i, {whiten * across[i], 0, 0}, block);
@@ -344,25 +343,26 @@ void KnotRows::AddDepth(const Terms& t, NormalBlock& block) {
 }
 
 void KnotRows::AddDrift(const Terms& t, NormalBlock& block) {
-  const auto add = [&](int column, double keep, double sigma, const Vector2d& from,
-                       const Vector2d& to) {
+  const auto add = [&](int column, double keep, double sigma, const Vector3d& from,
+                       const Vector3d& to) {
     Factor& f = factor_;
-    f.Begin(RowKind::kDrift, 2);
-    f.r.head<2>() = (to - keep * from) / sigma;
-    for (int i = 0; i < 2; ++i) {
-      f.Column(column + i).head<2>() = -keep / sigma * Vector2d::Unit(i);
-      f.Column(block.next() + column + i).head<2>() = Vector2d::Unit(i) / sigma;
+    f.Begin(RowKind::kDrift, layout_.gyros);
+    f.r = (to - keep * from) / sigma;
+    for (int i = 0; i < layout_.gyros; ++i) {
+      f.Column(column + i) = -keep / sigma * Vector3d::Unit(i);
+      f.Column(block.next() + column + i) = Vector3d::Unit(i) / sigma;
     }
     block.Add(f);
   };
   if (layout_.walk != kAbsent) {
-    add(layout_.walk, 1, setup_.gyro.rate_random_walk * std::sqrt(t.dt), t.begin.walk, t.end.walk);
+    add(layout_.walk, 1, setup_.gyro.rate_random_walk * std::sqrt(t.dt), t.begin.walk_T,
+        t.end.walk_T);
   }
   if (layout_.markov != kAbsent) {
     const double span = t.dt / *setup_.gyro.bias_instability_correlation_time;
     const double sigma = kMarkovSigmaPerInstability * setup_.gyro.bias_instability;
-    add(layout_.markov, std::exp(-span), sigma * std::sqrt(-std::expm1(-2 * span)), t.begin.markov,
-        t.end.markov);
+    add(layout_.markov, std::exp(-span), sigma * std::sqrt(-std::expm1(-2 * span)),
+        t.begin.markov_T, t.end.markov_T);
   }
 }
 

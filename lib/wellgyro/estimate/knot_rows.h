@@ -58,7 +58,7 @@ class KnotRows {
                 const NormalBlock& block);
 
   void AddTurn(const Terms& t, NormalBlock& block);
-  void AddGyroDrift(const Terms& t, const TurnErrors& by_error, NormalBlock& block);
+  void AddGyroDrift(const Terms& t, int gyro, const Eigen::Vector3d& by_bias, NormalBlock& block);
   double GravityOffset(const Terms& t) const;
   void AddForceErrors(const Terms& t, double whiten, const Eigen::Vector3d& p_M,
                       const Eigen::Vector3d& by_skew_M, const Eigen::Matrix2d& beyond,

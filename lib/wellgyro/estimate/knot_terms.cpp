@@ -114,11 +114,11 @@ KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& 
   t.delta = rate * t.dt - (inc.roll_before + inc.roll_after);
   t.turn_per_roll = inc.turn_per_roll - t.delta / 12 * inc.turn_M;
   CorrectTurn(t);
-  Vector2d drift = Vector2d::Zero();
-  if (layout.walk != kAbsent) drift += 0.5 * (begin.walk + end.walk);
-  if (layout.markov != kAbsent) drift += 0.5 * (begin.markov + end.markov);
-  if (layout.ramp != kAbsent) drift += place.since_start * border.segment<2>(layout.ramp);
-  t.turn -= t.turn_by_error.middleCols<2>(kGyroBiasX) * drift;
+  t.drift_T = 0.5 * (begin.walk_T + end.walk_T) + 0.5 * (begin.markov_T + end.markov_T);
+  if (layout.ramp != kAbsent) {
+    t.drift_T.head(layout.gyros) += place.since_start * border.segment(layout.ramp, layout.gyros);
+  }
+  t.turn -= t.turn_by_error.middleCols<2>(kGyroBiasX) * t.drift_T.head<2>();
   // Roll error delta that grows evenly over the knot: integral of e^{i delta (tau - 1/2)} over tau
   // in (0, 1), to the third order for a steady turn. The square counts where the roll was
   // unobserved and the tool turned by delta more than psi.

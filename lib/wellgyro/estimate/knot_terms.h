@@ -24,6 +24,7 @@ struct KnotTerms {
   double axial_rate = 0;  ///< of roll, by a third axis [rad/s]
   double frequency = 0;   ///< of the swing [rad/s]
   Eigen::Vector2d of_swing = Eigen::Vector2d::Zero();  ///< in the mean rate of roll
+  Eigen::Vector3d drift_T = Eigen::Vector3d::Zero();   ///< of the gyros, beside the bias [rad/s]
   TurnByError turn_by_error{};                         ///< at the roll rate of now
   Eigen::Vector2d turn{};                              ///< what is known of the errors corrected
   Eigen::Vector2d turn_per_roll{};                     ///< at delta, of what the gyros read [1]

@@ -87,16 +87,17 @@ BorderMatrix InformationOf(const Layout& layout, const ErrorCovariance& sources)
 
 Layout LayoutOf(const EstimateSetup& setup) {
   Layout layout;
-  const auto node = [&layout] {
+  const auto node = [&layout](int count) {
     const int column = layout.node;
-    layout.node += 2;
+    layout.node += count;
     return column;
   };
-  if (setup.gyro.rate_random_walk > 0) layout.walk = node();
+  layout.gyros = setup.third_axis ? 3 : 2;
+  if (setup.gyro.rate_random_walk > 0) layout.walk = node(layout.gyros);
   if (setup.gyro.bias_instability_correlation_time && setup.gyro.bias_instability > 0) {
-    layout.markov = node();
+    layout.markov = node(layout.gyros);
   }
-  if (setup.swing) layout.swing = node();
+  if (setup.swing && !setup.third_axis) layout.swing = node(2);
 
   layout.sigma.resize(kBorderMax);
   const auto border = [&layout](double sigma) {
@@ -113,11 +114,11 @@ Layout LayoutOf(const EstimateSetup& setup) {
     layout.second_order |= i >= kAccelSecondOrder && constant > 0;
   }
   layout.ramp = border(setup.gyro.rate_ramp);
-  border(setup.gyro.rate_ramp);
+  for (int i = 1; i < layout.gyros; ++i) border(setup.gyro.rate_ramp);
   layout.latitude = border(setup.errors.latitude_sigma);
   layout.gravity = border(setup.sigma_gravity);
   layout.gravity_gradient = border(setup.sigma_gravity_gradient);
-  if (setup.swing) layout.frequency = border(kSwingSigma);
+  if (layout.swing != kAbsent) layout.frequency = border(kSwingSigma);
   layout.depth_scale = border(setup.sigma_depth_scale);
   layout.sigma.conservativeResize(layout.border);
   layout.information = InformationOf(layout, sources);
@@ -193,8 +194,7 @@ std::vector<int> LinkedColumns(const Layout& layout) {
   std::vector<int> columns{0, 1, 2};
   for (const int drift : {layout.walk, layout.markov}) {
     if (drift == kAbsent) continue;
-    columns.push_back(drift);
-    columns.push_back(drift + 1);
+    for (int i = 0; i < layout.gyros; ++i) columns.push_back(drift + i);
   }
   for (int i = 0; i < layout.border; ++i) columns.push_back(layout.node + i);
   return columns;

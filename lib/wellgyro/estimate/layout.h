@@ -10,10 +10,11 @@
 
 namespace wellgyro {
 
-inline constexpr int kNodeMax = 12;  ///< errors of one node
-/// Errors of the whole run: of the tool, each with its change, a ramp of two gyros, latitude,
+/// Errors of one node: the drift of two gyros and a swing, or that of three.
+inline constexpr int kNodeMax = 12;
+/// Errors of the whole run: of the tool, each with its change, a ramp of three gyros, latitude,
 /// gravity, its gradient, the swing's frequency and the scale of depth.
-inline constexpr int kRunErrorsMax = 2 * kErrorSources + 7;
+inline constexpr int kRunErrorsMax = 2 * kErrorSources + 8;
 /// And one that a diagnosis takes out, see RowsWithout.
 inline constexpr int kBorderMax = kRunErrorsMax + 1;
 inline constexpr int kAbsent = -1;
@@ -36,14 +37,15 @@ using EdgeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNodeMax + kBorde
 /// errors, those with a prior, and what the run shares.
 struct Layout {
   int phi = 0, roll = 3, depth = 4, speed = 5;
-  int walk = kAbsent;    ///< two, of the gyros x and y [rad/s]
-  int markov = kAbsent;  ///< two [rad/s]
+  int gyros = 2;         ///< that drift: x, y and, where there is a third axis, z
+  int walk = kAbsent;    ///< one of each gyro [rad/s]
+  int markov = kAbsent;  ///< the same [rad/s]
   int swing = kAbsent;   ///< two, rate of roll in phase and in quadrature [rad/s]
   int node = 6;
   std::array<int, kErrorSources> source{};
   std::array<int, kErrorSources> change{};  ///< of these with the temperature
   bool second_order = false;                ///< some of these are the accelerometers' second order
-  int ramp = kAbsent;                       ///< two [rad/s^2]
+  int ramp = kAbsent;                       ///< one of each gyro [rad/s^2]
   int latitude = kAbsent, gravity = kAbsent, gravity_gradient = kAbsent, depth_scale = kAbsent;
   int frequency = kAbsent;  ///< of the swing, beside that of the setup [rad/s]
   int border = 0;

@@ -13,9 +13,9 @@ struct Node {
   double roll_rate = 0;  ///< inertial, over the knot behind it, without the swing [rad/s]
   double md = 0;         ///< of the sensor point [m]
   double speed = 0;      ///< along the hole [m/s]
-  Eigen::Vector2d walk = Eigen::Vector2d::Zero();    ///< drift of the gyros x, y [rad/s]
-  Eigen::Vector2d markov = Eigen::Vector2d::Zero();  ///< the same, that which forgets [rad/s]
-  Eigen::Vector2d swing = Eigen::Vector2d::Zero();   ///< of the roll rate [rad/s]
+  Eigen::Vector3d walk_T = Eigen::Vector3d::Zero();    ///< drift of the gyros x, y, z [rad/s]
+  Eigen::Vector3d markov_T = Eigen::Vector3d::Zero();  ///< the same, that which forgets [rad/s]
+  Eigen::Vector2d swing = Eigen::Vector2d::Zero();     ///< of the roll rate [rad/s]
 
   Eigen::Vector3d tangent_L() const { return R_LT.col(2); }
 };
@@ -34,8 +34,9 @@ inline void Move(const Layout& layout, const NodeVector& step, Node& node) {
   node.roll_rate += step[layout.roll];
   node.md += step[layout.depth];
   node.speed += step[layout.speed];
-  if (layout.walk != kAbsent) node.walk += step.segment<2>(layout.walk);
-  if (layout.markov != kAbsent) node.markov += step.segment<2>(layout.markov);
+  const int gyros = layout.gyros;
+  if (layout.walk != kAbsent) node.walk_T.head(gyros) += step.segment(layout.walk, gyros);
+  if (layout.markov != kAbsent) node.markov_T.head(gyros) += step.segment(layout.markov, gyros);
   if (layout.swing != kAbsent) node.swing += step.segment<2>(layout.swing);
 }
 

@@ -10,7 +10,7 @@ using Eigen::Vector2d;
 
 std::optional<double> FrequencyOf(const EstimateSetup& setup, const Layout& layout,
                                   const BorderVector& border) {
-  if (!setup.swing) return std::nullopt;
+  if (layout.frequency == kAbsent) return std::nullopt;
   return *setup.swing + border[layout.frequency];
 }
 

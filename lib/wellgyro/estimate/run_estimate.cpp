@@ -213,7 +213,8 @@ NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
               std::span<const NodeGuess> guesses, const RunState* before) {
   EstimateSetup swings = setup;
-  if (setup.may_swing) swings.swing = SwingOf(knots);
+  const bool may_swing = setup.may_swing && !setup.third_axis;
+  if (may_swing) swings.swing = SwingOf(knots);
   const bool seen = swings.swing.has_value();
   const std::vector<RollBegin> begins = RollBeginsOf(knots);
   std::vector<Solution> solutions(guesses.size());
@@ -226,7 +227,7 @@ Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
       NodeGuess nodes = SolveFrom(guesses[i], setup, knots, before, solutions[i], choice, begin);
       if (walk.empty() || solutions[i].evidence < evidence) walk = std::move(nodes);
     }
-    if (seen || !setup.may_swing || !AnyRollIsHidden(knots)) continue;
+    if (seen || !may_swing || !AnyRollIsHidden(knots)) continue;
     swings.swing = SwingOf(knots, walk);
     if (swings.swing) SolveFrom(walk, swings, knots, before, solutions[i], choice);
   }
@@ -240,8 +241,11 @@ EdgeVector Towards(const Solution& rival, const RunSolver& best, std::size_t k) 
   const Node &a = best.nodes()[k], &b = rival.nodes[k];
   EdgeVector d = EdgeVector::Zero(layout.node + layout.border);
   d.head<3>() = Log(a.R_LT.transpose() * b.R_LT);
-  if (layout.walk != kAbsent) d.segment<2>(layout.walk) = b.walk - a.walk;
-  if (layout.markov != kAbsent) d.segment<2>(layout.markov) = b.markov - a.markov;
+  const auto of_gyros = [&](int column, const Vector3d& by) {
+    if (column != kAbsent) d.segment(column, layout.gyros) = by.head(layout.gyros);
+  };
+  of_gyros(layout.walk, b.walk_T - a.walk_T);
+  of_gyros(layout.markov, b.markov_T - a.markov_T);
   d.tail(layout.border) = rival.border - best.border();
   return d;
 }

@@ -106,7 +106,7 @@ void RunSolver::TakeOver(const RunSolver& other) {
     take(layout_.change[i], theirs.change[i]);
   }
   if (layout_.ramp != kAbsent && theirs.ramp != kAbsent) {
-    for (int i = 0; i < 2; ++i) take(layout_.ramp + i, theirs.ramp + i);
+    for (int i = 0; i < layout_.gyros; ++i) take(layout_.ramp + i, theirs.ramp + i);
   }
   take(layout_.latitude, theirs.latitude);
   take(layout_.gravity, theirs.gravity);

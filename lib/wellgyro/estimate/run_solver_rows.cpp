@@ -39,15 +39,14 @@ void RunSolver::FirstRows(EdgeMatrix& information, EdgeVector& gradient) const {
   sigma[layout_.depth] = kAnyDepth;
   sigma[layout_.speed] = kAnySpeed;
   value[layout_.speed] = first.speed;
-  if (layout_.walk != kAbsent) {
-    sigma.segment<2>(layout_.walk).setConstant(kNoDrift);
-    value.segment<2>(layout_.walk) = first.walk;
-  }
-  if (layout_.markov != kAbsent) {
-    sigma.segment<2>(layout_.markov)
-        .setConstant(kMarkovSigmaPerInstability * setup_.gyro.bias_instability);
-    value.segment<2>(layout_.markov) = first.markov;
-  }
+  const auto of_gyros = [&](int column, double of_each, const Vector3d& drift) {
+    if (column == kAbsent) return;
+    sigma.segment(column, layout_.gyros).setConstant(of_each);
+    value.segment(column, layout_.gyros) = drift.head(layout_.gyros);
+  };
+  of_gyros(layout_.walk, kNoDrift, first.walk_T);
+  of_gyros(layout_.markov, kMarkovSigmaPerInstability * setup_.gyro.bias_instability,
+           first.markov_T);
   if (layout_.swing != kAbsent) {
     sigma.segment<2>(layout_.swing).setConstant(kAnyRoll);
     value.segment<2>(layout_.swing) = first.swing;

@@ -13,8 +13,11 @@ EdgeVector AwayFrom(const RunState& state, const Layout& layout, const Node& to,
   away[layout.roll] = to.roll_rate - known.roll_rate;
   away[layout.depth] = to.md - known.md;
   away[layout.speed] = to.speed - known.speed;
-  if (layout.walk != kAbsent) away.segment<2>(layout.walk) = to.walk - known.walk;
-  if (layout.markov != kAbsent) away.segment<2>(layout.markov) = to.markov - known.markov;
+  const auto of_gyros = [&](int column, const Eigen::Vector3d& by) {
+    if (column != kAbsent) away.segment(column, layout.gyros) = by.head(layout.gyros);
+  };
+  of_gyros(layout.walk, to.walk_T - known.walk_T);
+  of_gyros(layout.markov, to.markov_T - known.markov_T);
   if (layout.swing != kAbsent) away.segment<2>(layout.swing) = to.swing - known.swing;
   away.tail(layout.border) = border - state.border;
   return away;

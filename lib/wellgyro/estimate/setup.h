@@ -41,7 +41,8 @@ struct EstimateSetup {
   /// say.
   double sigma_depth_scale = 0;
   bool third_axis = false;  ///< some knot has one
-  /// The roll swings at this angular frequency [rad/s]; absent: it walks.
+  /// The roll swings at this angular frequency [rad/s]; absent, or where a third axis measures it:
+  /// it walks.
   std::optional<double> swing;
   bool may_swing = true;  ///< a swing is tried where the roll shows one
   std::vector<AzimuthTie> ties;
