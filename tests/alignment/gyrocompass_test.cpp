@@ -220,6 +220,24 @@ TEST(Gyrocompass, BiasWithoutAPriorIsFreeWhereToolfacesSeparateIt) {
   EXPECT_GT(std::abs(WrapPi(alone.azimuth - truth.azimuth)), 4 * Sigma(alone));
 }
 
+TEST(Gyrocompass, TheMostRollIsOfSoManyWindows) {
+  Random random(15);
+  const ToolAtRest truth{.gyro_noise = 0.02 * kDegPerHour};
+  auto windows = truth.Windows({0, kPi / 2, kPi, -kPi / 2}, random);
+  const auto rolls = [&](std::size_t k, double rate, double sigma) {
+    windows[k].roll_rate = rate;
+    windows[k].sigma_roll_rate = sigma;
+  };
+  EXPECT_FALSE(Gyrocompass(windows, truth.Place(), {}).roll_rate.has_value());
+  rolls(0, 3, 2);
+  rolls(1, -2, 1);
+  rolls(3, 4, 3);
+  const NorthFix fix = Gyrocompass(windows, truth.Place(), {});
+  EXPECT_EQ(fix.roll_rate.value_or(0), -2);
+  EXPECT_EQ(fix.sigma_roll_rate, 1);
+  EXPECT_EQ(fix.roll_windows, 3);
+}
+
 TEST(Gyrocompass, RefusesWhatIsNoWindow) {
   Random random(14);
   const ToolAtRest truth;

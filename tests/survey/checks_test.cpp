@@ -182,6 +182,15 @@ TEST(Checks, AStopThatRollsFails) {
   EXPECT_EQ(Find(checks, "roll_at_rest").verdict, Verdict::kFail);
   EXPECT_NEAR(Find(checks, "roll_at_rest").value.value_or(0), 0.31, 1e-9);
   EXPECT_EQ(Find(checks, "roll_at_rest").md.value_or(0), 750);
+  EXPECT_EQ(Find(checks, "roll_at_rest").looks, 1);
+}
+
+TEST(Checks, OfIndexPositionsTheMostRollIsOneOfMany) {
+  NorthFix fix;
+  fix.roll_rate = 0.2 * units::kDegPerHour;
+  fix.sigma_roll_rate = 0.1 * units::kDegPerHour;
+  fix.roll_windows = 4;
+  EXPECT_EQ(Find(Checks({}, {}, {fix}), "roll_at_rest").looks, 4);
 }
 
 // 2026-11-25: runs of coarsely calibrated tools that warmed at their stops failed by it.

@@ -203,9 +203,11 @@ NorthFix Frame(std::span<const StillWindow> windows) {
   fix.md = last.md;
   fix.magnetic_azimuth = MagneticAzimuth(windows);
   fix.from_samples = std::ranges::all_of(windows, [](const auto& w) { return w.samples > 0; });
+  fix.roll_windows = 0;
   for (const StillWindow& window : windows) {
     fix.quality |= window.quality;
     if (!window.roll_rate) continue;
+    ++fix.roll_windows;
     const bool more = !fix.roll_rate || std::abs(*window.roll_rate) * fix.sigma_roll_rate >
                                             std::abs(*fix.roll_rate) * window.sigma_roll_rate;
     if (!more) continue;

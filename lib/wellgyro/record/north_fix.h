@@ -47,6 +47,7 @@ struct NorthFix {
   /// Of the toolface at rest, in the window where it is most for its sigma [rad/s].
   std::optional<double> roll_rate;
   double sigma_roll_rate = 0;  ///< [rad/s]
+  int roll_windows = 1;        ///< that tell one, of which this is the most
   double gravity = 0;          ///< measured |f| [m/s^2]
   double gravity_ref = 0;      ///< of the Earth model at the place [m/s^2]
   double sigma_gravity = 0;    ///< [m/s^2]

@@ -237,6 +237,7 @@ void CheckStops(const Job& job, const RunSummary& run, std::vector<Check>& check
     checks.push_back(Compare("roll_at_rest", run.run, {*fix.roll_rate, sigma}, std::nullopt,
                              units::kDegPerHour, "deg/h"));
     checks.back().md = fix.md;
+    checks.back().looks = fix.roll_windows;
   }
   if (!rolls) checks.push_back(NotDone("roll_at_rest", run.run, "no stop long enough"));
   if (last != nullptr) {
