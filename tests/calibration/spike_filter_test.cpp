@@ -50,8 +50,11 @@ NoiseCoefficients Noise() {
 }
 
 /// In blocks of `block` samples.
-std::vector<Out> Filtered(const std::vector<ImuSample>& samples, std::size_t block = 1) {
-  SpikeFilter filter(Noise(), Errors());
+std::vector<Out> Filtered(const std::vector<ImuSample>& samples, std::size_t block = 1,
+                          double quantization = 0) {
+  NoiseCoefficients noise = Noise();
+  noise.quantization = quantization;
+  SpikeFilter filter(noise, Errors());
   std::vector<Out> out;
   const auto keep = [&](const SpikeFilter::Done& done) {
     ASSERT_LE(out.size() + done.axes.size(), samples.size());
@@ -110,6 +113,33 @@ std::vector<ImuSample> Samples(int n, double rpm, Random* random) {
   std::vector<ImuSample> samples;
   for (int k = 0; k < n; ++k) samples.push_back(Rolling(k, rpm, random));
   return samples;
+}
+
+// At the Earth's rate a gyro of 7 arcsec a pulse reads nothing in four of five samples, and a pulse
+// between them is none of a spike.
+TEST(SpikeFilter, PulsesOfACountingGyroAreNoSpikes) {
+  constexpr double kPulse = 7 * units::kArcsec, kSeconds = 0.1;
+  Random random(8);
+  Eigen::Vector2d rest = Eigen::Vector2d::Zero();
+  std::vector<ImuSample> samples;
+  for (int k = 0; k < 6000; ++k) {
+    samples.push_back(Rolling(k, 0.5, &random));
+    for (int i = 0; i < 2; ++i) {
+      double& rate = samples.back().w_IT_T[i];
+      rest[i] += rate * kSeconds;
+      const double counted = std::nearbyint(rest[i] / kPulse) * kPulse;
+      rest[i] -= counted;
+      rate = counted / kSeconds;
+    }
+  }
+  const auto mended = [&](double quantization) {
+    const std::vector<Out> out = Filtered(samples, 10, quantization);
+    return std::count_if(out.begin(), out.end(), [](const Out& o) { return o.gyro; });
+  };
+  EXPECT_EQ(mended(kPulse / std::sqrt(12.0)), 0);
+  EXPECT_GT(mended(0), 100) << "where nobody says that it counts";
+  samples[3000].w_IT_T.x() += 0.01;  // 0.6 deg/s
+  EXPECT_EQ(mended(kPulse / std::sqrt(12.0)), 1);
 }
 
 TEST(SpikeFilter, GivesEverySampleInOrder) {

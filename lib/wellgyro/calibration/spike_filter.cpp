@@ -18,6 +18,10 @@ constexpr double kSpreads = 3;
 // Of the stated noise: 6 sqrt(1 + (4^2 + 4^2 + 1 + 1) / 6^2), six sigmas of a sample less its
 // cubic, P = 2e-9: of six axes at 100 Hz one sample in ten days.
 constexpr double kSigmas = 8.4;
+// Of pulses of d that are counted, with what is left carried to the next sample: rate errors are
+// differences of rests within d/2, of which a sample less its cubic has (1 + 5 + 10 + 10 + 5 + 1)/6
+// at most; d = sqrt(12) Q.
+constexpr double kPulses = 32.0 / 6 / 2 * 3.4641016151377544;
 // What is less does no harm, and a tool without noise is no tool.
 constexpr double kLeastRate = 1e-5;   // [rad/s]
 constexpr double kLeastForce = 1e-3;  // [m/s^2]
@@ -75,9 +79,10 @@ void SpikeFilter::Drop() {
 void SpikeFilter::SetFloor(std::int32_t period_ns) {
   if (period_ns == floor_period_ns_) return;
   floor_period_ns_ = period_ns;
-  const double rate = 1 / std::sqrt(1e-9 * static_cast<double>(period_ns));
+  const double seconds = 1e-9 * static_cast<double>(period_ns), rate = 1 / std::sqrt(seconds);
   SixAxes floor;
-  floor.head<3>() = kSigmas * gyro_noise_ * rate + kLeastRate;
+  floor.head<3>() =
+      kSigmas * gyro_noise_ * rate + kPulses * gyro_quantization_ / seconds + kLeastRate;
   floor.tail<3>() = kSigmas * accel_noise_ * rate + kLeastForce;
   floors_.fill(floor);
 }

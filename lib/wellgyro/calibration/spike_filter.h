@@ -17,7 +17,8 @@ namespace wellgyro {
 /// that has them, before anything sums them.
 ///
 /// A value is impossible where it departs from the cubic through the four samples about it by more
-/// than six sigmas of the stated noise (and 2 deg/h or 1e-3 m/s^2), and by ten times what its
+/// than six sigmas of the stated noise, all that a gyro that counts pulses of the stated
+/// quantization makes of any rate (and 2 deg/h or 1e-3 m/s^2), and by ten times what its
 /// neighbours depart from theirs without it. A roll is cubic enough (10 rpm at 10 Hz: 1e-4 g); in a
 /// whirl or vibration neighbours depart as much, and the filter goes blind by itself. The cubic
 /// takes its place. Bad samples beside each other are found by the median of the six about them,
@@ -44,7 +45,9 @@ class WELLGYRO_EXPORT SpikeFilter {
   };
 
   SpikeFilter(const NoiseCoefficients& gyro, const ErrorPriors& errors)
-      : gyro_noise_(gyro.angle_random_walk), accel_noise_(errors.accel_noise) {}
+      : gyro_noise_(gyro.angle_random_walk),
+        gyro_quantization_(gyro.quantization),
+        accel_noise_(errors.accel_noise) {}
 
   /// The sample is the next of the last that was pushed, and nothing has been flushed since.
   bool Continues(const SampleStamp& stamp) const;
@@ -65,7 +68,9 @@ class WELLGYRO_EXPORT SpikeFilter {
   bool MendAxis(std::size_t i, Eigen::Index axis, double off);
   Done DoneUpTo(std::size_t end);
 
-  double gyro_noise_, accel_noise_;  // of a mean over 1 s [rad/s], [m/s^2]
+  double gyro_noise_;         // of a mean over 1 s [rad/s]
+  double gyro_quantization_;  // step / sqrt(12) [rad]
+  double accel_noise_;        // of a mean over 1 s [m/s^2]
   std::array<SixAxes, kMost>
       floors_;  // below which a departure is noise, at this period: all alike
   std::int32_t floor_period_ns_ = 0;

@@ -79,7 +79,9 @@ void KnotRows::Add(const RunKnot& knot, const KnotPlace& place, const RollChange
 
 /// White noise of a gyro's turn over `dt`, 1 sigma [rad].
 double KnotRows::TurnNoise(double dt) const {
-  return std::max(setup_.gyro.angle_random_walk * std::sqrt(dt), kLeastTurn);
+  const double var =
+      Square(setup_.gyro.angle_random_walk) * dt + 2 * Square(setup_.gyro.quantization);
+  return std::max(std::sqrt(var), kLeastTurn);
 }
 
 /// What a unit of the mean rate of roll adds to the factor's residuals, for all that it is made of.
