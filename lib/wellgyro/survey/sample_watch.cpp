@@ -30,6 +30,9 @@ constexpr double kDead = 0.9;  // share of the run, from which an axis told next
 // [s], of the integrals of w x f that are compared with f_z: near horizontal at 0.5 m/s a bend of
 // 3 deg/30 m changes f_z by 0.26 m/s^2 in it, nine times kForceLeft.
 constexpr double kStretch = 30;
+// Of a value, what dividing counts by a sample's length leaves of a repeat: lengths are differences
+// of times, exact to 1e-16 of hours.
+constexpr double kRounding = 1e-9;
 // 1-sigma of what the products do not predict of f_z's change over a stretch: the string's starts
 // and stops, the Earth's rotation [m/s^2]. Two ends within kSteady, evenly: 0.016; the Earth turns
 // gravity by up to 7.3e-5 rad/s 30 s g = 0.021; together 0.027.
@@ -178,7 +181,8 @@ void SampleWatch::WatchAxes(const ImuSample& sample, const AlongHole& along, boo
     Axis& axis = axes_[i];
     const double value = ValueOf(sample, i);
     axis.truncation.Push(value, axis.step);
-    if (samples_ > 0 && value == axis.value) {
+    const double step = std::abs(value - axis.value);
+    if (samples_ > 0 && step <= kRounding * std::abs(axis.value)) {
       if (axis.repeats == 0) {
         axis.others = Busiest(i);
         axis.rests = true;
@@ -191,7 +195,6 @@ void SampleWatch::WatchAxes(const ImuSample& sample, const AlongHole& along, boo
       axis.stuck += stuck;
       if (!axis.md && along.known) axis.md = along.md;
     }
-    const double step = std::abs(value - axis.value);
     if (samples_ > 0 && (axis.step == 0 || step < axis.step)) axis.step = step;
     axis.repeats = 0;
     axis.value = value;
