@@ -244,6 +244,24 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"depth_jump", [](Flight& f) { f.Add(Cause::kDepthStep, 1, 260); }},
         Wrong{"depth_lag", [](Flight& f) { f.Add(Cause::kDepthLag, 0.5); }}));
 
+// Of 7 arcsec a pulse one axis reads nothing for seconds, and pulses stand alone.
+TEST(Faults, AGyroThatCountsPulsesIsNeitherStuckNorSpiked) {
+  Flight flight;
+  flight.job.noise.quantization = 2 * units::kArcsec;
+  flight.simulation.tool.errors.gyro_noise.quantization = 2 * units::kArcsec;
+  const Survey survey = flight.Surveyed();
+  ASSERT_EQ(survey.unusable, "");
+  for (const char* code : {"gyro_stuck", "gyro_spikes", "gyro_truncated", "gyro_unit", "fit"}) {
+    const Check* check = Find(survey, code);
+    ASSERT_NE(check, nullptr) << code;
+    EXPECT_NE(check->verdict, Verdict::kFail) << code << " " << check->limit_source;
+  }
+  EXPECT_EQ(survey.runs[0].samples_gyro_mended, 0);
+  for (const NorthFix& fix : survey.runs[0].fixes) {
+    EXPECT_NEAR(*fix.earth_rate, fix.earth_rate_ref, 5 * fix.sigma_earth_rate);
+  }
+}
+
 // The sentence of a survey that cannot be made says why first.
 TEST(Faults, WrongUnitsStandInFrontOfWhatLacksByThem) {
   Flight flight;
