@@ -32,7 +32,7 @@ constexpr double kDead = 0.9;  // share of the run, from which an axis told next
 constexpr double kStretch = 30;
 // Of a value, what dividing counts by a sample's length leaves of a repeat: lengths are differences
 // of times, exact to 1e-16 of hours.
-constexpr double kRounding = 1e-9;
+constexpr double kSameValue = 1e-9;
 // 1-sigma of what the products do not predict of f_z's change over a stretch: the string's starts
 // and stops, the Earth's rotation [m/s^2]. Two ends within kSteady, evenly: 0.016; the Earth turns
 // gravity by up to 7.3e-5 rad/s 30 s g = 0.021; together 0.027.
@@ -182,7 +182,7 @@ void SampleWatch::WatchAxes(const ImuSample& sample, const AlongHole& along, boo
     const double value = ValueOf(sample, i);
     axis.truncation.Push(value, axis.step);
     const double step = std::abs(value - axis.value);
-    if (samples_ > 0 && step <= kRounding * std::abs(axis.value)) {
+    if (samples_ > 0 && step <= kSameValue * std::abs(axis.value)) {
       if (axis.repeats == 0) {
         axis.others = Busiest(i);
         axis.rests = true;
