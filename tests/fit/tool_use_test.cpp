@@ -193,13 +193,19 @@ VerifySetup AsTheBenchIs() {
   return setup;
 }
 
+/// A tool that does not heat itself, and its model, without errors.
+struct ColdTool {
+  explicit ColdTool(Random& random) : tool(ThermalTool::Any(random)), model(ModelOf(tool)) {
+    model.gyro.heating.setZero();
+    tool.heating.setZero();
+  }
+  ThermalTool tool;
+  ToolCalibration model;
+};
+
 TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
   Random random(43);
-  const ThermalTool tool = ThermalTool::Any(random);
-  ToolCalibration model = ModelOf(tool);
-  model.gyro.heating.setZero();
-  ThermalTool still = tool;
-  still.heating.setZero();
+  auto [tool, model] = ColdTool(random);
   VerifySetup setup = AsTheBenchIs();
   // The calibration's own errors, of an ordinary bench.
   ParameterCovariance known;
@@ -218,7 +224,7 @@ TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
       const int channel = i % 4;
       Eigen::Vector4d shift = Eigen::Vector4d::Zero();
       shift[channel] = i % 8 < 4 ? size : -size;
-      const auto verified = VerifyTool(AsFound(still, shift, random), drawn, setup);
+      const auto verified = VerifyTool(AsFound(tool, shift, random), drawn, setup);
       ASSERT_TRUE(verified.has_value()) << verified.fault().text;
       int shifted = 0;
       bool the_one = false;
@@ -240,13 +246,9 @@ TEST(ToolUse, AShiftOfThreeSigmasIsFound) {
 // A dial set by 0.1 deg, which the bias of z had taken for a shift of 1.5 mg.
 TEST(ToolUse, AStandsZeroOfInclinationIsNoShift) {
   Random random(46);
-  const ThermalTool tool = ThermalTool::Any(random);
-  ToolCalibration model = ModelOf(tool);
-  model.gyro.heating.setZero();
-  ThermalTool found = tool;
-  found.heating.setZero();
+  auto [tool, model] = ColdTool(random);
   VerifySetup setup = AsTheBenchIs();
-  BenchTable data = AsFound(found, Eigen::Vector4d::Zero(), random);
+  BenchTable data = AsFound(tool, Eigen::Vector4d::Zero(), random);
   data.values.col(*data.Find("inc")).array() += 0.1;
   const auto verified = VerifyTool(data, model, setup);
   ASSERT_TRUE(verified.has_value()) << verified.fault().text;
@@ -259,22 +261,18 @@ TEST(ToolUse, AStandsZeroOfInclinationIsNoShift) {
 // Neither a bias nor a force term: the shifts may stay within their limits, but nothing fits.
 TEST(ToolUse, WhatNoShiftExplainsFails) {
   Random random(45);
-  const ThermalTool tool = ThermalTool::Any(random);
-  ToolCalibration model = ModelOf(tool);
-  model.gyro.heating.setZero();
+  auto [tool, model] = ColdTool(random);
   VerifySetup setup = AsTheBenchIs();
   setup.budget_accel_bias = 1e-2;
   setup.budget_gyro_bias = 1;
   setup.budget_gyro_force = 1;
-  ThermalTool found = tool;
-  found.heating.setZero();
-  const auto sound = VerifyTool(AsFound(found, Eigen::Vector4d::Zero(), random), model, setup);
+  const auto sound = VerifyTool(AsFound(tool, Eigen::Vector4d::Zero(), random), model, setup);
   ASSERT_TRUE(sound.has_value()) << sound.fault().text;
   EXPECT_TRUE(sound->fits);
   EXPECT_TRUE(sound->pass);
   EXPECT_GT(sound->left_dof, 100);
-  found.Sa[0] *= 1.005;
-  const auto scaled = VerifyTool(AsFound(found, Eigen::Vector4d::Zero(), random), model, setup);
+  tool.Sa[0] *= 1.005;
+  const auto scaled = VerifyTool(AsFound(tool, Eigen::Vector4d::Zero(), random), model, setup);
   ASSERT_TRUE(scaled.has_value()) << scaled.fault().text;
   EXPECT_TRUE(std::all_of(scaled->shifts.begin(), scaled->shifts.end(),
                           [](const ToolShift& shift) { return shift.within; }));

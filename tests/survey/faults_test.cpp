@@ -257,6 +257,7 @@ TEST(Faults, AGyroThatCountsPulsesIsNeitherStuckNorSpiked) {
     EXPECT_NE(check->verdict, Verdict::kFail) << code << " " << check->limit_source;
   }
   EXPECT_EQ(survey.runs[0].samples_gyro_mended, 0);
+  ASSERT_FALSE(survey.runs[0].fixes.empty());
   for (const NorthFix& fix : survey.runs[0].fixes) {
     EXPECT_NEAR(*fix.earth_rate, fix.earth_rate_ref, 5 * fix.sigma_earth_rate);
   }

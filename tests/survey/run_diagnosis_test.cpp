@@ -213,15 +213,21 @@ TEST(RunDiagnosis, AnAzimuthFromOutsideIsHeldAgainstTheGyrosOwn) {
   EXPECT_EQ(first(220), "azimuth_tie");
 }
 
-/// Of tests of which the first, a gyro bias, has the odds e^40 and explains all but odds of
-/// e^`beside`.
-RunDiagnosis Explained(double beside) {
+/// Of all causes, each told and none of it.
+Diagnosis NothingFound() {
   Diagnosis tests;
   tests.done = true;
   tests.tests.resize(CausesLookedFor(SiteAt(FromDegrees(60), 0)).size());
   const auto n = static_cast<Eigen::Index>(tests.tests.size());
   tests.alike = Eigen::MatrixXd::Zero(n, n);
   for (CauseTest& test : tests.tests) test.tested = test.told = true;
+  return tests;
+}
+
+/// Of tests of which the first, a gyro bias, has the odds e^40 and explains all but odds of
+/// e^`beside`.
+RunDiagnosis Explained(double beside) {
+  Diagnosis tests = NothingFound();
   tests.tests[0].ln_bayes = tests.ln_odds = 40;
   tests.first = 0;
   tests.second = 1;
@@ -245,12 +251,7 @@ TEST(RunDiagnosis, WhatTheLikeliestLeavesSpeaksForNoneOfThese) {
 
 // Of odds of e^9000 all others' posteriors are zero as doubles are.
 TEST(RunDiagnosis, CausesBehindOneThatIsCertainKeepTheirOrder) {
-  Diagnosis tests;
-  tests.done = true;
-  tests.tests.resize(CausesLookedFor(SiteAt(FromDegrees(60), 0)).size());
-  const auto n = static_cast<Eigen::Index>(tests.tests.size());
-  tests.alike = Eigen::MatrixXd::Zero(n, n);
-  for (CauseTest& test : tests.tests) test.tested = test.told = true;
+  Diagnosis tests = NothingFound();
   tests.tests[4].ln_bayes = 800;
   tests.tests.back().ln_bayes = 9000;
   const std::vector<RunCause> causes = DiagnosisOf(tests, {}).causes;

@@ -103,6 +103,15 @@ TEST(SensorCsv, AnEmptyFieldHasAPlaceToo) {
   EXPECT_EQ(table->fault()->column, 5);
 }
 
+/// Of all samples, without a fault.
+std::vector<std::int64_t> SeqsOf(SensorCsv& table) {
+  std::vector<std::int64_t> seqs;
+  SensorCsv::Row row;
+  while (table.Next(row)) seqs.push_back(std::get<ImuSample>(row).stamp.seq);
+  EXPECT_FALSE(table.fault());
+  return seqs;
+}
+
 TEST(SensorCsv, GapsAndMissingValuesAreLostSamples) {
   const Scratch scratch;
   scratch.Write("a.csv",
@@ -110,11 +119,7 @@ TEST(SensorCsv, GapsAndMissingValuesAreLostSamples) {
                 "100,1,2,0,0,-1\r\n200,,2,0,0,-1\r\n300,1,2,0,0,-1\r\n700,1,2,0,0,-1\r\n");
   Result<SensorCsv> table = SensorCsv::Open(scratch.path() / "a.csv");
   ASSERT_TRUE(table) << table.fault().text;
-  std::vector<std::int64_t> seqs;
-  SensorCsv::Row row;
-  while (table->Next(row)) seqs.push_back(std::get<ImuSample>(row).stamp.seq);
-  EXPECT_FALSE(table->fault());
-  EXPECT_EQ(seqs, (std::vector<std::int64_t>{0, 1, 3, 7}));
+  EXPECT_EQ(SeqsOf(*table), (std::vector<std::int64_t>{0, 1, 3, 7}));
 }
 
 TEST(SensorCsv, ARowThatIsThereTwiceCountsOnce) {
@@ -124,11 +129,7 @@ TEST(SensorCsv, ARowThatIsThereTwiceCountsOnce) {
                 "100,1,2,0,0,-1\n# a remark\n100,1,2,0,0,-1\n200,1,2,0,0,-1\n");
   Result<SensorCsv> table = SensorCsv::Open(scratch.path() / "a.csv");
   ASSERT_TRUE(table) << table.fault().text;
-  std::vector<std::int64_t> seqs;
-  SensorCsv::Row row;
-  while (table->Next(row)) seqs.push_back(std::get<ImuSample>(row).stamp.seq);
-  EXPECT_FALSE(table->fault());
-  EXPECT_EQ(seqs, (std::vector<std::int64_t>{0, 1, 2}));
+  EXPECT_EQ(SeqsOf(*table), (std::vector<std::int64_t>{0, 1, 2}));
   EXPECT_EQ(table->repeated().count, 2);
   EXPECT_EQ(table->repeated().first_line, 4);
 }
