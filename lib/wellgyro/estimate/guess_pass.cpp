@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 
-#include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
@@ -13,32 +12,20 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Gravity tilts the axis by 5 % of what it shows in each knot, and turns the tool
-// about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination. Near vertical
-// the Earth's rate holds the heading, over some ten knots. They choose no solution: halved or
-// doubled, each leads three clean runs to the same one, to 0.001 sigma.
+// Gravity tilts the axis by 5 % of what it shows in each knot, and where it shows the roll it turns
+// the tool about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination. Where
+// it does not, what it shows may be its sensors' bias. They choose no solution: halved or doubled,
+// each leads three clean runs to the same one, to 0.001 sigma.
 constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
-constexpr double kEarthShare = 0.1;
-
-/// Where gravity does not show the roll: how much further the tool is turned than `w_IE_M` has it,
-/// if the gyros read the Earth's rate and nothing else; 0 where a bend of the hole is more.
-double AngleToEarth(const Increment& inc, const Vector3d& w_IE_M) {
-  const Eigen::Vector2d earth = w_IE_M.head<2>() * inc.seconds;
-  const double ratio = inc.turn_M.norm() / earth.norm();
-  if (!MayBeEarths(ratio)) return 0;
-  return -std::atan2(inc.turn_M.y() * earth.x() - inc.turn_M.x() * earth.y(),
-                     inc.turn_M.dot(earth));
-}
 
 }  // namespace
 
 GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                     const RollTrack& track)
+                     std::span<const double> hidden_roll)
     : latitude_(setup.site.latitude),
       knots_(knots),
-      track_(track),
+      hidden_roll_(hidden_roll),
       extra_roll_(knots.size(), 0),
-      steady_(SteadyAcross(knots, setup.gyro.angle_random_walk)),
       nodes_(knots.size() + 1) {}
 
 void GuessPass::Run(std::size_t begin, std::size_t end) {
@@ -46,21 +33,17 @@ void GuessPass::Run(std::size_t begin, std::size_t end) {
   const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
   for (std::size_t k = begin; k < end; ++k) {
     const Increment& inc = knots_[k].increment;
-    const double extra = extra_roll_[k] + track_.beyond_psi[k] * inc.seconds;
+    const double extra = extra_roll_[k] + hidden_roll_[k] * inc.seconds;
     const Matrix3d half = Exp(0.5 * Flat(inc.turn_M));
     Matrix3d M = Exp(-inc.seconds * earth) * nodes_[k].R_LT *
                  RotationZ(inc.roll_before + 0.5 * extra) * half;
-    const bool turned = inc.roll_seen || !track_.alone;
-    if (turned && !inc.roll_seen && steady_[k]) {
-      M = M * RotationZ(kEarthShare * AngleToEarth(inc, M.transpose() * earth));
-    }
     if (inc.level) {
       const Vector3d f = inc.force_M.normalized();
       const Vector3d p = -M.row(2).transpose();
       const double sine2 = std::hypot(f.x(), f.y()) * std::hypot(p.x(), p.y());
       // The angle about the axis from where the force should be to where it is.
       const double angle = std::atan2(f.y() * p.x() - f.x() * p.y(), f.x() * p.x() + f.y() * p.y());
-      const double share = turned ? kTurnShare * sine2 / (sine2 + kTurnSine2) : 0;
+      const double share = inc.roll_seen ? kTurnShare * sine2 / (sine2 + kTurnSine2) : 0;
       M = M * RotationZ(-share * angle);
       const Vector3d down = -M.row(2).transpose();
       M = M * Exp(kTiltShare * f.cross(down));

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "wellgyro/estimate/node.h"
-#include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
 
@@ -18,8 +17,9 @@ namespace wellgyro {
 /// about it. A first guess, from which a RunSolver begins.
 class GuessPass {
  public:
-  /// `knots` and `track` must outlive this object; at least one knot.
-  GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots, const RollTrack& track);
+  /// `knots` and HiddenRoll() of them must outlive this object; at least one knot.
+  GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots,
+            std::span<const double> hidden_roll);
 
   /// The attitude of node 0.
   void Begin(const Eigen::Matrix3d& R_LT) { nodes_[0].R_LT = R_LT; }
@@ -33,9 +33,8 @@ class GuessPass {
  private:
   double latitude_;
   std::span<const RunKnot> knots_;
-  const RollTrack& track_;
+  std::span<const double> hidden_roll_;
   std::vector<double> extra_roll_;
-  std::vector<bool> steady_;
   std::vector<Node> nodes_;
 };
 

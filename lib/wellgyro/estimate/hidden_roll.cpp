@@ -1,37 +1,241 @@
 #include "wellgyro/estimate/hidden_roll.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/roll_start.h"
+#include "wellgyro/estimate/roll_window.h"
+#include "wellgyro/math/square.h"
 
 namespace wellgyro {
 namespace {
 
-// Knots to each side, and of them that tell: the median of five is right with two wrong.
-constexpr std::size_t kReach = 60, kLeast = 5;
+using Complex = std::complex<double>;
 
-// Where a bend begins or ends the rate across turns in L with it, and its size changes: by more
-// than a tenth, three sigmas of noise apart, from some knots before to as many after.
-// With 10 knots the estimate on the way of a clean well that kicks off at 2 rpm is lost: a stop is
-// 18.6 sigmas off it. With 2, and with half or twice the others, its end moves by 0.001 sigma.
-constexpr std::size_t kAcross = 5;
-constexpr double kSteady = 0.1, kChance = 3;
+// The grid: headings 2.8 deg apart, and rates up to 21 rpm by which a knot of a second passes whole
+// steps of heading. With steps twice as large two of seven runs at 6 rpm end in another solution.
+constexpr std::size_t kSteps = 128, kSpins = 91;
+constexpr int kAtRest = kSpins / 2;
+constexpr double kStep = kTwoPi / kSteps;  // [rad], [rad/s]
+// Of what the gyros read less the Earth's rate, over that: half a step, and bends of a few deg/h.
+constexpr double kLoose = 0.15;
+// -ln of a reading that has nothing to do with the Earth: three sigmas. Less is chance.
+constexpr double kStranger = 4.5;
+// By what the rate changes from knot to knot, as Laplace has it [rad/s]: where the tool starts or
+// stops, and elsewhere, so that the path does not turn with a bend.
+constexpr double kChangeStarting = 0.1, kChange = 0.02;
+// From the rate of the window: a window that a start or a bend crosses may be wrong, so that no
+// knot counts by more than one [rad/s].
+constexpr double kOffWindow = 0.2;
+// Knots that are solved at once, and of these again with the next: what a knot is does not depend
+// on one a minute later. It bounds the memory to 8 MB.
+constexpr std::size_t kPiece = 600, kAgain = 60;
+constexpr std::size_t kLeast = 10;  // knots, as a window has
+constexpr float kBarred = 1e9F;
 
-bool Reads(const RunKnot& knot, double horizontal) {
-  const Increment& i = knot.increment;
-  const double ratio = i.turn_M.norm() / (horizontal * i.seconds);
-  return RollIsHidden(knot) && ratio > kEarthsLeast;
+/// Of every rate and heading.
+template <typename T>
+using Grid = std::array<std::array<T, kSteps>, kSpins>;
+
+double RateOf(std::size_t spin) { return (static_cast<int>(spin) - kAtRest) * kStep; }
+
+/// Steps of heading in a knot, from 0 to kSteps.
+std::size_t StepsIn(std::size_t spin, double seconds) {
+  const auto steps = std::lround(RateOf(spin) * seconds / kStep);
+  constexpr auto kTurn = static_cast<long>(kSteps);
+  return static_cast<std::size_t>((steps % kTurn + kTurn) % kTurn);
 }
 
-/// The roll rate against the Earth from one knot's middle to the next one's [rad/s].
-double RollBetween(const Increment& a, const Increment& b) {
-  const Eigen::Vector2d &u = a.turn_M, &v = b.turn_M;
-  const double turned = -std::atan2(v.y() * u.x() - v.x() * u.y(), v.dot(u));
-  const double psi = a.roll_after + b.roll_before;
-  return (psi + WrapPi(turned - psi)) / (0.5 * (a.seconds + b.seconds));
+/// What the gyros read wrongly: `bias` + rate * `skew`, fixed in the tool.
+struct Fixed {
+  Complex bias, skew;
+};
+
+/// Least squares over the windows that find north, with the priors of both.
+Fixed FixedIn(std::span<const RollWindow> windows, const EstimateSetup& setup, double earth) {
+  const double noise = std::hypot(setup.gyro.angle_random_walk, kLoose * earth);
+  const auto held = [noise](double sigma) { return Square(noise / std::max(sigma, 1e-6 * noise)); };
+  Eigen::Matrix2d of_fixed = Eigen::Vector2d(held(setup.errors.gyro_bias_sigma),
+                                             held(setup.errors.gyro_misalignment_sigma))
+                                 .asDiagonal();
+  Eigen::Vector2cd read = Eigen::Vector2cd::Zero();
+  for (const RollWindow& w : windows) {
+    if (!w.finds_north) continue;
+    const Eigen::Vector2d row(1, w.rate);
+    of_fixed += row * row.transpose();
+    read += row * w.steady;
+  }
+  const Eigen::Vector2cd found = of_fixed.cast<Complex>().ldlt().solve(read);
+  return {found[0], found[1]};
 }
+
+bool Reads(const RunKnot& knot) { return knot.increment.level; }
+
+std::vector<RollWindow> WindowsOf(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+  std::vector<RollWindow> windows;
+  for (std::size_t begin = 0, end = 0; begin < knots.size(); begin = std::max(end, begin + 1)) {
+    for (end = begin; end < knots.size() && RollIsHidden(knots[end]) && Reads(knots[end]);) ++end;
+    for (RollWindow w : RollWindowsOf(knots.subspan(begin, end - begin), setup)) {
+      w.node += begin;
+      windows.push_back(w);
+    }
+  }
+  return windows;
+}
+
+/// A stretch of knots in a row whose heading gravity does not show, rests among them.
+class Stretch {
+ public:
+  /// `first`: of the run, whose `windows` these are. `starts`: SpeedStarts() of these knots.
+  /// Everything must outlive this object.
+  Stretch(std::span<const RunKnot> knots, std::size_t first, const EstimateSetup& setup,
+          std::span<const double> starts, std::span<const RollWindow> windows)
+      : knots_(knots),
+        setup_(setup),
+        starts_(starts),
+        earth_(kEarthRate * std::cos(setup.site.latitude)),
+        fixed_(FixedIn(windows, setup, earth_)) {
+    for (RollWindow w : windows) {
+      if (w.node < first || w.node >= first + knots.size()) continue;
+      w.node -= first;
+      windows_.push_back(w);
+    }
+  }
+
+  /// The rate of every knot.
+  std::vector<std::size_t> Spins() {
+    std::vector<std::size_t> spins(knots_.size());
+    for (std::size_t begin = 0; begin < knots_.size(); begin += kPiece) {
+      SolvePiece(begin, std::span(spins));
+    }
+    return spins;
+  }
+
+ private:
+  /// What is left of a knot's reading at each half step of the heading in its middle, over its
+  /// sigma sqrt(2), as if nothing were wrong; twice around.
+  struct Left {
+    std::array<float, 4 * kSteps> x, y;
+  };
+
+  Left LeftOf(const RunKnot& knot, Complex bend_L, double per_sigma) const {
+    const Increment& i = knot.increment;
+    const Complex read = Complex(i.turn_M.x(), i.turn_M.y()) / i.seconds - fixed_.bias;
+    Left left;
+    for (std::size_t m = 0; m < 2 * kSteps; ++m) {
+      const Complex seen =
+          (earth_ + bend_L) * std::polar(1.0, -0.5 * kStep * static_cast<double>(m));
+      const Complex off = (read - seen) * per_sigma;
+      left.x[m] = left.x[m + 2 * kSteps] = static_cast<float>(off.real());
+      left.y[m] = left.y[m + 2 * kSteps] = static_cast<float>(off.imag());
+    }
+    return left;
+  }
+
+  /// The nearest to a knot; null: there is none.
+  const RollWindow* WindowAt(std::size_t knot) const {
+    if (windows_.empty()) return nullptr;
+    auto next = std::ranges::lower_bound(windows_, knot, {}, &RollWindow::node);
+    if (next == windows_.end()) return &windows_.back();
+    if (next != windows_.begin() && knot - (next - 1)->node < next->node - knot) --next;
+    return &*next;
+  }
+
+  /// Rates may change before a knot: the least of the costs and a change from there (the distance
+  /// transform of Felzenszwalb and Huttenlocher, 2012), and where it is.
+  void ChangeRates(double change, Grid<std::uint8_t>& from) {
+    for (std::size_t spin = 0; spin < kSpins; ++spin) {
+      from[spin].fill(static_cast<std::uint8_t>(spin));
+    }
+    const auto cost = static_cast<float>(kStep / change);
+    const auto pass = [&](std::size_t to, std::size_t next) {
+      for (std::size_t h = 0; h < kSteps; ++h) {
+        const float moved = costs_[next][h] + cost;
+        const bool less = moved < costs_[to][h];
+        costs_[to][h] = less ? moved : costs_[to][h];
+        from[to][h] = less ? from[next][h] : from[to][h];
+      }
+    };
+    for (std::size_t spin = 1; spin < kSpins; ++spin) pass(spin, spin - 1);
+    for (std::size_t spin = kSpins - 1; spin-- > 0;) pass(spin, spin + 1);
+  }
+
+  /// Goes through a knot.
+  void Pass(std::size_t k, Grid<std::uint8_t>& from) {
+    const RunKnot& knot = knots_[k];
+    const double seconds = knot.increment.seconds;
+    const RollWindow* window = WindowAt(k);
+    const double var = Square(setup_.gyro.angle_random_walk) / seconds + Square(kLoose * earth_);
+    const double per_sigma = 1 / std::sqrt(2 * var);
+    const Left left = LeftOf(knot, window != nullptr ? window->bend_L : Complex(), per_sigma);
+    ChangeRates(starts_[k] > 0 ? kChangeStarting : kChange, from);
+    float least = kBarred;
+    for (std::size_t spin = 0; spin < kSpins; ++spin) {
+      const double rate = RateOf(spin);
+      double apart = 0;
+      if (window != nullptr) apart = std::min(std::abs(rate - window->rate) / kOffWindow, 1.0);
+      float by_rate = static_cast<float>(apart);
+      if (knot.still && rate != 0) by_rate = kBarred;
+      const Complex skewed = fixed_.skew * rate * per_sigma;
+      const auto skew_x = static_cast<float>(skewed.real());
+      const auto skew_y = static_cast<float>(skewed.imag());
+      const float stranger = Reads(knot) ? static_cast<float>(kStranger) : 0.0F;
+      const std::size_t steps = StepsIn(spin, seconds);
+      std::array<float, kSteps>& costs = costs_[spin];
+      for (std::size_t h = 0; h < kSteps; ++h) {
+        // Half of the steps later than the heading at the begin, in half steps.
+        const std::size_t middle = 2 * h + steps;
+        const float x = left.x[middle] - skew_x, y = left.y[middle] - skew_y;
+        costs[h] += std::min(x * x + y * y, stranger) + by_rate;
+      }
+      least = std::min(least, *std::min_element(costs.begin(), costs.end()));
+      std::rotate(costs.begin(), costs.end() - static_cast<std::ptrdiff_t>(steps), costs.end());
+    }
+    for (std::array<float, kSteps>& row : costs_) {
+      for (float& cost : row) cost -= least;
+    }
+  }
+
+  /// Knots from `begin` on, by what those before them and kAgain after them tell.
+  void SolvePiece(std::size_t begin, std::span<std::size_t> spins) {
+    const std::size_t end = std::min(begin + kPiece, knots_.size());
+    const std::size_t seen = std::min(end + kAgain, knots_.size());
+    std::vector<Grid<std::uint8_t>> from(seen - begin);
+    for (std::size_t k = begin; k < end; ++k) Pass(k, from[k - begin]);
+    const Grid<float> costs = costs_;
+    for (std::size_t k = end; k < seen; ++k) Pass(k, from[k - begin]);
+    std::size_t spin = 0, heading = 0;
+    for (std::size_t s = 0; s < kSpins; ++s) {
+      const auto best = std::min_element(costs_[s].begin(), costs_[s].end());
+      if (!(*best < costs_[spin][heading]) && s > 0) continue;
+      spin = s;
+      heading = static_cast<std::size_t>(best - costs_[s].begin());
+    }
+    for (std::size_t k = seen; k-- > begin;) {
+      spins[k] = spin;
+      heading = (heading + kSteps - StepsIn(spin, knots_[k].increment.seconds)) % kSteps;
+      spin = from[k - begin][spin][heading];
+    }
+    costs_ = costs;
+  }
+
+  std::span<const RunKnot> knots_;
+  const EstimateSetup& setup_;
+  std::span<const double> starts_;
+  double earth_;
+  Fixed fixed_;
+  std::vector<RollWindow> windows_;
+  Grid<float> costs_{};
+};
 
 }  // namespace
 
@@ -41,45 +245,26 @@ bool AnyRollIsHidden(std::span<const RunKnot> knots) {
   return std::any_of(knots.begin(), knots.end(), RollIsHidden);
 }
 
-std::vector<bool> SteadyAcross(std::span<const RunKnot> knots, double angle_random_walk) {
-  std::vector<double> turns{0}, times{0};
-  for (const RunKnot& knot : knots) {
-    turns.push_back(turns.back() + knot.increment.turn_M.norm());
-    times.push_back(times.back() + knot.increment.seconds);
-  }
-  std::vector<bool> steady(knots.size());
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    const std::size_t begin = k > kAcross ? k - kAcross : 0;
-    const std::size_t end = std::min(k + 1 + kAcross, knots.size());
-    const double before = std::max(times[k + 1] - times[begin], 1e-9);
-    const double after = std::max(times[end] - times[k], 1e-9);
-    const double a = (turns[k + 1] - turns[begin]) / before, b = (turns[end] - turns[k]) / after;
-    const double chance = kChance * angle_random_walk * std::sqrt(1 / before + 1 / after);
-    steady[k] = std::abs(b - a) < 0.5 * kSteady * (a + b) + chance;
-  }
-  return steady;
-}
-
-std::vector<double> HiddenRoll(std::span<const RunKnot> knots, double horizontal,
-                               const std::vector<bool>& steady) {
-  const auto reads = [&](std::size_t k) { return steady[k] && Reads(knots[k], horizontal); };
-  std::vector<double> hidden(knots.size(), 0), near;
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    if (!RollIsHidden(knots[k])) continue;
-    near.clear();
-    // What it did before a stop is not what it does after it.
-    std::size_t begin = k, end = k;
-    while (begin > 0 && begin + kReach > k && !knots[begin - 1].still) --begin;
-    while (end + 1 < knots.size() && end < k + kReach && !knots[end + 1].still) ++end;
-    for (std::size_t j = begin; j < end; ++j) {
-      if (!reads(j) || !reads(j + 1)) continue;
-      near.push_back(RollBetween(knots[j].increment, knots[j + 1].increment));
+std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+  std::vector<double> hidden(knots.size(), 0);
+  if (!AnyRollIsHidden(knots)) return hidden;
+  const std::vector<double> starts = SpeedStarts(knots);
+  const std::vector<RollWindow> windows = WindowsOf(knots, setup);
+  const auto unseen = [&](std::size_t k) {
+    return !knots[k].increment.roll_seen && knots[k].increment.seconds > 0;
+  };
+  for (std::size_t begin = 0, end = 0; begin < knots.size(); begin = std::max(end, begin + 1)) {
+    for (end = begin; end < knots.size() && unseen(end);) ++end;
+    const std::size_t size = end - begin;
+    if (size < kLeast) continue;
+    const std::vector<std::size_t> spins = Stretch(knots.subspan(begin, size), begin, setup,
+                                                   std::span(starts).subspan(begin, size), windows)
+                                               .Spins();
+    for (std::size_t k = begin; k < end; ++k) {
+      const Increment& i = knots[k].increment;
+      if (knots[k].still) continue;
+      hidden[k] = RateOf(spins[k - begin]) - (i.roll_before + i.roll_after) / i.seconds;
     }
-    if (near.size() < kLeast) continue;
-    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-    std::nth_element(near.begin(), middle, near.end());
-    const Increment& i = knots[k].increment;
-    hidden[k] = *middle - (i.roll_before + i.roll_after) / i.seconds;
   }
   return hidden;
 }

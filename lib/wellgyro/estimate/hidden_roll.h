@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
@@ -11,22 +12,17 @@ namespace wellgyro {
 bool RollIsHidden(const RunKnot& knot);
 bool AnyRollIsHidden(std::span<const RunKnot> knots);
 
-/// Whether a rate across the tool can be the Earth's, by its ratio to what that is there: of a bend
-/// that turns as much, at an angle b to it, the sum is 2 cos b/2, within 1/sqrt(2) and sqrt(2) for
-/// b from 90 to 139 deg alone, one in four.
-inline constexpr double kEarthsLeast = 0.7, kEarthsMost = 1.4;
-constexpr bool MayBeEarths(double ratio) { return ratio > kEarthsLeast && ratio < kEarthsMost; }
-
-/// Of each knot, whether the rate across the tool keeps its size about it. It does not where a bend
-/// begins or ends: it then turns in L.
-std::vector<bool> SteadyAcross(std::span<const RunKnot> knots, double angle_random_walk);
-
-/// Roll rate near vertical, where gravity does not show it, less the rate of psi [rad/s]. The rate
-/// across the axis, the Earth's (`horizontal` [rad/s]) and that of a bend, keeps its direction in L
-/// for some time, so that its phase in the tool turns at minus the roll rate. The median over the
-/// steady knots nearby that read it; 0 where gravity shows the roll or too few knots read the rate.
-/// For the start only, never a measurement.
-std::vector<double> HiddenRoll(std::span<const RunKnot> knots, double horizontal,
-                               const std::vector<bool>& steady);
+/// Roll rate of each hidden knot less the rate of psi [rad/s]; else 0, and where fewer than ten
+/// knots in a row hide it.
+///
+/// Near vertical the gyros across read the Earth's rate as it turns in the tool, that of a bend,
+/// and what is fixed in the tool, which may be more. From rest to rest the heading and its rate are
+/// the likeliest path over a grid of both (Viterbi 1967), so that turns are not lost where the tool
+/// starts and stops. What is fixed and how the hole bends is taken from RollWindowsOf(). Along a
+/// bend that is not known the path goes on at the rate that it has.
+///
+/// For the start of a solution only, never a measurement: to some 10 deg of heading where the
+/// Earth's rate stands out of gyros and bends by three sigmas a second, up to 21 rpm.
+std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSetup& setup);
 
 }  // namespace wellgyro

@@ -13,7 +13,6 @@
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/rivals.h"
-#include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -170,10 +169,11 @@ std::vector<NorthClosure> ClosuresOf(RunSolver& solved) {
 }
 
 std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                 std::span<const Start> starts, const RollTrack& track) {
+                                 std::span<const Start> starts) {
   if (starts.empty()) return GuessesOfHeadings(setup, knots);
+  const std::vector<double> hidden_roll = HiddenRoll(knots, setup);
   std::vector<NodeGuess> guesses;
-  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start, track));
+  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start, hidden_roll));
   return guesses;
 }
 
@@ -336,11 +336,6 @@ bool GyrosMisfit(const RunEstimate& run) {
   return !run.solved || Excess(run.report.sums, {RowKind::kTurn, RowKind::kStill}) > 1;
 }
 
-/// A lost turn of roll may show in the forces alone.
-bool Misfits(const RunEstimate& run) {
-  return GyrosMisfit(run) || Excess(run.report.sums, {RowKind::kForce}) > 1;
-}
-
 /// Takes what other guesses lead to where it is better than what is known; the worse of the two may
 /// remain a rival. False: it is not better.
 bool TakeIfBetter(Choice other, std::span<const std::size_t> marked, Choice& choice,
@@ -363,19 +358,8 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
                         const RunState* before) {
   RunEstimate result;
   if (knots.empty()) return result;
-  const auto chosen = [&](const RollTrack& track) {
-    return Choose(setup, knots, GuessesOf(setup, knots, starts.anchored, track), before);
-  };
-  Choice choice = chosen(RollOfNeighbours(knots, setup));
+  Choice choice = Choose(setup, knots, GuessesOf(setup, knots, starts.anchored), before);
   Take(choice, marked, result);
-  const bool hidden = !starts.anchored.empty() && AnyRollIsHidden(knots);
-  if (starts.otherwise && hidden && Misfits(result)) {
-    // None of the searches leads to the solution always.
-    RollTrack track = TrackRoll(knots, setup);
-    TakeIfBetter(chosen(track), marked, choice, result);
-    track.alone = true;
-    if (Misfits(result)) TakeIfBetter(chosen(track), marked, choice, result);
-  }
   if (starts.otherwise && GyrosMisfit(result)) {
     const std::array otherwise{starts.otherwise()};
     Choice other = Choose(setup, knots, otherwise, before);

@@ -50,8 +50,7 @@ struct RunEstimate {
 
 /// Solves the run from each start and keeps the solution of greatest evidence; where there is no
 /// start, from what eight headings lead to: the motion itself shows north. Where no start leads to
-/// a solution that gyros and accelerometers fit, a hidden roll is sought in another way, see
-/// TrackRoll(), and, for the gyros, the other guess is tried. Where the residuals of gyros or
+/// a solution that the gyros fit the other guess is tried. Where the residuals of gyros or
 /// accelerometers are larger than the noise stated can make them, that sensor's noise is
 /// taken as large as they say, and the run is solved with it (variance components, Foerstner 1979):
 /// covariances hold for what was measured, not for what was promised. Noise is never taken smaller.

@@ -60,10 +60,9 @@ RunSolver::RunSolver(const EstimateSetup& setup, std::span<const RunKnot> knots,
   if (before_ != nullptr) border_ = before_->border;
 }
 
-void RunSolver::Begin(const Eigen::Matrix3d& R_LT) {
+void RunSolver::Begin(const Eigen::Matrix3d& R_LT, std::span<const double> hidden_roll) {
   border_.setZero();
-  const RollTrack track = RollOfNeighbours(knots_, setup_);
-  GuessPass pass(setup_, knots_, track);
+  GuessPass pass(setup_, knots_, hidden_roll);
   pass.Begin(R_LT);
   pass.Run(0, knots_.size());
   nodes_ = std::move(pass).nodes();

@@ -65,8 +65,9 @@ class RunSolver : public RunRows {
   RunSolver(const RunSolver&) = delete;
   RunSolver& operator=(const RunSolver&) = delete;
 
-  /// Places every node by a forward pass from this attitude of node 0, see GuessPass.
-  void Begin(const Eigen::Matrix3d& R_LT);
+  /// Places every node by a forward pass from this attitude of node 0, see GuessPass, with
+  /// HiddenRoll() of the knots.
+  void Begin(const Eigen::Matrix3d& R_LT, std::span<const double> hidden_roll);
   /// Goes into the minimum about where it stands, near enough to know it. False: there is none
   /// within `iterations` steps.
   bool Approach(int iterations);

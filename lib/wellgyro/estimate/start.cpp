@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/estimate/guess_pass.h"
+#include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/math/rotation.h"
 
@@ -52,20 +53,11 @@ void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std
   for (std::size_t k = begin; k < end; ++k) extra[k] += angle * weight(k) / sum;
 }
 
-/// The anchors with those that the Earth shows, in the order of time.
-Start WithHeadings(Start anchors, std::span<const NodeHeading> headings) {
-  for (const NodeHeading& h : headings) anchors.push_back({h.node, RotationZ(h.heading)});
-  std::stable_sort(anchors.begin(), anchors.end(),
-                   [](const Anchor& a, const Anchor& b) { return a.node < b.node; });
-  return anchors;
-}
-
 }  // namespace
 
-NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& known,
-                  const RollTrack& track) {
-  GuessPass pass(setup, knots, track);
-  const Start start = WithHeadings(known, track.headings);
+NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start,
+                  std::span<const double> hidden_roll) {
+  GuessPass pass(setup, knots, hidden_roll);
   Matrix3d first = LevelAttitude(knots);
   pass.Begin(first);
   std::size_t from = 0;
@@ -93,8 +85,8 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, co
 
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
                   std::span<const Matrix3d> R_LT) {
-  const RollTrack track = RollOfNeighbours(knots, setup);
-  GuessPass pass(setup, knots, track);
+  const std::vector<double> hidden_roll = HiddenRoll(knots, setup);
+  GuessPass pass(setup, knots, hidden_roll);
   pass.Begin(R_LT.front());
   pass.Run(0, knots.size());
   NodeGuess nodes = std::move(pass).nodes();
@@ -103,8 +95,8 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
 }
 
 Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const AzimuthTie& tie) {
-  const RollTrack track = RollOfNeighbours(knots, setup);
-  GuessPass pass(setup, knots, track);
+  const std::vector<double> hidden_roll = HiddenRoll(knots, setup);
+  GuessPass pass(setup, knots, hidden_roll);
   pass.Begin(LevelAttitude(knots));
   pass.Run(0, tie.node);
   const Matrix3d R_LT = pass.nodes()[tie.node].R_LT;
@@ -115,10 +107,11 @@ Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, cons
 std::vector<NodeGuess> GuessesOfHeadings(const EstimateSetup& setup,
                                          std::span<const RunKnot> knots) {
   const Matrix3d level = LevelAttitude(knots);
+  const std::vector<double> hidden_roll = HiddenRoll(knots, setup);
   RunSolver solver(setup, knots);
   std::vector<NodeGuess> guesses;
   for (int i = 0; i < kHeadings; ++i) {
-    solver.Begin(RotationZ(i * kTwoPi / kHeadings) * level);
+    solver.Begin(RotationZ(i * kTwoPi / kHeadings) * level, hidden_roll);
     if (!solver.Approach(kApproach)) continue;
     const auto same = [&](const NodeGuess& g) { return SameSolution(g, solver.nodes()); };
     if (std::none_of(guesses.begin(), guesses.end(), same)) guesses.push_back(solver.nodes());

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "wellgyro/estimate/node.h"
-#include "wellgyro/estimate/roll_track.h"
 #include "wellgyro/estimate/setup.h"
 #include "wellgyro/record/run_knot.h"
 
@@ -35,9 +34,10 @@ struct Starts {
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
                   std::span<const Eigen::Matrix3d> R_LT);
 
-/// The nodes by a forward pass from where `start` has them. At least one knot and one anchor.
+/// The nodes by a forward pass from where `start` has them, with HiddenRoll() of the knots. At
+/// least one knot and one anchor.
 NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const Start& start,
-                  const RollTrack& track);
+                  std::span<const double> hidden_roll);
 
 /// The heading that a tie gives, where the nodes would stand without any.
 Anchor AnchorOf(const EstimateSetup& setup, std::span<const RunKnot> knots, const AzimuthTie& tie);

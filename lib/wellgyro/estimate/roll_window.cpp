@@ -1,4 +1,4 @@
-#include "wellgyro/estimate/roll_track.h"
+#include "wellgyro/estimate/roll_window.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include "wellgyro/earth/earth.h"
-#include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/math/square.h"
 
 namespace wellgyro {
@@ -42,10 +41,16 @@ double RateOf(std::size_t i) { return (static_cast<int>(i) - kMiddle) * kStep; }
 /// Information of a steady error's prior, by that of one knot; of none where a job states 0.
 double Held(double noise, double sigma) { return Square(noise / std::max(sigma, 1e-6 * noise)); }
 
-/// A window's likelihood, and the Earth's rate in it, in the frame of the tool at its middle node.
+/// Whether a rate across the tool can be the Earth's, by its ratio to what that is there: of a bend
+/// that turns as much, at an angle b to it, the sum is 2 cos b/2, within 1/sqrt(2) and sqrt(2) for
+/// b from 90 to 139 deg alone, one in four.
+bool MayBeEarths(double ratio) { return ratio > 0.7 && ratio < 1.4; }
+
+/// A window's likelihood, and the rates of Earth and bend in it, in the frame of the tool at its
+/// middle node, beside what is fixed in the tool.
 struct Line {
   double cost = 0;  ///< -ln, but for constants
-  Complex earth;
+  Complex earth, bend, steady;
 };
 
 /// Some knots in which the tool turns evenly. With lean l0 + l1 t in P, which follows the axis and
@@ -104,7 +109,7 @@ class Window {
     const double turn_left = std::max(turn_squares - found.dot(turn).real(), 0.0);
     return {size_ * (std::log(force_left / size_ + 2 * Square(accel_noise_)) +
                      std::log(turn_left / size_ + 2 * Square(gyro_noise_))),
-            found[0]};
+            found[0], bend, found[1]};
   }
 
   /// The likeliest rate within half a step of one.
@@ -166,9 +171,10 @@ std::vector<double> RatesOf(std::span<const Window> windows, double share) {
   return rates;
 }
 
-/// One stretch of hidden knots, from `first` of the run on.
-void TrackStretch(std::span<const RunKnot> knots, const EstimateSetup& setup, std::size_t first,
-                  RollTrack& track) {
+}  // namespace
+
+std::vector<RollWindow> RollWindowsOf(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+  if (knots.size() < kLeastWindow) return {};
   const std::size_t width = std::min(kWindow, knots.size());
   std::vector<std::size_t> begins;
   for (std::size_t b = 0; b + width < knots.size(); b += kStride) begins.push_back(b);
@@ -178,41 +184,16 @@ void TrackStretch(std::span<const RunKnot> knots, const EstimateSetup& setup, st
   const double share = static_cast<double>(kStride) / kWindow;
   const std::vector<double> rates = RatesOf(windows, share);
   const double earth = kEarthRate * std::cos(setup.site.latitude);
-  std::size_t k = 0;
+  std::vector<RollWindow> found;
   for (std::size_t w = 0; w < begins.size(); ++w) {
-    const Complex found = windows[w].At(rates[w]).earth;
+    const Line line = windows[w].At(rates[w]);
+    const bool north = MayBeEarths(std::abs(line.earth) / earth);
     // A tool that has turned to the right sees north turned to the left.
-    if (MayBeEarths(std::abs(found) / earth)) {
-      track.headings.push_back({first + begins[w] + width / 2, -std::arg(found)});
-    }
-    // Up to half way to the next window's middle.
-    const bool last = w + 1 == begins.size();
-    const std::size_t end = last ? knots.size() : (begins[w] + begins[w + 1] + width) / 2;
-    for (; k < end; ++k) {
-      const Increment& i = knots[k].increment;
-      track.beyond_psi[first + k] = rates[w] - (i.roll_before + i.roll_after) / i.seconds;
-    }
+    const Complex to_L = std::polar(1.0, -std::arg(line.earth));
+    found.push_back({begins[w] + width / 2, rates[w], line.steady, north,
+                     north ? line.bend * to_L : Complex()});
   }
-}
-
-}  // namespace
-
-RollTrack RollOfNeighbours(std::span<const RunKnot> knots, const EstimateSetup& setup) {
-  const double earth = kEarthRate * std::cos(setup.site.latitude);
-  return {HiddenRoll(knots, earth, SteadyAcross(knots, setup.gyro.angle_random_walk)), {}};
-}
-
-RollTrack TrackRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
-  RollTrack track{std::vector<double>(knots.size(), 0), {}};
-  const auto hidden = [&](std::size_t k) {
-    return RollIsHidden(knots[k]) && knots[k].increment.level && knots[k].increment.seconds > 0;
-  };
-  for (std::size_t begin = 0, end = 0; begin < knots.size(); begin = std::max(end, begin + 1)) {
-    for (end = begin; end < knots.size() && hidden(end);) ++end;
-    if (end - begin < kLeastWindow) continue;
-    TrackStretch(knots.subspan(begin, end - begin), setup, begin, track);
-  }
-  return track;
+  return found;
 }
 
 }  // namespace wellgyro

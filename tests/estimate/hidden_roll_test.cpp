@@ -1,0 +1,241 @@
+// Rates and headings of a hidden roll against an axis that is turned by matrices alone.
+#include "wellgyro/estimate/hidden_roll.h"
+
+#include <cmath>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/roll_window.h"
+#include "wellgyro/estimate/swing.h"
+#include "wellgyro/math/random.h"
+
+namespace wellgyro {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kGravity = 9.81, kLatitude = 0.9;
+
+/// What a tool does in a hole that leans and bends by little, at a time.
+struct Motion {
+  double rate = 0, swing = 0, period = 20, heading = 1;
+
+  double HeadingAt(double t) const {
+    return heading + rate * t + swing * std::sin(kTwoPi * t / period);
+  }
+  /// The lean circles with 0.05 deg about 0.1 deg north: the axis turns by half the Earth's rate.
+  Matrix3d AttitudeAt(double t) const {
+    const double north = FromDegrees(0.1 + 0.05 * std::cos(t / 120));
+    const double east = FromDegrees(0.05 * std::sin(t / 120));
+    // To lean north the axis, down, turns about east.
+    const Matrix3d lean =
+        (AngleAxisd(north, Vector3d::UnitY()) * AngleAxisd(-east, Vector3d::UnitX()))
+            .toRotationMatrix();
+    return lean * AngleAxisd(HeadingAt(t), Vector3d::UnitZ()).toRotationMatrix();
+  }
+};
+
+EstimateSetup SetupOf() {
+  EstimateSetup setup;
+  setup.site.latitude = kLatitude;
+  setup.site.gravity = kGravity;
+  setup.gyro.angle_random_walk = FromDegrees(0.05) / 60;
+  setup.errors.gyro_bias_sigma = FromDegrees(10) / 3600;
+  setup.errors.gyro_misalignment_sigma = 1e-4;
+  setup.errors.accel_bias_sigma = 1e-3;
+  setup.errors.accel_noise = 1e-4;
+  return setup;
+}
+
+/// The mean of what its sensors read over the second that begins at `t`, with a gyro bias as large
+/// as the Earth's rate.
+RunKnot KnotAt(const Motion& motion, double t, const EstimateSetup& setup, Random& random) {
+  const Vector3d earth = kEarthRate * Vector3d(std::cos(kLatitude), 0, -std::sin(kLatitude));
+  constexpr double kHalf = 1e-3;
+  const Matrix3d R = motion.AttitudeAt(t + 0.5);
+  const Matrix3d change =
+      motion.AttitudeAt(t + 0.5 - kHalf).transpose() * motion.AttitudeAt(t + 0.5 + kHalf);
+  const AngleAxisd turned(change);
+  const Vector3d rate = turned.angle() / (2 * kHalf) * turned.axis() + R.transpose() * earth;
+  RunKnot knot;
+  knot.increment.seconds = 1;
+  const double noise = setup.gyro.angle_random_walk;
+  knot.increment.turn_M = rate.head<2>() + Eigen::Vector2d(kEarthRate, -0.5 * kEarthRate) +
+                          noise * Eigen::Vector2d{random.Normal(), random.Normal()};
+  knot.increment.force_M = R.transpose() * Vector3d(0, 0, -kGravity) + Vector3d(5e-4, -1e-3, 0);
+  return knot;
+}
+
+struct RollCase {
+  Motion motion;
+  const char* name;
+};
+
+class Hidden : public testing::TestWithParam<RollCase> {};
+
+TEST_P(Hidden, RollIsCountedWithoutDrift) {
+  const EstimateSetup setup = SetupOf();
+  const Motion& motion = GetParam().motion;
+  Random random(7);
+  std::vector<RunKnot> knots;
+  for (int k = 0; k < 600; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+  const std::vector<double> rates = HiddenRoll(knots, setup);
+  double turned = 0, squares = 0;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    turned += rates[k];
+    const double off = turned - (motion.HeadingAt(static_cast<double>(k + 1)) - motion.heading);
+    EXPECT_LT(std::abs(off), 0.8 + motion.swing) << k;
+    squares += off * off;
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(knots.size())), 0.3 + motion.swing);
+}
+
+TEST_P(Hidden, WindowsFindRatesAndWhatIsFixedInTheTool) {
+  const EstimateSetup setup = SetupOf();
+  const Motion& motion = GetParam().motion;
+  Random random(7);
+  std::vector<RunKnot> knots;
+  for (int k = 0; k < 600; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+  const std::vector<RollWindow> windows = RollWindowsOf(knots, setup);
+  ASSERT_GE(windows.size(), 50u);
+  std::size_t north = 0;
+  for (const RollWindow& w : windows) {
+    EXPECT_NEAR(w.rate, motion.rate, 0.02 + 0.1 * motion.swing) << w.node;
+    const std::complex<double> off = w.steady - kEarthRate * std::complex(1.0, -0.5);
+    EXPECT_LT(std::abs(off), (0.2 + motion.swing) * kEarthRate) << w.node;
+    north += w.finds_north ? 1 : 0;
+  }
+  EXPECT_GE(north, 40u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Rolls, Hidden,
+    testing::Values(RollCase{{.rate = 0.45}, "rolling"}, RollCase{{.rate = -0.08}, "slowly"},
+                    RollCase{{.rate = 1.3}, "fast"},
+                    RollCase{{.rate = 0.3, .swing = FromDegrees(20)}, "swinging"},
+                    RollCase{{.rate = 0.3, .swing = FromDegrees(20), .period = 6}, "shaking"}),
+    [](const auto& c) { return std::string(c.param.name); });
+
+/// Rolls at 6 rpm from one rest to the next, with some seconds to start and to stop.
+double StartedHeading(double t) {
+  const auto ramp = [](double s) {  // the integral of a rate that goes from 0 to 1 in 6 s
+    if (s < 0) return 0.0;
+    return s < 6 ? s * s / 12 : s - 3;
+  };
+  return 1 + 0.628 * (ramp(t - 60) - ramp(t - 241.3));
+}
+
+// What is fixed in the tool is larger than the Earth's rate and only there while it rolls, as a
+// misalignment of the gyros is; what it turns by while it starts and stops is not what it turns by
+// at other times, and the rests on both sides say so.
+TEST(HiddenRoll, CountsTurnsFromRestToRest) {
+  EstimateSetup setup = SetupOf();
+  setup.gyro.angle_random_walk = FromDegrees(0.01) / 60;
+  setup.errors.gyro_misalignment_sigma = 2e-4;
+  Random random(10);
+  std::vector<RunKnot> knots;
+  std::vector<double> headings{StartedHeading(0)};
+  for (int k = 0; k < 300; ++k) {
+    const double t = k, begin = headings.back(), end = StartedHeading(t + 1);
+    Motion motion{.rate = end - begin, .heading = StartedHeading(t + 0.5)};
+    motion.heading -= motion.rate * (t + 0.5);
+    RunKnot knot = KnotAt(motion, t, setup, random);
+    const Eigen::Vector2d bias = kEarthRate * Eigen::Vector2d(1, -0.5);
+    knot.increment.turn_M += motion.rate * 2e-4 * Eigen::Vector2d(0.8, 0.6) - bias;
+    knot.still = begin == end;
+    knot.along.known = true;
+    knot.along.speed = 0.9 * motion.rate;
+    knot.along.sigma_speed = 0.01;
+    knots.push_back(knot);
+    headings.push_back(end);
+  }
+  const std::vector<double> rates = HiddenRoll(knots, setup);
+  double turned = headings.front();
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    turned += rates[k];
+    EXPECT_NEAR(turned, headings[k + 1], 0.35) << k;
+  }
+  EXPECT_NEAR(turned, headings.back(), 0.1);
+  EXPECT_GT(headings.back(), 18 * kTwoPi);
+}
+
+TEST(HiddenRoll, KnotsThatShowTheirRollAreLeftAlone) {
+  const EstimateSetup setup = SetupOf();
+  Random random(8);
+  std::vector<RunKnot> knots;
+  for (int k = 0; k < 200; ++k) knots.push_back(KnotAt({.rate = 0.4}, k, setup, random));
+  for (std::size_t k = 0; k < 195; ++k) knots[k].increment.roll_seen = true;
+  for (const double rate : HiddenRoll(knots, setup)) EXPECT_EQ(rate, 0);  // five are too few
+  for (std::size_t k = 0; k < 100; ++k) knots[k].increment.roll_seen = false;
+  for (std::size_t k = 0; k < 100; ++k) knots[k].still = true;
+  for (const double rate : HiddenRoll(knots, setup)) EXPECT_EQ(rate, 0);
+  EXPECT_TRUE(HiddenRoll({}, setup).empty());
+  EXPECT_TRUE(RollWindowsOf({}, setup).empty());
+}
+
+// A piece of the grid does not show where the next begins: 1300 knots are three.
+TEST(HiddenRoll, LongStretchesAreSolvedInPieces) {
+  const EstimateSetup setup = SetupOf();
+  const Motion motion{.rate = 0.21};
+  Random random(11);
+  std::vector<RunKnot> knots;
+  for (int k = 0; k < 1300; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+  knots[620].increment.level = false;  // nothing of it is known
+  knots[620].increment.turn_M.setZero();
+  const std::vector<double> rates = HiddenRoll(knots, setup);
+  double turned = 0;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    turned += rates[k];
+    EXPECT_NEAR(turned, motion.rate * static_cast<double>(k + 1), 0.8) << k;
+  }
+}
+
+// A job may say that a tool has no such error.
+TEST(HiddenRoll, StatedErrorsMayBeNone) {
+  EstimateSetup setup = SetupOf();
+  Random random(9);
+  std::vector<RunKnot> knots;
+  for (int k = 0; k < 200; ++k) {
+    knots.push_back(KnotAt({.rate = 0.4}, k, setup, random));
+    knots.back().increment.turn_M -= Eigen::Vector2d(kEarthRate, -0.5 * kEarthRate);
+    knots.back().increment.force_M -= Vector3d(5e-4, -1e-3, 0);
+  }
+  setup.errors.gyro_bias_sigma = setup.errors.gyro_misalignment_sigma = 0;
+  setup.errors.accel_bias_sigma = setup.errors.accel_noise = 0;
+  setup.gyro.angle_random_walk = 0;
+  double turned = 0;
+  for (const double rate : HiddenRoll(knots, setup)) turned += rate;
+  EXPECT_NEAR(turned, 80, 0.2);
+}
+
+// Two legs whose swings begin with phases of their own: a line through both would lie between the
+// lines of either, 2 pi / 700 s apart.
+TEST(Swing, IsLookedForBetweenStops) {
+  constexpr double kOmega = 0.9;
+  std::vector<RunKnot> knots(900);
+  std::vector<Node> nodes(knots.size() + 1);
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    knots[k].increment.seconds = 1;
+    knots[k].still = k >= 350 && k < 500;
+    const double phase = k < 350 ? 0.0 : 2.5;
+    if (!knots[k].still) {
+      nodes[k].roll_rate = 0.12 + 0.1 * std::cos(kOmega * static_cast<double>(k) + phase);
+    }
+  }
+  const auto omega = SwingOf(knots, nodes);
+  ASSERT_TRUE(omega.has_value());
+  EXPECT_NEAR(*omega, kOmega, kSwingSigma);
+  EXPECT_FALSE(SwingOf(knots).has_value());  // none of it is seen
+}
+
+}  // namespace
+}  // namespace wellgyro
