@@ -131,7 +131,7 @@ CAUSES = {
 # What else diagnosis.csv may call a fault; a part of the name is enough.
 CALLED = {
     "gyro_step_x": ["gyro_step_x", "gyro_bias_x"], "gyro_step_y": ["gyro_step_y", "gyro_bias_y"],
-    "gyro_ramp": ["gyro_ramp_x", "gyro_step_x", "gyro_bias_x"], "gyro_temperature": ["gyro_ramp_y", "gyro_step_y", "gyro_bias_y"],
+    "gyro_ramp": ["gyro_ramp_x", "gyro_step_x", "gyro_bias_x"], "gyro_temperature": ["gyro_temperature_y"],
     "gyro_scale": ["gyro_scale_x"], "gyro_misalignment": ["gyro_misalignment_y"],
     "accel_scale": ["accel_scale_z"], "rest_creep": ["rest_motion"], "rest_turn": ["rest_motion"],
     "swing": ["rest_motion"], "depth_step": ["depth_jump"], "depth_frozen": ["depth_jump"],

@@ -9,8 +9,12 @@ inline constexpr int kLatitudeError = kErrorSources;     ///< [rad]
 inline constexpr int kGravityError = kErrorSources + 1;  ///< [m/s^2]
 /// Depth marks read (1 + error) of the way that the accelerometers feel [1].
 inline constexpr int kDepthScaleError = kErrorSources + 2;
-/// Of the gyros x and y, from the begin of the run on [rad/s^2].
-inline constexpr int kRampX = kErrorSources + 3, kRampY = kErrorSources + 4;
+/// Of the gyros x, y and z, from the begin of the run on [rad/s^2].
+inline constexpr int kRampX = kErrorSources + 3, kRampY = kErrorSources + 4,
+                     kRampZ = kErrorSources + 5;
+/// Of their biases, over the largest difference of the temperature from its mean [rad/s].
+inline constexpr int kWarmthX = kErrorSources + 6, kWarmthY = kErrorSources + 7,
+                     kWarmthZ = kErrorSources + 8;
 
 /// A fault that is looked for.
 struct CauseSpec {

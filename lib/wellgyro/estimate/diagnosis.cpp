@@ -407,8 +407,19 @@ void Diagnoser::AddOdds(Diagnosis& d) {
 
 /// The error that changes where the unknown is how it changes.
 int ErrorOf(int unknown) {
-  if (unknown == kRampX) return kGyroBiasX;
-  return unknown == kRampY ? kGyroBiasY : unknown;
+  switch (unknown) {
+    case kRampX:
+    case kWarmthX:
+      return kGyroBiasX;
+    case kRampY:
+    case kWarmthY:
+      return kGyroBiasY;
+    case kRampZ:
+    case kWarmthZ:
+      return kGyroBiasZ;
+    default:
+      return unknown;
+  }
 }
 
 /// Whether a cause is of the kind of another: that it is there twice, since when, or that it comes

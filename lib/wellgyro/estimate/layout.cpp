@@ -56,6 +56,12 @@ ErrorCovariance SourceCovariance(const EstimateSetup& setup) {
 /// thousandth of their sigmas at best, so that its covariance need not have full rank.
 constexpr double kApart = 1e-6;
 
+double BiasesByWarmth(const EstimateSetup& setup, int source) {
+  const bool across = source == kGyroBiasX || source == kGyroBiasY;
+  const bool counts = across || (source == kGyroBiasZ && setup.third_axis);
+  return counts ? setup.sigma_bias_by_warmth : 0;
+}
+
 /// Information of the border before any knot.
 BorderMatrix InformationOf(const Layout& layout, const ErrorCovariance& sources) {
   BorderMatrix correlation = BorderMatrix::Identity(layout.border, layout.border);
@@ -108,9 +114,11 @@ Layout LayoutOf(const EstimateSetup& setup) {
   const ErrorCovariance sources = SourceCovariance(setup);
   for (int i = 0; i < kErrorSources; ++i) {
     const double constant = std::max(0.0, sources.constant(i, i)), change = sources.change(i, i);
+    const double by_warmth = BiasesByWarmth(setup, i);
     const auto at = static_cast<std::size_t>(i);
     layout.source[at] = border(std::sqrt(constant));
-    layout.change[at] = border(change > kApart * constant ? std::sqrt(change) : 0);
+    layout.change[at] =
+        border(std::hypot(change > kApart * constant ? std::sqrt(change) : 0, by_warmth));
     layout.second_order |= i >= kAccelSecondOrder && constant > 0;
   }
   layout.ramp = border(setup.gyro.rate_ramp);
@@ -134,9 +142,17 @@ int BorderColumn(const Layout& layout, int unknown) {
     case kDepthScaleError:
       return layout.depth_scale;
     case kRampX:
-      return layout.ramp;
     case kRampY:
-      return layout.ramp == kAbsent ? kAbsent : layout.ramp + 1;
+    case kRampZ: {
+      const int gyro = unknown - kRampX;
+      return layout.ramp == kAbsent || gyro >= layout.gyros ? kAbsent : layout.ramp + gyro;
+    }
+    case kWarmthX:
+      return layout.change[kGyroBiasX];
+    case kWarmthY:
+      return layout.change[kGyroBiasY];
+    case kWarmthZ:
+      return layout.change[kGyroBiasZ];
     default:
       return layout.source[static_cast<std::size_t>(unknown)];
   }
@@ -147,6 +163,7 @@ double* PriorOf(int unknown, EstimateSetup& setup) {
   switch (unknown) {
     case kGyroBiasX:
     case kGyroBiasY:
+    case kGyroBiasZ:
       return &e.gyro_bias_sigma;
     case kMassUnbalance:
       return &e.mass_unbalance_sigma;
@@ -154,6 +171,7 @@ double* PriorOf(int unknown, EstimateSetup& setup) {
       return &e.quadrature_sigma;
     case kGyroScaleX:
     case kGyroScaleY:
+    case kGyroScaleZ:
       return &e.gyro_scale_sigma;
     case kMisalignmentX:
     case kMisalignmentY:
@@ -184,7 +202,12 @@ double* PriorOf(int unknown, EstimateSetup& setup) {
       return &setup.sigma_depth_scale;
     case kRampX:
     case kRampY:
+    case kRampZ:
       return &setup.gyro.rate_ramp;
+    case kWarmthX:
+    case kWarmthY:
+    case kWarmthZ:
+      return &setup.sigma_bias_by_warmth;
     default:
       return nullptr;
   }

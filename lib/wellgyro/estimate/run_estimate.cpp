@@ -145,12 +145,30 @@ void FitNoise(RunSolver& solver, std::span<const std::size_t> marked, RunEstimat
   result.report.sums = stated;
 }
 
+/// Of a run by a tool without a calibration's covariance: what the temperature does by itself.
+void TakeWarmth(std::span<const RunKnot> knots, EstimateSetup& setup) {
+  if (setup.cov_errors) return;
+  ErrorCovariance none;
+  for (const RunKnot& knot : knots) none.reference += static_cast<double>(knot.temperature);
+  none.reference /= static_cast<double>(knots.size());
+  double largest = 0;
+  for (const RunKnot& knot : knots) {
+    largest = std::max(largest, std::abs(static_cast<double>(knot.temperature) - none.reference));
+  }
+  // A thermometer that stands still tells nothing, nor does one that is not there.
+  constexpr double kLeast = 1;  // [degC]
+  if (!(largest > kLeast)) return;
+  none.span = largest;
+  setup.cov_errors = none;
+}
+
 /// A fault may be of a constant that the run holds at zero (prior sigma 0). For the test it becomes
 /// an unknown whose prior is kTestedPrior of the fault's size. The scale of depth becomes one by
 /// the job's prior: the accelerometers along the hole observe it.
 Diagnosis DiagnosisOf(const RunSolver& solved) {
   EstimateSetup setup = solved.setup();
   setup.sigma_depth_scale = setup.errors.depth_scale_sigma;
+  TakeWarmth(solved.knots(), setup);
   for (const CauseSpec& cause : setup.causes) {
     if (cause.kind != CauseSpec::Kind::kConstant && cause.kind != CauseSpec::Kind::kOnset) continue;
     double* sigma = PriorOf(cause.unknown, setup);

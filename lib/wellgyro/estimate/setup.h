@@ -37,6 +37,9 @@ struct EstimateSetup {
   /// Of its growth with depth: a Bouguer plate counted twice, whose density is 2670 kg/m^3 within 9
   /// % [m/s^2 per m].
   double sigma_gravity_gradient = 2e-7;
+  /// Of the gyros' biases, by which they change over `cov_errors`' span of temperature beside what
+  /// that states [rad/s].
+  double sigma_bias_by_warmth = 0;
   /// Of the depth marks' scale, as an unknown of the run; 0: it is none, and depth is what they
   /// say.
   double sigma_depth_scale = 0;

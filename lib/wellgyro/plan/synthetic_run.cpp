@@ -1,6 +1,7 @@
 #include "wellgyro/plan/synthetic_run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numeric>
@@ -297,7 +298,7 @@ void SyntheticRun::FirstRows(EdgeMatrix& information, EdgeVector& gradient) cons
     return;
   }
   RunSolver solver(setup_, std::span(knots_).first(1));
-  solver.Begin(nodes_.front().R_LT);
+  solver.Begin(nodes_.front().R_LT, std::array{0.0});
   solver.FirstRows(information, gradient);
 }
 

@@ -16,6 +16,7 @@ constexpr std::string_view kCalibrate =
     "widen its sigma in [errors], run again, calibrate the tool";
 constexpr std::string_view kRamp =
     "state its rate_ramp in [noise], run again; let the tool warm up, calibrate it";
+constexpr std::string_view kWarm = "calibrate the tool over temperature, run again";
 constexpr std::string_view kBench =
     "the run is good to its end only with the step told: bench "
     "the tool, survey the part below again";
@@ -32,6 +33,8 @@ constexpr KnownCause kEntries[] = {
     {"gyro_bias_y", Kind::kConstant, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
     {"gyro_ramp_x", Kind::kConstant, kRampX, 0.3, units::kDegPerHour2, "deg/h2", kRamp},
     {"gyro_ramp_y", Kind::kConstant, kRampY, 0.3, units::kDegPerHour2, "deg/h2", kRamp},
+    {"gyro_temperature_x", Kind::kConstant, kWarmthX, 0.3, units::kDegPerHour, "deg/h", kWarm},
+    {"gyro_temperature_y", Kind::kConstant, kWarmthY, 0.3, units::kDegPerHour, "deg/h", kWarm},
     {"mass_unbalance", Kind::kConstant, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
      kCalibrate},
     {"quadrature", Kind::kConstant, kQuadrature, 0.15, units::kDegPerHourPerG, "deg/h/g",
@@ -53,6 +56,8 @@ constexpr KnownCause kEntries[] = {
     {"accel_misalignment_y", Kind::kConstant, kAccelMisalignmentY, 1e-3, kOne, "rad", kCalibrate},
     {"gyro_bias_z", Kind::kConstant, kGyroBiasZ, 0.5, units::kDegPerHour, "deg/h", kCalibrate},
     {"gyro_scale_z", Kind::kConstant, kGyroScaleZ, 1e-3, kOne, "1", kCalibrate},
+    {"gyro_ramp_z", Kind::kConstant, kRampZ, 0.3, units::kDegPerHour2, "deg/h2", kRamp},
+    {"gyro_temperature_z", Kind::kConstant, kWarmthZ, 0.3, units::kDegPerHour, "deg/h", kWarm},
     {"latitude", Kind::kConstant, kLatitudeError, 0.4, units::kDeg, "deg",
      "correct the latitude of the job, run again"},
     // The Earth's rate along the vertical acts as a mass unbalance m, m g = w sin L: with the other
@@ -65,6 +70,7 @@ constexpr KnownCause kEntries[] = {
      "compare depth with a tally, marks or a shoe, correct it, run again"},
     {"gyro_step_x", Kind::kOnset, kGyroBiasX, 0.5, units::kDegPerHour, "deg/h", kBench},
     {"gyro_step_y", Kind::kOnset, kGyroBiasY, 0.5, units::kDegPerHour, "deg/h", kBench},
+    {"gyro_step_z", Kind::kOnset, kGyroBiasZ, 0.5, units::kDegPerHour, "deg/h", kBench},
     {"mass_unbalance_step", Kind::kOnset, kMassUnbalance, 0.15, units::kDegPerHourPerG, "deg/h/g",
      kBench},
     {"accel_step_x", Kind::kOnset, kAccelBiasX, 3e-3, kOne, "m/s2", kBench},
