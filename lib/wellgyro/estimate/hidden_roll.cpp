@@ -25,7 +25,7 @@ using Complex = std::complex<double>;
 // steps of heading. With steps twice as large two of seven runs at 6 rpm end in another solution.
 constexpr std::size_t kSteps = 128, kSpins = 91;
 constexpr int kAtRest = kSpins / 2;
-constexpr double kStep = kTwoPi / kSteps;  // [rad], [rad/s]
+constexpr double kHeadingStep = kTwoPi / kSteps;  // [rad], [rad/s]
 // Of what the gyros read less the Earth's rate, over that: half a step, and bends of a few deg/h.
 constexpr double kLoose = 0.15;
 // -ln of a reading that has nothing to do with the Earth: three sigmas. Less is chance.
@@ -46,11 +46,11 @@ constexpr float kBarred = 1e9F;
 template <typename T>
 using Grid = std::array<std::array<T, kSteps>, kSpins>;
 
-double RateOf(std::size_t spin) { return (static_cast<int>(spin) - kAtRest) * kStep; }
+double SpinRate(std::size_t spin) { return (static_cast<int>(spin) - kAtRest) * kHeadingStep; }
 
 /// Steps of heading in a knot, from 0 to kSteps.
 std::size_t StepsIn(std::size_t spin, double seconds) {
-  const auto steps = std::lround(RateOf(spin) * seconds / kStep);
+  const auto steps = std::lround(SpinRate(spin) * seconds / kHeadingStep);
   constexpr auto kTurn = static_cast<long>(kSteps);
   return static_cast<std::size_t>((steps % kTurn + kTurn) % kTurn);
 }
@@ -133,7 +133,7 @@ class Stretch {
     Left left;
     for (std::size_t m = 0; m < 2 * kSteps; ++m) {
       const Complex seen =
-          (earth_ + bend_L) * std::polar(1.0, -0.5 * kStep * static_cast<double>(m));
+          (earth_ + bend_L) * std::polar(1.0, -0.5 * kHeadingStep * static_cast<double>(m));
       const Complex off = (read - seen) * per_sigma;
       left.x[m] = left.x[m + 2 * kSteps] = static_cast<float>(off.real());
       left.y[m] = left.y[m + 2 * kSteps] = static_cast<float>(off.imag());
@@ -156,7 +156,7 @@ class Stretch {
     for (std::size_t spin = 0; spin < kSpins; ++spin) {
       from[spin].fill(static_cast<std::uint8_t>(spin));
     }
-    const auto cost = static_cast<float>(kStep / change);
+    const auto cost = static_cast<float>(kHeadingStep / change);
     const auto pass = [&](std::size_t to, std::size_t next) {
       for (std::size_t h = 0; h < kSteps; ++h) {
         const float moved = costs_[next][h] + cost;
@@ -180,7 +180,7 @@ class Stretch {
     ChangeRates(starts_[k] > 0 ? kChangeStarting : kChange, from);
     float least = kBarred;
     for (std::size_t spin = 0; spin < kSpins; ++spin) {
-      const double rate = RateOf(spin);
+      const double rate = SpinRate(spin);
       double apart = 0;
       if (window != nullptr) apart = std::min(std::abs(rate - window->rate) / kOffWindow, 1.0);
       float by_rate = static_cast<float>(apart);
@@ -263,7 +263,7 @@ std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSet
     for (std::size_t k = begin; k < end; ++k) {
       const Increment& i = knots[k].increment;
       if (knots[k].still) continue;
-      hidden[k] = RateOf(spins[k - begin]) - (i.roll_before + i.roll_after) / i.seconds;
+      hidden[k] = SpinRate(spins[k - begin]) - (i.roll_before + i.roll_after) / i.seconds;
     }
   }
   return hidden;
