@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/LU>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
@@ -25,6 +26,7 @@ namespace {
 
 using testing::CollectingSink;
 using testing::Find;
+using ::testing::HasSubstr;
 using testing::SurveyOf;
 using Cause = SimulatedFault::Cause;
 
@@ -167,6 +169,37 @@ INSTANTIATE_TEST_SUITE_P(
         PlantedCause{"time_skew", Cause::kTimeSkew, 0.03, 1, 0},
         PlantedCause{"depth_scale", Cause::kDepthScale, 9e-3, 1, 0},
         PlantedCause{"latitude", Cause::kLatitude, 2, units::kDeg, 0}));
+
+// Sine squared of 40 K over 1000 s: its mean over the run of some 1380 s is 14.5 K, so that by the
+// largest difference from it, 25.5 K, the bias changes by 0.64 of the fault's size.
+TEST(RunDiagnosis, ABiasThatFollowsTheTemperatureIsNoStep) {
+  DiagnosedFlight flight(5);
+  const double size = 1.5 * units::kDegPerHour;
+  flight.simulation.faults.push_back(
+      {.cause = Cause::kGyroTemperature, .axis = 1, .begin = 200, .end = 1200, .size = size});
+  const Survey survey = flight.Surveyed();
+  ASSERT_EQ(survey.unusable, "");
+  EXPECT_EQ(survey.verdict.verdict, Verdict::kFail);
+  const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
+  EXPECT_EQ(causes.front().code, "gyro_temperature_y");
+  ASSERT_TRUE(causes.front().size && causes.front().sigma);
+  EXPECT_NEAR(*causes.front().size, 0.64 * 1.5, 4 * *causes.front().sigma + 0.05);
+  EXPECT_THAT(std::string(causes.front().remedy), HasSubstr("over temperature"));
+}
+
+TEST(RunDiagnosis, AStepOfTheThirdAxisIsFound) {
+  DiagnosedFlight flight(6);
+  flight.simulation.tool.has_gz = true;
+  flight.simulation.faults.push_back(
+      {.cause = Cause::kGyroStep, .axis = 2, .begin = kHalf, .size = 3 * units::kDegPerHour});
+  const Survey survey = flight.Surveyed();
+  ASSERT_EQ(survey.unusable, "");
+  const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
+  EXPECT_EQ(causes.front().code, "gyro_step_z");
+  ASSERT_TRUE(causes.front().size && causes.front().sigma);
+  EXPECT_NEAR(std::abs(*causes.front().size), 3, 4 * *causes.front().sigma);
+  EXPECT_LT(*causes.front().sigma, 0.75);
+}
 
 // A tool that hardly rolls shows a skew of 30 ms by what gravity says in a build, from stop to
 // motion: told by its roll alone, it was called a spike of the gyros at a start.
