@@ -285,7 +285,7 @@ TEST(RunDiagnosis, WhatTheLikeliestLeavesSpeaksForNoneOfThese) {
 // Of odds of e^9000 all others' posteriors are zero as doubles are.
 TEST(RunDiagnosis, CausesBehindOneThatIsCertainKeepTheirOrder) {
   Diagnosis tests = NothingFound();
-  tests.tests[4].ln_bayes = 800;
+  tests.tests[6].ln_bayes = 800;
   tests.tests.back().ln_bayes = 9000;
   const std::vector<RunCause> causes = DiagnosisOf(tests, {}).causes;
   EXPECT_EQ(causes[0].code, "other");
