@@ -170,8 +170,8 @@ INSTANTIATE_TEST_SUITE_P(
         PlantedCause{"depth_scale", Cause::kDepthScale, 9e-3, 1, 0},
         PlantedCause{"latitude", Cause::kLatitude, 2, units::kDeg, 0}));
 
-// Sine squared of 40 K over 1000 s: its mean over the run of some 1380 s is 14.5 K, so that by the
-// largest difference from it, 25.5 K, the bias changes by 0.64 of the fault's size.
+// 40 K up and down as sine squared over 1000 s: the mean over the run is 20 K by the share of that
+// time, and the bias is told by the largest difference from it.
 TEST(RunDiagnosis, ABiasThatFollowsTheTemperatureIsNoStep) {
   DiagnosedFlight flight(5);
   const double size = 1.5 * units::kDegPerHour;
@@ -183,7 +183,11 @@ TEST(RunDiagnosis, ABiasThatFollowsTheTemperatureIsNoStep) {
   const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
   EXPECT_EQ(causes.front().code, "gyro_temperature_y");
   ASSERT_TRUE(causes.front().size && causes.front().sigma);
-  EXPECT_NEAR(*causes.front().size, 0.64 * 1.5, 4 * *causes.front().sigma + 0.05);
+  const Run& run = survey.runs[0];
+  const double seconds = 1e-9 * static_cast<double>(run.end.ns - run.begin.ns);
+  const double share = 1 - 20 * 1000 / seconds / 40;
+  EXPECT_NEAR(*causes.front().size, share * 1.5, 4 * *causes.front().sigma);
+  EXPECT_LT(*causes.front().sigma, 0.1);
   EXPECT_THAT(std::string(causes.front().remedy), HasSubstr("over temperature"));
 }
 
