@@ -183,7 +183,7 @@ TEST(RunDiagnosis, ABiasThatFollowsTheTemperatureIsNoStep) {
   const std::vector<RunCause> causes = CausesOf(survey.runs[0], survey.checks);
   EXPECT_EQ(causes.front().code, "gyro_temperature_y");
   ASSERT_TRUE(causes.front().size && causes.front().sigma);
-  const Run& run = survey.runs[0];
+  const auto& run = survey.runs[0];
   const double seconds = 1e-9 * static_cast<double>(run.end.ns - run.begin.ns);
   const double share = 1 - 20 * 1000 / seconds / 40;
   EXPECT_NEAR(*causes.front().size, share * 1.5, 4 * *causes.front().sigma);
