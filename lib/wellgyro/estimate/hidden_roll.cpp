@@ -48,9 +48,13 @@ using Grid = std::array<std::array<T, kSteps>, kSpins>;
 
 double SpinRate(std::size_t spin) { return (static_cast<int>(spin) - kAtRest) * kHeadingStep; }
 
-/// Steps of heading in a knot, from 0 to kSteps.
-std::size_t StepsIn(std::size_t spin, double seconds) {
-  const auto steps = std::lround(SpinRate(spin) * seconds / kHeadingStep);
+/// Steps of heading in a knot.
+long StepsIn(std::size_t spin, double seconds) {
+  return std::lround(SpinRate(spin) * seconds / kHeadingStep);
+}
+
+/// The same from 0 to kSteps.
+std::size_t Around(long steps) {
   constexpr auto kTurn = static_cast<long>(kSteps);
   return static_cast<std::size_t>((steps % kTurn + kTurn) % kTurn);
 }
@@ -189,7 +193,7 @@ class Stretch {
       const auto skew_x = static_cast<float>(skewed.real());
       const auto skew_y = static_cast<float>(skewed.imag());
       const float stranger = Reads(knot) ? static_cast<float>(kStranger) : 0.0F;
-      const std::size_t steps = StepsIn(spin, seconds);
+      const std::size_t steps = Around(StepsIn(spin, seconds));
       std::array<float, kSteps>& costs = costs_[spin];
       for (std::size_t h = 0; h < kSteps; ++h) {
         // Half of the steps later than the heading at the begin, in half steps.
@@ -222,7 +226,8 @@ class Stretch {
     }
     for (std::size_t k = seen; k-- > begin;) {
       spins[k] = spin;
-      heading = (heading + kSteps - StepsIn(spin, knots_[k].increment.seconds)) % kSteps;
+      const long steps = StepsIn(spin, knots_[k].increment.seconds);
+      heading = Around(static_cast<long>(heading) - steps);
       spin = from[k - begin][spin][heading];
     }
     costs_ = costs;
@@ -263,7 +268,8 @@ std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSet
     for (std::size_t k = begin; k < end; ++k) {
       const Increment& i = knots[k].increment;
       if (knots[k].still) continue;
-      hidden[k] = SpinRate(spins[k - begin]) - (i.roll_before + i.roll_after) / i.seconds;
+      const auto steps = static_cast<double>(StepsIn(spins[k - begin], i.seconds));
+      hidden[k] = (steps * kHeadingStep - i.roll_before - i.roll_after) / i.seconds;
     }
   }
   return hidden;
