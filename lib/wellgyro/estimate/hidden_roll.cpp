@@ -53,10 +53,10 @@ long StepsIn(std::size_t spin, double seconds) {
   return std::lround(SpinRate(spin) * seconds / kHeadingStep);
 }
 
-/// The same from 0 to kSteps.
-std::size_t Around(long steps) {
-  constexpr auto kTurn = static_cast<long>(kSteps);
-  return static_cast<std::size_t>((steps % kTurn + kTurn) % kTurn);
+/// The same steps around a circle of so many.
+std::size_t Around(long steps, std::size_t circle) {
+  const auto turn = static_cast<long>(circle);
+  return static_cast<std::size_t>((steps % turn + turn) % turn);
 }
 
 /// What the gyros read wrongly: `bias` + rate * `skew`, fixed in the tool.
@@ -193,11 +193,12 @@ class Stretch {
       const auto skew_x = static_cast<float>(skewed.real());
       const auto skew_y = static_cast<float>(skewed.imag());
       const float stranger = Reads(knot) ? static_cast<float>(kStranger) : 0.0F;
-      const std::size_t steps = Around(StepsIn(spin, seconds));
+      const long turned = StepsIn(spin, seconds);
+      const std::size_t steps = Around(turned, kSteps), half_steps = Around(turned, 2 * kSteps);
       std::array<float, kSteps>& costs = costs_[spin];
       for (std::size_t h = 0; h < kSteps; ++h) {
         // Half of the steps later than the heading at the begin, in half steps.
-        const std::size_t middle = 2 * h + steps;
+        const std::size_t middle = 2 * h + half_steps;
         const float x = left.x[middle] - skew_x, y = left.y[middle] - skew_y;
         costs[h] += std::min(x * x + y * y, stranger) + by_rate;
       }
@@ -227,7 +228,7 @@ class Stretch {
     for (std::size_t k = seen; k-- > begin;) {
       spins[k] = spin;
       const long steps = StepsIn(spin, knots_[k].increment.seconds);
-      heading = Around(static_cast<long>(heading) - steps);
+      heading = Around(static_cast<long>(heading) - steps, kSteps);
       spin = from[k - begin][spin][heading];
     }
     costs_ = costs;
