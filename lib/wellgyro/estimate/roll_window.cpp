@@ -17,7 +17,7 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Vector2cd;
-using Eigen::Vector3cd;
+using Eigen::Vector4cd;
 
 // Grid of the roll rate: to 21 rpm, by an eighth of the width 2 pi / 40 s of a window's line.
 constexpr int kRates = 221, kMiddle = kRates / 2;
@@ -27,7 +27,7 @@ constexpr double kStep = 0.02;  // [rad/s]
 constexpr int kFiner = 16;
 // A line of the Earth's rate stands out of gyros of 0.05 deg/sqrt(h) by twenty sigmas.
 constexpr std::size_t kWindow = 40, kStride = 10;  // [knots]
-constexpr std::size_t kLeastWindow = 10;           // twenty readings for five unknowns
+constexpr std::size_t kLeastWindow = 10;           // twenty readings for six unknowns
 // From window to window a rate changes as Laplace has it, by 0.1 rad/s, or it starts or stops,
 // which has one chance in exp(8) = 3000.
 constexpr double kChange = 0.1, kJump = 8;
@@ -53,9 +53,9 @@ struct Line {
   Complex earth, bend, steady;
 };
 
-/// Some knots in which the tool turns evenly. With lean l0 + l1 t in P, which follows the axis and
-/// does not turn about it, and z = exp(-i rate t),
-///   force / g:  z (l0 + l1 t) + d,      rate across:  z (E + i l1) + c,
+/// Some knots in which the tool turns evenly. With lean l0 + l1 t + l2 t^2 in P, which follows the
+/// axis and does not turn about it, and z = exp(-i rate t),
+///   force / g:  z (l0 + l1 t + l2 t^2) + d,      rate across:  z (E + i (l1 + 2 l2 t)) + c,
 /// where c and d are what the sensors read wrongly and steadily: bias, and skewness of axes.
 class Window {
  public:
@@ -80,36 +80,28 @@ class Window {
   /// Least squares of the lean, then of the Earth's rate with the bend that the lean has, each with
   /// its noise unknown but not below what is stated: -ln L = n ln(squares / n).
   Line At(double rate) const {
-    Eigen::Matrix3cd of_force = Eigen::Matrix3cd::Zero();
+    std::array<Complex, kWindow> turned;
+    for (std::size_t k = 0; k < times_.size(); ++k) turned[k] = std::polar(1.0, -rate * times_[k]);
+    double force_left = 0, turn_left = 0;
+    const Vector4cd lean = LeanAt(turned, force_left);
     Eigen::Matrix2cd of_rate = Eigen::Matrix2cd::Zero();
-    Vector3cd force = Vector3cd::Zero();
     Vector2cd turn = Vector2cd::Zero();
-    double force_squares = 0, turn_squares = 0;
     for (std::size_t k = 0; k < times_.size(); ++k) {
-      const Complex z = std::polar(1.0, -rate * times_[k]);
-      const Vector3cd row(z, z * times_[k], 1);
-      of_force += row.conjugate() * row.transpose();
-      force += row.conjugate() * forces_[k];
-      force_squares += std::norm(forces_[k]);
-      turn += Vector2cd(std::conj(z), 1) * rates_[k];
-      turn_squares += std::norm(rates_[k]);
+      const Complex z = turned[k];
+      const Complex left = rates_[k] - z * Complex(0, 1) * (lean[1] + 2.0 * times_[k] * lean[2]);
+      const Vector2cd row(z, 1);
+      of_rate += row.conjugate() * row.transpose();
+      turn += row.conjugate() * left;
+      turn_left += std::norm(left);
     }
-    of_rate << of_force(0, 0), of_force(0, 2), of_force(2, 0), of_force(2, 2);
-    of_force(2, 2) += Held(accel_noise_, setup_.errors.accel_bias_sigma / setup_.site.gravity);
-    const Vector3cd lean = of_force.ldlt().solve(force);
-    const double force_left = std::max(force_squares - lean.dot(force).real(), 0.0);
-    // The gyros without the bend.
-    const Complex bend = Complex(0, 1) * lean[1];
-    turn_squares += size_ * std::norm(bend) - 2 * (std::conj(bend) * turn[0]).real();
-    turn -= bend * of_rate.col(0);
     const double steady =
         std::hypot(setup_.errors.gyro_bias_sigma, rate * setup_.errors.gyro_misalignment_sigma);
     of_rate(1, 1) += Held(gyro_noise_, steady);
     const Vector2cd found = of_rate.ldlt().solve(turn);
-    const double turn_left = std::max(turn_squares - found.dot(turn).real(), 0.0);
+    turn_left = std::max(turn_left - found.dot(turn).real(), 0.0);
     return {size_ * (std::log(force_left / size_ + 2 * Square(accel_noise_)) +
                      std::log(turn_left / size_ + 2 * Square(gyro_noise_))),
-            found[0], bend, found[1]};
+            found[0], Complex(0, 1) * lean[1], found[1]};
   }
 
   /// The likeliest rate within half a step of one.
@@ -125,6 +117,25 @@ class Window {
   }
 
  private:
+  /// l0, l1, l2 and d, and the squares that they leave.
+  Vector4cd LeanAt(std::span<const Complex> turned, double& left) const {
+    Eigen::Matrix4cd of_force = Eigen::Matrix4cd::Zero();
+    Vector4cd force = Vector4cd::Zero();
+    double squares = 0;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const Complex z = turned[k];
+      const double t = times_[k];
+      const Vector4cd row(z, z * t, z * t * t, 1);
+      of_force += row.conjugate() * row.transpose();
+      force += row.conjugate() * forces_[k];
+      squares += std::norm(forces_[k]);
+    }
+    of_force(3, 3) += Held(accel_noise_, setup_.errors.accel_bias_sigma / setup_.site.gravity);
+    const Vector4cd lean = of_force.ldlt().solve(force);
+    left = std::max(squares - lean.dot(force).real(), 0.0);
+    return lean;
+  }
+
   const EstimateSetup& setup_;
   std::vector<double> times_;  ///< of the middles of knots, from the middle node on [s]
   std::vector<Complex> forces_, rates_;
