@@ -1,6 +1,7 @@
 // Rates and headings of a hidden roll against an axis that is turned by matrices alone.
 #include "wellgyro/estimate/hidden_roll.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <string>
@@ -15,6 +16,7 @@
 #include "wellgyro/estimate/roll_window.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/math/random.h"
+#include "wellgyro/math/square.h"
 
 namespace wellgyro {
 namespace {
@@ -28,13 +30,15 @@ constexpr double kGravity = 9.81, kLatitude = 0.9;
 /// What a tool does in a hole that leans and bends by little, at a time.
 struct Motion {
   double rate = 0, swing = 0, period = 20, heading = 1;
+  double build = 0;  // from 200 s on the lean grows as its square [rad/s^2]
 
   double HeadingAt(double t) const {
     return heading + rate * t + swing * std::sin(kTwoPi * t / period);
   }
   /// The lean circles with 0.05 deg about 0.1 deg north: the axis turns by half the Earth's rate.
   Matrix3d AttitudeAt(double t) const {
-    const double north = FromDegrees(0.1 + 0.05 * std::cos(t / 120));
+    const double built = build * Square(std::max(0.0, t - 200));
+    const double north = FromDegrees(0.1 + 0.05 * std::cos(t / 120)) + built;
     const double east = FromDegrees(0.05 * std::sin(t / 120));
     // To lean north the axis, down, turns about east.
     const Matrix3d lean =
@@ -187,6 +191,24 @@ TEST(HiddenRoll, KnotsThatShowTheirRollAreLeftAlone) {
   for (const double rate : HiddenRoll(knots, setup)) EXPECT_EQ(rate, 0);
   EXPECT_TRUE(HiddenRoll({}, setup).empty());
   EXPECT_TRUE(RollWindowsOf({}, setup).empty());
+}
+
+// To half a degree within 30 s: what the gyros read turns from north to the bend, which becomes ten
+// times the Earth's rate, while a tool that does not turn stands still and one that does goes on.
+TEST(HiddenRoll, ABendThatGrowsIsNoRoll) {
+  const EstimateSetup setup = SetupOf();
+  for (const double rate : {0.0, 0.3}) {
+    const Motion motion{.rate = rate, .build = FromDegrees(0.5) / 900};
+    Random random(12);
+    std::vector<RunKnot> knots;
+    for (int k = 0; k < 235; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+    const std::vector<double> rates = HiddenRoll(knots, setup);
+    double turned = 0;
+    for (std::size_t k = 0; k < knots.size(); ++k) {
+      turned += rates[k];
+      EXPECT_NEAR(turned, rate * static_cast<double>(k + 1), kByBend + 0.3) << rate << " " << k;
+    }
+  }
 }
 
 // A piece of the grid does not show where the next begins: 1300 knots are three.
