@@ -77,31 +77,16 @@ class Window {
     accel_noise_ = std::max(setup.errors.accel_noise, kLeastAccelNoise) / gravity / root;
   }
 
-  /// Least squares of the lean, then of the Earth's rate with the bend that the lean has, each with
-  /// its noise unknown but not below what is stated: -ln L = n ln(squares / n).
+  /// By a bend that is even, or by one that grows where that explains more than its unknown can by
+  /// chance (Schwarz, Estimating the dimension of a model, 1978).
   Line At(double rate) const {
     std::array<Complex, kWindow> turned;
     for (std::size_t k = 0; k < times_.size(); ++k) turned[k] = std::polar(1.0, -rate * times_[k]);
-    double force_left = 0, turn_left = 0;
-    const Vector4cd lean = LeanAt(turned, force_left);
-    Eigen::Matrix2cd of_rate = Eigen::Matrix2cd::Zero();
-    Vector2cd turn = Vector2cd::Zero();
-    for (std::size_t k = 0; k < times_.size(); ++k) {
-      const Complex z = turned[k];
-      const Complex left = rates_[k] - z * Complex(0, 1) * (lean[1] + 2.0 * times_[k] * lean[2]);
-      const Vector2cd row(z, 1);
-      of_rate += row.conjugate() * row.transpose();
-      turn += row.conjugate() * left;
-      turn_left += std::norm(left);
-    }
-    const double steady =
-        std::hypot(setup_.errors.gyro_bias_sigma, rate * setup_.errors.gyro_misalignment_sigma);
-    of_rate(1, 1) += Held(gyro_noise_, steady);
-    const Vector2cd found = of_rate.ldlt().solve(turn);
-    turn_left = std::max(turn_left - found.dot(turn).real(), 0.0);
-    return {size_ * (std::log(force_left / size_ + 2 * Square(accel_noise_)) +
-                     std::log(turn_left / size_ + 2 * Square(gyro_noise_))),
-            found[0], Complex(0, 1) * lean[1], found[1]};
+    const ForceSums sums = SumsAt(turned);
+    const Line even = LineOf<3>(rate, turned, sums);
+    Line grows = LineOf<4>(rate, turned, sums);
+    grows.cost += std::log(2 * size_);
+    return grows.cost < even.cost ? grows : even;
   }
 
   /// The likeliest rate within half a step of one.
@@ -117,23 +102,58 @@ class Window {
   }
 
  private:
-  /// l0, l1, l2 and d, and the squares that they leave.
-  Vector4cd LeanAt(std::span<const Complex> turned, double& left) const {
-    Eigen::Matrix4cd of_force = Eigen::Matrix4cd::Zero();
-    Vector4cd force = Vector4cd::Zero();
+  /// Normal equations of l0, l1, d and l2.
+  struct ForceSums {
+    Eigen::Matrix4cd normal = Eigen::Matrix4cd::Zero();
+    Vector4cd right = Vector4cd::Zero();
     double squares = 0;
+  };
+
+  ForceSums SumsAt(std::span<const Complex> turned) const {
+    ForceSums sums;
     for (std::size_t k = 0; k < times_.size(); ++k) {
       const Complex z = turned[k];
       const double t = times_[k];
-      const Vector4cd row(z, z * t, z * t * t, 1);
-      of_force += row.conjugate() * row.transpose();
-      force += row.conjugate() * forces_[k];
-      squares += std::norm(forces_[k]);
+      const Vector4cd row(z, z * t, 1, z * t * t);
+      sums.normal += row.conjugate() * row.transpose();
+      sums.right += row.conjugate() * forces_[k];
+      sums.squares += std::norm(forces_[k]);
     }
-    of_force(3, 3) += Held(accel_noise_, setup_.errors.accel_bias_sigma / setup_.site.gravity);
-    const Vector4cd lean = of_force.ldlt().solve(force);
-    left = std::max(squares - lean.dot(force).real(), 0.0);
-    return lean;
+    sums.normal(2, 2) += Held(accel_noise_, setup_.errors.accel_bias_sigma / setup_.site.gravity);
+    return sums;
+  }
+
+  /// Least squares of the lean, by so many unknowns, then of the Earth's rate with the bend that
+  /// the lean has, each with its noise unknown but not below what is stated: -ln L = n ln(squares /
+  /// n).
+  template <int kUnknowns>
+  Line LineOf(double rate, std::span<const Complex> turned, const ForceSums& sums) const {
+    using Unknowns = Eigen::Matrix<Complex, kUnknowns, 1>;
+    const Unknowns right = sums.right.template head<kUnknowns>();
+    const Eigen::Matrix<Complex, kUnknowns, kUnknowns> normal =
+        sums.normal.template topLeftCorner<kUnknowns, kUnknowns>();
+    const Unknowns lean = normal.ldlt().solve(right);
+    const double force_left = std::max(sums.squares - lean.dot(right).real(), 0.0);
+    const Complex bend = Complex(0, 1) * lean[1];
+    const Complex growth = kUnknowns > 3 ? Complex(0, 2) * lean[kUnknowns - 1] : Complex();
+    Eigen::Matrix2cd of_rate = Eigen::Matrix2cd::Zero();
+    Vector2cd turn = Vector2cd::Zero();
+    double turn_left = 0;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const Complex left = rates_[k] - turned[k] * (bend + times_[k] * growth);
+      const Vector2cd row(turned[k], 1);
+      of_rate += row.conjugate() * row.transpose();
+      turn += row.conjugate() * left;
+      turn_left += std::norm(left);
+    }
+    const double steady =
+        std::hypot(setup_.errors.gyro_bias_sigma, rate * setup_.errors.gyro_misalignment_sigma);
+    of_rate(1, 1) += Held(gyro_noise_, steady);
+    const Vector2cd found = of_rate.ldlt().solve(turn);
+    turn_left = std::max(turn_left - found.dot(turn).real(), 0.0);
+    return {size_ * (std::log(force_left / size_ + 2 * Square(accel_noise_)) +
+                     std::log(turn_left / size_ + 2 * Square(gyro_noise_))),
+            found[0], bend, found[1]};
   }
 
   const EstimateSetup& setup_;
