@@ -196,12 +196,16 @@ TEST(HiddenRoll, KnotsThatShowTheirRollAreLeftAlone) {
 // To half a degree within 30 s: what the gyros read turns from north to the bend, which becomes ten
 // times the Earth's rate, while a tool that does not turn stands still and one that does goes on.
 TEST(HiddenRoll, ABendThatGrowsIsNoRoll) {
-  const EstimateSetup setup = SetupOf();
+  EstimateSetup setup = SetupOf();
+  setup.errors.gyro_bias_sigma = FromDegrees(0.5) / 3600;
   for (const double rate : {0.0, 0.3}) {
     const Motion motion{.rate = rate, .build = FromDegrees(0.5) / 900};
     Random random(12);
     std::vector<RunKnot> knots;
-    for (int k = 0; k < 235; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+    for (int k = 0; k < 235; ++k) {
+      knots.push_back(KnotAt(motion, k, setup, random));
+      knots.back().increment.turn_M -= kEarthRate * Eigen::Vector2d(1, -0.5);
+    }
     const std::vector<double> rates = HiddenRoll(knots, setup);
     double turned = 0;
     for (std::size_t k = 0; k < knots.size(); ++k) {

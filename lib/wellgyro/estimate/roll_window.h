@@ -25,9 +25,8 @@ struct RollWindow {
 /// than 10 knots. While the axis leans and bends, what gyros and accelerometers read is a line at
 /// the roll rate beside what they read wrongly and steadily. The rates are the likeliest sequence
 /// over all windows. A swing of the roll within a window leaves the line its place, as its middle,
-/// up to 30 deg. Of a bend that
-/// grows by more than the square of time within a window it may tell a rate that is wrong, and north
-/// by half a turn.
+/// up to 30 deg. Of a bend that grows otherwise than evenly in a window it may tell a rate that is
+/// wrong, and north by half a turn.
 std::vector<RollWindow> RollWindowsOf(std::span<const RunKnot> knots, const EstimateSetup& setup);
 
 }  // namespace wellgyro
