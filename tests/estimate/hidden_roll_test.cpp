@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,15 @@ RunKnot KnotAt(const Motion& motion, double t, const EstimateSetup& setup, Rando
   return knot;
 }
 
+/// The first `count` seconds of it.
+std::vector<RunKnot> KnotsOf(const Motion& motion, int count, const EstimateSetup& setup,
+                             std::uint64_t seed) {
+  Random random(seed);
+  std::vector<RunKnot> knots;
+  for (int k = 0; k < count; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+  return knots;
+}
+
 struct RollCase {
   Motion motion;
   const char* name;
@@ -92,9 +102,7 @@ constexpr double kByBend = 0.5;  // [rad]
 TEST_P(Hidden, RollIsCountedWithoutDrift) {
   const EstimateSetup setup = SetupOf();
   const Motion& motion = GetParam().motion;
-  Random random(7);
-  std::vector<RunKnot> knots;
-  for (int k = 0; k < 600; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+  std::vector<RunKnot> knots = KnotsOf(motion, 600, setup, 7);
   const std::vector<double> rates = HiddenRoll(knots, setup);
   double turned = 0, squares = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
@@ -109,9 +117,7 @@ TEST_P(Hidden, RollIsCountedWithoutDrift) {
 TEST_P(Hidden, WindowsFindRatesAndWhatIsFixedInTheTool) {
   const EstimateSetup setup = SetupOf();
   const Motion& motion = GetParam().motion;
-  Random random(7);
-  std::vector<RunKnot> knots;
-  for (int k = 0; k < 600; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+  std::vector<RunKnot> knots = KnotsOf(motion, 600, setup, 7);
   const std::vector<RollWindow> windows = RollWindowsOf(knots, setup);
   ASSERT_GE(windows.size(), 50u);
   std::size_t north = 0;
@@ -181,9 +187,7 @@ INSTANTIATE_TEST_SUITE_P(BothWays, TurnsCounted, testing::Values(1.0, -1.0));
 
 TEST(HiddenRoll, KnotsThatShowTheirRollAreLeftAlone) {
   const EstimateSetup setup = SetupOf();
-  Random random(8);
-  std::vector<RunKnot> knots;
-  for (int k = 0; k < 200; ++k) knots.push_back(KnotAt({.rate = 0.4}, k, setup, random));
+  std::vector<RunKnot> knots = KnotsOf({.rate = 0.4}, 200, setup, 8);
   for (std::size_t k = 0; k < 195; ++k) knots[k].increment.roll_seen = true;
   for (const double rate : HiddenRoll(knots, setup)) EXPECT_EQ(rate, 0);  // five are too few
   for (std::size_t k = 0; k < 100; ++k) knots[k].increment.roll_seen = false;
@@ -219,9 +223,7 @@ TEST(HiddenRoll, ABendThatGrowsIsNoRoll) {
 TEST(HiddenRoll, LongStretchesAreSolvedInPieces) {
   const EstimateSetup setup = SetupOf();
   const Motion motion{.rate = 0.21};
-  Random random(11);
-  std::vector<RunKnot> knots;
-  for (int k = 0; k < 1300; ++k) knots.push_back(KnotAt(motion, k, setup, random));
+  std::vector<RunKnot> knots = KnotsOf(motion, 1300, setup, 11);
   knots[620].increment.level = false;  // nothing of it is known
   knots[620].increment.turn_M.setZero();
   const std::vector<double> rates = HiddenRoll(knots, setup);

@@ -70,10 +70,11 @@ struct Fixed {
 /// Least squares over the windows that find north, with the priors of both.
 Fixed FixedIn(std::span<const RollWindow> windows, const EstimateSetup& setup, double earth) {
   const double noise = std::hypot(setup.gyro.angle_random_walk, kLoose * earth);
-  const auto held = [noise](double sigma) { return Square(noise / std::max(sigma, 1e-6 * noise)); };
-  Eigen::Matrix2d of_fixed = Eigen::Vector2d(held(setup.errors.gyro_bias_sigma),
-                                             held(setup.errors.gyro_misalignment_sigma))
-                                 .asDiagonal();
+  const ErrorPriors& errors = setup.errors;
+  Eigen::Matrix2d of_fixed =
+      Eigen::Vector2d(InformationOfSteady(noise, errors.gyro_bias_sigma),
+                      InformationOfSteady(noise, errors.gyro_misalignment_sigma))
+          .asDiagonal();
   Eigen::Vector2cd read = Eigen::Vector2cd::Zero();
   for (const RollWindow& w : windows) {
     if (!w.finds_north) continue;

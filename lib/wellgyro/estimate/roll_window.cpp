@@ -38,9 +38,6 @@ using Costs = std::array<double, kRates>;
 
 double RateOf(std::size_t i) { return (static_cast<int>(i) - kMiddle) * kStep; }
 
-/// Information of a steady error's prior, by that of one knot; of none where a job states 0.
-double Held(double noise, double sigma) { return Square(noise / std::max(sigma, 1e-6 * noise)); }
-
 /// Whether a rate across the tool can be the Earth's, by its ratio to what that is there: of a bend
 /// that turns as much, at an angle b to it, the sum is 2 cos b/2, within 1/sqrt(2) and sqrt(2) for
 /// b from 90 to 139 deg alone, one in four.
@@ -119,7 +116,8 @@ class Window {
       sums.right += row.conjugate() * forces_[k];
       sums.squares += std::norm(forces_[k]);
     }
-    sums.normal(2, 2) += Held(accel_noise_, setup_.errors.accel_bias_sigma / setup_.site.gravity);
+    sums.normal(2, 2) +=
+        InformationOfSteady(accel_noise_, setup_.errors.accel_bias_sigma / setup_.site.gravity);
     return sums;
   }
 
@@ -148,7 +146,7 @@ class Window {
     }
     const double steady =
         std::hypot(setup_.errors.gyro_bias_sigma, rate * setup_.errors.gyro_misalignment_sigma);
-    of_rate(1, 1) += Held(gyro_noise_, steady);
+    of_rate(1, 1) += InformationOfSteady(gyro_noise_, steady);
     const Vector2cd found = of_rate.ldlt().solve(turn);
     turn_left = std::max(turn_left - found.dot(turn).real(), 0.0);
     return {size_ * (std::log(force_left / size_ + 2 * Square(accel_noise_)) +

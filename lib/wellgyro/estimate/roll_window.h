@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <complex>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 #include "wellgyro/estimate/setup.h"
+#include "wellgyro/math/square.h"
 #include "wellgyro/record/run_knot.h"
 
 namespace wellgyro {
@@ -20,6 +22,12 @@ struct RollWindow {
   bool finds_north = false;
   std::complex<double> bend_L;  ///< rate of the hole's bend where it is: north + i east [rad/s]
 };
+
+/// Information of the prior of a steady error, over that of one reading with `noise`; of one of
+/// which a job states 0 a trillion.
+inline double InformationOfSteady(double noise, double sigma) {
+  return Square(noise / std::max(sigma, 1e-6 * noise));
+}
 
 /// The windows of a stretch of knots whose roll is hidden, 40 knots each, 10 apart; none of fewer
 /// than 10 knots. While the axis leans and bends, what gyros and accelerometers read is a line at
