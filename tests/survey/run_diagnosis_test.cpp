@@ -342,8 +342,42 @@ TEST(RunDiagnosis, MotionAtTheStopWhereAFaultBeginsIsTheFault) {
   Check still = moved;
   still.verdict = Verdict::kPass;
   EXPECT_EQ(first(still), "gyro_spike");
+}
+
+// A swing of the rope, spikes that were replaced: no row of the run need show them.
+TEST(RunDiagnosis, WhatIsSeenInSamplesIsListedThoughItOnlyWarns) {
+  RunSummary run;
+  run.run = 1;
+  const auto fit = std::make_shared<RunFit>();
+  run.fit = fit;
+  RunDiagnosis& found = fit->diagnosis.emplace();
   found.ln_odds = 2;
-  EXPECT_EQ(first(moved), "gyro_spike") << "nothing is found";
+  found.causes.emplace_back().code = "none";
+  found.causes.back().posterior = 0.9;
+  found.causes.emplace_back().code = "latitude";
+  found.causes.back().posterior = 0.1;
+  Check spikes{.code = "accel_spikes", .run = 1, .value = 3, .unit = "1"};
+  spikes.verdict = Verdict::kWarn;
+  const auto causes = [&](const Check& check) { return CausesOf(run, std::vector<Check>{check}); };
+  ASSERT_EQ(causes(spikes).size(), 3U);
+  EXPECT_EQ(causes(spikes)[0].code, "accel_spikes");
+  EXPECT_EQ(causes(spikes)[0].posterior, 1);
+  EXPECT_EQ(causes(spikes)[0].size, 3);
+  EXPECT_FALSE(causes(spikes)[0].remedy.empty());
+  EXPECT_EQ(causes(spikes)[1].posterior, 0);
+
+  found.ln_odds = 50;  // where the rows show another fault, that stays the first
+  ASSERT_EQ(causes(spikes).size(), 3U);
+  EXPECT_EQ(causes(spikes)[0].posterior, 0.9);
+  EXPECT_EQ(causes(spikes)[2].code, "accel_spikes");
+  EXPECT_EQ(causes(spikes)[2].posterior, 0);
+
+  found.ln_odds = 2;
+  spikes.looks = 7;  // what warns by chance is not seen to be there
+  EXPECT_EQ(causes(spikes).size(), 2U);
+  spikes.looks = 0;
+  spikes.verdict = Verdict::kPass;
+  EXPECT_EQ(causes(spikes).size(), 2U);
 }
 
 /// Of a run whose odds of a fault are `ln_odds`, a latitude that moves its end by `shift_W`. The

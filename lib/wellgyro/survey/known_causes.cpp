@@ -97,9 +97,14 @@ struct SampleWords {
   std::string_view code, remedy;
 };
 constexpr std::string_view kRound = "round numbers in the converter, convert the log again";
+constexpr std::string_view kReplaced =
+    "they are replaced; look for shocks, bit errors, a loose connector; where they are many, "
+    "survey "
+    "the well again";
 // Checks of samples and marks that by themselves name what is wrong.
 constexpr SampleWords kOfSamples[] = {
     {"accel_dead", "mend the sensor, survey the well again"},
+    {"accel_spikes", kReplaced},
     {"accel_stuck", "leave the stretch out; where it is long, survey the well again"},
     {"accel_truncated", kRound},
     {"accel_unit", "correct the unit or scale of the accelerometers in the tool file, run again"},
@@ -111,6 +116,7 @@ constexpr SampleWords kOfSamples[] = {
     {"depth_reversed", "turn the sign of depth, run again"},
     {"depth_unit", "state the unit of depth as it is, run again"},
     {"gyro_dead", "mend the sensor, survey the well again"},
+    {"gyro_spikes", kReplaced},
     {"gyro_stuck", "leave the stretch out; where it is long, survey the well again"},
     {"gyro_truncated", kRound},
     {"gyro_unit", "correct the unit or scale in the tool file, run again"},

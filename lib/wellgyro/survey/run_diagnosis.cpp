@@ -164,7 +164,7 @@ const RunCause* NearestOf(const std::vector<RunCause>& causes) {
 /// The check says that the tool moved at a stop, and there the likeliest fault of the rows begins:
 /// a slow motion and its end look to them as one turn that the gyros have wrong.
 bool MovedAtRest(const RunSummary& run, const Check& check) {
-  if (check.code != kRestMotionCause || check.verdict == Verdict::kPass || !check.md) return false;
+  if (check.code != kRestMotionCause || !check.md) return false;
   if (!run.fit || !run.fit->diagnosis || !IsShown(*run.fit->diagnosis)) return false;
   const RunCause* nearest = NearestOf(run.fit->diagnosis->causes);
   return nearest != nullptr && nearest->begin_md &&
@@ -310,6 +310,24 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
 
 namespace {
 
+/// The check by itself names what is wrong with samples or marks, and says that it is there. What
+/// chance makes of clean runs is no such thing until it fails.
+bool IsSeenInSamples(const Check& check) {
+  if (RemedyOfSamples(check.code).empty()) return false;
+  return check.verdict == Verdict::kFail || (check.verdict == Verdict::kWarn && check.looks == 0);
+}
+
+RunCause CauseOfSamples(const Check& check) {
+  RunCause cause;
+  cause.code = check.code;
+  cause.begin_md = check.md;
+  cause.size = check.value;
+  cause.sigma = check.sigma;
+  cause.unit = check.unit;
+  cause.remedy = RemedyOfSamples(check.code);
+  return cause;
+}
+
 /// The causes by the run's rows and that by its passes, which are other measurements: each explains
 /// its own alone. Posteriors are proportional to the prior odds times B.
 std::vector<RunCause> WithSlip(const RunSummary& run) {
@@ -331,19 +349,12 @@ std::vector<RunCause> WithSlip(const RunSummary& run) {
 }  // namespace
 
 std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> checks) {
-  std::vector<RunCause> causes;
+  const bool by_rows = run.fit && run.fit->diagnosis && IsShown(*run.fit->diagnosis);
+  std::vector<RunCause> causes, beside;
   for (const Check& check : checks) {
-    if (check.run != run.run) continue;
-    if (check.verdict != Verdict::kFail && !MovedAtRest(run, check)) continue;
-    const std::string_view remedy = RemedyOfSamples(check.code);
-    if (remedy.empty()) continue;
-    RunCause& cause = causes.emplace_back();
-    cause.code = check.code;
-    cause.begin_md = check.md;
-    cause.size = check.value;
-    cause.sigma = check.sigma;
-    cause.unit = check.unit;
-    cause.remedy = remedy;
+    if (check.run != run.run || !IsSeenInSamples(check)) continue;
+    const bool first = check.verdict == Verdict::kFail || !by_rows || MovedAtRest(run, check);
+    (first ? causes : beside).push_back(CauseOfSamples(check));
   }
   const bool by_samples = !causes.empty();
   for (RunCause& cause : causes) cause.posterior = 1 / static_cast<double>(causes.size());
@@ -359,6 +370,7 @@ std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> che
     causes.push_back(cause);
     if (by_samples) causes.back().posterior = 0;
   }
+  causes.insert(causes.end(), beside.begin(), beside.end());
   return causes;
 }
 

@@ -38,8 +38,10 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
                     std::vector<Check>& checks);
 
 /// The causes of a run with those that its samples alone tell, by `checks` that fail, in front: a
-/// dead, stuck or swapped axis leaves nothing that the adjustment could judge. So is motion at a
-/// stop, which is a warning, where the likeliest cause begins at that stop.
+/// dead, stuck or swapped axis leaves nothing that the adjustment could judge. What is seen in the
+/// samples and only warned of, as spikes that were replaced and motion at a stop, is in front where
+/// nothing else is found or, of motion, where the likeliest cause begins at that stop; else it
+/// stands last, without a share of the probability.
 WELLGYRO_EXPORT std::vector<RunCause> CausesOf(const RunSummary& run,
                                                std::span<const Check> checks);
 
