@@ -15,6 +15,7 @@
 #include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/simulate/raw_counts.h"
+#include "wellgyro/simulate/truth.h"
 
 #include "fit/tool_bench.h"
 #include "fit/tool_model_truth.h"
@@ -116,41 +117,61 @@ Survey SurveyOfCounts(const Simulation& simulation, const Job& job, double tempe
   return surveyor.Current(simulation.streams.tool);
 }
 
-/// Squares of errors over what the calibration says of them, against the survey of a perfect tool.
-struct WellScore {
-  double tools = 0;
-  int withheld = 0;  ///< runs that fail give no sigma
-  int unlike = 0;    ///< perfect tools' runs that fail, as chance has them: nothing to compare with
+/// Squares of errors over their variances, by parts of the depth; the mean of the stations of each
+/// part: within a tool they go together.
+struct PartSquares {
   std::array<double, kParts> inclination{}, azimuth{}, place{};
 
-  /// The mean of the stations of each part of the depth: within a tool they go together.
-  void Take(const Survey& survey, const Survey& perfect) {
-    const std::size_t n = std::min(survey.chosen.size(), perfect.chosen.size());
-    tools += 1;
-    std::array<double, kParts> stations{};
-    for (std::size_t i = 1; i < n; ++i) stations[i * kParts / n] += 1;
-    for (std::size_t i = 1; i < n; ++i) {
-      const Station &a = survey.chosen[i], &b = perfect.chosen[i];
-      const std::size_t at = i * kParts / n;
-      const double share = 1 / stations[at];
-      const Eigen::Matrix3d angles = a.cov_md_inc_azi - b.cov_md_inc_azi;
-      const Eigen::Matrix2d places = (a.cov_p_WT_W - b.cov_p_WT_W).topLeftCorner<2, 2>();
-      const Eigen::Vector2d off = (a.p_WT_W - b.p_WT_W).head<2>();
-      inclination[at] += share * std::pow(a.inclination - b.inclination, 2) / angles(1, 1);
-      azimuth[at] +=
-          share * std::pow(std::remainder(a.azimuth - b.azimuth, kTwoPi), 2) / angles(2, 2);
-      place[at] += share * off.dot(places.inverse() * off) / 2;
-    }
+  /// Of station `i` of `n`.
+  void Add(std::size_t i, std::size_t n, double d_inclination, double d_azimuth,
+           const Eigen::Matrix3d& cov_md_inc_azi, const Eigen::Vector2d& off,
+           const Eigen::Matrix2d& cov_off) {
+    const std::size_t at = i * kParts / n;
+    double stations = 0;
+    for (std::size_t j = 1; j < n; ++j) stations += j * kParts / n == at ? 1 : 0;
+    inclination[at] += std::pow(d_inclination, 2) / cov_md_inc_azi(1, 1) / stations;
+    azimuth[at] += std::pow(d_azimuth, 2) / cov_md_inc_azi(2, 2) / stations;
+    place[at] += off.dot(cov_off.inverse() * off) / 2 / stations;
   }
-  void Print(const char* name) const {
-    std::printf(
-        "%s bench, %.0f tools, %d more fail, of %d a perfect one would; by depth: inclination, "
-        "azimuth, place\n",
-        name, tools, withheld, unlike);
+  void Print(const char* name, double tools) const {
+    std::printf("  %s: inclination, azimuth, place\n", name);
     for (std::size_t k = 0; k < kParts; ++k) {
       std::printf("  %.2f %.2f %.2f\n", std::sqrt(inclination[k] / tools),
                   std::sqrt(azimuth[k] / tools), std::sqrt(place[k] / tools));
     }
+  }
+};
+
+struct WellScore {
+  double tools = 0;
+  int withheld = 0;  ///< runs that fail give no sigma
+  int unlike = 0;    ///< perfect tools' runs that fail, as chance has them: nothing to compare with
+  PartSquares bench;  ///< beyond the survey of a perfect tool, over what the calibration adds to it
+  PartSquares whole;  ///< off the truth, over what the survey says of itself
+
+  void Take(const Survey& survey, const Survey& perfect, const TruthWell& well) {
+    const std::size_t n = std::min(survey.chosen.size(), perfect.chosen.size());
+    tools += 1;
+    const Eigen::Vector3d start_W = well.PlaceAt(survey.chosen.front().md).p_WT_W;
+    for (std::size_t i = 1; i < n; ++i) {
+      const Station &a = survey.chosen[i], &b = perfect.chosen[i];
+      const auto square = [](const Eigen::Matrix3d& cov) -> Eigen::Matrix2d {
+        return cov.topLeftCorner<2, 2>();
+      };
+      bench.Add(i, n, a.inclination - b.inclination, std::remainder(a.azimuth - b.azimuth, kTwoPi),
+                a.cov_md_inc_azi - b.cov_md_inc_azi, (a.p_WT_W - b.p_WT_W).head<2>(),
+                square(a.cov_p_WT_W - b.cov_p_WT_W));
+      const auto point = well.PointAt(a.md);
+      whole.Add(i, n, a.inclination - point.inclination,
+                std::remainder(a.azimuth - point.azimuth, kTwoPi), a.cov_md_inc_azi,
+                (a.p_WT_W - (well.PlaceAt(a.md).p_WT_W - start_W)).head<2>(), square(a.cov_p_WT_W));
+    }
+  }
+  void Print(const char* name) const {
+    std::printf("%s bench, %.0f tools, %d more fail, of %d a perfect one would; by depth\n", name,
+                tools, withheld, unlike);
+    bench.Print("beyond a perfect tool's", tools);
+    whole.Print("off the truth", tools);
     std::fflush(stdout);
   }
 };
@@ -189,7 +210,7 @@ void SurveyWith(const BenchQuality& quality, int tools, WellScore& score) {
       }
       continue;
     }
-    score.Take(survey, perfect);
+    score.Take(survey, perfect, wellgyro::Truth(simulation).well());
   }
 }
 
@@ -205,10 +226,12 @@ TEST_P(ToolWell, WhatTheBenchLeavesIsWhatTheSurveySays) {
   // One in a thousand of the chi-square of that many tools, were the stations of a part all one.
   const double low = ChiSquareQuantile(0.0005, score.tools) / score.tools;
   const double high = ChiSquareQuantile(0.9995, score.tools) / score.tools;
-  for (const auto& squares : {score.inclination, score.azimuth, score.place}) {
-    for (const double square : squares) {
-      EXPECT_LT(square / score.tools, high);
-      EXPECT_GT(square / score.tools, low);
+  for (const PartSquares& parts : {score.bench, score.whole}) {
+    for (const auto& squares : {parts.inclination, parts.azimuth, parts.place}) {
+      for (const double square : squares) {
+        EXPECT_LT(square / score.tools, high);
+        EXPECT_GT(square / score.tools, low);
+      }
     }
   }
 }
