@@ -12,6 +12,7 @@
 #include "wellgyro/io/sensor/sensor_files.h"
 #include "wellgyro/live/intake.h"
 #include "wellgyro/live/results.h"
+#include "wellgyro/survey/fault_book.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "commands.h"

@@ -22,6 +22,7 @@
 #include "wellgyro/bus/survey_log.h"
 #include "wellgyro/io/sensor/sensor_files.h"
 #include "wellgyro/io/toml/job_file.h"
+#include "wellgyro/survey/fault_book.h"
 #include "wellgyro/survey/surveyor.h"
 
 #include "binding.h"
@@ -34,9 +35,8 @@ namespace {
 class Notes : public Sink {
  public:
   void OnFault(const Fault& fault) override {
-    constexpr std::size_t kKept = 1000;
     ++count;
-    if (faults.size() < kKept) faults.push_back(Sentence(fault));
+    if (faults.size() < FaultBook::kKept) faults.push_back(Sentence(fault));
   }
   std::vector<std::string> faults;
   std::int64_t count = 0;

@@ -1,28 +1,16 @@
 #include "wellgyro/bus/survey_log.h"
 
-#include <cstddef>
 #include <utility>
 
 #include "wellgyro/bus/feed.h"
 #include "wellgyro/bus/log_parts.h"
 #include "wellgyro/bus/log_reader.h"
+#include "wellgyro/survey/fault_book.h"
 
 namespace wellgyro {
-namespace {
-
-class FaultList : public Sink {
- public:
-  void OnFault(const Fault& fault) override {
-    constexpr std::size_t kKept = 1000;  // the first, some 0.3 MB
-    if (faults.size() < kKept) faults.push_back(fault);
-  }
-  std::vector<Fault> faults;
-};
-
-}  // namespace
 
 Result<LogSurvey> SurveyLog(const Job& job, const std::string& path) {
-  FaultList sink;
+  FaultBook sink;
   Surveyor surveyor(job, sink);
   SurveyorListener listener(surveyor, sink);
   Feed feed(job.channels, listener);
@@ -41,7 +29,7 @@ Result<LogSurvey> SurveyLog(const Job& job, const std::string& path) {
   surveyor.Finish();
   for (const std::int32_t tool : surveyor.tools()) survey.tools[tool] = surveyor.Current(tool);
   if (survey.tools.empty()) survey.tools[0] = surveyor.Current(0);
-  survey.faults.insert(survey.faults.end(), sink.faults.begin(), sink.faults.end());
+  survey.faults.insert(survey.faults.end(), sink.faults().begin(), sink.faults().end());
   survey.tally = surveyor.tally();
   return survey;
 }
