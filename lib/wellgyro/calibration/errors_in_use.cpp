@@ -8,6 +8,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/group_at_internal.h"
 #include "wellgyro/calibration/members.h"
+#include "wellgyro/record/products.h"
 
 namespace wellgyro {
 namespace {
@@ -33,9 +34,8 @@ double Across(const ToolUse& use) {
 
 // u' Q u is a product of two components of u in the sensors' axes, u in T.
 Matrix3d ProductInT(const Matrix3d& R_ST, int product) {
-  constexpr std::array kFirst{0, 1, 2, 0, 1, 2}, kSecond{0, 1, 2, 1, 2, 0};
-  const auto place = static_cast<std::size_t>(product);
-  const Matrix3d pair = R_ST.row(kFirst[place]).transpose() * R_ST.row(kSecond[place]);
+  const Matrix3d pair =
+      R_ST.row(kFirstFactor[product]).transpose() * R_ST.row(kSecondFactor[product]);
   return (pair + pair.transpose()) / 2;
 }
 

@@ -5,6 +5,7 @@
 
 #include "wellgyro/calibration/group_model_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/record/products.h"
 
 namespace wellgyro {
 namespace {
@@ -16,20 +17,13 @@ T ValueAt(const std::array<T, SensorGroup::kPowers>& powers, double tau) {
   return value;
 }
 
-Eigen::Matrix<double, 6, 1> SquaresOf(const Eigen::Vector3d& a) {
-  Eigen::Matrix<double, 6, 1> q;
-  q << a.x() * a.x(), a.y() * a.y(), a.z() * a.z(), a.x() * a.y(), a.y() * a.z(), a.z() * a.x();
-  return q;
-}
-
 // q(R a) = OfSquares(R) q(a).
 Eigen::Matrix<double, 6, 6> OfSquares(const Eigen::Matrix3d& R) {
-  constexpr int kFirst[] = {0, 1, 2, 0, 1, 2}, kSecond[] = {0, 1, 2, 1, 2, 0};
   Eigen::Matrix<double, 6, 6> M;
   for (int row = 0; row < 6; ++row) {
-    const int i = kFirst[row], j = kSecond[row];
+    const int i = kFirstFactor[row], j = kSecondFactor[row];
     for (int column = 0; column < 6; ++column) {
-      const int k = kFirst[column], l = kSecond[column];
+      const int k = kFirstFactor[column], l = kSecondFactor[column];
       M(row, column) = R(i, k) * R(j, l) + (k == l ? 0 : R(i, l) * R(j, k));
     }
   }
@@ -99,8 +93,8 @@ double GroupModel::Parity(const RawSample& raw, double tau, double seconds, doub
   units = units.cwiseProduct(group_.unit_per_count);
   if (group_.per_second) units /= seconds;
   units -= Bias(tau) + group_.heating * heating_rate;
-  units -= ValueAt(group_.g_dependence, tau) * f_T + group_.g_squared * SquaresOf(f_T) +
-           group_.second_order * SquaresOf(u_T);
+  units -= ValueAt(group_.g_dependence, tau) * f_T + group_.g_squared * ProductsOf(f_T) +
+           group_.second_order * ProductsOf(u_T);
   // The unit vector at right angles to the three columns of S.
   return UnitBeside(Sensitivity(tau)).dot(units);
 }

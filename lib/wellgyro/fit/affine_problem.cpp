@@ -6,14 +6,14 @@
 #include "wellgyro/fit/affine_internal.h"
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/so3.h"
+#include "wellgyro/record/products.h"
 
 namespace wellgyro {
 namespace {
 
 // The three rows of one group at one position.
 void Fill(const Eigen::Vector3d& u, SecondOrder order, int first, int row, Eigen::MatrixXd& A) {
-  Eigen::Matrix<double, 6, 1> q;
-  q << u.x() * u.x(), u.y() * u.y(), u.z() * u.z(), u.x() * u.y(), u.y() * u.z(), u.z() * u.x();
+  const VectorProducts q = ProductsOf(u);
   for (int c = 0; c < 3; ++c) {
     A(row + c, first + c) = 1;
     A.block<1, 3>(row + c, first + 3 + 3 * c) = u.transpose();

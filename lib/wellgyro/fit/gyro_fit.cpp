@@ -16,6 +16,7 @@
 #include "wellgyro/fit/hemisphere_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/record/products.h"
 
 namespace wellgyro {
 namespace {
@@ -127,10 +128,8 @@ SensorGroup Group(const GyroReadings& readings, const GyroLayout& layout,
   if (!layout.aniso) return group;
   for (const Rotor& rotor : readings.rotors) {
     for (const int c : {rotor.a, rotor.c}) {
-      // q(f) holds xy, yz, zx behind the squares.
       const int axis = readings.channels[static_cast<std::size_t>(c)].axis;
-      const int place = axis + rotor.spin == 1 ? 3 : axis + rotor.spin == 3 ? 4 : 5;
-      group.g_squared(c, place) = values[at.aniso + c] / (g * g);
+      group.g_squared(c, PlaceOfProduct(axis, rotor.spin)) = values[at.aniso + c] / (g * g);
     }
   }
   return group;

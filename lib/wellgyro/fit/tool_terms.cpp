@@ -8,11 +8,10 @@
 #include <fmt/core.h>
 
 #include "wellgyro/fit/tool_terms_internal.h"
+#include "wellgyro/record/products.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr int kFirst[] = {0, 1, 2, 0, 1, 2}, kSecond[] = {0, 1, 2, 1, 2, 0};
 
 std::string Suffix(int power) { return power == 0 ? "" : fmt::format("_tau{}", power); }
 
@@ -110,7 +109,7 @@ class Candidates {
       for (const int c : {rotor.a, rotor.c}) {
         const int channel = First(true) + c;
         const int axis = readings_.channels[static_cast<std::size_t>(channel)].axis;
-        const int place = axis + rotor.spin == 1 ? 3 : axis + rotor.spin == 3 ? 4 : 5;
+        const int place = PlaceOfProduct(axis, rotor.spin);
         bundle.terms.push_back({fmt::format("gyro_N[{},{}]", c, place),
                                 TermKind::kForceSquare,
                                 0,
@@ -208,7 +207,7 @@ Basis BasisOf(const ToolTerm& term, const TermUse& use, bool is_gyro, const RowS
   const double tau = std::pow(state.tau, term.power);
   Basis basis;
   const auto product = [&](const Eigen::Vector3d& a, Eigen::Vector3d* by) {
-    const int i = kFirst[use.j], k = kSecond[use.j];
+    const int i = kFirstFactor[use.j], k = kSecondFactor[use.j];
     basis.value = use.sign * a[i] * a[k];
     (*by)[i] += use.sign * a[k];
     (*by)[k] += use.sign * a[i];

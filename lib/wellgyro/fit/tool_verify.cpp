@@ -16,6 +16,7 @@
 #include "wellgyro/fit/tool_rows_internal.h"
 #include "wellgyro/math/so3.h"
 #include "wellgyro/math/statistics.h"
+#include "wellgyro/record/products.h"
 
 namespace wellgyro {
 namespace {
@@ -24,14 +25,6 @@ using Kind = CalibrationMember::Kind;
 // Chance that residuals beside the shifts are so large: of a thousand sound tools one, beside those
 // that the false alarm rate of the shifts calls shifted.
 constexpr double kMisfit = 1e-3;
-
-using Squares = Eigen::Matrix<double, 6, 1>;
-
-Squares SquaresOf(const Eigen::Vector3d& a) {
-  Squares q;
-  q << a.x() * a.x(), a.y() * a.y(), a.z() * a.z(), a.x() * a.y(), a.y() * a.z(), a.z() * a.x();
-  return q;
-}
 
 // One channel's reading by the tool model, and how it changes.
 struct ChannelAt {
@@ -55,8 +48,8 @@ ChannelAt ReadingOf(const SensorGroup& group, int c, const Eigen::Vector3d& u_T,
     at.by_f += power * group.g_dependence[n].row(c);
   }
   at.value += at.by_u.dot(at.u) + at.by_f.dot(at.f) +
-              group.second_order.row(c).dot(SquaresOf(at.u)) +
-              group.g_squared.row(c).dot(SquaresOf(at.f)) + group.heating[c] * row.heating;
+              group.second_order.row(c).dot(ProductsOf(at.u)) +
+              group.g_squared.row(c).dot(ProductsOf(at.f)) + group.heating[c] * row.heating;
   return at;
 }
 
@@ -70,9 +63,9 @@ double ByMember(const CalibrationMember& member, const ChannelAt& at, const Tool
     case Kind::kForce:
       return power * at.f[member.column];
     case Kind::kSecondOrder:
-      return SquaresOf(at.u)[member.column];
+      return ProductsOf(at.u)[member.column];
     case Kind::kForceSquare:
-      return SquaresOf(at.f)[member.column];
+      return ProductsOf(at.f)[member.column];
     case Kind::kHeating:
       break;
   }
