@@ -6,8 +6,8 @@
 
 #include "wellgyro/attitude/along_hole_covariance.h"
 #include "wellgyro/base/angle.h"
-#include "wellgyro/base/units.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {
 namespace {
@@ -16,14 +16,13 @@ namespace {
 /// error model, SPE 187249.
 Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
   constexpr double kRatio = 0.167;  // XCLA, XCLH: of the leg's length times its turn [1]
-  constexpr double kTortuosity = units::kDegPer100ft;  // the least that a hole turns
   const double length = below.md - above.md;
   const double inclination = 0.5 * (above.inclination + below.inclination);
   const double turn = WrapPi(below.azimuth - above.azimuth);
   const double azimuth = above.azimuth + 0.5 * turn;
   const double si = std::sin(inclination), ci = std::cos(inclination);
   const double sa = std::sin(azimuth), ca = std::cos(azimuth);
-  const double least = kTortuosity * length;
+  const double least = kLeastTortuosity * length;
   const double build = std::abs(below.inclination - above.inclination);
   const Eigen::Vector3d high = Eigen::Vector3d(ci * ca, ci * sa, -si) * std::max(build, least);
   const Eigen::Vector3d right = Eigen::Vector3d(-sa, ca, 0) * std::max(std::abs(si * turn), least);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/uncertainty/weight.h"
 
 namespace wellgyro {
@@ -16,6 +17,10 @@ class FormulaWeight;
 /// How far one error reaches: a new value at every station; one in a tool leg; one in a well; one
 /// everywhere.
 enum class Propagation { kRandom, kSystematic, kWell, kGlobal };
+
+/// Of XCLA and XCLH: the least that a hole turns between two stations, whatever these say (SPE
+/// 187249) [rad/m].
+inline constexpr double kLeastTortuosity = units::kDegPer100ft;
 
 /// One error source of a model.
 struct ErrorTerm {

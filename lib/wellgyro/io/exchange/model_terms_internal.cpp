@@ -11,9 +11,8 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kMinCourse = 10;                    // [m], Definition 5.1.2
-constexpr double kTortuosity = units::kDegPer100ft;  // SPE 187249
-constexpr double kVertical = 1e-4 * units::kDeg;     // what rounding of listings leaves of 0
+constexpr double kMinCourse = 10;                 // [m], Definition 5.1.2
+constexpr double kVertical = 1e-4 * units::kDeg;  // what rounding of listings leaves of 0
 
 }  // namespace
 
@@ -89,7 +88,7 @@ bool IsStateful(std::string_view code) {
 
 void FinishModel(ErrorModel& model, const std::string& source) {
   if (!model.min_course_length) model.min_course_length = kMinCourse;
-  if (!model.tortuosity) model.tortuosity = kTortuosity;
+  if (!model.tortuosity) model.tortuosity = kLeastTortuosity;
   if (model.max_inclination == 0) model.max_inclination = kPi;
   model.vertical_limit = kVertical;
   if (const auto complaint = FindComplaint(model)) RefuseModel(source, complaint->text);
