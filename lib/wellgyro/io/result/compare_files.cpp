@@ -76,12 +76,10 @@ std::string Summary(const Comparison& c) {
   return text;
 }
 
-void WriteInput(TomlWriter& toml, std::string_view of, const InputFile& input) {
+void WriteInputOf(TomlWriter& toml, std::string_view of, const InputFile& input) {
   toml.Element("input");
   toml.Text("of", of);
-  toml.Text("role", input.role);
-  toml.Text("name", input.name);
-  toml.Text("sha256", input.sha256);
+  WriteInput(toml, input);
 }
 
 std::string CompareToml(const CompareRequest& request, const CompareAnswer& answer,
@@ -109,8 +107,8 @@ std::string CompareToml(const CompareRequest& request, const CompareAnswer& answ
   }
   for (const std::string& note : answer.notes) toml.Element("note"), toml.Text("text", note);
   for (const std::string& why : answer.refusals) toml.Element("refusal"), toml.Text("text", why);
-  for (const InputFile& input : first.inputs) WriteInput(toml, "first", input);
-  for (const InputFile& input : second.inputs) WriteInput(toml, "second", input);
+  for (const InputFile& input : first.inputs) WriteInputOf(toml, "first", input);
+  for (const InputFile& input : second.inputs) WriteInputOf(toml, "second", input);
   return toml.text();
 }
 

@@ -159,12 +159,7 @@ std::string MergeToml(const MergePlan& plan, const MergeAnswer& answer) {
     toml.Text("text", why);
   }
   for (const std::string& note : answer.notes) toml.Element("note"), toml.Text("text", note);
-  for (const InputFile& input : plan.inputs) {
-    toml.Element("input");
-    toml.Text("role", input.role);
-    toml.Text("name", input.name);
-    toml.Text("sha256", input.sha256);
-  }
+  WriteInputs(toml, plan.inputs);
   return toml.text();
 }
 

@@ -38,12 +38,10 @@ double Degrees(double radians) {
   return AnyNumberOf(fmt::format("{:.15g}", degrees)).value_or(degrees);
 }
 
-void WriteInputs(TomlWriter& toml, const std::vector<InputFile>& inputs) {
+void WriteInputsWhole(TomlWriter& toml, const std::vector<InputFile>& inputs) {
   for (const InputFile& input : inputs) {
     toml.Element("input");
-    toml.Text("role", input.role);
-    toml.Text("name", input.name);
-    toml.Text("sha256", input.sha256);
+    WriteInput(toml, input);
     if (!input.text.empty()) toml.Lines("text", input.text);
   }
 }
@@ -325,7 +323,7 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   for (std::size_t i = 0; i < std::min(record.faults.size(), kFaultsListed); ++i) {
     WriteFault(toml, record.faults[i]);
   }
-  WriteInputs(toml, record.inputs);
+  WriteInputsWhole(toml, record.inputs);
   return toml.text();
 }
 

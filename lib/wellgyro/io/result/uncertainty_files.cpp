@@ -190,12 +190,7 @@ std::string SummaryToml(const UncertaintyRequest& request, const std::vector<Inp
   if (request.initialise) toml.Number("initialise_deg", TidyDegrees(*request.initialise));
   for (const std::string& note : answer.notes) toml.Element("note"), toml.Text("text", note);
   for (const std::string& why : answer.refusals) toml.Element("refusal"), toml.Text("text", why);
-  for (const InputFile& input : inputs) {
-    toml.Element("input");
-    toml.Text("role", input.role);
-    toml.Text("name", input.name);
-    toml.Text("sha256", input.sha256);
-  }
+  WriteInputs(toml, inputs);
   return toml.text();
 }
 

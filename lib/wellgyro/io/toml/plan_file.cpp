@@ -225,12 +225,7 @@ std::string PlanToml(const PlanReport& report) {
     toml.Element("warning");
     toml.Text("text", text);
   }
-  for (const InputFile& input : report.inputs) {
-    toml.Element("input");
-    toml.Text("role", input.role);
-    toml.Text("name", input.name);
-    toml.Text("sha256", input.sha256);
-  }
+  WriteInputs(toml, report.inputs);
   return toml.text();
 }
 

@@ -148,4 +148,17 @@ void TomlWriter::Comment(std::string_view lines) {
   }
 }
 
+void WriteInput(TomlWriter& toml, const InputFile& input) {
+  toml.Text("role", input.role);
+  toml.Text("name", input.name);
+  toml.Text("sha256", input.sha256);
+}
+
+void WriteInputs(TomlWriter& toml, std::span<const InputFile> inputs) {
+  for (const InputFile& input : inputs) {
+    toml.Element("input");
+    WriteInput(toml, input);
+  }
+}
+
 }  // namespace wellgyro

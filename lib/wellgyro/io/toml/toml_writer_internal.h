@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/io/text_file.h"
+
 namespace wellgyro {
 
 /// Writes TOML line by line, the same bytes for the same values everywhere.
@@ -35,5 +37,10 @@ class TomlWriter {
   void Key(std::string_view key);
   std::string text_;
 };
+
+/// Role, name and SHA-256 of a file that was read.
+void WriteInput(TomlWriter& toml, const InputFile& input);
+/// An [[input]] of each.
+void WriteInputs(TomlWriter& toml, std::span<const InputFile> inputs);
 
 }  // namespace wellgyro
