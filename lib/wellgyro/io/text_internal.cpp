@@ -120,6 +120,11 @@ char DelimiterOf(std::string_view line, char otherwise) {
   return otherwise;
 }
 
+void AddName(std::string_view name, std::string& names) {
+  constexpr std::size_t kLongest = 1000;
+  if (names.size() < kLongest) names.append(names.empty() ? "" : ", ").append(name);
+}
+
 std::string CsvQuoted(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string quoted = "\"";

@@ -32,6 +32,10 @@ void SplitCells(std::string_view line, char delimiter, std::vector<std::string_v
 /// The first of comma, semicolon and tab that stands in the line.
 char DelimiterOf(std::string_view line, char otherwise);
 
+/// One more name behind a comma, unless there are 1000 characters of names already: what a
+/// complaint tells of a file's contents.
+void AddName(std::string_view name, std::string& names);
+
 /// As a CSV field, quoted where it must be (RFC 4180).
 std::string CsvQuoted(std::string_view text);
 

@@ -180,8 +180,8 @@ void TakeFact(SurveyHead& head, std::string_view key, std::string_view value, Cl
     if (const auto tool = SurveyToolOf(value)) head.tool = *tool;
   } else if (key == "Error Model") {
     head.error_model = value;
-  } else if (key == "Remark" && head.remarks.size() < 1000) {
-    head.remarks.emplace_back(value);
+  } else if (key == "Remark") {
+    AddRemark(head, std::string(value));
   }
 }
 

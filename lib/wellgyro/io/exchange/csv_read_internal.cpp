@@ -19,7 +19,6 @@ namespace {
 
 constexpr int kMostHeaderLines = 200;  // before the names; a text without names is given up there
 constexpr int kMostLinesBelow = 20;    // between names and the first numbers
-constexpr std::size_t kMostRemarks = 1000;  // kept of a file; more are left out
 
 bool IsBlank(const std::vector<std::string>& fields) {
   return std::all_of(fields.begin(), fields.end(), [](const auto& f) { return f.empty(); });
@@ -337,7 +336,7 @@ class CsvReader {
       }
       if (!field.empty()) text += (text.empty() ? "" : " ") + field;
     }
-    if (head().remarks.size() < kMostRemarks) head().remarks.push_back(text);
+    AddRemark(head(), text);
   }
 
   std::string WellsText() const {

@@ -101,7 +101,7 @@ class EdmReader {
     std::vector<std::string> found;
     for (const std::string& id : ids) {
       const std::string name = NameOf(id);
-      if (names.size() < 1000) names += (names.empty() ? "" : ", ") + (name.empty() ? id : name);
+      AddName(name.empty() ? id : name, names);
       const std::string& wanted = options_.trajectory;
       if (wanted.empty() || wanted == name || wanted == id) found.push_back(id);
     }

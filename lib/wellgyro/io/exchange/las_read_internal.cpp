@@ -100,7 +100,7 @@ class LasReader {
     if (section_ == 'X') return;
     const auto line = las::LineOf(text);
     if (section_ == 'O') {
-      if (head().remarks.size() < 1000) head().remarks.push_back(las::FromDataText(text));
+      AddRemark(head(), las::FromDataText(text));
       return;
     }
     if (!line) lines_.Complain(FaultCode::kSyntax, "no line of the form MNEM.UNIT DATA : TEXT");

@@ -107,9 +107,7 @@ class PetrelReader {
       across_ = Unit(line);
     }
     if (line.starts_with("# DEPTH")) depths_ = Unit(line);
-    if (line.starts_with("# REMARK: ") && head().remarks.size() < 1000) {
-      head().remarks.emplace_back(Trim(line.substr(10)));
-    }
+    if (line.starts_with("# REMARK: ")) AddRemark(head(), std::string(Trim(line.substr(10))));
   }
 
   std::optional<LengthUnit> Unit(std::string_view line) {

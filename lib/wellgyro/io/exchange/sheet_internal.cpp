@@ -127,7 +127,7 @@ class Workbook {
       std::string text = TextOfSheet(part);
       if (text.find_first_not_of("\t\n ") == std::string::npos) continue;
       ++found;
-      if (names.size() < 1000) names += (names.empty() ? "" : ", ") + name;
+      AddName(name, names);
       chosen = std::move(text);
     }
     if (found == 1) return chosen;

@@ -1,7 +1,9 @@
 #include "wellgyro/io/exchange/table_build_internal.h"
 
 #include <array>
+#include <cstddef>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -100,6 +102,11 @@ std::string OneLine(std::string remark) {
     if (c == '\n' || c == '\r') c = ' ';
   }
   return remark;
+}
+
+void AddRemark(SurveyHead& head, std::string remark) {
+  constexpr std::size_t kMostRemarks = 1000;
+  if (head.remarks.size() < kMostRemarks) head.remarks.push_back(std::move(remark));
 }
 
 std::string JoinedRemarks(const SurveyHead& head) {

@@ -20,6 +20,8 @@ Pairs PairsOf(const SurveyHead& head);
 /// Takes one such line in; false for an unknown key or a value that is none.
 bool TakePair(SurveyHead& head, std::string_view key, std::string_view value);
 
+/// Keeps a remark of a file; beyond the first 1000 they are left out.
+void AddRemark(SurveyHead& head, std::string remark);
 /// A remark as one line.
 std::string OneLine(std::string remark);
 /// All of a head's remarks in one line, for formats that have a single place for them.

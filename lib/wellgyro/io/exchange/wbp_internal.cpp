@@ -104,9 +104,7 @@ class WbpReader {
 
   void Conclude() {
     std::string names;
-    for (const std::string& name : names_) {
-      if (names.size() < 1000) names += (names.empty() ? "" : ", ") + name;
-    }
+    for (const std::string& name : names_) AddName(name, names);
     if (options_.trajectory.empty() && names_.size() > 1) {
       lines_.Complain(FaultCode::kConflict,
                       "well plans in it: " + names + "; say which by --trajectory");

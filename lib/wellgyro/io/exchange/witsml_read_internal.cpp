@@ -69,8 +69,7 @@ class WitsmlReader {
       any = true;
       const std::string called = TextOf(ChildOf(child, "name"));
       const std::string uid = ToUtf8(child.attribute("uid").value());
-      if (names.size() < 1000)
-        names += (names.empty() ? "" : ", ") + (called.empty() ? uid : called);
+      AddName(called.empty() ? uid : called, names);
       const std::string& wanted = options_.trajectory;
       if (wanted.empty() || wanted == called || wanted == uid) found.push_back(child);
     }

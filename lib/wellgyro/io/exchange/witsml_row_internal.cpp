@@ -8,12 +8,11 @@
 #include "wellgyro/io/exchange/columns_internal.h"
 #include "wellgyro/io/exchange/headings_internal.h"
 #include "wellgyro/io/exchange/survey_words_internal.h"
+#include "wellgyro/io/exchange/witsml_text_internal.h"
 #include "wellgyro/io/text_internal.h"
 
 namespace wellgyro::witsml {
 namespace {
-
-constexpr std::size_t kLongest = 2000;
 
 std::string Escaped(std::string_view text) {
   std::string escaped;
@@ -69,7 +68,7 @@ std::string PackedRow(const SurveyTable& table, std::size_t row,
                       const std::vector<Column>& native) {
   std::string packed;
   const auto add = [&](const std::string& entry) {
-    if (packed.size() + 1 + entry.size() > kLongest) return;
+    if (packed.size() + 1 + entry.size() > kValueLengthOf21) return;
     packed += (packed.empty() ? "" : ";") + entry;
   };
   for (const ColumnInfo& info : AllColumns()) {

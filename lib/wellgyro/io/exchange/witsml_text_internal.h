@@ -29,8 +29,9 @@ class Units {
 /// `given` if it is a UUID, else one that the same survey gets again: the head of a hash of what it
 /// names.
 std::string UuidOf(const std::string& given, std::string_view what, const SurveyHead& head);
-/// Characters that 1.4.1.1 allows in names and identifiers, and in values of extensions.
-inline constexpr std::size_t kNameLength = 64, kValueLength = 4000;
+/// Characters that 1.4.1.1 allows in names and identifiers, and in values of extensions; 2.1 in
+/// values of extensions.
+inline constexpr std::size_t kNameLength = 64, kValueLength = 4000, kValueLengthOf21 = 2000;
 /// What stands in mandatory elements for which there is nothing to say.
 inline constexpr std::string_view kUnknown = "unknown", kNoDate = "1970-01-01T00:00:00.000Z";
 /// The first characters of UTF-8 text.

@@ -103,7 +103,7 @@ void WitsmlWriter::Extension(std::string_view name, const std::string& value,
   if (version_2_) {
     xml_.Open("eml:ExtensionNameValue");
     xml_.Leaf("eml:Name", name);
-    xml_.Leaf("eml:Value", Cut(value, 2000), {{"uom", uom}});
+    xml_.Leaf("eml:Value", Cut(value, witsml::kValueLengthOf21), {{"uom", uom}});
   } else {
     // Remarks come in numbers, identifiers may not.
     const int number = ++extensions_[std::string(name)];
