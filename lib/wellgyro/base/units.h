@@ -19,6 +19,7 @@ inline constexpr double kMilliG = kStandardGravity * 1e-3;                 ///< 
 inline constexpr double kDegPerHourPerG = kDegPerHour / kStandardGravity;  ///< [rad/s per m/s^2]
 inline constexpr double kFoot = 0.3048;                                    ///< international [m]
 inline constexpr double kUsSurveyFoot = 1200.0 / 3937.0;                   ///< [m]
+inline constexpr double kStand = 30;                          ///< of pipe: three joints [m]
 inline constexpr double kDegPer30m = kDeg / 30;               ///< dogleg severity [rad/m]
 inline constexpr double kDegPer100ft = kDeg / (100 * kFoot);  ///< dogleg severity [rad/m]
 inline constexpr double kNanotesla = 1e-9;                    ///< [T]

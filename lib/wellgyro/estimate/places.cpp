@@ -23,10 +23,10 @@ constexpr double kTellingWay = 0.01;  // [m] of a window, from which it tells of
 // [m] of depth marks, and not of the path: where it is renewed must not move with the solution. On
 // such a way gravity changes by 2e-6 m/s^2, the latitude by 3e-7 rad.
 constexpr double kSiteEvery = 2;
-// Curvature is another one from stand to stand, to which doglegs are quoted. At 15 m the
-// demonstration is solved without its swing (errors of azimuth 1.4 % larger), at 60 m ends move by
-// 0.003 sigma.
-constexpr double kStand = 30;  // [m]
+// [m] over which the hole's curvature becomes another one: from stand to stand, to which doglegs
+// are quoted. At 15 m the demonstration is solved without its swing (errors of azimuth 1.4 %
+// larger), at 60 m ends move by 0.003 sigma.
+constexpr double kCurvatureLength = 30;
 // [rad], 6 km from the pole: v tan L / R is up to 1.6e-4 rad/s at 1 m/s, twice the Earth's rate.
 constexpr double kPoleMargin = 1e-3;
 
@@ -72,9 +72,9 @@ std::vector<double> Turns(std::span<const RunKnot> knots, std::span<const Node> 
   std::vector<double> turns(knots.size(), 0);
   std::size_t begin = 0, end = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
-    while (ways[begin + 1] < ways[k] - kStand) ++begin;
+    while (ways[begin + 1] < ways[k] - kCurvatureLength) ++begin;
     end = std::max(end, k + 1);
-    while (end < knots.size() && ways[end] < ways[k] + kStand) ++end;
+    while (end < knots.size() && ways[end] < ways[k] + kCurvatureLength) ++end;
     const double way = ways[end] - ways[begin];
     if (way > kTellingWay) turns[k] = std::sqrt((squares[end] - squares[begin]) / way);
   }
@@ -87,7 +87,8 @@ std::vector<double> Turns(std::span<const RunKnot> knots, std::span<const Node> 
 /// toolface, by a moment that goes as sin^2 I, and `turn` is A' sin^2 I. Without this term a roll
 /// assumed steady would be a pseudo-measurement of A', and a wrong one.
 double RollWalkOf(const Vector3d& tangent, double turn, double speed) {
-  return std::abs(speed) * turn * std::sqrt(std::abs(speed) / kStand) * std::abs(tangent.z());
+  return std::abs(speed) * turn * std::sqrt(std::abs(speed) / kCurvatureLength) *
+         std::abs(tangent.z());
 }
 
 }  // namespace

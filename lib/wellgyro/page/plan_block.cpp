@@ -11,11 +11,10 @@
 
 #include "wellgyro/page/html_internal.h"
 #include "wellgyro/page/page_internal.h"
+#include "wellgyro/record/advice.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr double kSamePlace = 10;  // [m], as live advice takes a place for the one it is at
 
 /// A stop as it was made.
 struct Stood {
@@ -42,12 +41,12 @@ std::vector<Stood> StopsOf(const Json& survey) {
 }
 
 /// Of each planned stop the one made of it: as many in their order in time as lie within
-/// kSamePlace, the longest common subsequence. most(i, j) is its length from the i-th planned and
-/// the j-th made on.
+/// Advice::kHere, the longest common subsequence. most(i, j) is its length from the i-th planned
+/// and the j-th made on.
 std::vector<std::optional<Stood>> Matched(const Json& planned, const std::vector<Stood>& stops) {
   const std::size_t rows = planned.size(), columns = stops.size();
   const auto same = [&](std::size_t i, std::size_t j) {
-    return std::abs(stops[j].md - NumberAt(planned[i], {"md_m"}).value_or(NAN)) <= kSamePlace;
+    return std::abs(stops[j].md - NumberAt(planned[i], {"md_m"}).value_or(NAN)) <= Advice::kHere;
   };
   Eigen::ArrayXXi most = Eigen::ArrayXXi::Zero(static_cast<Eigen::Index>(rows + 1),
                                                static_cast<Eigen::Index>(columns + 1));
@@ -74,7 +73,7 @@ void WriteStopTable(PageText& page, const Json& planned,
                     const std::vector<std::optional<Stood>>& matched) {
   HtmlTable table(
       page.html, "planned-stops",
-      fmt::format("Stops as planned, and those within {:.0f} m of them", kSamePlace),
+      fmt::format("Stops as planned, and those within {:.0f} m of them", Advice::kHere),
       {"Way", page.Named(">Planned MD"), ">Planned [s]", ">Toolface [\u00b0]",
        ">Ellipse without it " + page.LengthName(), page.Named(">Stood at MD"), ">Used [s]", ""});
   for (std::size_t i = 0; i < matched.size(); ++i) {

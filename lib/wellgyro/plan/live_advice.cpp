@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/plan/stop_information.h"
 
 namespace wellgyro {
@@ -15,21 +16,19 @@ namespace {
 using Rest = StopStand::Rest;
 using Action = Advice::Action;
 
-// [m] of places for a stop, a stand, or so many to a way: of a plan's kPlacesMost 0.4, whose
-// matrices have a sixth of the numbers, since live advice is to be quick.
-constexpr double kAdviceSpacing = 30;
+// Places for a stop on a way, at most: of a plan's kPlacesMost 0.4, whose matrices have a sixth of
+// the numbers, since live advice is to be quick.
 constexpr double kPlaces = 40;
-constexpr double kHere = 10;  // [m] within which a place is this one: a third of kAdviceSpacing
 // [m] above its deepest place the run is on its way up: more than a string is lifted off its slips.
 constexpr double kGoesUp = 10;
 
 /// This place, then those of the plan's way that are still ahead.
 std::vector<StopPlace> PlacesAhead(const PlannedWay& way, double md, bool out) {
   std::vector<StopPlace> places{{out, md}};
-  const double spacing = std::max(kAdviceSpacing, (way.end_md - way.begin_md) / kPlaces);
+  const double spacing = std::max(units::kStand, (way.end_md - way.begin_md) / kPlaces);
   for (const StopPlace& place : PlacesEvery(way, spacing)) {
-    const bool down = !place.out && !out && place.md > md + kHere;
-    const bool up = place.out && (!out || place.md < md - kHere);
+    const bool down = !place.out && !out && place.md > md + Advice::kHere;
+    const bool up = place.out && (!out || place.md < md - Advice::kHere);
     if (down || up) places.push_back(place);
   }
   return places;

@@ -19,7 +19,7 @@ constexpr double kPoorNorth = 0.2;
 // Inclination at which an accelerometer error of 0.5 mg still turns the roll by 0.5e-3 / sin 1 deg
 // = 1.6 deg.
 constexpr double kNoHold = units::kDeg;
-constexpr double kStep = 10;         // [m] by which the well is looked at, a third of a stand
+constexpr double kStep = units::kStand / 3;  // [m] by which the well is looked at
 constexpr double kDepthShare = 0.5;  // of the ellipse; less adds 12 % at most, sqrt(1 + 0.5^2)
 
 /// Length of the way on which `holds` [m].

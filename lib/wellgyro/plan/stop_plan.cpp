@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/base/units.h"
 #include "wellgyro/plan/stop_pairs.h"
 
 namespace wellgyro {
@@ -14,9 +15,8 @@ namespace {
 
 using Rest = StopStand::Rest;
 
-// Places for a stop: by this far, or as many to the way as make the matrices of a second's work.
+// Places for a stop: one a stand, or as many to the way as make the matrices of a second's work.
 // Half as many places make the plan of the demonstration's well 10 s longer, of 650 s at rest.
-constexpr double kSpacing = 30;  // [m]
 constexpr double kPlacesMost = 100;
 // Rounds of search and verification; each holds the search to what the last was above the limit,
 // and to kBelow of it, so that what is mended ends below the limit and not at it: 0.998^8 = 0.984
@@ -133,7 +133,7 @@ StopPlan PlanStops(const PlanCase& c, const PlanLimits& limits) {
   CheckLimits(limits);
   CheckPlanCase(c, {});
   const double length = c.way.end_md - c.way.begin_md;
-  const StopInformation info(c, PlacesEvery(c.way, std::max(kSpacing, length / kPlacesMost)),
+  const StopInformation info(c, PlacesEvery(c.way, std::max(units::kStand, length / kPlacesMost)),
                              {.with_faults = limits.hidden.has_value()});
   StopPlan plan;
   plan.without = ExpectEnd(c, {}, true);

@@ -5,12 +5,15 @@
 #include <string>
 
 #include "wellgyro/base/time.h"
+#include "wellgyro/base/units.h"
 
 namespace wellgyro {
 
 /// What a run that goes on had best do for the limits of its plan: whoever runs the tool decides,
 /// and no survey is changed by it.
 struct Advice {
+  static constexpr double kHere = units::kStand / 3;  ///< a place within it is this one [m]
+
   enum class Action : std::int32_t {
     kNone,    ///< nothing can be advised; `text` says why
     kStop,    ///< stop here, for `seconds`

@@ -24,8 +24,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kStand = 30;  // of pipe [m]: three joints of up to 10 m
-
 void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& checks) {
   bool earth_rate = false, compared = false;
   for (const NorthFix& fix : run.fixes) {
@@ -336,7 +334,7 @@ void CheckDepthKnown(const Job& job, const RunSummary& run, const CheckInputs& i
   if (!lacks || !inputs.deepest_mark || !evenly) return;
   double deepest = job.tie_in.md;
   for (const Station& station : inputs.passes) deepest = std::max(deepest, station.md);
-  const double limit = std::max(kStand, 2 * job.stations.every);
+  const double limit = std::max(units::kStand, 2 * job.stations.every);
   checks.push_back(Compare("depth_without_station", run.run, {*inputs.deepest_mark - deepest, 0},
                            limit, 1, "m"));
   checks.back().limit_source =

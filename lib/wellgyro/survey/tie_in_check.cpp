@@ -14,7 +14,6 @@
 namespace wellgyro {
 namespace {
 
-constexpr double kReach = 30;  // [m], a stand
 // Of two surveys of one hole: twice the 0.23 deg that practice allows two passes of one tool, 0.46.
 constexpr double kSurveys = FromDegrees(0.5);
 constexpr double kSlot = 30;  // of a platform, from its reference, aside [m]
@@ -94,7 +93,7 @@ Check CheckTieIn(const Job& job, std::span<const Station> stations) {
   const Station* nearest = nullptr;
   const auto away = [&](const Station& s) { return std::abs(s.md - job.tie_in.md); };
   for (const Station& s : stations) {
-    if (s.status == StationStatus::kRejected || !(away(s) <= kReach)) continue;
+    if (s.status == StationStatus::kRejected || !(away(s) <= units::kStand)) continue;
     if (nearest == nullptr || away(s) < away(*nearest)) nearest = &s;
   }
   if (!job.tie_in.inclination) return NotDone("tie_in", 0, "the run itself gives its direction");
