@@ -26,6 +26,13 @@ constexpr std::int64_t kIntervalMost = 5'000'000;  // [us]
 constexpr std::int32_t kBehind = 4096, kAhead = 1 << 20;
 constexpr int kToldOf = 3;                              // senders of one stream
 constexpr std::int64_t kReach = std::int64_t{1} << 60;  // of numbers, so that none overflows
+// Bytes, by the fields in their order: of depth_t utime_us, seq, then session, run, status and
+// source of four bytes each and four doubles; of still_window_t utime_us, duration_ns, seq, then
+// session, run, tool and status.
+constexpr std::size_t kDepthSeqAt = kFingerprintSize + 8,
+                      kDepthSize = kDepthSeqAt + 8 + 4 * 4 + 4 * 8;
+constexpr std::size_t kStillSeqAt = kFingerprintSize + 2 * 8,
+                      kStillToolAt = kStillSeqAt + 8 + 2 * 4, kStillHead = kStillToolAt + 2 * 4;
 // A sender whose numbers do not continue is another one at the same address and port.
 constexpr std::uint64_t kElsewhere = std::uint64_t{1} << 63;
 
@@ -71,14 +78,13 @@ std::optional<StreamGuard::Key> StreamGuard::Find(const Message& message, Place&
     const auto head = HeadOf<RawHead>(bytes);
     return head ? std::optional(Key(*type, batch(head))) : std::nullopt;
   }
-  constexpr std::size_t kDepthSize = 72, kStillLeast = 48;
   if (type == MessageType::kDepth && bytes.size() == kDepthSize) {
-    timed(16);
+    timed(kDepthSeqAt);
     return Key(*type, 0);
   }
-  if (type == MessageType::kStillWindow && bytes.size() > kStillLeast) {
-    timed(24);
-    return Key(*type, Load<std::int32_t>(bytes.data() + 40));
+  if (type == MessageType::kStillWindow && bytes.size() > kStillHead) {
+    timed(kStillSeqAt);
+    return Key(*type, Load<std::int32_t>(bytes.data() + kStillToolAt));
   }
   return std::nullopt;
 }
