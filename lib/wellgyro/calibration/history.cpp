@@ -140,11 +140,8 @@ void CompareTools(const std::string& name, double false_alarm,
   }
   if (of.size() < kToolsOfFamily) return;
   const double middle = Median(logs);
-  std::vector<double> away;
-  away.reserve(logs.size());
-  for (const double value : logs) away.push_back(std::abs(value - middle));
   constexpr double kUnlike = 5;  // robust sigmas of the logarithm, P(x > 5) = 2.9e-7
-  const double spread = kSigmaPerMedianSize * Median(away);
+  const double spread = RobustSigma(logs, middle);
   for (std::size_t i = 0; i < of.size(); ++i) {
     const auto changes = static_cast<double>(of[i]->changes.size());
     const double chance =

@@ -139,7 +139,7 @@ void Step(const std::vector<Edge>& edges, const StopMatchSetup& setup, Fit& fit)
   std::vector<double> sizes;
   sizes.reserve(edges.size());
   for (const Edge& e : edges) sizes.push_back(std::abs(fit.Off(e)));
-  fit.scale = std::max(kSigmaPerMedianSize * Median(sizes), kScaleLeast);
+  fit.scale = std::max(RobustSigma(sizes), kScaleLeast);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double weights = 0, squares = 0;

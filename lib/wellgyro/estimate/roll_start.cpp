@@ -70,7 +70,7 @@ double UsualOf(const std::vector<Change>& changes) {
   for (const Change& c : changes) {
     if (c.sigma <= median) plain.push_back(c.rate);
   }
-  return kSigmaPerMedianSize * Median(std::move(plain));
+  return RobustSigma(std::move(plain));
 }
 
 double SpeedStart(const AlongHole& before, const AlongHole& after) {

@@ -138,7 +138,7 @@ double TableRatio(const LinearSolution& s, bool sigma_given, bool by_median) {
   if (redundancy[0] < kEnough || redundancy[1] < kEnough) return 1;
   double scatter[2];
   for (int table = 0; table < 2; ++table) {
-    scatter[table] = by_median ? kSigmaPerMedianSize * Median(std::move(sizes[table]))
+    scatter[table] = by_median ? RobustSigma(std::move(sizes[table]))
                                : std::sqrt(square[table] / redundancy[table]);
   }
   if (sigma_given) scatter[0] = 1;

@@ -133,7 +133,7 @@ double RobustScale(const LinearProblem& problem, const Eigen::VectorXd& residual
     if (problem.rows[static_cast<std::size_t>(i)].line != 0) sizes.push_back(std::abs(residual[i]));
   }
   const double n = static_cast<double>(sizes.size());
-  return kSigmaPerMedianSize * Median(sizes) * std::sqrt(n / std::max(1.0, n - rank));
+  return RobustSigma(sizes) * std::sqrt(n / std::max(1.0, n - rank));
 }
 
 LinearProblem Without(const LinearProblem& problem, const std::set<int>& lines) {
@@ -199,7 +199,7 @@ Eigen::VectorXd ScalesOfTables(const LinearProblem& problem, const LinearSolutio
     sizes[second(i)].push_back(std::abs(solution.residual[i]) / std::sqrt(left));
   }
   double scale[2];
-  for (int k = 0; k < 2; ++k) scale[k] = std::max(kSigmaPerMedianSize * Median(sizes[k]), least);
+  for (int k = 0; k < 2; ++k) scale[k] = std::max(RobustSigma(sizes[k]), least);
   if (problem.sigma_given) scale[0] = 1;
   Eigen::VectorXd scales(solution.residual.size());
   for (Eigen::Index i = 0; i < scales.size(); ++i) scales[i] = scale[second(i)];

@@ -110,7 +110,7 @@ double NonlinearProblem::Scale(const Eigen::VectorXd& x) const {
   }
   const double n = static_cast<double>(sizes.size());
   const double freedom = std::max(1.0, n - static_cast<double>(x.size()));
-  const double sigma = kSigmaPerMedianSize * Median(std::move(sizes));
+  const double sigma = RobustSigma(std::move(sizes));
   return std::max(sigma * std::sqrt(n / freedom), least_scale);
 }
 

@@ -12,6 +12,7 @@
 #include "wellgyro/fit/tool_noise_internal.h"
 #include "wellgyro/fit/tool_observability_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {

@@ -5,6 +5,7 @@
 #include "wellgyro/fit/tool_minimise_internal.h"
 #include "wellgyro/fit/tool_noise_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/median.h"
 
 namespace wellgyro {
 namespace {

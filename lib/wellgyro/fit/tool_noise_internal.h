@@ -1,20 +1,13 @@
 #pragma once
 
 #include <array>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "wellgyro/fit/tool_model_internal.h"
-#include "wellgyro/math/median.h"
 
 namespace wellgyro {
-
-/// Sigma of a normal distribution, by the median of sizes.
-inline double RobustSigma(std::vector<double> sizes) {
-  return kSigmaPerMedianSize * Median(std::move(sizes));
-}
 
 /// A row about x: its residual, and by what it changes.
 struct RowAbout {

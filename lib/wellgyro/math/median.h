@@ -14,4 +14,9 @@ WELLGYRO_EXPORT double Median(std::vector<double> values);
 /// less than Phi^-1(3/4) sigma, Phi^-1(3/4) = 0.6745, and this is its reciprocal.
 inline constexpr double kSigmaPerMedianSize = 1.4826;
 
+/// Sigma of a normal distribution by that median, of the deviations' `sizes`.
+WELLGYRO_EXPORT double RobustSigma(std::vector<double> sizes);
+/// The same by the deviations of `values` from `middle`.
+WELLGYRO_EXPORT double RobustSigma(std::vector<double> values, double middle);
+
 }  // namespace wellgyro

@@ -52,9 +52,8 @@ void FindSpikes(const SampleSeries& series, const std::vector<char>& missing, st
   }
   if (values.size() < 32) return;
   const double middle = Median(values);
-  for (double& value : values) value = std::abs(value - middle);
   constexpr double kSigmas = 8;  // P(|x| > 8) = 1.2e-15
-  const double limit = kSigmas * kSigmaPerMedianSize * Median(std::move(values));
+  const double limit = kSigmas * RobustSigma(std::move(values), middle);
   if (!(limit > 0)) return;
   for (std::size_t i = begin; i < end; ++i) {
     if (missing[i] == 0 && std::abs(series.values[i] - middle) > limit) spikes.push_back(i);

@@ -21,13 +21,7 @@ constexpr std::size_t kAway = 100;  // stretches it may stand away and come back
 constexpr double kExplained = 0.9;
 constexpr double kSureStep = 25;  // evidence: of 200 sound logs the most was 19
 
-double RobustSigma(const std::vector<double>& values) {
-  const double median = Median(values);
-  std::vector<double> away;
-  away.reserve(values.size());
-  for (const double v : values) away.push_back(std::abs(v - median));
-  return kSigmaPerMedianSize * Median(std::move(away));
-}
+double Spread(const std::vector<double>& values) { return RobustSigma(values, Median(values)); }
 
 // Means over equal stretches, those with missing samples left out.
 struct Stretch {
@@ -106,7 +100,7 @@ class Inspector {
     const double middle = Median(scatters);
     // Differences of normal noise scatter by sqrt(3/length) in the logarithm of their variance.
     const double spread =
-        std::max(RobustSigma(scatters), std::sqrt(3 / static_cast<double>(length_)));
+        std::max(RobustSigma(scatters, middle), std::sqrt(3 / static_cast<double>(length_)));
     std::vector<double> moves(stretches_.size(), 0);
     for (std::size_t i = 0; i < moves.size(); ++i) {
       if (scatters[i] - middle > kUnusual * spread) moves[i] = std::exp(scatters[i] / 2);
@@ -119,7 +113,7 @@ class Inspector {
   void FindMovements() {
     if (stretches_.size() < 16) return;
     const std::vector<double> steps = Steps();
-    const double usual = RobustSigma({steps.begin() + 1, steps.end()});
+    const double usual = Spread({steps.begin() + 1, steps.end()});
     const std::vector<double> moves = Moves(steps, usual);
     const double usual_change = UsualChange();
     for (std::size_t i = 0; i < moves.size(); ++i) {
@@ -186,7 +180,7 @@ class Inspector {
     for (std::size_t i = kBeside + 1; i + kBeside < stretches_.size(); ++i) {
       changes.push_back(LevelAfter(i) - LevelBefore(i));
     }
-    return RobustSigma(changes);
+    return Spread(changes);
   }
   // A movement in a few stretches after which the mean is another, for as long as can be seen.
   bool StaysAway(std::size_t last, std::size_t first, double limit) const {
