@@ -10,6 +10,10 @@
 
 namespace wellgyro {
 
+/// To which times at rest are found [s]: nobody stops to the second, and of 180 s it is 3 % in
+/// sigma.
+inline constexpr double kStopGrain = 10;
+
 /// Ranges of what a plan is asked for.
 namespace plan_range {
 inline constexpr double kWayMost = 20'000;  ///< past the longest well drilled [m]
@@ -17,10 +21,10 @@ inline constexpr double kWayMost = 20'000;  ///< past the longest well drilled [
 inline constexpr double kSlowest = 0.05, kFastest = 10;
 inline constexpr double kRollMostRpm = 60;
 inline constexpr double kSwingMostDeg = 360;
-inline constexpr double kSwingPeriodLeast = 60;  ///< fifteen knots of KnotLength::seconds [s]
-inline constexpr double kStopLeast = 10;         ///< kStopGrain, to which stops are sought [s]
-inline constexpr double kStopMost = 7200;        ///< that is sought: eight times the usual [s]
-inline constexpr double kStandMost = 86'400;     ///< that is stated: a day [s]
+inline constexpr double kSwingPeriodLeast = 60;   ///< fifteen knots of KnotLength::seconds [s]
+inline constexpr double kStopLeast = kStopGrain;  ///< that is sought [s]
+inline constexpr double kStopMost = 7200;         ///< that is sought: eight times the usual [s]
+inline constexpr double kStandMost = 86'400;      ///< that is stated: a day [s]
 }  // namespace plan_range
 
 /// How the tool is to go through the well: down from `begin_md` to `end_md`, and up again.

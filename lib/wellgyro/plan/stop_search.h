@@ -13,9 +13,6 @@ namespace wellgyro {
 /// To which a tool may be turned before a stop, evenly spread: 22.5 deg from the best at most,
 /// whose part is then cos 22.5 deg = 0.92.
 inline constexpr int kToolfaces = 8;
-/// To which times at rest are found [s]: nobody stops to the second, and of 180 s it is 3 % in
-/// sigma.
-inline constexpr double kStopGrain = 10;
 
 /// What a plan must meet and what stops may be like.
 struct PlanLimits {

@@ -47,8 +47,8 @@ class SyntheticRun : public RunRows {
   /// The gyros' factor of one knot of rest of `kRestKnot` seconds at this node, its attitude being
   /// the node's at both ends.
   Factor RestAt(std::size_t node);
-  /// [s]: at rest the information grows with the time, however it is cut. As kStopGrain.
-  static constexpr double kRestKnot = 10;
+  /// [s]: at rest the information grows with the time, however it is cut.
+  static constexpr double kRestKnot = kStopGrain;
 
  private:
   void AddWay(std::span<const PlannedStop> stops, bool up);
