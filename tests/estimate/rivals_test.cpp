@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/record/decides.h"
 
 namespace wellgyro {
 namespace {

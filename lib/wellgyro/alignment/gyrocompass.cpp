@@ -12,6 +12,7 @@
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/alignment/magnetic.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/record/decides.h"
 #include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -26,9 +27,9 @@ using gyrocompass::HeadingFrom;
 using gyrocompass::Problem;
 using gyrocompass::Solution;
 
-// Costs are chi-squares of one unknown, the heading: 9 is three sigmas, 4 two.
-constexpr double kMirrorCost = 9;  // by which one minimum must beat the other: odds of 90
-constexpr double kBarrier = 4;     // between two minima, beyond which they are two candidates
+// Of a cost, the chi-square of one unknown, the heading: two sigmas. Two minima with more between
+// them are two candidates.
+constexpr double kBarrier = 4;
 
 /// The minima of the cost over all headings, best first. Two axes leave up to two.
 std::vector<Solution> Minima(const Problem& problem) {
@@ -233,7 +234,7 @@ NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,
   const Basin basin = BasinAbout(problem, minima);
   const auto rival = std::find_if(minima.begin() + 1, minima.end(), [&](const Solution& other) {
     const double away = HeadingFrom(best.state, other.state);
-    return other.cost - best.cost < kMirrorCost && (away < basin.low || away > basin.high);
+    return other.cost - best.cost < kDecides && (away < basin.low || away > basin.high);
   });
   if (rival != minima.end()) {
     const Vector3d mirror = rival->state.R_LT.col(2);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "wellgyro/record/decides.h"
+
 namespace wellgyro {
 
 void AddRival(Solution other, double evidence, std::span<const Node> nodes,

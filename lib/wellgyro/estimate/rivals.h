@@ -9,10 +9,6 @@
 
 namespace wellgyro {
 
-/// 2 ln of odds of 90, or 3^2: by less one solution does not beat another. One that is left out is
-/// the right one once in 91 times.
-inline constexpr double kDecides = 9;
-
 /// Where a run may be solved. The evidence is that of a SolveReport, the smaller the better.
 struct Solution {
   double evidence = HUGE_VAL;

@@ -15,6 +15,7 @@
 #include "wellgyro/estimate/rivals.h"
 #include "wellgyro/estimate/swing.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/record/decides.h"
 #include "wellgyro/record/unknown_angle.h"
 
 namespace wellgyro {

@@ -10,8 +10,8 @@
 
 #include "wellgyro/attitude/unseen.h"
 #include "wellgyro/base/angle.h"
-#include "wellgyro/estimate/rivals.h"
 #include "wellgyro/math/rotation.h"
+#include "wellgyro/record/decides.h"
 
 namespace wellgyro {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/estimate/rivals.h"
 #include "wellgyro/math/square.h"
+#include "wellgyro/record/decides.h"
 
 namespace wellgyro {
 namespace {
