@@ -4,6 +4,7 @@
 
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth_rate.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/so3.h"
@@ -26,10 +27,6 @@ constexpr double kSigmaLeastForce = 1e-6;  // [m/s^2]
 constexpr double kSigmaFreeBias = 100 * units::kDegPerHour;
 // [m/s^2], a tenth of gravity: |f| says nothing of direction.
 constexpr double kSigmaFreeGravity = 1;
-
-Vector3d EarthRate(double latitude) {
-  return kEarthRate * Vector3d(std::cos(latitude), 0, -std::sin(latitude));
-}
 
 double Toolface(const Vector3d& f) { return std::atan2(-f.y(), f.x()); }
 double Inclination(const Vector3d& f) { return std::atan2(std::hypot(f.x(), f.y()), -f.z()); }
@@ -201,7 +198,7 @@ void Problem::Rates(const State& state, System& system) const {
   VectorXd r(axes_ * count_);
   const auto& x = state.error;
   const double latitude = latitude_ + x[kLatitude];
-  const Vector3d earth = EarthRate(latitude);
+  const Vector3d earth = EarthRateAt(latitude);
   const Vector3d d_latitude = -kEarthRate * Vector3d(std::sin(latitude), 0, std::cos(latitude));
   for (Index k = 0; k < count_; ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -299,7 +296,7 @@ std::optional<std::pair<double, double>> Problem::Alone(const Solution& solution
 
 std::pair<double, double> Problem::RateRatio(const State& state) const {
   const System system = Linear(state);
-  const Vector3d earth = EarthRate(latitude_ + state.error[kLatitude]);
+  const Vector3d earth = EarthRateAt(latitude_ + state.error[kLatitude]);
   const Index n = unknowns();
   MatrixXd J = MatrixXd::Zero(system.J.rows(), n + 1);
   J.leftCols(n) = system.J;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "wellgyro/earth/earth_rate.h"
 #include "wellgyro/estimate/normal_block.h"
 #include "wellgyro/estimate/places.h"
 #include "wellgyro/estimate/roll_start.h"
@@ -123,8 +124,7 @@ KnotPlace ForwardRun::PlaceOf(std::span<const RunKnot> tail, const Node& end) co
 
 bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   const RunKnot& knot = knots.back();
-  const double latitude = state_.setup.site.latitude;
-  const Vector3d earth = kEarthRate * Vector3d(std::cos(latitude), 0, -std::sin(latitude));
+  const Vector3d earth = EarthRateAt(state_.setup.site.latitude);
   Node begin = state_.nodes.back();
   const KnotPlace place =
       PlaceOf(knots.last(std::min(knots.size(), RunState::kTail)), Ahead(knot, earth, begin));

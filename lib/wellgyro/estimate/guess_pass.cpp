@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "wellgyro/earth/earth_rate.h"
 #include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
@@ -29,8 +30,7 @@ GuessPass::GuessPass(const EstimateSetup& setup, std::span<const RunKnot> knots,
       nodes_(knots.size() + 1) {}
 
 void GuessPass::Run(std::size_t begin, std::size_t end) {
-  const double c = std::cos(latitude_), s = std::sin(latitude_);
-  const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
+  const Vector3d earth = EarthRateAt(latitude_);
   for (std::size_t k = begin; k < end; ++k) {
     const Increment& inc = knots_[k].increment;
     const double extra = extra_roll_[k] + hidden_roll_[k] * inc.seconds;

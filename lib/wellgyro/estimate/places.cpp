@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/earth/earth_rate.h"
 #include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/record/limits.h"
 
@@ -124,7 +125,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     KnotPlace& place = places[k];
     place.site = site;
     const double c = std::cos(site.latitude), s = std::sin(site.latitude);
-    const Vector3d earth = kEarthRate * Vector3d(c, 0, -s);
+    const Vector3d earth = EarthRateAt(site.latitude);
     const Vector3d v = speed * tangent;
     const Vector3d transport(v.y() / site.radius_east, -v.x() / site.radius_north,
                              -v.y() * s / (c * site.radius_east));

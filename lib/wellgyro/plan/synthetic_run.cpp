@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/earth/earth_rate.h"
 #include "wellgyro/estimate/places.h"
 #include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/estimate/run_solver.h"
@@ -349,8 +350,7 @@ Factor SyntheticRun::RestAt(std::size_t node) {
   Node at = nodes_[node];
   at.speed = 0;
   KnotPlace place = places_[std::min(node, places_.size() - 1)];
-  const double c = std::cos(place.site.latitude), s = std::sin(place.site.latitude);
-  place.w_IL_L = kEarthRate * Vector3d(c, 0, -s);
+  place.w_IL_L = EarthRateAt(place.site.latitude);
   place.acceleration_L.setZero();
   FillIncrement(at.R_LT, at.R_LT, place, inc.seconds * (at.R_LT.transpose() * place.w_IL_L).z(),
                 inc);
