@@ -11,8 +11,8 @@
 namespace wellgyro {
 
 /// Errors that stay linked from station to station: attitude, walk and Markov part of three
-/// gyros, the constants of the tool, each with its change, and eight that the run shares, at most.
-inline constexpr int kStationErrorsMax = 3 + 2 * 3 + 2 * kErrorSources + 8;
+/// gyros, and those of the run, at most.
+inline constexpr int kStationErrorsMax = 3 + 2 * 3 + kRunErrorsMax;
 
 /// For reckoning with them: nothing is allocated.
 using StationMatrix =

@@ -12,10 +12,7 @@ namespace wellgyro {
 
 /// Errors of one node: the drift of two gyros and a swing, or that of three.
 inline constexpr int kNodeMax = 12;
-/// Errors of the whole run: of the tool, each with its change, a ramp of three gyros, latitude,
-/// gravity, its gradient, the swing's frequency and the scale of depth.
-inline constexpr int kRunErrorsMax = 2 * kErrorSources + 8;
-/// And one that a diagnosis takes out, see RowsWithout.
+/// Errors of the whole run, and one that a diagnosis takes out, see RowsWithout.
 inline constexpr int kBorderMax = kRunErrorsMax + 1;
 inline constexpr int kAbsent = -1;
 

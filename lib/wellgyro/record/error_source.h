@@ -48,4 +48,8 @@ inline constexpr int kTurnSources = kAccelBiasX, kForceSources = kGyroBiasZ - kA
 /// Those of the accelerometers' second order.
 inline constexpr int kSecondOrderSources = kErrorSources - kAccelSecondOrder;
 
+/// Errors of a whole run, at most: of the tool, each with its change, a ramp of three gyros,
+/// latitude, gravity, its gradient, the swing's frequency and the scale of depth.
+inline constexpr int kRunErrorsMax = 2 * kErrorSources + 8;
+
 }  // namespace wellgyro

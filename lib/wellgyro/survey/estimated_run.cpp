@@ -20,9 +20,6 @@
 namespace wellgyro {
 namespace {
 
-// Attitude, two kinds of drift of three gyros, the border.
-static_assert(3 + 6 + kRunErrorsMax <= kStationErrorsMax);
-
 Anchor AnchorOf(const FixAtNode& at, double azimuth) {
   return {at.node, AttitudeMatrix(azimuth, at.fix.inclination, at.fix.toolface)};
 }
