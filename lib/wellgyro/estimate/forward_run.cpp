@@ -27,8 +27,6 @@ using Eigen::Vector3d;
 constexpr double kLinear = 3e-3;
 constexpr int kKnotIterations = 4;
 
-double RollOf(const Increment& inc) { return inc.roll_before + inc.roll_after; }
-
 /// Linearisation point at the end of `knot`. Moving: dead reckoning by the gyros from `begin`.
 /// Still: the attitude of `begin`, so that what the gyros read beside the Earth's rate is a
 /// residual and not a turn; the roll alone follows its rate. The pseudo-measurement that ties the
@@ -45,7 +43,7 @@ Node Ahead(const RunKnot& knot, const Vector3d& w_IL_L, const Node& begin) {
     end.R_LT = begin.R_LT * RotationZ(inc.seconds * (begin.roll_rate - earth));
     return end;
   }
-  const double delta = begin.roll_rate * inc.seconds - RollOf(inc);
+  const double delta = begin.roll_rate * inc.seconds - inc.roll();
   const Eigen::Vector2d turn = inc.turn_M + delta * inc.turn_per_roll;
   end.R_LT = Exp(-inc.seconds * w_IL_L) * begin.R_LT * RotationZ(inc.roll_before + 0.5 * delta) *
              Exp(Vector3d(turn.x(), turn.y(), 0)) * RotationZ(inc.roll_after + 0.5 * delta);
@@ -129,9 +127,9 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   const KnotPlace place =
       PlaceOf(knots.last(std::min(knots.size(), RunState::kTail)), Ahead(knot, earth, begin));
   // Where gravity shows the roll rate, not where its walk would have it.
-  if (knot.increment.roll_seen) begin.roll_rate = RollOf(knot.increment) / knot.increment.seconds;
+  if (knot.increment.roll_seen) begin.roll_rate = knot.increment.roll() / knot.increment.seconds;
   Node end = Ahead(knot, place.w_IL_L, begin);
-  if (next != nullptr && next->roll_seen) end.roll_rate = RollOf(*next) / next->seconds;
+  if (next != nullptr && next->roll_seen) end.roll_rate = next->roll() / next->seconds;
   BorderVector border = state_.border;
   KnotRows rows(state_.setup, layout_);
   // What the roll's change weighs is by what gravity shows of it, not by what is made of it.

@@ -50,7 +50,7 @@ void GuessPass::Run(std::size_t begin, std::size_t end) {
     }
     Node& next = nodes_[k + 1];
     next.R_LT = M * half * RotationZ(inc.roll_after + 0.5 * extra);
-    nodes_[k].roll_rate = (inc.roll_before + inc.roll_after + extra) / inc.seconds;
+    nodes_[k].roll_rate = (inc.roll() + extra) / inc.seconds;
     next.roll_rate = nodes_[k].roll_rate;
     next.md = knots_[k].along.known ? knots_[k].along.md : nodes_[k].md;
     next.speed = knots_[k].along.known ? knots_[k].along.speed : 0;

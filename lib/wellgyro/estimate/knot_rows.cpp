@@ -286,7 +286,7 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
 /// evenly is in T, in the mean of e^{-i psi}.
 void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   const double whiten = 1 / TurnNoise(t.dt);
-  const double axial = t.inc.roll_before + t.inc.roll_after;
+  const double axial = t.inc.roll();
   const Vector2d unit = t.inc.ForceBy(kAccelBiasX).head<2>();
   const Vector2d across(unit.dot(t.turn), unit.x() * t.turn.y() - unit.y() * t.turn.x());
   Factor& f = factor_;

@@ -49,7 +49,7 @@ void TakeWobble(KnotTerms& t) {
 /// a sinc, and the integral of psi' e^{i psi}, which skewed axes see. In place of psi's own roll
 /// that with what the tool turned beyond it, a radian where no gravity shows the roll.
 void TurnWithTool(KnotTerms& t) {
-  const double of_psi = t.inc.roll_before + t.inc.roll_after, roll = of_psi + t.delta;
+  const double of_psi = t.inc.roll(), roll = of_psi + t.delta;
   t.fixed_beyond = Sinc(0.5 * roll) - Sinc(0.5 * of_psi);
   t.turn_by_error.middleCols<2>(kGyroBiasX) += t.dt * t.fixed_beyond * Matrix2d::Identity();
   const double skewed = 2 * (std::sin(0.5 * roll) - std::sin(0.5 * of_psi));
@@ -64,7 +64,7 @@ void CorrectTurn(KnotTerms& t) {
   TurnWithTool(t);
   // Of psi by the high side the gyros' turn is late against the forces; by a third axis it is with
   // the gyros, and the forces are late: see AddForce().
-  const double psi_rate = (inc.roll_before + inc.roll_after + t.delta) / t.dt;
+  const double psi_rate = (inc.roll() + t.delta) / t.dt;
   const double late = inc.has_axial ? 0 : psi_rate;
   if (inc.has_axial) {
     t.turn_by_error.col(kTimeSkew).setZero();
@@ -111,7 +111,7 @@ KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& 
     t.of_swing = MeanOfSwing(t.frequency, t.dt);
     rate += t.of_swing.dot(begin.swing);
   }
-  t.delta = rate * t.dt - (inc.roll_before + inc.roll_after);
+  t.delta = rate * t.dt - inc.roll();
   t.turn_per_roll = inc.turn_per_roll - t.delta / 12 * inc.turn_M;
   CorrectTurn(t);
   t.drift_T = 0.5 * (begin.walk_T + end.walk_T) + 0.5 * (begin.markov_T + end.markov_T);

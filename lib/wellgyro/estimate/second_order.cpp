@@ -23,7 +23,7 @@ Products ProductsOf(const Increment& inc) {
                 fx = ComplexOf(inc.ForceBy(kAccelScaleX).head<2>()),
                 fy = -kI * ComplexOf(inc.ForceBy(kAccelScaleY).head<2>());
   const double z = inc.force_M.z(), square = std::norm(F);
-  const double roll = inc.roll_before + inc.roll_after, ahead = inc.roll_after - inc.roll_before;
+  const double roll = inc.roll(), ahead = inc.roll_after - inc.roll_before;
   const Complex thrice = Sinc(1.5 * roll) * std::polar(1., 1.5 * ahead);
   // Of a^2 and its conjugate.
   const Complex with = F * F * std::conj(unit), against = std::conj(F * F) * thrice;

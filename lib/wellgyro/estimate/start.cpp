@@ -44,8 +44,7 @@ double HeadingBetween(const Matrix3d& from, const Matrix3d& to) {
 void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
             std::vector<double>& extra) {
   const auto weight = [&](std::size_t k) {
-    const bool hidden = !knots[k].increment.roll_seen && !knots[k].still;
-    return hidden ? knots[k].increment.seconds : 0.0;
+    return RollIsHidden(knots[k]) ? knots[k].increment.seconds : 0.0;
   };
   double sum = 0;
   for (std::size_t k = begin; k < end; ++k) sum += weight(k);

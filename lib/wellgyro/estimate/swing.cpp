@@ -127,7 +127,7 @@ std::optional<double> SwingOf(std::span<const RunKnot> knots) {
   const auto seen = [&](std::size_t k) -> std::optional<double> {
     const Increment& i = knots[k].increment;
     if (!i.roll_seen) return std::nullopt;
-    return (i.roll_before + i.roll_after) / i.seconds;
+    return i.roll() / i.seconds;
   };
   return SwingIn(knots, Segments(knots, seen));
 }

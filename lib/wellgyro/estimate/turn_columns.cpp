@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 
 /// Mean over a knot that rolls steadily of e e', e the direction of the tool's x axis in M.
 Eigen::Matrix2d MeanSquareOfX(const Increment& inc) {
-  const double roll = inc.roll_before + inc.roll_after, ahead = inc.roll_after - inc.roll_before;
+  const double roll = inc.roll(), ahead = inc.roll_after - inc.roll_before;
   const double c = Sinc(roll) * std::cos(ahead), s = Sinc(roll) * std::sin(ahead);
   return 0.5 * (Eigen::Matrix2d() << 1 + c, s, s, 1 - c).finished();
 }

@@ -287,7 +287,7 @@ void SyntheticRun::MakeIncrements() {
     Increment& inc = knots_[k].increment;
     const double earth = inc.seconds * (begin.transpose() * places_[k].w_IL_L).z();
     FillIncrement(begin, nodes_[k + 1].R_LT, places_[k], rolls_[k] + earth, inc);
-    nodes_[k].roll_rate = (inc.roll_before + inc.roll_after) / inc.seconds;
+    nodes_[k].roll_rate = inc.roll() / inc.seconds;
   }
   nodes_.back().roll_rate = nodes_[nodes_.size() - 2].roll_rate;
 }
@@ -354,7 +354,7 @@ Factor SyntheticRun::RestAt(std::size_t node) {
   place.acceleration_L.setZero();
   FillIncrement(at.R_LT, at.R_LT, place, inc.seconds * (at.R_LT.transpose() * place.w_IL_L).z(),
                 inc);
-  at.roll_rate = (inc.roll_before + inc.roll_after) / inc.seconds;
+  at.roll_rate = inc.roll() / inc.seconds;
   std::vector<Factor> rows;
   block_.Clear(layout_);
   block_.Collect(&rows);

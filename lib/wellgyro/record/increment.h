@@ -30,6 +30,7 @@ struct Increment {
   double seconds = 0;      ///< its length
   double roll_before = 0;  ///< psi(middle) - psi(begin) [rad], not wrapped
   double roll_after = 0;   ///< psi(end) - psi(middle) [rad]
+  double roll() const { return roll_before + roll_after; }  ///< psi(end) - psi(begin) [rad]
   Eigen::Vector2d turn_M = Eigen::Vector2d::Zero();         ///< over the knot [rad]
   Eigen::Vector2d turn_before_M = Eigen::Vector2d::Zero();  ///< up to the middle [rad]
   /// Mean specific force, each instant's turned back to the middle by the knot's own turn [m/s^2].

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/run_estimate.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/calibration_prior.h"
@@ -124,8 +125,8 @@ double HiddenTurn(std::span<const RunKnot> knots, std::span<const Node> nodes) {
   constexpr std::size_t kKnots = 20;
   std::vector<double> turns;
   for (std::size_t k = 0; k < knots.size(); ++k) {
+    if (!RollIsHidden(knots[k])) continue;
     const Increment& i = knots[k].increment;
-    if (i.roll_seen || knots[k].still) continue;
     turns.push_back(std::abs(nodes[k].roll_rate * i.seconds - i.roll_before - i.roll_after));
   }
   if (turns.size() <= kKnots) return 0;

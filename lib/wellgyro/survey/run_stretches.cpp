@@ -13,7 +13,7 @@ RunStretch StretchOf(std::span<const RunKnot> knots) {
   for (const RunKnot& knot : knots) {
     const Increment& inc = knot.increment;
     seconds += inc.seconds;
-    s.roll_rate += inc.roll_before + inc.roll_after;
+    s.roll_rate += inc.roll();
     s.temperature += inc.seconds * static_cast<double>(knot.temperature);
     s.samples_lost += static_cast<double>(inc.samples_lost);
     if (!knot.along.known) continue;

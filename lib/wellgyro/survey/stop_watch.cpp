@@ -6,6 +6,7 @@
 
 #include "wellgyro/alignment/gyrocompass.h"
 #include "wellgyro/calibration/field_checks.h"
+#include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/setup.h"
 
 namespace wellgyro {
@@ -132,7 +133,7 @@ std::optional<NorthFix> StopWatch::Due(std::optional<ToolTime> until) {
 }
 
 void StopWatch::Pass(const RunKnot& knot) {
-  roll_hidden_ |= !knot.still && !knot.increment.roll_seen;
+  roll_hidden_ |= RollIsHidden(knot);
   rested_ = knot.still ? rested_ + knot.increment.seconds : 0;
 }
 
