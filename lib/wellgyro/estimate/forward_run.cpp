@@ -182,8 +182,7 @@ void ForwardRun::Arrive(const Elimination& elimination, const Node& begin, const
 }
 
 double ForwardRun::SigmaOfHeading() const {
-  const Vector3d down_T = node().R_LT.row(2).transpose();
-  return std::sqrt(down_T.dot(CovPhi() * down_T));
+  return std::sqrt(HeadingVariance(node().R_LT, CovPhi()));
 }
 
 LinkedErrors ForwardRun::Mark(std::size_t node) {

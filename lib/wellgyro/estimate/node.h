@@ -28,6 +28,12 @@ inline Eigen::Matrix3d TangentByPhi(const Eigen::Matrix3d& R_LT) {
   return -R_LT * Skew(Eigen::Vector3d::UnitZ());
 }
 
+/// Variance of a turn about the vertical, by phi's covariance [rad^2].
+inline double HeadingVariance(const Eigen::Matrix3d& R_LT, const Eigen::Matrix3d& cov_phi_T) {
+  const Eigen::Vector3d down_T = R_LT.row(2).transpose();
+  return down_T.dot(cov_phi_T * down_T);
+}
+
 /// The node moved by a step of its unknowns.
 inline void Move(const Layout& layout, const NodeVector& step, Node& node) {
   node.R_LT = node.R_LT * Exp(step.segment<3>(layout.phi));

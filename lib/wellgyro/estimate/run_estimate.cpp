@@ -297,8 +297,7 @@ bool CountIn(const Solution& rival, double evidence, const RunSolver& best, RunE
 double SigmaOfHeading(std::span<const Node> nodes, std::span<const Matrix3d> cov_phi_T) {
   double least = HUGE_VAL;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const Vector3d down_T = nodes[k].R_LT.row(2).transpose();
-    least = std::min(least, down_T.dot(cov_phi_T[k] * down_T));
+    least = std::min(least, HeadingVariance(nodes[k].R_LT, cov_phi_T[k]));
   }
   return std::sqrt(least);
 }
