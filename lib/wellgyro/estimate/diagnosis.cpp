@@ -26,7 +26,7 @@ constexpr double kAbsorbed = 1e-9;
 
 Index At(std::size_t i) { return static_cast<Index>(i); }
 
-/// ln of the mean of exponentials, one after the other.
+/// ln(mean of exp(x)) over the x added, scaled by the largest so far, so that nothing overflows.
 class LogMean {
  public:
   void Add(double x) {
@@ -45,6 +45,8 @@ class LogMean {
   double most_ = -HUGE_VAL, sum_ = 0, count_ = 0;
 };
 
+/// ln B of a cause whose size is N(0, v), v = size^2, against none, by score s and information M:
+///   s^2 / (2 (M + 1/v)) - ln(1 + v M) / 2.
 double LnBayes(const Score& score, double size) {
   const double s = score.score, m = score.information, v = size * size;
   return 0.5 * s * s / (m + 1 / v) - 0.5 * std::log1p(v * m);
@@ -55,7 +57,7 @@ double LnBayesGiven(const Score& score, double size) {
   return size * score.score - 0.5 * size * size * score.information;
 }
 
-/// All looks at one cause.
+/// The scores of one cause at every node and row where it may lie, and what they come to.
 class Looks {
  public:
   Looks(const CauseSpec& spec, double ln_limit) : spec_(spec), ln_limit_(ln_limit) {}
@@ -142,7 +144,7 @@ class Diagnoser {
   Diagnoser(const LinearRun& solved, std::span<const CauseSpec> specs, double false_alarm_rate,
             const Vector3d& end_by_depth_scale_W)
       : run_(solved), specs_(specs), end_by_depth_scale_(end_by_depth_scale_W) {
-    // The odds of one cause alone must reach this for those of all to pass the alarm.
+    // ln B from which one cause alone raises the alarm: the odds are the mean of B over the causes.
     const double limit =
         std::log(static_cast<double>(std::max<std::size_t>(specs.size(), 1)) / false_alarm_rate);
     for (const CauseSpec& spec : specs) looks_.emplace_back(spec, limit);
@@ -225,7 +227,7 @@ class Diagnoser {
     }
   }
 
-  /// Each of the first `count` rows alone may be wrong: a unit of it is a column 1 / sigma.
+  /// An outlier in row i alone, i < count: its column c is 1 / sigma there and zero elsewhere.
   void LookAtRows(Kind kind, int count, std::size_t k, const Factor& f, const Matrix3d& freedom) {
     for (std::size_t s = 0; s < specs_.size(); ++s) {
       if (specs_[s].kind != kind) continue;
@@ -251,7 +253,8 @@ class Diagnoser {
     }
   }
 
-  /// A step at the first node is a constant, and near the ends as good as nothing.
+  /// Steps at every node but the first, where a step is a constant. Where the rest of the run is
+  /// too short to tell one, its information is rounding of the largest.
   void AddOnsets() {
     for (std::size_t i = 0; i < onsets_of_.size(); ++i) {
       double most = 0;
@@ -295,7 +298,7 @@ class Diagnoser {
     }
   }
 
-  /// What a unit of its unknown does to the prior, over the border.
+  /// Column of the prior's information for the cause's unknown, over the border.
   auto PriorOfSpec(std::size_t i) const { return run_.layout().information.col(ColumnOfSpec(i)); }
   MatrixXd CompareOnsets(const Diagnosis& d, std::span<const std::size_t> onsets,
                          MatrixXd& gram) const;
@@ -405,7 +408,7 @@ void Diagnoser::AddOdds(Diagnosis& d) {
   d.ln_odds = all.value();
 }
 
-/// The error that changes where the unknown is how it changes.
+/// The error source whose growth, with time or temperature, the unknown is; else the unknown.
 int ErrorOf(int unknown) {
   switch (unknown) {
     case kRampX:
@@ -422,8 +425,8 @@ int ErrorOf(int unknown) {
   }
 }
 
-/// Whether a cause is of the kind of another: that it is there twice, since when, or that it comes
-/// in a step as well as evenly is no other fault.
+/// Whether two causes are variants of one fault: of one error source, be it constant, from some
+/// node on, or growing; or of one kind of row. A second fault is none of the first one's variants.
 bool IsKin(const CauseSpec& a, const CauseSpec& b) {
   const auto of_unknown = [](Kind kind) {
     return kind == Kind::kConstant || kind == Kind::kGiven || kind == Kind::kOnset;

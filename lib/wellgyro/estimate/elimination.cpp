@@ -63,7 +63,7 @@ bool Elimination::Step(const NormalBlock& block) {
   return std::isfinite(log_determinant_);
 }
 
-/// Ends the node with its gradient.
+/// Stores the node's gradient, forward-substituted, behind its columns of the factor.
 void Elimination::Keep(const double* gradient) {
   double* panel = conditionals_.data() + eliminated_ * ConditionalSize();
   std::copy_n(gradient, layout_->node, panel + layout_->node * stride_);

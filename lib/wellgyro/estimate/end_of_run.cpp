@@ -6,11 +6,10 @@
 namespace wellgyro {
 namespace {
 
-/// The knots of the pass to the deepest place that begins or ends the shallowest, and whether it
-/// goes down.
+/// The way down to the deepest node or the way up from it, whichever reaches the shallower one.
 struct DeepPass {
-  std::size_t first = 0, last = 0;
-  double half = 0.5;  ///< of a knot's way, with the sign of down
+  std::size_t first = 0, last = 0;  ///< nodes
+  double half = 0.5;                ///< of a knot's way, negative on the way up
 };
 
 DeepPass DeepPassOf(std::span<const Node> nodes) {

@@ -20,10 +20,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// A knot is made linear anew, as in a tool whose roll nobody sees, until what it turns the begin by
-// is small: its square, 9e-6 rad, is below the 2e-5 rad of tilt that 2e-4 m/s^2/sqrt(Hz) tell in a
-// knot of 1 s. Halved or doubled, these two move the ends of three clean runs by less than 0.001
-// sigma.
+// [rad] A knot is relinearised, at most kKnotIterations times, until a step turns its begin by
+// less, as it takes where nothing shows the roll: the linearisation error, the square of that, 9e-6
+// rad, is then below the 2e-5 rad of tilt that accelerometers of 2e-4 m/s^2/sqrt(Hz) tell in a knot
+// of 1 s. Halved or doubled, these two move the ends of three clean runs by less than 0.001 sigma.
 constexpr double kLinear = 3e-3;
 constexpr int kKnotIterations = 4;
 
@@ -50,9 +50,9 @@ Node Ahead(const RunKnot& knot, const Vector3d& w_IL_L, const Node& begin) {
   return end;
 }
 
-/// What ties the roll rate from the last knot to the next, by the minute behind it: where the speed
-/// changes it may do so by as much as that makes, which is all that is known of a roll that gravity
-/// does not show.
+/// 1-sigma of the change of roll rate at the end of the last knot [rad/s]: a random walk as usual
+/// in the minute behind it, and what a change of speed there may make of the roll. A third axis
+/// measures the roll: its walk is so wide that it tells nothing.
 double WalkBehind(std::span<const RunKnot> knots) {
   const Increment& inc = knots.back().increment;
   if (inc.has_axial) return std::sqrt(inc.seconds);
@@ -126,13 +126,13 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   Node begin = state_.nodes.back();
   const KnotPlace place =
       PlaceOf(knots.last(std::min(knots.size(), RunState::kTail)), Ahead(knot, earth, begin));
-  // Where gravity shows the roll rate, not where its walk would have it.
+  // Linearised at the roll rate that gravity shows, not at the walk's prediction.
   if (knot.increment.roll_seen) begin.roll_rate = knot.increment.roll() / knot.increment.seconds;
   Node end = Ahead(knot, place.w_IL_L, begin);
   if (next != nullptr && next->roll_seen) end.roll_rate = next->roll() / next->seconds;
   BorderVector border = state_.border;
   KnotRows rows(state_.setup, layout_);
-  // What the roll's change weighs is by what gravity shows of it, not by what is made of it.
+  // Robust weights of the roll's change: of what gravity shows, and held through the iterations.
   const double sigma = WalkBehind(knots);
   RollChange walk{.sigma = sigma, .swing_sigma = sigma};
   const RollSquares squares =
@@ -162,7 +162,8 @@ bool ForwardRun::Step(std::span<const RunKnot> knots, const Increment* next) {
   return true;
 }
 
-/// Information, covariance and links are of small turns about the end, which the last step turns.
+/// phi of the information, the covariance and the links is about the linearisation point of the
+/// end, which the last step turns.
 void ForwardRun::Arrive(const Elimination& elimination, const Node& begin, const Node& end,
                         const NodeVector& last_step) {
   const Matrix3d turn = Exp(last_step.head<3>());

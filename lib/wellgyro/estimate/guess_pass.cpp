@@ -13,10 +13,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Gravity tilts the axis by 5 % of what it shows in each knot, and where it shows the roll it turns
-// the tool about it in proportion to s^2/(s^2 + (0.1 deg)^2), s the sine of the inclination. Where
-// it does not, what it shows may be its sensors' bias. They choose no solution: halved or doubled,
-// each leads three clean runs to the same one, to 0.001 sigma.
+// Gains of a complementary filter: a knot's gravity corrects kTiltShare of the axis' tilt and,
+// where it shows the roll, kTurnShare s^2 / (s^2 + kTurnSine2) of the roll, with s = sin I and
+// kTurnSine2 = (0.1 deg)^2: nearer to vertical what it shows may be its sensors' bias. They choose
+// no solution: halved or doubled, each leads three clean runs to the same one, to 0.001 sigma.
 constexpr double kTiltShare = 0.05, kTurnShare = 0.5, kTurnSine2 = 3e-6;
 
 }  // namespace

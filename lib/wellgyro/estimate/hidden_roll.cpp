@@ -26,26 +26,28 @@ using Complex = std::complex<double>;
 constexpr std::size_t kSteps = 128, kSpins = 91;
 constexpr int kAtRest = kSpins / 2;
 constexpr double kHeadingStep = kTwoPi / kSteps;  // [rad], [rad/s]
-// Of what the gyros read less the Earth's rate, over that: half a step, and bends of a few deg/h.
-// Halved, seven runs come to the same solutions, doubled six.
+// 1-sigma of what the grid's model leaves out, over the horizontal Earth rate: headings between two
+// steps, and bends of a few deg/h. Halved, seven runs come to the same solutions, doubled six.
 constexpr double kLoose = 0.15;
-// -ln of a reading that has nothing to do with the Earth: three sigmas. Less is chance.
+// -ln of the likelihood of an outlier, 3^2 / 2: a reading off by more than three sigmas costs no
+// more.
 constexpr double kStranger = 4.5;
-// By what the rate changes from knot to knot, as Laplace has it [rad/s]: where the tool starts or
-// stops, and elsewhere, so that the path does not turn with a bend. Halved, or the first doubled,
-// seven runs come to the same solutions; with twice the second one of them does not.
+// Scale b of the Laplace prior exp(-|x| / b) of the rate's change x from knot to knot [rad/s]:
+// where the tool starts or stops, and elsewhere, so that the path does not turn with a bend.
+// Halved, or the first doubled, seven runs come to the same solutions; with twice the second one of
+// them does not.
 constexpr double kChangeStarting = 0.1, kChange = 0.02;
-// From the rate of the window, which knows a bend by the forces: one that a start crosses may be
-// wrong, so that no knot counts by more than one [rad/s]. Unheard, five of seven runs of wells that
-// kick off end in another solution; at four times this three, at twice it none.
+// The same of a knot's rate about its window's, which knows a bend by the forces [rad/s]. A window
+// that a start crosses may be wrong: the cost of a knot ends at 1. Without this prior five of seven
+// runs of wells that kick off end in another solution; at four times this three, at twice it none.
 constexpr double kOffWindow = 0.2;
-// Knots that are solved at once, and of these again with the next: what a knot is does not depend
-// on one a minute later. It bounds the memory to 8 MB.
+// Knots that are decided at once, and those behind them that are looked at before: a minute later
+// the best paths have joined. It bounds the memory to 660 kSteps kSpins bytes, 8 MB.
 constexpr std::size_t kPiece = 600, kAgain = 60;
 constexpr std::size_t kLeast = 10;  // knots, as a window has
 constexpr float kBarred = 1e9F;
 
-/// Of every rate and heading.
+/// A value for every rate (rows) and heading at the begin of a knot (columns).
 template <typename T>
 using Grid = std::array<std::array<T, kSteps>, kSpins>;
 
@@ -56,13 +58,13 @@ long StepsIn(std::size_t spin, double seconds) {
   return std::lround(SpinRate(spin) * seconds / kHeadingStep);
 }
 
-/// The same steps around a circle of so many.
+/// `steps` modulo `circle`, not negative.
 std::size_t Around(long steps, std::size_t circle) {
   const auto turn = static_cast<long>(circle);
   return static_cast<std::size_t>((steps % turn + turn) % turn);
 }
 
-/// What the gyros read wrongly: `bias` + rate * `skew`, fixed in the tool.
+/// Error of the gyros across, fixed in the tool: `bias` + roll rate * `skew`.
 struct Fixed {
   Complex bias, skew;
 };
@@ -129,8 +131,8 @@ class Stretch {
   }
 
  private:
-  /// What is left of a knot's reading at each half step of the heading in its middle, over its
-  /// sigma sqrt(2), as if nothing were wrong; twice around.
+  /// Residual of a knot's reading less `bias`, for each half step of the heading in its middle,
+  /// over sigma sqrt(2): its square is -ln of the likelihood. Twice around, so that no index wraps.
   struct Left {
     std::array<float, 4 * kSteps> x, y;
   };
@@ -158,8 +160,8 @@ class Stretch {
     return &*next;
   }
 
-  /// Rates may change before a knot: the least of the costs and a change from there (the distance
-  /// transform of Felzenszwalb and Huttenlocher, 2012), and where it is.
+  /// The rate may change before a knot: cost(i) <- min over j of cost(j) + |i - j| step / change,
+  /// and the j (the distance transform of Felzenszwalb and Huttenlocher, 2012).
   void ChangeRates(double change, Grid<std::uint8_t>& from) {
     for (std::size_t spin = 0; spin < kSpins; ++spin) {
       from[spin].fill(static_cast<std::uint8_t>(spin));
@@ -177,7 +179,8 @@ class Stretch {
     for (std::size_t spin = kSpins - 1; spin-- > 0;) pass(spin, spin + 1);
   }
 
-  /// Goes through a knot.
+  /// A step of Viterbi's algorithm: the rate may change, each pair of rate and heading costs what
+  /// the knot's reading says of it, and the headings turn by their rates.
   void Pass(std::size_t k, Grid<std::uint8_t>& from) {
     const RunKnot& knot = knots_[k];
     const double seconds = knot.increment.seconds;
@@ -201,7 +204,7 @@ class Stretch {
       const std::size_t steps = Around(turned, kSteps), half_steps = Around(turned, 2 * kSteps);
       std::array<float, kSteps>& costs = costs_[spin];
       for (std::size_t h = 0; h < kSteps; ++h) {
-        // Half of the steps later than the heading at the begin, in half steps.
+        // The heading in the middle, in half steps: the begin's and half of the knot's turn.
         const std::size_t middle = 2 * h + half_steps;
         const float x = left.x[middle] - skew_x, y = left.y[middle] - skew_y;
         costs[h] += std::min(x * x + y * y, stranger) + by_rate;

@@ -84,7 +84,7 @@ double KnotRows::TurnNoise(double dt) const {
   return std::max(std::sqrt(var), kLeastTurn);
 }
 
-/// What a unit of the mean rate of roll adds to the factor's residuals, for all that it is made of.
+/// Columns of what the mean roll rate is made of, `by_rate` being the residuals' derivative by it.
 void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, NormalBlock& block) {
   factor_.Column(layout_.roll) = by_rate;
   if (layout_.swing == kAbsent) return;
@@ -93,8 +93,8 @@ void KnotRows::AddRate(const Terms& t, const Vector3d& by_rate, NormalBlock& blo
       MeanByFrequency(t.frequency, t.dt).dot(t.begin.swing) * by_rate;
 }
 
-/// What a unit of an error adds to the factor's residuals, for itself and for its change with the
-/// temperature.
+/// Columns of an error and of its change with the temperature, `by_error` being the residuals'
+/// derivative by it.
 void KnotRows::AddError(const Terms& t, int source, const Vector3d& by_error,
                         const NormalBlock& block) {
   const int at = layout_.source[static_cast<std::size_t>(source)];
@@ -155,7 +155,8 @@ void KnotRows::AddTurn(const Terms& t, NormalBlock& block) {
   block.Add(f);
 }
 
-/// A bias that walks, that is correlated in time or that grows: of the knot, its mean.
+/// Columns of a gyro's drift: random walk and Gauss-Markov part, of which a knot has the mean of
+/// its two ends, and ramp.
 void KnotRows::AddGyroDrift(const Terms& t, int gyro, const Vector3d& by_bias, NormalBlock& block) {
   for (const int drift : {layout_.walk, layout_.markov}) {
     if (drift == kAbsent) continue;
@@ -281,9 +282,10 @@ void KnotRows::AddRoll(const Terms& t, const RollChange& roll, NormalBlock& bloc
   block.Add(f);
 }
 
-/// psi is then the integral of the third axis: delta is what its errors and its noise made, and the
-/// scale multiplies the roll without its noise. Of the rates across it sees what a turn that goes
-/// evenly is in T, in the mean of e^{-i psi}.
+/// Row of a third axis, of which psi is the integral, so that its error is -delta:
+///   r = delta + dt (bias + drift) + roll scale + across . misalignment.
+/// The scale's column is the roll without the axis's noise (errors in variables, WithoutNoise()).
+/// `across` is the turn in T: that in M by the mean of e^{-i psi}, as if it went evenly.
 void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   const double whiten = 1 / TurnNoise(t.dt);
   const double axial = t.inc.roll();
@@ -304,7 +306,8 @@ void KnotRows::AddAxial(const Terms& t, NormalBlock& block) {
   block.Add(f);
 }
 
-/// Marks, and the depth, speed and its change that the nodes have.
+/// Rows along the hole: the depth mark, or a vague speed where there is none; the knot's way by the
+/// trapezoidal rule; a random walk of the speed.
 void KnotRows::AddDepth(const Terms& t, NormalBlock& block) {
   Factor& f = factor_;
   const AlongHole& along = t.knot.along;

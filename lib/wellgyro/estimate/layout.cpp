@@ -12,7 +12,7 @@
 namespace wellgyro {
 namespace {
 
-/// Of what the job states beside a calibration's covariance.
+/// Prior sigmas by the job, beside a calibration's covariance.
 ErrorVector SourceSigmas(const EstimateSetup& setup) {
   const ErrorPriors& e = setup.errors;
   // Without a correlation time the instability is a constant beside the bias.
@@ -52,8 +52,9 @@ ErrorCovariance SourceCovariance(const EstimateSetup& setup) {
   return cov;
 }
 
-/// Variance, over their own: what a calibration knows only of sums of errors it knows to a
-/// thousandth of their sigmas at best, so that its covariance need not have full rank.
+/// Added to the diagonal of the errors' correlations. A calibration that knows errors by their sum
+/// has a covariance without full rank: the sum then has a sigma of sqrt(kApart), a thousandth of
+/// theirs.
 constexpr double kApart = 1e-6;
 
 double BiasesByWarmth(const EstimateSetup& setup, int source) {

@@ -59,9 +59,9 @@ Loss LossOf(const Factor& f) {
   return {kHuber / norm, kHuber * (2 * norm - kHuber)};
 }
 
-/// Of the rows that measure, the sum of squares that is noise. What of a force is lateral measures
-/// the roll alone, whose walk is wider than most tools roll: it keeps less than the model says, on
-/// clean runs .83 to .88 of it.
+/// Sum of squares by which the noise is judged: of the rows that measure, less the lateral part of
+/// a force. That one measures the roll alone, whose walk is wider than most tools roll, and keeps
+/// less than the model says, on clean runs .83 to .88 of it.
 double SquareOf(const Factor& f) {
   const double lateral = f.shrink != 0 ? f.u.dot(f.r) : 0;
   return f.r.head(f.measured).squaredNorm() - lateral * lateral;

@@ -60,7 +60,8 @@ OnsetScan::OnsetScan(const LinearRun& run, std::vector<int> unknowns)
   }
 }
 
-/// The part of M that is known before node t's covariance is.
+/// Keeps the scores of onsets at this node, their information still without edge' cov edge, which
+/// Backward() takes off.
 void OnsetScan::Record() {
   edges_.push_back(edge_);
   scores_.push_back(now_);

@@ -19,8 +19,10 @@ using Eigen::Vector3d;
 // A whirl of the tool is no bend of the hole: what it adds to the ends of a window falls with the
 // window's length, while a bend that begins in its middle is seen so much too late. At 1.5 and at 6
 // s the ends of three clean runs move by 0.004 sigma, half or twice the way by less than 0.001.
-constexpr double kLowPass = 3;        // [s]
-constexpr double kTellingWay = 0.01;  // [m] of a window, from which it tells of the hole
+constexpr double kLowPass = 3;  // [s]
+// [m] of a window, from which it tells of the hole. Less is below 3 mm/s: the path's acceleration
+// v^2 kappa, 6e-8 m/s^2 at 10 deg/30 m, is then none.
+constexpr double kTellingWay = 0.01;
 // [m] of depth marks, and not of the path: where it is renewed must not move with the solution. On
 // such a way gravity changes by 2e-6 m/s^2, the latitude by 3e-7 rad.
 constexpr double kSiteEvery = 2;

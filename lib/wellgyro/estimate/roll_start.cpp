@@ -60,7 +60,7 @@ std::vector<Change> ChangesOver(const Sums& s, std::size_t span) {
   return changes;
 }
 
-/// What is usual is told by the half of the places where the roll is plainest.
+/// 1-sigma of the changes, by the median of the half whose own sigmas are least.
 double UsualOf(const std::vector<Change>& changes) {
   std::vector<double> sigmas, plain;
   sigmas.reserve(changes.size());

@@ -28,8 +28,8 @@ constexpr int kFiner = 16;
 // A line of the Earth's rate stands out of gyros of 0.05 deg/sqrt(h) by twenty sigmas.
 constexpr std::size_t kWindow = 40, kStride = 10;  // [knots]
 constexpr std::size_t kLeastWindow = 10;           // twenty readings for six unknowns
-// From window to window a rate changes as Laplace has it, by 0.1 rad/s, or it starts or stops,
-// which has one chance in exp(8) = 3000.
+// Prior of a rate's change x from window to window: Laplace's exp(-|x| / kChange) with 0.1 rad/s,
+// or a start or stop by any amount, which has one chance in exp(kJump) = 3000.
 constexpr double kChange = 0.1, kJump = 8;
 // Where a tool states no noise: 3e-6 deg/sqrt(h) [rad/sqrt(s)], a thousandth of a navigation
 // gyro's, and 0.1 ug/sqrt(Hz) [m/s^2/sqrt(Hz)].
@@ -160,8 +160,8 @@ class Window {
   double size_ = 0, seconds_ = 0, gyro_noise_ = 0, accel_noise_ = 0;
 };
 
-/// The least of `costs` and a change from there, of every rate (the distance transform of
-/// Felzenszwalb and Huttenlocher, 2012), and where it is.
+/// cost(i) <- min of cost(j) + |i - j| kStep / kChange and cost(j) + kJump over j, and the j (the
+/// distance transform of Felzenszwalb and Huttenlocher, 2012).
 void LeastChange(Costs& costs, std::array<std::int16_t, kRates>& from) {
   for (int i = 0; i < kRates; ++i) from[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(i);
   const auto best = std::min_element(costs.begin(), costs.end());

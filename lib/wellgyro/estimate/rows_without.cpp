@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector3d;
 using Kind = CauseSpec::Kind;
 
-// The sigma that is left to a size, in sizes: the prior of one size then costs 1/2 (1/100)^2 = 5e-5
-// of ln B.
+// Prior sigma that the size of a cause is given, over the larger of what was found and its
+// spec: flat enough to cost 1/2 (1/100)^2 = 5e-5 of ln B.
 constexpr double kFlat = 100;
 
 bool IsConstant(Kind kind) { return kind == Kind::kConstant || kind == Kind::kGiven; }
@@ -38,7 +38,7 @@ bool IsNoisier(Kind kind, const Factor& f) {
          (kind == Kind::kAccelNoise && f.kind == RowKind::kForce);
 }
 
-/// r - c c'r / c'c, and J as r.
+/// Projects c out of a factor: r <- r - c c'r / c'c, and J as r.
 void Without(const Vector3d& c, Factor& f) {
   const Vector3d u = c.normalized();
   f.r -= u * u.dot(f.r);

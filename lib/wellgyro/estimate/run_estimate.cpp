@@ -32,7 +32,7 @@ constexpr double kTooLarge = 4;
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
 
-/// Of the border's covariance the part of the constant errors; zero of those that are none.
+/// Covariance of the sources' constant errors, from the border's; zero for those it does not have.
 ErrorMatrix OfSources(const Layout& layout, const BorderMatrix& border) {
   ErrorMatrix cov = ErrorMatrix::Zero();
   for (int i = 0; i < kErrorSources; ++i) {
@@ -45,9 +45,9 @@ ErrorMatrix OfSources(const Layout& layout, const BorderMatrix& border) {
   return cov;
 }
 
-/// Backwards through the nodes: covariances of all, links of the marked, and what the unknowns
-/// absorb of every kind of residual. Of a part of a run the first of the marked is linked to the
-/// last before it.
+/// Backward pass: the covariance of every node, the cross-covariances of the marked ones, and the
+/// freedom that is left to each kind of residual. Of a part of a run the first marked node is
+/// linked to the last one of the part before.
 class Sweep {
  public:
   Sweep(RunSolver& solver, std::span<const std::size_t> marked, RunEstimate& result)
@@ -119,7 +119,8 @@ class Sweep {
   Eigen::MatrixXd link_;  ///< E[(node; border) x'] of the marked node behind
 };
 
-/// By what factor the noise is larger than stated, of residuals of these kinds; 1: by none.
+/// sqrt(squares / freedom) of residuals of these kinds, the factor by which their noise is larger
+/// than stated; 1 where the squares are chance.
 double Excess(const std::array<RowSum, kRowKinds>& sums, std::initializer_list<RowKind> kinds) {
   double weighted = 0, freedom = 0;
   for (const RowKind kind : kinds) {
@@ -227,8 +228,8 @@ NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
   return nodes;
 }
 
-/// Each guess with the roll as a walk, and as a swing where it is one: by what gravity shows of it,
-/// else where it is hidden by what the walk's solution has found.
+/// Solves from each guess with the roll rate as a random walk and, where it swings, as that and a
+/// swing, whose frequency gravity shows or else, where the roll is hidden, the walk's solution.
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
               std::span<const NodeGuess> guesses, const RunState* before) {
   EstimateSetup swings = setup;
@@ -348,13 +349,13 @@ RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
   return end;
 }
 
-/// Gyros that are off by more than chance: their noise is stated too small, or this is a minimum
-/// but not the one.
+/// Residuals of the gyros that are no chance: their noise is stated too small, or this is a local
+/// minimum.
 bool GyrosMisfit(const RunEstimate& run) {
   return !run.solved || Excess(run.report.sums, {RowKind::kTurn, RowKind::kStill}) > 1;
 }
 
-/// Takes what other guesses lead to where it is better than what is known; the worse of the two may
+/// Takes the solution of other guesses where its evidence is better; the worse of the two may
 /// remain a rival. False: it is not better.
 bool TakeIfBetter(Choice other, std::span<const std::size_t> marked, Choice& choice,
                   RunEstimate& result) {

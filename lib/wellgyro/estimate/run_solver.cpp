@@ -15,14 +15,15 @@ namespace {
 // Gauss-Newton is trusted as far as this in one step: past it sine and angle part by 4 %. At 0.25
 // and at 1 three clean runs come to the same solution, to 0.001 sigma.
 constexpr double kStepMost = 0.5;  // [rad]
-// Newton's decrement squared at which a run stays: a thousandth of a sigma over all unknowns
-// together.
+// Newton's decrement squared at which a run counts as converged: a thousandth of a sigma over all
+// unknowns together.
 constexpr double kStays = 1e-6;
-// Steps towards it: the last ones of a run with starts and stops are slow; with 15 three clean runs
-// have the same bytes. Steps over which a trend is taken.
+// Steps towards it, since the last ones of a run with starts and stops are slow: with 15 three
+// clean runs have the same bytes; and those over which the decrements' trend is taken.
 constexpr int kFinish = 30, kSlow = 10;
-// Of decrements: one step alone may fall by more than the next; Gauss-Newton takes far more off one
-// than its half. Halved or doubled, these three lead three clean runs to the same solution, to
+// Ratios of a decrement to the last one. By less than kLeastFall nothing is extrapolated: a single
+// step may fall more than the next. More than kCreeps creeps: Gauss-Newton takes far more than half
+// off a decrement. Halved or doubled, these three lead three clean runs to the same solution, to
 // 0.001 sigma, in 0.92 to 1.05 of the time.
 constexpr double kLeastFall = 0.05, kCreeps = 0.5;
 
@@ -36,7 +37,7 @@ double Left(double decrement, double last) {
   return decrement * falls / (rest * rest);
 }
 
-/// The attitudes go back most of the way that they came.
+/// This step takes back more than half of the last one, over all attitudes.
 bool TakesBack(const std::vector<NodeVector>& steps, const std::vector<NodeVector>& before) {
   double back = 0, way = 0;
   for (std::size_t k = 0; k < before.size(); ++k) {
@@ -114,8 +115,8 @@ void RunSolver::TakeOver(const RunSolver& other) {
   take(layout_.depth_scale, theirs.depth_scale);
 }
 
-/// One step of Gauss-Newton. One that takes the last one back went too far, as the next one would:
-/// half of it then.
+/// One step of Gauss-Newton; half of one that takes back the last, which overshot as this one
+/// would.
 bool RunSolver::Advance(SolveReport& report) {
   PlaceKnots(setup_.site, before_, knots_, nodes_, places_);
   BowKnots(knots_, RollRates(), places_);
@@ -143,8 +144,8 @@ bool RunSolver::Iterate(int most, double stays, SolveReport& report, double cree
   return false;
 }
 
-/// Until the run stays; not as far where it will not within kFinish steps, or where its evidence
-/// stays above `least`.
+/// Gauss-Newton until the run has converged; given up where the trend of its decrements leaves it
+/// far from kNear after kFinish steps, or where its evidence cannot come below `least`.
 void RunSolver::Finish(double least, SolveReport& report) {
   last_steps_.clear();
   std::vector<double> decrements;

@@ -10,8 +10,9 @@ inline constexpr double kAnyRoll = 10;
 /// which on it is not worth while: one sigma, and a hundred, over all unknowns together.
 inline constexpr double kNear = 1, kFar = 1e4;
 
-/// What may be hoped for, as a multiple of what the linear model or a trend of decrements promises:
-/// a margin, so that steps are not given up for the error of either.
+/// How far further steps may take the evidence, over the decrement squared d of the last one: in
+/// all d (1 + 0.9 + 0.9^2 ...) = 10 d where each has nine tenths of the one before. And by how much
+/// a trend of decrements may be wrong.
 inline constexpr double kGain = 10;
 
 }  // namespace wellgyro

@@ -143,7 +143,8 @@ RollChange RunSolver::Change(std::size_t knot) const {
   return change;
 }
 
-/// From here on the problem is one of least squares, which Gauss-Newton ends in few steps.
+/// Holds the robust weights of the roll's rows: from here on the problem is one of weighted least
+/// squares, which Gauss-Newton ends in few steps.
 void RunSolver::HoldRollWeights() {
   const std::optional<double> frequency = FrequencyOf(setup_, layout_, border_);
   std::vector<std::array<double, 2>> weights(knots_.size());

@@ -7,8 +7,8 @@
 namespace wellgyro {
 namespace {
 
-// Least l, of a row, that its own residual must keep: what is left out tells of tau^2 by l^2, less
-// than 9 % of a row that keeps all.
+// Least redundancy l, of a row, for its residual to count: its information on tau^2 goes as l^2, of
+// what is left out less than 9 % of that of a row with l = 1.
 constexpr double kOwn = 0.3;
 // tau^2, in the variances that rows should have: of a sensor that is out of its class, up to five
 // times its noise by steps of 1.5, and of bursts, by every second of these and on to shocks. What
@@ -23,7 +23,7 @@ constexpr std::array<double, 12> kBurst{0.45, 1.01, 2.28, 5.13, 11.5, 25.9,
 void Scatter::Add(std::size_t k, const Factor& f, const Eigen::Matrix3d& freedom) {
   const std::size_t at = k / stretch_;
   if (stretches_.size() <= at) stretches_.resize(at + 1);
-  // Rows that tie unknowns, and those that the factor lacks, have nothing of their own.
+  // Pseudo-measurements, and rows that the factor lacks, measure nothing.
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
   own.topLeftCorner(f.measured, f.measured) = freedom.topLeftCorner(f.measured, f.measured);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(own);

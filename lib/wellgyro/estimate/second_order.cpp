@@ -25,7 +25,7 @@ Products ProductsOf(const Increment& inc) {
   const double z = inc.force_M.z(), square = std::norm(F);
   const double roll = inc.roll(), ahead = inc.roll_after - inc.roll_before;
   const Complex thrice = Sinc(1.5 * roll) * std::polar(1., 1.5 * ahead);
-  // Of a^2 and its conjugate.
+  // Means of e^{i psi} f^2 and of e^{i psi} conj(f)^2, with f = F e^{-i psi} the force across in T.
   const Complex with = F * F * std::conj(unit), against = std::conj(F * F) * thrice;
   const Complex cosine = 0.5 * (with + against), sine = -0.5 * kI * (with - against);
   const Complex twice = F * std::conj(2. * fx - F);

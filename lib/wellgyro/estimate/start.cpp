@@ -18,8 +18,8 @@ using Eigen::Matrix3d;
 
 constexpr int kHeadings = 8;   // one of them is within 22.5 deg of any
 constexpr int kApproach = 15;  // steps from there: three for the heading, the rest for the roll
-// Steps that stop at a thousandth of a sigma end nearer to each other; no two minima of a heading
-// that are nearer than half a degree have been seen.
+// Solutions of one minimum that stop at a thousandth of a sigma end nearer to each other; no two
+// minima of a heading that are nearer than half a degree have been seen.
 constexpr double kSame = 0.01;  // [rad]
 
 /// Inclination and toolface by the first knot that gravity levels, azimuth zero.
@@ -40,7 +40,7 @@ double HeadingBetween(const Matrix3d& from, const Matrix3d& to) {
   return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
 }
 
-/// Adds to the roll of the knots between two nodes that do not show it, together `angle`.
+/// Distributes `angle` over the hidden knots between two nodes, by their lengths, as further roll.
 void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
             std::vector<double>& extra) {
   const auto weight = [&](std::size_t k) {

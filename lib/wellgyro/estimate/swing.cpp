@@ -20,12 +20,13 @@ constexpr double kSegment = 600;
 constexpr std::size_t kLeastSeen = 60;  // knots of a segment, to tell a line from a trend
 constexpr double kLongest = 60;         // [s], longest period: ten of them in kSegment
 constexpr double kNyquist = 0.9;        // of half a turn a knot, beyond which a line is aliased
-// Of the variance that a line must explain. At 0.6 the demonstration's swing, in a sixth of its
-// way, is missed, and its azimuth errors are 1.4 % larger; at 0.15 no other line is found in clean
-// runs.
+// Share of the variance that a line must explain. At 0.6 the demonstration's swing, in a sixth of
+// its way, is missed, and its azimuth errors are 1.4 % larger; at 0.15 no other line is found in
+// clean runs.
 constexpr double kShare = 0.3;
 constexpr double kLeastRate = 3e-3;  // [rad/s]: what less does to the roll, a walk holds as well
-constexpr int kOversampled = 4;      // lines per width 1 / kSegment, so that none falls between
+// Lines per width 1 / kSegment: of one between two of them sinc(1/8)^2 = 95 % is seen.
+constexpr int kOversampled = 4;
 constexpr std::size_t kSegmentsMost = 24;  // four hours: the cost of the search is bounded
 
 struct Point {
@@ -58,7 +59,8 @@ std::vector<std::vector<Point>> Segments(std::span<const RunKnot> knots, const R
   return segments;
 }
 
-/// A line of frequencies that follow each other by `step`, taken from each point in turn.
+/// Periodogram of the segments at frequencies `first`, `first` + `step` and so on: each point's
+/// e^{i w time} is turned on by `step`.
 class Lines {
  public:
   Lines(const std::vector<std::vector<Point>>& segments, double first, double step) {
