@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "wellgyro/estimate/bayes_factor.h"
 #include "wellgyro/estimate/onset_scan.h"
 #include "wellgyro/estimate/rows_without.h"
 #include "wellgyro/estimate/scatter.h"
@@ -45,13 +46,6 @@ class LogMean {
   double most_ = -HUGE_VAL, sum_ = 0, count_ = 0;
 };
 
-/// ln B of a cause whose size is N(0, v), v = size^2, against none, by score s and information M:
-///   s^2 / (2 (M + 1/v)) - ln(1 + v M) / 2.
-double LnBayes(const Score& score, double size) {
-  const double s = score.score, m = score.information, v = size * size;
-  return 0.5 * s * s / (m + 1 / v) - 0.5 * std::log1p(v * m);
-}
-
 /// ln B of a size that is given: theta s - theta^2 M / 2.
 double LnBayesGiven(const Score& score, double size) {
   return size * score.score - 0.5 * size * size * score.information;
@@ -78,8 +72,8 @@ class Looks {
         continue;
       }
       const bool given = spec_.kind == Kind::kGiven;
-      const double ln_bayes =
-          given ? LnBayesGiven(look.score, spec_.size) : LnBayes(look.score, spec_.size);
+      const double ln_bayes = given ? LnBayesGiven(look.score, spec_.size)
+                                    : LnBayes(look.score.score, look.score.information, spec_.size);
       mean.Add(ln_bayes);
       test.told = true;
       if (ln_bayes <= best) continue;
@@ -103,14 +97,11 @@ class Looks {
     int row;
   };
 
-  /// The Bayes factor passes its limit at w^2 = (1 + 1/(S^2 M)) (2 ln limit + ln(1 + S^2 M)),
-  /// w = s / sqrt(M), the limit growing by the onsets that are averaged.
+  /// The smallest fault that is noticed, the limit of ln B growing by the onsets that are averaged.
   void TakeHidden(const Look& look, CauseTest& test) const {
-    const double m = look.score.information, vm = spec_.size * spec_.size * m;
     const double count = static_cast<double>(looks_.size());
     const double onsets = std::log(std::max(count / look.alike, 1.0));
-    const double w2 = (1 + 1 / vm) * (2 * (ln_limit_ + onsets) + std::log1p(vm));
-    const double smallest = (std::sqrt(std::max(w2, 0.0)) + kNoticedPower) / std::sqrt(m);
+    const double smallest = SmallestNoticed(look.score.information, spec_.size, ln_limit_ + onsets);
     const bool noticeable = smallest < kLargestFault * spec_.size;
     const Vector3d hidden = std::min(smallest, kLargestFault * spec_.size) * look.score.shift_W;
     if (test.smallest > 0 && !(hidden.norm() > test.hidden_W.norm())) return;

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "wellgyro/estimate/bayes_factor.h"
 #include "wellgyro/estimate/cause.h"
 #include "wellgyro/math/square.h"
 #include "wellgyro/plan/synthetic_run.h"
@@ -101,9 +102,8 @@ double StopStand::Largest(const HiddenFault& f, const Vector2d& with_end) {
 }
 
 double StopStand::Hidden(const HiddenFault& f, double variance, const Vector2d& with_end) const {
-  const double m = std::max(1e-12, 1 - variance) / (f.unit * f.unit), vm = f.size * f.size * m;
-  const double w2 = (1 + 1 / vm) * (2 * (info_->ln_limit() + f.ln_onsets) + std::log1p(vm));
-  const double smallest = (std::sqrt(w2) + kNoticedPower) / std::sqrt(m);
+  const double information = std::max(1e-12, 1 - variance) / (f.unit * f.unit);
+  const double smallest = SmallestNoticed(information, f.size, info_->ln_limit() + f.ln_onsets);
   return std::min(smallest, kLargestFault * f.size) * with_end.norm() / f.unit;
 }
 

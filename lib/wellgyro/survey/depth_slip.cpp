@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 #include <fmt/core.h>
 
+#include "wellgyro/estimate/bayes_factor.h"
 #include "wellgyro/estimate/cause.h"
 #include "wellgyro/math/square.h"
 #include "wellgyro/survey/check_internal.h"
@@ -107,14 +108,6 @@ class Differences {
   Eigen::Matrix2d information_;
 };
 
-/// The smallest that is noticed with kNoticedPower, see Diagnose().
-double SmallestOf(double information, double onsets) {
-  const double vm = kSlipSize * kSlipSize * information;
-  const double limit = -std::log(kDiagnosisFalseAlarms) + std::log(onsets);
-  const double w2 = (1 + 1 / vm) * (2 * limit + std::log1p(vm));
-  return (std::sqrt(std::max(w2, 0.0)) + kNoticedPower) / std::sqrt(information);
-}
-
 const Station* DeepestOfRun(std::span<const Station> passes, std::int32_t run) {
   const Station* end = nullptr;
   for (const Station& s : passes) {
@@ -133,16 +126,16 @@ SlipScan SlipScanOf(const std::vector<SlipPair>& pairs, double sigma_offset) {
   const Differences differences(pairs, sigma_offset);
   SlipScan scan;
   std::vector<double> ln_bayes;
+  const double limit =
+      -std::log(kDiagnosisFalseAlarms) + std::log(static_cast<double>(differences.onsets()));
   for (Eigen::Index t = 1; t <= differences.onsets(); ++t) {
     const auto [score, information] = differences.At(t);
     // A larger one is no slip of a wheel.
     if (!(information > 0) || std::abs(score) > kLargestFault * kSlipSize * information) continue;
     const auto i = static_cast<std::size_t>(t);
-    const double md = (pairs[i - 1].md + pairs[i].md) / 2, v = kSlipSize * kSlipSize;
-    ln_bayes.push_back(0.5 * score * score / (information + 1 / v) -
-                       0.5 * std::log1p(v * information));
-    scan.smallest.emplace_back(SmallestOf(information, static_cast<double>(differences.onsets())),
-                               md);
+    const double md = (pairs[i - 1].md + pairs[i].md) / 2;
+    ln_bayes.push_back(LnBayes(score, information, kSlipSize));
+    scan.smallest.emplace_back(SmallestNoticed(information, kSlipSize, limit), md);
     if (!(ln_bayes.back() > scan.ln_bayes)) continue;
     scan.ln_bayes = ln_bayes.back();
     scan.size = score / information;
