@@ -9,6 +9,7 @@
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/bench_design_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
 namespace {
@@ -62,9 +63,7 @@ constexpr double kLeastInclination = 0.5 * units::kDeg;
 // Of a named hole, stations a degree apart; else the ranges'.
 std::vector<BenchPlanSetup::Direction> DirectionsOf(const BenchPlanSetup& setup) {
   const auto along = [](const BenchPlanSetup::Direction& at) {
-    return Eigen::Vector3d(std::sin(at.inclination) * std::cos(at.azimuth),
-                           std::sin(at.inclination) * std::sin(at.azimuth),
-                           std::cos(at.inclination));
+    return Tangent(at.inclination, at.azimuth);
   };
   std::vector<BenchPlanSetup::Direction> all;
   for (const BenchPlanSetup::Direction& at : setup.hole) {

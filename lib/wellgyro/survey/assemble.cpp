@@ -234,10 +234,7 @@ void AddDepthScale(const Job& job, const std::vector<DraftedRun>& runs,
         std::max(job.errors.depth_scale_sigma, run == runs.end() ? 0 : run->depth_scale_found);
     const double way = s.md - job.tie_in.md;
     if (s.kind == StationKind::kTieIn || !(way > 0) || !(scale > 0)) continue;
-    const Eigen::Vector3d along =
-        scale * way *
-        Eigen::Vector3d(std::sin(s.inclination) * std::cos(s.azimuth),
-                        std::sin(s.inclination) * std::sin(s.azimuth), std::cos(s.inclination));
+    const Eigen::Vector3d along = scale * way * Tangent(s.inclination, s.azimuth);
     const Eigen::Vector3d path = scale * (s.p_WT_W - origin), there = path - along;
     s.cov_p_WT_W += path * path.transpose() + there * there.transpose();
     s.cov_md_inc_azi(0, 0) += scale * way * scale * way;

@@ -8,6 +8,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/check_internal.h"
 #include "wellgyro/survey/field_practice.h"
 
@@ -21,11 +22,6 @@ constexpr double kDepths = 2 * field_practice::kSlippage;  // of two surveys, ov
 constexpr double kTurned = 0.05;  // of a way, by a north 3 deg aside: 2 sin 1.5 deg
 constexpr double kPlaces = 1;     // that nobody asks for; of TVD, which has no slot [m]
 constexpr double kBendMost = FromDegrees(12) / 30;  // of a hole that a motor builds [rad/m]
-
-Eigen::Vector3d Along(double inclination, double azimuth) {
-  return {std::sin(inclination) * std::cos(azimuth), std::sin(inclination) * std::sin(azimuth),
-          std::cos(inclination)};
-}
 
 // Of the direction; near vertical the azimuth's own is no angle in the hole.
 double SigmaOfDirection(const Station& s) {
@@ -72,7 +68,8 @@ Check CheckTieInWay(const TieIn& tie_in, std::vector<PathStation> seen) {
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i < seen.size(); ++i) {
     const PathStation &a = seen[i - 1], &b = seen[i];
-    way += (b.md - a.md) / 2 * (Along(a.inclination, a.azimuth) + Along(b.inclination, b.azimuth));
+    way +=
+        (b.md - a.md) / 2 * (Tangent(a.inclination, a.azimuth) + Tangent(b.inclination, b.azimuth));
   }
   const double length = seen.empty() ? 0 : seen.back().md - seen.front().md;
   if (length < tie_in.md / 2) return NotDone("tie_in_way", 0, "no run over half of the way to it");
@@ -98,8 +95,8 @@ Check CheckTieIn(const Job& job, std::span<const Station> stations) {
   }
   if (!job.tie_in.inclination) return NotDone("tie_in", 0, "the run itself gives its direction");
   if (nearest == nullptr) return NotDone("tie_in", 0, "no station within 30 m of it");
-  const Eigen::Vector3d tie = Along(*job.tie_in.inclination, *job.tie_in.azimuth);
-  const Eigen::Vector3d run = Along(nearest->inclination, nearest->azimuth);
+  const Eigen::Vector3d tie = Tangent(*job.tie_in.inclination, *job.tie_in.azimuth);
+  const Eigen::Vector3d run = Tangent(nearest->inclination, nearest->azimuth);
   const double angle = std::atan2(tie.cross(run).norm(), tie.dot(run));
   const double sigma = SigmaOfDirection(*nearest);
   Check check = CompareWith("tie_in", nearest->run, {angle, sigma},
